@@ -1,0 +1,108 @@
+#pragma once
+/** @file Util.hpp
+ * Small helpers of the course: random numbers, a stopwatch, line-wise input
+ * and operators derived from == and <. */
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <chrono>
+#include <cstddef>
+#include <istream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <thread>
+
+/** Derive != from the ==, and >, <=, >= from the < of @a T.
+ * @pre T has operator== and operator<; < is a strict total order. */
+template <typename T>
+struct totally_ordered {
+  friend bool operator!=(const T& a, const T& b) { return !(a == b); }
+  friend bool operator>(const T& a, const T& b) { return b < a; }
+  friend bool operator<=(const T& a, const T& b) { return !(b < a); }
+  friend bool operator>=(const T& a, const T& b) { return !(a < b); }
+};
+
+namespace CME212 {
+
+/** The generator behind random(): one for the program, the same numbers in
+ * every run. */
+inline std::mt19937 default_generator;
+
+/** A uniform random number in [a, b).  @pre a <= b */
+inline double random(double a, double b) {
+  assert(a <= b);
+  return std::uniform_real_distribution<double>(a, b)(default_generator);
+}
+/** A uniform random number in [0, 1). */
+inline double random() { return random(0, 1); }
+
+/** A stopwatch that runs from its construction or its last start(). */
+class Clock {
+ public:
+  using clock = std::chrono::steady_clock;
+  using time_point = clock::time_point;
+  using duration = clock::duration;
+
+  /** Start again from zero. */
+  void start() { start_ = clock::now(); }
+  duration elapsed() const { return clock::now() - start_; }
+  /** Time since the start [s]. */
+  double seconds() const {
+    return std::chrono::duration<double>(elapsed()).count();
+  }
+
+ private:
+  time_point start_ = clock::now();
+};
+
+/** @a a with 17 significant digits, which read back as @a a; like %.17g. */
+inline std::string to_text(double a) {
+  char text[32];
+  auto end = std::to_chars(text, text + sizeof text, a,
+                           std::chars_format::general, 17);
+  return {text, end.ptr};
+}
+
+/** @a a with up to 6 significant digits, for people; like %g. */
+inline std::string short_text(double a) {
+  std::ostringstream out;
+  out << a;
+  return out.str();
+}
+
+/** Let the calling thread sleep for @a t seconds.  @return 0, as usleep() */
+inline int sleep(double t) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(t));
+  return 0;
+}
+
+/** Read N values separated by white space; @a s fails when one is missing. */
+template <typename T, std::size_t N>
+std::istream& operator>>(std::istream& s, std::array<T, N>& v) {
+  for (T& a : v) s >> a;
+  return s;
+}
+
+/** Read the next line of @a s that is neither blank nor starts with #, as a T.
+ * @return @a s: failed at the end of the file and when the line is no T.
+ *
+ * It can't tell the two apart and ignores what follows the T on its line:
+ * good for a first program. load_cloth() reads strictly and says what is
+ * wrong, and in which line. */
+template <typename T>
+std::istream& getline_parsed(std::istream& s, T& value) {
+  std::string line;
+  auto to_skip = [&line] {
+    std::size_t at = line.find_first_not_of(" \t\r");
+    return at == std::string::npos || line[at] == '#';
+  };
+  do std::getline(s, line);
+  while (s && to_skip());
+  if (!s) return s;
+  std::istringstream is(line);
+  if (!(is >> value)) s.setstate(std::ios::failbit);
+  return s;
+}
+
+}  // namespace CME212

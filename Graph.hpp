@@ -1,0 +1,649 @@
+#pragma once
+/** @file Graph.hpp
+ * Graph: an undirected graph whose nodes have a position in space and whose
+ * nodes and edges carry a value each. Node and Edge are proxies: small
+ * handles, passed by value, that read and write the graph's own arrays.
+ *
+ * How it is stored, and why so: docs/graph.md. */
+#include <array>
+#include <bit>
+#include <cassert>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "CME212/Point.hpp"
+#include "CME212/Util.hpp"
+#include "SlotMap.hpp"
+
+namespace graph_detail {
+
+/** Counts nothing. A test passes a type of its own to count the work. */
+struct Uncounted {
+  static void neighbor_read() {}  ///< one entry of a neighbor list looked at
+  static void item_moved() {}     ///< one index or list entry moved
+};
+
+struct NoValue {
+  bool operator==(const NoValue&) const = default;
+};
+
+/** One plain array. (std::vector<bool> has no bool to refer to.) */
+template <typename T>
+using Array = std::conditional_t<std::is_same_v<T, bool>, std::deque<bool>,
+                                 std::vector<T>>;
+
+/** A first and a last iterator, for range-for. */
+template <typename It>
+struct Range {
+  It first, last;
+  It begin() const { return first; }
+  It end() const { return last; }
+};
+
+}  // namespace graph_detail
+
+/** An undirected graph in space: no loops, no parallel edges.
+ * @tparam V Type of the nodes' values: default constructible, copyable
+ * @tparam E Type of the edges' values: likewise
+ * @tparam Work Told of every neighbor read and every entry moved; for tests
+ *
+ * The nodes have the indices 0, ..., num_nodes() - 1, the edges 0, ...,
+ * num_edges() - 1. A removal moves indices; it never moves what a Node or an
+ * Edge means: every handle keeps meaning the same element for as long as that
+ * lives. A handle of a removed element is dead and stays so for ever, also
+ * when new elements come (has_node() and has_edge() say false).
+ *
+ * Complexity: O(1) where nothing is said; "degree" is a node's number of
+ * edges. Memory, N nodes and M edges: 40 + sizeof(V) bytes a node and
+ * 28 + sizeof(E) an edge on a grid, 8 more each after the first removal;
+ * slots of removed elements are used again by new ones, and given back when
+ * the graph is destroyed.
+ *
+ * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
+ * copied (the copy has the same indices and ids, and handles of its own), but
+ * not assigned: the handles of the old content would come to mean another.
+ *
+ * Threads: as a std::vector. Reads may run together, a write runs alone;
+ * writes to positions and values of different elements may run together. */
+template <typename V = graph_detail::NoValue,
+          typename E = graph_detail::NoValue,
+          typename Work = graph_detail::Uncounted>
+class Graph {
+  template <typename T>
+  using Array = graph_detail::Array<T>;
+  template <typename Proxy, bool of_one_node>
+  class ProxyIterator;
+  using Generation = std::uint32_t;
+
+ public:
+  class Node;
+  class Edge;
+  using graph_type = Graph;
+  using size_type = graph_detail::size_type;
+  using node_type = Node;
+  using edge_type = Edge;
+  using node_value_type = V;
+  using edge_value_type = E;
+  /** Random access, all three. */
+  using NodeIterator = ProxyIterator<Node, false>;
+  using EdgeIterator = ProxyIterator<Edge, false>;
+  using IncidentIterator = ProxyIterator<Edge, true>;
+  using node_iterator = NodeIterator;
+  using edge_iterator = EdgeIterator;
+  using incident_iterator = IncidentIterator;
+
+  /** An empty graph. */
+  Graph() = default;
+  Graph(const Graph&) = default;
+  Graph& operator=(const Graph&) = delete;
+
+  // ------------------------------------------------------------------- Node
+
+  /** A handle of one node: 16 bytes, to be passed by value. A default
+   * constructed Node belongs to no graph.
+   * @pre of all members but comparisons: the node is in its graph. */
+  class Node : private totally_ordered<Node> {
+   public:
+    /** An invalid node. */
+    Node() = default;
+
+    /** The place of the node in space, to read or to move. */
+    Point& position() { return at(graph().position_); }
+    const Point& position() const { return at(graph().position_); }
+    /** The value of the node. */
+    node_value_type& value() { return at(graph().node_value_); }
+    const node_value_type& value() const { return at(graph().node_value_); }
+
+    /** A number in [0, num_nodes()); removals of others may change it. */
+    size_type index() const { return graph().nodes_.index_of(id_); }
+    /** Where Graph::positions() and Graph::node_values() hold this node. It
+     * stays the same for as long as the node lives. */
+    size_type id() const { return graph(), id_; }
+
+    /** Number of edges at this node. */
+    size_type degree() const { return list().size; }
+    /** The edges at this node: each has it as node1().
+     * Order: as added, until an edge at this node is removed. */
+    incident_iterator edge_begin() const { return {graph_, list().begin}; }
+    incident_iterator edge_end() const {
+      return {graph_, list().begin + list().size};
+    }
+    graph_detail::Range<incident_iterator> edges() const {
+      return {edge_begin(), edge_end()};
+    }
+
+    /** Same node of the same graph. */
+    bool operator==(const Node& n) const {
+      return graph_ == n.graph_ && id_ == n.id_ && generation_ == n.generation_;
+    }
+    /** A strict total order of all nodes of all graphs. It has no meaning in
+     * space and never changes, so a Node can be a key. */
+    bool operator<(const Node& n) const {
+      if (graph_ != n.graph_)
+        return std::less<const Graph*>()(graph_, n.graph_);
+      return id_ != n.id_ ? id_ < n.id_ : generation_ < n.generation_;
+    }
+
+   private:
+    friend class Graph;
+    Graph* graph_ = nullptr;
+    size_type id_ = 0;
+    Generation generation_ = 0;
+
+    Node(const Graph* g, size_type id)
+        : graph_(const_cast<Graph*>(g)),
+          id_(id),
+          generation_(g->nodes_.generation(id)) {}
+
+    Graph& graph() const {
+      assert(graph_ != nullptr && graph_->has_node(*this));
+      return *graph_;
+    }
+    template <typename A>
+    auto& at(A& array) const {
+      return array[id_];
+    }
+    const auto& list() const { return graph().neighbors_of_[id_]; }
+  };
+
+  // ------------------------------------------------------------------- Edge
+
+  /** A handle of one edge, seen from one of its ends: 16 bytes, to be passed
+   * by value. A default constructed Edge belongs to no graph.
+   * @pre of all members but comparisons: the edge is in its graph. */
+  class Edge : private totally_ordered<Edge> {
+   public:
+    /** An invalid edge. */
+    Edge() = default;
+
+    /** The end from which the edge is seen, and the other one. Which is which
+     * depends on where this handle comes from: Node::edges() gives the node
+     * itself as node1(), add_edge(a, b) gives a, edge(i) the first one of the
+     * call that added the edge. */
+    Node node1() const { return end(half_ % 2); }
+    Node node2() const { return end(1 - half_ % 2); }
+
+    /** The value of the edge: one, whichever end it is seen from. */
+    edge_value_type& value() { return graph().edge_value_[id()]; }
+    const edge_value_type& value() const { return graph().edge_value_[id()]; }
+
+    /** Distance of the two ends, now. */
+    double length() const {
+      return norm(node1().position() - node2().position());
+    }
+    /** A number in [0, num_edges()); removals of others may change it. */
+    size_type index() const { return graph().edges_.index_of(id()); }
+    /** Where Graph::edge_ends() and Graph::edge_values() hold this edge. It
+     * stays the same for as long as the edge lives. */
+    size_type id() const { return half_ / 2; }
+
+    /** Same edge of the same graph, whichever end it is seen from. */
+    bool operator==(const Edge& e) const {
+      return graph_ == e.graph_ && id() == e.id() &&
+             generation_ == e.generation_;
+    }
+    /** A strict total order of all edges of all graphs; it never changes. */
+    bool operator<(const Edge& e) const {
+      if (graph_ != e.graph_)
+        return std::less<const Graph*>()(graph_, e.graph_);
+      return id() != e.id() ? id() < e.id() : generation_ < e.generation_;
+    }
+
+   private:
+    friend class Graph;
+    Graph* graph_ = nullptr;
+    size_type half_ = 0;  // 2 id, + 1 if seen from the second of its ends
+    Generation generation_ = 0;
+
+    Edge(const Graph* g, size_type half)
+        : graph_(const_cast<Graph*>(g)),
+          half_(half),
+          generation_(g->edges_.generation(half / 2)) {}
+
+    Graph& graph() const {
+      assert(graph_ != nullptr && graph_->has_edge(*this));
+      return *graph_;
+    }
+    Node end(size_type which) const {
+      return Node(graph_, graph().ends_[id()][which]);
+    }
+  };
+
+  // ------------------------------------------------------------------ Nodes
+
+  /** Number of nodes. */
+  size_type size() const { return nodes_.size(); }
+  size_type num_nodes() const { return nodes_.size(); }
+
+  /** Add a node at @a position.
+   * @return the new node; its index is old num_nodes().
+   * Invalidates: references and spans to positions and node values.
+   * Keeps: every Node, Edge and iterator (but an end stays where it was).
+   * Complexity: O(1) amortized.
+   * Throws std::length_error beyond 2^31 nodes, std::bad_alloc: no change. */
+  Node add_node(const Point& position, const V& value = V()) {
+    V copy = value;  // the caller's may lie in the array that grows
+    Point p = position;
+    size_type id = nodes_.next();
+    graph_detail::grow_to_hold(position_, id);
+    graph_detail::grow_to_hold(node_value_, id);
+    graph_detail::grow_to_hold(neighbors_of_, id);
+    nodes_.acquire();
+    position_[id] = p;
+    node_value_[id] = std::move(copy);
+    ++version_;
+    return Node(this, id);
+  }
+
+  /** True if @a n is a node of this graph now. */
+  bool has_node(const Node& n) const {
+    return n.graph_ == this && nodes_.alive(n.id_, n.generation_);
+  }
+
+  /** The node of index @a i.  @pre i < num_nodes()
+   * @post result.index() == i */
+  Node node(size_type i) const {
+    assert(i < num_nodes());
+    return Node(this, nodes_.id_at(i));
+  }
+
+  /** Remove node @a n and every edge at it.
+   * @return 1 if removed; 0 if !has_node(@a n), and then nothing changed.
+   * @post !has_node(@a n), and num_nodes() fell by the result.
+   * @post If removed: num_edges() fell by old @a n.degree(); the node of
+   *       highest index took @a n's index; all others kept their own.
+   * Invalidates: @a n, its copies and its edges; all edge and incident
+   *       iterators; node iterators at @a n and at the highest index.
+   * Keeps: every other Node and Edge; references and spans.
+   * Complexity: O(sum of degree() over @a n's neighbors), whatever
+   *       num_nodes(); the first removal of all takes O(num_nodes()). */
+  size_type remove_node(const Node& n) {
+    if (!has_node(n)) return 0;
+    size_type id = n.id_;  // n may be a reference into what changes below
+    for (Half h : pool_.items(neighbors_of_[id])) {
+      drop_from_list(h.node, h.edge / 2);
+      drop_edge(h.edge / 2);
+    }
+    pool_.free(neighbors_of_[id]);
+    position_[id] = Point();
+    node_value_[id] = V();
+    nodes_.release(id);
+    Work::item_moved();
+    ++version_;
+    return 1;
+  }
+  /** Remove the node at @a it, as remove_node(*it).
+   * @return an iterator at the node that now has the index, or node_end(): so
+   *         `it = g.remove_node(it)` in place of ++it visits every node once.
+   * @pre @a it != node_end() */
+  node_iterator remove_node(node_iterator it) {
+    remove_node(*it);
+    return it;
+  }
+
+  // ------------------------------------------------------------------ Edges
+
+  /** Number of edges. */
+  size_type num_edges() const { return edges_.size(); }
+
+  /** Add the edge between @a a and @a b, unless it is there already.
+   * @return the edge, new or old, with node1() == a and node2() == b.
+   * @pre has_node(a) && has_node(b) && a != b
+   * @post has_edge(a, b); num_edges() grew by one if the edge is new, and then
+   *       its index is old num_edges(). The value of an old edge is kept.
+   * Invalidates: incident iterators of @a a and @a b; references and spans to
+   *       edge values and ends.
+   * Keeps: every Node, Edge and other iterator.
+   * Complexity: O(min(a.degree(), b.degree())), amortized.
+   * Throws std::length_error beyond 2^31 edges, std::bad_alloc: no change. */
+  Edge add_edge(const Node& a, const Node& b, const E& value = E()) {
+    assert(has_node(a) && has_node(b) && !(a == b));
+    if (size_type half = find(a, b); half != none) return Edge(this, half);
+    E copy = value;
+    size_type id = edges_.next();
+    size_type i = a.id_, j = b.id_;
+    graph_detail::grow_to_hold(ends_, id);
+    graph_detail::grow_to_hold(edge_value_, id);
+    pool_.reserve_one(neighbors_of_[i]);
+    pool_.reserve_one(neighbors_of_[j]);
+    edges_.acquire();
+    ends_[id] = {i, j};
+    edge_value_[id] = std::move(copy);
+    pool_.push_back(neighbors_of_[i], {j, 2 * id});
+    pool_.push_back(neighbors_of_[j], {i, 2 * id + 1});
+    ++version_;
+    return Edge(this, 2 * id);
+  }
+
+  /** True if there is an edge between @a a and @a b in this graph now; false
+   * also if one of them is no node of it.
+   * Complexity: O(min(a.degree(), b.degree())) */
+  bool has_edge(const Node& a, const Node& b) const {
+    return find(a, b) != none;
+  }
+  /** True if @a e is an edge of this graph now. */
+  bool has_edge(const Edge& e) const {
+    return e.graph_ == this && edges_.alive(e.id(), e.generation_);
+  }
+
+  /** The edge of index @a i.  @pre i < num_edges() */
+  Edge edge(size_type i) const {
+    assert(i < num_edges());
+    return Edge(this, 2 * edges_.id_at(i));
+  }
+
+  /** Remove the edge between @a a and @a b.
+   * @return 1 if removed; 0 if !has_edge(a, b), and then nothing changed.
+   * @post !has_edge(a, b), and num_edges() fell by the result.
+   * @post If removed: the edge of highest index took its index; all others
+   *       kept their own.
+   * Invalidates: the edge and its copies; edge iterators at it and at the
+   *       highest index; incident iterators of @a a and @a b.
+   * Keeps: every Node and every other Edge; references and spans.
+   * Complexity: O(a.degree() + b.degree()); the first removal of all takes
+   *       O(num_edges()). */
+  size_type remove_edge(const Node& a, const Node& b) {
+    size_type half = find(a, b);
+    return half == none ? 0 : remove_edge(Edge(this, half));
+  }
+  /** Remove @a e: as above; 0 if !has_edge(e). */
+  size_type remove_edge(const Edge& e) {
+    if (!has_edge(e)) return 0;
+    size_type id = e.id();
+    for (size_type end : ends_[id]) drop_from_list(end, id);
+    drop_edge(id);
+    ++version_;
+    return 1;
+  }
+  /** Remove the edge at @a it: as above.
+   * @return an iterator at the edge that now has the index, or edge_end().
+   * @pre @a it != edge_end() */
+  edge_iterator remove_edge(edge_iterator it) {
+    remove_edge(*it);
+    return it;
+  }
+
+  // ------------------------------------------------------------------ Whole
+
+  /** Remove all nodes and edges.
+   * Invalidates: every Node, Edge, iterator, reference and span.
+   * Complexity: O(slots ever used), and it keeps 4 bytes for each of them so
+   *       that dead handles stay dead. */
+  void clear() {
+    nodes_.clear();
+    edges_.clear();
+    pool_.clear();
+    position_.clear();
+    node_value_.clear();
+    neighbors_of_.clear();
+    ends_.clear();
+    edge_value_.clear();
+    ++version_;
+  }
+
+  /** Give the indices anew, in the order in which the elements lie in memory:
+   * after many removals this makes iteration as fast as at first.
+   * Invalidates: all iterators.
+   * Keeps: every Node and Edge (with another index); references and spans.
+   * Complexity: O(num_nodes() + num_edges() + slots of removed ones) */
+  void reindex() {
+    nodes_.reindex();
+    edges_.reindex();
+    ++version_;
+  }
+
+  node_iterator node_begin() const { return {self(), 0}; }
+  node_iterator node_end() const { return {self(), num_nodes()}; }
+  edge_iterator edge_begin() const { return {self(), 0}; }
+  edge_iterator edge_end() const { return {self(), num_edges()}; }
+  /** For range-for: for (auto n : g.nodes()) ... */
+  graph_detail::Range<node_iterator> nodes() const {
+    return {node_begin(), node_end()};
+  }
+  graph_detail::Range<edge_iterator> edges() const {
+    return {edge_begin(), edge_end()};
+  }
+
+  // ---------------------------------------------------------- Arrays, by id
+  // The same storage without proxies, for sweeps over the whole graph: plain
+  // arrays, addressed by Node::id() and Edge::id(). A slot whose element was
+  // removed holds Point(), V(), E() and the ends {0, 0}; skip it by
+  // node_in_use() and edge_in_use(), in a loop over the slots: that goes
+  // through memory in order, whatever became of the indices.
+
+  /** All ids lie below this.  >= num_nodes() */
+  size_type node_slots() const { return nodes_.slots(); }
+  size_type edge_slots() const { return edges_.slots(); }
+  /** True if the slot holds a node.  @pre id < node_slots() */
+  bool node_in_use(size_type id) const { return nodes_.in_use(id); }
+  bool edge_in_use(size_type id) const { return edges_.in_use(id); }
+  /** The node in a slot.  @pre node_in_use(id) */
+  Node node_with_id(size_type id) const {
+    assert(id < node_slots() && node_in_use(id));
+    return Node(this, id);
+  }
+  Edge edge_with_id(size_type id) const {
+    assert(id < edge_slots() && edge_in_use(id));
+    return Edge(this, 2 * id);
+  }
+
+  std::span<Point> positions() { return {position_.data(), node_slots()}; }
+  std::span<const Point> positions() const {
+    return {position_.data(), node_slots()};
+  }
+  std::span<V> node_values() { return {node_value_.data(), node_slots()}; }
+  std::span<const V> node_values() const {
+    return {node_value_.data(), node_slots()};
+  }
+  /** The ids of both ends of each edge. */
+  std::span<const std::array<size_type, 2>> edge_ends() const {
+    return {ends_.data(), edge_slots()};
+  }
+  std::span<E> edge_values() { return {edge_value_.data(), edge_slots()}; }
+  std::span<const E> edge_values() const {
+    return {edge_value_.data(), edge_slots()};
+  }
+
+  /** Changes whenever a node or an edge came or went, or indices changed. */
+  std::size_t version() const { return version_; }
+
+  /** Throw std::logic_error with what is wrong unless the whole representation
+   * is consistent. For tests.  Complexity: O(sum of squared degrees) */
+  void check_invariants() const {
+    auto require = [](bool ok, const char* what) {
+      if (!ok) throw std::logic_error(std::string("Graph: ") + what);
+    };
+    nodes_.check_invariants();
+    edges_.check_invariants();
+    require(position_.size() >= node_slots() &&
+                node_value_.size() >= node_slots() &&
+                neighbors_of_.size() >= node_slots() &&
+                ends_.size() >= edge_slots() &&
+                edge_value_.size() >= edge_slots(),
+            "an array is shorter than its slots");
+    std::size_t halves = 0, capacity = 0;
+    for (size_type i = 0; i < node_slots(); ++i) {
+      const auto& list = neighbors_of_[i];
+      capacity += list.capacity;
+      halves += list.size;
+      require(list.size <= list.capacity &&
+                  (list.capacity == 0 || std::has_single_bit(list.capacity)) &&
+                  list.begin + list.capacity <= pool_.pool_size(),
+              "a neighbor list exceeds its block");
+      require(node_in_use(i) || list.capacity == 0,
+              "a removed node has neighbors");
+      for (Half h : pool_.items(list)) {
+        size_type e = h.edge / 2;
+        require(e < edge_slots() && edge_in_use(e),
+                "a neighbor list holds a removed edge");
+        require(h.node != i, "a loop");
+        require(ends_[e][h.edge % 2] == i && ends_[e][1 - h.edge % 2] == h.node,
+                "a neighbor list and the ends of an edge disagree");
+        size_type seen = 0;
+        for (Half other : pool_.items(list)) seen += other.node == h.node;
+        require(seen == 1, "parallel edges");
+      }
+    }
+    require(halves == 2 * std::size_t(num_edges()),
+            "an edge is not in the lists of both its ends");
+    require(capacity + pool_.free_size() == pool_.pool_size(),
+            "a block of the pool is lost or used twice");
+    for (size_type e = 0; e < edge_slots(); ++e)
+      require(edge_in_use(e) || ends_[e] == std::array<size_type, 2>{},
+              "a removed edge has ends");
+  }
+
+ private:
+  /** An edge in the list of one end: the other end's id, and Edge::half_. */
+  struct Half {
+    size_type node, edge;
+  };
+  static constexpr size_type none = std::numeric_limits<size_type>::max();
+
+  graph_detail::SlotMap<Generation> nodes_, edges_;
+  graph_detail::ListPool<Half> pool_;
+  std::size_t version_ = 0;
+  // By node id:
+  std::vector<Point> position_;
+  Array<V> node_value_;
+  std::vector<typename graph_detail::ListPool<Half>::List> neighbors_of_;
+  // By edge id:
+  std::vector<std::array<size_type, 2>> ends_;  // in the order of add_edge()
+  Array<E> edge_value_;
+
+  Graph* self() const { return const_cast<Graph*>(this); }
+
+  /** Edge::half_ of the edge as seen from @a a, or none. */
+  size_type find(const Node& a, const Node& b) const {
+    if (!has_node(a) || !has_node(b)) return none;
+    bool from_a = a.degree() <= b.degree();
+    const Node& from = from_a ? a : b;
+    size_type to = from_a ? b.id_ : a.id_;
+    for (Half h : pool_.items(neighbors_of_[from.id_])) {
+      Work::neighbor_read();
+      if (h.node == to) return from_a ? h.edge : h.edge ^ 1u;
+    }
+    return none;
+  }
+
+  /** Take edge @a e out of the list of node @a i. */
+  void drop_from_list(size_type i, size_type e) {
+    auto& list = neighbors_of_[i];
+    for (size_type k = 0; k < list.size; ++k) {
+      Work::neighbor_read();
+      if (pool_[list.begin + k].edge / 2 == e) {
+        pool_.erase(list, k);
+        Work::item_moved();
+        return;
+      }
+    }
+    assert(false);
+  }
+
+  /** Release edge @a e, whose ends' lists are not looked at. */
+  void drop_edge(size_type e) {
+    ends_[e] = {};
+    edge_value_[e] = E();
+    edges_.release(e);
+    Work::item_moved();
+  }
+
+  /** Iterates over proxies, made when asked for. Random access over all nodes
+   * or edges by index; over the edges of one node by place in the pool. */
+  template <typename Proxy, bool of_one_node>
+  class ProxyIterator {
+   public:
+    using value_type = Proxy;
+    using reference = Proxy;
+    using difference_type = std::ptrdiff_t;
+    using iterator_category = std::random_access_iterator_tag;
+    /** Holds the proxy while its member is called. */
+    struct pointer {
+      Proxy proxy;
+      Proxy* operator->() { return &proxy; }
+    };
+
+    /** An iterator of no graph: only to be assigned to. */
+    ProxyIterator() = default;
+
+    Proxy operator*() const {
+      if constexpr (of_one_node)
+        return Proxy(graph_, graph_->pool_[at_].edge);
+      else if constexpr (std::is_same_v<Proxy, Node>)
+        return graph_->node(at_);
+      else
+        return graph_->edge(at_);
+    }
+    pointer operator->() const { return {**this}; }
+    Proxy operator[](difference_type n) const { return *(*this + n); }
+
+    ProxyIterator& operator+=(difference_type n) {
+      at_ = static_cast<size_type>(at_ + n);
+      return *this;
+    }
+    ProxyIterator& operator-=(difference_type n) { return *this += -n; }
+    ProxyIterator& operator++() { return ++at_, *this; }
+    ProxyIterator& operator--() { return --at_, *this; }
+    ProxyIterator operator++(int) {
+      auto old = *this;
+      return ++at_, old;
+    }
+    ProxyIterator operator--(int) {
+      auto old = *this;
+      return --at_, old;
+    }
+    friend ProxyIterator operator+(ProxyIterator it, difference_type n) {
+      return it += n;
+    }
+    friend ProxyIterator operator+(difference_type n, ProxyIterator it) {
+      return it += n;
+    }
+    friend ProxyIterator operator-(ProxyIterator it, difference_type n) {
+      return it -= n;
+    }
+    /** @pre both of the same range, here and in the comparisons */
+    friend difference_type operator-(ProxyIterator a, ProxyIterator b) {
+      return difference_type(a.at_) - difference_type(b.at_);
+    }
+    bool operator==(const ProxyIterator&) const = default;
+    auto operator<=>(const ProxyIterator& o) const { return at_ <=> o.at_; }
+
+   private:
+    friend class Graph;
+    Graph* graph_ = nullptr;
+    size_type at_ = 0;  // index, or place in the pool
+    ProxyIterator(Graph* g, size_type at) : graph_(g), at_(at) {}
+  };
+
+  static_assert(sizeof(Node) <= 16 && sizeof(Edge) <= 16);
+};

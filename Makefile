@@ -1,0 +1,103 @@
+# The targets: make help
+#
+# Every .cpp here is one program: `make NAME` builds ./NAME. With another
+# compiler, other flags or in another place:
+#   make NAME CXX=clang++ CXXFLAGS=-march=native O=build/native/
+
+STAGE  ?= tear
+STAGES  = problem1 diagonals forces constraints tear
+VIEWER ?= 1
+HW     ?= hw2
+O       =
+SANITIZE = address,undefined
+
+PROGRAMS := $(basename $(wildcard *.cpp))
+TESTS    := $(filter test_%,$(PROGRAMS))
+EXAMPLES := $(filter example_%,$(PROGRAMS))
+# What draws, and so needs SDL2, OpenGL, Dear ImGui and libpng:
+DRAWING   = mass_spring mass_spring_% test_viewer
+
+# Programs are built for speed and without assertions, tests and examples with
+# all of them and under the sanitizers.
+release  = -O3 -DNDEBUG
+testing  = -O1 -fno-omit-frame-pointer \
+           $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all)
+draws    = $(and $(filter $(DRAWING),$*),$(filter 1,$(VIEWER)))
+draw_pkg = sdl2 gl imgui libpng
+stage_of = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
+flags    = -std=c++20 -g -Wall -Wextra -pthread -I. \
+           $(if $(filter test_% example_%,$*),$(testing),$(release)) \
+           $(if $(filter mass_spring%,$*),-DSTAGE=$(stage_of)) \
+           $(if $(draws),-DMASS_SPRING_VIEWER \
+             $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(draw_pkg)))) \
+           $(CPPFLAGS) $(CXXFLAGS)
+libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
+           $(if $(filter bench,$*),-lbenchmark) \
+           $(if $(draws),$(shell pkg-config --libs $(draw_pkg))) $(LDLIBS)
+
+MAKEFLAGS += --no-builtin-rules
+.PHONY: all deps peers-deps demo check check-tests help clean format submit \
+        grids FORCE
+.SECONDARY:
+.DELETE_ON_ERROR:
+
+help:
+	@echo 'make demo               the cloth on data/grid2: all in one command'
+	@echo 'make mass_spring        the last stage; STAGE=forces another, or'
+	@echo '                        make mass_spring_forces; VIEWER=0 no window'
+	@echo 'make test_nodes ...     a test, under the sanitizers'
+	@echo 'make check              everything that a commit must pass'
+	@echo 'make data/grid4.nodes   a grid of a million nodes'
+	@echo 'make submit HW=hw2      tag and push; FORCE=1 moves the tag'
+	@echo 'make all | format | clean | deps'
+	@echo 'programs: $(PROGRAMS)'
+
+all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
+
+cant_draw = echo "make $*: SDL2, OpenGL, Dear ImGui or libpng is missing:" \
+  "install them by 'make deps', or build without: make $* VIEWER=0" >&2
+# A program is built anew when its sources or its flags have changed.
+define build
+@$(if $(draws),pkg-config --exists $(draw_pkg) || { $(cant_draw); exit 1; };) \
+mkdir -p $(dir $@) && echo '$(CXX) $@' && \
+$(CXX) $(flags) -MMD -MP -MF build/$@.d -MT $@ -o $@ $< $(libs)
+endef
+$(STAGES:%=$(O)mass_spring_%): $(O)%: mass_spring.cpp build/$(O)%.flags
+	$(build)
+$(PROGRAMS:%=$(O)%): $(O)%: %.cpp build/$(O)%.flags
+	$(build)
+build/$(O)%.flags: FORCE
+	@mkdir -p $(dir $@); echo '$(CXX) $(flags)' | cmp -s - $@ \
+	  || echo '$(CXX) $(flags)' > $@
+-include $(wildcard build/*.d build/*/*.d build/*/*/*.d)
+
+deps:
+	@tools/deps.sh
+peers-deps:
+	@tools/deps.sh peers
+
+demo: deps
+	@$(MAKE) --no-print-directory mass_spring
+	./mass_spring data/grid2.nodes data/grid2.tets
+
+data/grid4.nodes data/grid4.tets &: make_grid
+	./make_grid 1000 data/grid4
+# The committed grids: what they are made by, and checked against.
+grids: make_grid
+	@for k in 0:5 1:25 2:50 3:100; do \
+	  ./make_grid $${k#*:} $(or $(TO),data)/grid$${k%:*} || exit 1; done
+
+check: deps
+	@$(MAKE) --no-print-directory check-all
+
+check-all:
+	@tools/check.sh
+
+format:
+	clang-format -i *.hpp *.cpp CME212/*.hpp
+
+submit:
+	@HW='$(HW)' FORCE='$(FORCE)' tools/submit.sh
+
+clean:
+	rm -rf build demo $(PROGRAMS) $(STAGES:%=mass_spring_%)

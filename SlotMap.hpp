@@ -1,0 +1,256 @@
+#pragma once
+/** @file SlotMap.hpp
+ * What Graph.hpp stores its elements with: SlotMap gives ids that stay, to
+ * things that come and go; ListPool keeps many short lists in one array. */
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+namespace graph_detail {
+
+using size_type = unsigned;
+
+/** Make @a a long enough to hold an element @a i. */
+template <typename A>
+void grow_to_hold(A& a, std::size_t i) {
+  if (a.size() <= i) a.resize(i + 1);
+}
+
+/** Ids for things that come and go: an id stays with its thing, while the
+ * indices of all things are 0, 1, ..., size() - 1 at any time.
+ *
+ * A slot counts its @e generation up at each birth and each death, so it is
+ * odd while the slot is in use, and a handle of (id, generation) can tell its
+ * thing from a later one in the same slot. A slot that ran out of generations
+ * is never used again: no handle ever comes alive again.
+ *
+ * Memory: sizeof(Generation) a slot; after the first release() 8 bytes more.
+ * @tparam Generation unsigned integer; only tests need another than the
+ *         default */
+template <typename Generation = std::uint32_t>
+class SlotMap {
+ public:
+  /** Number of things. */
+  size_type size() const { return size_; }
+  /** All ids in use lie below slots(). */
+  size_type slots() const { return slots_; }
+  bool in_use(size_type id) const { return generation_[id] % 2 == 1; }
+  Generation generation(size_type id) const { return generation_[id]; }
+  bool alive(size_type id, Generation generation) const {
+    return id < slots_ && generation_[id] == generation && in_use(id);
+  }
+
+  /** The thing at @a index, and back.  O(1)
+   * While nothing was released the two are equal and no list is kept. */
+  size_type id_at(size_type index) const {
+    return identity_ ? index : id_at_[index];
+  }
+  size_type index_of(size_type id) const {
+    return identity_ ? id : index_of_[id];
+  }
+
+  /** The id that the next acquire() will give. */
+  size_type next() const { return free_.empty() ? slots_ : free_.back(); }
+
+  /** Take a slot into use.  @post index_of(result) == old size()
+   * Complexity: O(1) amortized. If memory runs out, nothing changed. */
+  size_type acquire() {
+    size_type id = next();
+    if (id >= max_slots) throw std::length_error("Graph: too many elements");
+    grow_to_hold(generation_, id);
+    if (!identity_) {
+      grow_to_hold(index_of_, id);
+      index_of_[id] = size_;
+      id_at_.push_back(id);
+    }
+    if (free_.empty())
+      ++slots_;
+    else
+      free_.pop_back();
+    ++generation_[id];
+    ++size_;
+    return id;
+  }
+
+  /** Give up a slot.  @pre in_use(id)
+   * @post The thing of highest index took the index of the released one.
+   * Complexity: O(1); the first release of all takes O(slots()), which is
+   * O(1) for each acquire() before it. */
+  void release(size_type id) {
+    make_lists();
+    size_type hole = index_of_[id];
+    size_type last = id_at_.back();
+    id_at_[hole] = last;
+    index_of_[last] = hole;
+    id_at_.pop_back();
+    --size_;
+    retire(id);
+    if (reusable(id)) free_.push_back(id);
+  }
+
+  /** Release all.  Complexity: O(slots()) */
+  void clear() {
+    bool all_reusable = true;
+    free_.clear();
+    for (size_type id = slots_; id-- > 0;) {
+      if (in_use(id)) retire(id);
+      if (reusable(id))
+        free_.push_back(id);
+      else
+        all_reusable = false;
+    }
+    id_at_.clear();
+    index_of_.clear();
+    size_ = 0;
+    identity_ = all_reusable;
+    if (identity_) {
+      free_.clear();
+      slots_ = 0;
+    } else {
+      index_of_.resize(slots_);
+    }
+  }
+
+  /** Give the indices anew, in the order of the ids.  O(slots()) */
+  void reindex() {
+    if (identity_) return;
+    size_type index = 0;
+    for (size_type id = 0; id < slots_; ++id)
+      if (in_use(id)) {
+        id_at_[index] = id;
+        index_of_[id] = index++;
+      }
+    if (size_ < slots_) return;
+    id_at_.clear();
+    index_of_.clear();
+    identity_ = true;
+  }
+
+  /** Throw std::logic_error unless the representation is consistent. */
+  void check_invariants() const {
+    auto require = [](bool ok) {
+      if (!ok) throw std::logic_error("SlotMap: inconsistent");
+    };
+    size_type used = 0, spent = 0;
+    require(generation_.size() >= slots_);
+    for (size_type id = 0; id < generation_.size(); ++id) {
+      if (in_use(id)) {
+        ++used;
+        require(id < slots_ && index_of(id) < size_);
+        require(id_at(index_of(id)) == id);
+      } else if (id < slots_ && !reusable(id)) {
+        ++spent;
+      }
+    }
+    require(used == size_ && size_ + free_.size() + spent == slots_);
+    require(!identity_ || (size_ == slots_ && free_.empty()));
+    require(identity_ || id_at_.size() == size_);
+    for (size_type id : free_)
+      require(id < slots_ && !in_use(id) && reusable(id));
+  }
+
+ private:
+  // Edge packs an orientation bit beside the id.
+  static constexpr size_type max_slots = 1u << 31;
+
+  std::vector<Generation> generation_;  // by slot; odd: in use
+  std::vector<size_type> id_at_;        // by index; empty while identity_
+  std::vector<size_type> index_of_;     // by slot;  empty while identity_
+  std::vector<size_type> free_;         // slots to use again
+  size_type size_ = 0;
+  size_type slots_ = 0;
+  bool identity_ = true;  // index == id for all, and there is no free slot
+
+  void retire(size_type id) { ++generation_[id]; }
+  bool reusable(size_type id) const {
+    return generation_[id] < std::numeric_limits<Generation>::max() - 1;
+  }
+  void make_lists() {
+    if (!identity_) return;
+    id_at_.resize(slots_);
+    index_of_.resize(slots_);
+    for (size_type id = 0; id < slots_; ++id) id_at_[id] = index_of_[id] = id;
+    identity_ = false;
+  }
+};
+
+/** Lists of T that live together in one array, each in a block whose capacity
+ * is a power of two; a list that outgrows its block moves to a larger one,
+ * and the old block serves the next list of that size.
+ * Memory: at most about 4 sizeof(T) an element, 12 bytes a list. */
+template <typename T>
+class ListPool {
+ public:
+  struct List {
+    size_type begin = 0;  // of the block, in the pool
+    size_type size = 0;
+    size_type capacity = 0;  // 0 or a power of two
+  };
+
+  const T& operator[](size_type at) const { return pool_[at]; }
+  T& operator[](size_type at) { return pool_[at]; }
+  std::span<const T> items(const List& l) const {
+    return {pool_.data() + l.begin, l.size};
+  }
+
+  /** Make room for one more element in @a l.  O(1) amortized */
+  void reserve_one(List& l) {
+    if (l.size < l.capacity) return;
+    size_type capacity = l.capacity == 0 ? min_capacity : 2 * l.capacity;
+    auto& reuse = free_[std::countr_zero(capacity)];
+    size_type begin;
+    if (!reuse.empty()) {
+      begin = reuse.back();
+      reuse.pop_back();
+    } else {
+      if (pool_.size() + capacity > std::numeric_limits<size_type>::max())
+        throw std::length_error("Graph: too many edges");
+      begin = static_cast<size_type>(pool_.size());
+      pool_.resize(pool_.size() + capacity);
+    }
+    List longer{begin, l.size, capacity};
+    for (size_type k = 0; k < l.size; ++k)
+      pool_[begin + k] = pool_[l.begin + k];
+    free(l);
+    l = longer;
+  }
+  /** Append.  @pre reserve_one(l) came before */
+  void push_back(List& l, const T& item) {
+    assert(l.size < l.capacity);
+    pool_[l.begin + l.size++] = item;
+  }
+  /** Remove the element at @a k: the last one takes its place.  O(1) */
+  void erase(List& l, size_type k) {
+    pool_[l.begin + k] = pool_[l.begin + l.size - 1];
+    --l.size;
+  }
+  /** Empty the list and give its block back. */
+  void free(List& l) {
+    if (l.capacity > 0) free_[std::countr_zero(l.capacity)].push_back(l.begin);
+    l = {};
+  }
+  void clear() {
+    pool_.clear();
+    for (auto& f : free_) f.clear();
+  }
+  std::size_t pool_size() const { return pool_.size(); }
+  /** Elements that lie in blocks nobody uses. */
+  std::size_t free_size() const {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < free_.size(); ++k) n += free_[k].size() << k;
+    return n;
+  }
+
+ private:
+  static constexpr size_type min_capacity = 4;
+  std::vector<T> pool_;
+  std::array<std::vector<size_type>, 32> free_;  // by log2 of the capacity
+};
+
+}  // namespace graph_detail

@@ -1,0 +1,403 @@
+/** @file mass_spring.cpp
+ * Simulates a cloth: ./mass_spring [options] NODES TETS; see --help.
+ * The stage of the assignment is chosen when it is compiled: make
+ * mass_spring STAGE=forces, or make mass_spring_forces.
+ *
+ * Exit status: 0 done; 2 an input or an option that can't be used, or an
+ * output that can't be written; 3 the run diverged; 4 no display. */
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "CME212/OutputFile.hpp"
+#include "CME212/Util.hpp"
+#include "Scene.hpp"
+#include "Screen.hpp"
+
+using CME212::short_text;
+
+namespace {
+
+constexpr const char* version = "1.0.0";
+constexpr const char* stage_names[] = {"problem1", "diagonals", "forces",
+                                       "constraints", "tear"};
+constexpr Stage stage = Stage::STAGE;  // a misspelt stage does not compile
+constexpr const char* stage_name = stage_names[static_cast<int>(stage)];
+
+struct Options {
+  std::string nodes, tets;
+  Parameters with;
+  double t_end = 5;
+  double at = -1;  // time of the screenshot [s]; the end if negative
+  double speed = 1;
+  long long every = 10;
+  bool headless = false, window = false, quiet = false, strain = false;
+  std::string screenshot, video, csv, out;
+
+  long long num_steps() const {
+    // 5 / 0.001 is a little more than 5000 or a little less: neither may
+    // cost a step.
+    return static_cast<long long>(std::ceil(t_end / with.dt * (1 - 1e-12)));
+  }
+  bool pictures() const { return !screenshot.empty() || !video.empty(); }
+};
+
+/** An option that can't be used. */
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void check(const Options& o) {
+  auto require = [](bool ok, const char* option, double value,
+                    const char* expected) {
+    if (!ok)
+      throw UsageError(std::string(option) + " is " + short_text(value) +
+                       ", expected " + expected);
+  };
+  const Parameters& with = o.with;
+  require(with.dt > 0 && std::isfinite(with.dt), "--dt", with.dt,
+          "a positive time [s]");
+  require(o.t_end >= 0 && std::isfinite(o.t_end), "--t-end", o.t_end,
+          "a time [s], 0 or more");
+  require(o.t_end / with.dt < 1e15, "--t-end", o.t_end,
+          "fewer than 1e15 steps of --dt");
+  require(with.damping >= 0 && std::isfinite(with.damping), "--damping",
+          with.damping, "a drag coefficient [kg/s], 0 or more");
+  require(with.stiffness >= 0 && std::isfinite(with.stiffness), "--stiffness",
+          with.stiffness, "a spring constant [N/m], 0 or more");
+  require(std::isfinite(with.gravity), "--gravity", with.gravity,
+          "an acceleration [m/s^2]");
+  require(o.speed >= 0, "--speed", o.speed, "0 or more");
+  require(o.every > 0, "--every", double(o.every), "a number of steps, 1 up");
+  require(o.at < 0 || o.at <= o.t_end, "--at", o.at, "a time up to --t-end");
+  if (o.window && (o.headless || o.pictures()))
+    throw UsageError(
+        "--window does not go with --headless, --screenshot and --record");
+}
+
+/** Read the command line.  @return the exit status to end with, or -1 */
+int parse(int argc, char** argv, Options& o) {
+  CLI::App app(std::string("Simulates a cloth of masses and springs; stage ") +
+                   stage_name +
+                   ".\nNODES holds points 'x y z' [m], TETS "
+                   "quads of four node indices.",
+               "mass_spring");
+  app.option_defaults()->always_capture_default();
+  app.add_option("NODES", o.nodes, "file of points")->required();
+  app.add_option("TETS", o.tets, "file of quads")->required();
+  app.add_option("--dt", o.with.dt, "step [s]");
+  app.add_option("--t-end", o.t_end, "time to reach [s], in steps of dt");
+  app.add_option("--damping", o.with.damping,
+                 "drag coefficient c [kg/s] (from stage forces on; 1/N is "
+                 "moderate)");
+  app.add_option("--stiffness", o.with.stiffness,
+                 "spring constant K [N/m] of every edge");
+  app.add_option("--gravity", o.with.gravity,
+                 "acceleration of free fall [m/s^2]");
+  app.add_flag("--headless", o.headless, "open no window");
+  app.add_flag("--window", o.window,
+               "insist on a window: without a display, exit with 4");
+  app.add_option("--speed", o.speed,
+                 "in a window: at most so many simulated seconds a second; 0 "
+                 "as fast as it goes");
+  app.add_flag("--strain", o.strain,
+               "color the nodes by their springs' strain");
+  app.add_option("--screenshot", o.screenshot,
+                 "draw a picture FILE.png, without a window")
+      ->type_name("FILE");
+  app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
+  app.add_option("--record", o.video,
+                 "draw a film FILE.mp4 of 30 frames a second, without a window")
+      ->type_name("FILE");
+  app.add_option("--csv", o.csv, "write energies [J] and center of mass [m]")
+      ->type_name("FILE");
+  app.add_option("--every", o.every, "steps between two rows of --csv");
+  app.add_option("--out", o.out, "write the positions at the end, as NODES")
+      ->type_name("FILE");
+  app.add_flag("--quiet", o.quiet, "print nothing but errors");
+  app.set_config("--config", "", "read options from a file: dt=0.0005 ...");
+  app.set_version_flag("--version", std::string("mass_spring ") + version +
+                                        ", stage " + stage_name);
+  try {
+    app.parse(argc, argv);
+    check(o);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  return -1;
+}
+
+/** Tells how far a run is: a bar on a terminal, else a line now and then;
+ * nothing if it is done within a second. */
+class Progress {
+ public:
+  Progress(const Options& o, long long total)
+      : on_(!o.quiet),
+        bar_(isatty(STDERR_FILENO)),
+        t_end_(o.t_end),
+        total_(total) {}
+
+  void show(long long steps, double t) {
+    if (!on_ || total_ == 0) return;
+    if (clock_.seconds() < next_) return;
+    next_ = clock_.seconds() + (bar_ ? 0.1 : 5.0);
+    double rate = std::max(1.0, double(steps)) / clock_.seconds();
+    std::ostringstream line;
+    if (bar_) {
+      auto filled = static_cast<std::size_t>(30 * steps / total_);
+      line << "\r[" << std::string(filled, '#') << std::string(30 - filled, ' ')
+           << "] ";
+    }
+    line << "t = " << short_text(t) << " of " << short_text(t_end_) << " s, "
+         << short_text(std::round(rate)) << " steps/s, "
+         << short_text(std::ceil(double(total_ - steps) / rate)) << " s left"
+         << (bar_ ? "   " : "\n");
+    std::cerr << line.str() << std::flush;
+  }
+  void end() {
+    if (on_ && bar_) std::cerr << '\r' << std::string(76, ' ') << '\r';
+  }
+  double seconds() const { return clock_.seconds(); }
+
+ private:
+  bool on_, bar_;
+  double t_end_;
+  long long total_;
+  double next_ = 1;  // when to show again [s]
+  CME212::Clock clock_;
+};
+
+/** One run of a scene with all that is written about it. */
+class Run {
+ public:
+  /** Output files are opened now, so that a wrong path ends the run before it
+   * starts. Throws std::runtime_error. */
+  Run(Scene& scene, const Options& o)
+      : scene_(scene), o_(o), progress_(o, o.num_steps()) {
+    if (!o.csv.empty()) csv_.emplace(o.csv);
+    if (!o.out.empty()) out_.emplace(o.out);
+    start();
+  }
+
+  /** Back to t = 0. */
+  void restart() {
+    scene_.restart();
+    start();
+  }
+
+  bool done() const {
+    return scene_.steps() >= o_.num_steps() || !scene_.failure().empty();
+  }
+
+  /** One step.  @pre !done() */
+  void advance() {
+    scene_.step();
+    if (scene_.steps() % o_.every == 0 || done()) add_row();
+    progress_.show(scene_.steps(), scene_.time());
+  }
+
+  /** Write the files and the last line.  @return the exit status
+   * Throws std::runtime_error if a file can't be written. */
+  int finish() {
+    progress_.end();
+    if (csv_) {
+      csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,"
+                        "com_z,nodes,edges\n"
+                     << rows_;
+      csv_->commit();
+    }
+    if (out_) {
+      for (Node n : scene_.cloth().nodes()) {
+        Point p = n.position();
+        out_->stream() << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y)
+                       << ' ' << CME212::to_text(p.z) << '\n';
+      }
+      out_->commit();
+    }
+    if (!o_.quiet) print_summary();
+    if (scene_.failure().empty()) return 0;
+    std::cerr << "mass_spring: " << scene_.failure() << '\n';
+    return 3;
+  }
+
+ private:
+  Scene& scene_;
+  const Options& o_;
+  Progress progress_;
+  std::optional<CME212::OutputFile> csv_, out_;
+  std::string rows_;
+  long long last_row_ = -1;
+
+  struct Energies {
+    double kinetic, elastic, gravitational;
+    double total() const { return kinetic + elastic + gravitational; }
+  };
+  Energies energies() const {
+    const Cloth& g = scene_.cloth();
+    return {kinetic_energy(g), elastic_energy(g),
+            gravitational_energy(g, o_.with.gravity)};
+  }
+
+  void start() {
+    progress_ = Progress(o_, o_.num_steps());
+    rows_.clear();
+    last_row_ = -1;
+    add_row();
+  }
+
+  void add_row() {
+    if (!csv_ || scene_.steps() == last_row_) return;
+    last_row_ = scene_.steps();
+    Energies e = energies();
+    Point c = center_of_mass(scene_.cloth());
+    for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
+                     e.total(), c.x, c.y, c.z})
+      rows_ += CME212::to_text(a) + ',';
+    rows_ += std::to_string(scene_.cloth().num_nodes()) + ',' +
+             std::to_string(scene_.cloth().num_edges()) + '\n';
+  }
+
+  void print_summary() const {
+    Energies e = energies();
+    std::cout << stage_name << ": " << scene_.steps()
+              << " steps to t = " << scene_.time() << " s in "
+              << progress_.seconds() << " s; energy " << e.total()
+              << " J = " << e.kinetic << " kinetic + " << e.elastic
+              << " elastic + " << e.gravitational << " gravitational; "
+              << scene_.cloth().num_nodes() << " nodes and "
+              << scene_.cloth().num_edges() << " edges left\n";
+  }
+};
+
+/** Run without a window; draw if pictures are wanted.  @return exit status */
+int run_headless(Scene& scene, Run& run, const Options& o) {
+  if (!o.pictures()) {
+    while (!run.done()) run.advance();
+    return run.finish();
+  }
+  Screen screen(Screen::Kind::pictures);
+  screen.show_strain(o.strain);
+  if (!o.video.empty()) screen.start_film(o.video);
+  const double frame_time = 1.0 / Screen::frames_per_second;
+  long long frames = 0;
+  bool shot = o.screenshot.empty();
+  auto draw = [&] {
+    // Half a step early is as good as half a step late.
+    double now = scene.time() + o.with.dt / 2;
+    bool frame = !o.video.empty() && now >= double(frames) * frame_time;
+    bool picture = !shot && (run.done() || (o.at >= 0 && now >= o.at));
+    if (frame || picture) screen.show(scene);
+    while (frame && now >= double(frames) * frame_time)
+      screen.add_to_film(), ++frames;
+    if (picture) screen.save_picture(o.screenshot), shot = true;
+  };
+  for (draw(); !run.done(); draw()) run.advance();
+  if (!o.video.empty()) {
+    std::string film = screen.end_film();
+    if (!o.quiet) std::cout << "film: " << film << '\n';
+  }
+  if (!o.screenshot.empty() && !o.quiet)
+    std::cout << "picture: " << o.screenshot << '\n';
+  return run.finish();
+}
+
+/** Run in a window: the simulation in a thread of its own, at most o.speed
+ * times as fast as the clock.  @return exit status */
+int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
+  screen.show_strain(o.strain);
+  screen.show(scene);
+  std::exception_ptr error;
+  std::thread simulation([&] {
+    try {
+      CME212::Clock clock;
+      double ahead = 0;  // simulated before the clock started [s]
+      while (!screen.closed()) {
+        if (screen.take_restart()) {
+          run.restart();
+          screen.show(scene);
+        }
+        if (run.done()) {
+          if (!scene.failure().empty()) screen.close();
+          CME212::sleep(0.01);
+          continue;
+        }
+        if (!screen.wait_while_paused()) continue;
+        run.advance();
+        if (screen.wants_frame() || run.done()) screen.show(scene);
+        if (o.speed > 0) {
+          double early = (scene.time() - ahead) / o.speed - clock.seconds();
+          if (early > 0 && early < 1)
+            CME212::sleep(early);
+          else if (early != 0)  // late, paused or restarted: count anew
+            clock.start(), ahead = scene.time();
+        }
+      }
+    } catch (...) {
+      error = std::current_exception();
+      screen.close();
+    }
+  });
+  screen.event_loop();
+  simulation.join();
+  if (error) std::rethrow_exception(error);
+  return run.finish();
+}
+
+/** Load, choose how to run, run.  @return exit status */
+int run(Options o) {
+  auto points = parse_points(
+      cloth_detail::read_file(o.nodes, "a file of points"), o.nodes);
+  auto quads = parse_quads(cloth_detail::read_file(o.tets, "a file of quads"),
+                           o.tets, points.size());
+  std::unique_ptr<Screen> window;
+  if (!o.headless && !o.pictures()) {
+    if (Screen::has_display() || o.window) {
+      window = std::make_unique<Screen>(Screen::Kind::window);
+    } else if (Screen::can_draw) {
+      std::filesystem::create_directories("demo");
+      o.screenshot = std::string("demo/") + stage_name + ".png";
+      o.video = std::string("demo/") + stage_name + ".mp4";
+      if (!o.quiet)
+        std::cout << "no display: running without a window; a picture and a "
+                     "film go to the folder demo\n";
+    }
+  }
+  // Wrong paths shall end the run before it starts.
+  for (const std::string& file : {o.screenshot, o.video})
+    if (!file.empty()) CME212::OutputFile try_it(file);
+  Scene scene(stage, std::move(points), std::move(quads), o.with);
+  Run run(scene, o);
+  if (!o.quiet)
+    std::cout << scene.cloth().num_nodes() << " nodes, "
+              << scene.cloth().num_edges() << " edges\n";
+  return window ? run_in_window(scene, run, o, *window)
+                : run_headless(scene, run, o);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  try {
+    int status = parse(argc, argv, o);
+    return status >= 0 ? status : run(o);
+  } catch (const NoDisplay& e) {
+    std::cerr << "mass_spring: " << e.what() << '\n';
+    return 4;
+  } catch (const InputError& e) {
+    std::cerr << e.what() << '\n';
+    return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "mass_spring: " << e.what() << '\n';
+    return 2;
+  }
+}
