@@ -1,25 +1,18 @@
 #pragma once
 /** @file Cloth.hpp
- * Cloth: a graph of point masses and springs; how it is read from files, and
- * its energies. SI units throughout; z points up. */
+ * Cloth: a graph of point masses and springs; its energies, and how it is made
+ * from points and quads. SI units throughout; z points up. */
 #include <array>
-#include <cerrno>
-#include <charconv>
-#include <cmath>
+#include <cassert>
 #include <concepts>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <span>
-#include <sstream>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "Graph.hpp"
+#include "Mesh.hpp"
 
 /** What a node of a cloth carries. */
 struct NodeData {
@@ -118,92 +111,7 @@ inline Point center_of_mass(const Cloth& g) {
   return mass > 0 ? sum / mass : Point();
 }
 
-// ---------------------------------------------------------------------- Input
-
-/** An input that can't be used; what() is "FILE:LINE: what is wrong, what was
- * expected" (line 0: the file as a whole). */
-struct InputError : std::runtime_error {
-  InputError(const std::string& file, std::size_t line, const std::string& what)
-      : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}
-};
-
 namespace cloth_detail {
-
-/** A word as it can be shown: short, and printable on any terminal. */
-inline std::string quoted(std::string_view word) {
-  std::string shown = "'";
-  for (unsigned char c : word.substr(0, 24))
-    shown += c >= 0x20 && c < 0x7f ? char(c) : '?';
-  return shown + (word.size() > 24 ? "...'" : "'");
-}
-
-/** Call use(words, line number) for each line of @a text that is neither blank
- * nor a comment (#). Words are separated by blanks and tabs, lines by \n, \r
- * or both. @return the number of lines */
-template <typename Use>
-std::size_t for_each_line(std::string_view text, Use use) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // UTF-8 mark
-  std::vector<std::string_view> words;
-  std::size_t number = 0;
-  while (!text.empty()) {
-    std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end);
-    if (!text.empty()) text.remove_prefix(text.starts_with("\r\n") ? 2 : 1);
-    ++number;
-    words.clear();
-    for (;;) {
-      line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-      if (line.empty()) break;
-      std::size_t length = std::min(line.find_first_of(" \t"), line.size());
-      words.push_back(line.substr(0, length));
-      line.remove_prefix(length);
-    }
-    if (!words.empty() && words[0][0] != '#') use(words, number);
-  }
-  return number;
-}
-
-/** The number that @a word is, all of it; or throw what is wrong with it. */
-template <typename T>
-T parse_number(std::string_view word, const char* kind) {
-  T value{};
-  const char* first = word.data() + (word.starts_with('+') ? 1 : 0);
-  auto [end, error] = std::from_chars(first, word.data() + word.size(), value);
-  if (error == std::errc::result_out_of_range)
-    throw std::runtime_error(quoted(word) + " is out of range");
-  if (error != std::errc() || end != word.data() + word.size())
-    throw std::runtime_error(quoted(word) + " is not " + kind);
-  return value;
-}
-
-/** Read N numbers of type T from each line of @a text. */
-template <typename T, std::size_t N, typename Check>
-std::vector<std::array<T, N>> read_rows(std::string_view text,
-                                        const std::string& file,
-                                        const char* kind,
-                                        const std::string& expected,
-                                        Check check) {
-  std::vector<std::array<T, N>> rows;
-  std::size_t lines = for_each_line(text, [&](auto& words, std::size_t line) {
-    try {
-      std::array<T, N> row;
-      for (std::size_t k = 0; k < std::min(N, words.size()); ++k)
-        row[k] = parse_number<T>(words[k], kind);
-      if (words.size() != N)
-        throw std::runtime_error(std::to_string(words.size()) +
-                                 (words.size() == 1 ? " value" : " values") +
-                                 " in the line");
-      check(row);
-      rows.push_back(row);
-    } catch (const std::runtime_error& e) {
-      throw InputError(file, line, e.what() + (", expected " + expected));
-    }
-  });
-  if (rows.empty())
-    throw InputError(file, lines, "nothing in the file, expected " + expected);
-  return rows;
-}
 
 /** @a x on the heap as a Base: itself if it is one, else in an Adapter. */
 template <typename Base, template <typename> class Adapter, typename T>
@@ -214,72 +122,9 @@ std::shared_ptr<const Base> shared_as(T x) {
     return std::make_shared<Adapter<T>>(std::move(x));
 }
 
-/** All of a file.  Throws InputError. */
-inline std::string read_file(const std::string& file, const char* expected) {
-  auto fail = [&](const std::string& what) {
-    throw InputError(file, 0, what + ", expected " + expected);
-  };
-  if (std::filesystem::is_directory(file)) fail("a directory");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in) fail(std::string("can't be opened (") + std::strerror(errno) + ")");
-  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (in.bad() || text.bad()) fail("can't be read");
-  return std::move(text).str();
-}
-
 }  // namespace cloth_detail
 
-/** Four indices of nodes: a quad with the sides 01, 02, 13 and 23. */
-using Quad = std::array<unsigned, 4>;
-
-/** The points [m] of a .nodes file: "x y z" a line. Format: docs/data.md.
- * @param text all of the file   @param file its name, for messages
- * Throws InputError: a line without exactly three finite numbers; no line. */
-inline std::vector<Point> parse_points(std::string_view text,
-                                       const std::string& file) {
-  std::vector<Point> points;
-  for (auto [x, y, z] : cloth_detail::read_rows<double, 3>(
-           text, file, "a number", "three finite coordinates 'x y z' [m]",
-           [](auto& row) {
-             for (double a : row)
-               if (!std::isfinite(a))
-                 throw std::runtime_error("a coordinate is not finite");
-           }))
-    points.push_back({x, y, z});
-  return points;
-}
-
-/** The quads of a .tets file: four different indices below @a num_points a
- * line.  Throws InputError: any other line; no line. */
-inline std::vector<Quad> parse_quads(std::string_view text,
-                                     const std::string& file,
-                                     std::size_t num_points) {
-  std::vector<Quad> quads;
-  for (auto row : cloth_detail::read_rows<long long, 4>(
-           text, file, "a whole number",
-           "four different node indices from 0 to " +
-               std::to_string(num_points - 1),
-           [num_points](auto& row) {
-             for (int k = 0; k < 4; ++k) {
-               if (row[k] < 0 || row[k] >= static_cast<long long>(num_points))
-                 throw std::runtime_error("there is no node " +
-                                          std::to_string(row[k]));
-               for (int other = 0; other < k; ++other)
-                 if (row[other] == row[k])
-                   throw std::runtime_error("node " + std::to_string(row[k]) +
-                                            " comes twice");
-             }
-           })) {
-    Quad& quad = quads.emplace_back();
-    for (int k = 0; k < 4; ++k) quad[k] = static_cast<unsigned>(row[k]);
-  }
-  return quads;
-}
-
-/** Which edges a quad gives: its four sides, or both diagonals as well. */
-enum class Mesh { plain, diagonals };
+// ------------------------------------------------------------------- Building
 
 /** Add to @a g the points as nodes and the sides of the quads as springs, at
  * rest: velocity 0, mass 1/N [kg] for N points, L = the initial length.
@@ -314,10 +159,7 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
 inline void load_cloth(Cloth& g, const std::string& nodes_file,
                        const std::string& tets_file, Mesh mesh,
                        double K = 100) {
-  auto points = parse_points(
-      cloth_detail::read_file(nodes_file, "a file of points"), nodes_file);
-  auto quads =
-      parse_quads(cloth_detail::read_file(tets_file, "a file of quads"),
-                  tets_file, points.size());
+  auto points = load_points(nodes_file);
+  auto quads = load_quads(tets_file, points.size());
   build_cloth(g, points, quads, mesh, K);
 }

@@ -68,6 +68,7 @@ class PlaneConstraint : public ZeroConstraint {
  public:
   /** @param z Height of the floor [m] */
   explicit PlaneConstraint(double z = -0.75) : z_(z) {}
+  double height() const { return z_; }
   void operator()(Cloth& g, double /*t*/) const override {
     for (Node n : g.nodes())
       if (n.position().z < z_) {

@@ -15,7 +15,7 @@ PROGRAMS := $(basename $(wildcard *.cpp))
 TESTS    := $(filter test_%,$(PROGRAMS))
 EXAMPLES := $(filter example_%,$(PROGRAMS))
 # What draws, and so needs SDL2, OpenGL, Dear ImGui and libpng:
-DRAWING   = mass_spring mass_spring_% test_viewer
+DRAWING   = mass_spring mass_spring_% test_viewer test_screen
 
 # Programs are built for speed and without assertions, tests and examples with
 # all of them and under the sanitizers.
@@ -36,7 +36,7 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
            $(if $(draws),$(shell pkg-config --libs $(draw_pkg))) $(LDLIBS)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: all deps peers-deps demo check check-tests help clean format submit \
+.PHONY: all deps peers-deps demo check check-all fuzz pictures help clean format submit \
         grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -93,8 +93,23 @@ check: deps
 check-all:
 	@tools/check.sh
 
+# The pictures of the README, which test_screen compares with: look at them.
+pictures: test_screen
+	WRITE_PICTURES=1 ASAN_OPTIONS=detect_leaks=0 ./test_screen
+
+# Needs clang. The inputs that it starts from: tools/corpus.
+RUNS ?= 200000
+build/fuzz_mesh: tools/fuzz_mesh.cpp Mesh.hpp CME212/Util.hpp CME212/Point.hpp
+	@mkdir -p build
+	clang++ -std=c++20 -g -O1 -Wall -Wextra -I. -o $@ $< \
+	  -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
+fuzz: build/fuzz_mesh
+	@mkdir -p build/corpus
+	build/fuzz_mesh -runs=$(RUNS) -max_len=256 -print_final_stats=1 \
+	  -artifact_prefix=build/ -verbosity=0 build/corpus tools/corpus
+
 format:
-	clang-format -i *.hpp *.cpp CME212/*.hpp
+	clang-format -i *.hpp *.cpp CME212/*.hpp tools/*.cpp
 
 submit:
 	@HW='$(HW)' FORCE='$(FORCE)' tools/submit.sh

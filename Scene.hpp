@@ -68,6 +68,9 @@ class Scene {
     restart();
   }
 
+  Scene(const Scene&) = delete;  // pins hold handles into the cloth
+  Scene& operator=(const Scene&) = delete;
+
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
   void restart() {
     cloth_.clear();
@@ -100,6 +103,8 @@ class Scene {
     return false;
   }
 
+  /** The cloth; between two steps it may be changed in any way. */
+  Cloth& cloth() { return cloth_; }
   const Cloth& cloth() const { return cloth_; }
   Stage stage() const { return stage_; }
   const Parameters& parameters() const { return with_; }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "CME212/OutputFile.hpp"
+#include "Mesh.hpp"
 
 namespace {
 
@@ -18,25 +19,6 @@ namespace {
 std::string shortest(double a) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, a).ptr};
-}
-
-/** Write @a side^2 points: i/(side - 1), j/(side - 1), 0. */
-void write_points(std::ostream& out, unsigned side) {
-  for (unsigned i = 0; i < side; ++i) {
-    std::string x = shortest(i / double(side - 1));
-    for (unsigned j = 0; j < side; ++j)
-      out << x << ' ' << shortest(j / double(side - 1)) << " 0\n";
-  }
-}
-
-/** Write the (side - 1)^2 quads: a corner, its y, x and xy neighbors. */
-void write_quads(std::ostream& out, unsigned side) {
-  for (unsigned i = 0; i + 1 < side; ++i)
-    for (unsigned j = 0; j + 1 < side; ++j) {
-      unsigned n = i * side + j;
-      out << n << ' ' << n + 1 << ' ' << n + side << ' ' << n + side + 1
-          << '\n';
-    }
 }
 
 }  // namespace
@@ -58,8 +40,12 @@ int main(int argc, char** argv) {
   try {
     std::string base = argv[2];
     CME212::OutputFile nodes(base + ".nodes"), tets(base + ".tets");
-    write_points(nodes.stream(), side);
-    write_quads(tets.stream(), side);
+    for (const Point& p : grid_points(side))
+      nodes.stream() << shortest(p.x) << ' ' << shortest(p.y) << ' '
+                     << shortest(p.z) << '\n';
+    for (const Quad& q : grid_quads(side))
+      tets.stream() << q[0] << ' ' << q[1] << ' ' << q[2] << ' ' << q[3]
+                    << '\n';
     nodes.commit();
     tets.commit();
   } catch (const std::exception& e) {

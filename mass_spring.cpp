@@ -330,7 +330,7 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
           CME212::sleep(0.01);
           continue;
         }
-        if (!screen.wait_while_paused()) continue;
+        if (!screen.wait_while_paused(scene)) continue;
         run.advance();
         if (screen.wants_frame() || run.done()) screen.show(scene);
         if (o.speed > 0) {
@@ -354,10 +354,8 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
 
 /** Load, choose how to run, run.  @return exit status */
 int run(Options o) {
-  auto points = parse_points(
-      cloth_detail::read_file(o.nodes, "a file of points"), o.nodes);
-  auto quads = parse_quads(cloth_detail::read_file(o.tets, "a file of quads"),
-                           o.tets, points.size());
+  auto points = load_points(o.nodes);
+  auto quads = load_quads(o.tets, points.size());
   std::unique_ptr<Screen> window;
   if (!o.headless && !o.pictures()) {
     if (Screen::has_display() || o.window) {

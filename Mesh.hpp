@@ -1,0 +1,209 @@
+#pragma once
+/** @file Mesh.hpp
+ * What a cloth is made from: points and quads, read from files or generated.
+ * Format of the files: docs/data.md. */
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "CME212/Point.hpp"
+
+/** An input that can't be used; what() is "FILE:LINE: what is wrong, what was
+ * expected" (line 0: the file as a whole). */
+struct InputError : std::runtime_error {
+  InputError(const std::string& file, std::size_t line, const std::string& what)
+      : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}
+};
+
+namespace mesh_detail {
+
+/** A word as it can be shown: short, and printable on any terminal. */
+inline std::string quoted(std::string_view word) {
+  std::string shown = "'";
+  for (unsigned char c : word.substr(0, 24))
+    shown += c >= 0x20 && c < 0x7f ? char(c) : '?';
+  return shown + (word.size() > 24 ? "...'" : "'");
+}
+
+/** Call use(words, line number) for each line of @a text that is neither blank
+ * nor a comment (#). Words are separated by blanks and tabs, lines by \n, \r
+ * or both. @return the number of lines */
+template <typename Use>
+std::size_t for_each_line(std::string_view text, Use use) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // UTF-8 mark
+  std::vector<std::string_view> words;
+  std::size_t number = 0;
+  while (!text.empty()) {
+    std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end);
+    if (!text.empty()) text.remove_prefix(text.starts_with("\r\n") ? 2 : 1);
+    ++number;
+    words.clear();
+    for (;;) {
+      line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+      if (line.empty()) break;
+      std::size_t length = std::min(line.find_first_of(" \t"), line.size());
+      words.push_back(line.substr(0, length));
+      line.remove_prefix(length);
+    }
+    if (!words.empty() && words[0][0] != '#') use(words, number);
+  }
+  return number;
+}
+
+/** The number that @a word is, all of it; or throw what is wrong with it. */
+template <typename T>
+T parse_number(std::string_view word, const char* kind) {
+  T value{};
+  const char* first = word.data();
+  if (word.starts_with('+') && !word.starts_with("+-")) ++first;
+  auto [end, error] = std::from_chars(first, word.data() + word.size(), value);
+  if (error == std::errc::result_out_of_range)
+    throw std::runtime_error(quoted(word) + " is out of range");
+  if (error != std::errc() || end != word.data() + word.size())
+    throw std::runtime_error(quoted(word) + " is not " + kind);
+  return value;
+}
+
+/** Read N numbers of type T from each line of @a text. */
+template <typename T, std::size_t N, typename Check>
+std::vector<std::array<T, N>> read_rows(std::string_view text,
+                                        const std::string& file,
+                                        const char* kind,
+                                        const std::string& expected,
+                                        Check check) {
+  std::vector<std::array<T, N>> rows;
+  std::size_t lines = for_each_line(text, [&](auto& words, std::size_t line) {
+    try {
+      std::array<T, N> row;
+      for (std::size_t k = 0; k < std::min(N, words.size()); ++k)
+        row[k] = parse_number<T>(words[k], kind);
+      if (words.size() != N)
+        throw std::runtime_error(std::to_string(words.size()) +
+                                 (words.size() == 1 ? " value" : " values") +
+                                 " in the line");
+      check(row);
+      rows.push_back(row);
+    } catch (const std::runtime_error& e) {
+      throw InputError(file, line, e.what() + (", expected " + expected));
+    }
+  });
+  if (rows.empty())
+    throw InputError(file, lines, "nothing in the file, expected " + expected);
+  return rows;
+}
+
+/** All of a file.  Throws InputError. */
+inline std::string read_file(const std::string& file, const char* expected) {
+  auto fail = [&](const std::string& what) {
+    throw InputError(file, 0, what + ", expected " + expected);
+  };
+  if (std::filesystem::is_directory(file)) fail("a directory");
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (!in) fail(std::string("can't be opened (") + std::strerror(errno) + ")");
+  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
+  if (in.bad() || text.bad()) fail("can't be read");
+  return std::move(text).str();
+}
+
+}  // namespace mesh_detail
+
+/** Four indices of nodes: a quad with the sides 01, 02, 13 and 23. */
+using Quad = std::array<unsigned, 4>;
+
+/** The points [m] of a .nodes file: "x y z" a line. Format: docs/data.md.
+ * @param text all of the file   @param file its name, for messages
+ * Throws InputError: a line without exactly three finite numbers; no line. */
+inline std::vector<Point> parse_points(std::string_view text,
+                                       const std::string& file) {
+  std::vector<Point> points;
+  for (auto [x, y, z] : mesh_detail::read_rows<double, 3>(
+           text, file, "a number", "three finite coordinates 'x y z' [m]",
+           [](auto& row) {
+             for (double a : row)
+               if (!std::isfinite(a))
+                 throw std::runtime_error("a coordinate is not finite");
+           }))
+    points.push_back({x, y, z});
+  return points;
+}
+
+/** The quads of a .tets file: four different indices below @a num_points a
+ * line.  Throws InputError: any other line; no line. */
+inline std::vector<Quad> parse_quads(std::string_view text,
+                                     const std::string& file,
+                                     std::size_t num_points) {
+  std::vector<Quad> quads;
+  for (auto row : mesh_detail::read_rows<long long, 4>(
+           text, file, "a whole number",
+           "four different node indices from 0 to " +
+               std::to_string(num_points - 1),
+           [num_points](auto& row) {
+             for (int k = 0; k < 4; ++k) {
+               if (row[k] < 0 || row[k] >= static_cast<long long>(num_points))
+                 throw std::runtime_error("there is no node " +
+                                          std::to_string(row[k]));
+               for (int other = 0; other < k; ++other)
+                 if (row[other] == row[k])
+                   throw std::runtime_error("node " + std::to_string(row[k]) +
+                                            " comes twice");
+             }
+           })) {
+    Quad& quad = quads.emplace_back();
+    for (int k = 0; k < 4; ++k) quad[k] = static_cast<unsigned>(row[k]);
+  }
+  return quads;
+}
+
+/** parse_points() and parse_quads() of all of a file.  Throw InputError, also
+ * if it can't be read. */
+inline std::vector<Point> load_points(const std::string& file) {
+  return parse_points(mesh_detail::read_file(file, "a file of points"), file);
+}
+inline std::vector<Quad> load_quads(const std::string& file,
+                                    std::size_t num_points) {
+  return parse_quads(mesh_detail::read_file(file, "a file of quads"), file,
+                     num_points);
+}
+
+/** Which edges a quad gives: its four sides, or both diagonals as well. */
+enum class Mesh { plain, diagonals };
+
+// ---------------------------------------------------------------------- Grids
+
+/** A square of side x side points [m] over the unit square at z = 0, x in the
+ * outer loop and y in the inner one.  @pre side >= 2 */
+inline std::vector<Point> grid_points(unsigned side) {
+  std::vector<Point> points;
+  points.reserve(std::size_t(side) * side);
+  for (unsigned i = 0; i < side; ++i)
+    for (unsigned j = 0; j < side; ++j)
+      points.push_back({i / double(side - 1), j / double(side - 1), 0});
+  return points;
+}
+
+/** The (side - 1)^2 quads of that square: a corner, its neighbors along y and
+ * along x, and the one across.  @pre side >= 2 */
+inline std::vector<Quad> grid_quads(unsigned side) {
+  std::vector<Quad> quads;
+  quads.reserve(std::size_t(side - 1) * (side - 1));
+  for (unsigned i = 0; i + 1 < side; ++i)
+    for (unsigned j = 0; j + 1 < side; ++j) {
+      unsigned n = i * side + j;
+      quads.push_back({n, n + 1, n + side, n + side + 1});
+    }
+  return quads;
+}

@@ -1,0 +1,271 @@
+// mass_spring.cpp as its user meets it: the program is run, and its status,
+// words and files are looked at. Build the stages first: make all.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <sys/wait.h>
+
+#include "Mesh.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Result {
+  int status;
+  std::string out, err;
+};
+
+class MassSpring : public ::testing::Test {
+ protected:
+  fs::path dir;
+
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "mass_spring_XXXXXX");
+    dir = mkdtemp(name.data());
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  /** Run a stage. Words of @a arguments: as in a shell. */
+  Result run(const std::string& arguments, const std::string& stage = "tear") {
+    std::string command = "./mass_spring_" + stage + " " + arguments + " >" +
+                          (dir / "out").string() + " 2>" +
+                          (dir / "err").string();
+    int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(dir / "out"),
+            contents(dir / "err")};
+  }
+  /** A file of this test with a content. */
+  std::string file(const std::string& name, const std::string& text) {
+    std::ofstream(dir / name, std::ios::binary) << text;
+    return (dir / name).string();
+  }
+  std::string path(const std::string& name) { return (dir / name).string(); }
+  /** What lies in the folder besides what run() put there. */
+  std::vector<std::string> files() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(dir)) {
+      std::string name = entry.path().filename();
+      if (name != "out" && name != "err") names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  /** The numbers of a CSV file, without its head line. */
+  static std::vector<std::vector<double>> rows(const fs::path& csv) {
+    std::istringstream in(contents(csv));
+    std::vector<std::vector<double>> all;
+    std::string line, cell;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      auto& row = all.emplace_back();
+      std::istringstream cells(line);
+      while (std::getline(cells, cell, ',')) row.push_back(std::stod(cell));
+    }
+    return all;
+  }
+};
+
+const std::string grid0 = "data/grid0.nodes data/grid0.tets ";
+const std::string grid3 = "data/grid3.nodes data/grid3.tets ";
+
+TEST_F(MassSpring, Takes5000StepsFor5Seconds) {
+  for (const char* dt : {"0.001", "0.0001", "0.003125"}) {
+    Result r = run(grid0 + "--headless --dt " + dt);
+    EXPECT_EQ(r.status, 0);
+    std::string steps = std::to_string(std::lround(5 / std::stod(dt)));
+    EXPECT_NE(r.out.find("tear: " + steps + " steps to t = 5 s in "),
+              std::string::npos)
+        << r.out;
+  }
+  EXPECT_NE(run(grid0 + "--headless --t-end 0.0015").out.find(": 2 steps"),
+            std::string::npos);
+  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find(": 0 steps"),
+            std::string::npos);
+}
+
+TEST_F(MassSpring, RunsEveryStage) {
+  for (const char* stage :
+       {"problem1", "diagonals", "forces", "constraints", "tear"}) {
+    Result r = run(grid0 + "--headless", stage);
+    EXPECT_EQ(r.status, 0);
+    EXPECT_EQ(
+        r.out.find(stage == std::string("problem1") ? "25 nodes, 40 edges\n"
+                                                    : "25 nodes, 72 edges\n"),
+        0u);
+    EXPECT_NE(r.out.find(std::string(stage) + ": 5000 steps"),
+              std::string::npos);
+    EXPECT_EQ(run("--version", stage).out,
+              std::string("mass_spring 1.0.0, stage ") + stage + "\n");
+  }
+}
+
+TEST_F(MassSpring, WritesEnergiesThatAddUp) {
+  Result r = run(
+      grid0 + "--headless --quiet --every 7 --t-end 1 --csv " + path("e.csv"),
+      "forces");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.out + r.err, "");
+  EXPECT_EQ(contents(dir / "e.csv")
+                .find("t,kinetic,elastic,gravitational,"
+                      "total,com_x,com_y,com_z,nodes,"
+                      "edges\n"),
+            0u);
+  auto table = rows(dir / "e.csv");
+  ASSERT_EQ(table.size(), 144u);  // steps 0, 7, ..., 994 and the last
+  for (const auto& row : table) {
+    ASSERT_EQ(row.size(), 10u);
+    EXPECT_DOUBLE_EQ(row[1] + row[2] + row[3], row[4]);
+    EXPECT_NEAR(row[4], 0, 0.1);                // J: no drag
+    EXPECT_NEAR(row[3], 9.81 * row[7], 1e-12);  // 1 kg
+    EXPECT_EQ(row[8], 25);
+    EXPECT_EQ(row[9], 72);
+  }
+  EXPECT_DOUBLE_EQ(table[1][0], 0.007);
+  EXPECT_DOUBLE_EQ(table.back()[0], 1);
+  EXPECT_LT(table.back()[7], -0.05);
+}
+
+TEST_F(MassSpring, DumpsPositionsThatCanBeRunAgain) {
+  run(grid0 + "--headless --t-end 0.5 --out " + path("end.nodes"), "forces");
+  std::string text = contents(dir / "end.nodes");
+  auto points = parse_points(text, "end.nodes");
+  ASSERT_EQ(points.size(), 25u);
+  EXPECT_EQ(points[0], Point(0, 0, 0));
+  EXPECT_EQ(points[20], Point(1, 0, 0));
+  EXPECT_LT(points[24].z, -0.5);
+  char digits[32];
+  std::snprintf(digits, sizeof digits, " %.17g\n", points[24].z);
+  EXPECT_NE(text.find(digits), std::string::npos);
+  Result r = run(path("end.nodes") +
+                 " data/grid0.tets --headless --t-end 0 "
+                 "--out " +
+                 path("again.nodes"));
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(contents(dir / "again.nodes"), text);
+}
+
+TEST_F(MassSpring, StopsWhenItDivergesAndLeavesTheLastGoodState) {
+  Result r = run(grid3 + "--headless --every 1 --csv " + path("e.csv") +
+                 " --out " + path("end.nodes"));
+  EXPECT_EQ(r.status, 3);
+  unsigned node, other;
+  double speed, length, rest;
+  int end = 0;
+  std::sscanf(r.err.c_str(),
+              "mass_spring: diverged in step 17 with dt = 0.001 s: node %u "
+              "moves at %lf m/s, its spring to node %u is %lf m long (at rest "
+              "%lf m); the last good state is that of t = 0.016 s%n",
+              &node, &speed, &other, &length, &rest, &end);
+  EXPECT_EQ(end + 1, int(r.err.size())) << r.err;
+  EXPECT_GT(speed, 100);
+  EXPECT_GT(length, 5 * rest);
+  EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 10000u);
+  auto table = rows(dir / "e.csv");
+  EXPECT_EQ(table.size(), 17u);
+  for (const auto& row : table)
+    for (double a : row) EXPECT_TRUE(std::isfinite(a));
+}
+
+TEST_F(MassSpring, RefusesBadInputWithFileAndLineAndWritesNothing) {
+  auto bad = [this](const std::string& nodes, const std::string& tets,
+                    const std::string& message) {
+    Result r = run(nodes + " " + tets + " --headless --csv " + path("c") +
+                   " --out " + path("o"));
+    EXPECT_EQ(r.status, 2) << message;
+    EXPECT_EQ(r.out, "");
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_EQ(r.err.find(message), 0u) << r.err;
+    EXPECT_FALSE(fs::exists(dir / "c") || fs::exists(dir / "o") ||
+                 fs::exists(dir / "c.part") || fs::exists(dir / "o.part"));
+  };
+  std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  std::string tets = file("t", "0 1 2 3\n");
+  auto points = [this](const char* text) { return file("bad", text); };
+  std::string at = path("bad") + ":";
+  bad(path("none"), tets, path("none") + ":0: can't be opened (No such file");
+  bad(dir.string(), tets, dir.string() + ":0: a directory, expected");
+  bad(points(""), tets, at + "0: nothing in the file");
+  bad(points("0 0 0\n0 x 0\n"), tets, at + "2: 'x' is not a number");
+  bad(points("0 0 0\n0 nan 0\n"), tets, at + "2: a coordinate is not finite");
+  bad(points("0 0 0 0\n"), tets, at + "1: 4 values in the line");
+  bad(points("0 0\n"), tets, at + "1: 2 values in the line");
+  bad(points("\x1\x2\x3"), tets,
+      at + "1: '?"
+           "?"
+           "?' is not a number");
+  bad(nodes, path("none"), path("none") + ":0: can't be opened");
+  bad(nodes, dir.string(), dir.string() + ":0: a directory");
+  bad(nodes, points("0 1 2\n"), at + "1: 3 values in the line");
+  bad(nodes, points("0 1 2 4\n"), at + "1: there is no node 4");
+  bad(nodes, points("#\n0 1 2 -3\n"), at + "2: there is no node -3");
+  bad(nodes, points("0 1 2 2\n"), at + "1: node 2 comes twice");
+  bad(nodes, points("0 1 2 3 4\n"), at + "1: 5 values in the line");
+  bad(tets, nodes, tets + ":1: 4 values in the line");
+  EXPECT_EQ(run(nodes + " " + tets + " --headless").status, 0);
+}
+
+TEST_F(MassSpring, RefusesOptionsThatCantBe) {
+  for (const char* options :
+       {"--dt 0", "--dt -1", "--dt nan", "--dt inf", "--dt x", "--t-end -1",
+        "--t-end inf", "--damping -1", "--stiffness -1", "--gravity nan",
+        "--every 0", "--at 6 --screenshot p.png", "--no-such-option",
+        "--dt 1e-300", "--window --headless", "--csv", "--speed -1"}) {
+    Result r = run(grid0 + "--headless --out " + path("o") + " " + options);
+    EXPECT_EQ(r.status, 2) << options;
+    EXPECT_NE(r.err, "") << options;
+    EXPECT_EQ(files(), std::vector<std::string>{}) << options;
+  }
+  EXPECT_EQ(run("data/grid0.nodes").status, 2);
+  EXPECT_EQ(run("--headless --dt nan " + grid0).err,
+            "mass_spring: --dt is nan, expected a positive time [s]\n");
+}
+
+TEST_F(MassSpring, RefusesOutputsThatCantBeBeforeItRuns) {
+  for (const char* option :
+       {"--csv ", "--out ", "--screenshot ", "--record "}) {
+    Result r = run(grid3 + "--headless " + option + path("no/such"));
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_EQ(r.err, "mass_spring: " + path("no/such") +
+                         ": can't be written (No such file or directory)\n");
+    EXPECT_EQ(files(), std::vector<std::string>{});
+  }
+}
+
+TEST_F(MassSpring, KeepsTheOldFileWhenTheNewRunFails) {
+  std::string kept = file("kept", "old");
+  run("data/none data/none --headless --csv " + kept);
+  run(grid0 + "--headless --dt 0 --csv " + kept);
+  EXPECT_EQ(contents(kept), "old");
+  run(grid0 + "--headless --t-end 0 --csv " + kept);
+  EXPECT_NE(contents(kept), "old");
+  EXPECT_EQ(run(grid0 + "--headless --out /dev/null").status, 0);
+}
+
+TEST_F(MassSpring, ReadsOptionsFromAFile) {
+  std::string config = file("run.ini", "dt=0.002\nt-end=0.5\nheadless=true\n");
+  Result r = run(grid0 + "--config " + config);
+  EXPECT_NE(r.out.find("tear: 250 steps to t = 0.5 s"), std::string::npos);
+}
+
+TEST_F(MassSpring, ExplainsItsOptionsWithUnitsAndDefaults) {
+  Result r = run("--help");
+  EXPECT_EQ(r.status, 0);
+  for (const char* text : {"--dt FLOAT=0.001", "step [s]", "--t-end FLOAT=5",
+                           "--gravity FLOAT=9.81", "[N/m]", "[kg/s]"})
+    EXPECT_NE(r.out.find(text), std::string::npos) << text;
+}
+
+}  // namespace

@@ -1,0 +1,69 @@
+// Feeds the two parsers of Mesh.hpp with whatever libFuzzer thinks of. The
+// first byte of an input chooses the parser, the rest is the file.
+//   make fuzz RUNS=1000000      starts from the inputs in tools/corpus
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "CME212/Util.hpp"
+#include "Mesh.hpp"
+
+namespace {
+
+void require(bool ok) {
+  if (!ok) std::abort();
+}
+
+/** What was accepted is in range and, written and read again, the same. */
+void check_points(std::string_view text) {
+  auto points = parse_points(text, "f");
+  require(!points.empty());
+  std::string again;
+  for (Point p : points) {
+    require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+    for (double a : p) again += CME212::to_text(a) + ' ';
+    again += '\n';
+  }
+  require(parse_points(again, "f") == points);
+}
+
+void check_quads(std::string_view text) {
+  constexpr std::size_t num_points = 1000;
+  auto quads = parse_quads(text, "f", num_points);
+  require(!quads.empty());
+  std::string again;
+  for (Quad q : quads) {
+    for (unsigned k = 0; k < 4; ++k) {
+      require(q[k] < num_points && q[k] != q[(k + 1) % 4]);
+      again += std::to_string(q[k]) + ' ';
+    }
+    require(q[0] != q[2] && q[1] != q[3]);
+    again += '\n';
+  }
+  require(parse_quads(again, "f", num_points) == quads);
+}
+
+/** A message is "f:LINE: words" in one printable line. */
+void check_message(std::string_view what) {
+  require(what.starts_with("f:"));
+  std::size_t colon = what.find(':', 2);
+  require(colon != std::string_view::npos && colon > 2 && what.size() < 200);
+  for (char c : what.substr(2, colon - 2)) require('0' <= c && c <= '9');
+  for (char c : what) require(' ' <= c && c <= '~');
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
+  if (size == 0) return 0;
+  std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
+  try {
+    data[0] % 2 == 0 ? check_points(text) : check_quads(text);
+  } catch (const InputError& e) {
+    check_message(e.what());
+  }
+  return 0;
+}
