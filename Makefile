@@ -36,8 +36,8 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
            $(if $(draws),$(shell pkg-config --libs $(draw_pkg))) $(LDLIBS)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: all deps peers-deps demo check check-all fuzz pictures help clean format submit \
-        grids FORCE
+.PHONY: all deps peers-deps demo check check-all print-tests fuzz pictures \
+        help clean format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -92,10 +92,14 @@ check: deps
 
 check-all:
 	@tools/check.sh
+print-tests:
+	@echo $(TESTS)
 
 # The pictures of the README, which test_screen compares with: look at them.
-pictures: test_screen
+pictures: test_screen mass_spring
 	WRITE_PICTURES=1 ASAN_OPTIONS=detect_leaks=0 ./test_screen
+	./mass_spring data/grid3.* --dt 0.0005 --t-end 0.6 --strain --quiet \
+	  --screenshot docs/pictures/cloth.png
 
 # Needs clang. The inputs that it starts from: tools/corpus.
 RUNS ?= 200000

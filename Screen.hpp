@@ -100,6 +100,7 @@ class Screen {
   // The window; see SDLViewer.
   void event_loop() { viewer_.event_loop(); }
   void close() { viewer_.close(); }
+  void set_paused(bool on) { viewer_.set_paused(on); }
   bool closed() const { return viewer_.closed(); }
   bool take_restart() { return viewer_.take_restart(); }
   bool wants_frame() const { return viewer_.wants_frame(); }
@@ -196,6 +197,7 @@ class Screen {
   void save_picture(const std::string&) {}
   void event_loop() {}
   void close() {}
+  void set_paused(bool) {}
   bool closed() const { return true; }
   bool take_restart() { return false; }
   bool wait_while_paused(const Scene&) { return false; }

@@ -40,7 +40,8 @@ struct Options {
   double at = -1;  // time of the screenshot [s]; the end if negative
   double speed = 1;
   long long every = 10;
-  bool headless = false, window = false, quiet = false, strain = false;
+  bool headless = false, window = false, paused = false, strain = false;
+  bool quiet = false;
   std::string screenshot, video, csv, out;
 
   long long num_steps() const {
@@ -106,6 +107,8 @@ int parse(int argc, char** argv, Options& o) {
   app.add_flag("--headless", o.headless, "open no window");
   app.add_flag("--window", o.window,
                "insist on a window: without a display, exit with 4");
+  app.add_flag("--paused", o.paused,
+               "in a window: wait for space or n at first");
   app.add_option("--speed", o.speed,
                  "in a window: at most so many simulated seconds a second; 0 "
                  "as fast as it goes");
@@ -314,6 +317,7 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
  * times as fast as the clock.  @return exit status */
 int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
   screen.show_strain(o.strain);
+  screen.set_paused(o.paused);
   screen.show(scene);
   std::exception_ptr error;
   std::thread simulation([&] {

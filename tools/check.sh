@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# Everything that a commit must pass; `make check` calls it. Each step writes
+# build/check/STEP.log; the last line counts the tests.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+jobs=${JOBS:-$(nproc)}
+logs=build/check
+rm -rf "$logs"
+mkdir -p "$logs"
+export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+started=$SECONDS passed=0 failed=0
+
+# Run a step and count what it says it passed; a step that counts nothing is
+# one test.
+step() {  # NAME COMMAND...
+  local name=$1 log=$logs/$1.log from=$SECONDS ok good bad
+  shift
+  "$@" >"$log" 2>&1 </dev/null && ok=1 || ok=0
+  good=$(sed -nE 's/^\[  PASSED  \] ([0-9]+) tests?.*/\1/p; s/^([0-9]+) passed, .*/\1/p' "$log" |
+    tail -n 1)
+  bad=$(sed -nE 's/^\[  FAILED  \] ([0-9]+) tests?, .*/\1/p; s/.* passed, ([0-9]+) failed.*/\1/p' "$log" |
+    tail -n 1)
+  if [ "$ok" = 1 ]; then
+    good=${good:-1} bad=0
+    printf 'ok    %-22s %4d tests %4d s\n' "$name" "$good" $((SECONDS - from))
+  else
+    good=${good:-0} bad=${bad:-0}
+    [ "$bad" != 0 ] || bad=1
+    printf 'FAIL  %-22s %4d failed; %s ends:\n' "$name" "$bad" "$log"
+    tail -n 40 "$log" | sed 's/^/      /'
+  fi
+  passed=$((passed + good)) failed=$((failed + bad))
+}
+
+make_all() { make --no-print-directory -j"$jobs" "$@" CXXFLAGS=-Werror; }
+
+# The committed grids are what make_grid makes.
+same_grids() {
+  mkdir -p build/grids && make -s grids TO=build/grids || return 1
+  local file
+  for file in data/grid*.nodes data/grid*.tets; do
+    [ "${file%.*}" = data/grid4 ] || cmp "$file" "build/grids/${file##*/}" || return 1
+  done
+}
+
+# Threads: Mesa's own are not ours to check.
+threads() {
+  TSAN_OPTIONS="suppressions=tools/tsan.supp halt_on_error=1" \
+    build/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*'
+}
+
+tests=$(make -s print-tests)
+step tree          tools/check_tree.sh
+step includes      tools/check_includes.sh
+step headers       tools/check_headers.sh
+step build-g++     make_all all CXX=g++
+step build-clang++ make_all all CXX=clang++ O=build/clang/
+step build-plain   make_all mass_spring VIEWER=0 O=build/plain/
+step build-tsan    make_all build/tsan/test_viewer O=build/tsan/ SANITIZE=thread
+for test in $tests; do
+  case $test in
+    test_viewer | test_screen) step "$test" env ASAN_OPTIONS=detect_leaks=0 "./$test" ;;
+    *) step "$test" "./$test" ;;
+  esac
+done
+step nodes-by-clang++ build/clang/test_nodes
+step edges-by-clang++ build/clang/test_edges
+step threads       threads
+step window        tools/test_window.sh
+step grids         same_grids
+step readme        tools/check_readme.sh
+step fuzz          make -s fuzz RUNS=100000
+step submit        tools/test_submit.sh
+step deps          tools/test_deps.sh
+step checks        tools/test_checks.sh
+
+echo "make check took $((SECONDS - started)) s"
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
