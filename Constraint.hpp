@@ -3,12 +3,16 @@
  * What a cloth must not do. A constraint is anything that can be called as
  * void(Cloth& g, double t): it mends the nodes that violate it at time t [s].
  * Steps call it after the positions moved and before the forces are taken. */
+#include <concepts>
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "Cloth.hpp"
+
+using NodeVisitor = std::function<void(Node)>;
 
 /** No constraint, and the base of all constraints (section 6.2). */
 class ZeroConstraint {
@@ -18,11 +22,21 @@ class ZeroConstraint {
   /** Mend @a g. Twice equals once, to round-off.  O(N) unless it says less */
   virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
 
-  /** Take back what a kick gave to the nodes that are held still: a step calls
-   * it when the velocities moved. Positions and velocities elsewhere are not
-   * touched, so no trajectory changes, only what the energies say. */
-  virtual void stop_held(Cloth& /*g*/) const {}
+  /** Call @a use(node) for each node of @a g that the constraint holds still:
+   * it stays where it is, and its velocity is 0. Steps need to know, since a
+   * force goes on pulling at it. */
+  virtual void each_held(const Cloth& /*g*/, const NodeVisitor& /*use*/) const {
+  }
 };
+
+/** Set the velocity of the held nodes to 0: after a kick. Positions and other
+ * velocities are not touched, so no trajectory changes, only energies. A
+ * function as constraint holds none. */
+template <typename G, typename C>
+void stop_held(G& g, const C& constraint) {
+  if constexpr (std::derived_from<C, ZeroConstraint>)
+    constraint.each_held(g, [](Node n) { n.value().vel = Point(); });
+}
 
 /** Holds nodes where they were when the pin was made.
  * @post at each call: their positions are those, and their velocities 0.
@@ -49,9 +63,9 @@ class PinConstraint : public ZeroConstraint {
         n.value().vel = Point();
       }
   }
-  void stop_held(Cloth& g) const override {
-    for (auto [n, place] : pins_)
-      if (g.has_node(n)) n.value().vel = Point();
+  void each_held(const Cloth& g, const NodeVisitor& use) const override {
+    for (const Pin& pin : pins_)
+      if (g.has_node(pin.node)) use(pin.node);
   }
 
  private:
@@ -151,8 +165,8 @@ class CombinedConstraints : public ZeroConstraint {
   void operator()(Cloth& g, double t) const override {
     for (const auto& c : constraints_) (*c)(g, t);
   }
-  void stop_held(Cloth& g) const override {
-    for (const auto& c : constraints_) c->stop_held(g);
+  void each_held(const Cloth& g, const NodeVisitor& use) const override {
+    for (const auto& c : constraints_) c->each_held(g, use);
   }
 
  private:

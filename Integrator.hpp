@@ -39,7 +39,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
   for (auto n : g.nodes()) n.position() += dt * n.value().vel;
   constraint(g, t);
   for (auto n : g.nodes()) n.value().vel += (dt / n.value().mass) * force(n, t);
-  if constexpr (requires { constraint.stop_held(g); }) constraint.stop_held(g);
+  stop_held(g, constraint);
   return t + dt;
 }
 
@@ -66,8 +66,7 @@ class SymplecticEuler {
     drift<false>(g, dt);
     constraint(g, t);
     kick<false>(g, t, dt, force);
-    if constexpr (requires { constraint.stop_held(g); })
-      constraint.stop_held(g);
+    stop_held(g, constraint);
     return t + dt;
   }
 

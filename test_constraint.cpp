@@ -180,7 +180,7 @@ TEST(PinConstraint, GoesOnWithoutAPinnedNodeThatWasRemoved) {
   Node other = g.add_node(Point(9, 9, 9));  // may take the slot of the old one
   second.position().z = -1;
   pin(g, 0);
-  pin.stop_held(g);
+  stop_held(g, pin);
   EXPECT_EQ(other.position(), Point(9, 9, 9));
   EXPECT_EQ(second.position(), Point(1, 0, 0));
 }
@@ -190,7 +190,7 @@ TEST(PinConstraint, StopsOnlyTheHeldNodes) {
   Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(2, 0, 0));
   auto both = make_combined_constraints(PlaneConstraint(), PinConstraint(g));
   a.value().vel = b.value().vel = Point(1);
-  both.stop_held(g);
+  stop_held(g, both);
   EXPECT_EQ(a.value().vel, Point());
   EXPECT_EQ(b.value().vel, Point(1));
 }
