@@ -71,7 +71,8 @@ struct Range {
  *
  * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
  * copied (the copy has the same indices and ids, and handles of its own), but
- * not assigned: the handles of the old content would come to mean another.
+ * not assigned: the handles of the old content would come to mean another. No
+ * handle may be used when its graph is destroyed.
  *
  * Threads: as a std::vector. Reads may run together, a write runs alone;
  * writes to positions and values of different elements may run together. */
@@ -408,6 +409,12 @@ class Graph {
     neighbors_of_.clear();
     ends_.clear();
     edge_value_.clear();
+    // Slots that are used up stay, and are as any other dead slot.
+    position_.resize(node_slots());
+    node_value_.resize(node_slots());
+    neighbors_of_.resize(node_slots());
+    ends_.resize(edge_slots());
+    edge_value_.resize(edge_slots());
     ++version_;
   }
 
@@ -461,6 +468,7 @@ class Graph {
   std::span<const Point> positions() const {
     return {position_.data(), node_slots()};
   }
+  // No Array of bool is a plain one: for V or E = bool these don't compile.
   std::span<V> node_values() { return {node_value_.data(), node_slots()}; }
   std::span<const V> node_values() const {
     return {node_value_.data(), node_slots()};
@@ -478,7 +486,8 @@ class Graph {
   std::size_t version() const { return version_; }
 
   /** Throw std::logic_error with what is wrong unless the whole representation
-   * is consistent. For tests.  Complexity: O(sum of squared degrees) */
+   * is consistent. For tests.
+   * Complexity: O(N log N + sum of squared degrees) */
   void check_invariants() const {
     auto require = [](bool ok, const char* what) {
       if (!ok) throw std::logic_error(std::string("Graph: ") + what);
@@ -491,15 +500,16 @@ class Graph {
                 ends_.size() >= edge_slots() &&
                 edge_value_.size() >= edge_slots(),
             "an array is shorter than its slots");
-    std::size_t halves = 0, capacity = 0;
+    for (const auto& list : neighbors_of_)
+      require(list.size <= list.capacity &&
+                  (list.capacity == 0 || std::has_single_bit(list.capacity)),
+              "a neighbor list exceeds its block");
+    require(pool_.is_filled_by(neighbors_of_),
+            "a block of the pool is lost or used twice");
+    std::size_t halves = 0;
     for (size_type i = 0; i < node_slots(); ++i) {
       const auto& list = neighbors_of_[i];
-      capacity += list.capacity;
       halves += list.size;
-      require(list.size <= list.capacity &&
-                  (list.capacity == 0 || std::has_single_bit(list.capacity)) &&
-                  list.begin + list.capacity <= pool_.pool_size(),
-              "a neighbor list exceeds its block");
       require(node_in_use(i) || list.capacity == 0,
               "a removed node has neighbors");
       for (Half h : pool_.items(list)) {
@@ -516,8 +526,6 @@ class Graph {
     }
     require(halves == 2 * std::size_t(num_edges()),
             "an edge is not in the lists of both its ends");
-    require(capacity + pool_.free_size() == pool_.pool_size(),
-            "a block of the pool is lost or used twice");
     for (size_type e = 0; e < edge_slots(); ++e)
       require(edge_in_use(e) || ends_[e] == std::array<size_type, 2>{},
               "a removed edge has ends");

@@ -2,8 +2,10 @@
 /** @file Scene.hpp
  * Scene: a cloth with its forces, its constraints and a clock. The stages of
  * the assignment are scenes. */
+#include <memory>
 #include <optional>
-#include <string_view>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "Cloth.hpp"
@@ -21,6 +23,13 @@ enum class Stage {
   tear,         // 7.2  pins, a floor and a ball that tears
 };
 
+/** The name of a stage, as it is spelt above. */
+constexpr const char* name_of(Stage stage) {
+  constexpr const char* names[] = {"problem1", "diagonals", "forces",
+                                   "constraints", "tear"};
+  return names[static_cast<int>(stage)];
+}
+
 /** What a scene is made from besides its mesh. */
 struct Parameters {
   double dt = 0.001;       ///< step [s], > 0
@@ -29,14 +38,22 @@ struct Parameters {
   double damping = 0;      ///< drag coefficient c [kg/s], >= 0
 };
 
-/** The constraint of a stage on @a g; none before Stage::constraints, where
- * the force or the step holds the corners. */
-inline std::optional<CombinedConstraints> constraint_of(Stage stage,
-                                                        const Cloth& g) {
-  if (stage < Stage::constraints) return std::nullopt;
-  if (stage == Stage::constraints)
-    return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                     SphereConstraint());
+/** The constraint of a stage on @a g. The two first stages have none: there the
+ * force holds the corners. In stage `forces` the assignment's step skips them;
+ * a pin is the same for every method. */
+inline CombinedConstraints constraint_of(Stage stage, const Cloth& g) {
+  switch (stage) {
+    case Stage::problem1:
+    case Stage::diagonals:
+      return make_combined_constraints();
+    case Stage::forces:
+      return make_combined_constraints(PinConstraint(g));
+    case Stage::constraints:
+      return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                       SphereConstraint());
+    case Stage::tear:
+      break;
+  }
   return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
                                    TearConstraint());
 }
@@ -60,14 +77,15 @@ class Scene {
   /** At t = 0 and at rest, as build_cloth() makes it.
    * @pre @a quads index @a points; the parameters are in range */
   Scene(Stage stage, std::vector<Point> points, std::vector<Quad> quads,
-        const Parameters& with)
+        const Parameters& with,
+        std::unique_ptr<Method> method = std::make_unique<SymplecticEuler>())
       : stage_(stage),
         points_(std::move(points)),
         quads_(std::move(quads)),
-        with_(with) {
+        with_(with),
+        method_(std::move(method)) {
     restart();
   }
-
   Scene(const Scene&) = delete;  // pins hold handles into the cloth
   Scene& operator=(const Scene&) = delete;
 
@@ -80,27 +98,24 @@ class Scene {
     force_ = force_of(stage_, cloth_, with_);
     constraint_ = constraint_of(stage_, cloth_);
     guard_.emplace(cloth_, with_.gravity);
+    method_->restart();
     steps_ = 0;
     failure_.clear();
   }
 
   /** One step of dt.
-   * @return false if the run diverged: then failure() says where, and the
-   *         cloth and the clock are those of the last good state.
-   * @pre failure().empty()   Complexity: O(nodes + edges) */
+   * @return false if the run diverged or the method failed: then failure() says
+   * where, and the cloth and the clock are those of the last good state.
+   * @pre failure().empty()
+   * Throws std::invalid_argument if the method can't do with this force. */
   bool step() {
-    if (constraint_)
-      integrate_(cloth_, time(), with_.dt, *force_, *constraint_);
-    else
-      integrate_(cloth_, time(), with_.dt, *force_);
+    try {
+      method_->step(cloth_, time(), with_.dt, *force_, *constraint_);
+    } catch (const StepError& e) {
+      return fail(std::string("failed (") + e.what() + ")");
+    }
     if (guard_->accept(cloth_)) return ++steps_, true;
-    using CME212::short_text;
-    failure_ =
-        "diverged in step " + std::to_string(steps_ + 1) +
-        " with dt = " + short_text(with_.dt) + " s: " + guard_->worst(cloth_) +
-        "; the last good state is that of t = " + short_text(time()) + " s";
-    guard_->restore(cloth_);
-    return false;
+    return fail("diverged");
   }
 
   /** The cloth; between two steps it may be changed in any way. */
@@ -123,7 +138,19 @@ class Scene {
   std::optional<CombinedForces> force_;
   std::optional<CombinedConstraints> constraint_;
   std::optional<DivergenceGuard> guard_;
-  SymplecticEuler integrate_;
+  std::unique_ptr<Method> method_;
   long long steps_ = 0;
   std::string failure_;
+
+  /** Say what happened to the step, and go back to before it. */
+  bool fail(const std::string& what) {
+    using CME212::short_text;
+    failure_ =
+        what + " in step " + std::to_string(steps_ + 1) +
+        " with dt = " + short_text(with_.dt) + " s: " + guard_->worst(cloth_) +
+        "; the last good state is that of t = " + short_text(time()) + " s";
+    guard_->restore(cloth_);
+    method_->restart();
+    return false;
+  }
 };

@@ -2,6 +2,7 @@
 /** @file SlotMap.hpp
  * What Graph.hpp stores its elements with: SlotMap gives ids that stay, to
  * things that come and go; ListPool keeps many short lists in one array. */
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -137,22 +138,26 @@ class SlotMap {
     auto require = [](bool ok) {
       if (!ok) throw std::logic_error("SlotMap: inconsistent");
     };
-    size_type used = 0, spent = 0;
     require(generation_.size() >= slots_);
+    require(id_at_.size() == (identity_ ? 0 : size_));
+    require(identity_ ? index_of_.empty() : index_of_.size() >= slots_);
+    require(!identity_ || (size_ == slots_ && free_.empty()));
+    std::vector<bool> is_free(slots_);
+    for (size_type id : free_) {
+      require(id < slots_ && !in_use(id) && reusable(id) && !is_free[id]);
+      is_free[id] = true;
+    }
+    size_type used = 0;
     for (size_type id = 0; id < generation_.size(); ++id) {
       if (in_use(id)) {
         ++used;
         require(id < slots_ && index_of(id) < size_);
         require(id_at(index_of(id)) == id);
-      } else if (id < slots_ && !reusable(id)) {
-        ++spent;
+      } else {
+        require(id >= slots_ || is_free[id] || !reusable(id));
       }
     }
-    require(used == size_ && size_ + free_.size() + spent == slots_);
-    require(!identity_ || (size_ == slots_ && free_.empty()));
-    require(identity_ || id_at_.size() == size_);
-    for (size_type id : free_)
-      require(id < slots_ && !in_use(id) && reusable(id));
+    require(used == size_);
   }
 
  private:
@@ -240,11 +245,22 @@ class ListPool {
     for (auto& f : free_) f.clear();
   }
   std::size_t pool_size() const { return pool_.size(); }
-  /** Elements that lie in blocks nobody uses. */
-  std::size_t free_size() const {
-    std::size_t n = 0;
-    for (std::size_t k = 0; k < free_.size(); ++k) n += free_[k].size() << k;
-    return n;
+  /** True if the blocks of @a lists and those that nobody uses make up the
+   * whole pool, every place of it once. */
+  bool is_filled_by(std::span<const List> lists) const {
+    std::vector<std::array<std::size_t, 2>> blocks;  // begin, capacity
+    for (const List& l : lists)
+      if (l.capacity > 0) blocks.push_back({l.begin, l.capacity});
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      for (size_type begin : free_[k])
+        blocks.push_back({begin, std::size_t(1) << k});
+    std::sort(blocks.begin(), blocks.end());
+    std::size_t end = 0;
+    for (auto [begin, capacity] : blocks) {
+      if (begin != end) return false;
+      end += capacity;
+    }
+    return end == pool_.size();
   }
 
  private:

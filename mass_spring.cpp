@@ -7,6 +7,7 @@
  * output that can't be written; 3 the run diverged; 4 no display. */
 #include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -14,13 +15,12 @@
 #include <string>
 #include <thread>
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
-#include "Scene.hpp"
+#include "Methods.hpp"
+#include "Run.hpp"
 #include "Screen.hpp"
 
 using CME212::short_text;
@@ -28,29 +28,8 @@ using CME212::short_text;
 namespace {
 
 constexpr const char* version = "1.0.0";
-constexpr const char* stage_names[] = {"problem1", "diagonals", "forces",
-                                       "constraints", "tear"};
 constexpr Stage stage = Stage::STAGE;  // a misspelt stage does not compile
-constexpr const char* stage_name = stage_names[static_cast<int>(stage)];
-
-struct Options {
-  std::string nodes, tets;
-  Parameters with;
-  double t_end = 5;
-  double at = -1;  // time of the screenshot [s]; the end if negative
-  double speed = 1;
-  long long every = 10;
-  bool headless = false, window = false, paused = false, strain = false;
-  bool quiet = false;
-  std::string screenshot, video, csv, out;
-
-  long long num_steps() const {
-    // 5 / 0.001 is a little more than 5000 or a little less: neither may
-    // cost a step.
-    return static_cast<long long>(std::ceil(t_end / with.dt * (1 - 1e-12)));
-  }
-  bool pictures() const { return !screenshot.empty() || !video.empty(); }
-};
+constexpr const char* stage_name = name_of(stage);
 
 /** An option that can't be used. */
 struct UsageError : std::runtime_error {
@@ -80,9 +59,26 @@ void check(const Options& o) {
   require(o.speed >= 0, "--speed", o.speed, "0 or more");
   require(o.every > 0, "--every", double(o.every), "a number of steps, 1 up");
   require(o.at < 0 || o.at <= o.t_end, "--at", o.at, "a time up to --t-end");
+  if (!find_method(o.method))
+    throw UsageError("--method is " + o.method +
+                     ", expected a name of --list-methods");
   if (o.window && (o.headless || o.pictures()))
     throw UsageError(
         "--window does not go with --headless, --screenshot and --record");
+}
+
+/** Print name, order, cost, limit and advice of every method. */
+void list_methods() {
+  std::printf("%-18s %5s %6s %9s  %s\n", "method", "order", "sweeps",
+              "dt omega<", "good for; fails when");
+  for (const MethodEntry& m : methods) {
+    std::printf("%-18s %5d %6d ", m.info.name, m.info.order, m.info.sweeps);
+    if (m.info.limit == no_limit)
+      std::printf("%9s", "any");
+    else
+      std::printf("%9.4g", m.info.limit);
+    std::printf("  %s;\n%42s%s\n", m.info.good_for, "", m.info.fails_when);
+  }
 }
 
 /** Read the command line.  @return the exit status to end with, or -1 */
@@ -96,6 +92,7 @@ int parse(int argc, char** argv, Options& o) {
   app.add_option("NODES", o.nodes, "file of points")->required();
   app.add_option("TETS", o.tets, "file of quads")->required();
   app.add_option("--dt", o.with.dt, "step [s]");
+  app.add_option("--method", o.method, "name of a method: see --list-methods");
   app.add_option("--t-end", o.t_end, "time to reach [s], in steps of dt");
   app.add_option("--damping", o.with.damping,
                  "drag coefficient c [kg/s] (from stage forces on; 1/N is "
@@ -130,6 +127,13 @@ int parse(int argc, char** argv, Options& o) {
   app.set_config("--config", "", "read options from a file: dt=0.0005 ...");
   app.set_version_flag("--version", std::string("mass_spring ") + version +
                                         ", stage " + stage_name);
+  app.add_flag_callback(
+      "--list-methods",
+      [] {
+        list_methods();
+        throw CLI::Success();
+      },
+      "print the table of methods");
   try {
     app.parse(argc, argv);
     check(o);
@@ -138,148 +142,6 @@ int parse(int argc, char** argv, Options& o) {
   }
   return -1;
 }
-
-/** Tells how far a run is: a bar on a terminal, else a line now and then;
- * nothing if it is done within a second. */
-class Progress {
- public:
-  Progress(const Options& o, long long total)
-      : on_(!o.quiet),
-        bar_(isatty(STDERR_FILENO)),
-        t_end_(o.t_end),
-        total_(total) {}
-
-  void show(long long steps, double t) {
-    if (!on_ || total_ == 0) return;
-    if (clock_.seconds() < next_) return;
-    next_ = clock_.seconds() + (bar_ ? 0.1 : 5.0);
-    double rate = std::max(1.0, double(steps)) / clock_.seconds();
-    std::ostringstream line;
-    if (bar_) {
-      auto filled = static_cast<std::size_t>(30 * steps / total_);
-      line << "\r[" << std::string(filled, '#') << std::string(30 - filled, ' ')
-           << "] ";
-    }
-    line << "t = " << short_text(t) << " of " << short_text(t_end_) << " s, "
-         << short_text(std::round(rate)) << " steps/s, "
-         << short_text(std::ceil(double(total_ - steps) / rate)) << " s left"
-         << (bar_ ? "   " : "\n");
-    std::cerr << line.str() << std::flush;
-  }
-  void end() {
-    if (on_ && bar_) std::cerr << '\r' << std::string(76, ' ') << '\r';
-  }
-  double seconds() const { return clock_.seconds(); }
-
- private:
-  bool on_, bar_;
-  double t_end_;
-  long long total_;
-  double next_ = 1;  // when to show again [s]
-  CME212::Clock clock_;
-};
-
-/** One run of a scene with all that is written about it. */
-class Run {
- public:
-  /** Output files are opened now, so that a wrong path ends the run before it
-   * starts. Throws std::runtime_error. */
-  Run(Scene& scene, const Options& o)
-      : scene_(scene), o_(o), progress_(o, o.num_steps()) {
-    if (!o.csv.empty()) csv_.emplace(o.csv);
-    if (!o.out.empty()) out_.emplace(o.out);
-    start();
-  }
-
-  /** Back to t = 0. */
-  void restart() {
-    scene_.restart();
-    start();
-  }
-
-  bool done() const {
-    return scene_.steps() >= o_.num_steps() || !scene_.failure().empty();
-  }
-
-  /** One step.  @pre !done() */
-  void advance() {
-    scene_.step();
-    if (scene_.steps() % o_.every == 0 || done()) add_row();
-    progress_.show(scene_.steps(), scene_.time());
-  }
-
-  /** Write the files and the last line.  @return the exit status
-   * Throws std::runtime_error if a file can't be written. */
-  int finish() {
-    progress_.end();
-    if (csv_) {
-      csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,"
-                        "com_z,nodes,edges\n"
-                     << rows_;
-      csv_->commit();
-    }
-    if (out_) {
-      for (Node n : scene_.cloth().nodes()) {
-        Point p = n.position();
-        out_->stream() << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y)
-                       << ' ' << CME212::to_text(p.z) << '\n';
-      }
-      out_->commit();
-    }
-    if (!o_.quiet) print_summary();
-    if (scene_.failure().empty()) return 0;
-    std::cerr << "mass_spring: " << scene_.failure() << '\n';
-    return 3;
-  }
-
- private:
-  Scene& scene_;
-  const Options& o_;
-  Progress progress_;
-  std::optional<CME212::OutputFile> csv_, out_;
-  std::string rows_;
-  long long last_row_ = -1;
-
-  struct Energies {
-    double kinetic, elastic, gravitational;
-    double total() const { return kinetic + elastic + gravitational; }
-  };
-  Energies energies() const {
-    const Cloth& g = scene_.cloth();
-    return {kinetic_energy(g), elastic_energy(g),
-            gravitational_energy(g, o_.with.gravity)};
-  }
-
-  void start() {
-    progress_ = Progress(o_, o_.num_steps());
-    rows_.clear();
-    last_row_ = -1;
-    add_row();
-  }
-
-  void add_row() {
-    if (!csv_ || scene_.steps() == last_row_) return;
-    last_row_ = scene_.steps();
-    Energies e = energies();
-    Point c = center_of_mass(scene_.cloth());
-    for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
-                     e.total(), c.x, c.y, c.z})
-      rows_ += CME212::to_text(a) + ',';
-    rows_ += std::to_string(scene_.cloth().num_nodes()) + ',' +
-             std::to_string(scene_.cloth().num_edges()) + '\n';
-  }
-
-  void print_summary() const {
-    Energies e = energies();
-    std::cout << stage_name << ": " << scene_.steps()
-              << " steps to t = " << scene_.time() << " s in "
-              << progress_.seconds() << " s; energy " << e.total()
-              << " J = " << e.kinetic << " kinetic + " << e.elastic
-              << " elastic + " << e.gravitational << " gravitational; "
-              << scene_.cloth().num_nodes() << " nodes and "
-              << scene_.cloth().num_edges() << " edges left\n";
-  }
-};
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
 int run_headless(Scene& scene, Run& run, const Options& o) {
@@ -376,7 +238,8 @@ int run(Options o) {
   // Wrong paths shall end the run before it starts.
   for (const std::string& file : {o.screenshot, o.video})
     if (!file.empty()) CME212::OutputFile try_it(file);
-  Scene scene(stage, std::move(points), std::move(quads), o.with);
+  Scene scene(stage, std::move(points), std::move(quads), o.with,
+              find_method(o.method)->make());
   Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "

@@ -9,7 +9,7 @@ namespace {
 class Scattered : public ::testing::Test {
  protected:
   Cloth g;
-  const Ball ball;
+  const Ball ball{};
 
   void SetUp() override {
     CME212::default_generator.seed(2);

@@ -98,7 +98,7 @@ TEST_P(SymplecticEulerStep, IsBoundedBelowItsLimitOnly) {
     Node wall = g.add_node(Point(0, 0, 0)), a = g.add_node(Point(1.001, 0, 0));
     g.add_edge(wall, a, {400, 1});  // w = 20/s
     PinConstraint pin(g);
-    double h = factor * SymplecticEuler::limit / 20, worst = 0;
+    double h = factor * SymplecticEuler::info.limit / 20, worst = 0;
     for (int n = 0; n < 200; ++n) {
       step(0, h, MassSpringForce(), pin);
       worst = std::max(worst, std::abs(a.position().x - 1));
@@ -131,12 +131,13 @@ TEST_P(SymplecticEulerStep, ConservesMomentumAndAngularMomentum) {
   EXPECT_GT(elastic_energy(g), 0.01);  // it did move
 }
 
-TEST_P(SymplecticEulerStep, SkipsTheCornersWithoutAConstraintOnly) {
+TEST(SympEulerStep, SkipsTheCornersWithoutAConstraintOnly) {
+  Cloth g;
   Node corner = g.add_node(Point(1, 0, 0), {Point(0, 0, 1), 1});
-  step(0, 0.5, GravityForce());
+  symp_euler_step(g, 0, 0.5, GravityForce());
   EXPECT_EQ(corner.position(), Point(1, 0, 0));
   EXPECT_EQ(corner.value().vel, Point(0, 0, 1));
-  step(0, 0.5, GravityForce(), ZeroConstraint());
+  symp_euler_step(g, 0, 0.5, GravityForce(), ZeroConstraint());
   EXPECT_EQ(corner.position(), Point(1, 0, 0.5));
   EXPECT_EQ(corner.value().vel, Point(0, 0, 1 - 0.5 * 9.81));
 }
@@ -265,7 +266,7 @@ TEST(SymplecticEuler, DeliversTheOrderItDeclares) {
     return std::abs(a.position().x - 1 - 0.1 * std::cos(1));
   };
   for (double h : {0.01, 0.001, 0.0001})
-    EXPECT_NEAR(std::log2(error(h) / error(h / 2)), SymplecticEuler::order,
+    EXPECT_NEAR(std::log2(error(h) / error(h / 2)), SymplecticEuler::info.order,
                 0.1);
 }
 
@@ -282,7 +283,7 @@ TEST(SymplecticEuler, SweepsTheForcesAsOftenAsItDeclares) {
   int sweeps = 0;
   SymplecticEuler euler;
   for (int n = 0; n < 10; ++n) euler(g, 0, 0.1, Count(sweeps));
-  EXPECT_EQ(sweeps, 10 * SymplecticEuler::sweeps);
+  EXPECT_EQ(sweeps, 10 * SymplecticEuler::info.sweeps);
 }
 
 }  // namespace

@@ -30,6 +30,21 @@ TEST(Scene, HoldsTheCornersInEveryStage) {
   }
 }
 
+// A pin is what the assignment's step does by skipping the corners.
+TEST(Scene, StageForcesIsTheStepThatSkipsTheCorners) {
+  Scene scene = make_scene(Stage::forces, 10);
+  Cloth g;
+  build_cloth(g, grid_points(10), grid_quads(10), Mesh::diagonals);
+  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  for (int n = 0; n < 400; ++n) {
+    scene.step();
+    symp_euler_step(g, 0, 0.001, force);
+  }
+  for (unsigned i = 0; i < g.num_nodes(); ++i)
+    ASSERT_LT(norm(g.node(i).position() - scene.cloth().node(i).position()),
+              1e-13);
+}
+
 TEST(Scene, DampingTakesEnergyFromStageForcesOn) {
   auto energy_after_5s = [](Stage stage, double c) {
     Scene scene = make_scene(stage, 5, {.damping = c});

@@ -2,6 +2,7 @@
 /** @file BoundingBox.hpp
  * BoundingBox: the smallest box along the axes that holds some points. */
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "CME212/Point.hpp"
@@ -18,7 +19,8 @@ class BoundingBox {
 
   /** Grow to hold @a p. Points that are not finite are left out. */
   BoundingBox& operator|=(const Point& p) {
-    if (!std::isfinite(p.x + p.y + p.z)) return *this;
+    for (double a : p)
+      if (!std::isfinite(a)) return *this;
     for (Point::size_type i = 0; i < 3; ++i) {
       min_[i] = std::min(min_[i], p[i]);
       max_[i] = std::max(max_[i], p[i]);

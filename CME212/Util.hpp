@@ -13,15 +13,21 @@
 #include <string>
 #include <thread>
 
-/** Derive != from the ==, and >, <=, >= from the < of @a T.
- * @pre T has operator== and operator<; < is a strict total order. */
+/** Derive != from the == of @a T. */
 template <typename T>
-struct totally_ordered {
+struct equality_comparable {
   friend bool operator!=(const T& a, const T& b) { return !(a == b); }
+};
+/** Derive >, <=, >= from the < of @a T.  @pre < is a strict total order */
+template <typename T>
+struct less_than_comparable {
   friend bool operator>(const T& a, const T& b) { return b < a; }
   friend bool operator<=(const T& a, const T& b) { return !(b < a); }
   friend bool operator>=(const T& a, const T& b) { return !(a < b); }
 };
+/** Both. */
+template <typename T>
+struct totally_ordered : equality_comparable<T>, less_than_comparable<T> {};
 
 namespace CME212 {
 

@@ -9,8 +9,8 @@ block() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" README.md | grep -v '^```'; }
 diff <(block cpp) example_graph.cpp ||
   { echo "README.md does not quote example_graph.cpp as it is"; exit 1; }
 
-grep -oE '(\]\(|src=")[^)"#]+' README.md docs/*.md CONTRIBUTING.md |
-  sed -E 's/(\]\(|src=")//' | while IFS=: read -r page target; do
+grep -oE '(\]\(|src=")[^)" ,#]+[)"#]' README.md docs/*.md CONTRIBUTING.md |
+  sed -E 's/(\]\(|src=")//; s/[)"#]$//' | while IFS=: read -r page target; do
   case $target in
     http*) ;;
     *) [ -e "$(dirname "$page")/$target" ] ||

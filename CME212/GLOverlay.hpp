@@ -1,0 +1,175 @@
+#pragma once
+/** @file GLOverlay.hpp
+ * GLOverlay: text and a color scale over a picture, by Dear ImGui. */
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "CME212/Color.hpp"
+
+namespace CME212 {
+
+/** What the colors of Color::make_strain mean. */
+struct ColorScale {
+  std::string title;
+  double low = 0, high = 1;  // of blue and of yellow, in units
+  std::string unit;
+};
+
+/** What to write over a picture; an empty text is not drawn. */
+struct OverlayText {
+  std::string label;              // large, top left
+  std::string state;              // below it
+  std::vector<std::string> help;  // lines, bottom left
+  bool has_scale = false;         // draw scale at the right
+  ColorScale scale;
+};
+
+/** Draws an OverlayText.
+ * Use: as GLScene, with one OpenGL context current. Only what is fixed goes
+ * into the picture: the same text gives the same pixels. */
+class GLOverlay {
+ public:
+  /** Throws std::runtime_error if Dear ImGui does not start. */
+  GLOverlay() {
+    ImGui::SetCurrentContext(context_);
+    ImGui::GetIO().IniFilename = nullptr;  // it shall leave no file
+    if (!ImGui_ImplOpenGL3_Init("#version 330")) {
+      ImGui::DestroyContext(context_);
+      throw std::runtime_error("Dear ImGui does not start");
+    }
+  }
+  GLOverlay(const GLOverlay&) = delete;
+  GLOverlay& operator=(const GLOverlay&) = delete;
+  ~GLOverlay() {
+    ImGui::SetCurrentContext(context_);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext(context_);
+  }
+
+  /** Draw @a text over a picture of @a width x @a height pixels.
+   * @param scale Size of everything, 1 on a plain screen */
+  void draw(const OverlayText& text, int width, int height, double scale) {
+    ImGui::SetCurrentContext(context_);
+    set_font(scale);
+    ImGui::GetIO().DisplaySize = ImVec2(float(width), float(height));
+    ImGui::GetIO().DeltaTime = 1.0f / 60;  // nothing depends on it
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+    list_ = ImGui::GetBackgroundDrawList();
+    unit_ = float(scale);
+
+    float margin = 16 * unit_, y = margin;
+    y += write(margin, y, large, bright, text.label);
+    write(margin, y, medium, dim, text.state);
+    y = float(height) - margin;
+    for (auto line = text.help.rbegin(); line != text.help.rend(); ++line) {
+      y -= 19 * unit_;
+      write(margin, y, small, dim, *line);
+    }
+    if (text.has_scale) draw_scale(text.scale, float(width) - margin, margin);
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  }
+
+ private:
+  static constexpr ImU32 bright = IM_COL32(240, 243, 248, 255);
+  static constexpr ImU32 dim = IM_COL32(165, 175, 190, 255);
+  enum Size { large, medium, small };
+  static constexpr float points[] = {20, 15, 14};  // of each Size
+
+  ImGuiContext* context_ = ImGui::CreateContext();
+  double font_scale_ = 0;  // for which the letters are made
+  // While draw() runs:
+  ImDrawList* list_ = nullptr;
+  float unit_ = 1;  // [pixels]
+
+  /** Letters are made at the size at which they are drawn, so they are sharp:
+   * DejaVu Sans where Debian has it, otherwise Dear ImGui's own. */
+  void set_font(double scale) {
+    if (scale == font_scale_) return;
+    font_scale_ = scale;
+    static const ImWchar letters[] = {0x20,   0xff,   0x370,  0x3ff, 0x2010,
+                                      0x209f, 0x2190, 0x22ff, 0};
+    const char* file = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    atlas.Clear();
+    std::FILE* there = std::fopen(file, "rb");
+    if (there) std::fclose(there);
+    for (float size : points) {
+      ImFontConfig config;
+      config.SizePixels = std::round(size * float(scale));
+      if (there)
+        atlas.AddFontFromFileTTF(file, config.SizePixels, &config, letters);
+      else
+        atlas.AddFontDefault(&config);
+    }
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+  }
+  static ImFont* font(Size size) { return ImGui::GetIO().Fonts->Fonts[size]; }
+
+  /** Write one line with its top left corner at (x, y).
+   * @return the height it takes [pixels] */
+  float write(float x, float y, Size size, ImU32 color,
+              const std::string& text) const {
+    if (text.empty()) return 0;
+    ImFont* f = font(size);
+    const char* end = text.data() + text.size();
+    float shadow = std::max(1.0f, std::round(unit_));
+    for (float shift : {shadow, 0.0f})
+      list_->AddText(
+          f, f->FontSize, {std::round(x) + shift, std::round(y) + shift},
+          shift > 0 ? IM_COL32(0, 0, 0, 200) : color, text.data(), end);
+    return 1.35f * f->FontSize;
+  }
+  static float text_width(Size size, const std::string& text) {
+    ImFont* f = font(size);
+    return f
+        ->CalcTextSizeA(f->FontSize, 1e9f, 0, text.data(),
+                        text.data() + text.size())
+        .x;
+  }
+  static std::string number(double v, const std::string& unit) {
+    char s[40];
+    std::snprintf(s, sizeof s, "%.3g", v);
+    return s + (unit.empty() ? "" : " " + unit);
+  }
+
+  /** The scale, with its top right corner at (right, top). */
+  void draw_scale(const ColorScale& scale, float right, float top) const {
+    constexpr int bands = 32;
+    const float width = 16 * unit_, height = 160 * unit_;
+    write(right - text_width(medium, scale.title), top, medium, bright,
+          scale.title);
+    top += 28 * unit_;
+    const float left = right - width, step = height / bands;
+    for (int i = 0; i < bands; ++i) {
+      float y = top + float(i) * step;
+      ImU32 upper = color(1 - float(i) / bands);
+      ImU32 lower = color(1 - float(i + 1) / bands);
+      list_->AddRectFilledMultiColor({left, y}, {right, y + step}, upper, upper,
+                                     lower, lower);
+    }
+    for (int i = 0; i <= 2; ++i) {
+      std::string s =
+          number(scale.high + (scale.low - scale.high) * i / 2, scale.unit);
+      float y = top + height * float(i) / 2;
+      list_->AddLine({left - 4 * unit_, y}, {left, y}, dim, unit_);
+      write(left - 8 * unit_ - text_width(small, s), y - 8 * unit_, small,
+            bright, s);
+    }
+  }
+  static ImU32 color(float v) {
+    Color c = Color::make_strain(std::clamp(v, 0.0f, 1.0f));
+    return ImGui::ColorConvertFloat4ToU32({c.r, c.g, c.b, 1});
+  }
+};
+
+}  // namespace CME212

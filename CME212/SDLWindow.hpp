@@ -1,0 +1,128 @@
+#pragma once
+/** @file SDLWindow.hpp
+ * SDLWindow: a window, or none, that OpenGL draws into. */
+#include <SDL.h>
+#include <SDL_opengl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace CME212 {
+
+/** There is nothing to draw on: no display, or no OpenGL 3.3. */
+struct NoDisplay : std::runtime_error {
+  explicit NoDisplay(const std::string& reason)
+      : std::runtime_error("no display: " + reason) {}
+};
+
+/** SDL's video, for as long as this lives. */
+class SDLVideo {
+ public:
+  /** @param offscreen Draw without any display, and without a window.
+   * Throws NoDisplay with SDL's reason. */
+  explicit SDLVideo(bool offscreen) {
+    // By name: left to itself, SDL falls silently from a display that can't be
+    // opened to a driver that shows nothing.
+    const char* driver = "offscreen";
+    if (!offscreen) driver = std::getenv("SDL_VIDEODRIVER");
+    if (!driver && std::getenv("WAYLAND_DISPLAY")) driver = "x11,wayland";
+    if (!driver && std::getenv("DISPLAY")) driver = "x11";
+    if (!driver) throw NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set");
+    SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, driver, SDL_HINT_OVERRIDE);
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C ends the program
+    SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
+    // Where the processor draws, half of it does; the rest is for simulating.
+    const unsigned cores = std::thread::hardware_concurrency();
+    setenv("LP_NUM_THREADS", std::to_string(std::max(cores / 2, 1u)).c_str(),
+           false);
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw NoDisplay(SDL_GetError());
+  }
+  SDLVideo(const SDLVideo&) = delete;
+  SDLVideo& operator=(const SDLVideo&) = delete;
+  ~SDLVideo() { SDL_QuitSubSystem(SDL_INIT_VIDEO); }
+
+  /** True if somebody can see a window. */
+  bool has_display() const {
+    const std::string driver = SDL_GetCurrentVideoDriver();
+    return driver != "offscreen" && driver != "dummy";
+  }
+};
+
+/** A window with an OpenGL 3.3 core context, hidden at first. Main thread. */
+class SDLWindow {
+ public:
+  /** @param width,height In the units of the desktop
+   * Throws NoDisplay with SDL's reason. */
+  SDLWindow(const std::string& title, int width, int height, bool offscreen)
+      : video_(offscreen) {
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK,
+                        SDL_GL_CONTEXT_PROFILE_CORE);
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 3);
+    SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
+    for (int samples : {4, 0}) {
+      SDL_GL_SetAttribute(SDL_GL_MULTISAMPLEBUFFERS, samples > 0);
+      SDL_GL_SetAttribute(SDL_GL_MULTISAMPLESAMPLES, samples);
+      context_.reset();
+      window_.reset(SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_CENTERED,
+                                     SDL_WINDOWPOS_CENTERED, width, height,
+                                     SDL_WINDOW_OPENGL | SDL_WINDOW_HIDDEN |
+                                         SDL_WINDOW_RESIZABLE |
+                                         SDL_WINDOW_ALLOW_HIGHDPI));
+      if (window_) context_.reset(SDL_GL_CreateContext(window_.get()));
+      if (context_ && !is_software()) break;  // that has no time for samples
+    }
+    if (!context_) throw NoDisplay(SDL_GetError());
+    SDL_GL_SetSwapInterval(1);
+  }
+
+  void show() const { SDL_ShowWindow(window_.get()); }
+  void hide() const { SDL_HideWindow(window_.get()); }
+  /** OpenGL calls go to this window from now on. */
+  void make_current() const {
+    SDL_GL_MakeCurrent(window_.get(), context_.get());
+  }
+  /** Show what was drawn. */
+  void swap() const { SDL_GL_SwapWindow(window_.get()); }
+
+  /** Width and height of what is drawn [pixels]. */
+  std::array<int, 2> pixels() const {
+    std::array<int, 2> size{};
+    SDL_GL_GetDrawableSize(window_.get(), &size[0], &size[1]);
+    return {std::max(size[0], 1), std::max(size[1], 1)};
+  }
+  /** Width and height in the units of the desktop and the mouse: less than
+   * pixels() on a screen of high resolution. */
+  std::array<int, 2> size() const {
+    std::array<int, 2> size{};
+    SDL_GetWindowSize(window_.get(), &size[0], &size[1]);
+    return {std::max(size[0], 1), std::max(size[1], 1)};
+  }
+  bool minimized() const {
+    return SDL_GetWindowFlags(window_.get()) & SDL_WINDOW_MINIMIZED;
+  }
+
+ private:
+  struct Destroy {
+    void operator()(SDL_Window* w) const { SDL_DestroyWindow(w); }
+    void operator()(void* context) const { SDL_GL_DeleteContext(context); }
+  };
+  /** True if the processor does what a graphics card should. */
+  static bool is_software() {
+    const auto* name = glGetString(GL_RENDERER);
+    const std::string renderer(reinterpret_cast<const char*>(name));
+    return renderer.find("llvmpipe") != renderer.npos ||
+           renderer.find("softpipe") != renderer.npos;
+  }
+
+  SDLVideo video_;
+  std::unique_ptr<SDL_Window, Destroy> window_;
+  std::unique_ptr<void, Destroy> context_;
+};
+
+}  // namespace CME212

@@ -1,0 +1,280 @@
+#pragma once
+/** @file SceneBuilder.hpp
+ * SceneData: what a viewer shows, as plain data. SceneBuilder: the half of a
+ * viewer that collects it from a graph, in whatever thread. */
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "CME212/BoundingBox.hpp"
+#include "CME212/Color.hpp"
+#include "CME212/Point.hpp"
+
+namespace CME212 {
+
+/** The color and the place that a node has if nothing else is said. */
+struct DefaultColor {
+  template <typename Node>
+  Color operator()(const Node&) const {
+    return Color(1);
+  }
+};
+struct DefaultPosition {
+  template <typename Node>
+  Point operator()(const Node& n) const {
+    return n.position();
+  }
+};
+
+/** What is to be seen. */
+struct SceneData {
+  /** A node as a vertex buffer holds it: 16 bytes. */
+  struct Vertex {
+    float x, y, z;
+    std::array<std::uint8_t, 4> rgba;
+    Vertex(const Point& p, const Color& c)
+        : x(float(p.x)),
+          y(float(p.y)),
+          z(float(p.z)),
+          rgba{byte(c.r), byte(c.g), byte(c.b), 255} {}
+    static std::uint8_t byte(float c) { return std::uint8_t(255 * c + 0.5f); }
+  };
+  /** Both ends of an edge, as places in nodes; the smaller one first. */
+  using Ends = std::array<std::uint32_t, 2>;
+  struct Sphere {
+    Point center;
+    double radius;
+    Color color;
+  };
+  /** A square, 2 half wide, of a plane at right angles to z. */
+  struct Plane {
+    Point center;
+    double half;
+    Color color;
+  };
+
+  std::vector<Vertex> nodes;
+  std::vector<Ends> edges;
+  std::vector<Sphere> spheres;
+  std::vector<Plane> planes;
+
+  /** Of nodes and spheres. */
+  BoundingBox box() const {
+    BoundingBox b;
+    for (const Vertex& v : nodes) b |= Point(v.x, v.y, v.z);
+    for (const Sphere& s : spheres)
+      (b |= s.center - s.radius) |= s.center + s.radius;
+    return b;
+  }
+};
+
+/** Collects a scene from the nodes and edges of a graph, and shows only
+ * complete ones. A scene under construction is complete
+ *  - when add_edges() returns;
+ *  - in a program that draws no edges: at the next clear() or
+ *    complete_without_edges(), or when nothing was added for 50 ms.
+ * Until then the one before stays. Is no scene under construction, then an
+ * add_nodes() that only changes nodes it knows takes effect when it returns.
+ *
+ * Threads: all members may be called by any thread at any time. The functors
+ * run on the thread that calls, and must not call the builder. */
+class SceneBuilder {
+ public:
+  SceneBuilder() = default;
+  SceneBuilder(const SceneBuilder&) = delete;
+  SceneBuilder& operator=(const SceneBuilder&) = delete;
+
+  /** A map for the nodes of @a g: where each is in the scene. The caller keeps
+   * it and hands it to add_nodes() and add_edges(); only they change it. Clear
+   * it with every clear(). Any map will do that has find(), end() and
+   * try_emplace(hint, ...), as those of the standard library have. */
+  template <typename G>
+  std::map<typename G::node_type, unsigned> empty_node_map(const G&) const {
+    return {};
+  }
+
+  /** Add the nodes in [first, last), or change color and place of those that
+   * are in @a node_map already.
+   * @param color    color(Node) -> Color; white if left out
+   * @param position position(Node) -> Point [m]; its position() if left out
+   * @post @a node_map has all of them.
+   * Complexity: O(nodes) if they come in the order of the map, as those of a
+   *       graph do; else O(nodes log nodes).
+   * What a functor throws goes through; the nodes before are added. */
+  template <typename It, typename ColorFn, typename PositionFn, typename Map>
+  void add_nodes(It first, It last, ColorFn color, PositionFn position,
+                 Map& node_map) {
+    std::lock_guard lock(build_mutex_);
+    touch();
+    auto& nodes = building_.nodes;
+    auto hint = node_map.end();
+    for (; first != last; ++first) {
+      const auto n = *first;
+      const SceneData::Vertex v(position(n), color(n));
+      auto at = node_map.try_emplace(hint, n, unsigned(nodes.size()));
+      if (at->second < nodes.size()) {
+        nodes[at->second] = v;
+      } else {  // new, or of a map that was not cleared with the scene
+        at->second = unsigned(nodes.size());
+        nodes.push_back(v);
+        incomplete_ = true;
+      }
+      hint = std::next(at);
+    }
+    if (!incomplete_) publish();
+  }
+  template <typename It, typename ColorFn, typename Map>
+  void add_nodes(It first, It last, ColorFn color, Map& node_map) {
+    add_nodes(first, last, color, DefaultPosition(), node_map);
+  }
+  template <typename It, typename Map>
+  void add_nodes(It first, It last, Map& node_map) {
+    add_nodes(first, last, DefaultColor(), DefaultPosition(), node_map);
+  }
+
+  /** Add the edges in [first, last) that have both ends in @a node_map; the
+   * others are left out. An edge that is in the scene is not added again, and
+   * stays there until clear(), whatever becomes of it in the graph.
+   * @post The scene is complete and shown.
+   * Complexity: O(edges log nodes) with a std::map; from the second call after
+   *       clear() on also O(E log E), for all E edges in the scene. */
+  template <typename It, typename Map>
+  void add_edges(It first, It last, const Map& node_map) {
+    std::lock_guard lock(build_mutex_);
+    touch();
+    auto& edges = building_.edges;
+    const bool merge = !edges.empty();
+    auto one = node_map.end();
+    for (; first != last; ++first) {
+      const auto e = *first;
+      const auto n = e.node1();  // often that of the edge before
+      if (one == node_map.end() || !(one->first == n)) one = node_map.find(n);
+      const auto two = node_map.find(e.node2());
+      if (one == node_map.end() || two == node_map.end()) continue;
+      const auto [low, high] = std::minmax({one->second, two->second});
+      if (high < building_.nodes.size()) edges.push_back({low, high});
+    }
+    if (merge) {
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    }
+    has_edges_ = edges_changed_ = true;
+    publish();
+  }
+
+  /** Begin a new scene without nodes and edges. Spheres and planes stay. */
+  void clear() {
+    std::lock_guard lock(build_mutex_);
+    touch();
+    if (incomplete_ && !building_.nodes.empty()) {
+      has_edges_ = false;  // nobody added any
+      publish();
+    }
+    building_.nodes.clear();
+    building_.edges.clear();
+    incomplete_ = edges_changed_ = true;
+  }
+
+  /** Add a ball that stays until clear_shapes().  @pre radius > 0 [m] */
+  void add_sphere(const Point& center, double radius,
+                  Color color = Color(0.80f, 0.47f, 0.36f)) {
+    change_shapes([&] { shown_.spheres.push_back({center, radius, color}); });
+  }
+  /** Add the plane z = @a z [m], drawn with a mesh of lines out to @a half [m]
+   * from @a center, where it fades; 10 lines on half. Stays until
+   * clear_shapes().  @pre half > 0 */
+  void add_plane(double z, double half = 1.5, Point center = Point(0.5, 0.5, 0),
+                 Color color = Color(0.45f, 0.53f, 0.65f)) {
+    center.z = z;
+    change_shapes([&] { shown_.planes.push_back({center, half, color}); });
+  }
+  /** Remove all spheres and planes. */
+  void clear_shapes() {
+    change_shapes([&] { shown_.spheres.clear(), shown_.planes.clear(); });
+  }
+
+  /** True if everything that was complete has been taken over by take(): a
+   * simulation that builds a scene only then builds as many as are seen.
+   * Costs one atomic read. */
+  bool wants_frame() const { return wants_frame_; }
+
+  /** Complete the scene under construction if the program draws no edges. */
+  void complete_without_edges() {
+    std::lock_guard lock(build_mutex_);
+    if (incomplete_ && !has_edges_ && !building_.nodes.empty()) publish();
+  }
+  /** Complete it if the calling thread was the last to add to it. */
+  void complete_own() {
+    std::lock_guard lock(build_mutex_);
+    if (incomplete_ && builder_ == std::this_thread::get_id()) publish();
+  }
+  /** Complete it if nothing was added for a while. Never waits. */
+  void complete_if_quiet() {
+    std::unique_lock lock(build_mutex_, std::try_to_lock);
+    if (!lock || !incomplete_) return;
+    // Edges come late if the simulation gets no processor for a while.
+    auto quiet = std::chrono::milliseconds(has_edges_ ? 1000 : 50);
+    if (clock::now() - last_change_ > quiet) publish();
+  }
+
+  /** If the complete scene changed since the last call, call
+   * @a use(const SceneData&, bool edges_changed), while nobody changes it.
+   * @post wants_frame() */
+  template <typename F>
+  void take(F use) {
+    std::lock_guard lock(shown_mutex_);
+    if (has_new_) use(std::as_const(shown_), new_edges_);
+    has_new_ = new_edges_ = false;
+    wants_frame_ = true;
+  }
+  /** True if take() would find something new. */
+  bool has_new() const { return has_new_; }
+
+ private:
+  using clock = std::chrono::steady_clock;
+
+  std::mutex build_mutex_;      // locked before shown_mutex_
+  SceneData building_;          // its nodes and edges
+  bool incomplete_ = false;     // a scene is under construction
+  bool edges_changed_ = false;  // building_ has other edges than shown_
+  bool has_edges_ = false;      // the program calls add_edges()
+  std::thread::id builder_;     // who changed building_ last, and when
+  clock::time_point last_change_;
+
+  std::mutex shown_mutex_;
+  SceneData shown_;
+  bool new_edges_ = false;
+  std::atomic<bool> has_new_ = false, wants_frame_ = true;
+
+  // With build_mutex_ locked:
+  void touch() {
+    builder_ = std::this_thread::get_id();
+    last_change_ = clock::now();
+  }
+  void publish() {
+    std::lock_guard lock(shown_mutex_);
+    shown_.nodes = building_.nodes;
+    if (edges_changed_) shown_.edges = building_.edges;
+    new_edges_ |= edges_changed_;
+    incomplete_ = edges_changed_ = false;
+    has_new_ = true;
+    wants_frame_ = false;
+  }
+
+  template <typename F>
+  void change_shapes(F change) {
+    std::lock_guard lock(shown_mutex_);
+    change();
+    has_new_ = true;
+  }
+};
+
+}  // namespace CME212

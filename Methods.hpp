@@ -1,0 +1,35 @@
+#pragma once
+/** @file Methods.hpp
+ * The table of all methods: one line a method, used by every program that
+ * lets its user choose. */
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "Integrator.hpp"
+#include "RungeKutta.hpp"
+
+/** A method by its name. */
+struct MethodEntry {
+  MethodInfo info;
+  std::unique_ptr<Method> (*make)();
+};
+
+template <typename M>
+constexpr MethodEntry entry_of() {
+  return {M::info, [] { return std::unique_ptr<Method>(new M()); }};
+}
+
+inline constexpr std::array methods = {
+    entry_of<ForwardEuler>(), entry_of<SymplecticEuler>(),
+    entry_of<Verlet>(),       entry_of<Yoshida4>(),
+    entry_of<Pefrl>(),        entry_of<Srkn6b>(),
+    entry_of<Srkn11b>(),      entry_of<Rk4>(),
+    entry_of<DormandPrince>()};
+
+/** The method called @a name, or nullptr. */
+inline const MethodEntry* find_method(std::string_view name) {
+  for (const MethodEntry& m : methods)
+    if (m.info.name == name) return &m;
+  return nullptr;
+}

@@ -1,0 +1,609 @@
+/** @file test_course_interface.cpp
+ * Programs as they are written against the course's interface of homework 0 to
+ * 2, in small: what students' programs and test suites use has to compile and
+ * to run. The idioms are the point here; the contract itself is tested in
+ * test_nodes.cpp and test_edges.cpp. */
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <queue>
+#include <set>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "CME212/BoundingBox.hpp"
+#include "CME212/Color.hpp"
+#include "CME212/Point.hpp"
+#include "CME212/Util.hpp"
+#include "Graph.hpp"
+
+namespace {
+
+// ----------------------------------------------------- homework 0: the graph
+
+class GraphFixture : public ::testing::Test {
+ protected:
+  using GraphType = Graph<int, int>;
+  using NodeType = typename GraphType::node_type;
+  using EdgeType = typename GraphType::edge_type;
+  using NodeIter = typename GraphType::node_iterator;
+  using EdgeIter = typename GraphType::edge_iterator;
+  using IncidentIter = typename GraphType::incident_iterator;
+
+  GraphType graph;
+  std::vector<Point> points;
+  virtual void SetUp() {
+    for (int i = 0; i < 10; i++) points.push_back(Point(i));
+  }
+};
+
+TEST_F(GraphFixture, TypesHaveTheNamesOfTheCourse) {
+  using size_type = GraphType::size_type;
+  using V = GraphType::node_value_type;
+  using E = GraphType::edge_value_type;
+  static_assert(std::is_same<size_type, unsigned>::value, "");
+  static_assert(std::is_same<V, int>::value && std::is_same<E, int>::value, "");
+  static_assert(std::is_same<GraphType::Node, NodeType>::value, "");
+  static_assert(std::is_same<GraphType::Edge, EdgeType>::value, "");
+  static_assert(std::is_same<GraphType::NodeIterator, NodeIter>::value, "");
+  static_assert(std::is_same<GraphType::EdgeIterator, EdgeIter>::value, "");
+  static_assert(std::is_same<GraphType::IncidentIterator, IncidentIter>::value,
+                "");
+  static_assert(std::is_same<Graph<int>::node_value_type, int>::value, "");
+  EXPECT_LE(sizeof(NodeType), 16u);
+  EXPECT_LE(sizeof(EdgeType), 32u);
+}
+
+TEST_F(GraphFixture, NodesAreAddedAndFound) {
+  NodeType n0 = graph.add_node(points[0]);
+  graph.add_node(points[1], 3);
+  EXPECT_TRUE(graph.has_node(n0)) << "has_node did not find n0";
+  EXPECT_EQ(graph.num_nodes(), graph.size());
+  EXPECT_EQ(graph.size(), 2);  // students compare with int
+  EXPECT_EQ(n0.index(), 0);
+  EXPECT_EQ(n0.value(), 0);
+  EXPECT_EQ(graph.node(1).value(), 3);
+  EXPECT_EQ(graph.node(1).position(), points[1]);
+  NodeType node = graph.node(1);
+  node.value() = 2;
+  node.position() += Point(0, 0, 1);
+  EXPECT_EQ(graph.node(1).value(), 2);
+  EXPECT_EQ(graph.node(1).position().z, 2);
+  graph.clear();
+  EXPECT_EQ(graph.num_nodes(), 0);
+  EXPECT_EQ(graph.num_edges(), 0);
+}
+
+TEST_F(GraphFixture, EdgesAreAddedAndCounted) {
+  for (const Point& p : points) graph.add_node(p);
+  for (unsigned k = 0; k < 30; ++k) {
+    unsigned i = unsigned(CME212::random(0, graph.num_nodes()));
+    unsigned j = unsigned(CME212::random(0, graph.num_nodes()));
+    if (i == j) continue;
+    EdgeType e = graph.add_edge(graph.node(i), graph.node(j));
+    e.value() = int(k);
+    EXPECT_TRUE(graph.has_edge(graph.node(i), graph.node(j)));
+    EXPECT_TRUE(graph.has_edge(graph.node(j), graph.node(i)));
+    EXPECT_TRUE(e.node1() == graph.node(i) && e.node2() == graph.node(j));
+  }
+  unsigned count = 0;
+  for (unsigned i = 0; i < graph.num_nodes(); ++i)
+    for (unsigned j = i + 1; j < graph.num_nodes(); ++j)
+      if (graph.has_edge(graph.node(i), graph.node(j))) ++count;
+  EXPECT_EQ(graph.num_edges(), count);
+  for (unsigned i = 0; i < graph.num_edges(); ++i) {
+    EXPECT_NE(graph.edge(i).node1(), graph.edge(i).node2());
+    EXPECT_EQ(graph.edge(i), graph.edge(i));
+  }
+}
+
+TEST_F(GraphFixture, ElementsOfTwoGraphsCompare) {
+  GraphType g2;
+  for (int i = 0; i < 50; ++i) {
+    graph.add_node(Point(i));
+    g2.add_node(Point(i));
+  }
+  EXPECT_FALSE(graph.node(23) == g2.node(23));
+  EXPECT_TRUE(graph.node(23) < g2.node(21) || graph.node(23) > g2.node(21));
+  EXPECT_TRUE(graph.node(2) < graph.node(3) || graph.node(3) < graph.node(2));
+  EdgeType e1 = graph.add_edge(graph.node(0), graph.node(1));
+  EdgeType e2 = g2.add_edge(g2.node(0), g2.node(1));
+  EXPECT_TRUE(e1 < e2 || e2 < e1);
+  EXPECT_FALSE(e1 == e2);
+  std::map<NodeType, unsigned> place;
+  std::set<EdgeType> seen;
+  for (unsigned i = 0; i < graph.size(); ++i) place[graph.node(i)] = i;
+  EXPECT_EQ(place[graph.node(7)], 7u);
+  EXPECT_TRUE(seen.insert(e1).second);
+  EXPECT_FALSE(
+      seen.insert(graph.add_edge(graph.node(1), graph.node(0))).second);
+}
+
+TEST_F(GraphFixture, DeathOfInvalidElements) {
+  EXPECT_DEATH(GraphType::node_type().degree(), "");
+  EXPECT_DEATH(NodeType().position(), "");
+  EXPECT_DEATH(NodeType().index(), "");
+  EXPECT_DEATH(EdgeType().node1(), "");
+  EXPECT_DEATH(graph.node(0), "");
+}
+
+// ------------------------------------------- homework 1: iterators, algorithms
+
+/** Order of nodes by their distance to a point. */
+struct Closer {
+  Point to;
+  template <typename NODE>
+  bool operator()(const NODE& a, const NODE& b) const {
+    return norm(a.position() - to) < norm(b.position() - to);
+  }
+};
+
+template <typename G>
+typename G::node_iterator nearest_node(const G& g, const Point& p) {
+  return std::min_element(g.node_begin(), g.node_end(), Closer{p});
+}
+
+/** Number of edges from @a root to every node, as its value; -1: no way.
+ * @return the largest. */
+int shortest_path_lengths(Graph<int>& g, Graph<int>::node_type root) {
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) (*it).value() = -1;
+  std::queue<Graph<int>::node_type> todo;
+  root.value() = 0;
+  todo.push(root);
+  int longest = 0;
+  while (!todo.empty()) {
+    auto n = todo.front();
+    todo.pop();
+    longest = std::max(longest, n.value());
+    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
+      auto next = (*it).node2();
+      if (next.value() != -1) continue;
+      next.value() = n.value() + 1;
+      todo.push(next);
+    }
+  }
+  return longest;
+}
+
+/** The elements of a range for which a predicate holds. */
+template <typename Pred, typename It>
+class Filter : private totally_ordered<Filter<Pred, It>> {
+ public:
+  typedef typename std::iterator_traits<It>::value_type value_type;
+  typedef typename std::iterator_traits<It>::pointer pointer;
+  typedef typename std::iterator_traits<It>::reference reference;
+  typedef typename std::iterator_traits<It>::difference_type difference_type;
+  typedef typename std::input_iterator_tag iterator_category;
+
+  Filter(const Pred& p, const It& first, const It& last)
+      : p_(p), it_(first), end_(last) {
+    skip();
+  }
+  value_type operator*() const { return *it_; }
+  Filter& operator++() {
+    ++it_;
+    skip();
+    return *this;
+  }
+  bool operator==(const Filter& o) const { return it_ == o.it_; }
+  bool operator<(const Filter& o) const { return it_ < o.it_; }
+
+ private:
+  void skip() {
+    while (it_ != end_ && !p_(*it_)) ++it_;
+  }
+  Pred p_;
+  It it_, end_;
+};
+
+class PathFixture : public ::testing::Test {
+ protected:
+  Graph<int> g;
+  // A ring of ten, and one node apart.
+  PathFixture() {
+    for (int i = 0; i < 10; ++i) g.add_node(Point(i, 0, 0));
+    for (int i = 0; i < 10; ++i) g.add_edge(g.node(i), g.node((i + 1) % 10));
+    g.add_node(Point(100, 0, 0));
+  }
+};
+
+TEST_F(PathFixture, LoopsOverIterators) {
+  int count = 0, degrees = 0;
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    ++count;
+    degrees += int((*it).degree());
+    for (auto e = (*it).edge_begin(); e != (*it).edge_end(); ++e) {
+      EXPECT_EQ((*e).node1(), *it);
+      EXPECT_NE((*e).node2(), *it);
+    }
+  }
+  EXPECT_EQ(count, 11);
+  EXPECT_EQ(degrees, 20);
+  count = 0;
+  for (Graph<int>::EdgeIterator it = g.edge_begin(); it != g.edge_end(); ++it)
+    count += (*it).length() >= 1;
+  EXPECT_EQ(count, 10);
+  EXPECT_EQ(std::distance(g.edge_begin(), g.edge_end()), 10);
+  EXPECT_TRUE(g.node(10).edge_begin() == g.node(10).edge_end());
+}
+
+TEST_F(PathFixture, NearestNode) {
+  EXPECT_EQ((*nearest_node(g, Point(3.4, 0, 0))).index(), 3u);
+  EXPECT_EQ((*nearest_node(g, Point(1000, 0, 0))).index(), 10u);
+  Graph<int> empty;
+  EXPECT_TRUE(nearest_node(empty, Point()) == empty.node_end());
+}
+
+TEST_F(PathFixture, ShortestPathLengths) {
+  EXPECT_EQ(shortest_path_lengths(g, *nearest_node(g, Point(0, 0, 0))), 5);
+  EXPECT_EQ(g.node(3).value(), 3);
+  EXPECT_EQ(g.node(8).value(), 2);
+  EXPECT_EQ(g.node(10).value(), -1);
+}
+
+TEST_F(PathFixture, FilterIterators) {
+  auto right = [](const Graph<int>::node_type& n) {
+    return n.position().x > 5;
+  };
+  using F = Filter<decltype(right), Graph<int>::node_iterator>;
+  F first(right, g.node_begin(), g.node_end());
+  F last(right, g.node_end(), g.node_end());
+  std::vector<unsigned> found;
+  for (; first != last; ++first) found.push_back((*first).index());
+  EXPECT_EQ(found, (std::vector<unsigned>{6, 7, 8, 9, 10}));
+
+  auto up = [](Graph<int>::edge_type e) { return e.node1() < e.node2(); };
+  using I = Filter<decltype(up), Graph<int>::incident_iterator>;
+  int edges = 0;
+  for (auto n = g.node_begin(); n != g.node_end(); ++n) {
+    I it(up, (*n).edge_begin(), (*n).edge_end());
+    I end(up, (*n).edge_end(), (*n).edge_end());
+    for (; it != end; ++it) ++edges;
+  }
+  EXPECT_EQ(edges, 10);
+}
+
+// ------------------------------------------------- homework 2: mass and spring
+
+struct NodeData {
+  Point vel;
+  double mass;
+  NodeData() : vel(0), mass(1) {}
+};
+struct EdgeData {
+  double K, L;
+  EdgeData() : K(100), L(1) {}
+};
+using SpringGraph = Graph<NodeData, EdgeData>;
+
+/** Move and kick, as the assignment's integrator does. */
+template <typename G, typename F>
+double euler_step(G& g, double t, double dt, F force) {
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    n.position() += n.value().vel * dt;
+  }
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    n.value().vel += force(n, t) * (dt / n.value().mass);
+  }
+  return t + dt;
+}
+
+/** Gravity and springs; the corners hold. */
+struct Problem1 {
+  template <typename NODE>
+  Point operator()(NODE n, double t) {
+    (void)t;
+    if (n.position() == Point(0) || n.position() == Point(1, 0, 0))
+      return Point(0);
+    Point f = n.value().mass * Point(0, 0, -9.81);
+    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
+      auto e = *it;
+      Point d = n.position() - e.node2().position();
+      f -= e.value().K * (norm(d) - e.value().L) / norm(d) * d;
+    }
+    return f;
+  }
+};
+
+TEST(MassSpring, AStepHoldsTheCornersAndDropsTheRest) {
+  SpringGraph g;
+  auto a = g.add_node(Point(0, 0, 0));
+  auto b = g.add_node(Point(1, 0, 0));
+  auto c = g.add_node(Point(0, 1, 0));
+  g.add_edge(a, b);
+  g.add_edge(a, c).value().L = 1;
+  for (auto it = g.edge_begin(); it != g.edge_end(); ++it)
+    (*it).value().L = (*it).length();
+  double t = 0;
+  for (int i = 0; i < 10; ++i) t = euler_step(g, t, 0.001, Problem1());
+  EXPECT_NEAR(t, 0.01, 1e-12);
+  EXPECT_EQ(a.position(), Point(0));
+  EXPECT_EQ(b.position(), Point(1, 0, 0));
+  EXPECT_NEAR(c.value().vel.z, -9.81 * 0.01, 1e-4);
+  EXPECT_LT(c.position().z, 0);
+}
+
+TEST(MassSpring, RemovalAsTheAssignmentUsesIt) {
+  SpringGraph graph;
+  std::vector<SpringGraph::node_type> nodes;
+  for (int i = 0; i < 20; ++i) nodes.push_back(graph.add_node(Point(i, 0, 0)));
+  for (int i = 0; i + 1 < 20; ++i) graph.add_edge(nodes[i], nodes[i + 1]);
+  auto node = graph.node(4);
+  EXPECT_TRUE(graph.remove_node(node));
+  EXPECT_FALSE(graph.remove_node(node));
+  EXPECT_FALSE(graph.has_node(node));
+  EXPECT_TRUE(graph.remove_edge(nodes[0], nodes[1]));
+  EXPECT_FALSE(graph.remove_edge(nodes[0], nodes[1]));
+  SpringGraph::edge_type edge = graph.edge(0);
+  EXPECT_EQ(graph.remove_edge(edge), 1u);
+  EXPECT_EQ(graph.num_edges(), 15u);
+  auto it = graph.node_begin();
+  while (it != graph.node_end()) {
+    if (norm((*it).position() - Point(15, 0, 0)) < 2.5)
+      it = graph.remove_node(it);
+    else
+      ++it;
+  }
+  EXPECT_EQ(graph.num_nodes(), 14u);
+  for (auto e = graph.edge_begin(); e != graph.edge_end();)
+    e = graph.remove_edge(e);
+  EXPECT_EQ(graph.num_edges(), 0u);
+  for (unsigned i = 0; i < graph.num_nodes(); ++i)
+    EXPECT_EQ(graph.node(i).index(), i);
+}
+
+// ------------------------------------------------------------- CME212/Util.hpp
+
+TEST(Util, RandomNumbersLieWhereTheyShould) {
+  double sum = 0;
+  for (int i = 0; i < 10000; ++i) {
+    double u = CME212::random(), v = CME212::random(-2, 5);
+    ASSERT_TRUE(0 <= u && u < 1);
+    ASSERT_TRUE(-2 <= v && v < 5);
+    sum += v;
+  }
+  EXPECT_NEAR(sum / 10000, 1.5, 0.1);  // five standard deviations
+  EXPECT_EQ(CME212::random(3, 3), 3);
+}
+
+TEST(Util, ClockRuns) {
+  CME212::Clock clock;
+  CME212::sleep(0.01);
+  double first = clock.seconds();
+  EXPECT_GE(first, 0.01);
+  EXPECT_GE(clock.seconds(), first);
+  clock.start();
+  CME212::Clock older = clock;
+  EXPECT_GE(older.seconds(), 0);
+}
+
+TEST(Util, GetlineParsedSkipsBlankLinesAndComments) {
+  std::istringstream file(
+      "# nodes\n0 0 0\n\n   \n\t\n1\t2 3\r\n  # indented\n"
+      "-1e-3 +2 .5 # behind\n\n#");
+  Point p;
+  std::vector<Point> points;
+  while (CME212::getline_parsed(file, p)) points.push_back(p);
+  EXPECT_EQ(points, (std::vector<Point>{Point(0), Point(1, 2, 3),
+                                        Point(-1e-3, 2, .5)}));
+}
+
+TEST(Util, GetlineParsedReadsArrays) {
+  std::istringstream file("0 1 2 3\n# four\n4 5 6 7");
+  std::array<int, 4> t;
+  std::vector<std::array<int, 4>> tets;
+  while (CME212::getline_parsed(file, t)) tets.push_back(t);
+  ASSERT_EQ(tets.size(), 2u);
+  EXPECT_EQ(tets[1], (std::array<int, 4>{4, 5, 6, 7}));
+}
+
+TEST(Util, GetlineParsedFailsOnJunk) {
+  for (std::string junk : {"1 2", "1 2 x", "x", "1,2,3"}) {
+    std::istringstream file("0 0 0\n" + junk + "\n5 5 5\n");
+    Point p;
+    int read = 0;
+    while (CME212::getline_parsed(file, p)) ++read;
+    EXPECT_EQ(read, 1) << junk;
+    EXPECT_TRUE(file.fail());
+  }
+  std::istringstream file("1 2 3\n");
+  std::array<int, 4> t;
+  EXPECT_FALSE(CME212::getline_parsed(file, t));
+  std::ifstream missing("/no/such/file");
+  Point p;
+  EXPECT_FALSE(CME212::getline_parsed(missing, p));
+}
+
+/** A student's class with two operators of its own. */
+class Version : private totally_ordered<Version> {
+ public:
+  explicit Version(int n) : n_(n) {}
+  bool operator==(const Version& v) const { return n_ == v.n_; }
+  bool operator<(const Version& v) const { return n_ < v.n_; }
+
+ private:
+  int n_;
+};
+
+TEST(Util, TotallyOrderedGivesTheOtherOperators) {
+  Version one(1), two(2);
+  EXPECT_TRUE(one != two && !(one != one));
+  EXPECT_TRUE(two > one && !(one > two) && !(one > one));
+  EXPECT_TRUE(one <= two && one <= one && !(two <= one));
+  EXPECT_TRUE(two >= one && one >= one && !(one >= two));
+}
+
+// ------------------------------------------------------------ CME212/Point.hpp
+
+TEST(PointTest, Arithmetic) {
+  Point a(1, 2, 3), b(4, -5, 6);
+  EXPECT_EQ(a + b, Point(5, -3, 9));
+  EXPECT_EQ(a - b, Point(-3, 7, -3));
+  EXPECT_EQ(a * b, Point(4, -10, 18));
+  EXPECT_EQ(b / a, Point(4, -2.5, 2));
+  EXPECT_EQ(-a, Point(-1, -2, -3));
+  EXPECT_EQ(+a, a);
+  EXPECT_EQ(2 * a, a * 2);
+  EXPECT_EQ(2 * a, Point(2, 4, 6));
+  EXPECT_EQ(a / 2, Point(.5, 1, 1.5));
+  EXPECT_EQ(a + 1, 1 + a);
+  EXPECT_EQ(a + 1, Point(2, 3, 4));
+  EXPECT_EQ(a - 1, Point(0, 1, 2));
+  EXPECT_EQ(1 - a, Point(0, -1, -2));
+  Point c = a;
+  c += b;
+  c -= Point(1);
+  c *= 2;
+  c /= Point(2, 1, 1);
+  EXPECT_EQ(c, Point(4, -8, 16));
+  c *= Point(1, 2, 3);
+  c /= 4;
+  c += 1;
+  c -= 2;
+  EXPECT_EQ(c, Point(0, -5, 11));
+  EXPECT_TRUE(a != b && !(a == b));
+}
+
+TEST(PointTest, Products) {
+  Point x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), a(1, 2, 3), b(4, -5, 6);
+  EXPECT_EQ(cross(x, y), z);
+  EXPECT_EQ(cross(y, z), x);
+  EXPECT_EQ(cross(z, x), y);
+  EXPECT_EQ(cross(a, b), Point(27, 6, -13));
+  EXPECT_EQ(dot(a, b), 12);
+  EXPECT_EQ(inner_prod(a, b), 12);
+  EXPECT_EQ(dot(cross(a, b), a), 0);
+}
+
+TEST(PointTest, Norms) {
+  Point a(2, -3, 6);
+  EXPECT_EQ(norm(a), 7);
+  EXPECT_EQ(norm_2(a), 7);
+  EXPECT_EQ(normSq(a), 49);
+  EXPECT_EQ(norm_1(a), 11);
+  EXPECT_EQ(norm_inf(a), 6);
+  EXPECT_EQ(norm(Point()), 0);
+}
+
+TEST(PointTest, Elements) {
+  Point a(1, 2, 3);
+  a[1] = 7;
+  EXPECT_EQ(a.y, 7);
+  const Point& readable = a;
+  EXPECT_EQ(readable[0] + readable[1] + readable[2], 11);
+  EXPECT_EQ(Point(4), Point(4, 4, 4));
+  EXPECT_EQ(Point(), Point(0));
+  EXPECT_EQ(std::vector<double>(a.begin(), a.end()),
+            (std::vector<double>{1, 7, 3}));
+  std::fill(a.begin(), a.end(), 5);
+  EXPECT_EQ(a, Point(5));
+  EXPECT_EQ(a.size(), 3u);
+}
+
+TEST(PointTest, Streams) {
+  std::stringstream s;
+  s << Point(1, -2.5, 3);
+  EXPECT_EQ(s.str(), "1 -2.5 3");
+  Point p;
+  EXPECT_TRUE(s >> p);
+  EXPECT_EQ(p, Point(1, -2.5, 3));
+  std::istringstream bad("1 two 3");
+  EXPECT_FALSE(bad >> p);
+}
+
+// ---------------------------------------- CME212/Color.hpp and BoundingBox.hpp
+
+void expect_color(CME212::Color c, float r, float g, float b) {
+  EXPECT_NEAR(c.r, r, 1e-6);
+  EXPECT_NEAR(c.g, g, 1e-6);
+  EXPECT_NEAR(c.b, b, 1e-6);
+}
+
+TEST(Color, FromRgb) {
+  expect_color(CME212::Color(), 0, 0, 0);
+  expect_color(CME212::Color(0.5), 0.5, 0.5, 0.5);
+  expect_color(CME212::Color(1, 0.5, 0.25), 1, 0.5, 0.25);
+  expect_color(CME212::Color::make_rgb(0.1, 0.2, 0.3), 0.1, 0.2, 0.3);
+}
+
+TEST(Color, FromHueSaturationValue) {
+  auto hue = [](double h) { return CME212::Color::make_hsv(h, 1, 1); };
+  expect_color(hue(0), 1, 0, 0);
+  expect_color(hue(1. / 12), 1, 0.5, 0);
+  expect_color(hue(1. / 6), 1, 1, 0);
+  expect_color(hue(1. / 3), 0, 1, 0);
+  expect_color(hue(1. / 2), 0, 1, 1);
+  expect_color(hue(2. / 3), 0, 0, 1);
+  expect_color(hue(5. / 6), 1, 0, 1);
+  expect_color(hue(1), 1, 0, 0);
+  expect_color(CME212::Color::make_hsv(0.3, 0, 0.7), 0.7, 0.7, 0.7);
+  expect_color(CME212::Color::make_hsv(0.3, 1, 0), 0, 0, 0);
+  expect_color(CME212::Color::make_hsv(2. / 3, 0.5, 0.8), 0.4, 0.4, 0.8);
+}
+
+TEST(Color, HeatGoesFromVioletOverGreenToRed) {
+  auto cold = CME212::Color::make_heat(0), hot = CME212::Color::make_heat(1);
+  expect_color(cold, 0.68, 0, 1);  // hue 0.78
+  expect_color(hot, 1, 0.12, 0);   // hue 0.02
+  auto middle = CME212::Color::make_heat((0.78 - 1. / 3) / 0.76);
+  expect_color(middle, 0, 1, 0);
+  for (int i = 0; i <= 1000; ++i) {
+    auto c = CME212::Color::make_heat(i / 1000.f);
+    EXPECT_EQ(std::max({c.r, c.g, c.b}), 1);
+    EXPECT_EQ(std::min({c.r, c.g, c.b}), 0);
+  }
+}
+
+/** A functor for a viewer: the colour of a node. */
+struct HeatOfValue {
+  int longest;
+  template <typename NODE>
+  CME212::Color operator()(const NODE& n) const {
+    return CME212::Color::make_heat(float(n.value()) / longest);
+  }
+};
+
+TEST_F(PathFixture, ColorsByPathLength) {
+  int longest = shortest_path_lengths(g, g.node(0));
+  auto c = HeatOfValue{longest}(g.node(5));
+  expect_color(c, 1, 0.12, 0);
+}
+
+TEST(BoundingBox, HoldsItsPoints) {
+  CME212::BoundingBox box;
+  EXPECT_TRUE(box.empty());
+  EXPECT_EQ(box.center(), Point());
+  EXPECT_EQ(box.diagonal(), 0);
+  box |= Point(1, 2, 3);
+  EXPECT_FALSE(box.empty());
+  EXPECT_EQ(box.center(), Point(1, 2, 3));
+  box |= Point(3, -2, 7);
+  box |= Point(2, 0, 4);
+  EXPECT_EQ(box.min(), Point(1, -2, 3));
+  EXPECT_EQ(box.max(), Point(3, 2, 7));
+  EXPECT_EQ(box.center(), Point(2, 0, 5));
+  EXPECT_EQ(box.diagonal(), 6);
+}
+
+TEST(BoundingBox, LeavesPointsOutThatAreNotFinite) {
+  const double inf = std::numeric_limits<double>::infinity();
+  CME212::BoundingBox box;
+  box |= Point(0, inf, 0);
+  box |= Point(0, 0, std::nan(""));
+  box |= Point(-inf, inf, 0);
+  EXPECT_TRUE(box.empty());
+  box |= Point(1);
+  EXPECT_EQ(box.max(), Point(1));
+}
+
+}  // namespace

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Compile each header alone, and twice over to hold its include guard, by
+# both compilers:  [CXX='g++ clang++'] tools/check_headers.sh [HEADER...]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+shopt -s nullglob
+if [ $# = 0 ]; then set -- *.hpp CME212/*.hpp; fi
+# Headers that draw, and the packages whose flags these need. A header that
+# draws only under MASS_SPRING_VIEWER is compiled with it and without it.
+drawing='^CME212/(GL|SDL|Image)'
+packages="sdl2 gl imgui libpng"
+
+compile() {  # COMPILER HEADER; one report, even when others write too
+  local flags="" out ways=plain way
+  if [[ $2 =~ $drawing ]]; then ways=draw
+  elif grep -q 'MASS_SPRING_VIEWER' "$2"; then ways="plain draw"; fi
+  for way in $ways; do
+    if [ "$way" = draw ]; then
+      # shellcheck disable=SC2086  # a list of words
+      flags=$(pkg-config --cflags $packages) ||
+        { echo "$2:1: draws, but one is missing of: $packages"; return 1; }
+      flags=" $flags -DMASS_SPRING_VIEWER"
+      flags=${flags// -I/ -isystem}
+    fi
+    # shellcheck disable=SC2086
+    out=$(printf '#include "%s"\n' "$2" "$2" |
+      $1 -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I. $flags \
+         ${CPPFLAGS:-} -x c++ - 2>&1) ||
+      { printf '%s\n' "$2:1: does not compile alone by $1" "$out"; return 1; }
+  done
+}
+
+export drawing packages
+export -f compile
+for cxx in ${CXX:-g++ clang++}; do
+  command -v "$cxx" >/dev/null || { echo "$cxx is missing: make deps"; exit 1; }
+  printf '%s\n' "$@" | sed "s/^/$cxx /"
+done | xargs -r -P "${JOBS:-2}" -L 1 bash -c 'compile "$@"' compile || exit 1

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Hold what can be seen without compiling, in all files that git tracks or
+# would add: programs, sizes, layout, and nothing left unfinished.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+longest_graph=700  # lines of Graph.hpp
+longest=450        # lines of any other header or program
+longest_test=900   # lines of a test
+
+faults=$(mktemp)
+trap 'rm -f "$faults"' EXIT
+
+# The files of these patterns, one a line; those deleted but not yet
+# committed are left out.
+files() {
+  git ls-files -co --exclude-standard -- "$@" | sort -u |
+    while IFS= read -r file; do [ ! -f "$file" ] || echo "$file"; done
+}
+mapfile -t sources < <(files '*.hpp' '*.cpp')
+mapfile -t programs < <(files ':(glob)*.cpp')
+mapfile -t code < <(files '*.hpp' '*.cpp' '*.sh' '*.gp' '*.yml' Makefile)
+mapfile -t texts < <(printf '%s\n' "${code[@]}"; files '*.md')
+[ ${#sources[@]} != 0 ] || { echo "no sources here"; exit 1; }
+
+# Lines of FILES that match, as FILE:LINE: WHAT.
+lines() {  # WHAT GREP-OPTIONS PATTERN FILES...
+  LC_ALL=C grep -Hn "$2" "$3" "${@:4}" /dev/null |
+    sed -E "s/^([^:]+:[0-9]+):.*/\1: $1/" >>"$faults" || true
+}
+
+is_program='^(int|auto) main *\(|^ *BENCHMARK_MAIN\(|LLVMFuzzerTestOneInput'
+is_test='^ *(TEST|TEST_F|TEST_P|TYPED_TEST|TYPED_TEST_P|RC_GTEST_[A-Z_]+)\('
+for file in ${programs[@]+"${programs[@]}"}; do
+  grep -qE "$is_program" "$file" ||
+    { [[ $file == test_* ]] && grep -qE "$is_test" "$file"; } ||
+    echo "$file:1: is no program: it has no main() and no test"
+done >>"$faults"
+
+for file in "${sources[@]}"; do
+  limit=$longest
+  [ "$file" != Graph.hpp ] || limit=$longest_graph
+  [[ $file != test_* ]] || limit=$longest_test
+  count=$(wc -l <"$file")
+  [ "$count" -le "$limit" ] ||
+    echo "$file:$limit: goes on to line $count; the limit is $limit"
+done >>"$faults"
+
+# [O] and the like: so that this file does not find itself.
+lines "is left unfinished" -wE 'TOD[O]|FIXM[E]|XX[X]' "${code[@]}"
+lines "is never compiled" -E '^[[:space:]]*#[[:space:]]*if +(0|false)\b' \
+  "${sources[@]}"
+lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}"
+lines "has a character that is not ASCII" -P '[^\x00-\x7F]' "${code[@]}"
+lines "ends in white space" -E '[[:space:]]$' "${texts[@]}"
+
+# The layout is that of clang-format 14; another version may differ in places.
+formatter=$(command -v clang-format-14 || command -v clang-format) ||
+  { echo "clang-format is missing: make deps"; exit 1; }
+layout=$("$formatter" --dry-run -Werror "${sources[@]}" 2>&1) || {
+  violation='^([^:]+:[0-9]+):.*clang-format-violations.*'
+  sed -nE "s/$violation/\1: is not laid out: make format/p" <<<"$layout" |
+    sort -u | grep . || echo "clang-format:1: $layout"
+} >>"$faults"
+
+sort -t: -k1,1 -k2,2n "$faults"
+[ ! -s "$faults" ]

@@ -1,0 +1,191 @@
+#!/usr/bin/env bash
+# Show that each check of check_includes.sh, check_headers.sh and
+# check_tree.sh can fail: on a scratch copy of the tree, one fault at a time.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+passed=0 failed=0
+unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE
+export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_NOSYSTEM=1
+export GIT_AUTHOR_NAME=T GIT_AUTHOR_EMAIL=t@example.org
+export GIT_COMMITTER_NAME=T GIT_COMMITTER_EMAIL=t@example.org
+
+# tree/ is the whole tree; small/ a few of its files, which no check blames
+# whatever else goes on in the tree.
+copy() {  # FOLDER PATTERN...
+  mkdir "$tmp/$1"
+  git ls-files -co --exclude-standard -- "${@:2}" | sort -u |
+    while IFS= read -r file; do [ ! -f "$file" ] || echo "$file"; done |
+    tar cf - -T - | tar xf - -C "$tmp/$1"
+  [ -z "${CHECKS:-}" ] || cp "$CHECKS"/check_*.sh "$tmp/$1/tools/"
+  (cd "$tmp/$1"; git init -q; git add -Af; git commit -qm scratch)
+}
+copy tree .
+copy small 'tools/*.sh' CME212/Point.hpp SlotMap.hpp .clang-format .gitignore
+
+ok() {
+  if [ -z "$why" ]; then
+    echo "ok    $1"; passed=$((passed + 1))
+  else
+    printf 'FAIL  %s:%s\n%s\n' "$1" "$why" "$out"; failed=$((failed + 1))
+  fi
+}
+check() {  # in FOLDER, run the check; sets out, status
+  cd "$tmp/$1"
+  status=0
+  out=$("${@:2}" 2>&1) || status=$?
+  git reset -q --hard; git clean -fdqx
+}
+clean() {  # NAME CHECK...: passes on small/
+  check small "${@:2}"; why=""
+  [ "$status" = 0 ] && [ -z "$out" ] || why=" status is $status;"
+  ok "$1"
+}
+caught() {  # NAME MESSAGE FOLDER CHECK...: the fault that was just made
+  check "${@:3}"; why=""
+  [ "$status" = 1 ] || why=" status is $status, not 1;"
+  grep -qF -- "$2" <<<"$out" || why+=" does not say '$2';"
+  ! grep -qF -- "$2" "$tmp/before" || why+=" says so without the fault, too;"
+  ok "$1"
+}
+# What a check says of the whole tree without any fault of ours.
+before() { check tree "$@"; echo "$out" >"$tmp/before"; cd "$tmp/tree"; }
+comment_lines() { printf '//%.0s\n' $(seq "$1"); }
+again() { cd "$tmp/${1:-tree}"; }
+
+# ---- Include arrows
+inc=tools/check_includes.sh
+clean "includes: nothing to blame" $inc
+before $inc
+arrow() {  # FILE TARGET: as first line of FILE, which is made if need be
+  again; mkdir -p "$(dirname "$1")"; touch "$1"
+  { echo "#include \"$2\""; cat "$1"; } >x && mv x "$1"
+  caught "includes: $1 -> $2" \
+    "$1:1: includes ${3:-$2}, which is not below it" tree $inc
+}
+arrow Graph.hpp Cloth.hpp
+arrow Cloth.hpp Force.hpp
+arrow Force.hpp Constraint.hpp
+arrow Constraint.hpp Scene.hpp
+arrow Integrator.hpp Stability.hpp
+arrow Integrator.hpp Scene.hpp
+arrow Scene.hpp mass_spring.hpp
+arrow mass_spring.hpp Stability.hpp
+arrow SlotMap.hpp Graph.hpp
+arrow SlotMap.hpp CME212/Util.hpp
+arrow CME212/Point.hpp Graph.hpp
+arrow CME212/BoundingBox.hpp CME212/Util.hpp
+arrow CME212/Color.hpp CME212/BoundingBox.hpp
+arrow CME212/Util.hpp Color.hpp CME212/Color.hpp
+arrow CME212/SDLViewer.hpp Graph.hpp
+arrow Graph.hpp CME212/BoundingBox.hpp
+arrow Graph.hpp ./CME212/../Cloth.hpp Cloth.hpp
+arrow Force.hpp CME212/Color.hpp
+arrow bench.cpp CME212/SDLViewer.hpp
+arrow test_graph.cpp CME212/Color.hpp
+arrow peers/peer.cpp ../CME212/GLScene.hpp CME212/GLScene.hpp
+
+again; echo '  #  include <Cloth.hpp>' >>Graph.hpp
+caught "includes: in pointed brackets, with blanks" \
+  "Graph.hpp:$(wc -l <Graph.hpp): includes Cloth.hpp, which" tree $inc
+again; sed -i '1i #include <SDL2/SDL.h>' mass_spring.cpp
+caught "includes: mass_spring.cpp names SDL" \
+  "mass_spring.cpp:1: includes SDL2/SDL.h, which only" tree $inc
+again; sed -i '1i #include <GL/gl.h>' CME212/Color.hpp
+caught "includes: CME212/Color.hpp names OpenGL" \
+  "CME212/Color.hpp:1: includes GL/gl.h, which only" tree $inc
+again; echo '#pragma once' >Stranger.hpp
+caught "includes: a header that the table does not know" \
+  "Stranger.hpp:1: has no line in the table" tree $inc
+
+# ---- Headers alone: in small/, since each compilation takes a second
+head=tools/check_headers.sh
+: >"$tmp/before"
+clean "headers: nothing to blame" $head
+header() {  # NAME COMPILER: the header Bad.hpp is read from standard input
+  again small; cat >"${3:-.}/Bad.hpp"
+  caught "headers: $1" "Bad.hpp:1: does not compile alone by $2" small $head
+}
+header "uses what it does not include" g++ <<<'#pragma once
+inline std::string s;'
+header "a warning" g++ <<<'#pragma once
+inline int f(int unused) { return 0; }'
+header "no include guard" clang++ <<<'struct Bad {};'
+header "in CME212/" g++ CME212 <<<'#pragma once
+nonsense'
+header "only g++ refuses" g++ <<<'#pragma once
+#ifndef __clang__
+#error
+#endif'
+header "only clang++ refuses" clang++ <<<'#pragma once
+#ifdef __clang__
+#error
+#endif'
+header "only with the viewer" g++ <<<'#pragma once
+#ifdef MASS_SPRING_VIEWER
+#error
+#endif'
+header "only without the viewer" g++ <<<'#pragma once
+#ifndef MASS_SPRING_VIEWER
+#error
+#endif'
+
+# ---- The tree. The words are put together here, not to be found here.
+tree=tools/check_tree.sh
+clean "tree: nothing to blame" $tree
+before $tree
+again; echo 'int not_main() { return 0; }' >stray.cpp
+caught "tree: a .cpp without a program" "stray.cpp:1: is no program" tree $tree
+again; echo 'int helper() { return 0; }' >test_stray.cpp
+caught "tree: a test_*.cpp without a test" "test_stray.cpp:1: is no program" \
+  tree $tree
+for word in TO+DO FIX+ME X+XX; do
+  word=${word/+/}; again; echo "// $word: later" >>Graph.hpp
+  caught "tree: $word" "Graph.hpp:$(wc -l <Graph.hpp): is left unfinished" \
+    tree $tree
+done
+again; echo "# $word" >>Makefile
+caught "tree: an unfinished Makefile" \
+  "Makefile:$(wc -l <Makefile): is left unfinished" tree $tree
+again; printf '#if %s\n#endif\n' 0 >>Force.hpp
+caught "tree: a branch that is never compiled" \
+  "Force.hpp:$(($(wc -l <Force.hpp) - 1)): is never compiled" tree $tree
+again; printf '//%79s\n' x >>Force.hpp
+caught "tree: 81 columns" \
+  "Force.hpp:$(wc -l <Force.hpp): is longer than 80 columns" tree $tree
+again small; printf '//%78s\n' x >>SlotMap.hpp
+clean "tree: 80 columns are none too many" $tree
+again; comment_lines 701 >Graph.hpp
+caught "tree: 701 lines of Graph.hpp" \
+  "Graph.hpp:700: goes on to line 701; the limit is 700" tree $tree
+again; comment_lines 401 >Force.hpp
+caught "tree: 401 lines of another" \
+  "Force.hpp:400: goes on to line 401; the limit is 400" tree $tree
+again small; comment_lines 400 >SlotMap.hpp; cp SlotMap.hpp Graph.hpp
+comment_lines 300 >>Graph.hpp
+clean "tree: 400 and 700 lines are none too many" $tree
+again; sed -i '1i int   i;' Force.hpp
+caught "tree: not laid out" "Force.hpp:1: is not laid out" tree $tree
+again; printf '// \303\251\n' >>Force.hpp
+caught "tree: a letter that is not ASCII" \
+  "Force.hpp:$(wc -l <Force.hpp): has a character" tree $tree
+again; echo '# words ' >>Makefile
+caught "tree: white space at the end of a line" \
+  "Makefile:$(wc -l <Makefile): ends in white space" tree $tree
+again; printf '// DOS\r\n' >>Force.hpp
+caught "tree: DOS line ends" \
+  "Force.hpp:$(wc -l <Force.hpp): ends in white space" tree $tree
+again; echo '*.cpp' >>.git/info/exclude; echo 'int x() {}' >stray.cpp
+check tree $tree; why=""; ! grep -q stray <<<"$out" || why=" blames it;"
+sed -i '$d' "$tmp/tree/.git/info/exclude"
+ok "tree: an ignored file is not held"
+again; rm Force.hpp
+check tree $tree; why=""
+! grep -q 'No such file' <<<"$out" || why=" looks for it;"
+ok "tree: a deleted file is not looked for"
+
+echo
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

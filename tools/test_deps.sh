@@ -1,0 +1,162 @@
+#!/usr/bin/env bash
+# Test tools/deps.sh on make-believe systems: a PATH of stubs, no network.
+set -euo pipefail
+
+script=${DEPS_SCRIPT:-$(cd "$(dirname "$0")" && pwd)/deps.sh}
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+passed=0 failed=0
+everything="g++ make pkgconf git libcli11-dev libeigen3-dev libspectra-dev
+  libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libpng-dev
+  ffmpeg gnuplot-nox clang clang-format libclang-rt-dev libgtest-dev
+  librapidcheck-dev libbenchmark-dev xvfb xauth xdotool"
+
+stub() { cat >"$tmp/bin/$1"; chmod +x "$tmp/bin/$1"; }
+
+# A system: who one is, and the packages that are installed. Stubs write
+# every call to $tmp/calls; apt-get does what the files in $tmp say.
+system() {
+  rm -rf "${tmp:?}"/*
+  mkdir "$tmp/bin"
+  local tool
+  for tool in bash cat env grep mktemp rm sed sleep tail tr; do
+    ln -s "$(command -v "$tool")" "$tmp/bin/$tool"
+  done
+  : >"$tmp/calls"
+  # shellcheck disable=SC2086  # one word a package
+  printf 'installed %s, \n' $2 >"$tmp/dpkg"
+  stub id <<<"#!/bin/sh
+echo $1"
+  stub dpkg-query <<<"#!/bin/sh
+echo dpkg-query >>'$tmp/calls'
+case \"\$*\" in *Provides*) cat '$tmp/dpkg';; *) sed 's/,.*//' '$tmp/dpkg';; esac"
+  stub apt-get <<<"#!/bin/sh
+echo \"apt-get \$DEBIAN_FRONTEND \$*\" >>'$tmp/calls'
+case \"\$*\" in *update*) test ! -e '$tmp/no_update' ||
+  { echo 'E: a source is gone'; exit 100; }; exit 0;; esac
+test ! -e '$tmp/broken' || { echo 'E: Unable to locate package x'; exit 100; }
+test ! -e '$tmp/offline' || { cat '$tmp/offline'; exit 100; }
+test ! -e '$tmp/flaky' ||
+  { rm '$tmp/flaky'; echo 'E: Failed to fetch http://x'; exit 100; }"
+}
+with_sudo() { stub sudo <<<"#!/bin/sh
+echo sudo >>'$tmp/calls'; exec \"\$@\""; }
+
+run() {  # run the script there; sets out, status
+  status=0
+  out=$(unset DEBIAN_FRONTEND
+        PATH=$tmp/bin DEPS_WAIT=0 bash "$script" "$@" 2>&1) || status=$?
+}
+
+# Checks of one case; `ok NAME` ends it.
+why=""
+expect_status() { [ "$status" = "$1" ] || why+=" status is $status, not $1;"; }
+says()    { grep -qE -- "$1" <<<"$out" || why+=" does not say '$1';"; }
+silent()  { [ -z "$out" ] || why+=" says something;"; }
+not_say() { ! grep -qE -- "$1" <<<"$out" || why+=" says '$1';"; }
+calls()   { [ "$(grep -c -- "$1" "$tmp/calls")" = "$2" ] ||
+              why+=" calls of '$1' are not $2;"; }
+ok() {
+  if [ -z "$why" ]; then
+    echo "ok    $1"; passed=$((passed + 1))
+  else
+    printf 'FAIL  %s:%s\n%s\n' "$1" "$why" "$out"
+    failed=$((failed + 1))
+  fi
+  why=""
+}
+
+system 0 "$everything"; run
+expect_status 0; silent; calls dpkg-query 1; calls apt-get 0
+ok "all there: silent, one query, no apt"
+
+system 0 "${everything/pkgconf/pkg-config}"; run
+expect_status 0; silent; calls apt-get 0
+ok "an alternative is there"
+
+system 0 "${everything/gnuplot-nox/}"
+echo 'installed gnuplot-qt, gnuplot (= 5), gnuplot-nox (= 5)' >>"$tmp/dpkg"; run
+expect_status 0; silent; calls apt-get 0
+ok "a package is provided by another one"
+
+system 0 "${everything/ffmpeg/}"
+echo 'config-files ffmpeg, ' >>"$tmp/dpkg"; run
+expect_status 0; says 'installing ffmpeg'; calls 'install .*ffmpeg' 1
+ok "a removed package is missing, though dpkg remembers it"
+
+system 0 "${everything/git/} libgit"; run
+expect_status 0; says 'installing git'
+ok "a name inside another one is not it"
+
+system 0 "${everything/libsdl2-dev/}"; run
+expect_status 0; says 'installing libsdl2-dev *$'
+calls 'apt-get noninteractive .* update' 1; calls sudo 0
+calls 'apt-get noninteractive .* install --no-install-recommends libsdl2-dev$' 1
+ok "one missing, root"
+
+system 0 "${everything/libsdl2-dev/}"; run build
+expect_status 0; silent; calls apt-get 0
+ok "only the groups that are asked for"
+
+system 0 "$everything"; run peers
+expect_status 0; says 'installing libsundials-dev libboost-dev liblemon-dev'
+ok "group peers"
+
+system 0 "$everything"; run build toys
+expect_status 2; says "no group 'toys'.*build draw check peers"; calls apt 0
+ok "a group that there is not"
+
+system 1000 "${everything/xvfb/}"; with_sudo; run
+expect_status 0; says 'installing xvfb'; calls sudo 2
+calls 'apt-get noninteractive .* install .*xvfb' 1
+ok "not root, with sudo"
+
+system 1000 "$(echo "$everything" | sed 's/xvfb//; s/make//')"; run
+expect_status 1; says 'you must be root'; says 'needed to build:'
+says '^    make *$'; says 'to test and check:'; says '^    xvfb *$'
+not_say 'to draw'; not_say ffmpeg; calls apt-get 0
+says 'apt-get install --no-install-recommends make xvfb'
+ok "not root, without sudo: lists what is missing, by group"
+
+system 1000 "$everything"; run
+expect_status 0; silent
+ok "not root, without sudo, all there"
+
+system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"; run
+expect_status 1; says 'no apt-get'; says 'needed to build:'; says 'g\+\+ make'
+says 'to draw, record and chart:'; says 'libsdl2-dev'
+says 'to test and check:'; says 'DEPS=skip'; not_say libsundials
+ok "no apt-get: lists all, by group"
+
+system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"
+DEPS=skip run
+expect_status 0; silent
+ok "no apt-get, DEPS=skip"
+
+system 0 "${everything/clang /}"; touch "$tmp/broken"; run
+expect_status 1; says 'E: Unable to locate package'; says 'could not install'
+says '^    clang *$'; calls ' install ' 1; not_say 'once more'
+ok "install fails: the reason, no second try"
+
+system 0 "${everything/clang /}"; touch "$tmp/flaky"; run
+expect_status 0; says 'trying once more'; calls ' install ' 2
+ok "a download fails once"
+
+system 0 "${everything/clang /}"
+echo 'E: Failed to fetch http://x' >"$tmp/offline"; run
+expect_status 1; says 'E: Failed to fetch'; calls ' install ' 2
+ok "a download fails twice"
+
+system 0 "${everything/clang /}"; touch "$tmp/no_update"; run
+expect_status 0; says 'E: a source is gone'; calls ' install ' 1
+ok "update fails, install works"
+
+system 1000 "${everything/xvfb/}"
+stub sudo <<<"#!/bin/sh
+echo 'sudo: a password is required'; exit 1"; run
+expect_status 1; says 'a password is required'; says 'could not install'
+ok "sudo refuses"
+
+echo
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
