@@ -19,10 +19,11 @@ int good_steps(unsigned side, double dt, int steps) {
   Cloth g;
   build_grid(g, side);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
+  PinConstraint pin(g);
   DivergenceGuard guard(g, grav);
   SymplecticEuler euler;
   for (int n = 0; n < steps; ++n) {
-    euler(g, 0, dt, force);
+    euler(g, 0, dt, force, pin);
     if (!guard.accept(g)) return n;
   }
   return steps;
