@@ -101,6 +101,7 @@ class Run {
   /** One step.  @pre !done() */
   void advance() {
     scene_.step();
+    seconds_ = progress_.seconds();
     if (scene_.steps() % o_.every == 0 || done()) add_row();
     progress_.show(scene_.steps(), scene_.time());
   }
@@ -136,6 +137,7 @@ class Run {
   std::optional<CME212::OutputFile> csv_, out_;
   std::string rows_;
   long long last_row_ = -1;
+  double seconds_ = 0;  // until the last step
 
   struct Energies {
     double kinetic, elastic, gravitational;
@@ -150,6 +152,7 @@ class Run {
   void start() {
     progress_ = Progress(o_, o_.num_steps());
     rows_.clear();
+    seconds_ = 0;
     last_row_ = -1;
     add_row();
   }
@@ -169,11 +172,10 @@ class Run {
   void print_summary() const {
     Energies e = energies();
     std::cout << name_of(scene_.stage()) << ": " << scene_.steps()
-              << " steps to t = " << scene_.time() << " s in "
-              << progress_.seconds() << " s; energy " << e.total()
-              << " J = " << e.kinetic << " kinetic + " << e.elastic
-              << " elastic + " << e.gravitational << " gravitational; "
-              << scene_.cloth().num_nodes() << " nodes and "
-              << scene_.cloth().num_edges() << " edges left\n";
+              << " steps to t = " << scene_.time() << " s in " << seconds_
+              << " s; energy " << e.total() << " J = " << e.kinetic
+              << " kinetic + " << e.elastic << " elastic + " << e.gravitational
+              << " gravitational; " << scene_.cloth().num_nodes()
+              << " nodes and " << scene_.cloth().num_edges() << " edges left\n";
   }
 };

@@ -20,10 +20,10 @@ struct Frame {
 const Frame frames[] = {{Stage::problem1, "problem1", 600},
                         {Stage::diagonals, "diagonals", 600},
                         {Stage::forces, "forces", 700},
-                        {Stage::constraints, "constraints", 700},
+                        {Stage::constraints, "constraints", 450},
                         {Stage::tear, "tear", 600}};
 
-/** The stage on grid2 after so many steps, and its picture. */
+/** The stage on grid1 after so many steps, and its picture. */
 class Picture : public ::testing::TestWithParam<Frame> {
  protected:
   Screen screen{Screen::Kind::pictures};
@@ -38,8 +38,8 @@ class Picture : public ::testing::TestWithParam<Frame> {
     return image;
   }
   Scene scene{GetParam().stage,
-              load_points("data/grid2.nodes"),
-              load_quads("data/grid2.tets", 2500),
+              load_points("data/grid1.nodes"),
+              load_quads("data/grid1.tets", 625),
               {}};
 
   void SetUp() override {
@@ -89,7 +89,7 @@ TEST_P(Damage, OfOneEdgeOrNodeIsSeen) {
     EXPECT_GT(difference(before, draw()), tolerance);
   };
   for (unsigned k = 0; k < 10; ++k) {
-    Node n = g.node(200 + 200 * k);
+    Node n = g.node(60 + 50 * k);
     expect_seen([&] { g.remove_edge(*n.edge_begin()); });
     expect_seen([&] { g.remove_node(n); });
   }

@@ -160,12 +160,12 @@ clean "tree: 80 columns are none too many" $tree
 again; comment_lines 701 >Graph.hpp
 caught "tree: 701 lines of Graph.hpp" \
   "Graph.hpp:700: goes on to line 701; the limit is 700" tree $tree
-again; comment_lines 401 >Force.hpp
-caught "tree: 401 lines of another" \
-  "Force.hpp:400: goes on to line 401; the limit is 400" tree $tree
-again small; comment_lines 400 >SlotMap.hpp; cp SlotMap.hpp Graph.hpp
+again; comment_lines 501 >Force.hpp
+caught "tree: 501 lines of another" \
+  "Force.hpp:500: goes on to line 501; the limit is 500" tree $tree
+again small; comment_lines 500 >SlotMap.hpp; cp SlotMap.hpp Graph.hpp
 comment_lines 300 >>Graph.hpp
-clean "tree: 400 and 700 lines are none too many" $tree
+clean "tree: 500 and 700 lines are none too many" $tree
 again; sed -i '1i int   i;' Force.hpp
 caught "tree: not laid out" "Force.hpp:1: is not laid out" tree $tree
 again; printf '// \303\251\n' >>Force.hpp
