@@ -50,6 +50,29 @@ inline Point spring_force(const Point& u, const EdgeData& s) {
   return l > 0 ? (s.K * (l - s.L) / l) * u : Point();
 }
 
+/** How the force between two nodes answers to their moving apart, u = x_j -
+ * x_i: the force on i changes by B du, that on j by -B du, B = along n n^T +
+ * across (I - n n^T), so B is the Hessian of the energy in u. */
+struct Stiffness {
+  Point direction;    ///< n, of length 1
+  double along = 0;   ///< [N/m]
+  double across = 0;  ///< [N/m]; may be negative
+  /** B u [N].  @param u [m] */
+  Point operator*(const Point& u) const {
+    return across * u + ((along - across) * dot(direction, u)) * direction;
+  }
+};
+
+/** The stiffness of a spring whose ends lie @a u [m] apart: K along it and
+ * K (1 - L/l) across, negative while it is compressed. At l = 0, where no
+ * direction is defined, K in all directions: that is the limit for L = 0, and
+ * as no direction is ever stiffer than K, an upper bound for L > 0. */
+inline Stiffness spring_stiffness(const Point& u, const EdgeData& s) {
+  double l = norm(u);
+  if (l == 0) return {Point(1, 0, 0), s.K, s.K};
+  return {u / l, s.K, s.K * (1 - s.L / l)};
+}
+
 /** The energy [J] of a spring of length @a l [m]: K (l - L)^2 / 2. */
 inline double spring_energy(double l, const EdgeData& s) {
   return 0.5 * s.K * (l - s.L) * (l - s.L);

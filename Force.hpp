@@ -3,9 +3,11 @@
  * The forces on a cloth. A force is anything that can be called as
  * Point(Node n, double t): the force [N] on node n at time t [s]. It may read
  * all positions, and of the velocities that of n only. */
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -37,6 +39,10 @@ class Problem1Force {
   double gravity_ = grav;
 };
 
+/** Called with the ids of two nodes and the stiffness between them. */
+using StiffnessVisitor =
+    std::function<void(unsigned i, unsigned j, const Stiffness& B)>;
+
 /** No force, and the base of all forces (section 5.2).
  *
  * A child gives the force on one node. Whatever else it gives makes methods
@@ -62,6 +68,18 @@ class ZeroForce {
 
   /** c [kg/s] if a part -c v of the force is linear drag, else 0. */
   virtual double drag() const { return 0; }
+
+  /** Call @a use(i, j, B) for each pair of nodes between which there is a force
+   * that depends on x_j - x_i, at the positions that @a g has now. All B
+   * together, and drag(), are how the force on @a g changes with its state.
+   * @return false if the force does not know that: then what @a use was called
+   * with is to be forgotten. A child that has more than the call must say what
+   * it knows; this base itself knows that no force changes.
+   * Complexity: O(nodes + edges) */
+  virtual bool add_stiffness(const Cloth& /*g*/,
+                             const StiffnessVisitor& /*use*/) const {
+    return typeid(*this) == typeid(ZeroForce);
+  }
 };
 
 /** Weight: f = -m gravity along z [N]. */
@@ -78,6 +96,9 @@ class GravityForce : public ZeroForce {
   }
   double energy(const Cloth& g) const override {
     return gravitational_energy(g, gravity_);
+  }
+  bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
+    return true;  // the same everywhere
   }
 
  private:
@@ -110,6 +131,17 @@ class MassSpringForce : public ZeroForce {
     }
   }
   double energy(const Cloth& g) const override { return elastic_energy(g); }
+  /** One call an edge, in the order of their ids: see spring_stiffness(). */
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    auto x = g.positions();
+    for (unsigned e = 0; e < g.edge_slots(); ++e) {
+      if (!g.edge_in_use(e)) continue;
+      auto [i, j] = g.edge_ends()[e];
+      use(i, j, spring_stiffness(x[j] - x[i], g.edge_values()[e]));
+    }
+    return true;
+  }
 };
 
 /** Linear drag: f = -c v [N]. Takes c |v|^2 of power [W] and never gives. */
@@ -125,6 +157,9 @@ class DampingForce : public ZeroForce {
     for (unsigned i = 0; i < g.node_slots(); ++i) f[i] -= c_ * node[i].vel;
   }
   double drag() const override { return c_; }
+  bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
+    return true;  // it does not depend on positions
+  }
 
  private:
   double c_;
@@ -165,6 +200,13 @@ class CombinedForces : public ZeroForce {
     double sum = 0;
     for (const auto& force : forces_) sum += force->drag();
     return sum;
+  }
+  /** Known only if each of them knows its own. */
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    for (const auto& force : forces_)
+      if (!force->add_stiffness(g, use)) return false;
+    return true;
   }
 
  private:

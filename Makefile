@@ -25,19 +25,20 @@ testing  = -O1 -fno-omit-frame-pointer \
 draws    = $(and $(filter $(DRAWING),$*),$(filter 1,$(VIEWER)))
 draw_pkg = sdl2 gl imgui libpng
 stage_of = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
-flags    = -std=c++20 -g -Wall -Wextra -pthread -I. \
+eigen   := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 2>/dev/null))
+flags    = -std=c++20 -g -Wall -Wextra -pthread -I. $(eigen) \
            $(if $(filter test_% example_%,$*),$(testing),$(release)) \
            $(if $(filter mass_spring%,$*),-DSTAGE=$(stage_of)) \
            $(if $(draws),-DMASS_SPRING_VIEWER \
-             $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(draw_pkg)))) \
+             $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(draw_pkg) 2>/dev/null))) \
            $(CPPFLAGS) $(CXXFLAGS)
 libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
            $(if $(filter bench,$*),-lbenchmark) \
-           $(if $(draws),$(shell pkg-config --libs $(draw_pkg))) $(LDLIBS)
+           $(if $(draws),$(shell pkg-config --libs $(draw_pkg) 2>/dev/null)) $(LDLIBS)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: all deps peers-deps demo check check-all print-tests fuzz pictures \
-        help clean format submit grids FORCE
+.PHONY: all deps peers-deps peers-chart demo check check-all print-tests fuzz \
+        pictures help clean format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -54,11 +55,13 @@ help:
 
 all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
 
-cant_draw = echo "make $*: SDL2, OpenGL, Dear ImGui or libpng is missing:" \
-  "install them by 'make deps', or build without: make $* VIEWER=0" >&2
+needs    = $(if $(draws),$(draw_pkg)) \
+           $(if $(filter mass_spring% work_precision test_m%,$*),CLI11 eigen3)
+missing  = echo "make $*: not all of $(strip $(needs)) is installed:" \
+  "'make deps' does it$(if $(draws),; 'make $* VIEWER=0' builds without a window)" >&2
 # A program is built anew when its sources or its flags have changed.
 define build
-@$(if $(draws),pkg-config --exists $(draw_pkg) || { $(cant_draw); exit 1; };) \
+@$(if $(strip $(needs)),pkg-config --exists $(needs) || { $(missing); exit 1; };) \
 mkdir -p $(dir $@) && echo '$(CXX) $@' && \
 $(CXX) $(flags) -MMD -MP -MF build/$@.d -MT $@ -o $@ $< $(libs)
 endef
@@ -66,6 +69,10 @@ $(STAGES:%=$(O)mass_spring_%): $(O)%: mass_spring.cpp build/$(O)%.flags
 	$(build)
 $(PROGRAMS:%=$(O)%): $(O)%: %.cpp build/$(O)%.flags
 	$(build)
+ifneq ($(O),)
+.PHONY: $(PROGRAMS) $(STAGES:%=mass_spring_%)
+$(PROGRAMS) $(STAGES:%=mass_spring_%): %: $(O)%
+endif
 build/$(O)%.flags: FORCE
 	@mkdir -p $(dir $@); echo '$(CXX) $(flags)' | cmp -s - $@ \
 	  || echo '$(CXX) $(flags)' > $@
@@ -75,6 +82,20 @@ deps:
 	@tools/deps.sh
 peers-deps:
 	@tools/deps.sh peers
+
+# Other libraries beside ours: see peers/README.md. About four minutes.
+build/peers: peers/peers.cpp $(wildcard *.hpp)
+	@mkdir -p build
+	$(CXX) $(flags) -o $@ $< -lsundials_cvode -lsundials_arkode \
+	  -lsundials_nvecserial -lsundials_sunlinsolspgmr \
+	  -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas
+peers-chart: build/peers
+	{ echo "# $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1);" \
+	    "$$($(CXX) --version | head -n 1);" \
+	    "commit $$(git describe --always --dirty)"; \
+	  build/peers; } > build/peers.csv
+	mv build/peers.csv charts/peers.csv
+	gnuplot -e "csv='charts/peers.csv'; out='charts/peers'" peers/chart.gp
 
 demo: deps
 	@$(MAKE) --no-print-directory mass_spring
@@ -100,6 +121,13 @@ pictures: test_screen mass_spring
 	WRITE_PICTURES=1 ASAN_OPTIONS=detect_leaks=0 ./test_screen
 	./mass_spring data/grid3.* --dt 0.0005 --t-end 0.6 --strain --quiet \
 	  --screenshot docs/pictures/cloth.png
+
+# The charts, charts/README.md; QUICK=1, SCENE=grid1 or METHODS=verlet,pefrl
+# draws them in build/charts.
+charts: work_precision
+	@QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' charts/make.sh
+charts-quick:
+	@$(MAKE) --no-print-directory charts QUICK=1
 
 # Needs clang. The inputs that it starts from: tools/corpus.
 RUNS ?= 200000

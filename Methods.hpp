@@ -6,8 +6,10 @@
 #include <memory>
 #include <string_view>
 
+#include "Implicit.hpp"
 #include "Integrator.hpp"
 #include "RungeKutta.hpp"
+#include "Xpbd.hpp"
 
 /** A method by its name. */
 struct MethodEntry {
@@ -20,12 +22,20 @@ constexpr MethodEntry entry_of() {
   return {M::info, [] { return std::unique_ptr<Method>(new M()); }};
 }
 
-inline constexpr std::array methods = {
-    entry_of<ForwardEuler>(), entry_of<SymplecticEuler>(),
-    entry_of<Verlet>(),       entry_of<Yoshida4>(),
-    entry_of<Pefrl>(),        entry_of<Srkn6b>(),
-    entry_of<Srkn11b>(),      entry_of<Rk4>(),
-    entry_of<DormandPrince>()};
+inline constexpr std::array methods = {entry_of<ForwardEuler>(),
+                                       entry_of<SymplecticEuler>(),
+                                       entry_of<Verlet>(),
+                                       entry_of<Yoshida4>(),
+                                       entry_of<Pefrl>(),
+                                       entry_of<Srkn6b>(),
+                                       entry_of<Srkn11b>(),
+                                       entry_of<Rk4>(),
+                                       entry_of<DormandPrince>(),
+                                       entry_of<ImplicitEuler>(),
+                                       entry_of<ImplicitMidpoint>(),
+                                       entry_of<TrBdf2>(),
+                                       entry_of<AugmentedVerlet>(),
+                                       entry_of<Xpbd>()};
 
 /** The method called @a name, or nullptr. */
 inline const MethodEntry* find_method(std::string_view name) {

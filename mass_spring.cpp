@@ -48,6 +48,8 @@ void check(const Options& o) {
           "a positive time [s]");
   require(o.t_end >= 0 && std::isfinite(o.t_end), "--t-end", o.t_end,
           "a time [s], 0 or more");
+  require(with.dt <= o.t_end || o.t_end == 0, "--dt", with.dt,
+          "at most --t-end");
   require(o.t_end / with.dt < 1e15, "--t-end", o.t_end,
           "fewer than 1e15 steps of --dt");
   require(with.damping >= 0 && std::isfinite(with.damping), "--damping",

@@ -181,4 +181,95 @@ TEST_F(ShakenCloth, FunctorsNeedNotBeConst) {
   EXPECT_EQ(force(g.node(0), 0), Point(2));
 }
 
+/** All blocks of the stiffness; nothing if the force does not know it. */
+struct Block {
+  unsigned i, j;
+  Stiffness B;
+};
+std::optional<std::vector<Block>> blocks_of(const ZeroForce& force,
+                                            const Cloth& g) {
+  std::vector<Block> blocks;
+  auto use = [&](unsigned i, unsigned j, const Stiffness& B) {
+    blocks.push_back({i, j, B});
+  };
+  if (!force.add_stiffness(g, use)) return std::nullopt;
+  return blocks;
+}
+
+// The force on every node as one node moves, by central differences: round-off
+// and h^2 K L/l^3 are both below 1e-6 N/m here.
+TEST_F(ShakenCloth, StiffnessIsTheDerivativeOfTheForce) {
+  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  auto blocks = blocks_of(force, g);
+  ASSERT_TRUE(blocks);
+  EXPECT_EQ(blocks->size(), g.num_edges());
+  const double h = 1e-6;
+  const unsigned n = g.node_slots();
+  for (Node moved : g.nodes())
+    for (unsigned k = 0; k < 3; ++k) {
+      Point unit;
+      unit[k] = 1;
+      std::vector<Point> up(n), down(n), expected(n);
+      moved.position() += h * unit;
+      force.add_to(g, 0, up);
+      moved.position() -= 2 * h * unit;
+      force.add_to(g, 0, down);
+      moved.position() += h * unit;
+      for (const auto& [i, j, B] : *blocks) {
+        Point du = (j == moved.id() ? unit : i == moved.id() ? -unit : Point());
+        expected[i] += B * du;
+        expected[j] -= B * du;
+      }
+      for (unsigned i = 0; i < n; ++i)
+        EXPECT_LT(norm((up[i] - down[i]) / (2 * h) - expected[i]), 1e-5);
+    }
+}
+
+TEST_F(ShakenCloth, StiffnessIsSymmetricAndNoMoreThanK) {
+  auto blocks = blocks_of(MassSpringForce(), g);
+  ASSERT_TRUE(blocks);
+  bool compressed = false, stretched = false;
+  for (const auto& [i, j, B] : *blocks) {
+    Point a = random_vector(1), b = random_vector(1);
+    EXPECT_NEAR(dot(a, B * b), dot(B * a, b), 1e-12);
+    EXPECT_NEAR(norm(B.direction), 1, 1e-15);
+    EXPECT_EQ((g.node_in_use(i) && g.node_in_use(j)), true);
+    EXPECT_LE(B.across, B.along);
+    (B.across < 0 ? compressed : stretched) = true;
+  }
+  EXPECT_TRUE(compressed && stretched);
+}
+
+TEST(SpringStiffness, IsIsotropicAtLengthZero) {
+  Point u(1, -2, 3);
+  EXPECT_EQ(spring_stiffness(Point(), {100, 1}) * u, 100 * u);
+  EXPECT_EQ(spring_stiffness(Point(0, 0, 1e-9), {100, 0}) * u, 100 * u);
+}
+
+TEST_F(ShakenCloth, StiffnessIsUnknownUnlessEachPartKnowsIt) {
+  struct Child : ZeroForce {
+    Point operator()(Node n, double) const override {
+      return -1 * n.position();
+    }
+  };
+  auto zero = [](Node, double) { return Point(); };
+  auto knows = [this](const ZeroForce& f, std::size_t blocks) {
+    auto found = blocks_of(f, g);
+    return found && found->size() == blocks;
+  };
+  EXPECT_TRUE(knows(ZeroForce(), 0));
+  EXPECT_TRUE(knows(GravityForce(), 0));
+  EXPECT_TRUE(knows(DampingForce(1), 0));
+  EXPECT_TRUE(knows(make_combined_force(), 0));
+  EXPECT_TRUE(knows(
+      make_combined_force(MassSpringForce(), ZeroForce(), MassSpringForce()),
+      2 * g.num_edges()));
+  EXPECT_FALSE(blocks_of(Child(), g));
+  EXPECT_FALSE(blocks_of(FunctionForce(zero), g));
+  for (auto force : {make_combined_force(MassSpringForce(), Child()),
+                     make_combined_force(zero, MassSpringForce()),
+                     make_combined_force(MassSpringForce(), Problem1Force())})
+    EXPECT_FALSE(blocks_of(force, g));
+}
+
 }  // namespace

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 
 #include "Mesh.hpp"
+#include "Methods.hpp"
 
 namespace fs = std::filesystem;
 
@@ -222,7 +223,8 @@ TEST_F(MassSpring, RefusesOptionsThatCantBe) {
        {"--dt 0", "--dt -1", "--dt nan", "--dt inf", "--dt x", "--t-end -1",
         "--t-end inf", "--damping -1", "--stiffness -1", "--gravity nan",
         "--every 0", "--at 6 --screenshot p.png", "--no-such-option",
-        "--dt 1e-300", "--window --headless", "--csv", "--speed -1"}) {
+        "--dt 1e-300", "--dt 0.2 --t-end 0.1", "--method none",
+        "--window --headless", "--csv", "--speed -1"}) {
     Result r = run(grid0 + "--headless --out " + path("o") + " " + options);
     EXPECT_EQ(r.status, 2) << options;
     EXPECT_NE(r.err, "") << options;
@@ -231,6 +233,43 @@ TEST_F(MassSpring, RefusesOptionsThatCantBe) {
   EXPECT_EQ(run("data/grid0.nodes").status, 2);
   EXPECT_EQ(run("--headless --dt nan " + grid0).err,
             "mass_spring: --dt is nan, expected a positive time [s]\n");
+}
+
+TEST_F(MassSpring, RunsEveryMethodAndListsIt) {
+  Result list = run("--list-methods");
+  EXPECT_EQ(list.status, 0);
+  for (const MethodEntry& m : methods) {
+    EXPECT_NE(list.out.find(m.info.name), std::string::npos);
+    std::string method = std::string(" --method ") + m.info.name;
+    Result r = run(grid0 + "--headless --t-end 0.1 --damping 0.04" + method);
+    EXPECT_EQ(r.status, 0) << method << r.err;
+    EXPECT_NE(r.out.find("tear: 100 steps"), std::string::npos) << method;
+  }
+}
+
+// The forces of the two first stages are called node by node only.
+TEST_F(MassSpring, SaysWhenAMethodCantDoWithAStage) {
+  for (const MethodEntry& m : methods) {
+    Result r = run(grid0 + "--headless --t-end 0.01 --method " + m.info.name,
+                   "problem1");
+    if (m.info.limit < no_limit) {
+      EXPECT_EQ(r.status, 0) << m.info.name << r.err;
+    } else if (r.status != 0) {
+      EXPECT_EQ(r.status, 2) << m.info.name;
+      EXPECT_NE(r.err.find("does not know its stiffness"), std::string::npos);
+    }
+  }
+  EXPECT_EQ(run(grid0 + "--headless --method tr-bdf2", "problem1").status, 2);
+}
+
+// Newton gives up on a cloth that buckles at a step far too large.
+TEST_F(MassSpring, EndsWith3WhenAStepCantBeMade) {
+  Result r =
+      run("data/grid1.nodes data/grid1.tets --headless --method "
+          "implicit-midpoint --dt 0.5 --stiffness 1e5");
+  EXPECT_EQ(r.status, 3) << r.out << r.err;
+  EXPECT_NE(r.err.find("in step"), std::string::npos);
+  EXPECT_NE(r.err.find("dt = 0.5 s"), std::string::npos);
 }
 
 TEST_F(MassSpring, RefusesOutputsThatCantBeBeforeItRuns) {

@@ -63,6 +63,17 @@ TEST(DivergenceGuard, StopsOnEveryNumberThatIsNotFinite) {
   }
 }
 
+TEST(DivergenceGuard, StopsAClothThatIsStretchedBeyondItsEnergy) {
+  Cloth g;
+  build_grid(g, 5);
+  DivergenceGuard guard(g, grav);
+  for (int n = 0; n < 20; ++n) EXPECT_TRUE(guard.accept(g));
+  for (Node n : g.nodes()) n.position() *= 3;
+  int accepted = 0;
+  while (accepted < 100 && guard.accept(g)) ++accepted;
+  EXPECT_LT(accepted, 10);
+}
+
 TEST(DivergenceGuard, RestoresTheLastGoodState) {
   Cloth g;
   build_grid(g, 3);

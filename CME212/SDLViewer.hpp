@@ -202,8 +202,8 @@ class SDLViewer : public SceneBuilder {
  private:
   using clock = std::chrono::steady_clock;
   using ms = std::chrono::milliseconds;
-  static constexpr clock::duration frame_time{std::chrono::microseconds(16667)};
-  static constexpr ms poll{2};  // between looks for a new scene
+  static constexpr ms frame_time{16};  // of a display, at least
+  static constexpr ms poll{8};         // between looks for a new scene
 
   const Options options_;
   // The main thread's:

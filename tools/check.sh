@@ -70,6 +70,7 @@ step threads       threads
 step window        tools/test_window.sh
 step grids         same_grids
 step readme        tools/check_readme.sh
+step charts        make -s charts QUICK=1
 step fuzz          make -s fuzz RUNS=100000
 step submit        tools/test_submit.sh
 step deps          tools/test_deps.sh

@@ -31,7 +31,11 @@ compile() {  # COMPILER HEADER; one report, even when others write too
   done
 }
 
-export drawing packages
+# All may use Eigen.
+eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
+CPPFLAGS="${CPPFLAGS:-} $eigen"
+
+export drawing packages CPPFLAGS
 export -f compile
 for cxx in ${CXX:-g++ clang++}; do
   command -v "$cxx" >/dev/null || { echo "$cxx is missing: make deps"; exit 1; }

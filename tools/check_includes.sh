@@ -28,11 +28,14 @@ Force              : Cloth
 Constraint         : Cloth
 Integrator         : Force Constraint
 RungeKutta         : Integrator
-Implicit           : Integrator
-Methods            : RungeKutta Implicit
+ImplicitStage      : Integrator
+Implicit           : ImplicitStage
+Xpbd               : ImplicitStage
+Methods            : RungeKutta Implicit Xpbd
 Stability          : Force Constraint
 Scene              : Integrator Stability
 Run                : Scene CME212/OutputFile
+Problem            : Methods Stability
 Screen             : Scene CME212/Image CME212/SDLViewer
 mass_spring        = Cloth Force Constraint Integrator
 '

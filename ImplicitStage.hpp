@@ -1,0 +1,308 @@
+#pragma once
+/** @file ImplicitStage.hpp
+ * What the implicit methods share: the equation of one stage, solved by
+ * Newton's method and conjugate gradients. */
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "CME212/Util.hpp"
+#include "Integrator.hpp"
+
+namespace implicit_detail {
+
+/** Call force.add_stiffness(), and throw std::invalid_argument in the name of
+ * @a method if the force does not know its stiffness. */
+inline void add_stiffness(const char* method, const ZeroForce& force,
+                          const Cloth& g, const StiffnessVisitor& use) {
+  if (!force.add_stiffness(g, use))
+    throw std::invalid_argument(
+        std::string(method) +
+        ": the force, or a part of it, does not know its stiffness "
+        "(ZeroForce::add_stiffness); an explicit method does without");
+}
+
+/** Which nodes do not move in a step, by node id: the held and removed ones. */
+inline void find_fixed(const Cloth& g, const ZeroConstraint& constraint,
+                       std::vector<char>& fixed) {
+  fixed.assign(g.node_slots(), false);
+  for (unsigned i = 0; i < g.node_slots(); ++i) fixed[i] = !g.node_in_use(i);
+  constraint.each_held(g, [&fixed](Node n) { fixed[n.id()] = true; });
+}
+
+/** What a solver is asked for, and what its errors say. */
+struct Goal {
+  const char* method;
+  double dt;         ///< of the whole step [s]
+  double tolerance;  ///< of the iteration that throws
+  int max_iterations;
+  [[noreturn]] void fail(const char* what, int iterations, double residual,
+                         const char* unit) const {
+    using CME212::short_text;
+    throw StepError(std::string(method) + ": " + what +
+                    " is at a residual of " + short_text(residual) + unit +
+                    " after " + std::to_string(iterations) +
+                    " iterations, expected " + short_text(tolerance) + unit +
+                    "; dt = " + short_text(dt) + " s");
+  }
+};
+
+/** The equation that all implicit steps here are made of: find w [m/s] with
+ *   M (w - q) = s (F(y) - c w),   y = p + s w,
+ * for given p [m], q [m/s] and s [s]; c is the drag, F the other forces. It is
+ * where the objective
+ *   (w - q) M (w - q)/2 + s c w w/2 + V(y)   [J]
+ * has no slope, V being the energy of F. The matrix of its derivative in w,
+ *   A = M + s c + s^2 H,   H the stiffness at y,
+ * is applied spring by spring and never stored. Compressed springs may keep A
+ * from being positive definite: then the linear system is solved in part, or
+ * with their negative stiffness taken as 0. No residual is changed by that.
+ * Fixed nodes have p = x and q = w = 0. */
+class ImplicitStage {
+ public:
+  std::vector<Point> p, q, w;  // by node id
+
+  /** Ready for a step of @a g: sizes, and who is fixed and at rest. */
+  void begin(Cloth& g, const ZeroConstraint& constraint) {
+    find_fixed(g, constraint, fixed_);
+    stop_held(g, constraint);
+    for (auto* a :
+         {&p, &q, &w, &residual_, &step_, &rest_, &z_, &direction_, &product_})
+      a->resize(g.node_slots());
+    inverse_.resize(g.node_slots());
+  }
+  bool fixed(unsigned i) const { return fixed_[i]; }
+
+  /** One Newton step from @a w, whatever is left over: the linear system,
+   * without negative stiffness, is solved to goal.tolerance. @post g's
+   * positions are p + s w */
+  void solve_linearized(Cloth& g, double t, double s, const ZeroForce& force,
+                        const Goal& goal) {
+    move(g, s);
+    find_residual(g, t, s, force);
+    assemble(g, s, force, goal);
+    solve(goal.tolerance, goal, true);
+    advance(1);
+    move(g, s);
+  }
+
+  /** Newton's method from @a w, with a line search.
+   * @post g's positions are p + s w, and the RMS over the nodes of s D^-1 times
+   * the residual, D the diagonal blocks of A, is at most goal.tolerance [m], or
+   * at what round-off leaves of it. Throws StepError. */
+  void solve_newton(Cloth& g, double t, double s, const ZeroForce& force,
+                    const Goal& goal) {
+    double first = 0;
+    for (int iteration = 0;; ++iteration) {
+      move(g, s);
+      find_residual(g, t, s, force);
+      if (iteration == 0) assemble(g, s, force, goal);
+      const double left = s * size_of_correction(g);
+      const double floor = 1e-15 * rms(g, g.positions());
+      if (left <= goal.tolerance + floor) return;
+      if (iteration == goal.max_iterations || !std::isfinite(left))
+        goal.fail("Newton's method", iteration, left, " m");
+      if (iteration == 0)
+        first = left;
+      else
+        assemble(g, s, force, goal);
+      // Solve the better, the closer: Newton's convergence is superlinear.
+      double enough = std::max(0.1 * left / first, goal.tolerance / left);
+      enough = 0.1 * std::clamp(enough, 1e-11, 0.1);
+      if (!solve(enough, goal, false)) solve(enough, goal, true);
+      search(g, s, force, goal, iteration, left);
+    }
+  }
+
+ private:
+  struct Block {  // of s^2 H, between nodes i and j
+    unsigned i, j;
+    Stiffness B;
+  };
+  std::vector<char> fixed_;
+  std::vector<Block> blocks_;
+  std::vector<Eigen::Matrix3d> inverse_;  // of the diagonal blocks of A
+  std::vector<double> diagonal_;          // m + s c [kg]
+  std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
+  double drag_ = 0;  // [kg/s]
+
+  static Stiffness clamped(const Stiffness& B) {
+    return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
+  }
+
+  /** The positions p + s w. */
+  void move(Cloth& g, double s) const {
+    auto x = g.positions();
+    for (unsigned i = 0; i < w.size(); ++i)
+      if (!fixed_[i]) x[i] = p[i] + s * w[i];
+  }
+  /** w += a times the solution of the linear system. */
+  void advance(double a) {
+    for (unsigned i = 0; i < w.size(); ++i) w[i] += a * step_[i];
+  }
+
+  /** s (F - c w) - M (w - q) [kg m/s] at the positions of @a g. */
+  void find_residual(const Cloth& g, double t, double s,
+                     const ZeroForce& force) {
+    integrator_detail::sweep_without_drag(g, t, force, force_);
+    drag_ = force.drag();
+    auto node = g.node_values();
+    for (unsigned i = 0; i < w.size(); ++i)
+      residual_[i] = fixed_[i] ? Point()
+                               : s * (force_[i] - drag_ * w[i]) -
+                                     node[i].mass * (w[i] - q[i]);
+  }
+
+  /** The springs' blocks of A, and the inverses of its diagonal ones. */
+  void assemble(const Cloth& g, double s, const ZeroForce& force,
+                const Goal& goal) {
+    auto node = g.node_values();
+    diagonal_.resize(w.size());
+    for (unsigned i = 0; i < w.size(); ++i) {
+      diagonal_[i] = node[i].mass + s * drag_;
+      inverse_[i] = diagonal_[i] * Eigen::Matrix3d::Identity();
+    }
+    blocks_.clear();
+    const double ss = s * s;
+    add_stiffness(goal.method, force, g,
+                  [this, ss](unsigned i, unsigned j, const Stiffness& B) {
+                    Stiffness b = {B.direction, ss * B.along, ss * B.across};
+                    blocks_.push_back({i, j, b});
+                    b = clamped(b);
+                    const Eigen::Vector3d n(b.direction.x, b.direction.y,
+                                            b.direction.z);
+                    const Eigen::Matrix3d full =
+                        b.across * Eigen::Matrix3d::Identity() +
+                        ((b.along - b.across) * n) * n.transpose();
+                    inverse_[i] += full;
+                    inverse_[j] += full;
+                  });
+    for (Eigen::Matrix3d& d : inverse_) {
+      // By Cholesky, as a spring may be a million times stiffer along than
+      // across; the triangle makes it symmetric.
+      Eigen::Matrix3d half =
+          d.llt().matrixL().solve(Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
+      d = half.transpose() * half;
+    }
+  }
+
+  /** @a to = A @a from, without negative stiffness if @a clamp.  @pre @a from
+   * is 0 at fixed nodes */
+  void multiply(const std::vector<Point>& from, std::vector<Point>& to,
+                bool clamp) const {
+    for (unsigned i = 0; i < from.size(); ++i) to[i] = diagonal_[i] * from[i];
+    for (const Block& b : blocks_) {
+      const Stiffness B = clamp ? clamped(b.B) : b.B;
+      Point f = B * (from[b.j] - from[b.i]);
+      to[b.i] -= f;
+      to[b.j] += f;
+    }
+    for (unsigned i = 0; i < to.size(); ++i)
+      if (fixed_[i]) to[i] = Point();
+  }
+  /** @a to = D^-1 @a from. */
+  void precondition(const std::vector<Point>& from,
+                    std::vector<Point>& to) const {
+    for (unsigned i = 0; i < from.size(); ++i)
+      Eigen::Map<Eigen::Vector3d>(&to[i].x) =
+          inverse_[i] * Eigen::Map<const Eigen::Vector3d>(&from[i].x);
+  }
+  static double product(const std::vector<Point>& a,
+                        const std::vector<Point>& b) {
+    double sum = 0;
+    for (unsigned i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
+    return sum;
+  }
+  template <typename Points>
+  static double rms(const Cloth& g, const Points& a) {
+    double sum = 0;
+    for (const Point& point : a) sum += normSq(point);
+    return std::sqrt(sum / std::max(1u, g.num_nodes()));
+  }
+  double size_of_correction(const Cloth& g) {
+    precondition(residual_, z_);
+    return rms(g, z_);
+  }
+
+  /** Solve A step_ = residual_ by conjugate gradients, preconditioned by D,
+   * until the residual r has fallen by the factor @a relative in the norm
+   * sqrt(r D^-1 r).
+   * Without @a clamp, A may turn out not to be positive definite: then step_ is
+   * as far as it got, which goes downhill still.
+   * @return false if it got nowhere; never with @a clamp  Throws StepError. */
+  bool solve(double relative, const Goal& goal, bool clamp) {
+    std::fill(step_.begin(), step_.end(), Point());
+    rest_ = residual_;
+    precondition(rest_, z_);
+    direction_ = z_;
+    double size = product(rest_, z_);
+    const double start = size, enough = relative * relative * start;
+    const int most = 1000 + 3 * int(w.size());
+    for (int k = 0; !(size <= enough); ++k) {
+      if (k == most || !std::isfinite(size)) {
+        Goal linear = goal;
+        linear.tolerance = relative;
+        linear.fail("the conjugate gradient method", k, std::sqrt(size / start),
+                    " (relative)");
+      }
+      multiply(direction_, product_, clamp);
+      const double curvature = product(direction_, product_);
+      if (!clamp && curvature <= 0) return k > 0;
+      const double a = size / curvature;
+      for (unsigned i = 0; i < w.size(); ++i) {
+        step_[i] += a * direction_[i];
+        rest_[i] -= a * product_[i];
+      }
+      precondition(rest_, z_);
+      const double next = product(rest_, z_);
+      for (unsigned i = 0; i < w.size(); ++i)
+        direction_[i] = z_[i] + (next / size) * direction_[i];
+      size = next;
+    }
+    return true;
+  }
+
+  struct Objective {
+    double inertia, energy;  // [J]
+    double value() const { return inertia + energy; }
+  };
+  Objective objective(const Cloth& g, double s, const ZeroForce& force) const {
+    auto node = g.node_values();
+    double sum = 0;
+    for (unsigned i = 0; i < w.size(); ++i)
+      if (!fixed_[i])
+        sum += node[i].mass * normSq(w[i] - q[i]) + s * drag_ * normSq(w[i]);
+    return {0.5 * sum, force.energy(g)};
+  }
+
+  /** Go along step_ by 1, 1/2, 1/4, ... until the objective has fallen by a
+   * ten thousandth of what its slope promises (Armijo's rule). Where round-off
+   * would hide such a fall, go all the way. */
+  void search(Cloth& g, double s, const ZeroForce& force, const Goal& goal,
+              int iteration, double left) {
+    const double promise = product(residual_, step_);
+    const Objective before = objective(g, s, force);
+    advance(1);
+    if (promise <= 1e-12 * (before.inertia + std::abs(before.energy))) return;
+    for (double a = 1;; a /= 2) {
+      move(g, s);
+      if (objective(g, s, force).value() <= before.value() - 1e-4 * a * promise)
+        return;
+      if (a < 1e-9) goal.fail("Newton's line search", iteration, left, " m");
+      advance(-a / 2);
+    }
+  }
+};
+
+/** End of a step: the constraint at @a end, and held nodes at rest. */
+inline double finish(Cloth& g, double end, const ZeroConstraint& constraint) {
+  constraint(g, end);
+  stop_held(g, constraint);
+  return end;
+}
+
+}  // namespace implicit_detail

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Measure and draw the charts: make charts. All of them go to charts/; a quick
+# run, or one of some scenes or methods only, to build/charts.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+QUICK=${QUICK:-} SCENE=${SCENE:-} METHODS=${METHODS:-}
+options=()
+[ -z "$QUICK" ] || options+=(--quick)
+[ -z "$METHODS" ] || options+=(--methods "$METHODS")
+to=charts
+[ -z "$QUICK$SCENE$METHODS" ] || to=build/charts
+mkdir -p "$to"
+
+draw() {  # SCRIPT CSV SCENE PICTURE
+  local kind
+  for kind in svg png; do
+    gnuplot -e "csv='$2'; scene='$3'; out='$4'; kind='$kind'" "charts/$1.gp" \
+      2> >(grep -v -e 'Skipping data file with no valid points' -e '^$' >&2)
+  done
+  echo "$4.svg"
+}
+
+csv=$to/work_precision.csv
+./work_precision ${options[@]+"${options[@]}"} --out "$csv" \
+  ${SCENE:+--scenes "$SCENE"}
+for scene in $(sed -n 's/^# scene \([^:]*\):.*/\1/p' "$csv"); do
+  draw work_precision "$csv" "$scene" "$to/$scene"
+done
+[ -z "$SCENE" ] || exit 0
+./work_precision ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
+draw energy "$to/energy.csv" '' "$to/energy"
+[ -z "$METHODS" ] || exit 0
+./work_precision ${options[@]+"${options[@]}"} --grid-refinement \
+  --out "$to/grid_refinement.csv"
+draw grid_refinement "$to/grid_refinement.csv" '' "$to/grid_refinement"

@@ -1,0 +1,248 @@
+// Problem.hpp and work_precision: exact solutions and references, the counting
+// of sweeps, and the CSV. Build the program first: make work_precision.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include <sys/wait.h>
+
+#include "Problem.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Problem problem(const std::string& name) {
+  for (Problem& p : make_problems())
+    if (p.name == name) return p;
+  throw std::runtime_error("no problem " + name);
+}
+
+double distance(std::span<const Point> a, std::span<const Point> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += normSq(a[i] - b[i]);
+  return std::sqrt(sum / double(a.size()));
+}
+
+TEST(Problem, ExactSolutionsStartAsTheClothAndObeyItsForces) {
+  for (const char* name : {"chain", "curtain"}) {
+    Problem p = problem(name);
+    Start s(p);
+    ASSERT_EQ(p.exact(0).size(), s.cloth.node_slots());
+    EXPECT_LT(distance(p.exact(0), s.cloth.positions()), 1e-15) << name;
+    // Its second difference in time is the acceleration, also on the way.
+    constexpr double t = 0.3, h = 1e-5;
+    auto before = p.exact(t - h), now = p.exact(t), after = p.exact(t + h);
+    std::copy(now.begin(), now.end(), s.cloth.positions().begin());
+    std::vector<Point> f(s.cloth.node_slots());
+    s.force.add_to(s.cloth, t, f);
+    s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
+    for (unsigned i = 0; i < f.size(); ++i) {
+      Point a = (after[i] - 2 * now[i] + before[i]) / (h * h);
+      EXPECT_LT(norm(a - f[i] / s.cloth.node_values()[i].mass), 1e-3)
+          << name << " node " << i;
+    }
+  }
+}
+
+TEST(Problem, ExactSolutionsAgreeWithAFineRun) {
+  for (const char* name : {"chain", "curtain"}) {
+    Problem p = problem(name);
+    Start s(p);
+    Srkn11b method;
+    double steps = p.t_end * omega_bound(s.cloth, s.constraint);
+    Outcome out = run(p, method, std::lround(steps));
+    ASSERT_TRUE(out.ok()) << out.reason;
+    EXPECT_LT(distance(p.exact(p.t_end), out.end.positions), 1e-10) << name;
+  }
+}
+
+TEST(Problem, FloorsAreSmallAndTheSameEachTime) {
+  for (const char* name : {"chain", "grid0"}) {
+    Reference r = reference(problem(name), 4);
+    EXPECT_GT(r.floor, 0);
+    EXPECT_LT(r.floor, 1e-7) << name;
+    EXPECT_EQ(r.floor, reference(problem(name), 4).floor) << name;
+  }
+}
+
+TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
+  Start chain(problem("chain"));
+  double right = 2 * std::sqrt(100 * 20) * std::cos(std::numbers::pi / 42);
+  double bound = omega_bound(chain.cloth, chain.constraint);
+  EXPECT_GT(bound, right);
+  EXPECT_LT(bound, 1.02 * right);
+  // 12 K N for a large square with diagonals
+  Start cloth(problem("grid1"));
+  bound = omega_bound(cloth.cloth, cloth.constraint);
+  EXPECT_NEAR(bound, std::sqrt(12 * 100 * 625.0), 0.03 * bound);
+}
+
+// A method that keeps its last force takes one sweep more in its first step.
+TEST(Problem, CountsTheSweepsThatMethodsDeclare) {
+  const std::set<std::string> keeps = {"verlet",           "yoshida4",
+                                       "srkn6b",           "srkn11b",
+                                       "augmented-verlet", "dormand-prince"};
+  // What they take depends on the force; see their MethodInfo.
+  const std::set<std::string> newton = {"implicit-midpoint", "tr-bdf2"};
+  Problem p = problem("grid0");
+  p.t_end = 0.02;
+  for (const MethodEntry& m : methods) {
+    const std::string name = m.info.name;
+    constexpr long long steps = 10;
+    auto method = m.make();
+    if (name == "dormand-prince")
+      method = std::make_unique<DormandPrince>(no_limit);
+    Outcome out = run(p, *method, steps);
+    ASSERT_TRUE(out.ok()) << name << ": " << out.reason;
+    EXPECT_EQ(out.steps, steps) << name;
+    if (newton.contains(name))
+      EXPECT_GE(out.sweeps, steps * m.info.sweeps) << name;
+    else
+      EXPECT_EQ(out.sweeps, steps * m.info.sweeps + keeps.contains(name))
+          << name;
+  }
+}
+
+TEST(Problem, SaysWhyARunFailed) {
+  Problem p = problem("grid0");
+  Verlet verlet;
+  Outcome out = run(p, verlet, 100);  // dt is 4 times the limit
+  EXPECT_EQ(out.status, Outcome::Status::diverged);
+  EXPECT_EQ(out.reason.find("energy out of bounds at t = "), 0u);
+  EXPECT_LT(out.steps, 100);
+}
+
+// ---------------------------------------------------------------- The program
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class WorkPrecision : public ::testing::Test {
+ protected:
+  fs::path dir;
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "work_precision_XXXXXX");
+    dir = mkdtemp(name.data());
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  /** @return the exit status */
+  int run_program(const std::string& arguments) {
+    std::string command = "./work_precision " + arguments + " >" +
+                          (dir / "out").string() + " 2>" +
+                          (dir / "err").string();
+    int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string err() { return contents(dir / "err"); }
+  std::string csv() { return (dir / "w.csv").string(); }
+
+  using Row = std::map<std::string, std::string>;  // by head of the column
+  std::vector<Row> rows() {
+    std::istringstream in(contents(csv()));
+    std::vector<std::string> head;
+    std::vector<Row> all;
+    for (std::string line, cell; std::getline(in, line);) {
+      if (line[0] == '#') continue;
+      std::vector<std::string> cells;
+      std::istringstream words(line + ",");
+      while (std::getline(words, cell, ',')) cells.push_back(cell);
+      if (head.empty()) {
+        head = cells;
+        continue;
+      }
+      EXPECT_EQ(cells.size(), head.size()) << line;
+      Row& row = all.emplace_back();
+      for (std::size_t k = 0; k < std::min(cells.size(), head.size()); ++k)
+        row[head[k]] = cells[k];
+    }
+    return all;
+  }
+};
+
+TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
+  ASSERT_EQ(run_program("--quick --quiet --scenes chain --methods "
+                        "forward-euler,verlet,dormand-prince --out " +
+                        csv()),
+            0)
+      << err();
+  std::string text = contents(csv());
+  for (const char* line : {"# machine: ", "# compiler: ", "# commit: "})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  std::set<std::string> seen;
+  for (Row& row : rows()) {
+    const bool ok = row["status"] == "ok";
+    seen.insert(row["method"] + " " + row["status"]);
+    EXPECT_EQ(row["scene"], "chain");
+    EXPECT_EQ(row["reason"].empty(), ok);
+    EXPECT_NE(row["dt [s]"].empty(), row["tolerance [m]"].empty());
+    for (const char* c : {"seconds_min [s]", "seconds_median [s]", "error [m]"})
+      EXPECT_EQ(row[c].empty(), !ok) << c;
+    for (auto& [column, cell] : row) {
+      if (column == "scene" || column == "method" || column == "norm" ||
+          column == "status" || column == "reason" || cell.empty())
+        continue;
+      std::size_t end = 0;
+      EXPECT_TRUE(std::isfinite(std::stod(cell, &end))) << column;
+      EXPECT_EQ(end, cell.size()) << column << " " << cell;
+    }
+  }
+  EXPECT_EQ(seen, (std::set<std::string>{"forward-euler diverged",
+                                         "forward-euler ok", "verlet diverged",
+                                         "verlet ok", "dormand-prince ok"}));
+}
+
+TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
+  std::set<std::string> names, styles;
+  std::istringstream in(contents("charts/methods.csv"));
+  for (std::string line; std::getline(in, line);) {
+    if (line[0] == '#') continue;
+    std::size_t color = line.find(','), marker = line.find(',', color + 1);
+    names.insert(line.substr(0, color));
+    EXPECT_TRUE(styles.insert(line.substr(marker)).second)
+        << line << ": marker and dash are another's";
+  }
+  for (const MethodEntry& m : methods)
+    EXPECT_TRUE(names.contains(m.info.name)) << m.info.name;
+}
+
+TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
+  auto refused = [this](const std::string& arguments, const char* message) {
+    EXPECT_EQ(run_program(arguments + " --out " + csv()), 2) << arguments;
+    EXPECT_NE(err().find(message), std::string::npos) << err();
+    EXPECT_FALSE(fs::exists(csv()) || fs::exists(csv() + ".part"));
+  };
+  refused("--scenes nowhere",
+          "--scenes: there is no 'nowhere'; there are: chain curtain grid0");
+  refused("--methods verlet,magic", "--methods: there is no 'magic'");
+  refused("--repeats 0", "--repeats is 0, expected 1 or more");
+  refused("--nodes data/grid0.nodes", "--tets");
+  refused("--nodes none --tets none", "none:0: can't be opened");
+  refused("--energy --grid-refinement", "--grid-refinement");
+  refused("--t-end -1", "--t-end is -1, expected a positive time [s]");
+  EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
+}
+
+TEST_F(WorkPrecision, TakesAMeshOfOnesOwn) {
+  ASSERT_EQ(run_program("--quick --methods pefrl --nodes data/grid0.nodes "
+                        "--tets data/grid0.tets --t-end 0.1 --out " +
+                        csv()),
+            0)
+      << err();
+  auto all = rows();
+  ASSERT_FALSE(all.empty());
+  EXPECT_EQ(all[0]["scene"], "mesh");
+}
+
+}  // namespace
