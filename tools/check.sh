@@ -33,7 +33,7 @@ step() {  # NAME COMMAND...
   passed=$((passed + good)) failed=$((failed + bad))
 }
 
-make_all() { make --no-print-directory -j"$jobs" "$@" CXXFLAGS=-Werror; }
+make_all() { make --no-print-directory -j"$jobs" CXXFLAGS=-Werror "$@"; }
 
 # The committed grids are what make_grid makes.
 same_grids() {
@@ -55,7 +55,9 @@ step tree          tools/check_tree.sh
 step includes      tools/check_includes.sh
 step headers       tools/check_headers.sh
 step build-g++     make_all all CXX=g++
-step build-clang++ make_all all CXX=clang++ O=build/clang/
+# What counts of clang++ is what it says: no time for optimizing.
+step build-clang++ make_all all CXX=clang++ O=build/clang/ SANITIZE= \
+  CXXFLAGS="-Werror -O0 -g0"
 step build-plain   make_all mass_spring VIEWER=0 O=build/plain/
 step build-tsan    make_all build/tsan/test_viewer O=build/tsan/ SANITIZE=thread
 for test in $tests; do
