@@ -54,7 +54,7 @@ class Screen {
   /** Show @a scene as it is now; half of it is never seen. */
   void show(const Scene& scene) {
     const Cloth& g = scene.cloth();
-    const bool strain = viewer_.strain_colors();
+    const bool strain = colored_ = viewer_.strain_colors();
     if (strain) {
       // The scale only grows, so that a color goes on meaning the same.
       scale_ = std::max(scale_, round_up(high_strain(g)));
@@ -104,6 +104,8 @@ class Screen {
   bool closed() const { return viewer_.closed(); }
   bool take_restart() { return viewer_.take_restart(); }
   bool wants_frame() const { return viewer_.wants_frame(); }
+  /** True if the user has switched the coloring since the last show(). */
+  bool coloring_changed() const { return viewer_.strain_colors() != colored_; }
   /** Wait while paused; the user may color @a scene meanwhile. */
   bool wait_while_paused(const Scene& scene) {
     return viewer_.wait_while_paused([&] { show(scene); });
@@ -114,7 +116,7 @@ class Screen {
   CME212::SDLViewer viewer_;
   std::map<Node, unsigned> nodes_;
   std::optional<CME212::Video> film_;
-  bool shown_ = false;
+  bool shown_ = false, colored_ = false;
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
   double scale_ = 0.01;      // the strain of the brightest color
   CME212::Clock clock_;
@@ -202,6 +204,7 @@ class Screen {
   bool take_restart() { return false; }
   bool wait_while_paused(const Scene&) { return false; }
   bool wants_frame() const { return false; }
+  bool coloring_changed() const { return false; }
 };
 
 #endif

@@ -1,7 +1,5 @@
 #include <iostream>
-
 #include "Graph.hpp"
-
 int main() {
   Graph<int, double> g;  // nodes carry an int, edges a double
   auto a = g.add_node(Point(0, 0, 0), 1);
@@ -13,6 +11,5 @@ int main() {
   b.position().z = 1;       // b and c still mean the same nodes
   for (auto e : b.edges())  // e.node1() is b
     std::cout << e.node2().value() << " at distance " << e.length() << '\n';
-  std::cout << g.num_nodes() << " nodes, a is " << (g.has_node(a) ? "" : "not ")
-            << "among them\n";
+  std::cout << g.num_nodes() << " nodes, a is there: " << g.has_node(a) << '\n';
 }

@@ -195,6 +195,7 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
         }
         if (run.done()) {
           if (!scene.failure().empty()) screen.close();
+          if (screen.coloring_changed()) screen.show(scene);
           CME212::sleep(0.01);
           continue;
         }

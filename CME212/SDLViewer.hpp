@@ -169,7 +169,10 @@ class SDLViewer : public SceneBuilder {
     window_.show();
     auto next = clock::now();  // no frame before
     while (!closed_) {
-      const auto rest = std::chrono::ceil<ms>(next - clock::now());
+      // Look for a new scene often while they come, seldom when none does.
+      const auto now = clock::now();
+      const ms poll(now - last_frame_ < ms(200) ? 2 : 8);
+      const auto rest = std::chrono::ceil<ms>(next - now);
       const auto wait = std::max(rest, needs_frame() ? ms(0) : poll);
       SDL_Event e;
       if (SDL_WaitEventTimeout(&e, int(wait.count()))) do
@@ -202,8 +205,7 @@ class SDLViewer : public SceneBuilder {
  private:
   using clock = std::chrono::steady_clock;
   using ms = std::chrono::milliseconds;
-  static constexpr ms frame_time{16};  // of a display, at least
-  static constexpr ms poll{8};         // between looks for a new scene
+  static constexpr ms frame_time{16};  // between frames, at least
 
   const Options options_;
   // The main thread's:

@@ -9,6 +9,7 @@ logs=build/check
 rm -rf "$logs"
 mkdir -p "$logs"
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+export CXXFLAGS=-Werror
 started=$SECONDS passed=0 failed=0
 
 # Run a step and count what it says it passed; a step that counts nothing is
@@ -33,7 +34,7 @@ step() {  # NAME COMMAND...
   passed=$((passed + good)) failed=$((failed + bad))
 }
 
-make_all() { make --no-print-directory -j"$jobs" CXXFLAGS=-Werror "$@"; }
+make_all() { make --no-print-directory -j"$jobs" "$@"; }
 
 # The committed grids are what make_grid makes.
 same_grids() {
