@@ -164,7 +164,7 @@ class Screen {
   void set_stage(Stage stage) {
     const bool falls_on_something = stage >= Stage::constraints;
     CME212::BoundingBox room;
-    room |= Point(0, -0.15, falls_on_something ? -0.75 : -1.25);
+    room |= Point(0, -0.4, falls_on_something ? -0.75 : -1.25);
     room |= Point(1, 0.6, 0);
     viewer_.set_view(Point(0.75, -1, 0.4), room);
     if (!falls_on_something) return;

@@ -164,7 +164,7 @@ again; comment_lines 501 >Force.hpp
 caught "tree: 501 lines of another" \
   "Force.hpp:500: goes on to line 501; the limit is 500" tree $tree
 again small; comment_lines 500 >SlotMap.hpp; cp SlotMap.hpp Graph.hpp
-comment_lines 300 >>Graph.hpp
+comment_lines 200 >>Graph.hpp
 clean "tree: 500 and 700 lines are none too many" $tree
 again; sed -i '1i int   i;' Force.hpp
 caught "tree: not laid out" "Force.hpp:1: is not laid out" tree $tree
