@@ -252,38 +252,4 @@ TEST(SympEulerStep, TakesLambdasAndGraphsOfAnyKind) {
   EXPECT_EQ(a.value().color, 1);
 }
 
-// The declared order from both sides, at T = 1: at multiples of the half
-// period order 1 looks like 2.
-TEST(SymplecticEuler, DeliversTheOrderItDeclares) {
-  auto error = [](double h) {
-    Cloth g;
-    Node wall = g.add_node(Point()), a = g.add_node(Point(1.1, 0, 0));
-    g.add_edge(wall, a, {1, 1});
-    PinConstraint pin(g);
-    SymplecticEuler euler;
-    for (int n = 0; n < std::lround(1 / h); ++n)
-      euler(g, 0, h, MassSpringForce(), pin);
-    return std::abs(a.position().x - 1 - 0.1 * std::cos(1));
-  };
-  for (double h : {0.01, 0.001, 0.0001})
-    EXPECT_NEAR(std::log2(error(h) / error(h / 2)), SymplecticEuler::info.order,
-                0.1);
-}
-
-TEST(SymplecticEuler, SweepsTheForcesAsOftenAsItDeclares) {
-  struct Count : ZeroForce {
-    int& sweeps;
-    explicit Count(int& n) : sweeps(n) {}
-    void add_to(const Cloth&, double, std::span<Point>) const override {
-      ++sweeps;
-    }
-  };
-  Cloth g;
-  g.add_node(Point());
-  int sweeps = 0;
-  SymplecticEuler euler;
-  for (int n = 0; n < 10; ++n) euler(g, 0, 0.1, Count(sweeps));
-  EXPECT_EQ(sweeps, 10 * SymplecticEuler::info.sweeps);
-}
-
 }  // namespace
