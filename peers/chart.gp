@@ -49,14 +49,14 @@ do for [kind in 'svg png'] {
   unset label 2
   set lmargin at screen 0.58
   set rmargin at screen 0.98
-  set xlabel 'seconds, median of the repeats'
+  set xlabel 'seconds, least of the repeats'
   unset ylabel
   set format y ''
   set key at screen 0.52, screen 0.21 center top maxrows 4 width -2 samplen 3
-  plot for [k = 1:words(ours)] of(word(ours, k)) using 5:6 with linespoints \
+  plot for [k = 1:words(ours)] of(word(ours, k)) using 4:6 with linespoints \
          lc rgb word(ours_color, k) pt int(word(ours_marker, k)) ps 0.7 lw 1.5 \
          title word(ours, k), \
-       for [k = 1:words(theirs)] of(word(theirs, k)) using 5:6 with linespoints \
+       for [k = 1:words(theirs)] of(word(theirs, k)) using 4:6 with linespoints \
          lc rgb word(theirs_color, k) pt int(word(theirs_marker, k)) ps 0.7 lw 1.5 dt 2 \
          title word(theirs, k)
   unset multiplot
