@@ -37,7 +37,7 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
            $(if $(draws),$(shell pkg-config --libs $(draw_pkg) 2>/dev/null)) $(LDLIBS)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: all deps peers-deps peers-chart demo check check-all print-tests fuzz \
+.PHONY: charts charts-quick all deps peers-deps peers-chart demo check check-all print-tests fuzz \
         pictures help clean format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
