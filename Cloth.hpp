@@ -134,6 +134,14 @@ inline Point center_of_mass(const Cloth& g) {
   return mass > 0 ? sum / mass : Point();
 }
 
+/** The highest speed of a node [m/s]; 0 for a cloth without nodes.  O(N) */
+inline double max_speed(const Cloth& g) {
+  double most = 0;
+  for (unsigned i = 0; i < g.node_slots(); ++i)
+    if (g.node_in_use(i)) most = std::max(most, normSq(g.node_values()[i].vel));
+  return std::sqrt(most);
+}
+
 namespace cloth_detail {
 
 /** @a x on the heap as a Base: itself if it is one, else in an Adapter. */

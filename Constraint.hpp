@@ -3,9 +3,13 @@
  * What a cloth must not do. A constraint is anything that can be called as
  * void(Cloth& g, double t): it mends the nodes that violate it at time t [s].
  * Steps call it after the positions moved and before the forces are taken. */
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,6 +30,19 @@ class ZeroConstraint {
    * it stays where it is, and its velocity is 0. Steps need to know, since a
    * force goes on pulling at it. */
   virtual void each_held(const Cloth& /*g*/, const NodeVisitor& /*use*/) const {
+  }
+
+  /** Where a node that goes straight @a from one place @a to another enters an
+   * obstacle in which neither of them lies, so that looking at the ends only
+   * would miss it: the first place inside, to round-off. Nothing if it hits
+   * none. A floor can't be missed: who gets past it, is below it. */
+  virtual std::optional<Point> entry(const Point& /*from*/,
+                                     const Point& /*to*/) const {
+    return std::nullopt;
+  }
+  /** The size [m] of the smallest obstacle that can be missed. */
+  virtual double thinnest() const {
+    return std::numeric_limits<double>::infinity();
   }
 };
 
@@ -101,6 +118,18 @@ struct Ball {
   double radius = 0.15;
   /** Strictly inside? */
   bool holds(const Point& p) const { return norm(p - center) < radius; }
+
+  /** As ZeroConstraint::entry(). */
+  std::optional<Point> entry(const Point& from, const Point& to) const {
+    if (holds(from) || holds(to)) return std::nullopt;
+    const Point way = to - from, start = from - center;
+    // |start + s way| = radius, of the two s the smaller one
+    const double a = normSq(way), b = dot(start, way);
+    const double c = normSq(start) - radius * radius, root = b * b - a * c;
+    if (!(root > 0) || b >= 0 || -b >= a) return std::nullopt;
+    const Point on = start + (c / (-b + std::sqrt(root))) * way;
+    return center + (1 - 1e-9) * on;
+  }
 };
 
 /** A solid ball. @post no node lies inside by more than round-off; one that
@@ -120,6 +149,12 @@ class SphereConstraint : public ZeroConstraint {
     }
   }
 
+  std::optional<Point> entry(const Point& from,
+                             const Point& to) const override {
+    return ball_.entry(from, to);
+  }
+  double thinnest() const override { return ball_.radius; }
+
  private:
   Ball ball_;
 };
@@ -137,6 +172,12 @@ class TearConstraint : public ZeroConstraint {
       else
         ++it;
   }
+
+  std::optional<Point> entry(const Point& from,
+                             const Point& to) const override {
+    return ball_.entry(from, to);
+  }
+  double thinnest() const override { return ball_.radius; }
 
  private:
   Ball ball_;
@@ -169,6 +210,21 @@ class CombinedConstraints : public ZeroConstraint {
     for (const auto& c : constraints_) c->each_held(g, use);
   }
 
+  std::optional<Point> entry(const Point& from,
+                             const Point& to) const override {
+    std::optional<Point> first;
+    for (const auto& c : constraints_)
+      if (auto place = c->entry(from, to);
+          place && (!first || norm(*place - from) < norm(*first - from)))
+        first = place;
+    return first;
+  }
+  double thinnest() const override {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& c : constraints_) least = std::min(least, c->thinnest());
+    return least;
+  }
+
  private:
   Constraints constraints_;
 };
@@ -181,3 +237,61 @@ CombinedConstraints make_combined_constraints(Cs... constraints) {
       cloth_detail::shared_as<ZeroConstraint, FunctionConstraint>(
           std::move(constraints))...});
 }
+
+/** Another constraint, and an eye on the paths of the nodes: one that would go
+ * through an obstacle from one call to the next is put on its surface first,
+ * and counted. While nobody watches, this is the other constraint. */
+class WatchedConstraint : public ZeroConstraint {
+ public:
+  /** A node on its way through an obstacle. */
+  struct Missed {
+    unsigned node;  ///< its index
+    double t;       ///< [s]
+    double length;  ///< of its way since the last call [m]
+  };
+
+  explicit WatchedConstraint(CombinedConstraints c) : c_(std::move(c)) {}
+
+  /** Watch from the state of @a g on, or no more. O(N) if @a on, then and in
+   * each call. */
+  void watch(const Cloth& g, bool on) {
+    before_.clear();
+    if (on) remember(g);
+  }
+  /** How many were caught, and the first of them.  @pre of first: count > 0 */
+  long long count() const { return count_; }
+  const Missed& first() const { return first_; }
+
+  void operator()(Cloth& g, double t) const override {
+    if (before_.empty()) return c_(g, t);
+    for (Node n : g.nodes()) {
+      if (n.id() >= before_.size()) continue;  // added since
+      auto place = c_.entry(before_[n.id()], n.position());
+      if (!place) continue;
+      if (count_++ == 0)
+        first_ = {n.index(), t, norm(n.position() - before_[n.id()])};
+      n.position() = *place;
+    }
+    c_(g, t);
+    remember(g);
+  }
+  void each_held(const Cloth& g, const NodeVisitor& use) const override {
+    c_.each_held(g, use);
+  }
+  std::optional<Point> entry(const Point& from,
+                             const Point& to) const override {
+    return c_.entry(from, to);
+  }
+  double thinnest() const override { return c_.thinnest(); }
+
+ private:
+  CombinedConstraints c_;
+  mutable std::vector<Point> before_;  // by node id; empty: nobody watches
+  mutable long long count_ = 0;
+  mutable Missed first_ = {};
+
+  void remember(const Cloth& g) const {
+    auto x = g.positions();
+    before_.assign(x.begin(), x.end());
+  }
+};

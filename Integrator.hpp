@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -56,6 +57,7 @@ struct MethodInfo {
   const char* source;
   const char* good_for;
   const char* fails_when;
+  bool adaptive = false;  ///< steps inside a step: dt does not bound them
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -106,6 +108,16 @@ class Method {
       });
   }
 };
+
+/** A method by its name: a line of the table in Methods.hpp. */
+struct MethodEntry {
+  MethodInfo info;
+  std::unique_ptr<Method> (*make)();
+};
+template <typename M>
+constexpr MethodEntry entry_of() {
+  return {M::info, [] { return std::unique_ptr<Method>(new M()); }};
+}
 
 namespace integrator_detail {
 

@@ -3,24 +3,12 @@
  * The table of all methods: one line a method, used by every program that
  * lets its user choose. */
 #include <array>
-#include <memory>
 #include <string_view>
 
 #include "Implicit.hpp"
 #include "Integrator.hpp"
 #include "RungeKutta.hpp"
 #include "Xpbd.hpp"
-
-/** A method by its name. */
-struct MethodEntry {
-  MethodInfo info;
-  std::unique_ptr<Method> (*make)();
-};
-
-template <typename M>
-constexpr MethodEntry entry_of() {
-  return {M::info, [] { return std::unique_ptr<Method>(new M()); }};
-}
 
 inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<SymplecticEuler>(),

@@ -9,7 +9,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -132,44 +131,6 @@ inline double distance(const Problem& p, const End& a, const End& b) {
   return std::sqrt(sum / double(a.positions.size()));
 }
 
-/** An upper bound of the frequencies [1/s] that the cloth can have, whatever
- * its shape: the root of the largest eigenvalue of the mass-scaled Laplacian
- * weighted by K, since a spring of length l is no stiffer than K in any
- * direction while l > L/2. Found by power iteration from below, so 1 % is
- * added.  Complexity: O(300 (N + edges)) */
-inline double omega_bound(const Cloth& g, const ZeroConstraint& constraint) {
-  const unsigned n = g.node_slots();
-  std::vector<double> x(n), y(n), free(n, 1.0);
-  constraint.each_held(g, [&](Node node) { free[node.id()] = 0; });
-  std::mt19937 random(1);
-  for (double& a : x) a = double(random()) / double(random.max()) - 0.5;
-  auto node = g.node_values();
-  auto ends = g.edge_ends();
-  auto spring = g.edge_values();
-  double lambda = 0;
-  for (int k = 0; k < 300; ++k) {
-    double size = 0, product = 0;
-    for (unsigned i = 0; i < n; ++i) {
-      x[i] *= free[i];
-      size += node[i].mass * x[i] * x[i];
-    }
-    if (size == 0) return 0;
-    std::fill(y.begin(), y.end(), 0.0);
-    for (unsigned e = 0; e < g.edge_slots(); ++e) {
-      if (!g.edge_in_use(e)) continue;
-      auto [i, j] = ends[e];
-      double pull = spring[e].K * (x[i] - x[j]);
-      product += pull * (x[i] - x[j]);
-      y[i] += pull;
-      y[j] -= pull;
-    }
-    lambda = product / size;
-    for (unsigned i = 0; i < n; ++i)
-      x[i] = y[i] / (node[i].mass * std::sqrt(size) * std::max(lambda, 1e-300));
-  }
-  return 1.01 * std::sqrt(lambda);
-}
-
 // -------------------------------------------------------------------- Running
 
 /** How a run ended. */
@@ -230,7 +191,7 @@ struct Reference {
  * Throws std::runtime_error if one of the runs does not reach the end. */
 inline Reference reference(const Problem& p, double fineness = 16) {
   Start start(p);
-  const double omega = omega_bound(start.cloth, start.constraint);
+  const double omega = omega_safe(start.cloth, start.force, start.constraint);
   auto by = [&](Method& method, double limit, double finer) {
     Outcome out =
         run(p, method,

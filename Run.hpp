@@ -18,6 +18,7 @@
 struct Options {
   std::string nodes, tets;
   std::string method = "symplectic-euler";
+  std::string dt = "0.001";  // [s], or auto, or auto:sharp
   Parameters with;
   double t_end = 5;
   double at = -1;  // time of the screenshot [s]; the end if negative
@@ -27,11 +28,9 @@ struct Options {
   bool quiet = false;
   std::string screenshot, video, csv, out;
 
-  long long num_steps() const {
-    // 5 / 0.001 is a little more than 5000 or a little less: neither may
-    // cost a step.
-    return static_cast<long long>(std::ceil(t_end / with.dt * (1 - 1e-12)));
-  }
+  /** True when a run that has come to time @a t is at its end: 5000 steps of
+   * 0.001 s are 5 s, however that is rounded. */
+  bool at_end(double t) const { return t >= t_end * (1 - 1e-12); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };
 
@@ -39,28 +38,26 @@ struct Options {
  * nothing if it is done within a second. */
 class Progress {
  public:
-  Progress(const Options& o, long long total)
-      : on_(!o.quiet),
-        bar_(isatty(STDERR_FILENO)),
-        t_end_(o.t_end),
-        total_(total) {}
+  explicit Progress(const Options& o)
+      : on_(!o.quiet), bar_(isatty(STDERR_FILENO)), t_end_(o.t_end) {}
 
   void show(long long steps, double t) {
-    if (!on_ || total_ == 0) return;
-    if (clock_.seconds() < next_) return;
-    next_ = clock_.seconds() + (bar_ ? 0.1 : 5.0);
-    double rate = std::max(1.0, double(steps)) / clock_.seconds();
+    if (!on_ || !(t > 0)) return;
+    const double now = clock_.seconds();
+    if (now < next_) return;
+    next_ = now + (bar_ ? 0.1 : 5.0);
+    const double part = std::min(1.0, t / t_end_);
     std::ostringstream line;
     if (bar_) {
-      auto filled = static_cast<std::size_t>(30 * steps / total_);
+      auto filled = static_cast<std::size_t>(30 * part);
       line << "\r[" << std::string(filled, '#') << std::string(30 - filled, ' ')
            << "] ";
     }
     line << "t = " << CME212::short_text(t) << " of "
          << CME212::short_text(t_end_) << " s, "
-         << CME212::short_text(std::round(rate)) << " steps/s, "
-         << CME212::short_text(std::ceil(double(total_ - steps) / rate))
-         << " s left" << (bar_ ? "   " : "\n");
+         << CME212::short_text(std::round(double(steps) / now)) << " steps/s, "
+         << CME212::short_text(std::ceil(now / part - now)) << " s left"
+         << (bar_ ? "   " : "\n");
     std::cerr << line.str() << std::flush;
   }
   void end() {
@@ -71,7 +68,6 @@ class Progress {
  private:
   bool on_, bar_;
   double t_end_;
-  long long total_;
   double next_ = 1;  // when to show again [s]
   CME212::Clock clock_;
 };
@@ -81,8 +77,7 @@ class Run {
  public:
   /** Output files are opened now, so that a wrong path ends the run before it
    * starts. Throws std::runtime_error. */
-  Run(Scene& scene, const Options& o)
-      : scene_(scene), o_(o), progress_(o, o.num_steps()) {
+  Run(Scene& scene, const Options& o) : scene_(scene), o_(o), progress_(o) {
     if (!o.csv.empty()) csv_.emplace(o.csv);
     if (!o.out.empty()) out_.emplace(o.out);
     start();
@@ -95,15 +90,51 @@ class Run {
   }
 
   bool done() const {
-    return scene_.steps() >= o_.num_steps() || !scene_.failure().empty();
+    return o_.at_end(scene_.time()) || !scene_.failure().empty();
   }
 
-  /** One step.  @pre !done() */
+  /** One step. What is written down is checked.  @pre !done() */
   void advance() {
     scene_.step();
+    if (o_.at_end(scene_.time()) || (csv_ && scene_.steps() % o_.every == 0))
+      scene_.check();
     seconds_ = progress_.seconds();
     if (scene_.steps() % o_.every == 0 || done()) add_row();
+    if (!warned_ && scene_.constraint().count() > 0) warn_of_missed();
     progress_.show(scene_.steps(), scene_.time());
+  }
+
+  /** Say how long the step is and how long it may be. */
+  void announce() const {
+    if (o_.quiet) return;
+    using CME212::short_text;
+    const MethodInfo& method = scene_.method();
+    const double dt = scene_.dt(), limit = scene_.safe_limit();
+    std::ostringstream out;
+    out.precision(3);
+    out << "dt = " << dt << " s";
+    if (limit == no_limit) {
+      const double verlet = scene_.safe_limit(entry_of<Verlet>());
+      out << ": " << method.name << " has no limit";
+      if (std::isfinite(verlet))
+        out << "; this is " << dt / verlet << " times that of verlet here, "
+            << verlet << " s";
+    } else if (limit > 0) {
+      out << ": " << dt / limit << " of the limit of " << method.name
+          << " here, " << limit << " s";
+    } else {
+      out << ": no step is stable with " << method.name << " and no drag";
+    }
+    std::cout << out.str() << '\n';
+    if (dt <= limit) return;
+    out.str("mass_spring: warning: ");
+    out.seekp(0, std::ios::end);
+    if (limit > 0)
+      out << "dt is beyond the limit, so this may blow up; --dt "
+          << safe_share * limit << " or --dt auto does not";
+    else
+      out << "this blows up; --method verlet --dt auto does not";
+    std::cerr << out.str() << '\n';
   }
 
   /** Write the files and the last line.  @return the exit status
@@ -138,6 +169,7 @@ class Run {
   std::string rows_;
   long long last_row_ = -1;
   double seconds_ = 0;  // until the last step
+  bool warned_ = false;
 
   struct Energies {
     double kinetic, elastic, gravitational;
@@ -150,7 +182,7 @@ class Run {
   }
 
   void start() {
-    progress_ = Progress(o_, o_.num_steps());
+    progress_ = Progress(o_);
     rows_.clear();
     seconds_ = 0;
     last_row_ = -1;
@@ -167,6 +199,18 @@ class Run {
       rows_ += CME212::to_text(a) + ',';
     rows_ += std::to_string(scene_.cloth().num_nodes()) + ',' +
              std::to_string(scene_.cloth().num_edges()) + '\n';
+  }
+
+  void warn_of_missed() {
+    warned_ = true;
+    if (o_.quiet) return;
+    const auto& missed = scene_.constraint().first();
+    std::cerr << "mass_spring: warning: node " << missed.node << " went "
+              << missed.length << " m in the step to t = " << missed.t
+              << " s and would have passed through an obstacle; it was put on "
+                 "its surface. A smaller dt sees it: "
+              << scene_.dt() * scene_.constraint().thinnest() / missed.length
+              << " s\n";
   }
 
   void print_summary() const {

@@ -210,7 +210,8 @@ struct DormandPrinceTableau {
       0.997,
       "Dormand, Prince 1980",
       "a tolerance instead of a step",
-      "springs: its limit per sweep is a sixth of verlet's"};
+      "springs: its limit per sweep is a twelfth of verlet's",
+      true};
   static constexpr std::array a = {1 / 5.,
                                    3 / 40.,
                                    9 / 40.,

@@ -30,9 +30,17 @@ constexpr const char* name_of(Stage stage) {
   return names[static_cast<int>(stage)];
 }
 
+/** Who chooses the step. */
+enum class StepRule {
+  fixed,  // whoever made the scene
+  safe,   // safe_share of the limit in any shape, once
+  sharp,  // sharp_share of the limit in the present shape, now and then
+};
+
 /** What a scene is made from besides its mesh. */
 struct Parameters {
-  double dt = 0.001;       ///< step [s], > 0
+  double dt = 0.001;  ///< step [s], > 0; for StepRule::fixed
+  StepRule rule = StepRule::fixed;
   double stiffness = 100;  ///< K of every spring [N/m], >= 0
   double gravity = grav;   ///< [m/s^2]
   double damping = 0;      ///< drag coefficient c [kg/s], >= 0
@@ -74,16 +82,22 @@ inline CombinedForces force_of(Stage stage, const Cloth& g,
 /** A stage of the assignment, ready to run. */
 class Scene {
  public:
+  /** Steps between two looks of the guard, and between two of SharpOmega. */
+  static constexpr int guard_interval = 32, sharp_interval = 100;
+
   /** At t = 0 and at rest, as build_cloth() makes it.
-   * @pre @a quads index @a points; the parameters are in range */
+   * @pre @a quads index @a points; the parameters are in range
+   * Throws std::invalid_argument if nothing bounds the step that it is to
+   * choose. */
   Scene(Stage stage, std::vector<Point> points, std::vector<Quad> quads,
         const Parameters& with,
-        std::unique_ptr<Method> method = std::make_unique<SymplecticEuler>())
+        const MethodEntry& method = entry_of<SymplecticEuler>())
       : stage_(stage),
         points_(std::move(points)),
         quads_(std::move(quads)),
         with_(with),
-        method_(std::move(method)) {
+        entry_(method),
+        method_(method.make()) {
     restart();
   }
   Scene(const Scene&) = delete;  // pins hold handles into the cloth
@@ -96,26 +110,44 @@ class Scene {
                 stage_ == Stage::problem1 ? Mesh::plain : Mesh::diagonals,
                 with_.stiffness);
     force_ = force_of(stage_, cloth_, with_);
-    constraint_ = constraint_of(stage_, cloth_);
+    constraint_.emplace(constraint_of(stage_, cloth_));
     guard_.emplace(cloth_, with_.gravity);
     method_->restart();
-    steps_ = 0;
+    clock_ = checked_ = {.dt = with_.dt};
+    version_ = cloth_.version();
+    safe_omega_ = -1;
     failure_.clear();
+    worst_.reset();
+    if (with_.rule != StepRule::fixed) choose_step();
   }
 
-  /** One step of dt.
-   * @return false if the run diverged or the method failed: then failure() says
-   * where, and the cloth and the clock are those of the last good state.
+  /** One step of dt(). The guard looks at every 32nd only, and at those that
+   * change the graph: see check().
+   * @return false if the run failed: then failure() says where and why, and the
+   * cloth and the clock are those of the last good state.
    * @pre failure().empty()
    * Throws std::invalid_argument if the method can't do with this force. */
   bool step() {
-    try {
-      method_->step(cloth_, time(), with_.dt, *force_, *constraint_);
-    } catch (const StepError& e) {
-      return fail(std::string("failed (") + e.what() + ")");
-    }
-    if (guard_->accept(cloth_)) return ++steps_, true;
-    return fail("diverged");
+    if (with_.rule == StepRule::sharp && clock_.steps > 0 &&
+        clock_.steps % sharp_interval == 0)
+      choose_step();
+    if (!advance()) return replay(clock_.steps + 1);
+    if (clock_.steps - checked_.steps >= guard_interval ||
+        cloth_.version() != version_)
+      return check();
+    return true;
+  }
+
+  /** Make sure that the present state is good: whoever shows it or writes it
+   * down asks for that first. If it is not, the steps since the last check are
+   * made again, one by one, to find the one that failed.
+   * @return as step() */
+  bool check() {
+    if (!failure_.empty()) return false;
+    if (clock_.steps == checked_.steps) return true;
+    if (!guard_->accept(cloth_)) return replay(clock_.steps);
+    keep_clock();
+    return true;
   }
 
   /** The cloth; between two steps it may be changed in any way. */
@@ -123,34 +155,127 @@ class Scene {
   const Cloth& cloth() const { return cloth_; }
   Stage stage() const { return stage_; }
   const Parameters& parameters() const { return with_; }
-  /** Steps done, and the time [s] reached: steps() dt. */
-  long long steps() const { return steps_; }
-  double time() const { return double(steps_) * with_.dt; }
-  /** Why step() returned false; empty before. */
+  const MethodInfo& method() const { return entry_.info; }
+  /** The next step [s]; it changes with StepRule::sharp only. */
+  double dt() const { return clock_.dt; }
+  /** Steps done, and the time [s] reached. */
+  long long steps() const { return clock_.steps; }
+  double time() const { return clock_.time(); }
+  /** Why step() returned false; empty before. And where. */
   const std::string& failure() const { return failure_; }
+  const std::optional<WorstPlace>& failed_at() const { return worst_; }
+  /** What would have passed through an obstacle within a step. */
+  const WatchedConstraint& constraint() const { return *constraint_; }
+
+  /** The largest step [s] of @a method, or of this scene's, that is safe in
+   * every shape of the cloth; no_limit if there is none, 0 if no step is.
+   * Complexity: the first call as omega_safe(). */
+  double safe_limit(const MethodEntry& method) {
+    if (safe_omega_ < 0)
+      safe_omega_ = omega_safe(cloth_, *force_, *constraint_);
+    return step_limit(method, safe_omega_,
+                      largest_gamma(cloth_, force_->drag()));
+  }
+  double safe_limit() { return safe_limit(entry_); }
 
  private:
+  /** Steps and time: those of the last change of dt, and multiples of it, as
+   * sums of steps would depend on rounding. */
+  struct Clock {
+    double dt = 0, from = 0;  // [s]
+    long long steps = 0, from_steps = 0;
+    double time() const { return from + double(steps - from_steps) * dt; }
+    void set_dt(double next) {
+      from = time(), from_steps = steps;
+      dt = next;
+    }
+  };
+
   Stage stage_;
   std::vector<Point> points_;
   std::vector<Quad> quads_;
   Parameters with_;
+  MethodEntry entry_;
   Cloth cloth_;
   std::optional<CombinedForces> force_;
-  std::optional<CombinedConstraints> constraint_;
+  std::optional<WatchedConstraint> constraint_;
   std::optional<DivergenceGuard> guard_;
   std::unique_ptr<Method> method_;
-  long long steps_ = 0;
-  std::string failure_;
+  Clock clock_, checked_;    // checked_: when the guard kept the state
+  std::size_t version_ = 0;  // of the cloth, then
+  double safe_omega_ = -1;   // [1/s]; negative: not known yet
+  SharpOmega sharp_;
+  std::string failure_, error_;  // error_: of the method
+  std::optional<WorstPlace> worst_;
+
+  void keep_clock() {
+    checked_ = clock_;
+    version_ = cloth_.version();
+    // Speeds are looked at here only, so with room for them to grow.
+    if (const double thin = constraint_->thinnest(); std::isfinite(thin))
+      constraint_->watch(cloth_, max_speed(cloth_) * clock_.dt > thin / 8);
+  }
+
+  void choose_step() {
+    double dt = safe_share * safe_limit();
+    if (with_.rule == StepRule::sharp)
+      dt = sharp_share * step_limit(entry_,
+                                    sharp_(cloth_, *force_, *constraint_),
+                                    largest_gamma(cloth_, force_->drag()));
+    if (!(dt > 0 && std::isfinite(dt)))
+      throw std::invalid_argument(
+          std::string("nothing bounds the step of ") + entry_.info.name +
+          (dt > 0 ? " here" : ": it has no stable step") +
+          ", so it can't be chosen: give a number");
+    clock_.set_dt(dt);
+  }
+
+  /** One step; no look at what came out.  @return false if it can't be made */
+  bool advance() {
+    try {
+      method_->step(cloth_, time(), clock_.dt, *force_, *constraint_);
+    } catch (const StepError& e) {
+      error_ = e.what();
+      return false;
+    }
+    ++clock_.steps;
+    return true;
+  }
+
+  /** From the last good state on, step by step, until one fails.
+   * @param last the step known to fail  @return false if one did */
+  bool replay(long long last) {
+    rewind();
+    while (clock_.steps < last) {
+      if (!advance()) return fail("failed (" + error_ + ")");
+      if (!guard_->good(cloth_)) return fail("diverged");
+      guard_->keep(cloth_);
+      keep_clock();
+    }
+    return true;  // what was torn meanwhile is gone, so it may go well now
+  }
+  void rewind() {
+    guard_->restore(cloth_);
+    clock_ = checked_;
+    method_->restart();
+  }
 
   /** Say what happened to the step, and go back to before it. */
   bool fail(const std::string& what) {
     using CME212::short_text;
-    failure_ =
-        what + " in step " + std::to_string(steps_ + 1) +
-        " with dt = " + short_text(with_.dt) + " s: " + guard_->worst(cloth_) +
-        "; the last good state is that of t = " + short_text(time()) + " s";
-    guard_->restore(cloth_);
-    method_->restart();
+    worst_.emplace(cloth_);
+    const std::string where = worst_->text(cloth_);
+    rewind();
+    constexpr MethodEntry verlet = entry_of<Verlet>();
+    const double sharp =
+        step_limit(entry_, sharp_(cloth_, *force_, *constraint_, 40),
+                   largest_gamma(cloth_, force_->drag()));
+    failure_ = what + " in step " + std::to_string(clock_.steps + 1) +
+               " with dt = " + short_text(clock_.dt) + " s, method " +
+               entry_.info.name + ": " + where + "; the last good state is " +
+               "that of t = " + short_text(time()) + " s; " +
+               why_it_failed(entry_.info, clock_.dt, sharp, safe_limit(),
+                             safe_limit(verlet));
     return false;
   }
 };

@@ -5,7 +5,6 @@
  *
  * Exit status: 0 done; 2 an input or an option that can't be used, or an
  * output that can't be written; 3 the run diverged; 4 no display. */
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -36,6 +35,20 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/** What --dt says, into o.with. */
+void parse_dt(Options& o) {
+  if (o.dt == "auto" || o.dt == "auto:sharp") {
+    o.with.rule = o.dt == "auto" ? StepRule::safe : StepRule::sharp;
+    return;
+  }
+  char* end = nullptr;
+  o.with.dt = std::strtod(o.dt.c_str(), &end);
+  if (o.dt.empty() || *end != '\0' ||
+      !(o.with.dt > 0 && std::isfinite(o.with.dt)))
+    throw UsageError("--dt is " + o.dt +
+                     ", expected a positive time [s], auto or auto:sharp");
+}
+
 void check(const Options& o) {
   auto require = [](bool ok, const char* option, double value,
                     const char* expected) {
@@ -44,13 +57,12 @@ void check(const Options& o) {
                        ", expected " + expected);
   };
   const Parameters& with = o.with;
-  require(with.dt > 0 && std::isfinite(with.dt), "--dt", with.dt,
-          "a positive time [s]");
   require(o.t_end >= 0 && std::isfinite(o.t_end), "--t-end", o.t_end,
           "a time [s], 0 or more");
-  require(with.dt <= o.t_end || o.t_end == 0, "--dt", with.dt,
+  const bool fixed = with.rule == StepRule::fixed;
+  require(!fixed || with.dt <= o.t_end || o.t_end == 0, "--dt", with.dt,
           "at most --t-end");
-  require(o.t_end / with.dt < 1e15, "--t-end", o.t_end,
+  require(!fixed || o.t_end / with.dt < 1e15, "--t-end", o.t_end,
           "fewer than 1e15 steps of --dt");
   require(with.damping >= 0 && std::isfinite(with.damping), "--damping",
           with.damping, "a drag coefficient [kg/s], 0 or more");
@@ -93,7 +105,11 @@ int parse(int argc, char** argv, Options& o) {
   app.option_defaults()->always_capture_default();
   app.add_option("NODES", o.nodes, "file of points")->required();
   app.add_option("TETS", o.tets, "file of quads")->required();
-  app.add_option("--dt", o.with.dt, "step [s]");
+  app.add_option("--dt", o.dt,
+                 "step [s]; auto: 0.95 of the largest that is safe in every "
+                 "shape; auto:sharp: 0.9 of the largest in the present shape, "
+                 "chosen again every 100 steps")
+      ->type_name("FLOAT|auto|auto:sharp");
   app.add_option("--method", o.method, "name of a method: see --list-methods");
   app.add_option("--t-end", o.t_end, "time to reach [s], in steps of dt");
   app.add_option("--damping", o.with.damping,
@@ -138,6 +154,7 @@ int parse(int argc, char** argv, Options& o) {
       "print the table of methods");
   try {
     app.parse(argc, argv);
+    parse_dt(o);
     check(o);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
@@ -159,10 +176,10 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   bool shot = o.screenshot.empty();
   auto draw = [&] {
     // Half a step early is as good as half a step late.
-    double now = scene.time() + o.with.dt / 2;
+    double now = scene.time() + scene.dt() / 2;
     bool frame = !o.video.empty() && now >= double(frames) * frame_time;
     bool picture = !shot && (run.done() || (o.at >= 0 && now >= o.at));
-    if (frame || picture) screen.show(scene);
+    if (frame || picture) scene.check(), screen.show(scene);
     while (frame && now >= double(frames) * frame_time)
       screen.add_to_film(), ++frames;
     if (picture) screen.save_picture(o.screenshot), shot = true;
@@ -201,7 +218,10 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
         }
         if (!screen.wait_while_paused(scene)) continue;
         run.advance();
-        if (screen.wants_frame() || run.done()) screen.show(scene);
+        if (screen.wants_frame() || run.done()) {
+          scene.check();
+          screen.show(scene);
+        }
         if (o.speed > 0) {
           double early = (scene.time() - ahead) / o.speed - clock.seconds();
           if (early > 0 && early < 1)
@@ -242,11 +262,12 @@ int run(Options o) {
   for (const std::string& file : {o.screenshot, o.video})
     if (!file.empty()) CME212::OutputFile try_it(file);
   Scene scene(stage, std::move(points), std::move(quads), o.with,
-              find_method(o.method)->make());
+              *find_method(o.method));
   Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";
+  run.announce();
   return window ? run_in_window(scene, run, o, *window)
                 : run_headless(scene, run, o);
 }

@@ -56,7 +56,7 @@ TEST(Problem, ExactSolutionsAgreeWithAFineRun) {
     Problem p = problem(name);
     Start s(p);
     Srkn11b method;
-    double steps = p.t_end * omega_bound(s.cloth, s.constraint);
+    double steps = p.t_end * omega_safe(s.cloth, s.force, s.constraint);
     Outcome out = run(p, method, std::lround(steps));
     ASSERT_TRUE(out.ok()) << out.reason;
     EXPECT_LT(distance(p.exact(p.t_end), out.end.positions), 1e-10) << name;
@@ -75,12 +75,12 @@ TEST(Problem, FloorsAreSmallAndTheSameEachTime) {
 TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
   Start chain(problem("chain"));
   double right = 2 * std::sqrt(100 * 20) * std::cos(std::numbers::pi / 42);
-  double bound = omega_bound(chain.cloth, chain.constraint);
+  double bound = omega_safe(chain.cloth, chain.force, chain.constraint);
   EXPECT_GT(bound, right);
   EXPECT_LT(bound, 1.02 * right);
   // 12 K N for a large square with diagonals
   Start cloth(problem("grid1"));
-  bound = omega_bound(cloth.cloth, cloth.constraint);
+  bound = omega_safe(cloth.cloth, cloth.force, cloth.constraint);
   EXPECT_NEAR(bound, std::sqrt(12 * 100 * 625.0), 0.03 * bound);
 }
 

@@ -235,7 +235,7 @@ void work_precision(const std::vector<Problem>& problems,
     progress.show(p.name + ": reference", part / parts);
     const Reference r = reference(p, o.quick ? 8 : 16);
     Start start(p);
-    const double omega = omega_bound(start.cloth, start.constraint);
+    const double omega = omega_safe(start.cloth, start.force, start.constraint);
     std::vector<Case> cases;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       progress.show(p.name + ": first runs",
@@ -313,7 +313,7 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
       << "method,t [s],energy [J],status\n";
   for (const MethodEntry* entry : chosen) {
     Start s(p);
-    const double omega = omega_bound(s.cloth, s.constraint);
+    const double omega = omega_safe(s.cloth, s.force, s.constraint);
     auto method = entry->make();
     double dt = entry->info.limit == no_limit ? 10 / omega
                                               : entry->info.sweeps / 2. / omega;

@@ -32,10 +32,12 @@ ImplicitStage      : Integrator
 Implicit           : ImplicitStage
 Xpbd               : ImplicitStage
 Methods            : RungeKutta Implicit Xpbd
-Stability          : Force Constraint
+Spectrum           : Force Constraint
+Stability          : Spectrum Integrator CME212/Util CME212/BoundingBox
 Scene              : Integrator Stability
 Run                : Scene CME212/OutputFile
 Problem            : Methods Stability
+Limits             : Problem
 Screen             : Scene CME212/Image CME212/SDLViewer
 mass_spring        = Cloth Force Constraint Integrator
 '
