@@ -292,7 +292,7 @@ struct PefrlScheme {
       "pefrl",
       4,
       4,
-      2.989,
+      2.9894,
       "Omelyan, Mryglod, Folk 2002",
       "smooth motion, errors from 1e-3 to 1e-8",
       "contact and tearing: no better than verlet, and dearer"};
@@ -313,7 +313,7 @@ struct Srkn6bScheme {
       "srkn6b",
       4,
       6,
-      5.03,
+      5.0269,
       "Blanes, Moan 2002",
       "smooth motion, errors from 1e-5 to 1e-9",
       "contact and tearing; near dt omega = 3.16 without drag"};
@@ -334,7 +334,7 @@ struct Srkn11bScheme {
       "srkn11b",
       6,
       11,
-      9.07,
+      9.0736,
       "Blanes, Moan 2002",
       "references: errors below 1e-8",
       "contact and tearing; near dt omega = pi, 2 pi without drag"};

@@ -207,7 +207,7 @@ struct DormandPrinceTableau {
       "dormand-prince",
       5,
       6,
-      0.997,
+      0.9971,
       "Dormand, Prince 1980",
       "a tolerance instead of a step",
       "springs: its limit per sweep is a twelfth of verlet's",
