@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/SparseCholesky>
-
+#include "Cholesky.hpp"
 #include "ImplicitStage.hpp"
 
 /** Linearly implicit Euler: v += dt F(x + dt v)/m with F linearized at x, then
@@ -222,7 +221,6 @@ class AugmentedVerlet : public Method {
   int factorizations() const { return factorizations_; }
 
  private:
-  using Matrix = Eigen::SparseMatrix<double>;
   static constexpr unsigned none = ~0u;
 
   /** All that the factor depends on. */
@@ -241,9 +239,7 @@ class AugmentedVerlet : public Method {
   Key key_, next_;
   int factorizations_ = 0;
   std::vector<unsigned> row_;  // of the matrix, by node id; none if fixed
-  // Rows are numbered in an order that keeps the factor sparse.
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::NaturalOrdering<int>>
-      factor_;
+  SparseCholesky factor_;
   std::vector<Point> acceleration_;  // [m/s^2], by row
   std::vector<Point> force_;         // [N], by node id, without drag
   const Cloth* kept_for_ = nullptr;  // at whose state acceleration_ is
@@ -271,7 +267,7 @@ class AugmentedVerlet : public Method {
   }
 
   /** The lower triangle of M + (dt^2/4) L. */
-  Matrix matrix() const {
+  SparseCholesky::Matrix matrix() const {
     std::vector<Eigen::Triplet<double>> entries;
     const double h2 = key_.dt * key_.dt / 4;
     auto add = [&](unsigned i, unsigned j, double a) {
@@ -286,7 +282,7 @@ class AugmentedVerlet : public Method {
       add(i, j, -h2 * K);
     }
     const auto n = Eigen::Index(acceleration_.size());
-    Matrix a(n, n);
+    SparseCholesky::Matrix a(n, n);
     a.setFromTriplets(entries.begin(), entries.end());
     return a;
   }
@@ -298,18 +294,7 @@ class AugmentedVerlet : public Method {
     for (unsigned i = 0; i < row_.size(); ++i)
       if (!key_.fixed[i]) row_[i] = rows++;
     acceleration_.assign(rows, Point());
-    if (rows == 0) return;
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-    Matrix by_id = matrix();
-    Eigen::AMDOrdering<int>()(by_id.selfadjointView<Eigen::Lower>(), order);
-    // order.indices()[new] = old
-    std::vector<unsigned> renamed(rows);
-    for (unsigned k = 0; k < rows; ++k)
-      renamed[unsigned(order.indices()[k])] = k;
-    for (unsigned& row : row_)
-      if (row != none) row = renamed[row];
-    factor_.compute(matrix());
-    if (factor_.info() == Eigen::Success) return;
+    if (factor_.factorize(matrix())) return;
     key_ = {};
     throw StepError(std::string(info.name) +
                     ": the matrix of masses can't be factored; dt = " +
@@ -321,24 +306,7 @@ class AugmentedVerlet : public Method {
     integrator_detail::sweep_without_drag(g, t, force, force_);
     for (unsigned i = 0; i < row_.size(); ++i)
       if (row_[i] != none) acceleration_[row_[i]] = force_[i];
-    // Both triangles, by hand: the three coordinates in one pass over the
-    // factor, and no copies. Each column begins with its diagonal entry.
-    if (acceleration_.empty()) return;
-    const auto& lower = factor_.matrixL().nestedExpression();
-    const int* begin = lower.outerIndexPtr();
-    const int* row = lower.innerIndexPtr();
-    const double* entry = lower.valuePtr();
-    auto& a = acceleration_;
-    for (std::size_t j = 0; j < a.size(); ++j) {
-      a[j] /= entry[begin[j]];
-      for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
-        a[unsigned(row[k])] -= entry[k] * a[j];
-    }
-    for (std::size_t j = a.size(); j-- > 0;) {
-      for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
-        a[j] -= entry[k] * a[unsigned(row[k])];
-      a[j] /= entry[begin[j]];
-    }
+    factor_.solve(acceleration_);
   }
 
   void kick(Cloth& g, double h) const {

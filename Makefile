@@ -7,6 +7,7 @@
 STAGE  ?= tear
 STAGES  = problem1 diagonals forces constraints tear
 VIEWER ?= 1
+CHOLMOD ?= 1
 HW     ?= hw2
 O       =
 SANITIZE = address,undefined
@@ -26,7 +27,11 @@ draws    = $(and $(filter $(DRAWING),$*),$(filter 1,$(VIEWER)))
 draw_pkg = sdl2 gl imgui libpng
 stage_of = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
 eigen   := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 2>/dev/null))
-flags    = -std=c++20 -g -Wall -Wextra -pthread -I. $(eigen) \
+# Where CHOLMOD is installed it factors sparse matrices, unless CHOLMOD=0.
+cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
+  -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null \
+  >/dev/null 2>&1 && echo -DMASS_SPRING_CHOLMOD))
+flags    = -std=c++20 -g -Wall -Wextra -pthread -I. $(eigen) $(cholmod) \
            $(if $(filter test_% example_%,$*),$(testing),$(release)) \
            $(if $(filter mass_spring%,$*),-DSTAGE=$(stage_of)) \
            $(if $(draws),-DMASS_SPRING_VIEWER \
@@ -34,7 +39,9 @@ flags    = -std=c++20 -g -Wall -Wextra -pthread -I. $(eigen) \
            $(CPPFLAGS) $(CXXFLAGS)
 libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
            $(if $(filter bench,$*),-lbenchmark) \
-           $(if $(draws),$(shell pkg-config --libs $(draw_pkg) 2>/dev/null)) $(LDLIBS)
+           $(if $(draws),$(shell pkg-config --libs $(draw_pkg) 2>/dev/null)) \
+           $(LDLIBS) $(lcholmod)
+lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
 .PHONY: charts charts-quick all deps peers-deps peers-chart demo check check-all print-tests fuzz \
@@ -88,7 +95,7 @@ build/peers: peers/peers.cpp $(wildcard *.hpp)
 	@mkdir -p build
 	$(CXX) $(flags) -o $@ $< -lsundials_cvode -lsundials_arkode \
 	  -lsundials_nvecserial -lsundials_sunlinsolspgmr \
-	  -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas
+	  -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas $(lcholmod)
 peers-chart: build/peers
 	{ echo "# $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1);" \
 	    "$$($(CXX) --version | head -n 1);" \

@@ -144,7 +144,9 @@ int parse(int argc, char** argv, Options& o) {
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   app.set_config("--config", "", "read options from a file: dt=0.0005 ...");
   app.set_version_flag("--version", std::string("mass_spring ") + version +
-                                        ", stage " + stage_name);
+                                        ", stage " + stage_name +
+                                        ", Cholesky by " +
+                                        SparseCholesky::back_end);
   app.add_flag_callback(
       "--list-methods",
       [] {

@@ -59,7 +59,7 @@ step build-g++     make_all all CXX=g++
 # What counts of clang++ is what it says: no time for optimizing.
 step build-clang++ make_all all CXX=clang++ O=build/clang/ SANITIZE= \
   CXXFLAGS="-Werror -O0 -g0"
-step build-plain   make_all mass_spring VIEWER=0 O=build/plain/
+step build-plain   make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/
 step build-tsan    make_all build/tsan/test_viewer O=build/tsan/ SANITIZE=thread
 for test in $tests; do
   case $test in

@@ -7,16 +7,25 @@ cd "$(dirname "$0")/.."
 shopt -s nullglob
 if [ $# = 0 ]; then set -- *.hpp CME212/*.hpp; fi
 # Headers that draw, and the packages whose flags these need. A header that
-# draws only under MASS_SPRING_VIEWER is compiled with it and without it.
+# draws only under MASS_SPRING_VIEWER is compiled with it and without it; so is
+# one that knows MASS_SPRING_CHOLMOD, where CHOLMOD is installed.
 drawing='^CME212/(GL|SDL|Image)'
 packages="sdl2 gl imgui libpng"
 
+has_cholmod() {  # COMPILER
+  $1 -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null 2>/dev/null
+}
 compile() {  # COMPILER HEADER; one report, even when others write too
   local flags="" out ways=plain way
   if [[ $2 =~ $drawing ]]; then ways=draw
-  elif grep -q 'MASS_SPRING_VIEWER' "$2"; then ways="plain draw"; fi
+  elif grep -q 'MASS_SPRING_VIEWER' "$2"; then ways="plain draw"
+  elif grep -q 'MASS_SPRING_CHOLMOD' "$2" && has_cholmod "$1"; then
+    ways="plain cholmod"
+  fi
   for way in $ways; do
-    if [ "$way" = draw ]; then
+    if [ "$way" = cholmod ]; then
+      flags=" -DMASS_SPRING_CHOLMOD"
+    elif [ "$way" = draw ]; then
       # shellcheck disable=SC2086  # a list of words
       flags=$(pkg-config --cflags $packages) ||
         { echo "$2:1: draws, but one is missing of: $packages"; return 1; }
@@ -36,7 +45,7 @@ eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
 CPPFLAGS="${CPPFLAGS:-} $eigen"
 
 export drawing packages CPPFLAGS
-export -f compile
+export -f compile has_cholmod
 for cxx in ${CXX:-g++ clang++}; do
   command -v "$cxx" >/dev/null || { echo "$cxx is missing: make deps"; exit 1; }
   printf '%s\n' "$@" | sed "s/^/$cxx /"

@@ -28,8 +28,9 @@ Force              : Cloth
 Constraint         : Cloth
 Integrator         : Force Constraint
 RungeKutta         : Integrator
+Cholesky           : CME212/Point
 ImplicitStage      : Integrator
-Implicit           : ImplicitStage
+Implicit           : ImplicitStage Cholesky
 Xpbd               : ImplicitStage
 Methods            : RungeKutta Implicit Xpbd
 Spectrum           : Force Constraint

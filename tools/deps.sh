@@ -14,7 +14,7 @@ packages() {
     check) echo "clang clang-format libclang-rt-dev libgtest-dev" \
                 "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" ;;
     peers) echo "libsundials-dev libboost-dev liblemon-dev" \
-                "libbullet-dev libgsl-dev" ;;
+                "libbullet-dev libgsl-dev libsuitesparse-dev" ;;
     *) echo "deps: no group '$1'; there are: build draw check peers" >&2
        exit 2 ;;
   esac
