@@ -44,7 +44,7 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
 lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: charts charts-quick all deps peers-deps peers-chart demo check check-all print-tests fuzz \
+.PHONY: charts charts-quick orders all deps peers-deps peers-chart demo check check-all print-tests fuzz \
         pictures help clean format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -54,6 +54,7 @@ help:
 	@echo 'make mass_spring        the last stage; STAGE=forces another, or'
 	@echo '                        make mass_spring_forces; VIEWER=0 no window'
 	@echo 'make test_nodes ...     a test, under the sanitizers'
+	@echo 'make orders             the order of every method, measured'
 	@echo 'make check              everything that a commit must pass'
 	@echo 'make data/grid4.nodes   a grid of a million nodes'
 	@echo 'make submit HW=hw2      tag and push; FORCE=1 moves the tag'
@@ -63,7 +64,7 @@ help:
 all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
 
 needs    = $(if $(draws),$(draw_pkg)) \
-           $(if $(filter mass_spring% work_precision test_m%,$*),CLI11 eigen3)
+           $(if $(filter mass_spring% work_precision test_m% test_orders,$*),CLI11 eigen3)
 missing  = echo "make $*: not all of $(strip $(needs)) is installed:" \
   "'make deps' does it$(if $(draws),; 'make $* VIEWER=0' builds without a window)" >&2
 # A program is built anew when its sources or its flags have changed.
@@ -135,6 +136,10 @@ charts: work_precision
 	@QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' charts/make.sh
 charts-quick:
 	@$(MAKE) --no-print-directory charts QUICK=1
+
+# The table of measured orders in docs/methods.md.
+orders: test_orders
+	@./test_orders | grep -e '^|' -e FAILED
 
 # Needs clang. The inputs that it starts from: tools/corpus.
 RUNS ?= 200000
