@@ -72,6 +72,46 @@ TEST(Problem, FloorsAreSmallAndTheSameEachTime) {
   }
 }
 
+// The two of a reference, run here: so far is the one from the other.
+TEST(Problem, ReferencesAreOfTwoMethodsOfDifferentOrderAndStep) {
+  Problem drape = problem("drape"), tear = problem("tear");
+  for (Problem* p : {&drape, &tear})
+    p->build = grid_problem("", "", 0, 9).build;
+  for (const Problem& p : {problem("grid0"), drape, tear}) {
+    const Reference r = reference(p, 4);
+    std::istringstream made(r.made);
+    std::string name[2], word;
+    long long steps[2];
+    made >> name[0] >> steps[0] >> word >> name[1] >> steps[1] >> word;
+    ASSERT_TRUE(made.good() || made.eof()) << r.made;
+    const MethodEntry *one = find_method(name[0]), *two = find_method(name[1]);
+    ASSERT_TRUE(one && two) << r.made;
+    EXPECT_NE(one->info.order, two->info.order) << r.made;
+    EXPECT_NE(steps[0], steps[1]) << r.made;
+    Outcome a = run(p, *one->make(), steps[0]),
+            b = run(p, *two->make(), steps[1]);
+    EXPECT_EQ(distance(p, a.end, r.end), 0) << r.made;
+    EXPECT_EQ(distance(p, a.end, b.end), r.floor) << r.made;
+    EXPECT_LT(r.floor, 1e-4) << r.made;
+  }
+}
+TEST(Problem, ReferencesKnowTheWholeEnd) {
+  for (const char* name : {"chain", "curtain"}) {
+    Problem p = problem(name);
+    const Reference r = reference(p, 2);
+    EXPECT_EQ(r.made.find("exact, srkn11b "), 0u) << r.made;
+    Srkn11b method;
+    Start s(p);
+    const End end =
+        run(p, method,
+            std::lround(16 * p.t_end * omega_bound(s.cloth, s.constraint) /
+                        Srkn11b::info.limit))
+            .end;
+    EXPECT_LT(norm(r.end.center - end.center), 1e-10) << name;
+    EXPECT_NEAR(r.end.energy, end.energy, 1e-8) << name;
+  }
+}
+
 TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
   Start chain(problem("chain"));
   double right = 2 * std::sqrt(100 * 20) * std::cos(std::numbers::pi / 42);
@@ -178,7 +218,8 @@ TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
             0)
       << err();
   std::string text = contents(csv());
-  for (const char* line : {"# machine: ", "# compiler: ", "# commit: "})
+  for (const char* line : {"# machine: ", "# compiler: ", "# commit: ",
+                           "# reference chain: exact, srkn11b "})
     EXPECT_NE(text.find(line), std::string::npos) << line;
   std::set<std::string> seen;
   for (Row& row : rows()) {

@@ -178,6 +178,17 @@ std::vector<Case> ladder(const Problem& p, const Reference& r,
   return cases;
 }
 
+/** How the reference was made, and what it says of the cloth as a whole. */
+void write_reference(std::ostream& out, const Problem& p, const Reference& r) {
+  char text[160];
+  const auto& [x, y, z] = r.end.center;
+  std::snprintf(text, sizeof text,
+                ": agree to %.2g m; center of mass %.14g %.14g %.14g m, "
+                "energy %.14g J\n",
+                r.floor, x, y, z, r.end.energy);
+  out << "# reference " << p.name << ": " << r.made << text;
+}
+
 void write_case(std::ostream& out, const Problem& p, const Reference& r,
                 const Case& c) {
   constexpr const char* statuses[] = {"ok", "diverged", "failed"};
@@ -234,6 +245,7 @@ void work_precision(const std::vector<Problem>& problems,
   for (const Problem& p : problems) {
     progress.show(p.name + ": reference", part / parts);
     const Reference r = reference(p, o.quick ? 8 : 16);
+    write_reference(out, p, r);
     Start start(p);
     const double omega = omega_safe(start.cloth, start.force, start.constraint);
     std::vector<Case> cases;
