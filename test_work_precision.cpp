@@ -186,6 +186,7 @@ class WorkPrecision : public ::testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string err() { return contents(dir / "err"); }
+  std::string printed() { return contents(dir / "out"); }
   std::string csv() { return (dir / "w.csv").string(); }
 
   using Row = std::map<std::string, std::string>;  // by head of the column
@@ -212,7 +213,7 @@ class WorkPrecision : public ::testing::Test {
 };
 
 TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
-  ASSERT_EQ(run_program("--quick --quiet --scenes chain --methods "
+  ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
                         "forward-euler,verlet,dormand-prince --out " +
                         csv()),
             0)
@@ -242,6 +243,101 @@ TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
   EXPECT_EQ(seen, (std::set<std::string>{"forward-euler diverged",
                                          "forward-euler ok", "verlet diverged",
                                          "verlet ok", "dormand-prince ok"}));
+}
+
+// What the columns say, found once more here.
+TEST_F(WorkPrecision, WritesWhatIsTrue) {
+  ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
+                        "forward-euler,verlet,dormand-prince --out " +
+                        csv()),
+            0)
+      << err();
+  EXPECT_NE(printed().find("chain: floor 2"), std::string::npos) << printed();
+  EXPECT_NE(printed().find("\n  1e-06 m: "), std::string::npos);
+  const Problem p = problem("chain");
+  const double floor = reference(p, 8).floor;
+  std::map<std::string, std::vector<Row>> of;
+  auto number = [](Row& row, const char* head) { return std::stod(row[head]); };
+  for (Row& row : rows()) {
+    EXPECT_NEAR(number(row, "floor [m]") / floor, 1, 1e-5);
+    if (row["status"] == "ok") {
+      EXPECT_GT(number(row, "seconds_min [s]"), 0);
+      EXPECT_LE(number(row, "seconds_min [s]"),
+                number(row, "seconds_median [s]"));
+    }
+    if (row["tolerance [m]"].empty()) {
+      EXPECT_NEAR(number(row, "dt [s]") * number(row, "steps"), 0.8, 1e-5);
+    }
+    of[row["method"]].push_back(row);
+  }
+  for (Row& row : of["forward-euler"]) {
+    EXPECT_EQ(row["dt/limit"], "");
+    EXPECT_EQ(row["sweeps"], row["steps"]);
+  }
+  // Twice the largest stable step, that step, and each half of the last one.
+  double share = 2;
+  for (Row& row : of["verlet"]) {
+    EXPECT_LE(number(row, "dt/limit"), share);
+    EXPECT_GT(number(row, "dt/limit"), 0.9 * share);
+    share /= 2;
+    if (row["status"] != "ok") continue;
+    const auto steps = std::stoll(row["steps"]);
+    EXPECT_EQ(number(row, "sweeps"), double(steps + 1));
+    Verlet verlet;
+    double error = distance(p.exact(0.8), run(p, verlet, steps).end.positions);
+    EXPECT_NEAR(number(row, "error [m]") / error, 1, 1e-5);
+  }
+  EXPECT_GT(of["verlet"].size(), 2u);
+  // A tenth of the tolerance each time, and nothing beyond ten floors.
+  auto& adaptive = of["dormand-prince"];
+  for (std::size_t k = 0; k < adaptive.size(); ++k) {
+    EXPECT_NEAR(number(adaptive[k], "tolerance [m]") * std::pow(10, 2 + k), 1,
+                1e-5);
+    if (k + 1 < adaptive.size()) {
+      EXPECT_GT(number(adaptive[k], "error [m]"), 10 * floor);
+    }
+  }
+}
+
+TEST_F(WorkPrecision, FollowsTheEnergy) {
+  ASSERT_EQ(
+      run_program("--energy --methods verlet,forward-euler --out " + csv()), 0)
+      << err();
+  std::map<std::string, std::vector<Row>> of;
+  for (Row& row : rows()) of[row["method"]].push_back(row);
+  auto &kept = of["verlet"], &grown = of["forward-euler"];
+  ASSERT_TRUE(kept.size() > 400 && grown.size() > 10);
+  for (Row& row : kept) {
+    EXPECT_LT(std::abs(std::stod(row["energy [J]"])), 0.1);
+    EXPECT_EQ(row["status"], "ok");
+  }
+  EXPECT_NEAR(std::stod(kept.back()["t [s]"]), 5, 0.02);
+  for (auto* rows : {&kept, &grown})
+    EXPECT_EQ(rows->front()["energy [J]"], "0");
+  EXPECT_GT(std::stod(grown.back()["energy [J]"]), 1);
+  EXPECT_EQ(grown.back()["status"], "diverged");
+  EXPECT_EQ(grown[grown.size() - 2]["status"], "ok");
+}
+
+TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
+  ASSERT_EQ(run_program("--grid-refinement --quick --quiet --out " + csv()), 0)
+      << err();
+  std::map<std::string, std::vector<double>> error, dt;
+  for (Row& row : rows()) {
+    error[row["refined"]].push_back(std::stod(row["error [m]"]));
+    dt[row["refined"]].push_back(std::stod(row["dt [s]"]));
+  }
+  for (const char* refined : {"grid", "both"}) {
+    auto& e = error[refined];
+    ASSERT_EQ(e.size(), 3u);
+    EXPECT_GT(e[0], 2 * e[1]);
+    EXPECT_GT(e[1], 2 * e[2]);
+  }
+  EXPECT_EQ(error["grid"].back(), error["both"].back());
+  EXPECT_NEAR(error["step"].back() / error["step"].front(), 1, 1e-3);
+  EXPECT_EQ(dt["grid"].front(), dt["grid"].back());
+  for (const char* refined : {"step", "both"})
+    EXPECT_NEAR(dt[refined].front() / dt[refined].back(), 4, 0.1);
 }
 
 TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
@@ -283,7 +379,10 @@ TEST_F(WorkPrecision, TakesAMeshOfOnesOwn) {
       << err();
   auto all = rows();
   ASSERT_FALSE(all.empty());
-  EXPECT_EQ(all[0]["scene"], "mesh");
+  for (Row& row : all) {
+    EXPECT_EQ(row["scene"], "mesh");
+    EXPECT_NEAR(std::stod(row["dt [s]"]) * std::stod(row["steps"]), 0.1, 1e-6);
+  }
 }
 
 }  // namespace
