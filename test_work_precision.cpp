@@ -312,8 +312,10 @@ TEST_F(WorkPrecision, FollowsTheEnergy) {
     EXPECT_EQ(row["status"], "ok");
   }
   EXPECT_NEAR(std::stod(kept.back()["t [s]"]), 5, 0.02);
-  for (auto* rows : {&kept, &grown})
+  for (auto* rows : {&kept, &grown}) {
+    EXPECT_EQ(rows->front()["t [s]"], "0");
     EXPECT_EQ(rows->front()["energy [J]"], "0");
+  }
   EXPECT_GT(std::stod(grown.back()["energy [J]"]), 1);
   EXPECT_EQ(grown.back()["status"], "diverged");
   EXPECT_EQ(grown[grown.size() - 2]["status"], "ok");
@@ -326,6 +328,8 @@ TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
   for (Row& row : rows()) {
     error[row["refined"]].push_back(std::stod(row["error [m]"]));
     dt[row["refined"]].push_back(std::stod(row["dt [s]"]));
+    EXPECT_NEAR((std::stod(row["sweeps"]) - 1) * dt[row["refined"]].back(),
+                0.25, 1e-5);
   }
   for (const char* refined : {"grid", "both"}) {
     auto& e = error[refined];
