@@ -4,6 +4,7 @@
  * Newton's method and conjugate gradients. */
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,10 +37,10 @@ inline void find_fixed(const Cloth& g, const ZeroConstraint& constraint,
 
 /** What a solver is asked for, and what its errors say. */
 struct Goal {
-  const char* method;
-  double dt;         ///< of the whole step [s]
   double tolerance;  ///< of the iteration that throws
   int max_iterations;
+  const char* method = "";
+  double dt = 0;  ///< of the whole step [s]
   [[noreturn]] void fail(const char* what, int iterations, double residual,
                          const char* unit) const {
     using CME212::short_text;
@@ -66,55 +67,76 @@ class ImplicitStage {
  public:
   std::vector<Point> p, q, w;  // by node id
 
-  /** Ready for a step of @a g: sizes, and who is fixed and at rest. */
-  void begin(Cloth& g, const ZeroConstraint& constraint) {
+  /** @param tolerance > 0 and @param max_iterations: see the solvers */
+  ImplicitStage(double tolerance, int max_iterations)
+      : goal_{tolerance, max_iterations} {}
+
+  /** Ready for a step of @a g by @a dt [s]: who is fixed and at rest, and p =
+   * x, q = w = v.  @param method whose name errors give */
+  void begin(const char* method, double dt, Cloth& g,
+             const ZeroConstraint& constraint) {
+    goal_.method = method, goal_.dt = dt;
     find_fixed(g, constraint, fixed_);
     stop_held(g, constraint);
-    for (auto* a :
-         {&p, &q, &w, &residual_, &step_, &rest_, &z_, &direction_, &product_})
-      a->resize(g.node_slots());
-    inverse_.resize(g.node_slots());
+    const unsigned n = g.node_slots();
+    p.assign(g.positions().begin(), g.positions().end());
+    q.resize(n);
+    for (unsigned i = 0; i < n; ++i) q[i] = g.node_values()[i].vel;
+    w = q;
+    for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
+      a->resize(n);
+    inverse_.resize(n);
   }
   bool fixed(unsigned i) const { return fixed_[i]; }
 
-  /** One Newton step from @a w, whatever is left over: the linear system,
-   * without negative stiffness, is solved to goal.tolerance. @post g's
-   * positions are p + s w */
-  void solve_linearized(Cloth& g, double t, double s, const ZeroForce& force,
-                        const Goal& goal) {
-    move(g, s);
+  /** One Newton step from where @a g is, whatever is left over: the linear
+   * system, without negative stiffness, is solved to a relative residual of
+   * tolerance.  @post g's positions are p + s w */
+  void solve_linearized(Cloth& g, double t, double s, const ZeroForce& force) {
+    find_still(g, s, w);
     find_residual(g, t, s, force);
-    assemble(g, s, force, goal);
-    solve(goal.tolerance, goal, true);
+    assemble(g, s, force);
+    solve(goal_.tolerance, true);
     advance(1);
     move(g, s);
   }
 
-  /** Newton's method from @a w, with a line search.
-   * @post g's positions are p + s w, and the RMS over the nodes of s D^-1 times
-   * the residual, D the diagonal blocks of A, is at most goal.tolerance [m], or
-   * at what round-off leaves of it. Throws StepError. */
-  void solve_newton(Cloth& g, double t, double s, const ZeroForce& force,
-                    const Goal& goal) {
-    double first = 0;
+  /** Newton's method with a line search, from @a w or from where @a g is: the
+   * former is nearer, unless it stretches springs.
+   * @post g's positions are p + s w, and the RMS over the nodes of D^-1 r/s, r
+   * the residual and D the diagonal blocks of A, is at most tolerance [m/s^2]
+   * or round_off(). Such a residual does what a wrong acceleration would: while
+   * s omega is small, it moves the cloth by tolerance T^2/2 at most in a time
+   * T, however many steps that takes. Throws StepError. */
+  void solve_newton(Cloth& g, double t, double s, const ZeroForce& force) {
+    Objective here = choose_start(g, s, force);
+    double first = 0, before = 0;
+    bool clamp = false;
     for (int iteration = 0;; ++iteration) {
       move(g, s);
       find_residual(g, t, s, force);
-      if (iteration == 0) assemble(g, s, force, goal);
-      const double left = s * size_of_correction(g);
-      const double floor = 1e-15 * rms(g, g.positions());
-      if (left <= goal.tolerance + floor) return;
-      if (iteration == goal.max_iterations || !std::isfinite(left))
-        goal.fail("Newton's method", iteration, left, " m");
-      if (iteration == 0)
+      if (iteration == 0) assemble(g, s, force);
+      precondition(residual_, z_);
+      const double left = rms(g, z_) / s;
+      if (left <= goal_.tolerance || left <= round_off(g, s)) return;
+      if (iteration == goal_.max_iterations || !std::isfinite(left))
+        goal_.fail("Newton's method", iteration, left, " m/s^2");
+      // Solve the better, the faster Newton closes in, but not for nothing.
+      double enough = 0.01;
+      if (iteration == 0) {
         first = left;
-      else
-        assemble(g, s, force, goal);
-      // Solve the better, the closer: Newton's convergence is superlinear.
-      double enough = std::max(0.1 * left / first, goal.tolerance / left);
-      enough = 0.1 * std::clamp(enough, 1e-11, 0.1);
-      if (!solve(enough, goal, false)) solve(enough, goal, true);
-      search(g, s, force, goal, iteration, left);
+      } else {
+        assemble(g, s, force);
+        enough = std::max(0.1 * std::pow(left / before, 1.5),
+                          0.3 * goal_.tolerance / left);
+        enough = std::clamp(enough, 1e-12, 0.03);
+      }
+      before = left;
+      if (clamp || !solve(enough, false)) solve(enough, true);
+      const bool found = search(g, t, s, force, here, left < 0.01 * first);
+      if (!found && clamp)
+        goal_.fail("Newton's line search", iteration, left, " m/s^2");
+      clamp = !found;  // A was all but singular, and the step far too long
     }
   }
 
@@ -129,11 +151,17 @@ class ImplicitStage {
   std::vector<double> diagonal_;          // m + s c [kg]
   std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
   double drag_ = 0;  // [kg/s]
+  Goal goal_;
 
   static Stiffness clamped(const Stiffness& B) {
     return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
   }
 
+  /** The @a still [m/s] that leaves @a g where it is. */
+  void find_still(const Cloth& g, double s, std::vector<Point>& still) const {
+    auto x = g.positions();
+    for (unsigned i = 0; i < w.size(); ++i) still[i] = (x[i] - p[i]) / s;
+  }
   /** The positions p + s w. */
   void move(Cloth& g, double s) const {
     auto x = g.positions();
@@ -158,8 +186,7 @@ class ImplicitStage {
   }
 
   /** The springs' blocks of A, and the inverses of its diagonal ones. */
-  void assemble(const Cloth& g, double s, const ZeroForce& force,
-                const Goal& goal) {
+  void assemble(const Cloth& g, double s, const ZeroForce& force) {
     auto node = g.node_values();
     diagonal_.resize(w.size());
     for (unsigned i = 0; i < w.size(); ++i) {
@@ -168,7 +195,7 @@ class ImplicitStage {
     }
     blocks_.clear();
     const double ss = s * s;
-    add_stiffness(goal.method, force, g,
+    add_stiffness(goal_.method, force, g,
                   [this, ss](unsigned i, unsigned j, const Stiffness& B) {
                     Stiffness b = {B.direction, ss * B.along, ss * B.across};
                     blocks_.push_back({i, j, b});
@@ -223,9 +250,18 @@ class ImplicitStage {
     for (const Point& point : a) sum += normSq(point);
     return std::sqrt(sum / std::max(1u, g.num_nodes()));
   }
-  double size_of_correction(const Cloth& g) {
-    precondition(residual_, z_);
-    return rms(g, z_);
+  /** What round-off leaves of D^-1 r/s [m/s^2], RMS over the nodes: that of w
+   * by the inertia, that of x by the springs, as far as they make up D. */
+  double round_off(const Cloth& g, double s) const {
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    auto x = g.positions();
+    double sum = 0;
+    for (unsigned i = 0; i < w.size(); ++i) {
+      if (fixed_[i]) continue;
+      double share = std::clamp(3 - diagonal_[i] * inverse_[i].trace(), 0., 3.);
+      sum += normSq(w[i]) + share * share / (s * s) * normSq(x[i]);
+    }
+    return epsilon / s * std::sqrt(sum / std::max(1u, g.num_nodes()));
   }
 
   /** Solve A step_ = residual_ by conjugate gradients, preconditioned by D,
@@ -234,7 +270,7 @@ class ImplicitStage {
    * Without @a clamp, A may turn out not to be positive definite: then step_ is
    * as far as it got, which goes downhill still.
    * @return false if it got nowhere; never with @a clamp  Throws StepError. */
-  bool solve(double relative, const Goal& goal, bool clamp) {
+  bool solve(double relative, bool clamp) {
     std::fill(step_.begin(), step_.end(), Point());
     rest_ = residual_;
     precondition(rest_, z_);
@@ -244,7 +280,7 @@ class ImplicitStage {
     const int most = 1000 + 3 * int(w.size());
     for (int k = 0; !(size <= enough); ++k) {
       if (k == most || !std::isfinite(size)) {
-        Goal linear = goal;
+        Goal linear = goal_;
         linear.tolerance = relative;
         linear.fail("the conjugate gradient method", k, std::sqrt(size / start),
                     " (relative)");
@@ -272,29 +308,56 @@ class ImplicitStage {
   };
   Objective objective(const Cloth& g, double s, const ZeroForce& force) const {
     auto node = g.node_values();
+    const double drag = force.drag();
     double sum = 0;
     for (unsigned i = 0; i < w.size(); ++i)
       if (!fixed_[i])
-        sum += node[i].mass * normSq(w[i] - q[i]) + s * drag_ * normSq(w[i]);
+        sum += node[i].mass * normSq(w[i] - q[i]) + s * drag * normSq(w[i]);
     return {0.5 * sum, force.energy(g)};
   }
 
-  /** Go along step_ by 1, 1/2, 1/4, ... until the objective has fallen by a
-   * ten thousandth of what its slope promises (Armijo's rule). Where round-off
-   * would hide such a fall, go all the way. */
-  void search(Cloth& g, double s, const ZeroForce& force, const Goal& goal,
-              int iteration, double left) {
+  /** Keep w, or take the one that leaves @a g where it is: that of the lower
+   * objective, which is returned. */
+  Objective choose_start(Cloth& g, double s, const ZeroForce& force) {
+    find_still(g, s, rest_);
+    std::swap(w, rest_);
+    const Objective still = objective(g, s, force);
+    std::swap(w, rest_);
+    move(g, s);
+    const Objective moved = objective(g, s, force);
+    if (moved.value() < still.value()) return moved;
+    std::swap(w, rest_);
+    return still;
+  }
+
+  /** Go along step_ by 1, 1/2, 1/4, ... until the objective has fallen from
+   * @a here by a ten thousandth of what its slope promises (Armijo's rule).
+   * Round-off may hide such a fall: go all the way if it is that small; and if
+   * @a close to the end, also if there is no slope left there, as at the bottom
+   * of a parabola.
+   * @return false if it does not fall; then w is as before, to round-off */
+  bool search(Cloth& g, double t, double s, const ZeroForce& force,
+              Objective& here, bool close) {
     const double promise = product(residual_, step_);
-    const Objective before = objective(g, s, force);
     advance(1);
-    if (promise <= 1e-12 * (before.inertia + std::abs(before.energy))) return;
-    for (double a = 1;; a /= 2) {
+    if (promise <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
+    double a = 1;
+    for (; a > 1e-9; a /= 2) {
       move(g, s);
-      if (objective(g, s, force).value() <= before.value() - 1e-4 * a * promise)
-        return;
-      if (a < 1e-9) goal.fail("Newton's line search", iteration, left, " m");
+      const Objective there = objective(g, s, force);
+      bool good = there.value() <= here.value() - 1e-4 * a * promise;
+      if (!good && close && a == 1) {
+        find_residual(g, t, s, force);
+        good = std::abs(product(residual_, step_)) <= 0.1 * promise;
+      }
+      if (good) {
+        here = there;
+        return true;
+      }
       advance(-a / 2);
     }
+    advance(-a);
+    return false;
   }
 };
 
