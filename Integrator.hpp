@@ -270,13 +270,14 @@ using Verlet = Splitting<VerletScheme>;
  * Source: H. Yoshida, Phys. Lett. A 150 (1990) 262; E. Forest, R. D. Ruth,
  * Physica D 43 (1990) 105. */
 struct Yoshida4Scheme {
-  static constexpr MethodInfo info = {"yoshida4",
-                                      4,
-                                      3,
-                                      1.5734,
-                                      "Yoshida 1990",
-                                      "being well known",
-                                      "pefrl is at hand: 30 times less error"};
+  static constexpr MethodInfo info = {
+      "yoshida4",
+      4,
+      3,
+      1.5734,
+      "Yoshida 1990",
+      "being well known",
+      "pefrl is at hand: less error, longer steps"};
   static constexpr bool kicks_first = true;
   static constexpr double w1 = 1.3512071919596578;  // 1/(2 - 2^(1/3))
   static constexpr double w0 = 1 - 2 * w1;

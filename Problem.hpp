@@ -234,31 +234,36 @@ namespace problem_detail {
 using std::numbers::pi;
 
 /** @a n masses of 1/n kg in a row along x, between two walls 1 m apart,
- * springs of K = 100 N/m stretched to twice their rest length, so that they
- * stay straight. Three modes at once, let go at rest. */
+ * springs of K = 100 N/m longer than at rest, so that they stay straight. Some
+ * modes at once, let go at rest. */
 struct Chain {
+  struct Mode {
+    unsigned k;        // half waves between the walls
+    double amplitude;  // [m]
+  };
   unsigned n = 20;
   double K = 100;
-  static constexpr std::array modes = {1, 2, 5};
-  static constexpr std::array amplitudes = {0.02, 0.01, 0.005};  // [m]
+  double rest = 0.5;  // rest length of a spring, as a share of its length
+  std::vector<Mode> modes = {{1, 0.02}, {2, 0.01}, {5, 0.005}};
 
+  double omega(unsigned k) const {  // [1/s]
+    return 2 * std::sqrt(K * n) * std::sin(k * pi / (n + 1) / 2);
+  }
   std::vector<Point> exact(double t) const {
     std::vector<Point> x;
     for (unsigned j = 0; j < n + 2; ++j) {
       Point& p = x.emplace_back(j / double(n + 1), 0, 0);
       if (j == 0 || j == n + 1) continue;
-      for (std::size_t k = 0; k < modes.size(); ++k) {
-        double angle = modes[k] * pi / (n + 1);
-        double omega = 2 * std::sqrt(K * n) * std::sin(angle / 2);
-        p.x += amplitudes[k] * std::sin(angle * j) * std::cos(omega * t);
-      }
+      for (const Mode& m : modes)
+        p.x += m.amplitude * std::sin(m.k * pi / (n + 1) * j) *
+               std::cos(omega(m.k) * t);
     }
     return x;
   }
   void build(Cloth& g) const {
     for (const Point& p : exact(0)) g.add_node(p, {Point(), 1.0 / n});
     for (unsigned j = 0; j <= n; ++j)
-      g.add_edge(g.node(j), g.node(j + 1), {K, 0.5 / (n + 1)});
+      g.add_edge(g.node(j), g.node(j + 1), {K, rest / (n + 1)});
   }
   CombinedConstraints pins(const Cloth& g) const {
     std::array ends = {g.node(0), g.node(n + 1)};
@@ -341,18 +346,26 @@ inline Problem grid_problem(std::string name, std::string about, double t_end,
                        grid_points(side), grid_quads(side), K);
 }
 
+/** Masses in a row, without gravity and drag. */
+inline Problem chain_problem(std::string name, std::string about, double t_end,
+                             problem_detail::Chain chain = {}) {
+  return {
+      .name = std::move(name),
+      .about = std::move(about),
+      .t_end = t_end,
+      .gravity = 0,
+      .build = [chain](Cloth& g) { chain.build(g); },
+      .constraint = [chain](const Cloth& g) { return chain.pins(g); },
+      .exact = [chain](double t) { return chain.exact(t); },
+  };
+}
+
 /** All problems. */
 inline std::vector<Problem> make_problems() {
   namespace d = problem_detail;
   std::vector<Problem> all;
-  d::Chain chain;
-  all.push_back({.name = "chain",
-                 .about = "20 masses between two walls, to 0.8 s; exact",
-                 .t_end = 0.8,
-                 .gravity = 0,
-                 .build = [=](Cloth& g) { chain.build(g); },
-                 .constraint = [=](const Cloth& g) { return chain.pins(g); },
-                 .exact = [=](double t) { return chain.exact(t); }});
+  all.push_back(chain_problem(
+      "chain", "20 masses between two walls, to 0.8 s; exact", 0.8));
   d::Curtain curtain;
   all.push_back({.name = "curtain",
                  .about = "16 x 16 curtain let go, to 1 s; exact",

@@ -160,7 +160,7 @@ TEST_P(Order, IsWhatTheMethodDeclares) {
   if (order == 1) p.t_end = courses()[column].short_end;
   const Reference& right = answer(p);
   Start start(p);
-  const double omega = omega_bound(start.cloth, start.constraint);
+  const double omega = omega_safe(start.cloth, start.force, start.constraint);
   const double first =
       std::ceil(p.t_end * omega / first_steps.at(name)[column]);
   constexpr std::size_t count = 6;

@@ -1,5 +1,6 @@
-// Problem.hpp and work_precision: exact solutions and references, the counting
-// of sweeps, and the CSV. Build the program first: make work_precision.
+// Problem.hpp, Failure.hpp and work_precision: exact solutions and references,
+// the counting of sweeps, how each method fails, and the CSV. Build the program
+// first: make work_precision.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -12,9 +13,12 @@
 
 #include <sys/wait.h>
 
+#include "Failure.hpp"
 #include "Problem.hpp"
 
 namespace fs = std::filesystem;
+
+void PrintTo(const Failure& f, std::ostream* out) { *out << f.title; }
 
 namespace {
 
@@ -102,11 +106,11 @@ TEST(Problem, ReferencesKnowTheWholeEnd) {
     EXPECT_EQ(r.made.find("exact, srkn11b "), 0u) << r.made;
     Srkn11b method;
     Start s(p);
-    const End end =
-        run(p, method,
-            std::lround(16 * p.t_end * omega_bound(s.cloth, s.constraint) /
-                        Srkn11b::info.limit))
-            .end;
+    const End end = run(p, method,
+                        std::lround(16 * p.t_end *
+                                    omega_safe(s.cloth, s.force, s.constraint) /
+                                    Srkn11b::info.limit))
+                        .end;
     EXPECT_LT(norm(r.end.center - end.center), 1e-10) << name;
     EXPECT_NEAR(r.end.energy, end.energy, 1e-8) << name;
   }
@@ -157,6 +161,58 @@ TEST(Problem, SaysWhyARunFailed) {
   EXPECT_EQ(out.status, Outcome::Status::diverged);
   EXPECT_EQ(out.reason.find("energy out of bounds at t = "), 0u);
   EXPECT_LT(out.steps, 100);
+}
+
+// ----------------------------------------------------------------- Failure.hpp
+
+class EveryFailure : public ::testing::TestWithParam<Failure> {};
+INSTANTIATE_TEST_SUITE_P(Table, EveryFailure, ::testing::ValuesIn(failures),
+                         [](const auto& info) {
+                           std::string name(info.param.method());
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+// The deviations that the table promises are apart, so what fails is told from
+// what does not.
+TEST_P(EveryFailure, FailsAndIsCured) {
+  const Failure& f = GetParam();
+  ASSERT_GE(f.size(), 2u);
+  ASSERT_GT(f.fails, f.cured);
+  const FailureRun& cure = f.runs[f.size() - 1];
+  EXPECT_TRUE(cure.method != f.method() || cure.dt < f.runs[0].dt ||
+              cure.setting > f.runs[0].setting);
+  EXPECT_GT(trace(f, f.runs[0]).deviation, f.fails);
+  const Trace cured = trace(f, cure);
+  EXPECT_EQ(cured.status, Outcome::Status::ok);
+  EXPECT_LT(cured.deviation, f.cured);
+}
+
+/** Factor of a step by which the value of a run grows from @a low to @a high,
+ * on average. */
+double growth(const Trace& trace, double low, double high) {
+  std::size_t n = 0, m = 0;
+  while (trace.samples.at(n).value < low) ++n;
+  while (trace.samples.at(m).value < high) ++m;
+  return std::pow(trace.samples[m].value / trace.samples[n].value,
+                  1.0 / double(m - n));
+}
+
+// An oscillation at h w = 2 c > 2 grows by (c + sqrt(c^2 - 1))^2 a step.
+TEST(Failure, VerletGrowsBeyondItsLimitAsTheoryHasIt) {
+  const Failure& f = failure_of("verlet");
+  const double factor = std::pow(1.05 + std::sqrt(1.05 * 1.05 - 1), 2);
+  EXPECT_NEAR(growth(trace(f, f.runs[0]), 1e-4, 1e-2), factor, 0.02 * factor);
+}
+
+// Where a picture says that the work is equal, it is.
+TEST(Failure, ComparesAtEqualWork) {
+  for (const char* name : {"symplectic-euler", "yoshida4", "pefrl", "rk4"}) {
+    const Failure& f = failure_of(name);
+    const double fails = double(trace(f, f.runs[0]).sweeps),
+                 cure = double(trace(f, f.runs[1]).sweeps);
+    EXPECT_NEAR(fails / cure, 1, 0.01) << name;
+  }
 }
 
 // ---------------------------------------------------------------- The program
@@ -358,6 +414,44 @@ TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
     EXPECT_TRUE(names.contains(m.info.name)) << m.info.name;
 }
 
+TEST_F(WorkPrecision, WritesHowEachMethodFails) {
+  ASSERT_EQ(run_program("--failures --out " + csv()), 0) << err();
+  std::map<std::string, std::map<std::string, std::string>> roles;
+  std::map<std::string, int> labels;
+  for (Row& row : rows()) {
+    roles[row["failure"]][row["run"]] = row["role"];
+    for (const char* c : {"t [s]", "value"})
+      EXPECT_TRUE(std::isfinite(std::stod(row[c]))) << row["failure"];
+    labels[row["failure"]] += !row["label"].empty();
+  }
+  ASSERT_EQ(roles.size(), failures.size());
+  const std::string text = contents(csv()), said = contents(dir / "out");
+  for (const Failure& f : failures) {
+    const std::string name(f.method());
+    EXPECT_EQ(roles[name].size(), f.size()) << name;
+    EXPECT_EQ(roles[name]["0"], "fails") << name;
+    EXPECT_EQ(roles[name][std::to_string(f.size() - 1)], "cure") << name;
+    EXPECT_EQ(labels[name], f.size()) << name;
+    EXPECT_NE(text.find("# title " + name + ": " + f.title), std::string::npos);
+    EXPECT_NE(said.find("\n  " + std::string(f.runs[f.size() - 1].method)),
+              std::string::npos);
+  }
+}
+
+// Each method has a section in docs/methods.md, and there the picture.
+TEST_F(WorkPrecision, DocumentsShowHowEachMethodFails) {
+  const std::string text = contents("docs/methods.md");
+  for (const Failure& f : failures) {
+    const std::string name(f.method());
+    const auto section = text.find("`" + name + "`, order ");
+    ASSERT_NE(section, std::string::npos) << name;
+    const auto picture = text.find(std::string("![") + f.title +
+                                   "](../charts/failure-" + name + ".svg)");
+    ASSERT_NE(picture, std::string::npos) << name;
+    EXPECT_GT(picture, section) << name;
+  }
+}
+
 TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   auto refused = [this](const std::string& arguments, const char* message) {
     EXPECT_EQ(run_program(arguments + " --out " + csv()), 2) << arguments;
@@ -371,6 +465,7 @@ TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   refused("--nodes data/grid0.nodes", "--tets");
   refused("--nodes none --tets none", "none:0: can't be opened");
   refused("--energy --grid-refinement", "--grid-refinement");
+  refused("--energy --failures", "--energy");
   refused("--t-end -1", "--t-end is -1, expected a positive time [s]");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }

@@ -5,6 +5,7 @@
  *   ./work_precision --out charts/work_precision.csv
  *   ./work_precision --quick --scenes grid0,chain --methods verlet,pefrl
  *   ./work_precision --grid-refinement     ./work_precision --energy
+ *   ./work_precision --failures --out charts/failures.csv
  *
  * The columns: charts/README.md. Exit status: 0 done; 2 an option or an input
  * that can't be used, or an output that can't be written. */
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,6 +25,7 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
+#include "Failure.hpp"
 #include "Problem.hpp"
 
 using CME212::short_text;
@@ -33,7 +36,8 @@ struct Options {
   std::string nodes, tets, out;
   double t_end = 0.25;
   int repeats = 7;
-  bool quick = false, grid_refinement = false, energy = false, quiet = false;
+  bool grid_refinement = false, energy = false, failures = false;
+  bool quick = false, quiet = false;
 };
 
 /** How far a ladder of steps goes down. */
@@ -353,6 +357,46 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
   }
 }
 
+/** How each method fails, against time. What was measured goes into the head,
+ * and to the terminal unless the table goes there. */
+void show_failures(const std::vector<const MethodEntry*>& chosen, bool print,
+                   std::ostream& out) {
+  constexpr std::size_t drawn = 200;  // points of a curve, about
+  std::ostringstream rows;
+  write_head(out, "how each method fails, and a cure");
+  for (const MethodEntry* m : chosen) {
+    const Failure& f = failure_of(m->info.name);
+    const std::string name = m->info.name;
+    out << "# title " << name << ": " << f.title << "\n# caption " << name
+        << ": " << f.caption << "\n# axis " << name << ": " << f.t_end << ' '
+        << f.low << ' ' << f.high << ' ' << f.log << ' ' << name_of(f.quantity)
+        << '\n';
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      const FailureRun& r = f.runs[k];
+      const Trace trace = ::trace(f, r);
+      if (!r.method.empty()) {
+        out << "# measured " << name << ": " << report(f, r, trace) << '\n';
+        if (print) std::cout << (k ? "  " : "") << report(f, r, trace) << '\n';
+      }
+      const auto& samples = trace.samples;
+      const std::size_t every = samples.size() / drawn + 1;
+      const std::size_t label_at =
+          std::size_t(std::min(r.label_at / r.dt, double(samples.size() - 1)));
+      for (std::size_t n = 0; n < samples.size(); ++n) {
+        const bool last = n + 1 == samples.size(), at_label = n == label_at;
+        if (n % every != 0 && !last && !at_label) continue;
+        rows << name << ',' << r.method << ',' << role_of(f, k) << ',' << k
+             << ',' << cell(samples[n].t) << ',' << cell(samples[n].value)
+             << ',' << (at_label ? cell(label_of(r, trace)) : "") << ','
+             << (at_label ? cell(r.label_up) : "") << ','
+             << (last ? status_of(trace) : "") << '\n';
+      }
+    }
+  }
+  out << "failure,method,role,run,t [s],value,label,label up,status\n"
+      << rows.str();
+}
+
 // -------------------------------------------------------------------- Options
 
 /** The ones of @a all that are named, in the order of @a all; all if none is.
@@ -397,8 +441,12 @@ int parse(int argc, char** argv, Options& o) {
       ->type_name("FILE");
   auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
                             "refine the grid, the step, or both instead");
-  app.add_flag("--energy", o.energy, "energy against time instead")
-      ->excludes(grid);
+  auto* energies =
+      app.add_flag("--energy", o.energy, "energy against time instead")
+          ->excludes(grid);
+  app.add_flag("--failures", o.failures, "how each method fails instead")
+      ->excludes(grid)
+      ->excludes(energies);
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   try {
     app.parse(argc, argv);
@@ -440,6 +488,8 @@ void run(Options o) {
     grid_refinement(o, out, progress);
   else if (o.energy)
     energy(chosen, out);
+  else if (o.failures)
+    show_failures(chosen, file && !o.quiet, out);
   else
     work_precision(problems, chosen, o, out, progress);
   if (file) file->commit();

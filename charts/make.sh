@@ -28,6 +28,11 @@ for scene in $(sed -n 's/^# scene \([^:]*\):.*/\1/p' "$csv"); do
   draw work_precision "$csv" "$scene" "$to/$scene"
 done
 [ -z "$SCENE" ] || exit 0
+csv=$to/failures.csv
+./work_precision ${options[@]+"${options[@]}"} --failures --out "$csv"
+for method in $(sed -n 's/^# title \([^:]*\):.*/\1/p' "$csv"); do
+  draw failures "$csv" "$method" "$to/failure-$method"
+done
 ./work_precision ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
 draw energy "$to/energy.csv" '' "$to/energy"
 [ -z "$METHODS" ] || exit 0

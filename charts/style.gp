@@ -1,7 +1,9 @@
-# What all charts share. Given: csv, the file of data; height [pixels]; out, the picture's name
-# without its ending; kind, svg or png; scene, or '' for all rows of csv; key,
-# the column of csv that names the method. Makes: names, the methods in csv, in
-# the order of charts/methods.csv; stops if one of them is not in that table.
+# What all charts share. Given: csv, the file of data; height [pixels], and
+# width if it is not 1000; out, the picture's name without its ending; kind, svg
+# or png; scene, or '' for all rows of csv; key, the column of csv that names
+# the method, and key_is_method, 0 if it names something else. Makes: names, the
+# methods in csv, in the order of charts/methods.csv; stops if one of them is
+# not in that table.
 set encoding utf8
 set datafile separator ','
 table = 'charts/methods.csv'
@@ -40,11 +42,12 @@ do for [m in there] {
   }
 }
 
+if (!exists('width')) { width = 1000 }
 if (kind eq 'svg') {
-  set terminal svg size 1000,height dynamic background rgb 'white' \
+  set terminal svg size width,height dynamic background rgb 'white' \
     font 'DejaVu Sans,Arial,sans-serif,13'
 } else {
-  set terminal pngcairo size 1500,1.5*height background rgb 'white' \
+  set terminal pngcairo size 1.5*width,1.5*height background rgb 'white' \
     font 'DejaVu Sans,17' fontscale 0.95 linewidth 1.5 pointscale 1.3
 }
 set output out.'.'.kind

@@ -39,6 +39,7 @@ Scene              : Integrator Stability
 Run                : Scene CME212/OutputFile
 Problem            : Methods Stability
 Limits             : Problem
+Failure            : Problem
 Screen             : Scene CME212/Image CME212/SDLViewer
 mass_spring        = Cloth Force Constraint Integrator
 '
