@@ -12,20 +12,25 @@ axis = comment('axis '.scene)
 logarithmic = int(word(axis, 4))
 unit = axis[strlen(word(axis, 1).word(axis, 2).word(axis, 3).word(axis, 4)) + \
   5:*]
-first(k, what) = system(rows(sprintf('$4 == "%s" {print %s; exit}', k, what)))
-labeled(k, what) = \
-  system(rows(sprintf('$4 == "%s" && $7 != "" {print %s; exit}', k, what)))
-count(k) = int(system(rows(sprintf('$4 == "%s" {++n} END {print n}', k))))
-run(k) = data(sprintf('$4 == "%s" {print $5 "," $6}', k))
+# The role, the method (- for the true motion) and the points of each run.
+roles = system(rows('!seen[$4]++ {print $3}'))
+methods = system(rows('!seen[$4]++ {print $2 == "" ? "-" : $2}'))
+counts = system(rows('1 {++n[$4]} END {for (k = 0; k in n; ++k) print n[k]}'))
+run(k, condition) = data(sprintf('$4 == %d && %s {print $5 "," $6}', k - 1, \
+  condition))
 lost(k) = data(sprintf( \
-  '$4 == "%s" && $9 != "" {print $5 "," ($6 > %s ? %s : $6)}', \
-  k, word(axis, 3), word(axis, 3)))
-true_runs = system(rows('$3 == "true" && !seen[$4]++ {print $4}'))
-runs = system(rows('$3 != "true" && !seen[$4]++ {print $4}'))
-role(k) = first(k, '$3')
-shade(k) = role(k) eq 'true' ? '#777777' : color(first(k, '$2'))
-dashes_of(k) = role(k) eq 'fails' ? 1 : role(k) eq 'cure' ? 2 : 3
+  '$4 == %d && $9 != "" {print $5 "," ($6 > %s ? %s : $6)}', \
+  k - 1, word(axis, 3), word(axis, 3)))
+label_of(k) = system(rows(sprintf( \
+  '$4 == %d && $7 != "" {print $5 "," $6 " left offset 0.7," $8 "|" $7}', \
+  k - 1)))
+method(k) = word(methods, k)
+role(k) = word(roles, k)
+shade(k) = method(k) eq '-' ? '#777777' : color(method(k))
+sign_of(k) = method(k) eq '-' ? 0 : marker(method(k))
+dash_of(k) = role(k) eq 'fails' ? 1 : role(k) eq 'cure' ? 2 : 3
 weight(k) = role(k) eq 'fails' ? 2.6 : 1.8
+n = words(roles)
 
 set title '{/:Bold '.scene.'}: '.comment('title '.scene).\
   "\n{".(kind eq 'svg' ? '/=11' : '/=15').' '.comment('caption '.scene).'}' \
@@ -44,16 +49,18 @@ if (logarithmic) {
   set format y '10^{%T}'
 }
 set style textbox opaque noborder margins 0.4, 0.2
-do for [k in true_runs.' '.runs] {
-  eval sprintf("set label %d '%s' at %s left offset 0.7, %s boxed front ". \
-    "textcolor rgb '%s' noenhanced", k + 1, labeled(k, '$7'), \
-    labeled(k, '$5 "," $6'), labeled(k, '$8'), shade(k))
+do for [k = 1:n] {
+  text = label_of(k)
+  bar = strstrt(text, '|')
+  eval sprintf("set label %d '%s' at %s boxed front textcolor rgb '%s' ". \
+    'noenhanced', k, text[bar + 1:*], text[1:bar - 1], shade(k))
 }
 set label 100 footer at screen 0.985, 0.035 right font small \
   textcolor rgb '#666666' noenhanced
-plot for [k in true_runs] run(k) using 1:2 with lines lc rgb '#b8b8b8' lw 5, \
-     for [k in runs] run(k) using 1:2 with linespoints lc rgb shade(k) \
-       pt marker(first(k, '$2')) ps 0.8 pi 1 + count(k) / 12 \
-       dt dashes_of(k) lw weight(k), \
-     for [k in runs] lost(k) using 1:2 with points lc rgb shade(k) pt 2 \
+plot for [k = 1:n] run(k, '$3 == "true"') using 1:2 with lines \
+       lc rgb '#b8b8b8' lw 5, \
+     for [k = 1:n] run(k, '$3 != "true"') using 1:2 with linespoints \
+       lc rgb shade(k) pt sign_of(k) ps 0.8 pi 1 + int(word(counts, k)) / 12 \
+       dt dash_of(k) lw weight(k), \
+     for [k = 1:n] lost(k) using 1:2 with points lc rgb shade(k) pt 2 \
        lw 2.2 ps 1.6
