@@ -113,12 +113,12 @@ class Scene {
     constraint_.emplace(constraint_of(stage_, cloth_));
     guard_.emplace(cloth_, with_.gravity);
     method_->restart();
-    clock_ = checked_ = {.dt = with_.dt};
-    version_ = cloth_.version();
+    clock_ = {.dt = with_.dt};
     safe_omega_ = -1;
     failure_.clear();
     worst_.reset();
     if (with_.rule != StepRule::fixed) choose_step();
+    keep_clock();
   }
 
   /** One step of dt(). The guard looks at every 32nd only, and at those that
@@ -211,9 +211,17 @@ class Scene {
   void keep_clock() {
     checked_ = clock_;
     version_ = cloth_.version();
-    // Speeds are looked at here only, so with room for them to grow.
-    if (const double thin = constraint_->thinnest(); std::isfinite(thin))
-      constraint_->watch(cloth_, max_speed(cloth_) * clock_.dt > thin / 8);
+    watch_paths();
+  }
+
+  /** From here on, if nodes get fast for the obstacles. Speeds are looked at
+   * here only, so with room for them to grow. */
+  void watch_paths() {
+    const double thin = constraint_->thinnest();
+    if (!std::isfinite(thin)) return;
+    const double gain = std::abs(with_.gravity) * guard_interval * clock_.dt;
+    constraint_->watch(cloth_,
+                       (max_speed(cloth_) + gain) * clock_.dt > thin / 8);
   }
 
   void choose_step() {
@@ -258,6 +266,7 @@ class Scene {
     guard_->restore(cloth_);
     clock_ = checked_;
     method_->restart();
+    watch_paths();
   }
 
   /** Say what happened to the step, and go back to before it. */

@@ -120,6 +120,17 @@ TEST(Scene, StopsAtTheLastGoodStateWhenItDiverges) {
   EXPECT_TRUE(std::isfinite(kinetic_energy(scene.cloth())));
 }
 
+// At 300 times the gravity of the Earth the ball is two steps of 0.01 s away.
+TEST(Scene, WatchesFastNodesFromTheFirstStepOn) {
+  Scene scene = make_scene(Stage::tear, 5, {.dt = 0.01, .gravity = 3000});
+  for (int n = 0; n < 3; ++n) ASSERT_TRUE(scene.step());
+  EXPECT_GT(scene.constraint().count(), 0);
+  EXPECT_GT(scene.constraint().first().length, Ball().radius);
+  Scene slow = make_scene(Stage::tear, 5);
+  for (int n = 0; n < 1000; ++n) ASSERT_TRUE(slow.step());
+  EXPECT_EQ(slow.constraint().count(), 0);
+}
+
 TEST(Scene, RunsWithoutSpringsGravityOrWithOneQuad) {
   for (Stage stage : {Stage::problem1, Stage::tear}) {
     Scene still = make_scene(stage, 2, {.stiffness = 0, .gravity = 0});
