@@ -86,6 +86,7 @@ class Run {
   /** Back to t = 0. */
   void restart() {
     scene_.restart();
+    told_ = false;
     start();
   }
 
@@ -93,12 +94,20 @@ class Run {
     return o_.at_end(scene_.time()) || !scene_.failure().empty();
   }
 
-  /** One step. What is written down is checked.  @pre !done() */
+  /** Check the present state, which is to be shown; tell if it is not good. */
+  void check() {
+    scene_.check();
+    tell_failure();
+  }
+
+  /** One step. What is written down is checked. A failure is told at once.
+   * @pre !done() */
   void advance() {
     scene_.step();
     if (o_.at_end(scene_.time()) || (csv_ && scene_.steps() % o_.every == 0))
       scene_.check();
     seconds_ = progress_.seconds();
+    tell_failure();
     if (scene_.steps() % o_.every == 0 || done()) add_row();
     if (!warned_ && scene_.constraint().count() > 0) warn_of_missed();
     progress_.show(scene_.steps(), scene_.time());
@@ -156,9 +165,7 @@ class Run {
       out_->commit();
     }
     if (!o_.quiet) print_summary();
-    if (scene_.failure().empty()) return 0;
-    std::cerr << "mass_spring: " << scene_.failure() << '\n';
-    return 3;
+    return scene_.failure().empty() ? 0 : 3;
   }
 
  private:
@@ -169,7 +176,7 @@ class Run {
   std::string rows_;
   long long last_row_ = -1;
   double seconds_ = 0;  // until the last step
-  bool warned_ = false;
+  bool warned_ = false, told_ = false;
 
   struct Energies {
     double kinetic, elastic, gravitational;
@@ -201,6 +208,13 @@ class Run {
              std::to_string(scene_.cloth().num_edges()) + '\n';
   }
 
+  void tell_failure() {
+    if (told_ || scene_.failure().empty()) return;
+    told_ = true;
+    progress_.end();
+    std::cerr << "mass_spring: " << scene_.failure() << '\n';
+  }
+
   void warn_of_missed() {
     warned_ = true;
     if (o_.quiet) return;
@@ -209,7 +223,8 @@ class Run {
               << missed.length << " m in the step to t = " << missed.t
               << " s and would have passed through an obstacle; it was put on "
                  "its surface. A smaller dt sees it: "
-              << scene_.dt() * scene_.constraint().thinnest() / missed.length
+              << scene_.dt() * std::min(0.5, scene_.constraint().thinnest() /
+                                                 missed.length)
               << " s\n";
   }
 

@@ -51,9 +51,11 @@ class Screen {
    * switches it as well. */
   void show_strain(bool on) { viewer_.set_strain_colors(on); }
 
-  /** Show @a scene as it is now; half of it is never seen. */
+  /** Show @a scene as it is now; half of it is never seen. If it failed, this
+   * is its last good state, with a mark where it failed, and the reason. */
   void show(const Scene& scene) {
     const Cloth& g = scene.cloth();
+    show_failure(scene);
     const bool strain = colored_ = viewer_.strain_colors();
     if (strain) {
       // The scale only grows, so that a color goes on meaning the same.
@@ -119,9 +121,31 @@ class Screen {
   bool shown_ = false, colored_ = false;
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
   double scale_ = 0.01;      // the strain of the brightest color
+  std::string failure_;      // that is shown
   CME212::Clock clock_;
   long long steps_ = 0;  // when clock_ was started
   double rate_ = 0;      // [steps/s]
+
+  void show_failure(const Scene& scene) {
+    if (scene.failure() == failure_) return;
+    failure_ = scene.failure();
+    std::vector<CME212::SceneData::Mark> marks;
+    if (const auto& at = scene.failed_at()) {
+      const Cloth& g = scene.cloth();
+      if (g.has_node(at->node))
+        marks.push_back({at->node.position(), at->node.position()});
+      if (g.has_edge(at->spring))
+        marks.push_back(
+            {at->spring.node1().position(), at->spring.node2().position()});
+    }
+    viewer_.set_marks(std::move(marks));
+    std::vector<std::string> paragraphs;
+    for (std::size_t from = 0, to; from < failure_.size(); from = to + 2) {
+      to = std::min(failure_.find("; ", from), failure_.size());
+      paragraphs.push_back(failure_.substr(from, to - from));
+    }
+    viewer_.set_message(std::move(paragraphs));
+  }
 
   /** The strain that one node in fifty exceeds: what is above has the color of
    * the top, since the few nodes at the corners would leave no colors for the

@@ -178,11 +178,16 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   bool shot = o.screenshot.empty();
   auto draw = [&] {
     // Half a step early is as good as half a step late.
-    double now = scene.time() + scene.dt() / 2;
+    const double now = scene.time() + scene.dt() / 2;
     bool frame = !o.video.empty() && now >= double(frames) * frame_time;
     bool picture = !shot && (run.done() || (o.at >= 0 && now >= o.at));
-    if (frame || picture) scene.check(), screen.show(scene);
-    while (frame && now >= double(frames) * frame_time)
+    if (frame || picture) run.check();
+    const bool failed = !scene.failure().empty();
+    if (failed) frame = !o.video.empty(), picture = !shot;
+    if (frame || picture) screen.show(scene);
+    // A film of a failure ends with time to read why.
+    const double until = failed ? double(frames + 59) * frame_time : now;
+    while (frame && until >= double(frames) * frame_time)
       screen.add_to_film(), ++frames;
     if (picture) screen.save_picture(o.screenshot), shot = true;
   };
@@ -197,7 +202,8 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
 }
 
 /** Run in a window: the simulation in a thread of its own, at most o.speed
- * times as fast as the clock.  @return exit status */
+ * times as fast as the clock. A run that failed stays on the screen until it
+ * is restarted or the window is closed.  @return exit status */
 int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
   screen.show_strain(o.strain);
   screen.set_paused(o.paused);
@@ -213,7 +219,6 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
           screen.show(scene);
         }
         if (run.done()) {
-          if (!scene.failure().empty()) screen.close();
           if (screen.coloring_changed()) screen.show(scene);
           CME212::sleep(0.01);
           continue;
@@ -221,7 +226,7 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
         if (!screen.wait_while_paused(scene)) continue;
         run.advance();
         if (screen.wants_frame() || run.done()) {
-          scene.check();
+          run.check();
           screen.show(scene);
         }
         if (o.speed > 0) {

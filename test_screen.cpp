@@ -23,19 +23,24 @@ const Frame frames[] = {{Stage::problem1, "problem1", 600},
                         {Stage::constraints, "constraints", 450},
                         {Stage::tear, "tear", 600}};
 
+/** What @a screen shows, by way of a file. */
+Image picture_of(Screen& screen) {
+  auto file = std::filesystem::temp_directory_path() /
+              ("mass_spring_" + std::to_string(getpid()) + ".png");
+  screen.save_picture(file);
+  Image image = CME212::read_png(file);
+  std::filesystem::remove(file);
+  return image;
+}
+
 /** The stage on grid1 after so many steps, and its picture. */
 class Picture : public ::testing::TestWithParam<Frame> {
  protected:
   Screen screen{Screen::Kind::pictures};
 
   Image draw() {
-    auto file = std::filesystem::temp_directory_path() /
-                ("mass_spring_" + std::to_string(getpid()) + ".png");
     screen.show(scene);
-    screen.save_picture(file);
-    Image image = CME212::read_png(file);
-    std::filesystem::remove(file);
-    return image;
+    return picture_of(screen);
   }
   Scene scene{GetParam().stage,
               load_points("data/grid1.nodes"),
@@ -61,19 +66,35 @@ int difference(const Image& a, const Image& b) {
 }
 constexpr int tolerance = 2;  // pixels; the same scene gives the same ones
 
-TEST_P(Picture, IsTheCommittedOne) {
-  const Frame& f = GetParam();
-  Image image = draw();
-  std::string committed = std::string("docs/pictures/") + f.name + ".png";
+void expect_committed(const std::string& name, const Image& image) {
+  std::string committed = "docs/pictures/" + name + ".png";
   if (std::getenv("WRITE_PICTURES")) CME212::write_png(committed, image);
   int differs = difference(image, CME212::read_png(committed));
-  if (differs > tolerance)
-    CME212::write_png(std::string("build/") + f.name + ".png", image);
+  if (differs > tolerance) CME212::write_png("build/" + name + ".png", image);
   EXPECT_LE(differs, tolerance)
-      << "see build/" << f.name << ".png beside " << committed;
+      << "see build/" << name << ".png beside " << committed;
+}
+
+TEST_P(Picture, IsTheCommittedOne) {
+  expect_committed(GetParam().name, draw());
 }
 INSTANTIATE_TEST_SUITE_P(Stages, Picture, ::testing::ValuesIn(frames),
                          [](const auto& f) { return f.param.name; });
+
+// A run that fails shows where and why, on its last good state.
+TEST(Failure, IsMarkedAndExplainedAsInTheCommittedPicture) {
+  Screen screen(Screen::Kind::pictures);
+  Scene scene(Stage::problem1, load_points("data/grid1.nodes"),
+              load_quads("data/grid1.tets", 625), {.dt = 0.0034});
+  screen.show(scene);
+  const Image start = picture_of(screen);
+  while (scene.step()) ASSERT_LT(scene.steps(), 1000);
+  screen.show(scene);
+  expect_committed("fail-path", picture_of(screen));
+  scene.restart();
+  screen.show(scene);
+  EXPECT_EQ(picture_of(screen), start);
+}
 
 // The tolerance is so small that the loss of an edge or of a node is seen.
 class Damage : public Picture {};

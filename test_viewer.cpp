@@ -580,6 +580,58 @@ TEST(SDLViewer, WritesLabelAndScale) {
   EXPECT_GT(low[2], 170);
 }
 
+TEST(SDLViewer, WritesAMessageInAPanelAtTheBottom) {
+  SDLViewer viewer(small());
+  Image plain = viewer.snapshot();
+  viewer.set_message({"diverged"});
+  Image one = viewer.snapshot();
+  EXPECT_GT(difference(plain, one, 0, 1, 0.8), 5000);
+  EXPECT_EQ(difference(plain, one, 0, 1, 0, 0.8), 0);
+  // Its bar has the color of marks.
+  const auto* bar = one.pixel(14, 280);
+  const Color mark = Color::make_mark();
+  EXPECT_NEAR(bar[0], 255 * mark.r, 1);
+  EXPECT_NEAR(bar[1], 255 * mark.g, 1);
+  EXPECT_NEAR(bar[2], 255 * mark.b, 1);
+  // What is too long for a line goes on in the next; nothing leaves the panel.
+  std::string words;
+  for (int k = 0; k < 40; ++k) words += "word ";
+  viewer.set_message({words, "--dt auto works"});
+  Image more = viewer.snapshot();
+  EXPECT_GT(difference(plain, more, 0, 1, 0.5, 0.8), 5000);
+  EXPECT_EQ(difference(plain, more, 0.98, 1), 0);
+  viewer.set_message({});
+  EXPECT_EQ(viewer.snapshot(), plain);
+}
+
+TEST(SDLViewer, MarksAreSeenThroughAllElse) {
+  SDLViewer viewer(small());
+  BoundingBox box = (BoundingBox() |= Point(-1)) |= Point(1);
+  viewer.set_view(Point(0, -1, 0), box);
+  viewer.add_sphere(Point(0, 0, 0), 0.7);
+  Image ball = viewer.snapshot();
+  auto magenta = [](const Image& p, int x, int y) {
+    const auto* c = p.pixel(x, y);
+    return c[0] > 240 && c[1] < 80 && c[2] > 150;
+  };
+  viewer.set_marks({{Point(-0.5, 0, 0), Point(0.5, 0, 0)}});
+  Image line = viewer.snapshot();
+  EXPECT_TRUE(magenta(line, 200, 150));  // behind the front of the ball
+  EXPECT_GT(difference(ball, line), 200);
+  EXPECT_EQ(difference(ball, line, 0, 1, 0, 0.45), 0);
+  viewer.set_marks({{Point(), Point()}});
+  Image ring = viewer.snapshot();
+  EXPECT_FALSE(magenta(ring, 200, 150));  // what it is around stays visible
+  EXPECT_TRUE(magenta(ring, 200, 150 + int(0.75 * 17)));
+  // Behind the eye, or not a number: not drawn.
+  for (Point p : {Point(0, -100, 0), Point(std::nan(""), 0, 0)}) {
+    viewer.set_marks({{Point(), p}});
+    EXPECT_EQ(viewer.snapshot(), ball);
+  }
+  viewer.set_marks({});
+  EXPECT_EQ(viewer.snapshot(), ball);
+}
+
 TEST(SDLViewer, ShapesAndViews) {
   SDLViewer viewer(small());
   BoundingBox box = (BoundingBox() |= Point(-1)) |= Point(1);
@@ -645,6 +697,8 @@ struct Simulation {
     viewer.add_nodes(graph.node_begin(), graph.node_end(), color, map);
     if (anew) viewer.add_edges(graph.edge_begin(), graph.edge_end(), map);
     viewer.set_label(steps.load());
+    viewer.set_message({"stopped", "for a moment"});
+    viewer.set_marks({{Point(), Point(double(steps % 2), 0, 0)}});
   }
   void run() {
     show(true);

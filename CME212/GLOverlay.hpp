@@ -27,7 +27,9 @@ struct OverlayText {
   std::string label;              // large, top left
   std::string state;              // below it
   std::vector<std::string> help;  // lines, bottom left
-  bool has_scale = false;         // draw scale at the right
+  // Paragraphs in a panel above; what matters most stands first and last.
+  std::vector<std::string> message;
+  bool has_scale = false;  // draw scale at the right
   ColorScale scale;
 };
 
@@ -73,6 +75,9 @@ class GLOverlay {
       y -= 19 * unit_;
       write(margin, y, small, dim, *line);
     }
+    if (!text.message.empty())
+      draw_message(text.message, margin, float(width) - margin,
+                   text.help.empty() ? y : y - 8 * unit_);
     if (text.has_scale) draw_scale(text.scale, float(width) - margin, margin);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -115,10 +120,11 @@ class GLOverlay {
   }
   static ImFont* font(Size size) { return ImGui::GetIO().Fonts->Fonts[size]; }
 
-  /** Write one line with its top left corner at (x, y).
+  /** Write a text with its top left corner at (x, y), in one line or, if
+   * @a wrap > 0, in lines of at most that width [pixels].
    * @return the height it takes [pixels] */
-  float write(float x, float y, Size size, ImU32 color,
-              const std::string& text) const {
+  float write(float x, float y, Size size, ImU32 color, const std::string& text,
+              float wrap = 0) const {
     if (text.empty()) return 0;
     ImFont* f = font(size);
     const char* end = text.data() + text.size();
@@ -126,8 +132,15 @@ class GLOverlay {
     for (float shift : {shadow, 0.0f})
       list_->AddText(
           f, f->FontSize, {std::round(x) + shift, std::round(y) + shift},
-          shift > 0 ? IM_COL32(0, 0, 0, 200) : color, text.data(), end);
-    return 1.35f * f->FontSize;
+          shift > 0 ? IM_COL32(0, 0, 0, 200) : color, text.data(), end, wrap);
+    return text_height(size, text, wrap);
+  }
+  static float text_height(Size size, const std::string& text, float wrap) {
+    ImFont* f = font(size);
+    return 0.35f * f->FontSize + f->CalcTextSizeA(f->FontSize, 1e9f, wrap,
+                                                  text.data(),
+                                                  text.data() + text.size())
+                                     .y;
   }
   static float text_width(Size size, const std::string& text) {
     ImFont* f = font(size);
@@ -140,6 +153,25 @@ class GLOverlay {
     char s[40];
     std::snprintf(s, sizeof s, "%.3g", v);
     return s + (unit.empty() ? "" : " " + unit);
+  }
+
+  /** The panel from @a left to @a right and up from @a bottom. */
+  void draw_message(const std::vector<std::string>& paragraphs, float left,
+                    float right, float bottom) const {
+    const float pad = 10 * unit_, bar = 5 * unit_;
+    const float wrap = right - left - bar - 2 * pad;
+    float y = bottom - 2 * pad;
+    for (const auto& p : paragraphs) y -= text_height(medium, p, wrap);
+    const Color c = Color::make_mark();
+    const ImU32 mark = ImGui::ColorConvertFloat4ToU32({c.r, c.g, c.b, 1});
+    list_->AddRectFilled({left, y}, {right, bottom}, IM_COL32(8, 10, 14, 190));
+    list_->AddRectFilled({left, y}, {left + bar, bottom}, mark);
+    y += pad;
+    for (const auto& p : paragraphs) {
+      const bool matters =
+          &p == &paragraphs.front() || &p == &paragraphs.back();
+      y += write(left + bar + pad, y, medium, matters ? bright : dim, p, wrap);
+    }
   }
 
   /** The scale, with its top right corner at (right, top). */

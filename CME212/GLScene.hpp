@@ -102,6 +102,37 @@ constexpr const char* plane_fragment = R"(
     color = vec4(paint, rim * (0.22 + 0.4 * max(line.x, line.y)));
   })";
 
+/** A thick line between two places, or a ring around one, in pixels. */
+constexpr const char* mark_vertex = R"(
+  uniform mat4 view, projection;
+  uniform vec3 from, to;
+  uniform vec2 half_size;  // of the picture
+  uniform float reach;     // to the outer rim
+  flat out vec2 a, b;
+  void main() {
+    vec4 p = projection * (view * vec4(from, 1));
+    vec4 q = projection * (view * vec4(to, 1));
+    a = (p.xy / p.w + 1) * half_size;
+    b = (q.xy / q.w + 1) * half_size;
+    vec2 along = reach * (a == b ? vec2(1, 0) : normalize(b - a));
+    vec2 across = vec2(-along.y, along.x);
+    vec2 corner = gl_VertexID < 2 ? a - along : b + along;
+    corner += gl_VertexID % 2 == 0 ? across : -across;
+    gl_Position = vec4(corner / half_size - 1, 0, 1);
+    if (p.w <= 0 || q.w <= 0) gl_Position = vec4(2, 2, 2, 1);  // behind us
+  })";
+constexpr const char* mark_fragment = R"(
+  flat in vec2 a, b;
+  out vec4 color;
+  uniform vec3 paint;
+  uniform float ring, width, rim;  // ring: its radius, 0 for a line
+  void main() {
+    vec2 p = gl_FragCoord.xy - a, line = b - a;
+    float at = clamp(dot(p, line) / max(dot(line, line), 1e-6), 0, 1);
+    float off = abs(length(p - at * line) - ring) - width / 2;
+    color = vec4(paint * clamp(0.5 - off, 0, 1), clamp(rim + 0.5 - off, 0, 1));
+  })";
+
 }  // namespace gl_detail
 
 /** Draws a SceneData; holds its buffers and shaders. */
@@ -134,6 +165,7 @@ class GLScene {
     num_nodes_ = GLsizei(scene.nodes.size());
     spheres_ = scene.spheres;
     planes_ = scene.planes;
+    marks_ = scene.marks;
     // A node is a fifth as wide as nodes would be apart, if spread evenly.
     box_ = scene.box();
     const double size = box_.diagonal() > 0 ? box_.diagonal() : 1;
@@ -208,6 +240,21 @@ class GLScene {
       plane_.draw(GL_TRIANGLES);
     }
     glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+    use(mark_program_);
+    mark_program_.set("half_size", float(width) / 2, float(height) / 2);
+    mark_program_.set("paint", Color::make_mark());
+    for (const auto& m : marks_) {
+      const float ring = m.from == m.to ? float(17 * scale) : 0;
+      const float thick = float(3.5 * scale), rim = float(1.5 * scale);
+      mark_program_.set("from", m.from);
+      mark_program_.set("to", m.to);
+      mark_program_.set("ring", ring);
+      mark_program_.set("width", thick);
+      mark_program_.set("rim", rim);
+      mark_program_.set("reach", ring + thick / 2 + rim + 1);
+      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    }
     glBindVertexArray(0);
   }
 
@@ -221,10 +268,12 @@ class GLScene {
   GLProgram sphere_program_{gl_detail::solid_vertex,
                             gl_detail::sphere_fragment};
   GLProgram plane_program_{gl_detail::solid_vertex, gl_detail::plane_fragment};
+  GLProgram mark_program_{gl_detail::mark_vertex, gl_detail::mark_fragment};
   GLMesh nodes_, sphere_, plane_;
   GLsizei num_nodes_ = 0;
   std::vector<SceneData::Sphere> spheres_;
   std::vector<SceneData::Plane> planes_;
+  std::vector<SceneData::Mark> marks_;
   double node_size_ = 0;
   BoundingBox box_;
 

@@ -15,6 +15,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/GLCamera.hpp"
@@ -93,6 +94,11 @@ class SDLViewer : public SceneBuilder {
     std::ostringstream s;
     s << number;
     set_label(s.str());
+  }
+
+  /** Say why nothing moves any more, in a panel; with no paragraphs it goes. */
+  void set_message(std::vector<std::string> paragraphs) {
+    change([&] { text_.message = std::move(paragraphs); });
   }
 
   /** Say what the colors mean; drawn while strain_colors().
@@ -268,6 +274,7 @@ class SDLViewer : public SceneBuilder {
     const double rate = frame_period_ > 0 ? 1 / frame_period_ : 0;
     text.state =
         paused_ ? "paused" : std::to_string(std::lround(rate)) + " frames/s";
+    if (!text.message.empty()) text.state = "stopped: r restarts, q quits";
     text.help = {"space pause   n step   r restart   s strain   c center",
                  "drag turn   right drag move   wheel zoom   q quit"};
   }

@@ -61,10 +61,16 @@ struct SceneData {
     Color color;
   };
 
+  /** A line that is seen through all else; a ring if both ends are the same. */
+  struct Mark {
+    Point from, to;
+  };
+
   std::vector<Vertex> nodes;
   std::vector<Ends> edges;
   std::vector<Sphere> spheres;
   std::vector<Plane> planes;
+  std::vector<Mark> marks;
 
   /** Of nodes and spheres. */
   BoundingBox box() const {
@@ -199,6 +205,12 @@ class SceneBuilder {
   /** Remove all spheres and planes. */
   void clear_shapes() {
     change_shapes([&] { shown_.spheres.clear(), shown_.planes.clear(); });
+  }
+
+  /** Mark these places [m], and no others. They stay where they are, whatever
+   * becomes of the nodes there. */
+  void set_marks(std::vector<SceneData::Mark> marks) {
+    change_shapes([&] { shown_.marks = std::move(marks); });
   }
 
   /** True if everything that was complete has been taken over by take(): a

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Run ./mass_spring in a real window under Xvfb, press keys, and look at what
 # it says when it ends. Needs: Xvfb, xdotool, and mass_spring built.
-set -euo pipefail
+set -Eeuo pipefail
 cd "$(dirname "$0")/.."
 
 program=${MASS_SPRING:-./mass_spring}
@@ -9,6 +9,7 @@ tmp=$(mktemp -d)
 passed=0 failed=0
 xvfb="" run=""
 trap 'kill $xvfb $run 2>/dev/null || true; rm -rf "$tmp"' EXIT
+trap 'echo "line $LINENO: failed"' ERR
 
 # A display of our own; Xvfb writes its number when it is ready.
 exec 3<> <(:)
@@ -32,6 +33,13 @@ start() {  # launch, and wait for the window
 press() {
   local key
   for key in "$@"; do xdotool key "$key"; sleep 0.15; done
+}
+told() {  # wait until it has said $1 times that it failed
+  for _ in {1..100}; do
+    [ "$(grep -c 'diverged in step' "$tmp/err")" -lt "$1" ] || return 0
+    sleep 0.1
+  done
+  echo "not told $1 times:"; cat "$tmp/err"
 }
 # Wait for the end; expect status $2 and the words $3 in what it said.
 ends() {  # NAME STATUS WORDS
@@ -58,8 +66,13 @@ start --paused; press s c s n q
 ends "coloring and centering change no step" 0 ": 1 steps"
 start --t-end 1e6; sleep 0.5; press q
 ends "q ends a running simulation" 0 "nodes and"
-launch --dt 0.05
-ends "a run that diverges ends by itself" 3 "diverged in step"
+# On grid0 every step beyond 0.0123 s diverges.
+start --dt 0.05; told 1; press space n s; kill -0 "$run"; press q
+ends "a run that diverges is told at once and stays; q quits" 3 "diverged in step"
+start --dt 0.05; told 1; press r; told 2; press r; told 3; press q
+ends "r runs it again" 3 "diverged in step"
+start --dt 0.05 --paused; press q
+ends "nothing has failed before it runs" 0 ": 0 steps to t = 0 s"
 
 # DISPLAY leads nowhere.
 run_dead() { DISPLAY=:12345 "$program" data/grid0.nodes data/grid0.tets --window; }
