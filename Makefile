@@ -124,11 +124,19 @@ check-all:
 print-tests:
 	@echo $(TESTS)
 
-# The pictures of the README, which test_screen compares with: look at them.
-pictures: test_screen mass_spring
+# The pictures of the README and of docs, most of which test_screen compares
+# with: look at them. A failure exits with 3.
+pictures: test_screen mass_spring mass_spring_problem1 mass_spring_diagonals mass_spring_forces
 	WRITE_PICTURES=1 ASAN_OPTIONS=detect_leaks=0 ./test_screen
 	./mass_spring data/grid3.* --dt 0.0005 --t-end 0.6 --strain --quiet \
 	  --screenshot docs/pictures/cloth.png
+	@for run in 'step diagonals grid3' 'drag forces grid1 --damping 3' \
+	  'euler problem1 grid1 --method forward-euler --dt 1e-4' \
+	  'midpoint forces grid1 --method implicit-midpoint --dt 0.0333'; do \
+	  set -- $$run; name=$$1 stage=$$2 grid=$$3; shift 3; \
+	  ./mass_spring_$$stage data/$$grid.* "$$@" --quiet \
+	    --screenshot docs/pictures/fail-$$name.png; \
+	  [ $$? = 3 ] || { echo "fail-$$name does not fail"; exit 1; }; done
 
 # The charts, charts/README.md; QUICK=1, SCENE=grid1 or METHODS=verlet,pefrl
 # draws them in build/charts.

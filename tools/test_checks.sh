@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Show that each check of check_includes.sh, check_headers.sh and
-# check_tree.sh can fail: on a scratch copy of the tree, one fault at a time.
+# Show that each check of check_includes.sh, check_headers.sh, check_tree.sh
+# and check_commands.sh can fail: on a scratch copy of the tree, one fault at a time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -196,6 +196,19 @@ again; rm Force.hpp
 check tree $tree; why=""
 ! grep -q 'No such file' <<<"$out" || why=" looks for it;"
 ok "tree: a deleted file is not looked for"
+
+# ---- Pages whose commands are run
+run=tools/check_commands.sh
+page() { again small; printf '%s\n' '```sh' "$@" >page.md; }
+page 'echo one two' 'exit 3  # status 3' '```' '> one ... two'
+check small $run page.md; why=""; [ "$status" = 0 ] || why=" status is $status;"
+ok "commands: status and words as they stand there"
+page 'exit 3' '```'
+caught "commands: a status that does not stand there" "FAIL  exit 3" small $run page.md
+page 'true  # status 3' '```'
+caught "commands: a failure that works by now" "FAIL  true" small $run page.md
+page 'echo one' '```' '> one' '> and two'
+caught "commands: words that are not said" "not said: one and two" small $run page.md
 
 echo
 echo "$passed passed, $failed failed"
