@@ -453,8 +453,8 @@ constexpr const char* status_of(const Trace& trace) {
 }
 
 /** What was measured in the run @a r of @a f, in one line. */
-inline std::string report(const Failure& f, const FailureRun& r,
-                          const Trace& trace) {
+inline std::string in_words(const Failure& f, const FailureRun& r,
+                            const Trace& trace) {
   using CME212::short_text;
   std::string text(r.method);
   text += ", dt = " + short_text(r.dt) + " s";

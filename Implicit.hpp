@@ -57,9 +57,11 @@ class NewtonMethod : public Method {
  public:
   /** @param tolerance [m/s^2] > 0, of each stage: what is left over does as an
    *        acceleration of that size would, see ImplicitStage::solve_newton()
-   * @param max_iterations of Newton in each stage; then StepError */
-  explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100)
-      : stage_(tolerance, max_iterations) {}
+   * @param max_iterations of Newton in each stage; then StepError
+   * @param line_search false to see what it is good for */
+  explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100,
+                        bool line_search = true)
+      : stage_(tolerance, max_iterations, line_search) {}
 
  protected:
   implicit_detail::ImplicitStage stage_;

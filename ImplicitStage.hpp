@@ -67,9 +67,10 @@ class ImplicitStage {
  public:
   std::vector<Point> p, q, w;  // by node id
 
-  /** @param tolerance > 0 and @param max_iterations: see the solvers */
-  ImplicitStage(double tolerance, int max_iterations)
-      : goal_{tolerance, max_iterations} {}
+  /** @param tolerance > 0 and @param max_iterations: see the solvers
+   * @param line_search whether Newton's method has one */
+  ImplicitStage(double tolerance, int max_iterations, bool line_search = true)
+      : goal_{tolerance, max_iterations}, line_search_(line_search) {}
 
   /** Ready for a step of @a g by @a dt [s]: who is fixed and at rest, and p =
    * x, q = w = v.  @param method whose name errors give */
@@ -152,6 +153,7 @@ class ImplicitStage {
   std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
   double drag_ = 0;  // [kg/s]
   Goal goal_;
+  bool line_search_;
 
   static Stiffness clamped(const Stiffness& B) {
     return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
@@ -340,6 +342,7 @@ class ImplicitStage {
               Objective& here, bool close) {
     const double promise = product(residual_, step_);
     advance(1);
+    if (!line_search_) return true;
     if (promise <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
     double a = 1;
     for (; a > 1e-9; a /= 2) {

@@ -76,10 +76,16 @@ inline double largest_gamma(const Cloth& g, double c) {
   return c / least;
 }
 
-/** The share of a safe limit that `--dt auto` takes, and of a sharp one. The
- * second also covers what SharpOmega misses, and how much the cloth may stiffen
- * until the next look at it. */
-inline constexpr double safe_share = 0.95, sharp_share = 0.9;
+/** The share of a safe limit that `--dt auto` takes, and of a sharp one.
+ *
+ * The safe limit is that of a cloth swinging about any one shape. A cloth
+ * without drag that is thrown about violently, springs passing through length
+ * 0, also gains energy from changing its shape near the limit: of 1,000 random
+ * scenes by Verlet none at 0.8 of it, and of every method none at 0.6
+ * (SafeStep.NeverDivergesInRandomScenes). A cloth let go at rest, as the
+ * assignment's, needs no more than 0.95. The sharp share also covers what
+ * SharpOmega misses, and how much the cloth stiffens until the next look. */
+inline constexpr double safe_share = 0.6, sharp_share = 0.9;
 
 // ---------------------------------------------------------------------- Guard
 

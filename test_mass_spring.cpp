@@ -162,26 +162,120 @@ TEST_F(MassSpring, DumpsPositionsThatCanBeRunAgain) {
   EXPECT_EQ(contents(dir / "again.nodes"), text);
 }
 
+/** The number that stands in @a text between @a before and @a after. */
+double number(const std::string& text, const std::string& before,
+              const std::string& after) {
+  std::size_t at = text.find(before), end = 0;
+  EXPECT_NE(at, std::string::npos) << before << "\n in: " << text;
+  if (at == std::string::npos) return NAN;
+  at += before.size();
+  const double a = std::stod(text.substr(at), &end);
+  EXPECT_EQ(text.substr(at + end, after.size()), after) << text;
+  return a;
+}
+
 TEST_F(MassSpring, StopsWhenItDivergesAndLeavesTheLastGoodState) {
   Result r = run(grid3 + "--headless --every 1 --csv " + path("e.csv") +
                  " --out " + path("end.nodes"));
   EXPECT_EQ(r.status, 3);
-  unsigned node, other;
-  double speed, length, rest;
-  int end = 0;
-  std::sscanf(r.err.c_str(),
-              "mass_spring: diverged in step 17 with dt = 0.001 s: node %u "
-              "moves at %lf m/s, its spring to node %u is %lf m long (at rest "
-              "%lf m); the last good state is that of t = 0.016 s%n",
-              &node, &speed, &other, &length, &rest, &end);
-  EXPECT_EQ(end + 1, int(r.err.size())) << r.err;
-  EXPECT_GT(speed, 100);
-  EXPECT_GT(length, 5 * rest);
+  EXPECT_NE(r.err.find("mass_spring: diverged in step 16 with dt = 0.001 s, "
+                       "method symplectic-euler: node "),
+            std::string::npos)
+      << r.err;
+  EXPECT_GT(number(r.err, " moves at ", " m/s, its spring to node "), 100);
+  const double rest = number(r.err, " times its rest length of ", " m; the");
+  EXPECT_TRUE(std::abs(rest - 1 / 99.) < 1e-6 ||
+              std::abs(rest - std::sqrt(2) / 99) < 1e-6);
+  const double times = number(r.err, "t = 0.015 s; dt is ",
+                              " times the limit of symplectic-euler, ");
+  const double limit =
+      number(r.err, " times the limit of symplectic-euler, ", " s in this");
+  EXPECT_NEAR(times * limit, 0.001, 1e-5);
+  EXPECT_GT(times, 1.2);  // flat it would be sqrt(8 K N)/2000
   EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 10000u);
   auto table = rows(dir / "e.csv");
-  EXPECT_EQ(table.size(), 17u);
+  EXPECT_EQ(table.size(), 16u);
   for (const auto& row : table)
     for (double a : row) EXPECT_TRUE(std::isfinite(a));
+  // What it advises works.
+  const std::string dt =
+      std::to_string(number(r.err, "every step; --dt ", " or --dt auto works"));
+  EXPECT_EQ(run(grid3 + "--headless --t-end 0.2 --dt " + dt).status, 0);
+  EXPECT_EQ(run(grid3 + "--headless --t-end 0.2 --dt auto").status, 0);
+}
+
+TEST_F(MassSpring, SaysHowLongTheStepIsAndMayBe) {
+  auto out = [this](const std::string& options) {
+    return run(grid0 + "--headless --t-end 0.1 " + options).out;
+  };
+  // grid0: omega = 162, so 2/omega = 0.0123 s
+  std::string text = out("");
+  const double limit =
+      number(text, " of the limit of symplectic-euler here, ", " s\n");
+  EXPECT_NEAR(limit, 0.0123, 0.0001);
+  EXPECT_NEAR(number(text, "dt = 0.001 s: ", " of the limit"), 0.001 / limit,
+              0.001);
+  EXPECT_NEAR(
+      number(out("--method rk4"), " of the limit of rk4 here, ", " s\n"),
+      limit * std::sqrt(2), 0.0002);
+  text = out("--method tr-bdf2 --dt 0.05");
+  EXPECT_NEAR(number(text, "tr-bdf2 has no limit; this is ",
+                     " times that of verlet here, "),
+              0.05 / limit, 0.03);
+  EXPECT_NE(out("--method forward-euler").find("no step is stable with"),
+            std::string::npos);
+  EXPECT_NE(out("--stiffness 0").find("symplectic-euler has no limit\n"),
+            std::string::npos);
+  // Drag as a force lowers the limit; treated exactly it does not.
+  const std::string drag = "--damping 4 --dt 0.005 ";  // c/m = 100/s
+  EXPECT_LT(number(out(drag), "limit of symplectic-euler here, ", " s\n"),
+            0.95 * limit);
+  EXPECT_NEAR(number(out(drag + "--method verlet"), "of verlet here, ", " s\n"),
+              limit, 0.0001);
+}
+
+TEST_F(MassSpring, WarnsAboveTheLimitAndGoesOn) {
+  Result r = run(grid0 + "--headless --dt 0.0125 --t-end 0.1");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.err.find("mass_spring: warning: dt is beyond the limit"), 0u);
+  EXPECT_LT(number(r.err, "may blow up; --dt ", " or --dt auto does not"),
+            0.0123);
+  EXPECT_EQ(run(grid0 + "--headless --dt 0.012 --t-end 0.1").err, "");
+  EXPECT_EQ(run(grid0 + "--headless --dt 0.0125 --t-end 0.1 --quiet").err, "");
+  EXPECT_EQ(run(grid0 + "--headless --t-end 0.1 --method forward-euler").err,
+            "mass_spring: warning: this blows up; --method verlet --dt auto "
+            "does not\n");
+}
+
+TEST_F(MassSpring, ChoosesItsStep) {
+  for (const MethodEntry& m : methods) {
+    const std::string method = std::string(" --method ") + m.info.name;
+    Result safe = run(grid0 + "--headless --dt auto --damping 0.04" + method);
+    Result sharp =
+        run(grid0 + "--headless --dt auto:sharp --damping 0.04" + method);
+    if (m.info.limit == no_limit || m.info.adaptive) {
+      EXPECT_EQ(safe.status, 2) << m.info.name;
+      EXPECT_EQ(safe.err, std::string("mass_spring: nothing bounds the step "
+                                      "of ") +
+                              m.info.name +
+                              " here, so it can't be chosen: give a number\n");
+      EXPECT_EQ(sharp.status, 2) << m.info.name;
+      continue;
+    }
+    EXPECT_EQ(safe.status, 0) << m.info.name << safe.err;
+    EXPECT_EQ(sharp.status, 0) << m.info.name << sharp.err;
+    auto steps = [](const Result& r) {
+      return number(r.out, "tear: ", " steps to t = 5");
+    };
+    EXPECT_NEAR(number(safe.out, " s: ", " of the limit of "), 0.6, 0.001);
+    if (m.info.limit > 0) {
+      EXPECT_LT(steps(sharp), 0.7 * steps(safe)) << m.info.name;
+    }
+  }
+  EXPECT_EQ(run(grid0 + "--headless --dt auto --method forward-euler").err,
+            "mass_spring: nothing bounds the step of forward-euler: it has no "
+            "stable step, so it can't be chosen: give a number\n");
+  EXPECT_EQ(run(grid0 + "--headless --dt auto --stiffness 0").status, 2);
 }
 
 TEST_F(MassSpring, RefusesBadInputWithFileAndLineAndWritesNothing) {
@@ -223,12 +317,27 @@ TEST_F(MassSpring, RefusesBadInputWithFileAndLineAndWritesNothing) {
 }
 
 TEST_F(MassSpring, RefusesOptionsThatCantBe) {
-  for (const char* options :
-       {"--dt 0", "--dt -1", "--dt nan", "--dt inf", "--dt x", "--t-end -1",
-        "--t-end inf", "--damping -1", "--stiffness -1", "--gravity nan",
-        "--every 0", "--at 6 --screenshot p.png", "--no-such-option",
-        "--dt 1e-300", "--dt 0.2 --t-end 0.1", "--method none",
-        "--window --headless", "--csv", "--speed -1"}) {
+  for (const char* options : {"--dt 0",
+                              "--dt -1",
+                              "--dt nan",
+                              "--dt inf",
+                              "--dt x",
+                              "--dt auto:",
+                              "--dt 0.001x",
+                              "--t-end -1",
+                              "--t-end inf",
+                              "--damping -1",
+                              "--stiffness -1",
+                              "--gravity nan",
+                              "--every 0",
+                              "--at 6 --screenshot p.png",
+                              "--no-such-option",
+                              "--dt 1e-300",
+                              "--dt 0.2 --t-end 0.1",
+                              "--method none",
+                              "--window --headless",
+                              "--csv",
+                              "--speed -1"}) {
     Result r = run(grid0 + "--headless --out " + path("o") + " " + options);
     EXPECT_EQ(r.status, 2) << options;
     EXPECT_NE(r.err, "") << options;
@@ -236,7 +345,8 @@ TEST_F(MassSpring, RefusesOptionsThatCantBe) {
   }
   EXPECT_EQ(run("data/grid0.nodes").status, 2);
   EXPECT_EQ(run("--headless --dt nan " + grid0).err,
-            "mass_spring: --dt is nan, expected a positive time [s]\n");
+            "mass_spring: --dt is nan, expected a positive time [s], auto or "
+            "auto:sharp\n");
 }
 
 TEST_F(MassSpring, RunsEveryMethodAndListsIt) {
@@ -306,8 +416,9 @@ TEST_F(MassSpring, ReadsOptionsFromAFile) {
 TEST_F(MassSpring, ExplainsItsOptionsWithUnitsAndDefaults) {
   Result r = run("--help");
   EXPECT_EQ(r.status, 0);
-  for (const char* text : {"--dt FLOAT=0.001", "step [s]", "--t-end FLOAT=5",
-                           "--gravity FLOAT=9.81", "[N/m]", "[kg/s]"})
+  for (const char* text :
+       {"--dt FLOAT|auto|auto:sharp=0.001", "step [s]", "--t-end FLOAT=5",
+        "--gravity FLOAT=9.81", "[N/m]", "[kg/s]"})
     EXPECT_NE(r.out.find(text), std::string::npos) << text;
 }
 

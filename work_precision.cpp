@@ -307,8 +307,9 @@ void show_failures(const std::vector<const MethodEntry*>& chosen, bool print,
       const FailureRun& r = f.runs[k];
       const Trace trace = ::trace(f, r);
       if (!r.method.empty()) {
-        out << "# measured " << name << ": " << report(f, r, trace) << '\n';
-        if (print) std::cout << (k ? "  " : "") << report(f, r, trace) << '\n';
+        out << "# measured " << name << ": " << in_words(f, r, trace) << '\n';
+        if (print)
+          std::cout << (k ? "  " : "") << in_words(f, r, trace) << '\n';
       }
       const auto& samples = trace.samples;
       const std::size_t every = samples.size() / drawn + 1;
