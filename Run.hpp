@@ -119,10 +119,15 @@ class Run {
     using CME212::short_text;
     const MethodInfo& method = scene_.method();
     const double dt = scene_.dt(), limit = scene_.safe_limit();
+    const bool sharp = scene_.parameters().rule == StepRule::sharp;
     std::ostringstream out;
     out.precision(3);
     out << "dt = " << dt << " s";
-    if (limit == no_limit) {
+    if (sharp) {
+      out << " at first: at most " << sharp_share << " of the limit of "
+          << method.name << " in the present shape, and " << limit
+          << " s, that in any shape";
+    } else if (limit == no_limit) {
       const double verlet = scene_.safe_limit(entry_of<Verlet>());
       out << ": " << method.name << " has no limit";
       if (std::isfinite(verlet))
@@ -135,7 +140,7 @@ class Run {
       out << ": no step is stable with " << method.name << " and no drag";
     }
     std::cout << out.str() << '\n';
-    if (dt <= limit) return;
+    if (dt <= limit || sharp) return;
     out.str("mass_spring: warning: ");
     out.seekp(0, std::ios::end);
     if (limit > 0)

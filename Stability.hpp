@@ -83,8 +83,8 @@ inline double largest_gamma(const Cloth& g, double c) {
  * 0, also gains energy from changing its shape near the limit: of 1,000 random
  * scenes by Verlet none at 0.8 of it, and of every method none at 0.6
  * (SafeStep.NeverDivergesInRandomScenes). A cloth let go at rest, as the
- * assignment's, needs no more than 0.95. The sharp share also covers what
- * SharpOmega misses, and how much the cloth stiffens until the next look. */
+ * assignment's, can do with 1. The sharp share also covers what SharpOmega
+ * misses. */
 inline constexpr double safe_share = 0.6, sharp_share = 0.9;
 
 // ---------------------------------------------------------------------- Guard

@@ -106,9 +106,9 @@ int parse(int argc, char** argv, Options& o) {
   app.add_option("NODES", o.nodes, "file of points")->required();
   app.add_option("TETS", o.tets, "file of quads")->required();
   app.add_option("--dt", o.dt,
-                 "step [s]; auto: 0.95 of the largest that is safe in every "
-                 "shape; auto:sharp: 0.9 of the largest in the present shape, "
-                 "chosen again every 100 steps")
+                 "step [s]; auto: 0.6 of the limit that holds in every shape; "
+                 "auto:sharp: 0.9 of the limit in the present shape, looked at "
+                 "again every 100 steps, and at most the former limit")
       ->type_name("FLOAT|auto|auto:sharp");
   app.add_option("--method", o.method, "name of a method: see --list-methods");
   app.add_option("--t-end", o.t_end, "time to reach [s], in steps of dt");
