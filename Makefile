@@ -45,7 +45,7 @@ lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
 .PHONY: charts charts-quick orders all deps peers-deps peers-chart demo check check-all print-tests fuzz \
-        pictures help clean format submit grids FORCE
+        stability-soak pictures help clean format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -123,6 +123,14 @@ check-all:
 	@tools/check.sh
 print-tests:
 	@echo $(TESTS)
+
+# More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
+# SCENES random scenes, the methods in turn.
+SCENES ?= 7000
+stability-soak:
+	@$(MAKE) --no-print-directory build/soak/test_limits O=build/soak/ \
+	  SANITIZE= CXXFLAGS='-O3 $(CXXFLAGS)'
+	LIMITS_SIDES=100 SOAK_SCENES=$(SCENES) build/soak/test_limits
 
 # The pictures of the README and of docs, most of which test_screen compares
 # with: look at them. A failure exits with 3.
