@@ -112,13 +112,22 @@ inline bool stays_bounded(const Problem& p, const MethodEntry& method,
   return true;
 }
 
-/** The largest step [s] with which @a p stays bounded, by halving the interval
- * from @a low to @a high until it is @a precision of itself. */
-inline double measured_limit(const Problem& p, const MethodEntry& method,
-                             double low, double high, double precision = 0.01) {
+/** The largest step that is @a good, by halving the interval from @a low, which
+ * is, to @a high, which is not, until it is @a precision of itself.
+ * @param good as bool(double) */
+template <typename Good>
+double largest_that(Good&& good, double low, double high, double precision) {
   while (high - low > precision * low) {
     const double middle = (low + high) / 2;
-    (stays_bounded(p, method, middle) ? low : high) = middle;
+    (good(middle) ? low : high) = middle;
   }
   return low;
+}
+
+/** The largest step [s] with which @a p stays bounded, between @a low and
+ * @a high. */
+inline double measured_limit(const Problem& p, const MethodEntry& method,
+                             double low, double high, double precision = 0.01) {
+  return largest_that([&](double dt) { return stays_bounded(p, method, dt); },
+                      low, high, precision);
 }

@@ -44,8 +44,9 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
 lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: charts charts-quick orders all deps peers-deps peers-chart demo check check-all print-tests fuzz \
-        stability-soak pictures help clean format submit grids FORCE
+.PHONY: stability stability-soak cells charts charts-quick orders all deps peers-deps \
+        peers-chart demo check check-all print-tests fuzz pictures help clean \
+        format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -56,6 +57,7 @@ help:
 	@echo 'make test_nodes ...     a test, under the sanitizers'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make check              everything that a commit must pass'
+	@echo 'make stability          the stability maps: charts/README.md; QUICK=1'
 	@echo 'make data/grid4.nodes   a grid of a million nodes'
 	@echo 'make submit HW=hw2      tag and push; FORCE=1 moves the tag'
 	@echo 'make all | format | clean | deps'
@@ -64,7 +66,7 @@ help:
 all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
 
 needs    = $(if $(draws),$(draw_pkg)) \
-           $(if $(filter mass_spring% work_precision test_m% test_orders,$*),CLI11 eigen3)
+           $(if $(filter mass_spring% work_precision stability_map test_m% test_orders,$*),CLI11 eigen3)
 missing  = echo "make $*: not all of $(strip $(needs)) is installed:" \
   "'make deps' does it$(if $(draws),; 'make $* VIEWER=0' builds without a window)" >&2
 # A program is built anew when its sources or its flags have changed.
@@ -156,6 +158,24 @@ charts-quick:
 # The table of measured orders in docs/methods.md.
 orders: test_orders
 	@./test_orders | grep -e '^|' -e FAILED
+
+# The stability maps, charts/README.md: a list of runs, each with a file of its
+# own, so that a sweep goes on where it was interrupted. QUICK=1 draws in
+# build/charts; `make cells` runs what $(SWEEP)/list names, and no more.
+EFFORT  = $(if $(QUICK),quick,full)
+SWEEP   = build/stability/$(EFFORT)
+effort  = $(filter-out --full,--$(EFFORT))
+stability: stability_map
+	@mkdir -p $(SWEEP) && ./stability_map --list $(effort) > $(SWEEP)/list
+	@$(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) \
+	  cells EFFORT=$(EFFORT) SWEEP=$(SWEEP)
+	@charts/stability.sh $(EFFORT) $(SWEEP)
+ifneq ($(filter cells,$(MAKECMDGOALS)),)
+cells: $(patsubst %,$(SWEEP)/%.csv,$(shell cut -d' ' -f1 $(SWEEP)/list))
+$(SWEEP)/%.csv: stability_map
+	@./stability_map --cell $* $(effort) --out $@
+	@charts/stability.sh progress $(SWEEP)
+endif
 
 # Needs clang. The inputs that it starts from: tools/corpus.
 RUNS ?= 200000

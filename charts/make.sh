@@ -12,14 +12,7 @@ to=charts
 [ -z "$QUICK$SCENE$METHODS" ] || to=build/charts
 mkdir -p "$to"
 
-draw() {  # SCRIPT CSV SCENE PICTURE
-  local kind
-  for kind in svg png; do
-    gnuplot -e "csv='$2'; scene='$3'; out='$4'; kind='$kind'" "charts/$1.gp" \
-      2> >(grep -v -e 'Skipping data file with no valid points' -e '^$' >&2)
-  done
-  echo "$4.svg"
-}
+. charts/draw.sh
 
 csv=$to/work_precision.csv
 ./work_precision ${options[@]+"${options[@]}"} --out "$csv" \

@@ -74,6 +74,8 @@ step window        tools/test_window.sh
 step grids         same_grids
 step readme        tools/check_readme.sh
 step charts        make -s charts QUICK=1
+step stability     make -s stability QUICK=1
+step sweep         tools/test_sweep.sh
 step fuzz          make -s fuzz RUNS=100000
 step submit        tools/test_submit.sh
 step deps          tools/test_deps.sh

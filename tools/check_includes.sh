@@ -40,6 +40,7 @@ Run                : Scene CME212/OutputFile
 Problem            : Methods Stability
 Limits             : Problem
 Failure            : Problem
+Growth             : Limits
 Report             : CME212/Util
 Screen             : Scene CME212/Image CME212/SDLViewer
 mass_spring        = Cloth Force Constraint Integrator

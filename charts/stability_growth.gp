@@ -1,0 +1,61 @@
+# Growth of a tiny disturbance against stretch and step, a panel for a method.
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_growth'; \
+#     kind='svg'" charts/stability_growth.gp
+key = 1
+key_is_method = 1
+height = 660
+load 'charts/style.gp'
+load 'charts/palette.gp'
+
+# Columns: 1 method, 2 stretch, 3 dt/safe, 4 predicted limit/safe, 5 growth.
+growth(m) = data(sprintf('$1 == "%s" {print $2 "," $3 "," $5}', m))
+limit(m) = data(sprintf('$1 == "%s" && !seen[$2]++ {print $2 "," $4}', m))
+least = 0.005
+shade(g) = g > least ? log10(g) : -9
+
+set multiplot
+set label 1 '{/:Bold Growth per step} of a tiny disturbance of a stretched '. \
+  'sheet: white is bounded; line: the limit that is predicted' \
+  at screen 0.5, 0.965 center
+eval "set palette defined (0 'white', 0.05 'white', ".viridis.")"
+set cbrange [log10(least) - 0.05 * (log10(3) - log10(least)) / 0.95:log10(3)]
+set cbtics ('0.01' -2, '0.1' -1, '1' 0) scale 0.5
+unset key
+unset grid
+set xrange [0.9:2.5]
+set yrange [0.5:2]
+set xtics 1, 0.5, 2
+set ytics 0.5
+left = 0.075
+step_x = 0.295
+do for [k = 1:words(names)] {
+  m = word(names, k)
+  row = (k - 1) / 3
+  col = (k - 1) % 3
+  set lmargin at screen left + step_x * col
+  set rmargin at screen left + step_x * col + 0.265
+  set tmargin at screen row == 0 ? 0.88 : 0.45
+  set bmargin at screen row == 0 ? 0.55 : 0.12
+  set title m offset 0, -0.6 noenhanced
+  set xlabel row == 1 ? 'stretch' : '' offset 0, 0.4
+  set ylabel col == 0 ? 'dt/(safe limit)' : '' offset 0.5, 0
+  set format y col == 0 ? '%g' : ''
+  if (k == words(names)) {
+    set colorbox user origin 0.942, 0.12 size 0.014, 0.76
+    set label 2 footer at screen 0.985, 0.025 right font small \
+      textcolor rgb '#666666' noenhanced
+    set label 4 'ln of growth' at screen 0.985, 0.905 right font small
+  } else {
+    unset colorbox
+  }
+  if (k == 1) {
+    set label 3 'buckles' at 0.95, 0.75 center rotate by 90 font small \
+      textcolor rgb 'white' front
+  }
+  plot growth(m) using 1:2:(shade($3)) with image, \
+       limit(m) using 1:2 with lines lc rgb 'white' lw 5, \
+       limit(m) using 1:2 with lines lc rgb 'black' lw 2, \
+       1 with lines lc rgb '#555555' dt 2 lw 1
+  unset label 1
+}
+unset multiplot
