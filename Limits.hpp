@@ -90,15 +90,18 @@ inline double predicted_limit(const MethodEntry& method, const Path& path,
 }
 
 /** True if @a p run by @a method with steps of @a dt [s] stays bounded: nothing
- * gives energy to the cloth, so it never rises by more than 2 % of M g 1 m
- * above the lowest so far. */
+ * gives energy to the cloth, so it never rises by more than a thousandth of
+ * M g 1 m above the lowest so far. That also sees an instability which never
+ * blows up, as the cloth's own stiffening stops it. By a method of order 1 the
+ * energy swings by more than that: there it is 2 %. */
 inline bool stays_bounded(const Problem& p, const MethodEntry& method,
                           double dt) {
   Start s(p);
   auto energy = [&] {
     return kinetic_energy(s.cloth) + s.force.energy(s.cloth);
   };
-  const double most_gain = 0.02 * total_mass(s.cloth) * p.gravity;  // [J]
+  const double share = method.info.order > 1 ? 0.001 : 0.02;
+  const double most_gain = share * total_mass(s.cloth) * p.gravity;  // [J]
   double lowest = energy();
   auto made = method.make();
   const auto steps = static_cast<long long>(std::ceil(p.t_end / dt));

@@ -123,7 +123,7 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
  * the prediction needs the way of the cloth, which is dear. */
 void add_table(std::vector<Cell>& cells, Effort effort) {
   using Sides = std::vector<unsigned>;
-  const double precision = by(effort, 0.005, 0.01, 0.05);
+  const double precision = by(effort, 0.002, 0.01, 0.05);
   for (unsigned side : by<Sides>(effort, {5, 25, 50, 100}, {5, 25}, {5}))
     for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
       const double t_end =
