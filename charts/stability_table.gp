@@ -23,17 +23,17 @@ set rmargin at screen 0.98
 set xlabel 'numbers above: nodes a side' offset 0, 0.3 font small
 set bmargin at screen 0.22
 set xrange [0.5:words(names) + 0.5]
-set yrange [-4:4]
+set yrange [-5:5]
 set ylabel 'predicted above measured [%]' offset 1, 0
 set xtics ()
 do for [k = 1:words(names)] {
   set xtics add (word(names, k) k)
   promised = word(names, k) eq 'rk4' ? 8 : \
-    word(names, k) eq 'srkn6b' ? 3 : 2
-  set object k rectangle from k - 0.46, (promised > 4 ? -4 : -promised) \
-    to k + 0.46, (promised > 4 ? 4 : promised) \
+    word(names, k) eq 'srkn6b' ? 4 : 2
+  set object k rectangle from k - 0.46, (promised > 5 ? -5 : -promised) \
+    to k + 0.46, (promised > 5 ? 5 : promised) \
     fc rgb '#ececec' fs solid noborder behind
-  set label k + 1 sprintf('within %d %%', promised) at k, 3.6 center \
+  set label k + 1 sprintf('within %d %%', promised) at k, 4.6 center \
     font small textcolor rgb '#666666'
 }
 unset grid
@@ -41,7 +41,7 @@ set grid ytics lc rgb '#e4e4e4' lw 1 dt 1
 set key at screen 0.5, 0.07 center maxrows 1 samplen 1 font small
 plot 0 with lines lc rgb '#777777' lw 1 notitle, \
      for [k = 1:words(names)] of(word(names, k), 'plain') \
-       using (place(k, $1, '')):(-3.7):(sprintf('%d', $1)) \
+       using (place(k, $1, '')):(-4.7):(sprintf('%d', $1)) \
        with labels font small textcolor rgb '#666666' notitle, \
      for [k = 1:words(names)] of(word(names, k), 'plain') \
        using (place(k, $1, 'plain')):(100 * ($2 - 1)) with points \
