@@ -206,8 +206,6 @@ class Scene {
   std::size_t version_ = 0;  // of the cloth, then
   double safe_omega_ = -1;   // [1/s]; negative: not known yet
   SharpOmega sharp_;
-  double sharp_omega_ = 0;       // [1/s], what it found last
-  long long next_look_ = 0;      // the step before which to ask it again
   std::string failure_, error_;  // error_: of the method
   std::optional<WorstPlace> worst_;
 

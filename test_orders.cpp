@@ -64,7 +64,7 @@ const std::map<std::string, std::array<double, 3>> first_steps = {
     {"srkn6b", {0.6, 0.6, 1.1}},
     {"srkn11b", {1.8, 2.5, 2.8}},
     {"rk4", {0.09, 0.3, 0.8}},
-    {"dormand-prince", {0.16, 0.25, 0.7}},
+    {"dormand-prince", {0.14, 0.25, 0.7}},
     {"implicit-euler", {0.2, 1, 2}},
     {"implicit-midpoint", {0.35, 0.5, 2}},
     {"tr-bdf2", {0.35, 0.5, 2}},

@@ -308,7 +308,7 @@ TEST_F(WorkPrecision, WritesWhatIsTrue) {
                         csv()),
             0)
       << err();
-  EXPECT_NE(printed().find("chain: floor 2"), std::string::npos) << printed();
+  EXPECT_NE(printed().find("chain: floor 3"), std::string::npos) << printed();
   EXPECT_NE(printed().find("\n  1e-06 m: "), std::string::npos);
   const Problem p = problem("chain");
   const double floor = reference(p, 8).floor;
