@@ -9,7 +9,8 @@ logs=build/check
 rm -rf "$logs"
 mkdir -p "$logs"
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
-export CXXFLAGS=-Werror
+# Line numbers are all that a failing test needs; -g takes a third of the time.
+export CXXFLAGS='-Werror -g1'
 started=$SECONDS passed=0 failed=0
 
 # Run a step and count what it says it passed; a step that counts nothing is
