@@ -38,7 +38,7 @@ flags    = -std=c++20 -g -Wall -Wextra -pthread -I. $(eigen) $(cholmod) \
              $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(draw_pkg) 2>/dev/null))) \
            $(CPPFLAGS) $(CXXFLAGS)
 libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
-           $(if $(filter bench,$*),-lbenchmark) \
+           $(if $(filter bench%,$*),-lbenchmark) \
            $(if $(draws),$(shell pkg-config --libs $(draw_pkg) 2>/dev/null)) \
            $(LDLIBS) $(lcholmod)
 lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
@@ -66,7 +66,8 @@ help:
 all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
 
 needs    = $(if $(draws),$(draw_pkg)) \
-           $(if $(filter mass_spring% work_precision stability_map test_m% test_orders,$*),CLI11 eigen3)
+           $(if $(filter mass_spring% work_precision stability_map bench_% test_m% \
+             test_orders test_limits test_stability test_implicit test_scene,$*),CLI11 eigen3)
 missing  = echo "make $*: not all of $(strip $(needs)) is installed:" \
   "'make deps' does it$(if $(draws),; 'make $* VIEWER=0' builds without a window)" >&2
 # A program is built anew when its sources or its flags have changed.

@@ -130,8 +130,11 @@ class Scene {
    * Throws std::invalid_argument if the method can't do with this force. */
   bool step() {
     if (with_.rule == StepRule::sharp && clock_.steps > 0 &&
-        clock_.steps % sharp_interval == 0)
+        clock_.steps % sharp_interval == 0) {
+      if (!check()) return false;
       choose_step();
+      keep_clock();  // with the new dt, in case that these steps are replayed
+    }
     if (!advance()) return replay(clock_.steps + 1);
     if (clock_.steps - checked_.steps >= guard_interval ||
         cloth_.version() != version_)

@@ -137,10 +137,11 @@ class DivergenceGuard {
     value_.assign(v.begin(), v.end());
   }
 
-  /** Give @a g the positions and velocities of the last good state.
-   * @pre no node was added since; nodes removed since stay removed */
+  /** Give @a g the positions and velocities of the last good state. Nodes added
+   * since stay as they are, nodes removed since stay removed. */
   void restore(Cloth& g) const {
     for (Node n : g.nodes()) {
+      if (n.id() >= position_.size()) continue;
       n.position() = position_[n.id()];
       n.value() = value_[n.id()];
     }
