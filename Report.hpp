@@ -44,8 +44,14 @@ inline void write_head(std::ostream& out, const char* what) {
   const char* compiler = "g++ " __VERSION__;
 #endif
   out << "# " << what << "\n# machine: " << machine()
-      << "\n# compiler: " << compiler << "\n# commit: "
-      << first_line_of("git describe --always --dirty 2>/dev/null") << '\n';
+      << "\n# compiler: " << compiler
+      << "\n# commit: "
+      // the charts being measured are not what is measured
+      << first_line_of(
+             "c=$(git describe --always 2>/dev/null) && "
+             "if git diff --quiet HEAD -- . ':!charts'; then echo \"$c\"; "
+             "else echo \"$c-dirty\"; fi")
+      << '\n';
 }
 
 /** @a text as a cell: no comma, quote or end of line in it. */
