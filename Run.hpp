@@ -225,7 +225,7 @@ class Run {
     if (o_.quiet) return;
     const auto& missed = scene_.constraint().first();
     std::cerr << "mass_spring: warning: node " << missed.node << " went "
-              << missed.length << " m in the step to t = " << missed.t
+              << missed.length << " m in the step to t = " << scene_.time()
               << " s and would have passed through an obstacle; it was put on "
                  "its surface. A smaller dt sees it: "
               << scene_.dt() * std::min(0.5, scene_.constraint().thinnest() /
