@@ -246,7 +246,6 @@ class WatchedConstraint : public ZeroConstraint {
   /** A node on its way through an obstacle. */
   struct Missed {
     unsigned node;  ///< its index
-    double t;       ///< [s]
     double length;  ///< of its way since the last call [m]
   };
 
@@ -269,7 +268,7 @@ class WatchedConstraint : public ZeroConstraint {
       auto place = c_.entry(before_[n.id()], n.position());
       if (!place) continue;
       if (count_++ == 0)
-        first_ = {n.index(), t, norm(n.position() - before_[n.id()])};
+        first_ = {n.index(), norm(n.position() - before_[n.id()])};
       n.position() = *place;
     }
     c_(g, t);

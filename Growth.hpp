@@ -25,9 +25,7 @@ inline Matrix product(const Matrix& a, const Matrix& b) {
           a[2] * b[0] + a[3] * b[2], a[2] * b[1] + a[3] * b[3]};
 }
 inline double spectral_radius(const Matrix& m) {
-  const double half = (m[0] + m[3]) / 2, det = m[0] * m[3] - m[1] * m[2];
-  const double root = half * half - det;
-  return root > 0 ? std::abs(half) + std::sqrt(root) : std::sqrt(det);
+  return ::spectral_radius(m[0], m[1], m[2], m[3]);
 }
 
 /** The stages of a splitting one after the other: A is x' = v, v' = -gamma v,

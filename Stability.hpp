@@ -15,6 +15,13 @@
 
 // --------------------------------------------------------------------- Limits
 
+/** The larger size of the eigenvalues of the matrix (a b; c d). */
+inline double spectral_radius(double a, double b, double c, double d) {
+  const double half = (a + d) / 2, det = a * d - b * c;
+  const double root = half * half - det;
+  return root > 0 ? std::abs(half) + std::sqrt(root) : std::sqrt(det);
+}
+
 /** By what factor a step of @a method makes an oscillator grow, x'' + gamma x'
  * + omega^2 x = 0, when it is repeated: the spectral radius of the step's
  * matrix. Found by stepping a mass on a spring of rest length 0, which is
@@ -39,9 +46,7 @@ inline double amplification(Method& method, double dt, double omega,
   };
   const auto [xx, vx] = image(1, 0);
   const auto [xv, vv] = image(0, 1);
-  const double half = (xx + vv) / 2, det = xx * vv - xv * vx;
-  const double root = half * half - det;
-  return root > 0 ? std::abs(half) + std::sqrt(root) : std::sqrt(det);
+  return spectral_radius(xx, xv, vx, vv);
 }
 
 /** The largest step [s] with which @a method stays bounded on all frequencies
@@ -209,7 +214,6 @@ struct WorstPlace {
  * @param safe its limit in any shape   @param verlet that of Verlet */
 inline std::string why_it_failed(const MethodInfo& info, double dt,
                                  double sharp, double safe, double verlet) {
-  using CME212::short_text;
   std::ostringstream out;
   out.precision(3);
   auto instead = [&](double limit) {
