@@ -4,7 +4,9 @@
  * from points and quads. SI units throughout; z points up. */
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,21 +14,27 @@
 #include <vector>
 
 #include "Graph.hpp"
+#include "Lanes.hpp"
 #include "Mesh.hpp"
+#include "Stencil.hpp"
 
 /** What a node of a cloth carries. */
 struct NodeData {
-  Point vel;        ///< velocity [m/s]
-  double mass = 1;  ///< [kg], > 0
+  Point vel;      ///< velocity [m/s]
+  Real mass = 1;  ///< [kg], > 0
 };
 
 /** What an edge of a cloth carries: a linear spring. */
 struct EdgeData {
-  double K = 100;  ///< spring constant [N/m], >= 0
-  double L = 0;    ///< rest length [m], >= 0
+  Real K = 100;  ///< spring constant [N/m], >= 0
+  Real L = 0;    ///< rest length [m], >= 0
 };
+// Sweeps read them as rows of numbers.
+static_assert(sizeof(NodeData) == 4 * sizeof(Real) &&
+              sizeof(EdgeData) == 2 * sizeof(Real));
 
 using Cloth = Graph<NodeData, EdgeData>;
+using ClothStencil = Stencil<lanes::width>;
 using Node = Cloth::node_type;
 using Edge = Cloth::edge_type;
 
@@ -42,12 +50,25 @@ inline constexpr bool is_corner(const Point& p) {
 
 // -------------------------------------------------------------------- Springs
 
+/** The pull [N/m] of a spring: the force on its one end is the pull times u,
+ * the way [m] to the other end. K (l - L)/l with l = |u|, so positive when
+ * longer than L. Finite at l = 0, where no direction is defined: no force.
+ *
+ * This is the one place that says how a spring pulls.
+ * @param lengthSq l^2 [m^2]   @param K [N/m]   @param L rest length [m]
+ * @tparam T Real, or Lanes of many springs */
+template <typename T>
+[[gnu::always_inline]] inline T spring_pull(const T& lengthSq, const T& K,
+                                            const T& L) {
+  using lanes::max, lanes::sqrt, std::max, std::sqrt;
+  const T l = sqrt(max(lengthSq, T{} + std::numeric_limits<Real>::min()));
+  return K * (l - L) / l;
+}
+
 /** The force [N] of a spring on its one end, the other end lying at @a u [m]
- * from it: K (l - L) u/l with l = |u|, so it pulls when longer than L.
- * Zero at l = 0, where no direction is defined. */
+ * from it. */
 inline Point spring_force(const Point& u, const EdgeData& s) {
-  double l = norm(u);
-  return l > 0 ? (s.K * (l - s.L) / l) * u : Point();
+  return spring_pull<Real>(normSq(u), s.K, s.L) * u;
 }
 
 /** How the force between two nodes answers to their moving apart, u = x_j -
@@ -168,19 +189,21 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
   std::vector<Node> node;
   for (const Point& p : points)
     node.push_back(g.add_node(p, {Point(), 1.0 / double(points.size())}));
-  auto add_spring = [&](unsigned i, unsigned j) {
-    g.add_edge(node[i], node[j], {K, norm(points[i] - points[j])});
+  // All springs of one kind, then those of the next: so on a grid springs whose
+  // ids follow each other have ends whose ids do, and sweeps are faster.
+  auto add_springs = [&](int from, int to) {
+    for (const Quad& q : quads)
+      g.add_edge(node[q[from]], node[q[to]],
+                 {Real(K), Real(norm(points[q[from]] - points[q[to]]))});
   };
-  for (const Quad& q : quads) {
-    add_spring(q[0], q[1]);
-    add_spring(q[0], q[2]);
-    if (mesh == Mesh::diagonals) {
-      add_spring(q[0], q[3]);
-      add_spring(q[1], q[2]);
-    }
-    add_spring(q[1], q[3]);
-    add_spring(q[2], q[3]);
+  add_springs(0, 1);
+  add_springs(0, 2);
+  if (mesh == Mesh::diagonals) {
+    add_springs(0, 3);
+    add_springs(1, 2);
   }
+  add_springs(1, 3);
+  add_springs(2, 3);
 }
 
 /** Read a cloth from two files, as build_cloth() from parse_points() and

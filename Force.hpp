@@ -43,6 +43,13 @@ class Problem1Force {
 using StiffnessVisitor =
     std::function<void(unsigned i, unsigned j, const Stiffness& B)>;
 
+/** A part of a cloth, for a sweep: the nodes with ids in [first, last). */
+struct Part {
+  const Cloth& g;
+  const ClothStencil& stencil;  ///< of g
+  unsigned first, last;         ///< first a multiple of ClothStencil::width
+};
+
 /** No force, and the base of all forces (section 5.2).
  *
  * A child gives the force on one node. Whatever else it gives makes methods
@@ -55,12 +62,16 @@ class ZeroForce {
   /** The force [N] on node @a n at time @a t [s].  O(n.degree()) */
   virtual Point operator()(Node /*n*/, double /*t*/) const { return Point(); }
 
-  /** Add the force on every node of @a g to @a f, which is addressed by
-   * Node::id(). The same as calling the force node by node, to round-off, but
-   * it may visit each spring once.
-   * @pre f.size() == g.node_slots()   Complexity: O(nodes + edges) */
-  virtual void add_to(const Cloth& g, double t, std::span<Point> f) const {
-    for (Node n : g.nodes()) f[n.id()] += (*this)(n, t);
+  /** Add the force on each node of a part of a cloth to @a f: that on the node
+   * of id i to f[i - part.first]. The same as calling the force node by node,
+   * to round-off, but faster. What is added at an id not in use is nothing that
+   * counts. Several threads may do several parts at once.
+   * @pre @a f has room for whole blocks of the stencil
+   * Complexity: O(nodes + edges at them) */
+  virtual void add_to(const Part& part, double t, std::span<Point> f) const {
+    for (unsigned i = part.first; i < part.last; ++i)
+      if (part.g.node_in_use(i))
+        f[i - part.first] += (*this)(part.g.node_with_id(i), t);
   }
 
   /** The energy [J] whose negative gradient the force is; 0 if it has none. */
@@ -90,9 +101,11 @@ class GravityForce : public ZeroForce {
   Point operator()(Node n, double /*t*/) const override {
     return weight(n.value());
   }
-  void add_to(const Cloth& g, double /*t*/, std::span<Point> f) const override {
-    auto node = g.node_values();
-    for (unsigned i = 0; i < g.node_slots(); ++i) f[i] += weight(node[i]);
+  void add_to(const Part& part, double /*t*/,
+              std::span<Point> f) const override {
+    const NodeData* node = &part.g.node_values()[part.first];
+    for (unsigned k = 0; k < part.last - part.first; ++k)
+      f[k].z -= node[k].mass * Real(gravity_);
   }
   double energy(const Cloth& g) const override {
     return gravitational_energy(g, gravity_);
@@ -108,7 +121,46 @@ class GravityForce : public ZeroForce {
   }
 };
 
-/** The springs of all edges, each by its own K and L: see spring_force(). */
+namespace force_detail {
+
+/** The springs of blocks [first, last) of a stencil, each seen from both of its
+ * ends: no two nodes write to the same place, and square roots are cheap when
+ * many are taken side by side. */
+struct SpringSweep {
+  [[gnu::always_inline]] static inline void apply(const ClothStencil& stencil,
+                                                  const Point* position,
+                                                  const EdgeData* spring,
+                                                  unsigned first, unsigned last,
+                                                  Point* f) {
+    using namespace lanes;
+    for (unsigned b = first; b < last; ++b) {
+      const unsigned id = b * width;
+      const Points x = stencil.is_full(b)
+                           ? load(position + id)
+                           : gather(position, stencil.last_block());
+      Points sum;
+      for (const auto& row : stencil.rows(b)) {
+        const Points y = row.offset != 0
+                             ? load(position + id + row.offset)
+                             : gather(position, stencil.neighbors(row));
+        const Pairs s = row.first_edge != stencil.none
+                            ? load_pairs(&spring[row.first_edge].K)
+                            : gather_pairs(&spring->K, stencil.edges(row));
+        const Lanes ux = y.x - x.x, uy = y.y - x.y, uz = y.z - x.z;
+        const Lanes pull =
+            spring_pull<Lanes>(ux * ux + uy * uy + uz * uz, s.first, s.second);
+        sum.x += pull * ux;
+        sum.y += pull * uy;
+        sum.z += pull * uz;
+      }
+      add(f + (id - first * width), sum);
+    }
+  }
+};
+
+}  // namespace force_detail
+
+/** The springs of all edges, each by its own K and L: see spring_pull(). */
 class MassSpringForce : public ZeroForce {
  public:
   Point operator()(Node n, double /*t*/) const override {
@@ -117,18 +169,12 @@ class MassSpringForce : public ZeroForce {
       f += spring_force(e.node2().position() - n.position(), e.value());
     return f;
   }
-  /** Each spring once: half the square roots of the call node by node. */
-  void add_to(const Cloth& g, double /*t*/, std::span<Point> f) const override {
-    auto x = g.positions();
-    auto ends = g.edge_ends();
-    auto spring = g.edge_values();
-    for (unsigned e = 0; e < g.edge_slots(); ++e) {
-      if (!g.edge_in_use(e)) continue;
-      auto [i, j] = ends[e];
-      Point pull = spring_force(x[j] - x[i], spring[e]);
-      f[i] += pull;
-      f[j] -= pull;
-    }
+  void add_to(const Part& part, double /*t*/,
+              std::span<Point> f) const override {
+    constexpr unsigned width = ClothStencil::width;
+    lanes::run<force_detail::SpringSweep>(
+        part.stencil, part.g.positions().data(), part.g.edge_values().data(),
+        part.first / width, (part.last + width - 1) / width, f.data());
   }
   double energy(const Cloth& g) const override { return elastic_energy(g); }
   /** One call an edge, in the order of their ids: see spring_stiffness(). */
@@ -152,9 +198,11 @@ class DampingForce : public ZeroForce {
   Point operator()(Node n, double /*t*/) const override {
     return -c_ * n.value().vel;
   }
-  void add_to(const Cloth& g, double /*t*/, std::span<Point> f) const override {
-    auto node = g.node_values();
-    for (unsigned i = 0; i < g.node_slots(); ++i) f[i] -= c_ * node[i].vel;
+  void add_to(const Part& part, double /*t*/,
+              std::span<Point> f) const override {
+    const NodeData* node = &part.g.node_values()[part.first];
+    for (unsigned k = 0; k < part.last - part.first; ++k)
+      f[k] -= c_ * node[k].vel;
   }
   double drag() const override { return c_; }
   bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
@@ -188,8 +236,8 @@ class CombinedForces : public ZeroForce {
     for (const auto& force : forces_) f += (*force)(n, t);
     return f;
   }
-  void add_to(const Cloth& g, double t, std::span<Point> f) const override {
-    for (const auto& force : forces_) force->add_to(g, t, f);
+  void add_to(const Part& part, double t, std::span<Point> f) const override {
+    for (const auto& force : forces_) force->add_to(part, t, f);
   }
   double energy(const Cloth& g) const override {
     double sum = 0;

@@ -6,6 +6,7 @@
  *
  * How it is stored, and why so: docs/graph.md. */
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <compare>
@@ -256,7 +257,7 @@ class Graph {
     V copy = value;  // the caller's may lie in the array that grows
     Point p = position;
     size_type id = nodes_.next();
-    graph_detail::grow_to_hold(position_, id);
+    graph_detail::grow_to_hold(position_, id + 1);  // one more: positions()
     graph_detail::grow_to_hold(node_value_, id);
     graph_detail::grow_to_hold(neighbors_of_, id);
     nodes_.acquire();
@@ -410,7 +411,7 @@ class Graph {
     ends_.clear();
     edge_value_.clear();
     // Slots that are used up stay, and are as any other dead slot.
-    position_.resize(node_slots());
+    position_.resize(node_slots() + 1);
     node_value_.resize(node_slots());
     neighbors_of_.resize(node_slots());
     ends_.resize(edge_slots());
@@ -464,6 +465,8 @@ class Graph {
     return Edge(this, 2 * id);
   }
 
+  /** One more Point lies behind the last: who reads four numbers at a time may
+   * read its x. */
   std::span<Point> positions() { return {position_.data(), node_slots()}; }
   std::span<const Point> positions() const {
     return {position_.data(), node_slots()};
@@ -482,8 +485,20 @@ class Graph {
     return {edge_value_.data(), edge_slots()};
   }
 
-  /** Changes whenever a node or an edge came or went, or indices changed. */
-  std::size_t version() const { return version_; }
+  /** An edge as one of its ends sees it: the other end's id, and 2 id() of the
+   * edge, + 1 if seen from the second of edge_ends(). */
+  struct Half {
+    size_type node, edge;
+  };
+  /** The edges at a node, in the order of Node::edges(); none at a slot that
+   * is not in use. */
+  std::span<const Half> halves(size_type id) const {
+    return pool_.items(neighbors_of_[id]);
+  }
+
+  /** Changes whenever a node or an edge came or went, or indices changed. No
+   * two graphs of a program ever have the same. */
+  std::uint64_t version() const { return version_.number; }
 
   /** Throw std::logic_error with what is wrong unless the whole representation
    * is consistent. For tests.
@@ -494,7 +509,7 @@ class Graph {
     };
     nodes_.check_invariants();
     edges_.check_invariants();
-    require(position_.size() >= node_slots() &&
+    require(position_.size() >= node_slots() + (node_slots() > 0) &&
                 node_value_.size() >= node_slots() &&
                 neighbors_of_.size() >= node_slots() &&
                 ends_.size() >= edge_slots() &&
@@ -532,15 +547,19 @@ class Graph {
   }
 
  private:
-  /** An edge in the list of one end: the other end's id, and Edge::half_. */
-  struct Half {
-    size_type node, edge;
+  /** Each graph counts in a range of its own, a copy too. */
+  struct Version {
+    std::uint64_t number = next.fetch_add(std::uint64_t(1) << 40);
+    Version() = default;
+    Version(const Version&) : Version() {}
+    void operator++() { ++number; }
+    static inline std::atomic<std::uint64_t> next = 0;
   };
   static constexpr size_type none = std::numeric_limits<size_type>::max();
 
   graph_detail::SlotMap<Generation> nodes_, edges_;
   graph_detail::ListPool<Half> pool_;
-  std::size_t version_ = 0;
+  Version version_;
   // By node id:
   std::vector<Point> position_;
   Array<V> node_value_;

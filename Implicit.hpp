@@ -132,7 +132,7 @@ class TrBdf2 : public NewtonMethod {
     auto node = g.node_values();
     const unsigned n = g.node_slots();
     x0_.assign(x.begin(), x.end());
-    integrator_detail::sweep(g, t, force, force_);
+    sweep_(g, t, force, force_);
     for (unsigned i = 0; i < n; ++i) {
       if (stage_.fixed(i)) force_[i] = Point();
       stage_.p[i] = x[i] + s * node[i].vel;
@@ -149,6 +149,7 @@ class TrBdf2 : public NewtonMethod {
   }
 
  private:
+  Sweep sweep_;
   std::vector<Point> x0_, force_;  // by node id
 };
 
@@ -188,7 +189,8 @@ class AugmentedVerlet : public Method {
     if (!same || kept_for_ != &g || std::abs(kept_time_ - t) > 1e-6 * dt)
       accelerate(g, t, force);
     kick(g, dt / 2);
-    drift(g, dt, force.drag());
+    sweep_.parts(g,
+                 [&](const Part& part) { drift(g, part, dt, force.drag()); });
     const std::size_t version = g.version();
     constraint(g, t + dt);
     stop_held(g, constraint);
@@ -223,6 +225,7 @@ class AugmentedVerlet : public Method {
   int factorizations_ = 0;
   std::vector<unsigned> row_;  // of the matrix, by node id; none if fixed
   SparseCholesky factor_;
+  Sweep sweep_;
   std::vector<Point> acceleration_;  // [m/s^2], by row
   std::vector<Point> force_;         // [N], by node id, without drag
   const Cloth* kept_for_ = nullptr;  // at whose state acceleration_ is
@@ -286,7 +289,7 @@ class AugmentedVerlet : public Method {
 
   /** acceleration_ = (M + (dt^2/4) L)^-1 F at the state of @a g. */
   void accelerate(const Cloth& g, double t, const ZeroForce& force) {
-    integrator_detail::sweep_without_drag(g, t, force, force_);
+    integrator_detail::sweep_without_drag(sweep_, g, t, force, force_);
     for (unsigned i = 0; i < row_.size(); ++i)
       if (row_[i] != none) acceleration_[row_[i]] = force_[i];
     factor_.solve(acceleration_);

@@ -146,6 +146,7 @@ class ImplicitStage {
     unsigned i, j;
     Stiffness B;
   };
+  Sweep sweep_;
   std::vector<char> fixed_;
   std::vector<Block> blocks_;
   std::vector<Eigen::Matrix3d> inverse_;  // of the diagonal blocks of A
@@ -178,7 +179,7 @@ class ImplicitStage {
   /** s (F - c w) - M (w - q) [kg m/s] at the positions of @a g. */
   void find_residual(const Cloth& g, double t, double s,
                      const ZeroForce& force) {
-    integrator_detail::sweep_without_drag(g, t, force, force_);
+    integrator_detail::sweep_without_drag(sweep_, g, t, force, force_);
     drag_ = force.drag();
     auto node = g.node_values();
     for (unsigned i = 0; i < w.size(); ++i)

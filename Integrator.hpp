@@ -15,6 +15,7 @@
 #include "Cloth.hpp"
 #include "Constraint.hpp"
 #include "Force.hpp"
+#include "Sweep.hpp"
 
 /** One step of symplectic Euler, as the assignment writes it down:
  *   x += dt v;   v += dt F(x, t) / m.
@@ -121,16 +122,67 @@ constexpr MethodEntry entry_of() {
 
 namespace integrator_detail {
 
+/** x += h v for @a blocks of lanes::width nodes. */
+struct DriftBlocks {
+  [[gnu::always_inline]] static inline void apply(Point* position,
+                                                  const NodeData* node,
+                                                  unsigned blocks, Real h) {
+    using namespace lanes;
+    for (unsigned b = 0; b < blocks; ++b) {
+      Real* x = &position[b * width].x;
+      const Real* v = &node[b * width].vel.x;
+      const Lanes v0 = load(v), v1 = load(v + width), v2 = load(v + 2 * width),
+                  v3 = load(v + 3 * width);
+      store(x, load(x) + h * without_fourth<0>(v0, v1));
+      store(x + width, load(x + width) + h * without_fourth<1>(v1, v2));
+      store(x + 2 * width, load(x + 2 * width) + h * without_fourth<2>(v2, v3));
+    }
+  }
+};
+
+/** v += h f/m for @a blocks of lanes::width nodes. */
+struct KickBlocks {
+  [[gnu::always_inline]] static inline void apply(NodeData* node,
+                                                  const Point* force,
+                                                  unsigned blocks, Real h) {
+    using namespace lanes;
+    for (unsigned b = 0; b < blocks; ++b) {
+      Real* v = &node[b * width].vel.x;
+      const Real* f = &force[b * width].x;
+      const Lanes f0 = load(f), f1 = load(f + width), f2 = load(f + 2 * width);
+      kick(v, with_fourth<0>(f0, f1, f2), h);
+      kick(v + width, with_fourth<1>(f0, f1, f2), h);
+      kick(v + 2 * width, with_fourth<2>(f0, f1, f2), h);
+      kick(v + 3 * width, with_fourth<3>(f0, f1, f2), h);
+    }
+  }
+  /** The same for a row of v m v m ..., and as long a row of f ? f ? ... */
+  [[gnu::always_inline]] static inline void kick(Real* row,
+                                                 const lanes::Lanes& f,
+                                                 Real h) {
+    using namespace lanes;
+    const Lanes vm = load(row);
+    const Lanes m = shuffle(vm, vm, [](int k) { return k | 3; });
+    const Lanes per_f = shuffle(
+        h / m, Lanes{}, [](int k) { return k % 4 < 3 ? k : width + k; });
+    store(row, vm + per_f * f);
+  }
+};
+
 /** The flow of x' = v, m v' = -c v over @a h, solved exactly; h may be < 0. */
-inline void drift(Cloth& g, double h, double c) {
-  auto x = g.positions();
-  auto node = g.node_values();
+inline void drift(Cloth& g, const Part& part, double h, double c) {
+  Point* x = g.positions().data();
+  NodeData* node = g.node_values().data();
+  unsigned i = part.first;
   if (c == 0) {
-    for (unsigned i = 0; i < g.node_slots(); ++i) x[i] += h * node[i].vel;
+    const unsigned blocks = (part.last - part.first) / lanes::width;
+    lanes::run<DriftBlocks>(x + i, node + i, blocks, Real(h));
+    for (i += blocks * lanes::width; i < part.last; ++i)
+      x[i] += h * node[i].vel;
     return;
   }
   double mass = 0, decay = 1, way = h;  // most nodes weigh the same
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
+  for (; i < part.last; ++i) {
     if (node[i].mass != mass) {
       mass = node[i].mass;
       way = -std::expm1(-c / mass * h) * mass / c;
@@ -141,31 +193,40 @@ inline void drift(Cloth& g, double h, double c) {
   }
 }
 
-/** v += h f / m.  @param f by node id [N] */
-inline void kick(Cloth& g, double h, const std::vector<Point>& f) {
-  auto node = g.node_values();
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    node[i].vel += (h / node[i].mass) * f[i];
+/** v += h f / m.  @param f [N], that on part.first first */
+inline void kick(Cloth& g, const Part& part, double h,
+                 std::span<const Point> f) {
+  NodeData* node = &g.node_values()[part.first];
+  const unsigned count = part.last - part.first;
+  const unsigned blocks = count / lanes::width;
+  lanes::run<KickBlocks>(node, f.data(), blocks, Real(h));
+  for (unsigned k = blocks * lanes::width; k < count; ++k)
+    node[k].vel += (h / node[k].mass) * f[k];
 }
 
-/** All forces on @a g into @a f, by node id; removed nodes feel none. */
-inline void sweep(const Cloth& g, double t, const ZeroForce& force,
-                  std::vector<Point>& f) {
-  f.assign(g.node_slots(), Point());
-  force.add_to(g, t, f);
-  if (g.node_slots() == g.num_nodes()) return;
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    if (!g.node_in_use(i)) f[i] = Point();
+/** Take linear drag, which drift() takes care of, out of @a f. */
+inline void without_drag(const Part& part, const ZeroForce& force,
+                         std::span<Point> f) {
+  const double c = force.drag();
+  if (c == 0) return;
+  const NodeData* node = &part.g.node_values()[part.first];
+  for (unsigned k = 0; k < part.last - part.first; ++k) f[k] += c * node[k].vel;
 }
 
-/** The same without linear drag, which drift() takes care of. */
-inline void sweep_without_drag(const Cloth& g, double t, const ZeroForce& force,
-                               std::vector<Point>& f) {
-  sweep(g, t, force, f);
-  if (double c = force.drag(); c != 0) {
-    auto node = g.node_values();
-    for (unsigned i = 0; i < g.node_slots(); ++i) f[i] += c * node[i].vel;
-  }
+/** All forces but linear drag into @a f, by node id; then @a use(part, forces
+ * on it). */
+template <typename Use>
+void sweep_without_drag(Sweep& sweep, const Cloth& g, double t,
+                        const ZeroForce& force, std::vector<Point>& f,
+                        Use use) {
+  sweep(g, t, force, f, [&](const Part& part, std::span<Point> here) {
+    without_drag(part, force, here);
+    use(part, here);
+  });
+}
+inline void sweep_without_drag(Sweep& sweep, const Cloth& g, double t,
+                               const ZeroForce& force, std::vector<Point>& f) {
+  sweep_without_drag(sweep, g, t, force, f, [](auto&, auto) {});
 }
 
 }  // namespace integrator_detail
@@ -185,16 +246,18 @@ class SymplecticEuler : public Method {
 
   double step(Cloth& g, double t, double dt, const ZeroForce& force,
               const ZeroConstraint& constraint) override {
-    integrator_detail::drift(g, dt, 0);
+    using namespace integrator_detail;
+    sweep_.parts(g, [&](const Part& part) { drift(g, part, dt, 0); });
     constraint(g, t);
-    integrator_detail::sweep(g, t, force, force_);
-    integrator_detail::kick(g, dt, force_);
+    sweep_(g, t, force, [&](const Part& part, std::span<const Point> f) {
+      kick(g, part, dt, f);
+    });
     stop_held(g, constraint);
     return t + dt;
   }
 
  private:
-  std::vector<Point> force_;  // [N], by node id
+  Sweep sweep_;
 };
 
 /** A splitting method: A moves the positions (and lets drag slow the nodes
@@ -221,11 +284,18 @@ class Splitting : public Method {
     for (std::size_t k = 0; k < count; ++k) {
       const double h = Scheme::steps[k] * dt;
       if ((k % 2 == 0) == Scheme::kicks_first) {
-        if (k > 0 || !kept(g, t, dt)) sweep_without_drag(g, now, force, force_);
-        kick(g, h, force_);
+        auto kick_part = [&](const Part& part, std::span<const Point> f) {
+          kick(g, part, h, f);
+        };
+        if (k == 0 && kept(g, t, dt))
+          sweep_.parts(g, [&](const Part& part) {
+            kick_part(part, std::span(force_).subspan(part.first));
+          });
+        else
+          sweep_without_drag(sweep_, g, now, force, force_, kick_part);
         stop_held(g, constraint);
       } else {
-        drift(g, h, c);
+        sweep_.parts(g, [&](const Part& part) { drift(g, part, h, c); });
         now += h;
         if (k == last_drift) constraint(g, now = t + dt);
       }
@@ -237,9 +307,10 @@ class Splitting : public Method {
   void restart() override { kept_for_ = nullptr; }
 
  private:
+  Sweep sweep_;
   std::vector<Point> force_;         // [N], by node id, without drag
   const Cloth* kept_for_ = nullptr;  // the cloth at whose state force_ is
-  std::size_t kept_version_ = 0;
+  std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
 
   bool kept(const Cloth& g, double t, double dt) const {

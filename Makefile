@@ -9,6 +9,8 @@ STAGES  = problem1 diagonals forces constraints tear
 VIEWER ?= 1
 CHOLMOD ?= 1
 HW     ?= hw2
+REAL   ?= double
+OPENMP ?= 1
 O       =
 SANITIZE = address,undefined
 
@@ -31,7 +33,9 @@ eigen   := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 2>/dev/n
 cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
   -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null \
   >/dev/null 2>&1 && echo -DMASS_SPRING_CHOLMOD))
-flags    = -std=c++20 -g -Wall -Wextra -pthread -I. $(eigen) $(cholmod) \
+flags    = -std=c++20 -g -Wall -Wextra -fno-math-errno \
+           $(if $(filter 1,$(OPENMP)),-fopenmp) -pthread -I. $(eigen) $(cholmod) \
+           $(if $(filter-out double,$(REAL)),-DREAL=$(REAL)) \
            $(if $(filter test_% example_%,$*),$(testing),$(release)) \
            $(if $(filter mass_spring%,$*),-DSTAGE=$(stage_of)) \
            $(if $(draws),-DMASS_SPRING_VIEWER \
@@ -66,7 +70,7 @@ help:
 all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
 
 needs    = $(if $(draws),$(draw_pkg)) \
-           $(if $(filter mass_spring% work_precision stability_map bench_% test_m% \
+           $(if $(filter mass_spring% work_precision stability_map bench bench_% test_m% \
              test_orders test_limits test_stability test_implicit test_scene,$*),CLI11 eigen3)
 missing  = echo "make $*: not all of $(strip $(needs)) is installed:" \
   "'make deps' does it$(if $(draws),; 'make $* VIEWER=0' builds without a window)" >&2

@@ -25,8 +25,8 @@
  * count together. */
 class CountingForce : public ZeroForce {
  public:
-  void add_to(const Cloth&, double, std::span<Point>) const override {
-    ++*sweeps_;
+  void add_to(const Part& part, double, std::span<Point>) const override {
+    if (part.first == 0) ++*sweeps_;
   }
   bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
     return true;  // it has none

@@ -79,6 +79,7 @@ class RungeKutta : public Method {
 
   double tolerance_;
   double inner_ = 0;  // next inner step [s]; 0: not chosen yet
+  Sweep sweep_;
   std::vector<Point> x0_, v0_, force_;
   std::array<std::vector<Point>, stages> v_, a_;  // derivatives, by stage
   std::vector<Point> end_x_, end_v_;  // where the last stage was taken
@@ -140,7 +141,7 @@ class RungeKutta : public Method {
   /** The derivatives of the present state as those of stage @a s. */
   void derive(Cloth& g, double t, const ZeroForce& force,
               const ZeroConstraint& constraint, std::size_t s) {
-    integrator_detail::sweep(g, t, force, force_);
+    sweep_(g, t, force, force_);
     constraint.each_held(g, [this](Node n) { force_[n.id()] = Point(); });
     auto node = g.node_values();
     v_[s].resize(g.node_slots());

@@ -71,6 +71,7 @@ class Xpbd : public Method {
 
  private:
   int substeps_;
+  Sweep sweep_;
   std::vector<char> fixed_;  // by node id, as all that follows
   std::vector<Point> free_, force_, pull_;
 
@@ -108,9 +109,9 @@ class Xpbd : public Method {
   /** All forces but the springs and drag. */
   void find_forces(const Cloth& g, double t, const ZeroForce& force,
                    bool springs) {
-    integrator_detail::sweep_without_drag(g, t, force, force_);
+    integrator_detail::sweep_without_drag(sweep_, g, t, force, force_);
     if (!springs) return;
-    integrator_detail::sweep(g, t, MassSpringForce(), pull_);
+    sweep_(g, t, MassSpringForce(), pull_);
     for (std::size_t i = 0; i < pull_.size(); ++i) force_[i] -= pull_[i];
   }
 

@@ -2,7 +2,7 @@
 // against the call node by node, combinations.
 #include <gtest/gtest.h>
 
-#include "Force.hpp"
+#include "Sweep.hpp"
 
 namespace {
 
@@ -31,8 +31,8 @@ class ShakenCloth : public ::testing::Test {
   /** The largest |force - other| over all nodes [N], by call and by sweep. */
   template <typename F>
   double distance(const ZeroForce& force, F other) {
-    std::vector<Point> sweep(g.node_slots());
-    force.add_to(g, 0, sweep);
+    std::vector<Point> sweep;
+    Sweep()(g, 0, force, sweep);
     double worst = 0;
     for (Node n : g.nodes()) {
       worst = std::max(worst, norm(force(n, 0) - other(n)));
@@ -90,8 +90,8 @@ TEST_F(ShakenCloth, DampingIsLinearDrag) {
 }
 
 TEST_F(ShakenCloth, SpringsAloneConserveMomentum) {
-  std::vector<Point> f(g.node_slots());
-  MassSpringForce().add_to(g, 0, f);
+  std::vector<Point> f;
+  Sweep()(g, 0, MassSpringForce(), f);
   Point sum, torque;
   double size = 0;
   for (Node n : g.nodes()) {
@@ -131,8 +131,8 @@ TEST(MassSpringForce, IsZeroNotNanAtLengthZero) {
   Cloth g;
   Node a = g.add_node(Point(1)), b = g.add_node(Point(1));
   g.add_edge(a, b, {100, 1});
-  std::vector<Point> f(2);
-  MassSpringForce().add_to(g, 0, f);
+  std::vector<Point> f;
+  Sweep()(g, 0, MassSpringForce(), f);
   for (Point p : {MassSpringForce()(a, 0), f[0], f[1], Problem1Force(0)(b, 0)})
     EXPECT_EQ(p, Point());
 }
@@ -205,15 +205,16 @@ TEST_F(ShakenCloth, StiffnessIsTheDerivativeOfTheForce) {
   EXPECT_EQ(blocks->size(), g.num_edges());
   const double h = 1e-6;
   const unsigned n = g.node_slots();
+  Sweep sweep;
   for (Node moved : g.nodes())
     for (unsigned k = 0; k < 3; ++k) {
       Point unit;
       unit[k] = 1;
-      std::vector<Point> up(n), down(n), expected(n);
+      std::vector<Point> up, down, expected(n);
       moved.position() += h * unit;
-      force.add_to(g, 0, up);
+      sweep(g, 0, force, up);
       moved.position() -= 2 * h * unit;
-      force.add_to(g, 0, down);
+      sweep(g, 0, force, down);
       moved.position() += h * unit;
       for (const auto& [i, j, B] : *blocks) {
         Point du = (j == moved.id() ? unit : i == moved.id() ? -unit : Point());

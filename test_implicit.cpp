@@ -96,9 +96,9 @@ Point angular_momentum(const Cloth& g) {
 struct Counted : MassSpringForce {
   int& sweeps;
   explicit Counted(int& n) : sweeps(n) {}
-  void add_to(const Cloth& g, double t, std::span<Point> f) const override {
-    ++sweeps;
-    MassSpringForce::add_to(g, t, f);
+  void add_to(const Part& part, double t, std::span<Point> f) const override {
+    if (part.first == 0) ++sweeps;
+    MassSpringForce::add_to(part, t, f);
   }
 };
 

@@ -8,6 +8,13 @@
 #include <istream>
 #include <ostream>
 
+/** The numbers that a simulation is made of: `make REAL=float` takes single
+ * precision for all of them. */
+#ifndef REAL
+#define REAL double
+#endif
+using Real = REAL;
+
 /** A point or a vector in R^3. Plain data: 24 bytes, trivially copyable.
  * A scalar in a sum acts on every coordinate; a product or quotient of two
  * Points is taken coordinate by coordinate (the scalar product is dot()). */

@@ -49,7 +49,10 @@ same_grids() {
 # Threads: Mesa's own are not ours to check.
 threads() {
   TSAN_OPTIONS="suppressions=tools/tsan.supp halt_on_error=1" \
-    build/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*'
+    build/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*' &&
+    OMP_NUM_THREADS=3 \
+      TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
+      build/tsan/test_sweep --gtest_filter='*Thread*:*Parts*'
 }
 
 tests=$(make -s print-tests)
@@ -61,7 +64,9 @@ step build-g++     make_all all CXX=g++
 step build-clang++ make_all all CXX=clang++ O=build/clang/ SANITIZE= \
   CXXFLAGS="-Werror -O0 -g0"
 step build-plain   make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/
-step build-tsan    make_all build/tsan/test_viewer O=build/tsan/ SANITIZE=thread
+# clang++, whose OpenMP tells ThreadSanitizer what waits for what.
+step build-tsan    make_all build/tsan/test_viewer build/tsan/test_sweep \
+  CXX=clang++ O=build/tsan/ SANITIZE=thread
 for test in $tests; do
   case $test in
     test_viewer | test_screen) step "$test" env ASAN_OPTIONS=detect_leaks=0 "./$test" ;;

@@ -22,11 +22,14 @@ CME212/SDLWindow   = CME212/*
 CME212/SDLViewer   = CME212/*
 SlotMap            =
 Graph              : SlotMap CME212/Point CME212/Util
+Lanes              : CME212/Point
+Stencil            : Graph
 Mesh               : CME212/Point CME212/Util
-Cloth              : Graph Mesh CME212/BoundingBox
+Cloth              : Graph Mesh Lanes Stencil CME212/BoundingBox
 Force              : Cloth
+Sweep              : Force
 Constraint         : Cloth
-Integrator         : Force Constraint
+Integrator         : Sweep Constraint
 RungeKutta         : Integrator
 Cholesky           : CME212/Point
 ImplicitStage      : Integrator
@@ -42,6 +45,7 @@ Limits             : Problem
 Failure            : Problem
 Growth             : Limits
 Report             : CME212/Util
+Bench              : Report CME212/OutputFile CME212/Point
 Screen             : Scene CME212/Image CME212/SDLViewer
 mass_spring        = Cloth Force Constraint Integrator
 '

@@ -1,0 +1,103 @@
+#pragma once
+/** @file Sweep.hpp
+ * Sweep: the forces on all nodes of a cloth, a part at a time, by as many
+ * threads as OpenMP has (OMP_NUM_THREADS, or --threads). */
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "Force.hpp"
+
+/** What goes over all nodes of a cloth, in parts that fit in a cache. It keeps
+ * a stencil of the cloth, and makes it anew when nodes or edges came or went.
+ *
+ * Each node's force is computed by one thread, in the same order whatever the
+ * number of threads: so the results are the same, bit by bit. */
+class Sweep {
+ public:
+  static constexpr unsigned part_size = 1024;
+  static_assert(part_size % ClothStencil::width == 0);
+
+  /** Call @a use(part) for parts that make up the cloth, several at once. */
+  template <typename Use>
+  void parts(const Cloth& g, Use use) {
+    update(g);
+    const int count = int((g.node_slots() + part_size - 1) / part_size);
+#pragma omp parallel for schedule(static) if (count > 1)
+    for (int k = 0; k < count; ++k)
+      use(Part{g, *stencil_, unsigned(k) * part_size,
+               std::min(unsigned(k + 1) * part_size, g.node_slots())});
+  }
+
+  /** All forces on @a g into @a f, by node id; removed nodes feel none. Then
+   * @a use(part, forces on it) while they are at hand. */
+  template <typename Use>
+  void operator()(const Cloth& g, double t, const ZeroForce& force,
+                  std::vector<Point>& f, Use use) {
+    f.resize(whole_blocks(g.node_slots()));
+    parts(g, [&](const Part& part) {
+      std::span<Point> here(&f[part.first],
+                            whole_blocks(part.last - part.first));
+      add_up(part, t, force, here);
+      use(part, here);
+    });
+  }
+  void operator()(const Cloth& g, double t, const ZeroForce& force,
+                  std::vector<Point>& f) {
+    (*this)(g, t, force, f, [](const Part&, std::span<Point>) {});
+  }
+  /** The same for who needs no list of all forces. */
+  template <typename Use>
+  void operator()(const Cloth& g, double t, const ZeroForce& force, Use use) {
+    parts(g, [&](const Part& part) {
+      std::span<Point> here(buffer_[thread()].data(),
+                            whole_blocks(part.last - part.first));
+      add_up(part, t, force, here);
+      use(part, here);
+    });
+  }
+
+ private:
+  using Buffer = std::array<Point, part_size>;
+  std::optional<ClothStencil> stencil_;
+  std::uint64_t version_ = 0;   // of the cloth, when it was made
+  std::vector<Buffer> buffer_;  // by thread
+
+  static std::size_t whole_blocks(unsigned nodes) {
+    constexpr unsigned w = ClothStencil::width;
+    return (std::size_t(nodes) + w - 1) / w * w;
+  }
+  static std::size_t thread() {
+#ifdef _OPENMP
+    return std::size_t(omp_get_thread_num());
+#else
+    return 0;
+#endif
+  }
+
+  void update(const Cloth& g) {
+#ifdef _OPENMP
+    const auto threads = std::size_t(omp_get_max_threads());
+#else
+    const std::size_t threads = 1;
+#endif
+    if (buffer_.size() < threads) buffer_.resize(threads);
+    if (stencil_ && version_ == g.version()) return;
+    stencil_.emplace(g);
+    version_ = g.version();
+  }
+
+  static void add_up(const Part& part, double t, const ZeroForce& force,
+                     std::span<Point> f) {
+    std::fill(f.begin(), f.end(), Point());
+    force.add_to(part, t, f);
+    if (part.g.node_slots() == part.g.num_nodes()) return;
+    for (unsigned i = part.first; i < part.last; ++i)
+      if (!part.g.node_in_use(i)) f[i - part.first] = Point();
+  }
+};

@@ -1,0 +1,341 @@
+// Sweep and Stencil: the fast way over all nodes against the slow one.
+#include "Sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "Integrator.hpp"
+
+namespace {
+
+using lanes::Cpu;
+
+/** The kinds of processor that this one can stand in for. */
+std::vector<Cpu> all_cpus() {
+  std::vector<Cpu> all = {Cpu::plain};
+  if (lanes::best_cpu() >= Cpu::avx2) all.push_back(Cpu::avx2);
+  if (lanes::best_cpu() >= Cpu::avx512) all.push_back(Cpu::avx512);
+  return all;
+}
+
+/** A test that leaves processor and threads as they were. */
+class SweepTest : public ::testing::Test {
+ protected:
+  ~SweepTest() override {
+    lanes::cpu = lanes::best_cpu();
+    set_threads(processors_);
+  }
+  static void set_threads([[maybe_unused]] int n) {
+#ifdef _OPENMP
+    omp_set_num_threads(n);
+#endif
+  }
+
+ private:
+#ifdef _OPENMP
+  int processors_ = omp_get_max_threads();
+#else
+  int processors_ = 1;
+#endif
+};
+
+double random(double a, double b) { return CME212::random(a, b); }
+Point random_point() {
+  return {Real(random(-1, 1)), Real(random(-1, 1)), Real(random(-1, 1))};
+}
+unsigned random_below(unsigned n) {
+  return std::min(unsigned(random(0, n)), n - 1);
+}
+
+/** @a nodes anywhere, with @a edges springs between any two. */
+void make_random(Cloth& g, unsigned nodes, unsigned edges) {
+  for (unsigned i = 0; i < nodes; ++i)
+    g.add_node(random_point(), {random_point(), Real(random(0.5, 2))});
+  for (unsigned e = 0; e < edges && nodes > 1; ++e) {
+    const unsigned i = random_below(nodes), j = random_below(nodes);
+    if (i != j)
+      g.add_edge(g.node(i), g.node(j),
+                 {Real(random(1, 100)), Real(random(0, 1))});
+  }
+}
+/** A grid with diagonals, its nodes up to a third of its mesh away. */
+void make_grid(Cloth& g, unsigned side) {
+  build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+  for (Node n : g.nodes()) {
+    n.position() += (0.3 / side) * random_point();
+    n.value().vel = random_point();
+    n.value().mass *= Real(random(0.5, 2));
+  }
+  for (Edge e : g.edges()) e.value().K *= Real(random(0.5, 2));
+}
+void remove_some(Cloth& g, unsigned nodes, unsigned edges) {
+  for (unsigned k = 0; k < edges && g.num_edges() > 0; ++k)
+    g.remove_edge(g.edge(random_below(g.num_edges())));
+  for (unsigned k = 0; k < nodes && g.num_nodes() > 0; ++k)
+    g.remove_node(g.node(random_below(g.num_nodes())));
+}
+
+/** The largest difference of a sweep and the call node by node, over the sum
+ * of the sizes of the forces of a node's springs. */
+double worst(Cloth& g, Sweep& sweep) {
+  const auto force =
+      make_combined_force(GravityForce(), MassSpringForce(), DampingForce(0.1));
+  const ZeroForce& by_node = force;
+  std::vector<Point> f;
+  sweep(g, 0, force, f);
+  double most = 0;
+  for (Node n : g.nodes()) {
+    double size = n.value().mass * grav + norm(n.value().vel);
+    for (Edge e : n.edges())
+      size +=
+          norm(spring_force(e.node2().position() - n.position(), e.value()));
+    most = std::max(most, norm(f[n.id()] - by_node(n, 0)) / size);
+  }
+  for (unsigned i = 0; i < g.node_slots(); ++i)
+    EXPECT_TRUE(g.node_in_use(i) || f[i] == Point()) << "removed node " << i;
+  return most;
+}
+
+constexpr double round_off = 20 * std::numeric_limits<Real>::epsilon();
+
+// ----------------------------------------------------------------- the forces
+
+TEST_F(SweepTest, EqualsTheForcesNodeByNodeOnRandomGraphs) {
+  for (Cpu cpu : all_cpus()) {
+    lanes::cpu = cpu;
+    Sweep sweep;  // one for all: it must see that the graph is another
+    for (unsigned nodes : {1u, 2u, 7u, 8u, 9u, 15u, 16u, 17u, 33u, 100u, 1500u})
+      for (unsigned per_node : {0u, 1u, 3u, 10u}) {
+        Cloth g;
+        make_random(g, nodes, per_node * nodes);
+        EXPECT_LT(worst(g, sweep), round_off) << nodes << " nodes";
+        while (g.num_nodes() > nodes / 3) {
+          remove_some(g, 1 + nodes / 10, nodes / 10);
+          EXPECT_LT(worst(g, sweep), round_off) << g.num_nodes() << " left";
+        }
+        make_random(g, 1 + nodes / 4, nodes);  // into the slots of the removed
+        EXPECT_LT(worst(g, sweep), round_off) << "refilled";
+        g.reindex();
+        EXPECT_LT(worst(g, sweep), round_off) << "reindexed";
+        g.clear();
+        EXPECT_EQ(worst(g, sweep), 0) << "cleared";
+      }
+  }
+}
+
+TEST_F(SweepTest, EqualsTheForcesNodeByNodeOnTornGrids) {
+  for (Cpu cpu : all_cpus()) {
+    lanes::cpu = cpu;
+    for (unsigned side : {2u, 3u, 8u, 9u, 16u, 31u, 40u}) {
+      Cloth g;
+      Sweep sweep;
+      make_grid(g, side);
+      EXPECT_LT(worst(g, sweep), round_off) << side;
+      remove_some(g, side, side);
+      EXPECT_LT(worst(g, sweep), round_off) << side << ", torn";
+    }
+  }
+}
+
+TEST_F(SweepTest, NodesInOnePlaceFeelNoSpringAndNoNan) {
+  for (Cpu cpu : all_cpus()) {
+    lanes::cpu = cpu;
+    Cloth g;
+    for (int i = 0; i < 20; ++i) g.add_node(Point(1));
+    for (unsigned i = 0; i < 20; ++i)
+      for (unsigned j = 0; j < i; ++j)
+        g.add_edge(g.node(i), g.node(j), {1000, 1});
+    std::vector<Point> f;
+    Sweep()(g, 0, MassSpringForce(), f);
+    for (unsigned i = 0; i < 20; ++i) EXPECT_EQ(f[i], Point());
+  }
+}
+
+TEST_F(SweepTest, SeesChangedSpringsAndPositionsAtOnce) {
+  Cloth g;
+  make_grid(g, 20);
+  Sweep sweep;
+  EXPECT_LT(worst(g, sweep), round_off);
+  for (Edge e : g.edges()) e.value().K *= 3, e.value().L *= 2;
+  for (Node n : g.nodes()) n.position() *= 2;
+  EXPECT_LT(worst(g, sweep), round_off);
+}
+
+TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
+  Cloth g;
+  make_grid(g, 10);
+  Cloth copy = g;
+  EXPECT_NE(copy.version(), g.version());
+  Sweep sweep;
+  worst(g, sweep);
+  remove_some(g, 3, 0);
+  remove_some(copy, 0, 5);
+  EXPECT_LT(worst(g, sweep), round_off);
+  EXPECT_LT(worst(copy, sweep), round_off);
+}
+
+// -------------------------------------------------------------------- threads
+
+/** Positions and velocities after 50 steps and a tear. */
+std::vector<Point> run(Method& method, int threads) {
+  CME212::default_generator.seed(5);
+#ifdef _OPENMP
+  omp_set_num_threads(threads);
+#endif
+  Cloth g;
+  make_grid(g, 70);  // 4900 nodes: five parts
+  const auto force = make_combined_force(GravityForce(), MassSpringForce(),
+                                         DampingForce(0.0001));
+  double t = 0;
+  for (int k = 0; k < 50; ++k) {
+    if (k == 25) remove_some(g, 300, 100);
+    t = method(g, t, 0.0002, force);
+  }
+  std::vector<Point> end;
+  for (Node n : g.nodes()) {
+    end.push_back(n.position());
+    end.push_back(n.value().vel);
+  }
+  return end;
+}
+
+TEST_F(SweepTest, ThreadsDoNotChangeABit) {
+  SymplecticEuler euler;
+  Verlet verlet;
+  for (Method* method :
+       {static_cast<Method*>(&euler), static_cast<Method*>(&verlet)}) {
+    const auto one = run(*method, 1);
+    for (int threads : {2, 3, 4, 7}) {
+      method->restart();
+      EXPECT_TRUE(run(*method, threads) == one) << threads << " threads";
+    }
+  }
+}
+
+TEST_F(SweepTest, PartsMakeUpTheCloth) {
+  for (unsigned nodes : {0u, 1u, 1023u, 1024u, 1025u, 5000u}) {
+    Cloth g;
+    make_random(g, nodes, 0);
+    std::vector<std::atomic<int>> seen(nodes);
+    Sweep().parts(g, [&](const Part& part) {
+      EXPECT_EQ(part.first % ClothStencil::width, 0u);
+      for (unsigned i = part.first; i < part.last; ++i) ++seen[i];
+    });
+    for (auto& times : seen) EXPECT_EQ(times, 1);
+  }
+}
+
+// ------------------------------------------------------------ drift and kick
+
+TEST_F(SweepTest, DriftAndKickAreTheirFormulas) {
+  for (Cpu cpu : all_cpus()) {
+    lanes::cpu = cpu;
+    for (unsigned nodes : {1u, 7u, 8u, 16u, 19u, 64u, 1100u}) {
+      Cloth g;
+      make_random(g, nodes, 0);
+      Cloth before = g;
+      std::vector<Point> f(nodes);
+      for (Point& p : f) p = random_point();
+      const double h = 0.37;
+      Sweep().parts(g, [&](const Part& part) {
+        integrator_detail::drift(g, part, h, 0);
+        integrator_detail::kick(g, part, h, std::span(f).subspan(part.first));
+      });
+      for (unsigned i = 0; i < nodes; ++i) {
+        const NodeData old = before.node(i).value();
+        const Point x = before.node(i).position() + h * old.vel;
+        const Point v = old.vel + (h / old.mass) * f[i];
+        EXPECT_LT(norm(g.node(i).position() - x), round_off);
+        EXPECT_LT(norm(g.node(i).value().vel - v), round_off);
+        EXPECT_EQ(g.node(i).value().mass, old.mass);
+      }
+    }
+  }
+}
+
+// ------------------------------------------------------------------ the
+// stencil
+
+/** Every (node, neighbor, edge) that the rows name, springs of a node to itself
+ * left out; and that they name none twice. */
+template <int W>
+std::set<std::tuple<unsigned, unsigned, unsigned>> springs_of(
+    const Stencil<W>& s, unsigned slots) {
+  std::set<std::tuple<unsigned, unsigned, unsigned>> all;
+  for (unsigned b = 0; b < s.num_blocks(); ++b)
+    for (const auto& row : s.rows(b))
+      for (unsigned k = 0; k < W; ++k) {
+        const unsigned id = std::min(b * W + k, slots - 1);
+        const unsigned j =
+            row.offset != 0 ? id + unsigned(row.offset) : s.neighbors(row)[k];
+        const unsigned e =
+            row.first_edge != s.none ? row.first_edge + k : s.edges(row)[k];
+        EXPECT_TRUE(j == id || all.insert({id, j, e}).second)
+            << id << " has " << j << " twice";
+      }
+  return all;
+}
+
+TEST(Stencil, NamesEachEdgeFromBothEnds) {
+  for (unsigned nodes : {1u, 5u, 8u, 30u, 64u}) {
+    Cloth g;
+    make_random(g, nodes, 4 * nodes);
+    remove_some(g, nodes / 4, nodes / 4);
+    std::set<std::tuple<unsigned, unsigned, unsigned>> expected;
+    for (Edge e : g.edges()) {
+      expected.insert({e.node1().id(), e.node2().id(), e.id()});
+      expected.insert({e.node2().id(), e.node1().id(), e.id()});
+    }
+    EXPECT_EQ(springs_of(Stencil<8>(g), g.node_slots()), expected);
+    EXPECT_EQ(springs_of(Stencil<4>(g), g.node_slots()), expected);
+  }
+}
+
+// Only blocks at the ends of a grid's lines have rows that are listed: of a
+// line of n nodes at most two blocks of eight, and the first and last line.
+TEST(Stencil, FindsTheConstantOffsetsOfAGrid) {
+  for (unsigned side : {40u, 100u}) {
+    for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
+      Cloth g;
+      build_cloth(g, grid_points(side), grid_quads(side), mesh);
+      const Stencil<8> s(g);
+      const unsigned degree = mesh == Mesh::plain ? 4 : 8;
+      EXPECT_GE(s.num_rows(), degree * (side - 2) * side / 8);
+      EXPECT_LE(s.num_rows(), degree * (side * side / 8 + 2 * side));
+      EXPECT_LE(s.num_listed(), degree * (2 * side + 2 * side / 8));
+      EXPECT_GT(s.num_listed(), 0u);
+    }
+  }
+}
+
+TEST(Stencil, ListsTheEdgesOfAGridWhoseEdgesComeQuadByQuad) {
+  const unsigned side = 64;
+  Cloth g;
+  for (const Point& p : grid_points(side)) g.add_node(p);
+  for (const Quad& q : grid_quads(side))
+    for (auto [a, b] : {std::pair(0, 1), {0, 2}, {1, 3}, {2, 3}})
+      g.add_edge(g.node(q[a]), g.node(q[b]));
+  const Stencil<8> s(g);
+  unsigned constant = 0;
+  for (unsigned b = 0; b < s.num_blocks(); ++b)
+    for (const auto& row : s.rows(b))
+      if (row.offset != 0) {
+        ++constant;
+        EXPECT_EQ(row.first_edge, s.none);
+        EXPECT_EQ(s.neighbors(row)[3], b * 8 + 3 + unsigned(row.offset));
+      }
+  EXPECT_GT(constant, 4 * (side - 2) * (side / 8 - 2));
+}
+
+}  // namespace
