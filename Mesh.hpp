@@ -10,10 +10,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "CME212/Point.hpp"
@@ -41,22 +41,24 @@ inline std::string quoted(std::string_view word) {
 template <typename Use>
 std::size_t for_each_line(std::string_view text, Use use) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // UTF-8 mark
+  auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  const char* at = text.data();
+  const char* const end = at + text.size();
   std::vector<std::string_view> words;
   std::size_t number = 0;
-  while (!text.empty()) {
-    std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end);
-    if (!text.empty()) text.remove_prefix(text.starts_with("\r\n") ? 2 : 1);
+  while (at != end) {
     ++number;
     words.clear();
-    for (;;) {
-      line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-      if (line.empty()) break;
-      std::size_t length = std::min(line.find_first_of(" \t"), line.size());
-      words.push_back(line.substr(0, length));
-      line.remove_prefix(length);
+    while (at != end && !ends_line(*at)) {
+      const char* first = at;
+      while (at != end && !is_blank(*at) && !ends_line(*at)) ++at;
+      if (at != first)
+        words.emplace_back(first, std::size_t(at - first));
+      else
+        ++at;
     }
+    if (at != end) at += at[0] == '\r' && end - at > 1 && at[1] == '\n' ? 2 : 1;
     if (!words.empty() && words[0][0] != '#') use(words, number);
   }
   return number;
@@ -76,14 +78,12 @@ T parse_number(std::string_view word, const char* kind) {
   return value;
 }
 
-/** Read N numbers of type T from each line of @a text. */
-template <typename T, std::size_t N, typename Check>
-std::vector<std::array<T, N>> read_rows(std::string_view text,
-                                        const std::string& file,
-                                        const char* kind,
-                                        const std::string& expected,
-                                        Check check) {
-  std::vector<std::array<T, N>> rows;
+/** Call add(row) for the N numbers of type T in each line of @a text. What
+ * @a add throws as std::runtime_error is wrong with the line. */
+template <typename T, std::size_t N, typename Add>
+void read_rows(std::string_view text, const std::string& file, const char* kind,
+               const std::string& expected, Add add) {
+  bool any = false;
   std::size_t lines = for_each_line(text, [&](auto& words, std::size_t line) {
     try {
       std::array<T, N> row;
@@ -93,15 +93,14 @@ std::vector<std::array<T, N>> read_rows(std::string_view text,
         throw std::runtime_error(std::to_string(words.size()) +
                                  (words.size() == 1 ? " value" : " values") +
                                  " in the line");
-      check(row);
-      rows.push_back(row);
+      add(row);
+      any = true;
     } catch (const std::runtime_error& e) {
       throw InputError(file, line, e.what() + (", expected " + expected));
     }
   });
-  if (rows.empty())
+  if (!any)
     throw InputError(file, lines, "nothing in the file, expected " + expected);
-  return rows;
 }
 
 /** All of a file.  Throws InputError. */
@@ -112,11 +111,18 @@ inline std::string read_file(const std::string& file, const char* expected) {
   if (std::filesystem::is_directory(file)) fail("a directory");
   errno = 0;
   std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
   if (!in) fail(std::string("can't be opened (") + std::strerror(errno) + ")");
-  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (in.bad() || text.bad()) fail("can't be read");
-  return std::move(text).str();
+  std::string text;
+  std::error_code none;  // of a pipe, say
+  if (auto size = std::filesystem::file_size(file, none); !none)
+    text.reserve(size);
+  std::vector<char> part(1 << 16);
+  do {
+    in.read(part.data(), std::streamsize(part.size()));
+    text.append(part.data(), std::size_t(in.gcount()));
+  } while (in);
+  if (in.bad()) fail("can't be read");
+  return text;
 }
 
 }  // namespace mesh_detail
@@ -130,14 +136,14 @@ using Quad = std::array<unsigned, 4>;
 inline std::vector<Point> parse_points(std::string_view text,
                                        const std::string& file) {
   std::vector<Point> points;
-  for (auto [x, y, z] : mesh_detail::read_rows<double, 3>(
-           text, file, "a number", "three finite coordinates 'x y z' [m]",
-           [](auto& row) {
-             for (double a : row)
-               if (!std::isfinite(a))
-                 throw std::runtime_error("a coordinate is not finite");
-           }))
-    points.push_back({x, y, z});
+  mesh_detail::read_rows<double, 3>(
+      text, file, "a number", "three finite coordinates 'x y z' [m]",
+      [&points](auto& row) {
+        for (double a : row)
+          if (!std::isfinite(a))
+            throw std::runtime_error("a coordinate is not finite");
+        points.push_back({row[0], row[1], row[2]});
+      });
   return points;
 }
 
@@ -147,24 +153,23 @@ inline std::vector<Quad> parse_quads(std::string_view text,
                                      const std::string& file,
                                      std::size_t num_points) {
   std::vector<Quad> quads;
-  for (auto row : mesh_detail::read_rows<long long, 4>(
-           text, file, "a whole number",
-           "four different node indices from 0 to " +
-               std::to_string(num_points - 1),
-           [num_points](auto& row) {
-             for (int k = 0; k < 4; ++k) {
-               if (row[k] < 0 || row[k] >= static_cast<long long>(num_points))
-                 throw std::runtime_error("there is no node " +
-                                          std::to_string(row[k]));
-               for (int other = 0; other < k; ++other)
-                 if (row[other] == row[k])
-                   throw std::runtime_error("node " + std::to_string(row[k]) +
-                                            " comes twice");
-             }
-           })) {
-    Quad& quad = quads.emplace_back();
-    for (int k = 0; k < 4; ++k) quad[k] = static_cast<unsigned>(row[k]);
-  }
+  mesh_detail::read_rows<long long, 4>(
+      text, file, "a whole number",
+      "four different node indices from 0 to " + std::to_string(num_points - 1),
+      [&quads, num_points](auto& row) {
+        Quad quad;
+        for (int k = 0; k < 4; ++k) {
+          if (row[k] < 0 || row[k] >= static_cast<long long>(num_points))
+            throw std::runtime_error("there is no node " +
+                                     std::to_string(row[k]));
+          for (int other = 0; other < k; ++other)
+            if (row[other] == row[k])
+              throw std::runtime_error("node " + std::to_string(row[k]) +
+                                       " comes twice");
+          quad[k] = static_cast<unsigned>(row[k]);
+        }
+        quads.push_back(quad);
+      });
   return quads;
 }
 
