@@ -2,6 +2,7 @@
 /** @file Cloth.hpp
  * Cloth: a graph of point masses and springs; its energies, and how it is made
  * from points and quads. SI units throughout; z points up. */
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include "Graph.hpp"
 #include "Lanes.hpp"
 #include "Mesh.hpp"
+#include "Order.hpp"
 #include "Stencil.hpp"
 
 /** What a node of a cloth carries. */
@@ -181,29 +183,48 @@ std::shared_ptr<const Base> shared_as(T x) {
 /** Add to @a g the points as nodes and the sides of the quads as springs, at
  * rest: velocity 0, mass 1/N [kg] for N points, L = the initial length.
  * @param K spring constant of every edge [N/m]
- * @pre g.size() == 0; the indices in @a quads are below points.size() */
+ * @pre g.size() == 0; the indices in @a quads are below points.size(); fewer
+ *      than 2^32 springs
+ * @post node(i) is at points[i], and the edges have the order of MeshSprings.
+ * In memory they have another order (Node::id(), and that of Node::edges()) if
+ * that of the mesh is bad: see Order.hpp and docs/graph.md. */
 inline void build_cloth(Cloth& g, std::span<const Point> points,
                         std::span<const Quad> quads, Mesh mesh,
                         double K = 100) {
   assert(g.size() == 0);
-  std::vector<Node> node;
-  for (const Point& p : points)
-    node.push_back(g.add_node(p, {Point(), 1.0 / double(points.size())}));
-  // All springs of one kind, then those of the next: so on a grid springs whose
-  // ids follow each other have ends whose ids do, and sweeps are faster.
-  auto add_springs = [&](int from, int to) {
-    for (const Quad& q : quads)
-      g.add_edge(node[q[from]], node[q[to]],
-                 {Real(K), Real(norm(points[q[from]] - points[q[to]]))});
+  const MeshSprings springs(quads, mesh);
+  g.reserve(unsigned(points.size()), unsigned(springs.expected(points.size())));
+  const NodeData at_rest = {Point(), Real(1.0 / double(points.size()))};
+  auto add_spring = [&](Node a, Node b) {
+    return g.add_edge(a, b, {Real(K), Real(norm(a.position() - b.position()))});
   };
-  add_springs(0, 1);
-  add_springs(0, 2);
-  if (mesh == Mesh::diagonals) {
-    add_springs(0, 3);
-    add_springs(1, 2);
+  if (is_local(quads)) {
+    for (const Point& p : points) g.add_node(p, at_rest);
+    for (unsigned s = 0; s < springs.size(); ++s) {
+      auto [i, j] = springs[s];
+      add_spring(g.node(i), g.node(j));
+    }
+    return;
   }
-  add_springs(1, 3);
-  add_springs(2, 3);
+  const MeshOrder order = cuthill_mckee(points.size(), quads);
+  std::vector<unsigned> node_id(points.size());
+  for (unsigned i : order.points)
+    node_id[i] = g.add_node(points[i], at_rest).id();
+  constexpr unsigned none = -1;  // a spring that came before
+  std::vector<unsigned> edge_id(springs.size(), none);
+  {
+    const auto ordered = in_order(quads, order);
+    const MeshSprings local(ordered, mesh);
+    const auto n = unsigned(quads.size());
+    auto number = [&](unsigned s) { return s / n * n + order.quads[s % n]; };
+    for (unsigned s : sorted_springs(local, points.size(), number)) {
+      auto [i, j] = local[s];
+      edge_id[number(s)] = add_spring(g.node(i), g.node(j)).id();
+    }
+  }
+  std::erase(edge_id, none);
+  g.reindex_nodes(node_id);
+  g.reindex_edges(edge_id);
 }
 
 /** Read a cloth from two files, as build_cloth() from parse_points() and

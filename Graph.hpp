@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "CME212/Point.hpp"
@@ -428,6 +429,35 @@ class Graph {
     nodes_.reindex();
     edges_.reindex();
     ++version_;
+  }
+  /** Give the node of id @a ids[i] the index i: so nodes can lie in memory in
+   * the order that sweeps like best, and be counted in another.
+   * @pre @a ids holds the id of each node once
+   * Invalidates and keeps: as reindex(), of the nodes.
+   * Complexity: O(node_slots()); memory as after a removal. */
+  void reindex_nodes(std::span<const size_type> ids) {
+    nodes_.reindex(ids);
+    ++version_;
+  }
+  /** The same for the edges. */
+  void reindex_edges(std::span<const size_type> ids) {
+    edges_.reindex(ids);
+    ++version_;
+  }
+
+  /** Make room for so many nodes and edges in all: up to there, adding moves
+   * nothing; but lists of neighbors may, if most are far from full.
+   * Invalidates: references and spans.   Keeps: all else. */
+  void reserve(size_type nodes, size_type edges) {
+    using graph_detail::make_room;
+    nodes_.reserve(nodes);
+    make_room(position_, nodes);
+    make_room(node_value_, nodes);
+    make_room(neighbors_of_, nodes);
+    edges_.reserve(edges);
+    make_room(ends_, edges);
+    make_room(edge_value_, edges);
+    pool_.reserve(4 * std::size_t(nodes) + 2 * std::size_t(edges));
   }
 
   node_iterator node_begin() const { return {self(), 0}; }

@@ -92,7 +92,7 @@ inline Problem stretched_sheet(unsigned side, Mesh mesh, double stretch,
   auto rim = [side](const Cloth& g) {
     std::vector<Node> nodes;
     for (Node n : g.nodes()) {
-      const unsigned i = n.id() / side, j = n.id() % side;
+      const unsigned i = n.index() / side, j = n.index() % side;
       if (i == 0 || j == 0 || i + 1 == side || j + 1 == side)
         nodes.push_back(n);
     }

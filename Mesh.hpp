@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -186,6 +187,40 @@ inline std::vector<Quad> load_quads(const std::string& file,
 
 /** Which edges a quad gives: its four sides, or both diagonals as well. */
 enum class Mesh { plain, diagonals };
+
+/** The springs of a mesh: the first ones of all quads, then the second ones,
+ * and so on; thus on a grid springs that follow each other have ends that do.
+ * One between two points that are in several quads together has several
+ * numbers. */
+class MeshSprings {
+ public:
+  /** @pre @a quads outlives this */
+  MeshSprings(std::span<const Quad> quads, Mesh mesh)
+      : quads_(quads), pairs_(mesh == Mesh::plain ? sides : all) {}
+
+  std::size_t size() const { return pairs_.size() * quads_.size(); }
+  /** The points that spring @a s joins.  @pre s < size() */
+  std::array<unsigned, 2> operator[](std::size_t s) const {
+    const Quad& quad = quads_[s % quads_.size()];
+    auto [a, b] = pairs_[s / quads_.size()];
+    return {quad[a], quad[b]};
+  }
+  /** About how many different springs there are. Not one less if the quads make
+   * up one piece without holes that has all of @a num_points, as then, by
+   * Euler's formula, points - sides + quads = 1. */
+  std::size_t expected(std::size_t num_points) const {
+    return num_points + (pairs_.size() - 3) * quads_.size();
+  }
+
+ private:
+  using Pairs = std::span<const std::array<unsigned, 2>>;
+  static constexpr std::array<unsigned, 2> pairs[] = {
+      {0, 1}, {0, 2}, {1, 3}, {2, 3},  //
+      {0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  static constexpr Pairs sides{pairs, 4}, all{pairs + 4, 6};
+  std::span<const Quad> quads_;
+  Pairs pairs_;
+};
 
 // ---------------------------------------------------------------------- Grids
 

@@ -8,9 +8,11 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace graph_detail {
@@ -21,6 +23,12 @@ using size_type = unsigned;
 template <typename A>
 void grow_to_hold(A& a, std::size_t i) {
   if (a.size() <= i) a.resize(i + 1);
+}
+
+/** Let @a a grow to @a size without moving, if it is one that would. */
+template <typename A>
+void make_room(A& a, std::size_t size) {
+  if constexpr (requires { a.reserve(size); }) a.reserve(size);
 }
 
 /** Ids for things that come and go: an id stays with its thing, while the
@@ -55,6 +63,9 @@ class SlotMap {
   size_type index_of(size_type id) const {
     return identity_ ? id : index_of_[id];
   }
+
+  /** Let slots() grow to @a slots without moving anything. */
+  void reserve(size_type slots) { generation_.reserve(slots); }
 
   /** The id that the next acquire() will give. */
   size_type next() const { return free_.empty() ? slots_ : free_.back(); }
@@ -133,6 +144,24 @@ class SlotMap {
     identity_ = true;
   }
 
+  /** Give the thing of id @a ids[i] the index i.  O(slots())
+   * @pre @a ids names each thing once */
+  void reindex(std::span<const size_type> ids) {
+    assert(ids.size() == size_);
+    if (std::ranges::adjacent_find(ids, std::greater_equal()) == ids.end())
+      return reindex();
+    std::vector<size_type> id_at(ids.begin(), ids.end()), index_of(slots_);
+    for (size_type index = 0; index < size_; ++index) {
+      assert(ids[index] < slots_ && in_use(ids[index]));
+      index_of[ids[index]] = index;
+    }
+    for (size_type index = 0; index < size_; ++index)
+      assert(index_of[ids[index]] == index);  // else an id comes twice
+    id_at_ = std::move(id_at);
+    index_of_ = std::move(index_of);
+    identity_ = false;
+  }
+
   /** Throw std::logic_error unless the representation is consistent. */
   void check_invariants() const {
     auto require = [](bool ok) {
@@ -204,6 +233,8 @@ class ListPool {
     return {pool_.data() + l.begin, l.size};
   }
 
+  /** Let the blocks grow to @a size elements together without moving. */
+  void reserve(std::size_t size) { pool_.reserve(size); }
   /** Make room for one more element in @a l.  O(1) amortized */
   void reserve_one(List& l) {
     if (l.size < l.capacity) return;

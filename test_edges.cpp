@@ -383,6 +383,24 @@ TEST_F(Edges, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
   for (int k : {1, 3, 4}) expect_intact(k);
 }
 
+TEST_F(Edges, ReindexEdgesGivesTheIndicesThatItIsTold) {
+  const auto version = g.version();
+  g.reindex_edges(std::vector<unsigned>{4, 0, 3, 1, 2});
+  EXPECT_NE(g.version(), version);
+  EXPECT_EQ(values_by_index(), (Values{34, 1, 12, 2, 3}));
+  for (unsigned k = 0; k < 5; ++k) {
+    expect_intact(int(k));
+    EXPECT_EQ(e[k].id(), k);
+    EXPECT_EQ(n[k].index(), k);
+  }
+  EXPECT_EQ(neighbors(n[0]), (Ints{1, 2, 3}));
+  g.check_invariants();
+  g.remove_node(n[3]);
+  g.reindex_edges(std::vector<unsigned>{1, 3, 0});
+  EXPECT_EQ(values_by_index(), (Values{2, 12, 1}));
+  EXPECT_EQ(g.add_edge(n[1], n[4]).index(), 3u);
+}
+
 TEST_F(Edges, TheIdOfAnEdgeStaysAndIsOneForBothViews) {
   unsigned id = e[4].id();
   g.remove_edge(e[0]);

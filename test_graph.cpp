@@ -16,6 +16,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -104,8 +105,10 @@ class Checked {
       remove_some_edge(c);
     else if (c.what < 88)
       change_values(c);
-    else if (c.what < 91)
+    else if (c.what < 90)
       g->reindex(), reindexed();
+    else if (c.what < 91)
+      reindex_in_any_order(c);
     else if (c.what < 93)
       remove_nodes_while_iterating(c);
     else if (c.what < 95)
@@ -230,6 +233,22 @@ class Checked {
     };
     std::sort(node_at.begin(), node_at.end(), by_id(nodes));
     std::sort(edge_at.begin(), edge_at.end(), by_id(edges));
+  }
+
+  void reindex_in_any_order(const Command& c) {
+    std::mt19937 random(c.a);
+    auto give = [&random](std::vector<int>& at, auto& facts, auto reindex) {
+      std::shuffle(at.begin(), at.end(), random);
+      std::vector<unsigned> ids;
+      for (int tag : at) ids.push_back(facts[tag].id);
+      reindex(ids);
+    };
+    auto version = g->version();
+    give(node_at, nodes, [this](const auto& ids) { g->reindex_nodes(ids); });
+    RC_ASSERT(g->version() != version);
+    version = g->version();
+    give(edge_at, edges, [this](const auto& ids) { g->reindex_edges(ids); });
+    RC_ASSERT(g->version() != version);
   }
 
   void remove_nodes_while_iterating(const Command& c) {
@@ -450,6 +469,11 @@ class CheckedSlots {
     } else if (c.what < 98) {
       slots.clear();
       at.clear();
+    } else if (c.what < 99) {
+      std::shuffle(at.begin(), at.end(), std::mt19937(c.a));
+      std::vector<unsigned> ids;
+      for (auto [id, generation] : at) ids.push_back(id);
+      slots.reindex(ids);
     } else {
       slots.reindex();
       std::sort(at.begin(), at.end());

@@ -251,6 +251,51 @@ TEST_F(Nodes, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
     EXPECT_LT(g.node(i - 1).id(), g.node(i).id());
 }
 
+TEST_F(Nodes, ReindexNodesGivesTheIndicesThatItIsTold) {
+  const auto version = g.version();
+  g.reindex_nodes(std::vector<unsigned>{3, 1, 4, 0, 2});
+  EXPECT_NE(g.version(), version);
+  EXPECT_EQ(values_by_index(), (Values{30, 10, 40, 0, 20}));
+  for (unsigned i = 0; i < 5; ++i) {
+    expect_intact(int(i));
+    EXPECT_EQ(n[i].id(), i);
+    EXPECT_EQ(g.positions()[i], Point(i, 0, 0));
+  }
+  EXPECT_EQ(n[4].index(), 2u);
+  g.check_invariants();
+  g.remove_node(n[1]);  // the node of highest index takes the hole
+  EXPECT_EQ(values_by_index(), (Values{30, 20, 40, 0}));
+  EXPECT_EQ(g.add_node(Point(), 50).index(), 4u);  // in the slot of n[1]
+  g.reindex_nodes(std::vector<unsigned>{4, 3, 2, 1, 0});
+  EXPECT_EQ(values_by_index(), (Values{40, 30, 20, 50, 0}));
+  g.remove_node(n[0]);
+  g.reindex_nodes(std::vector<unsigned>{4, 2, 1, 3});
+  EXPECT_EQ(values_by_index(), (Values{40, 20, 50, 30}));
+  EXPECT_EQ(G(g).node(2).value(), 50);
+  g.reindex_nodes(std::vector<unsigned>{1, 2, 3, 4});
+  EXPECT_EQ(values_by_index(), (Values{50, 20, 30, 40}));
+}
+
+TEST_F(Nodes, ReserveKeepsThePlacesOfWhatComesLater) {
+  g.reserve(1000, 500);
+  for (int i : {0, 1, 2, 3, 4}) expect_intact(i);
+  const auto version = g.version();
+  const Point* positions = g.positions().data();
+  const int* values = g.node_values().data();
+  g.add_edge(n[0], n[1]);
+  const double* edges = g.edge_values().data();
+  for (int i = 5; i < 1000; ++i)
+    n.push_back(g.add_node(Point(i, 0, 0), 10 * i));
+  for (int i = 1; i < 500; ++i) g.add_edge(n[i], n[i + 1]);
+  EXPECT_EQ(g.num_edges(), 500u);
+  EXPECT_EQ(g.positions().data(), positions);
+  EXPECT_EQ(g.node_values().data(), values);
+  EXPECT_EQ(g.edge_values().data(), edges);
+  EXPECT_NE(g.version(), version);
+  g.reserve(0, 0);
+  for (int i = 0; i < 1000; ++i) expect_intact(i);
+}
+
 TEST_F(Nodes, ReindexAfterTheHolesWereFilledStillCounts) {
   g.remove_node(n[1]);
   Node m = g.add_node(Point(), 11);  // in the slot of n[1]
@@ -405,6 +450,16 @@ TEST_F(NodesDeathTest, AnInvalidOrDeadNodeIsNotUsed) {
   g.remove_node(g.node(0));
   EXPECT_DEATH(g.node_with_id(0), "node_in_use");
   EXPECT_DEATH(g.node_with_id(99), "node_slots");
+}
+
+TEST_F(NodesDeathTest, ReindexNodesWantsEachNodeOnce) {
+  g.remove_node(n[4]);
+  using Ids = std::vector<unsigned>;
+  EXPECT_DEATH(g.reindex_nodes(Ids{1, 2, 3}), "size_");
+  EXPECT_DEATH(g.reindex_nodes(Ids{3, 2, 1, 2}), "index_of");
+  EXPECT_DEATH(g.reindex_nodes(Ids{0, 0, 1, 2}), "index_of");
+  EXPECT_DEATH(g.reindex_nodes(Ids{3, 2, 1, 4}), "in_use");
+  EXPECT_DEATH(g.reindex_nodes(Ids{3, 2, 1, 5}), "slots_");
 }
 
 // ------------------------------------------------------------------ iterating

@@ -25,7 +25,8 @@ Graph              : SlotMap CME212/Point CME212/Util
 Lanes              : CME212/Point
 Stencil            : Graph
 Mesh               : CME212/Point CME212/Util
-Cloth              : Graph Mesh Lanes Stencil CME212/BoundingBox
+Order              : Mesh
+Cloth              : Graph Order Lanes Stencil CME212/BoundingBox
 Force              : Cloth
 Sweep              : Force
 Constraint         : Cloth
