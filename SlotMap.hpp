@@ -8,7 +8,6 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -148,8 +147,6 @@ class SlotMap {
    * @pre @a ids names each thing once */
   void reindex(std::span<const size_type> ids) {
     assert(ids.size() == size_);
-    if (std::ranges::adjacent_find(ids, std::greater_equal()) == ids.end())
-      return reindex();
     std::vector<size_type> id_at(ids.begin(), ids.end()), index_of(slots_);
     for (size_type index = 0; index < size_; ++index) {
       assert(ids[index] < slots_ && in_use(ids[index]));

@@ -30,7 +30,7 @@ Shape grid(unsigned side) {
   std::iota(s.number.begin(), s.number.end(), 0u);
   return s;
 }
-/** The grid with its points and its quads in any order. */
+/** The grid with its points and its quads in any order, some quads mirrored. */
 Shape shuffled(unsigned side) {
   const Shape ordered = grid(side);
   Shape s = ordered;
@@ -38,8 +38,11 @@ Shape shuffled(unsigned side) {
   std::shuffle(s.number.begin(), s.number.end(), random);
   for (unsigned i = 0; i < s.number.size(); ++i)
     s.points[s.number[i]] = ordered.points[i];
-  for (Quad& q : s.quads)
+  for (Quad& q : s.quads) {
     for (unsigned& i : q) i = s.number[i];
+    if (random() % 2) q = {q[1], q[0], q[3], q[2]};
+    if (random() % 2) q = {q[0], q[2], q[1], q[3]};
+  }
   std::shuffle(s.quads.begin(), s.quads.end(), random);
   return s;
 }
@@ -194,6 +197,7 @@ TEST(BuildCloth, OrdersAShuffledMeshInMemory) {
   build_cloth(g, s.points, s.quads, Mesh::diagonals);
   build_simply(simple, s, Mesh::diagonals);
   build_simply(ordered, rows, Mesh::diagonals);
+  expect_same(g, simple);
   EXPECT_GT(mean_distance(simple), 30 * mean_distance(ordered));
   EXPECT_LT(mean_distance(g), 1.5 * mean_distance(ordered));
   unsigned last = 0, constant = 0;
