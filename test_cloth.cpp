@@ -1,7 +1,30 @@
 // Cloth.hpp: what build_cloth() makes, spring formulas, energies.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include <malloc.h>
+
 #include "Cloth.hpp"
+
+// What this program has on the heap, and the most that it had [bytes].
+static std::atomic<std::size_t> in_use = 0, most_in_use = 0;
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  void* p = std::malloc(size);
+  if (!p) throw std::bad_alloc();
+  in_use += malloc_usable_size(p);
+  most_in_use = std::max(most_in_use.load(), in_use.load());
+  return p;
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept {
+  in_use -= malloc_usable_size(p);
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
+  operator delete(p);
+}
 
 namespace {
 
@@ -45,6 +68,18 @@ TEST(LoadCloth, ReadsTheCommittedGrids) {
   EXPECT_TRUE(is_corner(g.node(0).position()));
   EXPECT_TRUE(is_corner(g.node(20).position()));
   EXPECT_FALSE(is_corner(g.node(4).position()));
+}
+
+// 400 bytes a node are what docs/speed.md promises, of which the graph, with
+// both ends of 4 springs a node, needs 248.
+TEST(LoadCloth, NeedsAtMost400BytesANodeWithDiagonals) {
+  const std::size_t before = in_use;
+  most_in_use = before;
+  Cloth g;
+  load_cloth(g, "data/grid3.nodes", "data/grid3.tets", Mesh::diagonals);
+  EXPECT_LT(most_in_use - before, 400 * g.num_nodes());
+  EXPECT_LT(in_use - before, 300 * g.num_nodes());
+  EXPECT_GT(in_use - before, 240 * g.num_nodes()) << "the count is wrong";
 }
 
 TEST(LoadCloth, LeavesTheClothAsItWasOnAnError) {

@@ -162,6 +162,26 @@ TEST_F(MassSpring, DumpsPositionsThatCanBeRunAgain) {
   EXPECT_EQ(contents(dir / "again.nodes"), text);
 }
 
+// In memory this mesh gets another order: Order.hpp.
+TEST_F(MassSpring, WritesPositionsInTheOrderInWhichTheyWereRead) {
+  const unsigned side = 80, n = side * side;
+  auto number = [](unsigned i) { return i * 2467 % n; };  // any order
+  std::vector<Point> points(n);
+  std::string nodes, tets;
+  const std::vector<Point> rows_of_points = grid_points(side);
+  for (unsigned i = 0; i < n; ++i) points[number(i)] = rows_of_points[i];
+  for (const Point& p : points)
+    for (const double& a : p)
+      nodes += CME212::to_text(a) + (&a == &p.z ? "\n" : " ");
+  for (const Quad& q : grid_quads(side))
+    for (const unsigned& i : q)
+      tets += std::to_string(number(i)) + (&i == &q[3] ? "\n" : " ");
+  Result r = run(file("in.nodes", nodes) + " " + file("in.tets", tets) +
+                 " --headless --t-end 0 --out " + path("out.nodes"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(parse_points(contents(dir / "out.nodes"), "out"), points);
+}
+
 /** The number that stands in @a text between @a before and @a after. */
 double number(const std::string& text, const std::string& before,
               const std::string& after) {
