@@ -39,10 +39,20 @@ struct NoValue {
   bool operator==(const NoValue&) const = default;
 };
 
-/** One plain array. (std::vector<bool> has no bool to refer to.) */
+/** The plain array for a T: one that need not copy them one by one to grow,
+ * if it may. (std::vector<bool> has no bool to refer to.) */
 template <typename T>
-using Array = std::conditional_t<std::is_same_v<T, bool>, std::deque<bool>,
-                                 std::vector<T>>;
+constexpr auto array_of() {
+  if constexpr (std::is_same_v<T, bool>)
+    return std::type_identity<std::deque<bool>>();
+  else if constexpr (std::is_trivially_copyable_v<T> &&
+                     alignof(T) <= alignof(std::max_align_t))
+    return std::type_identity<GrowingArray<T>>();
+  else
+    return std::type_identity<std::vector<T>>();
+}
+template <typename T>
+using Array = typename decltype(array_of<T>())::type;
 
 /** A first and a last iterator, for range-for. */
 template <typename It>
@@ -67,9 +77,9 @@ struct Range {
  *
  * Complexity: O(1) where nothing is said; "degree" is a node's number of
  * edges. Memory, N nodes and M edges: 40 + sizeof(V) bytes a node and
- * 28 + sizeof(E) an edge on a grid, 8 more each after the first removal;
- * slots of removed elements are used again by new ones, and given back when
- * the graph is destroyed.
+ * 28 + sizeof(E) an edge on a grid, up to a quarter of that to grow into, and
+ * 8 more each after the first removal; slots of removed elements are used
+ * again by new ones, and given back when the graph is destroyed.
  *
  * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
  * copied (the copy has the same indices and ids, and handles of its own), but
@@ -451,7 +461,7 @@ class Graph {
   void reserve(size_type nodes, size_type edges) {
     using graph_detail::make_room;
     nodes_.reserve(nodes);
-    make_room(position_, nodes);
+    make_room(position_, nodes + 1);
     make_room(node_value_, nodes);
     make_room(neighbors_of_, nodes);
     edges_.reserve(edges);
@@ -591,11 +601,11 @@ class Graph {
   graph_detail::ListPool<Half> pool_;
   Version version_;
   // By node id:
-  std::vector<Point> position_;
+  Array<Point> position_;
   Array<V> node_value_;
-  std::vector<typename graph_detail::ListPool<Half>::List> neighbors_of_;
+  Array<typename graph_detail::ListPool<Half>::List> neighbors_of_;
   // By edge id:
-  std::vector<std::array<size_type, 2>> ends_;  // in the order of add_edge()
+  Array<std::array<size_type, 2>> ends_;  // in the order of add_edge()
   Array<E> edge_value_;
 
   Graph* self() const { return const_cast<Graph*>(this); }
@@ -606,11 +616,14 @@ class Graph {
     bool from_a = a.degree() <= b.degree();
     const Node& from = from_a ? a : b;
     size_type to = from_a ? b.id_ : a.id_;
+    size_type found = none;
     for (Half h : pool_.items(neighbors_of_[from.id_])) {
       Work::neighbor_read();
-      if (h.node == to) return from_a ? h.edge : h.edge ^ 1u;
+      // Not a branch on what is found: in lists this short, one that the
+      // processor guesses wrong costs more than to read on to the end.
+      found &= h.edge | (0u - size_type(h.node != to));
     }
-    return none;
+    return found == none || from_a ? found : found ^ 1u;
   }
 
   /** Take edge @a e out of the list of node @a i. */

@@ -8,15 +8,76 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <memory>
+#include <new>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace graph_detail {
 
 using size_type = unsigned;
+
+/** A plain array that grows like a std::vector of T, but from 64 kB on by a
+ * quarter where that doubles, so that little memory is spare; and by realloc(),
+ * which moves the pages of a large block rather than copy it. Most of the time
+ * in which a graph is built goes into pages touched for the first time. */
+template <typename T>
+class GrowingArray {
+ public:
+  static_assert(std::is_trivially_copyable_v<T> &&
+                alignof(T) <= alignof(std::max_align_t));
+
+  GrowingArray() = default;
+  GrowingArray(const GrowingArray& o) {
+    reserve(o.size_);
+    std::uninitialized_copy(o.begin(), o.end(), data_);
+    size_ = o.size_;
+  }
+  GrowingArray& operator=(const GrowingArray&) = delete;
+  ~GrowingArray() { std::free(data_); }
+
+  std::size_t size() const { return size_; }
+  std::size_t capacity() const { return capacity_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T* begin() { return data_; }
+  const T* begin() const { return data_; }
+  T* end() { return data_ + size_; }
+  const T* end() const { return data_ + size_; }
+  T& operator[](std::size_t i) { return assert(i < size_), data_[i]; }
+  const T& operator[](std::size_t i) const {
+    return assert(i < size_), data_[i];
+  }
+
+  /** New elements are T().  Complexity: O(1) amortized for each of them.
+   * Throws std::bad_alloc: no change. */
+  void resize(std::size_t n) {
+    if (n > capacity_) {
+      bool small = capacity_ * sizeof(T) < 65536;
+      reserve(std::max(n, capacity_ + (small ? capacity_ : capacity_ / 4)));
+    }
+    while (size_ < n) new (data_ + size_++) T();
+    size_ = n;
+  }
+  void clear() { size_ = 0; }
+  /** Have room for @a n elements.  Throws std::bad_alloc: no change. */
+  void reserve(std::size_t n) {
+    if (n <= capacity_) return;
+    void* block = std::realloc(static_cast<void*>(data_), n * sizeof(T));
+    if (!block) throw std::bad_alloc();
+    data_ = static_cast<T*>(block);
+    capacity_ = n;
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
 
 /** Make @a a long enough to hold an element @a i. */
 template <typename A>
@@ -190,10 +251,10 @@ class SlotMap {
   // Edge packs an orientation bit beside the id.
   static constexpr size_type max_slots = 1u << 31;
 
-  std::vector<Generation> generation_;  // by slot; odd: in use
-  std::vector<size_type> id_at_;        // by index; empty while identity_
-  std::vector<size_type> index_of_;     // by slot;  empty while identity_
-  std::vector<size_type> free_;         // slots to use again
+  GrowingArray<Generation> generation_;  // by slot; odd: in use
+  std::vector<size_type> id_at_;         // by index; empty while identity_
+  std::vector<size_type> index_of_;      // by slot;  empty while identity_
+  std::vector<size_type> free_;          // slots to use again
   size_type size_ = 0;
   size_type slots_ = 0;
   bool identity_ = true;  // index == id for all, and there is no free slot
@@ -293,7 +354,7 @@ class ListPool {
 
  private:
   static constexpr size_type min_capacity = 4;
-  std::vector<T> pool_;
+  GrowingArray<T> pool_;
   std::array<std::vector<size_type>, 32> free_;  // by log2 of the capacity
 };
 
