@@ -49,7 +49,7 @@ lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
 .PHONY: stability stability-soak cells charts charts-quick orders all deps peers-deps \
-        peers-chart demo check check-all print-tests fuzz pictures help clean \
+        peers-chart peers-bench demo check check-all print-tests fuzz pictures help clean \
         format submit grids FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -62,6 +62,7 @@ help:
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make check              everything that a commit must pass'
 	@echo 'make stability          the stability maps: charts/README.md; QUICK=1'
+	@echo 'make peers-bench        our graph beside other libraries: peers/README.md'
 	@echo 'make data/grid4.nodes   a grid of a million nodes'
 	@echo 'make submit HW=hw2      tag and push; FORCE=1 moves the tag'
 	@echo 'make all | format | clean | deps'
@@ -111,6 +112,18 @@ peers-chart: build/peers
 	  build/peers; } > build/peers.csv
 	mv build/peers.csv charts/peers.csv
 	gnuplot -e "csv='charts/peers.csv'; out='charts/peers'" peers/chart.gp
+
+# Graphs and a cloth of other libraries beside ours: about three minutes.
+build/graph_peers: peers/graph_peers.cpp peers/contenders.hpp $(wildcard *.hpp)
+	@mkdir -p build
+	$(CXX) $(flags) -march=native -isystem /usr/include/bullet -o $@ $< \
+	  -lbenchmark -lBulletSoftBody -lBulletDynamics -lBulletCollision \
+	  -lLinearMath
+peers-bench: build/graph_peers
+	@echo "$$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)," \
+	  "$$($(CXX) --version | head -n 1)," \
+	  "commit $$(git describe --always --dirty)"
+	@taskset -c 0 build/graph_peers
 
 demo: deps
 	@$(MAKE) --no-print-directory mass_spring

@@ -45,6 +45,7 @@ Problem            : Methods Stability
 Limits             : Problem
 Failure            : Problem
 Growth             : Limits
+peers/contenders   : Integrator
 Report             : CME212/Util
 Bench              : Report CME212/OutputFile CME212/Point
 Screen             : Scene CME212/Image CME212/SDLViewer
