@@ -113,7 +113,7 @@ peers-chart: build/peers
 	mv build/peers.csv charts/peers.csv
 	gnuplot -e "csv='charts/peers.csv'; out='charts/peers'" peers/chart.gp
 
-# Graphs and a cloth of other libraries beside ours: about three minutes.
+# Graphs and a cloth of other libraries beside ours: about two minutes.
 build/graph_peers: peers/graph_peers.cpp peers/contenders.hpp $(wildcard *.hpp)
 	@mkdir -p build
 	$(CXX) $(flags) -march=native -isystem /usr/include/bullet -o $@ $< \

@@ -156,26 +156,27 @@ class Table : public benchmark::BenchmarkReporter {
     }
   }
   /** A row of Markdown for each of @a rows: our median, then for each other
-   * column the ratio of the medians, and of the extremes. */
+   * column the ratio of its median to ours, and the lowest and the highest
+   * ratio of all repetitions. */
   void print(const std::vector<std::string>& rows,
              const std::vector<std::string>& columns) {
     print_head("", columns);
     for (const auto& row : rows) {
-      auto& ours = times_[row]["ours"];
+      const auto& ours = times_[row]["ours"];
       if (ours.empty()) continue;
-      std::sort(ours.begin(), ours.end());
-      std::printf("| %s | %.0f us |", row.c_str(), ours[ours.size() / 2]);
+      std::printf("| %s | %.0f us |", row.c_str(), median(ours));
       for (const auto& column : columns) {
-        auto& t = times_[row][column];
         if (column == "ours") continue;
-        if (t.empty()) {
+        const auto& theirs = times_[row][column];
+        std::vector<double> ratio;
+        for (std::size_t k = 0; k < theirs.size(); ++k)
+          ratio.push_back(theirs[k] / ours[k]);
+        if (ratio.empty())
           std::printf(" |");
-          continue;
-        }
-        std::sort(t.begin(), t.end());
-        std::printf(" %.2f (%.2f-%.2f) |",
-                    t[t.size() / 2] / ours[ours.size() / 2],
-                    t.front() / ours.front(), t.back() / ours.back());
+        else
+          std::printf(" %.2f (%.2f-%.2f) |", median(theirs) / median(ours),
+                      *std::min_element(ratio.begin(), ratio.end()),
+                      *std::max_element(ratio.begin(), ratio.end()));
       }
       std::printf("\n");
     }
@@ -190,6 +191,11 @@ class Table : public benchmark::BenchmarkReporter {
   }
 
  private:
+  static double median(std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2),
+                     v.end());
+    return v[v.size() / 2];
+  }
   std::map<std::string, std::map<std::string, std::vector<double>>> times_;
 };
 
