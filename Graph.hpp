@@ -6,13 +6,11 @@
  *
  * How it is stored, and why so: docs/graph.md. */
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cassert>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -34,25 +32,6 @@ struct Uncounted {
   static void neighbor_read() {}  ///< one entry of a neighbor list looked at
   static void item_moved() {}     ///< one index or list entry moved
 };
-
-struct NoValue {
-  bool operator==(const NoValue&) const = default;
-};
-
-/** The plain array for a T: one that need not copy them one by one to grow,
- * if it may. (std::vector<bool> has no bool to refer to.) */
-template <typename T>
-constexpr auto array_of() {
-  if constexpr (std::is_same_v<T, bool>)
-    return std::type_identity<std::deque<bool>>();
-  else if constexpr (std::is_trivially_copyable_v<T> &&
-                     alignof(T) <= alignof(std::max_align_t))
-    return std::type_identity<GrowingArray<T>>();
-  else
-    return std::type_identity<std::vector<T>>();
-}
-template <typename T>
-using Array = typename decltype(array_of<T>())::type;
 
 /** A first and a last iterator, for range-for. */
 template <typename It>
@@ -587,19 +566,11 @@ class Graph {
   }
 
  private:
-  /** Each graph counts in a range of its own, a copy too. */
-  struct Version {
-    std::uint64_t number = next.fetch_add(std::uint64_t(1) << 40);
-    Version() = default;
-    Version(const Version&) : Version() {}
-    void operator++() { ++number; }
-    static inline std::atomic<std::uint64_t> next = 0;
-  };
   static constexpr size_type none = std::numeric_limits<size_type>::max();
 
   graph_detail::SlotMap<Generation> nodes_, edges_;
   graph_detail::ListPool<Half> pool_;
-  Version version_;
+  graph_detail::Version version_;
   // By node id:
   Array<Point> position_;
   Array<V> node_value_;

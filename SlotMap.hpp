@@ -4,11 +4,13 @@
  * things that come and go; ListPool keeps many short lists in one array. */
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <new>
@@ -356,6 +358,36 @@ class ListPool {
   static constexpr size_type min_capacity = 4;
   GrowingArray<T> pool_;
   std::array<std::vector<size_type>, 32> free_;  // by log2 of the capacity
+};
+
+/** What nodes and edges without a value carry. */
+struct NoValue {
+  bool operator==(const NoValue&) const = default;
+};
+
+/** The plain array for a T: one that need not copy them one by one to grow,
+ * if it may. (std::vector<bool> has no bool to refer to.) */
+template <typename T>
+constexpr auto array_of() {
+  if constexpr (std::is_same_v<T, bool>)
+    return std::type_identity<std::deque<bool>>();
+  else if constexpr (std::is_trivially_copyable_v<T> &&
+                     alignof(T) <= alignof(std::max_align_t))
+    return std::type_identity<GrowingArray<T>>();
+  else
+    return std::type_identity<std::vector<T>>();
+}
+template <typename T>
+using Array = typename decltype(array_of<T>())::type;
+
+/** Counts what changes a graph; each graph in a range of its own, a copy too.
+ */
+struct Version {
+  std::uint64_t number = next.fetch_add(std::uint64_t(1) << 40);
+  Version() = default;
+  Version(const Version&) : Version() {}
+  void operator++() { ++number; }
+  static inline std::atomic<std::uint64_t> next = 0;
 };
 
 }  // namespace graph_detail
