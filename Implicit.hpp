@@ -206,8 +206,6 @@ class AugmentedVerlet : public Method {
   int factorizations() const { return factorizations_; }
 
  private:
-  static constexpr unsigned none = ~0u;
-
   /** All that the factor depends on. */
   struct Key {
     double dt = 0;
@@ -223,11 +221,9 @@ class AugmentedVerlet : public Method {
   };
   Key key_, next_;
   int factorizations_ = 0;
-  std::vector<unsigned> row_;  // of the matrix, by node id; none if fixed
   SparseCholesky factor_;
   Sweep sweep_;
-  std::vector<Point> acceleration_;  // [m/s^2], by row
-  std::vector<Point> force_;         // [N], by node id, without drag
+  std::vector<Point> acceleration_;  // [m/s^2], by node id
   const Cloth* kept_for_ = nullptr;  // at whose state acceleration_ is
   double kept_time_ = 0;
 
@@ -252,34 +248,30 @@ class AugmentedVerlet : public Method {
     return false;
   }
 
-  /** The lower triangle of M + (dt^2/4) L. */
+  /** The lower triangle of M + (dt^2/4) L, by node id. Fixed nodes have a row,
+   * too, so that no other numbers are needed: that of a 1. */
   SparseCholesky::Matrix matrix() const {
     std::vector<Eigen::Triplet<double>> entries;
     const double h2 = key_.dt * key_.dt / 4;
     auto add = [&](unsigned i, unsigned j, double a) {
-      if (row_[i] != none && row_[j] != none)
-        entries.emplace_back(std::max(row_[i], row_[j]),
-                             std::min(row_[i], row_[j]), a);
+      if (!key_.fixed[i] && !key_.fixed[j])
+        entries.emplace_back(std::max(i, j), std::min(i, j), a);
     };
-    for (unsigned i = 0; i < row_.size(); ++i) add(i, i, key_.mass[i]);
+    const unsigned rows = unsigned(key_.fixed.size());
+    for (unsigned i = 0; i < rows; ++i)
+      entries.emplace_back(i, i, key_.fixed[i] ? 1 : key_.mass[i]);
     for (const auto& [i, j, K] : key_.springs) {
       add(i, i, h2 * K);
       add(j, j, h2 * K);
       add(i, j, -h2 * K);
     }
-    const auto n = Eigen::Index(acceleration_.size());
-    SparseCholesky::Matrix a(n, n);
+    SparseCholesky::Matrix a(rows, rows);
     a.setFromTriplets(entries.begin(), entries.end());
     return a;
   }
 
   void factorize() {
     ++factorizations_;
-    row_.assign(key_.fixed.size(), none);
-    unsigned rows = 0;
-    for (unsigned i = 0; i < row_.size(); ++i)
-      if (!key_.fixed[i]) row_[i] = rows++;
-    acceleration_.assign(rows, Point());
     if (factor_.factorize(matrix())) return;
     key_ = {};
     throw StepError(std::string(info.name) +
@@ -289,15 +281,15 @@ class AugmentedVerlet : public Method {
 
   /** acceleration_ = (M + (dt^2/4) L)^-1 F at the state of @a g. */
   void accelerate(const Cloth& g, double t, const ZeroForce& force) {
-    integrator_detail::sweep_without_drag(sweep_, g, t, force, force_);
-    for (unsigned i = 0; i < row_.size(); ++i)
-      if (row_[i] != none) acceleration_[row_[i]] = force_[i];
+    integrator_detail::sweep_without_drag(sweep_, g, t, force, acceleration_);
+    for (unsigned i = 0; i < key_.fixed.size(); ++i)
+      if (key_.fixed[i]) acceleration_[i] = Point();
     factor_.solve(acceleration_);
   }
 
   void kick(Cloth& g, double h) const {
     auto node = g.node_values();
-    for (unsigned i = 0; i < row_.size(); ++i)
-      if (row_[i] != none) node[i].vel += h * acceleration_[row_[i]];
+    for (unsigned i = 0; i < acceleration_.size(); ++i)
+      node[i].vel += h * acceleration_[i];
   }
 };
