@@ -137,6 +137,42 @@ TYPED_TEST(Cholesky, KeepsTheFactorOfAGridSparse) {
   for (const Point& r : left) ASSERT_LT(norm(r), 1e-11);
 }
 
+// Wide blocks of columns and narrow ones, with rows in common and without.
+TYPED_TEST(Cholesky, SolvesAsEigensOwnSolverDoes) {
+  for (const Matrix& a : {grid(50), grid(57), scattered(1000, 4000),
+                          scattered(3000, 3000), scattered(3000, 6000)}) {
+    const auto n = std::size_t(a.rows());
+    ASSERT_TRUE(this->solver.factorize(a));
+    const Eigen::SimplicialLDLT<Matrix, Eigen::Lower> reference(a);
+    std::vector<Point> x(n);
+    Eigen::MatrixXd b(n, 3);
+    for (unsigned i = 0; i < n; ++i)
+      for (unsigned c = 0; c < 3; ++c) b(i, c) = x[i][c] = random(-1, 1);
+    const Eigen::MatrixXd expected = reference.solve(b);
+    std::vector<Point> again = x;
+    this->solver.solve(x);
+    this->solver.solve(again);
+    EXPECT_EQ(x, again);  // bit for bit
+    double worst = 0;
+    for (unsigned i = 0; i < n; ++i)
+      for (unsigned c = 0; c < 3; ++c)
+        worst = std::max(worst, std::abs(x[i][c] - expected(i, c)));
+    EXPECT_LT(worst, 1e-12 * expected.cwiseAbs().maxCoeff()) << n << " rows";
+  }
+}
+
+TYPED_TEST(Cholesky, ForgetsABThatIsNotFinite) {
+  const Matrix a = grid(12);
+  ASSERT_TRUE(this->solver.factorize(a));
+  std::vector<Point> bad(144, Point(HUGE_VAL, 1, 1)), x(144, Point(1, -2, 3)),
+      y = x;
+  this->solver.solve(x);
+  this->solver.solve(bad);
+  EXPECT_FALSE(std::isfinite(bad[0].x));
+  this->solver.solve(y);
+  EXPECT_EQ(x, y);
+}
+
 // Another pattern, another size: nothing of the matrix before is left.
 TYPED_TEST(Cholesky, FactorsOneMatrixAfterAnother) {
   for (int side : {12, 3, 7}) {
