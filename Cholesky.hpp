@@ -117,24 +117,101 @@ using Best = ByEigen;
 
 namespace cholesky_detail {
 
-/** The factor L as triangular solves want it: columns in a row that have the
- * same rows below them form a block. Its rows are written down once and its
- * entries lie in the order in which they are used, so that half the time goes
- * that a solve by single columns takes. Columns whose rows are nearly the same
- * are made so, by zeros: longer loops are worth more.
+// The three coordinates in one register, and a lane to spare.
+typedef double Four __attribute__((vector_size(32)));
+struct Row {
+  Four c;
+};
+
+/** Neighboring columns of L that have the same rows: their triangle, and what
+ * is below it by panels of `high` rows. What the last of these lacks are zeros
+ * in row 0, which is below no column. */
+struct Block {
+  static constexpr int high = 4;
+  int first, columns, panels;
+  /** How many numbers it has. */
+  std::size_t entries() const {
+    return unsigned(columns * (columns + 1) / 2 + panels * high * columns);
+  }
+};
+
+/** x = L^-1 x.
+ * @param e the entries of [block, end), block by block: the triangle by
+ *   columns, the inverse of the diagonal in it; then each panel by columns
+ * @param r the rows of all panels */
+struct Forward {
+  [[gnu::always_inline]] static inline void apply(const Block* block,
+                                                  const Block* end,
+                                                  const double* e, const int* r,
+                                                  Row* x) {
+    constexpr int high = Block::high;
+    for (; block < end; ++block) {
+      Row* const top = x + block->first;
+      const int columns = block->columns;
+      for (int j = 0; j < columns; ++j) {
+        const Four t = top[j].c *= *e++;
+        for (int i = j + 1; i < columns; ++i) top[i].c -= *e++ * t;
+      }
+      for (int p = 0; p < block->panels; ++p, r += high) {
+        Four sum[high];
+        for (int i = 0; i < high; ++i) sum[i] = x[r[i]].c;
+        for (int j = 0; j < columns; ++j, e += high)
+          for (int i = 0; i < high; ++i) sum[i] -= e[i] * top[j].c;
+        for (int i = 0; i < high; ++i) x[r[i]].c = sum[i];
+      }
+    }
+  }
+};
+
+/** x = L^-T x, backwards through the same memory, from its ends. */
+struct Backward {
+  [[gnu::always_inline]] static inline void apply(const Block* begin,
+                                                  const Block* block,
+                                                  const double* e, const int* r,
+                                                  Row* x) {
+    constexpr int high = Block::high;
+    while (block-- > begin) {
+      Row* const top = x + block->first;
+      const int columns = block->columns;
+      for (int p = 0; p < block->panels; ++p) {
+        r -= high;
+        Four below[high];
+        for (int i = 0; i < high; ++i) below[i] = x[r[i]].c;
+        for (int j = columns; j-- > 0;) {
+          e -= high;
+          Four t = top[j].c;
+          for (int i = 0; i < high; ++i) t -= e[i] * below[i];
+          top[j].c = t;
+        }
+      }
+      for (int j = columns; j-- > 0;) {
+        e -= columns - j;
+        Four t = top[j].c;
+        for (int i = j + 1; i < columns; ++i) t -= e[i - j] * top[i].c;
+        top[j].c = t * *e;
+      }
+    }
+  }
+};
+
+/** The factor L as triangular solves want it, by blocks: their rows are stored
+ * once, their entries lie in the order of their use, and x stays in registers.
+ * That takes a third of the time of a solve by single columns. Columns whose
+ * rows are nearly the same are made so, by zeros: longer loops are worth them.
  * Source: C. Ashcraft, R. Grimes, ACM Trans. Math. Softw. 15 (1989) 291,
  * "relaxed supernodes". */
 class BlockFactor {
  public:
   /** Take over @a f, the factor of @a rows rows.  O(entries) */
   void assign(const Factor& f, std::size_t rows) {
-    x_.resize(rows + 1);
+    constexpr int high = Block::high;
+    x_.resize(rows);
     order_.assign(f.order, f.order + rows);
     std::vector<int> place(rows);  // below the block, by row
     find_blocks(f);
     std::size_t rows_below = 0, all = 0;
     for (const Block& b : block_)
-      rows_below += unsigned(b.panels * high), all += entries(b);
+      rows_below += unsigned(b.panels * high), all += b.entries();
     row_.clear();
     row_.reserve(rows_below);
     entry_.assign(all, 0);
@@ -145,7 +222,7 @@ class BlockFactor {
       const int count = int(f.row + f.begin[end] - below);
       for (int k = 0; k < count; ++k) place[unsigned(below[k])] = k;
       row_.insert(row_.end(), below, below + count);
-      row_.resize(row_.size() + unsigned(b.panels * high - count), int(rows));
+      row_.resize(row_.size() + unsigned(b.panels * high - count), 0);
       double* panels = triangle + b.columns * (b.columns + 1) / 2;
       for (int j = b.first; j < end; ++j) {
         for (int k = f.begin[j]; k < f.begin[j + 1]; ++k)
@@ -167,48 +244,31 @@ class BlockFactor {
   void solve(std::vector<Point>& b) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const Point& from = b[unsigned(order_[i])];
-      x_[i].c = Lanes{from.x, from.y, from.z, 0};
+      x_[i].c = Four{from.x, from.y, from.z, 0};
     }
-    x_.back().c = Lanes{};  // an infinite b may have left its trace
-    forward();
-    backward();
+    const Block *first = block_.data(), *end = first + block_.size();
+    Forward::apply(first, end, entry_.data(), row_.data(), x_.data());
+    Backward::apply(first, end, entry_.data() + entry_.size(),
+                    row_.data() + row_.size(), x_.data());
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const Lanes& to = x_[i].c;
+      const Four& to = x_[i].c;
       b[unsigned(order_[i])] = Point(to[0], to[1], to[2]);
     }
   }
 
  private:
-  static constexpr int high = 4;  // rows of a panel
-  /** The triangle of some columns and the rows below, by panels of `high`
-   * rows. What the last one lacks are zeros in a row below all of L. */
-  struct Block {
-    int first, columns, panels;
-  };
-  // The three coordinates in one register, and one lane to spare.
-  typedef double Lanes __attribute__((vector_size(32)));
-  struct Row {
-    Lanes c;
-  };
-
   std::vector<Block> block_;
-  std::vector<int> row_;  // of the panels
-  // Block by block: the triangle by columns, the inverse of the diagonal in it;
-  // the panels, in each of them column by column.
-  std::vector<double> entry_;
-  std::vector<Row> x_;  // and one for the row below all
-  std::vector<int> order_;
-
-  static std::size_t entries(const Block& b) {
-    return unsigned(b.columns * (b.columns + 1) / 2 +
-                    b.panels * high * b.columns);
-  }
+  std::vector<int> row_;       // see Forward
+  std::vector<double> entry_;  // there, too
+  std::vector<int> order_;     // the row of A, by the row of L
+  std::vector<Row> x_;
 
   /** Join each column with the block before, while that costs few zeros. */
   void find_blocks(const Factor& f) {
+    constexpr int high = Block::high;
     constexpr int widest = 32;  // x of a block stays in the nearest cache
     block_.clear();
-    for (int j = 0; j + 1 < int(x_.size()); ++j) {
+    for (int j = 0; j < int(x_.size()); ++j) {
       const int below = f.begin[j + 1] - f.begin[j] - 1;
       Block b = {j, 1, (below + high - 1) / high};
       while (!block_.empty()) {
@@ -219,63 +279,14 @@ class BlockFactor {
         if (f.begin[b.first] - last < 2 || f.row[last + 1] != b.first) break;
         const Block both = {a.first, a.columns + b.columns, b.panels};
         const int zeros =
-            int(entries(both)) - (f.begin[j + 1] - f.begin[a.first]);
+            int(both.entries()) - (f.begin[j + 1] - f.begin[a.first]);
         if (both.columns > widest ||
-            zeros > std::max(8, int(entries(both)) / 10))
+            zeros > std::max(8, int(both.entries()) / 10))
           break;
         b = both;
         block_.pop_back();
       }
       block_.push_back(b);
-    }
-  }
-
-  /** x_ = L^-1 x_ */
-  void forward() {
-    const double* e = entry_.data();
-    const int* r = row_.data();
-    Row* const x = x_.data();
-    for (const Block& b : block_) {
-      Row* const top = x + b.first;
-      for (int j = 0; j < b.columns; ++j) {
-        const Lanes t = top[j].c *= *e++;
-        for (int i = j + 1; i < b.columns; ++i) top[i].c -= *e++ * t;
-      }
-      for (int p = 0; p < b.panels; ++p, r += high) {
-        Lanes sum[high];
-        for (int i = 0; i < high; ++i) sum[i] = x[r[i]].c;
-        for (int j = 0; j < b.columns; ++j, e += high)
-          for (int i = 0; i < high; ++i) sum[i] -= e[i] * top[j].c;
-        for (int i = 0; i < high; ++i) x[r[i]].c = sum[i];
-      }
-    }
-  }
-
-  /** x_ = L^-T x_, backwards through memory. */
-  void backward() {
-    const double* e = entry_.data() + entry_.size();
-    const int* r = row_.data() + row_.size();
-    Row* const x = x_.data();
-    for (std::size_t k = block_.size(); k-- > 0;) {
-      const Block& b = block_[k];
-      Row* const top = x + b.first;
-      for (int p = 0; p < b.panels; ++p) {
-        r -= high;
-        Lanes below[high];
-        for (int i = 0; i < high; ++i) below[i] = x[r[i]].c;
-        for (int j = b.columns; j-- > 0;) {
-          e -= high;
-          Lanes t = top[j].c;
-          for (int i = 0; i < high; ++i) t -= e[i] * below[i];
-          top[j].c = t;
-        }
-      }
-      for (int j = b.columns; j-- > 0;) {
-        e -= b.columns - j;
-        Lanes t = top[j].c;
-        for (int i = j + 1; i < b.columns; ++i) t -= e[i - j] * top[i].c;
-        top[j].c = t * *e;
-      }
     }
   }
 };
