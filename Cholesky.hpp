@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/SparseCholesky>
@@ -241,7 +242,7 @@ class BlockFactor {
   }
 
   /** As BasicSparseCholesky::solve(). */
-  void solve(std::vector<Point>& b) {
+  void solve(std::span<Point> b) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const Point& from = b[unsigned(order_[i])];
       x_[i].c = Four{from.x, from.y, from.z, 0};
@@ -333,7 +334,7 @@ class BasicSparseCholesky {
 
   /** Put x in the place of @a b, A x = b, by row.  @pre b.size() == rows()
    * Complexity: O(nonzeros()); nothing is allocated. */
-  void solve(std::vector<Point>& b) {
+  void solve(std::span<Point> b) {
     assert(b.size() == rows_);
     if (rows_ > 0) factor_.solve(b);
   }

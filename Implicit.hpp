@@ -284,12 +284,12 @@ class AugmentedVerlet : public Method {
     integrator_detail::sweep_without_drag(sweep_, g, t, force, acceleration_);
     for (unsigned i = 0; i < key_.fixed.size(); ++i)
       if (key_.fixed[i]) acceleration_[i] = Point();
-    factor_.solve(acceleration_);
+    factor_.solve({acceleration_.data(), factor_.rows()});
   }
 
   void kick(Cloth& g, double h) const {
     auto node = g.node_values();
-    for (unsigned i = 0; i < acceleration_.size(); ++i)
+    for (unsigned i = 0; i < g.node_slots(); ++i)
       node[i].vel += h * acceleration_[i];
   }
 };
