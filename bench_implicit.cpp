@@ -1,53 +1,84 @@
 /** @file bench_implicit.cpp
- * What a step of mass-augmented Verlet costs, beside one force sweep: the
- * course's cloth with diagonals. The time of a step over that of a sweep, the
- * counter `sweeps`, is that of the medians only in a quiet moment: compare the
- * lines of a run that was interleaved.
+ * What a step of mass-augmented Verlet costs, beside one force sweep and one
+ * solution with its matrix: the course's cloth with diagonals.
  *
  *   make bench_implicit
- *   ./bench_implicit --benchmark_enable_random_interleaving=true
- */
+ *   ./bench_implicit --benchmark_min_time=1
+ *
+ * Steps and sweeps take turns, so that another program on the machine slows
+ * both down: `sweeps` is how many of these a step costs. */
 #include <benchmark/benchmark.h>
 
+#include <chrono>
 #include <vector>
 
 #include "Implicit.hpp"
 
 namespace {
 
-/** The cloth of side x side nodes that is asked for, and a method that has its
- * factor. */
-struct Course {
-  Cloth g;
-  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce());
-  explicit Course(const benchmark::State& state) {
-    const auto side = unsigned(state.range(0));
-    build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
-  }
-};
-
-void sweep(benchmark::State& state) {
-  Course c(state);
-  std::vector<Point> f;
-  for (auto _ : state) {
-    integrator_detail::sweep(c.g, 0, c.force, f);
-    benchmark::DoNotOptimize(f.data());
-  }
+/** Seconds that @a f() takes. */
+template <typename F>
+double seconds(F f) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  f();
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 void step(benchmark::State& state) {
-  Course c(state);
-  PinConstraint pin(c.g);
+  Cloth g;
+  const auto side = unsigned(state.range(0));
+  build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  PinConstraint pin(g);
   AugmentedVerlet method;
-  double t = method.step(c.g, 0, 1e-3, c.force, pin);  // with a factor
-  for (auto _ : state) t = method.step(c.g, t, 1e-3, c.force, pin);
+  const double dt = 1e-3;
+  double t = method.step(g, 0, dt, force, pin);  // makes the factor
+  std::vector<Point> f;
+  double sweeps = 0, steps = 0;
+  for (auto _ : state) {
+    sweeps += seconds([&] { integrator_detail::sweep(g, t, force, f); });
+    const double s = seconds([&] { t = method.step(g, t, dt, force, pin); });
+    steps += s;
+    state.SetIterationTime(s);
+  }
+  state.counters["sweeps"] = steps / sweeps;
 }
+
+/** x of (M + dt^2/4 L) x = b. */
+void solve(benchmark::State& state) {
+  const int side = int(state.range(0)), n = side * side;
+  const double mass = 1.0 / n, stiffness = 1e-6 / 4 * 100;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, mass);
+  for (const Quad& q : grid_quads(unsigned(side)))
+    for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}}) {
+      const int i = int(q[a]), j = int(q[b]);
+      entries.emplace_back(i, i, stiffness);
+      entries.emplace_back(j, j, stiffness);
+      entries.emplace_back(std::max(i, j), std::min(i, j), -stiffness);
+    }
+  SparseCholesky::Matrix lower(n, n);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  SparseCholesky factor;
+  factor.factorize(lower);
+  const std::vector<Point> b(unsigned(n), Point(1, -2, 3));
+  std::vector<Point> x;
+  for (auto _ : state) {
+    x = b;
+    state.SetIterationTime(seconds([&] { factor.solve(x); }));
+  }
+  state.counters["nonzeros_a_row"] = double(factor.nonzeros()) / n;
+}
+
 void settings(benchmark::internal::Benchmark* b) {
   for (int side : {50, 100, 316, 1000}) b->Arg(side);
-  b->Unit(benchmark::kMillisecond)->Repetitions(7);
+  b->Unit(benchmark::kMillisecond)->UseManualTime()->Repetitions(7);
+  b->ReportAggregatesOnly();
 }
-BENCHMARK(sweep)->Apply(settings);
 BENCHMARK(step)->Apply(settings);
+BENCHMARK(solve)->Apply(settings);
+
 }  // namespace
 
 BENCHMARK_MAIN();
