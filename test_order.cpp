@@ -51,10 +51,9 @@ Shape shuffled(unsigned side) {
 void build_simply(Cloth& g, const Shape& s, Mesh mesh) {
   std::vector<Node> n;
   for (Point p : s.points)
-    n.push_back(g.add_node(p, {Point(), 1. / double(s.points.size())}));
-  for (const Quad& q : s.quads)
-    for (auto [a, b] :
-         {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
+    n.push_back(g.add_node(p, {Point(), Real(1. / double(s.points.size()))}));
+  for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
+    for (const Quad& q : s.quads)
       if (mesh == Mesh::diagonals || a + b != 3)
         g.add_edge(n[q[a]], n[q[b]],
                    {100, norm(s.points[q[a]] - s.points[q[b]])});
@@ -200,11 +199,12 @@ TEST(BuildCloth, OrdersAShuffledMeshInMemory) {
   expect_same(g, simple);
   EXPECT_GT(mean_distance(simple), 30 * mean_distance(ordered));
   EXPECT_LT(mean_distance(g), 1.5 * mean_distance(ordered));
-  unsigned last = 0, constant = 0;
+  unsigned last = 0, constant = 0, turns = 0;
   for (auto [i, j] : g.edge_ends()) {
-    EXPECT_LE(last, std::min(i, j)) << "the edges follow the nodes";
+    turns += std::min(i, j) < last;
     last = std::min(i, j);
   }
+  EXPECT_LT(turns, 16u) << "the edges follow the nodes, a few times through";
   // What a sweep in vectors wants: neighbors at the distances of those before.
   auto distances = [&g](unsigned id) {
     std::multiset<long> all;
