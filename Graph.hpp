@@ -446,7 +446,7 @@ class Graph {
     edges_.reserve(edges);
     make_room(ends_, edges);
     make_room(edge_value_, edges);
-    pool_.reserve(4 * std::size_t(nodes) + 2 * std::size_t(edges));
+    pool_.reserve(nodes, 2 * std::size_t(edges));
   }
 
   node_iterator node_begin() const { return {self(), 0}; }

@@ -59,10 +59,7 @@ class GrowingArray {
   /** New elements are T().  Complexity: O(1) amortized for each of them.
    * Throws std::bad_alloc: no change. */
   void resize(std::size_t n) {
-    if (n > capacity_) {
-      bool small = capacity_ * sizeof(T) < 65536;
-      reserve(std::max(n, capacity_ + (small ? capacity_ : capacity_ / 4)));
-    }
+    if (n > capacity_) grow(n);
     while (size_ < n) new (data_ + size_++) T();
     size_ = n;
   }
@@ -79,6 +76,12 @@ class GrowingArray {
  private:
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
+
+  // Apart, since it is rare: what adds an element stays short.
+  [[gnu::noinline]] void grow(std::size_t n) {
+    const bool small = capacity_ * sizeof(T) < 65536;
+    reserve(std::max(n, capacity_ + (small ? capacity_ : capacity_ / 4)));
+  }
 };
 
 /** Make @a a long enough to hold an element @a i. */
@@ -293,28 +296,17 @@ class ListPool {
     return {pool_.data() + l.begin, l.size};
   }
 
-  /** Let the blocks grow to @a size elements together without moving. */
-  void reserve(std::size_t size) { pool_.reserve(size); }
+  /** Make room for @a lists that hold @a items in all. From now on a list
+   * begins with a block for as many as the average of these has. */
+  void reserve(std::size_t lists, std::size_t items) {
+    if (lists == 0) return;
+    first_capacity_ = std::bit_ceil(
+        size_type(std::clamp<std::size_t>((items + lists - 1) / lists, 4, 64)));
+    pool_.reserve(lists * first_capacity_);
+  }
   /** Make room for one more element in @a l.  O(1) amortized */
   void reserve_one(List& l) {
-    if (l.size < l.capacity) return;
-    size_type capacity = l.capacity == 0 ? min_capacity : 2 * l.capacity;
-    auto& reuse = free_[std::countr_zero(capacity)];
-    size_type begin;
-    if (!reuse.empty()) {
-      begin = reuse.back();
-      reuse.pop_back();
-    } else {
-      if (pool_.size() + capacity > std::numeric_limits<size_type>::max())
-        throw std::length_error("Graph: too many edges");
-      begin = static_cast<size_type>(pool_.size());
-      pool_.resize(pool_.size() + capacity);
-    }
-    List longer{begin, l.size, capacity};
-    for (size_type k = 0; k < l.size; ++k)
-      pool_[begin + k] = pool_[l.begin + k];
-    free(l);
-    l = longer;
+    if (l.size == l.capacity) move_to_longer(l);
   }
   /** Append.  @pre reserve_one(l) came before */
   void push_back(List& l, const T& item) {
@@ -355,7 +347,26 @@ class ListPool {
   }
 
  private:
-  static constexpr size_type min_capacity = 4;
+  // Apart: as GrowingArray::grow().
+  [[gnu::noinline]] void move_to_longer(List& l) {
+    size_type capacity = l.capacity == 0 ? first_capacity_ : 2 * l.capacity;
+    auto& reuse = free_[std::countr_zero(capacity)];
+    size_type begin;
+    if (!reuse.empty()) {
+      begin = reuse.back();
+      reuse.pop_back();
+    } else {
+      if (pool_.size() + capacity > std::numeric_limits<size_type>::max())
+        throw std::length_error("Graph: too many edges");
+      begin = static_cast<size_type>(pool_.size());
+      pool_.resize(pool_.size() + capacity);
+    }
+    List longer{begin, l.size, capacity};
+    std::copy_n(pool_.data() + l.begin, l.size, pool_.data() + begin);
+    free(l);
+    l = longer;
+  }
+  size_type first_capacity_ = 4;  // of a list
   GrowingArray<T> pool_;
   std::array<std::vector<size_type>, 32> free_;  // by log2 of the capacity
 };
