@@ -11,6 +11,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "CME212/Point.hpp"
+#include "Lanes.hpp"
 
 namespace cholesky_detail {
 
@@ -248,9 +249,9 @@ class BlockFactor {
       x_[i].c = Four{from.x, from.y, from.z, 0};
     }
     const Block *first = block_.data(), *end = first + block_.size();
-    Forward::apply(first, end, entry_.data(), row_.data(), x_.data());
-    Backward::apply(first, end, entry_.data() + entry_.size(),
-                    row_.data() + row_.size(), x_.data());
+    lanes::run<Forward>(first, end, entry_.data(), row_.data(), x_.data());
+    lanes::run<Backward>(first, end, entry_.data() + entry_.size(),
+                         row_.data() + row_.size(), x_.data());
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const Four& to = x_[i].c;
       b[unsigned(order_[i])] = Point(to[0], to[1], to[2]);

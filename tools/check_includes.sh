@@ -32,7 +32,7 @@ Sweep              : Force
 Constraint         : Cloth
 Integrator         : Sweep Constraint
 RungeKutta         : Integrator
-Cholesky           : CME212/Point
+Cholesky           : Lanes
 ImplicitStage      : Integrator
 Implicit           : ImplicitStage Cholesky
 Xpbd               : ImplicitStage
