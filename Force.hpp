@@ -91,6 +91,15 @@ class ZeroForce {
                              const StiffnessVisitor& /*use*/) const {
     return typeid(*this) == typeid(ZeroForce);
   }
+
+  /** How often the springs of all edges are part of this force, if nothing else
+   * in it depends on positions: then its stiffness never exceeds that many
+   * times K of each edge, and who needs no more can spare add_stiffness().
+   * Nothing if that can't be told. */
+  virtual std::optional<int> springs() const {
+    if (typeid(*this) == typeid(ZeroForce)) return 0;
+    return std::nullopt;
+  }
 };
 
 /** Weight: f = -m gravity along z [N]. */
@@ -113,6 +122,7 @@ class GravityForce : public ZeroForce {
   bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
     return true;  // the same everywhere
   }
+  std::optional<int> springs() const override { return 0; }
 
  private:
   double gravity_;
@@ -188,6 +198,11 @@ class MassSpringForce : public ZeroForce {
     }
     return true;
   }
+  /** A child may have another stiffness. */
+  std::optional<int> springs() const override {
+    if (typeid(*this) == typeid(MassSpringForce)) return 1;
+    return std::nullopt;
+  }
 };
 
 /** Linear drag: f = -c v [N]. Takes c |v|^2 of power [W] and never gives. */
@@ -208,6 +223,7 @@ class DampingForce : public ZeroForce {
   bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
     return true;  // it does not depend on positions
   }
+  std::optional<int> springs() const override { return 0; }
 
  private:
   double c_;
@@ -255,6 +271,15 @@ class CombinedForces : public ZeroForce {
     for (const auto& force : forces_)
       if (!force->add_stiffness(g, use)) return false;
     return true;
+  }
+  std::optional<int> springs() const override {
+    int sum = 0;
+    for (const auto& force : forces_) {
+      const auto some = force->springs();
+      if (!some) return std::nullopt;
+      sum += *some;
+    }
+    return sum;
   }
 
  private:

@@ -6,6 +6,7 @@
  */
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -200,7 +201,7 @@ class AugmentedVerlet : public Method {
     kept_for_ = &g, kept_time_ = t + dt;
     return t + dt;
   }
-  void restart() override { kept_for_ = nullptr; }
+  void restart() override { kept_for_ = nullptr, source_.cloth = nullptr; }
 
   /** How often the matrix was factored since this method was made. */
   int factorizations() const { return factorizations_; }
@@ -220,6 +221,16 @@ class AugmentedVerlet : public Method {
     bool operator==(const Key&) const = default;
   };
   Key key_, next_;
+  /** What key_ was made of, if its springs are those of the edges. */
+  struct Source {
+    std::optional<int> springs;  // nothing: of other forces, too
+    const Cloth* cloth = nullptr;
+    std::size_t version = 0;
+    std::vector<unsigned> held;  // their ids, in the constraint's order
+    std::vector<double> K;       // [N/m], by edge id
+  };
+  Source source_;
+  std::vector<unsigned> held_;
   int factorizations_ = 0;
   SparseCholesky factor_;
   Sweep sweep_;
@@ -227,9 +238,36 @@ class AugmentedVerlet : public Method {
   const Cloth* kept_for_ = nullptr;  // at whose state acceleration_ is
   double kept_time_ = 0;
 
+  /** Whether nothing that key_ was made of has changed: in one look at the
+   * arrays, without the forces.  @post held_ are the held nodes */
+  bool unchanged(const Cloth& g, double dt, const ZeroForce& force,
+                 const ZeroConstraint& constraint) {
+    held_.clear();
+    constraint.each_held(g, [this](Node n) { held_.push_back(n.id()); });
+    if (dt != key_.dt || !source_.springs ||
+        force.springs() != source_.springs || &g != source_.cloth ||
+        g.version() != source_.version || held_ != source_.held)
+      return false;
+    auto node = g.node_values();
+    auto spring = g.edge_values();
+    bool same = true;
+    for (unsigned i = 0; i < node.size(); ++i)
+      same &= node[i].mass == key_.mass[i];
+    for (unsigned e = 0; e < spring.size(); ++e)
+      same &= spring[e].K == source_.K[e];
+    return same;
+  }
+
   /** The factor for @a g as it is.  @return true if it was that already */
   bool find_factor(const Cloth& g, double dt, const ZeroForce& force,
                    const ZeroConstraint& constraint) {
+    if (unchanged(g, dt, force, constraint)) return true;
+    source_.springs = force.springs();
+    source_.cloth = &g, source_.version = g.version();
+    source_.held = held_;
+    source_.K.clear();
+    for (const EdgeData& spring : g.edge_values())
+      source_.K.push_back(spring.K);
     next_.dt = dt;
     implicit_detail::find_fixed(g, constraint, next_.fixed);
     next_.mass.clear();
@@ -273,7 +311,7 @@ class AugmentedVerlet : public Method {
   void factorize() {
     ++factorizations_;
     if (factor_.factorize(matrix())) return;
-    key_ = {};
+    key_ = {}, source_ = {};
     throw StepError(std::string(info.name) +
                     ": the matrix of masses can't be factored; dt = " +
                     CME212::short_text(key_.dt) + " s");

@@ -247,6 +247,24 @@ TEST(SpringStiffness, IsIsotropicAtLengthZero) {
   EXPECT_EQ(spring_stiffness(Point(0, 0, 1e-9), {100, 0}) * u, 100 * u);
 }
 
+TEST_F(ShakenCloth, ForcesSayHowOftenTheyAreTheSprings) {
+  struct Child : MassSpringForce {};  // might be stiffer
+  EXPECT_EQ(ZeroForce().springs(), 0);
+  EXPECT_EQ(GravityForce().springs(), 0);
+  EXPECT_EQ(DampingForce(1).springs(), 0);
+  EXPECT_EQ(MassSpringForce().springs(), 1);
+  EXPECT_EQ(make_combined_force().springs(), 0);
+  EXPECT_EQ(
+      make_combined_force(MassSpringForce(), GravityForce(), MassSpringForce())
+          .springs(),
+      2);
+  EXPECT_EQ(Child().springs(), std::nullopt);
+  EXPECT_EQ(make_combined_force(MassSpringForce(), Child()).springs(),
+            std::nullopt);
+  EXPECT_EQ(FunctionForce([](Node, double) { return Point(); }).springs(),
+            std::nullopt);
+}
+
 TEST_F(ShakenCloth, StiffnessIsUnknownUnlessEachPartKnowsIt) {
   struct Child : ZeroForce {
     Point operator()(Node n, double) const override {

@@ -422,6 +422,62 @@ TEST(AugmentedVerlet, FactorsAnewOnlyWhenItMust) {
   EXPECT_EQ(step(0.02, s.force, s.pin), expected);
 }
 
+/** Springs that are stiffer than their edges say. */
+struct Stiffer : MassSpringForce {
+  double factor = 2;
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    return MassSpringForce::add_stiffness(
+        g, [&](unsigned i, unsigned j, Stiffness B) {
+          B.along *= factor;
+          use(i, j, B);
+        });
+  }
+};
+
+// Where a force may be stiffer than the edges, each step asks it anew.
+TEST(AugmentedVerlet, AsksAForceThatIsNotTheEdges) {
+  Sheet s(6);
+  AugmentedVerlet method;
+  Stiffer stiffer;
+  double t = 0;
+  int expected = 0;
+  auto step = [&](const ZeroForce& force) {
+    t = method(s.g, t, 0.01, force, s.pin);
+    return method.factorizations();
+  };
+  EXPECT_EQ(step(s.force), ++expected);
+  EXPECT_EQ(step(MassSpringForce()), expected);
+  EXPECT_EQ(step(stiffer), ++expected);
+  EXPECT_EQ(step(stiffer), expected);
+  stiffer.factor = 3;
+  EXPECT_EQ(step(stiffer), ++expected);
+  EXPECT_EQ(step(make_combined_force(GravityForce(), stiffer)), expected);
+  EXPECT_EQ(step(s.force), ++expected);
+  auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
+  EXPECT_EQ(step(twice), ++expected);
+  EXPECT_EQ(step(twice), expected);
+  EXPECT_EQ(step(s.force), ++expected);
+}
+
+// The same numbers, but other nodes at the ends of the springs, or held.
+TEST(AugmentedVerlet, SeesOtherEndsAndOtherPins) {
+  Sheet s(6);
+  AugmentedVerlet method;
+  auto step = [&](const ZeroConstraint& c) {
+    method.step(s.g, 0, 0.01, s.force, c);
+    return method.factorizations();
+  };
+  EXPECT_EQ(step(s.pin), 1);
+  const EdgeData spring = s.g.edge(0).value();
+  s.g.remove_edge(s.g.edge(0));
+  s.g.add_edge(s.g.node(0), s.g.node(35)).value() = spring;
+  EXPECT_EQ(step(s.pin), 2);
+  const std::array<Node, 2> others = {s.g.node(1), s.g.node(30)};
+  EXPECT_EQ(step(PinConstraint(others)), 3);
+  EXPECT_EQ(step(PinConstraint(others)), 3);
+}
+
 // Kept accelerations may not outlive the state that they belong to.
 TEST(AugmentedVerlet, StartsAnewWhenTold) {
   Sheet a(4), b(4);
