@@ -13,30 +13,12 @@
 #include <utility>
 #include <vector>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "CME212/OutputFile.hpp"
 #include "CME212/Point.hpp"
 #include "Report.hpp"
+#include "Sweep.hpp"
 
 namespace bench {
-
-/** How many threads OpenMP takes from here on. */
-inline void set_threads([[maybe_unused]] int n) {
-#ifdef _OPENMP
-  omp_set_num_threads(n);
-#endif
-}
-/** How many may run at once: `taskset -c 0` makes it 1. */
-inline int processors() {
-#ifdef _OPENMP
-  return omp_get_num_procs();
-#else
-  return 1;
-#endif
-}
 
 /** Something to be measured. */
 struct Figure {
@@ -71,7 +53,7 @@ class Bench {
       benchmark::RegisterBenchmark(
           key(f).c_str(),
           [&f](benchmark::State& state) {
-            set_threads(f.threads);
+            Sweep::set_threads(f.threads);
             f.call();  // fills caches, and what it keeps
             for (auto _ : state) {
               f.call();

@@ -55,6 +55,18 @@ void stop_held(G& g, const C& constraint) {
     constraint.each_held(g, [](Node n) { n.value().vel = Point(); });
 }
 
+namespace constraint_detail {
+
+/** Call @a mend(node) for each node whose position @a violates. Goes through
+ * the positions in the order of memory: few of them ever need mending. */
+template <typename Violates, typename Mend>
+void for_each_violating(Cloth& g, Violates violates, Mend mend) {
+  for (unsigned i = 0; i < g.node_slots(); ++i)
+    if (violates(g.positions()[i]) && g.node_in_use(i)) mend(g.node_with_id(i));
+}
+
+}  // namespace constraint_detail
+
 /** Holds nodes where they were when the pin was made.
  * @post at each call: their positions are those, and their velocities 0.
  * Removing a pinned node is fine: the pin goes on with the others.
@@ -101,11 +113,12 @@ class PlaneConstraint : public ZeroConstraint {
   explicit PlaneConstraint(double z = -0.75) : z_(z) {}
   double height() const { return z_; }
   void operator()(Cloth& g, double /*t*/) const override {
-    for (Node n : g.nodes())
-      if (n.position().z < z_) {
-        n.position().z = z_;
-        n.value().vel.z = 0;
-      }
+    constraint_detail::for_each_violating(
+        g, [this](const Point& p) { return p.z < z_; },
+        [this](Node n) {
+          n.position().z = z_;
+          n.value().vel.z = 0;
+        });
   }
 
  private:
@@ -117,7 +130,9 @@ struct Ball {
   Point center = Point(0.5, 0.5, -0.5);
   double radius = 0.15;
   /** Strictly inside? */
-  bool holds(const Point& p) const { return norm(p - center) < radius; }
+  bool holds(const Point& p) const {
+    return normSq(p - center) < radius * radius;
+  }
 
   /** As ZeroConstraint::entry(). */
   std::optional<Point> entry(const Point& from, const Point& to) const {
@@ -139,14 +154,15 @@ class SphereConstraint : public ZeroConstraint {
  public:
   explicit SphereConstraint(const Ball& ball = {}) : ball_(ball) {}
   void operator()(Cloth& g, double /*t*/) const override {
-    for (Node n : g.nodes()) {
-      if (!ball_.holds(n.position())) continue;
-      Point out = n.position() - ball_.center;
-      double distance = norm(out);
-      Point normal = distance > 0 ? out / distance : Point(0, 0, 1);
-      n.position() = ball_.center + ball_.radius * normal;
-      n.value().vel -= dot(n.value().vel, normal) * normal;
-    }
+    constraint_detail::for_each_violating(
+        g, [this](const Point& p) { return ball_.holds(p); },
+        [this](Node n) {
+          Point out = n.position() - ball_.center;
+          double distance = norm(out);
+          Point normal = distance > 0 ? out / distance : Point(0, 0, 1);
+          n.position() = ball_.center + ball_.radius * normal;
+          n.value().vel -= dot(n.value().vel, normal) * normal;
+        });
   }
 
   std::optional<Point> entry(const Point& from,
@@ -166,11 +182,9 @@ class TearConstraint : public ZeroConstraint {
  public:
   explicit TearConstraint(const Ball& ball = {}) : ball_(ball) {}
   void operator()(Cloth& g, double /*t*/) const override {
-    for (auto it = g.node_begin(); it != g.node_end();)
-      if (ball_.holds((*it).position()))
-        it = g.remove_node(it);  // now at the node that filled the hole
-      else
-        ++it;
+    constraint_detail::for_each_violating(
+        g, [this](const Point& p) { return ball_.holds(p); },
+        [&g](Node n) { g.remove_node(n); });
   }
 
   std::optional<Point> entry(const Point& from,

@@ -102,6 +102,40 @@ class ZeroForce {
   }
 };
 
+namespace force_detail {
+
+/** f.z -= m gravity for @a blocks of lanes::width nodes. */
+struct Weight {
+  [[gnu::always_inline]] static inline void apply(const NodeData* node,
+                                                  Point* force, unsigned blocks,
+                                                  Real gravity) {
+    using namespace lanes;
+    for (unsigned b = 0; b < blocks; ++b) {
+      const Real* row = &node[b * width].vel.x;
+      Real* f = &force[b * width].x;
+      const Lanes r0 = load(row), r1 = load(row + width),
+                  r2 = load(row + 2 * width), r3 = load(row + 3 * width);
+      store(f, load(f) - gravity * masses<0>(r0, r1));
+      store(f + width, load(f + width) - gravity * masses<1>(r1, r2));
+      store(f + 2 * width, load(f + 2 * width) - gravity * masses<2>(r2, r3));
+    }
+  }
+  /** Part @a part of 0 0 m 0 0 m ... from two rows of v v v m v v v m ... */
+  template <int part>
+  [[gnu::always_inline]] static inline lanes::Lanes masses(
+      const lanes::Lanes& a, const lanes::Lanes& b) {
+    using namespace lanes;
+    const Lanes m = shuffle(a, b, [](int k) {
+      return 4 * ((part * width + k) / 3) + 3 - part * width;
+    });
+    return shuffle(m, Lanes{}, [](int k) {
+      return (part * width + k) % 3 == 2 ? k : width + k;
+    });
+  }
+};
+
+}  // namespace force_detail
+
 /** Weight: f = -m gravity along z [N]. */
 class GravityForce : public ZeroForce {
  public:
@@ -113,7 +147,10 @@ class GravityForce : public ZeroForce {
   void add_to(const Part& part, double /*t*/,
               std::span<Point> f) const override {
     const NodeData* node = &part.g.node_values()[part.first];
-    for (unsigned k = 0; k < part.last - part.first; ++k)
+    const unsigned count = part.last - part.first;
+    const unsigned blocks = count / lanes::width;
+    lanes::run<force_detail::Weight>(node, f.data(), blocks, Real(gravity_));
+    for (unsigned k = blocks * lanes::width; k < count; ++k)
       f[k].z -= node[k].mass * Real(gravity_);
   }
   double energy(const Cloth& g) const override {

@@ -24,6 +24,7 @@ struct Options {
   double at = -1;  // time of the screenshot [s]; the end if negative
   double speed = 1;
   long long every = 10;
+  int threads = 0;  // of the sweeps; 0: as many as there are processors
   bool headless = false, window = false, paused = false, strain = false;
   bool quiet = false;
   std::string screenshot, video, csv, out;

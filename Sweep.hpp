@@ -20,6 +20,21 @@
  * number of threads: so the results are the same, bit by bit. */
 class Sweep {
  public:
+  /** How many processors this program may use. */
+  static int processors() {
+#ifdef _OPENMP
+    return omp_get_num_procs();
+#else
+    return 1;
+#endif
+  }
+  /** Let all sweeps have @a n threads from now on; all processors() if 0. */
+  static void set_threads([[maybe_unused]] int n) {
+#ifdef _OPENMP
+    omp_set_num_threads(n == 0 ? processors() : n);
+#endif
+  }
+
   static constexpr unsigned part_size = 1024;
   static_assert(part_size % ClothStencil::width == 0);
 
@@ -28,7 +43,9 @@ class Sweep {
   void parts(const Cloth& g, Use use) {
     update(g);
     const int count = int((g.node_slots() + part_size - 1) / part_size);
+#ifdef _OPENMP
 #pragma omp parallel for schedule(static) if (count > 1)
+#endif
     for (int k = 0; k < count; ++k)
       use(Part{g, *stencil_, unsigned(k) * part_size,
                std::min(unsigned(k + 1) * part_size, g.node_slots())});

@@ -161,7 +161,9 @@ struct Triad {
       : a(bytes / 24), b(bytes / 24, 1), c(bytes / 24, 2) {}
   void run() {
     const std::ptrdiff_t n = std::ptrdiff_t(a.size());
+#ifdef _OPENMP
 #pragma omp parallel for schedule(static)
+#endif
     for (std::ptrdiff_t i = 0; i < n; ++i) a[i] = b[i] + 3 * c[i];
   }
 };
@@ -263,10 +265,10 @@ std::vector<Figure> figures() {
            symp_euler_step(g, 0, dt, *force);
          };
        }});
-  if (bench::processors() > 1) {
+  if (Sweep::processors() > 1) {
     Figure f{"step: SymplecticEuler, threads", "step: SymplecticEuler",
              stepping<SymplecticEuler>(Kind::grid)};
-    f.threads = bench::processors();
+    f.threads = Sweep::processors();
     add(f);
   }
 
@@ -406,8 +408,8 @@ int main(int argc, char** argv) {
   };
   triad("in the cache", near, 1);
   triad("in memory", far, 1);
-  if (bench::processors() > 1)
-    triad("in memory, all threads", far, bench::processors());
+  if (Sweep::processors() > 1)
+    triad("in memory, all threads", far, Sweep::processors());
   for (unsigned side : {100u, 1000u}) {
     if (side > 100 && small) continue;
     for (const Figure& f : figures())
@@ -424,7 +426,7 @@ int main(int argc, char** argv) {
   };
   std::printf("%s; %s; triad in memory %.1f GB/s, by %d threads %.1f GB/s\n",
               report::machine().c_str(), sizeof(Real) == 8 ? "double" : "float",
-              bandwidth("in memory"), bench::processors(),
+              bandwidth("in memory"), Sweep::processors(),
               bandwidth("in memory, all threads"));
   all.print("node", bandwidth("in memory"));
   if (json.empty()) return 0;

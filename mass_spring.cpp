@@ -141,6 +141,10 @@ int parse(int argc, char** argv, Options& o) {
   app.add_option("--every", o.every, "steps between two rows of --csv");
   app.add_option("--out", o.out, "write the positions at the end, as NODES")
       ->type_name("FILE");
+  app.add_option("--threads", o.threads,
+                 "threads of a large cloth's sweeps; 0: one a processor. They "
+                 "change no result")
+      ->check(CLI::Range(0, 1024));
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   app.set_config("--config", "", "read options from a file: dt=0.0005 ...");
   app.set_version_flag("--version", std::string("mass_spring ") + version +
@@ -250,6 +254,7 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
 
 /** Load, choose how to run, run.  @return exit status */
 int run(Options o) {
+  Sweep::set_threads(o.threads);
   auto points = load_points(o.nodes);
   auto quads = load_quads(o.tets, points.size());
   std::unique_ptr<Screen> window;

@@ -349,6 +349,7 @@ int parse(int argc, char** argv, Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Sweep::set_threads(1);  // runs stand beside runs
   Options o;
   try {
     if (int status = parse(argc, argv, o); status >= 0) return status;

@@ -11,10 +11,6 @@
 #include <utility>
 #include <vector>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "Integrator.hpp"
 
 namespace {
@@ -34,20 +30,8 @@ class SweepTest : public ::testing::Test {
  protected:
   ~SweepTest() override {
     lanes::cpu = lanes::best_cpu();
-    set_threads(processors_);
+    Sweep::set_threads(0);
   }
-  static void set_threads([[maybe_unused]] int n) {
-#ifdef _OPENMP
-    omp_set_num_threads(n);
-#endif
-  }
-
- private:
-#ifdef _OPENMP
-  int processors_ = omp_get_max_threads();
-#else
-  int processors_ = 1;
-#endif
 };
 
 double random(double a, double b) { return CME212::random(a, b); }
@@ -190,9 +174,7 @@ TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
 /** Positions and velocities after 50 steps and a tear. */
 std::vector<Point> run(Method& method, int threads) {
   CME212::default_generator.seed(5);
-#ifdef _OPENMP
-  omp_set_num_threads(threads);
-#endif
+  Sweep::set_threads(threads);
   Cloth g;
   make_grid(g, 70);  // 4900 nodes: five parts
   const auto force = make_combined_force(GravityForce(), MassSpringForce(),

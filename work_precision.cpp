@@ -410,6 +410,7 @@ void run(Options o) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Sweep::set_threads(1);  // runs stand beside runs
   Options o;
   try {
     if (int status = parse(argc, argv, o); status >= 0) return status;

@@ -226,6 +226,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   program = argv[0];
+  Sweep::set_threads(1);  // as the peers have
   std::vector<std::array<double, 2>> memory;
   each_graph([&]<typename C>(std::type_identity<C>) {
     memory.push_back(bytes_per_node_and_edge<C>());

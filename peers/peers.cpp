@@ -405,6 +405,7 @@ void print_ratios(const std::vector<Candidate>& all, double error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Sweep::set_threads(1);  // as the peers have
   const int repeats = argc > 1 ? std::atoi(argv[1]) : 7;
   if (repeats < 1) {
     std::cerr << "usage: peers [REPEATS], 1 or more; 7 if left out\n";
