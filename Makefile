@@ -48,7 +48,7 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
 lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: stability stability-soak cells charts charts-quick orders all deps peers-deps \
+.PHONY: speed stability stability-soak cells charts charts-quick orders all deps peers-deps \
         peers-chart peers-bench demo check check-all print-tests fuzz pictures help clean \
         format submit grids FORCE
 .SECONDARY:
@@ -61,6 +61,7 @@ help:
 	@echo 'make test_nodes ...     a test, under the sanitizers'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make check              everything that a commit must pass'
+	@echo 'make speed              what a step costs here: docs/speed.md'
 	@echo 'make stability          the stability maps: charts/README.md; QUICK=1'
 	@echo 'make peers-bench        our graph beside other libraries: peers/README.md'
 	@echo 'make data/grid4.nodes   a grid of a million nodes'
@@ -172,6 +173,14 @@ charts: work_precision
 	@QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' charts/make.sh
 charts-quick:
 	@$(MAKE) --no-print-directory charts QUICK=1
+
+# What a step costs on this machine, docs/speed.md: charts/speed.sh.
+speed:
+	@$(MAKE) --no-print-directory build/native/bench O=build/native/ \
+	  CXXFLAGS='-march=native $(CXXFLAGS)'
+	@$(MAKE) --no-print-directory build/float/bench O=build/float/ REAL=float \
+	  CXXFLAGS='-march=native $(CXXFLAGS)'
+	@charts/speed.sh
 
 # The table of measured orders in docs/methods.md.
 orders: test_orders

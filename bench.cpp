@@ -28,11 +28,13 @@ namespace {
 
 // --------------------------------------------------------------------- Cloths
 
-/** grid   ids and springs line by line, as load_cloth() makes it
- * mixed   the same, ids and springs in random order within windows of 64:
- *         neighbors are as near, but none at a constant distance
- * torn    the grid after a random half of its nodes was removed */
-enum class Kind { grid, mixed, torn };
+/** - grid: ids and springs line by line, as load_cloth() makes it
+ * - mixed: the same, ids and springs in random order within windows of 64:
+ *   neighbors are as near, but none at a constant distance
+ * - shuffled: from files in random order, as load_cloth() makes it
+ * - torn: the grid after a random half of its nodes was removed
+ * - reindexed: torn, and then Graph::reindex() */
+enum class Kind { grid, mixed, shuffled, torn, reindexed };
 
 /** 0, ..., count - 1 in random order within windows of 64. */
 std::vector<unsigned> mixed_order(std::size_t count) {
@@ -46,9 +48,23 @@ std::vector<unsigned> mixed_order(std::size_t count) {
   return order;
 }
 
+/** Points and quads in random order. */
+void shuffle(std::vector<Point>& points, std::vector<Quad>& quads) {
+  std::mt19937 random(9);
+  std::vector<unsigned> place(points.size());
+  std::iota(place.begin(), place.end(), 0u);
+  std::shuffle(place.begin(), place.end(), random);
+  const auto before = points;
+  for (std::size_t i = 0; i < points.size(); ++i) points[place[i]] = before[i];
+  for (Quad& q : quads)
+    for (unsigned& i : q) i = place[i];
+  std::shuffle(quads.begin(), quads.end(), random);
+}
+
 void build(Cloth& g, unsigned side, Kind kind) {
-  const auto points = grid_points(side);
-  const auto quads = grid_quads(side);
+  auto points = grid_points(side);
+  auto quads = grid_quads(side);
+  if (kind == Kind::shuffled) shuffle(points, quads);
   if (kind == Kind::mixed) {
     Cloth grid;
     build_cloth(grid, points, quads, Mesh::diagonals);
@@ -64,10 +80,11 @@ void build(Cloth& g, unsigned side, Kind kind) {
     return;
   }
   build_cloth(g, points, quads, Mesh::diagonals);
-  if (kind == Kind::grid) return;
+  if (kind != Kind::torn && kind != Kind::reindexed) return;
   std::vector<Node> nodes(g.node_begin(), g.node_end());
   std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));
   for (std::size_t k = 0; k < nodes.size() / 2; ++k) g.remove_node(nodes[k]);
+  if (kind == Kind::reindexed) g.reindex();
 }
 
 /** One cloth of each sort for all that is measured, its nodes shaken. */
@@ -247,6 +264,8 @@ std::vector<Figure> figures() {
              (kind == Kind::grid ? 12 : 12 + 64),
          kind});
   }
+  add({"step: SymplecticEuler, shuffled", "step: SymplecticEuler",
+       stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled});
   add({"step: Verlet", "step: flat arrays", stepping<Verlet>(Kind::grid)});
   add({"step: symp_euler_step(), functor", "step: flat arrays",
        [](unsigned n) -> Make {
@@ -273,16 +292,17 @@ std::vector<Figure> figures() {
   }
 
   // The springs' forces, layer by layer.
-  for (Kind kind : {Kind::grid, Kind::torn}) {
-    const std::string of = kind == Kind::grid ? "" : ", torn";
+  for (auto [kind, of] : {std::pair(Kind::grid, std::string()),
+                          {Kind::torn, ", torn"},
+                          {Kind::reindexed, ", reindexed"}}) {
     add({"springs: flat arrays" + of, "",
-         [kind](unsigned n) -> Make {
+         [kind = kind](unsigned n) -> Make {
            return [&a = flat(n, kind)] { a.forces(); };
          },
          true, 0, kind});
     add({"springs: Node and Edge" + of, "springs: flat arrays" + of,
-         [kind](unsigned n) { return by_node(n, kind, springs_of); }, true, 0,
-         kind});
+         [kind = kind](unsigned n) { return by_node(n, kind, springs_of); },
+         true, 0, kind});
   }
   add({"springs: virtual call a node", "springs: flat arrays",
        [](unsigned n) {

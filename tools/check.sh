@@ -59,6 +59,7 @@ tests=$(make -s print-tests)
 step tree          tools/check_tree.sh
 step includes      tools/check_includes.sh
 step headers       tools/check_headers.sh
+step lanes         tools/check_lanes.sh
 step build-g++     make_all all CXX=g++
 # What counts of clang++ is what it says: no time for optimizing.
 step build-clang++ make_all all CXX=clang++ O=build/clang/ SANITIZE= \

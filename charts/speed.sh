@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# make speed: what a step costs on this machine, in double and in single
+# precision, to charts/MACHINE/: bench.json, bench-float.json, a line for each
+# step in history.csv and a picture of that.
+#   charts/speed.sh [BENCH BENCH_FLOAT]
+# On a machine that does nothing else: each figure is a ratio to a loop over
+# flat arrays measured at the same time, but memory is shared.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+machine=$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1 |
+  tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
+folder=charts/${machine:-unknown}
+mkdir -p "$folder"
+"${1:-build/native/bench}" --json "$folder/bench.json"
+"${2:-build/float/bench}" --filter 'step: ' --json "$folder/bench-float.json"
+
+history=$folder/history.csv
+[ -e "$history" ] || echo 'date,commit,real,nodes,step,ratio' >"$history"
+commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+for file in "$folder/bench.json" "$folder/bench-float.json"; do
+  real=$(sed -n 's/^ "real": "\(.*\)",$/\1/p' "$file")
+  sed -n 's/.*"name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)", "items": \([0-9e+]*\),.*"ratio": \([0-9.e-]*\).*/\2,"\1",\3/p' \
+    "$file" | while read -r row; do
+    echo "$(date +%F),$commit,$real,$row"
+  done
+done >>"$history"
+
+for kind in svg png; do
+  gnuplot -e "csv='$history'; out='$folder/history'; kind='$kind'; \
+    machine='$machine'" charts/history.gp
+done
+echo "$folder/history.svg"

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# The kernel of the springs is what docs/speed.md says: one vector square root
+# and one vector division for a register full of springs, and no scalar one. By
+# both compilers; for the plain processor by g++ only.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+[ "$(uname -m)" = x86_64 ] || exit 0
+passed=0 failed=0
+
+# What COMPILER makes of the kernel for CPU.
+kernel() {  # COMPILER CPU
+  echo '#include "Force.hpp"
+    void sweep(const ClothStencil& s, const Point* x, const EdgeData* e,
+               unsigned n, Point* f) {
+      lanes::run<force_detail::SpringSweep>(s, x, e, 0u, n, f);
+    }' |
+    "$1" -std=c++20 -O3 -DNDEBUG -fno-math-errno -I. -x c++ -S -o - - |
+    sed -n "/^_Z.*on_$2.*SpringSweep.*:/,/^[[:space:]]*\.cfi_endproc/p"
+}
+
+expect() {  # COMPILER CPU ROOT DIVISION REGISTER
+  local text
+  text=$(kernel "$1" "$2")
+  if grep -qE "[[:space:]]$3[[:space:]].*$5" <<<"$text" &&
+    grep -qE "[[:space:]]$4[[:space:]].*$5" <<<"$text" &&
+    ! grep -qE '[[:space:]]v?(sqrt|div)sd[[:space:]]' <<<"$text"; then
+    passed=$((passed + 1))
+  else
+    echo "$1 does not vectorize the springs for $2"
+    failed=$((failed + 1))
+  fi
+}
+
+for compiler in g++ clang++; do
+  expect $compiler avx512 vsqrtpd vdivpd zmm
+  expect $compiler avx2 vsqrtpd vdivpd ymm
+done
+expect g++ plain sqrtpd divpd xmm
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
