@@ -103,10 +103,11 @@ inline double spring_energy(double l, const EdgeData& s) {
 
 // ------------------------------------------------------------------- Energies
 
-/** Add @a f(id) over all nodes in use, in the order of memory. */
+/** Add @a f(id) over all nodes in use, in the order of memory, in double: a sum
+ * of a million floats would lose three digits. */
 template <typename F>
-auto sum_over_nodes(const Cloth& g, F f) {
-  decltype(f(0u)) sum{};
+double sum_over_nodes(const Cloth& g, F f) {
+  double sum = 0;
   for (unsigned i = 0; i < g.node_slots(); ++i)
     if (g.node_in_use(i)) sum += f(i);
   return sum;
@@ -151,10 +152,14 @@ inline double total_mass(const Cloth& g) {
 inline Point center_of_mass(const Cloth& g) {
   auto x = g.positions();
   auto node = g.node_values();
-  double mass = total_mass(g);
-  Point sum =
-      sum_over_nodes(g, [=](unsigned i) { return node[i].mass * x[i]; });
-  return mass > 0 ? sum / mass : Point();
+  auto moment = [&](Real Point::*along) {
+    return sum_over_nodes(
+        g, [=](unsigned i) { return double(node[i].mass) * x[i].*along; });
+  };
+  const double mass = total_mass(g);
+  if (!(mass > 0)) return Point();
+  return Point(moment(&Point::x) / mass, moment(&Point::y) / mass,
+               moment(&Point::z) / mass);
 }
 
 /** The highest speed of a node [m/s]; 0 for a cloth without nodes.  O(N) */

@@ -23,7 +23,7 @@ class Problem1Force {
   /** All springs alike (section 3.2).
    * @param K [N/m]   @param L rest length [m]   @param gravity [m/s^2] */
   Problem1Force(double K, double L, double gravity = grav)
-      : same_{{K, L}}, gravity_(gravity) {}
+      : same_{{Real(K), Real(L)}}, gravity_(gravity) {}
 
   Point operator()(Node n, double /*t*/) const {
     if (is_corner(n.position())) return Point();

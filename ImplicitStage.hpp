@@ -237,9 +237,11 @@ class ImplicitStage {
   /** @a to = D^-1 @a from. */
   void precondition(const std::vector<Point>& from,
                     std::vector<Point>& to) const {
-    for (unsigned i = 0; i < from.size(); ++i)
-      Eigen::Map<Eigen::Vector3d>(&to[i].x) =
-          inverse_[i] * Eigen::Map<const Eigen::Vector3d>(&from[i].x);
+    for (unsigned i = 0; i < from.size(); ++i) {
+      const Point& a = from[i];
+      const Eigen::Vector3d b = inverse_[i] * Eigen::Vector3d(a.x, a.y, a.z);
+      to[i] = Point(b.x(), b.y(), b.z());
+    }
   }
   static double product(const std::vector<Point>& a,
                         const std::vector<Point>& b) {
@@ -256,7 +258,7 @@ class ImplicitStage {
   /** What round-off leaves of D^-1 r/s [m/s^2], RMS over the nodes: that of w
    * by the inertia, that of x by the springs, as far as they make up D. */
   double round_off(const Cloth& g, double s) const {
-    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    constexpr double epsilon = std::numeric_limits<Real>::epsilon();
     auto x = g.positions();
     double sum = 0;
     for (unsigned i = 0; i < w.size(); ++i) {

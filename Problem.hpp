@@ -261,9 +261,9 @@ struct Chain {
     return x;
   }
   void build(Cloth& g) const {
-    for (const Point& p : exact(0)) g.add_node(p, {Point(), 1.0 / n});
+    for (const Point& p : exact(0)) g.add_node(p, {Point(), Real(1.0 / n)});
     for (unsigned j = 0; j <= n; ++j)
-      g.add_edge(g.node(j), g.node(j + 1), {K, rest / (n + 1)});
+      g.add_edge(g.node(j), g.node(j + 1), {Real(K), Real(rest / (n + 1))});
   }
   CombinedConstraints pins(const Cloth& g) const {
     std::array ends = {g.node(0), g.node(n + 1)};

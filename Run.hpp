@@ -207,8 +207,9 @@ class Run {
     last_row_ = scene_.steps();
     Energies e = energies();
     Point c = center_of_mass(scene_.cloth());
-    for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
-                     e.total(), c.x, c.y, c.z})
+    for (double a : std::initializer_list<double>{scene_.time(), e.kinetic,
+                                                  e.elastic, e.gravitational,
+                                                  e.total(), c.x, c.y, c.z})
       rows_ += CME212::to_text(a) + ',';
     rows_ += std::to_string(scene_.cloth().num_nodes()) + ',' +
              std::to_string(scene_.cloth().num_edges()) + '\n';

@@ -4,6 +4,7 @@
  * the methods, and DivergenceGuard. */
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -33,7 +34,7 @@ inline double amplification(Method& method, double dt, double omega,
   Cloth g;
   g.add_node(Point());
   Node mass = g.add_node(Point(1, 0, 0));
-  g.add_edge(g.node(0), mass, {omega * omega, 0});
+  g.add_edge(g.node(0), mass, {Real(omega * omega), 0});
   auto force = make_combined_force(MassSpringForce(), DampingForce(gamma));
   const std::array wall = {g.node(0)};
   PinConstraint pin(wall);
@@ -42,7 +43,7 @@ inline double amplification(Method& method, double dt, double omega,
     mass.value().vel = Point(v * omega, 0, 0);
     method.restart();
     method.step(g, 0, dt, force, pin);
-    return std::array{mass.position().x, mass.value().vel.x / omega};
+    return std::array<double, 2>{mass.position().x, mass.value().vel.x / omega};
   };
   const auto [xx, vx] = image(1, 0);
   const auto [xv, vv] = image(0, 1);
@@ -62,8 +63,10 @@ inline double step_limit(const MethodEntry& method, double omega,
   double high = (info.limit > 0 ? info.limit : 2) / omega;
   if (!(gamma > 0)) return info.limit > 0 ? high : 0;
   auto made = method.make();
+  constexpr double round_off =
+      std::max(1e-12, 10. * std::numeric_limits<Real>::epsilon());
   auto stable = [&](double dt) {
-    return amplification(*made, dt, omega, gamma) <= 1 + 1e-12;
+    return amplification(*made, dt, omega, gamma) <= 1 + round_off;
   };
   if (info.limit > 0 && stable(high * (1 - 1e-6))) return high;
   double low = 0;
@@ -77,7 +80,7 @@ inline double step_limit(const MethodEntry& method, double omega,
 /** The largest c/m [1/s] of a cloth with drag @a c [kg/s]. */
 inline double largest_gamma(const Cloth& g, double c) {
   double least = no_limit;
-  for (Node n : g.nodes()) least = std::min(least, n.value().mass);
+  for (Node n : g.nodes()) least = std::min<double>(least, n.value().mass);
   return c / least;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Point.hpp
- * Point: a vector of three doubles, with the arithmetic of R^3. */
+ * Point: a vector of three numbers, with the arithmetic of R^3. */
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -8,38 +8,41 @@
 #include <istream>
 #include <ostream>
 
-/** The numbers that a simulation is made of: `make REAL=float` takes single
- * precision for all of them. */
+/** The numbers that a cloth is made of, so many that their size counts: `make
+ * REAL=float` takes single precision for all of them. Times, energies and what
+ * else there is one of are doubles. */
 #ifndef REAL
 #define REAL double
 #endif
 using Real = REAL;
 
-/** A point or a vector in R^3. Plain data: 24 bytes, trivially copyable.
+/** A point or a vector in R^3. Plain data: three Reals, trivially copyable.
  * A scalar in a sum acts on every coordinate; a product or quotient of two
- * Points is taken coordinate by coordinate (the scalar product is dot()). */
+ * Points is taken coordinate by coordinate (the scalar product is dot()).
+ * Scalars come as doubles and are rounded to Real first. */
 struct Point {
-  using value_type = double;
-  using reference = double&;
-  using const_reference = const double&;
-  using iterator = double*;
-  using const_iterator = const double*;
+  using value_type = Real;
+  using reference = Real&;
+  using const_reference = const Real&;
+  using iterator = Real*;
+  using const_iterator = const Real*;
   using size_type = std::size_t;
   using difference_type = std::ptrdiff_t;
 
-  double x = 0, y = 0, z = 0;
+  Real x = 0, y = 0, z = 0;
 
   constexpr Point() = default;
   /** The point (b, b, b). */
-  constexpr explicit Point(double b) : x(b), y(b), z(b) {}
-  constexpr Point(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
+  constexpr explicit Point(double b) : Point(b, b, b) {}
+  constexpr Point(double x_, double y_, double z_)
+      : x(Real(x_)), y(Real(y_)), z(Real(z_)) {}
 
   /** Coordinate @a i.  @pre i < 3 */
-  constexpr double& operator[](size_type i) {
+  constexpr Real& operator[](size_type i) {
     assert(i < 3);
     return i == 0 ? x : i == 1 ? y : z;
   }
-  constexpr const double& operator[](size_type i) const {
+  constexpr const Real& operator[](size_type i) const {
     assert(i < 3);
     return i == 0 ? x : i == 1 ? y : z;
   }
@@ -70,7 +73,7 @@ struct Point {
   constexpr Point& operator*=(double b) { return *this *= Point(b); }
   constexpr Point& operator/=(double b) { return *this /= Point(b); }
 };
-static_assert(sizeof(Point) == 3 * sizeof(double));  // begin() counts on it
+static_assert(sizeof(Point) == 3 * sizeof(Real));  // begin() counts on it
 
 constexpr Point operator+(const Point& a) { return a; }
 constexpr Point operator-(const Point& a) { return {-a.x, -a.y, -a.z}; }
@@ -90,9 +93,9 @@ constexpr Point operator/(Point a, double b) { return a /= b; }
 constexpr Point cross(const Point& a, const Point& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/** The scalar product a . b. */
+/** The scalar product a . b; in double, as sums over a cloth are made of it. */
 constexpr double dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
 }
 constexpr double inner_prod(const Point& a, const Point& b) {
   return dot(a, b);
