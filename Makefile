@@ -170,6 +170,7 @@ pictures: test_screen mass_spring mass_spring_problem1 mass_spring_diagonals mas
 # The charts, charts/README.md; QUICK=1, SCENE=grid1 or METHODS=verlet,pefrl
 # draws them in build/charts.
 charts: work_precision
+	@$(MAKE) --no-print-directory work_precision REAL=float O=build/float/
 	@QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' charts/make.sh
 charts-quick:
 	@$(MAKE) --no-print-directory charts QUICK=1

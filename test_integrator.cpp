@@ -101,7 +101,7 @@ TEST_P(SymplecticEulerStep, IsBoundedBelowItsLimitOnly) {
     double h = factor * SymplecticEuler::info.limit / 20, worst = 0;
     for (int n = 0; n < 200; ++n) {
       step(0, h, MassSpringForce(), pin);
-      worst = std::max(worst, std::abs(a.position().x - 1));
+      worst = std::max(worst, std::abs(a.position().x - 1.0));
     }
     // Below: |y| <= y_0 / cos(q/2), 23 times at 0.999; above: e^(2 acosh ...).
     EXPECT_EQ(worst < 0.05, factor < 1) << factor << ' ' << worst;

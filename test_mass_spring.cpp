@@ -171,7 +171,7 @@ TEST_F(MassSpring, WritesPositionsInTheOrderInWhichTheyWereRead) {
   const std::vector<Point> rows_of_points = grid_points(side);
   for (unsigned i = 0; i < n; ++i) points[number(i)] = rows_of_points[i];
   for (const Point& p : points)
-    for (const double& a : p)
+    for (const Real& a : p)
       nodes += CME212::to_text(a) + (&a == &p.z ? "\n" : " ");
   for (const Quad& q : grid_quads(side))
     for (const unsigned& i : q)

@@ -56,7 +56,7 @@ void build_simply(Cloth& g, const Shape& s, Mesh mesh) {
     for (const Quad& q : s.quads)
       if (mesh == Mesh::diagonals || a + b != 3)
         g.add_edge(n[q[a]], n[q[b]],
-                   {100, norm(s.points[q[a]] - s.points[q[b]])});
+                   {100, Real(norm(s.points[q[a]] - s.points[q[b]]))});
 }
 
 /** Whether the two look the same to whoever asks by index. */

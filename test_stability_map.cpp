@@ -51,7 +51,7 @@ TEST(StretchedSheet, IsAtRestAndHasTheFrequencyOfAMembrane) {
   for (double stretch : {1.05, 1.5, 2.5}) {
     Start s(stretched_sheet(9, Mesh::plain, stretch, 0));
     std::vector<Point> f(s.cloth.node_slots());
-    s.force.add_to(s.cloth, 0, f);
+    Sweep()(s.cloth, 0, s.force, f);
     s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
     for (const Point& p : f) EXPECT_LT(norm(p), 1e-11);
     EXPECT_NEAR(SharpOmega()(s.cloth, s.force, s.constraint, 80),

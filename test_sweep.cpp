@@ -246,8 +246,31 @@ TEST_F(SweepTest, DriftAndKickAreTheirFormulas) {
   }
 }
 
-// ------------------------------------------------------------------ the
-// stencil
+// ------------------------------------------------------------------- precision
+
+TEST(Precision, IsThatOfRealInAllThatAClothHolds) {
+  EXPECT_EQ(sizeof(Point), 3 * sizeof(Real));
+  EXPECT_EQ(sizeof(NodeData), 4 * sizeof(Real));
+  EXPECT_EQ(sizeof(EdgeData), 2 * sizeof(Real));
+  EXPECT_EQ(lanes::width * sizeof(Real), 64u);
+  EXPECT_EQ(Point(0.1).x, Real(0.1));
+  EXPECT_EQ((0.1 * Point(1)).z, Real(0.1));
+}
+
+// 0.1 added up a hundred thousand times in float is off by a thousandth.
+TEST(Precision, SumsOverNodesAreInDouble) {
+  constexpr unsigned n = 100000;
+  const double tenth = Real(0.1);
+  Cloth g;
+  for (unsigned i = 0; i < n; ++i)
+    g.add_node(Point(0, 0, 3), {Point(1, 0, 0), Real(0.1)});
+  EXPECT_NEAR(total_mass(g), n * tenth, 1e-6);
+  EXPECT_NEAR(kinetic_energy(g), n * tenth / 2, 1e-6);
+  EXPECT_NEAR(gravitational_energy(g, 2), n * tenth * 6, 1e-5);
+  EXPECT_NEAR(center_of_mass(g).z, 3, 1e-6);
+}
+
+// ----------------------------------------------------------------- the stencil
 
 /** Every (node, neighbor, edge) that the rows name, springs of a node to itself
  * left out; and that they name none twice. */

@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 
 #include "Failure.hpp"
+#include "Precision.hpp"
 #include "Problem.hpp"
 
 namespace fs = std::filesystem;
@@ -45,9 +46,9 @@ TEST(Problem, ExactSolutionsStartAsTheClothAndObeyItsForces) {
     auto before = p.exact(t - h), now = p.exact(t), after = p.exact(t + h);
     std::copy(now.begin(), now.end(), s.cloth.positions().begin());
     std::vector<Point> f(s.cloth.node_slots());
-    s.force.add_to(s.cloth, t, f);
+    Sweep()(s.cloth, t, s.force, f);
     s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
-    for (unsigned i = 0; i < f.size(); ++i) {
+    for (unsigned i = 0; i < now.size(); ++i) {
       Point a = (after[i] - 2 * now[i] + before[i]) / (h * h);
       EXPECT_LT(norm(a - f[i] / s.cloth.node_values()[i].mass), 1e-3)
           << name << " node " << i;
@@ -438,6 +439,82 @@ TEST_F(WorkPrecision, WritesHowEachMethodFails) {
   }
 }
 
+// ---------------------------------------------------------------- precision
+
+std::vector<Problem> small_problems() {
+  std::vector<Problem> two = {grid_problem("small", "", 0.1, 5),
+                              problem("tear")};
+  two[1].build = two[0].build, two[1].t_end = 0.1;
+  return two;
+}
+std::string ends_of(const std::vector<Problem>& problems) {
+  std::ostringstream out;
+  write_ends(problems, out);
+  return out.str();
+}
+
+TEST(Precision, TheSameRunsInTheSamePrecisionAreNotApart) {
+  const auto problems = small_problems();
+  const auto all = compare_ends(problems, ends_of(problems), "ends");
+  ASSERT_EQ(all.size(), 12u);
+  for (const Compared& c : all) {
+    EXPECT_EQ(c.distance, 0) << c.scene << ' ' << c.method << ' ' << c.steps;
+    EXPECT_NEAR(c.dt * double(c.steps), 0.1, 1e-15);
+  }
+}
+
+// One node of 25 moved by 1e-5 m: 1e-5/sqrt(25).
+TEST(Precision, TheDistanceIsTheRmsOverTheNodes) {
+  const auto problems = small_problems();
+  std::string text = ends_of(problems);
+  const auto end = text.find('\n'), last = text.rfind(' ', end) + 1;
+  const double z = std::stod(text.substr(last, end - last)) + 1e-5;
+  text.replace(last, end - last, CME212::to_text(z));
+  const auto all = compare_ends(problems, text, "ends");
+  EXPECT_NEAR(all[0].distance, 2e-6, 1e-10);
+  EXPECT_EQ(all[1].distance, 0);
+  std::ostringstream out;
+  write_compared({all[0], {"small", "verlet", Norm::positions, .1, 1, 3e-6}},
+                 out);
+  EXPECT_NE(out.str().find("# single precision floor small: 2e-06 m\n"),
+            std::string::npos)
+      << out.str();
+}
+
+TEST(Precision, RefusesWhatIsNoEnd) {
+  const auto problems = small_problems();
+  std::string text = ends_of(problems);
+  auto refused = [&](const std::string& wrong, const std::string& message) {
+    try {
+      compare_ends(problems, wrong, "ends");
+      ADD_FAILURE() << message << ": taken";
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos)
+          << e.what();
+    }
+  };
+  refused("\n", "ends:1: no end of a run");
+  refused("nowhere" + text.substr(5), "ends:1: no end of a run");
+  refused("small magic 5 1 0 0 0", "ends:1: no end of a run");
+  refused("small verlet 0 1 0 0 0", "ends:1: no end of a run");
+  refused("small verlet 9 1 0 0 0 1 2 3", "ends:1: 1 positions, expected 25");
+  refused(text.replace(text.find('\n') + 1, 5, "large"), "ends:2: ");
+}
+
+// What is drawn is there for every scene, and of the size of float's round-off:
+// half of its epsilon is 6e-8, of a cloth of 1 m; contact magnifies it.
+TEST(Precision, TheChartsHaveTheFloorOfEachScene) {
+  const std::string text = contents("charts/float_floor.csv");
+  for (const Problem& p : make_problems()) {
+    const std::string head = "# single precision floor " + p.name + ": ";
+    const auto at = text.find(head);
+    ASSERT_NE(at, std::string::npos) << p.name;
+    const double floor = std::stod(text.substr(at + head.size()));
+    EXPECT_GT(floor, 1e-8) << p.name;
+    EXPECT_LT(floor, p.norm == Norm::positions ? 1e-4 : 1e-3) << p.name;
+  }
+}
+
 // Each method has a section in docs/methods.md, and there the picture.
 TEST_F(WorkPrecision, DocumentsShowHowEachMethodFails) {
   const std::string text = contents("docs/methods.md");
@@ -466,6 +543,8 @@ TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   refused("--nodes none --tets none", "none:0: can't be opened");
   refused("--energy --grid-refinement", "--grid-refinement");
   refused("--energy --failures", "--energy");
+  refused("--ends --floor none", "--floor");
+  refused("--floor none", "none:0: can't be opened");
   refused("--t-end -1", "--t-end is -1, expected a positive time [s]");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }

@@ -6,6 +6,8 @@
  *   ./work_precision --quick --scenes grid0,chain --methods verlet,pefrl
  *   ./work_precision --grid-refinement     ./work_precision --energy
  *   ./work_precision --failures --out charts/failures.csv
+ *   build/float/work_precision --ends --out ends.csv
+ *   ./work_precision --floor ends.csv --out charts/float_floor.csv
  *
  * The columns: charts/README.md. Exit status: 0 done; 2 an option or an input
  * that can't be used, or an output that can't be written. */
@@ -23,6 +25,7 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "Failure.hpp"
+#include "Precision.hpp"
 #include "Problem.hpp"
 #include "Report.hpp"
 
@@ -39,7 +42,8 @@ struct Options {
   std::string nodes, tets, out;
   double t_end = 0.25;
   int repeats = 7;
-  bool grid_refinement = false, energy = false, failures = false;
+  bool grid_refinement = false, energy = false, failures = false, ends = false;
+  std::string floor;  // file of ends
   bool quick = false, quiet = false;
 };
 
@@ -356,9 +360,21 @@ int parse(int argc, char** argv, Options& o) {
   auto* energies =
       app.add_flag("--energy", o.energy, "energy against time instead")
           ->excludes(grid);
-  app.add_flag("--failures", o.failures, "how each method fails instead")
+  auto* failures =
+      app.add_flag("--failures", o.failures, "how each method fails instead")
+          ->excludes(grid)
+          ->excludes(energies);
+  auto* ends = app.add_flag("--ends", o.ends, "where runs end instead")
+                   ->excludes(grid)
+                   ->excludes(energies)
+                   ->excludes(failures);
+  app.add_option("--floor", o.floor,
+                 "how far the ends in a file, written by --ends of a build "
+                 "with REAL=float, are from those here instead")
       ->excludes(grid)
-      ->excludes(energies);
+      ->excludes(energies)
+      ->excludes(failures)
+      ->excludes(ends);
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   try {
     app.parse(argc, argv);
@@ -402,6 +418,14 @@ void run(Options o) {
     energy(chosen, out);
   else if (o.failures)
     show_failures(chosen, file && !o.quiet, out);
+  else if (o.ends)
+    write_ends(problems, out);
+  else if (!o.floor.empty())
+    write_compared(
+        compare_ends(problems,
+                     mesh_detail::read_file(o.floor, "a file of ends"),
+                     o.floor),
+        out);
   else
     work_precision(problems, chosen, o, out, progress);
   if (file) file->commit();

@@ -14,6 +14,9 @@ mkdir -p "$to"
 
 . charts/draw.sh
 
+build/float/work_precision --ends --out build/ends.txt \
+  ${SCENE:+--scenes "$SCENE"}
+./work_precision --floor build/ends.txt --out "$to/float_floor.csv"
 csv=$to/work_precision.csv
 ./work_precision ${options[@]+"${options[@]}"} --out "$csv" \
   ${SCENE:+--scenes "$SCENE"}

@@ -55,6 +55,19 @@ threads() {
       build/tsan/test_sweep --gtest_filter='*Thread*:*Parts*'
 }
 
+# Single precision: the sweeps, a run, and how far it ends from double.
+single() {
+  make_all build/float/test_sweep build/float/mass_spring \
+    build/float/work_precision REAL=float VIEWER=0 O=build/float/ &&
+    build/float/test_sweep &&
+    build/float/mass_spring data/grid1.nodes data/grid1.tets --headless \
+      --dt auto &&
+    build/float/work_precision --ends --scenes chain --out build/ends.txt &&
+    ./work_precision --floor build/ends.txt --out build/float_floor.csv &&
+    awk -F, '$1 == "chain" {++n; if ($5 < 1e-8 || $5 > 1e-4) bad = 1}
+      END {exit n != 6 || bad}' build/float_floor.csv
+}
+
 tests=$(make -s print-tests)
 step tree          tools/check_tree.sh
 step includes      tools/check_includes.sh
@@ -77,6 +90,7 @@ done
 step nodes-by-clang++ build/clang/test_nodes
 step edges-by-clang++ build/clang/test_edges
 step threads       threads
+step single        single
 step window        tools/test_window.sh
 step grids         same_grids
 step readme        tools/check_readme.sh

@@ -47,6 +47,7 @@ Failure            : Problem
 Growth             : Limits
 peers/contenders   : Integrator
 Report             : CME212/Util
+Precision          : Problem Report
 Bench              : Report Sweep CME212/OutputFile
 Screen             : Scene CME212/Image CME212/SDLViewer
 mass_spring        = Cloth Force Constraint Integrator
