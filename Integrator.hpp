@@ -147,25 +147,42 @@ struct KickBlocks {
                                                   unsigned blocks, Real h) {
     using namespace lanes;
     for (unsigned b = 0; b < blocks; ++b) {
-      Real* v = &node[b * width].vel.x;
+      Real* row = &node[b * width].vel.x;
       const Real* f = &force[b * width].x;
       const Lanes f0 = load(f), f1 = load(f + width), f2 = load(f + 2 * width);
-      kick(v, with_fourth<0>(f0, f1, f2), h);
-      kick(v + width, with_fourth<1>(f0, f1, f2), h);
-      kick(v + 2 * width, with_fourth<2>(f0, f1, f2), h);
-      kick(v + 3 * width, with_fourth<3>(f0, f1, f2), h);
+      const Lanes v0 = load(row), v1 = load(row + width),
+                  v2 = load(row + 2 * width), v3 = load(row + 3 * width);
+      const Lanes per_f = h / first_halves(masses(v0, v1), masses(v2, v3));
+      store(row, v0 + spread<0>(per_f) * with_fourth<0>(f0, f1, f2));
+      store(row + width, v1 + spread<1>(per_f) * with_fourth<1>(f0, f1, f2));
+      store(row + 2 * width,
+            v2 + spread<2>(per_f) * with_fourth<2>(f0, f1, f2));
+      store(row + 3 * width,
+            v3 + spread<3>(per_f) * with_fourth<3>(f0, f1, f2));
     }
   }
-  /** The same for a row of v m v m ..., and as long a row of f ? f ? ... */
-  [[gnu::always_inline]] static inline void kick(Real* row,
-                                                 const lanes::Lanes& f,
-                                                 Real h) {
-    using namespace lanes;
-    const Lanes vm = load(row);
-    const Lanes m = shuffle(vm, vm, [](int k) { return k | 3; });
-    const Lanes per_f = shuffle(
-        h / m, Lanes{}, [](int k) { return k % 4 < 3 ? k : width + k; });
-    store(row, vm + per_f * f);
+
+ private:
+  using Lanes = lanes::Lanes;
+  static constexpr int width = lanes::width;
+
+  /** The masses in two rows of v v v m v v v m ..., in the first half. */
+  [[gnu::always_inline]] static inline Lanes masses(const Lanes& a,
+                                                    const Lanes& b) {
+    return lanes::shuffle(a, b,
+                          [](int k) { return k < width / 2 ? 4 * k + 3 : 0; });
+  }
+  [[gnu::always_inline]] static inline Lanes first_halves(const Lanes& a,
+                                                          const Lanes& b) {
+    return lanes::shuffle(
+        a, b, [](int k) { return k < width / 2 ? k : k + width / 2; });
+  }
+  /** Part @a part of a0 a0 a0 0 a1 a1 a1 0 ... */
+  template <int part>
+  [[gnu::always_inline]] static inline Lanes spread(const Lanes& a) {
+    return lanes::shuffle(a, Lanes{}, [](int k) {
+      return k % 4 < 3 ? (part * width + k) / 4 : width;
+    });
   }
 };
 
