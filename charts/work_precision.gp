@@ -31,9 +31,9 @@ floor_at = number('!n++ {print $11}')
 norm = system(rows('!n++ {print $12}'))
 # The floor of single precision, in a file beside csv.
 single_csv = csv[1:strlen(csv) - strlen('work_precision.csv')].'float_floor.csv'
-single = system(sprintf("sed -n 's/^# single precision floor %s: //p' %s", \
-  scene, single_csv))
-single_at = real('0'.single)
+single = system(sprintf("sed -n 's/e-0/e-/; ".\
+  "s/^# single precision floor %s: //p' %s", scene, single_csv))
+eval 'single_at = '.(strlen(single) ? word(single, 1) : '0')
 worst = number('$13 == "ok" && $10 > e {e = $10} END {print e}')
 bottom = 10 ** floor(log10(floor_at) - 0.3)
 top = 10 ** (ceil(log10(worst > 1e3 ? 1e3 : worst)) + 0.2)
@@ -81,8 +81,11 @@ do for [panel = 1:2] {
   if (single_at > 0) {
     set arrow 5 from graph 0, first single_at to graph 1, first single_at \
       nohead lc rgb '#555555' dt 3 lw 1.4
-    set label 5 'single precision: '.single at graph 0.99, first single_at \
-      right offset 0, 0.5 font small textcolor rgb '#333333' front
+    # Below its line, unless that of the floor is there.
+    set label 5 panel == 1 ? 'single precision: '.single : '' \
+      at graph 0.01, first single_at left \
+      offset 0, (single_at > 2 * floor_at ? -0.7 : 0.5) \
+      font small textcolor rgb '#333333' front
   }
   diverged_there = col == 7 ? diverged : diverged_timed
   failed_there = col == 7 ? stopped : stopped_timed
