@@ -5,6 +5,7 @@
  * all positions, and of the velocities that of n only. */
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <typeinfo>
@@ -272,9 +273,15 @@ class FunctionForce : public ZeroForce {
  public:
   explicit FunctionForce(F f) : f_(std::move(f)) {}
   Point operator()(Node n, double t) const override { return f_(n, t); }
+  /** By one thread at a time: a functor of the assignment may keep a state. */
+  void add_to(const Part& part, double t, std::span<Point> f) const override {
+    const std::lock_guard lock(one_at_a_time);
+    ZeroForce::add_to(part, t, f);
+  }
 
  private:
   mutable F f_;  // a functor of the assignment need not be const
+  static inline std::mutex one_at_a_time;
 };
 
 /** The sum of several forces. Copies share the forces they are made of. */

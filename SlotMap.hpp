@@ -394,7 +394,7 @@ using Array = typename decltype(array_of<T>())::type;
 /** Counts what changes a graph; each graph in a range of its own, a copy too.
  */
 struct Version {
-  std::uint64_t number = next.fetch_add(std::uint64_t(1) << 40);
+  std::uint64_t number = next.fetch_add(std::uint64_t(1) << 36);
   Version() = default;
   Version(const Version&) : Version() {}
   void operator++() { ++number; }

@@ -3,6 +3,9 @@
  * Sweep: the forces on all nodes of a cloth, a part at a time, by as many
  * threads as OpenMP has (OMP_NUM_THREADS, or --threads). */
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <exception>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,17 +41,28 @@ class Sweep {
   static constexpr unsigned part_size = 1024;
   static_assert(part_size % ClothStencil::width == 0);
 
-  /** Call @a use(part) for parts that make up the cloth, several at once. */
+  /** Call @a use(part) for parts that make up the cloth, several at once.
+   * Throws what @a use throws, the first of it, when all are done. */
   template <typename Use>
   void parts(const Cloth& g, Use use) {
     update(g);
+    std::exception_ptr error;
     const int count = int((g.node_slots() + part_size - 1) / part_size);
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) if (count > 1)
 #endif
-    for (int k = 0; k < count; ++k)
-      use(Part{g, *stencil_, unsigned(k) * part_size,
-               std::min(unsigned(k + 1) * part_size, g.node_slots())});
+    for (int k = 0; k < count; ++k) {
+      try {
+        use(Part{g, *stencil_, unsigned(k) * part_size,
+                 std::min(unsigned(k + 1) * part_size, g.node_slots())});
+      } catch (...) {  // no exception may leave a thread
+#ifdef _OPENMP
+#pragma omp critical(sweep_error)
+#endif
+        if (!error) error = std::current_exception();
+      }
+    }
+    if (error) std::rethrow_exception(error);
   }
 
   /** All forces on @a g into @a f, by node id; removed nodes feel none. Then

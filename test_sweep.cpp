@@ -7,6 +7,7 @@
 #include <atomic>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -203,6 +204,33 @@ TEST_F(SweepTest, ThreadsDoNotChangeABit) {
       EXPECT_TRUE(run(*method, threads) == one) << threads << " threads";
     }
   }
+}
+
+TEST_F(SweepTest, FunctionsNeedNotBeFitForThreads) {
+  Cloth g;
+  make_random(g, 5000, 0);
+  Sweep::set_threads(3);
+  int calls = 0;
+  const auto force = make_combined_force([&calls](Node, double) {
+    ++calls;
+    return Point(1, 2, 3);
+  });
+  std::vector<Point> f;
+  Sweep()(g, 0, force, f);
+  EXPECT_EQ(calls, 5000);
+  EXPECT_EQ(f[4999], Point(1, 2, 3));
+}
+
+TEST_F(SweepTest, ThreadsLetExceptionsThrough) {
+  Cloth g;
+  make_random(g, 5000, 0);
+  Sweep::set_threads(3);
+  const auto force = make_combined_force([](Node n, double) -> Point {
+    if (n.index() % 2000 == 1999) throw std::range_error("no force");
+    return {};
+  });
+  std::vector<Point> f;
+  EXPECT_THROW(Sweep()(g, 0, force, f), std::range_error);
 }
 
 TEST_F(SweepTest, PartsMakeUpTheCloth) {
