@@ -120,7 +120,7 @@ using Best = ByEigen;
 namespace cholesky_detail {
 
 // The three coordinates in one register, and a lane to spare.
-typedef double Four __attribute__((vector_size(32)));
+typedef double Four __attribute__((vector_size(32), aligned(32)));
 struct Row {
   Four c;
 };

@@ -23,9 +23,11 @@
 namespace lanes {
 
 /** Numbers in a vector: 8 doubles, or 16 floats. A processor with shorter
- * registers takes several for it. */
+ * registers takes several for it. Aligned by hand, as vectors are elsewhere:
+ * what a compiler takes for granted depends on the processor it compiles for.
+ */
 inline constexpr int width = 64 / sizeof(Real);
-typedef Real Lanes __attribute__((vector_size(64)));
+typedef Real Lanes __attribute__((vector_size(64), aligned(64)));
 
 // -------------------------------------------------------------- Which machine
 
@@ -61,8 +63,9 @@ template <typename Kernel, typename... Args>
 }
 #endif
 
-/** Kernel::apply(args...), compiled for this processor. The results of two
- * kinds of processor differ by round-off. */
+/** Kernel::apply(args...), compiled for this processor. Each lane does what
+ * plain code does, in the same order: with -ffp-contract=off, as the Makefile
+ * has it, the results are the same on all of them, bit by bit. */
 template <typename Kernel, typename... Args>
 void run(const Args&... args) {
 #ifdef __x86_64__
@@ -126,7 +129,8 @@ template <int count, int stride, int parts>
 [[gnu::always_inline]] inline auto collect(const Real* from,
                                            const unsigned* at) {
   if constexpr (parts == 1) {
-    typedef Real Piece __attribute__((vector_size(count * sizeof(Real))));
+    constexpr int size = count * sizeof(Real);
+    typedef Real Piece __attribute__((vector_size(size), aligned(size)));
     Piece a;
     std::memcpy(&a, from + std::size_t(stride) * at[0], sizeof a);
     return a;

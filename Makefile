@@ -33,7 +33,8 @@ eigen   := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 2>/dev/n
 cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
   -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null \
   >/dev/null 2>&1 && echo -DMASS_SPRING_CHOLMOD))
-flags    = -std=c++20 -g -Wall -Wextra -fno-math-errno \
+# No product and sum in one rounding: the same bits on every processor.
+flags    = -std=c++20 -g -Wall -Wextra -fno-math-errno -ffp-contract=off \
            $(if $(filter 1,$(OPENMP)),-fopenmp) -pthread -I. $(eigen) $(cholmod) \
            $(if $(filter-out double,$(REAL)),-DREAL=$(REAL)) \
            $(if $(filter test_% example_%,$*),$(testing),$(release)) \

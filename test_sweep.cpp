@@ -206,6 +206,17 @@ TEST_F(SweepTest, ThreadsDoNotChangeABit) {
   }
 }
 
+TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
+  Verlet verlet;
+  lanes::cpu = Cpu::plain;
+  const auto plain = run(verlet, 1);
+  for (Cpu cpu : all_cpus()) {
+    lanes::cpu = cpu;
+    verlet.restart();
+    EXPECT_TRUE(run(verlet, 1) == plain) << int(cpu);
+  }
+}
+
 TEST_F(SweepTest, FunctionsNeedNotBeFitForThreads) {
   Cloth g;
   make_random(g, 5000, 0);

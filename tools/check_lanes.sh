@@ -15,7 +15,7 @@ kernel() {  # COMPILER CPU
                unsigned n, Point* f) {
       lanes::run<force_detail::SpringSweep>(s, x, e, 0u, n, f);
     }' |
-    "$1" -std=c++20 -O3 -DNDEBUG -fno-math-errno -I. -x c++ -S -o - - |
+    "$1" -std=c++20 -O3 -DNDEBUG -fno-math-errno -ffp-contract=off -I. -x c++ -S -o - - |
     sed -n "/^_Z.*on_$2.*SpringSweep.*:/,/^[[:space:]]*\.cfi_endproc/p"
 }
 
