@@ -394,6 +394,33 @@ std::vector<Figure> figures() {
   constraint("floor", [](Cloth&) { return PlaneConstraint(); });
   constraint("ball", [](Cloth&) { return SphereConstraint(); });
   constraint("ball that tears", [](Cloth&) { return TearConstraint(); });
+  // From the text of two files to a cloth.
+  add({"loading: text to numbers", "", [](unsigned n) -> Make {
+         std::string nodes, tets;
+         for (const Point& p : grid_points(n))
+           nodes += CME212::to_text(p.x) + ' ' + CME212::to_text(p.y) + " 0\n";
+         for (const Quad& q : grid_quads(n)) {
+           for (unsigned i : q) tets += std::to_string(i) + ' ';
+           tets += '\n';
+         }
+         return [nodes, tets] {
+           const auto points = parse_points(nodes, "nodes");
+           benchmark::DoNotOptimize(parse_quads(tets, "tets", points.size()));
+         };
+       }});
+  for (bool shuffled : {false, true})
+    add({shuffled ? "loading: build_cloth(), shuffled"
+                  : "loading: build_cloth()",
+         "", [shuffled](unsigned n) -> Make {
+           auto points = grid_points(n);
+           auto quads = grid_quads(n);
+           if (shuffled) shuffle(points, quads);
+           return [points, quads] {
+             Cloth g;
+             build_cloth(g, points, quads, Mesh::diagonals);
+             benchmark::DoNotOptimize(g.num_edges());
+           };
+         }});
   add({"new stencil", "springs: sweep", [](unsigned n) -> Make {
          return [&g = cloth(n, Kind::grid)] {
            benchmark::DoNotOptimize(ClothStencil(g));

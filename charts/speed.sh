@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # make speed: what a step costs on this machine, in double and in single
-# precision, to charts/MACHINE/: bench.json, bench-float.json, a line for each
-# step in history.csv and a picture of that.
+# precision, to charts/MACHINE/: the tables, bench.txt and bench-float.txt, and
+# the same as JSON; a line for each step in history.csv, and a picture of that.
 #   charts/speed.sh [BENCH BENCH_FLOAT]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.
@@ -12,8 +12,10 @@ machine=$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1 |
   tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
 folder=charts/${machine:-unknown}
 mkdir -p "$folder"
-"${1:-build/native/bench}" --json "$folder/bench.json"
-"${2:-build/float/bench}" --filter 'step: ' --json "$folder/bench-float.json"
+"${1:-build/native/bench}" --json "$folder/bench.json" |
+  tee "$folder/bench.txt"
+"${2:-build/float/bench}" --filter 'step: ' --json "$folder/bench-float.json" |
+  tee "$folder/bench-float.txt"
 
 history=$folder/history.csv
 [ -e "$history" ] || echo 'date,commit,real,nodes,step,ratio' >"$history"
