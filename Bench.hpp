@@ -110,6 +110,7 @@ class Bench {
                  << "\",\n \"real\": \""
                  << (sizeof(Real) == 8 ? "double" : "float")
                  << "\",\n \"figures\": [";
+    out.stream().precision(10);
     const char* separator = "\n  ";
     for (const Figure& f : figures_) {
       const Spread s = seconds(f.group, f.name);

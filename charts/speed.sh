@@ -22,8 +22,8 @@ history=$folder/history.csv
 commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
 for file in "$folder/bench.json" "$folder/bench-float.json"; do
   real=$(sed -n 's/^ "real": "\(.*\)",$/\1/p' "$file")
-  sed -n 's/.*"name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)", "items": \([0-9e+]*\),.*"ratio": \([0-9.e-]*\).*/\2,"\1",\3/p' \
-    "$file" | while read -r row; do
+  sed -n 's/.*"name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)", "items": \([0-9]*\),.*"ratio": \([0-9.e-]*\).*/\2,\1,\3/p' \
+    "$file" | sed 's/, mixed/ mixed/' | while read -r row; do
     echo "$(date +%F),$commit,$real,$row"
   done
 done >>"$history"
