@@ -172,11 +172,6 @@ struct KickBlocks {
     return lanes::shuffle(a, b,
                           [](int k) { return k < width / 2 ? 4 * k + 3 : 0; });
   }
-  [[gnu::always_inline]] static inline Lanes first_halves(const Lanes& a,
-                                                          const Lanes& b) {
-    return lanes::shuffle(
-        a, b, [](int k) { return k < width / 2 ? k : k + width / 2; });
-  }
   /** Part @a part of a0 a0 a0 0 a1 a1 a1 0 ... */
   template <int part>
   [[gnu::always_inline]] static inline Lanes spread(const Lanes& a) {

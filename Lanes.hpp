@@ -112,6 +112,17 @@ template <typename Pick>
   return shuffle(a, b, pick, std::make_index_sequence<width>());
 }
 
+/** The first half of @a a, and then that of @a b; and the second halves. */
+[[gnu::always_inline]] inline Lanes first_halves(const Lanes& a,
+                                                 const Lanes& b) {
+  return shuffle(a, b, [](int k) { return k < width / 2 ? k : k + width / 2; });
+}
+[[gnu::always_inline]] inline Lanes second_halves(const Lanes& a,
+                                                  const Lanes& b) {
+  return shuffle(
+      a, b, [](int k) { return k < width / 2 ? k + width / 2 : k + width; });
+}
+
 /** A vector twice as long: @a a and then @a b. */
 template <typename A, std::size_t... k>
 [[gnu::always_inline]] inline auto join(const A& a, const A& b,
@@ -206,11 +217,9 @@ template <int part>
     return k < width / 2 ? 4 * k : 4 * (k - width / 2) + 1;
   };
   auto z = [](int k) { return k < width / 2 ? 4 * k + 2 : 0; };
-  auto low = [](int k) { return k < width / 2 ? k : k + width / 2; };
-  auto high = [](int k) { return k < width / 2 ? k + width / 2 : k + width; };
   const Lanes xy_ab = shuffle(a, b, xy), xy_cd = shuffle(c, d, xy);
-  return {shuffle(xy_ab, xy_cd, low), shuffle(xy_ab, xy_cd, high),
-          shuffle(shuffle(a, b, z), shuffle(c, d, z), low)};
+  return {first_halves(xy_ab, xy_cd), second_halves(xy_ab, xy_cd),
+          first_halves(shuffle(a, b, z), shuffle(c, d, z))};
 }
 
 /** Part @a part of the points a, b, c, with a number of no meaning after each:

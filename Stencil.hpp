@@ -18,7 +18,7 @@
  * data one after the other. The other rows list their neighbors.
  *
  * It holds topology only, and must be made anew when that has changed.
- * Memory: 16 bytes a row, and 8 W more for each row that lists its neighbors.
+ * Memory: 12 bytes a row, and 8 W more for each row that lists its neighbors.
  * @tparam W nodes a block */
 template <int W>
 class Stencil {
@@ -35,7 +35,6 @@ class Stencil {
     size_type list;        ///< where in neighbors() and edges()
   };
 
-  Stencil() = default;
   /** The stencil of @a g.  O(node_slots() + edges) */
   template <typename G>
   explicit Stencil(const G& g) : slots_(g.node_slots()) {

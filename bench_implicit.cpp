@@ -7,13 +7,12 @@
  *
  * Steps and sweeps take turns, so that another program on the machine slows
  * both down: `sweeps` is how many of these a step costs. */
-#include <benchmark/benchmark.h>
-
 #include <chrono>
 #include <map>
 #include <optional>
 #include <vector>
 
+#include "Bench.hpp"
 #include "Implicit.hpp"
 
 namespace {
@@ -96,8 +95,5 @@ BENCHMARK(solve)->Arg(50)->Arg(100)->Arg(316)->Apply(settings);
 }  // namespace
 
 int main(int argc, char** argv) {
-  Sweep::set_threads(1);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
+  return bench::main_of_registered(argc, argv);
 }

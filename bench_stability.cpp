@@ -7,10 +7,9 @@
  *
  * At 100 steps between two sharp estimates, an estimate of n sweeps costs
  * n/100 of a sweep a step; the guard looks at every 32nd step. */
-#include <benchmark/benchmark.h>
-
 #include <vector>
 
+#include "Bench.hpp"
 #include "Stability.hpp"
 
 namespace {
@@ -82,8 +81,5 @@ BENCHMARK(guard_look)->Apply(settings);
 }  // namespace
 
 int main(int argc, char** argv) {
-  Sweep::set_threads(1);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
+  return bench::main_of_registered(argc, argv);
 }
