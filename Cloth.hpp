@@ -62,8 +62,8 @@ inline constexpr bool is_corner(const Point& p) {
 template <typename T>
 [[gnu::always_inline]] inline T spring_pull(const T& lengthSq, const T& K,
                                             const T& L) {
-  using lanes::max, lanes::sqrt, std::max, std::sqrt;
-  const T l = sqrt(max(lengthSq, T{} + std::numeric_limits<Real>::min()));
+  using lanes::sqrt, std::sqrt;
+  const T l = sqrt(lengthSq + std::numeric_limits<Real>::min());
   return K * (l - L) / l;
 }
 

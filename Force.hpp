@@ -173,7 +173,11 @@ namespace force_detail {
 
 /** The springs of blocks [first, last) of a stencil, each seen from both of its
  * ends: no two nodes write to the same place, and square roots are cheap when
- * many are taken side by side. */
+ * many are taken side by side.
+ * @tparam early Ask for what listed rows name some blocks before it is used, as
+ *         no processor can foresee it: twice as fast if it comes from memory,
+ *         slower if a cache has it. */
+template <bool early>
 struct SpringSweep {
   [[gnu::always_inline]] static inline void apply(const ClothStencil& stencil,
                                                   const Point* position,
@@ -181,8 +185,12 @@ struct SpringSweep {
                                                   unsigned first, unsigned last,
                                                   Point* f) {
     using namespace lanes;
+    constexpr unsigned ahead = 4;  // blocks
     for (unsigned b = first; b < last; ++b) {
       const unsigned id = b * width;
+      if (early && b + ahead < stencil.num_blocks())
+        for (const auto& row : stencil.rows(b + ahead))
+          if (row.offset == 0) ask_for(stencil, row, position, spring);
       const Points x = stencil.is_full(b)
                            ? load(position + id)
                            : gather(position, stencil.last_block());
@@ -204,6 +212,14 @@ struct SpringSweep {
       add(f + (id - first * width), sum);
     }
   }
+  [[gnu::always_inline]] static inline void ask_for(
+      const ClothStencil& stencil, const ClothStencil::Row& row,
+      const Point* position, const EdgeData* spring) {
+    for (int k = 0; k < lanes::width; ++k) {
+      __builtin_prefetch(position + stencil.neighbors(row)[k]);
+      __builtin_prefetch(spring + stencil.edges(row)[k]);
+    }
+  }
 };
 
 }  // namespace force_detail
@@ -211,6 +227,9 @@ struct SpringSweep {
 /** The springs of all edges, each by its own K and L: see spring_pull(). */
 class MassSpringForce : public ZeroForce {
  public:
+  /** What of a cache one core can count on [bytes]. Measured: docs/speed.md */
+  static constexpr std::size_t cache = 2 << 20;
+
   Point operator()(Node n, double /*t*/) const override {
     Point f;
     for (Edge e : n.edges())
@@ -220,9 +239,16 @@ class MassSpringForce : public ZeroForce {
   void add_to(const Part& part, double /*t*/,
               std::span<Point> f) const override {
     constexpr unsigned width = ClothStencil::width;
-    lanes::run<force_detail::SpringSweep>(
-        part.stencil, part.g.positions().data(), part.g.edge_values().data(),
-        part.first / width, (part.last + width - 1) / width, f.data());
+    auto sweep = [&]<bool early>(std::bool_constant<early>) {
+      lanes::run<force_detail::SpringSweep<early>>(
+          part.stencil, part.g.positions().data(), part.g.edge_values().data(),
+          part.first / width, (part.last + width - 1) / width, f.data());
+    };
+    const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > cache;
+    if (is_large && 2 * part.stencil.num_listed() > part.stencil.num_rows())
+      sweep(std::true_type());
+    else
+      sweep(std::false_type());
   }
   double energy(const Cloth& g) const override { return elastic_energy(g); }
   /** One call an edge, in the order of their ids: see spring_stiffness(). */

@@ -83,9 +83,6 @@ void run(const Args&... args) {
   for (int k = 0; k < width; ++k) root[k] = std::sqrt(a[k]);
   return root;
 }
-[[gnu::always_inline]] inline Lanes max(const Lanes& a, const Lanes& b) {
-  return a > b ? a : b;
-}
 
 // ------------------------------------------------------------ Loads and moves
 
@@ -123,6 +120,17 @@ template <typename Pick>
       a, b, [](int k) { return k < width / 2 ? k + width / 2 : k + width; });
 }
 
+/** Of every two numbers of @a a the first one, and then that of @a b; and the
+ * second ones. */
+[[gnu::always_inline]] inline Lanes even_numbers(const Lanes& a,
+                                                 const Lanes& b) {
+  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k : width + k - 1; });
+}
+[[gnu::always_inline]] inline Lanes odd_numbers(const Lanes& a,
+                                                const Lanes& b) {
+  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k + 1 : width + k; });
+}
+
 /** A vector twice as long: @a a and then @a b. */
 template <typename A, std::size_t... k>
 [[gnu::always_inline]] inline auto join(const A& a, const A& b,
@@ -135,8 +143,8 @@ template <typename A>
 }
 
 /** A vector of @a parts pieces of @a count numbers each: piece k lies at
- * @a from + stride at[k]. */
-template <int count, int stride, int parts>
+ * @a from + stride at[every k]. */
+template <int count, int stride, int every, int parts>
 [[gnu::always_inline]] inline auto collect(const Real* from,
                                            const unsigned* at) {
   if constexpr (parts == 1) {
@@ -147,8 +155,8 @@ template <int count, int stride, int parts>
     return a;
   } else {
     constexpr int half = parts / 2;
-    return join(collect<count, stride, half>(from, at),
-                collect<count, stride, half>(from, at + half));
+    return join(collect<count, stride, every, half>(from, at),
+                collect<count, stride, every, half>(from, at + every * half));
   }
 }
 
@@ -206,20 +214,20 @@ template <int part>
  * @pre there is one more number behind each of them: it is read, too */
 [[gnu::always_inline]] inline Points gather(const Point* from,
                                             const unsigned* at) {
-  constexpr int quarter = width / 4;
+  // Four numbers a point, and every fourth point in a vector: what moves within
+  // a quarter of a register is cheap to move.
   const Real* first = &from->x;
-  const Lanes a = collect<4, 3, quarter>(first, at);
-  const Lanes b = collect<4, 3, quarter>(first, at + quarter);
-  const Lanes c = collect<4, 3, quarter>(first, at + 2 * quarter);
-  const Lanes d = collect<4, 3, quarter>(first, at + 3 * quarter);
-  // The x of half of the points, and then the y.
-  auto xy = [](int k) {
-    return k < width / 2 ? 4 * k : 4 * (k - width / 2) + 1;
-  };
-  auto z = [](int k) { return k < width / 2 ? 4 * k + 2 : 0; };
-  const Lanes xy_ab = shuffle(a, b, xy), xy_cd = shuffle(c, d, xy);
-  return {first_halves(xy_ab, xy_cd), second_halves(xy_ab, xy_cd),
-          first_halves(shuffle(a, b, z), shuffle(c, d, z))};
+  const Lanes a = collect<4, 3, 4, width / 4>(first, at);
+  const Lanes b = collect<4, 3, 4, width / 4>(first, at + 1);
+  const Lanes c = collect<4, 3, 4, width / 4>(first, at + 2);
+  const Lanes d = collect<4, 3, 4, width / 4>(first, at + 3);
+  // x and z of two points, of which there are four: x x z z x x z z ...
+  const Lanes xz_ab = even_numbers(a, b), xz_cd = even_numbers(c, d);
+  const Lanes y_ab = odd_numbers(a, b), y_cd = odd_numbers(c, d);
+  auto first_two = [](int k) { return k % 4 < 2 ? k : width + k - 2; };
+  auto last_two = [](int k) { return k % 4 < 2 ? k + 2 : width + k; };
+  return {shuffle(xz_ab, xz_cd, first_two), shuffle(y_ab, y_cd, first_two),
+          shuffle(xz_ab, xz_cd, last_two)};
 }
 
 /** Part @a part of the points a, b, c, with a number of no meaning after each:
@@ -258,9 +266,9 @@ struct Pairs {
 /** The pairs at from + 2 at[0], ... */
 [[gnu::always_inline]] inline Pairs gather_pairs(const Real* from,
                                                  const unsigned* at) {
-  constexpr int half = width / 2;
-  return split(collect<2, 2, half>(from, at),
-               collect<2, 2, half>(from, at + half));
+  const Lanes a = collect<2, 2, 2, width / 2>(from, at);
+  const Lanes b = collect<2, 2, 2, width / 2>(from, at + 1);
+  return {even_numbers(a, b), odd_numbers(a, b)};
 }
 
 }  // namespace lanes

@@ -217,6 +217,36 @@ TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
   }
 }
 
+// Large cloths without constant offsets are swept by another kernel.
+TEST_F(SweepTest, AskingEarlyDoesNotChangeABit) {
+  using force_detail::SpringSweep;
+  for (unsigned nodes : {1u, 16u, 33u, 100u, 1500u}) {
+    Cloth g;
+    make_random(g, nodes, 4 * nodes);
+    const ClothStencil stencil(g);
+    const auto sum = [&]<bool early>(std::bool_constant<early>) {
+      std::vector<Point> f(stencil.num_blocks() * lanes::width);
+      lanes::run<SpringSweep<early>>(stencil, g.positions().data(),
+                                     g.edge_values().data(), 0u,
+                                     stencil.num_blocks(), f.data());
+      return f;
+    };
+    for (Cpu cpu : all_cpus()) {
+      lanes::cpu = cpu;
+      EXPECT_TRUE(sum(std::true_type()) == sum(std::false_type())) << nodes;
+    }
+  }
+}
+
+// As many springs as no cache holds, so that the force takes that kernel.
+TEST_F(SweepTest, EqualsTheForcesNodeByNodeOnALargeCloth) {
+  Cloth g;
+  make_random(g, 20000, 300000);
+  ASSERT_GT(g.edge_slots() * sizeof(EdgeData), MassSpringForce::cache);
+  Sweep sweep;
+  EXPECT_LT(worst(g, sweep), round_off);
+}
+
 TEST_F(SweepTest, FunctionsNeedNotBeFitForThreads) {
   Cloth g;
   make_random(g, 5000, 0);

@@ -13,7 +13,7 @@ kernel() {  # COMPILER CPU
   echo '#include "Force.hpp"
     void sweep(const ClothStencil& s, const Point* x, const EdgeData* e,
                unsigned n, Point* f) {
-      lanes::run<force_detail::SpringSweep>(s, x, e, 0u, n, f);
+      lanes::run<force_detail::SpringSweep<false>>(s, x, e, 0u, n, f);
     }' |
     "$1" -std=c++20 -O3 -DNDEBUG -fno-math-errno -ffp-contract=off -I. -x c++ -S -o - - |
     sed -n "/^_Z.*on_$2.*SpringSweep.*:/,/^[[:space:]]*\.cfi_endproc/p"
