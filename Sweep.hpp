@@ -46,15 +46,23 @@ class Sweep {
   template <typename Use>
   void parts(const Cloth& g, Use use) {
     update(g);
+    const unsigned slots = g.node_slots();
+    const int count = int((slots + part_size - 1) / part_size);
+    const auto part = [&](int k) {
+      const unsigned first = unsigned(k) * part_size;
+      return Part{g, *stencil_, first, std::min(first + part_size, slots)};
+    };
+    if (count == 1) {  // calling a team takes longer than a step of 100 nodes
+      use(part(0));
+      return;
+    }
     std::exception_ptr error;
-    const int count = int((g.node_slots() + part_size - 1) / part_size);
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) if (count > 1)
+#pragma omp parallel for schedule(static)
 #endif
     for (int k = 0; k < count; ++k) {
       try {
-        use(Part{g, *stencil_, unsigned(k) * part_size,
-                 std::min(unsigned(k + 1) * part_size, g.node_slots())});
+        use(part(k));
       } catch (...) {  // no exception may leave a thread
 #ifdef _OPENMP
 #pragma omp critical(sweep_error)

@@ -274,6 +274,23 @@ TEST_F(SweepTest, ThreadsLetExceptionsThrough) {
   EXPECT_THROW(Sweep()(g, 0, force, f), std::range_error);
 }
 
+// A team costs more than a step of a small cloth, even if one thread is all.
+TEST_F(SweepTest, AClothOfOnePartIsSweptWithoutATeam) {
+#ifdef _OPENMP
+  Sweep::set_threads(2);
+  for (unsigned nodes : {Sweep::part_size, Sweep::part_size + 1}) {
+    Cloth g;
+    make_random(g, nodes, 0);
+    std::atomic<int> parts = 0, level = 0;
+    Sweep().parts(g, [&](const Part&) { ++parts, level = omp_get_level(); });
+    EXPECT_EQ(parts, nodes == Sweep::part_size ? 1 : 2);
+    EXPECT_EQ(level, nodes == Sweep::part_size ? 0 : 1);
+  }
+#else
+  GTEST_SKIP() << "built without OpenMP";
+#endif
+}
+
 TEST_F(SweepTest, PartsMakeUpTheCloth) {
   for (unsigned nodes : {0u, 1u, 1023u, 1024u, 1025u, 5000u}) {
     Cloth g;
