@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # make speed: what a step costs on this machine, in double and in single
 # precision, to charts/MACHINE/: the tables, bench.txt and bench-float.txt, and
-# the same as JSON; a line for each step in history.csv, and a picture of that.
+# the same as JSON; lines of this commit in history.csv, and a picture of that.
 #   charts/speed.sh [BENCH BENCH_FLOAT]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.
@@ -17,16 +17,18 @@ mkdir -p "$folder"
 "${2:-build/float/bench}" --filter 'step: ' --json "$folder/bench-float.json" |
   tee "$folder/bench-float.txt"
 
+# A commit that was measured before gets its lines anew.
 history=$folder/history.csv
 [ -e "$history" ] || echo 'date,commit,real,nodes,step,ratio' >"$history"
-commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
 for file in "$folder/bench.json" "$folder/bench-float.json"; do
+  commit=$(sed -n 's/.*# commit: \([^;]*\);.*/\1/p' "$file")
   real=$(sed -n 's/^ "real": "\(.*\)",$/\1/p' "$file")
+  sed -i "/^[^,]*,$commit,$real,/d" "$history"
   sed -n 's/.*"name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)", "items": \([0-9]*\),.*"ratio": \([0-9.e-]*\).*/\2,\1,\3/p' \
     "$file" | sed 's/, mixed/ mixed/' | while read -r row; do
     echo "$(date +%F),$commit,$real,$row"
-  done
-done >>"$history"
+  done >>"$history"
+done
 
 for kind in svg png; do
   gnuplot -e "csv='$history'; out='$folder/history'; kind='$kind'; \
