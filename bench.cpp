@@ -5,6 +5,7 @@
  *   make bench CXXFLAGS=-march=native && taskset -c 0 ./bench
  *   ./bench --json FILE           the table for programs as well
  *   ./bench --filter step         only what has this in its name
+ *   charts/counts.sh              instructions in place of nanoseconds
  *   make bench REAL=float O=build/float/    single precision, beside the same
  *                                           loop over doubles
  *
@@ -433,7 +434,7 @@ std::vector<Figure> figures() {
 
 int main(int argc, char** argv) {
   std::string json, filter;
-  int repetitions = 9;
+  int repetitions = 9, calls = 0;
   bool small = false;
   CLI::App app("What a step costs, and each layer of it: docs/speed.md");
   app.add_option("--json", json, "write the table to this file")
@@ -444,8 +445,18 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_flag("--small", small, "10^4 nodes only");
+  app.add_option("--calls", calls, "only call that often what has this name");
+  app.add_option("--cpu", lanes::cpu, "0 plain, 1 AVX2, 2 AVX-512, if it can")
+      ->check(CLI::Range(0, int(lanes::best_cpu())));
   CLI11_PARSE(app, argc, argv);
 
+  if (calls > 0) {  // for a program that counts instructions: charts/counts.sh
+    Sweep::set_threads(1);
+    for (const Figure& f : figures())
+      if (auto call = f.name == filter ? f.make(100) : nullptr)
+        for (int k = 0; k < calls; ++k) call();
+    return 0;
+  }
   bench::Bench all;
   const char* triads = "triad, three arrays of doubles";
   Triad near(1 << 19), far(std::size_t(192) << 20);

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# How many instructions a figure of bench takes for a node, of 10,000: a table
+# of Markdown. Counted by callgrind, which must be installed (apt-get install
+# valgrind), and does not know AVX-512.
+#   make bench && charts/counts.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+counted() {  # CALLS FIGURE [OPTION...]
+  valgrind --tool=callgrind --callgrind-out-file=/dev/null \
+    ./bench --small --calls "$1" --filter "${@:2}" 2>&1 |
+    sed -n 's/.*Collected : //p'
+}
+row() {  # NAME FIGURE [OPTION...]: 10 calls after the first one
+  echo "$1 $(counted 1 "${@:2}") $(counted 11 "${@:2}")" |
+    awk '{n = ($NF - $(NF - 1)) / 1e5; NF -= 2; printf "| %s | %.1f |\n", $0, n}'
+}
+
+echo '| 10,000 nodes with diagonals | instructions a node |'
+echo '|---|---|'
+for figure in 'step: flat arrays' 'step: symp_euler_step(), functor' \
+  'step: symp_euler_step(), forces' 'springs: flat arrays' \
+  'springs: Node and Edge' 'springs: virtual call a node' \
+  'springs: adjacency alone' 'springs: edge values alone'; do
+  row "$figure" "$figure"
+done
+for figure in 'step: SymplecticEuler' 'step: SymplecticEuler, mixed' \
+  'springs: sweep' 'part: gravity' 'part: drag' 'part: drift'; do
+  row "$figure, plain" "$figure" --cpu 0
+  row "$figure, AVX2" "$figure" --cpu 1
+done
