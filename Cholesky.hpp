@@ -142,6 +142,7 @@ struct Block {
  *   columns, the inverse of the diagonal in it; then each panel by columns
  * @param r the rows of all panels */
 struct Forward {
+  template <typename>  // four numbers at a time, whatever the processor
   [[gnu::always_inline]] static inline void apply(const Block* block,
                                                   const Block* end,
                                                   const double* e, const int* r,
@@ -167,6 +168,7 @@ struct Forward {
 
 /** x = L^-T x, backwards through the same memory, from its ends. */
 struct Backward {
+  template <typename>  // four numbers at a time, whatever the processor
   [[gnu::always_inline]] static inline void apply(const Block* begin,
                                                   const Block* block,
                                                   const double* e, const int* r,

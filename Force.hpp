@@ -107,31 +107,32 @@ namespace force_detail {
 
 /** f.z -= m gravity for @a blocks of lanes::width nodes. */
 struct Weight {
+  template <typename V>
   [[gnu::always_inline]] static inline void apply(const NodeData* node,
                                                   Point* force, unsigned blocks,
                                                   Real gravity) {
     using namespace lanes;
-    for (unsigned b = 0; b < blocks; ++b) {
-      const Real* row = &node[b * width].vel.x;
-      Real* f = &force[b * width].x;
-      const Lanes r0 = load(row), r1 = load(row + width),
-                  r2 = load(row + 2 * width), r3 = load(row + 3 * width);
-      store(f, load(f) - gravity * masses<0>(r0, r1));
-      store(f + width, load(f + width) - gravity * masses<1>(r1, r2));
-      store(f + 2 * width, load(f + 2 * width) - gravity * masses<2>(r2, r3));
+    constexpr int w = count_of<V>;
+    for (unsigned i = 0; i < blocks * width; i += w) {
+      const Real* row = &node[i].vel.x;
+      Real* f = &force[i].x;
+      const V r0 = load<V>(row), r1 = load<V>(row + w),
+              r2 = load<V>(row + 2 * w), r3 = load<V>(row + 3 * w);
+      store(f, load<V>(f) - gravity * masses<0>(r0, r1));
+      store(f + w, load<V>(f + w) - gravity * masses<1>(r1, r2));
+      store(f + 2 * w, load<V>(f + 2 * w) - gravity * masses<2>(r2, r3));
     }
   }
   /** Part @a part of 0 0 m 0 0 m ... from two rows of v v v m v v v m ... */
-  template <int part>
-  [[gnu::always_inline]] static inline lanes::Lanes masses(
-      const lanes::Lanes& a, const lanes::Lanes& b) {
-    using namespace lanes;
-    const Lanes m = shuffle(a, b, [](int k) {
-      return 4 * ((part * width + k) / 3) + 3 - part * width;
+  template <int part, typename V>
+  [[gnu::always_inline]] static inline V masses(const V& a, const V& b) {
+    constexpr int w = lanes::count_of<V>;
+    const V m = lanes::shuffle(a, b, [](int k) {
+      const int place = part * w + k;
+      return place % 3 == 2 ? 4 * (place / 3) + 3 - part * w : 0;
     });
-    return shuffle(m, Lanes{}, [](int k) {
-      return (part * width + k) % 3 == 2 ? k : width + k;
-    });
+    return lanes::shuffle(
+        m, V{}, [](int k) { return (part * w + k) % 3 == 2 ? k : w + k; });
   }
 };
 
@@ -179,6 +180,7 @@ namespace force_detail {
  *         slower if a cache has it. */
 template <bool early>
 struct SpringSweep {
+  template <typename V>
   [[gnu::always_inline]] static inline void apply(const ClothStencil& stencil,
                                                   const Point* position,
                                                   const EdgeData* spring,
@@ -187,29 +189,32 @@ struct SpringSweep {
     using namespace lanes;
     constexpr unsigned ahead = 4;  // blocks
     for (unsigned b = first; b < last; ++b) {
-      const unsigned id = b * width;
       if (early && b + ahead < stencil.num_blocks())
         for (const auto& row : stencil.rows(b + ahead))
           if (row.offset == 0) ask_for(stencil, row, position, spring);
-      const Points x = stencil.is_full(b)
-                           ? load(position + id)
-                           : gather(position, stencil.last_block());
-      Points sum;
-      for (const auto& row : stencil.rows(b)) {
-        const Points y = row.offset != 0
-                             ? load(position + id + row.offset)
-                             : gather(position, stencil.neighbors(row));
-        const Pairs s = row.first_edge != stencil.none
-                            ? load_pairs(&spring[row.first_edge].K)
-                            : gather_pairs(&spring->K, stencil.edges(row));
-        const Lanes ux = y.x - x.x, uy = y.y - x.y, uz = y.z - x.z;
-        const Lanes pull =
-            spring_pull<Lanes>(ux * ux + uy * uy + uz * uz, s.first, s.second);
-        sum.x += pull * ux;
-        sum.y += pull * uy;
-        sum.z += pull * uz;
+      for (int k = 0; k < width; k += count_of<V>) {  // once, if V is as long
+        const Point* here = position + (b * width + k);
+        const Points<V> x = stencil.is_full(b)
+                                ? load_points<V>(here)
+                                : gather<V>(position, stencil.last_block() + k);
+        Points<V> sum;
+        for (const auto& row : stencil.rows(b)) {
+          const Points<V> y =
+              row.offset != 0 ? load_points<V>(here + row.offset)
+                              : gather<V>(position, stencil.neighbors(row) + k);
+          const Pairs<V> s =
+              row.first_edge != stencil.none
+                  ? load_pairs<V>(&spring[row.first_edge + k].K)
+                  : gather_pairs<V>(&spring->K, stencil.edges(row) + k);
+          const V ux = y.x - x.x, uy = y.y - x.y, uz = y.z - x.z;
+          const V pull =
+              spring_pull<V>(ux * ux + uy * uy + uz * uz, s.first, s.second);
+          sum.x += pull * ux;
+          sum.y += pull * uy;
+          sum.z += pull * uz;
+        }
+        add(f + ((b - first) * width + k), sum);
       }
-      add(f + (id - first * width), sum);
     }
   }
   [[gnu::always_inline]] static inline void ask_for(

@@ -124,59 +124,61 @@ namespace integrator_detail {
 
 /** x += h v for @a blocks of lanes::width nodes. */
 struct DriftBlocks {
+  template <typename V>
   [[gnu::always_inline]] static inline void apply(Point* position,
                                                   const NodeData* node,
                                                   unsigned blocks, Real h) {
     using namespace lanes;
-    for (unsigned b = 0; b < blocks; ++b) {
-      Real* x = &position[b * width].x;
-      const Real* v = &node[b * width].vel.x;
-      const Lanes v0 = load(v), v1 = load(v + width), v2 = load(v + 2 * width),
-                  v3 = load(v + 3 * width);
-      store(x, load(x) + h * without_fourth<0>(v0, v1));
-      store(x + width, load(x + width) + h * without_fourth<1>(v1, v2));
-      store(x + 2 * width, load(x + 2 * width) + h * without_fourth<2>(v2, v3));
+    constexpr int w = count_of<V>;
+    for (unsigned i = 0; i < blocks * width; i += w) {
+      Real* x = &position[i].x;
+      const Real* v = &node[i].vel.x;
+      const V v0 = load<V>(v), v1 = load<V>(v + w), v2 = load<V>(v + 2 * w),
+              v3 = load<V>(v + 3 * w);
+      store(x, load<V>(x) + h * without_fourth<0>(v0, v1));
+      store(x + w, load<V>(x + w) + h * without_fourth<1>(v1, v2));
+      store(x + 2 * w, load<V>(x + 2 * w) + h * without_fourth<2>(v2, v3));
     }
   }
 };
 
 /** v += h f/m for @a blocks of lanes::width nodes. */
 struct KickBlocks {
+  template <typename V>
   [[gnu::always_inline]] static inline void apply(NodeData* node,
                                                   const Point* force,
                                                   unsigned blocks, Real h) {
     using namespace lanes;
-    for (unsigned b = 0; b < blocks; ++b) {
-      Real* row = &node[b * width].vel.x;
-      const Real* f = &force[b * width].x;
-      const Lanes f0 = load(f), f1 = load(f + width), f2 = load(f + 2 * width);
-      const Lanes v0 = load(row), v1 = load(row + width),
-                  v2 = load(row + 2 * width), v3 = load(row + 3 * width);
-      const Lanes per_f = h / first_halves(masses(v0, v1), masses(v2, v3));
+    constexpr int w = count_of<V>;
+    for (unsigned i = 0; i < blocks * width; i += w) {
+      Real* row = &node[i].vel.x;
+      const Real* f = &force[i].x;
+      const V f0 = load<V>(f), f1 = load<V>(f + w), f2 = load<V>(f + 2 * w);
+      const V v0 = load<V>(row), v1 = load<V>(row + w),
+              v2 = load<V>(row + 2 * w), v3 = load<V>(row + 3 * w);
+      const V per_f = h / first_halves(masses(v0, v1), masses(v2, v3));
       store(row, v0 + spread<0>(per_f) * with_fourth<0>(f0, f1, f2));
-      store(row + width, v1 + spread<1>(per_f) * with_fourth<1>(f0, f1, f2));
-      store(row + 2 * width,
-            v2 + spread<2>(per_f) * with_fourth<2>(f0, f1, f2));
-      store(row + 3 * width,
-            v3 + spread<3>(per_f) * with_fourth<3>(f0, f1, f2));
+      store(row + w, v1 + spread<1>(per_f) * with_fourth<1>(f0, f1, f2));
+      store(row + 2 * w, v2 + spread<2>(per_f) * with_fourth<2>(f0, f1, f2));
+      store(row + 3 * w, v3 + spread<3>(per_f) * with_fourth<3>(f0, f1, f2));
     }
   }
 
  private:
-  using Lanes = lanes::Lanes;
-  static constexpr int width = lanes::width;
-
   /** The masses in two rows of v v v m v v v m ..., in the first half. */
-  [[gnu::always_inline]] static inline Lanes masses(const Lanes& a,
-                                                    const Lanes& b) {
+  template <typename V>
+  [[gnu::always_inline]] static inline V masses(const V& a, const V& b) {
+    constexpr int w = lanes::count_of<V>;
     return lanes::shuffle(a, b,
-                          [](int k) { return k < width / 2 ? 4 * k + 3 : 0; });
+                          [](int k) { return k < w / 2 ? 4 * k + 3 : 0; });
   }
   /** Part @a part of a0 a0 a0 0 a1 a1 a1 0 ... */
-  template <int part>
-  [[gnu::always_inline]] static inline Lanes spread(const Lanes& a) {
-    return lanes::shuffle(a, Lanes{}, [](int k) {
-      return k % 4 < 3 ? (part * width + k) / 4 : width;
+  template <int part, typename V>
+  [[gnu::always_inline]] static inline V spread(const V& a) {
+    constexpr int w = lanes::count_of<V>;
+    return lanes::shuffle(a, V{}, [](int k) {
+      const int place = part * w + k;
+      return place % 4 < 3 ? place / 4 : w;
     });
   }
 };

@@ -6,9 +6,10 @@
  * processor it is plain code.
  *
  * A kernel is a struct with
- *   [[gnu::always_inline]] static inline void apply(...),
- * which calls only functions that are always inlined: code that is not, is
- * compiled for the plain processor. run<Kernel>(...) calls it. */
+ *   template <typename V> [[gnu::always_inline]] static inline void apply(...),
+ * V being Lanes of as many numbers as the registers of that processor hold. It
+ * calls only functions that are always inlined: code that is not, is compiled
+ * for the plain processor. run<Kernel>(...) calls it. */
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -22,12 +23,27 @@
 
 namespace lanes {
 
-/** Numbers in a vector: 8 doubles, or 16 floats. A processor with shorter
- * registers takes several for it. Aligned by hand, as vectors are elsewhere:
- * what a compiler takes for granted depends on the processor it compiles for.
- */
+/** Nodes a block: as many as the longest register has numbers, 8 doubles or 16
+ * floats. Where registers are shorter a block takes several. */
 inline constexpr int width = 64 / sizeof(Real);
-typedef Real Lanes __attribute__((vector_size(64), aligned(64)));
+
+namespace detail {
+template <int count>
+struct Vector {
+  static constexpr int bytes = count * sizeof(Real);
+  typedef Real type __attribute__((vector_size(bytes), aligned(bytes)));
+};
+}  // namespace detail
+
+/** @a count numbers in a register. Aligned by hand: what a compiler takes for
+ * granted depends on the processor it compiles for. Longer than the registers
+ * they would be right, but moved by way of memory, number by number. */
+template <int count>
+using Lanes = typename detail::Vector<count>::type;
+
+/** How many numbers a vector has. */
+template <typename V>
+inline constexpr int count_of = int(sizeof(V) / sizeof(Real));
 
 // -------------------------------------------------------------- Which machine
 
@@ -49,21 +65,21 @@ inline Cpu cpu = best_cpu();
 
 template <typename Kernel, typename... Args>
 void on_plain(const Args&... args) {
-  Kernel::apply(args...);
+  Kernel::template apply<Lanes<width / 4>>(args...);
 }
 #ifdef __x86_64__
 template <typename Kernel, typename... Args>
 [[gnu::target("avx2,fma")]] void on_avx2(const Args&... args) {
-  Kernel::apply(args...);
+  Kernel::template apply<Lanes<width / 2>>(args...);
 }
 template <typename Kernel, typename... Args>
 [[gnu::target("avx512f,avx512vl,avx512dq,fma")]] void on_avx512(
     const Args&... args) {
-  Kernel::apply(args...);
+  Kernel::template apply<Lanes<width>>(args...);
 }
 #endif
 
-/** Kernel::apply(args...), compiled for this processor. Each lane does what
+/** Kernel::apply<V>(args...), compiled for this processor. Each lane does what
  * plain code does, in the same order: with -ffp-contract=off, as the Makefile
  * has it, the results are the same on all of them, bit by bit. */
 template <typename Kernel, typename... Args>
@@ -78,57 +94,56 @@ void run(const Args&... args) {
 // ----------------------------------------------------------------- Arithmetic
 // + - * / and comparisons of Lanes are the compiler's.
 
-[[gnu::always_inline]] inline Lanes sqrt(const Lanes& a) {
-  Lanes root;
-  for (int k = 0; k < width; ++k) root[k] = std::sqrt(a[k]);
+template <typename V>
+[[gnu::always_inline]] inline V sqrt(const V& a) {
+  V root;
+  for (int k = 0; k < count_of<V>; ++k) root[k] = std::sqrt(a[k]);
   return root;
 }
 
 // ------------------------------------------------------------ Loads and moves
 
-[[gnu::always_inline]] inline Lanes load(const Real* from) {
-  Lanes a;
+template <typename V>
+[[gnu::always_inline]] inline V load(const Real* from) {
+  V a;
   std::memcpy(&a, from, sizeof a);
   return a;
 }
-[[gnu::always_inline]] inline void store(Real* to, const Lanes& a) {
+template <typename V>
+[[gnu::always_inline]] inline void store(Real* to, const V& a) {
   std::memcpy(to, &a, sizeof a);
 }
 
-/** Lane k of the result is lane pick(k) of @a a and @a b one after the other.
- * @param pick a lambda without captures */
-template <typename Pick, std::size_t... k>
-[[gnu::always_inline]] inline Lanes shuffle(const Lanes& a, const Lanes& b,
-                                            Pick pick,
-                                            std::index_sequence<k...>) {
+/** Number k of the result is number pick(k) of @a a and @a b one after the
+ * other.  @param pick a lambda without captures */
+template <typename V, typename Pick, std::size_t... k>
+[[gnu::always_inline]] inline V shuffle(const V& a, const V& b, Pick pick,
+                                        std::index_sequence<k...>) {
   return __builtin_shufflevector(a, b, pick(int(k))...);
 }
-template <typename Pick>
-[[gnu::always_inline]] inline Lanes shuffle(const Lanes& a, const Lanes& b,
-                                            Pick pick) {
-  return shuffle(a, b, pick, std::make_index_sequence<width>());
+template <typename V, typename Pick>
+[[gnu::always_inline]] inline V shuffle(const V& a, const V& b, Pick pick) {
+  return shuffle(a, b, pick, std::make_index_sequence<count_of<V>>());
 }
 
-/** The first half of @a a, and then that of @a b; and the second halves. */
-[[gnu::always_inline]] inline Lanes first_halves(const Lanes& a,
-                                                 const Lanes& b) {
-  return shuffle(a, b, [](int k) { return k < width / 2 ? k : k + width / 2; });
-}
-[[gnu::always_inline]] inline Lanes second_halves(const Lanes& a,
-                                                  const Lanes& b) {
-  return shuffle(
-      a, b, [](int k) { return k < width / 2 ? k + width / 2 : k + width; });
+/** The first half of @a a, and then that of @a b. */
+template <typename V>
+[[gnu::always_inline]] inline V first_halves(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return shuffle(a, b, [](int k) { return k < w / 2 ? k : k + w / 2; });
 }
 
 /** Of every two numbers of @a a the first one, and then that of @a b; and the
  * second ones. */
-[[gnu::always_inline]] inline Lanes even_numbers(const Lanes& a,
-                                                 const Lanes& b) {
-  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k : width + k - 1; });
+template <typename V>
+[[gnu::always_inline]] inline V even_numbers(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k : w + k - 1; });
 }
-[[gnu::always_inline]] inline Lanes odd_numbers(const Lanes& a,
-                                                const Lanes& b) {
-  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k + 1 : width + k; });
+template <typename V>
+[[gnu::always_inline]] inline V odd_numbers(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k + 1 : w + k; });
 }
 
 /** A vector twice as long: @a a and then @a b. */
@@ -148,9 +163,7 @@ template <int count, int stride, int every, int parts>
 [[gnu::always_inline]] inline auto collect(const Real* from,
                                            const unsigned* at) {
   if constexpr (parts == 1) {
-    constexpr int size = count * sizeof(Real);
-    typedef Real Piece __attribute__((vector_size(size), aligned(size)));
-    Piece a;
+    Lanes<count> a;
     std::memcpy(&a, from + std::size_t(stride) * at[0], sizeof a);
     return a;
   } else {
@@ -163,111 +176,125 @@ template <int count, int stride, int every, int parts>
 // ------------------------------------------------------------- Points, pairs
 
 /** Points side by side. */
+template <typename V>
 struct Points {
-  Lanes x = {}, y = {}, z = {};
+  V x = {}, y = {}, z = {};
 };
 
 /** Coordinate c of the points that a, b, c hold one after the other. */
-template <int coordinate>
-[[gnu::always_inline]] inline Lanes split(const Lanes& a, const Lanes& b,
-                                          const Lanes& c) {
-  const Lanes from_ab = shuffle(a, b, [](int k) {
+template <int coordinate, typename V>
+[[gnu::always_inline]] inline V split(const V& a, const V& b, const V& c) {
+  constexpr int w = count_of<V>;
+  const V from_ab = shuffle(a, b, [](int k) {
     const int place = 3 * k + coordinate;
-    return place < 2 * width ? place : 0;
+    return place < 2 * w ? place : 0;
   });
   return shuffle(from_ab, c, [](int k) {
     const int place = 3 * k + coordinate;
-    return place < 2 * width ? k : place - width;
+    return place < 2 * w ? k : place - w;
   });
 }
 
-/** The points at from[0], ..., from[width - 1]. */
-[[gnu::always_inline]] inline Points load(const Point* from) {
+/** The points at from[0], from[1], ... */
+template <typename V>
+[[gnu::always_inline]] inline Points<V> load_points(const Point* from) {
+  constexpr int w = count_of<V>;
   const Real* first = &from->x;
-  const Lanes a = load(first), b = load(first + width),
-              c = load(first + 2 * width);
+  const V a = load<V>(first), b = load<V>(first + w),
+          c = load<V>(first + 2 * w);
   return {split<0>(a, b, c), split<1>(a, b, c), split<2>(a, b, c)};
 }
 
 /** Part @a part of x0 y0 z0 x1 ... */
-template <int part>
-[[gnu::always_inline]] inline Lanes merged(const Points& p) {
-  const Lanes xy = shuffle(p.x, p.y, [](int k) {
-    const int place = part * width + k;
-    return place % 3 == 1 ? width + place / 3 : place / 3;
+template <int part, typename V>
+[[gnu::always_inline]] inline V merged(const Points<V>& p) {
+  constexpr int w = count_of<V>;
+  const V xy = shuffle(p.x, p.y, [](int k) {
+    const int place = part * w + k;
+    return place % 3 == 1 ? w + place / 3 : place / 3;
   });
   return shuffle(xy, p.z, [](int k) {
-    const int place = part * width + k;
-    return place % 3 == 2 ? width + place / 3 : k;
+    const int place = part * w + k;
+    return place % 3 == 2 ? w + place / 3 : k;
   });
 }
 
-/** Add to to[0], ..., to[width - 1]. */
-[[gnu::always_inline]] inline void add(Point* to, const Points& p) {
+/** Add to to[0], to[1], ... */
+template <typename V>
+[[gnu::always_inline]] inline void add(Point* to, const Points<V>& p) {
+  constexpr int w = count_of<V>;
   Real* first = &to->x;
-  store(first, load(first) + merged<0>(p));
-  store(first + width, load(first + width) + merged<1>(p));
-  store(first + 2 * width, load(first + 2 * width) + merged<2>(p));
+  store(first, load<V>(first) + merged<0>(p));
+  store(first + w, load<V>(first + w) + merged<1>(p));
+  store(first + 2 * w, load<V>(first + 2 * w) + merged<2>(p));
 }
 
-/** The points at from[at[0]], ..., from[at[width - 1]].
+/** The points at from[at[0]], from[at[1]], ...
  * @pre there is one more number behind each of them: it is read, too */
-[[gnu::always_inline]] inline Points gather(const Point* from,
-                                            const unsigned* at) {
-  // Four numbers a point, and every fourth point in a vector: what moves within
-  // a quarter of a register is cheap to move.
-  const Real* first = &from->x;
-  const Lanes a = collect<4, 3, 4, width / 4>(first, at);
-  const Lanes b = collect<4, 3, 4, width / 4>(first, at + 1);
-  const Lanes c = collect<4, 3, 4, width / 4>(first, at + 2);
-  const Lanes d = collect<4, 3, 4, width / 4>(first, at + 3);
-  // x and z of two points, of which there are four: x x z z x x z z ...
-  const Lanes xz_ab = even_numbers(a, b), xz_cd = even_numbers(c, d);
-  const Lanes y_ab = odd_numbers(a, b), y_cd = odd_numbers(c, d);
-  auto first_two = [](int k) { return k % 4 < 2 ? k : width + k - 2; };
-  auto last_two = [](int k) { return k % 4 < 2 ? k + 2 : width + k; };
-  return {shuffle(xz_ab, xz_cd, first_two), shuffle(y_ab, y_cd, first_two),
-          shuffle(xz_ab, xz_cd, last_two)};
+template <typename V>
+[[gnu::always_inline]] inline Points<V> gather(const Point* from,
+                                               const unsigned* at) {
+  constexpr int w = count_of<V>;
+  if constexpr (w < 4) {
+    const Point &p = from[at[0]], &q = from[at[1]];
+    return {V{p.x, q.x}, V{p.y, q.y}, V{p.z, q.z}};
+  } else {
+    // Four numbers a point, and every fourth point in a vector: what moves
+    // within a quarter of a register is cheap to move.
+    const Real* first = &from->x;
+    const V a = collect<4, 3, 4, w / 4>(first, at);
+    const V b = collect<4, 3, 4, w / 4>(first, at + 1);
+    const V c = collect<4, 3, 4, w / 4>(first, at + 2);
+    const V d = collect<4, 3, 4, w / 4>(first, at + 3);
+    // x and z of two points, of which there are four: x x z z x x z z ...
+    const V xz_ab = even_numbers(a, b), xz_cd = even_numbers(c, d);
+    const V y_ab = odd_numbers(a, b), y_cd = odd_numbers(c, d);
+    auto first_two = [](int k) { return k % 4 < 2 ? k : w + k - 2; };
+    auto last_two = [](int k) { return k % 4 < 2 ? k + 2 : w + k; };
+    return {shuffle(xz_ab, xz_cd, first_two), shuffle(y_ab, y_cd, first_two),
+            shuffle(xz_ab, xz_cd, last_two)};
+  }
 }
 
 /** Part @a part of the points a, b, c, with a number of no meaning after each:
  * four numbers a point. */
-template <int part>
-[[gnu::always_inline]] inline Lanes with_fourth(const Lanes& a, const Lanes& b,
-                                                const Lanes& c) {
-  constexpr int skip = part < 2 ? 0 : width;
+template <int part, typename V>
+[[gnu::always_inline]] inline V with_fourth(const V& a, const V& b,
+                                            const V& c) {
   return shuffle(part < 2 ? a : b, part < 2 ? b : c, [](int k) {
-    const int four = part * width + k;
+    constexpr int w = count_of<V>, skip = part < 2 ? 0 : w;
+    const int four = part * w + k;
     return 3 * (four / 4) + std::min(four % 4, 2) - skip;
   });
 }
 /** Part @a part of points, a row of three numbers each, from @a a and @a b:
  * parts @a part and @a part + 1 of rows of four. */
-template <int part>
-[[gnu::always_inline]] inline Lanes without_fourth(const Lanes& a,
-                                                   const Lanes& b) {
+template <int part, typename V>
+[[gnu::always_inline]] inline V without_fourth(const V& a, const V& b) {
   return shuffle(a, b, [](int k) {
-    const int three = part * width + k;
-    return 4 * (three / 3) + three % 3 - part * width;
+    constexpr int w = count_of<V>;
+    const int three = part * w + k;
+    return 4 * (three / 3) + three % 3 - part * w;
   });
 }
 
 /** Pairs of numbers side by side: all first ones, and all second ones. */
+template <typename V>
 struct Pairs {
-  Lanes first, second;
+  V first, second;
 };
-[[gnu::always_inline]] inline Pairs split(const Lanes& a, const Lanes& b) {
+template <typename V>
+[[gnu::always_inline]] inline Pairs<V> load_pairs(const Real* from) {
+  const V a = load<V>(from), b = load<V>(from + count_of<V>);
   return {shuffle(a, b, [](int k) { return 2 * k; }),
           shuffle(a, b, [](int k) { return 2 * k + 1; })};
 }
-[[gnu::always_inline]] inline Pairs load_pairs(const Real* from) {
-  return split(load(from), load(from + width));
-}
-/** The pairs at from + 2 at[0], ... */
-[[gnu::always_inline]] inline Pairs gather_pairs(const Real* from,
-                                                 const unsigned* at) {
-  const Lanes a = collect<2, 2, 2, width / 2>(from, at);
-  const Lanes b = collect<2, 2, 2, width / 2>(from, at + 1);
+/** The pairs at from + 2 at[0], from + 2 at[1], ... */
+template <typename V>
+[[gnu::always_inline]] inline Pairs<V> gather_pairs(const Real* from,
+                                                    const unsigned* at) {
+  const V a = collect<2, 2, 2, count_of<V> / 2>(from, at);
+  const V b = collect<2, 2, 2, count_of<V> / 2>(from, at + 1);
   return {even_numbers(a, b), odd_numbers(a, b)};
 }
 
