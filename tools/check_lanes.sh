@@ -1,22 +1,26 @@
 #!/usr/bin/env bash
 # The kernel of the springs is what docs/speed.md says: one vector square root
-# and one vector division for a register full of springs, and no scalar one. By
-# both compilers; for the plain processor by g++ only.
+# and one vector division for a register full of springs, and no scalar one; and
+# what is moved from lane to lane stays in registers, so no number is stored
+# alone: that takes several times as long as the rest. By both compilers; for
+# the plain processor, which stores some, by g++ only.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 [ "$(uname -m)" = x86_64 ] || exit 0
 passed=0 failed=0
 
-# What COMPILER makes of the kernel for CPU.
+# What COMPILER makes of the kernel for CPU; the plain one may be inlined.
 kernel() {  # COMPILER CPU
+  local name="on_$2.*SpringSweep"
+  [ "$2" != plain ] || name="(on_plain.*SpringSweep|5sweep)"
   echo '#include "Force.hpp"
     void sweep(const ClothStencil& s, const Point* x, const EdgeData* e,
                unsigned n, Point* f) {
       lanes::run<force_detail::SpringSweep<false>>(s, x, e, 0u, n, f);
     }' |
     "$1" -std=c++20 -O3 -DNDEBUG -fno-math-errno -ffp-contract=off -I. -x c++ -S -o - - |
-    sed -n "/^_Z.*on_$2.*SpringSweep.*:/,/^[[:space:]]*\.cfi_endproc/p"
+    sed -nE "/^_Z.*$name.*:/,/^[[:space:]]*\.cfi_endproc/p"
 }
 
 expect() {  # COMPILER CPU ROOT DIVISION REGISTER
@@ -24,10 +28,11 @@ expect() {  # COMPILER CPU ROOT DIVISION REGISTER
   text=$(kernel "$1" "$2")
   if grep -qE "[[:space:]]$3[[:space:]].*$5" <<<"$text" &&
     grep -qE "[[:space:]]$4[[:space:]].*$5" <<<"$text" &&
-    ! grep -qE '[[:space:]]v?(sqrt|div)sd[[:space:]]' <<<"$text"; then
+    ! grep -qE '[[:space:]]v?(sqrt|div)sd[[:space:]]' <<<"$text" &&
+    ! grep -qE '[[:space:]]vmov[slh]p?d[[:space:]]+%xmm[0-9]+, ' <<<"$text"; then
     passed=$((passed + 1))
   else
-    echo "$1 does not vectorize the springs for $2"
+    echo "$1 does not keep the springs in vectors for $2"
     failed=$((failed + 1))
   fi
 }
