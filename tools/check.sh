@@ -26,6 +26,7 @@ step() {  # NAME COMMAND...
   if [ "$ok" = 1 ]; then
     good=${good:-1} bad=0
     printf 'ok    %-22s %4d tests %4d s\n' "$name" "$good" $((SECONDS - from))
+    sed -n 's/^skipped: /      skipped: /p' "$log"
   else
     good=${good:-0} bad=${bad:-0}
     [ "$bad" != 0 ] || bad=1
@@ -43,6 +44,25 @@ same_grids() {
   local file
   for file in data/grid*.nodes data/grid*.tets; do
     [ "${file%.*}" = data/grid4 ] || cmp "$file" "build/grids/${file##*/}" || return 1
+  done
+}
+
+# What stands beside other libraries compiles, where these are installed.
+peers() {
+  local program out eigen
+  eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
+  for program in peers/*.cpp; do
+    # shellcheck disable=SC2086  # a list of words
+    if out=$(g++ -std=c++20 -Wall -Wextra -Werror -fopenmp -fsyntax-only -I. \
+      -isystem /usr/include/bullet $eigen "$program" 2>&1); then
+      echo "ok $program"
+    else
+      out=$(grep -m 1 'is missing: make peers-deps' <<<"$out" || echo "$out")
+      case $out in
+        *' missing: make peers-deps'*) echo "skipped: $program ${out##*error }" ;;
+        *) echo "$out"; return 1 ;;
+      esac
+    fi
   done
 }
 
@@ -79,6 +99,7 @@ step build-clang++ make_all all CXX=clang++ O=build/clang/ SANITIZE= \
   CXXFLAGS="-Werror -O0 -g0"
 step build-plain   make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/
 # clang++, whose OpenMP tells ThreadSanitizer what waits for what.
+step peers         peers
 step build-tsan    make_all build/tsan/test_viewer build/tsan/test_sweep \
   CXX=clang++ O=build/tsan/ SANITIZE=thread
 for test in $tests; do
