@@ -6,7 +6,7 @@
  *
  * Every library runs as its own manual suggests for such a problem; the time
  * of each run is measured in turn with all others, REPEATS times. A library
- * calls our sweep through a copy of the positions, a few per cent of a sweep.
+ * calls our sweep through a copy of the positions, which is 15 % of a sweep.
  */
 #if !__has_include(<boost/numeric/odeint.hpp>) || \
     !__has_include(<cvode/cvode.h>) || !__has_include(<gsl/gsl_odeiv2.h>)
