@@ -36,6 +36,23 @@ step() {  # NAME COMMAND...
   passed=$((passed + good)) failed=$((failed + bad))
 }
 
+# Run a list of steps while others go on; joined() waits for it, and shows and
+# counts what it did.
+beside() {  # LIST
+  (
+    passed=0 failed=0
+    "$1"
+    echo "$passed $failed" >"$logs/beside.count"
+  ) >"$logs/beside.txt" &
+}
+joined() {
+  local good=0 bad=1
+  wait
+  cat "$logs/beside.txt"
+  read -r good bad <"$logs/beside.count"
+  passed=$((passed + good)) failed=$((failed + bad))
+}
+
 make_all() { make --no-print-directory -j"$jobs" "$@"; }
 
 # The committed grids are what make_grid makes.
@@ -102,6 +119,13 @@ step build-plain   make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/
 step peers         peers
 step build-tsan    make_all build/tsan/test_viewer build/tsan/test_sweep \
   CXX=clang++ O=build/tsan/ SANITIZE=thread
+# Tests use one core; these need nothing that was built.
+of_scripts() {
+  step checks      tools/test_checks.sh
+  step submit      tools/test_submit.sh
+  step deps        tools/test_deps.sh
+}
+beside of_scripts
 for test in $tests; do
   case $test in
     test_viewer | test_screen) step "$test" env ASAN_OPTIONS=detect_leaks=0 "./$test" ;;
@@ -119,9 +143,7 @@ step charts        make -s charts QUICK=1
 step stability     make -s stability QUICK=1
 step sweep         tools/test_sweep.sh
 step fuzz          make -s fuzz RUNS=100000
-step submit        tools/test_submit.sh
-step deps          tools/test_deps.sh
-step checks        tools/test_checks.sh
+joined
 
 echo "make check took $((SECONDS - started)) s"
 echo "$passed passed, $failed failed"
