@@ -410,6 +410,21 @@ TEST(Stencil, FindsTheConstantOffsetsOfAGrid) {
   }
 }
 
+// A line whose edges come in any order, so that no two nodes list their
+// neighbors alike; all but its two ends have both at a constant offset.
+TEST(Stencil, FindsConstantOffsetsInListsOfAnyOrder) {
+  Cloth g;
+  for (unsigned i = 0; i < 64; ++i) g.add_node(Point());
+  for (unsigned k = 0; k < 63; ++k)
+    g.add_edge(g.node(5 * k % 63), g.node(5 * k % 63 + 1));
+  const Stencil<8> s(g);
+  unsigned constant = 0;
+  for (unsigned b = 0; b < s.num_blocks(); ++b)
+    for (const auto& row : s.rows(b)) constant += row.offset != 0;
+  EXPECT_EQ(constant, 14u);
+  EXPECT_EQ(s.num_rows(), 16u);
+}
+
 TEST(Stencil, ListsTheEdgesOfAGridWhoseEdgesComeQuadByQuad) {
   const unsigned side = 64;
   Cloth g;
