@@ -96,8 +96,8 @@ void run(const Args&... args) {
 
 template <typename V>
 [[gnu::always_inline]] inline V sqrt(const V& a) {
-  V root;
-  for (int k = 0; k < count_of<V>; ++k) root[k] = std::sqrt(a[k]);
+  V root = a;
+  for (int k = 0; k < count_of<V>; ++k) root[k] = std::sqrt(root[k]);
   return root;
 }
 
