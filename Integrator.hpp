@@ -7,7 +7,6 @@
 #include <concepts>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -61,12 +60,6 @@ struct MethodInfo {
   bool adaptive = false;  ///< steps inside a step: dt does not bound them
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
-
-/** A step that can't be made: an iteration does not converge, an error
- * tolerance can't be met. what() says why. The cloth is then undefined. */
-struct StepError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /** A method: takes a cloth from t to t + dt, as often as it is called.
  *

@@ -30,6 +30,8 @@ Cloth              : Graph Order Lanes Stencil CME212/BoundingBox
 Force              : Cloth
 Sweep              : Force
 Constraint         : Cloth
+Obstacle           : Constraint
+SelfCollision      : Constraint
 Integrator         : Sweep Constraint
 RungeKutta         : Integrator
 Cholesky           : Lanes

@@ -1,0 +1,189 @@
+#pragma once
+/** @file Obstacle.hpp
+ * The constraints that scenes ask for beyond those of the assignment: walls and
+ * balls that may move and rub, pins that move, and edges that break.
+ *
+ * Where a node meets an obstacle that moves, only their relative velocity
+ * counts (constraint_detail::contact()). One difference to the assignment's
+ * plane and sphere, which take all of the normal velocity: here a node that is
+ * on its way out keeps it. */
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "Constraint.hpp"
+
+/** A way along a line: what moves so is at its start + way(t). */
+struct Motion {
+  Point velocity;  ///< [m/s], from t = 0 on
+  /** Stands still from then on [s], >= 0. */
+  double until = std::numeric_limits<double>::infinity();
+
+  /** [m] at time @a t [s] */
+  Point way(double t) const { return std::clamp(t, 0.0, until) * velocity; }
+  /** [m/s]; 0 while it stands */
+  Point velocity_at(double t) const {
+    return 0 <= t && t < until ? velocity : Point();
+  }
+};
+
+namespace constraint_detail {
+
+/** Node @a n is by @a depth [m] inside of what moves at @a velocity [m/s]. */
+inline void touch(Node n, double depth, const Point& out, const Point& velocity,
+                  double friction) {
+  const Contact c = contact(depth, out, n.value().vel - velocity, friction);
+  n.position() += c.way;
+  n.value().vel += c.kick;
+}
+
+}  // namespace constraint_detail
+
+/** Moves nodes along: at time t they are where they were when the pin was made
+ * + way(t). Steps see a held node: between two calls it stands, and the call
+ * moves it. So its velocity is 0, and to its neighbors it comes in jumps of
+ * dt times its speed, which should be much less than an edge is long.
+ * Removing a pinned node is fine: the pin goes on with the others.
+ * Complexity of a call: O(pins). */
+class MovingPinConstraint : public ZeroConstraint {
+ public:
+  /** @pre all @a nodes in one graph */
+  MovingPinConstraint(const std::vector<Node>& nodes, const Motion& motion)
+      : motion_(motion) {
+    for (Node n : nodes) pins_.push_back({n, n.position()});
+  }
+
+  void operator()(Cloth& g, double t) const override {
+    const Point way = motion_.way(t);
+    for (auto [n, start] : pins_)
+      if (g.has_node(n)) {
+        n.position() = start + way;
+        n.value().vel = Point();
+      }
+  }
+  void each_held(const Cloth& g, const NodeVisitor& use) const override {
+    for (const Pin& pin : pins_)
+      if (g.has_node(pin.node)) use(pin.node);
+  }
+
+ private:
+  struct Pin {
+    Node node;
+    Point start;
+  };
+  std::vector<Pin> pins_;
+  Motion motion_;
+};
+
+/** A half space that no node enters, bounded by a plane.
+ * @post no node lies below the plane by more than round-off; without friction,
+ * one that did lies at the nearest point of it. As to velocities, see
+ * constraint_detail::contact(). */
+class WallConstraint : public ZeroConstraint {
+ public:
+  /** @param at a point of the plane at t = 0 [m]
+   * @param normal out of the wall, of any length > 0
+   * @param friction coefficient, >= 0 */
+  WallConstraint(const Point& at, const Point& normal,
+                 const Motion& motion = {}, double friction = 0)
+      : at_(at),
+        normal_(normal / norm(normal)),
+        motion_(motion),
+        friction_(friction) {
+    assert(norm(normal) > 0 && friction >= 0);
+  }
+
+  void operator()(Cloth& g, double t) const override {
+    using namespace constraint_detail;
+    const Point at = at_ + motion_.way(t), velocity = motion_.velocity_at(t);
+    auto height = [&](const Point& p) { return dot(p - at, normal_); };
+    for_each_violating(
+        g, [&](const Point& p) { return height(p) < 0; },
+        [&](Node n) {
+          touch(n, -height(n.position()), normal_, velocity, friction_);
+        });
+  }
+
+ private:
+  Point at_, normal_;
+  Motion motion_;
+  double friction_;
+};
+
+/** A solid ball that may move. @post no node lies inside by more than
+ * round-off; without friction, one that did lies at the nearest point of the
+ * surface (the top one, if it was at the center). As to velocities, see
+ * constraint_detail::contact().
+ *
+ * A node that passes through a ball within a step is caught while the ball is
+ * at rest only. Who lets it move keeps steps so short that speed() + that of
+ * the nodes, times dt, stays well below the radius. */
+class BallConstraint : public ZeroConstraint {
+ public:
+  /** @param ball at t = 0   @param friction coefficient, >= 0 */
+  explicit BallConstraint(const Ball& ball, const Motion& motion = {},
+                          double friction = 0)
+      : ball_(ball), motion_(motion), friction_(friction) {
+    assert(friction >= 0);
+  }
+  /** Of the ball, while it moves [m/s]. */
+  double speed() const { return norm(motion_.velocity); }
+
+  void operator()(Cloth& g, double t) const override {
+    using namespace constraint_detail;
+    const Ball ball = {ball_.center + motion_.way(t), ball_.radius};
+    const Point velocity = motion_.velocity_at(t);
+    for_each_violating(
+        g, [&](const Point& p) { return ball.holds(p); },
+        [&](Node n) {
+          const Point from_center = n.position() - ball.center;
+          const double distance = norm(from_center);
+          const Point out =
+              distance > 0 ? from_center / distance : Point(0, 0, 1);
+          touch(n, ball.radius - distance, out, velocity, friction_);
+        });
+  }
+
+  std::optional<Point> entry(const Point& from,
+                             const Point& to) const override {
+    return speed() > 0 ? std::nullopt : ball_.entry(from, to);
+  }
+  double thinnest() const override {
+    return speed() > 0 ? ZeroConstraint::thinnest() : ball_.radius;
+  }
+
+ private:
+  Ball ball_;
+  Motion motion_;
+  double friction_;
+};
+
+/** Edges that break. @post no edge is longer than (1 + limit) times its rest
+ * length L. Nodes stay, also those without an edge: what hung on them falls.
+ * Invalidates: as Graph::remove_edge(), for each edge removed.
+ * Complexity: O(edges); the first removal as that of the graph. */
+class StrainConstraint : public ZeroConstraint {
+ public:
+  /** @param limit of the strain (length - L)/L, >= 0 */
+  explicit StrainConstraint(double limit) : most_(1 + limit) {
+    assert(limit >= 0);
+  }
+
+  void operator()(Cloth& g, double /*t*/) const override {
+    const auto x = g.positions();
+    for (unsigned e = 0; e < g.edge_slots(); ++e) {
+      const auto [i, j] = g.edge_ends()[e];
+      const double longest = most_ * g.edge_values()[e].L;
+      // A slot that is not in use has the length 0.
+      if (normSq(x[j] - x[i]) > longest * longest)
+        g.remove_edge(g.edge_with_id(e));
+    }
+  }
+
+ private:
+  double most_;
+};
