@@ -253,6 +253,8 @@ class CombinedConstraints : public ZeroConstraint {
   /** @pre no pointer is null */
   explicit CombinedConstraints(Constraints constraints)
       : constraints_(std::move(constraints)) {}
+  /** How many they are. */
+  std::size_t size() const { return constraints_.size(); }
 
   void operator()(Cloth& g, double t) const override {
     for (const auto& c : constraints_) (*c)(g, t);

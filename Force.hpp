@@ -321,6 +321,8 @@ class CombinedForces : public ZeroForce {
   using Forces = std::vector<std::shared_ptr<const ZeroForce>>;
   /** @pre no pointer is null */
   explicit CombinedForces(Forces forces) : forces_(std::move(forces)) {}
+  /** How many they are. */
+  std::size_t size() const { return forces_.size(); }
 
   Point operator()(Node n, double t) const override {
     Point f;

@@ -12,15 +12,12 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
+#include "Model.hpp"
 #include "Scene.hpp"
 
 /** What a run is asked for; see mass_spring --help. */
 struct Options {
-  std::string nodes, tets;
-  std::string method = "symplectic-euler";
-  std::string dt = "0.001";  // [s], or auto, or auto:sharp
-  Parameters with;
-  double t_end = 5;
+  Model model;
   double at = -1;  // time of the screenshot [s]; the end if negative
   double speed = 1;
   long long every = 10;
@@ -31,7 +28,7 @@ struct Options {
 
   /** True when a run that has come to time @a t is at its end: 5000 steps of
    * 0.001 s are 5 s, however that is rounded. */
-  bool at_end(double t) const { return t >= t_end * (1 - 1e-12); }
+  bool at_end(double t) const { return t >= model.t_end * (1 - 1e-12); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };
 
@@ -40,7 +37,7 @@ struct Options {
 class Progress {
  public:
   explicit Progress(const Options& o)
-      : on_(!o.quiet), bar_(isatty(STDERR_FILENO)), t_end_(o.t_end) {}
+      : on_(!o.quiet), bar_(isatty(STDERR_FILENO)), t_end_(o.model.t_end) {}
 
   void show(long long steps, double t) {
     if (!on_ || !(t > 0)) return;
@@ -141,6 +138,7 @@ class Run {
       out << ": no step is stable with " << method.name << " and no drag";
     }
     std::cout << out.str() << '\n';
+    warn_of_fast_balls();
     if (dt <= limit || sharp) return;
     out.str("mass_spring: warning: ");
     out.seekp(0, std::ios::end);
@@ -191,7 +189,7 @@ class Run {
   Energies energies() const {
     const Cloth& g = scene_.cloth();
     return {kinetic_energy(g), elastic_energy(g),
-            gravitational_energy(g, o_.with.gravity)};
+            gravitational_energy(g, o_.model.with.gravity)};
   }
 
   void start() {
@@ -222,6 +220,19 @@ class Run {
     std::cerr << "mass_spring: " << scene_.failure() << '\n';
   }
 
+  /** A ball that jumps over nodes pushes none of them. */
+  void warn_of_fast_balls() const {
+    for (const Obstacle& o : scene_.recipe().obstacles) {
+      const double way = norm(o.motion.velocity) * scene_.dt();
+      if (o.kind == Obstacle::Kind::ball && way > o.radius / 2)
+        std::cerr << "mass_spring: warning: --sphere moves " << way
+                  << " m a step, which is more than half of its radius, "
+                  << o.radius << " m: it may jump over nodes; a smaller dt "
+                  << "catches them: " << o.radius / 2 / norm(o.motion.velocity)
+                  << " s\n";
+    }
+  }
+
   void warn_of_missed() {
     warned_ = true;
     if (o_.quiet) return;
@@ -237,7 +248,7 @@ class Run {
 
   void print_summary() const {
     Energies e = energies();
-    std::cout << name_of(scene_.stage()) << ": " << scene_.steps()
+    std::cout << scene_.recipe().name << ": " << scene_.steps()
               << " steps to t = " << scene_.time() << " s in " << seconds_
               << " s; energy " << e.total() << " J = " << e.kinetic
               << " kinetic + " << e.elastic << " elastic + " << e.gravitational

@@ -1,117 +1,49 @@
 #pragma once
 /** @file Scene.hpp
- * Scene: a cloth with its forces, its constraints and a clock. The stages of
- * the assignment are scenes. */
+ * Scene: a cloth with its forces, its constraints and a clock, as a Recipe
+ * makes them. */
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "Cloth.hpp"
-#include "Constraint.hpp"
-#include "Force.hpp"
+#include "Compose.hpp"
 #include "Integrator.hpp"
 #include "Stability.hpp"
 
-/** The stages, by the section of the assignment. */
-enum class Stage {
-  problem1,     // 3.2  uniform springs, corners held by a zero force
-  diagonals,    // 4.2  each edge its own K and L, diagonals added
-  forces,       // 5.2  combined forces, corners skipped by the step
-  constraints,  // 6.2  pins, a floor and a ball
-  tear,         // 7.2  pins, a floor and a ball that tears
-};
-
-/** The name of a stage, as it is spelt above. */
-constexpr const char* name_of(Stage stage) {
-  constexpr const char* names[] = {"problem1", "diagonals", "forces",
-                                   "constraints", "tear"};
-  return names[static_cast<int>(stage)];
-}
-
-/** Who chooses the step. */
-enum class StepRule {
-  fixed,  // whoever made the scene
-  safe,   // safe_share of the limit in any shape, once
-  sharp,  // sharp_share of the limit in the present shape, looked at again
-          // every 100 steps; at most the limit in any shape
-};
-
-/** What a scene is made from besides its mesh. */
-struct Parameters {
-  double dt = 0.001;  ///< step [s], > 0; for StepRule::fixed
-  StepRule rule = StepRule::fixed;
-  double stiffness = 100;  ///< K of every spring [N/m], >= 0
-  double gravity = grav;   ///< [m/s^2]
-  double damping = 0;      ///< drag coefficient c [kg/s], >= 0
-};
-
-/** The constraint of a stage on @a g. The two first stages have none: there the
- * force holds the corners. In stage `forces` the assignment's step skips them;
- * a pin is the same for every method. */
-inline CombinedConstraints constraint_of(Stage stage, const Cloth& g) {
-  switch (stage) {
-    case Stage::problem1:
-    case Stage::diagonals:
-      return make_combined_constraints();
-    case Stage::forces:
-      return make_combined_constraints(PinConstraint(g));
-    case Stage::constraints:
-      return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                       SphereConstraint());
-    case Stage::tear:
-      break;
-  }
-  return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                   TearConstraint());
-}
-
-/** The force of a stage on @a g. */
-inline CombinedForces force_of(Stage stage, const Cloth& g,
-                               const Parameters& with) {
-  if (stage == Stage::problem1)
-    return make_combined_force(Problem1Force(
-        with.stiffness, g.num_edges() > 0 ? g.edge(0).value().L : 0,
-        with.gravity));
-  if (stage == Stage::diagonals)
-    return make_combined_force(Problem1Force(with.gravity));
-  return make_combined_force(GravityForce(with.gravity), MassSpringForce(),
-                             DampingForce(with.damping));
-}
-
-/** A stage of the assignment, ready to run. */
+/** A scene, ready to run. */
 class Scene {
  public:
   /** Steps between two looks of the guard, and between two of SharpOmega. */
   static constexpr int guard_interval = 32, sharp_interval = 100;
 
-  /** At t = 0 and at rest, as build_cloth() makes it.
-   * @pre @a quads index @a points; the parameters are in range
+  /** At t = 0 and at rest, as the recipe makes it.
+   * @pre the parameters are in range
    * Throws std::invalid_argument if nothing bounds the step that it is to
-   * choose. */
-  Scene(Stage stage, std::vector<Point> points, std::vector<Quad> quads,
-        const Parameters& with,
-        const MethodEntry& method = entry_of<SymplecticEuler>())
-      : stage_(stage),
-        points_(std::move(points)),
-        quads_(std::move(quads)),
+   * choose; and what the recipe throws. */
+  Scene(Recipe recipe, const Parameters& with, const MethodEntry& method)
+      : recipe_(std::move(recipe)),
         with_(with),
         entry_(method),
         method_(method.make()) {
     restart();
   }
+  /** A stage of the assignment.  @pre @a quads index @a points */
+  Scene(Stage stage, std::vector<Point> points, std::vector<Quad> quads,
+        const Parameters& with,
+        const MethodEntry& method = entry_of<SymplecticEuler>())
+      : Scene(recipe_of(stage, {std::move(points), std::move(quads)}, with),
+              with, method) {}
   Scene(const Scene&) = delete;  // pins hold handles into the cloth
   Scene& operator=(const Scene&) = delete;
 
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
   void restart() {
     cloth_.clear();
-    build_cloth(cloth_, points_, quads_,
-                stage_ == Stage::problem1 ? Mesh::plain : Mesh::diagonals,
-                with_.stiffness);
-    force_ = force_of(stage_, cloth_, with_);
-    constraint_.emplace(constraint_of(stage_, cloth_));
+    recipe_.build(cloth_);
+    force_ = recipe_.force(cloth_);
+    constraint_.emplace(recipe_.constraint(cloth_));
     guard_.emplace(cloth_, with_.gravity);
     method_->restart();
     clock_ = {.dt = with_.dt};
@@ -157,7 +89,7 @@ class Scene {
   /** The cloth; between two steps it may be changed in any way. */
   Cloth& cloth() { return cloth_; }
   const Cloth& cloth() const { return cloth_; }
-  Stage stage() const { return stage_; }
+  const Recipe& recipe() const { return recipe_; }
   const Parameters& parameters() const { return with_; }
   const MethodInfo& method() const { return entry_.info; }
   /** The next step [s]; it changes with StepRule::sharp only. */
@@ -195,9 +127,7 @@ class Scene {
     }
   };
 
-  Stage stage_;
-  std::vector<Point> points_;
-  std::vector<Quad> quads_;
+  Recipe recipe_;
   Parameters with_;
   MethodEntry entry_;
   Cloth cloth_;

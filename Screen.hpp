@@ -56,6 +56,8 @@ class Screen {
   void show(const Scene& scene) {
     const Cloth& g = scene.cloth();
     show_failure(scene);
+    if (!shown_) set_view(scene);
+    if (!shown_ || moving_) add_obstacles(scene);
     const bool strain = colored_ = viewer_.strain_colors();
     if (strain) {
       // The scale only grows, so that a color goes on meaning the same.
@@ -74,7 +76,6 @@ class Screen {
     }
     viewer_.clear();
     nodes_.clear();
-    if (!shown_) set_stage(scene.stage());
     viewer_.add_nodes(g.node_begin(), g.node_end(), color, nodes_);
     viewer_.add_edges(g.edge_begin(), g.edge_end(), nodes_);
     version_ = g.version();
@@ -119,6 +120,7 @@ class Screen {
   std::map<Node, unsigned> nodes_;
   std::optional<CME212::Video> film_;
   bool shown_ = false, colored_ = false;
+  bool moving_ = false;      // whether an obstacle is
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
   double scale_ = 0.01;      // the strain of the brightest color
   std::string failure_;      // that is shown
@@ -184,18 +186,39 @@ class Screen {
     return text + "   " + std::to_string(std::llround(rate_)) + " steps/s";
   }
 
-  /** Look at where the cloth of a stage swings, and add what it falls on. */
-  void set_stage(Stage stage) {
-    const bool falls_on_something = stage >= Stage::constraints;
+  /** Look at the room that the scene names; else at the cloth as it is now and
+   * at what it may fall on, and at the start below it as well. */
+  void set_view(const Scene& scene) {
     CME212::BoundingBox room;
-    room |= Point(0, -0.4, falls_on_something ? -0.75 : -1.25);
-    room |= Point(1, 0.6, 0);
+    for (const Point& p : scene.recipe().room) room |= p;
+    if (room.empty()) {
+      for (Node n : scene.cloth().nodes()) room |= n.position();
+      for (const Obstacle& o : scene.recipe().obstacles) {
+        if (o.kind == Obstacle::Kind::floor) continue;
+        const Point reach(o.radius, o.radius, o.radius);
+        room |= o.at - reach;
+        room |= o.at + reach;
+      }
+      if (scene.time() == 0 && !room.empty())
+        room |= room.min() - Point(0, 0, room.diagonal() / 2);
+    }
     viewer_.set_view(Point(0.75, -1, 0.4), room);
-    if (!falls_on_something) return;
-    const auto ball = stage == Stage::tear ? CME212::Color(0.80f, 0.33f, 0.0f)
-                                           : CME212::Color(0.0f, 0.45f, 0.70f);
-    viewer_.add_sphere(Ball().center, Ball().radius, ball);
-    viewer_.add_plane(PlaneConstraint().height());
+  }
+
+  /** Show what the cloth falls on where it is now, and nothing else. */
+  void add_obstacles(const Scene& scene) {
+    viewer_.clear_shapes();
+    for (const Obstacle& o : scene.recipe().obstacles) {
+      const Point at = o.at + o.motion.way(scene.time());
+      moving_ = moving_ || o.motion.velocity != Point();
+      if (o.kind == Obstacle::Kind::floor)
+        viewer_.add_plane(at.z);
+      else
+        viewer_.add_sphere(at, o.radius,
+                           o.kind == Obstacle::Kind::tearing_ball
+                               ? CME212::Color(0.80f, 0.33f, 0.0f)
+                               : CME212::Color(0.0f, 0.45f, 0.70f));
+    }
   }
 };
 

@@ -31,14 +31,19 @@ class Sweep {
     return 1;
 #endif
   }
-  /** Let all sweeps have @a n threads from now on; all processors() if 0. */
+  /** Let all sweeps have @a n threads from now on. If 0, as it is at first:
+   * those that OpenMP gives, for cloths that are worth it. */
   static void set_threads([[maybe_unused]] int n) {
+    threads_ = n;
 #ifdef _OPENMP
     omp_set_num_threads(n == 0 ? processors() : n);
 #endif
   }
 
   static constexpr unsigned part_size = 1024;
+  /** A cloth of fewer parts is done before threads have come together, if
+   * another program has a processor just then. */
+  static constexpr int many_parts = 32;
   static_assert(part_size % ClothStencil::width == 0);
 
   /** Call @a use(part) for parts that make up the cloth, several at once.
@@ -58,7 +63,8 @@ class Sweep {
     }
     std::exception_ptr error;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static)
+    const bool worth_it = threads_ > 0 || count >= many_parts;
+#pragma omp parallel for schedule(static) if (worth_it)
 #endif
     for (int k = 0; k < count; ++k) {
       try {
@@ -104,8 +110,9 @@ class Sweep {
  private:
   using Buffer = std::array<Point, part_size>;
   std::optional<ClothStencil> stencil_;
-  std::uint64_t version_ = 0;   // of the cloth, when it was made
-  std::vector<Buffer> buffer_;  // by thread
+  std::uint64_t version_ = 0;      // of the cloth, when it was made
+  std::vector<Buffer> buffer_;     // by thread
+  static inline int threads_ = 0;  // that somebody asked for
 
   static std::size_t whole_blocks(unsigned nodes) {
     constexpr unsigned w = ClothStencil::width;

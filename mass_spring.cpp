@@ -1,6 +1,6 @@
 /** @file mass_spring.cpp
- * Simulates a cloth: ./mass_spring [options] NODES TETS; see --help.
- * The stage of the assignment is chosen when it is compiled: make
+ * Simulates a cloth: ./mass_spring [options] NODES TETS, or --config SCENE; see
+ * --help. The stage of the assignment is chosen when it is compiled: make
  * mass_spring STAGE=forces, or make mass_spring_forces.
  *
  * Exit status: 0 done; 2 an input or an option that can't be used, or an
@@ -18,8 +18,8 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
-#include "Methods.hpp"
 #include "Run.hpp"
+#include "SceneFile.hpp"
 #include "Screen.hpp"
 
 using CME212::short_text;
@@ -30,55 +30,22 @@ constexpr const char* version = "1.0.0";
 constexpr Stage stage = Stage::STAGE;  // a misspelt stage does not compile
 constexpr const char* stage_name = name_of(stage);
 
-/** An option that can't be used. */
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/** What --dt says, into o.with. */
-void parse_dt(Options& o) {
-  if (o.dt == "auto" || o.dt == "auto:sharp") {
-    o.with.rule = o.dt == "auto" ? StepRule::safe : StepRule::sharp;
-    return;
-  }
-  char* end = nullptr;
-  o.with.dt = std::strtod(o.dt.c_str(), &end);
-  if (o.dt.empty() || *end != '\0' ||
-      !(o.with.dt > 0 && std::isfinite(o.with.dt)))
-    throw UsageError("--dt is " + o.dt +
-                     ", expected a positive time [s], auto or auto:sharp");
-}
-
-void check(const Options& o) {
+/** Throws SceneError: an option that can't be used. */
+void check(Options& o) {
   auto require = [](bool ok, const char* option, double value,
                     const char* expected) {
     if (!ok)
-      throw UsageError(std::string(option) + " is " + short_text(value) +
-                       ", expected " + expected);
+      throw SceneError(option,
+                       "is " + short_text(value) + ", expected " + expected);
   };
-  const Parameters& with = o.with;
-  require(o.t_end >= 0 && std::isfinite(o.t_end), "--t-end", o.t_end,
-          "a time [s], 0 or more");
-  const bool fixed = with.rule == StepRule::fixed;
-  require(!fixed || with.dt <= o.t_end || o.t_end == 0, "--dt", with.dt,
-          "at most --t-end");
-  require(!fixed || o.t_end / with.dt < 1e15, "--t-end", o.t_end,
-          "fewer than 1e15 steps of --dt");
-  require(with.damping >= 0 && std::isfinite(with.damping), "--damping",
-          with.damping, "a drag coefficient [kg/s], 0 or more");
-  require(with.stiffness >= 0 && std::isfinite(with.stiffness), "--stiffness",
-          with.stiffness, "a spring constant [N/m], 0 or more");
-  require(std::isfinite(with.gravity), "--gravity", with.gravity,
-          "an acceleration [m/s^2]");
-  require(o.speed >= 0, "--speed", o.speed, "0 or more");
-  require(o.every > 0, "--every", double(o.every), "a number of steps, 1 up");
-  require(o.at < 0 || o.at <= o.t_end, "--at", o.at, "a time up to --t-end");
-  if (!find_method(o.method))
-    throw UsageError("--method is " + o.method +
-                     ", expected a name of --list-methods");
+  check_model(o.model);
+  require(o.speed >= 0, "speed", o.speed, "0 or more");
+  require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
+  require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
+          "a time up to --t-end");
   if (o.window && (o.headless || o.pictures()))
-    throw UsageError(
-        "--window does not go with --headless, --screenshot and --record");
+    throw SceneError("window",
+                     "does not go with --headless, --screenshot and --record");
 }
 
 /** Print name, order, cost, limit and advice of every method. */
@@ -95,30 +62,10 @@ void list_methods() {
   }
 }
 
-/** Read the command line.  @return the exit status to end with, or -1 */
-int parse(int argc, char** argv, Options& o) {
-  CLI::App app(std::string("Simulates a cloth of masses and springs; stage ") +
-                   stage_name +
-                   ".\nNODES holds points 'x y z' [m], TETS "
-                   "quads of four node indices.",
-               "mass_spring");
+/** Give @a app all options, which go to @a o. */
+void add_options(CLI::App& app, Options& o) {
   app.option_defaults()->always_capture_default();
-  app.add_option("NODES", o.nodes, "file of points")->required();
-  app.add_option("TETS", o.tets, "file of quads")->required();
-  app.add_option("--dt", o.dt,
-                 "step [s]; auto: 0.6 of the limit that holds in every shape; "
-                 "auto:sharp: 0.9 of the limit in the present shape, looked at "
-                 "again every 100 steps, and at most the former limit")
-      ->type_name("FLOAT|auto|auto:sharp");
-  app.add_option("--method", o.method, "name of a method: see --list-methods");
-  app.add_option("--t-end", o.t_end, "time to reach [s], in steps of dt");
-  app.add_option("--damping", o.with.damping,
-                 "drag coefficient c [kg/s] (from stage forces on; 1/N is "
-                 "moderate)");
-  app.add_option("--stiffness", o.with.stiffness,
-                 "spring constant K [N/m] of every edge");
-  app.add_option("--gravity", o.with.gravity,
-                 "acceleration of free fall [m/s^2]");
+  add_model_options(app, o.model);
   app.add_flag("--headless", o.headless, "open no window");
   app.add_flag("--window", o.window,
                "insist on a window: without a display, exit with 4");
@@ -146,7 +93,42 @@ int parse(int argc, char** argv, Options& o) {
                  "change no result")
       ->check(CLI::Range(0, 1024));
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
-  app.set_config("--config", "", "read options from a file: dt=0.0005 ...");
+}
+
+/** Read the scene file, if there is one, and then the command line, which wins.
+ * @return the exit status to end with, or -1
+ * Throws SceneError, SceneFileError */
+int parse(int argc, char** argv, Options& o) {
+  std::string file;
+  bool dump = false;
+  CLI::App first;  // finds the scene file
+  first.set_help_flag();
+  first.allow_extras();
+  first.add_option("--config", file);
+  try {
+    first.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return first.exit(e) == 0 ? 0 : 2;
+  }
+  if (!file.empty()) {
+    CLI::App app;
+    app.set_config("--config");
+    add_options(app, o);
+    read_scene_file(app, file, [&o] { check(o); });
+  }
+
+  CLI::App app(std::string("Simulates a cloth of masses and springs: that of "
+                           "NODES and TETS in stage ") +
+                   stage_name +
+                   " of the\nassignment; or, as soon as a part is named "
+                   "(sheet to self-collision below, but stiffness,\ndamping, "
+                   "gravity), a scene of what is named and nothing else: "
+                   "docs/scenes.md",
+               "mass_spring");
+  add_options(app, o);
+  app.add_option("--config", file, "read options from a file: a scene")
+      ->type_name("FILE");
+  app.add_flag("--dump-config", dump, "print the scene as a file, and end");
   app.set_version_flag("--version", std::string("mass_spring ") + version +
                                         ", stage " + stage_name +
                                         ", Cholesky by " +
@@ -160,12 +142,15 @@ int parse(int argc, char** argv, Options& o) {
       "print the table of methods");
   try {
     app.parse(argc, argv);
-    parse_dt(o);
-    check(o);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  return -1;
+  if (app.count("--stiffness")) o.model.material.modulus.reset();
+  if (app.count("--damping")) o.model.material.drag.reset();
+  check(o);
+  if (!dump) return -1;
+  std::cout << to_scene_file(o.model);
+  return 0;
 }
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
@@ -255,16 +240,17 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
 /** Load, choose how to run, run.  @return exit status */
 int run(Options o) {
   Sweep::set_threads(o.threads);
-  auto points = load_points(o.nodes);
-  auto quads = load_quads(o.tets, points.size());
+  const Model& m = o.model;
+  Recipe recipe =
+      m.is_composed() ? recipe_of(m) : recipe_of(stage, mesh_of(m), m.with);
   std::unique_ptr<Screen> window;
   if (!o.headless && !o.pictures()) {
     if (Screen::has_display() || o.window) {
       window = std::make_unique<Screen>(Screen::Kind::window);
     } else if (Screen::can_draw) {
       std::filesystem::create_directories("demo");
-      o.screenshot = std::string("demo/") + stage_name + ".png";
-      o.video = std::string("demo/") + stage_name + ".mp4";
+      o.screenshot = "demo/" + recipe.name + ".png";
+      o.video = "demo/" + recipe.name + ".mp4";
       if (!o.quiet)
         std::cout << "no display: running without a window; a picture and a "
                      "film go to the folder demo\n";
@@ -273,8 +259,7 @@ int run(Options o) {
   // Wrong paths shall end the run before it starts.
   for (const std::string& file : {o.screenshot, o.video})
     if (!file.empty()) CME212::OutputFile try_it(file);
-  Scene scene(stage, std::move(points), std::move(quads), o.with,
-              *find_method(o.method));
+  Scene scene(std::move(recipe), m.with, *find_method(m.method));
   Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
@@ -295,6 +280,9 @@ int main(int argc, char** argv) {
     std::cerr << "mass_spring: " << e.what() << '\n';
     return 4;
   } catch (const InputError& e) {
+    std::cerr << e.what() << '\n';
+    return 2;
+  } catch (const SceneFileError& e) {
     std::cerr << e.what() << '\n';
     return 2;
   } catch (const std::exception& e) {

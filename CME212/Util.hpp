@@ -77,6 +77,12 @@ inline std::string short_text(double a) {
   return out.str();
 }
 
+/** @a a in as few digits as give back the same number. */
+inline std::string exact_text(double a) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, a).ptr};
+}
+
 /** Let the calling thread sleep for @a t seconds.  @return 0, as usleep() */
 inline int sleep(double t) {
   std::this_thread::sleep_for(std::chrono::duration<double>(t));

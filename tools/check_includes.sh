@@ -41,7 +41,13 @@ Xpbd               : ImplicitStage
 Methods            : RungeKutta Implicit Xpbd
 Spectrum           : Force Constraint
 Stability          : Spectrum Integrator CME212/Util CME212/BoundingBox
-Scene              : Integrator Stability
+Words              : CME212/Point
+Model              : Obstacle Words CME212/Util
+Compose            : Model SelfCollision Force
+Scene              : Compose Integrator Stability
+Measure            : Scene Methods
+Variation          : Measure
+SceneFile          : Model Methods
 Run                : Scene CME212/OutputFile
 Problem            : Methods Stability
 Limits             : Problem

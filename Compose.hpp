@@ -1,0 +1,343 @@
+#pragma once
+/** @file Compose.hpp
+ * How a scene's cloth, force and constraint are made: those of a Model, which
+ * have what it names and nothing else, and those of a stage. */
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Force.hpp"
+#include "Model.hpp"
+#include "SelfCollision.hpp"
+
+/** Something to be seen besides the cloth. */
+struct Obstacle {
+  enum class Kind { floor, ball, tearing_ball } kind;
+  Point at;           ///< on the floor, or the ball's center, at t = 0 [m]
+  double radius = 0;  ///< of a ball [m]
+  Motion motion = {};
+};
+
+/** How a scene is made, as often as it is restarted. */
+struct Recipe {
+  std::string name;
+  /** Into an empty cloth. */
+  std::function<void(Cloth&)> build;
+  std::function<CombinedForces(const Cloth&)> force;
+  std::function<CombinedConstraints(const Cloth&)> constraint;
+  std::vector<Obstacle> obstacles;
+  std::vector<Point> room;  ///< corners of what to look at; empty: the cloth
+};
+
+// ----------------------------------------------------------------- A mesh
+
+/** Points and quads: what a cloth is built from. */
+struct PointsAndQuads {
+  std::vector<Point> points;  // [m]
+  std::vector<Quad> quads;
+};
+
+/** Add the points and quads of @a s: the index of a point grows along v first,
+ * as in grid_points(). */
+inline void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
+  const auto [n, m] = s.nodes;
+  const auto first = unsigned(mesh.points.size());
+  for (unsigned i = 0; i < n; ++i)
+    for (unsigned j = 0; j < m; ++j)
+      mesh.points.push_back(s.at + (i / double(n - 1)) * s.u +
+                            (j / double(m - 1)) * s.v);
+  for (unsigned i = 0; i + 1 < n; ++i)
+    for (unsigned j = 0; j + 1 < m; ++j) {
+      const unsigned a = first + i * m + j;
+      mesh.quads.push_back({a, a + 1, a + m, a + m + 1});
+    }
+}
+
+/** The mesh that @a m names.  Throws InputError, SceneError */
+inline PointsAndQuads mesh_of(const Model& m) {
+  PointsAndQuads mesh;
+  if (m.sheets.empty()) {
+    mesh.points = load_points(m.nodes);
+    mesh.quads = load_quads(m.tets, mesh.points.size());
+  }
+  for (const std::string& text : m.sheets) add_sheet(mesh, read_sheet(text));
+  return mesh;
+}
+
+namespace compose_detail {
+
+// The ends of a quad's sides, and of its diagonals.
+constexpr std::array<std::array<unsigned, 2>, 4> sides = {
+    {{0, 1}, {0, 2}, {1, 3}, {2, 3}}};
+constexpr std::array<std::array<unsigned, 2>, 2> diagonals = {{{0, 3}, {1, 2}}};
+
+/** Two points, the quad of which they are a side, and their neighbors along
+ * the sides that go on from them. */
+struct Side {
+  std::array<unsigned, 2> ends;  // the smaller one first
+  std::size_t quad;
+  std::array<unsigned, 2> beyond;  // the ends of the side across
+};
+
+/** All sides of all quads; those of the same ends follow each other. */
+inline std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
+  std::vector<Side> all;
+  for (std::size_t k = 0; k < quads.size(); ++k)
+    for (auto [a, b] : sides) {
+      // Corner c of a quad has the neighbors c ^ 1 and c ^ 2 along its sides.
+      const unsigned across = (a ^ b) == 1 ? 2 : 1;
+      const Quad& q = quads[k];
+      Side s = {{q[a], q[b]}, k, {q[a ^ across], q[b ^ across]}};
+      if (s.ends[0] > s.ends[1]) {
+        std::swap(s.ends[0], s.ends[1]);
+        std::swap(s.beyond[0], s.beyond[1]);
+      }
+      all.push_back(s);
+    }
+  std::ranges::sort(all, {},
+                    [](const Side& s) { return std::pair(s.ends, s.quad); });
+  return all;
+}
+
+/** Call @a use(p, q, i, j) for each two points @a p and @a q that are two sides
+ * apart, across a side that quads i and j share: twice inside a grid. */
+template <typename Use>
+void each_bend(const std::vector<Quad>& quads, Use use) {
+  const auto all = sorted_sides(quads);
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    const Side &s = all[k - 1], &t = all[k];
+    if (s.ends != t.ends) continue;
+    for (int end : {0, 1})
+      if (s.beyond[end] != t.beyond[end])
+        use(s.beyond[end], t.beyond[end], s.quad, t.quad);
+  }
+}
+
+inline double area(const PointsAndQuads& mesh, const Quad& q) {
+  const auto& p = mesh.points;
+  return norm(cross(p[q[3]] - p[q[0]], p[q[2]] - p[q[1]])) / 2;
+}
+
+/** K of all springs by the modulus Y [N/m]: a spring stands for the width of
+ * cloth at its side, so that cloth of squares has K = Y, and half of that in
+ * sides at its rim. */
+inline void set_stiffness(Cloth& g, const PointsAndQuads& mesh,
+                          const Edges& edges, double modulus) {
+  for (Edge e : g.edges()) e.value().K = 0;
+  auto add = [&](unsigned i, unsigned j, double area_of_width) {
+    Edge e = g.add_edge(g.node(i), g.node(j));  // there already
+    const double l = e.value().L;
+    if (l > 0) e.value().K += Real(modulus * area_of_width / (l * l));
+  };
+  for (const Quad& q : mesh.quads) {
+    const double a = area(mesh, q);
+    for (auto [i, j] : sides) add(q[i], q[j], a / 2);
+    if (edges.diagonals)
+      for (auto [i, j] : diagonals) add(q[i], q[j], 2 * a);
+  }
+  if (edges.bend)
+    each_bend(
+        mesh.quads, [&](unsigned p, unsigned q, std::size_t i, std::size_t j) {
+          add(p, q, area(mesh, mesh.quads[i]) + area(mesh, mesh.quads[j]));
+        });
+}
+
+/** The masses by the density [kg/m^2]: each node has a quarter of the quads at
+ * it.  Throws SceneError: a node in no quad */
+inline void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
+  std::vector<double> share(mesh.points.size());
+  for (const Quad& q : mesh.quads)
+    for (unsigned i : q) share[i] += area(mesh, q) / 4;
+  for (unsigned i = 0; i < share.size(); ++i) {
+    if (!(share[i] > 0))
+      throw SceneError("density", "gives no mass to node " + std::to_string(i) +
+                                      ", which lies in no quad");
+    g.node(i).value().mass = Real(density * share[i]);
+  }
+}
+
+}  // namespace compose_detail
+
+/** Build the cloth of @a m from @a mesh, that of mesh_of(m), into @a g.
+ * @pre g.size() == 0   Throws SceneError */
+inline void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
+  using namespace compose_detail;
+  const Edges edges = read_edges(m.edges);
+  build_cloth(g, mesh.points, mesh.quads,
+              edges.diagonals ? Mesh::diagonals : Mesh::plain,
+              m.with.stiffness);
+  if (edges.bend)
+    each_bend(
+        mesh.quads, [&](unsigned p, unsigned q, std::size_t, std::size_t) {
+          const double l = norm(mesh.points[p] - mesh.points[q]);
+          g.add_edge(g.node(p), g.node(q), {Real(m.with.stiffness), Real(l)});
+        });
+  if (m.material.modulus) set_stiffness(g, mesh, edges, *m.material.modulus);
+  if (m.material.density) set_masses(g, mesh, *m.material.density);
+}
+
+/** The forces of @a m: gravity and springs, and drag if there is any. */
+inline CombinedForces force_of(const Model& m, const PointsAndQuads& mesh) {
+  double c = m.with.damping;
+  if (m.material.drag) {
+    double all = 0;
+    for (const Quad& q : mesh.quads) all += compose_detail::area(mesh, q);
+    c = *m.material.drag * all / double(mesh.points.size());
+  }
+  CombinedForces::Forces forces;
+  if (m.with.gravity != 0)
+    forces.push_back(std::make_shared<GravityForce>(m.with.gravity));
+  forces.push_back(std::make_shared<MassSpringForce>());
+  if (c > 0) forces.push_back(std::make_shared<DampingForce>(c));
+  return CombinedForces(std::move(forces));
+}
+
+/** The constraints of @a m on @a g, which lies as it was built. In this order:
+ * tearing, obstacles, self-collision, pins: where two disagree about a node,
+ * the later one has its way.
+ * Throws SceneError: a pin that holds no node, a distance that is too large. */
+inline CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
+  CombinedConstraints::Constraints all;
+  auto add = [&](auto constraint) {
+    all.push_back(
+        std::make_shared<decltype(constraint)>(std::move(constraint)));
+  };
+  for (const std::string& text : m.tears) add(TearConstraint(read_tear(text)));
+  if (m.tear_strain) add(StrainConstraint(*m.tear_strain));
+  for (const std::string& text : m.planes) {
+    const Wall w = read_plane(text);
+    add(WallConstraint(w.at, w.normal, w.motion, w.friction));
+  }
+  for (const std::string& text : m.spheres) {
+    const Solid s = read_sphere(text);
+    add(BallConstraint(s.ball, s.motion, s.friction));
+  }
+  for (const std::string& text : m.pins) {
+    const Pin pin = read_pin(text);
+    std::vector<Node> nodes;
+    for (Node n : g.nodes())
+      if (pin.holds(n.position())) nodes.push_back(n);
+    if (nodes.empty())
+      throw SceneError("pin", "\"" + text + "\" holds no node");
+    if (pin.motion.velocity == Point())
+      add(PinConstraint(nodes));
+    else
+      add(MovingPinConstraint(nodes, pin.motion));
+  }
+  if (m.self_collision.empty()) return CombinedConstraints(std::move(all));
+  const Distance d = read_self_collision(m.self_collision);
+  if (const double least = nearest_unconnected(g, d.thickness);
+      least < d.thickness)
+    throw SceneError("self-collision",
+                     "has thickness " + CME212::short_text(d.thickness) +
+                         " m, but two nodes without a common edge start " +
+                         CME212::short_text(least) + " m apart");
+  return make_combined_constraints(SelfCollision(
+      d.thickness, d.friction, CombinedConstraints(std::move(all))));
+}
+
+/** The recipe of @a m.  Throws InputError, SceneError: also of what is made
+ * from it. */
+inline Recipe recipe_of(const Model& m) {
+  auto mesh = std::make_shared<const PointsAndQuads>(mesh_of(m));
+  Recipe r;
+  r.name = "scene";
+  r.build = [m, mesh](Cloth& g) { build_model(g, m, *mesh); };
+  r.force = [m, mesh](const Cloth&) { return force_of(m, *mesh); };
+  r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };
+  using Kind = Obstacle::Kind;
+  for (const std::string& text : m.planes) {
+    const Wall w = read_plane(text);
+    // One that is inclined would hide what lies on it.
+    if (w.normal == Point(0, 0, 1))
+      r.obstacles.push_back({Kind::floor, w.at, 0, w.motion});
+  }
+  for (const std::string& text : m.spheres) {
+    const Solid s = read_sphere(text);
+    r.obstacles.push_back({Kind::ball, s.ball.center, s.ball.radius, s.motion});
+  }
+  for (const std::string& text : m.tears) {
+    const Ball b = read_tear(text);
+    r.obstacles.push_back({Kind::tearing_ball, b.center, b.radius});
+  }
+  return r;
+}
+
+// --------------------------------------------------------------- The stages
+
+/** The stages, by the section of the assignment. */
+enum class Stage {
+  problem1,     // 3.2  uniform springs, corners held by a zero force
+  diagonals,    // 4.2  each edge its own K and L, diagonals added
+  forces,       // 5.2  combined forces, corners skipped by the step
+  constraints,  // 6.2  pins, a floor and a ball
+  tear,         // 7.2  pins, a floor and a ball that tears
+};
+
+/** The name of a stage, as it is spelt above. */
+constexpr const char* name_of(Stage stage) {
+  constexpr const char* names[] = {"problem1", "diagonals", "forces",
+                                   "constraints", "tear"};
+  return names[static_cast<int>(stage)];
+}
+
+/** The constraint of a stage on @a g. The two first stages have none: there the
+ * force holds the corners. In stage `forces` the assignment's step skips them;
+ * a pin is the same for every method. */
+inline CombinedConstraints constraint_of(Stage stage, const Cloth& g) {
+  switch (stage) {
+    case Stage::problem1:
+    case Stage::diagonals:
+      return make_combined_constraints();
+    case Stage::forces:
+      return make_combined_constraints(PinConstraint(g));
+    case Stage::constraints:
+      return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                       SphereConstraint());
+    case Stage::tear:
+      break;
+  }
+  return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                   TearConstraint());
+}
+
+/** The force of a stage on @a g. */
+inline CombinedForces force_of(Stage stage, const Cloth& g,
+                               const Parameters& with) {
+  if (stage == Stage::problem1)
+    return make_combined_force(Problem1Force(
+        with.stiffness, g.num_edges() > 0 ? g.edge(0).value().L : 0,
+        with.gravity));
+  if (stage == Stage::diagonals)
+    return make_combined_force(Problem1Force(with.gravity));
+  return make_combined_force(GravityForce(with.gravity), MassSpringForce(),
+                             DampingForce(with.damping));
+}
+
+/** The recipe of a stage on a mesh. */
+inline Recipe recipe_of(Stage stage, PointsAndQuads points_and_quads,
+                        const Parameters& with) {
+  auto mesh =
+      std::make_shared<const PointsAndQuads>(std::move(points_and_quads));
+  Recipe r;
+  r.name = name_of(stage);
+  r.build = [=](Cloth& g) {
+    build_cloth(g, mesh->points, mesh->quads,
+                stage == Stage::problem1 ? Mesh::plain : Mesh::diagonals,
+                with.stiffness);
+  };
+  r.force = [=](const Cloth& g) { return force_of(stage, g, with); };
+  r.constraint = [=](const Cloth& g) { return constraint_of(stage, g); };
+  const bool falls_on_something = stage >= Stage::constraints;
+  r.room = {Point(0, -0.4, falls_on_something ? -0.75 : -1.25),
+            Point(1, 0.6, 0)};
+  if (!falls_on_something) return r;
+  using Kind = Obstacle::Kind;
+  r.obstacles = {{Kind::floor, Point(0, 0, PlaneConstraint().height())},
+                 {stage == Stage::tear ? Kind::tearing_ball : Kind::ball,
+                  Ball().center, Ball().radius}};
+  return r;
+}
