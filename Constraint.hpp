@@ -73,33 +73,19 @@ void for_each_violating(Cloth& g, Violates violates, Mend mend) {
     if (violates(g.positions()[i]) && g.node_in_use(i)) mend(g.node_with_id(i));
 }
 
-/** What a contact does to one body, as seen from the other. */
-struct Contact {
-  Point way;   ///< it is moved by this [m]
-  Point kick;  ///< its velocity changes by this [m/s]
-};
-
-/** The contact of a body that is by @a depth too far in, and moves at @a u
- * relative to what it touches. The part of u that goes in is taken away, and
- * with it, by Coulomb's law for impulses, up to @a friction times as much of
- * the part along the surface, but no more than there is of it. Source:
- * R. Bridson, R. Fedkiw, J. Anderson, ACM Trans. Graph. 21 (2002) 594.
- *
- * The body should have had this kick when it touched the surface, depth/in ago
- * if in is the speed at which it went in. So it is moved by the kick times
- * that: back to the surface, and along it by what it slid too far, which is
- * never more than friction times depth. Without this a body at rest on a slope
- * creeps by g sin a dt^2 in each step.
- * @param depth [m], >= 0   @param out of length 1, the way out
- * @param u [m/s]   @param friction coefficient, >= 0 */
-inline Contact contact(double depth, const Point& out, const Point& u,
-                       double friction) {
+/** How a contact changes a velocity [m/s] that is @a u relative to what is
+ * touched. The part of u that goes in is taken away, and with it, by Coulomb's
+ * law for impulses, up to @a friction times as much of the part along the
+ * surface, but no more than there is of it. Nothing is ever added, so the
+ * energy of the relative motion does not grow. Source: R. Bridson, R. Fedkiw,
+ * J. Anderson, ACM Trans. Graph. 21 (2002) 594.
+ * @param out of length 1, the way out   @param friction coefficient, >= 0 */
+inline Point contact_kick(const Point& u, const Point& out, double friction) {
   const double in = -dot(u, out);
-  if (!(in > 0)) return {depth * out, Point()};  // it is about to leave
+  if (!(in > 0)) return Point();  // it is about to leave
   const Point along = u + in * out;
   const double slide = norm(along), brake = std::min(friction * in, slide);
-  const Point back = slide > 0 ? along / -slide : Point();
-  return {depth * out + (depth * (brake / in)) * back, in * out + brake * back};
+  return in * out + (slide > 0 ? along * (-brake / slide) : Point());
 }
 
 }  // namespace constraint_detail

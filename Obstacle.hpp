@@ -4,7 +4,7 @@
  * balls that may move and rub, pins that move, and edges that break.
  *
  * Where a node meets an obstacle that moves, only their relative velocity
- * counts (constraint_detail::contact()). One difference to the assignment's
+ * counts (constraint_detail::touch()). One difference to the assignment's
  * plane and sphere, which take all of the normal velocity: here a node that is
  * on its way out keeps it. */
 #include <algorithm>
@@ -33,12 +33,22 @@ struct Motion {
 
 namespace constraint_detail {
 
-/** Node @a n is by @a depth [m] inside of what moves at @a velocity [m/s]. */
+/** Node @a n is by @a depth [m] inside of what moves at @a velocity [m/s]: put
+ * it back to the surface, and let contact_kick() change its velocity.
+ *
+ * It should have had that kick when it came to the surface: depth/in ago if in
+ * is the speed at which it went in. So it also goes back along the surface by
+ * the kick times that, which is what it slid too far, and never more than
+ * friction times depth. Without this a node at rest on a slope of angle a
+ * creeps by g sin a dt^2 in each step; with it, it stands. */
 inline void touch(Node n, double depth, const Point& out, const Point& velocity,
                   double friction) {
-  const Contact c = contact(depth, out, n.value().vel - velocity, friction);
-  n.position() += c.way;
-  n.value().vel += c.kick;
+  const Point kick = contact_kick(n.value().vel - velocity, out, friction);
+  const double in = dot(kick, out);
+  n.position() += depth * out;
+  n.value().vel += kick;
+  if (in > std::numeric_limits<Real>::min())
+    n.position() += depth * ((kick - in * out) / in);
 }
 
 }  // namespace constraint_detail
@@ -82,7 +92,7 @@ class MovingPinConstraint : public ZeroConstraint {
 /** A half space that no node enters, bounded by a plane.
  * @post no node lies below the plane by more than round-off; without friction,
  * one that did lies at the nearest point of it. As to velocities, see
- * constraint_detail::contact(). */
+ * constraint_detail::touch(). */
 class WallConstraint : public ZeroConstraint {
  public:
   /** @param at a point of the plane at t = 0 [m]
@@ -117,7 +127,7 @@ class WallConstraint : public ZeroConstraint {
 /** A solid ball that may move. @post no node lies inside by more than
  * round-off; without friction, one that did lies at the nearest point of the
  * surface (the top one, if it was at the center). As to velocities, see
- * constraint_detail::contact().
+ * constraint_detail::touch().
  *
  * A node that passes through a ball within a step is caught while the ball is
  * at rest only. Who lets it move keeps steps so short that speed() + that of

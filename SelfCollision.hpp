@@ -142,20 +142,24 @@ inline double nearest_unconnected(const Cloth& g, double up_to) {
  * other than the thickness.
  *
  * Two nodes that are nearer are pushed apart along the line between them, each
- * by its part of the inverse masses, so that their center of mass stays; what
- * is left of their relative velocity, constraint_detail::contact() says. So
- * momentum stays the same, and kinetic energy never grows. Held nodes do not
- * move, and count as standing. Pairs are mended one after the other, then the
- * others have their way, and so on until no pair is too near.
+ * by its part of the inverse masses, so that their center of mass stays; and
+ * constraint_detail::contact_kick() changes their relative velocity, in the
+ * same parts. So momentum stays the same, and kinetic energy never grows. Held
+ * nodes do not move, and count as standing. Pairs are mended one after the
+ * other, then the others have their way, and so on, round by round, until no
+ * pair is too near.
  *
  * It is nodes that collide. A mesh lets nodes through where its openings are
  * wider: squares of side L are closed by a thickness of L/sqrt(2) or more. And
  * nodes must come nearer by less than the thickness in a step, or they may
  * pass through each other.
  *
- * Complexity of a call: O(N) a round where few nodes lie within a cube of the
- * side of the thickness, and a call of the others; one round if nothing is too
- * near. By one thread, so results do not depend on their number. */
+ * Complexity of a call: O(N) where few nodes lie within a cube of the side of
+ * the thickness; for each round more, a call of the others and O(pairs that are
+ * near). Layers that lie on each other need rounds: two to four for three
+ * layers, twenty for five whose nodes lie in the gaps of each other. It
+ * allocates when there are more nodes, or more pairs near, than ever before.
+ * By one thread, so results do not depend on their number. */
 class SelfCollision : public ZeroConstraint {
  public:
   static constexpr int max_rounds = 200;
@@ -173,15 +177,16 @@ class SelfCollision : public ZeroConstraint {
    * near. */
   void operator()(Cloth& g, double t) const override {
     others_(g, t);
-    for (rounds_ = 1; rounds_ <= max_rounds; ++rounds_) {
+    rounds_ = 0;
+    for (;;) {
+      list_near_pairs(g);
       if (!mend_pairs(g)) return;
-      others_(g, t);
+      do others_(g, t);
+      while (mend_pairs(g));
     }
-    throw StepError("self-collision: nodes are nearer than the thickness, " +
-                    CME212::short_text(thickness_) + " m, after " +
-                    std::to_string(max_rounds) + " rounds");
   }
-  /** How often the last call went over the cloth. */
+  /** How often the last call went over the pairs that are near; once if none
+   * was too near. */
   int rounds() const { return rounds_; }
 
   void each_held(const Cloth& g, const NodeVisitor& use) const override {
@@ -197,27 +202,49 @@ class SelfCollision : public ZeroConstraint {
   // Pushed so much farther than needed, nodes in a pile come to rest within a
   // few rounds; else each would approach the thickness but never reach it.
   static constexpr double margin = 1e-3;
+  // Pairs up to so many times the thickness apart are listed: those that may
+  // get too near in rounds to come.
+  static constexpr double reach = 1.1;
 
+  struct Pair {
+    unsigned i, j;
+  };
   double thickness_, friction_;
   CombinedConstraints others_;
   mutable CellTable cells_;
   mutable std::vector<char> held_;  // by node id
+  mutable std::vector<Pair> near_;  // by node ids; no edge between them
   mutable int rounds_ = 0;
 
-  /** Push apart all pairs that are too near.  @return false if none was */
-  bool mend_pairs(Cloth& g) const {
+  void list_near_pairs(const Cloth& g) const {
     held_.assign(g.node_slots(), false);
     others_.each_held(g, [this](Node n) { held_[n.id()] = true; });
-    cells_.fill(g, thickness_);
+    near_.clear();
+    const double most = reach * thickness_;
+    cells_.fill(g, most);
+    const auto x = g.positions();
+    cells_.each_near_pair([&](unsigned i, unsigned j) {
+      if (normSq(x[i] - x[j]) < most * most &&
+          !self_collision_detail::connected(g, i, j))
+        near_.push_back({i, j});
+    });
+  }
+
+  /** Push apart all listed pairs that are too near.
+   * @return false if none was  Throws StepError after max_rounds. */
+  bool mend_pairs(Cloth& g) const {
     const auto x = g.positions();
     bool mended = false;
-    cells_.each_near_pair([&](unsigned i, unsigned j) {
-      if (!(normSq(x[i] - x[j]) < thickness_ * thickness_) ||
-          self_collision_detail::connected(g, i, j))
-        return;
-      mend(g, i, j);
-      mended = true;
-    });
+    for (const auto& [i, j] : near_)
+      if (normSq(x[i] - x[j]) < thickness_ * thickness_ && g.node_in_use(i) &&
+          g.node_in_use(j)) {
+        mend(g, i, j);
+        mended = true;
+      }
+    if (++rounds_ >= max_rounds && mended)
+      throw StepError("self-collision: nodes are nearer than the thickness, " +
+                      CME212::short_text(thickness_) + " m, after " +
+                      std::to_string(max_rounds) + " rounds");
     return mended;
   }
 
@@ -235,13 +262,13 @@ class SelfCollision : public ZeroConstraint {
     const Point apart = x[i] - x[j];
     const double distance = norm(apart);
     const Point out = distance > 0 ? apart / distance : Point(0, 0, 1);
-    const auto [way, kick] =
-        constraint_detail::contact((1 + margin) * thickness_ - distance, out,
-                                   node[i].vel - node[j].vel, friction_);
+    const Point way = ((1 + margin) * thickness_ - distance) * out;
+    const Point kick = constraint_detail::contact_kick(
+        node[i].vel - node[j].vel, out, friction_);
     const double part_i = wi / (wi + wj), part_j = wj / (wi + wj);
     x[i] += part_i * way;
-    node[i].vel += part_i * kick;
     x[j] -= part_j * way;
+    node[i].vel += part_i * kick;
     node[j].vel -= part_j * kick;
   }
 };

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <numbers>
 
 #include "Integrator.hpp"
+#include "Obstacle.hpp"
 #include "SelfCollision.hpp"
 
 namespace {
@@ -325,14 +328,92 @@ TEST_F(SelfCollisionRun, TwoSheetsFallOnEachOtherOnAFloor) {
                         make_combined_constraints(PlaneConstraint(0)));
   run(600, 0.17, c, [&](int) { ASSERT_LT(energy(), start + 1e-9); });
   EXPECT_GT(touched, 300);
+  EXPECT_LT(most_rounds, 20);
   double lower = 0, upper = 0;
   for (unsigned i = 0; i < 36; ++i) {
     lower += g.node(i).position().z / 36;
     upper += g.node(36 + i).position().z / 36;
   }
   EXPECT_GT(upper, lower + 0.05);
-  std::cout << touched << " " << most_rounds << " " << lower << " " << upper
-            << " " << energy() << " of " << start << "\n";
+}
+
+// A sheet that hangs over itself: its upper half falls on the lower one.
+TEST_F(SelfCollisionRun, AFoldedSheetDoesNotPassThroughItself) {
+  add_sheet(g, 9, Point(), 20);
+  for (Node n : g.nodes()) {
+    const double x = n.position().x;
+    if (x <= 0.5) continue;
+    // The second half: round a half circle and back.
+    const double bend = std::min(x - 0.5, 0.25), r = 0.25 / std::numbers::pi;
+    n.position().x = 0.5 + r * std::sin(bend / r) - (x - 0.5 - bend);
+    n.position().z = r - r * std::cos(bend / r);
+  }
+  const double thickness = 0.1;
+  ASSERT_GT(nearest_of_all(g), thickness);
+  const SelfCollision c(
+      thickness, 0.3,
+      make_combined_constraints(PlaneConstraint(0),
+                                PinConstraint(g, std::vector{Point()})));
+  run(500, thickness, c);
+  EXPECT_GT(touched, 100);
+  EXPECT_LT(most_rounds, 40);
+}
+
+// Sheets of pieces that tear at a ball and by strain, from pins, one of which
+// moves; and the test removes some more.
+TEST_F(SelfCollisionRun, HoldsWhileNodesAndEdgesAreRemoved) {
+  add_sheet(g, 8, Point(0, 0, 0), 30);
+  add_sheet(g, 8, Point(0.05, 0.03, 0.2), 30);
+  const SelfCollision c(
+      0.12, 0.2,
+      make_combined_constraints(
+          PinConstraint(std::vector<Node>{g.node(0), g.node(7)}),
+          MovingPinConstraint({g.node(56)}, {Point(0.5, 0.5, 0.2), 0.6}),
+          PlaneConstraint(-0.3), TearConstraint({Point(0.5, 0.5, -0.2), 0.1}),
+          StrainConstraint(0.8)));
+  const unsigned nodes = g.num_nodes(), edges = g.num_edges();
+  run(500, 0.12, c, [&](int k) {
+    if (k % 50 == 49) {
+      g.remove_node(g.node(unsigned(k) % g.num_nodes()));
+      g.remove_edge(g.edge(unsigned(k) % g.num_edges()));
+      g.reindex();
+    }
+  });
+  EXPECT_LT(g.num_nodes(), nodes - 10);
+  EXPECT_LT(g.num_edges(), edges - 100);
+  EXPECT_GT(touched, 100);
+  std::cout << touched << " " << most_rounds << " " << g.num_nodes() - nodes
+            << " " << g.num_edges() << " " << edges << "\n";
+}
+
+// A pile: layers by layers, so that pushes have a long way to the floor.
+TEST_F(SelfCollisionRun, APileOfTenSheetsSettles) {
+  for (int k = 0; k < 10; ++k)
+    add_sheet(g, 4, Point(0.1 * (k % 2), 0.07 * (k % 3), 0.3 + 0.31 * k), 20);
+  const SelfCollision c(0.3, 0.5,
+                        make_combined_constraints(PlaneConstraint(0)));
+  run(1500, 0.3, c);
+  EXPECT_LT(most_rounds, 100);
+  std::cout << touched << " " << most_rounds << " " << max_speed(g) << "\n";
+}
+
+// ------------------------------------------------------------ Work and threads
+
+TEST(SelfCollision, LooksAtAFixedNumberOfPairsANode) {
+  for (double thickness_by_side : {0.1, 0.5, 0.99, 1.99}) {
+    double per_node[3];
+    int k = 0;
+    for (unsigned side : {20u, 40u, 160u}) {
+      Cloth g;
+      build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+      CellTable cells;
+      cells.fill(g, thickness_by_side / (side - 1));
+      per_node[k++] = double(cells.each_near_pair([](unsigned, unsigned) {})) /
+                      g.num_nodes();
+      std::cout << thickness_by_side << " " << side << " " << per_node[k - 1]
+                << "\n";
+    }
+  }
 }
 
 }  // namespace
