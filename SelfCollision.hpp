@@ -64,21 +64,29 @@ class CellTable {
    * @return how many calls that were: O(N) where few nodes share a cell */
   template <typename Use>
   long long each_near_pair(Use use) const {
-    // Of two opposite cells around a cell, one: the other sees the pair, too.
-    std::array<std::uint64_t, 14> step = {};
-    for (int k = 1; k < 14; ++k) {
-      const int c = 13 + k;  // 1 + dx + 3 (1 + dy) + 9 (1 + dz)
-      step[k] = key_of(c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1);
-    }
+    // Of the rows of three cells around a node, its own, and of two opposite
+    // ones one: from the other one the pair is seen, too.
+    const std::array<std::uint64_t, 5> row = {
+        0, key_of(0, 1, 0), key_of(0, -1, 1), key_of(0, 0, 1), key_of(0, 1, 1)};
+    const std::size_t last = start_.size() - 2;  // bucket
     long long calls = 0;
     for (const auto& [key, i] : placed_)
-      for (int k = 0; k < 14; ++k) {
-        const std::size_t b = bucket(key + step[k]);
-        for (unsigned at = start_[b]; at < start_[b + 1]; ++at) {
-          const unsigned j = node_[at];
-          if (k == 0 ? j <= i : j == i) continue;
-          ++calls;
-          use(i, j);
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        auto visit = [&, i = i](std::size_t first_bucket, std::size_t count) {
+          const unsigned end = start_[first_bucket + count];
+          for (unsigned at = start_[first_bucket]; at < end; ++at) {
+            const unsigned j = node_[at];
+            if (k == 0 ? j <= i : j == i) continue;
+            ++calls;
+            use(i, j);
+          }
+        };
+        const std::size_t b = bucket(key + row[k]);
+        if (b > 0 && b < last) {
+          visit(b - 1, 3);
+        } else {  // the last bucket's neighbor is the first
+          visit(std::min(b, last - 1), 2);
+          visit(b == 0 ? last : 0, 1);
         }
       }
     return calls;
@@ -156,9 +164,9 @@ inline double nearest_unconnected(const Cloth& g, double up_to) {
  *
  * Complexity of a call: O(N) where few nodes lie within a cube of the side of
  * the thickness; for each round more, a call of the others and O(pairs that are
- * near). Layers that lie on each other need rounds: two to four for three
- * layers, twenty for five whose nodes lie in the gaps of each other. It
- * allocates when there are more nodes, or more pairs near, than ever before.
+ * near). Two layers that lie on each other node on node need two or three
+ * rounds; some that lie in the gaps of each other ten to thirty. It allocates
+ * when there are more nodes, or more pairs near, than ever before.
  * By one thread, so results do not depend on their number. */
 class SelfCollision : public ZeroConstraint {
  public:
@@ -181,8 +189,9 @@ class SelfCollision : public ZeroConstraint {
     for (;;) {
       list_near_pairs(g);
       if (!mend_pairs(g)) return;
+      int left = list_rounds;
       do others_(g, t);
-      while (mend_pairs(g));
+      while (--left > 0 && mend_pairs(g));
     }
   }
   /** How often the last call went over the pairs that are near; once if none
@@ -205,6 +214,7 @@ class SelfCollision : public ZeroConstraint {
   // Pairs up to so many times the thickness apart are listed: those that may
   // get too near in rounds to come.
   static constexpr double reach = 1.1;
+  static constexpr int list_rounds = 8;  // with one list, then a new one
 
   struct Pair {
     unsigned i, j;
