@@ -9,10 +9,8 @@
  * on its way out keeps it. */
 #include <algorithm>
 #include <cassert>
-#include <cstddef>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "Constraint.hpp"

@@ -417,7 +417,7 @@ TEST_F(SelfCollisionRun, APileOfSheetsSettles) {
   });
   EXPECT_LT(energy(), start);
   EXPECT_LT(most_rounds, 50);
-  std::cout << kinetic_energy(g) / most << "\n";
+
   EXPECT_LT(kinetic_energy(g), 0.1 * most);
 }
 
