@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -138,8 +140,14 @@ inline double step_of(const Model& m) {
 }
 
 /** Run @a m to its end, with steps of step_of(m).  @pre check_model(m)
+ * @param shake how far nodes start from where they should [m], each of them in
+ *        a direction of its own: what an answer makes of that tells whether it
+ *        can be had at all
+ * @param look at the cloth at the end of a run that did not fail
  * Throws InputError, SceneError; std::invalid_argument as Scene does. */
-inline Trial try_out(const Model& m) {
+inline Trial try_out(
+    const Model& m, double shake = 0,
+    const std::function<void(const Cloth&)>& look = [](const Cloth&) {}) {
   const auto start = std::chrono::steady_clock::now();
   const MethodEntry& method = *find_method(m.method);
   Trial result;
@@ -147,9 +155,17 @@ inline Trial try_out(const Model& m) {
   with.rule = StepRule::fixed;
   with.dt = result.dt = step_of(m);
   Scene scene(recipe_of(m), with, method);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> off(-shake, shake);
+  if (shake > 0)
+    for (Node n : scene.cloth().nodes())
+      n.position() += Point(off(random), off(random), off(random));
   while (scene.time() < m.t_end * (1 - 1e-12) && scene.step())
     result.work += double(scene.cloth().num_edges()) * method.info.sweeps;
-  if (scene.check()) result.answer = answer(m, scene.cloth());
+  if (scene.check()) {
+    result.answer = answer(m, scene.cloth());
+    look(scene.cloth());
+  }
   result.failure = scene.failure();
   result.steps = scene.steps();
   result.seconds =

@@ -24,7 +24,9 @@ struct Options {
   int threads = 0;  // of the sweeps; 0: as many as there are processors
   bool headless = false, window = false, paused = false, strain = false;
   bool quiet = false;
+  bool advise = false, automatic = false;
   std::string screenshot, video, csv, out;
+  std::string advised;  // file for the advised scene
 
   /** True when a run that has come to time @a t is at its end: 5000 steps of
    * 0.001 s are 5 s, however that is rounded. */

@@ -75,6 +75,7 @@ inline void add_model_options(CLI::App& app, Model& m) {
                 CLI::Option* option = app.add_option(names, member, help);
                 if constexpr (std::is_same_v<T, std::vector<std::string>>)
                   option->allow_extra_args(false);  // what follows may be NODES
+                if (name == "dt") option->type_name("FLOAT|auto|auto:sharp");
               });
   app.get_option("--modulus")->excludes(app.get_option("--stiffness"));
   app.get_option("--drag")->excludes(app.get_option("--damping"));
@@ -140,13 +141,16 @@ inline void check_model(Model& m) {
   for (const auto& text : m.spheres) read_sphere(text);
   for (const auto& text : m.tears) read_tear(text);
   if (!m.self_collision.empty()) read_self_collision(m.self_collision);
-  const bool files = !m.nodes.empty() || !m.tets.empty();
-  if (files && !m.sheets.empty())
+  if (!m.sheets.empty() && !(m.nodes.empty() && m.tets.empty()))
     throw SceneError("sheet", "and files of a mesh: expected one of them");
+}
+
+/** Throws SceneError unless @a m has a cloth: a scene file may leave it to the
+ * command line. */
+inline void check_has_cloth(const Model& m) {
   if (m.sheets.empty() && (m.nodes.empty() || m.tets.empty()))
     throw SceneError(m.nodes.empty() ? "nodes" : "tets",
                      "is missing: expected files NODES and TETS, or --sheet");
-  if (m.edges.empty()) throw SceneError("edges", "is empty");
 }
 
 // ---------------------------------------------------------------------- Files
@@ -245,7 +249,10 @@ inline Model load_model(const std::string& file) {
   CLI::App app;
   app.set_config("--config");
   add_model_options(app, m);
-  read_scene_file(app, file, [&] { check_model(m); });
+  read_scene_file(app, file, [&] {
+    check_model(m);
+    check_has_cloth(m);
+  });
   return m;
 }
 

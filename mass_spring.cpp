@@ -16,6 +16,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "Advise.hpp"
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "Run.hpp"
@@ -129,6 +130,13 @@ int parse(int argc, char** argv, Options& o) {
   app.add_option("--config", file, "read options from a file: a scene")
       ->type_name("FILE");
   app.add_flag("--dump-config", dump, "print the scene as a file, and end");
+  app.add_flag("--advise", o.advise,
+               "find out which parts, grid, method and step the measure needs "
+               "to its tolerance, by short runs; print it, and end");
+  app.add_flag("--auto", o.automatic, "run what --advise would advise");
+  app.add_option("--write-config", o.advised,
+                 "write the scene that is advised to this file")
+      ->type_name("FILE");
   app.set_version_flag("--version", std::string("mass_spring ") + version +
                                         ", stage " + stage_name +
                                         ", Cholesky by " +
@@ -148,6 +156,7 @@ int parse(int argc, char** argv, Options& o) {
   if (app.count("--stiffness")) o.model.material.modulus.reset();
   if (app.count("--damping")) o.model.material.drag.reset();
   check(o);
+  check_has_cloth(o.model);
   if (!dump) return -1;
   std::cout << to_scene_file(o.model);
   return 0;
@@ -237,9 +246,36 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
   return run.finish();
 }
 
+/** Take the advice on the scene of @a o: print it, write it, or put it into
+ * o.model.  @return the exit status to end with, or -1 */
+int take_advice(Options& o) {
+  // A scene of its own parts: a stage may have forces that no part is.
+  if (!o.model.is_composed())
+    throw SceneError("advise",
+                     "needs a scene of parts: --config SCENE, or "
+                     "--sheet, --pin and so on");
+  std::optional<CME212::OutputFile> file;
+  if (!o.advised.empty()) file.emplace(o.advised);
+  const Advice advice = advise(o.model);
+  if (!o.quiet) std::cout << in_words(advice);
+  if (!advice.refusal.empty()) {
+    if (o.quiet)
+      std::cerr << "mass_spring: no advice: " << advice.refusal << '\n';
+    return 2;
+  }
+  if (file) {
+    file->stream() << to_scene_file(advice.model);
+    file->commit();
+  }
+  o.model = advice.model;
+  return o.automatic ? -1 : 0;
+}
+
 /** Load, choose how to run, run.  @return exit status */
 int run(Options o) {
   Sweep::set_threads(o.threads);
+  if (o.advise || o.automatic || !o.advised.empty())
+    if (int status = take_advice(o); status >= 0) return status;
   const Model& m = o.model;
   Recipe recipe =
       m.is_composed() ? recipe_of(m) : recipe_of(stage, mesh_of(m), m.with);

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
 #include <istream>
 #include <random>
 #include <sstream>
@@ -75,6 +76,13 @@ inline std::string short_text(double a) {
   std::ostringstream out;
   out << a;
   return out.str();
+}
+
+/** @a a with 2 significant digits, like %.2g. */
+inline std::string two_digits(double a) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", a);
+  return text;
 }
 
 /** @a a in as few digits as give back the same number. */

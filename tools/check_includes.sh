@@ -47,6 +47,7 @@ Compose            : Model SelfCollision Force
 Scene              : Compose Integrator Stability
 Measure            : Scene Methods
 Variation          : Measure
+Advise             : Variation
 SceneFile          : Model Methods
 Run                : Scene CME212/OutputFile
 Problem            : Methods Stability
