@@ -1,0 +1,189 @@
+/** @file adviser_suite.cpp
+ * How often --advise is right: random scenes, each of them with advice, with
+ * the true error of what was advised, and with the best choice in hindsight.
+ *
+ *   ./adviser_suite --scenes 100 --out charts/adviser.csv
+ *
+ * Truth is a converged reference: two grids, of 2 and 4 times as many cells as
+ * the advised one, by srkn6b, and what they tend to. Cost is counted: springs
+ * looked at. Exit status: 0 done; 2 an option that can't be used, or an output
+ * that can't be written. */
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "Advise.hpp"
+#include "CME212/OutputFile.hpp"
+#include "SceneFile.hpp"
+#include "Sweep.hpp"
+
+namespace {
+
+/** A random scene, the same for the same number everywhere. */
+Model random_scene(unsigned number) {
+  std::mt19937 random(number);
+  auto pick = [&](int n) { return int(random() % unsigned(n)); };
+  auto between = [&](double low, double high) {
+    return low + (high - low) * (random() / 4294967296.0);
+  };
+  auto log_between = [&](double low, double high) {
+    return low * std::pow(high / low, random() / 4294967296.0);
+  };
+  auto text = [](double a) { return CME212::two_digits(a); };
+  Model m;
+  const int hangs = pick(4);  // how it is held
+  const double width = between(0.5, 2), height = between(0.5, 2);
+  const std::string nodes = " nodes 11 11";
+  if (hangs < 2)
+    m.sheets = {"u " + text(width) + " 0 0 v 0 0 -" + text(height) + nodes};
+  else
+    m.sheets = {"u " + text(width) + " 0 0 v 0 " + text(height) + " 0" + nodes};
+  const std::string far = " " + text(width);
+  if (hangs == 0) m.pins = {"z 0"};
+  if (hangs == 1) m.pins = {"x 0", "x" + far};
+  if (hangs == 2) m.pins = {"x 0", "x" + far, "y 0", "y " + text(height)};
+  if (hangs == 3) m.pins = {"x 0"};
+  m.edges = pick(2) ? "sides diagonals" : "sides";
+  m.material.density = log_between(0.2, 2);
+  m.material.modulus = log_between(1, 1e4);  // four decades
+  if (pick(2)) m.material.drag = *m.material.density * log_between(0.1, 10);
+  // Time for the waves to cross the cloth up to some times.
+  const double wave = std::sqrt(*m.material.density / *m.material.modulus) *
+                      std::max(width, height);
+  m.t_end = std::min(wave * between(0.5, 4), 1.0);
+  if (pick(4) == 0) m.planes = {"at 0 0 " + text(-height - 0.01)};
+  m.method = "verlet";
+  m.dt = "auto";
+  m.measure = pick(2) ? "com" : "energy";
+  m.tolerance = 1;
+  check_model(m);
+  // To between 0.5 % and 5 % of how far it comes, or of the work done by its
+  // weight on that way.
+  Model com = m, start = m;
+  com.measure = start.measure = "com";
+  start.t_end = 0;
+  const double way =
+      distance(try_out(com).answer, try_out(start).answer, Measure::com);
+  const double unit =
+      m.measure == "com" ? 1 : *m.material.density * width * height * grav;
+  m.tolerance = way * unit * log_between(5e-3, 5e-2);
+  return m;
+}
+
+/** What became of a scene. */
+struct Row {
+  std::string refusal;
+  double predicted = 0, real = 0;          // errors
+  double chosen = 0, best = 0, spent = 0;  // counted work, but spent [s]
+  double seconds = 0;                      // of the advised run
+};
+
+/** What the answer tends to on finer grids than that of @a advised. */
+Answer truth(const Model& scene, const Model& advised) {
+  const double named = double(read_sheet(scene.sheets[0]).nodes[0] - 1);
+  const double factor = (read_sheet(advised.sheets[0]).nodes[0] - 1) / named;
+  Answer at[3];
+  for (int k : {0, 1, 2}) {
+    Model m = refined(scene, factor * (1 << k));
+    m.method = "srkn6b";
+    m.with.rule = StepRule::safe;
+    at[k] = try_out(m).answer;
+  }
+  const Measure what = read_measure(scene.measure);
+  const double d = distance(at[0], at[1], what),
+               e = distance(at[1], at[2], what);
+  const double order = std::clamp(e > 0 ? std::log2(d / e) : 2., 0.8, 2.);
+  for (std::size_t k = 0; k < at[2].size(); ++k)
+    at[2][k] += (at[2][k] - at[1][k]) / (std::pow(2, order) - 1);
+  return at[2];
+}
+
+/** The least work of all grids, methods and steps that the adviser could have
+ * chosen, and that meet the tolerance. */
+double best_in_hindsight(const Model& scene, const Answer& right,
+                         double finest) {
+  const Measure what = read_measure(scene.measure);
+  double best = std::numeric_limits<double>::infinity();
+  for (double factor = 0.5; factor <= finest; factor *= 2)
+    for (auto [method, share] : {std::pair<const char*, double>{"verlet", 0.9},
+                                 {"verlet", 0.45},
+                                 {"symplectic-euler", 0.9},
+                                 {"symplectic-euler", 0.45},
+                                 {"pefrl", 1.3},
+                                 {"srkn6b", 2.2}}) {
+      Model m = refined(scene, factor);
+      m.method = "verlet";
+      m.with.rule = StepRule::safe;
+      m.with.dt = share / safe_share * step_of(m);
+      m.with.rule = StepRule::fixed;
+      m.method = method;
+      const Trial t = try_out(m);
+      if (t.ok() && distance(t.answer, right, what) <= scene.tolerance)
+        best = std::min(best, t.work);
+    }
+  return best;
+}
+
+Row look_at(const Model& scene) {
+  Row row;
+  AdviceRules rules;
+  rules.most_nodes = 3000;  // so that a reference can be had
+  const Advice a = advise(scene, rules);
+  row.refusal = a.refusal;
+  row.spent = a.spent;
+  if (!a.refusal.empty()) return row;
+  const Trial t = try_out(a.model);
+  const Answer right = truth(scene, a.model);
+  row.predicted = a.error;
+  row.real = t.ok() ? distance(t.answer, right, a.measure)
+                    : std::numeric_limits<double>::infinity();
+  row.chosen = t.work;
+  row.seconds = t.seconds;
+  const double named = double(read_sheet(scene.sheets[0]).nodes[0] - 1);
+  row.best = best_in_hindsight(
+      scene, right, 2 * (read_sheet(a.model.sheets[0]).nodes[0] - 1) / named);
+  return row;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("How often --advise is right, on random scenes.",
+               "adviser_suite");
+  unsigned scenes = 100, first = 1;
+  std::string out;
+  app.add_option("--scenes", scenes, "how many")->capture_default_str();
+  app.add_option("--first", first, "number of the first one")
+      ->capture_default_str();
+  app.add_option("--out", out, "write the table to this file")->required();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    Sweep::set_threads(1);
+    CME212::OutputFile file(out);
+    file.stream() << "scene,measure,tolerance,predicted,real,work,best work,"
+                     "advice [s],run [s],refusal\n";
+    unsigned advised = 0, met = 0, cheap = 0;
+    for (unsigned k = first; k < first + scenes; ++k) {
+      const Model m = random_scene(k);
+      const Row r = look_at(m);
+      file.stream() << k << ',' << m.measure << ',' << m.tolerance << ','
+                    << r.predicted << ',' << r.real << ',' << r.chosen << ','
+                    << r.best << ',' << r.spent << ',' << r.seconds << ",\""
+                    << r.refusal << "\"\n";
+      if (!r.refusal.empty()) continue;
+      ++advised;
+      met += r.real <= m.tolerance;
+      cheap += r.chosen <= 1.5 * r.best;
+    }
+    file.commit();
+    std::cout << scenes << " scenes, " << advised << " with advice: " << met
+              << " meet the tolerance, " << cheap
+              << " cost at most 1.5 times the best choice in hindsight\n";
+  } catch (const std::exception& e) {
+    std::cerr << "adviser_suite: " << e.what() << '\n';
+    return 2;
+  }
+}
