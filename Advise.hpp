@@ -15,7 +15,7 @@
 
 /** How tolerance is shared out; how far pilots go. */
 struct AdviceRules {
-  double margin = 0.97;        ///< of the tolerance, for all errors together
+  double margin = 0.97;       ///< of the tolerance, for all errors together
   double for_grid = 0.95;     ///< of the margin, at most
   double for_parts = 0.5;     ///< of what the grid leaves, at most
   double first_cells = 5;     ///< along the shortest side of the first grid
@@ -170,7 +170,7 @@ class Adviser {
         order = std::clamp(e > 0 ? std::log2(d / e) : 2.0, 0.8, 2.0);
       }
       pilot_ = t, pilot_factor_ = factor_ = factor;
-      if (k == 0) continue;
+      if (k < 2) continue;
       estimate_errors(order);
       // The coarsest that is fine enough.
       for (const GridReport& g : grids)

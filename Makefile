@@ -49,7 +49,7 @@ libs     = $(if $(filter test_%,$*),-lgtest_main -lgtest -lrapidcheck) \
 lcholmod = $(cholmod:-D%=-Wl,--as-needed -lcholmod)
 
 MAKEFLAGS += --no-builtin-rules
-.PHONY: speed stability stability-soak cells charts charts-quick orders all deps peers-deps \
+.PHONY: adviser-suite speed stability stability-soak cells charts charts-quick orders all deps peers-deps \
         peers-chart peers-bench demo check check-all print-tests fuzz pictures help clean \
         format submit grids FORCE
 .SECONDARY:
@@ -175,6 +175,13 @@ charts: work_precision
 	@QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' charts/make.sh
 charts-quick:
 	@$(MAKE) --no-print-directory charts QUICK=1
+
+# How often --advise is right, docs/advice.md, on ADVISED random scenes.
+ADVISED ?= 100
+adviser-suite: adviser_suite
+	./adviser_suite --scenes $(ADVISED) --out charts/adviser.csv
+	@for kind in svg png; do gnuplot -e "csv='charts/adviser.csv'; \
+	  out='charts/adviser'; kind='$$kind'" charts/adviser.gp; done
 
 # What a step costs on this machine, docs/speed.md: charts/speed.sh.
 speed:

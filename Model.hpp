@@ -227,8 +227,8 @@ inline Measure read_measure(const std::string& text) {
 inline std::string to_words(const Sheet& s) {
   using CME212::exact_text;
   auto point = [](const char* name, const Point& p) {
-    return std::string(name) + ' ' + exact_text(p.x) + ' ' + exact_text(p.y) + ' ' +
-           exact_text(p.z) + ' ';
+    return std::string(name) + ' ' + exact_text(p.x) + ' ' + exact_text(p.y) +
+           ' ' + exact_text(p.z) + ' ';
   };
   return point("at", s.at) + point("u", s.u) + point("v", s.v) + "nodes " +
          std::to_string(s.nodes[0]) + ' ' + std::to_string(s.nodes[1]);

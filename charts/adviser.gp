@@ -1,0 +1,35 @@
+# What adviser_suite found: predicted against real error, and chosen against
+# best cost, a dot a scene that got advice.
+#   gnuplot -e "csv='FILE.csv'; out='PICTURE'; kind='svg'" charts/adviser.gp
+set encoding utf8
+set datafile separator ','
+if (kind eq 'svg') {
+  set terminal svg size 1000,480 font 'DejaVu Sans,13' background '#ffffff'
+} else {
+  set terminal pngcairo size 1000,480 font 'DejaVu Sans,10' background '#ffffff'
+}
+set output out.'.'.kind
+set multiplot layout 1,2
+set logscale xy
+set format xy '10^{%L}'
+set grid lc rgb '#dddddd'
+set border 3
+set tics nomirror
+set key top left Left reverse samplen 2
+advised = "< awk -F, '!/^#/ && $6 > 0' ".csv
+set title '{/:Bold Error over tolerance}'
+set xlabel 'predicted'
+set ylabel 'real'
+set xrange [1e-3:3]
+set yrange [1e-6:30]
+plot 1 lc rgb '#D55E00' lw 2 title 'the tolerance', \
+     x lc rgb '#999999' dt 2 title 'real as predicted', \
+     advised using ($4/$3):(($5/$3 < 1e-6 ? 1e-6 : $5/$3)) with points pt 7 \
+       ps 0.6 lc rgb '#0072B2' notitle
+set title '{/:Bold Work: springs looked at}'
+set xlabel 'best choice in hindsight'
+set ylabel 'chosen'
+set autoscale xy
+plot x lc rgb '#999999' dt 2 title 'the same', \
+     1.5*x lc rgb '#D55E00' lw 2 title '1.5 times as much', \
+     advised using 7:6 with points pt 7 ps 0.6 lc rgb '#0072B2' notitle

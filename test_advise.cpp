@@ -1,0 +1,113 @@
+// Advise.hpp: advice that holds against the truth, what can't be had is
+// refused, and the parts of a scene are told apart.
+#include <gtest/gtest.h>
+
+#include "Advise.hpp"
+#include "SceneFile.hpp"
+#include "Sweep.hpp"
+
+namespace {
+
+/** A cloth that hangs from its upper side, let go unstretched. */
+Model hanging(double tolerance) {
+  Model m;
+  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 11 11"};
+  m.pins = {"z 0"};
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.t_end = 0.2;
+  m.tolerance = tolerance;
+  check_model(m);
+  return m;
+}
+
+/** The answer on a grid of so many times the cells, by small steps of a fine
+ * method: another one than the adviser's pilots use. */
+Answer truth(const Model& m, double factor) {
+  Model fine = refined(m, factor);
+  fine.method = "pefrl";
+  fine.with.rule = StepRule::safe;
+  return try_out(fine).answer;
+}
+
+TEST(Advise, MeetsTheTolerance) {
+  const Answer right = truth(hanging(1), 8);
+  std::size_t nodes = 0;
+  for (double tolerance : {1e-2, 1e-3, 1e-4}) {
+    const Advice a = advise(hanging(tolerance));
+    ASSERT_EQ(a.refusal, "");
+    EXPECT_LE(a.error, tolerance);
+    EXPECT_LE(distance(try_out(a.model).answer, right, a.measure), tolerance);
+    const std::size_t now = mesh_of(a.model).points.size();
+    EXPECT_GE(now, nodes);  // a finer answer, a finer grid
+    nodes = now;
+  }
+  EXPECT_GT(nodes, 100u);
+}
+
+TEST(Advise, LeavesOutWhatChangesNothing) {
+  Model m = hanging(1e-3);
+  m.planes = {"at 0 0 -9"};             // far below
+  m.spheres = {"at 5 5 5 radius 0.1"};  // far away
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_TRUE(a.model.planes.empty() && a.model.spheres.empty());
+  EXPECT_EQ(a.model.pins, m.pins);
+  for (const PartReport& p : a.parts) {
+    const bool far =
+        p.part.rfind("plane", 0) == 0 || p.part.rfind("sphere", 0) == 0;
+    if (far || p.part == "gravity" || p.part.rfind("pin", 0) == 0) {
+      EXPECT_EQ(p.needed, !far) << p.part << " changes " << p.change;
+    }
+    EXPECT_EQ(p.change == 0, far) << p.part;
+  }
+}
+
+TEST(Advise, RefusesWhatNoGridCanGive) {
+  AdviceRules rules;
+  rules.most_nodes = 500;
+  const Advice a = advise(hanging(1e-7), rules);
+  EXPECT_NE(a.refusal.find("would not be fine enough"), std::string::npos)
+      << a.refusal;
+  EXPECT_NE(in_words(a).find("no advice: "), std::string::npos);
+}
+
+// A cloth pushed together buckles: which way is decided by round-off.
+TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
+  Model m;
+  m.sheets = {"nodes 17 17"};
+  m.pins = {"x 0 y 0", "x 1 y 0"};
+  m.measure = "positions";
+  m.t_end = 1.5;
+  m.tolerance = 1e-3;
+  check_model(m);
+  AdviceRules rules;
+  rules.most_nodes = 1200;
+  const Advice a = advise(m, rules);
+  EXPECT_NE(a.refusal, "");
+  Model one_grid = m;  // from files there is no other grid to ask
+  one_grid.sheets.clear();
+  one_grid.nodes = "data/grid1.nodes", one_grid.tets = "data/grid1.tets";
+  const Advice b = advise(one_grid);
+  EXPECT_NE(b.refusal.find("chaotic"), std::string::npos) << b.refusal;
+  EXPECT_NE(b.refusal.find("com to "), std::string::npos) << b.refusal;
+}
+
+TEST(Advise, AsksOnlyWhatCanBeAnswered) {
+  Model m = hanging(1e-3);
+  m.measure = "positions";
+  m.tear_strain = 0.5;
+  EXPECT_THROW(advise(m), SceneError);
+}
+
+TEST(Advise, ItsSceneCanBeWrittenAndRun) {
+  const Advice a = advise(hanging(1e-3));
+  ASSERT_EQ(a.refusal, "");
+  Model again = a.model;
+  check_model(again);  // dt in words is dt in numbers
+  EXPECT_EQ(again.with.dt, a.model.with.dt);
+  EXPECT_NE(to_scene_file(a.model).find("method = "), std::string::npos);
+  EXPECT_NE(in_words(a).find("advice: "), std::string::npos);
+}
+
+}  // namespace
