@@ -113,7 +113,8 @@ inline std::vector<Variation> without_parts(const Model& m) {
 }
 
 /** @a m with each part that it could have next: diagonals, a grid of twice as
- * many cells along each side, half the step, and self-collision. */
+ * many cells along each side, half the step, and self-collision with a
+ * thickness that lets no node through a quad of squares. */
 inline std::vector<Variation> with_more_parts(const Model& m) {
   std::vector<Variation> all;
   const Edges edges = read_edges(m.edges);
@@ -130,7 +131,7 @@ inline std::vector<Variation> with_more_parts(const Model& m) {
   if (m.self_collision.empty()) {
     Variation c{"self-collision", false, m};
     c.model.self_collision =
-        "thickness " + CME212::exact_text(shortest_side(m) / 2);
+        "thickness " + CME212::exact_text(0.75 * shortest_side(m));
     all.push_back(std::move(c));
   }
   return all;
