@@ -218,6 +218,42 @@ TEST(Refined, IsTheSameCloth) {
   EXPECT_EQ(nodes(0.01), (Nodes{3, 3}));  // never less than 2 x 2 cells
 }
 
+/** The answers on grids of 8, 16 and 32 cells along each side. */
+std::vector<Answer> on_three_grids(Model m, const std::string& measure) {
+  m.measure = measure;
+  std::vector<Answer> at;
+  for (const char* nodes : {"9 9", "17 17", "33 33"}) {
+    m.sheets = {std::string("nodes ") + nodes};
+    at.push_back(try_out(m).answer);
+  }
+  return at;
+}
+
+// test_compose has the smooth case, order 2. A membrane let go flat gets a kink
+// that runs in from the rim.
+TEST(Refining, ConvergesAtOrderOneWhereTheClothHasKinks) {
+  Model m = load_model("scenes/membrane.toml");
+  m.t_end = 0.1;
+  const auto at = on_three_grids(m, "positions");
+  EXPECT_NEAR(std::log2(distance(at[0], at[1], Measure::positions) /
+                        distance(at[1], at[2], Measure::positions)),
+              1, 0.1);
+}
+
+// All of the weight hangs by one node, whatever the grid: the force stays, the
+// width that bears it halves.
+TEST(Refining, NeverGivesTheStretchAtAPinnedCorner) {
+  Model m = load_model("scenes/hanging-sheet.toml");
+  m.with.damping = 0;
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.material.drag = 1;
+  const auto at = on_three_grids(m, "max-stretch");
+  EXPECT_NEAR(at[0][0], 0.28, 0.01);
+  EXPECT_NEAR(at[1][0], 0.46, 0.01);
+  EXPECT_NEAR(at[2][0], 0.80, 0.01);
+}
+
 TEST(Variation, KnowsTheShortestSide) {
   EXPECT_NEAR(shortest_side(with_sheet("u 3 0 0 nodes 4 6")), 0.2, 1e-15);
   EXPECT_NEAR(shortest_side(with_sheet("v 0 30 0 nodes 4 6")), 1 / 3., 1e-15);
@@ -351,6 +387,19 @@ std::string contents(const std::string& file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+TEST(ThePageOfScenes, NamesEveryKeyAndScene) {
+  const std::string page = contents("docs/scenes.md");
+  const Model m;
+  each_option(m, [&](const std::string& name, const auto&, const char*) {
+    EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
+  });
+  for (const std::string& name : scene_names()) {
+    EXPECT_NE(page.find("\n### `" + name + "`\n"), std::string::npos) << name;
+    EXPECT_TRUE(
+        std::filesystem::exists("docs/pictures/scene-" + name + ".png"));
+  }
 }
 
 class Need : public ::testing::TestWithParam<std::string> {};
