@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Hold the README to the truth: it quotes example_graph.cpp as it is, every
 # file that it names is there, and each of its commands runs;
-# and so do those of docs/stability.md.
+# and so do those of docs/stability.md and docs/scenes.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,3 +26,4 @@ block sh | grep -v '^make check$' | while IFS= read -r command; do
 done
 make -s example_graph && ./example_graph
 tools/check_commands.sh docs/stability.md
+tools/check_commands.sh docs/scenes.md
