@@ -40,7 +40,7 @@ constexpr int samples = 9;
  * index @a first: bilinear between its four nodes. */
 inline Point position_on(const Cloth& g, const Sheet& sheet, unsigned first,
                          double s, double t) {
-  const auto [n, m] = sheet.nodes;
+  const unsigned n = sheet.nodes[0], m = sheet.nodes[1];
   const double a = s * (n - 1), b = t * (m - 1);
   const unsigned i = std::min(unsigned(a), n - 2),
                  j = std::min(unsigned(b), m - 2);
