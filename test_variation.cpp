@@ -339,6 +339,7 @@ TEST(Variation, DropsNothingThatIsNotThere) {
   m.material.drag = 0;
   EXPECT_TRUE(without_parts(m).empty());
   m.material.drag.reset();
+  EXPECT_TRUE(without_parts(m).empty());
   m.with.damping = 1;
   ASSERT_EQ(without_parts(m).size(), 1u);
   EXPECT_EQ(without_parts(m)[0].model.with.damping, 0);
