@@ -162,6 +162,16 @@ int parse(int argc, char** argv, Options& o) {
   return 0;
 }
 
+/** Print what a scene of parts is asked, and what this run answers; but for
+ * positions, which are many: --out writes them. */
+void print_answer(const Scene& scene, const Model& m) {
+  const Measure what = read_measure(m.measure);
+  if (what == Measure::positions) return;
+  std::cout << m.measure << ':';
+  for (double a : answer(m, scene.cloth())) std::cout << ' ' << a;
+  std::cout << ' ' << unit_of(what) << '\n';
+}
+
 /** Run without a window; draw if pictures are wanted.  @return exit status */
 int run_headless(Scene& scene, Run& run, const Options& o) {
   if (!o.pictures()) {
@@ -301,8 +311,10 @@ int run(Options o) {
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";
   run.announce();
-  return window ? run_in_window(scene, run, o, *window)
-                : run_headless(scene, run, o);
+  const int status = window ? run_in_window(scene, run, o, *window)
+                            : run_headless(scene, run, o);
+  if (status == 0 && m.is_composed() && !o.quiet) print_answer(scene, m);
+  return status;
 }
 
 }  // namespace

@@ -587,4 +587,38 @@ TEST_F(MassSpring, ExplainsItsOptionsWithUnitsAndDefaults) {
     EXPECT_NE(r.out.find(text), std::string::npos) << text;
 }
 
+TEST_F(MassSpring, AnswersWhatASceneIsAsked) {
+  const std::string sheet = "--sheet 'nodes 3 3' --headless --t-end 0 ";
+  EXPECT_NE(run(sheet).out.find("\ncom: 0.5 0.5 0 m\n"), std::string::npos);
+  EXPECT_NE(run(sheet + "--measure max-stretch").out.find("max-stretch: 0"),
+            std::string::npos);
+  EXPECT_EQ(run(sheet + "--quiet").out, "");
+  // A stage is asked nothing.
+  EXPECT_EQ(run(grid0 + "--headless --t-end 0").out.find("com:"),
+            std::string::npos);
+}
+
+TEST_F(MassSpring, AdvisesAndRunsWhatItAdvises) {
+  const std::string scene =
+      "--sheet 'u 1 0 0 v 0 0 -1 nodes 6 6' --pin 'z 0' --plane 'at 0 0 -9' "
+      "--t-end 0.1 --tolerance 0.05 --headless ";
+  Result r = run(scene + "--advise --write-config " + path("a.toml"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find("not needed"), std::string::npos);
+  EXPECT_NE(r.out.find("\nadvice: "), std::string::npos);
+  const std::string advised = contents(dir / "a.toml");
+  EXPECT_NE(advised.find("pin = [\"z 0\"]"), std::string::npos);
+  EXPECT_EQ(advised.find("plane = "), std::string::npos);
+  EXPECT_EQ(run("--headless --config " + path("a.toml")).status, 0);
+  r = run(scene + "--auto");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find("scene: "), std::string::npos);
+  r = run(grid0 + "--advise");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--advise needs a scene of parts"), std::string::npos);
+  r = run(scene + "--tear-strain 1 --measure positions --advise");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--measure is positions"), std::string::npos);
+}
+
 }  // namespace
