@@ -86,6 +86,8 @@ class Adviser {
 
   Advice find() {
     check_question(scene_);
+    if (!(scene_.t_end > 0))
+      throw SceneError("t-end", "is 0, so there is nothing to find out");
     if (!find_grid() || !look_for_chaos()) return advice_;
     const Model pilot = on_grid(pilot_factor_);
     Model needed = find_parts(pilot);
@@ -160,12 +162,21 @@ class Adviser {
                       short_text(grids.empty() ? infinite
                                                : grids.back().error) +
                       ' ' + unit_of(advice_.measure));
-      Trial t = run(as_pilot(m));
+      Trial t;
+      try {
+        t = run(as_pilot(m));
+      } catch (const SceneError& e) {  // a pin between nodes, a thickness
+        if (factor >= 1)
+          return refuse("of a grid of " + std::to_string(nodes) +
+                        " nodes: " + e.what());
+        grids.clear();
+        continue;
+      }
       if (!t.ok()) return refuse(t.failure);
       grids.push_back({factor, nodes, infinite, t.seconds, t.answer});
       const std::size_t k = grids.size() - 1;
       if (k >= 2) {
-        // An order below 1 foresees nothing; above 2 no scheme here goes.
+        // Slower than that foresees nothing; faster goes no scheme here.
         const double d = step_between(k - 2), e = step_between(k - 1);
         order = std::clamp(e > 0 ? std::log2(d / e) : 2.0, 0.8, 2.0);
       }
@@ -181,7 +192,7 @@ class Adviser {
       // Foreseen to be fine enough, not by a hair.
       const double next = grids.back().error / std::pow(2, order);
       const std::size_t more = nodes_of(on_grid(2 * factor));
-      if (k >= 2 && next <= enough / 1.5 && double(more) <= rules_.most_nodes) {
+      if (next <= enough / 1.5 && double(more) <= rules_.most_nodes) {
         grids.push_back({2 * factor, more, next, 0, {}});
         factor_ = 2 * factor, grid_error_ = next;
         return true;

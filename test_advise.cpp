@@ -100,6 +100,27 @@ TEST(Advise, AsksOnlyWhatCanBeAnswered) {
   EXPECT_THROW(advise(m), SceneError);
 }
 
+// Coarser grids have no node where a pin is, finer ones nodes that are too
+// near.
+TEST(Advise, TellsWhichGridIsNoScene) {
+  Model m = hanging(1e-2);
+  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 21 21"};
+  m.pins = {"z 0", "x 0.05"};  // of the second column
+  m.t_end = 0.05;
+  const Advice a = advise(m);
+  EXPECT_EQ(a.refusal, "");
+  ASSERT_FALSE(a.grids.empty());
+  EXPECT_EQ(a.grids[0].factor, 1);
+  m.pins = {"z 0"};
+  m.t_end = 0.2;
+  m.self_collision = "thickness 0.04";  // two sides of 81 nodes: 0.025 m
+  m.tolerance = 1e-6;
+  EXPECT_NE(advise(m).refusal.find(" nodes: --self-collision has thickness"),
+            std::string::npos);
+  m.t_end = 0;
+  EXPECT_THROW(advise(m), SceneError);
+}
+
 TEST(Advise, ItsSceneCanBeWrittenAndRun) {
   const Advice a = advise(hanging(1e-3));
   ASSERT_EQ(a.refusal, "");
