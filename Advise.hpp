@@ -101,8 +101,10 @@ class Adviser {
   Advice advice_;
   double pilot_factor_ = 1;  // of the grid on which the rest is tried
   double grid_error_ = 0, part_error_ = 0;
-  double factor_ = 1;  // of the grid that is advised
-  Trial pilot_;        // all parts, on the pilots' grid
+  double factor_ = 1;                 // of the grid that is advised
+  Trial pilot_;                       // all parts, on the pilots' grid
+  std::vector<Answer> still_;         // of that, to all questions
+  std::vector<std::string> dropped_;  // parts that are not needed
 
   Model on_grid(double factor) const {
     return scene_.sheets.empty() ? scene_ : refined(scene_, factor);
@@ -113,6 +115,11 @@ class Adviser {
     Trial t = try_out(m, shake, look);
     advice_.spent += t.seconds;
     return t;
+  }
+  /** Run the scene with all its parts, on some grid. */
+  Trial run_pilot(const Model& m) {
+    const Model pilot = as_pilot(m);
+    return run(pilot, 0, all_answers(pilot, still_));
   }
   double budget() const { return rules_.margin * advice_.tolerance; }
   double room_for_parts() const {
@@ -137,7 +144,7 @@ class Adviser {
     auto& grids = advice_.grids;
     const double enough = rules_.for_grid * budget();
     if (scene_.sheets.empty()) {
-      pilot_ = run(as_pilot(scene_));
+      pilot_ = run_pilot(scene_);
       if (!pilot_.ok()) return refuse(pilot_.failure);
       grids.push_back({1, nodes_of(scene_), 0, pilot_.seconds, pilot_.answer});
       return true;
@@ -164,7 +171,7 @@ class Adviser {
                       ' ' + unit_of(advice_.measure));
       Trial t;
       try {
-        t = run(as_pilot(m));
+        t = run_pilot(m);
       } catch (const SceneError& e) {  // a pin between nodes, a thickness
         if (factor >= 1)
           return refuse("of a grid of " + std::to_string(nodes) +
@@ -216,7 +223,7 @@ class Adviser {
     const auto& g = advice_.grids;
     return distance(g[k].answer, g[k + 1].answer, advice_.measure);
   }
-  /** Of all grids but the last one against what all of them tend to. */
+  /** Of all grids against what they tend to, by the last two (Richardson). */
   void estimate_errors(double order) {
     auto& grids = advice_.grids;
     const double shrink = std::pow(2, order);
@@ -231,30 +238,32 @@ class Adviser {
 
   // ------------------------------------------------------------------ Chaos
 
+  /** Puts the answers to all questions into @a into, by Measure; nothing where
+   * @a m can't answer. */
+  static std::function<void(const Cloth&)> all_answers(
+      const Model& m, std::vector<Answer>& into) {
+    return [m, &into](const Cloth& g) {
+      into.clear();
+      for (std::size_t k = 0; k < measure_names.size(); ++k) {
+        Model other = m;
+        other.measure = measure_names[k];
+        into.push_back(can_answer(m, Measure(k)) ? answer(other, g) : Answer());
+      }
+    };
+  }
+
   /** What the answer, and others that could be asked for, make of a start that
    * is off by a millionth of a meter. */
   bool look_for_chaos() {
+    std::vector<Answer> shaken;
     const Model m = as_pilot(on_grid(pilot_factor_));
-    std::vector<Answer> still, shaken;
-    auto all_answers = [&](std::vector<Answer>& into) {
-      return [&m, &into](const Cloth& g) {
-        for (std::size_t k = 0; k < measure_names.size(); ++k) {
-          Model other = m;
-          other.measure = measure_names[k];
-          const bool torn = !m.tears.empty() || m.tear_strain;
-          const bool kept = Measure(k) != Measure::positions || !torn;
-          into.push_back(kept ? answer(other, g) : Answer());
-        }
-      };
-    };
-    run(m, 0, all_answers(still));
-    const Trial t = run(m, 1e-6, all_answers(shaken));
+    const Trial t = run(m, 1e-6, all_answers(m, shaken));
     if (!t.ok()) return refuse(t.failure);
     std::string others;
     for (std::size_t k = 0; k < measure_names.size(); ++k) {
-      if (still[k].empty()) continue;
+      if (still_[k].empty()) continue;
       const Measure what = Measure(k);
-      const double moved = distance(still[k], shaken[k], what);
+      const double moved = distance(still_[k], shaken[k], what);
       if (what == advice_.measure)
         advice_.floor = moved;
       else
@@ -314,7 +323,6 @@ class Adviser {
     dropped_ = gone;
     return least;
   }
-  std::vector<std::string> dropped_;
 
   /** @a m without these parts; nothing if one went with another. */
   static std::optional<Model> without_all(Model m,

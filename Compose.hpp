@@ -45,15 +45,12 @@ struct PointsAndQuads {
 inline void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
   const auto [n, m] = s.nodes;
   const auto first = unsigned(mesh.points.size());
-  for (unsigned i = 0; i < n; ++i)
-    for (unsigned j = 0; j < m; ++j)
-      mesh.points.push_back(s.at + (i / double(n - 1)) * s.u +
-                            (j / double(m - 1)) * s.v);
-  for (unsigned i = 0; i + 1 < n; ++i)
-    for (unsigned j = 0; j + 1 < m; ++j) {
-      const unsigned a = first + i * m + j;
-      mesh.quads.push_back({a, a + 1, a + m, a + m + 1});
-    }
+  for (const Point& p : grid_points(n, m))
+    mesh.points.push_back(s.at + p.x * s.u + p.y * s.v);
+  for (Quad q : grid_quads(n, m)) {
+    for (unsigned& i : q) i += first;
+    mesh.quads.push_back(q);
+  }
 }
 
 /** The mesh that @a m names.  Throws InputError, SceneError */
@@ -69,11 +66,6 @@ inline PointsAndQuads mesh_of(const Model& m) {
 
 namespace compose_detail {
 
-// The ends of a quad's sides, and of its diagonals.
-constexpr std::array<std::array<unsigned, 2>, 4> sides = {
-    {{0, 1}, {0, 2}, {1, 3}, {2, 3}}};
-constexpr std::array<std::array<unsigned, 2>, 2> diagonals = {{{0, 3}, {1, 2}}};
-
 /** Two points, the quad of which they are a side, and their neighbors along
  * the sides that go on from them. */
 struct Side {
@@ -86,7 +78,7 @@ struct Side {
 inline std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
   std::vector<Side> all;
   for (std::size_t k = 0; k < quads.size(); ++k)
-    for (auto [a, b] : sides) {
+    for (auto [a, b] : quad_sides) {
       // Corner c of a quad has the neighbors c ^ 1 and c ^ 2 along its sides.
       const unsigned across = (a ^ b) == 1 ? 2 : 1;
       const Quad& q = quads[k];
@@ -134,9 +126,9 @@ inline void set_stiffness(Cloth& g, const PointsAndQuads& mesh,
   };
   for (const Quad& q : mesh.quads) {
     const double a = area(mesh, q);
-    for (auto [i, j] : sides) add(q[i], q[j], a / 2);
+    for (auto [i, j] : quad_sides) add(q[i], q[j], a / 2);
     if (edges.diagonals)
-      for (auto [i, j] : diagonals) add(q[i], q[j], 2 * a);
+      for (auto [i, j] : quad_diagonals) add(q[i], q[j], 2 * a);
   }
   if (edges.bend)
     each_bend(
@@ -196,8 +188,8 @@ inline CombinedForces force_of(const Model& m, const PointsAndQuads& mesh) {
 }
 
 /** The constraints of @a m on @a g, which lies as it was built. In this order:
- * tearing, obstacles, self-collision, pins: where two disagree about a node,
- * the later one has its way.
+ * tearing, obstacles, pins: where two disagree about a node, the later one has
+ * its way. Self-collision goes on with all of these until none is violated.
  * Throws SceneError: a pin that holds no node, a distance that is too large. */
 inline CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
   CombinedConstraints::Constraints all;

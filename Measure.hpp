@@ -109,10 +109,15 @@ inline Answer answer(const Model& m, const Cloth& g) {
   return {};
 }
 
+/** Whether @a m can be asked for that: a cloth that tears keeps no positions.
+ */
+inline bool can_answer(const Model& m, Measure what) {
+  return what != Measure::positions || (m.tears.empty() && !m.tear_strain);
+}
+
 /** Throws SceneError: a question that a scene can't answer. */
 inline void check_question(const Model& m) {
-  if (read_measure(m.measure) == Measure::positions &&
-      (!m.tears.empty() || m.tear_strain))
+  if (!can_answer(m, read_measure(m.measure)))
     throw SceneError("measure",
                      "is positions, which a cloth that tears does not keep: "
                      "expected another one");

@@ -185,6 +185,12 @@ inline std::vector<Quad> load_quads(const std::string& file,
                      num_points);
 }
 
+/** The corners of a quad that its sides join, and its diagonals. */
+inline constexpr std::array<std::array<unsigned, 2>, 4> quad_sides = {
+    {{0, 1}, {0, 2}, {1, 3}, {2, 3}}};
+inline constexpr std::array<std::array<unsigned, 2>, 2> quad_diagonals = {
+    {{0, 3}, {1, 2}}};
+
 /** Which edges a quad gives: its four sides, or both diagonals as well. */
 enum class Mesh { plain, diagonals };
 
@@ -196,7 +202,8 @@ class MeshSprings {
  public:
   /** @pre @a quads outlives this */
   MeshSprings(std::span<const Quad> quads, Mesh mesh)
-      : quads_(quads), pairs_(mesh == Mesh::plain ? sides : all) {}
+      : quads_(quads),
+        pairs_(mesh == Mesh::plain ? Pairs(quad_sides) : Pairs(all)) {}
 
   std::size_t size() const { return pairs_.size() * quads_.size(); }
   /** The points that spring @a s joins.  @pre s < size() */
@@ -214,36 +221,40 @@ class MeshSprings {
 
  private:
   using Pairs = std::span<const std::array<unsigned, 2>>;
-  static constexpr std::array<unsigned, 2> pairs[] = {
-      {0, 1}, {0, 2}, {1, 3}, {2, 3},  //
-      {0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-  static constexpr Pairs sides{pairs, 4}, all{pairs + 4, 6};
+  static constexpr std::array<unsigned, 2> all[] = {{0, 1}, {0, 2}, {0, 3},
+                                                    {1, 2}, {1, 3}, {2, 3}};
   std::span<const Quad> quads_;
   Pairs pairs_;
 };
 
 // ---------------------------------------------------------------------- Grids
 
-/** A square of side x side points [m] over the unit square at z = 0, x in the
- * outer loop and y in the inner one.  @pre side >= 2 */
-inline std::vector<Point> grid_points(unsigned side) {
+/** n x m points [m] over the unit square at z = 0, x in the outer loop and y in
+ * the inner one.  @pre n, m >= 2 */
+inline std::vector<Point> grid_points(unsigned n, unsigned m) {
   std::vector<Point> points;
-  points.reserve(std::size_t(side) * side);
-  for (unsigned i = 0; i < side; ++i)
-    for (unsigned j = 0; j < side; ++j)
-      points.push_back({i / double(side - 1), j / double(side - 1), 0});
+  points.reserve(std::size_t(n) * m);
+  for (unsigned i = 0; i < n; ++i)
+    for (unsigned j = 0; j < m; ++j)
+      points.push_back({i / double(n - 1), j / double(m - 1), 0});
   return points;
 }
+inline std::vector<Point> grid_points(unsigned side) {
+  return grid_points(side, side);
+}
 
-/** The (side - 1)^2 quads of that square: a corner, its neighbors along y and
- * along x, and the one across.  @pre side >= 2 */
-inline std::vector<Quad> grid_quads(unsigned side) {
+/** The (n - 1) (m - 1) quads of that square: a corner, its neighbors along y
+ * and along x, and the one across.  @pre n, m >= 2 */
+inline std::vector<Quad> grid_quads(unsigned n, unsigned m) {
   std::vector<Quad> quads;
-  quads.reserve(std::size_t(side - 1) * (side - 1));
-  for (unsigned i = 0; i + 1 < side; ++i)
-    for (unsigned j = 0; j + 1 < side; ++j) {
-      unsigned n = i * side + j;
-      quads.push_back({n, n + 1, n + side, n + side + 1});
+  quads.reserve(std::size_t(n - 1) * (m - 1));
+  for (unsigned i = 0; i + 1 < n; ++i)
+    for (unsigned j = 0; j + 1 < m; ++j) {
+      const unsigned a = i * m + j;
+      quads.push_back({a, a + 1, a + m, a + m + 1});
     }
   return quads;
+}
+inline std::vector<Quad> grid_quads(unsigned side) {
+  return grid_quads(side, side);
 }

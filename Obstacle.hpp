@@ -57,33 +57,18 @@ inline void touch(Node n, double depth, const Point& out, const Point& velocity,
  * dt times its speed, which should be much less than an edge is long.
  * Removing a pinned node is fine: the pin goes on with the others.
  * Complexity of a call: O(pins). */
-class MovingPinConstraint : public ZeroConstraint {
+class MovingPinConstraint : public PinConstraint {
  public:
   /** @pre all @a nodes in one graph */
   MovingPinConstraint(const std::vector<Node>& nodes, const Motion& motion)
-      : motion_(motion) {
-    for (Node n : nodes) pins_.push_back({n, n.position()});
-  }
+      : PinConstraint(nodes), motion_(motion) {}
 
   void operator()(Cloth& g, double t) const override {
-    const Point way = motion_.way(t);
-    for (auto [n, start] : pins_)
-      if (g.has_node(n)) {
-        n.position() = start + way;
-        n.value().vel = Point();
-      }
-  }
-  void each_held(const Cloth& g, const NodeVisitor& use) const override {
-    for (const Pin& pin : pins_)
-      if (g.has_node(pin.node)) use(pin.node);
+    PinConstraint::operator()(g, t);
+    each_held(g, [way = motion_.way(t)](Node n) { n.position() += way; });
   }
 
  private:
-  struct Pin {
-    Node node;
-    Point start;
-  };
-  std::vector<Pin> pins_;
   Motion motion_;
 };
 

@@ -41,7 +41,7 @@ inline double shortest_side(const Model& m) {
   double least = std::numeric_limits<double>::infinity();
   const PointsAndQuads mesh = mesh_of(m);
   for (const Quad& q : mesh.quads)
-    for (auto [i, j] : compose_detail::sides)
+    for (auto [i, j] : quad_sides)
       least =
           std::min<double>(least, norm(mesh.points[q[i]] - mesh.points[q[j]]));
   return least;

@@ -3,26 +3,12 @@
 // known answers.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <complex>
-#include <cstdlib>
 #include <functional>
-#include <new>
 #include <numbers>
 
+#include "CME212/Allocations.hpp"
 #include "Methods.hpp"
-
-// Every allocation of this program is counted.
-static std::atomic<long> allocations = 0;
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
 
 namespace {
 

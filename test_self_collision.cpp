@@ -2,28 +2,14 @@
 // what it leaves alone; and how much it looks at.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
-#include <new>
 #include <numbers>
 
+#include "CME212/Allocations.hpp"
 #include "Integrator.hpp"
 #include "Obstacle.hpp"
 #include "SelfCollision.hpp"
-
-// Every allocation of this program is counted.
-static std::atomic<long> allocations = 0;
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
 
 namespace {
 
