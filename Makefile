@@ -24,9 +24,10 @@ DRAWING   = mass_spring mass_spring_% test_viewer test_screen
 # all of them and under the sanitizers. Left out are checks that take half of the
 # time to compile, and of which the one of addresses finds nearly all.
 release  = -O3 -DNDEBUG
+unchecked = null,alignment,object-size,vptr
 testing  = -O1 -fno-omit-frame-pointer \
            $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all \
-             -fno-sanitize=null,alignment,object-size,vptr)
+             -fno-sanitize=$(unchecked))
 draws    = $(and $(filter $(DRAWING),$*),$(filter 1,$(VIEWER)))
 draw_pkg = sdl2 gl imgui libpng
 stage_of = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
