@@ -21,11 +21,12 @@ EXAMPLES := $(filter example_%,$(PROGRAMS))
 DRAWING   = mass_spring mass_spring_% test_viewer test_screen
 
 # Programs are built for speed and without assertions, tests and examples with
-# all of them and under the sanitizers. Left out are checks that take half of the
-# time to compile, and of which the one of addresses finds nearly all.
+# all of them, for the debugger and under the sanitizers. Left out are checks
+# that take half of the time to compile, and of which the one of addresses finds
+# nearly all.
 release  = -O3 -DNDEBUG
-unchecked = null,alignment,object-size,vptr
-testing  = -O1 -fno-omit-frame-pointer \
+unchecked = null,alignment,object-size,vptr,pointer-overflow
+testing  = -Og -fno-omit-frame-pointer \
            $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all \
              -fno-sanitize=$(unchecked))
 draws    = $(and $(filter $(DRAWING),$*),$(filter 1,$(VIEWER)))

@@ -36,21 +36,24 @@ step() {  # NAME COMMAND...
   passed=$((passed + good)) failed=$((failed + bad))
 }
 
-# Run a list of steps while others go on; joined() waits for it, and shows and
-# counts what it did.
-beside() {  # LIST
-  (
-    passed=0 failed=0
-    "$1"
-    echo "$passed $failed" >"$logs/beside.count"
-  ) >"$logs/beside.txt" &
-}
-joined() {
-  local good=0 bad=1
+# Run lists of steps beside each other; then show and count what each of them
+# did.
+beside() {  # LIST...
+  local list good bad
+  for list in "$@"; do
+    (
+      passed=0 failed=0
+      "$list"
+      echo "$passed $failed" >"$logs/$list.count"
+    ) >"$logs/$list.txt" &
+  done
   wait
-  cat "$logs/beside.txt"
-  read -r good bad <"$logs/beside.count"
-  passed=$((passed + good)) failed=$((failed + bad))
+  for list in "$@"; do
+    good=0 bad=1
+    cat "$logs/$list.txt"
+    read -r good bad <"$logs/$list.count"
+    passed=$((passed + good)) failed=$((failed + bad))
+  done
 }
 
 make_all() { make --no-print-directory -j"$jobs" "$@"; }
@@ -105,45 +108,73 @@ single() {
       END {exit n != 6 || bad}' build/float_floor.csv
 }
 
-tests=$(make -s print-tests)
-step tree          tools/check_tree.sh
-step includes      tools/check_includes.sh
-step headers       tools/check_headers.sh
-step lanes         tools/check_lanes.sh
-step build-g++     make_all all CXX=g++
+# Programs that no step runs for long are built in half of the time.
+quick="bench bench_implicit bench_stability adviser_suite mass_spring_diagonals
+  mass_spring_forces mass_spring_constraints mass_spring_tear"
+build() {
+  # shellcheck disable=SC2046,SC2086  # lists of words
+  make_all CXX=g++ $(make -s print-tests) mass_spring mass_spring_problem1 \
+    make_grid work_precision stability_map example_graph &&
+    make_all CXX=g++ release='-O1 -DNDEBUG' $quick
+}
 # What counts of clang++ is what it says: no time for optimizing.
-step build-clang++ make_all all CXX=clang++ O=build/clang/ SANITIZE= \
-  CXXFLAGS="-Werror -O0 -g0"
-step build-plain   make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/
-# clang++, whose OpenMP tells ThreadSanitizer what waits for what.
-step peers         peers
-step build-tsan    make_all build/tsan/test_viewer build/tsan/test_sweep \
-  CXX=clang++ O=build/tsan/ SANITIZE=thread
-# Tests use one core; these need nothing that was built.
+clang() {
+  make_all all CXX=clang++ O=build/clang/ SANITIZE= CXXFLAGS="-Werror -O0 -g0"
+}
+
 of_scripts() {
   step checks      tools/test_checks.sh
   step submit      tools/test_submit.sh
   step deps        tools/test_deps.sh
 }
-beside of_scripts
-for test in $tests; do
-  case $test in
-    test_viewer | test_screen) step "$test" env ASAN_OPTIONS=detect_leaks=0 "./$test" ;;
-    *) step "$test" "./$test" ;;
-  esac
-done
-step nodes-by-clang++ build/clang/test_nodes
-step edges-by-clang++ build/clang/test_edges
-step threads       threads
-step single        single
-step window        tools/test_window.sh
-step grids         same_grids
-step readme        tools/check_readme.sh
-step charts        make -s charts QUICK=1
-step stability     make -s stability QUICK=1
-step sweep         tools/test_sweep.sh
-step fuzz          make -s fuzz RUNS=100000
-joined
+of_variants() {
+  step peers       peers
+  step build-plain make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/ \
+    release='-O1 -DNDEBUG'
+  # clang++, whose OpenMP tells ThreadSanitizer what waits for what.
+  step build-tsan  make_all build/tsan/test_viewer build/tsan/test_sweep \
+    CXX=clang++ O=build/tsan/ SANITIZE=thread
+  step threads     threads
+  step single      single
+}
+of_tests() {  # TEST...
+  local test
+  for test; do
+    case $test in
+      test_viewer | test_screen) step "$test" env ASAN_OPTIONS=detect_leaks=0 "./$test" ;;
+      *) step "$test" "./$test" ;;
+    esac
+  done
+}
+# Tests use one core, so one half of them runs beside the other.
+tests=$(make -s print-tests)
+# shellcheck disable=SC2046  # lists of words
+odd_tests() { of_tests $(sed -n 'p;n' <<<"${tests// /$'\n'}"); }
+# shellcheck disable=SC2046
+even_tests() { of_tests $(sed -n 'n;p' <<<"${tests// /$'\n'}"); }
+of_programs() {
+  step nodes-by-clang++ build/clang/test_nodes
+  step edges-by-clang++ build/clang/test_edges
+  step window      tools/test_window.sh
+  step grids       same_grids
+  step readme      tools/check_readme.sh
+}
+of_sweeps() {
+  step charts      make -s charts QUICK=1
+  step stability   make -s stability QUICK=1
+  step sweep       tools/test_sweep.sh
+  step fuzz        make -s fuzz RUNS=100000
+}
+
+step tree          tools/check_tree.sh
+step includes      tools/check_includes.sh
+step headers       env CXX=clang++ tools/check_headers.sh
+step lanes         tools/check_lanes.sh
+step build-g++     build
+step build-clang++ clang
+beside of_scripts of_variants
+beside odd_tests even_tests
+beside of_programs of_sweeps
 
 echo "make check took $((SECONDS - started)) s"
 echo "$passed passed, $failed failed"
