@@ -11,60 +11,26 @@
 #include <utility>
 #include <vector>
 
+#include "Advice.hpp"
 #include "Variation.hpp"
 
-/** How tolerance is shared out; how far pilots go. */
+/** How far estimates are trusted; how far pilots go. */
 struct AdviceRules {
-  double margin = 0.97;       ///< of the tolerance, for all errors together
-  double for_grid = 0.95;     ///< of the margin, at most
-  double for_parts = 0.5;     ///< of what the grid leaves, at most
-  double first_cells = 5;     ///< along the shortest side of the first grid
-  double most_nodes = 40000;  ///< of a grid that is tried or advised
-};
-
-/** A part, tried by leaving it out. */
-struct PartReport {
-  std::string part;
-  double change = 0;  ///< of the answer, in its unit; infinite: the run failed
-  double cost = 0;    ///< what the part takes: of the time of a run with it
-  bool needed = true;
-};
-
-/** A grid, tried or foreseen. */
-struct GridReport {
-  double factor = 1;  ///< cells along each side, of those named
-  std::size_t nodes = 0;
-  double error = 0;    ///< of the answer, estimated; infinite: not known
-  double seconds = 0;  ///< of the run; 0: it was foreseen only
-  Answer answer;       // empty: foreseen
-};
-
-/** A method and a step, tried on the grid of the pilots. */
-struct StepReport {
-  std::string method;
-  double dt = 0;     ///< there [s]
-  double error = 0;  ///< of the answer; infinite: the run failed
-  double seconds = 0;
-};
-
-/** What was found. */
-struct Advice {
-  Measure measure = Measure::com;
-  double tolerance = 0;
-  std::vector<GridReport> grids;
-  std::vector<PartReport> parts;
-  std::vector<StepReport> steps;
-  double floor = 0;     ///< what the answer makes of a start moved by 1e-6 m
-  std::string refusal;  ///< why there is no advice; empty: there is
-  Model model;          ///< the cheapest that was found
-  double error = 0;     ///< predicted, in the unit of the measure
-  double seconds = 0;   ///< predicted, of this machine
-  double spent = 0;     ///< by the pilots [s]
+  double doubt_of_effects = 0.2;  ///< of what parts and steps change
+  double for_parts = 0.7;         ///< of the tolerance, at most
+  double first_cells = 5;         ///< along the shortest side of the first grid
+  double most_nodes = 40000;      ///< of a grid that is tried or advised
+  /** A finer grid than advice needs, to make it cheaper, and a choice that is
+   * doubtful are run if that takes so many springs looked at, about a second.
+   */
+  double patience = 1e8;
+  int most_checked = 12;    ///< choices that are run to see if they do
+  double most_doubt = 0.2;  ///< of the tolerance, in the limit of all grids
 };
 
 namespace advise_detail {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+using refinement_detail::infinite;
 
 inline std::size_t nodes_of(const Model& m) { return mesh_of(m).points.size(); }
 
@@ -82,29 +48,61 @@ class Adviser {
   Adviser(const Model& m, const AdviceRules& rules) : scene_(m), rules_(rules) {
     advice_.measure = read_measure(m.measure);
     advice_.tolerance = m.tolerance;
+    advice_.grids = Refinement(advice_.measure);
   }
 
   Advice find() {
     check_question(scene_);
     if (!(scene_.t_end > 0))
       throw SceneError("t-end", "is 0, so there is nothing to find out");
-    if (!find_grid() || !look_for_chaos()) return advice_;
-    const Model pilot = on_grid(pilot_factor_);
-    Model needed = find_parts(pilot);
-    find_step(needed);
+    do {
+      if (!find_grid()) break;
+      advice_.refusal.clear();
+      if (base_ != find_base()) {
+        base_ = find_base();
+        find_parts();
+        try_steps();
+      }
+      choose();
+    } while (goes_on());
+    // Chaos may be why nothing was found; a finer grid that is none is no
+    // matter.
+    if (!advice_.grids.empty() && look_for_chaos() && found_) take(*found_);
     return advice_;
   }
 
  private:
+  /** Parts left out together. */
+  struct Less {
+    std::vector<std::string> gone;
+    Effect effect;
+    double work;  // of a run without them, to one with them
+  };
+  /** Method and step on the grid of base(). */
+  struct Step {
+    const MethodInfo* info;
+    const char* method;
+    double dt, seconds, work;  // its largest; of a run with all parts
+    Effect effect[2];          // of its largest step, and of the half of that
+    bool works[2];
+    double doubt = 1;  // of what it changes, relative to that
+  };
+
+  struct Choice {
+    Model model;
+    std::vector<std::string> gone;
+    double error, doubt, seconds, work;
+  };
+
   Model scene_;
   AdviceRules rules_;
   Advice advice_;
-  double pilot_factor_ = 1;  // of the grid on which the rest is tried
-  double grid_error_ = 0, part_error_ = 0;
-  double factor_ = 1;                 // of the grid that is advised
-  Trial pilot_;                       // all parts, on the pilots' grid
-  std::vector<Answer> still_;         // of that, to all questions
-  std::vector<std::string> dropped_;  // parts that are not needed
+  std::vector<Answer> still_;   // of the finest grid, to all questions
+  std::size_t base_ = no_base;  // the grid on which parts and steps are tried
+  std::vector<Less> less_;      // the first one: all parts
+  std::vector<Step> steps_;     // the first one: Verlet
+  std::optional<Choice> found_;
+  static constexpr std::size_t no_base = ~std::size_t(0);
 
   Model on_grid(double factor) const {
     return scene_.sheets.empty() ? scene_ : refined(scene_, factor);
@@ -116,62 +114,39 @@ class Adviser {
     advice_.spent += t.seconds;
     return t;
   }
-  /** Run the scene with all its parts, on some grid. */
-  Trial run_pilot(const Model& m) {
-    const Model pilot = as_pilot(m);
-    return run(pilot, 0, all_answers(pilot, still_));
-  }
-  double budget() const { return rules_.margin * advice_.tolerance; }
-  double room_for_parts() const {
-    return rules_.for_parts * (budget() - grid_error_);
-  }
-  double apart(const Trial& a, const Trial& b) const {
-    return a.ok() && b.ok() ? distance(a.answer, b.answer, advice_.measure)
-                            : infinite;
-  }
   bool refuse(const std::string& why) {
     advice_.refusal = why;
     return false;
   }
+  double size_of(const Effect& e) const { return e.size(advice_.measure); }
 
   // ------------------------------------------------------------------- Grid
 
-  /** Grids of twice as many cells each time, until one is fine enough, or it
-   * can be foreseen that the next one is. The step goes down with the grid, so
-   * its error is in it. */
+  const GridReport& base() const { return advice_.grids[base_]; }
+  /** Where parts and steps are best tried: on the coarsest grid that may do,
+   * and on none that takes more than an eighth of the finest one's work. */
+  std::size_t find_base() const {
+    const auto& grids = advice_.grids;
+    std::size_t k = 0;
+    while (k + 2 < grids.size() && !(grids[k].error <= advice_.tolerance)) ++k;
+    return k;
+  }
+
+  /** Go on to grids of twice as many cells each time, until one is fine enough,
+   * or it can be foreseen that the next one is. The step goes down with the
+   * grid, so its error is in it. */
   bool find_grid() {
-    using CME212::short_text;
     auto& grids = advice_.grids;
-    const double enough = rules_.for_grid * budget();
-    if (scene_.sheets.empty()) {
-      pilot_ = run_pilot(scene_);
-      if (!pilot_.ok()) return refuse(pilot_.failure);
-      grids.push_back({1, nodes_of(scene_), 0, pilot_.seconds, pilot_.answer});
-      return true;
-    }
-    unsigned shortest = ~0u;
-    for (const std::string& text : scene_.sheets)
-      for (unsigned n : read_sheet(text).nodes)
-        shortest = std::min(shortest, n);
-    double factor = 1;
-    while ((shortest - 1) * factor / 2 >= rules_.first_cells) factor /= 2;
-    double order = 1;
+    double factor = grids.empty() ? first_factor() : 2 * grids.back().factor;
     for (;; factor *= 2) {
-      const Model m = on_grid(factor);
+      const Model m = as_pilot(on_grid(factor));
       const std::size_t nodes = nodes_of(m);
       if (double(nodes) > rules_.most_nodes)
-        return refuse(
-            does_not_settle()
-                ? unsettled()
-                : "a grid of " + std::to_string(nodes) +
-                      " nodes would not be fine enough yet: the error of the "
-                      "one before is " +
-                      short_text(grids.empty() ? infinite
-                                               : grids.back().error) +
-                      ' ' + unit_of(advice_.measure));
+        return refuse(grids.settles() ? too_coarse(nodes) : unsettled());
       Trial t;
+      std::vector<Answer> all;
       try {
-        t = run_pilot(m);
+        t = run(m, 0, all_answers(m, all));
       } catch (const SceneError& e) {  // a pin between nodes, a thickness
         if (factor >= 1)
           return refuse("of a grid of " + std::to_string(nodes) +
@@ -180,60 +155,59 @@ class Adviser {
         continue;
       }
       if (!t.ok()) return refuse(t.failure);
-      grids.push_back({factor, nodes, infinite, t.seconds, t.answer});
-      const std::size_t k = grids.size() - 1;
-      if (k >= 2) {
-        // Slower than that foresees nothing; faster goes no scheme here.
-        const double d = step_between(k - 2), e = step_between(k - 1);
-        order = std::clamp(e > 0 ? std::log2(d / e) : 2.0, 0.8, 2.0);
-      }
-      pilot_ = t, pilot_factor_ = factor_ = factor;
-      if (k < 2) continue;
-      estimate_errors(order);
-      // The coarsest that is fine enough.
-      for (const GridReport& g : grids)
-        if (g.error <= enough) {
-          factor_ = g.factor, grid_error_ = g.error;
-          return true;
-        }
-      // Foreseen to be fine enough, not by a hair.
-      const double next = grids.back().error / std::pow(2, order);
-      const std::size_t more = nodes_of(on_grid(2 * factor));
-      if (next <= enough / 1.5 && double(more) <= rules_.most_nodes) {
-        grids.push_back({2 * factor, more, next, 0, {}});
-        factor_ = 2 * factor, grid_error_ = next;
-        return true;
-      }
+      still_ = all;
+      grids.add({factor, nodes, infinite, t});
+      found_.reset();  // what coarser grids made believe counts no longer
+      if (scene_.sheets.empty()) return true;
+      if (grids.size() >= 3 && may_suffice()) return true;
     }
   }
-  /** The answers of the last grids do not come closer to each other. */
-  bool does_not_settle() const {
-    const std::size_t n = advice_.grids.size();
-    return n >= 3 && step_between(n - 2) > 0.8 * step_between(n - 3);
+  double first_factor() const {
+    unsigned shortest = ~0u;
+    for (const std::string& text : scene_.sheets)
+      for (unsigned n : read_sheet(text).nodes)
+        shortest = std::min(shortest, n);
+    double factor = 1;
+    while (!scene_.sheets.empty() &&
+           (shortest - 1) * factor / 2 >= rules_.first_cells)
+      factor /= 2;
+    return factor;
   }
+  /** The grids to choose from, the coarsest first: those that were tried, the
+   * next one, and one in the midst between each two. */
+  std::vector<double> factors() const {
+    std::vector<double> all;
+    for (const GridReport& g : advice_.grids) {
+      all.push_back(g.factor);
+      if (scene_.sheets.empty()) break;
+      for (double f : {std::sqrt(2.0) * g.factor, 2 * g.factor})
+        if ((f < 2 * g.factor || &g == &advice_.grids.back()) &&
+            double(nodes_of(on_grid(f))) <= rules_.most_nodes)
+          all.push_back(f);
+    }
+    return all;
+  }
+  bool may_suffice() const {
+    return std::ranges::any_of(factors(), [this](double f) {
+      return size_of(advice_.grids.error(f)) + advice_.grids.doubt(f) <=
+             advice_.tolerance;
+    });
+  }
+
   std::string unsettled() const {
-    const std::size_t n = advice_.grids.size();
+    const auto& grids = advice_.grids;
     return "the answer does not settle as the grid gets finer: the last two "
            "steps changed it by " +
-           CME212::two_digits(step_between(n - 3)) + " and " +
-           CME212::two_digits(step_between(n - 2)) + ' ' +
+           CME212::two_digits(grids.step_to(grids.size() - 2)) + " and " +
+           CME212::two_digits(grids.step_to(grids.size() - 1)) + ' ' +
            unit_of(advice_.measure);
   }
-  double step_between(std::size_t k) const {
-    const auto& g = advice_.grids;
-    return distance(g[k].answer, g[k + 1].answer, advice_.measure);
-  }
-  /** Of all grids against what they tend to, by the last two (Richardson). */
-  void estimate_errors(double order) {
-    auto& grids = advice_.grids;
-    const double shrink = std::pow(2, order);
-    const Answer &last = grids.back().answer,
-                 &before = grids[grids.size() - 2].answer;
-    Answer limit = last;
-    for (std::size_t k = 0; k < limit.size(); ++k)
-      limit[k] += (last[k] - before[k]) / (shrink - 1);
-    for (GridReport& g : grids)
-      g.error = distance(g.answer, limit, advice_.measure);
+  std::string too_coarse(std::size_t nodes) const {
+    const auto& grids = advice_.grids;
+    return "a grid of " + std::to_string(nodes) +
+           " nodes would be too much, and the error of the one before is " +
+           CME212::short_text(grids.empty() ? infinite : grids.back().error) +
+           ' ' + unit_of(advice_.measure);
   }
 
   // ------------------------------------------------------------------ Chaos
@@ -253,17 +227,20 @@ class Adviser {
   }
 
   /** What the answer, and others that could be asked for, make of a start that
-   * is off by a millionth of a meter. */
+   * is off by a millionth of a meter: on the finest grid, as chaos grows with
+   * it.
+   */
   bool look_for_chaos() {
     std::vector<Answer> shaken;
-    const Model m = as_pilot(on_grid(pilot_factor_));
+    const Model m = as_pilot(on_grid(advice_.grids.back().factor));
     const Trial t = run(m, 1e-6, all_answers(m, shaken));
     if (!t.ok()) return refuse(t.failure);
     std::string others;
     for (std::size_t k = 0; k < measure_names.size(); ++k) {
-      if (still_[k].empty()) continue;
+      const Answer& still = still_[k];
+      if (still.empty()) continue;
       const Measure what = Measure(k);
-      const double moved = distance(still_[k], shaken[k], what);
+      const double moved = distance(still, shaken[k], what);
       if (what == advice_.measure)
         advice_.floor = moved;
       else
@@ -271,7 +248,7 @@ class Adviser {
                   " to " + CME212::short_text(4 * moved) +
                   (*unit_of(what) ? " " : "") + unit_of(what);
     }
-    if (advice_.floor <= budget() / 2) return true;
+    if (advice_.floor <= advice_.tolerance / 2) return true;
     return refuse(
         "the motion is chaotic: a start that is off by 1e-6 m "
         "changes the answer by " +
@@ -284,44 +261,40 @@ class Adviser {
 
   // ------------------------------------------------------------------ Parts
 
-  /** Leave out each part in turn; then all together that change little.
-   * @return the scene on the pilots' grid without them */
-  Model find_parts(const Model& pilot) {
+  /** Leave out each part in turn; then one more each time, as long as together
+   * they change little: those that change least first. */
+  void find_parts() {
     auto& parts = advice_.parts;
-    const auto variations = without_parts(as_pilot(pilot));
-    for (const Variation& v : variations) {
-      PartReport r{v.part};
+    const Model all = as_pilot(on_grid(base().factor));
+    const Trial& pilot = base().trial;
+    parts.clear();
+    for (const Variation& v : without_parts(all)) {
+      PartReport r{v.part, infinite};  // it is no scene without that part
       try {
-        const Trial t = run(v.model);
-        r.change = apart(t, pilot_);
-        r.cost = 1 - t.seconds / pilot_.seconds;
+        if (const Trial t = run(v.model); t.ok()) {
+          r.change = distance(t.answer, pilot.answer, advice_.measure);
+          r.cost = 1 - t.seconds / pilot.seconds;
+        }
       } catch (const std::exception&) {
-        r.change = infinite;  // it is no scene without that part
       }
       parts.push_back(r);
     }
-    std::vector<std::size_t> order(parts.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::ranges::sort(order, {},
-                      [&](std::size_t k) { return parts[k].change; });
-    std::vector<std::string> gone;
-    Model least = pilot;
-    for (std::size_t k : order) {
-      if (!(parts[k].change <= room_for_parts())) break;
-      gone.push_back(parts[k].part);
-      const std::optional<Model> without = without_all(pilot, gone);
-      const double change =
-          without ? apart(run(as_pilot(*without)), pilot_) : infinite;
-      if (!(change <= room_for_parts())) {
-        gone.pop_back();
-        continue;
-      }
-      part_error_ = change;
-      parts[k].needed = false;
-      least = *without;
+    std::vector<PartReport> order = parts;
+    std::ranges::sort(order, {}, &PartReport::change);
+    const double room = rules_.for_parts * advice_.tolerance;
+    less_ = {{{}, Effect(pilot.answer.size()), 1}};
+    for (const PartReport& part : order) {
+      if (!(part.change <= room)) break;
+      std::vector<std::string> gone = less_.back().gone;
+      gone.push_back(part.part);
+      const std::optional<Model> without = without_all(all, gone);
+      if (!without) continue;
+      const Trial t = run(*without);
+      if (!t.ok()) continue;
+      const Effect effect(t.answer, pilot.answer);
+      if (size_of(effect) <= room)
+        less_.push_back({gone, effect, t.work / pilot.work});
     }
-    dropped_ = gone;
-    return least;
   }
 
   /** @a m without these parts; nothing if one went with another. */
@@ -342,70 +315,165 @@ class Adviser {
 
   // ------------------------------------------------------------------- Step
 
-  /** Each method by two steps; the cheapest of them, and of what lies between
-   * and below them, that leaves room for the other errors. */
-  void find_step(const Model& needed) {
+  /** Each method by two steps. */
+  void try_steps() {
     struct Try {
       const char* method;
-      double first, second;  // of Verlet's largest step
+      double share;  // of Verlet's largest step
     };
-    constexpr Try tries[] = {
-        {"verlet", 0.9, 0.45}, {"symplectic-euler", 0.9, 0.45},
-        {"pefrl", 1.3, 0.65},  {"srkn6b", 2.2, 1.1},
-        {"tr-bdf2", 8, 4},     {"implicit-euler", 8, 4},
-    };
-    Model m = as_pilot(needed);
+    constexpr Try tries[] = {{"verlet", 0.9}, {"symplectic-euler", 0.9},
+                             {"pefrl", 1.3},  {"srkn6b", 2.2},
+                             {"tr-bdf2", 8},  {"implicit-euler", 8}};
+    Model m = as_pilot(on_grid(base().factor));
     const double verlet = step_of(m) / safe_share;
-    auto attempt = [&](const Try& t, double share) {
-      m.method = t.method;
+    auto attempt = [&](const char* method, double share) {
+      m.method = method;
       m.with.rule = StepRule::fixed;
       m.with.dt = std::min(share * verlet, m.t_end);
       return run(m);
     };
-    const Trial exact = attempt({"srkn6b", 0, 0}, 0.55);
-    const double room = budget() - grid_error_ - part_error_;
+    const Trial exact = attempt("srkn6b", 0.55);
     // Explicit methods by counted work: a clock is not that exact.
-    const double per_spring = pilot_.seconds / pilot_.work;
-    double least = infinite;
+    const double per_spring = base().trial.seconds / base().trial.work;
+    steps_.clear(), advice_.steps.clear();
     for (const Try& t : tries) {
-      const MethodInfo& info = find_method(t.method)->info;
-      double errors[2], dts[2], seconds[2];
+      Step s{&find_method(t.method)->info, t.method, 0, 0, 0, {}, {}, 1};
       for (int k : {0, 1}) {
-        const Trial trial = attempt(t, k == 0 ? t.first : t.second);
-        errors[k] = apart(trial, exact), dts[k] = trial.dt;
-        seconds[k] =
-            info.limit == no_limit ? trial.seconds : trial.work * per_spring;
-        advice_.steps.push_back({t.method, dts[k], errors[k], seconds[k]});
+        const Trial trial = attempt(t.method, t.share / (1 << k));
+        const double seconds =
+            s.info->limit == no_limit ? trial.seconds : trial.work * per_spring;
+        s.works[k] = trial.ok() && exact.ok();
+        if (s.works[k]) s.effect[k] = Effect(trial.answer, exact.answer);
+        if (k == 0) s.dt = trial.dt, s.seconds = seconds, s.work = trial.work;
+        advice_.steps.push_back({t.method, trial.dt,
+                                 s.works[k] ? size_of(s.effect[k]) : infinite,
+                                 seconds});
       }
-      // Never beyond the first step: what lies there was not tried.
-      for (double share = 1; share > 1 / 64.; share /= 2) {
-        const int k = share == 1 ? 0 : 1;
-        const double down = share == 1 ? 1 : 2 * share;
-        const double error = errors[k] * std::pow(down, info.order);
-        // On a finer grid an explicit step is as much smaller.
-        const double finer = factor_ / pilot_factor_;
-        const bool shrinks = info.limit != no_limit;
-        const double there =
-            shrinks ? error * std::pow(1 / finer, info.order) : error;
-        if (!(there <= room)) continue;
-        const double cost =
-            seconds[k] / down * finer * finer * (shrinks ? finer : 1);
-        if (cost >= least) break;
-        least = cost;
-        advice_.error = grid_error_ + part_error_ + there;
-        advice_.seconds = cost;
-        advice_.model = *without_all(on_grid(factor_), dropped_);
-        advice_.model.method = t.method;
-        advice_.model.with.dt = dts[k] * down / (shrinks ? finer : 1);
-        advice_.model.with.rule = StepRule::fixed;
-        advice_.model.dt = CME212::exact_text(advice_.model.with.dt);
-        break;
+      // The two steps bear the order out, or they don't.
+      if (s.works[0] && s.works[1] && size_of(s.effect[0]) > 0) {
+        Effect surprise = s.effect[0];
+        surprise.add(-std::pow(2, s.info->order), s.effect[1].by);
+        s.doubt = std::clamp(size_of(surprise) / size_of(s.effect[0]),
+                             rules_.doubt_of_effects, 1.0);
       }
+      steps_.push_back(s);
     }
-    if (least == infinite)
-      refuse(
-          "no method meets the tolerance on this grid by steps down to 1/64 "
-          "of its largest");
+  }
+
+  /** What @a share of the largest step of @a s changes on a grid of @a finer
+   * times the cells. Never beyond the largest step: what lies there was not
+   * tried. On a finer grid an explicit step is as much smaller. */
+  static Effect of_step(const Step& s, double share, double finer) {
+    if (s.info->limit == no_limit) finer = 1;
+    const int k = share == 1 ? 0 : 1;
+    return Effect(s.effect[k].by.size())
+        .add(std::pow((k + 1) * share / finer, s.info->order), s.effect[k].by);
+  }
+
+  // ----------------------------------------------------------------- Choice
+
+  /** The cheapest of all choices that meets the tolerance. One that does not
+   * take long is run and looked at, so that it may be doubtful; of a long one
+   * there must be no doubt. */
+  void choose() {
+    const Refinement& grids = advice_.grids;
+    int runs = 0;
+    for (Choice& c : choices()) {
+      if (c.work <= rules_.patience && runs < rules_.most_checked) {
+        ++runs;
+        const Trial t = run(c.model);
+        if (!t.ok()) continue;
+        c.error = size_of(Effect(t.answer, grids.limit()));
+        c.doubt = grids.doubt_of_limit();
+        c.seconds = t.seconds;
+      }
+      if (!(c.error + c.doubt <= advice_.tolerance)) continue;
+      found_ = c;
+      return;
+    }
+    refuse(
+        "no method meets the tolerance on this grid by steps down to 1/64 of "
+        "its largest");
+  }
+  /** True if there is no choice yet; or if no fourth grid bears three out, or
+   * much of the tolerance goes into doubt, and a finer grid does not take long.
+   */
+  bool goes_on() const {
+    if (scene_.sheets.empty()) return false;
+    if (!found_) return true;
+    const GridReport& last = advice_.grids.back();
+    return (advice_.grids.size() < 4 ||
+            advice_.grids.doubt_of_limit() >
+                rules_.most_doubt * advice_.tolerance) &&
+           8 * last.trial.work <= rules_.patience &&
+           double(nodes_of(on_grid(2 * last.factor))) <= rules_.most_nodes;
+  }
+  void take(const Choice& c) {
+    advice_.refusal.clear();
+    advice_.model = c.model;
+    advice_.error = c.error, advice_.doubt = c.doubt;
+    advice_.seconds = c.seconds;
+    for (PartReport& p : advice_.parts)
+      p.needed = !std::ranges::count(c.gone, p.part);
+  }
+
+  /** All grids, sets of parts, methods and steps of which the effects, added
+   * up, are within the tolerance if nothing is doubted: the cheapest first, and
+   * of each method on a grid the largest step only. */
+  std::vector<Choice> choices() const {
+    std::vector<Choice> all;
+    for (double factor : factors()) {
+      const double finer = factor / base().factor;
+      const Effect of_grid = advice_.grids.error(factor);
+      // The pilots' own step is in that of the grid; Verlet is of order 2.
+      const double pilots = safe_share / 0.9 / finer;
+      Effect of_pilot(of_grid.by.size());
+      if (steps_[0].works[1])
+        of_pilot.add(4 * pilots * pilots, steps_[0].effect[1].by);
+      for (auto less = less_.rbegin(); less != less_.rend(); ++less)
+        for (const Step& s : steps_)
+          for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
+            if (!s.works[share == 1 ? 0 : 1]) continue;
+            // Below its second step it goes as its order says, if at all.
+            if (share < 0.49 && s.doubt == 1) break;
+            const Effect step = of_step(s, share, finer);
+            Effect effect = of_grid;
+            effect.add(1, less->effect.by).add(1, step.by).add(-1, of_pilot.by);
+            const double error = size_of(effect);
+            if (!(error <= advice_.tolerance)) continue;
+            const double doubt =
+                advice_.grids.doubt(factor) + s.doubt * size_of(step) +
+                rules_.doubt_of_effects *
+                    (size_of(less->effect) + size_of(of_pilot));
+            const bool shrinks = s.info->limit != no_limit;
+            const double more =
+                less->work / share * std::pow(finer, shrinks ? 3 : 2);
+            const auto m = scene_with(factor, *less, s,
+                                      s.dt * share / (shrinks ? finer : 1));
+            if (!m) continue;
+            all.push_back({*m, less->gone, error, doubt, s.seconds * more,
+                           s.work * more});
+            if (error + doubt <= advice_.tolerance) break;
+          }
+    }
+    std::ranges::stable_sort(all, {}, &Choice::seconds);
+    return all;
+  }
+  /** Nothing if a grid that was not tried is no scene: its nodes miss a pin. */
+  std::optional<Model> scene_with(double factor, const Less& less,
+                                  const Step& s, double dt) const {
+    std::optional<Model> m = without_all(on_grid(factor), less.gone);
+    if (!m) return m;
+    m->method = s.method;
+    m->with.dt = dt;
+    m->with.rule = StepRule::fixed;
+    m->dt = CME212::exact_text(dt);
+    try {
+      Scene(recipe_of(*m), m->with, *find_method(m->method));
+    } catch (const SceneError&) {
+      return std::nullopt;
+    }
+    return m;
   }
 };
 
@@ -417,50 +485,4 @@ class Adviser {
  * Throws InputError, SceneError: also if @a m can't answer its question. */
 inline Advice advise(const Model& m, const AdviceRules& rules = {}) {
   return advise_detail::Adviser(m, rules).find();
-}
-
-/** @a a as tables, and what it comes to, for people. */
-inline std::string in_words(const Advice& a) {
-  using CME212::short_text;
-  std::string text;
-  char line[200];
-  const std::string unit =
-      *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
-  auto add = [&](const char* format, auto... values) {
-    std::snprintf(line, sizeof line, format, values...);
-    text += line;
-  };
-  auto number = [](double x) {
-    return std::isfinite(x) ? CME212::two_digits(x) : std::string("-");
-  };
-  add("asked: %s%s to %s\n", name_of(a.measure), unit.c_str(),
-      short_text(a.tolerance).c_str());
-  if (a.grids.size() > 1) {
-    add("\n%-44s %10s %10s\n", "nodes", "error", "time [s]");
-    for (const GridReport& g : a.grids)
-      add("%-44zu %10s %10s\n", g.nodes, number(g.error).c_str(),
-          g.answer.empty() ? "foreseen" : number(g.seconds).c_str());
-  }
-  if (!a.parts.empty()) {
-    add("\n%-44s %10s %10s\n", "part", "changes", "costs");
-    for (const PartReport& p : a.parts)
-      add("%-44.44s %10s %9.0f%%  %s\n", p.part.c_str(),
-          number(p.change).c_str(), 100 * std::max(0.0, p.cost),
-          p.needed ? "needed" : "not needed");
-  }
-  if (!a.steps.empty()) {
-    add("\n%-30s %13s %10s %10s\n", "method", "dt [s]", "error", "time [s]");
-    for (const StepReport& s : a.steps)
-      add("%-30s %13s %10s %10s\n", s.method.c_str(), number(s.dt).c_str(),
-          number(s.error).c_str(), number(s.seconds).c_str());
-  }
-  if (!a.refusal.empty()) return text + "\nno advice: " + a.refusal + '\n';
-  add("\nadvice: %zu nodes, %s, dt = %s s: error %s%s, %s s; finding out took "
-      "%s s\n",
-      mesh_of(a.model).points.size(), a.model.method.c_str(),
-      short_text(a.model.with.dt).c_str(), number(a.error).c_str(),
-      *unit_of(a.measure) ? (std::string(" ") + unit_of(a.measure)).c_str()
-                          : "",
-      number(a.seconds).c_str(), number(a.spent).c_str());
-  return text;
 }

@@ -30,13 +30,66 @@ Answer truth(const Model& m, double factor) {
   return try_out(fine).answer;
 }
 
+GridReport grid(double factor, Answer answer) {
+  GridReport g;
+  g.factor = factor;
+  g.trial.answer = std::move(answer);
+  return g;
+}
+
+TEST(Refinement, FindsTheLimitOfWhatGoesByAnOrder) {
+  for (double order : {1.0, 1.5, 2.0}) {
+    Refinement r(Measure::com);
+    const double c[] = {0.3, -0.2, 0.05};
+    auto off = [&](double factor, int k) {
+      return c[k] * std::pow(factor, -order);
+    };
+    for (double f : {1., 2., 4., 8.})
+      r.add(grid(f, {1 + off(f, 0), 2 + off(f, 1), 3 + off(f, 2)}));
+    for (double f : {1., 2., 8., 5.5, 16.}) {  // the last two: not tried
+      const Effect e = r.error(f);
+      for (int k : {0, 1, 2})
+        EXPECT_NEAR(e.by[unsigned(k)], off(f, k), 1e-12) << order << ' ' << f;
+      EXPECT_GT(r.doubt(f), 0);
+      EXPECT_LT(r.doubt(f), e.size(Measure::com));
+    }
+    EXPECT_NEAR(r[0].error, std::hypot(c[0], c[1], c[2]), 1e-12);
+    EXPECT_TRUE(r.settles());
+  }
+}
+
+TEST(Refinement, DoubtsWhatGoesByNoOrder) {
+  auto doubt = [](std::vector<double> answers) {
+    Refinement r(Measure::energy);
+    double factor = 1;
+    for (double a : answers) r.add(grid(factor, {a})), factor *= 2;
+    return r.doubt(factor / 2) / r.back().error;
+  };
+  const double regular = doubt({1, 0.25, 0.0625});  // order 2
+  EXPECT_GT(regular, doubt({4, 1, 0.25, 0.0625}));  // borne out by a fourth
+  EXPECT_GT(doubt({3, 1, 0.25, 0.0625}), doubt({4, 1, 0.25, 0.0625}));
+  EXPECT_GT(doubt({1, -0.25, 0.0625}), 2 * regular);  // to and fro
+  EXPECT_GT(doubt({1, -1, 1}), 1);                    // it may be anything
+  Refinement r(Measure::energy);
+  for (double a : {1., 0., 0.9}) r.add(grid(1, {a}));
+  EXPECT_FALSE(r.settles());
+}
+
+// A file's grid is the only one: its error is not known, and not doubted.
+TEST(Refinement, OneGridIsTakenAsItIs) {
+  Refinement r(Measure::energy);
+  r.add(grid(1, {5}));
+  EXPECT_EQ(r[0].error, 0);
+  EXPECT_EQ(r.doubt(1), 0);
+}
+
 TEST(Advise, MeetsTheTolerance) {
   const Answer right = truth(hanging(1), 8);
   std::size_t nodes = 0;
-  for (double tolerance : {1e-2, 1e-3, 1e-4}) {
+  for (double tolerance : {1e-2, 1e-4, 3e-5}) {
     const Advice a = advise(hanging(tolerance));
     ASSERT_EQ(a.refusal, "");
-    EXPECT_LE(a.error, tolerance);
+    EXPECT_LE(a.error + a.doubt, tolerance);
     EXPECT_LE(distance(try_out(a.model).answer, right, a.measure), tolerance);
     const std::size_t now = mesh_of(a.model).points.size();
     EXPECT_GE(now, nodes);  // a finer answer, a finer grid
@@ -67,7 +120,7 @@ TEST(Advise, RefusesWhatNoGridCanGive) {
   AdviceRules rules;
   rules.most_nodes = 500;
   const Advice a = advise(hanging(1e-7), rules);
-  EXPECT_NE(a.refusal.find("would not be fine enough"), std::string::npos)
+  EXPECT_NE(a.refusal.find("would be too much"), std::string::npos)
       << a.refusal;
   EXPECT_NE(in_words(a).find("no advice: "), std::string::npos);
 }
@@ -107,7 +160,9 @@ TEST(Advise, TellsWhichGridIsNoScene) {
   m.sheets = {"u 1 0 0 v 0 0 -1 nodes 21 21"};
   m.pins = {"z 0", "x 0.05"};  // of the second column
   m.t_end = 0.05;
-  const Advice a = advise(m);
+  AdviceRules rules;
+  rules.patience = 1e6;  // no finer grids than it takes
+  const Advice a = advise(m, rules);
   EXPECT_EQ(a.refusal, "");
   ASSERT_FALSE(a.grids.empty());
   EXPECT_EQ(a.grids[0].factor, 1);
@@ -115,8 +170,9 @@ TEST(Advise, TellsWhichGridIsNoScene) {
   m.t_end = 0.2;
   m.self_collision = "thickness 0.04";  // two sides of 81 nodes: 0.025 m
   m.tolerance = 1e-6;
-  EXPECT_NE(advise(m).refusal.find(" nodes: --self-collision has thickness"),
-            std::string::npos);
+  EXPECT_NE(
+      advise(m, rules).refusal.find(" nodes: --self-collision has thickness"),
+      std::string::npos);
   m.t_end = 0;
   EXPECT_THROW(advise(m), SceneError);
 }

@@ -16,7 +16,7 @@ set grid lc rgb '#dddddd'
 set border 3
 set tics nomirror
 set key top left Left reverse samplen 2
-advised = "< awk -F, '!/^#/ && $6 > 0' ".csv
+advised = "< awk -F, '!/^#/ && $8 > 0' ".csv
 set title '{/:Bold Error over tolerance}'
 set xlabel 'predicted'
 set ylabel 'real'
@@ -24,7 +24,7 @@ set xrange [1e-3:3]
 set yrange [1e-6:30]
 plot 1 lc rgb '#D55E00' lw 2 title 'the tolerance', \
      x lc rgb '#999999' dt 2 title 'real as predicted', \
-     advised using ($4/$3):(($5/$3 < 1e-6 ? 1e-6 : $5/$3)) with points pt 7 \
+     advised using ($5/$3):($7/$3 < 1e-6 ? 1e-6 : $7/$3) with points pt 7 \
        ps 0.6 lc rgb '#0072B2' notitle
 set title '{/:Bold Work: springs looked at}'
 set xlabel 'best choice in hindsight'
@@ -32,4 +32,4 @@ set ylabel 'chosen'
 set autoscale xy
 plot x lc rgb '#999999' dt 2 title 'the same', \
      1.5*x lc rgb '#D55E00' lw 2 title '1.5 times as much', \
-     advised using 7:6 with points pt 7 ps 0.6 lc rgb '#0072B2' notitle
+     advised using 9:8 with points pt 7 ps 0.6 lc rgb '#0072B2' notitle

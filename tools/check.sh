@@ -152,6 +152,11 @@ tests=$(make -s print-tests)
 odd_tests() { of_tests $(sed -n 'p;n' <<<"${tests// /$'\n'}"); }
 # shellcheck disable=SC2046
 even_tests() { of_tests $(sed -n 'n;p' <<<"${tests// /$'\n'}"); }
+# A sample of the suite of docs/advice.md; other scenes than the tables.
+advice() {
+  ./adviser_suite --scenes 24 --first 501 --want-met 85 --want-cheap 75 \
+    --out build/adviser.csv
+}
 of_programs() {
   step nodes-by-clang++ build/clang/test_nodes
   step edges-by-clang++ build/clang/test_edges
@@ -164,6 +169,7 @@ of_sweeps() {
   step stability   make -s stability QUICK=1
   step sweep       tools/test_sweep.sh
   step fuzz        make -s fuzz RUNS=100000
+  step advice      advice
 }
 
 step tree          tools/check_tree.sh

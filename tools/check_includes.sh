@@ -47,8 +47,10 @@ Model              : Obstacle Words CME212/Util
 Compose            : Model SelfCollision Force
 Scene              : Compose Integrator Stability
 Measure            : Scene Methods
+Refinement         : Measure
+Advice             : Refinement
 Variation          : Measure
-Advise             : Variation
+Advise             : Variation Advice
 SceneFile          : Model Methods
 Run                : Scene CME212/OutputFile
 Problem            : Methods Stability
