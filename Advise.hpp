@@ -227,9 +227,7 @@ class Adviser {
   }
 
   /** What the answer, and others that could be asked for, make of a start that
-   * is off by a millionth of a meter: on the finest grid, as chaos grows with
-   * it.
-   */
+   * is off by a millionth of a meter: on the finest grid, as chaos grows. */
   bool look_for_chaos() {
     std::vector<Answer> shaken;
     const Model m = as_pilot(on_grid(advice_.grids.back().factor));

@@ -165,8 +165,8 @@ pictures: test_screen mass_spring mass_spring_problem1 mass_spring_diagonals mas
 	./mass_spring data/grid3.* --dt 0.0005 --t-end 0.6 --strain --quiet \
 	  --screenshot docs/pictures/cloth.png
 	@for scene in scenes/*.toml; do name=$$(basename $$scene .toml); \
-	  ./mass_spring --config $$scene --quiet $$([ $$name != tablecloth ] || \
-	    echo --strain) --screenshot docs/pictures/scene-$$name.png || exit 1; \
+	  ./mass_spring --config $$scene --quiet $$(case $$name in \
+	    (tablecloth|push) echo --strain; esac) --screenshot docs/pictures/scene-$$name.png || exit 1; \
 	done
 	@for run in 'step diagonals grid3' 'drag forces grid1 --damping 3' \
 	  'euler problem1 grid1 --method forward-euler --dt 1e-4' \

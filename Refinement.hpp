@@ -71,8 +71,8 @@ class Refinement {
   }
   /** False if the answers of the last three grids do not come closer. */
   bool settles() const {
-    const std::size_t k = size() - 1;
-    return k < 2 || step_to(k) <= 0.8 * step_to(k - 1);
+    const std::size_t n = size();
+    return n < 3 || step_to(n - 1) <= 0.8 * step_to(n - 2);
   }
 
   /** The error of the grid of @a factor, whether it was tried or not.

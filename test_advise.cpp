@@ -123,6 +123,9 @@ TEST(Advise, RefusesWhatNoGridCanGive) {
   EXPECT_NE(a.refusal.find("would be too much"), std::string::npos)
       << a.refusal;
   EXPECT_NE(in_words(a).find("no advice: "), std::string::npos);
+  rules.most_nodes = 20;  // the first grid has 36
+  EXPECT_NE(advise(hanging(1), rules).refusal.find("a grid of 36 nodes"),
+            std::string::npos);
 }
 
 // A cloth pushed together buckles: which way is decided by round-off.

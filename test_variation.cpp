@@ -430,8 +430,8 @@ TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
 
     const std::string key = "| " + GetParam() + " | " +
                             (v.dropped ? "without " : "with ") + v.part + " | ";
-    out << key << std::setprecision(2) << change << " | " << m.tolerance << ' '
-        << unit_of(what) << " |\n";
+    out << key << std::setprecision(2) << change << " | " << m.tolerance
+        << (*unit_of(what) ? " " : "") << unit_of(what) << " |\n";
     const auto at = page.find(key);
     EXPECT_NE(at, std::string::npos) << "docs/scenes.md has no row " << key;
     if (at == std::string::npos) continue;
