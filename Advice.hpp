@@ -1,6 +1,7 @@
 #pragma once
 /** @file Advice.hpp
  * What was found out about the needs of a scene, as data and as tables. */
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -39,6 +40,12 @@ struct Advice {
   double seconds = 0;   ///< predicted, of this machine
   double spent = 0;     ///< by the pilots [s]
 };
+
+/** @a x to two digits with the unit of @a measure, if it has one. */
+inline std::string with_unit(double x, Measure measure) {
+  return CME212::two_digits(x) + (*unit_of(measure) ? " " : "") +
+         unit_of(measure);
+}
 
 /** @a a as tables, and what it comes to, for people. */
 inline std::string in_words(const Advice& a) {
@@ -79,13 +86,11 @@ inline std::string in_words(const Advice& a) {
     add("\na start that is off by 1e-6 m changes the answer by %s\n",
         number(a.floor).c_str());
   if (!a.refusal.empty()) return text + "\nno advice: " + a.refusal + '\n';
-  add("\nadvice: %zu nodes, %s, dt = %s s: error %s%s, give or take %s; %s s; "
+  add("\nadvice: %zu nodes, %s, dt = %s s: error %s, give or take %s; %s s; "
       "finding out took %s s\n",
       mesh_of(a.model).points.size(), a.model.method.c_str(),
-      short_text(a.model.with.dt).c_str(), number(a.error).c_str(),
-      *unit_of(a.measure) ? (std::string(" ") + unit_of(a.measure)).c_str()
-                          : "",
-      number(a.doubt).c_str(), number(a.seconds).c_str(),
-      number(a.spent).c_str());
+      short_text(a.model.with.dt).c_str(),
+      with_unit(a.error, a.measure).c_str(), number(a.doubt).c_str(),
+      number(a.seconds).c_str(), number(a.spent).c_str());
   return text;
 }

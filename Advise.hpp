@@ -5,10 +5,9 @@
  * it is right. */
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "Advice.hpp"
@@ -55,19 +54,20 @@ class Adviser {
     check_question(scene_);
     if (!(scene_.t_end > 0))
       throw SceneError("t-end", "is 0, so there is nothing to find out");
+    const CME212::Clock clock;
     do {
       if (!find_grid()) break;
       advice_.refusal.clear();
       if (base_ != find_base()) {
         base_ = find_base();
         find_parts();
-        try_steps();
+        if (!try_steps()) break;
       }
       choose();
     } while (goes_on());
-    // Chaos may be why nothing was found; a finer grid that is none is no
-    // matter.
+    // Chaos may be why nothing was found.
     if (!advice_.grids.empty() && look_for_chaos() && found_) take(*found_);
+    advice_.spent = clock.seconds();
     return advice_;
   }
 
@@ -98,21 +98,32 @@ class Adviser {
   AdviceRules rules_;
   Advice advice_;
   std::vector<Answer> still_;   // of the finest grid, to all questions
+  double first_ = 1;            // factor of the first grid
+  Answer reference_;            // of base(), by small steps; with all parts
+  double seconds_ = 0;          // of a pilot on base()
   std::size_t base_ = no_base;  // the grid on which parts and steps are tried
   std::vector<Less> less_;      // the first one: all parts
   std::vector<Step> steps_;     // the first one: Verlet
   std::optional<Choice> found_;
   static constexpr std::size_t no_base = ~std::size_t(0);
 
+  /** The first grid has whole cells, and every other one twice as many as the
+   * one before. */
   Model on_grid(double factor) const {
-    return scene_.sheets.empty() ? scene_ : refined(scene_, factor);
+    if (scene_.sheets.empty()) return scene_;
+    return refined(refined(scene_, first_), factor / first_);
   }
-  Trial run(
+  /** What is no scene fails, like what blows up. */
+  static Trial run(
       const Model& m, double shake = 0,
       const std::function<void(const Cloth&)>& look = [](const Cloth&) {}) {
-    Trial t = try_out(m, shake, look);
-    advice_.spent += t.seconds;
-    return t;
+    try {
+      return try_out(m, shake, look);
+    } catch (const std::exception& e) {
+      Trial failed;
+      failed.failure = e.what();
+      return failed;
+    }
   }
   bool refuse(const std::string& why) {
     advice_.refusal = why;
@@ -137,24 +148,24 @@ class Adviser {
    * grid, so its error is in it. */
   bool find_grid() {
     auto& grids = advice_.grids;
-    double factor = grids.empty() ? first_factor() : 2 * grids.back().factor;
+    if (grids.empty()) first_ = first_factor();
+    double factor = grids.empty() ? first_ : 2 * grids.back().factor;
     for (;; factor *= 2) {
       const Model m = as_pilot(on_grid(factor));
       const std::size_t nodes = nodes_of(m);
       if (double(nodes) > rules_.most_nodes)
         return refuse(grids.settles() ? too_coarse(nodes) : unsettled());
-      Trial t;
       std::vector<Answer> all;
-      try {
-        t = run(m, 0, all_answers(m, all));
-      } catch (const SceneError& e) {  // a pin between nodes, a thickness
+      const Trial t = run(m, 0, all_answers(m, all));
+      if (!t.ok()) {
         if (factor >= 1)
           return refuse("of a grid of " + std::to_string(nodes) +
-                        " nodes: " + e.what());
-        grids.clear();
+                        " nodes: " + t.failure);
+        // Too coarse for its pins, or to bear its load.
+        grids.clear(), base_ = no_base;
+        first_ *= 2, factor = first_ / 2;
         continue;
       }
-      if (!t.ok()) return refuse(t.failure);
       still_ = all;
       grids.add({factor, nodes, infinite, t});
       found_.reset();  // what coarser grids made believe counts no longer
@@ -199,15 +210,17 @@ class Adviser {
     return "the answer does not settle as the grid gets finer: the last two "
            "steps changed it by " +
            CME212::two_digits(grids.step_to(grids.size() - 2)) + " and " +
-           CME212::two_digits(grids.step_to(grids.size() - 1)) + ' ' +
-           unit_of(advice_.measure);
+           with_unit(grids.step_to(grids.size() - 1), advice_.measure);
   }
   std::string too_coarse(std::size_t nodes) const {
     const auto& grids = advice_.grids;
-    return "a grid of " + std::to_string(nodes) +
-           " nodes would be too much, and the error of the one before is " +
-           CME212::short_text(grids.empty() ? infinite : grids.back().error) +
-           ' ' + unit_of(advice_.measure);
+    std::string why = "a grid of " + std::to_string(nodes) +
+                      " nodes would be too much, and the error of the one "
+                      "before is ";
+    if (grids.size() < 3) return why + "not known";
+    return why + with_unit(grids.back().error, advice_.measure) +
+           ", give or take " +
+           with_unit(grids.doubt_of_limit(), advice_.measure);
   }
 
   // ------------------------------------------------------------------ Chaos
@@ -243,18 +256,18 @@ class Adviser {
         advice_.floor = moved;
       else
         others += std::string(others.empty() ? "" : ", ") + name_of(what) +
-                  " to " + CME212::short_text(4 * moved) +
-                  (*unit_of(what) ? " " : "") + unit_of(what);
+                  " to " + with_unit(4 * moved, what);
     }
     if (advice_.floor <= advice_.tolerance / 2) return true;
-    return refuse(
-        "the motion is chaotic: a start that is off by 1e-6 m "
-        "changes the answer by " +
-        CME212::short_text(advice_.floor) +
-        (*unit_of(advice_.measure) ? " " : "") + unit_of(advice_.measure) +
-        ", so no grid and no step can meet the tolerance; what can "
-        "be had: " +
-        others);
+    // Below ten times the shake it is no more than what was put in.
+    return refuse((advice_.floor > 1e-5
+                       ? "the motion is chaotic: a"
+                       : std::string("the tolerance is too small: a")) +
+                  " start that is off by 1e-6 m changes the answer by " +
+                  with_unit(advice_.floor, advice_.measure) +
+                  ", so no grid and no step can meet the tolerance; what can "
+                  "be had: " +
+                  others);
   }
 
   // ------------------------------------------------------------------ Parts
@@ -265,15 +278,13 @@ class Adviser {
     auto& parts = advice_.parts;
     const Model all = as_pilot(on_grid(base().factor));
     const Trial& pilot = base().trial;
+    seconds_ = std::min(pilot.seconds, run(all).seconds);  // the first is cold
     parts.clear();
     for (const Variation& v : without_parts(all)) {
-      PartReport r{v.part, infinite};  // it is no scene without that part
-      try {
-        if (const Trial t = run(v.model); t.ok()) {
-          r.change = distance(t.answer, pilot.answer, advice_.measure);
-          r.cost = 1 - t.seconds / pilot.seconds;
-        }
-      } catch (const std::exception&) {
+      PartReport r{v.part, infinite};
+      if (const Trial t = run(v.model); t.ok()) {
+        r.change = distance(t.answer, pilot.answer, advice_.measure);
+        r.cost = 1 - t.seconds / seconds_;
       }
       parts.push_back(r);
     }
@@ -291,30 +302,14 @@ class Adviser {
       if (!t.ok()) continue;
       const Effect effect(t.answer, pilot.answer);
       if (size_of(effect) <= room)
-        less_.push_back({gone, effect, t.work / pilot.work});
+        less_.push_back({gone, effect, t.work / std::max(pilot.work, 1.0)});
     }
-  }
-
-  /** @a m without these parts; nothing if one went with another. */
-  static std::optional<Model> without_all(Model m,
-                                          std::vector<std::string> gone) {
-    // A part goes with its friction; so friction first.
-    std::ranges::stable_sort(gone, {}, [](const std::string& s) {
-      return s.rfind("friction of ", 0) != 0;
-    });
-    for (const std::string& part : gone) {
-      const auto all = without_parts(m);
-      auto it = std::ranges::find(all, part, &Variation::part);
-      if (it == all.end()) return std::nullopt;
-      m = it->model;
-    }
-    return m;
   }
 
   // ------------------------------------------------------------------- Step
 
   /** Each method by two steps. */
-  void try_steps() {
+  bool try_steps() {
     struct Try {
       const char* method;
       double share;  // of Verlet's largest step
@@ -324,26 +319,32 @@ class Adviser {
                              {"tr-bdf2", 8},  {"implicit-euler", 8}};
     Model m = as_pilot(on_grid(base().factor));
     const double verlet = step_of(m) / safe_share;
-    auto attempt = [&](const char* method, double share) {
+    auto attempt = [&](const char* method, double dt) {
       m.method = method;
       m.with.rule = StepRule::fixed;
-      m.with.dt = std::min(share * verlet, m.t_end);
+      m.with.dt = std::min(dt, m.t_end);
       return run(m);
     };
-    const Trial exact = attempt("srkn6b", 0.55);
+    const Trial exact = attempt("srkn6b", 0.55 * verlet);
+    if (!exact.ok()) return refuse(exact.failure);
+    reference_ = exact.answer;
     // Explicit methods by counted work: a clock is not that exact.
-    const double per_spring = base().trial.seconds / base().trial.work;
+    const double per_spring = seconds_ / std::max(base().trial.work, 1.0);
     steps_.clear(), advice_.steps.clear();
     for (const Try& t : tries) {
       Step s{&find_method(t.method)->info, t.method, 0, 0, 0, {}, {}, 1};
       for (int k : {0, 1}) {
-        const Trial trial = attempt(t.method, t.share / (1 << k));
+        const Trial trial =
+            attempt(t.method, k == 0 ? t.share * verlet : s.dt / 2);
         const double seconds =
             s.info->limit == no_limit ? trial.seconds : trial.work * per_spring;
-        s.works[k] = trial.ok() && exact.ok();
+        s.works[k] = trial.ok();
         if (s.works[k]) s.effect[k] = Effect(trial.answer, exact.answer);
-        if (k == 0) s.dt = trial.dt, s.seconds = seconds, s.work = trial.work;
-        advice_.steps.push_back({t.method, trial.dt,
+        if (k == 0) {
+          s.dt = trial.dt > 0 ? trial.dt : t.share * verlet;
+          s.seconds = seconds, s.work = trial.work;
+        }
+        advice_.steps.push_back({t.method, k == 0 ? s.dt : s.dt / 2,
                                  s.works[k] ? size_of(s.effect[k]) : infinite,
                                  seconds});
       }
@@ -356,6 +357,7 @@ class Adviser {
       }
       steps_.push_back(s);
     }
+    return true;
   }
 
   /** What @a share of the largest step of @a s changes on a grid of @a finer
@@ -375,23 +377,35 @@ class Adviser {
    * there must be no doubt. */
   void choose() {
     const Refinement& grids = advice_.grids;
+    // A mesh from files is all there is: its step is what can be wrong.
+    const Answer limit =
+        scene_.sheets.empty() ? reference_ : advice_.grids.limit();
     int runs = 0;
     for (Choice& c : choices()) {
       if (c.work <= rules_.patience && runs < rules_.most_checked) {
         ++runs;
         const Trial t = run(c.model);
         if (!t.ok()) continue;
-        c.error = size_of(Effect(t.answer, grids.limit()));
+        c.error = size_of(Effect(t.answer, limit));
         c.doubt = grids.doubt_of_limit();
         c.seconds = t.seconds;
       }
-      if (!(c.error + c.doubt <= advice_.tolerance)) continue;
+      if (!(c.error + c.doubt <= advice_.tolerance) || !is_scene(c.model))
+        continue;
       found_ = c;
       return;
     }
     refuse(
-        "no method meets the tolerance on this grid by steps down to 1/64 of "
-        "its largest");
+        "no method meets the tolerance by steps down to 1/64 of its largest");
+  }
+  /** False if the nodes of a grid that was not tried miss a pin. */
+  static bool is_scene(const Model& m) {
+    try {
+      Scene(recipe_of(m), m.with, *find_method(m.method));
+      return true;
+    } catch (const SceneError&) {
+      return false;
+    }
   }
   /** True if there is no choice yet; or if no fourth grid bears three out, or
    * much of the tolerance goes into doubt, and a finer grid does not take long.
@@ -411,8 +425,12 @@ class Adviser {
     advice_.model = c.model;
     advice_.error = c.error, advice_.doubt = c.doubt;
     advice_.seconds = c.seconds;
-    for (PartReport& p : advice_.parts)
-      p.needed = !std::ranges::count(c.gone, p.part);
+    auto gone = c.gone;  // each of them once, if two parts are alike
+    for (PartReport& p : advice_.parts) {
+      const auto it = std::ranges::find(gone, p.part);
+      p.needed = it == gone.end() && !goes_with_another(p.part, c.gone);
+      if (it != gone.end()) gone.erase(it);
+    }
   }
 
   /** All grids, sets of parts, methods and steps of which the effects, added
@@ -424,10 +442,10 @@ class Adviser {
       const double finer = factor / base().factor;
       const Effect of_grid = advice_.grids.error(factor);
       // The pilots' own step is in that of the grid; Verlet is of order 2.
-      const double pilots = safe_share / 0.9 / finer;
+      const double pilots = base().trial.dt / (steps_[0].dt / 2) / finer;
       Effect of_pilot(of_grid.by.size());
-      if (steps_[0].works[1])
-        of_pilot.add(4 * pilots * pilots, steps_[0].effect[1].by);
+      if (steps_[0].works[1] && !scene_.sheets.empty())
+        of_pilot.add(pilots * pilots, steps_[0].effect[1].by);
       for (auto less = less_.rbegin(); less != less_.rend(); ++less)
         for (const Step& s : steps_)
           for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
@@ -457,20 +475,16 @@ class Adviser {
     std::ranges::stable_sort(all, {}, &Choice::seconds);
     return all;
   }
-  /** Nothing if a grid that was not tried is no scene: its nodes miss a pin. */
+  /** With a step of which t-end is a multiple, so that a run ends there. */
   std::optional<Model> scene_with(double factor, const Less& less,
                                   const Step& s, double dt) const {
     std::optional<Model> m = without_all(on_grid(factor), less.gone);
     if (!m) return m;
     m->method = s.method;
-    m->with.dt = dt;
     m->with.rule = StepRule::fixed;
-    m->dt = CME212::exact_text(dt);
-    try {
-      Scene(recipe_of(*m), m->with, *find_method(m->method));
-    } catch (const SceneError&) {
-      return std::nullopt;
-    }
+    m->with.dt = std::min(dt, m->t_end);
+    m->with.dt = step_of(*m);
+    m->dt = CME212::exact_text(m->with.dt);
     return m;
   }
 };

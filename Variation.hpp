@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,6 +111,28 @@ inline std::vector<Variation> without_parts(const Model& m) {
            [&](Model& x) { x.self_collision = smooth; });
   }
   return all;
+}
+
+/** True if @a part is the friction of a part that is @a gone, too. */
+inline bool goes_with_another(const std::string& part,
+                              const std::vector<std::string>& gone) {
+  return std::ranges::any_of(gone, [&](const std::string& other) {
+    return part == "friction of " + other;
+  });
+}
+
+/** @a m without all parts that are @a gone, in the words of without_parts();
+ * nothing if it has not got one of them. */
+inline std::optional<Model> without_all(Model m,
+                                        const std::vector<std::string>& gone) {
+  for (const std::string& part : gone) {
+    if (goes_with_another(part, gone)) continue;
+    const auto all = without_parts(m);
+    auto it = std::ranges::find(all, part, &Variation::part);
+    if (it == all.end()) return std::nullopt;
+    m = it->model;
+  }
+  return m;
 }
 
 /** @a m with each part that it could have next: diagonals, a grid of twice as

@@ -180,12 +180,65 @@ TEST(Advise, TellsWhichGridIsNoScene) {
   EXPECT_THROW(advise(m), SceneError);
 }
 
+// Cells that no power of two divides: grids double all the same.
+TEST(Advise, DoublesTheCells) {
+  Model m = hanging(1e-2);
+  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 22 27"};
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  const std::size_t nodes[] = {6 * 8, 11 * 15, 21 * 29, 41 * 57};
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(a.grids[k].nodes, nodes[k]);
+}
+
+TEST(Advise, LeavesOutAPartWithItsFriction) {
+  Model m = hanging(1e-2);
+  m.planes = {"at 0 0 -9 friction 0.5"};
+  m.pins = {"z 0", "z 0"};  // one of them is enough
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_TRUE(a.model.planes.empty());
+  EXPECT_EQ(a.model.pins.size(), 1u);
+  int pins = 0;
+  for (const PartReport& p : a.parts) {
+    if (p.part.find("plane") != std::string::npos) {
+      EXPECT_FALSE(p.needed) << p.part;
+    }
+    pins += p.part == "pin: z 0" && p.needed;
+  }
+  EXPECT_EQ(pins, 1);
+}
+
+// From files there is one grid; what is known of it is what its step does.
+TEST(Advise, AMeshFromFilesKeepsItsNodes) {
+  Model m;
+  m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
+  m.pins = {"x 0"};
+  m.t_end = 0.3;
+  m.tolerance = 1e-5;
+  check_model(m);
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  Model fine = m;
+  fine.method = "srkn11b";
+  fine.with.rule = StepRule::fixed;
+  fine.with.dt = 1e-3;
+  const double off =
+      distance(try_out(a.model).answer, try_out(fine).answer, a.measure);
+  EXPECT_LE(off, 1e-5);
+  EXPECT_NEAR(off, a.error, 1e-6);
+}
+
 TEST(Advise, ItsSceneCanBeWrittenAndRun) {
   const Advice a = advise(hanging(1e-3));
   ASSERT_EQ(a.refusal, "");
   Model again = a.model;
   check_model(again);  // dt in words is dt in numbers
   EXPECT_EQ(again.with.dt, a.model.with.dt);
+  // As mass_spring runs it: to the first step at or after t-end.
+  Scene scene(recipe_of(again), again.with, *find_method(again.method));
+  while (scene.time() < again.t_end * (1 - 1e-12)) ASSERT_TRUE(scene.step());
+  EXPECT_NEAR(scene.time(), again.t_end, 1e-12);
+  EXPECT_EQ(answer(again, scene.cloth()), try_out(again).answer);
   EXPECT_NE(to_scene_file(a.model).find("method = "), std::string::npos);
   EXPECT_NE(in_words(a).find("advice: "), std::string::npos);
 }

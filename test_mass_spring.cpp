@@ -601,7 +601,7 @@ TEST_F(MassSpring, AnswersWhatASceneIsAsked) {
 TEST_F(MassSpring, AdvisesAndRunsWhatItAdvises) {
   const std::string scene =
       "--sheet 'u 1 0 0 v 0 0 -1 nodes 6 6' --pin 'z 0' --plane 'at 0 0 -9' "
-      "--t-end 0.1 --tolerance 0.05 --headless ";
+      "--t-end 0.1 --tolerance 0.01 --headless ";
   Result r = run(scene + "--advise --write-config " + path("a.toml"));
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_NE(r.out.find("not needed"), std::string::npos);
