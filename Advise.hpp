@@ -378,8 +378,7 @@ class Adviser {
   void choose() {
     const Refinement& grids = advice_.grids;
     // A mesh from files is all there is: its step is what can be wrong.
-    const Answer limit =
-        scene_.sheets.empty() ? reference_ : advice_.grids.limit();
+    const Answer limit = scene_.sheets.empty() ? reference_ : grids.limit();
     int runs = 0;
     for (Choice& c : choices()) {
       if (c.work <= rules_.patience && runs < rules_.most_checked) {
@@ -389,9 +388,10 @@ class Adviser {
         c.error = size_of(Effect(t.answer, limit));
         c.doubt = grids.doubt_of_limit();
         c.seconds = t.seconds;
-      }
-      if (!(c.error + c.doubt <= advice_.tolerance) || !is_scene(c.model))
+      } else if (!is_scene(c.model)) {
         continue;
+      }
+      if (!(c.error + c.doubt <= advice_.tolerance)) continue;
       found_ = c;
       return;
     }

@@ -23,8 +23,8 @@ DRAWING   = mass_spring mass_spring_% test_viewer test_screen
 # Programs are built for speed and without assertions, tests and examples with
 # all of them, for the debugger and under the sanitizers. Left out are checks
 # that take half of the time to compile, and of which the one of addresses finds
-# nearly all.
-release  = -O3 -DNDEBUG
+# nearly all. Programs in QUICKLY are built in half of the time.
+release  = $(if $(filter $(QUICKLY),$*),-O1,-O3) -DNDEBUG
 unchecked = null,alignment,object-size,vptr,pointer-overflow
 testing  = -Og -fno-omit-frame-pointer \
            $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all \

@@ -90,20 +90,14 @@ double cells(const Model& m) { return read_sheet(m.sheets[0]).nodes[0] - 1; }
 /** What the answer tends to on finer grids, those of @a advised among them. */
 Answer truth(const Model& scene, const Model& advised) {
   const double factor = std::max(20., cells(advised)) / cells(scene);
-  Answer at[3];
-  for (int k : {0, 1, 2}) {
-    Model m = refined(scene, factor * (1 << k));
+  Refinement grids(read_measure(scene.measure));
+  for (int finer : {1, 2, 4}) {
+    Model m = refined(scene, factor * finer);
     m.method = "srkn6b";
     m.with.rule = StepRule::safe;
-    at[k] = try_out(m).answer;
+    grids.add({factor * finer, 0, 0, try_out(m)});
   }
-  const Measure what = read_measure(scene.measure);
-  const double d = distance(at[0], at[1], what),
-               e = distance(at[1], at[2], what);
-  const double order = std::clamp(e > 0 ? std::log2(d / e) : 2., 0.8, 2.);
-  for (std::size_t k = 0; k < at[2].size(); ++k)
-    at[2][k] += (at[2][k] - at[1][k]) / (std::pow(2, order) - 1);
-  return at[2];
+  return grids.limit();
 }
 
 /** The least work of all grids, methods and steps that the adviser could have
@@ -121,9 +115,7 @@ double best_in_hindsight(const Model& scene, const Answer& right, double chosen,
   }
   for (const Model& way : ways)
     for (double factor = 0.5;; factor *= std::sqrt(2.)) {
-      Model m = refined(way, factor);
-      m.method = "verlet";
-      m.with.rule = StepRule::safe;
+      Model m = advise_detail::as_pilot(refined(way, factor));
       const double verlet = step_of(m) / safe_share;
       m.with.rule = StepRule::fixed;
       Cloth g;

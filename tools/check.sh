@@ -108,15 +108,9 @@ single() {
       END {exit n != 6 || bad}' build/float_floor.csv
 }
 
-# Programs that no step runs for long are built in half of the time.
-quick="bench bench_implicit bench_stability adviser_suite mass_spring_diagonals
-  mass_spring_forces mass_spring_constraints mass_spring_tear"
-build() {
-  # shellcheck disable=SC2046,SC2086  # lists of words
-  make_all CXX=g++ $(make -s print-tests) mass_spring mass_spring_problem1 \
-    make_grid work_precision stability_map example_graph &&
-    make_all CXX=g++ release='-O1 -DNDEBUG' $quick
-}
+# Programs that no step runs for long.
+quickly="bench% adviser_suite mass_spring_diagonals mass_spring_forces
+  mass_spring_constraints mass_spring_tear"
 # What counts of clang++ is what it says: no time for optimizing.
 clang() {
   make_all all CXX=clang++ O=build/clang/ SANITIZE= CXXFLAGS="-Werror -O0 -g0"
@@ -130,7 +124,7 @@ of_scripts() {
 of_variants() {
   step peers       peers
   step build-plain make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/ \
-    release='-O1 -DNDEBUG'
+    QUICKLY=mass_spring
   # clang++, whose OpenMP tells ThreadSanitizer what waits for what.
   step build-tsan  make_all build/tsan/test_viewer build/tsan/test_sweep \
     CXX=clang++ O=build/tsan/ SANITIZE=thread
@@ -176,7 +170,7 @@ step tree          tools/check_tree.sh
 step includes      tools/check_includes.sh
 step headers       env CXX=clang++ tools/check_headers.sh
 step lanes         tools/check_lanes.sh
-step build-g++     build
+step build-g++     make_all all CXX=g++ QUICKLY="${quickly//$'\n'/ }"
 step build-clang++ clang
 beside of_scripts of_variants
 beside odd_tests even_tests
