@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,17 @@ class ZeroConstraint {
 
   /** Mend @a g. Twice equals once, to round-off.  O(N) unless it says less */
   virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
+
+  /** Does it mend each node by itself, whatever the others do, and remove
+   * none? Then mend() of all nodes, part by part, is the call. A child that
+   * says so must have both; this base itself has nothing to mend. */
+  virtual bool by_node() const {
+    return typeid(*this) == typeid(ZeroConstraint);
+  }
+  /** Mend the nodes of @a g with ids in [first, last). Several threads may mend
+   * several parts at once.  @pre by_node() */
+  virtual void mend(Cloth& /*g*/, double /*t*/, unsigned /*first*/,
+                    unsigned /*last*/) const {}
 
   /** Call @a use(node) for each node of @a g that the constraint holds still:
    * it stays where it is, and its velocity is 0. Steps need to know, since a
@@ -65,11 +77,13 @@ void stop_held(G& g, const C& constraint) {
 
 namespace constraint_detail {
 
-/** Call @a mend(node) for each node whose position @a violates. Goes through
- * the positions in the order of memory: few of them ever need mending. */
+/** Call @a mend(node) for each node with an id in [first, last) whose position
+ * @a violates. Goes through the positions in the order of memory: few of them
+ * ever need mending. */
 template <typename Violates, typename Mend>
-void for_each_violating(Cloth& g, Violates violates, Mend mend) {
-  for (unsigned i = 0; i < g.node_slots(); ++i)
+void for_each_violating(Cloth& g, unsigned first, unsigned last,
+                        Violates violates, Mend mend) {
+  for (unsigned i = first; i < last; ++i)
     if (violates(g.positions()[i]) && g.node_in_use(i)) mend(g.node_with_id(i));
 }
 
@@ -90,28 +104,46 @@ inline Point contact_kick(const Point& u, const Point& out, double friction) {
 
 }  // namespace constraint_detail
 
+/** A constraint that mends each node by itself: its children say how, in
+ * mend(). */
+class NodeConstraint : public ZeroConstraint {
+ public:
+  void operator()(Cloth& g, double t) const final {
+    mend(g, t, 0, g.node_slots());
+  }
+  bool by_node() const final { return true; }
+  void mend(Cloth& g, double t, unsigned first,
+            unsigned last) const override = 0;
+};
+
 /** Holds nodes where they were when the pin was made.
  * @post at each call: their positions are those, and their velocities 0.
  * Removing a pinned node is fine: the pin goes on with the others.
  * Complexity of a call: O(pins). */
-class PinConstraint : public ZeroConstraint {
+class PinConstraint : public NodeConstraint {
  public:
   /** Pin the nodes that lie exactly at one of @a places [m].  O(N places) */
   explicit PinConstraint(const Cloth& g,
                          std::span<const Point> places = corners) {
     for (Node n : g.nodes())
       for (const Point& place : places)
-        if (n.position() == place) pins_.push_back({n, place});
+        if (n.position() == place) pins_.push_back({n, n.id(), place});
+    sort();
   }
   /** Pin @a nodes where they are now.  @pre all in one graph */
   explicit PinConstraint(std::span<const Node> nodes) {
-    for (Node n : nodes) pins_.push_back({n, n.position()});
+    for (Node n : nodes) pins_.push_back({n, n.id(), n.position()});
+    sort();
   }
 
-  void operator()(Cloth& g, double /*t*/) const override {
-    for (auto [n, place] : pins_)
-      if (g.has_node(n)) {
-        n.position() = place;
+  /** O(log(pins) + those of the part) */
+  void mend(Cloth& g, double t, unsigned first, unsigned last) const override {
+    const Point moved = way(t);
+    const auto begin = std::ranges::lower_bound(pins_, first, {}, &Pin::id);
+    for (auto pin = begin; pin != pins_.end() && pin->id < last; ++pin)
+      if (g.has_node(pin->node)) {
+        Node n = pin->node;
+        n.position() = pin->place + moved;
         n.value().vel = Point();
       }
   }
@@ -120,24 +152,32 @@ class PinConstraint : public ZeroConstraint {
       if (g.has_node(pin.node)) use(pin.node);
   }
 
+ protected:
+  /** How far the places have moved at time @a t [m]. */
+  virtual Point way(double /*t*/) const { return Point(); }
+
  private:
   struct Pin {
     Node node;
+    unsigned id;  // of the node: it keeps it, and after its end, too
     Point place;
   };
-  std::vector<Pin> pins_;
+  std::vector<Pin> pins_;  // by id
+
+  void sort() { std::ranges::sort(pins_, {}, &Pin::id); }
 };
 
 /** A floor. @post no node lies below z; one that did lies on it, and does not
  * move along z. */
-class PlaneConstraint : public ZeroConstraint {
+class PlaneConstraint : public NodeConstraint {
  public:
   /** @param z Height of the floor [m] */
   explicit PlaneConstraint(double z = -0.75) : z_(z) {}
   double height() const { return z_; }
-  void operator()(Cloth& g, double /*t*/) const override {
+  void mend(Cloth& g, double /*t*/, unsigned first,
+            unsigned last) const override {
     constraint_detail::for_each_violating(
-        g, [this](const Point& p) { return p.z < z_; },
+        g, first, last, [this](const Point& p) { return p.z < z_; },
         [this](Node n) {
           n.position().z = z_;
           n.value().vel.z = 0;
@@ -173,12 +213,13 @@ struct Ball {
 /** A solid ball. @post no node lies inside by more than round-off; one that
  * did lies at the nearest point of the surface (the top one, if it was at the
  * center) and does not move along the normal there. */
-class SphereConstraint : public ZeroConstraint {
+class SphereConstraint : public NodeConstraint {
  public:
   explicit SphereConstraint(const Ball& ball = {}) : ball_(ball) {}
-  void operator()(Cloth& g, double /*t*/) const override {
+  void mend(Cloth& g, double /*t*/, unsigned first,
+            unsigned last) const override {
     constraint_detail::for_each_violating(
-        g, [this](const Point& p) { return ball_.holds(p); },
+        g, first, last, [this](const Point& p) { return ball_.holds(p); },
         [this](Node n) {
           Point out = n.position() - ball_.center;
           double distance = norm(out);
@@ -206,7 +247,7 @@ class TearConstraint : public ZeroConstraint {
   explicit TearConstraint(const Ball& ball = {}) : ball_(ball) {}
   void operator()(Cloth& g, double /*t*/) const override {
     constraint_detail::for_each_violating(
-        g, [this](const Point& p) { return ball_.holds(p); },
+        g, 0, g.node_slots(), [this](const Point& p) { return ball_.holds(p); },
         [&g](Node n) { g.remove_node(n); });
   }
 
@@ -244,6 +285,13 @@ class CombinedConstraints : public ZeroConstraint {
 
   void operator()(Cloth& g, double t) const override {
     for (const auto& c : constraints_) (*c)(g, t);
+  }
+  bool by_node() const override {
+    return std::ranges::all_of(constraints_,
+                               [](const auto& c) { return c->by_node(); });
+  }
+  void mend(Cloth& g, double t, unsigned first, unsigned last) const override {
+    for (const auto& c : constraints_) c->mend(g, t, first, last);
   }
   void each_held(const Cloth& g, const NodeVisitor& use) const override {
     for (const auto& c : constraints_) c->each_held(g, use);
@@ -312,6 +360,10 @@ class WatchedConstraint : public ZeroConstraint {
     }
     c_(g, t);
     remember(g);
+  }
+  bool by_node() const override { return before_.empty() && c_.by_node(); }
+  void mend(Cloth& g, double t, unsigned first, unsigned last) const override {
+    c_.mend(g, t, first, last);
   }
   void each_held(const Cloth& g, const NodeVisitor& use) const override {
     c_.each_held(g, use);

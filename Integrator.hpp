@@ -220,20 +220,33 @@ inline void without_drag(const Part& part, const ZeroForce& force,
   for (unsigned k = 0; k < part.last - part.first; ++k) f[k] += c * node[k].vel;
 }
 
-/** All forces but linear drag into @a f, by node id; then @a use(part, forces
- * on it). */
-template <typename Use>
-void sweep_without_drag(Sweep& sweep, const Cloth& g, double t,
-                        const ZeroForce& force, std::vector<Point>& f,
-                        Use use) {
-  sweep(g, t, force, f, [&](const Part& part, std::span<Point> here) {
-    without_drag(part, force, here);
-    use(part, here);
-  });
+/** @a move(part) for all parts of @a g; then the constraint; then all forces
+ * at time @a t, and @a use(part, forces on it). In one way through memory if
+ * the constraint mends node by node.
+ * @param f if given, takes all forces, by node id */
+template <typename Move, typename Use, typename... List>
+void move_and_sweep(Sweep& sweep, Cloth& g, double t, const ZeroForce& force,
+                    const ZeroConstraint& constraint, Move move, Use use,
+                    List&... f) {
+  if (constraint.by_node()) {
+    auto move_and_mend = [&](const Part& part) {
+      move(part);
+      constraint.mend(g, t, part.first, part.last);
+    };
+    sweep.after(move_and_mend, g, t, force, f..., use);
+  } else {
+    sweep.parts(g, move);
+    constraint(g, t);
+    sweep.after([](const Part&) {}, g, t, force, f..., use);
+  }
 }
+
+/** All forces but linear drag into @a f, by node id. */
 inline void sweep_without_drag(Sweep& sweep, const Cloth& g, double t,
                                const ZeroForce& force, std::vector<Point>& f) {
-  sweep_without_drag(sweep, g, t, force, f, [](auto&, auto) {});
+  sweep(g, t, force, f, [&](const Part& part, std::span<Point> here) {
+    without_drag(part, force, here);
+  });
 }
 
 }  // namespace integrator_detail
@@ -254,11 +267,12 @@ class SymplecticEuler : public Method {
   double step(Cloth& g, double t, double dt, const ZeroForce& force,
               const ZeroConstraint& constraint) override {
     using namespace integrator_detail;
-    sweep_.parts(g, [&](const Part& part) { drift(g, part, dt, 0); });
-    constraint(g, t);
-    sweep_(g, t, force, [&](const Part& part, std::span<const Point> f) {
-      kick(g, part, dt, f);
-    });
+    move_and_sweep(
+        sweep_, g, t, force, constraint,
+        [&](const Part& part) { drift(g, part, dt, 0); },
+        [&](const Part& part, std::span<const Point> f) {
+          kick(g, part, dt, f);
+        });
     stop_held(g, constraint);
     return t + dt;
   }
@@ -284,28 +298,44 @@ class Splitting : public Method {
   double step(Cloth& g, double t, double dt, const ZeroForce& force,
               const ZeroConstraint& constraint) override {
     using namespace integrator_detail;
-    constexpr std::size_t count = Scheme::steps.size();
-    constexpr std::size_t last_drift = count - (Scheme::kicks_first ? 2 : 1);
+    constexpr auto& steps = Scheme::steps;
+    constexpr std::size_t first_drift = Scheme::kicks_first ? 1 : 0;
     const double c = force.drag();
+    if (Scheme::kicks_first) {
+      const auto first_kick = [&](const Part& part, std::span<const Point> f) {
+        kick(g, part, steps[0] * dt, f);
+      };
+      if (kept(g, t, dt))
+        sweep_.parts(g, [&](const Part& part) {
+          first_kick(part, std::span(force_).subspan(part.first));
+        });
+      else
+        sweep_(g, t, force, force_, [&](const Part& part, std::span<Point> f) {
+          without_drag(part, force, f);
+          first_kick(part, f);
+        });
+      stop_held(g, constraint);
+    }
     double now = t;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double h = Scheme::steps[k] * dt;
-      if ((k % 2 == 0) == Scheme::kicks_first) {
-        auto kick_part = [&](const Part& part, std::span<const Point> f) {
-          kick(g, part, h, f);
-        };
-        if (k == 0 && kept(g, t, dt))
-          sweep_.parts(g, [&](const Part& part) {
-            kick_part(part, std::span(force_).subspan(part.first));
-          });
-        else
-          sweep_without_drag(sweep_, g, now, force, force_, kick_part);
-        stop_held(g, constraint);
-      } else {
-        sweep_.parts(g, [&](const Part& part) { drift(g, part, h, c); });
-        now += h;
-        if (k == last_drift) constraint(g, now = t + dt);
+    for (std::size_t k = first_drift; k < steps.size(); k += 2) {
+      const double h = steps[k] * dt;
+      const auto move = [&](const Part& part) { drift(g, part, h, c); };
+      const bool is_last = k + 2 >= steps.size();
+      now = is_last ? t + dt : now + h;
+      const ZeroConstraint none, &at_end = is_last ? constraint : none;
+      if (k + 1 == steps.size()) {
+        sweep_.parts(g, move);
+        at_end(g, now);
+        break;
       }
+      move_and_sweep(
+          sweep_, g, now, force, at_end, move,
+          [&](const Part& part, std::span<Point> f) {
+            without_drag(part, force, f);
+            kick(g, part, steps[k + 1] * dt, f);
+          },
+          force_);
+      stop_held(g, constraint);
     }
     if (Scheme::kicks_first)
       kept_for_ = &g, kept_version_ = g.version(), kept_time_ = t + dt;

@@ -63,20 +63,16 @@ class MovingPinConstraint : public PinConstraint {
   MovingPinConstraint(const std::vector<Node>& nodes, const Motion& motion)
       : PinConstraint(nodes), motion_(motion) {}
 
-  void operator()(Cloth& g, double t) const override {
-    PinConstraint::operator()(g, t);
-    each_held(g, [way = motion_.way(t)](Node n) { n.position() += way; });
-  }
-
  private:
   Motion motion_;
+  Point way(double t) const override { return motion_.way(t); }
 };
 
 /** A half space that no node enters, bounded by a plane.
  * @post no node lies below the plane by more than round-off; without friction,
  * one that did lies at the nearest point of it. As to velocities, see
  * constraint_detail::touch(). */
-class WallConstraint : public ZeroConstraint {
+class WallConstraint : public NodeConstraint {
  public:
   /** @param at a point of the plane at t = 0 [m]
    * @param normal out of the wall, of any length > 0
@@ -90,12 +86,12 @@ class WallConstraint : public ZeroConstraint {
     assert(norm(normal) > 0 && friction >= 0);
   }
 
-  void operator()(Cloth& g, double t) const override {
+  void mend(Cloth& g, double t, unsigned first, unsigned last) const override {
     using namespace constraint_detail;
     const Point at = at_ + motion_.way(t), velocity = motion_.velocity_at(t);
     auto height = [&](const Point& p) { return dot(p - at, normal_); };
     for_each_violating(
-        g, [&](const Point& p) { return height(p) < 0; },
+        g, first, last, [&](const Point& p) { return height(p) < 0; },
         [&](Node n) {
           touch(n, -height(n.position()), normal_, velocity, friction_);
         });
@@ -115,7 +111,7 @@ class WallConstraint : public ZeroConstraint {
  * A node that passes through a ball within a step is caught while the ball is
  * at rest only. Who lets it move keeps steps so short that speed() + that of
  * the nodes, times dt, stays well below the radius. */
-class BallConstraint : public ZeroConstraint {
+class BallConstraint : public NodeConstraint {
  public:
   /** @param ball at t = 0   @param friction coefficient, >= 0 */
   explicit BallConstraint(const Ball& ball, const Motion& motion = {},
@@ -126,12 +122,12 @@ class BallConstraint : public ZeroConstraint {
   /** Of the ball, while it moves [m/s]. */
   double speed() const { return norm(motion_.velocity); }
 
-  void operator()(Cloth& g, double t) const override {
+  void mend(Cloth& g, double t, unsigned first, unsigned last) const override {
     using namespace constraint_detail;
     const Ball ball = {ball_.center + motion_.way(t), ball_.radius};
     const Point velocity = motion_.velocity_at(t);
     for_each_violating(
-        g, [&](const Point& p) { return ball.holds(p); },
+        g, first, last, [&](const Point& p) { return ball.holds(p); },
         [&](Node n) {
           const Point from_center = n.position() - ball.center;
           const double distance = norm(from_center);

@@ -64,11 +64,13 @@ class Stencil {
   const size_type* neighbors(const Row& r) const { return &neighbor_[r.list]; }
   const size_type* edges(const Row& r) const { return &edge_[r.list]; }
   std::size_t num_rows() const { return rows_.size(); }
+  /** The largest difference of two neighbors' ids. */
+  size_type reach() const { return reach_; }
   /** How many rows list their neighbors. */
   std::size_t num_listed() const { return neighbor_.size() / W; }
 
  private:
-  size_type slots_ = 0;
+  size_type slots_ = 0, reach_ = 0;
   std::vector<size_type> row_begin_;  // by block, and the end
   std::vector<Row> rows_;
   std::vector<size_type> neighbor_, edge_;  // W for each row that lists them
@@ -83,6 +85,9 @@ class Stencil {
       if (first + k >= slots_) continue;
       auto all = g.halves(first + k);
       left[k].assign(all.begin(), all.end());
+      for (const auto& h : all)
+        reach_ = std::max(
+            reach_, std::max(h.node, first + k) - std::min(h.node, first + k));
     }
     for (std::size_t m = 0; m < left[0].size();)
       if (!add_alike(first, m, left)) ++m;

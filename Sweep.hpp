@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -51,32 +52,8 @@ class Sweep {
   template <typename Use>
   void parts(const Cloth& g, Use use) {
     update(g);
-    const unsigned slots = g.node_slots();
-    const int count = int((slots + part_size - 1) / part_size);
-    const auto part = [&](int k) {
-      const unsigned first = unsigned(k) * part_size;
-      return Part{g, *stencil_, first, std::min(first + part_size, slots)};
-    };
-    if (count == 1) {  // calling a team takes longer than a step of 100 nodes
-      use(part(0));
-      return;
-    }
-    std::exception_ptr error;
-#ifdef _OPENMP
-    const bool worth_it = threads_ > 0 || count >= many_parts;
-#pragma omp parallel for schedule(static) if (worth_it)
-#endif
-    for (int k = 0; k < count; ++k) {
-      try {
-        use(part(k));
-      } catch (...) {  // no exception may leave a thread
-#ifdef _OPENMP
-#pragma omp critical(sweep_error)
-#endif
-        if (!error) error = std::current_exception();
-      }
-    }
-    if (error) std::rethrow_exception(error);
+    in_turn(
+        g, 0, [](const Part&) {}, use);
   }
 
   /** All forces on @a g into @a f, by node id; removed nodes feel none. Then
@@ -84,13 +61,7 @@ class Sweep {
   template <typename Use>
   void operator()(const Cloth& g, double t, const ZeroForce& force,
                   std::vector<Point>& f, Use use) {
-    f.resize(whole_blocks(g.node_slots()));
-    parts(g, [&](const Part& part) {
-      std::span<Point> here(&f[part.first],
-                            whole_blocks(part.last - part.first));
-      add_up(part, t, force, here);
-      use(part, here);
-    });
+    after([](const Part&) {}, g, t, force, f, use);
   }
   void operator()(const Cloth& g, double t, const ZeroForce& force,
                   std::vector<Point>& f) {
@@ -99,7 +70,30 @@ class Sweep {
   /** The same for who needs no list of all forces. */
   template <typename Use>
   void operator()(const Cloth& g, double t, const ZeroForce& force, Use use) {
-    parts(g, [&](const Part& part) {
+    after([](const Part&) {}, g, t, force, use);
+  }
+
+  /** The same, but @a move(part) is called for each part before any force that
+   * depends on the positions of its nodes: so one way through memory does for
+   * both. @a move may change these, and @a use what no force depends on but
+   * that on its own node, its velocity. */
+  template <typename Move, typename Use>
+  void after(Move move, const Cloth& g, double t, const ZeroForce& force,
+             std::vector<Point>& f, Use use) {
+    f.resize(whole_blocks(g.node_slots()));
+    update(g);
+    in_turn(g, lead(force), move, [&](const Part& part) {
+      std::span<Point> here(&f[part.first],
+                            whole_blocks(part.last - part.first));
+      add_up(part, t, force, here);
+      use(part, here);
+    });
+  }
+  template <typename Move, typename Use>
+  void after(Move move, const Cloth& g, double t, const ZeroForce& force,
+             Use use) {
+    update(g);
+    in_turn(g, lead(force), move, [&](const Part& part) {
       std::span<Point> here(buffer_[thread()].data(),
                             whole_blocks(part.last - part.first));
       add_up(part, t, force, here);
@@ -136,6 +130,67 @@ class Sweep {
     if (stencil_ && version_ == g.version()) return;
     stencil_.emplace(g);
     version_ = g.version();
+  }
+
+  /** How many parts away the nodes may be whose positions @a force asks for. */
+  int lead(const ZeroForce& force) const {
+    if (!force.springs()) return std::numeric_limits<int>::max();
+    return int((stencil_->reach() + part_size - 1) / part_size);
+  }
+
+  /** Call @a move(part) and @a use(part) for each part, this one when all parts
+   * up to @a lead away have been moved. Each thread goes through its own parts
+   * in their order, and moves those ahead which it comes to need.
+   * @pre the stencil is that of @a g */
+  template <typename Move, typename Use>
+  void in_turn(const Cloth& g, int lead, Move move, Use use) {
+    const unsigned slots = g.node_slots();
+    const int count = int((slots + part_size - 1) / part_size);
+    lead = std::min(lead, count);
+    std::exception_ptr error;
+    const auto call = [&](auto& what, int k) {
+      const unsigned first = unsigned(k) * part_size;
+      const Part part{g, *stencil_, first, std::min(first + part_size, slots)};
+      try {
+        what(part);
+      } catch (...) {  // no exception may leave a thread
+#ifdef _OPENMP
+#pragma omp critical(sweep_error)
+#endif
+        if (!error) error = std::current_exception();
+      }
+    };
+    const auto share = [&](int thread, int threads) {
+      const int first = int(std::int64_t(count) * thread / threads);
+      const int last = int(std::int64_t(count) * (thread + 1) / threads);
+      // The other threads wait for those at the borders.
+      const int inner_last = std::max(last - lead, first);
+      int moved = std::min(first + lead, inner_last);
+      for (int k = first; k < moved; ++k) call(move, k);
+      for (int k = inner_last; k < last; ++k) call(move, k);
+      if (threads > 1) {
+#ifdef _OPENMP
+#pragma omp barrier
+#endif
+      }
+      for (int k = first; k < last; ++k) {
+        for (; moved < inner_last && moved <= k + lead; ++moved)
+          call(move, moved);
+        call(use, k);
+      }
+    };
+#ifdef _OPENMP
+    // Calling a team takes longer than a step of 100 nodes.
+    if (count > 1 && (threads_ > 0 || count >= many_parts)) {
+#pragma omp parallel
+      share(omp_get_thread_num(), omp_get_num_threads());
+    } else {
+      share(0, 1);
+    }
+#else
+    share(0, 1);
+#endif
+    if (error) std::rethrow_exception(error);
   }
 
   static void add_up(const Part& part, double t, const ZeroForce& force,

@@ -1,7 +1,7 @@
 // Constraint.hpp: each constraint's post-condition, and that twice is once.
 #include <gtest/gtest.h>
 
-#include "Constraint.hpp"
+#include "Obstacle.hpp"
 
 namespace {
 
@@ -30,6 +30,12 @@ class Scattered : public ::testing::Test {
     }
     return all;
   }
+  void set_state(const std::vector<Point>& all) {
+    for (Node n : g.nodes()) {
+      n.position() = all[2 * n.index()];
+      n.value().vel = all[2 * n.index() + 1];
+    }
+  }
   void expect_twice_is_once(const ZeroConstraint& c) {
     c(g, 0);
     auto once = state();
@@ -40,6 +46,54 @@ class Scattered : public ::testing::Test {
       EXPECT_LT(norm(once[k] - twice[k]), 1e-15);
   }
 };
+
+/** Mending by parts, the last one first, is the call, bit by bit. */
+TEST_F(Scattered, WhatMendsByNodeMendsByParts) {
+  const std::vector<Node> some = {g.node(60), g.node(0),  g.node(16),
+                                  g.node(17), g.node(18), g.node(63)};
+  const Motion motion = {Point(0.3, -0.2, 0.1)};
+  const PinConstraint pins(some);
+  const PlaneConstraint plane(-0.6);
+  const SphereConstraint sphere;
+  const MovingPinConstraint moving({some[1], some[4]}, motion);
+  const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), motion, 0.5);
+  const BallConstraint moving_ball(ball, motion, 0.5);
+  const auto all = make_combined_constraints(pins, wall, moving, sphere);
+  const auto both = make_combined_constraints(all, ZeroConstraint());
+  g.remove_node(some[2]);
+  const auto before = state();
+  for (const ZeroConstraint* c : std::initializer_list<const ZeroConstraint*>{
+           &pins, &plane, &sphere, &moving, &wall, &moving_ball, &all, &both}) {
+    const double t = 0.5;
+    EXPECT_TRUE(c->by_node());
+    (*c)(g, t);
+    const auto expected = state();
+    EXPECT_FALSE(expected == before);
+    set_state(before);
+    for (auto [first, last] :
+         {std::pair(20u, 64u), {20, 20}, {17, 20}, {0, 17}})
+      c->mend(g, t, first, last);
+    EXPECT_TRUE(state() == expected);
+    set_state(before);
+  }
+}
+
+TEST_F(Scattered, WhatRemovesOrIsNotKnownDoesNotMendByNode) {
+  EXPECT_TRUE(ZeroConstraint().by_node());
+  EXPECT_TRUE(make_combined_constraints().by_node());
+  struct Another : ZeroConstraint {};
+  EXPECT_FALSE(Another().by_node());
+  EXPECT_FALSE(TearConstraint().by_node());
+  EXPECT_FALSE(StrainConstraint(0.1).by_node());
+  auto nothing = [](Cloth&, double) {};
+  EXPECT_FALSE(make_combined_constraints(nothing).by_node());
+  EXPECT_FALSE(
+      make_combined_constraints(PlaneConstraint(), TearConstraint()).by_node());
+  WatchedConstraint watched(make_combined_constraints(PlaneConstraint(-0.6)));
+  EXPECT_TRUE(watched.by_node());
+  watched.watch(g, true);
+  EXPECT_FALSE(watched.by_node());
+}
 
 TEST_F(Scattered, TwiceIsOnce) {
   expect_twice_is_once(PlaneConstraint());

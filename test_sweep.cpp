@@ -173,7 +173,8 @@ TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
 // -------------------------------------------------------------------- threads
 
 /** Positions and velocities after 50 steps and a tear. */
-std::vector<Point> run(Method& method, int threads) {
+std::vector<Point> run(Method& method, int threads,
+                       const ZeroConstraint& constraint = ZeroConstraint()) {
   CME212::default_generator.seed(5);
   Sweep::set_threads(threads);
   Cloth g;
@@ -183,7 +184,7 @@ std::vector<Point> run(Method& method, int threads) {
   double t = 0;
   for (int k = 0; k < 50; ++k) {
     if (k == 25) remove_some(g, 300, 100);
-    t = method(g, t, 0.0002, force);
+    t = method(g, t, 0.0002, force, constraint);
   }
   std::vector<Point> end;
   for (Node n : g.nodes()) {
@@ -204,6 +205,70 @@ TEST_F(SweepTest, ThreadsDoNotChangeABit) {
       EXPECT_TRUE(run(*method, threads) == one) << threads << " threads";
     }
   }
+}
+
+// A constraint that mends node by node is called part by part, on the way.
+TEST_F(SweepTest, MendingOnTheWayDoesNotChangeABit) {
+  SymplecticEuler euler;
+  Verlet verlet;
+  Pefrl pefrl;
+  const auto by_node = make_combined_constraints(
+      PlaneConstraint(-0.004), SphereConstraint({Point(0.5, 0.5, -0.1), 0.1}));
+  const auto in_turn =
+      make_combined_constraints([&](Cloth& g, double t) { by_node(g, t); });
+  ASSERT_TRUE(by_node.by_node() && !in_turn.by_node());
+  for (Method* method :
+       {static_cast<Method*>(&euler), static_cast<Method*>(&verlet),
+        static_cast<Method*>(&pefrl)}) {
+    const auto expected = run(*method, 1, in_turn);
+    method->restart();
+    ASSERT_FALSE(run(*method, 1) == expected) << "nothing is in the way";
+    for (int threads : {1, 2, 7}) {
+      method->restart();
+      EXPECT_TRUE(run(*method, threads, by_node) == expected)
+          << threads << " threads";
+    }
+  }
+}
+
+TEST_F(SweepTest, MovesWhatAForceAsksForBeforeItAndNoMoreThanThat) {
+  Cloth g;
+  make_grid(g, 100);  // ten parts, neighbors at most 101 ids away
+  const unsigned parts = 10, size = Sweep::part_size;
+  const auto near = make_combined_force(GravityForce(), MassSpringForce());
+  const auto far =
+      make_combined_force(near, [](Node, double) { return Point(); });
+  for (const ZeroForce* force : {&near, &far})
+    for (int threads : {1, 2, 3, 7, 20}) {
+      Sweep::set_threads(threads);
+      std::vector<std::atomic<int>> moved(parts), used(parts);
+      std::atomic<unsigned> at_first = 0;
+      Sweep().after(
+          [&](const Part& part) {
+            EXPECT_EQ(used[part.first / size], 0);
+            ++moved[part.first / size];
+          },
+          g, 0, *force,
+          [&](const Part& part, std::span<const Point>) {
+            const unsigned k = part.first / size;
+            const unsigned lead = force == &near ? 1 : parts;
+            for (unsigned j = 0; j < parts; ++j)
+              if (j + lead >= k && j <= k + lead) {
+                EXPECT_EQ(moved[j], 1);
+              }
+            for (auto& m : moved) at_first += k == 0 ? int(m) : 0;
+            ++used[k];
+          });
+      for (unsigned k = 0; k < parts; ++k) {
+        EXPECT_EQ(moved[k], 1);
+        EXPECT_EQ(used[k], 1);
+      }
+      // Its own part, the one after it, and the last one, which another thread
+      // would wait for.
+      if (threads == 1) {
+        EXPECT_EQ(at_first, force == &near ? 3 : parts);
+      }
+    }
 }
 
 TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
@@ -272,6 +337,12 @@ TEST_F(SweepTest, ThreadsLetExceptionsThrough) {
   });
   std::vector<Point> f;
   EXPECT_THROW(Sweep()(g, 0, force, f), std::range_error);
+  const auto move = [](const Part& part) {
+    if (part.first == 2 * Sweep::part_size) throw std::range_error("no way");
+  };
+  EXPECT_THROW(Sweep().after(move, g, 0, GravityForce(), f,
+                             [](const Part&, std::span<Point>) {}),
+               std::range_error);
 }
 
 // A team costs more than a step of a small cloth, even if one thread is all.
