@@ -175,9 +175,10 @@ namespace force_detail {
 /** The springs of blocks [first, last) of a stencil, each seen from both of its
  * ends: no two nodes write to the same place, and square roots are cheap when
  * many are taken side by side.
- * @tparam early Ask for what listed rows name some blocks before it is used, as
- *         no processor can foresee it: twice as fast if it comes from memory,
- *         slower if a cache has it. */
+ * @tparam early Ask for data some blocks before they are used. No processor can
+ *         foresee what a listed row names, nor that a row in line goes on in
+ *         the next page: faster if it comes from memory, slower if a cache has
+ *         it. */
 template <bool early>
 struct SpringSweep {
   template <typename V>
@@ -187,11 +188,12 @@ struct SpringSweep {
                                                   unsigned first, unsigned last,
                                                   Point* f) {
     using namespace lanes;
-    constexpr unsigned ahead = 4;  // blocks
     for (unsigned b = first; b < last; ++b) {
-      if (early && b + ahead < stencil.num_blocks())
-        for (const auto& row : stencil.rows(b + ahead))
-          if (row.offset == 0) ask_for(stencil, row, position, spring);
+      if (early) {
+        // What is listed takes up much of a cache, so it is asked for late.
+        ask_for_listed(stencil, b + 4, position, spring);
+        ask_for_lines(stencil, b + 8, position, spring);
+      }
       for (int k = 0; k < width; k += count_of<V>) {  // once, if V is as long
         const Point* here = position + (b * width + k);
         const Points<V> x = stencil.is_full(b)
@@ -217,13 +219,36 @@ struct SpringSweep {
       }
     }
   }
-  [[gnu::always_inline]] static inline void ask_for(
-      const ClothStencil& stencil, const ClothStencil::Row& row,
-      const Point* position, const EdgeData* spring) {
-    for (int k = 0; k < lanes::width; ++k) {
-      __builtin_prefetch(position + stencil.neighbors(row)[k]);
-      __builtin_prefetch(spring + stencil.edges(row)[k]);
+
+ private:
+  [[gnu::always_inline]] static inline void ask_for_listed(
+      const ClothStencil& stencil, unsigned block, const Point* position,
+      const EdgeData* spring) {
+    if (block >= stencil.num_blocks()) return;
+    for (const auto& row : stencil.rows(block))
+      for (int k = 0; row.offset == 0 && k < lanes::width; ++k) {
+        __builtin_prefetch(position + stencil.neighbors(row)[k]);
+        __builtin_prefetch(spring + stencil.edges(row)[k]);
+      }
+  }
+  /** The springs that are met for the first time, and the positions if these
+   * are. */
+  [[gnu::always_inline]] static inline void ask_for_lines(
+      const ClothStencil& stencil, unsigned block, const Point* position,
+      const EdgeData* spring) {
+    constexpr int width = lanes::width;
+    if (block >= stencil.num_blocks()) return;
+    for (const auto& row : stencil.rows(block)) {
+      if (row.offset > 0 && row.first_edge != stencil.none)
+        ask_for(spring + row.first_edge, width * sizeof(EdgeData));
+      if (row.offset == int(stencil.reach()))
+        ask_for(position + block * width + row.offset, width * sizeof(Point));
     }
+  }
+  [[gnu::always_inline]] static inline void ask_for(const void* from,
+                                                    std::size_t bytes) {
+    for (std::size_t b = 0; b < bytes; b += 64)
+      __builtin_prefetch(static_cast<const char*>(from) + b);
   }
 };
 
@@ -249,8 +274,7 @@ class MassSpringForce : public ZeroForce {
           part.stencil, part.g.positions().data(), part.g.edge_values().data(),
           part.first / width, (part.last + width - 1) / width, f.data());
     };
-    const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > cache;
-    if (is_large && 2 * part.stencil.num_listed() > part.stencil.num_rows())
+    if (part.g.edge_slots() * sizeof(EdgeData) > cache)
       sweep(std::true_type());
     else
       sweep(std::false_type());

@@ -244,6 +244,8 @@ TEST(SelfCollision, MovesNoHeldNodes) {
   }
   std::vector<Node> told;
   c.each_held(g, [&](Node n) { told.push_back(n); });
+  std::ranges::sort(told);
+  std::ranges::sort(held);
   EXPECT_EQ(told, held);
 }
 TEST(SelfCollision, TellsOfObstaclesWhatTheOthersTell) {

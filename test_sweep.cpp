@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -282,12 +283,16 @@ TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
   }
 }
 
-// Large cloths without constant offsets are swept by another kernel.
+// Large cloths are swept by another kernel.
 TEST_F(SweepTest, AskingEarlyDoesNotChangeABit) {
   using force_detail::SpringSweep;
-  for (unsigned nodes : {1u, 16u, 33u, 100u, 1500u}) {
+  for (unsigned nodes : {1u, 16u, 33u, 81u, 100u, 1500u, 1600u}) {
     Cloth g;
-    make_random(g, nodes, 4 * nodes);
+    const unsigned side = unsigned(std::lround(std::sqrt(nodes)));
+    if (side * side == nodes)
+      make_grid(g, side);
+    else
+      make_random(g, nodes, 4 * nodes);
     const ClothStencil stencil(g);
     const auto sum = [&]<bool early>(std::bool_constant<early>) {
       std::vector<Point> f(stencil.num_blocks() * lanes::width);
@@ -462,6 +467,19 @@ TEST(Stencil, NamesEachEdgeFromBothEnds) {
     EXPECT_EQ(springs_of(Stencil<8>(g), g.node_slots()), expected);
     EXPECT_EQ(springs_of(Stencil<4>(g), g.node_slots()), expected);
   }
+}
+
+TEST(Stencil, ReachesAsFarAsTheFarthestNeighbor) {
+  Cloth g;
+  EXPECT_EQ(Stencil<8>(g).reach(), 0u);
+  for (int i = 0; i < 40; ++i) g.add_node(Point());
+  EXPECT_EQ(Stencil<8>(g).reach(), 0u);
+  g.add_edge(g.node(7), g.node(8));
+  EXPECT_EQ(Stencil<8>(g).reach(), 1u);
+  g.add_edge(g.node(30), g.node(1));
+  EXPECT_EQ(Stencil<8>(g).reach(), 29u);
+  g.remove_node(g.node(1));
+  EXPECT_EQ(Stencil<8>(g).reach(), 1u);
 }
 
 // Only blocks at the ends of a grid's lines have rows that are listed: of a
