@@ -3,6 +3,7 @@
  * The forces on a cloth. A force is anything that can be called as
  * Point(Node n, double t): the force [N] on node n at time t [s]. It may read
  * all positions, and of the velocities that of n only. */
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -175,10 +176,11 @@ namespace force_detail {
 /** The springs of blocks [first, last) of a stencil, each seen from both of its
  * ends: no two nodes write to the same place, and square roots are cheap when
  * many are taken side by side.
- * @tparam early Ask for data some blocks before they are used. No processor can
- *         foresee what a listed row names, nor that a row in line goes on in
- *         the next page: faster if it comes from memory, slower if a cache has
- *         it. */
+ *
+ * It asks for data before it uses them. Rows in line do so in any case: a
+ * processor foresees how such a row goes on, but not into the next page.
+ * @tparam early Ask for what listed rows name, which none can foresee: twice as
+ *         fast if it comes from memory, slower if a cache has it. */
 template <bool early>
 struct SpringSweep {
   template <typename V>
@@ -188,19 +190,25 @@ struct SpringSweep {
                                                   unsigned first, unsigned last,
                                                   Point* f) {
     using namespace lanes;
+    constexpr int w = count_of<V>;
+    constexpr unsigned ahead = 4;  // blocks
+    const int farthest = int(stencil.reach());
     for (unsigned b = first; b < last; ++b) {
-      if (early) {
-        // What is listed takes up much of a cache, so it is asked for late.
-        ask_for_listed(stencil, b + 4, position, spring);
-        ask_for_lines(stencil, b + 8, position, spring);
-      }
-      for (int k = 0; k < width; k += count_of<V>) {  // once, if V is as long
+      if (early && b + ahead < stencil.num_blocks())
+        for (const auto& row : stencil.rows(b + ahead))
+          if (row.offset == 0) ask_for_listed(stencil, row, position, spring);
+      for (int k = 0; k < width; k += w) {  // once, if V is as long
         const Point* here = position + (b * width + k);
         const Points<V> x = stencil.is_full(b)
                                 ? load_points<V>(here)
                                 : gather<V>(position, stencil.last_block() + k);
         Points<V> sum;
         for (const auto& row : stencil.rows(b)) {
+          // The springs and positions that no row met before.
+          if (row.offset > 0 && row.first_edge != stencil.none) {
+            ask_behind<w>(spring + row.first_edge + k);
+            if (row.offset == farthest) ask_behind<w>(here + row.offset);
+          }
           const Points<V> y =
               row.offset != 0 ? load_points<V>(here + row.offset)
                               : gather<V>(position, stencil.neighbors(row) + k);
@@ -221,34 +229,23 @@ struct SpringSweep {
   }
 
  private:
+  /** Ask for what lies some blocks behind @a count of these; it may be behind
+   * the end, so it is an address and no pointer. */
+  template <int count, typename T>
+  [[gnu::always_inline]] static inline void ask_behind(const T* these) {
+    constexpr std::uintptr_t blocks = 8, line = 64;
+    const auto from = reinterpret_cast<std::uintptr_t>(these) +
+                      blocks * lanes::width * sizeof(T);
+    for (std::uintptr_t at = 0; at < count * sizeof(T); at += line)
+      __builtin_prefetch(reinterpret_cast<const void*>(from + at));
+  }
   [[gnu::always_inline]] static inline void ask_for_listed(
-      const ClothStencil& stencil, unsigned block, const Point* position,
-      const EdgeData* spring) {
-    if (block >= stencil.num_blocks()) return;
-    for (const auto& row : stencil.rows(block))
-      for (int k = 0; row.offset == 0 && k < lanes::width; ++k) {
-        __builtin_prefetch(position + stencil.neighbors(row)[k]);
-        __builtin_prefetch(spring + stencil.edges(row)[k]);
-      }
-  }
-  /** The springs that are met for the first time, and the positions if these
-   * are. */
-  [[gnu::always_inline]] static inline void ask_for_lines(
-      const ClothStencil& stencil, unsigned block, const Point* position,
-      const EdgeData* spring) {
-    constexpr int width = lanes::width;
-    if (block >= stencil.num_blocks()) return;
-    for (const auto& row : stencil.rows(block)) {
-      if (row.offset > 0 && row.first_edge != stencil.none)
-        ask_for(spring + row.first_edge, width * sizeof(EdgeData));
-      if (row.offset == int(stencil.reach()))
-        ask_for(position + block * width + row.offset, width * sizeof(Point));
+      const ClothStencil& stencil, const ClothStencil::Row& row,
+      const Point* position, const EdgeData* spring) {
+    for (int k = 0; k < lanes::width; ++k) {
+      __builtin_prefetch(position + stencil.neighbors(row)[k]);
+      __builtin_prefetch(spring + stencil.edges(row)[k]);
     }
-  }
-  [[gnu::always_inline]] static inline void ask_for(const void* from,
-                                                    std::size_t bytes) {
-    for (std::size_t b = 0; b < bytes; b += 64)
-      __builtin_prefetch(static_cast<const char*>(from) + b);
   }
 };
 
@@ -274,7 +271,8 @@ class MassSpringForce : public ZeroForce {
           part.stencil, part.g.positions().data(), part.g.edge_values().data(),
           part.first / width, (part.last + width - 1) / width, f.data());
     };
-    if (part.g.edge_slots() * sizeof(EdgeData) > cache)
+    const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > cache;
+    if (is_large && 2 * part.stencil.num_listed() > part.stencil.num_rows())
       sweep(std::true_type());
     else
       sweep(std::false_type());
