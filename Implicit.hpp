@@ -31,7 +31,8 @@ class ImplicitEuler : public Method {
       "stiff cloth that shall come to rest, at any dt",
       "motion counts: it damps as a drag of dt omega^2 would"};
 
-  /** @param tolerance relative residual of the linear system, > 0 */
+  /** @param tolerance > 0, of the linear system: see
+   *        ImplicitStage::solve_linearized() */
   explicit ImplicitEuler(double tolerance = 1e-8) : stage_(tolerance, 0) {}
 
   double step(Cloth& g, double t, double dt, const ZeroForce& force,

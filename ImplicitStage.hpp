@@ -91,12 +91,18 @@ class ImplicitStage {
   bool fixed(unsigned i) const { return fixed_[i]; }
 
   /** One Newton step from where @a g is, whatever is left over: the linear
-   * system, without negative stiffness, is solved to a relative residual of
-   * tolerance.  @post g's positions are p + s w */
+   * system, without negative stiffness, is solved until its residual has fallen
+   * by the factor tolerance from that of w = q. So what is left over does what
+   * a wrong acceleration would, and small steps have no more of it.
+   * @post g's positions are p + s w */
   void solve_linearized(Cloth& g, double t, double s, const ZeroForce& force) {
     find_still(g, s, w);
     find_residual(g, t, s, force);
     assemble(g, s, force);
+    for (unsigned i = 0; i < w.size(); ++i) direction_[i] = q[i] - w[i];
+    multiply(direction_, product_, true);
+    for (unsigned i = 0; i < w.size(); ++i) residual_[i] -= product_[i];
+    w = q;
     solve(goal_.tolerance, true);
     advance(1);
     move(g, s);

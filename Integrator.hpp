@@ -65,6 +65,7 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
  *
  * Its constraint is called once a step, when the positions have reached t +
  * dt, and before the force there is taken; held nodes stay at rest in between.
+ * If it mends by node, it may be called part by part.
  * Nodes may be removed by it, and between steps. No allocation in a step, but
  * for the first one and when the cloth grew.
  *

@@ -598,6 +598,21 @@ TEST(ImplicitEuler, TakesCompressedSpringsAsSoftAcross) {
   EXPECT_NEAR(o.a.value().vel.y, 0.1, 1e-6);
 }
 
+// Where all may be left over, that is an acceleration, and not a velocity in a
+// time step.
+TEST(ImplicitEuler, WhatIsLeftOverIsAnAcceleration) {
+  const double dt = 1e-5;
+  Sheet s(8);
+  for (Node n : s.g.nodes()) n.value().vel = Point(1, 2, 3 * n.position().x);
+  s.pin(s.g, 0);
+  const Cloth before = s.g;
+  ImplicitEuler method(1);
+  method(s.g, 0, dt, s.force, s.pin);
+  for (unsigned i = 0; i < before.num_nodes(); ++i)
+    EXPECT_LT(norm(s.g.node(i).value().vel - before.node(i).value().vel),
+              10 * grav * dt);
+}
+
 TEST(ImplicitEuler, SaysThatItsSystemCantBeSolved) {
   Sheet s(4);
   s.g.node(5).value().vel = Point(HUGE_VAL);
