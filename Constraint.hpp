@@ -2,7 +2,7 @@
 /** @file Constraint.hpp
  * What a cloth must not do. A constraint is anything that can be called as
  * void(Cloth& g, double t): it mends the nodes that violate it at time t [s].
- * Steps call it after the positions moved and before the forces are taken. */
+ * Steps call it after the positions moved and before any force sees them. */
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -36,13 +36,15 @@ class ZeroConstraint {
   virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
 
   /** Does it mend each node by itself, whatever the others do, and remove
-   * none? Then mend() of all nodes, part by part, is the call. A child that
-   * says so must have both; this base itself has nothing to mend. */
+   * none? Then steps may call mend() for all nodes, part by part, in place of
+   * the call. NodeConstraint is the base of those that do; this base itself has
+   * nothing to mend. */
   virtual bool by_node() const {
     return typeid(*this) == typeid(ZeroConstraint);
   }
-  /** Mend the nodes of @a g with ids in [first, last). Several threads may mend
-   * several parts at once.  @pre by_node() */
+  /** Mend the nodes of @a g with ids in [first, last), as far as these are in
+   * use. The others need not have moved yet. Several threads may mend several
+   * parts at once.  @pre by_node() */
   virtual void mend(Cloth& /*g*/, double /*t*/, unsigned /*first*/,
                     unsigned /*last*/) const {}
 
@@ -159,7 +161,7 @@ class PinConstraint : public NodeConstraint {
  private:
   struct Pin {
     Node node;
-    unsigned id;  // of the node: it keeps it, and after its end, too
+    unsigned id;  // the node's, which one that was removed can't tell
     Point place;
   };
   std::vector<Pin> pins_;  // by id
@@ -274,7 +276,7 @@ class FunctionConstraint : public ZeroConstraint {
 
 /** Several constraints, one after the other: where two disagree about a node,
  * the later one has its way. Copies share what they are made of. */
-class CombinedConstraints : public ZeroConstraint {
+class CombinedConstraints final : public ZeroConstraint {
  public:
   using Constraints = std::vector<std::shared_ptr<const ZeroConstraint>>;
   /** @pre no pointer is null */
@@ -328,7 +330,7 @@ CombinedConstraints make_combined_constraints(Cs... constraints) {
 /** Another constraint, and an eye on the paths of the nodes: one that would go
  * through an obstacle from one call to the next is put on its surface first,
  * and counted. While nobody watches, this is the other constraint. */
-class WatchedConstraint : public ZeroConstraint {
+class WatchedConstraint final : public ZeroConstraint {
  public:
   /** A node on its way through an obstacle. */
   struct Missed {

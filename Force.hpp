@@ -2,7 +2,7 @@
 /** @file Force.hpp
  * The forces on a cloth. A force is anything that can be called as
  * Point(Node n, double t): the force [N] on node n at time t [s]. It may read
- * all positions, and of the velocities that of n only. */
+ * all positions, unless it says springs(), and of the velocities that of n. */
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -96,8 +96,9 @@ class ZeroForce {
 
   /** How often the springs of all edges are part of this force, if nothing else
    * in it depends on positions: then its stiffness never exceeds that many
-   * times K of each edge, and who needs no more can spare add_stiffness().
-   * Nothing if that can't be told. */
+   * times K of each edge, and who needs no more can spare add_stiffness(); and
+   * the force on a node may be taken as soon as its neighbors are where they
+   * shall be. Nothing if that can't be told. */
   virtual std::optional<int> springs() const {
     if (typeid(*this) == typeid(ZeroForce)) return 0;
     return std::nullopt;
@@ -140,7 +141,7 @@ struct Weight {
 }  // namespace force_detail
 
 /** Weight: f = -m gravity along z [N]. */
-class GravityForce : public ZeroForce {
+class GravityForce final : public ZeroForce {
  public:
   /** @param gravity Acceleration of free fall [m/s^2] */
   explicit GravityForce(double gravity = grav) : gravity_(gravity) {}
@@ -177,8 +178,9 @@ namespace force_detail {
  * ends: no two nodes write to the same place, and square roots are cheap when
  * many are taken side by side.
  *
- * It asks for data before it uses them. Rows in line do so in any case: a
- * processor foresees how such a row goes on, but not into the next page.
+ * It asks for data before it uses them. Rows in line that come upon them first
+ * do so in any case: a processor foresees how such a row goes on, but not into
+ * the next page.
  * @tparam early Ask for what listed rows name, which none can foresee: twice as
  *         fast if it comes from memory, slower if a cache has it. */
 template <bool early>
@@ -297,7 +299,7 @@ class MassSpringForce : public ZeroForce {
 };
 
 /** Linear drag: f = -c v [N]. Takes c |v|^2 of power [W] and never gives. */
-class DampingForce : public ZeroForce {
+class DampingForce final : public ZeroForce {
  public:
   /** @param c Drag coefficient [kg/s], usually 1/N.  @pre @a c >= 0 */
   explicit DampingForce(double c = 0) : c_(c) { assert(c >= 0); }
@@ -338,7 +340,7 @@ class FunctionForce : public ZeroForce {
 };
 
 /** The sum of several forces. Copies share the forces they are made of. */
-class CombinedForces : public ZeroForce {
+class CombinedForces final : public ZeroForce {
  public:
   using Forces = std::vector<std::shared_ptr<const ZeroForce>>;
   /** @pre no pointer is null */

@@ -65,7 +65,7 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
  *
  * Its constraint is called once a step, when the positions have reached t +
  * dt, and before the force there is taken; held nodes stay at rest in between.
- * If it mends by node, it may be called part by part.
+ * Or else, if it mends by node, part by part, each before a force sees it.
  * Nodes may be removed by it, and between steps. No allocation in a step, but
  * for the first one and when the cloth grew.
  *
@@ -224,7 +224,7 @@ inline void without_drag(const Part& part, const ZeroForce& force,
 /** @a move(part) for all parts of @a g; then the constraint; then all forces
  * at time @a t, and @a use(part, forces on it). In one way through memory if
  * the constraint mends node by node.
- * @param f if given, takes all forces, by node id */
+ * @param f none, or a list for all forces, by node id */
 template <typename Move, typename Use, typename... List>
 void move_and_sweep(Sweep& sweep, Cloth& g, double t, const ZeroForce& force,
                     const ZeroConstraint& constraint, Move move, Use use,
@@ -238,7 +238,7 @@ void move_and_sweep(Sweep& sweep, Cloth& g, double t, const ZeroForce& force,
   } else {
     sweep.parts(g, move);
     constraint(g, t);
-    sweep.after([](const Part&) {}, g, t, force, f..., use);
+    sweep(g, t, force, f..., use);
   }
 }
 
@@ -323,14 +323,15 @@ class Splitting : public Method {
       const auto move = [&](const Part& part) { drift(g, part, h, c); };
       const bool is_last = k + 2 >= steps.size();
       now = is_last ? t + dt : now + h;
-      const ZeroConstraint none, &at_end = is_last ? constraint : none;
+      const ZeroConstraint none;  // but after the last drift
+      const ZeroConstraint& now_holds = is_last ? constraint : none;
       if (k + 1 == steps.size()) {
         sweep_.parts(g, move);
-        at_end(g, now);
+        now_holds(g, now);
         break;
       }
       move_and_sweep(
-          sweep_, g, now, force, at_end, move,
+          sweep_, g, now, force, now_holds, move,
           [&](const Part& part, std::span<Point> f) {
             without_drag(part, force, f);
             kick(g, part, steps[k + 1] * dt, f);

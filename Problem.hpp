@@ -31,6 +31,7 @@ class CountingForce : public ZeroForce {
   bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
     return true;  // it has none
   }
+  std::optional<int> springs() const override { return 0; }
   long long sweeps() const { return *sweeps_; }
 
  private:
@@ -43,6 +44,11 @@ class CountingConstraint : public ZeroConstraint {
  public:
   explicit CountingConstraint(CombinedConstraints c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override { ++calls_, c_(g, t); }
+  bool by_node() const override { return c_.by_node(); }
+  void mend(Cloth& g, double t, unsigned first, unsigned last) const override {
+    if (first == 0) ++calls_;  // one thread has that part
+    c_.mend(g, t, first, last);
+  }
   void each_held(const Cloth& g, const NodeVisitor& use) const override {
     c_.each_held(g, use);
   }

@@ -247,7 +247,7 @@ class SelfCollision : public ZeroConstraint {
     for (const auto& [i, j] : near_)
       if (normSq(x[i] - x[j]) < thickness_ * thickness_ && g.node_in_use(i) &&
           g.node_in_use(j)) {
-        mend(g, i, j);
+        push_apart(g, i, j);
         mended = true;
       }
     if (++rounds_ >= max_rounds && mended)
@@ -257,7 +257,7 @@ class SelfCollision : public ZeroConstraint {
     return mended;
   }
 
-  void mend(Cloth& g, unsigned i, unsigned j) const {
+  void push_apart(Cloth& g, unsigned i, unsigned j) const {
     const auto x = g.positions();
     const auto node = g.node_values();
     const double wi = held_[i] ? 0 : 1 / double(node[i].mass);

@@ -75,14 +75,15 @@ class Sweep {
 
   /** The same, but @a move(part) is called for each part before any force that
    * depends on the positions of its nodes: so one way through memory does for
-   * both. @a move may change these, and @a use what no force depends on but
-   * that on its own node, its velocity. */
+   * both. @a move may change positions and velocities of its part, and @a use
+   * its velocities; the graph stays as it is. Several threads do several parts
+   * at once. Throws as parts(). */
   template <typename Move, typename Use>
   void after(Move move, const Cloth& g, double t, const ZeroForce& force,
              std::vector<Point>& f, Use use) {
     f.resize(whole_blocks(g.node_slots()));
     update(g);
-    in_turn(g, lead(force), move, [&](const Part& part) {
+    in_turn(g, parts_away(force), move, [&](const Part& part) {
       std::span<Point> here(&f[part.first],
                             whole_blocks(part.last - part.first));
       add_up(part, t, force, here);
@@ -93,7 +94,7 @@ class Sweep {
   void after(Move move, const Cloth& g, double t, const ZeroForce& force,
              Use use) {
     update(g);
-    in_turn(g, lead(force), move, [&](const Part& part) {
+    in_turn(g, parts_away(force), move, [&](const Part& part) {
       std::span<Point> here(buffer_[thread()].data(),
                             whole_blocks(part.last - part.first));
       add_up(part, t, force, here);
@@ -133,9 +134,10 @@ class Sweep {
   }
 
   /** How many parts away the nodes may be whose positions @a force asks for. */
-  int lead(const ZeroForce& force) const {
+  int parts_away(const ZeroForce& force) const {
     if (!force.springs()) return std::numeric_limits<int>::max();
-    return int((stencil_->reach() + part_size - 1) / part_size);
+    // A gather reads one number behind the node, which may be of the next part.
+    return int(stencil_->reach() / part_size) + 1;
   }
 
   /** Call @a move(part) and @a use(part) for each part, this one when all parts
@@ -160,15 +162,16 @@ class Sweep {
         if (!error) error = std::current_exception();
       }
     };
-    const auto share = [&](int thread, int threads) {
-      const int first = int(std::int64_t(count) * thread / threads);
-      const int last = int(std::int64_t(count) * (thread + 1) / threads);
-      // The other threads wait for those at the borders.
+    const auto share = [&](int number, int threads) {
+      const int first = int(std::int64_t(count) * number / threads);
+      const int last = int(std::int64_t(count) * (number + 1) / threads);
+      // Other threads wait for the parts at the borders. So these move first:
+      // [first, moved), which grows, and [inner_last, last).
       const int inner_last = std::max(last - lead, first);
       int moved = std::min(first + lead, inner_last);
       for (int k = first; k < moved; ++k) call(move, k);
       for (int k = inner_last; k < last; ++k) call(move, k);
-      if (threads > 1) {
+      if (threads > 1 && lead > 0) {
 #ifdef _OPENMP
 #pragma omp barrier
 #endif

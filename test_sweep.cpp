@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "Integrator.hpp"
+#include "Obstacle.hpp"
 
 namespace {
 
@@ -175,13 +175,16 @@ TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
 
 /** Positions and velocities after 50 steps and a tear. */
 std::vector<Point> run(Method& method, int threads,
-                       const ZeroConstraint& constraint = ZeroConstraint()) {
+                       const ZeroConstraint& constraint = ZeroConstraint(),
+                       bool far = false) {
   CME212::default_generator.seed(5);
   Sweep::set_threads(threads);
   Cloth g;
   make_grid(g, 70);  // 4900 nodes: five parts
-  const auto force = make_combined_force(GravityForce(), MassSpringForce(),
-                                         DampingForce(0.0001));
+  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce(),
+                                             DampingForce(0.0001));
+  if (far)  // as it may be, for all that is known of it
+    force = make_combined_force(force, [](Node, double) { return Point(); });
   double t = 0;
   for (int k = 0; k < 50; ++k) {
     if (k == 25) remove_some(g, 300, 100);
@@ -213,8 +216,11 @@ TEST_F(SweepTest, MendingOnTheWayDoesNotChangeABit) {
   SymplecticEuler euler;
   Verlet verlet;
   Pefrl pefrl;
+  // The time counts, too.
+  const Motion motion = {Point(0.1, 0, 0.2)};
   const auto by_node = make_combined_constraints(
-      PlaneConstraint(-0.004), SphereConstraint({Point(0.5, 0.5, -0.1), 0.1}));
+      WallConstraint(Point(0, 0, -0.004), Point(0, 0, 1), motion, 0.3),
+      SphereConstraint({Point(0.5, 0.5, -0.1), 0.1}));
   const auto in_turn =
       make_combined_constraints([&](Cloth& g, double t) { by_node(g, t); });
   ASSERT_TRUE(by_node.by_node() && !in_turn.by_node());
@@ -228,48 +234,65 @@ TEST_F(SweepTest, MendingOnTheWayDoesNotChangeABit) {
       method->restart();
       EXPECT_TRUE(run(*method, threads, by_node) == expected)
           << threads << " threads";
+      method->restart();
+      EXPECT_TRUE(run(*method, threads, by_node, true) == expected)
+          << threads << " threads, far";
+    }
+  }
+}
+
+/** @a move and @a use are called for the ten parts of @a g as they should be if
+ * @a force asks for nodes that are up to @a lead parts away. */
+void expect_moved_in_time(const Cloth& g, const ZeroForce& force,
+                          unsigned lead) {
+  constexpr unsigned parts = 10, size = Sweep::part_size;
+  for (int threads : {1, 2, 3, 7, 20}) {
+    Sweep::set_threads(threads);
+    std::vector<std::atomic<int>> moved(parts), used(parts);
+    std::atomic<int> at_first = 0;
+    Sweep().after(
+        [&](const Part& part) {
+          EXPECT_EQ(used[part.first / size], 0);
+          ++moved[part.first / size];
+        },
+        g, 0, force,
+        [&](const Part& part, std::span<const Point>) {
+          const unsigned k = part.first / size;
+          for (unsigned j = 0; j < parts; ++j)
+            if (j + lead >= k && j <= k + lead) {
+              EXPECT_EQ(moved[j], 1);
+            }
+          for (auto& m : moved) at_first += k == 0 ? int(m) : 0;
+          ++used[k];
+        });
+    for (unsigned k = 0; k < parts; ++k) {
+      EXPECT_EQ(moved[k], 1);
+      EXPECT_EQ(used[k], 1);
+    }
+    // Its own part, those after it, and the last ones, which another thread
+    // would wait for.
+    if (threads == 1) {
+      EXPECT_EQ(at_first, std::min(1 + 2 * int(lead), 10)) << lead;
     }
   }
 }
 
 TEST_F(SweepTest, MovesWhatAForceAsksForBeforeItAndNoMoreThanThat) {
   Cloth g;
-  make_grid(g, 100);  // ten parts, neighbors at most 101 ids away
-  const unsigned parts = 10, size = Sweep::part_size;
+  make_grid(g, 100);  // neighbors at most 101 ids away
   const auto near = make_combined_force(GravityForce(), MassSpringForce());
-  const auto far =
-      make_combined_force(near, [](Node, double) { return Point(); });
-  for (const ZeroForce* force : {&near, &far})
-    for (int threads : {1, 2, 3, 7, 20}) {
-      Sweep::set_threads(threads);
-      std::vector<std::atomic<int>> moved(parts), used(parts);
-      std::atomic<unsigned> at_first = 0;
-      Sweep().after(
-          [&](const Part& part) {
-            EXPECT_EQ(used[part.first / size], 0);
-            ++moved[part.first / size];
-          },
-          g, 0, *force,
-          [&](const Part& part, std::span<const Point>) {
-            const unsigned k = part.first / size;
-            const unsigned lead = force == &near ? 1 : parts;
-            for (unsigned j = 0; j < parts; ++j)
-              if (j + lead >= k && j <= k + lead) {
-                EXPECT_EQ(moved[j], 1);
-              }
-            for (auto& m : moved) at_first += k == 0 ? int(m) : 0;
-            ++used[k];
-          });
-      for (unsigned k = 0; k < parts; ++k) {
-        EXPECT_EQ(moved[k], 1);
-        EXPECT_EQ(used[k], 1);
-      }
-      // Its own part, the one after it, and the last one, which another thread
-      // would wait for.
-      if (threads == 1) {
-        EXPECT_EQ(at_first, force == &near ? 3 : parts);
-      }
-    }
+  expect_moved_in_time(g, near, 1);
+  expect_moved_in_time(
+      g, make_combined_force(near, [](Node, double) { return Point(); }), 10);
+  g.add_edge(g.node(0), g.node(1023));
+  expect_moved_in_time(g, near, 1);
+  // A gather of that node reads the first number of the next one.
+  g.add_edge(g.node(0), g.node(1024));
+  expect_moved_in_time(g, near, 2);
+  g.add_edge(g.node(6000), g.node(3500));
+  expect_moved_in_time(g, near, 3);
+  g.add_edge(g.node(0), g.node(9999));
+  expect_moved_in_time(g, near, 10);
 }
 
 TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
@@ -283,16 +306,10 @@ TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
   }
 }
 
-// Large cloths are swept by another kernel.
+// Large cloths without constant offsets are swept by another kernel.
 TEST_F(SweepTest, AskingEarlyDoesNotChangeABit) {
   using force_detail::SpringSweep;
-  for (unsigned nodes : {1u, 16u, 33u, 81u, 100u, 1500u, 1600u}) {
-    Cloth g;
-    const unsigned side = unsigned(std::lround(std::sqrt(nodes)));
-    if (side * side == nodes)
-      make_grid(g, side);
-    else
-      make_random(g, nodes, 4 * nodes);
+  const auto expect_same = [](const Cloth& g) {
     const ClothStencil stencil(g);
     const auto sum = [&]<bool early>(std::bool_constant<early>) {
       std::vector<Point> f(stencil.num_blocks() * lanes::width);
@@ -303,8 +320,19 @@ TEST_F(SweepTest, AskingEarlyDoesNotChangeABit) {
     };
     for (Cpu cpu : all_cpus()) {
       lanes::cpu = cpu;
-      EXPECT_TRUE(sum(std::true_type()) == sum(std::false_type())) << nodes;
+      EXPECT_TRUE(sum(std::true_type()) == sum(std::false_type()))
+          << g.num_nodes();
     }
+  };
+  for (unsigned nodes : {1u, 16u, 33u, 100u, 1500u}) {
+    Cloth g;
+    make_random(g, nodes, 4 * nodes);
+    expect_same(g);
+  }
+  for (unsigned side : {2u, 9u, 40u}) {
+    Cloth g;
+    make_grid(g, side);
+    expect_same(g);
   }
 }
 
@@ -345,9 +373,14 @@ TEST_F(SweepTest, ThreadsLetExceptionsThrough) {
   const auto move = [](const Part& part) {
     if (part.first == 2 * Sweep::part_size) throw std::range_error("no way");
   };
-  EXPECT_THROW(Sweep().after(move, g, 0, GravityForce(), f,
-                             [](const Part&, std::span<Point>) {}),
-               std::range_error);
+  // Before threads wait for each other, and after.
+  const auto far = make_combined_force([](Node, double) { return Point(); });
+  const GravityForce gravity;
+  for (const ZeroForce* wanted : {static_cast<const ZeroForce*>(&far),
+                                  static_cast<const ZeroForce*>(&gravity)})
+    EXPECT_THROW(Sweep().after(move, g, 0, *wanted, f,
+                               [](const Part&, std::span<Point>) {}),
+                 std::range_error);
 }
 
 // A team costs more than a step of a small cloth, even if one thread is all.

@@ -92,7 +92,7 @@ threads() {
     build/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*' &&
     OMP_NUM_THREADS=3 \
       TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
-      build/tsan/test_sweep --gtest_filter='*hread*:*Parts*'
+      build/tsan/test_sweep --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*'
 }
 
 # Single precision: the sweeps, a run, and how far it ends from double.
