@@ -8,8 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <sys/wait.h>
-
+#include "CME212/TestFolder.hpp"
 #include "Mesh.hpp"
 #include "Methods.hpp"
 
@@ -17,43 +16,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-struct Result {
-  int status;
-  std::string out, err;
-};
+using CME212::contents;
+using Result = CME212::TestFolder::Result;
 
 class MassSpring : public ::testing::Test {
  protected:
-  fs::path dir;
-
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "mass_spring_XXXXXX");
-    dir = mkdtemp(name.data());
-  }
-  void TearDown() override { fs::remove_all(dir); }
+  const CME212::TestFolder folder;
+  const fs::path& dir = folder.path();
 
   /** Run a stage. Words of @a arguments: as in a shell. */
   Result run(const std::string& arguments, const std::string& stage = "tear") {
-    std::string command = "./mass_spring_" + stage + " " + arguments + " >" +
-                          (dir / "out").string() + " 2>" +
-                          (dir / "err").string();
-    int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(dir / "out"),
-            contents(dir / "err")};
+    return folder.run("./mass_spring_" + stage + " " + arguments);
   }
   /** A file of this test with a content. */
   std::string file(const std::string& name, const std::string& text) {
     std::ofstream(dir / name, std::ios::binary) << text;
     return (dir / name).string();
   }
-  std::string path(const std::string& name) { return (dir / name).string(); }
+  std::string path(const std::string& name) { return folder / name; }
   /** What lies in the folder besides what run() put there. */
   std::vector<std::string> files() {
     std::vector<std::string> names;

@@ -2,11 +2,9 @@
 // which it can be wrong.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
-#include <unistd.h>
-
+#include "CME212/TestFolder.hpp"
 #include "SceneFile.hpp"
 
 namespace {
@@ -113,14 +111,8 @@ TEST(Parts, RefuseWhatMakesNoSense) {
 
 class SceneFile : public ::testing::Test {
  protected:
-  std::string name;
-  void SetUp() override {
-    std::string text =
-        (std::filesystem::temp_directory_path() / "scene_XXXXXX").string();
-    name = text;
-    close(mkstemp(name.data()));
-  }
-  void TearDown() override { std::filesystem::remove(name); }
+  const CME212::TestFolder folder;
+  const std::string name = folder / "scene.toml";
   Model load(const std::string& text) {
     std::ofstream(name) << text;
     return load_model(name);

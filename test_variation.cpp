@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 
+#include "CME212/TestFolder.hpp"
 #include "SceneFile.hpp"
 #include "Variation.hpp"
 
@@ -382,15 +383,8 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
-std::string contents(const std::string& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 TEST(ThePageOfScenes, NamesEveryKeyAndScene) {
-  const std::string page = contents("docs/scenes.md");
+  const std::string page = CME212::contents("docs/scenes.md");
   const Model m;
   each_option(m, [&](const std::string& name, const auto&, const char*) {
     EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
@@ -413,7 +407,7 @@ TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
   const Trial base = try_out(m);
   ASSERT_TRUE(base.ok()) << base.failure;
 
-  const std::string page = contents("docs/scenes.md");
+  const std::string page = CME212::contents("docs/scenes.md");
   const char* table = std::getenv("WRITE_TABLE");
   std::ofstream out;
   if (table) out.open(table, std::ios::app);

@@ -24,6 +24,7 @@
 #include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
 #include "CME212/SceneBuilder.hpp"
+#include "CME212/TestFolder.hpp"
 #include "Graph.hpp"
 
 namespace {
@@ -62,19 +63,10 @@ bool eventually(const std::function<bool()>& done) {
   return true;
 }
 
-/** A folder for one test, gone after it. */
-struct Folder {
-  fs::path path =
-      fs::temp_directory_path() / ("test_viewer_" + std::to_string(getpid()));
-  Folder() { fs::create_directory(path); }
-  ~Folder() { fs::remove_all(path); }
-  std::string operator/(const std::string& name) const {
-    return (path / name).string();
-  }
-  std::size_t size() const {
-    return std::size_t(std::distance(fs::directory_iterator(path), {}));
-  }
-};
+using CME212::TestFolder;
+std::size_t files_in(const TestFolder& folder) {
+  return std::size_t(std::distance(fs::directory_iterator(folder.path()), {}));
+}
 
 /** An environment variable, changed for one test; null: not set. */
 class Environment {
@@ -216,17 +208,17 @@ Image test_image(int width, int height, int seed = 0) {
 }
 
 TEST(Image, SurvivesPng) {
-  Folder folder;
+  TestFolder folder;
   for (auto [w, h] : {std::array{1, 1}, {7, 5}, {640, 3}}) {
     Image image = test_image(w, h);
     write_png(folder / "a.png", image);
     EXPECT_EQ(read_png(folder / "a.png"), image);
   }
-  EXPECT_EQ(folder.size(), 1u);  // nothing else is left
+  EXPECT_EQ(files_in(folder), 1u);  // nothing else is left
 }
 
 TEST(Image, SaysWhatIsWrong) {
-  Folder folder;
+  TestFolder folder;
   const std::string nowhere = folder / "none/a.png", text = folder / "t.png";
   const Image image = test_image(2, 2);
   for (auto& [file, f] : std::map<std::string, std::function<void()>>{
@@ -242,12 +234,12 @@ TEST(Image, SaysWhatIsWrong) {
   EXPECT_NE(error_of([&] { write_png(folder / "old.png", Image()); }),
             "no error");
   EXPECT_EQ(read_png(folder / "old.png"), image);
-  EXPECT_EQ(folder.size(), 2u);
+  EXPECT_EQ(files_in(folder), 2u);
 }
 
 TEST(Video, MakesAPlayableFile) {
   if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
-  Folder folder;
+  TestFolder folder;
   // A name that a shell or ffmpeg itself might misread.
   const std::string file = folder / "-a 'b\"; $(touch c) e:f%d.mp4";
   Video video(file, 65, 48, 25);
@@ -256,7 +248,7 @@ TEST(Video, MakesAPlayableFile) {
   video.finish();
   EXPECT_EQ(video.wrote(), file);
   EXPECT_EQ(video.frames(), 10);
-  EXPECT_EQ(folder.size(), 1u);
+  EXPECT_EQ(files_in(folder), 1u);
   fs::rename(file, folder / "v.mp4");
   if (!has_program("ffprobe")) return;
   EXPECT_EQ(output_of("ffprobe -v error -count_frames -select_streams v "
@@ -267,7 +259,7 @@ TEST(Video, MakesAPlayableFile) {
 }
 
 TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
-  Folder folder;
+  TestFolder folder;
   Environment path("PATH", (folder / "none").c_str());
   for (int length : {3, 2}) {  // the second replaces the first
     Video video(folder / "v.mp4", 8, 6);
@@ -279,7 +271,7 @@ TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
   EXPECT_EQ(read_png(folder / "v_frames/frame_000001.png"),
             test_image(8, 6, 1));
   EXPECT_FALSE(fs::exists(folder / "v_frames/frame_000002.png"));
-  EXPECT_EQ(folder.size(), 1u);
+  EXPECT_EQ(files_in(folder), 1u);
 
   std::ofstream(folder / "v_frames/notes.txt") << "keep";  // not ours
   Video video(folder / "v.mp4", 8, 6);
@@ -289,7 +281,7 @@ TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
 }
 
 TEST(Video, SaysWhatIsWrong) {
-  Folder folder;
+  TestFolder folder;
   EXPECT_EQ(error_of([&] {
               Video(folder / "none/v.mp4", 8, 6);
             }).find(folder / "none/v.mp4: "),
@@ -297,7 +289,7 @@ TEST(Video, SaysWhatIsWrong) {
   // An ffmpeg that complains and stops: an error, not a signal.
   std::ofstream(folder / "ffmpeg") << "#!/bin/sh\necho too bad >&2\nexit 3\n";
   fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
-  Environment path("PATH", folder.path.c_str());
+  Environment path("PATH", folder.path().c_str());
   Video video(folder / "v.mp4", 800, 600);
   std::string error = error_of([&] {
     for (int i = 0; i < 100; ++i) video.add(test_image(800, 600));
@@ -307,11 +299,11 @@ TEST(Video, SaysWhatIsWrong) {
 }
 
 TEST(Video, LeavesNothingIfNotFinished) {
-  Folder folder;
+  TestFolder folder;
   Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
   Environment path("PATH", (folder / "none").c_str());
   Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
-  EXPECT_EQ(folder.size(), 0u);
+  EXPECT_EQ(files_in(folder), 0u);
 }
 
 // -------------------------------------------------------------- SceneBuilder

@@ -11,8 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include <sys/wait.h>
-
+#include "CME212/TestFolder.hpp"
 #include "Failure.hpp"
 #include "Precision.hpp"
 #include "Problem.hpp"
@@ -218,29 +217,16 @@ TEST(Failure, ComparesAtEqualWork) {
 
 // ---------------------------------------------------------------- The program
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using CME212::contents;
 
 class WorkPrecision : public ::testing::Test {
  protected:
-  fs::path dir;
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "work_precision_XXXXXX");
-    dir = mkdtemp(name.data());
-  }
-  void TearDown() override { fs::remove_all(dir); }
+  const CME212::TestFolder folder;
+  const fs::path& dir = folder.path();
 
   /** @return the exit status */
   int run_program(const std::string& arguments) {
-    std::string command = "./work_precision " + arguments + " >" +
-                          (dir / "out").string() + " 2>" +
-                          (dir / "err").string();
-    int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return folder.run("./work_precision " + arguments).status;
   }
   std::string err() { return contents(dir / "err"); }
   std::string printed() { return contents(dir / "out"); }

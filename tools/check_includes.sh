@@ -11,6 +11,7 @@ CME212/Point       = CME212/Util
 CME212/Util        = CME212/Point
 CME212/OutputFile  =
 CME212/Allocations =
+CME212/TestFolder  =
 CME212/BoundingBox = CME212/Point
 CME212/Color       = CME212/Point
 CME212/GLCamera    = CME212/*

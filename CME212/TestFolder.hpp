@@ -1,0 +1,68 @@
+#pragma once
+/** @file TestFolder.hpp
+ * What tests of files and programs need: a folder of their own, what is in a
+ * file, and what a program says. */
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include <sys/wait.h>
+
+namespace CME212 {
+
+/** All of a file; nothing if it can't be read. */
+inline std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/** A new folder, gone with all that is in it when this goes. */
+class TestFolder {
+ public:
+  /** Throws std::filesystem::filesystem_error. */
+  TestFolder() {
+    std::string name = std::filesystem::temp_directory_path() / "test_XXXXXX";
+    if (!mkdtemp(name.data()))
+      throw std::filesystem::filesystem_error(
+          "can't make a folder", name,
+          std::error_code(errno, std::generic_category()));
+    path_ = name;
+  }
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
+  ~TestFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+
+  const std::filesystem::path& path() const { return path_; }
+  /** The path of a file in it. */
+  std::string operator/(const std::string& name) const {
+    return (path_ / name).string();
+  }
+
+  /** How a program ended, and what it wrote. */
+  struct Result {
+    int status;  ///< -1: not by itself
+    std::string out, err;
+  };
+  /** Run a command of the shell; its words are in the files out and err here.
+   */
+  Result run(const std::string& command) const {
+    const int status = std::system(
+        (command + " >" + *this / "out" + " 2>" + *this / "err").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            contents(*this / "out"), contents(*this / "err")};
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace CME212
