@@ -181,8 +181,8 @@ namespace force_detail {
  * It asks for data before it uses them. Rows in line that come upon them first
  * do so in any case: a processor foresees how such a row goes on, but not into
  * the next page.
- * @tparam early Ask for what listed rows name, which none can foresee: twice as
- *         fast if it comes from memory, slower if a cache has it. */
+ * @tparam early Ask for the springs that rows list, which none can foresee:
+ *         faster if they come from memory, slower if a cache has them. */
 template <bool early>
 struct SpringSweep {
   template <typename V>
@@ -198,7 +198,7 @@ struct SpringSweep {
     for (unsigned b = first; b < last; ++b) {
       if (early && b + ahead < stencil.num_blocks())
         for (const auto& row : stencil.rows(b + ahead))
-          if (row.offset == 0) ask_for_listed(stencil, row, position, spring);
+          if (row.offset == 0) ask_for_listed(stencil, row, spring);
       for (int k = 0; k < width; k += w) {  // once, if V is as long
         const Point* here = position + (b * width + k);
         const Points<V> x = stencil.is_full(b)
@@ -241,13 +241,13 @@ struct SpringSweep {
     for (std::uintptr_t at = 0; at < count * sizeof(T); at += line)
       __builtin_prefetch(reinterpret_cast<const void*>(from + at));
   }
+  /** The springs of a row that lists them. Not the positions: meshes lie so in
+   * memory that neighbors are near. */
   [[gnu::always_inline]] static inline void ask_for_listed(
       const ClothStencil& stencil, const ClothStencil::Row& row,
-      const Point* position, const EdgeData* spring) {
-    for (int k = 0; k < lanes::width; ++k) {
-      __builtin_prefetch(position + stencil.neighbors(row)[k]);
+      const EdgeData* spring) {
+    for (int k = 0; k < lanes::width; ++k)
       __builtin_prefetch(spring + stencil.edges(row)[k]);
-    }
   }
 };
 
