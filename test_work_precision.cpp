@@ -128,6 +128,27 @@ TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
   EXPECT_NEAR(bound, std::sqrt(12 * 100 * 625.0), 0.03 * bound);
 }
 
+// So what is measured is what the program does: a method that can spare
+// something spares it here, too.
+TEST(Problem, ItsCountersHideNothing) {
+  const auto force = make_combined_force(GravityForce(), MassSpringForce(),
+                                         DampingForce(0.1), CountingForce());
+  EXPECT_EQ(force.springs(), 1);
+  EXPECT_EQ(force.drag(), 0.1);
+  for (const CombinedConstraints& c :
+       {make_combined_constraints(PlaneConstraint()),
+        make_combined_constraints(TearConstraint())}) {
+    const CountingConstraint counting(c);
+    EXPECT_EQ(counting.by_node(), c.by_node());
+    Cloth g;
+    for (int i = 0; i < 3000; ++i) g.add_node(Point(0, 0, -1));
+    SymplecticEuler method;
+    for (int k = 0; k < 5; ++k) method(g, 0, 0.01, GravityForce(), counting);
+    EXPECT_EQ(counting.calls(), 5);
+    EXPECT_EQ(g.node(2999).position().z > -1, c.by_node());
+  }
+}
+
 // A method that keeps its last force takes one sweep more in its first step.
 TEST(Problem, CountsTheSweepsThatMethodsDeclare) {
   const std::set<std::string> keeps = {"verlet",           "yoshida4",

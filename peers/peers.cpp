@@ -124,6 +124,9 @@ State run_ours(const MethodEntry& entry, int steps) {
       if (problem->drag != 0) DampingForce(problem->drag).add_to(part, t, f);
     }
     double drag() const override { return problem->drag; }
+    std::optional<int> springs() const override {
+      return problem->force.springs();
+    }
   };
   Cloth& g = problem->g;
   problem->set_positions(problem->start().data());
