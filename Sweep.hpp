@@ -82,24 +82,16 @@ class Sweep {
   void after(Move move, const Cloth& g, double t, const ZeroForce& force,
              std::vector<Point>& f, Use use) {
     f.resize(whole_blocks(g.node_slots()));
-    update(g);
-    in_turn(g, parts_away(force), move, [&](const Part& part) {
-      std::span<Point> here(&f[part.first],
-                            whole_blocks(part.last - part.first));
-      add_up(part, t, force, here);
-      use(part, here);
-    });
+    add_up(
+        move, g, t, force, [&](const Part& part) { return &f[part.first]; },
+        use);
   }
   template <typename Move, typename Use>
   void after(Move move, const Cloth& g, double t, const ZeroForce& force,
              Use use) {
-    update(g);
-    in_turn(g, parts_away(force), move, [&](const Part& part) {
-      std::span<Point> here(buffer_[thread()].data(),
-                            whole_blocks(part.last - part.first));
-      add_up(part, t, force, here);
-      use(part, here);
-    });
+    add_up(
+        move, g, t, force,
+        [&](const Part&) { return buffer_[thread()].data(); }, use);
   }
 
  private:
@@ -182,20 +174,30 @@ class Sweep {
         call(use, k);
       }
     };
+    bool alone = true;
 #ifdef _OPENMP
     // Calling a team takes longer than a step of 100 nodes.
-    if (count > 1 && (threads_ > 0 || count >= many_parts)) {
+    alone = count <= 1 || (threads_ == 0 && count < many_parts);
+    if (!alone) {
 #pragma omp parallel
       share(omp_get_thread_num(), omp_get_num_threads());
-    } else {
-      share(0, 1);
     }
-#else
-    share(0, 1);
 #endif
+    if (alone) share(0, 1);
     if (error) std::rethrow_exception(error);
   }
 
+  /** As after(), the forces on a part at @a place(part). */
+  template <typename Move, typename Place, typename Use>
+  void add_up(Move move, const Cloth& g, double t, const ZeroForce& force,
+              Place place, Use use) {
+    update(g);
+    in_turn(g, parts_away(force), move, [&](const Part& part) {
+      std::span<Point> f(place(part), whole_blocks(part.last - part.first));
+      add_up(part, t, force, f);
+      use(part, f);
+    });
+  }
   static void add_up(const Part& part, double t, const ZeroForce& force,
                      std::span<Point> f) {
     std::fill(f.begin(), f.end(), Point());
