@@ -23,7 +23,7 @@
 
 #include "CME212/Point.hpp"
 #include "CME212/Util.hpp"
-#include "SlotMap.hpp"
+#include "CME212/SlotMap.hpp"
 
 namespace graph_detail {
 

@@ -1,7 +1,372 @@
 #pragma once
 /** @file mass_spring.hpp
- * All that a program about mass-spring cloth includes. */
-#include "Cloth.hpp"
-#include "Constraint.hpp"
-#include "Force.hpp"
-#include "Integrator.hpp"
+ * The assignment, section by section: a cloth of point masses and springs, the
+ * step, the forces (5), the constraints (6) and tearing (7). SI units; z up. */
+#include <cassert>
+#include <concepts>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "CME212/Mesh.hpp"
+#include "Graph.hpp"
+
+// ------------------------------------------------- 3 and 4.1: cloth and
+// springs
+
+/** What a node carries. */
+struct NodeData {
+  Point vel;      ///< velocity [m/s]
+  Real mass = 1;  ///< [kg], > 0
+};
+/** What an edge carries: a linear spring. */
+struct EdgeData {
+  Real K = 100;  ///< spring constant [N/m], >= 0
+  Real L = 0;    ///< rest length [m], >= 0
+};
+using Cloth = Graph<NodeData, EdgeData>;
+using GraphType = Cloth;
+using Node = Cloth::node_type;
+using Edge = Cloth::edge_type;
+
+inline constexpr double grav = 9.81;  ///< acceleration of free fall [m/s^2]
+
+/** Is @a p one of the two corners that the assignment holds? */
+inline constexpr bool is_corner(const Point& p) {
+  return p == Point(0, 0, 0) || p == Point(1, 0, 0);
+}
+
+/** Fill the empty graph @a g: at rest, mass 1/N each, every spring as long as
+ * its rest length.  @param K spring constant [N/m]
+ * @pre the indices in @a quads are below points.size()
+ * @post node(i) is at points[i]; the edges have the order of MeshSprings
+ * Complexity: O(points + quads) if no point is in very many quads */
+inline void build_cloth(Cloth& g, std::span<const Point> points,
+                        std::span<const Quad> quads, Mesh mesh,
+                        double K = 100) {
+  assert(g.size() == 0);
+  const MeshSprings springs(quads, mesh);
+  g.reserve(unsigned(points.size()), unsigned(springs.expected(points.size())));
+  for (const Point& p : points)
+    g.add_node(p, {Point(), Real(1.0 / double(points.size()))});
+  for (unsigned s = 0; s < springs.size(); ++s) {
+    const auto [i, j] = springs[s];
+    const Real L = Real(norm(points[i] - points[j]));
+    g.add_edge(g.node(i), g.node(j), {Real(K), L});
+  }
+}
+
+// ------------------------------------------------------- 3.2 and 6.2: the step
+
+/** Symplectic Euler: x += dt v;  v += dt F(x, t)/m.  Corners are skipped (5.2).
+ * @param t   time at the start of the step [s]   @param dt step [s]
+ * @param force  Point(Node, double): the force [N] on a node at time t
+ * @return t + dt
+ * Complexity: one call of @a force for each node.
+ * Order 1; bounded while dt omega < 2 for every frequency omega [1/s]. */
+template <typename G, typename F>
+double symp_euler_step(G& g, double t, double dt, F&& force) {
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    if (!is_corner(n.position())) n.position() += dt * n.value().vel;
+  }
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    if (!is_corner(n.position()))
+      n.value().vel += (dt / n.value().mass) * force(n, t);
+  }
+  return t + dt;
+}
+
+/** The same with a constraint, and no node is skipped (6.2):
+ * x += dt v;  constrain;  v += dt F(x, t)/m.
+ * @param constraint  void(G&, double), called once; may remove nodes */
+template <typename G, typename F, typename C>
+double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    n.position() += dt * n.value().vel;
+  }
+  constraint(g, t);
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    n.value().vel += (dt / n.value().mass) * force(n, t);
+  }
+  return t + dt;
+}
+
+// ----------------------------------------------------------------- The forces
+
+/** Force [N] of a spring on its one end, the other end being @a u [m] away:
+ * K (|u| - L) along u; none where |u| = 0, as no direction is defined. */
+inline Point spring_force(const Point& u, const EdgeData& s) {
+  const Real l = Real(norm(u));
+  return l > 0 ? s.K * (l - s.L) / l * u : Point();
+}
+
+/** 3.2 and 4.2: gravity and springs in one; a corner feels no force, so it
+ * stays where it is. */
+class Problem1Force {
+ public:
+  /** Each spring by its own K and L (4.2). */
+  Problem1Force() = default;
+  /** All springs alike (3.2).  @param K [N/m]   @param L rest length [m] */
+  Problem1Force(double K, double L) : same_{{Real(K), Real(L)}} {}
+
+  template <typename NODE>
+  Point operator()(NODE n, double /*t*/) const {
+    if (is_corner(n.position())) return Point();
+    Point f = n.value().mass * Point(0, 0, -grav);
+    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
+      auto e = *it;  // seen from n, so that node2() is the other end
+      f += spring_force(e.node2().position() - n.position(),
+                        same_ ? *same_ : e.value());
+    }
+    return f;
+  }
+
+ private:
+  std::optional<EdgeData> same_;
+};
+
+/** 5.1: no force, and the base of all forces. */
+class ZeroForce {
+ public:
+  virtual ~ZeroForce() = default;
+  /** The force [N] on @a n at time @a t [s]. It may read all positions, and of
+   * the velocities that of @a n. */
+  virtual Point operator()(Node /*n*/, double /*t*/) const { return Point(); }
+};
+
+/** Weight: f = -m g along z. */
+class GravityForce : public ZeroForce {
+ public:
+  /** @param gravity acceleration of free fall [m/s^2] */
+  explicit GravityForce(double gravity = grav) : gravity_(gravity) {}
+  double gravity() const { return gravity_; }
+  Point operator()(Node n, double /*t*/) const override {
+    return n.value().mass * Point(0, 0, -gravity_);
+  }
+
+ private:
+  double gravity_;
+};
+
+/** The springs at a node, each by its own K and L. */
+class MassSpringForce : public ZeroForce {
+ public:
+  Point operator()(Node n, double /*t*/) const override {
+    Point f;
+    for (Edge e : n.edges())
+      f += spring_force(e.node2().position() - n.position(), e.value());
+    return f;
+  }
+};
+
+/** Linear drag: f = -c v. Takes c |v|^2 of power [W]; never gives any. */
+class DampingForce : public ZeroForce {
+ public:
+  /** @param c drag coefficient [kg/s], usually 1/N.  @pre c >= 0 */
+  explicit DampingForce(double c = 0) : c_(c) { assert(c >= 0); }
+  double coefficient() const { return c_; }
+  Point operator()(Node n, double /*t*/) const override {
+    return -c_ * n.value().vel;
+  }
+
+ private:
+  double c_;
+};
+
+/** A function Point(Node, double) as a ZeroForce. */
+template <typename F>
+class FunctionForce : public ZeroForce {
+ public:
+  explicit FunctionForce(F f) : f_(std::move(f)) {}
+  Point operator()(Node n, double t) const override { return f_(n, t); }
+
+ private:
+  mutable F f_;  // a functor of the assignment need not be const
+};
+
+/** 5.2: the sum of several forces. Copies share them. */
+class CombinedForces : public ZeroForce {
+ public:
+  using List = std::vector<std::shared_ptr<const ZeroForce>>;
+  /** @pre no pointer is null */
+  explicit CombinedForces(List forces) : forces_(std::move(forces)) {}
+  const List& parts() const { return forces_; }
+  Point operator()(Node n, double t) const override {
+    Point f;
+    for (const auto& force : forces_) f += (*force)(n, t);
+    return f;
+  }
+
+ private:
+  List forces_;
+};
+
+namespace mass_spring_detail {
+/** @a x on the heap as a Base: itself if it is one, else in an Adapter. */
+template <typename Base, template <typename> class Adapter, typename T>
+std::shared_ptr<const Base> shared_as(T x) {
+  if constexpr (std::derived_from<T, Base>)
+    return std::make_shared<T>(std::move(x));
+  else
+    return std::make_shared<Adapter<T>>(std::move(x));
+}
+}  // namespace mass_spring_detail
+
+/** The sum of any number of forces; each is copied, so temporaries are fine. */
+template <typename... Fs>
+CombinedForces make_combined_force(Fs... fs) {
+  return CombinedForces(CombinedForces::List{
+      mass_spring_detail::shared_as<ZeroForce, FunctionForce>(
+          std::move(fs))...});
+}
+
+// ------------------------------------------------------------ The constraints
+
+/** 6.1: no constraint, and the base of all constraints. */
+class ZeroConstraint {
+ public:
+  virtual ~ZeroConstraint() = default;
+  /** Reset the nodes of @a g that violate it at time @a t [s]. */
+  virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
+};
+
+/** Holds nodes where they were when it was made, at rest. Removing a pinned
+ * node is fine: the pin goes on with the others.  O(pins) a call */
+class PinConstraint : public ZeroConstraint {
+ public:
+  struct Pin {
+    Node node;
+    Point place;  ///< [m]
+  };
+  /** Hold the nodes that @a holds(position) selects: the two corners. */
+  template <typename Pred = bool (*)(const Point&)>
+  explicit PinConstraint(const Cloth& g, Pred holds = is_corner) {
+    for (Node n : g.nodes())
+      if (holds(n.position())) pins_.push_back({n, n.position()});
+  }
+  /** Hold @a nodes.  @pre all in one graph */
+  explicit PinConstraint(std::span<const Node> nodes) {
+    for (Node n : nodes) pins_.push_back({n, n.position()});
+  }
+  const std::vector<Pin>& pins() const { return pins_; }
+  void operator()(Cloth& g, double /*t*/) const override {
+    for (auto [n, place] : pins_)
+      if (g.has_node(n)) n.position() = place, n.value().vel = Point();
+  }
+
+ private:
+  std::vector<Pin> pins_;
+};
+
+/** A floor at height z. @post no node lies below; one that did has v_z = 0. */
+class PlaneConstraint : public ZeroConstraint {
+ public:
+  /** @param z height of the floor [m] */
+  explicit PlaneConstraint(double z = -0.75) : z_(z) {}
+  double height() const { return z_; }
+  void project(Node n) const {
+    if (n.position().z < z_) n.position().z = Real(z_), n.value().vel.z = 0;
+  }
+  void operator()(Cloth& g, double /*t*/) const override {
+    for (Node n : g.nodes()) project(n);
+  }
+
+ private:
+  double z_;
+};
+
+struct Ball {
+  Point center = Point(0.5, 0.5, -0.5);  ///< [m]
+  double radius = 0.15;                  ///< [m]
+  /** Strictly inside? */
+  bool holds(const Point& p) const {
+    return normSq(p - center) < radius * radius;
+  }
+};
+
+/** A solid ball. @post no node lies inside by more than round-off; one that did
+ * lies at the nearest point of the surface (the top one, if it was at the
+ * center) and has no velocity normal to it. */
+class SphereConstraint : public ZeroConstraint {
+ public:
+  explicit SphereConstraint(const Ball& ball = {}) : ball_(ball) {}
+  const Ball& ball() const { return ball_; }
+  void project(Node n) const {
+    if (!ball_.holds(n.position())) return;
+    const Point r = n.position() - ball_.center;
+    const Point normal = norm(r) > 0 ? r / norm(r) : Point(0, 0, 1);
+    n.position() = ball_.center + ball_.radius * normal;
+    n.value().vel -= dot(n.value().vel, normal) * normal;
+  }
+  void operator()(Cloth& g, double /*t*/) const override {
+    for (Node n : g.nodes()) project(n);
+  }
+
+ private:
+  Ball ball_;
+};
+
+/** 7.2: a ball that removes every node that enters it.
+ * Invalidates: as Graph::remove_node(), for each node removed. */
+class TearConstraint : public ZeroConstraint {
+ public:
+  explicit TearConstraint(const Ball& ball = {}) : ball_(ball) {}
+  const Ball& ball() const { return ball_; }
+  void operator()(Cloth& g, double /*t*/) const override {
+    for (auto it = g.node_begin(); it != g.node_end();)
+      if (ball_.holds((*it).position()))
+        it = g.remove_node(it);  // now at the node that took its index
+      else
+        ++it;
+  }
+
+ private:
+  Ball ball_;
+};
+
+/** A function void(Cloth&, double) as a ZeroConstraint. */
+template <typename C>
+class FunctionConstraint : public ZeroConstraint {
+ public:
+  explicit FunctionConstraint(C c) : c_(std::move(c)) {}
+  void operator()(Cloth& g, double t) const override { c_(g, t); }
+
+ private:
+  mutable C c_;
+};
+
+/** 6.2: several constraints, one after the other: where two disagree about a
+ * node, the later one has its way. Copies share them. */
+class CombinedConstraints : public ZeroConstraint {
+ public:
+  using List = std::vector<std::shared_ptr<const ZeroConstraint>>;
+  /** @pre no pointer is null */
+  explicit CombinedConstraints(List constraints)
+      : constraints_(std::move(constraints)) {}
+  const List& parts() const { return constraints_; }
+  void operator()(Cloth& g, double t) const override {
+    for (const auto& c : constraints_) (*c)(g, t);
+  }
+
+ private:
+  List constraints_;
+};
+
+/** Any number of constraints in this order; each is copied. */
+template <typename... Cs>
+CombinedConstraints make_combined_constraints(Cs... cs) {
+  return CombinedConstraints(CombinedConstraints::List{
+      mass_spring_detail::shared_as<ZeroConstraint, FunctionConstraint>(
+          std::move(cs))...});
+}
+/** The same by the name that other years of the course give it. */
+template <typename... Cs>
+CombinedConstraints make_combined_constraint(Cs... cs) {
+  return make_combined_constraints(std::move(cs)...);
+}

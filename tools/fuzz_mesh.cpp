@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "CME212/Util.hpp"
-#include "Mesh.hpp"
+#include "CME212/Mesh.hpp"
 
 namespace {
 

@@ -1,0 +1,175 @@
+#pragma once
+/** @file Bench.hpp
+ * Bench: measures calls beside each other, and prints a table of their ratios.
+ * What the programs bench and bench_* have in common. */
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "CME212/OutputFile.hpp"
+#include "CME212/Point.hpp"
+#include "lab/charts/Report.hpp"
+#include "lab/fast/Sweep.hpp"
+
+namespace lab {
+
+namespace bench {
+
+/** Something to be measured. */
+struct Figure {
+  std::string name;
+  double items = 1;    ///< that one call works on: times are given for an item
+  std::string group;   ///< the heading under which it stands; may be empty
+  std::string beside;  ///< name of the figure of its group to be divided by
+  std::function<void()> call = {};
+  double bytes = 0;  ///< that an item must move through memory; 0: not known
+  int threads = 1;
+};
+
+/** Lowest, median and highest of some numbers; 0 of none. */
+struct Spread {
+  double low = 0, median = 0, high = 0;
+  explicit Spread(std::vector<double> a) {
+    if (a.empty()) return;
+    std::sort(a.begin(), a.end());
+    low = a.front(), median = a[a.size() / 2], high = a.back();
+  }
+};
+
+/** Measures figures in turn, in random order: a machine that slows down slows
+ * all of them. */
+class Bench {
+ public:
+  void add(Figure f) { figures_.push_back(std::move(f)); }
+
+  /** @param repetitions of each, each of 0.05 s or one call at least */
+  void run(int repetitions) {
+    for (const Figure& f : figures_)
+      benchmark::RegisterBenchmark(
+          key(f).c_str(),
+          [&f](benchmark::State& state) {
+            Sweep::set_threads(f.threads);
+            f.call();  // fills caches, and what it keeps
+            for (auto _ : state) {
+              f.call();
+              benchmark::ClobberMemory();
+            }
+          })
+          ->Repetitions(repetitions)
+          ->MinTime(0.05);
+    char name[] = "bench",
+         random[] = "--benchmark_enable_random_interleaving=true";
+    char* args[] = {name, random};
+    int count = 2;
+    benchmark::Initialize(&count, args);
+    Times times(*this);
+    benchmark::RunSpecifiedBenchmarks(&times);
+    benchmark::ClearRegisteredBenchmarks();
+  }
+
+  /** Seconds a call.  @pre run(); there is such a figure */
+  Spread seconds(const std::string& group, const std::string& name) const {
+    auto it = seconds_.find(group + '|' + name);
+    return Spread(it == seconds_.end() ? std::vector<double>() : it->second);
+  }
+
+  /** @param unit of the items   @param bandwidth [GB/s] of the memory, by
+   * which the figures that say how many bytes they move are divided */
+  void print(const char* unit, double bandwidth) const {
+    std::string group;
+    for (const Figure& f : figures_) {
+      if (f.group != group)
+        std::printf("\n%-46s ns a %s (lowest-highest)   ratio\n",
+                    (group = f.group).c_str(), unit);
+      const Spread s = seconds(f.group, f.name);
+      const double ns = 1e9 / f.items;
+      std::printf("  %-44s %8.2f (%.2f-%.2f)", f.name.c_str(), ns * s.median,
+                  ns * s.low, ns * s.high);
+      if (const double r = ratio(f); r > 0)
+        std::printf("   %.3f of %s", r, f.beside.c_str());
+      if (f.bytes > 0)
+        std::printf("; %.0f bytes: %.2f of the triad", f.bytes,
+                    f.bytes / (ns * s.median) / bandwidth);
+      std::printf("\n");
+    }
+  }
+
+  /** The same for programs.  Throws std::runtime_error */
+  void write_json(const std::string& file) const {
+    CME212::OutputFile out(file);
+    std::ostringstream head;
+    report::write_head(head, "bench");
+    std::string about = head.str();
+    std::replace(about.begin(), about.end(), '\n', ';');
+    out.stream() << "{\"about\": \"" << report::cell(about)
+                 << "\",\n \"real\": \""
+                 << (sizeof(Real) == 8 ? "double" : "float")
+                 << "\",\n \"figures\": [";
+    out.stream().precision(10);
+    const char* separator = "\n  ";
+    for (const Figure& f : figures_) {
+      const Spread s = seconds(f.group, f.name);
+      out.stream() << separator << "{\"group\": \"" << f.group
+                   << "\", \"name\": \"" << f.name
+                   << "\", \"items\": " << f.items
+                   << ", \"median_s\": " << s.median
+                   << ", \"lowest_s\": " << s.low
+                   << ", \"highest_s\": " << s.high;
+      if (const double r = ratio(f); r > 0)
+        out.stream() << ", \"beside\": \"" << f.beside
+                     << "\", \"ratio\": " << r;
+      out.stream() << '}';
+      separator = ",\n  ";
+    }
+    out.stream() << "\n ]}\n";
+    out.commit();
+  }
+
+ private:
+  std::vector<Figure> figures_;
+  std::map<std::string, std::vector<double>> seconds_;  // by key()
+
+  static std::string key(const Figure& f) { return f.group + '|' + f.name; }
+
+  double ratio(const Figure& f) const {
+    if (f.beside.empty()) return 0;
+    const double beside = seconds(f.group, f.beside).median;
+    return beside > 0 ? seconds(f.group, f.name).median / beside : 0;
+  }
+
+  /** Takes down each repetition. */
+  class Times : public benchmark::BenchmarkReporter {
+   public:
+    explicit Times(Bench& to) : to_(to) {}
+    bool ReportContext(const Context&) override { return true; }
+    void ReportRuns(const std::vector<Run>& runs) override {
+      for (const Run& run : runs)
+        if (run.run_type == Run::RT_Iteration)
+          to_.seconds_[run.run_name.function_name].push_back(
+              run.real_accumulated_time / double(run.iterations));
+    }
+
+   private:
+    Bench& to_;
+  };
+};
+
+/** The main() of a program that only registers benchmarks: one thread. */
+inline int main_of_registered(int argc, char** argv) {
+  Sweep::set_threads(1);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
+
+}  // namespace bench
+
+}  // namespace lab

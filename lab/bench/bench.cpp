@@ -1,0 +1,497 @@
+/** @file bench.cpp
+ * What a step costs, and each layer of it, beside flat arrays made by hand for
+ * the same loop: docs/speed.md walks through it.
+ *
+ *   make bench CXXFLAGS=-march=native && taskset -c 0 ./bench
+ *   ./bench --json FILE           the table for programs as well
+ *   ./bench --filter step         only what has this in its name
+ *   charts/counts.sh              instructions in place of nanoseconds
+ *   make bench REAL=float O=build/float/    single precision, beside the same
+ *                                           loop over doubles
+ *
+ * All of it is measured in turn, in random order: a machine that slows down
+ * slows all. One thread, but where the name says "threads". */
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "lab/bench/Bench.hpp"
+#include "lab/methods/Splitting.hpp"
+
+using namespace lab;
+
+namespace {
+
+// --------------------------------------------------------------------- Cloths
+
+/** - grid: ids and springs line by line, as load_cloth() makes it
+ * - mixed: the same, ids and springs in random order within windows of 64:
+ *   neighbors are as near, but none at a constant distance
+ * - shuffled: from files in random order, as load_cloth() makes it
+ * - torn: the grid after a random half of its nodes was removed
+ * - reindexed: torn, and then Graph::reindex() */
+enum class Kind { grid, mixed, shuffled, torn, reindexed };
+
+/** 0, ..., count - 1 in random order within windows of 64. */
+std::vector<unsigned> mixed_order(std::size_t count) {
+  std::vector<unsigned> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::mt19937 random(212);
+  for (std::size_t i = 0; i < count; i += 64)
+    std::shuffle(order.begin() + std::ptrdiff_t(i),
+                 order.begin() + std::ptrdiff_t(std::min(i + 64, count)),
+                 random);
+  return order;
+}
+
+/** Points and quads in random order. */
+void shuffle(std::vector<Point>& points, std::vector<Quad>& quads) {
+  std::mt19937 random(9);
+  std::vector<unsigned> place(points.size());
+  std::iota(place.begin(), place.end(), 0u);
+  std::shuffle(place.begin(), place.end(), random);
+  const auto before = points;
+  for (std::size_t i = 0; i < points.size(); ++i) points[place[i]] = before[i];
+  for (Quad& q : quads)
+    for (unsigned& i : q) i = place[i];
+  std::shuffle(quads.begin(), quads.end(), random);
+}
+
+void build(Cloth& g, unsigned side, Kind kind) {
+  auto points = grid_points(side);
+  auto quads = grid_quads(side);
+  if (kind == Kind::shuffled) shuffle(points, quads);
+  if (kind == Kind::mixed) {
+    Cloth grid;
+    build_cloth(grid, points, quads, Mesh::diagonals);
+    const auto order = mixed_order(points.size());
+    std::vector<Node> node(points.size());
+    for (unsigned i : order)
+      node[i] = g.add_node(points[i], grid.node(i).value());
+    for (unsigned e : mixed_order(grid.num_edges())) {
+      const Edge edge = grid.edge(e);
+      g.add_edge(node[edge.node1().index()], node[edge.node2().index()],
+                 edge.value());
+    }
+    return;
+  }
+  build_cloth(g, points, quads, Mesh::diagonals);
+  if (kind != Kind::torn && kind != Kind::reindexed) return;
+  std::vector<Node> nodes(g.node_begin(), g.node_end());
+  std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));
+  for (std::size_t k = 0; k < nodes.size() / 2; ++k) g.remove_node(nodes[k]);
+  if (kind == Kind::reindexed) g.reindex();
+}
+
+/** One cloth of each sort for all that is measured, its nodes shaken. */
+Cloth& cloth(unsigned side, Kind kind) {
+  static std::map<std::pair<unsigned, Kind>, Cloth> made;
+  auto [it, is_new] = made.try_emplace({side, kind});
+  if (is_new) {
+    build(it->second, side, kind);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<Real> off(-0.1 / side, 0.1 / side);
+    for (Node n : it->second.nodes())
+      n.position() += Point(off(random), off(random), off(random));
+  }
+  return it->second;
+}
+
+// ----------------------------------------------------- Flat arrays, by hand
+
+/** A cloth in arrays of doubles that hold nothing but what the loop needs, in
+ * the order in which it needs it: rows of neighbors, each with K and L. */
+struct Flat {
+  struct Vector {
+    double x = 0, y = 0, z = 0;
+  };
+  std::vector<Vector> x, v, f;
+  std::vector<double> mass, K, L;
+  std::vector<unsigned> row = {0}, neighbor;
+
+  explicit Flat(const Cloth& g) {
+    std::vector<unsigned> place(g.node_slots());
+    unsigned count = 0;
+    for (unsigned id = 0; id < g.node_slots(); ++id)
+      if (g.node_in_use(id)) place[id] = count++;
+    for (unsigned id = 0; id < g.node_slots(); ++id) {
+      if (!g.node_in_use(id)) continue;
+      const Node n = g.node_with_id(id);
+      x.push_back({n.position().x, n.position().y, n.position().z});
+      mass.push_back(n.value().mass);
+      for (Edge e : n.edges()) {
+        neighbor.push_back(place[e.node2().id()]);
+        K.push_back(e.value().K);
+        L.push_back(e.value().L);
+      }
+      row.push_back(unsigned(neighbor.size()));
+    }
+    v.resize(x.size());
+    f.resize(x.size());
+  }
+
+  /** The pull of all springs at node i. */
+  Vector springs(std::size_t i) const {
+    Vector sum;
+    for (unsigned k = row[i]; k < row[i + 1]; ++k) {
+      const Vector &a = x[i], &b = x[neighbor[k]];
+      const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
+      const double l = std::sqrt(ux * ux + uy * uy + uz * uz);
+      const double c = K[k] * (l - L[k]) / l;
+      sum.x += c * ux;
+      sum.y += c * uy;
+      sum.z += c * uz;
+    }
+    return sum;
+  }
+  void forces() {
+    for (std::size_t i = 0; i < x.size(); ++i) f[i] = springs(i);
+  }
+  void step(double dt) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i].x += dt * v[i].x;
+      x[i].y += dt * v[i].y;
+      x[i].z += dt * v[i].z;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Vector pull = springs(i);
+      const double h = dt / mass[i];
+      v[i].x += h * pull.x;
+      v[i].y += h * pull.y;
+      v[i].z += h * pull.z - dt * grav;
+    }
+  }
+};
+Flat& flat(unsigned side, Kind kind) {
+  static std::map<std::pair<unsigned, Kind>, Flat> made;
+  return made.try_emplace({side, kind}, cloth(side, kind)).first->second;
+}
+
+/** a = b + 3 c over three arrays of @a bytes in all: what memory can do. */
+struct Triad {
+  std::vector<double> a, b, c;
+  explicit Triad(std::size_t bytes)
+      : a(bytes / 24), b(bytes / 24, 1), c(bytes / 24, 2) {}
+  void run() {
+    const std::ptrdiff_t n = std::ptrdiff_t(a.size());
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static)
+#endif
+    for (std::ptrdiff_t i = 0; i < n; ++i) a[i] = b[i] + 3 * c[i];
+  }
+};
+
+// ----------------------------------------------------------- What is measured
+
+constexpr double dt = 1e-7;  // [s]: the cloths stay as they are
+
+/** Something to be measured, at each size. */
+struct Figure {
+  std::string name, beside;  // as in bench::Figure
+  std::function<std::function<void()>(unsigned side)> make;
+  bool million = true;     // also with 10^6 nodes
+  double bytes = 0;        // that a node must move through memory, if known
+  Kind kind = Kind::grid;  // whose nodes count
+  int threads = 1;
+};
+
+/** Makes a method step on a cloth. */
+template <typename M>
+std::function<std::function<void()>(unsigned)> stepping(Kind kind) {
+  return [kind](unsigned side) -> std::function<void()> {
+    auto method = std::make_shared<M>();
+    auto force = std::make_shared<CombinedForces>(
+        make_combined_force(GravityForce(), MassSpringForce()));
+    auto t = std::make_shared<double>(0);
+    Cloth& g = cloth(side, kind);
+    return [=, &g] { *t = method->step(g, *t, dt, *force, ZeroConstraint()); };
+  };
+}
+
+/** Makes a sweep of one force over a cloth. */
+template <typename F>
+std::function<void()> sweeping(unsigned side, F force) {
+  auto sweep = std::make_shared<Sweep>();
+  Cloth& g = cloth(side, Kind::grid);
+  return [=, &g] {
+    (*sweep)(g, 0, force, [](const Part&, std::span<Point> f) {
+      benchmark::DoNotOptimize(f.data());
+    });
+  };
+}
+
+/** A loop over the nodes through Node and Edge. */
+template <typename Use>
+std::function<void()> by_node(unsigned side, Kind kind, Use use) {
+  auto f = std::make_shared<std::vector<Point>>(cloth(side, kind).num_nodes());
+  Cloth& g = cloth(side, kind);
+  return [=, &g] {
+    std::size_t i = 0;
+    for (Node n : g.nodes()) (*f)[i++] = use(n);
+    benchmark::DoNotOptimize(f->data());
+    benchmark::ClobberMemory();
+  };
+}
+Point springs_of(Node n) {
+  Point f;
+  for (Edge e : n.edges())
+    f += spring_force(e.node2().position() - n.position(), e.value());
+  return f;
+}
+
+std::vector<Figure> figures() {
+  using Make = std::function<void()>;
+  std::vector<Figure> all;
+  auto add = [&](Figure f) { all.push_back(std::move(f)); };
+
+  // Whole steps of symplectic Euler: gravity and springs, no constraint.
+  for (Kind kind : {Kind::grid, Kind::mixed}) {
+    const std::string of = kind == Kind::grid ? "" : ", mixed";
+    add({"step: flat arrays" + of, "",
+         [kind](unsigned n) -> Make {
+           return [&a = flat(n, kind)] { a.step(dt); };
+         },
+         true, 0, kind});
+    add({"step: SymplecticEuler" + of, "step: flat arrays" + of,
+         stepping<SymplecticEuler>(kind), true,
+         // once, as drift and forces go together: positions r w, springs and
+         // stencil r, velocities and masses r w
+         sizeof(Real) * (6 + 8 + 8.0) + (kind == Kind::grid ? 12 : 12 + 64),
+         kind});
+  }
+  add({"step: SymplecticEuler, shuffled", "step: SymplecticEuler",
+       stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled});
+  add({"step: Verlet", "step: flat arrays", stepping<Verlet>(Kind::grid)});
+  add({"step: symp_euler_step(), functor", "step: flat arrays",
+       [](unsigned n) -> Make {
+         return [&g = cloth(n, Kind::grid)] {
+           symp_euler_step(g, 0, dt, [](Node node, double) {
+             return springs_of(node) +
+                    Point(0, 0, -node.value().mass * Real(grav));
+           });
+         };
+       }});
+  add({"step: symp_euler_step(), forces", "step: flat arrays",
+       [](unsigned n) -> Make {
+         auto force = std::make_shared<CombinedForces>(
+             make_combined_force(GravityForce(), MassSpringForce()));
+         return [force, &g = cloth(n, Kind::grid)] {
+           symp_euler_step(g, 0, dt, *force);
+         };
+       }});
+  if (Sweep::processors() > 1) {
+    Figure f{"step: SymplecticEuler, threads", "step: SymplecticEuler",
+             stepping<SymplecticEuler>(Kind::grid)};
+    f.threads = Sweep::processors();
+    add(f);
+  }
+
+  // The springs' forces, layer by layer.
+  for (auto [kind, of] : {std::pair(Kind::grid, std::string()),
+                          {Kind::torn, ", torn"},
+                          {Kind::reindexed, ", reindexed"}}) {
+    add({"springs: flat arrays" + of, "",
+         [kind = kind](unsigned n) -> Make {
+           return [&a = flat(n, kind)] { a.forces(); };
+         },
+         true, 0, kind});
+    add({"springs: Node and Edge" + of, "springs: flat arrays" + of,
+         [kind = kind](unsigned n) { return by_node(n, kind, springs_of); },
+         true, 0, kind});
+  }
+  add({"springs: virtual call a node", "springs: flat arrays",
+       [](unsigned n) {
+         std::shared_ptr<const ZeroForce> f =
+             std::make_shared<MassSpringForce>();
+         benchmark::DoNotOptimize(f);
+         return by_node(n, Kind::grid,
+                        [f](Node node) { return (*f)(node, 0); });
+       },
+       false});
+  add({"springs: adjacency alone", "springs: flat arrays",
+       [](unsigned n) {
+         return by_node(n, Kind::grid, [](Node node) {
+           Point f;
+           for (Edge e : node.edges()) f += e.node2().position();
+           return f;
+         });
+       },
+       false});
+  add({"springs: edge values alone", "springs: flat arrays",
+       [](unsigned n) {
+         return by_node(n, Kind::grid, [](Node node) {
+           Point f;
+           for (Edge e : node.edges()) f.x += e.value().K * e.value().L;
+           return f;
+         });
+       },
+       false});
+  add({"springs: sweep", "springs: flat arrays",
+       [](unsigned n) { return sweeping(n, MassSpringForce()); }});
+
+  // All edges, each once.
+  add({"edges: flat arrays", "", [](unsigned n) -> Make {
+         struct Ends {
+           unsigned i, j;
+         };
+         auto ends = std::make_shared<std::vector<Ends>>();
+         auto value = std::make_shared<std::vector<EdgeData>>();
+         for (Edge e : cloth(n, Kind::grid).edges()) {
+           ends->push_back({e.node1().id(), e.node2().id()});
+           value->push_back(e.value());
+         }
+         return [=, &x = flat(n, Kind::grid).x] {
+           double sum = 0;
+           for (std::size_t e = 0; e < ends->size(); ++e) {
+             const auto &a = x[(*ends)[e].i], &b = x[(*ends)[e].j];
+             const double ux = a.x - b.x, uy = a.y - b.y, uz = a.z - b.z;
+             sum += (*value)[e].K * (ux * ux + uy * uy + uz * uz);
+           }
+           benchmark::DoNotOptimize(sum);
+         };
+       }});
+  add({"edges: Edge", "edges: flat arrays", [](unsigned n) -> Make {
+         return [&g = cloth(n, Kind::grid)] {
+           double sum = 0;
+           for (Edge e : g.edges())
+             sum += e.value().K *
+                    normSq(e.node1().position() - e.node2().position());
+           benchmark::DoNotOptimize(sum);
+         };
+       }});
+
+  // The other parts of a step.
+  add({"part: gravity", "step: SymplecticEuler",
+       [](unsigned n) { return sweeping(n, GravityForce()); }, false});
+  add({"part: drag", "step: SymplecticEuler",
+       [](unsigned n) { return sweeping(n, DampingForce(1e-4)); }, false});
+  add({"part: drift", "step: SymplecticEuler",
+       [](unsigned n) -> Make {
+         auto sweep = std::make_shared<Sweep>();
+         return [sweep, &g = cloth(n, Kind::grid)] {
+           sweep->parts(g, [&](const Part& part) { drift(g, part, dt, 0); });
+         };
+       },
+       false});
+  auto constraint = [&](const char* name, auto of) {
+    add({std::string("part: ") + name, "step: SymplecticEuler",
+         [of](unsigned n) -> Make {
+           Cloth& g = cloth(n, Kind::grid);
+           return [c = std::make_shared<decltype(of(g))>(of(g)), &g] {
+             (*c)(g, 0);
+           };
+         },
+         false});
+  };
+  constraint("pins", [](Cloth& g) { return PinConstraint(g); });
+  constraint("floor", [](Cloth&) { return PlaneConstraint(); });
+  constraint("ball", [](Cloth&) { return SphereConstraint(); });
+  constraint("ball that tears", [](Cloth&) { return TearConstraint(); });
+  // From the text of two files to a cloth.
+  add({"loading: text to numbers", "", [](unsigned n) -> Make {
+         std::string nodes, tets;
+         for (const Point& p : grid_points(n))
+           nodes += CME212::to_text(p.x) + ' ' + CME212::to_text(p.y) + " 0\n";
+         for (const Quad& q : grid_quads(n)) {
+           for (unsigned i : q) tets += std::to_string(i) + ' ';
+           tets += '\n';
+         }
+         return [nodes, tets] {
+           const auto points = parse_points(nodes, "nodes");
+           benchmark::DoNotOptimize(parse_quads(tets, "tets", points.size()));
+         };
+       }});
+  for (bool shuffled : {false, true})
+    add({shuffled ? "loading: build_cloth(), shuffled"
+                  : "loading: build_cloth()",
+         "", [shuffled](unsigned n) -> Make {
+           auto points = grid_points(n);
+           auto quads = grid_quads(n);
+           if (shuffled) shuffle(points, quads);
+           return [points, quads] {
+             Cloth g;
+             build_cloth(g, points, quads, Mesh::diagonals);
+             benchmark::DoNotOptimize(g.num_edges());
+           };
+         }});
+  add({"new stencil", "springs: sweep", [](unsigned n) -> Make {
+         return [&g = cloth(n, Kind::grid)] {
+           benchmark::DoNotOptimize(ClothStencil(g));
+         };
+       }});
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string json, filter;
+  int repetitions = 9, calls = 0;
+  bool small = false;
+  CLI::App app("What a step costs, and each layer of it: docs/speed.md");
+  app.add_option("--json", json, "write the table to this file")
+      ->type_name("FILE");
+  app.add_option("--filter", filter, "only what has this in its name")
+      ->type_name("TEXT");
+  app.add_option("--repetitions", repetitions, "of each figure")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_flag("--small", small, "10^4 nodes only");
+  app.add_option("--calls", calls, "only call that often what has this name");
+  app.add_option("--cpu", lanes::cpu, "0 plain, 1 AVX2, 2 AVX-512, if it can")
+      ->check(CLI::Range(0, int(lanes::best_cpu())));
+  CLI11_PARSE(app, argc, argv);
+
+  if (calls > 0) {  // for a program that counts instructions: charts/counts.sh
+    Sweep::set_threads(1);
+    for (const Figure& f : figures())
+      if (auto call = f.name == filter ? f.make(100) : nullptr)
+        for (int k = 0; k < calls; ++k) call();
+    return 0;
+  }
+  bench::Bench all;
+  const char* triads = "triad, three arrays of doubles";
+  Triad near(1 << 19), far(std::size_t(192) << 20);
+  auto triad = [&](const char* name, Triad& t, int threads) {
+    all.add(
+        {name, double(t.a.size()), triads, "", [&t] { t.run(); }, 0, threads});
+  };
+  triad("in the cache", near, 1);
+  triad("in memory", far, 1);
+  if (Sweep::processors() > 1)
+    triad("in memory, all threads", far, Sweep::processors());
+  for (unsigned side : {100u, 1000u}) {
+    if (side > 100 && small) continue;
+    for (const Figure& f : figures())
+      if (f.name.find(filter) != std::string::npos &&
+          (side == 100 || f.million))
+        all.add({f.name, double(cloth(side, f.kind).num_nodes()),
+                 std::to_string(side * side) + " nodes with diagonals",
+                 f.beside, f.make(side), side > 100 ? f.bytes : 0, f.threads});
+  }
+  all.run(repetitions);
+  auto bandwidth = [&](const char* name) {
+    const double s = all.seconds(triads, name).median;
+    return s > 0 ? 24e-9 * double(far.a.size()) / s : 0;
+  };
+  std::printf("%s; %s; triad in memory %.1f GB/s, by %d threads %.1f GB/s\n",
+              report::machine().c_str(), sizeof(Real) == 8 ? "double" : "float",
+              bandwidth("in memory"), Sweep::processors(),
+              bandwidth("in memory, all threads"));
+  all.print("node", bandwidth("in memory"));
+  if (json.empty()) return 0;
+  try {
+    all.write_json(json);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "bench: %s\n", e.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,321 @@
+#pragma once
+/** @file contenders.hpp
+ * The same square of 100 x 100 nodes as a graph of ours, of Boost and of LEMON,
+ * and as a cloth of ours and of Bullet; for graph_peers.cpp.
+ *
+ * Each library does the work as its manual suggests, with the values of a
+ * cloth at every node and edge and with one formula for the spring. */
+#if !__has_include(<boost/graph/adjacency_list.hpp>) || \
+    !__has_include(<lemon/list_graph.h>) || \
+    !__has_include(<bullet/BulletSoftBody/btSoftBody.h>)
+#error "Boost, LEMON or Bullet is missing: make peers-deps"
+#endif
+
+#include <bullet/BulletSoftBody/btSoftBody.h>
+#include <lemon/list_graph.h>
+#include <lemon/smart_graph.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/graph/adjacency_list.hpp>
+#include <memory>
+#include <optional>
+#include <random>
+#include <set>
+#include <type_traits>
+#include <vector>
+
+#include "lab/methods/Splitting.hpp"
+
+namespace lab {
+
+// ------------------------------------------------------------------ The mesh
+
+using Pair = std::array<unsigned, 2>;
+
+/** What all graphs are made from and asked for. */
+struct Square {
+  static constexpr unsigned side = 100;
+  std::vector<Point> points = grid_points(side);
+  std::vector<Pair> quad_sides;  // by quad: a side of two quads comes twice
+  std::vector<Pair> springs;     // each once
+  std::vector<Pair> questions;   // for has_edge: every other one is an edge
+  std::vector<unsigned> doomed;  // a random half of the nodes
+
+  Square() {
+    for (const Quad& q : grid_quads(side))
+      for (auto [a, b] : {Pair{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
+        quad_sides.push_back({q[a], q[b]});
+    std::set<Pair> seen;
+    for (const Pair& p : quad_sides)
+      if (seen.insert(p).second) springs.push_back(p);
+    std::mt19937 random(212);
+    auto below = [&random](std::size_t n) {
+      return std::uniform_int_distribution<unsigned>(0,
+                                                     unsigned(n - 1))(random);
+    };
+    for (unsigned k = 0; k < 20'000; ++k)
+      questions.push_back(
+          k % 2 == 0 ? springs[below(springs.size())]
+                     : Pair{below(points.size()), below(points.size())});
+    std::shuffle(questions.begin(), questions.end(), random);
+    for (unsigned i = 0; i < points.size(); ++i) doomed.push_back(i);
+    std::shuffle(doomed.begin(), doomed.end(), random);
+    doomed.resize(points.size() / 2);
+  }
+  NodeData node_value() const { return {Point(), 1.0 / double(points.size())}; }
+  EdgeData spring(Pair p) const {
+    return {100, 0.9 * norm(points[p[0]] - points[p[1]])};
+  }
+};
+inline const Square square;
+
+// ------------------------------------------------------------- The contenders
+// Each has: build(edges, may_repeat), forces(f), energy(), count(questions)
+// and remove(nodes).
+
+struct Ours {
+  static constexpr const char* name = "ours";
+  Cloth g;
+
+  void build(const std::vector<Pair>& edges, bool /*may_repeat*/) {
+    for (const Point& p : square.points) g.add_node(p, square.node_value());
+    for (Pair p : edges)
+      g.add_edge(g.node(p[0]), g.node(p[1]), square.spring(p));
+  }
+  void forces(std::vector<Point>& force) {
+    std::size_t i = 0;
+    for (auto n : g.nodes()) {
+      Point f;
+      for (auto e : n.edges())
+        f += spring_force(e.node2().position() - n.position(), e.value());
+      force[i++] = f;
+    }
+  }
+  double energy() {
+    double sum = 0;
+    for (auto e : g.edges()) {
+      Point u = e.node1().position() - e.node2().position();
+      sum += spring_energy(norm(u), e.value());
+    }
+    return sum;
+  }
+  std::size_t count(const std::vector<Pair>& questions) {
+    std::size_t yes = 0;
+    for (auto [i, j] : questions) yes += g.has_edge(g.node(i), g.node(j));
+    return yes;
+  }
+  void remove(const std::vector<unsigned>& nodes) {
+    std::vector<Node> node(g.node_begin(), g.node_end());
+    for (unsigned i : nodes) g.remove_node(node[i]);
+  }
+};
+
+/** Arrays made by hand for the two loops: no graph, but their measure. */
+struct Flat {
+  static constexpr const char* name = "flat arrays";
+  std::vector<Point> position;
+  std::vector<unsigned> row, neighbor;
+  std::vector<EdgeData> value_at_end;  // by place in neighbor
+  std::vector<Pair> ends;
+  std::vector<EdgeData> value;
+
+  void build(const std::vector<Pair>& edges, bool) {
+    position = square.points;
+    std::vector<std::vector<Pair>> at(position.size());  // neighbor, edge
+    for (Pair p : edges) {
+      at[p[0]].push_back({p[1], unsigned(ends.size())});
+      at[p[1]].push_back({p[0], unsigned(ends.size())});
+      ends.push_back(p);
+      value.push_back(square.spring(p));
+    }
+    for (auto& list : at) {
+      row.push_back(unsigned(neighbor.size()));
+      for (auto [j, e] : list) {
+        neighbor.push_back(j);
+        value_at_end.push_back(value[e]);
+      }
+    }
+    row.push_back(unsigned(neighbor.size()));
+  }
+  void forces(std::vector<Point>& force) {
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      Point f;
+      for (unsigned k = row[i]; k < row[i + 1]; ++k)
+        f += spring_force(position[neighbor[k]] - position[i], value_at_end[k]);
+      force[i] = f;
+    }
+  }
+  double energy() {
+    double sum = 0;
+    for (std::size_t e = 0; e < ends.size(); ++e) {
+      Point u = position[ends[e][0]] - position[ends[e][1]];
+      sum += spring_energy(norm(u), value[e]);
+    }
+    return sum;
+  }
+};
+
+/** @tparam G SmartGraph, which can only grow, or ListGraph */
+template <typename G>
+struct Lemon {
+  static constexpr const char* name = std::is_same_v<G, lemon::SmartGraph>
+                                          ? "LEMON SmartGraph"
+                                          : "LEMON ListGraph";
+  template <typename Key, typename Value>
+  using Map = lemon::VectorMap<G, Key, Value>;
+  G g;
+  // Made when the graph is complete: so they are allocated just once.
+  std::optional<Map<typename G::Node, Point>> position;
+  std::optional<Map<typename G::Node, NodeData>> node_value;
+  std::optional<Map<typename G::Edge, EdgeData>> edge_value;
+
+  void build(const std::vector<Pair>& edges, bool may_repeat) {
+    for (std::size_t i = 0; i < square.points.size(); ++i) g.addNode();
+    for (auto [i, j] : edges) {
+      auto a = g.nodeFromId(int(i)), b = g.nodeFromId(int(j));
+      if (!may_repeat || lemon::findEdge(g, a, b) == lemon::INVALID)
+        g.addEdge(a, b);
+    }
+    position.emplace(g);
+    node_value.emplace(g);
+    edge_value.emplace(g);
+    for (typename G::NodeIt n(g); n != lemon::INVALID; ++n) {
+      (*position)[n] = square.points[std::size_t(g.id(n))];
+      (*node_value)[n] = square.node_value();
+    }
+    for (typename G::EdgeIt e(g); e != lemon::INVALID; ++e)
+      (*edge_value)[e] =
+          square.spring({unsigned(g.id(g.u(e))), unsigned(g.id(g.v(e)))});
+  }
+  void forces(std::vector<Point>& force) {
+    for (typename G::NodeIt n(g); n != lemon::INVALID; ++n) {
+      Point f;
+      for (typename G::OutArcIt a(g, n); a != lemon::INVALID; ++a)
+        f += spring_force((*position)[g.target(a)] - (*position)[n],
+                          (*edge_value)[a]);
+      force[std::size_t(g.id(n))] = f;
+    }
+  }
+  double energy() {
+    double sum = 0;
+    for (typename G::EdgeIt e(g); e != lemon::INVALID; ++e) {
+      Point u = (*position)[g.u(e)] - (*position)[g.v(e)];
+      sum += spring_energy(norm(u), (*edge_value)[e]);
+    }
+    return sum;
+  }
+  std::size_t count(const std::vector<Pair>& questions) {
+    std::size_t yes = 0;
+    for (auto [i, j] : questions)
+      yes += lemon::findEdge(g, g.nodeFromId(int(i)), g.nodeFromId(int(j))) !=
+             lemon::INVALID;
+    return yes;
+  }
+  void remove(const std::vector<unsigned>& nodes) requires(
+      !std::is_same_v<G, lemon::SmartGraph>) {
+    for (unsigned i : nodes) g.erase(g.nodeFromId(int(i)));
+  }
+};
+
+struct BoostNode {
+  Point position;
+  NodeData value;
+};
+
+/** @tparam List vecS or setS, which refuses parallel edges by itself.
+ * With Nodes = vecS a removal renumbers all nodes; with listS handles stay. */
+template <typename List, typename Nodes>
+struct Boost {
+  static constexpr bool is_set = std::is_same_v<List, boost::setS>;
+  static constexpr const char* name = is_set ? "Boost setS" : "Boost vecS";
+  using G = boost::adjacency_list<List, Nodes, boost::undirectedS, BoostNode,
+                                  EdgeData>;
+  G g;
+  std::vector<typename G::vertex_descriptor> node;
+
+  void build(const std::vector<Pair>& edges, bool may_repeat) {
+    node.reserve(square.points.size());
+    for (const Point& p : square.points)
+      node.push_back(add_vertex(BoostNode{p, square.node_value()}, g));
+    for (Pair p : edges) {
+      auto a = node[p[0]], b = node[p[1]];
+      if (is_set || !may_repeat || !edge(a, b, g).second)
+        add_edge(a, b, square.spring(p), g);
+    }
+  }
+  void forces(std::vector<Point>& force) {
+    std::size_t i = 0;
+    for (auto [n, end] = vertices(g); n != end; ++n) {
+      Point f;
+      for (auto [e, last] = out_edges(*n, g); e != last; ++e)
+        f += spring_force(g[target(*e, g)].position - g[*n].position, g[*e]);
+      force[i++] = f;
+    }
+  }
+  double energy() {
+    double sum = 0;
+    for (auto [e, end] = edges(g); e != end; ++e) {
+      Point u = g[source(*e, g)].position - g[target(*e, g)].position;
+      sum += spring_energy(norm(u), g[*e]);
+    }
+    return sum;
+  }
+  std::size_t count(const std::vector<Pair>& questions) {
+    std::size_t yes = 0;
+    for (auto [i, j] : questions) yes += edge(node[i], node[j], g).second;
+    return yes;
+  }
+  void remove(std::vector<unsigned> nodes) {
+    if (!is_set) std::sort(nodes.rbegin(), nodes.rend());  // so numbers stay
+    for (unsigned i : nodes) {
+      clear_vertex(node[i], g);
+      remove_vertex(node[i], g);
+    }
+  }
+};
+
+/** A cloth of ours, pinned at two corners. */
+struct OurCloth {
+  static constexpr const char* name = "ours";
+  Cloth g;
+  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce());
+  std::optional<PinConstraint> pin;
+  SymplecticEuler method;
+
+  OurCloth() {
+    build_cloth(g, square.points, grid_quads(square.side), Mesh::diagonals);
+    pin.emplace(g);
+  }
+  void step(double dt) { method(g, 0, dt, force, *pin); }
+};
+
+/** The same with Bullet's soft body at its defaults: one substep, one pass of
+ * its position solver, in single precision. */
+struct BulletCloth {
+  static constexpr const char* name = "Bullet";
+  btSoftBodyWorldInfo world;
+  std::unique_ptr<btSoftBody> body;
+
+  BulletCloth() {
+    world.m_gravity = {0, 0, -btScalar(grav)};
+    world.air_density = 0;
+    std::vector<btVector3> x;
+    std::vector<btScalar> mass;  // 0 holds a node fixed
+    for (const Point& p : square.points) {
+      x.push_back({btScalar(p.x), btScalar(p.y), btScalar(p.z)});
+      mass.push_back(is_corner(p) ? 0 : btScalar(square.node_value().mass));
+    }
+    body = std::make_unique<btSoftBody>(&world, int(x.size()), x.data(),
+                                        mass.data());
+    for (auto [i, j] : square.springs) body->appendLink(int(i), int(j));
+    body->m_ndbvt.optimizeTopDown();  // else its tree is as deep as a list
+  }
+  void step(double dt) {
+    body->predictMotion(btScalar(dt));
+    body->solveConstraints();
+    body->integrateMotion();
+  }
+};
+
+}  // namespace lab

@@ -1,0 +1,468 @@
+/** @file peers.cpp
+ * Our methods beside those of Boost.odeint, SUNDIALS and GSL, on one problem,
+ * one force kernel and one clock: grid1 with diagonals, pinned at the corners,
+ * from rest to t = 0.25 s. Writes CSV to the standard output:
+ *   make peers-deps peers-chart
+ *
+ * Every library runs as its own manual suggests for such a problem; the time
+ * of each run is measured in turn with all others, REPEATS times. A library
+ * calls our sweep through a copy of the positions, which is 15 % of a sweep.
+ */
+#if !__has_include(<boost/numeric/odeint.hpp>) || \
+    !__has_include(<cvode/cvode.h>) || !__has_include(<gsl/gsl_odeiv2.h>)
+#error "Boost, SUNDIALS or GSL is missing: make peers-deps"
+#endif
+
+#include <arkode/arkode_erkstep.h>
+#include <cvode/cvode.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+#include <boost/numeric/odeint.hpp>
+#include <boost/numeric/odeint/stepper/symplectic_rkn_sb3a_m4_mclachlan.hpp>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <vector>
+
+#include "lab/methods/Methods.hpp"
+
+using namespace lab;
+
+namespace {
+
+using State = std::vector<double>;
+
+/** The cloth as an ordinary differential equation in flat arrays: positions
+ * and velocities of all nodes. The pinned ones have no acceleration. */
+class Problem {
+ public:
+  Cloth g;
+  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce());
+  long calls = 0;
+  const double t_end;  // [s]
+  const double drag;   // coefficient c [kg/s]
+
+  /** A grid of side x side nodes with diagonals. */
+  Problem(unsigned side, double end, double c) : t_end(end), drag(c) {
+    build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+    for (unsigned i = 0; i < g.node_slots(); ++i)
+      per_mass_.push_back(
+          is_corner(g.positions()[i]) ? 0 : 1 / g.node_values()[i].mass);
+    start_ = positions();
+  }
+  /** Number of coordinates. */
+  std::size_t size() const { return 3 * g.node_slots(); }
+  const State& start() const { return start_; }
+
+  void set_positions(const double* q) {
+    std::copy(q, q + size(), &g.positions()[0].x);
+  }
+  State positions() const {
+    const double* x = &g.positions()[0].x;
+    return {x, x + size()};
+  }
+  /** a = F(q)/m [m/s^2] */
+  void acceleration(const double* q, double* a) {
+    ++calls;
+    set_positions(q);
+    sweep_(g, 0, force, f_);
+    for (std::size_t i = 0; i < per_mass_.size(); ++i)
+      for (double c : f_[i]) *a++ = c * per_mass_[i];
+  }
+  /** (q, v)' for y = (q, v) */
+  void derivative(const double* y, double* dy) {
+    std::copy(y + size(), y + 2 * size(), dy);
+    acceleration(y, dy + size());
+    if (drag == 0) return;
+    const double gamma = drag * double(g.num_nodes());  // all masses are 1/N
+    for (std::size_t k = size(); k < 2 * size(); ++k) dy[k] -= gamma * y[k];
+  }
+  /** The diagonal of -dF/dq / m at @a q [1/s^2]. */
+  State stiffness_diagonal(const double* q) {
+    set_positions(q);
+    f_.assign(g.node_slots(), Point());
+    for (Edge e : g.edges()) {
+      Point u = e.node2().position() - e.node1().position();
+      double l = norm(u), across = std::max(0.0, 1 - e.value().L / l);
+      Point d = Point(across) + (1 - across) * (u / l) * (u / l);
+      f_[e.node1().id()] += e.value().K * d;
+      f_[e.node2().id()] += e.value().K * d;
+    }
+    State result;
+    for (std::size_t i = 0; i < per_mass_.size(); ++i)
+      for (double k : f_[i]) result.push_back(k * per_mass_[i]);
+    return result;
+  }
+
+ private:
+  std::vector<double> per_mass_;  // 1/m [1/kg] of each node, 0 if pinned
+  Sweep sweep_;
+  std::vector<Point> f_;
+  State start_;
+};
+
+Problem* problem;  // for the C callbacks
+
+/** RMS distance of the nodes [m]. */
+double distance(const State& a, const State& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(3 * sum / double(a.size()));
+}
+
+// ----------------------------------------------------------------------- Ours
+
+State run_ours(const MethodEntry& entry, int steps) {
+  struct Count : ZeroForce {
+    void add_to(const Part& part, double t, std::span<Point> f) const override {
+      if (part.first == 0) ++problem->calls;  // once a sweep
+      problem->force.add_to(part, t, f);
+      if (problem->drag != 0) DampingForce(problem->drag).add_to(part, t, f);
+    }
+    double drag() const override { return problem->drag; }
+    std::optional<int> spring_multiplicity() const override {
+      return problem->force.spring_multiplicity();
+    }
+  };
+  Cloth& g = problem->g;
+  problem->set_positions(problem->start().data());
+  for (Node n : g.nodes()) n.value().vel = Point();
+  PinConstraint pin(g);
+  auto method = entry.make();
+  const double dt = problem->t_end / steps;
+  for (int n = 0; n < steps; ++n) method->step(g, n * dt, dt, Count(), pin);
+  return problem->positions();
+}
+
+// --------------------------------------------------------------- Boost.odeint
+
+namespace odeint = boost::numeric::odeint;
+
+State run_odeint_m4(int steps) {
+  odeint::symplectic_rkn_sb3a_m4_mclachlan<State> stepper;
+  State q = problem->start(), v(q.size(), 0.0);
+  auto f = [](const State& x, State& a) {
+    problem->acceleration(x.data(), a.data());
+  };
+  const double dt = problem->t_end / steps;
+  for (int n = 0; n < steps; ++n)
+    stepper.do_step(f, std::pair(std::ref(q), std::ref(v)), n * dt, dt);
+  return q;
+}
+
+/** (start, 0): all of the first state. */
+State full_start() {
+  State y = problem->start();
+  y.resize(2 * y.size(), 0.0);
+  return y;
+}
+State first_half(const double* y) { return {y, y + problem->size()}; }
+
+State run_odeint_dopri5(double tolerance) {
+  State y = full_start();
+  auto f = [](const State& x, State& dx, double) {
+    problem->derivative(x.data(), dx.data());
+  };
+  odeint::integrate_adaptive(
+      odeint::make_controlled(tolerance, tolerance,
+                              odeint::runge_kutta_dopri5<State>()),
+      f, y, 0.0, problem->t_end, 1e-4);
+  return first_half(y.data());
+}
+
+// ------------------------------------------------------------------- SUNDIALS
+
+void require(bool ok, const char* what) {
+  if (!ok) throw std::runtime_error(what);
+}
+int sundials_rhs(realtype, N_Vector y, N_Vector dy, void*) {
+  problem->derivative(N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
+  return 0;
+}
+
+/** Context and vector of one run; freed with it. */
+struct Sundials {
+  SUNContext context = nullptr;
+  State y = full_start();
+  N_Vector vector;
+  Sundials() {
+    SUNContext_Create(nullptr, &context);
+    vector = N_VMake_Serial(sunindextype(y.size()), y.data(), context);
+  }
+  ~Sundials() {
+    N_VDestroy(vector);
+    SUNContext_Free(&context);
+  }
+};
+
+State run_cvode_adams(double tolerance) {
+  Sundials s;
+  void* mem = CVodeCreate(CV_ADAMS, s.context);
+  CVodeInit(mem, sundials_rhs, 0, s.vector);
+  CVodeSStolerances(mem, tolerance, tolerance);
+  CVodeSetMaxNumSteps(mem, 10000000);
+  SUNNonlinearSolver solver = SUNNonlinSol_FixedPoint(s.vector, 0, s.context);
+  CVodeSetNonlinearSolver(mem, solver);
+  CVodeSetStopTime(mem, problem->t_end);
+  realtype t;
+  int flag = CVode(mem, problem->t_end, s.vector, &t, CV_NORMAL);
+  SUNNonlinSolFree(solver);
+  CVodeFree(&mem);
+  require(flag >= 0, "CVODE Adams failed");
+  return first_half(s.y.data());
+}
+
+State diagonal;  // of the preconditioner below
+
+int setup(realtype, N_Vector y, N_Vector, booleantype, booleantype* current,
+          realtype, void*) {
+  diagonal = problem->stiffness_diagonal(N_VGetArrayPointer(y));
+  *current = SUNTRUE;
+  return 0;
+}
+/** Solve (I - gamma J) z = r, J = [0 I; -D 0]: exact if the stiffness were
+ * its own diagonal D. */
+int precondition(realtype, N_Vector, N_Vector, N_Vector r, N_Vector z,
+                 realtype gamma, realtype, int, void*) {
+  const double* in = N_VGetArrayPointer(r);
+  double* out = N_VGetArrayPointer(z);
+  const std::size_t n = problem->size();
+  for (std::size_t k = 0; k < n; ++k) {
+    out[n + k] = (in[n + k] - gamma * diagonal[k] * in[k]) /
+                 (1 + gamma * gamma * diagonal[k]);
+    out[k] = in[k] + gamma * out[n + k];
+  }
+  return 0;
+}
+
+State run_cvode_bdf(double tolerance, int max_order) {
+  Sundials s;
+  void* mem = CVodeCreate(CV_BDF, s.context);
+  CVodeInit(mem, sundials_rhs, 0, s.vector);
+  CVodeSStolerances(mem, tolerance, tolerance);
+  CVodeSetMaxNumSteps(mem, 10000000);
+  CVodeSetMaxOrd(mem, max_order);
+  SUNLinearSolver solver =
+      SUNLinSol_SPGMR(s.vector, SUN_PREC_LEFT, 10, s.context);
+  CVodeSetLinearSolver(mem, solver, nullptr);
+  CVodeSetPreconditioner(mem, setup, precondition);
+  CVodeSetStopTime(mem, problem->t_end);
+  realtype t;
+  int flag = CVode(mem, problem->t_end, s.vector, &t, CV_NORMAL);
+  SUNLinSolFree(solver);
+  CVodeFree(&mem);
+  require(flag >= 0, "CVODE BDF failed");
+  return first_half(s.y.data());
+}
+
+State run_arkode_dopri(double tolerance) {
+  Sundials s;
+  void* mem = ERKStepCreate(sundials_rhs, 0, s.vector, s.context);
+  ERKStepSStolerances(mem, tolerance, tolerance);
+  ERKStepSetTableNum(mem, ARKODE_DORMAND_PRINCE_7_4_5);
+  ERKStepSetMaxNumSteps(mem, 10000000);
+  ERKStepSetStopTime(mem, problem->t_end);
+  realtype t;
+  int flag = ERKStepEvolve(mem, problem->t_end, s.vector, &t, ARK_NORMAL);
+  ERKStepFree(&mem);
+  require(flag >= 0, "ARKODE failed");
+  return first_half(s.y.data());
+}
+
+// ------------------------------------------------------------------------ GSL
+
+State run_gsl(const gsl_odeiv2_step_type* type, double tolerance) {
+  gsl_odeiv2_system system = {[](double, const double* y, double* dy, void*) {
+                                problem->derivative(y, dy);
+                                return int(GSL_SUCCESS);
+                              },
+                              nullptr, 2 * problem->size(), nullptr};
+  gsl_odeiv2_driver* driver =
+      gsl_odeiv2_driver_alloc_y_new(&system, type, 1e-4, tolerance, tolerance);
+  State y = full_start();
+  double t = 0;
+  int flag = gsl_odeiv2_driver_apply(driver, &t, problem->t_end, y.data());
+  gsl_odeiv2_driver_free(driver);
+  require(flag == GSL_SUCCESS, "GSL failed");
+  return first_half(y.data());
+}
+
+// ------------------------------------------------------------------- Measuring
+
+struct Candidate {
+  const char* method;
+  double parameter;  // step [s], or tolerance
+  std::function<State()> run;
+  std::vector<double> seconds;
+  double error = 0;
+  long calls = 0;
+  std::string status = "ok";
+};
+
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> all;
+  for (const MethodEntry& m : methods) {
+    if (m.info.limit == 0 || m.info.limit == no_limit) continue;
+    if (std::string_view(m.info.name) == "dormand-prince") continue;
+    // h_safe omega_max = limit with omega_max^2 = 12 K N (docs: Stability).
+    double largest = m.info.limit / std::sqrt(12.0 * 100 * 625);
+    int least = int(std::ceil(problem->t_end / largest));
+    for (double factor = 1; factor < 3000; factor *= 1.2) {
+      int steps = int(std::ceil(least * factor));
+      if (double(steps) * m.info.sweeps > 20000) break;
+      all.push_back({m.info.name,
+                     problem->t_end / steps,
+                     [&m, steps] { return run_ours(m, steps); },
+                     {},
+                     0,
+                     0,
+                     "ok"});
+    }
+  }
+  for (int steps = 70; steps < 10000; steps = steps * 6 / 5)
+    all.push_back({"odeint-m4",
+                   problem->t_end / steps,
+                   [steps] { return run_odeint_m4(steps); },
+                   {},
+                   0,
+                   0,
+                   "ok"});
+  for (double tol = 1e-4; tol > 1e-13; tol /= 4) {
+    auto add = [&](const char* name, auto run) {
+      all.push_back(
+          {name, tol, [run, tol] { return run(tol); }, {}, 0, 0, "ok"});
+    };
+    add("odeint-dopri5", run_odeint_dopri5);
+    add("cvode-adams", run_cvode_adams);
+    add("arkode-dopri", run_arkode_dopri);
+    add("gsl-rk8pd",
+        [](double t) { return run_gsl(gsl_odeiv2_step_rk8pd, t); });
+    add("gsl-msadams",
+        [](double t) { return run_gsl(gsl_odeiv2_step_msadams, t); });
+    if (tol > 1e-9) {
+      add("cvode-bdf", [](double t) { return run_cvode_bdf(t, 5); });
+      add("cvode-bdf2", [](double t) { return run_cvode_bdf(t, 2); });
+    }
+  }
+  return all;
+}
+
+/** The fastest run of a method whose error is at most @a error [m]. */
+const Candidate* fastest(const std::vector<Candidate>& all,
+                         std::string_view method, double error) {
+  const Candidate* best = nullptr;
+  auto median = [](const Candidate& c) {
+    auto sorted = c.seconds;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[sorted.size() / 2];
+  };
+  for (const Candidate& c : all)
+    if (c.method == method && c.status == "ok" && c.error <= error &&
+        (!best || median(c) < median(*best)))
+      best = &c;
+  return best;
+}
+
+/** How many times the time of our best every other method takes to the same
+ * error: run by run, so that a slow moment of the machine hits both. */
+void print_ratios(const std::vector<Candidate>& all, double error) {
+  std::vector<const Candidate*> best;
+  for (const Candidate& c : all) {
+    if (std::any_of(best.begin(), best.end(), [&](const Candidate* b) {
+          return std::string_view(b->method) == c.method;
+        }))
+      continue;
+    if (const Candidate* b = fastest(all, c.method, error)) best.push_back(b);
+  }
+  auto first = [](const Candidate* c) {
+    return *std::min_element(c->seconds.begin(), c->seconds.end());
+  };
+  std::sort(best.begin(), best.end(),
+            [&](auto* a, auto* b) { return first(a) < first(b); });
+  const Candidate* ours = nullptr;
+  for (const Candidate* c : best)
+    if (!ours && find_method(c->method)) ours = c;
+  if (!ours) return;
+  std::fprintf(stderr,
+               "\nRMS error at most %g m; ours: %s\n%-18s %9s %7s %9s   time "
+               "over ours, median (lowest-highest)\n",
+               error, ours->method, "method", "ms", "sweeps", "error [m]");
+  for (const Candidate* c : best) {
+    std::vector<double> ratio;
+    for (std::size_t k = 0; k < c->seconds.size(); ++k)
+      ratio.push_back(c->seconds[k] / ours->seconds[k]);
+    std::sort(ratio.begin(), ratio.end());
+    std::fprintf(stderr, "%-18s %9.3f %7ld %9.2g   %6.2f (%.2f-%.2f)\n",
+                 c->method, 1e3 * first(c), c->calls, c->error,
+                 ratio[ratio.size() / 2], ratio.front(), ratio.back());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Sweep::set_threads(1);  // as the peers have
+  const int repeats = argc > 1 ? std::atoi(argv[1]) : 7;
+  if (repeats < 1) {
+    std::cerr << "usage: peers [REPEATS], 1 or more; 7 if left out\n";
+    return 2;
+  }
+  gsl_set_error_handler_off();
+  // First: does an independent code agree? grid0 with drag for all 5 s.
+  Problem small(5, 5, 1.0 / 25);
+  problem = &small;
+  const State ours = run_ours(*find_method("srkn11b"), 8000);
+  std::fprintf(stderr,
+               "grid0 with drag at 5 s: srkn11b and srkn6b agree to %.2g m, "
+               "srkn11b and GSL's rk8pd to %.2g m\n",
+               distance(ours, run_ours(*find_method("srkn6b"), 40000)),
+               distance(ours, run_gsl(gsl_odeiv2_step_rk8pd, 1e-13)));
+
+  Problem large(25, 0.25, 0);
+  problem = &large;
+  // Two methods of different order and step; how far they agree is the floor.
+  State reference = run_ours(*find_method("srkn11b"), 3000);
+  double floor = distance(reference, run_ours(*find_method("srkn6b"), 12000));
+
+  auto all = candidates();
+  for (int r = 0; r <= repeats; ++r)  // the first is a warm-up
+    for (Candidate& c : all) {
+      if (c.status != "ok") continue;
+      problem->calls = 0;
+      CME212::Clock clock;
+      try {
+        State end = c.run();
+        double seconds = clock.seconds();
+        if (r > 0) c.seconds.push_back(seconds);
+        c.error = distance(end, reference);
+        c.calls = problem->calls;
+        if (!(c.error < 1)) c.status = "diverged";
+        if (seconds > 0.5) c.status = "left out: over 0.5 s";
+      } catch (const std::exception& e) {
+        c.status = e.what();
+      }
+    }
+  std::cout << "method,parameter,sweeps,seconds_min,seconds_median,error,floor,"
+               "status\n";
+  for (const Candidate& c : all) {
+    std::cout << c.method << ',' << c.parameter << ',';
+    if (c.status == "ok") {
+      auto seconds = c.seconds;
+      std::sort(seconds.begin(), seconds.end());
+      std::cout << c.calls << ',' << seconds[0] << ','
+                << seconds[seconds.size() / 2] << ',' << c.error << ',';
+    } else {
+      std::cout << ",,,,";
+    }
+    std::cout << floor << ',' << c.status << '\n';
+  }
+  std::fflush(stdout);
+  std::fprintf(stderr, "the reference is known to %.2g m\n", floor);
+  for (double error : {1e-3, 1e-6, 1e-9}) print_ratios(all, error);
+}

@@ -1,0 +1,364 @@
+/** @file stability_map.cpp
+ * Where methods are stable: maps of measured limits beside predicted ones. A
+ * map is a list of independent runs, its cells, each with a file of its own;
+ * whoever runs them in whatever order, joined they give the same bytes.
+ *
+ *   ./stability_map --list                       all cells: name, cost, what
+ *   ./stability_map --cell NAME --out DIR/NAME.csv
+ *   ./stability_map --join DIR --map limits --out limits.csv
+ *
+ * `make stability` does all of it, tools/sweep.sbatch does it with Slurm. The
+ * columns: charts/README.md. Exit status: 0 done; 2 an option or an input that
+ * can't be used, or an output that can't be written. */
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "CME212/OutputFile.hpp"
+#include "lab/charts/Growth.hpp"
+#include "lab/charts/Report.hpp"
+
+using namespace lab;
+
+using CME212::short_text;
+using report::cell;
+
+namespace {
+
+/** How much is looked at: for the charts, for a first look, for a test. */
+enum class Effort { full, quick, tiny };
+
+/** One of three values, by effort. */
+template <typename T>
+T by(Effort e, T full, T quick, T tiny) {
+  return e == Effort::full ? full : e == Effort::quick ? quick : tiny;
+}
+
+/** A part of a map that is run by itself. */
+struct Cell {
+  std::string map, name;
+  double cost;       // about: seconds on a core of 2.4 GHz
+  std::string what;  // its parameters, for people
+  std::function<void(std::ostream&)> run;  // writes its rows
+};
+
+struct Map {
+  const char* name;
+  const char* about;
+  const char* columns;
+};
+constexpr std::array maps = {
+    Map{"limits",
+        "the largest stable step on a sheet stretched to 1.5 times its size "
+        "and held at its rim; drag 1 1/s",
+        "side,mesh,method,predicted [s],measured [s],safe [s]"},
+    Map{"table",
+        "the largest stable step on the assignment's falling cloth: predicted "
+        "from the frequencies on its way, and measured",
+        "side,mesh,method,t_end [s],predicted [s],measured [s],safe [s],"
+        "predicted/measured"},
+    Map{"growth",
+        "ln of the growth per step of a tiny disturbance of a stretched sheet, "
+        "plain mesh, no drag",
+        "method,stretch,dt/safe,predicted limit/safe,growth"},
+    Map{"oscillator",
+        "growth per step of an oscillator with drag gamma, measured and by "
+        "theory",
+        "method,dt omega,dt gamma,measured,theory"}};
+
+constexpr const char* name_of(Mesh mesh) {
+  return mesh == Mesh::plain ? "plain" : "diagonals";
+}
+const std::vector<const char*> explicit_methods = {
+    "symplectic-euler", "verlet", "yoshida4", "pefrl", "rk4", "srkn6b"};
+
+/** omega_safe() and a good SharpOmega of @a p at its start [1/s]. */
+std::pair<double, double> frequencies(const Problem& p) {
+  Start s(p);
+  return {omega_safe(s.cloth, s.force, s.constraint),
+          SharpOmega()(s.cloth, s.force, s.constraint, 80)};
+}
+
+// ----------------------------------------------------------------------- Maps
+
+/** Limit against the number of nodes. A large cloth can't be run for seconds,
+ * but a stretched sheet shows its limit within a few hundred steps. */
+void add_limits(std::vector<Cell>& cells, Effort effort) {
+  using Sides = std::vector<unsigned>;
+  const auto sides = by<Sides>(effort, {5, 10, 25, 50, 100, 200, 500, 1000},
+                               {5, 10, 25, 50, 100}, {5});
+  for (unsigned side : sides)
+    for (Mesh mesh : {Mesh::plain, Mesh::diagonals})
+      for (const char* name : {"symplectic-euler", "verlet", "rk4"}) {
+        const int steps = side >= 500 ? 150 : 300;
+        const MethodEntry& m = *find_method(name);
+        auto run = [=, &m](std::ostream& out) {
+          const Problem p = stretched_sheet(side, mesh, 1.5, 1);
+          auto [safe, sharp] = frequencies(p);
+          const double least = step_limit(m, safe, 1);
+          out << side << ',' << name_of(mesh) << ',' << name << ','
+              << cell(step_limit(m, sharp, 1)) << ','
+              << cell(measured_sheet_limit(p, m, 0.8 * least, 1.6 * least,
+                                           steps))
+              << ',' << cell(least) << '\n';
+        };
+        cells.push_back({"limits",
+                         "limits-" + std::to_string(side) + '-' +
+                             name_of(mesh) + '-' + name,
+                         1e-7 * side * side * steps * (m.info.sweeps + 0.5) *
+                             (mesh == Mesh::plain ? 0.6 : 1),
+                         "stretch=1.5 gamma=1 precision=0.01 steps=" +
+                             std::to_string(steps),
+                         run});
+      }
+}
+
+/** Predicted and measured on the assignment's cloth. All methods in one cell:
+ * the prediction needs the way of the cloth, which is dear. */
+void add_table(std::vector<Cell>& cells, Effort effort) {
+  using Sides = std::vector<unsigned>;
+  const double precision = by(effort, 0.002, 0.01, 0.05);
+  for (unsigned side : by<Sides>(effort, {5, 25, 50, 100}, {5, 25}, {5}))
+    for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
+      const double t_end =
+          by(effort, side < 20 ? 5.0 : 2.0, side < 20 ? 5.0 : 1.0, 0.2);
+      auto run = [=](std::ostream& out) {
+        const Problem p = cloth_for_limits(side, mesh, t_end);
+        const Path path = find_path(p);
+        for (const char* name : explicit_methods) {
+          const MethodEntry& m = *find_method(name);
+          const double safe = step_limit(m, path.safe, path.gamma);
+          const double predicted = predicted_limit(m, path);
+          const double measured =
+              measured_limit(p, m, 0.9 * safe, 1.8 * safe, precision);
+          out << side << ',' << name_of(mesh) << ',' << name << ','
+              << cell(t_end) << ',' << cell(predicted) << ',' << cell(measured)
+              << ',' << cell(safe) << ',' << cell(predicted / measured) << '\n';
+        }
+      };
+      cells.push_back(
+          {"table", "table-" + std::to_string(side) + '-' + name_of(mesh),
+           3e-5 * t_end * std::pow(side, 3),
+           "t_end=" + short_text(t_end) + " precision=" + short_text(precision),
+           run});
+    }
+}
+
+/** Growth against stretch and step: a column of the map, one method at one
+ * stretch, is a cell. */
+void add_growth(std::vector<Cell>& cells, Effort effort) {
+  constexpr unsigned side = 15;
+  const int columns = by(effort, 40, 16, 2), rows = by(effort, 60, 24, 3);
+  const int steps = by(effort, 600, 200, 20);
+  constexpr double low = 0.9, high = 2.5;  // stretch
+  constexpr double least = 0.5, most = 2;  // dt/safe
+  for (const char* name : explicit_methods)
+    for (int k = 0; k < columns; ++k) {
+      const double stretch = low + (high - low) * (k + 0.5) / columns;
+      const MethodEntry& m = *find_method(name);
+      auto run = [=, &m](std::ostream& out) {
+        const Problem p = stretched_sheet(side, Mesh::plain, stretch, 0);
+        auto [safe, sharp] = frequencies(p);
+        for (int row = 0; row < rows; ++row) {
+          const double of_safe = least + (most - least) * (row + 0.5) / rows;
+          const double dt = of_safe * step_limit(m, safe);
+          out << name << ',' << cell(stretch) << ',' << cell(of_safe) << ','
+              << cell(safe / sharp) << ',';
+          char text[32];
+          std::snprintf(text, sizeof text, "%.3g\n",
+                        std::min(99.0, growth(p, m, dt, steps).per_step));
+          out << text;
+        }
+      };
+      cells.push_back(
+          {"growth", std::string("growth-") + name + '-' + short_text(stretch),
+           4e-6 * (m.info.sweeps + 1) * rows * steps,
+           "side=15 steps=" + std::to_string(steps) +
+               " rows=" + std::to_string(rows),
+           run});
+    }
+}
+
+/** Write where theory says that the growth crosses 1, along lines of equal dt
+ * omega and of equal dt gamma; the measured growth stays empty.
+ * @param right, top largest dt omega and dt gamma   @param lines of each */
+void write_boundary(std::ostream& out, const char* name, double right,
+                    double top, int lines) {
+  auto unstable = [name](double y, double d) {
+    return amplification_by_theory(name, y, d) > 1 + 1e-9;
+  };
+  auto write = [&](double y, double d) {
+    out << name << ',' << cell(y) << ',' << cell(d) << ",,1\n";
+  };
+  const int places = 5 * lines;  // on a line
+  for (int k = 0; k < lines; ++k) {
+    const double y = right * (k + 0.5) / lines, d = top * (k + 0.5) / lines;
+    for (int j = 1; j < places; ++j) {
+      const double y0 = right * j / places, y1 = right * (j + 1) / places;
+      const double d0 = top * j / places, d1 = top * (j + 1) / places;
+      if (unstable(y0, d) != unstable(y1, d)) write((y0 + y1) / 2, d);
+      if (unstable(y, d0) != unstable(y, d1)) write(y, (d0 + d1) / 2);
+    }
+  }
+}
+
+/** Growth of an oscillator against dt omega and dt gamma. */
+void add_oscillator(std::vector<Cell>& cells, Effort effort) {
+  const int columns = by(effort, 50, 25, 3), rows = by(effort, 40, 20, 3);
+  auto names = explicit_methods;
+  names.insert(names.begin(), "forward-euler");
+  names.push_back("implicit-euler");
+  for (const char* name : names) {
+    const MethodEntry& m = *find_method(name);
+    auto run = [=, &m](std::ostream& out) {
+      constexpr double top = 4;
+      const double right =
+          m.info.limit > 0 && m.info.limit != no_limit ? 1.4 * m.info.limit : 3;
+      auto method = m.make();
+      for (int i = 0; i < columns; ++i)
+        for (int j = 0; j < rows; ++j) {
+          const double y = right * (i + 0.5) / columns,
+                       d = top * (j + 0.5) / rows;
+          out << name << ',' << cell(y) << ',' << cell(d) << ','
+              << cell(amplification(*method, 1, y, d)) << ','
+              << cell(amplification_by_theory(name, y, d)) << '\n';
+        }
+      write_boundary(out, name, right, top, 3 * rows);
+    };
+    cells.push_back(
+        {"oscillator", std::string("oscillator-") + name, 2e-5 * columns * rows,
+         std::to_string(columns) + "x" + std::to_string(rows), run});
+  }
+}
+
+/** All cells, in the order in which they are joined. */
+std::vector<Cell> make_cells(Effort effort) {
+  std::vector<Cell> cells;
+  add_limits(cells, effort);
+  add_table(cells, effort);
+  add_growth(cells, effort);
+  add_oscillator(cells, effort);
+  return cells;
+}
+
+// -------------------------------------------------------------------- Options
+
+struct Options {
+  bool list = false, quick = false, tiny = false;
+  std::string cell, join, map, out;
+};
+
+/** The one of @a all called @a name; throws std::runtime_error if none is. */
+template <typename All>
+const auto& find(const All& all, const std::string& name, const char* what,
+                 const std::string& see) {
+  for (const auto& a : all)
+    if (a.name == name) return a;
+  throw std::runtime_error(std::string(what) + ": there is no '" + name +
+                           "'; " + see);
+}
+
+/** The rows of @a dir/NAME.csv, which has to start with @a columns. */
+std::string rows_of(const std::string& dir, const std::string& name,
+                    const std::string& columns) {
+  const std::string file = dir + '/' + name + ".csv";
+  std::ifstream in(file);
+  if (!in)
+    throw std::runtime_error(file + ": can't be opened; --cell " + name +
+                             " makes it");
+  std::string head;
+  std::ostringstream rows;
+  if (!std::getline(in, head) || head != columns || !(rows << in.rdbuf()))
+    throw std::runtime_error(file + ":1: is no whole cell, expected '" +
+                             columns + "' and rows");
+  return rows.str();
+}
+
+void run(const Options& o) {
+  auto cells = make_cells(o.quick  ? Effort::quick
+                          : o.tiny ? Effort::tiny
+                                   : Effort::full);
+  auto map_of = [](const std::string& name) {
+    return find(maps, name, "--map",
+                "there are: limits table growth oscillator");
+  };
+  std::ostringstream text;
+  if (o.list) {  // dear ones first, so that no long one is left at the end
+    std::ranges::stable_sort(cells, std::greater(), &Cell::cost);
+    for (const Cell& c : cells)
+      text << c.name << ' ' << short_text(c.cost) << ' ' << c.what << '\n';
+  } else if (!o.cell.empty()) {
+    const Cell& chosen = find(cells, o.cell, "--cell", "--list prints all");
+    text << map_of(chosen.map).columns << '\n';
+    std::optional<CME212::OutputFile> file;
+    if (!o.out.empty()) file.emplace(o.out);  // fail before the run, not after
+    chosen.run(text);
+    (file ? file->stream() : std::cout) << text.str();
+    if (file) file->commit();
+    return;
+  } else {
+    const Map map = map_of(o.map);
+    report::write_head(text, "stability; columns: charts/README.md");
+    text << "# map " << map.name << ": " << map.about << '\n'
+         << map.columns << '\n';
+    for (const Cell& c : cells)
+      if (c.map == map.name) text << rows_of(o.join, c.name, map.columns);
+  }
+  if (o.out.empty()) {
+    std::cout << text.str();
+    return;
+  }
+  CME212::OutputFile file(o.out);
+  file.stream() << text.str();
+  file.commit();
+}
+
+/** Read the command line.  @return the exit status to end with, or -1 */
+int parse(int argc, char** argv, Options& o) {
+  CLI::App app("Measures where methods are stable; writes CSV.",
+               "stability_map");
+  auto* what = app.add_option_group("what", "one of");
+  what->add_flag("--list", o.list,
+                 "print the cells: name, cost [s], parameters");
+  what->add_option("--cell", o.cell, "run this cell")->type_name("NAME");
+  auto* join = what->add_option("--join", o.join,
+                                "join the cells of a map, DIR/NAME.csv")
+                   ->type_name("DIR");
+  what->require_option(1);
+  auto* map = app.add_option("--map", o.map, "the map to join");
+  map->needs(join);
+  join->needs(map);
+  app.add_option("--out", o.out, "file to write; the terminal if none")
+      ->type_name("FILE");
+  auto* quick = app.add_flag("--quick", o.quick, "fewer and smaller cells");
+  app.add_flag("--tiny", o.tiny, "next to none, for a test")->excludes(quick);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  return -1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Sweep::set_threads(1);  // runs stand beside runs
+  Options o;
+  try {
+    if (int status = parse(argc, argv, o); status >= 0) return status;
+    run(o);
+    return 0;
+  } catch (const std::exception& e) {
+    std::cerr << "stability_map: " << e.what() << '\n';
+  }
+  return 2;
+}

@@ -1,0 +1,451 @@
+/** @file work_precision.cpp
+ * Work against precision: runs every method on every problem at every step
+ * that makes sense, and writes what it cost and how wrong it was as CSV.
+ *
+ *   ./work_precision --out charts/work_precision.csv
+ *   ./work_precision --quick --scenes grid0,chain --methods verlet,pefrl
+ *   ./work_precision --grid-refinement     ./work_precision --energy
+ *   ./work_precision --failures --out charts/failures.csv
+ *   build/float/work_precision --ends --out ends.csv
+ *   ./work_precision --floor ends.csv --out charts/float_floor.csv
+ *
+ * The columns: charts/README.md. Exit status: 0 done; 2 an option or an input
+ * that can't be used, or an output that can't be written. */
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "CME212/OutputFile.hpp"
+#include "CME212/Util.hpp"
+#include "lab/charts/Failure.hpp"
+#include "lab/charts/Precision.hpp"
+#include "lab/charts/Problem.hpp"
+#include "lab/charts/Report.hpp"
+
+using namespace lab;
+
+using CME212::short_text;
+using report::cell;
+using report::pick;
+using report::Progress;
+using report::write_head;
+
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes, methods;
+  std::string nodes, tets, out;
+  double t_end = 0.25;
+  int repeats = 7;
+  bool grid_refinement = false, energy = false, failures = false, ends = false;
+  std::string floor;  // file of ends
+  bool quick = false, quiet = false;
+};
+
+/** How far a ladder of steps goes down. */
+struct Effort {
+  double springs;  // looked at in a run, at most: sweeps times springs
+  double seconds;  // that a run takes, at most
+};
+constexpr Effort full = {6e7, 0.6}, rough = {2e6, 0.05};
+
+// -------------------------------------------------------------- Work-precision
+
+/** A method at a step, or at a tolerance, on a problem. */
+struct Case {
+  const MethodEntry* method;
+  long long steps = 1;
+  double tolerance = 0;  // [m]; 0: the method has none
+  double of_limit = 0;   // dt omega_max/limit; 0: the method has no limit
+  Outcome first = {};
+  double error = 0;                  // [m]
+  std::vector<double> seconds = {};  // of the repeats
+
+  double least() const { return *std::ranges::min_element(seconds); }
+  Outcome run_on(const Problem& p, bool guarded) const {
+    if (tolerance > 0) {
+      DormandPrince adaptive(tolerance);
+      return run(p, adaptive, 1, guarded);
+    }
+    auto made = method->make();
+    return run(p, *made, steps, guarded);
+  }
+};
+
+/** The cases of a method on a problem: explicit methods at twice their largest
+ * stable step, at that step, and at smaller ones by factors of 2; methods
+ * without a limit from 1/8 of the time on down; error control by tolerances.
+ * Until the error is below 10 floors, or the effort is spent. */
+std::vector<Case> ladder(const Problem& p, const Reference& r,
+                         const MethodEntry& method, double omega,
+                         std::size_t springs, const Effort& effort) {
+  std::vector<Case> cases;
+  const MethodInfo& info = method.info;
+  auto go_on = [&](double finer) {
+    Case& c = cases.back();
+    c.first = c.run_on(p, true);
+    if (c.first.ok()) c.error = distance(p, c.first.end, r.end);
+    if (!c.first.ok()) return true;
+    return c.error > 10 * r.floor && c.first.seconds * finer < effort.seconds &&
+           double(c.first.sweeps) * double(springs) * finer < effort.springs;
+  };
+  if (info.name == std::string_view(DormandPrince::info.name)) {
+    for (double tolerance = 1e-2; tolerance > 1e-14; tolerance /= 10) {
+      cases.push_back({&method, 1, tolerance});
+      if (!go_on(1.6)) break;
+    }
+    return cases;
+  }
+  const bool limited = info.limit != no_limit;
+  // One without any stable step starts where Verlet does.
+  const double limit = info.limit > 0 ? info.limit : 2;
+  double steps = limited ? p.t_end * omega / limit / 2 : 8;
+  for (int k = 0; k < 24; ++k, steps *= 2) {
+    Case& c = cases.emplace_back(
+        Case{&method, static_cast<long long>(std::ceil(steps))});
+    if (limited && info.limit > 0)
+      c.of_limit = p.t_end / double(c.steps) * omega / limit;
+    if (k > 0 &&
+        double(c.steps) * info.sweeps * double(springs) > 2 * effort.springs)
+      return cases.pop_back(), cases;
+    if (!go_on(2)) break;
+  }
+  return cases;
+}
+
+/** How the reference was made, and what it says of the cloth as a whole. */
+void write_reference(std::ostream& out, const Problem& p, const Reference& r) {
+  char text[160];
+  const auto& [x, y, z] = r.end.center;
+  std::snprintf(text, sizeof text,
+                ": agree to %.2g m; center of mass %.14g %.14g %.14g m, "
+                "energy %.14g J\n",
+                r.floor, x, y, z, r.end.energy);
+  out << "# reference " << p.name << ": " << r.made << text;
+}
+
+void write_case(std::ostream& out, const Problem& p, const Reference& r,
+                const Case& c) {
+  constexpr const char* statuses[] = {"ok", "diverged", "failed"};
+  const bool ok = c.first.ok();
+  auto s = c.seconds;
+  std::sort(s.begin(), s.end());
+  const double least = ok ? s.front() : NAN;
+  const double median = ok ? s[s.size() / 2] : NAN;
+  const bool by_tolerance = c.tolerance > 0;
+  // A failed run stands at the cost that it would have had.
+  double sweeps =
+      ok ? double(c.first.sweeps) : double(c.steps) * c.method->info.sweeps;
+  out << p.name << ',' << c.method->info.name << ','
+      << (by_tolerance ? "" : cell(p.t_end / double(c.steps))) << ','
+      << (by_tolerance ? cell(c.tolerance) : "") << ','
+      << (c.of_limit > 0 ? cell(c.of_limit) : "") << ','
+      << (by_tolerance ? c.first.steps : c.steps) << ',' << std::llround(sweeps)
+      << ',' << cell(least) << ',' << cell(median) << ','
+      << (ok ? cell(c.error) : "") << ',' << cell(r.floor) << ','
+      << name_of(p.norm) << ',' << statuses[static_cast<int>(c.first.status)]
+      << ',' << cell(c.first.reason) << '\n';
+}
+
+/** Print the method that is cheapest at an error, by its fastest run. */
+void print_cheapest(const Problem& p, const Reference& r,
+                    const std::vector<Case>& cases) {
+  std::printf("%s: floor %.1e m\n", p.name.c_str(), r.floor);
+  for (double wanted : {1e-3, 1e-6, 1e-9}) {
+    if (wanted < 10 * r.floor) continue;
+    const Case* best = nullptr;
+    for (const Case& c : cases)
+      if (c.first.ok() && c.error <= wanted &&
+          (!best || c.least() < best->least()))
+        best = &c;
+    if (best)
+      std::printf("  %.0e m: %-18s %8lld sweeps %9.3f ms\n", wanted,
+                  best->method->info.name, best->first.sweeps,
+                  1e3 * best->least());
+  }
+  std::fflush(stdout);
+}
+
+void work_precision(const std::vector<Problem>& problems,
+                    const std::vector<const MethodEntry*>& chosen,
+                    const Options& o, std::ostream& out, Progress& progress) {
+  write_head(out, "work and precision; columns: charts/README.md");
+  for (const Problem& p : problems)
+    out << "# scene " << p.name << ": " << p.about
+        << "; error: " << name_of(p.norm) << '\n';
+  out << "scene,method,dt [s],tolerance [m],dt/limit,steps,sweeps,"
+         "seconds_min [s],seconds_median [s],error [m],floor [m],norm,status,"
+         "reason\n";
+  double parts = double(problems.size()), part = 0;
+  for (const Problem& p : problems) {
+    progress.show(p.name + ": reference", part / parts);
+    const Reference r = reference(p, o.quick ? 8 : 16);
+    write_reference(out, p, r);
+    Start start(p);
+    const double omega = omega_safe(start.cloth, start.force, start.constraint);
+    std::vector<Case> cases;
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      progress.show(p.name + ": first runs",
+                    (part + .2 * double(k) / double(chosen.size())) / parts);
+      for (Case& c : ladder(p, r, *chosen[k], omega, start.cloth.num_edges(),
+                            o.quick ? rough : full))
+        cases.push_back(std::move(c));
+    }
+    // The first runs were the warm-up. Interleaved, so that what slows the
+    // machine down for a while slows all methods.
+    for (int k = 0; k < o.repeats; ++k) {
+      progress.show(p.name + ": repeats",
+                    (part + .2 + .8 * k / double(o.repeats)) / parts);
+      for (Case& c : cases)
+        if (c.first.ok()) c.seconds.push_back(c.run_on(p, false).seconds);
+    }
+    for (const Case& c : cases) write_case(out, p, r, c);
+    part += 1;
+    progress.end();
+    if (!o.quiet) print_cheapest(p, r, cases);
+  }
+}
+
+// -------------------------------------------------------------- Other charts
+
+/** The height of the center of mass of the assignment's cloth at 0.25 s, by
+ * Verlet: its error when the grid, the step, or both are refined. Against the
+ * finest grid at a quarter of its stable step. */
+void grid_refinement(const Options& o, std::ostream& out, Progress& progress) {
+  const std::vector<unsigned> sides =
+      o.quick ? std::vector<unsigned>{5, 10, 20}
+              : std::vector<unsigned>{5, 10, 20, 40, 80};
+  const unsigned finest = o.quick ? 40 : 240, fixed = sides[1];
+  auto steps_of = [](unsigned side) {  // the stable step: 0.0577 s/side
+    return static_cast<long long>(std::ceil(0.25 * side / 0.0577));
+  };
+  write_head(out, "refining the grid, the step, or both; Verlet");
+  out << "# scene: course cloth with drag; height of the center of mass at "
+         "0.25 s\n# reference: "
+      << finest << " nodes a side, 1/4 of the stable step\n"
+      << "refined,side,dt [s],sweeps,seconds [s],error [m]\n";
+  Verlet verlet;
+  auto grid = [](unsigned side) { return grid_problem("", "", 0.25, side); };
+  progress.show("reference", 0);
+  const double right =
+      run(grid(finest), verlet, 4 * steps_of(finest), false).end.center.z;
+  double done = 0;
+  auto add = [&](const char* refined, unsigned side, long long steps) {
+    progress.show("grids", 0.5 + done++ / 40);
+    Outcome r = run(grid(side), verlet, steps, false);
+    for (int k = 1; k < std::min(o.repeats, 3); ++k)
+      r.seconds =
+          std::min(r.seconds, run(grid(side), verlet, steps, false).seconds);
+    out << refined << ',' << side << ',' << cell(0.25 / double(steps)) << ','
+        << r.sweeps << ',' << cell(r.seconds) << ','
+        << cell(std::abs(r.end.center.z - right)) << '\n';
+  };
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    add("step", fixed, steps_of(fixed) << k);
+  for (unsigned side : sides) add("grid", side, steps_of(sides.back()));
+  for (unsigned side : sides) add("both", side, steps_of(side));
+  progress.end();
+}
+
+/** Total energy against time on the 5 x 5 cloth without drag, for 5 s: at equal
+ * cost, dt omega = 1/2 a sweep, for explicit methods; at 5 times Verlet's
+ * limit for those without one; at a tolerance of 1e-4 m for the adaptive. */
+void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
+  Problem p = grid_problem("grid0", "5 x 5 cloth without drag", 5, 5);
+  p.gamma = 0;
+  write_head(out, "total energy against time");
+  out << "# scene: " << p.about
+      << "; at equal cost of explicit methods, dt = "
+         "sweeps/(2 omega); methods without limit: dt = 10/omega\n"
+      << "method,t [s],energy [J],status\n";
+  for (const MethodEntry* entry : chosen) {
+    Start s(p);
+    const double omega = omega_safe(s.cloth, s.force, s.constraint);
+    auto method = entry->make();
+    double dt = entry->info.limit == no_limit ? 10 / omega
+                                              : entry->info.sweeps / 2. / omega;
+    if (entry->info.name == std::string_view(DormandPrince::info.name))
+      method = std::make_unique<DormandPrince>(1e-4), dt = 0.02;
+    DivergenceGuard guard(s.cloth, p.gravity);
+    const auto steps = static_cast<long long>(std::ceil(p.t_end / dt));
+    const long long every = std::max(1LL, steps / 500);
+    dt = p.t_end / double(steps);
+    const char* status = "ok";
+    for (long long n = 0; n <= steps; ++n) {
+      if (n % every == 0 || *status != 'o')
+        out << entry->info.name << ',' << cell(double(n) * dt) << ','
+            << cell(kinetic_energy(s.cloth) + s.force.energy(s.cloth)) << ','
+            << status << '\n';
+      if (*status != 'o') break;
+      try {
+        method->step(s.cloth, double(n) * dt, dt, s.force, s.constraint);
+        if (!guard.accept(s.cloth)) status = "diverged";
+      } catch (const std::exception&) {
+        status = "failed";
+      }
+      if (*status != 'o') guard.restore(s.cloth);
+    }
+  }
+}
+
+/** How each method fails, against time. What was measured goes into the head,
+ * and to the terminal unless the table goes there. */
+void show_failures(const std::vector<const MethodEntry*>& chosen, bool print,
+                   std::ostream& out) {
+  constexpr std::size_t drawn = 200;  // points of a curve, about
+  std::ostringstream rows;
+  write_head(out, "how each method fails, and a cure");
+  for (const MethodEntry* m : chosen) {
+    const Failure& f = failure_of(m->info.name);
+    const std::string name = m->info.name;
+    out << "# title " << name << ": " << f.title << "\n# caption " << name
+        << ": " << f.caption << "\n# axis " << name << ": " << f.t_end << ' '
+        << f.low << ' ' << f.high << ' ' << f.log << ' ' << name_of(f.quantity)
+        << '\n';
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      const FailureRun& r = f.runs[k];
+      const Trace trace = ::trace(f, r);
+      if (!r.method.empty()) {
+        out << "# measured " << name << ": " << in_words(f, r, trace) << '\n';
+        if (print)
+          std::cout << (k ? "  " : "") << in_words(f, r, trace) << '\n';
+      }
+      const auto& samples = trace.samples;
+      const std::size_t every = samples.size() / drawn + 1;
+      const std::size_t label_at =
+          std::size_t(std::min(r.label_at / r.dt, double(samples.size() - 1)));
+      for (std::size_t n = 0; n < samples.size(); ++n) {
+        const bool last = n + 1 == samples.size(), at_label = n == label_at;
+        if (n % every != 0 && !last && !at_label) continue;
+        rows << name << ',' << r.method << ',' << role_of(f, k) << ',' << k
+             << ',' << cell(samples[n].t) << ',' << cell(samples[n].value)
+             << ',' << (at_label ? cell(label_of(r, trace)) : "") << ','
+             << (at_label ? cell(r.label_up) : "") << ','
+             << (last ? status_of(trace) : "") << '\n';
+      }
+    }
+  }
+  out << "failure,method,role,run,t [s],value,label,label up,status\n"
+      << rows.str();
+}
+
+// -------------------------------------------------------------------- Options
+
+/** Read the command line.  @return the exit status to end with, or -1 */
+int parse(int argc, char** argv, Options& o) {
+  CLI::App app("Measures what methods cost and how wrong they are; writes CSV.",
+               "work_precision");
+  app.option_defaults()->always_capture_default();
+  app.add_option("--scenes", o.scenes, "problems to run, a,b,...; all if none")
+      ->delimiter(',');
+  app.add_option("--methods", o.methods, "methods to run, a,b,...; all if none")
+      ->delimiter(',');
+  app.add_flag("--quick", o.quick, "rough: few steps, one repeat");
+  app.add_option("--repeats", o.repeats, "timed runs of each case, 1 up");
+  auto* nodes = app.add_option("--nodes", o.nodes,
+                               "file of points: one more scene, 'mesh'");
+  auto* tets = app.add_option("--tets", o.tets, "file of quads to --nodes");
+  nodes->needs(tets);
+  tets->needs(nodes);
+  app.add_option("--t-end", o.t_end, "end of the scene 'mesh' [s]");
+  app.add_option("--out", o.out, "file to write; the terminal if none")
+      ->type_name("FILE");
+  auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
+                            "refine the grid, the step, or both instead");
+  auto* energies =
+      app.add_flag("--energy", o.energy, "energy against time instead")
+          ->excludes(grid);
+  auto* failures =
+      app.add_flag("--failures", o.failures, "how each method fails instead")
+          ->excludes(grid)
+          ->excludes(energies);
+  auto* ends = app.add_flag("--ends", o.ends, "where runs end instead")
+                   ->excludes(grid)
+                   ->excludes(energies)
+                   ->excludes(failures);
+  app.add_option("--floor", o.floor,
+                 "how far the ends in a file, written by --ends of a build "
+                 "with REAL=float, are from those here instead")
+      ->excludes(grid)
+      ->excludes(energies)
+      ->excludes(failures)
+      ->excludes(ends);
+  app.add_flag("--quiet", o.quiet, "print nothing but errors");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (o.quick && app.count("--repeats") == 0) o.repeats = 1;
+  if (o.repeats < 1)
+    throw std::runtime_error("--repeats is " + std::to_string(o.repeats) +
+                             ", expected 1 or more");
+  if (!(o.t_end > 0 && o.t_end < 1e6))
+    throw std::runtime_error("--t-end is " + short_text(o.t_end) +
+                             ", expected a positive time [s]");
+  return -1;
+}
+
+void run(Options o) {
+  auto problems = make_problems();
+  if (!o.nodes.empty()) {
+    auto points = load_points(o.nodes);
+    auto quads = load_quads(o.tets, points.size());
+    problems.push_back(cloth_problem(
+        "mesh", o.nodes + " with drag, to " + short_text(o.t_end) + " s",
+        o.t_end, std::move(points), std::move(quads)));
+    if (o.scenes.empty()) o.scenes = {"mesh"};
+  }
+  problems = pick(o.scenes, problems, "--scenes",
+                  [](const Problem& p) { return p.name; });
+  std::vector<const MethodEntry*> chosen;
+  for (const MethodEntry& m :
+       pick(o.methods, methods, "--methods",
+            [](const MethodEntry& m) { return std::string(m.info.name); }))
+    chosen.push_back(find_method(m.info.name));
+  std::optional<CME212::OutputFile> file;
+  if (!o.out.empty()) file.emplace(o.out);
+  std::ostream& out = file ? file->stream() : std::cout;
+  Progress progress(o.quiet || !file);
+  if (o.grid_refinement)
+    grid_refinement(o, out, progress);
+  else if (o.energy)
+    energy(chosen, out);
+  else if (o.failures)
+    show_failures(chosen, file && !o.quiet, out);
+  else if (o.ends)
+    write_ends(problems, out);
+  else if (!o.floor.empty())
+    write_compared(
+        compare_ends(problems,
+                     mesh_detail::read_file(o.floor, "a file of ends"),
+                     o.floor),
+        out);
+  else
+    work_precision(problems, chosen, o, out, progress);
+  if (file) file->commit();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Sweep::set_threads(1);  // runs stand beside runs
+  Options o;
+  try {
+    if (int status = parse(argc, argv, o); status >= 0) return status;
+    run(std::move(o));
+    return 0;
+  } catch (const InputError& e) {
+    std::cerr << e.what() << '\n';
+  } catch (const std::exception& e) {
+    std::cerr << "work_precision: " << e.what() << '\n';
+  }
+  return 2;
+}

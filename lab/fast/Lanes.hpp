@@ -1,0 +1,305 @@
+#pragma once
+/** @file Lanes.hpp
+ * Lanes: as many numbers as one register of the processor holds, computed with
+ * side by side. A kernel is written once and compiled for three kinds of x86-64
+ * processor, of which the program takes the best that it runs on; on any other
+ * processor it is plain code.
+ *
+ * A kernel is a struct with
+ *   template <typename V> [[gnu::always_inline]] static inline void apply(...),
+ * V being Lanes of as many numbers as the registers of that processor hold. It
+ * calls only functions that are always inlined: code that is not, is compiled
+ * for the plain processor. run<Kernel>(...) calls it. */
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "CME212/Point.hpp"
+
+namespace lab {
+
+// No Lanes are passed to code of another kind: all is inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace lanes {
+
+/** Nodes a block: as many as the longest register has numbers, 8 doubles or 16
+ * floats. Where registers are shorter a block takes several. */
+inline constexpr int width = 64 / sizeof(Real);
+
+namespace detail {
+template <int count>
+struct Vector {
+  static constexpr int bytes = count * sizeof(Real);
+  typedef Real type __attribute__((vector_size(bytes), aligned(bytes)));
+};
+}  // namespace detail
+
+/** @a count numbers in a register. Aligned by hand: what a compiler takes for
+ * granted depends on the processor it compiles for. Longer than the registers
+ * they would be right, but moved by way of memory, number by number. */
+template <int count>
+using Lanes = typename detail::Vector<count>::type;
+
+/** How many numbers a vector has. */
+template <typename V>
+inline constexpr int count_of = int(sizeof(V) / sizeof(Real));
+
+// -------------------------------------------------------------- Which machine
+
+enum class Cpu { plain, avx2, avx512 };
+
+/** The best that this processor can do. */
+inline Cpu best_cpu() {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq"))
+    return Cpu::avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    return Cpu::avx2;
+#endif
+  return Cpu::plain;
+}
+/** What kernels run on; tests and benchmarks set it to less. */
+inline Cpu cpu = best_cpu();
+
+template <typename Kernel, typename... Args>
+void on_plain(const Args&... args) {
+  Kernel::template apply<Lanes<width / 4>>(args...);
+}
+#ifdef __x86_64__
+template <typename Kernel, typename... Args>
+[[gnu::target("avx2,fma")]] void on_avx2(const Args&... args) {
+  Kernel::template apply<Lanes<width / 2>>(args...);
+}
+template <typename Kernel, typename... Args>
+[[gnu::target("avx512f,avx512vl,avx512dq,fma")]] void on_avx512(
+    const Args&... args) {
+  Kernel::template apply<Lanes<width>>(args...);
+}
+#endif
+
+/** Kernel::apply<V>(args...), compiled for this processor. Each lane does what
+ * plain code does, in the same order: with -ffp-contract=off, as the Makefile
+ * has it, the results are the same on all of them, bit by bit. */
+template <typename Kernel, typename... Args>
+void run(const Args&... args) {
+#ifdef __x86_64__
+  if (cpu == Cpu::avx512) return on_avx512<Kernel>(args...);
+  if (cpu == Cpu::avx2) return on_avx2<Kernel>(args...);
+#endif
+  on_plain<Kernel>(args...);
+}
+
+// ----------------------------------------------------------------- Arithmetic
+// + - * / and comparisons of Lanes are the compiler's.
+
+template <typename V>
+[[gnu::always_inline]] inline V sqrt(const V& a) {
+  V root = a;
+  for (int k = 0; k < count_of<V>; ++k) root[k] = std::sqrt(root[k]);
+  return root;
+}
+
+// ------------------------------------------------------------ Loads and moves
+
+template <typename V>
+[[gnu::always_inline]] inline V load(const Real* from) {
+  V a;
+  std::memcpy(&a, from, sizeof a);
+  return a;
+}
+template <typename V>
+[[gnu::always_inline]] inline void store(Real* to, const V& a) {
+  std::memcpy(to, &a, sizeof a);
+}
+
+/** Number k of the result is number pick(k) of @a a and @a b one after the
+ * other.  @param pick a lambda without captures */
+template <typename V, typename Pick, std::size_t... k>
+[[gnu::always_inline]] inline V shuffle(const V& a, const V& b, Pick pick,
+                                        std::index_sequence<k...>) {
+  return __builtin_shufflevector(a, b, pick(int(k))...);
+}
+template <typename V, typename Pick>
+[[gnu::always_inline]] inline V shuffle(const V& a, const V& b, Pick pick) {
+  return shuffle(a, b, pick, std::make_index_sequence<count_of<V>>());
+}
+
+/** The first half of @a a, and then that of @a b. */
+template <typename V>
+[[gnu::always_inline]] inline V first_halves(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return shuffle(a, b, [](int k) { return k < w / 2 ? k : k + w / 2; });
+}
+
+/** Of every two numbers of @a a the first one, and then that of @a b; and the
+ * second ones. */
+template <typename V>
+[[gnu::always_inline]] inline V even_numbers(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k : w + k - 1; });
+}
+template <typename V>
+[[gnu::always_inline]] inline V odd_numbers(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k + 1 : w + k; });
+}
+
+/** A vector twice as long: @a a and then @a b. */
+template <typename A, std::size_t... k>
+[[gnu::always_inline]] inline auto join(const A& a, const A& b,
+                                        std::index_sequence<k...>) {
+  return __builtin_shufflevector(a, b, int(k)...);
+}
+template <typename A>
+[[gnu::always_inline]] inline auto join(const A& a, const A& b) {
+  return join(a, b, std::make_index_sequence<2 * sizeof(A) / sizeof(Real)>());
+}
+
+/** A vector of @a parts pieces of @a count numbers each: piece k lies at
+ * @a from + stride at[every k]. */
+template <int count, int stride, int every, int parts>
+[[gnu::always_inline]] inline auto collect(const Real* from,
+                                           const unsigned* at) {
+  if constexpr (parts == 1) {
+    Lanes<count> a;
+    std::memcpy(&a, from + std::size_t(stride) * at[0], sizeof a);
+    return a;
+  } else {
+    constexpr int half = parts / 2;
+    return join(collect<count, stride, every, half>(from, at),
+                collect<count, stride, every, half>(from, at + every * half));
+  }
+}
+
+// ------------------------------------------------------------- Points, pairs
+
+/** Points side by side. */
+template <typename V>
+struct Points {
+  V x = {}, y = {}, z = {};
+};
+
+/** Coordinate c of the points that a, b, c hold one after the other. */
+template <int coordinate, typename V>
+[[gnu::always_inline]] inline V split(const V& a, const V& b, const V& c) {
+  constexpr int w = count_of<V>;
+  const V from_ab = shuffle(a, b, [](int k) {
+    const int place = 3 * k + coordinate;
+    return place < 2 * w ? place : 0;
+  });
+  return shuffle(from_ab, c, [](int k) {
+    const int place = 3 * k + coordinate;
+    return place < 2 * w ? k : place - w;
+  });
+}
+
+/** The points at from[0], from[1], ... */
+template <typename V>
+[[gnu::always_inline]] inline Points<V> load_points(const Point* from) {
+  constexpr int w = count_of<V>;
+  const Real* first = &from->x;
+  const V a = load<V>(first), b = load<V>(first + w),
+          c = load<V>(first + 2 * w);
+  return {split<0>(a, b, c), split<1>(a, b, c), split<2>(a, b, c)};
+}
+
+/** Part @a part of x0 y0 z0 x1 ... */
+template <int part, typename V>
+[[gnu::always_inline]] inline V merged(const Points<V>& p) {
+  constexpr int w = count_of<V>;
+  const V xy = shuffle(p.x, p.y, [](int k) {
+    const int place = part * w + k;
+    return place % 3 == 1 ? w + place / 3 : place / 3;
+  });
+  return shuffle(xy, p.z, [](int k) {
+    const int place = part * w + k;
+    return place % 3 == 2 ? w + place / 3 : k;
+  });
+}
+
+/** Add to to[0], to[1], ... */
+template <typename V>
+[[gnu::always_inline]] inline void add(Point* to, const Points<V>& p) {
+  constexpr int w = count_of<V>;
+  Real* first = &to->x;
+  store(first, load<V>(first) + merged<0>(p));
+  store(first + w, load<V>(first + w) + merged<1>(p));
+  store(first + 2 * w, load<V>(first + 2 * w) + merged<2>(p));
+}
+
+/** The points at from[at[0]], from[at[1]], ...
+ * @pre there is one more number behind each of them: it is read, too */
+template <typename V>
+[[gnu::always_inline]] inline Points<V> gather(const Point* from,
+                                               const unsigned* at) {
+  constexpr int w = count_of<V>;
+  if constexpr (w < 4) {
+    const Point &p = from[at[0]], &q = from[at[1]];
+    return {V{p.x, q.x}, V{p.y, q.y}, V{p.z, q.z}};
+  } else {
+    // Four numbers a point, and every fourth point in a vector: what moves
+    // within a quarter of a register is cheap to move.
+    const Real* first = &from->x;
+    const V a = collect<4, 3, 4, w / 4>(first, at);
+    const V b = collect<4, 3, 4, w / 4>(first, at + 1);
+    const V c = collect<4, 3, 4, w / 4>(first, at + 2);
+    const V d = collect<4, 3, 4, w / 4>(first, at + 3);
+    // x and z of two points, of which there are four: x x z z x x z z ...
+    const V xz_ab = even_numbers(a, b), xz_cd = even_numbers(c, d);
+    const V y_ab = odd_numbers(a, b), y_cd = odd_numbers(c, d);
+    auto first_two = [](int k) { return k % 4 < 2 ? k : w + k - 2; };
+    auto last_two = [](int k) { return k % 4 < 2 ? k + 2 : w + k; };
+    return {shuffle(xz_ab, xz_cd, first_two), shuffle(y_ab, y_cd, first_two),
+            shuffle(xz_ab, xz_cd, last_two)};
+  }
+}
+
+/** Part @a part of the points a, b, c, with a number of no meaning after each:
+ * four numbers a point. */
+template <int part, typename V>
+[[gnu::always_inline]] inline V with_fourth(const V& a, const V& b,
+                                            const V& c) {
+  return shuffle(part < 2 ? a : b, part < 2 ? b : c, [](int k) {
+    constexpr int w = count_of<V>, skip = part < 2 ? 0 : w;
+    const int four = part * w + k;
+    return 3 * (four / 4) + std::min(four % 4, 2) - skip;
+  });
+}
+/** Part @a part of points, a row of three numbers each, from @a a and @a b:
+ * parts @a part and @a part + 1 of rows of four. */
+template <int part, typename V>
+[[gnu::always_inline]] inline V without_fourth(const V& a, const V& b) {
+  return shuffle(a, b, [](int k) {
+    constexpr int w = count_of<V>;
+    const int three = part * w + k;
+    return 4 * (three / 3) + three % 3 - part * w;
+  });
+}
+
+/** Pairs of numbers side by side: all first ones, and all second ones. */
+template <typename V>
+struct Pairs {
+  V first, second;
+};
+template <typename V>
+[[gnu::always_inline]] inline Pairs<V> load_pairs(const Real* from) {
+  const V a = load<V>(from), b = load<V>(from + count_of<V>);
+  return {shuffle(a, b, [](int k) { return 2 * k; }),
+          shuffle(a, b, [](int k) { return 2 * k + 1; })};
+}
+/** The pairs at from + 2 at[0], from + 2 at[1], ... */
+template <typename V>
+[[gnu::always_inline]] inline Pairs<V> gather_pairs(const Real* from,
+                                                    const unsigned* at) {
+  const V a = collect<2, 2, 2, count_of<V> / 2>(from, at);
+  const V b = collect<2, 2, 2, count_of<V> / 2>(from, at + 1);
+  return {even_numbers(a, b), odd_numbers(a, b)};
+}
+
+}  // namespace lanes
+
+}  // namespace lab

@@ -1,0 +1,145 @@
+#pragma once
+/** @file Stencil.hpp
+ * Stencil: who is whose neighbor in a graph, laid out for sweeps over all nodes
+ * that work on several nodes at a time. docs/speed.md walks through it. */
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "Graph.hpp"
+
+namespace lab {
+
+/** The neighbors of all nodes of a graph, by blocks of W nodes whose ids follow
+ * each other, by rows of one neighbor for each node of the block.
+ *
+ * On a grid most blocks have the same neighbors, each a constant number of ids
+ * away; so such a row names that number only, and a sweep reads the neighbors'
+ * data one after the other. The other rows list their neighbors.
+ *
+ * It holds topology only, and must be made anew when that has changed.
+ * Memory: 12 bytes a row, and 8 W more for each row that lists its neighbors.
+ * @tparam W nodes a block */
+template <int W>
+class Stencil {
+ public:
+  using size_type = graph_detail::size_type;
+  static constexpr size_type none = ~size_type(0);
+  static constexpr int width = W;
+
+  /** One neighbor for each node of a block. A node that has no more of them is
+   * its own neighbor here, by some edge: a spring of length 0 does nothing. */
+  struct Row {
+    int offset;            ///< neighbor's id - node's id; 0: they are listed
+    size_type first_edge;  ///< edge's id, + 1 from node to node; none: listed
+    size_type list;        ///< where in neighbors() and edges()
+  };
+
+  /** The stencil of @a g.  O(node_slots() + edges) */
+  template <typename G>
+  explicit Stencil(const G& g) : slots_(g.node_slots()) {
+    row_begin_.reserve(num_blocks() + 1);
+    std::array<std::vector<typename G::Half>, W> left;  // without a row yet
+    for (size_type b = 0; b < num_blocks(); ++b) {
+      row_begin_.push_back(size_type(rows_.size()));
+      add_block(g, b * W, left);
+    }
+    row_begin_.push_back(size_type(rows_.size()));
+    for (size_type k = 0; k < W; ++k)
+      last_block_[k] = std::min(num_blocks() * W - W + k, slots_ - 1);
+  }
+
+  /** Block b has the nodes of ids b W, ..., b W + W - 1, but the last one may
+   * have less. */
+  size_type num_blocks() const { return (slots_ + W - 1) / W; }
+  bool is_full(size_type block) const { return (block + 1) * W <= slots_; }
+  /** The ids in the last block; the last id over and over where it is short. */
+  const size_type* last_block() const { return last_block_.data(); }
+
+  std::span<const Row> rows(size_type block) const {
+    return {rows_.data() + row_begin_[block],
+            rows_.data() + row_begin_[block + 1]};
+  }
+  /** The ids of the W neighbors, and edges, of a row that lists them. */
+  const size_type* neighbors(const Row& r) const { return &neighbor_[r.list]; }
+  const size_type* edges(const Row& r) const { return &edge_[r.list]; }
+  std::size_t num_rows() const { return rows_.size(); }
+  /** The largest difference of two neighbors' ids. */
+  size_type reach() const { return reach_; }
+  /** How many rows list their neighbors. */
+  std::size_t num_gathered() const { return neighbor_.size() / W; }
+
+ private:
+  size_type slots_ = 0, reach_ = 0;
+  std::vector<size_type> row_begin_;  // by block, and the end
+  std::vector<Row> rows_;
+  std::vector<size_type> neighbor_, edge_;  // W for each row that lists them
+  std::array<size_type, W> last_block_ = {};
+
+  template <typename G>
+  void add_block(const G& g, size_type first,
+                 std::array<std::vector<typename G::Half>, W>& left) {
+    std::size_t most = 0;
+    for (size_type k = 0; k < W; ++k) {
+      left[k].clear();
+      if (first + k >= slots_) continue;
+      auto all = g.halves(first + k);
+      left[k].assign(all.begin(), all.end());
+      for (const auto& h : all)
+        reach_ = std::max(
+            reach_, std::max(h.node, first + k) - std::min(h.node, first + k));
+    }
+    for (std::size_t m = 0; m < left[0].size();)
+      if (!add_alike(first, m, left)) ++m;
+    for (const auto& l : left) most = std::max(most, l.size());
+    for (std::size_t m = 0; m < most; ++m) add_listed(first, m, left);
+  }
+
+  /** If all nodes have a neighbor as far away as number m of the first one, add
+   * the row of these, and take them from @a left. */
+  template <typename Half>
+  bool add_alike(size_type first, std::size_t m,
+                 std::array<std::vector<Half>, W>& left) {
+    std::array<std::size_t, W> place;
+    bool in_sequence = true;
+    const Half start = left[0][m];
+    for (size_type k = 0; k < W; ++k) {
+      // The lists are alike as a rule: begin where it stands in the first one.
+      const auto& l = left[k];
+      std::size_t at = std::min(m, l.size());
+      if (at == l.size() || l[at].node != start.node + k)
+        for (at = 0; at < l.size() && l[at].node != start.node + k;) ++at;
+      if (at == l.size()) return false;
+      place[k] = at;
+      in_sequence = in_sequence && l[at].edge / 2 == start.edge / 2 + k;
+    }
+    rows_.push_back({int(start.node - first),
+                     in_sequence ? start.edge / 2 : none,
+                     size_type(neighbor_.size())});
+    for (size_type k = 0; k < W; ++k) {
+      if (!in_sequence) list(left[k][place[k]]);
+      left[k].erase(left[k].begin() + std::ptrdiff_t(place[k]));
+    }
+    return true;
+  }
+
+  /** Add the row of number m of each node. */
+  template <typename Half>
+  void add_listed(size_type first, std::size_t m,
+                  const std::array<std::vector<Half>, W>& left) {
+    rows_.push_back({0, none, size_type(neighbor_.size())});
+    for (size_type k = 0; k < W; ++k)
+      list(m < left[k].size() ? left[k][m]
+                              : Half{std::min(first + k, slots_ - 1), 0});
+  }
+
+  template <typename Half>
+  void list(const Half& h) {
+    neighbor_.push_back(h.node);
+    edge_.push_back(h.edge / 2);
+  }
+};
+
+}  // namespace lab

@@ -1,0 +1,67 @@
+# What builds, measures and checks the laboratory: make help-lab
+#
+# All of lab/ but its programs is one library, built once for speed in $(B), and
+# once with assertions and sanitizers, for tests, in $(B)/asan.
+
+CHOLMOD ?= 1
+OPENMP  ?= 1
+
+# The programs: NAME is built as $(B)/NAME from the file.
+lab_main   := lab/cloth.cpp lab/advice/adviser_suite.cpp \
+              lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
+              $(wildcard lab/bench/bench*.cpp)
+lab_others := data/make_grid.cpp docs/example_graph.cpp
+lab_lib    := $(filter-out $(lab_main),$(wildcard lab/*/*.cpp))
+lab_tests  := $(wildcard tests/test_*.cpp)
+names       = $(basename $(notdir $(1)))
+LAB_PROGRAMS := $(call names,$(lab_main))
+LAB_TESTS    := $(call names,$(lab_tests))
+
+# Where CHOLMOD is installed it factors sparse matrices, unless CHOLMOD=0.
+cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
+  -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null \
+  >/dev/null 2>&1 && echo -DMASS_SPRING_CHOLMOD))
+# No product and sum in one rounding: the same bits on every processor.
+lab_flags = $(common) -fno-math-errno -ffp-contract=off \
+            $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
+# What draws: lab/viewer, the programs and tests that use it.
+lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/% lab/cloth.% \
+            tests/test_viewer.% tests/test_screen.% tests/test_course%,$<), \
+            -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
+lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
+draw_libs = $(if $(filter 1,$(VIEWER)),$(if $(filter cloth test_viewer \
+            test_screen test_course_interface,$(notdir $@)), \
+            $(shell pkg-config --libs $(draw_pkg) 2>/dev/null)))
+test_libs = -lgtest_main -lgtest -lrapidcheck
+
+# $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
+define variant
+$(1)/%.o: %.cpp $(1)/lab.flags
+	@mkdir -p $$(dir $$@) && echo '$(CXX) $$@'
+	@$$(CXX) $$(lab_flags) $(2) $$(lab_draw) $$(CPPFLAGS) $$(CXXFLAGS) \
+	  -MMD -MP -c -o $$@ $$<
+$(1)/liblab.a: $(lab_lib:%.cpp=$(1)/%.o)
+	@rm -f $$@ && ar rcs $$@ $$^
+$(1)/lab.flags: FORCE
+	@mkdir -p $$(dir $$@); echo '$(CXX) $(lab_flags) $(2) $(VIEWER) $(CPPFLAGS) $(CXXFLAGS)' \
+	  | cmp -s - $$@ || echo '$(CXX) $(lab_flags) $(2) $(VIEWER) $(CPPFLAGS) $(CXXFLAGS)' > $$@
+endef
+$(eval $(call variant,$(B),$(speed)))
+$(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
+
+# $(call program,PROGRAM,FOLDER,SOURCE,FLAGS,LIBRARIES)
+define program
+$(1): $(2)/$(basename $(3)).o $(2)/liblab.a
+	@echo 'link $$@'
+	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$^ $(5) $$(draw_libs) $$(lab_libs)
+endef
+$(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
+$(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
+
+# make NAME for each; ./cloth lies beside the course's program.
+.PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS)
+$(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B)/%
+$(O)cloth: $(B)/cloth
+	@ln -f $< $@ 2>/dev/null || cp $< $@
+
+-include $(shell find $(B) -name '*.d' 2>/dev/null)

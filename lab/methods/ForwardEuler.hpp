@@ -1,0 +1,26 @@
+#pragma once
+/** @file ForwardEuler.hpp
+ * See RungeKutta.hpp. */
+#include <array>
+
+#include "lab/methods/RungeKutta.hpp"
+
+namespace lab {
+
+/** Source: L. Euler, Institutionum calculi integralis I (1768). */
+struct ForwardEulerTableau {
+  static constexpr MethodInfo info = {
+      "forward-euler",
+      1,
+      1,
+      0,
+      "Euler 1768",
+      "nothing: it is the control that must fail",
+      "always, without drag: it feeds energy in"};
+  static constexpr std::array<double, 0> a = {};
+  static constexpr std::array b = {1.0};
+  static constexpr std::array c = {0.0};
+};
+using ForwardEuler = RungeKutta<ForwardEulerTableau>;
+
+}  // namespace lab

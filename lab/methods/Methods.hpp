@@ -1,0 +1,46 @@
+#pragma once
+/** @file Methods.hpp
+ * The table of all methods: one line a method, used by every program that
+ * lets its user choose. */
+#include <array>
+#include <string_view>
+
+#include "lab/methods/AugmentedVerlet.hpp"
+#include "lab/methods/DormandPrince.hpp"
+#include "lab/methods/ForwardEuler.hpp"
+#include "lab/methods/ImplicitEuler.hpp"
+#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/Pefrl.hpp"
+#include "lab/methods/Rk4.hpp"
+#include "lab/methods/Srkn.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/methods/TrBdf2.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Xpbd.hpp"
+#include "lab/methods/Yoshida4.hpp"
+
+namespace lab {
+
+inline constexpr std::array methods = {entry_of<ForwardEuler>(),
+                                       entry_of<SymplecticEuler>(),
+                                       entry_of<Verlet>(),
+                                       entry_of<Yoshida4>(),
+                                       entry_of<Pefrl>(),
+                                       entry_of<Srkn6b>(),
+                                       entry_of<Srkn11b>(),
+                                       entry_of<Rk4>(),
+                                       entry_of<DormandPrince>(),
+                                       entry_of<ImplicitEuler>(),
+                                       entry_of<ImplicitMidpoint>(),
+                                       entry_of<TrBdf2>(),
+                                       entry_of<AugmentedVerlet>(),
+                                       entry_of<Xpbd>()};
+
+/** The method called @a name, or nullptr. */
+inline const MethodEntry* find_method(std::string_view name) {
+  for (const MethodEntry& m : methods)
+    if (m.info.name == name) return &m;
+  return nullptr;
+}
+
+}  // namespace lab

@@ -1,0 +1,248 @@
+// Advise.hpp: advice that holds against the truth, what can't be had is
+// refused, and the parts of a scene are told apart.
+#include <gtest/gtest.h>
+
+#include "lab/advice/Advise.hpp"
+#include "lab/scenes/SceneFile.hpp"
+#include "lab/fast/Sweep.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** A cloth that hangs from its upper side, let go unstretched. */
+Model hanging(double tolerance) {
+  Model m;
+  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 11 11"};
+  m.pins = {"z 0"};
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.t_end = 0.2;
+  m.tolerance = tolerance;
+  check_model(m);
+  return m;
+}
+
+/** The answer on a grid of so many times the cells, by small steps of a fine
+ * method: another one than the adviser's pilots use. */
+Answer truth(const Model& m, double factor) {
+  Model fine = refined(m, factor);
+  fine.method = "pefrl";
+  fine.with.rule = StepRule::safe;
+  return try_out(fine).answer;
+}
+
+GridReport grid(double factor, Answer answer) {
+  GridReport g;
+  g.factor = factor;
+  g.trial.answer = std::move(answer);
+  return g;
+}
+
+TEST(Refinement, FindsTheLimitOfWhatGoesByAnOrder) {
+  for (double order : {1.0, 1.5, 2.0}) {
+    Refinement r(Measure::com);
+    const double c[] = {0.3, -0.2, 0.05};
+    auto off = [&](double factor, int k) {
+      return c[k] * std::pow(factor, -order);
+    };
+    for (double f : {1., 2., 4., 8.})
+      r.add(grid(f, {1 + off(f, 0), 2 + off(f, 1), 3 + off(f, 2)}));
+    for (double f : {1., 2., 8., 5.5, 16.}) {  // the last two: not tried
+      const Effect e = r.error(f);
+      for (int k : {0, 1, 2})
+        EXPECT_NEAR(e.by[unsigned(k)], off(f, k), 1e-12) << order << ' ' << f;
+      EXPECT_GT(r.doubt(f), 0);
+      EXPECT_LT(r.doubt(f), e.size(Measure::com));
+    }
+    EXPECT_NEAR(r[0].error, std::hypot(c[0], c[1], c[2]), 1e-12);
+    EXPECT_TRUE(r.settles());
+  }
+}
+
+TEST(Refinement, DoubtsWhatGoesByNoOrder) {
+  auto doubt = [](std::vector<double> answers) {
+    Refinement r(Measure::energy);
+    double factor = 1;
+    for (double a : answers) r.add(grid(factor, {a})), factor *= 2;
+    return r.doubt(factor / 2) / r.back().error;
+  };
+  const double regular = doubt({1, 0.25, 0.0625});  // order 2
+  EXPECT_GT(regular, doubt({4, 1, 0.25, 0.0625}));  // borne out by a fourth
+  EXPECT_GT(doubt({3, 1, 0.25, 0.0625}), doubt({4, 1, 0.25, 0.0625}));
+  EXPECT_GT(doubt({1, -0.25, 0.0625}), 2 * regular);  // to and fro
+  EXPECT_GT(doubt({1, -1, 1}), 1);                    // it may be anything
+  Refinement r(Measure::energy);
+  for (double a : {1., 0., 0.9}) r.add(grid(1, {a}));
+  EXPECT_FALSE(r.settles());
+}
+
+// A file's grid is the only one: its error is not known, and not doubted.
+TEST(Refinement, OneGridIsTakenAsItIs) {
+  Refinement r(Measure::energy);
+  r.add(grid(1, {5}));
+  EXPECT_EQ(r[0].error, 0);
+  EXPECT_EQ(r.doubt(1), 0);
+}
+
+TEST(Advise, MeetsTheTolerance) {
+  const Answer right = truth(hanging(1), 8);
+  std::size_t nodes = 0;
+  for (double tolerance : {1e-2, 1e-4, 3e-5}) {
+    const Advice a = advise(hanging(tolerance));
+    ASSERT_EQ(a.refusal, "");
+    EXPECT_LE(a.error + a.doubt, tolerance);
+    EXPECT_LE(distance(try_out(a.model).answer, right, a.measure), tolerance);
+    const std::size_t now = mesh_of(a.model).points.size();
+    EXPECT_GE(now, nodes);  // a finer answer, a finer grid
+    nodes = now;
+  }
+  EXPECT_GT(nodes, 100u);
+}
+
+TEST(Advise, LeavesOutWhatChangesNothing) {
+  Model m = hanging(1e-3);
+  m.planes = {"at 0 0 -9"};             // far below
+  m.spheres = {"at 5 5 5 radius 0.1"};  // far away
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_TRUE(a.model.planes.empty() && a.model.spheres.empty());
+  EXPECT_EQ(a.model.pins, m.pins);
+  for (const PartReport& p : a.parts) {
+    const bool far =
+        p.part.rfind("plane", 0) == 0 || p.part.rfind("sphere", 0) == 0;
+    if (far || p.part == "gravity" || p.part.rfind("pin", 0) == 0) {
+      EXPECT_EQ(p.needed, !far) << p.part << " changes " << p.change;
+    }
+    EXPECT_EQ(p.change == 0, far) << p.part;
+  }
+}
+
+TEST(Advise, RefusesWhatNoGridCanGive) {
+  AdviceRules rules;
+  rules.most_nodes = 500;
+  const Advice a = advise(hanging(1e-7), rules);
+  EXPECT_NE(a.refusal.find("would be too much"), std::string::npos)
+      << a.refusal;
+  EXPECT_NE(in_words(a).find("no advice: "), std::string::npos);
+  rules.most_nodes = 20;  // the first grid has 36
+  EXPECT_NE(advise(hanging(1), rules).refusal.find("a grid of 36 nodes"),
+            std::string::npos);
+}
+
+// A cloth pushed together buckles: which way is decided by round-off.
+TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
+  Model m;
+  m.sheets = {"nodes 17 17"};
+  m.pins = {"x 0 y 0", "x 1 y 0"};
+  m.measure = "positions";
+  m.t_end = 1.5;
+  m.tolerance = 1e-3;
+  check_model(m);
+  AdviceRules rules;
+  rules.most_nodes = 1200;
+  const Advice a = advise(m, rules);
+  EXPECT_NE(a.refusal, "");
+  Model one_grid = m;  // from files there is no other grid to ask
+  one_grid.sheets.clear();
+  one_grid.nodes = "data/grid1.nodes", one_grid.tets = "data/grid1.tets";
+  const Advice b = advise(one_grid);
+  EXPECT_NE(b.refusal.find("chaotic"), std::string::npos) << b.refusal;
+  EXPECT_NE(b.refusal.find("com to "), std::string::npos) << b.refusal;
+}
+
+TEST(Advise, AsksOnlyWhatCanBeAnswered) {
+  Model m = hanging(1e-3);
+  m.measure = "positions";
+  m.tear_strain = 0.5;
+  EXPECT_THROW(advise(m), SceneError);
+}
+
+// Coarser grids have no node where a pin is, finer ones nodes that are too
+// near.
+TEST(Advise, TellsWhichGridIsNoScene) {
+  Model m = hanging(1e-2);
+  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 21 21"};
+  m.pins = {"z 0", "x 0.05"};  // of the second column
+  m.t_end = 0.05;
+  AdviceRules rules;
+  rules.patience = 1e6;  // no finer grids than it takes
+  const Advice a = advise(m, rules);
+  EXPECT_EQ(a.refusal, "");
+  ASSERT_FALSE(a.grids.empty());
+  EXPECT_EQ(a.grids[0].factor, 1);
+  m.pins = {"z 0"};
+  m.t_end = 0.2;
+  m.self_collision = "thickness 0.04";  // two sides of 81 nodes: 0.025 m
+  m.tolerance = 1e-6;
+  EXPECT_NE(
+      advise(m, rules).refusal.find(" nodes: --self-collision has thickness"),
+      std::string::npos);
+  m.t_end = 0;
+  EXPECT_THROW(advise(m), SceneError);
+}
+
+// Cells that no power of two divides: grids double all the same.
+TEST(Advise, DoublesTheCells) {
+  Model m = hanging(1e-2);
+  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 22 27"};
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  const std::size_t nodes[] = {6 * 8, 11 * 15, 21 * 29, 41 * 57};
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(a.grids[k].nodes, nodes[k]);
+}
+
+TEST(Advise, LeavesOutAPartWithItsFriction) {
+  Model m = hanging(1e-2);
+  m.planes = {"at 0 0 -9 friction 0.5"};
+  m.pins = {"z 0", "z 0"};  // one of them is enough
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_TRUE(a.model.planes.empty());
+  EXPECT_EQ(a.model.pins.size(), 1u);
+  int pins = 0;
+  for (const PartReport& p : a.parts) {
+    if (p.part.find("plane") != std::string::npos) {
+      EXPECT_FALSE(p.needed) << p.part;
+    }
+    pins += p.part == "pin: z 0" && p.needed;
+  }
+  EXPECT_EQ(pins, 1);
+}
+
+// From files there is one grid; what is known of it is what its step does.
+TEST(Advise, AMeshFromFilesKeepsItsNodes) {
+  Model m;
+  m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
+  m.pins = {"x 0"};
+  m.t_end = 0.3;
+  m.tolerance = 1e-5;
+  check_model(m);
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  Model fine = m;
+  fine.method = "srkn11b";
+  fine.with.rule = StepRule::fixed;
+  fine.with.dt = 1e-3;
+  const double off =
+      distance(try_out(a.model).answer, try_out(fine).answer, a.measure);
+  EXPECT_LE(off, 1e-5);
+  EXPECT_NEAR(off, a.error, 1e-6);
+}
+
+TEST(Advise, ItsSceneCanBeWrittenAndRun) {
+  const Advice a = advise(hanging(1e-3));
+  ASSERT_EQ(a.refusal, "");
+  Model again = a.model;
+  check_model(again);  // dt in words is dt in numbers
+  EXPECT_EQ(again.with.dt, a.model.with.dt);
+  // As mass_spring runs it: to the first step at or after t-end.
+  Scene scene(recipe_of(again), again.with, *find_method(again.method));
+  while (scene.time() < again.t_end * (1 - 1e-12)) ASSERT_TRUE(scene.step());
+  EXPECT_NEAR(scene.time(), again.t_end, 1e-12);
+  EXPECT_EQ(answer(again, scene.cloth()), try_out(again).answer);
+  EXPECT_NE(to_scene_file(a.model).find("method = "), std::string::npos);
+  EXPECT_NE(in_words(a).find("advice: "), std::string::npos);
+}
+
+}  // namespace

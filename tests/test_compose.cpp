@@ -1,0 +1,243 @@
+// Compose.hpp: a cloth, forces and constraints have what a model names, and
+// nothing else; a finer grid of a material is the same cloth.
+#include <gtest/gtest.h>
+
+#include "lab/scenes/Measure.hpp"
+#include "lab/scenes/SceneFile.hpp"
+
+using namespace lab;
+
+namespace {
+
+Model with_sheet(const std::string& sheet) {
+  Model m;
+  m.sheets = {sheet};
+  return m;
+}
+void build(Cloth& g, const Model& m) { build_model(g, m, mesh_of(m)); }
+
+/** The spring between two nodes, by their indices. */
+EdgeData spring(const Cloth& g, unsigned i, unsigned j) {
+  for (Edge e : g.node(i).edges())
+    if (e.node2().index() == j) return e.value();
+  ADD_FAILURE() << "no edge from " << i << " to " << j;
+  return {};
+}
+
+// ------------------------------------------------------------------- The cloth
+
+TEST(Compose, ASheetOfTheUnitSquareIsTheGridOfTheAssignment) {
+  Cloth sheet, grid;
+  build(sheet, with_sheet("nodes 7 7"));
+  build_cloth(grid, grid_points(7), grid_quads(7), Mesh::diagonals);
+  ASSERT_EQ(sheet.num_nodes(), grid.num_nodes());
+  ASSERT_EQ(sheet.num_edges(), grid.num_edges());
+  for (unsigned i = 0; i < grid.num_nodes(); ++i)
+    EXPECT_LT(norm(sheet.node(i).position() - grid.node(i).position()), 1e-15);
+  for (unsigned e = 0; e < grid.num_edges(); ++e)
+    EXPECT_EQ(sheet.edge(e).node1().index(), grid.edge(e).node1().index());
+}
+
+TEST(Compose, EdgesAreTheOnesNamed) {
+  const unsigned n = 5, m = 4;
+  const auto count = [&](const std::string& edges) {
+    Model model = with_sheet("nodes 5 4");
+    model.edges = edges;
+    Cloth g;
+    build(g, model);
+    return g.num_edges();
+  };
+  const unsigned sides = n * (m - 1) + m * (n - 1);
+  const unsigned diagonals = 2 * (n - 1) * (m - 1);
+  const unsigned bend = n * (m - 2) + m * (n - 2);
+  EXPECT_EQ(count("sides"), sides);
+  EXPECT_EQ(count("sides diagonals"), sides + diagonals);
+  EXPECT_EQ(count("sides bend"), sides + bend);
+  EXPECT_EQ(count("sides diagonals bend"), sides + diagonals + bend);
+}
+
+TEST(Compose, BendSpringsLieAcrossTwoSidesInALine) {
+  Model m = with_sheet("u 2 0 0 nodes 4 5");
+  m.edges = "sides bend";
+  Cloth g;
+  build(g, m);
+  for (Edge e : g.edges()) {
+    const Point way = e.node2().position() - e.node1().position();
+    EXPECT_TRUE(way.x == 0 || way.y == 0);
+    EXPECT_EQ(e.value().L, norm(way));
+  }
+  EXPECT_NEAR(spring(g, 0, 2).L, 0.5, 1e-15);      // along v
+  EXPECT_NEAR(spring(g, 0, 10).L, 4 / 3., 1e-15);  // along u
+}
+
+TEST(Compose, SheetsLieBesideEachOther) {
+  Model m = with_sheet("nodes 3 3");
+  m.sheets.push_back("at 0 0 1 u 0 0 2 nodes 2 4");
+  Cloth g;
+  build(g, m);
+  ASSERT_EQ(g.num_nodes(), 9u + 8u);
+  EXPECT_EQ(g.node(9).position(), Point(0, 0, 1));
+  EXPECT_EQ(g.node(16).position(), Point(0, 1, 3));
+  for (Edge e : g.edges())
+    EXPECT_EQ(e.node1().index() < 9, e.node2().index() < 9);
+}
+
+// ---------------------------------------------------------------- The material
+
+TEST(Compose, MassIsDensityTimesArea) {
+  Model m = with_sheet("u 2 0 0 v 0 0.5 0 nodes 4 6");
+  m.material.density = 0.3;
+  Cloth g;
+  build(g, m);
+  EXPECT_NEAR(total_mass(g), 0.3 * 1, 1e-14);
+  const double cell = 0.3 / 15;
+  EXPECT_NEAR(g.node(0).value().mass, cell / 4, 1e-15);  // a corner
+  EXPECT_NEAR(g.node(1).value().mass, cell / 2, 1e-15);  // on the rim
+  EXPECT_NEAR(g.node(7).value().mass, cell, 1e-15);      // inside
+  m.material.density.reset();
+  Cloth as_assigned;
+  build(as_assigned, m);
+  EXPECT_NEAR(as_assigned.node(0).value().mass, 1 / 24., 1e-15);
+}
+
+TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
+  Model m = with_sheet("u 3 0 0 nodes 4 6");  // cells of 1 by 0.2
+  m.edges = "sides diagonals bend";
+  m.material.modulus = 10;
+  Cloth g;
+  build(g, m);
+  EXPECT_NEAR(spring(g, 7, 13).K, 10 * 0.2 / 1, 1e-12);  // inside, along u
+  EXPECT_NEAR(spring(g, 7, 8).K, 10 * 1 / 0.2, 1e-12);   // inside, along v
+  EXPECT_NEAR(spring(g, 0, 6).K, 10 * 0.1 / 1, 1e-12);   // on the rim
+  Model square = m;
+  square.sheets = {"nodes 6 6"};
+  Cloth s;
+  build(s, square);
+  for (auto [i, j] : {std::pair(7u, 8u),
+                      {7u, 13u},
+                      {7u, 14u},
+                      {8u, 13u},
+                      {7u, 9u},
+                      {7u, 19u}})
+    EXPECT_NEAR(spring(s, i, j).K, 10, 1e-12) << i << ' ' << j;
+  EXPECT_NEAR(spring(s, 0, 1).K, 5, 1e-12);
+}
+
+// Pulled by a strain along x, cloth of springs along its sides answers with
+// force per width = modulus times strain, whatever the grid: exactly, as the
+// half springs at the rim stand for half a cell.
+TEST(Compose, StrainOfOneGridIsStrainOfAnother) {
+  for (const char* nodes : {"2 2", "5 9", "30 7"}) {
+    Model m = with_sheet(std::string("u 2 0 0 v 0 0.7 0 nodes ") + nodes);
+    m.edges = "sides";
+    m.material.modulus = 10;
+    Cloth g;
+    build(g, m);
+    for (Node n : g.nodes()) n.position().x *= Real(1.01);
+    double energy = 10 * 0.01 * 0.01 / 2 * (2 * 0.7);
+    EXPECT_NEAR(elastic_energy(g), energy, 1e-12) << nodes;
+  }
+}
+
+TEST(Compose, ANodeWithoutAQuadHasNoMassByArea) {
+  Cloth g;
+  Model m;
+  m.material.density = 1;
+  PointsAndQuads mesh{grid_points(2), grid_quads(2)};
+  mesh.points.push_back(Point(9, 9, 9));
+  EXPECT_THROW(build_model(g, m, mesh), SceneError);
+}
+
+/** log2 of how much the answer moves from 1 to 2 over from 2 to 4 times the
+ * cells: the order in which it converges. */
+double order_of(Model m, const std::string& measure, unsigned cells) {
+  m.measure = measure;
+  m.method = "verlet";
+  m.with.rule = StepRule::safe;
+  Answer at[3];
+  for (int k : {0, 1, 2}) {
+    const std::string n = std::to_string((cells << k) + 1);
+    m.sheets = {"u 1 0 0 v 0 0 -1 nodes " + n + ' ' + n};
+    at[k] = try_out(m).answer;
+  }
+  const Measure what = read_measure(measure);
+  return std::log2(distance(at[0], at[1], what) / distance(at[1], at[2], what));
+}
+
+// The same cloth on finer grids: springs and masses by area, rim included, make
+// a difference scheme of order 2 where the motion is smooth, and Verlet's step
+// goes down with the grid.
+TEST(Compose, RefiningAHangingClothConvergesAtOrderTwo) {
+  Model m;
+  m.edges = "sides";
+  m.pins = {"z 0"};
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.t_end = 0.1;
+  EXPECT_NEAR(order_of(m, "com", 16), 2, 0.1);
+  EXPECT_NEAR(order_of(m, "energy", 16), 2, 0.1);
+}
+
+// ----------------------------------------------------------------- The parts
+
+TEST(Compose, WhatIsNotNamedCostsNothing) {
+  Model m = with_sheet("nodes 3 3");
+  Cloth g;
+  build(g, m);
+  // Without a constraint no node is looked at: a cloth below any floor stays.
+  for (Node n : g.nodes()) n.position().z = -100;
+  constraint_of(m, g)(g, 0);
+  for (Node n : g.nodes()) EXPECT_EQ(n.position().z, -100);
+  EXPECT_EQ(constraint_of(m, g).size(), 0u);
+  EXPECT_EQ(force_of(m, mesh_of(m)).size(), 2u);  // gravity and springs
+  m.with.gravity = 0;
+  EXPECT_EQ(force_of(m, mesh_of(m)).size(), 1u);
+  m.with.damping = 0.1;
+  EXPECT_EQ(force_of(m, mesh_of(m)).size(), 2u);
+  m.pins = {"x 0"};
+  m.planes = {""};
+  EXPECT_EQ(constraint_of(m, g).size(), 2u);
+}
+
+TEST(Compose, DragPerAreaIsSharedByTheNodes) {
+  Model m = with_sheet("u 2 0 0 nodes 4 5");
+  m.material.drag = 3;
+  EXPECT_NEAR(force_of(m, mesh_of(m)).drag(), 3 * 2 / 20., 1e-15);
+}
+
+TEST(Compose, PinsMustHoldANode) {
+  Model m = with_sheet("nodes 3 3");
+  Cloth g;
+  build(g, m);
+  m.pins = {"x 0.5", "x 0.4"};
+  try {
+    constraint_of(m, g);
+    ADD_FAILURE();
+  } catch (const SceneError& e) {
+    EXPECT_STREQ(e.what(), "--pin \"x 0.4\" holds no node");
+  }
+}
+
+TEST(Compose, PinsMoveAlongTheirLine) {
+  Model m = with_sheet("nodes 3 3");
+  m.pins = {"x 0", "x 1 velocity 0 0 0.5 until 0.2"};
+  m.t_end = 0.4;
+  m.with.gravity = 0;
+  Scene scene(recipe_of(m), m.with, *find_method("verlet"));
+  while (scene.time() < m.t_end) ASSERT_TRUE(scene.step());
+  EXPECT_EQ(scene.cloth().node(0).position(), Point(0, 0, 0));
+  EXPECT_NEAR(norm(scene.cloth().node(8).position() - Point(1, 1, 0.1)), 0,
+              1e-12);
+}
+
+TEST(Compose, SelfCollisionMustFitTheStart) {
+  Model m = with_sheet("nodes 5 5");  // two nodes two sides apart: 0.5 m
+  Cloth g;
+  build(g, m);
+  m.self_collision = "thickness 0.51";
+  EXPECT_THROW(constraint_of(m, g), SceneError);
+  m.self_collision = "thickness 0.49";
+  EXPECT_NO_THROW(constraint_of(m, g));
+}
+
+}  // namespace

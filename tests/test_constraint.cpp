@@ -1,0 +1,270 @@
+// Constraint.hpp: each constraint's post-condition, and that twice is once.
+#include <gtest/gtest.h>
+
+#include "lab/scenes/Obstacle.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** 8 x 8 nodes in space around the ball and the floor, with velocities. */
+class Scattered : public ::testing::Test {
+ protected:
+  Cloth g;
+  const Ball ball{};
+
+  void SetUp() override {
+    CME212::default_generator.seed(2);
+    build_cloth(g, grid_points(8), grid_quads(8), Mesh::diagonals);
+    using CME212::random;
+    for (Node n : g.nodes()) {
+      n.position() = ball.center +
+                     Point(random(-.2, .2), random(-.2, .2), random(-.35, .2));
+      n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
+    }
+  }
+  /** Positions and velocities of all nodes. */
+  std::vector<Point> state() const {
+    std::vector<Point> all;
+    for (Node n : g.nodes()) {
+      all.push_back(n.position());
+      all.push_back(n.value().vel);
+    }
+    return all;
+  }
+  void set_state(const std::vector<Point>& all) {
+    for (Node n : g.nodes()) {
+      n.position() = all[2 * n.index()];
+      n.value().vel = all[2 * n.index() + 1];
+    }
+  }
+  void expect_twice_is_once(const ConstraintPlan& c) {
+    c(g, 0);
+    auto once = state();
+    c(g, 0);
+    auto twice = state();
+    ASSERT_EQ(once.size(), twice.size());
+    for (std::size_t k = 0; k < once.size(); ++k)
+      EXPECT_LT(norm(once[k] - twice[k]), 1e-15);
+  }
+};
+
+/** Mending by parts, the last one first, is the call, bit by bit. */
+TEST_F(Scattered, WhatMendsByNodeMendsByParts) {
+  const std::vector<Node> some = {g.node(60), g.node(0),  g.node(16),
+                                  g.node(17), g.node(18), g.node(63)};
+  const Motion motion = {Point(0.3, -0.2, 0.1)};
+  const PinConstraint pins(some);
+  const PlaneConstraint plane(-0.6);
+  const SphereConstraint sphere;
+  const MovingPinConstraint moving({some[1], some[4]}, motion);
+  const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), motion, 0.5);
+  const BallConstraint moving_ball(ball, motion, 0.5);
+  const auto all = make_combined_constraints(pins, wall, moving, sphere);
+  const auto both = make_combined_constraints(all, ZeroConstraint());
+  g.remove_node(some[2]);
+  for (Node n : some)
+    if (g.has_node(n)) n.position() += Point(0.01, -0.02, 0.03);
+  const auto before = state();
+  for (const ZeroConstraint* c : std::initializer_list<const ZeroConstraint*>{
+           &pins, &plane, &sphere, &moving, &wall, &moving_ball, &all, &both}) {
+    const double t = 0.5;
+    EXPECT_TRUE(c->nodewise());
+    (*c)(g, t);
+    const auto expected = state();
+    EXPECT_FALSE(expected == before);
+    set_state(before);
+    for (auto [first, last] :
+         {std::pair(20u, 64u), {20, 20}, {17, 20}, {0, 17}})
+      c->mend(g, t, first, last);
+    EXPECT_TRUE(state() == expected);
+    set_state(before);
+  }
+}
+
+TEST_F(Scattered, WhatRemovesOrIsNotKnownDoesNotMendByNode) {
+  EXPECT_TRUE(ZeroConstraint().nodewise());
+  EXPECT_TRUE(make_combined_constraints().nodewise());
+  struct Another : ZeroConstraint {};
+  EXPECT_FALSE(Another().nodewise());
+  EXPECT_FALSE(TearConstraint().nodewise());
+  EXPECT_FALSE(StrainConstraint(0.1).nodewise());
+  auto nothing = [](Cloth&, double) {};
+  EXPECT_FALSE(make_combined_constraints(nothing).nodewise());
+  EXPECT_FALSE(
+      make_combined_constraints(PlaneConstraint(), TearConstraint()).nodewise());
+  WatchedConstraint watched(make_combined_constraints(PlaneConstraint(-0.6)));
+  EXPECT_TRUE(watched.nodewise());
+  watched.watch(g, true);
+  EXPECT_FALSE(watched.nodewise());
+}
+
+TEST_F(Scattered, TwiceIsOnce) {
+  expect_twice_is_once(PlaneConstraint());
+  expect_twice_is_once(SphereConstraint());
+  expect_twice_is_once(TearConstraint());
+  expect_twice_is_once(PinConstraint(std::vector<Node>{g.node(1)}));
+  expect_twice_is_once(ZeroConstraint());
+}
+
+TEST_F(Scattered, PlaneStopsWhatIsBelowItAndNothingElse) {
+  Cloth before = g;
+  PlaneConstraint(-0.6)(g, 0);
+  int stopped = 0;
+  for (unsigned i = 0; i < g.num_nodes(); ++i) {
+    Node was = before.node(i), is = g.node(i);
+    bool below = was.position().z < -0.6;
+    stopped += below;
+    EXPECT_EQ(is.position().x, was.position().x);
+    EXPECT_EQ(is.position().y, was.position().y);
+    EXPECT_EQ(is.position().z, below ? -0.6 : was.position().z);
+    EXPECT_EQ(is.value().vel.x, was.value().vel.x);
+    EXPECT_EQ(is.value().vel.z, below ? 0 : was.value().vel.z);
+  }
+  EXPECT_GT(stopped, 5);
+  EXPECT_LT(stopped, 60);
+}
+
+TEST(PlaneConstraint, LeavesANodeThatLiesOnIt) {
+  Cloth g;
+  Node n = g.add_node(Point(0, 0, -0.75), {Point(0, 0, -1), 1});
+  PlaneConstraint()(g, 0);
+  EXPECT_EQ(n.value().vel, Point(0, 0, -1));
+  n.position().z = std::nextafter(-0.75, -1);
+  PlaneConstraint()(g, 0);
+  EXPECT_EQ(n.position().z, -0.75);
+  EXPECT_EQ(n.value().vel, Point());
+}
+
+TEST_F(Scattered, SphereMovesToTheNearestPointAndTakesTheNormalVelocity) {
+  Cloth before = g;
+  SphereConstraint()(g, 0);
+  int moved = 0;
+  for (unsigned i = 0; i < g.num_nodes(); ++i) {
+    Node was = before.node(i), is = g.node(i);
+    if (norm(was.position() - ball.center) >= ball.radius) {
+      EXPECT_EQ(is.position(), was.position());
+      EXPECT_EQ(is.value().vel, was.value().vel);
+      continue;
+    }
+    ++moved;
+    Point out = is.position() - ball.center;
+    EXPECT_NEAR(norm(out), ball.radius, 1e-16);
+    // The old place lies on the same ray, and only the normal part is gone.
+    EXPECT_NEAR(norm(cross(out, was.position() - ball.center)), 0, 1e-16);
+    EXPECT_GT(dot(out, was.position() - ball.center), 0);
+    EXPECT_NEAR(dot(is.value().vel, out), 0, 1e-16);
+    EXPECT_NEAR(norm(cross(is.value().vel - was.value().vel, out)), 0, 1e-15);
+  }
+  EXPECT_GT(moved, 5);
+  EXPECT_LT(moved, 60);
+}
+
+TEST(SphereConstraint, SendsANodeAtItsCenterToTheTop) {
+  Cloth g;
+  Node n = g.add_node(Point(0.5, 0.5, -0.5), {Point(1, 2, 3), 1});
+  SphereConstraint()(g, 0);
+  EXPECT_EQ(n.position(), Point(0.5, 0.5, -0.35));
+  EXPECT_EQ(n.value().vel, Point(1, 2, 0));
+}
+
+TEST_F(Scattered, TearRemovesExactlyTheNodesInside) {
+  std::vector<Node> inside, outside;
+  for (Node n : g.nodes())
+    (norm(n.position() - ball.center) < ball.radius ? inside : outside)
+        .push_back(n);
+  ASSERT_GT(inside.size(), 5u);
+  TearConstraint()(g, 0);
+  g.check_invariants();
+  EXPECT_EQ(g.num_nodes(), outside.size());
+  for (Node n : inside) EXPECT_FALSE(g.has_node(n));
+  for (Node n : outside) EXPECT_TRUE(g.has_node(n));
+}
+
+TEST(TearConstraint, KeepsANodeOnTheSurfaceAndCanTakeAll) {
+  Cloth g;
+  Node on = g.add_node(Point(0.5, 0.5, 0));
+  Node in = g.add_node(Point(0.5, 0.5, -0.01));
+  TearConstraint({Point(0.5, 0.5, -0.5), 0.5})(g, 0);
+  EXPECT_TRUE(g.has_node(on));
+  EXPECT_FALSE(g.has_node(in));
+  TearConstraint({Point(), 10})(g, 0);
+  EXPECT_EQ(g.num_nodes(), 0u);
+}
+
+TEST(PinConstraint, HoldsTheCornersWhateverMoves) {
+  Cloth g;
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  PinConstraint pin(g);
+  for (Node n : g.nodes()) {
+    n.position() += Point(1, 2, 3);
+    n.value().vel = Point(1);
+  }
+  pin(g, 0);
+  int held = 0;
+  for (Node n : g.nodes())
+    if (is_corner(n.position())) {
+      ++held;
+      EXPECT_EQ(n.value().vel, Point());
+    } else {
+      EXPECT_EQ(n.value().vel, Point(1));
+    }
+  EXPECT_EQ(held, 2);
+}
+
+TEST(PinConstraint, HoldsTheRightNodesWhenIndicesHaveMoved) {
+  Cloth g;
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  PinConstraint pin(g);
+  Node first = g.node(0), second = g.node(20);
+  for (unsigned i : {1u, 2u, 3u, 5u, 8u}) g.remove_node(g.node(i));
+  g.remove_edge(g.edge(0));
+  g.reindex();
+  ASSERT_NE(second.index(), 20u);
+  for (Node n : g.nodes()) n.position() += Point(0, 0, -1);
+  pin(g, 0);
+  EXPECT_EQ(first.position(), Point(0, 0, 0));
+  EXPECT_EQ(second.position(), Point(1, 0, 0));
+  for (Node n : g.nodes())
+    EXPECT_EQ(n.position().z, n == first || n == second ? 0 : -1);
+}
+
+TEST(PinConstraint, GoesOnWithoutAPinnedNodeThatWasRemoved) {
+  Cloth g;
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  PinConstraint pin(g);
+  Node second = g.node(20);
+  g.remove_node(g.node(0));
+  Node other = g.add_node(Point(9, 9, 9));  // may take the slot of the old one
+  second.position().z = -1;
+  pin(g, 0);
+  stop_held(g, pin);
+  EXPECT_EQ(other.position(), Point(9, 9, 9));
+  EXPECT_EQ(second.position(), Point(1, 0, 0));
+}
+
+TEST(PinConstraint, StopsOnlyTheHeldNodes) {
+  Cloth g;
+  Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(2, 0, 0));
+  auto both = make_combined_constraints(PlaneConstraint(), PinConstraint(g));
+  a.value().vel = b.value().vel = Point(1);
+  stop_held(g, both);
+  EXPECT_EQ(a.value().vel, Point());
+  EXPECT_EQ(b.value().vel, Point(1));
+}
+
+TEST(CombinedConstraints, RunInTheirOrderAndTakeFunctions) {
+  Cloth g;
+  Node n = g.add_node(Point(0, 0, -2));
+  auto lift = [](Cloth& cloth, double t) {
+    for (Node m : cloth.nodes()) m.position().z += t;
+  };
+  make_combined_constraints(PlaneConstraint(-1), lift)(g, 0.25);
+  EXPECT_EQ(n.position().z, -0.75);
+  make_combined_constraints(lift, PlaneConstraint(-0.5))(g, -5);
+  EXPECT_EQ(n.position().z, -0.5);
+  make_combined_constraints()(g, 0);
+  EXPECT_EQ(n.position().z, -0.5);
+}
+
+}  // namespace

@@ -1,0 +1,729 @@
+// Implicit.hpp and Xpbd.hpp against exact solutions of the difference
+// equations, against an explicit method of order 6, and where others fail.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "lab/methods/AugmentedVerlet.hpp"
+#include "lab/methods/ImplicitEuler.hpp"
+#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/TrBdf2.hpp"
+#include "lab/stability/StepLimit.hpp"
+#include "lab/methods/Xpbd.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** One mass on a spring along x: y'' + (c/m) y' + w^2 y = 0, y = x - 1. */
+struct Oscillator {
+  Cloth g;
+  Node wall = g.add_node(Point()), a;
+  double m, c, w;
+  CombinedForces force;
+  PinConstraint pin;
+  static constexpr double y0 = 0.1;  // [m], at rest
+
+  /** @param w [1/s]   @param c [kg/s]   @param m [kg] */
+  explicit Oscillator(double w_, double c_ = 0, double m_ = 0.5)
+      : a(g.add_node(Point(1 + y0, 0, 0), {Point(), Real(m_)})),
+        m(m_),
+        c(c_),
+        w(w_),
+        force(make_combined_force(MassSpringForce(), DampingForce(c_))),
+        pin(g) {
+    g.add_edge(wall, a, {Real(m * w * w), 1});
+  }
+  double y() const { return a.position().x - 1; }
+  double v() const { return a.value().vel.x; }
+  /** w^2 y^2 + v^2 [m^2/s^2] */
+  double energy() const { return w * w * y() * y() + v() * v(); }
+
+  template <typename M>
+  void run(M& method, double h, int steps) {
+    for (int n = 0; n < steps; ++n) method(g, n * h, h, force, pin);
+  }
+  /** Distance to the exact solution at @a t: in y [m] and v times 1 s. */
+  double error(double t) const {
+    const double gamma = c / m, f = std::sqrt(w * w - gamma * gamma / 4);
+    const double decay = y0 * std::exp(-gamma / 2 * t);
+    double y1 = decay * (std::cos(f * t) + gamma / 2 / f * std::sin(f * t));
+    double v1 = -decay * w * w / f * std::sin(f * t);
+    return std::hypot(y() - y1, v() - v1);
+  }
+};
+
+/** A grid with diagonals, K [N/m]; gravity, springs and drag. */
+struct Sheet {
+  Cloth g;
+  CombinedForces force;
+  PinConstraint pin;
+  explicit Sheet(unsigned side, double K = 100, double drag = 0)
+      : force(make_combined_force(GravityForce(), MassSpringForce(),
+                                  DampingForce(drag))),
+        pin((build_cloth(g, grid_points(side), grid_quads(side),
+                         Mesh::diagonals, K),
+             g)) {}
+  void stir() {
+    CME212::default_generator.seed(3);
+    using CME212::random;
+    for (Node n : g.nodes())
+      n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
+  }
+  template <typename M>
+  void run(M& method, double h, int steps) {
+    for (int n = 0; n < steps; ++n) method(g, n * h, h, force, pin);
+  }
+};
+
+/** The distance of two cloths in positions [m] and velocities times 1 s. */
+double distance(const Cloth& a, const Cloth& b) {
+  double sum = 0;
+  for (unsigned i = 0; i < a.num_nodes(); ++i)
+    sum += normSq(a.node(i).position() - b.node(i).position()) +
+           normSq(a.node(i).value().vel - b.node(i).value().vel);
+  return std::sqrt(sum);
+}
+
+Point momentum(const Cloth& g) {
+  Point sum;
+  for (Node n : g.nodes()) sum += n.value().mass * n.value().vel;
+  return sum;
+}
+Point angular_momentum(const Cloth& g) {
+  Point sum;
+  for (Node n : g.nodes())
+    sum += n.value().mass * cross(n.position(), n.value().vel);
+  return sum;
+}
+
+/** Springs that count their sweeps. */
+struct Counted : MassSpringForce {
+  int& sweeps;
+  explicit Counted(int& n) : sweeps(n) {}
+  void add_to(const Part& part, double t, std::span<Point> f) const override {
+    if (part.first == 0) ++sweeps;
+    MassSpringForce::add_to(part, t, f);
+  }
+};
+
+// ------------------------------------------------------------- Every method
+
+template <typename M>
+class Implicit : public ::testing::Test {};
+using All = ::testing::Types<ImplicitEuler, ImplicitMidpoint, TrBdf2,
+                             AugmentedVerlet, Xpbd>;
+struct Names {
+  template <typename M>
+  static std::string GetName(int) {
+    return M::info.name;
+  }
+};
+TYPED_TEST_SUITE(Implicit, All, Names);
+
+// Errors down to 1e-10 m: no less than the order, and no more.
+TYPED_TEST(Implicit, DeliversTheOrderItDeclares) {
+  auto error = [](int steps) {
+    Oscillator o(3, 0.4);
+    TypeParam method;
+    o.run(method, 1.0 / steps, steps);
+    return o.error(1);
+  };
+  for (int steps : {100, 1000, 5000})
+    EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)),
+                TypeParam::info.order, 0.1)
+        << steps << " steps";
+}
+
+// The sheet folds and stretches by a tenth meanwhile.
+TYPED_TEST(Implicit, DeliversItsOrderOnNonlinearCloth) {
+  const double T = 0.2;
+  auto start = [] {
+    auto sheet = std::make_unique<Sheet>(4, 10, 0.05);
+    sheet->stir();
+    return sheet;
+  };
+  auto exact = start();
+  Srkn11b reference;
+  exact->run(reference, T / 400, 400);
+  auto error = [&](int steps) {
+    auto sheet = start();
+    TypeParam method;
+    sheet->run(method, T / steps, steps);
+    return distance(sheet->g, exact->g);
+  };
+  EXPECT_NEAR(std::log2(error(200) / error(400)), TypeParam::info.order, 0.1);
+}
+
+TYPED_TEST(Implicit, SweepsTheForcesAsOftenAsItDeclares) {
+  int sweeps = 0;
+  Oscillator o(3);
+  o.force = make_combined_force(Counted(sweeps));
+  TypeParam method;
+  o.run(method, 0.01, 1);  // the first one may take one more
+  sweeps = 0;
+  for (int n = 1; n < 10; ++n) method(o.g, n * 0.01, 0.01, o.force, o.pin);
+  EXPECT_EQ(sweeps, 9 * TypeParam::info.sweeps);
+}
+
+TYPED_TEST(Implicit, KeepsMomentumWithoutPinsAndGravity) {
+  Sheet s(5);
+  s.stir();
+  TypeParam method;
+  const Point before = momentum(s.g);
+  for (int n = 0; n < 100; ++n)
+    method(s.g, n * 0.005, 0.005, MassSpringForce());
+  EXPECT_LT(norm(momentum(s.g) - before), 5e-8);  // implicit Euler's 1e-8
+  EXPECT_GT(elastic_energy(s.g), 1e-4);           // it did move
+}
+
+TYPED_TEST(Implicit, HoldsPinsExactlyAndStopsThem) {
+  Sheet s(6);
+  s.stir();
+  TypeParam method;
+  s.run(method, 0.01, 50);
+  for (unsigned i : {0u, 30u}) {
+    EXPECT_TRUE(is_corner(s.g.node(i).position())) << s.g.node(i).position();
+    EXPECT_EQ(norm(s.g.node(i).value().vel), 0);
+  }
+  EXPECT_GT(norm(s.g.node(1).value().vel), 0);
+}
+
+// A node vanishes in each step, and another one between two steps.
+TYPED_TEST(Implicit, GoesOnWhenNodesAreRemoved) {
+  Sheet s(6);
+  auto cut =
+      make_combined_constraints(PinConstraint(s.g), [](Cloth& g, double) {
+        if (g.num_nodes() > 3) g.remove_node(g.node(g.num_nodes() / 2));
+      });
+  TypeParam method;
+  for (int n = 0; n < 40; ++n) {
+    method(s.g, n * 0.01, 0.01, s.force, cut);
+    if (n == 5) s.g.remove_node(s.g.node(7));
+    if (n == 10) s.g.add_edge(s.g.node(3), s.g.add_node(Point(2, 2, 0)));
+    s.g.check_invariants();
+    ASSERT_TRUE(std::isfinite(kinetic_energy(s.g))) << "step " << n;
+  }
+  EXPECT_EQ(s.g.num_nodes(), 3u);
+  for (unsigned i = 0; i < s.g.node_slots(); ++i)
+    if (!s.g.node_in_use(i)) {
+      EXPECT_EQ(norm(s.g.positions()[i]), 0);
+      EXPECT_EQ(norm(s.g.node_values()[i].vel), 0);
+    }
+}
+
+TYPED_TEST(Implicit, TearsTheClothAndTheRestIsRight) {
+  Sheet s(8, 100, 0.02);
+  auto constraint = make_combined_constraints(
+      PinConstraint(s.g), PlaneConstraint(), TearConstraint());
+  TypeParam method;
+  DivergenceGuard guard(s.g, grav);
+  for (int n = 0; n < 150; ++n) {
+    method(s.g, n * 0.01, 0.01, s.force, constraint);
+    s.g.check_invariants();
+    ASSERT_TRUE(guard.accept(s.g)) << "step " << n;
+    for (Node node : s.g.nodes()) {
+      ASSERT_FALSE(Ball().holds(node.position()));
+      ASSERT_GE(node.position().z, -0.75);
+    }
+  }
+  EXPECT_LT(s.g.num_nodes(), 64u);
+  EXPECT_GT(s.g.num_nodes(), 30u);
+}
+
+// The constraint sees the end of the step, once.
+TYPED_TEST(Implicit, CallsTheConstraintOnceAtTheEnd) {
+  Oscillator o(3);
+  TypeParam method;
+  int calls = 0;
+  double t = method(o.g, 2, 0.5, o.force, [&](Cloth&, double now) {
+    ++calls;
+    EXPECT_EQ(now, 2.5);
+    EXPECT_NE(o.y(), Oscillator::y0);
+  });
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(t, 2.5);
+}
+
+TYPED_TEST(Implicit, RefusesAForceOfUnknownStiffness) {
+  Sheet s(3);
+  TypeParam method;
+  auto wind = [](Node, double) { return Point(1, 0, 0); };
+  try {
+    method(s.g, 0, 0.01, make_combined_force(MassSpringForce(), wind));
+    FAIL() << "took it";
+  } catch (const std::invalid_argument& e) {
+    std::string what = e.what();
+    EXPECT_EQ(what.find(TypeParam::info.name), 0u) << what;
+    EXPECT_NE(what.find("does not know its stiffness"), std::string::npos);
+  }
+  EXPECT_THROW(method(s.g, 0, 0.01, Problem1Force()), std::invalid_argument);
+}
+
+TYPED_TEST(Implicit, FallsFreelyWithoutSprings) {
+  Cloth g;
+  Node a = g.add_node(Point(0, 0, 3), {Point(1, 0, 0), 2});
+  TypeParam method;
+  for (int n = 0; n < 1000; ++n) method(g, n * 1e-3, 1e-3, GravityForce());
+  EXPECT_NEAR(a.position().x, 1, 1e-10);
+  EXPECT_NEAR(a.position().z, 3 - 9.81 / 2, 0.005);  // order 1: g T dt/2
+  EXPECT_NEAR(a.value().vel.z, -9.81, 1e-10);
+  g.clear();
+  method(g, 0, 0.1, GravityForce());  // nothing there
+}
+
+// ---------------------------------------------------------- Large time steps
+
+/** Steps of 10 times the explicit limit that are good, of @a steps. */
+template <typename M>
+int good_steps(double drag, int steps) {
+  Sheet s(30, 100, drag);
+  const double h = 10 * 0.0577 / 30;
+  DivergenceGuard guard(s.g, grav);
+  M method;
+  for (int n = 0; n < steps; ++n) {
+    method(s.g, n * h, h, s.force, s.pin);
+    if (!guard.accept(s.g)) return n;
+  }
+  return steps;
+}
+TEST(TenTimesTheExplicitLimit, StaysBounded) {
+  EXPECT_LT(good_steps<Verlet>(1.0 / 900, 50), 50);
+  EXPECT_EQ(good_steps<ImplicitEuler>(0, 50), 50);
+  EXPECT_EQ(good_steps<TrBdf2>(0, 50), 50);
+  EXPECT_EQ(good_steps<AugmentedVerlet>(1.0 / 900, 250), 250);
+}
+
+// At dt w = 1e6 an L-stable method leaves nothing of the oscillation.
+template <typename M>
+void expect_l_stable() {
+  Oscillator o(1e4);
+  M method;
+  const double before = o.energy();
+  o.run(method, 100, 1);
+  EXPECT_LT(o.energy(), 1e-9 * before);
+  o.run(method, 100, 5);
+  EXPECT_LT(std::abs(o.y()), 1e-9);
+  EXPECT_TRUE(std::isfinite(o.energy()));
+}
+TEST(ImplicitEuler, IsLStable) { expect_l_stable<ImplicitEuler>(); }
+TEST(TrBdf2, IsLStable) { expect_l_stable<TrBdf2>(); }
+
+template <typename M>
+void expect_monotone_loss() {
+  for (double hw : {0.1, 1.0, 20.0}) {
+    Oscillator o(50);
+    M method;
+    // Below 1e-18 Newton's tolerance shows.
+    for (int n = 0; n < 100 && o.energy() > 1e-18; ++n) {
+      double before = o.energy();
+      o.run(method, hw / o.w, 1);
+      EXPECT_LT(o.energy(), before) << "dt w = " << hw << ", step " << n;
+    }
+  }
+}
+TEST(ImplicitEuler, OnlyLosesEnergy) { expect_monotone_loss<ImplicitEuler>(); }
+TEST(TrBdf2, OnlyLosesEnergy) { expect_monotone_loss<TrBdf2>(); }
+
+// ------------------------------------------------------- One method, exactly
+
+// Each step takes the amplitude by (1 + (h w)^2)^-1/2.
+TEST(ImplicitEuler, DampsByTheExactFactor) {
+  for (double hw : {0.01, 0.5, 30.0}) {
+    Oscillator o(20);
+    ImplicitEuler method;
+    double expected = o.energy();
+    // Below 1e-10 the round-off of x shows.
+    for (int n = 0; n < 20 && expected > 1e-10; ++n) {
+      o.run(method, hw / o.w, 1);
+      expected /= 1 + hw * hw;
+      EXPECT_NEAR(o.energy() / expected, 1, 1e-6);
+    }
+  }
+}
+
+// y_n = y_0 cos(2 n atan(h w/2)): also far beyond the explicit limit. On a
+// line the heavier mass does to Verlet just that.
+template <typename M>
+void expect_frequency_of_midpoint() {
+  for (double hw : {0.1, 1.0, 10.0}) {
+    Oscillator o(20);
+    M method;
+    for (int n = 1; n <= 300; ++n) {
+      o.run(method, hw / o.w, 1);
+      ASSERT_NEAR(o.y(), 0.1 * std::cos(2 * n * std::atan(hw / 2)), 1e-12)
+          << "h w = " << hw << ", step " << n;
+    }
+  }
+}
+TEST(ImplicitMidpoint, SwingsAtItsNumericalFrequency) {
+  expect_frequency_of_midpoint<ImplicitMidpoint>();
+}
+TEST(AugmentedVerlet, SwingsAtTheFrequencyOfMidpoint) {
+  expect_frequency_of_midpoint<AugmentedVerlet>();
+}
+
+/** The change of angular momentum [kg m^2/s] in 100 steps of a free sheet. */
+template <typename M>
+double turn(M method) {
+  Sheet s(5);
+  s.stir();
+  const Point before = angular_momentum(s.g);
+  for (int n = 0; n < 100; ++n)
+    method(s.g, n * 0.002, 0.002, MassSpringForce());
+  return norm(angular_momentum(s.g) - before);
+}
+TEST(ImplicitMidpoint, KeepsAngularMomentumAsOthersDoNot) {
+  EXPECT_LT(turn(ImplicitMidpoint(1e-14)), 1e-10);
+  EXPECT_GT(turn(ImplicitEuler()), 1e-4);
+  EXPECT_GT(turn(TrBdf2()), 1e-7);
+  EXPECT_GT(turn(AugmentedVerlet()), 1e-7);
+  EXPECT_GT(turn(Xpbd()), 1e-6);
+}
+
+TEST(AugmentedVerlet, KeepsTheAngularMomentumOfTheHeavierMass) {
+  Sheet s(5);
+  s.stir();
+  const double h = 0.01;
+  auto angular = [&] {
+    Point sum = angular_momentum(s.g);
+    for (Edge e : s.g.edges()) {
+      Node a = e.node1(), b = e.node2();
+      sum += h * h / 4 * e.value().K *
+             cross(a.position() - b.position(), a.value().vel - b.value().vel);
+    }
+    return sum;
+  };
+  AugmentedVerlet method;
+  const Point before = angular();
+  for (int n = 0; n < 200; ++n) method(s.g, n * h, h, MassSpringForce());
+  EXPECT_LT(norm(angular() - before), 1e-12);
+}
+
+TEST(AugmentedVerlet, FactorsAnewOnlyWhenItMust) {
+  Sheet s(6);
+  AugmentedVerlet method;
+  int expected = 1;
+  double t = 0;
+  auto step = [&](double dt, const ForcePlan& force, const ConstraintPlan& c) {
+    t = method(s.g, t, dt, force, c);
+    return method.factorizations();
+  };
+  for (int n = 0; n < 10; ++n)
+    EXPECT_EQ(step(0.01, s.force, s.pin), expected) << n;
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);             // dt
+  EXPECT_EQ(step(0.02, s.force, ZeroConstraint()), ++expected);  // pins
+  EXPECT_EQ(step(0.02, s.force, ZeroConstraint()), expected);
+  EXPECT_EQ(step(0.02, GravityForce(), ZeroConstraint()), ++expected);
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.edge(3).value().K *= 2;
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.node(3).value().mass *= 2;
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.remove_edge(s.g.edge(0));
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.reindex();  // no other matrix
+  method.restart();
+  EXPECT_EQ(step(0.02, s.force, s.pin), expected);
+}
+
+/** Springs that are stiffer than their edges say. */
+struct Stiffer : MassSpringForce {
+  double factor = 2;
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    return MassSpringForce::add_stiffness(
+        g, [&](unsigned i, unsigned j, Stiffness B) {
+          B.along *= factor;
+          use(i, j, B);
+        });
+  }
+};
+
+// Where a force may be stiffer than the edges, each step asks it anew.
+TEST(AugmentedVerlet, AsksAForceThatIsNotTheEdges) {
+  Sheet s(6);
+  AugmentedVerlet method;
+  Stiffer stiffer;
+  double t = 0;
+  int expected = 0;
+  auto step = [&](const ForcePlan& force) {
+    t = method(s.g, t, 0.01, force, s.pin);
+    return method.factorizations();
+  };
+  EXPECT_EQ(step(s.force), ++expected);
+  EXPECT_EQ(step(MassSpringForce()), expected);
+  EXPECT_EQ(step(stiffer), ++expected);
+  EXPECT_EQ(step(stiffer), expected);
+  stiffer.factor = 3;
+  EXPECT_EQ(step(stiffer), ++expected);
+  EXPECT_EQ(step(make_combined_force(GravityForce(), stiffer)), expected);
+  EXPECT_EQ(step(s.force), ++expected);
+  auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
+  EXPECT_EQ(step(twice), ++expected);
+  EXPECT_EQ(step(twice), expected);
+  EXPECT_EQ(step(s.force), ++expected);
+}
+
+// The same numbers, but other nodes at the ends of the springs, or held.
+TEST(AugmentedVerlet, SeesOtherEndsAndOtherPins) {
+  Sheet s(6);
+  AugmentedVerlet method;
+  auto step = [&](const ConstraintPlan& c) {
+    method.step(s.g, 0, 0.01, s.force, c);
+    return method.factorizations();
+  };
+  EXPECT_EQ(step(s.pin), 1);
+  const EdgeData spring = s.g.edge(0).value();
+  s.g.remove_edge(s.g.edge(0));
+  s.g.add_edge(s.g.node(0), s.g.node(35)).value() = spring;
+  EXPECT_EQ(step(s.pin), 2);
+  const std::array<Node, 2> others = {s.g.node(1), s.g.node(30)};
+  EXPECT_EQ(step(PinConstraint(others)), 3);
+  EXPECT_EQ(step(PinConstraint(others)), 3);
+}
+
+// Kept accelerations may not outlive the state that they belong to.
+TEST(AugmentedVerlet, StartsAnewWhenTold) {
+  Sheet a(4), b(4);
+  AugmentedVerlet used, fresh;
+  a.run(used, 0.01, 5);
+  for (unsigned i = 0; i < a.g.num_nodes(); ++i) {
+    a.g.node(i).position() = b.g.node(i).position();
+    a.g.node(i).value() = b.g.node(i).value();
+  }
+  used.restart();
+  for (int n = 5; n < 10; ++n) {
+    used(a.g, n * 0.01, 0.01, a.force, a.pin);
+    fresh(b.g, n * 0.01, 0.01, b.force, b.pin);
+  }
+  EXPECT_EQ(distance(a.g, b.g), 0);
+}
+
+TEST(NewtonMethod, SaysWhyAStepCantBeMade) {
+  Sheet s(4);
+  s.stir();
+  for (auto [method, name] :
+       {std::pair<std::shared_ptr<Method>, std::string>{
+            std::make_shared<ImplicitMidpoint>(1e-9, 1), "implicit-midpoint"},
+        {std::make_shared<TrBdf2>(1e-9, 1), "tr-bdf2"}}) {
+    try {
+      method->step(s.g, 0, 0.02, s.force, s.pin);
+      FAIL() << name << " went on";
+    } catch (const StepError& e) {
+      std::string what = e.what();
+      EXPECT_EQ(what.find(name + ": Newton's method is at a residual of "), 0u)
+          << what;
+      EXPECT_NE(what.find(" m/s^2 after 1 iterations, expected 1e-09 m/s^2; "),
+                std::string::npos)
+          << what;
+    }
+  }
+}
+
+// What Newton leaves over does as a wrong acceleration would: it adds up to
+// tolerance T^2/2 at most, however many steps there are in T.
+template <typename M>
+void expect_error_of_tolerance(double tolerance) {
+  const double T = 0.1;
+  for (int steps : {20, 200, 2000}) {
+    Sheet loose(5), tight(5);
+    M coarse(tolerance), fine(1e-30);  // down to round-off
+    for (Sheet* s : {&loose, &tight}) s->stir();
+    loose.run(coarse, T / steps, steps);
+    tight.run(fine, T / steps, steps);
+    double sum = 0;
+    for (unsigned i = 0; i < 25; ++i)
+      sum += normSq(loose.g.node(i).position() - tight.g.node(i).position());
+    EXPECT_LT(std::sqrt(sum / 25), tolerance * T * T / 2) << steps << " steps";
+    EXPECT_GT(sum, 0) << steps << " steps";
+  }
+}
+TEST(NewtonMethod, LeavesNoMoreThanItsToleranceHoweverSmallTheSteps) {
+  expect_error_of_tolerance<ImplicitMidpoint>(1e-3);
+  expect_error_of_tolerance<TrBdf2>(1e-3);
+}
+
+// Angular momentum [kg m^2/s] shows if Newton stops before round_off().
+TEST(NewtonMethod, GoesDownToRoundOffAtSmallSteps) {
+  Sheet s(5);
+  s.stir();
+  ImplicitMidpoint method(1e-30);
+  const Point before = angular_momentum(s.g);
+  for (int n = 0; n < 500; ++n) method(s.g, n * 2e-5, 2e-5, MassSpringForce());
+  EXPECT_LT(norm(angular_momentum(s.g) - before), 1e-13);
+}
+
+// Far from the origin positions have fewer digits: no method can do better.
+TEST(NewtonMethod, StopsAtRoundOff) {
+  for (double dt : {2e-5, 2e-4, 2e-3, 2e-2}) {
+    for (double K : {100.0, 1e4}) {
+      Sheet s(5, K);
+      s.stir();
+      for (Node n : s.g.nodes()) n.position() += Point(1000);
+      ImplicitMidpoint midpoint(1e-30, 20);
+      TrBdf2 tr_bdf2(1e-30, 20);
+      EXPECT_NO_THROW(s.run(midpoint, dt, 5)) << dt << " s, K = " << K;
+      EXPECT_NO_THROW(s.run(tr_bdf2, dt, 5)) << dt << " s, K = " << K;
+    }
+  }
+}
+
+// Two sheets as far above z = 0 as below: their energies cancel, but not the
+// round-off in them, and that hides how far the objective falls.
+TEST(NewtonMethod, FindsItsWayWhereRoundOffHidesTheObjective) {
+  for (int seed = 1; seed <= 10; ++seed) {
+    CME212::default_generator.seed(unsigned(seed));
+    using CME212::random;
+    Cloth g;
+    auto points = grid_points(4);
+    for (double z : {-10.0, 10.0})
+      for (const Point& p : points)
+        g.add_node(p + Point(0, 0, z),
+                   {Point(random(-1, 1), random(-1, 1), random(-1, 1)), 0.03});
+    for (const Quad& q : grid_quads(4))
+      for (unsigned sheet : {0u, 16u})
+        for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}})
+          g.add_edge(g.node(q[a] + sheet), g.node(q[b] + sheet),
+                     {100, Real(norm(points[q[a]] - points[q[b]]))});
+    auto force = make_combined_force(GravityForce(), MassSpringForce());
+    TrBdf2 method(1e-9, 20);
+    for (int n = 0; n < 20; ++n)
+      ASSERT_NO_THROW(method(g, n * 2e-4, 2e-4, force)) << "seed " << seed;
+  }
+}
+
+// A compressed spring would throw its ends aside: across it has no stiffness.
+TEST(ImplicitEuler, TakesCompressedSpringsAsSoftAcross) {
+  Oscillator o(100);
+  o.a.position().x = 0.5;
+  o.a.value().vel = Point(0, 0.1, 0);
+  ImplicitEuler method;
+  o.run(method, 0.1, 1);
+  EXPECT_NEAR(o.a.value().vel.y, 0.1, 1e-6);
+}
+
+// Where all may be left over, that is an acceleration, and not a velocity in a
+// time step.
+TEST(ImplicitEuler, WhatIsLeftOverIsAnAcceleration) {
+  const double dt = 1e-5;
+  Sheet s(8);
+  for (Node n : s.g.nodes()) n.value().vel = Point(1, 2, 3 * n.position().x);
+  s.pin(s.g, 0);
+  const Cloth before = s.g;
+  ImplicitEuler method(1);
+  method(s.g, 0, dt, s.force, s.pin);
+  for (unsigned i = 0; i < before.num_nodes(); ++i)
+    EXPECT_LT(norm(s.g.node(i).value().vel - before.node(i).value().vel),
+              10 * grav * dt);
+}
+
+TEST(ImplicitEuler, SaysThatItsSystemCantBeSolved) {
+  Sheet s(4);
+  s.g.node(5).value().vel = Point(HUGE_VAL);
+  ImplicitEuler method;
+  EXPECT_THROW(method(s.g, 0, 0.02, s.force, s.pin), StepError);
+}
+
+// Newton's line search at work: a mass flies through the wall's spring, over
+// and over, at steps in which it passes several times its length.
+TEST(NewtonMethod, ConvergesThroughFlippingSprings) {
+  Oscillator o(100);
+  o.a.value().vel = Point(80, 3, 1);
+  TrBdf2 method;
+  EXPECT_NO_THROW(o.run(method, 0.1, 50));
+  EXPECT_TRUE(std::isfinite(o.energy()));
+}
+
+// Compressed springs give A negative curvature: the sheet crumples.
+TEST(NewtonMethod, ConvergesOnCrumplingCloth) {
+  Sheet s(12);
+  for (Node n : s.g.nodes()) n.position() *= 0.6;
+  s.stir();
+  TrBdf2 method;
+  const double h = 10 * 0.0577 / 12;
+  for (int n = 0; n < 10; ++n)
+    ASSERT_NO_THROW(method(s.g, n * h, h, s.force)) << "step " << n;
+}
+
+// At 100 times the explicit limit full steps only go from one fold to another,
+// as if there was no line search: then none of these steps can be made.
+template <typename M>
+void expect_steps_of_a_stiff_sheet() {
+  Sheet s(8, 1e4);
+  s.stir();
+  M method;
+  for (int n = 0; n < 5; ++n)
+    ASSERT_NO_THROW(method(s.g, 0.1 * n, 0.1, s.force)) << "step " << n;
+}
+TEST(NewtonMethod, NeedsItsLineSearchOnBucklingCloth) {
+  expect_steps_of_a_stiff_sheet<ImplicitMidpoint>();
+  expect_steps_of_a_stiff_sheet<TrBdf2>();
+}
+
+// One spring, one substep: the round over the springs is an exact solution.
+TEST(Xpbd, IsImplicitEulerOnOneSpring) {
+  Oscillator a(20), b(20);
+  Xpbd xpbd(1);
+  ImplicitEuler euler;
+  for (int n = 0; n < 100; ++n) {
+    a.run(xpbd, 0.01, 1);
+    b.run(euler, 0.01, 1);
+    ASSERT_NEAR(a.y(), b.y(), 1e-10);
+    ASSERT_NEAR(a.v(), b.v(), 1e-8);
+  }
+}
+
+TEST(Xpbd, TendsToSymplecticEuler) {
+  auto apart = [](int steps) {
+    Oscillator a(3), b(3);
+    Xpbd xpbd(1);
+    SymplecticEuler euler;
+    a.run(xpbd, 1.0 / steps, steps);
+    b.run(euler, 1.0 / steps, steps);
+    return std::hypot(a.y() - b.y(), a.v() - b.v());
+  };
+  EXPECT_LT(apart(10000), 1e-3 * Oscillator::y0 * 3);
+  EXPECT_NEAR(apart(5000) / apart(10000), 2, 0.1);
+}
+
+// Substeps are steps as far as the springs go.
+TEST(Xpbd, TakesSubstepsAsSteps) {
+  Sheet a(5), b(5);
+  Xpbd one(1), ten(10);
+  a.run(one, 0.001, 200);
+  b.run(ten, 0.01, 20);
+  EXPECT_LT(distance(a.g, b.g), 1e-12);
+}
+
+TEST(Xpbd, RefusesSpringsThatAreNotTheEdges) {
+  Sheet s(3);
+  Xpbd method;
+  auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
+  EXPECT_THROW(method(s.g, 0, 0.01, twice), std::invalid_argument);
+  struct Softer : MassSpringForce {
+    bool add_stiffness(const Cloth& g,
+                       const StiffnessVisitor& use) const override {
+      return MassSpringForce::add_stiffness(
+          g, [&](unsigned i, unsigned j, Stiffness B) {
+            B.along /= 2;
+            use(i, j, B);
+          });
+    }
+  };
+  EXPECT_THROW(method(s.g, 0, 0.01, Softer()), std::invalid_argument);
+  struct AllButTheLast : MassSpringForce {
+    bool add_stiffness(const Cloth& g,
+                       const StiffnessVisitor& use) const override {
+      unsigned left = g.num_edges() - 1;
+      return MassSpringForce::add_stiffness(
+          g, [&](unsigned i, unsigned j, const Stiffness& B) {
+            if (left > 0) --left, use(i, j, B);
+          });
+    }
+  };
+  EXPECT_THROW(method(s.g, 0, 0.01, AllButTheLast()), std::invalid_argument);
+  EXPECT_NO_THROW(method(s.g, 0, 0.01, s.force));
+}
+
+}  // namespace

@@ -1,0 +1,255 @@
+// Integrator.hpp against exact solutions of the difference equations, and the
+// two forms of symplectic Euler against each other.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "mass_spring.hpp"
+
+namespace {
+
+/** A step as a function: each test runs with both forms. */
+using Step4 = std::function<double(Cloth&, double, double, const ZeroForce&)>;
+using Step5 = std::function<double(Cloth&, double, double, const ZeroForce&,
+                                   const ZeroConstraint&)>;
+
+struct Form {
+  const char* name;
+  Step4 step4;
+  Step5 step5;
+};
+class SymplecticEulerStep : public ::testing::TestWithParam<Form> {
+ protected:
+  Cloth g;
+  double step(double t, double dt, const ForcePlan& f) {
+    return GetParam().step4(g, t, dt, f);
+  }
+  double step(double t, double dt, const ForcePlan& f,
+              const ConstraintPlan& c) {
+    return GetParam().step5(g, t, dt, f, c);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(
+    Forms, SymplecticEulerStep,
+    ::testing::Values(
+        Form{"PerNode",
+             [](Cloth& g, double t, double dt, const ForcePlan& f) {
+               return symp_euler_step(g, t, dt, f);
+             },
+             [](Cloth& g, double t, double dt, const ForcePlan& f,
+                const ConstraintPlan& c) {
+               return symp_euler_step(g, t, dt, f, c);
+             }},
+        Form{"Sweep",
+             [e = SymplecticEuler()](Cloth& g, double t, double dt,
+                                     const ForcePlan& f) mutable {
+               return e(g, t, dt, f);
+             },
+             [e = SymplecticEuler()](Cloth& g, double t, double dt,
+                                     const ForcePlan& f,
+                                     const ConstraintPlan& c) mutable {
+               return e(g, t, dt, f, c);
+             }}),
+    [](const auto& form) { return form.param.name; });
+
+// From rest: v_k = -g h k and z_n = z_0 - g h^2 n (n - 1)/2, exactly.
+TEST_P(SymplecticEulerStep, FallsAlongTheDiscreteParabola) {
+  Node a = g.add_node(Point(2, 3, 5), {Point(1, 0, 0), 4});
+  const double h = 0.01;
+  double t = 0;
+  for (int n = 1; n <= 100; ++n) {
+    t = step(t, h, GravityForce());
+    EXPECT_NEAR(a.position().z, 5 - 9.81 * h * h * n * (n - 1) / 2, 1e-13);
+    EXPECT_NEAR(a.position().x, 2 + h * n, 1e-13);
+    EXPECT_NEAR(a.value().vel.z, -9.81 * h * n, 1e-13);
+  }
+  EXPECT_NEAR(t, 1, 1e-14);
+}
+
+// One mass on a spring: y_n+1 - 2 y_n + y_n-1 = -(h w)^2 y_n with y_0 = y_1,
+// so y_n = y_0 cos((n - 1/2) q)/cos(q/2), cos q = 1 - (h w)^2/2.
+TEST_P(SymplecticEulerStep, SwingsByTheExactRecurrence) {
+  Node wall = g.add_node(Point(0, 0, 0)), a = g.add_node(Point(1.1, 0, 0));
+  a.value().mass = 0.5;
+  g.add_edge(wall, a, {50, 1});
+  PinConstraint pin(g);
+  const double h = 0.05, hw = h * std::sqrt(50 / 0.5);
+  const double q = std::acos(1 - hw * hw / 2);
+  double t = 0;
+  for (int n = 1; n <= 1000; ++n) {
+    t = step(t, h, MassSpringForce(), pin);
+    EXPECT_NEAR(a.position().x - 1,
+                0.1 * std::cos((n - 0.5) * q) / std::cos(q / 2), 1e-12);
+    EXPECT_EQ(a.position().y, 0);
+  }
+}
+
+// Drag as a force: v_n = v_0 (1 - h c/m)^n.
+TEST_P(SymplecticEulerStep, SlowsDownByTheExactRecurrence) {
+  Node a = g.add_node(Point(2, 0, 0), {Point(1, 0, 0), 2});
+  for (int n = 0; n < 50; ++n) step(0, 0.1, DampingForce(0.6));
+  EXPECT_NEAR(a.value().vel.x, std::pow(1 - 0.1 * 0.6 / 2, 50), 1e-14);
+}
+
+// Both sides of the limit h w = 2 that the struct declares.
+TEST_P(SymplecticEulerStep, IsBoundedBelowItsLimitOnly) {
+  for (double factor : {0.999, 1.001}) {
+    g.clear();
+    Node wall = g.add_node(Point(0, 0, 0)), a = g.add_node(Point(1.001, 0, 0));
+    g.add_edge(wall, a, {400, 1});  // w = 20/s
+    PinConstraint pin(g);
+    double h = factor * SymplecticEuler::info.limit / 20, worst = 0;
+    for (int n = 0; n < 200; ++n) {
+      step(0, h, MassSpringForce(), pin);
+      worst = std::max(worst, std::abs(a.position().x - 1.0));
+    }
+    // Below: |y| <= y_0 / cos(q/2), 23 times at 0.999; above: e^(2 acosh ...).
+    EXPECT_EQ(worst < 0.05, factor < 1) << factor << ' ' << worst;
+  }
+}
+
+TEST_P(SymplecticEulerStep, ConservesMomentumAndAngularMomentum) {
+  CME212::default_generator.seed(3);
+  build_cloth(g, grid_points(6), grid_quads(6), Mesh::diagonals);
+  using CME212::random;
+  for (Node n : g.nodes())
+    n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
+  auto momenta = [this] {
+    Point linear, angular;
+    for (Node n : g.nodes()) {
+      Point p = n.value().mass * n.value().vel;
+      linear += p;
+      angular += cross(n.position(), p);
+    }
+    return std::pair(linear, angular);
+  };
+  auto [linear, angular] = momenta();
+  for (int n = 0; n < 1000; ++n)
+    step(0, 0.002, MassSpringForce(), ZeroConstraint());
+  EXPECT_LT(norm(momenta().first - linear), 1e-13);
+  EXPECT_LT(norm(momenta().second - angular), 1e-13);
+  EXPECT_GT(elastic_energy(g), 0.01);  // it did move
+}
+
+TEST(SympEulerStep, SkipsTheCornersWithoutAConstraintOnly) {
+  Cloth g;
+  Node corner = g.add_node(Point(1, 0, 0), {Point(0, 0, 1), 1});
+  symp_euler_step(g, 0, 0.5, GravityForce());
+  EXPECT_EQ(corner.position(), Point(1, 0, 0));
+  EXPECT_EQ(corner.value().vel, Point(0, 0, 1));
+  symp_euler_step(g, 0, 0.5, GravityForce(), ZeroConstraint());
+  EXPECT_EQ(corner.position(), Point(1, 0, 0.5));
+  EXPECT_EQ(corner.value().vel, Point(0, 0, 1 - 0.5 * 9.81));
+}
+
+// A constraint sees the new positions, and the force what it left of them.
+TEST_P(SymplecticEulerStep, ConstrainsAfterPositionsAndBeforeForces) {
+  struct Watch : ZeroConstraint {
+    void operator()(Cloth& g, double t) const override {
+      EXPECT_EQ(t, 7);
+      EXPECT_EQ(g.node(0).position(), Point(1, 1, 1));
+      g.node(0).position() = Point(2, 2, 2);
+      EXPECT_EQ(g.node(0).value().vel, Point(2));
+    }
+  };
+  struct See : ZeroForce {
+    Point operator()(Node n, double t) const override {
+      EXPECT_EQ(t, 7);
+      EXPECT_EQ(n.position(), Point(2, 2, 2));
+      return Point(0, 0, 4);
+    }
+  };
+  Node a = g.add_node(Point(0, 0, 0), {Point(2), 8});
+  EXPECT_EQ(step(7, 0.5, See(), Watch()), 7.5);
+  EXPECT_EQ(a.value().vel, Point(2, 2, 2.25));
+}
+
+TEST_P(SymplecticEulerStep, GoesOnWhenAConstraintRemovesNodes) {
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  auto cut = make_combined_constraints(PinConstraint(g), [](Cloth& h, double) {
+    if (h.num_nodes() > 3) h.remove_node(h.node(h.num_nodes() / 2));
+  });
+  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  for (int n = 0; n < 30; ++n) {
+    step(0, 0.001, force, cut);
+    g.check_invariants();
+  }
+  EXPECT_EQ(g.num_nodes(), 3u);
+  EXPECT_TRUE(std::isfinite(kinetic_energy(g)));
+}
+
+TEST_P(SymplecticEulerStep, LeavesNoVelocityInPinnedNodes) {
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  PinConstraint pin(g);
+  step(0, 0.001, GravityForce(), pin);
+  EXPECT_EQ(g.node(0).value().vel, Point());
+  EXPECT_NE(g.node(1).value().vel, Point());
+}
+
+/** The largest distance of two nodes of the same index [m]. */
+double distance(const Cloth& a, const Cloth& b) {
+  double worst = a.num_nodes() == b.num_nodes() ? 0 : HUGE_VAL;
+  for (unsigned i = 0; i < std::min(a.num_nodes(), b.num_nodes()); ++i)
+    worst = std::max(worst, norm(a.node(i).position() - b.node(i).position()));
+  return worst;
+}
+
+// grid0 is not chaotic: round-off stays round-off for all 5 s.
+TEST(SymplecticEuler, EqualsTheStepNodeByNode) {
+  Cloth a, b;
+  for (Cloth* g : {&a, &b})
+    build_cloth(*g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  auto force = make_combined_force(GravityForce(), MassSpringForce(),
+                                   DampingForce(1.0 / 25));
+  auto constraints = [](Cloth& g) {
+    return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                     TearConstraint());
+  };
+  auto on_a = constraints(a), on_b = constraints(b);
+  SymplecticEuler euler;
+  for (int n = 0; n < 5000; ++n) {
+    euler(a, 0, 0.001, force, on_a);
+    symp_euler_step(b, 0, 0.001, force, on_b);
+    ASSERT_LT(distance(a, b), 1e-11) << "step " << n;
+  }
+  EXPECT_LT(a.num_nodes(), 25u);
+}
+
+// Stage `forces` is stage `diagonals` in other words.
+TEST(SymplecticEuler, CombinedForcesMoveAsProblem1ForceDoes) {
+  for (unsigned side : {5u, 25u}) {
+    Cloth a, b;
+    for (Cloth* g : {&a, &b})
+      build_cloth(*g, grid_points(side), grid_quads(side), Mesh::diagonals);
+    auto force = make_combined_force(GravityForce(), MassSpringForce());
+    // Later, buckling makes any round-off grow.
+    int steps = side == 5 ? 2000 : 400;
+    for (int n = 0; n < steps; ++n) {
+      symp_euler_step(a, 0, 0.001, Problem1Force());
+      symp_euler_step(b, 0, 0.001, force);
+    }
+    EXPECT_LT(distance(a, b), 1e-12);
+    EXPECT_LT(center_of_mass(a).z, -0.1);
+  }
+}
+
+TEST(SympEulerStep, TakesLambdasAndGraphsOfAnyKind) {
+  struct Mass {
+    Point vel;
+    double mass = 2;
+    int color = 0;
+  };
+  Graph<Mass, int> g;
+  auto a = g.add_node(Point(1));
+  auto force = [](auto n, double t) { return Point(n.value().mass * t); };
+  double t = symp_euler_step(g, 3, 0.5, force);
+  symp_euler_step(g, t, 0.5, force, [](auto& h, double now) {
+    EXPECT_EQ(now, 3.5);
+    h.node(0).value().color = 1;
+  });
+  EXPECT_EQ(a.value().vel, Point(0.5 * 3 + 0.5 * 3.5));
+  EXPECT_EQ(a.position(), Point(1 + 0.5 * 1.5));
+  EXPECT_EQ(a.value().color, 1);
+}
+
+}  // namespace

@@ -1,0 +1,606 @@
+// mass_spring.cpp as its user meets it: the program is run, and its status,
+// words and files are looked at. Build the stages first: make all.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/TestFolder.hpp"
+#include "CME212/Mesh.hpp"
+#include "lab/methods/Methods.hpp"
+
+using namespace lab;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using CME212::contents;
+using Result = CME212::TestFolder::Result;
+
+class MassSpring : public ::testing::Test {
+ protected:
+  const CME212::TestFolder folder;
+  const fs::path& dir = folder.path();
+
+  /** Run a stage. Words of @a arguments: as in a shell. */
+  Result run(const std::string& arguments, const std::string& stage = "tear") {
+    return folder.run("./mass_spring_" + stage + " " + arguments);
+  }
+  /** A file of this test with a content. */
+  std::string file(const std::string& name, const std::string& text) {
+    std::ofstream(dir / name, std::ios::binary) << text;
+    return (dir / name).string();
+  }
+  std::string path(const std::string& name) { return folder / name; }
+  /** What lies in the folder besides what run() put there. */
+  std::vector<std::string> files() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(dir)) {
+      std::string name = entry.path().filename();
+      if (name != "out" && name != "err") names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  /** The numbers of a CSV file, without its head line. */
+  static std::vector<std::vector<double>> rows(const fs::path& csv) {
+    std::istringstream in(contents(csv));
+    std::vector<std::vector<double>> all;
+    std::string line, cell;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      auto& row = all.emplace_back();
+      std::istringstream cells(line);
+      while (std::getline(cells, cell, ',')) row.push_back(std::stod(cell));
+    }
+    return all;
+  }
+};
+
+const std::string grid0 = "data/grid0.nodes data/grid0.tets ";
+const std::string grid3 = "data/grid3.nodes data/grid3.tets ";
+
+TEST_F(MassSpring, Takes5000StepsFor5Seconds) {
+  for (const char* dt : {"0.001", "0.0001", "0.003125"}) {
+    Result r = run(grid0 + "--headless --dt " + dt);
+    EXPECT_EQ(r.status, 0);
+    std::string steps = std::to_string(std::lround(5 / std::stod(dt)));
+    EXPECT_NE(r.out.find("tear: " + steps + " steps to t = 5 s in "),
+              std::string::npos)
+        << r.out;
+  }
+  EXPECT_NE(run(grid0 + "--headless --t-end 0.0015").out.find(": 2 steps"),
+            std::string::npos);
+  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find(": 0 steps"),
+            std::string::npos);
+}
+
+TEST_F(MassSpring, RunsEveryStage) {
+  for (const char* stage :
+       {"problem1", "diagonals", "forces", "constraints", "tear"}) {
+    Result r = run(grid0 + "--headless", stage);
+    EXPECT_EQ(r.status, 0);
+    EXPECT_EQ(
+        r.out.find(stage == std::string("problem1") ? "25 nodes, 40 edges\n"
+                                                    : "25 nodes, 72 edges\n"),
+        0u);
+    EXPECT_NE(r.out.find(std::string(stage) + ": 5000 steps"),
+              std::string::npos);
+    const std::string version = run("--version", stage).out;
+    const std::string expected =
+        std::string("mass_spring 1.0.0, stage ") + stage + ", Cholesky by ";
+    EXPECT_TRUE(version == expected + "CHOLMOD\n" ||
+                version == expected + "Eigen\n")
+        << version;
+  }
+}
+
+TEST_F(MassSpring, WritesEnergiesThatAddUp) {
+  Result r = run(
+      grid0 + "--headless --quiet --every 7 --t-end 1 --csv " + path("e.csv"),
+      "forces");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.out + r.err, "");
+  EXPECT_EQ(contents(dir / "e.csv")
+                .find("t,kinetic,elastic,gravitational,"
+                      "total,com_x,com_y,com_z,nodes,"
+                      "edges\n"),
+            0u);
+  auto table = rows(dir / "e.csv");
+  ASSERT_EQ(table.size(), 144u);  // steps 0, 7, ..., 994 and the last
+  for (const auto& row : table) {
+    ASSERT_EQ(row.size(), 10u);
+    EXPECT_DOUBLE_EQ(row[1] + row[2] + row[3], row[4]);
+    EXPECT_NEAR(row[4], 0, 0.1);                // J: no drag
+    EXPECT_NEAR(row[3], 9.81 * row[7], 1e-12);  // 1 kg
+    EXPECT_EQ(row[8], 25);
+    EXPECT_EQ(row[9], 72);
+  }
+  EXPECT_DOUBLE_EQ(table[1][0], 0.007);
+  EXPECT_DOUBLE_EQ(table.back()[0], 1);
+  EXPECT_LT(table.back()[7], -0.05);
+}
+
+TEST_F(MassSpring, DumpsPositionsThatCanBeRunAgain) {
+  run(grid0 + "--headless --t-end 0.5 --out " + path("end.nodes"), "forces");
+  std::string text = contents(dir / "end.nodes");
+  auto points = parse_points(text, "end.nodes");
+  ASSERT_EQ(points.size(), 25u);
+  EXPECT_EQ(points[0], Point(0, 0, 0));
+  EXPECT_EQ(points[20], Point(1, 0, 0));
+  EXPECT_LT(points[24].z, -0.5);
+  char digits[32];
+  std::snprintf(digits, sizeof digits, " %.17g\n", points[24].z);
+  EXPECT_NE(text.find(digits), std::string::npos);
+  Result r = run(path("end.nodes") +
+                 " data/grid0.tets --headless --t-end 0 "
+                 "--out " +
+                 path("again.nodes"));
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(contents(dir / "again.nodes"), text);
+}
+
+// In memory this mesh gets another order: Order.hpp.
+TEST_F(MassSpring, WritesPositionsInTheOrderInWhichTheyWereRead) {
+  const unsigned side = 80, n = side * side;
+  auto number = [](unsigned i) { return i * 2467 % n; };  // any order
+  std::vector<Point> points(n);
+  std::string nodes, tets;
+  const std::vector<Point> rows_of_points = grid_points(side);
+  for (unsigned i = 0; i < n; ++i) points[number(i)] = rows_of_points[i];
+  for (const Point& p : points)
+    for (const Real& a : p)
+      nodes += CME212::to_text(a) + (&a == &p.z ? "\n" : " ");
+  for (const Quad& q : grid_quads(side))
+    for (const unsigned& i : q)
+      tets += std::to_string(number(i)) + (&i == &q[3] ? "\n" : " ");
+  Result r = run(file("in.nodes", nodes) + " " + file("in.tets", tets) +
+                 " --headless --t-end 0 --out " + path("out.nodes"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(parse_points(contents(dir / "out.nodes"), "out"), points);
+}
+
+/** The number that stands in @a text between @a before and @a after. */
+double number(const std::string& text, const std::string& before,
+              const std::string& after) {
+  std::size_t at = text.find(before), end = 0;
+  EXPECT_NE(at, std::string::npos) << before << "\n in: " << text;
+  if (at == std::string::npos) return NAN;
+  at += before.size();
+  const double a = std::stod(text.substr(at), &end);
+  EXPECT_EQ(text.substr(at + end, after.size()), after) << text;
+  return a;
+}
+
+TEST_F(MassSpring, StopsWhenItDivergesAndLeavesTheLastGoodState) {
+  Result r = run(grid3 + "--headless --every 1 --csv " + path("e.csv") +
+                 " --out " + path("end.nodes"));
+  EXPECT_EQ(r.status, 3);
+  EXPECT_NE(r.err.find("mass_spring: diverged in step 16 with dt = 0.001 s, "
+                       "method symplectic-euler: node "),
+            std::string::npos)
+      << r.err;
+  EXPECT_GT(number(r.err, " moves at ", " m/s, its spring to node "), 100);
+  const double rest = number(r.err, " times its rest length of ", " m; the");
+  EXPECT_TRUE(std::abs(rest - 1 / 99.) < 1e-6 ||
+              std::abs(rest - std::sqrt(2) / 99) < 1e-6);
+  const double times = number(r.err, "t = 0.015 s; dt is ",
+                              " times the limit of symplectic-euler, ");
+  const double limit =
+      number(r.err, " times the limit of symplectic-euler, ", " s in this");
+  EXPECT_NEAR(times * limit, 0.001, 1e-5);
+  EXPECT_GT(times, 1.2);  // flat it would be sqrt(8 K N)/2000
+  EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 10000u);
+  auto table = rows(dir / "e.csv");
+  EXPECT_EQ(table.size(), 16u);
+  for (const auto& row : table)
+    for (double a : row) EXPECT_TRUE(std::isfinite(a));
+  // What it advises works.
+  const std::string dt =
+      std::to_string(number(r.err, "every step; --dt ", " or --dt auto works"));
+  EXPECT_EQ(run(grid3 + "--headless --t-end 0.2 --dt " + dt).status, 0);
+  EXPECT_EQ(run(grid3 + "--headless --t-end 0.2 --dt auto").status, 0);
+}
+
+TEST_F(MassSpring, SaysHowLongTheStepIsAndMayBe) {
+  auto out = [this](const std::string& options) {
+    return run(grid0 + "--headless --t-end 0.1 " + options).out;
+  };
+  // grid0: omega = 162, so 2/omega = 0.0123 s
+  std::string text = out("");
+  const double limit =
+      number(text, " of the limit of symplectic-euler here, ", " s\n");
+  EXPECT_NEAR(limit, 0.0123, 0.0001);
+  EXPECT_NEAR(number(text, "dt = 0.001 s: ", " of the limit"), 0.001 / limit,
+              0.001);
+  EXPECT_NEAR(
+      number(out("--method rk4"), " of the limit of rk4 here, ", " s\n"),
+      limit * std::sqrt(2), 0.0002);
+  text = out("--method tr-bdf2 --dt 0.05");
+  EXPECT_NEAR(number(text, "tr-bdf2 has no limit; this is ",
+                     " times that of verlet here, "),
+              0.05 / limit, 0.03);
+  EXPECT_NE(out("--method forward-euler").find("no step is stable with"),
+            std::string::npos);
+  EXPECT_NE(out("--stiffness 0").find("symplectic-euler has no limit\n"),
+            std::string::npos);
+  // Drag as a force lowers the limit; treated exactly it does not.
+  const std::string drag = "--damping 4 --dt 0.005 ";  // c/m = 100/s
+  EXPECT_LT(number(out(drag), "limit of symplectic-euler here, ", " s\n"),
+            0.95 * limit);
+  EXPECT_NEAR(number(out(drag + "--method verlet"), "of verlet here, ", " s\n"),
+              limit, 0.0001);
+}
+
+TEST_F(MassSpring, WarnsAboveTheLimitAndGoesOn) {
+  Result r = run(grid0 + "--headless --dt 0.0125 --t-end 0.1");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.err.find("mass_spring: warning: dt is beyond the limit"), 0u);
+  EXPECT_LT(number(r.err, "may blow up; --dt ", " or --dt auto does not"),
+            0.0123);
+  EXPECT_EQ(run(grid0 + "--headless --dt 0.012 --t-end 0.1").err, "");
+  EXPECT_EQ(run(grid0 + "--headless --dt 0.0125 --t-end 0.1 --quiet").err, "");
+  EXPECT_EQ(run(grid0 + "--headless --t-end 0.1 --method forward-euler").err,
+            "mass_spring: warning: this blows up; --method verlet --dt auto "
+            "does not\n");
+}
+
+TEST_F(MassSpring, ChoosesItsStep) {
+  for (const MethodEntry& m : methods) {
+    const std::string method = std::string(" --method ") + m.info.name;
+    Result safe = run(grid0 + "--headless --dt auto --damping 0.04" + method);
+    Result sharp =
+        run(grid0 + "--headless --dt auto:sharp --damping 0.04" + method);
+    if (m.info.limit == no_limit || m.info.adaptive) {
+      EXPECT_EQ(safe.status, 2) << m.info.name;
+      EXPECT_EQ(safe.err, std::string("mass_spring: nothing bounds the step "
+                                      "of ") +
+                              m.info.name +
+                              " here, so it can't be chosen: give a number\n");
+      EXPECT_EQ(sharp.status, 2) << m.info.name;
+      continue;
+    }
+    EXPECT_EQ(safe.status, 0) << m.info.name << safe.err;
+    EXPECT_EQ(sharp.status, 0) << m.info.name << sharp.err;
+    auto steps = [](const Result& r) {
+      return number(r.out, "tear: ", " steps to t = 5");
+    };
+    EXPECT_NEAR(number(safe.out, " s: ", " of the limit of "), 0.6, 0.001);
+    if (m.info.limit > 0) {
+      EXPECT_LT(steps(sharp), 0.75 * steps(safe)) << m.info.name;
+      EXPECT_GE(steps(sharp), 0.59 * steps(safe)) << m.info.name;
+    }
+  }
+  EXPECT_EQ(run(grid0 + "--headless --dt auto --method forward-euler").err,
+            "mass_spring: nothing bounds the step of forward-euler: it has no "
+            "stable step, so it can't be chosen: give a number\n");
+  EXPECT_EQ(run(grid0 + "--headless --dt auto --stiffness 0").status, 2);
+}
+
+TEST_F(MassSpring, RefusesBadInputWithFileAndLineAndWritesNothing) {
+  auto bad = [this](const std::string& nodes, const std::string& tets,
+                    const std::string& message) {
+    Result r = run(nodes + " " + tets + " --headless --csv " + path("c") +
+                   " --out " + path("o"));
+    EXPECT_EQ(r.status, 2) << message;
+    EXPECT_EQ(r.out, "");
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_EQ(r.err.find(message), 0u) << r.err;
+    EXPECT_FALSE(fs::exists(dir / "c") || fs::exists(dir / "o") ||
+                 fs::exists(dir / "c.part") || fs::exists(dir / "o.part"));
+  };
+  std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  std::string tets = file("t", "0 1 2 3\n");
+  auto points = [this](const char* text) { return file("bad", text); };
+  std::string at = path("bad") + ":";
+  bad(path("none"), tets, path("none") + ":0: can't be opened (No such file");
+  bad(dir.string(), tets, dir.string() + ":0: a directory, expected");
+  bad(points(""), tets, at + "0: nothing in the file");
+  bad(points("0 0 0\n0 x 0\n"), tets, at + "2: 'x' is not a number");
+  bad(points("0 0 0\n0 nan 0\n"), tets, at + "2: a coordinate is not finite");
+  bad(points("0 0 0 0\n"), tets, at + "1: 4 values in the line");
+  bad(points("0 0\n"), tets, at + "1: 2 values in the line");
+  bad(points("\x1\x2\x3"), tets,
+      at + "1: '?"
+           "?"
+           "?' is not a number");
+  bad(nodes, path("none"), path("none") + ":0: can't be opened");
+  bad(nodes, dir.string(), dir.string() + ":0: a directory");
+  bad(nodes, points("0 1 2\n"), at + "1: 3 values in the line");
+  bad(nodes, points("0 1 2 4\n"), at + "1: there is no node 4");
+  bad(nodes, points("#\n0 1 2 -3\n"), at + "2: there is no node -3");
+  bad(nodes, points("0 1 2 2\n"), at + "1: node 2 comes twice");
+  bad(nodes, points("0 1 2 3 4\n"), at + "1: 5 values in the line");
+  bad(tets, nodes, tets + ":1: 4 values in the line");
+  EXPECT_EQ(run(nodes + " " + tets + " --headless").status, 0);
+}
+
+TEST_F(MassSpring, RefusesOptionsThatCantBe) {
+  for (const char* options : {"--dt 0",
+                              "--dt -1",
+                              "--dt nan",
+                              "--dt inf",
+                              "--dt x",
+                              "--dt auto:",
+                              "--dt 0.001x",
+                              "--t-end -1",
+                              "--t-end inf",
+                              "--damping -1",
+                              "--stiffness -1",
+                              "--gravity nan",
+                              "--every 0",
+                              "--at 6 --screenshot p.png",
+                              "--no-such-option",
+                              "--dt 1e-300",
+                              "--dt 0.2 --t-end 0.1",
+                              "--method none",
+                              "--window --headless",
+                              "--csv",
+                              "--speed -1"}) {
+    Result r = run(grid0 + "--headless --out " + path("o") + " " + options);
+    EXPECT_EQ(r.status, 2) << options;
+    EXPECT_NE(r.err, "") << options;
+    EXPECT_EQ(files(), std::vector<std::string>{}) << options;
+  }
+  EXPECT_EQ(run("data/grid0.nodes").status, 2);
+  EXPECT_EQ(run("--headless --dt nan " + grid0).err,
+            "mass_spring: --dt is nan, expected a positive time [s], auto or "
+            "auto:sharp\n");
+}
+
+TEST_F(MassSpring, RunsEveryMethodAndListsIt) {
+  Result list = run("--list-methods");
+  EXPECT_EQ(list.status, 0);
+  for (const MethodEntry& m : methods) {
+    EXPECT_NE(list.out.find(m.info.name), std::string::npos);
+    std::string method = std::string(" --method ") + m.info.name;
+    Result r = run(grid0 + "--headless --t-end 0.1 --damping 0.04" + method);
+    EXPECT_EQ(r.status, 0) << method << r.err;
+    EXPECT_NE(r.out.find("tear: 100 steps"), std::string::npos) << method;
+  }
+}
+
+// The forces of the two first stages are called node by node only.
+TEST_F(MassSpring, SaysWhenAMethodCantDoWithAStage) {
+  for (const MethodEntry& m : methods) {
+    Result r = run(grid0 + "--headless --t-end 0.01 --method " + m.info.name,
+                   "problem1");
+    if (m.info.limit < no_limit) {
+      EXPECT_EQ(r.status, 0) << m.info.name << r.err;
+    } else if (r.status != 0) {
+      EXPECT_EQ(r.status, 2) << m.info.name;
+      EXPECT_NE(r.err.find("does not know its stiffness"), std::string::npos);
+    }
+  }
+  EXPECT_EQ(run(grid0 + "--headless --method tr-bdf2", "problem1").status, 2);
+}
+
+// Newton gives up on a cloth that buckles at a step far too large.
+TEST_F(MassSpring, EndsWith3WhenAStepCantBeMade) {
+  Result r =
+      run("data/grid1.nodes data/grid1.tets --headless --method "
+          "implicit-midpoint --dt 0.5 --stiffness 1e5");
+  EXPECT_EQ(r.status, 3) << r.out << r.err;
+  EXPECT_NE(r.err.find("in step"), std::string::npos);
+  EXPECT_NE(r.err.find("dt = 0.5 s"), std::string::npos);
+}
+
+TEST_F(MassSpring, RefusesOutputsThatCantBeBeforeItRuns) {
+  for (const char* option :
+       {"--csv ", "--out ", "--screenshot ", "--record "}) {
+    Result r = run(grid3 + "--headless " + option + path("no/such"));
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_EQ(r.err, "mass_spring: " + path("no/such") +
+                         ": can't be written (No such file or directory)\n");
+    EXPECT_EQ(files(), std::vector<std::string>{});
+  }
+}
+
+TEST_F(MassSpring, KeepsTheOldFileWhenTheNewRunFails) {
+  std::string kept = file("kept", "old");
+  run("data/none data/none --headless --csv " + kept);
+  run(grid0 + "--headless --dt 0 --csv " + kept);
+  EXPECT_EQ(contents(kept), "old");
+  run(grid0 + "--headless --t-end 0 --csv " + kept);
+  EXPECT_NE(contents(kept), "old");
+  EXPECT_EQ(run(grid0 + "--headless --out /dev/null").status, 0);
+}
+
+TEST_F(MassSpring, ReadsOptionsFromAFile) {
+  std::string config = file("run.ini", "dt=0.002\nt-end=0.5\nheadless=true\n");
+  Result r = run(grid0 + "--config " + config);
+  EXPECT_NE(r.out.find("tear: 250 steps to t = 0.5 s"), std::string::npos);
+}
+
+// --------------------------------------------------------------------- Scenes
+
+const std::string sheet = "--sheet 'nodes 9 9' --headless --t-end 0.01 ";
+
+TEST_F(MassSpring, RunsEveryShippedScene) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator("scenes")) {
+    const std::string scene = entry.path().string();
+    Result r = run("--config " + scene + " --headless --t-end 0.02");
+    EXPECT_EQ(r.status, 0) << scene << r.err;
+    EXPECT_EQ(r.err, "") << scene;
+    EXPECT_NE(r.out.find("scene: "), std::string::npos) << r.out;
+    EXPECT_NE(r.out.find(": 0.6 of the limit of verlet"), std::string::npos);
+    ++count;
+  }
+  EXPECT_GE(count, 8);
+}
+
+TEST_F(MassSpring, MakesASceneOfWhatIsNamedAndNothingElse) {
+  // Without a pin it falls, and nothing is below.
+  Result r =
+      run("--sheet 'nodes 9 9' --headless --t-end 1 --csv " + path("e.csv"));
+  EXPECT_EQ(r.out.find("81 nodes, 272 edges\n"), 0u) << r.out;
+  EXPECT_NE(r.out.find("scene: 1000 steps"), std::string::npos);
+  EXPECT_NEAR(rows(dir / "e.csv").back()[7], -9.81 / 2, 0.01);
+  // The same files in a stage of the assignment, and as a scene.
+  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("tear: "),
+            std::string::npos);
+  EXPECT_NE(run(grid0 + "--headless --t-end 0 --density 1").out.find("scene: "),
+            std::string::npos);
+}
+
+TEST_F(MassSpring, TheCommandLineWinsOverTheFile) {
+  std::string scene = file("scene.toml",
+                           "sheet = \"nodes 5 5\"\npin = \"x 0\"\n"
+                           "modulus = 100\ndrag = 1\nt-end = 0.1\n");
+  auto dump = [&](const std::string& options) {
+    Result r = run("--config " + scene + " " + options + " --dump-config");
+    EXPECT_EQ(r.status, 0) << r.err;
+    return "\n" + r.out;
+  };
+  auto has = [](const std::string& text, const std::string& line) {
+    return text.find("\n" + line + "\n") != std::string::npos;
+  };
+  std::string text = dump("");
+  for (const char* line : {"sheet = [\"nodes 5 5\"]", "pin = [\"x 0\"]",
+                           "modulus = 100", "drag = 1", "t-end = 0.1"})
+    EXPECT_TRUE(has(text, line)) << line << text;
+  EXPECT_EQ(text.find("stiffness ="), std::string::npos);
+  text = dump("--pin 'y 0' --pin 'y 1' --stiffness 7 --damping 0.5 --t-end 2");
+  for (const char* line :
+       {"sheet = [\"nodes 5 5\"]", "pin = [\"y 0\", \"y 1\"]", "stiffness = 7",
+        "damping = 0.5", "t-end = 2"})
+    EXPECT_TRUE(has(text, line)) << line << text;
+  EXPECT_EQ(text.find("modulus ="), std::string::npos);
+  EXPECT_EQ(text.find("drag ="), std::string::npos);
+  EXPECT_NE(run("--config " + scene + " --headless --t-end 0.2 --dt 0.01")
+                .out.find("scene: 20 steps"),
+            std::string::npos);
+}
+
+TEST_F(MassSpring, ADumpedSceneIsThatScene) {
+  for (const auto& entry : fs::directory_iterator("scenes")) {
+    const std::string scene = entry.path().string() + " --gravity 9.80665123";
+    const std::string text = run("--config " + scene + " --dump-config").out;
+    EXPECT_NE(text, "");
+    Result again =
+        run("--config " + file("dump.toml", text) + " --dump-config");
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(again.out, text) << scene;
+    const std::string end = " --headless --quiet --t-end 0.02 --out ";
+    run("--config " + scene + end + path("a"));
+    run("--config " + path("dump.toml") + end + path("b"));
+    EXPECT_NE(contents(dir / "a"), "") << scene;
+    EXPECT_EQ(contents(dir / "a"), contents(dir / "b")) << scene;
+  }
+}
+
+TEST_F(MassSpring, SaysWhereASceneFileIsWrong) {
+  auto complaint = [this](const std::string& line) {
+    const std::string name =
+        file("bad.toml", "# a scene\nsheet = \"nodes 5 5\"\n" + line + "\n");
+    Result r = run("--config " + name + " --headless --out " + path("o"));
+    EXPECT_EQ(r.status, 2) << line;
+    EXPECT_EQ(r.out, "");
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_FALSE(fs::exists(dir / "o"));
+    EXPECT_EQ(r.err.find(name + ":3: "), 0u) << r.err;
+    return r.err.substr(std::min(r.err.size(), name.size() + 4));
+  };
+  EXPECT_EQ(complaint("colour = 3"), "unknown key colour\n");
+  EXPECT_EQ(complaint("tear-strain = 0"),
+            "--tear-strain is 0, expected a strain above that at the start, "
+            "0\n");
+  EXPECT_EQ(complaint("sphere = \"radius -1\""),
+            "--sphere \"radius -1\" has radius -1, expected more than 0\n");
+  complaint("t-end = \"long\"");
+  complaint("every = 0");
+  complaint("pin = [\"x 0\"");
+  const std::string none = path("none.toml");
+  Result r = run("--config " + none);
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err.find(none + ":0: can't be opened"), 0u) << r.err;
+}
+
+TEST_F(MassSpring, RefusesScenesThatCantBe) {
+  auto complaint = [this](const std::string& options) {
+    Result r = run(sheet + options);
+    EXPECT_EQ(r.status, 2) << options;
+    EXPECT_EQ(r.out, "");
+    return r.err;
+  };
+  EXPECT_EQ(run(sheet).status, 0);
+  EXPECT_EQ(complaint(grid0),
+            "mass_spring: --sheet and files of a mesh: expected one of them\n");
+  EXPECT_EQ(complaint("--pin 'x 0' --pin 'x 0.3'"),
+            "mass_spring: --pin \"x 0.3\" holds no node\n");
+  EXPECT_EQ(complaint("--tear-strain 0"),
+            "mass_spring: --tear-strain is 0, expected a strain above that at "
+            "the start, 0\n");
+  EXPECT_EQ(run(sheet + "--tear-strain 1e-9").status, 0);
+  EXPECT_EQ(complaint("--self-collision 'thickness 0.26'"),
+            "mass_spring: --self-collision has thickness 0.26 m, but two nodes "
+            "without a common edge start 0.25 m apart\n");
+  EXPECT_EQ(run(sheet + "--self-collision 'thickness 0.24'").status, 0);
+  EXPECT_NE(complaint("--modulus 1 --stiffness 1"), "");
+  EXPECT_NE(complaint("--drag 1 --damping 1"), "");
+  EXPECT_NE(complaint("--sheet"), "");
+}
+
+TEST_F(MassSpring, WarnsOfABallThatIsTooFast) {
+  // It starts far below, with a radius of 0.1 m.
+  const std::string ball = sheet + "--sphere 'radius 0.1 velocity 0 0 ";
+  Result r = run(ball + "60'");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.err,
+            "mass_spring: warning: --sphere moves 0.06 m a step, which is more "
+            "than half of its radius, 0.1 m: it may jump over nodes; a smaller "
+            "dt catches them: 0.000833333 s\n");
+  EXPECT_EQ(run(ball + "49'").err, "");
+  EXPECT_EQ(run(ball + "60' --dt 0.0008").err, "");
+  EXPECT_EQ(run(ball + "60' --quiet").err, "");
+}
+
+TEST_F(MassSpring, ExplainsItsOptionsWithUnitsAndDefaults) {
+  Result r = run("--help");
+  EXPECT_EQ(r.status, 0);
+  for (const char* text :
+       {"--dt FLOAT|auto|auto:sharp=0.001", "step [s]", "--t-end FLOAT=5",
+        "--gravity FLOAT=9.81", "[N/m]", "[kg/s]"})
+    EXPECT_NE(r.out.find(text), std::string::npos) << text;
+}
+
+TEST_F(MassSpring, AnswersWhatASceneIsAsked) {
+  const std::string sheet = "--sheet 'nodes 3 3' --headless --t-end 0 ";
+  EXPECT_NE(run(sheet).out.find("\ncom: 0.5 0.5 0 m\n"), std::string::npos);
+  EXPECT_NE(run(sheet + "--measure max-stretch").out.find("max-stretch: 0"),
+            std::string::npos);
+  EXPECT_EQ(run(sheet + "--quiet").out, "");
+  // A stage is asked nothing.
+  EXPECT_EQ(run(grid0 + "--headless --t-end 0").out.find("com:"),
+            std::string::npos);
+}
+
+TEST_F(MassSpring, AdvisesAndRunsWhatItAdvises) {
+  const std::string scene =
+      "--sheet 'u 1 0 0 v 0 0 -1 nodes 6 6' --pin 'z 0' --plane 'at 0 0 -9' "
+      "--t-end 0.1 --tolerance 0.01 --headless ";
+  Result r = run(scene + "--advise --write-config " + path("a.toml"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find("not needed"), std::string::npos);
+  EXPECT_NE(r.out.find("\nadvice: "), std::string::npos);
+  const std::string advised = contents(dir / "a.toml");
+  EXPECT_NE(advised.find("pin = [\"z 0\"]"), std::string::npos);
+  EXPECT_EQ(advised.find("plane = "), std::string::npos);
+  EXPECT_EQ(run("--headless --config " + path("a.toml")).status, 0);
+  r = run(scene + "--auto");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find("scene: "), std::string::npos);
+  r = run(grid0 + "--advise");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--advise needs a scene of parts"), std::string::npos);
+  r = run(scene + "--tear-strain 1 --measure positions --advise");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--measure is positions"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,144 @@
+// Mesh.hpp: what is read, what is refused and with which words, and grids.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "CME212/Mesh.hpp"
+
+namespace {
+
+/** what() of the InputError that @a read throws, or "" */
+template <typename F>
+std::string error_of(F read) {
+  try {
+    read();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+std::string point_error(std::string_view text) {
+  return error_of([&] { parse_points(text, "f.nodes"); });
+}
+std::string quad_error(std::string_view text, std::size_t num_points = 9) {
+  return error_of([&] { parse_quads(text, "f.tets", num_points); });
+}
+
+const std::string three = ", expected three finite coordinates 'x y z' [m]";
+const std::string four = ", expected four different node indices from 0 to 8";
+
+TEST(ParsePoints, TakesNumbersAsOnePointALine) {
+  auto p = parse_points("0 1 2\n-0.5 1e-3 +4\n", "f");
+  ASSERT_EQ(p.size(), 2u);
+  EXPECT_EQ(p[0], Point(0, 1, 2));
+  EXPECT_EQ(p[1], Point(-0.5, 0.001, 4));
+}
+
+TEST(ParsePoints, SkipsBlankLinesCommentsAndAnyBlanks) {
+  auto p = parse_points("# x y z\n\n \t \n\t1\t2  3 \n  # end\n4 5 6", "f");
+  ASSERT_EQ(p.size(), 2u);
+  EXPECT_EQ(p[0], Point(1, 2, 3));
+  EXPECT_EQ(p[1], Point(4, 5, 6));
+}
+
+TEST(ParsePoints, TakesTheLineEndsOfAllSystemsAndCountsThemOnce) {
+  EXPECT_EQ(parse_points("1 2 3\r\n4 5 6\r\n", "f").size(), 2u);
+  EXPECT_EQ(parse_points("1 2 3\r4 5 6\r", "f").size(), 2u);
+  EXPECT_EQ(parse_points("\xEF\xBB\xBF"
+                         "1 2 3",
+                         "f")
+                .size(),
+            1u);
+  EXPECT_EQ(point_error("1 2 3\r\n\r\nx 0 0\r\n"),
+            "f.nodes:3: 'x' is not a number" + three);
+}
+
+TEST(ParsePoints, ReadsBackEveryDoubleExactly) {
+  double third = 1.0 / 3, tiny = 4.9406564584124654e-324;
+  auto p = parse_points("0.33333333333333331 4.9406564584124654e-324 0", "f");
+  EXPECT_EQ(p[0], Point(third, tiny, 0));
+}
+
+TEST(ParsePoints, RefusesEachWrongLineWithItsNumber) {
+  EXPECT_EQ(point_error("1 2\n"), "f.nodes:1: 2 values in the line" + three);
+  EXPECT_EQ(point_error("1\n"), "f.nodes:1: 1 value in the line" + three);
+  EXPECT_EQ(point_error("1 2 3 4\n"),
+            "f.nodes:1: 4 values in the line" + three);
+  EXPECT_EQ(point_error("0 0 0\n\n1 2x 3"),
+            "f.nodes:3: '2x' is not a number" + three);
+  EXPECT_EQ(point_error("1 2,5 3"), "f.nodes:1: '2,5' is not a number" + three);
+  EXPECT_EQ(point_error("+-1 2 3"), "f.nodes:1: '+-1' is not a number" + three);
+  EXPECT_EQ(point_error("1 nan 3"),
+            "f.nodes:1: a coordinate is not finite" + three);
+  EXPECT_EQ(point_error("1 2 -inf"),
+            "f.nodes:1: a coordinate is not finite" + three);
+  EXPECT_EQ(point_error("1 2 1e999"),
+            "f.nodes:1: '1e999' is out of range" + three);
+}
+
+TEST(ParsePoints, RefusesAFileWithoutPoints) {
+  EXPECT_EQ(point_error(""), "f.nodes:0: nothing in the file" + three);
+  EXPECT_EQ(point_error("# only\n\n"),
+            "f.nodes:2: nothing in the file" + three);
+}
+
+TEST(ParsePoints, ShowsBinaryInputAsPlainText) {
+  std::string error =
+      point_error(std::string("\x7f"
+                              "ELF\0\1\2\n",
+                              8));
+  EXPECT_EQ(error,
+            "f.nodes:1: '?ELF?"
+            "?"
+            "?' is not a number" +
+                three);
+  error = point_error(std::string(1000, 'a'));
+  EXPECT_EQ(error, "f.nodes:1: '" + std::string(24, 'a') +
+                       "...' is not a number" + three);
+}
+
+TEST(ParseQuads, TakesFourIndicesALine) {
+  auto q = parse_quads("0 1 2 3\n# c\n8 7 6 5\n", "f", 9);
+  ASSERT_EQ(q.size(), 2u);
+  EXPECT_EQ(q[1], (Quad{8, 7, 6, 5}));
+}
+
+TEST(ParseQuads, RefusesEachWrongLineWithItsNumber) {
+  EXPECT_EQ(quad_error("0 1 2\n"), "f.tets:1: 3 values in the line" + four);
+  EXPECT_EQ(quad_error("0 1 2 3 4\n"), "f.tets:1: 5 values in the line" + four);
+  EXPECT_EQ(quad_error("0 1 2 8"), "");
+  EXPECT_EQ(quad_error("0 1 2 3\n0 1 2 9"),
+            "f.tets:2: there is no node 9" + four);
+  EXPECT_EQ(quad_error("0 1 2 -1"), "f.tets:1: there is no node -1" + four);
+  EXPECT_EQ(quad_error("0 1 2 1"), "f.tets:1: node 1 comes twice" + four);
+  EXPECT_EQ(quad_error("0 1 2 1.5"),
+            "f.tets:1: '1.5' is not a whole number" + four);
+  EXPECT_EQ(quad_error("0 1 2 99999999999999999999"),
+            "f.tets:1: '99999999999999999999' is out of range" + four);
+  EXPECT_EQ(quad_error("0 1 2 4294967296"),
+            "f.tets:1: there is no node 4294967296" + four);
+  EXPECT_EQ(quad_error(""), "f.tets:0: nothing in the file" + four);
+}
+
+TEST(Load, SaysWhyAFileCantBeRead) {
+  EXPECT_EQ(error_of([] { load_points("/no/such.nodes"); }),
+            "/no/such.nodes:0: can't be opened (No such file or directory), "
+            "expected a file of points");
+  EXPECT_EQ(error_of([] { load_quads("/", 4); }),
+            "/:0: a directory, expected a file of quads");
+}
+
+TEST(Grid, HasXOutsideAndYInsideOverTheUnitSquare) {
+  auto p = grid_points(5);
+  ASSERT_EQ(p.size(), 25u);
+  EXPECT_EQ(p[0], Point(0, 0, 0));
+  EXPECT_EQ(p[1], Point(0, 0.25, 0));
+  EXPECT_EQ(p[5], Point(0.25, 0, 0));
+  EXPECT_EQ(p[24], Point(1, 1, 0));
+  auto q = grid_quads(5);
+  ASSERT_EQ(q.size(), 16u);
+  EXPECT_EQ(q[0], (Quad{0, 1, 5, 6}));
+  EXPECT_EQ(q[15], (Quad{18, 19, 23, 24}));
+}
+
+}  // namespace

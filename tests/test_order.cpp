@@ -1,0 +1,275 @@
+// Order.hpp: which meshes get another order in memory, which one, and that
+// nobody can tell by the indices.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <cstdlib>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "lab/fast/ConstraintPlan.hpp"
+#include "lab/fast/ForcePlan.hpp"
+#include "lab/methods/Splitting.hpp"
+#include "lab/fast/MeshOrder.hpp"
+
+using namespace lab;
+
+namespace {
+
+// RapidCheck reads this once, before its first check.
+[[maybe_unused]] const int same_in_every_run =
+    setenv("RC_PARAMS", "seed=212", 0);
+
+struct Shape {
+  std::vector<Point> points;
+  std::vector<Quad> quads;
+  std::vector<unsigned> number;  // of each point of the grid in this shape
+};
+Shape grid(unsigned side) {
+  Shape s{grid_points(side), grid_quads(side), {}};
+  s.number.resize(s.points.size());
+  std::iota(s.number.begin(), s.number.end(), 0u);
+  return s;
+}
+/** The grid with its points and its quads in any order, some quads mirrored. */
+Shape shuffled(unsigned side) {
+  const Shape ordered = grid(side);
+  Shape s = ordered;
+  std::mt19937 random(212);
+  std::shuffle(s.number.begin(), s.number.end(), random);
+  for (unsigned i = 0; i < s.number.size(); ++i)
+    s.points[s.number[i]] = ordered.points[i];
+  for (Quad& q : s.quads) {
+    for (unsigned& i : q) i = s.number[i];
+    if (random() % 2) q = {q[1], q[0], q[3], q[2]};
+    if (random() % 2) q = {q[0], q[2], q[1], q[3]};
+  }
+  std::shuffle(s.quads.begin(), s.quads.end(), random);
+  return s;
+}
+
+/** A cloth as build_cloth() says, in no other order than that of the mesh. */
+void build_simply(Cloth& g, const Shape& s, Mesh mesh) {
+  std::vector<Node> n;
+  for (Point p : s.points)
+    n.push_back(g.add_node(p, {Point(), Real(1. / double(s.points.size()))}));
+  for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
+    for (const Quad& q : s.quads)
+      if (mesh == Mesh::diagonals || a + b != 3)
+        g.add_edge(n[q[a]], n[q[b]],
+                   {100, Real(norm(s.points[q[a]] - s.points[q[b]]))});
+}
+
+/** Whether the two look the same to whoever asks by index. */
+void expect_same(const Cloth& g, const Cloth& expected) {
+  g.check_invariants();
+  ASSERT_EQ(g.num_nodes(), expected.num_nodes());
+  ASSERT_EQ(g.num_edges(), expected.num_edges());
+  for (unsigned i = 0; i < g.num_nodes(); ++i) {
+    Node a = g.node(i), b = expected.node(i);
+    ASSERT_EQ(a.index(), i);
+    ASSERT_EQ(a.position(), b.position());
+    ASSERT_EQ(a.value().vel, b.value().vel);
+    ASSERT_EQ(a.value().mass, b.value().mass);
+    ASSERT_EQ(a.degree(), b.degree());
+  }
+  for (unsigned i = 0; i < g.num_edges(); ++i) {
+    Edge a = g.edge(i), b = expected.edge(i);
+    ASSERT_EQ(a.index(), i);
+    ASSERT_EQ(a.node1().index(), b.node1().index());
+    ASSERT_EQ(a.node2().index(), b.node2().index());
+    ASSERT_EQ(a.value().K, b.value().K);
+    ASSERT_EQ(a.value().L, b.value().L);
+  }
+}
+
+/** How far apart the ends of an edge lie in memory, on average [nodes]. */
+double mean_distance(const Cloth& g) {
+  double sum = 0;
+  for (Edge e : g.edges())
+    sum += std::abs(double(e.node1().id()) - double(e.node2().id()));
+  return sum / g.num_edges();
+}
+
+// ------------------------------------------------------------------- is_local
+
+TEST(IsLocal, HoldsForEveryGridAndForAnythingSmall) {
+  for (unsigned side : {2u, 5u, 100u, 1200u})
+    EXPECT_TRUE(is_local(grid_quads(side))) << side;
+  EXPECT_TRUE(is_local({}));
+  EXPECT_TRUE(is_local(shuffled(30).quads));
+}
+
+TEST(IsLocal, DoesNotHoldForAShuffledGrid) {
+  EXPECT_FALSE(is_local(shuffled(100).quads));
+}
+
+TEST(IsLocal, LooksAtEveryCorner) {
+  for (unsigned k = 0; k < 4; ++k) {
+    std::vector<Quad> quads;
+    for (unsigned q = 0; q < 100; ++q) {
+      quads.push_back({q, q + 1, q + 2, q + 3});
+      quads.back()[k] = q % 2 * 100000 + 10 * q;
+    }
+    EXPECT_FALSE(is_local(quads)) << k;
+  }
+}
+
+TEST(IsLocal, AllowsStepsUpToNearAndASixteenthOfJumps) {
+  std::vector<Quad> quads;
+  for (unsigned q = 0; q < 32; ++q)
+    quads.push_back({20 * q, 20 * q + 1, 20 * q + 2, 20 * q + 3});
+  EXPECT_TRUE(is_local(quads, 20));
+  EXPECT_FALSE(is_local(quads, 19));
+  for (unsigned q = 0; q < 32; ++q) quads[q].fill(q < 2 ? 100 * q : 100);
+  for (unsigned jumps = 1; jumps < 4; ++jumps) {
+    quads[10 * jumps - 1].fill(100 + 50 * jumps);  // there, and back
+    for (unsigned q = 10 * jumps; q < 32; ++q) quads[q] = quads[10 * jumps - 1];
+    EXPECT_EQ(is_local(quads, 40), jumps + 1 <= 2) << jumps;
+  }
+}
+
+// -------------------------------------------------------------- cuthill_mckee
+
+TEST(CuthillMcKee, KeepsTheQuadsOfAGridAsCloseAsItsFrontIsLong) {
+  for (unsigned side : {2u, 10u, 100u}) {
+    const Shape s = shuffled(side);
+    const MeshOrder order = cuthill_mckee(s.points.size(), s.quads);
+    const std::vector<Quad> quads = in_order(s.quads, order);
+    EXPECT_TRUE(side < 100 || is_local(quads));
+    for (const Quad& q : quads) {
+      auto [low, high] = std::minmax_element(q.begin(), q.end());
+      EXPECT_LE(*high - *low, 2 * side);
+    }
+  }
+}
+
+TEST(CuthillMcKee, StartsAtACorner) {
+  const Shape s = shuffled(10);
+  const MeshOrder order = cuthill_mckee(100, s.quads);
+  const Point p = s.points[order.points[0]];
+  EXPECT_TRUE((p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1));
+}
+
+/** A mesh of any quads whatever, some of them alike, some points in none. */
+rc::Gen<Shape> meshes() {
+  return rc::gen::exec([] {
+    const unsigned num_points = *rc::gen::element(8u, 60u, 5000u);
+    const unsigned num_quads = *rc::gen::inRange(1u, 300u);
+    std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+    auto number = [&](unsigned below) { return unsigned(random() % below); };
+    Shape s;
+    for (unsigned i = 0; i < num_points; ++i)
+      s.points.push_back(Point(number(100), number(100), number(100)));
+    while (s.quads.size() < num_quads) {
+      Quad q;
+      for (unsigned& i : q) i = number(num_points);
+      if (!s.quads.empty() && number(3) == 0)
+        q = s.quads[number(s.quads.size())];
+      std::shuffle(q.begin(), q.end(), random);
+      std::set<unsigned> different(q.begin(), q.end());
+      if (different.size() == 4) s.quads.push_back(q);
+    }
+    return s;
+  });
+}
+
+TEST(CuthillMcKee, HasEveryPointAndEveryQuadOnce) {
+  EXPECT_TRUE(rc::check([] {
+    const Shape s = *meshes();
+    MeshOrder order = cuthill_mckee(s.points.size(), s.quads);
+    std::sort(order.points.begin(), order.points.end());
+    std::sort(order.quads.begin(), order.quads.end());
+    RC_ASSERT(order.points.size() == s.points.size());
+    RC_ASSERT(order.quads.size() == s.quads.size());
+    for (unsigned i = 0; i < s.points.size(); ++i)
+      RC_ASSERT(order.points[i] == i);
+    for (unsigned q = 0; q < s.quads.size(); ++q)
+      RC_ASSERT(order.quads[q] == q);
+  }));
+}
+
+// ------------------------------------------------- what becomes of it: a cloth
+
+TEST(BuildCloth, OrdersAShuffledMeshInMemory) {
+  const Shape s = shuffled(100), rows = grid(100);
+  Cloth g, simple, ordered;
+  build_cloth(g, s.points, s.quads, Mesh::diagonals);
+  build_simply(simple, s, Mesh::diagonals);
+  build_simply(ordered, rows, Mesh::diagonals);
+  expect_same(g, simple);
+  EXPECT_GT(mean_distance(simple), 30 * mean_distance(ordered));
+  EXPECT_LT(mean_distance(g), 1.5 * mean_distance(ordered));
+  unsigned last = 0, constant = 0, turns = 0;
+  for (auto [i, j] : g.edge_ends()) {
+    turns += std::min(i, j) < last;
+    last = std::min(i, j);
+  }
+  EXPECT_LT(turns, 16u) << "the edges follow the nodes, a few times through";
+  // What a sweep in vectors wants: neighbors at the distances of those before.
+  auto distances = [&g](unsigned id) {
+    std::multiset<long> all;
+    for (Edge e : g.node_with_id(id).edges())
+      all.insert(long(e.node2().id()) - long(id));
+    return all;
+  };
+  for (unsigned id = 1; id < g.num_nodes(); ++id)
+    constant += distances(id) == distances(id - 1);
+  EXPECT_GT(constant, 0.9 * g.num_nodes());
+}
+
+TEST(BuildCloth, LeavesAMeshThatIsInOrder) {
+  Cloth g, simple;
+  const Shape s = grid(100);
+  build_cloth(g, s.points, s.quads, Mesh::diagonals);
+  build_simply(simple, s, Mesh::diagonals);
+  expect_same(g, simple);
+  for (Node n : g.nodes()) EXPECT_EQ(n.id(), n.index());
+  for (Edge e : g.edges()) EXPECT_EQ(e.id(), e.index());
+}
+
+TEST(BuildCloth, ShowsEveryMeshInItsOwnOrder) {
+  unsigned reordered = 0;
+  EXPECT_TRUE(rc::check([&] {
+    const Shape s = *meshes();
+    for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
+      Cloth g, simple;
+      // In a graph that was used before, ids are not given in order.
+      std::vector<Node> old;
+      for (int k = 0; k < 50; ++k) old.push_back(g.add_node(Point(k)));
+      for (int k = 0; k < 49; ++k) g.add_edge(old[k], old[k + 1]);
+      for (int k = 0; k < 50; ++k) g.remove_node(old[7 * k % 50]);
+      build_cloth(g, s.points, s.quads, mesh);
+      build_simply(simple, s, mesh);
+      expect_same(g, simple);
+      for (Node n : old) RC_ASSERT(!g.has_node(n));
+      reordered += !is_local(s.quads);
+    }
+  }));
+  EXPECT_GT(reordered, 40u);
+}
+
+TEST(BuildCloth, MovesAShuffledMeshAsTheOrderedOne) {
+  const Shape s = shuffled(60), rows = grid(60);
+  ASSERT_FALSE(is_local(s.quads));
+  Cloth g, expected;
+  build_cloth(g, s.points, s.quads, Mesh::diagonals);
+  build_cloth(expected, rows.points, rows.quads, Mesh::diagonals);
+  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  Verlet method, expected_method;
+  PinConstraint pin(g), expected_pin(expected);
+  for (int k = 0; k < 50; ++k) {
+    method.step(g, k * 1e-3, 1e-3, force, pin);
+    expected_method.step(expected, k * 1e-3, 1e-3, force, expected_pin);
+  }
+  double moved = 0;
+  for (unsigned i = 0; i < rows.points.size(); ++i) {
+    const Point p = expected.node(i).position();
+    EXPECT_LT(norm(g.node(s.number[i]).position() - p), 1e-14);
+    moved = std::max(moved, norm(p - rows.points[i]));
+  }
+  EXPECT_GT(moved, 1e-3);
+}
+
+}  // namespace

@@ -1,0 +1,210 @@
+// The order that each method declares, measured on three cloths whose answer is
+// known: the chain, the curtain, and the 5 x 5 cloth with drag. `make orders`
+// prints the table of docs/methods.md, which each test compares.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/charts/Problem.hpp"
+
+using namespace lab;
+
+namespace {
+
+// Three decades of error at order p take a step 1000^(1/p) times smaller, so
+// order 1 is measured over a shorter time. The ends: at multiples of a quarter
+// of a mode's period, either what a method does to its amplitude or what it
+// does to its phase can't be seen in its position, and another order shows.
+// What swings most is 20 degrees off at least.
+struct Course {
+  Problem problem;   // its t_end is for order 2 and up
+  double short_end;  // for order 1 [s]
+};
+
+const std::array<Course, 3>& courses() {
+  namespace d = problem_detail;
+  static const d::Chain chain{.n = 8};
+  static const d::Curtain curtain{.n = 4};
+  static const std::array<Course, 3> all = {
+      Course{{.name = "chain",
+              .about = "8 masses between two walls",
+              .t_end = 0.305,
+              .gravity = 0,
+              .build = [](Cloth& g) { chain.build(g); },
+              .constraint = [](const Cloth& g) { return chain.pins(g); },
+              .exact = [](double t) { return chain.exact(t); }},
+             0.12},
+      Course{{.name = "curtain",
+              .about = "4 x 4 curtain let go",
+              .t_end = 0.224,
+              .build = [](Cloth& g) { curtain.build(g); },
+              .constraint = [](const Cloth& g) { return curtain.pins(g); },
+              .exact = [](double t) { return curtain.exact(t); }},
+             0.12},
+      Course{grid_problem("grid0", "5 x 5 cloth with drag", 0.6, 5), 0.15}};
+  return all;
+}
+
+/** dt omega of a method's longest step on each course: there the next term of
+ * its error is small, and three decades lower round-off is. rk4 and
+ * dormand-prince need short steps on linear springs, as their errors of
+ * amplitude and phase are one order apart only; Newton's methods start at long
+ * ones, as their tolerance adds up over many short ones. */
+const std::map<std::string, std::array<double, 3>> first_steps = {
+    {"forward-euler", {0.1, 0.1, 0.4}},
+    {"symplectic-euler", {0.5, 0.5, 1}},
+    {"verlet", {0.5, 0.5, 0.5}},
+    {"yoshida4", {0.6, 0.6, 0.6}},
+    {"pefrl", {1.2, 1.2, 1.2}},
+    {"srkn6b", {0.6, 0.6, 1.1}},
+    {"srkn11b", {1.8, 2.5, 2.8}},
+    {"rk4", {0.09, 0.3, 0.8}},
+    {"dormand-prince", {0.14, 0.25, 0.7}},
+    {"implicit-euler", {0.2, 1, 2}},
+    {"implicit-midpoint", {0.35, 0.5, 2}},
+    {"tr-bdf2", {0.35, 0.5, 2}},
+    {"augmented-verlet", {0.35, 0.5, 0.5}},
+    {"xpbd", {0.5, 1, 2}}};
+
+/** A method that makes exactly the steps that it is asked for, and solves its
+ * linear systems so well that only the error of the step is seen. */
+std::unique_ptr<Method> make(const MethodEntry& m) {
+  const std::string name = m.info.name;
+  if (name == DormandPrince::info.name)
+    return std::make_unique<DormandPrince>(no_limit);
+  if (name == ImplicitEuler::info.name)
+    return std::make_unique<ImplicitEuler>(1e-12);
+  return m.make();
+}
+
+/** The answer to @a p, which is one of courses(), computed once. */
+const Reference& answer(const Problem& p) {
+  static std::map<std::pair<std::string, double>, Reference> known;
+  auto key = std::pair(p.name, p.t_end);
+  if (auto it = known.find(key); it != known.end()) return it->second;
+  // The exact ones to round-off of a few thousand steps.
+  return known[key] = p.exact ? Reference{{p.exact(p.t_end), {}, 0}, 1e-14}
+                              : reference(p, 32);
+}
+
+struct Measured {
+  double slope, decades;
+};
+/** By the names of method and course. */
+std::map<std::pair<std::string, std::string>, Measured> all_measured;
+
+/** The fit to @a y over @a x.  @pre more than one x */
+double slope_of(std::span<const double> x, std::span<const double> y) {
+  double n = double(x.size()), mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    mean_x += x[k] / n, mean_y += y[k] / n;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    xx += (x[k] - mean_x) * (x[k] - mean_x);
+    xy += (x[k] - mean_x) * (y[k] - mean_y);
+  }
+  return xy / xx;
+}
+
+/** The slope that docs/methods.md gives for @a method on the course that is
+ * number @a column of its table, from 0 on; 0 if none. */
+double documented(const std::string& method, std::size_t column) {
+  std::ifstream in("docs/methods.md");
+  bool there = false;
+  for (std::string line; std::getline(in, line);) {
+    there |= line == "## Measured orders";
+    std::array<double, 3> slopes{};
+    if (there && line.starts_with("| " + method + " |") &&
+        std::sscanf(line.c_str(), "| %*s | %*d | %lf (%*f) | %lf (%*f) | %lf",
+                    &slopes[0], &slopes[1], &slopes[2]) == 3)
+      return slopes[column];
+  }
+  return 0;
+}
+
+class Order
+    : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  /** Print what was measured as the table of docs/methods.md. */
+  static void TearDownTestSuite() {
+    std::printf("| method | order |");
+    for (const Course& c : courses())
+      std::printf(" %s |", c.problem.name.c_str());
+    std::puts("\n|---|---|---|---|---|");
+    for (const MethodEntry& m : methods) {
+      std::printf("| %s | %d |", m.info.name, m.info.order);
+      for (const Course& c : courses())
+        if (auto it = all_measured.find({m.info.name, c.problem.name});
+            it != all_measured.end())
+          std::printf(" %.2f (%.1f) |", it->second.slope, it->second.decades);
+        else
+          std::printf(" |");
+      std::puts("");
+    }
+  }
+};
+
+// Six runs, each error a quarter of the last one: 4^5 = 1024. Each part of the
+// way has the slope of the order, and so has all of it; no less, and no more.
+TEST_P(Order, IsWhatTheMethodDeclares) {
+  const auto& [name, course] = GetParam();
+  const MethodEntry& method = *find_method(name);
+  const int order = method.info.order;
+  std::size_t column = 0;
+  while (courses()[column].problem.name != course) ++column;
+  Problem p = courses()[column].problem;
+  if (order == 1) p.t_end = courses()[column].short_end;
+  const Reference& right = answer(p);
+  Start start(p);
+  const double omega = omega_safe(start.cloth, start.force, start.constraint);
+  const double first =
+      std::ceil(p.t_end * omega / first_steps.at(name)[column]);
+  constexpr std::size_t count = 6;
+  std::array<double, count> x, y;  // ln dt, ln error
+  for (std::size_t k = 0; k < count; ++k) {
+    auto steps = std::llround(first * std::pow(4, double(k) / order));
+    Outcome out = run(p, *make(method), steps);
+    ASSERT_TRUE(out.ok()) << out.reason;
+    const double error = distance(p, out.end, right.end);
+    ASSERT_GT(error, 5 * right.floor) << steps << " steps";
+    x[k] = std::log(p.t_end / double(steps));
+    y[k] = std::log(error);
+    if (k == 0) continue;
+    EXPECT_NEAR((y[k] - y[k - 1]) / (x[k] - x[k - 1]), order, 0.1)
+        << "up to " << steps << " steps, error " << error << " m";
+  }
+  const Measured m = {slope_of(x, y), (y.front() - y.back()) / std::log(10)};
+  EXPECT_NEAR(m.slope, order, 0.1);
+  EXPECT_GT(m.decades, 2.95);
+  EXPECT_NEAR(m.slope, documented(name, column), 0.02) << "make orders";
+  all_measured[{name, course}] = m;
+}
+
+std::vector<std::string> names_of_methods() {
+  std::vector<std::string> names;
+  for (const MethodEntry& m : methods) names.push_back(m.info.name);
+  return names;
+}
+std::vector<std::string> names_of_courses() {
+  std::vector<std::string> names;
+  for (const Course& c : courses()) names.push_back(c.problem.name);
+  return names;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Table, Order,
+    ::testing::Combine(::testing::ValuesIn(names_of_methods()),
+                       ::testing::ValuesIn(names_of_courses())),
+    [](const auto& info) {
+      std::string name =
+          std::get<0>(info.param) + "_on_" + std::get<1>(info.param);
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
+
+}  // namespace

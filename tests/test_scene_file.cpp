@@ -1,0 +1,248 @@
+// Words.hpp, Model.hpp, SceneFile.hpp: what a scene file says, and every way in
+// which it can be wrong.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/TestFolder.hpp"
+#include "lab/scenes/SceneFile.hpp"
+
+using namespace lab;
+
+namespace {
+
+// ---------------------------------------------------------------------- Words
+
+TEST(Words, HoldNamesAndTheirNumbers) {
+  const Words w("sphere", " at 1 -2e1  .5 friction 0.25\t",
+                {{"at", 3}, {"friction", 1}, {"until", 1}});
+  EXPECT_TRUE(w.has("at") && w.has("friction"));
+  EXPECT_FALSE(w.has("until"));
+  EXPECT_EQ(w.point("at", Point()), Point(1, -20, 0.5));
+  EXPECT_EQ(w.number("friction", 7), 0.25);
+  EXPECT_EQ(w.number("until", 7), 7);
+  EXPECT_EQ(w.at_least("friction", 0.25, 0), 0.25);
+  EXPECT_THROW(w.at_least("friction", 0.26, 0), SceneError);
+  EXPECT_EQ(w.above("friction", 0.24), 0.25);
+  EXPECT_THROW(w.above("friction", 0.25), SceneError);
+  EXPECT_THROW(w.above("until", 0), SceneError);
+}
+
+/** What the words are said to be wrong with. */
+std::string complaint(const std::string& text) {
+  try {
+    Words("pin", text, {{"x", 1}, {"at", 3}});
+  } catch (const SceneError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Words, SayWhatIsWrong) {
+  EXPECT_EQ(complaint("x 1 at 1 2 3"), "");
+  EXPECT_EQ(complaint(""), "");
+  EXPECT_EQ(complaint("y 1"), "--pin \"y 1\" has \"y\", expected one of x, at");
+  EXPECT_EQ(complaint("x 1 y"),
+            "--pin \"x 1 y\" has \"y\", expected a number or one of x, at");
+  EXPECT_EQ(complaint("1"), "--pin \"1\" has \"1\", expected one of x, at");
+  EXPECT_EQ(complaint("x 1 x 2"), "--pin \"x 1 x 2\" has x twice");
+  EXPECT_EQ(complaint("x 1 2"),
+            "--pin \"x 1 2\" has 2 numbers after x, expected 1");
+  EXPECT_EQ(complaint("at 1 2"),
+            "--pin \"at 1 2\" has 2 numbers after at, expected 3");
+  for (const char* number : {"nan", "inf", "-inf", "1e999", "1x", "0x", "--1"})
+    EXPECT_NE(complaint(std::string("x ") + number), "") << number;
+}
+
+// ---------------------------------------------------------------------- Parts
+
+TEST(Parts, AreWhatTheirWordsSay) {
+  const Sheet s = read_sheet("at 1 2 3 u 0 2 0 v 0 0 4 nodes 5 7");
+  EXPECT_EQ(s.at, Point(1, 2, 3));
+  EXPECT_EQ(s.u, Point(0, 2, 0));
+  EXPECT_EQ(s.v, Point(0, 0, 4));
+  EXPECT_EQ(s.nodes, (std::array<unsigned, 2>{5, 7}));
+  const Sheet again = read_sheet(to_words(s));
+  EXPECT_EQ(again.at, s.at);
+  EXPECT_EQ(again.v, s.v);
+  EXPECT_EQ(again.nodes, s.nodes);
+
+  const Pin p = read_pin("x 0.5 z 1 velocity 0 1 0 until 2");
+  EXPECT_TRUE(p.holds(Point(0.5, 77, 1)));
+  EXPECT_TRUE(p.holds(Point(0.5 + 0.9e-9, 77, 1)));
+  EXPECT_FALSE(p.holds(Point(0.5 + 1.1e-9, 77, 1)));
+  EXPECT_FALSE(p.holds(Point(0.5, 77, 1.1)));
+  EXPECT_EQ(p.motion.velocity, Point(0, 1, 0));
+  EXPECT_EQ(p.motion.until, 2);
+
+  const Wall w = read_plane("at 0 0 1 normal 0 3 4 friction 0.5");
+  EXPECT_LT(norm(w.normal - Point(0, 0.6, 0.8)), 1e-15);
+  EXPECT_EQ(w.friction, 0.5);
+  const Solid ball = read_sphere("radius 2 at 3 2 1");
+  EXPECT_EQ(ball.ball.center, Point(3, 2, 1));
+  EXPECT_EQ(ball.ball.radius, 2);
+  EXPECT_EQ(ball.friction, 0);
+  EXPECT_EQ(read_tear("").radius, Ball().radius);
+  EXPECT_EQ(read_self_collision("thickness 0.1").thickness, 0.1);
+  EXPECT_TRUE(read_edges("sides bend").bend);
+  EXPECT_FALSE(read_edges("sides bend").diagonals);
+  EXPECT_EQ(read_measure("max-stretch"), Measure::max_stretch);
+}
+
+TEST(Parts, RefuseWhatMakesNoSense) {
+  EXPECT_THROW(read_sheet("nodes 1 5"), SceneError);
+  EXPECT_THROW(read_sheet("nodes 5 10001"), SceneError);
+  EXPECT_THROW(read_sheet("nodes 5 2.5"), SceneError);
+  EXPECT_NO_THROW(read_sheet("nodes 2 10000"));
+  EXPECT_THROW(read_sheet("u 1 0 0 v 2 0 0"), SceneError);
+  EXPECT_THROW(read_pin("velocity 1 0 0"), SceneError);  // holds which?
+  EXPECT_THROW(read_pin("x 1 until 2"), SceneError);     // of what motion?
+  EXPECT_THROW(read_pin("x 1 velocity 1 0 0 until -1"), SceneError);
+  EXPECT_THROW(read_plane("normal 0 0 0"), SceneError);
+  EXPECT_THROW(read_plane("friction -0.1"), SceneError);
+  EXPECT_THROW(read_sphere("radius 0"), SceneError);
+  EXPECT_THROW(read_tear("radius 1 friction 1"), SceneError);
+  EXPECT_THROW(read_self_collision("friction 1"), SceneError);
+  EXPECT_THROW(read_self_collision("thickness 0"), SceneError);
+  EXPECT_THROW(read_edges("diagonals"), SceneError);
+  EXPECT_THROW(read_edges(""), SceneError);
+  EXPECT_THROW(read_measure("max_stretch"), SceneError);
+}
+
+// ----------------------------------------------------------------------- Files
+
+class SceneFile : public ::testing::Test {
+ protected:
+  const CME212::TestFolder folder;
+  const std::string name = folder / "scene.toml";
+  Model load(const std::string& text) {
+    std::ofstream(name) << text;
+    return load_model(name);
+  }
+  /** What is wrong with a file, without its name. */
+  std::string complaint(const std::string& text) {
+    try {
+      load(text);
+    } catch (const SceneFileError& e) {
+      const std::string what = e.what();
+      EXPECT_EQ(what.rfind(name + ':', 0), 0u) << what;
+      return what.substr(name.size() + 1);
+    }
+    return "";
+  }
+};
+
+TEST_F(SceneFile, SetsWhatItNames) {
+  const Model m = load(
+      "# a scene\n"
+      "sheet = [\"nodes 3 3\", \"at 0 0 1 nodes 2 2\"]  # two\n"
+      "\n"
+      "pin=\"x 0 # no comment\"\n"
+      "  density =  2.5\n"
+      "dt = \"auto\"\n"
+      "t-end = 1\n");
+  EXPECT_EQ(m.sheets,
+            (std::vector<std::string>{"nodes 3 3", "at 0 0 1 nodes 2 2"}));
+  EXPECT_EQ(m.material.density, 2.5);
+  EXPECT_FALSE(m.material.modulus);
+  EXPECT_EQ(m.with.rule, StepRule::safe);
+  EXPECT_EQ(m.t_end, 1);
+  EXPECT_EQ(m.with.stiffness, 100);
+}
+
+TEST_F(SceneFile, IsWrittenAsItIsRead) {
+  const Model m = load(
+      "sheet = [\"nodes 3 3\"]\npin = [\"x 0\", \"x 1\"]\nmodulus = 0.1\n"
+      "plane = [\"friction 0.3\"]\nsphere = [\"radius 0.3\"]\n"
+      "self-collision = \"thickness 0.01\"\ntear-strain = 0.5\n"
+      "t-end = 0.3\ndt = \"0.002\"\nmeasure = \"energy\"\n");
+  const std::string text = to_scene_file(m);
+  const Model n = load(text);
+  EXPECT_EQ(to_scene_file(n), text);
+  EXPECT_EQ(n.pins, m.pins);
+  EXPECT_EQ(n.material.modulus, 0.1);
+  EXPECT_EQ(n.tear_strain, 0.5);
+  EXPECT_EQ(n.with.dt, 0.002);
+  EXPECT_EQ(n.measure, "energy");
+  EXPECT_NE(text.find("[N/m]"), std::string::npos);
+  EXPECT_EQ(text.find("stiffness ="), std::string::npos);  // modulus instead
+}
+
+TEST_F(SceneFile, SaysWhereItIsWrong) {
+  const std::string sheet = "sheet = [\"nodes 3 3\"]\n";
+  EXPECT_EQ(complaint(sheet), "");
+  EXPECT_EQ(complaint(sheet + "colour = 3\n"), "2: unknown key colour");
+  EXPECT_EQ(complaint(sheet + "config = \"x\"\n"), "2: unknown key config");
+  EXPECT_EQ(complaint(sheet + "\n[part]\n"),
+            "3: \"[part]\", expected KEY = VALUE");
+  EXPECT_EQ(complaint(sheet + "t-end\n"), "2: \"t-end\", expected KEY = VALUE");
+  EXPECT_EQ(complaint(sheet + "t-end =\n"), "2: t-end has no value");
+  EXPECT_EQ(complaint(sheet + "t-end = # 3\n"), "2: t-end has no value");
+  EXPECT_EQ(complaint(sheet + "t-end = 1\nt-end = 2\n"),
+            "3: t-end for the second time, first on line 2");
+  for (const char* open : {"pin = [\"x 0\"", "pin = \"x 0", "pin = \"x 0\"]"})
+    EXPECT_EQ(complaint(sheet + open + std::string("\n")),
+              "2: pin has a value that is not closed on its line");
+  EXPECT_EQ(complaint(sheet + "t-end = \"long\"\n").substr(0, 3), "2: ");
+  EXPECT_EQ(complaint(sheet + "t-end = [1, 2]\n").substr(0, 3), "2: ");
+  EXPECT_EQ(complaint("pin = [\"q 3\"]\n" + sheet),
+            "1: --pin \"q 3\" has \"q\", expected one of x, y, z, velocity, "
+            "until");
+  EXPECT_EQ(complaint(sheet + "tear = \"radius 0\"\ntear-strain = -1\n"),
+            "3: --tear-strain is -1, expected a strain above that at the "
+            "start, 0");
+  EXPECT_NE(complaint(sheet + "modulus = 1\nstiffness = 1\n").find("--modulus"),
+            std::string::npos);
+}
+
+TEST_F(SceneFile, RefusesValuesOutOfRange) {
+  for (const char* line : {"density = 0",
+                           "density = -1",
+                           "modulus = -1",
+                           "drag = -1",
+                           "tear-strain = 0",
+                           "tolerance = 0",
+                           "tolerance = nan",
+                           "gravity = inf",
+                           "stiffness = -1",
+                           "damping = -1",
+                           "t-end = -1",
+                           "t-end = inf",
+                           "dt = \"soon\"",
+                           "dt = \"-1\"",
+                           "dt = \"\"",
+                           "method = \"magic\"",
+                           "measure = \"beauty\"",
+                           "edges = \"diagonals\"",
+                           "nodes = \"x\"",
+                           "self-collision = \"friction 1\"",
+                           "drag = 1\ndamping = 1"})
+    EXPECT_NE(complaint("sheet = [\"nodes 3 3\"]\n" + std::string(line) + '\n'),
+              "")
+        << line;
+  for (const char* line :
+       {"density = 1e-9", "modulus = 0", "drag = 0", "tear-strain = 1e-9",
+        "tolerance = 1e-9", "gravity = -1", "stiffness = 0", "t-end = 0"})
+    EXPECT_EQ(complaint("sheet = [\"nodes 3 3\"]\n" + std::string(line) + '\n'),
+              "")
+        << line;
+  EXPECT_EQ(complaint("t-end = 1\n"),
+            " --nodes is missing: expected files NODES and TETS, or --sheet");
+}
+
+TEST(SceneFiles, ThatAreNoneAreToldApart) {
+  EXPECT_THROW(load_model("no/such/scene.toml"), SceneFileError);
+  EXPECT_THROW(load_model("."), SceneFileError);
+}
+
+TEST(SceneFiles, OfThisRepositoryCanBeRead) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("scenes")) {
+    EXPECT_TRUE(load_model(entry.path().string()).is_composed())
+        << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 8);
+}
+
+}  // namespace

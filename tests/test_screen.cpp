@@ -1,0 +1,121 @@
+// Screen.hpp: one picture of each stage at a fixed step against the committed
+// one in docs/pictures, which the README shows. After a change that is meant
+// to be seen: make pictures, look at them, commit them.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "lab/viewer/Screen.hpp"
+
+using namespace lab;
+
+namespace {
+
+using CME212::Image;
+
+struct Frame {
+  Stage stage;
+  const char* name;
+  int steps;
+};
+const Frame frames[] = {{Stage::problem1, "problem1", 600},
+                        {Stage::diagonals, "diagonals", 600},
+                        {Stage::forces, "forces", 700},
+                        {Stage::constraints, "constraints", 450},
+                        {Stage::tear, "tear", 600}};
+
+/** What @a screen shows, by way of a file. */
+Image picture_of(Screen& screen) {
+  auto file = std::filesystem::temp_directory_path() /
+              ("mass_spring_" + std::to_string(getpid()) + ".png");
+  screen.save_picture(file);
+  Image image = CME212::read_png(file);
+  std::filesystem::remove(file);
+  return image;
+}
+
+/** The stage on grid1 after so many steps, and its picture. */
+class Picture : public ::testing::TestWithParam<Frame> {
+ protected:
+  Screen screen{Screen::Kind::pictures};
+
+  Image draw() {
+    screen.show(scene);
+    return picture_of(screen);
+  }
+  Scene scene{GetParam().stage,
+              load_points("data/grid1.nodes"),
+              load_quads("data/grid1.tets", 625),
+              {}};
+
+  void SetUp() override {
+    for (int n = 0; n < GetParam().steps; ++n) ASSERT_TRUE(scene.step());
+  }
+};
+
+/** Number of pixels that differ by more than round-off in the colors. */
+int difference(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height) return 1 << 30;
+  int count = 0;
+  for (std::size_t k = 0; k < a.rgb.size(); k += 3) {
+    int most = 0;
+    for (std::size_t c = k; c < k + 3; ++c)
+      most = std::max(most, std::abs(int(a.rgb[c]) - int(b.rgb[c])));
+    count += most > 8;
+  }
+  return count;
+}
+constexpr int tolerance = 2;  // pixels; the same scene gives the same ones
+
+void expect_committed(const std::string& name, const Image& image) {
+  std::string committed = "docs/pictures/" + name + ".png";
+  if (std::getenv("WRITE_PICTURES")) CME212::write_png(committed, image);
+  int differs = difference(image, CME212::read_png(committed));
+  if (differs > tolerance) CME212::write_png("build/" + name + ".png", image);
+  EXPECT_LE(differs, tolerance)
+      << "see build/" << name << ".png beside " << committed;
+}
+
+TEST_P(Picture, IsTheCommittedOne) {
+  expect_committed(GetParam().name, draw());
+}
+INSTANTIATE_TEST_SUITE_P(Stages, Picture, ::testing::ValuesIn(frames),
+                         [](const auto& f) { return f.param.name; });
+
+// A run that fails shows where and why, on its last good state.
+TEST(Failure, IsMarkedAndExplainedAsInTheCommittedPicture) {
+  Screen screen(Screen::Kind::pictures);
+  Scene scene(Stage::problem1, load_points("data/grid1.nodes"),
+              load_quads("data/grid1.tets", 625), {.dt = 0.0034});
+  screen.show(scene);
+  const Image start = picture_of(screen);
+  while (scene.step()) ASSERT_LT(scene.steps(), 1000);
+  screen.show(scene);
+  expect_committed("fail-path", picture_of(screen));
+  scene.restart();
+  screen.show(scene);
+  EXPECT_EQ(picture_of(screen), start);
+}
+
+// The tolerance is so small that the loss of an edge or of a node is seen.
+class Damage : public Picture {};
+INSTANTIATE_TEST_SUITE_P(Tear, Damage, ::testing::Values(frames[4]));
+
+TEST_P(Damage, OfOneEdgeOrNodeIsSeen) {
+  EXPECT_EQ(difference(draw(), draw()), 0);
+  Cloth& g = scene.cloth();
+  // Removed, with what is left of it afterwards.
+  auto expect_seen = [&](auto remove) {
+    Image before = draw();
+    remove();
+    EXPECT_GT(difference(before, draw()), tolerance);
+  };
+  for (unsigned k = 0; k < 10; ++k) {
+    Node n = g.node(60 + 50 * k);
+    expect_seen([&] { g.remove_edge(*n.edge_begin()); });
+    expect_seen([&] { g.remove_node(n); });
+  }
+}
+
+}  // namespace

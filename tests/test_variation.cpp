@@ -1,0 +1,448 @@
+// Measure.hpp, Variation.hpp: what a scene is asked, and which of its parts the
+// answer needs: for each file in scenes/ all that it names, and nothing more.
+//
+// The table of docs/scenes.md is held to what is measured here, and written by
+//   WRITE_TABLE=build/need.md ./test_variation --gtest_filter='*Need*'
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "tests/TestFolder.hpp"
+#include "lab/scenes/SceneFile.hpp"
+#include "lab/advice/Variation.hpp"
+
+using namespace lab;
+
+namespace {
+
+Model with_sheet(const std::string& sheet) {
+  Model m;
+  m.sheets = {sheet};
+  m.method = "verlet";
+  return m;
+}
+void build(Cloth& g, const Model& m) { build_model(g, m, mesh_of(m)); }
+
+/** The answer to another question. */
+Answer ask(Model m, const Cloth& g, Measure what) {
+  m.measure = name_of(what);
+  return answer(m, g);
+}
+
+// -------------------------------------------------------------------- Answers
+
+TEST(Answers, DistanceIsALengthAndForPositionsTheRootOfTheMeanSquare) {
+  EXPECT_EQ(distance({1, 2, 3}, {1, 5, 7}, Measure::com), 5);
+  EXPECT_EQ(distance({-3}, {1}, Measure::energy), 4);
+  EXPECT_EQ(distance({1, 2, 3}, {1, 2, 3}, Measure::com), 0);
+  // Four places, one of which is 5 m off.
+  Answer a(12), b(12);
+  b[4] = 3, b[5] = -4;
+  EXPECT_EQ(distance(a, b, Measure::positions), 2.5);
+}
+
+TEST(Answers, OfAClothOfThreeNodes) {
+  const Model m = with_sheet("");
+  Cloth g;
+  const Node a = g.add_node(Point(0, 0, 1), {Point(3, 0, 4), 2});
+  const Node b = g.add_node(Point(0, 0, -2), {Point(), 1});
+  const Node c = g.add_node(Point(4, 0, -2), {Point(), 1});
+  g.add_edge(a, b, {10, 2});  // 3 m long
+  g.add_edge(b, c, {10, 5});  // 4 m long
+  g.add_edge(c, a, {0, 0});   // no spring
+  EXPECT_EQ(ask(m, g, Measure::com), (Answer{1, 0, -0.5}));
+  const double kinetic = 25, elastic = 5 + 5, height = 2 * 1 - 2 - 2;
+  EXPECT_NEAR(ask(m, g, Measure::energy)[0], kinetic + elastic + grav * height,
+              1e-13);
+  EXPECT_EQ(ask(m, g, Measure::max_stretch), (Answer{0.5}));
+  EXPECT_EQ(ask(m, g, Measure::drape_height), (Answer{-2}));
+  Model moon = m;
+  moon.with.gravity = 1.62;
+  EXPECT_NEAR(ask(moon, g, Measure::energy)[0],
+              kinetic + elastic + 1.62 * height, 1e-13);
+}
+
+TEST(Answers, StretchIsNeverNegativeAndAnEmptyClothIsFlat) {
+  const Model m = with_sheet("");
+  Cloth g;
+  EXPECT_EQ(ask(m, g, Measure::drape_height), (Answer{0}));
+  EXPECT_EQ(ask(m, g, Measure::max_stretch), (Answer{0}));
+  const Node a = g.add_node(Point(0, 0, 3)), b = g.add_node(Point(1, 0, 5));
+  g.add_edge(a, b, {1, 9});
+  EXPECT_EQ(ask(m, g, Measure::max_stretch), (Answer{0}));
+  EXPECT_EQ(ask(m, g, Measure::drape_height), (Answer{3}));
+}
+
+/** Build @a m and lay it as a saddle over its sheets, each (s, t) of [0, 1]^2
+ * at (s, 2 t, s t + number of the sheet). */
+Answer positions_on_a_saddle(const Model& m) {
+  Cloth g;
+  build(g, m);
+  unsigned k = 0;
+  for (std::size_t number = 0; number < m.sheets.size(); ++number) {
+    const auto [n, p] = read_sheet(m.sheets[number]).nodes;
+    for (unsigned i = 0; i < n; ++i)
+      for (unsigned j = 0; j < p; ++j) {
+        const double s = i / double(n - 1), t = j / double(p - 1);
+        g.node(k++).position() = Point(s, 2 * t, s * t + double(number));
+      }
+  }
+  return ask(m, g, Measure::positions);
+}
+
+TEST(Answers, PositionsAreOfTheSamePlacesOnAllGrids) {
+  Model coarse = with_sheet("nodes 2 3"), fine = with_sheet("nodes 20 6");
+  const Answer a = positions_on_a_saddle(coarse);
+  ASSERT_EQ(a.size(), 3u * 9 * 9);
+  EXPECT_EQ(Point(a[3], a[4], a[5]), Point(0, 0.25, 0));
+  EXPECT_EQ(Point(a[240], a[241], a[242]), Point(1, 2, 1));
+  EXPECT_LT(distance(a, positions_on_a_saddle(fine), Measure::positions),
+            1e-15);
+  coarse.sheets.push_back("at 0 0 9 nodes 4 4");
+  fine.sheets.push_back("at 0 0 9 nodes 2 9");
+  const Answer b = positions_on_a_saddle(coarse);
+  ASSERT_EQ(b.size(), 2 * a.size());
+  EXPECT_EQ(b[3 * 81 + 2], 1);  // the second sheet's corner
+  EXPECT_LT(distance(b, positions_on_a_saddle(fine), Measure::positions),
+            1e-15);
+}
+
+TEST(Answers, PositionsOfAMeshAreItsNodes) {
+  Model m;
+  m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
+  Cloth g;
+  build(g, m);
+  const Answer a = ask(m, g, Measure::positions);
+  ASSERT_EQ(a.size(), 75u);
+  for (unsigned i = 0; i < 25; ++i)
+    EXPECT_EQ(Point(a[3 * i], a[3 * i + 1], a[3 * i + 2]),
+              g.node(i).position());
+}
+
+TEST(Answers, AClothThatTearsKeepsNoPositions) {
+  for (const char* measure : measure_names) {
+    const bool positions = std::string(measure) == "positions";
+    Model m = with_sheet("nodes 3 3");
+    m.measure = measure;
+    EXPECT_NO_THROW(check_question(m));
+    Model ball = m, strain = m;
+    ball.tears = {"radius 0.1"};
+    strain.tear_strain = 0.1;
+    for (const Model& torn : {ball, strain})
+      if (positions)
+        EXPECT_THROW(check_question(torn), SceneError);
+      else
+        EXPECT_NO_THROW(check_question(torn)) << measure;
+  }
+}
+
+// ----------------------------------------------------------------------- Runs
+
+TEST(TryOut, EndsAtTheEnd) {
+  Model m = with_sheet("nodes 3 3");  // falls
+  auto steps = [&m](double dt, double t_end) {
+    m.with.dt = dt, m.t_end = t_end;
+    const Trial t = try_out(m);
+    EXPECT_TRUE(t.ok()) << t.failure;
+    EXPECT_NEAR(t.answer[2], -0.5 * grav * t_end * t_end, 1e-13);
+    EXPECT_NEAR(t.dt * double(t.steps), t_end, 1e-14);
+    EXPECT_LE(t.dt, dt * (1 + 1e-11));
+    EXPECT_EQ(t.work, 20. * double(t.steps));  // 12 sides, 8 diagonals
+    return t.steps;
+  };
+  EXPECT_EQ(steps(0.03, 0.1), 4);
+  EXPECT_EQ(steps(0.025, 0.1), 4);
+  EXPECT_EQ(steps(0.0249, 0.1), 5);
+  // A quotient that is rounded up: 7.000000000000001.
+  EXPECT_EQ(steps(0.01, 0.07), 7);
+  m.t_end = 0;
+  EXPECT_EQ(try_out(m).steps, 0);
+  EXPECT_LT(distance(try_out(m).answer, {0.5, 0.5, 0}, Measure::com), 1e-15);
+}
+
+TEST(TryOut, ChoosesItsStepAsTheSceneDoes) {
+  Model m = with_sheet("nodes 5 5");
+  m.with.rule = StepRule::safe;
+  m.t_end = 0.1;
+  const double chosen =
+      Scene(recipe_of(m), m.with, *find_method(m.method)).dt();
+  const Trial t = try_out(m);
+  EXPECT_EQ(t.steps, std::ceil(m.t_end / chosen));
+  EXPECT_EQ(t.dt, m.t_end / double(t.steps));
+}
+
+TEST(TryOut, SaysWhyItFailed) {
+  Model m = with_sheet("nodes 20 20");
+  m.pins = {"x 0"};
+  m.with.dt = 0.02, m.t_end = 2;
+  const Trial t = try_out(m);
+  EXPECT_FALSE(t.ok());
+  EXPECT_EQ(t.failure.find("diverged in step"), 0u) << t.failure;
+  EXPECT_TRUE(t.answer.empty());
+}
+
+// ----------------------------------------------------------------- Variations
+
+TEST(Refined, IsTheSameCloth) {
+  Model m = with_sheet("at 1 2 3 u 2 0 0 v 0 0.5 0 nodes 5 4");
+  m.sheets.push_back("nodes 3 3");
+  m.material.density = 0.3;
+  for (bool per_area : {true, false}) {
+    if (per_area)
+      m.material.drag = 2;
+    else
+      m.material.drag.reset(), m.with.damping = 0.01;
+    Cloth g;
+    build(g, m);
+    const double drag = force_of(m, mesh_of(m)).drag() * g.num_nodes();
+    for (double factor : {0.1, 0.5, 1., 1.5, 2., 3.}) {
+      const Model r = refined(m, factor);
+      Cloth f;
+      build(f, r);
+      EXPECT_NEAR(total_mass(f), total_mass(g), 1e-14);
+      EXPECT_NEAR(force_of(r, mesh_of(r)).drag() * f.num_nodes(), drag, 1e-14);
+      EXPECT_LT(norm(center_of_mass(f) - center_of_mass(g)), 1e-14);
+    }
+  }
+  auto nodes = [&m](double factor) {
+    return read_sheet(refined(m, factor).sheets[0]).nodes;
+  };
+  using Nodes = std::array<unsigned, 2>;
+  EXPECT_EQ(nodes(2), (Nodes{9, 7}));
+  EXPECT_EQ(nodes(1), (Nodes{5, 4}));
+  EXPECT_EQ(nodes(0.75), (Nodes{4, 3}));
+  EXPECT_EQ(nodes(0.01), (Nodes{3, 3}));  // never less than 2 x 2 cells
+}
+
+/** The answers on grids of 8, 16 and 32 cells along each side. */
+std::vector<Answer> on_three_grids(Model m, const std::string& measure) {
+  m.measure = measure;
+  std::vector<Answer> at;
+  for (const char* nodes : {"9 9", "17 17", "33 33"}) {
+    m.sheets = {std::string("nodes ") + nodes};
+    at.push_back(try_out(m).answer);
+  }
+  return at;
+}
+
+// test_compose has the smooth case, order 2. A membrane let go flat gets a kink
+// that runs in from the rim.
+TEST(Refining, ConvergesAtOrderOneWhereTheClothHasKinks) {
+  Model m = load_model("scenes/membrane.toml");
+  m.t_end = 0.1;
+  const auto at = on_three_grids(m, "positions");
+  EXPECT_NEAR(std::log2(distance(at[0], at[1], Measure::positions) /
+                        distance(at[1], at[2], Measure::positions)),
+              1, 0.1);
+}
+
+// All of the weight hangs by one node, whatever the grid: the force stays, the
+// width that bears it halves.
+TEST(Refining, NeverGivesTheStretchAtAPinnedCorner) {
+  Model m = load_model("scenes/hanging-sheet.toml");
+  m.with.damping = 0;
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.material.drag = 1;
+  const auto at = on_three_grids(m, "max-stretch");
+  EXPECT_NEAR(at[0][0], 0.28, 0.01);
+  EXPECT_NEAR(at[1][0], 0.46, 0.01);
+  EXPECT_NEAR(at[2][0], 0.80, 0.01);
+}
+
+TEST(Variation, KnowsTheShortestSide) {
+  EXPECT_NEAR(shortest_side(with_sheet("u 3 0 0 nodes 4 6")), 0.2, 1e-15);
+  EXPECT_NEAR(shortest_side(with_sheet("v 0 30 0 nodes 4 6")), 1 / 3., 1e-15);
+}
+
+TEST(Variation, LeavesOutFriction) {
+  using variation_detail::without_friction;
+  for (auto [text, smooth] :
+       {std::pair("friction 0.5", ""),
+        {"at 0 0 1 friction 0.5", "at 0 0 1 "},
+        {"friction  1e-1 at 0 0 1", "at 0 0 1"},
+        {"radius 1\tfriction 0.5\tat 0 0 1", "radius 1\tat 0 0 1"},
+        {"at 0 0 1", "at 0 0 1"}})
+    EXPECT_EQ(without_friction(text), smooth);
+  const Wall w = read_plane(
+      without_friction("normal 0 1 0 friction 0.5 velocity 0 1 0 until 2"));
+  EXPECT_EQ(w.friction, 0);
+  EXPECT_EQ(w.motion.until, 2);
+  EXPECT_EQ(w.normal, Point(0, 1, 0));
+}
+
+/** A scene that names everything. */
+Model full_scene() {
+  Model m = with_sheet("nodes 5 5");
+  m.edges = "sides diagonals bend";
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.material.drag = 1;
+  m.pins = {"x 0", "x 1 velocity 0 0 1"};
+  m.planes = {"friction 0.5"};
+  m.spheres = {"radius 0.1"};
+  m.tears = {"radius 0.2"};
+  m.tear_strain = 0.5;
+  m.self_collision = "thickness 0.1 friction 0.2";
+  return m;
+}
+
+TEST(Variation, DropsEachPartInTurnAndNothingElse) {
+  const Model m = full_scene();
+  // What differs in the scene file: the line without the part.
+  const std::map<std::string, std::string> expected = {
+      {"edges: diagonals", "edges = \"sides bend\""},
+      {"edges: bend", "edges = \"sides diagonals\""},
+      {"gravity", "gravity = 0"},
+      {"drag", "drag = 0"},
+      {"pin: x 0", "pin = [\"x 1 velocity 0 0 1\"]"},
+      {"pin: x 1 velocity 0 0 1", "pin = [\"x 0\"]"},
+      {"plane: friction 0.5", ""},
+      {"friction of plane: friction 0.5", "plane = [\"\"]"},
+      {"sphere: radius 0.1", ""},
+      {"tear: radius 0.2", ""},
+      {"tear-strain", ""},
+      {"self-collision", ""},
+      {"friction of self-collision", "self-collision = \"thickness 0.1 \""}};
+  auto lines = [](const Model& a) {
+    std::istringstream in(to_scene_file(a));
+    std::set<std::string> all;
+    for (std::string line; std::getline(in, line);)
+      if (line[0] != '#') all.insert(line);
+    return all;
+  };
+  const auto before = lines(m);
+  std::set<std::string> parts;
+  for (const Variation& v : without_parts(m)) {
+    EXPECT_TRUE(v.dropped);
+    EXPECT_TRUE(parts.insert(v.part).second);
+    ASSERT_TRUE(expected.count(v.part)) << v.part;
+    const auto after = lines(v.model);
+    std::vector<std::string> gone, come;
+    std::ranges::set_difference(before, after, std::back_inserter(gone));
+    std::ranges::set_difference(after, before, std::back_inserter(come));
+    EXPECT_EQ(gone.size(), 1u) << v.part;
+    const std::string line = expected.at(v.part);
+    EXPECT_EQ(come, line.empty() ? std::vector<std::string>()
+                                 : std::vector<std::string>{line});
+  }
+  EXPECT_EQ(parts.size(), expected.size());
+}
+
+TEST(Variation, DropsNothingThatIsNotThere) {
+  Model m = with_sheet("nodes 5 5");
+  m.edges = "sides";
+  m.with.gravity = 0;
+  m.material.drag = 0;
+  EXPECT_TRUE(without_parts(m).empty());
+  m.material.drag.reset();
+  EXPECT_TRUE(without_parts(m).empty());
+  m.with.damping = 1;
+  ASSERT_EQ(without_parts(m).size(), 1u);
+  EXPECT_EQ(without_parts(m)[0].model.with.damping, 0);
+}
+
+TEST(Variation, AddsEachPartThatMayComeNext) {
+  Model m = with_sheet("nodes 5 4");
+  m.edges = "sides";
+  m.with.dt = 0.03, m.t_end = 0.1;
+  auto more = with_more_parts(m);
+  ASSERT_EQ(more.size(), 4u);
+  for (const Variation& v : more) EXPECT_FALSE(v.dropped);
+  EXPECT_EQ(more[0].model.edges, "sides diagonals");
+  EXPECT_EQ(read_sheet(more[1].model.sheets[0]).nodes,
+            (std::array<unsigned, 2>{9, 7}));
+  EXPECT_EQ(more[2].model.with.dt, 0.0125);
+  EXPECT_EQ(more[2].model.with.rule, StepRule::fixed);
+  // Wide enough that no node comes through a square.
+  const double thickness =
+      read_self_collision(more[3].model.self_collision).thickness;
+  EXPECT_GT(thickness, 0.25 / std::sqrt(2));
+  EXPECT_LT(thickness, 0.25);
+  Cloth g;
+  build(g, more[3].model);
+  EXPECT_NO_THROW(constraint_of(more[3].model, g));
+  more = with_more_parts(full_scene());
+  ASSERT_EQ(more.size(), 2u);
+  EXPECT_EQ(more[0].part, "finer grid");
+  EXPECT_EQ(more[1].part, "half the step");
+}
+
+// ----------------------------------------------------------------------- Need
+
+/** The names of the files in scenes/. */
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("scenes"))
+    names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(ThePageOfScenes, NamesEveryKeyAndScene) {
+  const std::string page = CME212::contents("docs/scenes.md");
+  const Model m;
+  each_option(m, [&](const std::string& name, const auto&, const char*) {
+    EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
+  });
+  for (const std::string& name : scene_names()) {
+    EXPECT_NE(page.find("\n### `" + name + "`\n"), std::string::npos) << name;
+    EXPECT_TRUE(
+        std::filesystem::exists("docs/pictures/scene-" + name + ".png"));
+  }
+}
+
+class Need : public ::testing::TestWithParam<std::string> {};
+
+// Each with room: a scene whose need hangs by a hair is a scene to be improved.
+TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
+  constexpr double room = 1.15;
+  const Model m = load_model("scenes/" + GetParam() + ".toml");
+  check_question(m);
+  const Measure what = read_measure(m.measure);
+  const Trial base = try_out(m);
+  ASSERT_TRUE(base.ok()) << base.failure;
+
+  const std::string page = CME212::contents("docs/scenes.md");
+  const char* table = std::getenv("WRITE_TABLE");
+  std::ofstream out;
+  if (table) out.open(table, std::ios::app);
+  auto variations = without_parts(m);
+  std::ranges::copy(with_more_parts(m), std::back_inserter(variations));
+  for (const Variation& v : variations) {
+    const Trial t = try_out(v.model);
+    const double change = t.ok() ? distance(base.answer, t.answer, what)
+                                 : std::numeric_limits<double>::infinity();
+    if (v.dropped)
+      EXPECT_GT(change, room * m.tolerance) << "is not needed: " << v.part;
+    else
+      EXPECT_LT(change, m.tolerance / room) << "is needed: " << v.part;
+
+    const std::string key = "| " + GetParam() + " | " +
+                            (v.dropped ? "without " : "with ") + v.part + " | ";
+    out << key << std::setprecision(2) << change << " | " << m.tolerance
+        << (*unit_of(what) ? " " : "") << unit_of(what) << " |\n";
+    const auto at = page.find(key);
+    EXPECT_NE(at, std::string::npos) << "docs/scenes.md has no row " << key;
+    if (at == std::string::npos) continue;
+    char* end = nullptr;
+    const double said = std::strtod(page.c_str() + at + key.size(), &end);
+    EXPECT_NEAR(said, change, 0.05 * change + 1e-6) << key;
+    EXPECT_EQ(std::strtod(end + 3, nullptr), m.tolerance) << key;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Need, ::testing::ValuesIn(scene_names()),
+                         [](const auto& scene) {
+                           std::string name = scene.param;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace

@@ -1,0 +1,892 @@
+/** @file test_viewer.cpp
+ * Tests of what draws: SDLViewer and its parts, Image and Video. They need no
+ * display; the last one makes its own. */
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "CME212/Color.hpp"
+#include "CME212/GLCamera.hpp"
+#include "CME212/Image.hpp"
+#include "CME212/SDLViewer.hpp"
+#include "CME212/SceneBuilder.hpp"
+#include "tests/TestFolder.hpp"
+#include "Graph.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace CME212;
+using TestGraph = Graph<int, double>;
+using Node = TestGraph::node_type;
+
+/** A square net of n x n nodes in the unit square, with diagonals. */
+void make_net(TestGraph& g, unsigned n) {
+  for (unsigned i = 0; i < n; ++i)
+    for (unsigned j = 0; j < n; ++j)
+      g.add_node(Point(i / (n - 1.0), j / (n - 1.0), 0));
+  for (unsigned i = 0; i < n; ++i)
+    for (unsigned j = 0; j < n; ++j)
+      for (auto [di, dj] : {std::array{1, 0}, {0, 1}, {1, 1}, {1, -1}})
+        if (i + di < n && j + dj < n)
+          g.add_edge(g.node(i * n + j), g.node((i + di) * n + j + dj));
+}
+
+/** Add all of @a g to a viewer or builder. */
+template <typename V, typename Map>
+void add_all(V& v, const TestGraph& g, Map& map) {
+  v.add_nodes(g.node_begin(), g.node_end(), map);
+  v.add_edges(g.edge_begin(), g.edge_end(), map);
+}
+
+/** Wait until @a done(). The limit is only there to end a test that hangs. */
+bool eventually(const std::function<bool()>& done) {
+  Clock clock;
+  while (!done()) {
+    if (clock.seconds() > 60) return false;
+    CME212::sleep(0.001);
+  }
+  return true;
+}
+
+using CME212::TestFolder;
+std::size_t files_in(const TestFolder& folder) {
+  return std::size_t(std::distance(fs::directory_iterator(folder.path()), {}));
+}
+
+/** An environment variable, changed for one test; null: not set. */
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    set(value);
+  }
+  ~Environment() { set(old_ ? old_->c_str() : nullptr); }
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+  void set(const char* value) const {
+    value ? setenv(name_, value, 1) : unsetenv(name_);
+  }
+};
+
+/** What @a command prints. */
+std::string output_of(const std::string& command) {
+  std::string out;
+  std::FILE* pipe = popen(command.c_str(), "r");
+  for (int c; (c = std::fgetc(pipe)) != EOF;) out += char(c);
+  pclose(pipe);
+  return out;
+}
+bool has_program(const std::string& name) {
+  return !output_of("command -v " + name).empty();
+}
+
+/** The message of the std::runtime_error that @a f throws. */
+std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+// ---------------------------------------------------------- Color and camera
+
+TEST(Color, StrainScaleGrowsInLuminance) {
+  float before = Color::make_strain(0).luminance();
+  for (int i = 1; i <= 1000; ++i) {
+    float now = Color::make_strain(float(i) / 1000).luminance();
+    EXPECT_GT(now, before) << i;
+    before = now;
+  }
+  EXPECT_NEAR(Color(1).luminance(), 1, 1e-6);
+  EXPECT_EQ(Color(0).luminance(), 0);
+}
+
+TEST(GLCamera, ShowsTheClothUpright) {
+  GLCamera c;
+  auto x = [&](double px, double py, double pz) {
+    return c.project(Point(px, py, pz), 1);
+  };
+  EXPECT_GT(x(0.5, 0.5, 0).y, x(0.5, 0.5, -1).y);  // z is up
+  EXPECT_GT(x(1, 0, 0).x, x(0, 0, 0).x);           // x is to the right
+  EXPECT_LT(x(0.5, 0, 0).z, x(0.5, 1, 0).z);       // y is away
+  EXPECT_LT(x(0.5, 0, 0).y, x(0.5, 1, 0).y);       // and seen from above
+  for (double px : {0.0, 1.0})
+    for (double py : {0.0, 1.0})
+      for (double pz : {-1.0, 0.0}) {
+        EXPECT_LT(std::abs(x(px, py, pz).x), 1);
+        EXPECT_LT(std::abs(x(px, py, pz).y), 1);
+      }
+}
+
+TEST(GLCamera, FitTouchesTheMarginForEveryDirectionAndShape) {
+  BoundingBox box = (BoundingBox() |= Point(-1, 2, 3)) |= Point(4, 2.5, 3.1);
+  for (double aspect : {0.5, 1.0, 2.0})
+    for (Point from : {Point(1, 0, 0), Point(0.3, -1, 0.5), Point(0, 0, 1)}) {
+      GLCamera c;
+      c.look_from(from);
+      c.fit(box, aspect);
+      double most = 0;
+      for (int i = 0; i < 8; ++i) {
+        Point p = c.project(
+            Point(i & 1 ? -1 : 4, i & 2 ? 2 : 2.5, i & 4 ? 3 : 3.1), aspect);
+        most = std::max({most, std::abs(p.x), std::abs(p.y)});
+      }
+      EXPECT_NEAR(most, 1 / 1.1, 1e-9);
+    }
+  GLCamera c, old;
+  c.fit(BoundingBox(), 1);  // an empty box changes nothing
+  EXPECT_EQ(c.eye(), old.eye());
+  c.fit(BoundingBox() |= Point(7, 8, 9), 1);  // one point is in the middle
+  EXPECT_NEAR(norm(c.project(Point(7, 8, 9), 1) - Point(0, 0, c.distance())), 0,
+              1e-9);
+}
+
+TEST(GLCamera, MatricesAgreeWithProject) {
+  GLCamera c;
+  c.look_from(Point(1, 2, 3));
+  c.pan(0.1, -0.2);
+  Point p(0.3, 0.9, -0.4);
+  auto times = [](const GLCamera::Matrix& m, std::array<double, 4> v) {
+    std::array<double, 4> r{};
+    for (int i = 0; i < 16; ++i) r[i % 4] += m[i] * v[i / 4];
+    return r;
+  };
+  auto clip = times(c.projection(1.5), times(c.view(), {p.x, p.y, p.z, 1}));
+  Point q = c.project(p, 1.5);
+  EXPECT_NEAR(clip[0] / clip[3], q.x, 1e-5);
+  EXPECT_NEAR(clip[1] / clip[3], q.y, 1e-5);
+  EXPECT_NEAR(clip[3], q.z, 1e-5);
+  EXPECT_LT(std::abs(clip[2] / clip[3]), 1);  // between near and far
+}
+
+TEST(GLCamera, Moves) {
+  GLCamera c;
+  const GLCamera old = c;
+  c.zoom(2);
+  EXPECT_DOUBLE_EQ(c.distance(), old.distance() / 2);
+  c.zoom(1e9);
+  EXPECT_GT(c.distance(), 0);
+  c = old;
+  c.rotate(0.3, 0);  // what is in front moves to the right
+  Point front = old.center() + 0.1 * old.backward();
+  EXPECT_GT(c.project(front, 1).x, old.project(front, 1).x);
+  EXPECT_DOUBLE_EQ(c.distance(), old.distance());
+  c.rotate(0, -9);  // stops above
+  EXPECT_NEAR(norm(c.backward() - Point(0, 0, 1)), 0, 1e-12);
+  EXPECT_NEAR(norm(c.up()), 1, 1e-12);
+  c = old;
+  c.pan(0.25, 0);  // by a quarter of the picture, that is 0.5 of [-1, 1]
+  EXPECT_NEAR(c.project(old.center(), 1).x, 0.5, 1e-9);
+}
+
+// ----------------------------------------------------------- Image and Video
+
+Image test_image(int width, int height, int seed = 0) {
+  Image image(width, height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = std::uint8_t(i * i / 7 + 31 * std::size_t(seed));
+  return image;
+}
+
+TEST(Image, SurvivesPng) {
+  TestFolder folder;
+  for (auto [w, h] : {std::array{1, 1}, {7, 5}, {640, 3}}) {
+    Image image = test_image(w, h);
+    write_png(folder / "a.png", image);
+    EXPECT_EQ(read_png(folder / "a.png"), image);
+  }
+  EXPECT_EQ(files_in(folder), 1u);  // nothing else is left
+}
+
+TEST(Image, SaysWhatIsWrong) {
+  TestFolder folder;
+  const std::string nowhere = folder / "none/a.png", text = folder / "t.png";
+  const Image image = test_image(2, 2);
+  for (auto& [file, f] : std::map<std::string, std::function<void()>>{
+           {nowhere, [&] { write_png(nowhere, image); }},
+           {folder / "", [&] { write_png(folder / "", image); }},
+           {folder / "b.png", [&] { read_png(folder / "b.png"); }},
+           {text, [&] {
+              std::ofstream(text) << "no picture";
+              read_png(text);
+            }}})
+    EXPECT_EQ(error_of(f).find(file + ": "), 0u) << error_of(f);
+  write_png(folder / "old.png", image);
+  EXPECT_NE(error_of([&] { write_png(folder / "old.png", Image()); }),
+            "no error");
+  EXPECT_EQ(read_png(folder / "old.png"), image);
+  EXPECT_EQ(files_in(folder), 2u);
+}
+
+TEST(Video, MakesAPlayableFile) {
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
+  TestFolder folder;
+  // A name that a shell or ffmpeg itself might misread.
+  const std::string file = folder / "-a 'b\"; $(touch c) e:f%d.mp4";
+  Video video(file, 65, 48, 25);
+  for (int i = 0; i < 10; ++i) video.add(test_image(65, 48, i));
+  EXPECT_FALSE(fs::exists(file));
+  video.finish();
+  EXPECT_EQ(video.wrote(), file);
+  EXPECT_EQ(video.frames(), 10);
+  EXPECT_EQ(files_in(folder), 1u);
+  fs::rename(file, folder / "v.mp4");
+  if (!has_program("ffprobe")) return;
+  EXPECT_EQ(output_of("ffprobe -v error -count_frames -select_streams v "
+                      "-show_entries stream=width,height,pix_fmt,r_frame_rate,"
+                      "nb_read_frames -of csv=p=0 " +
+                      (folder / "v.mp4")),
+            "64,48,yuv420p,25/1,10\n");
+}
+
+TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
+  TestFolder folder;
+  Environment path("PATH", (folder / "none").c_str());
+  for (int length : {3, 2}) {  // the second replaces the first
+    Video video(folder / "v.mp4", 8, 6);
+    for (int i = 0; i < length; ++i) video.add(test_image(8, 6, i));
+    EXPECT_EQ(fs::exists(folder / "v_frames"), length == 2);
+    video.finish();
+    EXPECT_EQ(video.wrote(), folder / "v_frames/");
+  }
+  EXPECT_EQ(read_png(folder / "v_frames/frame_000001.png"),
+            test_image(8, 6, 1));
+  EXPECT_FALSE(fs::exists(folder / "v_frames/frame_000002.png"));
+  EXPECT_EQ(files_in(folder), 1u);
+
+  std::ofstream(folder / "v_frames/notes.txt") << "keep";  // not ours
+  Video video(folder / "v.mp4", 8, 6);
+  video.add(test_image(8, 6));
+  EXPECT_NE(error_of([&] { video.finish(); }), "no error");
+  EXPECT_TRUE(fs::exists(folder / "v_frames/notes.txt"));
+}
+
+TEST(Video, SaysWhatIsWrong) {
+  TestFolder folder;
+  EXPECT_EQ(error_of([&] {
+              Video(folder / "none/v.mp4", 8, 6);
+            }).find(folder / "none/v.mp4: "),
+            0u);
+  // An ffmpeg that complains and stops: an error, not a signal.
+  std::ofstream(folder / "ffmpeg") << "#!/bin/sh\necho too bad >&2\nexit 3\n";
+  fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+  Environment path("PATH", folder.path().c_str());
+  Video video(folder / "v.mp4", 800, 600);
+  std::string error = error_of([&] {
+    for (int i = 0; i < 100; ++i) video.add(test_image(800, 600));
+  });
+  EXPECT_EQ(error, (folder / "v.mp4: ffmpeg failed: too bad"));
+  EXPECT_NE(error_of([&] { video.finish(); }), "no error");
+}
+
+TEST(Video, LeavesNothingIfNotFinished) {
+  TestFolder folder;
+  Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
+  Environment path("PATH", (folder / "none").c_str());
+  Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
+  EXPECT_EQ(files_in(folder), 0u);
+}
+
+// -------------------------------------------------------------- SceneBuilder
+
+/** A builder, and what a viewer would show of it. */
+struct Shown : SceneBuilder {
+  SceneData scene;
+  bool edges_changed = false;
+  /** Take over what is complete.  @return whether it is new */
+  bool look() {
+    bool is_new = false;
+    take([&](const SceneData& s, bool e) {
+      scene = s;
+      edges_changed = e;
+      is_new = true;
+    });
+    return is_new;
+  }
+};
+
+TEST(SceneBuilder, NeverShowsHalfAScene) {
+  TestGraph g;
+  make_net(g, 3);
+  Shown b;
+  auto map = b.empty_node_map(g);
+  b.add_nodes(g.node_begin(), g.node_end(), map);
+  EXPECT_FALSE(b.look());
+  b.add_edges(g.edge_begin(), g.edge_end(), map);
+  EXPECT_TRUE(b.look() && b.edges_changed);
+  EXPECT_EQ(b.scene.nodes.size(), 9u);
+  EXPECT_EQ(b.scene.edges.size(), g.num_edges());
+
+  b.clear();
+  map.clear();
+  EXPECT_FALSE(b.look());
+  b.add_nodes(g.node_begin(), g.node_end(), map);
+  b.complete_without_edges();  // the program has edges: they will come
+  EXPECT_FALSE(b.look());
+  b.add_nodes(g.node_begin(), g.node_end(), map);
+  EXPECT_FALSE(b.look());
+  b.add_edges(g.edge_begin(), g.edge_end(), map);
+  EXPECT_TRUE(b.look());
+  EXPECT_EQ(b.scene.nodes.size(), 9u);
+
+  // Nodes that are known change at once, all together; the edges stay.
+  auto up = [](Node n) { return n.position() + Point(0, 0, 1); };
+  auto red = [](Node) { return Color(1, 0, 0); };
+  b.add_nodes(g.node_begin(), g.node_end(), red, up, map);
+  EXPECT_TRUE(b.look());
+  EXPECT_FALSE(b.edges_changed);
+  EXPECT_EQ(b.scene.nodes.size(), 9u);
+  EXPECT_EQ(b.scene.edges.size(), g.num_edges());
+  for (const auto& v : b.scene.nodes) {
+    EXPECT_EQ(v.z, 1);
+    EXPECT_EQ(v.rgba, (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
+  }
+}
+
+TEST(SceneBuilder, NodesWithoutEdgesAreCompleteLater) {
+  TestGraph g;
+  make_net(g, 2);
+  std::vector<std::function<void(Shown&)>> ends{
+      [](Shown& b) { b.clear(); }, [](Shown& b) { b.complete_without_edges(); },
+      [](Shown& b) { b.complete_own(); },
+      [](Shown& b) {
+        EXPECT_TRUE(
+            eventually([&] { return b.complete_if_quiet(), b.has_new(); }));
+      }};
+  for (auto& end : ends) {
+    Shown b;
+    auto map = b.empty_node_map(g);
+    b.add_nodes(g.node_begin(), g.node_end(), map);
+    EXPECT_FALSE(b.look());
+    end(b);
+    EXPECT_TRUE(b.look());
+    EXPECT_EQ(b.scene.nodes.size(), 4u);
+  }
+  // What another thread builds is not ours to complete.
+  Shown b;
+  auto map = b.empty_node_map(g);
+  std::thread([&] { b.add_nodes(g.node_begin(), g.node_end(), map); }).join();
+  b.complete_own();
+  EXPECT_FALSE(b.look());
+}
+
+TEST(SceneBuilder, LeavesOutEdgesWithoutEndsAndAddsNoneTwice) {
+  TestGraph g;
+  make_net(g, 3);
+  Shown b;
+  auto map = b.empty_node_map(g);
+  auto half = g.node_begin() + 5;
+  b.add_nodes(g.node_begin(), half, map);
+  b.add_edges(g.edge_begin(), g.edge_end(), map);
+  ASSERT_TRUE(b.look());
+  std::size_t inside = 0;
+  for (auto e : g.edges())
+    inside += e.node1().index() < 5 && e.node2().index() < 5;
+  EXPECT_EQ(b.scene.edges.size(), inside);
+  // The rest comes later; of each edge there is one, whichever end is first.
+  b.add_nodes(half, g.node_end(), map);
+  for (auto n : g.nodes()) b.add_edges(n.edge_begin(), n.edge_end(), map);
+  b.add_edges(g.edge_begin(), g.edge_end(), map);
+  ASSERT_TRUE(b.look());
+  EXPECT_EQ(b.scene.nodes.size(), 9u);
+  EXPECT_EQ(b.scene.edges.size(), g.num_edges());
+}
+
+TEST(SceneBuilder, TakesOtherMapsAndOrders) {
+  struct Hash {
+    std::size_t operator()(const Node& n) const { return n.id(); }
+  };
+  TestGraph g;
+  make_net(g, 3);
+  std::vector<Node> nodes(g.node_begin(), g.node_end());
+  std::reverse(nodes.begin(), nodes.end());
+  Shown b;
+  std::unordered_map<Node, unsigned, Hash> map;
+  b.add_nodes(nodes.begin(), nodes.end(), map);
+  b.add_edges(g.edge_begin(), g.edge_end(), map);
+  ASSERT_TRUE(b.look());
+  ASSERT_EQ(map.size(), 9u);
+  for (auto [n, at] : map) EXPECT_EQ(b.scene.nodes[at].x, n.position().x);
+  // A map that should have been cleared leads nowhere outside the scene.
+  b.clear();
+  b.add_edges(g.edge_begin(), g.edge_end(), map);
+  ASSERT_TRUE(b.look());
+  EXPECT_TRUE(b.scene.edges.empty());
+  add_all(b, g, map);
+  ASSERT_TRUE(b.look());
+  for (auto ends : b.scene.edges) EXPECT_LT(ends[1], b.scene.nodes.size());
+}
+
+TEST(SceneBuilder, WantsFrameUntilOneWaits) {
+  TestGraph g;
+  make_net(g, 2);
+  Shown b;
+  EXPECT_TRUE(b.wants_frame());
+  auto map = b.empty_node_map(g);
+  add_all(b, g, map);
+  EXPECT_FALSE(b.wants_frame());
+  b.look();
+  EXPECT_TRUE(b.wants_frame());
+}
+
+// ----------------------------------------------------------------- SDLViewer
+
+SDLViewer::Options small() { return {400, 300, "test_viewer", true}; }
+
+/** Number of pixels in which two pictures differ, in columns [x0, x1) and
+ * rows [y0, y1) as fractions of the picture. */
+int difference(const Image& a, const Image& b, double x0 = 0, double x1 = 1,
+               double y0 = 0, double y1 = 1) {
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.height, b.height);
+  int n = 0;
+  for (int y = int(y0 * a.height); y < int(y1 * a.height); ++y)
+    for (int x = int(x0 * a.width); x < int(x1 * a.width); ++x)
+      n += !std::equal(a.pixel(x, y), a.pixel(x, y) + 3, b.pixel(x, y));
+  return n;
+}
+
+TEST(SDLViewer, DrawsWhatTheCoursesProgramsDraw) {
+  TestGraph graph;
+  make_net(graph, 4);
+  SDLViewer viewer(small());
+  Image empty = viewer.snapshot();
+  auto node_map = viewer.empty_node_map(graph);
+  static_assert(std::is_same_v<decltype(node_map), std::map<Node, unsigned>>);
+  viewer.add_nodes(graph.node_begin(), graph.node_end(), node_map);
+  viewer.add_edges(graph.edge_begin(), graph.edge_end(), node_map);
+  viewer.center_view();
+  Image white = viewer.snapshot();
+  EXPECT_EQ(white.width, 400);
+  EXPECT_EQ(white.height, 300);
+  EXPECT_GT(difference(empty, white), 1000);
+
+  auto heat = [](Node n) { return Color::make_heat(float(n.position().x)); };
+  viewer.add_nodes(graph.node_begin(), graph.node_end(), heat, node_map);
+  Image colored = viewer.snapshot();
+  EXPECT_GT(difference(colored, white), 100);
+
+  auto bent = [](Node n) {
+    return n.position() + Point(0, 0, 0.3 * n.position().x);
+  };
+  viewer.add_nodes(graph.node_begin(), graph.node_end(), heat, bent, node_map);
+  EXPECT_GT(difference(viewer.snapshot(), colored), 100);
+
+  viewer.clear();
+  node_map.clear();
+  EXPECT_EQ(difference(viewer.snapshot(), empty), 0);
+}
+
+TEST(SDLViewer, SameSceneSamePicture) {
+  TestGraph g;
+  make_net(g, 12);
+  std::vector<Image> pictures;
+  for (int run = 0; run < 2; ++run) {
+    SDLViewer viewer(small());
+    auto map = viewer.empty_node_map(g);
+    viewer.add_sphere(Point(0.5, 0.5, -0.5), 0.15);
+    viewer.add_plane(-0.75);
+    viewer.set_strain_colors(true);
+    viewer.set_scale("strain", 0, 0.1, "");
+    add_all(viewer, g, map);
+    viewer.set_label(1.25);
+    for (int i = 0; i < 2; ++i) pictures.push_back(viewer.snapshot());
+  }
+  for (const Image& p : pictures) EXPECT_EQ(p, pictures[0]);
+}
+
+TEST(SDLViewer, ShowsThatANodeOrAnEdgeIsMissing) {
+  TestGraph g;
+  make_net(g, 4);
+  SDLViewer viewer(small());
+  auto draw = [&](unsigned nodes, unsigned edges) {
+    viewer.clear();
+    auto map = viewer.empty_node_map(g);
+    viewer.add_nodes(g.node_begin(), g.node_end(), map);
+    viewer.add_edges(g.edge_begin(), g.edge_begin() + edges, map);
+    if (nodes < 16) {  // all but the last, which keeps its edges
+      viewer.clear();
+      map.clear();
+      viewer.add_nodes(g.node_begin(), g.node_begin() + nodes, map);
+      viewer.add_edges(g.edge_begin(), g.edge_end(), map);
+    }
+    return viewer.snapshot();
+  };
+  Image all = draw(16, g.num_edges());
+  EXPECT_GT(difference(all, draw(16, g.num_edges() - 1)), 10);
+  EXPECT_GT(difference(all, draw(15, 0)), 10);
+  EXPECT_EQ(difference(all, draw(16, g.num_edges())), 0);
+}
+
+TEST(SDLViewer, DrawsUpright) {
+  TestGraph g;
+  g.add_node(Point(0.5, 0.5, -0.1));
+  g.add_node(Point(0.5, 0.5, -0.9));
+  SDLViewer viewer(small());
+  Image empty = viewer.snapshot();
+  auto map = viewer.empty_node_map(g);
+  viewer.add_nodes(g.node_begin(), g.node_begin() + 1, map);
+  Image top = viewer.snapshot();
+  EXPECT_GT(difference(empty, top, 0, 1, 0, 0.5), 5);
+  EXPECT_EQ(difference(empty, top, 0, 1, 0.5, 1), 0);
+}
+
+TEST(SDLViewer, WritesLabelAndScale) {
+  SDLViewer viewer(small());
+  Image plain = viewer.snapshot();
+  viewer.set_label("t = 3");
+  Image labeled = viewer.snapshot();
+  EXPECT_GT(difference(plain, labeled, 0, 0.5, 0, 0.2), 30);
+  EXPECT_EQ(difference(plain, labeled, 0, 1, 0.2, 1), 0);
+  viewer.set_scale("strain", 0, 0.5, "%");
+  EXPECT_EQ(viewer.snapshot(), labeled);  // not yet
+  viewer.set_strain_colors(true);
+  Image scaled = viewer.snapshot();
+  EXPECT_GT(difference(scaled, labeled, 0.9, 1, 0, 0.6), 500);
+  EXPECT_EQ(difference(scaled, labeled, 0, 0.8), 0);
+  // Yellow above, blue below.
+  int x = 400 - 16;
+  const auto *high = scaled.pixel(x, 36), *low = scaled.pixel(x, 150);
+  EXPECT_GT(high[0], 200);
+  EXPECT_LT(high[2], 80);
+  EXPECT_LT(low[0], 90);
+  EXPECT_GT(low[2], 170);
+}
+
+TEST(SDLViewer, WritesAMessageInAPanelAtTheBottom) {
+  SDLViewer viewer(small());
+  Image plain = viewer.snapshot();
+  viewer.set_message({"diverged"});
+  Image one = viewer.snapshot();
+  EXPECT_GT(difference(plain, one, 0, 1, 0.8), 5000);
+  EXPECT_EQ(difference(plain, one, 0, 1, 0, 0.8), 0);
+  // Its bar has the color of marks.
+  const auto* bar = one.pixel(14, 280);
+  const Color mark = Color::make_mark();
+  EXPECT_NEAR(bar[0], 255 * mark.r, 1);
+  EXPECT_NEAR(bar[1], 255 * mark.g, 1);
+  EXPECT_NEAR(bar[2], 255 * mark.b, 1);
+  // What is too long for a line goes on in the next; nothing leaves the panel.
+  std::string words;
+  for (int k = 0; k < 40; ++k) words += "word ";
+  viewer.set_message({words, "--dt auto works"});
+  Image more = viewer.snapshot();
+  EXPECT_GT(difference(plain, more, 0, 1, 0.5, 0.8), 5000);
+  EXPECT_EQ(difference(plain, more, 0.98, 1), 0);
+  viewer.set_message({});
+  EXPECT_EQ(viewer.snapshot(), plain);
+}
+
+TEST(SDLViewer, MarksAreSeenThroughAllElse) {
+  SDLViewer viewer(small());
+  BoundingBox box = (BoundingBox() |= Point(-1)) |= Point(1);
+  viewer.set_view(Point(0, -1, 0), box);
+  viewer.add_sphere(Point(0, 0, 0), 0.7);
+  Image ball = viewer.snapshot();
+  auto magenta = [](const Image& p, int x, int y) {
+    const auto* c = p.pixel(x, y);
+    return c[0] > 240 && c[1] < 80 && c[2] > 150;
+  };
+  viewer.set_marks({{Point(-0.5, 0, 0), Point(0.5, 0, 0)}});
+  Image line = viewer.snapshot();
+  EXPECT_TRUE(magenta(line, 200, 150));  // behind the front of the ball
+  EXPECT_GT(difference(ball, line), 200);
+  EXPECT_EQ(difference(ball, line, 0, 1, 0, 0.45), 0);
+  viewer.set_marks({{Point(), Point()}});
+  Image ring = viewer.snapshot();
+  EXPECT_FALSE(magenta(ring, 200, 150));  // what it is around stays visible
+  EXPECT_TRUE(magenta(ring, 200, 150 + int(0.75 * 17)));
+  // Behind the eye, or not a number: not drawn.
+  for (Point p : {Point(0, -100, 0), Point(std::nan(""), 0, 0)}) {
+    viewer.set_marks({{Point(), p}});
+    EXPECT_EQ(viewer.snapshot(), ball);
+  }
+  viewer.set_marks({});
+  EXPECT_EQ(viewer.snapshot(), ball);
+}
+
+TEST(SDLViewer, ShapesAndViews) {
+  SDLViewer viewer(small());
+  BoundingBox box = (BoundingBox() |= Point(-1)) |= Point(1);
+  viewer.set_view(Point(0, -1, 0.2), box);
+  Image empty = viewer.snapshot();
+  viewer.add_sphere(Point(0, 0, 0), 0.5);
+  Image ball = viewer.snapshot();
+  EXPECT_GT(difference(empty, ball), 2000);
+  viewer.add_plane(-0.5, 2, Point());
+  EXPECT_GT(difference(viewer.snapshot(), ball), 2000);
+  viewer.clear();  // keeps them
+  EXPECT_GT(difference(empty, viewer.snapshot()), 2000);
+  viewer.clear_shapes();
+  EXPECT_EQ(viewer.snapshot(), empty);
+  // A point that is no number does no harm.
+  TestGraph g;
+  g.add_node(Point(std::nan(""), 0, 0));
+  g.add_node(Point(1e300, 0, 0));
+  g.add_edge(g.node(0), g.node(1));
+  auto map = viewer.empty_node_map(g);
+  add_all(viewer, g, map);
+  viewer.center_view();
+  viewer.snapshot();
+}
+
+TEST(SDLViewer, SaysThatThereIsNoDisplay) {
+  Environment no_driver("SDL_VIDEODRIVER", nullptr);
+  Environment no_wayland("WAYLAND_DISPLAY", nullptr);
+  for (const char* display : {static_cast<const char*>(nullptr), ":987654"}) {
+    Environment dead("DISPLAY", display);
+    EXPECT_FALSE(SDLViewer::has_display());
+    EXPECT_THROW(SDLViewer(), NoDisplay);
+    EXPECT_EQ(error_of([] { SDLViewer v; }).find("no display: "), 0u);
+  }
+}
+
+void press(SDL_Keycode key, bool repeat = false) {
+  SDL_Event e{};
+  e.type = SDL_KEYDOWN;
+  e.key.keysym.sym = key;
+  e.key.repeat = repeat;
+  SDL_PushEvent(&e);
+}
+
+/** A simulation that counts its steps, and what a user can tell it. */
+struct Simulation {
+  SDLViewer& viewer;
+  TestGraph graph;
+  std::atomic<int> steps = 0, shows = 0, restarts = 0;
+
+  explicit Simulation(SDLViewer& v) : viewer(v) { make_net(graph, 8); }
+
+  void show(bool anew) {
+    static std::map<Node, unsigned> map;
+    auto color = [&](Node n) {
+      return viewer.strain_colors() ? Color::make_strain(float(n.position().x))
+                                    : Color(1);
+    };
+    if (anew) {
+      viewer.clear();
+      map.clear();
+    }
+    viewer.add_nodes(graph.node_begin(), graph.node_end(), color, map);
+    if (anew) viewer.add_edges(graph.edge_begin(), graph.edge_end(), map);
+    viewer.set_label(steps.load());
+    viewer.set_message({"stopped", "for a moment"});
+    viewer.set_marks({{Point(), Point(double(steps % 2), 0, 0)}});
+  }
+  void run() {
+    show(true);
+    while (!viewer.closed()) {
+      auto paused = [&] {
+        show(steps % 2);
+        ++shows;
+      };
+      if (!viewer.wait_while_paused(paused)) {
+        restarts += viewer.take_restart();
+        continue;
+      }
+      for (auto n : graph.nodes()) n.position().z -= 1e-6;
+      ++steps;
+      if (viewer.wants_frame()) show(steps % 3 == 0);
+    }
+  }
+};
+
+/** What a user does, given a way to press keys; checks what comes of it. */
+void use(Simulation& s, const std::function<void(SDL_Keycode)>& key) {
+  ASSERT_TRUE(eventually([&] { return s.steps > 3; }));
+  key(SDLK_SPACE);
+  ASSERT_TRUE(eventually([&] { return s.shows == 1; }));
+  const int steps = s.steps;
+  key(SDLK_n);
+  ASSERT_TRUE(eventually([&] { return s.shows == 2; }));
+  EXPECT_EQ(s.steps, steps + 1);
+  key(SDLK_s);
+  ASSERT_TRUE(eventually([&] { return s.shows == 3; }));
+  EXPECT_TRUE(s.viewer.strain_colors());
+  EXPECT_EQ(s.steps, steps + 1);
+  key(SDLK_r);
+  ASSERT_TRUE(eventually([&] { return s.restarts == 1 && s.shows == 4; }));
+  EXPECT_EQ(s.steps, steps + 1);
+  key(SDLK_SPACE);
+  ASSERT_TRUE(eventually([&] { return s.steps > steps + 3; }));
+  EXPECT_EQ(s.restarts, 1);
+  EXPECT_FALSE(s.viewer.closed());
+}
+
+/** Run the viewer on this thread, a simulation and a user on two others. */
+void run_with_user(SDLViewer& viewer,
+                   const std::function<void(SDL_Keycode)>& key,
+                   const std::function<void()>& leave) {
+  Simulation s(viewer);
+  std::thread simulation([&] { s.run(); });
+  std::thread user([&] {
+    use(s, key);
+    leave();
+    if (!eventually([&] { return viewer.closed(); })) {
+      ADD_FAILURE() << "does not close";
+      viewer.close();
+    }
+  });
+  viewer.event_loop();
+  simulation.join();
+  user.join();
+  EXPECT_TRUE(viewer.closed());
+  EXPECT_FALSE(viewer.wait_while_paused());  // nothing waits any more
+}
+
+TEST(SDLViewerThreads, KeysReachTheSimulation) {
+  for (SDL_Keycode quit : {SDLK_q, SDLK_ESCAPE}) {
+    SDLViewer viewer(small());
+    run_with_user(
+        viewer, [](SDL_Keycode k) { press(k); }, [=] { press(quit); });
+  }
+}
+
+TEST(SDLViewerThreads, ClosesWhilePausedOrBeforeItOpens) {
+  SDLViewer viewer(small());
+  press(SDLK_SPACE);
+  press(SDLK_SPACE, true);  // held down: counts once
+  std::atomic<bool> waits = false;
+  std::thread simulation([&] {
+    while (viewer.wait_while_paused([&] { waits = true; })) {
+    }
+  });
+  std::thread user([&] {
+    EXPECT_TRUE(eventually([&] { return waits.load(); }));
+    SDL_Event e{};
+    e.type = SDL_QUIT;
+    SDL_PushEvent(&e);
+  });
+  viewer.event_loop();
+  simulation.join();
+  user.join();
+
+  SDLViewer closed(small());
+  EXPECT_TRUE(closed.wait_while_paused());  // it is not
+  closed.set_paused(true);
+  closed.close();
+  closed.event_loop();
+  EXPECT_TRUE(closed.closed());
+  EXPECT_FALSE(closed.wait_while_paused());
+}
+
+/** The picture before and after the user did @a event, and quit. */
+std::array<Image, 2> around(const SDL_Event& event) {
+  TestGraph g;
+  make_net(g, 3);
+  SDLViewer viewer(small());
+  auto map = viewer.empty_node_map(g);
+  add_all(viewer, g, map);
+  Image before = viewer.snapshot();
+  SDL_Event copy = event;
+  SDL_PushEvent(&copy);
+  press(SDLK_q);
+  viewer.event_loop();
+  return {before, viewer.snapshot()};
+}
+
+TEST(SDLViewer, MouseAndCenterMoveTheCamera) {
+  std::vector<SDL_Event> events(4, SDL_Event{});
+  for (int i : {0, 1}) {
+    events[i].type = SDL_MOUSEMOTION;
+    events[i].motion.state = i ? SDL_BUTTON_RMASK : SDL_BUTTON_LMASK;
+    events[i].motion.xrel = 40;
+  }
+  events[2].type = SDL_MOUSEWHEEL;
+  events[2].wheel.preciseY = 2;
+  events[3].type = SDL_KEYDOWN;
+  events[3].key.keysym.sym = SDLK_c;
+  for (const SDL_Event& e : events) {
+    auto [before, after] = around(e);
+    EXPECT_GT(difference(before, after), 500) << e.type;
+  }
+  SDL_Event nothing{};
+  nothing.type = SDL_MOUSEMOTION;  // no button held
+  nothing.motion.xrel = 40;
+  auto [before, after] = around(nothing);
+  EXPECT_EQ(before, after);
+}
+
+// ------------------------------------------------------------- A real window
+
+/** An X server of our own that shows nothing, as long as this lives. */
+class XServer {
+ public:
+  XServer() {
+    int ends[2];
+    if (pipe(ends) != 0) return;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+    posix_spawn_file_actions_addclose(&actions, ends[0]);
+    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+    const char* args[] = {"Xvfb", "-displayfd",   "1",    "-noreset", "-screen",
+                          "0",    "1280x1024x24", nullptr};
+    if (posix_spawnp(&child_, args[0], &actions, nullptr,
+                     const_cast<char* const*>(args), environ) != 0)
+      child_ = -1;
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    // It takes a free number and writes it when it is ready.
+    for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) display_ += c;
+    close(ends[0]);
+  }
+  ~XServer() {
+    if (child_ < 0) return;
+    kill(child_, SIGTERM);
+    waitpid(child_, nullptr, 0);
+  }
+  /** As for DISPLAY. */
+  std::string display() const { return ":" + display_; }
+
+ private:
+  pid_t child_ = -1;
+  std::string display_;
+};
+
+TEST(SDLViewerWindow, ObeysTheKeyboard) {
+  if (!has_program("Xvfb") || !has_program("xdotool"))
+    GTEST_SKIP() << "no Xvfb or no xdotool";
+  XServer server;
+  Environment display("DISPLAY", server.display().c_str());
+  Environment driver("SDL_VIDEODRIVER", nullptr);
+  ASSERT_TRUE(SDLViewer::has_display());
+  SDLViewer viewer({640, 480, "test_viewer_window", false});
+  const std::string window =
+      "xdotool search --sync --onlyvisible --name test_viewer_window ";
+  auto key = [&](SDL_Keycode k) {
+    std::string name = k == SDLK_SPACE ? "space" : std::string(1, char(k));
+    EXPECT_EQ(std::system((window + "windowfocus key " + name).c_str()), 0);
+  };
+  run_with_user(viewer, key, [&] {
+    // Another size is no harm, and is seen: then the window is closed.
+    EXPECT_EQ(std::system((window + "windowsize 800 300").c_str()), 0);
+    EXPECT_TRUE(eventually([&] {
+      return output_of(window + "getwindowgeometry").find("800x300") !=
+             std::string::npos;
+    }));
+    key(SDLK_q);
+  });
+  EXPECT_EQ(viewer.snapshot().width, 640);
+}
+
+}  // namespace

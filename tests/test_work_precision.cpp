@@ -1,0 +1,575 @@
+// Problem.hpp, Failure.hpp and work_precision: exact solutions and references,
+// the counting of sweeps, how each method fails, and the CSV. Build the program
+// first: make work_precision.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "tests/TestFolder.hpp"
+#include "lab/charts/Failure.hpp"
+#include "lab/charts/Precision.hpp"
+#include "lab/charts/Problem.hpp"
+
+using namespace lab;
+
+namespace fs = std::filesystem;
+
+void PrintTo(const Failure& f, std::ostream* out) { *out << f.title; }
+
+namespace {
+
+Problem problem(const std::string& name) {
+  for (Problem& p : make_problems())
+    if (p.name == name) return p;
+  throw std::runtime_error("no problem " + name);
+}
+
+double distance(std::span<const Point> a, std::span<const Point> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += normSq(a[i] - b[i]);
+  return std::sqrt(sum / double(a.size()));
+}
+
+TEST(Problem, ExactSolutionsStartAsTheClothAndObeyItsForces) {
+  for (const char* name : {"chain", "curtain"}) {
+    Problem p = problem(name);
+    Start s(p);
+    ASSERT_EQ(p.exact(0).size(), s.cloth.node_slots());
+    EXPECT_LT(distance(p.exact(0), s.cloth.positions()), 1e-15) << name;
+    // Its second difference in time is the acceleration, also on the way.
+    constexpr double t = 0.3, h = 1e-5;
+    auto before = p.exact(t - h), now = p.exact(t), after = p.exact(t + h);
+    std::copy(now.begin(), now.end(), s.cloth.positions().begin());
+    std::vector<Point> f(s.cloth.node_slots());
+    Sweep()(s.cloth, t, s.force, f);
+    s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
+    for (unsigned i = 0; i < now.size(); ++i) {
+      Point a = (after[i] - 2 * now[i] + before[i]) / (h * h);
+      EXPECT_LT(norm(a - f[i] / s.cloth.node_values()[i].mass), 1e-3)
+          << name << " node " << i;
+    }
+  }
+}
+
+TEST(Problem, ExactSolutionsAgreeWithAFineRun) {
+  for (const char* name : {"chain", "curtain"}) {
+    Problem p = problem(name);
+    Start s(p);
+    Srkn11b method;
+    double steps = p.t_end * omega_safe(s.cloth, s.force, s.constraint);
+    Outcome out = run(p, method, std::lround(steps));
+    ASSERT_TRUE(out.ok()) << out.reason;
+    EXPECT_LT(distance(p.exact(p.t_end), out.end.positions), 1e-10) << name;
+  }
+}
+
+TEST(Problem, FloorsAreSmallAndTheSameEachTime) {
+  for (const char* name : {"chain", "grid0"}) {
+    Reference r = reference(problem(name), 4);
+    EXPECT_GT(r.floor, 0);
+    EXPECT_LT(r.floor, 1e-7) << name;
+    EXPECT_EQ(r.floor, reference(problem(name), 4).floor) << name;
+  }
+}
+
+// The two of a reference, run here: so far is the one from the other.
+TEST(Problem, ReferencesAreOfTwoMethodsOfDifferentOrderAndStep) {
+  Problem drape = problem("drape"), tear = problem("tear");
+  for (Problem* p : {&drape, &tear})
+    p->build = grid_problem("", "", 0, 9).build;
+  for (const Problem& p : {problem("grid0"), drape, tear}) {
+    const Reference r = reference(p, 4);
+    std::istringstream made(r.made);
+    std::string name[2], word;
+    long long steps[2];
+    made >> name[0] >> steps[0] >> word >> name[1] >> steps[1] >> word;
+    ASSERT_TRUE(made.good() || made.eof()) << r.made;
+    const MethodEntry *one = find_method(name[0]), *two = find_method(name[1]);
+    ASSERT_TRUE(one && two) << r.made;
+    EXPECT_NE(one->info.order, two->info.order) << r.made;
+    EXPECT_NE(steps[0], steps[1]) << r.made;
+    Outcome a = run(p, *one->make(), steps[0]),
+            b = run(p, *two->make(), steps[1]);
+    EXPECT_EQ(distance(p, a.end, r.end), 0) << r.made;
+    EXPECT_EQ(distance(p, a.end, b.end), r.floor) << r.made;
+    EXPECT_LT(r.floor, 1e-4) << r.made;
+  }
+}
+TEST(Problem, ReferencesKnowTheWholeEnd) {
+  for (const char* name : {"chain", "curtain"}) {
+    Problem p = problem(name);
+    const Reference r = reference(p, 2);
+    EXPECT_EQ(r.made.find("exact, srkn11b "), 0u) << r.made;
+    Srkn11b method;
+    Start s(p);
+    const End end = run(p, method,
+                        std::lround(16 * p.t_end *
+                                    omega_safe(s.cloth, s.force, s.constraint) /
+                                    Srkn11b::info.limit))
+                        .end;
+    EXPECT_LT(norm(r.end.center - end.center), 1e-10) << name;
+    EXPECT_NEAR(r.end.energy, end.energy, 1e-8) << name;
+  }
+}
+
+TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
+  Start chain(problem("chain"));
+  double right = 2 * std::sqrt(100 * 20) * std::cos(std::numbers::pi / 42);
+  double bound = omega_safe(chain.cloth, chain.force, chain.constraint);
+  EXPECT_GT(bound, right);
+  EXPECT_LT(bound, 1.02 * right);
+  // 12 K N for a large square with diagonals
+  Start cloth(problem("grid1"));
+  bound = omega_safe(cloth.cloth, cloth.force, cloth.constraint);
+  EXPECT_NEAR(bound, std::sqrt(12 * 100 * 625.0), 0.03 * bound);
+}
+
+// So what is measured is what the program does: a method that can spare
+// something spares it here, too.
+TEST(Problem, ItsCountersHideNothing) {
+  const auto force = make_combined_force(GravityForce(), MassSpringForce(),
+                                         DampingForce(0.1), CountingForce());
+  EXPECT_EQ(force.spring_multiplicity(), 1);
+  EXPECT_EQ(force.drag(), 0.1);
+  for (const CombinedConstraints& c :
+       {make_combined_constraints(PlaneConstraint()),
+        make_combined_constraints(TearConstraint())}) {
+    const CountingConstraint counting(c);
+    EXPECT_EQ(counting.nodewise(), c.nodewise());
+    Cloth g;
+    for (int i = 0; i < 3000; ++i) g.add_node(Point(0, 0, -1));
+    SymplecticEuler method;
+    for (int k = 0; k < 5; ++k) method(g, 0, 0.01, GravityForce(), counting);
+    EXPECT_EQ(counting.calls(), 5);
+    EXPECT_EQ(g.node(2999).position().z > -1, c.nodewise());
+  }
+}
+
+// A method that keeps its last force takes one sweep more in its first step.
+TEST(Problem, CountsTheSweepsThatMethodsDeclare) {
+  const std::set<std::string> keeps = {"verlet",           "yoshida4",
+                                       "srkn6b",           "srkn11b",
+                                       "augmented-verlet", "dormand-prince"};
+  // What they take depends on the force; see their MethodInfo.
+  const std::set<std::string> newton = {"implicit-midpoint", "tr-bdf2"};
+  Problem p = problem("grid0");
+  p.t_end = 0.02;
+  for (const MethodEntry& m : methods) {
+    const std::string name = m.info.name;
+    constexpr long long steps = 10;
+    auto method = m.make();
+    if (name == "dormand-prince")
+      method = std::make_unique<DormandPrince>(no_limit);
+    Outcome out = run(p, *method, steps);
+    ASSERT_TRUE(out.ok()) << name << ": " << out.reason;
+    EXPECT_EQ(out.steps, steps) << name;
+    if (newton.contains(name))
+      EXPECT_GE(out.sweeps, steps * m.info.sweeps) << name;
+    else
+      EXPECT_EQ(out.sweeps, steps * m.info.sweeps + keeps.contains(name))
+          << name;
+  }
+}
+
+TEST(Problem, SaysWhyARunFailed) {
+  Problem p = problem("grid0");
+  Verlet verlet;
+  Outcome out = run(p, verlet, 100);  // dt is 4 times the limit
+  EXPECT_EQ(out.status, Outcome::Status::diverged);
+  EXPECT_EQ(out.reason.find("energy out of bounds at t = "), 0u);
+  EXPECT_LT(out.steps, 100);
+}
+
+// ----------------------------------------------------------------- Failure.hpp
+
+class EveryFailure : public ::testing::TestWithParam<Failure> {};
+INSTANTIATE_TEST_SUITE_P(Table, EveryFailure, ::testing::ValuesIn(failures),
+                         [](const auto& info) {
+                           std::string name(info.param.method());
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+// The deviations that the table promises are apart, so what fails is told from
+// what does not.
+TEST_P(EveryFailure, FailsAndIsCured) {
+  const Failure& f = GetParam();
+  ASSERT_GE(f.size(), 2u);
+  ASSERT_GT(f.fails, f.cured);
+  const FailureRun& cure = f.runs[f.size() - 1];
+  EXPECT_TRUE(cure.method != f.method() || cure.dt < f.runs[0].dt ||
+              cure.setting > f.runs[0].setting);
+  EXPECT_GT(trace(f, f.runs[0]).deviation, f.fails);
+  const Trace cured = trace(f, cure);
+  EXPECT_EQ(cured.status, Outcome::Status::ok);
+  EXPECT_LT(cured.deviation, f.cured);
+}
+
+/** Factor of a step by which the value of a run grows from @a low to @a high,
+ * on average. */
+double growth(const Trace& trace, double low, double high) {
+  std::size_t n = 0, m = 0;
+  while (trace.samples.at(n).value < low) ++n;
+  while (trace.samples.at(m).value < high) ++m;
+  return std::pow(trace.samples[m].value / trace.samples[n].value,
+                  1.0 / double(m - n));
+}
+
+// An oscillation at h w = 2 c > 2 grows by (c + sqrt(c^2 - 1))^2 a step.
+TEST(Failure, VerletGrowsBeyondItsLimitAsTheoryHasIt) {
+  const Failure& f = failure_of("verlet");
+  const double factor = std::pow(1.05 + std::sqrt(1.05 * 1.05 - 1), 2);
+  EXPECT_NEAR(growth(trace(f, f.runs[0]), 1e-4, 1e-2), factor, 0.02 * factor);
+}
+
+// Where a picture says that the work is equal, it is.
+TEST(Failure, ComparesAtEqualWork) {
+  for (const char* name : {"symplectic-euler", "yoshida4", "pefrl", "rk4"}) {
+    const Failure& f = failure_of(name);
+    const double fails = double(trace(f, f.runs[0]).sweeps),
+                 cure = double(trace(f, f.runs[1]).sweeps);
+    EXPECT_NEAR(fails / cure, 1, 0.01) << name;
+  }
+}
+
+// ---------------------------------------------------------------- The program
+
+using CME212::contents;
+
+class WorkPrecision : public ::testing::Test {
+ protected:
+  const CME212::TestFolder folder;
+  const fs::path& dir = folder.path();
+
+  /** @return the exit status */
+  int run_program(const std::string& arguments) {
+    return folder.run("./work_precision " + arguments).status;
+  }
+  std::string err() { return contents(dir / "err"); }
+  std::string printed() { return contents(dir / "out"); }
+  std::string csv() { return (dir / "w.csv").string(); }
+
+  using Row = std::map<std::string, std::string>;  // by head of the column
+  std::vector<Row> rows() {
+    std::istringstream in(contents(csv()));
+    std::vector<std::string> head;
+    std::vector<Row> all;
+    for (std::string line, cell; std::getline(in, line);) {
+      if (line[0] == '#') continue;
+      std::vector<std::string> cells;
+      std::istringstream words(line + ",");
+      while (std::getline(words, cell, ',')) cells.push_back(cell);
+      if (head.empty()) {
+        head = cells;
+        continue;
+      }
+      EXPECT_EQ(cells.size(), head.size()) << line;
+      Row& row = all.emplace_back();
+      for (std::size_t k = 0; k < std::min(cells.size(), head.size()); ++k)
+        row[head[k]] = cells[k];
+    }
+    return all;
+  }
+};
+
+TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
+  ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
+                        "forward-euler,verlet,dormand-prince --out " +
+                        csv()),
+            0)
+      << err();
+  std::string text = contents(csv());
+  for (const char* line : {"# machine: ", "# compiler: ", "# commit: ",
+                           "# reference chain: exact, srkn11b "})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  std::set<std::string> seen;
+  for (Row& row : rows()) {
+    const bool ok = row["status"] == "ok";
+    seen.insert(row["method"] + " " + row["status"]);
+    EXPECT_EQ(row["scene"], "chain");
+    EXPECT_EQ(row["reason"].empty(), ok);
+    EXPECT_NE(row["dt [s]"].empty(), row["tolerance [m]"].empty());
+    for (const char* c : {"seconds_min [s]", "seconds_median [s]", "error [m]"})
+      EXPECT_EQ(row[c].empty(), !ok) << c;
+    for (auto& [column, cell] : row) {
+      if (column == "scene" || column == "method" || column == "norm" ||
+          column == "status" || column == "reason" || cell.empty())
+        continue;
+      std::size_t end = 0;
+      EXPECT_TRUE(std::isfinite(std::stod(cell, &end))) << column;
+      EXPECT_EQ(end, cell.size()) << column << " " << cell;
+    }
+  }
+  EXPECT_EQ(seen, (std::set<std::string>{"forward-euler diverged",
+                                         "forward-euler ok", "verlet diverged",
+                                         "verlet ok", "dormand-prince ok"}));
+}
+
+// What the columns say, found once more here.
+TEST_F(WorkPrecision, WritesWhatIsTrue) {
+  ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
+                        "forward-euler,verlet,dormand-prince --out " +
+                        csv()),
+            0)
+      << err();
+  EXPECT_NE(printed().find("chain: floor 3"), std::string::npos) << printed();
+  EXPECT_NE(printed().find("\n  1e-06 m: "), std::string::npos);
+  const Problem p = problem("chain");
+  const double floor = reference(p, 8).floor;
+  std::map<std::string, std::vector<Row>> of;
+  auto number = [](Row& row, const char* head) { return std::stod(row[head]); };
+  for (Row& row : rows()) {
+    EXPECT_NEAR(number(row, "floor [m]") / floor, 1, 1e-5);
+    if (row["status"] == "ok") {
+      EXPECT_GT(number(row, "seconds_min [s]"), 0);
+      EXPECT_LE(number(row, "seconds_min [s]"),
+                number(row, "seconds_median [s]"));
+    }
+    if (row["tolerance [m]"].empty()) {
+      EXPECT_NEAR(number(row, "dt [s]") * number(row, "steps"), 0.8, 1e-5);
+    }
+    of[row["method"]].push_back(row);
+  }
+  for (Row& row : of["forward-euler"]) {
+    EXPECT_EQ(row["dt/limit"], "");
+    EXPECT_EQ(row["sweeps"], row["steps"]);
+  }
+  // Twice the largest stable step, that step, and each half of the last one.
+  double share = 2;
+  for (Row& row : of["verlet"]) {
+    EXPECT_LE(number(row, "dt/limit"), share);
+    EXPECT_GT(number(row, "dt/limit"), 0.9 * share);
+    share /= 2;
+    if (row["status"] != "ok") continue;
+    const auto steps = std::stoll(row["steps"]);
+    EXPECT_EQ(number(row, "sweeps"), double(steps + 1));
+    Verlet verlet;
+    double error = distance(p.exact(0.8), run(p, verlet, steps).end.positions);
+    EXPECT_NEAR(number(row, "error [m]") / error, 1, 1e-5);
+  }
+  EXPECT_GT(of["verlet"].size(), 2u);
+  // A tenth of the tolerance each time, and nothing beyond ten floors.
+  auto& adaptive = of["dormand-prince"];
+  for (std::size_t k = 0; k < adaptive.size(); ++k) {
+    EXPECT_NEAR(number(adaptive[k], "tolerance [m]") * std::pow(10, 2 + k), 1,
+                1e-5);
+    if (k + 1 < adaptive.size()) {
+      EXPECT_GT(number(adaptive[k], "error [m]"), 10 * floor);
+    }
+  }
+}
+
+TEST_F(WorkPrecision, FollowsTheEnergy) {
+  ASSERT_EQ(
+      run_program("--energy --methods verlet,forward-euler --out " + csv()), 0)
+      << err();
+  std::map<std::string, std::vector<Row>> of;
+  for (Row& row : rows()) of[row["method"]].push_back(row);
+  auto &kept = of["verlet"], &grown = of["forward-euler"];
+  ASSERT_TRUE(kept.size() > 400 && grown.size() > 10);
+  for (Row& row : kept) {
+    EXPECT_LT(std::abs(std::stod(row["energy [J]"])), 0.1);
+    EXPECT_EQ(row["status"], "ok");
+  }
+  EXPECT_NEAR(std::stod(kept.back()["t [s]"]), 5, 0.02);
+  for (auto* rows : {&kept, &grown}) {
+    EXPECT_EQ(rows->front()["t [s]"], "0");
+    EXPECT_EQ(rows->front()["energy [J]"], "0");
+  }
+  EXPECT_GT(std::stod(grown.back()["energy [J]"]), 1);
+  EXPECT_EQ(grown.back()["status"], "diverged");
+  EXPECT_EQ(grown[grown.size() - 2]["status"], "ok");
+}
+
+TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
+  ASSERT_EQ(run_program("--grid-refinement --quick --quiet --out " + csv()), 0)
+      << err();
+  std::map<std::string, std::vector<double>> error, dt;
+  for (Row& row : rows()) {
+    error[row["refined"]].push_back(std::stod(row["error [m]"]));
+    dt[row["refined"]].push_back(std::stod(row["dt [s]"]));
+    EXPECT_NEAR((std::stod(row["sweeps"]) - 1) * dt[row["refined"]].back(),
+                0.25, 1e-5);
+  }
+  for (const char* refined : {"grid", "both"}) {
+    auto& e = error[refined];
+    ASSERT_EQ(e.size(), 3u);
+    EXPECT_GT(e[0], 2 * e[1]);
+    EXPECT_GT(e[1], 2 * e[2]);
+  }
+  EXPECT_EQ(error["grid"].back(), error["both"].back());
+  EXPECT_NEAR(error["step"].back() / error["step"].front(), 1, 1e-3);
+  EXPECT_EQ(dt["grid"].front(), dt["grid"].back());
+  for (const char* refined : {"step", "both"})
+    EXPECT_NEAR(dt[refined].front() / dt[refined].back(), 4, 0.1);
+}
+
+TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
+  std::set<std::string> names, styles;
+  std::istringstream in(contents("charts/methods.csv"));
+  for (std::string line; std::getline(in, line);) {
+    if (line[0] == '#') continue;
+    std::size_t color = line.find(','), marker = line.find(',', color + 1);
+    names.insert(line.substr(0, color));
+    EXPECT_TRUE(styles.insert(line.substr(marker)).second)
+        << line << ": marker and dash are another's";
+  }
+  for (const MethodEntry& m : methods)
+    EXPECT_TRUE(names.contains(m.info.name)) << m.info.name;
+}
+
+TEST_F(WorkPrecision, WritesHowEachMethodFails) {
+  ASSERT_EQ(run_program("--failures --out " + csv()), 0) << err();
+  std::map<std::string, std::map<std::string, std::string>> roles;
+  std::map<std::string, int> labels;
+  for (Row& row : rows()) {
+    roles[row["failure"]][row["run"]] = row["role"];
+    for (const char* c : {"t [s]", "value"})
+      EXPECT_TRUE(std::isfinite(std::stod(row[c]))) << row["failure"];
+    labels[row["failure"]] += !row["label"].empty();
+  }
+  ASSERT_EQ(roles.size(), failures.size());
+  const std::string text = contents(csv()), said = contents(dir / "out");
+  for (const Failure& f : failures) {
+    const std::string name(f.method());
+    EXPECT_EQ(roles[name].size(), f.size()) << name;
+    EXPECT_EQ(roles[name]["0"], "fails") << name;
+    EXPECT_EQ(roles[name][std::to_string(f.size() - 1)], "cure") << name;
+    EXPECT_EQ(labels[name], f.size()) << name;
+    EXPECT_NE(text.find("# title " + name + ": " + f.title), std::string::npos);
+    EXPECT_NE(said.find("\n  " + std::string(f.runs[f.size() - 1].method)),
+              std::string::npos);
+  }
+}
+
+// ---------------------------------------------------------------- precision
+
+std::vector<Problem> small_problems() {
+  std::vector<Problem> two = {grid_problem("small", "", 0.1, 5),
+                              problem("tear")};
+  two[1].build = two[0].build, two[1].t_end = 0.1;
+  return two;
+}
+std::string ends_of(const std::vector<Problem>& problems) {
+  std::ostringstream out;
+  write_ends(problems, out);
+  return out.str();
+}
+
+TEST(Precision, TheSameRunsInTheSamePrecisionAreNotApart) {
+  const auto problems = small_problems();
+  const auto all = compare_ends(problems, ends_of(problems), "ends");
+  ASSERT_EQ(all.size(), 12u);
+  for (const Compared& c : all) {
+    EXPECT_EQ(c.distance, 0) << c.scene << ' ' << c.method << ' ' << c.steps;
+    EXPECT_NEAR(c.dt * double(c.steps), 0.1, 1e-15);
+  }
+}
+
+// One node of 25 moved by 1e-5 m: 1e-5/sqrt(25).
+TEST(Precision, TheDistanceIsTheRmsOverTheNodes) {
+  const auto problems = small_problems();
+  std::string text = ends_of(problems);
+  const auto end = text.find('\n'), last = text.rfind(' ', end) + 1;
+  const double z = std::stod(text.substr(last, end - last)) + 1e-5;
+  text.replace(last, end - last, CME212::to_text(z));
+  const auto all = compare_ends(problems, text, "ends");
+  EXPECT_NEAR(all[0].distance, 2e-6, 1e-10);
+  EXPECT_EQ(all[1].distance, 0);
+  std::ostringstream out;
+  write_compared({all[0], {"small", "verlet", Norm::positions, .1, 1, 3e-6}},
+                 out);
+  EXPECT_NE(out.str().find("# single precision floor small: 2e-06 m\n"),
+            std::string::npos)
+      << out.str();
+}
+
+TEST(Precision, RefusesWhatIsNoEnd) {
+  const auto problems = small_problems();
+  std::string text = ends_of(problems);
+  auto refused = [&](const std::string& wrong, const std::string& message) {
+    try {
+      compare_ends(problems, wrong, "ends");
+      ADD_FAILURE() << message << ": taken";
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos)
+          << e.what();
+    }
+  };
+  refused("\n", "ends:1: no end of a run");
+  refused("nowhere" + text.substr(5), "ends:1: no end of a run");
+  refused("small magic 5 1 0 0 0", "ends:1: no end of a run");
+  refused("small verlet 0 1 0 0 0", "ends:1: no end of a run");
+  refused("small verlet 9 1 0 0 0 1 2 3", "ends:1: 1 positions, expected 25");
+  refused(text.replace(text.find('\n') + 1, 5, "large"), "ends:2: ");
+}
+
+// What is drawn is there for every scene, and of the size of float's round-off:
+// half of its epsilon is 6e-8, of a cloth of 1 m; contact magnifies it.
+TEST(Precision, TheChartsHaveTheFloorOfEachScene) {
+  const std::string text = contents("charts/float_floor.csv");
+  for (const Problem& p : make_problems()) {
+    const std::string head = "# single precision floor " + p.name + ": ";
+    const auto at = text.find(head);
+    ASSERT_NE(at, std::string::npos) << p.name;
+    const double floor = std::stod(text.substr(at + head.size()));
+    EXPECT_GT(floor, 1e-8) << p.name;
+    EXPECT_LT(floor, p.norm == Norm::positions ? 1e-4 : 1e-3) << p.name;
+  }
+}
+
+// Each method has a section in docs/methods.md, and there the picture.
+TEST_F(WorkPrecision, DocumentsShowHowEachMethodFails) {
+  const std::string text = contents("docs/methods.md");
+  for (const Failure& f : failures) {
+    const std::string name(f.method());
+    const auto section = text.find("`" + name + "`, order ");
+    ASSERT_NE(section, std::string::npos) << name;
+    const auto picture = text.find(std::string("![") + f.title +
+                                   "](../charts/failure-" + name + ".svg)");
+    ASSERT_NE(picture, std::string::npos) << name;
+    EXPECT_GT(picture, section) << name;
+  }
+}
+
+TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
+  auto refused = [this](const std::string& arguments, const char* message) {
+    EXPECT_EQ(run_program(arguments + " --out " + csv()), 2) << arguments;
+    EXPECT_NE(err().find(message), std::string::npos) << err();
+    EXPECT_FALSE(fs::exists(csv()) || fs::exists(csv() + ".part"));
+  };
+  refused("--scenes nowhere",
+          "--scenes: there is no 'nowhere'; there are: chain curtain grid0");
+  refused("--methods verlet,magic", "--methods: there is no 'magic'");
+  refused("--repeats 0", "--repeats is 0, expected 1 or more");
+  refused("--nodes data/grid0.nodes", "--tets");
+  refused("--nodes none --tets none", "none:0: can't be opened");
+  refused("--energy --grid-refinement", "--grid-refinement");
+  refused("--energy --failures", "--energy");
+  refused("--ends --floor none", "--floor");
+  refused("--floor none", "none:0: can't be opened");
+  refused("--t-end -1", "--t-end is -1, expected a positive time [s]");
+  EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
+}
+
+TEST_F(WorkPrecision, TakesAMeshOfOnesOwn) {
+  ASSERT_EQ(run_program("--quick --methods pefrl --nodes data/grid0.nodes "
+                        "--tets data/grid0.tets --t-end 0.1 --out " +
+                        csv()),
+            0)
+      << err();
+  auto all = rows();
+  ASSERT_FALSE(all.empty());
+  for (Row& row : all) {
+    EXPECT_EQ(row["scene"], "mesh");
+    EXPECT_NEAR(std::stod(row["dt [s]"]) * std::stod(row["steps"]), 0.1, 1e-6);
+  }
+}
+
+}  // namespace
