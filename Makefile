@@ -117,7 +117,8 @@ peers-chart: build/peers
 	    "commit $$(git describe --always --dirty)"; \
 	  build/peers; } > build/peers.csv
 	mv build/peers.csv charts/peers.csv
-	gnuplot -e "csv='charts/peers.csv'; out='charts/peers'" peers/chart.gp
+	gnuplot -e "csv='charts/peers.csv'; out='charts/peers.svg'" \
+	  peers/chart.gp
 
 # Graphs and a cloth of other libraries beside ours: about two minutes.
 build/graph_peers: peers/graph_peers.cpp peers/contenders.hpp $(wildcard *.hpp)
@@ -188,8 +189,8 @@ charts-quick:
 ADVISED ?= 100
 adviser-suite: adviser_suite
 	./adviser_suite --scenes $(ADVISED) --out charts/adviser.csv
-	@for kind in svg png; do gnuplot -e "csv='charts/adviser.csv'; \
-	  out='charts/adviser'; kind='$$kind'" charts/adviser.gp; done
+	@gnuplot -e "csv='charts/adviser.csv'; out='charts/adviser.svg'" \
+	  charts/adviser.gp
 
 # What a step costs on this machine, docs/speed.md: charts/speed.sh.
 speed:
