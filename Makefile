@@ -159,8 +159,8 @@ stability-soak:
 	  SANITIZE= CXXFLAGS='-O3 $(CXXFLAGS)'
 	LIMITS_SIDES=100 SOAK_SCENES=$(SCENES) build/soak/test_limits
 
-# The pictures of the README and of docs, most of which test_screen compares
-# with: look at them. A failure exits with 3.
+# The pictures of the README and of docs, and those that test_screen compares
+# with, tests/pictures: look at them. A failure exits with 3.
 pictures: test_screen mass_spring mass_spring_problem1 mass_spring_diagonals mass_spring_forces
 	WRITE_PICTURES=1 ASAN_OPTIONS=detect_leaks=0 ./test_screen
 	./mass_spring data/grid3.* --dt 0.0005 --t-end 0.6 --strain --quiet \
@@ -176,6 +176,7 @@ pictures: test_screen mass_spring mass_spring_problem1 mass_spring_diagonals mas
 	  ./mass_spring_$$stage data/$$grid.* "$$@" --quiet \
 	    --screenshot docs/pictures/fail-$$name.png; \
 	  [ $$? = 3 ] || { echo "fail-$$name does not fail"; exit 1; }; done
+	tools/shrink_pictures.sh docs/pictures/*.png
 
 # The charts, charts/README.md; QUICK=1, SCENE=grid1 or METHODS=verlet,pefrl
 # draws them in build/charts.
