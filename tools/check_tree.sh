@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Hold what can be seen without compiling, in all files that git tracks or
-# would add: programs, sizes, layout, and nothing left unfinished.
+# would add: programs, sizes, layout, pictures, and nothing left unfinished.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 longest_graph=700  # lines of Graph.hpp
 longest=500        # lines of any other header or program
 longest_test=900   # lines of a test
+widest=800         # pixels of a picture
 
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT
@@ -53,6 +54,14 @@ lines "is never compiled" -E '^[[:space:]]*#[[:space:]]*if +(0|false)\b' \
 lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}"
 lines "has a character that is not ASCII" -P '[^\x00-\x7F]' "${code[@]}"
 lines "ends in white space" -E '[[:space:]]$' "${texts[@]}"
+
+# Charts are SVG. The width of a PNG is its bytes 16 to 19.
+while IFS= read -r file; do
+  [[ $file != *charts/* ]] || echo "$file:1: is a chart, but no SVG"
+  width=$(od -An -tu4 --endian=big -j16 -N4 "$file")
+  [ "$width" -le "$widest" ] ||
+    echo "$file:1: is wider than $widest pixels: tools/shrink_pictures.sh"
+done < <(files '*.png') >>"$faults"
 
 # The layout is that of clang-format 14; another version may differ in places.
 formatter=$(command -v clang-format-14 || command -v clang-format) ||

@@ -1,14 +1,10 @@
 # What adviser_suite found: predicted against real error, and chosen against
 # best cost, a dot a scene that got advice.
-#   gnuplot -e "csv='FILE.csv'; out='PICTURE'; kind='svg'" charts/adviser.gp
+#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" charts/adviser.gp
 set encoding utf8
 set datafile separator ','
-if (kind eq 'svg') {
-  set terminal svg size 1000,480 font 'DejaVu Sans,13' background '#ffffff'
-} else {
-  set terminal pngcairo size 1000,480 font 'DejaVu Sans,10' background '#ffffff'
-}
-set output out.'.'.kind
+set terminal svg size 1000,480 font 'DejaVu Sans,13' background '#ffffff'
+set output out
 set multiplot layout 1,2
 set logscale xy
 set format xy '10^{%L}'

@@ -1,14 +1,10 @@
 # How the speed of a step went, from measurement to measurement.
-#   gnuplot -e "csv='FILE.csv'; out='PICTURE'; kind='svg'; machine='NAME'" \
+#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'; machine='NAME'" \
 #     charts/history.gp
 set encoding utf8
 set datafile separator ','
-if (kind eq 'svg') {
-  set terminal svg size 900,420 font 'DejaVu Sans,13' background '#ffffff'
-} else {
-  set terminal pngcairo size 900,420 font 'DejaVu Sans,10' background '#ffffff'
-}
-set output out.'.'.kind
+set terminal svg size 900,420 font 'DejaVu Sans,13' background '#ffffff'
+set output out
 commits = system("tail -n +2 ".csv." | cut -d, -f2 | uniq")
 place(c) = sum [k = 1:words(commits)] (word(commits, k) eq c ? k : 0)
 set xtics ()

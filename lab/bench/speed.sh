@@ -30,8 +30,6 @@ for file in "$folder/bench.json" "$folder/bench-float.json"; do
   done >>"$history"
 done
 
-for kind in svg png; do
-  gnuplot -e "csv='$history'; out='$folder/history'; kind='$kind'; \
-    machine='$machine'" charts/history.gp
-done
+gnuplot -e "csv='$history'; out='$folder/history.svg'; machine='$machine'" \
+  charts/history.gp
 echo "$folder/history.svg"

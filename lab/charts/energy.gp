@@ -1,6 +1,6 @@
 # Total energy against time, and how far it has been off so far: all methods on
 # a cloth without drag, whose energy is 0 for ever.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/energy'; kind='svg'" \
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/energy.svg'" \
 #     charts/energy.gp
 key = 1
 key_is_method = 1

@@ -1,6 +1,6 @@
 # How a method fails, and a cure, against time.
 #   gnuplot -e "csv='charts/failures.csv'; scene='verlet'; \
-#     out='charts/failure-verlet'; kind='svg'" charts/failures.gp
+#     out='charts/failure-verlet.svg'" charts/failures.gp
 # Solid: what fails; dashed: the cure; dotted: further runs; gray: the truth.
 key = 2
 key_is_method = 1
@@ -33,7 +33,7 @@ weight(k) = role(k) eq 'fails' ? 2.6 : 1.8
 n = words(roles)
 
 set title '{/:Bold '.scene.'}: '.comment('title '.scene).\
-  "\n{".(kind eq 'svg' ? '/=11' : '/=15').' '.comment('caption '.scene).'}' \
+  "\n{/=11 ".comment('caption '.scene).'}' \
   offset 0, -0.3
 unset key
 set lmargin 11

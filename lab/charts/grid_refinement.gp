@@ -1,6 +1,6 @@
 # Error against cost when the grid, the step, or both are refined.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/grid_refinement'; \
-#     kind='svg'" charts/grid_refinement.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/grid_refinement.svg'" \
+#     charts/grid_refinement.gp
 key = 1
 key_is_method = 0
 height = 440

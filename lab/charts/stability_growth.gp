@@ -1,6 +1,6 @@
 # Growth of a tiny disturbance against stretch and step, a panel for a method.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_growth'; \
-#     kind='svg'" charts/stability_growth.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_growth.svg'" \
+#     charts/stability_growth.gp
 key = 1
 key_is_method = 1
 height = 660

@@ -1,7 +1,7 @@
 # The largest stable step against the number of nodes: measured, predicted and
 # safe; below, how far measured and predicted are apart.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_limits'; \
-#     kind='svg'" charts/stability_limits.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_limits.svg'" \
+#     charts/stability_limits.gp
 key = 3
 key_is_method = 1
 height = 720

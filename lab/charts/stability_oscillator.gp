@@ -1,7 +1,7 @@
 # Growth per step of an oscillator against dt omega and dt gamma, a panel for a
 # method; the line is the boundary by theory.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_oscillator'; \
-#     kind='svg'" charts/stability_oscillator.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_oscillator.svg'" \
+#     charts/stability_oscillator.gp
 key = 1
 key_is_method = 1
 height = 660

@@ -1,7 +1,7 @@
 # Predicted over measured limit on the assignment's falling cloth: a column for
 # a method, a point for a grid.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_table'; \
-#     kind='svg'" charts/stability_table.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_table.svg'" \
+#     charts/stability_table.gp
 key = 3
 key_is_method = 1
 height = 480

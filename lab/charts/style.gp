@@ -1,9 +1,8 @@
 # What all charts share. Given: csv, the file of data; height [pixels], and
-# width if it is not 1000; out, the picture's name without its ending; kind, svg
-# or png; scene, or '' for all rows of csv; key, the column of csv that names
-# the method, and key_is_method, 0 if it names something else. Makes: names, the
-# methods in csv, in the order of charts/methods.csv; stops if one of them is
-# not in that table.
+# width if it is not 1000; out, the file to write, an SVG; scene, or '' for all
+# rows of csv; key, the column of csv that names the method, and key_is_method,
+# 0 if it names something else. Makes: names, the methods in csv, in the order
+# of charts/methods.csv; stops if one of them is not in that table.
 set encoding utf8
 set datafile separator ','
 table = 'charts/methods.csv'
@@ -43,20 +42,15 @@ do for [m in there] {
 }
 
 if (!exists('width')) { width = 1000 }
-if (kind eq 'svg') {
-  set terminal svg size width,height dynamic background rgb 'white' \
-    font 'DejaVu Sans,Arial,sans-serif,13'
-} else {
-  set terminal pngcairo size 1.5*width,1.5*height background rgb 'white' \
-    font 'DejaVu Sans,17' fontscale 0.95 linewidth 1.5 pointscale 1.3
-}
-set output out.'.'.kind
+set terminal svg size width,height dynamic background rgb 'white' \
+  font 'DejaVu Sans,Arial,sans-serif,13'
+set output out
 set border 3 lw 1 lc rgb '#555555'
 set tics nomirror out scale 0.6 textcolor rgb '#222222'
 set grid xtics ytics lc rgb '#e4e4e4' lw 1 dt 1
 set dashtype 2 (10, 4)
 set dashtype 3 (2, 4)
-small = kind eq 'svg' ? ',10' : ',13'
+small = ',10'
 set dashtype 4 (8, 3, 2, 3)
 
 # A legend drawn by hand, as gnuplot's own can't be held in columns: entry k

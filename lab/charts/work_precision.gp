@@ -1,5 +1,5 @@
 # Error against work for one scene: force sweeps at the left, time at the right.
-#   gnuplot -e "csv='FILE.csv'; scene='grid1'; out='charts/grid1'; kind='svg'" \
+#   gnuplot -e "csv='FILE.csv'; scene='grid1'; out='charts/grid1.svg'" \
 #     charts/work_precision.gp
 key = 2
 key_is_method = 1
