@@ -3,6 +3,7 @@
  * The loops that a step spends its time in, written once for registers of any
  * length (Lanes.hpp): springs, weight, drift and kick. README.md of this room
  * walks through them. */
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -16,6 +17,9 @@ static_assert(sizeof(NodeData) == 4 * sizeof(Real) &&
               sizeof(EdgeData) == 2 * sizeof(Real));
 
 namespace kernels {
+
+/** The share of a cache that one core can count on [bytes]: README.md. */
+inline constexpr std::size_t cache = 2 << 20;
 
 /** The pull [N/m] of a spring: the force on its one end is the pull times u,
  * the way [m] to the other end. K (l - L)/l with l = |u|, so positive when

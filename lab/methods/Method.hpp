@@ -48,19 +48,24 @@ class Method {
   /** Forget what was kept from the last step. */
   virtual void restart() {}
 
-  /** The call of symp_euler_step(): any force, any constraint. */
+  /** The call of symp_euler_step(): any force, any constraint; or their plans,
+   * which save making them in each step. */
   template <typename F, typename C = ZeroConstraint>
   double operator()(Cloth& g, double t, double dt, F&& force,
                     C&& constraint = C()) {
-    return step(g, t, dt, as<ZeroForce, FunctionForce>(force),
-                as<ZeroConstraint, FunctionConstraint>(constraint));
+    return step(
+        g, t, dt, as<ForcePlan, ZeroForce, FunctionForce>(force),
+        as<ConstraintPlan, ZeroConstraint, FunctionConstraint>(constraint));
   }
 
  private:
-  /** @a x itself if it is a Base, else a Base that calls it. */
-  template <typename Base, template <typename> class Adapter, typename T>
+  /** @a x itself if it is a Plan or a Base, else a Base that calls it. */
+  template <typename Plan, typename Base, template <typename> class Adapter,
+            typename T>
   static decltype(auto) as(T& x) {
-    if constexpr (std::derived_from<std::remove_const_t<T>, Base>)
+    if constexpr (std::derived_from<std::remove_const_t<T>, Plan>)
+      return static_cast<const Plan&>(x);
+    else if constexpr (std::derived_from<std::remove_const_t<T>, Base>)
       return static_cast<const Base&>(x);
     else
       return Adapter([&x]<typename... Args>(Args&&... args) {
