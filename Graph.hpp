@@ -438,14 +438,13 @@ class Graph {
    * nothing; but lists of neighbors may, if most are far from full.
    * Invalidates: references and spans.   Keeps: all else. */
   void reserve(size_type nodes, size_type edges) {
-    using graph_detail::make_room;
     nodes_.reserve(nodes);
-    make_room(position_, nodes + 1);
-    make_room(node_value_, nodes);
-    make_room(neighbors_of_, nodes);
+    position_.reserve(nodes + 1);
+    node_value_.reserve(nodes);
+    neighbors_of_.reserve(nodes);
     edges_.reserve(edges);
-    make_room(ends_, edges);
-    make_room(edge_value_, edges);
+    ends_.reserve(edges);
+    edge_value_.reserve(edges);
     pool_.reserve(nodes, 2 * std::size_t(edges));
   }
 
@@ -490,7 +489,6 @@ class Graph {
   std::span<const Point> positions() const {
     return {position_.data(), node_slots()};
   }
-  // No Array of bool is a plain one: for V or E = bool these don't compile.
   std::span<V> node_values() { return {node_value_.data(), node_slots()}; }
   std::span<const V> node_values() const {
     return {node_value_.data(), node_slots()};
