@@ -86,34 +86,33 @@ int main(int argc, char** argv) try {
       return symp_euler_step(g, t, dt, force, torn);
   };
 
-  double printed = -t_end;  // when a line was last printed [s]
-  const auto print = [&](double t) {
-    if (t < printed + t_end / 10 - dt / 2) return;
-    std::cout << "t = " << t << " s, energy " << energy(g) << " J, "
-              << g.num_nodes() << " nodes" << std::endl;
-    printed = t;
-  };
 #ifdef MASS_SPRING_VIEWER
   std::optional<CME212::SDLViewer> viewer;
   if (CME212::SDLViewer::has_display()) viewer.emplace();
-  std::map<Node, unsigned> node_map;
   CME212::Clock clock;
-  const auto draw = [&](double t) {
-    print(t);
-    if (!viewer) return true;
-    const bool is_new = node_map.size() != g.num_nodes();  // or torn
-    if (is_new) viewer->clear(), node_map.clear();
-    viewer->add_nodes(g.node_begin(), g.node_end(), node_map);
-    if (is_new) viewer->add_edges(g.edge_begin(), g.edge_end(), node_map);
-    viewer->set_label(t);
-    CME212::sleep(dt - clock.seconds());  // no faster than the real cloth
-    clock.start();
-    return viewer->wait_while_paused();
-  };
-  if (!viewer) std::cout << "no display: running without a window\n";
 #else
-  const auto draw = [&](double t) { return print(t), true; };
+  constexpr bool viewer = false;
 #endif
+  if (!viewer) std::cout << "no display: running without a window\n";
+  double next_line = 0;  // [s]
+  // Returns false if the window was closed.
+  const auto draw = [&](double t) {
+    if (t > next_line - dt / 2) {
+      std::cout << "t = " << t << " s, energy " << energy(g) << " J, "
+                << g.num_nodes() << " nodes" << std::endl;
+      next_line += t_end / 10;
+    }
+#ifdef MASS_SPRING_VIEWER
+    if (!viewer) return true;
+    const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
+    if (viewer->wants_frame() || t > t_end - dt / 2) show();
+    CME212::sleep(dt - clock.seconds());  // no faster than the clock
+    clock.start();
+    return viewer->wait_while_paused(show);
+#else
+    return true;
+#endif
+  };
 
   std::string failure;
   std::thread simulation([&] {
@@ -122,9 +121,9 @@ int main(int argc, char** argv) try {
     for (auto left = std::llround(t_end / dt); left > 0; --left) {
       if (!draw(t = step(t))) return;
       if (auto n = lost_node(g); n) {
-        failure = "diverged: node " + std::to_string(n->index()) +
-                  " is lost at t = " + CME212::short_text(t) +
-                  " s; ./cloth NODES TETS --dt auto knows a step that works";
+        failure = "diverged: at t = " + CME212::short_text(t) + " s node " +
+                  std::to_string(n->index()) + " is not finite; './cloth " +
+                  argv[1] + ' ' + argv[2] + " --dt auto' finds a stable step";
         return;
       }
     }
