@@ -108,7 +108,12 @@ void check(GraphType& g, const Model& model) {
   ASSERT_EQ(g.num_edges(), model.size())
       << "num_edges() is the number of edges added and not removed";
   std::set<Ends> found;
-  for (size_type i = 0; i < g.num_edges(); ++i) found.insert(ends(g.edge(i)));
+  for (size_type i = 0; i < g.num_edges(); ++i) {
+    EdgeType e = g.edge(i);
+    ASSERT_TRUE(g.has_node(e.node1()) && g.has_node(e.node2()))
+        << "node1() and node2() of an edge are nodes of the graph";
+    found.insert(ends(e));
+  }
   for (const auto& [e, value] : model)
     ASSERT_EQ(found.count(e), 1u)
         << "an edge that was not removed is some edge(i): not " << text(e);
@@ -122,18 +127,23 @@ void check(GraphType& g, const Model& model) {
     Model here = edges_at(model, n.value());
     EXPECT_EQ(n.degree(), here.size())
         << "degree() is the number of edges at a node";
+    size_type steps = 0;
+    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
+      ASSERT_LT(steps++, here.size())
+          << "from n.edge_begin() to n.edge_end() are degree() steps";
+      EXPECT_TRUE((*it).node1() == n)
+          << "an edge of n.edge_begin() has n as its node1()";
+    }
     check_visits(n.edge_begin(), n.edge_end(), here,
                  "from n.edge_begin() to n.edge_end()");
     if (::testing::Test::HasFatalFailure()) return;
-    for (auto it = n.edge_begin(); it != n.edge_end(); ++it)
-      EXPECT_TRUE((*it).node1() == n)
-          << "an edge of n.edge_begin() has n as its node1()";
-    for (size_type j = 0; j < g.num_nodes(); ++j)
-      if (j != i)
-        EXPECT_EQ(g.has_edge(n, g.node(j)),
-                  model.count(ends(n.value(), g.node(j).value())) == 1)
-            << "has_edge(a, b) is true of the ends of an edge, in both orders, "
-            << "and of no others: " << n.value() << ", " << g.node(j).value();
+    for (size_type j = 0; j < g.num_nodes(); ++j) {
+      if (j == i) continue;
+      EXPECT_EQ(g.has_edge(n, g.node(j)),
+                model.count(ends(n.value(), g.node(j).value())) == 1)
+          << "has_edge(a, b) is true of the ends of an edge, in both orders, "
+          << "and of no others: " << n.value() << ", " << g.node(j).value();
+    }
   }
 }
 

@@ -178,13 +178,6 @@ TEST_F(Edges, BothViewsShareOneValue) {
   EXPECT_EQ(&turned.value(), &e[0].value());
 }
 
-TEST_F(Edges, LengthIsTheDistanceNow) {
-  EXPECT_EQ(e[2].length(), 3);
-  n[3].position() = Point(0, 3, 4);
-  EXPECT_EQ(e[2].length(), 5);
-  EXPECT_EQ(g.add_edge(n[3], n[0]).length(), 5);
-}
-
 using EdgesDeathTest = Edges;
 
 TEST_F(EdgesDeathTest, AddEdgeNeedsTwoNodesOfItsOwn) {

@@ -1,7 +1,8 @@
 /** @file test_graph_nodes.cpp
  * What Graph.hpp promises of nodes beyond the assignment, which test_nodes.cpp
- * tests: handles that survive, the orders of indices, random access, ids, spans,
- * assertions. Edges: test_graph_edges.cpp. Histories, work: test_graph.cpp. */
+ * tests: handles that survive, the order of the indices, random access, ids,
+ * spans, assertions. Edges: test_graph_edges.cpp; work and long random
+ * histories: test_graph.cpp. */
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -93,22 +94,6 @@ TEST_F(Nodes, AddNodeGivesTheNextIndexAndKeepsTheOthers) {
   for (int i = 0; i < 5; ++i) {
     expect_intact(i);
     EXPECT_EQ(n[i].index(), unsigned(i));
-  }
-}
-
-TEST_F(Nodes, AValueNotGivenIsTheDefault) {
-  EXPECT_EQ(g.add_node(Point()).value(), 0);
-}
-
-TEST_F(Nodes, TwoNodesMayShareAPosition) {
-  EXPECT_NE(g.add_node(Point(7)), g.add_node(Point(7)));
-}
-
-TEST_F(Nodes, NodeAndIndexAreInverse) {
-  g.remove_node(n[1]);
-  for (unsigned i = 0; i < g.num_nodes(); ++i) {
-    EXPECT_EQ(g.node(i).index(), i);
-    EXPECT_EQ(g.node(g.node(i).index()), g.node(i));
   }
 }
 
