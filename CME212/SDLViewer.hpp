@@ -53,6 +53,9 @@ class SDLViewer : public SceneBuilder {
     int width = 1024, height = 768;  ///< of the window and of snapshots
     std::string title = "mass_spring";
     bool offscreen = false;  ///< draw without a display, never show a window
+    /** The program serves the keys r and s: take_restart(), strain_colors().
+     * Otherwise they do nothing, and the help does not name them. */
+    bool restarts = false, colors = false;
   };
 
   /** Make a window; it appears with event_loop() or launch(). One viewer at a
@@ -141,7 +144,8 @@ class SDLViewer : public SceneBuilder {
   }
   /** Wait while paused.
    * @return true if one step may be made now: not paused, or step was pressed;
-   *         false at once if closed() or a restart was asked for. */
+   *         false at once if closed() or a restart was asked for.
+   * Whoever never calls it has no pause, and the help names none. */
   bool wait_while_paused() {
     return wait_while_paused([] {});
   }
@@ -152,6 +156,7 @@ class SDLViewer : public SceneBuilder {
   bool wait_while_paused(F show) {
     std::unique_lock lock(mutex_);
     std::optional<bool> shown_colors;
+    pauses_ = true;
     while (!closed_ && !restart_ && paused_ && steps_ == 0) {
       if (shown_colors == strain_colors_) {
         control_.wait(lock);
@@ -261,7 +266,8 @@ class SDLViewer : public SceneBuilder {
   OverlayText text_;
   GLCamera camera_;
   std::optional<BoundingBox> look_at_ = GLCamera::usual_box();  // empty: all
-  int steps_ = 0;  // to be made while paused
+  int steps_ = 0;        // to be made while paused
+  bool pauses_ = false;  // whether the program asks
   bool restart_ = false;
   // Written under the lock only, read without:
   std::atomic<bool> paused_ = false, closed_ = false, strain_colors_ = false;
@@ -330,10 +336,17 @@ class SDLViewer : public SceneBuilder {
 
   void add_state(OverlayText& text) const {
     const double rate = frame_period_ > 0 ? 1 / frame_period_ : 0;
-    text.state =
-        paused_ ? "paused" : std::to_string(std::lround(rate)) + " frames/s";
-    if (!text.message.empty()) text.state = "stopped: r restarts, q quits";
-    text.help = {"space pause   n step   r restart   s strain   c center",
+    text.state = pauses_ && paused_
+                     ? "paused"
+                     : std::to_string(std::lround(rate)) + " frames/s";
+    if (!text.message.empty())
+      text.state = options_.restarts ? "stopped: r restarts, q quits"
+                                     : "stopped: q quits";
+    std::string keys;
+    if (pauses_) keys += "space pause   n step   ";
+    if (options_.restarts) keys += "r restart   ";
+    if (options_.colors) keys += "s strain   ";
+    text.help = {keys + "c center",
                  "drag turn   right drag move   wheel zoom   q quit"};
   }
 
@@ -387,11 +400,13 @@ class SDLViewer : public SceneBuilder {
           ++steps_;
         });
       case SDLK_r:
+        if (!options_.restarts) return;
         return change([&] {
           restart_ = true;
           steps_ = 0;
         });
       case SDLK_s:
+        if (!options_.colors) return;
         return change([&] { strain_colors_ = !strain_colors_; });
       case SDLK_c:
         return change([&] { look_at_ = BoundingBox(); });

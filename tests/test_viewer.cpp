@@ -24,8 +24,8 @@
 #include "CME212/Image.hpp"
 #include "CME212/SFML_Viewer.hpp"
 #include "CME212/SceneBuilder.hpp"
-#include "tests/TestFolder.hpp"
 #include "Graph.hpp"
+#include "tests/TestFolder.hpp"
 
 namespace {
 
@@ -512,7 +512,9 @@ TEST(SceneBuilder, WantsFrameUntilOneWaits) {
 
 // ----------------------------------------------------------------- SDLViewer
 
-SDLViewer::Options small() { return {400, 300, "test_viewer", true}; }
+SDLViewer::Options small() {
+  return {400, 300, "test_viewer", true, true, true};
+}
 
 /** Number of pixels in which two pictures differ, in columns [x0, x1) and
  * rows [y0, y1) as fractions of the picture. */
@@ -884,6 +886,24 @@ TEST(SDLViewerThreads, LaunchLeavesTheMainThreadToTheSimulation) {
   user.join();
 }
 
+// As the course's programs, which know of no restart and of no coloring.
+TEST(SDLViewerThreads, KeysThatTheProgramDoesNotServeDoNothing) {
+  SDLViewer viewer({400, 300, "test_viewer", true});
+  press(SDLK_r);
+  press(SDLK_s);
+  press(SDLK_q);
+  viewer.event_loop();
+  EXPECT_FALSE(viewer.take_restart());
+  EXPECT_FALSE(viewer.strain_colors());
+  SDLViewer serves(small());
+  press(SDLK_r);
+  press(SDLK_s);
+  press(SDLK_q);
+  serves.event_loop();
+  EXPECT_TRUE(serves.take_restart());
+  EXPECT_TRUE(serves.strain_colors());
+}
+
 /** The picture before and after the user did @a event, and quit. */
 std::array<Image, 2> around(const SDL_Event& event) {
   TestGraph g;
@@ -965,7 +985,7 @@ TEST(SDLViewerWindow, ObeysTheKeyboard) {
   Environment display("DISPLAY", server.display().c_str());
   Environment driver("SDL_VIDEODRIVER", nullptr);
   ASSERT_TRUE(SDLViewer::has_display());
-  SDLViewer viewer({640, 480, "test_viewer_window", false});
+  SDLViewer viewer({640, 480, "test_viewer_window", false, true, true});
   const std::string window =
       "xdotool search --sync --onlyvisible --name test_viewer_window ";
   auto key = [&](SDL_Keycode k) {
