@@ -11,7 +11,7 @@ lab_main   := lab/cloth.cpp lab/advice/adviser_suite.cpp \
               lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := data/make_grid.cpp docs/example_graph.cpp
-lab_lib    := $(filter-out $(lab_main),$(wildcard lab/*/*.cpp))
+lab_lib    := $(filter-out $(lab_main),$(wildcard lab/*.cpp lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
 LAB_PROGRAMS := $(call names,$(lab_main))
@@ -63,5 +63,11 @@ $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan
 $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B)/%
 $(O)cloth: $(B)/cloth
 	@ln -f $< $@ 2>/dev/null || cp $< $@
+
+.PHONY: quick check check-full help-lab make_grid example_graph
+quick check check-full:
+	@tools/check.sh $@
+format:
+	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -48,8 +48,10 @@ class Screen {
   /** Throws NoDisplay: no display for a window, or no OpenGL 3.3 at all. */
   explicit Screen(Kind kind)
       : kind_(kind),
-        viewer_({.title = "mass_spring", .offscreen = kind == Kind::pictures}) {
-  }
+        viewer_({.title = "cloth",
+                 .offscreen = kind == Kind::pictures,
+                 .restarts = true,
+                 .colors = true}) {}
 
   /** Color the nodes by strain_at(), or no longer. In a window the user
    * switches it as well. */
