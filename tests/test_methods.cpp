@@ -256,11 +256,10 @@ std::vector<Point> swing(const MethodEntry& entry, double K,
   for (Node n : g.nodes())
     n.value().vel = Point(n.position().y, 0, -n.position().x);
   const auto method = entry.make();
-  for (int n = 0; n < 30; ++n)
-    (*method)(
-        g, 0.002 * n, 0.002, force,
-        make_combined_constraints(
-            PinConstraint(g), [&](Cloth& h, double t) { constraint(h, t); }));
+  const CombinedConstraints both({std::make_shared<PinConstraint>(g),
+                                  std::shared_ptr<const ZeroConstraint>(
+                                      std::shared_ptr<void>(), &constraint)});
+  for (int n = 0; n < 30; ++n) (*method)(g, 0.002 * n, 0.002, force, both);
   std::vector<Point> end;
   for (Node n : g.nodes())
     end.push_back(n.position()), end.push_back(n.value().vel);

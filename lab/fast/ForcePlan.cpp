@@ -22,8 +22,9 @@ void add_weight(const Part& part, double gravity, std::span<Point> f) {
 
 void add_springs(const Part& part, std::span<Point> f) {
   constexpr unsigned width = ClothStencil::width;
-  auto sweep = [&]<bool prefetch>(std::bool_constant<prefetch>) {
-    lanes::run<kernels::SpringSweep<prefetch>>(
+  auto sweep = [&]<bool prefetch_gathered>(
+                   std::bool_constant<prefetch_gathered>) {
+    lanes::run<kernels::SpringSweep<prefetch_gathered>>(
         part.stencil, part.g.positions().data(), part.g.edge_values().data(),
         part.first / width, (part.last + width - 1) / width, f.data());
   };

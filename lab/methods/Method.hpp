@@ -28,11 +28,11 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 /** A method: takes a cloth from t to t + dt, as often as it is called.
  *
- * Its constraint is called once a step, when the positions have reached t +
- * dt, and before the force there is taken; held nodes stay at rest in between.
- * Or else, if it mends by node, part by part, each before a force sees it.
- * Nodes may be removed by it, and between steps. No allocation in a step, but
- * for the first one and when the cloth grew.
+ * It applies the constraint once a step: when the positions have reached t +
+ * dt, and before the force there is evaluated. A nodewise constraint it may
+ * project part by part. Held nodes stay at rest in between. The constraint may
+ * remove nodes, and so may the caller between steps. Only the first step
+ * allocates, and one after the cloth grew.
  *
  * A method may keep the force at the end of a step for the next one: whoever
  * moves nodes between two steps calls restart(). */
@@ -42,7 +42,7 @@ class Method {
 
   /** One step from @a t by @a dt [s].  @return t + dt   @pre dt > 0
    * Throws StepError if the method can't make it; std::invalid_argument if it
-   * can't do with this force. */
+   * can't handle this force. */
   virtual double step(Cloth& g, double t, double dt, const ForcePlan& force,
                       const ConstraintPlan& constraint) = 0;
   /** Forget what was kept from the last step. */

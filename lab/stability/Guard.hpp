@@ -17,15 +17,15 @@ namespace lab {
  *     <=  total energy at the start + 3 S,
  * S = kinetic and elastic energy at the start + total weight times the
  * diagonal of the cloth + the energy of all springs stretched by 10 %. The
- * margin is for what a stable method does: its energy swings, and a constraint
- * that moves a node stretches springs. */
+ * margin is for what a stable method does: its energy oscillates, and a
+ * constraint that moves a node stretches springs. */
 class DivergenceGuard {
  public:
   /** @param g The cloth at the start   @param gravity [m/s^2] */
   DivergenceGuard(const Cloth& g, double gravity);
 
   /** True if the state of @a g is good; then it is kept. Elastic energy, which
-   * costs a sweep over the springs, is looked at in every fourth call.
+   * costs a sweep over the springs, is checked in every fourth call.
    * O(N + springs/4) */
   bool accept(const Cloth& g);
   /** True if the state of @a g is good.
