@@ -126,9 +126,9 @@ class Graph {
     size_type degree() const { return list().size; }
     /** The edges at this node: each has it as node1().
      * Order: as added, until an edge at this node is removed. */
-    incident_iterator edge_begin() const { return {graph_, list().begin}; }
+    incident_iterator edge_begin() const { return {graph_, list().begin, id_}; }
     incident_iterator edge_end() const {
-      return {graph_, list().begin + list().size};
+      return {graph_, list().begin + list().size, id_};
     }
     graph_detail::Range<incident_iterator> edges() const {
       return {edge_begin(), edge_end()};
@@ -438,14 +438,13 @@ class Graph {
    * nothing; but lists of neighbors may, if most are far from full.
    * Invalidates: references and spans.   Keeps: all else. */
   void reserve(size_type nodes, size_type edges) {
-    using graph_detail::make_room;
     nodes_.reserve(nodes);
-    make_room(position_, nodes + 1);
-    make_room(node_value_, nodes);
-    make_room(neighbors_of_, nodes);
+    position_.reserve(nodes + 1);
+    node_value_.reserve(nodes);
+    neighbors_of_.reserve(nodes);
     edges_.reserve(edges);
-    make_room(ends_, edges);
-    make_room(edge_value_, edges);
+    ends_.reserve(edges);
+    edge_value_.reserve(edges);
     pool_.reserve(nodes, 2 * std::size_t(edges));
   }
 
@@ -490,7 +489,6 @@ class Graph {
   std::span<const Point> positions() const {
     return {position_.data(), node_slots()};
   }
-  // No Array of bool is a plain one: for V or E = bool these don't compile.
   std::span<V> node_values() { return {node_value_.data(), node_slots()}; }
   std::span<const V> node_values() const {
     return {node_value_.data(), node_slots()};
@@ -637,13 +635,21 @@ class Graph {
     /** An iterator of no graph: only to be assigned to. */
     ProxyIterator() = default;
 
+    /** @pre it belongs to a graph and is not at the end of its range */
     Proxy operator*() const {
-      if constexpr (of_one_node)
+      assert(graph_ && "an iterator of no graph is dereferenced");
+      if constexpr (of_one_node) {
+        [[maybe_unused]] const auto& list = graph_->neighbors_of_[node_];
+        assert(at_ - list.begin < list.size &&
+               "Node::edge_end() is dereferenced, or an iterator gone stale");
         return Proxy(graph_, graph_->pool_[at_].edge);
-      else if constexpr (std::is_same_v<Proxy, Node>)
+      } else if constexpr (std::is_same_v<Proxy, Node>) {
+        assert(at_ < graph_->num_nodes() && "node_end() is dereferenced");
         return graph_->node(at_);
-      else
+      } else {
+        assert(at_ < graph_->num_edges() && "edge_end() is dereferenced");
         return graph_->edge(at_);
+      }
     }
     pointer operator->() const { return {**this}; }
     Proxy operator[](difference_type n) const { return *(*this + n); }
@@ -676,15 +682,20 @@ class Graph {
     friend difference_type operator-(ProxyIterator a, ProxyIterator b) {
       return difference_type(a.at_) - difference_type(b.at_);
     }
-    bool operator==(const ProxyIterator&) const = default;
+    bool operator==(const ProxyIterator& o) const {
+      return graph_ == o.graph_ && at_ == o.at_;
+    }
     auto operator<=>(const ProxyIterator& o) const { return at_ <=> o.at_; }
 
    private:
     friend class Graph;
     Graph* graph_ = nullptr;
-    size_type at_ = 0;  // index, or place in the pool
-    ProxyIterator(Graph* g, size_type at) : graph_(g), at_(at) {}
+    size_type at_ = 0;    // index, or place in the pool
+    size_type node_ = 0;  // of_one_node: its id; only assertions read it
+    ProxyIterator(Graph* g, size_type at, size_type node = 0)
+        : graph_(g), at_(at), node_(node) {}
   };
 
   static_assert(sizeof(Node) <= 16 && sizeof(Edge) <= 16);
+  static_assert(sizeof(IncidentIterator) <= 16);
 };

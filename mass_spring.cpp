@@ -3,8 +3,8 @@
  * The stage is chosen when it is compiled: make mass_spring STAGE=forces.
  * Exit status: 0 done; 2 bad input; 3 the run diverged. */
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -38,6 +38,13 @@ double energy(const Cloth& g) {
   return sum;
 }
 
+/** A node whose position or velocity is not finite, if there is one. */
+std::optional<Node> lost_node(const Cloth& g) {
+  for (Node n : g.nodes())
+    if (!std::isfinite(normSq(n.position()) + normSq(n.value().vel))) return n;
+  return {};
+}
+
 /** The time [s] > 0 that @a text is, the argument called @a name. */
 double time_of(const char* text, const std::string& name) {
   char* end = nullptr;
@@ -61,16 +68,11 @@ int main(int argc, char** argv) try {
   std::cout << g.num_nodes() << " nodes, " << g.num_edges() << " edges\n";
 
   const double L = g.num_edges() > 0 ? g.edge(0).value().L : 0;
-  const auto force =
-      make_combined_force(GravityForce(), MassSpringForce(), DampingForce(0));
-  const auto constraint = [&] {
-    if constexpr (stage == Stage::constraints)
-      return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                       SphereConstraint());
-    else
-      return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                       TearConstraint());
-  }();
+  const auto force = make_combined_force(GravityForce(), MassSpringForce());
+  const auto on_ball = make_combined_constraints(
+      PinConstraint(g), PlaneConstraint(), SphereConstraint());
+  const auto torn = make_combined_constraints(
+      PinConstraint(g), PlaneConstraint(), TearConstraint());
   const auto step = [&](double t) {
     if constexpr (stage == Stage::problem1)
       return symp_euler_step(g, t, dt, Problem1Force(100, L));
@@ -78,58 +80,58 @@ int main(int argc, char** argv) try {
       return symp_euler_step(g, t, dt, Problem1Force());
     else if constexpr (stage == Stage::forces)
       return symp_euler_step(g, t, dt, force);
+    else if constexpr (stage == Stage::constraints)
+      return symp_euler_step(g, t, dt, force, on_ball);
     else
-      return symp_euler_step(g, t, dt, force, constraint);
+      return symp_euler_step(g, t, dt, force, torn);
   };
 
-  std::string failure;  // why the run ended early
-  const auto simulate = [&](auto draw) {
-    double t = 0;
-    for (auto left = std::llround(t_end / dt); left > 0; --left) {
-      if (!draw(t = step(t))) return;
-      for (Node n : g.nodes())
-        if (!std::isfinite(normSq(n.position()) + normSq(n.value().vel))) {
-          failure = "t = " + CME212::short_text(t) + " s: node " +
-                    std::to_string(n.index()) + " is no longer finite; " +
-                    "./cloth NODES TETS --dt auto finds a step that works";
-          return;
-        }
-    }
-  };
-  const auto print = [&](double t) {
-    static double next = 0;
-    if (t >= next - dt / 2) {
+#ifdef MASS_SPRING_VIEWER
+  std::optional<CME212::SDLViewer> viewer;
+  if (CME212::SDLViewer::has_display()) viewer.emplace();
+  CME212::Clock clock;
+#else
+  constexpr bool viewer = false;
+#endif
+  if (!viewer) std::cout << "no display: running without a window\n";
+  double next_line = 0;  // [s]
+  // Returns false if the window was closed.
+  const auto draw = [&](double t) {
+    if (t > next_line - dt / 2) {
       std::cout << "t = " << t << " s, energy " << energy(g) << " J, "
                 << g.num_nodes() << " nodes" << std::endl;
-      next += t_end / 10;
+      next_line += t_end / 10;
     }
-    return true;
-  };
 #ifdef MASS_SPRING_VIEWER
-  if (CME212::SDLViewer::has_display()) {
-    CME212::SDLViewer viewer;
-    auto node_map = viewer.empty_node_map(g);
-    const auto draw = [&](double t) {
-      if (stage == Stage::tear) viewer.clear(), node_map.clear();
-      viewer.add_nodes(g.node_begin(), g.node_end(), node_map);
-      viewer.add_edges(g.edge_begin(), g.edge_end(), node_map);
-      viewer.set_label(t);
-      return viewer.wait_while_paused();
-    };
-    draw(0);
-    viewer.center_view();
-    std::thread simulation([&] {
-      simulate([&](double t) { return print(t) && draw(t); });
-      if (!failure.empty()) viewer.set_message({failure});
-    });
-    viewer.event_loop();
-    simulation.join();
-  } else
+    if (!viewer) return true;
+    const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
+    if (viewer->wants_frame() || t > t_end - dt / 2) show();
+    CME212::sleep(dt - clock.seconds());  // no faster than the clock
+    clock.start();
+    return viewer->wait_while_paused(show);
+#else
+    return true;
 #endif
-  {
-    std::cout << "no display: running without a window\n";
-    simulate(print);
-  }
+  };
+
+  std::string failure;
+  std::thread simulation([&] {
+    double t = 0;
+    draw(t);
+    for (auto left = std::llround(t_end / dt); left > 0; --left) {
+      if (!draw(t = step(t))) return;
+      if (auto n = lost_node(g); n) {
+        failure = "diverged: at t = " + CME212::short_text(t) + " s node " +
+                  std::to_string(n->index()) + " is not finite; './cloth " +
+                  argv[1] + ' ' + argv[2] + " --dt auto' finds a stable step";
+        return;
+      }
+    }
+  });
+#ifdef MASS_SPRING_VIEWER
+  if (viewer) viewer->center_view(), viewer->event_loop();
+#endif
+  simulation.join();
   if (failure.empty()) return 0;
   std::cerr << failure << '\n';
   return 3;

@@ -1,20 +1,21 @@
 #pragma once
 /** @file BoundingBox.hpp
  * BoundingBox: the smallest box along the axes that holds some points. */
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "CME212/Point.hpp"
 
 namespace CME212 {
 
-/** An axis-parallel box in R^3, empty at first. */
+/** An axis-parallel box in R^3, with its faces. All functions take O(1). */
 class BoundingBox {
  public:
+  /** The empty box. */
   BoundingBox() = default;
+  /** The box of one point, or of two opposite corners, whichever they are.
+   * Points that are not finite are left out. */
+  explicit BoundingBox(const Point& p) { *this |= p; }
+  BoundingBox(const Point& p, const Point& q) { (*this |= p) |= q; }
 
-  /** True until the first point came. */
+  /** True until the first finite point came. */
   bool empty() const { return min_.x > max_.x; }
 
   /** Grow to hold @a p. Points that are not finite are left out. */
@@ -26,6 +27,18 @@ class BoundingBox {
       max_[i] = std::max(max_[i], p[i]);
     }
     return *this;
+  }
+
+  /** True if @a p is in the box or on a face of it; no box has a point that is
+   * not finite, the empty box has none at all. */
+  bool contains(const Point& p) const {
+    for (Point::size_type i = 0; i < 3; ++i)
+      if (!(min_[i] <= p[i] && p[i] <= max_[i])) return false;
+    return true;
+  }
+  /** True if every point of @a b is in this box; so is the empty box. */
+  bool contains(const BoundingBox& b) const {
+    return b.empty() || (contains(b.min_) && contains(b.max_));
   }
 
   /** Corners.  @pre !empty() */
@@ -42,3 +55,6 @@ class BoundingBox {
 };
 
 }  // namespace CME212
+
+/** Its name in the course. */
+using Box3D = CME212::BoundingBox;

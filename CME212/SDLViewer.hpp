@@ -6,13 +6,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <exception>
+#include <future>
 #include <mutex>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -31,9 +35,13 @@ namespace CME212 {
 /** Shows the nodes and edges of a graph; how they get here, and that a half
  * built scene is never seen: SceneBuilder.
  *
- * Threads: constructor, event_loop(), snapshot(), has_display() and destructor
- * belong to the main thread. All else may be called by any thread, also while
- * event_loop() runs.
+ * Threads: constructor, event_loop() or launch(), snapshot(), has_display() and
+ * destructor belong to the main thread. All else may be called by any thread,
+ * also while the window is open.
+ *
+ * A program simulates in a thread of its own and ends its main thread with
+ * event_loop(); or, as in 2016, it calls launch() and simulates in its main
+ * thread. Not both.
  *
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
@@ -50,15 +58,19 @@ class SDLViewer : public SceneBuilder {
     bool restarts = false, colors = false;
   };
 
-  /** Make a window; it appears when event_loop() starts. One viewer at a time.
+  /** Make a window; it appears with event_loop() or launch(). One viewer at a
+   * time.
    * @pre width and height > 0
    * Throws NoDisplay if there is no display, unless @a o.offscreen, or no
    * OpenGL 3.3. */
   explicit SDLViewer(const Options& o)
-      : options_(o), window_(o.title, o.width, o.height, o.offscreen) {}
+      : options_(o), canvas_(std::in_place, o) {}
   SDLViewer() : SDLViewer(Options()) {}
-  /** @pre no other thread uses the viewer any more */
-  ~SDLViewer() { window_.make_current(); }
+  /** After launch() it waits until the window is closed.
+   * @pre no thread of the program uses the viewer any more */
+  ~SDLViewer() {
+    if (thread_.joinable()) thread_.join();
+  }
 
   /** True if a window can be shown here: DISPLAY or WAYLAND_DISPLAY is set,
    * and leads somewhere. Takes some milliseconds.  @pre there is no viewer */
@@ -174,43 +186,56 @@ class SDLViewer : public SceneBuilder {
   // ----------------------------------------------------- On the main thread
 
   /** Show the window and serve the user until the window is closed.
+   * @pre launch() was not called: one thread serves a window
    * @post closed() */
   void event_loop() {
-    window_.make_current();
-    window_.show();
-    auto next = clock::now();  // no frame before
-    while (!closed_) {
-      // Look for a new scene often while they come, seldom when none does.
-      const auto now = clock::now();
-      const ms poll(now - last_frame_ < ms(200) ? 2 : 8);
-      const auto rest = std::chrono::ceil<ms>(next - now);
-      const auto wait = std::max(rest, needs_frame() ? ms(0) : poll);
-      SDL_Event e;
-      if (SDL_WaitEventTimeout(&e, int(wait.count()))) do
-          handle(e);
-        while (SDL_PollEvent(&e));
-      complete_if_quiet();
-      const auto start = clock::now();
-      if (closed_ || start < next || !needs_frame()) continue;
-      show_frame();
-      next = start + frame_time;
-    }
-    window_.hide();
+    assert(!thread_.joinable() && "launch() has a thread that does this");
+    serve();
+  }
+
+  /** Show the window and let a thread of the viewer serve the user until the
+   * window is closed. Returns when the window is there; the destructor waits
+   * until it is closed, the program goes on meanwhile: see closed().
+   * That thread makes the window anew, since SDL wants a window made and its
+   * events read in one thread. (On macOS that is the main one: use
+   * event_loop() there.)
+   * @pre neither launch() nor event_loop() was called
+   * Throws NoDisplay if it can't be made again. */
+  void launch() {
+    assert(!thread_.joinable() && "launch() is called twice");
+    canvas_.reset();
+    take_again();  // the new one was shown nothing
+    std::promise<void> promise;
+    auto made = promise.get_future();
+    thread_ = std::thread([this, promise = std::move(promise)]() mutable {
+      try {
+        canvas_.emplace(options_);
+      } catch (...) {
+        return promise.set_exception(std::current_exception());
+      }
+      promise.set_value();
+      serve();
+      canvas_.reset();
+    });
+    made.get();
   }
 
   /** Draw the scene into a picture of the size in the options; needs no
    * event_loop(). With label and scale, without help and frame rate: the same
    * scene gives the same picture. A scene under construction is completed if
    * this thread builds it, and left out if another does.
+   * @pre launch() was not called: its thread has the window
    * Throws std::runtime_error if the driver has no memory for it. */
   Image snapshot() {
+    assert(!thread_.joinable() && "a thread of launch() draws");
     complete_own();
-    window_.make_current();
-    if (!frame_) frame_.emplace(options_.width, options_.height);
-    frame_->bind();
+    canvas_->window.make_current();
+    auto& frame = canvas_->frame;
+    if (!frame) frame.emplace(options_.width, options_.height);
+    frame->bind();
     draw(options_.width, options_.height,
          std::max(0.75, options_.height / 768.0), false);
-    return frame_->read();
+    return frame->read();
   }
 
  private:
@@ -218,12 +243,21 @@ class SDLViewer : public SceneBuilder {
   using ms = std::chrono::milliseconds;
   static constexpr ms frame_time{16};  // between frames, at least
 
+  /** What is drawn on, made, used and destroyed by one thread. */
+  struct Canvas {
+    SDLWindow window;
+    GLScene scene;
+    GLOverlay overlay;
+    std::optional<GLFrame> frame;
+    explicit Canvas(const Options& o)
+        : window(o.title, o.width, o.height, o.offscreen) {}
+    ~Canvas() { window.make_current(); }
+  };
+
   const Options options_;
-  // The main thread's:
-  SDLWindow window_;
-  GLScene scene_;
-  GLOverlay overlay_;
-  std::optional<GLFrame> frame_;
+  std::thread thread_;  // of launch()
+  // Of the main thread, or of the one of launch():
+  std::optional<Canvas> canvas_;
   clock::time_point last_frame_;
   double frame_period_ = 0;  // [s]
 
@@ -248,22 +282,46 @@ class SDLViewer : public SceneBuilder {
     control_.notify_all();
   }
 
+  /** Show the window and serve the user until closed(). */
+  void serve() {
+    canvas_->window.make_current();
+    canvas_->window.show();
+    auto next = clock::now();  // no frame before
+    while (!closed_) {
+      // Look for a new scene often while they come, seldom when none does.
+      const auto now = clock::now();
+      const ms poll(now - last_frame_ < ms(200) ? 2 : 8);
+      const auto rest = std::chrono::ceil<ms>(next - now);
+      const auto wait = std::max(rest, needs_frame() ? ms(0) : poll);
+      SDL_Event e;
+      if (SDL_WaitEventTimeout(&e, int(wait.count()))) do
+          handle(e);
+        while (SDL_PollEvent(&e));
+      complete_if_quiet();
+      const auto start = clock::now();
+      if (closed_ || start < next || !needs_frame()) continue;
+      show_frame();
+      next = start + frame_time;
+    }
+    canvas_->window.hide();
+  }
+
   bool needs_frame() const {
-    return (redraw_ || has_new()) && !window_.minimized();
+    return (redraw_ || has_new()) && !canvas_->window.minimized();
   }
 
   /** Draw into the current frame buffer.
    * @param scale Pixels to a unit of length of the desktop */
   void draw(int width, int height, double scale, bool interactive) {
     take([&](const SceneData& s, bool edges_changed) {
-      scene_.upload(s, edges_changed);
+      canvas_->scene.upload(s, edges_changed);
     });
     OverlayText text;
     GLCamera camera;
     {
       std::lock_guard lock(mutex_);
       if (look_at_)
-        camera_.fit(look_at_->empty() ? scene_.box() : *look_at_,
+        camera_.fit(look_at_->empty() ? canvas_->scene.box() : *look_at_,
                     double(width) / height);
       look_at_.reset();
       redraw_ = false;
@@ -272,8 +330,8 @@ class SDLViewer : public SceneBuilder {
       text.has_scale = strain_colors_;
       if (interactive) add_state(text);
     }
-    scene_.draw(camera, width, height, scale);
-    overlay_.draw(text, width, height, scale);
+    canvas_->scene.draw(camera, width, height, scale);
+    canvas_->overlay.draw(text, width, height, scale);
   }
 
   void add_state(OverlayText& text) const {
@@ -293,9 +351,9 @@ class SDLViewer : public SceneBuilder {
   }
 
   void show_frame() {
-    const auto [width, height] = window_.pixels();
-    draw(width, height, double(height) / window_.size()[1], true);
-    window_.swap();
+    const auto [width, height] = canvas_->window.pixels();
+    draw(width, height, double(height) / canvas_->window.size()[1], true);
+    canvas_->window.swap();
     const auto now = clock::now();
     const double period =
         std::chrono::duration<double>(now - last_frame_).count();
@@ -308,7 +366,7 @@ class SDLViewer : public SceneBuilder {
   // ------------------------------------------------------------------ Events
 
   void handle(const SDL_Event& e) {
-    const auto [width, height] = window_.size();
+    const auto [width, height] = canvas_->window.size();
     const double unit = 1.0 / std::min(width, height);
     switch (e.type) {
       case SDL_QUIT:

@@ -176,6 +176,27 @@ class SceneBuilder {
     publish();
   }
 
+  /** Show the nodes of @a g in white, its edges, and nothing of the scene
+   * before but spheres and planes. Needs no iterators of @a g, only
+   * num_nodes(), node(i), num_edges() and edge(i): a graph of homework 0 can be
+   * shown.
+   * @post The scene is complete and shown, unless another thread adds to it.
+   * Complexity: O((nodes + edges) log nodes), whatever the scene before. */
+  template <typename G>
+  void draw_graph(const G& g) {
+    auto node_map = start_with_nodes_of(g);
+    std::vector<typename G::edge_type> edges;
+    for (decltype(g.num_edges()) i = 0; i < g.num_edges(); ++i)
+      edges.push_back(g.edge(i));
+    add_edges(edges.begin(), edges.end(), node_map);
+  }
+  /** As draw_graph(), without the edges; O(nodes log nodes). */
+  template <typename G>
+  void draw_graph_nodes(const G& g) {
+    start_with_nodes_of(g);
+    complete_own();
+  }
+
   /** Begin a new scene without nodes and edges. Spheres and planes stay. */
   void clear() {
     std::lock_guard lock(build_mutex_);
@@ -247,6 +268,12 @@ class SceneBuilder {
     has_new_ = new_edges_ = false;
     wants_frame_ = true;
   }
+  /** Let the next take() find all of the scene, as if there had been none
+   * before. */
+  void take_again() {
+    std::lock_guard lock(shown_mutex_);
+    has_new_ = new_edges_ = true;
+  }
   /** True if take() would find something new. */
   bool has_new() const { return has_new_; }
 
@@ -279,6 +306,18 @@ class SceneBuilder {
     incomplete_ = edges_changed_ = false;
     has_new_ = true;
     wants_frame_ = false;
+  }
+
+  /** Clear, and add the nodes of @a g.  @return where they are */
+  template <typename G>
+  auto start_with_nodes_of(const G& g) {
+    clear();
+    auto node_map = empty_node_map(g);
+    std::vector<typename G::node_type> nodes;
+    for (decltype(g.num_nodes()) i = 0; i < g.num_nodes(); ++i)
+      nodes.push_back(g.node(i));
+    add_nodes(nodes.begin(), nodes.end(), node_map);
+    return node_map;
   }
 
   template <typename F>

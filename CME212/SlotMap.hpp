@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <deque>
 #include <limits>
 #include <memory>
 #include <new>
@@ -88,12 +87,6 @@ class GrowingArray {
 template <typename A>
 void grow_to_hold(A& a, std::size_t i) {
   if (a.size() <= i) a.resize(i + 1);
-}
-
-/** Let @a a grow to @a size without moving, if it is one that would. */
-template <typename A>
-void make_room(A& a, std::size_t size) {
-  if constexpr (requires { a.reserve(size); }) a.reserve(size);
 }
 
 /** Ids for things that come and go: an id stays with its thing, while the
@@ -377,19 +370,11 @@ struct NoValue {
 };
 
 /** The plain array for a T: one that need not copy them one by one to grow,
- * if it may. (std::vector<bool> has no bool to refer to.) */
+ * if it may. (A bool may, so this is never a std::vector<bool>.) */
 template <typename T>
-constexpr auto array_of() {
-  if constexpr (std::is_same_v<T, bool>)
-    return std::type_identity<std::deque<bool>>();
-  else if constexpr (std::is_trivially_copyable_v<T> &&
-                     alignof(T) <= alignof(std::max_align_t))
-    return std::type_identity<GrowingArray<T>>();
-  else
-    return std::type_identity<std::vector<T>>();
-}
-template <typename T>
-using Array = typename decltype(array_of<T>())::type;
+using Array = std::conditional_t<std::is_trivially_copyable_v<T> &&
+                                     alignof(T) <= alignof(std::max_align_t),
+                                 GrowingArray<T>, std::vector<T>>;
 
 /** Counts what changes a graph; each graph in a range of its own, a copy too.
  */

@@ -2,17 +2,33 @@
 /** @file Util.hpp
  * Small helpers of the course: random numbers, a stopwatch, line-wise input
  * and operators derived from == and <. */
+// More than what this file needs: students' programs take from the course's
+// Util.hpp and Point.hpp what those include, so these are named here for all.
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <istream>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
 #include <random>
+#include <set>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 /** Derive != from the == of @a T. */
 template <typename T>

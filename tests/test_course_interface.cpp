@@ -1,31 +1,339 @@
 /** @file test_course_interface.cpp
  * Programs as they are written against the course's interface of homework 0 to
- * 2, in small: what students' programs and test suites use has to compile and
+ * 3, in small: what students' programs and test suites use has to compile and
  * to run. The idioms are the point here; the contract itself is tested in
- * test_nodes.cpp and test_edges.cpp. */
-#include <gtest/gtest.h>
+ * test_nodes.cpp and test_edges.cpp.
+ *
+ * The programs come first, and nothing before them but the course's headers:
+ * such a program gets standard headers from those, and would not compile if one
+ * of them were missing. GoogleTest would hide that. */
+#include "CME212/Point.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <iterator>
-#include <limits>
-#include <map>
+// ------------------- homework 0: a graph of their own, with Point.hpp alone
+
+namespace hw0 {
+
+class Graph {
+ public:
+  typedef unsigned size_type;
+
+  class Node : private totally_ordered<Node> {
+   public:
+    Node() : graph_(nullptr), i_(0) {}
+    const Point& position() const {
+      assert(graph_ != nullptr);
+      return graph_->points_[i_];
+    }
+    size_type index() const { return i_; }
+    bool operator==(const Node& n) const {
+      return graph_ == n.graph_ && i_ == n.i_;
+    }
+    bool operator<(const Node& n) const {
+      return std::tie(graph_, i_) < std::tie(n.graph_, n.i_);
+    }
+
+   private:
+    friend class Graph;
+    const Graph* graph_;
+    size_type i_;
+    Node(const Graph* g, size_type i) : graph_(g), i_(i) {}
+  };
+
+  Node add_node(const Point& p) {
+    points_.push_back(p);
+    return node(size() - 1);
+  }
+  size_type size() const { return static_cast<size_type>(points_.size()); }
+  Node node(size_type i) const { return Node(this, i); }
+  void add_edge(const Node& a, const Node& b) {
+    if (edge_of_.count(std::minmax(a, b)) == 0)
+      edge_of_.insert({std::minmax(a, b), edge_of_.size()});
+  }
+  std::size_t num_edges() const { return edge_of_.size(); }
+
+ private:
+  std::vector<Point> points_;
+  std::map<std::pair<Node, Node>, std::size_t> edge_of_;
+};
+
+/** Read both files and print what is in them.  @return as main() */
+int viewer_main(const std::string& nodes, const std::string& tets) {
+  Graph graph;
+  std::ifstream nodes_file(nodes), tets_file(tets);
+  if (!nodes_file || !tets_file) {
+    std::cerr << "can't read " << nodes << " or " << tets << std::endl;
+    return EXIT_FAILURE;
+  }
+  Point p;
+  while (CME212::getline_parsed(nodes_file, p)) graph.add_node(p);
+  std::array<int, 4> t;
+  while (CME212::getline_parsed(tets_file, t))
+    for (unsigned i = 1; i < t.size(); ++i)
+      for (unsigned j = 0; j < i; ++j)
+        graph.add_edge(graph.node(t[i]), graph.node(t[j]));
+  std::cout << graph.size() << ' ' << graph.num_edges() << std::endl;
+  return EXIT_SUCCESS;
+}
+
+/** Mean, spread and order of the points' distances to the origin. */
+struct Statistics {
+  std::vector<double> r;
+  std::set<double> different;
+
+  explicit Statistics(const std::vector<Point>& points) {
+    std::function<double(const Point&)> distance = norm_2;
+    std::transform(points.begin(), points.end(), std::back_inserter(r),
+                   distance);
+    std::sort(r.begin(), r.end());
+    different.insert(r.begin(), r.end());
+  }
+  double mean() const {
+    return std::accumulate(r.begin(), r.end(), 0.0) / double(r.size());
+  }
+  double spread() const {
+    double sum = 0;
+    for (double a : r) sum += std::pow(a - mean(), 2);
+    return r.empty() ? std::numeric_limits<double>::max()
+                     : std::sqrt(sum / double(r.size()));
+  }
+  std::string text() const {
+    std::ostringstream s;
+    std::copy(r.begin(), r.end(), std::ostream_iterator<double>(s, ";"));
+    return s.str();
+  }
+};
+
+/** A point in the unit cube, drawn as they do it without CME212::random(). */
+Point some_point(unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::unique_ptr<Point> p(new Point);
+  std::generate(p->begin(), p->end(), [&] { return uniform(generator); });
+  return *p;
+}
+
+/** Arithmetic that goes by coordinate. */
+double box_volume(const Point& p) {
+  return std::accumulate(p.cbegin(), p.cend(), 1.0, std::multiplies<double>());
+}
+void scale(Real* a, double factor) {
+  for (int i = 0; i < 3; ++i) a[i] *= factor;
+}
+Point mirrored(const Point& p) {
+  Point q;
+  for (int i = 0; i < 3; ++i) q.elem[i] = p.elem[2 - i];
+  return q;
+}
+
+}  // namespace hw0
+
 #include <queue>
-#include <set>
-#include <sstream>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Color.hpp"
-#include "CME212/Point.hpp"
 #include "CME212/Util.hpp"
 #include "Graph.hpp"
 
 namespace {
+
+// ------------------------------------------- homework 1: iterators, algorithms
+
+/** Order of nodes by their distance to a point. */
+struct Closer {
+  Point to;
+  template <typename NODE>
+  bool operator()(const NODE& a, const NODE& b) const {
+    return norm(a.position() - to) < norm(b.position() - to);
+  }
+};
+
+template <typename G>
+typename G::node_iterator nearest_node(const G& g, const Point& p) {
+  return std::min_element(g.node_begin(), g.node_end(), Closer{p});
+}
+
+/** Number of edges from @a root to every node, as its value; -1: no way.
+ * @return the largest. */
+int shortest_path_lengths(Graph<int>& g, Graph<int>::node_type root) {
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) (*it).value() = -1;
+  std::queue<Graph<int>::node_type> todo;
+  root.value() = 0;
+  todo.push(root);
+  int longest = 0;
+  while (!todo.empty()) {
+    auto n = todo.front();
+    todo.pop();
+    longest = std::max(longest, n.value());
+    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
+      auto next = (*it).node2();
+      if (next.value() != -1) continue;
+      next.value() = n.value() + 1;
+      todo.push(next);
+    }
+  }
+  return longest;
+}
+
+/** The elements of a range for which a predicate holds. */
+template <typename Pred, typename It>
+class Filter : private totally_ordered<Filter<Pred, It>> {
+ public:
+  typedef typename std::iterator_traits<It>::value_type value_type;
+  typedef typename std::iterator_traits<It>::pointer pointer;
+  typedef typename std::iterator_traits<It>::reference reference;
+  typedef typename std::iterator_traits<It>::difference_type difference_type;
+  typedef typename std::input_iterator_tag iterator_category;
+
+  Filter(const Pred& p, const It& first, const It& last)
+      : p_(p), it_(first), end_(last) {
+    skip();
+  }
+  value_type operator*() const { return *it_; }
+  Filter& operator++() {
+    ++it_;
+    skip();
+    return *this;
+  }
+  bool operator==(const Filter& o) const { return it_ == o.it_; }
+  bool operator<(const Filter& o) const { return it_ < o.it_; }
+
+ private:
+  void skip() {
+    while (it_ != end_ && !p_(*it_)) ++it_;
+  }
+  Pred p_;
+  It it_, end_;
+};
+
+/** A functor for a viewer: the colour of a node. */
+struct HeatOfValue {
+  int longest;
+  template <typename NODE>
+  CME212::Color operator()(const NODE& n) const {
+    return CME212::Color::make_heat(float(n.value()) / longest);
+  }
+};
+
+// ------------------------------------------------- homework 2: mass and spring
+
+struct NodeData {
+  Point vel;
+  double mass;
+  NodeData() : vel(0), mass(1) {}
+};
+struct EdgeData {
+  double K, L;
+  EdgeData() : K(100), L(1) {}
+};
+using SpringGraph = Graph<NodeData, EdgeData>;
+
+/** Move and kick, as the assignment's integrator does. */
+template <typename G, typename F>
+double euler_step(G& g, double t, double dt, F force) {
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    n.position() += n.value().vel * dt;
+  }
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+    n.value().vel += force(n, t) * (dt / n.value().mass);
+  }
+  return t + dt;
+}
+
+/** Gravity and springs; the corners hold. */
+struct Problem1 {
+  template <typename NODE>
+  Point operator()(NODE n, double t) {
+    (void)t;
+    if (n.position() == Point(0) || n.position() == Point(1, 0, 0))
+      return Point(0);
+    Point f = n.value().mass * Point(0, 0, -9.81);
+    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
+      auto e = *it;
+      Point d = n.position() - e.node2().position();
+      f -= e.value().K * (norm(d) - e.value().L) / norm(d) * d;
+    }
+    return f;
+  }
+};
+
+/** A student's class with two operators of its own. */
+class Version : private totally_ordered<Version> {
+ public:
+  explicit Version(int n) : n_(n) {}
+  bool operator==(const Version& v) const { return n_ == v.n_; }
+  bool operator<(const Version& v) const { return n_ < v.n_; }
+
+ private:
+  int n_;
+};
+
+// ------------------------------------ homework 3: a boundary, in the values
+
+using TaggedGraph = Graph<bool, char>;
+
+/** Remove all nodes in a box. */
+void remove_box(TaggedGraph& g, const Box3D& bb) {
+  auto it = g.node_begin();
+  while (it != g.node_end())
+    if (bb.contains((*it).position()))
+      it = g.remove_node(it);
+    else
+      ++it;
+}
+
+/** Tag the nodes on the border of [-1, 1]^2 and in a box inside.
+ * @return their number */
+struct TagBoundary {
+  static Box3D box;
+  int operator()(TaggedGraph& g) const {
+    int count = 0;
+    for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+      auto n = *it;
+      n.value() = norm_inf(n.position()) == 1 || box.contains(n.position());
+      count += n.value();
+    }
+    return count;
+  }
+};
+Box3D TagBoundary::box = Box3D(Point(-.3, -.3, -1), Point(.3, .3, 1));
+
+}  // namespace
+
+#include <gtest/gtest.h>
+
+#include "CME212/TestFolder.hpp"
+
+namespace {
+
+TEST(Homework0, AProgramReadsAndPrints) {
+  CME212::TestFolder folder;
+  std::ofstream(folder / "nodes") << "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n";
+  std::ofstream(folder / "tets") << "0 1 2 3\n1 2 3 4\n";
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(hw0::viewer_main(folder / "nodes", folder / "tets"), EXIT_SUCCESS);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "5 9\n");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(hw0::viewer_main(folder / "no", folder / "tets"), EXIT_FAILURE);
+  EXPECT_NE(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Homework0, AlgorithmsTakePoints) {
+  hw0::Statistics s({Point(3, 0, 0), Point(0, 1, 0), Point(0, 0, 1)});
+  EXPECT_EQ(s.text(), "1;1;3;");
+  EXPECT_EQ(s.different.size(), 2u);
+  EXPECT_DOUBLE_EQ(s.mean(), 5. / 3);
+  EXPECT_DOUBLE_EQ(s.spread(), std::sqrt(8. / 9));
+  EXPECT_TRUE(Box3D(Point(0), Point(1)).contains(hw0::some_point(7)));
+  EXPECT_NE(hw0::some_point(7), hw0::some_point(8));
+  EXPECT_EQ(hw0::box_volume(Point(2, 3, 4)), 24);
+  EXPECT_EQ(hw0::mirrored(Point(1, 2, 3)), Point(3, 2, 1));
+  Point p(1, 2, 3);
+  hw0::scale(p.data(), 2);
+  hw0::scale(p.elem, 3);
+  EXPECT_EQ(p, Point(6, 12, 18));
+}
 
 // ----------------------------------------------------- homework 0: the graph
 
@@ -137,73 +445,6 @@ TEST_F(GraphFixture, DeathOfInvalidElements) {
 
 // ------------------------------------------- homework 1: iterators, algorithms
 
-/** Order of nodes by their distance to a point. */
-struct Closer {
-  Point to;
-  template <typename NODE>
-  bool operator()(const NODE& a, const NODE& b) const {
-    return norm(a.position() - to) < norm(b.position() - to);
-  }
-};
-
-template <typename G>
-typename G::node_iterator nearest_node(const G& g, const Point& p) {
-  return std::min_element(g.node_begin(), g.node_end(), Closer{p});
-}
-
-/** Number of edges from @a root to every node, as its value; -1: no way.
- * @return the largest. */
-int shortest_path_lengths(Graph<int>& g, Graph<int>::node_type root) {
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) (*it).value() = -1;
-  std::queue<Graph<int>::node_type> todo;
-  root.value() = 0;
-  todo.push(root);
-  int longest = 0;
-  while (!todo.empty()) {
-    auto n = todo.front();
-    todo.pop();
-    longest = std::max(longest, n.value());
-    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
-      auto next = (*it).node2();
-      if (next.value() != -1) continue;
-      next.value() = n.value() + 1;
-      todo.push(next);
-    }
-  }
-  return longest;
-}
-
-/** The elements of a range for which a predicate holds. */
-template <typename Pred, typename It>
-class Filter : private totally_ordered<Filter<Pred, It>> {
- public:
-  typedef typename std::iterator_traits<It>::value_type value_type;
-  typedef typename std::iterator_traits<It>::pointer pointer;
-  typedef typename std::iterator_traits<It>::reference reference;
-  typedef typename std::iterator_traits<It>::difference_type difference_type;
-  typedef typename std::input_iterator_tag iterator_category;
-
-  Filter(const Pred& p, const It& first, const It& last)
-      : p_(p), it_(first), end_(last) {
-    skip();
-  }
-  value_type operator*() const { return *it_; }
-  Filter& operator++() {
-    ++it_;
-    skip();
-    return *this;
-  }
-  bool operator==(const Filter& o) const { return it_ == o.it_; }
-  bool operator<(const Filter& o) const { return it_ < o.it_; }
-
- private:
-  void skip() {
-    while (it_ != end_ && !p_(*it_)) ++it_;
-  }
-  Pred p_;
-  It it_, end_;
-};
-
 class PathFixture : public ::testing::Test {
  protected:
   Graph<int> g;
@@ -249,6 +490,25 @@ TEST_F(PathFixture, ShortestPathLengths) {
   EXPECT_EQ(g.node(10).value(), -1);
 }
 
+TEST_F(PathFixture, DeathAtTheEndOfARange) {
+  auto n = g.node(3);
+  EXPECT_DEATH(*g.node_end(), "node_end\\(\\) is dereferenced");
+  EXPECT_DEATH(*g.edge_end(), "edge_end\\(\\) is dereferenced");
+  EXPECT_DEATH(*n.edge_end(), "Node::edge_end\\(\\) is dereferenced");
+  EXPECT_DEATH(n.edge_end()->node2(), "Node::edge_end");
+  EXPECT_DEATH(n.edge_begin()[2], "Node::edge_end");
+  EXPECT_DEATH(*(n.edge_begin() - 1), "Node::edge_end");
+  EXPECT_DEATH(*g.node(10).edge_begin(), "Node::edge_end");  // it has none
+  EXPECT_DEATH(*Graph<int>::node_iterator(), "no graph");
+  EXPECT_DEATH(*Graph<int>::incident_iterator(), "no graph");
+  auto second = n.edge_begin() + 1;
+  g.remove_edge(*second);  // the list got shorter
+  EXPECT_DEATH(*second, "iterator gone stale");
+  auto first = n.edge_begin();
+  g.remove_node(n);
+  EXPECT_DEATH(*first, "iterator gone stale");
+}
+
 TEST_F(PathFixture, FilterIterators) {
   auto right = [](const Graph<int>::node_type& n) {
     return n.position().x > 5;
@@ -272,48 +532,6 @@ TEST_F(PathFixture, FilterIterators) {
 }
 
 // ------------------------------------------------- homework 2: mass and spring
-
-struct NodeData {
-  Point vel;
-  double mass;
-  NodeData() : vel(0), mass(1) {}
-};
-struct EdgeData {
-  double K, L;
-  EdgeData() : K(100), L(1) {}
-};
-using SpringGraph = Graph<NodeData, EdgeData>;
-
-/** Move and kick, as the assignment's integrator does. */
-template <typename G, typename F>
-double euler_step(G& g, double t, double dt, F force) {
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
-    n.position() += n.value().vel * dt;
-  }
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
-    n.value().vel += force(n, t) * (dt / n.value().mass);
-  }
-  return t + dt;
-}
-
-/** Gravity and springs; the corners hold. */
-struct Problem1 {
-  template <typename NODE>
-  Point operator()(NODE n, double t) {
-    (void)t;
-    if (n.position() == Point(0) || n.position() == Point(1, 0, 0))
-      return Point(0);
-    Point f = n.value().mass * Point(0, 0, -9.81);
-    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
-      auto e = *it;
-      Point d = n.position() - e.node2().position();
-      f -= e.value().K * (norm(d) - e.value().L) / norm(d) * d;
-    }
-    return f;
-  }
-};
 
 TEST(MassSpring, AStepHoldsTheCornersAndDropsTheRest) {
   SpringGraph g;
@@ -360,6 +578,48 @@ TEST(MassSpring, RemovalAsTheAssignmentUsesIt) {
   EXPECT_EQ(graph.num_edges(), 0u);
   for (unsigned i = 0; i < graph.num_nodes(); ++i)
     EXPECT_EQ(graph.node(i).index(), i);
+}
+
+// --------------------------------------------- homework 3: boundary and matrix
+
+TEST(Homework3, TagsTheBoundaryAndCutsABox) {
+  TaggedGraph g;
+  for (int i = -5; i <= 5; ++i)
+    for (int j = -5; j <= 5; ++j) g.add_node(Point(i, j, 0) / 5);
+  EXPECT_EQ(TagBoundary()(g), 40 + 9);
+  EXPECT_TRUE(g.node(0).value());
+  EXPECT_FALSE(g.node(12).value());
+  remove_box(g, Box3D(Point(.1, 1, 1), Point(1, -1, -1)));
+  EXPECT_EQ(g.num_nodes(), 66u);
+  for (auto n : g.nodes()) EXPECT_LE(n.position().x, 0);
+}
+
+TEST(Homework3, ValuesMayBeBool) {
+  using G = Graph<bool, bool>;
+  G g;
+  g.reserve(4, 3);
+  for (int i = 0; i < 100; ++i) g.add_node(Point(i), i % 3 == 0);
+  for (int i = 1; i < 100; ++i)
+    g.add_edge(g.node(i - 1), g.node(i), i % 2 == 0);
+  bool& value = g.node(1).value();
+  value = true;
+  std::span<bool> nodes = g.node_values();
+  std::span<const bool> edges = std::as_const(g).edge_values();
+  ASSERT_EQ(nodes.size(), 100u);
+  ASSERT_EQ(edges.size(), 99u);
+  EXPECT_EQ(std::count(nodes.begin(), nodes.end(), true), 35);
+  EXPECT_EQ(std::count(edges.begin(), edges.end(), true), 49);
+  nodes[2] = true;
+  EXPECT_TRUE(g.node(2).value());
+  G copy(g);
+  g.remove_node(g.node(1));
+  EXPECT_FALSE(nodes[1]);
+  EXPECT_TRUE(copy.node(1).value());
+  EXPECT_TRUE(copy.edge(1).value());
+  EXPECT_EQ(g.num_edges(), 97u);
+  g.check_invariants();
+  g.clear();
+  EXPECT_FALSE(g.add_node(Point()).value());
 }
 
 // ------------------------------------------------------------- CME212/Util.hpp
@@ -423,17 +683,6 @@ TEST(Util, GetlineParsedFailsOnJunk) {
   Point p;
   EXPECT_FALSE(CME212::getline_parsed(missing, p));
 }
-
-/** A student's class with two operators of its own. */
-class Version : private totally_ordered<Version> {
- public:
-  explicit Version(int n) : n_(n) {}
-  bool operator==(const Version& v) const { return n_ == v.n_; }
-  bool operator<(const Version& v) const { return n_ < v.n_; }
-
- private:
-  int n_;
-};
 
 TEST(Util, TotallyOrderedGivesTheOtherOperators) {
   Version one(1), two(2);
@@ -510,6 +759,46 @@ TEST(PointTest, Elements) {
   EXPECT_EQ(a.size(), 3u);
 }
 
+TEST(PointTest, ElementsByOtherNames) {
+  Point a(1, 2, 3);
+  const Point& readable = a;
+  a.elem[1] = 7;
+  EXPECT_EQ(a, Point(1, 7, 3));
+  EXPECT_EQ(readable.elem[2u], 3);
+  EXPECT_EQ(&a.elem[0], &a.x);
+  EXPECT_EQ(&a.elem[2l], &a.z);
+  EXPECT_EQ(readable.elem + 1, &a.y);
+  for (Real& x : a.elem) x += 1;
+  EXPECT_EQ(a, Point(2, 8, 4));
+  EXPECT_EQ(a.data(), &a.x);
+  EXPECT_EQ(readable.data()[1], 8);
+  a.front() = 5;
+  a.back() = 6;
+  EXPECT_EQ(a, Point(5, 8, 6));
+  EXPECT_EQ(readable.front() + readable.back(), 11);
+  EXPECT_EQ(readable.cend() - a.cbegin(), 3);
+  EXPECT_EQ(*a.cbegin(), 5);
+  // Each of many Points has its own; elem takes no memory.
+  std::vector<Point> points(4, a);
+  points[2].elem[0] = 0;
+  EXPECT_EQ(points[1].x + points[2].x + points[3].x, 10);
+  static_assert(sizeof(Point) == 3 * sizeof(Real));
+  static_assert(std::is_trivially_copyable_v<Point>);
+  // An Elem of no Point would lead nowhere.
+  static_assert(!std::is_default_constructible_v<Point::Elem> &&
+                !std::is_copy_constructible_v<Point::Elem>);
+  EXPECT_DEATH(a.elem[3], "i < 3");
+  EXPECT_DEATH(readable.elem[-1], "i < 3");
+}
+
+TEST(PointTest, WorksInConstantExpressions) {
+  constexpr Point a(1, 2, 3);
+  constexpr Point b = 2 * a + cross(a, Point(1));
+  static_assert(b == Point(1, 6, 5) && b != a && b[1] == 6 && b.back() == 5);
+  Real Point::*along = &Point::y;
+  EXPECT_EQ(a.*along, 2);
+}
+
 TEST(PointTest, Streams) {
   std::stringstream s;
   s << Point(1, -2.5, 3);
@@ -564,15 +853,6 @@ TEST(Color, HeatGoesFromVioletOverGreenToRed) {
   }
 }
 
-/** A functor for a viewer: the colour of a node. */
-struct HeatOfValue {
-  int longest;
-  template <typename NODE>
-  CME212::Color operator()(const NODE& n) const {
-    return CME212::Color::make_heat(float(n.value()) / longest);
-  }
-};
-
 TEST_F(PathFixture, ColorsByPathLength) {
   int longest = shortest_path_lengths(g, g.node(0));
   auto c = HeatOfValue{longest}(g.node(5));
@@ -593,6 +873,36 @@ TEST(BoundingBox, HoldsItsPoints) {
   EXPECT_EQ(box.max(), Point(3, 2, 7));
   EXPECT_EQ(box.center(), Point(2, 0, 5));
   EXPECT_EQ(box.diagonal(), 6);
+}
+
+TEST(BoundingBox, IsMadeOfOneOrTwoPoints) {
+  EXPECT_TRUE(Box3D().empty());
+  EXPECT_EQ(Box3D(Point(4)).min(), Point(4));
+  EXPECT_EQ(Box3D(Point(4)).max(), Point(4));
+  Box3D box(Point(1, 5, 2), Point(3, 4, 0));
+  EXPECT_EQ(box.min(), Point(1, 4, 0));
+  EXPECT_EQ(box.max(), Point(3, 5, 2));
+}
+
+TEST(BoundingBox, ContainsPointsAndBoxes) {
+  const Box3D box(Point(0), Point(1, 2, 3)), empty;
+  EXPECT_TRUE(box.contains(Point(0)));
+  EXPECT_TRUE(box.contains(Point(1, 2, 3)));
+  EXPECT_TRUE(box.contains(Point(0.5, 1, 2)));
+  for (int i = 0; i < 3; ++i)
+    for (double outside : {-0.01, 3.01, std::nan("")}) {
+      Point p(0.5);
+      p[i] = outside;
+      EXPECT_FALSE(box.contains(p)) << p;
+    }
+  EXPECT_FALSE(empty.contains(Point(0)));
+  EXPECT_TRUE(box.contains(box));
+  EXPECT_TRUE(box.contains(Box3D(Point(0, 0, 1), Point(1))));
+  EXPECT_FALSE(box.contains(Box3D(Point(0.5), Point(1.5))));
+  EXPECT_FALSE(box.contains(Box3D(Point(-0.5), Point(0.5))));
+  EXPECT_FALSE(Box3D(Point(0.5)).contains(box));
+  EXPECT_TRUE(box.contains(empty) && empty.contains(empty));
+  EXPECT_FALSE(empty.contains(box));
 }
 
 TEST(BoundingBox, LeavesPointsOutThatAreNotFinite) {

@@ -22,7 +22,7 @@
 #include "CME212/Color.hpp"
 #include "CME212/GLCamera.hpp"
 #include "CME212/Image.hpp"
-#include "CME212/SDLViewer.hpp"
+#include "CME212/SFML_Viewer.hpp"
 #include "CME212/SceneBuilder.hpp"
 #include "Graph.hpp"
 #include "tests/TestFolder.hpp"
@@ -436,6 +436,68 @@ TEST(SceneBuilder, TakesOtherMapsAndOrders) {
   for (auto ends : b.scene.edges) EXPECT_LT(ends[1], b.scene.nodes.size());
 }
 
+/** A graph of homework 0: no iterators, no values. */
+struct PlainGraph {
+  struct node_type {
+    const PlainGraph* graph;
+    std::size_t i;
+    Point position() const { return graph->places[i]; }
+    bool operator==(const node_type& n) const { return i == n.i; }
+    bool operator<(const node_type& n) const { return i < n.i; }
+  };
+  struct edge_type {
+    node_type a, b;
+    node_type node1() const { return a; }
+    node_type node2() const { return b; }
+  };
+  std::vector<Point> places;
+  std::vector<std::array<std::size_t, 2>> ends;
+
+  std::size_t num_nodes() const { return places.size(); }
+  std::size_t num_edges() const { return ends.size(); }
+  node_type node(std::size_t i) const { return {this, i}; }
+  edge_type edge(std::size_t i) const {
+    return {node(ends[i][0]), node(ends[i][1])};
+  }
+};
+
+TEST(SceneBuilder, DrawsAWholeGraphInPlaceOfTheSceneBefore) {
+  PlainGraph g{{Point(1), Point(2), Point(3)}, {{0, 1}, {2, 0}}};
+  TestGraph net;
+  make_net(net, 3);
+  Shown b;
+  b.draw_graph(net);
+  ASSERT_TRUE(b.look());
+  EXPECT_EQ(b.scene.nodes.size(), 9u);
+  EXPECT_EQ(b.scene.edges.size(), net.num_edges());
+  b.draw_graph(g);
+  ASSERT_TRUE(b.look());
+  ASSERT_EQ(b.scene.nodes.size(), 3u);
+  EXPECT_EQ(b.scene.nodes[2].x, 3);
+  EXPECT_EQ(b.scene.nodes[2].rgba,
+            (std::array<std::uint8_t, 4>{255, 255, 255, 255}));
+  EXPECT_EQ(b.scene.edges, (std::vector<SceneData::Ends>{{0, 1}, {0, 2}}));
+  b.draw_graph_nodes(net);
+  ASSERT_TRUE(b.look());
+  EXPECT_EQ(b.scene.nodes.size(), 9u);
+  EXPECT_TRUE(b.scene.edges.empty());
+  b.draw_graph(PlainGraph());
+  ASSERT_TRUE(b.look());
+  EXPECT_TRUE(b.scene.nodes.empty());
+}
+
+TEST(SceneBuilder, GivesTheSceneAgainToAnotherWindow) {
+  TestGraph g;
+  make_net(g, 3);
+  Shown b;
+  b.draw_graph(g);
+  ASSERT_TRUE(b.look());
+  EXPECT_FALSE(b.look());
+  b.take_again();
+  EXPECT_TRUE(b.look() && b.edges_changed);
+  EXPECT_EQ(b.scene.edges.size(), g.num_edges());
+}
+
 TEST(SceneBuilder, WantsFrameUntilOneWaits) {
   TestGraph g;
   make_net(g, 2);
@@ -807,6 +869,39 @@ TEST(SDLViewerThreads, KeysThatTheProgramDoesNotServeDoNothing) {
   serves.event_loop();
   EXPECT_TRUE(serves.take_restart());
   EXPECT_TRUE(serves.strain_colors());
+}
+
+TEST(SDLViewerThreads, LaunchLeavesTheMainThreadToTheSimulation) {
+  std::atomic<bool> closed = false;
+  std::thread user;
+  {
+    SFML_Viewer viewer(small());
+    viewer.snapshot();  // the window is used before, and made anew
+    Simulation s(viewer);
+    viewer.launch();
+    user = std::thread([&] {
+      use(s, [](SDL_Keycode k) { press(k); });
+      viewer.close();
+    });
+    s.run();  // until it is closed
+    EXPECT_TRUE(eventually([&] { return viewer.closed(); }));
+    user.join();
+  }
+  {
+    SFML_Viewer viewer(small());
+    TestGraph g;
+    make_net(g, 3);
+    viewer.draw_graph(g);
+    viewer.launch();
+    EXPECT_TRUE(eventually([&] { return viewer.wants_frame(); }));
+    user = std::thread([&] {
+      CME212::sleep(0.1);
+      closed = true;
+      press(SDLK_q);
+    });
+  }  // waits for the user
+  EXPECT_TRUE(closed);
+  user.join();
 }
 
 /** The picture before and after the user did @a event, and quit. */
