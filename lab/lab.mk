@@ -24,8 +24,8 @@ cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
 # No product and sum in one rounding: the same bits on every processor.
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
-# What draws: lab/viewer, the programs and tests that use it.
-lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/% lab/cloth.% \
+# What draws: one file of lab/viewer, and tests.
+lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
             tests/test_viewer.% tests/test_screen.% tests/test_course%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
