@@ -27,12 +27,6 @@
 
 namespace graph_detail {
 
-/** Counts nothing. A test passes a type of its own to count the work. */
-struct Uncounted {
-  static void neighbor_read() {}  ///< one entry of a neighbor list looked at
-  static void item_moved() {}     ///< one index or list entry moved
-};
-
 /** A first and a last iterator, for range-for. */
 template <typename It>
 struct Range {
@@ -46,7 +40,6 @@ struct Range {
 /** An undirected graph in space: no loops, no parallel edges.
  * @tparam V Type of the nodes' values: default constructible, copyable
  * @tparam E Type of the edges' values: likewise
- * @tparam Work Told of every neighbor read and every entry moved; for tests
  *
  * The nodes have the indices 0, ..., num_nodes() - 1, the edges 0, ...,
  * num_edges() - 1. A removal moves indices; it never moves what a Node or an
@@ -68,8 +61,7 @@ struct Range {
  * Threads: as a std::vector. Reads may run together, a write runs alone;
  * writes to positions and values of different elements may run together. */
 template <typename V = graph_detail::NoValue,
-          typename E = graph_detail::NoValue,
-          typename Work = graph_detail::Uncounted>
+          typename E = graph_detail::NoValue>
 class Graph {
   template <typename T>
   using Array = graph_detail::Array<T>;
@@ -290,7 +282,6 @@ class Graph {
     position_[id] = Point();
     node_value_[id] = V();
     nodes_.release(id);
-    Work::item_moved();
     ++version_;
     return 1;
   }
@@ -587,7 +578,6 @@ class Graph {
     size_type to = from_a ? b.id_ : a.id_;
     size_type found = none;
     for (Half h : pool_.items(neighbors_of_[from.id_])) {
-      Work::neighbor_read();
       // Not a branch on what is found: in lists this short, one that the
       // processor guesses wrong costs more than to read on to the end.
       found &= h.edge | (0u - size_type(h.node != to));
@@ -598,14 +588,11 @@ class Graph {
   /** Take edge @a e out of the list of node @a i. */
   void drop_from_list(size_type i, size_type e) {
     auto& list = neighbors_of_[i];
-    for (size_type k = 0; k < list.size; ++k) {
-      Work::neighbor_read();
+    for (size_type k = 0; k < list.size; ++k)
       if (pool_[list.begin + k].edge / 2 == e) {
         pool_.erase(list, k);
-        Work::item_moved();
         return;
       }
-    }
     assert(false);
   }
 
@@ -614,7 +601,6 @@ class Graph {
     ends_[e] = {};
     edge_value_[e] = E();
     edges_.release(e);
-    Work::item_moved();
   }
 
   /** Iterates over proxies, made when asked for. Random access over all nodes

@@ -73,6 +73,12 @@ $(B)/%.flags: FORCE
 	@mkdir -p $(dir $@); echo '$(CXX) $(flags)' | cmp -s - $@ \
 	  || echo '$(CXX) $(flags)' > $@
 
+all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
+ifneq ($(O),)
+.PHONY: $(PROGRAMS) $(STAGES:%=mass_spring_%) cloth
+$(PROGRAMS) $(STAGES:%=mass_spring_%) cloth: %: $(O)%
+endif
+
 deps:
 	@tools/deps.sh
 

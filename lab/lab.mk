@@ -64,4 +64,10 @@ $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B
 $(O)cloth: $(B)/cloth
 	@ln -f $< $@ 2>/dev/null || cp $< $@
 
+.PHONY: quick check check-full help-lab make_grid example_graph
+quick check check-full:
+	@tools/check.sh $@
+format:
+	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
+
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -1,14 +1,20 @@
 #!/usr/bin/env bash
-# Everything that a commit must pass; `make check` calls it. Each step writes
-# build/check/STEP.log; the last line counts the tests.
+# What a commit must pass:  tools/check.sh quick | check | check-full
+#   quick       in seconds after an edit: the course's door
+#   check       quick, every test under the sanitizers, the README's commands
+#   check-full  all else: clang++, threads, single precision, charts, windows ...
+# Everything is built in build/check; each step writes build/check/STEP.log; the
+# last line counts the tests.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
+tier=${1:-check}
 jobs=${JOBS:-$(nproc)}
 logs=build/check
-rm -rf "$logs"
 mkdir -p "$logs"
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+# Where tests look for programs.
+export BUILD=build/check
 # Line numbers are all that a failing test needs; -g takes a third of the time.
 export CXXFLAGS='-Werror -g1'
 started=$SECONDS passed=0 failed=0
@@ -36,8 +42,7 @@ step() {  # NAME COMMAND...
   passed=$((passed + good)) failed=$((failed + bad))
 }
 
-# Run lists of steps beside each other; then show and count what each of them
-# did.
+# Run lists of steps beside each other; then show and count what each did.
 beside() {  # LIST...
   local list good bad
   for list in "$@"; do
@@ -56,22 +61,72 @@ beside() {  # LIST...
   done
 }
 
-make_all() { make --no-print-directory -j"$jobs" "$@"; }
+# make in build/check/FOLDER; `in . TARGET` in build/check itself.
+in_folder() {  # FOLDER TARGET... VARIABLE=VALUE...
+  local folder=build/check/$1
+  folder=${folder%/.}
+  make --no-print-directory -j"$jobs" O="$folder/" B="$folder" "${@:2}"
+}
+
+# ---- quick
+
+# Each stage runs on the smallest grid, and the window is built.
+stages() {
+  local stage
+  for stage in problem1 diagonals forces constraints tear; do
+    in_folder . "build/check/mass_spring_$stage" VIEWER=0 || return 1
+    build/check/mass_spring_$stage data/grid0.nodes data/grid0.tets || return 1
+  done
+}
+course_test() { in_folder . "build/check/$1" && "build/check/$1"; }
+of_files() {
+  step tree        tools/check_tree.sh
+  step includes    tools/check_includes.sh
+  step test_nodes  course_test test_nodes
+  step test_edges  course_test test_edges
+}
+of_stages() {
+  step stages      stages
+  step driver      in_folder . build/check/mass_spring
+}
+
+# ---- check
+
+tests=$(basename -s .cpp tests/test_*.cpp)
+of_tests() {  # TEST...
+  local test
+  for test; do
+    case $test in
+      test_viewer | test_screen)
+        step "$test" env ASAN_OPTIONS=detect_leaks=0 "build/check/$test" ;;
+      *) step "$test" "build/check/$test" ;;
+    esac
+  done
+}
+# Tests use one core, so one half of them runs beside the other.
+# shellcheck disable=SC2046  # lists of words
+odd_tests() { of_tests $(sed -n 'p;n' <<<"$tests"); }
+# shellcheck disable=SC2046
+even_tests() { of_tests $(sed -n 'n;p' <<<"$tests"); }
+# shellcheck disable=SC2086  # a list of words
+build_tests() { in_folder . $tests work_precision stability_map adviser_suite make_grid; }
+
+# ---- check-full
 
 # The committed grids are what make_grid makes.
 same_grids() {
-  mkdir -p build/grids && make -s grids TO=build/grids || return 1
+  mkdir -p build/check/grids && in_folder . grids TO=build/check/grids || return 1
   local file
   for file in data/grid*.nodes data/grid*.tets; do
-    [ "${file%.*}" = data/grid4 ] || cmp "$file" "build/grids/${file##*/}" || return 1
+    [ "${file%.*}" = data/grid4 ] ||
+      cmp "$file" "build/check/grids/${file##*/}" || return 1
   done
 }
-
 # What stands beside other libraries compiles, where these are installed.
 peers() {
   local program out eigen
   eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
-  for program in peers/*.cpp; do
+  for program in lab/bench/peers/*.cpp; do
     # shellcheck disable=SC2086  # a list of words
     if out=$(g++ -std=c++20 -Wall -Wextra -Werror -fopenmp -fsyntax-only -I. \
       -isystem /usr/include/bullet $eigen "$program" 2>&1); then
@@ -85,97 +140,94 @@ peers() {
     fi
   done
 }
-
-# Threads: Mesa's own are not ours to check.
+# Threads: Mesa's own are not ours to check. clang++, whose OpenMP tells
+# ThreadSanitizer what waits for what.
 threads() {
-  TSAN_OPTIONS="suppressions=tools/tsan.supp halt_on_error=1" \
-    build/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*' &&
+  in_folder tsan test_viewer test_sweep CXX=clang++ SANITIZE=thread &&
+    TSAN_OPTIONS="suppressions=tools/tsan.supp halt_on_error=1" \
+      build/check/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*' &&
     OMP_NUM_THREADS=3 \
       TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
-      build/tsan/test_sweep --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*'
+      build/check/tsan/test_sweep --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*'
 }
-
 # Single precision: the sweeps, a run, and how far it ends from double.
 single() {
-  make_all build/float/test_sweep build/float/mass_spring \
-    build/float/work_precision REAL=float VIEWER=0 O=build/float/ &&
-    build/float/test_sweep &&
-    build/float/mass_spring data/grid1.nodes data/grid1.tets --headless \
+  in_folder float test_sweep build/check/float/cloth work_precision REAL=float \
+    VIEWER=0 &&
+    build/check/float/test_sweep &&
+    build/check/float/cloth data/grid1.nodes data/grid1.tets --headless \
       --dt auto &&
-    build/float/work_precision --ends --scenes chain --out build/ends.txt &&
-    ./work_precision --floor build/ends.txt --out build/float_floor.csv &&
+    build/check/float/work_precision --ends --scenes chain \
+      --out build/check/ends.txt &&
+    build/check/work_precision --floor build/check/ends.txt \
+      --out build/check/float_floor.csv &&
     awk -F, '$1 == "chain" {++n; if ($5 < 1e-8 || $5 > 1e-4) bad = 1}
-      END {exit n != 6 || bad}' build/float_floor.csv
+      END {exit n != 6 || bad}' build/check/float_floor.csv
 }
-
-# Programs that no step runs for long.
-quickly="bench% adviser_suite mass_spring_diagonals mass_spring_forces
-  mass_spring_constraints mass_spring_tear"
 # What counts of clang++ is what it says: no time for optimizing.
 clang() {
-  make_all all CXX=clang++ O=build/clang/ SANITIZE= CXXFLAGS="-Werror -O0 -g0"
+  # shellcheck disable=SC2086  # a list of words
+  in_folder clang all cloth $tests work_precision stability_map adviser_suite \
+    bench bench_implicit bench_stability make_grid example_graph \
+    CXX=clang++ SANITIZE= CXXFLAGS="-Werror -O0 -g0" &&
+    build/check/clang/test_nodes && build/check/clang/test_edges &&
+    build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges
 }
-
+plain() {
+  in_folder plain cloth build/check/plain/mass_spring VIEWER=0 CHOLMOD=0 OPENMP=0
+}
+programs() {
+  in_folder . all cloth bench bench_implicit bench_stability example_graph
+}
+# A sample of the suite of lab/advice/README.md; other scenes than the tables.
+advice() {
+  build/check/adviser_suite --scenes 24 --first 501 --want-met 85 \
+    --want-cheap 75 --out build/check/adviser.csv
+}
 of_scripts() {
   step checks      tools/test_checks.sh
   step submit      tools/test_submit.sh
   step deps        tools/test_deps.sh
+  step headers     env CXX=clang++ tools/check_headers.sh
+  step lanes       tools/check_lanes.sh
+  step peers       peers
 }
 of_variants() {
-  step peers       peers
-  step build-plain make_all mass_spring VIEWER=0 CHOLMOD=0 O=build/plain/ \
-    QUICKLY=mass_spring
-  # clang++, whose OpenMP tells ThreadSanitizer what waits for what.
-  step build-tsan  make_all build/tsan/test_viewer build/tsan/test_sweep \
-    CXX=clang++ O=build/tsan/ SANITIZE=thread
+  step plain       plain
   step threads     threads
   step single      single
 }
-of_tests() {  # TEST...
-  local test
-  for test; do
-    case $test in
-      test_viewer | test_screen) step "$test" env ASAN_OPTIONS=detect_leaks=0 "./$test" ;;
-      *) step "$test" "./$test" ;;
-    esac
-  done
-}
-# Tests use one core, so one half of them runs beside the other.
-tests=$(make -s print-tests)
-# shellcheck disable=SC2046  # lists of words
-odd_tests() { of_tests $(sed -n 'p;n' <<<"${tests// /$'\n'}"); }
-# shellcheck disable=SC2046
-even_tests() { of_tests $(sed -n 'n;p' <<<"${tests// /$'\n'}"); }
-# A sample of the suite of docs/advice.md; other scenes than the tables.
-advice() {
-  ./adviser_suite --scenes 24 --first 501 --want-met 85 --want-cheap 75 \
-    --out build/adviser.csv
-}
 of_programs() {
-  step nodes-by-clang++ build/clang/test_nodes
-  step edges-by-clang++ build/clang/test_edges
   step window      tools/test_window.sh
   step grids       same_grids
-  step readme      tools/check_readme.sh
+  step pages       tools/check_pages.sh
 }
 of_sweeps() {
-  step charts      make -s charts QUICK=1
-  step stability   make -s stability QUICK=1
+  step charts      in_folder . -s charts QUICK=1
+  step stability   in_folder . -s stability QUICK=1
   step sweep       tools/test_sweep.sh
-  step fuzz        make -s fuzz RUNS=100000
+  step fuzz        in_folder . -s fuzz RUNS=100000
   step advice      advice
 }
 
-step tree          tools/check_tree.sh
-step includes      tools/check_includes.sh
-step headers       env CXX=clang++ tools/check_headers.sh
-step lanes         tools/check_lanes.sh
-step build-g++     make_all all CXX=g++ QUICKLY="${quickly//$'\n'/ }"
-step build-clang++ clang
-beside of_scripts of_variants
-beside odd_tests even_tests
-beside of_programs of_sweeps
+case $tier in
+  quick | check)
+    rm -f "$logs"/*.log
+    beside of_files of_stages ;;&
+  check)
+    step build       build_tests
+    beside odd_tests even_tests
+    step readme      tools/check_readme.sh ;;
+  check-full)
+    step build       build_tests
+    step programs    programs
+    step clang       clang
+    beside of_scripts of_variants
+    beside of_programs of_sweeps ;;
+  quick) ;;
+  *) echo "usage: tools/check.sh quick | check | check-full" >&2; exit 2 ;;
+esac
 
-echo "make check took $((SECONDS - started)) s"
+echo "make $tier took $((SECONDS - started)) s"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

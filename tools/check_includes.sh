@@ -1,136 +1,100 @@
 #!/usr/bin/env bash
-# Hold the include arrows: who may include whom. This table is their one home;
-# a new header or a new arrow is a change of the design, made there first.
-#   NAME : A B   may include A, B and all that these may include
-#   NAME = A B   may include A and B, and nothing else; * stands for any text
+# Hold the include arrows: who may include whom. This table is their one home; a
+# new room or a new arrow is a change of the design, made there first.
+#   ROOM : A B   may include itself, A, B and all that these may include
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 arrows='
-CME212/Point       = CME212/Util
-CME212/Util        = CME212/Point
-CME212/OutputFile  =
-CME212/Allocations =
-CME212/TestFolder  =
-CME212/BoundingBox = CME212/Point
-CME212/Color       = CME212/Point
-CME212/GLCamera    = CME212/*
-CME212/GLTools     = CME212/*
-CME212/GLScene     = CME212/*
-CME212/GLOverlay   = CME212/*
-CME212/Image       = CME212/*
-CME212/SceneBuilder = CME212/*
-CME212/SDLWindow   = CME212/*
-CME212/SDLViewer   = CME212/*
-SlotMap            =
-Graph              : SlotMap CME212/Point CME212/Util
-Lanes              : CME212/Point
-Stencil            : Graph
-Mesh               : CME212/Point CME212/Util
-Order              : Mesh
-Cloth              : Graph Order Lanes Stencil CME212/BoundingBox
-Force              : Cloth
-Sweep              : Force
-Constraint         : Cloth
-Obstacle           : Constraint
-SelfCollision      : Constraint
-Integrator         : Sweep Constraint
-RungeKutta         : Integrator
-Cholesky           : Lanes
-ImplicitStage      : Integrator
-Implicit           : ImplicitStage Cholesky
-Xpbd               : ImplicitStage
-Methods            : RungeKutta Implicit Xpbd
-Spectrum           : Force Constraint
-Stability          : Spectrum Integrator CME212/Util CME212/BoundingBox
-Words              : CME212/Point
-Model              : Obstacle Words CME212/Util
-Compose            : Model SelfCollision Force
-Scene              : Compose Integrator Stability
-Measure            : Scene Methods
-Refinement         : Measure
-Advice             : Refinement
-Variation          : Measure
-Advise             : Variation Advice
-SceneFile          : Model Methods
-Run                : Scene CME212/OutputFile
-Problem            : Methods Stability
-Limits             : Problem
-Failure            : Problem
-Growth             : Limits
-peers/contenders   : Integrator
-Report             : CME212/Util
-Precision          : Problem Report
-Bench              : Report Sweep CME212/OutputFile
-Screen             : Scene CME212/Image CME212/SDLViewer
-mass_spring        = Cloth Force Constraint Integrator
+CME212        :
+Graph         : CME212
+mass_spring   : Graph
+lab           : CME212
+lab/fast      : mass_spring
+lab/methods   : lab/fast
+lab/stability : lab/methods
+lab/scenes    : lab/stability lab
+lab/advice    : lab/scenes
+lab/charts    : lab/stability lab
+lab/bench     : lab/charts
+lab/viewer    : lab/advice
 '
-# A program may include anything, but these headers draw, and only these
-# programs may include them.
-drawing='CME212/Color CME212/GL* CME212/SDL* CME212/SceneBuilder CME212/Image
-         Screen'
-drivers='mass_spring.cpp test_viewer.cpp test_screen.cpp
-         test_course_interface.cpp'
-# SDL's and OpenGL's own headers, and who alone may name them.
-gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/'
-gl_users='CME212/GLTools.hpp CME212/GLScene.hpp CME212/GLOverlay.hpp
-          CME212/SDLWindow.hpp CME212/SDLViewer.hpp'
+# A program or a test may include anything, but only these draw:
+drawing='CME212/GL* CME212/SDL* CME212/SFML* CME212/SceneBuilder.hpp
+         CME212/Image.hpp CME212/Color.hpp'
+drawers='CME212/* lab/viewer/* mass_spring.cpp tests/test_viewer*.cpp
+         tests/test_screen.cpp tests/test_course_interface.cpp'
+# And only these name SDL, OpenGL and Dear ImGui:
+gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/|imgui'
+gl_users='CME212/GL* CME212/SDL* lab/viewer/*'
 
-shopt -s nullglob
-files=(*.hpp *.cpp CME212/*.hpp CME212/*.cpp peers/*.hpp peers/*.cpp)
+mapfile -t files < <(git ls-files -co --exclude-standard -- '*.hpp' '*.cpp' |
+  sort -u | while IFS= read -r file; do [ ! -f "$file" ] || echo "$file"; done)
 set -f  # from here on * is a character of the table
 faults=0
+fault() { echo "$1"; faults=$((faults + 1)); }
 
 declare -A may
-while read -r name kind below; do
-  [ -n "$name" ] || continue
-  may[$name]=" $below"
-  [ "$kind" = "=" ] || for b in $below; do may[$name]+=" ${may[$b]}"; done
+while read -r room _ below; do
+  [ -n "$room" ] || continue
+  may[$room]=" $room $below"
+  for b in $below; do may[$room]+=" ${may[$b]}"; done
 done <<<"$arrows"
 
-fault() { echo "$1"; faults=$((faults + 1)); }
 one_of() {  # is $1 one of the words (or patterns) that follow?
   local word
   # shellcheck disable=SC2053  # a pattern
   for word in "${@:2}"; do [[ $1 == $word ]] && return; done
   return 1
 }
-
+is_program() { grep -qE '^int main|^ *BENCHMARK_MAIN' "$1"; }
+room_of() {  # FILE: its room; nothing for a program in the root
+  case $1 in
+    Graph.hpp) echo Graph ;;
+    mass_spring.hpp | mass_spring.cpp) echo mass_spring ;;
+    lab/bench/*) echo lab/bench ;;
+    *) dirname "$1" ;;
+  esac
+}
 # The file of this tree that FILE includes as TARGET; nothing if it is none.
 in_tree() {
   local file
   for file in "$(dirname "$1")/$2" "$2"; do
-    file=${file#./}
-    [[ $file != *./* ]] || file=$(realpath -m --relative-to=. "$file")
-    if one_of "$file" "${files[@]}"; then echo "$file"; return; fi
+    file=$(realpath -m --relative-to=. "$file")
+    [ ! -f "$file" ] || { echo "$file"; return; }
   done
 }
-
-for file in "${files[@]}"; do
-  [[ $file == *.cpp || -n ${may[${file%.hpp}]+there} ]] ||
-    fault "$file:1: has no line in the table of tools/check_includes.sh"
-done
 
 include='^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]([^>"]+)[>"]'
 while IFS=: read -r file line text; do
   [[ $text =~ $include ]] || continue
   target=${BASH_REMATCH[1]}
+  # shellcheck disable=SC2086  # lists of words, here and below
   if [[ $target =~ $gl_headers ]]; then
-    # shellcheck disable=SC2086  # lists of words, here and below
     one_of "$file" $gl_users ||
       fault "$file:$line: includes $target, which only $gl_users may name"
     continue
   fi
   header=$(in_tree "$file" "$target")
   [ -n "$header" ] || continue
-  name=${header%.hpp}
-  if [[ $file == *.cpp ]]; then
-    # shellcheck disable=SC2086
-    ! one_of "$name" $drawing || one_of "$file" $drivers ||
+  # shellcheck disable=SC2086
+  if one_of "$header" $drawing && ! one_of "$file" $drawers; then
+    fault "$file:$line: includes $header, which draws"
+  fi
+  # Programs and tests of the laboratory may include anything else.
+  case $file in
+    lab/*.cpp) ! is_program "$file" || continue ;;
+    */*) [[ $file == lab/* || $file == CME212/* ]] || continue ;;
+  esac
+  room=$(room_of "$file") of=$(room_of "$header")
+  if [ "$room" = . ]; then  # a program of the course
+    [[ $header != lab/* ]] ||
       fault "$file:$line: includes $header, which is not below it"
-  elif [ -n "${may[${file%.hpp}]+there}" ]; then
+  elif [ -z "${may[$room]+there}" ]; then
+    fault "$file:1: its room has no line in the table of $0"
+  else
     # shellcheck disable=SC2086
-    one_of "$name" ${may[${file%.hpp}]} ||
+    one_of "$of" ${may[$room]} ||
       fault "$file:$line: includes $header, which is not below it"
   fi
 done < <(grep -nE "$include" /dev/null "${files[@]}")

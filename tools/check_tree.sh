@@ -41,7 +41,7 @@ done >>"$faults"
 for file in "${sources[@]}"; do
   limit=$longest
   [ "$file" != Graph.hpp ] || limit=$longest_graph
-  [[ $file != test_* ]] || limit=$longest_test
+  [[ $file != *test_* ]] || limit=$longest_test
   count=$(wc -l <"$file")
   [ "$count" -le "$limit" ] ||
     echo "$file:$limit: goes on to line $count; the limit is $limit"

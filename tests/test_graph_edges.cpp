@@ -1,0 +1,634 @@
+/** @file test_graph_edges.cpp
+ * What Graph.hpp promises of edges beyond the assignment, which test_edges.cpp
+ * tests; in the order of test_graph_nodes.cpp. */
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "Graph.hpp"
+
+namespace {
+
+using G = Graph<int, double>;
+using Node = G::Node;
+using Edge = G::Edge;
+
+static_assert(sizeof(Edge) <= 16);
+static_assert(std::is_same_v<G::edge_type, Edge>);
+static_assert(std::is_same_v<G::edge_value_type, double>);
+static_assert(std::is_same_v<G::edge_iterator, G::EdgeIterator>);
+static_assert(std::is_same_v<G::incident_iterator, G::IncidentIterator>);
+static_assert(std::is_trivially_copyable_v<Edge>);
+static_assert(std::random_access_iterator<G::edge_iterator>);
+static_assert(std::random_access_iterator<G::incident_iterator>);
+static_assert(std::is_same_v<std::iter_value_t<G::incident_iterator>, Edge>);
+static_assert(std::is_same_v<decltype(std::declval<Edge&>().value()), double&>);
+static_assert(std::is_same_v<decltype(std::declval<const Edge&>().value()),
+                             const double&>);
+
+/** Nodes 0 to 4 at (i, 0, 0); the edges 01, 02, 03, 12, 34 have the indices
+ * 0 to 4 and the values 1, 2, 3, 12, 34. */
+class Edges : public ::testing::Test {
+ protected:
+  G g;
+  std::vector<Node> n;
+  std::vector<Edge> e;
+  const std::vector<std::pair<int, int>> ends{
+      {0, 1}, {0, 2}, {0, 3}, {1, 2}, {3, 4}};
+
+  Edges() {
+    for (int i = 0; i < 5; ++i) n.push_back(g.add_node(Point(i, 0, 0), i));
+    for (auto [a, b] : ends) e.push_back(g.add_edge(n[a], n[b], 10 * a + b));
+  }
+  void TearDown() override { g.check_invariants(); }
+
+  /** Edge k of the start is alive and is what it was. */
+  void expect_intact(int k) {
+    auto [a, b] = ends[k];
+    EXPECT_TRUE(g.has_edge(e[k]));
+    EXPECT_TRUE(g.has_edge(n[a], n[b]) && g.has_edge(n[b], n[a]));
+    EXPECT_EQ(e[k].node1(), n[a]);
+    EXPECT_EQ(e[k].node2(), n[b]);
+    EXPECT_EQ(e[k].value(), 10 * a + b);
+    EXPECT_EQ(g.edge(e[k].index()), e[k]);
+  }
+  std::vector<double> values_by_index() const {
+    std::vector<double> v;
+    for (auto it = g.edge_begin(); it != g.edge_end(); ++it)
+      v.push_back((*it).value());
+    return v;
+  }
+  /** The values of the nodes next to @a m, in the order of m.edges(). */
+  static std::vector<int> neighbors(Node m) {
+    std::vector<int> v;
+    for (auto it = m.edge_begin(); it != m.edge_end(); ++it) {
+      EXPECT_EQ((*it).node1(), m);
+      v.push_back((*it).node2().value());
+    }
+    EXPECT_EQ(v.size(), m.degree());
+    return v;
+  }
+  bool only_has(std::set<std::pair<int, int>> wanted) const {
+    bool same = g.num_edges() == wanted.size();
+    for (int a = 0; a < 5; ++a)
+      for (int b = 0; b < 5; ++b)
+        same &= g.has_edge(n[a], n[b]) ==
+                (wanted.count({a, b}) || wanted.count({b, a}));
+    return same;
+  }
+};
+using Values = std::vector<double>;
+using Ints = std::vector<int>;
+
+// ------------------------------------------------------------- adding, asking
+
+TEST_F(Edges, AddEdgeGivesTheNextIndexAndKeepsTheOthers) {
+  Edge f = g.add_edge(n[4], n[1], 41);
+  EXPECT_EQ(g.num_edges(), 6u);
+  EXPECT_EQ(f.index(), 5u);
+  EXPECT_EQ(f.node1(), n[4]);
+  EXPECT_EQ(f.node2(), n[1]);
+  EXPECT_EQ(f.value(), 41);
+  EXPECT_EQ(n[4].degree(), 2u);
+  EXPECT_EQ(n[1].degree(), 3u);
+  for (int k = 0; k < 5; ++k) {
+    expect_intact(k);
+    EXPECT_EQ(e[k].index(), unsigned(k));
+  }
+}
+
+TEST_F(Edges, AddingAnEdgeAgainGivesTheOldOneAsAskedFor) {
+  auto version = g.version();
+  Edge same = g.add_edge(n[0], n[2], -1);
+  EXPECT_EQ(same, e[1]);
+  EXPECT_EQ(same.node1(), n[0]);
+  EXPECT_EQ(same.node2(), n[2]);
+  Edge turned = g.add_edge(n[2], n[0], -1);
+  EXPECT_EQ(turned, e[1]);
+  EXPECT_EQ(turned.node1(), n[2]);
+  EXPECT_EQ(turned.node2(), n[0]);
+  EXPECT_EQ(turned.value(), 2) << "the value of an old edge is kept";
+  EXPECT_EQ(turned.index(), 1u);
+  EXPECT_EQ(g.num_edges(), 5u);
+  EXPECT_EQ(g.version(), version);
+  // Whichever end has the shorter list:
+  for (auto [a, b] : ends) {
+    EXPECT_EQ(g.add_edge(n[a], n[b]).node1(), n[a]);
+    EXPECT_EQ(g.add_edge(n[b], n[a]).node1(), n[b]);
+  }
+}
+
+TEST_F(Edges, AValueNotGivenIsTheDefault) {
+  EXPECT_EQ(g.add_edge(n[1], n[4]).value(), 0);
+}
+
+TEST_F(Edges, AddEdgeTakesItsValueFromTheArrayThatGrows) {
+  Graph<int, std::string> s;
+  std::vector<Graph<int, std::string>::Node> m;
+  for (int i = 0; i < 60; ++i) m.push_back(s.add_node(Point()));
+  s.add_edge(m[0], m[1], std::string(50, 'x'));
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < i; ++k)
+      ASSERT_EQ(s.add_edge(m[i], m[k], s.edge(0).value()).value(),
+                std::string(50, 'x'));
+}
+
+TEST_F(Edges, HasEdgeIsSymmetricAndFalseForStrangers) {
+  EXPECT_TRUE(only_has({{0, 1}, {0, 2}, {0, 3}, {1, 2}, {3, 4}}));
+  EXPECT_FALSE(g.has_edge(n[0], n[0]));
+  EXPECT_FALSE(g.has_edge(n[0], Node()));
+  EXPECT_FALSE(g.has_edge(Node(), Node()));
+  EXPECT_FALSE(g.has_edge(Edge()));
+  G other(g);
+  EXPECT_FALSE(g.has_edge(n[0], other.node(1)));
+  EXPECT_FALSE(g.has_edge(other.node(0), other.node(1)));
+  EXPECT_FALSE(g.has_edge(other.edge(0)));
+  g.remove_node(n[1]);
+  g.add_edge(g.add_node(Point()), n[0]);  // in the slot of n[1]
+  EXPECT_FALSE(g.has_edge(n[0], n[1]));
+  EXPECT_FALSE(g.has_edge(n[1], n[0]));
+}
+
+TEST_F(Edges, EdgeOfIndexIsSeenFromTheFirstNodeOfItsAddEdge) {
+  for (unsigned i = 0; i < g.num_edges(); ++i) {
+    EXPECT_EQ(g.edge(i).index(), i);
+    EXPECT_EQ(g.edge(i).node1(), n[ends[i].first]);
+    EXPECT_EQ(g.edge(i).node2(), n[ends[i].second]);
+    EXPECT_EQ(g.edge_begin()[i].node1(), n[ends[i].first]);
+  }
+}
+
+TEST_F(Edges, BothViewsShareOneValue) {
+  Edge turned = g.add_edge(n[1], n[0]);
+  turned.value() = 7;
+  EXPECT_EQ(e[0].value(), 7);
+  EXPECT_EQ((*n[0].edge_begin()).value(), 7);
+  n[1].edge_begin()->value() = 8;
+  EXPECT_EQ(g.edge(0).value(), 8);
+  EXPECT_EQ(&turned.value(), &e[0].value());
+}
+
+using EdgesDeathTest = Edges;
+
+TEST_F(EdgesDeathTest, AddEdgeNeedsTwoNodesOfItsOwn) {
+  G other(g);
+  Node dead = n[4];
+  g.remove_node(dead);
+  EXPECT_DEATH(g.add_edge(n[0], n[0]), "a == b");
+  EXPECT_DEATH(g.add_edge(n[0], other.node(1)), "has_node");
+  EXPECT_DEATH(g.add_edge(other.node(0), n[1]), "has_node");
+  EXPECT_DEATH(g.add_edge(n[0], dead), "has_node");
+  EXPECT_DEATH(g.add_edge(Node(), n[0]), "has_node");
+}
+
+TEST_F(EdgesDeathTest, AnInvalidOrDeadEdgeIsNotUsed) {
+  Edge dead = e[1];
+  g.remove_edge(dead);
+  g.add_edge(n[1], n[4]);  // in its slot
+  for (Edge f : {Edge(), dead}) {
+    EXPECT_DEATH(f.node1(), "has_edge");
+    EXPECT_DEATH(f.node2(), "has_edge");
+    EXPECT_DEATH(f.value(), "has_edge");
+    EXPECT_DEATH(std::as_const(f).value(), "has_edge");
+    EXPECT_DEATH(f.index(), "has_edge");
+    EXPECT_DEATH(f.length(), "has_edge");
+  }
+  EXPECT_DEATH(g.edge(5), "num_edges");
+  EXPECT_DEATH(*g.edge_end(), "num_edges");
+  EXPECT_DEATH(g.remove_edge(g.edge_end()), "num_edges");
+  g.remove_edge(g.edge(0));
+  EXPECT_DEATH(g.edge_with_id(0), "edge_in_use");
+  EXPECT_DEATH(g.edge_with_id(99), "edge_slots");
+}
+
+// ------------------------------------------------------------- removing edges
+
+TEST_F(Edges, RemoveEdgeByItsEndsReturnsOneOnce) {
+  EXPECT_EQ(g.remove_edge(n[0], n[2]), 1u);
+  EXPECT_TRUE(only_has({{0, 1}, {0, 3}, {1, 2}, {3, 4}}));
+  EXPECT_EQ(g.remove_edge(n[0], n[2]), 0u);
+  EXPECT_EQ(g.remove_edge(n[4], n[3]), 1u) << "from either end";
+  EXPECT_TRUE(only_has({{0, 1}, {0, 3}, {1, 2}}));
+  EXPECT_EQ(n[4].degree(), 0u);
+  EXPECT_EQ(g.num_nodes(), 5u);
+}
+
+TEST_F(Edges, RemoveEdgeByHandleFromEitherEnd) {
+  EXPECT_EQ(g.remove_edge(g.add_edge(n[2], n[0])), 1u);
+  EXPECT_FALSE(g.has_edge(e[1]));
+  EXPECT_EQ(g.remove_edge(e[1]), 0u);
+  EXPECT_EQ(g.remove_edge(*n[3].edge_begin()), 1u);
+  EXPECT_TRUE(only_has({{0, 1}, {1, 2}, {3, 4}}));
+}
+
+TEST_F(Edges, RemoveEdgeOfNoEdgeHereChangesNothing) {
+  G other(g);
+  auto version = g.version();
+  EXPECT_EQ(g.remove_edge(n[1], n[4]), 0u);
+  EXPECT_EQ(g.remove_edge(n[1], n[1]), 0u);
+  EXPECT_EQ(g.remove_edge(n[1], Node()), 0u);
+  EXPECT_EQ(g.remove_edge(other.node(0), other.node(1)), 0u);
+  EXPECT_EQ(g.remove_edge(other.edge(0)), 0u);
+  EXPECT_EQ(g.remove_edge(Edge()), 0u);
+  EXPECT_EQ(g.version(), version);
+  EXPECT_EQ(values_by_index(), (Values{1, 2, 3, 12, 34}));
+}
+
+TEST_F(Edges, TheHighestIndexMovesIntoTheHoleAndNoOther) {
+  g.remove_edge(e[1]);
+  EXPECT_EQ(values_by_index(), (Values{1, 34, 3, 12}));
+  g.remove_edge(n[0], n[1]);
+  EXPECT_EQ(values_by_index(), (Values{12, 34, 3}));
+  g.remove_edge(e[2]);  // has the highest index itself
+  EXPECT_EQ(values_by_index(), (Values{12, 34}));
+  EXPECT_EQ(g.add_edge(n[4], n[0], 40).index(), 2u);
+  for (int k : {3, 4}) expect_intact(k);
+}
+
+TEST_F(Edges, RemovingAtAnIteratorVisitsEachEdgeOnce) {
+  for (int keep = 0; keep < 32; ++keep) {  // every subset of five
+    G h(g);
+    auto kept = [&](double v) {
+      int k = 0;
+      while (e[k].value() != v) ++k;
+      return keep >> k & 1;
+    };
+    std::multiset<double> visited, left;
+    for (auto it = h.edge_begin(); it != h.edge_end();) {
+      visited.insert((*it).value());
+      if (kept((*it).value()))
+        ++it;
+      else
+        it = h.remove_edge(it);
+      h.check_invariants();
+    }
+    for (auto f : h.edges()) left.insert(f.value());
+    EXPECT_EQ(visited, (std::multiset<double>{1, 2, 3, 12, 34}));
+    for (double v : visited) EXPECT_EQ(left.count(v), std::size_t(kept(v)));
+  }
+}
+
+TEST_F(Edges, RemovingAtAnIteratorGivesTheEdgeInTheHoleOrTheEnd) {
+  auto it = g.remove_edge(g.edge_begin() + 1);
+  EXPECT_EQ(it, g.edge_begin() + 1);
+  EXPECT_EQ(*it, e[4]);
+  it = g.remove_edge(g.edge_begin() + 3);  // the highest index
+  EXPECT_EQ(it, g.edge_end());
+}
+
+TEST_F(Edges, AnEdgeRemovedComesAsNewWithItsDefault) {
+  g.remove_edge(e[0]);
+  Edge f = g.add_edge(n[1], n[0]);
+  EXPECT_NE(f, e[0]);
+  EXPECT_EQ(f.value(), 0);
+  EXPECT_EQ(f.index(), 4u);
+  EXPECT_EQ(g.edge(4).node1(), n[1]);
+}
+
+// ------------------------------------------------------------- removing nodes
+
+TEST_F(Edges, RemoveNodeTakesItsEdgesAndNoOther) {
+  EXPECT_EQ(g.remove_node(n[0]), 1u);
+  EXPECT_EQ(g.num_edges(), 2u);
+  EXPECT_TRUE(only_has({{1, 2}, {3, 4}}));
+  for (int k : {0, 1, 2}) EXPECT_FALSE(g.has_edge(e[k]));
+  for (int k : {3, 4}) expect_intact(k);
+  EXPECT_EQ(neighbors(n[1]), Ints{2});
+  EXPECT_EQ(neighbors(n[3]), Ints{4});
+  std::set<unsigned> indices;
+  for (auto f : g.edges()) indices.insert(f.index());
+  EXPECT_EQ(indices, (std::set<unsigned>{0, 1}));
+}
+
+TEST_F(Edges, RemoveNodeMayBeGivenAnEndOfItsEdge) {
+  EXPECT_EQ(g.remove_node(e[0].node1()), 1u);
+  EXPECT_EQ(g.remove_node(g.edge(0).node2()), 1u);
+  EXPECT_EQ(g.num_nodes(), 3u);
+}
+
+TEST_F(Edges, TearingNodesWhileIteratingKeepsTheRest) {
+  for (auto it = g.node_begin(); it != g.node_end();) {
+    if ((*it).value() % 3 == 0)
+      it = g.remove_node(it);
+    else
+      ++it;
+    g.check_invariants();
+  }
+  EXPECT_TRUE(only_has({{1, 2}}));
+  expect_intact(3);
+}
+
+TEST_F(Edges, AHubComesAndGoes) {
+  for (int round = 0; round < 3; ++round) {
+    Node hub = g.add_node(Point(), 100);
+    for (int i = 0; i < 500; ++i)
+      g.add_edge(hub, g.add_node(Point(), 1000 + i), i);
+    EXPECT_EQ(hub.degree(), 500u);
+    g.check_invariants();
+    Ints around = neighbors(hub);
+    for (int i = 0; i < 500; ++i) EXPECT_EQ(around[i], 1000 + i);
+    EXPECT_EQ(g.remove_node(hub), 1u);
+    EXPECT_EQ(g.num_edges(), 5u);
+    g.check_invariants();
+    for (int k = 0; k < 5; ++k) expect_intact(k);
+  }
+}
+
+TEST_F(Edges, ClearRemovesAll) {
+  g.remove_edge(e[2]);
+  g.clear();
+  g.check_invariants();
+  EXPECT_EQ(g.num_edges(), 0u);
+  EXPECT_TRUE(g.edge_begin() == g.edge_end());
+  for (Edge f : e) EXPECT_FALSE(g.has_edge(f));
+  Node a = g.add_node(Point()), b = g.add_node(Point());
+  EXPECT_EQ(g.add_edge(a, b).index(), 0u);
+  EXPECT_EQ(g.num_edges(), 1u);
+}
+
+// ----------------------------------------------------- handles live, stay dead
+
+TEST_F(Edges, HandlesSurviveTheRemovalOfOthers) {
+  g.remove_edge(e[0]);
+  g.remove_node(n[3]);
+  for (int i = 0; i < 50; ++i) g.add_edge(n[1], g.add_node(Point()), -i);
+  for (int k : {1, 3}) expect_intact(k);
+  e[3].value() = 99;
+  EXPECT_EQ(g.edge(e[3].index()).value(), 99);
+}
+
+TEST_F(Edges, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
+  g.remove_edge(e[0]);
+  g.remove_edge(e[2]);
+  EXPECT_EQ(values_by_index(), (Values{34, 2, 12}));
+  g.reindex();
+  EXPECT_EQ(values_by_index(), (Values{2, 12, 34}));
+  for (int k : {1, 3, 4}) expect_intact(k);
+}
+
+TEST_F(Edges, ReindexEdgesGivesTheIndicesThatItIsTold) {
+  const auto version = g.version();
+  g.reindex_edges(std::vector<unsigned>{4, 0, 3, 1, 2});
+  EXPECT_NE(g.version(), version);
+  EXPECT_EQ(values_by_index(), (Values{34, 1, 12, 2, 3}));
+  for (unsigned k = 0; k < 5; ++k) {
+    expect_intact(int(k));
+    EXPECT_EQ(e[k].id(), k);
+    EXPECT_EQ(n[k].index(), k);
+  }
+  EXPECT_EQ(neighbors(n[0]), (Ints{1, 2, 3}));
+  g.check_invariants();
+  g.remove_node(n[3]);
+  g.reindex_edges(std::vector<unsigned>{1, 3, 0});
+  EXPECT_EQ(values_by_index(), (Values{2, 12, 1}));
+  EXPECT_EQ(g.add_edge(n[1], n[4]).index(), 3u);
+}
+
+TEST_F(Edges, TheIdOfAnEdgeStaysAndIsOneForBothViews) {
+  unsigned id = e[4].id();
+  g.remove_edge(e[0]);
+  g.reindex();
+  EXPECT_EQ(e[4].id(), id);
+  EXPECT_EQ(g.add_edge(n[4], n[3]).id(), id);
+}
+
+TEST_F(Edges, ADeadHandleStaysDead) {
+  Edge turned = g.add_edge(n[2], n[0]);
+  g.remove_edge(e[1]);
+  for (int round = 0; round < 1000; ++round) {
+    Edge f = g.add_edge(n[0], n[2]);  // the same ends, in the same slot
+    ASSERT_FALSE(g.has_edge(e[1]) || g.has_edge(turned));
+    ASSERT_NE(f, e[1]);
+    g.remove_edge(f);
+  }
+  EXPECT_EQ(g.edge_slots(), 5u);
+  g.clear();
+  std::vector<Node> m;
+  for (int i = 0; i < 5; ++i) m.push_back(g.add_node(Point()));
+  for (auto [a, b] : ends) g.add_edge(m[a], m[b]);
+  G copy(g);
+  for (Edge f : e) EXPECT_FALSE(g.has_edge(f) || copy.has_edge(f));
+}
+
+TEST_F(Edges, ACopiedGraphIsEqualAndItsOwn) {
+  g.remove_node(n[1]);
+  G copy(g);
+  copy.check_invariants();
+  ASSERT_EQ(copy.num_edges(), g.num_edges());
+  for (unsigned i = 0; i < g.num_edges(); ++i) {
+    EXPECT_EQ(copy.edge(i).value(), g.edge(i).value());
+    EXPECT_EQ(copy.edge(i).id(), g.edge(i).id());
+    EXPECT_EQ(copy.edge(i).node1().index(), g.edge(i).node1().index());
+    EXPECT_EQ(copy.edge(i).node2().index(), g.edge(i).node2().index());
+    EXPECT_TRUE(copy.has_node(copy.edge(i).node2()));
+    EXPECT_FALSE(copy.has_edge(g.edge(i)));
+    EXPECT_NE(copy.edge(i), g.edge(i));
+  }
+  copy.remove_edge(copy.edge(0));
+  copy.add_edge(copy.node(0), copy.node(1), 5);
+  for (int k : {1, 2, 4}) expect_intact(k);
+}
+
+// ------------------------------------------------------------------ comparing
+
+TEST_F(Edges, AnEdgeIsTheSameFromBothEnds) {
+  Edge turned = g.add_edge(n[1], n[0]);
+  EXPECT_TRUE(turned == e[0]);
+  EXPECT_FALSE(turned != e[0]);
+  EXPECT_FALSE(turned < e[0] || e[0] < turned);
+  EXPECT_EQ(std::set<Edge>({turned, e[0]}).size(), 1u);
+}
+
+TEST_F(Edges, TheOrderIsTotalOverGraphsDeadAndInvalidEdges) {
+  G other(g);
+  std::vector<Edge> all = e;
+  all.insert(all.end(), other.edge_begin(), other.edge_end());
+  all.push_back(Edge());
+  g.remove_edge(e[1]);
+  all.push_back(g.add_edge(n[1], n[4]));
+  ASSERT_EQ(all.back().id(), 1u) << "the slot was to be used again";
+  for (const Edge& a : all)
+    for (const Edge& b : all) {
+      EXPECT_EQ((a < b) + (b < a) + (a == b), 1);
+      EXPECT_EQ(a > b, b < a);
+      EXPECT_EQ(a <= b, !(b < a));
+      EXPECT_EQ(a >= b, !(a < b));
+      EXPECT_EQ(a != b, !(a == b));
+      for (const Edge& c : all) EXPECT_TRUE(a < c || !(a < b && b < c));
+    }
+}
+
+TEST_F(Edges, TheOrderNeverChanges) {
+  std::vector<Edge> all(e);
+  std::sort(all.begin(), all.end());
+  g.remove_edge(all[0]);
+  g.reindex();
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+  g.clear();
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+}
+
+TEST_F(Edges, AnEdgeIsAKey) {
+  std::map<Edge, double> value;
+  for (Edge f : e) value[f] = f.value();
+  g.remove_edge(e[0]);
+  for (auto m : g.nodes())
+    for (auto f : m.edges()) EXPECT_EQ(value.at(f), f.value());
+}
+
+TEST_F(Edges, InvalidEdgesAreEqualAndCanBeAssigned) {
+  Edge a, b;
+  EXPECT_TRUE(a == b);
+  EXPECT_NE(a, e[0]);
+  a = e[0];
+  EXPECT_EQ(a, e[0]);
+}
+
+// ------------------------------------------------------------------ iterating
+
+TEST_F(Edges, TheEdgesOfANodeHaveItAsNode1InTheOrderAdded) {
+  EXPECT_EQ(neighbors(n[0]), (Ints{1, 2, 3}));
+  EXPECT_EQ(neighbors(n[1]), (Ints{0, 2}));
+  EXPECT_EQ(neighbors(n[2]), (Ints{0, 1}));
+  EXPECT_EQ(neighbors(n[3]), (Ints{0, 4}));
+  EXPECT_EQ(neighbors(n[4]), (Ints{3}));
+  EXPECT_EQ(neighbors(g.add_node(Point())), Ints{});
+  for (int i = 0; i < 40; ++i) g.add_edge(g.add_node(Point(), 50 + i), n[4]);
+  Ints around = neighbors(n[4]);
+  EXPECT_EQ(around[0], 3);
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(around[i + 1], 50 + i);
+}
+
+TEST_F(Edges, IncidentIteratorsAreRandomAccess) {
+  auto b = n[0].edge_begin(), end = n[0].edge_end();
+  EXPECT_EQ(end - b, 3);
+  EXPECT_EQ(b[2], e[2]);
+  EXPECT_EQ(*(b + 1), e[1]);
+  EXPECT_EQ(*(1 + b), e[1]);
+  EXPECT_EQ(end[-1].node2(), n[3]);
+  EXPECT_EQ(b->node2(), n[1]);
+  EXPECT_TRUE(b < end && end > b && b != end && b + 3 == end);
+  std::vector<Edge> back(std::make_reverse_iterator(end),
+                         std::make_reverse_iterator(b));
+  EXPECT_EQ(back, (std::vector<Edge>{e[2], e[1], e[0]}));
+  auto longest = std::max_element(
+      b, end, [](Edge x, Edge y) { return x.length() < y.length(); });
+  EXPECT_EQ(*longest, e[2]);
+}
+
+TEST_F(Edges, EdgeIteratorsAreRandomAccess) {
+  auto b = g.edge_begin(), end = g.edge_end();
+  EXPECT_EQ(end - b, 5);
+  EXPECT_EQ(b[3], e[3]);
+  EXPECT_EQ(*(end - 1), e[4]);
+  EXPECT_EQ(b->value(), 1);
+  std::vector<Edge> all;
+  for (auto f : g.edges()) all.push_back(f);
+  EXPECT_EQ(all, e);
+}
+
+TEST_F(Edges, AddEdgeKeepsTheIteratorsItSaysItKeeps) {
+  auto node = g.node_begin() + 3;
+  auto edge = g.edge_begin() + 3;
+  auto incident = n[1].edge_begin() + 1;  // node 1 gets no edge
+  for (int i = 0; i < 100; ++i)
+    g.add_edge(n[i % 2 ? 0 : 4], g.add_node(Point()));
+  EXPECT_EQ(*node, n[3]);
+  EXPECT_EQ(*edge, e[3]);
+  EXPECT_EQ(*incident, e[3]);
+  EXPECT_EQ((*incident).node2(), n[2]);
+}
+
+TEST_F(Edges, RemoveEdgeKeepsWhatItSaysItKeeps) {
+  double& value = e[2].value();
+  auto node = g.node_begin() + 3;
+  auto edge = g.edge_begin() + 3;
+  auto incident = n[3].edge_begin() + 1;
+  g.remove_edge(e[0]);
+  EXPECT_EQ(&e[2].value(), &value);
+  EXPECT_EQ(*node, n[3]);
+  EXPECT_EQ(*edge, e[3]);
+  EXPECT_EQ(*incident, e[4]);
+}
+
+// ---------------------------------------------------------------- arrays by id
+
+TEST_F(Edges, SpansAndProxiesAreTheSameStorage) {
+  g.remove_node(n[1]);
+  const G& readable = g;
+  ASSERT_EQ(g.edge_ends().size(), g.edge_slots());
+  ASSERT_EQ(g.edge_values().size(), g.edge_slots());
+  for (auto f : g.edges()) {
+    EXPECT_EQ(&g.edge_values()[f.id()], &f.value());
+    EXPECT_EQ(&readable.edge_values()[f.id()], &f.value());
+    EXPECT_EQ(g.edge_ends()[f.id()][0], f.node1().id());
+    EXPECT_EQ(g.edge_ends()[f.id()][1], f.node2().id());
+    EXPECT_TRUE(g.edge_in_use(f.id()));
+    EXPECT_EQ(g.edge_with_id(f.id()), f);
+    EXPECT_EQ(g.edge_with_id(f.id()).node1(), f.node1());
+  }
+}
+
+TEST_F(Edges, ADeadSlotHoldsDefaults) {
+  g.remove_edge(e[4]);
+  g.remove_node(n[0]);
+  unsigned in_use = 0;
+  for (unsigned i = 0; i < g.edge_slots(); ++i) {
+    in_use += g.edge_in_use(i);
+    if (g.edge_in_use(i)) continue;
+    EXPECT_EQ(g.edge_values()[i], 0);
+    EXPECT_EQ(g.edge_ends()[i], (std::array<unsigned, 2>{0, 0}));
+  }
+  EXPECT_EQ(in_use, 1u);
+}
+
+TEST_F(Edges, ARemovedValueIsGivenUpAtOnce) {
+  Graph<int, std::shared_ptr<int>> h;
+  auto a = h.add_node(Point()), b = h.add_node(Point()),
+       c = h.add_node(Point());
+  auto shared = std::make_shared<int>(1);
+  h.add_edge(a, b, shared);
+  h.add_edge(b, c, shared);
+  EXPECT_EQ(shared.use_count(), 3);
+  h.remove_edge(a, b);
+  EXPECT_EQ(shared.use_count(), 2);
+  h.remove_node(b);
+  EXPECT_EQ(shared.use_count(), 1);
+}
+
+TEST_F(Edges, VersionChangesWithTheEdgesOnly) {
+  auto version = g.version();
+  auto changed = [&] {
+    auto old = std::exchange(version, g.version());
+    return version != old;
+  };
+  e[0].value() = 1;
+  g.edge_values()[0] = 2;
+  (void)g.has_edge(n[0], n[1]);
+  g.add_edge(n[0], n[1]);
+  g.remove_edge(Edge());
+  g.remove_edge(n[1], n[4]);
+  EXPECT_FALSE(changed());
+  g.add_edge(n[1], n[4]);
+  EXPECT_TRUE(changed());
+  g.remove_edge(n[1], n[4]);
+  EXPECT_TRUE(changed());
+  g.remove_edge(e[0]);
+  EXPECT_TRUE(changed());
+  g.remove_edge(e[0]);
+  EXPECT_FALSE(changed());
+  g.remove_edge(g.edge_begin());
+  EXPECT_TRUE(changed());
+}
+
+}  // namespace
