@@ -26,18 +26,17 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/** ": did you mean NAME?", of the first nearest of @a names; "" if none is
- * near: more than a third of the letters differ.
+/** The first nearest of @a names; "" if none is near: more than a third of the
+ * letters differ.
  * @param names a range of what a std::string_view can be made from */
 template <typename Names>
-std::string did_you_mean(std::string_view name, const Names& names) {
-  std::string_view nearest;
+std::string nearest(std::string_view name, const Names& names) {
+  std::string found;
   std::size_t least = name.size() / 3 + 1;
   for (std::string_view other : names)
     if (const std::size_t d = edit_distance(name, other); d < least)
-      least = d, nearest = other;
-  if (nearest.empty()) return "";
-  return ": did you mean " + std::string(nearest) + "?";
+      least = d, found = other;
+  return found;
 }
 
 }  // namespace lab

@@ -58,6 +58,9 @@ endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
 $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
 
+# A test that runs a program.
+$(B)/test_cloth_program: | $(B)/cloth
+
 # make NAME for each; ./cloth lies beside the course's program.
 .PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS)
 $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B)/%

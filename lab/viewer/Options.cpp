@@ -75,7 +75,8 @@ class Help : public CLI::Formatter {
     std::string text = "  " + o->get_name(false, true), type;
     if (o->get_type_size() != 0) {
       type = ' ' + o->get_type_name();
-      if (!o->get_default_str().empty()) type += '=' + o->get_default_str();
+      const std::string usual = o->get_default_str();
+      if (!usual.empty() && usual != "[]") type += '=' + usual;
     }
     text += type;
     text += text.size() < column - 1 ? std::string(column - text.size(), ' ')
@@ -113,16 +114,20 @@ void list_methods() {
       "dt omega <: the stability limit without drag; omega: the cloth's "
       "largest\n            frequency [rad/s]\n\n"
       "%-18s %5s %6s %10s  %s\n",
-      "method", "order", "forces", "dt omega <", "use as; fails when");
+      "method", "order", "forces", "dt omega <", "good for; fails with");
   for (const MethodEntry& m : methods) {
     std::printf("%-18s %5d %6d ", m.info.name, m.info.order, m.info.sweeps);
     if (m.info.limit == no_limit)
       std::printf("%10s", "any");
     else
       std::printf("%10.4g", m.info.limit);
-    std::printf("  %s;\n", m.info.good_for);
-    for (const std::string& line : wrapped(m.info.fails_when, 36))
-      std::printf("%44s%s\n", "", line.c_str());
+    int indent = 2;
+    for (const std::string& text :
+         {m.info.good_for + std::string(";"), std::string(m.info.fails_when)})
+      for (const std::string& line : wrapped(text, 36)) {
+        std::printf("%*s%s\n", indent, "", line.c_str());
+        indent = 44;
+      }
   }
 }
 
@@ -170,10 +175,12 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
     for (const Group& g : groups)
       for (const char* name : g.options)
         names.push_back(std::string("--") + name);
-    message = word + " is no option" + did_you_mean(word, names);
+    const std::string meant = nearest(word, names);
+    message = word + " is no option: " +
+              (meant.empty() ? "see --help" : "did you mean " + meant + "?");
     break;
   }
-  std::cerr << "cloth: " << message << "\nsee ./cloth --help\n";
+  std::cerr << "cloth: " << message << '\n';
   return 2;
 }
 
