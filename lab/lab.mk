@@ -11,7 +11,7 @@ lab_main   := lab/cloth.cpp lab/advice/adviser_suite.cpp \
               lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := data/make_grid.cpp docs/example_graph.cpp
-lab_lib    := $(filter-out $(lab_main),$(wildcard lab/*/*.cpp))
+lab_lib    := $(filter-out $(lab_main),$(wildcard lab/*.cpp lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
 LAB_PROGRAMS := $(call names,$(lab_main))

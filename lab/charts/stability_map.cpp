@@ -8,8 +8,8 @@
  *   ./stability_map --join DIR --map limits --out limits.csv
  *
  * `make stability` does all of it, tools/sweep.sbatch does it with Slurm. The
- * columns: charts/README.md. Exit status: 0 done; 2 an option or an input that
- * can't be used, or an output that can't be written. */
+ * columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an input
+ * that can't be used, or an output that can't be written. */
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -24,7 +24,11 @@
 
 #include "CME212/OutputFile.hpp"
 #include "lab/charts/Growth.hpp"
+#include "lab/charts/Limits.hpp"
 #include "lab/charts/Report.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/stability/Spectrum.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 
@@ -306,7 +310,7 @@ void run(const Options& o) {
     return;
   } else {
     const Map map = map_of(o.map);
-    report::write_head(text, "stability; columns: charts/README.md");
+    report::write_head(text, "stability; columns: lab/charts/README.md");
     text << "# map " << map.name << ": " << map.about << '\n'
          << map.columns << '\n';
     for (const Cell& c : cells)

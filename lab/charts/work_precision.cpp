@@ -9,8 +9,8 @@
  *   build/float/work_precision --ends --out ends.csv
  *   ./work_precision --floor ends.csv --out charts/float_floor.csv
  *
- * The columns: charts/README.md. Exit status: 0 done; 2 an option or an input
- * that can't be used, or an output that can't be written. */
+ * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
+ * input that can't be used, or an output that can't be written. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,17 +24,20 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
-#include "lab/charts/Failure.hpp"
+#include "lab/Progress.hpp"
+#include "lab/charts/FailureChart.hpp"
 #include "lab/charts/Precision.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/charts/Report.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/stability/Guard.hpp"
+#include "lab/stability/Spectrum.hpp"
 
 using namespace lab;
 
 using CME212::short_text;
 using report::cell;
 using report::pick;
-using report::Progress;
 using report::write_head;
 
 namespace {
@@ -123,11 +126,11 @@ std::vector<Case> ladder(const Problem& p, const Reference& r,
 /** How the reference was made, and what it says of the cloth as a whole. */
 void write_reference(std::ostream& out, const Problem& p, const Reference& r) {
   char text[160];
-  const auto& [x, y, z] = r.end.center;
+  const Point& c = r.end.center;
   std::snprintf(text, sizeof text,
                 ": agree to %.2g m; center of mass %.14g %.14g %.14g m, "
                 "energy %.14g J\n",
-                r.floor, x, y, z, r.end.energy);
+                r.floor, c.x, c.y, c.z, r.end.energy);
   out << "# reference " << p.name << ": " << r.made << text;
 }
 
@@ -176,7 +179,7 @@ void print_cheapest(const Problem& p, const Reference& r,
 void work_precision(const std::vector<Problem>& problems,
                     const std::vector<const MethodEntry*>& chosen,
                     const Options& o, std::ostream& out, Progress& progress) {
-  write_head(out, "work and precision; columns: charts/README.md");
+  write_head(out, "work and precision; columns: lab/charts/README.md");
   for (const Problem& p : problems)
     out << "# scene " << p.name << ": " << p.about
         << "; error: " << name_of(p.norm) << '\n';
@@ -295,47 +298,6 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
   }
 }
 
-/** How each method fails, against time. What was measured goes into the head,
- * and to the terminal unless the table goes there. */
-void show_failures(const std::vector<const MethodEntry*>& chosen, bool print,
-                   std::ostream& out) {
-  constexpr std::size_t drawn = 200;  // points of a curve, about
-  std::ostringstream rows;
-  write_head(out, "how each method fails, and a cure");
-  for (const MethodEntry* m : chosen) {
-    const Failure& f = failure_of(m->info.name);
-    const std::string name = m->info.name;
-    out << "# title " << name << ": " << f.title << "\n# caption " << name
-        << ": " << f.caption << "\n# axis " << name << ": " << f.t_end << ' '
-        << f.low << ' ' << f.high << ' ' << f.log << ' ' << name_of(f.quantity)
-        << '\n';
-    for (std::size_t k = 0; k < f.size(); ++k) {
-      const FailureRun& r = f.runs[k];
-      const Trace trace = ::trace(f, r);
-      if (!r.method.empty()) {
-        out << "# measured " << name << ": " << in_words(f, r, trace) << '\n';
-        if (print)
-          std::cout << (k ? "  " : "") << in_words(f, r, trace) << '\n';
-      }
-      const auto& samples = trace.samples;
-      const std::size_t every = samples.size() / drawn + 1;
-      const std::size_t label_at =
-          std::size_t(std::min(r.label_at / r.dt, double(samples.size() - 1)));
-      for (std::size_t n = 0; n < samples.size(); ++n) {
-        const bool last = n + 1 == samples.size(), at_label = n == label_at;
-        if (n % every != 0 && !last && !at_label) continue;
-        rows << name << ',' << r.method << ',' << role_of(f, k) << ',' << k
-             << ',' << cell(samples[n].t) << ',' << cell(samples[n].value)
-             << ',' << (at_label ? cell(label_of(r, trace)) : "") << ','
-             << (at_label ? cell(r.label_up) : "") << ','
-             << (last ? status_of(trace) : "") << '\n';
-      }
-    }
-  }
-  out << "failure,method,role,run,t [s],value,label,label up,status\n"
-      << rows.str();
-}
-
 // -------------------------------------------------------------------- Options
 
 /** Read the command line.  @return the exit status to end with, or -1 */
@@ -419,7 +381,7 @@ void run(Options o) {
   else if (o.energy)
     energy(chosen, out);
   else if (o.failures)
-    show_failures(chosen, file && !o.quiet, out);
+    write_failures(chosen, file && !o.quiet ? &std::cout : nullptr, out);
   else if (o.ends)
     write_ends(problems, out);
   else if (!o.floor.empty())

@@ -1,0 +1,155 @@
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "lab/charts/Problem.hpp"
+
+namespace lab {
+
+using std::numbers::pi;
+
+double Chain::omega(unsigned k) const {
+  return 2 * std::sqrt(K * n) * std::sin(k * pi / (n + 1) / 2);
+}
+std::vector<Point> Chain::exact(double t) const {
+  std::vector<Point> x;
+  for (unsigned j = 0; j < n + 2; ++j) {
+    Point& p = x.emplace_back(j / double(n + 1), 0, 0);
+    if (j == 0 || j == n + 1) continue;
+    for (const Mode& m : modes)
+      p.x += m.amplitude * std::sin(m.k * pi / (n + 1) * j) *
+             std::cos(omega(m.k) * t);
+  }
+  return x;
+}
+
+Problem chain_problem(std::string name, std::string about, double t_end,
+                      Chain chain) {
+  auto build = [chain](Cloth& g) {
+    const unsigned n = chain.n;
+    for (const Point& p : chain.exact(0))
+      g.add_node(p, {Point(), Real(1.0 / n)});
+    for (unsigned j = 0; j <= n; ++j)
+      g.add_edge(g.node(j), g.node(j + 1),
+                 {Real(chain.K), Real(chain.rest / (n + 1))});
+  };
+  auto pins = [n = chain.n](const Cloth& g) {
+    const std::array ends = {g.node(0), g.node(n + 1)};
+    return make_combined_constraints(PinConstraint(std::span(ends)));
+  };
+  return {.name = std::move(name),
+          .about = std::move(about),
+          .t_end = t_end,
+          .gravity = 0,
+          .build = build,
+          .constraint = pins,
+          .exact = [chain](double t) { return chain.exact(t); }};
+}
+
+namespace {
+
+/** A square cloth of n x n nodes, plain mesh, that hangs from its whole upper
+ * row, and is let go unstretched: each column is a chain of its own. */
+struct Curtain {
+  unsigned n = 16;
+  double K = 100;
+
+  std::vector<Point> exact(double t) const {
+    const double m = 1.0 / (n * n), width = 1.0 / (n - 1);
+    std::vector<double> hangs(n);  // at rest, below the unstretched place [m]
+    for (unsigned j = 1; j < n; ++j)
+      hangs[j] = hangs[j - 1] + (n - j) * m * grav / K;
+    std::vector<double> z(n);
+    for (unsigned j = 0; j < n; ++j) z[j] = -(j * width) - hangs[j];
+    for (unsigned k = 1; k < n; ++k) {
+      double angle = (2 * k - 1) * pi / (2 * n - 1), amplitude = 0;
+      for (unsigned j = 1; j < n; ++j)
+        amplitude += 4.0 / (2 * n - 1) * hangs[j] * std::sin(angle * j);
+      double omega = 2 * std::sqrt(K / m) * std::sin(angle / 2);
+      for (unsigned j = 1; j < n; ++j)
+        z[j] += amplitude * std::sin(angle * j) * std::cos(omega * t);
+    }
+    std::vector<Point> x;
+    for (unsigned i = 0; i < n; ++i)
+      for (unsigned j = 0; j < n; ++j) x.emplace_back(i * width, 0, z[j]);
+    return x;
+  }
+  void build(Cloth& g) const {
+    auto points = grid_points(n);
+    for (Point& p : points) p = Point(p.x, 0, -p.y);
+    build_cloth(g, points, grid_quads(n), Mesh::plain, K);
+  }
+  CombinedConstraints pins(const Cloth& g) const {
+    std::vector<Node> row;
+    for (unsigned i = 0; i < n; ++i) row.push_back(g.node(i * n));
+    return make_combined_constraints(PinConstraint(row));
+  }
+};
+
+CombinedConstraints pinned(const Cloth& g) {
+  return make_combined_constraints(PinConstraint(g));
+}
+CombinedConstraints torn_by_a_ball(const Cloth& g) {
+  return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                   TearConstraint());
+}
+
+}  // namespace
+
+CombinedConstraints on_a_ball(const Cloth& g) {
+  return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                   SphereConstraint());
+}
+
+Problem cloth_problem(std::string name, std::string about, double t_end,
+                      std::vector<Point> points, std::vector<Quad> quads,
+                      double K) {
+  return {
+      .name = std::move(name),
+      .about = std::move(about),
+      .t_end = t_end,
+      .gamma = 1,
+      .build =
+          [points = std::move(points), quads = std::move(quads), K](Cloth& g) {
+            build_cloth(g, points, quads, Mesh::diagonals, K);
+          },
+      .constraint = pinned};
+}
+
+Problem grid_problem(std::string name, std::string about, double t_end,
+                     unsigned side, double K) {
+  return cloth_problem(std::move(name), std::move(about), t_end,
+                       grid_points(side), grid_quads(side), K);
+}
+
+std::vector<Problem> make_problems() {
+  std::vector<Problem> all;
+  all.push_back(chain_problem(
+      "chain", "20 masses between two walls, to 0.8 s; exact", 0.8));
+  Curtain curtain;
+  all.push_back({.name = "curtain",
+                 .about = "16 x 16 curtain let go, to 1 s; exact",
+                 .t_end = 1,
+                 .build = [=](Cloth& g) { curtain.build(g); },
+                 .constraint = [=](const Cloth& g) { return curtain.pins(g); },
+                 .exact = [=](double t) { return curtain.exact(t); }});
+  all.push_back(grid_problem("grid0", "5 x 5 cloth with drag, to 5 s", 5, 5));
+  all.push_back(
+      grid_problem("grid1", "25 x 25 cloth with drag, to 0.5 s", 0.5, 25));
+  all.push_back(grid_problem("grid1-short",
+                             "25 x 25 cloth with drag, to 0.25 s", 0.25, 25));
+  all.push_back(grid_problem("stiff", "25 x 25 cloth, K = 10000 N/m, to 0.25 s",
+                             0.25, 25, 1e4));
+  all.push_back(grid_problem(
+      "drape", "25 x 25 cloth falling on a ball, to 0.4 s", 0.4, 25));
+  all.back().constraint = on_a_ball;
+  all.back().norm = Norm::functionals;
+  all.push_back(
+      grid_problem("tear", "25 x 25 cloth torn by a ball, to 0.4 s", 0.4, 25));
+  all.back().constraint = torn_by_a_ball;
+  all.back().norm = Norm::functionals;
+  return all;
+}
+
+}  // namespace lab

@@ -1,0 +1,60 @@
+#include "lab/charts/Report.hpp"
+
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+#include <thread>
+
+namespace lab::report {
+
+namespace {
+
+/** The first line that a command prints; "unknown" if there is none. */
+std::string first_line_of(const char* command) {
+  std::string line;
+  if (FILE* pipe = popen(command, "r")) {
+    char text[256];
+    if (std::fgets(text, sizeof text, pipe)) line = text;
+    pclose(pipe);
+  }
+  while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())))
+    line.pop_back();
+  return line.empty() ? "unknown" : line;
+}
+
+}  // namespace
+
+void write_head(std::ostream& out, const char* what) {
+#ifdef __clang__
+  const char* compiler = "clang " __clang_version__;
+#else
+  const char* compiler = "g++ " __VERSION__;
+#endif
+  out << "# " << what << "\n# machine: "
+      << first_line_of("sed -n 's/^model name.*: //p' /proc/cpuinfo") << ", "
+      << std::thread::hardware_concurrency() << " cores"
+      << "\n# compiler: " << compiler
+      << "\n# commit: "
+      // results are written, not measured
+      << first_line_of(
+             "c=$(git describe --always 2>/dev/null) && "
+             "if git diff --quiet HEAD -- . ':!*/results/*'; then echo \"$c\"; "
+             "else echo \"$c-dirty\"; fi")
+      << '\n';
+}
+
+std::string cell(std::string text) {
+  for (char& c : text)
+    if (c == ',' || c == '"' || c == '\n') c = ';';
+  return text;
+}
+
+std::string cell(double a) {
+  if (!std::isfinite(a)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", a);
+  return text;
+}
+
+}  // namespace lab::report
