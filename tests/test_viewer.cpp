@@ -853,24 +853,6 @@ TEST(SDLViewerThreads, ClosesWhilePausedOrBeforeItOpens) {
   EXPECT_FALSE(closed.wait_while_paused());
 }
 
-// As the course's programs, which know of no restart and of no coloring.
-TEST(SDLViewerThreads, KeysThatTheProgramDoesNotServeDoNothing) {
-  SDLViewer viewer({400, 300, "test_viewer", true});
-  press(SDLK_r);
-  press(SDLK_s);
-  press(SDLK_q);
-  viewer.event_loop();
-  EXPECT_FALSE(viewer.take_restart());
-  EXPECT_FALSE(viewer.strain_colors());
-  SDLViewer serves(small());
-  press(SDLK_r);
-  press(SDLK_s);
-  press(SDLK_q);
-  serves.event_loop();
-  EXPECT_TRUE(serves.take_restart());
-  EXPECT_TRUE(serves.strain_colors());
-}
-
 TEST(SDLViewerThreads, LaunchLeavesTheMainThreadToTheSimulation) {
   std::atomic<bool> closed = false;
   std::thread user;
@@ -902,6 +884,24 @@ TEST(SDLViewerThreads, LaunchLeavesTheMainThreadToTheSimulation) {
   }  // waits for the user
   EXPECT_TRUE(closed);
   user.join();
+}
+
+// As the course's programs, which know of no restart and of no coloring.
+TEST(SDLViewerThreads, KeysThatTheProgramDoesNotServeDoNothing) {
+  SDLViewer viewer({400, 300, "test_viewer", true});
+  press(SDLK_r);
+  press(SDLK_s);
+  press(SDLK_q);
+  viewer.event_loop();
+  EXPECT_FALSE(viewer.take_restart());
+  EXPECT_FALSE(viewer.strain_colors());
+  SDLViewer serves(small());
+  press(SDLK_r);
+  press(SDLK_s);
+  press(SDLK_q);
+  serves.event_loop();
+  EXPECT_TRUE(serves.take_restart());
+  EXPECT_TRUE(serves.strain_colors());
 }
 
 /** The picture before and after the user did @a event, and quit. */
