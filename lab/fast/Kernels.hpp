@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "lab/fast/Lanes.hpp"
-#include "lab/fast/Stencil.hpp"
+#include "lab/fast/ForcePlan.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -15,8 +14,6 @@ namespace lab {
 // Kernels read them as rows of numbers.
 static_assert(sizeof(NodeData) == 4 * sizeof(Real) &&
               sizeof(EdgeData) == 2 * sizeof(Real));
-
-using ClothStencil = Stencil<lanes::width>;
 
 namespace kernels {
 

@@ -46,6 +46,7 @@ struct DormandPrinceTableau {
       -92097 / 339200., 187 / 2100., 1 / 40.};
   static constexpr std::array c = {0., 1 / 5., 3 / 10., 4 / 5., 8 / 9., 1., 1.};
 };
+extern template class RungeKutta<DormandPrinceTableau>;
 using DormandPrince = RungeKutta<DormandPrinceTableau>;
 
 }  // namespace lab

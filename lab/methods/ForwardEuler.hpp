@@ -21,6 +21,7 @@ struct ForwardEulerTableau {
   static constexpr std::array b = {1.0};
   static constexpr std::array c = {0.0};
 };
+extern template class RungeKutta<ForwardEulerTableau>;
 using ForwardEuler = RungeKutta<ForwardEulerTableau>;
 
 }  // namespace lab

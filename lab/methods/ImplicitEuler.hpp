@@ -27,13 +27,7 @@ class ImplicitEuler : public Method {
   explicit ImplicitEuler(double tolerance = 1e-8) : stage_(tolerance, 0) {}
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override {
-    stage_.begin(info.name, dt, g, constraint);
-    stage_.solve_linearized(g, t + dt, dt, force);
-    auto node = g.node_values();
-    for (unsigned i = 0; i < g.node_slots(); ++i) node[i].vel = stage_.w[i];
-    return implicit_detail::finish(g, t + dt, constraint);
-  }
+              const ConstraintPlan& constraint) override;
 
  private:
   implicit_detail::ImplicitStage stage_;

@@ -27,18 +27,7 @@ class ImplicitMidpoint : public NewtonMethod {
   using NewtonMethod::NewtonMethod;
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override {
-    stage_.begin(info.name, dt, g, constraint);
-    stage_.solve_newton(g, t + dt / 2, dt / 2, force);
-    auto x = g.positions();
-    auto node = g.node_values();
-    for (unsigned i = 0; i < g.node_slots(); ++i) {
-      if (stage_.fixed(i)) continue;
-      x[i] = stage_.p[i] + dt * stage_.w[i];
-      node[i].vel = 2 * stage_.w[i] - stage_.q[i];
-    }
-    return implicit_detail::finish(g, t + dt, constraint);
-  }
+              const ConstraintPlan& constraint) override;
 };
 
 }  // namespace lab

@@ -26,6 +26,7 @@ struct PefrlScheme {
                                        lambda, 1 - 2 * (chi + xi), lambda,
                                        chi,    0.5 - lambda,       xi};
 };
+extern template class Splitting<PefrlScheme>;
 using Pefrl = Splitting<PefrlScheme>;
 
 }  // namespace lab

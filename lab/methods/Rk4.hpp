@@ -21,6 +21,7 @@ struct Rk4Tableau {
   static constexpr std::array b = {1 / 6., 1 / 3., 1 / 3., 1 / 6.};
   static constexpr std::array c = {0.0, 0.5, 0.5, 1.0};
 };
+extern template class RungeKutta<Rk4Tableau>;
 using Rk4 = RungeKutta<Rk4Tableau>;
 
 }  // namespace lab

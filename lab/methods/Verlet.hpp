@@ -22,6 +22,7 @@ struct VerletScheme {
   static constexpr bool kicks_first = true;
   static constexpr std::array steps = {0.5, 1.0, 0.5};
 };
+extern template class Splitting<VerletScheme>;
 using Verlet = Splitting<VerletScheme>;
 
 }  // namespace lab

@@ -25,6 +25,7 @@ struct Yoshida4Scheme {
   static constexpr std::array steps = {w1 / 2,        w1, (w0 + w1) / 2, w0,
                                        (w0 + w1) / 2, w1, w1 / 2};
 };
+extern template class Splitting<Yoshida4Scheme>;
 using Yoshida4 = Splitting<Yoshida4Scheme>;
 
 }  // namespace lab
