@@ -6,8 +6,6 @@
 #include <iostream>
 #include <sstream>
 
-#include <unistd.h>
-
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -26,41 +24,15 @@ Energies energies(const Cloth& g, double gravity) {
 
 }  // namespace
 
-Progress::Progress(const Options& o)
-    : on_(!o.quiet), bar_(isatty(STDERR_FILENO)), t_end_(o.model.t_end) {}
-
-void Progress::show(long long steps, double t) {
-  if (!on_ || !(t > 0)) return;
-  const double now = clock_.seconds();
-  if (now < next_) return;
-  next_ = now + (bar_ ? 0.1 : 5.0);
-  const double part = std::min(1.0, t / t_end_);
-  std::ostringstream line;
-  if (bar_) {
-    auto filled = static_cast<std::size_t>(30 * part);
-    line << "\r[" << std::string(filled, '#') << std::string(30 - filled, ' ')
-         << "] ";
-  }
-  line << "t = " << CME212::short_text(t) << " of "
-       << CME212::short_text(t_end_) << " s, "
-       << CME212::short_text(std::round(double(steps) / now)) << " steps/s, "
-       << CME212::short_text(std::ceil(now / part - now)) << " s left"
-       << (bar_ ? "   " : "\n");
-  std::cerr << line.str() << std::flush;
-}
-
-void Progress::end() {
-  if (on_ && bar_) std::cerr << '\r' << std::string(76, ' ') << '\r';
-}
-
-Run::Run(Scene& scene, const Options& o) : scene_(scene), o_(o), progress_(o) {
+Run::Run(Scene& scene, const Options& o)
+    : scene_(scene), o_(o), progress_(o.quiet) {
   if (!o.csv.empty()) csv_.emplace(o.csv);
   if (!o.out.empty()) out_.emplace(o.out);
   start();
 }
 
 void Run::start() {
-  progress_ = Progress(o_);
+  progress_ = Progress(o_.quiet);
   rows_.clear();
   seconds_ = 0;
   last_row_ = -1;
@@ -90,7 +62,16 @@ void Run::advance() {
   tell_failure();
   if (scene_.steps() % o_.every == 0 || done()) add_row();
   if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
-  progress_.show(scene_.steps(), scene_.time());
+  if (progress_.due()) show_progress();
+}
+
+void Run::show_progress() {
+  using CME212::short_text;
+  const double t = scene_.time(), t_end = o_.model.t_end;
+  const double rate = double(scene_.steps()) / progress_.seconds();
+  progress_.show("t = " + short_text(t) + " of " + short_text(t_end) + " s, " +
+                     short_text(std::round(rate)) + " steps/s",
+                 t / t_end);
 }
 
 void Run::announce() const {

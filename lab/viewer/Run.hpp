@@ -5,28 +5,12 @@
 #include <string>
 
 #include "CME212/OutputFile.hpp"
-#include "CME212/Util.hpp"
+#include "lab/Progress.hpp"
 #include "lab/viewer/Options.hpp"
 
 namespace lab {
 
 class Scene;
-
-/** Tells how far a run is: a bar on a terminal, else a line now and then;
- * nothing if it is done within a second. */
-class Progress {
- public:
-  explicit Progress(const Options& o);
-  void show(long long steps, double t);
-  void end();
-  double seconds() const { return clock_.seconds(); }
-
- private:
-  bool on_, bar_;
-  double t_end_;
-  double next_ = 1;  // when to show again [s]
-  CME212::Clock clock_;
-};
 
 /** One run of a scene with all that is written about it. */
 class Run {
@@ -67,6 +51,7 @@ class Run {
 
   void start();
   void add_row();
+  void show_progress();
   void tell_failure();
   void warn_of_fast_balls() const;
   void warn_of_missed();
