@@ -19,6 +19,9 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
+#include "lab/fast/Sweep.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Measure.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/viewer/Run.hpp"
 #include "lab/viewer/Screen.hpp"
@@ -38,7 +41,6 @@ void check(Options& o) {
       throw SceneError(option,
                        "is " + short_text(value) + ", expected " + expected);
   };
-  check_model(o.model);
   require(o.speed >= 0, "speed", o.speed, "0 or more");
   require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
@@ -62,10 +64,10 @@ void list_methods() {
   }
 }
 
-/** Give @a app all options, which go to @a o. */
-void add_options(CLI::App& app, Options& o) {
+/** Give @a app all options, which go to @a o and @a scene. */
+void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
   app.option_defaults()->always_capture_default();
-  add_model_options(app, o.model);
+  scene.add_to(app);
   app.add_flag("--headless", o.headless, "open no window");
   app.add_flag("--window", o.window,
                "insist on a window: without a display, exit with 4");
@@ -101,6 +103,7 @@ void add_options(CLI::App& app, Options& o) {
 int parse(int argc, char** argv, Options& o) {
   std::string file;
   bool dump = false;
+  SceneOptions scene;
   CLI::App first;  // finds the scene file
   first.set_help_flag();
   first.allow_extras();
@@ -113,14 +116,17 @@ int parse(int argc, char** argv, Options& o) {
   if (!file.empty()) {
     CLI::App app;
     app.set_config("--config");
-    add_options(app, o);
-    read_scene_file(app, file, [&o] { check(o); });
+    add_options(app, o, scene);
+    scene.read(app, file, [&] {
+      o.model = scene.model();
+      check(o);
+    });
   }
 
   CLI::App app(std::string("Simulates a cloth of masses and springs: that of "
                            "NODES and TETS, or of a scene."),
                "cloth");
-  add_options(app, o);
+  add_options(app, o, scene);
   app.add_option("--config", file, "read options from a file: a scene")
       ->type_name("FILE");
   app.add_flag("--dump-config", dump, "print the scene as a file, and end");
@@ -146,8 +152,7 @@ int parse(int argc, char** argv, Options& o) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  if (app.count("--stiffness")) o.model.material.modulus.reset();
-  if (app.count("--damping")) o.model.material.drag.reset();
+  o.model = scene.model();
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;
@@ -158,17 +163,16 @@ int parse(int argc, char** argv, Options& o) {
 /** Print what a scene of parts is asked, and what this run answers; but for
  * positions, which are many: --out writes them. */
 void print_answer(const Scene& scene, const Model& m) {
-  const Measure what = read_measure(m.measure);
-  if (what == Measure::positions) return;
-  std::cout << m.measure << ':';
+  if (m.measure == Measure::positions) return;
+  std::cout << name_of(m.measure) << ':';
   for (double a : answer(m, scene.cloth())) std::cout << ' ' << a;
-  std::cout << ' ' << unit_of(what) << '\n';
+  std::cout << ' ' << unit_of(m.measure) << '\n';
 }
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
 int run_headless(Scene& scene, Run& run, const Options& o) {
   if (!o.pictures()) {
-    while (!run.done()) run.advance();
+    run.to_end();
     return run.finish();
   }
   Screen screen(Screen::Kind::pictures);
@@ -192,7 +196,8 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
       screen.add_to_film(), ++frames;
     if (picture) screen.save_picture(o.screenshot), shot = true;
   };
-  for (draw(); !run.done(); draw()) run.advance();
+  draw();
+  run.to_end(draw);
   if (!o.video.empty()) {
     std::string film = screen.end_film();
     if (!o.quiet) std::cout << "film: " << film << '\n';
@@ -291,7 +296,7 @@ int run(Options o) {
   // Wrong paths shall end the run before it starts.
   for (const std::string& file : {o.screenshot, o.video})
     if (!file.empty()) CME212::OutputFile try_it(file);
-  Scene scene(std::move(recipe), m.with, *find_method(m.method));
+  Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "

@@ -3,6 +3,7 @@
  * Run: a scene taken to its end, with all that is written about it. */
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -12,8 +13,10 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
-#include "lab/scenes/Model.hpp"
+#include "lab/fast/Energy.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 namespace lab {
 
@@ -30,9 +33,6 @@ struct Options {
   std::string screenshot, video, csv, out;
   std::string advised;  // file for the advised scene
 
-  /** True when a run that has come to time @a t is at its end: 5000 steps of
-   * 0.001 s are 5 s, however that is rounded. */
-  bool at_end(double t) const { return t >= model.t_end * (1 - 1e-12); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };
 
@@ -92,9 +92,7 @@ class Run {
     start();
   }
 
-  bool done() const {
-    return o_.at_end(scene_.time()) || !scene_.failure().empty();
-  }
+  bool done() const { return scene_.done(o_.model.t_end); }
 
   /** Check the present state, which is to be shown; tell if it is not good. */
   void check() {
@@ -106,13 +104,14 @@ class Run {
    * @pre !done() */
   void advance() {
     scene_.step();
-    if (o_.at_end(scene_.time()) || (csv_ && scene_.steps() % o_.every == 0))
-      scene_.check();
-    seconds_ = progress_.seconds();
-    tell_failure();
-    if (scene_.steps() % o_.every == 0 || done()) add_row();
-    if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
-    progress_.show(scene_.steps(), scene_.time());
+    look();
+  }
+  /** Step until done(), with a call of @a after() after each step. */
+  void to_end(const std::function<void()>& after = [] {}) {
+    scene_.run_to(o_.model.t_end, [&] {
+      look();
+      after();
+    });
   }
 
   /** Say how long the step is and how long it may be. */
@@ -121,7 +120,7 @@ class Run {
     using CME212::short_text;
     const MethodInfo& method = scene_.method();
     const double dt = scene_.dt(), limit = scene_.safe_limit();
-    const bool sharp = scene_.parameters().rule == StepRule::sharp;
+    const bool sharp = scene_.step_rule() == StepRule::sharp;
     std::ostringstream out;
     out.precision(3);
     out << "dt = " << dt << " s";
@@ -186,6 +185,16 @@ class Run {
   double seconds_ = 0;  // until the last step
   bool warned_ = false, told_ = false;
 
+  /** After a step. */
+  void look() {
+    if (done() || (csv_ && scene_.steps() % o_.every == 0)) scene_.check();
+    seconds_ = progress_.seconds();
+    tell_failure();
+    if (scene_.steps() % o_.every == 0 || done()) add_row();
+    if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
+    progress_.show(scene_.steps(), scene_.time());
+  }
+
   struct Energies {
     double kinetic, elastic, gravitational;
     double total() const { return kinetic + elastic + gravitational; }
@@ -193,7 +202,7 @@ class Run {
   Energies energies() const {
     const Cloth& g = scene_.cloth();
     return {kinetic_energy(g), elastic_energy(g),
-            gravitational_energy(g, o_.model.with.gravity)};
+            gravitational_energy(g, o_.model.gravity)};
   }
 
   void start() {
