@@ -15,6 +15,10 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
+#include "lab/fast/Sweep.hpp"
+#include "lab/methods/Method.hpp"
+#include "lab/scenes/Measure.hpp"
+#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/viewer/Options.hpp"
 #include "lab/viewer/Run.hpp"
@@ -27,17 +31,16 @@ namespace {
 /** Print what a scene of parts is asked, and what this run answers; but for
  * positions, which are many: --out writes them. */
 void print_answer(const Scene& scene, const Model& m) {
-  const Measure what = read_measure(m.measure);
-  if (what == Measure::positions) return;
-  std::cout << m.measure << ':';
+  if (m.measure == Measure::positions) return;
+  std::cout << name_of(m.measure) << ':';
   for (double a : answer(m, scene.cloth())) std::cout << ' ' << a;
-  std::cout << ' ' << unit_of(what) << '\n';
+  std::cout << ' ' << unit_of(m.measure) << '\n';
 }
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
 int run_headless(Scene& scene, Run& run, const Options& o) {
   if (!o.pictures()) {
-    while (!run.done()) run.advance();
+    run.to_end();
     return run.finish();
   }
   const auto screen = Screen::open(Screen::Kind::pictures);
@@ -61,7 +64,8 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
       screen->add_to_film(), ++frames;
     if (picture) screen->save_picture(o.screenshot), shot = true;
   };
-  for (draw(); !run.done(); draw()) run.advance();
+  draw();
+  run.to_end(draw);
   if (!o.video.empty()) {
     std::string film = screen->end_film();
     if (!o.quiet) std::cout << "film: " << film << '\n';
@@ -160,7 +164,7 @@ int run(Options o) {
   // Wrong paths shall end the run before it starts.
   for (const std::string& file : {o.screenshot, o.video})
     if (!file.empty()) CME212::OutputFile try_it(file);
-  Scene scene(std::move(recipe), m.with, *find_method(m.method));
+  Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "

@@ -36,7 +36,7 @@ struct Group {
 const std::vector<Group> groups = {
     {"Scene",
      {"config", "nodes", "tets", "sheet", "edges", "pin", "plane", "sphere",
-      "tear", "tear-strain", "self-collision", "gravity", "t-end"}},
+      "tear", "tear-strain", "self-collision", "gravity", "t-end", "view"}},
     {"Material", {"stiffness", "modulus", "density", "damping", "drag"}},
     {"Method and step", {"method", "dt", "threads"}},
     {"Output",
@@ -97,7 +97,6 @@ void check(Options& o) {
       throw SceneError(option,
                        "is " + short_text(value) + ", expected " + expected);
   };
-  check_model(o.model);
   require(o.speed >= 0, "speed", o.speed, "0 or more");
   require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
@@ -131,10 +130,10 @@ void list_methods() {
   }
 }
 
-/** Give @a app all options, which go to @a o. */
-void add_options(CLI::App& app, Options& o) {
+/** Give @a app all options, which go to @a o and @a scene. */
+void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
   app.option_defaults()->always_capture_default();
-  add_model_options(app, o.model);
+  scene.add_to(app);
   app.add_flag("--headless", o.headless, "open no window");
   app.add_flag("--window", o.window,
                "require a window: without a display, exit with 4");
@@ -189,6 +188,7 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
 int parse(int argc, char** argv, Options& o) {
   std::string file;
   bool dump = false;
+  SceneOptions scene;
   CLI::App first;  // finds the scene file
   first.set_help_flag();
   first.allow_extras();
@@ -201,14 +201,17 @@ int parse(int argc, char** argv, Options& o) {
   if (!file.empty()) {
     CLI::App app;
     app.set_config("--config");
-    add_options(app, o);
-    read_scene_file(app, file, [&o] { check(o); });
+    add_options(app, o, scene);
+    scene.read(app, file, [&] {
+      o.model = scene.model();
+      check(o);
+    });
   }
 
   CLI::App app(head, "cloth");
   app.formatter(std::make_shared<Help>());
   app.set_help_flag("-h,--help", "print this, and end");
-  add_options(app, o);
+  add_options(app, o, scene);
   app.add_option("--config", file, "read options from a file: a scene")
       ->type_name("FILE");
   app.add_flag("--dump-config", dump, "print the scene as a file, and end");
@@ -235,8 +238,7 @@ int parse(int argc, char** argv, Options& o) {
   } catch (const CLI::ParseError& e) {
     return report(app, e);
   }
-  if (app.count("--stiffness")) o.model.material.modulus.reset();
-  if (app.count("--damping")) o.model.material.drag.reset();
+  o.model = scene.model();
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;

@@ -20,9 +20,6 @@ struct Options {
   std::string screenshot, video, csv, out;
   std::string advised;  ///< file for the advised scene
 
-  /** True when a run that has come to time @a t is at its end: 5000 steps of
-   * 0.001 s are 5 s, however that is rounded. */
-  bool at_end(double t) const { return t >= model.t_end * (1 - 1e-12); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };
 

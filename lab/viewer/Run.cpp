@@ -6,7 +6,10 @@
 #include <iostream>
 #include <sstream>
 
+#include "lab/fast/Energy.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 namespace lab {
 namespace {
@@ -45,9 +48,7 @@ void Run::restart() {
   start();
 }
 
-bool Run::done() const {
-  return o_.at_end(scene_.time()) || !scene_.failure().empty();
-}
+bool Run::done() const { return scene_.done(o_.model.t_end); }
 
 void Run::check() {
   scene_.check();
@@ -56,8 +57,19 @@ void Run::check() {
 
 void Run::advance() {
   scene_.step();
-  if (o_.at_end(scene_.time()) || (csv_ && scene_.steps() % o_.every == 0))
-    scene_.check();
+  look();
+}
+
+void Run::to_end(const std::function<void()>& after) {
+  scene_.run_to(o_.model.t_end, [&] {
+    look();
+    after();
+  });
+}
+
+/** After a step. */
+void Run::look() {
+  if (done() || (csv_ && scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
   tell_failure();
   if (scene_.steps() % o_.every == 0 || done()) add_row();
@@ -79,7 +91,7 @@ void Run::announce() const {
   using CME212::percent;
   const std::string method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
-  const bool sharp = scene_.parameters().rule == StepRule::sharp;
+  const bool sharp = scene_.step_rule() == StepRule::sharp;
   std::ostringstream out;
   out.precision(3);
   out << "dt = " << dt << " s";
@@ -136,7 +148,7 @@ void Run::add_row() {
   if (!csv_ || scene_.steps() == last_row_) return;
   last_row_ = scene_.steps();
   const Cloth& g = scene_.cloth();
-  const Energies e = energies(g, o_.model.with.gravity);
+  const Energies e = energies(g, o_.model.gravity);
   const Point c = center_of_mass(g);
   for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
                    e.total(), double(c.x), double(c.y), double(c.z)})
@@ -178,7 +190,7 @@ void Run::warn_of_missed() {
 }
 
 void Run::print_summary() const {
-  const Energies e = energies(scene_.cloth(), o_.model.with.gravity);
+  const Energies e = energies(scene_.cloth(), o_.model.gravity);
   std::cout << scene_.recipe().name << ": " << scene_.steps()
             << " steps to t = " << scene_.time() << " s in " << seconds_
             << " s; energy " << e.total() << " J = " << e.kinetic

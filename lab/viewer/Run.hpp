@@ -1,6 +1,7 @@
 #pragma once
 /** @file Run.hpp
  * Run: a scene taken to its end, with all that is written about it. */
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -31,6 +32,8 @@ class Run {
   /** One step. What is written down is checked. A failure is told at once.
    * @pre !done() */
   void advance();
+  /** Step until done(), with a call of @a after() after each step. */
+  void to_end(const std::function<void()>& after = [] {});
 
   /** Say how long the step is and how long it may be. */
   void announce() const;
@@ -50,6 +53,7 @@ class Run {
   bool warned_ = false, told_ = false;
 
   void start();
+  void look();
   void add_row();
   void show_progress();
   void tell_failure();
