@@ -39,4 +39,11 @@ std::string nearest(std::string_view name, const Names& names) {
   return found;
 }
 
+/** ": did you mean NAME?", of the nearest of @a names; "" if none is near. */
+template <typename Names>
+std::string did_you_mean(std::string_view name, const Names& names) {
+  const std::string found = nearest(name, names);
+  return found.empty() ? "" : ": did you mean " + found + "?";
+}
+
 }  // namespace lab

@@ -501,6 +501,8 @@ TEST_F(ClothProgram, SaysWhereASceneFileIsWrong) {
     return r.err.substr(std::min(r.err.size(), name.size() + 4));
   };
   EXPECT_EQ(complaint("colour = 3"), "unknown key colour\n");
+  EXPECT_EQ(complaint("pins = \"x 0\""),
+            "unknown key pins: did you mean pin?\n");
   EXPECT_EQ(complaint("tear-strain = 0"),
             "--tear-strain is 0, expected a strain above that at the start, "
             "0\n");
@@ -609,10 +611,13 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
             "cloth: --t_end is no option: did you mean --t-end?\n");
   EXPECT_EQ(complaint("--no-such-option"),
             "cloth: --no-such-option is no option: see --help\n");
-  EXPECT_EQ(complaint(grid0 + "--method verlt"),
-            "cloth: --method is verlt: did you mean verlet?\n");
+  EXPECT_EQ(
+      complaint(grid0 + "--method verlt"),
+      "cloth: --method is verlt, expected a name of --list-methods: did you "
+      "mean verlet?\n");
   EXPECT_EQ(complaint(grid0 + "--measure conm"),
-            "cloth: --measure is conm: did you mean com?\n");
+            "cloth: --measure is conm, expected one of com, energy, positions, "
+            "max-stretch, drape-height: did you mean com?\n");
 }
 
 TEST_F(ClothProgram, AnswersWhatASceneIsAsked) {

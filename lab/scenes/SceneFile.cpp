@@ -12,6 +12,7 @@
 
 #include "CME212/Mesh.hpp"
 #include "CME212/Util.hpp"
+#include "lab/Nearest.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Words.hpp"
 
@@ -241,7 +242,7 @@ std::map<std::string, int> lines_of_keys(const CLI::App& app,
     const std::string key = line.substr(first, last - first + 1);
     if (!app.get_option_no_throw("--" + key) || key == "config" ||
         key == "help" || key == "version")
-      fail("unknown key " + key);
+      fail("unknown key " + key + did_you_mean(key, scene_keys()));
     if (!line_of.emplace(key, number).second)
       fail(key + " for the second time, first on line " +
            std::to_string(line_of[key]));

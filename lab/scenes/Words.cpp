@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "CME212/Util.hpp"
+#include "lab/Nearest.hpp"
 #include "lab/methods/Methods.hpp"
 
 namespace lab {
@@ -172,7 +173,8 @@ Measure read_measure(const std::string& text) {
     if (text == measure_names[k]) return Measure(k);
     names += std::string(k == 0 ? "" : ", ") + measure_names[k];
   }
-  throw SceneError("measure", "is " + text + ", expected one of " + names);
+  throw SceneError("measure", "is " + text + ", expected one of " + names +
+                                  did_you_mean(text, measure_names));
 }
 TimeStep read_time_step(const std::string& text) {
   if (text == "auto") return {.rule = StepRule::safe};
@@ -187,8 +189,11 @@ TimeStep read_time_step(const std::string& text) {
 }
 const MethodEntry* read_method(const std::string& text) {
   if (const MethodEntry* method = find_method(text)) return method;
-  throw SceneError("method",
-                   "is " + text + ", expected a name of --list-methods");
+  std::vector<std::string> names;
+  for (const MethodEntry& m : methods) names.push_back(m.info.name);
+  throw SceneError("method", "is " + text +
+                                 ", expected a name of --list-methods" +
+                                 did_you_mean(text, names));
 }
 
 // ------------------------------------------------------------------- Printing

@@ -174,9 +174,8 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
     for (const Group& g : groups)
       for (const char* name : g.options)
         names.push_back(std::string("--") + name);
-    const std::string meant = nearest(word, names);
-    message = word + " is no option: " +
-              (meant.empty() ? "see --help" : "did you mean " + meant + "?");
+    const std::string meant = did_you_mean(word, names);
+    message = word + " is no option" + (meant.empty() ? ": see --help" : meant);
     break;
   }
   std::cerr << "cloth: " << message << '\n';
