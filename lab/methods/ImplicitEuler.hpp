@@ -20,8 +20,8 @@ class ImplicitEuler : public Method {
       1,
       no_limit,
       "Baraff, Witkin 1998",
-      "stiff cloth that shall come to rest, at any dt",
-      "motion counts: it damps as a drag of dt omega^2 would"};
+      "stiff cloth that comes to rest, at any dt",
+      "accurate motion: it damps as a drag of dt omega^2 would"};
 
   /** @param tolerance > 0, of the linear system: see
    *        ImplicitStage::solve_linearized() */

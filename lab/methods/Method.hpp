@@ -17,7 +17,7 @@ namespace lab {
 struct MethodInfo {
   const char* name;
   int order;     ///< error ~ dt^order
-  int sweeps;    ///< force sweeps a step
+  int sweeps;    ///< force evaluations a step, without linear solves
   double limit;  ///< bounded while dt omega < limit, without drag
   const char* source;
   const char* good_for;

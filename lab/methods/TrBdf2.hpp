@@ -23,7 +23,7 @@ class TrBdf2 : public NewtonMethod {
       no_limit,
       "Bank et al. 1985",
       "stiff cloth that moves on large scales, at large dt",
-      "energy must not be lost; verlet's limit is not far"};
+      "energy that must not be lost; steps near verlet's limit"};
 
   using NewtonMethod::NewtonMethod;
 

@@ -36,8 +36,8 @@ class Xpbd : public Method {
       1,
       no_limit,
       "Macklin et al. 2016, 2019",
-      "looks; springs that hardly give, K to infinity",
-      "accuracy counts; few substeps: one round is no solution"};
+      "plausible motion; nearly rigid springs, K to infinity",
+      "accuracy; few substeps: one round is no solution"};
 
   /** @param substeps n > 0 in each step */
   explicit Xpbd(int substeps = 10) : substeps_(substeps) {

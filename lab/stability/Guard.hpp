@@ -63,8 +63,8 @@ struct WorstPlace {
 };
 
 /** Why a run with this step failed, and what would do instead; in words.
- * @param sharp the limit [s] of the method in the last good shape
- * @param safe its limit in any shape   @param verlet that of Verlet */
+ * @param sharp the stability limit [s] in the last good configuration
+ * @param safe the limit in any   @param verlet that of Verlet, in any */
 std::string why_it_failed(const MethodInfo& info, double dt, double sharp,
                           double safe, double verlet);
 
