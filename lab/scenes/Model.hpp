@@ -68,7 +68,7 @@ struct Motion {
 
 /** A grid over a parallelogram. */
 struct Sheet {
-  Point at;                                      ///< a corner [m]
+  Point at = Point();                            ///< a corner [m]
   Point u = Point(1, 0, 0), v = Point(0, 1, 0);  ///< two sides [m]
   std::array<unsigned, 2> nodes = {20, 20};      ///< along u and v, >= 2
   bool operator==(const Sheet&) const = default;
