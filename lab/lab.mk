@@ -73,4 +73,6 @@ quick check check-full:
 format:
 	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
 
+include lab/measure.mk
+
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -2,7 +2,7 @@
  * How often --advise is right: random scenes, each of them with advice, with
  * the true error of what was advised, and with the best choice in hindsight.
  *
- *   build/adviser_suite --scenes 100 --out lab/advice/adviser.csv
+ *   build/adviser_suite --scenes 100 --out lab/advice/results/adviser.csv
  *
  * Truth is a converged reference: grids of up to 4 times as many cells as the
  * advised one, and at least 80, by srkn6b, and what they tend to. Cost is
