@@ -303,7 +303,7 @@ Box3D TagBoundary::box = Box3D(Point(-.3, -.3, -1), Point(.3, .3, 1));
 
 #include <gtest/gtest.h>
 
-#include "CME212/TestFolder.hpp"
+#include "tests/TestFolder.hpp"
 
 namespace {
 

@@ -1,7 +1,9 @@
 /** @file test_viewer.cpp
  * Tests of what draws: SDLViewer and its parts, Image and Video. They need no
  * display; the last one makes its own. */
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,6 +24,7 @@
 #include "CME212/Color.hpp"
 #include "CME212/GLCamera.hpp"
 #include "CME212/Image.hpp"
+#include "CME212/SDLWindow.hpp"  // SDL, to press its keys
 #include "CME212/SFML_Viewer.hpp"
 #include "CME212/SceneBuilder.hpp"
 #include "Graph.hpp"
