@@ -1,4 +1,4 @@
-// Order.hpp: which meshes get another order in memory, which one, and that
+// MeshOrder.hpp: which meshes get another order in memory, which one, and that
 // nobody can tell by the indices.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
