@@ -212,10 +212,10 @@ TEST_P(EveryMethod, TearsWithASoundGraph) {
 TEST_P(EveryMethod, AllocatesNothingAfterItsFirstStep) {
   Cloth g;
   build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
-  auto constraint = make_combined_constraints(
+  const ConstraintPlan constraint = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), SphereConstraint());
-  auto force = make_combined_force(GravityForce(), MassSpringForce(),
-                                   DampingForce(1.0 / 25));
+  const ForcePlan force = make_combined_force(GravityForce(), MassSpringForce(),
+                                              DampingForce(1.0 / 25));
   auto method = GetParam().make();
   double t = 0;
   for (int n = 0; n < 3; ++n) t = method->step(g, t, 0.001, force, constraint);

@@ -19,25 +19,29 @@ std::optional<Point> first_hit(const Ball& ball, const Point& from,
   return ball.center + (1 - 1e-9) * on;
 }
 
-PinnedNodes::PinnedNodes(const std::vector<PinConstraint::Pin>& pins) {
-  for (const auto& [node, place] : pins)
-    pins_.push_back({node, node.id(), place});
-  std::ranges::sort(pins_, {}, &Pin::id);
+PinnedNodes::PinnedNodes(const std::vector<PinConstraint::Pin>& pins)
+    : pins_(pins) {
+  std::ranges::stable_sort(pins_, {}, &PinConstraint::Pin::node);
 }
 
 void PinnedNodes::project(Cloth& g, const Point& way, unsigned first,
                           unsigned last) const {
-  const auto begin = std::ranges::lower_bound(pins_, first, {}, &Pin::id);
-  for (auto pin = begin; pin != pins_.end() && pin->id < last; ++pin)
-    if (g.has_node(pin->node)) {
-      Node n = pin->node;
-      n.position() = pin->place + way;
-      n.value().vel = Point();
-    }
+  // Nodes of a graph are ordered by id; removed ones can't tell theirs.
+  while (first < last && !g.node_in_use(first)) ++first;
+  if (first == last) return;
+  auto pin = std::ranges::lower_bound(pins_, g.node_with_id(first), {},
+                                      &PinConstraint::Pin::node);
+  for (; pin != pins_.end(); ++pin) {
+    Node n = pin->node;
+    if (!g.has_node(n)) continue;
+    if (n.id() >= last) return;
+    n.position() = pin->place + way;
+    n.value().vel = Point();
+  }
 }
 
 void PinnedNodes::each_held(const Cloth& g, const NodeVisitor& use) const {
-  for (const Pin& pin : pins_)
+  for (const auto& pin : pins_)
     if (g.has_node(pin.node)) use(pin.node);
 }
 
@@ -47,7 +51,6 @@ namespace {
 
 class Pins final : public NodewiseConstraint {
  public:
-  /** @pre all pinned nodes are in their graph */
   explicit Pins(const PinConstraint& c) : pins_(c.pins()) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {

@@ -81,10 +81,10 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 
-/** Pinned nodes, sorted by id, to find those of a part. */
+/** Pinned nodes, sorted, to find those of a part. */
 class PinnedNodes {
  public:
-  /** @pre all are in their graph  O(pins log pins) */
+  /** Removed ones are fine.  @pre all were in one graph  O(pins log pins) */
   explicit PinnedNodes(const std::vector<PinConstraint::Pin>& pins);
   /** Put the pinned nodes of ids in [first, last) to their places, moved by
    * @a way [m], at rest.  O(log(pins) + those of the part) */
@@ -92,19 +92,14 @@ class PinnedNodes {
   void each_held(const Cloth& g, const NodeVisitor& use) const;
 
  private:
-  struct Pin {
-    Node node;
-    unsigned id;  // the node's, which a removed one can't tell
-    Point place;
-  };
-  std::vector<Pin> pins_;
+  std::vector<PinConstraint::Pin> pins_;  // in the order of the nodes
 };
 
 /** The terms of a constraint, in their order, by what methods need of them.
  *
- * It is made once for many steps, when the pinned nodes are in their graph. A
- * ConstraintPlan shares the parts of a CombinedConstraints; any other
- * constraint that it does not recognise must outlive it. */
+ * It is made once for many steps. A ConstraintPlan shares the parts of a
+ * CombinedConstraints; any other constraint that it does not recognise must
+ * outlive it. */
 class ConstraintPlan {
  public:
   /** No constraint. */
