@@ -3,6 +3,7 @@
 // file of the same name: one motion.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <ostream>
@@ -88,14 +89,16 @@ TEST_P(Stages, AreTheScenesOfTheSameName) {
   Scene scene(scene_of(stage, grid));
   ASSERT_EQ(scene.cloth().num_edges(), course.g.num_edges());
   const double bound = 500 * std::numeric_limits<Real>::epsilon();  // 1e-13 m
+  double lowest = 0;
   EXPECT_TRUE(scene.run_to(until, [&] {
     course.step();
+    for (Node n : course.g.nodes())
+      lowest = std::min<double>(lowest, n.position().z);
     ASSERT_EQ(scene.cloth().num_nodes(), course.g.num_nodes());
     ASSERT_EQ(scene.cloth().num_edges(), course.g.num_edges());
     ASSERT_LT(distance(scene.cloth(), course.g), bound) << scene.time() << " s";
   }));
-  // And it did move.
-  EXPECT_LT(course.g.node(course.g.num_nodes() / 2).position().z, -0.2);
+  EXPECT_LT(lowest, -0.3);  // it did move
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -125,7 +128,8 @@ TEST(StageTear, LeavesAsManyNodes) {
     EXPECT_EQ(scene.steps(), 5000);
     const int slack = grid == "data/grid0" ? 0 : 10;  // nodes
     const int nodes = slack == 0 ? 22 : 583, edges = slack == 0 ? 53 : 2149;
-    for (const Cloth* g : {&course.g, &std::as_const(scene).cloth()}) {
+    const Cloth& there = scene.cloth();
+    for (const Cloth* g : {&std::as_const(course.g), &there}) {
       EXPECT_NEAR(int(g->num_nodes()), nodes, slack);
       EXPECT_NEAR(int(g->num_edges()), edges, 8 * slack);
     }
