@@ -59,9 +59,10 @@ picture() {  # the window as rows of RGB in hexadecimal, one pixel a line
 }
 moves() { local p; p=$(picture | md5sum); sleep 0.5; [ "$p" != "$(picture | md5sum)" ]; }
 # A panel of a failure has a bar in the color of marks.
+no_panel() { [ "$(picture | grep -c "$mark")" -lt 100 ]; }
 panel() {
   for _ in {1..100}; do
-    [ "$(picture | grep -c "$mark")" -lt 100 ] || return 0
+    no_panel || return 0
     sleep 0.1
   done
   return 1
@@ -90,7 +91,7 @@ ends() {  # NAME STATUS WORDS
 driver 0 0.001 10
 ok "the driver steps" more_lines 1
 ok "and draws meanwhile" moves
-ok "and has no panel" [ "$(picture | grep -c "$mark")" -lt 100 ]
+ok "and has no panel" no_panel
 press space
 ok "space pauses" quiet
 press r s
