@@ -34,7 +34,8 @@ void print_answer(const Scene& scene, const Model& m) {
   if (m.measure == Measure::positions) return;
   std::cout << name_of(m.measure) << ':';
   for (double a : answer(m, scene.cloth())) std::cout << ' ' << a;
-  std::cout << ' ' << unit_of(m.measure) << '\n';
+  const std::string unit = unit_of(m.measure);
+  std::cout << (unit.empty() ? "" : " ") << unit << '\n';
 }
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
