@@ -1,25 +1,26 @@
 #!/usr/bin/env bash
-# The kernel of the springs is what docs/speed.md says: one vector square root
-# and one vector division for a register full of springs, and no scalar one; and
-# what is moved from lane to lane stays in registers, so no number is stored
-# alone: that takes several times as long as the rest; and no product and sum are
-# rounded at once, as other processors would give other bits. By both compilers; for
-# the plain processor, which stores some, by g++ only.
+# The kernel of the springs is what lab/fast/README.md says. One vector square
+# root and one vector division for a register full of springs, no scalar one.
+# What moves from lane to lane stays in registers: no number is stored alone,
+# which takes several times as long as the rest. No product and sum are rounded
+# at once: other processors would give other bits. By both compilers; for the
+# plain processor, which stores some, by g++ only.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 [ "$(uname -m)" = x86_64 ] || exit 0
 passed=0 failed=0
-contract=$(grep -oe '-ffp-contract=[a-z]*' Makefile)
+contract=$(grep -oe '-ffp-contract=[a-z]*' lab/lab.mk)
 
 # What COMPILER makes of the kernel for CPU; the plain one may be inlined.
 kernel() {  # COMPILER CPU
   local name="on_$2.*SpringSweep"
   [ "$2" != plain ] || name="(on_plain.*SpringSweep|5sweep)"
-  echo '#include "Force.hpp"
+  echo '#include "lab/fast/Kernels.hpp"
+    using namespace lab;
     void sweep(const ClothStencil& s, const Point* x, const EdgeData* e,
                unsigned n, Point* f) {
-      lanes::run<force_detail::SpringSweep<false>>(s, x, e, 0u, n, f);
+      lanes::run<kernels::SpringSweep<false>>(s, x, e, 0u, n, f);
     }' |
     "$1" -std=c++20 -O3 -DNDEBUG -fno-math-errno "$contract" -I. -x c++ -S -o - - |
     sed -nE "/^_Z.*$name.*:/,/^[[:space:]]*\.cfi_endproc/p"

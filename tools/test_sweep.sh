@@ -5,7 +5,9 @@
 # Also that stability_map refuses what it can't do.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-make -s stability_map
+build=${BUILD:-build}
+stability_map=$build/stability_map
+make -s stability_map B="$build"
 
 tmp=$(mktemp -d)
 pids=()
@@ -28,15 +30,15 @@ ok() {  # ends a case
 join() {  # all maps of the cells in DIR, as DIR.joined
   local map
   for map in limits table growth oscillator; do
-    ./stability_map --tiny --join "$1" --map "$map"
+    "$stability_map" --tiny --join "$1" --map "$map"
   done >"$1.joined"
 }
 start() {  # a sweep in DIR: its list
   mkdir -p "$1"
-  ./stability_map --tiny --list >"$1/list"
+  "$stability_map" --tiny --list >"$1/list"
 }
 cells() {  # by make: DIR OPTION...
-  make --no-print-directory "${@:2}" cells EFFORT=tiny SWEEP="$1"
+  make --no-print-directory "${@:2}" cells B="$build" EFFORT=tiny SWEEP="$1"
 }
 same() {  # the joined maps of DIR are those of one job
   join "$1" && cmp "$tmp/one.joined" "$1.joined" || why+=" $1 has other bytes;"
@@ -59,7 +61,7 @@ ok "two jobs"
 # Interrupted: some cells are there, one is half a file that was not committed.
 start "$tmp/half"
 head -n $((total / 2)) "$tmp/half/list" | cut -d' ' -f1 | while read -r cell; do
-  ./stability_map --tiny --cell "$cell" --out "$tmp/half/$cell.csv"
+  "$stability_map" --tiny --cell "$cell" --out "$tmp/half/$cell.csv"
 done
 last=$(tail -n 1 "$tmp/half/list" | cut -d' ' -f1)
 echo "method" >"$tmp/half/$last.csv.part"
@@ -72,8 +74,8 @@ ok "interrupted and continued"
 
 # A real interrupt, at whatever moment: what is there is whole.
 start "$tmp/cut"
-timeout -s INT 0.3 make --no-print-directory -j2 cells EFFORT=tiny \
-  SWEEP="$tmp/cut" >"$tmp/log" 2>&1 || true
+timeout -s INT 0.3 make --no-print-directory -j2 cells B="$build" \
+  EFFORT=tiny SWEEP="$tmp/cut" >"$tmp/log" 2>&1 || true
 cells "$tmp/cut" -j2 >"$tmp/log"
 same "$tmp/cut"
 ok "cut off and continued"
@@ -81,7 +83,7 @@ ok "cut off and continued"
 # ------------------------------------------------------------------- bad input
 refuses() {  # MESSAGE ARGUMENT...
   local status=0
-  ./stability_map "${@:2}" >"$tmp/said" 2>&1 || status=$?
+  "$stability_map" "${@:2}" >"$tmp/said" 2>&1 || status=$?
   [ "$status" = 2 ] || why+=" '${*:2}' ends with $status;"
   grep -qF -- "$1" "$tmp/said" ||
     why+=" '${*:2}' does not say '$1' but '$(cat "$tmp/said")';"

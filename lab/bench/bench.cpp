@@ -1,13 +1,14 @@
 /** @file bench.cpp
  * What a step costs, and each layer of it, beside flat arrays made by hand for
- * the same loop: docs/speed.md walks through it.
+ * the same loop: lab/fast/README.md walks through
+ * it.
  *
- *   make bench CXXFLAGS=-march=native && taskset -c 0 ./bench
- *   ./bench --json FILE           the table for programs as well
- *   ./bench --filter step         only what has this in its name
- *   charts/counts.sh              instructions in place of nanoseconds
- *   make bench REAL=float O=build/float/    single precision, beside the same
- *                                           loop over doubles
+ *   make bench CXXFLAGS=-march=native && taskset -c 0 build/bench
+ *   build/bench --json FILE       the table for programs as well
+ *   build/bench --filter step      only what has this in its name
+ *   lab/bench/counts.sh           instructions in place of nanoseconds
+ *   make bench REAL=float B=build/float   single precision, beside the same
+ *                                         loop over doubles
  *
  * All of it is measured in turn, in random order: a machine that slows down
  * slows all. One thread, but where the name says "threads". */
@@ -24,6 +25,8 @@
 
 #include "lab/bench/Bench.hpp"
 #include "lab/methods/Splitting.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/methods/Verlet.hpp"
 
 using namespace lab;
 
@@ -435,7 +438,7 @@ int main(int argc, char** argv) {
   std::string json, filter;
   int repetitions = 9, calls = 0;
   bool small = false;
-  CLI::App app("What a step costs, and each layer of it: docs/speed.md");
+  CLI::App app("What a step costs, and each layer of it: lab/fast/README.md");
   app.add_option("--json", json, "write the table to this file")
       ->type_name("FILE");
   app.add_option("--filter", filter, "only what has this in its name")

@@ -1,9 +1,9 @@
 /** @file bench_implicit.cpp
- * What a step of mass-augmented Verlet costs, beside one force sweep and one
- * solution with its matrix: the course's cloth with diagonals.
+ * What a step of mass-augmented Verlet costs, beside one force evaluation and
+ * one solution with its matrix: the course's cloth with diagonals.
  *
  *   make bench_implicit
- *   ./bench_implicit --benchmark_min_time=1
+ *   build/bench_implicit --benchmark_min_time=1
  *
  * Steps and sweeps take turns, so that another program on the machine slows
  * both down: `sweeps` is how many of these a step costs. */

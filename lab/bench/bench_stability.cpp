@@ -1,15 +1,19 @@
 /** @file bench_stability.cpp
  * What the estimates of the largest step and the guard cost, beside one force
- * sweep and one step of Verlet: the course's cloth with diagonals, at rest.
+ * evaluation and one step of Verlet: the course's cloth with diagonals, at
+ * rest.
  *
  *   make bench_stability
- *   ./bench_stability --benchmark_enable_random_interleaving=true
+ *   build/bench_stability --benchmark_enable_random_interleaving=true
  *
- * At 100 steps between two sharp estimates, an estimate of n sweeps costs
- * n/100 of a sweep a step; the guard looks at every 32nd step. */
+ * At 100 steps between two sharp estimates, an estimate of n force
+ * evaluations costs n/100 of one a step; the guard looks at every 32nd step. */
 #include <vector>
 
 #include "lab/bench/Bench.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/stability/Guard.hpp"
+#include "lab/stability/Spectrum.hpp"
 #include "lab/stability/StepLimit.hpp"
 
 using namespace lab;

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # make speed: what a step costs on this machine, in double and in single
-# precision, to lab/bench/results/MACHINE/: the tables, bench.txt and bench-float.txt, and
-# the same as JSON; lines of this commit in history.csv, and a picture of that.
+# precision. Writes lab/bench/results/MACHINE/: the tables bench.txt and
+# bench-float.txt, the same as JSON, lines of this commit in history.csv, and a
+# picture of that.
 #   lab/bench/speed.sh [BENCH BENCH_FLOAT]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.
@@ -14,8 +15,8 @@ folder=lab/bench/results/${machine:-unknown}
 mkdir -p "$folder"
 "${1:-build/native/bench}" --json "$folder/bench.json" |
   tee "$folder/bench.txt"
-"${2:-build/native-float/bench}" --filter 'step: ' --json "$folder/bench-float.json" |
-  tee "$folder/bench-float.txt"
+"${2:-build/native-float/bench}" --filter 'step: ' \
+  --json "$folder/bench-float.json" | tee "$folder/bench-float.txt"
 
 # A commit that was measured before gets its lines anew.
 history=$folder/history.csv

@@ -59,13 +59,14 @@ constexpr std::array layouts = {
            1e-8,
            1e-2,
            true,
-           {{{"yoshida4: # sweeps", 1.6, 1.4}, {"pefrl: # sweeps", 2, -1}}}},
-    Layout{
-        "pefrl",
-        1e-10,
-        1,
-        true,
-        {{{"pefrl: # sweeps", 0.12, -1.2}, {"verlet: # sweeps", 0.04, 2.2}}}},
+           {{{"yoshida4: # evaluations", 1.6, 1.4},
+             {"pefrl: # evaluations", 2, -1}}}},
+    Layout{"pefrl",
+           1e-10,
+           1,
+           true,
+           {{{"pefrl: # evaluations", 0.12, -1.2},
+             {"verlet: # evaluations", 0.04, 2.2}}}},
     Layout{"srkn6b",
            1e-3,
            1,
@@ -81,9 +82,9 @@ constexpr std::array layouts = {
            -1,
            4,
            false,
-           {{{"tolerance 0.01 m: # sweeps", 8, -0.8},
-             {"tolerance 0.0001 m: # sweeps", 8, 0.9},
-             {"pefrl: # sweeps", 8, -0.9}}}},
+           {{{"tolerance 0.01 m: # evaluations", 8, -0.8},
+             {"tolerance 0.0001 m: # evaluations", 8, 0.9},
+             {"pefrl: # evaluations", 8, -0.9}}}},
     Layout{"implicit-euler",
            -0.7,
            0.1,
@@ -165,7 +166,7 @@ std::string in_words(const Failure& f, const FailureRun& r,
   else if (r.setting > 0)
     text += ", tolerance " + short_text(r.setting) + " m";
   text += ": off by " + short_text(trace.deviation) + unit_of(f.quantity) +
-          ", " + std::to_string(trace.sweeps) + " sweeps";
+          ", " + std::to_string(trace.sweeps) + " force evaluations";
   if (trace.status != Outcome::Status::ok)
     text += std::string(", ") + status_of(trace) +
             " at t = " + short_text(trace.samples.back().t) + " s";

@@ -145,8 +145,9 @@ std::vector<Problem> make_problems() {
       "drape", "25 x 25 cloth falling on a ball, to 0.4 s", 0.4, 25));
   all.back().constraint = on_a_ball;
   all.back().norm = Norm::functionals;
-  all.push_back(
-      grid_problem("tear", "25 x 25 cloth torn by a ball, to 0.4 s", 0.4, 25));
+  all.push_back(grid_problem(
+      "tear", "the assignment's last scene with drag, 25 x 25, to 0.4 s", 0.4,
+      25));
   all.back().constraint = torn_by_a_ball;
   all.back().norm = Norm::functionals;
   return all;

@@ -25,15 +25,18 @@ std::string first_line_of(const char* command) {
 
 }  // namespace
 
+std::string machine() {
+  return first_line_of("sed -n 's/^model name.*: //p' /proc/cpuinfo") + ", " +
+         std::to_string(std::thread::hardware_concurrency()) + " cores";
+}
+
 void write_head(std::ostream& out, const char* what) {
 #ifdef __clang__
   const char* compiler = "clang " __clang_version__;
 #else
   const char* compiler = "g++ " __VERSION__;
 #endif
-  out << "# " << what << "\n# machine: "
-      << first_line_of("sed -n 's/^model name.*: //p' /proc/cpuinfo") << ", "
-      << std::thread::hardware_concurrency() << " cores"
+  out << "# " << what << "\n# machine: " << machine()
       << "\n# compiler: " << compiler
       << "\n# commit: "
       // results are written, not measured

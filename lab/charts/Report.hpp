@@ -11,6 +11,9 @@
 
 namespace lab::report {
 
+/** Processor and number of cores. */
+std::string machine();
+
 /** The head of a CSV file, lines that begin with #: @a what it holds, machine,
  * compiler, and commit, "-dirty" if the sources differ from it. */
 void write_head(std::ostream& out, const char* what);

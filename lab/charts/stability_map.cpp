@@ -3,9 +3,9 @@
  * map is a list of independent runs, its cells, each with a file of its own;
  * whoever runs them in whatever order, joined they give the same bytes.
  *
- *   ./stability_map --list                       all cells: name, cost, what
- *   ./stability_map --cell NAME --out DIR/NAME.csv
- *   ./stability_map --join DIR --map limits --out limits.csv
+ *   build/stability_map --list                       all cells: name, cost,
+ * what build/stability_map --cell NAME --out DIR/NAME.csv build/stability_map
+ * --join DIR --map limits --out limits.csv
  *
  * `make stability` does all of it, tools/sweep.sbatch does it with Slurm. The
  * columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an input

@@ -2,12 +2,11 @@
  * Work against precision: runs every method on every problem at every step
  * that makes sense, and writes what it cost and how wrong it was as CSV.
  *
- *   ./work_precision --out charts/work_precision.csv
- *   ./work_precision --quick --scenes grid0,chain --methods verlet,pefrl
- *   ./work_precision --grid-refinement     ./work_precision --energy
- *   ./work_precision --failures --out charts/failures.csv
+ *   build/work_precision --out FILE.csv
+ *   build/work_precision --quick --scenes grid0,chain --methods verlet,pefrl
+ *   build/work_precision --grid-refinement     # or --energy, --failures
  *   build/float/work_precision --ends --out ends.csv
- *   ./work_precision --floor ends.csv --out charts/float_floor.csv
+ *   build/work_precision --floor ends.csv --out FILE.csv
  *
  * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
  * input that can't be used, or an output that can't be written. */
@@ -54,7 +53,7 @@ struct Options {
 
 /** How far a ladder of steps goes down. */
 struct Effort {
-  double springs;  // looked at in a run, at most: sweeps times springs
+  double springs;  // spring evaluations of a run, at most
   double seconds;  // that a run takes, at most
 };
 constexpr Effort full = {6e7, 0.6}, rough = {2e6, 0.05};
@@ -85,7 +84,8 @@ struct Case {
 /** The cases of a method on a problem: explicit methods at twice their largest
  * stable step, at that step, and at smaller ones by factors of 2; methods
  * without a limit from 1/8 of the time on down; error control by tolerances.
- * Until the error is below 10 floors, or the effort is spent. */
+ * Until the error is below 10 floors, or the effort is spent: how far a ladder
+ * goes depends on the machine, what stands on it does not. */
 std::vector<Case> ladder(const Problem& p, const Reference& r,
                          const MethodEntry& method, double omega,
                          std::size_t springs, const Effort& effort) {
@@ -169,7 +169,7 @@ void print_cheapest(const Problem& p, const Reference& r,
           (!best || c.least() < best->least()))
         best = &c;
     if (best)
-      std::printf("  %.0e m: %-18s %8lld sweeps %9.3f ms\n", wanted,
+      std::printf("  %.0e m: %-18s %8lld evaluations %9.3f ms\n", wanted,
                   best->method->info.name, best->first.sweeps,
                   1e3 * best->least());
   }

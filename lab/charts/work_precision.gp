@@ -1,4 +1,5 @@
-# Error against work for one scene: force sweeps at the left, time at the right.
+# Error against work for one scene: force evaluations at the left, time at the
+# right.
 #   gnuplot -e "csv='FILE.csv'; scene='grid1'; out='grid1.svg'" \
 #     lab/charts/work_precision.gp
 key = 2
@@ -65,7 +66,7 @@ do for [panel = 1:2] {
   if (panel == 1) {
     set lmargin at screen 0.085
     set rmargin at screen 0.515
-    set xlabel 'force sweeps (solving systems not counted)' offset 0, 0.3
+    set xlabel 'force evaluations (linear solves excluded)' offset 0, 0.3
     set ylabel 'error: '.norm.' [m]' offset 1, 0
   } else {
     set lmargin at screen 0.56
@@ -75,7 +76,7 @@ do for [panel = 1:2] {
     unset ylabel
     unset label 1
   }
-  set label 4 'within 10 floors: not to be believed' \
+  set label 4 'within 10x of the reference''s error' \
     at graph 0.01, first 10 * floor_at left \
     offset 0, -0.7 font small textcolor rgb '#666666' front
   if (single_at > 0) {
@@ -102,5 +103,5 @@ do for [panel = 1:2] {
        floor_at with lines lc rgb '#777777' dt 2 lw 1.2
 }
 entries = '6|#222222|largest_stable_step 2|#222222|diverged 1|#222222|'. \
-  (strlen(why) ? why : 'step').'_fails'.' 7|#aaaaaa|within_10_floors'
+  (strlen(why) ? why : 'step').'_fails'.' 7|#aaaaaa|within_10x'
 load 'lab/charts/legend.gp'
