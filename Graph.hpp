@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "CME212/Point.hpp"
-#include "CME212/Util.hpp"
 #include "CME212/SlotMap.hpp"
+#include "CME212/Util.hpp"
 
 namespace graph_detail {
 

@@ -21,10 +21,11 @@
 #include "CME212/Point.hpp"
 
 /** An input that can't be used; what() is "FILE:LINE: what is wrong, what was
- * expected" (line 0: the file as a whole). */
+ * expected", or "FILE: ..." of the file as a whole, line 0. */
 struct InputError : std::runtime_error {
   InputError(const std::string& file, std::size_t line, const std::string& what)
-      : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}
+      : std::runtime_error(file + (line ? ':' + std::to_string(line) : "") +
+                           ": " + what) {}
 };
 
 namespace mesh_detail {

@@ -24,8 +24,8 @@ cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
 # No product and sum in one rounding: the same bits on every processor.
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
-# What draws: lab/viewer, the programs and tests that use it.
-lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/% lab/cloth.% \
+# What draws: one file of lab/viewer, and tests.
+lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
             tests/test_viewer.% tests/test_screen.% tests/test_course% \
             CME212/%,$<),-DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
@@ -55,6 +55,8 @@ endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
 $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
 
+# A test that runs a program.
+$(B)/test_cloth_program: | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
 $(B)/test_viewer $(B)/test_screen: $(B)/asan/libviewer.a
@@ -73,5 +75,7 @@ quick check check-full:
 	@tools/check.sh $@
 format:
 	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
+
+include lab/measure.mk
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

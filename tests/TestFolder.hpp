@@ -22,6 +22,13 @@ inline std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
+/** How to call the program @a name: that in the folder which the environment's
+ * BUILD names, or else the one in @a folder, "build/". */
+inline std::string program(const std::string& name, const char* folder) {
+  const char* build = std::getenv("BUILD");
+  return (build ? build + std::string("/") : folder) + name;
+}
+
 /** A new folder, gone with all that is in it when this goes. */
 class TestFolder {
  public:

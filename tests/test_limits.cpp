@@ -12,7 +12,11 @@
 #include <random>
 
 #include "lab/charts/Limits.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/stability/Guard.hpp"
+#include "lab/stability/Spectrum.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 
@@ -200,7 +204,8 @@ TEST(ForwardEulerFails, AtEveryStepAtThePredictedRate) {
   Cloth g;
   build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
   PinConstraint pin(g);
-  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  const ForcePlan force =
+      make_combined_force(GravityForce(), MassSpringForce());
   auto made = forward.make();
   const double dt = 1e-4;  // a hundredth of verlet's limit
   double last = 0;
@@ -236,8 +241,14 @@ TEST(WithoutLimit, BoundedAtAHundredTimesTheLimitOnLinearProblems) {
 /** Run a square cloth without drag for 3 s.  @return why that failed */
 std::string failure_of(const MethodEntry& method, unsigned side, double dt,
                        double K) {
-  Scene scene(Stage::forces, grid_points(side), grid_quads(side),
-              {.dt = dt, .stiffness = K}, method);
+  const Problem p = grid_problem("", "", 3, side, K);
+  Recipe recipe;
+  recipe.build = p.build;
+  recipe.force = [](const Cloth&) {
+    return make_combined_force(GravityForce(), MassSpringForce());
+  };
+  recipe.constraint = p.constraint;
+  Scene scene(recipe, {.dt = dt}, method);
   while (scene.time() < 3 && scene.step()) {
   }
   scene.check();
@@ -253,7 +264,8 @@ TEST(WithoutLimit, ImplicitMidpointBlowsUpOnBucklingCloth) {
   EXPECT_NE(why.find("implicit-midpoint fails with: buckling cloth"),
             std::string::npos)
       << why;
-  EXPECT_NE(why.find("8.6 times verlet's limit"), std::string::npos) << why;
+  EXPECT_NE(why.find("8.6 times verlet's stability limit"), std::string::npos)
+      << why;
   EXPECT_NE(why.find("--method verlet with --dt 0.0023"), std::string::npos)
       << why;
   EXPECT_EQ(failure_of(entry_of<TrBdf2>(), 15, 1 / 30., 100), "");

@@ -10,8 +10,9 @@
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
-#include "lab/methods/Splitting.hpp"
 #include "lab/fast/MeshOrder.hpp"
+#include "lab/methods/Splitting.hpp"
+#include "lab/methods/Verlet.hpp"
 
 using namespace lab;
 

@@ -1,11 +1,13 @@
-// Screen.hpp: one picture of each stage at a fixed step against the committed
-// one in tests/pictures, of half the size. After a change that is meant to be
-// seen: make pictures, look at them, commit them.
+// lab/viewer/Screen.hpp: one picture of each stage at a fixed step against the
+// committed one in tests/pictures, of half the size. After a change that is
+// meant to be seen: make pictures, look at them, commit them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 
+#include "CME212/Image.hpp"
+#include "lab/scenes/Scene.hpp"
 #include "lab/viewer/Screen.hpp"
 
 using namespace lab;
@@ -38,11 +40,11 @@ Image picture_of(Screen& screen) {
 /** The stage on grid1 after so many steps, and its picture. */
 class Picture : public ::testing::TestWithParam<Frame> {
  protected:
-  Screen screen{Screen::Kind::pictures};
+  const std::unique_ptr<Screen> screen = Screen::open(Screen::Kind::pictures);
 
   Image draw() {
-    screen.show(scene);
-    return picture_of(screen);
+    screen->show(scene);
+    return picture_of(*screen);
   }
   Scene scene{GetParam().stage,
               load_points("data/grid1.nodes"),
@@ -102,17 +104,17 @@ INSTANTIATE_TEST_SUITE_P(Stages, Picture, ::testing::ValuesIn(frames),
 
 // A run that fails shows where and why, on its last good state.
 TEST(Failure, IsMarkedAndExplainedAsInTheCommittedPicture) {
-  Screen screen(Screen::Kind::pictures);
+  const auto screen = Screen::open(Screen::Kind::pictures);
   Scene scene(Stage::problem1, load_points("data/grid1.nodes"),
               load_quads("data/grid1.tets", 625), {.dt = 0.0034});
-  screen.show(scene);
-  const Image start = picture_of(screen);
+  screen->show(scene);
+  const Image start = picture_of(*screen);
   while (scene.step()) ASSERT_LT(scene.steps(), 1000);
-  screen.show(scene);
-  expect_committed("fail-path", picture_of(screen));
+  screen->show(scene);
+  expect_committed("fail-path", picture_of(*screen));
   scene.restart();
-  screen.show(scene);
-  EXPECT_EQ(picture_of(screen), start);
+  screen->show(scene);
+  EXPECT_EQ(picture_of(*screen), start);
 }
 
 // The tolerance is so small that the loss of an edge or of a node is seen.

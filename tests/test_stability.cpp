@@ -12,7 +12,7 @@
 #include <Eigen/Dense>
 
 #include "lab/methods/Methods.hpp"
-#include "lab/stability/StepLimit.hpp"
+#include "lab/stability/Guard.hpp"
 
 using namespace lab;
 

@@ -2,7 +2,15 @@
 // says. The program on top of it: tools/test_sweep.sh.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "lab/charts/Growth.hpp"
+#include "lab/charts/Limits.hpp"
+#include "lab/fast/Sweep.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/stability/Spectrum.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 

@@ -1,6 +1,6 @@
 // Problem.hpp, Failure.hpp and work_precision: exact solutions and references,
-// the counting of sweeps, how each method fails, and the CSV. Build the program
-// first: make work_precision.
+// the counting of force evaluations, how each method fails, and the CSV. Build
+// the program first: make work_precision.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,10 +11,14 @@
 #include <set>
 #include <sstream>
 
-#include "tests/TestFolder.hpp"
+#include "CME212/Util.hpp"
 #include "lab/charts/Failure.hpp"
 #include "lab/charts/Precision.hpp"
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/Sweep.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/stability/Spectrum.hpp"
+#include "tests/TestFolder.hpp"
 
 using namespace lab;
 
@@ -133,21 +137,22 @@ TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
 // So what is measured is what the program does: a method that can spare
 // something spares it here, too.
 TEST(Problem, ItsCountersHideNothing) {
-  const auto force = make_combined_force(GravityForce(), MassSpringForce(),
-                                         DampingForce(0.1), CountingForce());
+  const ForcePlan force = make_combined_force(
+      GravityForce(), MassSpringForce(), DampingForce(0.1), CountingForce());
   EXPECT_EQ(force.spring_multiplicity(), 1);
   EXPECT_EQ(force.drag(), 0.1);
   for (const CombinedConstraints& c :
        {make_combined_constraints(PlaneConstraint()),
         make_combined_constraints(TearConstraint())}) {
     const CountingConstraint counting(c);
-    EXPECT_EQ(counting.nodewise(), c.nodewise());
+    const bool nodewise = ConstraintPlan(c).nodewise();
+    EXPECT_EQ(counting.nodewise(), nodewise);
     Cloth g;
     for (int i = 0; i < 3000; ++i) g.add_node(Point(0, 0, -1));
     SymplecticEuler method;
     for (int k = 0; k < 5; ++k) method(g, 0, 0.01, GravityForce(), counting);
     EXPECT_EQ(counting.calls(), 5);
-    EXPECT_EQ(g.node(2999).position().z > -1, c.nodewise());
+    EXPECT_EQ(g.node(2999).position().z > -1, nodewise);
   }
 }
 
@@ -249,7 +254,7 @@ class WorkPrecision : public ::testing::Test {
 
   /** @return the exit status */
   int run_program(const std::string& arguments) {
-    return folder.run("./work_precision " + arguments).status;
+    return folder.run("${BUILD:-build}/work_precision " + arguments).status;
   }
   std::string err() { return contents(dir / "err"); }
   std::string printed() { return contents(dir / "out"); }
@@ -412,7 +417,7 @@ TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
 
 TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
   std::set<std::string> names, styles;
-  std::istringstream in(contents("charts/methods.csv"));
+  std::istringstream in(contents("lab/charts/methods.csv"));
   for (std::string line; std::getline(in, line);) {
     if (line[0] == '#') continue;
     std::size_t color = line.find(','), marker = line.find(',', color + 1);
@@ -513,7 +518,7 @@ TEST(Precision, RefusesWhatIsNoEnd) {
 // What is drawn is there for every scene, and of the size of float's round-off:
 // half of its epsilon is 6e-8, of a cloth of 1 m; contact magnifies it.
 TEST(Precision, TheChartsHaveTheFloorOfEachScene) {
-  const std::string text = contents("charts/float_floor.csv");
+  const std::string text = contents("lab/charts/results/float_floor.csv");
   for (const Problem& p : make_problems()) {
     const std::string head = "# single precision floor " + p.name + ": ";
     const auto at = text.find(head);
@@ -524,15 +529,16 @@ TEST(Precision, TheChartsHaveTheFloorOfEachScene) {
   }
 }
 
-// Each method has a section in docs/methods.md, and there the picture.
+// Each method has a section in lab/methods/README.md, and there the picture.
 TEST_F(WorkPrecision, DocumentsShowHowEachMethodFails) {
-  const std::string text = contents("docs/methods.md");
+  const std::string text = contents("lab/methods/README.md");
   for (const Failure& f : failures) {
     const std::string name(f.method());
     const auto section = text.find("`" + name + "`, order ");
     ASSERT_NE(section, std::string::npos) << name;
-    const auto picture = text.find(std::string("![") + f.title +
-                                   "](../charts/failure-" + name + ".svg)");
+    const auto picture =
+        text.find(std::string("![") + f.title + "](../charts/results/failure-" +
+                  name + ".svg)");
     ASSERT_NE(picture, std::string::npos) << name;
     EXPECT_GT(picture, section) << name;
   }
@@ -549,11 +555,11 @@ TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   refused("--methods verlet,magic", "--methods: there is no 'magic'");
   refused("--repeats 0", "--repeats is 0, expected 1 or more");
   refused("--nodes data/grid0.nodes", "--tets");
-  refused("--nodes none --tets none", "none:0: can't be opened");
+  refused("--nodes none --tets none", "none: can't be opened");
   refused("--energy --grid-refinement", "--grid-refinement");
   refused("--energy --failures", "--energy");
   refused("--ends --floor none", "--floor");
-  refused("--floor none", "none:0: can't be opened");
+  refused("--floor none", "none: can't be opened");
   refused("--t-end -1", "--t-end is -1, expected a positive time [s]");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }

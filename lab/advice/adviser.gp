@@ -1,6 +1,6 @@
 # What adviser_suite found: predicted against real error, and chosen against
 # best cost, a dot a scene that got advice.
-#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" charts/adviser.gp
+#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" lab/advice/adviser.gp
 set encoding utf8
 set datafile separator ','
 set terminal svg size 1000,480 font 'DejaVu Sans,13' background '#ffffff'
@@ -22,7 +22,7 @@ plot 1 lc rgb '#D55E00' lw 2 title 'the tolerance', \
      x lc rgb '#999999' dt 2 title 'real as predicted', \
      advised using ($5/$3):($7/$3 < 1e-6 ? 1e-6 : $7/$3) with points pt 7 \
        ps 0.6 lc rgb '#0072B2' notitle
-set title '{/:Bold Work: springs looked at}'
+set title '{/:Bold Work: spring evaluations}'
 set xlabel 'best choice in hindsight'
 set ylabel 'chosen'
 set autoscale xy

@@ -2,13 +2,13 @@
 # How many instructions a figure of bench takes for a node, of 10,000: a table
 # of Markdown. Counted by callgrind, which must be installed (apt-get install
 # valgrind), and does not know AVX-512.
-#   make bench && charts/counts.sh
+#   make bench && lab/bench/counts.sh
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 counted() {  # CALLS FIGURE [OPTION...]
   valgrind --tool=callgrind --callgrind-out-file=/dev/null \
-    ./bench --small --calls "$1" --filter "${@:2}" 2>&1 |
+    "${BUILD:-build}/bench" --small --calls "$1" --filter "${@:2}" 2>&1 |
     sed -n 's/.*Collected : //p'
 }
 row() {  # NAME FIGURE [OPTION...]: 10 calls after the first one

@@ -1,6 +1,6 @@
 # How the speed of a step went, from measurement to measurement.
 #   gnuplot -e "csv='FILE.csv'; out='FILE.svg'; machine='NAME'" \
-#     charts/history.gp
+#     lab/bench/history.gp
 set encoding utf8
 set datafile separator ','
 set terminal svg size 900,420 font 'DejaVu Sans,13' background '#ffffff'

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
 # make speed: what a step costs on this machine, in double and in single
-# precision, to charts/MACHINE/: the tables, bench.txt and bench-float.txt, and
+# precision, to lab/bench/results/MACHINE/: the tables, bench.txt and bench-float.txt, and
 # the same as JSON; lines of this commit in history.csv, and a picture of that.
-#   charts/speed.sh [BENCH BENCH_FLOAT]
+#   lab/bench/speed.sh [BENCH BENCH_FLOAT]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 machine=$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1 |
   tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
-folder=charts/${machine:-unknown}
+folder=lab/bench/results/${machine:-unknown}
 mkdir -p "$folder"
 "${1:-build/native/bench}" --json "$folder/bench.json" |
   tee "$folder/bench.txt"
-"${2:-build/float/bench}" --filter 'step: ' --json "$folder/bench-float.json" |
+"${2:-build/native-float/bench}" --filter 'step: ' --json "$folder/bench-float.json" |
   tee "$folder/bench-float.txt"
 
 # A commit that was measured before gets its lines anew.
@@ -31,5 +31,5 @@ for file in "$folder/bench.json" "$folder/bench-float.json"; do
 done
 
 gnuplot -e "csv='$history'; out='$folder/history.svg'; machine='$machine'" \
-  charts/history.gp
+  lab/bench/history.gp
 echo "$folder/history.svg"

@@ -1,11 +1,11 @@
 # Total energy against time, and how far it has been off so far: all methods on
 # a cloth without drag, whose energy is 0 for ever.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/energy.svg'" \
-#     charts/energy.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='energy.svg'" \
+#     lab/charts/energy.gp
 key = 1
 key_is_method = 1
 height = 640
-load 'charts/style.gp'
+load 'lab/charts/style.gp'
 
 energy(m) = data(sprintf('$1 == "%s" {print $2 "," $3}', m))
 so_far(m) = data(sprintf('$1 == "%s" && $2 > 0 {e = $3 < 0 ? -$3 : $3; '. \
@@ -42,4 +42,4 @@ plot for [m in names] so_far(m) using 1:2 with linespoints lc rgb color(m) \
      for [m in lost] ended(m) using 1:2 with points lc rgb color(m) pt 2 \
        lw 1.8 ps 1.1
 entries = '2|#222222|diverged'
-load 'charts/legend.gp'
+load 'lab/charts/legend.gp'

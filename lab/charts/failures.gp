@@ -1,12 +1,12 @@
 # How a method fails, and a cure, against time.
-#   gnuplot -e "csv='charts/failures.csv'; scene='verlet'; \
-#     out='charts/failure-verlet.svg'" charts/failures.gp
+#   gnuplot -e "csv='failures.csv'; scene='verlet'; \
+#     out='failure-verlet.svg'" lab/charts/failures.gp
 # Solid: what fails; dashed: the cure; dotted: further runs; gray: the truth.
 key = 2
 key_is_method = 1
 width = 720
 height = 380
-load 'charts/style.gp'
+load 'lab/charts/style.gp'
 
 axis = comment('axis '.scene)
 logarithmic = int(word(axis, 4))

@@ -1,10 +1,10 @@
 # Error against cost when the grid, the step, or both are refined.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/grid_refinement.svg'" \
-#     charts/grid_refinement.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='grid_refinement.svg'" \
+#     lab/charts/grid_refinement.gp
 key = 1
 key_is_method = 0
 height = 440
-load 'charts/style.gp'
+load 'lab/charts/style.gp'
 
 of(what) = data(sprintf('$1 == "%s" {print $5 "," $6 "," $2}', what))
 fixed = system(rows('$1 == "step" {print $2; exit}'))

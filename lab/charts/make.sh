@@ -1,37 +1,39 @@
 #!/usr/bin/env bash
-# Measure and draw the charts: make charts. All of them go to charts/; a quick
-# run, or one of some scenes or methods only, to build/charts.
+# Measure and draw the charts: make charts. All of them go to results/; a quick
+# run, or one of some scenes or methods only, to build/charts. BUILD: where the
+# programs are.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
+build=${BUILD:-build}
 QUICK=${QUICK:-} SCENE=${SCENE:-} METHODS=${METHODS:-}
 options=()
 [ -z "$QUICK" ] || options+=(--quick)
 [ -z "$METHODS" ] || options+=(--methods "$METHODS")
-to=charts
-[ -z "$QUICK$SCENE$METHODS" ] || to=build/charts
+to=lab/charts/results
+[ -z "$QUICK$SCENE$METHODS" ] || to=$build/charts
 mkdir -p "$to"
 
-. charts/draw.sh
+. lab/charts/draw.sh
 
-build/float/work_precision --ends --out build/ends.txt \
+"$build/float/work_precision" --ends --out "$build/ends.txt" \
   ${SCENE:+--scenes "$SCENE"}
-./work_precision --floor build/ends.txt --out "$to/float_floor.csv"
+"$build/work_precision" --floor "$build/ends.txt" --out "$to/float_floor.csv"
 csv=$to/work_precision.csv
-./work_precision ${options[@]+"${options[@]}"} --out "$csv" \
+"$build/work_precision" ${options[@]+"${options[@]}"} --out "$csv" \
   ${SCENE:+--scenes "$SCENE"}
 for scene in $(sed -n 's/^# scene \([^:]*\):.*/\1/p' "$csv"); do
   draw work_precision "$csv" "$scene" "$to/$scene"
 done
 [ -z "$SCENE" ] || exit 0
 csv=$to/failures.csv
-./work_precision ${options[@]+"${options[@]}"} --failures --out "$csv"
+"$build/work_precision" ${options[@]+"${options[@]}"} --failures --out "$csv"
 for method in $(sed -n 's/^# title \([^:]*\):.*/\1/p' "$csv"); do
   draw failures "$csv" "$method" "$to/failure-$method"
 done
-./work_precision ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
+"$build/work_precision" ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
 draw energy "$to/energy.csv" '' "$to/energy"
 [ -z "$METHODS" ] || exit 0
-./work_precision ${options[@]+"${options[@]}"} --grid-refinement \
+"$build/work_precision" ${options[@]+"${options[@]}"} --grid-refinement \
   --out "$to/grid_refinement.csv"
 draw grid_refinement "$to/grid_refinement.csv" '' "$to/grid_refinement"

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # The end of make stability: join the cells of a sweep to maps and draw them.
-#   charts/stability.sh EFFORT DIR     full: to charts/, else to build/charts
-#   charts/stability.sh progress DIR   how far the sweep in DIR is
-# DIR/list is what ./stability_map --list printed when the sweep began.
+#   stability.sh EFFORT DIR     full: to results/, else to build/charts
+#   stability.sh progress DIR   how far the sweep in DIR is
+# DIR/list is what stability_map --list printed when the sweep began. BUILD:
+# where the program is.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
+build=${BUILD:-build}
 
 # Cells that are there, and the time left: that so far, as cost is to cost.
 progress() {  # DIR
@@ -12,7 +14,7 @@ progress() {  # DIR
   [ ! -t 1 ] || bar=1
   elapsed=$(($(date +%s) - $(stat -c %Y "$1/list")))
   {
-    find "$1" -name '*.csv' -newer ./stability_map -printf 'there %f\n'
+    find "$1" -name '*.csv' -newer "$build/stability_map" -printf 'there %f\n'
     find "$1" -name '*.csv' -newer "$1/list" -printf 'new %f\n'
     sed 's/^/cell /' "$1/list"
   } | awk -v bar="$bar" -v elapsed="$elapsed" '
@@ -42,13 +44,13 @@ if [ "$1" = progress ]; then
 fi
 
 effort=$1 dir=$2
-to=build/charts options=("--$effort")
-[ "$effort" != full ] || to=charts options=()
+to=$build/charts options=("--$effort")
+[ "$effort" != full ] || to=lab/charts/results options=()
 mkdir -p "$to"
-. charts/draw.sh
+. lab/charts/draw.sh
 for map in limits table growth oscillator; do
   csv=$to/stability_$map.csv
-  ./stability_map ${options[@]+"${options[@]}"} --join "$dir" --map "$map" \
+  "$build/stability_map" ${options[@]+"${options[@]}"} --join "$dir" --map "$map" \
     --out "$csv"
 done
 for map in limits table growth oscillator; do

@@ -1,11 +1,11 @@
 # Growth of a tiny disturbance against stretch and step, a panel for a method.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_growth.svg'" \
-#     charts/stability_growth.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='stability_growth.svg'" \
+#     lab/charts/stability_growth.gp
 key = 1
 key_is_method = 1
 height = 660
-load 'charts/style.gp'
-load 'charts/palette.gp'
+load 'lab/charts/style.gp'
+load 'lab/charts/palette.gp'
 
 # Columns: 1 method, 2 stretch, 3 dt/safe, 4 predicted limit/safe, 5 growth.
 growth(m) = data(sprintf('$1 == "%s" {print $2 "," $3 "," $5}', m))

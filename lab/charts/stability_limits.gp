@@ -1,11 +1,11 @@
 # The largest stable step against the number of nodes: measured, predicted and
 # safe; below, how far measured and predicted are apart.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_limits.svg'" \
-#     charts/stability_limits.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='stability_limits.svg'" \
+#     lab/charts/stability_limits.gp
 key = 3
 key_is_method = 1
 height = 720
-load 'charts/style.gp'
+load 'lab/charts/style.gp'
 
 # Columns: 1 side, 2 mesh, 3 method, 4 predicted, 5 measured, 6 safe [s].
 of(m, mesh) = data(sprintf('$3 == "%s" && $2 == "%s" ' . \
@@ -71,4 +71,4 @@ do for [col = 0:1] {
 legend_top = 0.11
 legend_rows = 1
 entries = ''
-load 'charts/legend.gp'
+load 'lab/charts/legend.gp'

@@ -1,12 +1,12 @@
 # Growth per step of an oscillator against dt omega and dt gamma, a panel for a
 # method; the line is the boundary by theory.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_oscillator.svg'" \
-#     charts/stability_oscillator.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='stability_oscillator.svg'" \
+#     lab/charts/stability_oscillator.gp
 key = 1
 key_is_method = 1
 height = 660
-load 'charts/style.gp'
-load 'charts/palette.gp'
+load 'lab/charts/style.gp'
+load 'lab/charts/palette.gp'
 
 # Columns: 1 method, 2 dt omega, 3 dt gamma, 4 measured, empty on the boundary.
 measured(m) = data(sprintf('$1 == "%s" && $4 != "" '. \

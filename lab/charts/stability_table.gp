@@ -1,11 +1,11 @@
 # Predicted over measured limit on the assignment's falling cloth: a column for
 # a method, a point for a grid.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='charts/stability_table.svg'" \
-#     charts/stability_table.gp
+#   gnuplot -e "csv='FILE.csv'; scene=''; out='stability_table.svg'" \
+#     lab/charts/stability_table.gp
 key = 3
 key_is_method = 1
 height = 480
-load 'charts/style.gp'
+load 'lab/charts/style.gp'
 
 # Columns: 1 side, 2 mesh, 3 method, 8 predicted/measured.
 sides = system(rows('!seen[$1]++ {print $1}'))

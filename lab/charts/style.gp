@@ -2,10 +2,10 @@
 # width if it is not 1000; out, the file to write, an SVG; scene, or '' for all
 # rows of csv; key, the column of csv that names the method, and key_is_method,
 # 0 if it names something else. Makes: names, the methods in csv, in the order
-# of charts/methods.csv; stops if one of them is not in that table.
+# of lab/charts/methods.csv; stops if one of them is not in that table.
 set encoding utf8
 set datafile separator ','
-table = 'charts/methods.csv'
+table = 'lab/charts/methods.csv'
 column_of(k) = \
   system(sprintf("grep -v '^#' %s | cut -d, -f%d | tr '\\n' ' '", table, k))
 in_table = column_of(1)

@@ -1,10 +1,10 @@
 # Error against work for one scene: force sweeps at the left, time at the right.
-#   gnuplot -e "csv='FILE.csv'; scene='grid1'; out='charts/grid1.svg'" \
-#     charts/work_precision.gp
+#   gnuplot -e "csv='FILE.csv'; scene='grid1'; out='grid1.svg'" \
+#     lab/charts/work_precision.gp
 key = 2
 key_is_method = 1
 height = 640
-load 'charts/style.gp'
+load 'lab/charts/style.gp'
 
 # Columns: 5 dt/limit, 7 sweeps, 9 median of seconds, 10 error, 11 floor,
 # 13 status, 14 reason. col is 7 or 9.
@@ -103,4 +103,4 @@ do for [panel = 1:2] {
 }
 entries = '6|#222222|largest_stable_step 2|#222222|diverged 1|#222222|'. \
   (strlen(why) ? why : 'step').'_fails'.' 7|#aaaaaa|within_10_floors'
-load 'charts/legend.gp'
+load 'lab/charts/legend.gp'

@@ -43,8 +43,8 @@ class SweptConstraint : public ZeroConstraint {
   }
   /** The first hit: the first place, to round-off, at which a node on its
    * straight way @a from one place @a to another is inside an obstacle that
-   * holds neither of them, so that a look at the ends would miss it:
-   * tunnelling. nullopt if there is none. A floor can't be missed. */
+   * holds neither of them. A check of the ends alone misses it: tunnelling.
+   * nullopt if there is none. A floor can't be tunnelled through. */
   virtual std::optional<Point> first_hit(const Point& /*from*/,
                                          const Point& /*to*/) const {
     return std::nullopt;
@@ -81,7 +81,7 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 
-/** Pinned nodes by id, so that those of a part are found at once. */
+/** Pinned nodes, sorted by id, to find those of a part. */
 class PinnedNodes {
  public:
   /** @pre all are in their graph  O(pins log pins) */

@@ -1,6 +1,5 @@
 #include "lab/fast/ForcePlan.hpp"
 
-#include <cstddef>
 #include <mutex>
 #include <type_traits>
 #include <typeinfo>
@@ -21,17 +20,15 @@ void add_weight(const Part& part, double gravity, std::span<Point> f) {
     f[k].z -= node[k].mass * Real(gravity);
 }
 
-/** What of a cache one core can count on [bytes]. Measured: README.md */
-constexpr std::size_t cache = 2 << 20;
-
 void add_springs(const Part& part, std::span<Point> f) {
   constexpr unsigned width = ClothStencil::width;
-  auto sweep = [&]<bool prefetch>(std::bool_constant<prefetch>) {
-    lanes::run<kernels::SpringSweep<prefetch>>(
+  auto sweep = [&]<bool prefetch_gathered>(
+                   std::bool_constant<prefetch_gathered>) {
+    lanes::run<kernels::SpringSweep<prefetch_gathered>>(
         part.stencil, part.g.positions().data(), part.g.edge_values().data(),
         part.first / width, (part.last + width - 1) / width, f.data());
   };
-  const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > cache;
+  const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > kernels::cache;
   if (is_large && 2 * part.stencil.num_gathered() > part.stencil.num_rows())
     sweep(std::true_type());
   else

@@ -1,8 +1,7 @@
 #pragma once
 /** @file MeshOrder.hpp
- * In which order a mesh lies best in memory, if its own order is bad: a sweep
- * over a cloth is fast when what belongs together is in the cache together.
- * docs/graph.md */
+ * A better order of a mesh in memory, if its own is bad: a sweep over a cloth
+ * is fast when neighbors are in the cache together. docs/graph.md */
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -12,12 +11,10 @@
 
 namespace lab {
 
-/** True if a sweep through @a quads in their order goes through the points in
- * small steps, whatever their number: no corner lies farther than @a near from
- * all corners of the quad before. One quad in sixteen may be an exception.
- * O(quads)
- * @param near what lies no farther is in the cache together: the positions of
- *        1000 points are 24 kB */
+/** True if the order of @a quads is good for a cache: no corner of a quad lies
+ * farther than @a near from all corners of the quad before. One quad in sixteen
+ * may be an exception.  O(quads)
+ * @param near the positions of 1000 points are 24 kB */
 bool is_local(std::span<const Quad> quads, unsigned near = 1000);
 
 /** All points and all quads of a mesh, by number, in the order of memory. */
@@ -25,15 +22,15 @@ struct MeshOrder {
   std::vector<unsigned> points, quads;
 };
 
-/** The order in which a walk in all directions at once, from a corner of the
- * mesh, comes to its quads and to its points; of those that it comes to from
- * the same point, first to those of few quads. So the points of a quad are as
- * close to each other as the front of the walk is long; and where the quads
- * make up a grid, they lie at constant distances over long runs, as in a grid
- * that is numbered row by row.
+/** Breadth-first (Cuthill-McKee) order of the points and quads of a mesh, from
+ * a corner of it; points found from the same point come by their number of
+ * quads. So the points of a quad are as close to each other as the front of the
+ * search is long. Where the quads make up a grid, they lie at constant offsets
+ * over long runs, as in a grid that is numbered row by row.
  * @pre the indices in @a quads are below @a num_points
  * Complexity: O(points + quads) if no point is in very many quads
- * Source: E. Cuthill, J. McKee, Proc. 24th Nat. Conf. ACM (1969) 157. */
+ * Source: E. Cuthill, J. McKee, Proc. 24th Nat. Conf. ACM (1969) 157,
+ * doi:10.1145/800195.805928. */
 MeshOrder cuthill_mckee(std::size_t num_points, std::span<const Quad> quads);
 
 /** The quads in the order of memory, each with the places of its points there

@@ -1,7 +1,7 @@
 #pragma once
 /** @file OrderedCloth.hpp
- * A cloth whose nodes and springs lie in memory in the order that sweeps like,
- * whatever the order of its mesh. */
+ * A cloth whose nodes and springs lie in memory in an order that is good for
+ * sweeps, whatever the order of its mesh. */
 #include <span>
 
 #include "mass_spring.hpp"

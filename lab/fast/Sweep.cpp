@@ -66,7 +66,8 @@ void Sweep::update(const Cloth& g) {
   version_ = g.version();
 }
 
-/** How many parts away the nodes may be whose positions @a force asks for. */
+/** The halo: how many parts away the nodes may be whose positions @a force
+ * reads. */
 int Sweep::halo_of(const ForcePlan& force) const {
   if (!force.spring_multiplicity()) return std::numeric_limits<int>::max();
   // A gather reads one number behind the node, which may be of the next part.
@@ -80,7 +81,7 @@ void Sweep::each_part(const Cloth& g, const PartVisitor& use) {
 
 /** Call @a move(part) and @a use(part) for each part, this one when all parts
  * up to @a halo away have been moved. Each thread goes through its own parts
- * in their order, and moves those ahead which it comes to need.
+ * in their order, and moves those in the halo before it needs them.
  * @pre the stencil is that of @a g */
 void Sweep::in_turn(const Cloth& g, int halo, const PartVisitor& move,
                     const PartVisitor& use) {

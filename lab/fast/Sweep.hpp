@@ -16,19 +16,19 @@ namespace lab {
 /** Goes over all nodes of a cloth, in parts that fit in a cache. It keeps a
  * stencil of the cloth, and makes it anew when nodes or edges came or went.
  *
- * Each node's force is computed by one thread, in the same order whatever the
- * number of threads: so the results are the same, bit by bit. */
+ * One thread computes all of a node's force, in an order that does not depend
+ * on the number of threads. So the results are the same, bit by bit. */
 class Sweep {
  public:
   /** How many processors this program may use. */
   static int processors();
-  /** Let all sweeps have @a n threads from now on. If 0, as it is at first:
-   * those that OpenMP gives, for cloths that are worth it. */
+  /** Let all sweeps have @a n threads from now on. 0, the default: those that
+   * OpenMP gives, and one for small cloths. */
   static void set_threads(int n);
 
   static constexpr unsigned part_size = 1024;
-  /** A cloth of fewer parts is done before threads have come together, if
-   * another program has a processor just then. */
+  /** By default a cloth of fewer parts has one thread: starting more may take
+   * longer than the sweep, if another program has a processor just then. */
   static constexpr int many_parts = 32;
   static_assert(part_size % ClothStencil::width == 0);
 
@@ -50,17 +50,17 @@ class Sweep {
                   std::vector<Point>& f) {
     (*this)(g, t, force, f, [](const Part&, std::span<Point>) {});
   }
-  /** The same for who needs no list of all forces. */
+  /** The same, if nobody needs the forces afterwards. */
   template <typename Use>
   void operator()(const Cloth& g, double t, const ForcePlan& force, Use use) {
     after(nothing, g, t, force, use);
   }
 
   /** The same, but @a move(part) is called for each part before any force that
-   * depends on the positions of its nodes: so one way through memory does for
-   * both. @a move may change positions and velocities of its part, and @a use
-   * its velocities; the graph stays as it is. Several threads do several parts
-   * at once. Throws as parts(). */
+   * depends on the positions of its nodes. So the data go through the cache
+   * once for both. @a move may change positions and velocities of its part, and
+   * @a use its velocities; the graph stays as it is. Several threads do several
+   * parts at once. Throws as parts(). */
   template <typename Move, typename Use>
   void after(Move move, const Cloth& g, double t, const ForcePlan& force,
              std::vector<Point>& f, Use use) {

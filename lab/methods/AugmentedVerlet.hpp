@@ -16,18 +16,20 @@ namespace lab {
  * No spring is stiffer than K in any direction, so no frequency reaches the
  * limit 2/dt, in whatever configuration: linearized there, it is bounded. (A
  * cloth that buckles can still gain energy at large dt, unless drag takes it.)
- * Springs without rest length swing as by the implicit midpoint rule. Linear
- * momentum is kept to round-off, and so is the angular momentum of the heavier
- * mass, sum x_i x (M v + dt^2/4 L v)_i. Drag as in Splitting: by the true mass.
+ * Springs without rest length oscillate as by the implicit midpoint rule.
+ * Linear momentum is kept to round-off, and so is the angular momentum of the
+ * heavier mass, sum x_i x (M v + dt^2/4 L v)_i. Drag as in Splitting: by the
+ * true mass.
  *
  * The matrix is that of the nodes that move, N x N for the three coordinates
  * alike. Its Cholesky factor is kept until dt, a mass, a spring's K or ends, or
  * what is held has changed.
- * Source: A. Stern, E. Grinspun, Multiscale Model. Simul. 7 (2009) 1779. */
+ * Source: A. Stern, E. Grinspun, Multiscale Model. Simul. 7 (2009) 1779,
+ * doi:10.1137/080732936. */
 class AugmentedVerlet : public Method {
  public:
-  // Besides the sweep: one look at all springs, to see whether they are those
-  // of the factor, and one solution with it: 20 to 60 nonzeros a node. A new
+  // Besides the force evaluation: one check of all springs against those of
+  // the factor, and one solve with it, of 20 to 60 nonzeros a node. A new
   // factor costs as much as 25 to 50 steps at 1e4 nodes, 100 to 200 at 1e6.
   static constexpr MethodInfo info = {
       "augmented-verlet",
@@ -36,7 +38,7 @@ class AugmentedVerlet : public Method {
       no_limit,
       "Stern, Grinspun 2009",
       "large N with some drag, at 10 times verlet's dt",
-      "dt omega > 1 for what is looked at; 10 times the dt without drag"};
+      "dt omega > 1 for waves that matter; 10 times the dt without drag"};
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;

@@ -28,8 +28,9 @@ class SparseCholesky {
   ~SparseCholesky();
 
   /** Factor A, of any pattern, in place of the matrix before.
-   * @param lower the lower triangle of A; what stands above the diagonal is not
-   *   looked at.  @pre all rows and columns < @a rows
+   * @param lower the lower triangle of A; entries above the diagonal are
+   * ignored.
+   * @pre all rows and columns < @a rows
    * @return false if A is not positive definite to round-off, not finite or
    *   too large for the memory; then rows() == 0
    * Complexity: on a grid about O(rows^1.5). */

@@ -120,8 +120,8 @@ class BasicSparseCholesky {
   static constexpr const char* back_end = BackEnd::name;
 
   /** Factor A, of any pattern, in place of the matrix before.
-   * @param lower the lower triangle of A, compressed; what stands above the
-   *   diagonal is not looked at.  @pre square
+   * @param lower the lower triangle of A, compressed; entries above the
+   *   diagonal are ignored.  @pre square
    * @return false if A is not positive definite to round-off, not finite or
    *   too large for the memory; then rows() == 0
    * Complexity: on a grid about O(rows^1.5). */

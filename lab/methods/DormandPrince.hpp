@@ -16,7 +16,8 @@ struct DormandPrinceTableau {
       0.9971,
       "Dormand, Prince 1980",
       "a tolerance instead of a step",
-      "springs: its limit per sweep is a twelfth of verlet's",
+      "springs: per force evaluation its limit is a twelfth of "
+      "verlet's",
       true};
   static constexpr std::array a = {1 / 5.,
                                    3 / 40.,

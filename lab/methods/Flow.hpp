@@ -20,8 +20,8 @@ void kick(Cloth& g, const Part& part, double h, std::span<const Point> f);
 void without_drag(const Part& part, const ForcePlan& force, std::span<Point> f);
 
 /** @a move(part) for all parts of @a g; then the constraint; then all forces
- * at time @a t, and @a use(part, forces on it). In one way through memory if
- * the constraint projects nodewise.
+ * at time @a t, and @a use(part, forces on it). If the constraint is nodewise,
+ * the data go through the cache once.
  * @param f none, or a list for all forces, by node id */
 template <typename Move, typename Use, typename... List>
 void move_and_sweep(Sweep& sweep, Cloth& g, double t, const ForcePlan& force,

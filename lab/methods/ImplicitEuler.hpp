@@ -7,20 +7,21 @@ namespace lab {
 
 /** Linearly implicit Euler: v += dt F(x + dt v)/m with F linearized at x, then
  * x += dt v. One linear system a step, by conjugate gradients.
- * Source: D. Baraff, A. Witkin, SIGGRAPH 1998, "Large steps in cloth
- * simulation", with compressed springs taken as having no stiffness across. */
+ * Source: D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH
+ * 1998, doi:10.1145/280814.280821; here compressed springs have no stiffness
+ * across. */
 class ImplicitEuler : public Method {
  public:
-  // Besides the sweep: about dt omega products with the matrix, each as dear
-  // as a sweep.
+  // Besides the force evaluation: about dt omega products with the matrix, each
+  // at the cost of one.
   static constexpr MethodInfo info = {
       "implicit-euler",
       1,
       1,
       no_limit,
       "Baraff, Witkin 1998",
-      "stiff cloth that shall come to rest, at any dt",
-      "motion counts: it damps as a drag of dt omega^2 would"};
+      "stiff cloth that comes to rest, at any dt",
+      "accurate motion: it damps as a drag of dt omega^2 would"};
 
   /** @param tolerance > 0, of the linear system: see
    *        ImplicitStage::solve_linearized() */

@@ -16,7 +16,7 @@ namespace implicit_detail {
 void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
                    const StiffnessVisitor& use);
 
-/** Which nodes do not move in a step, by node id: the held and removed ones. */
+/** The nodes that do not move in a step, by node id: held and removed ones. */
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);
 

@@ -17,7 +17,8 @@ namespace lab {
  *
  * @tparam Scheme has the fractions, `constexpr std::array steps`, kicks_first
  *         (whether they begin and end with B) and info. One that begins with B
- *         needs one sweep less: the last kick's force is the next first one's.
+ *         saves one force evaluation: the last kick's force is that of the
+ *         next step's first kick.
  */
 template <typename Scheme>
 class Splitting : public Method {

@@ -17,7 +17,7 @@ class SymplecticEuler : public Method {
                                       2,
                                       "the assignment",
                                       "a first look; energy stays bounded",
-                                      "accuracy counts: verlet costs the same"};
+                                      "accuracy: verlet costs the same"};
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;

@@ -8,13 +8,14 @@
 namespace lab {
 
 /** The trapezoidal rule up to t + gamma dt, then the backward differentiation
- * formula of order 2 over both parts, gamma = 2 - sqrt 2. L-stable: what is
- * too fast for dt dies out at once.
- * Source: R. E. Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992. */
+ * formula of order 2 over both parts, gamma = 2 - sqrt 2. L-stable: waves too
+ * fast for dt die out at once.
+ * Source: R. E. Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992,
+ * doi:10.1109/T-ED.1985.22232. */
 class TrBdf2 : public NewtonMethod {
  public:
-  // The sweeps are those of a linear force: one at the start and two a stage.
-  // On a cloth 9 to 12; besides, as ImplicitMidpoint in each stage.
+  // Force evaluations of a linear force: one at the start and two a stage. On
+  // a cloth 9 to 12; besides, as ImplicitMidpoint in each stage.
   static constexpr MethodInfo info = {
       "tr-bdf2",
       2,
@@ -22,7 +23,7 @@ class TrBdf2 : public NewtonMethod {
       no_limit,
       "Bank et al. 1985",
       "stiff cloth that moves on large scales, at large dt",
-      "energy must not be lost; verlet's limit is not far"};
+      "energy that must not be lost; steps near verlet's limit"};
 
   using NewtonMethod::NewtonMethod;
 

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Xpbd.hpp
- * Extended position-based dynamics: each spring in turn moves its two ends to
- * where it would have them. */
+ * Extended position-based dynamics: each spring in turn projects its two ends
+ * towards its rest length. */
 #include <cassert>
 #include <vector>
 
@@ -23,20 +23,21 @@ namespace lab {
  * The springs are those of the cloth's edges. So the force must consist of
  * MassSpringForce, once, and of others without stiffness; or it has no
  * stiffness at all, and then there are no springs. Any other is refused.
- * Source: M. Macklin, M. Mueller, N. Chentanez, "XPBD", MIG 2016; M. Macklin et
- * al., "Small steps in physics simulation", SCA 2019. */
+ * Source: M. Macklin, M. Mueller, N. Chentanez, "XPBD", MIG 2016,
+ * doi:10.1145/2994258.2994272; M. Macklin et al., "Small steps in physics
+ * simulation", SCA 2019, doi:10.1145/3309486.3340247. */
 class Xpbd : public Method {
  public:
-  // Besides the sweep: one more over the springs, to leave them out of it, and
-  // n rounds, each as dear as 2 sweeps.
+  // Besides the force evaluation: one of the springs, to leave them out of it,
+  // and n rounds, each at the cost of 2 evaluations.
   static constexpr MethodInfo info = {
       "xpbd",
       1,
       1,
       no_limit,
       "Macklin et al. 2016, 2019",
-      "looks; springs that hardly give, K to infinity",
-      "accuracy counts; few substeps: one round is no solution"};
+      "plausible motion; nearly rigid springs, K to infinity",
+      "accuracy; few substeps: one round is no solution"};
 
   /** @param substeps n > 0 in each step */
   explicit Xpbd(int substeps = 10) : substeps_(substeps) {

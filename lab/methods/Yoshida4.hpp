@@ -17,8 +17,8 @@ struct Yoshida4Scheme {
       3,
       1.5734,
       "Yoshida 1990",
-      "being well known",
-      "pefrl is at hand: less error, longer steps"};
+      "textbook baseline",
+      "any comparison with pefrl: more error, shorter steps"};
   static constexpr bool kicks_first = true;
   static constexpr double w1 = 1.3512071919596578;  // 1/(2 - 2^(1/3))
   static constexpr double w0 = 1 - 2 * w1;

@@ -96,20 +96,21 @@ std::string why_it_failed(const MethodInfo& info, double dt, double sharp,
   if (info.limit == no_limit || info.limit == 0 || info.adaptive) {
     out << info.name << " fails with: " << info.fails_when;
     if (std::isfinite(verlet)) {
-      out << " (dt is " << dt / verlet << " times verlet's limit); --method "
-          << "verlet with ";
+      out << " (dt is " << dt / verlet << " times verlet's stability limit); "
+          << "--method verlet with ";
       instead(verlet);
     }
   } else if (dt > 0.97 * sharp || dt > safe) {
     const double limit = dt > 0.97 * sharp ? sharp : safe;
-    out << "dt is " << dt / limit << " times the limit of " << info.name << ", "
-        << limit << " s" << (limit == sharp ? " in this shape" : "")
-        << ": the fastest waves in the springs grow in every step; ";
+    out << "dt is " << dt / limit << " times the stability limit (" << limit
+        << " s" << (limit == sharp ? " in this configuration" : "") << ", "
+        << info.name << "): the fastest waves in the springs grow in every "
+        << "step; ";
     instead(safe);
   } else {
-    out << "not the springs: dt is " << dt / safe << " of the limit of "
-        << info.name
-        << "; look at what moves nodes besides, and at: " << info.fails_when;
+    out << "not the springs: dt is " << CME212::percent(dt / safe)
+        << " of the stability limit (" << safe << " s, " << info.name
+        << "); look at what else moves nodes, and at: " << info.fails_when;
   }
   return out.str();
 }

@@ -17,15 +17,15 @@ namespace lab {
  *     <=  total energy at the start + 3 S,
  * S = kinetic and elastic energy at the start + total weight times the
  * diagonal of the cloth + the energy of all springs stretched by 10 %. The
- * margin is for what a stable method does: its energy swings, and a constraint
- * that moves a node stretches springs. */
+ * margin is for what a stable method does: its energy oscillates, and a
+ * constraint that moves a node stretches springs. */
 class DivergenceGuard {
  public:
   /** @param g The cloth at the start   @param gravity [m/s^2] */
   DivergenceGuard(const Cloth& g, double gravity);
 
   /** True if the state of @a g is good; then it is kept. Elastic energy, which
-   * costs a sweep over the springs, is looked at in every fourth call.
+   * costs a sweep over the springs, is checked in every fourth call.
    * O(N + springs/4) */
   bool accept(const Cloth& g);
   /** True if the state of @a g is good.
@@ -63,8 +63,8 @@ struct WorstPlace {
 };
 
 /** Why a run with this step failed, and what would do instead; in words.
- * @param sharp the limit [s] of the method in the last good shape
- * @param safe its limit in any shape   @param verlet that of Verlet */
+ * @param sharp the stability limit [s] in the last good configuration
+ * @param safe the limit in any   @param verlet that of Verlet, in any */
 std::string why_it_failed(const MethodInfo& info, double dt, double sharp,
                           double safe, double verlet);
 

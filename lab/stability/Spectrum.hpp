@@ -1,14 +1,13 @@
 #pragma once
 /** @file Spectrum.hpp
- * How fast a cloth can swing. Its highest frequency is omega [1/s], omega^2 the
- * largest eigenvalue of M^-1 H: M the masses, H the stiffness of all springs,
- * without the nodes that are held. It bounds the step of every explicit method
- * (Stability.hpp). Three estimates, from one for ever to the cheapest; the
- * proofs are in docs/stability.md.
+ * The highest frequency omega [1/s] of a cloth: omega^2 is the largest
+ * eigenvalue of M^-1 H, M the masses, H the stiffness of all springs, without
+ * the nodes that are held. It bounds the step of every explicit method
+ * (StepLimit.hpp). Three estimates; the proofs are in README.md of this room.
  *
- * A force that does not know its stiffness (ZeroForce::add_stiffness) is taken
- * to have that of the cloth's edges. Where nothing can swing (no springs, no
- * free node), omega is 0. */
+ * A force that does not know its stiffness (SweptForce::add_stiffness) is taken
+ * to have that of the cloth's edges. Where nothing can oscillate (no springs,
+ * no free node), omega is 0. */
 #include <algorithm>
 #include <vector>
 
@@ -35,21 +34,22 @@ void find_scales(const Cloth& g, const ConstraintPlan& constraint,
 
 }  // namespace spectrum_detail
 
-/** The safe estimate: no frequency of the cloth exceeds it, in whatever shape
- * it gets, also after any removal of nodes and edges. omega^2 is the largest
- * eigenvalue of the mass-scaled Laplacian, (L x)_i = sum of K (x_i - x_j) over
- * the springs at i, as the stiffness of a spring is nowhere above K: that of
- * MassSpringForce never is. It stays valid while masses and K do not change and
- * no node is let go that is held now.
- * To 0.1 %, from above (lanczos() finds it from below; its error is added).
+/** The safe estimate: no frequency of the cloth exceeds it, in any
+ * configuration, also after any removal of nodes and edges. omega^2 is the
+ * largest eigenvalue of the mass-scaled Laplacian, (L x)_i = sum of K (x_i -
+ * x_j) over the springs at i: the stiffness of MassSpringForce is nowhere above
+ * K. It stays valid while masses and K do not change and no held node is let
+ * go.
+ * @return omega [1/s] to 0.1 %, from above: the Lanczos value plus its error
  * Complexity: O(N + springs) for each of 20 to 200 products. */
 double omega_safe(const Cloth& g, const ForcePlan& force,
                   const ConstraintPlan& constraint);
 
-/** The sharp estimate: the highest frequency in the shape that @a g has now.
- * It rises when springs are stretched, up to omega_safe(). 15 products find
- * it to 2 %, from below; 60 to a thousandth and better.
- * Complexity: each product costs one to two force sweeps.  Keeps its memory. */
+/** The sharp estimate: the highest frequency in the present configuration. It
+ * rises when springs are stretched, up to omega_safe(). 15 products find it to
+ * 2 %, from below; 60 to a thousandth and better.
+ * Complexity: each product costs one to two force evaluations. Keeps its
+ * memory. */
 class SharpOmega {
  public:
   double operator()(const Cloth& g, const ForcePlan& force,
@@ -60,12 +60,13 @@ class SharpOmega {
   std::vector<double> scale_;
 };
 
-/** The cheap estimate: never below the frequencies in the present shape, and
- * up to a third above. By Gershgorin's circles for blocks: (a - b) B (a - b)
- * <= 2 a B a + 2 b B b, so omega^2 is at most the largest eigenvalue of
- * 2 sum B/m over the springs at any one node; a spring to a held node counts
- * once only. Springs that push back less than nothing count as nothing.
- * Complexity: O(N + springs), two or three force sweeps. */
+/** The cheap estimate: never below the highest frequency in the present
+ * configuration, and up to a third above. By Gershgorin's circles for blocks:
+ * (a - b) B (a - b) <= 2 a B a + 2 b B b, so omega^2 is at most the largest
+ * eigenvalue of 2 sum B/m over the springs at any one node; a spring to a held
+ * node counts once. Negative stiffness counts as 0. The stability map scales
+ * its start by it.
+ * Complexity: O(N + springs), two or three force evaluations. */
 double omega_gershgorin(const Cloth& g, const ForcePlan& force,
                         const ConstraintPlan& constraint);
 

@@ -30,12 +30,12 @@ double largest_gamma(const Cloth& g, double c);
 
 /** The share of a safe limit that `--dt auto` takes, and of a sharp one.
  *
- * The safe limit is that of a cloth swinging about any one shape. A cloth
- * without drag that is thrown about violently, springs passing through length
- * 0, also gains energy from changing its shape near the limit: of 1,000 random
- * scenes by Verlet none at 0.8 of it, and of every method none at 0.6
- * (SafeStep.NeverDivergesInRandomScenes). A cloth let go at rest, as the
- * assignment's, can do with 1. The sharp share also covers what SharpOmega
+ * The safe limit is that of oscillations about any one configuration. A cloth
+ * without drag that moves violently, so that springs pass through length 0,
+ * also gains energy from its changes of configuration near the limit. Of 1,000
+ * random scenes none diverged by Verlet at 0.8 of it, and none by any method at
+ * 0.6 (SafeStep.NeverDivergesInRandomScenes). A cloth let go at rest, as the
+ * assignment's, can take 1. The sharp share also covers what SharpOmega
  * misses. */
 inline constexpr double safe_share = 0.6, sharp_share = 0.9;
 

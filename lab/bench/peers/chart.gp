@@ -1,5 +1,5 @@
-# Error against time and against sweeps, our methods and the peers':
-#   gnuplot -e "csv='charts/peers.csv'; out='charts/peers.svg'" peers/chart.gp
+# Error against time and against force evaluations, our methods and the peers':
+#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" lab/bench/peers/chart.gp
 # Ours are solid, the libraries' dashed.
 set encoding utf8
 set datafile separator ','
@@ -33,7 +33,7 @@ set label 2 footer at screen 0.99, screen 0.015 right textcolor rgb '#777777'
 unset key
 set lmargin at screen 0.115
 set rmargin at screen 0.53
-set xlabel 'force sweeps'
+set xlabel 'force evaluations'
 set ylabel 'RMS error of the positions [m]'
 plot for [k = 1:words(ours)] of(word(ours, k)) using 3:6 with linespoints \
        lc rgb word(ours_color, k) pt int(word(ours_marker, k)) ps 0.7 lw 1.5, \

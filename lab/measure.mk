@@ -1,0 +1,148 @@
+# What measures, draws and searches: make help-lab. Results lie in the folder
+# results of their room; a quick run draws in $(B)/charts.
+
+.PHONY: adviser-suite cells charts charts-quick fuzz grids orders peers-bench \
+        peers-chart peers-deps pictures speed stability stability-soak
+
+help-lab:
+	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
+	@echo 'make test_NAME          a test of tests/, as build/test_NAME'
+	@echo 'make quick | check | check-full   what a commit must pass, in 2 and 6'
+	@echo '                        minutes; all else'
+	@echo 'make charts             work and precision, failures: lab/charts/README.md;'
+	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
+	@echo 'make stability          the stability maps, on all cores; QUICK=1'
+	@echo 'make stability-soak     thousands of random scenes at the safe step'
+	@echo 'make orders             the order of every method, measured'
+	@echo 'make speed              what a step costs here: lab/bench/README.md'
+	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
+	@echo 'make peers-deps peers-chart peers-bench   other libraries beside ours'
+	@echo 'make pictures           the pictures of the documents'
+	@echo 'make grids | data/grid4.nodes   the grids; one of a million nodes'
+	@echo 'make fuzz               the parsers of meshes; RUNS=200000, needs clang'
+	@echo 'programs: cloth $(sort $(filter-out cloth,$(LAB_PROGRAMS)) $(call names,$(lab_others)))'
+
+sub = $(MAKE) --no-print-directory
+
+# ---- Charts: lab/charts/README.md
+
+charts: work_precision
+	@$(sub) work_precision B=$(B)/float REAL=float
+	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
+	  lab/charts/make.sh
+charts-quick:
+	@$(sub) charts QUICK=1
+
+# A sweep is a list of runs, each with a file of its own, so it goes on where it
+# was interrupted. `make cells` runs what $(SWEEP)/list names, and no more.
+EFFORT = $(if $(QUICK),quick,full)
+SWEEP  = $(B)/stability/$(EFFORT)
+effort = $(filter-out --full,--$(EFFORT))
+stability: stability_map
+	@mkdir -p $(SWEEP) && $(B)/stability_map --list $(effort) > $(SWEEP)/list
+	@$(sub) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) \
+	  cells EFFORT=$(EFFORT) SWEEP=$(SWEEP)
+	@BUILD='$(B)' lab/charts/stability.sh $(EFFORT) $(SWEEP)
+ifneq ($(filter cells,$(MAKECMDGOALS)),)
+cells: $(patsubst %,$(SWEEP)/%.csv,$(shell cut -d' ' -f1 $(SWEEP)/list))
+$(SWEEP)/%.csv: $(B)/stability_map
+	@$< --cell $* $(effort) --out $@
+	@BUILD='$(B)' lab/charts/stability.sh progress $(SWEEP)
+endif
+
+# More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
+# SCENES random scenes, the methods in turn.
+SCENES ?= 7000
+stability-soak:
+	@$(sub) test_limits B=$(B)/soak SANITIZE= CXXFLAGS='-O3 $(CXXFLAGS)'
+	LIMITS_SIDES=100 SOAK_SCENES=$(SCENES) $(B)/soak/test_limits
+
+# The table of measured orders in lab/methods/README.md.
+orders: test_orders
+	@$(B)/test_orders | grep -e '^|' -e FAILED
+
+# ---- Advice: lab/advice/README.md, on ADVISED random scenes.
+
+ADVISED ?= 100
+adviser-suite: adviser_suite
+	@mkdir -p lab/advice/results
+	$(B)/adviser_suite --scenes $(ADVISED) --out lab/advice/results/adviser.csv
+	@gnuplot -e "csv='lab/advice/results/adviser.csv'; \
+	  out='lab/advice/results/adviser.svg'" lab/advice/adviser.gp
+
+# ---- Speed: lab/bench/README.md
+
+speed:
+	@$(sub) bench B=$(B)/native CXXFLAGS='-march=native $(CXXFLAGS)'
+	@$(sub) bench B=$(B)/native-float REAL=float \
+	  CXXFLAGS='-march=native $(CXXFLAGS)'
+	@lab/bench/speed.sh $(B)/native/bench $(B)/native-float/bench
+
+# Other libraries beside ours: lab/bench/peers/README.md
+peers := lab/bench/peers
+$(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
+  -lsundials_cvode -lsundials_arkode -lsundials_nvecserial \
+  -lsundials_sunlinsolspgmr -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
+$(eval $(call program,$(B)/graph_peers,$(B),$(peers)/graph_peers.cpp,$(speed), \
+  -lbenchmark -lBulletSoftBody -lBulletDynamics -lBulletCollision -lLinearMath))
+$(B)/$(peers)/graph_peers.o: CPPFLAGS += -isystem /usr/include/bullet
+measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
+  $$($(CXX) --version | head -n 1), commit $$(git describe --always --dirty)
+
+peers-deps:
+	@tools/deps.sh peers
+peers-chart: $(B)/peers
+	@{ echo "# $(measured_on)" && $(B)/peers; } > $(B)/peers.csv
+	@mv $(B)/peers.csv lab/bench/results/peers.csv
+	@gnuplot -e "csv='lab/bench/results/peers.csv'; \
+	  out='lab/bench/results/peers.svg'" $(peers)/chart.gp
+peers-bench:
+	@$(sub) $(B)/native/graph_peers B=$(B)/native \
+	  CXXFLAGS='-march=native $(CXXFLAGS)'
+	@echo "$(measured_on)"
+	@taskset -c 0 $(B)/native/graph_peers
+
+# ---- Grids and pictures
+
+data/grid4.nodes data/grid4.tets &: $(B)/make_grid
+	$< 1000 data/grid4
+# The committed grids: what they are made by, and checked against.
+grids: make_grid
+	@for k in 0:5 1:25 2:50 3:100; do \
+	  $(B)/make_grid $${k#*:} $(or $(TO),data)/grid$${k%:*} || exit 1; done
+
+# Look at them. Those in tests/pictures are what test_screen compares with.
+# A failure exits with 3.
+stage_ends = problem1:0.6 diagonals:0.6 forces:0.7 constraints:0.45 tear:0.6
+pictures: test_screen $(B)/cloth
+	WRITE_PICTURES=1 ASAN_OPTIONS=detect_leaks=0 $(B)/test_screen
+	@draw() { $(B)/cloth --quiet --screenshot "docs/pictures/$$@"; }; set -e; \
+	scenes=data/scenes; \
+	draw cloth.png --config $$scenes/tear.toml data/grid3.* --dt 0.0005 \
+	  --t-end 0.6 --strain; \
+	for stage in $(stage_ends); do name=$${stage%:*}; \
+	  draw $$name.png --config $$scenes/$$name.toml data/grid1.* \
+	    --t-end $${stage#*:}; done; \
+	for scene in $(filter-out $(STAGES),$(call names,$(wildcard data/scenes/*.toml))); do \
+	  draw scene-$$scene.png --config $$scenes/$$scene.toml \
+	    $$(case $$scene in (tablecloth|push) echo --strain; esac); done; \
+	for run in 'step diagonals grid3' 'drag forces grid1 --damping 3' \
+	  'euler problem1 grid1 --method forward-euler --dt 1e-4' \
+	  'midpoint forces grid1 --method implicit-midpoint --dt 0.0333'; do \
+	  set -- $$run; name=fail-$$1 stage=$$2 grid=$$3; shift 3; status=0; \
+	  draw $$name.png --config $$scenes/$$stage.toml data/$$grid.* "$$@" \
+	    || status=$$?; \
+	  [ $$status = 3 ] || { echo "$$name does not fail" >&2; exit 1; }; done
+	@tools/shrink_pictures.sh docs/pictures/*.png
+
+# ---- Fuzzing. The inputs that it starts from: tools/corpus.
+
+RUNS ?= 200000
+$(B)/fuzz_mesh: tools/fuzz_mesh.cpp CME212/Mesh.hpp CME212/Util.hpp CME212/Point.hpp
+	@mkdir -p $(B)
+	clang++ -std=c++20 -g -O1 -Wall -Wextra -I. -o $@ $< \
+	  -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
+fuzz: $(B)/fuzz_mesh
+	@mkdir -p $(B)/corpus
+	$< -runs=$(RUNS) -max_len=256 -print_final_stats=1 \
+	  -artifact_prefix=$(B)/ -verbosity=0 $(B)/corpus tools/corpus
