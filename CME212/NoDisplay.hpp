@@ -1,12 +1,12 @@
 #pragma once
 /** @file NoDisplay.hpp
- * NoDisplay: the error of whoever can't draw. */
+ * NoDisplay: the error if nothing can be drawn. */
 #include <stdexcept>
 #include <string>
 
 namespace CME212 {
 
-/** There is nothing to draw on: no display, or no OpenGL 3.3. */
+/** No display, or no OpenGL 3.3. */
 struct NoDisplay : std::runtime_error {
   explicit NoDisplay(const std::string& reason)
       : std::runtime_error("no display: " + reason) {}

@@ -1,5 +1,5 @@
 /** @file SDLViewer.cpp
- * The thread that draws, and what the user does there. */
+ * The drawing thread, and the events that it serves. */
 #include "CME212/SDLViewer.hpp"
 
 #include <algorithm>
@@ -25,21 +25,21 @@ namespace CME212 {
 
 namespace {
 
-/** What the program and the user said, in whatever thread. */
-struct Said {
+/** What the program and the user set, from any thread. */
+struct Settings {
   std::mutex mutex;  // of all below
   std::condition_variable control;
   OverlayText text;
   GLCamera camera;
   std::optional<BoundingBox> look_at = GLCamera::usual_box();  // empty: all
   int steps = 0;         // to be made while paused
-  bool pauses = false;   // whether the program asks
+  bool pauses = false;   // the program calls wait_while_paused()
   bool restart = false;  // not yet taken
   // Written under the lock only, read without:
   std::atomic<bool> paused = false, closed = false, strain_colors = false;
   std::atomic<bool> redraw = true;
 
-  /** Change something that is seen or waited for. */
+  /** Change something that is drawn or waited for. */
   template <typename F>
   void change(F f) {
     std::lock_guard lock(mutex);
@@ -60,8 +60,8 @@ struct Said {
 
 }  // namespace
 
-/** What was said, and where it is drawn. */
-class SDLViewer::Display : public Said {
+/** The settings, and what they are drawn on. */
+class SDLViewer::Display : public Settings {
  public:
   Display(SceneBuilder& builder, const Options& o)
       : builder_(builder), options_(o), canvas_(std::in_place, o) {}

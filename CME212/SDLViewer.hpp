@@ -17,8 +17,8 @@
 
 namespace CME212 {
 
-/** Shows the nodes and edges of a graph; how they get here, and that a half
- * built scene is never seen: SceneBuilder.
+/** Shows the nodes and edges of a graph. SceneBuilder collects them, and
+ * ensures that no half built scene is drawn.
  *
  * Threads: constructor, event_loop() or launch(), snapshot(), has_display() and
  * destructor belong to the main thread. All else may be called by any thread,
@@ -30,8 +30,8 @@ namespace CME212 {
  *
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
- * Esc quits. What pause, step, restart and coloring mean is up to the
- * simulation: see wait_while_paused(), take_restart(), strain_colors(). */
+ * Esc quits. The simulation serves pause, step, restart and coloring: see
+ * wait_while_paused(), take_restart(), strain_colors(). */
 class SDLViewer : public SceneBuilder {
  public:
   struct Options {
@@ -54,16 +54,16 @@ class SDLViewer : public SceneBuilder {
    * @pre no thread of the program uses the viewer any more */
   ~SDLViewer();
 
-  /** True if a window can be shown here: DISPLAY or WAYLAND_DISPLAY is set,
-   * and leads somewhere. Takes some milliseconds.  @pre there is no viewer */
+  /** True if a window can be shown: DISPLAY or WAYLAND_DISPLAY names a display
+   * that answers. Takes some milliseconds.  @pre there is no viewer */
   static bool has_display();
 
   // ------------------------------------------------------------ How it looks
 
   /** Look at all nodes and spheres, as they are when drawn next. */
   void center_view();
-  /** Look at @a box [m] from @a eye_direction, whatever the scene holds: the
-   * same view in picture after picture.  @pre norm(eye_direction) > 0 */
+  /** Look at @a box [m] from @a eye_direction, independent of the scene: the
+   * view is the same in all pictures.  @pre norm(eye_direction) > 0 */
   void set_view(const Point& eye_direction, const BoundingBox& box);
 
   /** Write @a label at the top of the picture: a text, or a number. */
@@ -76,34 +76,32 @@ class SDLViewer : public SceneBuilder {
     set_label(s.str());
   }
 
-  /** Say why nothing moves any more, in a panel; with no paragraphs it goes. */
+  /** Show a message in a panel: why the run stopped. Empty: no panel. */
   void set_message(std::vector<std::string> paragraphs);
 
-  /** Say what the colors mean; drawn while strain_colors().
-   * @param low,high What Color::make_strain() of 0 and 1 stand for [@a unit]
-   */
+  /** Label the color scale, drawn while strain_colors().
+   * @param low,high Values of Color::make_strain(0) and (1) [@a unit] */
   void set_scale(std::string title, double low, double high, std::string unit);
 
   // ----------------------------------------------------------------- Control
 
-  /** True once the user has closed the window; it stays so. */
+  /** True from the time the user closed the window. */
   bool closed() const;
-  /** Close the window, as the user does: event_loop() returns, nothing waits.
-   */
+  /** Close the window, as the user does: event_loop() and every wait return. */
   void close();
 
-  /** Pause, or go on, as the user does by the space bar. */
+  /** Pause or resume, as the user does with the space bar. */
   void set_paused(bool on);
   /** Wait while paused.
-   * @return true if one step may be made now: not paused, or step was pressed;
-   *         false at once if closed() or a restart was asked for.
-   * Whoever never calls it has no pause, and the help names none. */
+   * @return true if the program may make one step: not paused, or the user
+   *         pressed n; false at once if closed() or the user asked to restart.
+   * If a program never calls it, the help names no pause. */
   bool wait_while_paused();
-  /** As above, and call @a show() on this thread before it waits and each time
-   * that strain_colors() changed meanwhile: a paused scene is the latest one,
-   * in the right colors. */
+  /** As above. Calls @a show() on this thread before it waits and whenever
+   * strain_colors() changes: a paused window shows the latest scene in the
+   * right colors. */
   bool wait_while_paused(const std::function<void()>& show);
-  /** True once after the user asked for a restart. */
+  /** True if the user asked to restart since the last call. */
   bool take_restart();
 
   /** True while nodes should be colored by strain; then the scale is drawn. */
@@ -136,8 +134,8 @@ class SDLViewer : public SceneBuilder {
   Image snapshot();
 
  private:
-  // All that needs SDL or OpenGL, so that a program that shows a graph
-  // compiles without them: in SDLViewer.cpp.
+  // All that names SDL or OpenGL, in SDLViewer.cpp: programs that include this
+  // header compile without them.
   class Display;
   std::unique_ptr<Display> display_;
 };
