@@ -67,8 +67,10 @@ $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 # make NAME for each; ./cloth lies beside the course's program.
 .PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS)
 $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B)/%
+ifneq ($(O)cloth,$(B)/cloth)
 $(O)cloth: $(B)/cloth
 	@ln -f $< $@ 2>/dev/null || cp $< $@
+endif
 
 .PHONY: quick check check-full help-lab make_grid example_graph
 quick check check-full:
