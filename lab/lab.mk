@@ -26,7 +26,7 @@ lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
 # What draws: one file of lab/viewer, and tests.
 lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
-            tests/test_viewer.% tests/test_screen.% tests/test_course% \
+            tests/test_viewer.% tests/test_image.% tests/test_screen.% tests/test_course% \
             CME212/%,$<),-DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
 test_libs = -lgtest_main -lgtest -lrapidcheck
@@ -59,7 +59,7 @@ $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan
 $(B)/test_cloth_program: | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
-$(B)/test_viewer $(B)/test_screen: $(B)/asan/libviewer.a
+$(B)/test_viewer $(B)/test_image $(B)/test_screen: $(B)/asan/libviewer.a
 endif
 $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 	@rm -f $@ && ar rcs $@ $^

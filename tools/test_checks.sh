@@ -89,7 +89,6 @@ draws() {  # FILE HEADER
 }
 draws lab/scenes/Scene.hpp CME212/Color.hpp
 draws lab/bench/bench.cpp CME212/SDLViewer.hpp
-draws tests/test_graph.cpp CME212/Color.hpp
 draws mass_spring.hpp CME212/SFML_Viewer.hpp
 
 again; echo '  #  include <mass_spring.hpp>' >>Graph.hpp
