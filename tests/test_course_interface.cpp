@@ -611,4 +611,10 @@ TEST(Homework3, ValuesMayBeBool) {
   EXPECT_FALSE(g.add_node(Point()).value());
 }
 
+TEST_F(PathFixture, ColorsByPathLength) {
+  int longest = shortest_path_lengths(g, g.node(0));
+  auto c = HeatOfValue{longest}(g.node(5));
+  expect_color(c, 1, 0.12, 0);
+}
+
 }  // namespace

@@ -252,12 +252,6 @@ TEST(Color, HeatGoesFromVioletOverGreenToRed) {
   }
 }
 
-TEST_F(PathFixture, ColorsByPathLength) {
-  int longest = shortest_path_lengths(g, g.node(0));
-  auto c = HeatOfValue{longest}(g.node(5));
-  expect_color(c, 1, 0.12, 0);
-}
-
 TEST(BoundingBox, HoldsItsPoints) {
   CME212::BoundingBox box;
   EXPECT_TRUE(box.empty());
