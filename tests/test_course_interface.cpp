@@ -614,7 +614,9 @@ TEST(Homework3, ValuesMayBeBool) {
 TEST_F(PathFixture, ColorsByPathLength) {
   int longest = shortest_path_lengths(g, g.node(0));
   auto c = HeatOfValue{longest}(g.node(5));
-  expect_color(c, 1, 0.12, 0);
+  EXPECT_NEAR(c.r, 1, 1e-6);
+  EXPECT_NEAR(c.g, 0.12, 1e-6);
+  EXPECT_NEAR(c.b, 0, 1e-6);
 }
 
 }  // namespace
