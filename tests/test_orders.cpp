@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/stability/Spectrum.hpp"
 
 using namespace lab;
 
@@ -29,24 +31,11 @@ struct Course {
 };
 
 const std::array<Course, 3>& courses() {
-  namespace d = problem_detail;
-  static const d::Chain chain{.n = 8};
-  static const d::Curtain curtain{.n = 4};
   static const std::array<Course, 3> all = {
-      Course{{.name = "chain",
-              .about = "8 masses between two walls",
-              .t_end = 0.305,
-              .gravity = 0,
-              .build = [](Cloth& g) { chain.build(g); },
-              .constraint = [](const Cloth& g) { return chain.pins(g); },
-              .exact = [](double t) { return chain.exact(t); }},
+      Course{chain_problem("chain", "8 masses between two walls", 0.305,
+                           Chain{.n = 8}),
              0.12},
-      Course{{.name = "curtain",
-              .about = "4 x 4 curtain let go",
-              .t_end = 0.224,
-              .build = [](Cloth& g) { curtain.build(g); },
-              .constraint = [](const Cloth& g) { return curtain.pins(g); },
-              .exact = [](double t) { return curtain.exact(t); }},
+      Course{curtain_problem("curtain", "4 x 4 curtain let go", 0.224, 4),
              0.12},
       Course{grid_problem("grid0", "5 x 5 cloth with drag", 0.6, 5), 0.15}};
   return all;

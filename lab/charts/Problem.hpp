@@ -166,6 +166,11 @@ struct Chain {
 /** A chain without gravity and drag. */
 Problem chain_problem(std::string name, std::string about, double t_end,
                       Chain chain = {});
+/** A square cloth of side x side nodes, K = 100 N/m, without diagonals and
+ * drag, that hangs from its whole upper row; let go unstretched. Exactly
+ * linear: each column is a chain of its own. */
+Problem curtain_problem(std::string name, std::string about, double t_end,
+                        unsigned side = 16);
 /** The assignment's cloth on a mesh: diagonals, K [N/m], pinned at its
  * corners, drag c = 1/N. */
 Problem cloth_problem(std::string name, std::string about, double t_end,

@@ -97,6 +97,17 @@ CombinedConstraints torn_by_a_ball(const Cloth& g) {
 
 }  // namespace
 
+Problem curtain_problem(std::string name, std::string about, double t_end,
+                        unsigned side) {
+  const Curtain curtain{.n = side};
+  return {.name = std::move(name),
+          .about = std::move(about),
+          .t_end = t_end,
+          .build = [=](Cloth& g) { curtain.build(g); },
+          .constraint = [=](const Cloth& g) { return curtain.pins(g); },
+          .exact = [=](double t) { return curtain.exact(t); }};
+}
+
 CombinedConstraints on_a_ball(const Cloth& g) {
   return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
                                    SphereConstraint());
@@ -127,13 +138,8 @@ std::vector<Problem> make_problems() {
   std::vector<Problem> all;
   all.push_back(chain_problem(
       "chain", "20 masses between two walls, to 0.8 s; exact", 0.8));
-  Curtain curtain;
-  all.push_back({.name = "curtain",
-                 .about = "16 x 16 curtain let go, to 1 s; exact",
-                 .t_end = 1,
-                 .build = [=](Cloth& g) { curtain.build(g); },
-                 .constraint = [=](const Cloth& g) { return curtain.pins(g); },
-                 .exact = [=](double t) { return curtain.exact(t); }});
+  all.push_back(
+      curtain_problem("curtain", "16 x 16 curtain let go, to 1 s; exact", 1));
   all.push_back(grid_problem("grid0", "5 x 5 cloth with drag, to 5 s", 5, 5));
   all.push_back(
       grid_problem("grid1", "25 x 25 cloth with drag, to 0.5 s", 0.5, 25));

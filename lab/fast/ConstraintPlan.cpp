@@ -21,7 +21,7 @@ std::optional<Point> first_hit(const Ball& ball, const Point& from,
 
 PinnedNodes::PinnedNodes(const std::vector<PinConstraint::Pin>& pins)
     : pins_(pins) {
-  std::ranges::stable_sort(pins_, {}, &PinConstraint::Pin::node);
+  std::ranges::sort(pins_, {}, &PinConstraint::Pin::node);
 }
 
 void PinnedNodes::project(Cloth& g, const Point& way, unsigned first,
