@@ -111,7 +111,7 @@ Reference reference(const Problem& p, double fineness) {
     if (!out.ok())
       throw std::runtime_error(p.name + ": no reference: " + out.reason);
     r.made += r.made.empty() ? "" : ", ";
-    r.made += info.name + (" " + std::to_string(steps)) + " steps";
+    r.made += std::string(info.name) + ' ' + std::to_string(steps) + " steps";
     return out.end;
   };
   End other;

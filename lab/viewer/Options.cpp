@@ -113,7 +113,7 @@ void list_methods() {
       "dt omega <: the stability limit without drag; omega: the cloth's "
       "largest\n            frequency [rad/s]\n\n"
       "%-18s %5s %6s %10s  %s\n",
-      "method", "order", "forces", "dt omega <", "good for; fails with");
+      "method", "order", "forces", "dt omega <", "good for");
   for (const MethodEntry& m : methods) {
     std::printf("%-18s %5d %6d ", m.info.name, m.info.order, m.info.sweeps);
     if (m.info.limit == no_limit)
@@ -122,7 +122,8 @@ void list_methods() {
       std::printf("%10.4g", m.info.limit);
     int indent = 2;
     for (const std::string& text :
-         {m.info.good_for + std::string(";"), std::string(m.info.fails_when)})
+         {std::string(m.info.good_for),
+          std::string("fails with: ") + m.info.fails_when})
       for (const std::string& line : wrapped(text, 36)) {
         std::printf("%*s%s\n", indent, "", line.c_str());
         indent = 44;

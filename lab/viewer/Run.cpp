@@ -96,10 +96,9 @@ void Run::announce() const {
   out.precision(3);
   out << "dt = " << dt << " s";
   if (sharp) {
-    out << " at first: up to " << percent(sharp_share)
-        << " of the stability limit in the present configuration and up to "
-           "that in any ("
-        << limit << " s, " << method << ')';
+    out << " at first; auto:sharp takes " << percent(sharp_share)
+        << " of the stability limit in the present configuration, at most "
+        << limit << " s, the limit in any (" << method << ')';
   } else if (limit == no_limit) {
     const double verlet = scene_.safe_limit(entry_of<Verlet>());
     out << ": " << method << " has no stability limit";
