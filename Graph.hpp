@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "CME212/Point.hpp"
-#include "CME212/Util.hpp"
 #include "CME212/SlotMap.hpp"
+#include "CME212/Util.hpp"
 
 namespace graph_detail {
 
@@ -130,8 +130,8 @@ class Graph {
     bool operator==(const Node& n) const {
       return graph_ == n.graph_ && id_ == n.id_ && generation_ == n.generation_;
     }
-    /** A strict total order of all nodes of all graphs. It has no meaning in
-     * space and never changes, so a Node can be a key. */
+    /** A strict total order of all nodes of all graphs: in one graph that of
+     * their ids. It never changes, so a Node can be a key. */
     bool operator<(const Node& n) const {
       if (graph_ != n.graph_)
         return std::less<const Graph*>()(graph_, n.graph_);

@@ -13,7 +13,8 @@ O       =
 B      ?= build
 
 PROGRAMS := $(basename $(wildcard *.cpp))
-DRIVERS   = mass_spring $(STAGES:%=mass_spring_%)
+DRIVERS  := mass_spring $(STAGES:%=mass_spring_%)
+BUILT    := $(sort $(PROGRAMS) $(DRIVERS))
 
 # The driver is built for speed, any other program for the debugger, with all
 # assertions, and a program of GoogleTest under the sanitizers; FAST=1 asks for
@@ -21,12 +22,11 @@ DRIVERS   = mass_spring $(STAGES:%=mass_spring_%)
 SANITIZE = address,undefined
 # Left out: checks that take half of the time to compile, and find next to none.
 unchecked = null,alignment,object-size,vptr,pointer-overflow
-speed     = -O3 -DNDEBUG
+speed     = -O3 -DNDEBUG -g1
 debug     = -Og -fno-omit-frame-pointer
 sanitizer = $(if $(SANITIZE),-fsanitize=$(SANITIZE) \
               -fno-sanitize-recover=all -fno-sanitize=$(unchecked))
 system    = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(1) 2>/dev/null))
-draw_pkg  = sdl2 gl imgui libpng
 stage_of  = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
 common    = -std=c++20 -g -Wall -Wextra -pthread -I. \
             $(if $(filter-out double,$(REAL)),-DREAL=$(REAL))
@@ -50,33 +50,28 @@ help:
 	@echo 'make help-lab           the laboratory: ./cloth, charts, checks'
 	@echo 'programs: $(PROGRAMS)'
 
-# A program is built anew when its sources or its flags have changed.
-define build
-@mkdir -p $(dir $@) && echo '$(CXX) $@'; \
-uses=$$($(CXX) $(flags) -M -MG $<) && draw= && test= && libs= && \
-case "$$uses" in *_Viewer.hpp*|*SDLViewer.hpp*) \
-  pkg-config --exists $(draw_pkg) || { echo "make $*: not all of $(draw_pkg) \
-is installed: 'make deps' does it; 'make $* VIEWER=0' builds without a window" \
-  >&2; exit 1; }; \
-  draw='$(call system,$(draw_pkg))'; libs="$$(pkg-config --libs $(draw_pkg))";; \
-esac; \
-case "$$uses" in *gtest/gtest.h*) \
-  test='$(if $(FAST),,$(sanitizer))'; libs="$$libs -lgtest_main -lgtest";; \
-esac; \
-$(CXX) $(flags) $$draw $$test -MMD -MP -MF $(B)/$*.d -MT $@ -o $@ $< $$libs $(LDLIBS)
-endef
-$(STAGES:%=$(O)mass_spring_%): $(O)%: mass_spring.cpp $(B)/%.flags
-	$(build)
-$(PROGRAMS:%=$(O)%): $(O)%: %.cpp $(B)/%.flags
-	$(build)
+# A program is built anew when its sources or its flags have changed. What it
+# includes, and so what it is linked with, is found first: $(B)/NAME.uses.
+source = $(if $(filter $(DRIVERS),$*),mass_spring,$*).cpp
+.SECONDEXPANSION:
+$(BUILT:%=$(O)%): $(O)%: $$(source) $(B)/%.flags
+	@mkdir -p $(dir $@) && echo '$(CXX) $@'
+	@$(CXX) $(flags) $(draw_flags) $(if $(test),$(if $(FAST),,$(sanitizer))) \
+	  -o $@ $< $(draw_libs) $(if $(test),-lgtest_main -lgtest) $(LDLIBS)
+$(BUILT:%=$(B)/%.uses): $(B)/%.uses: $$(source) $(B)/%.flags
+	@$(CXX) $(flags) -M -MG -MP -MT '$(O)$* $@' $< >$@
+	@! grep -q CME212/SDLViewer.hpp $@ || echo '$(O)$*: $(B)/libviewer.a' >>$@
+	@! grep -q gtest/gtest.h $@ || echo '$(O)$*: test = 1' >>$@
 $(B)/%.flags: FORCE
 	@mkdir -p $(dir $@); echo '$(CXX) $(flags)' | cmp -s - $@ \
 	  || echo '$(CXX) $(flags)' > $@
+-include $(patsubst %,$(B)/%.uses,$(if $(filter all,$(MAKECMDGOALS)),$(BUILT), \
+  $(filter $(BUILT),$(notdir $(MAKECMDGOALS)))))
 
-all: $(PROGRAMS:%=$(O)%) $(STAGES:%=$(O)mass_spring_%)
+all: $(BUILT:%=$(O)%)
 ifneq ($(O),)
-.PHONY: $(PROGRAMS) $(STAGES:%=mass_spring_%) cloth
-$(PROGRAMS) $(STAGES:%=mass_spring_%) cloth: %: $(O)%
+.PHONY: $(BUILT) cloth
+$(BUILT) cloth: %: $(O)%
 endif
 
 deps:
@@ -96,6 +91,6 @@ submit:
 	@HW='$(HW)' FORCE='$(FORCE)' tools/submit.sh
 
 clean:
-	rm -rf build demo cloth $(PROGRAMS) $(STAGES:%=mass_spring_%)
+	rm -rf build demo cloth $(BUILT)
 
-include lab/lab.mk
+include CME212/viewer.mk lab/lab.mk

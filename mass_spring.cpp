@@ -124,6 +124,9 @@ int main(int argc, char** argv) try {
         failure = "diverged: at t = " + CME212::short_text(t) + " s node " +
                   std::to_string(n->index()) + " is not finite; './cloth " +
                   argv[1] + ' ' + argv[2] + " --dt auto' finds a stable step";
+#ifdef MASS_SPRING_VIEWER
+        if (viewer) viewer->set_message({failure});
+#endif
         return;
       }
     }

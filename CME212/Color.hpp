@@ -68,9 +68,9 @@ struct Color {
             std::lerp(at[i].b, at[i + 1].b, to)};
   }
 
-  /** For what the eye shall find: magenta, which no scale, no cloth and no
-   * obstacle has. The colour-blind tell it by its luminance, between that of
-   * the cloth and that of the ground, so draw it with a dark rim. */
+  /** For marks: magenta, which no scale, cloth or obstacle has. Its luminance
+   * is between cloth and ground, so draw it with a dark rim for the
+   * colour-blind. */
   static constexpr Color make_mark() { return {1.0f, 0.25f, 0.7f}; }
 
   /** Relative luminance, 0 black to 1 white (ITU-R BT.709, sRGB). */

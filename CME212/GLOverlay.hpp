@@ -41,7 +41,7 @@ class GLOverlay {
   /** Throws std::runtime_error if Dear ImGui does not start. */
   GLOverlay() {
     ImGui::SetCurrentContext(context_);
-    ImGui::GetIO().IniFilename = nullptr;  // it shall leave no file
+    ImGui::GetIO().IniFilename = nullptr;  // writes no file
     if (!ImGui_ImplOpenGL3_Init("#version 330")) {
       ImGui::DestroyContext(context_);
       throw std::runtime_error("Dear ImGui does not start");

@@ -4,34 +4,18 @@
  *
  * All that is written is written whole or not at all, see OutputFile. An error
  * is a std::runtime_error "FILE: reason". */
-#include <fcntl.h>
-#include <png.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
 #include <cassert>
-#include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "CME212/OutputFile.hpp"
-
-extern char** environ;
-
 namespace CME212 {
+
+class OutputFile;
 
 /** A picture: rows from the top, each pixel as red, green, blue in 0...255.
  * Invariant: rgb.size() == 3 width height */
@@ -56,58 +40,13 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-namespace image_detail {
-
-[[noreturn]] inline void fail(const std::string& path,
-                              const std::string& reason) {
-  throw std::runtime_error(path + ": " + reason);
-}
-inline std::string reason(int error) {
-  return std::system_category().message(error);
-}
-
-/** libpng's description of an RGB picture; frees what libpng allocated. */
-struct Png : png_image {
-  Png() : png_image{} { version = PNG_IMAGE_VERSION; }
-  ~Png() { png_image_free(this); }
-  Png(const Png&) = delete;
-  Png& operator=(const Png&) = delete;
-};
-
-}  // namespace image_detail
-
 /** Write @a image to the file @a path, as PNG.
  * Throws std::runtime_error "path: reason"; then @a path is as it was. */
-inline void write_png(const std::string& path, const Image& image) {
-  using namespace image_detail;
-  OutputFile file(path);
-  Png png;
-  png.width = png_uint_32(image.width);
-  png.height = png_uint_32(image.height);
-  png.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
-  std::vector<char> bytes(size);
-  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(),
-                                 0, nullptr))
-    fail(path, png.message);
-  file.stream().write(bytes.data(), std::streamsize(size));
-  file.commit();
-}
+void write_png(const std::string& path, const Image& image);
 
 /** Read the PNG file @a path; what is transparent becomes black.
  * Throws std::runtime_error "path: reason". */
-inline Image read_png(const std::string& path) {
-  using namespace image_detail;
-  Png png;
-  if (!png_image_begin_read_from_file(&png, path.c_str()))
-    fail(path, png.message);
-  png.format = PNG_FORMAT_RGB;
-  Image image(int(png.width), int(png.height));
-  const png_color black{};
-  if (!png_image_finish_read(&png, &black, image.rgb.data(), 0, nullptr))
-    fail(path, png.message);
-  return image;
-}
+Image read_png(const std::string& path);
 
 /** A film: FILE.mp4 if there is an ffmpeg on the PATH, otherwise a folder
  * FILE_frames/ of pictures frame_000000.png, frame_000001.png, ...
@@ -122,170 +61,49 @@ class Video {
    * @param rate         Pictures a second [1/s], usually 25 to 60
    * @pre width, height >= 2 and rate > 0
    * Throws std::runtime_error "path: reason" if it can't be written there. */
-  Video(const std::string& path, int width, int height, double rate = 30)
-      : path_(path), width_(width), height_(height) {
-    assert(width >= 2 && height >= 2 && rate > 0);
-    file_.emplace(path);
-    if (start_ffmpeg(rate)) return;
-    file_.reset();
-    std::error_code error;
-    std::filesystem::remove_all(folder_part(), error);
-    std::filesystem::create_directory(folder_part(), error);
-    if (error) image_detail::fail(folder(), error.message());
-  }
+  Video(const std::string& path, int width, int height, double rate = 30);
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
-  ~Video() {
-    close_input();
-    if (child_ >= 0) {
-      kill(child_, SIGKILL);
-      waitpid(child_, nullptr, 0);
-    }
-    std::error_code ignored;
-    if (!file_) std::filesystem::remove_all(folder_part(), ignored);
-  }
+  ~Video();
 
   /** Add the next picture.  @pre not finished; it has the film's size
    * Throws std::runtime_error with ffmpeg's message if that gave up, or with
    * the reason for which the picture can't be written. */
-  void add(const Image& image) {
-    assert(!finished_ && image.width == width_ && image.height == height_);
-    if (file_) {
-      send_all(image.rgb);
-    } else {
-      char name[32];
-      std::snprintf(name, sizeof name, "/frame_%06d.png", frames_);
-      write_png(folder_part() + name, image);
-    }
-    ++frames_;
-  }
+  void add(const Image& image);
 
   /** Complete the film.
    * @post What wrote() says is there, and replaces an older one.
    * Throws std::runtime_error as add(), and if there is no picture. A second
    * call does nothing. */
-  void finish() {
-    if (finished_) return;
-    if (frames_ == 0) image_detail::fail(path_, "a film of no pictures");
-    if (file_) {
-      wait_for_ffmpeg();
-      file_->commit();
-    } else {
-      put_folder_in_place();
-    }
-    finished_ = true;
-  }
+  void finish();
 
   /** What finish() makes or made: the .mp4 file, or the folder with a slash
    * at the end. */
-  std::string wrote() const { return file_ ? path_ : folder() + "/"; }
+  std::string wrote() const;
   /** Number of pictures so far. */
   int frames() const { return frames_; }
 
  private:
   struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
+    void operator()(std::FILE* f) const;
   };
 
   std::string path_;
   int width_, height_;
-  std::optional<OutputFile> file_;  // none: it becomes a folder
+  std::unique_ptr<OutputFile> file_;  // none: it becomes a folder
   int frames_ = 0;
   bool finished_ = false;
-  pid_t child_ = -1;                           // ffmpeg, while it runs
+  int child_ = -1;                             // ffmpeg, while it runs
   int input_ = -1;                             // our end of its input
   std::unique_ptr<std::FILE, Close> message_;  // its standard error
 
-  std::string folder() const {
-    std::filesystem::path stem(path_);
-    return stem.replace_extension().string() + "_frames";
-  }
-  std::string folder_part() const { return folder() + ".part"; }
-
-  /** Start ffmpeg.  @return false if there is none. */
-  bool start_ffmpeg(double rate) {
-    using image_detail::fail, image_detail::reason;
-    const std::string size =
-        std::to_string(width_) + "x" + std::to_string(height_);
-    const std::string fps = std::to_string(rate);
-    const std::string to = "file:" + file_->part();  // a ":" in it is no URL
-    const std::array args{
-        "ffmpeg", "-loglevel", "error", "-y",
-        // what comes
-        "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size.c_str(), "-r",
-        fps.c_str(), "-i", "pipe:0",
-        // what becomes of it: plays everywhere, no loss that one sees
-        "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-c:v", "libx264", "-crf",
-        "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4",
-        to.c_str(), static_cast<const char*>(nullptr)};
-
-    // A socket, not a pipe: once ffmpeg is gone, send() returns an error where
-    // write() would raise a signal.
-    int ends[2];
-    message_.reset(std::tmpfile());
-    if (!message_ || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
-      fail(path_, reason(errno));
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 0);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(message_.get()), 2);
-    int error = posix_spawnp(&child_, args[0], &actions, nullptr,
-                             const_cast<char* const*>(args.data()), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    input_ = ends[0];
-    if (error == 0) return true;
-    child_ = -1;
-    close_input();
-    return false;
-  }
-
-  void send_all(const std::vector<std::uint8_t>& bytes) {
-    for (std::size_t at = 0; at < bytes.size();) {
-      ssize_t n =
-          send(input_, bytes.data() + at, bytes.size() - at, MSG_NOSIGNAL);
-      if (n >= 0) {
-        at += std::size_t(n);
-      } else if (errno != EINTR) {
-        int error = errno;
-        wait_for_ffmpeg();  // throws, if ffmpeg says why
-        image_detail::fail(path_, image_detail::reason(error));
-      }
-    }
-  }
-
-  void wait_for_ffmpeg() {
-    close_input();
-    if (child_ < 0) image_detail::fail(path_, "ffmpeg failed before");
-    int status = 0;
-    while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
-    }
-    child_ = -1;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-    std::string said(2000, '\0');
-    std::rewind(message_.get());
-    said.resize(std::fread(said.data(), 1, said.size(), message_.get()));
-    while (!said.empty() && said.back() == '\n') said.pop_back();
-    image_detail::fail(path_, "ffmpeg failed: " + said);
-  }
-
-  void close_input() {
-    if (input_ >= 0) close(input_);
-    input_ = -1;
-  }
-
-  /** Replaces the pictures of an older film. Whatever else is in its folder
-   * is kept, and then this fails. */
-  void put_folder_in_place() const {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    for (const auto& old : fs::directory_iterator(folder(), error))
-      if (old.path().filename().string().starts_with("frame_"))
-        fs::remove(old.path(), error);
-    fs::rename(folder_part(), folder(), error);
-    if (error) image_detail::fail(folder(), error.message());
-  }
+  std::string folder() const;
+  std::string folder_part() const;
+  bool start_ffmpeg(double rate);
+  void send_all(const std::vector<std::uint8_t>& bytes);
+  void wait_for_ffmpeg();
+  void close_input();
+  void put_folder_in_place() const;
 };
 
 }  // namespace CME212

@@ -2,13 +2,14 @@
 /** @file Mesh.hpp
  * What a cloth is made from: points and quads, read from files or generated.
  * Format of the files: docs/data.md. */
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <span>
 #include <stdexcept>
@@ -20,10 +21,11 @@
 #include "CME212/Point.hpp"
 
 /** An input that can't be used; what() is "FILE:LINE: what is wrong, what was
- * expected" (line 0: the file as a whole). */
+ * expected", or "FILE: ..." of the file as a whole, line 0. */
 struct InputError : std::runtime_error {
   InputError(const std::string& file, std::size_t line, const std::string& what)
-      : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}
+      : std::runtime_error(file + (line ? ':' + std::to_string(line) : "") +
+                           ": " + what) {}
 };
 
 namespace mesh_detail {
@@ -109,14 +111,14 @@ inline std::string read_file(const std::string& file, const char* expected) {
   auto fail = [&](const std::string& what) {
     throw InputError(file, 0, what + ", expected " + expected);
   };
-  if (std::filesystem::is_directory(file)) fail("a directory");
+  struct stat status {};
+  const bool known = stat(file.c_str(), &status) == 0;
+  if (known && S_ISDIR(status.st_mode)) fail("a directory");
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) fail(std::string("can't be opened (") + std::strerror(errno) + ")");
   std::string text;
-  std::error_code none;  // of a pipe, say
-  if (auto size = std::filesystem::file_size(file, none); !none)
-    text.reserve(size);
+  if (known) text.reserve(std::size_t(status.st_size));  // of a pipe, 0
   std::vector<char> part(1 << 16);
   do {
     in.read(part.data(), std::streamsize(part.size()));

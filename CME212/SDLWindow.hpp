@@ -1,6 +1,7 @@
 #pragma once
 /** @file SDLWindow.hpp
  * SDLWindow: a window, or none, that OpenGL draws into. */
+#define SDL_DISABLE_IMMINTRIN_H  // unused here, and 100 MB for the compiler
 #include <SDL.h>
 #include <SDL_opengl.h>
 
@@ -8,17 +9,12 @@
 #include <array>
 #include <cstdlib>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <thread>
 
-namespace CME212 {
+#include "CME212/NoDisplay.hpp"
 
-/** There is nothing to draw on: no display, or no OpenGL 3.3. */
-struct NoDisplay : std::runtime_error {
-  explicit NoDisplay(const std::string& reason)
-      : std::runtime_error("no display: " + reason) {}
-};
+namespace CME212 {
 
 /** SDL's video, for as long as this lives. */
 class SDLVideo {

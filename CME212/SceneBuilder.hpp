@@ -20,7 +20,7 @@
 
 namespace CME212 {
 
-/** The color and the place that a node has if nothing else is said. */
+/** Color and position of a node, if a program passes no functor for them. */
 struct DefaultColor {
   template <typename Node>
   Color operator()(const Node&) const {
@@ -34,7 +34,7 @@ struct DefaultPosition {
   }
 };
 
-/** What is to be seen. */
+/** What the viewer draws. */
 struct SceneData {
   /** A node as a vertex buffer holds it: 16 bytes. */
   struct Vertex {
@@ -47,21 +47,21 @@ struct SceneData {
           rgba{byte(c.r), byte(c.g), byte(c.b), 255} {}
     static std::uint8_t byte(float c) { return std::uint8_t(255 * c + 0.5f); }
   };
-  /** Both ends of an edge, as places in nodes; the smaller one first. */
+  /** Both ends of an edge, as indices into nodes; the smaller one first. */
   using Ends = std::array<std::uint32_t, 2>;
   struct Sphere {
     Point center;
     double radius;
     Color color;
   };
-  /** A square, 2 half wide, of a plane at right angles to z. */
+  /** A square of side 2 half in a horizontal plane. */
   struct Plane {
     Point center;
     double half;
     Color color;
   };
 
-  /** A line that is seen through all else; a ring if both ends are the same. */
+  /** A line drawn on top of everything else; a ring if both ends coincide. */
   struct Mark {
     Point from, to;
   };
@@ -82,13 +82,14 @@ struct SceneData {
   }
 };
 
-/** Collects a scene from the nodes and edges of a graph, and shows only
- * complete ones. A scene under construction is complete
+/** Collects a scene from the nodes and edges of a graph. Only complete scenes
+ * are shown. A scene under construction is complete
  *  - when add_edges() returns;
  *  - in a program that draws no edges: at the next clear() or
  *    complete_without_edges(), or when nothing was added for 50 ms.
- * Until then the one before stays. Is no scene under construction, then an
- * add_nodes() that only changes nodes it knows takes effect when it returns.
+ * Until then the viewer shows the previous one. If no scene is under
+ * construction, an add_nodes() that only changes known nodes takes effect when
+ * it returns.
  *
  * Threads: all members may be called by any thread at any time. The functors
  * run on the thread that calls, and must not call the builder. */
@@ -98,10 +99,10 @@ class SceneBuilder {
   SceneBuilder(const SceneBuilder&) = delete;
   SceneBuilder& operator=(const SceneBuilder&) = delete;
 
-  /** A map for the nodes of @a g: where each is in the scene. The caller keeps
-   * it and hands it to add_nodes() and add_edges(); only they change it. Clear
-   * it with every clear(). Any map will do that has find(), end() and
-   * try_emplace(hint, ...), as those of the standard library have. */
+  /** An empty map from the nodes of @a g to their indices in the scene. The
+   * caller keeps it and passes it to add_nodes() and add_edges(); only they
+   * change it. Clear it with every clear(). Any map with find(), end() and
+   * try_emplace(hint, ...) works, as those of the standard library. */
   template <typename G>
   std::map<typename G::node_type, unsigned> empty_node_map(const G&) const {
     return {};
@@ -114,7 +115,7 @@ class SceneBuilder {
    * @post @a node_map has all of them.
    * Complexity: O(nodes) if they come in the order of the map, as those of a
    *       graph do; else O(nodes log nodes).
-   * What a functor throws goes through; the nodes before are added. */
+   * If a functor throws, the nodes before stay added. */
   template <typename It, typename ColorFn, typename PositionFn, typename Map>
   void add_nodes(It first, It last, ColorFn color, PositionFn position,
                  Map& node_map) {
@@ -128,7 +129,7 @@ class SceneBuilder {
       auto at = node_map.try_emplace(hint, n, unsigned(nodes.size()));
       if (at->second < nodes.size()) {
         nodes[at->second] = v;
-      } else {  // new, or of a map that was not cleared with the scene
+      } else {  // new, or the map was not cleared with the scene
         at->second = unsigned(nodes.size());
         nodes.push_back(v);
         incomplete_ = true;
@@ -146,9 +147,9 @@ class SceneBuilder {
     add_nodes(first, last, DefaultColor(), DefaultPosition(), node_map);
   }
 
-  /** Add the edges in [first, last) that have both ends in @a node_map; the
-   * others are left out. An edge that is in the scene is not added again, and
-   * stays there until clear(), whatever becomes of it in the graph.
+  /** Add the edges in [first, last) that have both ends in @a node_map; skip
+   * the others. An edge that is in the scene already is not added again. It
+   * stays in the scene until clear(), even if the graph removes it.
    * @post The scene is complete and shown.
    * Complexity: O(edges log nodes) with a std::map; from the second call after
    *       clear() on also O(E log E), for all E edges in the scene. */
@@ -176,12 +177,12 @@ class SceneBuilder {
     publish();
   }
 
-  /** Show the nodes of @a g in white, its edges, and nothing of the scene
-   * before but spheres and planes. Needs no iterators of @a g, only
-   * num_nodes(), node(i), num_edges() and edge(i): a graph of homework 0 can be
-   * shown.
+  /** Show the nodes of @a g in white and its edges in place of the previous
+   * ones; spheres and planes stay. Needs no iterators of @a g, only
+   * num_nodes(), node(i), num_edges() and edge(i), which a graph of homework 0
+   * has.
    * @post The scene is complete and shown, unless another thread adds to it.
-   * Complexity: O((nodes + edges) log nodes), whatever the scene before. */
+   * Complexity: O((nodes + edges) log nodes). */
   template <typename G>
   void draw_graph(const G& g) {
     auto node_map = start_with_nodes_of(g);
@@ -228,15 +229,13 @@ class SceneBuilder {
     change_shapes([&] { shown_.spheres.clear(), shown_.planes.clear(); });
   }
 
-  /** Mark these places [m], and no others. They stay where they are, whatever
-   * becomes of the nodes there. */
+  /** Mark these positions [m], and no others. Marks do not move with nodes. */
   void set_marks(std::vector<SceneData::Mark> marks) {
     change_shapes([&] { shown_.marks = std::move(marks); });
   }
 
-  /** True if everything that was complete has been taken over by take(): a
-   * simulation that builds a scene only then builds as many as are seen.
-   * Costs one atomic read. */
+  /** True if take() has taken every complete scene. A simulation that builds a
+   * scene only then builds no more than are drawn. Costs one atomic read. */
   bool wants_frame() const { return wants_frame_; }
 
   /** Complete the scene under construction if the program draws no edges. */
@@ -249,7 +248,8 @@ class SceneBuilder {
     std::lock_guard lock(build_mutex_);
     if (incomplete_ && builder_ == std::this_thread::get_id()) publish();
   }
-  /** Complete it if nothing was added for a while. Never waits. */
+  /** Complete it if nothing was added for 50 ms (1 s if the program draws
+   * edges). Never blocks. */
   void complete_if_quiet() {
     std::unique_lock lock(build_mutex_, std::try_to_lock);
     if (!lock || !incomplete_) return;
@@ -259,7 +259,7 @@ class SceneBuilder {
   }
 
   /** If the complete scene changed since the last call, call
-   * @a use(const SceneData&, bool edges_changed), while nobody changes it.
+   * @a use(const SceneData&, bool edges_changed) under a lock.
    * @post wants_frame() */
   template <typename F>
   void take(F use) {
@@ -268,8 +268,7 @@ class SceneBuilder {
     has_new_ = new_edges_ = false;
     wants_frame_ = true;
   }
-  /** Let the next take() find all of the scene, as if there had been none
-   * before. */
+  /** Let the next take() return the whole scene, as if it were the first. */
   void take_again() {
     std::lock_guard lock(shown_mutex_);
     has_new_ = new_edges_ = true;

@@ -101,6 +101,12 @@ inline std::string two_digits(double a) {
   return text;
 }
 
+/** "87 %" for 0.866; below 10 % two significant digits. */
+inline std::string percent(double share) {
+  const double a = 100 * share;
+  return (a < 10 ? two_digits(a) : short_text(std::round(a))) + " %";
+}
+
 /** @a a in as few digits as give back the same number. */
 inline std::string exact_text(double a) {
   char text[32];

@@ -10,8 +10,8 @@
 #include <iostream>
 #include <string>
 
-#include "CME212/OutputFile.hpp"
 #include "CME212/Mesh.hpp"
+#include "CME212/OutputFile.hpp"
 
 namespace {
 

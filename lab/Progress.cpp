@@ -30,7 +30,8 @@ void Progress::show(const std::string& text, double done) {
   line << text;
   if (done > 0)
     line << ", "
-         << CME212::short_text(std::ceil(seconds() * std::max(0., 1 / done - 1)))
+         << CME212::short_text(
+                std::ceil(seconds() * std::max(0., 1 / done - 1)))
          << " s left";
   std::cerr << line.str() << (terminal_ ? "          " : "\n") << std::flush;
 }

@@ -24,14 +24,11 @@ cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
 # No product and sum in one rounding: the same bits on every processor.
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
-# What draws: lab/viewer, the programs and tests that use it.
-lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/% lab/cloth.% \
-            tests/test_viewer.% tests/test_screen.% tests/test_course%,$<), \
-            -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
+# What draws: one file of lab/viewer, and tests.
+lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
+            tests/test_viewer.% tests/test_image.% tests/test_screen.% tests/test_course% \
+            CME212/%,$<),-DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
-draw_libs = $(if $(filter 1,$(VIEWER)),$(if $(filter cloth test_viewer \
-            test_screen test_course_interface,$(notdir $@)), \
-            $(shell pkg-config --libs $(draw_pkg) 2>/dev/null)))
 test_libs = -lgtest_main -lgtest -lrapidcheck
 
 # $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
@@ -53,16 +50,27 @@ $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 define program
 $(1): $(2)/$(basename $(3)).o $(2)/liblab.a
 	@echo 'link $$@'
-	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$^ $(5) $$(draw_libs) $$(lab_libs)
+	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$(filter-out %/libviewer.a,$$^) $$(draw_libs) $(5) $$(lab_libs)
 endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
 $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
 
+# A test that runs a program.
+$(B)/test_cloth_program: | $(B)/cloth
+ifeq ($(VIEWER),1)
+$(B)/cloth: $(B)/libviewer.a
+$(B)/test_viewer $(B)/test_image $(B)/test_screen: $(B)/asan/libviewer.a
+endif
+$(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
+	@rm -f $@ && ar rcs $@ $^
+
 # make NAME for each; ./cloth lies beside the course's program.
 .PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS)
 $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B)/%
+ifneq ($(O)cloth,$(B)/cloth)
 $(O)cloth: $(B)/cloth
 	@ln -f $< $@ 2>/dev/null || cp $< $@
+endif
 
 .PHONY: quick check check-full help-lab make_grid example_graph
 quick check check-full:

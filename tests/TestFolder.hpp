@@ -6,7 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -20,6 +23,13 @@ inline std::string contents(const std::filesystem::path& file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+/** How to call the program @a name: that in the folder which the environment's
+ * BUILD names, or else the one in @a folder, "build/". */
+inline std::string program(const std::string& name, const char* folder) {
+  const char* build = std::getenv("BUILD");
+  return (build ? build + std::string("/") : folder) + name;
 }
 
 /** A new folder, gone with all that is in it when this goes. */
@@ -64,5 +74,44 @@ class TestFolder {
  private:
   std::filesystem::path path_;
 };
+
+/** An environment variable, changed for one test; null: not set. */
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    set(value);
+  }
+  ~Environment() { set(old_ ? old_->c_str() : nullptr); }
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+  void set(const char* value) const {
+    value ? setenv(name_, value, 1) : unsetenv(name_);
+  }
+};
+
+/** What @a command prints. */
+inline std::string output_of(const std::string& command) {
+  std::string out;
+  std::FILE* pipe = popen(command.c_str(), "r");
+  for (int c; (c = std::fgetc(pipe)) != EOF;) out += char(c);
+  pclose(pipe);
+  return out;
+}
+inline bool has_program(const std::string& name) {
+  return !output_of("command -v " + name).empty();
+}
+
+/** The message of the std::runtime_error that @a f throws. */
+inline std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "no error";
+}
 
 }  // namespace CME212

@@ -2,9 +2,15 @@
 // refused, and the parts of a scene are told apart.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "lab/advice/Advise.hpp"
+#include "lab/advice/Variation.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
-#include "lab/fast/Sweep.hpp"
+#include "lab/scenes/Words.hpp"
+#include "tests/TestFolder.hpp"
 
 using namespace lab;
 
@@ -13,13 +19,12 @@ namespace {
 /** A cloth that hangs from its upper side, let go unstretched. */
 Model hanging(double tolerance) {
   Model m;
-  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 11 11"};
-  m.pins = {"z 0"};
+  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 11 11")};
+  m.pins = {read_pin("z 0")};
   m.material.density = 1;
   m.material.modulus = 100;
   m.t_end = 0.2;
   m.tolerance = tolerance;
-  check_model(m);
   return m;
 }
 
@@ -27,8 +32,8 @@ Model hanging(double tolerance) {
  * method: another one than the adviser's pilots use. */
 Answer truth(const Model& m, double factor) {
   Model fine = refined(m, factor);
-  fine.method = "pefrl";
-  fine.with.rule = StepRule::safe;
+  fine.method = find_method("pefrl");
+  fine.step = {.rule = StepRule::safe};
   return try_out(fine).answer;
 }
 
@@ -52,37 +57,39 @@ TEST(Refinement, FindsTheLimitOfWhatGoesByAnOrder) {
       const Effect e = r.error(f);
       for (int k : {0, 1, 2})
         EXPECT_NEAR(e.by[unsigned(k)], off(f, k), 1e-12) << order << ' ' << f;
-      EXPECT_GT(r.doubt(f), 0);
-      EXPECT_LT(r.doubt(f), e.size(Measure::com));
+      EXPECT_GT(r.uncertainty(f), 0);
+      EXPECT_LT(r.uncertainty(f), e.size(Measure::com));
     }
     EXPECT_NEAR(r[0].error, std::hypot(c[0], c[1], c[2]), 1e-12);
     EXPECT_TRUE(r.settles());
   }
 }
 
-TEST(Refinement, DoubtsWhatGoesByNoOrder) {
-  auto doubt = [](std::vector<double> answers) {
+TEST(Refinement, IsUncertainOfWhatGoesByNoOrder) {
+  auto uncertainty = [](std::vector<double> answers) {
     Refinement r(Measure::energy);
     double factor = 1;
     for (double a : answers) r.add(grid(factor, {a})), factor *= 2;
-    return r.doubt(factor / 2) / r.back().error;
+    return r.uncertainty(factor / 2) / r.back().error;
   };
-  const double regular = doubt({1, 0.25, 0.0625});  // order 2
-  EXPECT_GT(regular, doubt({4, 1, 0.25, 0.0625}));  // borne out by a fourth
-  EXPECT_GT(doubt({3, 1, 0.25, 0.0625}), doubt({4, 1, 0.25, 0.0625}));
-  EXPECT_GT(doubt({1, -0.25, 0.0625}), 2 * regular);  // to and fro
-  EXPECT_GT(doubt({1, -1, 1}), 1);                    // it may be anything
+  const double regular = uncertainty({1, 0.25, 0.0625});  // order 2
+  EXPECT_GT(regular,
+            uncertainty({4, 1, 0.25, 0.0625}));  // borne out by a fourth
+  EXPECT_GT(uncertainty({3, 1, 0.25, 0.0625}),
+            uncertainty({4, 1, 0.25, 0.0625}));
+  EXPECT_GT(uncertainty({1, -0.25, 0.0625}), 2 * regular);  // to and fro
+  EXPECT_GT(uncertainty({1, -1, 1}), 1);  // it may be anything
   Refinement r(Measure::energy);
   for (double a : {1., 0., 0.9}) r.add(grid(1, {a}));
   EXPECT_FALSE(r.settles());
 }
 
-// A file's grid is the only one: its error is not known, and not doubted.
+// A file's grid is the only one: its error is not known, nor its uncertainty.
 TEST(Refinement, OneGridIsTakenAsItIs) {
   Refinement r(Measure::energy);
   r.add(grid(1, {5}));
   EXPECT_EQ(r[0].error, 0);
-  EXPECT_EQ(r.doubt(1), 0);
+  EXPECT_EQ(r.uncertainty(1), 0);
 }
 
 TEST(Advise, MeetsTheTolerance) {
@@ -91,7 +98,7 @@ TEST(Advise, MeetsTheTolerance) {
   for (double tolerance : {1e-2, 1e-4, 3e-5}) {
     const Advice a = advise(hanging(tolerance));
     ASSERT_EQ(a.refusal, "");
-    EXPECT_LE(a.error + a.doubt, tolerance);
+    EXPECT_LE(a.error + a.uncertainty, tolerance);
     EXPECT_LE(distance(try_out(a.model).answer, right, a.measure), tolerance);
     const std::size_t now = mesh_of(a.model).points.size();
     EXPECT_GE(now, nodes);  // a finer answer, a finer grid
@@ -102,8 +109,8 @@ TEST(Advise, MeetsTheTolerance) {
 
 TEST(Advise, LeavesOutWhatChangesNothing) {
   Model m = hanging(1e-3);
-  m.planes = {"at 0 0 -9"};             // far below
-  m.spheres = {"at 5 5 5 radius 0.1"};  // far away
+  m.planes = {read_plane("at 0 0 -9")};              // far below
+  m.spheres = {read_sphere("at 5 5 5 radius 0.1")};  // far away
   const Advice a = advise(m);
   ASSERT_EQ(a.refusal, "");
   EXPECT_TRUE(a.model.planes.empty() && a.model.spheres.empty());
@@ -133,12 +140,11 @@ TEST(Advise, RefusesWhatNoGridCanGive) {
 // A cloth pushed together buckles: which way is decided by round-off.
 TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
   Model m;
-  m.sheets = {"nodes 17 17"};
-  m.pins = {"x 0 y 0", "x 1 y 0"};
-  m.measure = "positions";
+  m.sheets = {read_sheet("nodes 17 17")};
+  m.pins = {read_pin("x 0 y 0"), read_pin("x 1 y 0")};
+  m.measure = Measure::positions;
   m.t_end = 1.5;
   m.tolerance = 1e-3;
-  check_model(m);
   AdviceRules rules;
   rules.most_nodes = 1200;
   const Advice a = advise(m, rules);
@@ -153,7 +159,7 @@ TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
 
 TEST(Advise, AsksOnlyWhatCanBeAnswered) {
   Model m = hanging(1e-3);
-  m.measure = "positions";
+  m.measure = Measure::positions;
   m.tear_strain = 0.5;
   EXPECT_THROW(advise(m), SceneError);
 }
@@ -162,8 +168,8 @@ TEST(Advise, AsksOnlyWhatCanBeAnswered) {
 // near.
 TEST(Advise, TellsWhichGridIsNoScene) {
   Model m = hanging(1e-2);
-  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 21 21"};
-  m.pins = {"z 0", "x 0.05"};  // of the second column
+  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 21 21")};
+  m.pins = {read_pin("z 0"), read_pin("x 0.05")};  // of the second column
   m.t_end = 0.05;
   AdviceRules rules;
   rules.patience = 1e6;  // no finer grids than it takes
@@ -171,9 +177,10 @@ TEST(Advise, TellsWhichGridIsNoScene) {
   EXPECT_EQ(a.refusal, "");
   ASSERT_FALSE(a.grids.empty());
   EXPECT_EQ(a.grids[0].factor, 1);
-  m.pins = {"z 0"};
+  m.pins = {read_pin("z 0")};
   m.t_end = 0.2;
-  m.self_collision = "thickness 0.04";  // two sides of 81 nodes: 0.025 m
+  m.self_collision =
+      read_self_collision("thickness 0.04");  // two sides of 81 nodes: 0.025 m
   m.tolerance = 1e-6;
   EXPECT_NE(
       advise(m, rules).refusal.find(" nodes: --self-collision has thickness"),
@@ -185,7 +192,7 @@ TEST(Advise, TellsWhichGridIsNoScene) {
 // Cells that no power of two divides: grids double all the same.
 TEST(Advise, DoublesTheCells) {
   Model m = hanging(1e-2);
-  m.sheets = {"u 1 0 0 v 0 0 -1 nodes 22 27"};
+  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 22 27")};
   const Advice a = advise(m);
   ASSERT_EQ(a.refusal, "");
   const std::size_t nodes[] = {6 * 8, 11 * 15, 21 * 29, 41 * 57};
@@ -194,8 +201,8 @@ TEST(Advise, DoublesTheCells) {
 
 TEST(Advise, LeavesOutAPartWithItsFriction) {
   Model m = hanging(1e-2);
-  m.planes = {"at 0 0 -9 friction 0.5"};
-  m.pins = {"z 0", "z 0"};  // one of them is enough
+  m.planes = {read_plane("at 0 0 -9 friction 0.5")};
+  m.pins = {read_pin("z 0"), read_pin("z 0")};  // one of them is enough
   const Advice a = advise(m);
   ASSERT_EQ(a.refusal, "");
   EXPECT_TRUE(a.model.planes.empty());
@@ -214,16 +221,14 @@ TEST(Advise, LeavesOutAPartWithItsFriction) {
 TEST(Advise, AMeshFromFilesKeepsItsNodes) {
   Model m;
   m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
-  m.pins = {"x 0"};
+  m.pins = {read_pin("x 0")};
   m.t_end = 0.3;
   m.tolerance = 1e-5;
-  check_model(m);
   const Advice a = advise(m);
   ASSERT_EQ(a.refusal, "");
   Model fine = m;
-  fine.method = "srkn11b";
-  fine.with.rule = StepRule::fixed;
-  fine.with.dt = 1e-3;
+  fine.method = find_method("srkn11b");
+  fine.step = {.dt = 1e-3};
   const double off =
       distance(try_out(a.model).answer, try_out(fine).answer, a.measure);
   EXPECT_LE(off, 1e-5);
@@ -233,16 +238,31 @@ TEST(Advise, AMeshFromFilesKeepsItsNodes) {
 TEST(Advise, ItsSceneCanBeWrittenAndRun) {
   const Advice a = advise(hanging(1e-3));
   ASSERT_EQ(a.refusal, "");
-  Model again = a.model;
-  check_model(again);  // dt in words is dt in numbers
-  EXPECT_EQ(again.with.dt, a.model.with.dt);
-  // As mass_spring runs it: to the first step at or after t-end.
-  Scene scene(recipe_of(again), again.with, *find_method(again.method));
-  while (scene.time() < again.t_end * (1 - 1e-12)) ASSERT_TRUE(scene.step());
+  const CME212::TestFolder folder;
+  std::ofstream(folder / "advised.toml") << to_scene_file(a.model);
+  const Model again = load_model(folder / "advised.toml");
+  EXPECT_EQ(again.step.dt, a.model.step.dt);  // dt in words is dt in numbers
+  EXPECT_EQ(to_scene_file(again), to_scene_file(a.model));
+  // As ./cloth runs it: to the first step at or after t-end.
+  Scene scene(again);
+  ASSERT_TRUE(scene.run_to(again.t_end));
   EXPECT_NEAR(scene.time(), again.t_end, 1e-12);
   EXPECT_EQ(answer(again, scene.cloth()), try_out(again).answer);
   EXPECT_NE(to_scene_file(a.model).find("method = "), std::string::npos);
   EXPECT_NE(in_words(a).find("advice: "), std::string::npos);
+}
+
+// The assignment's last scene is a scene as any other.
+TEST(Advise, TakesTheAssignmentsScene) {
+  Model m = assignment_scene();
+  m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
+  m.t_end = 0.1;
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_TRUE(a.model.planes.empty() && a.model.tears.empty());
+  ASSERT_EQ(a.parts.size(), 6u);
+  EXPECT_EQ(a.parts[4].part, "plane");
+  EXPECT_EQ(a.parts[4].change, 0);  // out of reach so far
 }
 
 }  // namespace

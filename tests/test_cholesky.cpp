@@ -10,6 +10,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/methods/Cholesky.hpp"
+#include "lab/methods/CholeskyBackEnds.hpp"
 
 using namespace lab;
 

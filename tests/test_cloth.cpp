@@ -1,8 +1,10 @@
-// Cloth.hpp: what build_cloth() makes, spring formulas, energies.
+// mass_spring.hpp and Energy.hpp: what build_cloth() makes, spring formulas,
+// energies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 #include "lab/fast/Energy.hpp"
 
@@ -12,6 +14,12 @@ namespace {
 
 void build_grid(Cloth& g, unsigned side, Mesh mesh, double K = 100) {
   build_cloth(g, grid_points(side), grid_quads(side), mesh, K);
+}
+
+void load_cloth(Cloth& g, const std::string& nodes, const std::string& quads,
+                Mesh mesh) {
+  const auto points = load_points(nodes);
+  build_cloth(g, points, load_quads(quads, points.size()), mesh);
 }
 
 // n x n nodes: 2 n (n - 1) sides, and 2 (n - 1)^2 diagonals.
@@ -62,8 +70,8 @@ extern "C" std::size_t __sanitizer_get_allocated_size(const volatile void*);
 // What this program has on the heap, and the most that it had [bytes].
 std::size_t in_use = 0, most_in_use = 0;
 
-// 400 bytes a node are what docs/speed.md promises, of which the graph, with
-// both ends of 4 springs a node, needs 248.
+// 400 bytes a node are what lab/fast/README.md promises, of which the graph,
+// with both ends of 4 springs a node, needs 248.
 TEST(LoadCloth, NeedsAtMost400BytesANodeWithDiagonals) {
   ASSERT_TRUE(__sanitizer_install_malloc_and_free_hooks(
       [](const volatile void*, std::size_t size) {

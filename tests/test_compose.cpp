@@ -2,8 +2,12 @@
 // nothing else; a finer grid of a material is the same cloth.
 #include <gtest/gtest.h>
 
+#include "lab/fast/Energy.hpp"
+#include "lab/fast/ForcePlan.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Words.hpp"
 
 using namespace lab;
 
@@ -11,7 +15,7 @@ namespace {
 
 Model with_sheet(const std::string& sheet) {
   Model m;
-  m.sheets = {sheet};
+  m.sheets = {read_sheet(sheet)};
   return m;
 }
 void build(Cloth& g, const Model& m) { build_model(g, m, mesh_of(m)); }
@@ -42,7 +46,7 @@ TEST(Compose, EdgesAreTheOnesNamed) {
   const unsigned n = 5, m = 4;
   const auto count = [&](const std::string& edges) {
     Model model = with_sheet("nodes 5 4");
-    model.edges = edges;
+    model.edges = read_edges(edges);
     Cloth g;
     build(g, model);
     return g.num_edges();
@@ -58,7 +62,7 @@ TEST(Compose, EdgesAreTheOnesNamed) {
 
 TEST(Compose, BendSpringsLieAcrossTwoSidesInALine) {
   Model m = with_sheet("u 2 0 0 nodes 4 5");
-  m.edges = "sides bend";
+  m.edges = read_edges("sides bend");
   Cloth g;
   build(g, m);
   for (Edge e : g.edges()) {
@@ -72,7 +76,7 @@ TEST(Compose, BendSpringsLieAcrossTwoSidesInALine) {
 
 TEST(Compose, SheetsLieBesideEachOther) {
   Model m = with_sheet("nodes 3 3");
-  m.sheets.push_back("at 0 0 1 u 0 0 2 nodes 2 4");
+  m.sheets.push_back(read_sheet("at 0 0 1 u 0 0 2 nodes 2 4"));
   Cloth g;
   build(g, m);
   ASSERT_EQ(g.num_nodes(), 9u + 8u);
@@ -102,7 +106,7 @@ TEST(Compose, MassIsDensityTimesArea) {
 
 TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
   Model m = with_sheet("u 3 0 0 nodes 4 6");  // cells of 1 by 0.2
-  m.edges = "sides diagonals bend";
+  m.edges = read_edges("sides diagonals bend");
   m.material.modulus = 10;
   Cloth g;
   build(g, m);
@@ -110,7 +114,7 @@ TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
   EXPECT_NEAR(spring(g, 7, 8).K, 10 * 1 / 0.2, 1e-12);   // inside, along v
   EXPECT_NEAR(spring(g, 0, 6).K, 10 * 0.1 / 1, 1e-12);   // on the rim
   Model square = m;
-  square.sheets = {"nodes 6 6"};
+  square.sheets = {read_sheet("nodes 6 6")};
   Cloth s;
   build(s, square);
   for (auto [i, j] : {std::pair(7u, 8u),
@@ -129,7 +133,7 @@ TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
 TEST(Compose, StrainOfOneGridIsStrainOfAnother) {
   for (const char* nodes : {"2 2", "5 9", "30 7"}) {
     Model m = with_sheet(std::string("u 2 0 0 v 0 0.7 0 nodes ") + nodes);
-    m.edges = "sides";
+    m.edges = read_edges("sides");
     m.material.modulus = 10;
     Cloth g;
     build(g, m);
@@ -150,17 +154,16 @@ TEST(Compose, ANodeWithoutAQuadHasNoMassByArea) {
 
 /** log2 of how much the answer moves from 1 to 2 over from 2 to 4 times the
  * cells: the order in which it converges. */
-double order_of(Model m, const std::string& measure, unsigned cells) {
-  m.measure = measure;
-  m.method = "verlet";
-  m.with.rule = StepRule::safe;
+double order_of(Model m, Measure what, unsigned cells) {
+  m.measure = what;
+  m.method = find_method("verlet");
+  m.step = {.rule = StepRule::safe};
   Answer at[3];
   for (int k : {0, 1, 2}) {
-    const std::string n = std::to_string((cells << k) + 1);
-    m.sheets = {"u 1 0 0 v 0 0 -1 nodes " + n + ' ' + n};
+    const unsigned n = (cells << k) + 1;
+    m.sheets = {{.v = Point(0, 0, -1), .nodes = {n, n}}};
     at[k] = try_out(m).answer;
   }
-  const Measure what = read_measure(measure);
   return std::log2(distance(at[0], at[1], what) / distance(at[1], at[2], what));
 }
 
@@ -169,13 +172,13 @@ double order_of(Model m, const std::string& measure, unsigned cells) {
 // goes down with the grid.
 TEST(Compose, RefiningAHangingClothConvergesAtOrderTwo) {
   Model m;
-  m.edges = "sides";
-  m.pins = {"z 0"};
+  m.edges = read_edges("sides");
+  m.pins = {read_pin("z 0")};
   m.material.density = 1;
   m.material.modulus = 100;
   m.t_end = 0.1;
-  EXPECT_NEAR(order_of(m, "com", 16), 2, 0.1);
-  EXPECT_NEAR(order_of(m, "energy", 16), 2, 0.1);
+  EXPECT_NEAR(order_of(m, Measure::com, 16), 2, 0.1);
+  EXPECT_NEAR(order_of(m, Measure::energy, 16), 2, 0.1);
 }
 
 // ----------------------------------------------------------------- The parts
@@ -188,28 +191,29 @@ TEST(Compose, WhatIsNotNamedCostsNothing) {
   for (Node n : g.nodes()) n.position().z = -100;
   constraint_of(m, g)(g, 0);
   for (Node n : g.nodes()) EXPECT_EQ(n.position().z, -100);
-  EXPECT_EQ(constraint_of(m, g).size(), 0u);
-  EXPECT_EQ(force_of(m, mesh_of(m)).size(), 2u);  // gravity and springs
-  m.with.gravity = 0;
-  EXPECT_EQ(force_of(m, mesh_of(m)).size(), 1u);
-  m.with.damping = 0.1;
-  EXPECT_EQ(force_of(m, mesh_of(m)).size(), 2u);
-  m.pins = {"x 0"};
-  m.planes = {""};
-  EXPECT_EQ(constraint_of(m, g).size(), 2u);
+  EXPECT_EQ(constraint_of(m, g).parts().size(), 0u);
+  EXPECT_EQ(force_of(m, mesh_of(m)).parts().size(), 2u);  // gravity and springs
+  m.gravity = 0;
+  EXPECT_EQ(force_of(m, mesh_of(m)).parts().size(), 1u);
+  m.damping = 0.1;
+  EXPECT_EQ(force_of(m, mesh_of(m)).parts().size(), 2u);
+  m.pins = {read_pin("x 0")};
+  m.planes = {Wall()};
+  EXPECT_EQ(constraint_of(m, g).parts().size(), 2u);
 }
 
 TEST(Compose, DragPerAreaIsSharedByTheNodes) {
   Model m = with_sheet("u 2 0 0 nodes 4 5");
   m.material.drag = 3;
-  EXPECT_NEAR(force_of(m, mesh_of(m)).drag(), 3 * 2 / 20., 1e-15);
+  const CombinedForces force = force_of(m, mesh_of(m));
+  EXPECT_NEAR(ForcePlan(force).drag(), 3 * 2 / 20., 1e-15);
 }
 
 TEST(Compose, PinsMustHoldANode) {
   Model m = with_sheet("nodes 3 3");
   Cloth g;
   build(g, m);
-  m.pins = {"x 0.5", "x 0.4"};
+  m.pins = {read_pin("x 0.5"), read_pin("x 0.4")};
   try {
     constraint_of(m, g);
     ADD_FAILURE();
@@ -220,11 +224,12 @@ TEST(Compose, PinsMustHoldANode) {
 
 TEST(Compose, PinsMoveAlongTheirLine) {
   Model m = with_sheet("nodes 3 3");
-  m.pins = {"x 0", "x 1 velocity 0 0 0.5 until 0.2"};
+  m.pins = {read_pin("x 0"), read_pin("x 1 velocity 0 0 0.5 until 0.2")};
   m.t_end = 0.4;
-  m.with.gravity = 0;
-  Scene scene(recipe_of(m), m.with, *find_method("verlet"));
-  while (scene.time() < m.t_end) ASSERT_TRUE(scene.step());
+  m.gravity = 0;
+  m.method = find_method("verlet");
+  Scene scene(m);
+  ASSERT_TRUE(scene.run_to(m.t_end));
   EXPECT_EQ(scene.cloth().node(0).position(), Point(0, 0, 0));
   EXPECT_NEAR(norm(scene.cloth().node(8).position() - Point(1, 1, 0.1)), 0,
               1e-12);
@@ -234,9 +239,9 @@ TEST(Compose, SelfCollisionMustFitTheStart) {
   Model m = with_sheet("nodes 5 5");  // two nodes two sides apart: 0.5 m
   Cloth g;
   build(g, m);
-  m.self_collision = "thickness 0.51";
+  m.self_collision = {.thickness = 0.51};
   EXPECT_THROW(constraint_of(m, g), SceneError);
-  m.self_collision = "thickness 0.49";
+  m.self_collision = {.thickness = 0.49};
   EXPECT_NO_THROW(constraint_of(m, g));
 }
 

@@ -1,5 +1,6 @@
-// Implicit.hpp and Xpbd.hpp against exact solutions of the difference
-// equations, against an explicit method of order 6, and where others fail.
+// The implicit methods, augmented Verlet and XPBD against exact solutions of
+// the difference equations, against an explicit method of order 6, and where
+// others fail.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -7,9 +8,13 @@
 #include "lab/methods/AugmentedVerlet.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/Srkn.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/TrBdf2.hpp"
-#include "lab/stability/StepLimit.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/methods/Xpbd.hpp"
+#include "lab/stability/Guard.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 
@@ -97,13 +102,29 @@ Point angular_momentum(const Cloth& g) {
   return sum;
 }
 
+/** MassSpringForce as a force of the laboratory, to derive from. */
+struct SweptSprings : SweptForce {
+  ForcePlan springs = MassSpringForce();
+  Point operator()(Node n, double t) const override {
+    return MassSpringForce()(n, t);
+  }
+  void add_to(const Part& part, double t, std::span<Point> f) const override {
+    springs.add_to(part, t, f);
+  }
+  double energy(const Cloth& g) const override { return springs.energy(g); }
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    return springs.add_stiffness(g, use);
+  }
+};
+
 /** Springs that count their sweeps. */
-struct Counted : MassSpringForce {
+struct Counted : SweptSprings {
   int& sweeps;
   explicit Counted(int& n) : sweeps(n) {}
   void add_to(const Part& part, double t, std::span<Point> f) const override {
     if (part.first == 0) ++sweeps;
-    MassSpringForce::add_to(part, t, f);
+    SweptSprings::add_to(part, t, f);
   }
 };
 
@@ -428,11 +449,11 @@ TEST(AugmentedVerlet, FactorsAnewOnlyWhenItMust) {
 }
 
 /** Springs that are stiffer than their edges say. */
-struct Stiffer : MassSpringForce {
+struct Stiffer : SweptSprings {
   double factor = 2;
   bool add_stiffness(const Cloth& g,
                      const StiffnessVisitor& use) const override {
-    return MassSpringForce::add_stiffness(
+    return SweptSprings::add_stiffness(
         g, [&](unsigned i, unsigned j, Stiffness B) {
           B.along *= factor;
           use(i, j, B);
@@ -701,10 +722,10 @@ TEST(Xpbd, RefusesSpringsThatAreNotTheEdges) {
   Xpbd method;
   auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
   EXPECT_THROW(method(s.g, 0, 0.01, twice), std::invalid_argument);
-  struct Softer : MassSpringForce {
+  struct Softer : SweptSprings {
     bool add_stiffness(const Cloth& g,
                        const StiffnessVisitor& use) const override {
-      return MassSpringForce::add_stiffness(
+      return SweptSprings::add_stiffness(
           g, [&](unsigned i, unsigned j, Stiffness B) {
             B.along /= 2;
             use(i, j, B);
@@ -712,11 +733,11 @@ TEST(Xpbd, RefusesSpringsThatAreNotTheEdges) {
     }
   };
   EXPECT_THROW(method(s.g, 0, 0.01, Softer()), std::invalid_argument);
-  struct AllButTheLast : MassSpringForce {
+  struct AllButTheLast : SweptSprings {
     bool add_stiffness(const Cloth& g,
                        const StiffnessVisitor& use) const override {
       unsigned left = g.num_edges() - 1;
-      return MassSpringForce::add_stiffness(
+      return SweptSprings::add_stiffness(
           g, [&](unsigned i, unsigned j, const Stiffness& B) {
             if (left > 0) --left, use(i, j, B);
           });

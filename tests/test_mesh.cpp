@@ -77,7 +77,7 @@ TEST(ParsePoints, RefusesEachWrongLineWithItsNumber) {
 }
 
 TEST(ParsePoints, RefusesAFileWithoutPoints) {
-  EXPECT_EQ(point_error(""), "f.nodes:0: nothing in the file" + three);
+  EXPECT_EQ(point_error(""), "f.nodes: nothing in the file" + three);
   EXPECT_EQ(point_error("# only\n\n"),
             "f.nodes:2: nothing in the file" + three);
 }
@@ -117,15 +117,15 @@ TEST(ParseQuads, RefusesEachWrongLineWithItsNumber) {
             "f.tets:1: '99999999999999999999' is out of range" + four);
   EXPECT_EQ(quad_error("0 1 2 4294967296"),
             "f.tets:1: there is no node 4294967296" + four);
-  EXPECT_EQ(quad_error(""), "f.tets:0: nothing in the file" + four);
+  EXPECT_EQ(quad_error(""), "f.tets: nothing in the file" + four);
 }
 
 TEST(Load, SaysWhyAFileCantBeRead) {
   EXPECT_EQ(error_of([] { load_points("/no/such.nodes"); }),
-            "/no/such.nodes:0: can't be opened (No such file or directory), "
+            "/no/such.nodes: can't be opened (No such file or directory), "
             "expected a file of points");
   EXPECT_EQ(error_of([] { load_quads("/", 4); }),
-            "/:0: a directory, expected a file of quads");
+            "/: a directory, expected a file of quads");
 }
 
 TEST(Grid, HasXOutsideAndYInsideOverTheUnitSquare) {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <numbers>
 
-#include "tests/Allocations.hpp"
 #include "lab/methods/Methods.hpp"
+#include "tests/Allocations.hpp"
 
 using namespace lab;
 
@@ -131,7 +131,7 @@ TYPED_TEST(Explicit, DeliversTheOrderItDeclares) {
 }
 
 TYPED_TEST(Explicit, SweepsTheForcesAsOftenAsItDeclares) {
-  struct Count : ZeroForce {
+  struct Count : SweptForce {
     int& sweeps;
     explicit Count(int& n) : sweeps(n) {}
     void add_to(const Part& part, double, std::span<Point>) const override {
@@ -212,16 +212,93 @@ TEST_P(EveryMethod, TearsWithASoundGraph) {
 TEST_P(EveryMethod, AllocatesNothingAfterItsFirstStep) {
   Cloth g;
   build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
-  auto constraint = make_combined_constraints(
+  const ConstraintPlan constraint = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), SphereConstraint());
-  auto force = make_combined_force(GravityForce(), MassSpringForce(),
-                                   DampingForce(1.0 / 25));
+  const ForcePlan force = make_combined_force(GravityForce(), MassSpringForce(),
+                                              DampingForce(1.0 / 25));
   auto method = GetParam().make();
   double t = 0;
   for (int n = 0; n < 3; ++n) t = method->step(g, t, 0.001, force, constraint);
   long before = allocations;
   for (int n = 0; n < 50; ++n) t = method->step(g, t, 0.001, force, constraint);
   EXPECT_EQ(allocations - before, 0);
+}
+
+// What a student writes: one virtual, the call. Nobody knows more about it.
+struct OwnGravity : ZeroForce {
+  Point operator()(Node n, double) const override {
+    return n.value().mass * Point(0, 0, -grav);
+  }
+};
+struct SofterSprings : MassSpringForce {
+  Point operator()(Node n, double t) const override {
+    return 0.5 * MassSpringForce::operator()(n, t);
+  }
+};
+struct OwnFloor : ZeroConstraint {
+  void operator()(Cloth& g, double) const override {
+    for (Node n : g.nodes())
+      if (n.position().z < -0.02) n.position().z = -0.02, n.value().vel.z = 0;
+  }
+};
+struct LowerFloor : PlaneConstraint {
+  LowerFloor() : PlaneConstraint(0.5) {}
+  void operator()(Cloth& g, double t) const override { OwnFloor()(g, t); }
+};
+
+/** 30 steps of @a method from a sheet of stiffness @a K that swings.
+ * @return all positions and velocities */
+std::vector<Point> swing(const MethodEntry& entry, double K,
+                         const ZeroForce& force,
+                         const ZeroConstraint& constraint) {
+  Cloth g;
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals, K);
+  for (Node n : g.nodes())
+    n.value().vel = Point(n.position().y, 0, -n.position().x);
+  const auto method = entry.make();
+  const CombinedConstraints both({std::make_shared<PinConstraint>(g),
+                                  std::shared_ptr<const ZeroConstraint>(
+                                      std::shared_ptr<void>(), &constraint)});
+  for (int n = 0; n < 30; ++n) (*method)(g, 0.002 * n, 0.002, force, both);
+  std::vector<Point> end;
+  for (Node n : g.nodes())
+    end.push_back(n.position()), end.push_back(n.value().vel);
+  return end;
+}
+
+TEST_P(EveryMethod, TakesAForceOfOneVirtualOrRefusesItWithWords) {
+  const auto own = make_combined_force(OwnGravity(), SofterSprings());
+  if (GetParam().info.limit == no_limit) {  // implicit: asks for stiffness
+    const auto other = make_combined_force(OwnGravity(), MassSpringForce());
+    const SofterSprings softer;
+    for (const ZeroForce* force : {static_cast<const ZeroForce*>(&own),
+                                   static_cast<const ZeroForce*>(&other),
+                                   static_cast<const ZeroForce*>(&softer)})
+      try {
+        swing(GetParam(), 100, *force, ZeroConstraint());
+        ADD_FAILURE() << "took a force without stiffness";
+      } catch (const std::invalid_argument& e) {
+        const std::string what = e.what();
+        EXPECT_EQ(what.find(GetParam().info.name), 0u) << what;
+        EXPECT_NE(what.find("does not know its stiffness"), what.npos) << what;
+      }
+    return;
+  }
+  const auto known = make_combined_force(GravityForce(), MassSpringForce());
+  const auto expected = swing(GetParam(), 50, known, ZeroConstraint());
+  const auto is = swing(GetParam(), 100, own, ZeroConstraint());
+  ASSERT_EQ(is.size(), expected.size());
+  for (std::size_t k = 0; k < is.size(); ++k)
+    EXPECT_LT(norm(is[k] - expected[k]), 1e-11);
+}
+
+TEST_P(EveryMethod, TakesAConstraintOfOneVirtual) {
+  const auto force = make_combined_force(GravityForce(), MassSpringForce());
+  const auto free = swing(GetParam(), 100, force, ZeroConstraint());
+  const auto expected = swing(GetParam(), 100, force, PlaneConstraint(-0.02));
+  EXPECT_FALSE(free == expected) << "nothing is in the way";
+  EXPECT_TRUE(swing(GetParam(), 100, force, OwnFloor()) == expected);
+  EXPECT_TRUE(swing(GetParam(), 100, force, LowerFloor()) == expected);
 }
 
 TEST(Methods, AreFoundByTheirNames) {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "lab/methods/Splitting.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Obstacle.hpp"
 
 using namespace lab;
@@ -40,19 +41,17 @@ TEST(Motion, GoesOnForEverOrNotAtAll) {
 
 // -------------------------------------------------------------------- Contact
 
-using constraint_detail::contact_kick;
-
 TEST(Contact, TakesAsMuchAlongTheSurfaceAsFrictionSays) {
   const Point up(0, 0, 1), u(3, 4, -2);  // 5 along, 2 in
-  EXPECT_EQ(contact_kick(u, up, 0), Point(0, 0, 2));
-  EXPECT_LT(norm(contact_kick(u, up, 1.25) - Point(-1.5, -2, 2)), 1e-15);
-  EXPECT_GT(norm(u + contact_kick(u, up, 2.4999)), 1e-4);
-  EXPECT_LT(norm(u + contact_kick(u, up, 2.5)), 1e-15);
-  EXPECT_LT(norm(u + contact_kick(u, up, 1e9)), 1e-15);
+  EXPECT_EQ(contact::kick(u, up, 0), Point(0, 0, 2));
+  EXPECT_LT(norm(contact::kick(u, up, 1.25) - Point(-1.5, -2, 2)), 1e-15);
+  EXPECT_GT(norm(u + contact::kick(u, up, 2.4999)), 1e-4);
+  EXPECT_LT(norm(u + contact::kick(u, up, 2.5)), 1e-15);
+  EXPECT_LT(norm(u + contact::kick(u, up, 1e9)), 1e-15);
 }
 TEST(Contact, LeavesWhatIsOnItsWayOut) {
   for (double out : {0.0, 1e-300, 1.0})
-    EXPECT_EQ(contact_kick(Point(3, 4, out), Point(0, 0, 1), 10), Point());
+    EXPECT_EQ(contact::kick(Point(3, 4, out), Point(0, 0, 1), 10), Point());
 }
 // It slid along since it came in, by 3 and 4 fifths of its depth a unit of
 // friction: and goes back by what friction would have spared it.
@@ -60,7 +59,7 @@ TEST(Contact, PutsBackWhatSlidTooFar) {
   for (double friction : {0.0, 1.25, 2.5, 4.0}) {
     Cloth g;
     Node n = g.add_node(Point(1, 2, 2.5), {Point(5, 5, 5), 1});
-    constraint_detail::touch(n, 0.5, Point(0, 0, 1), Point(2, 1, 7), friction);
+    contact::touch(n, 0.5, Point(0, 0, 1), Point(2, 1, 7), friction);
     const double back = 0.5 * std::min(friction, 2.5);
     EXPECT_LT(norm(n.position() - Point(1 - 0.6 * back, 2 - 0.8 * back, 3)),
               1e-15);
@@ -71,7 +70,7 @@ TEST(Contact, IsFiniteHoweverSlowly) {
     for (double along : {0.0, 5e-324, 1e-300, 1e-30, 1.0}) {
       Cloth g;
       Node n = g.add_node(Point(), {Point(along, 0, -in), 1});
-      constraint_detail::touch(n, 0.5, Point(0, 0, 1), Point(), 2);
+      contact::touch(n, 0.5, Point(0, 0, 1), Point(), 2);
       EXPECT_LE(norm(n.position()), 0.5 * std::sqrt(5.0) + 1e-15);
       EXPECT_LE(norm(n.value().vel - Point(along, 0, -in)), 3 * in);
     }
@@ -187,7 +186,7 @@ TEST(Wall, LeavesANodeThatLiesOnIt) {
 }
 TEST(Wall, IsNeverMissed) {
   const WallConstraint wall(Point(), Point(0, 0, 1));
-  EXPECT_FALSE(wall.entry(Point(0, 0, 1), Point(0, 0, -1)));
+  EXPECT_FALSE(wall.first_hit(Point(0, 0, 1), Point(0, 0, -1)));
   EXPECT_EQ(wall.thinnest(), infinity);
 }
 TEST(Ball, SendsANodeAtItsCenterToTheTop) {
@@ -207,10 +206,10 @@ TEST(Ball, IsWatchedWhileItIsAtRest) {
   const BallConstraint rests(ball), moves(ball, {Point(0, 3, 4), 0.1});
   const Point from(-1, 0, 0), to(1, 0, 0);
   EXPECT_EQ(rests.thinnest(), 0.5);
-  EXPECT_EQ(rests.entry(from, to), ball.entry(from, to));
+  EXPECT_EQ(rests.first_hit(from, to), lab::first_hit(ball, from, to));
   EXPECT_EQ(rests.speed(), 0);
   EXPECT_EQ(moves.thinnest(), infinity);
-  EXPECT_EQ(moves.entry(from, to), std::nullopt);
+  EXPECT_EQ(moves.first_hit(from, to), std::nullopt);
   EXPECT_EQ(moves.speed(), 5);
 }
 
@@ -356,7 +355,7 @@ TEST(MovingPin, TakesItsNodesAlong) {
   build_cloth(g, grid_points(4), grid_quads(4), Mesh::plain);
   const std::vector<Node> held = {g.node(2), g.node(9)};
   const Point starts[] = {held[0].position(), held[1].position()};
-  const MovingPinConstraint pin(held, {Point(0, 1, 2), 0.5});
+  const MovingPinConstraint pin(PinConstraint(held), {Point(0, 1, 2), 0.5});
   g.remove_node(g.node(0));  // indices change
   for (Node n : g.nodes()) n.value().vel = Point(1, 0, 0);
   Cloth before = g;
@@ -380,7 +379,7 @@ TEST(MovingPin, TakesItsNodesAlong) {
 TEST(MovingPin, GoesOnWithoutANodeThatWasRemoved) {
   Cloth g;
   const std::vector<Node> held = {g.add_node(Point(1)), g.add_node(Point(2))};
-  const MovingPinConstraint pin(held, {Point(1, 0, 0)});
+  const MovingPinConstraint pin(PinConstraint(held), {Point(1, 0, 0)});
   g.remove_node(held[0]);
   Node other = g.add_node(Point(9));  // may take its slot
   pin(g, 1);
@@ -393,7 +392,8 @@ TEST(MovingPin, DrawsWhatHangsOnIt) {
   Cloth g;
   Node top = g.add_node(Point()), mass = g.add_node(Point(0, 0, -1.0981));
   g.add_edge(top, mass, {100, 1});
-  const MovingPinConstraint pin({top}, {Point(0, 0, 0.01)});
+  const MovingPinConstraint pin(PinConstraint(std::vector{top}),
+                                {Point(0, 0, 0.01)});
   for (auto method : {entry_of<SymplecticEuler>(), entry_of<Verlet>()}) {
     auto m = method.make();
     for (int k = 0; k < 1000; ++k)
@@ -470,7 +470,7 @@ TEST(Obstacles, TakeAnEmptyCloth) {
   WallConstraint(Point(), Point(1))(g, 0);
   BallConstraint(Ball{})(g, 0);
   StrainConstraint(0)(g, 0);
-  MovingPinConstraint({}, {})(g, 0);
+  MovingPinConstraint(PinConstraint(g), {})(g, 0);
   EXPECT_EQ(g.num_nodes(), 0u);
 }
 

@@ -1,4 +1,4 @@
-// Order.hpp: which meshes get another order in memory, which one, and that
+// MeshOrder.hpp: which meshes get another order in memory, which one, and that
 // nobody can tell by the indices.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -10,8 +10,10 @@
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
-#include "lab/methods/Splitting.hpp"
 #include "lab/fast/MeshOrder.hpp"
+#include "lab/fast/OrderedCloth.hpp"
+#include "lab/methods/Splitting.hpp"
+#include "lab/methods/Verlet.hpp"
 
 using namespace lab;
 
@@ -49,7 +51,8 @@ Shape shuffled(unsigned side) {
   return s;
 }
 
-/** A cloth as build_cloth() says, in no other order than that of the mesh. */
+/** A cloth as build_ordered_cloth() says, in no other order than that of the
+ * mesh. */
 void build_simply(Cloth& g, const Shape& s, Mesh mesh) {
   std::vector<Node> n;
   for (Point p : s.points)
@@ -192,10 +195,10 @@ TEST(CuthillMcKee, HasEveryPointAndEveryQuadOnce) {
 
 // ------------------------------------------------- what becomes of it: a cloth
 
-TEST(BuildCloth, OrdersAShuffledMeshInMemory) {
+TEST(BuildOrderedCloth, OrdersAShuffledMeshInMemory) {
   const Shape s = shuffled(100), rows = grid(100);
   Cloth g, simple, ordered;
-  build_cloth(g, s.points, s.quads, Mesh::diagonals);
+  build_ordered_cloth(g, s.points, s.quads, Mesh::diagonals);
   build_simply(simple, s, Mesh::diagonals);
   build_simply(ordered, rows, Mesh::diagonals);
   expect_same(g, simple);
@@ -219,17 +222,17 @@ TEST(BuildCloth, OrdersAShuffledMeshInMemory) {
   EXPECT_GT(constant, 0.9 * g.num_nodes());
 }
 
-TEST(BuildCloth, LeavesAMeshThatIsInOrder) {
+TEST(BuildOrderedCloth, LeavesAMeshThatIsInOrder) {
   Cloth g, simple;
   const Shape s = grid(100);
-  build_cloth(g, s.points, s.quads, Mesh::diagonals);
+  build_ordered_cloth(g, s.points, s.quads, Mesh::diagonals);
   build_simply(simple, s, Mesh::diagonals);
   expect_same(g, simple);
   for (Node n : g.nodes()) EXPECT_EQ(n.id(), n.index());
   for (Edge e : g.edges()) EXPECT_EQ(e.id(), e.index());
 }
 
-TEST(BuildCloth, ShowsEveryMeshInItsOwnOrder) {
+TEST(BuildOrderedCloth, ShowsEveryMeshInItsOwnOrder) {
   unsigned reordered = 0;
   EXPECT_TRUE(rc::check([&] {
     const Shape s = *meshes();
@@ -240,7 +243,7 @@ TEST(BuildCloth, ShowsEveryMeshInItsOwnOrder) {
       for (int k = 0; k < 50; ++k) old.push_back(g.add_node(Point(k)));
       for (int k = 0; k < 49; ++k) g.add_edge(old[k], old[k + 1]);
       for (int k = 0; k < 50; ++k) g.remove_node(old[7 * k % 50]);
-      build_cloth(g, s.points, s.quads, mesh);
+      build_ordered_cloth(g, s.points, s.quads, mesh);
       build_simply(simple, s, mesh);
       expect_same(g, simple);
       for (Node n : old) RC_ASSERT(!g.has_node(n));
@@ -250,12 +253,12 @@ TEST(BuildCloth, ShowsEveryMeshInItsOwnOrder) {
   EXPECT_GT(reordered, 40u);
 }
 
-TEST(BuildCloth, MovesAShuffledMeshAsTheOrderedOne) {
+TEST(BuildOrderedCloth, MovesAShuffledMeshAsTheOrderedOne) {
   const Shape s = shuffled(60), rows = grid(60);
   ASSERT_FALSE(is_local(s.quads));
   Cloth g, expected;
-  build_cloth(g, s.points, s.quads, Mesh::diagonals);
-  build_cloth(expected, rows.points, rows.quads, Mesh::diagonals);
+  build_ordered_cloth(g, s.points, s.quads, Mesh::diagonals);
+  build_ordered_cloth(expected, rows.points, rows.quads, Mesh::diagonals);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   Verlet method, expected_method;
   PinConstraint pin(g), expected_pin(expected);

@@ -1,6 +1,6 @@
 // The order that each method declares, measured on three cloths whose answer is
 // known: the chain, the curtain, and the 5 x 5 cloth with drag. `make orders`
-// prints the table of docs/methods.md, which each test compares.
+// prints the table of lab/methods/README.md, which each test compares.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -112,10 +112,10 @@ double slope_of(std::span<const double> x, std::span<const double> y) {
   return xy / xx;
 }
 
-/** The slope that docs/methods.md gives for @a method on the course that is
- * number @a column of its table, from 0 on; 0 if none. */
+/** The slope that lab/methods/README.md gives for @a method on the course that
+ * is number @a column of its table, from 0 on; 0 if none. */
 double documented(const std::string& method, std::size_t column) {
-  std::ifstream in("docs/methods.md");
+  std::ifstream in("lab/methods/README.md");
   bool there = false;
   for (std::string line; std::getline(in, line);) {
     there |= line == "## Measured orders";
@@ -131,7 +131,7 @@ double documented(const std::string& method, std::size_t column) {
 class Order
     : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
-  /** Print what was measured as the table of docs/methods.md. */
+  /** Print what was measured as the table of lab/methods/README.md. */
   static void TearDownTestSuite() {
     std::printf("| method | order |");
     for (const Course& c : courses())

@@ -1,11 +1,15 @@
-// Screen.hpp: one picture of each stage at a fixed step against the committed
-// one in tests/pictures, of half the size. After a change that is meant to be
-// seen: make pictures, look at them, commit them.
+// lab/viewer/Screen.hpp: one picture of each scene of the assignment at
+// a fixed step against the committed one in tests/pictures, of half the size.
+// After a change that is meant to be seen: make pictures, look at them, commit
+// them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 
+#include "CME212/Image.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/SceneFile.hpp"
 #include "lab/viewer/Screen.hpp"
 
 using namespace lab;
@@ -15,15 +19,22 @@ namespace {
 using CME212::Image;
 
 struct Frame {
-  Stage stage;
   const char* name;
   int steps;
 };
-const Frame frames[] = {{Stage::problem1, "problem1", 600},
-                        {Stage::diagonals, "diagonals", 600},
-                        {Stage::forces, "forces", 700},
-                        {Stage::constraints, "constraints", 450},
-                        {Stage::tear, "tear", 600}};
+const Frame frames[] = {{"problem1", 600},
+                        {"diagonals", 600},
+                        {"forces", 700},
+                        {"constraints", 450},
+                        {"tear", 600}};
+
+/** A scene of the assignment on grid1. */
+Model model_of(const std::string& name, double dt = 0.001) {
+  Model m = load_open_model("data/scenes/" + name + ".toml");
+  m.nodes = "data/grid1.nodes", m.tets = "data/grid1.tets";
+  m.step.dt = dt;
+  return m;
+}
 
 /** What @a screen shows, by way of a file. */
 Image picture_of(Screen& screen) {
@@ -35,19 +46,16 @@ Image picture_of(Screen& screen) {
   return image;
 }
 
-/** The stage on grid1 after so many steps, and its picture. */
+/** The scene after so many steps, and its picture. */
 class Picture : public ::testing::TestWithParam<Frame> {
  protected:
-  Screen screen{Screen::Kind::pictures};
+  const std::unique_ptr<Screen> screen = Screen::open(Screen::Kind::pictures);
 
   Image draw() {
-    screen.show(scene);
-    return picture_of(screen);
+    screen->show(scene);
+    return picture_of(*screen);
   }
-  Scene scene{GetParam().stage,
-              load_points("data/grid1.nodes"),
-              load_quads("data/grid1.tets", 625),
-              {}};
+  Scene scene{model_of(GetParam().name)};
 
   void SetUp() override {
     for (int n = 0; n < GetParam().steps; ++n) ASSERT_TRUE(scene.step());
@@ -102,17 +110,16 @@ INSTANTIATE_TEST_SUITE_P(Stages, Picture, ::testing::ValuesIn(frames),
 
 // A run that fails shows where and why, on its last good state.
 TEST(Failure, IsMarkedAndExplainedAsInTheCommittedPicture) {
-  Screen screen(Screen::Kind::pictures);
-  Scene scene(Stage::problem1, load_points("data/grid1.nodes"),
-              load_quads("data/grid1.tets", 625), {.dt = 0.0034});
-  screen.show(scene);
-  const Image start = picture_of(screen);
+  const auto screen = Screen::open(Screen::Kind::pictures);
+  Scene scene(model_of("problem1", 0.0034));
+  screen->show(scene);
+  const Image start = picture_of(*screen);
   while (scene.step()) ASSERT_LT(scene.steps(), 1000);
-  screen.show(scene);
-  expect_committed("fail-path", picture_of(screen));
+  screen->show(scene);
+  expect_committed("fail-path", picture_of(*screen));
   scene.restart();
-  screen.show(scene);
-  EXPECT_EQ(picture_of(screen), start);
+  screen->show(scene);
+  EXPECT_EQ(picture_of(*screen), start);
 }
 
 // The tolerance is so small that the loss of an edge or of a node is seen.

@@ -6,10 +6,12 @@
 #include <functional>
 #include <numbers>
 
-#include "tests/Allocations.hpp"
-#include "lab/methods/Splitting.hpp"
+#include "lab/fast/Energy.hpp"
+#include "lab/fast/Sweep.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Obstacle.hpp"
 #include "lab/scenes/SelfCollision.hpp"
+#include "tests/Allocations.hpp"
 
 using namespace lab;
 
@@ -256,7 +258,7 @@ TEST(SelfCollision, TellsOfObstaclesWhatTheOthersTell) {
                         make_combined_constraints(SphereConstraint(ball)));
   EXPECT_EQ(c.thinnest(), 0.5);
   const Point from(-1, 0, 0), to(1, 0, 0);
-  EXPECT_EQ(c.entry(from, to), ball.entry(from, to));
+  EXPECT_EQ(c.first_hit(from, to), lab::first_hit(ball, from, to));
 }
 TEST(SelfCollision, SaysSoIfTwoHeldNodesAreTooNear) {
   Cloth g;
@@ -359,8 +361,9 @@ TEST_F(SelfCollisionRun, AFoldedSheetDoesNotPassThroughItself) {
   ASSERT_GT(nearest_of_all(g), thickness);
   const SelfCollision c(
       thickness, 0.3,
-      make_combined_constraints(PlaneConstraint(0),
-                                PinConstraint(g, std::vector{Point()})));
+      make_combined_constraints(
+          PlaneConstraint(0),
+          PinConstraint(g, [](const Point& p) { return p == Point(); })));
   run(500, thickness, c);
   EXPECT_GT(touched, 100);
   EXPECT_LT(most_rounds, 40);
@@ -375,7 +378,8 @@ TEST_F(SelfCollisionRun, HoldsWhileNodesAndEdgesAreRemoved) {
       0.12, 0.2,
       make_combined_constraints(
           PinConstraint(std::vector<Node>{g.node(0), g.node(7)}),
-          MovingPinConstraint({g.node(56)}, {Point(0.5, 0.5, 0.2), 0.6}),
+          MovingPinConstraint(PinConstraint(std::vector{g.node(56)}),
+                              {Point(0.5, 0.5, 0.2), 0.6}),
           PlaneConstraint(-0.3), TearConstraint({Point(0.5, 0.5, -0.2), 0.1}),
           StrainConstraint(0.8)));
   const unsigned nodes = g.num_nodes(), edges = g.num_edges();

@@ -1,6 +1,6 @@
-// Spectrum.hpp and Stability.hpp: the estimates of the highest frequency
-// against independent ones, the limits of the methods from both sides, and the
-// guard, which stops what diverges and lets pass what does not.
+// Spectrum.hpp, StepLimit.hpp and Guard.hpp: the estimates of the highest
+// frequency against independent ones, the limits of the methods from both
+// sides, and the guard, which stops what diverges and lets pass what does not.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -12,7 +12,7 @@
 #include <Eigen/Dense>
 
 #include "lab/methods/Methods.hpp"
-#include "lab/stability/StepLimit.hpp"
+#include "lab/stability/Guard.hpp"
 
 using namespace lab;
 

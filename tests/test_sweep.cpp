@@ -12,7 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "lab/methods/Splitting.hpp"
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "lab/fast/Kernels.hpp"
+#include "lab/methods/Flow.hpp"
+#include "lab/methods/Pefrl.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Obstacle.hpp"
 
 using namespace lab;
@@ -213,8 +221,8 @@ TEST_F(SweepTest, ThreadsDoNotChangeABit) {
   }
 }
 
-// A constraint that mends node by node is called part by part, on the way.
-TEST_F(SweepTest, MendingOnTheWayDoesNotChangeABit) {
+// A nodewise constraint projects part by part, on the way.
+TEST_F(SweepTest, ProjectingOnTheWayDoesNotChangeABit) {
   SymplecticEuler euler;
   Verlet verlet;
   Pefrl pefrl;
@@ -225,7 +233,8 @@ TEST_F(SweepTest, MendingOnTheWayDoesNotChangeABit) {
       SphereConstraint({Point(0.5, 0.5, -0.1), 0.1}));
   const auto in_turn =
       make_combined_constraints([&](Cloth& g, double t) { by_node(g, t); });
-  ASSERT_TRUE(by_node.nodewise() && !in_turn.nodewise());
+  ASSERT_TRUE(ConstraintPlan(by_node).nodewise() &&
+              !ConstraintPlan(in_turn).nodewise());
   for (Method* method :
        {static_cast<Method*>(&euler), static_cast<Method*>(&verlet),
         static_cast<Method*>(&pefrl)}) {
@@ -244,9 +253,9 @@ TEST_F(SweepTest, MendingOnTheWayDoesNotChangeABit) {
 }
 
 /** @a move and @a use are called for the ten parts of @a g as they should be if
- * @a force asks for nodes that are up to @a lead parts away. */
+ * @a force asks for nodes that are in a halo of @a halo parts. */
 void expect_moved_in_time(const Cloth& g, const ForcePlan& force,
-                          unsigned lead) {
+                          unsigned halo) {
   constexpr unsigned parts = 10, size = Sweep::part_size;
   for (int threads : {1, 2, 3, 7, 20}) {
     Sweep::set_threads(threads);
@@ -261,7 +270,7 @@ void expect_moved_in_time(const Cloth& g, const ForcePlan& force,
         [&](const Part& part, std::span<const Point>) {
           const unsigned k = part.first / size;
           for (unsigned j = 0; j < parts; ++j)
-            if (j + lead >= k && j <= k + lead) {
+            if (j + halo >= k && j <= k + halo) {
               EXPECT_EQ(moved[j], 1);
             }
           for (auto& m : moved) at_first += k == 0 ? int(m) : 0;
@@ -274,7 +283,7 @@ void expect_moved_in_time(const Cloth& g, const ForcePlan& force,
     // Its own part, those after it, and the last ones, which another thread
     // would wait for.
     if (threads == 1) {
-      EXPECT_EQ(at_first, std::min(1 + 2 * int(lead), 10)) << lead;
+      EXPECT_EQ(at_first, std::min(1 + 2 * int(halo), 10)) << halo;
     }
   }
 }
@@ -309,15 +318,15 @@ TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
 }
 
 // Large cloths without constant offsets are swept by another kernel.
-TEST_F(SweepTest, AskingEarlyDoesNotChangeABit) {
+TEST_F(SweepTest, PrefetchDoesNotChangeABit) {
   using kernels::SpringSweep;
   const auto expect_same = [](const Cloth& g) {
     const ClothStencil stencil(g);
-    const auto sum = [&]<bool early>(std::bool_constant<early>) {
+    const auto sum = [&]<bool prefetch>(std::bool_constant<prefetch>) {
       std::vector<Point> f(stencil.num_blocks() * lanes::width);
-      lanes::run<SpringSweep<early>>(stencil, g.positions().data(),
-                                     g.edge_values().data(), 0u,
-                                     stencil.num_blocks(), f.data());
+      lanes::run<SpringSweep<prefetch>>(stencil, g.positions().data(),
+                                        g.edge_values().data(), 0u,
+                                        stencil.num_blocks(), f.data());
       return f;
     };
     for (Cpu cpu : all_cpus()) {
@@ -342,7 +351,7 @@ TEST_F(SweepTest, AskingEarlyDoesNotChangeABit) {
 TEST_F(SweepTest, EqualsTheForcesNodeByNodeOnALargeCloth) {
   Cloth g;
   make_random(g, 20000, 300000);
-  ASSERT_GT(g.edge_slots() * sizeof(EdgeData), MassSpringForce::cache);
+  ASSERT_GT(g.edge_slots() * sizeof(EdgeData), kernels::cache);
   Sweep sweep;
   EXPECT_LT(worst(g, sweep), round_off);
 }
@@ -517,7 +526,7 @@ TEST(Stencil, ReachesAsFarAsTheFarthestNeighbor) {
   EXPECT_EQ(Stencil<8>(g).reach(), 1u);
 }
 
-// Only blocks at the ends of a grid's lines have rows that are listed: of a
+// Only blocks at the ends of a grid's lines have gathered rows: of a
 // line of n nodes at most two blocks of eight, and the first and last line.
 TEST(Stencil, FindsTheConstantOffsetsOfAGrid) {
   for (unsigned side : {40u, 100u}) {
@@ -549,7 +558,7 @@ TEST(Stencil, FindsConstantOffsetsInListsOfAnyOrder) {
   EXPECT_EQ(s.num_rows(), 16u);
 }
 
-TEST(Stencil, ListsTheEdgesOfAGridWhoseEdgesComeQuadByQuad) {
+TEST(Stencil, GathersTheEdgesOfAGridWhoseEdgesComeQuadByQuad) {
   const unsigned side = 64;
   Cloth g;
   for (const Point& p : grid_points(side)) g.add_node(p);

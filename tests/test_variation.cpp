@@ -1,8 +1,10 @@
 // Measure.hpp, Variation.hpp: what a scene is asked, and which of its parts the
-// answer needs: for each file in scenes/ all that it names, and nothing more.
+// answer needs: for each file in data/scenes/ all that it names, and nothing
+// more.
 //
-// The table of docs/scenes.md is held to what is measured here, and written by
-//   WRITE_TABLE=build/need.md ./test_variation --gtest_filter='*Need*'
+// The table of lab/scenes/README.md is held to what is measured here, and
+// written by
+//   WRITE_TABLE=build/need.md build/test_variation --gtest_filter='*Need*'
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -12,10 +14,17 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <tuple>
 
-#include "tests/TestFolder.hpp"
-#include "lab/scenes/SceneFile.hpp"
 #include "lab/advice/Variation.hpp"
+#include "lab/fast/Energy.hpp"
+#include "lab/fast/ForcePlan.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Measure.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/Words.hpp"
+#include "tests/TestFolder.hpp"
 
 using namespace lab;
 
@@ -23,16 +32,16 @@ namespace {
 
 Model with_sheet(const std::string& sheet) {
   Model m;
-  m.sheets = {sheet};
-  m.method = "verlet";
+  m.sheets = {read_sheet(sheet)};
+  m.method = find_method("verlet");
   return m;
 }
 void build(Cloth& g, const Model& m) { build_model(g, m, mesh_of(m)); }
 
-/** The answer to another question. */
-Answer ask(Model m, const Cloth& g, Measure what) {
-  m.measure = name_of(what);
-  return answer(m, g);
+/** c [kg/s] of a node. */
+double drag_of(const Model& m) {
+  const CombinedForces force = force_of(m, mesh_of(m));
+  return ForcePlan(force).drag();
 }
 
 // -------------------------------------------------------------------- Answers
@@ -56,27 +65,27 @@ TEST(Answers, OfAClothOfThreeNodes) {
   g.add_edge(a, b, {10, 2});  // 3 m long
   g.add_edge(b, c, {10, 5});  // 4 m long
   g.add_edge(c, a, {0, 0});   // no spring
-  EXPECT_EQ(ask(m, g, Measure::com), (Answer{1, 0, -0.5}));
+  EXPECT_EQ(answer(m, g, Measure::com), (Answer{1, 0, -0.5}));
   const double kinetic = 25, elastic = 5 + 5, height = 2 * 1 - 2 - 2;
-  EXPECT_NEAR(ask(m, g, Measure::energy)[0], kinetic + elastic + grav * height,
-              1e-13);
-  EXPECT_EQ(ask(m, g, Measure::max_stretch), (Answer{0.5}));
-  EXPECT_EQ(ask(m, g, Measure::drape_height), (Answer{-2}));
+  EXPECT_NEAR(answer(m, g, Measure::energy)[0],
+              kinetic + elastic + grav * height, 1e-13);
+  EXPECT_EQ(answer(m, g, Measure::max_stretch), (Answer{0.5}));
+  EXPECT_EQ(answer(m, g, Measure::drape_height), (Answer{-2}));
   Model moon = m;
-  moon.with.gravity = 1.62;
-  EXPECT_NEAR(ask(moon, g, Measure::energy)[0],
+  moon.gravity = 1.62;
+  EXPECT_NEAR(answer(moon, g, Measure::energy)[0],
               kinetic + elastic + 1.62 * height, 1e-13);
 }
 
 TEST(Answers, StretchIsNeverNegativeAndAnEmptyClothIsFlat) {
   const Model m = with_sheet("");
   Cloth g;
-  EXPECT_EQ(ask(m, g, Measure::drape_height), (Answer{0}));
-  EXPECT_EQ(ask(m, g, Measure::max_stretch), (Answer{0}));
+  EXPECT_EQ(answer(m, g, Measure::drape_height), (Answer{0}));
+  EXPECT_EQ(answer(m, g, Measure::max_stretch), (Answer{0}));
   const Node a = g.add_node(Point(0, 0, 3)), b = g.add_node(Point(1, 0, 5));
   g.add_edge(a, b, {1, 9});
-  EXPECT_EQ(ask(m, g, Measure::max_stretch), (Answer{0}));
-  EXPECT_EQ(ask(m, g, Measure::drape_height), (Answer{3}));
+  EXPECT_EQ(answer(m, g, Measure::max_stretch), (Answer{0}));
+  EXPECT_EQ(answer(m, g, Measure::drape_height), (Answer{3}));
 }
 
 /** Build @a m and lay it as a saddle over its sheets, each (s, t) of [0, 1]^2
@@ -86,14 +95,14 @@ Answer positions_on_a_saddle(const Model& m) {
   build(g, m);
   unsigned k = 0;
   for (std::size_t number = 0; number < m.sheets.size(); ++number) {
-    const auto [n, p] = read_sheet(m.sheets[number]).nodes;
+    const auto [n, p] = m.sheets[number].nodes;
     for (unsigned i = 0; i < n; ++i)
       for (unsigned j = 0; j < p; ++j) {
         const double s = i / double(n - 1), t = j / double(p - 1);
         g.node(k++).position() = Point(s, 2 * t, s * t + double(number));
       }
   }
-  return ask(m, g, Measure::positions);
+  return answer(m, g, Measure::positions);
 }
 
 TEST(Answers, PositionsAreOfTheSamePlacesOnAllGrids) {
@@ -104,8 +113,8 @@ TEST(Answers, PositionsAreOfTheSamePlacesOnAllGrids) {
   EXPECT_EQ(Point(a[240], a[241], a[242]), Point(1, 2, 1));
   EXPECT_LT(distance(a, positions_on_a_saddle(fine), Measure::positions),
             1e-15);
-  coarse.sheets.push_back("at 0 0 9 nodes 4 4");
-  fine.sheets.push_back("at 0 0 9 nodes 2 9");
+  coarse.sheets.push_back(read_sheet("at 0 0 9 nodes 4 4"));
+  fine.sheets.push_back(read_sheet("at 0 0 9 nodes 2 9"));
   const Answer b = positions_on_a_saddle(coarse);
   ASSERT_EQ(b.size(), 2 * a.size());
   EXPECT_EQ(b[3 * 81 + 2], 1);  // the second sheet's corner
@@ -118,7 +127,7 @@ TEST(Answers, PositionsOfAMeshAreItsNodes) {
   m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
   Cloth g;
   build(g, m);
-  const Answer a = ask(m, g, Measure::positions);
+  const Answer a = answer(m, g, Measure::positions);
   ASSERT_EQ(a.size(), 75u);
   for (unsigned i = 0; i < 25; ++i)
     EXPECT_EQ(Point(a[3 * i], a[3 * i + 1], a[3 * i + 2]),
@@ -127,12 +136,12 @@ TEST(Answers, PositionsOfAMeshAreItsNodes) {
 
 TEST(Answers, AClothThatTearsKeepsNoPositions) {
   for (const char* measure : measure_names) {
-    const bool positions = std::string(measure) == "positions";
     Model m = with_sheet("nodes 3 3");
-    m.measure = measure;
+    m.measure = read_measure(measure);
+    const bool positions = m.measure == Measure::positions;
     EXPECT_NO_THROW(check_question(m));
     Model ball = m, strain = m;
-    ball.tears = {"radius 0.1"};
+    ball.tears = {read_tear("radius 0.1")};
     strain.tear_strain = 0.1;
     for (const Model& torn : {ball, strain})
       if (positions)
@@ -147,7 +156,7 @@ TEST(Answers, AClothThatTearsKeepsNoPositions) {
 TEST(TryOut, EndsAtTheEnd) {
   Model m = with_sheet("nodes 3 3");  // falls
   auto steps = [&m](double dt, double t_end) {
-    m.with.dt = dt, m.t_end = t_end;
+    m.step.dt = dt, m.t_end = t_end;
     const Trial t = try_out(m);
     EXPECT_TRUE(t.ok()) << t.failure;
     EXPECT_NEAR(t.answer[2], -0.5 * grav * t_end * t_end, 1e-13);
@@ -168,10 +177,9 @@ TEST(TryOut, EndsAtTheEnd) {
 
 TEST(TryOut, ChoosesItsStepAsTheSceneDoes) {
   Model m = with_sheet("nodes 5 5");
-  m.with.rule = StepRule::safe;
+  m.step = {.rule = StepRule::safe};
   m.t_end = 0.1;
-  const double chosen =
-      Scene(recipe_of(m), m.with, *find_method(m.method)).dt();
+  const double chosen = Scene(m).dt();
   const Trial t = try_out(m);
   EXPECT_EQ(t.steps, std::ceil(m.t_end / chosen));
   EXPECT_EQ(t.dt, m.t_end / double(t.steps));
@@ -179,8 +187,8 @@ TEST(TryOut, ChoosesItsStepAsTheSceneDoes) {
 
 TEST(TryOut, SaysWhyItFailed) {
   Model m = with_sheet("nodes 20 20");
-  m.pins = {"x 0"};
-  m.with.dt = 0.02, m.t_end = 2;
+  m.pins = {read_pin("x 0")};
+  m.step.dt = 0.02, m.t_end = 2;
   const Trial t = try_out(m);
   EXPECT_FALSE(t.ok());
   EXPECT_EQ(t.failure.find("diverged in step"), 0u) << t.failure;
@@ -191,27 +199,27 @@ TEST(TryOut, SaysWhyItFailed) {
 
 TEST(Refined, IsTheSameCloth) {
   Model m = with_sheet("at 1 2 3 u 2 0 0 v 0 0.5 0 nodes 5 4");
-  m.sheets.push_back("nodes 3 3");
+  m.sheets.push_back(read_sheet("nodes 3 3"));
   m.material.density = 0.3;
   for (bool per_area : {true, false}) {
     if (per_area)
       m.material.drag = 2;
     else
-      m.material.drag.reset(), m.with.damping = 0.01;
+      m.material.drag.reset(), m.damping = 0.01;
     Cloth g;
     build(g, m);
-    const double drag = force_of(m, mesh_of(m)).drag() * g.num_nodes();
+    const double drag = drag_of(m) * g.num_nodes();
     for (double factor : {0.1, 0.5, 1., 1.5, 2., 3.}) {
       const Model r = refined(m, factor);
       Cloth f;
       build(f, r);
       EXPECT_NEAR(total_mass(f), total_mass(g), 1e-14);
-      EXPECT_NEAR(force_of(r, mesh_of(r)).drag() * f.num_nodes(), drag, 1e-14);
+      EXPECT_NEAR(drag_of(r) * f.num_nodes(), drag, 1e-14);
       EXPECT_LT(norm(center_of_mass(f) - center_of_mass(g)), 1e-14);
     }
   }
   auto nodes = [&m](double factor) {
-    return read_sheet(refined(m, factor).sheets[0]).nodes;
+    return refined(m, factor).sheets[0].nodes;
   };
   using Nodes = std::array<unsigned, 2>;
   EXPECT_EQ(nodes(2), (Nodes{9, 7}));
@@ -221,11 +229,11 @@ TEST(Refined, IsTheSameCloth) {
 }
 
 /** The answers on grids of 8, 16 and 32 cells along each side. */
-std::vector<Answer> on_three_grids(Model m, const std::string& measure) {
+std::vector<Answer> on_three_grids(Model m, Measure measure) {
   m.measure = measure;
   std::vector<Answer> at;
-  for (const char* nodes : {"9 9", "17 17", "33 33"}) {
-    m.sheets = {std::string("nodes ") + nodes};
+  for (unsigned nodes : {9, 17, 33}) {
+    m.sheets = {{.nodes = {nodes, nodes}}};
     at.push_back(try_out(m).answer);
   }
   return at;
@@ -234,9 +242,9 @@ std::vector<Answer> on_three_grids(Model m, const std::string& measure) {
 // test_compose has the smooth case, order 2. A membrane let go flat gets a kink
 // that runs in from the rim.
 TEST(Refining, ConvergesAtOrderOneWhereTheClothHasKinks) {
-  Model m = load_model("scenes/membrane.toml");
+  Model m = load_model("data/scenes/membrane.toml");
   m.t_end = 0.1;
-  const auto at = on_three_grids(m, "positions");
+  const auto at = on_three_grids(m, Measure::positions);
   EXPECT_NEAR(std::log2(distance(at[0], at[1], Measure::positions) /
                         distance(at[1], at[2], Measure::positions)),
               1, 0.1);
@@ -245,12 +253,12 @@ TEST(Refining, ConvergesAtOrderOneWhereTheClothHasKinks) {
 // All of the weight hangs by one node, whatever the grid: the force stays, the
 // width that bears it halves.
 TEST(Refining, NeverGivesTheStretchAtAPinnedCorner) {
-  Model m = load_model("scenes/hanging-sheet.toml");
-  m.with.damping = 0;
+  Model m = load_model("data/scenes/hanging-sheet.toml");
+  m.damping = 0;
   m.material.density = 1;
   m.material.modulus = 100;
   m.material.drag = 1;
-  const auto at = on_three_grids(m, "max-stretch");
+  const auto at = on_three_grids(m, Measure::max_stretch);
   EXPECT_NEAR(at[0][0], 0.28, 0.01);
   EXPECT_NEAR(at[1][0], 0.46, 0.01);
   EXPECT_NEAR(at[2][0], 0.80, 0.01);
@@ -261,35 +269,61 @@ TEST(Variation, KnowsTheShortestSide) {
   EXPECT_NEAR(shortest_side(with_sheet("v 0 30 0 nodes 4 6")), 1 / 3., 1e-15);
 }
 
+/** @a m without the friction of @a part. */
+Model smooth(const Model& m, const std::string& part) {
+  const auto without = without_all(m, {"friction of " + part});
+  EXPECT_TRUE(without) << part;
+  return without.value_or(m);
+}
+
 TEST(Variation, LeavesOutFriction) {
-  using variation_detail::without_friction;
-  for (auto [text, smooth] :
-       {std::pair("friction 0.5", ""),
-        {"at 0 0 1 friction 0.5", "at 0 0 1 "},
-        {"friction  1e-1 at 0 0 1", "at 0 0 1"},
-        {"radius 1\tfriction 0.5\tat 0 0 1", "radius 1\tat 0 0 1"},
-        {"at 0 0 1", "at 0 0 1"}})
-    EXPECT_EQ(without_friction(text), smooth);
-  const Wall w = read_plane(
-      without_friction("normal 0 1 0 friction 0.5 velocity 0 1 0 until 2"));
+  Model m = with_sheet("nodes 5 5");
+  for (auto [text, words, left] :
+       {std::tuple("friction 0.5", ": friction 0.5", ""),
+        {"at 0 0 1 friction 0.5", ": at 0 0 1 friction 0.5", "at 0 0 1"},
+        {"friction  1e-1 at 0 0 1", ": at 0 0 1 friction 0.1", "at 0 0 1"}}) {
+    m.planes = {read_plane(text)};
+    EXPECT_EQ(to_words(smooth(m, std::string("plane") + words).planes[0]),
+              left);
+  }
+  m.spheres = {read_sphere("radius 1\tfriction 0.5\tat 0 0 1")};
+  const Model without = smooth(m, "sphere: at 0 0 1 radius 1 friction 0.5");
+  EXPECT_EQ(to_words(without.spheres[0]), "at 0 0 1 radius 1");
+  m.spheres.clear();
+  m.planes = {read_plane("at 0 0 1"), read_plane("friction 0")};
+  EXPECT_FALSE(without_all(m, {"friction of plane: at 0 0 1"}));
+  EXPECT_FALSE(without_all(m, {"friction of plane"}));
+  m.planes = {read_plane("normal 0 1 0 friction 0.5 velocity 0 1 0 until 2")};
+  const Wall w =
+      smooth(m, "plane: normal 0 1 0 friction 0.5 velocity 0 1 0 until 2")
+          .planes[0];
   EXPECT_EQ(w.friction, 0);
   EXPECT_EQ(w.motion.until, 2);
   EXPECT_EQ(w.normal, Point(0, 1, 0));
 }
 
+// A part that is all default has its key as its name.
+TEST(Variation, NamesADefaultPartByItsKey) {
+  const std::vector<Variation> all = without_parts(assignment_scene());
+  ASSERT_EQ(all.size(), 6u);
+  EXPECT_EQ(all[2].part, "pin: x 0 y 0 z 0");
+  EXPECT_EQ(all[4].part, "plane");
+  EXPECT_EQ(all[5].part, "tear");
+}
+
 /** A scene that names everything. */
 Model full_scene() {
   Model m = with_sheet("nodes 5 5");
-  m.edges = "sides diagonals bend";
+  m.edges = {.diagonals = true, .bend = true};
   m.material.density = 1;
   m.material.modulus = 100;
   m.material.drag = 1;
-  m.pins = {"x 0", "x 1 velocity 0 0 1"};
-  m.planes = {"friction 0.5"};
-  m.spheres = {"radius 0.1"};
-  m.tears = {"radius 0.2"};
+  m.pins = {read_pin("x 0"), read_pin("x 1 velocity 0 0 1")};
+  m.planes = {read_plane("friction 0.5")};
+  m.spheres = {read_sphere("radius 0.1")};
+  m.tears = {read_tear("radius 0.2")};
   m.tear_strain = 0.5;
-  m.self_collision = "thickness 0.1 friction 0.2";
+  m.self_collision = read_self_collision("thickness 0.1 friction 0.2");
   return m;
 }
 
@@ -309,7 +343,7 @@ TEST(Variation, DropsEachPartInTurnAndNothingElse) {
       {"tear: radius 0.2", ""},
       {"tear-strain", ""},
       {"self-collision", ""},
-      {"friction of self-collision", "self-collision = \"thickness 0.1 \""}};
+      {"friction of self-collision", "self-collision = \"thickness 0.1\""}};
   auto lines = [](const Model& a) {
     std::istringstream in(to_scene_file(a));
     std::set<std::string> all;
@@ -337,32 +371,31 @@ TEST(Variation, DropsEachPartInTurnAndNothingElse) {
 
 TEST(Variation, DropsNothingThatIsNotThere) {
   Model m = with_sheet("nodes 5 5");
-  m.edges = "sides";
-  m.with.gravity = 0;
+  m.edges.diagonals = false;
+  m.gravity = 0;
   m.material.drag = 0;
   EXPECT_TRUE(without_parts(m).empty());
   m.material.drag.reset();
   EXPECT_TRUE(without_parts(m).empty());
-  m.with.damping = 1;
+  m.damping = 1;
   ASSERT_EQ(without_parts(m).size(), 1u);
-  EXPECT_EQ(without_parts(m)[0].model.with.damping, 0);
+  EXPECT_EQ(without_parts(m)[0].model.damping, 0);
 }
 
 TEST(Variation, AddsEachPartThatMayComeNext) {
   Model m = with_sheet("nodes 5 4");
-  m.edges = "sides";
-  m.with.dt = 0.03, m.t_end = 0.1;
+  m.edges.diagonals = false;
+  m.step.dt = 0.03, m.t_end = 0.1;
   auto more = with_more_parts(m);
   ASSERT_EQ(more.size(), 4u);
   for (const Variation& v : more) EXPECT_FALSE(v.dropped);
-  EXPECT_EQ(more[0].model.edges, "sides diagonals");
-  EXPECT_EQ(read_sheet(more[1].model.sheets[0]).nodes,
-            (std::array<unsigned, 2>{9, 7}));
-  EXPECT_EQ(more[2].model.with.dt, 0.0125);
-  EXPECT_EQ(more[2].model.with.rule, StepRule::fixed);
+  EXPECT_EQ(to_words(more[0].model.edges), "sides diagonals");
+  EXPECT_EQ(more[1].model.sheets[0].nodes, (std::array<unsigned, 2>{9, 7}));
+  EXPECT_EQ(more[2].model.step.dt, 0.0125);
+  EXPECT_EQ(more[2].model.step.rule, StepRule::fixed);
   // Wide enough that no node comes through a square.
-  const double thickness =
-      read_self_collision(more[3].model.self_collision).thickness;
+  ASSERT_TRUE(more[3].model.self_collision);
+  const double thickness = more[3].model.self_collision->thickness;
   EXPECT_GT(thickness, 0.25 / std::sqrt(2));
   EXPECT_LT(thickness, 0.25);
   Cloth g;
@@ -376,21 +409,26 @@ TEST(Variation, AddsEachPartThatMayComeNext) {
 
 // ----------------------------------------------------------------------- Need
 
-/** The names of the files in scenes/. */
-std::vector<std::string> scene_names() {
+/** The names of the files in data/scenes/: those of the assignment, whose mesh
+ * is open, or those with a mesh. */
+std::vector<std::string> scene_names(bool open = false) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator("scenes"))
-    names.push_back(entry.path().stem().string());
+  for (const auto& entry : std::filesystem::directory_iterator("data/scenes"))
+    if (load_open_model(entry.path().string()).sheets.empty() == open)
+      names.push_back(entry.path().stem().string());
   std::ranges::sort(names);
   return names;
 }
 
 TEST(ThePageOfScenes, NamesEveryKeyAndScene) {
-  const std::string page = CME212::contents("docs/scenes.md");
-  const Model m;
-  each_option(m, [&](const std::string& name, const auto&, const char*) {
+  const std::string page = CME212::contents("lab/scenes/README.md");
+  for (const std::string& name : scene_keys())
     EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
-  });
+  EXPECT_EQ(scene_names(true).size(), 5u);
+  for (const std::string& name : scene_names(true))
+    EXPECT_NE(page.find("](../../data/scenes/" + name + ".toml)"),
+              std::string::npos)
+        << name;
   for (const std::string& name : scene_names()) {
     EXPECT_NE(page.find("\n### `" + name + "`\n"), std::string::npos) << name;
     EXPECT_TRUE(
@@ -403,13 +441,13 @@ class Need : public ::testing::TestWithParam<std::string> {};
 // Each with room: a scene whose need hangs by a hair is a scene to be improved.
 TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
   constexpr double room = 1.15;
-  const Model m = load_model("scenes/" + GetParam() + ".toml");
+  const Model m = load_model("data/scenes/" + GetParam() + ".toml");
   check_question(m);
-  const Measure what = read_measure(m.measure);
+  const Measure what = m.measure;
   const Trial base = try_out(m);
   ASSERT_TRUE(base.ok()) << base.failure;
 
-  const std::string page = CME212::contents("docs/scenes.md");
+  const std::string page = CME212::contents("lab/scenes/README.md");
   const char* table = std::getenv("WRITE_TABLE");
   std::ofstream out;
   if (table) out.open(table, std::ios::app);
@@ -429,7 +467,8 @@ TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
     out << key << std::setprecision(2) << change << " | " << m.tolerance
         << (*unit_of(what) ? " " : "") << unit_of(what) << " |\n";
     const auto at = page.find(key);
-    EXPECT_NE(at, std::string::npos) << "docs/scenes.md has no row " << key;
+    EXPECT_NE(at, std::string::npos)
+        << "lab/scenes/README.md has no row " << key;
     if (at == std::string::npos) continue;
     char* end = nullptr;
     const double said = std::strtod(page.c_str() + at + key.size(), &end);

@@ -555,11 +555,11 @@ TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   refused("--methods verlet,magic", "--methods: there is no 'magic'");
   refused("--repeats 0", "--repeats is 0, expected 1 or more");
   refused("--nodes data/grid0.nodes", "--tets");
-  refused("--nodes none --tets none", "none:0: can't be opened");
+  refused("--nodes none --tets none", "none: can't be opened");
   refused("--energy --grid-refinement", "--grid-refinement");
   refused("--energy --failures", "--energy");
   refused("--ends --floor none", "--floor");
-  refused("--floor none", "none:0: can't be opened");
+  refused("--floor none", "none: can't be opened");
   refused("--t-end -1", "--t-end is -1, expected a positive time [s]");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }

@@ -5,11 +5,12 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 shopt -s nullglob
-if [ $# = 0 ]; then set -- *.hpp CME212/*.hpp; fi
-# Headers that draw, and the packages whose flags these need. A header that
-# draws only under MASS_SPRING_VIEWER is compiled with it and without it; so is
-# one that knows MASS_SPRING_CHOLMOD, where CHOLMOD is installed.
-drawing='^CME212/(GL|SDL|Image)'
+if [ $# = 0 ]; then set -- *.hpp CME212/*.hpp lab/*.hpp lab/*/*.hpp; fi
+# Headers that name SDL or OpenGL, and the packages whose flags these need; all
+# others compile without. A header that draws only under MASS_SPRING_VIEWER is
+# compiled with it and without it; so is one that knows MASS_SPRING_CHOLMOD,
+# where CHOLMOD is installed.
+drawing='^CME212/(GL|SDLWindow)'
 packages="sdl2 gl imgui libpng"
 
 has_cholmod() {  # COMPILER

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "CME212/Util.hpp"
 #include "CME212/Mesh.hpp"
+#include "CME212/Util.hpp"
 
 namespace {
 

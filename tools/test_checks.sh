@@ -23,7 +23,7 @@ copy() {  # FOLDER PATTERN...
   (cd "$tmp/$1"; git init -q; git add -Af; git commit -qm scratch)
 }
 copy tree .
-copy small 'tools/*.sh' CME212/Point.hpp SlotMap.hpp .clang-format .gitignore
+copy small 'tools/*.sh' CME212/Point.hpp CME212/Util.hpp CME212/SlotMap.hpp .clang-format .gitignore
 
 ok() {
   if [ -z "$why" ]; then
@@ -65,40 +65,44 @@ arrow() {  # FILE TARGET: as first line of FILE, which is made if need be
   caught "includes: $1 -> $2" \
     "$1:1: includes ${3:-$2}, which is not below it" tree $inc
 }
-arrow Graph.hpp Cloth.hpp
-arrow Cloth.hpp Force.hpp
-arrow Force.hpp Constraint.hpp
-arrow Constraint.hpp Scene.hpp
-arrow Integrator.hpp Stability.hpp
-arrow Integrator.hpp Scene.hpp
-arrow Scene.hpp mass_spring.hpp
-arrow mass_spring.hpp Stability.hpp
-arrow SlotMap.hpp Graph.hpp
-arrow SlotMap.hpp CME212/Util.hpp
 arrow CME212/Point.hpp Graph.hpp
-arrow CME212/BoundingBox.hpp CME212/Util.hpp
-arrow CME212/Color.hpp CME212/BoundingBox.hpp
-arrow CME212/Util.hpp Color.hpp CME212/Color.hpp
-arrow CME212/SDLViewer.hpp Graph.hpp
-arrow Graph.hpp CME212/BoundingBox.hpp
-arrow Graph.hpp ./CME212/../Cloth.hpp Cloth.hpp
-arrow Force.hpp CME212/Color.hpp
-arrow bench.cpp CME212/SDLViewer.hpp
-arrow test_graph.cpp CME212/Color.hpp
-arrow peers/peer.cpp ../CME212/GLScene.hpp CME212/GLScene.hpp
+arrow CME212/SlotMap.hpp Graph.hpp
+arrow CME212/SDLViewer.hpp mass_spring.hpp
+arrow Graph.hpp mass_spring.hpp
+arrow Graph.hpp ./CME212/../mass_spring.hpp mass_spring.hpp
+arrow mass_spring.hpp lab/fast/Lanes.hpp
+arrow mass_spring.cpp lab/methods/Verlet.hpp
+arrow test_nodes.cpp lab/fast/Sweep.hpp
+arrow another.cpp lab/fast/Sweep.hpp
+arrow lab/fast/Energy.hpp lab/methods/Verlet.hpp
+arrow lab/methods/Verlet.hpp lab/stability/Guard.hpp
+arrow lab/stability/Guard.hpp lab/scenes/Scene.hpp
+arrow lab/stability/Guard.hpp lab/charts/Problem.hpp
+arrow lab/scenes/Scene.hpp lab/advice/Advise.hpp
+arrow lab/scenes/Scene.hpp lab/charts/Problem.hpp
+arrow lab/charts/Problem.hpp lab/scenes/Scene.hpp
+arrow lab/charts/Problem.hpp lab/bench/Bench.hpp
+arrow lab/advice/Advise.hpp lab/viewer/Screen.hpp
+draws() {  # FILE HEADER
+  again; sed -i "1i #include \"$2\"" "$1"
+  caught "includes: $1 draws" "$1:1: includes $2, which draws" tree $inc
+}
+draws lab/scenes/Scene.hpp CME212/Color.hpp
+draws lab/bench/bench.cpp CME212/SDLViewer.hpp
+draws mass_spring.hpp CME212/SFML_Viewer.hpp
 
-again; echo '  #  include <Cloth.hpp>' >>Graph.hpp
+again; echo '  #  include <mass_spring.hpp>' >>Graph.hpp
 caught "includes: in pointed brackets, with blanks" \
-  "Graph.hpp:$(wc -l <Graph.hpp): includes Cloth.hpp, which" tree $inc
+  "Graph.hpp:$(wc -l <Graph.hpp): includes mass_spring.hpp, which" tree $inc
 again; sed -i '1i #include <SDL2/SDL.h>' mass_spring.cpp
 caught "includes: mass_spring.cpp names SDL" \
   "mass_spring.cpp:1: includes SDL2/SDL.h, which only" tree $inc
 again; sed -i '1i #include <GL/gl.h>' CME212/Color.hpp
 caught "includes: CME212/Color.hpp names OpenGL" \
   "CME212/Color.hpp:1: includes GL/gl.h, which only" tree $inc
-again; echo '#pragma once' >Stranger.hpp
-caught "includes: a header that the table does not know" \
-  "Stranger.hpp:1: has no line in the table" tree $inc
+again; mkdir lab/attic; echo '#include "Graph.hpp"' >lab/attic/Stranger.hpp
+caught "includes: a room that the table does not know" \
+  "lab/attic/Stranger.hpp:1: its room has no line in the table" tree $inc
 
 # ---- Headers alone: in small/, since each compilation takes a second
 head=tools/check_headers.sh
@@ -160,34 +164,34 @@ done
 again; echo "# $word" >>Makefile
 caught "tree: an unfinished Makefile" \
   "Makefile:$(wc -l <Makefile): is left unfinished" tree $tree
-again; printf '#if %s\n#endif\n' 0 >>Force.hpp
+again; printf '#if %s\n#endif\n' 0 >>mass_spring.hpp
 caught "tree: a branch that is never compiled" \
-  "Force.hpp:$(($(wc -l <Force.hpp) - 1)): is never compiled" tree $tree
-again; printf '//%79s\n' x >>Force.hpp
+  "mass_spring.hpp:$(($(wc -l <mass_spring.hpp) - 1)): is never compiled" tree $tree
+again; printf '//%79s\n' x >>mass_spring.hpp
 caught "tree: 81 columns" \
-  "Force.hpp:$(wc -l <Force.hpp): is longer than 80 columns" tree $tree
-again small; printf '//%78s\n' x >>SlotMap.hpp
+  "mass_spring.hpp:$(wc -l <mass_spring.hpp): is longer than 80 columns" tree $tree
+again small; printf '//%78s\n' x >>CME212/SlotMap.hpp
 clean "tree: 80 columns are none too many" $tree
 again; comment_lines 701 >Graph.hpp
 caught "tree: 701 lines of Graph.hpp" \
   "Graph.hpp:700: goes on to line 701; the limit is 700" tree $tree
-again; comment_lines 501 >Force.hpp
+again; comment_lines 501 >mass_spring.hpp
 caught "tree: 501 lines of another" \
-  "Force.hpp:500: goes on to line 501; the limit is 500" tree $tree
-again small; comment_lines 500 >SlotMap.hpp; cp SlotMap.hpp Graph.hpp
+  "mass_spring.hpp:500: goes on to line 501; the limit is 500" tree $tree
+again small; comment_lines 500 >CME212/SlotMap.hpp; cp CME212/SlotMap.hpp Graph.hpp
 comment_lines 200 >>Graph.hpp
 clean "tree: 500 and 700 lines are none too many" $tree
-again; sed -i '1i int   i;' Force.hpp
-caught "tree: not laid out" "Force.hpp:1: is not laid out" tree $tree
-again; printf '// \303\251\n' >>Force.hpp
+again; sed -i '1i int   i;' mass_spring.hpp
+caught "tree: not laid out" "mass_spring.hpp:1: is not laid out" tree $tree
+again; printf '// \303\251\n' >>mass_spring.hpp
 caught "tree: a letter that is not ASCII" \
-  "Force.hpp:$(wc -l <Force.hpp): has a character" tree $tree
+  "mass_spring.hpp:$(wc -l <mass_spring.hpp): has a character" tree $tree
 again; echo '# words ' >>Makefile
 caught "tree: white space at the end of a line" \
   "Makefile:$(wc -l <Makefile): ends in white space" tree $tree
-again; printf '// DOS\r\n' >>Force.hpp
+again; printf '// DOS\r\n' >>mass_spring.hpp
 caught "tree: DOS line ends" \
-  "Force.hpp:$(wc -l <Force.hpp): ends in white space" tree $tree
+  "mass_spring.hpp:$(wc -l <mass_spring.hpp): ends in white space" tree $tree
 again; echo '*.cpp' >>.git/info/exclude; echo 'int x() {}' >stray.cpp
 check tree $tree; why=""; ! grep -q stray <<<"$out" || why=" blames it;"
 sed -i '$d' "$tmp/tree/.git/info/exclude"
@@ -202,7 +206,7 @@ caught "tree: a picture of 801 pixels" "docs/x.png:1: is wider than 800 pixels" 
   tree $tree
 again small; png '\03\040' >x.png
 clean "tree: 800 pixels are none too many" $tree
-again; rm Force.hpp
+again; rm mass_spring.hpp
 check tree $tree; why=""
 ! grep -q 'No such file' <<<"$out" || why=" looks for it;"
 ok "tree: a deleted file is not looked for"

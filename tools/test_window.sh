@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Run ./mass_spring in a real window under Xvfb, press keys, and look at what
-# it says when it ends. Needs: Xvfb, xdotool, and mass_spring built.
+# Run mass_spring and cloth in a real window under Xvfb, press keys, and look at
+# what is seen and said. They are taken from the folder BUILD, or from here.
+# Needs: Xvfb, xdotool, ffmpeg, and both built with a viewer.
 set -Eeuo pipefail
 cd "$(dirname "$0")/.."
 
-program=${MASS_SPRING:-./mass_spring}
+folder=${BUILD:-.}
+mark='ff \(3f\|40\) b[23]'  # Color::make_mark()
 tmp=$(mktemp -d)
 passed=0 failed=0
 xvfb="" run=""
@@ -19,20 +21,51 @@ read -r -t 20 number <&3 || { echo "Xvfb does not start"; exit 1; }
 export DISPLAY=:$number
 unset WAYLAND_DISPLAY
 
-launch() {  # on grid0, with options
-  "$program" data/grid0.nodes data/grid0.tets --window --speed 0 "$@" \
-    >"$tmp/out" 2>"$tmp/err" &
+start() {  # PROGRAM ARGUMENTS...: launch, and wait for the window
+  "$folder/$1" "${@:2}" >"$tmp/out" 2>"$tmp/err" &
   run=$!
-}
-start() {  # launch, and wait for the window
-  launch "$@"
-  window=$(timeout 30 xdotool search --sync --onlyvisible --name mass_spring |
+  window=$(timeout 30 xdotool search --sync --onlyvisible --name "$1" |
     head -n 1)
   xdotool windowfocus --sync "$window"
+}
+cloth() { start cloth data/grid0.nodes data/grid0.tets --window --speed 0 "$@"; }
+driver() {  # GRID ARGUMENTS...: the assignment's program
+  start mass_spring "data/grid$1.nodes" "data/grid$1.tets" "${@:2}"
 }
 press() {
   local key
   for key in "$@"; do xdotool key "$key"; sleep 0.15; done
+}
+ok() {  # NAME CONDITION...
+  if "${@:2}"; then
+    passed=$((passed + 1)); echo "ok    $1"
+  else
+    failed=$((failed + 1)); echo "FAIL  $1"
+  fi
+}
+lines() { wc -l <"$tmp/out"; }
+more_lines() {  # wait until it has said $1 lines more
+  local want=$(($(lines) + $1))
+  for _ in {1..200}; do
+    [ "$(lines)" -lt "$want" ] || return 0
+    sleep 0.1
+  done
+  return 1
+}
+quiet() { local n; n=$(lines); sleep 1.5; [ "$(lines)" = "$n" ]; }
+picture() {  # the window as rows of RGB in hexadecimal, one pixel a line
+  ffmpeg -v error -f x11grab -video_size 1280x1024 -i "$DISPLAY" -frames:v 1 \
+    -f rawvideo -pix_fmt rgb24 - | od -An -v -tx1 -w3
+}
+moves() { local p; p=$(picture | md5sum); sleep 0.5; [ "$p" != "$(picture | md5sum)" ]; }
+# A panel of a failure has a bar in the color of marks.
+no_panel() { [ "$(picture | grep -c "$mark")" -lt 100 ]; }
+panel() {
+  for _ in {1..100}; do
+    no_panel || return 0
+    sleep 0.1
+  done
+  return 1
 }
 told() {  # wait until it has said $1 times that it failed
   for _ in {1..100}; do
@@ -54,30 +87,55 @@ ends() {  # NAME STATUS WORDS
   fi
 }
 
-start --paused; press q
+# The assignment's program: a line every second of its 10 s.
+driver 0 0.001 10
+ok "the driver steps" more_lines 1
+ok "and draws meanwhile" moves
+ok "and has no panel" no_panel
+press space
+ok "space pauses" quiet
+press r s
+ok "r and s do nothing" quiet
+press space
+ok "space goes on" more_lines 1
+press q
+ends "q quits the driver" 0 "nodes"
+driver 0 0.001 0.1
+sleep 1
+ok "the window stays at the end" kill -0 "$run"
+press Escape
+ends "Escape quits the driver" 0 "t = 0.1 s"
+driver 3
+ok "a run that diverges shows a panel" panel
+ok "and stays" kill -0 "$run"
+press q
+ends "and ends with 3" 3 "diverged: at t = "
+
+# The laboratory's program.
+cloth --paused; press q
 ends "q quits, and nothing moves while paused" 0 ": 0 steps to t = 0 s"
-start --paused; press n n n Escape
+cloth --paused; press n n n Escape
 ends "n makes one step, Escape quits" 0 ": 3 steps to t = 0.003 s"
-start --paused; press n n n r n q
+cloth --paused; press n n n r n q
 ends "r goes back to the start" 0 ": 1 steps to t = 0.001 s"
-start --paused --t-end 0.05; press space; sleep 1; press q
+cloth --paused --t-end 0.05; press space; sleep 1; press q
 ends "space goes on to the end, and the window stays" 0 ": 50 steps to t = 0.05 s"
-start --paused; press s c s n q
+cloth --paused; press s c s n q
 ends "coloring and centering change no step" 0 ": 1 steps"
-start --t-end 1e6; sleep 0.5; press q
+cloth --t-end 1e6; sleep 0.5; press q
 ends "q ends a running simulation" 0 "nodes and"
 # On grid0 every step beyond 0.0123 s diverges.
-start --dt 0.05; told 1; press space n s; kill -0 "$run"; press q
+cloth --dt 0.05; told 1; press space n s; kill -0 "$run"; press q
 ends "a run that diverges is told at once and stays; q quits" 3 "diverged in step"
-start --dt 0.05; told 1; press r; told 2; press r; told 3; press q
+cloth --dt 0.05; told 1; press r; told 2; press r; told 3; press q
 ends "r runs it again" 3 "diverged in step"
-start --dt 0.05 --paused; press q
+cloth --dt 0.05 --paused; press q
 ends "nothing has failed before it runs" 0 ": 0 steps to t = 0 s"
 
 # DISPLAY leads nowhere.
-run_dead() { DISPLAY=:12345 "$program" data/grid0.nodes data/grid0.tets --window; }
+run_dead() { DISPLAY=:12345 "$folder/cloth" data/grid0.nodes data/grid0.tets --window; }
 run_dead >"$tmp/out" 2>"$tmp/err" & run=$!
-ends "a dead display is an error" 4 "mass_spring: "
+ends "a dead display is an error" 4 "cloth: "
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

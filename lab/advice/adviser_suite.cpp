@@ -2,11 +2,11 @@
  * How often --advise is right: random scenes, each of them with advice, with
  * the true error of what was advised, and with the best choice in hindsight.
  *
- *   ./adviser_suite --scenes 100 --out lab/advice/results/adviser.csv
+ *   build/adviser_suite --scenes 100 --out lab/advice/results/adviser.csv
  *
  * Truth is a converged reference: grids of up to 4 times as many cells as the
  * advised one, and at least 80, by srkn6b, and what they tend to. Cost is
- * counted: springs looked at. Exit status: 0 done; 1 less is right than was
+ * counted: spring evaluations. Exit status: 0 done; 1 less is right than was
  * wanted; 2 an option that can't be used, or an output that can't be written.
  */
 #include <cmath>
@@ -18,8 +18,12 @@
 
 #include "CME212/OutputFile.hpp"
 #include "lab/advice/Advise.hpp"
+#include "lab/advice/Variation.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/scenes/SceneFile.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Words.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 
@@ -41,15 +45,18 @@ Model random_scene(unsigned number) {
   const double width = between(0.5, 2), height = between(0.5, 2);
   const std::string nodes = " nodes 11 11";
   if (hangs < 2)
-    m.sheets = {"u " + text(width) + " 0 0 v 0 0 -" + text(height) + nodes};
+    m.sheets = {
+        read_sheet("u " + text(width) + " 0 0 v 0 0 -" + text(height) + nodes)};
   else
-    m.sheets = {"u " + text(width) + " 0 0 v 0 " + text(height) + " 0" + nodes};
-  const std::string far = " " + text(width);
-  if (hangs == 0) m.pins = {"z 0"};
-  if (hangs == 1) m.pins = {"x 0", "x" + far};
-  if (hangs == 2) m.pins = {"x 0", "x" + far, "y 0", "y " + text(height)};
-  if (hangs == 3) m.pins = {"x 0"};
-  m.edges = pick(2) ? "sides diagonals" : "sides";
+    m.sheets = {read_sheet("u " + text(width) + " 0 0 v 0 " + text(height) +
+                           " 0" + nodes)};
+  auto pin = [&m](const std::string& words) {
+    m.pins.push_back(read_pin(words));
+  };
+  pin(hangs == 0 ? "z 0" : "x 0");
+  if (hangs == 1 || hangs == 2) pin("x " + text(width));
+  if (hangs == 2) pin("y 0"), pin("y " + text(height));
+  m.edges.diagonals = pick(2);
   m.material.density = log_between(0.2, 2);
   m.material.modulus = log_between(1, 1e4);  // four decades
   if (pick(2)) m.material.drag = *m.material.density * log_between(0.1, 10);
@@ -57,22 +64,21 @@ Model random_scene(unsigned number) {
   const double wave = std::sqrt(*m.material.density / *m.material.modulus) *
                       std::max(width, height);
   m.t_end = std::min(wave * between(0.5, 4), 1.0);
-  if (pick(4) == 0) m.planes = {"at 0 0 " + text(-height - 0.01)};
-  m.method = "verlet";
-  m.dt = "auto";
+  if (pick(4) == 0) m.planes = {read_plane("at 0 0 " + text(-height - 0.01))};
+  m = as_pilot(m);
   // Without drag it keeps its energy, on any grid.
-  m.measure = m.material.drag && pick(2) ? "energy" : "com";
+  if (m.material.drag && pick(2)) m.measure = Measure::energy;
   m.tolerance = 1;
-  check_model(m);
   // To between 0.5 % and 5 % of how far it comes, or of the work done by its
   // weight on that way.
   Model com = m, start = m;
-  com.measure = start.measure = "com";
+  com.measure = start.measure = Measure::com;
   start.t_end = 0;
   const double way =
       distance(try_out(com).answer, try_out(start).answer, Measure::com);
-  const double unit =
-      m.measure == "com" ? 1 : *m.material.density * width * height * grav;
+  const double unit = m.measure == Measure::com
+                          ? 1
+                          : *m.material.density * width * height * grav;
   m.tolerance = way * unit * log_between(5e-3, 5e-2);
   return m;
 }
@@ -81,22 +87,22 @@ Model random_scene(unsigned number) {
 struct Row {
   std::string refusal;
   std::string method;
-  double predicted = 0, doubt = 0, real = 0;  // errors
-  double chosen = 0, best = 0, lucky = 0;     // counted work
-  double spent = 0;                           // [s], by the advice
-  double seconds = 0;                         // of the advised run
+  double predicted = 0, uncertainty = 0, real = 0;  // errors
+  double chosen = 0, best = 0, lucky = 0;           // counted work
+  double spent = 0;                                 // [s], by the advice
+  double seconds = 0;                               // of the advised run
 };
 
-double cells(const Model& m) { return read_sheet(m.sheets[0]).nodes[0] - 1; }
+double cells(const Model& m) { return m.sheets[0].nodes[0] - 1; }
 
 /** What the answer tends to on finer grids, those of @a advised among them. */
 Answer truth(const Model& scene, const Model& advised) {
   const double factor = std::max(20., cells(advised)) / cells(scene);
-  Refinement grids(read_measure(scene.measure));
+  Refinement grids(scene.measure);
   for (int finer : {1, 2, 4}) {
     Model m = refined(scene, factor * finer);
-    m.method = "srkn6b";
-    m.with.rule = StepRule::safe;
+    m.method = find_method("srkn6b");
+    m.step = {.rule = StepRule::safe};
     grids.add({factor * finer, 0, 0, try_out(m)});
   }
   return grids.limit();
@@ -108,18 +114,17 @@ Answer truth(const Model& scene, const Model& advised) {
  * step meets it, too, and so do twice the cells. */
 double best_in_hindsight(const Model& scene, const Answer& right, double chosen,
                          bool reliably) {
-  const Measure what = read_measure(scene.measure);
+  const Measure what = scene.measure;
   double best = chosen;
   std::vector<Model> ways = {scene};
-  if (scene.edges != "sides") {
+  if (scene.edges.diagonals) {
     ways.push_back(scene);
-    ways.back().edges = "sides";
+    ways.back().edges.diagonals = false;
   }
   for (const Model& way : ways)
     for (double factor = 0.5;; factor *= std::sqrt(2.)) {
-      Model m = advise_detail::as_pilot(refined(way, factor));
+      Model m = as_pilot(refined(way, factor));
       const double verlet = step_of(m) / safe_share;
-      m.with.rule = StepRule::fixed;
       Cloth g;
       build_model(g, m, mesh_of(m));
       bool tried = false;
@@ -132,10 +137,10 @@ double best_in_hindsight(const Model& scene, const Answer& right, double chosen,
             {"symplectic-euler", 0.45},
             {"pefrl", 1.3},
             {"srkn6b", 2.2}}) {
-        m.method = method;
-        m.with.dt = share * verlet;
-        const double work = g.num_edges() * find_method(method)->info.sweeps *
-                            std::ceil(m.t_end / m.with.dt);
+        m.method = find_method(method);
+        m.step = {.dt = share * verlet};
+        const double work = g.num_edges() * m.method->info.sweeps *
+                            std::ceil(m.t_end / m.step.dt);
         if (work >= best) continue;
         tried = true;
         auto meets = [&](const Model& x) {
@@ -143,10 +148,9 @@ double best_in_hindsight(const Model& scene, const Answer& right, double chosen,
           return t.ok() && distance(t.answer, right, what) <= scene.tolerance;
         };
         Model smaller = m, finer = refined(way, 2 * factor);
-        smaller.with.dt /= 2;
-        finer.with.rule = StepRule::fixed;
-        finer.method = method;
-        finer.with.dt = m.with.dt / 2;
+        smaller.step.dt /= 2;
+        finer.method = m.method;
+        finer.step = {.dt = m.step.dt / 2};
         if (meets(m) && (!reliably || (meets(smaller) && meets(finer))))
           best = work;
       }
@@ -165,8 +169,8 @@ Row look_at(const Model& scene) {
   if (!a.refusal.empty()) return row;
   const Trial t = try_out(a.model);
   const Answer right = truth(scene, a.model);
-  row.method = a.model.method;
-  row.predicted = a.error, row.doubt = a.doubt;
+  row.method = a.model.method->info.name;
+  row.predicted = a.error, row.uncertainty = a.uncertainty;
   row.real = t.ok() ? distance(t.answer, right, a.measure)
                     : std::numeric_limits<double>::infinity();
   row.chosen = t.work;
@@ -205,11 +209,11 @@ int main(int argc, char** argv) {
     for (unsigned k = first; k < first + scenes; ++k) {
       const Model m = random_scene(k);
       const Row r = look_at(m);
-      file.stream() << k << ',' << m.measure << ',' << m.tolerance << ','
-                    << r.method << ',' << r.predicted << ',' << r.doubt << ','
-                    << r.real << ',' << r.chosen << ',' << r.best << ','
-                    << r.lucky << ',' << r.spent << ',' << r.seconds << ",\""
-                    << r.refusal << "\"\n";
+      file.stream() << k << ',' << name_of(m.measure) << ',' << m.tolerance
+                    << ',' << r.method << ',' << r.predicted << ','
+                    << r.uncertainty << ',' << r.real << ',' << r.chosen << ','
+                    << r.best << ',' << r.lucky << ',' << r.spent << ','
+                    << r.seconds << ",\"" << r.refusal << "\"\n";
       if (!r.refusal.empty()) continue;
       ++advised;
       met += r.real <= m.tolerance;

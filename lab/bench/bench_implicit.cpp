@@ -67,19 +67,17 @@ void step(benchmark::State& state) {
 void solve(benchmark::State& state) {
   const int side = int(state.range(0)), n = side * side;
   const double mass = 1.0 / n, stiffness = 1e-6 / 4 * 100;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, mass);
+  std::vector<SparseCholesky::Entry> entries;
+  for (unsigned i = 0; i < unsigned(n); ++i) entries.push_back({i, i, mass});
   for (const Quad& q : grid_quads(unsigned(side)))
     for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}}) {
-      const int i = int(q[a]), j = int(q[b]);
-      entries.emplace_back(i, i, stiffness);
-      entries.emplace_back(j, j, stiffness);
-      entries.emplace_back(std::max(i, j), std::min(i, j), -stiffness);
+      const unsigned i = q[a], j = q[b];
+      entries.push_back({i, i, stiffness});
+      entries.push_back({j, j, stiffness});
+      entries.push_back({std::max(i, j), std::min(i, j), -stiffness});
     }
-  SparseCholesky::Matrix lower(n, n);
-  lower.setFromTriplets(entries.begin(), entries.end());
   SparseCholesky factor;
-  factor.factorize(lower);
+  factor.factorize(std::size_t(n), entries);
   const std::vector<Point> b(unsigned(n), Point(1, -2, 3));
   std::vector<Point> x;
   for (auto _ : state) {

@@ -3,9 +3,6 @@
  * Energies of a cloth, its mass, its center, and the stiffness of its springs.
  * Sums run over the graph's arrays, in the order of memory, in double: a sum of
  * a million floats would lose three digits. */
-#include <algorithm>
-#include <cmath>
-
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -42,71 +39,23 @@ inline double spring_energy(double l, const EdgeData& s) {
 
 // ------------------------------------------------------------------- Energies
 
-/** Add @a f(id) over all nodes in use, in the order of memory, in double: a sum
- * of a million floats would lose three digits. */
-template <typename F>
-double sum_over_nodes(const Cloth& g, F f) {
-  double sum = 0;
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    if (g.node_in_use(i)) sum += f(i);
-  return sum;
-}
-
 /** Sum of m |v|^2 / 2 [J].  O(N) */
-inline double kinetic_energy(const Cloth& g) {
-  auto node = g.node_values();
-  return sum_over_nodes(
-      g, [=](unsigned i) { return 0.5 * node[i].mass * normSq(node[i].vel); });
-}
+double kinetic_energy(const Cloth& g);
 
 /** Sum of m gravity z [J], zero at z = 0.  O(N)
  * @param gravity acceleration of free fall [m/s^2] */
-inline double gravitational_energy(const Cloth& g, double gravity = grav) {
-  auto x = g.positions();
-  auto node = g.node_values();
-  return sum_over_nodes(
-      g, [=](unsigned i) { return node[i].mass * gravity * x[i].z; });
-}
+double gravitational_energy(const Cloth& g, double gravity = grav);
 
 /** Sum of the springs' energies [J].  O(number of edges) */
-inline double elastic_energy(const Cloth& g) {
-  auto x = g.positions();
-  auto spring = g.edge_values();
-  double sum = 0;
-  for (unsigned e = 0; e < g.edge_slots(); ++e)
-    if (g.edge_in_use(e)) {
-      auto [i, j] = g.edge_ends()[e];
-      sum += spring_energy(norm(x[j] - x[i]), spring[e]);
-    }
-  return sum;
-}
+double elastic_energy(const Cloth& g);
 
-/** Total mass [kg]. */
-inline double total_mass(const Cloth& g) {
-  auto node = g.node_values();
-  return sum_over_nodes(g, [=](unsigned i) { return node[i].mass; });
-}
+/** Total mass [kg].  O(N) */
+double total_mass(const Cloth& g);
 
-/** Center of mass [m]; the origin for a cloth without nodes. */
-inline Point center_of_mass(const Cloth& g) {
-  auto x = g.positions();
-  auto node = g.node_values();
-  auto moment = [&](Real Point::*along) {
-    return sum_over_nodes(
-        g, [=](unsigned i) { return double(node[i].mass) * x[i].*along; });
-  };
-  const double mass = total_mass(g);
-  if (!(mass > 0)) return Point();
-  return Point(moment(&Point::x) / mass, moment(&Point::y) / mass,
-               moment(&Point::z) / mass);
-}
+/** Center of mass [m]; the origin for a cloth without nodes.  O(N) */
+Point center_of_mass(const Cloth& g);
 
 /** The highest speed of a node [m/s]; 0 for a cloth without nodes.  O(N) */
-inline double max_speed(const Cloth& g) {
-  double most = 0;
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    if (g.node_in_use(i)) most = std::max(most, normSq(g.node_values()[i].vel));
-  return std::sqrt(most);
-}
+double max_speed(const Cloth& g);
 
 }  // namespace lab

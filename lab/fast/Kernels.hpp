@@ -3,11 +3,11 @@
  * The loops that a step spends its time in, written once for registers of any
  * length (Lanes.hpp): springs, weight, drift and kick. README.md of this room
  * walks through them. */
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
-#include "lab/fast/Lanes.hpp"
-#include "lab/fast/Stencil.hpp"
+#include "lab/fast/ForcePlan.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -16,15 +16,13 @@ namespace lab {
 static_assert(sizeof(NodeData) == 4 * sizeof(Real) &&
               sizeof(EdgeData) == 2 * sizeof(Real));
 
-using ClothStencil = Stencil<lanes::width>;
-
 namespace kernels {
 
-/** The pull [N/m] of a spring: the force on its one end is the pull times u,
- * the way [m] to the other end. K (l - L)/l with l = |u|, so positive when
- * longer than L. Finite at l = 0, where no direction is defined: no force.
- *
- * This is the one place that says how a spring pulls.
+/** The share of a cache that one core can count on [bytes]: README.md. */
+inline constexpr std::size_t cache = 2 << 20;
+
+/** Force per length of a spring, K (l - L)/l [N/m]: the force on node i is that
+ * times x_j - x_i. Finite at l = 0, where no direction is defined: no force.
  * @param lengthSq l^2 [m^2]   @param K [N/m]   @param L rest length [m]
  * @tparam T Real, or Lanes of many springs */
 template <typename T>
@@ -66,16 +64,15 @@ struct Weight {
   }
 };
 
-/** The springs of blocks [first, last) of a stencil, each seen from both of its
- * ends: no two nodes write to the same place, and square roots are cheap when
- * many are taken side by side.
+/** The springs of blocks [first, last) of a stencil. Each is evaluated from
+ * both ends: so no two nodes write to the same place, and square roots are
+ * cheap when many are taken side by side.
  *
- * It asks for data before it uses them. Rows in line that come upon them first
- * do so in any case: a processor foresees how such a row goes on, but not into
- * the next page.
- * @tparam early Ask for the springs that rows list, which none can foresee:
- *         faster if they come from memory, slower if a cache has them. */
-template <bool early>
+ * Software prefetch. Unit-stride rows always prefetch: hardware prefetchers
+ * stop at 4 KiB pages.
+ * @tparam prefetch_gathered Prefetch the springs of gathered rows, too: faster
+ *         if they come from memory, slower if a cache has them. */
+template <bool prefetch_gathered>
 struct SpringSweep {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(const ClothStencil& stencil,
@@ -88,9 +85,9 @@ struct SpringSweep {
     constexpr unsigned ahead = 4;  // blocks
     const int farthest = int(stencil.reach());
     for (unsigned b = first; b < last; ++b) {
-      if (early && b + ahead < stencil.num_blocks())
+      if (prefetch_gathered && b + ahead < stencil.num_blocks())
         for (const auto& row : stencil.rows(b + ahead))
-          if (row.offset == 0) ask_for_listed(stencil, row, spring);
+          if (row.offset == 0) prefetch_springs(stencil, row, spring);
       for (int k = 0; k < width; k += w) {  // once, if V is as long
         const Point* here = position + (b * width + k);
         const Points<V> x = stencil.is_full(b)
@@ -98,10 +95,10 @@ struct SpringSweep {
                                 : gather<V>(position, stencil.last_block() + k);
         Points<V> sum;
         for (const auto& row : stencil.rows(b)) {
-          // The springs and positions that no row met before.
+          // Springs and positions that no row has read before.
           if (row.offset > 0 && row.first_edge != stencil.none) {
-            ask_behind<w>(spring + row.first_edge + k);
-            if (row.offset == farthest) ask_behind<w>(here + row.offset);
+            prefetch_behind<w>(spring + row.first_edge + k);
+            if (row.offset == farthest) prefetch_behind<w>(here + row.offset);
           }
           const Points<V> y =
               row.offset != 0 ? load_points<V>(here + row.offset)
@@ -123,19 +120,19 @@ struct SpringSweep {
   }
 
  private:
-  /** Ask for what lies some blocks behind @a count of these; it may be behind
+  /** Prefetch what lies some blocks behind @a count of these. It may be behind
    * the end, so it is an address and no pointer. */
   template <int count, typename T>
-  [[gnu::always_inline]] static inline void ask_behind(const T* these) {
+  [[gnu::always_inline]] static inline void prefetch_behind(const T* these) {
     constexpr std::uintptr_t blocks = 8, line = 64;
     const auto from = reinterpret_cast<std::uintptr_t>(these) +
                       blocks * lanes::width * sizeof(T);
     for (std::uintptr_t at = 0; at < count * sizeof(T); at += line)
       __builtin_prefetch(reinterpret_cast<const void*>(from + at));
   }
-  /** The springs of a row that lists them. Not the positions: meshes lie so in
-   * memory that neighbors are near. */
-  [[gnu::always_inline]] static inline void ask_for_listed(
+  /** Prefetch the springs of a gathered row. Not the positions: neighbors are
+   * near each other in memory. */
+  [[gnu::always_inline]] static inline void prefetch_springs(
       const ClothStencil& stencil, const ClothStencil::Row& row,
       const EdgeData* spring) {
     for (int k = 0; k < lanes::width; ++k)

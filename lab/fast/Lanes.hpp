@@ -1,15 +1,15 @@
 #pragma once
 /** @file Lanes.hpp
- * Lanes: as many numbers as one register of the processor holds, computed with
- * side by side. A kernel is written once and compiled for three kinds of x86-64
- * processor, of which the program takes the best that it runs on; on any other
- * processor it is plain code.
+ * Lanes: the numbers that one register of the processor holds, computed with
+ * side by side (SIMD). A kernel is written once and compiled for three kinds of
+ * x86-64 processor. The program runs the best that its processor can; on any
+ * other processor it is plain code.
  *
  * A kernel is a struct with
  *   template <typename V> [[gnu::always_inline]] static inline void apply(...),
- * V being Lanes of as many numbers as the registers of that processor hold. It
- * calls only functions that are always inlined: code that is not, is compiled
- * for the plain processor. run<Kernel>(...) calls it. */
+ * V being the Lanes of that processor. It calls only functions that are always
+ * inlined: any other code is compiled for the plain processor.
+ * run<Kernel>(...) calls it. */
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

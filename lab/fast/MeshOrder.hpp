@@ -1,123 +1,41 @@
 #pragma once
-/** @file Order.hpp
- * In which order a mesh lies best in memory, if its own order is bad: a sweep
- * over a cloth is fast when what belongs together is in the cache together.
- * docs/graph.md */
-#include <algorithm>
+/** @file MeshOrder.hpp
+ * A better order of a mesh in memory, if its own is bad: a sweep over a cloth
+ * is fast when neighbors are in the cache together. docs/graph.md */
 #include <cstddef>
-#include <numeric>
+#include <functional>
 #include <span>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "CME212/Mesh.hpp"
 
 namespace lab {
 
-/** True if a sweep through @a quads in their order goes through the points in
- * small steps, whatever their number: no corner lies farther than @a near from
- * all corners of the quad before. One quad in sixteen may be an exception.
- * O(quads)
- * @param near what lies no farther is in the cache together: the positions of
- *        1000 points are 24 kB */
-inline bool is_local(std::span<const Quad> quads, unsigned near = 1000) {
-  std::size_t jumps = 0;
-  for (std::size_t q = 1; q < quads.size(); ++q)
-    jumps += std::ranges::any_of(quads[q], [&](unsigned i) {
-      return std::ranges::all_of(quads[q - 1], [&](unsigned j) {
-        return (i < j ? j - i : i - j) > near;
-      });
-    });
-  return jumps <= quads.size() / 16;
-}
-
-namespace order_detail {
-
-/** A list of numbers for each point, all lists in one array. */
-class Lists {
- public:
-  /** @param each each(add) calls add(i, k) for each k that is to be in the list
-   *        of point i, in their order; it is called twice */
-  template <typename Each>
-  Lists(std::size_t num_points, Each each) : first_(num_points + 2) {
-    each([this](unsigned i, unsigned) { ++first_[i + 2]; });
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    all_.resize(first_.back());
-    each([this](unsigned i, unsigned k) { all_[first_[i + 1]++] = k; });
-  }
-  std::span<unsigned> operator[](std::size_t i) {
-    return {all_.data() + first_[i], all_.data() + first_[i + 1]};
-  }
-  /** All lists, one after the other; here these are no lists any more. */
-  std::vector<unsigned> take() { return std::move(all_); }
-
- private:
-  std::vector<unsigned> first_, all_;
-};
-
-}  // namespace order_detail
+/** True if the order of @a quads is good for a cache: no corner of a quad lies
+ * farther than @a near from all corners of the quad before. One quad in sixteen
+ * may be an exception.  O(quads)
+ * @param near the positions of 1000 points are 24 kB */
+bool is_local(std::span<const Quad> quads, unsigned near = 1000);
 
 /** All points and all quads of a mesh, by number, in the order of memory. */
 struct MeshOrder {
   std::vector<unsigned> points, quads;
 };
 
-/** The order in which a walk in all directions at once, from a corner of the
- * mesh, comes to its quads and to its points; of those that it comes to from
- * the same point, first to those of few quads. So the points of a quad are as
- * close to each other as the front of the walk is long; and where the quads
- * make up a grid, they lie at constant distances over long runs, as in a grid
- * that is numbered row by row.
+/** Breadth-first (Cuthill-McKee) order of the points and quads of a mesh, from
+ * a corner of it; points found from the same point come by their number of
+ * quads. So the points of a quad are as close to each other as the front of the
+ * search is long. Where the quads make up a grid, they lie at constant offsets
+ * over long runs, as in a grid that is numbered row by row.
  * @pre the indices in @a quads are below @a num_points
  * Complexity: O(points + quads) if no point is in very many quads
- * Source: E. Cuthill, J. McKee, Proc. 24th Nat. Conf. ACM (1969) 157. */
-inline MeshOrder cuthill_mckee(std::size_t num_points,
-                               std::span<const Quad> quads) {
-  order_detail::Lists quads_at(num_points, [quads](auto add) {
-    for (unsigned q = 0; q < quads.size(); ++q)
-      for (unsigned i : quads[q]) add(i, q);
-  });
-  MeshOrder order;
-  auto& points = order.points;
-  points.reserve(num_points);
-  order.quads.reserve(quads.size());
-  std::vector<bool> has_point(num_points), has_quad(quads.size());
-  auto add_point = [&](unsigned i) {
-    if (!has_point[i]) points.push_back(i), has_point[i] = true;
-  };
-  auto key = [&](unsigned i) { return std::pair(quads_at[i].size(), i); };
-  auto walk_from = [&](unsigned start) {
-    std::size_t next = points.size();
-    for (add_point(start); next < points.size(); ++next) {
-      const auto old = std::ptrdiff_t(points.size());
-      for (unsigned q : quads_at[points[next]]) {
-        if (has_quad[q]) continue;
-        order.quads.push_back(q), has_quad[q] = true;
-        for (unsigned i : quads[q]) add_point(i);
-      }
-      std::sort(points.begin() + old, points.end(),
-                [&](unsigned i, unsigned j) { return key(i) < key(j); });
-    }
-  };
-  for (unsigned i = 0; i < num_points; ++i)
-    if (quads_at[i].size() == 1) walk_from(i);  // a corner
-  for (unsigned i = 0; i < num_points; ++i) walk_from(i);
-  return order;
-}
+ * Source: E. Cuthill, J. McKee, Proc. 24th Nat. Conf. ACM (1969) 157,
+ * doi:10.1145/800195.805928. */
+MeshOrder cuthill_mckee(std::size_t num_points, std::span<const Quad> quads);
 
 /** The quads in the order of memory, each with the places of its points there
  * instead of their numbers.  O(points + quads) */
-inline std::vector<Quad> in_order(std::span<const Quad> quads,
-                                  const MeshOrder& order) {
-  std::vector<unsigned> place(order.points.size());
-  for (unsigned p = 0; p < place.size(); ++p) place[order.points[p]] = p;
-  std::vector<Quad> ordered;
-  ordered.reserve(quads.size());
-  for (unsigned q : order.quads)
-    for (unsigned& i : ordered.emplace_back(quads[q])) i = place[i];
-  return ordered;
-}
+std::vector<Quad> in_order(std::span<const Quad> quads, const MeshOrder& order);
 
 /** The springs in the order of memory: the first spring of each point, then the
  * second ones, and so on, each counted with its end of lower number and sorted
@@ -126,33 +44,8 @@ inline std::vector<Quad> in_order(std::span<const Quad> quads,
  * @param number number(s) is a different one for each spring s
  * @pre springs.size() < 2^32
  * Complexity: O(points + springs log(largest degree)) */
-template <typename Number>
-std::vector<unsigned> sorted_springs(const MeshSprings& springs,
-                                     std::size_t num_points, Number number) {
-  auto ends = [&](unsigned s) {
-    auto [i, j] = springs[s];
-    return std::pair(std::min(i, j), std::max(i, j));
-  };
-  order_detail::Lists springs_at(num_points, [&](auto add) {
-    for (unsigned s = 0; s < springs.size(); ++s) add(ends(s).first, s);
-  });
-  std::vector<unsigned> all;
-  bool more = true;
-  for (std::size_t k = 0; more; ++k) {
-    more = false;
-    for (std::size_t p = 0; p < num_points; ++p) {
-      auto here = springs_at[p];
-      if (k == 0)
-        std::ranges::sort(here, {}, [&](unsigned s) {
-          return std::pair(ends(s), number(s));
-        });
-      // Those with the same ends stand together: step from one to the next.
-      if (k >= here.size()) continue;
-      more = true;
-      if (k == 0 || ends(here[k]) != ends(here[k - 1])) all.push_back(here[k]);
-    }
-  }
-  return all;
-}
+std::vector<unsigned> sorted_springs(
+    const MeshSprings& springs, std::size_t num_points,
+    const std::function<unsigned(unsigned)>& number);
 
 }  // namespace lab

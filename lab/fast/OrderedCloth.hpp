@@ -1,12 +1,9 @@
 #pragma once
 /** @file OrderedCloth.hpp
- * A cloth whose nodes and springs lie in memory in the order that sweeps like,
- * whatever the order of its mesh. */
-#include <algorithm>
+ * A cloth whose nodes and springs lie in memory in an order that is good for
+ * sweeps, whatever the order of its mesh. */
 #include <span>
-#include <vector>
 
-#include "lab/fast/MeshOrder.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -14,35 +11,8 @@ namespace lab {
 /** As build_cloth(), but if the order of the mesh is bad for a cache, nodes and
  * springs lie in memory in Cuthill-McKee order; indices are those of the mesh.
  * @pre and @post as build_cloth(); fewer than 2^32 springs */
-inline void build_ordered_cloth(Cloth& g, std::span<const Point> points,
-                                std::span<const Quad> quads, Mesh mesh,
-                                double K = 100) {
-  if (is_local(quads)) return build_cloth(g, points, quads, mesh, K);
-  assert(g.size() == 0);
-  const MeshSprings springs(quads, mesh);
-  g.reserve(unsigned(points.size()), unsigned(springs.expected(points.size())));
-  const NodeData at_rest = {Point(), Real(1.0 / double(points.size()))};
-  const MeshOrder order = cuthill_mckee(points.size(), quads);
-  std::vector<unsigned> node_id(points.size());
-  for (unsigned i : order.points)
-    node_id[i] = g.add_node(points[i], at_rest).id();
-  constexpr unsigned none = -1;  // a spring that came before
-  std::vector<unsigned> edge_id(springs.size(), none);
-  {
-    const auto ordered = in_order(quads, order);
-    const MeshSprings local(ordered, mesh);
-    const auto n = unsigned(quads.size());
-    auto number = [&](unsigned s) { return s / n * n + order.quads[s % n]; };
-    for (unsigned s : sorted_springs(local, points.size(), number)) {
-      const auto [i, j] = local[s];
-      const Node a = g.node(i), b = g.node(j);
-      const Real L = Real(norm(a.position() - b.position()));
-      edge_id[number(s)] = g.add_edge(a, b, {Real(K), L}).id();
-    }
-  }
-  std::erase(edge_id, none);
-  g.reindex_nodes(node_id);
-  g.reindex_edges(edge_id);
-}
+void build_ordered_cloth(Cloth& g, std::span<const Point> points,
+                         std::span<const Quad> quads, Mesh mesh,
+                         double K = 100);
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Stencil.hpp
- * Stencil: who is whose neighbor in a graph, laid out for sweeps over all nodes
- * that work on several nodes at a time. docs/speed.md walks through it. */
+ * Stencil: the neighbors of all nodes of a graph, laid out for a sweep that
+ * works on several nodes at a time. README.md of this room walks through it. */
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace lab {
 
-/** The neighbors of all nodes of a graph, by blocks of W nodes whose ids follow
- * each other, by rows of one neighbor for each node of the block.
+/** The neighbors of all nodes of a graph: by blocks of W nodes of consecutive
+ * ids, and in a block by rows of one neighbor for each node.
  *
- * On a grid most blocks have the same neighbors, each a constant number of ids
- * away; so such a row names that number only, and a sweep reads the neighbors'
- * data one after the other. The other rows list their neighbors.
+ * On a grid the neighbors of most rows lie at a constant offset of ids. Such a
+ * row stores the offset alone, and a sweep reads the neighbors' data with unit
+ * stride. The other rows are gathered: they store the id of each neighbor.
  *
  * It holds topology only, and must be made anew when that has changed.
- * Memory: 12 bytes a row, and 8 W more for each row that lists its neighbors.
+ * Memory: 12 bytes a row, and 8 W more for each gathered row.
  * @tparam W nodes a block */
 template <int W>
 class Stencil {
@@ -32,8 +32,8 @@ class Stencil {
   /** One neighbor for each node of a block. A node that has no more of them is
    * its own neighbor here, by some edge: a spring of length 0 does nothing. */
   struct Row {
-    int offset;            ///< neighbor's id - node's id; 0: they are listed
-    size_type first_edge;  ///< edge's id, + 1 from node to node; none: listed
+    int offset;            ///< neighbor's id - node's id; 0: gathered
+    size_type first_edge;  ///< edge's id, + 1 from node to node; none: gathered
     size_type list;        ///< where in neighbors() and edges()
   };
 
@@ -62,20 +62,20 @@ class Stencil {
     return {rows_.data() + row_begin_[block],
             rows_.data() + row_begin_[block + 1]};
   }
-  /** The ids of the W neighbors, and edges, of a row that lists them. */
+  /** The ids of the W neighbors, and edges, of a gathered row. */
   const size_type* neighbors(const Row& r) const { return &neighbor_[r.list]; }
   const size_type* edges(const Row& r) const { return &edge_[r.list]; }
   std::size_t num_rows() const { return rows_.size(); }
   /** The largest difference of two neighbors' ids. */
   size_type reach() const { return reach_; }
-  /** How many rows list their neighbors. */
+  /** The number of gathered rows. */
   std::size_t num_gathered() const { return neighbor_.size() / W; }
 
  private:
   size_type slots_ = 0, reach_ = 0;
   std::vector<size_type> row_begin_;  // by block, and the end
   std::vector<Row> rows_;
-  std::vector<size_type> neighbor_, edge_;  // W for each row that lists them
+  std::vector<size_type> neighbor_, edge_;  // W for each gathered row
   std::array<size_type, W> last_block_ = {};
 
   template <typename G>
@@ -92,21 +92,21 @@ class Stencil {
             reach_, std::max(h.node, first + k) - std::min(h.node, first + k));
     }
     for (std::size_t m = 0; m < left[0].size();)
-      if (!add_alike(first, m, left)) ++m;
+      if (!add_at_offset(first, m, left)) ++m;
     for (const auto& l : left) most = std::max(most, l.size());
-    for (std::size_t m = 0; m < most; ++m) add_listed(first, m, left);
+    for (std::size_t m = 0; m < most; ++m) add_gathered(first, m, left);
   }
 
-  /** If all nodes have a neighbor as far away as number m of the first one, add
-   * the row of these, and take them from @a left. */
+  /** If all nodes have a neighbor at the offset of number m of the first one,
+   * add the row of these, and take them from @a left. */
   template <typename Half>
-  bool add_alike(size_type first, std::size_t m,
-                 std::array<std::vector<Half>, W>& left) {
+  bool add_at_offset(size_type first, std::size_t m,
+                     std::array<std::vector<Half>, W>& left) {
     std::array<std::size_t, W> place;
     bool in_sequence = true;
     const Half start = left[0][m];
     for (size_type k = 0; k < W; ++k) {
-      // The lists are alike as a rule: begin where it stands in the first one.
+      // Neighbors mostly stand in the same order: begin at number m.
       const auto& l = left[k];
       std::size_t at = std::min(m, l.size());
       if (at == l.size() || l[at].node != start.node + k)
@@ -125,10 +125,10 @@ class Stencil {
     return true;
   }
 
-  /** Add the row of number m of each node. */
+  /** Add the gathered row of number m of each node. */
   template <typename Half>
-  void add_listed(size_type first, std::size_t m,
-                  const std::array<std::vector<Half>, W>& left) {
+  void add_gathered(size_type first, std::size_t m,
+                    const std::array<std::vector<Half>, W>& left) {
     rows_.push_back({0, none, size_type(neighbor_.size())});
     for (size_type k = 0; k < W; ++k)
       list(m < left[k].size() ? left[k][m]

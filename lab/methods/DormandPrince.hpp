@@ -16,7 +16,8 @@ struct DormandPrinceTableau {
       0.9971,
       "Dormand, Prince 1980",
       "a tolerance instead of a step",
-      "springs: its limit per sweep is a twelfth of verlet's",
+      "springs: per force evaluation its limit is a twelfth of "
+      "verlet's",
       true};
   static constexpr std::array a = {1 / 5.,
                                    3 / 40.,
@@ -46,6 +47,7 @@ struct DormandPrinceTableau {
       -92097 / 339200., 187 / 2100., 1 / 40.};
   static constexpr std::array c = {0., 1 / 5., 3 / 10., 4 / 5., 8 / 9., 1., 1.};
 };
+extern template class RungeKutta<DormandPrinceTableau>;
 using DormandPrince = RungeKutta<DormandPrinceTableau>;
 
 }  // namespace lab

@@ -15,12 +15,13 @@ struct ForwardEulerTableau {
       1,
       0,
       "Euler 1768",
-      "nothing: it is the control that must fail",
-      "always, without drag: it feeds energy in"};
+      "negative control",
+      "every spring without drag: its energy grows"};
   static constexpr std::array<double, 0> a = {};
   static constexpr std::array b = {1.0};
   static constexpr std::array c = {0.0};
 };
+extern template class RungeKutta<ForwardEulerTableau>;
 using ForwardEuler = RungeKutta<ForwardEulerTableau>;
 
 }  // namespace lab

@@ -7,33 +7,28 @@ namespace lab {
 
 /** Linearly implicit Euler: v += dt F(x + dt v)/m with F linearized at x, then
  * x += dt v. One linear system a step, by conjugate gradients.
- * Source: D. Baraff, A. Witkin, SIGGRAPH 1998, "Large steps in cloth
- * simulation", with compressed springs taken as having no stiffness across. */
+ * Source: D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH
+ * 1998, doi:10.1145/280814.280821; here compressed springs have no stiffness
+ * across. */
 class ImplicitEuler : public Method {
  public:
-  // Besides the sweep: about dt omega products with the matrix, each as dear
-  // as a sweep.
+  // Besides the force evaluation: about dt omega products with the matrix, each
+  // at the cost of one.
   static constexpr MethodInfo info = {
       "implicit-euler",
       1,
       1,
       no_limit,
       "Baraff, Witkin 1998",
-      "stiff cloth that shall come to rest, at any dt",
-      "motion counts: it damps as a drag of dt omega^2 would"};
+      "stiff cloth that comes to rest, at any dt",
+      "accurate motion: it damps as a drag of dt omega^2 would"};
 
   /** @param tolerance > 0, of the linear system: see
    *        ImplicitStage::solve_linearized() */
   explicit ImplicitEuler(double tolerance = 1e-8) : stage_(tolerance, 0) {}
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override {
-    stage_.begin(info.name, dt, g, constraint);
-    stage_.solve_linearized(g, t + dt, dt, force);
-    auto node = g.node_values();
-    for (unsigned i = 0; i < g.node_slots(); ++i) node[i].vel = stage_.w[i];
-    return implicit_detail::finish(g, t + dt, constraint);
-  }
+              const ConstraintPlan& constraint) override;
 
  private:
   implicit_detail::ImplicitStage stage_;

@@ -2,17 +2,9 @@
 /** @file ImplicitStage.hpp
  * What the implicit methods share: the equation of one stage, solved by
  * Newton's method and conjugate gradients. */
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
-#include "CME212/Util.hpp"
-#include "lab/methods/Flow.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -21,22 +13,12 @@ namespace implicit_detail {
 
 /** Call force.add_stiffness(), and throw std::invalid_argument in the name of
  * @a method if the force does not know its stiffness. */
-inline void add_stiffness(const char* method, const ForcePlan& force,
-                          const Cloth& g, const StiffnessVisitor& use) {
-  if (!force.add_stiffness(g, use))
-    throw std::invalid_argument(
-        std::string(method) +
-        ": the force, or a part of it, does not know its stiffness "
-        "(SweptForce::add_stiffness); an explicit method does without");
-}
+void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
+                   const StiffnessVisitor& use);
 
-/** Which nodes do not move in a step, by node id: the held and removed ones. */
-inline void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
-                       std::vector<char>& fixed) {
-  fixed.assign(g.node_slots(), false);
-  for (unsigned i = 0; i < g.node_slots(); ++i) fixed[i] = !g.node_in_use(i);
-  constraint.each_held(g, [&fixed](Node n) { fixed[n.id()] = true; });
-}
+/** The nodes that do not move in a step, by node id: held and removed ones. */
+void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
+                std::vector<char>& fixed);
 
 /** What a solver is asked for, and what its errors say. */
 struct Goal {
@@ -45,14 +27,7 @@ struct Goal {
   const char* method = "";
   double dt = 0;  ///< of the whole step [s]
   [[noreturn]] void fail(const char* what, int iterations, double residual,
-                         const char* unit) const {
-    using CME212::short_text;
-    throw StepError(std::string(method) + ": " + what +
-                    " is at a residual of " + short_text(residual) + unit +
-                    " after " + std::to_string(iterations) +
-                    " iterations, expected " + short_text(tolerance) + unit +
-                    "; dt = " + short_text(dt) + " s");
-  }
+                         const char* unit) const;
 };
 
 /** The equation that all implicit steps here are made of: find w [m/s] with
@@ -72,25 +47,13 @@ class ImplicitStage {
 
   /** @param tolerance > 0 and @param max_iterations: see the solvers
    * @param line_search whether Newton's method has one */
-  ImplicitStage(double tolerance, int max_iterations, bool line_search = true)
-      : goal_{tolerance, max_iterations}, line_search_(line_search) {}
+  ImplicitStage(double tolerance, int max_iterations, bool line_search = true);
+  ~ImplicitStage();
 
   /** Ready for a step of @a g by @a dt [s]: who is fixed and at rest, and p =
    * x, q = w = v.  @param method whose name errors give */
   void begin(const char* method, double dt, Cloth& g,
-             const ConstraintPlan& constraint) {
-    goal_.method = method, goal_.dt = dt;
-    find_fixed(g, constraint, fixed_);
-    stop_held(g, constraint);
-    const unsigned n = g.node_slots();
-    p.assign(g.positions().begin(), g.positions().end());
-    q.resize(n);
-    for (unsigned i = 0; i < n; ++i) q[i] = g.node_values()[i].vel;
-    w = q;
-    for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
-      a->resize(n);
-    inverse_.resize(n);
-  }
+             const ConstraintPlan& constraint);
   bool fixed(unsigned i) const { return fixed_[i]; }
 
   /** One Newton step from where @a g is, whatever is left over: the linear
@@ -98,18 +61,7 @@ class ImplicitStage {
    * by the factor tolerance from that of w = q. So what is left over does what
    * a wrong acceleration would, and small steps have no more of it.
    * @post g's positions are p + s w */
-  void solve_linearized(Cloth& g, double t, double s, const ForcePlan& force) {
-    find_still(g, s, w);
-    find_residual(g, t, s, force);
-    assemble(g, s, force);
-    for (unsigned i = 0; i < w.size(); ++i) direction_[i] = q[i] - w[i];
-    multiply(direction_, product_, true);
-    for (unsigned i = 0; i < w.size(); ++i) residual_[i] -= product_[i];
-    w = q;
-    solve(goal_.tolerance, true);
-    advance(1);
-    move(g, s);
-  }
+  void solve_linearized(Cloth& g, double t, double s, const ForcePlan& force);
 
   /** Newton's method with a line search, from @a w or from where @a g is: the
    * former is nearer, unless it stretches springs.
@@ -118,37 +70,7 @@ class ImplicitStage {
    * or round_off(). Such a residual does what a wrong acceleration would: while
    * s omega is small, it moves the cloth by tolerance T^2/2 at most in a time
    * T, however many steps that takes. Throws StepError. */
-  void solve_newton(Cloth& g, double t, double s, const ForcePlan& force) {
-    Objective here = choose_start(g, s, force);
-    double first = 0, before = 0;
-    bool clamp = false;
-    for (int iteration = 0;; ++iteration) {
-      move(g, s);
-      find_residual(g, t, s, force);
-      if (iteration == 0) assemble(g, s, force);
-      precondition(residual_, z_);
-      const double left = rms(g, z_) / s;
-      if (left <= goal_.tolerance || left <= round_off(g, s)) return;
-      if (iteration == goal_.max_iterations || !std::isfinite(left))
-        goal_.fail("Newton's method", iteration, left, " m/s^2");
-      // Solve the better, the faster Newton closes in, but not for nothing.
-      double enough = 0.01;
-      if (iteration == 0) {
-        first = left;
-      } else {
-        assemble(g, s, force);
-        enough = std::max(0.1 * std::pow(left / before, 1.5),
-                          0.3 * goal_.tolerance / left);
-        enough = std::clamp(enough, 1e-12, 0.03);
-      }
-      before = left;
-      if (clamp || !solve(enough, false)) solve(enough, true);
-      const bool found = search(g, t, s, force, here, left < 0.01 * first);
-      if (!found && clamp)
-        goal_.fail("Newton's line search", iteration, left, " m/s^2");
-      clamp = !found;  // A was all but singular, and the step far too long
-    }
-  }
+  void solve_newton(Cloth& g, double t, double s, const ForcePlan& force);
 
  private:
   struct Block {  // of s^2 H, between nodes i and j
@@ -158,230 +80,39 @@ class ImplicitStage {
   Sweep sweep_;
   std::vector<char> fixed_;
   std::vector<Block> blocks_;
-  std::vector<Eigen::Matrix3d> inverse_;  // of the diagonal blocks of A
-  std::vector<double> diagonal_;          // m + s c [kg]
+  struct DiagonalBlock;
+  std::vector<DiagonalBlock> diagonal_blocks_;  // of A, inverted
+  std::vector<double> diagonal_;                // m + s c [kg]
   std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
   double drag_ = 0;  // [kg/s]
   Goal goal_;
   bool line_search_;
 
-  static Stiffness clamped(const Stiffness& B) {
-    return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
-  }
-
-  /** The @a still [m/s] that leaves @a g where it is. */
-  void find_still(const Cloth& g, double s, std::vector<Point>& still) const {
-    auto x = g.positions();
-    for (unsigned i = 0; i < w.size(); ++i) still[i] = (x[i] - p[i]) / s;
-  }
-  /** The positions p + s w. */
-  void move(Cloth& g, double s) const {
-    auto x = g.positions();
-    for (unsigned i = 0; i < w.size(); ++i)
-      if (!fixed_[i]) x[i] = p[i] + s * w[i];
-  }
-  /** w += a times the solution of the linear system. */
-  void advance(double a) {
-    for (unsigned i = 0; i < w.size(); ++i) w[i] += a * step_[i];
-  }
-
-  /** s (F - c w) - M (w - q) [kg m/s] at the positions of @a g. */
-  void find_residual(const Cloth& g, double t, double s,
-                     const ForcePlan& force) {
-    sweep_without_drag(sweep_, g, t, force, force_);
-    drag_ = force.drag();
-    auto node = g.node_values();
-    for (unsigned i = 0; i < w.size(); ++i)
-      residual_[i] = fixed_[i] ? Point()
-                               : s * (force_[i] - drag_ * w[i]) -
-                                     node[i].mass * (w[i] - q[i]);
-  }
-
-  /** The springs' blocks of A, and the inverses of its diagonal ones. */
-  void assemble(const Cloth& g, double s, const ForcePlan& force) {
-    auto node = g.node_values();
-    diagonal_.resize(w.size());
-    for (unsigned i = 0; i < w.size(); ++i) {
-      diagonal_[i] = node[i].mass + s * drag_;
-      inverse_[i] = diagonal_[i] * Eigen::Matrix3d::Identity();
-    }
-    blocks_.clear();
-    const double ss = s * s;
-    add_stiffness(goal_.method, force, g,
-                  [this, ss](unsigned i, unsigned j, const Stiffness& B) {
-                    Stiffness b = {B.direction, ss * B.along, ss * B.across};
-                    blocks_.push_back({i, j, b});
-                    b = clamped(b);
-                    const Eigen::Vector3d n(b.direction.x, b.direction.y,
-                                            b.direction.z);
-                    const Eigen::Matrix3d full =
-                        b.across * Eigen::Matrix3d::Identity() +
-                        ((b.along - b.across) * n) * n.transpose();
-                    inverse_[i] += full;
-                    inverse_[j] += full;
-                  });
-    for (Eigen::Matrix3d& d : inverse_) {
-      // By Cholesky, as a spring may be a million times stiffer along than
-      // across; the triangle makes it symmetric.
-      Eigen::Matrix3d half =
-          d.llt().matrixL().solve(Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
-      d = half.transpose() * half;
-    }
-  }
-
-  /** @a to = A @a from, without negative stiffness if @a clamp.  @pre @a from
-   * is 0 at fixed nodes */
-  void multiply(const std::vector<Point>& from, std::vector<Point>& to,
-                bool clamp) const {
-    for (unsigned i = 0; i < from.size(); ++i) to[i] = diagonal_[i] * from[i];
-    for (const Block& b : blocks_) {
-      const Stiffness B = clamp ? clamped(b.B) : b.B;
-      Point f = B * (from[b.j] - from[b.i]);
-      to[b.i] -= f;
-      to[b.j] += f;
-    }
-    for (unsigned i = 0; i < to.size(); ++i)
-      if (fixed_[i]) to[i] = Point();
-  }
-  /** @a to = D^-1 @a from. */
-  void precondition(const std::vector<Point>& from,
-                    std::vector<Point>& to) const {
-    for (unsigned i = 0; i < from.size(); ++i) {
-      const Point& a = from[i];
-      const Eigen::Vector3d b = inverse_[i] * Eigen::Vector3d(a.x, a.y, a.z);
-      to[i] = Point(b.x(), b.y(), b.z());
-    }
-  }
-  static double product(const std::vector<Point>& a,
-                        const std::vector<Point>& b) {
-    double sum = 0;
-    for (unsigned i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-    return sum;
-  }
-  template <typename Points>
-  static double rms(const Cloth& g, const Points& a) {
-    double sum = 0;
-    for (const Point& point : a) sum += normSq(point);
-    return std::sqrt(sum / std::max(1u, g.num_nodes()));
-  }
-  /** What round-off leaves of D^-1 r/s [m/s^2], RMS over the nodes: that of w
-   * by the inertia, that of x by the springs, as far as they make up D. */
-  double round_off(const Cloth& g, double s) const {
-    constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-    auto x = g.positions();
-    double sum = 0;
-    for (unsigned i = 0; i < w.size(); ++i) {
-      if (fixed_[i]) continue;
-      double share = std::clamp(3 - diagonal_[i] * inverse_[i].trace(), 0., 3.);
-      sum += normSq(w[i]) + share * share / (s * s) * normSq(x[i]);
-    }
-    return epsilon / s * std::sqrt(sum / std::max(1u, g.num_nodes()));
-  }
-
-  /** Solve A step_ = residual_ by conjugate gradients, preconditioned by D,
-   * until the residual r has fallen by the factor @a relative in the norm
-   * sqrt(r D^-1 r).
-   * Without @a clamp, A may turn out not to be positive definite: then step_ is
-   * as far as it got, which goes downhill still.
-   * @return false if it got nowhere; never with @a clamp  Throws StepError. */
-  bool solve(double relative, bool clamp) {
-    std::fill(step_.begin(), step_.end(), Point());
-    rest_ = residual_;
-    precondition(rest_, z_);
-    direction_ = z_;
-    double size = product(rest_, z_);
-    const double start = size, enough = relative * relative * start;
-    const int most = 1000 + 3 * int(w.size());
-    for (int k = 0; !(size <= enough); ++k) {
-      if (k == most || !std::isfinite(size)) {
-        Goal linear = goal_;
-        linear.tolerance = relative;
-        linear.fail("the conjugate gradient method", k, std::sqrt(size / start),
-                    " (relative)");
-      }
-      multiply(direction_, product_, clamp);
-      const double curvature = product(direction_, product_);
-      if (!clamp && curvature <= 0) return k > 0;
-      const double a = size / curvature;
-      for (unsigned i = 0; i < w.size(); ++i) {
-        step_[i] += a * direction_[i];
-        rest_[i] -= a * product_[i];
-      }
-      precondition(rest_, z_);
-      const double next = product(rest_, z_);
-      for (unsigned i = 0; i < w.size(); ++i)
-        direction_[i] = z_[i] + (next / size) * direction_[i];
-      size = next;
-    }
-    return true;
-  }
-
   struct Objective {
     double inertia, energy;  // [J]
     double value() const { return inertia + energy; }
   };
-  Objective objective(const Cloth& g, double s, const ForcePlan& force) const {
-    auto node = g.node_values();
-    const double drag = force.drag();
-    double sum = 0;
-    for (unsigned i = 0; i < w.size(); ++i)
-      if (!fixed_[i])
-        sum += node[i].mass * normSq(w[i] - q[i]) + s * drag * normSq(w[i]);
-    return {0.5 * sum, force.energy(g)};
-  }
 
-  /** Keep w, or take the one that leaves @a g where it is: that of the lower
-   * objective, which is returned. */
-  Objective choose_start(Cloth& g, double s, const ForcePlan& force) {
-    find_still(g, s, rest_);
-    std::swap(w, rest_);
-    const Objective still = objective(g, s, force);
-    std::swap(w, rest_);
-    move(g, s);
-    const Objective moved = objective(g, s, force);
-    if (moved.value() < still.value()) return moved;
-    std::swap(w, rest_);
-    return still;
-  }
-
-  /** Go along step_ by 1, 1/2, 1/4, ... until the objective has fallen from
-   * @a here by a ten thousandth of what its slope promises (Armijo's rule).
-   * Round-off may hide such a fall: go all the way if it is that small; and if
-   * @a close to the end, also if there is no slope left there, as at the bottom
-   * of a parabola.
-   * @return false if it does not fall; then w is as before, to round-off */
+  void find_still(const Cloth& g, double s, std::vector<Point>& still) const;
+  void move(Cloth& g, double s) const;
+  void advance(double a);
+  void find_residual(const Cloth& g, double t, double s,
+                     const ForcePlan& force);
+  void assemble(const Cloth& g, double s, const ForcePlan& force);
+  void multiply(const std::vector<Point>& from, std::vector<Point>& to,
+                bool clamp) const;
+  void precondition(const std::vector<Point>& from,
+                    std::vector<Point>& to) const;
+  double round_off(const Cloth& g, double s) const;
+  bool solve(double relative, bool clamp);
+  Objective objective(const Cloth& g, double s, const ForcePlan& force) const;
+  Objective choose_start(Cloth& g, double s, const ForcePlan& force);
   bool search(Cloth& g, double t, double s, const ForcePlan& force,
-              Objective& here, bool close) {
-    const double promise = product(residual_, step_);
-    advance(1);
-    if (!line_search_) return true;
-    if (promise <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
-    double a = 1;
-    for (; a > 1e-9; a /= 2) {
-      move(g, s);
-      const Objective there = objective(g, s, force);
-      bool good = there.value() <= here.value() - 1e-4 * a * promise;
-      if (!good && close && a == 1) {
-        find_residual(g, t, s, force);
-        good = std::abs(product(residual_, step_)) <= 0.1 * promise;
-      }
-      if (good) {
-        here = there;
-        return true;
-      }
-      advance(-a / 2);
-    }
-    advance(-a);
-    return false;
-  }
+              Objective& here, bool close);
 };
 
 /** End of a step: the constraint at @a end, and held nodes at rest. */
-inline double finish(Cloth& g, double end, const ConstraintPlan& constraint) {
-  constraint(g, end);
-  stop_held(g, constraint);
-  return end;
-}
+double finish(Cloth& g, double end, const ConstraintPlan& constraint);
 
 }  // namespace implicit_detail
 

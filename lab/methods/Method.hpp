@@ -17,7 +17,7 @@ namespace lab {
 struct MethodInfo {
   const char* name;
   int order;     ///< error ~ dt^order
-  int sweeps;    ///< force sweeps a step
+  int sweeps;    ///< force evaluations a step, without linear solves
   double limit;  ///< bounded while dt omega < limit, without drag
   const char* source;
   const char* good_for;
@@ -28,11 +28,11 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 /** A method: takes a cloth from t to t + dt, as often as it is called.
  *
- * Its constraint is called once a step, when the positions have reached t +
- * dt, and before the force there is taken; held nodes stay at rest in between.
- * Or else, if it mends by node, part by part, each before a force sees it.
- * Nodes may be removed by it, and between steps. No allocation in a step, but
- * for the first one and when the cloth grew.
+ * It applies the constraint once a step: when the positions have reached t +
+ * dt, and before the force there is evaluated. A nodewise constraint it may
+ * project part by part. Held nodes stay at rest in between. The constraint may
+ * remove nodes, and so may the caller between steps. Only the first step
+ * allocates, and one after the cloth grew.
  *
  * A method may keep the force at the end of a step for the next one: whoever
  * moves nodes between two steps calls restart(). */
@@ -42,25 +42,30 @@ class Method {
 
   /** One step from @a t by @a dt [s].  @return t + dt   @pre dt > 0
    * Throws StepError if the method can't make it; std::invalid_argument if it
-   * can't do with this force. */
+   * can't handle this force. */
   virtual double step(Cloth& g, double t, double dt, const ForcePlan& force,
                       const ConstraintPlan& constraint) = 0;
   /** Forget what was kept from the last step. */
   virtual void restart() {}
 
-  /** The call of symp_euler_step(): any force, any constraint. */
+  /** The call of symp_euler_step(): any force, any constraint; or their plans,
+   * which save making them in each step. */
   template <typename F, typename C = ZeroConstraint>
   double operator()(Cloth& g, double t, double dt, F&& force,
                     C&& constraint = C()) {
-    return step(g, t, dt, as<ZeroForce, FunctionForce>(force),
-                as<ZeroConstraint, FunctionConstraint>(constraint));
+    return step(
+        g, t, dt, as<ForcePlan, ZeroForce, FunctionForce>(force),
+        as<ConstraintPlan, ZeroConstraint, FunctionConstraint>(constraint));
   }
 
  private:
-  /** @a x itself if it is a Base, else a Base that calls it. */
-  template <typename Base, template <typename> class Adapter, typename T>
+  /** @a x itself if it is a Plan or a Base, else a Base that calls it. */
+  template <typename Plan, typename Base, template <typename> class Adapter,
+            typename T>
   static decltype(auto) as(T& x) {
-    if constexpr (std::derived_from<std::remove_const_t<T>, Base>)
+    if constexpr (std::derived_from<std::remove_const_t<T>, Plan>)
+      return static_cast<const Plan&>(x);
+    else if constexpr (std::derived_from<std::remove_const_t<T>, Base>)
       return static_cast<const Base&>(x);
     else
       return Adapter([&x]<typename... Args>(Args&&... args) {

@@ -37,10 +37,6 @@ inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<Xpbd>()};
 
 /** The method called @a name, or nullptr. */
-inline const MethodEntry* find_method(std::string_view name) {
-  for (const MethodEntry& m : methods)
-    if (m.info.name == name) return &m;
-  return nullptr;
-}
+const MethodEntry* find_method(std::string_view name);
 
 }  // namespace lab

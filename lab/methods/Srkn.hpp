@@ -26,6 +26,7 @@ struct Srkn6bScheme {
   static constexpr std::array steps = {b1, a1, b2, a2, b3, a3, b4,
                                        a3, b3, a2, b2, a1, b1};
 };
+extern template class Splitting<Srkn6bScheme>;
 using Srkn6b = Splitting<Srkn6bScheme>;
 
 /** Runge-Kutta-Nystroem splitting of order 6 with 11 kicks. Source: as above.
@@ -52,6 +53,7 @@ struct Srkn11bScheme {
                                        b5, a5, b6, a6, b6, a5, b5, a4,
                                        b4, a3, b3, a2, b2, a1, b1};
 };
+extern template class Splitting<Srkn11bScheme>;
 using Srkn11b = Splitting<Srkn11bScheme>;
 
 }  // namespace lab

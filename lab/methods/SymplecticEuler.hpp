@@ -1,7 +1,7 @@
 #pragma once
 /** @file SymplecticEuler.hpp
  * The assignment's step as a method. */
-#include "lab/methods/Flow.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -17,19 +17,10 @@ class SymplecticEuler : public Method {
                                       2,
                                       "the assignment",
                                       "a first look; energy stays bounded",
-                                      "accuracy counts: verlet costs the same"};
+                                      "accuracy: verlet costs the same"};
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override {
-    move_and_sweep(
-        sweep_, g, t, force, constraint,
-        [&](const Part& part) { drift(g, part, dt, 0); },
-        [&](const Part& part, std::span<const Point> f) {
-          kick(g, part, dt, f);
-        });
-    stop_held(g, constraint);
-    return t + dt;
-  }
+              const ConstraintPlan& constraint) override;
 
  private:
   Sweep sweep_;

@@ -18,10 +18,11 @@ struct VerletScheme {
       2,
       "Verlet 1967",
       "contact, tearing, tolerances down to 1e-3",
-      "high accuracy is wanted; stiff cloth"};
+      "high accuracy; stiff cloth"};
   static constexpr bool kicks_first = true;
   static constexpr std::array steps = {0.5, 1.0, 0.5};
 };
+extern template class Splitting<VerletScheme>;
 using Verlet = Splitting<VerletScheme>;
 
 }  // namespace lab

@@ -2,13 +2,13 @@
 /** @file Scene.hpp
  * Scene: a cloth with its forces, its constraints and a clock, as a Recipe
  * makes them. */
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "lab/methods/Methods.hpp"
+#include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stability/Guard.hpp"
 
@@ -21,35 +21,17 @@ class Scene {
   static constexpr int guard_interval = 32, sharp_interval = 100;
 
   /** At t = 0 and at rest, as the recipe makes it.
-   * @pre the parameters are in range
+   * @pre step.dt > 0
    * Throws std::invalid_argument if nothing bounds the step that it is to
    * choose; and what the recipe throws. */
-  Scene(Recipe recipe, const Parameters& with, const MethodEntry& method)
-      : recipe_(std::move(recipe)),
-        with_(with),
-        entry_(method),
-        method_(method.make()) {
-    restart();
-  }
+  Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method);
+  /** The scene of @a m.  Throws InputError, SceneError, and as above. */
+  explicit Scene(const Model& m);
   Scene(const Scene&) = delete;  // pins hold handles into the cloth
   Scene& operator=(const Scene&) = delete;
 
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
-  void restart() {
-    cloth_.clear();
-    recipe_.build(cloth_);
-    force_ = recipe_.force(cloth_);
-    watched_.emplace(recipe_.constraint(cloth_));
-    constraint_ = *watched_;
-    guard_.emplace(cloth_, with_.gravity);
-    method_->restart();
-    clock_ = {.dt = with_.dt};
-    safe_omega_ = -1;
-    failure_.clear();
-    worst_.reset();
-    if (with_.rule != StepRule::fixed) choose_step();
-    keep_clock();
-  }
+  void restart();
 
   /** One step of dt(). The guard looks at every 32nd only, and at those that
    * change the graph: see check().
@@ -57,38 +39,33 @@ class Scene {
    * cloth and the clock are those of the last good state.
    * @pre failure().empty()
    * Throws std::invalid_argument if the method can't do with this force. */
-  bool step() {
-    if (with_.rule == StepRule::sharp && clock_.steps > 0 &&
-        clock_.steps % sharp_interval == 0) {
-      if (!check()) return false;
-      choose_step();
-      keep_clock();  // with the new dt, in case that these steps are replayed
-    }
-    if (!advance()) return replay(clock_.steps + 1);
-    if (clock_.steps - checked_.steps >= guard_interval ||
-        cloth_.version() != version_)
-      return check();
-    return true;
-  }
+  bool step();
 
   /** Make sure that the present state is good: whoever shows it or writes it
    * down asks for that first. If it is not, the steps since the last check are
    * made again, one by one, to find the one that failed.
    * @return as step() */
-  bool check() {
-    if (!failure_.empty()) return false;
-    if (clock_.steps == checked_.steps) return true;
-    if (!guard_->accept(cloth_)) return replay(clock_.steps);
-    keep_clock();
-    return true;
+  bool check();
+
+  /** True at the end of a run to @a t_end [s], to round-off, so that 5000 steps
+   * of 0.001 s are 5 s; and if the run failed. */
+  bool done(double t_end) const {
+    return !failure_.empty() || time() >= t_end * (1 - 1e-12);
+  }
+  /** Step until done(@a t_end), with a call of @a after() after each step, and
+   * after the one that failed, if one did. The state at the end is checked.
+   * @return as step()   Throws as step(), and what @a after throws. */
+  bool run_to(double t_end, const std::function<void()>& after);
+  bool run_to(double t_end) {
+    return run_to(t_end, [] {});
   }
 
   /** The cloth; between two steps it may be changed in any way. */
   Cloth& cloth() { return cloth_; }
   const Cloth& cloth() const { return cloth_; }
   const Recipe& recipe() const { return recipe_; }
-  const Parameters& parameters() const { return with_; }
   const MethodInfo& method() const { return entry_.info; }
+  StepRule step_rule() const { return step_.rule; }
   /** The next step [s]; it changes with StepRule::sharp only. */
   double dt() const { return clock_.dt; }
   /** Steps done, and the time [s] reached. */
@@ -97,17 +74,14 @@ class Scene {
   /** Why step() returned false; empty before. And where. */
   const std::string& failure() const { return failure_; }
   const std::optional<WorstPlace>& failed_at() const { return worst_; }
-  /** What would have passed through an obstacle within a step. */
+  /** What would have tunnelled through an obstacle. */
   const WatchedConstraint& watched() const { return *watched_; }
 
-  /** The largest step [s] of @a method, or of this scene's, that is safe in
-   * every shape of the cloth; no_limit if there is none, 0 if no step is.
+  /** The stability limit [s] of @a method, or of this scene's, in every
+   * configuration of the cloth; no_limit if there is none, 0 if no step is
+   * stable.
    * Complexity: the first call as omega_safe(). */
-  double safe_limit(const MethodEntry& method) {
-    if (safe_omega_ < 0) safe_omega_ = omega_safe(cloth_, *force_, constraint_);
-    return step_limit(method, safe_omega_,
-                      largest_gamma(cloth_, force_->drag()));
-  }
+  double safe_limit(const MethodEntry& method);
   double safe_limit() { return safe_limit(entry_); }
 
  private:
@@ -124,7 +98,7 @@ class Scene {
   };
 
   Recipe recipe_;
-  Parameters with_;
+  TimeStep step_;
   MethodEntry entry_;
   Cloth cloth_;
   std::optional<ForcePlan> force_;
@@ -139,88 +113,13 @@ class Scene {
   std::string failure_, error_;  // error_: of the method
   std::optional<WorstPlace> worst_;
 
-  void keep_clock() {
-    checked_ = clock_;
-    version_ = cloth_.version();
-    watch_paths();
-  }
-
-  /** From here on, if nodes get fast for the obstacles. Speeds are looked at
-   * here only, so with room for them to grow. */
-  void watch_paths() {
-    const double thin = watched_->thinnest();
-    if (!std::isfinite(thin)) return;
-    const double gain = std::abs(with_.gravity) * guard_interval * clock_.dt;
-    watched_->watch(cloth_, (max_speed(cloth_) + gain) * clock_.dt > thin / 8);
-  }
-
-  void choose_step() {
-    double dt = safe_share * safe_limit();
-    if (with_.rule == StepRule::sharp) {
-      // A cloth let go flat stiffens by 40 % within fewer steps than lie
-      // between two looks: so never beyond what holds in every shape.
-      const double sharp =
-          step_limit(entry_, sharp_(cloth_, *force_, constraint_),
-                     largest_gamma(cloth_, force_->drag()));
-      dt = std::min(sharp_share * sharp, safe_limit());
-    }
-    if (!(dt > 0 && std::isfinite(dt)))
-      throw std::invalid_argument(
-          std::string("nothing bounds the step of ") + entry_.info.name +
-          (dt > 0 ? " here" : ": it has no stable step") +
-          ", so it can't be chosen: give a number");
-    clock_.set_dt(dt);
-  }
-
-  /** One step; no look at what came out.  @return false if it can't be made */
-  bool advance() {
-    try {
-      method_->step(cloth_, time(), clock_.dt, *force_, constraint_);
-    } catch (const StepError& e) {
-      error_ = e.what();
-      return false;
-    }
-    ++clock_.steps;
-    return true;
-  }
-
-  /** From the last good state on, step by step, until one fails.
-   * @param last the step known to fail  @return false if one did */
-  bool replay(long long last) {
-    rewind();
-    while (clock_.steps < last) {
-      if (!advance()) return fail("failed (" + error_ + ")");
-      if (!guard_->good(cloth_)) return fail("diverged");
-      guard_->keep(cloth_);
-      keep_clock();
-    }
-    return true;  // what was torn meanwhile is gone, so it may go well now
-  }
-  void rewind() {
-    guard_->restore(cloth_);
-    clock_ = checked_;
-    method_->restart();
-    watch_paths();
-  }
-
-  /** Say what happened to the step, and go back to before it. */
-  bool fail(const std::string& what) {
-    using CME212::short_text;
-    worst_.emplace(cloth_);
-    const std::string where = worst_->text(cloth_);
-    rewind();
-    constexpr MethodEntry verlet = entry_of<Verlet>();
-    const double sharp =
-        step_limit(entry_, sharp_(cloth_, *force_, constraint_, 40),
-                   largest_gamma(cloth_, force_->drag()));
-    failure_ = what + " in step " + std::to_string(clock_.steps + 1) +
-               " with dt = " + short_text(clock_.dt) + " s, method " +
-               entry_.info.name + ": " + where + "; the last good state is " +
-               "that of t = " + short_text(time()) + " s; " +
-               why_it_failed(entry_.info, clock_.dt, sharp, safe_limit(),
-                             safe_limit(verlet));
-    return false;
-  }
+  void keep_clock();
+  void watch_paths();
+  void choose_step();
+  bool advance();
+  bool replay(long long last);
+  void rewind();
+  bool fail(const std::string& what);
 };
 
 }  // namespace lab

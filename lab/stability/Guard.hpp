@@ -2,13 +2,9 @@
 /** @file Guard.hpp
  * DivergenceGuard: stops a run that gains energy from nothing, and says where
  * and why it failed. */
-#include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "CME212/BoundingBox.hpp"
 #include "lab/stability/StepLimit.hpp"
 
 namespace lab {
@@ -21,55 +17,26 @@ namespace lab {
  *     <=  total energy at the start + 3 S,
  * S = kinetic and elastic energy at the start + total weight times the
  * diagonal of the cloth + the energy of all springs stretched by 10 %. The
- * margin is for what a stable method does: its energy swings, and a constraint
- * that moves a node stretches springs. */
+ * margin is for what a stable method does: its energy oscillates, and a
+ * constraint that moves a node stretches springs. */
 class DivergenceGuard {
  public:
   /** @param g The cloth at the start   @param gravity [m/s^2] */
-  DivergenceGuard(const Cloth& g, double gravity) : gravity_(gravity) {
-    CME212::BoundingBox box;
-    for (Node n : g.nodes()) box |= n.position();
-    if (!box.empty()) top_ = box.max().z;
-    double size = box.diagonal() > 0 ? box.diagonal() : 1;
-    double start = kinetic_energy(g) + elastic_energy(g);
-    double scale = start + total_mass(g) * std::abs(gravity) * size;
-    for (Edge e : g.edges())
-      scale += spring_energy(1.1 * e.value().L, e.value());
-    limit_ = start + heights_energy(g) + 3 * scale;
-    keep(g);
-  }
+  DivergenceGuard(const Cloth& g, double gravity);
 
   /** True if the state of @a g is good; then it is kept. Elastic energy, which
-   * costs a sweep over the springs, is looked at in every fourth call.
+   * costs a sweep over the springs, is checked in every fourth call.
    * O(N + springs/4) */
-  bool accept(const Cloth& g) {
-    if (!good(g, ++checks_ % 4 == 0)) return false;
-    keep(g);
-    return true;
-  }
+  bool accept(const Cloth& g);
   /** True if the state of @a g is good.
    * @param elastic whether elastic energy counts */
-  bool good(const Cloth& g, bool elastic = true) const {
-    double energy = kinetic_energy(g) + heights_energy(g);
-    if (elastic) energy += elastic_energy(g);
-    return energy <= limit_;  // not so if it is NaN
-  }
-  void keep(const Cloth& g) {
-    auto x = g.positions();
-    auto v = g.node_values();
-    position_.assign(x.begin(), x.end());
-    value_.assign(v.begin(), v.end());
-  }
+  bool good(const Cloth& g, bool elastic = true) const;
+  /** Keep the state of @a g, good or not.  O(N) */
+  void keep(const Cloth& g);
 
   /** Give @a g the positions and velocities of the last good state. Nodes added
    * since stay as they are, nodes removed since stay removed. */
-  void restore(Cloth& g) const {
-    for (Node n : g.nodes()) {
-      if (n.id() >= position_.size()) continue;
-      n.position() = position_[n.id()];
-      n.value() = value_[n.id()];
-    }
-  }
+  void restore(Cloth& g) const;
 
  private:
   double gravity_, top_ = 0, limit_ = 0;
@@ -79,9 +46,7 @@ class DivergenceGuard {
 
   /** Gravitational energy [J], zero at the top of the cloth at the start, so
    * that removing a node that hangs below takes little energy away. */
-  double heights_energy(const Cloth& g) const {
-    return gravitational_energy(g, gravity_) - total_mass(g) * gravity_ * top_;
-  }
+  double heights_energy(const Cloth& g) const;
 };
 
 /** The place where the state of a cloth is worst: the first node that is not
@@ -92,71 +57,15 @@ struct WorstPlace {
   double speed = 0;   ///< of the node [m/s]; infinite if it has no number
   double length = 0;  ///< of the spring [m]; the same
 
-  explicit WorstPlace(const Cloth& g) {
-    double highest = -1;
-    for (Node n : g.nodes()) {
-      double v = norm(n.value().vel);
-      if (!std::isfinite(v + norm(n.position()))) v = no_limit;
-      if (v > highest) highest = v, node = n;
-    }
-    if (!g.has_node(node)) return;
-    speed = highest;
-    double longest = -1;
-    for (Edge e : node.edges())
-      if (double l = e.length(); !(l <= longest)) longest = l, spring = e;
-    if (g.has_edge(spring))
-      length = std::isfinite(longest) ? longest : no_limit;
-  }
-
-  std::string text(const Cloth& g) const {
-    if (!g.has_node(node)) return "no node is left";
-    std::ostringstream out;
-    out << "node " << node.index();
-    if (std::isfinite(speed))
-      out << " moves at " << speed << " m/s";
-    else
-      out << " has a position or a velocity that is not finite";
-    if (!g.has_edge(spring)) return out.str();
-    out << ", its spring to node " << spring.node2().index() << " is ";
-    if (!std::isfinite(length))
-      out << "beyond all bounds";
-    else if (double L = spring.value().L; L > 0)
-      out << length / L << " times its rest length of " << L << " m";
-    else
-      out << length << " m long";
-    return out.str();
-  }
+  explicit WorstPlace(const Cloth& g);
+  /** The same in words. */
+  std::string text(const Cloth& g) const;
 };
 
 /** Why a run with this step failed, and what would do instead; in words.
- * @param sharp the limit [s] of the method in the last good shape
- * @param safe its limit in any shape   @param verlet that of Verlet */
-inline std::string why_it_failed(const MethodInfo& info, double dt,
-                                 double sharp, double safe, double verlet) {
-  std::ostringstream out;
-  out.precision(3);
-  auto instead = [&](double limit) {
-    out << "--dt " << safe_share * limit << " or --dt auto works";
-  };
-  if (info.limit == no_limit || info.limit == 0 || info.adaptive) {
-    out << info.name << " fails with: " << info.fails_when;
-    if (std::isfinite(verlet)) {
-      out << " (dt is " << dt / verlet << " times verlet's limit); --method "
-          << "verlet with ";
-      instead(verlet);
-    }
-  } else if (dt > 0.97 * sharp || dt > safe) {
-    const double limit = dt > 0.97 * sharp ? sharp : safe;
-    out << "dt is " << dt / limit << " times the limit of " << info.name << ", "
-        << limit << " s" << (limit == sharp ? " in this shape" : "")
-        << ": the fastest waves in the springs grow in every step; ";
-    instead(safe);
-  } else {
-    out << "not the springs: dt is " << dt / safe << " of the limit of "
-        << info.name
-        << "; look at what moves nodes besides, and at: " << info.fails_when;
-  }
-  return out.str();
-}
+ * @param sharp the stability limit [s] in the last good configuration
+ * @param safe the limit in any   @param verlet that of Verlet, in any */
+std::string why_it_failed(const MethodInfo& info, double dt, double sharp,
+                          double safe, double verlet);
 
 }  // namespace lab

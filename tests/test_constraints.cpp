@@ -1,44 +1,16 @@
-// Constraint.hpp: each constraint's post-condition, and that twice is once.
+// The constraints of mass_spring.hpp: the post-condition of each, and that
+// twice is once.
 #include <gtest/gtest.h>
 
-#include "lab/scenes/Obstacle.hpp"
+#include <cmath>
 
-using namespace lab;
+#include "tests/ScatteredCloth.hpp"
 
 namespace {
 
-/** 8 x 8 nodes in space around the ball and the floor, with velocities. */
-class Scattered : public ::testing::Test {
+class Scattered : public ScatteredCloth {
  protected:
-  Cloth g;
-  const Ball ball{};
-
-  void SetUp() override {
-    CME212::default_generator.seed(2);
-    build_cloth(g, grid_points(8), grid_quads(8), Mesh::diagonals);
-    using CME212::random;
-    for (Node n : g.nodes()) {
-      n.position() = ball.center +
-                     Point(random(-.2, .2), random(-.2, .2), random(-.35, .2));
-      n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
-    }
-  }
-  /** Positions and velocities of all nodes. */
-  std::vector<Point> state() const {
-    std::vector<Point> all;
-    for (Node n : g.nodes()) {
-      all.push_back(n.position());
-      all.push_back(n.value().vel);
-    }
-    return all;
-  }
-  void set_state(const std::vector<Point>& all) {
-    for (Node n : g.nodes()) {
-      n.position() = all[2 * n.index()];
-      n.value().vel = all[2 * n.index() + 1];
-    }
-  }
-  void expect_twice_is_once(const ConstraintPlan& c) {
+  void expect_twice_is_once(const ZeroConstraint& c) {
     c(g, 0);
     auto once = state();
     c(g, 0);
@@ -48,56 +20,6 @@ class Scattered : public ::testing::Test {
       EXPECT_LT(norm(once[k] - twice[k]), 1e-15);
   }
 };
-
-/** Mending by parts, the last one first, is the call, bit by bit. */
-TEST_F(Scattered, WhatMendsByNodeMendsByParts) {
-  const std::vector<Node> some = {g.node(60), g.node(0),  g.node(16),
-                                  g.node(17), g.node(18), g.node(63)};
-  const Motion motion = {Point(0.3, -0.2, 0.1)};
-  const PinConstraint pins(some);
-  const PlaneConstraint plane(-0.6);
-  const SphereConstraint sphere;
-  const MovingPinConstraint moving({some[1], some[4]}, motion);
-  const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), motion, 0.5);
-  const BallConstraint moving_ball(ball, motion, 0.5);
-  const auto all = make_combined_constraints(pins, wall, moving, sphere);
-  const auto both = make_combined_constraints(all, ZeroConstraint());
-  g.remove_node(some[2]);
-  for (Node n : some)
-    if (g.has_node(n)) n.position() += Point(0.01, -0.02, 0.03);
-  const auto before = state();
-  for (const ZeroConstraint* c : std::initializer_list<const ZeroConstraint*>{
-           &pins, &plane, &sphere, &moving, &wall, &moving_ball, &all, &both}) {
-    const double t = 0.5;
-    EXPECT_TRUE(c->nodewise());
-    (*c)(g, t);
-    const auto expected = state();
-    EXPECT_FALSE(expected == before);
-    set_state(before);
-    for (auto [first, last] :
-         {std::pair(20u, 64u), {20, 20}, {17, 20}, {0, 17}})
-      c->mend(g, t, first, last);
-    EXPECT_TRUE(state() == expected);
-    set_state(before);
-  }
-}
-
-TEST_F(Scattered, WhatRemovesOrIsNotKnownDoesNotMendByNode) {
-  EXPECT_TRUE(ZeroConstraint().nodewise());
-  EXPECT_TRUE(make_combined_constraints().nodewise());
-  struct Another : ZeroConstraint {};
-  EXPECT_FALSE(Another().nodewise());
-  EXPECT_FALSE(TearConstraint().nodewise());
-  EXPECT_FALSE(StrainConstraint(0.1).nodewise());
-  auto nothing = [](Cloth&, double) {};
-  EXPECT_FALSE(make_combined_constraints(nothing).nodewise());
-  EXPECT_FALSE(
-      make_combined_constraints(PlaneConstraint(), TearConstraint()).nodewise());
-  WatchedConstraint watched(make_combined_constraints(PlaneConstraint(-0.6)));
-  EXPECT_TRUE(watched.nodewise());
-  watched.watch(g, true);
-  EXPECT_FALSE(watched.nodewise());
-}
 
 TEST_F(Scattered, TwiceIsOnce) {
   expect_twice_is_once(PlaneConstraint());
@@ -238,19 +160,8 @@ TEST(PinConstraint, GoesOnWithoutAPinnedNodeThatWasRemoved) {
   Node other = g.add_node(Point(9, 9, 9));  // may take the slot of the old one
   second.position().z = -1;
   pin(g, 0);
-  stop_held(g, pin);
   EXPECT_EQ(other.position(), Point(9, 9, 9));
   EXPECT_EQ(second.position(), Point(1, 0, 0));
-}
-
-TEST(PinConstraint, StopsOnlyTheHeldNodes) {
-  Cloth g;
-  Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(2, 0, 0));
-  auto both = make_combined_constraints(PlaneConstraint(), PinConstraint(g));
-  a.value().vel = b.value().vel = Point(1);
-  stop_held(g, both);
-  EXPECT_EQ(a.value().vel, Point());
-  EXPECT_EQ(b.value().vel, Point(1));
 }
 
 TEST(CombinedConstraints, RunInTheirOrderAndTakeFunctions) {

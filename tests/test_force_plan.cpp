@@ -1,45 +1,30 @@
-// Force.hpp: each force against its formula and against its energy, the sweep
-// against the call node by node, combinations.
+// ForcePlan: the sweep against the call node by node, energy and stiffness
+// against the force, and which classes it recognises.
+#include "lab/fast/ForcePlan.hpp"
+
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <optional>
+#include <vector>
+
 #include "lab/fast/Sweep.hpp"
+#include "tests/ShakenCloth.hpp"
 
 using namespace lab;
 
 namespace {
 
-/** A grid with diagonals, shaken: all springs differ, some are compressed,
- * some nodes are gone. */
-class ShakenCloth : public ::testing::Test {
+class ForcePlanTest : public ShakenCloth {
  protected:
-  Cloth g;
-
-  void SetUp() override {
-    CME212::default_generator.seed(1);
-    build_cloth(g, grid_points(6), grid_quads(6), Mesh::diagonals);
-    for (Node n : g.nodes()) {
-      n.position() += random_vector(0.08);
-      n.value().vel = random_vector(1);
-      n.value().mass *= CME212::random(0.5, 2);
-    }
-    for (Edge e : g.edges()) e.value().K *= CME212::random(0.5, 2);
-    for (unsigned i : {30u, 14u, 3u}) g.remove_node(g.node(i));
-  }
-  static Point random_vector(double size) {
-    using CME212::random;
-    return size * Point(random(-1, 1), random(-1, 1), random(-1, 1));
-  }
-
   /** The largest |force - other| over all nodes [N], by call and by sweep. */
   template <typename F>
-  double distance(const ForcePlan& force, F other) {
+  double distance(const ZeroForce& force, F other) {
     std::vector<Point> sweep;
     Sweep()(g, 0, force, sweep);
-    double worst = 0;
-    for (Node n : g.nodes()) {
-      worst = std::max(worst, norm(force(n, 0) - other(n)));
+    double worst = call_distance(force, other);
+    for (Node n : g.nodes())
       worst = std::max(worst, norm(sweep[n.id()] - other(n)));
-    }
     return worst;
   }
 
@@ -60,9 +45,9 @@ class ShakenCloth : public ::testing::Test {
 };
 
 // h^2 K / L^2 and the round-off 1e-16 E / h are both below 1e-8 N here.
-TEST_F(ShakenCloth, ForcesAreTheNegativeGradientOfTheirEnergy) {
-  auto expect_gradient = [&](const ForcePlan& force) {
-    EXPECT_GT(std::abs(force.energy(g)), 1e-3);
+TEST_F(ForcePlanTest, ForcesAreTheNegativeGradientOfTheirEnergy) {
+  auto expect_gradient = [&](const ZeroForce& force) {
+    EXPECT_GT(std::abs(ForcePlan(force).energy(g)), 1e-3);
     EXPECT_LT(distance(force, [&](Node n) { return slope(force, n); }), 1e-7);
   };
   expect_gradient(GravityForce());
@@ -70,28 +55,21 @@ TEST_F(ShakenCloth, ForcesAreTheNegativeGradientOfTheirEnergy) {
   expect_gradient(make_combined_force(GravityForce(2), MassSpringForce()));
 }
 
-TEST_F(ShakenCloth, GravityIsWeight) {
+TEST_F(ForcePlanTest, GravityIsWeight) {
   EXPECT_LT(
       distance(GravityForce(),
                [](Node n) { return Point(0, 0, -9.81 * n.value().mass); }),
       1e-15);
 }
 
-TEST_F(ShakenCloth, DampingIsLinearDrag) {
+TEST_F(ForcePlanTest, DampingIsLinearDrag) {
   DampingForce drag(0.3);
   EXPECT_LT(distance(drag, [](Node n) { return -0.3 * n.value().vel; }), 1e-15);
-  EXPECT_EQ(drag.drag(), 0.3);
-  EXPECT_EQ(DampingForce().drag(), 0);
-  double power = 0, speeds = 0;
-  for (Node n : g.nodes()) {
-    power += dot(drag(n, 0), n.value().vel);
-    speeds += normSq(n.value().vel);
-  }
-  EXPECT_NEAR(power, -0.3 * speeds, 1e-12);
-  EXPECT_DEATH(DampingForce(-1), "c >= 0");
+  EXPECT_EQ(ForcePlan(drag).drag(), 0.3);
+  EXPECT_EQ(ForcePlan(DampingForce()).drag(), 0);
 }
 
-TEST_F(ShakenCloth, SpringsAloneConserveMomentum) {
+TEST_F(ForcePlanTest, SpringsAloneConserveMomentum) {
   std::vector<Point> f;
   Sweep()(g, 0, MassSpringForce(), f);
   Point sum, torque;
@@ -106,40 +84,16 @@ TEST_F(ShakenCloth, SpringsAloneConserveMomentum) {
   EXPECT_LT(norm(torque), 1e-14 * size);
 }
 
-TEST_F(ShakenCloth, Problem1ForceIsGravityAndSpringsButForCorners) {
-  auto both = make_combined_force(GravityForce(), MassSpringForce());
-  g.node(0).position() = Point(0, 0, 0);
-  g.node(9).position() = Point(1, 0, 0);
-  g.node(10).position() = Point(0, 1, 0);
-  for (Node n : g.nodes()) {
-    Point expected = is_corner(n.position()) ? Point() : both(n, 0);
-    EXPECT_LT(norm(Problem1Force()(n, 0) - expected), 1e-14);
-  }
-  EXPECT_EQ(Problem1Force()(g.node(0), 0), Point());
-  EXPECT_EQ(Problem1Force()(g.node(9), 0), Point());
-  EXPECT_NE(Problem1Force()(g.node(10), 0), Point());
-}
-
-TEST(Problem1Force, CanTakeAllSpringsAlike) {
-  Cloth g;
-  Node a = g.add_node(Point(0, 0, 1)), b = g.add_node(Point(2, 0, 1));
-  g.add_edge(a, b, {7, 2});
-  EXPECT_EQ(Problem1Force(0)(a, 0), Point());
-  EXPECT_EQ(Problem1Force(100, 0.5, 0)(a, 0), Point(150, 0, 0));
-  EXPECT_EQ(Problem1Force(100, 0.5)(a, 0), Point(150, 0, -9.81));
-}
-
-TEST(MassSpringForce, IsZeroNotNanAtLengthZero) {
+TEST(ForcePlanSprings, AreZeroNotNanAtLengthZero) {
   Cloth g;
   Node a = g.add_node(Point(1)), b = g.add_node(Point(1));
   g.add_edge(a, b, {100, 1});
   std::vector<Point> f;
   Sweep()(g, 0, MassSpringForce(), f);
-  for (Point p : {MassSpringForce()(a, 0), f[0], f[1], Problem1Force(0)(b, 0)})
-    EXPECT_EQ(p, Point());
+  for (Point p : {f[0], f[1]}) EXPECT_EQ(p, Point());
 }
 
-TEST_F(ShakenCloth, CombinedForcesAddUpAnyNumber) {
+TEST_F(ForcePlanTest, CombinedForcesAddUpAnyNumber) {
   auto at = [](double c) { return [c](Node, double) { return Point(c); }; };
   auto combined = make_combined_force(GravityForce(), at(1), at(2), at(3),
                                       DampingForce(1), DampingForce(2));
@@ -149,38 +103,10 @@ TEST_F(ShakenCloth, CombinedForcesAddUpAnyNumber) {
                               3 * n.value().vel;
                      }),
             1e-13);
-  EXPECT_EQ(combined.drag(), 3);
-  EXPECT_EQ(make_combined_force()(g.node(0), 0), Point());
-  EXPECT_EQ(ZeroForce()(g.node(0), 0), Point());
-}
-
-TEST_F(ShakenCloth, CombinedForcesOwnTheirTemporaries) {
-  struct Pull : ZeroForce {
-    std::vector<double> data = std::vector<double>(1000, 0.5);
-    Point operator()(Node, double t) const override {
-      return Point(data.back() * t);
-    }
-  };
-  CombinedForces kept = [] {
-    return make_combined_force(make_combined_force(Pull(), Pull()), Pull());
-  }();
-  CombinedForces copy = kept;
-  kept = make_combined_force(ZeroForce());
-  EXPECT_EQ(copy(g.node(0), 2), Point(3));
-}
-
-/** A student's force, as the assignment writes it, with a state. */
-struct Counting {
-  int calls = 0;
-  Point operator()(Node, double) {
-    ++calls;
-    return Point(calls);
-  }
-};
-TEST_F(ShakenCloth, FunctorsNeedNotBeConst) {
-  auto force = make_combined_force(Counting());
-  EXPECT_EQ(force(g.node(0), 0), Point(1));
-  EXPECT_EQ(force(g.node(0), 0), Point(2));
+  EXPECT_EQ(ForcePlan(combined).drag(), 3);
+  const auto nothing = [](Node) { return Point(); };
+  EXPECT_EQ(distance(make_combined_force(), nothing), 0);
+  EXPECT_EQ(distance(ZeroForce(), nothing), 0);
 }
 
 /** All blocks of the stiffness; nothing if the force does not know it. */
@@ -200,7 +126,7 @@ std::optional<std::vector<Block>> blocks_of(const ForcePlan& force,
 
 // The force on every node as one node moves, by central differences: round-off
 // and h^2 K L/l^3 are both below 1e-6 N/m here.
-TEST_F(ShakenCloth, StiffnessIsTheDerivativeOfTheForce) {
+TEST_F(ForcePlanTest, StiffnessIsTheDerivativeOfTheForce) {
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   auto blocks = blocks_of(force, g);
   ASSERT_TRUE(blocks);
@@ -228,7 +154,7 @@ TEST_F(ShakenCloth, StiffnessIsTheDerivativeOfTheForce) {
     }
 }
 
-TEST_F(ShakenCloth, StiffnessIsSymmetricAndNoMoreThanK) {
+TEST_F(ForcePlanTest, StiffnessIsSymmetricAndNoMoreThanK) {
   auto blocks = blocks_of(MassSpringForce(), g);
   ASSERT_TRUE(blocks);
   bool compressed = false, stretched = false;
@@ -249,25 +175,27 @@ TEST(SpringStiffness, IsIsotropicAtLengthZero) {
   EXPECT_EQ(spring_stiffness(Point(0, 0, 1e-9), {100, 0}) * u, 100 * u);
 }
 
-TEST_F(ShakenCloth, ForcesSayHowOftenTheyAreTheSprings) {
+TEST_F(ForcePlanTest, SaysHowOftenItIsTheSprings) {
   struct Child : MassSpringForce {};  // might be stiffer
-  EXPECT_EQ(ZeroForce().spring_multiplicity(), 0);
-  EXPECT_EQ(GravityForce().spring_multiplicity(), 0);
-  EXPECT_EQ(DampingForce(1).spring_multiplicity(), 0);
-  EXPECT_EQ(MassSpringForce().spring_multiplicity(), 1);
-  EXPECT_EQ(make_combined_force().spring_multiplicity(), 0);
-  EXPECT_EQ(
-      make_combined_force(MassSpringForce(), GravityForce(), MassSpringForce())
-          .spring_multiplicity(),
-      2);
-  EXPECT_EQ(Child().spring_multiplicity(), std::nullopt);
-  EXPECT_EQ(make_combined_force(MassSpringForce(), Child()).spring_multiplicity(),
+  const auto times = [](const ForcePlan& force) {
+    return force.spring_multiplicity();
+  };
+  EXPECT_EQ(times(ZeroForce()), 0);
+  EXPECT_EQ(times(GravityForce()), 0);
+  EXPECT_EQ(times(DampingForce(1)), 0);
+  EXPECT_EQ(times(MassSpringForce()), 1);
+  EXPECT_EQ(times(make_combined_force()), 0);
+  EXPECT_EQ(times(make_combined_force(MassSpringForce(), GravityForce(),
+                                      MassSpringForce())),
+            2);
+  EXPECT_EQ(times(Child()), std::nullopt);
+  EXPECT_EQ(times(make_combined_force(MassSpringForce(), Child())),
             std::nullopt);
-  EXPECT_EQ(FunctionForce([](Node, double) { return Point(); }).spring_multiplicity(),
+  EXPECT_EQ(times(FunctionForce([](Node, double) { return Point(); })),
             std::nullopt);
 }
 
-TEST_F(ShakenCloth, StiffnessIsUnknownUnlessEachPartKnowsIt) {
+TEST_F(ForcePlanTest, StiffnessIsUnknownUnlessEachPartKnowsIt) {
   struct Child : ZeroForce {
     Point operator()(Node n, double) const override {
       return -1 * n.position();
@@ -291,6 +219,82 @@ TEST_F(ShakenCloth, StiffnessIsUnknownUnlessEachPartKnowsIt) {
                      make_combined_force(zero, MassSpringForce()),
                      make_combined_force(MassSpringForce(), Problem1Force())})
     EXPECT_FALSE(blocks_of(force, g));
+}
+
+// ------------------------------------------------------------ Exact types
+
+/** Children of the course's forces, each with another call. */
+struct HeavierForce : GravityForce {
+  Point operator()(Node n, double t) const override {
+    return 2 * GravityForce::operator()(n, t);
+  }
+};
+struct SofterForce : MassSpringForce {
+  Point operator()(Node n, double t) const override {
+    return 0.5 * MassSpringForce::operator()(n, t);
+  }
+};
+struct QuadraticDrag : DampingForce {
+  QuadraticDrag() : DampingForce(0.2) {}
+  Point operator()(Node n, double) const override {
+    return -coefficient() * norm(n.value().vel) * n.value().vel;
+  }
+};
+struct HalfOfAll : CombinedForces {
+  using CombinedForces::CombinedForces;
+  Point operator()(Node n, double t) const override {
+    return 0.5 * CombinedForces::operator()(n, t);
+  }
+};
+
+TEST_F(ForcePlanTest, AChildNeverTakesItsParentsKernel) {
+  const HalfOfAll half(
+      {std::make_shared<GravityForce>(), std::make_shared<MassSpringForce>()});
+  const auto expect_called = [&](const ZeroForce& force) {
+    EXPECT_LT(distance(force, [&](Node n) { return force(n, 0); }), 1e-15);
+    const ForcePlan plan(force);
+    EXPECT_EQ(plan.spring_multiplicity(), std::nullopt);
+    EXPECT_EQ(plan.drag(), 0);
+    EXPECT_EQ(plan.energy(g), 0);
+    EXPECT_FALSE(blocks_of(force, g));
+  };
+  expect_called(HeavierForce());
+  expect_called(SofterForce());
+  expect_called(QuadraticDrag());
+  expect_called(half);
+  expect_called(make_combined_force(HeavierForce(), SofterForce()));
+}
+
+/** A force of the laboratory, as a child of the class that is swept. */
+struct Swept : SweptForce {
+  int& sweeps;
+  explicit Swept(int& n) : sweeps(n) {}
+  Point operator()(Node n, double t) const override { return t * n.position(); }
+  void add_to(const Part& part, double t, std::span<Point> f) const override {
+    ++sweeps;
+    SweptForce::add_to(part, t, f);
+  }
+  std::optional<int> spring_multiplicity() const override { return 0; }
+};
+TEST_F(ForcePlanTest, SweepsAForceOfTheLaboratory) {
+  int sweeps = 0;
+  const auto force = make_combined_force(GravityForce(), Swept(sweeps));
+  EXPECT_LT(distance(force, [&](Node n) { return force(n, 0); }), 1e-15);
+  EXPECT_EQ(sweeps, 1);
+  EXPECT_EQ(ForcePlan(force).spring_multiplicity(), 0);
+}
+
+TEST_F(ForcePlanTest, SharesThePartsOfASum) {
+  std::optional<ForcePlan> plan;
+  {
+    const auto force = make_combined_force(
+        GravityForce(3), [](Node, double) { return Point(1, 0, 0); });
+    plan.emplace(force);
+  }
+  std::vector<Point> f;
+  Sweep()(g, 0, *plan, f);
+  for (Node n : g.nodes())
+    EXPECT_LT(norm(f[n.id()] - Point(1, 0, -3 * n.value().mass)), 1e-15);
 }
 
 }  // namespace

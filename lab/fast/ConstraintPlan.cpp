@@ -1,0 +1,217 @@
+#include "lab/fast/ConstraintPlan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <typeinfo>
+
+namespace lab {
+
+std::optional<Point> first_hit(const Ball& ball, const Point& from,
+                               const Point& to) {
+  if (ball.holds(from) || ball.holds(to)) return std::nullopt;
+  const Point way = to - from, start = from - ball.center;
+  // |start + s way| = radius, of the two s the smaller one
+  const double a = normSq(way), b = dot(start, way);
+  const double c = normSq(start) - ball.radius * ball.radius;
+  const double root = b * b - a * c;
+  if (!(root > 0) || b >= 0 || -b >= a) return std::nullopt;
+  const Point on = start + (c / (-b + std::sqrt(root))) * way;
+  return ball.center + (1 - 1e-9) * on;
+}
+
+PinnedNodes::PinnedNodes(const std::vector<PinConstraint::Pin>& pins)
+    : pins_(pins) {
+  std::ranges::stable_sort(pins_, {}, &PinConstraint::Pin::node);
+}
+
+void PinnedNodes::project(Cloth& g, const Point& way, unsigned first,
+                          unsigned last) const {
+  // Nodes of a graph are ordered by id; removed ones can't tell theirs.
+  while (first < last && !g.node_in_use(first)) ++first;
+  if (first == last) return;
+  auto pin = std::ranges::lower_bound(pins_, g.node_with_id(first), {},
+                                      &PinConstraint::Pin::node);
+  for (; pin != pins_.end(); ++pin) {
+    Node n = pin->node;
+    if (!g.has_node(n)) continue;
+    if (n.id() >= last) return;
+    n.position() = pin->place + way;
+    n.value().vel = Point();
+  }
+}
+
+void PinnedNodes::each_held(const Cloth& g, const NodeVisitor& use) const {
+  for (const auto& pin : pins_)
+    if (g.has_node(pin.node)) use(pin.node);
+}
+
+namespace {
+
+// The course's constraints as swept ones.
+
+class Pins final : public NodewiseConstraint {
+ public:
+  explicit Pins(const PinConstraint& c) : pins_(c.pins()) {}
+  void project(Cloth& g, double /*t*/, unsigned first,
+               unsigned last) const override {
+    pins_.project(g, Point(), first, last);
+  }
+  void each_held(const Cloth& g, const NodeVisitor& use) const override {
+    pins_.each_held(g, use);
+  }
+
+ private:
+  PinnedNodes pins_;
+};
+
+class Plane final : public NodewiseConstraint {
+ public:
+  explicit Plane(const PlaneConstraint& c) : plane_(c) {}
+  void project(Cloth& g, double /*t*/, unsigned first,
+               unsigned last) const override {
+    const double z = plane_.height();
+    for_each_violating(
+        g, first, last, [z](const Point& p) { return p.z < z; },
+        [this](Node n) { plane_.project(n); });
+  }
+
+ private:
+  PlaneConstraint plane_;
+};
+
+/** A sphere or a ball that tears: both can be tunnelled through. */
+template <typename Base>
+class Round : public Base {
+ public:
+  explicit Round(const Ball& ball) : ball_(ball) {}
+  std::optional<Point> first_hit(const Point& from,
+                                 const Point& to) const override {
+    return lab::first_hit(ball_, from, to);
+  }
+  double thinnest() const override { return ball_.radius; }
+
+ protected:
+  Ball ball_;
+};
+
+class Sphere final : public Round<NodewiseConstraint> {
+ public:
+  explicit Sphere(const SphereConstraint& c)
+      : Round(c.ball()), sphere_(c.ball()) {}
+  void project(Cloth& g, double /*t*/, unsigned first,
+               unsigned last) const override {
+    for_each_violating(
+        g, first, last, [this](const Point& p) { return ball_.holds(p); },
+        [this](Node n) { sphere_.project(n); });
+  }
+
+ private:
+  SphereConstraint sphere_;
+};
+
+class Tear final : public Round<SweptConstraint> {
+ public:
+  explicit Tear(const TearConstraint& c) : Round(c.ball()) {}
+  void operator()(Cloth& g, double /*t*/) const override {
+    for_each_violating(
+        g, 0, g.node_slots(), [this](const Point& p) { return ball_.holds(p); },
+        [&g](Node n) { g.remove_node(n); });
+  }
+};
+
+/** Of which nothing is known. */
+class Called final : public SweptConstraint {
+ public:
+  explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
+  void operator()(Cloth& g, double t) const override { (*c_)(g, t); }
+
+ private:
+  std::shared_ptr<const ZeroConstraint> c_;
+};
+
+}  // namespace
+
+ConstraintPlan::ConstraintPlan(const ZeroConstraint& c) {
+  add(std::shared_ptr<const ZeroConstraint>(std::shared_ptr<void>(), &c));
+}
+
+/** Exact types: a child may have another call. */
+void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
+  const ZeroConstraint& c = *constraint;
+  const auto& type = typeid(c);
+  if (type == typeid(CombinedConstraints)) {
+    for (const auto& part : static_cast<const CombinedConstraints&>(c).parts())
+      add(part);
+  } else if (type == typeid(PinConstraint)) {
+    terms_.push_back(
+        std::make_shared<Pins>(static_cast<const PinConstraint&>(c)));
+  } else if (type == typeid(PlaneConstraint)) {
+    terms_.push_back(
+        std::make_shared<Plane>(static_cast<const PlaneConstraint&>(c)));
+  } else if (type == typeid(SphereConstraint)) {
+    terms_.push_back(
+        std::make_shared<Sphere>(static_cast<const SphereConstraint&>(c)));
+  } else if (type == typeid(TearConstraint)) {
+    terms_.push_back(
+        std::make_shared<Tear>(static_cast<const TearConstraint&>(c)));
+  } else if (auto swept =
+                 std::dynamic_pointer_cast<const SweptConstraint>(constraint)) {
+    terms_.push_back(std::move(swept));
+  } else if (type != typeid(ZeroConstraint)) {
+    terms_.push_back(std::make_shared<Called>(std::move(constraint)));
+  }
+}
+
+void ConstraintPlan::operator()(Cloth& g, double t) const {
+  for (const auto& term : terms_) (*term)(g, t);
+}
+
+bool ConstraintPlan::nodewise() const {
+  return std::ranges::all_of(terms_,
+                             [](const auto& c) { return c->nodewise(); });
+}
+
+void ConstraintPlan::project(Cloth& g, double t, unsigned first,
+                             unsigned last) const {
+  for (const auto& term : terms_) term->project(g, t, first, last);
+}
+
+void ConstraintPlan::each_held(const Cloth& g, const NodeVisitor& use) const {
+  for (const auto& term : terms_) term->each_held(g, use);
+}
+
+std::optional<Point> ConstraintPlan::first_hit(const Point& from,
+                                               const Point& to) const {
+  std::optional<Point> first;
+  for (const auto& term : terms_)
+    if (auto place = term->first_hit(from, to);
+        place && (!first || norm(*place - from) < norm(*first - from)))
+      first = place;
+  return first;
+}
+
+double ConstraintPlan::thinnest() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& term : terms_) least = std::min(least, term->thinnest());
+  return least;
+}
+
+void stop_held(Cloth& g, const ConstraintPlan& constraint) {
+  constraint.each_held(g, [](Node n) { n.value().vel = Point(); });
+}
+
+void WatchedConstraint::operator()(Cloth& g, double t) const {
+  if (before_.empty()) return c_(g, t);
+  for (Node n : g.nodes()) {
+    if (n.id() >= before_.size()) continue;  // added since
+    auto place = c_.first_hit(before_[n.id()], n.position());
+    if (!place) continue;
+    if (count_++ == 0)
+      first_ = {n.index(), norm(n.position() - before_[n.id()])};
+    n.position() = *place;
+  }
+  c_(g, t);
+  remember(g);
+}
+
+}  // namespace lab

@@ -1,0 +1,152 @@
+#include "lab/fast/Sweep.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <limits>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace lab {
+
+namespace {
+
+int threads_asked_for = 0;
+
+std::size_t whole_blocks(unsigned nodes) {
+  constexpr unsigned w = ClothStencil::width;
+  return (std::size_t(nodes) + w - 1) / w * w;
+}
+
+std::size_t thread() {
+#ifdef _OPENMP
+  return std::size_t(omp_get_thread_num());
+#else
+  return 0;
+#endif
+}
+
+void add_forces(const Part& part, double t, const ForcePlan& force,
+                std::span<Point> f) {
+  std::fill(f.begin(), f.end(), Point());
+  force.add_to(part, t, f);
+  if (part.g.node_slots() == part.g.num_nodes()) return;
+  for (unsigned i = part.first; i < part.last; ++i)
+    if (!part.g.node_in_use(i)) f[i - part.first] = Point();
+}
+
+}  // namespace
+
+int Sweep::processors() {
+#ifdef _OPENMP
+  return omp_get_num_procs();
+#else
+  return 1;
+#endif
+}
+
+void Sweep::set_threads(int n) {
+  threads_asked_for = n;
+#ifdef _OPENMP
+  omp_set_num_threads(n == 0 ? processors() : n);
+#endif
+}
+
+void Sweep::update(const Cloth& g) {
+#ifdef _OPENMP
+  const auto threads = std::size_t(omp_get_max_threads());
+#else
+  const std::size_t threads = 1;
+#endif
+  if (buffer_.size() < threads) buffer_.resize(threads);
+  if (stencil_ && version_ == g.version()) return;
+  stencil_.emplace(g);
+  version_ = g.version();
+}
+
+/** The halo: how many parts away the nodes may be whose positions @a force
+ * reads. */
+int Sweep::halo_of(const ForcePlan& force) const {
+  if (!force.spring_multiplicity()) return std::numeric_limits<int>::max();
+  // A gather reads one number behind the node, which may be of the next part.
+  return int(stencil_->reach() / part_size) + 1;
+}
+
+void Sweep::each_part(const Cloth& g, const PartVisitor& use) {
+  update(g);
+  in_turn(g, 0, nothing, use);
+}
+
+/** Call @a move(part) and @a use(part) for each part, this one when all parts
+ * up to @a halo away have been moved. Each thread goes through its own parts
+ * in their order, and moves those in the halo before it needs them.
+ * @pre the stencil is that of @a g */
+void Sweep::in_turn(const Cloth& g, int halo, const PartVisitor& move,
+                    const PartVisitor& use) {
+  const unsigned slots = g.node_slots();
+  const int count = int((slots + part_size - 1) / part_size);
+  halo = std::min(halo, count);
+  std::exception_ptr error;
+  const auto call = [&](const PartVisitor& what, int k) {
+    const unsigned first = unsigned(k) * part_size;
+    const Part part{g, *stencil_, first, std::min(first + part_size, slots)};
+    try {
+      what(part);
+    } catch (...) {  // no exception may leave a thread
+#ifdef _OPENMP
+#pragma omp critical(sweep_error)
+#endif
+      if (!error) error = std::current_exception();
+    }
+  };
+  const auto share = [&](int number, int threads) {
+    const int first = int(std::int64_t(count) * number / threads);
+    const int last = int(std::int64_t(count) * (number + 1) / threads);
+    // Other threads wait for the parts at the borders. So these move first:
+    // [first, moved), which grows, and [inner_last, last).
+    const int inner_last = std::max(last - halo, first);
+    int moved = std::min(first + halo, inner_last);
+    for (int k = first; k < moved; ++k) call(move, k);
+    for (int k = inner_last; k < last; ++k) call(move, k);
+    if (threads > 1 && halo > 0) {
+#ifdef _OPENMP
+#pragma omp barrier
+#endif
+    }
+    for (int k = first; k < last; ++k) {
+      for (; moved < inner_last && moved <= k + halo; ++moved)
+        call(move, moved);
+      call(use, k);
+    }
+  };
+  bool alone = true;
+#ifdef _OPENMP
+  // Calling a team takes longer than a step of 100 nodes.
+  alone = count <= 1 || (threads_asked_for == 0 && count < many_parts);
+  if (!alone) {
+#pragma omp parallel
+    share(omp_get_thread_num(), omp_get_num_threads());
+  }
+#endif
+  if (alone) share(0, 1);
+  if (error) std::rethrow_exception(error);
+}
+
+/** As after(); the forces stay in @a all unless it is null. */
+void Sweep::add_up(const PartVisitor& move, const Cloth& g, double t,
+                   const ForcePlan& force, std::vector<Point>* all,
+                   const ForceVisitor& use) {
+  if (all) all->resize(whole_blocks(g.node_slots()));
+  update(g);
+  const auto sweep_and_use = [&](const Part& part) {
+    Point* place = all ? &(*all)[part.first] : buffer_[thread()].data();
+    const std::span f(place, whole_blocks(part.last - part.first));
+    add_forces(part, t, force, f);
+    use(part, f);
+  };
+  in_turn(g, halo_of(force), move, std::ref(sweep_and_use));
+}
+
+}  // namespace lab

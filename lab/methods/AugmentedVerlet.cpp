@@ -1,0 +1,121 @@
+#include "lab/methods/AugmentedVerlet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "CME212/Util.hpp"
+#include "lab/methods/Flow.hpp"
+#include "lab/methods/ImplicitStage.hpp"
+
+namespace lab {
+
+double AugmentedVerlet::step(Cloth& g, double t, double dt,
+                             const ForcePlan& force,
+                             const ConstraintPlan& constraint) {
+  bool same = find_factor(g, dt, force, constraint);
+  stop_held(g, constraint);
+  // The same time, however the caller rounds it.
+  if (!same || kept_for_ != &g || std::abs(kept_time_ - t) > 1e-6 * dt)
+    accelerate(g, t, force);
+  kick(g, dt / 2);
+  sweep_.parts(g, [&](const Part& part) { drift(g, part, dt, force.drag()); });
+  const std::size_t version = g.version();
+  constraint(g, t + dt);
+  stop_held(g, constraint);
+  if (g.version() != version) find_factor(g, dt, force, constraint);
+  accelerate(g, t + dt, force);
+  kick(g, dt / 2);
+  kept_for_ = &g, kept_time_ = t + dt;
+  return t + dt;
+}
+
+/** Whether nothing that key_ was made of has changed: in one look at the
+ * arrays, without the forces.  @post held_ are the held nodes */
+bool AugmentedVerlet::unchanged(const Cloth& g, double dt,
+                                const ForcePlan& force,
+                                const ConstraintPlan& constraint) {
+  held_.clear();
+  constraint.each_held(g, [this](Node n) { held_.push_back(n.id()); });
+  if (dt != key_.dt || !source_.springs ||
+      force.spring_multiplicity() != source_.springs || &g != source_.cloth ||
+      g.version() != source_.version || held_ != source_.held)
+    return false;
+  auto node = g.node_values();
+  auto spring = g.edge_values();
+  bool same = true;
+  for (unsigned i = 0; i < node.size(); ++i)
+    same &= node[i].mass == key_.mass[i];
+  for (unsigned e = 0; e < spring.size(); ++e)
+    same &= spring[e].K == source_.K[e];
+  return same;
+}
+
+/** The factor for @a g as it is.  @return true if it was that already */
+bool AugmentedVerlet::find_factor(const Cloth& g, double dt,
+                                  const ForcePlan& force,
+                                  const ConstraintPlan& constraint) {
+  if (unchanged(g, dt, force, constraint)) return true;
+  source_.springs = force.spring_multiplicity();
+  source_.cloth = &g, source_.version = g.version();
+  source_.held = held_;
+  source_.K.clear();
+  for (const EdgeData& spring : g.edge_values()) source_.K.push_back(spring.K);
+  next_.dt = dt;
+  implicit_detail::find_fixed(g, constraint, next_.fixed);
+  next_.mass.clear();
+  for (const NodeData& node : g.node_values()) next_.mass.push_back(node.mass);
+  next_.springs.clear();
+  implicit_detail::add_stiffness(
+      info.name, force, g, [this](unsigned i, unsigned j, const Stiffness& B) {
+        double K = std::max({0.0, B.along, B.across});
+        if (K > 0) next_.springs.push_back({i, j, K});
+      });
+  if (next_ == key_) return true;
+  std::swap(key_, next_);
+  factorize();
+  return false;
+}
+
+/** Factor the lower triangle of M + (dt^2/4) L, by node id. Fixed nodes have a
+ * row, too, so that no other numbers are needed: that of a 1. */
+void AugmentedVerlet::factorize() {
+  ++factorizations_;
+  std::vector<SparseCholesky::Entry> entries;
+  const double h2 = key_.dt * key_.dt / 4;
+  auto add = [&](unsigned i, unsigned j, double a) {
+    if (!key_.fixed[i] && !key_.fixed[j])
+      entries.push_back({std::max(i, j), std::min(i, j), a});
+  };
+  const unsigned rows = unsigned(key_.fixed.size());
+  for (unsigned i = 0; i < rows; ++i)
+    entries.push_back({i, i, key_.fixed[i] ? 1 : key_.mass[i]});
+  for (const auto& [i, j, K] : key_.springs) {
+    add(i, i, h2 * K);
+    add(j, j, h2 * K);
+    add(i, j, -h2 * K);
+  }
+  if (factor_.factorize(rows, entries)) return;
+  key_ = {}, source_ = {};
+  throw StepError(std::string(info.name) +
+                  ": the matrix of masses can't be factored; dt = " +
+                  CME212::short_text(key_.dt) + " s");
+}
+
+/** acceleration_ = (M + (dt^2/4) L)^-1 F at the state of @a g. */
+void AugmentedVerlet::accelerate(const Cloth& g, double t,
+                                 const ForcePlan& force) {
+  sweep_without_drag(sweep_, g, t, force, acceleration_);
+  for (unsigned i = 0; i < key_.fixed.size(); ++i)
+    if (key_.fixed[i]) acceleration_[i] = Point();
+  factor_.solve({acceleration_.data(), factor_.rows()});
+}
+
+void AugmentedVerlet::kick(Cloth& g, double h) const {
+  auto node = g.node_values();
+  for (unsigned i = 0; i < g.node_slots(); ++i)
+    node[i].vel += h * acceleration_[i];
+}
+
+}  // namespace lab

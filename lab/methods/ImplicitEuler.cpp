@@ -1,0 +1,15 @@
+#include "lab/methods/ImplicitEuler.hpp"
+
+namespace lab {
+
+double ImplicitEuler::step(Cloth& g, double t, double dt,
+                           const ForcePlan& force,
+                           const ConstraintPlan& constraint) {
+  stage_.begin(info.name, dt, g, constraint);
+  stage_.solve_linearized(g, t + dt, dt, force);
+  auto node = g.node_values();
+  for (unsigned i = 0; i < g.node_slots(); ++i) node[i].vel = stage_.w[i];
+  return implicit_detail::finish(g, t + dt, constraint);
+}
+
+}  // namespace lab

@@ -1,0 +1,20 @@
+#include "lab/methods/ImplicitMidpoint.hpp"
+
+namespace lab {
+
+double ImplicitMidpoint::step(Cloth& g, double t, double dt,
+                              const ForcePlan& force,
+                              const ConstraintPlan& constraint) {
+  stage_.begin(info.name, dt, g, constraint);
+  stage_.solve_newton(g, t + dt / 2, dt / 2, force);
+  auto x = g.positions();
+  auto node = g.node_values();
+  for (unsigned i = 0; i < g.node_slots(); ++i) {
+    if (stage_.fixed(i)) continue;
+    x[i] = stage_.p[i] + dt * stage_.w[i];
+    node[i].vel = 2 * stage_.w[i] - stage_.q[i];
+  }
+  return implicit_detail::finish(g, t + dt, constraint);
+}
+
+}  // namespace lab

@@ -1,0 +1,11 @@
+#include "lab/methods/Methods.hpp"
+
+namespace lab {
+
+const MethodEntry* find_method(std::string_view name) {
+  for (const MethodEntry& m : methods)
+    if (m.info.name == name) return &m;
+  return nullptr;
+}
+
+}  // namespace lab

@@ -1,0 +1,148 @@
+#include "lab/methods/RungeKutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "lab/methods/DormandPrince.hpp"
+#include "lab/methods/ForwardEuler.hpp"
+#include "lab/methods/Rk4.hpp"
+
+namespace lab {
+
+template <typename Tableau>
+double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
+                                 const ForcePlan& force,
+                                 const ConstraintPlan& constraint) {
+  if (!adaptive || tolerance_ == no_limit) {
+    attempt(g, t, dt, force, constraint);
+    constraint(g, t + dt);
+    return t + dt;
+  }
+  if (inner_ == 0) inner_ = dt;
+  const double end = t + dt;
+  for (double now = t; now < end;) {
+    // A last step that leaves a splinter takes it along.
+    double h = now + 1.01 * inner_ >= end ? end - now : inner_;
+    double error = attempt(g, now, h, force, constraint) / tolerance_;
+    // Written so that an error that is not finite makes the step smaller.
+    bool good = error <= 1;
+    double factor = 0.2;
+    if (std::isfinite(error))
+      factor = std::clamp(0.9 * std::pow(error, -1.0 / info.order), 0.2, 5.0);
+    if (good) {
+      now = h == end - now ? end : now + h;
+      constraint(g, now);
+      if (h >= inner_ || factor < 1) inner_ = h * factor;
+    } else {
+      std::copy(x0_.begin(), x0_.end(), g.positions().begin());
+      for (unsigned i = 0; i < g.node_slots(); ++i)
+        g.node_values()[i].vel = v0_[i];
+      inner_ = h * std::min(factor, 0.9);
+      if (inner_ < 1e-13 * std::max(1.0, end))
+        throw StepError(std::string(info.name) +
+                        ": no step meets the "
+                        "tolerance at t = " +
+                        std::to_string(now) + " s");
+    }
+  }
+  return end;
+}
+
+/** One step without error control; takes no constraint but held nodes.
+ * @return the estimated error [m]; 0 if the method has no estimate */
+template <typename Tableau>
+double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
+                                    const ForcePlan& force,
+                                    const ConstraintPlan& constraint) {
+  const unsigned n = g.node_slots();
+  auto x = g.positions();
+  auto node = g.node_values();
+  x0_.assign(x.begin(), x.end());
+  v0_.resize(n);
+  for (unsigned i = 0; i < n; ++i) v0_[i] = node[i].vel;
+  for (std::size_t s = 0; s < stages; ++s) {
+    if (s > 0) set_state(g, h, &Tableau::a[s * (s - 1) / 2], s, constraint);
+    if (s == 0 && first_same_as_last && at_end_of_last_step(t)) {
+      std::swap(v_[0], v_[stages - 1]);
+      std::swap(a_[0], a_[stages - 1]);
+    } else {
+      derive(g, t + Tableau::c[s] * h, force, constraint, s);
+    }
+  }
+  if constexpr (first_same_as_last) {
+    // The last stage stands at the end of the step already.
+    end_x_.assign(x.begin(), x.end());
+    end_v_.resize(n);
+    for (unsigned i = 0; i < n; ++i) end_v_[i] = node[i].vel;
+    end_t_ = t + h;
+  } else {
+    set_state(g, h, Tableau::b.data(), stages, constraint);
+  }
+  if constexpr (adaptive) return h * error_rate(g);
+  return 0;
+}
+
+template <typename Tableau>
+bool RungeKutta<Tableau>::at_end_of_last_step(double t) const {
+  return end_t_ == t && end_x_ == x0_ && end_v_ == v0_;
+}
+
+/** State 0 plus h times the weighted derivatives of @a count stages. */
+template <typename Tableau>
+void RungeKutta<Tableau>::set_state(Cloth& g, double h, const double* weights,
+                                    std::size_t count,
+                                    const ConstraintPlan& constraint) {
+  auto x = g.positions();
+  auto node = g.node_values();
+  for (unsigned i = 0; i < g.node_slots(); ++i) {
+    Point dx, dv;
+    for (std::size_t s = 0; s < count; ++s) {
+      dx += weights[s] * v_[s][i];
+      dv += weights[s] * a_[s][i];
+    }
+    x[i] = x0_[i] + h * dx;
+    node[i].vel = v0_[i] + h * dv;
+  }
+  stop_held(g, constraint);
+}
+
+/** The derivatives of the present state as those of stage @a s. */
+template <typename Tableau>
+void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
+                                 const ConstraintPlan& constraint,
+                                 std::size_t s) {
+  sweep_(g, t, force, force_);
+  constraint.each_held(g, [this](Node n) { force_[n.id()] = Point(); });
+  auto node = g.node_values();
+  v_[s].resize(g.node_slots());
+  a_[s].resize(g.node_slots());
+  for (unsigned i = 0; i < g.node_slots(); ++i) {
+    v_[s][i] = node[i].vel;
+    a_[s][i] = force_[i] / node[i].mass;
+  }
+}
+
+/** RMS of the difference to the lower order, for h = 1. */
+template <typename Tableau>
+double RungeKutta<Tableau>::error_rate(const Cloth& g) const requires adaptive {
+  double x = 0, v = 0;
+  for (unsigned i = 0; i < g.node_slots(); ++i) {
+    if (!g.node_in_use(i)) continue;
+    Point dx, dv;
+    for (std::size_t s = 0; s < stages; ++s) {
+      double w = Tableau::b[s] - Tableau::b_low[s];
+      dx += w * v_[s][i];
+      dv += w * a_[s][i];
+    }
+    x += normSq(dx);
+    v += normSq(dv);
+  }
+  return std::sqrt(std::max(x, v) / std::max(1u, g.num_nodes()));
+}
+
+template class RungeKutta<ForwardEulerTableau>;
+template class RungeKutta<Rk4Tableau>;
+template class RungeKutta<DormandPrinceTableau>;
+
+}  // namespace lab

@@ -1,0 +1,104 @@
+#include "lab/methods/Xpbd.hpp"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "lab/methods/Flow.hpp"
+#include "lab/methods/ImplicitStage.hpp"
+
+namespace lab {
+
+namespace {
+
+/** Are the edges of @a g all that has a stiffness?  @return false if nothing
+ * has.  Throws std::invalid_argument if something else has. */
+bool check_springs(const Cloth& g, const ForcePlan& force) {
+  struct {
+    const Cloth& g;
+    unsigned edge, seen;
+    bool other;
+  } look = {g, 0, 0, false};
+  implicit_detail::add_stiffness(
+      Xpbd::info.name, force, g,
+      [&look](unsigned i, unsigned j, const Stiffness& B) {
+        while (look.edge < look.g.edge_slots() &&
+               !look.g.edge_in_use(look.edge))
+          ++look.edge;
+        ++look.seen;
+        if (look.edge == look.g.edge_slots() ||
+            look.g.edge_ends()[look.edge] != std::array{i, j} ||
+            look.g.edge_values()[look.edge].K != B.along)
+          look.other = true;
+        else
+          ++look.edge;
+      });
+  if (look.seen == 0) return false;
+  if (look.other || look.seen != g.num_edges())
+    throw std::invalid_argument(
+        std::string(Xpbd::info.name) +
+        ": the force has a stiffness besides that of the cloth's edges, "
+        "each taken once (MassSpringForce)");
+  return true;
+}
+
+}  // namespace
+
+double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
+                  const ConstraintPlan& constraint) {
+  const bool springs = check_springs(g, force);
+  implicit_detail::find_fixed(g, constraint, fixed_);
+  stop_held(g, constraint);
+  find_forces(g, t, force, springs);
+  const double h = dt / substeps_, c = force.drag();
+  auto x = g.positions();
+  auto node = g.node_values();
+  const unsigned n = g.node_slots();
+  for (int k = 0; k < substeps_; ++k) {
+    for (unsigned i = 0; i < n; ++i) {
+      if (fixed_[i]) continue;
+      const double m = node[i].mass;
+      const double decay = c == 0 ? 1 : std::exp(-c / m * h);
+      node[i].vel = decay * (node[i].vel + (h / m) * force_[i]);
+      x[i] += h * node[i].vel;
+    }
+    if (!springs) continue;
+    // v = (x - x before)/h, without the round-off of that difference.
+    free_.assign(x.begin(), x.end());
+    pull_together(g, h);
+    for (unsigned i = 0; i < n; ++i)
+      if (!fixed_[i]) node[i].vel += (x[i] - free_[i]) / h;
+  }
+  return implicit_detail::finish(g, t + dt, constraint);
+}
+
+/** All forces but the springs and drag. */
+void Xpbd::find_forces(const Cloth& g, double t, const ForcePlan& force,
+                       bool springs) {
+  sweep_without_drag(sweep_, g, t, force, force_);
+  if (!springs) return;
+  sweep_(g, t, MassSpringForce(), pull_);
+  for (std::size_t i = 0; i < pull_.size(); ++i) force_[i] -= pull_[i];
+}
+
+/** One round over the springs. */
+void Xpbd::pull_together(Cloth& g, double h) const {
+  auto x = g.positions();
+  auto node = g.node_values();
+  for (unsigned e = 0; e < g.edge_slots(); ++e) {
+    if (!g.edge_in_use(e)) continue;
+    const EdgeData& spring = g.edge_values()[e];
+    auto [i, j] = g.edge_ends()[e];
+    const double wi = fixed_[i] ? 0 : 1 / node[i].mass;
+    const double wj = fixed_[j] ? 0 : 1 / node[j].mass;
+    const Point u = x[j] - x[i];
+    const double l = norm(u);
+    if (l == 0 || wi + wj == 0 || spring.K == 0) continue;
+    const double d = (l - spring.L) / (wi + wj + 1 / (spring.K * h * h));
+    x[i] += (wi * d / l) * u;
+    x[j] -= (wj * d / l) * u;
+  }
+}
+
+}  // namespace lab

@@ -1,0 +1,220 @@
+#include "lab/scenes/Compose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "CME212/Util.hpp"
+#include "lab/fast/OrderedCloth.hpp"
+#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/SelfCollision.hpp"
+#include "lab/scenes/Words.hpp"
+
+namespace lab {
+
+namespace {
+
+void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
+  const auto [n, m] = s.nodes;
+  const auto first = unsigned(mesh.points.size());
+  for (const Point& p : grid_points(n, m))
+    mesh.points.push_back(s.at + p.x * s.u + p.y * s.v);
+  for (Quad q : grid_quads(n, m)) {
+    for (unsigned& i : q) i += first;
+    mesh.quads.push_back(q);
+  }
+}
+
+/** Two points, the quad of which they are a side, and their neighbors along
+ * the sides that go on from them. */
+struct Side {
+  std::array<unsigned, 2> ends;  // the smaller one first
+  std::size_t quad;
+  std::array<unsigned, 2> beyond;  // the ends of the side across
+};
+
+/** All sides of all quads; those of the same ends follow each other. */
+std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
+  std::vector<Side> all;
+  for (std::size_t k = 0; k < quads.size(); ++k)
+    for (auto [a, b] : quad_sides) {
+      // Corner c of a quad has the neighbors c ^ 1 and c ^ 2 along its sides.
+      const unsigned across = (a ^ b) == 1 ? 2 : 1;
+      const Quad& q = quads[k];
+      Side s = {{q[a], q[b]}, k, {q[a ^ across], q[b ^ across]}};
+      if (s.ends[0] > s.ends[1]) {
+        std::swap(s.ends[0], s.ends[1]);
+        std::swap(s.beyond[0], s.beyond[1]);
+      }
+      all.push_back(s);
+    }
+  std::ranges::sort(all, {},
+                    [](const Side& s) { return std::pair(s.ends, s.quad); });
+  return all;
+}
+
+/** Call @a use(p, q, i, j) for each two points @a p and @a q that are two sides
+ * apart, across a side that quads i and j share: twice inside a grid. */
+template <typename Use>
+void each_bend(const std::vector<Quad>& quads, Use use) {
+  const auto all = sorted_sides(quads);
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    const Side &s = all[k - 1], &t = all[k];
+    if (s.ends != t.ends) continue;
+    for (int end : {0, 1})
+      if (s.beyond[end] != t.beyond[end])
+        use(s.beyond[end], t.beyond[end], s.quad, t.quad);
+  }
+}
+
+double area(const PointsAndQuads& mesh, const Quad& q) {
+  const auto& p = mesh.points;
+  return norm(cross(p[q[3]] - p[q[0]], p[q[2]] - p[q[1]])) / 2;
+}
+
+/** K of all springs by the modulus Y [N/m]: a spring stands for the width of
+ * cloth at its side, so that cloth of squares has K = Y, and half of that in
+ * sides at its rim. */
+void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
+                   double modulus) {
+  for (Edge e : g.edges()) e.value().K = 0;
+  auto add = [&](unsigned i, unsigned j, double area_of_width) {
+    Edge e = g.add_edge(g.node(i), g.node(j));  // there already
+    const double l = e.value().L;
+    if (l > 0) e.value().K += Real(modulus * area_of_width / (l * l));
+  };
+  for (const Quad& q : mesh.quads) {
+    const double a = area(mesh, q);
+    for (auto [i, j] : quad_sides) add(q[i], q[j], a / 2);
+    if (edges.diagonals)
+      for (auto [i, j] : quad_diagonals) add(q[i], q[j], 2 * a);
+  }
+  if (edges.bend)
+    each_bend(
+        mesh.quads, [&](unsigned p, unsigned q, std::size_t i, std::size_t j) {
+          add(p, q, area(mesh, mesh.quads[i]) + area(mesh, mesh.quads[j]));
+        });
+}
+
+/** The masses by the density [kg/m^2]: each node has a quarter of the quads at
+ * it.  Throws SceneError: a node in no quad */
+void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
+  std::vector<double> share(mesh.points.size());
+  for (const Quad& q : mesh.quads)
+    for (unsigned i : q) share[i] += area(mesh, q) / 4;
+  for (unsigned i = 0; i < share.size(); ++i) {
+    if (!(share[i] > 0))
+      throw SceneError("density", "gives no mass to node " + std::to_string(i) +
+                                      ", which lies in no quad");
+    g.node(i).value().mass = Real(density * share[i]);
+  }
+}
+
+}  // namespace
+
+PointsAndQuads mesh_of(const Model& m) {
+  PointsAndQuads mesh;
+  if (m.sheets.empty()) {
+    mesh.points = load_points(m.nodes);
+    mesh.quads = load_quads(m.tets, mesh.points.size());
+  }
+  for (const Sheet& s : m.sheets) add_sheet(mesh, s);
+  return mesh;
+}
+
+double shortest_side(const Model& m) {
+  double least = std::numeric_limits<double>::infinity();
+  const PointsAndQuads mesh = mesh_of(m);
+  for (const Quad& q : mesh.quads)
+    for (auto [i, j] : quad_sides)
+      least =
+          std::min<double>(least, norm(mesh.points[q[i]] - mesh.points[q[j]]));
+  return least;
+}
+
+void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
+  build_ordered_cloth(g, mesh.points, mesh.quads,
+                      m.edges.diagonals ? Mesh::diagonals : Mesh::plain,
+                      m.stiffness);
+  if (m.edges.bend)
+    each_bend(mesh.quads,
+              [&](unsigned p, unsigned q, std::size_t, std::size_t) {
+                const double l = norm(mesh.points[p] - mesh.points[q]);
+                g.add_edge(g.node(p), g.node(q), {Real(m.stiffness), Real(l)});
+              });
+  if (m.material.modulus) set_stiffness(g, mesh, m.edges, *m.material.modulus);
+  if (m.material.density) set_masses(g, mesh, *m.material.density);
+}
+
+CombinedForces force_of(const Model& m, const PointsAndQuads& mesh) {
+  double c = m.damping;
+  if (m.material.drag) {
+    double all = 0;
+    for (const Quad& q : mesh.quads) all += area(mesh, q);
+    c = *m.material.drag * all / double(mesh.points.size());
+  }
+  CombinedForces::List forces;
+  if (m.gravity != 0)
+    forces.push_back(std::make_shared<GravityForce>(m.gravity));
+  forces.push_back(std::make_shared<MassSpringForce>());
+  if (c > 0) forces.push_back(std::make_shared<DampingForce>(c));
+  return CombinedForces(std::move(forces));
+}
+
+CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
+  CombinedConstraints::List all;
+  auto add = [&](auto constraint) {
+    all.push_back(
+        std::make_shared<decltype(constraint)>(std::move(constraint)));
+  };
+  for (const Ball& b : m.tears) add(TearConstraint(b));
+  if (m.tear_strain) add(StrainConstraint(*m.tear_strain));
+  for (const Wall& w : m.planes)
+    add(WallConstraint(w.at, w.out(), w.motion, w.friction));
+  for (const Solid& s : m.spheres)
+    add(BallConstraint(s.ball, s.motion, s.friction));
+  for (const Pin& pin : m.pins) {
+    const PinConstraint pins(g,
+                             [&pin](const Point& p) { return pin.holds(p); });
+    if (pins.pins().empty())
+      throw SceneError("pin", '"' + to_words(pin) + "\" holds no node");
+    if (pin.motion.velocity == Point())
+      add(pins);
+    else
+      add(MovingPinConstraint(pins, pin.motion));
+  }
+  if (!m.self_collision) return CombinedConstraints(std::move(all));
+  const auto [thickness, friction] = *m.self_collision;
+  if (const double least = nearest_unconnected(g, thickness); least < thickness)
+    throw SceneError("self-collision",
+                     "has thickness " + CME212::short_text(thickness) +
+                         " m, but two nodes without a common edge start " +
+                         CME212::short_text(least) + " m apart");
+  return make_combined_constraints(
+      SelfCollision(thickness, friction, CombinedConstraints(std::move(all))));
+}
+
+Recipe recipe_of(const Model& m) {
+  auto mesh = std::make_shared<const PointsAndQuads>(mesh_of(m));
+  Recipe r;
+  r.name = m.name;
+  r.gravity = m.gravity;
+  r.build = [m, mesh](Cloth& g) { build_model(g, m, *mesh); };
+  r.force = [m, mesh](const Cloth&) { return force_of(m, *mesh); };
+  r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };
+  using Kind = Obstacle::Kind;
+  for (const Wall& w : m.planes)
+    // One that is inclined would hide what lies on it.
+    if (w.out() == Point(0, 0, 1))
+      r.obstacles.push_back({Kind::floor, w.at, 0, w.motion});
+  for (const Solid& s : m.spheres)
+    r.obstacles.push_back({Kind::ball, s.ball.center, s.ball.radius, s.motion});
+  for (const Ball& b : m.tears)
+    r.obstacles.push_back({Kind::tearing_ball, b.center, b.radius});
+  if (m.view) r.room = {m.view->from, m.view->to};
+  return r;
+}
+
+}  // namespace lab

@@ -1,0 +1,48 @@
+#include "lab/scenes/Model.hpp"
+
+#include <algorithm>
+
+#include "lab/methods/Methods.hpp"
+
+namespace lab {
+
+Point Motion::way(double t) const {
+  return std::clamp(t, 0.0, until) * velocity;
+}
+Point Motion::velocity_at(double t) const {
+  return 0 <= t && t < until ? velocity : Point();
+}
+
+bool Pin::holds(const Point& p) const {
+  auto is = [](const std::optional<double>& wanted, double a) {
+    return !wanted || std::abs(*wanted - a) < 1e-9;
+  };
+  return is(x, p.x) && is(y, p.y) && is(z, p.z);
+}
+
+const MethodEntry* default_method() {
+  static const MethodEntry* const method =
+      find_method(SymplecticEuler::info.name);
+  return method;
+}
+
+bool Model::names_parts() const {
+  return !sheets.empty() || edges != Edges() || material.density ||
+         material.modulus || material.drag || !pins.empty() ||
+         !planes.empty() || !spheres.empty() || !tears.empty() || tear_strain ||
+         self_collision;
+}
+
+Model assignment_scene() { return or_assignment({}); }
+
+Model or_assignment(Model m) {
+  if (m.names_parts()) return m;
+  if (m.name == Model().name) m.name = "tear";
+  for (double x : {0, 1}) m.pins.push_back({x, 0, 0, {}});
+  m.planes = {Wall()};
+  m.tears = {Ball()};
+  if (!m.view) m.view = View{Point(0, -0.4, -0.75), Point(1, 0.6, 0)};
+  return m;
+}
+
+}  // namespace lab

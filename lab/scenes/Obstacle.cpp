@@ -1,0 +1,107 @@
+#include "lab/scenes/Obstacle.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace lab {
+
+namespace contact {
+
+Point kick(const Point& u, const Point& out, double friction) {
+  const double in = -dot(u, out);
+  if (!(in > 0)) return Point();  // it is about to leave
+  const Point along = u + in * out;
+  const double slide = norm(along), brake = std::min(friction * in, slide);
+  return in * out + (slide > 0 ? along * (-brake / slide) : Point());
+}
+
+void touch(Node n, double depth, const Point& out, const Point& velocity,
+           double friction) {
+  const Point change = kick(n.value().vel - velocity, out, friction);
+  const double in = dot(change, out);
+  n.position() += depth * out;
+  n.value().vel += change;
+  if (in > std::numeric_limits<Real>::min())
+    n.position() += depth * ((change - in * out) / in);
+}
+
+}  // namespace contact
+
+// ----------------------------------------------------------------------- Pins
+
+void MovingPinConstraint::project(Cloth& g, double t, unsigned first,
+                                  unsigned last) const {
+  pins_.project(g, motion_.way(t), first, last);
+}
+void MovingPinConstraint::each_held(const Cloth& g,
+                                    const NodeVisitor& use) const {
+  pins_.each_held(g, use);
+}
+
+// ----------------------------------------------------------------------- Wall
+
+WallConstraint::WallConstraint(const Point& at, const Point& normal,
+                               const Motion& motion, double friction)
+    : at_(at),
+      normal_(normal / norm(normal)),
+      motion_(motion),
+      friction_(friction) {
+  assert(norm(normal) > 0 && friction >= 0);
+}
+
+void WallConstraint::project(Cloth& g, double t, unsigned first,
+                             unsigned last) const {
+  const Point at = at_ + motion_.way(t), velocity = motion_.velocity_at(t);
+  auto height = [&](const Point& p) { return dot(p - at, normal_); };
+  for_each_violating(
+      g, first, last, [&](const Point& p) { return height(p) < 0; },
+      [&](Node n) {
+        contact::touch(n, -height(n.position()), normal_, velocity, friction_);
+      });
+}
+
+// ----------------------------------------------------------------------- Ball
+
+BallConstraint::BallConstraint(const Ball& ball, const Motion& motion,
+                               double friction)
+    : ball_(ball), motion_(motion), friction_(friction) {
+  assert(friction >= 0);
+}
+
+void BallConstraint::project(Cloth& g, double t, unsigned first,
+                             unsigned last) const {
+  const Ball ball = {ball_.center + motion_.way(t), ball_.radius};
+  const Point velocity = motion_.velocity_at(t);
+  for_each_violating(
+      g, first, last, [&](const Point& p) { return ball.holds(p); },
+      [&](Node n) {
+        const Point from_center = n.position() - ball.center;
+        const double distance = norm(from_center);
+        const Point out =
+            distance > 0 ? from_center / distance : Point(0, 0, 1);
+        contact::touch(n, ball.radius - distance, out, velocity, friction_);
+      });
+}
+
+std::optional<Point> BallConstraint::first_hit(const Point& from,
+                                               const Point& to) const {
+  return speed() > 0 ? std::nullopt : lab::first_hit(ball_, from, to);
+}
+double BallConstraint::thinnest() const {
+  return speed() > 0 ? SweptConstraint::thinnest() : ball_.radius;
+}
+
+// --------------------------------------------------------------------- Strain
+
+void StrainConstraint::operator()(Cloth& g, double /*t*/) const {
+  const auto x = g.positions();
+  for (unsigned e = 0; e < g.edge_slots(); ++e) {
+    const auto [i, j] = g.edge_ends()[e];
+    const double longest = most_ * g.edge_values()[e].L;
+    // A slot that is not in use has the length 0.
+    if (normSq(x[j] - x[i]) > longest * longest)
+      g.remove_edge(g.edge_with_id(e));
+  }
+}
+
+}  // namespace lab

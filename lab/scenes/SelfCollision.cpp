@@ -1,0 +1,138 @@
+#include "lab/scenes/SelfCollision.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "CME212/Util.hpp"
+#include "lab/scenes/Obstacle.hpp"
+
+namespace lab {
+
+void CellTable::fill(const Cloth& g, double side) {
+  assert(side > 0);
+  const auto x = g.positions();
+  const unsigned bits = std::bit_width(2 * g.node_slots() + 1);
+  shift_ = 64 - bits;
+  placed_.clear();
+  placed_.reserve(g.node_slots());
+  start_.assign((std::size_t(1) << bits) + 1, 0);
+  for (unsigned i = 0; i < g.node_slots(); ++i) {
+    if (!g.node_in_use(i)) continue;
+    const double cell[3] = {std::floor(x[i].x / side),
+                            std::floor(x[i].y / side),
+                            std::floor(x[i].z / side)};
+    auto is_near = [](double c) { return std::abs(c) < 0x1p50; };
+    if (!std::all_of(cell, cell + 3, is_near)) continue;
+    const std::uint64_t key = key_of(
+        std::int64_t(cell[0]), std::int64_t(cell[1]), std::int64_t(cell[2]));
+    placed_.push_back({key, i});
+    ++start_[bucket(key)];
+  }
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  // Each bucket's entry is its end now, and runs down to its start.
+  node_.resize(placed_.size());
+  for (std::size_t k = placed_.size(); k-- > 0;)
+    node_[--start_[bucket(placed_[k].key)]] = placed_[k].node;
+}
+
+namespace {
+
+bool connected(const Cloth& g, unsigned i, unsigned j) {
+  const auto halves = g.halves(i);
+  return std::any_of(halves.begin(), halves.end(),
+                     [j](const Cloth::Half& h) { return h.node == j; });
+}
+
+// Pushed so much farther than needed, nodes in a pile come to rest within a
+// few rounds; else each would approach the thickness but never reach it.
+constexpr double margin = 1e-3;
+// Pairs up to so many times the thickness apart are gathered: those that may
+// get too near in rounds to come.
+constexpr double reach = 1.1;
+constexpr int rounds_per_gathering = 8;
+
+}  // namespace
+
+double nearest_unconnected(const Cloth& g, double up_to) {
+  CellTable cells;
+  cells.fill(g, up_to);
+  const auto x = g.positions();
+  double least = std::numeric_limits<double>::infinity();
+  cells.each_near_pair([&](unsigned i, unsigned j) {
+    const double distance = norm(x[i] - x[j]);
+    if (distance < std::min(least, up_to) && !connected(g, i, j))
+      least = distance;
+  });
+  return least;
+}
+
+void SelfCollision::operator()(Cloth& g, double t) const {
+  others_(g, t);
+  rounds_ = 0;
+  for (;;) {
+    gather_near_pairs(g);
+    if (!project_pairs(g)) return;
+    int left = rounds_per_gathering;
+    do others_(g, t);
+    while (--left > 0 && project_pairs(g));
+  }
+}
+
+void SelfCollision::gather_near_pairs(const Cloth& g) const {
+  held_.assign(g.node_slots(), false);
+  others_.each_held(g, [this](Node n) { held_[n.id()] = true; });
+  near_.clear();
+  const double most = reach * thickness_;
+  cells_.fill(g, most);
+  const auto x = g.positions();
+  cells_.each_near_pair([&](unsigned i, unsigned j) {
+    if (normSq(x[i] - x[j]) < most * most && !connected(g, i, j))
+      near_.push_back({i, j});
+  });
+}
+
+/** Push apart all gathered pairs that are too near.
+ * @return false if none was  Throws StepError after max_rounds. */
+bool SelfCollision::project_pairs(Cloth& g) const {
+  const auto x = g.positions();
+  bool pushed = false;
+  for (const auto& [i, j] : near_)
+    if (normSq(x[i] - x[j]) < thickness_ * thickness_ && g.node_in_use(i) &&
+        g.node_in_use(j)) {
+      push_apart(g, i, j);
+      pushed = true;
+    }
+  if (++rounds_ >= max_rounds && pushed)
+    throw StepError("self-collision: nodes are nearer than the thickness, " +
+                    CME212::short_text(thickness_) + " m, after " +
+                    std::to_string(max_rounds) + " rounds");
+  return pushed;
+}
+
+void SelfCollision::push_apart(Cloth& g, unsigned i, unsigned j) const {
+  const auto x = g.positions();
+  const auto node = g.node_values();
+  const double wi = held_[i] ? 0 : 1 / double(node[i].mass);
+  const double wj = held_[j] ? 0 : 1 / double(node[j].mass);
+  if (wi + wj == 0)
+    throw StepError("self-collision: nodes " +
+                    std::to_string(g.node_with_id(i).index()) + " and " +
+                    std::to_string(g.node_with_id(j).index()) +
+                    " are held, nearer than the thickness, " +
+                    CME212::short_text(thickness_) + " m");
+  const Point apart = x[i] - x[j];
+  const double distance = norm(apart);
+  const Point out = distance > 0 ? apart / distance : Point(0, 0, 1);
+  const Point way = ((1 + margin) * thickness_ - distance) * out;
+  const Point kick = contact::kick(node[i].vel - node[j].vel, out, friction_);
+  const double part_i = wi / (wi + wj), part_j = wj / (wi + wj);
+  x[i] += part_i * way;
+  x[j] -= part_j * way;
+  node[i].vel += part_i * kick;
+  node[j].vel -= part_j * kick;
+}
+
+}  // namespace lab

@@ -1,0 +1,167 @@
+#include "lab/stability/Spectrum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+
+namespace lab {
+
+namespace spectrum_detail {
+
+void find_springs(const Cloth& g, const ForcePlan& force,
+                  std::vector<Spring>& springs) {
+  springs.clear();
+  auto use = [&](unsigned i, unsigned j, const Stiffness& B) {
+    springs.push_back({i, j, B});
+  };
+  if (force.add_stiffness(g, use)) return;
+  springs.clear();
+  ForcePlan(MassSpringForce()).add_stiffness(g, use);
+}
+
+void find_scales(const Cloth& g, const ConstraintPlan& constraint,
+                 std::vector<double>& scale) {
+  scale.assign(g.node_slots(), 0);
+  auto node = g.node_values();
+  for (unsigned i = 0; i < g.node_slots(); ++i)
+    if (g.node_in_use(i)) scale[i] = 1 / std::sqrt(node[i].mass);
+  constraint.each_held(g, [&](Node n) { scale[n.id()] = 0; });
+}
+
+namespace {
+
+/** What the Lanczos method says about the largest eigenvalue: value is below
+ * it, and an eigenvalue lies within error of value. */
+struct Ritz {
+  double value = 0, error = 0;
+  int products = 0;
+};
+
+/** The largest eigenvalue of a symmetric matrix A.
+ * @param v start, not orthogonal to the eigenvector looked for
+ * @param multiply w = A v, as void(const VectorXd& v, VectorXd& w)
+ * @param most products, at most   @param tolerance stop at this error/value
+ * Without orthogonalization: copies of converged eigenvalues appear, but the
+ * largest is right. Source: B. N. Parlett, The Symmetric Eigenvalue Problem,
+ * 13.  Complexity: the products; memory: 3 vectors. */
+template <typename Multiply>
+Ritz lanczos(Eigen::VectorXd v, Multiply&& multiply, int most,
+             double tolerance) {
+  Ritz best;
+  const double size = v.norm();
+  if (!(size > 0)) return best;
+  v /= size;
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(v.size()), w(v.size());
+  std::vector<double> diagonal, beside;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
+  double b = 0;
+  while (best.products < most) {
+    multiply(v, w);
+    ++best.products;
+    const double a = v.dot(w);
+    diagonal.push_back(a);
+    w -= a * v + b * before;
+    b = w.norm();
+    const bool last = best.products == most || !(b > 1e-14 * std::abs(a));
+    if (last || best.products % 5 == 0) {
+      const auto k = Eigen::Index(diagonal.size());
+      T.computeFromTridiagonal(
+          Eigen::Map<Eigen::VectorXd>(diagonal.data(), k),
+          Eigen::Map<Eigen::VectorXd>(beside.data(), k - 1));
+      best.value = T.eigenvalues()[k - 1];
+      best.error = b * std::abs(T.eigenvectors()(k - 1, k - 1));
+      if (last || best.error <= tolerance * std::abs(best.value)) break;
+    }
+    beside.push_back(b);
+    before.swap(v);
+    v = w / b;
+  }
+  return best;
+}
+
+/** A start for lanczos(): random, the same in every run; 0 where @a scale is,
+ * which has one entry for each @a dim of v. */
+Eigen::VectorXd random_start(const std::vector<double>& scale, unsigned dim) {
+  std::mt19937 random(1);
+  Eigen::VectorXd v(Eigen::Index(dim * scale.size()));
+  for (unsigned k = 0; k < v.size(); ++k)
+    v[k] = scale[k / dim] > 0 ? double(random()) / double(random.max()) - 0.5
+                              : 0.0;
+  return v;
+}
+
+}  // namespace
+
+}  // namespace spectrum_detail
+
+double omega_safe(const Cloth& g, const ForcePlan& force,
+                  const ConstraintPlan& constraint) {
+  using namespace spectrum_detail;
+  std::vector<Spring> springs;
+  std::vector<double> scale;
+  find_springs(g, force, springs);
+  find_scales(g, constraint, scale);
+  auto multiply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& w) {
+    w.setZero();
+    for (const Spring& s : springs) {
+      const double pull = s.K() * (scale[s.i] * v[s.i] - scale[s.j] * v[s.j]);
+      w[s.i] += scale[s.i] * pull;
+      w[s.j] -= scale[s.j] * pull;
+    }
+  };
+  Ritz top = lanczos(random_start(scale, 1), multiply, 200, 2e-3);
+  return std::sqrt(std::max(0.0, top.value + top.error));
+}
+
+double SharpOmega::operator()(const Cloth& g, const ForcePlan& force,
+                              const ConstraintPlan& constraint, int products) {
+  using namespace spectrum_detail;
+  find_springs(g, force, springs_);
+  find_scales(g, constraint, scale_);
+  auto multiply = [this](const Eigen::VectorXd& v, Eigen::VectorXd& w) {
+    w.setZero();
+    auto at = [&](unsigned i) {
+      return scale_[i] * Point(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
+    };
+    for (const Spring& s : springs_) {
+      const Point pull = s.B * (at(s.i) - at(s.j));
+      for (unsigned k = 0; k < 3; ++k) {
+        w[3 * s.i + k] += scale_[s.i] * pull[k];
+        w[3 * s.j + k] -= scale_[s.j] * pull[k];
+      }
+    }
+  };
+  Ritz top = lanczos(random_start(scale_, 3), multiply, products, 1e-4);
+  return std::sqrt(std::max(0.0, top.value));
+}
+
+double omega_gershgorin(const Cloth& g, const ForcePlan& force,
+                        const ConstraintPlan& constraint) {
+  using namespace spectrum_detail;
+  std::vector<Spring> springs;
+  std::vector<double> scale;
+  find_springs(g, force, springs);
+  find_scales(g, constraint, scale);
+  std::vector<Eigen::Matrix3d> sum(g.node_slots(), Eigen::Matrix3d::Zero());
+  for (const Spring& s : springs) {
+    const double along = std::max(0.0, s.B.along);
+    const double across = std::max(0.0, s.B.across);
+    const Eigen::Vector3d n(s.B.direction.x, s.B.direction.y, s.B.direction.z);
+    const Eigen::Matrix3d B = across * Eigen::Matrix3d::Identity() +
+                              (along - across) * n * n.transpose();
+    sum[s.i] += (scale[s.j] > 0 ? 2 : 1) * B;
+    sum[s.j] += (scale[s.i] > 0 ? 2 : 1) * B;
+  }
+  double top = 0;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_node;
+  for (unsigned i = 0; i < sum.size(); ++i) {
+    if (scale[i] == 0) continue;
+    of_node.computeDirect(sum[i], Eigen::EigenvaluesOnly);
+    top = std::max(top, scale[i] * scale[i] * of_node.eigenvalues()[2]);
+  }
+  return std::sqrt(top);
+}
+
+}  // namespace lab

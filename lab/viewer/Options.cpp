@@ -1,0 +1,248 @@
+/** @file Options.cpp
+ * The options of ./cloth: their names, groups and help. */
+#include "lab/viewer/Options.hpp"
+
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "CME212/Util.hpp"
+#include "lab/Nearest.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/SceneFile.hpp"
+
+namespace lab {
+namespace {
+
+constexpr const char* version = "1.0.0";
+
+constexpr const char* head =
+    R"(Simulates a cloth of masses and springs: that of two files, or a scene.
+
+  ./cloth data/grid2.nodes data/grid2.tets --dt auto
+  ./cloth --config data/scenes/drape.toml --strain --csv energies.csv
+  ./cloth --config data/scenes/drape.toml --advise --tolerance 0.02
+
+Usage: cloth [OPTIONS] [NODES TETS])";
+
+/** The options of the help, in its order. */
+struct Group {
+  const char* name;
+  std::vector<const char*> options;
+};
+const std::vector<Group> groups = {
+    {"Scene",
+     {"config", "nodes", "tets", "sheet", "edges", "pin", "plane", "sphere",
+      "tear", "tear-strain", "self-collision", "gravity", "t-end", "view"}},
+    {"Material", {"stiffness", "modulus", "density", "damping", "drag"}},
+    {"Method and step", {"method", "dt", "threads"}},
+    {"Output",
+     {"headless", "window", "paused", "speed", "strain", "screenshot", "at",
+      "record", "csv", "every", "out", "quiet"}},
+    {"Advice", {"measure", "tolerance", "advise", "auto", "write-config"}},
+    {"Other", {"dump-config", "list-methods", "version", "help"}}};
+
+/** @a text in lines of at most @a width characters, where words allow. */
+std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines(1);
+  std::istringstream in(text);
+  for (std::string word; in >> word;) {
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width)
+      lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+  }
+  return lines;
+}
+
+/** Help in groups, of no more than 80 columns. */
+class Help : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string /*name*/,
+                        CLI::AppFormatMode /*mode*/) const override {
+    std::string text = app->get_description() + '\n';
+    for (const Group& g : groups) {
+      text += std::string("\n") + g.name + ":\n";
+      for (const char* name : g.options)
+        text += make_option(app->get_option(std::string("--") + name), false);
+    }
+    return text;
+  }
+  std::string make_option(const CLI::Option* o, bool) const override {
+    constexpr std::size_t column = 28, width = 80;
+    std::string text = "  " + o->get_name(false, true), type;
+    if (o->get_type_size() != 0) {
+      type = ' ' + o->get_type_name();
+      const std::string usual = o->get_default_str();
+      if (!usual.empty() && usual != "[]") type += '=' + usual;
+    }
+    text += type;
+    text += text.size() < column - 1 ? std::string(column - text.size(), ' ')
+                                     : '\n' + std::string(column, ' ');
+    const auto lines = wrapped(o->get_description(), width - column);
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      text += (k ? std::string(column, ' ') : "") + lines[k] + '\n';
+    return text;
+  }
+};
+
+/** Throws SceneError: an option that can't be used. */
+void check(Options& o) {
+  using CME212::short_text;
+  auto require = [](bool ok, const char* option, double value,
+                    const char* expected) {
+    if (!ok)
+      throw SceneError(option,
+                       "is " + short_text(value) + ", expected " + expected);
+  };
+  require(o.speed >= 0, "speed", o.speed, "0 or more");
+  require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
+  require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
+          "a time up to --t-end");
+  if (o.window && (o.headless || o.pictures()))
+    throw SceneError("window",
+                     "does not go with --headless, --screenshot and --record");
+}
+
+/** Print name, order, cost, limit and advice of every method. */
+void list_methods() {
+  std::printf(
+      "forces: force evaluations a step (linear solves excluded)\n"
+      "dt omega <: the stability limit without drag; omega: the cloth's "
+      "largest\n            frequency [rad/s]\n\n"
+      "%-18s %5s %6s %10s  %s\n",
+      "method", "order", "forces", "dt omega <", "good for; fails with");
+  for (const MethodEntry& m : methods) {
+    std::printf("%-18s %5d %6d ", m.info.name, m.info.order, m.info.sweeps);
+    if (m.info.limit == no_limit)
+      std::printf("%10s", "any");
+    else
+      std::printf("%10.4g", m.info.limit);
+    int indent = 2;
+    for (const std::string& text :
+         {m.info.good_for + std::string(";"), std::string(m.info.fails_when)})
+      for (const std::string& line : wrapped(text, 36)) {
+        std::printf("%*s%s\n", indent, "", line.c_str());
+        indent = 44;
+      }
+  }
+}
+
+/** Give @a app all options, which go to @a o and @a scene. */
+void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
+  app.option_defaults()->always_capture_default();
+  scene.add_to(app);
+  app.add_flag("--headless", o.headless, "open no window");
+  app.add_flag("--window", o.window,
+               "require a window: without a display, exit with 4");
+  app.add_flag("--paused", o.paused,
+               "in a window: wait for space or n at first");
+  app.add_option("--speed", o.speed,
+                 "in a window: simulated seconds a second, at most; 0: as fast "
+                 "as it goes");
+  app.add_flag("--strain", o.strain,
+               "color the nodes by their springs' strain");
+  app.add_option("--screenshot", o.screenshot,
+                 "draw a picture FILE.png, without a window")
+      ->type_name("FILE");
+  app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
+  app.add_option("--record", o.video,
+                 "draw a film FILE.mp4 of 30 frames a second, without a window")
+      ->type_name("FILE");
+  app.add_option("--csv", o.csv, "write energies [J] and center of mass [m]")
+      ->type_name("FILE");
+  app.add_option("--every", o.every, "steps between two rows of --csv");
+  app.add_option("--out", o.out, "write the positions at the end, as NODES")
+      ->type_name("FILE");
+  app.add_option("--threads", o.threads,
+                 "threads for a large cloth; 0: one a processor. They change "
+                 "no result")
+      ->check(CLI::Range(0, 1024).description(""));
+  app.add_flag("--quiet", o.quiet, "print nothing but errors");
+}
+
+/** Say what is wrong with a command line.  @return the exit status */
+int report(const CLI::App& app, const CLI::ParseError& e) {
+  if (e.get_exit_code() == 0) return app.exit(e);
+  std::string message = e.what();
+  for (std::string word : app.remaining()) {
+    if (!word.starts_with("-")) continue;
+    word = word.substr(0, word.find('='));
+    std::vector<std::string> names;
+    for (const Group& g : groups)
+      for (const char* name : g.options)
+        names.push_back(std::string("--") + name);
+    const std::string meant = did_you_mean(word, names);
+    message = word + " is no option" + (meant.empty() ? ": see --help" : meant);
+    break;
+  }
+  std::cerr << "cloth: " << message << '\n';
+  return 2;
+}
+
+}  // namespace
+
+int parse(int argc, char** argv, Options& o) {
+  std::string file;
+  bool dump = false;
+  SceneOptions scene;
+  CLI::App first;  // finds the scene file
+  first.set_help_flag();
+  first.allow_extras();
+  first.add_option("--config", file);
+  try {
+    first.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return report(first, e);
+  }
+  if (!file.empty()) {
+    CLI::App app;
+    app.set_config("--config");
+    add_options(app, o, scene);
+    scene.read(app, file, [&] {
+      o.model = scene.model();
+      check(o);
+    });
+  }
+
+  CLI::App app(head, "cloth");
+  app.formatter(std::make_shared<Help>());
+  app.set_help_flag("-h,--help", "print this, and end");
+  add_options(app, o, scene);
+  app.add_option("--config", file, "read options from a file: a scene")
+      ->type_name("FILE");
+  app.add_flag("--dump-config", dump, "print the scene as a file, and end");
+  app.add_flag("--advise", o.advise,
+               "find out by short runs which parts, grid, method and step the "
+               "measure needs to its tolerance; print it, and end");
+  app.add_flag("--auto", o.automatic, "run what --advise would advise");
+  app.add_option("--write-config", o.advised,
+                 "write the scene that is advised to this file")
+      ->type_name("FILE");
+  app.set_version_flag("--version",
+                       std::string("cloth ") + version + ", Cholesky by " +
+                           SparseCholesky::back_end,
+                       "print the version, and end");
+  app.add_flag_callback(
+      "--list-methods",
+      [] {
+        list_methods();
+        throw CLI::Success();
+      },
+      "print the table of methods, and end");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return report(app, e);
+  }
+  o.model = scene.model();
+  check(o);
+  check_has_cloth(o.model);
+  if (!dump) return -1;
+  std::cout << to_scene_file(o.model);
+  return 0;
+}
+
+}  // namespace lab

@@ -1,0 +1,33 @@
+#pragma once
+/** @file Options.hpp
+ * Options: what ./cloth is asked for. */
+#include <string>
+
+#include "lab/scenes/Model.hpp"
+
+namespace lab {
+
+/** What a run is asked for; see ./cloth --help. */
+struct Options {
+  Model model;
+  double at = -1;  ///< time of the screenshot [s]; the end if negative
+  double speed = 1;
+  long long every = 10;
+  int threads = 0;  ///< of a large cloth; 0: one a processor
+  bool headless = false, window = false, paused = false, strain = false;
+  bool quiet = false;
+  bool advise = false, automatic = false;
+  std::string screenshot, video, csv, out;
+  std::string advised;  ///< file for the advised scene
+
+  bool pictures() const { return !screenshot.empty() || !video.empty(); }
+};
+
+/** Read the scene file, if there is one, and then the command line, which
+ * wins. Prints what is asked for (help, version, methods, the scene), and what
+ * is wrong with the words of the command line.
+ * @return the exit status to end with, or -1: go on
+ * Throws SceneError, SceneFileError */
+int parse(int argc, char** argv, Options& o);
+
+}  // namespace lab

@@ -1,0 +1,202 @@
+/** @file Run.cpp */
+#include "lab/viewer/Run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "lab/fast/Energy.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/stability/StepLimit.hpp"
+
+namespace lab {
+namespace {
+
+constexpr const char* warning = "cloth: warning: ";
+
+struct Energies {
+  double kinetic, elastic, gravitational;
+  double total() const { return kinetic + elastic + gravitational; }
+};
+Energies energies(const Cloth& g, double gravity) {
+  return {kinetic_energy(g), elastic_energy(g),
+          gravitational_energy(g, gravity)};
+}
+
+}  // namespace
+
+Run::Run(Scene& scene, const Options& o)
+    : scene_(scene), o_(o), progress_(o.quiet) {
+  if (!o.csv.empty()) csv_.emplace(o.csv);
+  if (!o.out.empty()) out_.emplace(o.out);
+  start();
+}
+
+void Run::start() {
+  progress_ = Progress(o_.quiet);
+  rows_.clear();
+  seconds_ = 0;
+  last_row_ = -1;
+  add_row();
+}
+
+void Run::restart() {
+  scene_.restart();
+  told_ = false;
+  start();
+}
+
+bool Run::done() const { return scene_.done(o_.model.t_end); }
+
+void Run::check() {
+  scene_.check();
+  tell_failure();
+}
+
+void Run::advance() {
+  scene_.step();
+  look();
+}
+
+void Run::to_end(const std::function<void()>& after) {
+  scene_.run_to(o_.model.t_end, [&] {
+    look();
+    after();
+  });
+}
+
+/** After a step. */
+void Run::look() {
+  if (done() || (csv_ && scene_.steps() % o_.every == 0)) scene_.check();
+  seconds_ = progress_.seconds();
+  tell_failure();
+  if (scene_.steps() % o_.every == 0 || done()) add_row();
+  if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
+  if (progress_.due()) show_progress();
+}
+
+void Run::show_progress() {
+  using CME212::short_text;
+  const double t = scene_.time(), t_end = o_.model.t_end;
+  const double rate = double(scene_.steps()) / progress_.seconds();
+  progress_.show("t = " + short_text(t) + " of " + short_text(t_end) + " s, " +
+                     short_text(std::round(rate)) + " steps/s",
+                 t / t_end);
+}
+
+void Run::announce() const {
+  if (o_.quiet) return;
+  using CME212::percent;
+  const std::string method = scene_.method().name;
+  const double dt = scene_.dt(), limit = scene_.safe_limit();
+  const bool sharp = scene_.step_rule() == StepRule::sharp;
+  std::ostringstream out;
+  out.precision(3);
+  out << "dt = " << dt << " s";
+  if (sharp) {
+    out << " at first: up to " << percent(sharp_share)
+        << " of the stability limit in the present configuration and up to "
+           "that in any ("
+        << limit << " s, " << method << ')';
+  } else if (limit == no_limit) {
+    const double verlet = scene_.safe_limit(entry_of<Verlet>());
+    out << ": " << method << " has no stability limit";
+    if (std::isfinite(verlet))
+      out << "; this is " << percent(dt / verlet) << " of that of verlet ("
+          << verlet << " s)";
+  } else if (limit > 0) {
+    out << ": " << percent(dt / limit) << " of the stability limit (" << limit
+        << " s, " << method << ')';
+  } else {
+    out << ": no step is stable with " << method << " and no drag";
+  }
+  std::cout << out.str() << '\n';
+  warn_of_fast_balls();
+  if (dt <= limit || sharp) return;
+  out.str("");
+  if (limit > 0)
+    out << "dt exceeds the stability limit: expect divergence; use --dt "
+        << safe_share * limit << " or --dt auto";
+  else
+    out << "expect divergence; use --method verlet --dt auto";
+  std::cerr << warning << out.str() << '\n';
+}
+
+int Run::finish() {
+  progress_.end();
+  if (csv_) {
+    csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,"
+                      "com_z,nodes,edges\n"
+                   << rows_;
+    csv_->commit();
+  }
+  if (out_) {
+    for (Node n : scene_.cloth().nodes()) {
+      Point p = n.position();
+      out_->stream() << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y)
+                     << ' ' << CME212::to_text(p.z) << '\n';
+    }
+    out_->commit();
+  }
+  if (!o_.quiet) print_summary();
+  return scene_.failure().empty() ? 0 : 3;
+}
+
+void Run::add_row() {
+  if (!csv_ || scene_.steps() == last_row_) return;
+  last_row_ = scene_.steps();
+  const Cloth& g = scene_.cloth();
+  const Energies e = energies(g, o_.model.gravity);
+  const Point c = center_of_mass(g);
+  for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
+                   e.total(), double(c.x), double(c.y), double(c.z)})
+    rows_ += CME212::to_text(a) + ',';
+  rows_ += std::to_string(g.num_nodes()) + ',' + std::to_string(g.num_edges()) +
+           '\n';
+}
+
+void Run::tell_failure() {
+  if (told_ || scene_.failure().empty()) return;
+  told_ = true;
+  progress_.end();
+  std::cerr << "cloth: " << scene_.failure() << '\n';
+}
+
+/** A ball that jumps over nodes pushes none of them. */
+void Run::warn_of_fast_balls() const {
+  for (const Obstacle& o : scene_.recipe().obstacles) {
+    const double way = norm(o.motion.velocity) * scene_.dt();
+    if (o.kind == Obstacle::Kind::ball && way > o.radius / 2)
+      std::cerr << warning << "--sphere moves " << way
+                << " m a step, more than half of its radius, " << o.radius
+                << " m: nodes may tunnel through it; use --dt "
+                << o.radius / 2 / norm(o.motion.velocity) << '\n';
+  }
+}
+
+void Run::warn_of_missed() {
+  warned_ = true;
+  if (o_.quiet) return;
+  const auto& missed = scene_.watched().first();
+  std::cerr << warning << "node " << missed.node << " moved " << missed.length
+            << " m in the step to t = " << scene_.time()
+            << " s and would have tunnelled through an obstacle; it was put "
+               "on the surface. Use --dt "
+            << scene_.dt() *
+                   std::min(0.5, scene_.watched().thinnest() / missed.length)
+            << '\n';
+}
+
+void Run::print_summary() const {
+  const Energies e = energies(scene_.cloth(), o_.model.gravity);
+  std::cout << scene_.recipe().name << ": " << scene_.steps()
+            << " steps to t = " << scene_.time() << " s in " << seconds_
+            << " s; energy " << e.total() << " J = " << e.kinetic
+            << " kinetic + " << e.elastic << " elastic + " << e.gravitational
+            << " gravitational; " << scene_.cloth().num_nodes() << " nodes and "
+            << scene_.cloth().num_edges() << " edges left\n";
+}
+
+}  // namespace lab

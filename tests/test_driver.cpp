@@ -1,0 +1,182 @@
+// The assignment's program as its user meets it, without a window: each stage
+// is run, and its status and words are looked at. Build the stages first:
+// make all VIEWER=0.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/TestFolder.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Result = CME212::TestFolder::Result;
+
+const char* const stages[] = {"problem1", "diagonals", "forces", "constraints",
+                              "tear"};
+std::string grid(int n) {
+  const std::string name = "data/grid" + std::to_string(n);
+  return name + ".nodes " + name + ".tets ";
+}
+
+class Driver : public ::testing::Test {
+ protected:
+  const CME212::TestFolder folder;
+
+  void SetUp() override {
+    // Also one that was built with a viewer has nothing to open.
+    unsetenv("DISPLAY");
+    unsetenv("WAYLAND_DISPLAY");
+    unsetenv("SDL_VIDEODRIVER");
+    for (const char* stage : stages)
+      ASSERT_TRUE(fs::exists(program(stage))) << "make all VIEWER=0";
+  }
+  static std::string program(const std::string& stage) {
+    return CME212::program("mass_spring_" + stage, "./");
+  }
+  /** Run a stage. Words of @a arguments: as in a shell. */
+  Result run(const std::string& arguments, const std::string& stage = "tear") {
+    return folder.run(program(stage) + " " + arguments);
+  }
+  /** A file of this test with a content. */
+  std::string file(const std::string& name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return folder / name;
+  }
+};
+
+/** What a run without a window says while it runs. */
+struct Lines {
+  std::string size, display;  // the first two
+  struct Line {
+    double t, energy;
+    unsigned nodes;
+  };
+  std::vector<Line> lines;
+
+  explicit Lines(const std::string& text) {
+    std::istringstream in(text);
+    std::getline(in, size);
+    std::getline(in, display);
+    for (std::string line; std::getline(in, line);) {
+      Line l{};
+      int end = 0;
+      EXPECT_EQ(std::sscanf(line.c_str(), "t = %lf s, energy %lf J, %u nodes%n",
+                            &l.t, &l.energy, &l.nodes, &end),
+                3)
+          << line;
+      EXPECT_EQ(std::size_t(end), line.size()) << line;
+      lines.push_back(l);
+    }
+  }
+};
+
+TEST_F(Driver, RunsEveryStageToItsEnd) {
+  for (const std::string stage : stages) {
+    Result r = run(grid(0), stage);
+    EXPECT_EQ(r.status, 0) << stage;
+    EXPECT_EQ(r.err, "") << stage;
+    const Lines said(r.out);
+    EXPECT_EQ(said.size, stage == "problem1" ? "25 nodes, 40 edges"
+                                             : "25 nodes, 72 edges");
+    EXPECT_EQ(said.display, "no display: running without a window");
+    ASSERT_EQ(said.lines.size(), 11u) << stage;  // every half second
+    for (std::size_t k = 0; k < said.lines.size(); ++k) {
+      EXPECT_NEAR(said.lines[k].t, 0.5 * double(k), 1e-6) << stage;
+      // It starts at rest at z = 0; only contact takes energy away.
+      EXPECT_LT(said.lines[k].energy, 0.1) << stage;
+      EXPECT_GT(said.lines[k].energy, -9.81) << stage;
+    }
+    EXPECT_EQ(said.lines.front().energy, 0);
+    EXPECT_EQ(said.lines.front().nodes, 25u);
+    const bool free = stage != "constraints" && stage != "tear";
+    EXPECT_EQ(said.lines.back().energy > -0.1, free) << stage;  // no drag
+    EXPECT_EQ(said.lines.back().nodes < 25, stage == "tear") << stage;
+  }
+}
+
+TEST_F(Driver, TakesAStepAndAnEnd) {
+  const Lines said(run(grid(0) + "0.002 0.1").out);
+  ASSERT_EQ(said.lines.size(), 11u);
+  EXPECT_NEAR(said.lines.back().t, 0.1, 1e-6);
+  EXPECT_NEAR(said.lines[1].t, 0.01, 1e-6);
+}
+
+TEST_F(Driver, SaysHowItIsUsed) {
+  for (const char* arguments : {"", "data/grid0.nodes", "a b 0.1 1 5"}) {
+    Result r = run(arguments);
+    EXPECT_EQ(r.status, 2) << arguments;
+    EXPECT_EQ(r.out, "") << arguments;
+    EXPECT_EQ(r.err, "usage: ./mass_spring NODES TETS [DT [T_END]]\n");
+  }
+  for (const char* number : {"0", "-1", "nan", "inf", "x", "0.001x", "''"}) {
+    Result r = run(grid(0) + number);
+    EXPECT_EQ(r.status, 2) << number;
+    EXPECT_EQ(r.err.find("DT is '"), 0u) << r.err;
+    EXPECT_NE(r.err.find("', expected a time [s], more than 0\n"),
+              std::string::npos)
+        << r.err;
+    r = run(grid(0) + "0.001 " + number);
+    EXPECT_EQ(r.status, 2) << number;
+    EXPECT_EQ(r.err.find("T_END is '"), 0u) << r.err;
+  }
+}
+
+TEST_F(Driver, RefusesBadInputWithFileAndLine) {
+  auto bad = [this](const std::string& nodes, const std::string& tets,
+                    const std::string& message) {
+    for (const char* stage : {"problem1", "tear"}) {
+      Result r = run(nodes + " " + tets, stage);
+      EXPECT_EQ(r.status, 2) << message;
+      EXPECT_EQ(r.out, "");
+      EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+      EXPECT_EQ(r.err.find(message), 0u) << r.err;
+      EXPECT_NE(r.err.find(", expected "), std::string::npos) << r.err;
+    }
+  };
+  const std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  const std::string tets = file("t", "0 1 2 3\n");
+  auto points = [this](const char* text) { return file("bad", text); };
+  const std::string at = folder / "bad:", none = folder / "none";
+  bad(none, tets, none + ": can't be opened (No such file");
+  bad(folder.path().string(), tets, folder.path().string() + ": a directory");
+  bad(points("0 0 0\n0 x 0\n"), tets, at + "2: 'x' is not a number");
+  bad(points("0 0 0 0\n"), tets, at + "1: 4 values in the line");
+  bad(nodes, points("0 1 2 4\n"), at + "1: there is no node 4");
+  bad(nodes, points("#\n0 1 2 -3\n"), at + "2: there is no node -3");
+  EXPECT_EQ(run(nodes + " " + tets + " 0.001 0.01").status, 0);
+}
+
+// Its usual step of 0.001 s is too long for grid3.
+TEST_F(Driver, StopsWhenItDivergesAndSaysWhenWhereAndWhatHelps) {
+  for (const std::string stage : stages) {
+    Result r = run(grid(3), stage);
+    EXPECT_EQ(r.status, 3) << stage;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    double t = 0;
+    unsigned node = 0;
+    int end = 0;
+    EXPECT_EQ(std::sscanf(r.err.c_str(),
+                          "diverged: at t = %lf s node %u is not finite; %n",
+                          &t, &node, &end),
+              2)
+        << r.err;
+    EXPECT_GT(t, 0.02) << stage;
+    EXPECT_LT(t, 1) << stage;
+    EXPECT_LT(node, 10000u);
+    EXPECT_EQ(r.err.substr(std::size_t(end)),
+              "'./cloth data/grid3.nodes data/grid3.tets --dt auto' finds a "
+              "stable step\n");
+  }
+  // A step that works.
+  EXPECT_EQ(run(grid(3) + "0.0003 0.2").status, 0);
+}
+
+}  // namespace

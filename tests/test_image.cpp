@@ -1,0 +1,225 @@
+/** @file test_image.cpp
+ * Tests of Color, GLCamera, Image and Video, which need no display. */
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "CME212/Color.hpp"
+#include "CME212/GLCamera.hpp"
+#include "CME212/Image.hpp"
+#include "tests/TestFolder.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace CME212;
+
+std::size_t files_in(const TestFolder& folder) {
+  return std::size_t(std::distance(fs::directory_iterator(folder.path()), {}));
+}
+
+// ---------------------------------------------------------- Color and camera
+
+TEST(Color, StrainScaleGrowsInLuminance) {
+  float before = Color::make_strain(0).luminance();
+  for (int i = 1; i <= 1000; ++i) {
+    float now = Color::make_strain(float(i) / 1000).luminance();
+    EXPECT_GT(now, before) << i;
+    before = now;
+  }
+  EXPECT_NEAR(Color(1).luminance(), 1, 1e-6);
+  EXPECT_EQ(Color(0).luminance(), 0);
+}
+
+TEST(GLCamera, ShowsTheClothUpright) {
+  GLCamera c;
+  auto x = [&](double px, double py, double pz) {
+    return c.project(Point(px, py, pz), 1);
+  };
+  EXPECT_GT(x(0.5, 0.5, 0).y, x(0.5, 0.5, -1).y);  // z is up
+  EXPECT_GT(x(1, 0, 0).x, x(0, 0, 0).x);           // x is to the right
+  EXPECT_LT(x(0.5, 0, 0).z, x(0.5, 1, 0).z);       // y is away
+  EXPECT_LT(x(0.5, 0, 0).y, x(0.5, 1, 0).y);       // and seen from above
+  for (double px : {0.0, 1.0})
+    for (double py : {0.0, 1.0})
+      for (double pz : {-1.0, 0.0}) {
+        EXPECT_LT(std::abs(x(px, py, pz).x), 1);
+        EXPECT_LT(std::abs(x(px, py, pz).y), 1);
+      }
+}
+
+TEST(GLCamera, FitTouchesTheMarginForEveryDirectionAndShape) {
+  BoundingBox box = (BoundingBox() |= Point(-1, 2, 3)) |= Point(4, 2.5, 3.1);
+  for (double aspect : {0.5, 1.0, 2.0})
+    for (Point from : {Point(1, 0, 0), Point(0.3, -1, 0.5), Point(0, 0, 1)}) {
+      GLCamera c;
+      c.look_from(from);
+      c.fit(box, aspect);
+      double most = 0;
+      for (int i = 0; i < 8; ++i) {
+        Point p = c.project(
+            Point(i & 1 ? -1 : 4, i & 2 ? 2 : 2.5, i & 4 ? 3 : 3.1), aspect);
+        most = std::max({most, std::abs(p.x), std::abs(p.y)});
+      }
+      EXPECT_NEAR(most, 1 / 1.1, 1e-9);
+    }
+  GLCamera c, old;
+  c.fit(BoundingBox(), 1);  // an empty box changes nothing
+  EXPECT_EQ(c.eye(), old.eye());
+  c.fit(BoundingBox() |= Point(7, 8, 9), 1);  // one point is in the middle
+  EXPECT_NEAR(norm(c.project(Point(7, 8, 9), 1) - Point(0, 0, c.distance())), 0,
+              1e-9);
+}
+
+TEST(GLCamera, MatricesAgreeWithProject) {
+  GLCamera c;
+  c.look_from(Point(1, 2, 3));
+  c.pan(0.1, -0.2);
+  Point p(0.3, 0.9, -0.4);
+  auto times = [](const GLCamera::Matrix& m, std::array<double, 4> v) {
+    std::array<double, 4> r{};
+    for (int i = 0; i < 16; ++i) r[i % 4] += m[i] * v[i / 4];
+    return r;
+  };
+  auto clip = times(c.projection(1.5), times(c.view(), {p.x, p.y, p.z, 1}));
+  Point q = c.project(p, 1.5);
+  EXPECT_NEAR(clip[0] / clip[3], q.x, 1e-5);
+  EXPECT_NEAR(clip[1] / clip[3], q.y, 1e-5);
+  EXPECT_NEAR(clip[3], q.z, 1e-5);
+  EXPECT_LT(std::abs(clip[2] / clip[3]), 1);  // between near and far
+}
+
+TEST(GLCamera, Moves) {
+  GLCamera c;
+  const GLCamera old = c;
+  c.zoom(2);
+  EXPECT_DOUBLE_EQ(c.distance(), old.distance() / 2);
+  c.zoom(1e9);
+  EXPECT_GT(c.distance(), 0);
+  c = old;
+  c.rotate(0.3, 0);  // what is in front moves to the right
+  Point front = old.center() + 0.1 * old.backward();
+  EXPECT_GT(c.project(front, 1).x, old.project(front, 1).x);
+  EXPECT_DOUBLE_EQ(c.distance(), old.distance());
+  c.rotate(0, -9);  // stops above
+  EXPECT_NEAR(norm(c.backward() - Point(0, 0, 1)), 0, 1e-12);
+  EXPECT_NEAR(norm(c.up()), 1, 1e-12);
+  c = old;
+  c.pan(0.25, 0);  // by a quarter of the picture, that is 0.5 of [-1, 1]
+  EXPECT_NEAR(c.project(old.center(), 1).x, 0.5, 1e-9);
+}
+
+// ----------------------------------------------------------- Image and Video
+
+Image test_image(int width, int height, int seed = 0) {
+  Image image(width, height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = std::uint8_t(i * i / 7 + 31 * std::size_t(seed));
+  return image;
+}
+
+TEST(Image, SurvivesPng) {
+  TestFolder folder;
+  for (auto [w, h] : {std::array{1, 1}, {7, 5}, {640, 3}}) {
+    Image image = test_image(w, h);
+    write_png(folder / "a.png", image);
+    EXPECT_EQ(read_png(folder / "a.png"), image);
+  }
+  EXPECT_EQ(files_in(folder), 1u);  // nothing else is left
+}
+
+TEST(Image, SaysWhatIsWrong) {
+  TestFolder folder;
+  const std::string nowhere = folder / "none/a.png", text = folder / "t.png";
+  const Image image = test_image(2, 2);
+  for (auto& [file, f] : std::map<std::string, std::function<void()>>{
+           {nowhere, [&] { write_png(nowhere, image); }},
+           {folder / "", [&] { write_png(folder / "", image); }},
+           {folder / "b.png", [&] { read_png(folder / "b.png"); }},
+           {text, [&] {
+              std::ofstream(text) << "no picture";
+              read_png(text);
+            }}})
+    EXPECT_EQ(error_of(f).find(file + ": "), 0u) << error_of(f);
+  write_png(folder / "old.png", image);
+  EXPECT_NE(error_of([&] { write_png(folder / "old.png", Image()); }),
+            "no error");
+  EXPECT_EQ(read_png(folder / "old.png"), image);
+  EXPECT_EQ(files_in(folder), 2u);
+}
+
+TEST(Video, MakesAPlayableFile) {
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
+  TestFolder folder;
+  // A name that a shell or ffmpeg itself might misread.
+  const std::string file = folder / "-a 'b\"; $(touch c) e:f%d.mp4";
+  Video video(file, 65, 48, 25);
+  for (int i = 0; i < 10; ++i) video.add(test_image(65, 48, i));
+  EXPECT_FALSE(fs::exists(file));
+  video.finish();
+  EXPECT_EQ(video.wrote(), file);
+  EXPECT_EQ(video.frames(), 10);
+  EXPECT_EQ(files_in(folder), 1u);
+  fs::rename(file, folder / "v.mp4");
+  if (!has_program("ffprobe")) return;
+  EXPECT_EQ(output_of("ffprobe -v error -count_frames -select_streams v "
+                      "-show_entries stream=width,height,pix_fmt,r_frame_rate,"
+                      "nb_read_frames -of csv=p=0 " +
+                      (folder / "v.mp4")),
+            "64,48,yuv420p,25/1,10\n");
+}
+
+TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
+  TestFolder folder;
+  Environment path("PATH", (folder / "none").c_str());
+  for (int length : {3, 2}) {  // the second replaces the first
+    Video video(folder / "v.mp4", 8, 6);
+    for (int i = 0; i < length; ++i) video.add(test_image(8, 6, i));
+    EXPECT_EQ(fs::exists(folder / "v_frames"), length == 2);
+    video.finish();
+    EXPECT_EQ(video.wrote(), folder / "v_frames/");
+  }
+  EXPECT_EQ(read_png(folder / "v_frames/frame_000001.png"),
+            test_image(8, 6, 1));
+  EXPECT_FALSE(fs::exists(folder / "v_frames/frame_000002.png"));
+  EXPECT_EQ(files_in(folder), 1u);
+
+  std::ofstream(folder / "v_frames/notes.txt") << "keep";  // not ours
+  Video video(folder / "v.mp4", 8, 6);
+  video.add(test_image(8, 6));
+  EXPECT_NE(error_of([&] { video.finish(); }), "no error");
+  EXPECT_TRUE(fs::exists(folder / "v_frames/notes.txt"));
+}
+
+TEST(Video, SaysWhatIsWrong) {
+  TestFolder folder;
+  EXPECT_EQ(error_of([&] {
+              Video(folder / "none/v.mp4", 8, 6);
+            }).find(folder / "none/v.mp4: "),
+            0u);
+  // An ffmpeg that complains and stops: an error, not a signal.
+  std::ofstream(folder / "ffmpeg") << "#!/bin/sh\necho too bad >&2\nexit 3\n";
+  fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+  Environment path("PATH", folder.path().c_str());
+  Video video(folder / "v.mp4", 800, 600);
+  std::string error = error_of([&] {
+    for (int i = 0; i < 100; ++i) video.add(test_image(800, 600));
+  });
+  EXPECT_EQ(error, (folder / "v.mp4: ffmpeg failed: too bad"));
+  EXPECT_NE(error_of([&] { video.finish(); }), "no error");
+}
+
+TEST(Video, LeavesNothingIfNotFinished) {
+  TestFolder folder;
+  Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
+  Environment path("PATH", (folder / "none").c_str());
+  Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
+  EXPECT_EQ(files_in(folder), 0u);
+}
+
+}  // namespace
