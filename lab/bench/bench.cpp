@@ -24,6 +24,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lab/bench/Bench.hpp"
+#include "lab/methods/Flow.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
