@@ -24,6 +24,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lab/bench/Bench.hpp"
+#include "lab/methods/Flow.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
@@ -210,17 +211,18 @@ template <typename M>
 std::function<std::function<void()>(unsigned)> stepping(Kind kind) {
   return [kind](unsigned side) -> std::function<void()> {
     auto method = std::make_shared<M>();
-    auto force = std::make_shared<CombinedForces>(
-        make_combined_force(GravityForce(), MassSpringForce()));
+    const ForcePlan force =
+        make_combined_force(GravityForce(), MassSpringForce());
     auto t = std::make_shared<double>(0);
     Cloth& g = cloth(side, kind);
-    return [=, &g] { *t = method->step(g, *t, dt, *force, ZeroConstraint()); };
+    return [=, none = ConstraintPlan(), &g] {
+      *t = method->step(g, *t, dt, force, none);
+    };
   };
 }
 
 /** Makes a sweep of one force over a cloth. */
-template <typename F>
-std::function<void()> sweeping(unsigned side, F force) {
+std::function<void()> sweeping(unsigned side, const ForcePlan& force) {
   auto sweep = std::make_shared<Sweep>();
   Cloth& g = cloth(side, Kind::grid);
   return [=, &g] {
@@ -387,9 +389,7 @@ std::vector<Figure> figures() {
     add({std::string("part: ") + name, "step: SymplecticEuler",
          [of](unsigned n) -> Make {
            Cloth& g = cloth(n, Kind::grid);
-           return [c = std::make_shared<decltype(of(g))>(of(g)), &g] {
-             (*c)(g, 0);
-           };
+           return [c = ConstraintPlan(of(g)), &g] { c(g, 0); };
          },
          false});
   };

@@ -23,7 +23,7 @@ namespace {
 /** The cloth of side x side nodes that is asked for. */
 struct Course {
   Cloth g;
-  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce());
+  ForcePlan force = make_combined_force(GravityForce(), MassSpringForce());
   explicit Course(const benchmark::State& state) {
     const auto side = unsigned(state.range(0));
     build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
@@ -42,7 +42,7 @@ void sweep(benchmark::State& state) {
 
 void verlet_step(benchmark::State& state) {
   Course c(state);
-  PinConstraint pin(c.g);
+  const ConstraintPlan pin = PinConstraint(c.g);
   Verlet verlet;
   // so short that the cloth stays where it is
   for (auto _ : state) verlet.step(c.g, 0, 1e-9, c.force, pin);
@@ -50,20 +50,20 @@ void verlet_step(benchmark::State& state) {
 
 void sharp_estimate(benchmark::State& state) {
   Course c(state);
-  PinConstraint pin(c.g);
+  const ConstraintPlan pin = PinConstraint(c.g);
   SharpOmega sharp;
   for (auto _ : state) benchmark::DoNotOptimize(sharp(c.g, c.force, pin));
 }
 
 void safe_estimate(benchmark::State& state) {
   Course c(state);
-  PinConstraint pin(c.g);
+  const ConstraintPlan pin = PinConstraint(c.g);
   for (auto _ : state) benchmark::DoNotOptimize(omega_safe(c.g, c.force, pin));
 }
 
 void cheap_estimate(benchmark::State& state) {
   Course c(state);
-  PinConstraint pin(c.g);
+  const ConstraintPlan pin = PinConstraint(c.g);
   for (auto _ : state)
     benchmark::DoNotOptimize(omega_gershgorin(c.g, c.force, pin));
 }

@@ -25,7 +25,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "lab/methods/Splitting.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
 
 namespace lab {
 
@@ -279,15 +279,15 @@ struct Boost {
 struct OurCloth {
   static constexpr const char* name = "ours";
   Cloth g;
-  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce());
-  std::optional<PinConstraint> pin;
+  ForcePlan force = make_combined_force(GravityForce(), MassSpringForce());
+  ConstraintPlan pin;
   SymplecticEuler method;
 
   OurCloth() {
     build_cloth(g, square.points, grid_quads(square.side), Mesh::diagonals);
-    pin.emplace(g);
+    pin = PinConstraint(g);
   }
-  void step(double dt) { method(g, 0, dt, force, *pin); }
+  void step(double dt) { method.step(g, 0, dt, force, pin); }
 };
 
 /** The same with Bullet's soft body at its defaults: one substep, one pass of

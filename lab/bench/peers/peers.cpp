@@ -6,7 +6,7 @@
  *
  * Every library runs as its own manual suggests for such a problem; the time
  * of each run is measured in turn with all others, REPEATS times. A library
- * calls our sweep through a copy of the positions, which is 15 % of a sweep.
+ * calls our kernel through a copy of the positions, which takes 15 % of it.
  */
 #if !__has_include(<boost/numeric/odeint.hpp>) || \
     !__has_include(<cvode/cvode.h>) || !__has_include(<gsl/gsl_odeiv2.h>)
@@ -42,7 +42,7 @@ using State = std::vector<double>;
 class Problem {
  public:
   Cloth g;
-  CombinedForces force = make_combined_force(GravityForce(), MassSpringForce());
+  ForcePlan force = make_combined_force(GravityForce(), MassSpringForce());
   long calls = 0;
   const double t_end;  // [s]
   const double drag;   // coefficient c [kg/s]
@@ -119,24 +119,25 @@ double distance(const State& a, const State& b) {
 // ----------------------------------------------------------------------- Ours
 
 State run_ours(const MethodEntry& entry, int steps) {
-  struct Count : ZeroForce {
-    void add_to(const Part& part, double t, std::span<Point> f) const override {
-      if (part.first == 0) ++problem->calls;  // once a sweep
-      problem->force.add_to(part, t, f);
-      if (problem->drag != 0) DampingForce(problem->drag).add_to(part, t, f);
+  struct Count : SweptForce {  // a force of nothing, called once a sweep
+    void add_to(const Part& part, double, std::span<Point>) const override {
+      if (part.first == 0) ++problem->calls;
     }
-    double drag() const override { return problem->drag; }
-    std::optional<int> spring_multiplicity() const override {
-      return problem->force.spring_multiplicity();
-    }
+    std::optional<int> spring_multiplicity() const override { return 0; }
   };
+  const CombinedForces terms =
+      problem->drag == 0
+          ? make_combined_force(GravityForce(), MassSpringForce(), Count())
+          : make_combined_force(GravityForce(), MassSpringForce(),
+                                DampingForce(problem->drag), Count());
+  const ForcePlan force = terms;
   Cloth& g = problem->g;
   problem->set_positions(problem->start().data());
   for (Node n : g.nodes()) n.value().vel = Point();
-  PinConstraint pin(g);
+  const ConstraintPlan pin = PinConstraint(g);
   auto method = entry.make();
   const double dt = problem->t_end / steps;
-  for (int n = 0; n < steps; ++n) method->step(g, n * dt, dt, Count(), pin);
+  for (int n = 0; n < steps; ++n) method->step(g, n * dt, dt, force, pin);
   return problem->positions();
 }
 
