@@ -46,22 +46,23 @@ one_of() {  # is $1 one of the words (or patterns) that follow?
   for word in "${@:2}"; do [[ $1 == $word ]] && return; done
   return 1
 }
-is_program() { grep -qE '^int main|^ *BENCHMARK_MAIN' "$1"; }
-room_of() {  # FILE: its room; nothing for a program in the root
+programs=$(grep -lE '^int main|^ *BENCHMARK_MAIN' "${files[@]}" || true)
+is_program() { [[ $'\n'$programs$'\n' == *$'\n'$1$'\n'* ]]; }
+
+set_room() {  # of FILE, in $room: that of a program in the root is .
   case $1 in
-    Graph.hpp) echo Graph ;;
-    mass_spring.hpp | mass_spring.cpp) echo mass_spring ;;
-    lab/bench/*) echo lab/bench ;;
-    *) dirname "$1" ;;
+    Graph.hpp) room=Graph ;;
+    mass_spring.hpp | mass_spring.cpp) room=mass_spring ;;
+    lab/bench/*) room=lab/bench ;;
+    */*) room=${1%/*} ;;
+    *) room=. ;;
   esac
 }
-# The file of this tree that FILE includes as TARGET; nothing if it is none.
-in_tree() {
-  local file
-  for file in "$(dirname "$1")/$2" "$2"; do
-    file=$(realpath -m --relative-to=. "$file")
-    [ ! -f "$file" ] || { echo "$file"; return; }
-  done
+set_header() {  # the file of this tree that FILE includes as TARGET; or none
+  header=$2
+  [[ $header != *./* ]] || header=$(realpath -m --relative-to=. "$header")
+  [ -f "$header" ] || header=${1%/*}/$2
+  [ -f "$header" ] || header=""
 }
 
 include='^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]([^>"]+)[>"]'
@@ -74,7 +75,7 @@ while IFS=: read -r file line text; do
       fault "$file:$line: includes $target, which only $gl_users may name"
     continue
   fi
-  header=$(in_tree "$file" "$target")
+  set_header "$file" "$target"
   [ -n "$header" ] || continue
   # shellcheck disable=SC2086
   if one_of "$header" $drawing && ! one_of "$file" $drawers &&
@@ -86,7 +87,8 @@ while IFS=: read -r file line text; do
     lab/*.cpp) ! is_program "$file" || continue ;;
     */*) [[ $file == lab/* || $file == CME212/* ]] || continue ;;
   esac
-  room=$(room_of "$file") of=$(room_of "$header")
+  set_room "$header"; of=$room
+  set_room "$file"
   if [ "$room" = . ]; then  # a program of the course
     [[ $header != lab/* ]] ||
       fault "$file:$line: includes $header, which is not below it"
