@@ -78,7 +78,7 @@ void Xpbd::find_forces(const Cloth& g, double t, const ForcePlan& force,
                        bool springs) {
   sweep_without_drag(sweep_, g, t, force, force_);
   if (!springs) return;
-  sweep_(g, t, MassSpringForce(), pull_);
+  sweep_(g, t, springs_, pull_);
   for (std::size_t i = 0; i < pull_.size(); ++i) force_[i] -= pull_[i];
 }
 

@@ -50,7 +50,8 @@ class Xpbd : public Method {
  private:
   int substeps_;
   Sweep sweep_;
-  std::vector<char> fixed_;  // by node id, as all that follows
+  ForcePlan springs_ = MassSpringForce();  // recognised: it need not live on
+  std::vector<char> fixed_;                // by node id, as all that follows
   std::vector<Point> free_, force_, pull_;
 
   void find_forces(const Cloth& g, double t, const ForcePlan& force,
