@@ -24,9 +24,15 @@ unset WAYLAND_DISPLAY
 start() {  # PROGRAM ARGUMENTS...: launch, and wait for the window
   "$folder/$1" "${@:2}" >"$tmp/out" 2>"$tmp/err" &
   run=$!
-  window=$(timeout 30 xdotool search --sync --onlyvisible --name "$1" |
-    head -n 1)
-  xdotool windowfocus --sync "$window"
+  # SDL tries windows that go again; xdotool ends where it meets such a one.
+  for _ in {1..20}; do
+    window=$(timeout 30 xdotool search --sync --onlyvisible --name "$1" \
+      2>/dev/null | head -n 1) && [ -n "$window" ] &&
+      xdotool windowfocus --sync "$window" && return 0
+    sleep 0.1
+  done
+  echo "no window of $1"; cat "$tmp/err"
+  return 1
 }
 cloth() { start cloth data/grid0.nodes data/grid0.tets --window --speed 0 "$@"; }
 driver() {  # GRID ARGUMENTS...: the assignment's program
