@@ -55,8 +55,8 @@ endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
 $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
 
-# A test that runs a program.
-$(B)/test_cloth_program: | $(B)/cloth
+# Tests that run a program.
+$(B)/test_cloth_program $(B)/test_cloth_scenes: | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
 $(B)/test_viewer $(B)/test_image $(B)/test_screen: $(B)/asan/libviewer.a

@@ -1,75 +1,30 @@
 // ./cloth as its user meets it: the program is run, and its status, words and
-// files are looked at.
+// files are looked at. Its scenes: test_cloth_scenes.cpp.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "CME212/Mesh.hpp"
 #include "lab/methods/Methods.hpp"
-#include "tests/TestFolder.hpp"
+#include "tests/ClothProgram.hpp"
 
 using namespace lab;
 
-namespace fs = std::filesystem;
-
 namespace {
 
-using CME212::contents;
-using Result = CME212::TestFolder::Result;
-
-class ClothProgram : public ::testing::Test {
- protected:
-  const CME212::TestFolder folder;
-  const fs::path& dir = folder.path();
-
-  /** Run it. Words of @a arguments: as in a shell. */
-  Result run(const std::string& arguments) {
-    return folder.run(CME212::program("cloth", "build/") + " " + arguments);
-  }
-  /** A file of this test with a content. */
-  std::string file(const std::string& name, const std::string& text) {
-    std::ofstream(dir / name, std::ios::binary) << text;
-    return (dir / name).string();
-  }
-  std::string path(const std::string& name) { return folder / name; }
-  /** What lies in the folder besides what run() put there. */
-  std::vector<std::string> files() {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(dir)) {
-      std::string name = entry.path().filename();
-      if (name != "out" && name != "err") names.push_back(name);
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  /** The numbers of a CSV file, without its head line. */
-  static std::vector<std::vector<double>> rows(const fs::path& csv) {
-    std::istringstream in(contents(csv));
-    std::vector<std::vector<double>> all;
-    std::string line, cell;
-    std::getline(in, line);
-    while (std::getline(in, line)) {
-      auto& row = all.emplace_back();
-      std::istringstream cells(line);
-      while (std::getline(cells, cell, ',')) row.push_back(std::stod(cell));
-    }
-    return all;
-  }
-};
-
-const std::vector<std::string> stages = {"problem1", "diagonals", "forces",
-                                         "constraints", "tear"};
-std::string stage(const std::string& name) {
-  return "--config data/scenes/" + name + ".toml ";
+/** The number that stands in @a text between @a before and @a after. */
+double number(const std::string& text, const std::string& before,
+              const std::string& after) {
+  std::size_t at = text.find(before), end = 0;
+  EXPECT_NE(at, std::string::npos) << before << "\n in: " << text;
+  if (at == std::string::npos) return NAN;
+  at += before.size();
+  const double a = std::stod(text.substr(at), &end);
+  EXPECT_EQ(text.substr(at + end, after.size()), after) << text;
+  return a;
 }
-const std::string grid0 = "data/grid0.nodes data/grid0.tets ";
-const std::string grid3 = "data/grid3.nodes data/grid3.tets ";
 
 TEST_F(ClothProgram, Takes5000StepsFor5Seconds) {
   for (const char* dt : {"0.001", "0.0001", "0.003125"}) {
@@ -165,18 +120,6 @@ TEST_F(ClothProgram, WritesPositionsInTheOrderInWhichTheyWereRead) {
                  " --headless --t-end 0 --out " + path("out.nodes"));
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(parse_points(contents(dir / "out.nodes"), "out"), points);
-}
-
-/** The number that stands in @a text between @a before and @a after. */
-double number(const std::string& text, const std::string& before,
-              const std::string& after) {
-  std::size_t at = text.find(before), end = 0;
-  EXPECT_NE(at, std::string::npos) << before << "\n in: " << text;
-  if (at == std::string::npos) return NAN;
-  at += before.size();
-  const double a = std::stod(text.substr(at), &end);
-  EXPECT_EQ(text.substr(at + end, after.size()), after) << text;
-  return a;
 }
 
 TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
@@ -417,170 +360,6 @@ TEST_F(ClothProgram, ReadsOptionsFromAFile) {
   EXPECT_NE(r.out.find("run: 250 steps to t = 0.5 s"), std::string::npos);
 }
 
-// --------------------------------------------------------------------- Scenes
-
-const std::string sheet = "--sheet 'nodes 9 9' --headless --t-end 0.01 ";
-
-/** Is @a name a scene of the assignment? These leave the mesh open. */
-bool is_stage(const std::string& name) {
-  return std::ranges::find(stages, name) != stages.end();
-}
-std::string mesh_for(const std::string& name) {
-  return is_stage(name) ? " " + grid0 : "";
-}
-
-TEST_F(ClothProgram, RunsEveryShippedScene) {
-  int count = 0;
-  for (const auto& entry : fs::directory_iterator("data/scenes")) {
-    const std::string scene = entry.path().string();
-    const std::string name = entry.path().stem().string();
-    Result r =
-        run("--config " + scene + mesh_for(name) + " --headless --t-end 0.02");
-    EXPECT_EQ(r.status, 0) << scene << r.err;
-    EXPECT_EQ(r.err, "") << scene;
-    EXPECT_NE(r.out.find("\n" + name + ": "), std::string::npos) << r.out;
-    if (is_stage(name))
-      EXPECT_NE(r.out.find("dt = 0.001 s: "), std::string::npos) << r.out;
-    else
-      EXPECT_NE(r.out.find(": 60 % of the stability limit ("),
-                std::string::npos)
-          << r.out;
-    ++count;
-  }
-  EXPECT_GE(count, 8 + 5);
-}
-
-TEST_F(ClothProgram, MakesASceneOfWhatIsNamedAndNothingElse) {
-  // Without a pin it falls, and nothing is below.
-  Result r =
-      run("--sheet 'nodes 9 9' --headless --t-end 1 --csv " + path("e.csv"));
-  EXPECT_EQ(r.out.find("81 nodes, 272 edges\n"), 0u) << r.out;
-  EXPECT_NE(r.out.find("scene: 1000 steps"), std::string::npos);
-  EXPECT_NEAR(rows(dir / "e.csv").back()[7], -9.81 / 2, 0.01);
-  // The same files in a stage of the assignment, and as a scene.
-  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("tear: "),
-            std::string::npos);
-  EXPECT_NE(run(grid0 + "--headless --t-end 0 --density 1").out.find("scene: "),
-            std::string::npos);
-}
-
-TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
-  std::string scene = file("scene.toml",
-                           "sheet = \"nodes 5 5\"\npin = \"x 0\"\n"
-                           "modulus = 100\ndrag = 1\nt-end = 0.1\n");
-  auto dump = [&](const std::string& options) {
-    Result r = run("--config " + scene + " " + options + " --dump-config");
-    EXPECT_EQ(r.status, 0) << r.err;
-    return "\n" + r.out;
-  };
-  auto has = [](const std::string& text, const std::string& line) {
-    return text.find("\n" + line + "\n") != std::string::npos;
-  };
-  std::string text = dump("");
-  for (const char* line : {"sheet = [\"nodes 5 5\"]", "pin = [\"x 0\"]",
-                           "modulus = 100", "drag = 1", "t-end = 0.1"})
-    EXPECT_TRUE(has(text, line)) << line << text;
-  EXPECT_EQ(text.find("stiffness ="), std::string::npos);
-  text = dump("--pin 'y 0' --pin 'y 1' --stiffness 7 --damping 0.5 --t-end 2");
-  for (const char* line :
-       {"sheet = [\"nodes 5 5\"]", "pin = [\"y 0\", \"y 1\"]", "stiffness = 7",
-        "damping = 0.5", "t-end = 2"})
-    EXPECT_TRUE(has(text, line)) << line << text;
-  EXPECT_EQ(text.find("modulus ="), std::string::npos);
-  EXPECT_EQ(text.find("drag ="), std::string::npos);
-  EXPECT_NE(run("--config " + scene + " --headless --t-end 0.2 --dt 0.01")
-                .out.find("scene: 20 steps"),
-            std::string::npos);
-}
-
-TEST_F(ClothProgram, ADumpedSceneIsThatScene) {
-  for (const auto& entry : fs::directory_iterator("data/scenes")) {
-    const std::string scene = entry.path().string() +
-                              mesh_for(entry.path().stem().string()) +
-                              " --gravity 9.80665123";
-    const std::string text = run("--config " + scene + " --dump-config").out;
-    EXPECT_NE(text, "");
-    Result again =
-        run("--config " + file("dump.toml", text) + " --dump-config");
-    EXPECT_EQ(again.status, 0) << again.err;
-    EXPECT_EQ(again.out, text) << scene;
-    const std::string end = " --headless --quiet --t-end 0.02 --out ";
-    run("--config " + scene + end + path("a"));
-    run("--config " + path("dump.toml") + end + path("b"));
-    EXPECT_NE(contents(dir / "a"), "") << scene;
-    EXPECT_EQ(contents(dir / "a"), contents(dir / "b")) << scene;
-  }
-}
-
-TEST_F(ClothProgram, SaysWhereASceneFileIsWrong) {
-  auto complaint = [this](const std::string& line) {
-    const std::string name =
-        file("bad.toml", "# a scene\nsheet = \"nodes 5 5\"\n" + line + "\n");
-    Result r = run("--config " + name + " --headless --out " + path("o"));
-    EXPECT_EQ(r.status, 2) << line;
-    EXPECT_EQ(r.out, "");
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-    EXPECT_FALSE(fs::exists(dir / "o"));
-    EXPECT_EQ(r.err.find(name + ":3: "), 0u) << r.err;
-    return r.err.substr(std::min(r.err.size(), name.size() + 4));
-  };
-  EXPECT_EQ(complaint("colour = 3"), "unknown key colour\n");
-  EXPECT_EQ(complaint("pins = \"x 0\""),
-            "unknown key pins: did you mean pin?\n");
-  EXPECT_EQ(complaint("tear-strain = 0"),
-            "--tear-strain is 0, expected a strain above that at the start, "
-            "0\n");
-  EXPECT_EQ(complaint("sphere = \"radius -1\""),
-            "--sphere \"radius -1\" has radius -1, expected more than 0\n");
-  complaint("t-end = \"long\"");
-  complaint("every = 0");
-  complaint("pin = [\"x 0\"");
-  const std::string none = path("none.toml");
-  Result r = run("--config " + none);
-  EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err.find(none + ": can't be opened"), 0u) << r.err;
-}
-
-TEST_F(ClothProgram, RefusesScenesThatCantBe) {
-  auto complaint = [this](const std::string& options) {
-    Result r = run(sheet + options);
-    EXPECT_EQ(r.status, 2) << options;
-    EXPECT_EQ(r.out, "");
-    return r.err;
-  };
-  EXPECT_EQ(run(sheet).status, 0);
-  EXPECT_EQ(complaint(grid0),
-            "cloth: --sheet and files of a mesh: expected one of them\n");
-  EXPECT_EQ(complaint("--pin 'x 0' --pin 'x 0.3'"),
-            "cloth: --pin \"x 0.3\" holds no node\n");
-  EXPECT_EQ(complaint("--tear-strain 0"),
-            "cloth: --tear-strain is 0, expected a strain above that at "
-            "the start, 0\n");
-  EXPECT_EQ(run(sheet + "--tear-strain 1e-9").status, 0);
-  EXPECT_EQ(complaint("--self-collision 'thickness 0.26'"),
-            "cloth: --self-collision has thickness 0.26 m, but two nodes "
-            "without a common edge start 0.25 m apart\n");
-  EXPECT_EQ(run(sheet + "--self-collision 'thickness 0.24'").status, 0);
-  EXPECT_NE(complaint("--modulus 1 --stiffness 1"), "");
-  EXPECT_NE(complaint("--drag 1 --damping 1"), "");
-  EXPECT_NE(complaint("--sheet"), "");
-}
-
-TEST_F(ClothProgram, WarnsOfABallThatIsTooFast) {
-  // It starts far below, with a radius of 0.1 m.
-  const std::string ball = sheet + "--sphere 'radius 0.1 velocity 0 0 ";
-  Result r = run(ball + "60'");
-  EXPECT_EQ(r.status, 0);
-  EXPECT_EQ(
-      r.err,
-      "cloth: warning: --sphere moves 0.06 m a step, more than half of its "
-      "radius, 0.1 m: nodes may tunnel through it; use --dt "
-      "0.000833333\n");
-  EXPECT_EQ(run(ball + "49'").err, "");
-  EXPECT_EQ(run(ball + "60' --dt 0.0008").err, "");
-  EXPECT_EQ(run(ball + "60' --quiet").err, "");
-}
-
 TEST_F(ClothProgram, ExplainsItsOptionsWithUnitsAndDefaults) {
   Result r = run("--help");
   EXPECT_EQ(r.status, 0);
@@ -642,40 +421,6 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
   EXPECT_EQ(complaint(grid0 + "--measure conm"),
             "cloth: --measure is conm, expected one of com, energy, positions, "
             "max-stretch, drape-height: did you mean com?\n");
-}
-
-TEST_F(ClothProgram, AnswersWhatASceneIsAsked) {
-  const std::string sheet = "--sheet 'nodes 3 3' --headless --t-end 0 ";
-  EXPECT_NE(run(sheet).out.find("\ncom: 0.5 0.5 0 m\n"), std::string::npos);
-  EXPECT_NE(run(sheet + "--measure max-stretch").out.find("max-stretch: 0\n"),
-            std::string::npos);
-  EXPECT_EQ(run(sheet + "--quiet").out, "");
-  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("\ncom: 0.5 0.5 0 m"),
-            std::string::npos);
-}
-
-TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
-  const std::string scene =
-      "--sheet 'u 1 0 0 v 0 0 -1 nodes 6 6' --pin 'z 0' --plane 'at 0 0 -9' "
-      "--t-end 0.1 --tolerance 0.01 --headless ";
-  Result r = run(scene + "--advise --write-config " + path("a.toml"));
-  EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find("not needed"), std::string::npos);
-  EXPECT_NE(r.out.find("\nadvice: "), std::string::npos);
-  const std::string advised = contents(dir / "a.toml");
-  EXPECT_NE(advised.find("pin = [\"z 0\"]"), std::string::npos);
-  EXPECT_EQ(advised.find("plane = "), std::string::npos);
-  EXPECT_EQ(run("--headless --config " + path("a.toml")).status, 0);
-  r = run(scene + "--auto");
-  EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find("scene: "), std::string::npos);
-  r = run(grid0 + "--advise");
-  EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.out.find("\nno advice: "), std::string::npos);
-  EXPECT_EQ(run(grid0 + "--advise --quiet").err.find("cloth: no advice: "), 0u);
-  r = run(scene + "--tear-strain 1 --measure positions --advise");
-  EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("--measure is positions"), std::string::npos);
 }
 
 }  // namespace

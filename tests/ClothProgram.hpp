@@ -1,0 +1,65 @@
+#pragma once
+/** @file ClothProgram.hpp
+ * What tests of ./cloth need: to run it, and to look at what it left. */
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/TestFolder.hpp"
+
+namespace fs = std::filesystem;
+using CME212::contents;
+using Result = CME212::TestFolder::Result;
+
+class ClothProgram : public ::testing::Test {
+ protected:
+  const CME212::TestFolder folder;
+  const fs::path& dir = folder.path();
+
+  /** Run it. Words of @a arguments: as in a shell. */
+  Result run(const std::string& arguments) {
+    return folder.run(CME212::program("cloth", "build/") + " " + arguments);
+  }
+  /** A file of this test with a content. */
+  std::string file(const std::string& name, const std::string& text) {
+    std::ofstream(dir / name, std::ios::binary) << text;
+    return (dir / name).string();
+  }
+  std::string path(const std::string& name) { return folder / name; }
+  /** What lies in the folder besides what run() put there. */
+  std::vector<std::string> files() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(dir)) {
+      std::string name = entry.path().filename();
+      if (name != "out" && name != "err") names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  /** The numbers of a CSV file, without its head line. */
+  static std::vector<std::vector<double>> rows(const fs::path& csv) {
+    std::istringstream in(contents(csv));
+    std::vector<std::vector<double>> all;
+    std::string line, cell;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      auto& row = all.emplace_back();
+      std::istringstream cells(line);
+      while (std::getline(cells, cell, ',')) row.push_back(std::stod(cell));
+    }
+    return all;
+  }
+};
+
+inline const std::vector<std::string> stages = {
+    "problem1", "diagonals", "forces", "constraints", "tear"};
+inline std::string stage(const std::string& name) {
+  return "--config data/scenes/" + name + ".toml ";
+}
+inline const std::string grid0 = "data/grid0.nodes data/grid0.tets ";
+inline const std::string grid3 = "data/grid3.nodes data/grid3.tets ";
