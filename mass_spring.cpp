@@ -94,42 +94,36 @@ int main(int argc, char** argv) try {
   constexpr bool viewer = false;
 #endif
   if (!viewer) std::cout << "no display: running without a window\n";
+  std::string failure;
   double next_line = 0;  // [s]
-  // Returns false if the window was closed.
+  // Returns false if the run has diverged, or the window was closed.
   const auto draw = [&](double t) {
-    if (t > next_line - dt / 2) {
+    if (auto n = lost_node(g); n)
+      failure = "diverged: at t = " + CME212::short_text(t) + " s node " +
+                std::to_string(n->index()) + " is not finite; './cloth " +
+                argv[1] + ' ' + argv[2] + " --dt auto' finds a stable step";
+    else if (t > next_line - dt / 2) {
       std::cout << "t = " << t << " s, energy " << energy(g) << " J, "
                 << g.num_nodes() << " nodes" << std::endl;
       next_line += t_end / 10;
     }
 #ifdef MASS_SPRING_VIEWER
-    if (!viewer) return true;
-    const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
-    if (viewer->wants_frame() || t > t_end - dt / 2) show();
-    CME212::sleep(dt - clock.seconds());  // no faster than the clock
-    clock.start();
-    return viewer->wait_while_paused(show);
-#else
-    return true;
+    if (viewer && !failure.empty()) viewer->set_message({failure});
+    if (viewer && failure.empty()) {
+      const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
+      if (viewer->wants_frame() || t > t_end - dt / 2) show();
+      CME212::sleep(dt - clock.seconds());  // no faster than the clock
+      clock.start();
+      return viewer->wait_while_paused(show);
+    }
 #endif
+    return failure.empty();
   };
 
-  std::string failure;
   std::thread simulation([&] {
     double t = 0;
-    draw(t);
-    for (auto left = std::llround(t_end / dt); left > 0; --left) {
-      if (!draw(t = step(t))) return;
-      if (auto n = lost_node(g); n) {
-        failure = "diverged: at t = " + CME212::short_text(t) + " s node " +
-                  std::to_string(n->index()) + " is not finite; './cloth " +
-                  argv[1] + ' ' + argv[2] + " --dt auto' finds a stable step";
-#ifdef MASS_SPRING_VIEWER
-        if (viewer) viewer->set_message({failure});
-#endif
-        return;
-      }
-    }
+    auto steps = std::llround(t_end / dt);
+    for (bool go = draw(t); go && steps > 0; --steps) go = draw(t = step(t));
   });
 #ifdef MASS_SPRING_VIEWER
   if (viewer) viewer->center_view(), viewer->event_loop();
