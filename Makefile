@@ -22,7 +22,7 @@ BUILT    := $(sort $(PROGRAMS) $(DRIVERS))
 SANITIZE = address,undefined
 # Left out: checks that take half of the time to compile, and find next to none.
 unchecked = null,alignment,object-size,vptr,pointer-overflow
-speed     = -O3 -DNDEBUG -g1
+speed     = $(or $(SPEED),-O3) -DNDEBUG -g1
 debug     = -Og -fno-omit-frame-pointer
 sanitizer = $(if $(SANITIZE),-fsanitize=$(SANITIZE) \
               -fno-sanitize-recover=all -fno-sanitize=$(unchecked))

@@ -40,8 +40,11 @@ $(1)/%.o: %.cpp $(1)/lab.flags
 $(1)/liblab.a: $(lab_lib:%.cpp=$(1)/%.o)
 	@rm -f $$@ && ar rcs $$@ $$^
 $(1)/lab.flags: FORCE
-	@mkdir -p $$(dir $$@); echo '$(CXX) $(lab_flags) $(2) $(VIEWER) $(CPPFLAGS) $(CXXFLAGS)' \
-	  | cmp -s - $$@ || echo '$(CXX) $(lab_flags) $(2) $(VIEWER) $(CPPFLAGS) $(CXXFLAGS)' > $$@
+	@mkdir -p $$(dir $$@); echo '$(CXX) $(lab_flags) $(2) $(CPPFLAGS) $(CXXFLAGS)' \
+	  | cmp -s - $$@ || echo '$(CXX) $(lab_flags) $(2) $(CPPFLAGS) $(CXXFLAGS)' > $$@
+$(1)/lab/viewer/Screen.o: $(1)/viewer.flags
+$(1)/viewer.flags: FORCE
+	@mkdir -p $$(dir $$@); echo '$(VIEWER)' | cmp -s - $$@ || echo '$(VIEWER)' > $$@
 endef
 $(eval $(call variant,$(B),$(speed)))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
