@@ -3,6 +3,7 @@
  * The stage is chosen when it is compiled: make mass_spring STAGE=forces.
  * Exit status: 0 done; 2 bad input; 3 the run diverged. */
 #include <cmath>
+#include <exception>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,8 @@
 
 #ifdef MASS_SPRING_VIEWER
 #include "CME212/SDLViewer.hpp"
+#else
+#include "CME212/NoViewer.hpp"
 #endif
 #include "mass_spring.hpp"
 
@@ -59,6 +62,9 @@ int main(int argc, char** argv) try {
     throw std::runtime_error("usage: ./mass_spring NODES TETS [DT [T_END]]");
   const double dt = argc > 3 ? time_of(argv[3], "DT") : 0.001;
   const double t_end = argc > 4 ? time_of(argv[4], "T_END") : 5;
+  if (dt > t_end || t_end / dt > 1e15)
+    throw std::runtime_error("DT is " + CME212::short_text(dt) +
+                             " s, expected at most T_END, and 1e15 steps");
 
   Cloth g;
   const auto points = load_points(argv[1]);
@@ -86,52 +92,57 @@ int main(int argc, char** argv) try {
       return symp_euler_step(g, t, dt, force, torn);
   };
 
-#ifdef MASS_SPRING_VIEWER
   std::optional<CME212::SDLViewer> viewer;
-  if (CME212::SDLViewer::has_display()) viewer.emplace();
-  CME212::Clock clock;
-#else
-  constexpr bool viewer = false;
-#endif
-  if (!viewer) std::cout << "no display: running without a window\n";
+  try {
+    viewer.emplace();
+    if (stage >= Stage::constraints) {
+      viewer->add_sphere(Ball().center, Ball().radius);
+      viewer->add_plane(PlaneConstraint().height());
+    }
+  } catch (const CME212::NoDisplay& e) {
+    std::cout << e.what() << "; running without a window\n";
+  }
+
   std::string failure;
   double next_line = 0;  // [s]
+  CME212::Clock clock;
   // Returns false if the run has diverged, or the window was closed.
   const auto draw = [&](double t) {
-    if (auto n = lost_node(g); n)
+    if (auto n = lost_node(g); n) {
       failure = "diverged: at t = " + CME212::short_text(t) + " s node " +
                 std::to_string(n->index()) + " is not finite; './cloth " +
                 argv[1] + ' ' + argv[2] + " --dt auto' finds a stable step";
-    else if (t > next_line - dt / 2) {
+      std::cerr << failure << std::endl;
+      if (viewer) viewer->set_message({failure});
+      return false;
+    }
+    if (t > next_line - dt / 2) {
       std::cout << "t = " << t << " s, energy " << energy(g) << " J, "
                 << g.num_nodes() << " nodes" << std::endl;
       next_line += t_end / 10;
     }
-#ifdef MASS_SPRING_VIEWER
-    if (viewer && !failure.empty()) viewer->set_message({failure});
-    if (viewer && failure.empty()) {
-      const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
-      if (viewer->wants_frame() || t > t_end - dt / 2) show();
-      CME212::sleep(dt - clock.seconds());  // no faster than the clock
-      clock.start();
-      return viewer->wait_while_paused(show);
-    }
-#endif
-    return failure.empty();
+    if (!viewer) return true;
+    const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
+    if (viewer->wants_frame() || t > t_end - dt / 2) show();
+    CME212::sleep(dt - clock.seconds());  // no faster than the clock
+    clock.start();
+    return viewer->wait_while_paused(show);
   };
 
-  std::thread simulation([&] {
-    double t = 0;
-    auto steps = std::llround(t_end / dt);
-    for (bool go = draw(t); go && steps > 0; --steps) go = draw(t = step(t));
+  std::exception_ptr error;
+  std::jthread simulation([&] {
+    try {
+      double t = 0;
+      auto steps = std::llround(t_end / dt);
+      for (bool go = draw(t); go && steps > 0; --steps) go = draw(t = step(t));
+    } catch (...) {
+      error = std::current_exception();
+    }
   });
-#ifdef MASS_SPRING_VIEWER
-  if (viewer) viewer->center_view(), viewer->event_loop();
-#endif
+  if (viewer) viewer->event_loop();
   simulation.join();
-  if (failure.empty()) return 0;
-  std::cerr << failure << '\n';
-  return 3;
+  if (error) std::rethrow_exception(error);
+  return failure.empty() ? 0 : 3;
 } catch (const std::exception& e) {
   std::cerr << e.what() << '\n';
   return 2;

@@ -64,7 +64,7 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
  * @param t   time at the start of the step [s]   @param dt step [s]
  * @param force  Point(Node, double): the force [N] on a node at time t
  * @return t + dt
- * Complexity: one call of @a force for each node.
+ * Complexity: one call of @a force for each node that is not skipped.
  * Order 1; bounded while dt omega < 2 for every frequency omega [1/s]. */
 template <typename G, typename F>
 double symp_euler_step(G& g, double t, double dt, F&& force) {

@@ -120,6 +120,7 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
   screen.event_loop();
   simulation.join();
   if (error) std::rethrow_exception(error);
+  run.check();
   return run.finish();
 }
 
@@ -173,7 +174,7 @@ int run(Options o) {
   run.announce();
   const int status = window ? run_in_window(scene, run, o, *window)
                             : run_headless(scene, run, o);
-  if (status == 0 && !o.quiet) print_answer(scene, m);
+  if (scene.done(m.t_end) && status == 0 && !o.quiet) print_answer(scene, m);
   return status;
 }
 

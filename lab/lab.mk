@@ -76,6 +76,7 @@ $(O)cloth: $(B)/cloth
 endif
 
 .PHONY: quick check check-full help-lab make_grid example_graph
+check check-full: deps
 quick check check-full:
 	@tools/check.sh $@
 format:

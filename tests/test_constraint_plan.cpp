@@ -160,4 +160,25 @@ TEST_F(ScatteredCloth, TearingByThePlanIsTheCall) {
   EXPECT_TRUE(a == b);
 }
 
+/** A student's constraint that keeps its parameter on the heap. */
+class Ceiling : public ZeroConstraint {
+ public:
+  explicit Ceiling(double z) : z_(1, z) {}
+  void operator()(Cloth& g, double) const override {
+    for (Node n : g.nodes())
+      if (n.position().z > z_[0]) n.position().z = Real(z_[0]);
+  }
+
+ private:
+  std::vector<double> z_;
+};
+
+TEST(ConstraintPlan, KeepsATemporary) {
+  Cloth g;
+  Node n = g.add_node(Point(1, 2, 3));
+  const ConstraintPlan plan = Ceiling(1);
+  plan(g, 0);
+  EXPECT_EQ(n.position(), Point(1, 2, 1));
+}
+
 }  // namespace

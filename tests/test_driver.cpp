@@ -86,7 +86,8 @@ TEST_F(Driver, RunsEveryStageToItsEnd) {
     const Lines said(r.out);
     EXPECT_EQ(said.size, stage == "problem1" ? "25 nodes, 40 edges"
                                              : "25 nodes, 72 edges");
-    EXPECT_EQ(said.display, "no display: running without a window");
+    EXPECT_EQ(said.display,
+              "no display: built without a window; running without a window");
     ASSERT_EQ(said.lines.size(), 11u) << stage;  // every half second
     for (std::size_t k = 0; k < said.lines.size(); ++k) {
       EXPECT_NEAR(said.lines[k].t, 0.5 * double(k), 1e-6) << stage;
@@ -100,6 +101,15 @@ TEST_F(Driver, RunsEveryStageToItsEnd) {
     EXPECT_EQ(said.lines.back().energy > -0.1, free) << stage;  // no drag
     EXPECT_EQ(said.lines.back().nodes < 25, stage == "tear") << stage;
   }
+}
+
+TEST_F(Driver, RefusesAStepBeyondTheEndAndOneTooShort) {
+  for (const char* times : {"0.01 0.004", "1e-20", "6"}) {
+    Result r = run(grid(0) + times);
+    EXPECT_EQ(r.status, 2) << times;
+    EXPECT_NE(r.err.find("expected at most T_END"), std::string::npos) << r.err;
+  }
+  EXPECT_EQ(run(grid(0) + "0.25 0.25").status, 0);  // one step
 }
 
 TEST_F(Driver, TakesAStepAndAnEnd) {

@@ -297,4 +297,23 @@ TEST_F(ForcePlanTest, SharesThePartsOfASum) {
     EXPECT_LT(norm(f[n.id()] - Point(1, 0, -3 * n.value().mass)), 1e-15);
 }
 
+/** A student's force that keeps its parameter on the heap. */
+class Wind : public ZeroForce {
+ public:
+  explicit Wind(double f) : f_(1, f) {}
+  Point operator()(Node, double) const override { return Point(f_[0], 0, 0); }
+
+ private:
+  std::vector<double> f_;
+};
+
+TEST(ForcePlan, KeepsATemporary) {
+  Cloth g;
+  g.add_node(Point(1, 2, 3));
+  const ForcePlan plan = Wind(2);
+  std::vector<Point> f;
+  Sweep()(g, 0, plan, f);
+  EXPECT_EQ(f[0], Point(2, 0, 0));
+}
+
 }  // namespace

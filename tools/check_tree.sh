@@ -20,7 +20,7 @@ files() {
 }
 mapfile -t sources < <(files '*.hpp' '*.cpp')
 mapfile -t programs < <(files ':(glob)*.cpp')
-mapfile -t code < <(files '*.hpp' '*.cpp' '*.sh' '*.gp' '*.yml' Makefile)
+mapfile -t code < <(files '*.hpp' '*.cpp' '*.sh' '*.gp' '*.mk' '*.toml' Makefile .ci/run)
 mapfile -t texts < <(printf '%s\n' "${code[@]}"; files '*.md')
 [ ${#sources[@]} != 0 ] || { echo "no sources here"; exit 1; }
 
@@ -57,7 +57,7 @@ lines "ends in white space" -E '[[:space:]]$' "${texts[@]}"
 
 # Charts are SVG. The width of a PNG is its bytes 16 to 19.
 while IFS= read -r file; do
-  [[ $file != *charts/* ]] || echo "$file:1: is a chart, but no SVG"
+  [[ $file != */results/* ]] || echo "$file:1: is a chart, but no SVG"
   width=$(od -An -tu4 --endian=big -j16 -N4 "$file")
   [ "$width" -le "$widest" ] ||
     echo "$file:1: is wider than $widest pixels: tools/shrink_pictures.sh"

@@ -198,8 +198,8 @@ sed -i '$d' "$tmp/tree/.git/info/exclude"
 ok "tree: an ignored file is not held"
 # The head of a PNG, all that the check reads: 800 is 3 * 256 + 040.
 png() { printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0%b' "$1"; }
-again; mkdir -p charts; png '\03\040' >charts/x.png
-caught "tree: a chart that is no SVG" "charts/x.png:1: is a chart, but no SVG" \
+again; mkdir -p lab/x/results; png '\03\040' >lab/x/results/x.png
+caught "tree: a chart that is no SVG" "lab/x/results/x.png:1: is a chart, but no SVG" \
   tree $tree
 again; png '\03\041' >docs/x.png
 caught "tree: a picture of 801 pixels" "docs/x.png:1: is wider than 800 pixels" \

@@ -3,11 +3,13 @@
  * ConstraintPlan: how the laboratory applies a constraint of the course. The
  * one place that recognises PinConstraint, PlaneConstraint, SphereConstraint,
  * TearConstraint and CombinedConstraints; any other constraint is called. */
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -107,8 +109,14 @@ class ConstraintPlan {
   /** O(terms + pins log pins). Implicit, so that a constraint can be handed to
    * a method. */
   ConstraintPlan(const ZeroConstraint& c);  // NOLINT
+  /** The same of a temporary, which is kept. */
+  template <std::derived_from<ZeroConstraint> C>
+  requires(!std::is_reference_v<C> && !std::is_const_v<C>)  //
+      ConstraintPlan(C&& c) {
+    add(std::make_shared<C>(std::move(c)));
+  }
 
-  /** Apply it to @a g at time @a t [s].  O(N) where the terms say nothing */
+  /** Apply it to @a g at time @a t [s].  O(N) unless a term takes longer */
   void operator()(Cloth& g, double t) const;
   // As in SweptConstraint; each is that of all terms together:
   bool nodewise() const;

@@ -3,10 +3,13 @@
  * ForcePlan: how the laboratory evaluates a force of the course. The one place
  * that recognises GravityForce, MassSpringForce, DampingForce and
  * CombinedForces; any other force is called node by node. */
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "lab/fast/Energy.hpp"
@@ -65,11 +68,17 @@ class SweptForce : public ZeroForce {
  * kernels, the others by SweptForce or by call.
  *
  * It is made once for many steps. A ForcePlan shares the parts of a
- * CombinedForces; any other force must outlive it. */
+ * CombinedForces; any other force that is no temporary must outlive it. */
 class ForcePlan {
  public:
   /** O(terms). Implicit, so that a force can be handed to a method. */
   ForcePlan(const ZeroForce& force);  // NOLINT
+  /** The same of a temporary, which is kept. */
+  template <std::derived_from<ZeroForce> F>
+  requires(!std::is_reference_v<F> && !std::is_const_v<F>)  //
+      ForcePlan(F&& force) {
+    add(std::make_shared<F>(std::move(force)));
+  }
 
   /** The force on each node of @a part is added to @a f: as
    * SweptForce::add_to(). */

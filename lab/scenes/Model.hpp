@@ -24,7 +24,7 @@ struct SceneError : std::runtime_error {
 
 /** Who chooses the step. */
 enum class StepRule {
-  fixed,  ///< whoever made the scene
+  fixed,  ///< the scene gives dt
   safe,   ///< safe_share of the limit in any configuration, once
   sharp,  ///< sharp_share of the limit in the present configuration, chosen
           ///< anew every 100 steps; at most the limit in any configuration
@@ -44,16 +44,15 @@ struct Edges {
   bool operator==(const Edges&) const = default;
 };
 
-/** A cloth's material by area and length, so that a finer grid is the same
- * cloth; each of them instead of what the assignment gives to each node and
- * edge. */
+/** Material by area and length, so that a finer grid is the same cloth. A
+ * member that is set replaces the assignment's value for each node or edge. */
 struct Material {
   std::optional<double> density;  ///< [kg/m^2], > 0
   std::optional<double> modulus;  ///< force per width and strain [N/m], >= 0
   std::optional<double> drag;     ///< [kg/(s m^2)], >= 0
 };
 
-/** A line: what moves along it is at its start + way(t). */
+/** Motion at constant velocity until a time. */
 struct Motion {
   Point velocity;  ///< [m/s], from t = 0 on
   /** It stands still from then on [s], >= 0. */
@@ -74,8 +73,8 @@ struct Sheet {
   bool operator==(const Sheet&) const = default;
 };
 
-/** Nodes held where they start, or moved along a line: those whose start has
- * all of these coordinates [m]; one of them is there. */
+/** Holds or moves the nodes whose start has the given coordinates [m]; at least
+ * one is given. */
 struct Pin {
   std::optional<double> x, y, z;
   Motion motion;
@@ -130,7 +129,7 @@ const MethodEntry* default_method();
 
 /** A scene. It has the parts that it names, and nothing else acts. */
 struct Model {
-  std::string name = "scene";  ///< of what is written about it
+  std::string name = "scene";  ///< of its output files
   // The cloth
   std::string nodes, tets;  ///< files; or
   std::vector<Sheet> sheets;

@@ -206,11 +206,7 @@ class SDLScreen : public Screen {
 bool Screen::can_draw() { return true; }
 bool Screen::has_display() { return CME212::SDLViewer::has_display(); }
 std::unique_ptr<Screen> Screen::open(Kind kind) {
-  try {
-    return std::make_unique<SDLScreen>(kind);
-  } catch (const CME212::NoDisplay& e) {
-    throw NoDisplay(e.what());
-  }
+  return std::make_unique<SDLScreen>(kind);
 }
 
 }  // namespace lab
@@ -222,7 +218,7 @@ namespace lab {
 bool Screen::can_draw() { return false; }
 bool Screen::has_display() { return false; }
 std::unique_ptr<Screen> Screen::open(Kind) {
-  throw NoDisplay("built without a viewer (VIEWER=0), so it can't draw");
+  throw NoDisplay("built without a viewer, VIEWER=0");
 }
 
 }  // namespace lab

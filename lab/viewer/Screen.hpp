@@ -2,17 +2,15 @@
 /** @file Screen.hpp
  * Screen: what ./cloth draws on, a window or pictures in memory. */
 #include <memory>
-#include <stdexcept>
 #include <string>
+
+#include "CME212/NoDisplay.hpp"
 
 namespace lab {
 
 class Scene;
 
-/** There is nothing to draw on. */
-struct NoDisplay : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using CME212::NoDisplay;
 
 /** Draws scenes, in a window or into pictures of 1024 x 768 pixels.
  *
