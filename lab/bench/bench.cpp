@@ -452,8 +452,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, int(lanes::best_cpu())));
   CLI11_PARSE(app, argc, argv);
 
-  if (calls >
-      0) {  // for a program that counts instructions: lab/bench/counts.sh
+  if (calls > 0) {  // for lab/bench/counts.sh
     Sweep::set_threads(1);
     for (const Figure& f : figures())
       if (auto call = f.name == filter ? f.make(100) : nullptr)
