@@ -125,13 +125,14 @@ void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
 
 /** RMS of the difference to the lower order, for h = 1. */
 template <typename Tableau>
-double RungeKutta<Tableau>::error_rate(const Cloth& g) const requires adaptive {
+double RungeKutta<Tableau>::error_rate(const Cloth& g) const {
   double x = 0, v = 0;
   for (unsigned i = 0; i < g.node_slots(); ++i) {
     if (!g.node_in_use(i)) continue;
     Point dx, dv;
     for (std::size_t s = 0; s < stages; ++s) {
-      double w = Tableau::b[s] - Tableau::b_low[s];
+      double w = Tableau::b[s];
+      if constexpr (adaptive) w -= Tableau::b_low[s];
       dx += w * v_[s][i];
       dv += w * a_[s][i];
     }

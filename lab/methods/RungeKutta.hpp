@@ -60,7 +60,7 @@ class RungeKutta : public Method {
                  const ConstraintPlan& constraint);
   void derive(Cloth& g, double t, const ForcePlan& force,
               const ConstraintPlan& constraint, std::size_t s);
-  double error_rate(const Cloth& g) const requires adaptive;
+  double error_rate(const Cloth& g) const;
 };
 
 }  // namespace lab
