@@ -80,11 +80,11 @@ deps:
 # In a window; without a display a picture and a film of the same run.
 demo: deps
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
-	  $(MAKE) --no-print-directory mass_spring && \
-	  ./mass_spring data/grid2.nodes data/grid2.tets; \
+	  $(MAKE) --no-print-directory $(O)mass_spring && \
+	  ./$(O)mass_spring data/grid2.nodes data/grid2.tets; \
 	else \
-	  $(MAKE) --no-print-directory cloth && \
-	  ./cloth --config data/scenes/tear.toml data/grid2.nodes data/grid2.tets; \
+	  $(MAKE) --no-print-directory $(O)cloth && \
+	  ./$(O)cloth --config data/scenes/tear.toml data/grid2.nodes data/grid2.tets; \
 	fi
 
 submit:
