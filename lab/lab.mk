@@ -24,10 +24,10 @@ cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
 # No product and sum in one rounding: the same bits on every processor.
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
-# What draws: one file of lab/viewer, and tests.
+# What names SDL, or asks whether there is a viewer.
 lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
-            tests/test_viewer.% tests/test_image.% tests/test_screen.% tests/test_course% \
-            CME212/%,$<),-DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
+            tests/test_viewer.% CME212/%,$<), \
+            -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
 test_libs = -lgtest_main -lgtest -lrapidcheck
 
