@@ -12,6 +12,7 @@
 #include <Eigen/Dense>
 
 #include "lab/methods/Methods.hpp"
+#include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
 
 using namespace lab;

@@ -10,6 +10,7 @@
 
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
 
 namespace lab {
