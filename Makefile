@@ -12,6 +12,11 @@ HW     ?= hw2
 O       =
 B      ?= build
 
+# As they were given, whatever they hold: never expanded, and read by no shell.
+override HW    := $(value HW)
+override FORCE := $(value FORCE)
+export HW FORCE
+
 PROGRAMS := $(basename $(wildcard *.cpp))
 DRIVERS  := mass_spring $(STAGES:%=mass_spring_%)
 BUILT    := $(sort $(PROGRAMS) $(DRIVERS))
@@ -88,7 +93,7 @@ demo: deps
 	fi
 
 submit:
-	@HW='$(HW)' FORCE='$(FORCE)' tools/submit.sh
+	@tools/submit.sh
 
 clean:
 	rm -rf build demo cloth $(BUILT)

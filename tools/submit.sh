@@ -20,8 +20,8 @@ refuse() {  # say why, a line an argument
 # there. REF^{} is the commit that an annotated tag points to.
 on_origin() { awk -v ref="$1" '$2 == ref { print $1 }' <<<"$remote"; }
 ask_origin() {
-  remote=$(git ls-remote "$url" "$branch_ref" "$tag_ref" "$tag_ref^{}") ||
-    return 1
+  remote=$(git ls-remote "$url" "$branch_ref" "$tag_ref" "$tag_ref^{}" \
+    "refs/heads/$HW") || return 1
   remote_branch=$(on_origin "$branch_ref")
   remote_tag=$(on_origin "$tag_ref")
   remote_commit=$(on_origin "$tag_ref^{}")
@@ -38,11 +38,17 @@ show_origin() {
 }
 
 # ---- What is handed in, and may it be?
+reserved() {  # by git, or the usual name of a branch; whatever the case
+  shopt -s nocasematch
+  [[ $HW =~ ^(.*_)?head$|^main$|^master$ ]]
+}
 name='^[A-Za-z0-9][A-Za-z0-9._-]*$'
 if ! [[ $HW =~ $name ]] || ! git check-ref-format "refs/tags/$HW"; then
   refuse "'$HW' is not a tag name: letters, digits, '.', '_' and '-', as in" \
     "make submit HW=hw2"
 fi
+! (reserved) || refuse \
+  "'$HW' names a branch or a commit to git, so no tag may: make submit HW=hw2"
 [ "$(git rev-parse --is-inside-work-tree)" = true ] || refuse \
   "this folder is not in a git repository (git's reason is above)."
 branch_ref=$(git symbolic-ref -q HEAD) || refuse \
@@ -61,6 +67,12 @@ url=$(git remote get-url --push origin) || refuse \
 ask_origin || refuse \
   "origin cannot be read (git's reason is above): look at the network and" \
   "at: git remote -v. Nothing was tagged or pushed."
+
+if git rev-parse -q --verify "refs/heads/$HW" >/dev/null ||
+  [ -n "$(on_origin "refs/heads/$HW")" ]; then
+  refuse "'$HW' is the name of a branch, and a tag of that name would be" \
+    "mistaken for it: choose another, as in make submit HW=hw2"
+fi
 
 if [ "$remote_branch$remote_commit" = "$head$head" ]; then
   echo "submit: this commit is handed in already as $HW; nothing to do."

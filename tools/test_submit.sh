@@ -2,12 +2,13 @@
 # Test tools/submit.sh against bare repositories in a temporary folder.
 set -euo pipefail
 
+root=$(cd "$(dirname "$0")/.." && pwd)
 script=${SUBMIT_SCRIPT:-$(cd "$(dirname "$0")" && pwd)/submit.sh}
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 passed=0 failed=0
 
-unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE HW FORCE
+unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE HW FORCE MAKEFLAGS MAKEOVERRIDES
 export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_NOSYSTEM=1 LC_ALL=C
 export GIT_TERMINAL_PROMPT=0 GIT_CEILING_DIRECTORIES=$tmp
 export GIT_AUTHOR_NAME=Student GIT_AUTHOR_EMAIL=student@example.org
@@ -141,9 +142,20 @@ same "main on origin" "$(remote_id refs/heads/main)" none
 same "feature" "$(remote_id refs/heads/feature)" "$(git rev-parse HEAD)"
 ok "another branch than main"
 
-scene; git branch hw2; submit hw2
-expect_status 0; holds hw2; same "branch hw2" "$(remote_id refs/heads/hw2)" none
+for name in HEAD main master FETCH_HEAD head Main; do
+  scene; before=$(refs); submit "$name" 1
+  expect_status 1; says "'$name' names a branch or a commit to git"
+  unchanged "$before"; not_say "the tests run"
+  ok "a name that git takes for something else: $name"
+done
+
+scene; git branch hw2; before=$(refs); submit hw2
+expect_status 1; says "'hw2' is the name of a branch"; unchanged "$before"
 ok "a branch of the tag's name"
+
+scene; git push -q origin main:hw2; before=$(refs); submit hw2
+expect_status 1; says "'hw2' is the name of a branch"; unchanged "$before"
+ok "a branch of the tag's name, only on origin"
 
 # ---- Refusing before anything is done
 scene; echo more >>notes.txt; before=$(refs); submit hw2
@@ -257,6 +269,30 @@ status=0; out=$(unset GIT_AUTHOR_NAME GIT_AUTHOR_EMAIL GIT_COMMITTER_NAME \
   GIT_COMMITTER_EMAIL; HW=hw2 SUBMIT_TEST=true bash "$script" 2>&1) || status=$?
 expect_status 1; says "git could not make the tag"; unchanged "$before"
 ok "git does not know who tags"
+
+# ---- The Makefile hands on what it was given: it expands nothing, and no shell
+# reads it.
+# shellcheck disable=SC2016  # not to be expanded is what is tested
+for name in hw3 "x'; touch $tmp/PWNED; '" '$(touch PWNED)' 'x$$HOME' \
+  "\$(shell touch $tmp/PWNED)" "\$\$(shell touch $tmp/PWNED)" \
+  "\`touch $tmp/PWNED\`" '${eval $(shell touch PWNED)}' "a b" '#' '"'; do
+  for way in argument environment; do
+    scene; mkdir tools
+    printf '#!/bin/sh\nprintf "<%%s> <%%s>" "$HW" "$FORCE"\n' >tools/submit.sh
+    chmod +x tools/submit.sh
+    given=("HW=$name" "FORCE=$name")
+    by=(env "${given[@]}" make)
+    [ $way = environment ] || by=(make "${given[@]}")
+    status=0
+    out=$("${by[@]}" -sI "$root" -f "$root/Makefile" submit 2>&1) || status=$?
+    expect_status 0; same "what arrives" "$out" "<$name> <$name>"
+    [ ! -e "$tmp/PWNED" ] && [ ! -e PWNED ] || why+=" it was run;"
+    ok "make submit by $way: $name"
+  done
+done
+out=$(env -u HW make -sI "$root" -f "$root/Makefile" submit)
+same "what arrives" "$out" "<hw2> <>"
+ok "make submit without a name is hw2"
 
 echo
 echo "$passed passed, $failed failed"
