@@ -104,6 +104,71 @@ TEST(Compose, MassIsDensityTimesArea) {
   EXPECT_NEAR(as_assigned.node(0).value().mass, 1 / 24., 1e-15);
 }
 
+// Both ends of an edge have to be in the box for another K; a node counts by
+// its place at the start. Where two boxes overlap, factors multiply.
+TEST(Compose, RegionsChangeTheirNodesAndEdges) {
+  Model m = with_sheet("nodes 5 5");
+  m.regions = {
+      read_region("from 0 0 0 to 0.5 1 0 mass-factor 50 stiffness-factor 1e4"),
+      read_region("from 1 1 1 to 0.5 0.5 -1 mass-factor 2")};
+  Cloth g;
+  build(g, m);
+  int stiff = 0;
+  for (Edge e : g.edges()) {
+    const bool in =
+        e.node1().position().x <= 0.5 && e.node2().position().x <= 0.5;
+    stiff += in;
+    EXPECT_EQ(e.value().K, in ? 1e6 : 100);
+  }
+  EXPECT_EQ(stiff, 3 * 4 + 2 * 5 + 2 * 8);  // of 3 x 5 nodes
+  for (Node n : g.nodes()) {
+    const Point p = n.position();
+    const double factor =
+        (p.x <= 0.5 ? 50 : 1) * (p.x >= 0.5 && p.y >= 0.5 ? 2 : 1);
+    EXPECT_NEAR(n.value().mass, factor / 25, 1e-15 * factor);
+  }
+}
+TEST(Compose, ARegionHasSomethingToChange) {
+  auto complaint = [](const std::string& region) {
+    Model m = with_sheet("nodes 5 5");
+    m.regions = {read_region(region)};
+    Cloth g;
+    try {
+      build(g, m);
+    } catch (const SceneError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(complaint("from 0.1 0 0 to 0.2 1 0 mass-factor 2"),
+            "--region \"from 0.1 0 0 to 0.2 1 0 mass-factor 2\" holds no node");
+  const std::string one = "from 0 0 0 to 0.1 0.1 0 ";
+  EXPECT_EQ(complaint(one + "mass-factor 2"), "");
+  EXPECT_EQ(complaint(one + "stiffness-factor 2"),
+            "--region \"" + one + "stiffness-factor 2\" holds no edge");
+}
+
+TEST(Compose, NodesStartWithTheirVelocityUnlessTheyAreHeld) {
+  Model m = with_sheet("nodes 3 3");
+  m.sheets.push_back(read_sheet("at 0 0 1 nodes 2 2 velocity 1 2 3"));
+  m.pins = {read_pin("x 1 y 1 z 1")};
+  Cloth g;
+  build(g, m);
+  for (unsigned i = 0; i < 13; ++i)
+    EXPECT_EQ(g.node(i).value().vel,
+              i < 9 || i == 12 ? Point() : Point(1, 2, 3))
+        << i;
+  // Without forces it goes on along a line.
+  m.sheets = {read_sheet("nodes 3 3 velocity 0 0 -2")};
+  m.pins.clear();
+  m.gravity = 0;
+  m.t_end = 0.5;
+  Scene scene(m);
+  ASSERT_TRUE(scene.run_to(m.t_end));
+  EXPECT_NEAR(norm(scene.cloth().node(8).position() - Point(1, 1, -1)), 0,
+              1e-12);
+}
+
 TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
   Model m = with_sheet("u 3 0 0 nodes 4 6");  // cells of 1 by 0.2
   m.edges = read_edges("sides diagonals bend");

@@ -1,9 +1,11 @@
-// Mesh.hpp: what is read, what is refused and with which words, and grids.
+// Mesh.hpp and lab/scenes/MeshFile.hpp: what is read, what is refused and with
+// which words, and grids.
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "CME212/Mesh.hpp"
+#include "lab/scenes/MeshFile.hpp"
 
 namespace {
 
@@ -95,6 +97,37 @@ TEST(ParsePoints, ShowsBinaryInputAsPlainText) {
   error = point_error(std::string(1000, 'a'));
   EXPECT_EQ(error, "f.nodes:1: '" + std::string(24, 'a') +
                        "...' is not a number" + three);
+}
+
+TEST(ParseNodes, TakesVelocitiesInAllLinesOrInNone) {
+  auto mesh = lab::parse_nodes("0 1 2\n3 4 5\n", "f");
+  EXPECT_EQ(mesh.points, (std::vector<Point>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_TRUE(mesh.velocities.empty());
+  mesh = lab::parse_nodes("# p v\n0 1 2 .5 0 -1\n\n3 4 5 0 0 0\n", "f");
+  EXPECT_EQ(mesh.points, (std::vector<Point>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(mesh.velocities, (std::vector<Point>{{0.5, 0, -1}, {0, 0, 0}}));
+}
+TEST(ParseNodes, RefusesEachWrongLineWithItsNumber) {
+  auto error = [](std::string_view text) {
+    return error_of([&] { lab::parse_nodes(text, "f.nodes"); });
+  };
+  const std::string either = three + ", and three of a velocity [m/s] or none";
+  const std::string six =
+      ", expected six finite numbers 'x y z vx vy vz' [m, m/s], as in the "
+      "first line";
+  EXPECT_EQ(error("1 2 3 4 5 6"), "");
+  EXPECT_EQ(error("1 2"), "f.nodes:1: 2 values in the line" + either);
+  EXPECT_EQ(error("1 2 3 4"), "f.nodes:1: 4 values in the line" + either);
+  EXPECT_EQ(error("1 2 3 4 5 6 7"), "f.nodes:1: 7 values in the line" + either);
+  EXPECT_EQ(error("1 2 3\n1 2 3 4 5 6"),
+            "f.nodes:2: 6 values in the line" + three);
+  EXPECT_EQ(error("1 2 3 4 5 6\n\n1 2 3"),
+            "f.nodes:3: 3 values in the line" + six);
+  EXPECT_EQ(error("1 2 3 4 nan 6"),
+            "f.nodes:1: a velocity is not finite" + either);
+  EXPECT_EQ(error("1 2 3 4 5 6\n1 2 3 4 x 6"),
+            "f.nodes:2: 'x' is not a number" + six);
+  EXPECT_EQ(error("# none\n"), "f.nodes:1: nothing in the file" + either);
 }
 
 TEST(ParseQuads, TakesFourIndicesALine) {

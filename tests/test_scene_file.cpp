@@ -74,6 +74,17 @@ TEST(Parts, AreWhatTheirWordsSay) {
   EXPECT_EQ(again.v, s.v);
   EXPECT_EQ(again.nodes, s.nodes);
 
+  EXPECT_EQ(s.velocity, Point());
+  EXPECT_EQ(read_sheet("velocity 0 1 -2").velocity, Point(0, 1, -2));
+
+  const Region r = read_region("to 1 0 2 from 0 1 2 mass-factor 50");
+  EXPECT_EQ(r.mass, 50);
+  EXPECT_EQ(r.stiffness, 1);
+  EXPECT_TRUE(r.box.holds(Point(0.5, 0.5, 2 + 0.9e-9)));
+  EXPECT_TRUE(r.box.holds(Point(1, 1, 2)));
+  EXPECT_FALSE(r.box.holds(Point(0.5, 1.1, 2)));
+  EXPECT_FALSE(r.box.holds(Point(0.5, 0.5, 2 + 1.1e-9)));
+
   const Pin p = read_pin("x 0.5 z 1 velocity 0 1 0 until 2");
   EXPECT_TRUE(p.holds(Point(0.5, 77, 1)));
   EXPECT_TRUE(p.holds(Point(0.5 + 0.9e-9, 77, 1)));
@@ -94,7 +105,7 @@ TEST(Parts, AreWhatTheirWordsSay) {
   EXPECT_TRUE(read_edges("sides bend").bend);
   EXPECT_FALSE(read_edges("sides bend").diagonals);
   EXPECT_EQ(read_measure("max-stretch"), Measure::max_stretch);
-  const View v = read_view("to 1 2 3 from 0 0 -1");
+  const Box v = read_view("to 1 2 3 from 0 0 -1");
   EXPECT_EQ(v.from, Point(0, 0, -1));
   EXPECT_EQ(v.to, Point(1, 2, 3));
   EXPECT_EQ(read_time_step("auto").rule, StepRule::safe);
@@ -116,6 +127,15 @@ TEST(Parts, HaveOneTextEach) {
   expect(read_sheet, "", "");
   expect(read_sheet, "nodes 3 20 at 0 0 1e-1", "at 0 0 0.1 nodes 3 20");
   expect(read_sheet, "v 0 2 0 u 1 0 0 at 0 0 0 nodes 20 20", "v 0 2 0");
+  expect(read_sheet, "velocity 0 0 -3 nodes 3 3", "nodes 3 3 velocity 0 0 -3");
+  expect(read_region, "stiffness-factor 1e4 to 1 1 0 from 0 0 0",
+         "from 0 0 0 to 1 1 0 stiffness-factor 10000");
+  expect(read_region, "from 0 0 0 to 1 1 0 mass-factor 1 stiffness-factor 0",
+         "from 0 0 0 to 1 1 0 stiffness-factor 0");
+  expect(read_region, "from 0 0 0 to 1 1 0 mass-factor 1",
+         "from 0 0 0 to 1 1 0 stiffness-factor 1");
+  expect(read_region, "from 0 0 0 to 1 1 0 stiffness-factor 2 mass-factor .5",
+         "from 0 0 0 to 1 1 0 mass-factor 0.5 stiffness-factor 2");
   expect(read_pin, " y 0\tx 1 until 0.5 velocity 0 0 -1",
          "x 1 y 0 velocity 0 0 -1 until 0.5");
   expect(read_pin, "z 0.30000000000000004 velocity 0 0 0",
@@ -140,6 +160,11 @@ TEST(Parts, RefuseWhatMakesNoSense) {
   EXPECT_THROW(read_sheet("nodes 5 2.5"), SceneError);
   EXPECT_NO_THROW(read_sheet("nodes 2 10000"));
   EXPECT_THROW(read_sheet("u 1 0 0 v 2 0 0"), SceneError);
+  EXPECT_THROW(read_region("from 0 0 0 mass-factor 2"), SceneError);
+  EXPECT_THROW(read_region("from 0 0 0 to 1 1 1"), SceneError);
+  EXPECT_THROW(read_region("from 0 0 0 to 1 1 1 mass-factor 0"), SceneError);
+  EXPECT_THROW(read_region("from 0 0 0 to 1 1 1 stiffness-factor -1"),
+               SceneError);
   EXPECT_THROW(read_pin("velocity 1 0 0"), SceneError);  // holds which?
   EXPECT_THROW(read_pin("x 1 until 2"), SceneError);     // of what motion?
   EXPECT_THROW(read_pin("x 1 velocity 1 0 0 until -1"), SceneError);
@@ -336,6 +361,7 @@ TEST(Assignment, IsNotWhatRunsIfAPartIsNamed) {
         Change([](Model& m) { m.material.density = 1; }),
         Change([](Model& m) { m.material.modulus = 1; }),
         Change([](Model& m) { m.material.drag = 1; }),
+        Change([](Model& m) { m.regions = {Region()}; }),
         Change([](Model& m) { m.pins = {read_pin("x 0")}; }),
         Change([](Model& m) { m.planes = {Wall()}; }),
         Change([](Model& m) { m.spheres = {Solid()}; }),

@@ -72,6 +72,7 @@ std::vector<Variation> without_parts(const Model& m) {
     d.drop("damping", [](Model& x) { x.damping = 0; });
   if (m.material.drag && *m.material.drag > 0)
     d.drop("drag", [](Model& x) { x.material.drag = 0; });
+  d.drop_each("region", &Model::regions);
   d.drop_each("pin", &Model::pins);
   d.drop_each("plane", &Model::planes);
   d.drop_each("sphere", &Model::spheres);

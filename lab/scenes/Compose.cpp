@@ -25,6 +25,9 @@ void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
     for (unsigned& i : q) i += first;
     mesh.quads.push_back(q);
   }
+  if (s.velocity == Point() && mesh.velocities.empty()) return;
+  mesh.velocities.resize(first);
+  mesh.velocities.resize(mesh.points.size(), s.velocity);
 }
 
 /** Two points, the quad of which they are a side, and their neighbors along
@@ -112,16 +115,34 @@ void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
   }
 }
 
+/** Throws SceneError: a region in which there is nothing of what it changes. */
+void change_region(Cloth& g, const Region& r) {
+  auto fail = [&](const char* what) {
+    throw SceneError("region", '"' + to_words(r) + "\" holds no " + what);
+  };
+  unsigned nodes = 0, edges = 0;
+  for (Node n : g.nodes())
+    if (r.box.holds(n.position())) ++nodes, n.value().mass *= Real(r.mass);
+  if (nodes == 0) fail("node");
+  if (r.stiffness == 1) return;
+  for (Edge e : g.edges())
+    if (r.box.holds(e.node1().position()) && r.box.holds(e.node2().position()))
+      ++edges, e.value().K *= Real(r.stiffness);
+  if (edges == 0) fail("edge");
+}
+
 }  // namespace
 
 PointsAndQuads mesh_of(const Model& m) {
   PointsAndQuads mesh;
-  if (m.sheets.empty()) {
-    mesh.points = load_points(m.nodes);
-    mesh.quads = load_quads(m.tets, mesh.points.size());
-  }
+  if (m.sheets.empty()) mesh = load_mesh(m.nodes, m.tets);
   for (const Sheet& s : m.sheets) add_sheet(mesh, s);
   return mesh;
+}
+
+bool is_held(const Model& m, const Point& start) {
+  return std::ranges::any_of(m.pins,
+                             [&](const Pin& pin) { return pin.holds(start); });
 }
 
 double shortest_side(const Model& m) {
@@ -146,6 +167,10 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
               });
   if (m.material.modulus) set_stiffness(g, mesh, m.edges, *m.material.modulus);
   if (m.material.density) set_masses(g, mesh, *m.material.density);
+  for (const Region& r : m.regions) change_region(g, r);
+  // What is held is at rest, whatever the cloth around it does.
+  for (unsigned i = 0; i < mesh.velocities.size(); ++i)
+    if (!is_held(m, mesh.points[i])) g.node(i).value().vel = mesh.velocities[i];
 }
 
 CombinedForces force_of(const Model& m, const PointsAndQuads& mesh) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/Model.hpp"
 
 namespace lab {
@@ -30,16 +31,13 @@ struct Recipe {
   std::vector<Point> room;  ///< corners of what to look at; empty: the cloth
 };
 
-/** Points and quads: what a cloth is built from. */
-struct PointsAndQuads {
-  std::vector<Point> points;  ///< [m]
-  std::vector<Quad> quads;
-};
-
 /** The mesh that @a m names: that of its files, or its sheets in their order,
  * in which the index of a point grows along v first, as in grid_points().
  * Throws InputError */
 PointsAndQuads mesh_of(const Model& m);
+
+/** True if a pin of @a m holds or moves the node that starts at @a start. */
+bool is_held(const Model& m, const Point& start);
 
 /** The shortest side of a quad where the cloth of @a m starts [m]. */
 double shortest_side(const Model& m);
@@ -47,8 +45,11 @@ double shortest_side(const Model& m);
 /** Build the cloth of @a m from @a mesh, that of mesh_of(m), into @a g. With a
  * density each node has the mass of a quarter of each quad at it. With a
  * modulus Y each spring stands for the width of cloth beside it: cloth of
- * squares has K = Y, and half of that in the sides at its rim.
- * @pre g.size() == 0   Throws SceneError: a node without mass
+ * squares has K = Y, and half of that in the sides at its rim. The factors of
+ * the regions come last. Nodes have the velocities of the mesh; those that a
+ * pin holds have none.
+ * @pre g.size() == 0
+ * Throws SceneError: a node without mass, a region that changes nothing
  * Complexity: O(points + quads log quads) */
 void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh);
 

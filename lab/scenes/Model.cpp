@@ -13,9 +13,21 @@ Point Motion::velocity_at(double t) const {
   return 0 <= t && t < until ? velocity : Point();
 }
 
+namespace {
+constexpr double near = 1e-9;  // [m]
+}
+
+bool Box::holds(const Point& p) const {
+  auto within = [](double a, double b, double x) {
+    return std::min(a, b) - near < x && x < std::max(a, b) + near;
+  };
+  return within(from.x, to.x, p.x) && within(from.y, to.y, p.y) &&
+         within(from.z, to.z, p.z);
+}
+
 bool Pin::holds(const Point& p) const {
   auto is = [](const std::optional<double>& wanted, double a) {
-    return !wanted || std::abs(*wanted - a) < 1e-9;
+    return !wanted || std::abs(*wanted - a) < near;
   };
   return is(x, p.x) && is(y, p.y) && is(z, p.z);
 }
@@ -28,9 +40,9 @@ const MethodEntry* default_method() {
 
 bool Model::names_parts() const {
   return !sheets.empty() || edges != Edges() || material.density ||
-         material.modulus || material.drag || !pins.empty() ||
-         !planes.empty() || !spheres.empty() || !tears.empty() || tear_strain ||
-         self_collision;
+         material.modulus || material.drag || !regions.empty() ||
+         !pins.empty() || !planes.empty() || !spheres.empty() ||
+         !tears.empty() || tear_strain || self_collision;
 }
 
 Model assignment_scene() { return or_assignment({}); }
@@ -41,7 +53,7 @@ Model or_assignment(Model m) {
   for (double x : {0, 1}) m.pins.push_back({x, 0, 0, {}});
   m.planes = {Wall()};
   m.tears = {Ball()};
-  if (!m.view) m.view = View{Point(0, -0.4, -0.75), Point(1, 0.6, 0)};
+  if (!m.view) m.view = Box{Point(0, -0.4, -0.75), Point(1, 0.6, 0)};
   return m;
 }
 

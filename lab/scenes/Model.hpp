@@ -70,7 +70,27 @@ struct Sheet {
   Point at = Point();                            ///< a corner [m]
   Point u = Point(1, 0, 0), v = Point(0, 1, 0);  ///< two sides [m]
   std::array<unsigned, 2> nodes = {20, 20};      ///< along u and v, >= 2
+  Point velocity = Point();  ///< of all nodes, at t = 0 [m/s]
   bool operator==(const Sheet&) const = default;
+};
+
+/** Opposite corners of a box. */
+struct Box {
+  Point from, to;  ///< [m], in any order
+  /** Inside or on the rim, to 1e-9 m: within round-off of a cloth of some
+   * meters. */
+  bool holds(const Point& p) const;
+  bool operator==(const Box&) const = default;
+};
+
+/** Another material in a part of the cloth: factors of the mass of the nodes
+ * that start in a box, and of K of the edges that have both ends there. Where
+ * regions overlap, their factors multiply. */
+struct Region {
+  Box box;
+  double mass = 1;       ///< factor [1], > 0
+  double stiffness = 1;  ///< factor [1], >= 0
+  bool operator==(const Region&) const = default;
 };
 
 /** Holds or moves the nodes whose start has the given coordinates [m]; at least
@@ -78,7 +98,7 @@ struct Sheet {
 struct Pin {
   std::optional<double> x, y, z;
   Motion motion;
-  /** To 1e-9 m: within round-off of a cloth of some meters. */
+  /** To 1e-9 m, as a Box. */
   bool holds(const Point& p) const;
   bool operator==(const Pin&) const = default;
 };
@@ -107,11 +127,6 @@ struct Distance {
   double friction = 0;
 };
 
-/** A box to look at. */
-struct View {
-  Point from, to;  ///< opposite corners [m]
-};
-
 /** What is asked of a scene at its end. */
 enum class Measure { com, energy, positions, max_stretch, drape_height };
 
@@ -136,6 +151,7 @@ struct Model {
   Edges edges;
   double stiffness = 100;  ///< K of every spring [N/m], >= 0
   Material material;
+  std::vector<Region> regions;
   // What acts on it
   double gravity = grav;  ///< acceleration of free fall [m/s^2]
   double damping = 0;     ///< drag coefficient c of a node [kg/s], >= 0
@@ -153,7 +169,7 @@ struct Model {
   Measure measure = Measure::com;
   double tolerance = 0.01;  ///< in the unit of the measure
   // How it is shown
-  std::optional<View> view;
+  std::optional<Box> view;  ///< the box to look at
 
   /** True if it names a part, from `sheet` to `self-collision` in README.md. */
   bool names_parts() const;

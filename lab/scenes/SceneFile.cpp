@@ -28,7 +28,7 @@ struct SceneOptions::Text {
   std::string edges;
   double stiffness, gravity, damping;
   std::optional<double> modulus, density, drag;
-  List pins, planes, spheres, tears;
+  List regions, pins, planes, spheres, tears;
   std::optional<double> tear_strain;
   std::string self_collision;
   double t_end;
@@ -48,6 +48,7 @@ struct SceneOptions::Text {
         modulus(m.material.modulus),
         density(m.material.density),
         drag(m.material.drag),
+        regions(words(m.regions)),
         pins(words(m.pins)),
         planes(words(m.planes)),
         spheres(words(m.spheres)),
@@ -82,11 +83,13 @@ namespace {
  * @tparam T SceneOptions::Text, or const */
 template <typename T, typename Use>
 void each_option(T& m, Use use) {
-  use("nodes", m.nodes, "file of points 'x y z' [m]");
+  use("nodes", m.nodes,
+      "file of points 'x y z' [m], or 'x y z vx vy vz' [m/s]");
   use("tets", m.tets, "file of quads, four node indices each");
   use("sheet", m.sheets,
       "a grid instead of files, any number: at X Y Z u X Y Z v X Y Z [m] nodes "
-      "N M: a corner, two sides, nodes along them");
+      "N M velocity X Y Z [m/s]: a corner, two sides, nodes along them, how it "
+      "moves at first");
   use("edges", m.edges, "springs: sides, and diagonals and bend if named");
   use("stiffness", m.stiffness, "K of every edge [N/m]");
   use("modulus", m.modulus, "instead of it: force per width and strain [N/m]");
@@ -94,6 +97,9 @@ void each_option(T& m, Use use) {
   use("damping", m.damping,
       "drag coefficient c of every node [kg/s] (1/N is moderate)");
   use("drag", m.drag, "instead of it: drag per area [kg/(s m^2)]");
+  use("region", m.regions,
+      "another material in a box: from X Y Z to X Y Z [m] mass-factor F "
+      "stiffness-factor F: of nodes in it, of edges with both ends in it");
   use("gravity", m.gravity, "acceleration of free fall [m/s^2]");
   use("pin", m.pins,
       "hold the nodes that start at x X y Y z Z [m] (one of them or more), or "
@@ -178,6 +184,7 @@ Model SceneOptions::Text::model() const {
   m.measure = read_measure(measure);
   m.edges = read_edges(edges);
   m.sheets = all_of(sheets, read_sheet);
+  m.regions = all_of(regions, read_region);
   m.pins = all_of(pins, read_pin);
   m.planes = all_of(planes, read_plane);
   m.spheres = all_of(spheres, read_sphere);

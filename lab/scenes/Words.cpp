@@ -109,14 +109,29 @@ Edges read_edges(const std::string& text) {
   return {w.has("diagonals"), w.has("bend")};
 }
 Sheet read_sheet(const std::string& text) {
-  const Words w("sheet", text, {{"at", 3}, {"u", 3}, {"v", 3}, {"nodes", 2}});
+  const Words w("sheet", text,
+                {{"at", 3}, {"u", 3}, {"v", 3}, {"nodes", 2}, {"velocity", 3}});
   Sheet s;
   s.at = w.point("at", s.at);
   s.u = w.point("u", s.u), s.v = w.point("v", s.v);
   if (w.has("nodes"))
     for (int k : {0, 1}) s.nodes[k] = count_of(w, w.numbers("nodes")[k]);
   if (!(norm(cross(s.u, s.v)) > 0)) w.fail("has sides u and v without an area");
+  s.velocity = w.point("velocity", s.velocity);
   return s;
+}
+Region read_region(const std::string& text) {
+  const Words w(
+      "region", text,
+      {{"from", 3}, {"to", 3}, {"mass-factor", 1}, {"stiffness-factor", 1}});
+  w.require("from"), w.require("to");
+  if (!w.has("mass-factor") && !w.has("stiffness-factor"))
+    w.fail("has neither mass-factor nor stiffness-factor");
+  Region r;
+  r.box = {w.point("from", Point()), w.point("to", Point())};
+  if (w.has("mass-factor")) r.mass = w.above("mass-factor", 0);
+  r.stiffness = w.at_least("stiffness-factor", 0, r.stiffness);
+  return r;
 }
 Pin read_pin(const std::string& text) {
   const Words w("pin", text,
@@ -160,10 +175,10 @@ Distance read_self_collision(const std::string& text) {
   const Words w("self-collision", text, {{"thickness", 1}, {"friction", 1}});
   return {w.above("thickness", 0), w.at_least("friction", 0, 0)};
 }
-View read_view(const std::string& text) {
+Box read_view(const std::string& text) {
   const Words w("view", text, {{"from", 3}, {"to", 3}});
   w.require("from"), w.require("to");
-  const View v = {w.point("from", Point()), w.point("to", Point())};
+  const Box v = {w.point("from", Point()), w.point("to", Point())};
   if (v.from == v.to) w.fail("is a box without a size");
   return v;
 }
@@ -259,6 +274,14 @@ std::string to_words(const Sheet& s) {
     w.word("nodes")
         .word(std::to_string(s.nodes[0]))
         .word(std::to_string(s.nodes[1]));
+  return w.point("velocity", s.velocity, otherwise.velocity).text();
+}
+std::string to_words(const Region& r) {
+  Writer w;
+  w.point("from", r.box.from).point("to", r.box.to);
+  w.number("mass-factor", r.mass, 1);
+  if (r.stiffness != 1 || r.mass == 1)  // one of them is there
+    w.number("stiffness-factor", r.stiffness);
   return w.text();
 }
 std::string to_words(const Pin& p) {
@@ -291,7 +314,7 @@ std::string to_words(const Distance& d) {
       .number("friction", d.friction, 0)
       .text();
 }
-std::string to_words(const View& v) {
+std::string to_words(const Box& v) {
   return Writer().point("from", v.from).point("to", v.to).text();
 }
 std::string to_words(const TimeStep& s) {

@@ -57,12 +57,13 @@ class Words {
  * have. */
 Edges read_edges(const std::string& text);
 Sheet read_sheet(const std::string& text);
+Region read_region(const std::string& text);
 Pin read_pin(const std::string& text);
 Wall read_plane(const std::string& text);
 Solid read_sphere(const std::string& text);
 Ball read_tear(const std::string& text);
 Distance read_self_collision(const std::string& text);
-View read_view(const std::string& text);
+Box read_view(const std::string& text);
 Measure read_measure(const std::string& text);
 /** "auto", "auto:sharp" or a number [s] */
 TimeStep read_time_step(const std::string& text);
@@ -72,12 +73,13 @@ const MethodEntry* read_method(const std::string& text);
  * default, with all digits. Read again, they are the same part. */
 std::string to_words(const Edges&);
 std::string to_words(const Sheet&);
+std::string to_words(const Region&);
 std::string to_words(const Pin&);
 std::string to_words(const Wall&);
 std::string to_words(const Solid&);
 std::string to_words(const Ball&);
 std::string to_words(const Distance&);
-std::string to_words(const View&);
+std::string to_words(const Box&);
 std::string to_words(const TimeStep&);
 
 }  // namespace lab

@@ -1,0 +1,55 @@
+#include "lab/scenes/MeshFile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace lab {
+
+PointsAndQuads parse_nodes(std::string_view text, const std::string& file) {
+  const std::string three = "three finite coordinates 'x y z' [m]";
+  const std::string six =
+      "six finite numbers 'x y z vx vy vz' [m, m/s], as in the first line";
+  PointsAndQuads mesh;
+  std::size_t columns = 0;  // of all lines; 0: not known yet
+  auto expected = [&] {
+    return columns == 0   ? three + ", and three of a velocity [m/s] or none"
+           : columns == 3 ? three
+                          : six;
+  };
+  const std::size_t lines =
+      mesh_detail::for_each_line(text, [&](auto& words, std::size_t line) {
+        try {
+          std::array<double, 6> row{};
+          for (std::size_t k = 0; k < std::min(row.size(), words.size()); ++k) {
+            row[k] = mesh_detail::parse_number<double>(words[k], "a number");
+            if (!std::isfinite(row[k]))
+              throw std::runtime_error(k < 3 ? "a coordinate is not finite"
+                                             : "a velocity is not finite");
+          }
+          const std::size_t n = words.size();
+          if (columns == 0 ? n != 3 && n != 6 : n != columns)
+            throw std::runtime_error(std::to_string(n) +
+                                     (n == 1 ? " value" : " values") +
+                                     " in the line");
+          columns = n;
+          mesh.points.push_back({row[0], row[1], row[2]});
+          if (n == 6) mesh.velocities.push_back({row[3], row[4], row[5]});
+        } catch (const std::runtime_error& e) {
+          throw InputError(file, line, e.what() + (", expected " + expected()));
+        }
+      });
+  if (columns == 0)
+    throw InputError(file, lines,
+                     "nothing in the file, expected " + expected());
+  return mesh;
+}
+
+PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets) {
+  PointsAndQuads mesh =
+      parse_nodes(mesh_detail::read_file(nodes, "a file of points"), nodes);
+  mesh.quads = load_quads(tets, mesh.points.size());
+  return mesh;
+}
+
+}  // namespace lab

@@ -1,0 +1,31 @@
+#pragma once
+/** @file MeshFile.hpp
+ * The files of a mesh as the laboratory reads and writes them: those of
+ * CME212/Mesh.hpp, and velocities beside the points. data/README.md */
+#include <string>
+#include <vector>
+
+#include "CME212/Mesh.hpp"
+
+namespace lab {
+
+/** Points and quads: what a cloth is built from. */
+struct PointsAndQuads {
+  std::vector<Point> points;  ///< [m]
+  std::vector<Quad> quads;
+  /** Of the points, at t = 0 [m/s]; or none: at rest. */
+  std::vector<Point> velocities = {};
+};
+
+/** The points of a .nodes file, and their velocities if it has them: "x y z"
+ * [m] in each line, or "x y z vx vy vz" [m, m/s] in each.
+ * @param text all of the file   @param file its name, for messages
+ * @return without quads
+ * Throws InputError: any other line, lines of both kinds; no line. */
+PointsAndQuads parse_nodes(std::string_view text, const std::string& file);
+
+/** Those of the file @a nodes with the quads of the file @a tets.
+ * Throws InputError, also if one can't be read. */
+PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets);
+
+}  // namespace lab
