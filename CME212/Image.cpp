@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -76,10 +77,7 @@ Video::Video(const std::string& path, int width, int height, double rate)
   file_ = std::make_unique<OutputFile>(path);
   if (start_ffmpeg(rate)) return;
   file_.reset();
-  std::error_code error;
-  std::filesystem::remove_all(folder_part(), error);
-  std::filesystem::create_directory(folder_part(), error);
-  if (error) fail(folder(), error.message());
+  make_folder();
 }
 
 Video::~Video() {
@@ -89,7 +87,7 @@ Video::~Video() {
     waitpid(child_, nullptr, 0);
   }
   std::error_code ignored;
-  if (!file_) std::filesystem::remove_all(folder_part(), ignored);
+  if (!scratch_.empty()) std::filesystem::remove_all(scratch_, ignored);
 }
 
 void Video::add(const Image& image) {
@@ -99,7 +97,7 @@ void Video::add(const Image& image) {
   } else {
     char name[32];
     std::snprintf(name, sizeof name, "/frame_%06d.png", frames_);
-    write_png(folder_part() + name, image);
+    write_png(scratch_ + name, image);
   }
   ++frames_;
 }
@@ -116,14 +114,27 @@ void Video::finish() {
   finished_ = true;
 }
 
-std::string Video::wrote() const { return file_ ? path_ : folder() + "/"; }
+std::string Video::wrote() const {
+  return file_ ? path_ : finished_ ? folder_ + '/' : "";
+}
 
+/** The folder of the film without ffmpeg, but for a number. */
 std::string Video::folder() const {
   std::filesystem::path stem(path_);
   return stem.replace_extension().string() + "_frames";
 }
 
-std::string Video::folder_part() const { return folder() + ".part"; }
+/** A new folder, in which the pictures grow in number. */
+void Video::make_folder() {
+  for (int k = 0; scratch_.empty(); ++k) {
+    const std::string name = folder() + '.' + std::to_string(getpid()) + '-' +
+                             std::to_string(k) + ".part";
+    if (mkdir(name.c_str(), 0777) == 0)
+      scratch_ = name;
+    else if (errno != EEXIST)
+      fail(folder(), reason(errno));
+  }
+}
 
 /** Start ffmpeg.  @return false if there is none. */
 bool Video::start_ffmpeg(double rate) {
@@ -152,9 +163,16 @@ bool Video::start_ffmpeg(double rate) {
   posix_spawn_file_actions_adddup2(&actions, ends[1], 0);
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, fileno(message_.get()), 2);
-  int error = posix_spawnp(&child_, args[0], &actions, nullptr,
+  if (const auto film = file_->descriptor())  // so that it is inherited
+    posix_spawn_file_actions_adddup2(&actions, *film, *film);
+  // Ctrl-C at a terminal is for this program, which then ends the film.
+  posix_spawnattr_t own_group;
+  posix_spawnattr_init(&own_group);
+  posix_spawnattr_setflags(&own_group, POSIX_SPAWN_SETPGROUP);
+  int error = posix_spawnp(&child_, args[0], &actions, &own_group,
                            const_cast<char* const*>(args.data()), environ);
   posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&own_group);
   close(ends[1]);
   input_ = ends[0];
   if (error == 0) return true;
@@ -197,16 +215,16 @@ void Video::close_input() {
   input_ = -1;
 }
 
-/** Replaces the pictures of an older film. Whatever else is in its folder is
- * kept, and then this fails. */
-void Video::put_folder_in_place() const {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  for (const auto& old : fs::directory_iterator(folder(), error))
-    if (old.path().filename().string().starts_with("frame_"))
-      fs::remove(old.path(), error);
-  fs::rename(folder_part(), folder(), error);
-  if (error) fail(folder(), error.message());
+/** Nothing that has the name is touched: then it becomes FILE_frames-2, or the
+ * next one that is free. An empty folder is. */
+void Video::put_folder_in_place() {
+  folder_ = folder();
+  for (int k = 2; std::rename(scratch_.c_str(), folder_.c_str()) != 0; ++k) {
+    if (errno != ENOTEMPTY && errno != EEXIST && errno != ENOTDIR)
+      fail(folder_, reason(errno));
+    folder_ = folder() + '-' + std::to_string(k);
+  }
+  scratch_.clear();
 }
 
 }  // namespace CME212

@@ -49,7 +49,9 @@ void write_png(const std::string& path, const Image& image);
 Image read_png(const std::string& path);
 
 /** A film: FILE.mp4 if there is an ffmpeg on the PATH, otherwise a folder
- * FILE_frames/ of pictures frame_000000.png, frame_000001.png, ...
+ * FILE_frames/ of pictures frame_000000.png, frame_000001.png, ... If there is
+ * such a folder already, it is left alone: the new one is FILE_frames-2/, and
+ * so on.
  *
  * Nothing has its name before finish(); a Video destroyed without it leaves
  * nothing. One thread at a time. */
@@ -72,13 +74,13 @@ class Video {
   void add(const Image& image);
 
   /** Complete the film.
-   * @post What wrote() says is there, and replaces an older one.
+   * @post What wrote() says is there. An older file is replaced.
    * Throws std::runtime_error as add(), and if there is no picture. A second
    * call does nothing. */
   void finish();
 
-  /** What finish() makes or made: the .mp4 file, or the folder with a slash
-   * at the end. */
+  /** What finish() made: the .mp4 file, or the folder with a slash at the end.
+   * Before, it knows no folder: then it is empty. */
   std::string wrote() const;
   /** Number of pictures so far. */
   int frames() const { return frames_; }
@@ -91,6 +93,7 @@ class Video {
   std::string path_;
   int width_, height_;
   std::unique_ptr<OutputFile> file_;  // none: it becomes a folder
+  std::string scratch_, folder_;      // that folder, before and after finish()
   int frames_ = 0;
   bool finished_ = false;
   int child_ = -1;                             // ffmpeg, while it runs
@@ -98,12 +101,12 @@ class Video {
   std::unique_ptr<std::FILE, Close> message_;  // its standard error
 
   std::string folder() const;
-  std::string folder_part() const;
+  void make_folder();
   bool start_ffmpeg(double rate);
   void send_all(const std::vector<std::uint8_t>& bytes);
   void wait_for_ffmpeg();
   void close_input();
-  void put_folder_in_place() const;
+  void put_folder_in_place();
 };
 
 }  // namespace CME212

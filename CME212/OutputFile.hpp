@@ -1,31 +1,73 @@
 #pragma once
 /** @file OutputFile.hpp
  * OutputFile: a file that is written whole or not at all. */
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace CME212 {
 
-/** A file that appears under its name, whole, when commit() is called; until
- * then it grows beside it as FILE.part, and is gone if commit() never comes.
+/** What the file name @a file stands for: without symbolic links, also one
+ * whose target is not there yet. Two names of one file have one target; two
+ * hard links have two.  Throws std::runtime_error: links in a circle. */
+inline std::string output_target(const std::string& file) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  fs::path path(file);
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path, none)); ++links) {
+    if (links == 40)
+      throw std::runtime_error(file + ": can't be written (" +
+                               std::strerror(ELOOP) + ")");
+    path = path.parent_path() / fs::read_symlink(path, none);
+  }
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path, none), none);
+  return (whole.empty() ? path : whole).string();
+}
+
+/** A file that appears under its name, whole, when commit() is called. Until
+ * then it grows without a name in the same folder, so that nothing is left
+ * however the program ends. (Where the file system has no such files: as
+ * NAME.PID-K.part, a name that nobody has; that is left by SIGKILL.) Of several
+ * writers of one file the last to commit has it.
+ *
+ * A file that was there keeps its permissions, and, if the system allows, its
+ * owner; a new one has those of the umask. Where the name is a symbolic link,
+ * what that points to is replaced. Other hard links keep the old content.
+ *
  * What is no regular file (a pipe, /dev/null) is written directly. */
 class OutputFile {
  public:
-  /** @param file  path to write
-   * Throws std::runtime_error "FILE: why" if it can't be written there. */
-  explicit OutputFile(const std::string& file) : file_(file), part_(file) {
-    namespace fs = std::filesystem;
-    std::error_code none;
-    if (fs::is_directory(file, none)) fail("a directory");
-    if (!fs::exists(file, none) || fs::is_regular_file(file, none)) {
-      // Replace what a link points to, not the link.
-      if (fs::exists(file, none)) file_ = fs::canonical(file).string();
-      part_ = file_ + ".part";
+  enum class Scratch { unnamed, named };
+
+  /** @param file  path to write   @param scratch named: see above
+   * Throws std::runtime_error "FILE: why" if it can't be written there: also
+   * without a name, a folder, a file that is read-only, and that to which the
+   * standard output or error of this program goes. */
+  explicit OutputFile(const std::string& file,
+                      Scratch scratch = Scratch::unnamed)
+      : file_(file) {
+    if (file.empty()) throw std::runtime_error("an output file has no name");
+    struct stat old = {};
+    const bool exists = stat(file.c_str(), &old) == 0;
+    if (!exists && errno != ENOENT) fail(std::strerror(errno));
+    if (exists && S_ISDIR(old.st_mode)) fail("a directory");
+    if (exists && !S_ISREG(old.st_mode)) {
+      part_ = file;
+    } else {
+      if (exists) check_may_be_replaced(old);
+      target_ = output_target(file);
+      if (scratch == Scratch::named || !open_unnamed()) open_named();
+      if (exists) look_like(old);
     }
     errno = 0;
     out_.open(part_, std::ios::binary);
@@ -35,34 +77,125 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile() {
     out_.close();
-    std::error_code none;
-    if (part_ != file_) std::filesystem::remove(part_, none);
+    if (!name_.empty()) unlink(name_.c_str());
+    if (scratch_ >= 0) close(scratch_);
   }
 
   /** Where to write. */
   std::ostream& stream() { return out_; }
-  /** Path of the file that grows, for a library that opens it itself. */
+  /** Path of what grows, for a program that opens it itself: one that inherits
+   * descriptor(), if there is one. */
   const std::string& part() const { return part_; }
+  std::optional<int> descriptor() const {
+    return scratch_ < 0 ? std::nullopt : std::optional(scratch_);
+  }
 
   /** Close the file and give it its name.
+   * @param to_disk wait until it is on the disk: it outlasts a power cut
    * Throws std::runtime_error "FILE: why" if anything could not be written,
    * and then what was there before is untouched. */
-  void commit() {
+  void commit(bool to_disk = false) {
     errno = 0;
     out_.close();
     if (!out_) fail(errno ? std::strerror(errno) : "not all was written");
-    if (part_ == file_) return;
-    std::error_code error;
-    std::filesystem::rename(part_, file_, error);
-    if (error) fail(error.message());
+    if (target_.empty()) return;
+    if (to_disk && fsync(scratch_) != 0) fail(std::strerror(errno));
+    if (name_.empty())
+      take_name([this](const char* name) {
+        return linkat(AT_FDCWD, part_.c_str(), AT_FDCWD, name,
+                      AT_SYMLINK_FOLLOW) == 0;
+      });
+    if (std::rename(name_.c_str(), target_.c_str()) != 0)
+      fail(std::strerror(errno));
+    name_.clear();
+  }
+
+  /** Give a copy of what was written so far the name, and go on.
+   * Throws as commit().  O(bytes so far) */
+  void commit_copy() {
+    out_.flush();
+    if (target_.empty() || out_.tellp() == std::streampos(0)) return;
+    OutputFile copy(file_);
+    copy.out_ << std::ifstream(part_, std::ios::binary).rdbuf();
+    if (!out_) copy.out_.setstate(std::ios::failbit);
+    copy.commit();
   }
 
  private:
-  std::string file_, part_;
+  std::string file_;    // as it was given
+  std::string target_;  // what is replaced; empty: file_ is written directly
+  std::string name_;    // of the scratch file, while it has one
+  std::string part_;    // how it is opened
+  int scratch_ = -1;    // a descriptor of it
   std::ofstream out_;
 
-  [[noreturn]] void fail(const std::string& why) {
+  [[noreturn]] void fail(const std::string& why) const {
     throw std::runtime_error(file_ + ": can't be written (" + why + ")");
+  }
+
+  void check_may_be_replaced(const struct stat& old) const {
+    // Root may write everything; but whoever took away all rights meant it.
+    if ((old.st_mode & 0222) == 0 || access(file_.c_str(), W_OK) != 0)
+      fail(std::strerror(EACCES));
+    for (int own : {STDOUT_FILENO, STDERR_FILENO}) {
+      struct stat used = {};
+      if (fstat(own, &used) == 0 && used.st_dev == old.st_dev &&
+          used.st_ino == old.st_ino)
+        fail(own == STDOUT_FILENO ? "the standard output goes there"
+                                  : "the standard error goes there");
+    }
+  }
+
+  bool open_unnamed() {
+#ifdef O_TMPFILE
+    const std::string folder =
+        std::filesystem::path(target_).parent_path().string();
+    scratch_ = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (scratch_ < 0) return false;
+    part_ = "/proc/self/fd/" + std::to_string(scratch_);
+    if (access(part_.c_str(), W_OK) == 0) return true;
+    close(scratch_);
+#endif
+    return false;
+  }
+
+  void open_named() {
+    take_name([this](const char* name) {
+      scratch_ = open(name, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+      return scratch_ >= 0;
+    });
+    part_ = name_;
+  }
+
+  /** Set name_ to one beside the target with which @a make succeeds: it fails
+   * with EEXIST if something has that name. */
+  template <typename Make>
+  void take_name(Make make) {
+    static std::atomic<unsigned> count = 0;
+    const std::filesystem::path target(target_);
+    const std::string stem = target.filename().string().substr(0, 200);
+    for (;;) {
+      const std::string name =
+          target.parent_path() / (stem + '.' + std::to_string(getpid()) + '-' +
+                                  std::to_string(count++) + ".part");
+      if (make(name.c_str())) {
+        name_ = name;
+        return;
+      }
+      if (errno != EEXIST) fail(std::strerror(errno));
+    }
+  }
+
+  /** Give the scratch file the owner and the permissions of the old one. */
+  void look_like(const struct stat& old) const {
+    struct stat now = {};
+    if (fstat(scratch_, &now) != 0) fail(std::strerror(errno));
+    if ((now.st_uid != old.st_uid || now.st_gid != old.st_gid) &&
+        fchown(scratch_, old.st_uid, old.st_gid) != 0 &&
+        fchown(scratch_, uid_t(-1), old.st_gid) != 0) {
+      // It is ours, then.
+    }
+    if (fchmod(scratch_, old.st_mode & 07777) != 0) fail(std::strerror(errno));
   }
 };
 

@@ -177,23 +177,29 @@ TEST(Video, MakesAPlayableFile) {
 TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
   TestFolder folder;
   Environment path("PATH", (folder / "none").c_str());
-  for (int length : {3, 2}) {  // the second replaces the first
+  auto film = [&](int length) {
     Video video(folder / "v.mp4", 8, 6);
     for (int i = 0; i < length; ++i) video.add(test_image(8, 6, i));
-    EXPECT_EQ(fs::exists(folder / "v_frames"), length == 2);
     video.finish();
-    EXPECT_EQ(video.wrote(), folder / "v_frames/");
-  }
+    return video.wrote();
+  };
+  EXPECT_EQ(film(2), folder / "v_frames/");
   EXPECT_EQ(read_png(folder / "v_frames/frame_000001.png"),
             test_image(8, 6, 1));
-  EXPECT_FALSE(fs::exists(folder / "v_frames/frame_000002.png"));
   EXPECT_EQ(files_in(folder), 1u);
-
-  std::ofstream(folder / "v_frames/notes.txt") << "keep";  // not ours
-  Video video(folder / "v.mp4", 8, 6);
-  video.add(test_image(8, 6));
-  EXPECT_NE(error_of([&] { video.finish(); }), "no error");
-  EXPECT_TRUE(fs::exists(folder / "v_frames/notes.txt"));
+  // What is there is left alone.
+  std::ofstream(folder / "v_frames/frame_000000.png") << "mine";
+  std::ofstream(folder / "v_frames-2") << "mine, too";
+  EXPECT_EQ(film(1), folder / "v_frames-3/");
+  EXPECT_EQ(contents(folder / "v_frames/frame_000000.png"), "mine");
+  EXPECT_EQ(contents(folder / "v_frames-2"), "mine, too");
+  EXPECT_EQ(files_in(folder), 3u);
+  // Also what has the name of a folder while it grows.
+  fs::create_directory(folder / "w_frames.part");
+  std::ofstream(folder / "w_frames.part/notes.txt") << "keep";
+  { Video(folder / "w.mp4", 8, 6).add(test_image(8, 6)); }
+  EXPECT_TRUE(fs::exists(folder / "w_frames.part/notes.txt"));
+  EXPECT_EQ(files_in(folder), 4u);
 }
 
 TEST(Video, SaysWhatIsWrong) {
