@@ -4,13 +4,18 @@
  *
  * Exit status: 0 done; 2 an input or an option that can't be used, or an
  * output that can't be written; 3 the run diverged; 4 no display. */
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
@@ -143,8 +148,28 @@ int take_advice(Options& o) {
   return o.automatic ? -1 : 0;
 }
 
+/** Wrong paths, and two outputs in one file, shall end the run before it
+ * starts.  Throws std::runtime_error, SceneError */
+void check_outputs(const Options& o) {
+  std::map<std::string, const char*> option_of;
+  for (const auto& [option, file] :
+       {std::pair("csv", o.csv), std::pair("out", o.out),
+        std::pair("screenshot", o.screenshot), std::pair("record", o.video),
+        std::pair("write-config", o.advised)}) {
+    // Opening a pipe waits for its reader; and many may write to a device.
+    if (file.empty() || std::filesystem::is_other(file)) continue;
+    CME212::OutputFile try_it(file);
+    const auto [other, is_new] =
+        option_of.emplace(CME212::output_target(file), option);
+    if (!is_new)
+      throw SceneError(option, "is " + file + ", where --" + other->second +
+                                   " writes, expected another file");
+  }
+}
+
 /** Load, choose how to run, run.  @return exit status */
 int run(Options o) {
+  check_outputs(o);
   Sweep::set_threads(o.threads);
   if (o.advise || o.automatic || !o.advised.empty())
     if (int status = take_advice(o); status >= 0) return status;
@@ -163,9 +188,7 @@ int run(Options o) {
                      "film go to the folder demo\n";
     }
   }
-  // Wrong paths shall end the run before it starts.
-  for (const std::string& file : {o.screenshot, o.video})
-    if (!file.empty()) CME212::OutputFile try_it(file);
+  check_outputs(o);
   Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)
@@ -178,13 +201,24 @@ int run(Options o) {
   return status;
 }
 
+/** @return @a status; or 2 if not all could be written to the standard output
+ */
+int after_output(int status) {
+  errno = 0;
+  if (std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout))
+    return status;
+  std::cerr << "cloth: the standard output can't be written ("
+            << (errno ? std::strerror(errno) : "not all was written") << ")\n";
+  return status == 0 ? 2 : status;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options o;
   try {
     int status = parse(argc, argv, o);
-    return status >= 0 ? status : run(o);
+    return after_output(status >= 0 ? status : run(o));
   } catch (const NoDisplay& e) {
     std::cerr << "cloth: " << e.what() << '\n';
     return 4;

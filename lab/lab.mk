@@ -59,7 +59,7 @@ $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(
 $(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
 
 # Tests that run a program.
-$(B)/test_cloth_program $(B)/test_cloth_scenes: | $(B)/cloth
+$(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)): | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
 $(B)/test_viewer $(B)/test_image $(B)/test_screen: $(B)/asan/libviewer.a

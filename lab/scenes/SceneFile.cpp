@@ -198,6 +198,12 @@ Model SceneOptions::Text::model() const {
   return or_assignment(m);
 }
 
+CLI::Option* takes_file(CLI::Option* option) {
+  return option->type_name("FILE")->check([](const std::string& name) {
+    return std::string(name.empty() ? "is empty, expected a file" : "");
+  });
+}
+
 SceneOptions::SceneOptions() : text_(std::make_unique<Text>(Model())) {}
 SceneOptions::~SceneOptions() = default;
 Model SceneOptions::model() const { return text_->model(); }
@@ -212,6 +218,7 @@ void SceneOptions::add_to(CLI::App& app) {
                 CLI::Option* option = app.add_option(names, member, help);
                 if constexpr (std::is_same_v<T, Text::List>)
                   option->allow_extra_args(false);  // what follows may be NODES
+                if (name == "nodes" || name == "tets") takes_file(option);
                 if (name == "dt") option->type_name("FLOAT|auto|auto:sharp");
               });
   CLI::Option* stiffness = app.get_option("--stiffness");

@@ -12,7 +12,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace lab {
 
@@ -20,6 +21,10 @@ namespace lab {
 struct SceneFileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/** Let @a option take the name of a file: none that is empty, as a shell's
+ * variable that is not set.  @return it */
+CLI::Option* takes_file(CLI::Option* option);
 
 /** The options of a scene, as a command line or a file gives them. */
 class SceneOptions {

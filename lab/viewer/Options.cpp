@@ -2,6 +2,7 @@
  * The options of ./cloth: their names, groups and help. */
 #include "lab/viewer/Options.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <sstream>
@@ -146,18 +147,17 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
                  "as it goes");
   app.add_flag("--strain", o.strain,
                "color the nodes by their springs' strain");
-  app.add_option("--screenshot", o.screenshot,
-                 "draw a picture FILE.png, without a window")
-      ->type_name("FILE");
+  takes_file(app.add_option("--screenshot", o.screenshot,
+                            "draw a picture FILE.png, without a window"));
   app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
-  app.add_option("--record", o.video,
-                 "draw a film FILE.mp4 of 30 frames a second, without a window")
-      ->type_name("FILE");
-  app.add_option("--csv", o.csv, "write energies [J] and center of mass [m]")
-      ->type_name("FILE");
+  takes_file(app.add_option(
+      "--record", o.video,
+      "draw a film FILE.mp4 of 30 frames a second, without a window"));
+  takes_file(app.add_option("--csv", o.csv,
+                            "write energies [J] and center of mass [m]"));
   app.add_option("--every", o.every, "steps between two rows of --csv");
-  app.add_option("--out", o.out, "write the positions at the end, as NODES")
-      ->type_name("FILE");
+  takes_file(app.add_option("--out", o.out,
+                            "write the positions at the end, as NODES"));
   app.add_option("--threads", o.threads,
                  "threads for a large cloth; 0: one a processor. They change "
                  "no result")
@@ -169,13 +169,13 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
 int report(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_exit_code() == 0) return app.exit(e);
   std::string message = e.what();
+  std::vector<std::string> names;
+  for (const Group& g : groups)
+    for (const char* name : g.options)
+      names.push_back(std::string("--") + name);
   for (std::string word : app.remaining()) {
-    if (!word.starts_with("-")) continue;
     word = word.substr(0, word.find('='));
-    std::vector<std::string> names;
-    for (const Group& g : groups)
-      for (const char* name : g.options)
-        names.push_back(std::string("--") + name);
+    if (!word.starts_with("-") || std::ranges::count(names, word)) continue;
     const std::string meant = did_you_mean(word, names);
     message = word + " is no option" + (meant.empty() ? ": see --help" : meant);
     break;
@@ -193,7 +193,7 @@ int parse(int argc, char** argv, Options& o) {
   CLI::App first;  // finds the scene file
   first.set_help_flag();
   first.allow_extras();
-  first.add_option("--config", file);
+  takes_file(first.add_option("--config", file));
   try {
     first.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -213,16 +213,15 @@ int parse(int argc, char** argv, Options& o) {
   app.formatter(std::make_shared<Help>());
   app.set_help_flag("-h,--help", "print this, and end");
   add_options(app, o, scene);
-  app.add_option("--config", file, "read options from a file: a scene")
-      ->type_name("FILE");
+  takes_file(
+      app.add_option("--config", file, "read options from a file: a scene"));
   app.add_flag("--dump-config", dump, "print the scene as a file, and end");
   app.add_flag("--advise", o.advise,
                "find out by short runs which parts, grid, method and step the "
                "measure needs to its tolerance; print it, and end");
   app.add_flag("--auto", o.automatic, "run what --advise would advise");
-  app.add_option("--write-config", o.advised,
-                 "write the scene that is advised to this file")
-      ->type_name("FILE");
+  takes_file(app.add_option("--write-config", o.advised,
+                            "write the scene that is advised to this file"));
   app.set_version_flag("--version",
                        std::string("cloth ") + version + ", Cholesky by " +
                            SparseCholesky::back_end,

@@ -1,0 +1,96 @@
+// What ./cloth writes, and what it leaves alone: names, links, several outputs,
+// full disks; and a run that a signal ends.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include "tests/ClothProgram.hpp"
+
+namespace {
+
+const std::string small = "--sheet 'nodes 4 4' --t-end 0.02 --headless ";
+
+TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
+  fs::create_directory(dir / "d");
+  fs::create_symlink("d", dir / "link");
+  const std::string one = path("d/x");
+  auto clash = [&](const std::string& a, const std::string& b) {
+    Result r = run(small + a + ' ' + b);
+    EXPECT_EQ(r.status, 2) << a << b;
+    EXPECT_EQ(r.out, "") << a << b;
+    EXPECT_NE(r.err.find(" writes, expected another file\n"), std::string::npos)
+        << r.err;
+    EXPECT_TRUE(fs::is_empty(dir / "d")) << a << b;
+  };
+  clash("--csv " + one, "--out " + one);
+  clash("--csv " + one, "--out " + path("d/./../d/x"));
+  clash("--csv " + one, "--out " + path("link/x"));
+  clash("--screenshot " + one, "--record " + one);
+  clash("--auto --write-config " + one, "--csv " + one);
+  EXPECT_EQ(run(small + "--out " + one + " --csv " + one).err,
+            "cloth: --out is " + one +
+                ", where --csv writes, expected another file\n");
+  EXPECT_EQ(run(small + "--csv /dev/null --out /dev/null").status, 0);
+  EXPECT_EQ(run(small + "--csv " + path("d/a") + " --out " + one).status, 0);
+}
+
+TEST_F(ClothProgram, RefusesAnEmptyNameOfAFile) {
+  for (const char* option : {"csv", "out", "screenshot", "record", "config",
+                             "write-config", "nodes", "tets"})
+    for (const char* scene : {"--sheet 'nodes 4 4'", "data/grid0.nodes"}) {
+      Result r = run(std::string("--") + option + " '' " + scene);
+      EXPECT_EQ(r.status, 2) << option;
+      EXPECT_EQ(r.out, "") << option;
+      EXPECT_EQ(r.err, std::string("cloth: --") + option +
+                           ": is empty, expected a file\n");
+    }
+}
+
+TEST_F(ClothProgram, OfTwoRunsOfOneFileOneHasItWhole) {
+  const std::string csv = " --csv " + path("e.csv");
+  auto command = [&](const char* options) {
+    return CME212::program("cloth", "build/") +
+           " --sheet 'nodes 4 4' --headless --every 1 --quiet " + options + csv;
+  };
+  Result r = folder.run("sh -c \"" + command("--t-end 1") + " & " +
+                        command("--t-end 2 --dt 0.002") + "; wait\"");
+  EXPECT_EQ(r.status, 0) << r.err;
+  const auto table = rows(dir / "e.csv");
+  ASSERT_EQ(table.size(), 1001u);
+  const double dt = table[1][0];
+  for (std::size_t k = 0; k < table.size(); ++k)
+    EXPECT_NEAR(table[k][0], double(k) * dt, 1e-12);
+  EXPECT_EQ(files(), std::vector<std::string>{"e.csv"});
+}
+
+TEST_F(ClothProgram, SaysWhenTheStandardOutputIsFull) {
+  const std::string cloth = CME212::program("cloth", "build/");
+  for (const std::string& options :
+       {small, small + "--dump-config", std::string("--list-methods"),
+        std::string("--help"), std::string("--version"),
+        small + "--advise --tolerance 1"}) {
+    // The last redirection of a file wins.
+    Result r = folder.run("sh -c \"" + cloth + ' ' + options +
+                          " >/dev/full; echo status \\$?\"");
+    EXPECT_EQ(r.out, "status 2\n") << options;
+    EXPECT_EQ(r.err.find("cloth: the standard output can't be written ("), 0u)
+        << options << r.err;
+  }
+  EXPECT_EQ(folder
+                .run("sh -c \"" + cloth + ' ' + small +
+                     " --quiet >&-; echo status \\$? >&2\"")
+                .err,
+            "status 0\n");
+}
+
+TEST_F(ClothProgram, SaysWhenAnOutputIsOnAFullDisk) {
+  for (const char* option : {"--csv ", "--out "}) {
+    Result r = run(small + option + "/dev/full");
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_NE(r.err.find("/dev/full: can't be written (No space left on"),
+              std::string::npos)
+        << r.err;
+  }
+}
+
+}  // namespace
