@@ -84,7 +84,7 @@ TEST(ConstraintPlanPins, GoOnWithoutAPinnedNodeThatWasRemoved) {
   other.value().vel = Point(1);
   second.position().z = -1;
   plan(g, 0);
-  stop_held(g, plan);
+  plan.place_held(g, 0);
   EXPECT_EQ(other.position(), Point(9, 9, 9));
   EXPECT_EQ(other.value().vel, Point(1));
   EXPECT_EQ(second.position(), Point(1, 0, 0));
@@ -95,7 +95,7 @@ TEST(ConstraintPlanPins, StopsOnlyTheHeldNodes) {
   Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(2, 0, 0));
   auto both = make_combined_constraints(PlaneConstraint(), PinConstraint(g));
   a.value().vel = b.value().vel = Point(1);
-  stop_held(g, both);
+  ConstraintPlan(both).set_held_velocities(g, 0);
   EXPECT_EQ(a.value().vel, Point());
   EXPECT_EQ(b.value().vel, Point(1));
 }

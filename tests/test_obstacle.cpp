@@ -7,6 +7,7 @@
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/SelfCollision.hpp"
 
 using namespace lab;
 
@@ -21,14 +22,13 @@ Point random_point(double size) {
 
 // --------------------------------------------------------------------- Motion
 
-TEST(Motion, BeginsAtZeroAndEndsAtUntil) {
+TEST(Motion, EndsAtUntil) {
   const Motion m = {Point(1, -2, 4), 0.5};
-  EXPECT_EQ(m.way(-1), Point());
+  EXPECT_EQ(m.way(-1), Point(-1, 2, -4));  // a stage before the first step
   EXPECT_EQ(m.way(0), Point());
   EXPECT_EQ(m.way(0.25), Point(0.25, -0.5, 1));
   EXPECT_EQ(m.way(0.5), Point(0.5, -1, 2));
   EXPECT_EQ(m.way(3), Point(0.5, -1, 2));
-  EXPECT_EQ(m.velocity_at(std::nextafter(0, -1)), Point());
   EXPECT_EQ(m.velocity_at(0), m.velocity);
   EXPECT_EQ(m.velocity_at(std::nextafter(0.5, 0)), m.velocity);
   EXPECT_EQ(m.velocity_at(0.5), Point());
@@ -364,7 +364,7 @@ TEST(MovingPin, TakesItsNodesAlong) {
     for (int k : {0, 1}) {
       EXPECT_EQ(held[k].position(),
                 starts[k] + std::min(t, 0.5) * Point(0, 1, 2));
-      EXPECT_EQ(held[k].value().vel, Point());
+      EXPECT_EQ(held[k].value().vel, t < 0.5 ? Point(0, 1, 2) : Point());
     }
   }
   for (unsigned i = 0; i < g.num_nodes(); ++i)
@@ -373,8 +373,33 @@ TEST(MovingPin, TakesItsNodesAlong) {
       EXPECT_EQ(g.node(i).value().vel, Point(1, 0, 0));
     }
   std::vector<Node> told;
-  pin.each_held(g, [&](Node n) { told.push_back(n); });
+  ConstraintPlan(pin).each_held(g, [&](Node n) { told.push_back(n); });
   EXPECT_EQ(told, held);
+}
+TEST(MovingPin, IsPlacedAtAStage) {
+  Cloth g;
+  const std::vector<Node> held = {g.add_node(Point(1, 0, 0))};
+  const Node free = g.add_node(Point(2, 0, 0), {Point(0, 0, 3), 1});
+  const MovingPinConstraint pin(PinConstraint(held), {Point(0, 4, 0), 0.5});
+  // Through all that wraps a constraint.
+  const WatchedConstraint watched(SelfCollision(0.1, 0, pin));
+  const ConstraintPlan plan(watched);
+  const auto is = [&](Point place, Point velocity) {
+    return held[0].position() == place && held[0].value().vel == velocity;
+  };
+  plan.place_held(g, 0.25);
+  EXPECT_TRUE(is(Point(1, 1, 0), Point(0, 4, 0)));
+  plan.place_held_at_rest(g, -0.25);
+  EXPECT_TRUE(is(Point(1, -1, 0), Point()));
+  plan.set_held_velocities(g, 0.25);
+  EXPECT_TRUE(is(Point(1, -1, 0), Point(0, 4, 0)));
+  plan.place_held(g, 0.5);
+  EXPECT_TRUE(is(Point(1, 2, 0), Point()));
+  EXPECT_EQ(free.position(), Point(2, 0, 0));
+  EXPECT_EQ(free.value().vel, Point(0, 0, 3));
+  EXPECT_EQ(plan.next_kink(0.2), 0.5);
+  EXPECT_EQ(plan.next_kink(0.5 * (1 - 1e-15)), HUGE_VAL);
+  EXPECT_EQ(ConstraintPlan(PinConstraint(held)).next_kink(0), HUGE_VAL);
 }
 TEST(MovingPin, GoesOnWithoutANodeThatWasRemoved) {
   Cloth g;
@@ -383,7 +408,7 @@ TEST(MovingPin, GoesOnWithoutANodeThatWasRemoved) {
   g.remove_node(held[0]);
   Node other = g.add_node(Point(9));  // may take its slot
   pin(g, 1);
-  stop_held(g, pin);
+  ConstraintPlan(pin).place_held(g, 1);
   EXPECT_EQ(other.position(), Point(9));
   EXPECT_EQ(held[1].position(), Point(3, 2, 2));
 }

@@ -24,10 +24,11 @@ void CountingConstraint::project(Cloth& g, double t, unsigned first,
   if (first == 0) ++calls_;  // one thread has that part
   c_.project(g, t, first, last);
 }
-void CountingConstraint::each_held(const Cloth& g,
-                                   const NodeVisitor& use) const {
-  c_.each_held(g, use);
+void CountingConstraint::each_place(const Cloth& g, double t,
+                                    const PlaceVisitor& use) const {
+  c_.each_place(g, t, use);
 }
+double CountingConstraint::next_kink(double t) const { return c_.next_kink(t); }
 
 namespace {
 

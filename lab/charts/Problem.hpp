@@ -42,7 +42,9 @@ class CountingConstraint : public SweptConstraint {
   bool nodewise() const override;
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  void each_held(const Cloth& g, const NodeVisitor& use) const override;
+  void each_place(const Cloth& g, double t,
+                  const PlaceVisitor& use) const override;
+  double next_kink(double t) const override;
   long long calls() const { return calls_; }
 
  private:

@@ -24,7 +24,7 @@ PinnedNodes::PinnedNodes(const std::vector<PinConstraint::Pin>& pins)
   std::ranges::sort(pins_, {}, &PinConstraint::Pin::node);
 }
 
-void PinnedNodes::project(Cloth& g, const Point& way, unsigned first,
+void PinnedNodes::project(Cloth& g, const Place& moved, unsigned first,
                           unsigned last) const {
   // Nodes of a graph are ordered by id; removed ones can't tell theirs.
   while (first < last && !g.node_in_use(first)) ++first;
@@ -35,14 +35,16 @@ void PinnedNodes::project(Cloth& g, const Point& way, unsigned first,
     Node n = pin->node;
     if (!g.has_node(n)) continue;
     if (n.id() >= last) return;
-    n.position() = pin->place + way;
-    n.value().vel = Point();
+    n.position() = pin->place + moved.at;
+    n.value().vel = moved.velocity;
   }
 }
 
-void PinnedNodes::each_held(const Cloth& g, const NodeVisitor& use) const {
+void PinnedNodes::each_place(const Cloth& g, const Place& moved,
+                             const PlaceVisitor& use) const {
   for (const auto& pin : pins_)
-    if (g.has_node(pin.node)) use(pin.node);
+    if (g.has_node(pin.node))
+      use(pin.node, {pin.place + moved.at, moved.velocity});
 }
 
 namespace {
@@ -54,10 +56,11 @@ class Pins final : public NodewiseConstraint {
   explicit Pins(const PinConstraint& c) : pins_(c.pins()) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
-    pins_.project(g, Point(), first, last);
+    pins_.project(g, {}, first, last);
   }
-  void each_held(const Cloth& g, const NodeVisitor& use) const override {
-    pins_.each_held(g, use);
+  void each_place(const Cloth& g, double /*t*/,
+                  const PlaceVisitor& use) const override {
+    pins_.each_place(g, {}, use);
   }
 
  private:
@@ -176,8 +179,33 @@ void ConstraintPlan::project(Cloth& g, double t, unsigned first,
   for (const auto& term : terms_) term->project(g, t, first, last);
 }
 
+void ConstraintPlan::each_place(const Cloth& g, double t,
+                                const PlaceVisitor& use) const {
+  for (const auto& term : terms_) term->each_place(g, t, use);
+}
+
+double ConstraintPlan::next_kink(double t) const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const auto& term : terms_) first = std::min(first, term->next_kink(t));
+  return first;
+}
+
 void ConstraintPlan::each_held(const Cloth& g, const NodeVisitor& use) const {
-  for (const auto& term : terms_) term->each_held(g, use);
+  each_place(g, 0, [&use](Node n, const Place&) { use(n); });
+}
+void ConstraintPlan::place_held(Cloth& g, double t) const {
+  each_place(g, t, [](Node n, const Place& place) {
+    n.position() = place.at, n.value().vel = place.velocity;
+  });
+}
+void ConstraintPlan::place_held_at_rest(Cloth& g, double t) const {
+  each_place(g, t, [](Node n, const Place& place) {
+    n.position() = place.at, n.value().vel = Point();
+  });
+}
+void ConstraintPlan::set_held_velocities(Cloth& g, double t) const {
+  each_place(
+      g, t, [](Node n, const Place& place) { n.value().vel = place.velocity; });
 }
 
 std::optional<Point> ConstraintPlan::first_hit(const Point& from,
@@ -194,10 +222,6 @@ double ConstraintPlan::thinnest() const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& term : terms_) least = std::min(least, term->thinnest());
   return least;
-}
-
-void stop_held(Cloth& g, const ConstraintPlan& constraint) {
-  constraint.each_held(g, [](Node n) { n.value().vel = Point(); });
 }
 
 void WatchedConstraint::operator()(Cloth& g, double t) const {

@@ -26,6 +26,13 @@ struct StepError : std::runtime_error {
 
 using NodeVisitor = std::function<void(Node)>;
 
+/** Where a held node is at some time, and how it moves then. */
+struct Place {
+  Point at;        ///< [m]
+  Point velocity;  ///< [m/s]
+};
+using PlaceVisitor = std::function<void(Node, const Place&)>;
+
 /** A constraint that knows more than its call: what methods and the guard ask
  * for. Only the laboratory uses it; the defaults are right for every
  * constraint. */
@@ -39,9 +46,15 @@ class SweptConstraint : public ZeroConstraint {
    * @pre nodewise() */
   virtual void project(Cloth& /*g*/, double /*t*/, unsigned /*first*/,
                        unsigned /*last*/) const {}
-  /** Call @a use(node) for each node of @a g that is held at rest: its velocity
-   * is 0 although forces act on it. */
-  virtual void each_held(const Cloth& /*g*/, const NodeVisitor& /*use*/) const {
+  /** Call @a use(node, place) for each node of @a g that is held: that is at a
+   * place which only depends on the time, whatever forces act on it. The place
+   * is that of time @a t [s], which stages may take a step before the start. */
+  virtual void each_place(const Cloth& /*g*/, double /*t*/,
+                          const PlaceVisitor& /*use*/) const {}
+  /** The first time [s] after @a t, by more than round-off, at which a place
+   * changes its velocity; infinity if none does. */
+  virtual double next_kink(double /*t*/) const {
+    return std::numeric_limits<double>::infinity();
   }
   /** The first hit: the first place, to round-off, at which a node on its
    * straight way @a from one place @a to another is inside an obstacle that
@@ -88,10 +101,14 @@ class PinnedNodes {
  public:
   /** Removed ones are fine.  @pre all were in one graph  O(pins log pins) */
   explicit PinnedNodes(const std::vector<PinConstraint::Pin>& pins);
-  /** Put the pinned nodes of ids in [first, last) to their places, moved by
-   * @a way [m], at rest.  O(log(pins) + those of the part) */
-  void project(Cloth& g, const Point& way, unsigned first, unsigned last) const;
-  void each_held(const Cloth& g, const NodeVisitor& use) const;
+  /** Put the pinned nodes of ids in [first, last) to their places, which moved
+   * by @a moved.at and go on at @a moved.velocity.
+   * O(log(pins) + those of the part) */
+  void project(Cloth& g, const Place& moved, unsigned first,
+               unsigned last) const;
+  /** As SweptConstraint::each_place().  O(pins) */
+  void each_place(const Cloth& g, const Place& moved,
+                  const PlaceVisitor& use) const;
 
  private:
   std::vector<PinConstraint::Pin> pins_;  // in the order of the nodes
@@ -121,19 +138,27 @@ class ConstraintPlan {
   // As in SweptConstraint; each is that of all terms together:
   bool nodewise() const;
   void project(Cloth& g, double t, unsigned first, unsigned last) const;
-  void each_held(const Cloth& g, const NodeVisitor& use) const;
+  void each_place(const Cloth& g, double t, const PlaceVisitor& use) const;
+  double next_kink(double t) const;
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
   double thinnest() const;
+
+  // The held nodes; each takes O(of them), as each_place().
+  /** Call @a use(node) for each. */
+  void each_held(const Cloth& g, const NodeVisitor& use) const;
+  /** Put each to its place at time @a t, with the velocity of its place. */
+  void place_held(Cloth& g, double t) const;
+  /** The same, but at rest: so a drift that ends at @a t leaves it there. */
+  void place_held_at_rest(Cloth& g, double t) const;
+  /** Only set its velocity: after a kick. Positions and other velocities are
+   * not touched, so no trajectory changes, only energies. */
+  void set_held_velocities(Cloth& g, double t) const;
 
  private:
   std::vector<std::shared_ptr<const SweptConstraint>> terms_;
 
   void add(std::shared_ptr<const ZeroConstraint> constraint);
 };
-
-/** Set the velocity of the held nodes to 0: after a kick. Positions and other
- * velocities are not touched, so no trajectory changes, only energies. */
-void stop_held(Cloth& g, const ConstraintPlan& constraint);
 
 /** Wraps a constraint; stops nodes that would tunnel through an obstacle within
  * one step, and counts them. Off until watch() turns it on. */
@@ -163,9 +188,11 @@ class WatchedConstraint final : public SweptConstraint {
                unsigned last) const override {
     c_.project(g, t, first, last);
   }
-  void each_held(const Cloth& g, const NodeVisitor& use) const override {
-    c_.each_held(g, use);
+  void each_place(const Cloth& g, double t,
+                  const PlaceVisitor& use) const override {
+    c_.each_place(g, t, use);
   }
+  double next_kink(double t) const override { return c_.next_kink(t); }
   std::optional<Point> first_hit(const Point& from,
                                  const Point& to) const override {
     return c_.first_hit(from, to);

@@ -15,15 +15,15 @@ double AugmentedVerlet::step(Cloth& g, double t, double dt,
                              const ForcePlan& force,
                              const ConstraintPlan& constraint) {
   bool same = find_factor(g, dt, force, constraint);
-  stop_held(g, constraint);
   // The same time, however the caller rounds it.
   if (!same || kept_for_ != &g || std::abs(kept_time_ - t) > 1e-6 * dt)
     accelerate(g, t, force);
   kick(g, dt / 2);
+  constraint.place_held_at_rest(g, t + dt);
   sweep_.parts(g, [&](const Part& part) { drift(g, part, dt, force.drag()); });
   const std::size_t version = g.version();
   constraint(g, t + dt);
-  stop_held(g, constraint);
+  constraint.set_held_velocities(g, t + dt);
   if (g.version() != version) find_factor(g, dt, force, constraint);
   accelerate(g, t + dt, force);
   kick(g, dt / 2);

@@ -5,7 +5,8 @@ namespace lab {
 double ImplicitEuler::step(Cloth& g, double t, double dt,
                            const ForcePlan& force,
                            const ConstraintPlan& constraint) {
-  stage_.begin(info.name, dt, g, constraint);
+  stage_.begin(info.name, t, dt, g, constraint);
+  stage_.hold(g, t + dt, constraint);
   stage_.solve_linearized(g, t + dt, dt, force);
   auto node = g.node_values();
   for (unsigned i = 0; i < g.node_slots(); ++i) node[i].vel = stage_.w[i];

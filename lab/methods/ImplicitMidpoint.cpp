@@ -5,7 +5,8 @@ namespace lab {
 double ImplicitMidpoint::step(Cloth& g, double t, double dt,
                               const ForcePlan& force,
                               const ConstraintPlan& constraint) {
-  stage_.begin(info.name, dt, g, constraint);
+  stage_.begin(info.name, t, dt, g, constraint);
+  stage_.hold(g, t + dt / 2, constraint);
   stage_.solve_newton(g, t + dt / 2, dt / 2, force);
   auto x = g.positions();
   auto node = g.node_values();

@@ -70,11 +70,11 @@ ImplicitStage::ImplicitStage(double tolerance, int max_iterations,
 
 ImplicitStage::~ImplicitStage() = default;
 
-void ImplicitStage::begin(const char* method, double dt, Cloth& g,
+void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
                           const ConstraintPlan& constraint) {
   goal_.method = method, goal_.dt = dt;
   find_fixed(g, constraint, fixed_);
-  stop_held(g, constraint);
+  constraint.place_held_at_rest(g, t);
   const unsigned n = g.node_slots();
   p.assign(g.positions().begin(), g.positions().end());
   q.resize(n);
@@ -83,6 +83,13 @@ void ImplicitStage::begin(const char* method, double dt, Cloth& g,
   for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
     a->resize(n);
   diagonal_blocks_.resize(n);
+}
+
+void ImplicitStage::hold(Cloth& g, double t, const ConstraintPlan& constraint) {
+  constraint.each_place(g, t, [&](Node n, const Place& place) {
+    n.position() = p[n.id()] = place.at;
+    q[n.id()] = w[n.id()] = Point();
+  });
 }
 
 void ImplicitStage::solve_linearized(Cloth& g, double t, double s,
@@ -328,7 +335,7 @@ bool ImplicitStage::search(Cloth& g, double t, double s, const ForcePlan& force,
 
 double finish(Cloth& g, double end, const ConstraintPlan& constraint) {
   constraint(g, end);
-  stop_held(g, constraint);
+  constraint.set_held_velocities(g, end);
   return end;
 }
 

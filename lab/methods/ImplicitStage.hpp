@@ -40,7 +40,7 @@ struct Goal {
  * is applied spring by spring and never stored. Compressed springs may keep A
  * from being positive definite: then the linear system is solved in part, or
  * with their negative stiffness taken as 0. No residual is changed by that.
- * Fixed nodes have p = x and q = w = 0. */
+ * Fixed nodes have p = x and q = w = 0: hold() moves them to another x. */
 class ImplicitStage {
  public:
   std::vector<Point> p, q, w;  // by node id
@@ -50,10 +50,13 @@ class ImplicitStage {
   ImplicitStage(double tolerance, int max_iterations, bool line_search = true);
   ~ImplicitStage();
 
-  /** Ready for a step of @a g by @a dt [s]: who is fixed and at rest, and p =
-   * x, q = w = v.  @param method whose name errors give */
-  void begin(const char* method, double dt, Cloth& g,
+  /** Ready for a step of @a g from @a t by @a dt [s]: who is fixed, and p = x,
+   * q = w = v.  @param method whose name errors give */
+  void begin(const char* method, double t, double dt, Cloth& g,
              const ConstraintPlan& constraint);
+  /** Put held nodes where they are at @a t, the time of the next solve.
+   * @pre p, q and w are set */
+  void hold(Cloth& g, double t, const ConstraintPlan& constraint);
   bool fixed(unsigned i) const { return fixed_[i]; }
 
   /** One Newton step from where @a g is, whatever is left over: the linear
@@ -111,7 +114,7 @@ class ImplicitStage {
               Objective& here, bool close);
 };
 
-/** End of a step: the constraint at @a end, and held nodes at rest. */
+/** End of a step: the constraint at @a end, and the held nodes' velocities. */
 double finish(Cloth& g, double end, const ConstraintPlan& constraint);
 
 }  // namespace implicit_detail

@@ -30,9 +30,9 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
  *
  * It applies the constraint once a step: when the positions have reached t +
  * dt, and before the force there is evaluated. A nodewise constraint it may
- * project part by part. Held nodes stay at rest in between. The constraint may
- * remove nodes, and so may the caller between steps. Only the first step
- * allocates, and one after the cloth grew.
+ * project part by part. In between, held nodes are where they are held at the
+ * time of each stage. The constraint may remove nodes, and so may the caller
+ * between steps. Only the first step allocates, and one after the cloth grew.
  *
  * A method may keep the force at the end of a step for the next one: whoever
  * moves nodes between two steps calls restart(). */

@@ -23,7 +23,10 @@ double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
   const double end = t + dt;
   for (double now = t; now < end;) {
     // A last step that leaves a splinter takes it along.
-    double h = now + 1.01 * inner_ >= end ? end - now : inner_;
+    // It ends where a held node changes its velocity.
+    const double goal = std::min(end, constraint.next_kink(now));
+    const bool last = now + 1.01 * inner_ >= goal;
+    const double h = last ? goal - now : inner_;
     double error = attempt(g, now, h, force, constraint) / tolerance_;
     // Written so that an error that is not finite makes the step smaller.
     bool good = error <= 1;
@@ -31,7 +34,7 @@ double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
     if (std::isfinite(error))
       factor = std::clamp(0.9 * std::pow(error, -1.0 / info.order), 0.2, 5.0);
     if (good) {
-      now = h == end - now ? end : now + h;
+      now = last ? goal : now + h;
       constraint(g, now);
       if (h >= inner_ || factor < 1) inner_ = h * factor;
     } else {
@@ -49,7 +52,8 @@ double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
   return end;
 }
 
-/** One step without error control; takes no constraint but held nodes.
+/** One step without error control; takes no constraint but held nodes, which
+ * have no error.
  * @return the estimated error [m]; 0 if the method has no estimate */
 template <typename Tableau>
 double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
@@ -58,16 +62,19 @@ double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
   const unsigned n = g.node_slots();
   auto x = g.positions();
   auto node = g.node_values();
+  constraint.place_held(g, t);
   x0_.assign(x.begin(), x.end());
   v0_.resize(n);
   for (unsigned i = 0; i < n; ++i) v0_[i] = node[i].vel;
   for (std::size_t s = 0; s < stages; ++s) {
-    if (s > 0) set_state(g, h, &Tableau::a[s * (s - 1) / 2], s, constraint);
+    const double now = t + Tableau::c[s] * h;
+    if (s > 0)
+      set_state(g, now, h, &Tableau::a[s * (s - 1) / 2], s, constraint);
     if (s == 0 && first_same_as_last && at_end_of_last_step(t)) {
       std::swap(v_[0], v_[stages - 1]);
       std::swap(a_[0], a_[stages - 1]);
     } else {
-      derive(g, t + Tableau::c[s] * h, force, constraint, s);
+      derive(g, now, force, constraint, s);
     }
   }
   if constexpr (first_same_as_last) {
@@ -77,7 +84,7 @@ double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
     for (unsigned i = 0; i < n; ++i) end_v_[i] = node[i].vel;
     end_t_ = t + h;
   } else {
-    set_state(g, h, Tableau::b.data(), stages, constraint);
+    set_state(g, t + h, h, Tableau::b.data(), stages, constraint);
   }
   if constexpr (adaptive) return h * error_rate(g);
   return 0;
@@ -88,10 +95,11 @@ bool RungeKutta<Tableau>::at_end_of_last_step(double t) const {
   return end_t_ == t && end_x_ == x0_ && end_v_ == v0_;
 }
 
-/** State 0 plus h times the weighted derivatives of @a count stages. */
+/** State 0 plus h times the weighted derivatives of @a count stages: that at
+ * time @a t. */
 template <typename Tableau>
-void RungeKutta<Tableau>::set_state(Cloth& g, double h, const double* weights,
-                                    std::size_t count,
+void RungeKutta<Tableau>::set_state(Cloth& g, double t, double h,
+                                    const double* weights, std::size_t count,
                                     const ConstraintPlan& constraint) {
   auto x = g.positions();
   auto node = g.node_values();
@@ -104,7 +112,7 @@ void RungeKutta<Tableau>::set_state(Cloth& g, double h, const double* weights,
     x[i] = x0_[i] + h * dx;
     node[i].vel = v0_[i] + h * dv;
   }
-  stop_held(g, constraint);
+  constraint.place_held(g, t);
 }
 
 /** The derivatives of the present state as those of stage @a s. */
@@ -113,7 +121,6 @@ void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
                                  const ConstraintPlan& constraint,
                                  std::size_t s) {
   sweep_(g, t, force, force_);
-  constraint.each_held(g, [this](Node n) { force_[n.id()] = Point(); });
   auto node = g.node_values();
   v_[s].resize(g.node_slots());
   a_[s].resize(g.node_slots());
@@ -121,6 +128,8 @@ void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
     v_[s][i] = node[i].vel;
     a_[s][i] = force_[i] / node[i].mass;
   }
+  constraint.each_held(
+      g, [&](Node n) { v_[s][n.id()] = a_[s][n.id()] = Point(); });
 }
 
 /** RMS of the difference to the lower order, for h = 1. */

@@ -56,8 +56,8 @@ class RungeKutta : public Method {
   double attempt(Cloth& g, double t, double h, const ForcePlan& force,
                  const ConstraintPlan& constraint);
   bool at_end_of_last_step(double t) const;
-  void set_state(Cloth& g, double h, const double* weights, std::size_t count,
-                 const ConstraintPlan& constraint);
+  void set_state(Cloth& g, double t, double h, const double* weights,
+                 std::size_t count, const ConstraintPlan& constraint);
   void derive(Cloth& g, double t, const ForcePlan& force,
               const ConstraintPlan& constraint, std::size_t s);
   double error_rate(const Cloth& g) const;

@@ -32,7 +32,6 @@ double Splitting<Scheme>::step(Cloth& g, double t, double dt,
         without_drag(part, force, f);
         first_kick(part, f);
       });
-    stop_held(g, constraint);
   }
   double now = t;
   for (std::size_t k = first_drift; k < steps.size(); k += 2) {
@@ -40,6 +39,7 @@ double Splitting<Scheme>::step(Cloth& g, double t, double dt,
     const auto move = [&](const Part& part) { drift(g, part, h, c); };
     const bool is_last = k + 2 >= steps.size();
     now = is_last ? t + dt : now + h;
+    constraint.place_held_at_rest(g, now);
     const ConstraintPlan none;  // but after the last drift
     const ConstraintPlan& now_holds = is_last ? constraint : none;
     if (k + 1 == steps.size()) {
@@ -54,8 +54,8 @@ double Splitting<Scheme>::step(Cloth& g, double t, double dt,
           kick(g, part, steps[k + 1] * dt, f);
         },
         force_);
-    stop_held(g, constraint);
   }
+  constraint.set_held_velocities(g, t + dt);
   if (Scheme::kicks_first)
     kept_for_ = &g, kept_version_ = g.version(), kept_time_ = t + dt;
   return t + dt;

@@ -13,7 +13,7 @@ double SymplecticEuler::step(Cloth& g, double t, double dt,
       [&](const Part& part, std::span<const Point> f) {
         kick(g, part, dt, f);
       });
-  stop_held(g, constraint);
+  constraint.set_held_velocities(g, t);
   return t + dt;
 }
 

@@ -7,7 +7,7 @@ double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
   constexpr double root = 1.4142135623730951;
   constexpr double gamma = 2 - root, beyond = (root - 1) / 2;
   const double s = gamma / 2 * dt;  // the same in both stages
-  stage_.begin(info.name, dt, g, constraint);
+  stage_.begin(info.name, t, dt, g, constraint);
   auto x = g.positions();
   auto node = g.node_values();
   const unsigned n = g.node_slots();
@@ -18,11 +18,13 @@ double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
     stage_.p[i] = x[i] + s * node[i].vel;
     stage_.q[i] = node[i].vel + (s / node[i].mass) * force_[i];
   }
+  stage_.hold(g, t + gamma * dt, constraint);
   stage_.solve_newton(g, t + gamma * dt, s, force);
   for (unsigned i = 0; i < n; ++i) {
     stage_.p[i] = x[i] + beyond * (x[i] - x0_[i]);
     stage_.q[i] = stage_.w[i] + beyond * (stage_.w[i] - node[i].vel);
   }
+  stage_.hold(g, t + dt, constraint);
   stage_.solve_newton(g, t + dt, s, force);
   for (unsigned i = 0; i < n; ++i) node[i].vel = stage_.w[i];
   return implicit_detail::finish(g, t + dt, constraint);

@@ -49,13 +49,14 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
                   const ConstraintPlan& constraint) {
   const bool springs = check_springs(g, force);
   implicit_detail::find_fixed(g, constraint, fixed_);
-  stop_held(g, constraint);
+  constraint.place_held_at_rest(g, t);
   find_forces(g, t, force, springs);
   const double h = dt / substeps_, c = force.drag();
   auto x = g.positions();
   auto node = g.node_values();
   const unsigned n = g.node_slots();
   for (int k = 0; k < substeps_; ++k) {
+    constraint.place_held_at_rest(g, t + (k + 1) * h);
     for (unsigned i = 0; i < n; ++i) {
       if (fixed_[i]) continue;
       const double m = node[i].mass;

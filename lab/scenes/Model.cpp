@@ -6,11 +6,9 @@
 
 namespace lab {
 
-Point Motion::way(double t) const {
-  return std::clamp(t, 0.0, until) * velocity;
-}
+Point Motion::way(double t) const { return std::min(t, until) * velocity; }
 Point Motion::velocity_at(double t) const {
-  return 0 <= t && t < until ? velocity : Point();
+  return t < until ? velocity : Point();
 }
 
 namespace {

@@ -58,9 +58,10 @@ struct Motion {
   /** It stands still from then on [s], >= 0. */
   double until = std::numeric_limits<double>::infinity();
 
-  /** [m] at time @a t [s] */
+  /** [m] at time @a t [s]; before t = 0 on the same line, for the stages of a
+   * first step */
   Point way(double t) const;
-  /** [m/s]; 0 while it stands */
+  /** [m/s]; 0 when it stands */
   Point velocity_at(double t) const;
   bool operator==(const Motion&) const = default;
 };

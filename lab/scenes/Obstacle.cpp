@@ -31,11 +31,15 @@ void touch(Node n, double depth, const Point& out, const Point& velocity,
 
 void MovingPinConstraint::project(Cloth& g, double t, unsigned first,
                                   unsigned last) const {
-  pins_.project(g, motion_.way(t), first, last);
+  pins_.project(g, moved(t), first, last);
 }
-void MovingPinConstraint::each_held(const Cloth& g,
-                                    const NodeVisitor& use) const {
-  pins_.each_held(g, use);
+void MovingPinConstraint::each_place(const Cloth& g, double t,
+                                     const PlaceVisitor& use) const {
+  pins_.each_place(g, moved(t), use);
+}
+double MovingPinConstraint::next_kink(double t) const {
+  return t < motion_.until * (1 - 1e-12) ? motion_.until
+                                         : SweptConstraint::next_kink(t);
 }
 
 // ----------------------------------------------------------------------- Wall

@@ -39,11 +39,9 @@ void touch(Node n, double depth, const Point& out, const Point& velocity,
 }  // namespace contact
 
 /** Moves nodes along a line: at time t they are where they were when the pin
- * was made + way(t). Steps see a held node: between two calls it stands, and
- * the call moves it. So its velocity is 0, and to its neighbors it comes in
- * jumps of dt times its speed, which should be much less than an edge is long.
- * Removing a pinned node is fine: the pin goes on with the others.
- * Complexity of a call: O(pins). */
+ * was made + way(t), with the velocity of that. Methods ask where at each of
+ * their stages. Removing a pinned node is fine: the pin goes on with the
+ * others.  Complexity of a call: O(pins). */
 class MovingPinConstraint : public NodewiseConstraint {
  public:
   /** The nodes of @a pins move.  @pre all in one graph */
@@ -51,11 +49,17 @@ class MovingPinConstraint : public NodewiseConstraint {
       : pins_(pins.pins()), motion_(motion) {}
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  void each_held(const Cloth& g, const NodeVisitor& use) const override;
+  void each_place(const Cloth& g, double t,
+                  const PlaceVisitor& use) const override;
+  double next_kink(double t) const override;
 
  private:
   PinnedNodes pins_;
   Motion motion_;
+
+  Place moved(double t) const {
+    return {motion_.way(t), motion_.velocity_at(t)};
+  }
 };
 
 /** A half space that no node enters, bounded by a plane.

@@ -101,8 +101,8 @@ double nearest_unconnected(const Cloth& g, double up_to);
  * Two nodes that are nearer are pushed apart along the line between them, each
  * by its share of the inverse masses, so that their center of mass stays;
  * contact::kick() changes their relative velocity, in the same shares. So
- * momentum stays the same, and kinetic energy never grows. Held nodes do not
- * move, and count as standing. The pairs are projected one after the other,
+ * momentum stays the same, and kinetic energy never grows. Held nodes are
+ * not pushed. The pairs are projected one after the other,
  * then the others are called, and so on, round by round, until no pair is too
  * near.
  *
@@ -137,9 +137,11 @@ class SelfCollision : public SweptConstraint {
    * was too near. */
   int rounds() const { return rounds_; }
 
-  void each_held(const Cloth& g, const NodeVisitor& use) const override {
-    others_.each_held(g, use);
+  void each_place(const Cloth& g, double t,
+                  const PlaceVisitor& use) const override {
+    others_.each_place(g, t, use);
   }
+  double next_kink(double t) const override { return others_.next_kink(t); }
   std::optional<Point> first_hit(const Point& from,
                                  const Point& to) const override {
     return others_.first_hit(from, to);
