@@ -257,21 +257,75 @@ TEST(Compose, WhatIsNotNamedCostsNothing) {
   constraint_of(m, g)(g, 0);
   for (Node n : g.nodes()) EXPECT_EQ(n.position().z, -100);
   EXPECT_EQ(constraint_of(m, g).parts().size(), 0u);
-  EXPECT_EQ(force_of(m, mesh_of(m)).parts().size(), 2u);  // gravity and springs
+  EXPECT_EQ(force_of(m, mesh_of(m), g).parts().size(), 2u);  // and springs
   m.gravity = 0;
-  EXPECT_EQ(force_of(m, mesh_of(m)).parts().size(), 1u);
+  EXPECT_EQ(force_of(m, mesh_of(m), g).parts().size(), 1u);
   m.damping = 0.1;
-  EXPECT_EQ(force_of(m, mesh_of(m)).parts().size(), 2u);
+  EXPECT_EQ(force_of(m, mesh_of(m), g).parts().size(), 2u);
   m.pins = {read_pin("x 0")};
   m.planes = {Wall()};
   EXPECT_EQ(constraint_of(m, g).parts().size(), 2u);
 }
 
-TEST(Compose, DragPerAreaIsSharedByTheNodes) {
+TEST(Compose, DragPerAreaIsSharedByTheNodesAsTheirMassIs) {
   Model m = with_sheet("u 2 0 0 nodes 4 5");
   m.material.drag = 3;
-  const CombinedForces force = force_of(m, mesh_of(m));
-  EXPECT_NEAR(ForcePlan(force).drag(), 3 * 2 / 20., 1e-15);
+  m.material.density = 0.5;
+  Cloth g;
+  build(g, m);
+  const CombinedForces force = force_of(m, mesh_of(m), g);
+  const Drag drag = ForcePlan(force).drag();
+  double all = 0;
+  for (Node n : g.nodes()) {
+    all += drag[n.id()];
+    EXPECT_NEAR(drag[n.id()] / n.value().mass, 6, 1e-13);
+  }
+  EXPECT_NEAR(all, 3 * 2, 1e-13);
+  EXPECT_NEAR(drag[g.node(0).id()], 3 * 2 / 12. / 4, 1e-15);  // a corner
+}
+
+// A sheet that falls loose has nothing to feel but its weight and its drag:
+// v' = -g - gamma v, gamma = drag/density, whatever the grid.
+TEST(Compose, ALooseSheetFallsAsAPointWithDragDoes) {
+  const double gamma = 5, t = 0.5;
+  const double z = -grav / gamma * (t - (1 - std::exp(-gamma * t)) / gamma);
+  for (const char* nodes : {"nodes 3 3", "nodes 113 113"}) {
+    Model m = with_sheet(nodes);
+    m.material.density = 0.2;
+    m.material.drag = gamma * 0.2;
+    m.stiffness = 1;
+    m.method = find_method("pefrl");
+    m.step.dt = t / 64;
+    Scene scene(m);
+    ASSERT_TRUE(scene.run_to(t)) << scene.failure();
+    EXPECT_NEAR(center_of_mass(scene.cloth()).z, z, 1e-7) << nodes;
+    for (Node n : scene.cloth().nodes())
+      ASSERT_NEAR(n.position().z, z, 1e-7) << nodes;
+  }
+}
+
+// So does the point of each method, whatever that makes of drag.
+TEST(Compose, ALooseSheetFallsAsAPointByEachMethod) {
+  Model m = with_sheet("nodes 4 3");
+  m.material.density = 0.2;
+  m.material.drag = 1;
+  m.step.dt = 0.01;
+  for (const MethodEntry& entry : methods) {
+    m.method = &entry;
+    Scene scene(m);
+    ASSERT_TRUE(scene.run_to(0.1)) << scene.failure();
+    Cloth point;
+    point.add_node(Point(), {Point(), 0.2});
+    const auto method = entry.make();
+    for (int n = 0; n < 10; ++n)
+      (*method)(point, 0.01 * n, 0.01,
+                make_combined_force(GravityForce(), MassSpringForce(),
+                                    DampingForce(1)));
+    const double z = point.node(0).position().z;
+    EXPECT_LT(z, -0.03);
+    for (Node n : scene.cloth().nodes())
+      ASSERT_NEAR(n.position().z, z, 1e-9) << entry.info.name;
+  }
 }
 
 TEST(Compose, PinsMustHoldANode) {

@@ -69,6 +69,28 @@ TEST_F(ForcePlanTest, DampingIsLinearDrag) {
   EXPECT_EQ(ForcePlan(DampingForce()).drag(), 0);
 }
 
+TEST_F(ForcePlanTest, DragMayBeEachNodesOwn) {
+  std::vector<double> c(g.node_slots());
+  for (Node n : g.nodes()) c[n.id()] = 0.1 * (n.id() % 7);
+  const NodeDrag drag(c);
+  auto by_hand = [&](Node n) { return -0.1 * (n.id() % 7) * n.value().vel; };
+  EXPECT_LT(distance(drag, by_hand), 1e-15);
+  const ForcePlan both = make_combined_force(drag, DampingForce(2), drag);
+  EXPECT_EQ(both.drag()[0], 2);
+  EXPECT_EQ(both.drag()[5], 3);
+  EXPECT_EQ(both.drag()[g.node_slots()], 2);  // a node that is added later
+  EXPECT_FALSE(both.drag().none());
+  EXPECT_TRUE(ForcePlan(GravityForce()).drag().none());
+  double power = 0;
+  for (Node n : g.nodes())
+    power -= dot(n.value().vel, both.drag()[n.id()] * -n.value().vel);
+  EXPECT_NEAR(both.drag().power(g), power, 1e-13 * power);
+  std::vector<Point> f;
+  Sweep()(g, 0, both, f);
+  for (Node n : g.nodes())
+    EXPECT_LT(norm(f[n.id()] - 2 * (by_hand(n) - n.value().vel)), 1e-13);
+}
+
 TEST_F(ForcePlanTest, SpringsAloneConserveMomentum) {
   std::vector<Point> f;
   Sweep()(g, 0, MassSpringForce(), f);

@@ -371,6 +371,23 @@ TYPED_TEST(Symmetric, SolvesDragExactly) {
   EXPECT_NEAR(b.value().vel.x, std::exp(-2.4), 1e-14);
 }
 
+// Each node by its own c, too: also those of none, and of the same c/m.
+TYPED_TEST(Symmetric, SolvesTheDragOfEachNodeExactly) {
+  const double c[] = {4, 0, 8, 1}, m[] = {2, 5, 4, 5};
+  Cloth g;
+  for (int i = 0; i < 4; ++i)
+    g.add_node(Point(0, i, 0), {Point(1, 0, 0), m[i]});
+  TypeParam method;
+  const NodeDrag drag({c[0], c[1], c[2], c[3]});
+  for (int n = 0; n < 10; ++n) method(g, 0.3 * n, 0.3, drag);
+  for (Node n : g.nodes()) {
+    const double gamma = c[n.index()] / m[n.index()];
+    EXPECT_NEAR(n.position().x,
+                gamma > 0 ? (1 - std::exp(-3 * gamma)) / gamma : 3, 1e-14);
+    EXPECT_NEAR(n.value().vel.x, std::exp(-3 * gamma), 1e-14);
+  }
+}
+
 // Energy swings, and does not drift, over a million steps.
 template <typename M>
 void expect_no_drift(double h) {

@@ -35,9 +35,10 @@ void add_springs(const Part& part, std::span<Point> f) {
     sweep(std::false_type());
 }
 
-void add_drag(const Part& part, double c, std::span<Point> f) {
-  const NodeData* node = &part.g.node_values()[part.first];
-  for (unsigned k = 0; k < part.last - part.first; ++k) f[k] -= c * node[k].vel;
+void add_drag(const Part& part, const Drag& c, std::span<Point> f) {
+  const NodeData* node = part.g.node_values().data();
+  for (unsigned i = part.first; i < part.last; ++i)
+    f[i - part.first] -= c[i] * node[i].vel;
 }
 
 /** By one thread at a time: a functor of the assignment may keep a state. */
@@ -79,8 +80,9 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   } else if (type == typeid(MassSpringForce)) {
     terms_.push_back({Kind::springs, 0, nullptr});
   } else if (type == typeid(DampingForce)) {
-    const double c = static_cast<const DampingForce&>(f).coefficient();
-    terms_.push_back({Kind::drag, c, nullptr});
+    drag_.add(static_cast<const DampingForce&>(f).coefficient());
+  } else if (type == typeid(NodeDrag)) {
+    drag_.add(static_cast<const NodeDrag&>(f));
   } else if (dynamic_cast<const SweptForce*>(&f)) {
     terms_.push_back({Kind::swept, 0, std::move(force)});
   } else if (type != typeid(ZeroForce)) {
@@ -96,15 +98,13 @@ void ForcePlan::add_to(const Part& part, double t, std::span<Point> f) const {
       case Kind::springs:
         add_springs(part, f);
         break;
-      case Kind::drag:
-        add_drag(part, term.factor, f);
-        break;
       case Kind::swept:
         term.swept().add_to(part, t, f);
         break;
       case Kind::call:
         add_calls(part, *term.force, t, f);
     }
+  if (!drag_.none()) add_drag(part, drag_, f);
 }
 
 double ForcePlan::energy(const Cloth& g) const {
@@ -119,17 +119,9 @@ double ForcePlan::energy(const Cloth& g) const {
       case Kind::swept:
         sum += term.swept().energy(g);
         break;
-      case Kind::drag:
       case Kind::call:
         break;
     }
-  return sum;
-}
-
-double ForcePlan::drag() const {
-  double sum = 0;
-  for (const Term& term : terms_)
-    if (term.kind == Kind::drag) sum += term.factor;
   return sum;
 }
 
@@ -145,8 +137,7 @@ bool ForcePlan::add_stiffness(const Cloth& g,
       case Kind::call:
         return false;
       case Kind::weight:
-      case Kind::drag:
-        break;  // they do not depend on positions
+        break;  // it does not depend on positions
     }
   return true;
 }

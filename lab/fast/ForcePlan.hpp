@@ -1,7 +1,7 @@
 #pragma once
 /** @file ForcePlan.hpp
  * ForcePlan: how the laboratory evaluates a force of the course. The one place
- * that recognises GravityForce, MassSpringForce, DampingForce and
+ * that recognises GravityForce, MassSpringForce, DampingForce, NodeDrag and
  * CombinedForces; any other force is called node by node. */
 #include <concepts>
 #include <functional>
@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "lab/fast/Drag.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Stencil.hpp"
@@ -64,8 +65,8 @@ class SweptForce : public ZeroForce {
   }
 };
 
-/** The terms of a force, in their order: weight, springs and linear drag by
- * kernels, the others by SweptForce or by call.
+/** The terms of a force: weight and springs by kernels, others by SweptForce or
+ * by call, in their order; and the sum of all linear drag.
  *
  * It is made once for many steps. A ForcePlan shares the parts of a
  * CombinedForces; any other force that is no temporary must outlive it. */
@@ -86,8 +87,8 @@ class ForcePlan {
   /** The energy [J] of weight and springs, and of swept forces that have one.
    */
   double energy(const Cloth& g) const;
-  /** c [kg/s] of the term -c v; 0 if there is none. */
-  double drag() const;
+  /** The sum of its terms -c v: drag()[id] is the c [kg/s] of a node. */
+  const Drag& drag() const { return drag_; }
   /** The stiffness of all terms: as SweptForce::add_stiffness(); false if there
    * is a term by call. Together with drag() it is how the force changes with
    * the state. */
@@ -99,16 +100,17 @@ class ForcePlan {
   std::optional<int> spring_multiplicity() const;
 
  private:
-  enum class Kind { weight, springs, drag, swept, call };
+  enum class Kind { weight, springs, swept, call };
   struct Term {
     Kind kind;
-    double factor;  // of weight: gravity [m/s^2]; of drag: c [kg/s]
+    double factor;                           // of weight: gravity [m/s^2]
     std::shared_ptr<const ZeroForce> force;  // of swept and call
     const SweptForce& swept() const {
       return static_cast<const SweptForce&>(*force);
     }
   };
   std::vector<Term> terms_;
+  Drag drag_;
 
   void add(std::shared_ptr<const ZeroForce> force);
 };

@@ -1,28 +1,32 @@
 #include "lab/methods/Flow.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "lab/fast/Kernels.hpp"
 
 namespace lab {
 
-void drift(Cloth& g, const Part& part, double h, double c) {
+void drift(Cloth& g, const Part& part, double h, const Drag& c) {
   Point* x = g.positions().data();
   NodeData* node = g.node_values().data();
   unsigned i = part.first;
-  if (c == 0) {
+  if (c.none()) {
     const unsigned blocks = (part.last - part.first) / lanes::width;
     lanes::run<kernels::DriftBlocks>(x + i, node + i, blocks, Real(h));
     for (i += blocks * lanes::width; i < part.last; ++i)
       x[i] += h * node[i].vel;
     return;
   }
-  double mass = 0, decay = 1, way = h;  // most nodes weigh the same
+  // Most nodes have the same c/m, to round-off.
+  constexpr double same = 4 * std::numeric_limits<Real>::epsilon();
+  double gamma = 0, decay = 1, way = h;
   for (; i < part.last; ++i) {
-    if (node[i].mass != mass) {
-      mass = node[i].mass;
-      way = -std::expm1(-c / mass * h) * mass / c;
-      decay = std::exp(-c / mass * h);
+    const double next = c[i] / node[i].mass;
+    if (std::abs(next - gamma) > same * gamma) {
+      gamma = next;
+      way = gamma > 0 ? -std::expm1(-gamma * h) / gamma : h;
+      decay = std::exp(-gamma * h);
     }
     x[i] += way * node[i].vel;
     node[i].vel *= decay;
@@ -40,10 +44,11 @@ void kick(Cloth& g, const Part& part, double h, std::span<const Point> f) {
 
 void without_drag(const Part& part, const ForcePlan& force,
                   std::span<Point> f) {
-  const double c = force.drag();
-  if (c == 0) return;
-  const NodeData* node = &part.g.node_values()[part.first];
-  for (unsigned k = 0; k < part.last - part.first; ++k) f[k] += c * node[k].vel;
+  const Drag& c = force.drag();
+  if (c.none()) return;
+  const NodeData* node = part.g.node_values().data();
+  for (unsigned i = part.first; i < part.last; ++i)
+    f[i - part.first] += c[i] * node[i].vel;
 }
 
 void sweep_without_drag(Sweep& sweep, const Cloth& g, double t,

@@ -10,8 +10,9 @@
 
 namespace lab {
 
-/** The flow of x' = v, m v' = -c v over @a h, solved exactly; h may be < 0. */
-void drift(Cloth& g, const Part& part, double h, double c);
+/** The flow of x' = v, m v' = -c v over @a h, solved exactly for each node's c;
+ * h may be < 0. */
+void drift(Cloth& g, const Part& part, double h, const Drag& c);
 
 /** v += h f / m.  @param f [N], that on part.first first */
 void kick(Cloth& g, const Part& part, double h, std::span<const Point> f);

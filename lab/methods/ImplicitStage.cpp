@@ -160,20 +160,21 @@ void ImplicitStage::advance(double a) {
 void ImplicitStage::find_residual(const Cloth& g, double t, double s,
                                   const ForcePlan& force) {
   sweep_without_drag(sweep_, g, t, force, force_);
-  drag_ = force.drag();
+  const Drag& c = force.drag();
   auto node = g.node_values();
   for (unsigned i = 0; i < w.size(); ++i)
     residual_[i] = fixed_[i] ? Point()
-                             : s * (force_[i] - drag_ * w[i]) -
+                             : s * (force_[i] - c[i] * w[i]) -
                                    node[i].mass * (w[i] - q[i]);
 }
 
 /** The springs' blocks of A, and the inverses of its diagonal ones. */
 void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
+  const Drag& c = force.drag();
   auto node = g.node_values();
   diagonal_.resize(w.size());
   for (unsigned i = 0; i < w.size(); ++i) {
-    diagonal_[i] = node[i].mass + s * drag_;
+    diagonal_[i] = node[i].mass + s * c[i];
     diagonal_blocks_[i].inverse = diagonal_[i] * Eigen::Matrix3d::Identity();
   }
   blocks_.clear();
@@ -279,11 +280,11 @@ bool ImplicitStage::solve(double relative, bool clamp) {
 ImplicitStage::Objective ImplicitStage::objective(
     const Cloth& g, double s, const ForcePlan& force) const {
   auto node = g.node_values();
-  const double drag = force.drag();
+  const Drag& c = force.drag();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i])
-      sum += node[i].mass * normSq(w[i] - q[i]) + s * drag * normSq(w[i]);
+      sum += node[i].mass * normSq(w[i] - q[i]) + s * c[i] * normSq(w[i]);
   return {0.5 * sum, force.energy(g)};
 }
 

@@ -32,9 +32,8 @@ struct Goal {
 
 /** The equation that all implicit steps here are made of: find w [m/s] with
  *   M (w - q) = s (F(y) - c w),   y = p + s w,
- * for given p [m], q [m/s] and s [s]; c is the drag, F the other forces. It is
- * where the objective
- *   (w - q) M (w - q)/2 + s c w w/2 + V(y)   [J]
+ * for given p [m], q [m/s] and s [s]; c is the drag by node, F the other
+ * forces. It is where the objective (w - q) M (w - q)/2 + s c w w/2 + V(y) [J]
  * has no slope, V being the energy of F. The matrix of its derivative in w,
  *   A = M + s c + s^2 H,   H the stiffness at y,
  * is applied spring by spring and never stored. Compressed springs may keep A
@@ -87,7 +86,6 @@ class ImplicitStage {
   std::vector<DiagonalBlock> diagonal_blocks_;  // of A, inverted
   std::vector<double> diagonal_;                // m + s c [kg]
   std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
-  double drag_ = 0;  // [kg/s]
   Goal goal_;
   bool line_search_;
 

@@ -18,7 +18,7 @@ double Splitting<Scheme>::step(Cloth& g, double t, double dt,
                                const ConstraintPlan& constraint) {
   constexpr auto& steps = Scheme::steps;
   constexpr std::size_t first_drift = Scheme::kicks_first ? 1 : 0;
-  const double c = force.drag();
+  const Drag& c = force.drag();
   if (Scheme::kicks_first) {
     const auto first_kick = [&](const Part& part, std::span<const Point> f) {
       kick(g, part, steps[0] * dt, f);

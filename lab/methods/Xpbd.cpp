@@ -51,7 +51,8 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   implicit_detail::find_fixed(g, constraint, fixed_);
   constraint.place_held_at_rest(g, t);
   find_forces(g, t, force, springs);
-  const double h = dt / substeps_, c = force.drag();
+  const double h = dt / substeps_;
+  const Drag& c = force.drag();
   auto x = g.positions();
   auto node = g.node_values();
   const unsigned n = g.node_slots();
@@ -60,7 +61,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
     for (unsigned i = 0; i < n; ++i) {
       if (fixed_[i]) continue;
       const double m = node[i].mass;
-      const double decay = c == 0 ? 1 : std::exp(-c / m * h);
+      const double decay = c.none() ? 1 : std::exp(-c[i] / m * h);
       node[i].vel = decay * (node[i].vel + (h / m) * force_[i]);
       x[i] += h * node[i].vel;
     }

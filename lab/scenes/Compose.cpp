@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/Drag.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/scenes/Obstacle.hpp"
 #include "lab/scenes/SelfCollision.hpp"
@@ -101,12 +102,18 @@ void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
         });
 }
 
-/** The masses by the density [kg/m^2]: each node has a quarter of the quads at
- * it.  Throws SceneError: a node in no quad */
-void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
+/** The area of each point [m^2]: a quarter of the quads at it. */
+std::vector<double> areas(const PointsAndQuads& mesh) {
   std::vector<double> share(mesh.points.size());
   for (const Quad& q : mesh.quads)
     for (unsigned i : q) share[i] += area(mesh, q) / 4;
+  return share;
+}
+
+/** The masses by the density [kg/m^2] and areas().
+ * Throws SceneError: a node in no quad */
+void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
+  const std::vector<double> share = areas(mesh);
   for (unsigned i = 0; i < share.size(); ++i) {
     if (!(share[i] > 0))
       throw SceneError("density", "gives no mass to node " + std::to_string(i) +
@@ -173,18 +180,21 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
     if (!is_held(m, mesh.points[i])) g.node(i).value().vel = mesh.velocities[i];
 }
 
-CombinedForces force_of(const Model& m, const PointsAndQuads& mesh) {
-  double c = m.damping;
-  if (m.material.drag) {
-    double all = 0;
-    for (const Quad& q : mesh.quads) all += area(mesh, q);
-    c = *m.material.drag * all / double(mesh.points.size());
-  }
+CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
+                        const Cloth& g) {
   CombinedForces::List forces;
   if (m.gravity != 0)
     forces.push_back(std::make_shared<GravityForce>(m.gravity));
   forces.push_back(std::make_shared<MassSpringForce>());
-  if (c > 0) forces.push_back(std::make_shared<DampingForce>(c));
+  if (const auto drag = m.material.drag; drag && *drag > 0) {
+    std::vector<double> c(g.node_slots());
+    const std::vector<double> share = areas(mesh);
+    for (unsigned i = 0; i < share.size(); ++i)
+      c[g.node(i).id()] = *drag * share[i];
+    forces.push_back(std::make_shared<NodeDrag>(std::move(c)));
+  } else if (!drag && m.damping > 0) {
+    forces.push_back(std::make_shared<DampingForce>(m.damping));
+  }
   return CombinedForces(std::move(forces));
 }
 
@@ -227,7 +237,7 @@ Recipe recipe_of(const Model& m) {
   r.name = m.name;
   r.gravity = m.gravity;
   r.build = [m, mesh](Cloth& g) { build_model(g, m, *mesh); };
-  r.force = [m, mesh](const Cloth&) { return force_of(m, *mesh); };
+  r.force = [m, mesh](const Cloth& g) { return force_of(m, *mesh, g); };
   r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };
   using Kind = Obstacle::Kind;
   for (const Wall& w : m.planes)

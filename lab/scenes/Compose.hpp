@@ -53,8 +53,12 @@ double shortest_side(const Model& m);
  * Complexity: O(points + quads log quads) */
 void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh);
 
-/** The forces of @a m: springs; and gravity and drag unless they are 0. */
-CombinedForces force_of(const Model& m, const PointsAndQuads& mesh);
+/** The forces of @a m on @a g, which lies as it was built from @a mesh:
+ * springs; and gravity and drag unless they are 0. Drag by area is shared by
+ * the nodes as masses by density are, by a quarter of each quad at them: so c/m
+ * is the same everywhere if there is a density, too.  O(points + quads) */
+CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
+                        const Cloth& g);
 
 /** The constraints of @a m on @a g, which lies as it was built. In this order:
  * tearing, obstacles, pins: where two disagree about a node, the later one has

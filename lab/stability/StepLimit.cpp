@@ -53,10 +53,10 @@ double step_limit(const MethodEntry& method, double omega, double gamma) {
   return low;
 }
 
-double largest_gamma(const Cloth& g, double c) {
-  double least = no_limit;
-  for (Node n : g.nodes()) least = std::min<double>(least, n.value().mass);
-  return c / least;
+double largest_gamma(const Cloth& g, const Drag& c) {
+  double most = 0;
+  for (Node n : g.nodes()) most = std::max(most, c[n.id()] / n.value().mass);
+  return most;
 }
 
 }  // namespace lab

@@ -25,8 +25,8 @@ double amplification(Method& method, double dt, double omega, double gamma = 0);
  * of that without drag and of what amplification() says with it. */
 double step_limit(const MethodEntry& method, double omega, double gamma = 0);
 
-/** The largest c/m [1/s] of a cloth with drag @a c [kg/s]. */
-double largest_gamma(const Cloth& g, double c);
+/** The largest c/m [1/s] of a node of a cloth with drag @a c.  O(N) */
+double largest_gamma(const Cloth& g, const Drag& c);
 
 /** The share of a safe limit that `--dt auto` takes, and of a sharp one.
  *
