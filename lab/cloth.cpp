@@ -3,7 +3,8 @@
  * see --help.
  *
  * Exit status: 0 done; 2 an input or an option that can't be used, or an
- * output that can't be written; 3 the run diverged; 4 no display. */
+ * output that can't be written; 3 the run diverged; 4 no display; 128 + N
+ * signal N ended it: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP. */
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -19,6 +20,7 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Method.hpp"
@@ -72,12 +74,13 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   };
   draw();
   run.to_end(draw);
-  if (!o.video.empty()) {
-    std::string film = screen->end_film();
-    if (!o.quiet) std::cout << "film: " << film << '\n';
-  }
-  if (!o.screenshot.empty() && !o.quiet)
-    std::cout << "picture: " << o.screenshot << '\n';
+  if (!shot) draw();  // cut short between two steps
+  auto tell = [&](const std::string& what, const std::string& file) {
+    if (!o.quiet) std::cout << what << ": " << file << '\n';
+    run.wrote(what + ' ' + file);
+  };
+  if (!o.video.empty()) tell("film", screen->end_film());
+  if (!o.screenshot.empty()) tell("picture", o.screenshot);
   return run.finish();
 }
 
@@ -122,8 +125,14 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
       screen.close();
     }
   });
+  // A paused simulation waits for the screen only.
+  std::thread watch([&screen] {
+    for (; !screen.closed(); CME212::sleep(0.02))
+      if (interrupted()) screen.close();
+  });
   screen.event_loop();
   simulation.join();
+  watch.join();
   if (error) std::rethrow_exception(error);
   run.check();
   return run.finish();
@@ -169,6 +178,7 @@ void check_outputs(const Options& o) {
 
 /** Load, choose how to run, run.  @return exit status */
 int run(Options o) {
+  catch_interrupts();
   check_outputs(o);
   Sweep::set_threads(o.threads);
   if (o.advise || o.automatic || !o.advised.empty())
@@ -219,6 +229,10 @@ int main(int argc, char** argv) {
   try {
     int status = parse(argc, argv, o);
     return after_output(status >= 0 ? status : run(o));
+  } catch (const Interrupted&) {
+    std::cerr << "cloth: " << name_of_interrupt()
+              << " ended the advice; nothing was kept\n";
+    return 128 + interrupted();
   } catch (const NoDisplay& e) {
     std::cerr << "cloth: " << e.what() << '\n';
     return 4;

@@ -2,6 +2,9 @@
 /** @file ClothProgram.hpp
  * What tests of ./cloth need: to run it, and to look at what it left. */
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -25,6 +28,33 @@ class ClothProgram : public ::testing::Test {
   Result run(const std::string& arguments) {
     return folder.run(CME212::program("cloth", "build/") + " " + arguments);
   }
+  /** Start it, and send it @a signals: the first when it catches it and has run
+   * for a while, the next ones 0.2 s later each.
+   * @return as run(); its status is 1000 + a signal that ended it at once */
+  Result interrupt(const std::string& arguments, std::vector<int> signals) {
+    const std::string command = "exec " + CME212::program("cloth", "build/") +
+                                ' ' + arguments + " >" + folder / "out" +
+                                " 2>" + folder / "err";
+    const pid_t child = fork();
+    if (child == 0) {
+      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      _exit(127);
+    }
+    int status = 0;
+    bool ended = false;
+    while (!ended && !catches(child, signals[0])) {
+      usleep(1000);
+      ended = waitpid(child, &status, WNOHANG) == child;
+    }
+    usleep(50000);
+    for (int signal : signals) {
+      kill(child, signal);
+      if (signals.size() > 1) usleep(200000);
+    }
+    if (!ended) waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
+            contents(dir / "out"), contents(dir / "err")};
+  }
   /** A file of this test with a content. */
   std::string file(const std::string& name, const std::string& text) {
     std::ofstream(dir / name, std::ios::binary) << text;
@@ -40,6 +70,15 @@ class ClothProgram : public ::testing::Test {
     }
     std::sort(names.begin(), names.end());
     return names;
+  }
+  /** Does a process catch a signal now? */
+  static bool catches(pid_t process, int signal) {
+    const std::string status =
+        contents("/proc/" + std::to_string(process) + "/status");
+    const auto at = status.find("SigCgt:");
+    return at != std::string::npos &&
+           (std::stoull(status.substr(at + 7), nullptr, 16) >> (signal - 1)) %
+               2;
   }
   /** The numbers of a CSV file, without its head line. */
   static std::vector<std::vector<double>> rows(const fs::path& csv) {

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include "CME212/Mesh.hpp"
 #include "tests/ClothProgram.hpp"
 
 namespace {
@@ -91,6 +92,77 @@ TEST_F(ClothProgram, SaysWhenAnOutputIsOnAFullDisk) {
               std::string::npos)
         << r.err;
   }
+}
+
+// ------------------------------------------------------- Ended by a signal
+
+const std::string long_run =
+    "--sheet 'nodes 12 12' --pin 'y 0' --t-end 1e5 --headless ";
+
+TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
+  const struct {
+    int number;
+    const char* name;
+  } all[] = {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}};
+  for (const auto& [number, name] : all)
+    for (const char* quiet : {"", "--quiet "}) {
+      Result r = interrupt(long_run + quiet + "--every 5 --csv " +
+                               path("e.csv") + " --out " + path("end.nodes"),
+                           {number});
+      EXPECT_EQ(r.status, 128 + number) << r.err;
+      const auto table = rows(dir / "e.csv");
+      ASSERT_GE(table.size(), 1u);
+      for (std::size_t k = 0; k < table.size(); ++k) {
+        EXPECT_EQ(table[k].size(), 10u);
+        EXPECT_NEAR(table[k][0], 0.005 * double(k), 1e-9);
+      }
+      EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 144u);
+      EXPECT_EQ(
+          r.err.find(std::string("cloth: ") + name + " ended the run at t = "),
+          0u)
+          << r.err;
+      EXPECT_NE(r.err.find(" s of 100000 s; kept: " + path("e.csv") + " (" +
+                           std::to_string(table.size()) + " rows), " +
+                           path("end.nodes") + '\n'),
+                std::string::npos)
+          << r.err;
+      EXPECT_EQ(r.out.find(" steps to t = ") == std::string::npos, *quiet != 0);
+      EXPECT_EQ(r.out.find("com:"), std::string::npos);  // no answer
+      EXPECT_EQ(files(), (std::vector<std::string>{"e.csv", "end.nodes"}));
+    }
+  EXPECT_NE(interrupt(long_run, {SIGTERM})
+                .err.find("kept: nothing, as no output was asked for\n"),
+            std::string::npos);
+}
+
+// One step of this takes seconds.
+TEST_F(ClothProgram, EndsAtOnceByTheSecondSignalAndLeavesNothing) {
+  Result r = interrupt(
+      "--sheet 'nodes 400 400' --pin 'y 0' --stiffness 1e7 --method tr-bdf2 "
+      "--dt 0.1 --t-end 1e5 --headless --csv " +
+          path("e.csv") + " --out " + path("end.nodes"),
+      {SIGINT, SIGINT});
+  EXPECT_EQ(r.status, 1000 + SIGINT) << r.err;
+  EXPECT_EQ(files(), std::vector<std::string>{});
+}
+
+TEST_F(ClothProgram, LeavesIgnoredSignalsIgnored) {
+  Result r =
+      folder.run("sh -c \"trap '' HUP; " + CME212::program("cloth", "build/") +
+                 " --sheet 'nodes 4 4' --t-end 1 --headless & sleep "
+                 "0.01; kill -HUP \\$!; wait \\$!\"");
+  EXPECT_EQ(r.status, 0) << r.err;
+}
+
+TEST_F(ClothProgram, EndsTheAdviceByASignal) {
+  Result r = interrupt(
+      "--config data/scenes/drape.toml --tolerance 1e-6 --advise "
+      "--write-config " +
+          path("a.toml"),
+      {SIGINT});
+  EXPECT_EQ(r.status, 130);
+  EXPECT_EQ(r.err, "cloth: SIGINT ended the advice; nothing was kept\n");
+  EXPECT_EQ(files(), std::vector<std::string>{});
 }
 
 }  // namespace

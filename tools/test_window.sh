@@ -137,6 +137,10 @@ cloth --dt 0.05; told 1; press r; told 2; press r; told 3; press q
 ends "r runs it again" 3 "diverged in step"
 cloth --dt 0.05 --paused; press q
 ends "nothing has failed before it runs" 0 ": 0 steps to t = 0 s"
+cloth --paused --csv "$tmp/w.csv"; kill -TERM "$run"
+ends "SIGTERM ends a paused window" 143 "SIGTERM ended the run at t = 0 s of 5 s; kept: $tmp/w.csv (1 row)"
+cloth --t-end 1e6; sleep 0.5; kill -HUP "$run"
+ends "SIGHUP ends a running one" 129 "SIGHUP ended the run at t = "
 
 # DISPLAY leads nowhere.
 run_dead() { DISPLAY=:12345 "$folder/cloth" data/grid0.nodes data/grid0.tets --window; }

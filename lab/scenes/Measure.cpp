@@ -7,6 +7,7 @@
 #include <random>
 
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/scenes/Scene.hpp"
 
@@ -114,6 +115,7 @@ Trial try_out(const Model& m, double shake,
     for (Node n : scene.cloth().nodes())
       n.position() += Point(off(random), off(random), off(random));
   const bool ok = scene.run_to(m.t_end, [&] {
+    end_if_interrupted();
     if (scene.failure().empty())
       result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
   });

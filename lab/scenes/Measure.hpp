@@ -62,7 +62,8 @@ double step_of(const Model& m);
  *        a direction of its own: what an answer makes of that tells whether it
  *        can be had at all
  * @param look at the cloth at the end of a run that did not fail
- * Throws InputError, SceneError; std::invalid_argument as Scene does. */
+ * Throws InputError, SceneError; std::invalid_argument as Scene does;
+ * Interrupted. */
 Trial try_out(
     const Model& m, double shake = 0,
     const std::function<void(const Cloth&)>& look = [](const Cloth&) {});

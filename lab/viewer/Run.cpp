@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <iostream>
 #include <sstream>
 
+#include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Scene.hpp"
@@ -29,16 +31,18 @@ Energies energies(const Cloth& g, double gravity) {
 
 Run::Run(Scene& scene, const Options& o)
     : scene_(scene), o_(o), progress_(o.quiet) {
-  if (!o.csv.empty()) csv_.emplace(o.csv);
   if (!o.out.empty()) out_.emplace(o.out);
   start();
 }
 
 void Run::start() {
   progress_ = Progress(o_.quiet);
-  rows_.clear();
   seconds_ = 0;
-  last_row_ = -1;
+  rows_ = 0, last_row_ = -1;
+  if (o_.csv.empty()) return;
+  csv_.emplace(o_.csv);
+  csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,"
+                    "nodes,edges\n";
   add_row();
 }
 
@@ -48,7 +52,10 @@ void Run::restart() {
   start();
 }
 
-bool Run::done() const { return scene_.done(o_.model.t_end); }
+bool Run::done() const { return interrupted() || scene_.done(o_.model.t_end); }
+bool Run::cut_short() const {
+  return interrupted() && !scene_.done(o_.model.t_end);
+}
 
 void Run::check() {
   scene_.check();
@@ -61,18 +68,20 @@ void Run::advance() {
 }
 
 void Run::to_end(const std::function<void()>& after) {
-  scene_.run_to(o_.model.t_end, [&] {
-    look();
+  while (!done()) {
+    advance();
     after();
-  });
+  }
+  check();
 }
 
 /** After a step. */
 void Run::look() {
-  if (done() || (csv_ && scene_.steps() % o_.every == 0)) scene_.check();
+  const bool at_end = scene_.done(o_.model.t_end);
+  if (at_end || (csv_ && scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
   tell_failure();
-  if (scene_.steps() % o_.every == 0 || done()) add_row();
+  if (scene_.steps() % o_.every == 0 || at_end) add_row();
   if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
   if (progress_.due()) show_progress();
 }
@@ -111,7 +120,7 @@ void Run::announce() const {
   } else {
     out << ": no step is stable with " << method << " and no drag";
   }
-  std::cout << out.str() << '\n';
+  std::cout << out.str() << std::endl;  // at once, also into a pipe
   warn_of_fast_balls();
   if (dt <= limit || sharp) return;
   out.str("");
@@ -125,22 +134,49 @@ void Run::announce() const {
 
 int Run::finish() {
   progress_.end();
-  if (csv_) {
-    csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,"
-                      "com_z,nodes,edges\n"
-                   << rows_;
-    csv_->commit();
-  }
-  if (out_) {
-    for (Node n : scene_.cloth().nodes()) {
-      Point p = n.position();
-      out_->stream() << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y)
-                     << ' ' << CME212::to_text(p.z) << '\n';
+  std::exception_ptr error;
+  auto write = [&error](auto how) {
+    try {
+      how();
+    } catch (const std::runtime_error&) {
+      if (!error) error = std::current_exception();
     }
-    out_->commit();
-  }
+  };
+  if (csv_)
+    write([this] {
+      csv_->commit();
+      wrote(o_.csv + " (" + std::to_string(rows_) +
+            (rows_ == 1 ? " row)" : " rows)"));
+    });
+  if (out_) write([this] { write_positions(); });
+  if (error) std::rethrow_exception(error);
+  if (cut_short()) tell_interrupt();
   if (!o_.quiet) print_summary();
-  return scene_.failure().empty() ? 0 : 3;
+  if (!scene_.failure().empty()) return 3;
+  return cut_short() ? 128 + interrupted() : 0;
+}
+
+void Run::wrote(const std::string& what) {
+  kept_ += (kept_.empty() ? "" : ", ") + what;
+}
+
+void Run::write_positions() {
+  for (Node n : scene_.cloth().nodes()) {
+    Point p = n.position();
+    out_->stream() << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y) << ' '
+                   << CME212::to_text(p.z) << '\n';
+  }
+  out_->commit();
+  wrote(o_.out);
+}
+
+void Run::tell_interrupt() const {
+  using CME212::short_text;
+  std::cerr << "cloth: " << name_of_interrupt()
+            << " ended the run at t = " << short_text(scene_.time()) << " s of "
+            << short_text(o_.model.t_end) << " s; kept: "
+            << (kept_.empty() ? "nothing, as no output was asked for" : kept_)
+            << '\n';
 }
 
 void Run::add_row() {
@@ -149,11 +185,12 @@ void Run::add_row() {
   const Cloth& g = scene_.cloth();
   const Energies e = energies(g, o_.model.gravity);
   const Point c = center_of_mass(g);
+  auto& row = csv_->stream();
   for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
                    e.total(), double(c.x), double(c.y), double(c.z)})
-    rows_ += CME212::to_text(a) + ',';
-  rows_ += std::to_string(g.num_nodes()) + ',' + std::to_string(g.num_edges()) +
-           '\n';
+    row << CME212::to_text(a) << ',';
+  row << g.num_nodes() << ',' << g.num_edges() << '\n';
+  ++rows_;
 }
 
 void Run::tell_failure() {

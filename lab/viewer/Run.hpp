@@ -23,8 +23,10 @@ class Run {
   /** Back to t = 0. */
   void restart();
 
-  /** True at the end, or if the run failed. */
+  /** True at the end, if the run failed, or if a signal ends it. */
   bool done() const;
+  /** True if a signal ended the run before its end. */
+  bool cut_short() const;
 
   /** Check the present state, which is to be shown; tell if it is not good. */
   void check();
@@ -38,8 +40,14 @@ class Run {
   /** Say how long the step is and how long it may be. */
   void announce() const;
 
-  /** Write the files and the last line.  @return the exit status
-   * Throws std::runtime_error if a file can't be written. */
+  /** A file was written by others: @a what in words, as "film x.mp4". */
+  void wrote(const std::string& what);
+
+  /** Write the files and the last line; of a run that is cut short, say what
+   * was kept.
+   * @return the exit status; 128 + the signal that cut it short
+   * Throws std::runtime_error if a file can't be written, after the others
+   * have been. */
   int finish();
 
  private:
@@ -47,8 +55,8 @@ class Run {
   const Options& o_;
   Progress progress_;
   std::optional<CME212::OutputFile> csv_, out_;
-  std::string rows_;
-  long long last_row_ = -1;
+  long long rows_ = 0, last_row_ = -1;
+  std::string kept_;    // in words
   double seconds_ = 0;  // until the last step
   bool warned_ = false, told_ = false;
 
@@ -59,6 +67,8 @@ class Run {
   void tell_failure();
   void warn_of_fast_balls() const;
   void warn_of_missed();
+  void write_positions();
+  void tell_interrupt() const;
   void print_summary() const;
 };
 
