@@ -565,6 +565,27 @@ TEST(NewtonMethod, LeavesNoMoreThanItsToleranceHoweverSmallTheSteps) {
   expect_error_of_tolerance<TrBdf2>(1e-3);
 }
 
+// The error of a run is that of the method, at a quarter of the work: on a
+// stiff sheet, at 20 times verlet's limit.
+TEST(TrBdf2, SolvesAsWellAsItsErrorAsksFor) {
+  const double T = 0.125;
+  Sheet exact(25, 1e4, 1.0 / 625);
+  Srkn11b reference;
+  exact.run(reference, T / 150, 150);
+  auto error = [&](TrBdf2& method) {
+    Sheet s(25, 1e4, 1.0 / 625);
+    s.run(method, T / 32, 32);
+    double sum = 0;
+    for (unsigned i = 0; i < 625; ++i)
+      sum += normSq(s.g.node(i).position() - exact.g.node(i).position());
+    return std::sqrt(sum / 625);
+  };
+  TrBdf2 method, tight(1e-9);
+  EXPECT_NEAR(error(method) / error(tight), 1, 0.02);
+  EXPECT_LT(3 * method.work().products, tight.work().products);
+  EXPECT_LT(1.3 * double(method.work().newton), double(tight.work().newton));
+}
+
 // Angular momentum [kg m^2/s] shows if Newton stops before round_off().
 TEST(NewtonMethod, GoesDownToRoundOffAtSmallSteps) {
   Sheet s(5);

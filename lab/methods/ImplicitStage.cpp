@@ -65,8 +65,10 @@ struct ImplicitStage::DiagonalBlock {
 };
 
 ImplicitStage::ImplicitStage(double tolerance, int max_iterations,
-                             bool line_search)
-    : goal_{tolerance, max_iterations}, line_search_(line_search) {}
+                             bool line_search, double share)
+    : goal_{tolerance, max_iterations},
+      line_search_(line_search),
+      share_(share) {}
 
 ImplicitStage::~ImplicitStage() = default;
 
@@ -79,7 +81,7 @@ void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
   p.assign(g.positions().begin(), g.positions().end());
   q.resize(n);
   for (unsigned i = 0; i < n; ++i) q[i] = g.node_values()[i].vel;
-  w = q;
+  guess = w = q;
   for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
     a->resize(n);
   diagonal_blocks_.resize(n);
@@ -88,7 +90,7 @@ void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
 void ImplicitStage::hold(Cloth& g, double t, const ConstraintPlan& constraint) {
   constraint.each_place(g, t, [&](Node n, const Place& place) {
     n.position() = p[n.id()] = place.at;
-    q[n.id()] = w[n.id()] = Point();
+    q[n.id()] = w[n.id()] = guess[n.id()] = Point();
   });
 }
 
@@ -107,7 +109,8 @@ void ImplicitStage::solve_linearized(Cloth& g, double t, double s,
 }
 
 void ImplicitStage::solve_newton(Cloth& g, double t, double s,
-                                 const ForcePlan& force) {
+                                 const ForcePlan& force,
+                                 const LocalError& error) {
   Objective here = choose_start(g, s, force);
   double first = 0, before = 0;
   bool clamp = false;
@@ -117,26 +120,74 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
     if (iteration == 0) assemble(g, s, force);
     precondition(residual_, z_);
     const double left = rms(g, z_) / s;
-    if (left <= goal_.tolerance || left <= round_off(g, s)) return;
+    const double goal = allowed(g, s, error);
+    if (left <= goal || left <= round_off(g, s)) return balance(g, s, force);
     if (iteration == goal_.max_iterations || !std::isfinite(left))
       goal_.fail("Newton's method", iteration, left, " m/s^2");
-    // Solve the better, the faster Newton closes in, but not for nothing.
+    // Solve the better, the faster Newton closes in, but not for nothing: the
+    // forcing terms of S. Eisenstat, H. Walker, SIAM J. Sci. Comput. 17 (1996)
+    // 16, choice 2.
     double enough = 0.01;
     if (iteration == 0) {
-      first = left;
+      // What a start at w = q would leave, or more.
+      for (unsigned i = 0; i < w.size(); ++i) direction_[i] = w[i] - q[i];
+      first = left + filtered(g, s, direction_);
     } else {
       assemble(g, s, force);
-      enough = std::max(0.1 * std::pow(left / before, 1.5),
-                        0.3 * goal_.tolerance / left);
+      enough = std::max(0.1 * std::pow(left / before, 1.5), 0.3 * goal / left);
       enough = std::clamp(enough, 1e-12, 0.03);
     }
     before = left;
+    ++work_.newton;
     if (clamp || !solve(enough, false)) solve(enough, true);
     const bool found = search(g, t, s, force, here, left < 0.01 * first);
     if (!found && clamp)
       goal_.fail("Newton's line search", iteration, left, " m/s^2");
     clamp = !found;  // A was all but singular, and the step far too long
   }
+}
+
+/** RMS(D^-1 M from)/s [m/s^2], for @a from in [m/s]. */
+double ImplicitStage::filtered(const Cloth& g, double s,
+                               const std::vector<Point>& from) {
+  auto node = g.node_values();
+  for (unsigned i = 0; i < from.size(); ++i)
+    rest_[i] = fixed_[i] ? Point() : node[i].mass * from[i];
+  precondition(rest_, z_);
+  return rms(g, z_) / s;
+}
+
+/** The residual [m/s^2] to stop at, see solve_newton(). */
+double ImplicitStage::allowed(const Cloth& g, double s,
+                              const LocalError& error) {
+  if (error.scale == 0 || share_ == 0) return goal_.tolerance;
+  for (unsigned i = 0; i < w.size(); ++i) direction_[i] = w[i] - guess[i];
+  double d = filtered(g, s, direction_);
+  if (error.first) {
+    for (unsigned i = 0; i < w.size(); ++i) direction_[i] = guess[i] - q[i];
+    const double whole = filtered(g, s, direction_);
+    if (d < whole) d *= d / whole;
+  }
+  return std::max(goal_.tolerance, share_ * error.scale * d);
+}
+
+/** Without fixed nodes: shift w by what makes the sum of the residual 0. Such a
+ * shift changes no spring. */
+void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
+  Point sum;
+  double mass = 0;
+  const Drag& c = force.drag();
+  auto node = g.node_values();
+  for (unsigned i = 0; i < w.size(); ++i) {
+    if (!g.node_in_use(i)) continue;
+    if (fixed_[i]) return;
+    sum += residual_[i];
+    mass += node[i].mass + s * c[i];
+  }
+  if (mass == 0) return;
+  for (unsigned i = 0; i < w.size(); ++i)
+    if (!fixed_[i]) w[i] += sum / mass;
+  move(g, s);
 }
 
 /** The @a still [m/s] that leaves @a g where it is. */
@@ -261,6 +312,7 @@ bool ImplicitStage::solve(double relative, bool clamp) {
                   " (relative)");
     }
     multiply(direction_, product_, clamp);
+    ++work_.products;
     const double curvature = product(direction_, product_);
     if (!clamp && curvature <= 0) return k > 0;
     const double a = size / curvature;

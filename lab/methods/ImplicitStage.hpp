@@ -20,6 +20,19 @@ void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);
 
+/** What the solvers of a method have done since it was made: the same on every
+ * machine. */
+struct Work {
+  long long newton = 0;    ///< linear systems
+  long long products = 0;  ///< with the matrix A, each about a force evaluation
+};
+
+/** How a stage tells its error: see ImplicitStage::solve_newton(). */
+struct LocalError {
+  double scale = 0;    ///< the error [m/s^2] over the deviation from guess
+  bool first = false;  ///< whether guess is of order 0, not 1
+};
+
 /** What a solver is asked for, and what its errors say. */
 struct Goal {
   double tolerance;  ///< of the iteration that throws
@@ -43,10 +56,14 @@ struct Goal {
 class ImplicitStage {
  public:
   std::vector<Point> p, q, w;  // by node id
+  /** What w would be if accelerations went on as in the past; by node id. */
+  std::vector<Point> guess;
 
   /** @param tolerance > 0 and @param max_iterations: see the solvers
-   * @param line_search whether Newton's method has one */
-  ImplicitStage(double tolerance, int max_iterations, bool line_search = true);
+   * @param line_search whether Newton's method has one
+   * @param share of the local error that Newton's method may leave, too */
+  ImplicitStage(double tolerance, int max_iterations, bool line_search = true,
+                double share = 0);
   ~ImplicitStage();
 
   /** Ready for a step of @a g from @a t by @a dt [s]: who is fixed, and p = x,
@@ -54,9 +71,10 @@ class ImplicitStage {
   void begin(const char* method, double t, double dt, Cloth& g,
              const ConstraintPlan& constraint);
   /** Put held nodes where they are at @a t, the time of the next solve.
-   * @pre p, q and w are set */
+   * @pre p, q, w and guess are set */
   void hold(Cloth& g, double t, const ConstraintPlan& constraint);
   bool fixed(unsigned i) const { return fixed_[i]; }
+  const Work& work() const { return work_; }
 
   /** One Newton step from where @a g is, whatever is left over: the linear
    * system, without negative stiffness, is solved until its residual has fallen
@@ -68,11 +86,23 @@ class ImplicitStage {
   /** Newton's method with a line search, from @a w or from where @a g is: the
    * former is nearer, unless it stretches springs.
    * @post g's positions are p + s w, and the RMS over the nodes of D^-1 r/s, r
-   * the residual and D the diagonal blocks of A, is at most tolerance [m/s^2]
-   * or round_off(). Such a residual does what a wrong acceleration would: while
-   * s omega is small, it moves the cloth by tolerance T^2/2 at most in a time
-   * T, however many steps that takes. Throws StepError. */
-  void solve_newton(Cloth& g, double t, double s, const ForcePlan& force);
+   * the residual and D the diagonal blocks of A, is at most tolerance [m/s^2],
+   * share times the local error, or round_off(). Such a residual does what a
+   * wrong acceleration would: while s omega is small, it moves the cloth by
+   * tolerance T^2/2 at most in a time T, however many steps that takes. Without
+   * fixed nodes the sum of r is 0: linear momentum is kept to round-off.
+   * Throws StepError.
+   *
+   * The local error [m/s^2], in the norm of the residual, is
+   *   error.scale d,   d = RMS(D^-1 M (w - guess))/s,
+   * so d of a guess of order 1 is its second difference, the embedded formula.
+   * A guess of order 0, q + s a for the acceleration a at the start, has a
+   * first difference only; but |a'|^2 <= |a| |a''| in the mean square (Hardy,
+   * Littlewood, Polya, Inequalities, chapter 7), so that
+   *   error.scale d min(1, d/RMS(D^-1 M a))
+   * does not exceed the error by more than a small factor. */
+  void solve_newton(Cloth& g, double t, double s, const ForcePlan& force,
+                    const LocalError& error = {});
 
  private:
   struct Block {  // of s^2 H, between nodes i and j
@@ -88,6 +118,8 @@ class ImplicitStage {
   std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
   Goal goal_;
   bool line_search_;
+  double share_;
+  Work work_;
 
   struct Objective {
     double inertia, energy;  // [J]
@@ -105,6 +137,9 @@ class ImplicitStage {
   void precondition(const std::vector<Point>& from,
                     std::vector<Point>& to) const;
   double round_off(const Cloth& g, double s) const;
+  double filtered(const Cloth& g, double s, const std::vector<Point>& from);
+  double allowed(const Cloth& g, double s, const LocalError& error);
+  void balance(Cloth& g, double s, const ForcePlan& force);
   bool solve(double relative, bool clamp);
   Objective objective(const Cloth& g, double s, const ForcePlan& force) const;
   Objective choose_start(Cloth& g, double s, const ForcePlan& force);

@@ -22,7 +22,17 @@ class NewtonMethod : public Method {
                         bool line_search = true)
       : stage_(tolerance, max_iterations, line_search) {}
 
+  /** What the solver has done since this method was made. */
+  const implicit_detail::Work& work() const { return stage_.work(); }
+
  protected:
+  /** Of a method that tells its local error.
+   * @param share of it that each stage may leave over */
+  struct Share {
+    double share;
+  };
+  explicit NewtonMethod(Share s) : stage_(1e-9, 100, true, s.share) {}
+
   implicit_detail::ImplicitStage stage_;
 };
 
