@@ -236,6 +236,7 @@ Recipe recipe_of(const Model& m) {
   Recipe r;
   r.name = m.name;
   r.gravity = m.gravity;
+  r.mesh = mesh;
   r.build = [m, mesh](Cloth& g) { build_model(g, m, *mesh); };
   r.force = [m, mesh](const Cloth& g) { return force_of(m, *mesh, g); };
   r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };

@@ -3,6 +3,7 @@
  * Makes the cloth, the force and the constraint of a Model: what it names and
  * nothing else. */
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct Obstacle {
 /** How a scene is made, as often as it is restarted. */
 struct Recipe {
   std::string name;
-  double gravity = grav;  ///< of the force [m/s^2]
+  double gravity = grav;                       ///< of the force [m/s^2]
+  std::shared_ptr<const PointsAndQuads> mesh;  ///< what it is built from
   /** Into an empty cloth. */
   std::function<void(Cloth&)> build;
   std::function<CombinedForces(const Cloth&)> force;

@@ -11,6 +11,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Warnings.hpp"
 #include "lab/stability/StepLimit.hpp"
 
 namespace lab {
@@ -121,7 +122,9 @@ void Run::announce() const {
     out << ": no step is stable with " << method << " and no drag";
   }
   std::cout << out.str() << std::endl;  // at once, also into a pipe
-  warn_of_fast_balls();
+  if (const auto& mesh = scene_.recipe().mesh)
+    for (const auto& w : warnings(o_.model, *mesh, scene_.cloth(), dt))
+      std::cerr << warning << w << '\n';
   if (dt <= limit || sharp) return;
   out.str("");
   if (limit > 0)
@@ -198,18 +201,6 @@ void Run::tell_failure() {
   told_ = true;
   progress_.end();
   std::cerr << "cloth: " << scene_.failure() << '\n';
-}
-
-/** A ball that jumps over nodes pushes none of them. */
-void Run::warn_of_fast_balls() const {
-  for (const Obstacle& o : scene_.recipe().obstacles) {
-    const double way = norm(o.motion.velocity) * scene_.dt();
-    if (o.kind == Obstacle::Kind::ball && way > o.radius / 2)
-      std::cerr << warning << "--sphere moves " << way
-                << " m a step, more than half of its radius, " << o.radius
-                << " m: nodes may tunnel through it; use --dt "
-                << o.radius / 2 / norm(o.motion.velocity) << '\n';
-  }
 }
 
 void Run::warn_of_missed() {

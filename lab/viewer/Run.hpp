@@ -65,7 +65,6 @@ class Run {
   void add_row();
   void show_progress();
   void tell_failure();
-  void warn_of_fast_balls() const;
   void warn_of_missed();
   void write_positions();
   void tell_interrupt() const;

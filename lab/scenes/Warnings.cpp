@@ -1,0 +1,266 @@
+#include "lab/scenes/Warnings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "CME212/Util.hpp"
+#include "lab/fast/Energy.hpp"
+#include "lab/scenes/Words.hpp"
+
+namespace lab {
+
+namespace {
+
+using CME212::short_text;
+using Triangle = std::array<Point, 3>;
+
+/** "1 node", "2 nodes" */
+std::string count_of(std::size_t n, const std::string& what) {
+  return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
+}
+const char* it_or_them(std::size_t n) { return n == 1 ? "it" : "them"; }
+
+/** Also what a scene leaves to the default. */
+std::string name_of(const std::string& option, const Ball& b) {
+  const Point& at = b.center;
+  return "--" + option + " \"at " + short_text(at.x) + ' ' + short_text(at.y) +
+         ' ' + short_text(at.z) + " radius " + short_text(b.radius) + '"';
+}
+
+/** @a q as two triangles, divided by its shorter diagonal. Corner c has the
+ * neighbors c ^ 1 and c ^ 2. */
+std::array<Triangle, 2> halves(const PointsAndQuads& mesh, const Quad& q) {
+  const auto p = [&](unsigned c) { return mesh.points[q[c]]; };
+  if (norm(p(3) - p(0)) <= norm(p(2) - p(1)))
+    return {{{p(0), p(3), p(1)}, {p(0), p(3), p(2)}}};
+  return {{{p(1), p(2), p(0)}, {p(1), p(2), p(3)}}};
+}
+
+/** How far a point of @a t may be from the nearest corner [m]: the radius of
+ * the circle around it, if its center lies inside. If not, the points farthest
+ * off lie on the longest side, as far from one of its ends as from the third
+ * corner. */
+double opening(const Triangle& t) {
+  std::array<double, 3> side;
+  for (unsigned c : {0, 1, 2}) side[c] = norm(t[(c + 1) % 3] - t[(c + 2) % 3]);
+  std::ranges::sort(side);
+  const auto [a, b, c] = side;
+  if (a == 0) return c / 2;
+  const double cos_b = (a * a + c * c - b * b) / (2 * a * c);
+  const double cos_a = (b * b + c * c - a * a) / (2 * b * c);
+  if (a * a + b * b <= c * c) return std::max(a / (2 * cos_b), b / (2 * cos_a));
+  return a / (2 * std::sqrt(std::max(0., 1 - cos_a * cos_a)));
+}
+
+/** The distance of @a p from the triangle @a t [m]; a folded one counts as its
+ * sides. */
+double distance(const Point& p, const Triangle& t) {
+  double least = std::numeric_limits<double>::infinity();
+  bool inside = true;
+  const Point normal = cross(t[1] - t[0], t[2] - t[0]);
+  for (unsigned c : {0, 1, 2}) {
+    const Point a = t[c], along = t[(c + 1) % 3] - a;
+    const double l2 = normSq(along);
+    const double s =
+        l2 > 0 ? std::clamp<double>(dot(p - a, along) / l2, 0, 1) : 0;
+    least = std::min<double>(least, norm(p - a - s * along));
+    inside &= dot(cross(along, p - a), normal) > 0;
+  }
+  if (inside) least = std::abs(dot(p - t[0], normal)) / norm(normal);
+  return least;
+}
+
+class Finder {
+ public:
+  Finder(const Model& m, const PointsAndQuads& mesh, const Cloth& g, double dt)
+      : m_(m), mesh_(mesh), g_(g), dt_(dt) {
+    for (const Quad& q : mesh.quads) openings_.push_back(opening(mesh, q));
+  }
+
+  std::vector<std::string> all() {
+    loose_nodes();
+    springs_of_no_length();
+    for (const Wall& w : m_.planes) below(w);
+    for (const Solid& s : m_.spheres) {
+      const std::string name = name_of("sphere", s.ball);
+      inside(s.ball, name, true);
+      fits_through(s.ball, name);
+      too_fast(s);
+    }
+    for (const Ball& b : m_.tears) {
+      const std::string name = name_of("tear", b);
+      inside(b, name, false);
+    }
+    if (m_.self_collision) passes_itself(*m_.self_collision);
+    return found_;
+  }
+
+ private:
+  const Model& m_;
+  const PointsAndQuads& mesh_;
+  const Cloth& g_;
+  double dt_;
+  std::vector<double> openings_;  // by quad [m]
+  std::vector<std::string> found_;
+
+  void add(const std::string& sentence) { found_.push_back(sentence); }
+  /** Quads whose opening is wider than a ball of radius @a r [m], and the
+   * widest. */
+  struct Wide {
+    std::size_t quads = 0;
+    double most = 0;  // [m]
+  };
+  Wide wider_than(double r) const {
+    Wide w;
+    for (double a : openings_)
+      if (a > r * (1 + 1e-6)) ++w.quads, w.most = std::max(w.most, a);
+    return w;
+  }
+  std::string of_all(std::size_t quads) const {
+    return std::to_string(quads) + " of " +
+           count_of(mesh_.quads.size(), "quad");
+  }
+
+  void loose_nodes() {
+    std::vector<char> used(mesh_.points.size());
+    for (const Quad& q : mesh_.quads)
+      for (unsigned i : q) used[i] = 1;
+    const auto n = std::size_t(std::ranges::count(used, 0));
+    if (n == 0) return;
+    const auto first = std::ranges::find(used, 0) - used.begin();
+    add(std::to_string(n) + " of " + count_of(used.size(), "node") +
+        (n == 1 ? " lies" : " lie") + " in no quad, node " +
+        std::to_string(first) + (n == 1 ? "" : " first") +
+        ": no spring holds " + it_or_them(n) +
+        "; take nodes and quads that belong together");
+  }
+
+  void springs_of_no_length() {
+    std::size_t n = 0;
+    Edge first;
+    for (Edge e : g_.edges())
+      if (e.value().L == 0 && n++ == 0) first = e;
+    if (n == 0) return;
+    add(count_of(n, "spring") + (n == 1 ? " has" : " have") +
+        " length 0: nodes " + std::to_string(first.node1().index()) + " and " +
+        std::to_string(first.node2().index()) +
+        " lie at the same place, so nothing but inertia keeps them apart; " +
+        "make them one node");
+  }
+
+  void below(const Wall& w) {
+    std::size_t n = 0;
+    double deepest = 0;
+    for (Node node : g_.nodes()) {
+      const double depth = dot(w.at - node.position(), w.out());
+      if (depth > 1e-9) ++n;
+      deepest = std::max(deepest, depth);
+    }
+    if (n == 0) return;
+    Wall lower = w;
+    lower.at -= deepest * w.out();
+    add(std::to_string(n) + " of " + count_of(g_.num_nodes(), "node") +
+        (n == 1 ? " starts" : " start") + " below --plane \"" + to_words(w) +
+        "\", up to " + short_text(deepest) + " m: the first step puts " +
+        it_or_them(n) + " onto it; let it go through " +
+        short_text(lower.at.x) + ' ' + short_text(lower.at.y) + ' ' +
+        short_text(lower.at.z));
+  }
+
+  /** Where the first step puts @a p. */
+  static Point surface(const Ball& b, const Point& p) {
+    const Point r = p - b.center;
+    return b.center + b.radius * (norm(r) > 0 ? r / norm(r) : Point(0, 0, 1));
+  }
+
+  void inside(const Ball& b, const std::string& name, bool solid) {
+    std::size_t n = 0;
+    const auto is_inside = [&](const Point& p) {
+      return norm(p - b.center) < b.radius * (1 - 1e-6);
+    };
+    for (Node node : g_.nodes()) n += is_inside(node.position());
+    if (n == 0) return across(b, name, solid);
+    std::string what = std::to_string(n) + " of " +
+                       count_of(g_.num_nodes(), "node") +
+                       (n == 1 ? " starts" : " start") + " inside " + name +
+                       ": the first step ";
+    if (!solid) return add(what + "takes " + it_or_them(n) + " away; move it");
+    double energy = 0;
+    for (Edge e : g_.edges()) {
+      Point p = e.node1().position(), q = e.node2().position();
+      if (!is_inside(p) && !is_inside(q)) continue;
+      energy -= spring_energy(norm(p - q), e.value());
+      if (is_inside(p)) p = surface(b, p);
+      if (is_inside(q)) q = surface(b, q);
+      energy += spring_energy(norm(p - q), e.value());
+    }
+    add(what + "puts " + it_or_them(n) + " onto its surface, which gives " +
+        short_text(energy) + " J to the springs; move it");
+  }
+
+  /** A ball that no node is inside of, but whose inner half is cut by quads:
+   * the cloth is on both of its sides. */
+  void across(const Ball& b, const std::string& name, bool solid) {
+    std::size_t n = 0;
+    for (const Quad& q : mesh_.quads) {
+      double least = b.radius;
+      for (const Triangle& t : halves(mesh_, q))
+        least = std::min(least, distance(b.center, t));
+      n += least < b.radius / 2;
+    }
+    if (n == 0) return;
+    add(name + " starts in " + count_of(n, "quad") + ", between the nodes: " +
+        (solid ? "none is pushed" : "none is taken away") +
+        "; move it, or take a larger radius or a finer grid");
+  }
+
+  void fits_through(const Ball& b, const std::string& name) {
+    constexpr double stretched = 1.5;
+    const Wide now = wider_than(b.radius);
+    const Wide wide = now.quads > 0 ? now : wider_than(b.radius / stretched);
+    if (wide.quads == 0) return;
+    add(name + " fits through the openings of " + of_all(wide.quads) +
+        (now.quads > 0 ? ""
+                       : " where springs are stretched by " +
+                             CME212::percent(b.radius / wide.most - 1)) +
+        ": their middle is up to " + short_text(wide.most) +
+        " m from the nearest node, and it is nodes that it pushes; take a "
+        "radius above " +
+        short_text(stretched * wide.most) + " m, or a finer grid");
+  }
+
+  void passes_itself(const Distance& d) {
+    const Wide wide = wider_than(d.thickness);
+    if (wide.quads == 0) return;
+    add("--self-collision \"" + to_words(d) + "\" does not close " +
+        of_all(wide.quads) + ", where a node may be " + short_text(wide.most) +
+        " m from the nearest one: the cloth passes through itself there; "
+        "take a thickness above that, 0.71 times the side of a square");
+  }
+
+  /** A ball that jumps over nodes pushes none of them. */
+  void too_fast(const Solid& s) {
+    const double speed = norm(s.motion.velocity), r = s.ball.radius;
+    if (speed * dt_ <= r / 2) return;
+    add("--sphere moves " + short_text(speed * dt_) +
+        " m a step, more than half of its radius, " + short_text(r) +
+        " m: nodes may tunnel through it; use --dt " +
+        short_text(r / 2 / speed));
+  }
+};
+
+}  // namespace
+
+double opening(const PointsAndQuads& mesh, const Quad& q) {
+  const auto [s, t] = halves(mesh, q);
+  return std::max(opening(s), opening(t));
+}
+
+std::vector<std::string> warnings(const Model& m, const PointsAndQuads& mesh,
+                                  const Cloth& g, double dt) {
+  return Finder(m, mesh, g, dt).all();
+}
+
+}  // namespace lab
