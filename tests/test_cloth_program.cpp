@@ -126,23 +126,23 @@ TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
   Result r = run(grid3 + "--headless --every 1 --csv " + path("e.csv") +
                  " --out " + path("end.nodes"));
   EXPECT_EQ(r.status, 3);
-  EXPECT_NE(r.err.find("cloth: diverged in step 16 with dt = 0.001 s, "
+  EXPECT_NE(r.err.find("cloth: diverged in step 14 with dt = 0.001 s, "
                        "method symplectic-euler: node "),
             std::string::npos)
       << r.err;
-  EXPECT_GT(number(r.err, " moves at ", " m/s, its spring to node "), 100);
+  EXPECT_GT(number(r.err, " moves at ", " m/s, its spring to node "), 5);
   const double rest = number(r.err, " times its rest length of ", " m; the");
   EXPECT_TRUE(std::abs(rest - 1 / 99.) < 1e-6 ||
               std::abs(rest - std::sqrt(2) / 99) < 1e-6);
   const double times =
-      number(r.err, "t = 0.015 s; dt is ", " times the stability limit (");
+      number(r.err, "t = 0.013 s; dt is ", " times the stability limit (");
   const double limit = number(r.err, " times the stability limit (",
                               " s in this configuration, symplectic-euler): ");
   EXPECT_NEAR(times * limit, 0.001, 1e-5);
   EXPECT_GT(times, 1.2);  // flat it would be sqrt(8 K N)/2000
   EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 10000u);
   auto table = rows(dir / "e.csv");
-  EXPECT_EQ(table.size(), 16u);
+  EXPECT_EQ(table.size(), 14u);
   for (const auto& row : table)
     for (double a : row) EXPECT_TRUE(std::isfinite(a));
   // What it advises works.

@@ -159,13 +159,13 @@ TEST(SafeStep, NeverDivergesInRandomScenes) {
                    largest_gamma(s.g, s.drag));
     if (limit == no_limit) continue;  // nothing is left that swings
     const double dt = share * limit;
-    DivergenceGuard guard(s.g, grav);
+    DivergenceGuard guard(s.g, grav, dt);
     auto made = method.make();
     const unsigned before = s.g.num_nodes();
     bool good = true;
     for (int n = 0; n < 1000 && good; ++n, ++steps) {
       made->step(s.g, n * dt, dt, force, *s.constraint);
-      good = n % 10 != 9 || guard.good(s.g);
+      good = n % 10 != 9 || guard.accept(s.g);
     }
     torn += s.g.num_nodes() < before;
     diverged[method.info.name] += !good;

@@ -70,7 +70,7 @@ void cheap_estimate(benchmark::State& state) {
 
 void guard_look(benchmark::State& state) {
   Course c(state);
-  DivergenceGuard guard(c.g, grav);
+  DivergenceGuard guard(c.g, grav, 0.001);
   for (auto _ : state) benchmark::DoNotOptimize(guard.accept(c.g));
 }
 

@@ -76,8 +76,9 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   using CME212::short_text;
   Start s(p);
   std::unique_ptr<DivergenceGuard> guard;
-  if (guarded) guard = std::make_unique<DivergenceGuard>(s.cloth, p.gravity);
   const double dt = p.t_end / double(steps);
+  if (guarded)
+    guard = std::make_unique<DivergenceGuard>(s.cloth, p.gravity, dt);
   Outcome out;
   method.restart();
   CME212::Clock clock;

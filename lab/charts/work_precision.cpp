@@ -276,7 +276,7 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
                                               : entry->info.sweeps / 2. / omega;
     if (entry->info.name == std::string_view(DormandPrince::info.name))
       method = std::make_unique<DormandPrince>(1e-4), dt = 0.02;
-    DivergenceGuard guard(s.cloth, p.gravity);
+    DivergenceGuard guard(s.cloth, p.gravity, dt);
     const auto steps = static_cast<long long>(std::ceil(p.t_end / dt));
     const long long every = std::max(1LL, steps / 500);
     dt = p.t_end / double(steps);

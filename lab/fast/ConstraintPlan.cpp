@@ -4,6 +4,8 @@
 #include <cmath>
 #include <typeinfo>
 
+#include "lab/fast/Energy.hpp"
+
 namespace lab {
 
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
@@ -118,18 +120,34 @@ class Tear final : public Round<SweptConstraint> {
   void operator()(Cloth& g, double /*t*/) const override {
     for_each_violating(
         g, 0, g.node_slots(), [this](const Point& p) { return ball_.holds(p); },
-        [&g](Node n) { g.remove_node(n); });
+        [&](Node n) {
+          moment_ += n.value().mass * n.position().z;
+          g.remove_node(n);
+        });
   }
+  Exchange exchange() const override { return {0, moment_}; }
+
+ private:
+  mutable double moment_ = 0;
 };
 
 /** Of which nothing is known. */
 class Called final : public SweptConstraint {
  public:
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
-  void operator()(Cloth& g, double t) const override { (*c_)(g, t); }
+  void operator()(Cloth& g, double t) const override {
+    const auto version = g.version();
+    const double before = moment_of(g);
+    (*c_)(g, t);
+    if (g.version() != version) moment_ += before - moment_of(g);
+  }
+  Exchange exchange() const override { return {0, moment_}; }
 
  private:
   std::shared_ptr<const ZeroConstraint> c_;
+  mutable double moment_ = 0;
+
+  static double moment_of(const Cloth& g) { return gravitational_energy(g, 1); }
 };
 
 }  // namespace
@@ -222,6 +240,12 @@ double ConstraintPlan::thinnest() const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& term : terms_) least = std::min(least, term->thinnest());
   return least;
+}
+
+Exchange ConstraintPlan::exchange() const {
+  Exchange all;
+  for (const auto& term : terms_) all += term->exchange();
+  return all;
 }
 
 void WatchedConstraint::operator()(Cloth& g, double t) const {

@@ -33,6 +33,17 @@ struct Place {
 };
 using PlaceVisitor = std::function<void(Node, const Place&)>;
 
+/** What a constraint gave to a cloth and took from it, summed up over all calls
+ * since it was made. */
+struct Exchange {
+  double work = 0;    ///< done by what moves: impulse times its velocity [J]
+  double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
+  Exchange& operator+=(const Exchange& b) {
+    work += b.work, moment += b.moment;
+    return *this;
+  }
+};
+
 /** A constraint that knows more than its call: what methods and the guard ask
  * for. Only the laboratory uses it; the defaults are right for every
  * constraint. */
@@ -68,16 +79,19 @@ class SweptConstraint : public ZeroConstraint {
   virtual double thinnest() const {
     return std::numeric_limits<double>::infinity();
   }
+  /** Without the work of what moves held nodes: EnergyBalance sees that. */
+  virtual Exchange exchange() const { return {}; }
 };
 
 /** A constraint that projects each node independently: its children give
- * project(). */
+ * project(). One that sums up what it does says that it is not nodewise while
+ * it has something to sum up: then no two threads do. */
 class NodewiseConstraint : public SweptConstraint {
  public:
   void operator()(Cloth& g, double t) const final {
     project(g, t, 0, g.node_slots());
   }
-  bool nodewise() const final { return true; }
+  bool nodewise() const override { return true; }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override = 0;
 };
@@ -142,6 +156,7 @@ class ConstraintPlan {
   double next_kink(double t) const;
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
   double thinnest() const;
+  Exchange exchange() const;
 
   // The held nodes; each takes O(of them), as each_place().
   /** Call @a use(node) for each. */
@@ -198,6 +213,7 @@ class WatchedConstraint final : public SweptConstraint {
     return c_.first_hit(from, to);
   }
   double thinnest() const override { return c_.thinnest(); }
+  Exchange exchange() const override { return c_.exchange(); }
 
  private:
   ConstraintPlan c_;

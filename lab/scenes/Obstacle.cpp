@@ -15,14 +15,15 @@ Point kick(const Point& u, const Point& out, double friction) {
   return in * out + (slide > 0 ? along * (-brake / slide) : Point());
 }
 
-void touch(Node n, double depth, const Point& out, const Point& velocity,
-           double friction) {
+double touch(Node n, double depth, const Point& out, const Point& velocity,
+             double friction) {
   const Point change = kick(n.value().vel - velocity, out, friction);
   const double in = dot(change, out);
   n.position() += depth * out;
   n.value().vel += change;
   if (in > std::numeric_limits<Real>::min())
     n.position() += depth * ((change - in * out) / in);
+  return n.value().mass * dot(change, velocity);
 }
 
 }  // namespace contact
@@ -60,7 +61,9 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
   for_each_violating(
       g, first, last, [&](const Point& p) { return height(p) < 0; },
       [&](Node n) {
-        contact::touch(n, -height(n.position()), normal_, velocity, friction_);
+        const double work = contact::touch(n, -height(n.position()), normal_,
+                                           velocity, friction_);
+        if (!nodewise()) work_ += work;
       });
 }
 
@@ -83,7 +86,9 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
         const double distance = norm(from_center);
         const Point out =
             distance > 0 ? from_center / distance : Point(0, 0, 1);
-        contact::touch(n, ball.radius - distance, out, velocity, friction_);
+        const double work =
+            contact::touch(n, ball.radius - distance, out, velocity, friction_);
+        if (!nodewise()) work_ += work;
       });
 }
 

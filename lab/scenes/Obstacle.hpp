@@ -32,9 +32,10 @@ Point kick(const Point& u, const Point& out, double friction);
  * the speed at which it went in. So it also goes back along the surface by the
  * kick times that time, which is what it slid too far, and never more than
  * friction times depth. Without this a node at rest on a slope of angle a
- * creeps by g sin a dt^2 in each step; with it, it stands. */
-void touch(Node n, double depth, const Point& out, const Point& velocity,
-           double friction);
+ * creeps by g sin a dt^2 in each step; with it, it stands.
+ * @return the work done on the node by what moves [J]: impulse . velocity */
+double touch(Node n, double depth, const Point& out, const Point& velocity,
+             double friction);
 
 }  // namespace contact
 
@@ -73,13 +74,16 @@ class WallConstraint : public NodewiseConstraint {
    * @param friction coefficient, >= 0 */
   WallConstraint(const Point& at, const Point& normal,
                  const Motion& motion = {}, double friction = 0);
+  bool nodewise() const override { return motion_.velocity == Point(); }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
+  Exchange exchange() const override { return {work_, 0}; }
 
  private:
   Point at_, normal_;
   Motion motion_;
   double friction_;
+  mutable double work_ = 0;  // [J]; by one thread, while it moves
 };
 
 /** A solid ball that may move. @post no node lies inside by more than
@@ -98,16 +102,19 @@ class BallConstraint : public NodewiseConstraint {
   /** Of the ball, while it moves [m/s]. */
   double speed() const { return norm(motion_.velocity); }
 
+  bool nodewise() const override { return speed() == 0; }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
   std::optional<Point> first_hit(const Point& from,
                                  const Point& to) const override;
   double thinnest() const override;
+  Exchange exchange() const override { return {work_, 0}; }
 
  private:
   Ball ball_;
   Motion motion_;
   double friction_;
+  mutable double work_ = 0;  // [J]; by one thread, while it moves
 };
 
 /** Edges that break. @post no edge is longer than (1 + limit) times its rest

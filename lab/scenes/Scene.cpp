@@ -11,6 +11,10 @@
 
 namespace lab {
 
+namespace {
+constexpr double no_step = 1e-9;  // of a step
+}
+
 Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
     : recipe_(std::move(recipe)),
       step_(step),
@@ -23,44 +27,60 @@ Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}
 void Scene::restart() {
   cloth_.clear();
   recipe_.build(cloth_);
-  force_ = recipe_.force(cloth_);
+  CombinedForces force = recipe_.force(cloth_);
+  force_.emplace(force);
   watched_.emplace(recipe_.constraint(cloth_));
   constraint_ = *watched_;
-  guard_.emplace(cloth_, recipe_.gravity);
+  balance_.emplace(cloth_, 0, std::move(force), constraint_, recipe_.gravity);
   method_->restart();
   clock_ = {.dt = step_.dt};
   safe_omega_ = -1;
   failure_.clear();
   worst_.reset();
-  if (!step_.fixed()) choose_step();
+  if (!is_finite()) {
+    worst_.emplace(cloth_);
+    failure_ = "the energy at the start is not finite: " + worst_->text(cloth_);
+  } else if (!step_.fixed()) {
+    choose_step();
+  }
+  guard_.emplace(cloth_, recipe_.gravity, clock_.dt);
   keep_clock();
 }
 
-bool Scene::step() {
+bool Scene::step(double t_end) {
+  t_end_ = t_end;
   if (step_.rule == StepRule::sharp && clock_.steps > 0 &&
       clock_.steps % sharp_interval == 0) {
-    if (!check()) return false;
+    if (!look()) return false;
     choose_step();
     keep_clock();  // with the new dt, in case that these steps are replayed
   }
   if (!advance()) return replay(clock_.steps + 1);
   if (clock_.steps - checked_.steps >= guard_interval ||
-      cloth_.version() != version_)
-    return check();
+      cloth_.version() != version_ || done(t_end))
+    return look();
   return true;
 }
 
 bool Scene::check() {
   if (!failure_.empty()) return false;
-  if (clock_.steps == checked_.steps) return true;
-  if (!guard_->accept(cloth_)) return replay(clock_.steps);
+  return is_finite() || replay(clock_.steps);
+}
+
+bool Scene::is_finite() const {
+  return std::isfinite(energies(cloth_, recipe_.gravity).total());
+}
+
+/** Of the guard. */
+bool Scene::look() {
+  if (!guard_->accept(cloth_, balance_->flow())) return replay(clock_.steps);
   keep_clock();
   return true;
 }
 
 bool Scene::run_to(double t_end, const std::function<void()>& after) {
   while (!done(t_end)) {
-    step();
+    step(t_end);
     after();
   }
   return check();
@@ -73,6 +93,7 @@ double Scene::safe_limit(const MethodEntry& method) {
 
 void Scene::keep_clock() {
   checked_ = clock_;
+  flow_ = balance_->flow();
   version_ = cloth_.version();
   watch_paths();
 }
@@ -106,13 +127,23 @@ void Scene::choose_step() {
 
 /** One step; no look at what came out.  @return false if it can't be made */
 bool Scene::advance() {
+  const double dt = clock_.dt;
+  const double end = std::min(t_end_, constraint_.next_kink(time()));
+  const double left = (end - time()) / dt;  // in steps
+  const bool last = left < 1 + no_step, whole = std::abs(left - 1) < no_step;
+  const double h = whole || left > 2 - no_step ? dt
+                   : last                      ? end - time()
+                                               : (end - time()) / 2;
+  const double then = last ? end : time() + h;
   try {
-    method_->step(cloth_, time(), clock_.dt, *force_, constraint_);
+    method_->step(cloth_, time(), h, *force_, constraint_);
   } catch (const StepError& e) {
     error_ = e.what();
     return false;
   }
   ++clock_.steps;
+  if (last || h != dt) clock_.set_time(then);
+  balance_->follow(cloth_, time(), constraint_);
   return true;
 }
 
@@ -122,8 +153,7 @@ bool Scene::replay(long long last) {
   rewind();
   while (clock_.steps < last) {
     if (!advance()) return fail("failed (" + error_ + ")");
-    if (!guard_->good(cloth_)) return fail("diverged");
-    guard_->keep(cloth_);
+    if (!guard_->accept(cloth_, balance_->flow())) return fail("diverged");
     keep_clock();
   }
   return true;  // what was torn meanwhile is gone, so it may go well now
@@ -132,6 +162,7 @@ bool Scene::replay(long long last) {
 void Scene::rewind() {
   guard_->restore(cloth_);
   clock_ = checked_;
+  balance_->resume(cloth_, time(), constraint_, flow_);
   method_->restart();
   watch_paths();
 }

@@ -34,27 +34,30 @@ class Scene {
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
   void restart();
 
-  /** One step of dt(). The guard looks at every 32nd only, and at those that
-   * change the graph: see check().
+  /** One step of dt(), or less: it never passes @a t_end [s], where the run is
+   * to end, and what is left for two steps they share. Less than 1e-9 dt() is
+   * no step: then the time is t_end.
+   *
+   * The guard looks at every 32nd state, at those after which the graph is
+   * another, and at that of t_end; at no other, so that nobody who looks at a
+   * run changes it. If it finds one that is not good the steps since its last
+   * look are made again, one by one, to find the one that failed.
    * @return false if the run failed: then failure() says where and why, and the
    * cloth and the clock are those of the last good state.
-   * @pre failure().empty()
+   * @pre failure().empty(), time() < t_end
    * Throws std::invalid_argument if the method can't do with this force. */
-  bool step();
+  bool step(double t_end = no_limit);
 
-  /** Make sure that the present state is good: whoever shows it or writes it
-   * down asks for that first. If it is not, the steps since the last check are
-   * made again, one by one, to find the one that failed.
-   * @return as step() */
+  /** Make sure that all numbers of the present state are finite: whoever shows
+   * it or writes it down asks for that first.  @return as step()
+   * O(N + springs) */
   bool check();
 
-  /** True at the end of a run to @a t_end [s], to round-off, so that 5000 steps
-   * of 0.001 s are 5 s; and if the run failed. */
-  bool done(double t_end) const {
-    return !failure_.empty() || time() >= t_end * (1 - 1e-12);
-  }
+  /** True at the end of a run to @a t_end [s], which it reaches to round-off;
+   * and if the run failed. */
+  bool done(double t_end) const { return !failure_.empty() || time() >= t_end; }
   /** Step until done(@a t_end), with a call of @a after() after each step, and
-   * after the one that failed, if one did. The state at the end is checked.
+   * after the one that failed, if one did.
    * @return as step()   Throws as step(), and what @a after throws. */
   bool run_to(double t_end, const std::function<void()>& after);
   bool run_to(double t_end) {
@@ -67,11 +70,17 @@ class Scene {
   const Recipe& recipe() const { return recipe_; }
   const MethodInfo& method() const { return entry_.info; }
   StepRule step_rule() const { return step_.rule; }
-  /** The next step [s]; it changes with StepRule::sharp only. */
+  /** The next step [s], but for the last ones; it changes with StepRule::sharp
+   * only. */
   double dt() const { return clock_.dt; }
   /** Steps done, and the time [s] reached. */
   long long steps() const { return clock_.steps; }
   double time() const { return clock_.time(); }
+  /** Steps that can't be taken back any more: those until the last state that
+   * the guard found to be good. */
+  long long settled_steps() const { return checked_.steps; }
+  /** What came into its energy and went out since the start. */
+  const EnergyFlow& flow() const { return balance_->flow(); }
   /** Why step() returned false; empty before. And where. */
   const std::string& failure() const { return failure_; }
   const std::optional<WorstPlace>& failed_at() const { return worst_; }
@@ -92,8 +101,9 @@ class Scene {
     double dt = 0, from = 0;  // [s]
     long long steps = 0, from_steps = 0;
     double time() const { return from + double(steps - from_steps) * dt; }
+    void set_time(double t) { from = t, from_steps = steps; }
     void set_dt(double next) {
-      from = time(), from_steps = steps;
+      set_time(time());
       dt = next;
     }
   };
@@ -105,9 +115,12 @@ class Scene {
   std::optional<ForcePlan> force_;
   std::optional<WatchedConstraint> watched_;
   ConstraintPlan constraint_;
+  std::optional<EnergyBalance> balance_;
   std::optional<DivergenceGuard> guard_;
   std::unique_ptr<Method> method_;
+  double t_end_ = no_limit;  // of the present step [s]
   Clock clock_, checked_;    // checked_: when the guard kept the state
+  EnergyFlow flow_;          // then
   std::size_t version_ = 0;  // of the cloth, then
   double safe_omega_ = -1;   // [1/s]; negative: not known yet
   SharpOmega sharp_;
@@ -117,7 +130,9 @@ class Scene {
   void keep_clock();
   void watch_paths();
   void choose_step();
+  bool is_finite() const;
   bool advance();
+  bool look();
   bool replay(long long last);
   void rewind();
   bool fail(const std::string& what);

@@ -147,6 +147,7 @@ class SelfCollision : public SweptConstraint {
     return others_.first_hit(from, to);
   }
   double thinnest() const override { return others_.thinnest(); }
+  Exchange exchange() const override { return others_.exchange(); }
 
  private:
   struct Pair {

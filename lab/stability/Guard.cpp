@@ -1,35 +1,37 @@
 #include "lab/stability/Guard.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "CME212/BoundingBox.hpp"
 #include "lab/fast/Energy.hpp"
 
 namespace lab {
 
-DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity)
+DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt)
     : gravity_(gravity) {
-  CME212::BoundingBox box;
-  for (Node n : g.nodes()) box |= n.position();
-  if (!box.empty()) top_ = box.max().z;
-  double size = box.diagonal() > 0 ? box.diagonal() : 1;
-  double start = kinetic_energy(g) + elastic_energy(g);
-  double scale = start + total_mass(g) * std::abs(gravity) * size;
-  for (Edge e : g.edges()) scale += spring_energy(1.1 * e.value().L, e.value());
-  limit_ = start + heights_energy(g) + 3 * scale;
+  const Energies e = energies(g, gravity);
+  start_ = e.kinetic + e.elastic, height_ = e.gravitational;
+  const double fall = gravity * dt;  // [m/s]
+  floor_ = total_mass(g) * fall * fall;
+  const double strain =
+      std::max(1e-6, std::sqrt(double(std::numeric_limits<Real>::epsilon())));
+  for (Edge e : g.edges())
+    floor_ += spring_energy((1 + strain) * e.value().L, e.value());
   keep(g);
 }
 
-bool DivergenceGuard::accept(const Cloth& g) {
-  if (!good(g, ++checks_ % 4 == 0)) return false;
+bool DivergenceGuard::accept(const Cloth& g, const EnergyFlow& flow) {
+  const Energies e = energies(g, gravity_);
+  if (!std::isfinite(e.total())) return false;
+  const double released =
+      std::max(released_, height_ - e.gravitational - flow.removed);
+  const double work = std::max(work_, flow.work);
+  const double available = start_ + released + work + floor_;
+  if (!(e.kinetic + e.elastic <= margin * available)) return false;
+  released_ = released, work_ = work;
   keep(g);
   return true;
-}
-
-bool DivergenceGuard::good(const Cloth& g, bool elastic) const {
-  double energy = kinetic_energy(g) + heights_energy(g);
-  if (elastic) energy += elastic_energy(g);
-  return energy <= limit_;  // not so if it is NaN
 }
 
 void DivergenceGuard::keep(const Cloth& g) {
@@ -45,10 +47,6 @@ void DivergenceGuard::restore(Cloth& g) const {
     n.position() = position_[n.id()];
     n.value() = value_[n.id()];
   }
-}
-
-double DivergenceGuard::heights_energy(const Cloth& g) const {
-  return gravitational_energy(g, gravity_) - total_mass(g) * gravity_ * top_;
 }
 
 }  // namespace lab

@@ -3,32 +3,36 @@
  * DivergenceGuard: stops a run that gains energy from nothing. */
 #include <vector>
 
-#include "mass_spring.hpp"
+#include "lab/stability/EnergyBalance.hpp"
 
 namespace lab {
 
 /** Watches the energy of a run and keeps the last state that was good.
  *
- * Gravity and springs can't raise the energy of a cloth; a method that is
- * unstable does so without bound. A state is good while it is finite and
- *   kinetic + elastic + gravitational energy
- *     <=  total energy at the start + 3 S,
- * S = kinetic and elastic energy at the start + total weight times the
- * diagonal of the cloth + the energy of all springs stretched by 10 %. The
- * margin is for what a stable method does: its energy oscillates, and a
- * constraint that moves a node stretches springs. */
+ * Kinetic and elastic energy of a cloth come from its start, from its weight
+ * as it falls, and from what moves it: together they are what is available. A
+ * method that is unstable gains energy from nothing, without bound. A state is
+ * good while its energy is finite and
+ *   kinetic + elastic  <=  margin (start + released + work + floor),
+ * start = kinetic and elastic energy at the start, released = the most
+ * gravitational energy that was less than at the start, work = the most done by
+ * what moves, floor = that of a free fall of one step, which is counted as
+ * speed before it is counted as height, and that of springs strained by
+ * round-off. Nothing in it grows with K or the size of the cloth. */
 class DivergenceGuard {
  public:
-  /** @param g The cloth at the start   @param gravity [m/s^2] */
-  DivergenceGuard(const Cloth& g, double gravity);
+  /** What a stable method's energy may exceed the available one by. That of
+   * an oscillation by Verlet is up to 1/(1 - y^2) times what it starts with, at
+   * y times the stability limit: 9 at 0.94. */
+  static constexpr double margin = 4;
 
-  /** True if the state of @a g is good; then it is kept. Elastic energy, which
-   * costs a sweep over the springs, is checked in every fourth call.
-   * O(N + springs/4) */
-  bool accept(const Cloth& g);
-  /** True if the state of @a g is good.
-   * @param elastic whether elastic energy counts */
-  bool good(const Cloth& g, bool elastic = true) const;
+  /** @param g The cloth at the start   @param gravity [m/s^2]
+   * @param dt the longest step of the run [s] */
+  DivergenceGuard(const Cloth& g, double gravity, double dt);
+
+  /** True if the state of @a g is good; then it is kept.  O(N + springs)
+   * @param flow into its energy since the start */
+  bool accept(const Cloth& g, const EnergyFlow& flow = {});
   /** Keep the state of @a g, good or not.  O(N) */
   void keep(const Cloth& g);
 
@@ -37,14 +41,11 @@ class DivergenceGuard {
   void restore(Cloth& g) const;
 
  private:
-  double gravity_, top_ = 0, limit_ = 0;
-  long checks_ = 0;
+  double gravity_, height_ = 0;     // height_: gravitational at the start [J]
+  double start_ = 0, floor_ = 0;    // [J]
+  double released_ = 0, work_ = 0;  // the most so far [J]
   std::vector<Point> position_;
   std::vector<NodeData> value_;
-
-  /** Gravitational energy [J], zero at the top of the cloth at the start, so
-   * that removing a node that hangs below takes little energy away. */
-  double heights_energy(const Cloth& g) const;
 };
 
 }  // namespace lab

@@ -19,15 +19,6 @@ namespace {
 
 constexpr const char* warning = "cloth: warning: ";
 
-struct Energies {
-  double kinetic, elastic, gravitational;
-  double total() const { return kinetic + elastic + gravitational; }
-};
-Energies energies(const Cloth& g, double gravity) {
-  return {kinetic_energy(g), elastic_energy(g),
-          gravitational_energy(g, gravity)};
-}
-
 }  // namespace
 
 Run::Run(Scene& scene, const Options& o)
@@ -39,7 +30,8 @@ Run::Run(Scene& scene, const Options& o)
 void Run::start() {
   progress_ = Progress(o_.quiet);
   seconds_ = 0;
-  rows_ = 0, last_row_ = -1;
+  rows_ = 0, last_row_ = settled_row_ = -1;
+  recent_.clear();
   if (o_.csv.empty()) return;
   csv_.emplace(o_.csv);
   csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,"
@@ -64,7 +56,7 @@ void Run::check() {
 }
 
 void Run::advance() {
-  scene_.step();
+  scene_.step(o_.model.t_end);
   look();
 }
 
@@ -76,10 +68,11 @@ void Run::to_end(const std::function<void()>& after) {
   check();
 }
 
-/** After a step. */
+/** After a step, which may have taken others back. */
 void Run::look() {
+  settle_rows(scene_.settled_steps());
   const bool at_end = scene_.done(o_.model.t_end);
-  if (at_end || (csv_ && scene_.steps() % o_.every == 0)) scene_.check();
+  if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
   tell_failure();
   if (scene_.steps() % o_.every == 0 || at_end) add_row();
@@ -137,6 +130,7 @@ void Run::announce() const {
 
 int Run::finish() {
   progress_.end();
+  settle_rows(scene_.steps());
   std::exception_ptr error;
   auto write = [&error](auto how) {
     try {
@@ -188,12 +182,28 @@ void Run::add_row() {
   const Cloth& g = scene_.cloth();
   const Energies e = energies(g, o_.model.gravity);
   const Point c = center_of_mass(g);
-  auto& row = csv_->stream();
+  std::string row;
   for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
                    e.total(), double(c.x), double(c.y), double(c.z)})
-    row << CME212::to_text(a) << ',';
-  row << g.num_nodes() << ',' << g.num_edges() << '\n';
-  ++rows_;
+    row += CME212::to_text(a) + ',';
+  recent_.push_back({last_row_, row + std::to_string(g.num_nodes()) + ',' +
+                                    std::to_string(g.num_edges()) + '\n'});
+}
+
+/** Forget the rows of steps that were taken back; write those of the first
+ * @a settled steps, which can't be taken back any more. */
+void Run::settle_rows(long long settled) {
+  if (last_row_ > scene_.steps()) {
+    std::erase_if(recent_,
+                  [this](const Row& r) { return r.step > scene_.steps(); });
+    last_row_ = recent_.empty() ? settled_row_ : recent_.back().step;
+  }
+  std::erase_if(recent_, [&](const Row& r) {
+    if (r.step > settled) return false;
+    csv_->stream() << r.text;
+    ++rows_, settled_row_ = r.step;
+    return true;
+  });
 }
 
 void Run::tell_failure() {

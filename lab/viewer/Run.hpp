@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "CME212/OutputFile.hpp"
 #include "lab/Progress.hpp"
@@ -55,14 +56,21 @@ class Run {
   const Options& o_;
   Progress progress_;
   std::optional<CME212::OutputFile> csv_, out_;
-  long long rows_ = 0, last_row_ = -1;
-  std::string kept_;    // in words
-  double seconds_ = 0;  // until the last step
+  struct Row {
+    long long step;
+    std::string text;
+  };
+  std::vector<Row> recent_;  // of steps that may be taken back
+  long long rows_ = 0;       // written
+  long long last_row_ = -1, settled_row_ = -1;  // steps: of all, of those
+  std::string kept_;                            // in words
+  double seconds_ = 0;                          // until the last step
   bool warned_ = false, told_ = false;
 
   void start();
   void look();
   void add_row();
+  void settle_rows(long long settled);
   void show_progress();
   void tell_failure();
   void warn_of_missed();

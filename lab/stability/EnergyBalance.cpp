@@ -1,0 +1,52 @@
+#include "lab/stability/EnergyBalance.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lab/fast/Energy.hpp"
+
+namespace lab {
+
+Energies energies(const Cloth& g, double gravity) {
+  return {kinetic_energy(g), elastic_energy(g),
+          gravitational_energy(g, gravity)};
+}
+
+EnergyBalance::EnergyBalance(const Cloth& g, double t, CombinedForces force,
+                             const ConstraintPlan& constraint, double gravity)
+    : force_(std::move(force)), gravity_(gravity) {
+  constraint.each_held(g, [this](Node n) { held_.push_back({n, {}, {}, {}}); });
+  std::ranges::sort(held_, {}, &Held::node);
+  const auto twice = std::ranges::unique(held_, {}, &Held::node);
+  held_.erase(twice.begin(), twice.end());
+  resume(g, t, constraint, {});
+}
+
+void EnergyBalance::follow(const Cloth& g, double t,
+                           const ConstraintPlan& constraint) {
+  const Exchange now = constraint.exchange();
+  flow_.work += now.work - seen_.work;
+  flow_.removed += gravity_ * (now.moment - seen_.moment);
+  seen_ = now;
+  for (Held& h : held_) {
+    if (!g.has_node(h.node)) continue;
+    const Point x = h.node.position(), v = h.node.value().vel;
+    if (x == h.place && v == h.velocity) continue;
+    const Point f = force_(h.node, t);
+    flow_.work += 0.5 * h.node.value().mass * (normSq(v) - normSq(h.velocity)) -
+                  0.5 * dot(f + h.force, x - h.place);
+    h = {h.node, x, v, f};
+  }
+}
+
+void EnergyBalance::resume(const Cloth& g, double t,
+                           const ConstraintPlan& constraint,
+                           const EnergyFlow& flow) {
+  flow_ = flow;
+  seen_ = constraint.exchange();
+  for (Held& h : held_)
+    if (g.has_node(h.node))
+      h = {h.node, h.node.position(), h.node.value().vel, force_(h.node, t)};
+}
+
+}  // namespace lab

@@ -1,0 +1,64 @@
+#pragma once
+/** @file EnergyBalance.hpp
+ * What a cloth's energy consists of, and what came in and went out. */
+#include <vector>
+
+#include "lab/fast/ConstraintPlan.hpp"
+
+namespace lab {
+
+/** The energy of a cloth [J]. */
+struct Energies {
+  double kinetic = 0, elastic = 0;
+  double gravitational = 0;  ///< 0 at z = 0
+  double total() const { return kinetic + elastic + gravitational; }
+};
+/** Those of @a g.  @param gravity [m/s^2]  O(N + springs) */
+Energies energies(const Cloth& g, double gravity);
+
+/** What came into a cloth's energy and what left it, since the start [J]. */
+struct EnergyFlow {
+  double work = 0;     ///< done by pins and obstacles that move
+  double removed = 0;  ///< gravitational energy of nodes that were removed
+  double drag = 0;     ///< taken by linear drag, where that is asked for
+};
+
+/** Follows what comes into a cloth's energy and what leaves it, step by step.
+ *
+ * Contact, friction and tearing only lower kinetic and elastic energy, so
+ *   b = energies().total() - work + removed + drag
+ * of the cloth itself never rises: if it does, that is the method's error. Work
+ * of a moving obstacle: the impulse on a node times the obstacle's velocity;
+ * of a moving pin: -F . dx, the mean of the force F on the node before and
+ * after a step, and what the node gains in kinetic energy. */
+class EnergyBalance {
+ public:
+  /** @param g at the start, time @a t   @param gravity [m/s^2]
+   * @param force all forces on a node */
+  EnergyBalance(const Cloth& g, double t, CombinedForces force,
+                const ConstraintPlan& constraint, double gravity);
+
+  /** Account for a step that ended at time @a t.
+   * O(held nodes + springs at those that moved) */
+  void follow(const Cloth& g, double t, const ConstraintPlan& constraint);
+  /** Add the energy that linear drag took [J]. */
+  void add_drag(double loss) { flow_.drag += loss; }
+  const EnergyFlow& flow() const { return flow_; }
+
+  /** Go on from a state of @a g at time @a t with its @a flow. */
+  void resume(const Cloth& g, double t, const ConstraintPlan& constraint,
+              const EnergyFlow& flow);
+
+ private:
+  struct Held {
+    Node node;
+    Point place, velocity, force;  // after the last step [m, m/s, N]
+  };
+  CombinedForces force_;
+  double gravity_;
+  std::vector<Held> held_;
+  Exchange seen_;  // of the constraint, until the last step
+  EnergyFlow flow_;
+};
+
+}  // namespace lab
