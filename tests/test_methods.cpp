@@ -95,8 +95,9 @@ struct Names {
     return name;
   }
 };
-using All = ::testing::Types<ForwardEuler, SymplecticEuler, Verlet, Yoshida4,
-                             Pefrl, Srkn6b, Srkn11b, Rk4, DormandPrince>;
+using All =
+    ::testing::Types<ForwardEuler, SymplecticEuler, Verlet, Respa, Yoshida4,
+                     Pefrl, Srkn6b, Srkn11b, Rk4, DormandPrince>;
 TYPED_TEST_SUITE(Explicit, All, Names);
 
 // T = 1 with w = 2: no multiple of the half period pi/2, where first order
@@ -312,7 +313,7 @@ TEST(Methods, AreFoundByTheirNames) {
 template <typename M>
 class Symmetric : public ::testing::Test {};
 using SymmetricOnes =
-    ::testing::Types<Verlet, Yoshida4, Pefrl, Srkn6b, Srkn11b>;
+    ::testing::Types<Verlet, Respa, Yoshida4, Pefrl, Srkn6b, Srkn11b>;
 TYPED_TEST_SUITE(Symmetric, SymmetricOnes, Names);
 
 /** A grid in motion, without pins. */

@@ -158,9 +158,9 @@ TEST(Problem, ItsCountersHideNothing) {
 
 // A method that keeps its last force takes one sweep more in its first step.
 TEST(Problem, CountsTheSweepsThatMethodsDeclare) {
-  const std::set<std::string> keeps = {"verlet",           "yoshida4",
-                                       "srkn6b",           "srkn11b",
-                                       "augmented-verlet", "dormand-prince"};
+  const std::set<std::string> keeps = {
+      "verlet",  "yoshida4",         "respa",         "srkn6b",
+      "srkn11b", "augmented-verlet", "dormand-prince"};
   // What they take depends on the force; see their MethodInfo.
   const std::set<std::string> newton = {"implicit-midpoint", "tr-bdf2"};
   Problem p = problem("grid0");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/methods/Methods.hpp"
 
 namespace lab {
 
@@ -51,7 +52,7 @@ struct Failure {
 };
 
 /** One failure for each method, in the order of `methods`. */
-extern const std::array<Failure, 14> failures;
+extern const std::array<Failure, methods.size()> failures;
 
 /** @pre there is a method called @a name */
 const Failure& failure_of(std::string_view name);

@@ -1,5 +1,6 @@
 #include "lab/fast/ForcePlan.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <type_traits>
 #include <typeinfo>
@@ -153,6 +154,10 @@ std::optional<int> ForcePlan::spring_multiplicity() const {
     sum += *some;
   }
   return sum;
+}
+
+int ForcePlan::springs() const {
+  return int(std::ranges::count(terms_, Kind::springs, &Term::kind));
 }
 
 }  // namespace lab

@@ -98,6 +98,9 @@ class ForcePlan {
    * than that many K, and a node's force may be evaluated as soon as its
    * neighbors have moved. */
   std::optional<int> spring_multiplicity() const;
+  /** Number of times the edge springs occur as such (MassSpringForce), whatever
+   * else there is. */
+  int springs() const;
 
  private:
   enum class Kind { weight, springs, swept, call };

@@ -23,6 +23,9 @@ struct MethodInfo {
   const char* good_for;
   const char* fails_when;
   bool adaptive = false;  ///< steps inside a step: dt does not bound them
+  /** Takes stiff springs in inner steps: limit is that of the others, see
+   * soft_stiffness(). */
+  bool multirate = false;
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 

@@ -11,6 +11,7 @@
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/ImplicitMidpoint.hpp"
 #include "lab/methods/Pefrl.hpp"
+#include "lab/methods/Respa.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Srkn.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
@@ -21,20 +22,15 @@
 
 namespace lab {
 
-inline constexpr std::array methods = {entry_of<ForwardEuler>(),
-                                       entry_of<SymplecticEuler>(),
-                                       entry_of<Verlet>(),
-                                       entry_of<Yoshida4>(),
-                                       entry_of<Pefrl>(),
-                                       entry_of<Srkn6b>(),
-                                       entry_of<Srkn11b>(),
-                                       entry_of<Rk4>(),
-                                       entry_of<DormandPrince>(),
-                                       entry_of<ImplicitEuler>(),
-                                       entry_of<ImplicitMidpoint>(),
-                                       entry_of<TrBdf2>(),
-                                       entry_of<AugmentedVerlet>(),
-                                       entry_of<Xpbd>()};
+inline constexpr std::array methods = {
+    entry_of<ForwardEuler>(),  entry_of<SymplecticEuler>(),
+    entry_of<Verlet>(),        entry_of<Respa>(),
+    entry_of<Yoshida4>(),      entry_of<Pefrl>(),
+    entry_of<Srkn6b>(),        entry_of<Srkn11b>(),
+    entry_of<Rk4>(),           entry_of<DormandPrince>(),
+    entry_of<ImplicitEuler>(), entry_of<ImplicitMidpoint>(),
+    entry_of<TrBdf2>(),        entry_of<AugmentedVerlet>(),
+    entry_of<Xpbd>()};
 
 /** The method called @a name, or nullptr. */
 const MethodEntry* find_method(std::string_view name);

@@ -1,0 +1,76 @@
+#pragma once
+/** @file Respa.hpp
+ * r-RESPA: a multirate method, for a few stiff springs in a soft cloth. */
+#include <cstdint>
+#include <vector>
+
+#include "lab/methods/StiffSplit.hpp"
+#include "lab/methods/Verlet.hpp"
+
+namespace lab {
+
+/** The reversible reference system propagator algorithm, or impulse method:
+ * half a kick by all forces but the stiff springs; n Verlet steps of dt/n by
+ * the stiff springs alone; half a kick. Only nodes at stiff springs move in the
+ * inner steps, all others drift once. So a step takes one force evaluation.
+ *
+ * StiffSplit chooses the springs, from K/m, and n is the least with which dt/n
+ * is a quarter of Verlet's limit for them. Where springs are alike there are
+ * none, and it is Verlet, bit by bit. A spring whose K is changed counts as
+ * such after restart().
+ *
+ * Symmetric, symplectic, drag exact, as Splitting. dt is bounded by the soft
+ * part: dt omega < 2 for its frequencies, see soft_stiffness(). Below that it
+ * has resonances: where dt is close below a multiple of half a period of a
+ * stiff spring, the oscillation of that spring grows; per step by at most
+ * (dt omega_s)^2/(2 dt omega_f), omega_s^2 what the soft forces add to its
+ * omega_f^2.
+ * Source: M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992)
+ * 1990, doi:10.1063/1.463137; the resonances: J. A. Izaguirre, S. Reich, R. D.
+ * Skeel, J. Chem. Phys. 110 (1999) 9853, doi:10.1063/1.478995. */
+class Respa : public Method {
+ public:
+  static constexpr MethodInfo info = {
+      "respa",
+      2,
+      1,
+      2,
+      "Tuckerman, Berne, Martyna 1992",
+      "a few stiff springs in a soft cloth: dt by the soft ones",
+      "resonance: dt near half periods of a stiff spring, without drag",
+      false,
+      true};
+
+  double step(Cloth& g, double t, double dt, const ForcePlan& force,
+              const ConstraintPlan& constraint) override;
+  void restart() override { kept_for_ = nullptr, verlet_.restart(); }
+
+  /** Of the last step: what it split, and the n of above. */
+  const StiffSplit& split() const { return split_; }
+  int inner_steps() const { return inner_steps_; }
+
+ private:
+  Verlet verlet_;  // if there is nothing to split
+  Sweep sweep_;
+  StiffSplit split_;
+  int multiplicity_ = 0, inner_steps_ = 0;
+  std::vector<Point> soft_;          // [N], by node id, without drag
+  const Cloth* kept_for_ = nullptr;  // the cloth that split_ and soft_ are of
+  std::uint64_t kept_version_ = 0;
+  double kept_time_ = 0;
+  struct StiffNode {
+    Point x, v, f;
+    double per_mass;    // 1/m; 0 if held
+    double way, decay;  // of a drift
+  };
+  std::vector<StiffNode> stiff_;  // by index in split_.nodes
+
+  void find_split(const Cloth& g, const ForcePlan& force,
+                  const ConstraintPlan& constraint);
+  void find_soft_forces(const Cloth& g, double t, const ForcePlan& force);
+  void take_stiff_nodes(const Cloth& g, double t, double dt, const Drag& c,
+                        const ConstraintPlan& constraint);
+  void move_stiff_nodes(const Cloth& g, double h);
+};
+
+}  // namespace lab
