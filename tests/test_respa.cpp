@@ -10,6 +10,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Scene.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "tests/Allocations.hpp"
 
@@ -77,6 +78,26 @@ TEST(StiffSplit, LeavesWhatBoundsTheStep) {
   EXPECT_GT(omega_safe(s.cloth, s.force, s.constraint), 30 * without);
   const ForcePlan left = soft_stiffness(s.cloth, s.force, s.constraint);
   EXPECT_NEAR(omega_safe(s.cloth, left, s.constraint) / without, 1, 0.01);
+}
+
+TEST(Respa, GetsTheStepOfTheSoftSprings) {
+  const Problem stiff = stiff_edge(9, 1), soft = grid_problem("", "", 1, 9);
+  const auto step_of = [](const Problem& p, const char* method) {
+    Recipe recipe;
+    recipe.gravity = p.gravity;
+    recipe.build = p.build;
+    recipe.force = [](const Cloth&) {
+      return make_combined_force(GravityForce(), MassSpringForce());
+    };
+    recipe.constraint = p.constraint;
+    Scene scene(recipe, {.rule = StepRule::safe}, *find_method(method));
+    EXPECT_TRUE(scene.run_to(0.5)) << scene.failure();
+    return scene.dt();
+  };
+  const double verlet = step_of(soft, "verlet");
+  EXPECT_LT(step_of(stiff, "verlet"), verlet / 30);
+  EXPECT_NEAR(step_of(stiff, "respa"), verlet, 0.02 * verlet);
+  EXPECT_EQ(step_of(soft, "respa"), verlet);
 }
 
 TEST(Respa, IsVerletWhereSpringsAreAlike) {

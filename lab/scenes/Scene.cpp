@@ -86,7 +86,16 @@ bool Scene::run_to(double t_end, const std::function<void()>& after) {
   return check();
 }
 
+/** The force whose stiffness bounds the step of @a method. */
+ForcePlan Scene::bounding(const MethodEntry& method) const {
+  return method.info.multirate ? soft_stiffness(cloth_, *force_, constraint_)
+                               : *force_;
+}
+
 double Scene::safe_limit(const MethodEntry& method) {
+  if (method.info.multirate)
+    return step_limit(method, omega_safe(cloth_, bounding(method), constraint_),
+                      largest_gamma(cloth_, force_->drag()));
   if (safe_omega_ < 0) safe_omega_ = omega_safe(cloth_, *force_, constraint_);
   return step_limit(method, safe_omega_, largest_gamma(cloth_, force_->drag()));
 }
@@ -113,7 +122,7 @@ void Scene::choose_step() {
     // A cloth let go flat stiffens by 40 % within fewer steps than lie between
     // two looks: so never beyond what holds in every configuration.
     const double sharp =
-        step_limit(entry_, sharp_(cloth_, *force_, constraint_),
+        step_limit(entry_, sharp_(cloth_, bounding(entry_), constraint_),
                    largest_gamma(cloth_, force_->drag()));
     dt = std::min(sharp_share * sharp, safe_limit());
   }
@@ -174,7 +183,7 @@ bool Scene::fail(const std::string& what) {
   const std::string where = worst_->text(cloth_);
   rewind();
   const double sharp =
-      step_limit(entry_, sharp_(cloth_, *force_, constraint_, 40),
+      step_limit(entry_, sharp_(cloth_, bounding(entry_), constraint_, 40),
                  largest_gamma(cloth_, force_->drag()));
   failure_ = what + " in step " + std::to_string(clock_.steps + 1) +
              " with dt = " + short_text(clock_.dt) + " s, method " +

@@ -129,6 +129,7 @@ class Scene {
 
   void keep_clock();
   void watch_paths();
+  ForcePlan bounding(const MethodEntry& method) const;
   void choose_step();
   bool is_finite() const;
   bool advance();
