@@ -424,6 +424,19 @@ class Graph {
     edges_.reindex(ids);
     ++version_;
   }
+  /** Give the edges at @a n the order of @a ids, which are theirs, each once.
+   * Invalidates: incident iterators of @a n.   Keeps: all else.
+   * Complexity: O(degree squared) */
+  void reorder_edges(const Node& n, std::span<const size_type> ids) {
+    const auto list = neighbors_of_[n.id()];
+    assert(ids.size() == list.size);
+    for (size_type k = list.begin; k < list.begin + list.size; ++k) {
+      size_type at = k;
+      while (pool_[at].edge / 2 != ids[k - list.begin]) ++at;
+      std::swap(pool_[k], pool_[at]);
+    }
+    ++version_;
+  }
 
   /** Make room for so many nodes and edges in all: up to there, adding moves
    * nothing; but lists of neighbors may, if most are far from full.

@@ -394,6 +394,23 @@ TEST_F(Edges, ReindexEdgesGivesTheIndicesThatItIsTold) {
   EXPECT_EQ(g.add_edge(n[1], n[4]).index(), 3u);
 }
 
+TEST_F(Edges, ReorderEdgesGivesThoseOfANodeAnotherOrder) {
+  const auto version = g.version();
+  g.reorder_edges(n[0], std::vector<unsigned>{2, 0, 1});
+  EXPECT_EQ(neighbors(n[0]), (std::vector<int>{3, 1, 2}));
+  EXPECT_NE(g.version(), version);
+  g.check_invariants();
+  // It takes back what removals make of the order.
+  g.remove_edge(e[2]);
+  EXPECT_EQ(neighbors(n[0]), (std::vector<int>{2, 1}));
+  g.reorder_edges(n[0], std::vector<unsigned>{0, 1});
+  EXPECT_EQ(neighbors(n[0]), (std::vector<int>{1, 2}));
+  EXPECT_EQ(neighbors(n[1]), (std::vector<int>{0, 2}));
+  EXPECT_EQ(values_by_index(), (Values{1, 2, 34, 12}));
+  g.reorder_edges(n[4], std::vector<unsigned>{4});
+  g.check_invariants();
+}
+
 TEST_F(Edges, TheIdOfAnEdgeStaysAndIsOneForBothViews) {
   unsigned id = e[4].id();
   g.remove_edge(e[0]);

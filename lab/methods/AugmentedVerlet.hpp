@@ -43,6 +43,7 @@ class AugmentedVerlet : public Method {
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
   void restart() override { kept_for_ = nullptr, source_.cloth = nullptr; }
+  void archive(CME212::Archive& a, const Cloth& g) override;
 
   /** How often the matrix was factored since this method was made. */
   int factorizations() const { return factorizations_; }
@@ -78,6 +79,8 @@ class AugmentedVerlet : public Method {
   std::vector<Point> acceleration_;  // [m/s^2], by node id
   const Cloth* kept_for_ = nullptr;  // at whose state acceleration_ is
   double kept_time_ = 0;
+  double loaded_dt_ =
+      0;  // acceleration_ was loaded: for the factor with that dt
 
   bool unchanged(const Cloth& g, double dt, const ForcePlan& force,
                  const ConstraintPlan& constraint);

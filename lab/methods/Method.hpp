@@ -8,6 +8,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "CME212/Archive.hpp"
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
 
@@ -50,6 +51,10 @@ class Method {
                       const ConstraintPlan& constraint) = 0;
   /** Forget what was kept from the last step. */
   virtual void restart() {}
+  /** Save what was kept from the last step; or load it, so that the next step
+   * gives the same bits as that of the method that saved it.
+   * @pre of loading: @a g is as it was then. The default: nothing is kept */
+  virtual void archive(CME212::Archive& /*a*/, const Cloth& /*g*/) {}
 
   /** The call of symp_euler_step(): any force, any constraint; or their plans,
    * which save making them in each step. */

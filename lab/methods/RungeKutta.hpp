@@ -38,6 +38,9 @@ class RungeKutta : public Method {
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
   void restart() override { inner_ = 0, end_x_.clear(); }
+  void archive(CME212::Archive& a, const Cloth& /*g*/) override {
+    a(inner_)(end_t_)(end_x_)(end_v_)(v_.back())(a_.back());
+  }
 
  private:
   static constexpr std::size_t stages = Tableau::b.size();

@@ -68,6 +68,15 @@ bool Splitting<Scheme>::kept(const Cloth& g, double t, double dt) const {
          std::abs(t - kept_time_) < 1e-6 * dt;
 }
 
+template <typename Scheme>
+void Splitting<Scheme>::archive(CME212::Archive& a, const Cloth& g) {
+  bool has = kept_for_ == &g && kept_version_ == g.version();
+  a(has);
+  if (!has) return restart();
+  a(force_)(kept_time_);
+  kept_for_ = &g, kept_version_ = g.version();
+}
+
 template class Splitting<VerletScheme>;
 template class Splitting<Yoshida4Scheme>;
 template class Splitting<PefrlScheme>;

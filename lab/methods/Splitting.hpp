@@ -28,6 +28,7 @@ class Splitting : public Method {
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
   void restart() override { kept_for_ = nullptr; }
+  void archive(CME212::Archive& a, const Cloth& g) override;
 
  private:
   Sweep sweep_;
