@@ -9,8 +9,10 @@
 #include <Eigen/Cholesky>
 
 #include "CME212/Util.hpp"
+#include "lab/methods/BlockCholesky.hpp"
 #include "lab/methods/Cholesky.hpp"
 #include "lab/methods/CholeskyBackEnds.hpp"
+#include "tests/Allocations.hpp"
 
 using namespace lab;
 
@@ -244,6 +246,157 @@ TEST(CholeskyBackEnds, AreBothTested) {
   if (std::is_same_v<Best, ByEigen>)
     GTEST_SKIP() << "built without CHOLMOD: tested Eigen alone";
   EXPECT_STREQ(SparseCholesky::back_end, "CHOLMOD");
+}
+
+// ------------------------------------------------------------- BlockCholesky
+
+using Pair = BlockCholesky::Pair;
+constexpr std::size_t enough = 1'000'000;
+
+/** A matrix of springs of random directions, in a BlockCholesky and dense. */
+struct Springs {
+  std::vector<Pair> pairs;
+  Eigen::MatrixXd dense;
+
+  Springs(unsigned rows, std::vector<Pair> p) : pairs(std::move(p)) {
+    dense.setZero(3 * rows, 3 * rows);
+  }
+  void fill(BlockCholesky& a) {
+    a.clear();
+    dense.setZero();
+    for (unsigned i = 0; i < a.rows(); ++i) {
+      const Eigen::Matrix3d m = random(0.1, 1) * Eigen::Matrix3d::Identity();
+      a.add_diagonal(i, m.data());
+      dense.block<3, 3>(3 * i, 3 * i) += m;
+    }
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const Eigen::Vector3d n(random(-3, 3), random(-3, 3), random(-3, 3));
+      Eigen::Matrix3d b = n * n.transpose();
+      const auto [i, j] = pairs[k];
+      a.add_diagonal(i, b.data());
+      a.add_diagonal(j, b.data());
+      dense.block<3, 3>(3 * i, 3 * i) += b;
+      dense.block<3, 3>(3 * j, 3 * j) += b;
+      b = -b;
+      a.add(k, b.data());
+      dense.block<3, 3>(3 * i, 3 * j) += b;
+      dense.block<3, 3>(3 * j, 3 * i) += b;
+    }
+  }
+};
+
+std::vector<Pair> sheet_pairs(unsigned side) {
+  std::vector<Pair> all;
+  for (unsigned i = 0; i < side * side; ++i) {
+    const bool inner = i % side + 1 < side, below = i + side < side * side;
+    if (inner) all.push_back({i, i + 1});
+    if (below) all.push_back({i + side, i});
+    if (inner && below) all.push_back({i, i + side + 1});
+    if (inner && below) all.push_back({i + 1, i + side});
+  }
+  return all;
+}
+std::vector<Pair> random_pairs(unsigned rows, unsigned count) {
+  std::vector<Pair> all;
+  while (all.size() < count) {
+    const auto i = unsigned(random(0, rows)), j = unsigned(random(0, rows));
+    if (i != j) all.push_back({i, j});  // also twice, and turned round
+  }
+  return all;
+}
+
+void expect_right(BlockCholesky& a, unsigned rows, std::vector<Pair> pairs) {
+  ASSERT_TRUE(a.analyze(rows, pairs, enough));
+  ASSERT_EQ(a.rows(), rows);
+  Springs springs(rows, pairs);
+  for (int turn = 0; turn < 2; ++turn) {  // the pattern is kept
+    springs.fill(a);
+    ASSERT_TRUE(a.factorize());
+    std::vector<Point> b(rows);
+    Eigen::VectorXd dense(3 * rows);
+    for (unsigned i = 0; i < rows; ++i)
+      for (unsigned c = 0; c < 3; ++c)
+        dense(3 * i + c) = b[i][c] = random(-1, 1);
+    if (rows == 0) return a.solve(b);
+    const Eigen::VectorXd expected = springs.dense.llt().solve(dense);
+    a.solve(b);
+    double worst = 0;
+    for (unsigned i = 0; i < rows; ++i)
+      for (unsigned c = 0; c < 3; ++c)
+        worst = std::max(worst, std::abs(b[i][c] - expected(3 * i + c)));
+    EXPECT_LT(worst, 1e-11 * expected.cwiseAbs().maxCoeff()) << rows << " rows";
+  }
+}
+
+TEST(BlockCholesky, SolvesWhatADenseFactorSolves) {
+  CME212::default_generator.seed(7);
+  BlockCholesky a;
+  expect_right(a, 0, {});
+  for (unsigned rows : {1u, 2u, 5u, 30u, 90u})
+    for (unsigned per_row : {0u, 1u, 3u})
+      expect_right(a, rows, random_pairs(rows, rows > 1 ? per_row * rows : 0));
+  for (unsigned side : {2u, 5u, 10u})
+    expect_right(a, side * side, sheet_pairs(side));
+}
+
+// Counted by hand: an arrow keeps its order, a ring fills in.
+TEST(BlockCholesky, TellsItsWork) {
+  BlockCholesky a;
+  ASSERT_TRUE(a.analyze(4, std::vector<Pair>{{0, 3}, {1, 3}, {2, 3}}, enough));
+  EXPECT_EQ(a.blocks(), 7u);
+  EXPECT_EQ(a.updates(), 3);
+  ASSERT_TRUE(
+      a.analyze(4, std::vector<Pair>{{0, 1}, {1, 2}, {2, 3}, {3, 0}}, enough));
+  EXPECT_EQ(a.blocks(), 9u);
+  EXPECT_EQ(a.updates(), 7);
+  ASSERT_TRUE(a.analyze(900, sheet_pairs(30), enough));
+  EXPECT_LT(double(a.blocks()), 20. * 900);
+  for (int turn = 0; turn < 2; ++turn)
+    EXPECT_FALSE(a.analyze(961, sheet_pairs(31), 5000));
+  EXPECT_EQ(a.rows(), 0u);
+}
+
+TEST(BlockCholesky, AllocatesForAnotherPatternOnly) {
+  CME212::default_generator.seed(7);
+  const auto pairs = sheet_pairs(12);
+  BlockCholesky a;
+  ASSERT_TRUE(a.analyze(144, pairs, enough));
+  std::vector<Point> x(144, Point(1, 2, 3));
+  const double one[9] = {9, 0, 0, 0, 9, 0, 0, 0, 9};
+  const double less[9] = {-1, 0, 0, 0, -1, 0, 0, 0, -1};
+  const long before = allocations;
+  for (int turn = 0; turn < 3; ++turn) {
+    EXPECT_TRUE(a.analyze(144, pairs, enough));
+    a.clear();
+    for (unsigned i = 0; i < 144; ++i) a.add_diagonal(i, one);
+    for (std::size_t k = 0; k < pairs.size(); ++k) a.add(k, less);
+    EXPECT_TRUE(a.factorize());
+    a.solve(x);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(a.analyze(144, sheet_pairs(11), enough));
+  EXPECT_GT(allocations, before);
+}
+
+TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Pair> pairs = {{0, 1}};
+  BlockCholesky a;
+  ASSERT_TRUE(a.analyze(2, pairs, enough));
+  for (double d : {-1.0, 0.0, 0.5, 1.0, nan, HUGE_VAL, 2.0}) {
+    const double diagonal[9] = {d, 0, 0, 0, d, 0, 0, 0, d};
+    const double other[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    a.clear();
+    for (unsigned i : {0u, 1u}) a.add_diagonal(i, diagonal);
+    a.add(0, other);
+    EXPECT_EQ(a.factorize(), d == 2) << d;  // singular at 1
+  }
+  const double diagonal[9] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
+  const double other[9] = {1, 0, 0, 0, nan, 0, 0, 0, 1};
+  a.clear();
+  for (unsigned i : {0u, 1u}) a.add_diagonal(i, diagonal);
+  a.add(0, other);
+  EXPECT_FALSE(a.factorize());
 }
 
 }  // namespace

@@ -645,6 +645,78 @@ TEST(ImplicitEuler, TakesCompressedSpringsAsSoftAcross) {
   EXPECT_NEAR(o.a.value().vel.y, 0.1, 1e-6);
 }
 
+using implicit_detail::LinearSolver;
+
+// Crumpled, so that A is not positive definite: the factor is that of another
+// matrix, and the solution is right still.
+TEST(LinearSolver, GivesTheSameOnCompressedCloth) {
+  const double limit = 0.0577 / 10;
+  auto end_of = [](auto& method, double h, LinearSolver solver) {
+    auto s = std::make_unique<Sheet>(10);
+    for (Node n : s->g.nodes()) n.position() *= 0.7;
+    s->stir();
+    method.use(solver);
+    s->run(method, h, 3);
+    return s;
+  };
+  ImplicitEuler euler[2] = {ImplicitEuler(1e-12), ImplicitEuler(1e-12)};
+  EXPECT_LT(distance(end_of(euler[0], 5 * limit, LinearSolver::gradients)->g,
+                     end_of(euler[1], 5 * limit, LinearSolver::cholesky)->g),
+            1e-9);
+  EXPECT_EQ(euler[0].work().factors, 0);
+  EXPECT_GT(euler[0].work().products, 60);
+  EXPECT_EQ(euler[1].work().factors, 3);
+  EXPECT_LE(euler[1].work().products, 6);
+  TrBdf2 tr[2] = {TrBdf2(1e-11), TrBdf2(1e-11)};
+  EXPECT_LT(distance(end_of(tr[0], 2 * limit, LinearSolver::gradients)->g,
+                     end_of(tr[1], 2 * limit, LinearSolver::cholesky)->g),
+            1e-8);
+  EXPECT_GT(tr[1].work().factors, 6);
+  EXPECT_LT(tr[1].work().products, tr[0].work().products);
+}
+
+// By dt omega and tolerance, not by the clock.
+TEST(LinearSolver, FactorsWhereThatIsLessWork) {
+  struct Case {
+    double dt, tolerance;
+    bool factors;
+  };
+  for (auto [dt, tolerance, factors] : {Case{1e-4, 1e-8, false},
+                                        {1e-2, 1e-2, false},
+                                        {1e-2, 1e-8, true},
+                                        {0.1, 1e-8, true}}) {
+    auto work = [&, dt = dt, tolerance = tolerance](LinearSolver solver) {
+      Sheet s(20, 1e5);
+      s.stir();
+      ImplicitEuler method(tolerance);
+      method.use(solver);
+      s.run(method, dt, 2);
+      return method.work();
+    };
+    SCOPED_TRACE(dt);
+    const auto automatic = work(LinearSolver::automatic);
+    EXPECT_EQ(automatic.factors > 0, factors);
+    EXPECT_EQ(work(LinearSolver::gradients).factors, 0);
+    EXPECT_EQ(work(LinearSolver::cholesky).factors, 2);
+    EXPECT_LE(automatic.products, work(LinearSolver::gradients).products);
+  }
+}
+
+// A chain takes as many products as it has masses, whatever is expected of it.
+TEST(LinearSolver, FactorsWhenGradientsDragOn) {
+  Cloth g;
+  const unsigned n = 1000;
+  for (unsigned i = 0; i < n; ++i)
+    g.add_node(Point(0.01 * i, 0, 0), {Point(), 0.001});
+  for (unsigned i = 1; i < n; ++i)
+    g.add_edge(g.node(i - 1), g.node(i), {1e6, 0.01});
+  g.node(0).value().vel = Point(-1, 0, 0);
+  ImplicitEuler method;
+  method(g, 0, 0.01, MassSpringForce());
+  EXPECT_EQ(method.work().factors, 1);
+  EXPECT_LT(method.work().products, 130);
+}
+
 // Where all may be left over, that is an acceleration, and not a velocity in a
 // time step.
 TEST(ImplicitEuler, WhatIsLeftOverIsAnAcceleration) {

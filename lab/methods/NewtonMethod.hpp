@@ -24,6 +24,7 @@ class NewtonMethod : public Method {
 
   /** What the solver has done since this method was made. */
   const implicit_detail::Work& work() const { return stage_.work(); }
+  void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
 
  protected:
   /** Of a method that tells its local error.
