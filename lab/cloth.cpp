@@ -13,6 +13,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <thread>
@@ -241,6 +242,13 @@ int main(int argc, char** argv) {
     return 2;
   } catch (const SceneFileError& e) {
     std::cerr << e.what() << '\n';
+    return 2;
+  } catch (const SceneError& e) {
+    std::cerr << o.origins.of(e.what(), "cloth: ") << e.what() << '\n';
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "cloth: out of memory: expected a cloth of fewer nodes, or "
+                 "more memory\n";
     return 2;
   } catch (const std::exception& e) {
     std::cerr << "cloth: " << e.what() << '\n';

@@ -1,12 +1,17 @@
 // Words.hpp, Model.hpp, SceneFile.hpp: what a scene file says, and every way in
 // which it can be wrong.
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "CME212/Mesh.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/scenes/Compose.hpp"
+#include "lab/scenes/KeyValues.hpp"
+#include "lab/scenes/Memory.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
 #include "tests/Stages.hpp"
@@ -184,6 +189,68 @@ TEST(Parts, RefuseWhatMakesNoSense) {
   EXPECT_THROW(read_method("Verlet"), SceneError);
 }
 
+// ------------------------------------------------------------------ KEY =
+// VALUE
+
+using Values = std::vector<std::string>;
+
+/** The values of the one line @a text, or what is wrong with it. */
+Values values_of(const std::string& text) {
+  Values values;
+  try {
+    each_key_value(text, "f", [&](const KeyValue& found, std::size_t line) {
+      EXPECT_EQ(found.key, "k");
+      EXPECT_EQ(line, 1u);
+      values = found.values;
+    });
+  } catch (const InputError& e) {
+    values = {"error", e.what()};
+  }
+  return values;
+}
+
+TEST(KeyValues, AreTextListsAndWhatStandsThere) {
+  EXPECT_EQ(values_of("k=1"), Values{"1"});
+  EXPECT_EQ(values_of(" k\t= x 0  y 1 # c\r\n"), Values{"x 0  y 1"});
+  EXPECT_EQ(values_of("k = \" a # b \" # c"), Values{" a # b "});
+  EXPECT_EQ(values_of("k = ''"), Values{""});
+  EXPECT_EQ(values_of("k = 'C:\\new \"x\"'"), Values{"C:\\new \"x\""});
+  EXPECT_EQ(values_of("k = [ \"a\" , 'b,]', 3,] # c"),
+            (Values{"a", "b,]", "3"}));
+  EXPECT_EQ(values_of("k = []"), Values{});
+  EXPECT_EQ(values_of("k = \"\\\"\\\\\\n\\t\\u00e9\\U0001F600\\u20AC\""),
+            Values{"\"\\\n\t\xC3\xA9\xF0\x9F\x98\x80\xE2\x82\xAC"});
+  EXPECT_EQ(values_of("\xEF\xBB\xBFk = 1"), Values{"1"});
+}
+TEST(KeyValues, SayWhatIsWrong) {
+  auto error = [](const std::string& text) { return values_of(text).at(1); };
+  for (const char* open : {"\"a", "'a", "[1, 2", "[1", "\"a\\", "1]", "a\"b\"",
+                           "\"a\"]", "[[1]]", "\"\\u12\""})
+    EXPECT_EQ(error(std::string("k = ") + open),
+              "f:1: k has a value that is not closed on its line")
+        << open;
+  EXPECT_EQ(error("k = \"a\" b"), "f:1: k has text after its value");
+  EXPECT_EQ(error("k = [1, , 2]"), "f:1: k has an empty place in its list");
+  EXPECT_EQ(error("k = # 1"), "f:1: k has no value");
+  for (const char* code : {"q", "u12x4", "uD800", "U00110000", "u0000"})
+    EXPECT_EQ(error(std::string("k = \"\\") + code + '"'),
+              std::string("f:1: k has \\") + code[0] +
+                  " in its text, which is no character: a backslash is \\\\");
+  EXPECT_EQ(error("= 1"), "f:1: \"= 1\", expected KEY = VALUE");
+}
+
+/** Any bytes but 0, which no name of a file has. */
+rc::Gen<std::string> any_bytes() {
+  return rc::gen::container<std::string>(
+      rc::gen::map(rc::gen::inRange(1, 256), [](int c) { return char(c); }));
+}
+RC_GTEST_PROP(KeyValues, ReadBackWhateverBytesTheyHold, ()) {
+  const auto text = *any_bytes(), other = *any_bytes();
+  RC_ASSERT(values_of("k = " + in_quotes(text)) == Values{text});
+  RC_ASSERT(values_of("k = [" + in_quotes(text) + ", " + in_quotes(other) +
+                      "] # c") == (Values{text, other}));
+}
+
 // ----------------------------------------------------------------------- Files
 
 class SceneFile : public ::testing::Test {
@@ -212,7 +279,7 @@ TEST_F(SceneFile, SetsWhatItNames) {
       "# a scene\n"
       "sheet = [\"nodes 3 3\", \"at 0 0 1 nodes 2 2\"]  # two\n"
       "\n"
-      "pin=\"x 0 # no comment\"\n"
+      "pin=\"x 0\" # held\n"
       "  density =  2.5\n"
       "dt = \"auto\"\n"
       "t-end = 1\n");
@@ -247,6 +314,58 @@ TEST_F(SceneFile, IsWrittenAsItIsRead) {
   EXPECT_EQ(text.find("stiffness ="), std::string::npos);  // modulus instead
 }
 
+RC_GTEST_FIXTURE_PROP(SceneFile, IsReadBackWhateverItsNamesHold, ()) {
+  Model m;
+  m.nodes = "/" + *any_bytes(), m.tets = "/" + *any_bytes();
+  m.pins = {Pin()};
+  m.pins[0].x = *rc::gen::arbitrary<double>();
+  RC_PRE(std::isfinite(*m.pins[0].x));
+  const Model n = load(to_scene_file(m));
+  RC_ASSERT(n.nodes == m.nodes && n.tets == m.tets && n.pins == m.pins);
+}
+TEST_F(SceneFile, MayStartWithAByteOrderMark) {
+  EXPECT_EQ(load("\xEF\xBB\xBFsheet = \"\"\nt-end = 2\n").t_end, 2);
+  EXPECT_EQ(complaint("\xEF\xBB\xBF"
+                      "colour = 1\n"),
+            "1: unknown key colour");
+}
+TEST_F(SceneFile, NamesFilesRelativeToItself) {
+  EXPECT_EQ(load("nodes = \"sub/a.nodes\"\ntets = \"../b.tets\"\n").nodes,
+            folder / "sub/a.nodes");
+  EXPECT_EQ(load("nodes = \"/a.nodes\"\ntets = \"b\"\n").nodes, "/a.nodes");
+  // A dump has whole paths, so that it can be put anywhere.
+  Model m;
+  m.nodes = "a", m.tets = "b";
+  EXPECT_EQ(load(to_scene_file(m)).nodes, std::filesystem::absolute("a"));
+}
+TEST(Origins, AreTheLinesOfAFile) {
+  const Origins at = {"s.toml", {{"pin", 3}, {"tear-strain", 4}}};
+  EXPECT_EQ(at.of("--pin \"x 3\" holds no node", "-"), "s.toml:3: ");
+  EXPECT_EQ(at.of("--tear-strain is 0", "-"), "s.toml:4: ");
+  EXPECT_EQ(at.of("--tear is 0", "-"), "-");
+  EXPECT_EQ(at.of("no memory", "-"), "-");
+}
+
+// 10^8 nodes are 7 GB of positions and velocities alone.
+TEST(Memory, IsAskedForBeforeItIsTaken) {
+  EXPECT_GT(available_memory(), 1e6);
+  EXPECT_GT(needed_memory(1e8, 4e8), 7e9);
+  Model m;
+  m.sheets.assign(200, read_sheet("nodes 10000 10000"));
+  try {
+    recipe_of(m);
+    ADD_FAILURE();
+  } catch (const SceneError& e) {
+    EXPECT_EQ(std::string(e.what()).find(
+                  "--sheet gives 2e+10 nodes and 7.9988e+10 springs, which "
+                  "need at least "),
+              0u)
+        << e.what();
+    EXPECT_NE(std::string(e.what()).find(" GB are available"),
+              std::string::npos);
+  }
+}
+
 TEST_F(SceneFile, SaysWhereItIsWrong) {
   const std::string sheet = "sheet = [\"nodes 3 3\"]\n";
   EXPECT_EQ(complaint(sheet), "");
@@ -264,6 +383,8 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
               "2: pin has a value that is not closed on its line");
   EXPECT_EQ(complaint(sheet + "t-end = \"long\"\n").substr(0, 3), "2: ");
   EXPECT_EQ(complaint(sheet + "t-end = [1, 2]\n").substr(0, 3), "2: ");
+  EXPECT_EQ(complaint(sheet + "pin = \"x \\q\"\n").substr(0, 13),
+            "2: pin has \\q");
   EXPECT_EQ(complaint("pin = [\"q 3\"]\n" + sheet),
             "1: --pin \"q 3\" has \"q\", expected one of x, y, z, velocity, "
             "until");

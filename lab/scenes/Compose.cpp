@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "CME212/Util.hpp"
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/OrderedCloth.hpp"
+#include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Obstacle.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 #include "lab/scenes/Words.hpp"
@@ -138,11 +140,37 @@ void change_region(Cloth& g, const Region& r) {
   if (edges == 0) fail("edge");
 }
 
+/** Throws SceneError if there is no memory for the cloth of @a m. */
+void check_memory(const Model& m, double nodes, double quads) {
+  const Edges& e = m.edges;
+  const double springs = nodes + quads * (1 + 2 * e.diagonals + 2 * e.bend);
+  const double needed = needed_memory(nodes, springs),
+               available = available_memory();
+  auto gb = [](double bytes) {
+    return CME212::two_digits(bytes / 1e9) + " GB";
+  };
+  if (needed > available)
+    throw SceneError(m.sheets.empty() ? "nodes" : "sheet",
+                     "gives " + CME212::short_text(nodes) + " nodes and " +
+                         CME212::short_text(springs) +
+                         " springs, which need at least " + gb(needed) +
+                         " of memory; " + gb(available) + " are available");
+}
+
 }  // namespace
 
 PointsAndQuads mesh_of(const Model& m) {
   PointsAndQuads mesh;
-  if (m.sheets.empty()) mesh = load_mesh(m.nodes, m.tets);
+  if (m.sheets.empty()) {
+    mesh = load_mesh(m.nodes, m.tets);
+    check_memory(m, double(mesh.points.size()), double(mesh.quads.size()));
+  }
+  double nodes = 0, quads = 0;
+  for (const Sheet& s : m.sheets) {
+    nodes += double(s.nodes[0]) * s.nodes[1];
+    quads += double(s.nodes[0] - 1) * (s.nodes[1] - 1);
+  }
+  check_memory(m, nodes, quads);
   for (const Sheet& s : m.sheets) add_sheet(mesh, s);
   return mesh;
 }
@@ -178,6 +206,36 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
   // What is held is at rest, whatever the cloth around it does.
   for (unsigned i = 0; i < mesh.velocities.size(); ++i)
     if (!is_held(m, mesh.points[i])) g.node(i).value().vel = mesh.velocities[i];
+}
+
+std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {
+  auto is_left = [&](const Quad& q) {
+    auto there = [&](unsigned i) { return g.node_in_use(built.ids[i]); };
+    auto node = [&](unsigned i) { return g.node_with_id(built.ids[i]); };
+    return std::ranges::all_of(q, there) &&
+           std::ranges::all_of(quad_sides, [&](const auto& side) {
+             return g.has_edge(node(q[side[0]]), node(q[side[1]]));
+           });
+  };
+  std::vector<Quad> all;
+  std::ranges::copy_if(built.mesh.quads, std::back_inserter(all), is_left);
+  return all;
+}
+
+PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built) {
+  PointsAndQuads left;
+  std::vector<unsigned> number(built.ids.size());
+  for (unsigned i = 0; i < number.size(); ++i) {
+    if (!g.node_in_use(built.ids[i])) continue;
+    const Node n = g.node_with_id(built.ids[i]);
+    number[i] = unsigned(left.points.size());
+    left.points.push_back(n.position());
+    left.velocities.push_back(n.value().vel);
+  }
+  left.quads = quads_left(g, built);
+  for (Quad& q : left.quads)
+    for (unsigned& i : q) i = number[i];
+  return left;
 }
 
 CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
@@ -232,13 +290,20 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
 }
 
 Recipe recipe_of(const Model& m) {
-  auto mesh = std::make_shared<const PointsAndQuads>(mesh_of(m));
+  auto built = std::make_shared<BuiltMesh>(BuiltMesh{mesh_of(m), {}, {}});
   Recipe r;
   r.name = m.name;
   r.gravity = m.gravity;
-  r.mesh = mesh;
-  r.build = [m, mesh](Cloth& g) { build_model(g, m, *mesh); };
-  r.force = [m, mesh](const Cloth& g) { return force_of(m, *mesh, g); };
+  r.build = [m, built](Cloth& g) {
+    build_model(g, m, built->mesh);
+    built->ids.clear();
+    for (Node n : g.nodes()) built->ids.push_back(n.id());
+  };
+  r.built = built;
+  r.force = [m, built](const Cloth& g) {
+    built->force = force_of(m, built->mesh, g);
+    return *built->force;
+  };
   r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };
   using Kind = Obstacle::Kind;
   for (const Wall& w : m.planes)

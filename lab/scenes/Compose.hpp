@@ -4,6 +4,7 @@
  * nothing else. */
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,31 @@ struct Obstacle {
   Motion motion = {};
 };
 
+/** The mesh that a cloth was built from, the id of each point's node, and the
+ * force on it. */
+struct BuiltMesh {
+  PointsAndQuads mesh;
+  std::vector<unsigned> ids;
+  std::optional<CombinedForces> force;
+};
+
+/** The quads of which all four nodes and all four sides are still in @a g, the
+ * cloth that was built, in their order.  O(quads) */
+std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built);
+
+/** What is left of a mesh: points and velocities of the nodes that @a g still
+ * has, in the order of the mesh, and the quads that are left. A new cloth of
+ * it has all springs of these quads, at rest.  O(points + quads) */
+PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built);
+
 /** How a scene is made, as often as it is restarted. */
 struct Recipe {
   std::string name;
-  double gravity = grav;                       ///< of the force [m/s^2]
-  std::shared_ptr<const PointsAndQuads> mesh;  ///< what it is built from
+  double gravity = grav;  ///< of the force [m/s^2]
   /** Into an empty cloth. */
   std::function<void(Cloth&)> build;
+  /** What build() and force() made, the last time; null if it has no mesh. */
+  std::shared_ptr<const BuiltMesh> built;
   std::function<CombinedForces(const Cloth&)> force;
   std::function<CombinedConstraints(const Cloth&)> constraint;
   std::vector<Obstacle> obstacles;

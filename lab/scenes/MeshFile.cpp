@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
+
+#include "CME212/Util.hpp"
 
 namespace lab {
 
@@ -50,6 +53,27 @@ PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets) {
       parse_nodes(mesh_detail::read_file(nodes, "a file of points"), nodes);
   mesh.quads = load_quads(tets, mesh.points.size());
   return mesh;
+}
+
+void write_nodes(std::ostream& out, const PointsAndQuads& mesh) {
+  auto write = [&out](const Point& p) {
+    out << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y) << ' '
+        << CME212::to_text(p.z);
+  };
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    write(mesh.points[i]);
+    if (!mesh.velocities.empty()) out << ' ', write(mesh.velocities[i]);
+    out << '\n';
+  }
+}
+
+void write_quads(std::ostream& out, const PointsAndQuads& mesh) {
+  for (const Quad& q : mesh.quads)
+    out << q[0] << ' ' << q[1] << ' ' << q[2] << ' ' << q[3] << '\n';
+}
+
+std::string quads_beside(const std::string& nodes) {
+  return std::filesystem::path(nodes).replace_extension(".tets").string();
 }
 
 }  // namespace lab

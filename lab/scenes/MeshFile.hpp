@@ -2,6 +2,7 @@
 /** @file MeshFile.hpp
  * The files of a mesh as the laboratory reads and writes them: those of
  * CME212/Mesh.hpp, and velocities beside the points. data/README.md */
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,14 @@ PointsAndQuads parse_nodes(std::string_view text, const std::string& file);
 /** Those of the file @a nodes with the quads of the file @a tets.
  * Throws InputError, also if one can't be read. */
 PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets);
+
+/** Write the lines of a .nodes file, with velocities if @a mesh has them, and
+ * of a .tets file: read again they are the same numbers. */
+void write_nodes(std::ostream& out, const PointsAndQuads& mesh);
+void write_quads(std::ostream& out, const PointsAndQuads& mesh);
+
+/** The .tets file that goes with the .nodes file @a nodes: its name with that
+ * ending instead of its own. */
+std::string quads_beside(const std::string& nodes);
 
 }  // namespace lab

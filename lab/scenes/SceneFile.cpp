@@ -14,6 +14,7 @@
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/scenes/KeyValues.hpp"
 #include "lab/scenes/Words.hpp"
 
 namespace lab {
@@ -234,53 +235,17 @@ void SceneOptions::add_to(CLI::App& app) {
 
 namespace {
 
-/** The line on which each key of a scene file stands.
- * Throws SceneFileError: a line that is not KEY = VALUE, a value that is not
- * closed, a key twice, or one that is no option of @a app. */
-std::map<std::string, int> lines_of_keys(const CLI::App& app,
-                                         const std::string& file,
-                                         const std::string& text) {
-  std::map<std::string, int> line_of;
-  std::istringstream in(text);
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    auto fail = [&](const std::string& what) {
-      throw SceneFileError(file + ':' + std::to_string(number) + ": " + what);
-    };
-    const auto first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    const auto equals = line.find('=');
-    if (equals == std::string::npos || equals == first)
-      fail("\"" + line + "\", expected KEY = VALUE");
-    const auto last = line.find_last_not_of(" \t", equals - 1);
-    const std::string key = line.substr(first, last - first + 1);
-    if (!app.get_option_no_throw("--" + key) || key == "config" ||
-        key == "help" || key == "version")
-      fail("unknown key " + key + did_you_mean(key, scene_keys()));
-    if (!line_of.emplace(key, number).second)
-      fail(key + " for the second time, first on line " +
-           std::to_string(line_of[key]));
-    int open = 0;
-    bool in_string = false, value = false;
-    for (char c : line.substr(equals + 1)) {
-      if (c == '"') in_string = !in_string, value = true;
-      if (in_string) continue;
-      if (c == '#') break;
-      open += (c == '[') - (c == ']');
-      value = value || (c != ' ' && c != '\t' && c != '\r');
-    }
-    if (in_string || open != 0)
-      fail(key + " has a value that is not closed on its line");
-    if (!value) fail(key + " has no value");
-  }
-  return line_of;
+/** @a name, a file name in the scene file @a scene, as the program opens it:
+ * relative to the folder of the scene. */
+std::string beside(const std::string& scene, const std::string& name) {
+  if (name.empty()) return name;
+  return (std::filesystem::path(scene).parent_path() / name).string();
 }
 
 Model load(const std::string& file,
            const std::function<void(const Model&)>& check) {
   SceneOptions options;
   CLI::App app;
-  app.set_config("--config");
   options.add_to(app);
   options.read(app, file, [&] { check(options.model()); });
   return options.model();
@@ -290,35 +255,54 @@ Model load(const std::string& file,
 
 void SceneOptions::read(CLI::App& app, const std::string& file,
                         const std::function<void()>& check) {
-  std::string text;
+  text_->name = std::filesystem::path(file).stem().string();
+  origins_ = {file, {}};
   try {
-    text = mesh_detail::read_file(file, "a scene file");
+    auto use = [&](const KeyValue& found, std::size_t line) {
+      const std::string& key = found.key;
+      auto fail = [&](const std::string& what) {
+        throw InputError(file, line, what);
+      };
+      CLI::Option* option = app.get_option_no_throw("--" + key);
+      if (!option || key == "help")
+        fail("unknown key " + key + did_you_mean(key, scene_keys()));
+      const auto [first, is_new] = origins_.line_of.emplace(key, line);
+      if (!is_new)
+        fail(key + " for the second time, first on line " +
+             std::to_string(first->second));
+      const std::string type = option->get_type_name();
+      const bool is_file = type == "FILE" || type == "FOLDER";
+      for (const std::string& value : found.values)
+        option->add_result(is_file ? beside(file, value) : value);
+    };
+    each_key_value(mesh_detail::read_file(file, "a scene file"), file, use);
+    app.parse(std::vector<std::string>());
+    check();
   } catch (const InputError& e) {
     throw SceneFileError(e.what());
-  }
-  const auto line_of = lines_of_keys(app, file, text);
-  text_->name = std::filesystem::path(file).stem().string();
-  // Which line a message is about: that of the first option that it names.
-  auto place = [&](const std::string& message) {
-    const auto dashes = message.find("--");
-    if (dashes == std::string::npos) return file + ": ";
-    const auto name = dashes + 2;
-    const auto end =
-        message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", name);
-    auto it = line_of.find(message.substr(name, end - name));
-    if (it == line_of.end()) return file + ": ";
-    return file + ':' + std::to_string(it->second) + ": ";
-  };
-  try {
-    std::istringstream in(text);
-    app.allow_config_extras(CLI::config_extras_mode::error);
-    app.parse_from_stream(in);
-    check();
   } catch (const CLI::ParseError& e) {
-    throw SceneFileError(place(e.what()) + e.what());
+    throw SceneFileError(origins_.of(e.what(), file + ": ") + e.what());
   } catch (const SceneError& e) {
-    throw SceneFileError(place(e.what()) + e.what());
+    throw SceneFileError(origins_.of(e.what(), file + ": ") + e.what());
   }
+}
+
+void SceneOptions::overridden_by(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0 && !option->get_lnames().empty())
+      origins_.line_of.erase(option->get_lnames().front());
+}
+
+std::string Origins::of(const std::string& message,
+                        const std::string& otherwise) const {
+  const auto dashes = message.find("--");
+  if (dashes == std::string::npos) return otherwise;
+  const auto name = dashes + 2;
+  const auto end =
+      message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", name);
+  auto it = line_of.find(message.substr(name, end - name));
+  if (it == line_of.end()) return otherwise;
+  return file + ':' + std::to_string(it->second) + ": ";
 }
 
 void check_has_cloth(const Model& m) {
@@ -338,7 +322,6 @@ Model load_open_model(const std::string& file) {
 
 std::string to_scene_file(const Model& m) {
   std::ostringstream out;
-  auto quoted = [](const std::string& s) { return '"' + s + '"'; };
   const SceneOptions::Text text(m);
   each_option(text, [&](const std::string& name, const auto& member,
                         const std::string& help) {
@@ -349,10 +332,13 @@ std::string to_scene_file(const Model& m) {
     } else if constexpr (std::is_same_v<T, std::optional<double>>) {
       if (member) value = CME212::exact_text(*member);
     } else if constexpr (std::is_same_v<T, std::string>) {
-      if (!member.empty()) value = quoted(member);
+      const bool is_file = name == "nodes" || name == "tets";
+      if (!member.empty())
+        value = in_quotes(is_file ? std::filesystem::absolute(member).string()
+                                  : member);
     } else {
       for (const std::string& s : member)
-        value += (value.empty() ? "[" : ", ") + quoted(s);
+        value += (value.empty() ? "[" : ", ") + in_quotes(s);
       if (!value.empty()) value += ']';
     }
     if (name == "stiffness" && m.material.modulus) return;

@@ -3,6 +3,7 @@
  * A Model as options, and as a file of options: the one table of their names,
  * and how such a file is read and written. README.md */
 #include <functional>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -26,6 +27,17 @@ struct SceneFileError : std::runtime_error {
  * variable that is not set.  @return it */
 CLI::Option* takes_file(CLI::Option* option);
 
+/** Where the options of a scene stand in its file. */
+struct Origins {
+  std::string file;
+  std::map<std::string, std::size_t> line_of;  ///< of each key of the file
+
+  /** "FILE:LINE: " of what @a message is about: the first option that it
+   * names; @a otherwise if that does not stand in the file. */
+  std::string of(const std::string& message,
+                 const std::string& otherwise) const;
+};
+
 /** The options of a scene, as a command line or a file gives them. */
 class SceneOptions {
  public:
@@ -40,7 +52,7 @@ class SceneOptions {
 
   /** Set the options of @a app, those of add_to() and others, from a scene
    * file, and then call @a check(), which may throw SceneError. The scene is
-   * called by the stem of @a file.
+   * called by the stem of @a file; file names in it are relative to its folder.
    * Throws SceneFileError: a file that can't be read, a wrong line, an unknown
    * key, a value of a wrong type, and what check() threw, all with file and
    * line. */
@@ -52,10 +64,16 @@ class SceneOptions {
    * that contradict each other. */
   Model model() const;
 
+  /** Where what model() says stands in the file that was read. */
+  const Origins& origins() const { return origins_; }
+  /** What the command line @a app has set does not stand there any more. */
+  void overridden_by(const CLI::App& app);
+
   struct Text;  ///< in SceneFile.cpp only
 
  private:
   std::unique_ptr<Text> text_;
+  Origins origins_;
 };
 
 /** Throws SceneError unless @a m has a cloth: a scene file may leave it to the
@@ -68,7 +86,8 @@ Model load_model(const std::string& file);
 Model load_open_model(const std::string& file);
 
 /** @a m as a scene file: what each key means as a comment, and then what it is
- * set to. What is not named is left out. */
+ * set to. What is not named is left out; names of files are absolute. Read
+ * again it is the same scene, whatever the names hold. */
 std::string to_scene_file(const Model& m);
 
 /** The keys of a scene file that describe a scene, in their order. */

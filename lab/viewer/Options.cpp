@@ -201,7 +201,6 @@ int parse(int argc, char** argv, Options& o) {
   }
   if (!file.empty()) {
     CLI::App app;
-    app.set_config("--config");
     add_options(app, o, scene);
     scene.read(app, file, [&] {
       o.model = scene.model();
@@ -238,6 +237,8 @@ int parse(int argc, char** argv, Options& o) {
   } catch (const CLI::ParseError& e) {
     return report(app, e);
   }
+  scene.overridden_by(app);
+  o.origins = scene.origins();
   o.model = scene.model();
   check(o);
   check_has_cloth(o.model);

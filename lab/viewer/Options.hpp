@@ -3,14 +3,15 @@
  * Options: what ./cloth is asked for. */
 #include <string>
 
-#include "lab/scenes/Model.hpp"
+#include "lab/scenes/SceneFile.hpp"
 
 namespace lab {
 
 /** What a run is asked for; see ./cloth --help. */
 struct Options {
   Model model;
-  double at = -1;  ///< time of the screenshot [s]; the end if negative
+  Origins origins;  ///< of the model's parts
+  double at = -1;   ///< time of the screenshot [s]; the end if negative
   double speed = 1;
   long long every = 10;
   int threads = 0;  ///< of a large cloth; 0: one a processor

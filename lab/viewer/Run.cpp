@@ -115,8 +115,8 @@ void Run::announce() const {
     out << ": no step is stable with " << method << " and no drag";
   }
   std::cout << out.str() << std::endl;  // at once, also into a pipe
-  if (const auto& mesh = scene_.recipe().mesh)
-    for (const auto& w : warnings(o_.model, *mesh, scene_.cloth(), dt))
+  if (const auto& built = scene_.recipe().built)
+    for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
       std::cerr << warning << w << '\n';
   if (dt <= limit || sharp) return;
   out.str("");

@@ -1,0 +1,108 @@
+#pragma once
+/** @file Export.hpp
+ * Series of files for other programs: what a cloth did, frame by frame. */
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lab/scenes/Compose.hpp"
+
+namespace lab {
+
+class Scene;
+
+/** A frame: the state of a cloth as files hold it. */
+struct Frame {
+  double time = 0;  ///< [s]
+  /** Of each point of the mesh at the start, in its order: if its node is still
+   * there, and its place [m], the last one it had. */
+  std::vector<char> there;
+  std::vector<Point> places;
+  /** [m/s], [N], [kg], 1, of each point; 0 where the node is gone. Strain: the
+   * mean l/L - 1 of the springs at the node. */
+  std::vector<Point> velocities, forces;
+  std::vector<double> masses, strains;
+  std::vector<char> pinned;
+  /** The ends of each spring that is left, by the points, and its l/L - 1. */
+  std::vector<std::array<unsigned, 2>> springs;
+  std::vector<double> spring_strains;
+  std::vector<Quad> quads;  ///< that are left: see mesh_left()
+};
+
+/** The formats.
+ * vtp: VTK PolyData in XML, arrays in base64: all that a Frame has of what is
+ *   left; positions in double precision, else in single. frames.pvd lists the
+ *   files with their times. docs.vtk.org, "VTK XML Formats"
+ * obj: Wavefront, positions and quads.
+ * ply: binary, single precision: positions, velocities, strains, quads.
+ * obj and ply have all points of the start in each frame and in one order: a
+ * node that is gone stays at its last place, and its quads are gone. */
+enum class FrameFormat { vtp, obj, ply };
+
+/** The text of the file of one frame.  O(points + springs) */
+std::string to_file(const Frame& frame, FrameFormat format);
+
+/** The state of @a scene, which a recipe_of() @a m made.
+ * @param before the frame before it, for the places of nodes that went since;
+ *        null: the first one  O(points + springs) */
+Frame frame_of(const Scene& scene, const Model& m, const Frame* before);
+
+/** A folder of files frame_000000.vtp, ... Each is written whole or not at all.
+ */
+class FrameFolder {
+ public:
+  /** @param folder new or empty: what lies there is not ours
+   * Throws std::runtime_error "FOLDER: why". */
+  FrameFolder(const std::string& folder, FrameFormat format);
+  FrameFolder(const FrameFolder&) = delete;
+  FrameFolder& operator=(const FrameFolder&) = delete;
+  /** Removes the folder if nothing was written. */
+  ~FrameFolder();
+
+  /** Write @a frame. Frames of its time and later ones are removed: a run was
+   * restarted, or failed after them.
+   * Throws std::runtime_error "FILE: why". */
+  void add(const Frame& frame);
+  /** Write the list of times, for vtp.  Throws std::runtime_error. */
+  void finish() const;
+  /** Frames and folder, as a sentence. */
+  std::string wrote() const;
+
+ private:
+  std::string folder_;
+  FrameFormat format_;
+  bool made_ = false;
+  std::vector<double> times_;
+
+  std::string name(std::size_t frame) const;
+};
+
+/** The frames of a run, in all folders that it writes. */
+class Export {
+ public:
+  struct Folder {
+    FrameFormat format;
+    std::string name;  ///< empty: none
+  };
+  /** @param rate frames a second of simulated time [1/s], > 0
+   * Throws std::runtime_error "FOLDER: why". */
+  Export(const std::vector<Folder>& folders, double rate);
+
+  bool empty() const { return folders_.empty(); }
+  /** True if the next frame is due at the time of @a scene: half a step early
+   * is as good as half a step late. */
+  bool due(const Scene& scene) const;
+  /** Write the present state of @a scene, unless it is written already.
+   * @pre the state is good, and @a scene was made from @a m */
+  void add(const Scene& scene, const Model& m);
+  /** Complete the folders.  @return what is in them, a sentence each */
+  std::vector<std::string> finish() const;
+
+ private:
+  double rate_;
+  std::vector<std::unique_ptr<FrameFolder>> folders_;
+  Frame last_;
+  bool any_ = false;
+};
+
+}  // namespace lab
