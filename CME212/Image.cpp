@@ -55,6 +55,49 @@ void write_png(const std::string& path, const Image& image) {
   file.commit();
 }
 
+namespace {
+
+/** The @a n lowest bytes of @a a, the lowest one first. */
+void append(std::string& bytes, std::uint32_t a, int n) {
+  for (; n > 0; --n, a >>= 8) bytes += char(a & 255);
+}
+
+/** Windows bitmap: 24 bits a pixel, rows from below, padded to 4 bytes. */
+std::string to_bmp(const Image& image) {
+  const auto width = std::uint32_t(image.width),
+             height = std::uint32_t(image.height);
+  const std::uint32_t padding = width % 4, head = 14 + 40,
+                      size = (3 * width + padding) * height;
+  std::string bytes = "BM";
+  append(bytes, head + size, 4), append(bytes, 0, 4), append(bytes, head, 4);
+  append(bytes, 40, 4), append(bytes, width, 4), append(bytes, height, 4);
+  append(bytes, 1, 2), append(bytes, 24, 2);  // planes, bits
+  append(bytes, 0, 4), append(bytes, size, 4);
+  bytes.append(16, '\0');
+  for (int y = image.height - 1; y >= 0; --y) {
+    for (int x = 0; x < image.width; ++x)
+      for (int c : {2, 1, 0}) bytes += char(image.pixel(x, y)[c]);
+    bytes.append(padding, '\0');
+  }
+  return bytes;
+}
+
+std::string to_ppm(const Image& image) {
+  return "P6\n" + std::to_string(image.width) + ' ' +
+         std::to_string(image.height) + "\n255\n" +
+         std::string(image.rgb.begin(), image.rgb.end());
+}
+
+}  // namespace
+
+void write_image(const std::string& path, const Image& image) {
+  const std::string ending = ending_of(path);
+  if (ending != ".bmp" && ending != ".ppm") return write_png(path, image);
+  OutputFile file(path);
+  file.stream() << (ending == ".bmp" ? to_bmp(image) : to_ppm(image));
+  file.commit();
+}
+
 Image read_png(const std::string& path) {
   Png png;
   if (!png_image_begin_read_from_file(&png, path.c_str()))
@@ -142,15 +185,29 @@ bool Video::start_ffmpeg(double rate) {
       std::to_string(width_) + "x" + std::to_string(height_);
   const std::string fps = std::to_string(rate);
   const std::string to = "file:" + file_->part();  // a ":" in it is no URL
-  const std::array args{
-      "ffmpeg", "-loglevel", "error", "-y",
-      // what comes
-      "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size.c_str(), "-r",
-      fps.c_str(), "-i", "pipe:0",
-      // what becomes of it: plays everywhere, no loss that one sees
-      "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-c:v", "libx264", "-crf",
-      "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4",
-      to.c_str(), static_cast<const char*>(nullptr)};
+  std::vector<const char*> args{"ffmpeg", "-loglevel", "error", "-y",
+                                // what comes
+                                "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
+                                size.c_str(), "-r", fps.c_str(), "-i",
+                                "pipe:0"};
+  // what becomes of it: plays everywhere, no loss that one sees
+  auto add = [&args](std::initializer_list<const char*> more) {
+    args.insert(args.end(), more);
+  };
+  const std::string ending = ending_of(path_);
+  if (ending == ".gif")
+    add({"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse", "-f", "gif"});
+  else
+    add({"-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p"});
+  if (ending == ".webm")
+    add({"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-cpu-used", "4",
+         "-f", "webm"});
+  else if (ending == ".mkv")
+    add({"-c:v", "libx264", "-crf", "18", "-f", "matroska"});
+  else if (ending != ".gif")
+    add({"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart", "-f",
+         "mp4"});
+  add({to.c_str(), nullptr});
 
   // A socket, not a pipe: once ffmpeg is gone, send() returns an error where
   // write() would raise a signal.

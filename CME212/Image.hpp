@@ -4,12 +4,16 @@
  *
  * All that is written is written whole or not at all, see OutputFile. An error
  * is a std::runtime_error "FILE: reason". */
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,25 +44,41 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-/** Write @a image to the file @a path, as PNG.
+/** The formats of pictures and films, by the ending of a name. */
+inline constexpr std::array<std::string_view, 3> picture_endings = {
+    ".png", ".bmp", ".ppm"};
+inline constexpr std::array<std::string_view, 4> film_endings = {
+    ".mp4", ".mkv", ".webm", ".gif"};
+
+/** The ending of the file @a path from its last point on, in small letters. */
+inline std::string ending_of(std::string_view path) {
+  const auto point = path.find_last_of("./");
+  if (point == path.npos || path[point] == '/') return "";
+  std::string ending(path.substr(point));
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+/** Write @a image to the file @a path: in the format of its ending, or as PNG.
  * Throws std::runtime_error "path: reason"; then @a path is as it was. */
+void write_image(const std::string& path, const Image& image);
 void write_png(const std::string& path, const Image& image);
 
 /** Read the PNG file @a path; what is transparent becomes black.
  * Throws std::runtime_error "path: reason". */
 Image read_png(const std::string& path);
 
-/** A film: FILE.mp4 if there is an ffmpeg on the PATH, otherwise a folder
- * FILE_frames/ of pictures frame_000000.png, frame_000001.png, ... If there is
- * such a folder already, it is left alone: the new one is FILE_frames-2/, and
- * so on.
+/** A film: FILE.mp4, or in the format of another ending of film_endings, if
+ * there is an ffmpeg on the PATH, otherwise a folder FILE_frames/ of pictures
+ * frame_000000.png, frame_000001.png, ... If there is such a folder already, it
+ * is left alone: the new one is FILE_frames-2/, and so on.
  *
  * Nothing has its name before finish(); a Video destroyed without it leaves
  * nothing. One thread at a time. */
 class Video {
  public:
-  /** Begin the film @a path, which should end in .mp4.
-   * @param width,height Size of all pictures [pixels]; an mp4 has even sizes,
+  /** Begin the film @a path; it is an mp4 if its ending is not known.
+   * @param width,height Size of all pictures [pixels]; a film has even sizes,
    *                     an odd last column or row is left out of it
    * @param rate         Pictures a second [1/s], usually 25 to 60
    * @pre width, height >= 2 and rate > 0
@@ -79,7 +99,7 @@ class Video {
    * call does nothing. */
   void finish();
 
-  /** What finish() made: the .mp4 file, or the folder with a slash at the end.
+  /** What finish() made: the file, or the folder with a slash at the end.
    * Before, it knows no folder: then it is empty. */
   std::string wrote() const;
   /** Number of pictures so far. */

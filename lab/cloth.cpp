@@ -162,18 +162,29 @@ int take_advice(Options& o) {
  * starts.  Throws std::runtime_error, SceneError */
 void check_outputs(const Options& o) {
   std::map<std::string, const char*> option_of;
-  for (const auto& [option, file] :
-       {std::pair("csv", o.csv), std::pair("out", o.out),
-        std::pair("screenshot", o.screenshot), std::pair("record", o.video),
-        std::pair("write-config", o.advised)}) {
-    // Opening a pipe waits for its reader; and many may write to a device.
-    if (file.empty() || std::filesystem::is_other(file)) continue;
-    CME212::OutputFile try_it(file);
+  auto add = [&](const char* option, const std::string& file) {
     const auto [other, is_new] =
         option_of.emplace(CME212::output_target(file), option);
     if (!is_new)
       throw SceneError(option, "is " + file + ", where --" + other->second +
                                    " writes, expected another file");
+  };
+  for (const auto& [option, folder] :
+       {std::pair("vtp", o.vtp), std::pair("obj", o.obj),
+        std::pair("ply", o.ply)}) {
+    if (folder.empty()) continue;
+    FrameFolder try_it(folder, FrameFormat::vtp);
+    add(option, folder);
+  }
+  for (const auto& [option, file] :
+       {std::pair("csv", o.csv), std::pair("out", o.out),
+        std::pair("out", quads_beside(o.out)),
+        std::pair("screenshot", o.screenshot), std::pair("record", o.video),
+        std::pair("write-config", o.advised)}) {
+    // Opening a pipe waits for its reader; and many may write to a device.
+    if (file.empty() || std::filesystem::is_other(file)) continue;
+    CME212::OutputFile try_it(file);
+    add(option, file);
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-#include "CME212/Mesh.hpp"
+#include "lab/scenes/MeshFile.hpp"
 #include "tests/ClothProgram.hpp"
 
 namespace {
@@ -26,7 +26,6 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
   clash("--csv " + one, "--out " + one);
   clash("--csv " + one, "--out " + path("d/./../d/x"));
   clash("--csv " + one, "--out " + path("link/x"));
-  clash("--screenshot " + one, "--record " + one);
   clash("--auto --write-config " + one, "--csv " + one);
   EXPECT_EQ(run(small + "--out " + one + " --csv " + one).err,
             "cloth: --out is " + one +
@@ -116,7 +115,9 @@ TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
         EXPECT_EQ(table[k].size(), 10u);
         EXPECT_NEAR(table[k][0], 0.005 * double(k), 1e-9);
       }
-      EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 144u);
+      EXPECT_EQ(
+          lab::parse_nodes(contents(dir / "end.nodes"), "end").points.size(),
+          144u);
       EXPECT_EQ(
           r.err.find(std::string("cloth: ") + name + " ended the run at t = "),
           0u)
@@ -128,7 +129,8 @@ TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
           << r.err;
       EXPECT_EQ(r.out.find(" steps to t = ") == std::string::npos, *quiet != 0);
       EXPECT_EQ(r.out.find("com:"), std::string::npos);  // no answer
-      EXPECT_EQ(files(), (std::vector<std::string>{"e.csv", "end.nodes"}));
+      EXPECT_EQ(files(),
+                (std::vector<std::string>{"e.csv", "end.nodes", "end.tets"}));
     }
   EXPECT_NE(interrupt(long_run, {SIGTERM})
                 .err.find("kept: nothing, as no output was asked for\n"),

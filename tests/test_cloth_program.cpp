@@ -8,6 +8,7 @@
 
 #include "CME212/Mesh.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/MeshFile.hpp"
 #include "tests/ClothProgram.hpp"
 
 using namespace lab;
@@ -86,13 +87,13 @@ TEST_F(ClothProgram, DumpsPositionsThatCanBeRunAgain) {
   run(stage("forces") + grid0 + "--headless --t-end 0.5 --out " +
       path("end.nodes"));
   std::string text = contents(dir / "end.nodes");
-  auto points = parse_points(text, "end.nodes");
+  auto points = parse_nodes(text, "end.nodes").points;
   ASSERT_EQ(points.size(), 25u);
   EXPECT_EQ(points[0], Point(0, 0, 0));
   EXPECT_EQ(points[20], Point(1, 0, 0));
   EXPECT_LT(points[24].z, -0.5);
   char digits[32];
-  std::snprintf(digits, sizeof digits, " %.17g\n", points[24].z);
+  std::snprintf(digits, sizeof digits, " %.17g ", points[24].z);
   EXPECT_NE(text.find(digits), std::string::npos);
   Result r = run(path("end.nodes") +
                  " data/grid0.tets --headless --t-end 0 "
@@ -119,7 +120,7 @@ TEST_F(ClothProgram, WritesPositionsInTheOrderInWhichTheyWereRead) {
   Result r = run(file("in.nodes", nodes) + " " + file("in.tets", tets) +
                  " --headless --t-end 0 --out " + path("out.nodes"));
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_EQ(parse_points(contents(dir / "out.nodes"), "out"), points);
+  EXPECT_EQ(parse_nodes(contents(dir / "out.nodes"), "out").points, points);
 }
 
 TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
@@ -140,7 +141,8 @@ TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
                               " s in this configuration, symplectic-euler): ");
   EXPECT_NEAR(times * limit, 0.001, 1e-5);
   EXPECT_GT(times, 1.2);  // flat it would be sqrt(8 K N)/2000
-  EXPECT_EQ(parse_points(contents(dir / "end.nodes"), "end").size(), 10000u);
+  EXPECT_EQ(parse_nodes(contents(dir / "end.nodes"), "end").points.size(),
+            10000u);
   auto table = rows(dir / "e.csv");
   EXPECT_EQ(table.size(), 14u);
   for (const auto& row : table)
@@ -215,7 +217,7 @@ TEST_F(ClothProgram, ChoosesItsStep) {
     EXPECT_EQ(safe.status, 0) << m.info.name << safe.err;
     EXPECT_EQ(sharp.status, 0) << m.info.name << sharp.err;
     auto steps = [](const Result& r) {
-      return number(r.out, "tear: ", " steps to t = 5");
+      return number(r.out, "\ntear: ", " steps to t = 5");
     };
     EXPECT_EQ(number(safe.out, " s: ", " % of the stability limit ("), 60);
     if (m.info.limit > 0) {
@@ -334,11 +336,13 @@ TEST_F(ClothProgram, EndsWith3WhenAStepCantBeMade) {
 }
 
 TEST_F(ClothProgram, RefusesOutputsThatCantBeBeforeItRuns) {
-  for (const char* option :
-       {"--csv ", "--out ", "--screenshot ", "--record "}) {
-    Result r = run(grid3 + "--headless " + option + path("no/such"));
+  for (const auto& [option, name] :
+       {std::pair("--csv ", "no/such"), std::pair("--out ", "no/such"),
+        std::pair("--screenshot ", "no/such.png"),
+        std::pair("--record ", "no/such.mp4")}) {
+    Result r = run(grid3 + "--headless " + option + path(name));
     EXPECT_EQ(r.status, 2) << option;
-    EXPECT_EQ(r.err, "cloth: " + path("no/such") +
+    EXPECT_EQ(r.err, "cloth: " + path(name) +
                          ": can't be written (No such file or directory)\n");
     EXPECT_EQ(files(), std::vector<std::string>{});
   }

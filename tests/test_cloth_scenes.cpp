@@ -45,7 +45,7 @@ TEST_F(ClothProgram, MakesASceneOfWhatIsNamedAndNothingElse) {
   EXPECT_NE(r.out.find("scene: 1000 steps"), std::string::npos);
   EXPECT_NEAR(rows(dir / "e.csv").back()[7], -9.81 / 2, 0.01);
   // The same files in a stage of the assignment, and as a scene.
-  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("tear: "),
+  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("\ntear: "),
             std::string::npos);
   EXPECT_NE(run(grid0 + "--headless --t-end 0 --density 1").out.find("scene: "),
             std::string::npos);

@@ -319,6 +319,7 @@ TEST(Export, TakesBackFramesOfATimeThatComesAgain) {
   for (int k = 0; k < 3; ++k) scene.step(), frames.add(scene, m);
   EXPECT_EQ(frames.finish()[0].substr(0, 2), "4 ");
   scene.restart();
+  frames.take_back(scene);
   frames.add(scene, m);
   EXPECT_EQ(frames.finish()[0].substr(0, 2), "1 ");
   EXPECT_FALSE(std::filesystem::exists(folder / "obj/frame_000001.obj"));

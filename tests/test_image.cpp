@@ -153,6 +153,45 @@ TEST(Image, SaysWhatIsWrong) {
   EXPECT_EQ(files_in(folder), 2u);
 }
 
+TEST(Image, HasTheFormatOfItsEnding) {
+  EXPECT_EQ(ending_of("a.b/c.D.PnG"), ".png");
+  EXPECT_EQ(ending_of("a.b/c"), "");
+  EXPECT_EQ(ending_of("c."), ".");
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
+  TestFolder folder;
+  for (int width : {4, 5, 6, 7})
+    for (std::string_view ending : picture_endings) {
+      const Image image = test_image(width, 3);
+      const std::string file = folder / ("a" + std::string(ending));
+      write_image(file, image);
+      EXPECT_EQ(output_of("ffmpeg -v error -i " + file +
+                          " -f rawvideo -pix_fmt rgb24 -"),
+                std::string(image.rgb.begin(), image.rgb.end()))
+          << ending << width;
+    }
+}
+
+TEST(Video, HasTheFormatOfItsEnding) {
+  if (!has_program("ffprobe")) GTEST_SKIP() << "no ffprobe";
+  TestFolder folder;
+  const std::map<std::string_view, std::string> formats = {
+      {".mp4", "h264\nmov,mp4,m4a,3gp,3g2,mj2\n"},
+      {".mkv", "h264\nmatroska,webm\n"},
+      {".webm", "vp9\nmatroska,webm\n"},
+      {".gif", "gif\ngif\n"}};
+  for (std::string_view ending : film_endings) {
+    const std::string file = folder / ("v" + std::string(ending));
+    Video video(file, 64, 48, 25);
+    for (int i = 0; i < 5; ++i) video.add(test_image(64, 48, i));
+    video.finish();
+    EXPECT_EQ(output_of("ffprobe -v error -show_entries "
+                        "stream=codec_name:format=format_name -of "
+                        "default=nk=1:nw=1 " +
+                        file),
+              formats.at(ending));
+  }
+}
+
 TEST(Video, MakesAPlayableFile) {
   if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   TestFolder folder;

@@ -180,6 +180,14 @@ plain() {
 programs() {
   in_folder . all cloth bench bench_implicit bench_stability example_graph
 }
+# Frames of a cloth that tears, read by VTK.
+vtk() {
+  local folder=build/check/vtk
+  rm -rf "$folder" && in_folder . cloth && mkdir "$folder" &&
+    build/check/cloth data/grid1.nodes data/grid1.tets --headless --t-end 0.75 \
+      --vtp "$folder/frames" --csv "$folder/table.csv" --every 1 &&
+    tools/check_vtk.py "$folder/frames" "$folder/table.csv"
+}
 # A sample of the suite of lab/advice/README.md; other scenes than the tables.
 advice() {
   build/check/adviser_suite --scenes 24 --first 501 --want-met 85 \
@@ -201,6 +209,7 @@ of_variants() {
 of_programs() {
   step window      tools/test_window.sh
   step grids       same_grids
+  step vtk         vtk
   step pages       tools/check_pages.sh
 }
 of_sweeps() {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include "CME212/Util.hpp"
 
@@ -73,7 +74,12 @@ void write_quads(std::ostream& out, const PointsAndQuads& mesh) {
 }
 
 std::string quads_beside(const std::string& nodes) {
-  return std::filesystem::path(nodes).replace_extension(".tets").string();
+  namespace fs = std::filesystem;
+  fs::path file(nodes);
+  std::error_code none;
+  if (nodes.empty() || fs::is_other(file, none)) return "";
+  if (file.extension() == ".nodes") return file.replace_extension(".tets");
+  return nodes + ".tets";
 }
 
 }  // namespace lab

@@ -34,8 +34,8 @@ PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets);
 void write_nodes(std::ostream& out, const PointsAndQuads& mesh);
 void write_quads(std::ostream& out, const PointsAndQuads& mesh);
 
-/** The .tets file that goes with the .nodes file @a nodes: its name with that
- * ending instead of its own. */
+/** The .tets file that goes with the file of points @a nodes: A.tets with
+ * A.nodes, else A.tets with A; "" with a pipe or a device. */
 std::string quads_beside(const std::string& nodes);
 
 }  // namespace lab

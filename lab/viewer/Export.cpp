@@ -301,11 +301,13 @@ std::string FrameFolder::name(std::size_t frame) const {
   return (std::filesystem::path(folder_) / file).string();
 }
 
-void FrameFolder::add(const Frame& frame) {
-  while (!times_.empty() && times_.back() >= frame.time) {
+void FrameFolder::take_back(double t) {
+  for (; !times_.empty() && times_.back() > t; times_.pop_back())
     std::filesystem::remove(name(times_.size() - 1));
-    times_.pop_back();
-  }
+}
+
+void FrameFolder::add(const Frame& frame) {
+  assert(times_.empty() || times_.back() < frame.time);
   write_file(name(times_.size()), to_file(frame, format_));
   times_.push_back(frame.time);
 }
@@ -341,6 +343,13 @@ bool Export::due(const Scene& scene) const {
   auto number = [this](double t) { return std::floor(t * rate_ + 1e-9); };
   const double half = scene.dt() / 2;
   return !any_ || number(scene.time() + half) > number(last_.time + half);
+}
+
+void Export::take_back(const Scene& scene) {
+  if (empty() || !any_ || last_.time <= scene.time()) return;
+  for (auto& folder : folders_) folder->take_back(scene.time());
+  any_ = folders_.front()->last_time() >= 0;
+  last_.time = folders_.front()->last_time();
 }
 
 void Export::add(const Scene& scene, const Model& m) {

@@ -59,12 +59,15 @@ class FrameFolder {
   /** Removes the folder if nothing was written. */
   ~FrameFolder();
 
-  /** Write @a frame. Frames of its time and later ones are removed: a run was
-   * restarted, or failed after them.
+  /** Write @a frame.  @pre it is later than all others
    * Throws std::runtime_error "FILE: why". */
   void add(const Frame& frame);
+  /** Remove the frames that are later than @a t [s]. */
+  void take_back(double t);
   /** Write the list of times, for vtp.  Throws std::runtime_error. */
   void finish() const;
+  /** The time of the last frame [s]; negative: there is none. */
+  double last_time() const { return times_.empty() ? -1 : times_.back(); }
   /** Frames and folder, as a sentence. */
   std::string wrote() const;
 
@@ -92,8 +95,12 @@ class Export {
   /** True if the next frame is due at the time of @a scene: half a step early
    * is as good as half a step late. */
   bool due(const Scene& scene) const;
+  /** Remove the frames that are later than @a scene is now: of steps that were
+   * taken back, or before a restart. */
+  void take_back(const Scene& scene);
   /** Write the present state of @a scene, unless it is written already.
-   * @pre the state is good, and @a scene was made from @a m */
+   * @pre nothing is to be taken back; the state is good, and @a scene was made
+   * from @a m */
   void add(const Scene& scene, const Model& m);
   /** Complete the folders.  @return what is in them, a sentence each */
   std::vector<std::string> finish() const;

@@ -3,13 +3,17 @@
 #include "lab/viewer/Options.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <span>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "CME212/Image.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Methods.hpp"
@@ -43,7 +47,8 @@ const std::vector<Group> groups = {
     {"Method and step", {"method", "dt", "threads"}},
     {"Output",
      {"headless", "window", "paused", "speed", "strain", "screenshot", "at",
-      "record", "csv", "every", "out", "quiet"}},
+      "record", "csv", "every", "out", "vtp", "obj", "ply", "frame-rate",
+      "quiet"}},
     {"Advice", {"measure", "tolerance", "advise", "auto", "write-config"}},
     {"Other", {"dump-config", "list-methods", "version", "help"}}};
 
@@ -100,6 +105,24 @@ void check(Options& o) {
                        "is " + short_text(value) + ", expected " + expected);
   };
   require(o.speed >= 0, "speed", o.speed, "0 or more");
+  auto require_ending = [](const char* option, const std::string& file,
+                           std::span<const std::string_view> endings) {
+    if (file.empty() ||
+        std::ranges::count(endings, CME212::ending_of(file)) > 0)
+      return;
+    std::string known;
+    for (std::string_view e : endings)
+      known += (known.empty()         ? ""
+                : e == endings.back() ? " or "
+                                      : ", ") +
+               std::string(e);
+    throw SceneError(option,
+                     "is " + file + ", expected a name that ends in " + known);
+  };
+  require_ending("screenshot", o.screenshot, CME212::picture_endings);
+  require_ending("record", o.video, CME212::film_endings);
+  require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
+          o.frame_rate, "more than 0 frames a second");
   require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
           "a time up to --t-end");
@@ -147,17 +170,33 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
                  "as it goes");
   app.add_flag("--strain", o.strain,
                "color the nodes by their springs' strain");
-  takes_file(app.add_option("--screenshot", o.screenshot,
-                            "draw a picture FILE.png, without a window"));
+  takes_file(
+      app.add_option("--screenshot", o.screenshot,
+                     "draw a picture, without a window; the format by its "
+                     "ending: .png, .bmp or .ppm"));
   app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
   takes_file(app.add_option(
       "--record", o.video,
-      "draw a film FILE.mp4 of 30 frames a second, without a window"));
+      "draw a film of 30 frames a second, without a window; the format by "
+      "its ending: .mp4, .mkv, .webm or .gif"));
   takes_file(app.add_option("--csv", o.csv,
                             "write energies [J] and center of mass [m]"));
   app.add_option("--every", o.every, "steps between two rows of --csv");
   takes_file(app.add_option("--out", o.out,
-                            "write the positions at the end, as NODES"));
+                            "write the cloth at the end, as NODES with "
+                            "velocities, and as TETS beside them"));
+  takes_file(app.add_option("--vtp", o.vtp,
+                            "write frames of all that is known for ParaView, "
+                            "and frames.pvd with their times"))
+      ->type_name("FOLDER");
+  takes_file(app.add_option("--obj", o.obj,
+                            "write frames of points and quads for Blender"))
+      ->type_name("FOLDER");
+  takes_file(
+      app.add_option("--ply", o.ply, "the same with velocities and strains"))
+      ->type_name("FOLDER");
+  app.add_option("--frame-rate", o.frame_rate,
+                 "frames of these a second of simulated time [1/s]");
   app.add_option("--threads", o.threads,
                  "threads for a large cloth; 0: one a processor. They change "
                  "no result")

@@ -19,7 +19,9 @@ struct Options {
   bool quiet = false;
   bool advise = false, automatic = false;
   std::string screenshot, video, csv, out;
-  std::string advised;  ///< file for the advised scene
+  std::string vtp, obj, ply;  ///< folders
+  double frame_rate = 30;     ///< of those [1/s]
+  std::string advised;        ///< file for the advised scene
 
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };

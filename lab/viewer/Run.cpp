@@ -10,6 +10,7 @@
 #include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Verlet.hpp"
+#include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Warnings.hpp"
 #include "lab/stability/StepLimit.hpp"
@@ -22,8 +23,18 @@ constexpr const char* warning = "cloth: warning: ";
 }  // namespace
 
 Run::Run(Scene& scene, const Options& o)
-    : scene_(scene), o_(o), progress_(o.quiet) {
-  if (!o.out.empty()) out_.emplace(o.out);
+    : scene_(scene),
+      o_(o),
+      progress_(o.quiet),
+      frames_({{FrameFormat::vtp, o.vtp},
+               {FrameFormat::obj, o.obj},
+               {FrameFormat::ply, o.ply}},
+              o.frame_rate) {
+  if (!o.out.empty()) {
+    out_.emplace(o.out);
+    const std::string quads = quads_beside(o.out);
+    if (!quads.empty()) out_quads_.emplace(quads);
+  }
   start();
 }
 
@@ -32,6 +43,8 @@ void Run::start() {
   seconds_ = 0;
   rows_ = 0, last_row_ = settled_row_ = -1;
   recent_.clear();
+  frames_.take_back(scene_);
+  frames_.add(scene_, o_.model);
   if (o_.csv.empty()) return;
   csv_.emplace(o_.csv);
   csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,"
@@ -71,11 +84,13 @@ void Run::to_end(const std::function<void()>& after) {
 /** After a step, which may have taken others back. */
 void Run::look() {
   settle_rows(scene_.settled_steps());
+  frames_.take_back(scene_);
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
   tell_failure();
   if (scene_.steps() % o_.every == 0 || at_end) add_row();
+  if (at_end || frames_.due(scene_)) add_frame();
   if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
   if (progress_.due()) show_progress();
 }
@@ -92,6 +107,9 @@ void Run::show_progress() {
 void Run::announce() const {
   if (o_.quiet) return;
   using CME212::percent;
+  for (const std::string& line :
+       what_acts(o_.model, scene_.cloth(), scene_.recipe().mesh->mesh))
+    std::cout << line << '\n';
   const std::string method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
   const bool sharp = scene_.step_rule() == StepRule::sharp;
@@ -145,7 +163,14 @@ int Run::finish() {
       wrote(o_.csv + " (" + std::to_string(rows_) +
             (rows_ == 1 ? " row)" : " rows)"));
     });
-  if (out_) write([this] { write_positions(); });
+  if (out_) write([this] { write_mesh(); });
+  write([this] {
+    add_frame();  // of a run that is cut short
+    for (const std::string& what : frames_.finish()) {
+      if (!o_.quiet) std::cout << what << '\n';
+      wrote(what);
+    }
+  });
   if (error) std::rethrow_exception(error);
   if (cut_short()) tell_interrupt();
   if (!o_.quiet) print_summary();
@@ -157,13 +182,20 @@ void Run::wrote(const std::string& what) {
   kept_ += (kept_.empty() ? "" : ", ") + what;
 }
 
-void Run::write_positions() {
-  for (Node n : scene_.cloth().nodes()) {
-    Point p = n.position();
-    out_->stream() << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y) << ' '
-                   << CME212::to_text(p.z) << '\n';
-  }
+void Run::add_frame() {
+  if (frames_.empty()) return;
+  check();
+  frames_.take_back(scene_);
+  frames_.add(scene_, o_.model);
+}
+
+/** What is left of the mesh, so that it can be read again. */
+void Run::write_mesh() {
+  const PointsAndQuads left = mesh_left(scene_.cloth(), *scene_.recipe().mesh);
+  write_nodes(out_->stream(), left);
+  if (out_quads_) write_quads(out_quads_->stream(), left);
   out_->commit();
+  if (out_quads_) out_quads_->commit();
   wrote(o_.out);
 }
 

@@ -8,6 +8,7 @@
 
 #include "CME212/OutputFile.hpp"
 #include "lab/Progress.hpp"
+#include "lab/viewer/Export.hpp"
 #include "lab/viewer/Options.hpp"
 
 namespace lab {
@@ -55,7 +56,8 @@ class Run {
   Scene& scene_;
   const Options& o_;
   Progress progress_;
-  std::optional<CME212::OutputFile> csv_, out_;
+  std::optional<CME212::OutputFile> csv_, out_, out_quads_;
+  Export frames_;
   struct Row {
     long long step;
     std::string text;
@@ -74,7 +76,8 @@ class Run {
   void show_progress();
   void tell_failure();
   void warn_of_missed();
-  void write_positions();
+  void add_frame();
+  void write_mesh();
   void tell_interrupt() const;
   void print_summary() const;
 };

@@ -39,7 +39,7 @@ class Screen {
    * state, with a mark where it failed, and the reason. */
   virtual void show(const Scene& scene) = 0;
 
-  /** Write what was shown last to a PNG file.
+  /** Write what was shown last to a file, in the format of its ending.
    * Throws std::runtime_error "FILE: why". */
   virtual void save_picture(const std::string& file) = 0;
 

@@ -1,0 +1,200 @@
+// ./cloth and the files that come from users and go to other programs: frames,
+// clothes that are written and read again, scenes from elsewhere.
+#include <gtest/gtest.h>
+
+#include "lab/scenes/MeshFile.hpp"
+#include "tests/ClothProgram.hpp"
+
+namespace {
+
+const std::string torn =
+    "--sheet 'nodes 9 9' --pin 'x 0' --tear 'at 0.7 0.5 -0.3 radius 0.2' "
+    "--headless --t-end 0.5 ";
+
+TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
+  const Result r =
+      run(torn + "--dt 0.003 --csv " + path("e.csv") + " --every 1 --vtp " +
+          path("vtp") + " --obj " + path("obj") + " --ply " + path("ply"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  for (const std::string kind : {"vtp", "obj", "ply"})
+    EXPECT_NE(r.out.find("16 frames ." + kind + " in " + path(kind) + '\n'),
+              std::string::npos)
+        << r.out;
+  // Each frame is the state of a row of the table, of that time.
+  std::istringstream pvd(contents(dir / "vtp/frames.pvd"));
+  const auto table = rows(dir / "e.csv");
+  int frames = 0;
+  for (std::string line; std::getline(pvd, line);) {
+    const auto at = line.find("timestep=\"");
+    if (at == std::string::npos) continue;
+    const double t = std::stod(line.substr(at + 10));
+    const auto row = std::find_if(table.begin(), table.end(), [&](auto& row) {
+      return std::abs(row[0] - t) < 1e-12;
+    });
+    ASSERT_NE(row, table.end()) << t;
+    const auto name = line.find("file=\"") + 6;
+    const std::string file =
+        contents(dir / "vtp" / line.substr(name, line.find('"', name) - name));
+    EXPECT_NE(file.find("NumberOfPoints=\"" + std::to_string(int((*row)[8])) +
+                        "\" NumberOfVerts=\"0\" NumberOfLines=\"" +
+                        std::to_string(int((*row)[9])) + '"'),
+              std::string::npos);
+    ++frames;
+  }
+  EXPECT_EQ(frames, 16);
+  EXPECT_LT(table.back()[8], 81);  // it tore
+  const std::string last = contents(dir / "obj/frame_000015.obj");
+  std::size_t points = 0;
+  for (std::size_t k = 0; (k = last.find("\nv ", k)) != std::string::npos; ++k)
+    ++points;
+  EXPECT_EQ(points, 81u);
+}
+
+TEST_F(ClothProgram, WritesATornClothThatCanBeReadAgain) {
+  Result r = run(torn + "--out " + path("end.nodes"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"end.nodes", "end.tets"}));
+  const auto left = lab::load_mesh(path("end.nodes"), path("end.tets"));
+  EXPECT_LT(left.points.size(), 81u);
+  EXPECT_LT(left.quads.size(), 64u);
+  EXPECT_EQ(left.velocities.size(), left.points.size());
+  r = run(path("end.nodes") + " " + path("end.tets") +
+          " --pin 'x 0 y 0 z 0' --gravity 0 --stiffness 0 --headless "
+          "--t-end 0 --out " +
+          path("again"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  for (const std::string kind : {"nodes", "tets"})
+    EXPECT_EQ(contents(path(kind == "tets" ? "again.tets" : "again")),
+              contents(path("end." + kind)));
+  EXPECT_EQ(run(torn + "--out /dev/null").status, 0);
+  EXPECT_FALSE(fs::exists("/dev/null.tets"));
+}
+
+TEST_F(ClothProgram, RefusesFoldersThatAreInUse) {
+  auto error = [this](const std::string& options) {
+    const Result r = run(torn + options);
+    EXPECT_EQ(r.status, 2) << options;
+    EXPECT_EQ(r.out, "");
+    return r.err;
+  };
+  fs::create_directory(dir / "mine");
+  file("mine/x", "mine");
+  EXPECT_EQ(error("--vtp " + path("mine")),
+            "cloth: " + path("mine") +
+                ": has files in it, expected a new or an empty folder\n");
+  EXPECT_EQ(error("--vtp " + path("new") + " --obj " + path("./new")),
+            "cloth: --obj is " + path("./new") +
+                ", where --vtp writes, expected another file\n");
+  EXPECT_NE(error("--out " + path("a.nodes") + " --csv " + path("a.tets")), "");
+  EXPECT_EQ(error("--frame-rate 0 --vtp " + path("new")),
+            "cloth: --frame-rate is 0, expected more than 0 frames a second\n");
+  EXPECT_EQ(files(), std::vector<std::string>{"mine"});
+}
+
+// The line of a file, unless the command line has said something else since.
+TEST_F(ClothProgram, SaysWhereASceneIsWrongAlsoWhenItIsFoundOutLate) {
+  const std::string scene = file(
+      "s.toml", "\xEF\xBB\xBFsheet = \"nodes 9 9\"\n# held\npin = \"x 0.3\"\n");
+  const std::string run_it = "--config " + scene + " --headless --t-end 0 ";
+  Result r = run(run_it);
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err, scene + ":3: --pin \"x 0.3\" holds no node\n");
+  EXPECT_EQ(run(run_it + "--pin 'x 0.4'").err,
+            "cloth: --pin \"x 0.4\" holds no node\n");
+  EXPECT_EQ(run(run_it + "--pin 'x 0'").status, 0);
+  r = run(run_it + "--pin 'x 0' --self-collision 'thickness 0.3'");
+  EXPECT_EQ(r.err.find("cloth: --self-collision has thickness 0.3 m, but two"),
+            0u);
+  file("s.toml", "sheet = \"nodes 9 9\"\nself-collision = \"thickness 0.3\"\n");
+  EXPECT_EQ(run(run_it).err.find(scene + ":2: --self-collision has"), 0u);
+  file("s.toml", "sheet = \"nodes 9 9\"\ndt = 0.1\n");
+  EXPECT_EQ(run("--config " + scene + " --t-end 0.05").err,
+            scene + ":2: --dt is 0.1, expected at most --t-end\n");
+}
+
+TEST_F(ClothProgram, SeeksTheFilesOfASceneBesideIt) {
+  fs::create_directory(dir / "sub");
+  file("sub/a.nodes", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  file("sub/a.tets", "0 1 2 3\n");
+  const std::string scene =
+      file("s.toml",
+           "nodes = \"sub/a.nodes\"\ntets = \"sub/a.tets\"\n"
+           "csv = \"e.csv\"\nheadless = true\nt-end = 0.01\n");
+  const Result r = run("--config " + scene);
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"e.csv", "s.toml", "sub"}));
+  EXPECT_EQ(run("--config " + scene + " --nodes sub/a.nodes").status, 2);
+}
+
+// Whatever the name of a folder holds, a dump says it.
+TEST_F(ClothProgram, DumpsScenesThatCanBeReadBack) {
+  const std::string odd = "a \"b\" \\ \xC3\xA9\n# [x]";
+  fs::create_directory(dir / odd);
+  file(odd + "/a.nodes", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  file(odd + "/a.tets", "0 1 2 3\n");
+  const std::string quoted = "'" + path(odd) + "/a";
+  Result r = run(quoted + ".nodes' " + quoted +
+                 ".tets' --region 'from 0 0 0 to 1 0 0 mass-factor 3 "
+                 "stiffness-factor 2' --pin 'x 0' --dump-config");
+  EXPECT_EQ(r.status, 0) << r.err;
+  const std::string dump = r.out;
+  const std::string scene = file("dump.toml", dump);
+  EXPECT_EQ(run("--config " + scene + " --dump-config").out, dump);
+  r = run("--config " + scene + " --headless --t-end 0.01");
+  EXPECT_EQ(r.status, 0) << r.err;
+}
+
+TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
+  auto error = [this](const std::string& options) {
+    const Result r = run(torn + options);
+    EXPECT_EQ(r.status, 2) << options;
+    return r.err;
+  };
+  EXPECT_EQ(error("--screenshot a.jpg"),
+            "cloth: --screenshot is a.jpg, expected a name that ends in .png, "
+            ".bmp or .ppm\n");
+  EXPECT_EQ(error("--record png"),
+            "cloth: --record is png, expected a name that ends in .mp4, .mkv, "
+            ".webm or .gif\n");
+}
+
+// By default, too, a step of a method with four evaluations costs four times.
+TEST_F(ClothProgram, SaysWhatActsAndWhatItCosts) {
+  const std::string scene =
+      "--sheet 'nodes 5 5' --pin 'x 0' --plane 'at 0 0 -1' --damping 0.1 "
+      "--region 'from 0 0 0 to 0.3 1 0 stiffness-factor 4' --headless --t-end "
+      "0.01 ";
+  EXPECT_NE(run(scene).out.find(
+                "a step of symplectic-euler, order 1: 1 force evaluation\n"
+                "  cloth of 5 x 5 nodes, 1 kg: 25 nodes moved\n"
+                "  springs, K 100 to 400 N/m: 72 springs\n"
+                "  gravity 9.81 m/s^2: 25 nodes\n"
+                "  drag 0.1 kg/s a node: 25 nodes\n"
+                "  plane at 0 0 -1: 25 nodes\n"
+                "  pin x 0: 5 nodes\n"),
+            std::string::npos)
+      << run(scene).out;
+  const std::string rk4 = run(scene + "--method rk4").out;
+  EXPECT_NE(rk4.find(": 4 force evaluations\n"), std::string::npos) << rk4;
+  EXPECT_NE(rk4.find(": 4 times 72 springs\n"), std::string::npos);
+  EXPECT_NE(rk4.find("plane at 0 0 -1: 25 nodes\n"), std::string::npos);
+  const std::string bare =
+      run("--sheet 'nodes 5 5' --gravity 0 --headless --t-end 0.01").out;
+  for (const char* part : {"gravity", "drag", "plane", "pin", "tear"})
+    EXPECT_EQ(bare.find("  " + std::string(part)), std::string::npos) << bare;
+  EXPECT_EQ(run(scene + "--quiet").out, "");
+}
+
+// 10^8 nodes need at least 36 GB; with 4 GB of addresses that is known at once.
+TEST_F(ClothProgram, RefusesAClothThatNeedsMoreMemoryThanThereIs) {
+  const Result r =
+      folder.run("ulimit -v 4000000; " + CME212::program("cloth", "build/") +
+                 " --sheet 'nodes 10000 10000' --headless");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err.find("cloth: --sheet gives 1e+08 nodes and 3.9994e+08 "
+                       "springs, which need at least 37 GB of memory; "),
+            0u)
+      << r.err;
+}
+
+}  // namespace

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""Read frames that ./cloth --vtp FOLDER wrote with VTK, a reader of others, and
+check them against the table of the same run:  check_vtk.py FOLDER TABLE.csv
+With a third argument, PICTURE.png, the last frame is drawn as well.
+Without python3-vtk9 it says so: "skipped: ..." """
+import csv
+import math
+import sys
+import xml.etree.ElementTree as xml
+
+try:
+    import vtk
+except ImportError:
+    print("skipped: python3-vtk9 is not installed")
+    sys.exit(0)
+
+folder, table = sys.argv[1], sys.argv[2]
+rows = {row["t"]: row for row in csv.DictReader(open(table))}
+rows = {float(t): row for t, row in rows.items()}
+
+
+def read(name):
+    """The frame of a file; an error of the reader is an exception."""
+    errors = []
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.AddObserver("ErrorEvent", lambda *_: errors.append(name))
+    reader.SetFileName(f"{folder}/{name}")
+    reader.Update()
+    assert not errors, f"VTK can't read {name}"
+    return reader.GetOutput()
+
+
+def near(a, b, scale):
+    assert math.isclose(a, b, rel_tol=1e-5, abs_tol=1e-6 * scale), (a, b)
+
+
+frames = list(xml.parse(f"{folder}/frames.pvd").iter("DataSet"))
+assert frames, "frames.pvd names no file"
+previous = -1.0
+for entry in frames:
+    t = float(entry.get("timestep"))
+    assert t > previous, (t, previous)
+    previous = t
+    row = rows[min(rows, key=lambda time: abs(time - t))]
+    near(float(row["t"]), t, 1e-6)
+    data = read(entry.get("file"))
+    near(data.GetFieldData().GetArray("TimeValue").GetValue(0), t, 1e-6)
+    n, points = data.GetNumberOfPoints(), data.GetPointData()
+    assert n == int(row["nodes"]), (n, row["nodes"])
+    assert data.GetNumberOfLines() == int(row["edges"])
+    assert data.GetNumberOfCells() == (
+        data.GetNumberOfLines() + data.GetNumberOfPolys())
+    strain = data.GetCellData().GetArray("strain")
+    assert strain.GetNumberOfTuples() == data.GetNumberOfCells()
+    arrays = {name: points.GetArray(name) for name in
+              ("velocity", "force", "mass", "strain", "pinned", "node")}
+    for name, array in arrays.items():
+        assert array and array.GetNumberOfTuples() == n, name
+    mass = [arrays["mass"].GetValue(i) for i in range(n)]
+    # What the frame says about energy and center of mass, by VTK's numbers.
+    kinetic = sum(m * sum(v * v for v in arrays["velocity"].GetTuple(i)) / 2
+                  for i, m in enumerate(mass))
+    near(kinetic, float(row["kinetic"]), 1)
+    for k, axis in enumerate("xyz"):
+        center = sum(m * data.GetPoint(i)[k] for i, m in enumerate(mass))
+        near(center / sum(mass), float(row["com_" + axis]), 1)
+    # A line's strain fits all lines of its rest length; so l/L - 1 > -1.
+    assert all(strain.GetValue(c) > -1 for c in range(data.GetNumberOfCells()))
+    held = sum(arrays["pinned"].GetValue(i) for i in range(n))
+    assert held > 0, "nothing is pinned"
+print(f"{len(frames)} frames, {data.GetNumberOfPoints()} points, "
+      f"{data.GetNumberOfLines()} lines, {data.GetNumberOfPolys()} quads at "
+      f"the end")
+
+if len(sys.argv) > 3:
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetScalarModeToUseCellData()
+    data.GetCellData().SetActiveScalars("strain")
+    low, high = data.GetCellData().GetArray("strain").GetRange()
+    mapper.SetScalarRange(low, high)
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetLineWidth(2)
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.AddActor(actor)
+    renderer.GetActiveCamera().SetPosition(1.2, -2, 0.8)
+    renderer.GetActiveCamera().SetViewUp(0, 0, 1)
+    renderer.ResetCamera()
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetSize(640, 480)
+    window.AddRenderer(renderer)
+    window.Render()
+    picture = vtk.vtkWindowToImageFilter()
+    picture.SetInput(window)
+    writer = vtk.vtkPNGWriter()
+    writer.SetFileName(sys.argv[3])
+    writer.SetInputConnection(picture.GetOutputPort())
+    writer.Write()
