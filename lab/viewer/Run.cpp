@@ -108,7 +108,7 @@ void Run::announce() const {
   if (o_.quiet) return;
   using CME212::percent;
   for (const std::string& line :
-       what_acts(o_.model, scene_.cloth(), scene_.recipe().mesh->mesh))
+       what_acts(o_.model, scene_.cloth(), scene_.recipe().built->mesh))
     std::cout << line << '\n';
   const std::string method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
@@ -191,7 +191,7 @@ void Run::add_frame() {
 
 /** What is left of the mesh, so that it can be read again. */
 void Run::write_mesh() {
-  const PointsAndQuads left = mesh_left(scene_.cloth(), *scene_.recipe().mesh);
+  const PointsAndQuads left = mesh_left(scene_.cloth(), *scene_.recipe().built);
   write_nodes(out_->stream(), left);
   if (out_quads_) write_quads(out_quads_->stream(), left);
   out_->commit();
