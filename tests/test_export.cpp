@@ -163,7 +163,9 @@ TEST(Frame, OfATornClothHasWhatIsLeftOfItAndAllPlaces) {
   const Model m = small_model();
   Scene scene(m);
   Cloth& g = scene.cloth();
+  g.node(0).position().z = 0.25;
   const Frame before = frame_of(scene, m, nullptr);
+  EXPECT_EQ(before.places[0], Point(0, 0, 0.25));
   const Node last = g.node(11);
   g.remove_node(g.node(0));
   EXPECT_EQ(g.remove_edge(last, g.node(8)), 1u);
