@@ -223,6 +223,15 @@ int run(Options o) {
   return status;
 }
 
+/** Where the scene names the file of a mesh that can't be read: "FILE:LINE: ".
+ * @param what the error; one in a line of that file needs no other place */
+std::string place_of(const Options& o, const std::string& what) {
+  for (const auto& [option, file] :
+       {std::pair("--nodes", o.model.nodes), std::pair("--tets", o.model.tets)})
+    if (what.starts_with(file + ": ")) return o.origins.of(option, "");
+  return "";
+}
+
 /** @return @a status; or 2 if not all could be written to the standard output
  */
 int after_output(int status) {
@@ -249,7 +258,7 @@ int main(int argc, char** argv) {
     std::cerr << "cloth: " << e.what() << '\n';
     return 4;
   } catch (const InputError& e) {
-    std::cerr << e.what() << '\n';
+    std::cerr << place_of(o, e.what()) << e.what() << '\n';
     return 2;
   } catch (const SceneFileError& e) {
     std::cerr << e.what() << '\n';

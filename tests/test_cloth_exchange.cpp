@@ -123,7 +123,17 @@ TEST_F(ClothProgram, SeeksTheFilesOfASceneBesideIt) {
   const Result r = run("--config " + scene);
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(files(), (std::vector<std::string>{"e.csv", "s.toml", "sub"}));
-  EXPECT_EQ(run("--config " + scene + " --nodes sub/a.nodes").status, 2);
+  // On the command line it is relative to the working directory.
+  EXPECT_EQ(run("--config " + scene + " --nodes sub/a.nodes").err,
+            "sub/a.nodes: can't be opened (No such file or directory), "
+            "expected a file of points\n");
+  fs::remove(dir / "sub/a.tets");
+  EXPECT_EQ(run("--config " + scene).err,
+            scene + ":2: " + path("sub/a.tets") +
+                ": can't be opened (No such file or directory), expected a "
+                "file of quads\n");
+  file("sub/a.tets", "0 1 2 4\n");
+  EXPECT_EQ(run("--config " + scene).err.find(path("sub/a.tets") + ":1: "), 0u);
 }
 
 // Whatever the name of a folder holds, a dump says it.

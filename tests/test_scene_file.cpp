@@ -251,6 +251,24 @@ RC_GTEST_PROP(KeyValues, ReadBackWhateverBytesTheyHold, ()) {
                       "] # c") == (Values{text, other}));
 }
 
+// Whatever is read, it is a value or an error with its line. Made of what the
+// grammar knows, most of it gets far.
+RC_GTEST_PROP(KeyValues, EndWellWhateverIsRead, ()) {
+  const auto text = *rc::gen::container<std::string>(
+      rc::gen::oneOf(rc::gen::element('k', '=', '"', '\'', '[', ']', ',', '\\',
+                                      'u', '0', '#', '\n', ' '),
+                     rc::gen::arbitrary<char>()));
+  std::string error = "f:";
+  try {
+    each_key_value("k = " + text, "f", [](auto& found, std::size_t line) {
+      RC_ASSERT(line > 0 && !found.key.empty());
+    });
+  } catch (const InputError& e) {
+    error = e.what();
+  }
+  RC_ASSERT(error.starts_with("f:"));
+}
+
 // ----------------------------------------------------------------------- Files
 
 class SceneFile : public ::testing::Test {

@@ -185,8 +185,10 @@ vtk() {
   local folder=build/check/vtk
   rm -rf "$folder" && in_folder . cloth && mkdir "$folder" &&
     build/check/cloth data/grid1.nodes data/grid1.tets --headless --t-end 0.75 \
-      --vtp "$folder/frames" --csv "$folder/table.csv" --every 1 &&
-    tools/check_vtk.py "$folder/frames" "$folder/table.csv"
+      --vtp "$folder/vtp" --obj "$folder/obj" --ply "$folder/ply" \
+      --csv "$folder/table.csv" --every 1 &&
+    tools/check_vtk.py "$folder/vtp" "$folder/table.csv" \
+      --obj "$folder/obj" --ply "$folder/ply"
 }
 # A sample of the suite of lab/advice/README.md; other scenes than the tables.
 advice() {

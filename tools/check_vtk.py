@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Read frames that ./cloth --vtp FOLDER wrote with VTK, a reader of others, and
-check them against the table of the same run:  check_vtk.py FOLDER TABLE.csv
-With a third argument, PICTURE.png, the last frame is drawn as well.
+check them against the table of the same run, a row a step; those of --obj and
+--ply of that run, too; and draw the last frame.
 Without python3-vtk9 it says so: "skipped: ..." """
+import argparse
 import csv
 import math
+import os
 import sys
 import xml.etree.ElementTree as xml
 
@@ -14,17 +16,22 @@ except ImportError:
     print("skipped: python3-vtk9 is not installed")
     sys.exit(0)
 
-folder, table = sys.argv[1], sys.argv[2]
-rows = {row["t"]: row for row in csv.DictReader(open(table))}
-rows = {float(t): row for t, row in rows.items()}
+options = argparse.ArgumentParser(description=__doc__)
+options.add_argument("folder")
+options.add_argument("table")
+options.add_argument("--obj", metavar="FOLDER")
+options.add_argument("--ply", metavar="FOLDER")
+options.add_argument("--picture", metavar="FILE.png")
+options = options.parse_args()
+rows = {float(row["t"]): row for row in csv.DictReader(open(options.table))}
 
 
-def read(name):
+def read(name, reader=None):
     """The frame of a file; an error of the reader is an exception."""
     errors = []
-    reader = vtk.vtkXMLPolyDataReader()
+    reader = reader or vtk.vtkXMLPolyDataReader()
     reader.AddObserver("ErrorEvent", lambda *_: errors.append(name))
-    reader.SetFileName(f"{folder}/{name}")
+    reader.SetFileName(name)
     reader.Update()
     assert not errors, f"VTK can't read {name}"
     return reader.GetOutput()
@@ -34,7 +41,7 @@ def near(a, b, scale):
     assert math.isclose(a, b, rel_tol=1e-5, abs_tol=1e-6 * scale), (a, b)
 
 
-frames = list(xml.parse(f"{folder}/frames.pvd").iter("DataSet"))
+frames = list(xml.parse(f"{options.folder}/frames.pvd").iter("DataSet"))
 assert frames, "frames.pvd names no file"
 previous = -1.0
 for entry in frames:
@@ -43,7 +50,7 @@ for entry in frames:
     previous = t
     row = rows[min(rows, key=lambda time: abs(time - t))]
     near(float(row["t"]), t, 1e-6)
-    data = read(entry.get("file"))
+    data = read(f"{options.folder}/{entry.get('file')}")
     near(data.GetFieldData().GetArray("TimeValue").GetValue(0), t, 1e-6)
     n, points = data.GetNumberOfPoints(), data.GetPointData()
     assert n == int(row["nodes"]), (n, row["nodes"])
@@ -64,15 +71,30 @@ for entry in frames:
     for k, axis in enumerate("xyz"):
         center = sum(m * data.GetPoint(i)[k] for i, m in enumerate(mass))
         near(center / sum(mass), float(row["com_" + axis]), 1)
-    # A line's strain fits all lines of its rest length; so l/L - 1 > -1.
+    # l/L - 1 of a line
     assert all(strain.GetValue(c) > -1 for c in range(data.GetNumberOfCells()))
     held = sum(arrays["pinned"].GetValue(i) for i in range(n))
     assert held > 0, "nothing is pinned"
+    # Frames for Blender: all points of the start, those of this frame where
+    # this frame has them, and its quads.
+    for kind, reader in (("obj", vtk.vtkOBJReader), ("ply", vtk.vtkPLYReader)):
+        other = getattr(options, kind)
+        if not other:
+            continue
+        name = entry.get("file").replace(".vtp", "." + kind)
+        mesh = read(os.path.join(other, name), reader())
+        points_of_start = mesh.GetNumberOfPoints()
+        assert points_of_start == int(rows[min(rows)]["nodes"]), points_of_start
+        assert mesh.GetNumberOfPolys() == data.GetNumberOfPolys()
+        for i in range(n):
+            place = mesh.GetPoint(int(arrays["node"].GetValue(i)))
+            for a, b in zip(place, data.GetPoint(i)):
+                near(a, b, 1)
 print(f"{len(frames)} frames, {data.GetNumberOfPoints()} points, "
       f"{data.GetNumberOfLines()} lines, {data.GetNumberOfPolys()} quads at "
       f"the end")
 
-if len(sys.argv) > 3:
+if options.picture:
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputData(data)
     mapper.SetScalarModeToUseCellData()
@@ -96,6 +118,6 @@ if len(sys.argv) > 3:
     picture = vtk.vtkWindowToImageFilter()
     picture.SetInput(window)
     writer = vtk.vtkPNGWriter()
-    writer.SetFileName(sys.argv[3])
+    writer.SetFileName(options.picture)
     writer.SetInputConnection(picture.GetOutputPort())
     writer.Write()
