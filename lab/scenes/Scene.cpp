@@ -37,6 +37,7 @@ void Scene::restart() {
   safe_omega_ = -1;
   failure_.clear();
   worst_.reset();
+  diagnosis_.reset();
   if (!is_finite()) {
     worst_.emplace(cloth_);
     failure_ = "the energy at the start is not finite: " + worst_->text(cloth_);
@@ -92,7 +93,7 @@ ForcePlan Scene::bounding(const MethodEntry& method) const {
                                : *force_;
 }
 
-double Scene::safe_limit(const MethodEntry& method) {
+double Scene::safe_limit(const MethodEntry& method) const {
   if (method.info.multirate)
     return step_limit(method, omega_safe(cloth_, bounding(method), constraint_),
                       largest_gamma(cloth_, force_->drag()));
@@ -144,6 +145,7 @@ bool Scene::advance() {
                    : last                      ? end - time()
                                                : (end - time()) / 2;
   const double then = last ? end : time() + h;
+  error_.clear();
   try {
     method_->step(cloth_, time(), h, *force_, constraint_);
   } catch (const StepError& e) {
@@ -182,16 +184,49 @@ bool Scene::fail(const std::string& what) {
   worst_.emplace(cloth_);
   const std::string where = worst_->text(cloth_);
   rewind();
-  const double sharp =
-      step_limit(entry_, sharp_(cloth_, bounding(entry_), constraint_, 40),
-                 largest_gamma(cloth_, force_->drag()));
   failure_ = what + " in step " + std::to_string(clock_.steps + 1) +
              " with dt = " + short_text(clock_.dt) + " s, method " +
              entry_.info.name + ": " + where + "; the last good state is " +
-             "that of t = " + short_text(time()) + " s; " +
-             why_it_failed(entry_.info, clock_.dt, sharp, safe_limit(),
-                           safe_limit(*find_method("verlet")));
+             "that of t = " + short_text(time()) + " s";
   return false;
+}
+
+const Diagnosis& Scene::diagnosis() const {
+  if (diagnosis_) return *diagnosis_;
+  FailedRun run = {.method = entry_, .dt = clock_.dt, .time = no_limit};
+  if (is_finite()) {
+    run.time = time() + clock_.dt;
+    run.solver = !error_.empty();
+    run.sharp = step_limit(
+        entry_, SharpOmega()(cloth_, bounding(entry_), constraint_, 40),
+        largest_gamma(cloth_, force_->drag()));
+    run.safe = safe_limit();
+    run.safe_without_drag =
+        entry_.info.multirate ? run.safe : step_limit(entry_, safe_omega_);
+    run.verlet = safe_limit(*find_method("verlet"));
+  }
+  const double end = std::isfinite(t_end_) ? t_end_ : 2 * run.time;
+  diagnosis_ =
+      diagnose(run, [&](const Cure& cure) { return attempt(cure, end); });
+  return *diagnosis_;
+}
+
+/** Run the scene from its start by another method and step. */
+Attempt Scene::attempt(const Cure& cure, double t_end) const {
+  // An implicit step is worth some hundred force evaluations.
+  const MethodInfo& info = cure.method.info;
+  const double evaluations = info.sweeps * (info.limit == no_limit ? 100 : 1);
+  try {
+    Scene trial(recipe_, {.dt = cure.dt, .rule = StepRule::fixed}, cure.method);
+    const Cloth& g = trial.cloth();
+    double left = trial_work;
+    while (!trial.done(t_end) && left > 0 && trial.step(t_end))
+      left -= evaluations * (g.num_nodes() + g.num_edges());
+    return {trial.failure().empty() && (trial.done(t_end) || trial.look()),
+            trial.time()};
+  } catch (const std::invalid_argument&) {  // not with this force
+    return {false, 0};
+  }
 }
 
 }  // namespace lab

@@ -81,8 +81,16 @@ class Scene {
   long long settled_steps() const { return checked_.steps; }
   /** What came into its energy and went out since the start. */
   const EnergyFlow& flow() const { return balance_->flow(); }
-  /** Why step() returned false; empty before. And where. */
+  /** What happened when step() returned false; empty before. And where. */
   const std::string& failure() const { return failure_; }
+  /** Why that happened, and what works: the first call runs the scene anew by
+   * up to 10 other methods and steps, each until t_end or for trial_work spring
+   * evaluations, which is about a second.  @pre !failure().empty()
+   * Throws what the recipe throws. */
+  const Diagnosis& diagnosis() const;
+  /** Both in one line.  @pre and throws as diagnosis() */
+  std::string explanation() const { return failure_ + "; " + diagnosis().text; }
+  static constexpr double trial_work = 3e8;
   const std::optional<WorstPlace>& failed_at() const { return worst_; }
   /** What would have tunnelled through an obstacle. */
   const WatchedConstraint& watched() const { return *watched_; }
@@ -91,8 +99,8 @@ class Scene {
    * configuration of the cloth; no_limit if there is none, 0 if no step is
    * stable.
    * Complexity: the first call as omega_safe(). */
-  double safe_limit(const MethodEntry& method);
-  double safe_limit() { return safe_limit(entry_); }
+  double safe_limit(const MethodEntry& method) const;
+  double safe_limit() const { return safe_limit(entry_); }
 
  private:
   /** Steps and time: those of the last change of dt, and multiples of it, as
@@ -118,14 +126,15 @@ class Scene {
   std::optional<EnergyBalance> balance_;
   std::optional<DivergenceGuard> guard_;
   std::unique_ptr<Method> method_;
-  double t_end_ = no_limit;  // of the present step [s]
-  Clock clock_, checked_;    // checked_: when the guard kept the state
-  EnergyFlow flow_;          // then
-  std::size_t version_ = 0;  // of the cloth, then
-  double safe_omega_ = -1;   // [1/s]; negative: not known yet
+  double t_end_ = no_limit;         // of the present step [s]
+  Clock clock_, checked_;           // checked_: when the guard kept the state
+  EnergyFlow flow_;                 // then
+  std::size_t version_ = 0;         // of the cloth, then
+  mutable double safe_omega_ = -1;  // [1/s]; negative: not known yet
   SharpOmega sharp_;
   std::string failure_, error_;  // error_: of the method
   std::optional<WorstPlace> worst_;
+  mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
 
   void keep_clock();
   void watch_paths();
@@ -137,6 +146,7 @@ class Scene {
   bool replay(long long last);
   void rewind();
   bool fail(const std::string& what);
+  Attempt attempt(const Cure& cure, double t_end) const;
 };
 
 }  // namespace lab

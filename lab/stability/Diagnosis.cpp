@@ -1,9 +1,13 @@
 #include "lab/stability/Diagnosis.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "CME212/Util.hpp"
+#include "lab/methods/Methods.hpp"
 
 namespace lab {
 
@@ -41,33 +45,192 @@ std::string WorstPlace::text(const Cloth& g) const {
   return out.str();
 }
 
-std::string why_it_failed(const MethodInfo& info, double dt, double sharp,
-                          double safe, double verlet) {
+std::string Cure::options(const MethodEntry& before) const {
+  const std::string step = "--dt " + CME212::short_text(dt);
+  const bool same = std::string_view(method.info.name) == before.info.name;
+  return same ? step : "--method " + std::string(method.info.name) + ' ' + step;
+}
+
+namespace {
+
+Cause cause_of(const FailedRun& run) {
+  const MethodInfo& info = run.method.info;
+  if (!std::isfinite(run.time)) return Cause::start;
+  if (run.solver) return Cause::solver;
+  if (info.limit == no_limit || info.adaptive) return Cause::method;
+  if (run.safe == 0) return Cause::no_step;
+  if (run.dt > 0.97 * run.safe && run.safe < 0.97 * run.safe_without_drag)
+    return Cause::drag;
+  // Sharp limits come from below, by up to 2 %.
+  if (run.dt > 0.97 * run.sharp || run.dt > run.safe) return Cause::step;
+  return Cause::nonlinear;
+}
+
+std::string in_words(Cause cause, const FailedRun& run) {
+  const MethodInfo& info = run.method.info;
   std::ostringstream out;
   out.precision(3);
-  auto instead = [&](double limit) {
-    out << "--dt " << safe_share * limit << " or --dt auto works";
+  auto limit = [&](double seconds) {
+    out << "dt is " << run.dt / seconds << " times the stability limit ("
+        << seconds << " s";
   };
-  if (info.limit == no_limit || info.limit == 0 || info.adaptive) {
-    out << info.name << " fails with: " << info.fails_when;
-    if (std::isfinite(verlet)) {
-      out << " (dt is " << dt / verlet << " times verlet's stability limit); "
-          << "--method verlet with ";
-      instead(verlet);
-    }
-  } else if (dt > 0.97 * sharp || dt > safe) {
-    const double limit = dt > 0.97 * sharp ? sharp : safe;
-    out << "dt is " << dt / limit << " times the stability limit (" << limit
-        << " s" << (limit == sharp ? " in this configuration" : "") << ", "
-        << info.name << "): the fastest waves in the springs grow in every "
-        << "step; ";
-    instead(safe);
-  } else {
-    out << "not the springs: dt is " << CME212::percent(dt / safe)
-        << " of the stability limit (" << safe << " s, " << info.name
-        << "); look at what else moves nodes, and at: " << info.fails_when;
+  switch (cause) {
+    case Cause::step:
+      if (run.dt > 0.97 * run.sharp)
+        limit(run.sharp), out << " in this configuration, ";
+      else
+        limit(run.safe), out << ", ";
+      out << info.name << "): the fastest waves in the springs grow in every "
+          << "step";
+      break;
+    case Cause::drag:
+      limit(run.safe);
+      out << ", " << info.name << "), which is " << run.safe_without_drag
+          << " s without drag: " << info.name << " takes drag as a force, and "
+          << "a step takes away too much";
+      break;
+    case Cause::no_step:
+      out << info.name << " has no stable step: it fails with "
+          << info.fails_when;
+      break;
+    case Cause::nonlinear:
+      if (std::isfinite(run.safe))
+        out << "dt is " << CME212::percent(run.dt / run.safe)
+            << " of the stability limit (" << run.safe << " s, " << info.name
+            << "), which is that of small oscillations";
+      else
+        out << "no spring bounds the step";
+      out << ": here motion is large or fast, or something moves or holds "
+             "nodes";
+      break;
+    case Cause::method:
+      out << info.name << " fails with: " << info.fails_when;
+      if (std::isfinite(run.verlet))
+        out << " (dt is " << run.dt / run.verlet
+            << " times verlet's stability limit)";
+      break;
+    case Cause::solver:
+      out << "that step can't be made";
+      if (std::isfinite(run.verlet))
+        out << " (dt is " << run.dt / run.verlet
+            << " times verlet's stability limit)";
+      break;
+    case Cause::start:
+      out << "the start itself is at fault, whatever the method and the step";
   }
   return out.str();
+}
+
+/** At most @a dt, in three digits: so what is tried is what is said. */
+double in_three_digits(double dt) {
+  const double unit = std::pow(10, std::floor(std::log10(dt)) - 2);
+  // By its decimal digits, as whoever types it in.
+  return std::stod(
+      CME212::short_text(std::floor(dt / unit * (1 + 1e-9)) * unit));
+}
+
+/** What may help, the likeliest first. */
+std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
+  std::vector<Cure> all;
+  auto add = [&](const MethodEntry& method, double dt) {
+    if (dt > 0 && std::isfinite(dt)) all.push_back({method, dt});
+  };
+  auto shorter = [&](double dt) {
+    if (std::isfinite(dt))
+      add(run.method, in_three_digits(std::min(dt, run.dt)));
+  };
+  const MethodEntry &verlet = *find_method("verlet"),
+                    &tr_bdf2 = *find_method("tr-bdf2");
+  auto by_verlet = [&](double share) {
+    if (std::isfinite(run.verlet))
+      add(verlet, in_three_digits(std::min(share * run.verlet, run.dt)));
+  };
+  switch (cause) {
+    case Cause::step:
+      shorter(safe_share * run.safe);
+      by_verlet(safe_share);
+      shorter(safe_share / 4 * run.safe);
+      break;
+    case Cause::drag:
+      by_verlet(safe_share);
+      shorter(safe_share * run.safe);
+      break;
+    case Cause::no_step:
+      by_verlet(safe_share);
+      break;
+    case Cause::nonlinear:
+      shorter(run.dt / 2);
+      shorter(run.dt / 4);
+      shorter(run.dt / 16);
+      shorter(run.dt / 64);
+      break;
+    case Cause::method:
+      // Order 1 fails by its error, which goes down with the step; order 2 by
+      // fast waves that it does not damp.
+      if (run.method.info.order > 1 && run.dt > run.verlet)
+        add(tr_bdf2, in_three_digits(run.dt));
+      if (run.method.info.order > 1) by_verlet(safe_share);
+      shorter(run.dt / 4);
+      shorter(run.dt / 16);
+      by_verlet(safe_share);
+      break;
+    case Cause::solver:
+      shorter(run.dt / 4);
+      shorter(run.dt / 16);
+      by_verlet(safe_share);
+      break;
+    case Cause::start:
+      return {};
+  }
+  by_verlet(safe_share / 4);
+  by_verlet(safe_share / 16);
+  add(tr_bdf2, in_three_digits(run.dt));
+  add(tr_bdf2, in_three_digits(run.dt / 4));
+  add(tr_bdf2, in_three_digits(run.dt / 16));
+  return all;
+}
+
+bool same(const Cure& a, const Cure& b) {
+  return a.dt == b.dt && std::string_view(a.method.info.name) ==
+                             std::string_view(b.method.info.name);
+}
+
+}  // namespace
+
+Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
+  constexpr std::size_t most = 10;
+  Diagnosis d = {cause_of(run), "", std::nullopt, {}};
+  d.text = in_words(d.cause, run) + "; ";
+  std::vector<Cure> failed;
+  std::string those;
+  for (const Cure& cure : candidates(d.cause, run)) {
+    auto tried = [&](const Cure& other) { return same(cure, other); };
+    if (failed.size() == most) break;
+    if (std::ranges::any_of(failed, tried) || tried({run.method, run.dt}) ||
+        (d.cure && tried(*d.cure)))
+      continue;
+    const Attempt trial = try_out(cure);
+    if (!trial.passed) {
+      failed.push_back(cure);
+      those += (those.empty() ? "" : ", ") + cure.options(run.method);
+    } else if (!d.cure || trial.time > d.trial.time) {
+      d.cure = cure, d.trial = trial;
+    }
+    if (d.cure && d.trial.time > run.time) break;
+  }
+  if (d.cure) {
+    const std::string time = CME212::short_text(d.trial.time) + " s";
+    d.text += d.cure->options(run.method) +
+              (d.trial.time > run.time
+                   ? " works: a trial to t = " + time + " passed"
+                   : " may work: a trial was broken off at t = " + time +
+                         ", before it could fail");
+  } else if (!those.empty()) {
+    d.text += "no cure is known: trials of " + those + " failed, too";
+  } else {
+    d.text += "look at its numbers";
+  }
+  return d;
 }
 
 }  // namespace lab

@@ -92,7 +92,7 @@ void Run::look() {
   if (scene_.steps() % o_.every == 0 || at_end) add_row();
   if (at_end || frames_.due(scene_)) add_frame();
   if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
-  if (progress_.due()) show_progress();
+  if (!told_ && progress_.due()) show_progress();
 }
 
 void Run::show_progress() {
@@ -242,7 +242,7 @@ void Run::tell_failure() {
   if (told_ || scene_.failure().empty()) return;
   told_ = true;
   progress_.end();
-  std::cerr << "cloth: " << scene_.failure() << '\n';
+  std::cerr << "cloth: " << scene_.explanation() << '\n';
 }
 
 void Run::warn_of_missed() {

@@ -121,9 +121,10 @@ class SDLScreen : public Screen {
     }
     viewer_.set_marks(std::move(marks));
     std::vector<std::string> paragraphs;
-    for (std::size_t from = 0, to; from < failure_.size(); from = to + 2) {
-      to = std::min(failure_.find("; ", from), failure_.size());
-      paragraphs.push_back(failure_.substr(from, to - from));
+    const std::string text = failure_.empty() ? "" : scene.explanation();
+    for (std::size_t from = 0, to; from < text.size(); from = to + 2) {
+      to = std::min(text.find("; ", from), text.size());
+      paragraphs.push_back(text.substr(from, to - from));
     }
     viewer_.set_message(std::move(paragraphs));
   }

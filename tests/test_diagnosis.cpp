@@ -1,0 +1,338 @@
+// Diagnosis.hpp: a run that fails says why, and what works. That is tested by
+// its own advice: it is followed, and the run passes.
+#include "lab/stability/Diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "CME212/Util.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/viewer/Options.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** What a command line asks for. Words in '' are one. */
+Model parsed(const std::string& options) {
+  std::vector<std::string> words = {"cloth", "--headless"};
+  std::istringstream in(options);
+  for (std::string word; in >> word;) {
+    if (word[0] == '\'') {
+      std::string rest;
+      if (word.back() != '\'' || word.size() == 1) std::getline(in, rest, '\'');
+      word = word.substr(1) + rest;
+      if (word.back() == '\'') word.pop_back();
+    }
+    words.push_back(word);
+  }
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  Options o;
+  EXPECT_LT(parse(int(argv.size()), argv.data(), o), 0) << options;
+  return o.model;
+}
+
+/** A scene that fails. */
+struct Failing {
+  const char *kind, *method;
+  double share;  ///< dt, as a share of the method's limit; of Verlet's if none
+  double t_end;  ///< [s]
+  std::string scene;
+  Cause cause;
+};
+
+const std::string net = "--sheet 'nodes 8 8' --edges sides ";
+const std::string cloth = "--sheet 'nodes 8 8' ";
+const std::string corners = "--pin 'x 0 y 0' --pin 'x 1 y 0' ";
+const std::vector<Failing> failing = {
+    // Beyond the limit of the flat cloth
+    {"step", "symplectic-euler", 1.3, 1, cloth + corners, Cause::step},
+    {"step", "verlet", 1.3, 1, cloth + corners, Cause::step},
+    {"step", "rk4", 1.3, 1, cloth + corners, Cause::step},
+    {"step", "yoshida4", 1.3, 1, cloth + corners, Cause::step},
+    {"step", "srkn6b", 1.3, 1, cloth + corners, Cause::step},
+    {"step", "srkn11b", 1.3, 1, cloth + corners, Cause::step},
+    // Beyond the limit once it hangs
+    {"sharp", "symplectic-euler", 1.1, 3, net + corners, Cause::step},
+    {"sharp", "symplectic-euler", 1.2, 3, net + corners, Cause::step},
+    {"sharp", "verlet", 1.1, 3, net + corners, Cause::step},
+    {"sharp", "verlet", 1.05, 5, net + "--pin 'x 0 y 0'", Cause::step},
+    {"sharp", "rk4", 1.6, 1, net + "--pin 'x 0'", Cause::step},
+    // Drag as a force
+    {"drag", "symplectic-euler", 1.3, 1, cloth + corners + "--damping 3",
+     Cause::drag},
+    {"drag", "symplectic-euler", 1.3, 1,
+     cloth + corners + "--density 1 --drag 200", Cause::drag},
+    {"drag", "symplectic-euler", 1.3, 1, net + "--damping 30", Cause::drag},
+    {"drag", "rk4", 1.3, 1, cloth + corners + "--damping 10", Cause::drag},
+    // No stable step
+    {"no step", "forward-euler", 0.1, 2, net + corners, Cause::no_step},
+    {"no step", "forward-euler", 0.3, 2, cloth + corners, Cause::no_step},
+    {"no step", "forward-euler", 0.3, 1,
+     cloth + "--plane 'at 0 0 -0.2 normal 0.3 0 1'", Cause::no_step},
+    // Buckling that nothing damps
+    {"midpoint", "implicit-midpoint", 10, 2, cloth + corners, Cause::method},
+    {"midpoint", "implicit-midpoint", 20, 2,
+     "--sheet 'nodes 7 7' --stiffness 1e3 " + corners, Cause::method},
+    {"midpoint", "implicit-midpoint", 5, 1,
+     "--sheet 'nodes 8 8 velocity 3 0 10' --pin 'x 0'", Cause::method},
+    // Waves slowed down that matter
+    {"augmented", "augmented-verlet", 30, 3,
+     "--sheet 'nodes 8 8 velocity 0 0 10' --pin 'x 0'", Cause::method},
+    {"augmented", "augmented-verlet", 10, 3,
+     "--sheet 'nodes 8 8 velocity 3 0 10' --pin 'x 0'", Cause::method},
+    {"augmented", "augmented-verlet", 20, 3,
+     "--sheet 'nodes 8 8 velocity 3 0 10' --pin 'x 0 y 0'", Cause::method},
+    {"augmented", "augmented-verlet", 10, 2,
+     cloth + "--pin 'x 0' --sphere 'at 0.5 0.5 -1 radius 0.3 velocity 0 0 10'",
+     Cause::method},
+    // Too few substeps
+    {"xpbd", "xpbd", 150, 0.5,
+     "--sheet 'nodes 12 12' --stiffness 1e4 " + corners, Cause::method},
+    {"xpbd", "xpbd", 800, 0.1,
+     "--sheet 'nodes 12 12' --stiffness 1e6 " + corners, Cause::method},
+    // Large motion, within the limit of small oscillations
+    {"large", "verlet", 0.95, 5,
+     "--sheet 'nodes 7 9 velocity 5 0 10' --pin 'x 0'", Cause::nonlinear},
+    {"large", "srkn6b", 0.9, 5,
+     "--sheet 'nodes 7 9 velocity 5 0 10' --pin 'x 0'", Cause::nonlinear},
+    {"large", "verlet", 0.95, 20, net + "--stiffness 10 " + corners,
+     Cause::nonlinear},
+    {"large", "verlet", 0.9, 20, net + "--stiffness 10 " + corners,
+     Cause::nonlinear},
+    {"large", "symplectic-euler", 0.95, 20, net + "--stiffness 10 " + corners,
+     Cause::nonlinear},
+    // What moves is too fast
+    {"moving", "verlet", 0.9, 1,
+     cloth + "--pin 'x 0' --pin 'x 1 velocity -30 0 0 until 0.05'",
+     Cause::nonlinear},
+    {"moving", "verlet", 0.9, 1,
+     cloth + "--pin 'x 0' --sphere 'at 0.5 0.5 -1 radius 0.3 velocity 0 0 30'",
+     Cause::nonlinear},
+    {"moving", "symplectic-euler", 0.8, 2,
+     cloth + "--pin 'x 0' --pin 'x 1 velocity -30 0 0 until 0.05'",
+     Cause::nonlinear},
+    {"moving", "srkn6b", 0.9, 2,
+     cloth + "--pin 'x 0' --sphere 'at 0.5 0.5 -1 radius 0.3 velocity 0 0 10'",
+     Cause::nonlinear},
+    {"moving", "srkn6b", 0.9, 2,
+     cloth + "--pin 'x 0' --pin 'x 1 velocity -20 0 0 until 0.08'",
+     Cause::nonlinear},
+    // Light nodes, stiff edges
+    {"masses", "verlet", 5, 1,
+     cloth + corners +
+         "--region 'from 0.4 0.4 0 to 0.6 0.6 0 mass-factor 0.02'",
+     Cause::step},
+    {"masses", "symplectic-euler", 2, 0.1,
+     cloth + corners +
+         "--region 'from 0.2 0 0 to 0.8 1 0 stiffness-factor 1e4'",
+     Cause::step},
+    {"masses", "rk4", 3, 0.1,
+     cloth + corners +
+         "--region 'from 0.2 0 0 to 0.8 1 0 stiffness-factor 1e4'",
+     Cause::step},
+    // Equations that are not solved
+    {"solver", "tr-bdf2", 1e4, 5,
+     "--sheet 'nodes 5 5' --stiffness 1e6 " + corners, Cause::solver},
+    {"solver", "tr-bdf2", 3e3, 5,
+     "--sheet 'nodes 6 6' --stiffness 1e5 " + corners, Cause::solver},
+    {"solver", "implicit-midpoint", 3e3, 5,
+     "--sheet 'nodes 5 5' --stiffness 1e6 " + corners, Cause::solver},
+    // Layers and friction
+    {"layers", "verlet", 1.5, 0.5,
+     "--sheet 'nodes 9 9' --sheet 'at 0.1 0.1 0.2 nodes 9 9' --plane 'at 0 0 0 "
+     "friction 0.5' --self-collision 'thickness 0.1 friction 0.5'",
+     Cause::step},
+    {"layers", "verlet", 1.4, 1,
+     "--sheet 'nodes 6 6' --sheet 'at 0.1 0.1 0.2 nodes 6 6' --plane 'at 0 0 "
+     "-0.1 friction 0.3' --self-collision 'thickness 0.15 friction 0.5'",
+     Cause::step},
+    {"layers", "implicit-midpoint", 10, 1,
+     "--sheet 'nodes 6 6' --sheet 'at 0.1 0.1 0.2 nodes 6 6' --sphere 'at 0.5 "
+     "0.5 -0.4 radius 0.35 friction 0.3' --self-collision 'thickness 0.15 "
+     "friction 0.5'",
+     Cause::method},
+    // Weight that stretches springs by many times their length
+    {"gravity", "verlet", 0.95, 10, net + corners + "--gravity 100",
+     Cause::nonlinear},
+    {"gravity", "symplectic-euler", 0.95, 10, net + corners + "--gravity 1e3",
+     Cause::nonlinear},
+    {"gravity", "verlet", 0.95, 10, cloth + "--pin 'x 0' --gravity 1e3",
+     Cause::nonlinear},
+    {"gravity", "srkn6b", 0.95, 5, cloth + "--pin 'x 0' --gravity 1e3",
+     Cause::nonlinear},
+    {"gravity", "rk4", 1.2, 5, cloth + "--pin 'x 0' --gravity 1e3",
+     Cause::step},
+};
+
+/** The step of @a f, in two digits. */
+std::string dt_of(const Failing& f) {
+  const Scene about(parsed(f.scene + " --dt 1 --method " + f.method));
+  double limit = about.safe_limit();
+  if (!(limit > 0 && limit < no_limit))
+    limit = about.safe_limit(*find_method("verlet"));
+  return CME212::two_digits(f.share * limit);
+}
+
+class AFailedRun : public ::testing::TestWithParam<Failing> {};
+
+// The advice is taken from the message, put on the command line, and followed.
+TEST_P(AFailedRun, IsCuredByItsOwnAdvice) {
+  const Failing& f = GetParam();
+  const std::string end = " --t-end " + CME212::short_text(f.t_end);
+  const std::string method = " --method " + std::string(f.method);
+  const Model m = parsed(f.scene + method + " --dt " + dt_of(f) + end);
+  Scene scene(m);
+  ASSERT_FALSE(scene.run_to(m.t_end)) << "does not fail";
+  const Diagnosis& d = scene.diagnosis();
+  EXPECT_EQ(d.cause, f.cause) << scene.explanation();
+  EXPECT_EQ(d.text.find("dt is 0 "), std::string::npos) << d.text;
+
+  const auto last = d.text.rfind("; ");
+  ASSERT_NE(last, std::string::npos) << d.text;
+  const auto works = d.text.find(
+      " works: a trial to t = " + CME212::short_text(f.t_end) + " s passed");
+  ASSERT_NE(works, std::string::npos) << d.text;
+  std::string advice = d.text.substr(last + 2, works - last - 2);
+  if (advice.find("--method") == std::string::npos) advice += method;
+  const Model cured = parsed(f.scene + ' ' + advice + end);
+  EXPECT_EQ(cured.step.dt, d.cure->dt) << advice;
+  Scene again(cured);
+  EXPECT_TRUE(again.run_to(m.t_end)) << advice << ": " << again.failure();
+  EXPECT_EQ(again.time(), m.t_end);
+}
+
+INSTANTIATE_TEST_SUITE_P(Diagnosis, AFailedRun, ::testing::ValuesIn(failing),
+                         [](const auto& row) {
+                           std::string name =
+                               row.param.kind + std::string(row.param.method);
+                           std::erase_if(
+                               name, [](char c) { return !std::isalnum(c); });
+                           return name + std::to_string(row.index);
+                         });
+
+TEST(Diagnosis, IsTestedByFortyScenesOfTenKinds) {
+  std::map<std::string, int> kinds;
+  for (const Failing& f : failing) ++kinds[f.kind];
+  EXPECT_GE(failing.size(), 40u);
+  EXPECT_GE(kinds.size(), 10u);
+  for (const auto& [kind, number] : kinds) EXPECT_GE(number, 2) << kind;
+}
+
+// ------------------------------------------------------------ What is claimed
+
+/** A run by Verlet at 0.7 of its limit of 0.01 s that fails at t = 2 s. */
+FailedRun within_the_limit() {
+  FailedRun run = {.method = entry_of<Verlet>(), .dt = 0.007, .time = 2};
+  run.sharp = run.safe = run.safe_without_drag = run.verlet = 0.01;
+  return run;
+}
+
+TEST(Diagnosis, NamesTheFirstCureThatOutlivesTheFailure) {
+  std::vector<double> tried;
+  const Diagnosis d = diagnose(within_the_limit(), [&](const Cure& cure) {
+    tried.push_back(cure.dt);
+    return Attempt{cure.dt < 0.002, 5};
+  });
+  EXPECT_EQ(tried, (std::vector{0.0035, 0.00175}));
+  ASSERT_TRUE(d.cure);
+  EXPECT_EQ(d.cure->dt, 0.00175);
+  EXPECT_EQ(d.cause, Cause::nonlinear);
+  EXPECT_EQ(d.text,
+            "dt is 70 % of the stability limit (0.01 s, verlet), which is that "
+            "of small oscillations: here motion is large or fast, or something "
+            "moves or holds nodes; --dt 0.00175 works: a trial to t = 5 s "
+            "passed");
+}
+
+TEST(Diagnosis, SaysThatATrialWasTooShort) {
+  int trials = 0;
+  const Diagnosis d = diagnose(within_the_limit(), [&](const Cure&) {
+    return Attempt{true, ++trials == 2 ? 1.5 : 0.5};
+  });
+  EXPECT_LE(trials, 10);
+  ASSERT_TRUE(d.cure);
+  EXPECT_EQ(d.cure->dt, 0.00175);  // the longest one
+  EXPECT_EQ(d.text.substr(d.text.rfind("; ")),
+            "; --dt 0.00175 may work: a trial was broken off at t = 1.5 s, "
+            "before it could fail");
+}
+
+TEST(Diagnosis, ClaimsNothingIfAllTrialsFail) {
+  std::set<std::string> tried;
+  int trials = 0;
+  const FailedRun run = within_the_limit();
+  const Diagnosis d = diagnose(run, [&](const Cure& cure) {
+    tried.insert(cure.options(run.method)), ++trials;
+    return Attempt{false, 1.9};
+  });
+  EXPECT_FALSE(d.cure);
+  EXPECT_EQ(int(tried.size()), trials);  // nothing twice
+  EXPECT_GE(trials, 5);
+  EXPECT_LE(trials, 10);
+  EXPECT_EQ(d.text.find("works"), std::string::npos);
+  EXPECT_NE(d.text.find("; no cure is known: trials of --dt 0.0035, --dt "),
+            std::string::npos)
+      << d.text;
+  EXPECT_NE(d.text.find("--method tr-bdf2 --dt 0.007"), std::string::npos);
+}
+
+TEST(Diagnosis, TellsDragFromWaves) {
+  FailedRun run = within_the_limit();
+  run.method = entry_of<SymplecticEuler>();
+  run.sharp = run.safe = 0.005;
+  const auto fails = [](const Cure&) { return Attempt{false, 0}; };
+  EXPECT_EQ(diagnose(run, fails).cause, Cause::drag);
+  run.safe_without_drag = 0.005;
+  EXPECT_EQ(diagnose(run, fails).cause, Cause::step);
+  run.dt = 0.0048;
+  EXPECT_EQ(diagnose(run, fails).cause, Cause::nonlinear);
+  run.dt = 0.0049;  // a sharp limit is found from below, to 2 %
+  EXPECT_EQ(diagnose(run, fails).cause, Cause::step);
+}
+
+TEST(Diagnosis, OfAStartThatIsAtFaultTriesNothing) {
+  Scene scene(parsed("--sheet 'nodes 3 3 velocity 1e200 0 0'"));
+  ASSERT_FALSE(scene.failure().empty());
+  const Diagnosis& d = scene.diagnosis();
+  EXPECT_EQ(d.cause, Cause::start);
+  EXPECT_FALSE(d.cure);
+  EXPECT_EQ(d.text,
+            "the start itself is at fault, whatever the method and the step; "
+            "look at its numbers");
+}
+
+// What a step cannot cure is not said to be cured by one.
+TEST(Diagnosis, OfTwoHeldNodesThatMeetKnowsNoCure) {
+  const Model m = parsed(
+      "--sheet 'nodes 3 3' --sheet 'at 0 0 0.5 nodes 3 3' --pin 'z 0' --pin "
+      "'z 0.5 velocity 0 0 -1' --self-collision 'thickness 0.4' --t-end 1");
+  Scene scene(m);
+  ASSERT_FALSE(scene.run_to(m.t_end));
+  EXPECT_EQ(scene.diagnosis().cause, Cause::solver);
+  EXPECT_FALSE(scene.diagnosis().cure) << scene.explanation();
+  EXPECT_NE(scene.explanation().find("are held, nearer than the thickness"),
+            std::string::npos);
+  EXPECT_NE(scene.explanation().find("; no cure is known: trials of "),
+            std::string::npos)
+      << scene.explanation();
+}
+
+TEST(Diagnosis, IsForgottenByARestart) {
+  const Model m = parsed("--sheet 'nodes 5 5' --pin 'x 0' --dt 0.02");
+  Scene scene(m);
+  ASSERT_FALSE(scene.run_to(m.t_end));
+  const double cure = scene.diagnosis().cure.value().dt;
+  scene.restart();
+  EXPECT_EQ(scene.failure(), "");
+  ASSERT_FALSE(scene.run_to(m.t_end));
+  EXPECT_EQ(scene.diagnosis().cure.value().dt, cure);
+}
+
+}  // namespace
