@@ -2,7 +2,8 @@
 # results of their room; a quick run draws in $(B)/charts.
 
 .PHONY: adviser-suite cells charts charts-quick fuzz grids orders peers-bench \
-        peers-chart peers-deps pictures speed stability stability-soak
+        peers-chart peers-deps pictures solver-chart speed stability \
+        stability-soak
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -15,6 +16,7 @@ help-lab:
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
+	@echo 'make solver-chart       conjugate gradients beside a Cholesky factor'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
 	@echo 'make peers-deps peers-chart peers-bench   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
@@ -78,6 +80,15 @@ speed:
 	  CXXFLAGS='-march=native $(CXXFLAGS)'
 	@lab/bench/speed.sh $(B)/native/bench $(B)/native-float/bench
 
+# Written whole: a run that fails leaves the results alone.
+measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
+  $$($(CXX) --version | head -n 1), commit $$(git describe --always --dirty)
+solver-chart: bench_solvers
+	@{ echo "# $(measured_on)" && $(B)/bench_solvers; } > $(B)/solvers.csv
+	@mv $(B)/solvers.csv lab/bench/results/solvers.csv
+	@gnuplot -e "csv='lab/bench/results/solvers.csv'; \
+	  out='lab/bench/results/solvers.svg'" lab/bench/solvers.gp
+
 # Other libraries beside ours: lab/bench/peers/README.md
 peers := lab/bench/peers
 $(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
@@ -86,8 +97,6 @@ $(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
 $(eval $(call program,$(B)/graph_peers,$(B),$(peers)/graph_peers.cpp,$(speed), \
   -lbenchmark -lBulletSoftBody -lBulletDynamics -lBulletCollision -lLinearMath))
 $(B)/$(peers)/graph_peers.o: CPPFLAGS += -isystem /usr/include/bullet
-measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
-  $$($(CXX) --version | head -n 1), commit $$(git describe --always --dirty)
 
 peers-deps:
 	@tools/deps.sh peers

@@ -1,0 +1,53 @@
+# What a linear system costs by conjugate gradients, by a Cholesky factor and by
+# what the methods choose, against dt omega:
+#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" lab/bench/solvers.gp
+set encoding utf8
+set datafile separator ','
+footer = system(sprintf("sed -n 's/^# //p' %s", csv))
+of(K, solver, tolerance) = sprintf("< awk -F, '$1 == \"%s\" && $4 == \"%s\" " \
+  ."&& $5 == \"%s\"' %s", K, solver, tolerance, csv)
+set terminal svg size 1000,470 dynamic background rgb 'white' \
+  font 'DejaVu Sans,Arial,sans-serif,13'
+set output out
+set multiplot
+set border 3 lc rgb '#555555'
+set tics nomirror out scale 0.6
+set grid lc rgb '#e4e4e4' lw 1 dt 1
+set dashtype 2 (10, 4)
+set logscale xy
+set xrange [0.8:5e4]
+set yrange [2:5000]
+set format x '10^{%T}'
+set format y '%g'
+set tmargin at screen 0.84
+set bmargin at screen 0.33
+set label 1 '{/:Bold One linear system} of implicit Euler, 100 x 100 nodes: median and range of the repeats' \
+  at screen 0.5, screen 0.96 center
+set label 2 footer at screen 0.99, screen 0.02 right textcolor rgb '#777777'
+set xlabel 'dt ω'
+set ylabel 'milliseconds'
+unset key
+do for [k = 1:3] {
+  K = word('10000 1e+06 1e+08', k)
+  set title 'K = '.word('10^4 10^6 10^8', k).' N/m' offset 0, -0.6
+  set lmargin at screen 0.075 + 0.31 * (k - 1)
+  set rmargin at screen 0.345 + 0.31 * (k - 1)
+  if (k == 2) { unset label 1; unset label 2; unset ylabel; set format y '' }
+  if (k == 3) { set key at screen 0.5, screen 0.17 center top horizontal \
+    maxrows 2 width 1 samplen 3 }
+  plot \
+    of(K, 'gradients', '1e-08') using 2:(1e3 * $9):(1e3 * $8):(1e3 * $10) \
+      with yerrorlines lc rgb '#0072B2' pt 7 ps 0.5 lw 1.5 \
+      title 'conjugate gradients to 10^{-8}', \
+    of(K, 'gradients', '0.001') using 2:(1e3 * $9):(1e3 * $8):(1e3 * $10) \
+      with yerrorlines lc rgb '#56B4E9' pt 5 ps 0.5 lw 1.5 dt 2 \
+      title 'to 10^{-3}', \
+    of(K, 'cholesky', '1e-08') using 2:(1e3 * $9):(1e3 * $8):(1e3 * $10) \
+      with yerrorlines lc rgb '#D55E00' pt 9 ps 0.5 lw 1.5 \
+      title 'Cholesky factor', \
+    of(K, 'automatic', '1e-08') using 2:(1e3 * $9) with points \
+      lc rgb '#222222' pt 6 ps 1.2 lw 1.2 title 'automatic, to 10^{-8}', \
+    of(K, 'automatic', '0.001') using 2:(1e3 * $9) with points \
+      lc rgb '#009E73' pt 4 ps 1.2 lw 1.2 title 'automatic, to 10^{-3}'
+}
+unset multiplot
