@@ -6,9 +6,9 @@ set datafile separator ','
 ours = 'symplectic-euler verlet pefrl srkn6b srkn11b'
 ours_color = '#000000 #0072B2 #D55E00 #009E73 #CC79A7'
 ours_marker = '5 7 13 11 15'
-theirs = 'odeint-m4 odeint-dopri5 gsl-rk8pd gsl-msadams arkode-dopri cvode-adams cvode-bdf cvode-bdf2'
-theirs_color = '#E69F00 #E69F00 #56B4E9 #56B4E9 #000000 #0072B2 #D55E00 #CC79A7'
-theirs_marker = '4 6 8 10 12 14 1 2'
+theirs = 'odeint-verlet odeint-m4 odeint-dopri5 gsl-rk8pd gsl-msadams arkode-dopri cvode-adams cvode-bdf cvode-bdf2'
+theirs_color = '#009E73 #E69F00 #E69F00 #56B4E9 #56B4E9 #000000 #0072B2 #D55E00 #CC79A7'
+theirs_marker = '3 4 6 8 10 12 14 1 2'
 of(m) = sprintf("< awk -F, '$1 == \"%s\" && $8 == \"ok\"' %s | sort -t, -k3,3n", m, csv)
 floor = system(sprintf("awk -F, '$8 == \"ok\" {print $7; exit}' %s", csv)) + 0
 footer = system(sprintf("sed -n 's/^# //p' %s", csv))
