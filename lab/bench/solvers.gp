@@ -33,8 +33,8 @@ do for [k = 1:3] {
   set lmargin at screen 0.075 + 0.31 * (k - 1)
   set rmargin at screen 0.345 + 0.31 * (k - 1)
   if (k == 2) { unset label 1; unset label 2; unset ylabel; set format y '' }
-  if (k == 3) { set key at screen 0.5, screen 0.17 center top horizontal \
-    maxrows 2 width 1 samplen 3 }
+  if (k == 3) { set key at screen 0.62, screen 0.19 center top maxrows 2 \
+    width -9 samplen 3 }
   plot \
     of(K, 'gradients', '1e-08') using 2:(1e3 * $9):(1e3 * $8):(1e3 * $10) \
       with yerrorlines lc rgb '#0072B2' pt 7 ps 0.5 lw 1.5 \
