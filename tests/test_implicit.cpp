@@ -238,7 +238,7 @@ TYPED_TEST(Implicit, TearsTheClothAndTheRestIsRight) {
   auto constraint = make_combined_constraints(
       PinConstraint(s.g), PlaneConstraint(), TearConstraint());
   TypeParam method;
-  DivergenceGuard guard(s.g, grav);
+  DivergenceGuard guard(s.g, grav, 0.01);
   for (int n = 0; n < 150; ++n) {
     method(s.g, n * 0.01, 0.01, s.force, constraint);
     s.g.check_invariants();
@@ -300,7 +300,7 @@ template <typename M>
 int good_steps(double drag, int steps) {
   Sheet s(30, 100, drag);
   const double h = 10 * 0.0577 / 30;
-  DivergenceGuard guard(s.g, grav);
+  DivergenceGuard guard(s.g, grav, h);
   M method;
   for (int n = 0; n < steps; ++n) {
     method(s.g, n * h, h, s.force, s.pin);

@@ -15,8 +15,8 @@ set tics nomirror out scale 0.6
 set grid lc rgb '#e4e4e4' lw 1 dt 1
 set dashtype 2 (10, 4)
 set logscale xy
-set xrange [0.8:5e4]
-set yrange [2:5000]
+set xrange [0.8:1e5]
+set yrange [2:1e4]
 set format x '10^{%T}'
 set format y '%g'
 set tmargin at screen 0.84
@@ -24,7 +24,7 @@ set bmargin at screen 0.33
 set label 1 '{/:Bold One linear system} of implicit Euler, 100 x 100 nodes: median and range of the repeats' \
   at screen 0.5, screen 0.96 center
 set label 2 footer at screen 0.99, screen 0.02 right textcolor rgb '#777777'
-set xlabel 'dt ω'
+set xlabel 'dt omega'
 set ylabel 'milliseconds'
 unset key
 do for [k = 1:3] {
