@@ -15,6 +15,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -265,6 +266,10 @@ int main(int argc, char** argv) {
     return 2;
   } catch (const SceneError& e) {
     std::cerr << o.origins.of(e.what(), "cloth: ") << e.what() << '\n';
+    return 2;
+  } catch (const std::invalid_argument& e) {  // a method that can't do it
+    std::cerr << o.origins.of("--method", o.origins.of("--dt", "cloth: "))
+              << e.what() << '\n';
     return 2;
   } catch (const std::bad_alloc&) {
     std::cerr << "cloth: out of memory: expected a cloth of fewer nodes, or "
