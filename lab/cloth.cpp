@@ -44,7 +44,8 @@ void print_answer(const Scene& scene, const Model& m) {
   std::cout << name_of(m.measure) << ':';
   for (double a : answer(m, scene.cloth())) std::cout << ' ' << a;
   const std::string unit = unit_of(m.measure);
-  std::cout << (unit.empty() ? "" : " ") << unit << '\n';
+  std::cout << (unit.empty() ? "" : " ") << unit << " at t = " << scene.time()
+            << " s\n";
 }
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */

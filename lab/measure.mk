@@ -53,11 +53,13 @@ $(SWEEP)/%.csv: $(B)/stability_map
 endif
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
-# SCENES random scenes, the methods in turn.
+# SCENES random scenes, the methods in turn; and 1,000 by --dt auto.
 SCENES ?= 7000
 stability-soak:
 	@$(sub) test_limits B=$(B)/soak SANITIZE= CXXFLAGS='-O3 $(CXXFLAGS)'
 	LIMITS_SIDES=100 SOAK_SCENES=$(SCENES) $(B)/soak/test_limits
+	@$(sub) test_step_control B=$(B)/soak SANITIZE= CXXFLAGS='-O3 $(CXXFLAGS)'
+	SOAK_SCENES=1000 SOAK_SECONDS=60 $(B)/soak/test_step_control
 
 # The table of measured orders in lab/methods/README.md.
 orders: test_orders

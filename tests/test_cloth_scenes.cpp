@@ -172,10 +172,18 @@ TEST_F(ClothProgram, WarnsOfABallThatIsTooFast) {
 
 TEST_F(ClothProgram, AnswersWhatASceneIsAsked) {
   const std::string sheet = "--sheet 'nodes 3 3' --headless --t-end 0 ";
-  EXPECT_NE(run(sheet).out.find("\ncom: 0.5 0.5 0 m\n"), std::string::npos);
-  EXPECT_NE(run(sheet + "--measure max-stretch").out.find("max-stretch: 0\n"),
+  EXPECT_NE(run(sheet).out.find("\ncom: 0.5 0.5 0 m at t = 0 s\n"),
+            std::string::npos);
+  EXPECT_NE(run(sheet + "--measure max-stretch")
+                .out.find("max-stretch: 0 at t = 0 s\n"),
             std::string::npos);
   EXPECT_EQ(run(sheet + "--quiet").out, "");
+  const std::string hanging = "--config data/scenes/hanging-sheet.toml ";
+  for (const std::string dt : {"auto", "0.0013", "0.0021"})
+    EXPECT_NE(run(hanging + "--headless --method verlet --dt " + dt)
+                  .out.find(" m at t = 0.25 s\n"),
+              std::string::npos)
+        << dt;
   EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("\ncom: 0.5 0.5 0 m"),
             std::string::npos);
 }

@@ -6,8 +6,7 @@
  *   make bench_stability
  *   build/bench_stability --benchmark_enable_random_interleaving=true
  *
- * At 100 steps between two sharp estimates, an estimate of n force
- * evaluations costs n/100 of one a step; the guard looks at every 32nd step. */
+ * The guard looks at every 32nd step, and who chooses a step at every 16th. */
 #include <vector>
 
 #include "lab/bench/Bench.hpp"

@@ -25,9 +25,10 @@ struct SceneError : std::runtime_error {
 /** Who chooses the step. */
 enum class StepRule {
   fixed,  ///< the scene gives dt
-  safe,   ///< safe_share of the limit in any configuration, once
-  sharp,  ///< sharp_share of the limit in the present configuration, chosen
-          ///< anew every 100 steps; at most the limit in any configuration
+  safe,   ///< first safe_share of the limit in any configuration, then chosen
+          ///< by the energy balance: StepControl
+  sharp,  ///< the same, but first sharp_share of the limit in the present
+          ///< configuration; at most the limit in any configuration
 };
 
 /** How long a step is. */

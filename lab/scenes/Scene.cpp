@@ -46,20 +46,27 @@ void Scene::restart() {
   }
   guard_.emplace(cloth_, recipe_.gravity, clock_.dt);
   keep_clock();
+  control_.reset();
+  if (step_.fixed() || !failure_.empty()) return;
+  control_.emplace(clock_.dt, energies(cloth_, recipe_.gravity),
+                   guard_->floor());
+  drag_ = force_->drag(), largest_gamma_ = largest_gamma(cloth_, drag_);
+  drag_power_ = drag_.power(cloth_);
+  looked_ = sampled_ = 0;
+  before_ = latest_ = snapshot();
 }
 
 bool Scene::step(double t_end) {
   t_end_ = t_end;
-  if (step_.rule == StepRule::sharp && clock_.steps > 0 &&
-      clock_.steps % sharp_interval == 0) {
-    if (!look()) return false;
-    choose_step();
-    keep_clock();  // with the new dt, in case that these steps are replayed
-  }
-  if (!advance()) return replay(clock_.steps + 1);
-  if (clock_.steps - checked_.steps >= guard_interval ||
-      cloth_.version() != version_ || done(t_end))
-    return look();
+  if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
+  const bool steered = control_ && control_->can_shorten();
+  if (!advance()) return steered ? take_back() : replay(clock_.steps + 1);
+  const bool now = cloth_.version() != version_ || done(t_end);
+  if (control_ && !drag_.none()) sample_drag(now);
+  if (control_ && (now || clock_.steps % StepControl::look_interval == 0) &&
+      !judge())
+    return take_back();
+  if (now || clock_.steps - checked_.steps >= guard_interval) return look();
   return true;
 }
 
@@ -72,9 +79,73 @@ bool Scene::is_finite() const {
   return std::isfinite(energies(cloth_, recipe_.gravity).total());
 }
 
+/** Add what drag took since the last sample, if velocities may have changed
+ * since then, or if there is a look @a now. */
+void Scene::sample_drag(bool now) {
+  constexpr double most = 0.02;  // of a velocity
+  const int interval = std::clamp(int(most / (largest_gamma_ * clock_.dt)), 1,
+                                  StepControl::look_interval);
+  if (!now && clock_.steps % interval != 0 &&
+      clock_.steps % StepControl::look_interval != 0)
+    return;
+  const double power = drag_.power(cloth_);
+  balance_->add_drag(0.5 * (drag_power_ + power) * (time() - sampled_));
+  drag_power_ = power, sampled_ = time();
+}
+
+/** Of the one who chooses the step.  @return false: take it back */
+bool Scene::judge() {
+  const double h = time() - looked_;
+  looked_ = time();
+  using Verdict = StepControl::Verdict;
+  const Verdict verdict = control_->look(energies(cloth_, recipe_.gravity),
+                                         flow(), h, time() / t_end_);
+  if (verdict == Verdict::take_back) return false;
+  if (cloth_.version() != version_) {
+    before_ = latest_ = snapshot();  // what is gone does not come back
+  } else if (verdict == Verdict::keep) {
+    std::swap(before_, latest_);
+    latest_ = snapshot();
+  }
+  return true;
+}
+
+Scene::Snapshot Scene::snapshot() const {
+  const auto x = cloth_.positions();
+  const auto v = cloth_.node_values();
+  return {{x.begin(), x.end()}, {v.begin(), v.end()}, clock_, flow(),
+          control_->state(),    cloth_.version()};
+}
+
+/** On from a state before, by a shorter step.  @return true: no failure */
+bool Scene::take_back() {
+  const long long steps = clock_.steps - before_.clock.steps;
+  for (Node n : cloth_.nodes()) {
+    if (n.id() >= before_.position.size()) continue;
+    n.position() = before_.position[n.id()];
+    n.value() = before_.value[n.id()];
+  }
+  EnergyFlow flow = before_.flow;
+  if (cloth_.version() != before_.version)  // torn meanwhile
+    flow.removed += before_.control.last + flow.work - flow.removed -
+                    flow.drag - energies(cloth_, recipe_.gravity).total();
+  clock_ = before_.clock;
+  control_->take_back(before_.control, steps);
+  clock_.set_dt(control_->dt());
+  balance_->resume(cloth_, time(), constraint_, flow);
+  method_->restart();
+  looked_ = sampled_ = time(), drag_power_ = drag_.power(cloth_);
+  before_ = latest_ = snapshot();
+  guard_->keep(cloth_);
+  keep_clock();
+  return true;
+}
+
 /** Of the guard. */
 bool Scene::look() {
-  if (!guard_->accept(cloth_, balance_->flow())) return replay(clock_.steps);
+  if (!guard_->accept(cloth_, flow()))
+    return control_ && control_->can_shorten() ? take_back()
+                                               : replay(clock_.steps);
   keep_clock();
   return true;
 }

@@ -7,19 +7,21 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
+#include "lab/stability/StepControl.hpp"
 
 namespace lab {
 
 /** A scene, ready to run. */
 class Scene {
  public:
-  /** Steps between two looks of the guard, and between two of SharpOmega. */
-  static constexpr int guard_interval = 32, sharp_interval = 100;
+  /** Steps between two looks of the guard. */
+  static constexpr int guard_interval = 32;
 
   /** At t = 0 and at rest, as the recipe makes it.
    * @pre step.dt > 0
@@ -41,7 +43,9 @@ class Scene {
    * The guard looks at every 32nd state, at those after which the graph is
    * another, and at that of t_end; at no other, so that nobody who looks at a
    * run changes it. If it finds one that is not good the steps since its last
-   * look are made again, one by one, to find the one that failed.
+   * look are made again, one by one, to find the one that failed. A step that
+   * is chosen is shortened before that, and some steps are taken back: then
+   * steps() and time() are those of an earlier state.
    * @return false if the run failed: then failure() says where and why, and the
    * cloth and the clock are those of the last good state.
    * @pre failure().empty(), time() < t_end
@@ -70,15 +74,18 @@ class Scene {
   const Recipe& recipe() const { return recipe_; }
   const MethodInfo& method() const { return entry_.info; }
   StepRule step_rule() const { return step_.rule; }
-  /** The next step [s], but for the last ones; it changes with StepRule::sharp
-   * only. */
+  /** The next step [s], but for the last ones; it changes only if it is chosen.
+   */
   double dt() const { return clock_.dt; }
   /** Steps done, and the time [s] reached. */
   long long steps() const { return clock_.steps; }
   double time() const { return clock_.time(); }
-  /** Steps that can't be taken back any more: those until the last state that
-   * the guard found to be good. */
-  long long settled_steps() const { return checked_.steps; }
+  /** Steps that can't be taken back any more. */
+  long long settled_steps() const {
+    return control_ ? before_.clock.steps : checked_.steps;
+  }
+  /** Who chooses the step, if anybody does. */
+  const std::optional<StepControl>& control() const { return control_; }
   /** What came into its energy and went out since the start. */
   const EnergyFlow& flow() const { return balance_->flow(); }
   /** What happened when step() returned false; empty before. And where. */
@@ -116,6 +123,16 @@ class Scene {
     }
   };
 
+  /** A state of the cloth to go back to. */
+  struct Snapshot {
+    std::vector<Point> position;
+    std::vector<NodeData> value;
+    Clock clock;
+    EnergyFlow flow;
+    StepControl::State control;
+    std::size_t version = 0;
+  };
+
   Recipe recipe_;
   TimeStep step_;
   MethodEntry entry_;
@@ -126,11 +143,17 @@ class Scene {
   std::optional<EnergyBalance> balance_;
   std::optional<DivergenceGuard> guard_;
   std::unique_ptr<Method> method_;
-  double t_end_ = no_limit;         // of the present step [s]
-  Clock clock_, checked_;           // checked_: when the guard kept the state
-  EnergyFlow flow_;                 // then
-  std::size_t version_ = 0;         // of the cloth, then
-  mutable double safe_omega_ = -1;  // [1/s]; negative: not known yet
+  double t_end_ = no_limit;  // of the present step [s]
+  Clock clock_, checked_;    // checked_: when the guard kept the state
+  EnergyFlow flow_;          // then
+  std::size_t version_ = 0;  // of the cloth, then
+  std::optional<StepControl> control_;
+  Snapshot before_, latest_;  // of the last two rounds of control_
+  double looked_ = 0;         // time of its last look [s]
+  Drag drag_;
+  double largest_gamma_ = 0;             // of it [1/s]
+  double sampled_ = 0, drag_power_ = 0;  // at that time [s, W]
+  mutable double safe_omega_ = -1;       // [1/s]; negative: not known yet
   SharpOmega sharp_;
   std::string failure_, error_;  // error_: of the method
   std::optional<WorstPlace> worst_;
@@ -142,6 +165,10 @@ class Scene {
   void choose_step();
   bool is_finite() const;
   bool advance();
+  void sample_drag(bool now);
+  bool judge();
+  bool take_back();
+  Snapshot snapshot() const;
   bool look();
   bool replay(long long last);
   void rewind();

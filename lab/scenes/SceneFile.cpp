@@ -118,9 +118,9 @@ void each_option(T& m, Use use) {
       "nodes without a common edge stay apart: thickness D [m] friction F");
   use("t-end", m.t_end, "time to reach [s], in steps of dt");
   use("dt", m.dt,
-      "step [s]; auto: 0.6 of the stability limit that holds in every "
-      "configuration; auto:sharp: 0.9 of that in the present one, chosen anew "
-      "every 100 steps, and at most the former limit");
+      "step [s], the last ones shorter; auto: first 0.6 of the stability limit "
+      "that holds in every configuration, then as the energy balance allows; "
+      "auto:sharp: first 0.9 of that in the present one");
   use("method", m.method, "name of a method: see --list-methods");
   use("measure", m.measure,
       "what is asked, at the end: com [m], energy [J], positions [m], "

@@ -36,6 +36,10 @@ class DivergenceGuard {
   /** Keep the state of @a g, good or not.  O(N) */
   void keep(const Cloth& g);
 
+  /** An energy that is next to nothing [J]: that of a free fall of one step,
+   * and of springs strained by round-off. */
+  double floor() const { return floor_; }
+
   /** Give @a g the positions and velocities of the last good state. Nodes added
    * since stay as they are, nodes removed since stay removed. */
   void restore(Cloth& g) const;

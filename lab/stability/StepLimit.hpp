@@ -28,15 +28,13 @@ double step_limit(const MethodEntry& method, double omega, double gamma = 0);
 /** The largest c/m [1/s] of a node of a cloth with drag @a c.  O(N) */
 double largest_gamma(const Cloth& g, const Drag& c);
 
-/** The share of a safe limit that `--dt auto` takes, and of a sharp one.
+/** The share of a safe limit that `--dt auto` begins with, and of a sharp one;
+ * StepControl goes on from there.
  *
  * The safe limit is that of oscillations about any one configuration. A cloth
- * without drag that moves violently, so that springs pass through length 0,
- * also gains energy from its changes of configuration near the limit. Of 1,000
- * random scenes none diverged by Verlet at 0.8 of it, and none by any method at
- * 0.6 (SafeStep.NeverDivergesInRandomScenes). A cloth let go at rest, as the
- * assignment's, can take 1. The sharp share also covers what SharpOmega
- * misses. */
+ * without drag that moves violently also gains energy from its changes of
+ * configuration, below the limit, too. The sharp share also covers what
+ * SharpOmega misses. */
 inline constexpr double safe_share = 0.6, sharp_share = 0.9;
 
 }  // namespace lab

@@ -132,6 +132,9 @@ void Run::announce() const {
   } else {
     out << ": no step is stable with " << method << " and no drag";
   }
+  if (scene_.control())
+    out << "; then as the energy balance allows: no gain above "
+        << percent(energy_tolerance) << " of kinetic and elastic energy";
   std::cout << out.str() << std::endl;  // at once, also into a pipe
   if (const auto& built = scene_.recipe().built)
     for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
@@ -174,6 +177,7 @@ int Run::finish() {
   if (error) std::rethrow_exception(error);
   if (cut_short()) tell_interrupt();
   if (!o_.quiet) print_summary();
+  if (scene_.control()) tell_steps(*scene_.control());
   if (!scene_.failure().empty()) return 3;
   return cut_short() ? 128 + interrupted() : 0;
 }
@@ -256,6 +260,23 @@ void Run::warn_of_missed() {
             << scene_.dt() *
                    std::min(0.5, scene_.watched().thinnest() / missed.length)
             << '\n';
+}
+
+/** What steps were chosen, and what they did to the energy. */
+void Run::tell_steps(const StepControl& c) const {
+  const auto& r = c.report();
+  const double gain = c.state().gain, most = c.tolerance();
+  std::ostringstream out;
+  out.precision(3);
+  out << "energy gain " << gain << " J, at most " << most << " J tolerated";
+  if (gain > most && !o_.quiet)
+    std::cerr << warning << out.str() << ": use drag, or a --dt below "
+              << r.shortest << '\n';
+  if (o_.quiet) return;
+  std::cout << "dt from " << r.shortest << " to " << r.longest
+            << " s: shortened " << r.shortened << " times, lengthened "
+            << r.lengthened << " times, " << r.taken_back
+            << " steps taken back; " << out.str() << '\n';
 }
 
 void Run::print_summary() const {

@@ -14,6 +14,7 @@
 namespace lab {
 
 class Scene;
+class StepControl;
 
 /** One run of a scene with all that is written about it. */
 class Run {
@@ -79,6 +80,7 @@ class Run {
   void add_frame();
   void write_mesh();
   void tell_interrupt() const;
+  void tell_steps(const StepControl& c) const;
   void print_summary() const;
 };
 

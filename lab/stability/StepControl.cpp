@@ -1,0 +1,105 @@
+#include "lab/stability/StepControl.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lab {
+
+namespace {
+constexpr double none = std::numeric_limits<double>::infinity();
+constexpr double shorter = 0.7, longer = 1.15;
+constexpr double noise = 0.05;  // of the tolerance: no reason to shorten
+}  // namespace
+
+StepControl::StepControl(double dt, const Energies& start, double floor)
+    : first_(dt), shortest_(dt / 64), floor_(floor), report_{dt, dt} {
+  now_.dt = dt, now_.ceiling = none;
+  now_.scale = start.kinetic + start.elastic;
+  now_.last = now_.least = now_.base = now_.mark = start.total();
+  now_.low = none;
+}
+
+StepControl::Verdict StepControl::look(const Energies& e,
+                                       const EnergyFlow& flow, double h,
+                                       double part) {
+  State s = now_;
+  s.last = e.total() - flow.work + flow.removed + flow.drag;
+  s.low = std::min(s.low, s.last), s.sum += s.last;
+  s.scale = std::max(s.scale, e.kinetic + e.elastic);
+  s.time += h, s.kinetic_time += e.kinetic * h;
+  double most = energy_tolerance * s.scale;
+  // A fall from rest is counted as speed up to a step before it is as height.
+  if (s.rounds == 0) most += 2 * look_interval * (s.looks + 1) * floor_;
+  const double least_noise = noise * most;
+  const double left = most - (s.base - s.least);
+  const bool bursts = s.low - s.base > std::max(0.5 * left, least_noise);
+  const bool creeps = s.low - s.least > (0.3 + 0.5 * part) * most &&
+                      s.low - s.mark > least_noise;
+  const bool beyond = s.last - s.least > most && s.last - s.mark > least_noise;
+  const bool good = std::isfinite(s.last) && !bursts && !creeps && !beyond;
+  if (!good && can_shorten()) return Verdict::take_back;
+  if (!std::isfinite(s.last)) return Verdict::go_on;  // the guard ends it
+  s.gain = std::max(s.gain, s.last - s.least);
+  now_ = s;
+  if (++now_.looks < round) return Verdict::go_on;
+  now_.least = std::min(s.least, s.sum / round);
+  now_.base = now_.low;
+  start_round();
+  ++now_.rounds, ++now_.calm, ++now_.since;
+  return Verdict::keep;
+}
+
+void StepControl::take_back(const State& then, long long steps) {
+  const double failed = now_.dt;
+  const bool again = failures_ > 0 && now_.since == 0 && now_.raises == 0;
+  now_ = then;
+  start_round();
+  change(std::max(shortest_, shorter * failed), then.drag);
+  now_.ceiling = 0.95 * failed;
+  now_.raises = now_.since = 0;
+  if (!again) failures_ = std::min(failures_ + 1, 6);
+  ++report_.shortened;
+  report_.taken_back += steps;
+}
+
+bool StepControl::lengthen(const EnergyFlow& flow) {
+  if (now_.looks > 0 || now_.calm == 0) return false;
+  // gamma = loss/(2 integral of kinetic energy)
+  const double lost = flow.drag - now_.drag;
+  const bool damped =
+      lost > 0 && now_.time * lost >= 0.25 * 2 * now_.kinetic_time;
+  // A step that failed is tried again later and later; if that goes well, by
+  // larger and larger leaps.
+  const int patience = 4 << failures_;
+  if (failures_ > 0 && now_.since >= patience) {
+    now_.ceiling *= std::pow(1.05, 1 << std::min(now_.raises, 3));
+    ++now_.raises;
+    if (damped < 1) now_.since = 0;
+  }
+  const double most = damped ? now_.ceiling
+                      : now_.calm >= 2 * patience
+                          ? std::min(first_, now_.ceiling)
+                          : 0;
+  const double factor =
+      damped >= 1 && failures_ == 0 ? longer * longer : longer;
+  const double next = std::min(factor * now_.dt, most);
+  if (!(next > 1.02 * now_.dt)) return false;
+  change(next, flow.drag);
+  ++report_.lengthened;
+  return true;
+}
+
+void StepControl::start_round() {
+  now_.looks = 0, now_.low = none, now_.sum = 0;
+}
+
+void StepControl::change(double dt, double drag) {
+  now_.dt = dt;
+  now_.base = now_.mark = now_.last;  // another step, another energy
+  now_.time = now_.kinetic_time = 0, now_.drag = drag;
+  now_.calm = 0;
+  report_.shortest = std::min(report_.shortest, dt);
+  report_.longest = std::max(report_.longest, dt);
+}
+
+}  // namespace lab

@@ -1,0 +1,309 @@
+// StepControl.hpp: steps chosen by the measured energy balance: scenes that a
+// fixed share of the linear limit ruined, and random ones, by an independent
+// sum of their energies. `make stability-soak` runs more of it:
+//   SOAK_SCENES   random scenes (50; 1000 in the soak)
+//   SOAK_SECONDS  of each [s] (1; 60 for a sample)
+//   SOAK_FIRST    the first of them (0)
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Scene.hpp"
+
+using namespace lab;
+
+namespace {
+
+double setting(const char* name, double otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::atof(text) : otherwise;
+}
+
+/** What a run did to its energy, by sums of its own. */
+struct Watched {
+  std::string failure;
+  long long steps = 0;
+  double gain = 0;   // the most that E was above E(0) + W - removed [J]
+  double scale = 0;  // the largest kinetic + elastic energy [J]
+  bool warned = false;
+  StepControl::Report report = {};
+  double share() const { return scale > 0 ? gain / scale : 0; }
+  bool within() const { return failure.empty() && share() <= energy_tolerance; }
+};
+
+/** Run @a s to its end.  @param every steps between two sums */
+Watched watch(Scene& s, double t_end, int every = 8) {
+  struct Sum {
+    long long step;
+    double moving, total;
+  };
+  std::vector<Sum> sums;
+  auto look = [&] {
+    while (!sums.empty() && sums.back().step >= s.steps()) sums.pop_back();
+    double moving = 0, weight = 0;
+    for (Node n : s.cloth().nodes()) {
+      moving += 0.5 * n.value().mass * normSq(n.value().vel);
+      weight += n.value().mass * s.recipe().gravity * n.position().z;
+    }
+    for (Edge e : s.cloth().edges())
+      moving += 0.5 * e.value().K * std::pow(e.length() - e.value().L, 2);
+    sums.push_back({s.steps(), moving,
+                    moving + weight - s.flow().work + s.flow().removed});
+  };
+  look();
+  s.run_to(t_end, [&] {
+    if (s.steps() % every == 0 || s.done(t_end)) look();
+  });
+  while (sums.size() > 1 && sums.back().step > s.steps()) sums.pop_back();
+  Watched w;
+  w.failure = s.failure();
+  w.steps = s.steps();
+  for (const Sum& a : sums) {
+    w.scale = std::max(w.scale, a.moving);
+    w.gain = std::max(w.gain, a.total - sums[0].total);
+  }
+  if (s.control()) {
+    w.report = s.control()->report();
+    w.warned = s.control()->state().gain > s.control()->tolerance();
+    w.steps += w.report.taken_back;
+  }
+  return w;
+}
+
+// --------------------------------------------------------------- Random scenes
+
+/** A patch of cloth with masses over 50:1, K over up to 1e4:1, velocities up to
+ * 20 m/s, gravity up to 100 m/s^2 and drag up to 1 1/s; some hold nodes, some
+ * tear. */
+struct RandomScene {
+  Recipe recipe;
+  const MethodEntry* method;
+  double gamma = 0;
+
+  explicit RandomScene(unsigned seed) {
+    std::mt19937 random(seed);
+    auto uniform = [&] { return double(random()) / double(random.max()); };
+    auto one_in = [&](unsigned n) { return random() % n == 0; };
+    const unsigned rows = 3 + random() % 7, columns = 3 + random() % 7;
+    const Mesh mesh = one_in(2) ? Mesh::plain : Mesh::diagonals;
+    const double masses = one_in(2) ? 50 : 1;
+    const double decades = one_in(2) ? 4 * uniform() : 0;
+    const double speed = one_in(3) ? 0 : std::pow(20, uniform());
+    const double stiffness = std::pow(10, 1 + 2 * uniform());
+    gamma = one_in(2) ? uniform() : 0;
+    recipe.gravity = one_in(3) ? 0 : one_in(3) ? 100 * uniform() : grav;
+    const std::array names = {"verlet", "verlet", "symplectic-euler", "pefrl",
+                              "rk4"};
+    method = find_method(names[random() % names.size()]);
+    const unsigned inner = random();
+    recipe.build = [=](Cloth& g) {
+      std::mt19937 r(inner);
+      auto u = [&r] { return double(r()) / double(r.max()); };
+      build_cloth(g, grid_points(rows, columns), grid_quads(rows, columns),
+                  mesh);
+      for (Edge e : g.edges())
+        e.value().K = stiffness * std::pow(10, decades * u());
+      for (Node n : g.nodes()) {
+        n.value().mass *= std::pow(masses, u());
+        n.value().vel = speed * Point(2 * u() - 1, 2 * u() - 1, 2 * u() - 1);
+      }
+    };
+    const double c = gamma;
+    const double gravity = recipe.gravity;
+    recipe.force = [c, gravity](const Cloth& g) {
+      std::vector<double> drag(g.node_slots());
+      for (Node n : g.nodes()) drag[n.id()] = c * n.value().mass;
+      CombinedForces::List all = {std::make_shared<GravityForce>(gravity),
+                                  std::make_shared<MassSpringForce>()};
+      if (c > 0) all.push_back(std::make_shared<NodeDrag>(drag));
+      return CombinedForces(std::move(all));
+    };
+    const bool pinned = !one_in(4), tears = one_in(4);
+    const Ball ball{{0.5, 0.5, -0.3}, 0.2};
+    recipe.constraint = [=](const Cloth& g) {
+      CombinedConstraints::List all;
+      if (tears) all.push_back(std::make_shared<TearConstraint>(ball));
+      if (pinned) {
+        const std::array held = {g.node(0), g.node(columns - 1)};
+        all.push_back(std::make_shared<PinConstraint>(held));
+      }
+      return CombinedConstraints(std::move(all));
+    };
+  }
+};
+
+Watched run_fixed(unsigned seed, double dt, double seconds) {
+  const RandomScene r(seed);
+  Scene s(r.recipe, {.dt = dt}, *r.method);
+  return watch(s, seconds);
+}
+Watched run_chosen(unsigned seed, double seconds) {
+  const RandomScene r(seed);
+  Scene s(r.recipe, {.rule = StepRule::safe}, *r.method);
+  return watch(s, seconds);
+}
+
+// Without drag, from 0.6 of the limit: a step of that length gains more than
+// the tolerance, the chosen one does not.
+TEST(SteeredStep, IsShortenedWhereAShareOfTheLimitGainsEnergy) {
+  for (unsigned seed : {0u, 43u, 118u}) {
+    const RandomScene r(seed);
+    const double first =
+        Scene(r.recipe, {.rule = StepRule::safe}, *r.method).dt();
+    EXPECT_EQ(r.gamma, 0);
+    EXPECT_FALSE(run_fixed(seed, first, 60).within()) << seed;
+    const Watched w = run_chosen(seed, 60);
+    EXPECT_TRUE(w.within()) << seed << ' ' << w.share() << w.failure;
+    EXPECT_FALSE(w.warned);
+    EXPECT_GT(w.report.shortened, 0);
+    EXPECT_LT(w.report.shortest, 0.75 * first);
+    EXPECT_LE(w.report.longest, first * (1 + 1e-12));
+  }
+}
+
+// With drag it is lengthened, beyond the linear limit, as far as it goes: no
+// step 1.3 times its mean keeps the tolerance.
+TEST(SteeredStep, IsNearTheLongestOneWithDrag) {
+  for (unsigned seed : {4u, 44u, 57u}) {
+    const Watched w = run_chosen(seed, 60);
+    EXPECT_TRUE(w.within()) << seed << ' ' << w.share() << w.failure;
+    EXPECT_GT(w.report.lengthened, 5);
+    EXPECT_FALSE(run_fixed(seed, 1.3 * 60 / double(w.steps), 60).within())
+        << seed;
+  }
+}
+
+// What is written down while it runs changes nothing, and a second run is the
+// same, also where steps are taken back.
+TEST(SteeredStep, IsTheSameWhoeverLooks) {
+  const RandomScene r(4);
+  Scene s(r.recipe, {.rule = StepRule::safe}, *r.method);
+  std::vector<Point> ends[2];
+  for (auto& end : ends) {
+    s.restart();
+    long long last = 0, back = 0;
+    EXPECT_TRUE(s.run_to(30, [&] {
+      if (&end == ends) EXPECT_TRUE(s.check());
+      back += s.steps() <= last ? last + 1 - s.steps() : 0;
+      EXPECT_GE(s.steps(), s.settled_steps());
+      last = s.steps();
+    }));
+    EXPECT_EQ(s.time(), 30);
+    EXPECT_EQ(back, s.control()->report().taken_back);
+    EXPECT_GT(back, 0);
+    const auto x = s.cloth().positions();
+    end.assign(x.begin(), x.end());
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
+TEST(StepControl, TakesBackWhatGainsAndSaysSoIfItCant) {
+  using Verdict = StepControl::Verdict;
+  StepControl c(1, {.kinetic = 100}, 0);
+  double energy = 100, share = 1;
+  while (c.can_shorten()) {
+    const auto then = c.state();
+    ASSERT_EQ(c.look({.kinetic = energy + 9}, {}, 1, 0), Verdict::take_back);
+    c.take_back(then, 16);
+    share = std::max(0.7 * share, 1 / 64.);
+    EXPECT_DOUBLE_EQ(c.dt(), share);
+  }
+  EXPECT_EQ(c.report().shortened, 12);
+  EXPECT_EQ(c.report().taken_back, 12 * 16);
+  EXPECT_EQ(c.look({.kinetic = energy + 30}, {}, 1, 0), Verdict::go_on);
+  EXPECT_DOUBLE_EQ(c.state().gain, 30);
+  EXPECT_GT(c.state().gain, c.tolerance());
+}
+
+TEST(StepControl, CountsWorkAndDragAndWhatWasRemoved) {
+  StepControl c(1, {.kinetic = 100}, 0);
+  for (int k = 1; k < 50; ++k)
+    ASSERT_NE(
+        c.look({.kinetic = 100, .gravitational = 10. * k},
+               {.work = 12. * k, .removed = -1. * k, .drag = 3. * k}, 1, 0),
+        StepControl::Verdict::take_back);
+  EXPECT_NEAR(c.state().gain, 0, 1e-12);
+}
+
+TEST(StepControl, LengthensWithDragOnly) {
+  for (double gamma : {0.0, 0.1, 1.0}) {
+    StepControl c(0.01, {.kinetic = 1}, 0);
+    double drag = 0;
+    for (int k = 0; k < 500; ++k) {
+      c.lengthen({.drag = drag});
+      const double h = StepControl::look_interval * c.dt();
+      drag += 2 * gamma * h;
+      c.look({.kinetic = 1}, {.work = drag, .drag = drag}, h, 0);
+    }
+    if (gamma == 0)
+      EXPECT_EQ(c.dt(), 0.01);
+    else
+      EXPECT_GT(c.dt(), 0.1);
+  }
+}
+
+TEST(SteeredStep, KeepsItsToleranceInRandomScenes) {
+  const int first = int(setting("SOAK_FIRST", 0));
+  const int scenes = int(setting("SOAK_SCENES", 50));
+  const double seconds = setting("SOAK_SECONDS", 1);
+  const bool talk = std::getenv("SOAK_SCENES");
+  int beyond = 0, unnoticed = 0, failed = 0, damped = 0, slow = 0;
+  std::vector<double> ratios;
+  for (int seed = first; seed < first + scenes; ++seed) {
+    const RandomScene r{unsigned(seed)};
+    Scene s(r.recipe,
+            {.rule = seed % 4 == 3 ? StepRule::sharp : StepRule::safe},
+            *r.method);
+    const double start = s.dt();
+    const Watched w = watch(s, seconds);
+    failed += !w.failure.empty();
+    const bool over = w.share() > energy_tolerance;
+    beyond += over;
+    unnoticed += over && !w.warned && w.failure.empty();
+    EXPECT_TRUE(!over || w.warned || !w.failure.empty())
+        << "seed " << seed << ": gains " << w.share();
+    EXPECT_EQ(w.failure, "") << seed;
+    double ratio = 0;
+    if (talk && r.gamma > 0.2 && w.scale > 0) {
+      // The longest fixed step that keeps the tolerance, too.
+      double low = start / 16, high = 4 * start;
+      for (int k = 0; k < 12; ++k) {
+        const double dt = std::sqrt(low * high);
+        Scene fixed(r.recipe, {.dt = dt}, *r.method);
+        (watch(fixed, seconds).within() ? low : high) = dt;
+      }
+      ratio = double(w.steps) / (seconds / low);
+      ratios.push_back(ratio);
+      ++damped, slow += ratio > 1.3;
+    }
+    if (talk)
+      std::cout << seed << ' ' << r.method->info.name << " gamma " << r.gamma
+                << " gain " << w.share() << " dt " << w.report.shortest / start
+                << " to " << w.report.longest / start << " end "
+                << s.dt() / start << " shortened " << w.report.shortened
+                << " lengthened " << w.report.lengthened << " back "
+                << w.report.taken_back << " steps " << w.steps << " ratio "
+                << ratio << (over ? " BEYOND" : "")
+                << (w.warned ? " warned" : "") << '\n';
+  }
+  std::cout << scenes << " random scenes of " << seconds << " s: " << failed
+            << " failed, " << beyond << " beyond the tolerance, of these "
+            << unnoticed << " unnoticed";
+  if (!ratios.empty()) {
+    std::ranges::sort(ratios);
+    std::cout << "; " << damped
+              << " with drag > 0.2 1/s: steps by those of the "
+              << "longest fixed one: median " << ratios[ratios.size() / 2]
+              << ", 90 % " << ratios[ratios.size() * 9 / 10] << ", most "
+              << ratios.back() << ", above 1.3: " << slow;
+  }
+  std::cout << '\n';
+  EXPECT_LE(beyond, scenes / 20);
+}
+
+}  // namespace
