@@ -149,9 +149,11 @@ pictures: test_screen $(B)/cloth
 # ---- Fuzzing. The inputs that it starts from: tools/corpus.
 
 RUNS ?= 200000
-$(B)/fuzz_mesh: tools/fuzz_mesh.cpp CME212/Mesh.hpp CME212/Util.hpp CME212/Point.hpp
+$(B)/fuzz_mesh: tools/fuzz_mesh.cpp lab/scenes/MeshFile.cpp \
+                lab/scenes/MeshFile.hpp CME212/Mesh.hpp CME212/Util.hpp \
+                CME212/Point.hpp
 	@mkdir -p $(B)
-	clang++ -std=c++20 -g -O1 -Wall -Wextra -I. -o $@ $< \
+	clang++ -std=c++20 -g -O1 -Wall -Wextra -I. -o $@ $(filter %.cpp,$^) \
 	  -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
 fuzz: $(B)/fuzz_mesh
 	@mkdir -p $(B)/corpus

@@ -237,6 +237,9 @@ TEST(KeyValues, SayWhatIsWrong) {
               std::string("f:1: k has \\") + code[0] +
                   " in its text, which is no character: a backslash is \\\\");
   EXPECT_EQ(error("= 1"), "f:1: \"= 1\", expected KEY = VALUE");
+  EXPECT_EQ(
+      error("\x1B[2J" + std::string(99, 'a')),
+      "f:1: \"?[2J" + std::string(56, 'a') + "...\", expected KEY = VALUE");
 }
 
 /** Any bytes but 0, which no name of a file has. */
@@ -266,7 +269,8 @@ RC_GTEST_PROP(KeyValues, EndWellWhateverIsRead, ()) {
   } catch (const InputError& e) {
     error = e.what();
   }
-  RC_ASSERT(error.starts_with("f:"));
+  RC_ASSERT(error.starts_with("f:") && error.size() < 200);
+  for (unsigned char c : error) RC_ASSERT(c >= 0x20 && c != 0x7F);
 }
 
 // ----------------------------------------------------------------------- Files

@@ -1,14 +1,16 @@
-// Feeds the two parsers of Mesh.hpp with whatever libFuzzer thinks of. The
-// first byte of an input chooses the parser, the rest is the file.
+// Feeds the parsers of Mesh.hpp and MeshFile.hpp with whatever libFuzzer thinks
+// of. The first byte of an input chooses the parser, the rest is the file.
 //   make fuzz RUNS=1000000      starts from the inputs in tools/corpus
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "CME212/Mesh.hpp"
 #include "CME212/Util.hpp"
+#include "lab/scenes/MeshFile.hpp"
 
 namespace {
 
@@ -27,6 +29,17 @@ void check_points(std::string_view text) {
     again += '\n';
   }
   require(parse_points(again, "f") == points);
+}
+
+void check_nodes(std::string_view text) {
+  const auto mesh = lab::parse_nodes(text, "f");
+  require(!mesh.points.empty());
+  require(mesh.velocities.empty() ||
+          mesh.velocities.size() == mesh.points.size());
+  std::ostringstream again;
+  lab::write_nodes(again, mesh);
+  const auto same = lab::parse_nodes(again.str(), "f");
+  require(same.points == mesh.points && same.velocities == mesh.velocities);
 }
 
 void check_quads(std::string_view text) {
@@ -64,7 +77,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   if (size == 0) return 0;
   std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   try {
-    data[0] % 2 == 0 ? check_points(text) : check_quads(text);
+    data[0] % 4 == 2   ? check_nodes(text)
+    : data[0] % 2 == 0 ? check_points(text)
+                       : check_quads(text);
   } catch (const InputError& e) {
     check_message(e.what());
   }

@@ -118,7 +118,7 @@ class Reader {
           continue;
         }
       }
-      fail(std::string("has \\") + code +
+      fail("has \\" + printable({&code, 1}) +
            " in its text, which is no character: a backslash is \\\\");
     }
   }
@@ -139,19 +139,27 @@ void each_key_value(
     if (first == std::string_view::npos || line[first] == '#') continue;
     const auto equals = line.find('=');
     if (equals == std::string_view::npos || equals == first) {
-      auto shown = line.substr(0, line.find_last_not_of('\r') + 1);
+      const auto whole = line.substr(0, line.find_last_not_of('\r') + 1);
       throw InputError(file, number,
-                       '"' + std::string(shown) + "\", expected KEY = VALUE");
+                       '"' + printable(whole) + "\", expected KEY = VALUE");
     }
     const auto last = line.find_last_not_of(blanks, equals - 1);
     KeyValue found{std::string(line.substr(first, last - first + 1)), {}};
     try {
       found.values = Reader(line.substr(equals + 1)).values();
     } catch (const std::runtime_error& e) {
-      throw InputError(file, number, found.key + ' ' + e.what());
+      throw InputError(file, number, printable(found.key) + ' ' + e.what());
     }
     use(found, number);
   }
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string shown(text.substr(0, longest));
+  for (char& c : shown)
+    if ((0 <= c && c < 0x20) || c == 0x7F) c = '?';
+  return shown + (text.size() > longest ? "..." : "");
 }
 
 std::string in_quotes(std::string_view text) {

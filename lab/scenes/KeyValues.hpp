@@ -24,6 +24,9 @@ void each_key_value(
     std::string_view text, const std::string& file,
     const std::function<void(const KeyValue&, std::size_t line)>& use);
 
+/** @a text as a message can show it: short, without control characters. */
+std::string printable(std::string_view text);
+
 /** @a text in double quotes, on one line: read again it is the same, whatever
  * bytes it has. */
 std::string in_quotes(std::string_view text);

@@ -265,7 +265,7 @@ void SceneOptions::read(CLI::App& app, const std::string& file,
       };
       CLI::Option* option = app.get_option_no_throw("--" + key);
       if (!option || key == "help")
-        fail("unknown key " + key + did_you_mean(key, scene_keys()));
+        fail("unknown key " + printable(key) + did_you_mean(key, scene_keys()));
       const auto [first, is_new] = origins_.line_of.emplace(key, line);
       if (!is_new)
         fail(key + " for the second time, first on line " +
