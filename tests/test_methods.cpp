@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <functional>
+#include <map>
 #include <numbers>
 
 #include "lab/methods/Methods.hpp"
@@ -19,10 +20,9 @@ using std::numbers::pi;
 /** A method that makes exactly the steps that it is asked for. */
 template <typename M>
 M fixed_step() {
-  if constexpr (std::is_same_v<M, DormandPrince>)
-    return M(no_limit);
-  else
-    return M();
+  M method;
+  method.set_tolerance(no_limit);
+  return method;
 }
 
 // ----------------------------------------------------------------- Oscillator
@@ -97,7 +97,7 @@ struct Names {
 };
 using All =
     ::testing::Types<ForwardEuler, SymplecticEuler, Verlet, Respa, Yoshida4,
-                     Pefrl, Srkn6b, Srkn11b, Rk4, DormandPrince>;
+                     Pefrl, Srkn6b, Srkn11b, Rk4, DormandPrince, Dop853>;
 TYPED_TEST_SUITE(Explicit, All, Names);
 
 // T = 1 with w = 2: no multiple of the half period pi/2, where first order
@@ -475,6 +475,90 @@ TEST(Verlet, KeepsNoForceOfAnotherState) {
   }
   for (unsigned i = 0; i < g.num_nodes(); ++i)
     EXPECT_LT(norm(g.node(i).position() - h.node(i).position()), 1e-15);
+}
+
+// --------------------------------------------------------- Order conditions
+
+/** A rooted tree, as the subtrees at its root. */
+struct Tree {
+  std::vector<Tree> parts;
+  int size() const {
+    int n = 1;
+    for (const Tree& t : parts) n += t.size();
+    return n;
+  }
+  double density() const {
+    double d = size();
+    for (const Tree& t : parts) d *= t.density();
+    return d;
+  }
+};
+/** All trees of @a size nodes, whose parts come in the order of this list. */
+const std::vector<Tree>& trees(int size) {
+  static std::map<int, std::vector<Tree>> known;
+  auto& all = known[size];
+  if (!all.empty()) return all;
+  if (size == 1) return all = {Tree()};
+  Tree t;
+  const std::function<void(int, int, std::size_t)> grow =
+      [&](int left, int largest, std::size_t from) {
+        if (left == 0) all.push_back(t);
+        for (int n = std::min(left, largest); n > 0; --n)
+          for (std::size_t k = n == largest ? from : 0; k < trees(n).size();
+               ++k) {
+            t.parts.push_back(trees(n)[k]);
+            grow(left - n, n, k);
+            t.parts.pop_back();
+          }
+      };
+  grow(size - 1, size - 1, 0);
+  return all;
+}
+/** The product over the parts of t of the sums a phi(part), by stage. */
+template <typename Tableau>
+std::vector<double> phi(const Tree& t) {
+  std::vector<double> product(Tableau::c.size(), 1.);
+  for (const Tree& part : t.parts) {
+    const std::vector<double> of = phi<Tableau>(part);
+    for (std::size_t i = 0; i < product.size(); ++i) {
+      double sum = 0;
+      for (std::size_t j = 0; j < i; ++j)
+        sum += Tableau::a[i * (i - 1) / 2 + j] * of[j];
+      product[i] *= sum;
+    }
+  }
+  return product;
+}
+/** The order of the weights @a b: that up to which sum b phi(t) = 1/density(t)
+ * for all trees. Source: Hairer, Norsett, Wanner I, II.2. */
+template <typename Tableau>
+int order_of(const auto& b) {
+  for (int size = 1;; ++size)
+    for (const Tree& t : trees(size)) {
+      const std::vector<double> by_stage = phi<Tableau>(t);
+      double sum = -1 / t.density();
+      for (std::size_t i = 0; i < by_stage.size(); ++i)
+        sum += b[i] * by_stage[i];
+      if (std::abs(sum) > 1e-13) return size - 1;
+    }
+}
+TEST(OrderConditions, HoldForAllTreesUpToTheOrder) {
+  EXPECT_EQ(trees(4).size(), 4u);
+  EXPECT_EQ(trees(8).size(), 115u);
+  EXPECT_EQ(order_of<ForwardEulerTableau>(ForwardEulerTableau::b), 1);
+  EXPECT_EQ(order_of<Rk4Tableau>(Rk4Tableau::b), 4);
+  using Five = DormandPrinceTableau;
+  EXPECT_EQ(order_of<Five>(Five::b), 5);
+  EXPECT_EQ(order_of<Five>(Five::b_low), 4);
+  using Eight = Dop853Tableau;
+  EXPECT_EQ(order_of<Eight>(Eight::b), 8);
+  EXPECT_EQ(order_of<Eight>(Eight::b_low), 5);
+  EXPECT_EQ(order_of<Eight>(Eight::b_third), 3);
+  for (std::size_t i = 1; i < Eight::c.size(); ++i) {
+    double sum = 0;
+    for (std::size_t j = 0; j < i; ++j) sum += Eight::a[i * (i - 1) / 2 + j];
+    EXPECT_NEAR(sum, Eight::c[i], 1e-14) << i;
+  }
 }
 
 // ---------------------------------------------------------------

@@ -115,6 +115,7 @@ const std::map<std::string, std::array<double, 5>> first_steps = {
     {"srkn11b", {1.8, 2.5, 2.8, 1.8, 2}},
     {"rk4", {0.09, 0.3, 0.8, 0.09, 0.3}},
     {"dormand-prince", {0.14, 0.25, 0.7, 0.13, 0.25}},
+    {"dop853", {1, 1.5, 2.5, 1, 2}},
     {"implicit-euler", {0.2, 1, 2, 0.2, 0.8}},
     {"implicit-midpoint", {0.35, 0.5, 2, 0.35, 0.7}},
     {"tr-bdf2", {0.35, 0.5, 2, 0.35, 1}},
@@ -125,11 +126,11 @@ const std::map<std::string, std::array<double, 5>> first_steps = {
  * linear systems so well that only the error of the step is seen. */
 std::unique_ptr<Method> make(const MethodEntry& m) {
   const std::string name = m.info.name;
-  if (name == DormandPrince::info.name)
-    return std::make_unique<DormandPrince>(no_limit);
   if (name == ImplicitEuler::info.name)
     return std::make_unique<ImplicitEuler>(1e-12);
-  return m.make();
+  auto method = m.make();
+  method->set_tolerance(no_limit);
+  return method;
 }
 
 /** The answer to @a p, which is one of courses(), computed once. */

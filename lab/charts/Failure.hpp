@@ -23,7 +23,7 @@ enum class Quantity {
 struct FailureRun {
   std::string_view method;  ///< empty: the true motion itself
   double dt;                ///< [s]
-  double setting = 0;  ///< tolerance [m] of dormand-prince, substeps of xpbd
+  double setting = 0;  ///< tolerance [m] of an adaptive one, substeps of xpbd
 };
 
 /** How a method fails, and a cure: runs[0] fails, the last one does not, those

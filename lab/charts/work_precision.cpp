@@ -72,11 +72,8 @@ struct Case {
 
   double least() const { return *std::ranges::min_element(seconds); }
   Outcome run_on(const Problem& p, bool guarded) const {
-    if (tolerance > 0) {
-      DormandPrince adaptive(tolerance);
-      return run(p, adaptive, 1, guarded);
-    }
     auto made = method->make();
+    if (tolerance > 0) made->set_tolerance(tolerance);
     return run(p, *made, steps, guarded);
   }
 };
@@ -99,7 +96,7 @@ std::vector<Case> ladder(const Problem& p, const Reference& r,
     return c.error > 10 * r.floor && c.first.seconds * finer < effort.seconds &&
            double(c.first.sweeps) * double(springs) * finer < effort.springs;
   };
-  if (info.name == std::string_view(DormandPrince::info.name)) {
+  if (info.adaptive) {
     for (double tolerance = 1e-2; tolerance > 1e-14; tolerance /= 10) {
       cases.push_back({&method, 1, tolerance});
       if (!go_on(1.6)) break;
@@ -274,8 +271,7 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
     auto method = entry->make();
     double dt = entry->info.limit == no_limit ? 10 / omega
                                               : entry->info.sweeps / 2. / omega;
-    if (entry->info.name == std::string_view(DormandPrince::info.name))
-      method = std::make_unique<DormandPrince>(1e-4), dt = 0.02;
+    if (entry->info.adaptive) method->set_tolerance(1e-4), dt = 0.02;
     DivergenceGuard guard(s.cloth, p.gravity, dt);
     const auto steps = static_cast<long long>(std::ceil(p.t_end / dt));
     const long long every = std::max(1LL, steps / 500);

@@ -55,6 +55,9 @@ class Method {
    * gives the same bits as that of the method that saved it.
    * @pre of loading: @a g is as it was then. The default: nothing is kept */
   virtual void archive(CME212::Archive& /*a*/, const Cloth& /*g*/) {}
+  /** Keep the estimated error of each inner step below @a tolerance [m] > 0;
+   * infinite: one inner step a step. Only adaptive methods have one. */
+  virtual void set_tolerance(double /*tolerance*/) {}
 
   /** The call of symp_euler_step(): any force, any constraint; or their plans,
    * which save making them in each step. */

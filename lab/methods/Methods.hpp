@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "lab/methods/AugmentedVerlet.hpp"
+#include "lab/methods/Dop853.hpp"
 #include "lab/methods/DormandPrince.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
@@ -22,15 +23,22 @@
 
 namespace lab {
 
-inline constexpr std::array methods = {
-    entry_of<ForwardEuler>(),  entry_of<SymplecticEuler>(),
-    entry_of<Verlet>(),        entry_of<Respa>(),
-    entry_of<Yoshida4>(),      entry_of<Pefrl>(),
-    entry_of<Srkn6b>(),        entry_of<Srkn11b>(),
-    entry_of<Rk4>(),           entry_of<DormandPrince>(),
-    entry_of<ImplicitEuler>(), entry_of<ImplicitMidpoint>(),
-    entry_of<TrBdf2>(),        entry_of<AugmentedVerlet>(),
-    entry_of<Xpbd>()};
+inline constexpr std::array methods = {entry_of<ForwardEuler>(),
+                                       entry_of<SymplecticEuler>(),
+                                       entry_of<Verlet>(),
+                                       entry_of<Respa>(),
+                                       entry_of<Yoshida4>(),
+                                       entry_of<Pefrl>(),
+                                       entry_of<Srkn6b>(),
+                                       entry_of<Srkn11b>(),
+                                       entry_of<Rk4>(),
+                                       entry_of<DormandPrince>(),
+                                       entry_of<Dop853>(),
+                                       entry_of<ImplicitEuler>(),
+                                       entry_of<ImplicitMidpoint>(),
+                                       entry_of<TrBdf2>(),
+                                       entry_of<AugmentedVerlet>(),
+                                       entry_of<Xpbd>()};
 
 /** The method called @a name, or nullptr. */
 const MethodEntry* find_method(std::string_view name);

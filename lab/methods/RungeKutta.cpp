@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "lab/methods/Dop853.hpp"
 #include "lab/methods/DormandPrince.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/Rk4.hpp"
@@ -132,16 +133,28 @@ void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
       g, [&](Node n) { v_[s][n.id()] = a_[s][n.id()] = Point(); });
 }
 
-/** RMS of the difference to the lower order, for h = 1. */
+/** The estimated error, RMS over the nodes, for h = 1. */
 template <typename Tableau>
 double RungeKutta<Tableau>::error_rate(const Cloth& g) const {
+  double error = 0;
+  if constexpr (adaptive) error = rms(g, Tableau::b_low.data());
+  if constexpr (requires { Tableau::b_third; }) {
+    if (!(error > 0)) return error;
+    const double third = rms(g, Tableau::b_third.data());
+    error *= error / std::sqrt(error * error + 0.01 * third * third);
+  }
+  return error;
+}
+
+/** Of the difference to the weights @a other. */
+template <typename Tableau>
+double RungeKutta<Tableau>::rms(const Cloth& g, const double* other) const {
   double x = 0, v = 0;
   for (unsigned i = 0; i < g.node_slots(); ++i) {
     if (!g.node_in_use(i)) continue;
     Point dx, dv;
     for (std::size_t s = 0; s < stages; ++s) {
-      double w = Tableau::b[s];
-      if constexpr (adaptive) w -= Tableau::b_low[s];
+      const double w = Tableau::b[s] - other[s];
       dx += w * v_[s][i];
       dv += w * a_[s][i];
     }
@@ -154,5 +167,6 @@ double RungeKutta<Tableau>::error_rate(const Cloth& g) const {
 template class RungeKutta<ForwardEulerTableau>;
 template class RungeKutta<Rk4Tableau>;
 template class RungeKutta<DormandPrinceTableau>;
+template class RungeKutta<Dop853Tableau>;
 
 }  // namespace lab
