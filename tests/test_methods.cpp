@@ -477,6 +477,36 @@ TEST(Verlet, KeepsNoForceOfAnotherState) {
     EXPECT_LT(norm(g.node(i).position() - h.node(i).position()), 1e-15);
 }
 
+// ----------------------------------------------------------------------- Drag
+
+// x'' = -k |x'| x' has x = ln(1 + k v t)/k. It is part of the kick, which is
+// not symmetric in time then: every splitting falls to order 1; Runge-Kutta
+// methods, which treat velocities as positions, keep theirs.
+TEST(Drag, OfTheSquareLowersSplittings) {
+  const auto error = [](const MethodEntry& m, int steps) {
+    Cloth g;
+    const Node a = g.add_node(Point(), {Point(2, 0, 0), 1});
+    const auto drag = [](Node n, double) {
+      return -0.7 * norm(n.value().vel) * n.value().vel;
+    };
+    const auto method = m.make();
+    method->set_tolerance(no_limit);
+    for (int n = 0; n < steps; ++n)
+      (*method)(g, double(n) / steps, 1. / steps, drag);
+    return std::abs(a.position().x - std::log(1 + 0.7 * 2) / 0.7);
+  };
+  for (const char* name :
+       {"verlet", "respa", "yoshida4", "pefrl", "srkn6b", "srkn11b"}) {
+    const MethodEntry& m = *find_method(name);
+    EXPECT_NEAR(std::log2(error(m, 400) / error(m, 800)), 1, 0.1) << name;
+  }
+  for (const char* name : {"rk4", "dormand-prince"}) {
+    const MethodEntry& m = *find_method(name);
+    EXPECT_GT(std::log2(error(m, 20) / error(m, 40)), m.info.order - 0.4)
+        << name;
+  }
+}
+
 // --------------------------------------------------------- Order conditions
 
 /** A rooted tree, as the subtrees at its root. */

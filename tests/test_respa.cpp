@@ -260,11 +260,12 @@ TEST(Respa, TakesForcesByCallAsSoftOnes) {
 // A stiff spring at a wall that moves: its node is right at all inner times.
 TEST(Respa, KeepsItsOrderAtAMovingPin) {
   Problem p = stiff_edge(5, 0.2);
+  p.driven = true;
   p.constraint = [](const Cloth& g) {
     const Node n = middle_edge(g).node1();
     return make_combined_constraints(
-        PinConstraint(g),
-        MovingPinConstraint(PinConstraint(std::vector{n}), {Point(0, 0, 0.5)}));
+        PinConstraint(g), MovingPinConstraint(PinConstraint(std::vector{n}),
+                                              {Point(0, 0, 0.05)}));
   };
   const Reference right = reference(p, 4);
   const auto error = [&](long long steps) {

@@ -98,7 +98,7 @@ constexpr std::array table = [] {
               .scene = stiff_oscillator,
               .t_end = 3,
               .quantity = energy,
-              .fails = 2,
+              .fails = 1,
               .cured = 0.1,
               .runs = {{{"respa", 0.986 * half_period},
                         {"respa", 0.9 * half_period}}}},

@@ -77,7 +77,7 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   Start s(p);
   std::unique_ptr<DivergenceGuard> guard;
   const double dt = p.t_end / double(steps);
-  if (guarded)
+  if (guarded && !p.driven)
     guard = std::make_unique<DivergenceGuard>(s.cloth, p.gravity, dt);
   Outcome out;
   method.restart();

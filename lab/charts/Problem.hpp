@@ -71,6 +71,8 @@ struct Problem {
   Norm norm = Norm::positions;
   double gravity = grav;  ///< [m/s^2]
   double gamma = 0;       ///< drag [1/s]: c = gamma/N
+  /** Held nodes move, and do work: no run of it is guarded. */
+  bool driven = false;
   /** Make the cloth as it is at t = 0. */
   std::function<void(Cloth&)> build;
   std::function<CombinedConstraints(const Cloth&)> constraint;

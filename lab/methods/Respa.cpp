@@ -18,8 +18,9 @@ double Respa::step(Cloth& g, double t, double dt, const ForcePlan& force,
   inner_steps_ = 1;
   if (split_.empty()) return verlet_.step(g, t, dt, force, constraint);
   // The same time, however the caller rounds it.
-  if (!same || std::abs(t - kept_time_) > 1e-6 * dt)
+  if (!(same || loaded_) || std::abs(t - kept_time_) > 1e-6 * dt)
     find_soft_forces(g, t, force);
+  loaded_ = false;
   const auto kick_all = [&](const Part& part) {
     kick(g, part, dt / 2, std::span(soft_).subspan(part.first));
   };
@@ -47,6 +48,14 @@ double Respa::step(Cloth& g, double t, double dt, const ForcePlan& force,
   constraint.set_held_velocities(g, t + dt);
   kept_time_ = t + dt;
   return t + dt;
+}
+
+void Respa::archive(CME212::Archive& a, const Cloth& g) {
+  verlet_.archive(a, g);
+  bool has = !split_.empty() && kept_for_ == &g && kept_version_ == g.version();
+  a(has);
+  if (a.loads()) kept_for_ = nullptr, loaded_ = has;
+  if (has) a(soft_)(kept_time_);
 }
 
 void Respa::find_split(const Cloth& g, const ForcePlan& force,

@@ -43,7 +43,11 @@ class Respa : public Method {
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
-  void restart() override { kept_for_ = nullptr, verlet_.restart(); }
+  void restart() override {
+    kept_for_ = nullptr, loaded_ = false;
+    verlet_.restart();
+  }
+  void archive(CME212::Archive& a, const Cloth& g) override;
 
   /** Of the last step: what it split, and the n of above. */
   const StiffSplit& split() const { return split_; }
@@ -58,6 +62,7 @@ class Respa : public Method {
   const Cloth* kept_for_ = nullptr;  // the cloth that split_ and soft_ are of
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
+  bool loaded_ = false;  // soft_ and kept_time_ only
   struct StiffNode {
     Point x, v, f;
     double per_mass;    // 1/m; 0 if held

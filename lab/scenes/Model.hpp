@@ -35,6 +35,8 @@ enum class StepRule {
 struct TimeStep {
   double dt = 0.001;  ///< [s], > 0; of StepRule::fixed
   StepRule rule = StepRule::fixed;
+  /** Of the inner steps of a method with error control [m]; 0: its usual. */
+  double tolerance = 0;
   bool fixed() const { return rule == StepRule::fixed; }
 };
 

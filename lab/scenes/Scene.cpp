@@ -20,6 +20,7 @@ Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
       step_(step),
       entry_(method),
       method_(method.make()) {
+  if (step_.tolerance > 0) method_->set_tolerance(step_.tolerance);
   restart();
 }
 Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}

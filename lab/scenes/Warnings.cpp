@@ -7,6 +7,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/methods/Method.hpp"
 #include "lab/scenes/Words.hpp"
 
 namespace lab {
@@ -94,6 +95,7 @@ class Finder {
       inside(b, name, false);
     }
     if (m_.self_collision) passes_itself(*m_.self_collision);
+    if (m_.method->info.adaptive) not_smooth();
     return found_;
   }
 
@@ -238,6 +240,16 @@ class Finder {
         of_all(wide.quads) + ", where a node may be " + short_text(wide.most) +
         " m from the nearest one: the cloth passes through itself there; "
         "take a thickness above that, 0.71 times the side of a square");
+  }
+
+  /** A contact is a jump, which an inner step sees only at its end. */
+  void not_smooth() {
+    if (!m_.planes.empty() || !m_.spheres.empty() || !m_.tears.empty() ||
+        m_.tear_strain || m_.self_collision)
+      add(std::string(m_.method->info.name) +
+          ": the error is not controlled where nodes touch or edges break: "
+          "there it is of first or second order, as that of every method; "
+          "--method verlet --dt auto costs less");
   }
 
   /** A ball that jumps over nodes pushes none of them. */

@@ -21,6 +21,7 @@ double opening(const PointsAndQuads& mesh, const Quad& q);
  *  - openings of the mesh through which a solid ball fits, or will when springs
  * are stretched by less than a half; or which a self-collision does not close
  *  - a ball that moves by more than half of its radius in a step
+ *  - a method with error control where motion is not smooth
  * @param mesh that of mesh_of(m)   @param g the cloth of @a m at t = 0
  * @param dt the first step [s]
  * Complexity: O((points + quads + springs) parts) */

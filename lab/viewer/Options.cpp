@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <span>
 #include <sstream>
@@ -156,6 +157,18 @@ void list_methods() {
   }
 }
 
+/** A run is asked for a tolerance: let a method with error control keep it, if
+ * the scene names one or leaves the choice to us.
+ * @param given whether the option of a name is given, in a file or here */
+void control_error(Model& m, const std::function<bool(const char*)>& given) {
+  if (!given("--method") && !given("--dt"))
+    m.method = find_method(Dop853::info.name);
+  if (!m.method->info.adaptive) return;
+  // Steps end where rows and frames are looked at, not where errors do.
+  if (!given("--dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);
+  m.step.tolerance = tolerance_share * m.tolerance;
+}
+
 /** Give @a app all options, which go to @a o and @a scene. */
 void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
   app.option_defaults()->always_capture_default();
@@ -228,6 +241,7 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
 int parse(int argc, char** argv, Options& o) {
   std::string file;
   bool dump = false;
+  std::vector<std::string> in_file;
   SceneOptions scene;
   CLI::App first;  // finds the scene file
   first.set_help_flag();
@@ -242,6 +256,8 @@ int parse(int argc, char** argv, Options& o) {
     CLI::App app;
     add_options(app, o, scene);
     scene.read(app, file, [&] {
+      for (const CLI::Option* option : app.get_options())
+        if (option->count() > 0) in_file.push_back(option->get_name());
       o.model = scene.model();
       check(o);
     });
@@ -279,6 +295,11 @@ int parse(int argc, char** argv, Options& o) {
   scene.overridden_by(app);
   o.origins = scene.origins();
   o.model = scene.model();
+  const auto given = [&](const char* name) {
+    return app.count(name) > 0 || std::ranges::count(in_file, name) > 0;
+  };
+  if (given("--tolerance") && !o.advise && !o.automatic && o.advised.empty())
+    control_error(o.model, given);
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;

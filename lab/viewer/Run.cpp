@@ -120,6 +120,11 @@ void Run::announce() const {
     out << " at first; auto:sharp takes " << percent(sharp_share)
         << " of the stability limit in the present configuration, at most "
         << limit << " s, the limit in any (" << method << ')';
+  } else if (scene_.method().adaptive) {
+    out << ": " << method << " chooses its inner steps by their error";
+    if (const double t = o_.model.step.tolerance; t > 0)
+      out << ", below " << t << " m each, for " << o_.model.tolerance
+          << " m at the end";
   } else if (limit == no_limit) {
     const double verlet = scene_.safe_limit(entry_of<Verlet>());
     out << ": " << method << " has no stability limit";

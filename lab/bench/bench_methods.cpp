@@ -1,0 +1,65 @@
+// What a step of each method costs, in steps of Verlet: on the 25 x 25 cloth of
+// the assignment with diagonals and drag, over its first quarter of a second,
+// at Verlet's stability limit and, where there is no limit, at ten times that.
+// The least of seven runs, of all methods in turn. `make method-costs` writes
+// what it prints to lab/methods/Costs.hpp, from where --list-methods has it.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <vector>
+
+#include "CME212/Util.hpp"
+#include "lab/charts/Problem.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/stability/Spectrum.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** Of a step of @a dt [s]; 0 if the method can't make them. */
+double seconds_a_step(const Problem& p, const MethodEntry& entry, double dt) {
+  Start s(p);
+  const auto method = entry.make();
+  method->set_tolerance(no_limit);
+  const int steps = int(p.t_end / dt);
+  CME212::Clock clock;
+  for (int n = -1; n < steps; ++n) {
+    if (n == 0) clock.start();  // after the first step, which allocates
+    try {
+      method->step(s.cloth, (n + 1) * dt, dt, s.force, s.constraint);
+    } catch (const std::exception&) {
+      return 0;
+    }
+  }
+  return clock.seconds() / steps;
+}
+
+}  // namespace
+
+int main() {
+  const Problem p = grid_problem("grid1", "", 0.25, 25);
+  const Start s(p);
+  const double limit =
+      Verlet::info.limit / omega_safe(s.cloth, s.force, s.constraint);
+  struct Cost {
+    double at_limit = no_limit, at_ten = no_limit;  // [s]
+  };
+  std::vector<Cost> costs(methods.size());
+  for (int repeat = 0; repeat < 7; ++repeat)
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      auto& [one, ten] = costs[k];
+      one = std::min(one, seconds_a_step(p, methods[k], 0.99 * limit));
+      if (methods[k].info.limit == no_limit)
+        ten = std::min(ten, seconds_a_step(p, methods[k], 10 * limit));
+    }
+  const auto verlet =
+      std::ranges::find(methods, find_method("verlet")->info.name,
+                        [](const MethodEntry& m) { return m.info.name; });
+  const double unit = costs[std::size_t(verlet - methods.begin())].at_limit;
+  for (std::size_t k = 0; k < methods.size(); ++k) {
+    const auto& [one, ten] = costs[k];
+    std::printf("    {\"%s\", %.3g, %.3g},  //\n", methods[k].info.name,
+                one / unit, ten == no_limit ? 0 : ten / unit);
+  }
+}

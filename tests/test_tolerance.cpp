@@ -1,0 +1,87 @@
+// Error control: what is left at the end of a run when its positions are asked
+// for to a tolerance, and how ./cloth takes one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "lab/charts/Problem.hpp"
+#include "lab/methods/Methods.hpp"
+#include "tests/ClothProgram.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** The smooth problems of the charts. */
+class Smooth : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Problems, Smooth,
+                         ::testing::Values("chain", "curtain", "grid0", "grid1",
+                                           "grid1-short", "stiff"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST_P(Smooth, EndsWithinTheTolerance) {
+  const std::vector<Problem> all = make_problems();
+  const Problem& p = *std::ranges::find(all, GetParam(), &Problem::name);
+  const Reference right = reference(p, p.exact ? 16 : 1.5);
+  for (double tolerance : {1e-3, 1e-5, 1e-7})
+    for (const char* name : {"dormand-prince", "dop853"}) {
+      if (tolerance < 100 * right.floor) continue;
+      auto method = find_method(name)->make();
+      method->set_tolerance(tolerance_share * tolerance);
+      const Outcome out = run(p, *method, 1);
+      ASSERT_TRUE(out.ok()) << out.reason;
+      const double error = distance(p, out.end, right.end);
+      std::printf("%s to %.0e m by %s: %.1e m, %lld evaluations\n",
+                  p.name.c_str(), tolerance, name, error, out.sweeps);
+      EXPECT_LT(error, tolerance) << name;
+    }
+}
+
+using Tolerance = ClothProgram;
+
+TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
+  const std::string sheet =
+      "--sheet 'at 0 0 0 nodes 6 6' --pin 'x 0' --t-end 0.4 --headless ";
+  const auto at_end = [this](const std::string& options) {
+    const Result r = run(options + "--out " + path("end.nodes"));
+    EXPECT_EQ(r.status, 0) << r.err;
+    return CME212::contents(path("end.nodes"));
+  };
+  const Result r = run(sheet + "--tolerance 1e-6");
+  EXPECT_EQ(r.err, "");
+  EXPECT_NE(r.out.find("dop853 chooses its inner steps by their error, below "
+                       "2.5e-07 m each, for 1e-06 m at the end"),
+            std::string::npos)
+      << r.out;
+  EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 "),
+            at_end(sheet + "--method dop853 --dt 0.03333333333333333 "
+                           "--tolerance 1e-6 "));
+  // One that has no error control is taken as it is.
+  EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 --method verlet --dt 0.002 "),
+            at_end(sheet + "--method verlet --dt 0.002 "));
+  EXPECT_NE(run(sheet + "--tolerance 1e-3 --method dormand-prince")
+                .out.find("below 0.00025 m each"),
+            std::string::npos);
+}
+
+TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
+  const std::string sheet =
+      "--sheet 'at 0 0 0 nodes 6 6' --t-end 0.1 --headless --tolerance 1e-3 ";
+  for (const char* part : {"--plane 'at 0 0 -1'", "--tear-strain 3",
+                           "--sphere 'at 0.5 0.5 -3 radius 0.5'"})
+    EXPECT_NE(run(sheet + part)
+                  .err.find("the error is not controlled where "
+                            "nodes touch or edges break"),
+              std::string::npos)
+        << part;
+  EXPECT_EQ(run(sheet + "--plane 'at 0 0 -1' --method verlet --dt 0.001").err,
+            "");
+}
+
+}  // namespace
