@@ -15,8 +15,8 @@ namespace lab {
 
 /** What share of a tolerance for the end of a run its inner steps get. On six
  * smooth problems the error at the end was then 1e-4 to 0.5 of the tolerance,
- * from 1e-3 to 1e-9 m (test_tolerance). Where motions diverge, as in a cloth
- * that buckles for long, nothing local bounds it. */
+ * from 1e-3 to 1e-9 m (test_cloth_tolerance). Where motions diverge, as in a
+ * cloth that buckles for long, nothing local bounds it. */
 inline constexpr double tolerance_share = 0.25;
 
 /** An explicit Runge-Kutta method for x' = v, v' = F(x, v, t)/m.
