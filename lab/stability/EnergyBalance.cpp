@@ -17,8 +17,11 @@ EnergyBalance::EnergyBalance(const Cloth& g, double t, CombinedForces force,
     : force_(std::move(force)), gravity_(gravity) {
   constraint.each_held(g, [this](Node n) { held_.push_back({n, {}, {}, {}}); });
   std::ranges::sort(held_, {}, &Held::node);
-  const auto twice = std::ranges::unique(held_, {}, &Held::node);
-  held_.erase(twice.begin(), twice.end());
+  // Two pins may hold one node.
+  const auto same = [](const Held& a, const Held& b) {
+    return a.node == b.node;
+  };
+  held_.erase(std::unique(held_.begin(), held_.end(), same), held_.end());
   resume(g, t, constraint, {});
 }
 

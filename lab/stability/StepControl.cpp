@@ -9,6 +9,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::infinity();
 constexpr double shorter = 0.7, longer = 1.15;
 constexpr double noise = 0.05;  // of the tolerance: no reason to shorten
+constexpr double seen = 0.8;    // of it: the rest is for steps between looks
 }  // namespace
 
 StepControl::StepControl(double dt, const Energies& start, double floor)
@@ -33,9 +34,10 @@ StepControl::Verdict StepControl::look(const Energies& e,
   const double least_noise = noise * most;
   const double left = most - (s.base - s.least);
   const bool bursts = s.low - s.base > std::max(0.5 * left, least_noise);
-  const bool creeps = s.low - s.least > (0.3 + 0.5 * part) * most &&
+  const bool creeps = s.low - s.least > (0.3 + 0.4 * part) * most &&
                       s.low - s.mark > least_noise;
-  const bool beyond = s.last - s.least > most && s.last - s.mark > least_noise;
+  const bool beyond =
+      s.last - s.least > seen * most && s.last - s.mark > least_noise;
   const bool good = std::isfinite(s.last) && !bursts && !creeps && !beyond;
   if (!good && can_shorten()) return Verdict::take_back;
   if (!std::isfinite(s.last)) return Verdict::go_on;  // the guard ends it
