@@ -1,9 +1,9 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite cells charts charts-quick fuzz grids orders peers-bench \
-        peers-chart peers-deps pictures solver-chart speed stability \
-        stability-soak
+.PHONY: adviser-suite cells charts charts-quick fuzz grids method-costs orders \
+        peers-bench peers-chart peers-deps pictures solver-chart speed \
+        stability stability-soak
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -15,6 +15,7 @@ help-lab:
 	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make orders             the order of every method, measured'
+	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
 	@echo 'make solver-chart       conjugate gradients beside a Cholesky factor'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
@@ -64,6 +65,14 @@ stability-soak:
 # The table of measured orders in lab/methods/README.md.
 orders: test_orders
 	@$(B)/test_orders | grep -e '^|' -e FAILED
+
+# What a step costs, in steps of Verlet: for --list-methods.
+costs := lab/methods/Costs.hpp
+method-costs: bench_methods
+	@$(B)/bench_methods > $(B)/costs
+	@{ sed -e '/^inline/q' -e "s|^// .*|// $(measured_on)|" $(costs) && \
+	  cat $(B)/costs && printf '});\n\n}  // namespace lab\n'; } > $(B)/Costs.hpp
+	@clang-format -i $(B)/Costs.hpp && mv $(B)/Costs.hpp $(costs)
 
 # ---- Advice: lab/advice/README.md, on ADVISED random scenes.
 

@@ -17,6 +17,7 @@
 #include "CME212/Image.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
+#include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/SceneFile.hpp"
 
@@ -132,16 +133,33 @@ void check(Options& o) {
                      "does not go with --headless, --screenshot and --record");
 }
 
+/** As "42 / 249", or "1" of a method with a limit; "" if never measured. */
+std::string cost_of(std::string_view method) {
+  using CME212::short_text;
+  const auto rounded = [](double a) {
+    return short_text(a < 10 ? std::round(10 * a) / 10 : std::round(a));
+  };
+  for (const MethodCost& c : method_costs)
+    if (c.method == method)
+      return rounded(c.at_limit) +
+             (c.at_ten > 0 ? " / " + rounded(c.at_ten) : "");
+  return "";
+}
+
 /** Print name, order, cost, limit and advice of every method. */
 void list_methods() {
   std::printf(
-      "forces: force evaluations a step (linear solves excluded)\n"
+      "cost: of a step, in steps of verlet; at verlet's limit / at 10 times "
+      "that,\n      25 x 25 nodes, solves included (make method-costs)\n"
       "dt omega <: the stability limit without drag; omega: the cloth's "
       "largest\n            frequency [rad/s]\n\n"
-      "%-18s %5s %6s %10s  %s\n",
-      "method", "order", "forces", "dt omega <", "good for");
+      "drag that is not linear in the velocity lowers all splittings, from "
+      "verlet to\nsrkn11b, to order 1\n\n"
+      "%-18s %5s %9s %10s  %s\n",
+      "method", "order", "cost", "dt omega <", "good for");
   for (const MethodEntry& m : methods) {
-    std::printf("%-18s %5d %6d ", m.info.name, m.info.order, m.info.sweeps);
+    std::printf("%-18s %5d %9s ", m.info.name, m.info.order,
+                cost_of(m.info.name).c_str());
     if (m.info.limit == no_limit)
       std::printf("%10s", "any");
     else
@@ -150,9 +168,9 @@ void list_methods() {
     for (const std::string& text :
          {std::string(m.info.good_for),
           std::string("fails with: ") + m.info.fails_when})
-      for (const std::string& line : wrapped(text, 36)) {
+      for (const std::string& line : wrapped(text, 33)) {
         std::printf("%*s%s\n", indent, "", line.c_str());
-        indent = 44;
+        indent = 47;
       }
   }
 }
