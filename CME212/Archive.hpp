@@ -12,12 +12,20 @@
 
 namespace CME212 {
 
+/** What is saved as the bytes it consists of. */
+template <typename T>
+concept Plain =
+    std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !requires {
+  typename T::element_type;
+};  // a span
+
 /** A list of values as bytes: one that saves takes them, one that loads gives
  * them back in the same order. So one function of a class does both:
  *
  *     void archive(Archive& a) { a(time_)(positions_); }
  *
- * Bytes are as in memory: for the same program on the same kind of machine. */
+ * Bytes are as in memory: of numbers and structs of numbers, without pointers,
+ * for the same program on the same kind of machine. */
 class Archive {
  public:
   /** Saves. */
@@ -35,10 +43,7 @@ class Archive {
    * must be the same.
    * Throws std::runtime_error: there is not so much left, another length. */
   template <typename T>
-  requires std::is_arithmetic_v<T> || std::is_enum_v<T> Archive& operator()(
-      T& x) {
-    return copy(&x, 1);
-  }
+  requires Plain<T> Archive& operator()(T& x) { return copy(&x, 1); }
   template <typename T>
   Archive& operator()(std::vector<T>& list) {
     const std::uint64_t length = length_of(list.size(), sizeof(T));

@@ -6,6 +6,7 @@
  * output that can't be written; 3 the run diverged; 4 no display; 128 + N
  * signal N ended it: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP. */
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -58,7 +59,8 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   screen->show_strain(o.strain);
   if (!o.video.empty()) screen->start_film(o.video);
   const double frame_time = 1.0 / Screen::frames_per_second;
-  long long frames = 0;
+  // One that goes on has the frames from there on.
+  long long frames = std::llround(scene.time() / frame_time);
   bool shot = o.screenshot.empty();
   auto draw = [&] {
     // Half a step early is as good as half a step late.
@@ -182,7 +184,8 @@ void check_outputs(const Options& o) {
        {std::pair("csv", o.csv), std::pair("out", o.out),
         std::pair("out", quads_beside(o.out)),
         std::pair("screenshot", o.screenshot), std::pair("record", o.video),
-        std::pair("write-config", o.advised)}) {
+        std::pair("write-config", o.advised),
+        std::pair("checkpoint", o.checkpoint)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
     if (file.empty() || std::filesystem::is_other(file)) continue;
     CME212::OutputFile try_it(file);

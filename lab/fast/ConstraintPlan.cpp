@@ -126,6 +126,7 @@ class Tear final : public Round<SweptConstraint> {
         });
   }
   Exchange exchange() const override { return {0, moment_}; }
+  void archive(CME212::Archive& a) const override { a(moment_); }
 
  private:
   mutable double moment_ = 0;
@@ -142,6 +143,7 @@ class Called final : public SweptConstraint {
     if (g.version() != version) moment_ += before - moment_of(g);
   }
   Exchange exchange() const override { return {0, moment_}; }
+  void archive(CME212::Archive& a) const override { a(moment_); }
 
  private:
   std::shared_ptr<const ZeroConstraint> c_;
@@ -246,6 +248,10 @@ Exchange ConstraintPlan::exchange() const {
   Exchange all;
   for (const auto& term : terms_) all += term->exchange();
   return all;
+}
+
+void ConstraintPlan::archive(CME212::Archive& a) const {
+  for (const auto& term : terms_) term->archive(a);
 }
 
 void WatchedConstraint::operator()(Cloth& g, double t) const {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "CME212/Archive.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -81,6 +82,8 @@ class SweptConstraint : public ZeroConstraint {
   }
   /** Without the work of what moves held nodes: EnergyBalance sees that. */
   virtual Exchange exchange() const { return {}; }
+  /** Save or load what it summed up; all else it has from its making. */
+  virtual void archive(CME212::Archive& /*a*/) const {}
 };
 
 /** A constraint that projects each node independently: its children give
@@ -157,6 +160,7 @@ class ConstraintPlan {
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
   double thinnest() const;
   Exchange exchange() const;
+  void archive(CME212::Archive& a) const;
 
   // The held nodes; each takes O(of them), as each_place().
   /** Call @a use(node) for each. */
@@ -214,6 +218,10 @@ class WatchedConstraint final : public SweptConstraint {
   }
   double thinnest() const override { return c_.thinnest(); }
   Exchange exchange() const override { return c_.exchange(); }
+  void archive(CME212::Archive& a) const override {
+    c_.archive(a);
+    a(before_)(count_)(first_);
+  }
 
  private:
   ConstraintPlan c_;

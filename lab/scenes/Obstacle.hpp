@@ -78,6 +78,7 @@ class WallConstraint : public NodewiseConstraint {
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
   Exchange exchange() const override { return {work_, 0}; }
+  void archive(CME212::Archive& a) const override { a(work_); }
 
  private:
   Point at_, normal_;
@@ -109,6 +110,7 @@ class BallConstraint : public NodewiseConstraint {
                                  const Point& to) const override;
   double thinnest() const override;
   Exchange exchange() const override { return {work_, 0}; }
+  void archive(CME212::Archive& a) const override { a(work_); }
 
  private:
   Ball ball_;

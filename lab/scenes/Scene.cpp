@@ -7,6 +7,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/Checkpoint.hpp"
 #include "lab/stability/StepLimit.hpp"
 
 namespace lab {
@@ -55,6 +56,24 @@ void Scene::restart() {
   drag_power_ = drag_.power(cloth_);
   looked_ = sampled_ = 0;
   before_ = latest_ = snapshot();
+}
+
+void Scene::archive(CME212::Archive& a) {
+  archive_cloth(a, cloth_);
+  a(clock_)(checked_)(flow_)(safe_omega_);
+  watched_->archive(a);
+  balance_->archive(a);
+  guard_->archive(a);
+  method_->archive(a, cloth_);
+  if (a.loads()) version_ = cloth_.version();
+  if (!control_) return;
+  control_->archive(a);
+  a(looked_)(sampled_)(drag_power_);
+  for (Snapshot* s : {&before_, &latest_}) {
+    bool whole = s->version == cloth_.version();  // nothing torn since
+    a(s->position)(s->value)(s->clock)(s->flow)(s->control)(whole);
+    if (a.loads()) s->version = whole ? cloth_.version() : ~cloth_.version();
+  }
 }
 
 bool Scene::step(double t_end) {

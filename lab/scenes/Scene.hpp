@@ -36,6 +36,12 @@ class Scene {
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
   void restart();
 
+  /** Save or load all that steps change: what is loaded goes on to the same
+   * bits as what was saved, which goes on as if nothing had been.
+   * @pre failure().empty(); of loading: the same scene, at t = 0
+   * Throws std::runtime_error: what is loaded is of another scene.  O(N) */
+  void archive(CME212::Archive& a);
+
   /** One step of dt(), or less: it never passes @a t_end [s], where the run is
    * to end, and what is left for two steps they share. Less than 1e-9 dt() is
    * no step: then the time is t_end.

@@ -49,6 +49,12 @@ class EnergyBalance {
   void resume(const Cloth& g, double t, const ConstraintPlan& constraint,
               const EnergyFlow& flow);
 
+  /** Save or load all that follow() changes. */
+  void archive(CME212::Archive& a) {
+    for (Held& h : held_) a(h.place)(h.velocity)(h.force);
+    a(seen_)(flow_);
+  }
+
  private:
   struct Held {
     Node node;

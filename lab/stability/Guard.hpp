@@ -44,6 +44,9 @@ class DivergenceGuard {
    * since stay as they are, nodes removed since stay removed. */
   void restore(Cloth& g) const;
 
+  /** Save or load the last good state, and what was available. */
+  void archive(CME212::Archive& a) { a(released_)(work_)(position_)(value_); }
+
  private:
   double gravity_, height_ = 0;     // height_: gravitational at the start [J]
   double start_ = 0, floor_ = 0;    // [J]

@@ -84,6 +84,9 @@ class StepControl {
   /** Before a step: is it time for a longer one?  @return true if dt changed */
   bool lengthen(const EnergyFlow& flow);
 
+  /** Save or load all that changes. */
+  void archive(CME212::Archive& a) { a(now_)(report_)(failures_); }
+
  private:
   double first_, shortest_;  // steps [s]
   double floor_;             // [J]

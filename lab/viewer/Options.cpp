@@ -51,6 +51,7 @@ const std::vector<Group> groups = {
      {"headless", "window", "paused", "speed", "strain", "screenshot", "at",
       "record", "csv", "every", "out", "vtp", "obj", "ply", "frame-rate",
       "quiet"}},
+    {"Interrupted runs", {"checkpoint", "every-seconds", "restart"}},
     {"Advice", {"measure", "tolerance", "advise", "auto", "write-config"}},
     {"Other", {"dump-config", "list-methods", "version", "help"}}};
 
@@ -125,9 +126,14 @@ void check(Options& o) {
   require_ending("record", o.video, CME212::film_endings);
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
+  require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
   require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
           "a time up to --t-end");
+  if (!o.restart.empty() && (o.advise || o.automatic))
+    throw SceneError("restart",
+                     "does not go with --advise and --auto: the scene of a "
+                     "checkpoint is one that was advised already");
   if (o.window && (o.headless || o.pictures()))
     throw SceneError("window",
                      "does not go with --headless, --screenshot and --record");
@@ -228,6 +234,15 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
       ->type_name("FOLDER");
   app.add_option("--frame-rate", o.frame_rate,
                  "frames of these a second of simulated time [1/s]");
+  takes_file(app.add_option(
+      "--checkpoint", o.checkpoint,
+      "write now and then, and at the end, all that --restart needs"));
+  app.add_option("--every-seconds", o.every_seconds,
+                 "seconds of the clock between two checkpoints; 0: every step");
+  takes_file(app.add_option(
+      "--restart", o.restart,
+      "go on from a checkpoint, to the same bits as without; its scene need "
+      "not be given; --csv goes on if it holds the rows so far"));
   app.add_option("--threads", o.threads,
                  "threads for a large cloth; 0: one a processor. They change "
                  "no result")

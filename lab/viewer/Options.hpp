@@ -22,6 +22,8 @@ struct Options {
   std::string vtp, obj, ply;  ///< folders
   double frame_rate = 30;     ///< of those [1/s]
   std::string advised;        ///< file for the advised scene
+  std::string checkpoint, restart;
+  double every_seconds = 60;  ///< between two checkpoints [s] of the clock
 
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <sstream>
 
@@ -11,6 +13,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Acting.hpp"
+#include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Warnings.hpp"
 #include "lab/stability/StepLimit.hpp"
@@ -35,20 +38,22 @@ Run::Run(Scene& scene, const Options& o)
     const std::string quads = quads_beside(o.out);
     if (!quads.empty()) out_quads_.emplace(quads);
   }
-  start();
+  if (!o.checkpoint.empty())
+    archive_scene(scene_as_made_, o.model, scene.cloth());
+  if (o.restart.empty())
+    start();
+  else
+    load();
 }
 
 void Run::start() {
   progress_ = Progress(o_.quiet);
-  seconds_ = 0;
+  seconds_ = next_checkpoint_ = 0, first_step_ = 0;
   rows_ = 0, last_row_ = settled_row_ = -1;
   recent_.clear();
   frames_.take_back(scene_);
   frames_.add(scene_, o_.model);
-  if (o_.csv.empty()) return;
-  csv_.emplace(o_.csv);
-  csv_->stream() << "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,"
-                    "nodes,edges\n";
+  if (!o_.csv.empty()) begin_csv();
   add_row();
 }
 
@@ -93,12 +98,16 @@ void Run::look() {
   if (at_end || frames_.due(scene_)) add_frame();
   if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
   if (!told_ && progress_.due()) show_progress();
+  if (!o_.checkpoint.empty() && seconds_ >= next_checkpoint_ &&
+      scene_.failure().empty())
+    save();
 }
 
 void Run::show_progress() {
   using CME212::short_text;
   const double t = scene_.time(), t_end = o_.model.t_end;
-  const double rate = double(scene_.steps()) / progress_.seconds();
+  const double rate =
+      double(scene_.steps() - first_step_) / progress_.seconds();
   progress_.show("t = " + short_text(t) + " of " + short_text(t_end) + " s, " +
                      short_text(std::round(rate)) + " steps/s",
                  t / t_end);
@@ -140,8 +149,11 @@ void Run::announce() const {
   if (scene_.control())
     out << "; then as the energy balance allows: no gain above "
         << percent(energy_tolerance) << " of kinetic and elastic energy";
+  if (first_step_ > 0)
+    std::cout << o_.restart << ": goes on at t = " << scene_.time() << " s\n";
   std::cout << out.str() << std::endl;  // at once, also into a pipe
-  if (const auto& built = scene_.recipe().built)
+  const auto& built = scene_.recipe().built;
+  if (built && first_step_ == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
       std::cerr << warning << w << '\n';
   if (dt <= limit || sharp) return;
@@ -156,7 +168,6 @@ void Run::announce() const {
 
 int Run::finish() {
   progress_.end();
-  settle_rows(scene_.steps());
   std::exception_ptr error;
   auto write = [&error](auto how) {
     try {
@@ -165,6 +176,12 @@ int Run::finish() {
       if (!error) error = std::current_exception();
     }
   };
+  if (!o_.checkpoint.empty() && scene_.failure().empty())
+    write([this] {
+      save();
+      wrote("checkpoint " + o_.checkpoint);
+    });
+  settle_rows(scene_.steps());
   if (csv_)
     write([this] {
       csv_->commit();
@@ -189,6 +206,78 @@ int Run::finish() {
 
 void Run::wrote(const std::string& what) {
   kept_ += (kept_.empty() ? "" : ", ") + what;
+}
+
+void Run::begin_csv() {
+  csv_.emplace(o_.csv);
+  csv_sum_ = 0;
+  write_csv(
+      "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,nodes,edges\n");
+}
+
+void Run::write_csv(const std::string& text) {
+  csv_->stream() << text;
+  csv_sum_ = crc64(text, csv_sum_);
+}
+
+/** The state of the run besides that of the scene. */
+void Run::archive(CME212::Archive& a) {
+  std::uint64_t rows = recent_.size();
+  a(rows_)(last_row_)(settled_row_)(warned_)(rows);
+  if (a.loads()) recent_.clear();
+  for (std::uint64_t k = 0; k < rows; ++k) {
+    if (a.loads()) recent_.emplace_back();
+    a(recent_[k].step)(recent_[k].text);
+  }
+}
+
+/** Write a checkpoint; before it the rows so far, so that these are there for
+ * whoever goes on from it. */
+void Run::save() {
+  if (csv_) csv_->commit_copy();
+  CME212::Archive a = scene_as_made_;
+  std::uint64_t length = csv_ ? std::uint64_t(csv_->stream().tellp()) : 0;
+  a(length)(csv_sum_);
+  archive(a);
+  scene_.archive(a);
+  write_checkpoint(o_.checkpoint, a);
+  next_checkpoint_ = progress_.seconds() + o_.every_seconds;
+}
+
+void Run::load() {
+  CME212::Archive a = read_checkpoint(o_.restart);
+  std::uint64_t length = 0, sum = 0;
+  archive_scene(a, o_.model, scene_.cloth());
+  try {
+    a(length)(sum);
+    archive(a);
+    scene_.archive(a);
+    if (!a.at_end()) throw std::runtime_error("goes on behind its end");
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(o_.restart + ": " + e.what());
+  }
+  first_step_ = scene_.steps();
+  next_checkpoint_ = o_.every_seconds;
+  frames_.add(scene_, o_.model);
+  if (o_.csv.empty()) return recent_.clear();
+  if (std::filesystem::exists(o_.csv))
+    go_on_with_csv(length, sum);
+  else
+    begin_csv(), rows_ = 0;
+}
+
+/** Take over the first @a length bytes of the CSV file that is there, if they
+ * have the checksum @a sum.  Throws std::runtime_error: another file. */
+void Run::go_on_with_csv(std::uint64_t length, std::uint64_t sum) {
+  std::string before(length, '\0');
+  std::ifstream in(o_.csv, std::ios::binary);
+  in.read(before.data(), std::streamsize(length));
+  if (length == 0 || !in || crc64(before) != sum)
+    throw std::runtime_error(
+        o_.csv + ": does not begin with the rows until the checkpoint " +
+        o_.restart + ", expected the file of that run, or none");
+  csv_.emplace(o_.csv);
+  write_csv(before);
 }
 
 void Run::add_frame() {
@@ -241,7 +330,7 @@ void Run::settle_rows(long long settled) {
   }
   std::erase_if(recent_, [&](const Row& r) {
     if (r.step > settled) return false;
-    csv_->stream() << r.text;
+    write_csv(r.text);
     ++rows_, settled_row_ = r.step;
     return true;
   });

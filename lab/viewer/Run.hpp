@@ -1,11 +1,13 @@
 #pragma once
 /** @file Run.hpp
  * Run: a scene taken to its end, with all that is written about it. */
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "CME212/Archive.hpp"
 #include "CME212/OutputFile.hpp"
 #include "lab/Progress.hpp"
 #include "lab/viewer/Export.hpp"
@@ -20,7 +22,10 @@ class StepControl;
 class Run {
  public:
   /** Output files are opened now, so that a wrong path ends the run before it
-   * starts. Keeps references to both.  Throws std::runtime_error. */
+   * starts; a checkpoint is loaded into the scene. Keeps references to both.
+   * @pre @a scene is at t = 0
+   * Throws std::runtime_error; SceneError: the checkpoint is of another scene.
+   */
   Run(Scene& scene, const Options& o);
 
   /** Back to t = 0. */
@@ -66,8 +71,12 @@ class Run {
   std::vector<Row> recent_;  // of steps that may be taken back
   long long rows_ = 0;       // written
   long long last_row_ = -1, settled_row_ = -1;  // steps: of all, of those
-  std::string kept_;                            // in words
-  double seconds_ = 0;                          // until the last step
+  std::uint64_t csv_sum_ = 0;                   // checksum of what csv_ has
+  long long first_step_ = 0;                    // where a checkpoint was
+  CME212::Archive scene_as_made_;  // with which every checkpoint begins
+  double next_checkpoint_ = 0;     // [s] of progress_
+  std::string kept_;               // in words
+  double seconds_ = 0;             // until the last step
   bool warned_ = false, told_ = false;
 
   void start();
@@ -79,6 +88,12 @@ class Run {
   void warn_of_missed();
   void add_frame();
   void write_mesh();
+  void begin_csv();
+  void write_csv(const std::string& text);
+  void archive(CME212::Archive& a);
+  void save();
+  void load();
+  void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
   void tell_interrupt() const;
   void tell_steps(const StepControl& c) const;
   void print_summary() const;

@@ -1,0 +1,191 @@
+#include "lab/scenes/Checkpoint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "CME212/OutputFile.hpp"
+#include "lab/scenes/SceneFile.hpp"
+
+namespace lab {
+
+namespace {
+
+constexpr const char* magic = "mass_spring checkpoint ";
+constexpr int version = 1;
+
+std::string first_line() {
+  return magic + std::to_string(version) +
+         (sizeof(Real) == sizeof(double) ? " double\n" : " float\n");
+}
+
+std::string bytes_of(std::uint64_t number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+std::uint64_t number_in(const std::string& bytes, std::size_t at) {
+  std::uint64_t number;
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return number;
+}
+
+template <typename T>
+std::string_view bytes_of(std::span<T> list) {
+  return {reinterpret_cast<const char*>(list.data()), list.size_bytes()};
+}
+
+/** The lines of a scene file that say how the run goes on. */
+std::vector<std::string> lines_that_count(const std::string& scene) {
+  std::vector<std::string> lines;
+  std::istringstream in(scene);
+  for (std::string line; std::getline(in, line);) {
+    const std::string key = line.substr(0, line.find(' '));
+    if (key != "#" && key != "t-end" && key != "measure" &&
+        key != "tolerance" && key != "view")
+      lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::uint64_t crc64(std::string_view bytes, std::uint64_t before) {
+  static constexpr auto table = [] {
+    std::array<std::uint64_t, 256> all{};
+    for (std::uint64_t i = 0; i < 256; ++i) {
+      std::uint64_t c = i;
+      for (int bit = 0; bit < 8; ++bit)
+        c = (c >> 1) ^ (c % 2 ? 0xC96C5795D7870F42 : 0);
+      all[i] = c;
+    }
+    return all;
+  }();
+  std::uint64_t c = ~before;
+  for (char byte : bytes)
+    c = table[(c ^ static_cast<unsigned char>(byte)) & 0xff] ^ (c >> 8);
+  return ~c;
+}
+
+void write_checkpoint(const std::string& file, const CME212::Archive& saved) {
+  CME212::OutputFile out(file);
+  const std::string head = first_line() + bytes_of(saved.bytes().size());
+  out.stream() << head << saved.bytes()
+               << bytes_of(crc64(saved.bytes(), crc64(head)));
+  out.commit(true);
+}
+
+CME212::Archive read_checkpoint(const std::string& file) {
+  auto fail = [&file](const std::string& why) {
+    throw std::runtime_error(file + ": " + why);
+  };
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
+  const std::string all = text.str();
+  if (all.empty())
+    fail(errno ? std::string("can't be read (") + std::strerror(errno) + ')'
+               : "nothing in the file, expected a checkpoint");
+  if (!all.starts_with(magic)) fail("no checkpoint");
+  const std::string line = all.substr(0, all.find('\n') + 1),
+                    head = first_line();
+  if (line != head)
+    fail("is a \"" +
+         line.substr(0, std::min<std::size_t>(line.find('\n'), 80)) +
+         "\", expected \"" + head.substr(0, head.size() - 1) + '"');
+  const std::size_t start = head.size() + 8;
+  if (all.size() < start + 8) fail("ends too early");
+  const std::uint64_t length = number_in(all, head.size());
+  if (all.size() - start - 8 < length)
+    fail("ends too early: it has " + std::to_string(all.size() - start - 8) +
+         " bytes of " + std::to_string(length));
+  if (all.size() - start - 8 > length) fail("goes on behind its end");
+  const std::size_t end = start + length;
+  if (number_in(all, end) != crc64(std::string_view(all).substr(0, end)))
+    fail("is damaged: its checksum is wrong");
+  return CME212::Archive(all.substr(start, length));
+}
+
+void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g) {
+  std::string name = m.name, scene = to_scene_file(m);
+  std::uint64_t cloth = 0;
+  for (std::string_view part :
+       {bytes_of(g.positions()), bytes_of(g.node_values()),
+        bytes_of(g.edge_ends()), bytes_of(g.edge_values())})
+    cloth = crc64(part, cloth);
+  const std::uint64_t here = cloth;
+  a(name)(scene)(cloth);
+  if (!a.loads()) return;
+  const auto there = lines_that_count(scene);
+  const auto now = lines_that_count(to_scene_file(m));
+  auto quoted = [](const auto& lines, std::size_t k) {
+    return k < lines.size() ? '"' + lines[k] + '"' : std::string("nothing");
+  };
+  for (std::size_t k = 0; k < std::max(there.size(), now.size()); ++k)
+    if (quoted(there, k) != quoted(now, k))
+      throw SceneError("restart", "is of another scene: there " +
+                                      quoted(there, k) + ", here " +
+                                      quoted(now, k));
+  if (cloth != here)
+    throw SceneError("restart",
+                     "is of another cloth: its files, or how the program "
+                     "makes it, have changed");
+}
+
+void archive_cloth(CME212::Archive& a, Cloth& g) {
+  auto require = [](bool ok) {
+    if (!ok) throw std::runtime_error("it does not belong to this cloth");
+  };
+  std::vector<char> nodes, edges;  // by id: whether it is there
+  std::vector<unsigned> node_ids, edge_ids, lists;  // by index; at all nodes
+  auto each_edge_at = [&g](unsigned id, auto use) {
+    for (const auto& half : g.halves(id)) use(half.edge / 2);
+  };
+  for (unsigned i = 0; i < g.node_slots(); ++i) {
+    nodes.push_back(g.node_in_use(i));
+    each_edge_at(i, [&](unsigned e) { lists.push_back(e); });
+  }
+  for (unsigned e = 0; e < g.edge_slots(); ++e)
+    edges.push_back(g.edge_in_use(e));
+  for (Node n : g.nodes()) node_ids.push_back(n.id());
+  for (Edge e : g.edges()) edge_ids.push_back(e.id());
+  a(nodes)(edges)(node_ids)(edge_ids)(lists);
+  if (a.loads()) {
+    require(nodes.size() == g.node_slots() && edges.size() == g.edge_slots());
+    for (unsigned e = 0; e < edges.size(); ++e)
+      if (!edges[e]) g.remove_edge(g.edge_with_id(e));
+    for (unsigned i = 0; i < nodes.size(); ++i)
+      if (!nodes[i]) g.remove_node(g.node_with_id(i));
+    auto name_all = [&require](const auto& ids, const auto& there,
+                               std::size_t size) {
+      require(ids.size() == size);
+      std::vector<char> seen(there.size());
+      for (unsigned id : ids) {
+        require(id < there.size() && there[id] && !seen[id]);
+        seen[id] = true;
+      }
+    };
+    name_all(node_ids, nodes, g.num_nodes());
+    name_all(edge_ids, edges, g.num_edges());
+    std::size_t at = 0;
+    for (unsigned i = 0; i < nodes.size(); ++i) {
+      std::vector<unsigned> now;
+      each_edge_at(i, [&](unsigned e) { now.push_back(e); });
+      require(lists.size() - at >= now.size());
+      const std::span ids(lists.data() + at, now.size());
+      at += now.size();
+      if (std::ranges::equal(ids, now)) continue;
+      require(std::ranges::is_permutation(ids, now));
+      g.reorder_edges(g.node_with_id(i), ids);
+    }
+    if (g.num_nodes() < g.node_slots()) g.reindex_nodes(node_ids);
+    if (g.num_edges() < g.edge_slots()) g.reindex_edges(edge_ids);
+  }
+  a(g.positions())(g.node_values());
+}
+
+}  // namespace lab

@@ -1,0 +1,44 @@
+#pragma once
+/** @file Checkpoint.hpp
+ * The file from which a run goes on. lab/README.md says how to use it. */
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "CME212/Archive.hpp"
+#include "mass_spring.hpp"
+
+namespace lab {
+
+struct Model;
+
+/** CRC-64/XZ of @a bytes; or of what had the checksum @a before and @a bytes:
+ * the polynomial of ECMA-182, reflected. Any change of up to 64 bits in a row
+ * is found, any other one but for one in 2^64.  O(bytes) */
+std::uint64_t crc64(std::string_view bytes, std::uint64_t before = 0);
+
+/** Write what @a saved holds to @a file, whole or not at all, and until it is
+ * on the disk: a line with the version, the length, the bytes, the checksum of
+ * all that.  Throws std::runtime_error "FILE: why" */
+void write_checkpoint(const std::string& file, const CME212::Archive& saved);
+
+/** What was saved in @a file, to load.
+ * Throws std::runtime_error "FILE: why": it can't be read, is no checkpoint,
+ * one of another version or of another precision, too short, damaged. */
+CME212::Archive read_checkpoint(const std::string& file);
+
+/** Save or load the scene @a m whose cloth starts as @a g: two checksums and
+ * the scene as a file.
+ * Throws SceneError: what is loaded is another scene. t-end, and what does not
+ * change the run (measure, tolerance, view), may differ. */
+void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g);
+
+/** Save or load the state of a cloth that has lost nodes and edges since it was
+ * made: who is left, all orders, positions, velocities and masses.
+ * @pre of loading: @a g is as it was made. Springs are the same
+ * @post of loading: every id, index and order of edges is as it was
+ * Throws std::runtime_error: what is loaded does not belong to @a g.
+ * Complexity: O(nodes + edges), if no node that lost an edge has very many */
+void archive_cloth(CME212::Archive& a, Cloth& g);
+
+}  // namespace lab
