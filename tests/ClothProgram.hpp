@@ -28,10 +28,8 @@ class ClothProgram : public ::testing::Test {
   Result run(const std::string& arguments) {
     return folder.run(CME212::program("cloth", "build/") + " " + arguments);
   }
-  /** Start it, and send it @a signals: the first when it catches it and has run
-   * for a while, the next ones 0.2 s later each.
-   * @return as run(); its status is 1000 + a signal that ended it at once */
-  Result interrupt(const std::string& arguments, std::vector<int> signals) {
+  /** Start it; what it says goes where run() has it. */
+  pid_t start(const std::string& arguments) {
     const std::string command = "exec " + CME212::program("cloth", "build/") +
                                 ' ' + arguments + " >" + folder / "out" +
                                 " 2>" + folder / "err";
@@ -40,6 +38,18 @@ class ClothProgram : public ::testing::Test {
       execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
       _exit(127);
     }
+    return child;
+  }
+  /** Of a program that ended with @a status, as waitpid() gives it. */
+  Result result_of(int status) {
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
+            contents(dir / "out"), contents(dir / "err")};
+  }
+  /** Start it, and send it @a signals: the first when it catches it and has run
+   * for a while, the next ones 0.2 s later each.
+   * @return as run(); its status is 1000 + a signal that ended it at once */
+  Result interrupt(const std::string& arguments, std::vector<int> signals) {
+    const pid_t child = start(arguments);
     int status = 0;
     bool ended = false;
     while (!ended && !catches(child, signals[0])) {
@@ -52,8 +62,7 @@ class ClothProgram : public ::testing::Test {
       if (signals.size() > 1) usleep(200000);
     }
     if (!ended) waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
-            contents(dir / "out"), contents(dir / "err")};
+    return result_of(status);
   }
   /** A file of this test with a content. */
   std::string file(const std::string& name, const std::string& text) {
@@ -70,6 +79,15 @@ class ClothProgram : public ::testing::Test {
     }
     std::sort(names.begin(), names.end());
     return names;
+  }
+  /** Start it, and kill it after so many microseconds; as interrupt(). */
+  Result kill_after(unsigned wait, const std::string& arguments) {
+    const pid_t child = start(arguments);
+    usleep(wait);
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return result_of(status);
   }
   /** Does a process catch a signal now? */
   static bool catches(pid_t process, int signal) {

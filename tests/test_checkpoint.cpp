@@ -2,16 +2,24 @@
  * A run that goes on from what another saved: the same bits, or an error. */
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "CME212/Archive.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Compose.hpp"
-#include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/Checkpoint.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Words.hpp"
+#include "tests/TestFolder.hpp"
 
 using namespace lab;
 using CME212::Archive;
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -100,6 +108,206 @@ TEST(EveryMethod, GoesOnWithTheSameBits) {
         ASSERT_EQ(a.value().vel, b.value().vel) << m.info.name << " node " << i;
       }
     }
+  }
+}
+
+// --------------------------------------------------------------------- Scene
+
+/** Scenes that keep something, or lose something. */
+std::vector<Model> scenes() {
+  std::vector<Model> all;
+  Model tears = assignment_scene();
+  tears.sheets.resize(1);
+  tears.sheets[0].nodes = {8, 8};
+  tears.sheets[0].velocity = Point(0, 0, -2);
+  tears.tear_strain = 0.2;
+  tears.damping = 0.02;
+  all.push_back(tears);
+  Model pushed = moving_cloth();
+  pushed.planes[0].motion = {Point(0, 0, 0.3), 0.1};
+  pushed.spheres.resize(1);
+  pushed.spheres[0].ball = {Point(0.5, 0.5, -0.15), 0.1};
+  pushed.tears = {{Point(0.9, 0.5, 0.2), 0.12}};
+  pushed.self_collision = Distance{0.03, 0.1};
+  all.push_back(pushed);
+  return all;
+}
+
+struct State {
+  std::vector<Point> x, v;  // by index
+  double t;
+  unsigned edges;
+  EnergyFlow flow;
+};
+State state_of(const Scene& s) {
+  State all{{}, {}, s.time(), s.cloth().num_edges(), s.flow()};
+  for (Node n : s.cloth().nodes())
+    all.x.push_back(n.position()), all.v.push_back(n.value().vel);
+  return all;
+}
+void expect_same(const State& a, const State& b, const std::string& where) {
+  EXPECT_EQ(a.t, b.t) << where;
+  EXPECT_EQ(a.edges, b.edges) << where;
+  EXPECT_EQ(a.x, b.x) << where;
+  EXPECT_EQ(a.v, b.v) << where;
+  EXPECT_EQ(a.flow.work, b.flow.work) << where;
+  EXPECT_EQ(a.flow.removed, b.flow.removed) << where;
+}
+std::string saved(Scene& scene) {
+  Archive a;
+  scene.archive(a);
+  return a.bytes();
+}
+/** @a scene, which is as it was made, from what was saved. */
+void load(Scene& scene, const std::string& bytes) {
+  Archive a(bytes);
+  scene.archive(a);
+  EXPECT_TRUE(a.at_end());
+  scene.cloth().check_invariants();
+}
+
+// Saved at some steps and loaded into another scene each time, a run is the
+// same as one in a piece: by every method, torn and not.
+TEST(SavedScene, GoesOnToTheSameBitsByEveryMethod) {
+  unsigned torn = 0;
+  for (const Model& model : scenes())
+    for (const MethodEntry& m : methods) {
+      const std::string where = std::string(m.info.name) + " of scene " +
+                                std::to_string(model.planes.size());
+      Model each = model;
+      each.method = &m;
+      each.step.dt = 0.002;
+      Scene whole(each);
+      whole.run_to(0.25);
+      torn += whole.cloth().num_edges() < whole.cloth().edge_slots();
+      std::unique_ptr<Scene> part = std::make_unique<Scene>(each);
+      int until = 1;
+      while (!part->done(0.25)) {
+        part->step(0.25);
+        if (part->steps() < until) continue;
+        until += 23;
+        const std::string bytes = saved(*part);
+        part = std::make_unique<Scene>(each);
+        load(*part, bytes);
+        EXPECT_TRUE(saved(*part) == bytes) << where;
+      }
+      EXPECT_EQ(part->failure(), whole.failure());
+      expect_same(state_of(*part), state_of(whole), where);
+    }
+  EXPECT_GT(torn, methods.size());
+}
+
+TEST(SavedScene, GoesOnWithChosenStepsAndFailsAlike) {
+  for (const char* dt : {"auto", "auto:sharp", "0.05"}) {
+    for (Model m : scenes()) {
+      m.method = find_method("verlet");
+      m.step = read_time_step(dt);
+      Scene whole(m), first(m), second(m);
+      whole.run_to(2);
+      for (int k = 0; k < 40 && !first.done(2); ++k) first.step(2);
+      if (first.failure().empty()) {
+        load(second, saved(first));
+        first.run_to(2);
+        second.run_to(2);
+        EXPECT_EQ(second.failure(), whole.failure()) << dt;
+        expect_same(state_of(second), state_of(whole), dt);
+      }
+      EXPECT_EQ(first.failure(), whole.failure()) << dt;
+      expect_same(state_of(first), state_of(whole), dt);
+    }
+  }
+}
+
+// ---------------------------------------------------------------------- File
+
+TEST(Checkpoint, HasTheChecksumOfTheStandard) {
+  EXPECT_EQ(crc64(""), 0u);
+  EXPECT_EQ(crc64("123456789"), 0x995DC9BBDF1939FA);
+  EXPECT_EQ(crc64("6789", crc64("12345")), 0x995DC9BBDF1939FA);
+}
+
+TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
+  const CME212::TestFolder folder;
+  const std::string file = folder / "c";
+  Scene scene(scenes()[0]);
+  Archive a;
+  archive_scene(a, scenes()[0], scene.cloth());
+  scene.archive(a);
+  write_checkpoint(file, a);
+  EXPECT_EQ(read_checkpoint(file).bytes(), a.bytes());
+  const std::string good = CME212::contents(file);
+  auto error_with = [&](const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    return CME212::error_of([&] { read_checkpoint(file); });
+  };
+  std::mt19937 random(1);
+  for (int k = 0; k < 500; ++k) {
+    std::string bad = good;
+    // The first bytes, the last ones, and any.
+    const std::size_t at = k < 60    ? std::size_t(k)
+                           : k < 100 ? good.size() - std::size_t(k - 59)
+                                     : random() % good.size();
+    bad[at] = char(bad[at] ^ (1 << random() % 8));
+    EXPECT_EQ(error_with(bad).find(file + ": "), 0u) << at;
+    const std::size_t cut = k < 60 ? std::size_t(k) : random() % good.size();
+    EXPECT_EQ(error_with(good.substr(0, cut)).find(file + ": "), 0u) << cut;
+  }
+  EXPECT_EQ(error_with(good + "x"), file + ": goes on behind its end");
+  EXPECT_EQ(error_with(""), file +
+                                ": nothing in the file, expected a "
+                                "checkpoint");
+  EXPECT_EQ(error_with("0 0 0\n"), file + ": no checkpoint");
+  std::string newer = good;
+  newer.replace(good.find(" 1 "), 3, " 2 ");
+  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 2"),
+            0u);
+  EXPECT_EQ(error_with(good.substr(0, good.size() - 3)),
+            file + ": ends too early: it has " +
+                std::to_string(a.bytes().size() - 3) + " bytes of " +
+                std::to_string(a.bytes().size()));
+  fs::remove(file);
+  EXPECT_EQ(CME212::error_of([&] { read_checkpoint(file); }),
+            file + ": can't be read (No such file or directory)");
+}
+
+TEST(Checkpoint, IsOfOneScene) {
+  const Model m = scenes()[0];
+  Scene scene(m);
+  Archive out;
+  archive_scene(out, m, scene.cloth());
+  auto error_of = [&](const Model& other) {
+    Scene s(other);
+    return CME212::error_of([&] {
+      Archive in(out.bytes());
+      archive_scene(in, other, s.cloth());
+    });
+  };
+  Model other = m;
+  other.t_end = 7, other.tolerance = 0.5;
+  EXPECT_EQ(error_of(other), "no error");
+  other.step.dt = 0.002;
+  EXPECT_EQ(error_of(other),
+            "--restart is of another scene: there dt = \"0.001\", here dt = "
+            "\"0.002\"");
+  other = m;
+  other.tears.clear();
+  EXPECT_EQ(error_of(other).find("--restart is of another scene: there tear"),
+            0u);
+  // What is damaged and has a good checksum is no crash either.
+  for (const Model& model : scenes()) {
+    Scene s(model);
+    s.run_to(0.1);
+    const std::string bytes = saved(s);
+    for (std::size_t size = 0; size < bytes.size(); size += bytes.size() / 50) {
+      Scene fresh(model);
+      Archive half(bytes.substr(0, size));
+      EXPECT_THROW(fresh.archive(half), std::runtime_error) << size;
+    }
+    Model finer = model;
+    finer.sheets[0].nodes = {9, 9};
+    Scene foreign(finer);
+    Archive in(bytes);
+    EXPECT_THROW(foreign.archive(in), std::runtime_error);
   }
 }
 

@@ -36,7 +36,7 @@ void AugmentedVerlet::archive(CME212::Archive& a, const Cloth& g) {
   bool has = kept_for_ == &g;
   a(has);
   if (!has) return restart();
-  double dt = key_.dt;
+  double dt = loaded_dt_ > 0 ? loaded_dt_ : key_.dt;
   a(acceleration_)(kept_time_)(dt);
   if (!a.loads()) return;
   kept_for_ = &g, loaded_dt_ = dt;

@@ -110,6 +110,13 @@ CME212::Archive read_checkpoint(const std::string& file) {
   return CME212::Archive(all.substr(start, length));
 }
 
+SavedScene scene_in_checkpoint(const std::string& file) {
+  CME212::Archive a = read_checkpoint(file);
+  SavedScene scene;
+  a(scene.name)(scene.text)(scene.step_tolerance);
+  return scene;
+}
+
 void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g) {
   std::string name = m.name, scene = to_scene_file(m);
   std::uint64_t cloth = 0;
@@ -118,12 +125,15 @@ void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g) {
         bytes_of(g.edge_ends()), bytes_of(g.edge_values())})
     cloth = crc64(part, cloth);
   const std::uint64_t here = cloth;
-  a(name)(scene)(cloth);
+  double tolerance = m.step.tolerance;
+  a(name)(scene)(tolerance)(cloth);
   if (!a.loads()) return;
+  if (tolerance != m.step.tolerance)
+    throw SceneError("restart", "is of steps of another tolerance");
   const auto there = lines_that_count(scene);
   const auto now = lines_that_count(to_scene_file(m));
   auto quoted = [](const auto& lines, std::size_t k) {
-    return k < lines.size() ? '"' + lines[k] + '"' : std::string("nothing");
+    return k < lines.size() ? lines[k] : "nothing";
   };
   for (std::size_t k = 0; k < std::max(there.size(), now.size()); ++k)
     if (quoted(there, k) != quoted(now, k))

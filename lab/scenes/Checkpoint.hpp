@@ -27,8 +27,16 @@ void write_checkpoint(const std::string& file, const CME212::Archive& saved);
  * one of another version or of another precision, too short, damaged. */
 CME212::Archive read_checkpoint(const std::string& file);
 
-/** Save or load the scene @a m whose cloth starts as @a g: two checksums and
- * the scene as a file.
+/** The scene that archive_scene() saved first of all. */
+struct SavedScene {
+  std::string name, text;     ///< of a scene file
+  double step_tolerance = 0;  ///< TimeStep::tolerance, which is not in it
+};
+/** That of a checkpoint.  Throws as read_checkpoint() */
+SavedScene scene_in_checkpoint(const std::string& file);
+
+/** Save or load the scene @a m whose cloth starts as @a g: its
+ * name, its file, a checksum of the cloth.
  * Throws SceneError: what is loaded is another scene. t-end, and what does not
  * change the run (measure, tolerance, view), may differ. */
 void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g);

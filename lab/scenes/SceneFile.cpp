@@ -257,7 +257,20 @@ Model load(const std::string& file,
 
 void SceneOptions::read(CLI::App& app, const std::string& file,
                         const std::function<void()>& check) {
-  text_->name = std::filesystem::path(file).stem().string();
+  std::string text;
+  try {
+    text = mesh_detail::read_file(file, "a scene file");
+  } catch (const InputError& e) {
+    throw SceneFileError(e.what());
+  }
+  read_text(app, file, std::filesystem::path(file).stem().string(), text,
+            check);
+}
+
+void SceneOptions::read_text(CLI::App& app, const std::string& file,
+                             const std::string& name, const std::string& text,
+                             const std::function<void()>& check) {
+  text_->name = name;
   origins_ = {file, {}};
   try {
     auto use = [&](const KeyValue& found, std::size_t line) {
@@ -277,7 +290,7 @@ void SceneOptions::read(CLI::App& app, const std::string& file,
       for (const std::string& value : found.values)
         option->add_result(is_file ? beside(file, value) : value);
     };
-    each_key_value(mesh_detail::read_file(file, "a scene file"), file, use);
+    each_key_value(text, file, use);
     app.parse(std::vector<std::string>());
     check();
   } catch (const InputError& e) {

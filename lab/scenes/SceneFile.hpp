@@ -58,6 +58,11 @@ class SceneOptions {
    * line. */
   void read(CLI::App& app, const std::string& file,
             const std::function<void()>& check);
+  /** The same of the @a text of such a file, which is in @a file, and whose
+   * scene is called @a name. */
+  void read_text(CLI::App& app, const std::string& file,
+                 const std::string& name, const std::string& text,
+                 const std::function<void()>& check);
 
   /** What they say. If they name no part, it has those of assignment_scene().
    * Throws SceneError: a value out of range, words that make no sense, parts

@@ -19,6 +19,7 @@
 #include "lab/Nearest.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/SceneFile.hpp"
 
 namespace lab {
@@ -275,25 +276,36 @@ int parse(int argc, char** argv, Options& o) {
   std::string file;
   bool dump = false;
   std::vector<std::string> in_file;
+  double kept_tolerance = 0;  // of a checkpoint's steps
   SceneOptions scene;
   CLI::App first;  // finds the scene file
   first.set_help_flag();
   first.allow_extras();
   takes_file(first.add_option("--config", file));
+  takes_file(first.add_option("--restart", o.restart));
   try {
     first.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return report(first, e);
   }
-  if (!file.empty()) {
+  if (!file.empty() || !o.restart.empty()) {
     CLI::App app;
     add_options(app, o, scene);
-    scene.read(app, file, [&] {
-      for (const CLI::Option* option : app.get_options())
-        if (option->count() > 0) in_file.push_back(option->get_name());
+    auto take = [&] {
+      if (!file.empty())
+        for (const CLI::Option* option : app.get_options())
+          if (option->count() > 0) in_file.push_back(option->get_name());
       o.model = scene.model();
       check(o);
-    });
+    };
+    if (!file.empty()) {
+      scene.read(app, file, take);
+    } else {
+      const std::string from = o.restart;
+      const SavedScene saved = scene_in_checkpoint(from);
+      scene.read_text(app, from, saved.name, saved.text, take);
+      kept_tolerance = saved.step_tolerance;
+    }
   }
 
   CLI::App app(head, "cloth");
@@ -328,6 +340,7 @@ int parse(int argc, char** argv, Options& o) {
   scene.overridden_by(app);
   o.origins = scene.origins();
   o.model = scene.model();
+  o.model.step.tolerance = kept_tolerance;
   const auto given = [&](const char* name) {
     return app.count(name) > 0 || std::ranges::count(in_file, name) > 0;
   };

@@ -1,0 +1,143 @@
+// Runs of ./cloth that are killed or interrupted, and go on from a checkpoint.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "lab/methods/Methods.hpp"
+#include "tests/ClothProgram.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** The last lines but for how long it took. */
+std::string result(const std::string& out) {
+  const auto at = out.find(" steps to t = "), in = out.find(" s in ", at);
+  const auto energy = out.find("; energy ", in);
+  EXPECT_NE(energy, std::string::npos) << out;
+  if (energy == std::string::npos) return out;
+  return out.substr(out.rfind('\n', at) + 1, in - out.rfind('\n', at) - 1) +
+         out.substr(energy);
+}
+
+const std::string scenes[] = {
+    "--sheet 'nodes 9 9 velocity 0 0 -2' --pin 'x 0' --tear 'at 0.5 0.5 -0.1 "
+    "radius 0.12' --tear-strain 0.15 --plane 'at 0 0 -0.2' --damping 0.02 ",
+    "--sheet 'nodes 8 8' --pin 'x 0' --pin 'x 1 velocity 0.2 0 1 until 0.05' "
+    "--sphere 'at 0.5 0.5 -0.15 radius 0.12 velocity 0 0 1 until 0.1' "
+    "--tear-strain 0.1 --self-collision 'thickness 0.03' "};
+
+// Fifty runs, killed at any moment, some of them twice: as if nothing had been.
+TEST_F(ClothProgram, GoesOnToTheSameBitsWhereverItIsKilled) {
+  std::mt19937 random(std::random_device{}());
+  int killed = 0, went_on = 0;
+  for (int k = 0; k < 50; ++k) {
+    const auto& m = *(methods.begin() + k % int(methods.size()));
+    const std::string run_of = scenes[k / int(methods.size()) % 2] +
+                               "--method " + m.info.name +
+                               " --dt 0.003 --t-end 0.2 --headless ";
+    const Result whole = run(run_of + "--every 3 --csv " + path("a.csv") +
+                             " --out " + path("a.nodes"));
+    fs::remove(dir / "b.csv");
+    fs::remove(dir / "c");
+    const std::string part = " --checkpoint " + path("c") +
+                             " --every-seconds 0 --every 3 --csv " +
+                             path("b.csv") + " --out " + path("b.nodes");
+    for (int kills = k % 2; kills >= 0; --kills) {
+      const bool exists = fs::exists(dir / "c");
+      const unsigned wait = 1000 + random() % 120000;  // [us]
+      const Result r = kill_after(
+          wait, (exists ? "--headless --restart " + path("c") : run_of) + part);
+      killed += r.status == 1000 + SIGKILL;
+    }
+    const bool exists = fs::exists(dir / "c");
+    went_on += exists;
+    const Result last =
+        run((exists ? "--headless --restart " + path("c") : run_of) + part);
+    EXPECT_EQ(last.status, whole.status) << m.info.name << last.err;
+    EXPECT_EQ(result(last.out), result(whole.out)) << m.info.name;
+    EXPECT_EQ(contents(dir / "b.nodes"), contents(dir / "a.nodes"))
+        << m.info.name;
+    EXPECT_EQ(contents(dir / "b.csv"), contents(dir / "a.csv")) << m.info.name;
+  }
+  RecordProperty("killed", killed);
+  RecordProperty("went_on", went_on);
+  std::printf("killed %d times in 75, %d went on from a checkpoint\n", killed,
+              went_on);
+}
+
+TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
+  const std::string run_of =
+      "--sheet 'nodes 12 12' --pin 'y 0' --method verlet --headless ";
+  const std::string files_of =
+      " --csv " + path("b.csv") + " --checkpoint " + path("c");
+  Result cut = interrupt(run_of + "--t-end 1e5" + files_of, {SIGTERM});
+  EXPECT_EQ(cut.status, 143) << cut.err;
+  EXPECT_NE(cut.err.find("checkpoint " + path("c")), std::string::npos);
+  const double t = std::stod(cut.err.substr(cut.err.find("t = ") + 4));
+  const std::string end = " --t-end " + std::to_string(t + 0.1);
+  Result on = run("--headless --restart " + path("c") + end + " --csv " +
+                  path("b.csv") + " --out " + path("b.nodes"));
+  Result whole = run(run_of + end + " --csv " + path("a.csv") + " --out " +
+                     path("a.nodes"));
+  EXPECT_EQ(on.status, 0) << on.err;
+  EXPECT_NE(on.out.find(path("c") + ": goes on at t = "), std::string::npos);
+  EXPECT_EQ(result(on.out), result(whole.out));
+  EXPECT_EQ(contents(dir / "b.csv"), contents(dir / "a.csv"));
+  // A new CSV file has the rows from there on; another one is left alone.
+  run("--headless --restart " + path("c") + end + " --csv " + path("n.csv"));
+  const auto all = rows(dir / "a.csv"), later = rows(dir / "n.csv");
+  ASSERT_LT(later.size(), all.size());
+  ASSERT_GE(later.size(), 9u);
+  for (std::size_t k = 1; k <= 9; ++k)
+    EXPECT_EQ(later[later.size() - k], all[all.size() - k]);
+  const std::string other = file("other.csv", "mine\n");
+  Result refused =
+      run("--headless --restart " + path("c") + end + " --csv " + other);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err.find("cloth: " + other +
+                             ": does not begin with the "
+                             "rows until the checkpoint "),
+            0u)
+      << refused.err;
+  EXPECT_EQ(contents(other), "mine\n");
+}
+
+TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
+  const std::string scene = "--sheet 'nodes 5 5' --headless --t-end 0.1 ";
+  EXPECT_EQ(run(scene + "--checkpoint " + path("c")).status, 0);
+  auto error = [this](const std::string& options) {
+    Result r = run(options);
+    EXPECT_EQ(r.status, 2) << options;
+    return r.err;
+  };
+  const std::string c = path("c");
+  EXPECT_EQ(error(scene + "--dt 0.002 --restart " + c),
+            "cloth: --restart is of another scene: there dt = \"0.001\", here "
+            "dt = \"0.002\"\n");
+  EXPECT_EQ(run(scene + "--restart " + c).status, 0);  // to where it is
+  EXPECT_EQ(error("--restart " + file("no", "text")),
+            "cloth: " + path("no") + ": no checkpoint\n");
+  EXPECT_EQ(error("--restart " + path("none")),
+            "cloth: " + path("none") +
+                ": can't be read (No such file or directory)\n");
+  EXPECT_EQ(error(scene + "--restart ''"),
+            "cloth: --restart: is empty, expected a file\n");
+  EXPECT_EQ(error(scene + "--checkpoint " + c + " --csv " + c),
+            "cloth: --checkpoint is " + c +
+                ", where --csv writes, expected another file\n");
+  EXPECT_EQ(error("--auto --restart " + c).find("cloth: --restart does not go"),
+            0u);
+  EXPECT_EQ(error(scene + "--every-seconds -1"),
+            "cloth: --every-seconds is -1, expected 0 or more\n");
+  // A mesh that has changed since.
+  const std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  const std::string mesh = nodes + ' ' + file("t", "0 1 2 3\n");
+  EXPECT_EQ(run(mesh + " --headless --t-end 0.1 --checkpoint " + c).status, 0);
+  file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0.001\n");
+  EXPECT_EQ(error("--headless --restart " + c),
+            "cloth: --restart is of another cloth: its files, or how the "
+            "program makes it, have changed\n");
+}
+
+}  // namespace
