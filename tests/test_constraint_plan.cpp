@@ -27,8 +27,8 @@ TEST_F(ScatteredCloth, NodewiseByPartsIsTheCall) {
   const SphereConstraint sphere;
   const MovingPinConstraint moving(
       PinConstraint(std::vector<Node>{some[1], some[4]}), motion);
-  const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), motion, 0.5);
-  const BallConstraint moving_ball(ball, motion, 0.5);
+  const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), {}, 0.5);
+  const BallConstraint rough_ball(ball, {}, 0.5);
   const auto all = make_combined_constraints(pins, wall, moving, sphere);
   const auto both = make_combined_constraints(all, ZeroConstraint());
   g.remove_node(some[2]);
@@ -36,7 +36,7 @@ TEST_F(ScatteredCloth, NodewiseByPartsIsTheCall) {
     if (g.has_node(n)) n.position() += Point(0.01, -0.02, 0.03);
   const auto before = state();
   for (const ZeroConstraint* c : std::initializer_list<const ZeroConstraint*>{
-           &pins, &plane, &sphere, &moving, &wall, &moving_ball, &all, &both}) {
+           &pins, &plane, &sphere, &moving, &wall, &rough_ball, &all, &both}) {
     const double t = 0.5;
     const ConstraintPlan plan(*c);
     EXPECT_TRUE(plan.nodewise());
@@ -58,6 +58,10 @@ TEST_F(ScatteredCloth, NodewiseByPartsIsTheCall) {
 TEST_F(ScatteredCloth, WhatRemovesOrIsNotKnownIsNotNodewise) {
   const auto nodewise = [](const ConstraintPlan& c) { return c.nodewise(); };
   EXPECT_TRUE(nodewise(ZeroConstraint()));
+  // What moves adds up its work, in one order.
+  const Motion motion = {Point(0.3, -0.2, 0.1)};
+  EXPECT_FALSE(nodewise(WallConstraint(Point(), Point(0, 0, 1), motion)));
+  EXPECT_FALSE(nodewise(BallConstraint(ball, motion)));
   EXPECT_TRUE(nodewise(make_combined_constraints()));
   struct Another : ZeroConstraint {};
   EXPECT_FALSE(nodewise(Another()));
