@@ -16,6 +16,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -162,13 +163,28 @@ int take_advice(Options& o) {
   return o.automatic ? -1 : 0;
 }
 
-/** Wrong paths, and two outputs in one file, shall end the run before it
- * starts.  Throws std::runtime_error, SceneError */
+/** Wrong paths, two outputs in one file, and an output in a file that is read
+ * shall end the run before it starts; but a mesh may be followed by that of the
+ * end, a scene by the advised one, a checkpoint by a later one.
+ * Throws std::runtime_error, SceneError */
 void check_outputs(const Options& o) {
-  std::map<std::string, const char*> option_of;
+  using Pair = std::pair<std::string, std::string>;
+  std::map<std::string, const char*> option_of, input_of;
+  for (const auto& [option, file] :
+       {std::pair("nodes", o.model.nodes), std::pair("tets", o.model.tets),
+        std::pair("config", o.config), std::pair("restart", o.restart)})
+    if (!file.empty()) input_of.emplace(CME212::output_target(file), option);
+  const std::set<Pair> follow = {{"out", "nodes"},
+                                 {"out", "tets"},
+                                 {"write-config", "config"},
+                                 {"checkpoint", "restart"}};
   auto add = [&](const char* option, const std::string& file) {
-    const auto [other, is_new] =
-        option_of.emplace(CME212::output_target(file), option);
+    const std::string target = CME212::output_target(file);
+    const auto input = input_of.find(target);
+    if (input != input_of.end() && !follow.contains({option, input->second}))
+      throw SceneError(option, "is " + file + ", which --" + input->second +
+                                   " reads, expected another file");
+    const auto [other, is_new] = option_of.emplace(target, option);
     if (!is_new)
       throw SceneError(option, "is " + file + ", where --" + other->second +
                                    " writes, expected another file");

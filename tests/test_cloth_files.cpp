@@ -34,6 +34,30 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
   EXPECT_EQ(run(small + "--csv " + path("d/a") + " --out " + one).status, 0);
 }
 
+TEST_F(ClothProgram, LeavesTheFilesItReadsAlone) {
+  const std::string nodes = file("a.nodes", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  const std::string tets = file("a.tets", "0 1 2 3\n");
+  const std::string config =
+      file("a.toml", "nodes = 'a.nodes'\ntets = 'a.tets'\nt-end = 0.02\n");
+  fs::create_symlink("a.toml", dir / "link");
+  const std::string scene = "--headless --config " + config;
+  auto refuses = [&](const std::string& option, const std::string& input,
+                     const std::string& reader) {
+    const std::string before = contents(input);
+    Result r = run(scene + " --" + option + ' ' + input);
+    EXPECT_EQ(r.status, 2) << option << ' ' << input;
+    EXPECT_EQ(r.err, "cloth: --" + option + " is " + input + ", which --" +
+                         reader + " reads, expected another file\n");
+    EXPECT_EQ(contents(input), before);
+  };
+  refuses("csv", nodes, "nodes");
+  refuses("csv", tets, "tets");
+  refuses("csv", config, "config");
+  refuses("out", path("link"), "config");
+  refuses("checkpoint", nodes, "nodes");
+  EXPECT_EQ(run(scene + " --out " + nodes).status, 0);  // goes on in place
+}
+
 TEST_F(ClothProgram, RefusesAnEmptyNameOfAFile) {
   for (const char* option : {"csv", "out", "screenshot", "record", "config",
                              "write-config", "nodes", "tets"})

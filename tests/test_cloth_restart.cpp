@@ -121,6 +121,9 @@ TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
             "cloth: --restart is of another scene: there dt = \"0.001\", here "
             "dt = \"0.002\"\n");
   EXPECT_EQ(run(scene + "--restart " + c).status, 0);  // to where it is
+  EXPECT_EQ(error("--headless --t-end 0.05 --restart " + c),
+            "cloth: --t-end is 0.05, but " + c +
+                " is of t = 0.1 s, expected at least that\n");
   EXPECT_EQ(error("--restart " + file("no", "text")),
             "cloth: " + path("no") + ": no checkpoint\n");
   EXPECT_EQ(error("--restart " + path("none")),
@@ -139,6 +142,9 @@ TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
   const std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
   const std::string mesh = nodes + ' ' + file("t", "0 1 2 3\n");
   EXPECT_EQ(run(mesh + " --headless --t-end 0.1 --checkpoint " + c).status, 0);
+  const std::string moved = path("n2") + ' ' + path("t");
+  fs::rename(nodes, path("n2"));
+  EXPECT_EQ(run(moved + " --headless --t-end 0.2 --restart " + c).err, "");
   file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0.001\n");
   EXPECT_EQ(error("--headless --restart " + c),
             "cloth: --restart is of another cloth: its files, or how the "

@@ -273,7 +273,7 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
 }  // namespace
 
 int parse(int argc, char** argv, Options& o) {
-  std::string file;
+  std::string& file = o.config;
   bool dump = false;
   std::vector<std::string> in_file;
   double kept_tolerance = 0;  // of a checkpoint's steps

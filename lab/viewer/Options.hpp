@@ -10,8 +10,9 @@ namespace lab {
 /** What a run is asked for; see ./cloth --help. */
 struct Options {
   Model model;
-  Origins origins;  ///< of the model's parts
-  double at = -1;   ///< time of the screenshot [s]; the end if negative
+  Origins origins;     ///< of the model's parts
+  std::string config;  ///< the scene file
+  double at = -1;      ///< time of the screenshot [s]; the end if negative
   double speed = 1;
   long long every = 10;
   int threads = 0;  ///< of a large cloth; 0: one a processor

@@ -256,6 +256,12 @@ void Run::load() {
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(o_.restart + ": " + e.what());
   }
+  if (const double t = scene_.time(), end = o_.model.t_end;
+      t > end * (1 + 1e-9))
+    throw SceneError("t-end", "is " + CME212::short_text(end) + ", but " +
+                                  o_.restart +
+                                  " is of t = " + CME212::short_text(t) +
+                                  " s, expected at least that");
   first_step_ = scene_.steps();
   next_checkpoint_ = o_.every_seconds;
   frames_.add(scene_, o_.model);
