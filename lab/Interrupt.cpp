@@ -15,7 +15,10 @@ static_assert(std::atomic<int>::is_always_lock_free);
 }  // namespace
 
 extern "C" {
-static void note_interrupt(int signal) { number = signal; }
+// A second one of another kind finds this handler, too, and shall end at once.
+static void note_interrupt(int signal) {
+  if (number.exchange(signal) != 0) raise(signal);
+}
 }
 
 void catch_interrupts() {

@@ -189,11 +189,20 @@ void check_outputs(const Options& o) {
       throw SceneError(option, "is " + file + ", where --" + other->second +
                                    " writes, expected another file");
   };
+  auto with_place = [&o](const char* option, auto try_it) {
+    try {
+      try_it();
+    } catch (const std::runtime_error& e) {
+      const std::string place = o.origins.of(std::string("--") + option, "");
+      if (place.empty()) throw;
+      throw SceneFileError(place + e.what());
+    }
+  };
   for (const auto& [option, folder] :
        {std::pair("vtp", o.vtp), std::pair("obj", o.obj),
         std::pair("ply", o.ply)}) {
     if (folder.empty()) continue;
-    FrameFolder try_it(folder, FrameFormat::vtp);
+    with_place(option, [&] { FrameFolder try_it(folder, FrameFormat::vtp); });
     add(option, folder);
   }
   for (const auto& [option, file] :
@@ -204,7 +213,7 @@ void check_outputs(const Options& o) {
         std::pair("checkpoint", o.checkpoint)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
     if (file.empty() || std::filesystem::is_other(file)) continue;
-    CME212::OutputFile try_it(file);
+    with_place(option, [&] { CME212::OutputFile try_it(file); });
     add(option, file);
   }
 }

@@ -34,6 +34,18 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
   EXPECT_EQ(run(small + "--csv " + path("d/a") + " --out " + one).status, 0);
 }
 
+TEST_F(ClothProgram, SaysWhichLineNamesAnOutputThatCantBe) {
+  for (const char* option : {"csv", "out", "checkpoint", "vtp"}) {
+    const std::string scene =
+        file("a.toml",
+             "sheet = 'nodes 4 4'\n" + std::string(option) + " = 'no/x'\n");
+    Result r = run("--headless --config " + scene);
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_EQ(r.err.find(scene + ":2: " + path("no/x") + ": can't be "), 0u)
+        << r.err;
+  }
+}
+
 TEST_F(ClothProgram, LeavesTheFilesItReadsAlone) {
   const std::string nodes = file("a.nodes", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
   const std::string tets = file("a.tets", "0 1 2 3\n");
@@ -163,13 +175,15 @@ TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
 
 // One step of this takes seconds.
 TEST_F(ClothProgram, EndsAtOnceByTheSecondSignalAndLeavesNothing) {
-  Result r = interrupt(
-      "--sheet 'nodes 400 400' --pin 'y 0' --stiffness 1e7 --method tr-bdf2 "
-      "--dt 0.1 --t-end 1e5 --headless --csv " +
-          path("e.csv") + " --out " + path("end.nodes"),
-      {SIGINT, SIGINT});
-  EXPECT_EQ(r.status, 1000 + SIGINT) << r.err;
-  EXPECT_EQ(files(), std::vector<std::string>{});
+  for (int second : {SIGINT, SIGTERM}) {
+    Result r = interrupt(
+        "--sheet 'nodes 400 400' --pin 'y 0' --stiffness 1e7 --method tr-bdf2 "
+        "--dt 0.1 --t-end 1e5 --headless --csv " +
+            path("e.csv") + " --out " + path("end.nodes"),
+        {SIGINT, second});
+    EXPECT_EQ(r.status, 1000 + second) << r.err;
+    EXPECT_EQ(files(), std::vector<std::string>{});
+  }
 }
 
 TEST_F(ClothProgram, LeavesIgnoredSignalsIgnored) {

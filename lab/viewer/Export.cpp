@@ -325,7 +325,8 @@ void FrameFolder::finish() const {
 }
 
 std::string FrameFolder::wrote() const {
-  return std::to_string(times_.size()) + " frames " + ending_of(format_) +
+  return std::to_string(times_.size()) +
+         (times_.size() == 1 ? " frame " : " frames ") + ending_of(format_) +
          " in " + folder_;
 }
 
