@@ -28,9 +28,7 @@ StepControl::Verdict StepControl::look(const Energies& e,
   s.low = std::min(s.low, s.last), s.sum += s.last;
   s.scale = std::max(s.scale, e.kinetic + e.elastic);
   s.time += h, s.kinetic_time += e.kinetic * h;
-  double most = energy_tolerance * s.scale;
-  // A fall from rest is counted as speed up to a step before it is as height.
-  if (s.rounds == 0) most += 2 * look_interval * (s.looks + 1) * floor_;
+  const double most = tolerance(s, s.looks + 1);
   const double least_noise = noise * most;
   const double left = most - (s.base - s.least);
   const bool bursts = s.low - s.base > std::max(0.5 * left, least_noise);
@@ -49,6 +47,13 @@ StepControl::Verdict StepControl::look(const Energies& e,
   start_round();
   ++now_.rounds, ++now_.calm, ++now_.since;
   return Verdict::keep;
+}
+
+double StepControl::tolerance(const State& s, int looks) const {
+  const double most = energy_tolerance * s.scale;
+  if (s.rounds > 0) return most;
+  // A fall from rest is counted as speed up to a step before it is as height.
+  return most + 2 * look_interval * looks * floor_;
 }
 
 void StepControl::take_back(const State& then, long long steps) {

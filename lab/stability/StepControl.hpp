@@ -66,7 +66,7 @@ class StepControl {
   const State& state() const { return now_; }
   const Report& report() const { return report_; }
   /** The most that the run may gain until now [J]. */
-  double tolerance() const { return energy_tolerance * now_.scale; }
+  double tolerance() const { return tolerance(now_, now_.looks); }
 
   enum class Verdict {
     go_on,
@@ -94,6 +94,7 @@ class StepControl {
   Report report_;
   int failures_ = 0;
 
+  double tolerance(const State& s, int looks) const;
   void start_round();
   void change(double dt, double drag);
 };
