@@ -70,6 +70,44 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
             std::string::npos);
 }
 
+TEST_F(Tolerance, OneThatNoStepMeetsIsDiagnosedAsSuch) {
+  const std::string sheet =
+      "--sheet 'at 0 0 0 nodes 6 6' --pin 'x 0' --t-end 0.1 --headless "
+      "--tolerance 1e-30 ";
+  const Result r = run(sheet);
+  EXPECT_EQ(r.status, 3);
+  // The cure works if it is typed in.
+  const std::size_t end = r.err.find(" works: a trial");
+  ASSERT_NE(end, std::string::npos) << r.err;
+  const std::size_t begin = r.err.rfind("; ", end) + 2;
+  const std::string cure = r.err.substr(begin, end - begin);
+  EXPECT_EQ(cure.find("--method verlet --dt "), 0u) << r.err;
+  EXPECT_EQ(run(sheet + cure).status, 0) << cure;
+}
+
+TEST_F(Tolerance, WarnsBelowTheRoundOffOfPositions) {
+  const std::string sheet =
+      "--pin 'x 0' --t-end 1e-3 --headless --sheet 'nodes 6 6 at 0 0 ";
+  const std::string text = "below the round-off of positions";
+  const auto warns = [&](const std::string& more) {
+    return run(sheet + more).err.find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(warns("0' --tolerance 1e-16"));
+  EXPECT_FALSE(warns("0' --tolerance 1e-14"));
+  EXPECT_TRUE(warns("100' --tolerance 1e-14"));
+  EXPECT_FALSE(warns("0' --tolerance 1e-16 --method verlet --dt 1e-3"));
+}
+
+/** A fall from rest by symplectic Euler is speed a step before it is height. */
+TEST_F(Tolerance, OfChosenStepsIsNotBrokenByTheFirstOnes) {
+  for (const char* t : {"1e-4", "0.005", "0.01", "0.02", "0.05"})
+    EXPECT_EQ(run("--sheet 'nodes 6 6' --dt auto --headless --t-end " +
+                  std::string(t))
+                  .err,
+              "")
+        << t;
+}
+
 TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
   const std::string sheet =
       "--sheet 'at 0 0 0 nodes 6 6' --t-end 0.1 --headless --tolerance 1e-3 ";

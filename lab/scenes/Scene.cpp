@@ -308,7 +308,10 @@ Attempt Scene::attempt(const Cure& cure, double t_end) const {
   const MethodInfo& info = cure.method.info;
   const double evaluations = info.sweeps * (info.limit == no_limit ? 100 : 1);
   try {
-    Scene trial(recipe_, {.dt = cure.dt, .rule = StepRule::fixed}, cure.method);
+    const TimeStep step = {.dt = cure.dt,
+                           .rule = StepRule::fixed,
+                           .tolerance = info.adaptive ? step_.tolerance : 0};
+    Scene trial(recipe_, step, cure.method);
     const Cloth& g = trial.cloth();
     double left = trial_work;
     while (!trial.done(t_end) && left > 0 && trial.step(t_end))

@@ -95,7 +95,7 @@ class Finder {
       inside(b, name, false);
     }
     if (m_.self_collision) passes_itself(*m_.self_collision);
-    if (m_.method->info.adaptive) not_smooth();
+    if (m_.method->info.adaptive) not_smooth(), too_exact();
     return found_;
   }
 
@@ -250,6 +250,18 @@ class Finder {
           ": the error is not controlled where nodes touch or edges break: "
           "there it is of first or second order, as that of every method; "
           "--method verlet --dt auto costs less");
+  }
+
+  /** Errors that are round-off go down with no step, and steps end nowhere. */
+  void too_exact() {
+    double size = 0;
+    for (Node n : g_.nodes()) size = std::max(size, norm(n.position()));
+    const double least = size * std::numeric_limits<Real>::epsilon();
+    if (m_.step.tolerance == 0 || m_.step.tolerance >= least) return;
+    add(std::string(m_.method->info.name) + ": inner steps are asked for " +
+        short_text(m_.step.tolerance) +
+        " m, below the round-off of positions, " + short_text(least) +
+        " m: they get tiny, and may never end; take a larger --tolerance");
   }
 
   /** A ball that jumps over nodes pushes none of them. */

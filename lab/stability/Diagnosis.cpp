@@ -48,7 +48,10 @@ std::string WorstPlace::text(const Cloth& g) const {
 std::string Cure::options(const MethodEntry& before) const {
   const std::string step = "--dt " + CME212::short_text(dt);
   const bool same = std::string_view(method.info.name) == before.info.name;
-  return same ? step : "--method " + std::string(method.info.name) + ' ' + step;
+  // It may have been chosen because neither option was given.
+  return same && !before.info.adaptive
+             ? step
+             : "--method " + std::string(method.info.name) + ' ' + step;
 }
 
 namespace {
@@ -175,8 +178,11 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
       by_verlet(safe_share);
       break;
     case Cause::solver:
-      shorter(run.dt / 4);
-      shorter(run.dt / 16);
+      // Error control chose shorter ones already.
+      if (!run.method.info.adaptive) {
+        shorter(run.dt / 4);
+        shorter(run.dt / 16);
+      }
       by_verlet(safe_share);
       break;
     case Cause::start:
