@@ -82,6 +82,19 @@ TEST_F(ClothProgram, RefusesAnEmptyNameOfAFile) {
     }
 }
 
+TEST_F(ClothProgram, TakesNoOptionForTheNameOfAFile) {
+  for (const char* option : {"csv", "out", "vtp", "checkpoint", "write-config"})
+    for (const char* end : {" --quiet", "= --quiet"}) {
+      Result r = run(small + "--" + option + end);
+      EXPECT_EQ(r.status, 2) << option;
+      EXPECT_EQ(r.out, "") << option;
+      EXPECT_EQ(r.err, std::string("cloth: --") + option +
+                           ": is --quiet, expected a file; one of that name "
+                           "is ./--quiet\n");
+      EXPECT_FALSE(fs::exists("--quiet"));
+    }
+}
+
 TEST_F(ClothProgram, OfTwoRunsOfOneFileOneHasItWhole) {
   const std::string csv = " --csv " + path("e.csv");
   auto command = [&](const char* options) {

@@ -203,7 +203,9 @@ Model SceneOptions::Text::model() const {
 
 CLI::Option* takes_file(CLI::Option* option) {
   return option->type_name("FILE")->check([](const std::string& name) {
-    return std::string(name.empty() ? "is empty, expected a file" : "");
+    if (name.empty()) return std::string("is empty, expected a file");
+    if (!name.starts_with("--")) return std::string();
+    return "is " + name + ", expected a file; one of that name is ./" + name;
   });
 }
 

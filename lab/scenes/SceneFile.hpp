@@ -24,7 +24,8 @@ struct SceneFileError : std::runtime_error {
 };
 
 /** Let @a option take the name of a file: none that is empty, as a shell's
- * variable that is not set.  @return it */
+ * variable that is not set, and not the next option, as without the name.
+ * @return it */
 CLI::Option* takes_file(CLI::Option* option);
 
 /** Where the options of a scene stand in its file. */
