@@ -202,7 +202,8 @@ void check_outputs(const Options& o) {
        {std::pair("vtp", o.vtp), std::pair("obj", o.obj),
         std::pair("ply", o.ply)}) {
     if (folder.empty()) continue;
-    with_place(option, [&] { FrameFolder try_it(folder, FrameFormat::vtp); });
+    with_place(option,
+               [&in = folder] { FrameFolder try_it(in, FrameFormat::vtp); });
     add(option, folder);
   }
   for (const auto& [option, file] :
@@ -213,7 +214,7 @@ void check_outputs(const Options& o) {
         std::pair("checkpoint", o.checkpoint)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
     if (file.empty() || std::filesystem::is_other(file)) continue;
-    with_place(option, [&] { CME212::OutputFile try_it(file); });
+    with_place(option, [&to = file] { CME212::OutputFile try_it(to); });
     add(option, file);
   }
 }

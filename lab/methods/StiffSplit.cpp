@@ -80,8 +80,8 @@ StiffSplit split_springs(const Cloth& g, int multiplicity,
       split.nodes.insert(split.nodes.end(), ends[e].begin(), ends[e].end());
     }
   std::ranges::sort(split.nodes);
-  const auto again = std::ranges::unique(split.nodes);
-  split.nodes.erase(again.begin(), again.end());
+  split.nodes.erase(std::unique(split.nodes.begin(), split.nodes.end()),
+                    split.nodes.end());
   std::vector<double> sum(split.nodes.size());  // of K/m [1/s^2]
   for (auto& [e, i, j] : split.springs) {
     const auto place = [&](unsigned id) {
