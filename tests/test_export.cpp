@@ -346,6 +346,18 @@ TEST(Export, LeavesOtherFilesAlone) {
   EXPECT_FALSE(std::filesystem::exists(folder / "new"));  // nothing was written
 }
 
+TEST(Export, DoesNotMixItsFramesWithThoseOfAnotherRun) {
+  const CME212::TestFolder folder;
+  const Model m = small_model();
+  Scene scene(m);
+  const std::string name = folder / "obj";
+  Export one({{FrameFormat::obj, name}}, 30);
+  Export other({{FrameFormat::obj, name}}, 30);  // empty still
+  one.add(scene, m);
+  EXPECT_EQ(error_of([&] { other.add(scene, m); }),
+            name + "/frame_000000.obj: another run writes frames there");
+}
+
 // ---------------------------------------------------------------- The mesh
 // left
 

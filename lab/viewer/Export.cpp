@@ -308,7 +308,10 @@ void FrameFolder::take_back(double t) {
 
 void FrameFolder::add(const Frame& frame) {
   assert(times_.empty() || times_.back() < frame.time);
-  write_file(name(times_.size()), to_file(frame, format_));
+  const std::string file = name(times_.size());
+  if (std::filesystem::exists(file))
+    throw std::runtime_error(file + ": another run writes frames there");
+  write_file(file, to_file(frame, format_));
   times_.push_back(frame.time);
 }
 
