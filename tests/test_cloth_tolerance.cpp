@@ -98,6 +98,17 @@ TEST_F(Tolerance, WarnsBelowTheRoundOffOfPositions) {
   EXPECT_FALSE(warns("0' --tolerance 1e-16 --method verlet --dt 1e-3"));
 }
 
+TEST_F(Tolerance, NeedsNoStepForAShortRun) {
+  const std::string sheet =
+      "--sheet 'nodes 6 6' --pin 'x 0' --headless --t-end 1e-4 ";
+  for (const char* more : {"", "--tolerance 1e-6", "--method verlet"}) {
+    const Result r = run(sheet + more);
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_NE(r.out.find("at t = 0.0001 s"), std::string::npos) << r.out;
+  }
+  EXPECT_EQ(run(sheet + "--dt 0.002").status, 2);
+}
+
 /** A fall from rest by symplectic Euler is speed a step before it is height. */
 TEST_F(Tolerance, OfChosenStepsIsNotBrokenByTheFirstOnes) {
   for (const char* t : {"1e-4", "0.005", "0.01", "0.02", "0.05"})

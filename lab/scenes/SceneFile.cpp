@@ -155,6 +155,9 @@ Model SceneOptions::Text::model() const {
   m.step = read_time_step(dt);
   const bool fixed = m.step.fixed();
   require(not_negative(t_end), "t-end", t_end, "a time [s], 0 or more");
+  // The step that nobody asked for is none to complain about.
+  if (dt == to_words(TimeStep{}) && t_end > 0)
+    m.step.dt = std::min(m.step.dt, t_end);
   require(!fixed || m.step.dt <= t_end || t_end == 0, "dt", m.step.dt,
           "at most --t-end");
   require(!fixed || t_end / m.step.dt < 1e15, "t-end", t_end,
