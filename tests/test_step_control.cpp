@@ -178,6 +178,55 @@ TEST(SteeredStep, IsNearTheLongestOneWithDrag) {
   }
 }
 
+/** A loose sheet whose nodes move at random, up to 5 m/s each way, and all of
+ * it at @a speed upwards [m/s]; nothing acts on it. */
+Recipe thrown_sheet(double speed) {
+  Recipe r;
+  r.gravity = 0;
+  r.build = [speed](Cloth& g) {
+    std::mt19937 random(1);
+    auto u = [&] {
+      return 10 * (double(random()) / double(random.max()) - 0.5);
+    };
+    build_cloth(g, grid_points(9, 9), grid_quads(9, 9), Mesh::diagonals);
+    for (Node n : g.nodes()) n.value().vel = Point(u(), u(), u() + speed);
+  };
+  r.force = [](const Cloth&) { return make_combined_force(MassSpringForce()); };
+  r.constraint = [](const Cloth&) { return CombinedConstraints({}); };
+  return r;
+}
+
+/** Elastic energy, and kinetic of the motion about the center of mass [J]. */
+double internal_energy(const Cloth& g) {
+  Point momentum;
+  double mass = 0, sum = 0;
+  for (Node n : g.nodes()) {
+    mass += n.value().mass;
+    momentum += n.value().mass * n.value().vel;
+  }
+  for (Node n : g.nodes())
+    sum += 0.5 * n.value().mass * normSq(n.value().vel - momentum / mass);
+  for (Edge e : g.edges())
+    sum += 0.5 * e.value().K * std::pow(e.length() - e.value().L, 2);
+  return sum;
+}
+
+// However fast the cloth as a whole flies: its energy hides no gain.
+TEST(SteeredStep, IsTheSameForAClothThatFlies) {
+  for (double speed : {0.0, 100.0, 1000.0}) {
+    Scene s(thrown_sheet(speed), {.rule = StepRule::sharp},
+            *find_method("verlet"));
+    const double before = internal_energy(s.cloth());
+    EXPECT_TRUE(s.run_to(30)) << s.failure();
+    const double after = internal_energy(s.cloth());
+    EXPECT_LT(after, 1.25 * before) << speed;
+    Scene longer(thrown_sheet(speed), {.dt = 1.1 * s.safe_limit()},
+                 *find_method("verlet"));
+    EXPECT_FALSE(longer.run_to(30)) << speed;
+    EXPECT_LT(internal_energy(longer.cloth()), 5 * before) << speed;
+  }
+}
+
 // What is written down while it runs changes nothing, and a second run is the
 // same, also where steps are taken back.
 TEST(SteeredStep, IsTheSameWhoeverLooks) {

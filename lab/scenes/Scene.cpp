@@ -46,11 +46,11 @@ void Scene::restart() {
   } else if (!step_.fixed()) {
     choose_step();
   }
-  guard_.emplace(cloth_, recipe_.gravity, clock_.dt);
+  guard_.emplace(cloth_, recipe_.gravity, clock_.dt, flow());
   keep_clock();
   control_.reset();
   if (step_.fixed() || !failure_.empty()) return;
-  control_.emplace(clock_.dt, energies(cloth_, recipe_.gravity),
+  control_.emplace(clock_.dt, energies(cloth_, recipe_.gravity, flow()),
                    guard_->floor());
   drag_ = force_->drag(), largest_gamma_ = largest_gamma(cloth_, drag_);
   drag_power_ = drag_.power(cloth_);
@@ -118,8 +118,8 @@ bool Scene::judge() {
   const double h = time() - looked_;
   looked_ = time();
   using Verdict = StepControl::Verdict;
-  const Verdict verdict = control_->look(energies(cloth_, recipe_.gravity),
-                                         flow(), h, time() / t_end_);
+  const Verdict verdict = control_->look(
+      energies(cloth_, recipe_.gravity, flow()), flow(), h, time() / t_end_);
   if (verdict == Verdict::take_back) return false;
   if (cloth_.version() != version_) {
     before_ = latest_ = snapshot();  // what is gone does not come back

@@ -1,15 +1,33 @@
 #include "lab/stability/EnergyBalance.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lab/fast/Energy.hpp"
 
 namespace lab {
 
-Energies energies(const Cloth& g, double gravity) {
-  return {kinetic_energy(g), elastic_energy(g),
-          gravitational_energy(g, gravity)};
+Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow) {
+  Energies e = {kinetic_energy(g), elastic_energy(g),
+                gravitational_energy(g, gravity)};
+  Point carrier = flow.carried;
+  if (flow.loose) {
+    Point momentum;
+    double mass = 0;
+    for (Node n : g.nodes()) {
+      momentum += n.value().mass * n.value().vel;
+      mass += n.value().mass;
+    }
+    if (mass > 0) carrier = momentum / mass;
+    e.fall_power = std::abs(gravity * momentum.z);
+  }
+  e.relative = e.kinetic;
+  if (carrier == Point()) return e;
+  e.relative = 0;
+  for (Node n : g.nodes())
+    e.relative += 0.5 * n.value().mass * normSq(n.value().vel - carrier);
+  return e;
 }
 
 EnergyBalance::EnergyBalance(const Cloth& g, double t, CombinedForces force,
@@ -40,6 +58,7 @@ void EnergyBalance::follow(const Cloth& g, double t,
                   0.5 * dot(f + h.force, x - h.place);
     h = {h.node, x, v, f};
   }
+  find_carrier(g);
 }
 
 void EnergyBalance::resume(const Cloth& g, double t,
@@ -50,6 +69,16 @@ void EnergyBalance::resume(const Cloth& g, double t,
   for (Held& h : held_)
     if (g.has_node(h.node))
       h = {h.node, h.node.position(), h.node.value().vel, force_(h.node, t)};
+  find_carrier(g);
+}
+
+void EnergyBalance::find_carrier(const Cloth& g) {
+  Point sum;
+  int count = 0;
+  for (const Held& h : held_)
+    if (g.has_node(h.node)) sum += h.velocity, ++count;
+  flow_.loose = count == 0;
+  flow_.carried = count > 0 ? sum / count : Point();
 }
 
 }  // namespace lab

@@ -11,17 +11,27 @@ namespace lab {
 struct Energies {
   double kinetic = 0, elastic = 0;
   double gravitational = 0;  ///< 0 at z = 0
+  double relative = 0;       ///< kinetic, as seen from what carries the cloth
+  double fall_power = 0;     ///< of the weight of a loose cloth [W], >= 0
   double total() const { return kinetic + elastic + gravitational; }
+  /** That of which a method can make more: it does not depend on who looks. */
+  double internal() const { return relative + elastic; }
 };
-/** Those of @a g.  @param gravity [m/s^2]  O(N + springs) */
-Energies energies(const Cloth& g, double gravity);
 
-/** What came into a cloth's energy and what left it, since the start [J]. */
+/** What came into a cloth's energy and what left it, since the start [J]; and
+ * what carries the cloth now. */
 struct EnergyFlow {
-  double work = 0;     ///< done by pins and obstacles that move
-  double removed = 0;  ///< gravitational energy of nodes that were removed
-  double drag = 0;     ///< taken by linear drag, where that is asked for
+  double work = 0;          ///< done by pins and obstacles that move
+  double removed = 0;       ///< gravitational energy of nodes that were removed
+  double drag = 0;          ///< taken by linear drag, where that is asked for
+  Point carried = Point();  ///< mean velocity of the nodes that are held [m/s]
+  /** Nothing holds it: its center of mass carries it. */
+  bool loose = false;
 };
+
+/** Those of @a g.  @param gravity [m/s^2]   @param flow what carries the cloth
+ * O(N + springs) */
+Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow = {});
 
 /** Follows what comes into a cloth's energy and what leaves it, step by step.
  *
@@ -65,6 +75,8 @@ class EnergyBalance {
   std::vector<Held> held_;
   Exchange seen_;  // of the constraint, until the last step
   EnergyFlow flow_;
+
+  void find_carrier(const Cloth& g);
 };
 
 }  // namespace lab

@@ -8,10 +8,12 @@
 
 namespace lab {
 
-DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt)
-    : gravity_(gravity) {
-  const Energies e = energies(g, gravity);
+DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
+                                 const EnergyFlow& flow)
+    : gravity_(gravity), dt_(dt) {
+  const Energies e = energies(g, gravity, flow);
   start_ = e.kinetic + e.elastic, height_ = e.gravitational;
+  available_ = e.internal();
   const double fall = gravity * dt;  // [m/s]
   floor_ = total_mass(g) * fall * fall;
   const double strain =
@@ -22,14 +24,15 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt)
 }
 
 bool DivergenceGuard::accept(const Cloth& g, const EnergyFlow& flow) {
-  const Energies e = energies(g, gravity_);
+  const Energies e = energies(g, gravity_, flow);
   if (!std::isfinite(e.total())) return false;
-  const double released =
-      std::max(released_, height_ - e.gravitational - flow.removed);
-  const double work = std::max(work_, flow.work);
-  const double available = start_ + released + work + floor_;
-  if (!(e.kinetic + e.elastic <= margin * available)) return false;
-  released_ = released, work_ = work;
+  const double released = height_ - e.gravitational - flow.removed;
+  const double carried = e.kinetic - e.relative;
+  const double available =
+      std::max(available_, start_ + released + flow.work - carried);
+  const double floor = floor_ + e.fall_power * dt_;
+  if (!(e.internal() <= margin * (available + floor))) return false;
+  available_ = available;
   keep(g);
   return true;
 }

@@ -15,7 +15,8 @@ constexpr double seen = 0.8;    // of it: the rest is for steps between looks
 StepControl::StepControl(double dt, const Energies& start, double floor)
     : first_(dt), shortest_(dt / 64), floor_(floor), report_{dt, dt} {
   now_.dt = dt, now_.ceiling = none;
-  now_.scale = start.kinetic + start.elastic;
+  now_.scale = start.internal();
+  now_.fall = 2 * start.fall_power * dt;
   now_.last = now_.least = now_.base = now_.mark = start.total();
   now_.low = none;
 }
@@ -26,7 +27,8 @@ StepControl::Verdict StepControl::look(const Energies& e,
   State s = now_;
   s.last = e.total() - flow.work + flow.removed + flow.drag;
   s.low = std::min(s.low, s.last), s.sum += s.last;
-  s.scale = std::max(s.scale, e.kinetic + e.elastic);
+  s.scale = std::max(s.scale, e.internal());
+  s.fall = std::max(s.fall, 2 * e.fall_power * s.dt);
   s.time += h, s.kinetic_time += e.kinetic * h;
   const double most = tolerance(s, s.looks + 1);
   const double least_noise = noise * most;
@@ -50,7 +52,7 @@ StepControl::Verdict StepControl::look(const Energies& e,
 }
 
 double StepControl::tolerance(const State& s, int looks) const {
-  const double most = energy_tolerance * s.scale;
+  const double most = energy_tolerance * s.scale + s.fall;
   if (s.rounds > 0) return most;
   // A fall from rest is counted as speed up to a step before it is as height.
   return most + 2 * look_interval * looks * floor_;
