@@ -170,6 +170,9 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
   EXPECT_EQ(error("--record png"),
             "cloth: --record is png, expected a name that ends in .mp4, .mkv, "
             ".webm or .gif\n");
+  EXPECT_EQ(error("--out o.tets"),
+            "cloth: --out is o.tets, expected a name of points: quads go "
+            "beside FILE.nodes, into FILE.tets\n");
 }
 
 // By default, too, a step of a method with four evaluations costs four times.

@@ -25,13 +25,13 @@ set label 1 '{/:Bold One linear system} of implicit Euler, 100 x 100 nodes: medi
   at screen 0.5, screen 0.96 center
 set label 2 footer at screen 0.99, screen 0.02 right textcolor rgb '#777777'
 set xlabel 'dt omega'
-set ylabel 'milliseconds'
+set ylabel 'milliseconds' offset 1, 0
 unset key
 do for [k = 1:3] {
   K = word('10000 1e+06 1e+08', k)
   set title 'K = '.word('10^4 10^6 10^8', k).' N/m' offset 0, -0.6
-  set lmargin at screen 0.075 + 0.31 * (k - 1)
-  set rmargin at screen 0.345 + 0.31 * (k - 1)
+  set lmargin at screen 0.09 + 0.305 * (k - 1)
+  set rmargin at screen 0.36 + 0.305 * (k - 1)
   if (k == 2) { unset label 1; unset label 2; unset ylabel; set format y '' }
   if (k == 3) { set key at screen 0.62, screen 0.19 center top maxrows 2 \
     width -9 samplen 3 }

@@ -125,6 +125,10 @@ void check(Options& o) {
   };
   require_ending("screenshot", o.screenshot, CME212::picture_endings);
   require_ending("record", o.video, CME212::film_endings);
+  if (CME212::ending_of(o.out) == ".tets")
+    throw SceneError("out", "is " + o.out +
+                                ", expected a name of points: quads go beside "
+                                "FILE.nodes, into FILE.tets");
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
   require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
@@ -346,6 +350,12 @@ int parse(int argc, char** argv, Options& o) {
   };
   if (given("--tolerance") && !o.advise && !o.automatic && o.advised.empty())
     control_error(o.model, given);
+  if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet &&
+      !o.advise && !o.automatic && o.advised.empty())
+    std::cerr << "cloth: warning: --tolerance has no effect on "
+              << o.model.method->info.name
+              << ", which does not control its error: leave --dt and --method "
+                 "away, or take --method dop853\n";
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;
