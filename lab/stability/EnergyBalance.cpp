@@ -69,7 +69,13 @@ void EnergyBalance::resume(const Cloth& g, double t,
   for (Held& h : held_)
     if (g.has_node(h.node))
       h = {h.node, h.node.position(), h.node.value().vel, force_(h.node, t)};
-  find_carrier(g);
+  // A held node may start with a velocity of its own: that carries nothing.
+  Point sum;
+  int count = 0;
+  constraint.each_place(
+      g, t, [&](Node, const Place& place) { sum += place.velocity, ++count; });
+  flow_.loose = count == 0;
+  flow_.carried = count > 0 ? sum / count : Point();
 }
 
 void EnergyBalance::find_carrier(const Cloth& g) {
