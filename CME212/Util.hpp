@@ -101,6 +101,11 @@ inline std::string two_digits(double a) {
   return text;
 }
 
+/** A count in words: "1 node", "2 nodes". */
+inline std::string count_of(std::size_t n, const std::string& what) {
+  return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
+}
+
 /** "87 %" for 0.866; below 10 % two significant digits. */
 inline std::string percent(double share) {
   const double a = 100 * share;

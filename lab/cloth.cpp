@@ -224,7 +224,7 @@ int run(Options o) {
   catch_interrupts();
   check_outputs(o);
   Sweep::set_threads(o.threads);
-  if (o.advise || o.automatic || !o.advised.empty())
+  if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   const Model& m = o.model;
   Recipe recipe = recipe_of(m);
@@ -239,9 +239,9 @@ int run(Options o) {
       if (!o.quiet)
         std::cout << "no display: running without a window; a picture and a "
                      "film go to the folder demo\n";
+      check_outputs(o);
     }
   }
-  check_outputs(o);
   Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)

@@ -11,11 +11,9 @@
 namespace lab {
 namespace {
 
+using CME212::count_of;
 using CME212::short_text;
 
-std::string count(std::size_t n, const char* of) {
-  return std::to_string(n) + ' ' + of + (n == 1 ? "" : "s");
-}
 std::string range(double low, double high) {
   return short_text(low) + (low < high ? " to " + short_text(high) : "");
 }
@@ -23,7 +21,7 @@ std::string range(double low, double high) {
 std::string of_method(const MethodInfo& info) {
   std::string text = std::string("a step of ") + info.name + ", order " +
                      std::to_string(info.order) + ": " +
-                     count(std::size_t(info.sweeps), "force evaluation");
+                     count_of(std::size_t(info.sweeps), "force evaluation");
   if (info.adaptive)
     text += " in each of its inner steps";
   else if (info.limit == no_limit)
@@ -38,7 +36,7 @@ std::string of_cloth(const Model& m, const Cloth& g) {
             std::to_string(s.nodes[1]) + " nodes";
   if (m.sheets.empty()) from = m.nodes + " and " + m.tets;
   return "cloth of " + from + ", " + short_text(total_mass(g)) +
-         " kg: " + count(g.num_nodes(), "node") + " moved";
+         " kg: " + count_of(g.num_nodes(), "node") + " moved";
 }
 
 }  // namespace
@@ -50,7 +48,7 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
     all.push_back("  " + what + ": " + work);
   };
   all.push_back("  " + of_cloth(m, g));
-  const std::string each_node = count(g.num_nodes(), "node");
+  const std::string each_node = count_of(g.num_nodes(), "node");
   const std::string times =
       m.method->info.sweeps > 1
           ? std::to_string(m.method->info.sweeps) + " times "
@@ -63,7 +61,7 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
   }
   if (g.num_edges() > 0)
     add("springs, K " + range(low, high) + " N/m",
-        times + count(g.num_edges(), "spring"));
+        times + count_of(g.num_edges(), "spring"));
   if (m.gravity != 0)
     add("gravity " + short_text(m.gravity) + " m/s^2", times + each_node);
   if (const auto drag = m.material.drag; drag && *drag > 0)
@@ -77,13 +75,13 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
   for (const Ball& b : m.tears) add(part("tear", to_words(b)), each_node);
   if (m.tear_strain)
     add("tear-strain " + short_text(*m.tear_strain),
-        count(g.num_edges(), "spring"));
+        count_of(g.num_edges(), "spring"));
   for (const Wall& w : m.planes) add(part("plane", to_words(w)), each_node);
   for (const Solid& s : m.spheres) add(part("sphere", to_words(s)), each_node);
   for (const Pin& pin : m.pins) {
     const auto held = std::ranges::count_if(
         mesh.points, [&](const Point& p) { return pin.holds(p); });
-    add(part("pin", to_words(pin)), count(std::size_t(held), "node"));
+    add(part("pin", to_words(pin)), count_of(std::size_t(held), "node"));
   }
   if (m.self_collision)
     add(part("self-collision", to_words(*m.self_collision)),

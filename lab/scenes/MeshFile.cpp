@@ -33,8 +33,7 @@ PointsAndQuads parse_nodes(std::string_view text, const std::string& file) {
           }
           const std::size_t n = words.size();
           if (columns == 0 ? n != 3 && n != 6 : n != columns)
-            throw std::runtime_error(std::to_string(n) +
-                                     (n == 1 ? " value" : " values") +
+            throw std::runtime_error(CME212::count_of(n, "value") +
                                      " in the line");
           columns = n;
           mesh.points.push_back({row[0], row[1], row[2]});

@@ -43,15 +43,20 @@ double MovingPinConstraint::next_kink(double t) const {
                                          : SweptConstraint::next_kink(t);
 }
 
+// ------------------------------------------------------------------ Touchable
+
+void Touchable::touch(Node n, double depth, const Point& out,
+                      const Point& velocity) const {
+  const double work = contact::touch(n, depth, out, velocity, friction_);
+  if (!nodewise()) work_ += work;  // else parts may be projected at once
+}
+
 // ----------------------------------------------------------------------- Wall
 
 WallConstraint::WallConstraint(const Point& at, const Point& normal,
                                const Motion& motion, double friction)
-    : at_(at),
-      normal_(normal / norm(normal)),
-      motion_(motion),
-      friction_(friction) {
-  assert(norm(normal) > 0 && friction >= 0);
+    : Touchable(motion, friction), at_(at), normal_(normal / norm(normal)) {
+  assert(norm(normal) > 0);
 }
 
 void WallConstraint::project(Cloth& g, double t, unsigned first,
@@ -60,20 +65,14 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
   auto height = [&](const Point& p) { return dot(p - at, normal_); };
   for_each_violating(
       g, first, last, [&](const Point& p) { return height(p) < 0; },
-      [&](Node n) {
-        const double work = contact::touch(n, -height(n.position()), normal_,
-                                           velocity, friction_);
-        if (!nodewise()) work_ += work;
-      });
+      [&](Node n) { touch(n, -height(n.position()), normal_, velocity); });
 }
 
 // ----------------------------------------------------------------------- Ball
 
 BallConstraint::BallConstraint(const Ball& ball, const Motion& motion,
                                double friction)
-    : ball_(ball), motion_(motion), friction_(friction) {
-  assert(friction >= 0);
-}
+    : Touchable(motion, friction), ball_(ball) {}
 
 void BallConstraint::project(Cloth& g, double t, unsigned first,
                              unsigned last) const {
@@ -86,9 +85,7 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
         const double distance = norm(from_center);
         const Point out =
             distance > 0 ? from_center / distance : Point(0, 0, 1);
-        const double work =
-            contact::touch(n, ball.radius - distance, out, velocity, friction_);
-        if (!nodewise()) work_ += work;
+        touch(n, ball.radius - distance, out, velocity);
       });
 }
 

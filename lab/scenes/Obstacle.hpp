@@ -63,28 +63,47 @@ class MovingPinConstraint : public NodewiseConstraint {
   }
 };
 
+/** What nodes touch, and what may move and rub: the part that a wall and a ball
+ * share. While it moves it adds up its work, node by node in one order. */
+class Touchable : public NodewiseConstraint {
+ public:
+  bool nodewise() const override { return motion_.velocity == Point(); }
+  Exchange exchange() const override { return {work_, 0}; }
+  void archive(CME212::Archive& a) const override { a(work_); }
+
+ protected:
+  /** @param friction coefficient, >= 0 */
+  Touchable(const Motion& motion, double friction)
+      : motion_(motion), friction_(friction) {
+    assert(friction >= 0);
+  }
+  /** contact::touch(), and count the work. */
+  void touch(Node n, double depth, const Point& out,
+             const Point& velocity) const;
+
+  Motion motion_;
+
+ private:
+  double friction_;
+  mutable double work_ = 0;  // [J]
+};
+
 /** A half space that no node enters, bounded by a plane.
  * @post no node lies below the plane by more than round-off; without friction,
  * one that did lies at the nearest point of it. Velocities: contact::touch().
  */
-class WallConstraint : public NodewiseConstraint {
+class WallConstraint : public Touchable {
  public:
   /** @param at a point of the plane at t = 0 [m]
    * @param normal out of the wall, of any length > 0
    * @param friction coefficient, >= 0 */
   WallConstraint(const Point& at, const Point& normal,
                  const Motion& motion = {}, double friction = 0);
-  bool nodewise() const override { return motion_.velocity == Point(); }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  Exchange exchange() const override { return {work_, 0}; }
-  void archive(CME212::Archive& a) const override { a(work_); }
 
  private:
   Point at_, normal_;
-  Motion motion_;
-  double friction_;
-  mutable double work_ = 0;  // [J]; by one thread, while it moves
 };
 
 /** A solid ball that may move. @post no node lies inside by more than
@@ -95,7 +114,7 @@ class WallConstraint : public NodewiseConstraint {
  * A node that tunnels through a ball within a step is caught only while the
  * ball is at rest. Whoever lets it move keeps steps so short that the speeds
  * of ball and nodes, times dt, stay well below the radius. */
-class BallConstraint : public NodewiseConstraint {
+class BallConstraint : public Touchable {
  public:
   /** @param ball at t = 0   @param friction coefficient, >= 0 */
   explicit BallConstraint(const Ball& ball, const Motion& motion = {},
@@ -103,20 +122,14 @@ class BallConstraint : public NodewiseConstraint {
   /** Of the ball, while it moves [m/s]. */
   double speed() const { return norm(motion_.velocity); }
 
-  bool nodewise() const override { return speed() == 0; }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
   std::optional<Point> first_hit(const Point& from,
                                  const Point& to) const override;
   double thinnest() const override;
-  Exchange exchange() const override { return {work_, 0}; }
-  void archive(CME212::Archive& a) const override { a(work_); }
 
  private:
   Ball ball_;
-  Motion motion_;
-  double friction_;
-  mutable double work_ = 0;  // [J]; by one thread, while it moves
 };
 
 /** Edges that break. @post no edge is longer than (1 + limit) times its rest

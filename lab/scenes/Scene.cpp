@@ -50,12 +50,11 @@ void Scene::restart() {
   keep_clock();
   control_.reset();
   if (step_.fixed() || !failure_.empty()) return;
-  control_.emplace(clock_.dt, energies(cloth_, recipe_.gravity, flow()),
-                   guard_->floor());
+  control_.emplace(clock_.dt, energy(), guard_->floor());
   drag_ = force_->drag(), largest_gamma_ = largest_gamma(cloth_, drag_);
   drag_power_ = drag_.power(cloth_);
   looked_ = sampled_ = 0;
-  before_ = latest_ = snapshot();
+  keep_both();
 }
 
 void Scene::archive(CME212::Archive& a) {
@@ -71,7 +70,8 @@ void Scene::archive(CME212::Archive& a) {
   a(looked_)(sampled_)(drag_power_);
   for (Snapshot* s : {&before_, &latest_}) {
     bool whole = s->version == cloth_.version();  // nothing torn since
-    a(s->position)(s->value)(s->clock)(s->flow)(s->control)(whole);
+    s->nodes.archive(a);
+    a(s->clock)(s->flow)(s->control)(whole);
     if (a.loads()) s->version = whole ? cloth_.version() : ~cloth_.version();
   }
 }
@@ -83,11 +83,13 @@ bool Scene::step(double t_end) {
   if (!advance()) return steered ? take_back() : replay(clock_.steps + 1);
   const bool now = cloth_.version() != version_ || done(t_end);
   if (control_ && !drag_.none()) sample_drag(now);
-  if (control_ && (now || clock_.steps % StepControl::look_interval == 0) &&
-      !judge())
-    return take_back();
-  if (now || clock_.steps - checked_.steps >= guard_interval) return look();
-  return true;
+  const bool judged =
+      control_ && (now || clock_.steps % StepControl::look_interval == 0);
+  const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
+  if (!judged && !guarded) return true;
+  const Energies e = energy();
+  if (judged && !judge(e)) return take_back();
+  return !guarded || look(e);
 }
 
 bool Scene::check() {
@@ -95,9 +97,11 @@ bool Scene::check() {
   return is_finite() || replay(clock_.steps);
 }
 
-bool Scene::is_finite() const {
-  return std::isfinite(energies(cloth_, recipe_.gravity).total());
+Energies Scene::energy() const {
+  return energies(cloth_, recipe_.gravity, flow());
 }
+
+bool Scene::is_finite() const { return std::isfinite(energy().total()); }
 
 /** Add what drag took since the last sample, if velocities may have changed
  * since then, or if there is a look @a now. */
@@ -113,57 +117,57 @@ void Scene::sample_drag(bool now) {
   drag_power_ = power, sampled_ = time();
 }
 
-/** Of the one who chooses the step.  @return false: take it back */
-bool Scene::judge() {
+/** Of the one who chooses the step, at the energy @a e.
+ * @return false: take it back */
+bool Scene::judge(const Energies& e) {
   const double h = time() - looked_;
   looked_ = time();
   using Verdict = StepControl::Verdict;
-  const Verdict verdict = control_->look(
-      energies(cloth_, recipe_.gravity, flow()), flow(), h, time() / t_end_);
+  const Verdict verdict = control_->look(e, flow(), h, time() / t_end_);
   if (verdict == Verdict::take_back) return false;
   if (cloth_.version() != version_) {
-    before_ = latest_ = snapshot();  // what is gone does not come back
+    keep_both();  // what is gone does not come back
   } else if (verdict == Verdict::keep) {
     std::swap(before_, latest_);
-    latest_ = snapshot();
+    keep(latest_);
   }
   return true;
 }
 
-Scene::Snapshot Scene::snapshot() const {
-  const auto x = cloth_.positions();
-  const auto v = cloth_.node_values();
-  return {{x.begin(), x.end()}, {v.begin(), v.end()}, clock_, flow(),
-          control_->state(),    cloth_.version()};
+/** Make the present state one to go back to. */
+void Scene::keep(Snapshot& s) const {
+  s.nodes.keep(cloth_);
+  s.clock = clock_, s.flow = flow(), s.control = control_->state();
+  s.version = cloth_.version();
+}
+void Scene::keep_both() {
+  keep(latest_);
+  before_ = latest_;
 }
 
 /** On from a state before, by a shorter step.  @return true: no failure */
 bool Scene::take_back() {
   const long long steps = clock_.steps - before_.clock.steps;
-  for (Node n : cloth_.nodes()) {
-    if (n.id() >= before_.position.size()) continue;
-    n.position() = before_.position[n.id()];
-    n.value() = before_.value[n.id()];
-  }
+  before_.nodes.restore(cloth_);
   EnergyFlow flow = before_.flow;
   if (cloth_.version() != before_.version)  // torn meanwhile
     flow.removed += before_.control.last + flow.work - flow.removed -
-                    flow.drag - energies(cloth_, recipe_.gravity).total();
+                    flow.drag - energy().total();
   clock_ = before_.clock;
   control_->take_back(before_.control, steps);
   clock_.set_dt(control_->dt());
   balance_->resume(cloth_, time(), constraint_, flow);
   method_->restart();
   looked_ = sampled_ = time(), drag_power_ = drag_.power(cloth_);
-  before_ = latest_ = snapshot();
+  keep_both();
   guard_->keep(cloth_);
   keep_clock();
   return true;
 }
 
-/** Of the guard. */
-bool Scene::look() {
-  if (!guard_->accept(cloth_, flow()))
+/** Of the guard, at the energy @a e. */
+bool Scene::look(const Energies& e) {
+  if (!guard_->accept(cloth_, e, flow()))
     return control_ && control_->can_shorten() ? take_back()
                                                : replay(clock_.steps);
   keep_clock();
@@ -255,7 +259,7 @@ bool Scene::replay(long long last) {
   rewind();
   while (clock_.steps < last) {
     if (!advance()) return fail("failed (" + error_ + ")");
-    if (!guard_->accept(cloth_, balance_->flow())) return fail("diverged");
+    if (!guard_->accept(cloth_, flow())) return fail("diverged");
     keep_clock();
   }
   return true;  // what was torn meanwhile is gone, so it may go well now
@@ -316,7 +320,8 @@ Attempt Scene::attempt(const Cure& cure, double t_end) const {
     double left = trial_work;
     while (!trial.done(t_end) && left > 0 && trial.step(t_end))
       left -= evaluations * (g.num_nodes() + g.num_edges());
-    return {trial.failure().empty() && (trial.done(t_end) || trial.look()),
+    return {trial.failure().empty() &&
+                (trial.done(t_end) || trial.look(trial.energy())),
             trial.time()};
   } catch (const std::invalid_argument&) {  // not with this force
     return {false, 0};

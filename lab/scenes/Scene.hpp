@@ -131,8 +131,7 @@ class Scene {
 
   /** A state of the cloth to go back to. */
   struct Snapshot {
-    std::vector<Point> position;
-    std::vector<NodeData> value;
+    NodeStates nodes;
     Clock clock;
     EnergyFlow flow;
     StepControl::State control;
@@ -172,10 +171,12 @@ class Scene {
   bool is_finite() const;
   bool advance();
   void sample_drag(bool now);
-  bool judge();
+  Energies energy() const;
+  bool judge(const Energies& e);
   bool take_back();
-  Snapshot snapshot() const;
-  bool look();
+  void keep(Snapshot& s) const;
+  void keep_both();
+  bool look(const Energies& e);
   bool replay(long long last);
   void rewind();
   bool fail(const std::string& what);

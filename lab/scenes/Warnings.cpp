@@ -14,13 +14,10 @@ namespace lab {
 
 namespace {
 
+using CME212::count_of;
 using CME212::short_text;
 using Triangle = std::array<Point, 3>;
 
-/** "1 node", "2 nodes" */
-std::string count_of(std::size_t n, const std::string& what) {
-  return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
-}
 const char* it_or_them(std::size_t n) { return n == 1 ? "it" : "them"; }
 
 /** Also what a scene leaves to the default. */

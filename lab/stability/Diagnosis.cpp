@@ -77,6 +77,11 @@ std::string in_words(Cause cause, const FailedRun& run) {
     out << "dt is " << run.dt / seconds << " times the stability limit ("
         << seconds << " s";
   };
+  auto in_verlets = [&] {
+    if (std::isfinite(run.verlet))
+      out << " (dt is " << run.dt / run.verlet
+          << " times verlet's stability limit)";
+  };
   switch (cause) {
     case Cause::step:
       if (run.dt > 0.97 * run.sharp)
@@ -108,15 +113,11 @@ std::string in_words(Cause cause, const FailedRun& run) {
       break;
     case Cause::method:
       out << info.name << " fails with: " << info.fails_when;
-      if (std::isfinite(run.verlet))
-        out << " (dt is " << run.dt / run.verlet
-            << " times verlet's stability limit)";
+      in_verlets();
       break;
     case Cause::solver:
       out << "that step can't be made";
-      if (std::isfinite(run.verlet))
-        out << " (dt is " << run.dt / run.verlet
-            << " times verlet's stability limit)";
+      in_verlets();
       break;
     case Cause::start:
       out << "the start itself is at fault, whatever the method and the step";

@@ -58,7 +58,7 @@ void EnergyBalance::follow(const Cloth& g, double t,
                   0.5 * dot(f + h.force, x - h.place);
     h = {h.node, x, v, f};
   }
-  find_carrier(g);
+  find_carrier(g, t, constraint);
 }
 
 void EnergyBalance::resume(const Cloth& g, double t,
@@ -69,20 +69,17 @@ void EnergyBalance::resume(const Cloth& g, double t,
   for (Held& h : held_)
     if (g.has_node(h.node))
       h = {h.node, h.node.position(), h.node.value().vel, force_(h.node, t)};
-  // A held node may start with a velocity of its own: that carries nothing.
+  find_carrier(g, t, constraint);
+}
+
+/** By places: a held node may start with a velocity of its own, which carries
+ * nothing. */
+void EnergyBalance::find_carrier(const Cloth& g, double t,
+                                 const ConstraintPlan& constraint) {
   Point sum;
   int count = 0;
   constraint.each_place(
       g, t, [&](Node, const Place& place) { sum += place.velocity, ++count; });
-  flow_.loose = count == 0;
-  flow_.carried = count > 0 ? sum / count : Point();
-}
-
-void EnergyBalance::find_carrier(const Cloth& g) {
-  Point sum;
-  int count = 0;
-  for (const Held& h : held_)
-    if (g.has_node(h.node)) sum += h.velocity, ++count;
   flow_.loose = count == 0;
   flow_.carried = count > 0 ? sum / count : Point();
 }

@@ -76,7 +76,7 @@ class EnergyBalance {
   Exchange seen_;  // of the constraint, until the last step
   EnergyFlow flow_;
 
-  void find_carrier(const Cloth& g);
+  void find_carrier(const Cloth& g, double t, const ConstraintPlan& constraint);
 };
 
 }  // namespace lab

@@ -23,8 +23,8 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
   keep(g);
 }
 
-bool DivergenceGuard::accept(const Cloth& g, const EnergyFlow& flow) {
-  const Energies e = energies(g, gravity_, flow);
+bool DivergenceGuard::accept(const Cloth& g, const Energies& e,
+                             const EnergyFlow& flow) {
   if (!std::isfinite(e.total())) return false;
   const double released = height_ - e.gravitational - flow.removed;
   const double carried = e.kinetic - e.relative;
@@ -37,14 +37,14 @@ bool DivergenceGuard::accept(const Cloth& g, const EnergyFlow& flow) {
   return true;
 }
 
-void DivergenceGuard::keep(const Cloth& g) {
+void NodeStates::keep(const Cloth& g) {
   auto x = g.positions();
   auto v = g.node_values();
   position_.assign(x.begin(), x.end());
   value_.assign(v.begin(), v.end());
 }
 
-void DivergenceGuard::restore(Cloth& g) const {
+void NodeStates::restore(Cloth& g) const {
   for (Node n : g.nodes()) {
     if (n.id() >= position_.size()) continue;
     n.position() = position_[n.id()];

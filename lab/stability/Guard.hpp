@@ -7,6 +7,21 @@
 
 namespace lab {
 
+/** What nodes had at some time, by id. */
+class NodeStates {
+ public:
+  /** Those of @a g.  O(N) */
+  void keep(const Cloth& g);
+  /** Give @a g the positions and values that were kept. Nodes added since stay
+   * as they are, nodes removed since stay removed.  O(N) */
+  void restore(Cloth& g) const;
+  void archive(CME212::Archive& a) { a(position_)(value_); }
+
+ private:
+  std::vector<Point> position_;
+  std::vector<NodeData> value_;
+};
+
 /** Watches the energy of a run and keeps the last state that was good.
  *
  * Kinetic and elastic energy of a cloth come from its start, from its weight
@@ -35,28 +50,30 @@ class DivergenceGuard {
 
   /** True if the state of @a g is good; then it is kept.  O(N + springs)
    * @param flow into its energy since the start */
-  bool accept(const Cloth& g, const EnergyFlow& flow = {});
+  bool accept(const Cloth& g, const EnergyFlow& flow = {}) {
+    return accept(g, energies(g, gravity_, flow), flow);
+  }
+  /** The same of one whose energy @a e with that flow is known. */
+  bool accept(const Cloth& g, const Energies& e, const EnergyFlow& flow);
   /** Keep the state of @a g, good or not.  O(N) */
-  void keep(const Cloth& g);
+  void keep(const Cloth& g) { kept_.keep(g); }
 
   /** An energy that is next to nothing [J]: that of a free fall of one step,
    * and of springs strained by round-off. */
   double floor() const { return floor_; }
 
-  /** Give @a g the positions and velocities of the last good state. Nodes added
-   * since stay as they are, nodes removed since stay removed. */
-  void restore(Cloth& g) const;
+  /** Give @a g the last good state: NodeStates::restore(). */
+  void restore(Cloth& g) const { kept_.restore(g); }
 
   /** Save or load the last good state, and what was available. */
-  void archive(CME212::Archive& a) { a(available_)(position_)(value_); }
+  void archive(CME212::Archive& a) { a(available_), kept_.archive(a); }
 
  private:
   double gravity_, height_ = 0;   // height_: gravitational at the start [J]
   double dt_;                     // [s]
   double start_ = 0, floor_ = 0;  // [J]
   double available_ = 0;          // the most so far [J]
-  std::vector<Point> position_;
-  std::vector<NodeData> value_;
+  NodeStates kept_;
 };
 
 }  // namespace lab

@@ -83,14 +83,13 @@ bool StepControl::lengthen(const EnergyFlow& flow) {
   if (failures_ > 0 && now_.since >= patience) {
     now_.ceiling *= std::pow(1.05, 1 << std::min(now_.raises, 3));
     ++now_.raises;
-    if (damped < 1) now_.since = 0;
+    if (!damped) now_.since = 0;
   }
   const double most = damped ? now_.ceiling
                       : now_.calm >= 2 * patience
                           ? std::min(first_, now_.ceiling)
                           : 0;
-  const double factor =
-      damped >= 1 && failures_ == 0 ? longer * longer : longer;
+  const double factor = damped && failures_ == 0 ? longer * longer : longer;
   const double next = std::min(factor * now_.dt, most);
   if (!(next > 1.02 * now_.dt)) return false;
   change(next, flow.drag);

@@ -328,8 +328,7 @@ void FrameFolder::finish() const {
 }
 
 std::string FrameFolder::wrote() const {
-  return std::to_string(times_.size()) +
-         (times_.size() == 1 ? " frame " : " frames ") + ending_of(format_) +
+  return CME212::count_of(times_.size(), "frame") + ' ' + ending_of(format_) +
          " in " + folder_;
 }
 

@@ -348,14 +348,14 @@ int parse(int argc, char** argv, Options& o) {
   const auto given = [&](const char* name) {
     return app.count(name) > 0 || std::ranges::count(in_file, name) > 0;
   };
-  if (given("--tolerance") && !o.advise && !o.automatic && o.advised.empty())
+  if (given("--tolerance") && !o.asks_advice()) {
     control_error(o.model, given);
-  if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet &&
-      !o.advise && !o.automatic && o.advised.empty())
-    std::cerr << "cloth: warning: --tolerance has no effect on "
-              << o.model.method->info.name
-              << ", which does not control its error: leave --dt and --method "
-                 "away, or take --method dop853\n";
+    if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet)
+      std::cerr << "cloth: warning: --tolerance has no effect on "
+                << o.model.method->info.name
+                << ", which does not control its error: leave --dt and "
+                   "--method away, or take --method dop853\n";
+  }
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;

@@ -26,6 +26,8 @@ struct Options {
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
 
+  /** True if advice comes before the run, or instead of it. */
+  bool asks_advice() const { return advise || automatic || !advised.empty(); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
 };
 

@@ -185,8 +185,7 @@ int Run::finish() {
   if (csv_)
     write([this] {
       csv_->commit();
-      wrote(o_.csv + " (" + std::to_string(rows_) +
-            (rows_ == 1 ? " row)" : " rows)"));
+      wrote(o_.csv + " (" + CME212::count_of(std::size_t(rows_), "row") + ')');
     });
   if (out_) write([this] { write_mesh(); });
   write([this] {
