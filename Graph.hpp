@@ -102,7 +102,16 @@ class Graph {
     Node() = default;
 
     /** The place of the node in space, to read or to move. */
-    Point& position() { return at(graph().position_); }
+    Point& position() {
+      // BEGIN SOLUTION 3.1.position 4pt
+      return at(graph().position_);
+      // STUB // A copy, one of some that an expression may need together: what
+      // STUB // is written to it does not reach the graph.
+      // STUB thread_local Point copies[8];
+      // STUB thread_local unsigned count = 0;
+      // STUB return copies[count++ % 8] = at(graph().position_);
+      // END SOLUTION
+    }
     const Point& position() const { return at(graph().position_); }
     /** The value of the node. */
     node_value_type& value() { return at(graph().node_value_); }
@@ -178,8 +187,13 @@ class Graph {
     Node node2() const { return end(1 - half_ % 2); }
 
     /** The value of the edge: one, whichever end it is seen from. */
+    // BEGIN SOLUTION 4.1.edge_value 6pt
     edge_value_type& value() { return graph().edge_value_[id()]; }
     const edge_value_type& value() const { return graph().edge_value_[id()]; }
+    // STUB edge_value_type& value() { return no_edges_; }
+    // STUB const edge_value_type& value() const { return no_edges_; }
+    // STUB static inline edge_value_type no_edges_{};  // belongs to no edge
+    // END SOLUTION
 
     /** Distance of the two ends, now. */
     double length() const {
@@ -272,6 +286,7 @@ class Graph {
    * Complexity: O(sum of degree() over @a n's neighbors), whatever
    *       num_nodes(); the first removal of all takes O(num_nodes()). */
   size_type remove_node(const Node& n) {
+    // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
     size_type id = n.id_;  // n may be a reference into what changes below
     for (Half h : pool_.items(neighbors_of_[id])) {
@@ -284,14 +299,21 @@ class Graph {
     nodes_.release(id);
     ++version_;
     return 1;
+    // STUB (void)n;
+    // STUB return 0;
+    // END SOLUTION
   }
   /** Remove the node at @a it, as remove_node(*it).
    * @return an iterator at the node that now has the index, or node_end(): so
    *         `it = g.remove_node(it)` in place of ++it visits every node once.
    * @pre @a it != node_end() */
   node_iterator remove_node(node_iterator it) {
+    // BEGIN SOLUTION 7.1.remove_node_iterator 3pt
     remove_node(*it);
     return it;
+    // STUB (void)it;
+    // STUB return node_end();
+    // END SOLUTION
   }
 
   // ------------------------------------------------------------------ Edges
@@ -321,7 +343,10 @@ class Graph {
     pool_.reserve_one(neighbors_of_[j]);
     edges_.acquire();
     ends_[id] = {i, j};
+    // BEGIN SOLUTION 4.1.edge_value
     edge_value_[id] = std::move(copy);
+    // STUB (void)copy;
+    // END SOLUTION
     pool_.push_back(neighbors_of_[i], {j, 2 * id});
     pool_.push_back(neighbors_of_[j], {i, 2 * id + 1});
     ++version_;
@@ -356,24 +381,36 @@ class Graph {
    * Complexity: O(a.degree() + b.degree()); the first removal of all takes
    *       O(num_edges()). */
   size_type remove_edge(const Node& a, const Node& b) {
+    // BEGIN SOLUTION 7.1.remove_edge 6pt
     size_type half = find(a, b);
     return half == none ? 0 : remove_edge(Edge(this, half));
+    // STUB (void)a, (void)b;
+    // STUB return 0;
+    // END SOLUTION
   }
   /** Remove @a e: as above; 0 if !has_edge(e). */
   size_type remove_edge(const Edge& e) {
+    // BEGIN SOLUTION 7.1.remove_edge
     if (!has_edge(e)) return 0;
     size_type id = e.id();
     for (size_type end : ends_[id]) drop_from_list(end, id);
     drop_edge(id);
     ++version_;
     return 1;
+    // STUB (void)e;
+    // STUB return 0;
+    // END SOLUTION
   }
   /** Remove the edge at @a it: as above.
    * @return an iterator at the edge that now has the index, or edge_end().
    * @pre @a it != edge_end() */
   edge_iterator remove_edge(edge_iterator it) {
+    // BEGIN SOLUTION 7.1.remove_edge_iterator 3pt
     remove_edge(*it);
     return it;
+    // STUB (void)it;
+    // STUB return edge_end();
+    // END SOLUTION
   }
 
   // ------------------------------------------------------------------ Whole
@@ -600,6 +637,7 @@ class Graph {
 
   /** Take edge @a e out of the list of node @a i. */
   void drop_from_list(size_type i, size_type e) {
+    // BEGIN SOLUTION 7.1.remove_edge
     auto& list = neighbors_of_[i];
     for (size_type k = 0; k < list.size; ++k)
       if (pool_[list.begin + k].edge / 2 == e) {
@@ -607,13 +645,18 @@ class Graph {
         return;
       }
     assert(false);
+    // STUB (void)i, (void)e;
+    // END SOLUTION
   }
 
   /** Release edge @a e, whose ends' lists are not looked at. */
   void drop_edge(size_type e) {
+    // BEGIN SOLUTION 7.1.remove_edge
     ends_[e] = {};
     edge_value_[e] = E();
     edges_.release(e);
+    // STUB (void)e;
+    // END SOLUTION
   }
 
   /** Iterates over proxies, made when asked for. Random access over all nodes

@@ -1,5 +1,4 @@
-# The targets: make help. Those of the laboratory: lab/lab.mk
-#
+# The targets: make help. The laboratory: lab/lab.mk; for teachers: course.mk
 # Every .cpp here is one program: `make NAME` builds ./NAME. What it includes
 # decides what it is linked with: a viewer brings SDL2 and OpenGL, gtest brings
 # GoogleTest.
@@ -51,6 +50,7 @@ help:
 	@echo 'make test_nodes test_edges   the tests of the graph'
 	@echo 'make demo               the cloth on data/grid2: all in one command'
 	@echo 'make submit HW=hw2      tag and push; FORCE=1 moves the tag'
+	@echo 'make starter OUT=DIR    what students start from; solution OUT=DIR'
 	@echo 'make deps | clean | format'
 	@echo 'make help-lab           the laboratory: ./cloth, charts, checks'
 	@echo 'programs: $(PROGRAMS)'
@@ -98,4 +98,4 @@ submit:
 clean:
 	rm -rf build demo cloth $(BUILT)
 
-include CME212/viewer.mk lab/lab.mk
+include CME212/viewer.mk lab/lab.mk course/course.mk

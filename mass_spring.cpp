@@ -69,16 +69,22 @@ int main(int argc, char** argv) try {
   Cloth g;
   const auto points = load_points(argv[1]);
   const auto quads = load_quads(argv[2], points.size());
-  build_cloth(g, points, quads,
-              stage == Stage::problem1 ? Mesh::plain : Mesh::diagonals);
+  // BEGIN SOLUTION 4.2.build_cloth
+  const Mesh mesh = stage == Stage::problem1 ? Mesh::plain : Mesh::diagonals;
+  // STUB const Mesh mesh = Mesh::plain;
+  // END SOLUTION
+  build_cloth(g, points, quads, mesh);
   std::cout << g.num_nodes() << " nodes, " << g.num_edges() << " edges\n";
 
-  const double L = g.num_edges() > 0 ? g.edge(0).value().L : 0;
+  const double L = g.num_edges() > 0 ? g.edge(0).length() : 0;
   const auto force = make_combined_force(GravityForce(), MassSpringForce());
   const auto on_ball = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), SphereConstraint());
+  // BEGIN SOLUTION 7.2.program 2pt
   const auto torn = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), TearConstraint());
+  // STUB const auto torn = on_ball;  // as the stage before
+  // END SOLUTION
   const auto step = [&](double t) {
     if constexpr (stage == Stage::problem1)
       return symp_euler_step(g, t, dt, Problem1Force(100, L));

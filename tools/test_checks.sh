@@ -172,15 +172,15 @@ caught "tree: 81 columns" \
   "mass_spring.hpp:$(wc -l <mass_spring.hpp): is longer than 80 columns" tree $tree
 again small; printf '//%78s\n' x >>CME212/SlotMap.hpp
 clean "tree: 80 columns are none too many" $tree
-again; comment_lines 701 >Graph.hpp
-caught "tree: 701 lines of Graph.hpp" \
-  "Graph.hpp:700: goes on to line 701; the limit is 700" tree $tree
+again; comment_lines 761 >Graph.hpp
+caught "tree: 761 lines of Graph.hpp" \
+  "Graph.hpp:760: goes on to line 761; the limit is 760" tree $tree
 again; comment_lines 501 >mass_spring.hpp
 caught "tree: 501 lines of another" \
   "mass_spring.hpp:500: goes on to line 501; the limit is 500" tree $tree
 again small; comment_lines 500 >CME212/SlotMap.hpp; cp CME212/SlotMap.hpp Graph.hpp
-comment_lines 200 >>Graph.hpp
-clean "tree: 500 and 700 lines are none too many" $tree
+comment_lines 260 >>Graph.hpp
+clean "tree: 500 and 760 lines are none too many" $tree
 again; sed -i '1i int   i;' mass_spring.hpp
 caught "tree: not laid out" "mass_spring.hpp:1: is not laid out" tree $tree
 again; printf '// \303\251\n' >>mass_spring.hpp

@@ -1,0 +1,221 @@
+"""Split a source with markers into solution and starter.
+
+    // BEGIN SOLUTION 7.1.remove_node 8pt
+    ...
+    // STUB (void)n;
+    // STUB return 0;
+    // END SOLUTION
+
+The solution stands between BEGIN and the first STUB, if there is one. In a
+starter a comment and the stubs stand in its place. The points stand at the
+first region of a task. Run as a program it checks the repository's sources.
+"""
+import re
+import sys
+from dataclasses import dataclass
+
+import tasks
+
+# The sources with markers, in the order in which they are read.
+SOURCES = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp")
+
+BEGIN = re.compile(r"( *)// BEGIN SOLUTION (\S+)(?: (\d+)pt)?")
+STUB = re.compile(r"( *)// STUB (\S.*| +\S.*)")
+END = re.compile(r" *// END SOLUTION")
+LOOKS_LIKE_ONE = re.compile(
+    r"\b(begin|end)\W+solution\b|//\W*stub\b", re.IGNORECASE)
+
+
+class MarkerError(Exception):
+    """Faults, each `FILE:LINE: what is wrong`."""
+
+    def __init__(self, faults):
+        super().__init__("\n".join(faults))
+        self.faults = faults
+
+
+@dataclass(frozen=True)
+class Region:
+    task: str
+    points: int | None
+    indent: str
+    solution: tuple  # lines
+    stubs: tuple  # lines
+    file: str
+    line: int  # of BEGIN
+
+
+def split(text, file):
+    """`text` as a list of lines and Regions.  Throws MarkerError."""
+    pieces, faults = [], []
+    begin = None  # the line number and the match of an open region
+    solution, stubs = [], []
+
+    def fault(what, at):
+        faults.append(f"{file}:{at}: {what}")
+
+    for number, line in enumerate(text.splitlines(keepends=True), 1):
+        bare = line.rstrip("\r\n")
+        if match := BEGIN.fullmatch(bare):
+            if begin:
+                fault("BEGIN SOLUTION in a region that began in line "
+                      f"{begin[0]}: regions do not nest", number)
+            begin, solution, stubs = (number, match), [], []
+        elif END.fullmatch(bare):
+            if not begin:
+                fault("END SOLUTION without a BEGIN SOLUTION", number)
+                continue
+            at, head = begin
+            if not "".join(solution).strip():
+                fault("the region holds no solution", at)
+            points = None if head[3] is None else int(head[3])
+            pieces.append(Region(head[2], points, head[1], tuple(solution),
+                                 tuple(stubs), file, at))
+            begin = None
+        elif match := STUB.fullmatch(bare):
+            if not begin:
+                fault("STUB outside of a region", number)
+            stubs.append(match[1] + match[2] + "\n")
+        elif LOOKS_LIKE_ONE.search(bare):
+            fault("this marker is malformed, expected '// BEGIN SOLUTION TASK "
+                  "[POINTSpt]', '// STUB code' or '// END SOLUTION' on a line "
+                  "of its own", number)
+        elif not begin:
+            pieces.append(line)
+        elif stubs:
+            fault("code behind a STUB: stubs stand last in a region", number)
+        else:
+            solution.append(line)
+    if begin:
+        fault("BEGIN SOLUTION without an END SOLUTION", begin[0])
+    if faults:
+        raise MarkerError(faults)
+    return pieces
+
+
+def regions(text, file):
+    return [piece for piece in split(text, file) if isinstance(piece, Region)]
+
+
+def solution(text, file="text"):
+    """`text` without its markers."""
+    return stub(text, (), file=file)
+
+
+def stub(text, only, course=None, file="text"):
+    """`text` without its markers, and with stubs in place of the solutions of
+    the tasks `only`. The comment above them names points and page if the
+    `course` is given."""
+    out, seen = [], set()
+    for piece in split(text, file):
+        if not isinstance(piece, Region):
+            out.append(piece)
+        elif piece.task not in only:
+            out += piece.solution
+        else:
+            task = course.tasks.get(piece.task) if course else None
+            out.append(piece.indent + comment(piece.task, task,
+                                              piece.points is None) + "\n")
+            out += piece.stubs
+            seen.add(piece.task)
+    return "".join(out)
+
+
+def comment(id, task, further):
+    """The line that stands where a solution was."""
+    page = ""
+    if task and task.section.page:
+        page = f": course page {task.section.id}"
+    if further:
+        return f"// YOUR CODE {id}, too{page}"
+    points = ""
+    if task and task.points:
+        points = f" ({task.points} point{'s' * (task.points != 1)})"
+    return f"// YOUR CODE {id}{points}{page}"
+
+
+def starter(text, course, file="text"):
+    """`text` as the students get it: stubs for all tasks that are asked."""
+    return stub(text, course.tasks, course, file)
+
+
+def check(texts, course, tests=(), tasks_file=tasks.FILE):
+    """Hold the regions of `texts`, {file: text}, to the tasks of `course`;
+    `tests` are the names of the tests that there are. Throws MarkerError."""
+    faults, first = [], {}
+    for file, text in texts.items():
+        try:
+            found = regions(text, file)
+        except MarkerError as error:
+            faults += error.faults
+            continue
+        for region in found:
+            faults += check_region(region, first, course, tasks_file)
+    if not faults:
+        for id, task in course.tasks.items():
+            if task.points and id not in first and not any(
+                    test in tests for test in task.tests):
+                faults.append(f"{tasks_file}:{task.line}: task {id} has "
+                              "points, but neither a region nor a test")
+    if faults:
+        raise MarkerError(faults)
+
+
+def check_region(region, first, course, tasks_file):
+    """Faults of a region; `first` holds the first region of each task."""
+    at, id = f"{region.file}:{region.line}", region.task
+    before = first.setdefault(id, region)
+    if id in course.dropped:
+        return []  # its points do not matter
+    if id not in course.tasks:
+        return [f"{at}: there is no task '{id}' in {tasks_file}"]
+    points = course.tasks[id].points
+    if before is not region:
+        if region.points is not None:
+            return [f"{at}: the points of {id} stand at its first region, "
+                    f"{before.file}:{before.line}, and nowhere else"]
+    elif region.points is None and points:
+        return [f"{at}: the first region of {id} gives no points, expected "
+                f"{points}pt as in {tasks_file}"]
+    elif region.points is not None and region.points != points:
+        return [f"{at}: {id} has {region.points} points here and {points} in "
+                f"{tasks_file}:{course.tasks[id].line}"]
+    return []
+
+
+def read_sources(root=tasks.ROOT):
+    """{file: text} of the sources with markers."""
+    texts = {}
+    for name in SOURCES:
+        try:
+            texts[name] = (root / name).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            reason = getattr(error, "strerror", None) or "it is not UTF-8"
+            raise MarkerError([f"{name}: can't be read ({reason})"]) from None
+    return texts
+
+
+def names_of_tests(root=tasks.ROOT):
+    return {path.stem for path in (root / "course/tests").glob("*.*.cpp")}
+
+
+def load(root=tasks.ROOT):
+    """The checked sources and tasks of the repository: (texts, course)."""
+    course = tasks.load(root / tasks.FILE)
+    texts = read_sources(root)
+    check(texts, course, names_of_tests(root))
+    return texts, course
+
+
+def main():
+    try:
+        texts, course = load()
+    except (tasks.TasksError, MarkerError) as error:
+        sys.exit(str(error))
+    found = [r for file, text in texts.items() for r in regions(text, file)]
+    print(f"{len(found)} regions of {len({r.task for r in found})} tasks; "
+          f"{len(course.tasks)} tasks, {course.points} points")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+"""Make what a student starts from, or the same tree solved:
+
+    OUT=DIR python3 course/kit/starter.py starter|solution
+
+OUT must be new or empty; it appears whole or not at all. The same sources give
+the same bytes.
+"""
+import json
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+
+import markers
+import tasks
+
+# Globs in the repository -> the folder of the starter, and what stays out.
+COPIED = [
+    ("LICENSE test_nodes.cpp test_edges.cpp", ".", ""),
+    ("CME212/*.hpp CME212/*.cpp CME212/*.mk", "CME212", ""),
+    ("data/grid*.nodes data/grid*.tets", "data", "grid4.nodes grid4.tets"),
+    ("course/*.md", "pages", "README.md"),
+    ("course/pictures/*.png course/pictures/*.svg", "pages/pictures", ""),
+    ("course/starter/Makefile course/starter/README.md", ".", ""),
+    ("course/starter/tests.mk", "tests", ""),
+    ("tools/submit.sh", "tools", ""),
+]
+TESTS = "course/tests"
+WORKFLOW = "course/starter/classroom.yml"
+
+
+class StarterError(Exception):
+    pass
+
+
+def tree(kind, root=tasks.ROOT):
+    """{path: (bytes, is it a program?)} of a starter or a solution."""
+    texts, course = markers.load(root)
+    files = {}
+
+    def add(path, content, program=False):
+        if isinstance(content, str):
+            content = content.encode()
+        files[path] = (content, program)
+
+    for file, text in texts.items():
+        add(file, markers.starter(text, course, file) if kind == "starter"
+            else markers.solution(text, file))
+    for globs, folder, but in COPIED:
+        for glob in globs.split():
+            for path in sorted(root.glob(glob)):
+                if path.name not in but.split():
+                    add(os.path.normpath(f"{folder}/{path.name}"),
+                        path.read_bytes(), path.suffix == ".sh")
+    for path in sorted((root / TESTS).rglob("*")):
+        name = path.relative_to(root / TESTS).as_posix()
+        if path.is_file() and not is_unasked(name, course):
+            add(f"tests/{name}", path.read_bytes())
+    add("tests/tasks.inc", table_of(course))
+    add(".gitignore", (root / "course/starter/gitignore").read_bytes())
+    add(".github/workflows/classroom.yml",
+        workflow((root / WORKFLOW).read_text(encoding="utf-8"), course))
+    return files
+
+
+def is_unasked(test, course):
+    """Does a test serve only tasks that were dropped?"""
+    name = test.removesuffix(".cpp")
+    return name in course.dropped and not any(
+        name in task.tests for task in course.tasks.values())
+
+
+def table_of(course):
+    """The tasks as a C++ program reads them."""
+    lines = ["// X(id, title, points, says, hint): the tasks, as the course "
+             "has them."]
+    for task in course.tasks.values():
+        texts = [json.dumps(text) for text in (
+            task.id, task.title, task.says, task.hint)]
+        lines.append(f"X({texts[0]}, {texts[1]}, {task.points},\n  "
+                     f"{texts[2]},\n  {texts[3]})")
+    return "\n".join(lines) + "\n"
+
+
+def workflow(text, course):
+    """The template with its lines between `# EACH TASK` and `# END` once for
+    each task that counts, and the names of these steps in @RUNNERS@."""
+    before, _, rest = text.partition("      # EACH TASK\n")
+    each, _, after = rest.partition("      # END\n")
+    counted = [task for task in course.tasks.values() if task.counted]
+    steps, results = [], []
+    for task in counted:
+        step = "task-" + task.id.replace(".", "-")
+        results.append((step.upper(), step))
+        steps.append(each.replace("@STEP@", step).replace("@ID@", task.id)
+                     .replace("@TITLE@", json.dumps(f"{task.id} {task.title}"))
+                     .replace("@POINTS@", str(task.points)))
+    environment = "".join(
+        f"          {name}_RESULTS: ${{{{ steps.{step}.outputs.result }}}}\n"
+        for name, step in results)
+    after = after.replace("          @RESULTS@\n", environment)
+    return before + "".join(steps) + after.replace(
+        "@RUNNERS@", ",".join(step for _, step in results))
+
+
+def place(out):
+    """The folder to write.  Throws StarterError unless it is new or empty."""
+    if not out:
+        raise StarterError("OUT is missing: make starter OUT=DIR, a folder "
+                           "that is new or empty")
+    path = pathlib.Path(os.path.realpath(out))
+    if path.exists() and not path.is_dir():
+        raise StarterError(f"OUT is '{out}', which is a file, expected a "
+                           "folder that is new or empty")
+    if path.is_dir() and any(path.iterdir()):
+        raise StarterError(f"OUT is '{out}', which is not empty, expected a "
+                           "folder that is new or empty; nothing was written")
+    return path
+
+
+def write(files, path):
+    """All of `files` in the folder `path`, or nothing."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = pathlib.Path(tempfile.mkdtemp(prefix=f".{path.name}-",
+                                           dir=path.parent))
+    try:
+        for name, (content, program) in files.items():
+            file = beside / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+            file.chmod(0o755 if program else 0o644)
+        beside.chmod(0o755)
+        beside.rename(path)
+    except BaseException:
+        shutil.rmtree(beside, ignore_errors=True)
+        raise
+
+
+def main(arguments):
+    if len(arguments) != 1 or arguments[0] not in ("starter", "solution"):
+        sys.exit("usage: OUT=DIR starter.py starter|solution")
+    kind = arguments[0]
+    try:
+        path = place(os.environ.get("OUT", ""))
+        files = tree(kind)
+        write(files, path)
+    except (StarterError, tasks.TasksError, markers.MarkerError) as error:
+        sys.exit(str(error))
+    except OSError as error:
+        sys.exit(f"{error.filename}: {error.strerror}; nothing was written")
+    print(f"{kind}: {len(files)} files in {path}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
