@@ -1,0 +1,73 @@
+/** @file 3.1.position.cpp
+ * Positions that can be changed. */
+#include "graph.hpp"
+
+namespace kit {
+/** Move node @a v of @a s and look at it through other handles. */
+template <typename S>
+static void check_move(S& s, int v) {
+  auto n = s.node(v), copy = n;
+  constexpr bool assigns = requires { n.position() = Point(); };
+  constexpr bool adds = requires { n.position() += Point(); };
+  need<assigns && adds>("n.position() = p and n.position() += p");
+  if constexpr (assigns && adds) {
+    const auto index = n.index();
+    auto others = [&s, index] {
+      std::vector<Point> all;
+      for (std::size_t i = 0; i < s.m.nodes.size(); ++i)
+        if (!equal(index, i)) all.push_back(position_of(node_at(s.g, i)));
+      return all;
+    };
+    const auto before = others();
+    DID("n.position() = (0, 5, 1)");
+    n.position() = Point(0, 5, 1);
+    CHECK_EQUAL(position_of(n), Point(0, 5, 1));
+    DID("n.position() = (0, 5, 1), then looked at a copy of n");
+    CHECK_EQUAL(position_of(copy), Point(0, 5, 1));
+    DID("n.position() = (0, 5, 1), then looked at node(n.index())");
+    CHECK_EQUAL(position_of(s.g.node(index)), Point(0, 5, 1));
+    DID("n.position() += (1, 0, 1)");
+    n.position() += Point(1, 0, 1);
+    CHECK_EQUAL(position_of(s.g.node(index)), Point(1, 5, 2));
+    CHECK_EQUAL(n.index(), index);
+    if constexpr (requires { n.position().x += 1; }) {
+      DID("n.position().x += 1");
+      n.position().x += 1;
+      CHECK_EQUAL(position_of(copy), Point(2, 5, 2));
+    }
+    DID("n.position() = p");
+    CHECK(before == others(), "the positions of all other nodes stay");
+    n.position() = place(v);
+  }
+}
+}  // namespace kit
+
+TASK("3.1.position", a_node_is_moved) {
+  for (int v : {0, 3, 5}) {
+    TestSubject s(ring(6));
+    check_move(s, v);
+    DID("moved a node of a ring of 6 and put it back");
+    s.hold();
+  }
+}
+
+namespace kit {
+template <typename S>
+static void check_moves_in_a_loop(S& s) {
+  auto it = s.g.node_begin(), end = s.g.node_end();
+  constexpr bool there = requires { (*it).position() += Point(); };
+  need<there>("(*it).position() += p");
+  if constexpr (there) {
+    for (; !same(it, end); ++it) (*it).position() += Point(0, 0, 0.5);
+    for (int v = 0; v < int(s.m.nodes.size()); ++v)
+      CHECK_EQUAL(position_of(node_at(s.g, v)), place(v) + Point(0, 0, 0.5));
+  }
+}
+}  // namespace kit
+
+TASK("3.1.position", all_nodes_are_moved_in_a_loop) {
+  TestSubject s(ring(6));
+  if (!(s.works & node_loop)) return;  // the fault of another task
+  DID("(*it).position() += (0, 0, 0.5) for all nodes of a ring of 6");
+  check_moves_in_a_loop(s);
+}

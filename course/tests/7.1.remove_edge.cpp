@@ -1,0 +1,87 @@
+/** @file 7.1.remove_edge.cpp
+ * remove_edge(a, b) and remove_edge(e): one edge goes, all else stays. */
+#include "graph.hpp"
+
+namespace kit {
+/** Remove each edge of a wheel, each from a wheel of its own, by @a remove. */
+template <typename S, typename F>
+static void check_remove_edge(const char* call, F remove) {
+  for (Ends e : wheel(5).edges) {
+    S s(wheel(5));
+    const auto did = words("a wheel of 5 nodes; ", call, " of ", name(e));
+    DID(did);
+    CHECK(remove(s, e), "the result is 1");
+    s.hold();
+    DID(did, "; then remove_edge(", name(e.b), ", ", name(e.a),
+        "), which is not there any more");
+    CHECK(!s.remove_edge(e.b, e.a), "the result is 0");
+    s.hold();
+    DID(did, "; then added it again");
+    s.add_edge(e.b, e.a);
+    s.hold();
+  }
+}
+}  // namespace kit
+
+TASK("7.1.remove_edge", an_edge_is_removed_by_its_ends) {
+  check_remove_edge<TestSubject>("remove_edge(a, b)", [](auto& s, Ends e) {
+    return s.remove_edge(e.a, e.b);
+  });
+  check_remove_edge<TestSubject>("remove_edge(b, a)", [](auto& s, Ends e) {
+    return s.remove_edge(e.b, e.a);
+  });
+}
+
+TASK("7.1.remove_edge", an_edge_is_removed_by_its_handle) {
+  check_remove_edge<TestSubject>("remove_edge(edge(i))", [](auto& s, Ends e) {
+    return s.remove_edge(s.edge(e.a, e.b));
+  });
+  check_remove_edge<TestSubject>(
+      "remove_edge(e), e seen from the first end,", [](auto& s, Ends e) {
+        return s.remove_edge(s.edge_seen_from(e.a, e.b));
+      });
+  check_remove_edge<TestSubject>(
+      "remove_edge(e), e seen from the second end,", [](auto& s, Ends e) {
+        return s.remove_edge(s.edge_seen_from(e.b, e.a));
+      });
+}
+
+TASK("7.1.remove_edge", an_edge_that_is_not_there_is_not_removed) {
+  TestSubject s(ring(6));
+  DID("a ring of 6 nodes; remove_edge(n0, n3), which is not there");
+  CHECK(!s.remove_edge(0, 3), "the result is 0");
+  s.hold();
+}
+
+TASK("7.1.remove_edge", all_edges_are_removed) {
+  TestSubject s(complete(6));
+  Dice dice(71);
+  while (!s.m.edges.empty()) {
+    Ends e = s.m.edges[dice(s.m.edges.size())];
+    DID("6 nodes, all joined; removed edges down to ", s.m.edges.size() - 1,
+        ", the last by remove_edge(", name(e.a), ", ", name(e.b), ")");
+    CHECK(s.remove_edge(e.a, e.b), "the result is 1");
+    s.hold();
+  }
+}
+
+TASK("7.1.remove_edge", edges_come_and_go) {
+  TestSubject s(ring(8));
+  Dice dice(7);
+  for (int step = 0; step < 200; ++step) {
+    const auto after = words("step ", step, " of a random history: ");
+    if (s.m.edges.empty() || dice(2) == 0) {
+      int v = dice(8), w = dice(8);
+      if (v == w) continue;
+      DID(after, "add_edge(", name(v), ", ", name(w), ")");
+      s.add_edge(v, w);
+    } else {
+      Ends e = s.m.edges[dice(s.m.edges.size())];
+      DID(after, "removed ", name(e));
+      CHECK(
+          step % 2 ? s.remove_edge(e.b, e.a) : s.remove_edge(s.edge(e.a, e.b)),
+          "the result is 1");
+    }
+    s.hold();
+  }
+}

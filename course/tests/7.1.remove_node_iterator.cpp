@@ -1,0 +1,53 @@
+/** @file 7.1.remove_node_iterator.cpp
+ * remove_node(it) in a loop: the loop ends and leaves none that it should
+ * remove, whether it visits a node once or more often. */
+#include "graph.hpp"
+
+namespace kit {
+template <typename S, typename F>
+static void remove_nodes_in_a_loop(S& s, F wanted) {
+  const std::size_t size = s.m.nodes.size(), limit = size * size + size + 1;
+  auto it = s.g.node_begin();
+  constexpr bool there = requires { it = s.g.remove_node(it); };
+  need<there>("it = g.remove_node(it)");
+  if constexpr (there) {
+    for (std::size_t steps = 0; !same(it, s.g.node_end()); ++steps) {
+      CHECK(steps < limit, "the loop ends");
+      const int v = name_of(*it);
+      if (!wanted(v)) {
+        ++it;
+        continue;
+      }
+      CHECK(s.m.has(v), "*it is a node of the graph");
+      it = s.g.remove_node(it);
+      s.m.remove(v);
+      CHECK_EQUAL(s.g.num_nodes(), s.m.nodes.size());
+    }
+    for (int v : s.m.nodes)
+      CHECK(!wanted(v), words("the loop removes ", name(v)));
+    s.hold();
+  }
+}
+}  // namespace kit
+
+TASK("7.1.remove_node_iterator", the_loop_leaves_no_node) {
+  const auto loop = [](const Model& shape, const char* which, auto wanted) {
+    TestSubject s(shape);
+    DID("a graph of ", shape.nodes.size(), " nodes and ", shape.edges.size(),
+        " edges; a loop that removes ", which);
+    remove_nodes_in_a_loop(s, wanted);
+  };
+  for (int size : {1, 5, 20})
+    for (const Model& shape : {nodes(size), size < 3 ? nodes(2) : ring(size)}) {
+      loop(shape, "every third", [](int v) { return v % 3 == 0; });
+      loop(shape, "every second", [](int v) { return v % 2 == 0; });
+      loop(shape, "two of three", [](int v) { return v % 3 != 1; });
+      loop(shape, "n0", [](int v) { return v == 0; });
+      loop(shape, "n4", [](int v) { return v == 4; });
+      loop(shape, "n3 and those behind it", [](int v) { return v >= 3; });
+      loop(shape, "none", [](int) { return false; });
+      loop(shape, "all", [](int) { return true; });
+    }
+  loop(grid(5), "every second", [](int v) { return v % 2 == 1; });
+  loop(grid(5), "all but n7", [](int v) { return v != 7; });
+}

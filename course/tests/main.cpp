@@ -1,0 +1,161 @@
+/** @file main.cpp
+ * Runs the tests that are linked with it:
+ *
+ *   ./tests            all tasks, each in a process of its own: a crash or an
+ *                      endless loop costs its own task only
+ *   ./tests 3.1.position    this task, in this process: for a debugger
+ *
+ * What a failure prints: the task, the sentence of the specification that does
+ * not hold, what was done, what was expected, and what to try. */
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <iostream>
+
+#include "check.hpp"
+
+namespace kit {
+namespace {
+
+struct Task {
+  std::string id, title;
+  int points;
+  std::string says, hint;
+};
+/** The tasks in the order of the course. */
+std::vector<Task> tasks() {
+  return {
+#if __has_include("tasks.inc")
+#define X(id, title, points, says, hint) {id, title, points, says, hint},
+#include "tasks.inc"
+#undef X
+#endif
+  };
+}
+
+struct Test {
+  std::string id, name;
+  void (*run)();
+};
+std::vector<Test>& tests() {
+  static std::vector<Test> all;  // made when the first test registers
+  return all;
+}
+
+const unsigned seconds = 20;  // for a task; all of ours take less than 1
+
+std::string last_did;
+int checks = 0;
+
+/** The section of a task: "7.1" of "7.1.remove_node". */
+std::string section(const std::string& id) {
+  return id.substr(0, id.rfind('.'));
+}
+
+std::string heading(const Task& task, bool passed) {
+  std::string points;
+  if (task.points > 0)
+    points = words("  ", passed ? task.points : 0, '/', task.points);
+  return words(section(task.id), ' ', task.title, ": ",
+               passed ? "passed" : "FAILED", points, '\n');
+}
+
+/** Run all tests of a task and say how they went.  @return true if well */
+bool run(const Task& task) {
+  std::string wrong;
+  checks = 0;
+  for (const Test& test : tests()) {
+    if (test.id != task.id || !wrong.empty()) continue;
+    last_did.clear();
+    try {
+      test.run();
+    } catch (const Failure& f) {
+      wrong = f.got.empty()
+                  ? words("  Expected: ", f.expected, ".\n")
+                  : words("  Expected ", f.expected, ", got ", f.got, ".\n");
+    } catch (const std::exception& e) {
+      wrong = words("  Expected no exception, got: ", e.what(), ".\n");
+    } catch (...) {
+      wrong = "  Expected no exception, got one.\n";
+    }
+  }
+  if (wrong.empty() && checks == 0) wrong = "  Nothing was checked.\n";
+  std::cout << heading(task, wrong.empty());
+  if (wrong.empty()) return true;
+  if (!task.says.empty())
+    std::cout << "  Specification: \"" << task.says << "\"\n";
+  if (!last_did.empty()) std::cout << "  Did: " << last_did << ".\n";
+  std::cout << wrong;
+  if (!task.hint.empty()) std::cout << "  Try: " << task.hint << '\n';
+  return false;
+}
+
+/** The same in a child. */
+bool run_apart(const Task& task) {
+  std::cout.flush();
+  pid_t child = fork();
+  if (child == 0) {
+    alarm(seconds);
+    bool well = run(task);
+    std::cout.flush();
+    _exit(well ? 0 : 1);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) < 0) {
+    std::cout << "can't start a process\n";
+    return false;
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) <= 1)
+    return WEXITSTATUS(status) == 0;
+  std::cout << heading(task, false);
+  if (!task.says.empty())
+    std::cout << "  Specification: \"" << task.says << "\"\n";
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
+    std::cout << "  It did not end within " << seconds << " s.\n";
+  else
+    std::cout << "  It crashed: the first lines above say where. To look at it "
+              << "in the debugger, run it with the argument " << task.id
+              << ".\n";
+  return false;
+}
+
+}  // namespace
+
+Registered::Registered(const char* id, const char* name, void (*test)()) {
+  tests().push_back({id, name, test});
+}
+void did(std::string what) { last_did = std::move(what); }
+void fail(std::string expected, std::string got) {
+  throw Failure{last_did, std::move(expected), std::move(got)};
+}
+void checked() { ++checks; }
+
+}  // namespace kit
+
+int main(int argc, char** argv) {
+  using namespace kit;
+  auto all = tasks();
+  auto known = [&all](const std::string& id) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Task& task) { return task.id == id; });
+  };
+  for (const Test& test : tests())
+    if (!known(test.id)) all.push_back({test.id, test.id, 0, "", ""});
+  auto tested = [](const Task& task) {
+    return std::any_of(tests().begin(), tests().end(),
+                       [&](const Test& test) { return test.id == task.id; });
+  };
+  int ran = 0, failed = 0;
+  for (const Task& task : all) {
+    if (!tested(task) || (argc > 1 && task.id != argv[1])) continue;
+    ++ran;
+    failed += !(argc > 1 ? run(task) : run_apart(task));
+  }
+  if (ran == 0) {
+    std::cout << "no test of " << (argc > 1 ? argv[1] : "any task")
+              << " is linked with this program\n";
+    return 2;
+  }
+  return failed == 0 ? 0 : 1;
+}
