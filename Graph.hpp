@@ -48,10 +48,13 @@ struct Range {
  * when new elements come (has_node() and has_edge() say false).
  *
  * Complexity: O(1) where nothing is said; "degree" is a node's number of
- * edges. Memory, N nodes and M edges: 40 + sizeof(V) bytes a node and
- * 28 + sizeof(E) an edge on a grid, up to a quarter of that to grow into, and
- * 8 more each after the first removal; slots of removed elements are used
- * again by new ones, and given back when the graph is destroyed.
+ * edges. The first removal makes the lists of indices: it takes
+ * O(num_nodes() + num_edges()), which is O(1) for each element added before.
+ * So may the first one after clear() or reindex(). Memory, N nodes and M edges:
+ * 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge on a grid, up to a
+ * quarter of that to grow into, and 8 more each after the first removal; slots
+ * of removed elements are used again by new ones, and given back when the
+ * graph is destroyed.
  *
  * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
  * copied (the copy has the same indices and ids, and handles of its own), but
@@ -284,7 +287,7 @@ class Graph {
    *       iterators; node iterators at @a n and at the highest index.
    * Keeps: every other Node and Edge; references and spans.
    * Complexity: O(sum of degree() over @a n's neighbors), whatever
-   *       num_nodes(); the first removal of all takes O(num_nodes()). */
+   *       num_nodes(), but for the first removal: see Graph. */
   size_type remove_node(const Node& n) {
     // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
@@ -378,8 +381,7 @@ class Graph {
    * Invalidates: the edge and its copies; edge iterators at it and at the
    *       highest index; incident iterators of @a a and @a b.
    * Keeps: every Node and every other Edge; references and spans.
-   * Complexity: O(a.degree() + b.degree()); the first removal of all takes
-   *       O(num_edges()). */
+   * Complexity: O(a.degree() + b.degree()), but for the first removal. */
   size_type remove_edge(const Node& a, const Node& b) {
     // BEGIN SOLUTION 7.1.remove_edge 6pt
     size_type half = find(a, b);
@@ -417,23 +419,18 @@ class Graph {
 
   /** Remove all nodes and edges.
    * Invalidates: every Node, Edge, iterator, reference and span.
-   * Complexity: O(slots ever used), and it keeps 4 bytes for each of them so
-   *       that dead handles stay dead. */
+   * Complexity: O(num_nodes() + num_edges()), whatever was removed before.
+   *       Memory is kept for new elements, so dead handles stay dead. */
   void clear() {
+    for (Edge e : edges()) ends_[e.id()] = {}, edge_value_[e.id()] = E();
+    for (Node n : nodes()) {
+      position_[n.id_] = Point();
+      node_value_[n.id_] = V();
+      neighbors_of_[n.id_] = {};
+    }
     nodes_.clear();
     edges_.clear();
     pool_.clear();
-    position_.clear();
-    node_value_.clear();
-    neighbors_of_.clear();
-    ends_.clear();
-    edge_value_.clear();
-    // Slots that are used up stay, and are as any other dead slot.
-    position_.resize(node_slots() + 1);
-    node_value_.resize(node_slots());
-    neighbors_of_.resize(node_slots());
-    ends_.resize(edge_slots());
-    edge_value_.resize(edge_slots());
     ++version_;
   }
 

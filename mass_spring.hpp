@@ -7,10 +7,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "CME212/Mesh.hpp"
+#include "CME212/Shared.hpp"
 #include "Graph.hpp"
 
 // ------------------------------------------------- 3 and 4.1: cloth and
@@ -168,8 +170,14 @@ class MassSpringForce : public ZeroForce {
 /** Linear drag: f = -c v. Takes c |v|^2 of power [W]; never gives any. */
 class DampingForce : public ZeroForce {
  public:
-  /** @param c drag coefficient [kg/s], usually 1/N.  @pre c >= 0 */
-  explicit DampingForce(double c = 0) : c_(c) { assert(c >= 0); }
+  DampingForce() = delete;  // give it c, or the graph: then c is 1/N
+  /** @param c drag coefficient [kg/s].  @pre c >= 0 */
+  explicit DampingForce(double c) : c_(c) { assert(c >= 0); }
+  /** The assignment's c = 1/N [kg/s], N the number of nodes that @a g has now.
+   * @pre N > 0 */
+  explicit DampingForce(const Cloth& g) : DampingForce(1.0 / g.num_nodes()) {
+    assert(g.num_nodes() > 0);
+  }
   double coefficient() const { return c_; }
   Point operator()(Node n, double /*t*/) const override {
     return -c_ * n.value().vel;
@@ -182,6 +190,9 @@ class DampingForce : public ZeroForce {
 /** A function Point(Node, double) as a ZeroForce. */
 template <typename F>
 class FunctionForce : public ZeroForce {
+  static_assert(std::is_invocable_r_v<Point, F&, Node&, double&>,
+                "A force needs a public call: Point operator()(Node, double).");
+
  public:
   explicit FunctionForce(F f) : f_(std::move(f)) {}
   Point operator()(Node n, double t) const override { return f_(n, t); }
@@ -196,6 +207,14 @@ class CombinedForces : public ZeroForce {
   using List = std::vector<std::shared_ptr<const ZeroForce>>;
   /** @pre no pointer is null */
   explicit CombinedForces(List forces) : forces_(std::move(forces)) {}
+  /** The same from shared pointers to forces of any type; from unique ones,
+   * which it takes over; from plain ones, whose forces must outlive it. */
+  template <typename P>
+  explicit CombinedForces(std::vector<P> forces) {
+    for (P& p : forces)
+      forces_.push_back(
+          CME212::shared_from<ZeroForce, FunctionForce>(std::move(p)));
+  }
   const List& parts() const { return forces_; }
   Point operator()(Node n, double t) const override {
     Point f;
@@ -207,23 +226,11 @@ class CombinedForces : public ZeroForce {
   List forces_;
 };
 
-namespace mass_spring_detail {
-/** @a x on the heap as a Base: itself if it is one, else in an Adapter. */
-template <typename Base, template <typename> class Adapter, typename T>
-std::shared_ptr<const Base> shared_as(T x) {
-  if constexpr (std::derived_from<T, Base>)
-    return std::make_shared<T>(std::move(x));
-  else
-    return std::make_shared<Adapter<T>>(std::move(x));
-}
-}  // namespace mass_spring_detail
-
 /** The sum of any number of forces; each is copied, so temporaries are fine. */
 template <typename... Fs>
 CombinedForces make_combined_force(Fs... fs) {
   return CombinedForces(CombinedForces::List{
-      mass_spring_detail::shared_as<ZeroForce, FunctionForce>(
-          std::move(fs))...});
+      CME212::shared_as<ZeroForce, FunctionForce>(std::move(fs))...});
 }
 
 // ------------------------------------------------------------ The constraints
@@ -254,14 +261,22 @@ class PinConstraint : public ZeroConstraint {
   explicit PinConstraint(std::span<const Node> nodes) {
     for (Node n : nodes) pins_.push_back({n, n.position()});
   }
-  const std::vector<Pin>& pins() const { return pins_; }
+  /** Hold the two corners of the graph that it is first called with. It looks
+   * for them in that call, O(N): until then nothing may have moved them. */
+  PinConstraint() : has_pins_(false) {}
+  /** False until the first call, if made without a graph. */
+  bool has_pins() const { return has_pins_; }
+  /** @pre has_pins() */
+  const std::vector<Pin>& pins() const { return assert(has_pins_), pins_; }
   void operator()(Cloth& g, double /*t*/) const override {
+    if (!has_pins_) pins_ = PinConstraint(g).pins_, has_pins_ = true;
     for (auto [n, place] : pins_)
       if (g.has_node(n)) n.position() = place, n.value().vel = Point();
   }
 
  private:
-  std::vector<Pin> pins_;
+  mutable std::vector<Pin> pins_;
+  mutable bool has_pins_ = true;
 };
 
 /** A floor at height z. @post no node lies below; one that did has v_z = 0. */
@@ -296,6 +311,8 @@ struct Ball {
 class SphereConstraint : public ZeroConstraint {
  public:
   explicit SphereConstraint(const Ball& ball = {}) : ball_(ball) {}
+  SphereConstraint(const Point& center, double radius)
+      : ball_{center, radius} {}
   const Ball& ball() const { return ball_; }
   void project(Node n) const {
     if (!ball_.holds(n.position())) return;
@@ -333,6 +350,10 @@ class TearConstraint : public ZeroConstraint {
 /** A function void(Cloth&, double) as a ZeroConstraint. */
 template <typename C>
 class FunctionConstraint : public ZeroConstraint {
+  static_assert(
+      std::is_invocable_v<C&, Cloth&, double&>,
+      "A constraint needs a public call: void operator()(Cloth&, double).");
+
  public:
   explicit FunctionConstraint(C c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override { c_(g, t); }
@@ -349,6 +370,14 @@ class CombinedConstraints : public ZeroConstraint {
   /** @pre no pointer is null */
   explicit CombinedConstraints(List constraints)
       : constraints_(std::move(constraints)) {}
+  /** The same from other pointers, as CombinedForces. */
+  template <typename P>
+  explicit CombinedConstraints(std::vector<P> constraints) {
+    for (P& p : constraints)
+      constraints_.push_back(
+          CME212::shared_from<ZeroConstraint, FunctionConstraint>(
+              std::move(p)));
+  }
   const List& parts() const { return constraints_; }
   void operator()(Cloth& g, double t) const override {
     for (const auto& c : constraints_) (*c)(g, t);
@@ -362,8 +391,7 @@ class CombinedConstraints : public ZeroConstraint {
 template <typename... Cs>
 CombinedConstraints make_combined_constraints(Cs... cs) {
   return CombinedConstraints(CombinedConstraints::List{
-      mass_spring_detail::shared_as<ZeroConstraint, FunctionConstraint>(
-          std::move(cs))...});
+      CME212::shared_as<ZeroConstraint, FunctionConstraint>(std::move(cs))...});
 }
 /** The same by the name that other years of the course give it. */
 template <typename... Cs>

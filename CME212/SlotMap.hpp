@@ -150,8 +150,9 @@ class SlotMap {
 
   /** Give up a slot.  @pre in_use(id)
    * @post The thing of highest index took the index of the released one.
-   * Complexity: O(1); the first release of all takes O(slots()), which is
-   * O(1) for each acquire() before it. */
+   * Complexity: O(1); but O(slots()) when it makes the two lists: the first
+   * time, and the first time after they were given up by clear() or reindex().
+   */
   void release(size_type id) {
     make_lists();
     size_type hole = index_of_[id];
@@ -164,27 +165,26 @@ class SlotMap {
     if (reusable(id)) free_.push_back(id);
   }
 
-  /** Release all.  Complexity: O(slots()) */
+  /** Release all; then begin anew with slot 0, unless one is used up.
+   * Complexity: O(size()) */
   void clear() {
-    bool all_reusable = true;
-    free_.clear();
-    for (size_type id = slots_; id-- > 0;) {
-      if (in_use(id)) retire(id);
-      if (reusable(id))
-        free_.push_back(id);
-      else
-        all_reusable = false;
+    bool all_reusable = size_ + free_.size() == slots_;
+    for (size_type index = 0; index < size_; ++index) {
+      retire(id_at(index));
+      all_reusable &= reusable(id_at(index));
     }
-    id_at_.clear();
-    index_of_.clear();
-    size_ = 0;
-    identity_ = all_reusable;
-    if (identity_) {
+    if (all_reusable) {
       free_.clear();
+      index_of_.clear();
       slots_ = 0;
     } else {
+      for (size_type index = 0; index < size_; ++index)
+        if (reusable(id_at(index))) free_.push_back(id_at(index));
       index_of_.resize(slots_);
     }
+    id_at_.clear();
+    size_ = 0;
+    identity_ = all_reusable;
   }
 
   /** Give the indices anew, in the order of the ids.  O(slots()) */

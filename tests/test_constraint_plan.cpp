@@ -104,6 +104,20 @@ TEST(ConstraintPlanPins, StopsOnlyTheHeldNodes) {
   EXPECT_EQ(b.value().vel, Point(1));
 }
 
+TEST(ConstraintPlanPins, FindTheCornersWhenTheyAreCalled) {
+  Cloth g;
+  Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(2, 0, 0));
+  const PinConstraint pins;
+  const ConstraintPlan plan(pins);
+  EXPECT_FALSE(plan.nodewise());
+  plan(g, 0);
+  a.position() = b.position() = Point(7);
+  plan(g, 0);
+  EXPECT_EQ(a.position(), Point());
+  EXPECT_EQ(b.position(), Point(7));
+  EXPECT_TRUE(ConstraintPlan(pins).nodewise()) << "now it knows them";
+}
+
 // ------------------------------------------------------------ Exact types
 
 /** Children of the course's constraints, each with another call. */
@@ -146,6 +160,30 @@ TEST_F(ScatteredCloth, AChildNeverTakesItsParentsKernel) {
   EXPECT_EQ(ConstraintPlan(TearConstraint()).thinnest(), ball.radius);
   EXPECT_EQ(ConstraintPlan(Child<TearConstraint>()).thinnest(),
             std::numeric_limits<double>::infinity());
+}
+
+/** A child of a constraint that is swept; its call does not override. */
+struct Lift : PlaneConstraint {
+  template <typename G>
+  void operator()(G& g, double t) const {
+    for (auto n : g.nodes()) n.position().z += t;
+  }
+};
+
+TEST(ConstraintPlan, CallsWhatHidesTheCallOfItsParent) {
+  Cloth g;
+  Node n = g.add_node(Point());
+  Lift lift;
+  const Lift same;
+  const auto both = make_combined_constraints(lift);
+  for (const ConstraintPlan& plan :
+       {ConstraintPlan(lift), ConstraintPlan(same), ConstraintPlan(Lift()),
+        ConstraintPlan(both)}) {
+    n.position() = Point(0, 0, -3);
+    plan(g, 1);
+    EXPECT_EQ(n.position(), Point(0, 0, -2));
+    EXPECT_FALSE(plan.nodewise());
+  }
 }
 
 TEST_F(ScatteredCloth, TearingByThePlanIsTheCall) {

@@ -3,8 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <typeinfo>
+#include <utility>
+#include <vector>
 
 #include "tests/ScatteredCloth.hpp"
+
+// Some constraints here hide the virtual call on purpose: clang++ warns.
+#pragma GCC diagnostic ignored "-Woverloaded-virtual"
 
 namespace {
 
@@ -90,6 +97,17 @@ TEST(SphereConstraint, SendsANodeAtItsCenterToTheTop) {
   EXPECT_EQ(n.value().vel, Point(1, 2, 0));
 }
 
+TEST_F(Scattered, SphereTakesItsCenterAndRadius) {
+  Cloth other = g;
+  SphereConstraint(Point(0.4, 0.5, -0.6), 0.2)(g, 0);
+  Ball moved;
+  moved.center = Point(0.4, 0.5, -0.6);
+  moved.radius = 0.2;
+  SphereConstraint{moved}(other, 0);
+  for (Node n : g.nodes())
+    EXPECT_EQ(n.position(), other.node(n.index()).position());
+}
+
 TEST_F(Scattered, TearRemovesExactlyTheNodesInside) {
   std::vector<Node> inside, outside;
   for (Node n : g.nodes())
@@ -164,6 +182,33 @@ TEST(PinConstraint, GoesOnWithoutAPinnedNodeThatWasRemoved) {
   EXPECT_EQ(second.position(), Point(1, 0, 0));
 }
 
+TEST(PinConstraint, WithoutAGraphFindsTheCornersInItsFirstCall) {
+  Cloth g;
+  const PinConstraint pin;
+  const PinConstraint copy = pin;
+  EXPECT_FALSE(pin.has_pins());
+  EXPECT_DEATH(pin.pins(), "has_pins");
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  const auto all = make_combined_constraints(pin);
+  pin(g, 0);
+  ASSERT_TRUE(pin.has_pins());
+  ASSERT_EQ(pin.pins().size(), 2u);
+  EXPECT_EQ(pin.pins()[0].node, g.node(0));
+  EXPECT_EQ(pin.pins()[1].node, g.node(20));
+  EXPECT_FALSE(copy.has_pins()) << "each looks for its own";
+  all(g, 0);
+  const auto fall = [](Node, double) { return Point(0, 0, -1); };
+  for (int k = 0; k < 3; ++k) symp_euler_step(g, 0, 0.1, fall, all);
+  for (int k = 0; k < 3; ++k) symp_euler_step(g, 0, 0.1, fall, pin);
+  for (Node n : g.nodes()) n.position() += Point(0, 0, -1);
+  all(g, 0);
+  EXPECT_EQ(g.node(0).position(), Point(0, 0, 0));
+  EXPECT_EQ(g.node(20).position(), Point(1, 0, 0));
+  EXPECT_EQ(g.node(20).value().vel, Point());
+  EXPECT_LT(g.node(7).position().z, -1);
+  EXPECT_TRUE(PinConstraint(g).has_pins());
+}
+
 TEST(CombinedConstraints, RunInTheirOrderAndTakeFunctions) {
   Cloth g;
   Node n = g.add_node(Point(0, 0, -2));
@@ -176,6 +221,97 @@ TEST(CombinedConstraints, RunInTheirOrderAndTakeFunctions) {
   EXPECT_EQ(n.position().z, -0.5);
   make_combined_constraints()(g, 0);
   EXPECT_EQ(n.position().z, -0.5);
+}
+
+// ------------------------------------------ children with a call of their own
+
+/** Constraint k raises all nodes by k: so one sees which of them were called.
+ */
+void raise(Cloth& g, double by) {
+  for (Node n : g.nodes()) n.position().z += by;
+}
+struct NotConst : ZeroConstraint {
+  void operator()(Cloth& g, double) { raise(g, 1); }
+};
+struct Template : ZeroConstraint {
+  template <typename G>
+  void operator()(G& g, double) const {
+    raise(g, 2);
+  }
+};
+struct OfAPlane : PlaneConstraint {
+  template <typename G>
+  int operator()(G& g, double) {
+    return raise(g, 4), 0;
+  }
+};
+struct Overrides : PlaneConstraint {
+  void operator()(Cloth& g, double) const override { raise(g, 8); }
+};
+struct Inherits : Overrides {};
+
+template <typename C>
+double height_after(C&& c) {
+  Cloth g;
+  const Node n = g.add_node(Point());
+  c(g, 0.0);
+  return n.position().z;
+}
+/** After a step that is given the constraint itself. */
+template <typename C>
+double height_after_a_step(C&& c) {
+  return height_after([&c](Cloth& g, double t) {
+    symp_euler_step(g, t, 0.1, ZeroForce(), std::forward<C>(c));
+  });
+}
+
+template <typename C>
+void expect_called(double k) {
+  EXPECT_EQ(height_after(make_combined_constraints(C())), k);
+  EXPECT_EQ(height_after(make_combined_constraint(C())), k);
+  EXPECT_EQ(height_after_a_step(C()), k);
+  C c;
+  EXPECT_EQ(height_after_a_step(c), k);
+  EXPECT_EQ(height_after_a_step(make_combined_constraints(c)), k);
+}
+
+TEST(OwnConstraints, AreCalledByTheirOwnCall) {
+  expect_called<NotConst>(1);
+  expect_called<Template>(2);
+  expect_called<OfAPlane>(4);
+  expect_called<Overrides>(8);
+  expect_called<Inherits>(8);
+  expect_called<ZeroConstraint>(0);
+  EXPECT_EQ(height_after(make_combined_constraints(
+                NotConst(), make_combined_constraints(Template(), OfAPlane()),
+                Inherits())),
+            15);
+  const auto all = make_combined_constraints(Inherits(), OfAPlane());
+  const ZeroConstraint &first = *all.parts()[0], &last = *all.parts()[1];
+  EXPECT_EQ(typeid(first), typeid(Inherits));
+  EXPECT_EQ(typeid(last), typeid(FunctionConstraint<OfAPlane>));
+}
+
+TEST(CombinedConstraints, TakePointersOfAnyKind) {
+  const auto height = [](auto pointers) {
+    return height_after(CombinedConstraints(std::move(pointers)));
+  };
+  Overrides eight;
+  NotConst one;
+  std::vector<std::unique_ptr<ZeroConstraint>> unique;
+  unique.push_back(std::make_unique<Inherits>());
+  unique.push_back(std::make_unique<Overrides>());
+  EXPECT_EQ(height(std::move(unique)), 16);
+  EXPECT_EQ(height(std::vector<std::shared_ptr<ZeroConstraint>>{
+                std::make_shared<Overrides>()}),
+            8);
+  EXPECT_EQ(height(std::vector<std::shared_ptr<const ZeroConstraint>>{
+                std::make_shared<Overrides>()}),
+            8);
+  EXPECT_EQ(height(std::vector<ZeroConstraint*>{&eight, &eight}), 16);
+  EXPECT_EQ(height(std::vector<const ZeroConstraint*>{&eight}), 8);
+  EXPECT_EQ(height(std::vector<NotConst*>{&one, &one}), 2);
+  EXPECT_EQ(height(std::vector{std::make_shared<OfAPlane>()}), 4);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST_F(ForcePlanTest, DampingIsLinearDrag) {
   DampingForce drag(0.3);
   EXPECT_LT(distance(drag, [](Node n) { return -0.3 * n.value().vel; }), 1e-15);
   EXPECT_EQ(ForcePlan(drag).drag(), 0.3);
-  EXPECT_EQ(ForcePlan(DampingForce()).drag(), 0);
+  EXPECT_EQ(ForcePlan(DampingForce(0)).drag(), 0);
 }
 
 TEST_F(ForcePlanTest, DragMayBeEachNodesOwn) {
@@ -336,6 +336,29 @@ TEST(ForcePlan, KeepsATemporary) {
   std::vector<Point> f;
   Sweep()(g, 0, plan, f);
   EXPECT_EQ(f[0], Point(2, 0, 0));
+}
+
+/** A child of a force that has a kernel; its call does not override. */
+struct Upwards : GravityForce {
+  template <typename NODE>
+  Point operator()(NODE, double) const {
+    return Point(0, 0, 5);
+  }
+};
+
+TEST(ForcePlan, CallsWhatHidesTheCallOfItsParent) {
+  Cloth g;
+  g.add_node(Point(1, 2, 3));
+  Upwards force;
+  const Upwards same;
+  const auto sum = make_combined_force(force);
+  for (const ForcePlan& plan : {ForcePlan(force), ForcePlan(same),
+                                ForcePlan(Upwards()), ForcePlan(sum)}) {
+    std::vector<Point> f;
+    Sweep()(g, 0, plan, f);
+    EXPECT_EQ(f[0], Point(0, 0, 5));
+  }
+  EXPECT_EQ(ForcePlan(GravityForce()).energy(g), 9.81 * 3);
 }
 
 }  // namespace

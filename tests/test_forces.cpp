@@ -1,9 +1,21 @@
 // The forces of mass_spring.hpp: each against its formula, and sums of them.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "tests/ShakenCloth.hpp"
+#include "tests/TestFolder.hpp"
+
+// Some forces here hide the virtual call on purpose: clang++ warns of them.
+#pragma GCC diagnostic ignored "-Woverloaded-virtual"
 
 namespace {
 
@@ -20,7 +32,6 @@ TEST_F(ShakenCloth, DampingIsLinearDrag) {
   EXPECT_LT(call_distance(drag, [](Node n) { return -0.3 * n.value().vel; }),
             1e-15);
   EXPECT_EQ(drag.coefficient(), 0.3);
-  EXPECT_EQ(DampingForce().coefficient(), 0);
   double power = 0, speeds = 0;
   for (Node n : g.nodes()) {
     power += dot(drag(n, 0), n.value().vel);
@@ -28,6 +39,14 @@ TEST_F(ShakenCloth, DampingIsLinearDrag) {
   }
   EXPECT_NEAR(power, -0.3 * speeds, 1e-12);
   EXPECT_DEATH(DampingForce(-1), "c >= 0");
+}
+
+TEST_F(ShakenCloth, DampingHasTheAssignmentsCoefficientForAGraph) {
+  ASSERT_EQ(g.num_nodes(), 33u);
+  EXPECT_EQ(DampingForce(g).coefficient(), 1.0 / 33);
+  static_assert(!std::is_default_constructible_v<DampingForce>);
+  const Cloth empty;
+  EXPECT_DEATH(DampingForce{empty}, "num_nodes\\(\\) > 0");
 }
 
 TEST_F(ShakenCloth, Problem1ForceIsGravityAndSpringsButForCorners) {
@@ -102,6 +121,182 @@ TEST_F(ShakenCloth, FunctorsNeedNotBeConst) {
   auto force = make_combined_force(Counting());
   EXPECT_EQ(force(g.node(0), 0), Point(1));
   EXPECT_EQ(force(g.node(0), 0), Point(2));
+}
+
+// ------------------------------------------ children with a call of their own
+
+/** Force k is k t in each coordinate: a sum says which of them were called. */
+struct NotConst : ZeroForce {
+  Point operator()(Node, double t) { return Point(t); }
+};
+struct Template : ZeroForce {
+  template <typename NODE>
+  Point operator()(NODE, double t) const {
+    return Point(2 * t);
+  }
+};
+struct NotConstTemplate : ZeroForce {
+  template <typename NODE>
+  Point operator()(NODE& n, double t) {
+    return Point(4 * t + 0 * n.degree());
+  }
+};
+struct ByReference : ZeroForce {
+  Point operator()(const Node&, const double& t) const { return Point(8 * t); }
+};
+struct Sixteen {
+  Point operator()(Node, double t) const { return Point(16 * t); }
+};
+struct OfItsOtherParent : ZeroForce, Sixteen {
+  using Sixteen::operator();
+};
+struct OfAGravity : GravityForce {
+  Point operator()(Node, double t) { return Point(32 * t); }
+};
+struct OfANotConst : NotConst {
+  Point operator()(Node, double t) const final { return Point(64 * t); }
+};
+struct Inherits : OfANotConst {};
+struct InheritsGravity : GravityForce {};
+
+template <typename F>
+Point called_in_a_sum(F force) {
+  Cloth g;
+  return make_combined_force(force)(g.add_node(Point()), 1);
+}
+/** The acceleration in a step that is given the force itself. */
+template <typename F>
+Point called_in_a_step(F&& force) {
+  Cloth g;
+  Node n = g.add_node(Point(0, 0, 3), {Point(), 0.5});
+  symp_euler_step(g, 1, 0.25, force);
+  const Point change = n.value().vel;
+  symp_euler_step(g, 1, 0.25, std::forward<F>(force), ZeroConstraint());
+  EXPECT_EQ(n.value().vel, 2 * change);
+  return 2 * change;
+}
+
+template <typename F>
+void expect_called(double k) {
+  EXPECT_EQ(called_in_a_sum(F()), Point(k)) << typeid(F).name();
+  EXPECT_EQ(called_in_a_step(F()), Point(k)) << typeid(F).name();
+  F force;
+  EXPECT_EQ(called_in_a_step(force), Point(k)) << typeid(F).name();
+}
+
+TEST(OwnForces, AreCalledByTheirOwnCall) {
+  expect_called<NotConst>(1);
+  expect_called<Template>(2);
+  expect_called<NotConstTemplate>(4);
+  expect_called<ByReference>(8);
+  expect_called<OfItsOtherParent>(16);
+  expect_called<OfAGravity>(32);
+  expect_called<OfANotConst>(64);
+  expect_called<Inherits>(64);
+  expect_called<ZeroForce>(0);
+  const Template constant;
+  EXPECT_EQ(called_in_a_step(constant), Point(2));
+  EXPECT_EQ(called_in_a_sum(make_combined_force(
+                NotConst(), Template(), make_combined_force(NotConstTemplate()),
+                ByReference(), OfItsOtherParent(), OfAGravity(), Inherits())),
+            Point(127));
+}
+
+TEST(OwnForces, KeepTheirTypeIfTheyOverrideOrHaveNoCall) {
+  const auto type_of = [](auto force) {
+    const auto sum = make_combined_force(std::move(force));
+    const ZeroForce& part = *sum.parts()[0];
+    return &typeid(part);
+  };
+  EXPECT_EQ(*type_of(GravityForce()), typeid(GravityForce));
+  EXPECT_EQ(*type_of(InheritsGravity()), typeid(InheritsGravity));
+  EXPECT_EQ(*type_of(Inherits()), typeid(Inherits));
+  EXPECT_EQ(*type_of(make_combined_force()), typeid(CombinedForces));
+  EXPECT_EQ(*type_of(NotConst()), typeid(FunctionForce<NotConst>));
+}
+
+/** Counts how many there are. */
+struct Alive : ZeroForce {
+  static inline int count = 0;
+  Alive() { ++count; }
+  Alive(const Alive&) { ++count; }
+  ~Alive() override { --count; }
+  Point operator()(Node, double t) const override { return Point(128 * t); }
+};
+
+TEST(CombinedForces, TakePointersOfAnyKind) {
+  Cloth g;
+  const Node n = g.add_node(Point());
+  const auto sum = [&](auto pointers) {
+    return CombinedForces(std::move(pointers))(n, 1);
+  };
+  auto own = std::make_shared<Alive>();
+  std::vector<std::shared_ptr<ZeroForce>> shared = {own, own};
+  EXPECT_EQ(sum(shared), Point(256));
+  shared.push_back(std::make_shared<OfANotConst>());
+  const CombinedForces kept(shared);
+  EXPECT_EQ(kept(n, 1), Point(320));
+  EXPECT_EQ(kept.parts()[1], own) << "shared, not copied";
+  EXPECT_EQ(Alive::count, 1);
+  EXPECT_EQ(sum(std::vector<std::shared_ptr<const ZeroForce>>{own}),
+            Point(128));
+  EXPECT_EQ(sum(std::vector<std::shared_ptr<Alive>>{own}), Point(128));
+
+  Alive other;
+  NotConst hides;
+  EXPECT_EQ(sum(std::vector<ZeroForce*>{&other, own.get()}), Point(256));
+  EXPECT_EQ(sum(std::vector<const ZeroForce*>{&other}), Point(128));
+  EXPECT_EQ(sum(std::vector<NotConst*>{&hides, &hides}), Point(2));
+  EXPECT_EQ(sum(std::vector{std::make_shared<NotConst>()}), Point(1));
+  EXPECT_EQ(Alive::count, 2) << "a plain pointer owns nothing";
+
+  std::vector<std::unique_ptr<ZeroForce>> unique;
+  unique.push_back(std::make_unique<Alive>());
+  unique.push_back(std::make_unique<OfANotConst>());
+  {
+    const CombinedForces taken(std::move(unique));
+    EXPECT_EQ(taken(n, 1), Point(192));
+    EXPECT_EQ(Alive::count, 3);
+  }
+  EXPECT_EQ(Alive::count, 2) << "what was taken over is gone with it";
+}
+
+// The compiler itself is asked: a static_assert can't be seen from inside.
+TEST(OwnForces, WhatCannotBeCalledDoesNotCompileAndSaysWhy) {
+  CME212::TestFolder folder;
+  std::ofstream(folder / "a.cpp") << R"(#include "mass_spring.hpp"
+    struct OfTwo : ZeroForce { Point operator()(Node, Node) const; };
+    class Private : public ZeroForce {
+      Point operator()(Node, double) const override { return Point(); } };
+    struct Number { double operator()(Node, double) const; };
+    struct OfOne : ZeroConstraint { void operator()(Cloth&) const; };
+    void f(std::vector<OfTwo*> twos, std::vector<OfOne*> ones) {
+      make_combined_force(GravityForce(), MassSpringForce());
+      make_combined_force(OfTwo());
+      make_combined_force(Private());
+      make_combined_force(Number());
+      CombinedForces force(twos);
+      DampingForce drag;
+      make_combined_constraints(PlaneConstraint(), OfOne());
+      CombinedConstraints constraint(ones);
+    })";
+  const auto result =
+      folder.run("c++ -std=c++20 -fsyntax-only -I. " + folder / "a.cpp");
+  EXPECT_NE(result.status, 0);
+  std::istringstream errors(result.err);
+  std::map<std::string, int> times;
+  for (std::string line; std::getline(errors, line);)
+    if (line.find("error: ") != line.npos)
+      for (const char* what : {"A force needs a public call: Point operator()",
+                               "A constraint needs a public call: void oper",
+                               "DampingForce::DampingForce()"})
+        times[what] += line.find(what) != line.npos;
+  const std::map<std::string, int> expected = {
+      {"A force needs a public call: Point operator()", 4},
+      {"A constraint needs a public call: void oper", 2},
+      {"DampingForce::DampingForce()", 1}};
+  EXPECT_EQ(times, expected) << result.err;
+  EXPECT_NE(result.err.find("then c is 1/N"), result.err.npos);
 }
 
 }  // namespace

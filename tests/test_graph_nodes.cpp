@@ -214,6 +214,52 @@ TEST_F(Nodes, ClearRemovesAll) {
   EXPECT_EQ(m.degree(), 0u);
 }
 
+TEST_F(Nodes, ClearBeginsAnewAndKeepsNothingOfTheDead) {
+  g.add_edge(n[0], n[1], 1.5);
+  g.add_edge(n[1], n[2], 2.5);
+  g.remove_node(n[3]);
+  for (int round = 0; round < 3; ++round) {
+    g.clear();
+    g.check_invariants();
+    EXPECT_EQ(g.node_slots(), 0u);
+    EXPECT_EQ(g.edge_slots(), 0u);
+    EXPECT_TRUE(g.positions().empty() && g.halves(0).empty());
+    const Node a = g.add_node(Point(7)), b = g.add_node(Point());
+    EXPECT_EQ(a.id(), 0u);
+    EXPECT_EQ(a.value() + b.value() + int(b.degree()), 0);
+    EXPECT_EQ(g.add_edge(b, a).value(), 0);
+    g.check_invariants();
+  }
+}
+
+/** Counts what is done to any of its kind. */
+struct Touched {
+  static inline int times = 0;
+  Touched() { ++times; }
+  Touched(const Touched&) { ++times; }
+  Touched& operator=(const Touched&) { return ++times, *this; }
+  ~Touched() { ++times; }
+};
+TEST(Clear, CostsWhatIsThereNow) {
+  for (int many : {100, 10000}) {
+    Graph<Touched, Touched> g;
+    for (int i = 0; i < many; ++i) {
+      g.add_node(Point());
+      if (i > 0) g.add_edge(g.node(i - 1), g.node(i));
+    }
+    while (g.num_nodes() > 10) g.remove_node(g.node(10));
+    ASSERT_EQ(g.num_edges(), 9u);
+    for (int nodes : {10, 0, 3}) {
+      const int elements = int(g.num_nodes() + g.num_edges());
+      Touched::times = 0;
+      g.clear();
+      // Made, assigned and gone: the default that each is reset to.
+      EXPECT_EQ(Touched::times, 3 * elements) << many;
+      for (int i = 0; i < nodes; ++i) g.add_node(Point());
+    }
+  }
+}
+
 // ----------------------------------------------------- handles live, stay dead
 
 TEST_F(Nodes, HandlesSurviveTheRemovalOfOthers) {

@@ -1,15 +1,63 @@
 // SlotMap.hpp: the arrays and lists that a graph is stored in. Slots are tested
-// by the histories of test_graph.
+// by the histories of test_graph; here is counted what they cost.
 #include "CME212/SlotMap.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "CME212/Point.hpp"
 
 namespace {
+
+/** A generation that counts how often one of its kind is read or changed. */
+struct CountedGeneration {
+  static inline std::size_t uses = 0;
+  std::uint8_t number = 0;
+  operator int() const { return ++uses, number; }
+  CountedGeneration& operator++() { return ++uses, ++number, *this; }
+};
+
+}  // namespace
+
+template <>
+struct std::numeric_limits<CountedGeneration>
+    : std::numeric_limits<std::uint8_t> {};
+
+namespace {
+
+// -------------------------------------------------------------------- SlotMap
+
+/** Uses of generations in a clear() of @a left things, when @a many have been
+ * there at once, and slots wore out or not. */
+std::size_t cost_of_clear(unsigned many, unsigned left, bool worn_out) {
+  graph_detail::SlotMap<CountedGeneration> slots;
+  for (unsigned i = 0; i < many; ++i) slots.acquire();
+  for (unsigned life = 0, id = 0; life < (worn_out ? 200 : 1); ++life)
+    slots.release(id), id = slots.acquire();
+  while (slots.size() > left) slots.release(slots.id_at(slots.size() - 1));
+  slots.check_invariants();
+  CountedGeneration::uses = 0;
+  slots.clear();
+  const std::size_t uses = CountedGeneration::uses;
+  slots.check_invariants();
+  EXPECT_EQ(slots.size(), 0u);
+  EXPECT_EQ(slots.slots() == 0, !worn_out);
+  return uses;
+}
+
+TEST(SlotMap, ClearCostsWhatIsThereNow) {
+  for (bool worn_out : {false, true}) {
+    EXPECT_EQ(cost_of_clear(1000, 0, worn_out), 0u);
+    EXPECT_EQ(cost_of_clear(100, 10, worn_out),
+              cost_of_clear(10000, 10, worn_out));
+    EXPECT_LE(cost_of_clear(10000, 10, worn_out), 3 * 10u);
+  }
+}
 
 // --------------------------------------------------------------- GrowingArray
 

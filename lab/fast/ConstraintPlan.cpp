@@ -158,14 +158,16 @@ ConstraintPlan::ConstraintPlan(const ZeroConstraint& c) {
   add(std::shared_ptr<const ZeroConstraint>(std::shared_ptr<void>(), &c));
 }
 
-/** Exact types: a child may have another call. */
+/** Exact types: a child may have another call. Pins that do not know their
+ * nodes yet are called, and find them. */
 void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
   const ZeroConstraint& c = *constraint;
   const auto& type = typeid(c);
   if (type == typeid(CombinedConstraints)) {
     for (const auto& part : static_cast<const CombinedConstraints&>(c).parts())
       add(part);
-  } else if (type == typeid(PinConstraint)) {
+  } else if (type == typeid(PinConstraint) &&
+             static_cast<const PinConstraint&>(c).has_pins()) {
     terms_.push_back(
         std::make_shared<Pins>(static_cast<const PinConstraint&>(c)));
   } else if (type == typeid(PlaneConstraint)) {

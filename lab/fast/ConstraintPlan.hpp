@@ -147,7 +147,14 @@ class ConstraintPlan {
   template <std::derived_from<ZeroConstraint> C>
   requires(!std::is_reference_v<C> && !std::is_const_v<C>)  //
       ConstraintPlan(C&& c) {
-    add(std::make_shared<C>(std::move(c)));
+    add(CME212::shared_as<ZeroConstraint, FunctionConstraint>(std::move(c)));
+  }
+  /** A constraint with a call that does not override that of ZeroConstraint. */
+  template <typename C>
+  requires(std::derived_from<std::remove_const_t<C>, ZeroConstraint> &&
+           !CME212::Overrides<std::remove_const_t<C>, ZeroConstraint>)  //
+      ConstraintPlan(C& c) {
+    add(CME212::shared_from<ZeroConstraint, FunctionConstraint>(&c));
   }
 
   /** Apply it to @a g at time @a t [s].  O(N) unless a term takes longer */

@@ -78,7 +78,14 @@ class ForcePlan {
   template <std::derived_from<ZeroForce> F>
   requires(!std::is_reference_v<F> && !std::is_const_v<F>)  //
       ForcePlan(F&& force) {
-    add(std::make_shared<F>(std::move(force)));
+    add(CME212::shared_as<ZeroForce, FunctionForce>(std::move(force)));
+  }
+  /** A force with a call that does not override that of ZeroForce. */
+  template <typename F>
+  requires(std::derived_from<std::remove_const_t<F>, ZeroForce> &&
+           !CME212::Overrides<std::remove_const_t<F>, ZeroForce>)  //
+      ForcePlan(F& force) {
+    add(CME212::shared_from<ZeroForce, FunctionForce>(&force));
   }
 
   /** The force on each node of @a part is added to @a f: as

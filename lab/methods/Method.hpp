@@ -70,13 +70,14 @@ class Method {
   }
 
  private:
-  /** @a x itself if it is a Plan or a Base, else a Base that calls it. */
+  /** @a x itself if it is a Plan or overrides the call of Base, else a Base
+   * that calls it. */
   template <typename Plan, typename Base, template <typename> class Adapter,
             typename T>
   static decltype(auto) as(T& x) {
     if constexpr (std::derived_from<std::remove_const_t<T>, Plan>)
       return static_cast<const Plan&>(x);
-    else if constexpr (std::derived_from<std::remove_const_t<T>, Base>)
+    else if constexpr (CME212::Overrides<std::remove_const_t<T>, Base>)
       return static_cast<const Base&>(x);
     else
       return Adapter([&x]<typename... Args>(Args&&... args) {
