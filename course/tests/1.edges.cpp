@@ -18,7 +18,7 @@ TASK("1.edges", the_edge_that_is_added_has_the_two_ends) {
   DID("a ring of 6 nodes; add_edge(n4, n1)");
   TestSubject s(ring(6));
   auto e = add_edge(s.g, s.node(4), s.node(1));
-  s.m.edges.push_back({1, 4});
+  s.m.add(Ends(1, 4));
   CHECK(ends_of(e) == Ends(1, 4), "the ends of the result are n4 and n1");
   s.hold(edge_count | edge_indices | adjacency);
 }

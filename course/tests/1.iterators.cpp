@@ -4,11 +4,10 @@
 
 TASK("1.iterators", every_element_is_visited_once) {
   Model with_gaps = nodes(9);  // n0, n4 and n8 have no edge
-  for (int v : {1, 2, 5, 6}) with_gaps.edges.push_back({v, v + 1});
+  for (int v : {1, 2, 5, 6}) with_gaps.add(Ends(v, v + 1));
   for (const Model& shape : {nodes(1), nodes(3), ring(3), ring(20), wheel(6),
                              complete(6), with_gaps}) {
-    DID("a graph of ", shape.nodes.size(), " nodes and ", shape.edges.size(),
-        " edges");
+    DID(description(shape));
     TestSubject s(shape);
     s.hold(node_loop | edge_loop | incident_loop | seen_from | degrees);
   }

@@ -12,11 +12,6 @@ TASK("1.values", every_node_has_its_own_value) {
 }
 
 namespace kit {
-struct Mass {
-  double kg = 1;
-  Point velocity = Point(0, 0, 0);
-};
-
 template <typename G>
 static void check_values_of_nodes(G& g) {
   DID("added 10 nodes with values of struct Mass");
@@ -42,7 +37,7 @@ static void check_values_of_nodes(G& g) {
 }  // namespace kit
 
 TASK("1.values", all_handles_see_the_same_value) {
-  GraphOf<Mass, double> g;
+  StructGraph g;
   check_values_of_nodes(g);
 }
 

@@ -55,7 +55,7 @@ TASK("7.1.remove_edge", an_edge_that_is_not_there_is_not_removed) {
 
 TASK("7.1.remove_edge", all_edges_are_removed) {
   TestSubject s(complete(6));
-  Dice dice(71);
+  Dice dice{71};
   while (!s.m.edges.empty()) {
     Ends e = s.m.edges[dice(s.m.edges.size())];
     DID("6 nodes, all joined; removed edges down to ", s.m.edges.size() - 1,
@@ -67,7 +67,7 @@ TASK("7.1.remove_edge", all_edges_are_removed) {
 
 TASK("7.1.remove_edge", edges_come_and_go) {
   TestSubject s(ring(8));
-  Dice dice(7);
+  Dice dice{7};
   for (int step = 0; step < 200; ++step) {
     const auto after = words("step ", step, " of a random history: ");
     if (s.m.edges.empty() || dice(2) == 0) {

@@ -1,144 +1,143 @@
 /** @file model.hpp
  * What a graph should hold, as plain data beside it; the shapes that tests
- * start from; and how a difference is put into words. */
+ * start from; and how a difference is put into words. Defined in kit.cpp. */
 #ifndef KIT_MODEL_HPP
 #define KIT_MODEL_HPP
 #include "check.hpp"
 
 namespace kit {
 
-inline std::string name(int v) {
-  return v < 0 ? "no node that was added" : words('n', v);
-}
+/** "n3" */
+std::string name(int v);
 /** Where node v stands, which no other node does. */
-inline Point place(int v) { return Point(v, 2 * v, -v); }
+Point place(int v);
 /** The node that stands at @a p, or -1. */
-inline int node_named(const Point& p) {
-  if (!(p.x >= 0 && p.x < 1e6)) return -1;
-  const int v = int(p.x);
-  return p == place(v) ? v : -1;
-}
-inline int value_of_node(int v) { return 1000 + v; }
-inline double value_of_edge(int a, int b) {
-  return 100.5 * std::min(a, b) + std::max(a, b);
-}
+int node_named(const Point& p);
+int value_of_node(int v);
 
 /** An edge by its ends, the lesser first. */
 struct Ends {
-  int a, b;
-  Ends(int v, int w) : a(std::min(v, w)), b(std::max(v, w)) {}
-  bool operator==(const Ends& e) const { return a == e.a && b == e.b; }
-  bool has(int v) const { return a == v || b == v; }
-  double value() const { return value_of_edge(a, b); }
+  int a = 0, b = 0;
+  Ends() = default;
+  Ends(int v, int w);
+  bool operator==(const Ends& e) const;
+  bool has(int v) const;
+  double value() const;
 };
-inline std::string name(Ends e) { return name(e.a) + '-' + name(e.b); }
+/** "n3-n4" */
+std::string name(Ends e);
 
 struct Model {
   std::vector<int> nodes;
   std::vector<Ends> edges;
 
-  bool has(int v) const {
-    return std::find(nodes.begin(), nodes.end(), v) != nodes.end();
-  }
-  bool has(Ends e) const {
-    return std::find(edges.begin(), edges.end(), e) != edges.end();
-  }
-  std::vector<Ends> edges_at(int v) const {
-    std::vector<Ends> here;
-    for (Ends e : edges)
-      if (e.has(v)) here.push_back(e);
-    return here;
-  }
-  void remove(int v) {
-    std::erase(nodes, v);
-    std::erase_if(edges, [v](Ends e) { return e.has(v); });
-  }
-  void remove(Ends e) { std::erase(edges, e); }
+  Model();
+  Model(const Model& m);
+  ~Model();
+  bool has(int v) const;
+  bool has(Ends e) const;
+  std::vector<Ends> edges_at(int v) const;
+  void add(int v);
+  void add(Ends e);
+  void remove(int v);
+  void remove(Ends e);
 };
 
 // Shapes: the nodes n0, n1, ... and some edges.
-inline Model nodes(int n) {
-  Model m;
-  for (int v = 0; v < n; ++v) m.nodes.push_back(v);
-  return m;
-}
-inline Model ring(int n) {
-  Model m = nodes(n);
-  for (int v = 0; v < n; ++v) m.edges.push_back({v, (v + 1) % n});
-  return m;
-}
+Model nodes(int n);
+Model ring(int n);
 /** The hub n0 and a ring of the others. */
-inline Model wheel(int n) {
-  Model m = nodes(n);
-  for (int v = 1; v < n; ++v) {
-    m.edges.push_back({0, v});
-    m.edges.push_back({v, v % (n - 1) + 1});
-  }
-  return m;
-}
-inline Model complete(int n) {
-  Model m = nodes(n);
-  for (int v = 0; v < n; ++v)
-    for (int w = 0; w < v; ++w) m.edges.push_back({w, v});
-  return m;
-}
+Model wheel(int n);
+/** All joined. */
+Model complete(int n);
 /** Squares, n nodes on a side. */
-inline Model grid(int n) {
-  Model m = nodes(n * n);
-  for (int v = 0; v < n * n; ++v) {
-    if (v % n != n - 1) m.edges.push_back({v, v + 1});
-    if (v < n * (n - 1)) m.edges.push_back({v, v + n});
-  }
-  return m;
-}
+Model grid(int n);
+/** "a graph of 5 nodes and 8 edges" */
+std::string description(const Model& m);
 
 /** Random numbers: the same in every run and on every machine. */
-class Dice {
- public:
-  explicit Dice(std::uint32_t seed) : state_(seed) {}
+struct Dice {
+  std::uint32_t state;
   /** In [0, n). */
-  int operator()(std::size_t n) {
-    state_ = state_ * 1664525u + 1013904223u;
-    return int((state_ >> 8) % n);
-  }
+  int operator()(std::size_t n);
+};
+
+/** An edge as a loop or edge(i) gives it. */
+struct Seen {
+  Ends ends;
+  int first = 0;  // node1()
+  std::optional<double> value;
+};
+
+/** What can be read of a graph, of any type: graph.hpp defines it for the
+ * submission's. What is empty or `absent` is no member that compiles. */
+struct View {
+  enum Walk { ended, endless, absent };
+  using Number = long long;
+
+  virtual ~View();
+  virtual Number num_nodes() = 0;
+  virtual Number num_edges() = 0;
+  virtual Number index(std::size_t i) = 0;
+  virtual Point position(std::size_t i) = 0;
+  virtual std::optional<double> node_value(std::size_t i) = 0;
+  virtual std::optional<Number> degree(std::size_t i) = 0;
+  virtual bool has_edge(std::size_t i, std::size_t j) = 0;
+  virtual std::optional<Seen> edge(std::size_t i) = 0;
+  /** From begin to end, but no more than @a limit steps. */
+  virtual Walk nodes(std::size_t limit, std::vector<int>& seen) = 0;
+  virtual Walk edges(std::size_t limit, std::vector<Seen>& seen) = 0;
+  virtual Walk edges_at(std::size_t i, std::size_t limit,
+                        std::vector<Seen>& seen) = 0;
+};
+
+/** What can be looked at by itself. */
+enum Aspect : unsigned {
+  by_index = 1,         // num_nodes(), node(i), index(), position()
+  node_values = 2,      //
+  node_loop = 4,        // node_begin(), node_end()
+  edge_count = 8,       // num_edges()
+  edge_indices = 16,    // edge(i)
+  edge_values = 32,     // of edge(i)
+  edge_loop = 64,       // edge_begin(), edge_end()
+  incident_loop = 128,  // edge_begin(), edge_end() of a node
+  seen_from = 256,      // node1() there
+  incident_values = 512,
+  degrees = 1024,
+  adjacency = 2048,  // has_edge()
+  all_aspects = 4095
+};
+
+/** A graph under test and what it should hold.
+ *
+ * A test of a later section starts from what works in this graph: an aspect
+ * that is wrong before the test does anything is the fault of another task, and
+ * is not looked at. */
+struct Beside {
+  Model m;
+  unsigned works = 0;
+
+  explicit Beside(const Model& shape);
+  Beside(const Beside&) = delete;
+  ~Beside();
+  /** Look at all that works before the test does anything. */
+  void begin(View& view);
+  /** The graph is as the model is, or the test fails. */
+  void hold();
+  void hold(unsigned aspects);
+  /** Does it hold? */
+  bool holds();
+  /** Where node(i) or edge(i) is this node or edge, or the test fails. */
+  std::size_t index_of(int v);
+  std::size_t index_of(Ends e);
 
  private:
-  std::uint32_t state_;
+  View* view_ = nullptr;
 };
-
-// ------------------------------------------------------ What may be wrong
-
-/** What is wrong, as fail() takes it; nothing if `expected` is empty. */
-struct Fault {
-  std::string expected, got;
-  explicit operator bool() const { return !expected.empty(); }
-};
-
-/** How often something was met that should be met once, or never. */
-template <typename T>
-Fault not_once(const std::vector<T>& seen, const std::vector<T>& expected,
-               const std::string& range) {
-  auto wrong = [&](const T& x, const char* times) -> Fault {
-    auto n = std::count(seen.begin(), seen.end(), x);
-    return {words(range, " to reach ", name(x), ' ', times),
-            n == 0   ? "never"
-            : n == 1 ? "once"
-            : n == 2 ? "twice"
-                     : words(n, " times")};
-  };
-  for (const T& x : expected)
-    if (std::count(seen.begin(), seen.end(), x) != 1) return wrong(x, "once");
-  for (const T& x : seen)
-    if (std::find(expected.begin(), expected.end(), x) == expected.end())
-      return wrong(x, "never");
-  return {};
-}
-inline Fault endless(const std::string& range, std::size_t steps) {
-  return {words(range, " to end after ", steps, " steps"), "more"};
-}
-inline Fault unequal(const std::string& what, double expected, double got) {
-  return {words(what, " == ", expected), text(got)};
-}
 
 }  // namespace kit
+
+extern template class std::vector<int>;
+extern template class std::vector<kit::Ends>;
+extern template class std::vector<kit::Seen>;
 #endif

@@ -1,0 +1,188 @@
+/** @file 7.1.cost.cpp
+ * What removals and value() cost, by counting and not by a clock: the basic
+ * blocks that run, and 1 for every 8 bytes that memmove() and its like touch.
+ * It is counted in a graph of 1,000 nodes and in one of 10,000.
+ *
+ * Build: counted
+ * That is: -O1 -fsanitize-coverage=trace-pc and, to link,
+ * -Wl,--wrap=memmove,--wrap=memcpy,--wrap=memset,--wrap=memchr,--wrap=memcmp */
+#include "graph.hpp"
+
+#if defined(__clang__)
+#define KIT_NOT_COUNTED __attribute__((no_sanitize("coverage")))
+#else
+#define KIT_NOT_COUNTED __attribute__((no_sanitize_coverage))
+#endif
+
+namespace kit {
+static volatile bool counting = false;
+static volatile double counted = 0;
+}  // namespace kit
+
+extern "C" {
+// What the compiler calls in every basic block.
+KIT_NOT_COUNTED void __sanitizer_cov_trace_pc() {
+  if (kit::counting) kit::counted = kit::counted + 1;
+}
+
+void* __real_memmove(void*, const void*, std::size_t);
+void* __real_memcpy(void*, const void*, std::size_t);
+void* __real_memset(void*, int, std::size_t);
+void* __real_memchr(const void*, int, std::size_t);
+int __real_memcmp(const void*, const void*, std::size_t);
+}
+
+namespace kit {
+KIT_NOT_COUNTED static void count_bytes(std::size_t n) {
+  if (counting) counted = counted + double(n) / 8;
+}
+}  // namespace kit
+
+extern "C" {
+KIT_NOT_COUNTED void* __wrap_memmove(void* to, const void* from,
+                                     std::size_t n) {
+  kit::count_bytes(n);
+  return __real_memmove(to, from, n);
+}
+KIT_NOT_COUNTED void* __wrap_memcpy(void* to, const void* from, std::size_t n) {
+  kit::count_bytes(n);
+  return __real_memcpy(to, from, n);
+}
+KIT_NOT_COUNTED void* __wrap_memset(void* to, int what, std::size_t n) {
+  kit::count_bytes(n);
+  return __real_memset(to, what, n);
+}
+KIT_NOT_COUNTED void* __wrap_memchr(const void* in, int what, std::size_t n) {
+  kit::count_bytes(n);
+  return __real_memchr(in, what, n);
+}
+KIT_NOT_COUNTED int __wrap_memcmp(const void* a, const void* b, std::size_t n) {
+  kit::count_bytes(n);
+  return __real_memcmp(a, b, n);
+}
+}
+
+namespace kit {
+/** Counts while it lives. */
+struct Count {
+  Count() { counting = true; }
+  ~Count() { counting = false; }
+};
+
+/** A graph of n nodes: a ring, or squares in rows of 100 nodes. */
+template <typename G>
+static void build(G& g, int n, bool squares) {
+  for (int v = 0; v < n; ++v) add_node(g, place(v), v);
+  auto join = [&g](int a, int b) {
+    add_edge(g, node_at(g, std::size_t(a)), node_at(g, std::size_t(b)));
+  };
+  for (int v = 0; v < n; ++v) {
+    if (!squares || v % 100 != 99) join(v, (v + 1) % n);
+    if (squares && v + 100 < n) join(v, v + 100);
+  }
+}
+
+enum Call {
+  node_goes,
+  edge_goes,
+  ends_go,
+  node_value_is_read,
+  edge_value_is_read
+};
+static const char* name(Call call) {
+  const char* names[] = {"remove_node(n)", "remove_edge(e)",
+                         "remove_edge(a, b)", "n.value()", "e.value()"};
+  return names[call];
+}
+
+/** What one call costs on average in a graph of @a n nodes, in which as many
+ * calls are made as a tenth of the nodes: a vector may grow once in a while.
+ * It gives up as soon as the average must exceed @a limit. */
+template <typename G>
+static double cost(Call call, int n, bool squares, double limit) {
+  G g;
+  build(g, n, squares);
+  Dice dice{71};
+  const int calls = n / 10;
+  counted = 0;
+  for (int i = 0; i < calls && counted <= limit * calls; ++i) {
+    const auto nodes = g.num_nodes();
+    const auto edges = g.num_edges();
+    auto a = node_at(g, std::size_t(dice(std::size_t(nodes))));
+    if (call == node_goes) {
+      {
+        Count count;
+        kit::remove_node(g, a);
+      }
+      CHECK_EQUAL(g.num_nodes(), nodes - 1);
+    } else if (call == node_value_is_read) {
+      if constexpr (HasValue<decltype(a)>) {
+        Count count;
+        [[maybe_unused]] volatile double x = a.value();
+      }
+    } else {
+      auto at = a.edge_begin(), end = a.edge_end();
+      if (same(at, end)) continue;  // it lost all its edges
+      auto e = *at;
+      if (call == edge_value_is_read) {
+        if constexpr (HasValue<decltype(e)>) {
+          Count count;
+          [[maybe_unused]] volatile double x = e.value();
+        }
+        continue;
+      }
+      auto b = name_of(e.node1()) == name_of(a) ? e.node2() : e.node1();
+      if (call == edge_goes) {
+        Count count;
+        kit::remove_edge(g, e);
+      } else {
+        Count count;
+        kit::remove_edge(g, a, b);
+      }
+      CHECK_EQUAL(g.num_edges(), edges - 1);
+    }
+  }
+  return counted / calls;
+}
+
+/** That steps are counted at all: else no cost would ever grow. */
+static void check_that_it_counts() {
+  counted = 0;
+  {
+    Count count;
+    std::vector<int> some;
+    for (int i = 0; i < 1000; ++i) some.push_back(i);
+  }
+  check(counted > 1000,
+        "the program is compiled with -fsanitize-coverage=trace-pc");
+}
+
+/** At most 1.5 times as much with 10 times as many nodes. That leaves room for
+ * a search in a tree, which takes 4/3 of the steps; the few steps more are for
+ * what costs next to nothing. */
+template <typename G>
+static void check_cost(Call call, bool squares) {
+  DID(name(call), " for a tenth of the nodes of a ", squares ? "grid" : "ring",
+      " of 1000 nodes, then of one of 10000");
+  const double few = cost<G>(call, 1000, squares, 1e9);
+  const double limit = 1.5 * few + 10;
+  checked();
+  if (!(cost<G>(call, 10000, squares, limit) <= limit))
+    fail(words("at most ", std::round(limit), " steps a call with 10000 nodes ",
+               "(", std::round(few), " with 1000)"),
+         "more");
+}
+
+template <typename G>
+static void check_costs() {
+  check_that_it_counts();
+  for (bool squares : {false, true})
+    for (Call call : {node_goes, edge_goes, ends_go, node_value_is_read,
+                      edge_value_is_read})
+      check_cost<G>(call, squares);
+}
+}  // namespace kit
+
+TASK("7.1.cost", cost_does_not_grow_with_the_graph) {
+  check_costs<TestGraph>();
+}
