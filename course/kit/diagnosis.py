@@ -1,0 +1,138 @@
+"""What a compiler, a sanitizer or a crash says, in a line or two."""
+
+import re
+import signal
+from dataclasses import dataclass
+
+PLACE = re.compile(r"(?P<file>[^\s:][^:\n]*):(?P<line>\d+)(?::\d+)?: +"
+                   r"(?P<text>.*)")
+CHAIN = re.compile(r"(?:In file included| +) +from (?P<file>[^:]+):\d+[,:]")
+HEADING = re.compile(r"[^:]+: (?:In|At) .*:$")
+TEST = re.compile(r"course/tests/([^/]+)\.cpp")
+ADDRESS = re.compile(r"0x[0-9a-f]+")
+LONGEST = 300
+
+
+def short(text):
+    """One line without addresses."""
+    text = " ".join(ADDRESS.sub("0x...", text).split())
+    text = text.encode("ascii", "replace").decode()
+    return text if len(text) <= LONGEST else text[:LONGEST - 4] + " ..."
+
+
+@dataclass
+class Error:
+    file: str
+    line: int
+    text: str
+    tests: frozenset    # names of the tests that led to it
+    needed_by: str      # "FILE:LINE" in a test, or ""
+
+
+def compile_errors(output):
+    """The errors of g++, each with the tests whose code led to it.
+
+    A second error in one instantiation has no lines of its own that say so:
+    it belongs to what the first one belongs to.
+    """
+    errors = []
+    tests, needed_by = set(), ""
+    of_last_error = (set(), "")
+    for line in output.split("\n"):
+        if HEADING.fullmatch(line):
+            tests, needed_by = set(), ""
+            tests |= named(line.partition(":")[0])
+        elif chain := CHAIN.match(line):
+            if line[0] == "I":
+                tests, needed_by = set(), ""
+            tests |= named(chain["file"])
+        elif place := PLACE.match(line):
+            text = place["text"]
+            if text.startswith(("error: ", "fatal error: ")):
+                tests |= named(place["file"])
+                errors.append(Error(place["file"], int(place["line"]),
+                                    text.partition(": ")[2], frozenset(tests),
+                                    needed_by))
+                of_last_error = (set(tests), needed_by)
+            elif text.startswith(("note: ", "warning: ")):
+                tests, needed_by = set(of_last_error[0]), of_last_error[1]
+            elif "required " in text or "expansion of" in text:
+                tests |= named(place["file"])
+                if TEST.fullmatch(place["file"]):
+                    needed_by = f"{place['file']}:{place['line']}"
+    return errors
+
+
+def named(file):
+    test = TEST.fullmatch(file)
+    return {test[1]} if test else set()
+
+
+def compile_message(output, names, test=""):
+    """The first error that a student can do something about."""
+    errors = compile_errors(output)
+    if test:
+        errors = [e for e in errors if test in e.tests] or errors
+    for error in errors:
+        if error.file in names or TEST.fullmatch(error.file):
+            break
+    else:
+        if not errors:
+            return link_message(output)
+        error = next((e for e in errors if e.needed_by), errors[0])
+    text = f"{error.file}:{error.line}: {short(error.text)}"
+    if error.needed_by:
+        text += f"\nneeded by {error.needed_by}"
+    return text
+
+
+def link_message(output):
+    for pattern in (r"undefined reference to .*", r"multiple definition of .*",
+                    r"error: .*"):
+        if found := re.search(pattern, output):
+            return short(found[0])
+    return "the compiler gives no reason"
+
+
+def first_frame(output, names):
+    """The first line of a trace that is in the submission: " at FILE:LINE"."""
+    for frame in re.finditer(r"^ +#\d+ 0x[0-9a-f]+ (?:in )?(.*)$", output,
+                             re.MULTILINE):
+        place = re.search(r" (?:\./)?([^ ]+?):(\d+)(?::\d+)?$", frame[1])
+        if place and place[1] in names:
+            return f" at {place[1]}:{place[2]}"
+    return ""
+
+
+def crash(outcome, names):
+    """Why a program ended before it said how its test went."""
+    output = outcome.output
+    if found := re.search(r"ERROR: (AddressSanitizer: .*)", output):
+        words = re.sub(r" on (unknown )?address .*| \(pc .*| \(T\d+\).*"
+                       r"|: attempting .*", "", found[1])
+        rest = output[found.end():]
+        access = re.search(r"^(READ|WRITE) of size \d+", rest, re.MULTILINE)
+        if access:
+            words += f", {access[0]}"
+        return short(words) + first_frame(rest, names)
+    if found := re.search(r"^(?:\./)?([^\s:]+):(\d+):\d+: runtime error: (.*)",
+                          output, re.MULTILINE):
+        if found[1] in names:
+            return f"{short(found[3])} at {found[1]}:{found[2]}"
+        return short(found[3]) + first_frame(output[found.end():], names)
+    if found := re.search(r"^[^\n]*?(?:\./)?([^\s:]+):(\d+): .*Assertion "
+                          r"[`'](.*)' failed", output, re.MULTILINE):
+        where = f" at {found[1]}:{found[2]}" if found[1] in names else ""
+        return f"assertion failed: {short(found[3])}{where}"
+    if found := re.search(r"terminate called after throwing .*\n? *(what.*)?",
+                          output):
+        return short(found[0])
+    if outcome.code < 0:
+        try:
+            name = signal.Signals(-outcome.code).name
+        except ValueError:
+            name = str(-outcome.code)
+        return f"ended by the signal {name}"
+    if not outcome.begun:
+        return "the program ended before main() began"
+    return "the program ended before the test did"

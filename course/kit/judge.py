@@ -1,0 +1,176 @@
+"""Build and run the tests of all tasks against a submission.
+
+One unit holds all tests of a kind. If it does not compile, the tests that the
+errors come from are built apart, so that what is missing costs its own task.
+Cloth tests run on the kit's own graph first, so that a broken graph costs its
+own tasks, and then, if they fail, on the submission's: either may pass.
+"""
+
+import concurrent.futures
+import os
+import pathlib
+import shutil
+import tempfile
+import threading
+from dataclasses import dataclass
+
+import build
+import diagnosis
+import sandbox
+
+LIMITS = sandbox.Limits()
+STOPPED = {
+    "time": f"it takes more than {LIMITS.cpu} s of processor time, or waits",
+    "memory": f"it takes more than {LIMITS.memory >> 20} MB of memory",
+    "output": f"it writes more than {LIMITS.output >> 20} MB",
+    "threads": f"it has more than {LIMITS.threads} threads",
+}
+# From the worst to the best: what is shown if no graph makes a test pass.
+RANK = ["missing", "not compiled", "stopped", "crashed", "failed", "passed"]
+
+
+@dataclass
+class Result:
+    """How a test ended."""
+    status: str            # one of RANK
+    text: str = ""         # what happened; nothing for "failed"
+    expected: str = ""
+    got: str = ""
+    did: str = ""
+    name: str = ""         # of the function in the test
+
+    @property
+    def passed(self):
+        return self.status == "passed"
+
+
+def result_of(outcome, names):
+    """A test passed if it says so with the word, and ends in peace."""
+    did, name = outcome.did, outcome.name
+    verdict = outcome.verdict
+    if verdict[:1] == ["failed"] and len(verdict) == 3:
+        return Result("failed", "", *map(diagnosis.short, verdict[1:]),
+                      diagnosis.short(did), name)
+    if outcome.stopped:
+        return Result("stopped", STOPPED[outcome.stopped],
+                      did=diagnosis.short(did), name=name)
+    if verdict[:1] == ["passed"] and len(verdict) == 3 and outcome.code == 0:
+        if verdict[1] == "0":
+            return Result("missing", "no such test is in the kit")
+        if verdict[2] != "0":
+            return Result("passed")
+    return Result("crashed", diagnosis.crash(outcome, names),
+                  did=diagnosis.short(did), name=name)
+
+
+class Judge:
+    """Grades one submission in a folder of its own."""
+
+    def __init__(self, kit, folder, files, jobs, memory=None):
+        self.kit, self.jobs, self.memory = kit, threading.Semaphore(jobs), memory
+        self.files = files
+        self.own = build.Room(kit, folder / "own", files)
+        graph = (build.ROOT / "Graph.hpp").read_bytes()
+        self.rooms = {"graph": [self.own], "cloth": [self.own]}
+        if files.get("Graph.hpp") != graph:
+            given = build.Room(kit, folder / "given",
+                               {**files, "Graph.hpp": graph})
+            self.rooms["cloth"].insert(0, given)
+
+    def run(self, tests):
+        """{test: Result} of {test: what it needs}."""
+        groups = {}
+        for test, needs in tests.items():
+            groups.setdefault((needs, build.build_kind(test)), []).append(test)
+        # What takes longest first.
+        order = sorted(groups, key=lambda group: (-len(groups[group]), group))
+        with concurrent.futures.ThreadPoolExecutor(len(groups) or 1) as pool:
+            found = pool.map(lambda group: self.group(*group, groups[group]),
+                             order)
+            return {test: result for part in found
+                    for test, result in part.items()}
+
+    def group(self, needs, kind, tests):
+        results = {}
+        if needs == "cloth" and not {"mass_spring.hpp", "mass_spring.cpp"} & (
+                self.files.keys()):
+            return {test: Result("not compiled", "there is no mass_spring.hpp "
+                                 "and no mass_spring.cpp") for test in tests}
+        for room in self.rooms[needs]:
+            left = [test for test in tests
+                    if test not in results or not results[test].passed]
+            for test, result in self.attempt(room, needs, kind, left).items():
+                best = results.setdefault(test, result)
+                if RANK.index(result.status) > RANK.index(best.status):
+                    results[test] = result
+        return results
+
+    def attempt(self, room, needs, kind, tests):
+        """Each test of a room, in as few units as compile."""
+        if not tests:
+            return {}
+        unit = self.compile(room, needs, tests, kind)
+        if unit.program:
+            return self.run_all(unit)
+        if unit.refused:
+            return {test: Result("not compiled", unit.refused)
+                    for test in tests}
+        errors = diagnosis.compile_errors(unit.output)
+        blamed = set().union(*(error.tests for error in errors))
+        if not all(error.tests for error in errors):
+            bridge = self.compile(room, needs, [], kind, link=False)
+            if diagnosis.compile_errors(bridge.output) or bridge.refused:
+                text = bridge.refused or diagnosis.compile_message(
+                    bridge.output, self.files)
+                return {test: Result("not compiled", text) for test in tests}
+        results, alone = {}, [test for test in tests if test in blamed]
+        others = [test for test in tests if test not in blamed]
+        if alone and others:
+            unit = self.compile(room, needs, others, kind)
+            if unit.program:
+                results = self.run_all(unit)
+            else:
+                alone = tests
+        else:
+            alone = tests
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            results.update(zip(alone, pool.map(
+                lambda test: self.alone(room, needs, kind, test), alone)))
+        return results
+
+    def alone(self, room, needs, kind, test):
+        unit = self.compile(room, needs, [test], kind)
+        if unit.program:
+            return self.run_all(unit)[test]
+        return Result("not compiled", unit.refused or diagnosis.compile_message(
+            unit.output, self.files, test))
+
+    def compile(self, room, needs, tests, kind, link=True):
+        with self.jobs:
+            return room.compile(needs, tests, kind, link=link)
+
+    def run_all(self, unit):
+        """Each test of a program in a process of its own."""
+        def one(test):
+            jail = [*self.kit.jail, *build.flags("--read", [
+                "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
+                "/dev/null", "/dev/zero", "/dev/urandom", unit.program,
+                build.TESTS / "data"])]
+            with self.jobs:
+                outcome = sandbox.run_test(jail, unit.program, test, LIMITS)
+            return result_of(outcome, self.files)
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            results = dict(zip(unit.tests, pool.map(one, unit.tests)))
+        unit.program.unlink()
+        return results
+
+
+def judge(kit, files, tests, jobs):
+    """{test: Result}: the tests, {test: what it needs}, of a submission."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-grade-"))
+    try:
+        folder.chmod(0o755)
+        os.chmod(folder, 0o755)
+        return Judge(kit, folder, files, jobs).run(tests)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)

@@ -1,0 +1,205 @@
+"""The report on a submission: as text, JSON, JUnit XML and for Gradescope.
+
+The same submission gives the same bytes: no time, no address, no process, no
+name of a temporary folder stands in a report.
+"""
+
+import json
+from dataclasses import dataclass
+from xml.sax.saxutils import escape, quoteattr
+
+VERSION = 1     # of the JSON
+
+
+@dataclass
+class Graded:
+    """A task and how its first failed test ended, or its last one."""
+    task: object     # of tasks.py
+    result: object   # of judge.py
+
+    @property
+    def passed(self):
+        return self.result.passed
+
+    @property
+    def points(self):
+        return self.task.points if self.passed else 0
+
+
+@dataclass
+class Report:
+    course: object
+    name: str        # of the submission
+    graded: list
+    notes: list
+    flags: list      # (file, line, what)
+
+    @property
+    def points(self):
+        return sum(g.points for g in self.graded if not g.task.extra)
+
+    @property
+    def of(self):
+        return self.course.points
+
+
+def combine(course, name, taken, results):
+    """A task passes if all of its tests do."""
+    graded = []
+    for task in course.tasks.values():
+        mine = [results[test] for test in task.tests]
+        failed = [result for result in mine if not result.passed]
+        graded.append(Graded(task, (failed or mine)[0]))
+    return Report(course, name, graded, taken.notes, taken.flags)
+
+
+def outcome(result):
+    """What was expected and what came: one or two lines."""
+    if result.status == "failed":
+        if result.got:
+            return f"Expected {result.expected}, got {result.got}."
+        return f"Expected: {result.expected}."
+    if result.status == "not compiled":
+        return f"Does not compile: {result.text}"
+    if result.status == "stopped":
+        return f"Stopped: {result.text}."
+    return f"Crashed: {result.text}."
+
+
+def failure(graded):
+    """The text of a task that failed."""
+    task, result = graded.task, graded.result
+    lines = [f"{heading(task)} {score(graded)}.",
+             f'Specification: "{task.says}"']
+    if result.did:
+        lines.append(f"Did: {result.did.rstrip('.')}.")
+    lines += outcome(result).split("\n")
+    lines.append(f"Try: {task.hint}")
+    return lines
+
+
+def heading(task):
+    return f"{task.section.id} {task.title}"
+
+
+def score(graded):
+    if graded.task.points == 0:
+        return "passed" if graded.passed else "failed"
+    extra = " extra" if graded.task.extra else ""
+    return f"{graded.points}/{graded.task.points}{extra}"
+
+
+def as_text(report):
+    lines = [f"{report.course.title}: {report.name}", ""]
+    rows = [(g.task.section.id, g.task.title, score(g)) for g in report.graded]
+    wide = max((len(row[1]) for row in rows), default=5)
+    far = max((len(row[2]) for row in rows), default=6)
+    before = None
+    for section, title, points in rows:
+        shown = "" if section == before else section
+        before = section
+        lines.append(f"{shown:<4} {title:<{wide}}  {points:>{far}}")
+    total = f"{report.points}/{report.of}"
+    lines.append(f"{'':<4} {'all':<{wide}}  {total:>{far}}")
+    for graded in report.graded:
+        if not graded.passed:
+            first, *rest = failure(graded)
+            lines += ["", first, *("  " + line for line in rest)]
+    if report.notes:
+        lines += ["", *(f"Note: {note}." for note in report.notes)]
+    if report.flags:
+        lines += ["", "Look at this by hand:"]
+        lines += [f"  {file}:{line}: {what}"
+                  for file, line, what in report.flags]
+    return "\n".join(lines) + "\n"
+
+
+def as_json(report):
+    """Our own format: course/README.md says what the keys mean."""
+    tasks = []
+    for graded in report.graded:
+        task, result = graded.task, graded.result
+        one = {"id": task.id, "section": task.section.id, "title": task.title,
+               "points": graded.points, "of": task.points,
+               "extra": task.extra, "status": result.status}
+        if not graded.passed:
+            one.update(specification=task.says, did=result.did,
+                       expected=result.expected, got=result.got,
+                       message=outcome(result), hint=task.hint,
+                       test=result.name)
+        tasks.append(one)
+    return dump({"version": VERSION, "course": report.course.title,
+                 "submission": report.name, "points": report.points,
+                 "of": report.of, "tasks": tasks, "notes": report.notes,
+                 "flags": [{"file": file, "line": line, "what": what}
+                           for file, line, what in report.flags]})
+
+
+def dump(data):
+    return json.dumps(data, indent=1) + "\n"
+
+
+def as_junit(report):
+    suites = []
+    for section in report.course.sections:
+        cases = [g for g in report.graded if g.task.section == section]
+        failed = sum(not g.passed for g in cases)
+        lines = [f"  <testsuite name={quoteattr(section.id)} "
+                 f'tests="{len(cases)}" failures="{failed}" errors="0">']
+        for g in cases:
+            name = quoteattr(f"{g.task.title} ({score(g)})")
+            start = (f"    <testcase classname={quoteattr(section.id)} "
+                     f"name={name}")
+            if g.passed:
+                lines.append(start + "/>")
+            else:
+                message = quoteattr(outcome(g.result).replace("\n", " "))
+                text = escape("\n".join(failure(g)))
+                lines += [start + ">",
+                          f"      <failure type={quoteattr(g.result.status)} "
+                          f"message={message}>{text}</failure>",
+                          "    </testcase>"]
+        suites.append("\n".join([*lines, "  </testsuite>"]))
+    failed = sum(not g.passed for g in report.graded)
+    return "\n".join([
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f"<testsuites name={quoteattr(report.course.title)} "
+        f'tests="{len(report.graded)}" failures="{failed}" errors="0">',
+        *suites, "</testsuites>", ""])
+
+
+def as_gradescope(report):
+    """results.json of a Gradescope autograder. A task with no points is shown
+    as one of no points; its status says how it went."""
+    tests = []
+    for graded in report.graded:
+        tests.append({
+            "name": graded.task.title, "number": graded.task.id,
+            "score": float(graded.points),
+            "max_score": 0.0 if graded.task.extra else float(
+                graded.task.points),
+            "status": "passed" if graded.passed else "failed",
+            "output": "" if graded.passed else "\n".join(failure(graded)),
+            "output_format": "text", "visibility": "visible"})
+    notes = "".join(f"Note: {note}.\n" for note in report.notes)
+    # Flags are for the teacher: in a test that students do not see.
+    if report.flags:
+        tests.append({
+            "name": "Look at this by hand", "number": "flags", "score": 0.0,
+            "max_score": 0.0, "status": "failed",
+            "output": "\n".join(f"{file}:{line}: {what}"
+                                for file, line, what in report.flags),
+            "output_format": "text", "visibility": "hidden"})
+    return gradescope(report.points, f"{report.points} of {report.of} points"
+                      f"\n{notes}", tests)
+
+
+def gradescope(points, output, tests):
+    return dump({"score": float(points), "output": output,
+                 "output_format": "text", "visibility": "visible",
+                 "stdout_visibility": "hidden", "tests": tests})
+
+
+def refused(reason):
+    """results.json of what can't be graded."""
+    return gradescope(0, f"This can't be graded: {reason}", [])

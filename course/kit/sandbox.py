@@ -1,0 +1,191 @@
+"""Run a program that is not trusted, and say how it ended.
+
+The program runs in jail.cpp. Here its time, memory, threads and output are
+watched; whatever it does, the whole group of processes is ended and reaped.
+"""
+
+import os
+import secrets
+import selectors
+import signal
+import subprocess
+import time
+from dataclasses import dataclass, field
+
+PAGE = 4096     # bytes of runner.cpp's page; a text on each half
+KEPT = 65536    # bytes of output kept at each end
+LOOK = 0.01     # seconds between two looks at the memory
+READ_AT_ONCE = 1 << 17
+MEGABYTE = 1 << 20
+PAGE_OF_MEMORY = os.sysconf("SC_PAGE_SIZE")
+
+
+@dataclass
+class Limits:
+    cpu: int = 4                   # seconds of processor time
+    wall: float = 20               # seconds on the clock: sleeping counts
+    memory: int = 1024 * MEGABYTE  # bytes resident
+    output: int = 16 * MEGABYTE    # bytes; KEPT are kept
+    threads: int = 64
+    size: int = 0                  # bytes of a file
+
+
+@dataclass
+class Outcome:
+    """How a program ended: `stopped` is "", or the limit that it met."""
+    stopped: str = ""
+    code: int = 0                  # of exit, or -signal
+    output: str = ""               # what it wrote to stderr (and stdout)
+    begun: bool = False            # main() has begun
+    verdict: list = field(default_factory=list)   # fields of the last line
+    name: str = ""                 # the function of the test
+    did: str = ""                  # what it did last
+
+
+class Output:
+    """The first and the last bytes of what a program writes."""
+
+    def __init__(self, most):
+        self.first, self.last, self.total, self.most = b"", b"", 0, most
+
+    def add(self, data):
+        """Is it still no more than the limit?"""
+        self.total += len(data)
+        room = max(0, KEPT - len(self.first))
+        self.first += data[:room]
+        self.last = (self.last + data[room:])[-KEPT:]
+        return self.total <= self.most
+
+    def text(self):
+        return (self.first + self.last).decode("utf-8", "replace")
+
+
+def clean_environment(folder):
+    """Nothing of the teacher's environment reaches a compiler or a program."""
+    return {
+        "PATH": "/usr/bin:/bin", "LC_ALL": "C", "HOME": str(folder),
+        "TMPDIR": str(folder),
+        # Leaks are no fault in this course. What else stands here, the jail
+        # would deny, or differs from run to run.
+        "ASAN_OPTIONS": "detect_leaks=0:disable_coredump=0:color=never:"
+                        "max_allocation_size_mb=1024:detect_stack_use_after_"
+                        "return=0:allocator_may_return_null=0",
+        "UBSAN_OPTIONS": "print_stacktrace=1:color=never:halt_on_error=1",
+    }
+
+
+def used(pid):
+    """Bytes of memory and number of threads of a process."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:
+            words = file.read().rpartition(b")")[2].split()
+        return int(words[21]) * PAGE_OF_MEMORY, int(words[17])
+    except (OSError, IndexError, ValueError):
+        return 0, 0
+
+
+def watch(process, limits, heard):
+    """Drain the pipes until the program has ended or meets a limit.
+
+    `heard` tells for each pipe what to do with its data; it returns False
+    when that is too much. Returns the limit that was met, or "".
+    """
+    selector = selectors.DefaultSelector()
+    exited = os.pidfd_open(process.pid)
+    last = time.monotonic() + limits.wall
+    stopped, ended = "", False
+    try:
+        selector.register(exited, selectors.EVENT_READ)
+        for pipe in heard:
+            os.set_blocking(pipe, False)
+            selector.register(pipe, selectors.EVENT_READ)
+        while not stopped:
+            ready = [key.fd for key, _ in selector.select(0 if ended else LOOK)]
+            if exited in ready:
+                ended = True
+                selector.unregister(exited)
+            elif ended and not ready:
+                break           # drained; who else holds a pipe is ended below
+            for pipe in ready:
+                if pipe != exited:
+                    data = os.read(pipe, READ_AT_ONCE)
+                    if not data:
+                        selector.unregister(pipe)
+                    elif not heard[pipe](data):
+                        stopped = "output"
+            memory, threads = used(process.pid)
+            if memory > limits.memory:
+                stopped = "memory"
+            elif threads > limits.threads:
+                stopped = "threads"
+            elif time.monotonic() > last:
+                stopped = "time"
+    finally:
+        selector.close()
+        os.close(exited)
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except OSError:
+            pass
+        process.wait()
+    out_of_time = (-signal.SIGXCPU, -signal.SIGKILL)
+    return stopped or ("time" if process.returncode in out_of_time else "")
+
+
+def run_compiler(jail, command, folder, scratch, limits):
+    """Run a compiler in a folder; both its outputs are one."""
+    process = subprocess.Popen(
+        [*jail, "--compiler", "--cpu", str(limits.cpu),
+         "--size", str(limits.size), "--memory", str(limits.memory),
+         "--", *command],
+        cwd=folder, env=clean_environment(scratch), stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        start_new_session=True)
+    output = Output(limits.output)
+    with process.stdout as pipe:
+        stopped = watch(process, limits, {pipe.fileno(): output.add})
+    return Outcome(stopped, process.returncode, output.text())
+
+
+def run_test(jail, program, task, limits):
+    """Run the test functions of a task in a process of its own."""
+    word = secrets.token_hex(32)
+    to_read, to_write = os.pipe()         # the word, to the program
+    from_read, from_write = os.pipe()     # how it ended
+    page = os.memfd_create("page")
+    os.ftruncate(page, PAGE)
+    descriptors = (to_read, from_write, page)
+    written, spoken = Output(limits.output), Output(KEPT)
+
+    def heard(data):
+        if not spoken.total and data.startswith(b"begun\n"):
+            try:
+                os.write(to_write, word.encode())
+            except BrokenPipeError:
+                pass
+        return spoken.add(data)
+
+    try:
+        process = subprocess.Popen(
+            [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
+             "--", str(program), task, *map(str, descriptors)],
+            cwd="/", env=clean_environment("/nowhere"), pass_fds=descriptors,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, start_new_session=True)
+        os.close(to_read)
+        os.close(from_write)
+        descriptors = (page,)
+        with process.stderr as pipe:
+            stopped = watch(process, limits, {pipe.fileno(): written.add,
+                                              from_read: heard})
+        texts = os.pread(page, PAGE, 0)
+    finally:
+        for one in (*descriptors, to_write, from_read):
+            os.close(one)
+    said = spoken.text().split("\n")
+    verdict = [line.split("\t")[1:] for line in said
+               if line.startswith(word + "\t")]
+    name, did = (texts[at:at + PAGE // 2].partition(b"\0")[0]
+                 .decode("ascii", "replace") for at in (0, PAGE // 2))
+    return Outcome(stopped, process.returncode, written.text(),
+                   said[0] == "begun", verdict[0] if verdict else [], name, did)

@@ -1,0 +1,237 @@
+"""Take a submission's sources from a folder, or from a tag of a git clone.
+
+Nothing of the submission is run or trusted here: no symbolic link is followed,
+no setting of its clone is used, and what is too large is not read.
+"""
+
+import os
+import re
+import stat
+import subprocess
+from dataclasses import dataclass, field
+
+MOST_FILES = 200
+MOST_ENTRIES = 20000
+LARGEST = 1 << 20          # bytes of a file
+LARGEST_ALL = 8 << 20
+DEEPEST = 5                # folders below DIR
+PLAIN = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_+. -]*")   # a name
+TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
+NOT_LOOKED_INTO = {"CME212", "build", "data"}
+
+# What may be an attempt to be graded by other means than by good work. It is
+# shown, and never decides: most of it has honest uses.
+SUSPECT = [
+    (r"\basm\b|\b__asm", "writes assembler"),
+    (r"\bsyscall\b|\bptrace\b|\bprctl\b|\bseccomp", "makes system calls"),
+    (r"/proc/|/dev/fd|/autograder", "names a file of the system"),
+    (r"\b(_exit|_Exit|quick_exit|at_quick_exit|atexit|on_exit|longjmp"
+     r"|siglongjmp)\b", "leaves the program"),
+    (r"\b(signal|sigaction|raise|fork|vfork|clone|execv\w*|execl\w*|popen"
+     r"|system|dlopen|dlsym|mmap|dup2?|pipe|socket|environ|getenv|setrlimit)"
+     r"\s*\(", "calls the system"),
+    (r"\bkit\s*::|check\.hpp|runner\.cpp|\bKIT_\w+|\bTASK\s*\("
+     r"|__(a|ub)san_|__sanitizer", "names a part of the grader"),
+    (r"\bno_sanitize|redefine_extname|pragma\s+weak|\b(alias|ifunc"
+     r"|constructor|destructor|section|init_priority)\s*\(\s*\"?",
+     "has attributes that change how a program is linked or checked"),
+    (r"#\s*define\s+(private|protected|public|class|struct|return|if|while"
+     r"|for|static|const|int|main|assert)\b", "defines a keyword anew"),
+]
+
+
+class BadInput(Exception):
+    """What can't be graded; one sentence that says why."""
+
+
+@dataclass
+class Submission:
+    files: dict                # name, relative: bytes
+    notes: list = field(default_factory=list)   # what was left out, and why
+    flags: list = field(default_factory=list)   # (name, line, what)
+
+
+@dataclass
+class Entry:
+    path: str
+    problem: str               # why it is not taken, or ""
+    size: int
+    read: object               # a function
+
+
+def shown(text):
+    """Any name as ASCII on one line."""
+    return str(text).encode("ascii", "backslashreplace").decode().translate(
+        {code: f"\\x{code:02x}" for code in [*range(32), 127]})
+
+
+def in_folder(folder):
+    """All that stands in a folder, and may be looked at."""
+    def read(path):
+        def do():
+            fd = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+            with open(fd, "rb") as file:
+                if not stat.S_ISREG(os.fstat(fd).st_mode):
+                    raise OSError("it is no file any more")
+                return file.read(LARGEST + 1)
+        return do
+
+    entries, waiting = [], [""]
+    while waiting:
+        inside = waiting.pop()
+        try:
+            found = sorted(os.scandir(os.path.join(folder, inside)),
+                           key=lambda entry: os.fsencode(entry.name))
+        except OSError as error:
+            if not inside:
+                raise BadInput(f"{shown(folder)}: {error.strerror}") from None
+            continue
+        for entry in found:
+            path = os.path.join(inside, entry.name)
+            if entry.is_dir(follow_symlinks=False):
+                if may_look_into(path):
+                    waiting.append(path)
+                continue
+            status = entry.stat(follow_symlinks=False)
+            problem = "" if stat.S_ISREG(status.st_mode) else (
+                "is a symbolic link" if entry.is_symlink() else "is no file")
+            entries.append(Entry(path, problem, status.st_size,
+                                 read(entry.path)))
+            if len(entries) > MOST_ENTRIES:
+                raise BadInput(f"{shown(folder)}: holds too many files")
+    return entries
+
+
+def may_look_into(path):
+    parts = path.split("/")
+    return (len(parts) <= DEEPEST and not parts[-1].startswith(".")
+            and parts[-1] not in NOT_LOOKED_INTO)
+
+
+def git(folder, *words):
+    """Ask a clone, and let no setting of it run anything."""
+    environment = {
+        "PATH": "/usr/bin:/bin", "LC_ALL": "C", "HOME": "/nowhere",
+        "GIT_CONFIG_NOSYSTEM": "1", "GIT_CONFIG_GLOBAL": "/dev/null",
+        "GIT_TERMINAL_PROMPT": "0", "GIT_NO_LAZY_FETCH": "1",
+        "GIT_NO_REPLACE_OBJECTS": "1", "GIT_ALLOW_PROTOCOL": "none",
+        "GIT_OPTIONAL_LOCKS": "0"}
+    command = ["git", "-c", "safe.directory=*", "-c", "core.fsmonitor=false",
+               "-c", "core.hooksPath=/dev/null", "-c", "protocol.allow=never",
+               "-C", folder, *words]
+    try:
+        done = subprocess.run(
+            command, env=environment, stdin=subprocess.DEVNULL,
+            capture_output=True, timeout=60, check=False)
+    except subprocess.TimeoutExpired:
+        raise BadInput(f"{shown(folder)}: git does not answer") from None
+    if done.returncode:
+        raise BadInput(f"{shown(folder)}: git says: " + shown(
+            done.stderr.decode("utf-8", "replace").strip().split("\n")[0]))
+    return done.stdout
+
+
+def in_tag(folder, tag):
+    """All that a tag of a clone holds."""
+    if not TAG.fullmatch(tag):
+        raise BadInput(f"HW={shown(tag)}: no name of a tag")
+    if not os.path.isdir(folder):
+        raise BadInput(f"{shown(folder)}: no such folder")
+    names = git(folder, "for-each-ref", "--format=%(refname:strip=2)",
+                "refs/tags").decode("utf-8", "replace").split()
+    if tag not in names:
+        there = ", ".join(map(shown, names[:20])) or "none"
+        raise BadInput(f"{shown(folder)}: has no tag {tag}; tags: {there}")
+    listing = git(folder, "ls-tree", "-r", "-l", "-z", "--full-tree",
+                  f"refs/tags/{tag}^{{commit}}")
+    entries = []
+    for line in listing.split(b"\0")[:-1]:
+        description, _, path = line.partition(b"\t")
+        mode, kind, blob, size = description.decode().split()
+        if kind != "blob":
+            continue
+        path = os.fsdecode(path)
+        folders = path.split("/")[:-1]
+        if not all(may_look_into("/".join(folders[:n + 1]))
+                   for n in range(len(folders))):
+            continue
+        entries.append(Entry(
+            path, "is a symbolic link" if mode == "120000" else "", int(size),
+            lambda blob=blob: git(folder, "cat-file", "blob", blob)))
+    return entries
+
+
+def room_of(entries, tag, folder):
+    """The folder of the submission that holds its Graph.hpp, as "" or "x/"."""
+    rooms = sorted({entry.path[:-len("Graph.hpp")] for entry in entries
+                    if os.path.basename(entry.path) == "Graph.hpp"})
+    for room in ("", tag + "/", "hw2/", *(rooms if len(rooms) == 1 else [])):
+        if room in rooms:
+            return room
+    if rooms:
+        raise BadInput(
+            f"{shown(folder)}: Graph.hpp stands in several folders; name one "
+            "of them: " + ", ".join(map(shown, rooms[:10])))
+    raise BadInput(f"{shown(folder)}: holds no Graph.hpp")
+
+
+def take(folder, tag=""):
+    """The submission in a folder, or in a tag of the clone in it."""
+    entries = in_tag(folder, tag) if tag else in_folder(folder)
+    room = room_of(entries, tag or "hw2", folder)
+    taken = Submission({})
+    if room:
+        taken.notes.append(f"graded is the folder {shown(room)}")
+    total = 0
+    for entry in sorted(entries, key=lambda entry: (entry.path.count("/"),
+                                                    entry.path)):
+        name = entry.path[len(room):]
+        if (not entry.path.startswith(room)
+                or not name.endswith((".hpp", ".h", ".cpp"))):
+            continue
+        problem, text = entry.problem, b""
+        if not all(map(PLAIN.fullmatch, name.split("/"))):
+            problem = problem or "has a name that is not taken"
+        elif not problem and entry.size > LARGEST:
+            problem = f"is larger than {LARGEST >> 20} MB"
+        elif not problem and total + entry.size > LARGEST_ALL:
+            problem = f"is beyond the {LARGEST_ALL >> 20} MB of all files"
+        elif not problem and len(taken.files) == MOST_FILES:
+            problem = f"is beyond the {MOST_FILES} files that are taken"
+        if not problem:
+            try:
+                text = entry.read()
+            except OSError as error:
+                problem = f"can't be read ({error.strerror or error})"
+        if not problem:
+            taken.files[name] = text
+            total += len(text)
+            taken.flags += suspects(name, text)
+        elif name == "Graph.hpp":
+            raise BadInput(f"{shown(folder)}: Graph.hpp {problem}")
+        elif len(taken.notes) < 20:
+            taken.notes.append(f"{shown(name)} {problem}: left out")
+    return taken
+
+
+def without_comments(text):
+    """C++ without comments and without broken lines; as many lines."""
+    def blank(match):
+        found = match.group(0)
+        return found if found[0] in "\"'" else " " + "\n" * found.count("\n")
+    text = re.sub(r"(?:[^\n]*\\\n)+[^\n]*", lambda broken: broken[0].replace(
+        "\\\n", " ") + "\n" * broken[0].count("\n"), text)
+    return re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\""
+                  r"|'(?:\\.|[^'\\\n])*'", blank, text, flags=re.DOTALL)
+
+
+def suspects(name, text):
+    """Lines that a person should look at: (name, line, what)."""
+    found = []
+    lines = without_comments(text.decode("utf-8", "replace")).split("\n")
+    for pattern, what in SUSPECT:
+        for number, line in enumerate(lines, 1):
+            if re.search(pattern, line):
+                found.append((name, number, what))
+                break
+    return found
