@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Install what is missing:  tools/deps.sh [build] [draw] [check] [peers]
+# Install what is missing:  tools/deps.sh [build] [draw] [check] [peers] [grade]
 # Without arguments: build draw check. When all is there it says nothing and
 # asks no network. DEPS=skip does nothing: for systems without apt.
 set -euo pipefail
@@ -12,10 +12,12 @@ packages() {
     draw)  echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri" \
                 "libimgui-dev libpng-dev ffmpeg gnuplot-nox fonts-dejavu-core" ;;
     check) echo "clang clang-format libclang-rt-dev libomp-dev libgtest-dev" \
-                "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" ;;
+                "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" \
+                "libseccomp-dev" ;;
     peers) echo "libsundials-dev libboost-dev liblemon-dev" \
                 "libbullet-dev libgsl-dev libsuitesparse-dev" ;;
-    *) echo "deps: no group '$1'; there are: build draw check peers" >&2
+    grade) echo "g++ git make python3 libseccomp-dev" ;;
+    *) echo "deps: no group '$1'; there are: build draw check peers grade" >&2
        exit 2 ;;
   esac
 }
@@ -26,6 +28,7 @@ title() {
     draw)  echo "to draw, record and chart" ;;
     check) echo "to test and check" ;;
     peers) echo "to compare with other libraries" ;;
+    grade) echo "to grade submissions" ;;
   esac
 }
 

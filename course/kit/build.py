@@ -21,15 +21,21 @@ import sandbox
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 KIT = ROOT / "course/kit"
 TESTS = ROOT / "course/tests"
-CXX = "/usr/bin/g++"
-COMMON = ["-std=c++20", "-w", "-pthread"]
+# What each test program is linked with, of the kit's own.
+LINKED = [KIT / "runner.cpp",
+          *(path for path in [TESTS / "kit.cpp"] if path.exists())]
+# The version that the kit is checked with, if it is there.
+CXX = shutil.which("g++-12", path="/usr/bin") or "/usr/bin/g++"
+COMMON = ["-std=c++20", "-w", "-pthread",
+          "--param", "ggc-min-heapsize=4000000"]    # in kB: faster
 # By kind of build. The checks left out cost half of the time to compile; what
 # they find, AddressSanitizer finds as well or the course does not ask for.
 FLAGS = {
     "checked": ["-O0", "-g1", "-fsanitize=address,undefined",
                 "-fno-sanitize-recover=all", "-D_GLIBCXX_ASSERTIONS",
                 "-fno-sanitize=null,alignment,object-size,vptr,"
-                "pointer-overflow"],
+                "pointer-overflow",
+                "--param", "asan-instrumentation-with-call-threshold=0"],
     "counted": ["-O1", "-g0", "-fsanitize-coverage=trace-pc"],
 }
 LINK = {
@@ -37,7 +43,8 @@ LINK = {
     "counted": ["-Wl,--wrap=memmove,--wrap=memcpy,--wrap=memset,"
                 "--wrap=memchr,--wrap=memcmp"],
 }
-COUNTED = re.compile(r"^// Build: counted$", re.MULTILINE)
+# In a comment of a test: how it is built, and names that it wants defined.
+WISH = re.compile(r"^(?://| \*) (Build|Define): (\w+)\b", re.MULTILINE)
 COMPILING = sandbox.Limits(cpu=60, wall=120, memory=3 << 30, output=64 << 20,
                            size=512 << 20)
 SYSTEM = ("/usr/include", "/usr/lib", "/usr/local/include", "/usr/local/lib")
@@ -58,24 +65,38 @@ class Unit:
     tests: list = field(default_factory=list)
 
 
-def build_kind(test):
-    """How a test wants to be built."""
+@dataclass(frozen=True, order=True)
+class Way:
+    """How a test is built: tests of one way share a unit."""
+    needs: str
+    kind: str        # of FLAGS
+    defines: tuple
+
+
+def way_of(test, needs):
     text = (TESTS / f"{test}.cpp").read_text(encoding="utf-8")
-    return "counted" if COUNTED.search(text) else "checked"
+    wishes = WISH.findall(text)
+    kind = [value for key, value in wishes if key == "Build"] or ["checked"]
+    if kind[0] not in FLAGS:
+        raise KitError(f"course/tests/{test}.cpp: 'Build: {kind[0]}', expected "
+                       + " or ".join(FLAGS))
+    return Way(needs, kind[0], tuple(
+        value for key, value in wishes if key == "Define"))
 
 
 class Kit:
-    """What is built once: jail, runner, prelude."""
+    """What is built once: the jail, what is linked with each test, the prelude
+    of each kind."""
 
-    def __init__(self, unsafe=False, where=ROOT / "build/kit"):
+    def __init__(self, unsafe=False, where=ROOT / "build/kit", probe=True):
         key = hashlib.sha256()
         version = subprocess.run([CXX, "--version"], capture_output=True,
                                  check=False)
         if version.returncode:
             raise KitError("there is no g++: make deps")
         key.update(version.stdout + repr((FLAGS, COMMON, str(ROOT))).encode())
-        sources = [KIT / "jail.cpp", KIT / "runner.cpp", TESTS / "check.hpp",
-                   TESTS / "prelude.hpp",
+        sources = [KIT / "jail.cpp", *LINKED,
+                   *sorted(TESTS.glob("*.hpp")),
                    *sorted((ROOT / "CME212").glob("*.hpp"))]
         for path in sources:
             key.update(path.name.encode() + path.read_bytes())
@@ -88,7 +109,7 @@ class Kit:
         self.jail = [str(self.folder / "jail")]
         if unsafe:
             self.jail.append("--unsafe")
-        else:
+        elif probe:
             self.probe()
 
     def make(self, where):
@@ -104,8 +125,9 @@ class Kit:
         (new / "include").mkdir()
         (new / "include/CME212").symlink_to(ROOT / "CME212")
         includes = ["-I", new / "include"]
-        self.run(["-O1", *includes, "-I", TESTS, "-c", KIT / "runner.cpp",
-                  "-o", new / "runner.o"], "runner.cpp can't be built")
+        for source in LINKED:
+            self.run(["-O1", *includes, "-I", TESTS, "-c", source, "-o",
+                      new / f"{source.stem}.o"], f"{source.name} can't be built")
         for kind, flags in FLAGS.items():
             (new / kind).mkdir()
             header = new / kind / "prelude.hpp"
@@ -138,7 +160,7 @@ class Kit:
 class Room:
     """A folder with a submission's sources, in which tests are built."""
 
-    def __init__(self, kit, folder, files, has_program=True):
+    def __init__(self, kit, folder, files):
         self.kit, self.folder = kit, folder
         self.source = folder / "source"
         self.built = folder / "built"
@@ -149,23 +171,23 @@ class Room:
             path = self.source / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(text)
-        self.has_program = has_program
         self.numbers = itertools.count(1)
 
-    def compile(self, needs, tests, kind="checked", defines=(), link=True):
+    def compile(self, way, tests, link=True):
         """The unit of some tests; without tests just the bridge."""
         name = f"unit{next(self.numbers)}"
         unit = self.built / f"{name}.cpp"
         unit.write_text("".join(f'#include "{header}"\n' for header in
-                                [f"{needs}.hpp"] + [f"{t}.cpp" for t in tests]),
+                                [f"{way.needs}.hpp"] + [f"{t}.cpp" for t in tests]),
                         encoding="ascii")
         assembly, program = self.built / f"{name}.s", self.built / name
-        prelude = self.kit.folder / kind / "prelude.hpp"
-        command = [CXX, *COMMON, *FLAGS[kind], "-H", "-fmax-errors=200",
+        prelude = self.kit.folder / way.kind / "prelude.hpp"
+        command = [CXX, *COMMON, *FLAGS[way.kind], "-H", "-fmax-errors=200",
                    "-fdiagnostics-plain-output", "-ftemplate-depth=400",
                    "-include", prelude,
                    "-I", TESTS / "headless", "-I", self.kit.folder / "include",
-                   "-I", ".", "-I", TESTS, f'-DKIT_TESTS="{TESTS}"', *defines,
+                   "-I", ".", "-I", TESTS, f'-DKIT_TESTS="{TESTS}"',
+                   *(f"-D{name}" for name in way.defines),
                    f"-fdebug-prefix-map={self.source}=.",
                    *(["-S", "-o", assembly] if link else ["-fsyntax-only"]),
                    unit]
@@ -184,9 +206,10 @@ class Room:
             if reads_files(assembly):
                 result.refused = "it writes assembler"
                 return result
-            done = self.run([CXX, *LINK[kind], assembly,
-                             self.kit.folder / "runner.o", "-pthread", "-o",
-                             program])
+            done = self.run([CXX, *LINK[way.kind], assembly,
+                             *(self.kit.folder / f"{source.stem}.o"
+                               for source in LINKED),
+                             "-pthread", "-o", program])
             result.output += self.plain(done.output)
             if done.code == 0 and not done.stopped:
                 result.program = program
@@ -246,3 +269,7 @@ def reads_files(assembly):
     return any(
         not line.lstrip().startswith((b".string", b".ascii"))
         for line in re.findall(rb"[^\n]*\.inc(?:bin|lude)\b[^\n]*", text))
+
+
+if __name__ == "__main__":
+    print(Kit(probe=False).folder)

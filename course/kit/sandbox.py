@@ -91,11 +91,15 @@ def watch(process, limits, heard):
     when that is too much. Returns the limit that was met, or "".
     """
     selector = selectors.DefaultSelector()
-    exited = os.pidfd_open(process.pid)
+    try:
+        exited = os.pidfd_open(process.pid)
+    except OSError:             # an old kernel, or a container that forbids it
+        exited = -1
     last = time.monotonic() + limits.wall
     stopped, ended = "", False
     try:
-        selector.register(exited, selectors.EVENT_READ)
+        if exited >= 0:
+            selector.register(exited, selectors.EVENT_READ)
         for pipe in heard:
             os.set_blocking(pipe, False)
             selector.register(pipe, selectors.EVENT_READ)
@@ -104,6 +108,8 @@ def watch(process, limits, heard):
             if exited in ready:
                 ended = True
                 selector.unregister(exited)
+            elif exited < 0 and process.poll() is not None and not ended:
+                ended = True
             elif ended and not ready:
                 break           # drained; who else holds a pipe is ended below
             for pipe in ready:
@@ -122,7 +128,8 @@ def watch(process, limits, heard):
                 stopped = "time"
     finally:
         selector.close()
-        os.close(exited)
+        if exited >= 0:
+            os.close(exited)
         try:
             os.killpg(process.pid, signal.SIGKILL)
         except OSError:
