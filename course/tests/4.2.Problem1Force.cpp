@@ -1,0 +1,69 @@
+/** @file 4.2.Problem1Force.cpp
+ * Problem1Force with springs that differ: what changes when one edge gets
+ * another K or L. (The differences know nothing of weight.) */
+#include "cloth.hpp"
+
+namespace kit {
+
+template <typename P>
+static std::shared_ptr<P> own_springs_force(Cloth& g) {
+  if constexpr (std::is_default_constructible_v<P>)
+    return std::make_shared<P>();
+  else if constexpr (std::is_constructible_v<P, Cloth&>)
+    return std::shared_ptr<P>(new P(g));
+  else if constexpr (std::is_constructible_v<P, double, double>)
+    return std::shared_ptr<P>(new P(100., 0.5));
+  else
+    fail("Problem1Force to be made from nothing", "another constructor");
+}
+
+/** A node with three springs of its own K and L each. */
+static Bodies three_springs() {
+  Bodies b;
+  b.add(Point(0.25, 0.5, 0.125), 0.5);
+  b.springs.push_back({0, b.add(Point(1.25, 0.5, 0.5)), 100, 0.5});
+  b.springs.push_back({b.add(Point(0.25, 1.5, -0.5)), 0, 100, 1.5});
+  b.springs.push_back({0, b.add(Point(-0.5, 0, 1)), 100, 0.75});
+  return b;
+}
+
+/** Give spring @a s another K and L, and look at the force on both its ends. */
+static void change_spring(std::size_t s, double K, double L) {
+  Bodies b = three_springs();
+  Cloth g;
+  fill(g, b);
+  auto force = own_springs_force<KIT_FORCE(Problem1Force)>(g);
+  std::vector<Point> before, pull_before;
+  for (int i = 0; i < b.size(); ++i) {
+    before.push_back(force_on(*force, g, i));
+    pull_before.push_back(b.pull(i));
+  }
+  b.springs[s].K = K;
+  b.springs[s].L = L;
+  set_springs(g, b);
+  for (int i = 0; i < b.size(); ++i) {
+    const Point change_of_force = force_on(*force, g, i) - before[i];
+    CHECK_NEAR(change_of_force, b.pull(i) - pull_before[i], 1e-9);
+  }
+}
+
+}  // namespace kit
+
+TASK("4.2.Problem1Force", problem1_own_length) {
+  CHECK(has_L, "an edge's value to hold the spring's L");
+  for (std::size_t s : {0, 1, 2}) {
+    DID("a node with three springs; L of spring ", s,
+        " set to 2 m by its edge's value()");
+    change_spring(s, 100, 2);
+  }
+}
+
+TASK("4.2.Problem1Force", problem1_own_constant) {
+  CHECK(has_L, "an edge's value to hold the spring's L");
+  if (!has_K) return;  // K = 100 N/m for all, as the assignment has it
+  for (std::size_t s : {0, 1, 2}) {
+    DID("a node with three springs; K of spring ", s,
+        " set to 40 N/m by its edge's value()");
+    change_spring(s, 40, three_springs().springs[s].L);
+  }
+}

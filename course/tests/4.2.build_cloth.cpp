@@ -1,0 +1,117 @@
+/** @file 4.2.build_cloth.cpp
+ * The cloth at its start: what build_cloth() makes, or, in a program without
+ * it, what main() gives to the viewer first. */
+#include "cloth.hpp"
+#include "program.hpp"
+
+namespace kit {
+
+/** The cloth of data/cloth.nodes and data/cloth.tets: 3 x 4 nodes, such that
+ * edges have different lengths. */
+static std::vector<Point> cloth_points() {
+  std::vector<Point> points;
+  for (double x : {0., 0.5, 1.})
+    for (double y : {0., 0.4, 0.75, 1.}) points.push_back(Point(x, y, 0));
+  return points;
+}
+static std::vector<std::array<unsigned, 4>> cloth_quads() {
+  std::vector<std::array<unsigned, 4>> quads;
+  for (unsigned a : {0u, 1u, 2u, 4u, 5u, 6u})
+    quads.push_back({a, a + 1, a + 4, a + 5});
+  return quads;
+}
+/** The ends of all edges, the smaller one first: sides and diagonals. */
+static std::set<std::pair<int, int>> cloth_edges() {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& q : cloth_quads())
+    for (auto [a, b] :
+         {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
+      edges.insert(std::minmax(int(q[a]), int(q[b])));
+  return edges;
+}
+
+struct Start {
+  std::vector<Film::Body> bodies;
+  std::vector<Film::Spring> springs;
+};
+
+static void compare_start(const Start& start) {
+  const auto points = cloth_points();
+  const int num_nodes = int(start.bodies.size());
+  CHECK_EQUAL(num_nodes, 12);
+  std::vector<int> met(points.size());
+  for (const Film::Body& b : start.bodies) {
+    const auto at = std::find(points.begin(), points.end(), b.x);
+    CHECK(at != points.end(), words("no node at ", b.x));
+    ++met[std::size_t(at - points.begin())];
+    const Point vel = b.v;
+    CHECK_NEAR(vel, Point(0, 0, 0), 0);
+    const double mass = b.m;
+    CHECK_NEAR(mass, 1. / 12, 1e-9);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    CHECK(met[i] == 1, words("one node at ", points[i]));
+
+  auto edges = cloth_edges();
+  for (const Film::Spring& s : start.springs) {
+    int ends[2];
+    for (int e : {0, 1})
+      ends[e] = int(std::find(points.begin(), points.end(), e ? s.b : s.a) -
+                    points.begin());
+    CHECK(edges.erase(std::minmax(ends[0], ends[1])) == 1,
+          words("no edge, or no second one, between ", s.a, " and ", s.b));
+    CHECK(s.has_L, "an edge's value to hold the spring's L");
+    const double L = s.L;
+    CHECK_NEAR(L, norm(s.a - s.b), 1e-9);
+    const double K = s.has_K ? s.K : 100;
+    CHECK_NEAR(K, 100, 0);
+  }
+  if (!edges.empty()) {
+    const Point a = points[std::size_t(edges.begin()->first)],
+                b = points[std::size_t(edges.begin()->second)];
+    CHECK(edges.empty(), words("an edge between ", a, " and ", b));
+  }
+}
+
+template <typename G>
+static Start start_of(G& g) {
+  Start start;
+  for (int i = 0; i < int(g.num_nodes()); ++i)
+    start.bodies.push_back(body_of(node_of(g, i)));
+  for (auto it = g.edge_begin(); it != g.edge_end(); ++it) {
+    auto e = *it;
+    Film::Spring s{e.node1().position(), e.node2().position()};
+    read_spring(e, s);
+    start.springs.push_back(s);
+  }
+  return start;
+}
+
+template <typename G>
+static Start start_by_build_cloth(G& g) {
+  const std::vector<Point> points = cloth_points();
+  const std::vector<Quad> quads = cloth_quads();
+  if constexpr (std::is_void_v<decltype(::build_cloth(g, points, quads,
+                                                      Mesh::diagonals))>) {
+    DID("build_cloth() of 3 x 4 points and 6 quads, with diagonals");
+    ::build_cloth(g, points, quads, Mesh::diagonals);
+    return start_of(g);
+  } else {
+#ifdef KIT_HAS_MAIN
+    DID("the program on a cloth of 3 x 4 nodes and 6 quads");
+    const Film& f =
+        run_program([](const Film& film) { return film.frames >= 2; });
+    CHECK(f.frames > 0, "the program to draw the cloth");
+    return {f.start, f.edges};
+#else
+    fail("build_cloth() or main()", "neither");
+#endif
+  }
+}
+
+}  // namespace kit
+
+TASK("4.2.build_cloth", cloth_at_its_start) {
+  Cloth g;
+  compare_start(start_by_build_cloth(g));
+}

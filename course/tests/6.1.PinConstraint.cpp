@@ -1,0 +1,46 @@
+/** @file 6.1.PinConstraint.cpp
+ * Corners that a step has moved, and other nodes, also ones that come to where
+ * a corner was. Which velocity a pin leaves to the nodes it holds is open: it
+ * puts them back after each move. */
+#include "cloth.hpp"
+
+namespace kit {
+
+static Bodies cloth_with_corners() {
+  Bodies b;
+  b.add(Point(0.5, 0.25, 0));
+  b.add(Point(1, 0, 0), 0.5);
+  b.add(Point(0, 1, 0), 0.25);
+  b.add(Point(0, 0, 0), 2);
+  b.add(Point(1, 1, 0), 4);
+  b.springs = {{0, 1, 100, 0.5}, {3, 2, 100, 1}, {0, 4, 100, 1}};
+  return b;
+}
+
+}  // namespace kit
+
+TASK("6.1.PinConstraint", pin_puts_corners_back) {
+  const Bodies b = cloth_with_corners();
+  Cloth g;
+  fill(g, b);
+  Pins<KIT_CONSTRAINT(PinConstraint)> pin(g);
+  constrain(pin, g);  // nothing to do; some look for the corners now
+  for (int time = 1; time <= 3; ++time) {
+    DID("a cloth whose nodes have all moved by (0.125, 0.25, -0.5), time ",
+        time);
+    for (int i = 0; i < b.size(); ++i) {
+      auto n = node_of(g, i);
+      n.position() = b.x[i] + Point(0.125, 0.25, -0.5);
+      velocity(n) = Point(1, 2, -4);
+    }
+    constrain(pin, g, time);
+    const Point corner_0 = place(g, 3), corner_1 = place(g, 1);
+    CHECK_NEAR(corner_0, Point(0, 0, 0), 1e-12);
+    CHECK_NEAR(corner_1, Point(1, 0, 0), 1e-12);
+    for (int i : {0, 2, 4}) {
+      const Point other_node = place(g, i), other_velocity = velocity(g, i);
+      CHECK_NEAR(other_node, b.x[i] + Point(0.125, 0.25, -0.5), 0);
+      CHECK_NEAR(other_velocity, Point(1, 2, -4), 0);
+    }
+  }
+}

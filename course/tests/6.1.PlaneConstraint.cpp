@@ -1,0 +1,38 @@
+/** @file 6.1.PlaneConstraint.cpp
+ * Nodes above and below the plane z = -0.75 m. */
+#include "cloth.hpp"
+
+namespace kit {
+
+template <typename C>
+static C plane_constraint() {
+  if constexpr (std::is_default_constructible_v<C>)
+    return C();
+  else if constexpr (std::is_constructible_v<C, double>)
+    return C(-0.75);
+  else
+    return C(Point(0, 0, 1), -0.75);
+}
+
+}  // namespace kit
+
+TASK("6.1.PlaneConstraint", plane_is_solid) {
+  Bodies b;
+  for (double z : {-0.5, -0.875, 0., -0.7499, -0.7501, -3., 2., -0.875})
+    b.add(Point(0.25 * b.size(), 0.5, z), 0.5, Point(1, -2, z < -2 ? 4 : -4));
+  b.springs = {{0, 1, 100, 0.5}, {1, 2, 100, 0.5}, {5, 6, 100, 0.5}};
+  Cloth g;
+  fill(g, b);
+  auto plane = plane_constraint<KIT_CONSTRAINT(PlaneConstraint)>();
+  constrain(plane, g);
+  for (int i = 0; i < b.size(); ++i) {
+    const bool below = b.x[i].z < -0.75;
+    DID("a node at ", b.x[i], " with velocity ", b.v[i]);
+    const Point position = place(g, i), vel = velocity(g, i);
+    CHECK_NEAR(position,
+               Point(b.x[i].x, b.x[i].y, below ? -0.75 : double(b.x[i].z)),
+               1e-12);
+    CHECK_NEAR(vel, Point(b.v[i].x, b.v[i].y, below ? 0 : double(b.v[i].z)),
+               1e-12);
+  }
+}

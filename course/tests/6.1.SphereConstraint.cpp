@@ -1,0 +1,55 @@
+/** @file 6.1.SphereConstraint.cpp
+ * Nodes inside and outside the ball of center (0.5, 0.5, -0.5) m and radius
+ * 0.15 m. */
+#include "cloth.hpp"
+
+namespace kit {
+
+template <typename C>
+static C sphere_constraint() {
+  if constexpr (std::is_default_constructible_v<C>)
+    return C();
+  else if constexpr (std::is_constructible_v<C, Point, double>)
+    return C(Point(0.5, 0.5, -0.5), 0.15);
+  else
+    return C(0.15, Point(0.5, 0.5, -0.5));
+}
+
+}  // namespace kit
+
+TASK("6.1.SphereConstraint", sphere_is_solid) {
+  const Point c(0.5, 0.5, -0.5);
+  const double r = 0.15;
+  // From the center in units of r: direction (of length 1), and how far.
+  struct Place {
+    Point direction;
+    double how_far;
+  };
+  Bodies b;
+  std::vector<Place> places;
+  for (const Point& direction :
+       {Point(0, 0, 1), Point(1. / 3, -2. / 3, 2. / 3), Point(0, -0.6, -0.8)})
+    for (double how_far : {0.5, 1.1, 0.9, 3., 0.125}) {
+      places.push_back({direction, how_far});
+      b.add(c + how_far * r * direction, 0.5, Point(1, -2, -4));
+    }
+  for (int i = 1; i < b.size(); ++i) b.springs.push_back({i - 1, i, 100, 0.1});
+  Cloth g;
+  fill(g, b);
+  auto sphere = sphere_constraint<KIT_CONSTRAINT(SphereConstraint)>();
+  constrain(sphere, g);
+  for (int i = 0; i < b.size(); ++i) {
+    DID("a node at ", places[i].how_far, " radii from the center, in the ",
+        "direction ", places[i].direction, ", with velocity ", b.v[i]);
+    const Point position = place(g, i), vel = velocity(g, i);
+    if (places[i].how_far > 1) {
+      CHECK_NEAR(position, b.x[i], 1e-12);
+      CHECK_NEAR(vel, b.v[i], 1e-12);
+      continue;
+    }
+    const Point R = places[i].direction;
+    CHECK_NEAR(position, c + r * R, 1e-9);
+    const double v_R = b.v[i].x * R.x + b.v[i].y * R.y + b.v[i].z * R.z;
+    CHECK_NEAR(vel, b.v[i] - v_R * R, 1e-9);
+  }
+}

@@ -1,0 +1,58 @@
+/** @file 6.2.symp_euler_step.cpp
+ * One step with a constraint that moves nodes and changes velocities: what it
+ * is given, how often, and what the force sees after it. One of the nodes is a
+ * corner: no node is skipped. */
+#include "cloth.hpp"
+
+TASK("6.2.symp_euler_step", constrained_step) {
+  Bodies b;
+  b.add(Point(0, 0, 0), 2, Point(1, -2, 0.5));
+  b.add(Point(0.5, 0.5, 0.25), 0.5, Point(-3, 0, 1));
+  b.add(Point(1, 0, 0), 4, Point(0, 2, -1));
+  const double t = 0.5, dt = 0.25;
+  const int size = b.size();
+  Cloth g;
+  fill(g, b);
+
+  int calls = 0;
+  std::vector<Point> x_seen(3), v_seen(3);
+  TestConstraint constraint([&](Cloth& cloth, double) {
+    ++calls;
+    for (int i = 0; i < size; ++i) {
+      auto n = node_of(cloth, i);
+      x_seen[i] = n.position();
+      v_seen[i] = velocity(n);
+      n.position() += Point(0, 0, i + 1);
+      velocity(n) = 2 * velocity(n);
+    }
+  });
+  // Pulls at each body towards where the next one is now.
+  TestForce force([&](ClothNode n, double) {
+    return 3 * place(g, (int(n.index()) + 1) % size);
+  });
+  DID("three nodes, two of them corners, all moving; a constraint that adds ",
+      "to z and doubles velocities; one step of dt = 0.25");
+  ::symp_euler_step(g, t, dt, force, constraint);
+
+  const int calls_of_the_constraint = calls;
+  CHECK_EQUAL(calls_of_the_constraint, 1);
+  for (int i = 0; i < size; ++i) {
+    const Point position_when_constrained = x_seen[i];
+    const Point velocity_when_constrained = v_seen[i];
+    CHECK_NEAR(position_when_constrained, b.x[i] + dt * b.v[i], 1e-12);
+    CHECK_NEAR(velocity_when_constrained, b.v[i], 1e-12);
+  }
+  for (int i = 0; i < size; ++i) {
+    b.x[i] += dt * b.v[i] + Point(0, 0, i + 1);
+    b.v[i] = 2 * b.v[i];
+  }
+  for (int i = 0; i < size; ++i) {
+    b.v[i] += dt / b.m[i] * (3 * b.x[(i + 1) % size]);
+    const Point position_at_last = place(g, i);
+    CHECK_NEAR(position_at_last, b.x[i], 1e-12);
+  }
+  for (int i = 0; i < size; ++i) {
+    const Point velocity_at_last = velocity(g, i);
+    CHECK_NEAR(velocity_at_last, b.v[i], 1e-12);
+  }
+}

@@ -1,0 +1,113 @@
+/** @file 7.2.TearConstraint.cpp
+ * A ball that removes the nodes inside it, from cloths where they follow each
+ * other, come last, or are all there are. */
+#include "cloth.hpp"
+
+namespace kit {
+
+/** The class that tears, by one of its names; or nothing that compiles. */
+template <typename First, typename... Others>
+static auto tearing_class() {
+  if constexpr (Complete<First>)
+    return std::type_identity<First>();
+  else if constexpr (sizeof...(Others) > 0)
+    return tearing_class<Others...>();
+  else
+    return std::type_identity<Missing>();
+}
+using Tear =
+    decltype(tearing_class<KIT_CONSTRAINT(KIT_TEAR), ::TearConstraint,
+                           ::TearingConstraint, ::SphereTearConstraint,
+                           ::TearSphereConstraint, ::SphereRemoveConstraint,
+                           ::RemoveSphereConstraint, ::RemoveConstraint,
+                           ::SphereConstraint2>())::type;
+
+template <typename C>
+static C tear_constraint() {
+  static_assert(!std::is_same_v<C, Missing>, "there is a TearConstraint");
+  if constexpr (std::is_default_constructible_v<C>)
+    return C();
+  else if constexpr (std::is_constructible_v<C, Point, double>)
+    return C(Point(0.5, 0.5, -0.5), 0.15);
+  else
+    return C(0.15, Point(0.5, 0.5, -0.5));
+}
+
+static bool in_ball(const Point& p) {
+  const Point u = p - Point(0.5, 0.5, -0.5);
+  return u.x * u.x + u.y * u.y + u.z * u.z < 0.15 * 0.15;
+}
+
+/** Nodes in a row, inside the ball where @a inside says 'i', each joined to
+ * the two before it. */
+static Bodies row(const std::string& inside) {
+  Bodies b;
+  for (char c : inside) {
+    const double s = 0.001 * b.size();
+    b.add(c == 'i' ? Point(0.5 + s, 0.5, -0.4) : Point(0.5, 0.7 + s, -0.5), 1,
+          Point(0, 0, s));
+  }
+  for (int i = 1; i < b.size(); ++i) {
+    b.springs.push_back({i - 1, i, 100, 0.5});
+    if (i > 1) b.springs.push_back({i - 2, i, 100, 0.5});
+  }
+  return b;
+}
+
+/** The node of a body, found by its velocity; or none. */
+static std::optional<ClothNode> find_body(Cloth& g, const Bodies& b, int i) {
+  for (int k = 0; k < int(g.num_nodes()); ++k)
+    if (velocity(g, k) == b.v[i]) return node_of(g, k);
+  return {};
+}
+
+static void tear_and_compare(const Bodies& b) {
+  Cloth g;
+  fill(g, b);
+  auto tear = tear_constraint<Tear>();
+  constrain(tear, g);
+  int left = 0;
+  for (int i = 0; i < b.size(); ++i) {
+    const auto n = find_body(g, b, i);
+    left += !in_ball(b.x[i]);
+    if (in_ball(b.x[i])) {
+      CHECK(!n, words("the node at ", b.x[i], ", inside, to be removed"));
+    } else {
+      CHECK(n, words("the node at ", b.x[i], ", outside, to stay"));
+      CHECK_NEAR(Point(ClothNode(*n).position()), b.x[i], 0);
+    }
+  }
+  CHECK_EQUAL(g.num_nodes(), left);
+  int edges_left = 0;
+  for (const Spring& s : b.springs) {
+    if (in_ball(b.x[s.a]) || in_ball(b.x[s.b])) continue;
+    ++edges_left;
+    CHECK(g.has_edge(*find_body(g, b, s.a), *find_body(g, b, s.b)),
+          "the edges between nodes outside to stay");
+  }
+  CHECK_EQUAL(g.num_edges(), edges_left);
+}
+
+}  // namespace kit
+
+TASK("7.2.TearConstraint", tear_removes_what_is_inside) {
+  for (const std::string row_of :
+       {"oooo", "oioo", "ioooo", "oooi", "ooiioo", "oiiiiii", "iiiiiio",
+        "ioioioioii", "iiii"}) {
+    DID("nodes inside (i) and outside (o) the ball, added in the order ",
+        row_of);
+    tear_and_compare(row(row_of));
+  }
+}
+
+TASK("7.2.TearConstraint", tear_looks_at_the_radius) {
+  Bodies b;
+  for (double how_far : {0.149, 0.151, 0.1, 0.2, 0.3, 0.05})
+    for (const Point& direction : {Point(0, 0, 1), Point(0, 0, -1),
+                                   Point(0.6, 0, 0.8), Point(-0.6, -0.8, 0)})
+      b.add(Point(0.5, 0.5, -0.5) + how_far * direction, 1,
+            Point(0, 0, 0.001 * b.size()));
+  for (int i = 1; i < b.size(); ++i) b.springs.push_back({i - 1, i, 100, 0.1});
+  DID("24 nodes at 0.05 to 0.3 m from the center of the ball");
+  tear_and_compare(b);
+}
