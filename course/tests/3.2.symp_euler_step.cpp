@@ -16,12 +16,13 @@ static Bodies three_bodies() {
 
 /** Take a step and hold it to x += dt v; v += dt F(x, t)/m. */
 static void step_and_compare(Cloth& g, Bodies& b, double t, double dt) {
-  const int n = b.size();
+  const int n = b.size;
   // Pulls at each body towards where the next one is now.
-  TestForce force([&g, n](ClothNode node, double time) {
+  const auto law = [&g, n](ClothNode node, double time) {
     const int i = int(node.index());
     return 3 * (place(g, (i + 1) % n) - Point(1, 2, 3)) + Point(0, 5 * time, 0);
-  });
+  };
+  TestForce force(law);
   const double returned = free_step(g, t, dt, force);
 
   for (int i = 0; i < n; ++i) b.x[i] += dt * b.v[i];

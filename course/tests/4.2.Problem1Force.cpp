@@ -5,14 +5,15 @@
 
 namespace kit {
 
+using Problem1 = KIT_FORCE(Problem1Force);
 template <typename P>
-static std::shared_ptr<P> own_springs_force(Cloth& g) {
+static P* own_springs_force(Cloth& g) {
   if constexpr (std::is_default_constructible_v<P>)
-    return std::make_shared<P>();
+    return new P();
   else if constexpr (std::is_constructible_v<P, Cloth&>)
-    return std::shared_ptr<P>(new P(g));
+    return new P(g);
   else if constexpr (std::is_constructible_v<P, double, double>)
-    return std::shared_ptr<P>(new P(100., 0.5));
+    return new P(100., 0.5);
   else
     fail("Problem1Force to be made from nothing", "another constructor");
 }
@@ -21,27 +22,27 @@ static std::shared_ptr<P> own_springs_force(Cloth& g) {
 static Bodies three_springs() {
   Bodies b;
   b.add(Point(0.25, 0.5, 0.125), 0.5);
-  b.springs.push_back({0, b.add(Point(1.25, 0.5, 0.5)), 100, 0.5});
-  b.springs.push_back({b.add(Point(0.25, 1.5, -0.5)), 0, 100, 1.5});
-  b.springs.push_back({0, b.add(Point(-0.5, 0, 1)), 100, 0.75});
+  b.join(0, b.add(Point(1.25, 0.5, 0.5)), 100, 0.5);
+  b.join(b.add(Point(0.25, 1.5, -0.5)), 0, 100, 1.5);
+  b.join(0, b.add(Point(-0.5, 0, 1)), 100, 0.75);
   return b;
 }
 
 /** Give spring @a s another K and L, and look at the force on both its ends. */
-static void change_spring(std::size_t s, double K, double L) {
+static void change_spring(int s, double K, double L) {
   Bodies b = three_springs();
   Cloth g;
   fill(g, b);
-  auto force = own_springs_force<KIT_FORCE(Problem1Force)>(g);
-  std::vector<Point> before, pull_before;
-  for (int i = 0; i < b.size(); ++i) {
-    before.push_back(force_on(*force, g, i));
-    pull_before.push_back(b.pull(i));
+  const Owned<Problem1> force(own_springs_force<Problem1>(g));
+  Point before[Bodies::most], pull_before[Bodies::most];
+  for (int i = 0; i < b.size; ++i) {
+    before[i] = force_on(*force, g, i);
+    pull_before[i] = b.pull(i);
   }
   b.springs[s].K = K;
   b.springs[s].L = L;
   set_springs(g, b);
-  for (int i = 0; i < b.size(); ++i) {
+  for (int i = 0; i < b.size; ++i) {
     const Point change_of_force = force_on(*force, g, i) - before[i];
     CHECK_NEAR(change_of_force, b.pull(i) - pull_before[i], 1e-9);
   }
@@ -51,7 +52,7 @@ static void change_spring(std::size_t s, double K, double L) {
 
 TASK("4.2.Problem1Force", problem1_own_length) {
   CHECK(has_L, "an edge's value to hold the spring's L");
-  for (std::size_t s : {0, 1, 2}) {
+  for (int s : {0, 1, 2}) {
     DID("a node with three springs; L of spring ", s,
         " set to 2 m by its edge's value()");
     change_spring(s, 100, 2);
@@ -61,7 +62,7 @@ TASK("4.2.Problem1Force", problem1_own_length) {
 TASK("4.2.Problem1Force", problem1_own_constant) {
   CHECK(has_L, "an edge's value to hold the spring's L");
   if (!has_K) return;  // K = 100 N/m for all, as the assignment has it
-  for (std::size_t s : {0, 1, 2}) {
+  for (int s : {0, 1, 2}) {
     DID("a node with three springs; K of spring ", s,
         " set to 40 N/m by its edge's value()");
     change_spring(s, 40, three_springs().springs[s].L);

@@ -1,6 +1,8 @@
 /** @file 4.2.build_cloth.cpp
  * The cloth at its start: what build_cloth() makes, or, in a program without
- * it, what main() gives to the viewer first. */
+ * it, what main() gives to the viewer first.
+ *
+ * Build: program (by itself, as main() takes long to compile) */
 #include "cloth.hpp"
 #include "program.hpp"
 

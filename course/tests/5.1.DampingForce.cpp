@@ -15,47 +15,37 @@ static Bodies four_bodies() {
   return b;
 }
 
-struct Damping {
-  ForceLaw force;
-  double c;          ///< [kg/s]; 0: not known
-  std::string from;  // what it was made from
-};
-
-template <typename F>
-static ForceLaw law_of(F* f) {
-  std::shared_ptr<F> kept(f);
-  return [kept](ClothNode n, double t) { return (*kept)(n, t); };
-}
-
-/** @a d tells a coefficient, or a number of nodes, from an integer type. */
 template <typename F>
 constexpr bool takes_real = requires(double d) {
   F{d};
 };
 template <typename F>
-constexpr bool takes_whole = requires(unsigned d) {
-  F(d);
+constexpr bool takes_whole = requires(unsigned N) {
+  F(N);
 };
 
+/** The force from a number, which may be c or N, from N, or from a graph.
+ * @param c  what its coefficient should be; 0 if nobody can know */
 template <typename F>
-static Damping damping_from(Cloth& g, double number) {
+static F* damping_from(Cloth& g, double number, double& c) {
+  const unsigned N = unsigned(g.num_nodes());
   if constexpr (takes_real<F>) {
-    auto force = law_of(new F{number});
-    // From N, or from c? The first node has the velocity (1, 0, 0).
-    const bool from_N = near(force(node_of(g, 0), 0).x, -1 / number, 1e-12);
-    return {force, from_N ? 1 / number : number, words(number)};
+    auto* force = new F{number};
+    // The first node has the velocity (1, 0, 0).
+    const bool was_N = near(force_on(*force, g, 0).x, -1 / number, 1e-12);
+    c = was_N ? 1 / number : number;
+    return force;
   } else if constexpr (takes_whole<F>) {
-    const unsigned N = unsigned(g.num_nodes());
-    return {law_of(new F(N)), 1. / N, words(N)};
+    c = 1. / N;
+    return new F(N);
   } else if constexpr (std::is_constructible_v<F, Cloth&>) {
-    return {law_of(new F(g)), 1. / double(g.num_nodes()), "the graph"};
+    c = 1. / N;
+    return new F(g);
   } else {
-    auto* f = new F();
-    auto law = law_of(f);
-    if constexpr (requires { f->c = number; })
-      return f->c = number, Damping{law, number, "nothing, c set"};
-    else
-      return {law, 0, "nothing"};
+    auto* force = new F();
+    c = 0;
+    if constexpr (requires { force->c = number; }) force->c = c = number;
+    return force;
   }
 }
 
@@ -66,17 +56,19 @@ TASK("5.1.DampingForce", damping_slows) {
   for (double number : {4., 0.375}) {
     Cloth g;
     fill(g, b);
-    Damping damping = damping_from<KIT_FORCE(DampingForce)>(g, number);
-    if (damping.c == 0) {  // whatever it is, it is one number
+    using Damping = KIT_FORCE(DampingForce);
+    double c = 0;
+    const Owned<Damping> damping(damping_from<Damping>(g, number, c));
+    if (c == 0) {  // whatever it is, it is one number
       DID("DampingForce() on a node of velocity (1, 0, 0)");
-      damping.c = -damping.force(node_of(g, 0), 0).x;
-      CHECK(damping.c > 0, "a force against the velocity");
+      c = -force_on(*damping, g, 0).x;
+      CHECK(c > 0, "a force against the velocity");
     }
-    for (int i = 0; i < b.size(); ++i) {
-      DID("DampingForce made from ", damping.from, ", c = ", damping.c,
-          " kg/s; a node of mass ", b.m[i], " kg and velocity ", b.v[i]);
-      const Point force = damping.force(node_of(g, i), 0);
-      CHECK_NEAR(force, -damping.c * b.v[i], 1e-9);
+    for (int i = 0; i < b.size; ++i) {
+      DID("DampingForce made such that c = ", c, " kg/s, on a node of mass ",
+          b.m[i], " kg and velocity ", b.v[i]);
+      const Point force = force_on(*damping, g, i);
+      CHECK_NEAR(force, -c * b.v[i], 1e-9);
     }
   }
 }

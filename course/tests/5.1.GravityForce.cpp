@@ -19,11 +19,12 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   b.add(Point(0.5, 0.25, 0.5), 1);
   b.add(Point(0.25, 0.75, -2), 0.125, Point(3, 2, 1));
   b.add(Point(-1, 0.5, 8), 6, Point(0, 0, -5));
-  b.springs = {{0, 1, 100, 0.5}, {1, 2, 100, 0.5}};
+  b.join(0, 1, 100, 0.5);
+  b.join(1, 2, 100, 0.5);
   Cloth g;
   fill(g, b);
   auto gravity = gravity_force<KIT_FORCE(GravityForce)>();
-  for (int i = 0; i < b.size(); ++i) {
+  for (int i = 0; i < b.size; ++i) {
     DID("a node of mass ", b.m[i], " kg at ", b.x[i], " with velocity ",
         b.v[i]);
     const Point force = force_on(gravity, g, i);

@@ -5,13 +5,13 @@
 namespace kit {
 
 template <typename F>
-static std::shared_ptr<F> mass_spring_force(Cloth& g) {
+static F* mass_spring_force(Cloth& g) {
   if constexpr (std::is_default_constructible_v<F>)
-    return std::make_shared<F>();
+    return new F();
   else if constexpr (std::is_constructible_v<F, Cloth&>)
-    return std::shared_ptr<F>(new F(g));
+    return new F(g);
   else if constexpr (std::is_constructible_v<F, double>)
-    return std::shared_ptr<F>(new F(100.));
+    return new F(100.);
   else
     fail("MassSpringForce to be made from nothing", "another constructor");
 }
@@ -19,8 +19,9 @@ static std::shared_ptr<F> mass_spring_force(Cloth& g) {
 static void compare_springs(const Bodies& b) {
   Cloth g;
   fill(g, b);
-  auto springs = mass_spring_force<KIT_FORCE(MassSpringForce)>(g);
-  for (int i = 0; i < b.size(); ++i) {
+  using Springs = KIT_FORCE(MassSpringForce);
+  const Owned<Springs> springs(mass_spring_force<Springs>(g));
+  for (int i = 0; i < b.size; ++i) {
     const Point force = force_on(*springs, g, i);
     CHECK_NEAR(force, b.pull(i), 1e-9);
   }
@@ -35,7 +36,7 @@ TASK("5.1.MassSpringForce", springs_one) {
     Bodies b;
     b.add(Point(0.25, 0.5, 0.75), 0.125, Point(1, 2, 3));
     b.add(b.x[0] + length * Point(2. / 3, 1. / 3, -2. / 3), 8);
-    b.springs.push_back({1, 0, K, 1.5});
+    b.join(1, 0, K, 1.5);
     compare_springs(b);
   }
 }
@@ -49,9 +50,9 @@ TASK("5.1.MassSpringForce", springs_several) {
   b.add(Point(0.25, 0.75, 0.5), 2);
   b.add(Point(0.5, 0.5, -2), 0.25);
   b.add(Point(7, 7, 7), 3);
-  b.springs = {{0, 1, spring_constant(50), 0.5},
-               {2, 0, spring_constant(100), 0.25},
-               {0, 3, spring_constant(150), 2.5},
-               {3, 1, spring_constant(20), 1}};
+  b.join(0, 1, spring_constant(50), 0.5);
+  b.join(2, 0, spring_constant(100), 0.25);
+  b.join(0, 3, spring_constant(150), 2.5);
+  b.join(3, 1, spring_constant(20), 1);
   compare_springs(b);
 }

@@ -27,10 +27,13 @@ TASK("5.2.skip_corners", step_skips_corners) {
   b.add(Point(1, 0, 0), 2);
   b.add(Point(1, 1, 0), 2);
   b.add(Point(0.5, 0, 0), 1);
-  b.springs = {{0, 1, 100, 1}, {2, 3, 100, 1}, {1, 4, 100, 0.5}};
+  b.join(0, 1, 100, 1);
+  b.join(2, 3, 100, 1);
+  b.join(1, 4, 100, 0.5);
   Cloth g;
   fill(g, b);
-  TestForce force = constant_force(Point(1, -2, -4));
+  const auto law = [](ClothNode, double) { return Point(1, -2, -4); };
+  TestForce force(law);
   for (int step = 0; step < 5; ++step) {
     DID("five nodes at rest, two of them corners, a force of (1, -2, -4) N on "
         "each, step ",

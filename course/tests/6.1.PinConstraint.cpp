@@ -13,7 +13,9 @@ static Bodies cloth_with_corners() {
   b.add(Point(0, 1, 0), 0.25);
   b.add(Point(0, 0, 0), 2);
   b.add(Point(1, 1, 0), 4);
-  b.springs = {{0, 1, 100, 0.5}, {3, 2, 100, 1}, {0, 4, 100, 1}};
+  b.join(0, 1, 100, 0.5);
+  b.join(3, 2, 100, 1);
+  b.join(0, 4, 100, 1);
   return b;
 }
 
@@ -28,7 +30,7 @@ TASK("6.1.PinConstraint", pin_puts_corners_back) {
   for (int time = 1; time <= 3; ++time) {
     DID("a cloth whose nodes have all moved by (0.125, 0.25, -0.5), time ",
         time);
-    for (int i = 0; i < b.size(); ++i) {
+    for (int i = 0; i < b.size; ++i) {
       auto n = node_of(g, i);
       n.position() = b.x[i] + Point(0.125, 0.25, -0.5);
       velocity(n) = Point(1, 2, -4);

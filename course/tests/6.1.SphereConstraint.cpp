@@ -26,19 +26,19 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
     double how_far;
   };
   Bodies b;
-  std::vector<Place> places;
+  Place places[Bodies::most];
   for (const Point& direction :
        {Point(0, 0, 1), Point(1. / 3, -2. / 3, 2. / 3), Point(0, -0.6, -0.8)})
     for (double how_far : {0.5, 1.1, 0.9, 3., 0.125}) {
-      places.push_back({direction, how_far});
+      places[b.size] = {direction, how_far};
       b.add(c + how_far * r * direction, 0.5, Point(1, -2, -4));
     }
-  for (int i = 1; i < b.size(); ++i) b.springs.push_back({i - 1, i, 100, 0.1});
+  for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
   Cloth g;
   fill(g, b);
   auto sphere = sphere_constraint<KIT_CONSTRAINT(SphereConstraint)>();
   constrain(sphere, g);
-  for (int i = 0; i < b.size(); ++i) {
+  for (int i = 0; i < b.size; ++i) {
     DID("a node at ", places[i].how_far, " radii from the center, in the ",
         "direction ", places[i].direction, ", with velocity ", b.v[i]);
     const Point position = place(g, i), vel = velocity(g, i);

@@ -10,13 +10,13 @@ TASK("6.2.symp_euler_step", constrained_step) {
   b.add(Point(0.5, 0.5, 0.25), 0.5, Point(-3, 0, 1));
   b.add(Point(1, 0, 0), 4, Point(0, 2, -1));
   const double t = 0.5, dt = 0.25;
-  const int size = b.size();
+  const int size = b.size;
   Cloth g;
   fill(g, b);
 
   int calls = 0;
-  std::vector<Point> x_seen(3), v_seen(3);
-  TestConstraint constraint([&](Cloth& cloth, double) {
+  Point x_seen[3], v_seen[3];
+  const auto change = [&](Cloth& cloth, double) {
     ++calls;
     for (int i = 0; i < size; ++i) {
       auto n = node_of(cloth, i);
@@ -25,11 +25,13 @@ TASK("6.2.symp_euler_step", constrained_step) {
       n.position() += Point(0, 0, i + 1);
       velocity(n) = 2 * velocity(n);
     }
-  });
+  };
+  TestConstraint constraint(change);
   // Pulls at each body towards where the next one is now.
-  TestForce force([&](ClothNode n, double) {
+  const auto pull = [&](ClothNode n, double) {
     return 3 * place(g, (int(n.index()) + 1) % size);
-  });
+  };
+  TestForce force(pull);
   DID("three nodes, two of them corners, all moving; a constraint that adds ",
       "to z and doubles velocities; one step of dt = 0.25");
   ::symp_euler_step(g, t, dt, force, constraint);

@@ -1,7 +1,8 @@
 /** @file 7.2.program.cpp
  * The whole program, in its last stage, on a cloth of 3 x 4 nodes, one of which
  * swings through the ball.
- * Define: KIT_PROGRAM */
+ *
+ * Build: program (by itself, as main() takes long to compile) */
 #ifndef KIT_PROGRAM
 #define KIT_PROGRAM  // before cloth.hpp
 #endif

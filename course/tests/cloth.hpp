@@ -22,7 +22,7 @@
 #endif
 #if !__has_include("mass_spring.hpp") || defined(KIT_PROGRAM)
 #if __has_include("mass_spring.cpp")
-#include <CME212/SDLViewer.hpp>  // of headless/
+#include <CME212/SDLViewer.hpp>       // of headless/
 #if __has_include("mass_spring.hpp")  // made from our starter
 #define MASS_SPRING_VIEWER
 #define STAGE tear
@@ -132,25 +132,31 @@ struct Spring {
   int a, b;
   double K, L;  ///< [N/m], [m]
 };
-/** What a graph is filled with, and what it is compared with. */
+/** What a graph is filled with, and what it is compared with. (Plain arrays,
+ * as every class template that a test uses costs time to compile.) */
 struct Bodies {
-  std::vector<Point> x, v;
-  std::vector<double> m;
-  std::vector<Spring> springs;
+  static constexpr int most = 32;
+  Point x[most], v[most];
+  double m[most] = {};
+  Spring springs[2 * most] = {};
+  int size = 0, num_springs = 0;
 
   /** @return the number of the new one */
   int add(const Point& place, double mass = 1, const Point& velocity = {}) {
-    x.push_back(place);
-    v.push_back(velocity);
-    m.push_back(mass);
-    return int(x.size()) - 1;
+    assert(size < most);
+    x[size] = place, v[size] = velocity, m[size] = mass;
+    return size++;
   }
-  int size() const { return int(x.size()); }
+  void join(int a, int b, double K, double L) {
+    assert(num_springs < 2 * most);
+    springs[num_springs++] = {a, b, K, L};
+  }
 
   /** The springs' force on body @a i, by Hooke's law. */
   Point pull(int i) const {
     Point sum(0, 0, 0);
-    for (const Spring& s : springs) {
+    for (int k = 0; k < num_springs; ++k) {
+      const Spring& s = springs[k];
       if (s.a != i && s.b != i) continue;
       const Point u = x[s.a == i ? s.b : s.a] - x[i];
       const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
@@ -216,13 +222,15 @@ void set_spring(E e, const Spring& s) {
 /** Give each edge its K and L, from whichever end it is seen. */
 template <typename G>
 void set_springs(G& g, const Bodies& bodies) {
-  for (const Spring& s : bodies.springs)
+  for (int k = 0; k < bodies.num_springs; ++k) {
+    const Spring& s = bodies.springs[k];
     set_spring(joined(g, node_of(g, s.a), node_of(g, s.b)), s);
+  }
 }
 /** Fill the empty graph @a g: body i is node(i). */
 template <typename G>
 void fill(G& g, const Bodies& bodies) {
-  for (int i = 0; i < bodies.size(); ++i) {
+  for (int i = 0; i < bodies.size; ++i) {
     auto n = g.add_node(bodies.x[i]);
     velocity(n) = bodies.v[i];
     mass(n) = bodies.m[i];
@@ -253,14 +261,32 @@ class Life {
   volatile unsigned alive_ = here;
 };
 
-using ForceLaw = std::function<Point(ClothNode, double)>;
-using ConstraintLaw = std::function<void(Cloth&, double)>;
+/** What a test's force or constraint does: a reference to a function object,
+ * which has to outlive it. */
+struct ForceLaw {
+  const void* f;
+  Point (*call)(const void*, ClothNode, double);
+  template <typename F>
+  ForceLaw(const F& function)
+      : f(&function), call([](const void* p, ClothNode n, double t) {
+          return Point((*static_cast<const F*>(p))(n, t));
+        }) {}
+};
+struct ConstraintLaw {
+  const void* f;
+  void (*call)(const void*, Cloth&, double);
+  template <typename F>
+  ConstraintLaw(const F& function)
+      : f(&function), call([](const void* p, Cloth& g, double t) {
+          (*static_cast<const F*>(p))(g, t);
+        }) {}
+};
 
 /** A force or a constraint of the test's: for templates, no base needed. */
 class FreeForce {
  public:
-  explicit FreeForce(ForceLaw law)
-      : law_(std::make_shared<ForceLaw>(std::move(law))) {}
+  using Law = ForceLaw;
+  explicit FreeForce(Law law) : law_(law) {}
   template <typename N>
   Point operator()(N n, double t) const {
     return call(n, t);
@@ -269,18 +295,17 @@ class FreeForce {
  protected:
   Point call(ClothNode n, double t) const {
     life_.look();
-    auto law = law_;  // lives on, whatever becomes of this
-    return (*law)(n, t);
+    return law_.call(law_.f, n, t);
   }
 
  private:
   Life life_;
-  std::shared_ptr<ForceLaw> law_;
+  Law law_;
 };
 class FreeConstraint {
  public:
-  explicit FreeConstraint(ConstraintLaw law)
-      : law_(std::make_shared<ConstraintLaw>(std::move(law))) {}
+  using Law = ConstraintLaw;
+  explicit FreeConstraint(Law law) : law_(law) {}
   template <typename G>
   void operator()(G& g, double t) const {
     call(g, t);
@@ -289,31 +314,28 @@ class FreeConstraint {
  protected:
   void call(Cloth& g, double t) const {
     life_.look();
-    auto law = law_;
-    (*law)(g, t);
+    law_.call(law_.f, g, t);
   }
 
  private:
   Life life_;
-  std::shared_ptr<ConstraintLaw> law_;
+  Law law_;
 };
 
 /** The same as a child of Base, whose virtual call has the type Call. */
-template <typename Base, typename Law, typename Call>
+template <typename Base, typename Free, typename Call>
 struct Child;
-template <typename Base, typename Law, typename R, typename C, typename A,
+template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
-struct Child<Base, Law, R (C::*)(A, B)> : Base, private Law {
-  template <typename F>
-  explicit Child(F law) : Law(std::move(law)) {}
-  R operator()(A a, B b) override { return Law::call(a, b); }
+struct Child<Base, Free, R (C::*)(A, B)> : Base, private Free {
+  explicit Child(typename Free::Law law) : Free(law) {}
+  R operator()(A a, B b) override { return Free::call(a, b); }
 };
-template <typename Base, typename Law, typename R, typename C, typename A,
+template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
-struct Child<Base, Law, R (C::*)(A, B) const> : Base, private Law {
-  template <typename F>
-  explicit Child(F law) : Law(std::move(law)) {}
-  R operator()(A a, B b) const override { return Law::call(a, b); }
+struct Child<Base, Free, R (C::*)(A, B) const> : Base, private Free {
+  explicit Child(typename Free::Law law) : Free(law) {}
+  R operator()(A a, B b) const override { return Free::call(a, b); }
 };
 
 template <typename Base>
@@ -323,16 +345,16 @@ concept HasVirtualCall =
 };
 
 /** A child of First or, if that is no base with a virtual call, of the next
- * one; without any the law itself. */
-template <typename Law, typename First, typename... Others>
+ * one; without any a free one. */
+template <typename Free, typename First, typename... Others>
 auto child_of_one_of() {
   if constexpr (HasVirtualCall<First>)
     return std::type_identity<
-        Child<First, Law, decltype(&First::operator())>>();
+        Child<First, Free, decltype(&First::operator())>>();
   else if constexpr (sizeof...(Others) > 0)
-    return child_of_one_of<Law, Others...>();
+    return child_of_one_of<Free, Others...>();
   else
-    return std::type_identity<Law>();
+    return std::type_identity<Free>();
 }
 using TestForce = decltype(child_of_one_of<FreeForce, ::KIT_FORCE_BASE,
                                            ::ZeroForce, ::Force>())::type;
@@ -340,12 +362,9 @@ using TestConstraint =
     decltype(child_of_one_of<FreeConstraint, ::KIT_CONSTRAINT_BASE,
                              ::ZeroConstraint, ::Constraint>())::type;
 
-/** A force that is @a f everywhere, plus @a per_second times t. */
-inline TestForce constant_force(const Point& f, const Point& per_second = {}) {
-  return TestForce([=](ClothNode, double t) { return f + t * per_second; });
-}
 inline TestConstraint no_constraint() {
-  return TestConstraint([](Cloth&, double) {});
+  static constexpr auto nothing = [](Cloth&, double) {};
+  return TestConstraint(nothing);
 }
 
 // ---------------------------------------------------- What a submission calls
@@ -364,62 +383,77 @@ void constrain(C& c, Cloth& g, double t = 0) {
   c(g, t);
 }
 
+/** Deletes what a test has made by new. (A unique_ptr of each type takes longer
+ * to compile.) */
+template <typename T>
+struct Owned {
+  T* made;
+  Owned(T* p) : made(p) {}
+  Owned(const Owned&) = delete;
+  ~Owned() { delete made; }
+  T& operator*() const { return *made; }
+};
+
 /** The pin of the corners: made from a graph, from nothing, from points or from
  * nodes, all at once or one by one. @a g has its corners in place. */
 template <typename Pin>
 class Pins {
  public:
   explicit Pins(Cloth& g) {
-    std::vector<Point> p = {Point(0, 0, 0), Point(1, 0, 0)};
-    std::vector<ClothNode> n;
-    for (const Point& corner : p)
-      for (int i = 0; i < int(g.num_nodes()); ++i)
-        if (place(g, i) == corner) n.push_back(node_of(g, i));
-    auto i = [&](int k) { return static_cast<unsigned>(n[k].index()); };
+    const Point p0(0, 0, 0), p1(1, 0, 0);
+    const ClothNode n0 = node_at(g, p0), n1 = node_at(g, p1);
     if constexpr (std::is_constructible_v<Pin, Cloth&>) {
       hold(g);
     } else if constexpr (std::is_constructible_v<Pin, Cloth*>) {
       hold(&g);
     } else if constexpr (std::is_default_constructible_v<Pin>) {
       hold();
-    } else if constexpr (std::is_constructible_v<Pin, decltype((p))>) {
-      hold(p);
-    } else if constexpr (std::is_constructible_v<Pin, decltype((n))>) {
-      hold(n);
-    } else if constexpr (requires { Pin(g, p); }) {
-      hold(g, p);
-    } else if constexpr (requires { Pin(p[0], p[1]); }) {
-      hold(p[0], p[1]);
-    } else if constexpr (requires { Pin(n[0], n[1]); }) {
-      hold(n[0], n[1]);
-    } else if constexpr (requires { Pin(n[0], p[0]); }) {
-      hold(n[0], p[0]), hold(n[1], p[1]);
-    } else if constexpr (requires { Pin(g, p[0]); }) {
-      hold(g, p[0]), hold(g, p[1]);
-    } else if constexpr (requires { Pin(g, p[0], p[1]); }) {
-      hold(g, p[0], p[1]);
-    } else if constexpr (requires { Pin(n[0], n[1], p[0], p[1]); }) {
-      hold(n[0], n[1], p[0], p[1]);
-    } else if constexpr (requires { Pin(p[0]); }) {
-      hold(p[0]), hold(p[1]);
-    } else if constexpr (requires { Pin(n[0]); }) {
-      hold(n[0]), hold(n[1]);
+    } else if constexpr (std::is_constructible_v<Pin, std::vector<Point>>) {
+      hold(std::vector<Point>{p0, p1});
+    } else if constexpr (std::is_constructible_v<Pin, std::vector<ClothNode>>) {
+      hold(std::vector<ClothNode>{n0, n1});
+    } else if constexpr (requires { Pin(g, std::vector<Point>()); }) {
+      hold(g, std::vector<Point>{p0, p1});
+    } else if constexpr (requires { Pin(p0, p1); }) {
+      hold(p0, p1);
+    } else if constexpr (requires { Pin(n0, n1); }) {
+      hold(n0, n1);
+    } else if constexpr (requires { Pin(n0, p0); }) {
+      hold(n0, p0), hold(n1, p1);
+    } else if constexpr (requires { Pin(g, p0); }) {
+      hold(g, p0), hold(g, p1);
+    } else if constexpr (requires { Pin(g, p0, p1); }) {
+      hold(g, p0, p1);
+    } else if constexpr (requires { Pin(n0, n1, p0, p1); }) {
+      hold(n0, n1, p0, p1);
+    } else if constexpr (requires { Pin(p0); }) {
+      hold(p0), hold(p1);
+    } else if constexpr (requires { Pin(n0); }) {
+      hold(n0), hold(n1);
     } else {
       static_assert(
-          requires { Pin(i(0), i(1)); },
+          requires { Pin(0u, 0u); },
           "PinConstraint is made from nothing, a graph or points");
-      hold(i(0), i(1));
+      hold(unsigned(n0.index()), unsigned(n1.index()));
     }
   }
+  Pins(const Pins&) = delete;
+  ~Pins() { delete first_, delete second_; }
   void operator()(Cloth& g, double t) {
-    for (auto& pin : pins_) (*pin)(g, t);
+    (*first_)(g, t);
+    if (second_) (*second_)(g, t);
   }
 
  private:
-  std::vector<std::shared_ptr<Pin>> pins_;
+  Pin *first_ = nullptr, *second_ = nullptr;
   template <typename... Args>
   void hold(Args&&... args) {
-    pins_.emplace_back(new Pin(std::forward<Args>(args)...));
+    (first_ ? second_ : first_) = new Pin(std::forward<Args>(args)...);
+  }
+  static ClothNode node_at(Cloth& g, const Point& p) {
+    int i = 0;
+    while (!(place(g, i) == p)) ++i;
+    return node_of(g, i);
   }
 };
 
