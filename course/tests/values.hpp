@@ -9,34 +9,29 @@
 namespace kit {
 
 // The usual names. What stands first is the course's own.
+// clang-format off
 #define KIT_NAMES_OF_MASS(X) X(mass) X(m) X(mass_) X(m_)
 #define KIT_NAMES_OF_VELOCITY(X) X(vel) X(velocity) X(v) X(vel_) X(velocity_)
-#define KIT_NAMES_OF_START(X)                                           \
-  X(initial_position)                                                   \
-  X(initial_pos)                                                        \
-  X(initial) X(initialPosition) X(init_position) X(init_pos) X(initpos) \
-      X(initPos) X(init) X(start) X(start_pos) X(original_position)     \
-          X(orig_pos) X(orig) X(pos0) X(p0) X(x0) X(pin) X(pos_init)    \
-              X(position0) X(fixed_pos)
-#define KIT_NAMES_OF_K(X)                                                      \
-  X(K)                                                                         \
-  X(k)                                                                         \
-  X(K_) X(k_) X(Ks) X(ks) X(K0) X(k0) X(Kij) X(kij) X(K_ij) X(k_ij)            \
-      X(spring_constant) X(spring_constant_) X(spring_const) X(springConstant) \
-          X(springConst) X(spring_k) X(spring_K) X(spring_coef) X(spring)      \
-              X(constant) X(stiffness) X(stiff) X(K_spring) X(k_spring)        \
-                  X(kval) X(K_const) X(k_const)
-#define KIT_NAMES_OF_L(X)                                                     \
-  X(L)                                                                        \
-  X(l)                                                                        \
-  X(L_) X(l_) X(L0) X(l0) X(Lij) X(lij) X(L_ij) X(l_ij) X(length) X(length_)  \
-      X(len) X(len_) X(rest_length) X(rest_length_) X(rest_len) X(restLength) \
-          X(resting_length) X(rest) X(initial_length) X(initial_len)          \
-              X(init_length) X(init_len) X(initialLength) X(initLength)       \
-                  X(initial) X(original_length) X(orig_length)                \
-                      X(natural_length) X(edge_length) X(spring_length)       \
-                          X(spring_len) X(length0) X(len0) X(lval) X(dist)    \
-                              X(distance)
+#define KIT_NAMES_OF_START(X)                                               \
+  X(initial_position) X(initial_pos) X(initial) X(initialPosition)          \
+  X(init_position) X(init_pos) X(initpos) X(initPos) X(init) X(start)       \
+  X(start_pos) X(original_position) X(orig_pos) X(orig) X(pos0) X(p0) X(x0) \
+  X(pin) X(pos_init) X(position0) X(fixed_pos)
+#define KIT_NAMES_OF_K(X)                                                   \
+  X(K) X(k) X(K_) X(k_) X(Ks) X(ks) X(K0) X(k0) X(Kij) X(kij) X(K_ij)       \
+  X(k_ij) X(spring_constant) X(spring_constant_) X(spring_const)            \
+  X(springConstant) X(springConst) X(spring_k) X(spring_K) X(spring_coef)   \
+  X(spring) X(constant) X(stiffness) X(stiff) X(K_spring) X(k_spring)       \
+  X(kval) X(K_const) X(k_const)
+#define KIT_NAMES_OF_L(X)                                                   \
+  X(L) X(l) X(L_) X(l_) X(L0) X(l0) X(Lij) X(lij) X(L_ij) X(l_ij) X(length) \
+  X(length_) X(len) X(len_) X(rest_length) X(rest_length_) X(rest_len)      \
+  X(restLength) X(resting_length) X(rest) X(initial_length) X(initial_len)  \
+  X(init_length) X(init_len) X(initialLength) X(initLength) X(initial)      \
+  X(original_length) X(orig_length) X(natural_length) X(edge_length)        \
+  X(spring_length) X(spring_len) X(length0) X(len0) X(lval) X(dist)         \
+  X(distance)
+// clang-format on
 
 // If v has the member, give its address; else go on with the next name.
 #define KIT_NUMBER(member)                                     \
