@@ -30,6 +30,8 @@
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
 /** Derive != from the == of @a T. */
 template <typename T>
 struct equality_comparable {

@@ -112,6 +112,15 @@ Point some_point(unsigned seed) {
   return *p;
 }
 
+/** A pause as they make it without CME212::sleep().  @return its length [s] */
+double pause(double seconds) {
+  auto start = std::chrono::high_resolution_clock::now();
+  usleep(useconds_t(1e6 * seconds));
+  std::chrono::duration<double> length =
+      std::chrono::high_resolution_clock::now() - start;
+  return length.count();
+}
+
 /** Arithmetic that goes by coordinate. */
 double box_volume(const Point& p) {
   return std::accumulate(p.cbegin(), p.cend(), 1.0, std::multiplies<double>());
@@ -316,6 +325,7 @@ TEST(Homework0, AlgorithmsTakePoints) {
   EXPECT_DOUBLE_EQ(s.spread(), std::sqrt(8. / 9));
   EXPECT_TRUE(Box3D(Point(0), Point(1)).contains(hw0::some_point(7)));
   EXPECT_NE(hw0::some_point(7), hw0::some_point(8));
+  EXPECT_GE(hw0::pause(0.001), 0.001);
   EXPECT_EQ(hw0::box_volume(Point(2, 3, 4)), 24);
   EXPECT_EQ(hw0::mirrored(Point(1, 2, 3)), Point(3, 2, 1));
   Point p(1, 2, 3);

@@ -223,7 +223,7 @@ TEST_F(Nodes, ClearBeginsAnewAndKeepsNothingOfTheDead) {
     g.check_invariants();
     EXPECT_EQ(g.node_slots(), 0u);
     EXPECT_EQ(g.edge_slots(), 0u);
-    EXPECT_TRUE(g.positions().empty() && g.halves(0).empty());
+    EXPECT_TRUE(g.positions().empty());
     const Node a = g.add_node(Point(7)), b = g.add_node(Point());
     EXPECT_EQ(a.id(), 0u);
     EXPECT_EQ(a.value() + b.value() + int(b.degree()), 0);
