@@ -1,8 +1,6 @@
 /** @file 4.2.build_cloth.cpp
  * The cloth at its start: what build_cloth() makes, or, in a program without
- * it, what main() gives to the viewer first.
- *
- * Build: program (by itself, as main() takes long to compile) */
+ * it, what main() gives to the viewer first. */
 #include "cloth.hpp"
 #include "program.hpp"
 

@@ -2,7 +2,7 @@
  * The whole program, in its last stage, on a cloth of 3 x 4 nodes, one of which
  * swings through the ball.
  *
- * Build: program (by itself, as main() takes long to compile) */
+ * Define: KIT_PROGRAM   so it is a unit of its own: main() takes long */
 #ifndef KIT_PROGRAM
 #define KIT_PROGRAM  // before cloth.hpp
 #endif
