@@ -9,6 +9,7 @@ arrows='
 CME212        :
 Graph         : CME212
 mass_spring   : Graph
+course        : mass_spring
 lab           : CME212
 lab/fast      : mass_spring
 lab/methods   : lab/fast
@@ -54,6 +55,7 @@ set_room() {  # of FILE, in $room: that of a program in the root is .
     Graph.hpp) room=Graph ;;
     mass_spring.hpp | mass_spring.cpp) room=mass_spring ;;
     lab/bench/*) room=lab/bench ;;
+    course/*) room=course ;;
     */*) room=${1%/*} ;;
     *) room=. ;;
   esac
@@ -85,12 +87,12 @@ while IFS=: read -r file line text; do
   # Programs and tests of the laboratory may include anything else.
   case $file in
     lab/*.cpp) ! is_program "$file" || continue ;;
-    */*) [[ $file == lab/* || $file == CME212/* ]] || continue ;;
+    */*) [[ $file == lab/* || $file == CME212/* || $file == course/* ]] || continue ;;
   esac
   set_room "$header"; of=$room
   set_room "$file"
   if [ "$room" = . ]; then  # a program of the course
-    [[ $header != lab/* ]] ||
+    [[ $header != lab/* && $header != course/* ]] ||
       fault "$file:$line: includes $header, which is not below it"
   elif [ -z "${may[$room]+there}" ]; then
     fault "$file:1: its room has no line in the table of $0"

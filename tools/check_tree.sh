@@ -20,7 +20,9 @@ files() {
 }
 mapfile -t sources < <(files '*.hpp' '*.cpp')
 mapfile -t programs < <(files ':(glob)*.cpp')
-mapfile -t code < <(files '*.hpp' '*.cpp' '*.sh' '*.gp' '*.mk' '*.toml' Makefile .ci/run)
+mapfile -t scripts < <(files '*.py')
+mapfile -t code < <(files '*.hpp' '*.cpp' '*.py' '*.sh' '*.gp' '*.mk' '*.toml' \
+  '*.yml' Makefile course/starter/Makefile .ci/run)
 mapfile -t texts < <(printf '%s\n' "${code[@]}"; files '*.md')
 [ ${#sources[@]} != 0 ] || { echo "no sources here"; exit 1; }
 
@@ -38,7 +40,7 @@ for file in ${programs[@]+"${programs[@]}"}; do
     echo "$file:1: is no program: it has no main() and no test"
 done >>"$faults"
 
-for file in "${sources[@]}"; do
+for file in "${sources[@]}" ${scripts[@]+"${scripts[@]}"}; do
   limit=$longest
   [ "$file" != Graph.hpp ] || limit=$longest_graph
   [[ $file != *test_* ]] || limit=$longest_test
@@ -51,7 +53,8 @@ done >>"$faults"
 lines "is left unfinished" -wE 'TOD[O]|FIXM[E]|XX[X]' "${code[@]}"
 lines "is never compiled" -E '^[[:space:]]*#[[:space:]]*if +(0|false)\b' \
   "${sources[@]}"
-lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}"
+lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}" \
+  ${scripts[@]+"${scripts[@]}"}
 lines "has a character that is not ASCII" -P '[^\x00-\x7F]' "${code[@]}"
 lines "ends in white space" -E '[[:space:]]$' "${texts[@]}"
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Show that each check of check_includes.sh, check_headers.sh, check_tree.sh
-# and check_commands.sh can fail: on a scratch copy of the tree, one fault at a time.
+# and check_commands.sh can fail, on a scratch copy of the tree, one fault at a
+# time; and how the Makefile builds a program that somebody adds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -74,6 +75,10 @@ arrow mass_spring.hpp lab/fast/Lanes.hpp
 arrow mass_spring.cpp lab/methods/Verlet.hpp
 arrow test_nodes.cpp lab/fast/Sweep.hpp
 arrow another.cpp lab/fast/Sweep.hpp
+arrow course/tests/3.1.position.cpp lab/fast/Sweep.hpp
+arrow mass_spring.hpp course/tests/check.hpp
+arrow another.cpp course/tests/check.hpp
+arrow lab/fast/Sweep.hpp course/tests/check.hpp
 arrow lab/fast/Energy.hpp lab/methods/Verlet.hpp
 arrow lab/methods/Verlet.hpp lab/stability/Guard.hpp
 arrow lab/stability/Guard.hpp lab/scenes/Scene.hpp
@@ -178,6 +183,9 @@ caught "tree: 761 lines of Graph.hpp" \
 again; comment_lines 501 >mass_spring.hpp
 caught "tree: 501 lines of another" \
   "mass_spring.hpp:500: goes on to line 501; the limit is 500" tree $tree
+again; printf '#%80s\n' x >>course/kit/tasks.py
+caught "tree: 81 columns of Python" \
+  "course/kit/tasks.py:$(wc -l <course/kit/tasks.py): is longer than 80" tree $tree
 again small; comment_lines 500 >CME212/SlotMap.hpp; cp CME212/SlotMap.hpp Graph.hpp
 comment_lines 260 >>Graph.hpp
 clean "tree: 500 and 760 lines are none too many" $tree
@@ -210,6 +218,26 @@ again; rm mass_spring.hpp
 check tree $tree; why=""
 ! grep -q 'No such file' <<<"$out" || why=" looks for it;"
 ok "tree: a deleted file is not looked for"
+
+# ---- How the Makefile builds a program that somebody adds to the root
+build_says() {  # NAME WORD NOT-WORD MAKE-ARGUMENT...
+  again; printf '%s\n' "$program" >own.cpp
+  check tree make -n own B="$tmp/own" "${@:4}"; why=""
+  [ "$status" = 0 ] || why=" status is $status;"
+  grep -qE -- "$2" <<<"$out" || why+=" no $2;"
+  ! grep -qE -- "$3" <<<"$out" || why+=" there is $3;"
+  ok "make: $1"; rm -rf "$tmp/own"
+}
+program='int main() {}'
+build_says "its own program has assertions" '-Og' 'NDEBUG|libviewer|gtest'
+build_says "unless it asks for speed" '-O3 -DNDEBUG' '-Og' FAST=1
+program='#include "CME212/SFML_Viewer.hpp"
+int main() {}'
+build_says "it is linked with the viewer that it includes" \
+  'own.cpp [^ ]*libviewer.a -l' 'NDEBUG|gtest'
+program='#include <gtest/gtest.h>'
+build_says "and with GoogleTest, under the sanitizers" \
+  '-fsanitize=address,undefined.*' 'NDEBUG|libviewer'
 
 # ---- Pages whose commands are run
 run=tools/check_commands.sh
