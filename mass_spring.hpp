@@ -55,14 +55,29 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
     g.add_node(p, {Point(), Real(1.0 / double(points.size()))});
   for (unsigned s = 0; s < springs.size(); ++s) {
     const auto [i, j] = springs[s];
+    // BEGIN SOLUTION 4.2.build_cloth 4pt
     const Real L = Real(norm(points[i] - points[j]));
     g.add_edge(g.node(i), g.node(j), {Real(K), L});
+    // STUB (void)K;
+    // STUB g.add_edge(g.node(i), g.node(j));
+    // END SOLUTION
   }
 }
 
 // ------------------------------------------------------- 3.2 and 6.2: the step
 
-/** Symplectic Euler: x += dt v;  v += dt F(x, t)/m.  Corners are skipped (5.2).
+/** Does the step without a constraint leave out a node at @a p? The corners,
+ * from 5.2 on: the forces of section 5 act on them, too. */
+inline bool is_skipped(const Point& p) {
+  // BEGIN SOLUTION 5.2.skip_corners 2pt
+  return is_corner(p);
+  // STUB (void)p;
+  // STUB return false;
+  // END SOLUTION
+}
+
+/** Symplectic Euler: x += dt v;  v += dt F(x, t)/m, of the nodes that are not
+ * skipped.
  * @param t   time at the start of the step [s]   @param dt step [s]
  * @param force  Point(Node, double): the force [N] on a node at time t
  * @return t + dt
@@ -70,16 +85,20 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
  * Order 1; bounded while dt omega < 2 for every frequency omega [1/s]. */
 template <typename G, typename F>
 double symp_euler_step(G& g, double t, double dt, F&& force) {
+  // BEGIN SOLUTION 3.2.symp_euler_step 7pt
   for (auto it = g.node_begin(); it != g.node_end(); ++it) {
     auto n = *it;
-    if (!is_corner(n.position())) n.position() += dt * n.value().vel;
+    if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
   }
   for (auto it = g.node_begin(); it != g.node_end(); ++it) {
     auto n = *it;
-    if (!is_corner(n.position()))
+    if (!is_skipped(n.position()))
       n.value().vel += (dt / n.value().mass) * force(n, t);
   }
   return t + dt;
+  // STUB (void)g, (void)force;
+  // STUB return t + dt;
+  // END SOLUTION
 }
 
 /** The same with a constraint, and no node is skipped (6.2):
@@ -87,6 +106,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force) {
  * @param constraint  void(G&, double), called once; may remove nodes */
 template <typename G, typename F, typename C>
 double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  // BEGIN SOLUTION 6.2.symp_euler_step 6pt
   for (auto it = g.node_begin(); it != g.node_end(); ++it) {
     auto n = *it;
     n.position() += dt * n.value().vel;
@@ -97,6 +117,9 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
     n.value().vel += (dt / n.value().mass) * force(n, t);
   }
   return t + dt;
+  // STUB (void)g, (void)force, (void)constraint;
+  // STUB return t + dt;
+  // END SOLUTION
 }
 
 // ----------------------------------------------------------------- The forces
@@ -104,8 +127,12 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
 /** Force [N] of a spring on its one end, the other end being @a u [m] away:
  * K (|u| - L) along u; none where |u| = 0, as no direction is defined. */
 inline Point spring_force(const Point& u, const EdgeData& s) {
+  // BEGIN SOLUTION 3.2.Problem1Force 7pt
   const Real l = Real(norm(u));
   return l > 0 ? s.K * (l - s.L) / l * u : Point();
+  // STUB (void)u, (void)s;
+  // STUB return Point();
+  // END SOLUTION
 }
 
 /** 3.2 and 4.2: gravity and springs in one; a corner feels no force, so it
@@ -119,18 +146,32 @@ class Problem1Force {
 
   template <typename NODE>
   Point operator()(NODE n, double /*t*/) const {
+    // BEGIN SOLUTION 3.2.Problem1Force
     if (is_corner(n.position())) return Point();
     Point f = n.value().mass * Point(0, 0, -grav);
     for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
       auto e = *it;  // seen from n, so that node2() is the other end
-      f += spring_force(e.node2().position() - n.position(),
-                        same_ ? *same_ : e.value());
+      f += spring_force(e.node2().position() - n.position(), spring_of(e));
     }
     return f;
+    // STUB (void)n;
+    // STUB return Point();
+    // END SOLUTION
   }
 
  private:
   std::optional<EdgeData> same_;
+
+  /** K and L of the spring at @a e: its own (4.2), unless all are alike. */
+  template <typename EDGE>
+  EdgeData spring_of(const EDGE& e) const {
+    if (same_) return *same_;
+    // BEGIN SOLUTION 4.2.Problem1Force 6pt
+    return e.value();
+    // STUB (void)e;
+    // STUB return {.K = 0, .L = 0};
+    // END SOLUTION
+  }
 };
 
 /** 5.1: no force, and the base of all forces. */
@@ -149,7 +190,11 @@ class GravityForce : public ZeroForce {
   explicit GravityForce(double gravity = grav) : gravity_(gravity) {}
   double gravity() const { return gravity_; }
   Point operator()(Node n, double /*t*/) const override {
+    // BEGIN SOLUTION 5.1.GravityForce 3pt
     return n.value().mass * Point(0, 0, -gravity_);
+    // STUB (void)n;
+    // STUB return Point();
+    // END SOLUTION
   }
 
  private:
@@ -160,10 +205,14 @@ class GravityForce : public ZeroForce {
 class MassSpringForce : public ZeroForce {
  public:
   Point operator()(Node n, double /*t*/) const override {
+    // BEGIN SOLUTION 5.1.MassSpringForce 3pt
     Point f;
     for (Edge e : n.edges())
       f += spring_force(e.node2().position() - n.position(), e.value());
     return f;
+    // STUB (void)n;
+    // STUB return Point();
+    // END SOLUTION
   }
 };
 
@@ -180,7 +229,11 @@ class DampingForce : public ZeroForce {
   }
   double coefficient() const { return c_; }
   Point operator()(Node n, double /*t*/) const override {
+    // BEGIN SOLUTION 5.1.DampingForce 3pt
     return -c_ * n.value().vel;
+    // STUB (void)n;
+    // STUB return Point();
+    // END SOLUTION
   }
 
  private:
@@ -217,9 +270,13 @@ class CombinedForces : public ZeroForce {
   }
   const List& parts() const { return forces_; }
   Point operator()(Node n, double t) const override {
+    // BEGIN SOLUTION 5.2.make_combined_force 5pt
     Point f;
     for (const auto& force : forces_) f += (*force)(n, t);
     return f;
+    // STUB (void)n, (void)t;
+    // STUB return Point();
+    // END SOLUTION
   }
 
  private:
@@ -229,8 +286,12 @@ class CombinedForces : public ZeroForce {
 /** The sum of any number of forces; each is copied, so temporaries are fine. */
 template <typename... Fs>
 CombinedForces make_combined_force(Fs... fs) {
+  // BEGIN SOLUTION 5.2.make_combined_force
   return CombinedForces(CombinedForces::List{
       CME212::shared_as<ZeroForce, FunctionForce>(std::move(fs))...});
+  // STUB ((void)fs, ...);
+  // STUB return CombinedForces(CombinedForces::List());
+  // END SOLUTION
 }
 
 // ------------------------------------------------------------ The constraints
@@ -254,8 +315,11 @@ class PinConstraint : public ZeroConstraint {
   /** Hold the nodes that @a holds(position) selects: the two corners. */
   template <typename Pred = bool (*)(const Point&)>
   explicit PinConstraint(const Cloth& g, Pred holds = is_corner) {
+    // BEGIN SOLUTION 6.1.PinConstraint 4pt
     for (Node n : g.nodes())
       if (holds(n.position())) pins_.push_back({n, n.position()});
+    // STUB (void)g, (void)holds;
+    // END SOLUTION
   }
   /** Hold @a nodes.  @pre all in one graph */
   explicit PinConstraint(std::span<const Node> nodes) {
@@ -270,8 +334,11 @@ class PinConstraint : public ZeroConstraint {
   const std::vector<Pin>& pins() const { return assert(has_pins_), pins_; }
   void operator()(Cloth& g, double /*t*/) const override {
     if (!has_pins_) pins_ = PinConstraint(g).pins_, has_pins_ = true;
+    // BEGIN SOLUTION 6.1.PinConstraint
     for (auto [n, place] : pins_)
       if (g.has_node(n)) n.position() = place, n.value().vel = Point();
+    // STUB (void)g;
+    // END SOLUTION
   }
 
  private:
@@ -286,7 +353,10 @@ class PlaneConstraint : public ZeroConstraint {
   explicit PlaneConstraint(double z = -0.75) : z_(z) {}
   double height() const { return z_; }
   void project(Node n) const {
+    // BEGIN SOLUTION 6.1.PlaneConstraint 4pt
     if (n.position().z < z_) n.position().z = Real(z_), n.value().vel.z = 0;
+    // STUB (void)n;
+    // END SOLUTION
   }
   void operator()(Cloth& g, double /*t*/) const override {
     for (Node n : g.nodes()) project(n);
@@ -315,11 +385,14 @@ class SphereConstraint : public ZeroConstraint {
       : ball_{center, radius} {}
   const Ball& ball() const { return ball_; }
   void project(Node n) const {
+    // BEGIN SOLUTION 6.1.SphereConstraint 4pt
     if (!ball_.holds(n.position())) return;
     const Point r = n.position() - ball_.center;
     const Point normal = norm(r) > 0 ? r / norm(r) : Point(0, 0, 1);
     n.position() = ball_.center + ball_.radius * normal;
     n.value().vel -= dot(n.value().vel, normal) * normal;
+    // STUB (void)n;
+    // END SOLUTION
   }
   void operator()(Cloth& g, double /*t*/) const override {
     for (Node n : g.nodes()) project(n);
@@ -336,11 +409,14 @@ class TearConstraint : public ZeroConstraint {
   explicit TearConstraint(const Ball& ball = {}) : ball_(ball) {}
   const Ball& ball() const { return ball_; }
   void operator()(Cloth& g, double /*t*/) const override {
+    // BEGIN SOLUTION 7.2.TearConstraint 4pt
     for (auto it = g.node_begin(); it != g.node_end();)
       if (ball_.holds((*it).position()))
         it = g.remove_node(it);  // now at the node that took its index
       else
         ++it;
+    // STUB (void)g;
+    // END SOLUTION
   }
 
  private:
@@ -380,7 +456,10 @@ class CombinedConstraints : public ZeroConstraint {
   }
   const List& parts() const { return constraints_; }
   void operator()(Cloth& g, double t) const override {
+    // BEGIN SOLUTION 6.2.make_combined_constraints 4pt
     for (const auto& c : constraints_) (*c)(g, t);
+    // STUB (void)g, (void)t;
+    // END SOLUTION
   }
 
  private:
@@ -390,8 +469,12 @@ class CombinedConstraints : public ZeroConstraint {
 /** Any number of constraints in this order; each is copied. */
 template <typename... Cs>
 CombinedConstraints make_combined_constraints(Cs... cs) {
+  // BEGIN SOLUTION 6.2.make_combined_constraints
   return CombinedConstraints(CombinedConstraints::List{
       CME212::shared_as<ZeroConstraint, FunctionConstraint>(std::move(cs))...});
+  // STUB ((void)cs, ...);
+  // STUB return CombinedConstraints(CombinedConstraints::List());
+  // END SOLUTION
 }
 /** The same by the name that other years of the course give it. */
 template <typename... Cs>
