@@ -80,10 +80,13 @@ stages() {
     build/check/mass_spring_$stage data/grid0.nodes data/grid0.tets || return 1
   done
 }
+# Markers and tasks of the teaching kit, and what splits them.
+kit_source() { python3 course/kit/markers.py && python3 course/kit/test_markers.py; }
 course_test() { in_folder . "build/check/$1" && "build/check/$1"; }
 of_files() {
   step tree        tools/check_tree.sh
   step includes    tools/check_includes.sh
+  step kit_source  kit_source
   step test_nodes  course_test test_nodes
   step test_edges  course_test test_edges
 }
