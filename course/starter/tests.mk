@@ -13,10 +13,11 @@ counted  := $(patsubst tests/%.cpp,%, \
 alone     = $(filter $(SECTION).%,$(counted))
 together  = $(filter-out $(counted:%=tests/%.cpp),$(wildcard tests/$*.*.cpp))
 frame     = $(B)/tests/main.o
-of_test   = $(common) $(debug) -O0 -Itests/headless -Itests \
+of_test   = -Itests/headless $(common) -Itests $(debug) -O0 \
             -include tests/prelude.hpp -DKIT_TESTS='"tests"' \
             -MMD -MP -MF $@.d -MT $@
 wrap      = $(foreach f,move cpy set chr cmp,-Wl,--wrap=mem$(f))
+defined   = $(shell sed -nE 's/.*(Define: |ifndef )(KIT_[A-Z]+)$$/-D\2/p' $(together))
 unit      = @mkdir -p $(@D); printf '\#include "%s"\n' $(1) >$(B)/tests/$*.cpp
 
 .PHONY: test section
@@ -38,7 +39,7 @@ endif
 $(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame)
 	@echo '$(CXX) $@'
 	$(call unit,$(together))
-	@$(CXX) $(of_test) $(sanitizer) -o $@ $@.cpp $(frame)
+	@$(CXX) $(of_test) $(defined) $(sanitizer) -o $@ $@.cpp $(frame)
 $(counted:%=$(B)/tests/%): $(B)/tests/%: tests/%.cpp $(frame)
 	@echo '$(CXX) $@'
 	@$(CXX) $(of_test) -O1 -fsanitize-coverage=trace-pc -c -o $@.o $<
