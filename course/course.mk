@@ -26,3 +26,8 @@ grade:
 autograder: export OUT := $(OUT)
 autograder:
 	@python3 course/kit/autograder.py
+
+# ---- The pages
+.PHONY: course-pictures
+course-pictures:
+	@python3 course/pictures/draw.py

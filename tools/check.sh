@@ -80,8 +80,11 @@ stages() {
     build/check/mass_spring_$stage data/grid0.nodes data/grid0.tets || return 1
   done
 }
-# Markers and tasks of the teaching kit, and what splits them.
-kit_source() { python3 course/kit/markers.py && python3 course/kit/test_markers.py; }
+# Markers and tasks of the teaching kit, what splits them; pages.
+kit_source() {
+  python3 course/kit/markers.py && python3 course/kit/test_markers.py &&
+    python3 course/kit/pages.py && python3 course/kit/test_pages.py
+}
 course_test() { in_folder . "build/check/$1" && "build/check/$1"; }
 of_files() {
   step tree        tools/check_tree.sh

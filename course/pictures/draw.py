@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""Draw the pictures of the pages.
+
+    course/pictures/draw.py [NAME...]      make course-pictures
+
+draws NAME.png, or all. Each is a row of panels, and each panel is the
+assignment's program as it is, or with one of MISTAKES put into a copy of it.
+Needs what the window needs (make deps) and ffmpeg; no display.
+"""
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path.insert(0, str(HERE.parent / "kit"))
+import markers  # noqa: E402
+
+HEIGHTS = {2: 416, 3: 330}  # [pixels], by the number of panels
+
+CLOTH, PROGRAM = "mass_spring.hpp", "mass_spring.cpp"
+MOVE = """    if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
+"""
+NEXT_LOOP = """  }
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
+    auto n = *it;
+"""
+TWO_FORCES = "make_combined_force(GravityForce(), MassSpringForce()"
+SLIDE = "n.value().vel -= dot(n.value().vel, normal) * normal;"
+
+# What a student may write by mistake: in FILE, what stands there (the first
+# time), and what stands there then.
+MISTAKES = {
+    "sign": [(CLOTH, "s.K * (l - s.L)", "s.K * (s.L - l)")],
+    "one loop": [(CLOTH, MOVE + NEXT_LOOP, MOVE)],
+    "old positions": [
+        (CLOTH, "  for (auto it = g.node_begin(); it != g.node_end(); ++it) {",
+         """  std::vector<Point> f;
+  for (auto n : g.nodes()) f.push_back(force(n, t));
+  for (auto it = g.node_begin(); it != g.node_end(); ++it) {"""),
+        (CLOTH, "* force(n, t);", "* f[n.index()];")],
+    "first length": [(CLOTH, "norm(points[i] - points[j])",
+                      "norm(points[0] - points[1])")],
+    "no length": [(CLOTH, "{Real(K), L}", "{Real(K), 0 * L}")],
+    "one diagonal": [(CLOTH, "const auto [i, j] = springs[s];",
+                      """if (s / (springs.size() / 6) == 3) continue;
+    const auto [i, j] = springs[s];""")],
+    "no mass": [(CLOTH, "n.value().mass * Point(0, 0, -gravity_)",
+                 "Point(0, 0, -gravity_)")],
+    "damped": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(g)")],
+    "+ c v": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(g)"),
+              (CLOTH, "return -c_ *", "return c_ *")],
+    "c = 1": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(1)")],
+    "pin by place": [
+        (CLOTH, "for (auto [n, place] : pins_)", "for (Node n : g.nodes())"),
+        (CLOTH, "if (g.has_node(n)) n.position() = place, n",
+         "if (is_corner(n.position())) n")],
+    "floor keeps v": [(CLOTH, ", n.value().vel.z = 0;", ";")],
+    "ball keeps v": [(CLOTH, SLIDE, "")],
+    "ball only": [(CLOTH, "for (const auto& c : constraints_) (*c)(g, t);",
+                   "(*constraints_.back())(g, t);")],
+}
+
+# A picture is a row of panels: a mistake or none, the stage, times [s], and
+# down to which z it looks [m].
+PICTURES = {
+    "3.2": [("", "problem1", [0.3, 0.6], -1.25)],
+    "3.2-mistakes": [("sign", "problem1", [0.04], -0.45),
+                     ("one loop", "problem1", [0.46], -0.75),
+                     ("old positions", "problem1", [0.17], -0.45)],
+    "4.2": [("", "diagonals", [0.3, 0.6], -1.15)],
+    "4.2-mistakes": [("first length", "diagonals", [0.3], -0.75),
+                     ("no length", "diagonals", [0.3], -0.75),
+                     ("one diagonal", "diagonals", [1], -1.05)],
+    "5.1-mistakes": [("no mass", "forces", [0.02], -1.05),
+                     ("+ c v", "forces", [1.2], -1.05),
+                     ("c = 1", "forces", [2], -1.05)],
+    "5.2": [("", "forces", [0.7], -1.15), ("damped", "forces", [5], -1.15)],
+    "6.1-mistakes": [("pin by place", "constraints", [0.45], -0.75),
+                     ("floor keeps v", "constraints", [2.5], -0.75),
+                     ("ball keeps v", "constraints", [0.42], -0.75)],
+    "6.2": [("", "constraints", [0.35, 0.45], -0.75)],
+    "6.2-mistakes": [("ball only", "constraints", [0.35, 0.45, 0.6], -0.75)],
+    "7.2": [("", "tear", [0.45, 0.6], -0.75)],
+}
+
+
+def with_mistake(text, file, mistake):
+    """The text of a file with the edits of a mistake."""
+    for name, old, new in MISTAKES.get(mistake, []):
+        if name == file:
+            if old not in text:
+                sys.exit(f"{mistake}: {file} does not say {old!r}")
+            text = text.replace(old, new, 1)
+    return text
+
+
+def build(folder, mistake, stage):
+    """The program with a mistake, in the folder. Returns its path."""
+    for file in markers.SOURCES:
+        text = markers.solution((ROOT / file).read_text(), file)
+        (folder / file).write_text(with_mistake(text, file, mistake))
+    viewer = os.environ.get("B", "build") + "/libviewer.a"
+    subprocess.run(["make", "-s", viewer], cwd=ROOT, check=True)
+    libraries = subprocess.run(
+        ["pkg-config", "--libs", "sdl2", "gl", "imgui", "libpng"],
+        check=True, stdout=subprocess.PIPE, text=True).stdout
+    program = folder / "picture"
+    subprocess.run(
+        [os.environ.get("CXX", "g++"), "-std=c++20", "-O1", "-pthread",
+         f"-DSTAGE={stage}", "-DMASS_SPRING_VIEWER", f"-I{folder}",
+         f"-I{ROOT}", "-o", program, HERE / "picture.cpp", ROOT / viewer,
+         *shlex.split(libraries)], check=True)
+    return program
+
+
+def draw(name, folder):
+    """Run the programs of a picture, and put their panels into a row."""
+    count = sum(len(times) for _, _, times, _ in PICTURES[name])
+    size = [str(1026 // count), str(HEIGHTS[count])]
+    files = []
+    for number, (mistake, stage, times, low) in enumerate(PICTURES[name]):
+        out = folder / f"panel{number}"
+        subprocess.run(
+            [build(folder, mistake, stage), out, mistake or stage, *size,
+             str(low), "data/grid1.nodes", "data/grid1.tets", "0.001",
+             *map(str, times)], cwd=ROOT, stdout=subprocess.DEVNULL)
+        for k in range(len(times)):
+            files += ["-i", f"{out}-{k}.png"]
+    picture = HERE / f"{name}.png"
+    subprocess.run(
+        ["ffmpeg", "-v", "error", "-y", *files, "-filter_complex",
+         f"hstack=inputs={count}", "-update", "1", picture], check=True,
+        stdin=subprocess.DEVNULL)
+    subprocess.run([ROOT / "tools/shrink_pictures.sh", picture], check=True)
+    print(f"course/pictures/{name}.png: {picture.stat().st_size} bytes",
+          flush=True)
+
+
+def main():
+    names = sys.argv[1:] or list(PICTURES)
+    for name in names:
+        if name not in PICTURES:
+            sys.exit(f"there is no picture {name}; there are "
+                     + ", ".join(PICTURES))
+    for name in names:
+        with tempfile.TemporaryDirectory() as folder:
+            draw(name, pathlib.Path(folder))
+
+
+if __name__ == "__main__":
+    main()
