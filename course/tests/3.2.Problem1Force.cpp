@@ -41,8 +41,6 @@ static P* made(Cloth& g, int way) {
   if constexpr (is_there<decltype(named_L(*p))>) *named_L(*p) = L;
   return p;
 }
-using Problem1 = KIT_FORCE(Problem1Force);
-
 /** Two nodes and a spring between them, turned and stretched to @a length. */
 static Bodies pair_at(double length, double K) {
   Bodies b;
@@ -56,42 +54,45 @@ static Point weight(const Bodies& b, int i) {
 }
 
 /** The force on body @a i. */
+template <typename P>
 static Point problem1(const Bodies& b, int i, int way) {
   Cloth g;
   fill(g, b);
-  const Owned<Problem1> p(made<Problem1>(g, way));
+  const Owned<P> p(made<P>(g, way));
   return force_on(*p, g, i);
 }
 
 /** The way to make the force; if none gives what is expected, the first. */
+template <typename P>
 static int way_to_make() {
   int first = -1;
   for (int way = 0; way < 6; ++way) {
     Cloth g;
-    if (!Owned<Problem1>(made<Problem1>(g, way)).made) continue;
+    if (!Owned<P>(made<P>(g, way)).made) continue;
     if (first < 0) first = way;
     const Bodies b = pair_at(2, K_of_way[way]);
-    if (near(problem1(b, 0, way), weight(b, 0) + b.pull(0), 1e-9)) return way;
+    if (near(problem1<P>(b, 0, way), weight(b, 0) + b.pull(0), 1e-9))
+      return way;
   }
   CHECK(first >= 0, "Problem1Force to be made from K and L, or from nothing");
   return first;
 }
 
-}  // namespace kit
-
-TASK("3.2.Problem1Force", problem1_weight) {
-  const int way = way_to_make();
+template <typename P>
+static void check_weight() {
+  const int way = way_to_make<P>();
   for (double m : {1.0, 0.25, 3.0}) {
     DID("a node of mass ", m, " kg without edges");
     Bodies b;
     b.add(Point(0.5, 0.25, 0.125), m, Point(1, 2, 3));
-    const Point force = problem1(b, 0, way);
+    const Point force = problem1<P>(b, 0, way);
     CHECK_NEAR(force, weight(b, 0), 1e-9);
   }
 }
 
-TASK("3.2.Problem1Force", problem1_one_spring) {
-  const int way = way_to_make();
+template <typename P>
+static void check_one_spring() {
+  const int way = way_to_make<P>();
   const double K = K_of_way[way];
   for (double length : {1.0, 0.5, 0.125}) {
     const Bodies b = pair_at(length, K);
@@ -99,14 +100,15 @@ TASK("3.2.Problem1Force", problem1_one_spring) {
       DID("two nodes of mass 0.25 kg, a spring of K = ", K, ", L = ", L,
           " between them, ", length, " m long; the force on its ",
           end == 0 ? "first" : "second", " end");
-      const Point force = problem1(b, end, way);
+      const Point force = problem1<P>(b, end, way);
       CHECK_NEAR(force, weight(b, end) + b.pull(end), 1e-9);
     }
   }
 }
 
-TASK("3.2.Problem1Force", problem1_several_springs) {
-  const int way = way_to_make();
+template <typename P>
+static void check_several_springs() {
+  const int way = way_to_make<P>();
   const double K = K_of_way[way];
   Bodies b;
   b.add(Point(0.5, 0.5, 0), 0.5);
@@ -114,12 +116,13 @@ TASK("3.2.Problem1Force", problem1_several_springs) {
                          Point(0.5, 0.5, -2), Point(0, 1, 0)})
     b.join(b.add(p), 0, K, L);
   DID("a node of mass 0.5 kg with four springs of K = ", K, ", L = ", L);
-  const Point force = problem1(b, 0, way);
+  const Point force = problem1<P>(b, 0, way);
   CHECK_NEAR(force, weight(b, 0) + b.pull(0), 1e-9);
 }
 
-TASK("3.2.Problem1Force", problem1_corners) {
-  const int way = way_to_make();
+template <typename P>
+static void check_corners() {
+  const int way = way_to_make<P>();
   const double K = K_of_way[way];
   Bodies b;
   for (const Point& p : {Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0),
@@ -129,10 +132,21 @@ TASK("3.2.Problem1Force", problem1_corners) {
   b.join(1, 3, K, L);
   for (int i = 0; i < b.size; ++i) {
     DID("the node at ", b.x[i], ", with stretched springs");
-    const Point force = problem1(b, i, way);
+    const Point force = problem1<P>(b, i, way);
     if (i < 2)
       CHECK_NEAR(force, Point(0, 0, 0), 0);
     else
       CHECK(norm(force) > 1, "a force on a node that is no corner");
   }
+}
+
+}  // namespace kit
+
+TASK("3.2.Problem1Force", problem1_uniform) {
+  with<KIT_FORCE(Problem1Force)>("Problem1Force", []<typename P>() {
+    check_weight<P>();
+    check_one_spring<P>();
+    check_several_springs<P>();
+    check_corners<P>();
+  });
 }

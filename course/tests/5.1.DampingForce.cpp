@@ -49,26 +49,30 @@ static F* damping_from(Cloth& g, double number, double& c) {
   }
 }
 
+template <typename Damping>
+static void compare_damping(const Bodies& b, double number) {
+  Cloth g;
+  fill(g, b);
+  double c = 0;
+  const Owned<Damping> damping(damping_from<Damping>(g, number, c));
+  if (c == 0) {  // whatever it is, it is one number
+    DID("DampingForce() on a node of velocity (1, 0, 0)");
+    c = -force_on(*damping, g, 0).x;
+    CHECK(c > 0, "a force against the velocity");
+  }
+  for (int i = 0; i < b.size; ++i) {
+    DID("DampingForce made such that c = ", c, " kg/s, on a node of mass ",
+        b.m[i], " kg and velocity ", b.v[i]);
+    const Point force = force_on(*damping, g, i);
+    CHECK_NEAR(force, -c * b.v[i], 1e-9);
+  }
+}
+
 }  // namespace kit
 
 TASK("5.1.DampingForce", damping_slows) {
   const Bodies b = four_bodies();
-  for (double number : {4., 0.375}) {
-    Cloth g;
-    fill(g, b);
-    using Damping = KIT_FORCE(DampingForce);
-    double c = 0;
-    const Owned<Damping> damping(damping_from<Damping>(g, number, c));
-    if (c == 0) {  // whatever it is, it is one number
-      DID("DampingForce() on a node of velocity (1, 0, 0)");
-      c = -force_on(*damping, g, 0).x;
-      CHECK(c > 0, "a force against the velocity");
-    }
-    for (int i = 0; i < b.size; ++i) {
-      DID("DampingForce made such that c = ", c, " kg/s, on a node of mass ",
-          b.m[i], " kg and velocity ", b.v[i]);
-      const Point force = force_on(*damping, g, i);
-      CHECK_NEAR(force, -c * b.v[i], 1e-9);
-    }
-  }
+  with<KIT_FORCE(DampingForce)>("DampingForce", [&]<typename F>() {
+    for (double number : {4., 0.375}) compare_damping<F>(b, number);
+  });
 }

@@ -23,11 +23,13 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   b.join(1, 2, 100, 0.5);
   Cloth g;
   fill(g, b);
-  auto gravity = gravity_force<KIT_FORCE(GravityForce)>();
-  for (int i = 0; i < b.size; ++i) {
-    DID("a node of mass ", b.m[i], " kg at ", b.x[i], " with velocity ",
-        b.v[i]);
-    const Point force = force_on(gravity, g, i);
-    CHECK_NEAR(force, Point(0, 0, -b.m[i] * 9.81), 1e-9);
-  }
+  with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
+    auto gravity = gravity_force<F>();
+    for (int i = 0; i < b.size; ++i) {
+      DID("a node of mass ", b.m[i], " kg at ", b.x[i], " with velocity ",
+          b.v[i]);
+      const Point force = force_on(gravity, g, i);
+      CHECK_NEAR(force, Point(0, 0, -b.m[i] * 9.81), 1e-9);
+    }
+  });
 }

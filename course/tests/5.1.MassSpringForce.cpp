@@ -19,12 +19,13 @@ static F* mass_spring_force(Cloth& g) {
 static void compare_springs(const Bodies& b) {
   Cloth g;
   fill(g, b);
-  using Springs = KIT_FORCE(MassSpringForce);
-  const Owned<Springs> springs(mass_spring_force<Springs>(g));
-  for (int i = 0; i < b.size; ++i) {
-    const Point force = force_on(*springs, g, i);
-    CHECK_NEAR(force, b.pull(i), 1e-9);
-  }
+  with<KIT_FORCE(MassSpringForce)>("MassSpringForce", [&]<typename F>() {
+    const Owned<F> springs(mass_spring_force<F>(g));
+    for (int i = 0; i < b.size; ++i) {
+      const Point force = force_on(*springs, g, i);
+      CHECK_NEAR(force, b.pull(i), 1e-9);
+    }
+  });
 }
 
 }  // namespace kit

@@ -2,20 +2,6 @@
  * Nodes above and below the plane z = -0.75 m. */
 #include "cloth.hpp"
 
-namespace kit {
-
-template <typename C>
-static C plane_constraint() {
-  if constexpr (std::is_default_constructible_v<C>)
-    return C();
-  else if constexpr (std::is_constructible_v<C, double>)
-    return C(-0.75);
-  else
-    return C(Point(0, 0, 1), -0.75);
-}
-
-}  // namespace kit
-
 TASK("6.1.PlaneConstraint", plane_is_solid) {
   Bodies b;
   for (double z : {-0.5, -0.875, 0., -0.7499, -0.7501, -3., 2., -0.875})
@@ -23,8 +9,10 @@ TASK("6.1.PlaneConstraint", plane_is_solid) {
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.5);
   Cloth g;
   fill(g, b);
-  auto plane = plane_constraint<KIT_CONSTRAINT(PlaneConstraint)>();
-  constrain(plane, g);
+  with<KIT_CONSTRAINT(PlaneConstraint)>("PlaneConstraint", [&]<typename C>() {
+    auto plane = made_plane<C>();
+    constrain(plane, g);
+  });
   for (int i = 0; i < b.size; ++i) {
     const bool below = b.x[i].z < -0.75;
     DID("a node at ", b.x[i], " with velocity ", b.v[i]);

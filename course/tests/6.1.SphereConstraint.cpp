@@ -3,20 +3,6 @@
  * 0.15 m. */
 #include "cloth.hpp"
 
-namespace kit {
-
-template <typename C>
-static C sphere_constraint() {
-  if constexpr (std::is_default_constructible_v<C>)
-    return C();
-  else if constexpr (std::is_constructible_v<C, Point, double>)
-    return C(Point(0.5, 0.5, -0.5), 0.15);
-  else
-    return C(0.15, Point(0.5, 0.5, -0.5));
-}
-
-}  // namespace kit
-
 TASK("6.1.SphereConstraint", sphere_is_solid) {
   const Point c(0.5, 0.5, -0.5);
   const double r = 0.15;
@@ -36,8 +22,10 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
   Cloth g;
   fill(g, b);
-  auto sphere = sphere_constraint<KIT_CONSTRAINT(SphereConstraint)>();
-  constrain(sphere, g);
+  with<KIT_CONSTRAINT(SphereConstraint)>("SphereConstraint", [&]<typename C>() {
+    auto sphere = made_sphere<C>();
+    constrain(sphere, g);
+  });
   for (int i = 0; i < b.size; ++i) {
     DID("a node at ", places[i].how_far, " radii from the center, in the ",
         "direction ", places[i].direction, ", with velocity ", b.v[i]);

@@ -4,20 +4,32 @@
 
 namespace kit {
 
-/** By either name. */
+/** What the submission makes of these, by either name; or Missing. */
 template <typename... Cs>
-static auto combined(Cs&&... cs) {
-  using First = decltype(::make_combined_constraints(std::forward<Cs>(cs)...));
-  if constexpr (!std::is_same_v<First, Missing>) {
+static auto constraints_of(Cs&&... cs) {
+  if constexpr (requires {
+                  {
+                    ::make_combined_constraints(std::forward<Cs>(cs)...)
+                    } -> Present;
+                })
     return ::make_combined_constraints(std::forward<Cs>(cs)...);
-  } else {
-    static_assert(
-        !std::is_same_v<decltype(::make_combined_constraint(
-                            std::forward<Cs>(cs)...)),
-                        Missing>,
-        "there is make_combined_constraints or make_combined_constraint");
+  else if constexpr (requires {
+                       {
+                         ::make_combined_constraint(std::forward<Cs>(cs)...)
+                         } -> Present;
+                     })
     return ::make_combined_constraint(std::forward<Cs>(cs)...);
-  }
+  else
+    return Missing();
+}
+template <typename All>
+static void apply(All& all, Cloth& g, double t, int how_many) {
+  if constexpr (Present<All>)
+    constrain(all, g, t);
+  else
+    fail(words("make_combined_constraints of ", how_many,
+               " constraints to compile"),
+         "an error");
 }
 
 /** What one of the test's constraints makes of a coordinate: the order of two
@@ -48,7 +60,7 @@ static void compare_combined(All all, int how_many) {
   fill(g, b);
   // Uses the place on the stack where temporaries were.
   [[maybe_unused]] volatile double other_numbers[256] = {};
-  constrain(all, g, 2);
+  apply(all, g, 2, how_many);
   for (int i = 0; i < b.size; ++i) {
     Point expected = b.x[i];
     for (int which = 1; which <= how_many; ++which)
@@ -61,19 +73,19 @@ static void compare_combined(All all, int how_many) {
 static void combine_constraints() {
   {
     DID("x -> 2x + t, then x -> 3x - 5t, both temporaries");
-    auto all = combined(part<1>(), part<2>());
+    auto all = constraints_of(part<1>(), part<2>());
     compare_combined(all, 2);
   }
   {
     DID("x -> 2x + t, then x -> 3x - 5t, both variables");
     auto c1 = part<1>();
     auto c2 = part<2>();
-    auto all = combined(c1, c2);
+    auto all = constraints_of(c1, c2);
     compare_combined(all, 2);
   }
   {
     DID("x -> 2x + t, then x -> 3x - 5t, then x -> 7x + 11t, all temporaries");
-    auto all = combined(part<1>(), part<2>(), part<3>());
+    auto all = constraints_of(part<1>(), part<2>(), part<3>());
     compare_combined(all, 3);
   }
 }
@@ -90,15 +102,17 @@ static void combine_own() {
     Cloth one, other;
     fill(one, b);
     fill(other, b);
-    Plane plane;
-    Sphere sphere;
-    plane(one, 0.), sphere(one, 0.);
+    auto plane = made_plane<Plane>();
+    auto sphere = made_sphere<Sphere>();
+    constrain(plane, one);
+    constrain(sphere, one);
     if (how_many == 2) {
-      auto all = combined(Plane(), Sphere());
-      all(other, 0.);
+      auto all = constraints_of(made_plane<Plane>(), made_sphere<Sphere>());
+      apply(all, other, 0, 2);
     } else {
-      auto all = combined(Plane(), Sphere(), Plane());
-      all(other, 0.);
+      auto all = constraints_of(made_plane<Plane>(), made_sphere<Sphere>(),
+                                made_plane<Plane>());
+      apply(all, other, 0, 3);
     }
     for (int i = 0; i < b.size; ++i) {
       const Point position = place(other, i);
@@ -110,11 +124,11 @@ static void combine_own() {
 
 template <typename Plane, typename Sphere>
 static void combine_constraints_like() {
-  if constexpr (std::is_polymorphic_v<Plane> &&
-                std::is_same_v<TestConstraint, FreeConstraint>)
-    combine_own<Plane, Sphere>();
-  else
-    combine_constraints();
+  if constexpr (Complete<Plane> && Complete<Sphere>)
+    if constexpr (std::is_polymorphic_v<Plane> &&
+                  std::is_same_v<TestConstraint, FreeConstraint>)
+      return combine_own<Plane, Sphere>();
+  combine_constraints();
 }
 
 }  // namespace kit

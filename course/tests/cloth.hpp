@@ -61,11 +61,17 @@
 // ::ZeroForce is the submission's if it has one. If not, the language looks
 // into the namespaces that the global one uses, and finds these.
 namespace kit_missing {
-struct GraphType;
 struct ZeroForce;
 struct Force;
+struct Problem1Force;
+struct GravityForce;
+struct MassSpringForce;
+struct DampingForce;
 struct ZeroConstraint;
 struct Constraint;
+struct PinConstraint;
+struct PlaneConstraint;
+struct SphereConstraint;
 struct TearConstraint;
 struct TearingConstraint;
 struct SphereTearConstraint;
@@ -78,6 +84,10 @@ struct Missing {};
 inline constexpr Missing K, L;
 template <typename... T>
 Missing build_cloth(T&&...) {
+  return {};
+}
+template <typename... T>
+Missing make_combined_force(T&&...) {
   return {};
 }
 template <typename... T>
@@ -115,12 +125,24 @@ template <typename T>
 concept Complete = requires {
   sizeof(T);
 };
+template <typename T>
+concept Present = !std::is_same_v<T, Missing>;
 
 /** The class T, or T<Arg> if it is a template; a template is no base. */
 template <typename Arg, typename T>
 std::type_identity<T> class_of();
 template <typename Arg, template <typename...> class T>
 std::type_identity<T<Arg>> class_of();
+/** Run @a test<C>(), or fail if the class is missing: it costs this test only,
+ * and no other one the time to compile it apart. */
+template <typename C, typename Test>
+void with(const char* name, Test test) {
+  if constexpr (Complete<C>)
+    test.template operator()<C>();
+  else
+    fail(words("a class ", name), "none");
+}
+
 #define KIT_FORCE(name) \
   typename decltype(kit::class_of<kit::ClothNode, ::name>())::type
 #define KIT_CONSTRAINT(name) \
@@ -271,6 +293,8 @@ struct ForceLaw {
       : f(&function), call([](const void* p, ClothNode n, double t) {
           return Point((*static_cast<const F*>(p))(n, t));
         }) {}
+  template <typename F>
+  ForceLaw(const F&&) = delete;  // a temporary
 };
 struct ConstraintLaw {
   const void* f;
@@ -280,6 +304,8 @@ struct ConstraintLaw {
       : f(&function), call([](const void* p, Cloth& g, double t) {
           (*static_cast<const F*>(p))(g, t);
         }) {}
+  template <typename F>
+  ConstraintLaw(const F&&) = delete;
 };
 
 /** A force or a constraint of the test's: for templates, no base needed. */
@@ -456,6 +482,27 @@ class Pins {
     return node_of(g, i);
   }
 };
+
+/** The plane z = -0.75 m and the ball, which some make from numbers. */
+template <typename C>
+C made_plane() {
+  if constexpr (std::is_default_constructible_v<C>)
+    return C();
+  else if constexpr (std::is_constructible_v<C, double>)
+    return C(-0.75);
+  else
+    return C(Point(0, 0, 1), -0.75);
+}
+template <typename C>
+C made_sphere() {
+  const Point center(0.5, 0.5, -0.5);
+  if constexpr (std::is_default_constructible_v<C>)
+    return C();
+  else if constexpr (std::is_constructible_v<C, Point, double>)
+    return C(center, 0.15);
+  else
+    return C(0.15, center);
+}
 
 /** Is there a step without a constraint? A program of section 6 may have the
  * other one alone. */
