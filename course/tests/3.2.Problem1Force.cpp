@@ -17,7 +17,7 @@ static const double L = 0.5;  // [m]
 /** K [N/m] in each way to make the force: some leave no choice. */
 static const double K_of_way[] = {80, 80, 100, 80, 100, 80};
 /** The force made by this way such that all springs have the same K and L; or
- * nullptr if that does not compile. */
+ * nullptr if it is made otherwise. */
 template <typename P>
 static P* made(Cloth& g, int way) {
   const double K = K_of_way[way];
@@ -25,15 +25,16 @@ static P* made(Cloth& g, int way) {
   if constexpr (std::is_constructible_v<P, double, double>) {
     if (way == 0) p = new P(K, L);
     if (way == 1) p = new P(L, K);
-  }
-  if constexpr (std::is_constructible_v<P, double>) {
-    if (way == 2) p = new P(L);
-    if (way == 3) p = new P(K);
-  }
-  if constexpr (std::is_default_constructible_v<P>) {
-    if (way >= 4) p = new P();
-  } else if constexpr (std::is_constructible_v<P, Cloth&>) {
-    if (way >= 4) p = new P(g);
+  } else {
+    if constexpr (std::is_constructible_v<P, double>) {
+      if (way == 2) p = new P(L);
+      if (way == 3) p = new P(K);
+    }
+    if constexpr (std::is_default_constructible_v<P>) {
+      if (way >= 4) p = new P();
+    } else if constexpr (std::is_constructible_v<P, Cloth&>) {
+      if (way >= 4) p = new P(g);
+    }
   }
   if (!p) return p;
   set(::K, K), set(::L, L);
