@@ -14,7 +14,7 @@ override JSON    := $(value JSON)
 override JUNIT   := $(value JUNIT)
 override RESULTS := $(value RESULTS)
 
-.PHONY: grade autograder
+.PHONY: grade autograder kit-check
 grade: export DIR     := $(DIR)
 grade: export JSON    := $(JSON)
 grade: export JUNIT   := $(JUNIT)
@@ -26,6 +26,8 @@ grade:
 autograder: export OUT := $(OUT)
 autograder:
 	@python3 course/kit/autograder.py
+kit-check:
+	@tools/deps.sh grade && python3 course/kit/kit_check.py
 
 # ---- The pages
 .PHONY: course-pictures

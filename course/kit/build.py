@@ -161,7 +161,8 @@ class Room:
     """A folder with a submission's sources, in which tests are built."""
 
     def __init__(self, kit, folder, files):
-        self.kit, self.folder = kit, folder
+        self.kit, self.files = kit, files
+        self.folder = folder
         self.source = folder / "source"
         self.built = folder / "built"
         for path in (self.source, self.built):
@@ -198,6 +199,7 @@ class Room:
         if outside:
             result.refused = f"#include of {outside}: it is not yours"
             result.output = ""
+            result.included = frozenset(self.files)     # or any other
         elif done.stopped:
             result.refused = {"time": "it takes too long to compile",
                               "output": "it fills the compiler's output"}.get(

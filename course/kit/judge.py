@@ -7,7 +7,7 @@ own tasks, and then, if they fail, on the submission's: either may pass.
 """
 
 import concurrent.futures
-import os
+import dataclasses
 import pathlib
 import shutil
 import signal
@@ -17,6 +17,8 @@ from dataclasses import dataclass
 
 import build
 import diagnosis
+import markers
+import names
 import sandbox
 
 LIMITS = sandbox.Limits()
@@ -64,25 +66,47 @@ def result_of(outcome, names):
                   did=diagnosis.short(did), name=name)
 
 
+class Memory:
+    """Results of tests of other submissions that read the same files: to
+    grade many that differ little. Given to Judge, it saves most of the work."""
+
+    def __init__(self):
+        self.kept = {}
+
+    def recall(self, way, tests, files):
+        for names, read, results in self.kept.get((way, tests), []):
+            if names == files.keys() and all(
+                    files[name] == text for name, text in read.items()):
+                return dict(results)
+        return None
+
+    def keep(self, way, tests, files, included, results):
+        self.kept.setdefault((way, tests), []).append(
+            (set(files), {name: files[name] for name in included}, results))
+
+
 class Judge:
     """Grades one submission in a folder of its own."""
 
     def __init__(self, kit, folder, files, jobs, memory=None):
         self.kit, self.jobs, self.memory = kit, threading.Semaphore(jobs), memory
         self.files = files
-        self.own = build.Room(kit, folder / "own", files)
-        graph = (build.ROOT / "Graph.hpp").read_bytes()
-        self.rooms = {"graph": [self.own], "cloth": [self.own]}
-        if files.get("Graph.hpp") != graph:
-            given = build.Room(kit, folder / "given",
-                               {**files, "Graph.hpp": graph})
-            self.rooms["cloth"].insert(0, given)
+        self.names = names.defines(files)
+        own = build.Room(kit, folder / "own", files)
+        self.rooms = {"graph": [own], "cloth": [own]}
+        graph = markers.solution((build.ROOT / "Graph.hpp").read_text("utf-8"))
+        if files["Graph.hpp"] != graph.encode():
+            self.rooms["cloth"].insert(0, build.Room(
+                kit, folder / "given", {**files, "Graph.hpp": graph.encode()}))
 
     def run(self, tests):
         """{test: Result} of {test: what it needs}."""
         groups = {}
         for test, needs in tests.items():
-            groups.setdefault(build.way_of(test, needs), []).append(test)
+            way = build.way_of(test, needs)
+            if needs == "cloth":
+                way = dataclasses.replace(way, defines=way.defines + self.names)
+            groups.setdefault(way, []).append(test)
         # What takes longest first.
         order = sorted(groups, key=lambda group: (-len(groups[group]), group))
         with concurrent.futures.ThreadPoolExecutor(len(groups) or 1) as pool:
@@ -100,17 +124,28 @@ class Judge:
         for room in self.rooms[way.needs]:
             left = [test for test in tests
                     if test not in results or not results[test].passed]
-            for test, result in self.attempt(room, way, left).items():
+            for test, result in self.remembered(room, way, left).items():
                 best = results.setdefault(test, result)
                 if RANK.index(result.status) > RANK.index(best.status):
                     results[test] = result
         return results
 
-    def attempt(self, room, way, tests):
-        """Each test of a room, in as few units as compile."""
+    def remembered(self, room, way, tests):
+        if not self.memory:
+            return self.attempt(room, way, tests, set())
+        known = self.memory.recall(way, tuple(tests), room.files)
+        if known is None:
+            read = set()
+            known = self.attempt(room, way, tests, read)
+            self.memory.keep(way, tuple(tests), room.files, read, known)
+        return known
+
+    def attempt(self, room, way, tests, read):
+        """Each test of a room, in as few units as compile. What they read of
+        the submission is added to `read`."""
         if not tests:
             return {}
-        unit = self.compile(room, way, tests)
+        unit = self.compile(room, way, tests, read)
         if unit.program:
             return self.run_all(unit)
         if unit.refused:
@@ -119,7 +154,7 @@ class Judge:
         errors = diagnosis.compile_errors(unit.output)
         blamed = set().union(*(error.tests for error in errors))
         if not all(error.tests for error in errors):
-            bridge = self.compile(room, way, [], link=False)
+            bridge = self.compile(room, way, [], read, link=False)
             if diagnosis.compile_errors(bridge.output) or bridge.refused:
                 text = bridge.refused or diagnosis.compile_message(
                     bridge.output, self.files)
@@ -127,7 +162,7 @@ class Judge:
         results, alone = {}, [test for test in tests if test in blamed]
         others = [test for test in tests if test not in blamed]
         if alone and others:
-            unit = self.compile(room, way, others)
+            unit = self.compile(room, way, others, read)
             if unit.program:
                 results = self.run_all(unit)
             else:
@@ -136,19 +171,21 @@ class Judge:
             alone = tests
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
             results.update(zip(alone, pool.map(
-                lambda test: self.alone(room, way, test), alone)))
+                lambda test: self.alone(room, way, test, read), alone)))
         return results
 
-    def alone(self, room, way, test):
-        unit = self.compile(room, way, [test])
+    def alone(self, room, way, test, read):
+        unit = self.compile(room, way, [test], read)
         if unit.program:
             return self.run_all(unit)[test]
         return Result("not compiled", unit.refused or diagnosis.compile_message(
             unit.output, self.files, test))
 
-    def compile(self, room, way, tests, link=True):
+    def compile(self, room, way, tests, read, link=True):
         with self.jobs:
-            return room.compile(way, tests, link)
+            unit = room.compile(way, tests, link)
+        read |= unit.included
+        return unit
 
     def run_all(self, unit):
         """Each test of a program in a process of its own."""
@@ -171,12 +208,11 @@ class Judge:
         return results
 
 
-def judge(kit, files, tests, jobs):
-    """{test: Result}: the tests, {test: what it needs}, of a submission."""
+def judge(kit, files, tests, jobs, memory=None):
+    """{test: Result} of a submission and {test: what it needs}."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-grade-"))
     try:
         folder.chmod(0o755)
-        os.chmod(folder, 0o755)
-        return Judge(kit, folder, files, jobs).run(tests)
+        return Judge(kit, folder, files, jobs, memory).run(tests)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
