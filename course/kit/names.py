@@ -9,13 +9,21 @@ import submission
 
 GRAPH = re.compile(r"\busing\s+(\w+)\s*=\s*Graph\s*<"
                    r"|\btypedef\s+Graph\s*<[^;]*>\s*(\w+)\s*;")
+USUAL_GRAPH = re.compile(r"\bGraphType\s*[=;]")
 CLASS = re.compile(r"\b(?:struct|class)\s+(\w+)[^;{}()]*\{")
-FORCE = re.compile(r"\bvirtual\s+Point\s+operator\s*\(\s*\)")
-CONSTRAINT = re.compile(r"\bvirtual\s+void\s+operator\s*\(\s*\)")
+# The base of the first of these that has one.
+BASES = {
+    "KIT_FORCE_BASE": re.compile(
+        r"\b(?:Gravity|MassSpring|Damping)Force\s*(?:final\s*)?:"
+        r"\s*(?:public\s+)?(\w+)\s*\{"),
+    "KIT_CONSTRAINT_BASE": re.compile(
+        r"\b(?:Pin|Plane|Sphere)Constraint\s*(?:final\s*)?:"
+        r"\s*(?:public\s+)?(\w+)\s*\{"),
+}
 CALL = re.compile(r"\boperator\s*\(\s*\)\s*\(")
 REMOVAL = re.compile(r"\bremove_node\s*\(")
 # What cloth.hpp looks for in any case.
-USUAL = {"GraphType", "ZeroForce", "Force", "ZeroConstraint", "Constraint",
+USUAL = {"ZeroForce", "Force", "ZeroConstraint", "Constraint",
          "TearConstraint"}
 
 
@@ -35,16 +43,17 @@ def defines(files):
         submission.without_comments(files[name].decode("utf-8", "replace"))
         for name in ("mass_spring.hpp", "mass_spring.cpp") if name in files)
     found = {}
-    graphs = [a or b for a, b in GRAPH.findall(text)]
-    if graphs and "GraphType" not in graphs:
-        found["KIT_GRAPH"] = graphs[0]
-    for match in CLASS.finditer(text):
-        name, inside = match[1], body(text, match.end() - 1)
-        for key, held in (
-                ("KIT_FORCE_BASE", FORCE.search(inside)),
-                ("KIT_CONSTRAINT_BASE", CONSTRAINT.search(inside)),
-                ("KIT_TEAR", CALL.search(inside) and REMOVAL.search(inside))):
-            if held:
-                found.setdefault(key, name)
+    graph = GRAPH.search(text)
+    if graph and not USUAL_GRAPH.search(text):
+        found["KIT_GRAPH"] = graph[1] or graph[2]
+    for key, pattern in BASES.items():
+        if base := pattern.search(text):
+            found[key] = base[1]
+    tearing = [match[1] for match in CLASS.finditer(text)
+               if CALL.search(inside := body(text, match.end() - 1))
+               and REMOVAL.search(inside)]
+    # Who changed the constraint of section 6 has no other.
+    for name in sorted(tearing, key=lambda name: name == "SphereConstraint"):
+        found.setdefault("KIT_TEAR", name)
     return tuple(f"{key}={name}" for key, name in sorted(found.items())
                  if name not in USUAL)
