@@ -241,6 +241,7 @@ case $tier in
     step build       build_tests
     step programs    programs
     step clang       clang
+    step kit         make --no-print-directory kit-check
     beside of_scripts of_variants
     beside of_programs of_sweeps ;;
   quick) ;;

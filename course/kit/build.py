@@ -1,58 +1,26 @@
-"""Build what the grader needs once, and test programs of a submission.
+"""Build test programs of a submission.
 
 A test program is one unit: the bridge, then the tests, one file each. All
 files that it reads are listed by the compiler; one from outside of the
 submission and the kit is refused.
 """
 
-import fcntl
-import hashlib
 import itertools
 import os
 import pathlib
 import re
-import shutil
-import subprocess
-import tempfile
 from dataclasses import dataclass, field
 
+import once
 import sandbox
+from once import ROOT, TESTS
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-KIT = ROOT / "course/kit"
-TESTS = ROOT / "course/tests"
-# What each test program is linked with, of the kit's own.
-LINKED = [KIT / "runner.cpp",
-          *(path for path in [TESTS / "kit.cpp"] if path.exists())]
-# The version that the kit is checked with, if it is there.
-CXX = shutil.which("g++-12", path="/usr/bin") or "/usr/bin/g++"
-COMMON = ["-std=c++20", "-w", "-pthread",
-          "--param", "ggc-min-heapsize=4000000"]    # in kB: faster
-# By kind of build. The checks left out cost half of the time to compile; what
-# they find, AddressSanitizer finds as well or the course does not ask for.
-FLAGS = {
-    "checked": ["-O0", "-g1", "-fsanitize=address,undefined",
-                "-fno-sanitize-recover=all", "-D_GLIBCXX_ASSERTIONS",
-                "-fno-sanitize=null,alignment,object-size,vptr,"
-                "pointer-overflow",
-                "--param", "asan-instrumentation-with-call-threshold=0"],
-    "counted": ["-O1", "-g0", "-fsanitize-coverage=trace-pc"],
-}
-LINK = {
-    "checked": ["-fsanitize=address,undefined"],
-    "counted": ["-Wl,--wrap=memmove,--wrap=memcpy,--wrap=memset,"
-                "--wrap=memchr,--wrap=memcmp"],
-}
 # In a comment of a test: how it is built, and names that it wants defined.
 WISH = re.compile(r"^(?://| \*) (Build|Define): (\w+)\b", re.MULTILINE)
 COMPILING = sandbox.Limits(cpu=60, wall=120, memory=3 << 30, output=64 << 20,
                            size=512 << 20)
 SYSTEM = ("/usr/include", "/usr/lib", "/usr/local/include", "/usr/local/lib")
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
-
-
-class KitError(Exception):
-    """The kit itself can't be built or used here."""
 
 
 @dataclass
@@ -77,84 +45,12 @@ def way_of(test, needs):
     text = (TESTS / f"{test}.cpp").read_text(encoding="utf-8")
     wishes = WISH.findall(text)
     kind = [value for key, value in wishes if key == "Build"] or ["checked"]
-    if kind[0] not in FLAGS:
-        raise KitError(f"course/tests/{test}.cpp: 'Build: {kind[0]}', expected "
-                       + " or ".join(FLAGS))
+    if kind[0] not in once.FLAGS:
+        raise once.KitError(
+            f"course/tests/{test}.cpp: 'Build: {kind[0]}', expected "
+            + " or ".join(once.FLAGS))
     return Way(needs, kind[0], tuple(
         value for key, value in wishes if key == "Define"))
-
-
-class Kit:
-    """What is built once: the jail, what is linked with each test, the prelude
-    of each kind."""
-
-    def __init__(self, unsafe=False, where=ROOT / "build/kit", probe=True):
-        key = hashlib.sha256()
-        version = subprocess.run([CXX, "--version"], capture_output=True,
-                                 check=False)
-        if version.returncode:
-            raise KitError("there is no g++: make deps")
-        key.update(version.stdout + repr((FLAGS, COMMON, str(ROOT))).encode())
-        sources = [KIT / "jail.cpp", *LINKED,
-                   *sorted(TESTS.glob("*.hpp")),
-                   *sorted((ROOT / "CME212").glob("*.hpp"))]
-        for path in sources:
-            key.update(path.name.encode() + path.read_bytes())
-        self.folder = where / key.hexdigest()[:16]
-        where.mkdir(parents=True, exist_ok=True)
-        with open(where / "lock", "w", encoding="ascii") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            if not self.folder.exists():
-                self.make(where)
-        self.jail = [str(self.folder / "jail")]
-        if unsafe:
-            self.jail.append("--unsafe")
-        elif probe:
-            self.probe()
-
-    def make(self, where):
-        for old in where.iterdir():
-            if old.is_dir():
-                shutil.rmtree(old)
-        new = pathlib.Path(tempfile.mkdtemp(dir=where))
-        new.chmod(0o755)
-        self.run(["-O1", "-Wall", "-Wextra", KIT / "jail.cpp", "-o",
-                  new / "jail", "-lseccomp"],
-                 "jail.cpp can't be built: is libseccomp-dev there? make deps")
-        # CME212/ apart from the root, whose Graph.hpp is no submission's.
-        (new / "include").mkdir()
-        (new / "include/CME212").symlink_to(ROOT / "CME212")
-        includes = ["-I", new / "include"]
-        for source in LINKED:
-            self.run(["-O1", *includes, "-I", TESTS, "-c", source, "-o",
-                      new / f"{source.stem}.o"], f"{source.name} can't be built")
-        for kind, flags in FLAGS.items():
-            (new / kind).mkdir()
-            header = new / kind / "prelude.hpp"
-            shutil.copy(TESTS / "prelude.hpp", header)
-            self.run([*flags, *includes, "-x", "c++-header", header, "-o",
-                      f"{header}.gch"], "prelude.hpp can't be built",
-                     [new / "jail", "--compiler", "--unsafe",
-                      "--size", "1000000000", "--cpu", "300", "--"])
-        new.rename(self.folder)
-
-    @staticmethod
-    def run(words, complaint, before=()):
-        command = [str(word) for word in (*before, CXX, *COMMON, *words)]
-        done = subprocess.run(command, capture_output=True, text=True,
-                              errors="replace", check=False)
-        if done.returncode:
-            raise KitError(f"{complaint}\n{done.stderr[:2000]}")
-
-    def probe(self):
-        """Without a filter of system calls there is no grading."""
-        done = subprocess.run([*self.jail, "--", "/bin/true"],
-                              capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise KitError(
-                f"{done.stderr.strip() or 'jail: does not run'}\nWithout it a "
-                "submission could do here what it wants. On a machine that may "
-                "be thrown away: --unsafe (SAFE=0)")
 
 
 class Room:
@@ -178,15 +74,15 @@ class Room:
         """The unit of some tests; without tests just the bridge."""
         name = f"unit{next(self.numbers)}"
         unit = self.built / f"{name}.cpp"
-        unit.write_text("".join(f'#include "{header}"\n' for header in
-                                [f"{way.needs}.hpp"] + [f"{t}.cpp" for t in tests]),
+        headers = [f"{way.needs}.hpp", *(f"{test}.cpp" for test in tests)]
+        unit.write_text("".join(f'#include "{header}"\n' for header in headers),
                         encoding="ascii")
         assembly, program = self.built / f"{name}.s", self.built / name
-        prelude = self.kit.folder / way.kind / "prelude.hpp"
-        command = [CXX, *COMMON, *FLAGS[way.kind], "-H", "-fmax-errors=200",
-                   "-fdiagnostics-plain-output", "-ftemplate-depth=400",
+        prelude = self.kit.preludes / way.kind / "prelude.hpp"
+        command = [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-H",
+                   "-fmax-errors=200", "-fdiagnostics-plain-output", "-ftemplate-depth=400",
                    "-include", prelude,
-                   "-I", TESTS / "headless", "-I", self.kit.folder / "include",
+                   "-I", TESTS / "headless", "-I", self.kit.include,
                    "-I", ".", "-I", TESTS, f'-DKIT_TESTS="{TESTS}"',
                    *(f"-D{name}" for name in way.defines),
                    f"-fdebug-prefix-map={self.source}=.",
@@ -208,10 +104,8 @@ class Room:
             if reads_files(assembly):
                 result.refused = "it writes assembler"
                 return result
-            done = self.run([CXX, *LINK[way.kind], assembly,
-                             *(self.kit.folder / f"{source.stem}.o"
-                               for source in LINKED),
-                             "-pthread", "-o", program])
+            done = self.run([once.CXX, *once.LINK[way.kind], assembly,
+                             *self.kit.linked, "-pthread", "-o", program])
             result.output += self.plain(done.output)
             if done.code == 0 and not done.stopped:
                 result.program = program
@@ -220,7 +114,7 @@ class Room:
 
     def run(self, command):
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
-                "/etc/ld.so.cache", "/proc/self", self.kit.folder, TESTS,
+                "/etc/ld.so.cache", "/proc/self", once.BUILT, TESTS,
                 ROOT / "CME212", self.folder]
         jail = [*self.kit.jail, *flags("--read", read),
                 *flags("--write", [self.built, "/dev/null"])]
@@ -239,7 +133,7 @@ class Room:
         """The first path from outside, and names in the submission."""
         inside, source = set(), os.path.realpath(self.source) + "/"
         kit = tuple(os.path.realpath(path) + "/" for path in (
-            TESTS, ROOT / "CME212", self.kit.folder, self.built))
+            TESTS, ROOT / "CME212", once.BUILT, self.built))
         for path in paths:
             real = os.path.realpath(os.path.join(self.source, path))
             if real.startswith(source):
@@ -252,7 +146,7 @@ class Room:
         """Without the names of this machine's folders."""
         for path, name in ((f"{self.source}/", ""), (f"{self.built}/", ""),
                            (f"{TESTS}/", "course/tests/"),
-                           (f"{self.kit.folder}/include/", ""),
+                           (f"{self.kit.include}/", ""),
                            (f"{ROOT}/", "")):
             text = text.replace(path, name)
         return re.sub(r"(?m)(^|(?<=from ))\./", "", text)
@@ -272,6 +166,3 @@ def reads_files(assembly):
         not line.lstrip().startswith((b".string", b".ascii"))
         for line in re.findall(rb"[^\n]*\.inc(?:bin|lude)\b[^\n]*", text))
 
-
-if __name__ == "__main__":
-    print(Kit(probe=False).folder)

@@ -15,8 +15,8 @@ import pathlib
 import sys
 import tempfile
 
-import build
 import judge
+import once
 import report
 import submission
 import tasks
@@ -27,8 +27,8 @@ def tests_of(course):
     tests = {}
     for task in course.tasks.values():
         for test in task.tests:
-            if not (build.TESTS / f"{test}.cpp").is_file():
-                raise build.KitError(
+            if not (once.TESTS / f"{test}.cpp").is_file():
+                raise once.KitError(
                     f"{tasks.FILE}:{task.line}: {task.id}: there is no "
                     f"course/tests/{test}.cpp")
             # A test that serves two tasks needs what either needs.
@@ -69,7 +69,7 @@ def main():
         taken = submission.take(folder, tag)
         course = tasks.load()
         tests_of(course)        # before anything is built for them
-        kit = build.Kit(unsafe=get("SAFE") == "0")
+        kit = once.Kit(unsafe=get("SAFE") == "0")
         jobs = int(get("JOBS") or 0) or len(os.sched_getaffinity(0))
         name = submission.shown(os.path.basename(os.path.realpath(folder)))
         graded = grade(course, kit, taken, name, jobs)
@@ -78,7 +78,7 @@ def main():
             write(get("RESULTS"), report.refused(str(error)))
         print(f"grade: {error}", file=sys.stderr)
         return 2
-    except (build.KitError, tasks.TasksError) as error:
+    except (once.KitError, tasks.TasksError) as error:
         print(f"grade: {error}", file=sys.stderr)
         return 2
     print(report.as_text(graded), end="")

@@ -11,6 +11,7 @@
  *   --write P    as --read, and may be written (by a compiler)
  *   --compiler   FILE is a compiler: it may start processes and write
  *   --unsafe     without the filter of system calls
+ *   --has        no program: says "landlock" if the kernel has it
  * --read and --write need Landlock and hold where the kernel has it.
  * If a part of the jail can't be made, FILE is not run: exit status 125. */
 #include <fcntl.h>
@@ -63,6 +64,11 @@ Options options_of(char** arg) {
       o.compiler = true;
     } else if (word == "--unsafe") {
       o.unsafe = true;
+    } else if (word == "--has") {
+      const bool there = syscall(SYS_landlock_create_ruleset, nullptr, 0,
+                                 LANDLOCK_CREATE_RULESET_VERSION) > 0;
+      std::puts(there ? "landlock" : "");
+      std::exit(0);
     } else if (word == "--") {
       o.command = arg + 1;
       break;

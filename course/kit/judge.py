@@ -19,8 +19,10 @@ import build
 import diagnosis
 import markers
 import names
+import once
 import sandbox
 
+PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
 LIMITS = sandbox.Limits()
 STOPPED = {
     "time": f"it takes more than {LIMITS.cpu} s of processor time, or waits",
@@ -89,12 +91,13 @@ class Judge:
     """Grades one submission in a folder of its own."""
 
     def __init__(self, kit, folder, files, jobs, memory=None):
-        self.kit, self.jobs, self.memory = kit, threading.Semaphore(jobs), memory
+        self.kit, self.memory = kit, memory
+        self.jobs = threading.Semaphore(jobs)
         self.files = files
         self.names = names.defines(files)
         own = build.Room(kit, folder / "own", files)
         self.rooms = {"graph": [own], "cloth": [own]}
-        graph = markers.solution((build.ROOT / "Graph.hpp").read_text("utf-8"))
+        graph = markers.solution((once.ROOT / "Graph.hpp").read_text("utf-8"))
         if files["Graph.hpp"] != graph.encode():
             self.rooms["cloth"].insert(0, build.Room(
                 kit, folder / "given", {**files, "Graph.hpp": graph.encode()}))
@@ -117,8 +120,7 @@ class Judge:
 
     def group(self, way, tests):
         results = {}
-        if way.needs == "cloth" and not {"mass_spring.hpp", "mass_spring.cpp"} & (
-                self.files.keys()):
+        if way.needs == "cloth" and not PROGRAM & self.files.keys():
             return {test: Result("not compiled", "there is no mass_spring.hpp "
                                  "and no mass_spring.cpp") for test in tests}
         for room in self.rooms[way.needs]:
@@ -193,7 +195,7 @@ class Judge:
             jail = [*self.kit.jail, *build.flags("--read", [
                 "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
                 "/dev/null", "/dev/zero", "/dev/urandom", unit.program,
-                build.TESTS / "data"])]
+                once.TESTS / "data"])]
             # Where addresses are by chance, AddressSanitizer at times finds no
             # room for itself and ends before anything has run.
             for _ in range(3):

@@ -16,15 +16,15 @@ import time
 import tomllib
 from dataclasses import dataclass
 
-import build
 import grade
 import judge
 import markers
+import once
 import report
 import submission
 import tasks
 
-WRONG = build.ROOT / "course/wrong"
+WRONG = once.ROOT / "course/wrong"
 BASES = {"solution": "", "simple": WRONG / "simple"}
 KEYS = {"name", "file", "loses", "replace", "append", "prepend", "content",
         "base"}
@@ -77,7 +77,7 @@ class Cases:
         return files
 
     def wrong(self, path):
-        at = path.relative_to(build.ROOT)
+        at = path.relative_to(once.ROOT)
         for entry in tomllib.loads(path.read_text("utf-8"))["wrong"]:
             where = f"{at}: {entry.get('name', 'an entry without a name')}"
             if unknown := entry.keys() - KEYS:
@@ -132,7 +132,7 @@ class Check:
 
     def __init__(self, cases):
         self.cases = cases
-        self.kit = build.Kit()
+        self.kit = once.Kit()
         self.tests = grade.tests_of(cases.course)
         self.memory = judge.Memory()
         self.passed = self.failed = 0
@@ -175,8 +175,9 @@ class Check:
 
 def programs(check):
     """What is held by programs of its own."""
-    folder = build.KIT
-    for name in ("test_markers.py", "pages.py", "test_grader.py"):
+    folder = once.KIT
+    for name in ("test_markers.py", "pages.py", "test_report.py",
+                 "test_grader.py", "test_grading.py"):
         if not (folder / name).exists():
             continue
         started = time.monotonic()
@@ -195,7 +196,7 @@ def main():
     judge.LIMITS.cpu, judge.LIMITS.wall = LONGEST, 10
     try:
         check = Check(Cases())
-    except (markers.MarkerError, tasks.TasksError, build.KitError) as error:
+    except (markers.MarkerError, tasks.TasksError, once.KitError) as error:
         sys.exit(f"kit-check: {error}")
     if not only:
         programs(check)

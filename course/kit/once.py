@@ -1,0 +1,143 @@
+"""What the grader builds once: the jail, what is linked with each test, and
+the precompiled prelude of each kind of build. It stands in build/kit, each
+part under a name that depends on all that it is made from.
+"""
+
+import fcntl
+import hashlib
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+KIT = ROOT / "course/kit"
+TESTS = ROOT / "course/tests"
+BUILT = ROOT / "build/kit"
+# The version that the kit is checked with, if it is there.
+CXX = shutil.which("g++-12", path="/usr/bin") or "/usr/bin/g++"
+COMMON = ["-std=c++20", "-w", "-pthread",
+          "--param", "ggc-min-heapsize=4000000"]    # in kB: faster
+# By kind of build. The checks left out cost a third of the time to compile;
+# what they find, AddressSanitizer finds as well or the course does not ask for.
+FLAGS = {
+    "checked": ["-O0", "-g1", "-fsanitize=address,undefined",
+                "-fno-sanitize-recover=all", "-D_GLIBCXX_ASSERTIONS",
+                "-fno-sanitize=null,alignment,object-size,vptr,"
+                "pointer-overflow",
+                "--param", "asan-instrumentation-with-call-threshold=0"],
+    "counted": ["-O1", "-g0", "-fsanitize-coverage=trace-pc"],
+}
+LINK = {
+    "checked": ["-fsanitize=address,undefined"],
+    "counted": ["-Wl,--wrap=memmove,--wrap=memcpy,--wrap=memset,"
+                "--wrap=memchr,--wrap=memcmp"],
+}
+# What each test program is linked with, of the kit's own.
+LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp"]
+UNUSED = 3600       # seconds after which a part that is not used is removed
+
+
+class KitError(Exception):
+    """The kit itself can't be built or used here."""
+
+
+class Kit:
+    """The parts, built if they are not there; `jail` starts a command."""
+
+    def __init__(self, unsafe=False, probe=True):
+        # CME212/ apart from the root, whose Graph.hpp is no submission's.
+        self.include = BUILT / "include"
+        self.include.mkdir(parents=True, exist_ok=True)
+        course = sorted((ROOT / "CME212").glob("*.hpp"))
+        with open(BUILT / "lock", "w", encoding="ascii") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            link = self.include / "CME212"
+            if not link.is_symlink():
+                link.symlink_to(ROOT / "CME212")
+            self.jail = [str(self.part(
+                "jail", [KIT / "jail.cpp"], self.make_jail) / "jail")]
+            tests = sorted(TESTS.glob("*.hpp"))
+            linked = self.part("linked", [*LINKED, *tests, *course],
+                               self.make_linked)
+            self.preludes = self.part(
+                "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
+        self.linked = sorted(linked.glob("*.o"))
+        if unsafe:
+            self.jail.append("--unsafe")
+        elif probe:
+            self.probe()
+
+    @staticmethod
+    def part(name, sources, make):
+        """The folder of a part, which is made if its sources are new."""
+        version = subprocess.run([CXX, "--version"], capture_output=True,
+                                 check=False)
+        if version.returncode:
+            raise KitError("there is no g++: make deps")
+        key = hashlib.sha256(version.stdout)
+        key.update(repr((FLAGS, COMMON, str(ROOT))).encode())
+        for path in sources:
+            key.update(path.name.encode() + b"\0" + path.read_bytes())
+        folder = BUILT / f"{name}-{key.hexdigest()[:16]}"
+        if not folder.exists():
+            for old in BUILT.glob("*-*"):
+                if time.time() - old.stat().st_mtime > UNUSED:
+                    shutil.rmtree(old)
+            new = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="new-"))
+            new.chmod(0o755)
+            make(new)
+            new.rename(folder)
+        os.utime(folder)
+        return folder
+
+    def make_jail(self, folder):
+        self.run(["-O1", KIT / "jail.cpp", "-o", folder / "jail", "-lseccomp"],
+                 "jail.cpp can't be built: is libseccomp-dev there? make deps")
+
+    def make_linked(self, folder):
+        for source in LINKED:
+            self.run(["-O1", "-I", self.include, "-I", TESTS, "-c", source,
+                      "-o", folder / f"{source.stem}.o"],
+                     f"{source.name} can't be built")
+
+    def make_preludes(self, folder):
+        # In the jail, where addresses are not by chance: it is used there.
+        jail = [*self.jail, "--compiler", "--cpu", "300", "--size",
+                str(1 << 30), "--"]
+        for kind, flags in FLAGS.items():
+            (folder / kind).mkdir()
+            header = folder / kind / "prelude.hpp"
+            shutil.copy(TESTS / "prelude.hpp", header)
+            self.run([*flags, "-I", self.include, "-x", "c++-header", header,
+                      "-o", f"{header}.gch"], "prelude.hpp can't be built",
+                     jail)
+
+    @staticmethod
+    def run(words, complaint, before=()):
+        command = [str(word) for word in (*before, CXX, *COMMON, *words)]
+        done = subprocess.run(command, capture_output=True, text=True,
+                              errors="replace", check=False)
+        if done.returncode:
+            raise KitError(f"{complaint}\n{done.stderr[:2000]}")
+
+    def has(self):
+        """What the kernel has for the jail beside the filter of calls."""
+        return subprocess.run([*self.jail, "--has"], capture_output=True,
+                              text=True, check=True).stdout.split()
+
+    def probe(self):
+        """Without a filter of system calls there is no grading."""
+        done = subprocess.run([*self.jail, "--", "/bin/true"],
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise KitError(
+                f"{done.stderr.strip() or 'jail: does not run'}\nWithout it a "
+                "submission could do here what it wants. On a machine that may "
+                "be thrown away: make grade SAFE=0 DIR=...")
+
+
+if __name__ == "__main__":
+    Kit(probe=False)

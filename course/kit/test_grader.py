@@ -1,0 +1,261 @@
+"""Tests of the grader: what it takes of a submission, and what it denies."""
+
+import json
+import os
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import build
+import once
+import submission
+
+PROBE = r"""
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/mount.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#define TRY(call) \
+  do {                                                          \
+    errno = 0;                                                  \
+    const long result = long(call);                             \
+    std::fprintf(stderr, "%s %ld %d\n", #call, result, errno);  \
+  } while (false)
+static void* nothing(void*) { return nullptr; }
+int main(int, char** arg) {
+  const char* file = arg[1];
+  char one[] = "/bin/true", *command[] = {one, nullptr};
+  rlimit more{1 << 20, 1 << 20};
+  iovec piece{one, 1};
+  pthread_t thread;
+  TRY(open(file, O_WRONLY));
+  TRY(open(file, O_RDWR));
+  TRY(open("/tmp/kit-new", O_CREAT | O_RDONLY, 0666));
+  TRY(open("/tmp", O_TMPFILE | O_RDWR, 0600));
+  TRY(open(file, O_RDONLY | O_TRUNC));
+  TRY(truncate(file, 0));
+  TRY(unlink(file));
+  TRY(rename(file, "/tmp/kit-new"));
+  TRY(mkdir("/tmp/kit-new", 0777));
+  TRY(symlink(file, "/tmp/kit-new"));
+  TRY(link(file, "/tmp/kit-new"));
+  TRY(chmod(file, 0777));
+  TRY(socket(AF_INET, SOCK_STREAM, 0));
+  TRY(socket(AF_UNIX, SOCK_DGRAM, 0));
+  TRY(fork());
+  TRY(vfork());
+  TRY(execve(one, command, nullptr));
+  TRY(syscall(SYS_execveat, AT_FDCWD, one, command, nullptr, 0));
+  TRY(kill(getppid(), 0));
+  TRY(kill(-1, 0));
+  TRY(kill(0, 0));
+  TRY(ptrace(PTRACE_TRACEME, 0, 0, 0));
+  TRY(process_vm_readv(getppid(), &piece, 1, &piece, 1, 0));
+  TRY(setrlimit(RLIMIT_FSIZE, &more));
+  TRY(setsid());
+  TRY(mount("none", "/mnt", "tmpfs", 0, nullptr));
+  TRY(syscall(SYS_memfd_create, "x", 0));
+  TRY(syscall(SYS_io_uring_setup, 1, nullptr));
+  TRY(syscall(SYS_bpf, 0, nullptr, 0));
+  TRY(setuid(0));
+  std::fprintf(stderr, "--\n");
+  TRY(pthread_create(&thread, nullptr, nothing, nullptr));
+  TRY(kill(getpid(), 0));
+  TRY(open("/dev/null", O_RDONLY) < 0);
+  TRY(open("/proc/self/maps", O_RDONLY) < 0);
+  std::fprintf(stderr, "--\n");
+  TRY(open(file, O_RDONLY));
+  TRY(open("/etc/passwd", O_RDONLY));
+}
+"""
+
+
+class Folder(unittest.TestCase):
+    """With a folder for a submission, which has a hostile name."""
+
+    def setUp(self):
+        self.top = pathlib.Path(tempfile.mkdtemp(prefix="kit-test-"))
+        self.addCleanup(shutil.rmtree, self.top)
+        self.folder = self.top / "a 'b' \"c\" $(touch x); `touch y` \n%s é"
+        self.folder.mkdir()
+
+    def put(self, name, text=""):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def refused(self, words, tag=""):
+        with self.assertRaises(submission.BadInput) as caught:
+            submission.take(str(self.folder), tag)
+        self.assertIn(words, str(caught.exception))
+        self.assertTrue(str(caught.exception).isascii())
+        self.assertNotIn("\n", str(caught.exception))
+
+
+class Take(Folder):
+    def test_takes_sources_of_the_folder_and_nothing_else(self):
+        for name in ("Graph.hpp", "mass_spring.cpp", "more/own.h", "notes.txt",
+                     "CME212/Point.hpp", ".git/config", "Makefile"):
+            self.put(name, name)
+        taken = submission.take(str(self.folder))
+        self.assertEqual(taken.files, {
+            "Graph.hpp": b"Graph.hpp", "mass_spring.cpp": b"mass_spring.cpp",
+            "more/own.h": b"more/own.h"})
+        self.assertEqual(taken.notes, [])
+
+    def test_finds_the_folder_of_the_homework(self):
+        self.put("hw1/Graph.hpp", "1")
+        self.refused_several()
+        self.put("hw2/Graph.hpp", "2")
+        taken = submission.take(str(self.folder))
+        self.assertEqual(taken.files, {"Graph.hpp": b"2"})
+        self.assertEqual(taken.notes, ["graded is the folder hw2/"])
+
+    def refused_several(self):
+        taken = submission.take(str(self.folder))
+        self.assertEqual(taken.files, {"Graph.hpp": b"1"})
+        self.put("other/Graph.hpp", "3")
+        self.refused("in several folders; name one of them: hw1/, other/")
+
+    def test_says_what_is_missing(self):
+        self.refused("holds no Graph.hpp")
+        shutil.rmtree(self.folder)
+        self.refused("No such file or directory")
+        self.folder.write_text("a file")
+        self.refused("Not a directory")
+        self.folder.unlink()
+        self.folder.mkdir()
+
+    def test_follows_no_link_and_opens_no_pipe(self):
+        self.put("Graph.hpp")
+        (self.folder / "shadow.hpp").symlink_to("/etc/passwd")
+        (self.folder / "all").symlink_to("/etc")
+        os.mkfifo(self.folder / "pipe.hpp")
+        self.put("large.hpp", "x" * (submission.LARGEST + 1))
+        self.put("\n$(x).hpp")
+        taken = submission.take(str(self.folder))
+        self.assertEqual(list(taken.files), ["Graph.hpp"])
+        self.assertEqual(sorted(taken.notes), [
+            "\\x0a$(x).hpp has a name that is not taken: left out",
+            "large.hpp is larger than 1 MB: left out",
+            "pipe.hpp is no file: left out",
+            "shadow.hpp is a symbolic link: left out"])
+        (self.folder / "Graph.hpp").unlink()
+        (self.folder / "Graph.hpp").symlink_to("shadow.hpp")
+        self.refused("Graph.hpp is a symbolic link")
+
+    def test_takes_a_tag_and_no_setting_of_the_clone(self):
+        def git(*words):
+            subprocess.run(["git", "-C", self.folder, "-c", "user.name=a", "-c",
+                            "user.email=b", *words], check=True,
+                           capture_output=True)
+        git("init", "-q")
+        self.put("Graph.hpp", "tagged")
+        (self.folder / "link.hpp").symlink_to("/etc/passwd")
+        git("add", "."), git("commit", "-qm", "x"), git("tag", "hw2")
+        self.put("Graph.hpp", "later")
+        bad = self.top / "bad"
+        for name in ("core.fsmonitor", "core.sshCommand", "core.pager",
+                     "filter.x.smudge", "core.alternateRefsCommand"):
+            git("config", name, f"touch {bad}")
+        taken = submission.take(str(self.folder), "hw2")
+        self.assertEqual(taken.files, {"Graph.hpp": b"tagged"})
+        self.assertEqual(taken.notes, ["link.hpp is a symbolic link: left out"])
+        self.refused("has no tag hw3; tags: hw2", "hw3")
+        self.refused("no name of a tag", "--upload-pack=x")
+        self.assertFalse(bad.exists())
+
+    def test_flags_what_a_person_should_see(self):
+        text = b"""// syscall(1) in a comment
+            const char* s = "/proc/self/exe";
+            void f() { asm("nop"); }
+            int k = kit :: x;"""
+        self.assertEqual(submission.suspects("a.hpp", text), [
+            ("a.hpp", 3, "writes assembler"),
+            ("a.hpp", 2, "names a file of the system"),
+            ("a.hpp", 4, "names a part of the grader")])
+        own = (once.ROOT / "Graph.hpp").read_bytes()
+        self.assertEqual(submission.suspects("Graph.hpp", own), [])
+
+
+class Deny(Folder):
+    def test_a_program_in_the_jail(self):
+        kit = once.Kit()
+        file = self.put("file", "text")
+        program = self.top / "probe"
+        subprocess.run([once.CXX, "-w", "-x", "c++", "-", "-o", program],
+                       input=PROBE, text=True, check=True)
+        # A network that could be reached.
+        with socket.socket() as listening:
+            listening.listen()
+            done = subprocess.run(
+                [*kit.jail, *build.flags("--read", [
+                    "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
+                    "/dev/null", program]), "--", program, file],
+                stderr=subprocess.PIPE, text=True, check=False)
+        denied, allowed, hidden = (part.strip().split("\n") for part
+                                   in done.stderr.split("--\n"))
+        self.assertEqual((len(denied), len(allowed)), (30, 4))
+        for line in denied:
+            self.assertRegex(line, r" -1 (1|13|38)$")
+        for line in allowed:
+            self.assertRegex(line, r" 0 0$")
+        self.assertEqual(file.read_text(), "text")
+        self.assertFalse(os.path.lexists("/tmp/kit-new"))
+        if "landlock" in kit.has():
+            for line in hidden:
+                self.assertRegex(line, r" -1 13$")
+        else:
+            print("skipped: the kernel has no Landlock")
+
+    def test_without_a_jail_there_is_no_grading(self):
+        kit = once.Kit()
+        kit.jail = ["/bin/sh", "-c", "echo jail: no seccomp >&2; exit 125"]
+        with self.assertRaisesRegex(once.KitError, "no seccomp\n.*SAFE=0"):
+            kit.probe()
+
+    def test_bad_input_ends_with_status_2(self):
+        def run(**variables):
+            done = subprocess.run(
+                [sys.executable, once.KIT / "grade.py"], text=True,
+                env={"PATH": os.environ["PATH"], **variables},
+                capture_output=True, check=False)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            return done.stderr
+        self.assertIn("DIR is missing", run())
+        results = str(self.top / "results.json")
+        self.assertIn("no Graph.hpp", run(DIR=str(self.folder),
+                                          RESULTS=results))
+        self.assertEqual(json.loads(pathlib.Path(results).read_text())["score"],
+                         0)
+        self.assertIn("folder does not exist", run(
+            DIR=str(self.folder), JSON=str(self.top / "none/x.json")))
+
+    def test_make_runs_no_name(self):
+        done = subprocess.run(
+            ["make", "-s", "-C", once.ROOT, "grade", f"DIR={self.folder}"],
+            capture_output=True, text=True, check=False)
+        self.assertIn("holds no Graph.hpp", done.stderr)
+        for name in "xy":
+            self.assertFalse((once.ROOT / name).exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

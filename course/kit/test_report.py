@@ -1,0 +1,135 @@
+"""Tests of the grader: what it makes of errors and crashes, and its reports."""
+
+import json
+import unittest
+import xml.etree.ElementTree
+
+import diagnosis
+import judge
+import names
+import report
+import tasks
+
+
+class Say(unittest.TestCase):
+    def test_an_error_belongs_to_the_test_that_led_to_it(self):
+        errors = diagnosis.compile_errors("""\
+In file included from unit1.cpp:3:
+course/tests/4.1.a.cpp: In function 'void f()':
+course/tests/4.1.a.cpp:12:3: error: no member named 'x'
+Graph.hpp: In instantiation of 'int G<T>::y() [with T = int]':
+course/tests/7.1.b.cpp:8:9:   required from here
+Graph.hpp:5:7: error: 'z' was not declared
+Graph.hpp:6:7: error: 'w' was not declared
+In file included from unit1.cpp:1:
+Graph.hpp:9:1: note: declared here
+Graph.hpp: At global scope:
+Graph.hpp:20:1: error: expected ';'
+""")
+        self.assertEqual([(e.line, set(e.tests)) for e in errors], [
+            (12, {"4.1.a"}), (5, {"7.1.b"}), (6, {"7.1.b"}), (20, set())])
+        self.assertEqual(errors[1].needed_by, "course/tests/7.1.b.cpp:8")
+
+    def test_a_crash_is_told_in_a_line(self):
+        def crash(text, code=1):
+            outcome = judge.sandbox.Outcome(code=code, output=text, begun=True)
+            return diagnosis.crash(outcome, {"Graph.hpp": b""})
+        self.assertEqual(crash("""chatter
+==7==ERROR: AddressSanitizer: heap-use-after-free on address 0x602 at pc 0x5
+READ of size 8 at 0x602 thread T0
+    #0 0x55 in std::f() /usr/include/c++/12/bits/x.h:3
+    #1 0x56 in Graph<int>::remove_node(int) ./Graph.hpp:41
+"""), "AddressSanitizer: heap-use-after-free, READ of size 8 at Graph.hpp:41")
+        self.assertEqual(
+            crash("./Graph.hpp:9:4: runtime error: load of 0x7f12 is bad\n"),
+            "load of 0x... is bad at Graph.hpp:9")
+        self.assertEqual(
+            crash("unit1: Graph.hpp:8: int f(): Assertion `a < b' failed.\n"),
+            "assertion failed: a < b at Graph.hpp:8")
+        self.assertEqual(crash("", -11), "ended by the signal SIGSEGV")
+        self.assertEqual(crash("", 0), "the program ended before the test did")
+
+    def test_names_of_a_submission(self):
+        found = names.defines({"mass_spring.cpp": b"""
+            typedef Graph<NodeData, EdgeData> Net;
+            struct Law { virtual Point operator()(Node n, double t); };
+            struct GravityForce : public Law { };
+            struct SphereConstraint {
+              void operator()(Net& g, double) { g.remove_node(n); } };
+            class Rip { void operator () (Net& g, double) {
+              { /* } */ } g.remove_node(n); } };"""})
+        self.assertEqual(found, ("KIT_FORCE_BASE=Law", "KIT_GRAPH=Net",
+                                 "KIT_TEAR=Rip"))
+        self.assertEqual(names.defines({"mass_spring.hpp": b"""
+            using Cloth = Graph<A, B>; using GraphType = Cloth;"""}), ())
+
+
+class Reports(unittest.TestCase):
+    def setUp(self):
+        course = tasks.load()
+        graded = [report.Graded(task, judge.Result("passed"))
+                  for task in course.tasks.values()]
+        graded[4].result = judge.Result(
+            "failed", "", 'a < b && "c"', "<&>", "did ]]> it", "f")
+        self.lost = graded[4].task
+        self.report = report.Report(course, "x", graded, ["a note"],
+                                    [("Graph.hpp", 3, "writes assembler")])
+
+    def test_text(self):
+        text = report.as_text(self.report)
+        self.assertIn(f'{self.lost.section.id} {self.lost.title} '
+                      f'0/{self.lost.points}.\n  Specification: '
+                      f'"{self.lost.says}"\n  Did: did ]]> it.\n  Expected '
+                      f'a < b && "c", got <&>.\n  Try: {self.lost.hint}\n',
+                      text)
+        self.assertIn("\nLook at this by hand:\n  Graph.hpp:3: writes", text)
+
+    def test_json(self):
+        data = json.loads(report.as_json(self.report))
+        self.assertEqual(data["of"] - data["points"], self.lost.points)
+        self.assertEqual(data["points"], sum(
+            task["points"] for task in data["tasks"]))
+        self.assertEqual(data["tasks"][4]["got"], "<&>")
+
+    def test_junit(self):
+        root = xml.etree.ElementTree.fromstring(report.as_junit(self.report))
+        cases = root.findall("testsuite/testcase")
+        self.assertEqual((root.tag, len(cases)),
+                         ("testsuites", int(root.get("tests"))))
+        failures = root.findall("testsuite/testcase/failure")
+        self.assertEqual(len(failures), int(root.get("failures")))
+        self.assertIn("got <&>.", failures[0].text)
+
+    def test_gradescope(self):
+        for text in (report.as_gradescope(self.report), report.refused("no")):
+            self.check_gradescope(json.loads(text))
+
+    def check_gradescope(self, data):
+        """As Gradescope's page "Autograder Specifications" has it."""
+        test_keys = {"score": float, "max_score": float, "status": str,
+                     "name": str, "name_format": str, "number": str,
+                     "output": str, "output_format": str, "tags": list,
+                     "visibility": str, "extra_data": dict}
+        keys = {"score": float, "execution_time": float, "output": str,
+                "output_format": str, "test_output_format": str,
+                "test_name_format": str, "visibility": str,
+                "stdout_visibility": str, "extra_data": dict, "tests": list,
+                "leaderboard": list}
+        self.assertIn("tests", data)
+        for one, known in [(data, keys), *(
+                (test, test_keys) for test in data["tests"])]:
+            for key, value in one.items():
+                self.assertIsInstance(value, known[key], key)
+            for key in ("visibility", "stdout_visibility"):
+                self.assertIn(one.get(key, "visible"), {
+                    "hidden", "after_due_date", "after_published", "visible"})
+            self.assertIn(one.get("output_format", "text"), {
+                "text", "html", "simple_format", "md", "ansi"})
+        for test in data["tests"]:
+            self.assertIn(test["status"], {"passed", "failed"})
+            self.assertLessEqual(test["score"], test["max_score"])
+        self.assertEqual(data["score"], sum(t["score"] for t in data["tests"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
