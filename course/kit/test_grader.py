@@ -92,7 +92,7 @@ class Folder(unittest.TestCase):
     def setUp(self):
         self.top = pathlib.Path(tempfile.mkdtemp(prefix="kit-test-"))
         self.addCleanup(shutil.rmtree, self.top)
-        self.folder = self.top / "a 'b' \"c\" $(touch x); `touch y` \n%s é"
+        self.folder = self.top / "a 'b' \"c\" $(touch x); `touch y` \n%s \u00e9"
         self.folder.mkdir()
 
     def put(self, name, text=""):
