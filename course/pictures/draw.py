@@ -74,7 +74,7 @@ PICTURES = {
     "4.2": [("", "diagonals", [0.3, 0.6], -1.15)],
     "4.2-mistakes": [("first length", "diagonals", [0.3], -0.75),
                      ("no length", "diagonals", [0.3], -0.75),
-                     ("one diagonal", "diagonals", [1], -1.05)],
+                     ("one diagonal", "diagonals", [0.6], -1.05)],
     "5.1-mistakes": [("no mass", "forces", [0.02], -1.05),
                      ("+ c v", "forces", [1.2], -1.05),
                      ("c = 1", "forces", [2], -1.05)],
