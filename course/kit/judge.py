@@ -121,8 +121,8 @@ class Judge:
     def group(self, way, tests):
         results = {}
         if way.needs == "cloth" and not PROGRAM & self.files.keys():
-            return {test: Result("not compiled", "there is no mass_spring.hpp "
-                                 "and no mass_spring.cpp") for test in tests}
+            return {test: Result("missing", "there is no mass_spring.hpp and "
+                                 "no mass_spring.cpp") for test in tests}
         for room in self.rooms[way.needs]:
             left = [test for test in tests
                     if test not in results or not results[test].passed]

@@ -41,7 +41,14 @@ class Case:
 
 
 class Cases:
-    """All submissions that are made of the repository's own sources."""
+    """All submissions that are made of the repository's own sources.
+
+    A [[wrong]] of course/wrong has a `name`, the tasks that it `loses` (["*"]:
+    all that its file serves; []: none, as it is right), and edits of a `file`,
+    by default Graph.hpp: `replace` ([[old, new], ...], each old text occurring
+    once), `prepend`, `append`, or its whole `content`. It starts from the
+    solution, or from `base` = "simple".
+    """
 
     def __init__(self):
         self.texts, self.course = markers.load()
@@ -92,17 +99,20 @@ class Cases:
                 text = text.replace(old, new)
             files[file] = (entry.get("prepend", "") + text
                            + entry.get("append", "") + "\n")
-            yield Case(f"{path.stem}: {entry['name']}", files, self.loses(
-                self.ids(entry["loses"], file, where)))
+            loses = self.ids(entry["loses"], file, where)
+            if loses or not entry["loses"]:     # else its tasks are dropped
+                yield Case(f"{path.stem}: {entry['name']}", files,
+                           self.loses(loses))
 
     def ids(self, loses, file, where):
         if loses == ["*"]:
             needs = "graph" if file == "Graph.hpp" else "cloth"
             return {task.id for task in self.course.tasks.values()
                     if task.needs == needs}
-        if unknown := set(loses) - self.course.tasks.keys():
+        asked = set(loses) - self.course.dropped
+        if unknown := asked - self.course.tasks.keys():
             raise SystemExit(f"{where}: no tasks: {sorted(unknown)}")
-        return set(loses)
+        return asked
 
     def loses(self, expected):
         def faults(lost):

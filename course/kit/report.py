@@ -59,6 +59,8 @@ def outcome(result):
         if result.got:
             return f"Expected {result.expected}, got {result.got}."
         return f"Expected: {result.expected}."
+    if result.status == "missing":
+        return f"Not tested: {result.text}."
     if result.status == "not compiled":
         return f"Does not compile: {result.text}"
     if result.status == "stopped":
@@ -76,6 +78,18 @@ def failure(graded):
     lines += outcome(result).split("\n")
     lines.append(f"Try: {task.hint}")
     return lines
+
+
+def alike(graded):
+    """Those that failed, each with the others that never ran for the same
+    reason: a text that is said once."""
+    together = {}
+    for one in graded:
+        if not one.passed:
+            reason = (outcome(one.result) if one.result.status in
+                      ("missing", "not compiled") else one.task.id)
+            together.setdefault(reason, []).append(one)
+    return [(first, others) for first, *others in together.values()]
 
 
 def heading(task):
@@ -101,10 +115,15 @@ def as_text(report):
         lines.append(f"{shown:<4} {title:<{wide}}  {points:>{far}}")
     total = f"{report.points}/{report.of}"
     lines.append(f"{'':<4} {'all':<{wide}}  {total:>{far}}")
-    for graded in report.graded:
-        if not graded.passed:
+    for graded, others in alike(report.graded):
+        lines.append("")
+        if others:
+            lines += outcome(graded.result).split("\n")
+            lines += [f"  {heading(g.task)} {score(g)}"
+                      for g in (graded, *others)]
+        else:
             first, *rest = failure(graded)
-            lines += ["", first, *("  " + line for line in rest)]
+            lines += [first, *("  " + line for line in rest)]
     if report.notes:
         lines += ["", *(f"Note: {note}." for note in report.notes)]
     if report.flags:
