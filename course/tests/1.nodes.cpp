@@ -5,13 +5,14 @@
 TASK("1.nodes", nodes_are_added) {
   DID("an empty graph");
   TestSubject s(nodes(0));
-  CHECK_EQUAL(s.g.num_nodes(), 0);
-  CHECK_EQUAL(s.g.size(), 0);
+  auto& g = s.g;
+  CHECK_EQUAL(g.num_nodes(), 0);
+  CHECK_EQUAL(g.size(), 0);
   for (int v = 0; v < 100; ++v) {
     DID("add_node to a graph of ", v, " nodes");
     s.add_node(v);
-    CHECK_EQUAL(s.g.num_nodes(), v + 1);
-    CHECK_EQUAL(s.g.size(), v + 1);
+    CHECK_EQUAL(g.num_nodes(), v + 1);
+    CHECK_EQUAL(g.size(), v + 1);
   }
   DID("added 100 nodes, n0 to n99");
   s.hold(by_index);
@@ -56,10 +57,11 @@ TASK("1.nodes", nodes_are_ordered) {
 TASK("1.nodes", clear_leaves_an_empty_graph) {
   DID("a ring of 5 nodes; clear()");
   TestSubject s(ring(5));
-  s.g.clear();
+  auto& g = s.g;
+  g.clear();
   s.m = nodes(0);
   s.hold(by_index);
-  CHECK_EQUAL(s.g.num_edges(), 0);
+  CHECK_EQUAL(g.num_edges(), 0);
   DID("a ring of 5 nodes; clear(); added n0, n1 and n2");
   for (int v = 0; v < 3; ++v) s.add_node(v);
   s.hold(by_index);

@@ -21,19 +21,21 @@ static void check_move(S& s, int v) {
     const auto before = others();
     DID("n.position() = (0, 5, 1)");
     n.position() = Point(0, 5, 1);
-    CHECK_EQUAL(position_of(n), Point(0, 5, 1));
-    DID("n.position() = (0, 5, 1), then looked at a copy of n");
-    CHECK_EQUAL(position_of(copy), Point(0, 5, 1));
-    DID("n.position() = (0, 5, 1), then looked at node(n.index())");
-    CHECK_EQUAL(position_of(s.g.node(index)), Point(0, 5, 1));
+    check_equal(position_of(n), Point(0, 5, 1), "n.position()");
+    DID("n.position() = (0, 5, 1), with an older copy of n");
+    check_equal(position_of(copy), Point(0, 5, 1), "copy.position()");
+    DID("n.position() = (0, 5, 1)");
+    check_equal(position_of(s.g.node(index)), Point(0, 5, 1),
+                "g.node(n.index()).position()");
     DID("n.position() += (1, 0, 1)");
     n.position() += Point(1, 0, 1);
-    CHECK_EQUAL(position_of(s.g.node(index)), Point(1, 5, 2));
+    check_equal(position_of(s.g.node(index)), Point(1, 5, 2),
+                "g.node(n.index()).position()");
     CHECK_EQUAL(n.index(), index);
     if constexpr (requires { n.position().x += 1; }) {
       DID("n.position().x += 1");
       n.position().x += 1;
-      CHECK_EQUAL(position_of(copy), Point(2, 5, 2));
+      check_equal(position_of(copy), Point(2, 5, 2), "copy.position()");
     }
     DID("n.position() = p");
     CHECK(before == others(), "the positions of all other nodes stay");
@@ -60,7 +62,8 @@ static void check_moves_in_a_loop(S& s) {
   if constexpr (there) {
     for (; !same(it, end); ++it) (*it).position() += Point(0, 0, 0.5);
     for (int v = 0; v < int(s.m.nodes.size()); ++v)
-      CHECK_EQUAL(position_of(node_at(s.g, v)), place(v) + Point(0, 0, 0.5));
+      check_equal(position_of(node_at(s.g, v)), place(v) + Point(0, 0, 0.5),
+                  words("the position of ", name(v)));
   }
 }
 }  // namespace kit

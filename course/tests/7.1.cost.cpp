@@ -72,10 +72,9 @@ struct Count {
 /** A graph of n nodes: a ring, or squares in rows of 100 nodes. */
 template <typename G>
 static void build(G& g, int n, bool squares) {
-  for (int v = 0; v < n; ++v) add_node(g, place(v), v);
-  auto join = [&g](int a, int b) {
-    add_edge(g, node_at(g, std::size_t(a)), node_at(g, std::size_t(b)));
-  };
+  std::vector<decltype(add_node(g, place(0), 0))> nodes;
+  for (int v = 0; v < n; ++v) nodes.push_back(add_node(g, place(v), v));
+  auto join = [&](int a, int b) { add_edge(g, nodes[a], nodes[b]); };
   for (int v = 0; v < n; ++v) {
     if (!squares || v % 100 != 99) join(v, (v + 1) % n);
     if (squares && v + 100 < n) join(v, v + 100);
@@ -95,15 +94,13 @@ static const char* name(Call call) {
   return names[call];
 }
 
-/** What one call costs on average in a graph of @a n nodes, in which as many
- * calls are made as a tenth of the nodes: a vector may grow once in a while.
- * It gives up as soon as the average must exceed @a limit. */
+/** What a call costs on average, if so many are made as a tenth of the nodes:
+ * a vector may grow once in a while. It gives up as soon as the average must
+ * exceed @a limit. */
 template <typename G>
-static double cost(Call call, int n, bool squares, double limit) {
-  G g;
-  build(g, n, squares);
+static double cost(G& g, Call call, double limit) {
   Dice dice{71};
-  const int calls = n / 10;
+  const int calls = int(g.num_nodes()) / 10;
   counted = 0;
   for (int i = 0; i < calls && counted <= limit * calls; ++i) {
     const auto nodes = g.num_nodes();
@@ -161,28 +158,28 @@ static void check_that_it_counts() {
  * a search in a tree, which takes 4/3 of the steps; the few steps more are for
  * what costs next to nothing. */
 template <typename G>
-static void check_cost(Call call, bool squares) {
-  DID(name(call), " for a tenth of the nodes of a ", squares ? "grid" : "ring",
-      " of 1000 nodes, then of one of 10000");
-  const double few = cost<G>(call, 1000, squares, 1e9);
-  const double limit = 1.5 * few + 10;
-  checked();
-  if (!(cost<G>(call, 10000, squares, limit) <= limit))
-    fail(words("at most ", std::round(limit), " steps a call with 10000 nodes ",
-               "(", std::round(few), " with 1000)"),
-         "more");
-}
-
-template <typename G>
-static void check_costs() {
-  check_that_it_counts();
-  for (bool squares : {false, true})
-    for (Call call : {node_goes, edge_goes, ends_go, node_value_is_read,
-                      edge_value_is_read})
-      check_cost<G>(call, squares);
+static void check_costs(bool squares) {
+  const char* shape = squares ? "grid" : "ring";
+  DID("a ", shape, " of 1000 nodes and one of 10000");
+  G small, large;
+  build(small, 1000, squares);
+  build(large, 10000, squares);
+  for (Call call : {node_value_is_read, edge_value_is_read, edge_goes, ends_go,
+                    node_goes}) {
+    DID("a ", shape, " of 1000 nodes and one of 10000; ", name(call),
+        " of every tenth");
+    const double few = cost(small, call, 1e9);
+    const double limit = 1.5 * few + 10;
+    checked();
+    if (!(cost(large, call, limit) <= limit))
+      fail(words("at most ", std::round(limit), " steps a call with 10000 ",
+                 "nodes (", std::round(few), " with 1000)"),
+           "more");
+  }
 }
 }  // namespace kit
 
 TASK("7.1.cost", cost_does_not_grow_with_the_graph) {
-  check_costs<TestGraph>();
+  check_that_it_counts();
+  for (bool squares : {false, true}) check_costs<TestGraph>(squares);
 }

@@ -1,17 +1,24 @@
 /** @file 7.1.remove_edge_iterator.cpp
  * remove_edge(it) in a loop: the loop ends and leaves none that it should
- * remove, whether it visits an edge once or more often. */
+ * remove, whether it visits an edge once or more often. What is wrong after
+ * remove_edge(a, b), too, is the fault of that task and not looked at here. */
 #include "graph.hpp"
 
 namespace kit {
 template <typename S>
 static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
+  const unsigned worked = s.works;
+  S one_by_one(s.m);
+  for (Ends e : s.m.edges)
+    if (wanted(e) && s.works == worked)
+      s.works &= one_by_one.try_to_remove_edge(e.a, e.b);
   const std::size_t size = s.m.edges.size(), limit = 2 * size * size + size + 1;
-  auto it = s.g.edge_begin();
-  constexpr bool there = requires { it = s.g.remove_edge(it); };
+  auto& g = s.g;
+  auto it = g.edge_begin();
+  constexpr bool there = requires { it = g.remove_edge(it); };
   need<there>("it = g.remove_edge(it)");
   if constexpr (there) {
-    for (std::size_t steps = 0; !same(it, s.g.edge_end()); ++steps) {
+    for (std::size_t steps = 0; !same(it, g.edge_end()); ++steps) {
       CHECK(steps < limit, "the loop ends");
       const Ends e = ends_of(*it);
       if (!wanted(e)) {
@@ -19,13 +26,13 @@ static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
         continue;
       }
       CHECK(s.m.has(e), "*it is an edge of the graph");
-      it = s.g.remove_edge(it);
+      it = g.remove_edge(it);
       s.m.remove(e);
-      if (s.works & edge_count) CHECK_EQUAL(s.g.num_edges(), s.m.edges.size());
+      if (s.works & edge_count) CHECK_EQUAL(g.num_edges(), s.m.edges.size());
     }
     for (Ends e : s.m.edges)
       CHECK(!wanted(e), words("the loop removes ", name(e)));
-    s.hold();
+    s.hold(s.works);
   }
 }
 }  // namespace kit
@@ -39,7 +46,9 @@ TASK("7.1.remove_edge_iterator", the_loop_leaves_no_edge) {
   };
   Model one = nodes(2);
   one.add(Ends(0, 1));
-  for (const Model& shape : {one, ring(5), wheel(6), grid(4), complete(6)}) {
+  for (const Model& shape : {wheel(6), one, ring(5), grid(4), complete(6)}) {
+    loop(shape, "n0-n1 and n4-n5",
+         [](Ends e) { return e == Ends(0, 1) || e == Ends(4, 5); });
     loop(shape, "those with an even sum of their nodes' numbers",
          [](Ends e) { return (e.a + e.b) % 2 == 0; });
     loop(shape, "those with an odd sum of their nodes' numbers",

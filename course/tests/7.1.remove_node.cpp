@@ -81,7 +81,7 @@ static void check_history(S& s, bool removes_edges, std::uint32_t seed) {
       CHECK(s.remove_node(v), "the result is 1");
     } else if (what < 8 || !removes_edges || s.m.edges.empty()) {
       int v = any_node(), w = any_node();
-      if (v == w) continue;
+      if (v == w || s.m.has(Ends(v, w))) continue;
       DID(after, "add_edge(", name(v), ", ", name(w), ")");
       s.add_edge(v, w);
     } else {
@@ -93,16 +93,13 @@ static void check_history(S& s, bool removes_edges, std::uint32_t seed) {
   }
 }
 
-/** Does remove_edge() do its own task? If not, no other test calls it. */
+/** Does remove_edge(a, b) do its own task? If not, no other test calls it. */
 template <typename S>
-static bool removes_edges(S&) {
-  S s(wheel(5));
-  auto a = s.node(0), b = s.node(1);
+static bool removes_edges(S& s) {
+  auto a = node_at(s.g, 0), b = node_at(s.g, 1);
   if constexpr (requires { bool(s.g.remove_edge(a, b)); }) {
-    for (Ends e : {Ends(0, 1), Ends(4, 1), Ends(0, 4)}) {
-      if (!s.remove_edge(e.b, e.a)) return false;
-      if (!s.holds()) return false;
-    }
+    for (Ends e : {Ends(0, 1), Ends(4, 1), Ends(0, 4)})
+      if (s.try_to_remove_edge(e.b, e.a) != s.works) return false;
     return true;
   }
   return false;
@@ -115,6 +112,6 @@ TASK("7.1.remove_node", nodes_come_and_go) {
 }
 
 TASK("7.1.remove_node", nodes_and_edges_come_and_go) {
-  TestSubject s(ring(6));
-  if (removes_edges(s)) check_history(s, true, 1);
+  TestSubject s(ring(6)), tried(wheel(5));
+  if (removes_edges(tried)) check_history(s, true, 1);
 }

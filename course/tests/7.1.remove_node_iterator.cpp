@@ -1,17 +1,25 @@
 /** @file 7.1.remove_node_iterator.cpp
  * remove_node(it) in a loop: the loop ends and leaves none that it should
- * remove, whether it visits a node once or more often. */
+ * remove, whether it visits a node once or more often. What is wrong after
+ * remove_node(n), too, is the fault of that task and not looked at here. */
 #include "graph.hpp"
 
 namespace kit {
 template <typename S>
 static void remove_nodes_in_a_loop(S& s, bool (*wanted)(int)) {
+  const unsigned worked = s.works;
+  S one_by_one(s.m);
+  for (int v : s.m.nodes)
+    if (wanted(v) && s.works == worked)
+      s.works &= one_by_one.try_to_remove_node(v);
+  if (s.works != worked && !s.m.edges.empty()) return;
   const std::size_t size = s.m.nodes.size(), limit = size * size + size + 1;
-  auto it = s.g.node_begin();
-  constexpr bool there = requires { it = s.g.remove_node(it); };
+  auto& g = s.g;
+  auto it = g.node_begin();
+  constexpr bool there = requires { it = g.remove_node(it); };
   need<there>("it = g.remove_node(it)");
   if constexpr (there) {
-    for (std::size_t steps = 0; !same(it, s.g.node_end()); ++steps) {
+    for (std::size_t steps = 0; !same(it, g.node_end()); ++steps) {
       CHECK(steps < limit, "the loop ends");
       const int v = name_of(*it);
       if (!wanted(v)) {
@@ -19,13 +27,13 @@ static void remove_nodes_in_a_loop(S& s, bool (*wanted)(int)) {
         continue;
       }
       CHECK(s.m.has(v), "*it is a node of the graph");
-      it = s.g.remove_node(it);
+      it = g.remove_node(it);
       s.m.remove(v);
-      CHECK_EQUAL(s.g.num_nodes(), s.m.nodes.size());
+      if (s.works & by_index) CHECK_EQUAL(g.num_nodes(), s.m.nodes.size());
     }
     for (int v : s.m.nodes)
       CHECK(!wanted(v), words("the loop removes ", name(v)));
-    s.hold();
+    s.hold(s.works);
   }
 }
 }  // namespace kit
@@ -37,17 +45,16 @@ TASK("7.1.remove_node_iterator", the_loop_leaves_no_node) {
     DID(description(shape), "; a loop that removes ", which);
     remove_nodes_in_a_loop(s, wanted);
   };
-  for (int size : {1, 5, 20})
-    for (const Model& shape : {nodes(size), size < 3 ? nodes(2) : ring(size)}) {
-      loop(shape, "every third", [](int v) { return v % 3 == 0; });
-      loop(shape, "every second", [](int v) { return v % 2 == 0; });
-      loop(shape, "two of three", [](int v) { return v % 3 != 1; });
-      loop(shape, "n0", [](int v) { return v == 0; });
-      loop(shape, "n4", [](int v) { return v == 4; });
-      loop(shape, "n3 and those behind it", [](int v) { return v >= 3; });
-      loop(shape, "none", [](int) { return false; });
-      loop(shape, "all", [](int) { return true; });
-    }
-  loop(grid(5), "every second", [](int v) { return v % 2 == 1; });
-  loop(grid(5), "all but n7", [](int v) { return v != 7; });
+  const Model shapes[] = {nodes(20), nodes(5), nodes(1),   ring(20),
+                          ring(5),   grid(5),  complete(6)};
+  for (const Model& shape : shapes) {
+    loop(shape, "n0 and n19", [](int v) { return v == 0 || v == 19; });
+    loop(shape, "every third", [](int v) { return v % 3 == 0; });
+    loop(shape, "every second", [](int v) { return v % 2 == 0; });
+    loop(shape, "two of three", [](int v) { return v % 3 != 1; });
+    loop(shape, "n4", [](int v) { return v == 4; });
+    loop(shape, "n3 and those behind it", [](int v) { return v >= 3; });
+    loop(shape, "none", [](int) { return false; });
+    loop(shape, "all", [](int) { return true; });
+  }
 }

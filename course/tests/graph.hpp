@@ -253,7 +253,6 @@ struct Subject : Beside {
 
   /** Fresh handles. */
   auto node(int v) { return kit::node_at(g, index_of(v)); }
-  auto edge(int v, int w) { return kit::edge_at(g, index_of(Ends(v, w))); }
   /** As an edge at its end @a v. */
   auto edge_seen_from(int v, int w) {
     auto n = node(v);
@@ -266,6 +265,10 @@ struct Subject : Beside {
                name(Ends(v, w)), " once"),
          "never");
   }
+  auto edge(int v, int w) {
+    if (!(works & edge_indices)) return edge_seen_from(v, w);
+    return kit::edge_at(g, index_of(Ends(v, w)));
+  }
 
   // What a test does to the graph, it does to the model, too.
   void add_node(int v) {
@@ -276,6 +279,30 @@ struct Subject : Beside {
   void add_edge(int v, int w) {
     kit::add_edge(g, node(v), node(w), Ends(v, w).value());
     m.add(Ends(v, w));
+  }
+  // The same for a test of another task, which it must not fail.
+  // @return what works after it, of what worked before
+  unsigned try_to_remove_node(int v) {
+    auto i = find(v);
+    auto n = kit::node_at(g, 0);
+    if constexpr (requires { g.remove_node(n); }) {
+      if (!i) return 0;
+      auto gone = kit::node_at(g, *i);
+      g.remove_node(gone);
+      m.remove(v);
+    }
+    return works & still_works();
+  }
+  unsigned try_to_remove_edge(int v, int w) {
+    auto i = find(v), j = find(w);
+    auto n = kit::node_at(g, 0);
+    if constexpr (requires { g.remove_edge(n, n); }) {
+      if (!i || !j) return 0;
+      auto a = kit::node_at(g, *i), b = kit::node_at(g, *j);
+      g.remove_edge(a, b);
+      m.remove(Ends(v, w));
+    }
+    return works & still_works();
   }
   /** @return true if the graph says that it removed the node */
   bool remove_node(int v) {

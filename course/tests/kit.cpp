@@ -344,8 +344,13 @@ Beside::Beside(const Model& shape) : m(shape) {}
 Beside::~Beside() = default;
 void Beside::begin(View& view) {
   view_ = &view;
+  works = still_works();
+}
+unsigned Beside::still_works() {
+  unsigned now = 0;
   for (unsigned a = 1; a < all_aspects; a *= 2)
-    if (look(view, m, Aspect(a)).expected.empty()) works |= a;
+    if (look(*view_, m, Aspect(a)).expected.empty()) now |= a;
+  return now;
 }
 void Beside::hold() { hold(works | by_index); }
 void Beside::hold(unsigned aspects) {
@@ -353,16 +358,19 @@ void Beside::hold(unsigned aspects) {
   const Fault fault = look_at_all(*view_, m, aspects);
   if (!fault.expected.empty()) fail(fault.expected, fault.got);
 }
-bool Beside::holds() {
-  return look_at_all(*view_, m, works | by_index).expected.empty();
+std::optional<std::size_t> Beside::find(int v) {
+  const auto there = view_->num_nodes();
+  for (std::size_t i = 0; i < m.nodes.size() && View::Number(i) < there; ++i)
+    if (node_named(view_->position(i)) == v) return i;
+  return {};
 }
 std::size_t Beside::index_of(int v) {
-  for (std::size_t i = 0; i < m.nodes.size(); ++i)
-    if (node_named(view_->position(i)) == v) return i;
+  if (auto i = find(v)) return *i;
   fail(words("node(i), of all i, to reach ", name(v), " once"), "never");
 }
 std::size_t Beside::index_of(Ends e) {
-  for (std::size_t i = 0; i < m.edges.size(); ++i)
+  const auto there = view_->num_edges();
+  for (std::size_t i = 0; i < m.edges.size() && View::Number(i) < there; ++i)
     if (auto seen = view_->edge(i); seen && seen->ends == e) return i;
   fail(words("edge(i), of all i, to reach ", name(e), " once"), "never");
 }

@@ -125,8 +125,10 @@ struct Beside {
   /** The graph is as the model is, or the test fails. */
   void hold();
   void hold(unsigned aspects);
-  /** Does it hold? */
-  bool holds();
+  /** The aspects that work now. */
+  unsigned still_works();
+  /** Where node(i) is this node. */
+  std::optional<std::size_t> find(int v);
   /** Where node(i) or edge(i) is this node or edge, or the test fails. */
   std::size_t index_of(int v);
   std::size_t index_of(Ends e);
