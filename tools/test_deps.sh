@@ -103,8 +103,12 @@ expect_status 0; says 'installing libsundials-dev libboost-dev liblemon-dev'
 says 'libsuitesparse-dev'
 ok "group peers"
 
+system 0 "$everything"; run grade
+expect_status 0; says 'installing python3 libseccomp-dev'
+ok "group grade"
+
 system 0 "$everything"; run build toys
-expect_status 2; says "no group 'toys'.*build draw check peers"; calls apt 0
+expect_status 2; says "no group 'toys'.*build draw check peers grade"; calls apt 0
 ok "a group that there is not"
 
 system 1000 "${everything/xvfb/}"; with_sudo; run
