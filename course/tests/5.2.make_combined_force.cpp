@@ -108,15 +108,21 @@ static void combine_forces() {
   }
 }
 
+/** Forces of the test's own can't be combined if the submission's have a base
+ * class that is not known here. */
+template <typename F>
+static constexpr bool base_is_unknown() {
+  if constexpr (Complete<F>)
+    return std::is_polymorphic_v<F> && std::is_same_v<TestForce, FreeForce>;
+  else
+    return false;
+}
 template <typename Gravity, typename Springs>
 static void combine_forces_like() {
-  // Forces of the test's own can't be combined if the submission's have a base
-  // class that is not known here.
-  if constexpr (Complete<Gravity> && Complete<Springs>)
-    if constexpr (std::is_polymorphic_v<Gravity> &&
-                  std::is_same_v<TestForce, FreeForce>)
-      return combine_forces<OwnParts<Gravity, Springs>>();
-  combine_forces<Parts>();
+  if constexpr (base_is_unknown<Gravity>() && Complete<Springs>)
+    combine_forces<OwnParts<Gravity, Springs>>();
+  else
+    combine_forces<Parts>();
 }
 
 }  // namespace kit
