@@ -46,7 +46,7 @@ static P* made(Cloth& g, int way) {
 static Bodies pair_at(double length, double K) {
   Bodies b;
   b.add(Point(0.2, 0.3, 0.4), 0.25);
-  b.add(b.x[0] + length * Point(2. / 3, -1. / 3, 2. / 3), 0.25);
+  b.add(b.x[0] + length * Point(0.48, 0.6, -0.64), 0.25);
   b.join(0, 1, K, L);
   return b;
 }

@@ -64,7 +64,7 @@ static void compare_damping(const Bodies& b, double number) {
     DID("DampingForce made such that c = ", c, " kg/s, on a node of mass ",
         b.m[i], " kg and velocity ", b.v[i]);
     const Point force = force_on(*damping, g, i);
-    CHECK_NEAR(force, -c * b.v[i], 1e-9);
+    CHECK_NEAR(force, Point(0, 0, 0) - c * b.v[i], 1e-9);
   }
 }
 
