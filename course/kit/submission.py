@@ -115,7 +115,9 @@ def git(folder, *words):
         "GIT_CONFIG_NOSYSTEM": "1", "GIT_CONFIG_GLOBAL": "/dev/null",
         "GIT_TERMINAL_PROMPT": "0", "GIT_NO_LAZY_FETCH": "1",
         "GIT_NO_REPLACE_OBJECTS": "1", "GIT_ALLOW_PROTOCOL": "none",
-        "GIT_OPTIONAL_LOCKS": "0"}
+        "GIT_OPTIONAL_LOCKS": "0",
+        # Not the clone in which the folder happens to stand.
+        "GIT_CEILING_DIRECTORIES": os.path.dirname(os.path.realpath(folder))}
     command = ["git", "-c", "safe.directory=*", "-c", "core.fsmonitor=false",
                "-c", "core.hooksPath=/dev/null", "-c", "protocol.allow=never",
                "-C", folder, *words]

@@ -180,6 +180,8 @@ class Take(Folder):
         self.assertEqual(taken.notes, ["link.hpp is a symbolic link: left out"])
         self.refused("has no tag hw3; tags: hw2", "hw3")
         self.refused("no name of a tag", "--upload-pack=x")
+        self.folder = self.put("inside/Graph.hpp").parent
+        self.refused("git says: fatal: not a git repository", "hw2")
         self.assertFalse(bad.exists())
 
     def test_flags_what_a_person_should_see(self):
