@@ -80,7 +80,8 @@ class Room:
         assembly, program = self.built / f"{name}.s", self.built / name
         prelude = self.kit.preludes / way.kind / "prelude.hpp"
         command = [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-H",
-                   "-fmax-errors=200", "-fdiagnostics-plain-output", "-ftemplate-depth=400",
+                   "-fmax-errors=200", "-fdiagnostics-plain-output",
+                   "-ftemplate-depth=400",
                    "-include", prelude,
                    "-I", TESTS / "headless", "-I", self.kit.include,
                    "-I", ".", "-I", TESTS, f'-DKIT_TESTS="{TESTS}"',

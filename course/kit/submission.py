@@ -17,7 +17,8 @@ LARGEST_ALL = 8 << 20
 DEEPEST = 5                # folders below DIR
 PLAIN = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_+. -]*")   # a name
 TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
-NOT_LOOKED_INTO = {"CME212", "build", "data"}
+# What a starter holds beside the sources: the kit has its own.
+NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools"}
 
 # What may be an attempt to be graded by other means than by good work. It is
 # shown, and never decides: most of it has honest uses.

@@ -12,6 +12,7 @@ import unittest
 
 import build
 import once
+import starter
 import submission
 
 PROBE = r"""
@@ -112,13 +113,22 @@ class Folder(unittest.TestCase):
 class Take(Folder):
     def test_takes_sources_of_the_folder_and_nothing_else(self):
         for name in ("Graph.hpp", "mass_spring.cpp", "more/own.h", "notes.txt",
-                     "CME212/Point.hpp", ".git/config", "Makefile"):
+                     "CME212/Point.hpp", "tests/check.hpp", "Makefile"):
             self.put(name, name)
         taken = submission.take(str(self.folder))
         self.assertEqual(taken.files, {
             "Graph.hpp": b"Graph.hpp", "mass_spring.cpp": b"mass_spring.cpp",
             "more/own.h": b"more/own.h"})
         self.assertEqual(taken.notes, [])
+
+    def test_flags_nothing_of_a_solution(self):
+        files = starter.tree("solution")
+        for name, (content, _) in files.items():
+            path = self.put(name)
+            path.write_bytes(content)
+        taken = submission.take(str(self.folder))
+        self.assertIn("mass_spring.hpp", taken.files)
+        self.assertEqual((taken.flags, taken.notes), ([], []))
 
     def test_finds_the_folder_of_the_homework(self):
         self.put("hw1/Graph.hpp", "1")
