@@ -1,7 +1,7 @@
 #pragma once
 /** @file Mesh.hpp
  * What a cloth is made from: points and quads, read from files or generated.
- * Format of the files: docs/data.md. */
+ * Format of the files: data/README.md. */
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -133,7 +133,7 @@ inline std::string read_file(const std::string& file, const char* expected) {
 /** Four indices of nodes: a quad with the sides 01, 02, 13 and 23. */
 using Quad = std::array<unsigned, 4>;
 
-/** The points [m] of a .nodes file: "x y z" a line. Format: docs/data.md.
+/** The points [m] of a .nodes file: "x y z" a line. Format: data/README.md.
  * @param text all of the file   @param file its name, for messages
  * Throws InputError: a line without exactly three finite numbers; no line. */
 inline std::vector<Point> parse_points(std::string_view text,

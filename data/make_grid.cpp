@@ -1,7 +1,7 @@
 /** @file make_grid.cpp
  * Writes a square cloth: ./make_grid SIDE BASE makes BASE.nodes and BASE.tets,
  * SIDE x SIDE nodes over the unit square, x in the outer loop and y in the
- * inner one. Format: docs/data.md.
+ * inner one. Format: data/README.md.
  *
  *   ./make_grid 5 data/grid0        25 nodes, 16 quads
  *   ./make_grid 1000 data/grid4     1,000,000 nodes, 998,001 quads */

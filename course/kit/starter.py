@@ -8,6 +8,7 @@ the same bytes.
 import json
 import os
 import pathlib
+import re
 import shutil
 import sys
 import tempfile
@@ -20,6 +21,8 @@ COPIED = [
     ("LICENSE test_nodes.cpp test_edges.cpp", ".", ""),
     ("CME212/*.hpp CME212/*.cpp CME212/*.mk", "CME212", ""),
     ("data/grid*.nodes data/grid*.tets", "data", "grid4.nodes grid4.tets"),
+    ("data/README.md", "data", ""),
+    ("docs/graph.md", "docs", ""),
     ("course/*.md", "pages", "README.md"),
     ("course/pictures/*.png course/pictures/*.svg", "pages/pictures", ""),
     ("course/starter/Makefile course/starter/README.md", ".", ""),
@@ -61,7 +64,24 @@ def tree(kind, root=tasks.ROOT):
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
     add(".github/workflows/classroom.yml",
         workflow((root / WORKFLOW).read_text(encoding="utf-8"), course))
+    for path, (content, _) in files.items():
+        if path.endswith(".md"):
+            add(path, without_dead_links(content.decode(), path, files))
     return files
+
+
+def without_dead_links(text, path, files):
+    """The page `text` with the words alone of each link into this repository
+    that leads to nothing in a starter."""
+    def words_or_link(match):
+        target = os.path.normpath(
+            os.path.join(os.path.dirname(path), match[2].split("#")[0]))
+        there = target == path or target in files or any(
+            name.startswith(target + "/") for name in files)
+        outside = match[2].startswith(("http:", "https:", "#"))
+        return match[0] if there or outside else match[1]
+
+    return re.sub(r"(?<!!)\[([^][]*)\]\(([^()\s]+)\)", words_or_link, text)
 
 
 def is_unasked(test, course):

@@ -244,6 +244,14 @@ class Table(unittest.TestCase):
             'X("7.1.g", "g", 1,', '  "g(x) is \\"x\\".",',
             '  "A backslash: \\\\.")'])
 
+    def test_a_link_to_nothing_is_words(self):
+        text = ("[a](../x.md) [b](y.md#c) [c d](../lab/z.md) [e](https://f/g) "
+                "[h](#i) ![j](../k.png) [l](p)")
+        self.assertEqual(
+            starter.without_dead_links(text, "docs/y.md",
+                                       {"x.md": 0, "docs/p/q": 0}),
+            text.replace("[c d](../lab/z.md)", "c d"))
+
     def test_the_workflow(self):
         text = ("steps:\n      # EACH TASK\n      - @STEP@ @ID@ @TITLE@ "
                 "@POINTS@\n      # END\nenv:\n          @RESULTS@\n@RUNNERS@\n")
@@ -310,6 +318,17 @@ class Repository(unittest.TestCase):
             self.assertEqual(f"YOUR CODE {task.id} ".encode() in sources,
                              marked, task.id)
         self.assertIsNone(markers.LOOKS_LIKE_ONE.search(sources.decode()))
+
+    def test_every_link_of_a_starter_holds(self):
+        self.make("starter", self.folder / "s")
+        pages = list((self.folder / "s").rglob("*.md"))
+        self.assertGreater(len(pages), 10)
+        for page in pages:
+            text = page.read_text(encoding="utf-8")
+            for target in re.findall(r'(?:\]\(|src=")([^)"\s#]+)', text):
+                if not target.startswith("http"):
+                    self.assertTrue((page.parent / target).exists(),
+                                    f"{page}: {target}")
 
     def test_out_must_be_new_or_empty(self):
         (self.folder / "empty").mkdir()
