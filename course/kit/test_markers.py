@@ -330,6 +330,28 @@ class Repository(unittest.TestCase):
                     self.assertTrue((page.parent / target).exists(),
                                     f"{page}: {target}")
 
+    def test_how_a_starter_builds_its_own_programs(self):
+        self.make("starter", self.folder / "s")
+        own = self.folder / "s/own.cpp"
+
+        def commands(text, *arguments):
+            own.write_text(text + "\nint main() {}\n")
+            done = subprocess.run(["make", "-n", "own", *arguments],
+                                  cwd=own.parent, capture_output=True,
+                                  text=True, env=os.environ | {"MAKEFLAGS": ""})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout
+
+        plain = commands("", "VIEWER=1")
+        self.assertIn(" -Og ", plain)
+        self.assertNotRegex(plain, "NDEBUG|libviewer|gtest|fsanitize|VIEWER=0")
+        fast = commands("", "FAST=1", "VIEWER=1")
+        self.assertIn("-O3 -DNDEBUG", fast)
+        self.assertIn("-fsanitize=address", commands("", "SANITIZE=1"))
+        drawn = commands('#include "CME212/SFML_Viewer.hpp"', "VIEWER=1")
+        self.assertRegex(drawn, r"own\.cpp \S*libviewer\.a -l")
+        self.assertIn("without a window: VIEWER=0", commands("", "VIEWER=0"))
+
     def test_out_must_be_new_or_empty(self):
         (self.folder / "empty").mkdir()
         self.assertEqual(self.make("starter", self.folder / "empty")[0], 0)

@@ -42,7 +42,7 @@ $(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame)
 	@$(CXX) $(of_test) $(defined) $(sanitizer) -o $@ $@.cpp $(frame)
 $(counted:%=$(B)/tests/%): $(B)/tests/%: tests/%.cpp $(frame)
 	@echo '$(CXX) $@'
-	@$(CXX) $(of_test) -O1 -fsanitize-coverage=trace-pc -c -o $@.o $<
+	@$(CXX) $(of_test) -O1 -g1 -fsanitize-coverage=trace-pc -c -o $@.o $<
 	@$(CXX) -o $@ $@.o $(frame) $(wrap)
 $(frame): $(B)/tests/%.o: tests/%.cpp tests/kit.cpp
 	@echo '$(CXX) $@'
