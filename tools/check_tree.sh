@@ -53,7 +53,8 @@ done >>"$faults"
 lines "is left unfinished" -wE 'TOD[O]|FIXM[E]|XX[X]' "${code[@]}"
 lines "is never compiled" -E '^[[:space:]]*#[[:space:]]*if +(0|false)\b' \
   "${sources[@]}"
-lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}"
+lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}" \
+  ${scripts[@]+"${scripts[@]}"}
 lines "has a character that is not ASCII" -P '[^\x00-\x7F]' "${code[@]}"
 lines "ends in white space" -E '[[:space:]]$' "${texts[@]}"
 

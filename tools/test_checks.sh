@@ -183,6 +183,9 @@ caught "tree: 761 lines of Graph.hpp" \
 again; comment_lines 501 >mass_spring.hpp
 caught "tree: 501 lines of another" \
   "mass_spring.hpp:500: goes on to line 501; the limit is 500" tree $tree
+again; printf '#%80s\n' x >>course/kit/tasks.py
+caught "tree: 81 columns of Python" \
+  "course/kit/tasks.py:$(wc -l <course/kit/tasks.py): is longer than 80" tree $tree
 again small; comment_lines 500 >CME212/SlotMap.hpp; cp CME212/SlotMap.hpp Graph.hpp
 comment_lines 260 >>Graph.hpp
 clean "tree: 500 and 760 lines are none too many" $tree
