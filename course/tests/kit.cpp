@@ -345,6 +345,8 @@ Beside::~Beside() = default;
 void Beside::begin(View& view) {
   view_ = &view;
   works = still_works();
+  // One that is not the same from both ends is not to be relied on.
+  if (!(works & incident_values)) works &= ~unsigned(edge_values);
 }
 unsigned Beside::still_works() {
   unsigned now = 0;
