@@ -31,13 +31,24 @@ lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
 test_libs = -lgtest_main -lgtest -lrapidcheck
 
+include lab/units.mk
+
 # $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
-define variant
-$(1)/%.o: %.cpp $(1)/lab.flags
+define compile
 	@mkdir -p $$(dir $$@) && echo '$(CXX) $$@'
 	@$$(CXX) $$(lab_flags) $(2) $$(lab_draw) $$(CPPFLAGS) $$(CXXFLAGS) \
 	  -MMD -MP -c -o $$@ $$<
-$(1)/liblab.a: $(lab_lib:%.cpp=$(1)/%.o)
+endef
+define variant
+$(1)/%.o: %.cpp $(1)/lab.flags
+$(compile)
+$(1)/unity/%.o: $(1)/unity/%.cpp $(1)/lab.flags
+$(compile)
+.PRECIOUS: $(1)/unity/%.cpp
+$(1)/unity/%.cpp: FORCE
+	@mkdir -p $$(@D) && tools/unity.sh $$(in_$$*) | cmp -s - $$@ \
+	  || tools/unity.sh $$(in_$$*) > $$@
+$(1)/liblab.a: $(lab_objects:%=$(1)/%)
 	@rm -f $$@ && ar rcs $$@ $$^
 $(1)/lab.flags: FORCE
 	@mkdir -p $$(dir $$@); echo '$(CXX) $(lab_flags) $(2) $(CPPFLAGS) $(CXXFLAGS)' \
@@ -56,10 +67,10 @@ $(1): $(2)/$(basename $(3)).o $(2)/liblab.a
 	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$(filter-out %/libviewer.a,$$^) $$(draw_libs) $(5) $$(lab_libs)
 endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
-$(foreach f,$(lab_tests),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
+$(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
 
 # Tests that run a program.
-$(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)): | $(B)/cloth
+$(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)) $(TEST_UNITS:%=$(B)/%): | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
 $(B)/test_viewer $(B)/test_image $(B)/test_screen: $(B)/asan/libviewer.a
@@ -68,8 +79,8 @@ $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 	@rm -f $@ && ar rcs $@ $^
 
 # make NAME for each; ./cloth lies beside the course's program.
-.PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS)
-$(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) make_grid example_graph: %: $(B)/%
+.PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) $(TEST_UNITS)
+$(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) $(TEST_UNITS) make_grid example_graph: %: $(B)/%
 ifneq ($(O)cloth,$(B)/cloth)
 $(O)cloth: $(B)/cloth
 	@ln -f $< $@ 2>/dev/null || cp $< $@

@@ -19,6 +19,10 @@ export BUILD=build/check
 export CXXFLAGS='-Werror -g1'
 # Nothing here is timed.
 export SPEED=-O1
+# Sources are compiled several at once: lab/units.mk.
+export UNITY=1
+# Random histories of a graph: 100,000 operations; by itself a test makes more.
+export RC_PARAMS=max_success=40
 started=$SECONDS passed=0 failed=0
 
 # Run a step and count what it says it passed; a step that counts nothing is
@@ -100,11 +104,10 @@ of_stages() {
 
 # ---- check
 
-tests=$(basename -s .cpp tests/test_*.cpp)
 # Two workers, as tests use one core: each takes what the other has not taken.
 worker() {
   local test
-  for test in $tests; do
+  for test in $(make -s list-units); do
     mkdir "$logs/taken/$test" 2>/dev/null || continue
     case $test in
       test_viewer | test_image | test_screen)
@@ -115,8 +118,7 @@ worker() {
 }
 one_worker() { worker; }
 other_worker() { worker; }
-# shellcheck disable=SC2086  # a list of words
-build_tests() { in_folder . $tests work_precision stability_map adviser_suite make_grid; }
+build_tests() { in_folder . units work_precision stability_map adviser_suite make_grid; }
 
 # ---- check-full
 
@@ -173,9 +175,9 @@ single() {
 }
 # What counts of clang++ is what it says: no time for optimizing.
 clang() {
-  # shellcheck disable=SC2086  # a list of words
-  in_folder clang all cloth $tests work_precision stability_map adviser_suite \
-    bench bench_implicit bench_stability make_grid example_graph \
+  in_folder clang all cloth units test_graph_nodes test_graph_edges \
+    work_precision stability_map adviser_suite bench bench_implicit \
+    bench_stability make_grid example_graph \
     CXX=clang++ SANITIZE= CXXFLAGS="-Werror -O0 -g0" &&
     build/check/clang/test_nodes && build/check/clang/test_edges &&
     build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges

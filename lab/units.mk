@@ -1,0 +1,27 @@
+# Checks compile several sources as one unit, UNITY=1: what they include is read
+# once, which takes half of the time. Each room of the laboratory is a unit;
+# tests are dealt out by size to the programs tests_0, tests_1 ...
+UNITS ?= 10
+
+# Programs of their own: one looks into the Graph, three are linked with the
+# window, one hooks malloc, one holds the course's headers to what they bring.
+tests_alone := test_graph test_viewer test_image test_screen test_cloth \
+               test_course_interface
+dealt       := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
+TEST_UNITS  := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
+
+# $(in_NAME): the sources of unit NAME; lab/fast/ is the unit lab_fast_.
+rooms := $(sort $(dir $(filter-out lab/viewer/Screen.cpp,$(lab_lib))))
+$(foreach r,$(rooms),$(eval in_$(subst /,_,$(r)) := $(foreach f,$(lab_lib), \
+  $(if $(filter $(r),$(dir $(f))),$(filter-out lab/viewer/Screen.cpp,$(f))))))
+$(foreach u,$(TEST_UNITS),$(eval in_$(u) := $(shell printf '%s\n' $(dealt) \
+  | awk 'NR % $(UNITS) == $(u:tests_%=%)')))
+
+lab_objects = $(if $(UNITY),$(patsubst %,unity/%.o,$(subst /,_,$(rooms))) \
+  lab/viewer/Screen.o,$(lab_lib:.cpp=.o))
+
+# All tests, those that take longest first; and their names.
+.PHONY: units list-units
+units: $(tests_alone) $(TEST_UNITS)
+list-units:
+	@echo $(tests_alone) $(TEST_UNITS)
