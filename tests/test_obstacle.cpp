@@ -79,7 +79,7 @@ TEST(Contact, IsFiniteHoweverSlowly) {
 // ----------------------------------------------------------- Walls and balls
 
 /** 200 nodes in a cube around the origin, with velocities. */
-class Scattered : public ::testing::Test {
+class ScatteredNodes : public ::testing::Test {
  protected:
   Cloth g;
   const Ball ball = {Point(0.1, 0, 0.2), 0.8};
@@ -128,12 +128,12 @@ class Scattered : public ::testing::Test {
   }
 };
 
-TEST_F(Scattered, AWallAtRestMovesNodesToItsNearestPoint) {
+TEST_F(ScatteredNodes, AWallAtRestMovesNodesToItsNearestPoint) {
   expect_nearest(
       WallConstraint(Point(9, 9, -0.1), Point(0, 0, 7)), Point(),
       [](const Point& p) { return Point(0, 0, std::max(0.0, -0.1 - p.z)); });
 }
-TEST_F(Scattered, AWallThatMovesDoesSoToo) {
+TEST_F(ScatteredNodes, AWallThatMovesDoesSoToo) {
   const Motion motion = {Point(0.2, 0.4, -0.6), 5};
   const Point normal = Point(1, 2, 2) / 3;
   expect_nearest(WallConstraint(Point(0.1, 0, 0), 4 * normal, motion),
@@ -142,7 +142,7 @@ TEST_F(Scattered, AWallThatMovesDoesSoToo) {
                    return std::max(0.0, dot(at - p, normal)) * normal;
                  });
 }
-TEST_F(Scattered, ABallAtRestAndOneThatMovesDoSo) {
+TEST_F(ScatteredNodes, ABallAtRestAndOneThatMovesDoSo) {
   for (const Motion& motion : {Motion{}, Motion{Point(0.2, -0.3, 0.1), 2},
                                Motion{Point(0.2, -0.3, 0.1), 0.2}}) {
     const Point center = ball.center + motion.way(0.3);
@@ -155,7 +155,7 @@ TEST_F(Scattered, ABallAtRestAndOneThatMovesDoSo) {
     SetUp();
   }
 }
-TEST_F(Scattered, TwiceIsOnce) {
+TEST_F(ScatteredNodes, TwiceIsOnce) {
   const Motion motion = {Point(0.2, -0.3, 0.1)};
   for (double friction : {0.0, 0.3, 3.0}) {
     expect_twice_is_once(
@@ -163,7 +163,7 @@ TEST_F(Scattered, TwiceIsOnce) {
     expect_twice_is_once(BallConstraint(ball, motion, friction));
   }
 }
-TEST_F(Scattered, WithFrictionNobodyIsInsideEither) {
+TEST_F(ScatteredNodes, WithFrictionNobodyIsInsideEither) {
   const Motion motion = {Point(0.2, -0.3, 0.1)};
   BallConstraint(ball, motion, 2)(g, 0.3);
   for (Node n : g.nodes())
