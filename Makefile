@@ -41,8 +41,7 @@ flags     = $(common) \
 
 MAKEFLAGS += --no-builtin-rules
 .PHONY: help all deps demo submit format clean FORCE
-.SECONDARY:
-.DELETE_ON_ERROR:
+.SECONDARY .DELETE_ON_ERROR:
 
 help:
 	@echo 'make mass_spring        the cloth, last stage; STAGE=forces another, or'

@@ -3,10 +3,11 @@
 # tests are dealt out by size to the programs tests_0, tests_1 ...
 UNITS ?= 10
 
-# Programs of their own: one looks into the Graph, three are linked with the
-# window, one hooks malloc, one holds the course's headers to what they bring.
-tests_alone := test_graph test_viewer test_image test_screen test_cloth \
-               test_course_interface
+# Programs of their own: two specialize templates of other namespaces, three are
+# linked with the window, one hooks malloc, one holds the course's headers to
+# what they bring.
+tests_alone := test_graph test_viewer test_image test_screen test_slot_map \
+               test_cloth test_course_interface
 dealt       := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS  := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
 
