@@ -244,7 +244,7 @@ case $tier in
     step build       build_tests
     step programs    programs
     step clang       clang
-    step kit         make --no-print-directory kit-check
+    step kit         make --no-print-directory kit-check EVERY=5
     beside of_scripts of_variants
     beside of_programs of_sweeps ;;
   quick) ;;
