@@ -50,7 +50,7 @@ static void compare_start(const Start& start) {
     const Point vel = b.v;
     CHECK_NEAR(vel, Point(0, 0, 0), 0);
     const double mass = b.m;
-    CHECK_NEAR(mass, 1. / 12, 1e-9);
+    CHECK_NEAR(mass, 1. / 12, 1e-7);
   }
   for (std::size_t i = 0; i < points.size(); ++i)
     CHECK(met[i] == 1, words("one node at ", points[i]));

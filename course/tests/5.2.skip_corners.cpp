@@ -15,6 +15,11 @@ static void step_with_corners(G& g, F& force, Look look) {
       ::symp_euler_step(g, step * dt, dt, force);
       look(step);
     }
+  } else if constexpr (!Complete<KIT_CONSTRAINT(PinConstraint)>) {
+    for (int step = 1; step <= 5; ++step) {
+      free_step(g, step * dt, dt, force);
+      look(step);
+    }
   } else {
     with<KIT_CONSTRAINT(PinConstraint)>("PinConstraint", [&]<typename Pin>() {
       Pins<Pin> pins(g);

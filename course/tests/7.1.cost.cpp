@@ -94,6 +94,22 @@ static const char* name(Call call) {
   return names[call];
 }
 
+// What a removal returns is of another task.
+template <typename G, typename... What>
+static void take_out_node(G& g, What... what) {
+  if constexpr (requires { g.remove_node(what...); })
+    g.remove_node(what...);
+  else
+    need<false>("g.remove_node(node)");
+}
+template <typename G, typename... What>
+static void take_out_edge(G& g, What... what) {
+  if constexpr (requires { g.remove_edge(what...); })
+    g.remove_edge(what...);
+  else
+    need<false>("g.remove_edge(edge) and g.remove_edge(node, node)");
+}
+
 /** What a call costs on average, if so many are made as a tenth of the nodes:
  * a vector may grow once in a while. It gives up as soon as the average must
  * exceed @a limit. */
@@ -109,7 +125,7 @@ static double cost(G& g, Call call, double limit) {
     if (call == node_goes) {
       {
         Count count;
-        kit::remove_node(g, a);
+        take_out_node(g, a);
       }
       CHECK_EQUAL(g.num_nodes(), nodes - 1);
     } else if (call == node_value_is_read) {
@@ -131,10 +147,10 @@ static double cost(G& g, Call call, double limit) {
       auto b = name_of(e.node1()) == name_of(a) ? e.node2() : e.node1();
       if (call == edge_goes) {
         Count count;
-        kit::remove_edge(g, e);
+        take_out_edge(g, e);
       } else {
         Count count;
-        kit::remove_edge(g, a, b);
+        take_out_edge(g, a, b);
       }
       CHECK_EQUAL(g.num_edges(), edges - 1);
     }

@@ -103,6 +103,8 @@ void set_springs(G& g, const Bodies& bodies) {
   for (int k = 0; k < bodies.num_springs; ++k) {
     const Spring& s = bodies.springs[k];
     set_spring(joined(g, node_of(g, s.a), node_of(g, s.b)), s);
+    if (g.has_edge(node_of(g, s.b), node_of(g, s.a)))
+      set_spring(joined(g, node_of(g, s.b), node_of(g, s.a)), s);
   }
 }
 /** Fill the empty graph @a g: body i is node(i). */

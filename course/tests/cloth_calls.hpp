@@ -45,10 +45,15 @@ class Pins {
       hold(&g);
     } else if constexpr (std::is_default_constructible_v<Pin>) {
       hold();
-    } else if constexpr (std::is_constructible_v<Pin, std::vector<Point>>) {
-      hold(std::vector<Point>{p0, p1});
-    } else if constexpr (std::is_constructible_v<Pin, std::vector<ClothNode>>) {
-      hold(std::vector<ClothNode>{n0, n1});
+    } else if constexpr (std::is_constructible_v<Pin, std::vector<Point>&>) {
+      hold(points_ = {p0, p1});
+    } else if constexpr (std::is_constructible_v<Pin,
+                                                 std::vector<ClothNode>&>) {
+      hold(nodes_ = {n0, n1});
+    } else if constexpr (requires { Pin(nodes_, points_); }) {
+      hold(nodes_ = {n0, n1}, points_ = {p0, p1});
+    } else if constexpr (requires { Pin(points_, nodes_); }) {
+      hold(points_ = {p0, p1}, nodes_ = {n0, n1});
     } else if constexpr (requires { Pin(g, std::vector<Point>()); }) {
       hold(g, std::vector<Point>{p0, p1});
     } else if constexpr (requires { Pin(p0, p1); }) {
@@ -83,6 +88,9 @@ class Pins {
 
  private:
   Pin *first_ = nullptr, *second_ = nullptr;
+  // Lists that a pin may keep a reference to.
+  std::vector<Point> points_;
+  std::vector<ClothNode> nodes_;
   template <typename... Args>
   void hold(Args&&... args) {
     (first_ ? second_ : first_) = new Pin(std::forward<Args>(args)...);

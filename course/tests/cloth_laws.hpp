@@ -28,8 +28,12 @@ class Life {
 /** What a test's force or constraint does: a reference to a function object,
  * which has to outlive it. */
 struct ForceLaw {
-  const void* f;
-  Point (*call)(const void*, ClothNode, double);
+  const void* f = nullptr;
+  Point (*call)(const void*, ClothNode, double) = [](const void*, ClothNode,
+                                                     double) -> Point {
+    fail("the force that was combined", "one made from nothing");
+  };
+  ForceLaw() = default;
   template <typename F>
   ForceLaw(const F& function)
       : f(&function), call([](const void* p, ClothNode n, double t) {
@@ -39,8 +43,11 @@ struct ForceLaw {
   ForceLaw(const F&&) = delete;  // a temporary
 };
 struct ConstraintLaw {
-  const void* f;
-  void (*call)(const void*, Cloth&, double);
+  const void* f = nullptr;
+  void (*call)(const void*, Cloth&, double) = [](const void*, Cloth&, double) {
+    fail("the constraint that was combined", "one made from nothing");
+  };
+  ConstraintLaw() = default;
   template <typename F>
   ConstraintLaw(const F& function)
       : f(&function), call([](const void* p, Cloth& g, double t) {
@@ -54,6 +61,7 @@ struct ConstraintLaw {
 class FreeForce {
  public:
   using Law = ForceLaw;
+  FreeForce() = default;  // some assign what they combine
   explicit FreeForce(Law law) : law_(law) {}
   template <typename N>
   Point operator()(N n, double t) const {
@@ -73,6 +81,7 @@ class FreeForce {
 class FreeConstraint {
  public:
   using Law = ConstraintLaw;
+  FreeConstraint() = default;
   explicit FreeConstraint(Law law) : law_(law) {}
   template <typename G>
   void operator()(G& g, double t) const {
@@ -96,12 +105,14 @@ struct Child;
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
 struct Child<Base, Free, R (C::*)(A, B)> : Base, private Free {
+  Child() = default;
   explicit Child(typename Free::Law law) : Free(law) {}
   R operator()(A a, B b) override { return Free::call(a, b); }
 };
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
 struct Child<Base, Free, R (C::*)(A, B) const> : Base, private Free {
+  Child() = default;
   explicit Child(typename Free::Law law) : Free(law) {}
   R operator()(A a, B b) const override { return Free::call(a, b); }
 };

@@ -15,6 +15,7 @@ namespace kit {
 #define KIT_NAMES_OF_START(X)                                               \
   X(initial_position) X(initial_pos) X(initial) X(initialPosition)          \
   X(init_position) X(init_pos) X(initpos) X(initPos) X(init) X(start)       \
+  X(initialpos) X(initialPos) X(startpos) X(startPos) X(start_position)     \
   X(start_pos) X(original_position) X(orig_pos) X(orig) X(pos0) X(p0) X(x0) \
   X(pin) X(pos_init) X(position0) X(fixed_pos)
 #define KIT_NAMES_OF_K(X)                                                   \
@@ -27,7 +28,8 @@ namespace kit {
   X(L) X(l) X(L_) X(l_) X(L0) X(l0) X(Lij) X(lij) X(L_ij) X(l_ij) X(length) \
   X(length_) X(len) X(len_) X(rest_length) X(rest_length_) X(rest_len)      \
   X(restLength) X(resting_length) X(rest) X(initial_length) X(initial_len)  \
-  X(init_length) X(init_len) X(initialLength) X(initLength) X(initial)      \
+  X(init_length) X(init_len) X(initialLength) X(initLength) X(RestLength)   \
+  X(initial) \
   X(original_length) X(orig_length) X(natural_length) X(edge_length)        \
   X(spring_length) X(spring_len) X(length0) X(len0) X(lval) X(dist)         \
   X(distance)
