@@ -222,7 +222,7 @@ ok "tree: a deleted file is not looked for"
 # ---- How the Makefile builds a program that somebody adds to the root
 build_says() {  # NAME WORD NOT-WORD MAKE-ARGUMENT...
   again; printf '%s\n' "$program" >own.cpp
-  check tree make -n own B="$tmp/own" "${@:4}"; why=""
+  check tree env -u SPEED make -n own B="$tmp/own" "${@:4}"; why=""
   [ "$status" = 0 ] || why=" status is $status;"
   grep -qE -- "$2" <<<"$out" || why+=" no $2;"
   ! grep -qE -- "$3" <<<"$out" || why+=" there is $3;"
