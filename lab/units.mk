@@ -8,21 +8,26 @@ UNITS ?= 10
 # what they bring.
 tests_alone := test_graph test_viewer test_image test_screen test_slot_map \
                test_cloth test_course_interface
-dealt       := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
-TEST_UNITS  := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
+
+ifeq ($(UNITY),)
+lab_objects := $(lab_lib:.cpp=.o)
+else
+dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
+TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
+drawing    := lab/viewer/Screen.cpp
+united     := $(filter-out $(drawing),$(lab_lib))
+rooms      := $(sort $(dir $(united)))
 
 # $(in_NAME): the sources of unit NAME; lab/fast/ is the unit lab_fast_.
-rooms := $(sort $(dir $(filter-out lab/viewer/Screen.cpp,$(lab_lib))))
-$(foreach r,$(rooms),$(eval in_$(subst /,_,$(r)) := $(foreach f,$(lab_lib), \
-  $(if $(filter $(r),$(dir $(f))),$(filter-out lab/viewer/Screen.cpp,$(f))))))
+$(foreach r,$(rooms),$(eval in_$(subst /,_,$(r)) := \
+  $(foreach f,$(united),$(if $(filter $(r),$(dir $(f))),$(f)))))
 $(foreach u,$(TEST_UNITS),$(eval in_$(u) := $(shell printf '%s\n' $(dealt) \
   | awk 'NR % $(UNITS) == $(u:tests_%=%)')))
-
-lab_objects = $(if $(UNITY),$(patsubst %,unity/%.o,$(subst /,_,$(rooms))) \
-  lab/viewer/Screen.o,$(lab_lib:.cpp=.o))
+lab_objects := $(patsubst %,unity/%.o,$(subst /,_,$(rooms))) $(drawing:.cpp=.o)
 
 # All tests, those that take longest first; and their names.
 .PHONY: units list-units
 units: $(tests_alone) $(TEST_UNITS)
 list-units:
 	@echo $(tests_alone) $(TEST_UNITS)
+endif

@@ -9,7 +9,8 @@ import pathlib
 import sys
 import zipfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from tasks import ROOT
+
 GLOBS = ["LICENSE", "Graph.hpp", "CME212/*.hpp", "tools/deps.sh",
          "course/tasks.toml", "course/kit/*.py", "course/kit/*.cpp",
          "course/tests/**/*"]

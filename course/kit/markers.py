@@ -26,12 +26,8 @@ LOOKS_LIKE_ONE = re.compile(
     r"\b(begin|end)\W+solution\b|//\W*stub\b", re.IGNORECASE)
 
 
-class MarkerError(Exception):
-    """Faults, each `FILE:LINE: what is wrong`."""
-
-    def __init__(self, faults):
-        super().__init__("\n".join(faults))
-        self.faults = faults
+class MarkerError(tasks.Faults):
+    """Of a source with markers."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +126,7 @@ def comment(id, task, further):
         return f"// YOUR CODE {id}, too{page}"
     points = ""
     if task and task.points:
-        points = f" ({task.points} point{'s' * (task.points != 1)})"
+        points = f" ({task.worth})"
     return f"// YOUR CODE {id}{points}{page}"
 
 

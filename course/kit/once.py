@@ -12,7 +12,9 @@ import subprocess
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import tasks
+
+ROOT = tasks.ROOT
 KIT = ROOT / "course/kit"
 TESTS = ROOT / "course/tests"
 BUILT = ROOT / "build/kit"

@@ -21,9 +21,7 @@ LONGEST = 80  # lines of a section's page
 
 
 def worth(task):
-    if task.extra:
-        return f"{task.points} extra"
-    return f"{task.points} point" + ("" if task.points == 1 else "s")
+    return f"{task.points} extra" if task.extra else task.worth
 
 
 def of_section(id, course):

@@ -14,12 +14,16 @@ TEST = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 NO_CONTROLS = re.compile(r"[^\x00-\x1f\x7f]+")
 
 
-class TasksError(Exception):
-    """Faults, each `FILE:LINE: what is wrong`."""
+class Faults(Exception):
+    """Each of `faults` is `FILE:LINE: what is wrong`."""
 
     def __init__(self, faults):
         super().__init__("\n".join(faults))
         self.faults = faults
+
+
+class TasksError(Faults):
+    """Of tasks.toml."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,10 @@ class Task:
     @property
     def counted(self):
         return 0 if self.extra else self.points
+
+    @property
+    def worth(self):
+        return f"{self.points} point" + ("" if self.points == 1 else "s")
 
 
 @dataclass(frozen=True)

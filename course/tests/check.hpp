@@ -4,8 +4,8 @@
  *   TASK("7.1.remove_node", name) { ... }    a test of the task of this id
  *   DID("ring of ", n, ", removed n3");      what was done; the latest is shown
  *   CHECK_EQUAL(g.num_nodes(), 13);  "Expected g.num_nodes() == 13, got 14."
- *   CHECK_NEAR(x, 1.5, 1e-12);       for numbers and Points; NaN is near
- * nothing CHECK(condition, "the loop ends");       "Expected: the loop ends."
+ *   CHECK_NEAR(x, 1.5, 1e-12);       for numbers and Points; NaN never passes
+ *   CHECK(condition, "the loop ends");       "Expected: the loop ends."
  *
  * A check that fails ends its test. The name of a test is unique in all files.
  * A test file includes graph.hpp or cloth.hpp, which bring this file: it comes

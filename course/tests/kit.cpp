@@ -347,8 +347,11 @@ extern "C" void leave_look(int) { siglongjmp(before_look, 1); }
 /** Does this aspect work? One that throws or aborts does not, and only a test
  * that needs it is to end by it. */
 bool looks_well(View& g, const Model& m, Aspect what) {
+  struct Handler {
+    void (*const old)(int) = std::signal(SIGABRT, leave_look);
+    ~Handler() { std::signal(SIGABRT, old); }
+  } handler;
   volatile bool well = false;
-  const auto old = std::signal(SIGABRT, leave_look);
   if (sigsetjmp(before_look, 1) == 0) {
     try {
       well = look(g, m, what).expected.empty();
@@ -357,7 +360,6 @@ bool looks_well(View& g, const Model& m, Aspect what) {
     } catch (...) {
     }
   }
-  std::signal(SIGABRT, old);
   return well;
 }
 

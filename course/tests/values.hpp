@@ -28,11 +28,10 @@ namespace kit {
   X(L) X(l) X(L_) X(l_) X(L0) X(l0) X(Lij) X(lij) X(L_ij) X(l_ij) X(length) \
   X(length_) X(len) X(len_) X(rest_length) X(rest_length_) X(rest_len)      \
   X(restLength) X(resting_length) X(rest) X(initial_length) X(initial_len)  \
-  X(init_length) X(init_len) X(initialLength) X(initLength) X(RestLength)   \
-  X(initial) \
-  X(original_length) X(orig_length) X(natural_length) X(edge_length)        \
-  X(spring_length) X(spring_len) X(length0) X(len0) X(lval) X(dist)         \
-  X(distance)
+  X(init_length) X(init_len) X(initialLength) X(initLength) X(initial)      \
+  X(RestLength) X(original_length) X(orig_length) X(natural_length)         \
+  X(edge_length) X(spring_length) X(spring_len) X(length0) X(len0)     \
+  X(lval) X(dist) X(distance)
 // clang-format on
 
 // If v has the member, give its address; else go on with the next name.
