@@ -46,6 +46,13 @@ class GLCamera {
                    : std::atan2(direction.y, direction.x);
   }
 
+  /** Center the scene right of what hides the left @a share of the picture's
+   * width, and fit it there.  @pre 0 <= share < 1 */
+  void set_hidden_left(double share) {
+    assert(0 <= share && share < 1);
+    hidden_ = share;
+  }
+
   /** Turn the scene by angles [rad]: to the right about the z axis, and up,
    * where it stops when the camera looks straight down. */
   void rotate(double right, double up) {
@@ -82,8 +89,9 @@ class GLCamera {
               corner & 2 ? box.min().y : box.max().y,
               corner & 4 ? box.min().z : box.max().z);
       p -= center_;
-      double across = std::max(std::abs(dot(p, right())) / half_width(aspect),
-                               std::abs(dot(p, up())) / half_height(aspect));
+      double across = std::max(
+          std::abs(dot(p, right())) / (high(aspect) * aspect * (1 - hidden_)),
+          std::abs(dot(p, up())) / high(aspect));
       distance_ = std::max(distance_, dot(p, backward()) + margin * across);
     }
     if (box.diagonal() == 0) distance_ = 2 * extent_;
@@ -122,8 +130,9 @@ class GLCamera {
     assert(aspect > 0);
     const double n = near(), f = far();
     Matrix m{};
-    m[0] = float(1 / half_width(aspect));
-    m[5] = float(1 / half_height(aspect));
+    m[0] = float(1 / (high(aspect) * aspect));
+    m[5] = float(1 / high(aspect));
+    m[8] = float(-hidden_);
     m[10] = float((n + f) / (n - f));
     m[14] = float(2 * n * f / (n - f));
     m[11] = -1;
@@ -135,16 +144,22 @@ class GLCamera {
   Point project(const Point& p, double aspect) const {
     Point d = p - eye();
     double depth = -dot(d, backward());
-    return {dot(d, right()) / (depth * half_width(aspect)),
-            dot(d, up()) / (depth * half_height(aspect)), depth};
+    return {dot(d, right()) / (depth * high(aspect) * aspect) + hidden_,
+            dot(d, up()) / (depth * high(aspect)), depth};
+  }
+  /** The point that project() takes to @a q. */
+  Point unproject(const Point& q, double aspect) const {
+    return eye() + q.z * ((q.x - hidden_) * high(aspect) * aspect * right() +
+                          q.y * high(aspect) * up() - backward());
+  }
+  /** Half of the picture's height at distance 1 from the eye; half_height()
+   * where nothing is hidden. */
+  double high(double aspect) const {
+    return half_height(aspect * (1 - hidden_));
   }
 
-  /** Half of the picture's height at distance 1 from the eye. */
   static double half_height(double aspect) {
     return half_size() / std::min(aspect, 1.0);
-  }
-  static double half_width(double aspect) {
-    return half_size() * std::max(aspect, 1.0);
   }
 
  private:
@@ -153,6 +168,7 @@ class GLCamera {
   double azimuth_ = 0;    // of the eye, from +x towards +y [rad]
   double elevation_ = 0;  // of the eye, above the xy plane [rad]
   double extent_ = 1;
+  double hidden_ = 0;
 
   static double half_size() { return std::tan(field_of_view / 2); }
   double near() const { return distance_ / 50; }

@@ -5,13 +5,17 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "CME212/Color.hpp"
+#include "CME212/SDLInput.hpp"
 
 namespace CME212 {
 
@@ -31,17 +35,24 @@ struct OverlayText {
   std::vector<std::string> message;
   bool has_scale = false;  // draw scale at the right
   ColorScale scale;
+  // What the mouse does [pixels]:
+  std::optional<std::array<float, 2>> ring;
+  std::vector<std::array<float, 2>> line;
 };
 
-/** Draws an OverlayText.
+/** Draws an OverlayText, and lets a program draw panels of its own: start(),
+ * perhaps open() and then panels, finish().
  * Use: as GLScene, with one OpenGL context current. Only what is fixed goes
- * into the picture: the same text gives the same pixels. */
+ * into the picture: without open() the same text gives the same pixels. */
 class GLOverlay {
  public:
+  SDLInput input;  ///< what the user does, for panels
+
   /** Throws std::runtime_error if Dear ImGui does not start. */
   GLOverlay() {
     ImGui::SetCurrentContext(context_);
     ImGui::GetIO().IniFilename = nullptr;  // writes no file
+    SDLInput::name_keys();
     if (!ImGui_ImplOpenGL3_Init("#version 330")) {
       ImGui::DestroyContext(context_);
       throw std::runtime_error("Dear ImGui does not start");
@@ -55,32 +66,61 @@ class GLOverlay {
     ImGui::DestroyContext(context_);
   }
 
-  /** Draw @a text over a picture of @a width x @a height pixels.
+  /** Begin a picture of @a width x @a height pixels.
    * @param scale Size of everything, 1 on a plain screen */
-  void draw(const OverlayText& text, int width, int height, double scale) {
+  void start(int width, int height, double scale) {
     ImGui::SetCurrentContext(context_);
     set_font(scale);
     ImGui::GetIO().DisplaySize = ImVec2(float(width), float(height));
-    ImGui::GetIO().DeltaTime = 1.0f / 60;  // nothing depends on it
+    ImGui::GetIO().DeltaTime = 1.0f / 60;
     ImGui_ImplOpenGL3_NewFrame();
-    ImGui::NewFrame();
-    list_ = ImGui::GetBackgroundDrawList();
     unit_ = float(scale);
-
-    float margin = 16 * unit_, y = margin;
-    y += write(margin, y, large, bright, text.label);
-    write(margin, y, medium, dim, text.state);
-    y = float(height) - margin;
+    is_open_ = false;
+  }
+  /** Let panels be drawn until finish().
+   * @param pixels To a unit of the mouse
+   * @return events that panels were given now  @pre start() */
+  std::vector<SDL_Event> open(double pixels) {
+    const auto events = input.feed(pixels);
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<float> since = now - last_open_;
+    last_open_ = now;
+    ImGui::GetIO().DeltaTime = std::clamp(since.count(), 0.001f, 1.0f);
+    ImGui::NewFrame();
+    is_open_ = true;
+    return events;
+  }
+  /** Draw @a text, right of the panels at the @a left [pixels], and them over
+   * it.  @pre start() */
+  void finish(const OverlayText& text, double left) {
+    if (!is_open_) ImGui::NewFrame();
+    const auto& size = ImGui::GetIO().DisplaySize;
+    list_ = ImGui::GetBackgroundDrawList();
+    const float margin = 16 * unit_;
+    const float from = float(left) + margin, to = size.x - margin;
+    float y = margin;
+    y += write(from, y, large, bright, text.label);
+    write(from, y, medium, dim, text.state);
+    y = size.y - margin;
     for (auto line = text.help.rbegin(); line != text.help.rend(); ++line) {
-      y -= 19 * unit_;
-      write(margin, y, small, dim, *line);
+      y -= text_height(small, *line, to - from);
+      write(from, y, small, dim, *line, to - from);
     }
     if (!text.message.empty())
-      draw_message(text.message, margin, float(width) - margin,
+      draw_message(text.message, from, to,
                    text.help.empty() ? y : y - 8 * unit_);
-    if (text.has_scale) draw_scale(text.scale, float(width) - margin, margin);
+    if (text.has_scale) draw_scale(text.scale, to, margin);
+    draw_mouse(text);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  }
+
+  /** True if the mouse is on a panel, or was pressed there; if a text is
+   * written in one. */
+  bool panels_want_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
+  bool panels_want_keys() const {
+    ImGui::SetCurrentContext(context_);
+    return ImGui::GetIO().WantTextInput;
   }
 
  private:
@@ -90,8 +130,10 @@ class GLOverlay {
   static constexpr float points[] = {20, 15, 14};  // of each Size
 
   ImGuiContext* context_ = ImGui::CreateContext();
+  std::chrono::steady_clock::time_point last_open_;
+  bool is_open_ = false;
   double font_scale_ = 0;  // for which the letters are made
-  // While draw() runs:
+  // From start() to finish():
   ImDrawList* list_ = nullptr;
   float unit_ = 1;  // [pixels]
 
@@ -115,6 +157,9 @@ class GLOverlay {
       else
         atlas.AddFontDefault(&config);
     }
+    ImGui::GetIO().FontDefault = atlas.Fonts[small];
+    ImGui::GetStyle() = ImGuiStyle();
+    ImGui::GetStyle().ScaleAllSizes(float(scale));
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
@@ -171,6 +216,19 @@ class GLOverlay {
       const bool matters =
           &p == &paragraphs.front() || &p == &paragraphs.back();
       y += write(left + bar + pad, y, medium, matters ? bright : dim, p, wrap);
+    }
+  }
+
+  /** A ring around a node, and the line from it to the mouse or of a cut. */
+  void draw_mouse(const OverlayText& text) const {
+    for (const auto& [color, width] :
+         {std::pair(IM_COL32(0, 0, 0, 160), 4 * unit_), {bright, 2 * unit_}}) {
+      std::vector<ImVec2> line;
+      for (const auto& [x, y] : text.line) line.emplace_back(x, y);
+      list_->AddPolyline(line.data(), int(line.size()), color, 0, width);
+      if (text.ring)
+        list_->AddCircle({(*text.ring)[0], (*text.ring)[1]}, 9 * unit_, color,
+                         0, width);
     }
   }
 

@@ -3,11 +3,9 @@
 #include "CME212/SDLViewer.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <exception>
 #include <future>
 #include <mutex>
@@ -19,49 +17,14 @@
 #include "CME212/GLOverlay.hpp"
 #include "CME212/GLScene.hpp"
 #include "CME212/GLTools.hpp"
+#include "CME212/Hand.hpp"
+#include "CME212/SDLSettings.hpp"
 #include "CME212/SDLWindow.hpp"
 
 namespace CME212 {
 
-namespace {
-
-/** What the program and the user set, from any thread. */
-struct Settings {
-  std::mutex mutex;  // of all below
-  std::condition_variable control;
-  OverlayText text;
-  GLCamera camera;
-  std::optional<BoundingBox> look_at = GLCamera::usual_box();  // empty: all
-  int steps = 0;         // to be made while paused
-  bool pauses = false;   // the program calls wait_while_paused()
-  bool restart = false;  // not yet taken
-  // Written under the lock only, read without:
-  std::atomic<bool> paused = false, closed = false, strain_colors = false;
-  std::atomic<bool> redraw = true;
-
-  /** Change something that is drawn or waited for. */
-  template <typename F>
-  void change(F f) {
-    std::lock_guard lock(mutex);
-    f();
-    redraw = true;
-    control.notify_all();
-  }
-  void close() {
-    change([this] { closed = true; });
-  }
-  void set_paused(bool on) {
-    change([this, on] {
-      paused = on;
-      steps = 0;
-    });
-  }
-};
-
-}  // namespace
-
 /** The settings, and what they are drawn on. */
-class SDLViewer::Display : public Settings {
+class SDLViewer::Display : public SDLSettings {
  public:
   Display(SceneBuilder& builder, const Options& o)
       : builder_(builder), options_(o), canvas_(std::in_place, o) {}
@@ -71,6 +34,9 @@ class SDLViewer::Display : public Settings {
 
   /** True if a thread of the viewer has the window. */
   bool launched() const { return thread_.joinable(); }
+  // Set before the window is served:
+  std::function<double()> panels;
+  std::function<void(const Touch&)> touch;
   void launch();
   /** Show the window and serve the user until closed. */
   void serve();
@@ -99,15 +65,27 @@ class SDLViewer::Display : public Settings {
   std::optional<Canvas> canvas_;
   clock::time_point last_frame_;
   double frame_period_ = 0;  // [s]
+  Hand hand_;
+  Picture picture_;                // drawn last
+  std::array<double, 2> mouse_{};  // in it
+  double unit_ = 1;                // pixels to a unit of the mouse
+  double scale_ = 1;               // pixels to a unit of length
+  int unsettled_ = 0;              // frames until panels show what the user did
 
   bool needs_frame() const {
-    return (redraw || builder_.has_new()) && !canvas_->window.minimized();
+    return (redraw || builder_.has_new() || unsettled_ > 0 ||
+            canvas_->overlay.input.waits()) &&
+           !canvas_->window.minimized();
   }
   void draw(int width, int height, double scale, bool interactive);
+  double interact();
   void add_state(OverlayText& shown) const;
   void show_frame();
   void handle(const SDL_Event& e);
+  void on_picture(const SDL_Event& e);
+  void point_at(const SDL_Event& e);
   void press(SDL_Keycode key);
+  void type(char key);
 };
 
 // -------------------------------------------------------------------- Drawing
@@ -167,13 +145,18 @@ void SDLViewer::Display::serve() {
  * @param scale Pixels to a unit of length of the desktop */
 void SDLViewer::Display::draw(int width, int height, double scale,
                               bool interactive) {
+  GLOverlay& overlay = canvas_->overlay;
+  overlay.start(width, height, scale);
+  const double left = interactive ? interact() : 0;
   builder_.take([&](const SceneData& s, bool edges_changed) {
     canvas_->scene.upload(s, edges_changed);
+    if (touch) hand_.look(s, edges_changed);
   });
   OverlayText shown;
   GLCamera eye;
   {
     std::lock_guard lock(mutex);
+    camera.set_hidden_left(left / width);
     if (look_at)
       camera.fit(look_at->empty() ? canvas_->scene.box() : *look_at,
                  double(width) / height);
@@ -184,8 +167,30 @@ void SDLViewer::Display::draw(int width, int height, double scale,
     shown.has_scale = strain_colors;
     if (interactive) add_state(shown);
   }
+  picture_ = {eye, double(width), double(height)};
+  if (interactive) {
+    shown.ring = hand_.ring(picture_);
+    shown.line = hand_.stroke();
+    if (shown.ring && hand_.holds())
+      shown.line = {*shown.ring, {float(mouse_[0]), float(mouse_[1])}};
+  }
   canvas_->scene.draw(eye, width, height, scale);
-  canvas_->overlay.draw(shown, width, height, scale);
+  overlay.finish(shown, left);
+}
+
+/** Serve the user within the frame that is open.
+ * @return the width that panels take at the left [pixels] */
+double SDLViewer::Display::interact() {
+  GLOverlay& overlay = canvas_->overlay;
+  const auto events = overlay.open(unit_);
+  unsettled_ = events.empty() ? std::max(unsettled_ - 1, 0) : 2;
+  for (const SDL_Event& e : events) {
+    point_at(e);
+    const bool held = hand_.holds() || hand_.cuts();
+    if (held || !overlay.panels_want_mouse()) on_picture(e);
+    if (overlay.panels_want_mouse() && !held) hand_.leave();
+  }
+  return panels && panels_shown ? panels() : 0;
 }
 
 void SDLViewer::Display::add_state(OverlayText& shown) const {
@@ -196,17 +201,26 @@ void SDLViewer::Display::add_state(OverlayText& shown) const {
   if (!shown.message.empty())
     shown.state =
         options_.restarts ? "stopped: r restarts, q quits" : "stopped: q quits";
+  if (!help.value_or(!panels)) {
+    shown.help = {"? keys"};
+    return;
+  }
   std::string keys;
   if (pauses) keys += "space pause   n step   ";
   if (options_.restarts) keys += "r restart   ";
   if (options_.colors) keys += "s strain   ";
-  shown.help = {keys + "c center",
-                "drag turn   right drag move   wheel zoom   q quit"};
+  shown.help = {keys + "c center"};
+  if (touch)
+    shown.help.push_back("drag the cloth   Ctrl-drag cut   p pin or unpin");
+  if (panels) shown.help.push_back("Tab panels   + - size   ? keys");
+  shown.help.push_back("drag turn   right drag move   wheel zoom   q quit");
 }
 
 void SDLViewer::Display::show_frame() {
   const auto [width, height] = canvas_->window.pixels();
-  draw(width, height, double(height) / canvas_->window.size()[1], true);
+  unit_ = double(height) / canvas_->window.size()[1];
+  scale_ = unit_ * text_scale;
+  draw(width, height, scale_, true);
   canvas_->window.swap();
   const auto now = clock::now();
   const double period =
@@ -220,27 +234,71 @@ void SDLViewer::Display::show_frame() {
 // --------------------------------------------------------------------- Events
 
 void SDLViewer::Display::handle(const SDL_Event& e) {
-  const auto [width, height] = canvas_->window.size();
-  const double unit = 1.0 / std::min(width, height);
   switch (e.type) {
     case SDL_QUIT:
       return close();
     case SDL_WINDOWEVENT:
       if (e.window.event == SDL_WINDOWEVENT_CLOSE) return close();
-      return change([] {});
+      change([] {});
+      break;
     case SDL_KEYDOWN:
-      if (!e.key.repeat) press(e.key.keysym.sym);
+      if (!e.key.repeat && !canvas_->overlay.panels_want_keys())
+        press(e.key.keysym.sym);
+      break;
+    case SDL_TEXTINPUT:
+      if (!canvas_->overlay.panels_want_keys()) type(e.text.text[0]);
+      break;
+  }
+  if (panels || touch)
+    canvas_->overlay.input.add(e);
+  else
+    on_picture(e);
+}
+
+/** Keep where the mouse is. */
+void SDLViewer::Display::point_at(const SDL_Event& e) {
+  if (e.type == SDL_MOUSEMOTION)
+    mouse_ = {e.motion.x * unit_, e.motion.y * unit_};
+  if (e.type == SDL_MOUSEBUTTONDOWN || e.type == SDL_MOUSEBUTTONUP)
+    mouse_ = {e.button.x * unit_, e.button.y * unit_};
+}
+
+/** What the mouse does where no panel is. */
+void SDLViewer::Display::on_picture(const SDL_Event& e) {
+  const auto [width, height] = canvas_->window.size();
+  const double unit = 1.0 / std::min(width, height);
+  const auto [x, y] = mouse_;
+  const double near = 12 * scale_;  // [pixels]
+  const bool left = e.button.button == SDL_BUTTON_LEFT;
+  switch (e.type) {
+    case SDL_MOUSEBUTTONDOWN:
+      if (!touch || !left) return;
+      if (ImGui::GetIO().KeyCtrl) return hand_.start_cut(x, y);
+      if (const auto t = hand_.grab(picture_, x, y, near)) touch(*t);
       return;
+    case SDL_MOUSEBUTTONUP:
+      if (!left) return;
+      if (hand_.holds()) touch(hand_.release());
+      return hand_.end_cut();
     case SDL_MOUSEMOTION: {
-      const double x = e.motion.xrel * unit, y = -e.motion.yrel * unit;
+      if (hand_.holds()) return touch(hand_.move(picture_, x, y));
+      if (hand_.cuts()) return touch(hand_.cut(picture_, x, y));
+      const double right = e.motion.xrel * unit, up = -e.motion.yrel * unit;
       if (e.motion.state & SDL_BUTTON_LMASK)
-        change([&] { camera.rotate(3 * x, 3 * y); });
+        change([&] { camera.rotate(3 * right, 3 * up); });
       else if (e.motion.state & SDL_BUTTON_RMASK)
-        change([&] { camera.pan(x, y); });
+        change([&] { camera.pan(right, up); });
+      else if (touch)
+        hand_.hover(picture_, x, y, near);
       return;
     }
     case SDL_MOUSEWHEEL:
       return change([&] { camera.zoom(std::pow(1.1, e.wheel.preciseY)); });
+    case SDL_KEYDOWN:
+      if (!touch || e.key.keysym.sym != SDLK_p || e.key.repeat) return;
+      if (const auto node = hand_.node_at(picture_, x, y, near))
+        touch({Touch::Kind::pin, *node});
+      return;
   }
 }
 
@@ -249,25 +307,30 @@ void SDLViewer::Display::press(SDL_Keycode key) {
     case SDLK_SPACE:
       return set_paused(!paused);
     case SDLK_n:  // pauses, too
-      return change([&] {
-        paused = true;
-        ++steps;
-      });
+      return step_once();
     case SDLK_r:
-      if (!options_.restarts) return;
-      return change([&] {
-        restart = true;
-        steps = 0;
-      });
+      if (options_.restarts) ask_restart();
+      return;
     case SDLK_s:
       if (!options_.colors) return;
       return change([&] { strain_colors = !strain_colors; });
     case SDLK_c:
       return change([&] { look_at = BoundingBox(); });
+    case SDLK_TAB:
+      return change([&] { panels_shown = !panels_shown; });
     case SDLK_q:
     case SDLK_ESCAPE:
       return close();
   }
+}
+
+/** Keys that lie elsewhere on each keyboard, by what they write. */
+void SDLViewer::Display::type(char key) {
+  change([&] {
+    if (key == '?') help = !help.value_or(!panels);
+    if (key == '+') text_scale = std::min(text_scale * 1.1, 4.0);
+    if (key == '-') text_scale = std::max(text_scale / 1.1, 0.5);
+  });
 }
 
 // ------------------------------------------------------ What the program calls
@@ -321,6 +384,21 @@ bool SDLViewer::closed() const { return display_->closed; }
 void SDLViewer::close() { display_->close(); }
 void SDLViewer::set_paused(bool on) { display_->set_paused(on); }
 
+bool SDLViewer::paused() const { return display_->paused; }
+void SDLViewer::step_once() { display_->step_once(); }
+void SDLViewer::ask_restart() { display_->ask_restart(); }
+void SDLViewer::wake() {
+  Display& d = *display_;
+  d.change([&] { d.woken = true; });
+}
+
+void SDLViewer::set_panels(std::function<double()> draw) {
+  display_->panels = std::move(draw);
+}
+void SDLViewer::set_touch(std::function<void(const Touch&)> serve) {
+  display_->touch = std::move(serve);
+}
+
 bool SDLViewer::wait_while_paused() {
   return wait_while_paused([] {});
 }
@@ -329,7 +407,7 @@ bool SDLViewer::wait_while_paused(const std::function<void()>& show) {
   std::unique_lock lock(d.mutex);
   std::optional<bool> shown_colors;
   d.pauses = true;
-  while (!d.closed && !d.restart && d.paused && d.steps == 0) {
+  while (!d.closed && !d.restart && !d.woken && d.paused && d.steps == 0) {
     if (shown_colors == d.strain_colors) {
       d.control.wait(lock);
       continue;
@@ -339,7 +417,7 @@ bool SDLViewer::wait_while_paused(const std::function<void()>& show) {
     show();
     lock.lock();
   }
-  if (d.closed || d.restart) return false;
+  if (std::exchange(d.woken, false) || d.closed || d.restart) return false;
   if (d.paused) --d.steps;
   return true;
 }

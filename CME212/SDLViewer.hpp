@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "CME212/BoundingBox.hpp"
+#include "CME212/Hand.hpp"
 #include "CME212/Image.hpp"
 #include "CME212/NoDisplay.hpp"
 #include "CME212/Point.hpp"
@@ -21,7 +22,8 @@ namespace CME212 {
  * ensures that no half built scene is drawn.
  *
  * Threads: constructor, event_loop() or launch(), snapshot(), has_display() and
- * destructor belong to the main thread. All else may be called by any thread,
+ * destructor, set_panels() and set_touch() belong to the main thread. All else
+ * may be called by any thread,
  * also while the window is open.
  *
  * A program simulates in a thread of its own and ends its main thread with
@@ -30,8 +32,11 @@ namespace CME212 {
  *
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
- * Esc quits. The simulation serves pause, step, restart and coloring: see
- * wait_while_paused(), take_restart(), strain_colors(). */
+ * Esc quits, + and - size the text, ? shows the keys. The simulation serves
+ * pause, step, restart and coloring: see wait_while_paused(), take_restart(),
+ * strain_colors(). With panels, Tab hides them; with a program that serves
+ * touches the left button grabs the cloth, Ctrl and drag cuts, p pins: see
+ * set_panels(), set_touch(). */
 class SDLViewer : public SceneBuilder {
  public:
   struct Options {
@@ -90,23 +95,46 @@ class SDLViewer : public SceneBuilder {
   /** Close the window, as the user does: event_loop() and every wait return. */
   void close();
 
-  /** Pause or resume, as the user does with the space bar. */
+  /** Pause or resume, as the user does with the space bar; make one step, as
+   * with n; restart, as with r. */
   void set_paused(bool on);
+  void step_once();
+  void ask_restart();
+  bool paused() const;
   /** Wait while paused.
    * @return true if the program may make one step: not paused, or the user
-   *         pressed n; false at once if closed() or the user asked to restart.
+   *         pressed n; false at once if closed(), the user asked to restart,
+   *         or wake() was called.
    * If a program never calls it, the help names no pause. */
   bool wait_while_paused();
   /** As above. Calls @a show() on this thread before it waits and whenever
    * strain_colors() changes: a paused window shows the latest scene in the
    * right colors. */
   bool wait_while_paused(const std::function<void()>& show);
+  /** Let wait_while_paused() return false, now or when called next: there is
+   * something else to do. */
+  void wake();
   /** True if the user asked to restart since the last call. */
   bool take_restart();
 
   /** True while nodes should be colored by strain; then the scale is drawn. */
   bool strain_colors() const;
   void set_strain_colors(bool on);
+
+  // -------------------------------------------------------- Panels and mouse
+
+  /** Let @a draw make the program's own panels with Dear ImGui, over the
+   * picture: it is called in every frame, on the thread that draws, with a
+   * frame of Dear ImGui open, and returns the width that panels take at the
+   * left [pixels]. The scene is centered in the rest. A snapshot has none.
+   * Text is 14 pixels high, times ImGui::GetFontSize() / 14 of that frame.
+   * @pre neither launch() nor event_loop() was called */
+  void set_panels(std::function<double()> draw);
+
+  /** Let @a serve know what the user does to nodes and edges with the mouse
+   * where no panel is. It is called on the thread that draws and shall return
+   * at once.  @pre as set_panels() */
+  void set_touch(std::function<void(const Touch&)> serve);
 
   // ----------------------------------------------------- On the main thread
 

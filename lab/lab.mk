@@ -26,7 +26,7 @@ lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
 # What names SDL, or asks whether there is a viewer.
 lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
-            tests/test_viewer.% CME212/%,$<), \
+            tests/test_viewer.% tests/test_panels.% CME212/%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
 test_libs = -lgtest_main -lgtest -lrapidcheck
@@ -73,7 +73,8 @@ $(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/
 $(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)) $(TEST_UNITS:%=$(B)/%): | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
-$(B)/test_viewer $(B)/test_image $(B)/test_screen: $(B)/asan/libviewer.a
+$(B)/test_viewer $(B)/test_panels $(B)/test_image $(B)/test_screen: \
+  $(B)/asan/libviewer.a
 endif
 $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 	@rm -f $@ && ar rcs $@ $^

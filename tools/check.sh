@@ -108,7 +108,7 @@ worker() {
   for test in $(make -s list-units); do
     mkdir "$logs/taken/$test" 2>/dev/null || continue
     case $test in
-      test_viewer | test_image | test_screen)
+      test_viewer | test_panels | test_image | test_screen)
         step "$test" env ASAN_OPTIONS=detect_leaks=0 "build/check/$test" ;;
       # 100,000 operations in random histories; by itself it makes more.
       test_graph)
@@ -153,9 +153,13 @@ peers() {
 # Threads: Mesa's own are not ours to check. clang++, whose OpenMP tells
 # ThreadSanitizer what waits for what.
 threads() {
-  in_folder tsan test_viewer test_sweep CXX=clang++ SANITIZE=thread &&
-    TSAN_OPTIONS="suppressions=tools/tsan.supp halt_on_error=1" \
-      build/check/tsan/test_viewer --gtest_filter='*Thread*:*Simulation*' &&
+  local suppress="suppressions=tools/tsan.supp halt_on_error=1"
+  in_folder tsan test_viewer test_panels test_sweep CXX=clang++ \
+    SANITIZE=thread &&
+    TSAN_OPTIONS=$suppress build/check/tsan/test_viewer \
+      --gtest_filter='*Thread*:*Simulation*' &&
+    TSAN_OPTIONS=$suppress build/check/tsan/test_panels \
+      --gtest_filter='*Thread*' &&
     OMP_NUM_THREADS=3 \
       TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
       build/check/tsan/test_sweep --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*'

@@ -1,0 +1,64 @@
+#pragma once
+/** @file SDLSettings.hpp
+ * SDLSettings: what a viewer is told by its program and by its user. */
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+
+#include "CME212/BoundingBox.hpp"
+#include "CME212/GLCamera.hpp"
+#include "CME212/GLOverlay.hpp"
+
+namespace CME212 {
+
+/** What the program and the user set, from any thread. */
+struct SDLSettings {
+  std::mutex mutex;  // of all below
+  std::condition_variable control;
+  OverlayText text;
+  GLCamera camera;
+  std::optional<BoundingBox> look_at = GLCamera::usual_box();  // empty: all
+  int steps = 0;         // to be made while paused
+  bool pauses = false;   // the program calls wait_while_paused()
+  bool restart = false;  // not yet taken
+  bool woken = false;    // wait_while_paused() shall return
+  double text_scale = 1;
+  std::optional<bool> help;  // shown; if not set: where there are no panels
+  // Written under the lock only, read without:
+  std::atomic<bool> paused = false, closed = false, strain_colors = false;
+  std::atomic<bool> redraw = true;
+  std::atomic<bool> panels_shown = true;
+
+  /** Change something that is drawn or waited for. */
+  template <typename F>
+  void change(F f) {
+    std::lock_guard lock(mutex);
+    f();
+    redraw = true;
+    control.notify_all();
+  }
+  void close() {
+    change([this] { closed = true; });
+  }
+  void set_paused(bool on) {
+    change([this, on] {
+      paused = on;
+      steps = 0;
+    });
+  }
+  void step_once() {
+    change([this] {
+      paused = true;
+      ++steps;
+    });
+  }
+  void ask_restart() {
+    change([this] {
+      restart = true;
+      steps = 0;
+    });
+  }
+};
+
+}  // namespace CME212

@@ -1,0 +1,349 @@
+/** @file test_panels.cpp
+ * Tests of what a user does in a window with panels: CME212/Hand.hpp,
+ * SDLViewer::set_panels() and set_touch(). They need no display. */
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "CME212/GLOverlay.hpp"  // Dear ImGui, to draw a panel
+#include "CME212/Hand.hpp"
+#include "CME212/Image.hpp"
+#include "CME212/SDLViewer.hpp"
+#include "CME212/SDLWindow.hpp"  // SDL, to push its events
+#include "CME212/Util.hpp"
+#include "Graph.hpp"
+
+namespace {
+
+using namespace CME212;
+using Kind = Touch::Kind;
+
+// ---------------------------------------------------------------------- Hand
+
+BoundingBox unit_box() {
+  return (BoundingBox() |= Point(-1, -1, -1)) |= Point(1, 1, 1);
+}
+/** Of what a viewer of this size shows that looks along y at the unit box. */
+Picture front_picture(double width, double height, double hidden = 0) {
+  Picture p{{}, width, height};
+  p.camera.set_hidden_left(hidden / width);
+  p.camera.look_from(Point(0, -1, 0));
+  p.camera.fit(unit_box(), p.aspect());
+  return p;
+}
+SceneData points(const std::vector<Point>& at) {
+  SceneData s;
+  for (const Point& p : at) s.nodes.emplace_back(p, Color(1));
+  return s;
+}
+
+TEST(Hand, PlacesAndPointsAreInverse) {
+  for (double hidden : {0.0, 250.0})
+    for (double width : {640.0, 300.0}) {
+      const Picture p = front_picture(width, 480, hidden / 2);
+      for (Point at : {Point(0.3, 0.2, -0.6), Point(-1, 0.9, 1)}) {
+        const Point q = p.place_of(at);
+        EXPECT_LT(norm(p.point_at(q.x, q.y, q.z) - at), 1e-12);
+        // All of the box is right of what hides the left.
+        EXPECT_GT(q.x, hidden / 2);
+        EXPECT_LT(q.x, width);
+      }
+      EXPECT_NEAR(p.place_of(p.camera.center()).x, (width + hidden / 2) / 2,
+                  1e-9);
+      // A length across the line of sight is as long as it is drawn.
+      const Point a = p.place_of(Point(0, 0, 0)),
+                  b = p.place_of(Point(0.1, 0, 0));
+      EXPECT_NEAR(b.x - a.x, p.pixels(0.1, a.z), 1e-9);
+    }
+}
+
+TEST(Hand, MeansTheNearestNodeThatIsSeen) {
+  const Picture p = front_picture(600, 600);
+  Hand hand;
+  SceneData s = points({{0, 0, 0}, {0.5, 0, 0}, {0, 0.8, 0.01}, {0, 30, -6}});
+  hand.look(s, true);
+  auto at = [&](const Point& where, double dx = 0) {
+    const Point q = p.place_of(where);
+    return hand.node_at(p, q.x + dx, q.y, 12);
+  };
+  EXPECT_EQ(at({0.5, 0, 0}), 1u);
+  EXPECT_EQ(at({0.5, 0, 0}, 11), 1u);
+  EXPECT_FALSE(at({0.5, 0, 0}, 13));
+  // With edges it is meant from 0.6 of one on; what lies in front wins.
+  s.edges = {{0, 1}, {0, 2}};
+  hand.look(s, true);
+  EXPECT_EQ(at({0.26, 0, 0}), 1u);
+  EXPECT_EQ(at({0.01, 0, 0}), 0u);
+  EXPECT_EQ(at({0, 30, -6}), 3u);  // far away, but nothing else is there
+  s.spheres.push_back({Point(0, -0.5, 0), 0.2, Color(1)});
+  hand.look(s, false);
+  EXPECT_FALSE(at({0, 0, 0}));
+  EXPECT_EQ(at({0.5, 0, 0}), 1u);
+  // Behind the eye, or no number: not meant.
+  hand.look(points({{0, -1000, 0}, {std::nan(""), 0, 0}}), false);
+  EXPECT_FALSE(at({0, 0, 0}));
+}
+
+TEST(Hand, TakesANodeAlongInThePlaneOfThePicture) {
+  const Picture p = front_picture(600, 600);
+  Hand hand;
+  hand.look(points({{0.25, 0.5, 0}}), true);
+  const Point q = p.place_of(Point(0.25, 0.5, 0));
+  EXPECT_FALSE(hand.grab(p, q.x + 50, q.y, 12));
+  const auto grab = hand.grab(p, q.x, q.y, 12);
+  ASSERT_TRUE(grab && hand.holds());
+  EXPECT_EQ(grab->kind, Kind::grab);
+  EXPECT_LT(norm(grab->at - Point(0.25, 0.5, 0)), 1e-6);
+  const Point to = p.place_of(Point(-0.5, 0.5, 0.75));  // y is the depth
+  const Touch move = hand.move(p, to.x, to.y);
+  EXPECT_EQ(move.kind, Kind::move);
+  EXPECT_LT(norm(move.at - Point(-0.5, 0.5, 0.75)), 1e-6);
+  EXPECT_EQ(hand.release().kind, Kind::release);
+  EXPECT_FALSE(hand.holds());
+  // A node that is gone can't be held.
+  hand.grab(p, q.x, q.y, 12);
+  hand.look(SceneData(), true);
+  EXPECT_FALSE(hand.holds());
+}
+
+TEST(Hand, CutsThroughAllThatItsStrokeCovers) {
+  const Picture p = front_picture(600, 600);
+  Hand hand;
+  hand.start_cut(300, 100);
+  const Touch t = hand.cut(p, 300, 500);  // downwards
+  EXPECT_EQ(t.kind, Kind::cut);
+  EXPECT_EQ(hand.stroke().size(), 2u);
+  EXPECT_LT(norm(t.at - p.camera.eye()), 1e-12);
+  // The triangle lies in the plane x = 0, and reaches behind the scene.
+  for (const Point& q : {t.from, t.to}) {
+    EXPECT_NEAR(q.x, 0, 1e-9);
+    EXPECT_GT(q.y, 10);
+  }
+  EXPECT_GT(t.from.z, 0);
+  EXPECT_LT(t.to.z, 0);
+  hand.end_cut();
+  EXPECT_FALSE(hand.cuts());
+}
+
+// -------------------------------------------------------------- In a window
+
+/** Pushes into SDL's queue what a user does. */
+struct Mouse {
+  static void button(int x, int y, bool down, Uint8 which = SDL_BUTTON_LEFT) {
+    SDL_Event e{};
+    e.type = down ? SDL_MOUSEBUTTONDOWN : SDL_MOUSEBUTTONUP;
+    e.button.x = x, e.button.y = y;
+    e.button.button = which;
+    SDL_PushEvent(&e);
+  }
+  static void move(int x, int y, bool pressed = false) {
+    SDL_Event e{};
+    e.type = SDL_MOUSEMOTION;
+    e.motion.x = x, e.motion.y = y;
+    e.motion.xrel = 10;
+    e.motion.state = pressed ? SDL_BUTTON_LMASK : 0;
+    SDL_PushEvent(&e);
+  }
+  static void click(int x, int y) {
+    move(x, y), button(x, y, true), button(x, y, false);
+  }
+  static void drag(int x, int y, int to_x, int to_y) {
+    move(x, y), button(x, y, true);
+    move(to_x, to_y, true), button(to_x, to_y, false);
+  }
+  static void key(SDL_Keycode sym, bool down = true) {
+    SDL_Event e{};
+    e.type = down ? SDL_KEYDOWN : SDL_KEYUP;
+    e.key.keysym.sym = sym;
+    e.key.keysym.scancode = SDL_GetScancodeFromKey(sym);
+    if (down && sym == SDLK_LCTRL) e.key.keysym.mod = KMOD_LCTRL;
+    SDL_PushEvent(&e);
+  }
+  static void type(char c) {
+    SDL_Event e{};
+    e.type = SDL_TEXTINPUT;
+    e.text.text[0] = c;
+    SDL_PushEvent(&e);
+  }
+};
+
+bool soon(const std::function<bool()>& done) {
+  for (Clock clock; !done(); CME212::sleep(0.002))
+    if (clock.seconds() > 60) return false;
+  return true;
+}
+
+constexpr int panel_width = 100;
+
+/** A viewer of 400 x 300 with a panel of 100 x 300, four nodes, and all that a
+ * program is told. */
+struct PanelProgram {
+  SDLViewer viewer{{400, 300, "test_panels", true}};
+  std::atomic<int> frames = 0, clicks = 0, value = 0;
+  std::atomic<float> font = 0;
+  std::mutex mutex;
+  std::vector<Touch> touches;
+
+  PanelProgram() {
+    Graph<int, int> g;
+    for (Point p : {Point(-0.5, 0, -0.5), Point(0.5, 0, -0.5),
+                    Point(-0.5, 0, 0.5), Point(0.5, 0, 0.5)})
+      g.add_node(p);
+    viewer.draw_graph(g);
+    viewer.set_view(Point(0, -1, 0), unit_box());
+    viewer.set_panels([this] { return panel(); });
+    viewer.set_touch([this](const Touch& t) {
+      std::lock_guard lock(mutex);
+      touches.push_back(t);
+    });
+  }
+  double panel() {
+    ++frames;
+    font = ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({panel_width, 300});
+    ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::SetCursorScreenPos({10, 10});
+    if (ImGui::Button("click", {80, 30})) ++clicks;
+    ImGui::SetCursorScreenPos({10, 60});
+    int v = value;
+    ImGui::SetNextItemWidth(80);
+    if (ImGui::SliderInt("##value", &v, 0, 99)) value = v;
+    ImGui::End();
+    return panel_width;
+  }
+  std::vector<Touch> told() {
+    std::lock_guard lock(mutex);
+    return touches;
+  }
+  /** Where a node is drawn. */
+  static Point place_of(unsigned node) {
+    return front_picture(400, 300, panel_width)
+        .place_of(Point(node % 2 ? 0.5 : -0.5, 0, node / 2 ? 0.5 : -0.5));
+  }
+  /** Serve the window here while @a user acts in another thread. */
+  void serve(const std::function<void()>& user) {
+    std::thread thread([&] {
+      EXPECT_TRUE(soon([&] { return frames > 0; }));
+      user();
+      viewer.close();
+    });
+    viewer.event_loop();
+    thread.join();
+  }
+};
+
+TEST(PanelsThreads, TakeTheMouseFirst) {
+  PanelProgram p;
+  const Image before = p.viewer.snapshot();
+  p.serve([&] {
+    Mouse::click(50, 25);
+    EXPECT_TRUE(soon([&] { return p.clicks == 1; }));
+    for (int k = 0; k < 3; ++k) Mouse::click(50, 25);  // all at once
+    EXPECT_TRUE(soon([&] { return p.clicks == 4; }));
+    Mouse::drag(15, 68, 300, 68);  // and out of the panel
+    EXPECT_TRUE(soon([&] { return p.value == 99; }));
+  });
+  EXPECT_TRUE(p.told().empty());
+  EXPECT_EQ(p.viewer.snapshot(), before);  // nothing turned; no panel
+}
+
+TEST(PanelsThreads, TouchesReachTheProgram) {
+  PanelProgram p;
+  const Image before = p.viewer.snapshot();
+  const Point q = PanelProgram::place_of(3);
+  const int x = int(q.x), y = int(q.y);
+  p.serve([&] {
+    Mouse::drag(x, y, x + 40, y);
+    EXPECT_TRUE(soon([&] { return p.told().size() == 3; }));
+    Mouse::move(x, y);
+    Mouse::key(SDLK_p);
+    EXPECT_TRUE(soon([&] { return p.told().size() == 4; }));
+    Mouse::key(SDLK_LCTRL);
+    Mouse::drag(x - 40, y, x + 40, y);
+    Mouse::key(SDLK_LCTRL, false);
+    EXPECT_TRUE(soon([&] { return p.told().size() == 5; }));
+  });
+  const auto told = p.told();
+  ASSERT_EQ(told.size(), 5u);
+  const Kind kinds[] = {Kind::grab, Kind::move, Kind::release, Kind::pin,
+                        Kind::cut};
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(told[k].kind, kinds[k]) << k;
+  EXPECT_EQ(told[0].node, 3u);
+  EXPECT_EQ(told[3].node, 3u);
+  EXPECT_NEAR(told[1].at.x - told[0].at.x,
+              40 / front_picture(400, 300, panel_width).pixels(1, q.z), 1e-6);
+  EXPECT_EQ(p.viewer.snapshot(), before);  // nothing turned
+}
+
+TEST(PanelsThreads, EmptySpaceTurnsTheView) {
+  PanelProgram p;
+  const Image before = p.viewer.snapshot();
+  p.serve([&] {
+    const int frames = p.frames;
+    Mouse::drag(250, 150, 290, 150);
+    EXPECT_TRUE(soon([&] { return p.frames > frames + 3; }));
+  });
+  EXPECT_TRUE(p.told().empty());
+  EXPECT_NE(p.viewer.snapshot(), before);
+}
+
+TEST(PanelsThreads, KeysSizeAndHideThemButNotWhileTyping) {
+  PanelProgram p;
+  p.serve([&] {
+    const float size = p.font;
+    Mouse::type('+');
+    EXPECT_TRUE(soon([&] { return p.font > size; }));
+    Mouse::type('-');
+    EXPECT_TRUE(soon([&] { return p.font == size; }));
+    // Ctrl-click: the number is typed.
+    Mouse::key(SDLK_LCTRL);
+    Mouse::click(50, 68);
+    Mouse::key(SDLK_LCTRL, false);
+    int frames = p.frames;
+    EXPECT_TRUE(soon([&] { return p.frames > frames + 4; }));
+    Mouse::key(SDLK_q);
+    Mouse::type('4'), Mouse::type('2');
+    Mouse::key(SDLK_RETURN), Mouse::key(SDLK_RETURN, false);
+    EXPECT_TRUE(soon([&] { return p.value == 42; }));
+    EXPECT_FALSE(p.viewer.closed());
+    frames = p.frames;
+    Mouse::click(300, 150);
+    EXPECT_TRUE(soon([&] { return p.frames > frames + 3; }));
+    Mouse::key(SDLK_TAB);
+    CME212::sleep(0.2);
+    frames = p.frames;
+    p.viewer.set_label("drawn anew");
+    CME212::sleep(0.2);
+    EXPECT_EQ(p.frames, frames);
+    Mouse::key(SDLK_TAB);
+    EXPECT_TRUE(soon([&] { return p.frames > frames; }));
+  });
+}
+
+TEST(PanelsThreads, AProgramWakesAPausedSimulation) {
+  PanelProgram p;
+  p.viewer.set_paused(true);
+  p.viewer.wake();
+  EXPECT_FALSE(p.viewer.wait_while_paused());
+  std::atomic<int> woken = 0, steps = 0;
+  std::thread simulation([&] {
+    while (!p.viewer.closed()) ++(p.viewer.wait_while_paused() ? steps : woken);
+  });
+  p.serve([&] {
+    p.viewer.wake();
+    EXPECT_TRUE(soon([&] { return woken == 1; }));
+    EXPECT_EQ(steps, 0);
+    p.viewer.step_once();
+    EXPECT_TRUE(soon([&] { return steps == 1; }));
+    EXPECT_TRUE(p.viewer.paused());
+  });
+  simulation.join();
+}
+
+}  // namespace
