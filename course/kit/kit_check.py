@@ -26,7 +26,7 @@ import submission
 import tasks
 
 WRONG = once.ROOT / "course/wrong"
-BASES = {"solution": "", "simple": WRONG / "simple"}
+BASES = {"solution": "", "simple": WRONG / "simple", "forms": WRONG / "forms"}
 KEYS = {"name", "file", "loses", "replace", "append", "prepend", "content",
         "base"}
 ESCAPED = [pathlib.Path(folder) / "kit-cheat"
@@ -72,7 +72,8 @@ class Cases:
             yield Case(f"without {task}", {
                 name: markers.stub(text, [task], self.course, name)
                 for name, text in self.texts.items()}, self.without(task))
-        yield Case("simple", self.base("simple"), self.loses(set()))
+        for name in ("simple", "forms"):
+            yield Case(name, self.base(name), self.loses(set()))
         for path in sorted(WRONG.glob("*.toml")):
             yield from self.wrong(path)
 

@@ -22,6 +22,8 @@ BASES = {
 }
 CALL = re.compile(r"\boperator\s*\(\s*\)\s*\(")
 REMOVAL = re.compile(r"\bremove_node\s*\(")
+PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
+INCLUDED = re.compile(r'#\s*include\s*["<]mass_spring\.hpp[">]')
 # What cloth.hpp looks for in any case.
 USUAL = {"ZeroForce", "Force", "ZeroConstraint", "Constraint",
          "TearConstraint"}
@@ -37,11 +39,21 @@ def body(text, start):
     return text[start:]
 
 
+def needs_program(parts):
+    """Is the cloth of main() all that there is? So it is where no function
+    builds it, and where the program does not include the header."""
+    return PROGRAM <= parts.keys() and (
+        "build_cloth" not in "".join(parts.values())
+        or not INCLUDED.search(parts["mass_spring.cpp"]))
+
+
 def defines(files):
     """-D words without their -D."""
-    text = "\n".join(
-        submission.without_comments(files[name].decode("utf-8", "replace"))
-        for name in ("mass_spring.hpp", "mass_spring.cpp") if name in files)
+    parts = {}
+    for name in sorted(PROGRAM & files.keys(), reverse=True):    # header first
+        parts[name] = submission.without_comments(
+            files[name].decode("utf-8", "replace"))
+    text = "\n".join(parts.values())
     found = {}
     graph = GRAPH.search(text)
     if graph and not USUAL_GRAPH.search(text):
@@ -55,5 +67,6 @@ def defines(files):
     # Who changed the constraint of section 6 has no other.
     for name in sorted(tearing, key=lambda name: name == "SphereConstraint"):
         found.setdefault("KIT_TEAR", name)
-    return tuple(f"{key}={name}" for key, name in sorted(found.items())
-                 if name not in USUAL)
+    main = ("KIT_PROGRAM",) if needs_program(parts) else ()
+    return main + tuple(f"{key}={name}" for key, name in sorted(found.items())
+                        if name not in USUAL)

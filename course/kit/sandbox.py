@@ -5,6 +5,7 @@ watched; whatever it does, the whole group of processes is ended and reaped.
 """
 
 import os
+import re
 import secrets
 import selectors
 import signal
@@ -40,6 +41,7 @@ class Outcome:
     verdict: list = field(default_factory=list)   # fields of the last line
     name: str = ""                 # the function of the test
     did: str = ""                  # what it did last
+    aspect: int = 0                # the one that it looked at: model.hpp
 
 
 class Output:
@@ -154,7 +156,7 @@ def run_compiler(jail, command, folder, scratch, limits):
     return Outcome(stopped, process.returncode, output.text())
 
 
-def run_test(jail, program, task, limits):
+def run_test(jail, program, task, limits, crashing=0):
     """Run the test functions of a task in a process of its own."""
     word = secrets.token_hex(32)
     to_read, to_write = os.pipe()         # the word, to the program
@@ -175,7 +177,8 @@ def run_test(jail, program, task, limits):
     try:
         process = subprocess.Popen(
             [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
-             "--", str(program), task, *map(str, descriptors)],
+             "--", str(program), task, *map(str, descriptors),
+             str(crashing)],
             cwd="/", env=clean_environment("/nowhere"), pass_fds=descriptors,
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, start_new_session=True)
@@ -194,5 +197,7 @@ def run_test(jail, program, task, limits):
                if line.startswith(word + "\t")]
     name, did = (texts[at:at + PAGE // 2].partition(b"\0")[0]
                  .decode("ascii", "replace") for at in (0, PAGE // 2))
+    name, _, aspect = name.partition(" ")
     return Outcome(stopped, process.returncode, written.text(),
-                   said[0] == "begun", verdict[0] if verdict else [], name, did)
+                   said[0] == "begun", verdict[0] if verdict else [], name, did,
+                   int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0)

@@ -45,6 +45,11 @@ static F* damping_from(Cloth& g, double number, double& c) {
     auto* force = new F();
     c = 0;
     if constexpr (requires { force->c = number; }) force->c = c = number;
+    // A global one, which main() would set.
+    else if constexpr (std::is_assignable_v<decltype((::C)), double>)
+      ::C = c = number;
+    else if constexpr (std::is_assignable_v<decltype((::c)), double>)
+      ::c = c = number;
     return force;
   }
 }

@@ -60,7 +60,7 @@ static void compare_sum(Sum sum, int how_many) {
       Point expected = p1(n, t) + p2(n, t);
       if (how_many == 3) expected += p3(n, t);
       CHECK(norm(expected) > 0, "forces to sum that are not zero");
-      const Point force = sum(n, t);
+      const Point force = force_on(sum, n, t);
       CHECK_NEAR(force, expected, 1e-9);
     }
 }

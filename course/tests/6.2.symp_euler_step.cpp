@@ -1,7 +1,7 @@
 /** @file 6.2.symp_euler_step.cpp
  * One step with a constraint that moves nodes and changes velocities: what it
- * is given, how often, and what the force sees after it. One of the nodes is a
- * corner: no node is skipped. */
+ * is given, how often, and what the force sees after it. Some nodes start or
+ * end at a corner: no node is skipped. */
 #include "cloth.hpp"
 
 namespace kit {
@@ -21,13 +21,14 @@ TASK("6.2.symp_euler_step", constrained_step) {
   b.add(Point(0, 0, 0), 2, Point(1, -2, 0.5));
   b.add(Point(0.5, 0.5, 0.25), 0.5, Point(-3, 0, 1));
   b.add(Point(1, 0, 0), 4, Point(0, 2, -1));
+  b.add(Point(0, 0, -4), 1, Point(4, 0, 0));  // is put at (1, 0, 0)
   const double t = 0.5, dt = 0.25;
   const int size = b.size;
   Cloth g;
   fill(g, b);
 
   int calls = 0;
-  Point x_seen[3], v_seen[3];
+  Point x_seen[4], v_seen[4];
   const auto change = [&](Cloth& cloth, double) {
     ++calls;
     for (int i = 0; i < size; ++i) {
@@ -44,8 +45,9 @@ TASK("6.2.symp_euler_step", constrained_step) {
     return 3 * place(g, (int(n.index()) + 1) % size);
   };
   TestForce force(pull);
-  DID("three nodes, two of them corners, all moving; a constraint that adds ",
-      "to z and doubles velocities; one step of dt = 0.25");
+  DID("four nodes, two of them corners, all moving; a constraint that adds to ",
+      "z, so one more comes to a corner, and doubles velocities; one step of ",
+      "dt = 0.25");
   step_with(g, t, dt, force, constraint);
 
   const int calls_of_the_constraint = calls;

@@ -10,11 +10,11 @@ static void check_remove_edge(const char* call, F remove) {
     S s(wheel(5));
     const auto did = words("a wheel of 5 nodes; ", call, " of ", name(e));
     DID(did);
-    CHECK(remove(s, e), "the result is 1");
+    check_result(remove(s, e), 1);
     s.hold();
     DID(did, "; then remove_edge(", name(e.b), ", ", name(e.a),
         "), which is not there any more");
-    CHECK(!s.remove_edge(e.b, e.a), "the result is 0");
+    check_result(s.remove_edge(e.b, e.a), 0);
     s.hold();
     DID(did, "; then added it again");
     s.add_edge(e.b, e.a);
@@ -49,7 +49,7 @@ TASK("7.1.remove_edge", an_edge_is_removed_by_its_handle) {
 TASK("7.1.remove_edge", an_edge_that_is_not_there_is_not_removed) {
   TestSubject s(ring(6));
   DID("a ring of 6 nodes; remove_edge(n0, n3), which is not there");
-  CHECK(!s.remove_edge(0, 3), "the result is 0");
+  check_result(s.remove_edge(0, 3), 0);
   s.hold();
 }
 
@@ -60,7 +60,7 @@ TASK("7.1.remove_edge", all_edges_are_removed) {
     Ends e = s.m.edges[dice(s.m.edges.size())];
     DID("6 nodes, all joined; removed edges down to ", s.m.edges.size() - 1,
         ", the last by remove_edge(", name(e.a), ", ", name(e.b), ")");
-    CHECK(s.remove_edge(e.a, e.b), "the result is 1");
+    check_result(s.remove_edge(e.a, e.b), 1);
     s.hold();
   }
 }
@@ -78,9 +78,9 @@ TASK("7.1.remove_edge", edges_come_and_go) {
     } else {
       Ends e = s.m.edges[dice(s.m.edges.size())];
       DID(after, "removed ", name(e));
-      CHECK(
+      check_result(
           step % 2 ? s.remove_edge(e.b, e.a) : s.remove_edge(s.edge(e.a, e.b)),
-          "the result is 1");
+          1);
     }
     s.hold();
   }

@@ -31,6 +31,9 @@ void did(std::string what);
 [[noreturn]] void fail(std::string expected, std::string got);
 /** A check has begun. */
 void checked();
+/** An aspect (model.hpp) is looked at before the test does anything; 0: it is
+ * not any more.  @return false if an earlier run crashed there: look away */
+bool probes(unsigned aspect);
 
 // ------------------ What kit.cpp defines: compiled once, without a submission
 

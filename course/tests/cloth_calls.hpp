@@ -6,18 +6,36 @@
 
 namespace kit {
 
+/** @a f as its base Free::Called: a call may be public in that only. */
+template <typename Free, typename F>
+concept CalledByBase = requires(F& f) {
+  static_cast<typename Free::Called&>(f);
+};
+
 /** The force of @a f, whether it takes a node by value or by reference. */
 template <typename F>
 Point force_on(F& f, ClothNode n, double t = 0) {
-  return f(n, t);
+  if constexpr (!requires { f(n, t); } && CalledByBase<TestForce, F>)
+    return static_cast<typename TestForce::Called&>(f)(n, t);
+  else
+    return f(n, t);
 }
 template <typename F>
 Point force_on(F& f, Cloth& g, int i, double t = 0) {
   return force_on(f, node_of(g, i), t);
 }
+/** Constrain @a g, whether @a c takes a graph by reference or its address. */
 template <typename C>
 void constrain(C& c, Cloth& g, double t = 0) {
-  c(g, t);
+  if constexpr (requires { c(g, t); })
+    c(g, t);
+  else if constexpr (requires { c(&g, t); })
+    c(&g, t);
+  else if constexpr (CalledByBase<TestConstraint, C> &&
+                     !std::is_same_v<C, typename TestConstraint::Called>)
+    constrain(static_cast<typename TestConstraint::Called&>(c), g, t);
+  else
+    c(g, t);
 }
 
 /** Deletes what a test has made by new. (A unique_ptr of each type takes longer
@@ -82,8 +100,8 @@ class Pins {
   Pins(const Pins&) = delete;
   ~Pins() { delete first_, delete second_; }
   void operator()(Cloth& g, double t) {
-    (*first_)(g, t);
-    if (second_) (*second_)(g, t);
+    constrain(*first_, g, t);
+    if (second_) constrain(*second_, g, t);
   }
 
  private:

@@ -61,6 +61,7 @@ struct ConstraintLaw {
 class FreeForce {
  public:
   using Law = ForceLaw;
+  using Called = FreeForce;
   FreeForce() = default;  // some assign what they combine
   explicit FreeForce(Law law) : law_(law) {}
   template <typename N>
@@ -81,18 +82,21 @@ class FreeForce {
 class FreeConstraint {
  public:
   using Law = ConstraintLaw;
+  using Called = FreeConstraint;
   FreeConstraint() = default;
   explicit FreeConstraint(Law law) : law_(law) {}
   template <typename G>
   void operator()(G& g, double t) const {
     call(g, t);
   }
+  void operator()(Cloth* g, double t) const { call(g, t); }
 
  protected:
   void call(Cloth& g, double t) const {
     life_.look();
     law_.call(law_.f, g, t);
   }
+  void call(Cloth* g, double t) const { call(*g, t); }
 
  private:
   Life life_;
@@ -105,6 +109,7 @@ struct Child;
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
 struct Child<Base, Free, R (C::*)(A, B)> : Base, private Free {
+  using Called = Base;
   Child() = default;
   explicit Child(typename Free::Law law) : Free(law) {}
   R operator()(A a, B b) override { return Free::call(a, b); }
@@ -112,6 +117,7 @@ struct Child<Base, Free, R (C::*)(A, B)> : Base, private Free {
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
 struct Child<Base, Free, R (C::*)(A, B) const> : Base, private Free {
+  using Called = Base;
   Child() = default;
   explicit Child(typename Free::Law law) : Free(law) {}
   R operator()(A a, B b) const override { return Free::call(a, b); }

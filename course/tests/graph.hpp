@@ -163,6 +163,11 @@ bool remove_edge(G& g, E e) {
   return false;
 }
 
+/** What a removal returned: how many went. */
+inline void check_result(bool removed, int expected) {
+  check_equal(int(removed), expected, "the result");
+}
+
 // ---------------------------------------- What a graph holds, beside its model
 
 template <typename N>

@@ -314,6 +314,7 @@ Fault look(View& g, const Model& m, Aspect what) {
     case edge_values:
       return look_at_edge_indices(g, m, what == edge_values);
     case edge_loop: {
+      if (edges == 0) return {};  // 1.iterators looks at it, no other task
       const std::string range = "a loop from edge_begin() to edge_end()";
       std::vector<Seen> seen;
       fault = after_walk(g.edges(edges, seen), range, edges);
@@ -369,14 +370,16 @@ Beside::Beside(const Model& shape) : m(shape) {}
 Beside::~Beside() = default;
 void Beside::begin(View& view) {
   view_ = &view;
-  works = still_works();
+  for (unsigned a = 1; a < all_aspects; a *= 2)
+    if (probes(a) && looks_well(view, m, Aspect(a))) works |= a;
+  probes(0);
   // One that is not the same from both ends is not to be relied on.
   if (!(works & incident_values)) works &= ~unsigned(edge_values);
 }
 unsigned Beside::still_works() {
   unsigned now = 0;
   for (unsigned a = 1; a < all_aspects; a *= 2)
-    if (looks_well(*view_, m, Aspect(a))) now |= a;
+    if (works & a && looks_well(*view_, m, Aspect(a))) now |= a;
   return now;
 }
 void Beside::hold() { hold(works | by_index); }

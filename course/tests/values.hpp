@@ -82,12 +82,18 @@ auto* named_L(V& v) {
 /** Which of two numbers that have other names is L: see find_order(). */
 inline int place_of_L = 1;
 
-/** Two numbers and nothing else: if one is K, the other one is L. */
+/** A class of so many numbers and nothing else. */
+template <typename E, int count>
+constexpr bool is_numbers =
+    std::is_trivially_copyable_v<E>&& std::is_class_v<E>&&
+        std::is_default_constructible_v<E> &&
+    sizeof(E) == count * sizeof(double) && alignof(E) == alignof(double);
+/** One number: if it is not K, it is L. */
 template <typename E>
-constexpr bool two_numbers =
-    std::is_trivially_copyable_v<E> && !std::is_arithmetic_v<E> &&
-    std::is_default_constructible_v<E> && sizeof(E) == 2 * sizeof(double) &&
-    alignof(E) == alignof(double);
+constexpr bool one_number = is_numbers<E, 1>;
+/** Two numbers: if one is K, the other one is L. */
+template <typename E>
+constexpr bool two_numbers = is_numbers<E, 2>;
 template <typename E>
 double* number_in(E& v, std::ptrdiff_t place) {
   return reinterpret_cast<double*>(&v) + place;
@@ -117,6 +123,8 @@ auto* L_in(E& v) {
     return &v;
   else if constexpr (is_there<decltype(named_L(v))>)
     return named_L(v);
+  else if constexpr (one_number<E> && !is_there<decltype(named_K(v))>)
+    return number_in(v, 0);
   else if constexpr (!two_numbers<E>)
     return absent();
   else if constexpr (is_there<decltype(named_K(v))>)
