@@ -23,7 +23,7 @@ lab/viewer    : lab/advice
 # A program in the root may draw, and a test; of all else only these:
 drawing='CME212/GL* CME212/SDL* CME212/SFML* CME212/SceneBuilder.hpp
          CME212/Image.hpp CME212/Color.hpp'
-drawers='CME212/* lab/viewer/* tests/* course/tests/* course/pictures/*'
+drawers='CME212/* lab/viewer/* tests/* course/*'
 # And only these name SDL, OpenGL and Dear ImGui:
 gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/|imgui'
 gl_users='CME212/GL* CME212/SDL* lab/viewer/*'

@@ -58,6 +58,7 @@ class Room:
 
     def __init__(self, kit, folder, files):
         self.kit, self.files = kit, files
+        self.names = set(files)     # of those that the student wrote
         self.folder = folder
         self.source = folder / "source"
         self.built = folder / "built"

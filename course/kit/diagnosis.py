@@ -80,7 +80,8 @@ def compile_message(output, names, test=""):
         if not errors:
             return link_message(output)
         error = next((e for e in errors if e.needed_by), errors[0])
-    text = f"{error.file}:{error.line}: {short(error.text)}"
+    owner = "the kit's " if error.file == "Graph.hpp" not in names else ""
+    text = f"{owner}{error.file}:{error.line}: {short(error.text)}"
     if error.needed_by:
         text += f"\nneeded by {error.needed_by}"
     return text

@@ -99,8 +99,10 @@ class Judge:
         self.rooms = {"graph": [own], "cloth": [own]}
         graph = markers.solution((once.ROOT / "Graph.hpp").read_text("utf-8"))
         if files["Graph.hpp"] != graph.encode():
-            self.rooms["cloth"].insert(0, build.Room(
-                kit, folder / "given", {**files, "Graph.hpp": graph.encode()}))
+            given = build.Room(kit, folder / "given",
+                               {**files, "Graph.hpp": graph.encode()})
+            given.names.remove("Graph.hpp")
+            self.rooms["cloth"].insert(0, given)
 
     def run(self, tests):
         """{test: Result} of {test: what it needs}."""
@@ -149,7 +151,7 @@ class Judge:
             return {}
         unit = self.compile(room, way, tests, read)
         if unit.program:
-            return self.run_all(unit)
+            return self.run_all(unit, room.names)
         if unit.refused:
             return {test: Result("not compiled", unit.refused)
                     for test in tests}
@@ -159,14 +161,14 @@ class Judge:
             bridge = self.compile(room, way, [], read, link=False)
             if diagnosis.compile_errors(bridge.output) or bridge.refused:
                 text = bridge.refused or diagnosis.compile_message(
-                    bridge.output, self.files)
+                    bridge.output, room.names)
                 return {test: Result("not compiled", text) for test in tests}
         results, alone = {}, [test for test in tests if test in blamed]
         others = [test for test in tests if test not in blamed]
         if alone and others:
             unit = self.compile(room, way, others, read)
             if unit.program:
-                results = self.run_all(unit)
+                results = self.run_all(unit, room.names)
             else:
                 alone = tests
         else:
@@ -179,9 +181,9 @@ class Judge:
     def alone(self, room, way, test, read):
         unit = self.compile(room, way, [test], read)
         if unit.program:
-            return self.run_all(unit)[test]
+            return self.run_all(unit, room.names)[test]
         return Result("not compiled", unit.refused or diagnosis.compile_message(
-            unit.output, self.files, test))
+            unit.output, room.names, test))
 
     def compile(self, room, way, tests, read, link=True):
         with self.jobs:
@@ -189,8 +191,9 @@ class Judge:
         read |= unit.included
         return unit
 
-    def run_all(self, unit):
-        """Each test of a program in a process of its own."""
+    def run_all(self, unit, names):
+        """Each test of a program in a process of its own. Messages name places
+        in these files first."""
         def one(test):
             jail = [*self.kit.jail, *build.flags("--read", [
                 "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
@@ -201,7 +204,7 @@ class Judge:
                 with self.jobs:
                     outcome = sandbox.run_test(
                         jail, unit.program, test, LIMITS, crashing)
-                result = result_of(outcome, self.files)
+                result = result_of(outcome, names)
                 # What earlier homework left crashes: without it once more.
                 if (outcome.aspect & ~crashing
                         and result.status in ("crashed", "stopped")):

@@ -26,7 +26,8 @@ import submission
 import tasks
 
 WRONG = once.ROOT / "course/wrong"
-BASES = {"solution": "", "simple": WRONG / "simple", "forms": WRONG / "forms"}
+BASES = {"solution": "", "simple": WRONG / "simple",
+         "forms": WRONG / "forms"}
 KEYS = {"name", "file", "loses", "replace", "append", "prepend", "content",
         "base"}
 ESCAPED = [pathlib.Path(folder) / "kit-cheat"
