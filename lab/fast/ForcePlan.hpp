@@ -58,8 +58,8 @@ class SweptForce : public ZeroForce {
                              const StiffnessVisitor& /*use*/) const {
     return false;
   }
-  /** Number of times the edge springs occur in it, if nothing else depends on
-   * positions; else nullopt. */
+  /** Number of times the edge springs occur in it, if it reads the position of
+   * no other node besides; else nullopt. */
   virtual std::optional<int> spring_multiplicity() const {
     return std::nullopt;
   }
@@ -100,8 +100,8 @@ class ForcePlan {
    * is a term by call. Together with drag() it is how the force changes with
    * the state. */
   bool add_stiffness(const Cloth& g, const StiffnessVisitor& use) const;
-  /** Number of times the edge springs occur, if nothing else depends on
-   * positions; else nullopt. Then no direction between two nodes is stiffer
+  /** Number of times the edge springs occur, if nothing else reads positions of
+   * other nodes; else nullopt. Then no direction between two nodes is stiffer
    * than that many K, and a node's force may be evaluated as soon as its
    * neighbors have moved. */
   std::optional<int> spring_multiplicity() const;
