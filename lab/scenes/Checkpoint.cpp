@@ -71,6 +71,15 @@ std::uint64_t crc64(std::string_view bytes, std::uint64_t before) {
   return ~c;
 }
 
+std::uint64_t checksum_of(const Cloth& g) {
+  std::uint64_t sum = 0;
+  for (std::string_view part :
+       {bytes_of(g.positions()), bytes_of(g.node_values()),
+        bytes_of(g.edge_ends()), bytes_of(g.edge_values())})
+    sum = crc64(part, sum);
+  return sum;
+}
+
 void write_checkpoint(const std::string& file, const CME212::Archive& saved) {
   CME212::OutputFile out(file);
   const std::string head = first_line() + bytes_of(saved.bytes().size());
@@ -120,12 +129,8 @@ SavedScene scene_in_checkpoint(const std::string& file) {
 
 void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g) {
   std::string name = m.name, scene = to_scene_file(m);
-  std::uint64_t cloth = 0;
-  for (std::string_view part :
-       {bytes_of(g.positions()), bytes_of(g.node_values()),
-        bytes_of(g.edge_ends()), bytes_of(g.edge_values())})
-    cloth = crc64(part, cloth);
-  const std::uint64_t here = cloth;
+  const std::uint64_t here = checksum_of(g);
+  std::uint64_t cloth = here;
   double tolerance = m.step.tolerance;
   a(name)(scene)(tolerance)(cloth);
   if (!a.loads()) return;

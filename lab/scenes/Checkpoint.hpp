@@ -17,6 +17,9 @@ struct Model;
  * is found, any other one but for one in 2^64.  O(bytes) */
 std::uint64_t crc64(std::string_view bytes, std::uint64_t before = 0);
 
+/** The crc64() of nodes and springs of a cloth as it was made.  O(N) */
+std::uint64_t checksum_of(const Cloth& g);
+
 /** Write what @a saved holds to @a file, whole or not at all, and until it is
  * on the disk: a line with the version, the length, the bytes, the checksum of
  * all that.  Throws std::runtime_error "FILE: why" */

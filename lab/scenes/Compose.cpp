@@ -256,7 +256,33 @@ CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
   return CombinedForces(std::move(forces));
 }
 
+std::vector<HeldNodes> held_of(const Model& m, const Cloth& g) {
+  std::vector<HeldNodes> all;
+  for (const Pin& pin : m.pins) {
+    HeldNodes& held = all.emplace_back();
+    held.motion = pin.motion;
+    for (Node n : g.nodes())
+      if (pin.holds(n.position())) held.nodes.push_back({n.id(), n.position()});
+    if (held.nodes.empty())
+      throw SceneError("pin", '"' + to_words(pin) + "\" holds no node");
+  }
+  return all;
+}
+
 CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
+  CombinedConstraints all = constraint_of(m, g, held_of(m, g));
+  if (!m.self_collision) return all;
+  const double thickness = m.self_collision->thickness;
+  if (const double least = nearest_unconnected(g, thickness); least < thickness)
+    throw SceneError("self-collision",
+                     "has thickness " + CME212::short_text(thickness) +
+                         " m, but two nodes without a common edge start " +
+                         CME212::short_text(least) + " m apart");
+  return all;
+}
+
+CombinedConstraints constraint_of(const Model& m, const Cloth& g,
+                                  const std::vector<HeldNodes>& held) {
   CombinedConstraints::List all;
   auto add = [&](auto constraint) {
     all.push_back(
@@ -268,29 +294,24 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
     add(WallConstraint(w.at, w.out(), w.motion, w.friction));
   for (const Solid& s : m.spheres)
     add(BallConstraint(s.ball, s.motion, s.friction));
-  for (const Pin& pin : m.pins) {
-    const PinConstraint pins(g,
-                             [&pin](const Point& p) { return pin.holds(p); });
-    if (pins.pins().empty())
-      throw SceneError("pin", '"' + to_words(pin) + "\" holds no node");
-    if (pin.motion.velocity == Point())
-      add(pins);
-    else
-      add(MovingPinConstraint(pins, pin.motion));
+  for (const HeldNodes& h : held) {
+    std::vector<PinConstraint::Pin> pins;
+    for (const auto& [id, place] : h.nodes)
+      if (g.node_in_use(id)) pins.push_back({g.node_with_id(id), place});
+    // One at rest has no time at which it stops.
+    add(MovingPinConstraint(
+        pins, h.motion.velocity == Point() ? Motion() : h.motion));
   }
   if (!m.self_collision) return CombinedConstraints(std::move(all));
   const auto [thickness, friction] = *m.self_collision;
-  if (const double least = nearest_unconnected(g, thickness); least < thickness)
-    throw SceneError("self-collision",
-                     "has thickness " + CME212::short_text(thickness) +
-                         " m, but two nodes without a common edge start " +
-                         CME212::short_text(least) + " m apart");
   return make_combined_constraints(
       SelfCollision(thickness, friction, CombinedConstraints(std::move(all))));
 }
 
-Recipe recipe_of(const Model& m) {
-  auto built = std::make_shared<BuiltMesh>(BuiltMesh{mesh_of(m), {}, {}});
+Recipe recipe_of(const Model& m) { return recipe_of(m, mesh_of(m)); }
+
+Recipe recipe_of(const Model& m, PointsAndQuads mesh) {
+  auto built = std::make_shared<BuiltMesh>(BuiltMesh{std::move(mesh), {}, {}});
   Recipe r;
   r.name = m.name;
   r.gravity = m.gravity;
@@ -305,6 +326,10 @@ Recipe recipe_of(const Model& m) {
     return *built->force;
   };
   r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };
+  r.held = [m](const Cloth& g) { return held_of(m, g); };
+  r.holding = [m](const Cloth& g, const std::vector<HeldNodes>& held) {
+    return constraint_of(m, g, held);
+  };
   using Kind = Obstacle::Kind;
   for (const Wall& w : m.planes)
     // One that is inclined would hide what lies on it.

@@ -38,6 +38,16 @@ std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built);
  * it has all springs of these quads, at rest.  O(points + quads) */
 PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built);
 
+/** Nodes that a pin holds or moves, by their ids. */
+struct HeldNodes {
+  struct Held {
+    unsigned id;
+    Point place;  ///< at t = 0 [m]
+  };
+  std::vector<Held> nodes;
+  Motion motion = {};
+};
+
 /** How a scene is made, as often as it is restarted. */
 struct Recipe {
   std::string name;
@@ -48,6 +58,12 @@ struct Recipe {
   std::shared_ptr<const BuiltMesh> built;
   std::function<CombinedForces(const Cloth&)> force;
   std::function<CombinedConstraints(const Cloth&)> constraint;
+  /** Whom pins hold at the start, and constraint() with other ones held; null
+   * if that can't be changed. */
+  std::function<std::vector<HeldNodes>(const Cloth&)> held;
+  std::function<CombinedConstraints(const Cloth&,
+                                    const std::vector<HeldNodes>&)>
+      holding;
   std::vector<Obstacle> obstacles;
   std::vector<Point> room;  ///< corners of what to look at; empty: the cloth
 };
@@ -87,8 +103,18 @@ CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
  * Throws SceneError: a pin that holds no node, a distance that is too large. */
 CombinedConstraints constraint_of(const Model& m, const Cloth& g);
 
+/** Whom the pins of @a m hold of @a g, which lies as it was built.
+ * Throws SceneError: a pin that holds no node */
+std::vector<HeldNodes> held_of(const Model& m, const Cloth& g);
+/** constraint_of() with @a held in place of the pins of @a m, those of them
+ * that @a g still has; at any time, as it looks at no position. */
+CombinedConstraints constraint_of(const Model& m, const Cloth& g,
+                                  const std::vector<HeldNodes>& held);
+
 /** The recipe of @a m.  Throws InputError, SceneError: also of what is made
  * from it. */
 Recipe recipe_of(const Model& m);
+/** The same of the mesh that is there already. */
+Recipe recipe_of(const Model& m, PointsAndQuads mesh);
 
 }  // namespace lab

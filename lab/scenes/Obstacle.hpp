@@ -8,6 +8,7 @@
  * take all of the normal velocity: here a node on its way out keeps it. */
 #include <cassert>
 #include <optional>
+#include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/scenes/Model.hpp"
@@ -47,7 +48,11 @@ class MovingPinConstraint : public NodewiseConstraint {
  public:
   /** The nodes of @a pins move.  @pre all in one graph */
   MovingPinConstraint(const PinConstraint& pins, const Motion& motion)
-      : pins_(pins.pins()), motion_(motion) {}
+      : MovingPinConstraint(pins.pins(), motion) {}
+  /** The same by nodes and their places at t = 0. */
+  MovingPinConstraint(const std::vector<PinConstraint::Pin>& pins,
+                      const Motion& motion)
+      : pins_(pins), motion_(motion) {}
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
   void each_place(const Cloth& g, double t,

@@ -17,11 +17,8 @@ constexpr double no_step = 1e-9;  // of a step
 }
 
 Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
-    : recipe_(std::move(recipe)),
-      step_(step),
-      entry_(method),
-      method_(method.make()) {
-  if (step_.tolerance > 0) method_->set_tolerance(step_.tolerance);
+    : recipe_(std::move(recipe)), step_(step), entry_(method) {
+  make_method();
   restart();
 }
 Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}
@@ -29,14 +26,18 @@ Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}
 void Scene::restart() {
   cloth_.clear();
   recipe_.build(cloth_);
-  CombinedForces force = recipe_.force(cloth_);
-  force_.emplace(force);
+  acting_ = recipe_.force(cloth_);
+  counter_ = {}, hand_.reset(), changed_ = false;
+  held_.clear();
+  if (recipe_.held) held_ = recipe_.held(cloth_);
+  plan_forces();
   watched_.emplace(recipe_.constraint(cloth_));
   constraint_ = *watched_;
-  balance_.emplace(cloth_, 0, std::move(force), constraint_, recipe_.gravity);
+  balance_.emplace(cloth_, 0, acting_, constraint_, recipe_.gravity);
   method_->restart();
   clock_ = {.dt = step_.dt};
   safe_omega_ = -1;
+  start_energy_ = energy().total();
   failure_.clear();
   worst_.reset();
   diagnosis_.reset();
@@ -48,13 +49,44 @@ void Scene::restart() {
   }
   guard_.emplace(cloth_, recipe_.gravity, clock_.dt, flow());
   keep_clock();
+  start_control();
+}
+
+/** The plan of all that acts: what the recipe has, the hand, the counter. */
+void Scene::plan_forces() {
+  CombinedForces::List all = acting_.parts();
+  if (hand_) all.push_back({std::shared_ptr<void>(), &*hand_});  // it moves
+  all.push_back(std::make_shared<CountingForce>(counter_));
+  force_.emplace(CombinedForces(std::move(all)));
+}
+
+/** Choose the steps from here on, if they are to be chosen. */
+void Scene::start_control() {
   control_.reset();
-  if (step_.fixed() || !failure_.empty()) return;
+  if (!failure_.empty()) return;
+  if (!step_.fixed() || follows_drag_) start_drag();
+  if (step_.fixed()) return;
   control_.emplace(clock_.dt, energy(), guard_->floor());
+  looked_ = time();
+  keep_both();
+}
+
+void Scene::start_drag() {
   drag_ = force_->drag(), largest_gamma_ = largest_gamma(cloth_, drag_);
   drag_power_ = drag_.power(cloth_);
-  looked_ = sampled_ = 0;
-  keep_both();
+  sampled_ = time();
+}
+
+void Scene::follow_drag() {
+  follows_drag_ = true;
+  if (!control_) start_drag();
+}
+
+double Scene::drift(const Energies& now) const {
+  const EnergyFlow& f = flow();
+  const double lately =
+      0.5 * (drag_power_ + drag_.power(cloth_)) * (time() - sampled_);
+  return now.total() - start_energy_ - f.work + f.removed + f.drag + lately;
 }
 
 void Scene::archive(CME212::Archive& a) {
@@ -82,10 +114,11 @@ bool Scene::step(double t_end) {
   const bool steered = control_ && control_->can_shorten();
   if (!advance()) return steered ? take_back() : replay(clock_.steps + 1);
   const bool now = cloth_.version() != version_ || done(t_end);
-  if (control_ && !drag_.none()) sample_drag(now);
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
+  if ((control_ || follows_drag_) && !drag_.none())
+    sample_drag(now || (guarded && !control_));
   if (!judged && !guarded) return true;
   const Energies e = energy();
   if (judged && !judge(e)) return take_back();
@@ -190,10 +223,26 @@ ForcePlan Scene::bounding(const MethodEntry& method) const {
 
 double Scene::safe_limit(const MethodEntry& method) const {
   if (method.info.multirate)
-    return step_limit(method, omega_safe(cloth_, bounding(method), constraint_),
-                      largest_gamma(cloth_, force_->drag()));
+    return step_limit(
+        method, with_hand(omega_safe(cloth_, bounding(method), constraint_)),
+        largest_gamma(cloth_, force_->drag()));
   if (safe_omega_ < 0) safe_omega_ = omega_safe(cloth_, *force_, constraint_);
-  return step_limit(method, safe_omega_, largest_gamma(cloth_, force_->drag()));
+  return step_limit(method, with_hand(safe_omega_),
+                    largest_gamma(cloth_, force_->drag()));
+}
+
+double Scene::sharp_limit(int products) const {
+  return step_limit(
+      entry_,
+      with_hand(sharp_(cloth_, bounding(entry_), constraint_, products)),
+      largest_gamma(cloth_, force_->drag()));
+}
+
+/** A bound of omega [1/s] with the hand, if it is @a omega without. */
+double Scene::with_hand(double omega) const {
+  if (!hand_ || !cloth_.node_in_use(hand_->node())) return omega;
+  const double m = cloth_.node_values()[hand_->node()].mass;
+  return std::sqrt(omega * omega + hand_->stiffness() / m);
 }
 
 void Scene::keep_clock() {
@@ -217,10 +266,7 @@ void Scene::choose_step() {
   if (step_.rule == StepRule::sharp) {
     // A cloth let go flat stiffens by 40 % within fewer steps than lie between
     // two looks: so never beyond what holds in every configuration.
-    const double sharp =
-        step_limit(entry_, sharp_(cloth_, bounding(entry_), constraint_),
-                   largest_gamma(cloth_, force_->drag()));
-    dt = std::min(sharp_share * sharp, safe_limit());
+    dt = std::min(sharp_share * sharp_limit(), safe_limit());
   }
   if (!(dt > 0 && std::isfinite(dt)))
     throw std::invalid_argument(std::string("nothing bounds the step of ") +
@@ -269,6 +315,7 @@ void Scene::rewind() {
   guard_->restore(cloth_);
   clock_ = checked_;
   balance_->resume(cloth_, time(), constraint_, flow_);
+  if (follows_drag_ && !control_) start_drag();
   method_->restart();
   watch_paths();
 }
@@ -292,9 +339,7 @@ const Diagnosis& Scene::diagnosis() const {
   if (is_finite()) {
     run.time = time() + clock_.dt;
     run.solver = !error_.empty();
-    run.sharp = step_limit(
-        entry_, SharpOmega()(cloth_, bounding(entry_), constraint_, 40),
-        largest_gamma(cloth_, force_->drag()));
+    run.sharp = sharp_limit(40);
     run.safe = safe_limit();
     run.safe_without_drag =
         entry_.info.multirate ? run.safe : step_limit(entry_, safe_omega_);
@@ -306,7 +351,8 @@ const Diagnosis& Scene::diagnosis() const {
   return *diagnosis_;
 }
 
-/** Run the scene from its start by another method and step. */
+/** Run the scene by another method and step: from its start; or from here, if
+ * a user has changed it since. */
 Attempt Scene::attempt(const Cure& cure, double t_end) const {
   // An implicit step is worth some hundred force evaluations.
   const MethodInfo& info = cure.method.info;
@@ -315,14 +361,16 @@ Attempt Scene::attempt(const Cure& cure, double t_end) const {
     const TimeStep step = {.dt = cure.dt,
                            .rule = StepRule::fixed,
                            .tolerance = info.adaptive ? step_.tolerance : 0};
-    Scene trial(recipe_, step, cure.method);
-    const Cloth& g = trial.cloth();
+    const auto trial =
+        changed_ ? std::make_unique<Scene>(*this, step, cure.method)
+                 : std::make_unique<Scene>(recipe_, step, cure.method);
+    const Cloth& g = trial->cloth();
     double left = trial_work;
-    while (!trial.done(t_end) && left > 0 && trial.step(t_end))
+    while (!trial->done(t_end) && left > 0 && trial->step(t_end))
       left -= evaluations * (g.num_nodes() + g.num_edges());
-    return {trial.failure().empty() &&
-                (trial.done(t_end) || trial.look(trial.energy())),
-            trial.time()};
+    return {trial->failure().empty() &&
+                (trial->done(t_end) || trial->look(trial->energy())),
+            trial->time()};
   } catch (const std::invalid_argument&) {  // not with this force
     return {false, 0};
   }

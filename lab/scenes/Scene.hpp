@@ -2,15 +2,19 @@
 /** @file Scene.hpp
  * Scene: a cloth with its forces, its constraints and a clock, as a Recipe
  * makes them. */
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "lab/fast/CountingForce.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Hand.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/StepControl.hpp"
@@ -30,6 +34,11 @@ class Scene {
   Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method);
   /** The scene of @a m.  Throws InputError, SceneError, and as above. */
   explicit Scene(const Model& m);
+  /** The present state of @a other, and who is held and pulled, to go on by
+   * another method and step: at its time, but with no step done, no force
+   * evaluated and nothing in flow().
+   * @pre other.recipe().holding, step.fixed() */
+  Scene(const Scene& other, const TimeStep& step, const MethodEntry& method);
   Scene(const Scene&) = delete;  // pins hold handles into the cloth
   Scene& operator=(const Scene&) = delete;
 
@@ -94,6 +103,15 @@ class Scene {
   const std::optional<StepControl>& control() const { return control_; }
   /** What came into its energy and went out since the start. */
   const EnergyFlow& flow() const { return balance_->flow(); }
+  /** From now on flow() has what linear drag takes, also at fixed steps.
+   * Complexity: up to a tenth of a force evaluation a step */
+  void follow_drag();
+  /** The energy that came from nothing since the start [J]; what contact and
+   * friction took lowers it.  @pre follow_drag(), or drag() takes part
+   * @param now energies() of the present state */
+  double drift(const Energies& now) const;
+  /** Evaluations of all forces since the start, without linear solves. */
+  long long evaluations() const { return counter_.sweeps(); }
   /** What happened when step() returned false; empty before. And where. */
   const std::string& failure() const { return failure_; }
   /** Why that happened, and what works: the first call runs the scene anew by
@@ -114,6 +132,43 @@ class Scene {
    * Complexity: the first call as omega_safe(). */
   double safe_limit(const MethodEntry& method) const;
   double safe_limit() const { return safe_limit(entry_); }
+  /** That of this scene's method in the present configuration, by so many
+   * @a products of SharpOmega. */
+  double sharp_limit(int products = 15) const;
+
+  // Changes between two steps: SceneChanges.cpp. The scene goes on from its
+  // present state; one that failed, from its last good one. What a change gives
+  // to the energy is work in flow(); the guard starts anew.
+  // Complexity: O(N + springs) each, and the first step after it may allocate.
+
+  /** Let the guard look now, and not go back beyond this state.
+   * @return as step()   O(N + springs) */
+  bool settle() { return failure_.empty() && look(energy()); }
+  /** Another method and step.  Throws as the constructor; then nothing has
+   * changed. */
+  void change_method(const MethodEntry& method, const TimeStep& step);
+  /** The forces, K and gravity of @a recipe, of the same cloth. Rest lengths,
+   * masses and constraints stay.  O(a new cloth) */
+  void change_forces(const Recipe& recipe);
+  /** Hold a node where it is, at rest; or let go of it, whatever pin holds it.
+   * @return false: it was held, or free, already, or it is gone
+   * @pre recipe().holding */
+  bool pin(unsigned node);
+  bool unpin(unsigned node);
+  bool is_pinned(unsigned node) const;
+  const std::vector<HeldNodes>& held() const { return held_; }
+  /** Remove edges, by the ids of their ends.  @return how many there were */
+  unsigned cut(std::span<const std::array<unsigned, 2>> edges);
+  /** Pull a node towards @a target [m]: Hand, k an eighth of the sum of K at
+   * the node, the force at most twice the weight of the cloth on Earth. As no
+   * K/m at a node is above omega^2, that raises omega by 6 % at most; limits
+   * count it.  @return false: the node is gone */
+  bool grab(unsigned node, const Point& target);
+  /** @pre hand() */
+  void move_hand(const Point& target);
+  void release();
+  /** nullopt: no hand. Its node may be gone. */
+  const std::optional<Hand>& hand() const { return hand_; }
 
  private:
   /** Steps and time: those of the last change of dt, and multiples of it, as
@@ -142,7 +197,12 @@ class Scene {
   TimeStep step_;
   MethodEntry entry_;
   Cloth cloth_;
-  std::optional<ForcePlan> force_;
+  CombinedForces acting_{CombinedForces::List()};  // of the recipe
+  CountingForce counter_;
+  std::optional<Hand> hand_;
+  std::optional<ForcePlan> force_;  // of all three
+  std::vector<HeldNodes> held_;
+  bool changed_ = false;  // by a user, since the start
   std::optional<WatchedConstraint> watched_;
   ConstraintPlan constraint_;
   std::optional<EnergyBalance> balance_;
@@ -155,15 +215,27 @@ class Scene {
   std::optional<StepControl> control_;
   Snapshot before_, latest_;  // of the last two rounds of control_
   double looked_ = 0;         // time of its last look [s]
+  bool follows_drag_ = false;
   Drag drag_;
+  double start_energy_ = 0;              // [J]
   double largest_gamma_ = 0;             // of it [1/s]
   double sampled_ = 0, drag_power_ = 0;  // at that time [s, W]
   mutable double safe_omega_ = -1;       // [1/s]; negative: not known yet
-  SharpOmega sharp_;
+  mutable SharpOmega sharp_;
   std::string failure_, error_;  // error_: of the method
   std::optional<WorstPlace> worst_;
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
 
+  void plan_forces();
+  void start_control();
+  void start_drag();
+  double begin_change();
+  void end_change(double before);
+  void plan_changed(const EnergyFlow& flow);
+  void make_method();
+  void hand_changed();
+  void watch_hand();
+  double with_hand(double omega) const;
   void keep_clock();
   void watch_paths();
   ForcePlan bounding(const MethodEntry& method) const;

@@ -337,6 +337,15 @@ Model load_model(const std::string& file) {
 Model load_open_model(const std::string& file) {
   return load(file, [](const Model&) {});
 }
+Model read_model(const std::string& file, const std::string& name,
+                 const std::string& text) {
+  SceneOptions options;
+  CLI::App app;
+  options.add_to(app);
+  options.read_text(app, file, name, text,
+                    [&] { check_has_cloth(options.model()); });
+  return options.model();
+}
 
 // ------------------------------------------------------------------- Printing
 

@@ -90,6 +90,10 @@ void check_has_cloth(const Model& m);
  * Throws SceneFileError */
 Model load_model(const std::string& file);
 Model load_open_model(const std::string& file);
+/** The scene in the @a text of a @a file, called @a name.
+ * Throws SceneFileError */
+Model read_model(const std::string& file, const std::string& name,
+                 const std::string& text);
 
 /** @a m as a scene file: what each key means as a comment, and then what it is
  * set to. What is not named is left out; names of files are absolute. Read

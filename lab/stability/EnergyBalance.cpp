@@ -58,7 +58,18 @@ void EnergyBalance::follow(const Cloth& g, double t,
                   0.5 * dot(f + h.force, x - h.place);
     h = {h.node, x, v, f};
   }
+  if (pull_ && g.has_node(pulled_.node)) {
+    const Point before = pulled_.place, f = pulled_.force;
+    watch(pulled_.node, pull_, t);
+    flow_.work += 0.5 * dot(f + pulled_.force, pulled_.place - before);
+  }
   find_carrier(g, t, constraint);
+}
+
+void EnergyBalance::watch(Node n, const ZeroForce* pull, double t) {
+  pull_ = pull;
+  pulled_.node = n;
+  if (pull) pulled_.place = n.position(), pulled_.force = (*pull)(n, t);
 }
 
 void EnergyBalance::resume(const Cloth& g, double t,
@@ -69,6 +80,7 @@ void EnergyBalance::resume(const Cloth& g, double t,
   for (Held& h : held_)
     if (g.has_node(h.node))
       h = {h.node, h.node.position(), h.node.value().vel, force_(h.node, t)};
+  if (pull_ && g.has_node(pulled_.node)) watch(pulled_.node, pull_, t);
   find_carrier(g, t, constraint);
 }
 

@@ -51,6 +51,10 @@ class EnergyBalance {
   /** Account for a step that ended at time @a t.
    * O(held nodes + springs at those that moved) */
   void follow(const Cloth& g, double t, const ConstraintPlan& constraint);
+  /** Count the work of @a pull on @a n, too, until @a n is removed: a force of
+   * which energies() knows nothing; null: of none.
+   * @pre @a pull outlives this */
+  void watch(Node n, const ZeroForce* pull, double t);
   /** Add the energy that linear drag took [J]. */
   void add_drag(double loss) { flow_.drag += loss; }
   const EnergyFlow& flow() const { return flow_; }
@@ -73,6 +77,8 @@ class EnergyBalance {
   CombinedForces force_;
   double gravity_;
   std::vector<Held> held_;
+  Held pulled_;  // its force: that of pull_ alone
+  const ZeroForce* pull_ = nullptr;
   Exchange seen_;  // of the constraint, until the last step
   EnergyFlow flow_;
 

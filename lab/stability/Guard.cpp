@@ -12,7 +12,8 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
                                  const EnergyFlow& flow)
     : gravity_(gravity), dt_(dt) {
   const Energies e = energies(g, gravity, flow);
-  start_ = e.kinetic + e.elastic, height_ = e.gravitational;
+  start_ = e.kinetic + e.elastic - flow.work;
+  height_ = e.gravitational + flow.removed;
   available_ = e.internal();
   const double fall = gravity * dt;  // [m/s]
   floor_ = total_mass(g) * fall * fall;

@@ -44,7 +44,8 @@ class DivergenceGuard {
   static constexpr double margin = 4;
 
   /** @param g The cloth at the start   @param gravity [m/s^2]
-   * @param dt the longest step of the run [s] */
+   * @param dt the longest step of the run [s]
+   * @param flow into its energy until now, of which accept() gets more */
   DivergenceGuard(const Cloth& g, double gravity, double dt,
                   const EnergyFlow& flow = {});
 
@@ -69,9 +70,9 @@ class DivergenceGuard {
   void archive(CME212::Archive& a) { a(available_), kept_.archive(a); }
 
  private:
-  double gravity_, height_ = 0;   // height_: gravitational at the start [J]
+  double gravity_, height_ = 0;   // height_: gravitational and removed [J]
   double dt_;                     // [s]
-  double start_ = 0, floor_ = 0;  // [J]
+  double start_ = 0, floor_ = 0;  // start_: without work [J]
   double available_ = 0;          // the most so far [J]
   NodeStates kept_;
 };

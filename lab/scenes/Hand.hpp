@@ -1,0 +1,62 @@
+#pragma once
+/** @file Hand.hpp
+ * A hand that pulls one node of a cloth. */
+#include <algorithm>
+#include <span>
+
+#include "lab/fast/ForcePlan.hpp"
+
+namespace lab {
+
+/** A spring of rest length 0 from a node to a target, whose force is bounded:
+ * f = k d, but never more than most, d = target - x.
+ *
+ * Its stiffness is nowhere above k, so a cloth with it has omega^2 of at most
+ * that without it + k/m (Weyl). Methods that ask for a stiffness are told none:
+ * beside the springs it is small, and a Newton iteration without it converges
+ * all the same. */
+class Hand : public SweptForce {
+ public:
+  /** @param node its id   @param k [N/m] >= 0   @param most [N] >= 0 */
+  Hand(unsigned node, const Point& target, double k, double most)
+      : node_(node), target_(target), k_(k), most_(most) {}
+  unsigned node() const { return node_; }
+  const Point& target() const { return target_; }
+  double stiffness() const { return k_; }
+  double most() const { return most_; }
+  /** Between two steps.  @param target [m] */
+  void move(const Point& target) { target_ = target; }
+
+  /** The force [N] at @a x [m]. */
+  Point pull(const Point& x) const {
+    const Point f = k_ * (target_ - x);
+    const double size = norm(f);
+    return size > most_ ? (most_ / size) * f : f;
+  }
+  Point operator()(Node n, double /*t*/) const override {
+    return n.id() == node_ ? pull(n.position()) : Point();
+  }
+  void add_to(const Part& part, double /*t*/,
+              std::span<Point> f) const override {
+    if (part.first <= node_ && node_ < part.last && part.g.node_in_use(node_))
+      f[node_ - part.first] += pull(part.g.positions()[node_]);
+  }
+  /** Of both parts of the force: k d^2/2, and from there on linear. */
+  double energy(const Cloth& g) const override {
+    if (!g.node_in_use(node_)) return 0;
+    const double d = norm(target_ - g.positions()[node_]);
+    const double reach = k_ > 0 ? std::min(d, most_ / k_) : 0;
+    return k_ * reach * (d - reach / 2);
+  }
+  bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
+    return true;
+  }
+  std::optional<int> spring_multiplicity() const override { return 0; }
+
+ private:
+  unsigned node_;
+  Point target_;
+  double k_, most_;
+};
+
+}  // namespace lab
