@@ -94,6 +94,7 @@ struct Breakage {
   const char* title;  ///< what is seen
   Model (*model)();
 };
+/** All but tunnel, which Scene::watched() counts, end with a failure. */
 std::span<const Breakage> breakages();
 
 /** What the eye sees at a point of the screen: a line from the near plane to
@@ -210,8 +211,9 @@ class Live {
    * the first reading of a failure up to some seconds, to find what works. */
   Readings readings(bool sharp = true);
 
-  /** All requests so far, with calls() at each: a file for Replay. */
-  const std::string& recording() const;
+  /** All requests so far, with calls() at each: a file for Replay. O(its
+   * length) */
+  std::string recording() const;
 
  private:
   struct Parts;
