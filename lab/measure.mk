@@ -1,9 +1,9 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite cells charts charts-quick fuzz grids method-costs orders \
-        peers-bench peers-chart peers-deps pictures solver-chart speed \
-        stability stability-soak
+.PHONY: adviser-suite cells charts charts-quick figures fuzz grids \
+        method-costs orders peers-bench peers-chart peers-deps pictures \
+        solver-chart speed stability stability-soak
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -12,6 +12,7 @@ help-lab:
 	@echo '                        minutes; all else'
 	@echo 'make charts             work and precision, failures: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
+	@echo 'make figures            draws all charts, corrects the numbers in the text'
 	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make orders             the order of every method, measured'
@@ -25,7 +26,13 @@ help-lab:
 	@echo 'make fuzz               the parsers of meshes; RUNS=200000, needs clang'
 	@echo 'programs: cloth $(sort $(filter-out cloth,$(LAB_PROGRAMS)) $(call names,$(lab_others)))'
 
-sub = $(MAKE) --no-print-directory
+sub  = $(MAKE) --no-print-directory
+draw = python3 lab/charts/draw.py
+
+# All charts, and the figures of the text, from the CSV files as they are.
+figures:
+	@$(draw)
+	@python3 lab/charts/figures.py --write
 
 # ---- Charts: lab/charts/README.md
 
@@ -79,9 +86,10 @@ method-costs: bench_methods
 ADVISED ?= 100
 adviser-suite: adviser_suite
 	@mkdir -p lab/advice/results
-	$(B)/adviser_suite --scenes $(ADVISED) --out lab/advice/results/adviser.csv
-	@gnuplot -e "csv='lab/advice/results/adviser.csv'; \
-	  out='lab/advice/results/adviser.svg'" lab/advice/adviser.gp
+	$(B)/adviser_suite --scenes $(ADVISED) --out $(B)/adviser.csv
+	@sed -i "1i # $(measured_on)" $(B)/adviser.csv
+	@mv $(B)/adviser.csv lab/advice/results/adviser.csv
+	@$(draw) adviser
 
 # ---- Speed: lab/bench/README.md
 
@@ -97,8 +105,7 @@ measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
 solver-chart: bench_solvers
 	@{ echo "# $(measured_on)" && $(B)/bench_solvers; } > $(B)/solvers.csv
 	@mv $(B)/solvers.csv lab/bench/results/solvers.csv
-	@gnuplot -e "csv='lab/bench/results/solvers.csv'; \
-	  out='lab/bench/results/solvers.svg'" lab/bench/solvers.gp
+	@$(draw) solvers
 
 # Other libraries beside ours: lab/bench/peers/README.md
 peers := lab/bench/peers
@@ -114,8 +121,7 @@ peers-deps:
 peers-chart: $(B)/peers
 	@{ echo "# $(measured_on)" && $(B)/peers; } > $(B)/peers.csv
 	@mv $(B)/peers.csv lab/bench/results/peers.csv
-	@gnuplot -e "csv='lab/bench/results/peers.csv'; \
-	  out='lab/bench/results/peers.svg'" $(peers)/chart.gp
+	@$(draw) peers
 peers-bench:
 	@$(sub) $(B)/native/graph_peers B=$(B)/native \
 	  CXXFLAGS='-march=native $(CXXFLAGS)'

@@ -415,17 +415,23 @@ TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
 }
 
 TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
-  std::set<std::string> names, styles;
+  std::set<std::string> styles;
+  std::map<std::string, int> evaluations;
   std::istringstream in(contents("lab/charts/methods.csv"));
   for (std::string line; std::getline(in, line);) {
     if (line[0] == '#') continue;
-    std::size_t color = line.find(','), marker = line.find(',', color + 1);
-    names.insert(line.substr(0, color));
-    EXPECT_TRUE(styles.insert(line.substr(marker)).second)
+    std::istringstream cells(line);
+    std::string name, color, marker, dash, family, number;
+    for (std::string* cell : {&name, &color, &marker, &dash, &family, &number})
+      std::getline(cells, *cell, ',');
+    evaluations[name] = std::stoi(number);
+    EXPECT_TRUE(styles.insert(color + family).second)
+        << line << ": its color is another's of its family";
+    EXPECT_TRUE(styles.insert(marker + ' ' + dash).second)
         << line << ": marker and dash are another's";
   }
   for (const MethodEntry& m : methods)
-    EXPECT_TRUE(names.contains(m.info.name)) << m.info.name;
+    EXPECT_EQ(evaluations[m.info.name], m.info.sweeps) << m.info.name;
 }
 
 TEST_F(WorkPrecision, WritesHowEachMethodFails) {

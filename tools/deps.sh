@@ -10,7 +10,7 @@ packages() {
     build) echo "g++ make pkgconf|pkg-config git" \
                 "libcli11-dev libeigen3-dev libspectra-dev" ;;
     draw)  echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri" \
-                "libimgui-dev libpng-dev ffmpeg gnuplot-nox fonts-dejavu-core" ;;
+                "libimgui-dev libpng-dev ffmpeg gnuplot-nox python3 fonts-dejavu-core" ;;
     check) echo "clang clang-format libclang-rt-dev libomp-dev libgtest-dev" \
                 "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" ;;
     peers) echo "libsundials-dev libboost-dev liblemon-dev" \

@@ -1,31 +1,47 @@
-# What adviser_suite found: predicted against real error, and chosen against
+# What adviser_suite found: real against predicted error, and chosen against
 # best cost, a dot a scene that got advice.
-#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" lab/advice/adviser.gp
-set encoding utf8
-set datafile separator ','
-set terminal svg size 1000,480 font 'DejaVu Sans,13' background '#ffffff'
-set output out
-set multiplot layout 1,2
+key = 0
+key_is_method = 0
+height = 470
+load 'lab/charts/style.gp'
+
+advised = "< awk -F, '$1 + 0 > 0 && $8 > 0' ".csv
+count(condition) = int(system(sprintf("awk -F, '$1 + 0 > 0 && $8 + 0 > 0 && (%s) " \
+  ."{++n} END {print n + 0}' %s", condition, csv)))
+all = count('1')
+met = count('$7 <= $3')
+cheap = count('$8 <= 1.5 * $9')
+eval headline(sprintf('Advice keeps its tolerance in %d of %d scenes, '. \
+  'and costs at most 1.5 times the best choice in %d', met, all, cheap), \
+  'A dot is a random scene that got advice.')
+set multiplot
 set logscale xy
 set format xy '10^{%L}'
-set grid lc rgb '#dddddd'
-set border 3
-set tics nomirror
-set key top left Left reverse samplen 2
-advised = "< awk -F, '!/^#/ && $8 > 0' ".csv
-set title '{/:Bold Error over tolerance}'
-set xlabel 'predicted'
-set ylabel 'real'
+unset key
+set tmargin at screen 0.84
+set bmargin at screen 0.19
+set lmargin at screen 0.085
+set rmargin at screen 0.48
+set xlabel 'predicted error/tolerance'
+set ylabel 'real error/tolerance'
 set xrange [1e-3:3]
 set yrange [1e-6:30]
-plot 1 lc rgb '#D55E00' lw 2 title 'the tolerance', \
-     x lc rgb '#999999' dt 2 title 'real as predicted', \
+set label 1 'more than the tolerance' at 1.3e-3, 2.3 left \
+  textcolor rgb '#D55E00'
+set label 2 'as predicted' at 3e-3, 6e-4 left rotate by 24 \
+  textcolor rgb '#777777'
+plot 1 lc rgb '#D55E00' lw 2, x lc rgb '#999999' dt 2, \
      advised using ($5/$3):($7/$3 < 1e-6 ? 1e-6 : $7/$3) with points pt 7 \
-       ps 0.6 lc rgb '#0072B2' notitle
-set title '{/:Bold Work: spring evaluations}'
-set xlabel 'best choice in hindsight'
-set ylabel 'chosen'
+       ps 0.5 lc rgb '#0072B2'
+unset label
+set lmargin at screen 0.575
+set rmargin at screen 0.97
+set xlabel 'spring evaluations of the best choice in hindsight'
+set ylabel 'spring evaluations of the advised run'
 set autoscale xy
-plot x lc rgb '#999999' dt 2 title 'the same', \
-     1.5*x lc rgb '#D55E00' lw 2 title '1.5 times as much', \
-     advised using 9:8 with points pt 7 ps 0.6 lc rgb '#0072B2' notitle
+set label 1 '1.5 times as many' at graph 0.33, 0.5 right \
+  textcolor rgb '#D55E00'
+set label 2 'as many' at graph 0.6, 0.48 left textcolor rgb '#777777'
+plot x lc rgb '#999999' dt 2, 1.5*x lc rgb '#D55E00' lw 2, \
+     advised using 9:8 with points pt 7 ps 0.5 lc rgb '#0072B2'
+unset multiplot

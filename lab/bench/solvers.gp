@@ -1,38 +1,32 @@
 # What a linear system costs by conjugate gradients, by a Cholesky factor and by
-# what the methods choose, against dt omega:
-#   gnuplot -e "csv='FILE.csv'; out='FILE.svg'" lab/bench/solvers.gp
-set encoding utf8
-set datafile separator ','
-footer = system(sprintf("sed -n 's/^# //p' %s", csv))
+# what the methods choose, against dt omega.
+key = 0
+key_is_method = 0
+height = 470
+load 'lab/charts/style.gp'
+
 of(K, solver, tolerance) = sprintf("< awk -F, '$1 == \"%s\" && $4 == \"%s\" " \
   ."&& $5 == \"%s\"' %s", K, solver, tolerance, csv)
-set terminal svg size 1000,470 dynamic background rgb 'white' \
-  font 'DejaVu Sans,Arial,sans-serif,13'
-set output out
+eval headline('A factor costs the same for every step; conjugate gradients '. \
+  'win for short ones', 'One linear system of implicit Euler, 100 x 100 '. \
+  'nodes: median of five and their range.')
 set multiplot
-set border 3 lc rgb '#555555'
-set tics nomirror out scale 0.6
-set grid lc rgb '#e4e4e4' lw 1 dt 1
-set dashtype 2 (10, 4)
 set logscale xy
 set xrange [0.8:1e5]
 set yrange [2:1e4]
 set format x '10^{%T}'
 set format y '%g'
-set tmargin at screen 0.84
+set tmargin at screen 0.8
 set bmargin at screen 0.33
-set label 1 '{/:Bold One linear system} of implicit Euler, 100 x 100 nodes: median and range of the repeats' \
-  at screen 0.5, screen 0.96 center
-set label 2 footer at screen 0.99, screen 0.02 right textcolor rgb '#777777'
 set xlabel 'dt omega'
-set ylabel 'milliseconds' offset 1, 0
+set ylabel 'time of a solution [ms]' offset 1, 0
 unset key
 do for [k = 1:3] {
   K = word('10000 1e+06 1e+08', k)
-  set title 'K = '.word('10^4 10^6 10^8', k).' N/m' offset 0, -0.6
+  set title 'K [N/m] = '.word('10^4 10^6 10^8', k) offset 0, -0.6
   set lmargin at screen 0.09 + 0.305 * (k - 1)
   set rmargin at screen 0.36 + 0.305 * (k - 1)
-  if (k == 2) { unset label 1; unset label 2; unset ylabel; set format y '' }
+  if (k == 2) { unset label; unset ylabel; set format y '' }
   if (k == 3) { set key at screen 0.62, screen 0.19 center top maxrows 2 \
     width -9 samplen 3 }
   plot \

@@ -31,6 +31,4 @@ for file in "$folder/bench.json" "$folder/bench-float.json"; do
   done >>"$history"
 done
 
-gnuplot -e "csv='$history'; out='$folder/history.svg'; machine='$machine'" \
-  lab/bench/history.gp
-echo "$folder/history.svg"
+python3 lab/charts/draw.py history speed --folder lab/bench/results

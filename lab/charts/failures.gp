@@ -1,6 +1,4 @@
 # How a method fails, and a cure, against time.
-#   gnuplot -e "csv='failures.csv'; scene='verlet'; \
-#     out='failure-verlet.svg'" lab/charts/failures.gp
 # Solid: what fails; dashed: the cure; dotted: further runs; gray: the truth.
 key = 2
 key_is_method = 1
@@ -32,9 +30,8 @@ dash_of(k) = role(k) eq 'fails' ? 1 : role(k) eq 'cure' ? 2 : 3
 weight(k) = role(k) eq 'fails' ? 2.6 : 1.8
 n = words(roles)
 
-set title '{/:Bold '.scene.'}: '.comment('title '.scene).\
-  "\n{/=11 ".comment('caption '.scene).'}' \
-  offset 0, -0.3
+eval headline(scene.': '.comment('title '.scene), comment('caption '.scene))
+set tmargin 4.6
 unset key
 set lmargin 11
 set rmargin 3
@@ -55,8 +52,6 @@ do for [k = 1:n] {
   eval sprintf("set label %d '%s' at %s boxed front textcolor rgb '%s' ". \
     'noenhanced', k, text[bar + 1:*], text[1:bar - 1], shade(k))
 }
-set label 100 footer at screen 0.985, 0.035 right font small \
-  textcolor rgb '#666666' noenhanced
 plot for [k = 1:n] run(k, '$3 == "true"') using 1:2 with lines \
        lc rgb '#b8b8b8' lw 5, \
      for [k = 1:n] run(k, '$3 != "true"') using 1:2 with linespoints \

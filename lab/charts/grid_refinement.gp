@@ -1,29 +1,38 @@
-# Error against cost when the grid, the step, or both are refined.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='grid_refinement.svg'" \
-#     lab/charts/grid_refinement.gp
+# Cost against error when the grid, the step, or both are refined.
 key = 1
 key_is_method = 0
 height = 440
 load 'lab/charts/style.gp'
 
-of(what) = data(sprintf('$1 == "%s" {print $5 "," $6 "," $2}', what))
+of(what) = data(sprintf('$1 == "%s" {print $6 "," $5 "," $2}', what))
 fixed = system(rows('$1 == "step" {print $2; exit}'))
 finest = system(rows('$1 == "grid" {n = $2} END {print n}'))
-set title '{/:Bold Refining}: verlet; '.comment('scene')
-set label 1 footer at screen 0.98, 0.03 right font small \
-  textcolor rgb '#666666' noenhanced
+# The point of a curve, counted from its end, at which its name stands.
+named(what, n) = data(sprintf('$1 == "%s" {p[++k] = $6 "," $5} '. \
+  'END {print p[k - %d]}', what, n))
+eval headline('Refine grid and step together; the step alone gains nothing', \
+  comment('scene'))
 set logscale xy
-set format '10^{%T}'
-set xlabel 'time of a run [s]'
-set ylabel 'error of the height [m]'
-set bmargin 5
-set key top right reverse Left samplen 3
-set offsets graph 0.02, graph 0.06, graph 0.1, graph 0.05
-plot of('step') using 1:2 with linespoints lc rgb '#D55E00' pt 9 dt 1 lw 1.6 \
-       title 'the step only, on '.fixed.' x '.fixed.' nodes', \
-     of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 4 dt 2 lw 1.6 \
-       title 'the grid only, at the step of '.finest.' x '.finest, \
-     of('both') using 1:2 with linespoints lc rgb '#000000' pt 7 dt 3 lw 1.6 \
-       title 'both: each grid at its largest stable step', \
-     of('both') using 1:2:(sprintf('%d', $3)) with labels left \
-       offset 0.6, 0.5 font small notitle
+set format y '10^{%T}'
+set lmargin at screen 0.085
+set rmargin at screen 0.97
+set tmargin at screen 0.84
+set bmargin at screen 0.2
+set xtics (0.05, 0.02, 0.01, 0.005, 0.002)
+set xlabel 'error of the height of the center of mass [m]'
+set ylabel 'time of a run [s]'
+set xrange [0.06:0.002]
+set yrange [1e-5:1]
+unset key
+plot of('step') using 1:2 with linespoints lc rgb '#D55E00' pt 9 lw 1.8, \
+     of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 4 lw 1.8, \
+     of('both') using 1:2 with linespoints lc rgb '#000000' pt 7 lw 1.8, \
+     of('both') using 1:2:(sprintf('%d x %d', $3, $3)) with labels left \
+       offset 0.8, -0.6 font small textcolor rgb '#666666', \
+     named('step', 0) using 1:2:('step alone, '.fixed.' x '.fixed.' nodes') \
+       with labels right offset -1, 0 textcolor rgb '#D55E00', \
+     named('grid', 1) using 1:2:('grid alone, at the step that '. \
+       finest.' x '.finest.' needs') with labels right offset -1, 0.8 \
+       textcolor rgb '#0072B2', \
+     named('both', 1) using 1:2:('both: each grid at its largest stable step') \
+       with labels left offset 0, -2 textcolor rgb '#000000'

@@ -14,7 +14,7 @@ to=lab/charts/results
 [ -z "$QUICK$SCENE$METHODS" ] || to=$build/charts
 mkdir -p "$to"
 
-. lab/charts/draw.sh
+draw() { python3 lab/charts/draw.py "$@" --folder "$to"; }
 
 "$build/float/work_precision" --ends --out "$build/ends.txt" \
   ${SCENE:+--scenes "$SCENE"}
@@ -22,18 +22,13 @@ mkdir -p "$to"
 csv=$to/work_precision.csv
 "$build/work_precision" ${options[@]+"${options[@]}"} --out "$csv" \
   ${SCENE:+--scenes "$SCENE"}
-for scene in $(sed -n 's/^# scene \([^:]*\):.*/\1/p' "$csv"); do
-  draw work_precision "$csv" "$scene" "$to/$scene"
-done
+draw work_precision decision
 [ -z "$SCENE" ] || exit 0
-csv=$to/failures.csv
-"$build/work_precision" ${options[@]+"${options[@]}"} --failures --out "$csv"
-for method in $(sed -n 's/^# title \([^:]*\):.*/\1/p' "$csv"); do
-  draw failures "$csv" "$method" "$to/failure-$method"
-done
+"$build/work_precision" ${options[@]+"${options[@]}"} --failures \
+  --out "$to/failures.csv"
 "$build/work_precision" ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
-draw energy "$to/energy.csv" '' "$to/energy"
+draw failures energy
 [ -z "$METHODS" ] || exit 0
 "$build/work_precision" ${options[@]+"${options[@]}"} --grid-refinement \
   --out "$to/grid_refinement.csv"
-draw grid_refinement "$to/grid_refinement.csv" '' "$to/grid_refinement"
+draw grid_refinement

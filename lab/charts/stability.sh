@@ -47,12 +47,9 @@ effort=$1 dir=$2
 to=$build/charts options=("--$effort")
 [ "$effort" != full ] || to=lab/charts/results options=()
 mkdir -p "$to"
-. lab/charts/draw.sh
-for map in limits table growth oscillator; do
-  csv=$to/stability_$map.csv
+maps=(limits table growth oscillator)
+for map in "${maps[@]}"; do
   "$build/stability_map" ${options[@]+"${options[@]}"} --join "$dir" --map "$map" \
-    --out "$csv"
+    --out "$to/stability_$map.csv"
 done
-for map in limits table growth oscillator; do
-  draw "stability_$map" "$to/stability_$map.csv" '' "$to/stability_$map"
-done
+python3 lab/charts/draw.py "${maps[@]/#/stability_}" --folder "$to"

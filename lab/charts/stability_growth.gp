@@ -1,6 +1,4 @@
 # Growth of a tiny disturbance against stretch and step, a panel for a method.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='stability_growth.svg'" \
-#     lab/charts/stability_growth.gp
 key = 1
 key_is_method = 1
 height = 660
@@ -13,10 +11,10 @@ limit(m) = data(sprintf('$1 == "%s" && !seen[$2]++ {print $2 "," $4}', m))
 least = 0.005
 shade(g) = g > least ? log10(g) : -9
 
+eval headline('The predicted limit is where disturbances begin to grow', \
+  'A tiny disturbance of a stretched sheet. White: bounded; colored: '. \
+  'grows; line: the limit that is predicted; dashed: the safe one.')
 set multiplot
-set label 1 '{/:Bold Growth per step} of a tiny disturbance of a stretched '. \
-  'sheet: white is bounded; line: the limit that is predicted' \
-  at screen 0.5, 0.965 center
 eval "set palette defined (0 'white', 0.05 'white', ".viridis.")"
 set cbrange [log10(least) - 0.05 * (log10(3) - log10(least)) / 0.95:log10(3)]
 set cbtics ('0.01' -2, '0.1' -1, '1' 0) scale 0.5
@@ -34,17 +32,15 @@ do for [k = 1:words(names)] {
   col = (k - 1) % 3
   set lmargin at screen left + step_x * col
   set rmargin at screen left + step_x * col + 0.265
-  set tmargin at screen row == 0 ? 0.88 : 0.45
-  set bmargin at screen row == 0 ? 0.55 : 0.12
+  set tmargin at screen row == 0 ? 0.85 : 0.44
+  set bmargin at screen row == 0 ? 0.53 : 0.12
   set title m offset 0, -0.6 noenhanced
-  set xlabel row == 1 ? 'stretch' : '' offset 0, 0.4
-  set ylabel col == 0 ? 'dt/(safe limit)' : '' offset 0.5, 0
+  set xlabel row == 1 ? 'length/rest length' : '' offset 0, 0.4
+  set ylabel col == 0 ? 'dt/(safe dt)' : '' offset 0.5, 0
   set format y col == 0 ? '%g' : ''
   if (k == words(names)) {
-    set colorbox user origin 0.942, 0.12 size 0.014, 0.76
-    set label 2 footer at screen 0.985, 0.025 right font small \
-      textcolor rgb '#666666' noenhanced
-    set label 4 'ln of growth' at screen 0.985, 0.905 right font small
+    set colorbox user origin 0.942, 0.12 size 0.014, 0.73
+    set label 4 "ln of growth\nper step" at screen 0.985, 0.9 right font small
   } else {
     unset colorbox
   }
@@ -56,6 +52,6 @@ do for [k = 1:words(names)] {
        limit(m) using 1:2 with lines lc rgb 'white' lw 5, \
        limit(m) using 1:2 with lines lc rgb 'black' lw 2, \
        1 with lines lc rgb '#555555' dt 2 lw 1
-  unset label 1
+  unset label
 }
 unset multiplot

@@ -1,7 +1,5 @@
 # Predicted over measured limit on the assignment's falling cloth: a column for
 # a method, a point for a grid.
-#   gnuplot -e "csv='FILE.csv'; scene=''; out='stability_table.svg'" \
-#     lab/charts/stability_table.gp
 key = 3
 key_is_method = 1
 height = 480
@@ -14,13 +12,13 @@ of(m, mesh) = data(sprintf('$3 == "%s" && $2 == "%s" '. \
 side_at(side) = index_in(sides, sprintf('%g', side))
 place(k, side, mesh) = k + 0.2 * (side_at(side) - (words(sides) + 1) / 2.0) + \
   (mesh eq 'plain' ? -0.03 : mesh eq 'diagonals' ? 0.03 : 0)
-set title '{/:Bold Predicted over measured limit} of the falling cloth, '. \
-  'from the frequencies on its way'
-set label 1 footer at screen 0.985, 0.03 right font small \
-  textcolor rgb '#666666' noenhanced
+eval headline('The predicted stability limit is right to a few percent', \
+  'The falling cloth: limit from its frequencies on the way, beside that '. \
+  'measured by halving. Gray: what is promised.')
+set tmargin at screen 0.85
 set lmargin at screen 0.085
 set rmargin at screen 0.98
-set xlabel 'numbers above: nodes a side' offset 0, 0.3 font small
+set xlabel 'numbers below the points: nodes a side' offset 0, 0.3 font small
 set bmargin at screen 0.22
 set xrange [0.5:words(names) + 0.5]
 set yrange [-5:5]

@@ -1,0 +1,93 @@
+"""The chart to look at first: a scene and the error that is wanted say which
+method, which step, and how long a run takes."""
+import textwrap
+
+from panels import DARK, GRAY, Picture, styles
+from results import TRUSTED, Table, cheapest, runs
+
+KINDS = (("linear", ("chain", "curtain")),
+         ("cloth in free motion", ("grid1-short", "grid1", "grid0")),
+         ("stiff cloth", ("stiff",)),
+         ("contact", ("drape", "tear")))
+WANTED = [10.0 ** -k for k in range(2, 10)]  # [m]
+LEFT, CELL, ROW = 224, 96, 54  # [pixels]
+
+
+def short(seconds):
+    """0.00123 as 1.2 ms."""
+    for unit, size in (("s", 1), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            break
+    number = f"{seconds / size:.2g}"
+    return f"{float(number):g} {unit}"
+
+
+def lighter(color, share=0.72):
+    """A color mixed with so much white."""
+    parts = [int(color[k:k + 2], 16) for k in (1, 3, 5)]
+    return "#" + "".join(f"{round(c + (255 - c) * share):02x}" for c in parts)
+
+
+def decision(csv, out):
+    """A row for a scene, a column for an error; neighbors with one answer
+    share a cell."""
+    table, look = Table(csv), styles()
+    known = {row["scene"] for row in table.rows}
+    kinds = [(kind, [s for s in scenes if s in known])
+             for kind, scenes in KINDS]
+    kinds = [(kind, scenes) for kind, scenes in kinds if scenes]
+    height = 120 + ROW * sum(len(s) for _, s in kinds) + 12 * len(kinds)
+    picture = Picture(
+        out, LEFT + CELL * len(WANTED) + 8, height,
+        "Contact: verlet. Free motion: symplectic-euler or verlet for "
+        "millimeters, srkn11b for less",
+        "The cheapest measured run that keeps the error: method, step, time "
+        "of the run. Of those within 10 % the most exact one.",
+        table.footer())
+    y = height - 84
+    picture.text(LEFT - 10, y + 12, "wanted error [m]:", 11, DARK, "right")
+    for k, wanted in enumerate(WANTED):
+        picture.text(LEFT + CELL * (k + 0.5), y + 12, f"{wanted:.0e}", 12,
+                     DARK, "center")
+    for kind, scenes in kinds:
+        y -= 12
+        for k, scene in enumerate(scenes):
+            y -= ROW
+            about = table.note("scene " + scene).split(";")[0]
+            picture.text(20, y + 38, f"{kind}: {scene}", 11, DARK)
+            for line, words in enumerate(textwrap.wrap(about, 38)):
+                picture.text(20, y + 23 - 12 * line, words, 9, GRAY)
+            cells(picture, y, runs(table.where(scene=scene)), look)
+    picture.text(20, 14, "Error: RMS of the positions; with contact, of "
+                 "center of mass and energy as a height.", 10)
+    picture.say("unset border", "unset tics", "set xrange [0:1]",
+                "set yrange [0:1]", "plot NaN")
+    picture.finish()
+
+
+def cells(picture, y, some, look):
+    """A row of the table."""
+    answers = [cheapest(wanted, [r for r in some if r.method != "respa"],
+                        lambda run: run.seconds)
+               if wanted >= TRUSTED * some[0].floor else None
+               for wanted in WANTED]
+    first = 0
+    while first < len(WANTED):
+        end = first
+        while end < len(WANTED) and answers[end] == answers[first]:
+            end += 1
+        x0, x1 = LEFT + CELL * first, LEFT + CELL * end
+        run, first = answers[first], end
+        if not run:
+            picture.text((x0 + x1) / 2, y + ROW / 2,
+                         "the reference is no better", 9, "#aaaaaa", "center")
+            continue
+        picture.box(x0 + 1, y + 2, x1 - 1, y + ROW - 2,
+                    lighter(look[run.method][0],
+                            0.88 if look[run.method][2] == "implicit" else 0.7))
+        step = (f"step {short(run.dt)}" if run.dt
+                else f"tolerance {run.tolerance:g} m")
+        for line, words in enumerate((f"{{/:Bold {run.method}}}", step,
+                                      f"run {short(run.seconds)}")):
+            picture.text((x0 + x1) / 2, y + 41 - 14 * line, words, 9,
+                         "#111111", "center")

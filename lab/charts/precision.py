@@ -1,0 +1,312 @@
+"""Charts of panels by family: cost against error, energy against time. The
+winner at each error stands along the lower edge."""
+import math
+
+from panels import (BEHIND, DARK, GRAY, LETTER, Axis, Curve, Panel, Picture,
+                    styles)
+from results import (COARSE, TRUSTED, Table, believed, by_method, cost_at,
+                     runs, winners)
+
+FAMILIES = (("splitting", "splitting methods"),
+            ("runge-kutta", "Runge-Kutta and Runge-Kutta-Nystroem"),
+            ("implicit", "implicit and position-based"))
+STRIP = 20  # height of the winners' strip [pixels]
+
+
+def power(value):
+    """1.3e-5 as 1e-5."""
+    return f"1e{math.floor(math.log10(value) + 0.5)}"
+
+
+def decades(low, high):
+    """Tics at every other power of ten, and no others."""
+    tics = range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)
+    return "set xtics (" + ", ".join(
+        f"'10^{{{k}}}' 1e{k}" for k in tics if k % 2 == 0) + ")"
+
+
+def merged(of):
+    """{method: runs} without methods that are another's double, and {method:
+    label} that names them: with one step for all springs respa is verlet."""
+    kept, labels = {}, {}
+    for method, some in of.items():
+        # Equal force evaluations and errors.
+        twin = next((m for m in kept if method == "respa" and
+                     [(r.evaluations, r.error) for r in kept[m]] ==
+                     [(r.evaluations, r.error) for r in some]), None)
+        if twin:
+            labels[twin] += " = " + method
+        else:
+            kept[method], labels[method] = some, method
+    return kept, labels
+
+
+def curve_of(method, some, cost, style, label, x, coarsest):
+    """Of one method's runs; failed ones stand in the middle of the band left
+    of the coarsest error, at the cost that they would have had."""
+    ok = believed(some)
+    largest = [r for r in ok if 0 < r.share <= 1][:1]
+    points = [(max(r.error, x.hi), cost(r)) for r in ok
+              if r.error < coarsest]
+    rings = [(r.error, cost(r)) for r in largest]
+    each = [cost(r) / r.evaluations for r in ok]
+    failed = [((x.lo * coarsest) ** 0.5, r.evaluations * sum(each) / len(each))
+              for r in some if not r.ok and each and x.lo > coarsest]
+    return Curve(method, points, style[0], style[1], label, rings, failed)
+
+
+def strip(picture, panel, segments, color_of):
+    """The winners along the lower edge of a panel: (method, from, to)."""
+    y = panel.bottom
+    for method, start, end in segments:
+        x0 = max(panel.pixel((start, panel.y.lo))[0], panel.left)
+        x1 = min(panel.pixel((end, panel.y.lo))[0], panel.right)
+        if x1 - x0 < 2:
+            continue
+        color, own = color_of(method)
+        picture.box(x0 + 0.5, y + 2, x1 - 0.5, y + STRIP - 4, color, "front")
+        if len(method) * LETTER < x1 - x0 and own:
+            picture.text((x0 + x1) / 2, y + STRIP / 2 - 1, method, 10,
+                         "white", "center", "noenhanced")
+
+
+def orders(picture, panel):
+    """Slope triangles of orders 1, 2, 4, 6 in the lower right corner, where
+    no method can be: exact and cheap."""
+    per_x = (panel.right - panel.left) / abs(math.log10(panel.x.hi /
+                                                       panel.x.lo))
+    per_y = (panel.top - panel.bottom) / math.log10(panel.y.hi / panel.y.lo)
+    decades = min(0.45, 12 / per_x)
+    x = panel.right - 6 * decades * per_x - 8
+    y = panel.bottom + STRIP + 10
+    top = y + decades * per_y
+    for order in (1, 2, 4, 6):
+        at = x + order * decades * per_x
+        picture.line(x, y, at, top)
+        picture.text(at, top + 7, str(order), 10, GRAY, "center")
+    picture.line(x, y, x, top)
+    picture.line(x, top, x + 6 * decades * per_x, top)
+    picture.text(x + 6 * decades * per_x, y + 2, "order", 10, GRAY, "right")
+    panel.keep_free.append((x - 4, y, panel.right, top + 14))
+
+
+def row_of_panels(picture, groups, box, x, y, segments, color_of):
+    """Panels in a row, cost against error, each to be drawn before the next
+    one: groups is (title, curves, curves behind) for each; box the pixels
+    left, bottom, right, top of all."""
+    left, bottom, right, top = box
+    gap = 14
+    width = (right - left - gap * (len(groups) - 1)) / len(groups)
+    for k, (title, curves, behind) in enumerate(groups):
+        at = round(left + k * (width + gap))
+        panel = Panel(at, bottom, round(at + width), top, x, y, title, curves,
+                      behind)
+        panel.keep_free.append((panel.left, panel.bottom, panel.right,
+                                panel.bottom + STRIP))
+        strip(picture, panel, segments,
+              lambda m, own={c.name for c in curves}: color_of(m, own))
+        yield panel
+
+
+def message(segments):
+    """Who wins where, in words."""
+    if not segments:
+        return "No run is stable and above the reference's own error"
+    words = [f"{m} to {power(end)} m" for m, _, end in segments[:-1]]
+    last = segments[-1][0]
+    if not words:
+        return f"{last} is the cheapest at every error"
+    return f"Cheapest: {', '.join(words)}, then {last}"
+
+
+def failed_band(picture, panel, coarsest):
+    """Failed runs stand left of every error, each with its marker."""
+    edge = panel.pixel((coarsest, panel.y.lo))[0]
+    picture.box(panel.left, panel.bottom, edge, panel.top, "#f6eeee")
+    if any(c.failed for c in panel.curves):
+        picture.text((panel.left + edge) / 2, panel.top - 8, "failed", 10,
+                     "#aa4444", "center")
+    panel.keep_free.append((panel.left, panel.bottom, edge, panel.top))
+
+
+def work_precision(csv, out, scene):
+    """Time against error for one scene, a panel for a family; some of its
+    runs are believed."""
+    table = Table(csv)
+    some = runs(table.where(scene=scene))
+    look = styles()
+    of, labels = merged(by_method(some))
+    some = [r for r in some if r.method in of]
+    floor, norm = some[0].floor, table.where(scene=scene)[0]["norm"]
+
+    def seconds(run):
+        return run.seconds
+    good = believed(some)
+    coarsest = 10 ** math.ceil(math.log10(min(
+        max(r.error for r in good), 1)) + 0.1)
+    x = Axis(coarsest * (coarsest / TRUSTED / floor) ** 0.12, TRUSTED * floor)
+    least, most = (f(map(seconds, good)) for f in (min, max))
+    y = Axis(least / 3.5, most * 2)
+    curves = {m: curve_of(m, of[m], seconds, look[m], labels[m], x,
+                          coarsest)
+              for m in of}
+    curves = {m: c for m, c in curves.items() if c.points}
+    groups = []
+    for family, title in FAMILIES:
+        own = [c for m, c in curves.items()
+               if look[m][2] == family]
+        groups.append((title, own,
+                       [c for c in curves.values() if c not in own]))
+    segments = winners(some, seconds)
+    about = table.note("scene " + scene).split("; error")[0]
+    picture = Picture(out, 1000, 520, message(segments), "", table.footer())
+    picture.text(20, 478, f"{scene}: {about}", 12, GRAY, more="noenhanced")
+    panels = row_of_panels(
+        picture, groups, (72, 80, 930, 430), x, y, segments,
+        lambda m, own: (look[m][0], True) if m in own else (BEHIND, False))
+    picture.say(decades(x.hi, coarsest))
+    # The same in force evaluations: what one of Verlet's takes.
+    verlet = [r for r in of.get("verlet", []) if r.ok]
+    each = min((r.seconds / r.evaluations for r in verlet), default=0)
+    single = Table(csv.parent / "float_floor.csv").note(
+        f"single precision floor {scene}") if (
+            csv.parent / "float_floor.csv").exists() else ""
+    for k, panel in enumerate(panels):
+        failed_band(picture, panel, coarsest)
+        orders(picture, panel)
+        if single and float(single.split()[0]) > x.hi:
+            at = panel.pixel((float(single.split()[0]), panel.y.lo))[0]
+            picture.line(at, panel.bottom + STRIP, at, panel.top, "#999999",
+                         1, 3)
+            picture.text(at + 6, panel.bottom + STRIP + 4,
+                         "floats end here", 10, "#888888", "left",
+                         "rotate by 90")
+            panel.keep_free.append((at, panel.bottom, at + 12,
+                                    panel.bottom + 130))
+        settings = ["set format y ''", "unset ylabel", "unset y2tics",
+                    "unset y2label"]
+        if k == 0:
+            settings = ["set format y '10^{%T}'",
+                        "set ylabel 'time of a run [s]' offset 1, 0"]
+            picture.text(20, 36, f"error: {norm} [m]. Lower is cheaper, "
+                         "further right more exact. Ring: largest stable "
+                         "step. Below: the cheapest.", 11, DARK)
+        elif k == len(groups) - 1 and each:
+            settings += [
+                f"set y2range [{y.lo / each:.6g}:{y.hi / each:.6g}]",
+                "set logscale y2", "set y2tics out scale 0.5",
+                "set format y2 '10^{%T}'",
+                "set y2label 'in force evaluations of verlet' offset -1, 0"]
+        picture.draw(panel, *settings)
+    picture.finish()
+
+
+LIBRARIES = (("odeint", "Boost.odeint"), ("gsl", "GSL"),
+             ("cvode arkode", "SUNDIALS"))
+OURS = ("symplectic-euler", "verlet", "pefrl", "srkn11b")
+THEIR_COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+THEIR_MARKERS = (7, 9, 5, 13)
+
+
+def advantage(some, libraries, cost):
+    """By which share of its own cost the best of ours is dearer than the best
+    of theirs, at the error where that is largest."""
+    of = by_method(some)
+    most, error = 0, COARSE
+    last = TRUSTED * max(r.floor for r in some)
+    while error > last:
+        costs = {m: cost_at(error, runs_, cost) for m, runs_ in of.items()}
+        ours, theirs = (min((c for m, c in costs.items()
+                             if c and (m in libraries) == is_library),
+                            default=math.inf) for is_library in (0, 1))
+        if theirs < math.inf:
+            most = max(most, 1 - theirs / ours)
+        error /= 10 ** 0.02
+    return most
+
+
+def peers(csv, out):
+    """Our methods beside those of other libraries, a panel for a library:
+    force evaluations against error above, time against error below."""
+    table = Table(csv)
+    of = by_method(runs(table.rows))
+    some = [r for m, own in of.items() for r in own]
+    x = Axis(0.03, TRUSTED * max(r.floor for r in some))
+    libraries = [m for m in of if "-" in m and m != "symplectic-euler"]
+    look = {}
+    for names, _ in LIBRARIES:
+        theirs = [m for m in libraries if m.split("-")[0] in names.split()]
+        look |= {m: (c, k) for m, c, k in zip(theirs, THEIR_COLORS,
+                                              THEIR_MARKERS, strict=False)}
+    look |= {m: ("#222222", 0) for m in OURS}
+    costs = (("force evaluations", lambda r: r.evaluations),
+             ("time of a run [s]", lambda r: r.seconds))
+    most = max(advantage(some, libraries, cost) for _, cost in costs)
+    picture = Picture(
+        out, 1000, 800, "At no error is a library cheaper than our methods by "
+        f"more than {100 * most:.0f} %", "25 x 25 cloth (grid1), to 0.25 s; "
+        "ours in black, each library in color. RMS error of the positions "
+        "[m]; lower is cheaper. Below: the cheapest.", table.footer())
+    picture.say(decades(x.hi, x.lo))
+    for row, (what, cost) in enumerate(costs):
+        good = [r for r in believed(some)
+                if r.error < x.lo and r.method in look]
+        least, most = (f(map(cost, good)) for f in (min, max))
+        y = Axis(least / 3.5, most * 1.6)
+        curves = {m: curve_of(m, of[m], cost, look[m], m, x, x.lo)
+                  for m in look}
+        groups = []
+        for names, title in LIBRARIES:
+            shown = [c for m, c in curves.items()
+                     if m in OURS or m.split("-")[0] in names.split()]
+            groups.append((title if row == 0 else "", shown,
+                           [c for c in curves.values() if c not in shown]))
+        top = 720 - 345 * row
+        # odeint-verlet is verlet: it would win and lose by chance.
+        panels = row_of_panels(
+            picture, groups, (72, top - 290, 985, top), x, y,
+            winners([r for r in some if r.method != "odeint-verlet"], cost),
+            lambda m, own: (look.get(m, (BEHIND,))[0] if m in own else BEHIND,
+                            m in own))
+        for k, panel in enumerate(panels):
+            picture.draw(panel, *(
+                ["set format y '10^{%T}'",
+                 f"set ylabel '{what}' offset 1, 0"] if k == 0
+                else ["set format y ''", "unset ylabel"]))
+    picture.finish()
+
+
+def energy(csv, out):
+    """How far the energy has been off so far against time, a panel for a
+    family."""
+    table = Table(csv)
+    look = styles()
+    curves = {}
+    for row in table.rows:
+        m, t, off = row["method"], float(row["t"]), abs(float(row["energy"]))
+        color, marker, _ = look[m]
+        c = curves.setdefault(m, Curve(m, [], color, 0, m))
+        if off > 0 and (not c.points or off > 1.05 * c.points[-1][1]):
+            c.points.append((t, min(off, 20)))
+        c.end = t
+        if row["status"] != "ok":
+            c.label = m + " diverges"
+    for c in curves.values():
+        c.points.append((c.end, c.points[-1][1]))
+    about, _, rest = table.note("scene").partition("; ")
+    picture = Picture(out, 1000, 440,
+                      "Splittings keep the energy, RK4 drifts, implicit "
+                      "methods damp it, forward Euler explodes",
+                      f"{about}: its energy is 0 for ever", table.footer())
+    picture.text(20, 14, rest, 10)
+    x, y = Axis(0, 6.8, False), Axis(1e-9, 30)  # names stand behind the end
+    picture.say("set xtics 0, 1, 5")
+    for k, (family, title) in enumerate(FAMILIES):
+        own = [c for m, c in curves.items() if look[m][2] == family]
+        panel = Panel(80 + 305 * k, 80, 375 + 305 * k, 360, x, y, title, own,
+                      [c for c in curves.values() if c not in own])
+        picture.draw(panel, "set xlabel 'time [s]'", *(
+            ["set format y '10^{%T}'", "set ylabel "
+             "'largest error of the energy so far [J]'"]
+            if k == 0 else ["set format y ''", "unset ylabel"]))
+    picture.finish()

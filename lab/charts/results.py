@@ -1,0 +1,161 @@
+"""Read the CSV files of lab/*/results, and answer what is asked of them."""
+import csv
+import math
+import pathlib
+import re
+from dataclasses import dataclass
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COARSE = 0.01  # the largest error that is wanted, of a cloth of 1 m [m]
+TIE = 0.9  # who takes less than this share of a cost is cheaper
+TRUSTED = 10  # an error below so many floors says nothing
+
+
+class ChartError(Exception):
+    """A chart that can't be drawn, and why, in one line."""
+
+
+class Table:
+    """A CSV file. `rows`: dictionaries by the head of a column, without its
+    unit. `notes`: the lines before it that begin with #."""
+
+    def __init__(self, path):
+        self.path = ROOT / path
+        lines = self.path.read_text().splitlines()
+        self.notes = [line[2:] for line in lines if line.startswith("#")]
+        head, self.rows = [], []
+        for number, line in enumerate(lines, 1):
+            if line.startswith("#"):
+                continue
+            row = next(csv.reader([line]))
+            if not head:
+                head = [re.sub(r" \[.*", "", cell) for cell in row]
+            elif len(row) != len(head):
+                raise ChartError(f"{path}:{number}: {len(row)} cells, "
+                                 f"expected {len(head)}")
+            else:
+                self.rows.append(dict(zip(head, row)))
+
+    def note(self, what):
+        """What stands behind `# what: `; '' if nothing does."""
+        return next((note[len(what) + 2:] for note in self.notes
+                     if note.startswith(what + ": ")), "")
+
+    def footer(self):
+        """Machine, compiler and commit, for the corner of a chart."""
+        if not self.note("commit"):
+            return self.notes[0]
+        return (f"{self.note('machine')}; {self.note('compiler')}; "
+                f"commit {self.note('commit')}")
+
+    def where(self, **wanted):
+        """The rows that have these values."""
+        return [row for row in self.rows
+                if all(row[k] == v for k, v in wanted.items())]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run of a method on a problem; what is not known is 0."""
+    method: str
+    dt: float         # [s]
+    tolerance: float  # [m], of a method with error control
+    share: float      # dt/(largest stable step)
+    evaluations: float
+    seconds: float    # least of the repeats: noise only adds
+    error: float      # [m]
+    floor: float      # [m]: error of the reference
+    ok: bool
+
+
+def runs(rows):
+    """The runs in rows of work_precision.csv or of peers.csv."""
+    def number(row, name):
+        return float(row.get(name) or 0)
+    return [Run(row["method"], number(row, "dt"), number(row, "tolerance"),
+                number(row, "dt/limit"), number(row, "sweeps"),
+                number(row, "seconds_min"), number(row, "error"),
+                number(row, "floor"), row["status"] == "ok") for row in rows]
+
+
+def believed(some):
+    """The runs whose error is their own, not the reference's."""
+    return [r for r in some if r.ok and r.error >= TRUSTED * r.floor]
+
+
+def by_method(some):
+    """{method: its runs, the cheapest first}."""
+    found = {}
+    for run in some:
+        found.setdefault(run.method, []).append(run)
+    return {m: sorted(of, key=lambda r: r.evaluations)
+            for m, of in found.items()}
+
+
+def reliable(of):
+    """(error, run) for runs of one method: the error that this run and all
+    that cost more keep, or TRUSTED floors if that is more. Largest first. A
+    run beyond the stability limit may end well by luck: none of these."""
+    kept, worst = [], 0
+    for run in reversed([run for run in of if run.ok and run.share <= 1]):
+        worst = max(worst, run.error, TRUSTED * run.floor)
+        kept.append((worst, run))
+    return kept[::-1]
+
+
+def cost_at(error, of, cost):
+    """What runs of one method cost at an error, on the line between the two
+    next to it in a log-log chart; None if none is as exact. Down to TRUSTED
+    floors only. @a cost: a function of a run."""
+    after = None
+    for kept, run in reversed(reliable(of)):
+        if kept > error:
+            if after is None:
+                return None
+            share = math.log(kept / error) / math.log(kept / after[0])
+            return cost(run) * (cost(after[1]) / cost(run)) ** share
+        after = kept, run
+    return cost(after[1]) if after else None
+
+
+def cheapest(error, some, cost):
+    """The run that costs least of those that keep an error, as do all finer
+    ones of its method; of those that TIE with it the most exact one. None if
+    there is none."""
+    fit = [(kept, run) for of in by_method(some).values()
+           for kept, run in reliable(of) if kept <= error]
+    least = min((cost(run) for _, run in fit), default=0)
+    return min(((kept, run) for kept, run in fit
+                if TIE * cost(run) <= least), default=(0, None),
+               key=lambda f: f[0])[1]
+
+
+def winners(some, cost, least_width=0.5):
+    """(method, from, to), from COARSE or less down: the method that is
+    cheapest at these errors by cost_at, until another is so by TIE. One that
+    is so over less than least_width decades is left to its neighbor."""
+    of = by_method(some)
+    kept = [k for runs_ in of.values() for k, _ in reliable(runs_)]
+    if not kept:
+        return []
+    found = []
+    error, last = min(max(kept), COARSE), min(kept) * (1 + 1e-9)
+    while error >= last:
+        costs = {m: cost_at(error, runs_, cost) for m, runs_ in of.items()}
+        least, best = min((c, m) for m, c in costs.items() if c is not None)
+        if not found or TIE * (costs[found[-1][0]] or math.inf) > least:
+            found.append([best, error, error])
+        found[-1][2] = error = error / 10 ** 0.02
+    while len(found) > 1:
+        narrow = min(found, key=lambda s: s[1] / s[2])
+        if narrow[1] / narrow[2] >= 10 ** least_width:
+            break
+        at = found.index(narrow)
+        if at + 1 < len(found):
+            found[at + 1][1] = narrow[1]
+        else:
+            found[at - 1][2] = narrow[2]
+        del found[at]
+        if 0 < at < len(found) and found[at][0] == found[at - 1][0]:
+            found[at - 1][2] = found.pop(at)[2]
+    return [tuple(segment) for segment in found]
