@@ -119,6 +119,16 @@ worker() {
 }
 one_worker() { worker; }
 other_worker() { worker; }
+# Every chart, from the CSV files as they are.
+drawn() {
+  local file
+  rm -rf build/check/drawn
+  python3 lab/charts/draw.py --to build/check/drawn || return 1
+  for file in $(git ls-files '*/results/*.svg'); do
+    [ -s "build/check/drawn/${file##*/}" ] ||
+      { echo "$file:1: is no chart that draw.py draws"; return 1; }
+  done
+}
 build_tests() { in_folder . units work_precision stability_map adviser_suite make_grid; }
 
 # ---- check-full
@@ -243,6 +253,7 @@ case $tier in
     step build       build_tests
     rm -rf "$logs/taken"; mkdir "$logs/taken"
     beside one_worker other_worker
+    step drawn       drawn
     step readme      tools/check_readme.sh ;;
   check-full)
     step build       build_tests

@@ -8,6 +8,7 @@ longest_graph=760  # lines of Graph.hpp
 longest=500        # lines of any other header or program
 longest_test=900   # lines of a test
 widest=800         # pixels of a picture
+largest=150000     # bytes of a chart
 
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT
@@ -65,6 +66,12 @@ while IFS= read -r file; do
   [ "$width" -le "$widest" ] ||
     echo "$file:1: is wider than $widest pixels: tools/shrink_pictures.sh"
 done < <(files '*.png') >>"$faults"
+
+while IFS= read -r file; do
+  size=$(stat -c %s "$file")
+  [ "$size" -le "$largest" ] ||
+    echo "$file:1: has $size bytes; the limit is $largest"
+done < <(files '*.svg') >>"$faults"
 
 # The layout is that of clang-format 14; another version may differ in places.
 formatter=$(command -v clang-format-14 || command -v clang-format) ||

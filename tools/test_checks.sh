@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Show that each check of check_includes.sh, check_headers.sh, check_tree.sh
-# and check_commands.sh can fail, on a scratch copy of the tree, one fault at a
+# Show that each check of check_includes.sh, check_headers.sh, check_tree.sh,
+# check_commands.sh and figures.py can fail, on a scratch copy of the tree, one fault at a
 # time; and how the Makefile builds a program that somebody adds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -212,12 +212,25 @@ caught "tree: a chart that is no SVG" "lab/x/results/x.png:1: is a chart, but no
 again; png '\03\041' >docs/x.png
 caught "tree: a picture of 801 pixels" "docs/x.png:1: is wider than 800 pixels" \
   tree $tree
+again; head -c 150001 /dev/zero >docs/x.svg
+caught "tree: a chart of 150,001 bytes" "docs/x.svg:1: has 150001 bytes" tree $tree
 again small; png '\03\040' >x.png
 clean "tree: 800 pixels are none too many" $tree
 again; rm mass_spring.hpp
 check tree $tree; why=""
 ! grep -q 'No such file' <<<"$out" || why=" looks for it;"
 ok "tree: a deleted file is not looked for"
+
+# ---- Numbers of the text
+figures='python3 lab/charts/figures.py'
+before $figures
+again; sed -i 's/is 46 times/is 47 times/' README.md
+caught "figures: a number that is not the CSV's" \
+  "README.md:$(grep -n 'is 47 times' README.md | cut -d: -f1): 47, expected 46" \
+  tree $figures
+again; sed -i 's/times as exact as Verlet/as exact as Verlet/' lab/charts/README.md
+caught "figures: a rule whose text is gone" \
+  "lab/charts/README.md does not have this text" tree $figures
 
 # ---- How the Makefile builds a program that somebody adds to the root
 build_says() {  # NAME WORD NOT-WORD MAKE-ARGUMENT...

@@ -1,0 +1,240 @@
+"""Hold the numbers of the text to the CSV files that they come from:
+
+    python3 lab/charts/figures.py [--write]
+
+figures.txt has the rules: a page, and below it pieces of its text in which
+{expression:format} stands for a number. An expression uses the functions
+below. Each number that is another one is reported as FILE:LINE, or written.
+Exit status: 0 all are right, or were written; 1 some are not."""
+import argparse
+import json
+import re
+import statistics
+import sys
+
+from results import ROOT, Table, by_method, cheapest, reliable, runs
+
+NUMBER = r"(?<![\d.])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
+tables = {}
+
+
+def table(path):
+    """A table, read once; @a path from lab/."""
+    if path not in tables:
+        tables[path] = Table("lab/" + path)
+    return tables[path]
+
+
+# ---- What an expression may use
+
+def of(scene, method=None):
+    """Runs of work_precision.csv; of peers.csv if scene is 'peers'."""
+    rows = (table("bench/results/peers.csv").rows if scene == "peers" else
+            table("charts/results/work_precision.csv").where(scene=scene))
+    return [r for r in runs(rows) if method in (None, r.method)]
+
+
+def at(scene, method, share=1):
+    """The run whose step is nearest to a share of the largest stable one."""
+    return min((r for r in of(scene, method) if r.ok and 0 < r.share < 1.01),
+               key=lambda r: abs(r.share / share - 1))
+
+
+def ratio(scene, worse, better, share=1):
+    """How many times as large one's error is, at their shares of the step."""
+    return at(scene, worse, share).error / at(scene, better, share).error
+
+
+def best(scene, error, method=None, cost="seconds"):
+    """The cheapest run that keeps an error."""
+    return cheapest(error, of(scene, method), lambda r: getattr(r, cost))
+
+
+def first(scene, error, method):
+    """The run of fewest force evaluations whose error is at most that."""
+    return min((r for r in of(scene, method) if r.ok and r.error <= error),
+               key=lambda r: r.evaluations)
+
+
+def coarsest(scene, method):
+    """The cheapest run that reached the end."""
+    return next(r for r in by_method(of(scene))[method] if r.ok)
+
+
+def floor(scene):
+    return of(scene)[0].floor
+
+
+def single(scene):
+    """What single precision is off by at least [m]."""
+    return float(table("charts/results/float_floor.csv").note(
+        f"single precision floor {scene}").split()[0])
+
+
+def spread(pick=max):
+    """The farthest end in single precision over the nearest, by scene."""
+    rows = table("charts/results/float_floor.csv").rows
+    ends = {}
+    for row in rows:
+        ends.setdefault(row["scene"], []).append(float(row["distance"]))
+    return pick(max(d) / min(d) for d in ends.values())
+
+
+def measured(method, k, what):
+    """Of the k-th run of a failure: 'off', 'evaluations' or 'time'."""
+    notes = [n for n in table("charts/results/failures.csv").notes
+             if n.startswith(f"measured {method}: ")]
+    words = {"off": r"off by ([-\d.e]+)", "time": r"at t = ([-\d.e]+)",
+             "evaluations": r"(\d+) force evaluations"}
+    return float(re.search(words[what], notes[k])[1])
+
+
+def last_energy(method):
+    """[J], and [s] of that."""
+    row = table("charts/results/energy.csv").where(method=method)[-1]
+    return float(row["energy"]), float(row["t"])
+
+
+def predicted(side, mesh, method):
+    """Predicted over measured limit of the falling cloth."""
+    return float(table("charts/results/stability_table.csv").where(
+        side=str(side), mesh=mesh, method=method)[0]["predicted/measured"])
+
+
+def stability(name, column, pick, scale="1", **where):
+    """The largest or least value of a column over one of another."""
+    return pick(float(row[column]) / float(row.get(scale, 1))
+                for row in table(f"charts/results/stability_{name}.csv").where(
+                    **where) if row[column])
+
+
+def cells(name, **where):
+    """How many measured cells a map has."""
+    return len([r for r in table(
+        f"charts/results/stability_{name}.csv").where(**where)
+        if r.get("measured") != ""])
+
+
+def stretched():
+    """How many cells of the growth map are of a stretched sheet."""
+    return sum(float(row["stretch"]) > 1 for row in
+               table("charts/results/stability_growth.csv").rows)
+
+
+def call(method):
+    """The median time of a force evaluation of peers.csv, all told [us]."""
+    return statistics.median(1e6 * r.seconds / r.evaluations
+                             for r in of("peers", method) if r.ok)
+
+
+def bench(nodes, name, beside, column="median_s"):
+    """A figure of bench.json over another one."""
+    path = ROOT / "lab/bench/results/amd-epyc/bench.json"
+    found = {f["name"]: f[column]
+             for f in json.loads(path.read_text())["figures"]
+             if f["group"] == nodes + " nodes with diagonals"}
+    return found[name] / found[beside]
+
+
+def advice(which):
+    """How many scenes of the suite are so."""
+    rows = table("advice/results/adviser.csv").rows
+    got = [{k: float(r[k]) for k in ("tolerance", "real", "work", "best work",
+                                     "lucky work")}
+           for r in rows if float(r["work"]) > 0]
+    return {"advised": len(got), "refused": len(rows) - len(got),
+            "met": sum(r["real"] <= r["tolerance"] for r in got),
+            "cheap": sum(r["work"] <= 1.5 * r["best work"] for r in got),
+            "lucky": sum(r["work"] <= 1.5 * r["lucky work"] for r in got),
+            "chaotic": sum("chaotic" in r["refusal"] for r in rows),
+            "nodes": sum("nodes would be too" in r["refusal"] for r in rows),
+            }[which]
+
+
+def solver(K, share, name, tolerance, column="seconds_median"):
+    """Milliseconds of a linear system, at the step nearest to a share."""
+    rows = table("bench/results/solvers.csv").where(
+        K=K, solver=name, tolerance=tolerance)
+    row = min(rows, key=lambda r: abs(float(r["dt"]) / share - 1))
+    return 1e3 * float(row[column])
+
+
+def refined(what, column, k=-1):
+    """A row of grid_refinement.csv."""
+    return float(table("charts/results/grid_refinement.csv").where(
+        refined=what)[k][column])
+
+
+# ---- Text
+
+def shown(value, form):
+    """A number as the text has it: 1e-6, not 1e-06."""
+    return re.sub(r"e(-?)\+?0*(\d)", r"e\1\2", format(value, form))
+
+
+def compiled(piece, where):
+    """(regular expression, what its groups should be) of a rule."""
+    parts, wanted = [], []
+    for text in re.split(r"(?<!\^)(\{[^{}]*\})", piece):
+        if text.startswith("{") and ":" in text:
+            expression, _, form = text[1:-1].rpartition(":")
+            try:
+                wanted.append(shown(eval(expression, globals()), form))
+            except Exception as error:
+                raise SystemExit(f"{where}: {expression}: {error!r}, expected "
+                                 "a number") from error
+            parts.append(f"({NUMBER})")
+        else:
+            parts += [re.escape(word) if word.strip() else r"\s+"
+                      for word in re.split(r"(\s+)", text) if word]
+    return re.compile("".join(parts)), wanted
+
+
+def corrected(page, text, rules, faults):
+    """The text with the numbers of its rules; faults get those that differ."""
+    for line, piece in rules:
+        where = f"lab/charts/figures.txt:{line}"
+        pattern, wanted = compiled(piece, where)
+        found = pattern.search(text)
+        if not found:
+            faults.append(f"{where}: {page} does not have this text")
+            continue
+        for group in range(len(wanted), 0, -1):
+            is_there, should = found[group], wanted[group - 1]
+            if is_there == should:
+                continue
+            at_line = text.count("\n", 0, found.start(group)) + 1
+            faults.append(f"{page}:{at_line}: {is_there}, expected {should}")
+            text = text[:found.start(group)] + should + text[found.end(group):]
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--write", action="store_true")
+    write = parser.parse_args().write
+    pages, page = {}, None
+    lines = (ROOT / "lab/charts/figures.txt").read_text().splitlines()
+    for number, line in enumerate(lines, 1):
+        if line.startswith("#") or not line.strip():
+            continue
+        if not line.startswith(" "):
+            page = pages.setdefault(line.strip(), [])
+        elif line.startswith("    ") and page:  # goes on
+            page[-1] = page[-1][0], page[-1][1] + " " + line.strip()
+        else:
+            page.append((number, line.strip()))
+    faults = []
+    for page, rules in pages.items():
+        text = (ROOT / page).read_text()
+        right = corrected(page, text, rules, faults)
+        if write and right != text:
+            (ROOT / page).write_text(right)
+    print("\n".join(faults) or
+          f"{sum(map(len, pages.values()))} passages are right")
+    return bool([f for f in faults
+                 if not write or f.startswith("lab/charts/figures.txt")])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
