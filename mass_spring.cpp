@@ -101,6 +101,7 @@ int main(int argc, char** argv) try {
   std::optional<CME212::SDLViewer> viewer;
   try {
     viewer.emplace();
+    viewer->add_faces(g, quads);
     if (stage >= Stage::constraints) {
       viewer->add_sphere(Ball().center, Ball().radius);
       viewer->add_plane(PlaneConstraint().height());

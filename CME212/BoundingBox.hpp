@@ -29,6 +29,11 @@ class BoundingBox {
     return *this;
   }
 
+  /** Grow to hold @a b. */
+  BoundingBox& operator|=(const BoundingBox& b) {
+    return b.empty() ? *this : (*this |= b.min_) |= b.max_;
+  }
+
   /** True if @a p is in the box or on a face of it; no box has a point that is
    * not finite, the empty box has none at all. */
   bool contains(const Point& p) const {

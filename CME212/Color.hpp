@@ -49,23 +49,32 @@ struct Color {
     return make_hsv(0.78f - 0.76f * v, 1, 1);
   }
 
-  /** A scale for strain: 0 blue (slack) over green to 1 yellow (taut). The
-   * luminance grows with @a v, so that it reads the same to the colour-blind
-   * and in a grey print; the dark end stays visible on a dark ground.
-   * @pre 0 <= v <= 1
-   * Source: viridis (S. van der Walt and N. Smith, 2015, CC0) at 1/2, 3/4 and
-   * 1, below that a lighter blue than its own; linear in between. */
+  /** A diverging scale for strain: -1 blue (slack), 0 light gray (at rest), +1
+   * red (taut). Both arms darken alike, and blue and red differ to the
+   * color-blind, too.  @pre -1 <= v <= 1 */
   static constexpr Color make_strain(float v) {
-    assert(0 <= v && v <= 1);
-    constexpr Color at[] = {{0.290f, 0.440f, 0.760f},
-                            {0.129f, 0.569f, 0.549f},
-                            {0.369f, 0.788f, 0.384f},
-                            {0.992f, 0.906f, 0.145f}};
-    int i = v < 1 ? int(3 * v) : 2;
-    float to = std::clamp(3 * v - float(i), 0.0f, 1.0f);
+    assert(-1 <= v && v <= 1);
+    constexpr Color slack[] = {
+        {0.93f}, {0.52f, 0.74f, 0.93f}, {0.10f, 0.42f, 0.84f}};
+    constexpr Color taut[] = {
+        {0.93f}, {0.97f, 0.68f, 0.50f}, {0.83f, 0.18f, 0.13f}};
+    const auto& at = v < 0 ? slack : taut;
+    const float x = 2 * (v < 0 ? -v : v);
+    const int i = x < 1 ? 0 : 1;
+    const float to = x - float(i);
     return {std::lerp(at[i].r, at[i + 1].r, to),
             std::lerp(at[i].g, at[i + 1].g, to),
             std::lerp(at[i].b, at[i + 1].b, to)};
+  }
+
+  /** Seven colors to tell pieces apart, again and again from @a k = 0 on.
+   * Source: M. Okabe and K. Ito, Color Universal Design, 2008, lighter. */
+  static constexpr Color make_piece(unsigned k) {
+    constexpr Color at[] = {{0.95f, 0.65f, 0.10f}, {0.40f, 0.75f, 0.95f},
+                            {0.10f, 0.70f, 0.52f}, {0.95f, 0.90f, 0.35f},
+                            {0.25f, 0.55f, 0.85f}, {0.90f, 0.45f, 0.20f},
+                            {0.85f, 0.55f, 0.72f}};
+    return at[k % 7];
   }
 
   /** For marks: magenta, which no scale, cloth or obstacle has. Its luminance

@@ -15,16 +15,10 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
+#include "CME212/Look.hpp"
 #include "CME212/SDLInput.hpp"
 
 namespace CME212 {
-
-/** What the colors of Color::make_strain mean. */
-struct ColorScale {
-  std::string title;
-  double low = 0, high = 1;  // of blue and of yellow, in units
-  std::string unit;
-};
 
 /** What to write over a picture; an empty text is not drawn. */
 struct OverlayText {
@@ -242,22 +236,24 @@ class GLOverlay {
     const float left = right - width, step = height / bands;
     for (int i = 0; i < bands; ++i) {
       float y = top + float(i) * step;
-      ImU32 upper = color(1 - float(i) / bands);
-      ImU32 lower = color(1 - float(i + 1) / bands);
+      ImU32 upper = color(1 - 2 * float(i) / bands);
+      ImU32 lower = color(1 - 2 * float(i + 1) / bands);
       list_->AddRectFilledMultiColor({left, y}, {right, y + step}, upper, upper,
                                      lower, lower);
     }
+    const std::string high = number(scale.limit, scale.unit);
+    const std::string labels[] = {
+        "taut  " + ((scale.above ? "> " : "") + high), "at rest  0",
+        "slack  " + ((scale.below ? "< -" : "-") + high)};
     for (int i = 0; i <= 2; ++i) {
-      std::string s =
-          number(scale.high + (scale.low - scale.high) * i / 2, scale.unit);
       float y = top + height * float(i) / 2;
       list_->AddLine({left - 4 * unit_, y}, {left, y}, dim, unit_);
-      write(left - 8 * unit_ - text_width(small, s), y - 8 * unit_, small,
-            bright, s);
+      write(left - 8 * unit_ - text_width(small, labels[i]), y - 8 * unit_,
+            small, bright, labels[i]);
     }
   }
   static ImU32 color(float v) {
-    Color c = Color::make_strain(std::clamp(v, 0.0f, 1.0f));
+    Color c = Color::make_strain(std::clamp(v, -1.0f, 1.0f));
     return ImGui::ColorConvertFloat4ToU32({c.r, c.g, c.b, 1});
   }
 };

@@ -7,147 +7,36 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Color.hpp"
+#include "CME212/Faces.hpp"
 #include "CME212/GLCamera.hpp"
+#include "CME212/GLShaders.hpp"
+#include "CME212/GLShadow.hpp"
 #include "CME212/GLTools.hpp"
+#include "CME212/Look.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/SceneBuilder.hpp"
 
 namespace CME212 {
-
-namespace gl_detail {
-
-// ---- The shaders
-
-/** A triangle that covers the picture. */
-constexpr const char* ground_vertex = R"(
-  void main() {
-    gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4 - 1, 0, 1);
-  })";
-constexpr const char* ground_fragment = R"(
-  out vec4 color;
-  uniform vec3 low, rise;  // color at the bottom, change for a pixel upwards
-  void main() { color = vec4(low + gl_FragCoord.y * rise, 1); })";
-
-/** Nodes and edges. Both come a little towards the eye along the line of
- * sight, so that what lies on a surface is not hidden by it. What is far
- * fades into the ground. */
-constexpr const char* cloth_vertex = R"(
-  layout(location = 0) in vec3 at;
-  layout(location = 1) in vec3 color_in;
-  uniform mat4 view, projection;
-  uniform vec3 fade_to, size;  // of a node: at distance 1, least, most
-  uniform vec2 range;          // distances between which it fades
-  uniform float tint;          // 1: the node's color; 0: fade_to
-  uniform float nearer;        // factor of the distance
-  out vec3 shade;
-  flat out float radius;
-  void main() {
-    vec4 eye = view * vec4(at, 1);
-    float fade = clamp((-eye.z - range.x) / (range.y - range.x), 0, 1);
-    shade = mix(fade_to, color_in, tint * (1 - 0.35 * fade));
-    eye.xyz *= nearer;
-    gl_Position = projection * eye;
-    gl_PointSize = clamp(size.x / -eye.z, size.y, size.z) + 1;  // soft rim
-    radius = gl_PointSize / 2;
-  })";
-constexpr const char* node_fragment = R"(
-  in vec3 shade;
-  flat in float radius;
-  out vec4 color;
-  void main() {
-    float inside = radius * (1 - length(2 * gl_PointCoord - 1));
-    if (inside < 0.1) discard;
-    color = vec4(shade, min(inside, 1));
-  })";
-constexpr const char* edge_fragment = R"(
-  in vec3 shade;
-  out vec4 color;
-  void main() { color = vec4(shade, 1); })";
-
-/** The unit sphere or the unit disc, placed in the world. */
-constexpr const char* solid_vertex = R"(
-  layout(location = 0) in vec3 at;
-  uniform mat4 view, projection;
-  uniform vec3 center;
-  uniform float radius;
-  out vec3 place, normal;
-  void main() {
-    place = at;
-    normal = mat3(view) * at;
-    gl_Position = projection * (view * vec4(center + radius * at, 1));
-  })";
-constexpr const char* sphere_fragment = R"(
-  in vec3 normal;
-  uniform vec3 paint;
-  out vec4 color;
-  void main() {
-    vec3 n = normalize(normal);
-    float light = max(dot(n, normalize(vec3(-0.5, 0.8, 0.6))), 0);
-    float rim = pow(1 - abs(n.z), 3);
-    color = vec4(paint * (0.35 + 0.65 * light) + 0.12 * rim, 1);
-  })";
-constexpr const char* plane_fragment = R"(
-  in vec3 place;
-  uniform vec3 paint;
-  uniform float lines;
-  out vec4 color;
-  void main() {
-    vec2 p = place.xy * lines, width = fwidth(p);
-    vec2 line = 1 - clamp(abs(fract(p + 0.5) - 0.5) / width, 0, 1);
-    float rim = max(1 - dot(place.xy, place.xy), 0);
-    color = vec4(paint, rim * (0.22 + 0.4 * max(line.x, line.y)));
-  })";
-
-/** A thick line between two places, or a ring around one, in pixels. */
-constexpr const char* mark_vertex = R"(
-  uniform mat4 view, projection;
-  uniform vec3 from, to;
-  uniform vec2 half_size;  // of the picture
-  uniform float reach;     // to the outer rim
-  flat out vec2 a, b;
-  void main() {
-    vec4 p = projection * (view * vec4(from, 1));
-    vec4 q = projection * (view * vec4(to, 1));
-    a = (p.xy / p.w + 1) * half_size;
-    b = (q.xy / q.w + 1) * half_size;
-    vec2 along = reach * (a == b ? vec2(1, 0) : normalize(b - a));
-    vec2 across = vec2(-along.y, along.x);
-    vec2 corner = gl_VertexID < 2 ? a - along : b + along;
-    corner += gl_VertexID % 2 == 0 ? across : -across;
-    gl_Position = vec4(corner / half_size - 1, 0, 1);
-    if (p.w <= 0 || q.w <= 0) gl_Position = vec4(2, 2, 2, 1);  // behind us
-  })";
-constexpr const char* mark_fragment = R"(
-  flat in vec2 a, b;
-  out vec4 color;
-  uniform vec3 paint;
-  uniform float ring, width, rim;  // ring: its radius, 0 for a line
-  void main() {
-    vec2 p = gl_FragCoord.xy - a, line = b - a;
-    float at = clamp(dot(p, line) / max(dot(line, line), 1e-6), 0, 1);
-    float off = abs(length(p - at * line) - ring) - width / 2;
-    color = vec4(paint * clamp(0.5 - off, 0, 1), clamp(rim + 0.5 - off, 0, 1));
-  })";
-
-}  // namespace gl_detail
 
 /** Draws a SceneData; holds its buffers and shaders. */
 class GLScene {
  public:
   GLScene() {
     nodes_.bind();
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SceneData::Vertex),
-                          nullptr);
-    glEnableVertexAttribArray(1);
-    glVertexAttribPointer(
-        1, 3, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SceneData::Vertex),
-        reinterpret_cast<void*>(offsetof(SceneData::Vertex, rgba)));
-    set_solid(sphere_, 48, 24, [](double u, double v) {
+    auto attribute = [](GLuint at, GLint size, GLenum type, std::size_t from) {
+      glEnableVertexAttribArray(at);
+      glVertexAttribPointer(at, size, type, GL_TRUE, sizeof(Vertex),
+                            reinterpret_cast<void*>(from));
+    };
+    attribute(0, 3, GL_FLOAT, 0);
+    attribute(1, 3, GL_UNSIGNED_BYTE, offsetof(SceneData::Vertex, rgba));
+    attribute(2, 4, GL_SHORT, offsetof(Vertex, normal));
+    set_solid(sphere_, 80, 40, [](double u, double v) {
       double a = 2 * std::numbers::pi * u, b = std::numbers::pi * (v - 0.5);
       return Point(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b),
                    std::sin(b));
@@ -158,38 +47,52 @@ class GLScene {
     });
   }
 
-  /** Take over @a scene, to be drawn from now on. */
-  void upload(const SceneData& scene, bool edges_changed) {
-    nodes_.set_vertices(scene.nodes);
-    if (edges_changed) nodes_.set_indices(scene.edges);
+  /** Take over @a scene, to be drawn from now on.
+   * @param edges_changed Edges or faces differ from those of the last call
+   * @param pieces        Color each piece, see Look
+   * Complexity: O(nodes + edges + faces), by 20 ns each */
+  void upload(const SceneData& scene, bool edges_changed, bool pieces) {
+    if (edges_changed) set_indices(scene);
+    const auto normals =
+        face_normals(scene.faces, scene.nodes.size(), [&](std::uint32_t i) {
+          const auto& v = scene.nodes[i];
+          return Point(v.x, v.y, v.z);
+        });
+    std::vector<Vertex> vertices;
+    vertices.reserve(scene.nodes.size());
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i)
+      vertices.emplace_back(scene.nodes[i], normals[i]);
+    if (pieces) color_pieces(vertices, scene.edges);
+    nodes_.set_vertices(vertices);
     num_nodes_ = GLsizei(scene.nodes.size());
     spheres_ = scene.spheres;
     planes_ = scene.planes;
     marks_ = scene.marks;
     // A node is a fifth as wide as nodes would be apart, if spread evenly.
     box_ = scene.box();
+    set_shades(vertices);
     const double size = box_.diagonal() > 0 ? box_.diagonal() : 1;
     node_size_ = 0.2 * size / std::sqrt(num_nodes_ + 1.0);
   }
+  /** True if the scene has faces, whether or not they are drawn. */
+  bool has_faces() const { return num_triangles_ > 0; }
 
   /** Of the scene. */
   const BoundingBox& box() const { return box_; }
 
   /** Draw all, over what was there.
    * @param width,height Of the picture [pixels]
-   * @param scale        Width of a line [pixels], 1 on a plain screen */
-  void draw(const GLCamera& camera, int width, int height, double scale) const {
+   * @param scale        Width of a line [pixels], 1 on a plain screen
+   * @param plain        The colors of nodes mean something: do not dye them */
+  void draw(const GLCamera& camera, int width, int height, double scale,
+            const Look& look, bool plain) {
+    const bool faces = look.faces && has_faces();
+    if (faces || !spheres_.empty()) make_shadow(camera, faces);
     glViewport(0, 0, width, height);
-    glClear(GL_DEPTH_BUFFER_BIT | GL_COLOR_BUFFER_BIT);
-    glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
+    glClearColor(ground.r, ground.g, ground.b, 1);
+    glClear(GL_DEPTH_BUFFER_BIT | GL_COLOR_BUFFER_BIT);
     glEnable(GL_PROGRAM_POINT_SIZE);
-    ground_.use();
-    ground_.set("low", low);
-    ground_.set("rise",
-                Point(high.r - low.r, high.g - low.g, high.b - low.b) / height);
-    plane_.bind();  // any will do
-    glDrawArrays(GL_TRIANGLES, 0, 3);
 
     glEnable(GL_DEPTH_TEST);
     const double aspect = double(width) / height;
@@ -197,12 +100,12 @@ class GLScene {
       p.use();
       p.set("view", camera.view());
       p.set("projection", camera.projection(aspect));
+      shadow_.use(p);
     };
     use(sphere_program_);
     sphere_.bind();
     for (const auto& s : spheres_) {
-      sphere_program_.set("center", s.center);
-      sphere_program_.set("radius", float(s.radius));
+      place(sphere_program_, s);
       sphere_program_.set("paint", s.color);
       sphere_.draw(GL_TRIANGLES);
     }
@@ -219,27 +122,38 @@ class GLScene {
             float(camera.distance() + extent / 2));
       p.set("tint", tint);
       p.set("nearer", nearer);
+      p.set("ink", 0.0f);
+      p.set("show", 1.0f);
     };
-    use_cloth(edge_program_, 0.75f, 0.99f);
-    nodes_.draw(GL_LINES);
+    if (faces) {
+      use(face_program_);
+      face_program_.set("nearer", 0.997f);
+      face_program_.set("to_eye", camera.backward());
+      face_program_.set("front_dye", plain ? Color(1) : linen);
+      face_program_.set("back_dye", plain ? Color(0.88f) : denim);
+      nodes_.draw(GL_TRIANGLES, num_lines_, num_triangles_);
+    }
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    if (look.wires) {
+      use_cloth(edge_program_, 0.75f, faces ? 0.995f : 0.99f);
+      // On faces wires are ink: the less, the closer they come together, and
+      // none where they would only darken.
+      const double apart = spacing_ * pixels / camera.distance() / scale;
+      if (faces) edge_program_.set("ink", float(std::min(apart / 40, 0.4)));
+      glEnable(GL_BLEND);
+      if (!faces || apart > 8)
+        nodes_.draw(GL_LINES, 0, num_lines_);
+      else
+        nodes_.draw(GL_LINES, 0, num_loose_);
+      glDisable(GL_BLEND);
+    }
     glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     use_cloth(node_program_, 1, 0.985f);  // in front of its edges
+    node_program_.set("show", float(look.nodes) - 1);
     glDrawArrays(GL_POINTS, 0, num_nodes_);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    glDepthMask(GL_FALSE);
-    use(plane_program_);
-    plane_.bind();
-    for (const auto& p : planes_) {
-      plane_program_.set("center", p.center);
-      plane_program_.set("radius", float(p.half));
-      plane_program_.set("paint", p.color);
-      plane_program_.set("lines", 10.0f);
-      plane_.draw(GL_TRIANGLES);
-    }
-    glDepthMask(GL_TRUE);
+    draw_planes(camera, faces, use);
     glDisable(GL_DEPTH_TEST);
     use(mark_program_);
     mark_program_.set("half_size", float(width) / 2, float(height) / 2);
@@ -259,23 +173,179 @@ class GLScene {
   }
 
  private:
-  static constexpr Color low{0.055f, 0.067f, 0.09f}, high{0.13f, 0.16f, 0.21f};
+  static constexpr Color ground{0.10f, 0.12f, 0.16f};
   static constexpr Color fog{0.12f, 0.145f, 0.19f};
+  static constexpr Color linen{1.0f, 0.93f, 0.82f}, denim{0.62f, 0.76f, 0.95f};
 
-  GLProgram ground_{gl_detail::ground_vertex, gl_detail::ground_fragment};
+  /** A node as it is uploaded. */
+  struct Vertex {
+    SceneData::Vertex node;
+    /** Of length 1 and with a fourth 1; all 0 if the node is in no face. */
+    std::array<std::int16_t, 4> normal{};
+    Vertex(const SceneData::Vertex& v, const Point& n) : node(v) {
+      const double length = norm(n);
+      if (!(length > 0)) return;
+      for (unsigned k : {0, 1, 2})
+        normal[k] = std::int16_t(std::lround(32767 * n[k] / length));
+      normal[3] = 32767;
+    }
+  };
+
+  /** With the lamp in front of the text of a shader. */
+  static std::string under_light(const char* shader) {
+    return std::string(gl_detail::light_source) + shader;
+  }
+
   GLProgram node_program_{gl_detail::cloth_vertex, gl_detail::node_fragment};
   GLProgram edge_program_{gl_detail::cloth_vertex, gl_detail::edge_fragment};
-  GLProgram sphere_program_{gl_detail::solid_vertex,
+  GLProgram face_program_{under_light(gl_detail::face_vertex).c_str(),
+                          gl_detail::face_fragment};
+  GLProgram sphere_program_{under_light(gl_detail::sphere_vertex).c_str(),
                             gl_detail::sphere_fragment};
-  GLProgram plane_program_{gl_detail::solid_vertex, gl_detail::plane_fragment};
+  GLProgram plane_program_{gl_detail::plane_vertex, gl_detail::plane_fragment};
+  GLProgram dark_program_{under_light(gl_detail::dark_vertex).c_str(),
+                          gl_detail::dark_fragment};
   GLProgram mark_program_{gl_detail::mark_vertex, gl_detail::mark_fragment};
+  GLShadow shadow_;
   GLMesh nodes_, sphere_, plane_;
   GLsizei num_nodes_ = 0;
+  // Indices, in this order: edges with an end in no face, other edges, faces.
+  GLsizei num_loose_ = 0, num_lines_ = 0, num_triangles_ = 0;
+  double spacing_ = 0;  // length of an edge, the mean
   std::vector<SceneData::Sphere> spheres_;
   std::vector<SceneData::Plane> planes_;
   std::vector<SceneData::Mark> marks_;
   double node_size_ = 0;
-  BoundingBox box_;
+  BoundingBox box_, sphere_shade_, face_shade_;
+
+  /** The ends of edges, then the corners of two triangles a face. */
+  void set_indices(const SceneData& scene) {
+    std::vector<char> in_face(scene.nodes.size());
+    for (const Quad& f : scene.faces)
+      for (std::uint32_t corner : f) in_face[corner] = 1;
+    std::vector<std::uint32_t> indices;
+    indices.reserve(2 * scene.edges.size() + 6 * scene.faces.size());
+    spacing_ = 0;
+    for (bool loose : {true, false}) {
+      for (const auto& [a, b] : scene.edges)
+        if (loose != (in_face[a] && in_face[b]))
+          indices.insert(indices.end(), {a, b});
+      if (loose) num_loose_ = GLsizei(indices.size());
+    }
+    for (const auto& [a, b] : scene.edges) {
+      const auto &p = scene.nodes[a], &q = scene.nodes[b];
+      const double length = std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
+      if (std::isfinite(length))
+        spacing_ += length / double(scene.edges.size());
+    }
+    num_lines_ = GLsizei(indices.size());
+    const auto [a, b, c, d] = around_quad;
+    for (const Quad& f : scene.faces)
+      indices.insert(indices.end(), {f[a], f[b], f[c], f[c], f[d], f[a]});
+    num_triangles_ = GLsizei(indices.size()) - num_lines_;
+    nodes_.set_indices(indices);
+  }
+
+  /** Find (across, along) of all that casts a shadow, and a little around. */
+  void set_shades(const std::vector<Vertex>& vertices) {
+    auto add = [](BoundingBox& box, const Point& p, double r) {
+      const double x = dot(p, GLShadow::across()),
+                   y = dot(p, GLShadow::along());
+      box |= Point(x - r, y - r, 0);
+      box |= Point(x + r, y + r, 0);
+    };
+    sphere_shade_ = face_shade_ = BoundingBox();
+    const double rim = 0.02 * box_.diagonal();
+    for (const Vertex& v : vertices)
+      if (v.normal[3])
+        add(face_shade_, Point(v.node.x, v.node.y, v.node.z), rim);
+    for (const auto& s : spheres_) add(sphere_shade_, s.center, s.radius + rim);
+  }
+
+  /** The largest piece keeps its color; single nodes are gray. */
+  static void color_pieces(std::vector<Vertex>& vertices,
+                           const std::vector<Ends>& edges) {
+    const auto [piece, several] = pieces_of(edges, vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (piece[i] == 0) continue;
+      const Color c =
+          piece[i] < several ? Color::make_piece(piece[i] - 1) : Color(0.55f);
+      vertices[i].node.set(c);
+    }
+  }
+
+  /** Draw the planes as seen from above, and the shadows on them. Opaque, which
+   * is quicker: at its rim a plane has the color of the ground. */
+  template <typename Use>
+  void draw_planes(const GLCamera& camera, bool faces, Use use) const {
+    glEnable(GL_CULL_FACE);
+    use(plane_program_);
+    plane_.bind();
+    for (const auto& p : planes_) {
+      plane_program_.set("center", p.center);
+      plane_program_.set("radius", float(p.half));
+      plane_program_.set("paint", p.color);
+      plane_program_.set("ground", ground);
+      plane_program_.set("lines", 10.0f);
+      plane_.draw(GL_TRIANGLES);
+    }
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
+    glDepthFunc(GL_LEQUAL);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-1, -4);
+    if (faces || !spheres_.empty()) {
+      use(dark_program_);
+      for (const auto& p : planes_)
+        if (camera.eye().z > p.center.z) darken(p, camera, faces);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glDepthFunc(GL_LESS);
+  }
+
+  /** Draw the shadow on @a plane, where there may be one. */
+  void darken(const SceneData::Plane& plane, const GLCamera& camera,
+              bool faces) const {
+    const double cell = camera.extent() / 80;
+    // Borders of cells, fixed in the world: so no rim flickers.
+    std::array<double, 2> low, high;
+    BoundingBox b = sphere_shade_;
+    if (faces) b |= face_shade_;
+    const std::array<Point, 2> axes{GLShadow::across(), GLShadow::along()};
+    for (unsigned k : {0, 1}) {
+      const double middle = dot(camera.center(), axes[k]);
+      auto border = [&](double a) {
+        return std::clamp(a, middle - camera.extent(),
+                          middle + camera.extent()) /
+               cell;
+      };
+      low[k] = std::floor(border(b.min()[k]));
+      high[k] = std::ceil(border(b.max()[k]));
+    }
+    dark_program_.set("origin", cell * (low[0] * axes[0] + low[1] * axes[1]));
+    dark_program_.set("across", cell * axes[0]);
+    dark_program_.set("along", cell * axes[1]);
+    dark_program_.set("center", plane.center);
+    dark_program_.set("radius", float(plane.half));
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0,
+                          2 * GLsizei(high[0] - low[0] + 1),
+                          GLsizei(high[1] - low[1]));
+  }
+
+  static void place(const GLProgram& p, const SceneData::Sphere& s) {
+    p.set("center", s.center);
+    p.set("radius", float(s.radius));
+  }
+  void make_shadow(const GLCamera& camera, bool faces) {
+    shadow_.make(camera, [&](const GLProgram& p) {
+      sphere_.bind();
+      for (const auto& s : spheres_) place(p, s), sphere_.draw(GL_TRIANGLES);
+      if (!faces) return;
+      place(p, {Point(), 1, {}});
+      nodes_.bind();
+      nodes_.draw(GL_TRIANGLES, num_lines_, num_triangles_);
+    });
+  }
 
   /** Triangles over a grid of @a m x @a n cells of (u, v) in [0, 1]^2. */
   template <typename F>
@@ -288,8 +358,8 @@ class GLScene {
         vertices.push_back({float(p.x), float(p.y), float(p.z)});
         if (i == m || j == n) continue;
         unsigned a = i * (n + 1) + j, b = a + n + 1;
-        triangles.push_back({a, b, a + 1});
-        triangles.push_back({b, b + 1, a + 1});
+        triangles.push_back({a, a + 1, b});
+        triangles.push_back({b, a + 1, b + 1});
       }
     mesh.set_vertices(vertices);
     mesh.set_indices(triangles);

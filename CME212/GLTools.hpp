@@ -105,9 +105,12 @@ class GLMesh {
     stream(GL_ELEMENT_ARRAY_BUFFER, v);
     count_ = GLsizei(v.size() * sizeof(T) / sizeof(std::uint32_t));
   }
-  /** Draw by index.  @pre bind() */
-  void draw(GLenum kind) const {
-    glDrawElements(kind, count_, GL_UNSIGNED_INT, nullptr);
+  /** Draw by index: all, or @a count indices from the one of @a first on.
+   * @pre bind() */
+  void draw(GLenum kind) const { draw(kind, 0, count_); }
+  void draw(GLenum kind, GLsizei first, GLsizei count) const {
+    glDrawElements(kind, count, GL_UNSIGNED_INT,
+                   reinterpret_cast<void*>(first * sizeof(std::uint32_t)));
   }
 
  private:

@@ -16,6 +16,8 @@ struct SDLViewer {
   SDLViewer() { throw NoDisplay("built without a window"); }
   void add_sphere(const Point&, double) {}
   void add_plane(double) {}
+  template <typename G, typename Quads>
+  void add_faces(const G&, const Quads&) {}
   template <typename G>
   void draw_graph(const G&) {}
   void set_label(double) {}

@@ -9,6 +9,7 @@
 #include "CME212/BoundingBox.hpp"
 #include "CME212/GLCamera.hpp"
 #include "CME212/GLOverlay.hpp"
+#include "CME212/Look.hpp"
 
 namespace CME212 {
 
@@ -19,6 +20,7 @@ struct SDLSettings {
   OverlayText text;
   GLCamera camera;
   std::optional<BoundingBox> look_at = GLCamera::usual_box();  // empty: all
+  Look look;
   int steps = 0;         // to be made while paused
   bool pauses = false;   // the program calls wait_while_paused()
   bool restart = false;  // not yet taken

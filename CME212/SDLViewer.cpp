@@ -71,6 +71,7 @@ class SDLViewer::Display : public SDLSettings {
   double unit_ = 1;                // pixels to a unit of the mouse
   double scale_ = 1;               // pixels to a unit of length
   int unsettled_ = 0;              // frames until panels show what the user did
+  bool shown_pieces_ = false;
 
   bool needs_frame() const {
     return (redraw || builder_.has_new() || unsettled_ > 0 ||
@@ -148,12 +149,19 @@ void SDLViewer::Display::draw(int width, int height, double scale,
   GLOverlay& overlay = canvas_->overlay;
   overlay.start(width, height, scale);
   const double left = interactive ? interact() : 0;
+  bool pieces;
+  {
+    std::lock_guard lock(mutex);
+    pieces = look.pieces;
+  }
+  if (std::exchange(shown_pieces_, pieces) != pieces) builder_.take_again();
   builder_.take([&](const SceneData& s, bool edges_changed) {
-    canvas_->scene.upload(s, edges_changed);
+    canvas_->scene.upload(s, edges_changed, pieces);
     if (touch) hand_.look(s, edges_changed);
   });
   OverlayText shown;
   GLCamera eye;
+  Look what;
   {
     std::lock_guard lock(mutex);
     camera.set_hidden_left(left / width);
@@ -163,6 +171,7 @@ void SDLViewer::Display::draw(int width, int height, double scale,
     look_at.reset();
     redraw = false;
     eye = camera;
+    what = look;
     shown = text;
     shown.has_scale = strain_colors;
     if (interactive) add_state(shown);
@@ -174,7 +183,8 @@ void SDLViewer::Display::draw(int width, int height, double scale,
     if (shown.ring && hand_.holds())
       shown.line = {*shown.ring, {float(mouse_[0]), float(mouse_[1])}};
   }
-  canvas_->scene.draw(eye, width, height, scale);
+  canvas_->scene.draw(eye, width, height, scale, what,
+                      shown.has_scale || what.pieces);
   overlay.finish(shown, left);
 }
 
@@ -210,6 +220,8 @@ void SDLViewer::Display::add_state(OverlayText& shown) const {
   if (options_.restarts) keys += "r restart   ";
   if (options_.colors) keys += "s strain   ";
   shown.help = {keys + "c center"};
+  if (canvas_->scene.has_faces())
+    shown.help.push_back("f faces   w wires   d nodes   k pieces");
   if (touch)
     shown.help.push_back("drag the cloth   Ctrl-drag cut   p pin or unpin");
   if (panels) shown.help.push_back("Tab panels   + - size   ? keys");
@@ -314,6 +326,14 @@ void SDLViewer::Display::press(SDL_Keycode key) {
     case SDLK_s:
       if (!options_.colors) return;
       return change([&] { strain_colors = !strain_colors; });
+    case SDLK_f:
+      return change([&] { look.faces = !look.faces; });
+    case SDLK_w:
+      return change([&] { look.wires = !look.wires; });
+    case SDLK_d:
+      return change([&] { look.nodes = next(look.nodes); });
+    case SDLK_k:
+      return change([&] { look.pieces = !look.pieces; });
     case SDLK_c:
       return change([&] { look_at = BoundingBox(); });
     case SDLK_TAB:
@@ -372,12 +392,18 @@ void SDLViewer::set_message(std::vector<std::string> paragraphs) {
   d.change([&] { d.text.message = std::move(paragraphs); });
 }
 
-void SDLViewer::set_scale(std::string title, double low, double high,
-                          std::string unit) {
+void SDLViewer::set_scale(ColorScale scale) {
   Display& d = *display_;
-  d.change([&] {
-    d.text.scale = {std::move(title), low, high, std::move(unit)};
-  });
+  d.change([&] { d.text.scale = std::move(scale); });
+}
+
+Look SDLViewer::look() const {
+  std::lock_guard lock(display_->mutex);
+  return display_->look;
+}
+void SDLViewer::set_look(const Look& look) {
+  Display& d = *display_;
+  d.change([&] { d.look = look; });
 }
 
 bool SDLViewer::closed() const { return display_->closed; }

@@ -12,6 +12,7 @@
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Hand.hpp"
 #include "CME212/Image.hpp"
+#include "CME212/Look.hpp"
 #include "CME212/NoDisplay.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/SceneBuilder.hpp"
@@ -32,11 +33,12 @@ namespace CME212 {
  *
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
- * Esc quits, + and - size the text, ? shows the keys. The simulation serves
- * pause, step, restart and coloring: see wait_while_paused(), take_restart(),
- * strain_colors(). With panels, Tab hides them; with a program that serves
- * touches the left button grabs the cloth, Ctrl and drag cuts, p pins: see
- * set_panels(), set_touch(). */
+ * Esc quits, + and - size the text, ? shows the keys; f, w, d and k change the
+ * Look: faces, wires, nodes, pieces. The simulation serves pause, step, restart
+ * and coloring: see wait_while_paused(), take_restart(), strain_colors(). With
+ * panels, Tab hides them; with a program that serves touches the left button
+ * grabs the cloth, Ctrl and drag cuts, p pins: see set_panels(), set_touch().
+ */
 class SDLViewer : public SceneBuilder {
  public:
   struct Options {
@@ -84,9 +86,12 @@ class SDLViewer : public SceneBuilder {
   /** Show a message in a panel: why the run stopped. Empty: no panel. */
   void set_message(std::vector<std::string> paragraphs);
 
-  /** Label the color scale, drawn while strain_colors().
-   * @param low,high Values of Color::make_strain(0) and (1) [@a unit] */
-  void set_scale(std::string title, double low, double high, std::string unit);
+  /** Label the color scale, drawn while strain_colors(). */
+  void set_scale(ColorScale scale);
+
+  /** What of the cloth is drawn; the user changes it as well. */
+  Look look() const;
+  void set_look(const Look& look);
 
   // ----------------------------------------------------------------- Control
 

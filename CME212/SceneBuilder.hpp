@@ -3,6 +3,7 @@
  * SceneData: what a viewer shows, as plain data. SceneBuilder: the half of a
  * viewer that collects it from a graph, in whatever thread. */
 #include <algorithm>
+#include <any>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -16,6 +17,7 @@
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Color.hpp"
+#include "CME212/Faces.hpp"
 #include "CME212/Point.hpp"
 
 namespace CME212 {
@@ -41,14 +43,13 @@ struct SceneData {
     float x, y, z;
     std::array<std::uint8_t, 4> rgba;
     Vertex(const Point& p, const Color& c)
-        : x(float(p.x)),
-          y(float(p.y)),
-          z(float(p.z)),
-          rgba{byte(c.r), byte(c.g), byte(c.b), 255} {}
+        : x(float(p.x)), y(float(p.y)), z(float(p.z)) {
+      set(c);
+    }
+    void set(const Color& c) { rgba = {byte(c.r), byte(c.g), byte(c.b), 255}; }
     static std::uint8_t byte(float c) { return std::uint8_t(255 * c + 0.5f); }
   };
-  /** Both ends of an edge, as indices into nodes; the smaller one first. */
-  using Ends = std::array<std::uint32_t, 2>;
+  using Ends = CME212::Ends;
   struct Sphere {
     Point center;
     double radius;
@@ -68,6 +69,7 @@ struct SceneData {
 
   std::vector<Vertex> nodes;
   std::vector<Ends> edges;
+  std::vector<Quad> faces;  // of indices into nodes
   std::vector<Sphere> spheres;
   std::vector<Plane> planes;
   std::vector<Mark> marks;
@@ -177,15 +179,45 @@ class SceneBuilder {
     publish();
   }
 
-  /** Show the nodes of @a g in white and its edges in place of the previous
-   * ones; spheres and planes stay. Needs no iterators of @a g, only
-   * num_nodes(), node(i), num_edges() and edge(i), which a graph of homework 0
-   * has.
+  /** Add the faces in [first, last), each an array of four nodes in the order
+   * of a Quad. One is shown if it has all nodes in @a node_map and all four
+   * sides among the edges, which are added after it.
+   * Complexity: O(faces log nodes) with a std::map. */
+  template <typename It, typename Map>
+  void add_faces(It first, It last, const Map& node_map) {
+    std::lock_guard lock(build_mutex_);
+    place_faces(first, last, node_map);
+  }
+
+  /** From now on draw_graph(@a g) shows these quads of nodes as cloth, lit and
+   * casting a shadow; one that lost a node or a side is a hole. Needs
+   * num_nodes() and node(i) of @a g.
+   * @param quads a range of Quad, the indices of nodes as they are now
+   * @pre these are below num_nodes()
+   * Complexity: O(quads) */
+  template <typename G, typename Quads>
+  void add_faces(const G& g, const Quads& quads) {
+    FacesOf<G> faces;
+    for (const Quad& q : quads)
+      faces.push_back({g.node(q[0]), g.node(q[1]), g.node(q[2]), g.node(q[3])});
+    std::lock_guard lock(build_mutex_);
+    faces_ = std::move(faces);
+  }
+
+  /** Show the nodes of @a g in white, its edges and the faces that add_faces()
+   * was given in place of the previous ones; spheres and planes stay. Needs no
+   * iterators of @a g, only num_nodes(), node(i), num_edges() and edge(i),
+   * which a graph of homework 0 has.
    * @post The scene is complete and shown, unless another thread adds to it.
-   * Complexity: O((nodes + edges) log nodes). */
+   * Complexity: O((nodes + edges + faces) log nodes). */
   template <typename G>
   void draw_graph(const G& g) {
     auto node_map = start_with_nodes_of(g);
+    {
+      std::lock_guard lock(build_mutex_);
+      if (const auto* faces = std::any_cast<FacesOf<G>>(&faces_))
+        place_faces(faces->begin(), faces->end(), node_map);
+    }
     std::vector<typename G::edge_type> edges;
     for (decltype(g.num_edges()) i = 0; i < g.num_edges(); ++i)
       edges.push_back(g.edge(i));
@@ -208,6 +240,7 @@ class SceneBuilder {
     }
     building_.nodes.clear();
     building_.edges.clear();
+    building_.faces.clear();
     incomplete_ = edges_changed_ = true;
   }
 
@@ -259,7 +292,8 @@ class SceneBuilder {
   }
 
   /** If the complete scene changed since the last call, call
-   * @a use(const SceneData&, bool edges_changed) under a lock.
+   * @a use(const SceneData&, bool edges_changed) under a lock: edges, or
+   * faces.
    * @post wants_frame() */
   template <typename F>
   void take(F use) {
@@ -278,9 +312,13 @@ class SceneBuilder {
 
  private:
   using clock = std::chrono::steady_clock;
+  /** Nodes, not indices: a removal moves those. */
+  template <typename G>
+  using FacesOf = std::vector<std::array<typename G::node_type, 4>>;
 
   std::mutex build_mutex_;      // locked before shown_mutex_
-  SceneData building_;          // its nodes and edges
+  SceneData building_;          // its nodes, edges and faces
+  std::any faces_;              // of draw_graph(): a FacesOf<G>
   bool incomplete_ = false;     // a scene is under construction
   bool edges_changed_ = false;  // building_ has other edges than shown_
   bool has_edges_ = false;      // the program calls add_edges()
@@ -297,10 +335,32 @@ class SceneBuilder {
     builder_ = std::this_thread::get_id();
     last_change_ = clock::now();
   }
+  template <typename It, typename Map>
+  void place_faces(It first, It last, const Map& node_map) {
+    touch();
+    for (; first != last; ++first) {
+      Quad face;
+      unsigned found = 0;
+      for (const auto& n : *first) {
+        const auto at = node_map.find(n);
+        if (at == node_map.end() || at->second >= building_.nodes.size()) break;
+        face[found++] = at->second;
+      }
+      if (found == 4) building_.faces.push_back(face);
+    }
+    incomplete_ = edges_changed_ = true;
+  }
   void publish() {
+    std::vector<Quad> left;
+    if (edges_changed_)
+      left =
+          faces_left(building_.faces, building_.edges, building_.nodes.size());
     std::lock_guard lock(shown_mutex_);
     shown_.nodes = building_.nodes;
-    if (edges_changed_) shown_.edges = building_.edges;
+    if (edges_changed_) {
+      shown_.edges = building_.edges;
+      shown_.faces = std::move(left);
+    }
     new_edges_ |= edges_changed_;
     incomplete_ = edges_changed_ = false;
     has_new_ = true;

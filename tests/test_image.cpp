@@ -25,12 +25,15 @@ std::size_t files_in(const TestFolder& folder) {
 
 // ---------------------------------------------------------- Color and camera
 
-TEST(Color, StrainScaleGrowsInLuminance) {
-  float before = Color::make_strain(0).luminance();
-  for (int i = 1; i <= 1000; ++i) {
-    float now = Color::make_strain(float(i) / 1000).luminance();
-    EXPECT_GT(now, before) << i;
-    before = now;
+TEST(Color, StrainScaleDarkensFromRestToBothEnds) {
+  for (float sign : {-1.0f, 1.0f}) {
+    float before = Color::make_strain(0).luminance();
+    for (int i = 1; i <= 1000; ++i) {
+      const Color c = Color::make_strain(sign * float(i) / 1000);
+      EXPECT_LT(c.luminance(), before) << i;
+      EXPECT_GT(sign * (c.r - c.b), 0) << i;  // red is taut, blue is slack
+      before = c.luminance();
+    }
   }
   EXPECT_NEAR(Color(1).luminance(), 1, 1e-6);
   EXPECT_EQ(Color(0).luminance(), 0);

@@ -122,6 +122,27 @@ TEST(Failure, IsMarkedAndExplainedAsInTheCommittedPicture) {
   EXPECT_EQ(picture_of(*screen), start);
 }
 
+// Cloth stretched by 4 % is red, shrunk by 4 % blue; the scale ends at 5 %.
+TEST(Screen, ColorsTellSlackFromTaut) {
+  const auto screen = Screen::open(Screen::Kind::pictures);
+  screen->show_strain(true);
+  Scene scene(model_of("forces"));
+  // The red of all pixels without the blue; left of the scale.
+  auto red_less_blue = [&](double factor) {
+    for (Node n : scene.cloth().nodes()) n.position() *= factor;
+    screen->show(scene);
+    const Image image = picture_of(*screen);
+    long sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width * 3 / 4; ++x)
+        sum += image.pixel(x, y)[0] - image.pixel(x, y)[2];
+    return double(sum);
+  };
+  const double rest = red_less_blue(1);
+  EXPECT_GT(red_less_blue(1.04), rest + 5e5);
+  EXPECT_LT(red_less_blue(0.96 / 1.04), rest - 5e5);
+}
+
 // The tolerance is so small that the loss of an edge or of a node is seen.
 class Damage : public Picture {};
 INSTANTIATE_TEST_SUITE_P(Tear, Damage, ::testing::Values(frames[4]));

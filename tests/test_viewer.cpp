@@ -327,7 +327,7 @@ TEST(SDLViewer, SameSceneSamePicture) {
     viewer.add_sphere(Point(0.5, 0.5, -0.5), 0.15);
     viewer.add_plane(-0.75);
     viewer.set_strain_colors(true);
-    viewer.set_scale("strain", 0, 0.1, "");
+    viewer.set_scale({.title = "strain", .limit = 0.1});
     add_all(viewer, g, map);
     viewer.set_label(1.25);
     for (int i = 0; i < 2; ++i) pictures.push_back(viewer.snapshot());
@@ -378,19 +378,23 @@ TEST(SDLViewer, WritesLabelAndScale) {
   Image labeled = viewer.snapshot();
   EXPECT_GT(difference(plain, labeled, 0, 0.5, 0, 0.2), 30);
   EXPECT_EQ(difference(plain, labeled, 0, 1, 0.2, 1), 0);
-  viewer.set_scale("strain", 0, 0.5, "%");
+  viewer.set_scale({.title = "strain", .limit = 0.5, .unit = "%"});
   EXPECT_EQ(viewer.snapshot(), labeled);  // not yet
   viewer.set_strain_colors(true);
   Image scaled = viewer.snapshot();
   EXPECT_GT(difference(scaled, labeled, 0.9, 1, 0, 0.6), 500);
-  EXPECT_EQ(difference(scaled, labeled, 0, 0.8), 0);
-  // Yellow above, blue below.
+  EXPECT_EQ(difference(scaled, labeled, 0, 0.6), 0);
+  // Red above, blue below.
   int x = 400 - 16;
   const auto *high = scaled.pixel(x, 36), *low = scaled.pixel(x, 150);
-  EXPECT_GT(high[0], 200);
-  EXPECT_LT(high[2], 80);
-  EXPECT_LT(low[0], 90);
-  EXPECT_GT(low[2], 170);
+  EXPECT_GT(high[0], high[2] + 100);
+  EXPECT_GT(low[2], low[0] + 100);
+  // An end says that there is more beyond it.
+  viewer.set_scale(
+      {.title = "strain", .limit = 0.5, .unit = "%", .below = true});
+  Image below = viewer.snapshot();
+  EXPECT_GT(difference(below, scaled, 0.5, 1, 0.4, 0.6), 10);
+  EXPECT_EQ(difference(below, scaled, 0, 1, 0, 0.4), 0);
 }
 
 TEST(SDLViewer, WritesAMessageInAPanelAtTheBottom) {
@@ -696,6 +700,37 @@ TEST(SDLViewer, MouseAndCenterMoveTheCamera) {
   nothing.motion.xrel = 40;
   auto [before, after] = around(nothing);
   EXPECT_EQ(before, after);
+}
+
+TEST(SDLViewer, KeysShowFacesWiresNodesAndPieces) {
+  TestGraph g;
+  make_net(g, 9);
+  auto after = [&](SDL_Keycode key) {
+    SDLViewer viewer(small());
+    viewer.add_faces(g, grid_quads(9));
+    viewer.draw_graph(g);
+    press(key);
+    press(SDLK_q);
+    viewer.event_loop();
+    return std::pair(viewer.look(), viewer.snapshot());
+  };
+  for (auto it = g.edge_begin(); it != g.edge_end();) {  // cut it in two
+    const auto ends =
+        std::minmax({(*it).node1().index(), (*it).node2().index()});
+    it = ends.first < 27 && ends.second >= 27 ? g.remove_edge(it) : ++it;
+  }
+  const auto [usual, cut] = after(SDLK_2);  // a key that does nothing
+  EXPECT_EQ(usual, Look());
+  using enum Look::Nodes;
+  const std::pair<SDL_Keycode, Look> looks[] = {{SDLK_f, {.faces = false}},
+                                                {SDLK_w, {.wires = false}},
+                                                {SDLK_d, {.nodes = all}},
+                                                {SDLK_k, {.pieces = true}}};
+  for (const auto& [key, look] : looks) {
+    const auto [now, image] = after(key);
+    EXPECT_EQ(now, look) << char(key);
+    EXPECT_GT(difference(image, cut), 500) << char(key);
+  }
 }
 
 // ------------------------------------------------------------- A real window

@@ -108,7 +108,7 @@ worker() {
   for test in $(make -s list-units); do
     mkdir "$logs/taken/$test" 2>/dev/null || continue
     case $test in
-      test_viewer | test_panels | test_image | test_screen)
+      test_viewer | test_panels | test_faces | test_image | test_screen)
         step "$test" env ASAN_OPTIONS=detect_leaks=0 "build/check/$test" ;;
       # 100,000 operations in random histories; by itself it makes more.
       test_graph)

@@ -44,6 +44,10 @@ class Film {
     viewer_.add_sphere(center, radius, Color(0.80f, 0.33f, 0.0f));
   }
   void add_plane(double z) { viewer_.add_plane(z); }
+  template <typename G>
+  void add_faces(const G& g, const std::vector<Quad>& quads) {
+    viewer_.add_faces(g, quads);
+  }
 
   // Of the thread that steps.
   bool wants_frame() const { return true; }

@@ -5,6 +5,7 @@
 #ifdef MASS_SPRING_VIEWER
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -18,13 +19,13 @@
 namespace lab {
 namespace {
 
-/** The largest |l/L - 1| of the springs at @a n: how near it is to tearing. */
+/** The mean l/L - 1 of the springs at @a n: more than 0 if it is taut, less if
+ * it is slack; 0 without springs. */
 double strain_at(const Node& n) {
   double strain = 0;
   for (Edge e : n.edges())
-    if (double L = e.value().L; L > 0)
-      strain = std::max(strain, std::abs(e.length() / L - 1));
-  return strain;
+    if (double L = e.value().L; L > 0) strain += e.length() / L - 1;
+  return n.degree() > 0 ? strain / n.degree() : 0;
 }
 
 class SDLScreen : public Screen {
@@ -44,14 +45,10 @@ class SDLScreen : public Screen {
     if (!shown_) set_view(scene);
     if (!shown_ || moving_) add_obstacles(scene);
     const bool strain = colored_ = viewer_.strain_colors();
-    if (strain) {
-      // The scale only grows, so that a color goes on meaning the same.
-      scale_ = std::max(scale_, round_up(high_strain(g)));
-      viewer_.set_scale("strain |l/L - 1|", 0, 100 * scale_, "%");
-    }
+    if (strain) set_scale(g);
     auto color = [&](Node n) {
       return strain ? CME212::Color::make_strain(
-                          float(std::min(1.0, strain_at(n) / scale_)))
+                          float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
                     : CME212::Color(1);
     };
     viewer_.set_label(label(scene));
@@ -62,6 +59,8 @@ class SDLScreen : public Screen {
     viewer_.clear();
     nodes_.clear();
     viewer_.add_nodes(g.node_begin(), g.node_end(), color, nodes_);
+    const auto faces = faces_of(scene);
+    viewer_.add_faces(faces.begin(), faces.end(), nodes_);
     viewer_.add_edges(g.edge_begin(), g.edge_end(), nodes_);
     version_ = g.version();
     shown_ = true;
@@ -129,16 +128,38 @@ class SDLScreen : public Screen {
     viewer_.set_message(std::move(paragraphs));
   }
 
-  /** The strain that one node in fifty exceeds: what is above has the color of
-   * the top, since the few nodes at the corners would leave no colors for the
-   * others. */
-  static double high_strain(const Cloth& g) {
-    std::vector<double> strains;
-    for (Node n : g.nodes()) strains.push_back(strain_at(n));
-    if (strains.empty()) return 0;
-    auto at = strains.begin() + std::ptrdiff_t(strains.size() * 49 / 50);
-    std::nth_element(strains.begin(), at, strains.end());
-    return *at;
+  /** Make the scale end at the |strain| that one node in fifty exceeds: what
+   * is beyond has the color of the end, since the few nodes at the corners
+   * would leave no colors for the others. It only grows, so that a color goes
+   * on meaning the same. */
+  void set_scale(const Cloth& g) {
+    std::vector<double> strains, sizes;
+    for (Node n : g.nodes()) {
+      strains.push_back(strain_at(n));
+      sizes.push_back(std::abs(strains.back()));
+    }
+    if (strains.empty()) return;
+    const auto at = sizes.begin() + std::ptrdiff_t(sizes.size() * 49 / 50);
+    std::nth_element(sizes.begin(), at, sizes.end());
+    scale_ = std::max(scale_, round_up(*at));
+    const auto [low, high] = std::ranges::minmax(strains);
+    viewer_.set_scale({.title = "strain l/L - 1",
+                       .limit = 100 * scale_,
+                       .unit = "%",
+                       .above = high > scale_,
+                       .below = low < -scale_});
+  }
+
+  /** The nodes of the quads that are left. */
+  static std::vector<std::array<Node, 4>> faces_of(const Scene& scene) {
+    std::vector<std::array<Node, 4>> faces;
+    const auto& built = scene.recipe().built;
+    if (!built) return faces;
+    const Cloth& g = scene.cloth();
+    auto node = [&](unsigned i) { return g.node_with_id(built->ids[i]); };
+    for (const Quad& q : quads_left(g, *built))
+      faces.push_back({node(q[0]), node(q[1]), node(q[2]), node(q[3])});
+    return faces;
   }
 
   /** The smallest of 0.01, 0.02, 0.05, 0.1, ... that is not below @a a. */

@@ -31,7 +31,7 @@ class Screen {
   static std::unique_ptr<Screen> open(Kind kind);
   virtual ~Screen() = default;
 
-  /** Color the nodes by the largest |l/L - 1| of their springs, or no longer.
+  /** Color the nodes by the mean l/L - 1 of their springs, or no longer.
    * In a window the user switches it as well. */
   virtual void show_strain(bool on) = 0;
 

@@ -48,6 +48,8 @@ class SDLViewer {
   void add_edges(It first, It last, const Map&) {
     kit::film_edges(first, last);
   }
+  template <typename... T>
+  void add_faces(const T&...) {}
   template <typename G>
   void draw_graph(G& g) {
     draw_graph_nodes(g);

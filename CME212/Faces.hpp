@@ -1,0 +1,101 @@
+#pragma once
+/** @file Faces.hpp
+ * The faces of a cloth, its quads, as a viewer needs them: which of them are
+ * left, their normals, and the pieces that the cloth is in. */
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "CME212/Mesh.hpp"
+#include "CME212/Point.hpp"
+
+namespace CME212 {
+
+/** Both ends of an edge, as indices of nodes; the smaller one first. */
+using Ends = std::array<std::uint32_t, 2>;
+/** The corners of a Quad one after the other around it. Of a grid they turn
+ * left where one looks down on it: that is its front. */
+inline constexpr std::array<unsigned, 4> around_quad = {0, 2, 3, 1};
+
+/** Those of @a faces of which all four sides are among @a edges: where a cloth
+ * lost a node or a side it has a hole.
+ * @pre all indices are below @a num_nodes
+ * Complexity: O(num_nodes + edges + faces), if no node has very many edges */
+inline std::vector<Quad> faces_left(std::span<const Quad> faces,
+                                    std::span<const Ends> edges,
+                                    std::size_t num_nodes) {
+  // The larger ends of the edges of each node, one list after the other.
+  std::vector<std::uint32_t> begin(num_nodes + 2), ends(edges.size());
+  for (const auto& [low, high] : edges) ++begin[low + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (const auto& [low, high] : edges) ends[begin[low + 1]++] = high;
+  auto has_edge = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    const auto last = ends.begin() + begin[low + 1];
+    return std::find(ends.begin() + begin[low], last, high) != last;
+  };
+  std::vector<Quad> left;
+  std::ranges::copy_if(faces, std::back_inserter(left), [&](const Quad& f) {
+    return std::ranges::all_of(quad_sides, [&](const auto& side) {
+      return has_edge(f[side[0]], f[side[1]]);
+    });
+  });
+  return left;
+}
+
+/** Normals of a smooth surface: at each node the sum of those of its faces,
+ * each as long as its area; zero at a node in no face, and at one that is not
+ * finite. The front is where they point to.
+ * @param position position(i) -> Point, of node i < @a num_nodes
+ * Complexity: O(num_nodes + faces) */
+template <typename F>
+std::vector<Point> face_normals(std::span<const Quad> faces,
+                                std::size_t num_nodes, F position) {
+  std::vector<Point> normals(num_nodes);
+  for (const Quad& f : faces) {
+    const Point n =
+        cross(position(f[3]) - position(f[0]), position(f[1]) - position(f[2]));
+    if (!std::isfinite(normSq(n))) continue;
+    for (std::uint32_t corner : f) normals[corner] += n;
+  }
+  return normals;
+}
+
+/** The connected components of a graph: of each node the number of its piece.
+ * Piece 0 has most nodes, and so on; of two alike the one with the first node
+ * comes first. A node without edges is a piece of its own.
+ * @return the pieces, and the number of those of more than one node
+ * Complexity: O((num_nodes + edges) log num_nodes) */
+inline std::pair<std::vector<std::uint32_t>, std::size_t> pieces_of(
+    std::span<const Ends> edges, std::size_t num_nodes) {
+  // Union-find with path halving: the root of a piece is its first node.
+  std::vector<std::uint32_t> parent(num_nodes), size(num_nodes), roots;
+  std::iota(parent.begin(), parent.end(), 0u);
+  auto root = [&](std::uint32_t i) {
+    for (; parent[i] != i; i = parent[i]) parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto& [a, b] : edges) {
+    const auto [low, high] = std::minmax({root(a), root(b)});
+    parent[high] = low;
+  }
+  for (std::uint32_t i = 0; i < num_nodes; ++i)
+    if (size[root(i)]++ == 0) roots.push_back(i);
+  std::ranges::stable_sort(roots,
+                           [&](auto a, auto b) { return size[a] > size[b]; });
+  const auto single =
+      std::ranges::find(roots, 1u, [&](auto r) { return size[r]; });
+  std::vector<std::uint32_t> piece(num_nodes), rank(num_nodes);
+  for (std::uint32_t k = 0; k < roots.size(); ++k) rank[roots[k]] = k;
+  for (std::uint32_t i = 0; i < num_nodes; ++i) piece[i] = rank[root(i)];
+  return {std::move(piece), std::size_t(single - roots.begin())};
+}
+
+}  // namespace CME212

@@ -1,0 +1,180 @@
+#pragma once
+/** @file GLShaders.hpp
+ * The shaders of GLScene; those with lit() come after light_source. */
+
+namespace CME212 {
+
+namespace gl_detail {
+
+/** Faces, lit from both sides; against the light a little comes through. Light
+ * is found at the nodes: there are fewer of them than pixels. */
+constexpr const char* face_vertex = R"(
+  layout(location = 0) in vec3 at;
+  layout(location = 1) in vec3 color;
+  layout(location = 2) in vec4 normal;  // of the front
+  uniform mat4 view, projection;
+  uniform vec3 front_dye, back_dye;
+  uniform vec3 to_eye;     // from the middle of the picture, of length 1
+  uniform float nearer;    // factor of the distance
+  out vec3 front, back;
+  void main() {
+    vec3 n = normal.xyz;
+    float d = dot(n, to_light);
+    float lamp = 0.55 * abs(d) * lit(at + 0.004 * sign(d) * n);
+    float through = 0.16 * abs(d);
+    float around = 0.34 + 0.22 * abs(dot(n, to_eye));
+    float sky = 0.08 * n.z;
+    front = color * front_dye * (around + sky + (d > 0 ? lamp : through));
+    back = color * back_dye * (around - sky + (d < 0 ? lamp : through));
+    vec4 eye = view * vec4(at, 1);
+    eye.xyz *= nearer;
+    gl_Position = projection * eye;
+  })";
+constexpr const char* face_fragment = R"(
+  in vec3 front, back;
+  out vec4 color;
+  void main() { color = vec4(gl_FrontFacing ? front : back, 1); })";
+
+/** Edges and nodes. They come a little towards the eye along the line of sight,
+ * nodes most, so that what lies on a surface is not hidden by it. */
+constexpr const char* cloth_vertex = R"(
+  layout(location = 0) in vec3 at;
+  layout(location = 1) in vec3 color_in;
+  layout(location = 2) in vec4 normal_in;  // w: is in a face
+  uniform mat4 view, projection;
+  uniform vec3 fade_to, size;  // of a node: at distance 1, least, most
+  uniform vec2 range;          // distances between which a wire fades
+  uniform float tint;          // 1: the node's color; 0: fade_to
+  uniform float nearer;        // factor of the distance
+  uniform float show, ink;     // of what is in a face: is it drawn, how dark
+  out vec4 shade;
+  flat out float radius;
+  void main() {
+    vec4 eye = view * vec4(at, 1);
+    float fade = clamp((-eye.z - range.x) / (range.y - range.x), 0, 1);
+    shade = vec4(mix(fade_to, color_in, tint * (1 - 0.35 * fade)), 1);
+    if (normal_in.w > 0 && ink > 0) shade = vec4(0.3 * color_in, ink);
+    eye.xyz *= nearer;
+    gl_Position = projection * eye;
+    if (show < 1 && normal_in.w > 0 || show < 0)
+      gl_Position = vec4(2, 2, 2, 1);  // out of the picture
+    gl_PointSize = clamp(size.x / -eye.z, size.y, size.z) + 1;  // soft rim
+    radius = gl_PointSize / 2;
+  })";
+constexpr const char* node_fragment = R"(
+  in vec4 shade;
+  flat in float radius;
+  out vec4 color;
+  void main() {
+    float inside = radius * (1 - length(2 * gl_PointCoord - 1));
+    if (inside < 0.1) discard;
+    color = vec4(shade.rgb, min(inside, 1));
+  })";
+constexpr const char* edge_fragment = R"(
+  in vec4 shade;
+  out vec4 color;
+  void main() { color = shade; })";
+/** The unit sphere, placed in the world; the lamp's light at its vertices. */
+constexpr const char* sphere_vertex = R"(
+  layout(location = 0) in vec3 at;
+  uniform mat4 view, projection;
+  uniform vec3 center;
+  uniform float radius;
+  out vec3 normal;
+  out float light;
+  void main() {
+    vec3 place = center + radius * at;
+    float d = dot(at, to_light);
+    light = 0.36 + 0.08 * at.z + (d > 0 ? 0.52 * d * lit(place) : 0.0);
+    normal = mat3(view) * at;
+    gl_Position = projection * (view * vec4(place, 1));
+  })";
+constexpr const char* sphere_fragment = R"(
+  in vec3 normal;
+  in float light;
+  uniform vec3 paint;
+  out vec4 color;
+  void main() {
+    float front = abs(normalize(normal).z);
+    color = vec4(paint * (light + 0.22 * front) + 0.08 * pow(1 - front, 3), 1);
+  })";
+
+/** The unit disc, placed in the world; at its rim it has the ground's color. */
+constexpr const char* plane_vertex = R"(
+  layout(location = 0) in vec3 at;
+  uniform mat4 view, projection;
+  uniform vec3 center;
+  uniform float radius;
+  out vec2 local;
+  void main() {
+    local = at.xy;
+    gl_Position = projection * (view * vec4(center + radius * at, 1));
+  })";
+constexpr const char* plane_fragment = R"(
+  in vec2 local;
+  uniform vec3 paint, ground;
+  uniform float lines;
+  out vec4 color;
+  void main() {
+    vec2 p = local * lines, width = fwidth(p);
+    vec2 line = 1 - clamp(abs(fract(p + 0.5) - 0.5) / width, 0, 1);
+    float rim = max(1 - dot(local, local), 0);
+    float light = 0.68 + 0.12 * max(line.x, line.y);
+    color = vec4(mix(ground, paint * light, 0.9 * sqrt(rim)), 1);
+  })";
+
+/** The shadow on a plane, a net of cells seen from the lamp: strips of two
+ * triangles a cell, one for each instance. */
+constexpr const char* dark_vertex = R"(
+  uniform mat4 view, projection;
+  uniform vec3 origin, across, along;  // of the net: its cells, in the world
+  uniform vec3 center;                 // of the plane, which is horizontal
+  uniform float radius;
+  out float dark;
+  void main() {
+    vec3 place = origin + gl_VertexID / 2 * across +
+                 (gl_VertexID % 2 + gl_InstanceID) * along;
+    place -= (place.z - center.z) / to_light.z * to_light;
+    vec2 p = (place - center).xy / radius;
+    dark = 0.55 * sqrt(max(1 - dot(p, p), 0)) * (1 - lit(place));
+    gl_Position = projection * (view * vec4(place, 1));
+  })";
+constexpr const char* dark_fragment = R"(
+  in float dark;
+  out vec4 color;
+  void main() { color = vec4(0, 0, 0, dark); })";
+
+/** A thick line between two places, or a ring around one, in pixels. */
+constexpr const char* mark_vertex = R"(
+  uniform mat4 view, projection;
+  uniform vec3 from, to;
+  uniform vec2 half_size;  // of the picture
+  uniform float reach;     // to the outer rim
+  flat out vec2 a, b;
+  void main() {
+    vec4 p = projection * (view * vec4(from, 1));
+    vec4 q = projection * (view * vec4(to, 1));
+    a = (p.xy / p.w + 1) * half_size;
+    b = (q.xy / q.w + 1) * half_size;
+    vec2 along = reach * (a == b ? vec2(1, 0) : normalize(b - a));
+    vec2 across = vec2(-along.y, along.x);
+    vec2 corner = gl_VertexID < 2 ? a - along : b + along;
+    corner += gl_VertexID % 2 == 0 ? across : -across;
+    gl_Position = vec4(corner / half_size - 1, 0, 1);
+    if (p.w <= 0 || q.w <= 0) gl_Position = vec4(2, 2, 2, 1);  // behind us
+  })";
+constexpr const char* mark_fragment = R"(
+  flat in vec2 a, b;
+  out vec4 color;
+  uniform vec3 paint;
+  uniform float ring, width, rim;  // ring: its radius, 0 for a line
+  void main() {
+    vec2 p = gl_FragCoord.xy - a, line = b - a;
+    float at = clamp(dot(p, line) / max(dot(line, line), 1e-6), 0, 1);
+    float off = abs(length(p - at * line) - ring) - width / 2;
+    color = vec4(paint * clamp(0.5 - off, 0, 1), clamp(rim + 0.5 - off, 0, 1));
+  })";
+
+}  // namespace gl_detail
+
+}  // namespace CME212
