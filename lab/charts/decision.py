@@ -47,7 +47,7 @@ def decision(csv, out):
     y = height - 84
     picture.text(LEFT - 10, y + 12, "wanted error [m]:", 11, DARK, "right")
     for k, wanted in enumerate(WANTED):
-        picture.text(LEFT + CELL * (k + 0.5), y + 12, f"{wanted:.0e}", 12,
+        picture.text(LEFT + CELL * (k + 0.5), y + 12, f"1e-{k + 2}", 12,
                      DARK, "center")
     for kind, scenes in kinds:
         y -= 12

@@ -101,6 +101,13 @@ def predicted(side, mesh, method):
         side=str(side), mesh=mesh, method=method)[0]["predicted/measured"])
 
 
+def worst(method):
+    """How far the predicted limit is off at most [%]."""
+    return max(abs(100 * float(row["predicted/measured"]) - 100) for row in
+               table("charts/results/stability_table.csv").where(
+                   method=method))
+
+
 def stability(name, column, pick, scale="1", **where):
     """The largest or least value of a column over one of another."""
     return pick(float(row[column]) / float(row.get(scale, 1))

@@ -55,6 +55,7 @@ class Panel:
     curves: list = field(default_factory=list)
     behind: list = field(default_factory=list)
     keep_free: list = field(default_factory=list)  # boxes, in pixels
+    at_end: bool = False  # names stand where curves end, if they can
 
     def pixel(self, point):
         return (self.left + self.x.at(point[0]) * (self.right - self.left),
@@ -102,47 +103,71 @@ def dense(pixels, apart=CELL / 2):
     return found
 
 
+def toward(middle, point, letters):
+    """The place in a label of so many letters that is nearest to a point."""
+    half = LETTER * letters / 2, LINE / 2 - 2
+    return [min(max(p, m - h), m + h)
+            for p, m, h in zip(point, middle, half)]
+
+
 def overlap(a, b):
     return (max(0, min(a[2], b[2]) - max(a[0], b[0])) *
             max(0, min(a[3], b[3]) - max(a[1], b[1])))
 
 
 def place_labels(panel):
-    """{curve's name: (x, y) of the middle of its label, in pixels}: near its
-    own curve and no other, off all curves and labels, inside of the panel."""
+    """{curve's name: (middle of its label, the point of the curve that it
+    belongs to), in pixels}: near its own curve and no other, off all curves
+    and labels, inside of the panel."""
     behind = Crowd(panel, panel.behind)
     crowds = {c.name: Crowd(panel, [c]) for c in panel.curves}
     everyone = Crowd(panel, panel.curves)
-    placed, boxes = {}, list(panel.keep_free)
-    boxes += [(x - 9, y - 9, x + 9, y + 9) for c in panel.curves
-              for x, y in map(panel.pixel, c.rings)]
-    for curve in sorted(panel.curves, key=lambda c: len(c.points)):
+    taken = panel.keep_free + [
+        (x - 9, y - 9, x + 9, y + 9) for c in panel.curves
+        for x, y in map(panel.pixel, c.rings)]
+
+    def in_turn(curves):
+        """The sum of the costs, and the places, one curve after the other."""
+        placed, boxes, total = {}, list(taken), 0
+        for curve in curves:
+            best = best_place(curve, boxes)
+            total += best[0]
+            placed[curve.name] = best[1]
+            boxes.append(best[2])
+        return total, placed
+
+    def best_place(curve, boxes):
         half = LETTER * len(curve.label) / 2 + 2, LINE / 2
-        ways = [(dx * (half[0] + 7), dy * (half[1] + 6))
-                for dx in (1, 0, -1) for dy in (1, 0, -1)
-                if dx or dy]
-        line = dense([panel.pixel(p) for p in curve.points], 8)
-        best = None
+        ways = [(dx * (half[0] + far * 7), dy * (half[1] + far * 6), 4 * far)
+                for dx in (1, 0, -1) for dy in (1, 0, -1) if dx or dy
+                for far in (1, 3, 5)]
+        line = dense([panel.pixel(p) for p in curve.points], 12)
+        best = 1e6, (line[-1], line[-1]), (0, 0, 0, 0)
         for k, (x, y) in enumerate(line):
-            for dx, dy in ways:
+            for dx, dy, away in ways:
                 box = (x + dx - half[0], y + dy - half[1],
                        x + dx + half[0], y + dy + half[1])
                 if (box[0] < panel.left + 3 or box[2] > panel.right + 6 or
                         box[1] < panel.bottom + 3 or box[3] > panel.top):
                     continue
-                near = crowds[curve.name].within(box, 9)
-                cost = (sum(overlap(box, other) for other in boxes) +
-                        20 * everyone.within(box) +
-                        6 * (everyone.within(box, 9) - near) +
-                        (0 if near else 40) +
-                        0.3 * behind.within(box) +
-                        0.2 * min(k + 30, len(line) - 1 - k))
-                if best is None or cost < best[0]:
-                    best = cost, (x + dx, y + dy), box
-        if best:
-            placed[curve.name] = best[1]
-            boxes.append(best[2])
-    return placed
+                cost = (20 * everyone.within(box) + away +
+                        0.3 * min(k + (400 if panel.at_end else 20),
+                                  len(line) - 1 - k))
+                if cost >= best[0]:
+                    continue
+                own = crowds[curve.name]
+                cost += (5 * (everyone.within(box, 15) - own.within(box, 15)) +
+                         0.15 * behind.within(box) +
+                         sum(overlap(box, other) for other in boxes))
+                best = min(best, (cost, ((x + dx, y + dy), (x, y)), box))
+        return best
+
+    # Who comes first has the best place: so some orders are tried.
+    named = [c for c in panel.curves if c.points]
+    orders = [sorted(named, key=key, reverse=down) for down in (0, 1)
+              for key in (lambda c: len(c.points),
+                          lambda c: panel.pixel(c.points[-1])[0])]
+    return min((in_turn(o) for o in orders), key=lambda t: t[0])[1]
 
 
 class Picture:
@@ -222,7 +247,10 @@ class Picture:
                 plots.append(f"{self.block(c.failed)} with points {style} "
                              f"ps 0.8")
             if c.name in labels:
-                self.text(*labels[c.name], c.label, 11, c.color, "center",
+                middle, point = labels[c.name]
+                self.line(*point, *toward(middle, point, len(c.label)),
+                          c.color, 0.8)
+                self.text(*middle, c.label, 11, c.color, "center",
                           "boxed noenhanced")
         self.say(*settings, "plot " + ", ".join(plots or ["NaN"]))
         self.say("unset label", "unset object", "unset arrow")
