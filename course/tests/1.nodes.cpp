@@ -68,6 +68,5 @@ TASK("1.nodes", clear_leaves_an_empty_graph) {
   if (!(s.works & adjacency)) return;  // 1.edges says so
   DID("a ring of 5 nodes; clear(); added n0, n1 and n2 and joined n0 to n2");
   s.add_edge(0, 2);
-  s.hold(by_index | adjacency);
-  CHECK_EQUAL(g.num_edges(), 1);
+  s.hold(by_index | adjacency | (s.works & edge_count));
 }
