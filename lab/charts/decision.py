@@ -1,6 +1,7 @@
 """The chart to look at first: a scene and the error that is wanted say which
 method, which step, and how long a run takes."""
 import textwrap
+from collections import Counter
 
 from panels import DARK, GRAY, Picture, styles
 from results import TRUSTED, Table, cheapest, runs
@@ -22,6 +23,11 @@ def short(seconds):
     return f"{float(number):g} {unit}"
 
 
+def plain(value):
+    """1e-5, not 1e-05."""
+    return f"{value:.0e}".replace("e-0", "e-")
+
+
 def lighter(color, share=0.72):
     """A color mixed with so much white."""
     parts = [int(color[k:k + 2], 16) for k in (1, 3, 5)]
@@ -32,32 +38,32 @@ def decision(csv, out):
     """A row for a scene, a column for an error; neighbors with one answer
     share a cell."""
     table, look = Table(csv), styles()
-    known = {row["scene"] for row in table.rows}
+    known = {row["scene"]: runs(table.where(scene=row["scene"]))
+             for row in table.rows}
+    answers = {scene: answers_of(some) for scene, some in known.items()}
     kinds = [(kind, [s for s in scenes if s in known])
              for kind, scenes in KINDS]
     kinds = [(kind, scenes) for kind, scenes in kinds if scenes]
     height = 120 + ROW * sum(len(s) for _, s in kinds) + 12 * len(kinds)
     picture = Picture(
-        out, LEFT + CELL * len(WANTED) + 8, height,
-        "Contact: verlet. Free motion: symplectic-euler or verlet for "
-        "millimeters, srkn11b for less",
+        out, LEFT + CELL * len(WANTED) + 8, height, message(answers),
         "The cheapest measured run that keeps the error: method, step, time "
         "of the run. Of those within 10 % the most exact one.",
         table.footer())
     y = height - 84
     picture.text(LEFT - 10, y + 12, "wanted error [m]:", 11, DARK, "right")
     for k, wanted in enumerate(WANTED):
-        picture.text(LEFT + CELL * (k + 0.5), y + 12, f"1e-{k + 2}", 12,
+        picture.text(LEFT + CELL * (k + 0.5), y + 12, plain(wanted), 12,
                      DARK, "center")
     for kind, scenes in kinds:
         y -= 12
-        for k, scene in enumerate(scenes):
+        for scene in scenes:
             y -= ROW
             about = table.note("scene " + scene).split(";")[0]
             picture.text(20, y + 38, f"{kind}: {scene}", 11, DARK)
             for line, words in enumerate(textwrap.wrap(about, 38)):
                 picture.text(20, y + 23 - 12 * line, words, 9, GRAY)
-            cells(picture, y, runs(table.where(scene=scene)), look)
+            cells(picture, y, answers[scene], look)
     picture.text(20, 14, "Error: RMS of the positions; with contact, of "
                  "center of mass and energy as a height.", 10)
     picture.say("unset border", "unset tics", "set xrange [0:1]",
@@ -65,12 +71,29 @@ def decision(csv, out):
     picture.finish()
 
 
-def cells(picture, y, some, look):
+def answers_of(some):
+    """The cheapest run for each wanted error; None below the reference's."""
+    return [cheapest(wanted, [r for r in some if r.method != "respa"],
+                     lambda run: run.seconds)
+            if wanted >= TRUSTED * some[0].floor else None
+            for wanted in WANTED]
+
+
+def message(answers):
+    """The method that is chosen most often, with contact and without."""
+    def most(kinds, columns):
+        chosen = Counter(run.method for kind, scenes in KINDS if kind in kinds
+                         for scene in scenes
+                         for run in answers.get(scene, [])[columns] if run)
+        return chosen.most_common(1)[0][0] if chosen else "not measured"
+    free = ("linear", "cloth in free motion")
+    return (f"Contact: {most(('contact',), slice(0, None))}. Free motion: "
+            f"{most(free, slice(0, 2))} for millimeters, "
+            f"{most(free, slice(2, None))} for less")
+
+
+def cells(picture, y, answers, look):
     """A row of the table."""
-    answers = [cheapest(wanted, [r for r in some if r.method != "respa"],
-                        lambda run: run.seconds)
-               if wanted >= TRUSTED * some[0].floor else None
-               for wanted in WANTED]
     first = 0
     while first < len(WANTED):
         end = first
@@ -80,13 +103,15 @@ def cells(picture, y, some, look):
         run, first = answers[first], end
         if not run:
             picture.text((x0 + x1) / 2, y + ROW / 2,
-                         "the reference is no better", 9, "#aaaaaa", "center")
+                         "below the reference's error"
+                         if x1 - x0 > CELL else "unknown", 9, "#aaaaaa",
+                         "center")
             continue
         picture.box(x0 + 1, y + 2, x1 - 1, y + ROW - 2,
                     lighter(look[run.method][0],
                             0.88 if look[run.method][2] == "implicit" else 0.7))
         step = (f"step {short(run.dt)}" if run.dt
-                else f"tolerance {run.tolerance:g} m")
+                else f"tolerance {plain(run.tolerance)} m")
         for line, words in enumerate((f"{{/:Bold {run.method}}}", step,
                                       f"run {short(run.seconds)}")):
             picture.text((x0 + x1) / 2, y + 41 - 14 * line, words, 9,

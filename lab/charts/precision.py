@@ -296,7 +296,8 @@ def energy(csv, out):
             c.label = m + " diverges"
     for c in curves.values():
         c.points.append((c.end, c.points[-1][1]))
-    if "respa" in curves and curves["respa"].points == curves["verlet"].points:
+    if {"respa", "verlet"} <= curves.keys() and (
+            curves["respa"].points == curves["verlet"].points):
         del curves["respa"]
         curves["verlet"].label = "verlet = respa"
     about, _, rest = table.note("scene").partition("; ")
