@@ -31,9 +31,9 @@
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/viewer/Live.hpp"
 #include "lab/viewer/Options.hpp"
 #include "lab/viewer/Run.hpp"
-#include "lab/viewer/RunReplay.hpp"
 #include "lab/viewer/Screen.hpp"
 
 using namespace lab;
@@ -91,40 +91,75 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   return run.finish();
 }
 
-/** Run in a window: the simulation in a thread of its own, at most o.speed
- * times as fast as the clock. A run that failed stays on the screen until it
- * is restarted or the window is closed.  @return exit status */
-int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
-  screen.show_strain(o.strain);
-  screen.set_paused(o.paused);
-  screen.show(scene);
+/** A run in a window that writes files: that of its scene. */
+struct PlainRun {
+  Scene& scene;
+  Run& run;
+  Screen& screen;
+  double limit;  // of the speed
+
+  bool serve() { return false; }
+  void restart() { run.restart(); }
+  void advance() { run.advance(); }
+  void show() {
+    run.check();
+    screen.show(scene);
+  }
+  bool done() const { return run.done(); }
+  double time() const { return scene.time(); }
+  double speed() const { return limit; }
+};
+
+/** A run in a window that the user changes. */
+struct LiveRun {
+  Live& live;
+  Screen& screen;
+  bool told = false;  // that it failed
+
+  bool serve() { return screen.serve(live); }
+  void restart() { live.apply(Restart()); }
+  void advance() { live.step(); }
+  void show() {
+    live.check();
+    const bool failed = !live.scene().failure().empty();
+    if (failed && !told)
+      std::cerr << "cloth: " << live.scene().explanation() << '\n';
+    told = failed;
+    screen.show(live);
+  }
+  bool done() const { return interrupted() || live.done(); }
+  double time() const { return live.scene().time(); }
+  double speed() const { return screen.speed(); }
+};
+
+/** Step @a s in a thread of its own, at most s.speed() times as fast as the
+ * clock, until the window is closed. A run that failed stays on the screen
+ * until then or until it is restarted. */
+template <typename S>
+void step_in_window(S& s, Screen& screen) {
   std::exception_ptr error;
   std::thread simulation([&] {
     try {
       CME212::Clock clock;
       double ahead = 0;  // simulated before the clock started [s]
+      s.show();
       while (!screen.closed()) {
-        if (screen.take_restart()) {
-          run.restart();
-          screen.show(scene);
-        }
-        if (run.done()) {
-          if (screen.coloring_changed()) screen.show(scene);
+        bool changed = s.serve();
+        if (screen.take_restart()) s.restart(), changed = true;
+        if (changed || (s.done() && screen.coloring_changed())) s.show();
+        if (s.done()) {
           CME212::sleep(0.01);
           continue;
         }
-        if (!screen.wait_while_paused(scene)) continue;
-        run.advance();
-        if (screen.wants_frame() || run.done()) {
-          run.check();
-          screen.show(scene);
-        }
-        if (o.speed > 0) {
-          double early = (scene.time() - ahead) / o.speed - clock.seconds();
+        if (!screen.wait_while_paused([&s] { s.show(); })) continue;
+        s.advance();
+        if (screen.wants_frame() || s.done()) s.show();
+        if (const double speed = s.speed(); speed > 0) {
+          double early = (s.time() - ahead) / speed - clock.seconds();
           if (early > 0 && early < 1)
             CME212::sleep(early);
           else if (early != 0)  // late, paused or restarted: count anew
-            clock.start(), ahead = scene.time();
+            clock.start(), ahead = s.time();
         }
       }
     } catch (...) {
@@ -141,8 +176,28 @@ int run_in_window(Scene& scene, Run& run, const Options& o, Screen& screen) {
   simulation.join();
   watch.join();
   if (error) std::rethrow_exception(error);
-  run.check();
-  return run.finish();
+}
+
+/** Run in a window in which the user may change everything.
+ * @return exit status */
+int run_live(const Options& o, Screen& screen) {
+  Live live(o.model);
+  if (!o.quiet) {
+    std::cout << live.scene().cloth().num_nodes() << " nodes, "
+              << live.scene().cloth().num_edges() << " edges\n";
+    announce(live.scene(), o);
+  }
+  screen.show_strain(o.strain);
+  screen.set_paused(o.paused);
+  screen.open_panels(o.speed);
+  LiveRun run{live, screen};
+  CME212::Clock clock;
+  step_in_window(run, screen);
+  live.check();
+  if (interrupted()) tell_interrupt(live.scene(), live.model(), "");
+  if (!o.quiet) print_summary(live.scene(), live.model(), clock.seconds());
+  if (!live.scene().failure().empty()) return 3;
+  return interrupted() ? 128 + interrupted() : 0;
 }
 
 /** Take the advice on the scene of @a o: print it, write it, or put it into
@@ -173,14 +228,12 @@ void check_outputs(const Options& o) {
   std::map<std::string, const char*> option_of, input_of;
   for (const auto& [option, file] :
        {std::pair("nodes", o.model.nodes), std::pair("tets", o.model.tets),
-        std::pair("config", o.config), std::pair("restart", o.restart),
-        std::pair("replay", o.replay)})
+        std::pair("config", o.config), std::pair("restart", o.restart)})
     if (!file.empty()) input_of.emplace(CME212::output_target(file), option);
   const std::set<Pair> follow = {{"out", "nodes"},
                                  {"out", "tets"},
                                  {"write-config", "config"},
-                                 {"checkpoint", "restart"},
-                                 {"record-input", "replay"}};
+                                 {"checkpoint", "restart"}};
   auto add = [&](const char* option, const std::string& file) {
     const std::string target = CME212::output_target(file);
     const auto input = input_of.find(target);
@@ -214,8 +267,7 @@ void check_outputs(const Options& o) {
         std::pair("out", quads_beside(o.out)),
         std::pair("screenshot", o.screenshot), std::pair("record", o.video),
         std::pair("write-config", o.advised),
-        std::pair("checkpoint", o.checkpoint),
-        std::pair("record-input", o.record_input)}) {
+        std::pair("checkpoint", o.checkpoint)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
     if (file.empty() || std::filesystem::is_other(file)) continue;
     with_place(option, [&to = file] { CME212::OutputFile try_it(to); });
@@ -228,7 +280,6 @@ int run(Options o) {
   catch_interrupts();
   check_outputs(o);
   Sweep::set_threads(o.threads);
-  if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   const Model& m = o.model;
@@ -247,14 +298,24 @@ int run(Options o) {
       check_outputs(o);
     }
   }
+  if (window && !o.writes()) return run_live(o, *window);
   Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";
   run.announce();
-  const int status = window ? run_in_window(scene, run, o, *window)
-                            : run_headless(scene, run, o);
+  int status = 0;
+  if (window) {
+    window->show_strain(o.strain);
+    window->set_paused(o.paused);
+    PlainRun plain{scene, run, *window, o.speed};
+    step_in_window(plain, *window);
+    run.check();
+    status = run.finish();
+  } else {
+    status = run_headless(scene, run, o);
+  }
   if (scene.done(m.t_end) && status == 0 && !o.quiet) print_answer(scene, m);
   return status;
 }

@@ -11,7 +11,9 @@ lab_main   := lab/cloth.cpp lab/advice/adviser_suite.cpp \
               lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := data/make_grid.cpp docs/example_graph.cpp
-lab_lib    := $(filter-out $(lab_main),$(wildcard lab/*.cpp lab/*/*.cpp))
+lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer
+lab_lib    := $(filter-out $(lab_main) $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
+              $(wildcard lab/*.cpp lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
 LAB_PROGRAMS := $(call names,$(lab_main))
@@ -25,7 +27,7 @@ cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
 # What names SDL, or asks whether there is a viewer.
-lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
+lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% $(lab_panels) \
             tests/test_viewer.% tests/test_panels.% CME212/%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)

@@ -14,7 +14,7 @@ lab_objects := $(lab_lib:.cpp=.o)
 else
 dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
-drawing    := lab/viewer/Screen.cpp
+drawing    := lab/viewer/Screen.cpp $(filter $(lab_panels),$(lab_lib))
 united     := $(filter-out $(drawing),$(lab_lib))
 rooms      := $(sort $(dir $(united)))
 

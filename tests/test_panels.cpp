@@ -1,13 +1,19 @@
 /** @file test_panels.cpp
  * Tests of what a user does in a window with panels: CME212/Hand.hpp,
- * SDLViewer::set_panels() and set_touch(). They need no display. */
+ * SDLViewer::set_panels() and set_touch(); lab/viewer/Plot.hpp, and each
+ * control of lab/viewer/Panel.hpp, moved by the mouse. They need no display. */
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "CME212/GLOverlay.hpp"  // Dear ImGui, to draw a panel
@@ -17,6 +23,10 @@
 #include "CME212/SDLWindow.hpp"  // SDL, to push its events
 #include "CME212/Util.hpp"
 #include "Graph.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/viewer/Live.hpp"
+#include "lab/viewer/Plot.hpp"
+#include "lab/viewer/Screen.hpp"
 
 namespace {
 
@@ -162,6 +172,13 @@ struct Mouse {
     e.key.keysym.sym = sym;
     e.key.keysym.scancode = SDL_GetScancodeFromKey(sym);
     if (down && sym == SDLK_LCTRL) e.key.keysym.mod = KMOD_LCTRL;
+    SDL_PushEvent(&e);
+  }
+  /** Ask for a frame. */
+  static void expose() {
+    SDL_Event e{};
+    e.type = SDL_WINDOWEVENT;
+    e.window.event = SDL_WINDOWEVENT_EXPOSED;
     SDL_PushEvent(&e);
   }
   static void type(char c) {
@@ -344,6 +361,271 @@ TEST(PanelsThreads, AProgramWakesAPausedSimulation) {
     EXPECT_TRUE(p.viewer.paused());
   });
   simulation.join();
+}
+
+// --------------------------------------------------------------------- Plots
+
+TEST(Plot, TicksAreRoundAndFewEnough) {
+  using lab::axis_ticks, lab::tick_text;
+  EXPECT_EQ(axis_ticks(0, 1, 5, false),
+            (std::vector<double>{0, 0.2, 0.2 * 2, 0.2 * 3, 0.8, 1}));
+  for (double low : {-3.3, 0.0, 997.0})
+    for (double span : {1e-5, 0.7, 1.0, 33.0, 1e9})
+      for (int most : {2, 5, 9}) {
+        const auto ticks = axis_ticks(low, low + span, most, false);
+        EXPECT_LE(ticks.size(), most + 1u);
+        EXPECT_GE(ticks.size(), most / 3 + 0u);
+        for (double t : ticks) EXPECT_TRUE(low <= t && t <= low + span);
+      }
+  EXPECT_EQ(axis_ticks(0.05, 20, 4, true), (std::vector<double>{0.1, 1, 10}));
+  EXPECT_LE(axis_ticks(1e-16, 1, 4, true).size(), 5u);
+  EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
+  EXPECT_EQ(tick_text(4, 2), "4");
+  EXPECT_EQ(tick_text(0, 1e-7), "0.0000000");
+  EXPECT_EQ(tick_text(2e-7, 1e-7), "2e-07");
+}
+
+TEST(Plot, RangesLeaveGapsAway) {
+  const float nan = std::nanf("");
+  const std::vector<float> a{1, nan, 3}, b{0, -2, 2}, flat{5, 5}, none{nan};
+  const auto range = [](const std::vector<float>& v, bool log) {
+    const lab::Curve curve{"", 0, v};
+    return lab::axis_range({&curve, 1}, log);
+  };
+  EXPECT_NEAR(range(a, false)[0], 0.88, 1e-6);
+  EXPECT_NEAR(range(a, false)[1], 3.12, 1e-6);
+  EXPECT_EQ(range(b, true), (std::array{1.0, 10.0}));
+  EXPECT_LT(range(flat, false)[0], 5);
+  EXPECT_GT(range(flat, false)[1], 5);
+  EXPECT_EQ(range(none, false), (std::array{0.0, 1.0}));
+}
+
+// -------------------------------------------------------- The learning viewer
+
+/** A window on a small hanging sheet, in memory, and its simulation. */
+struct LiveWindow {
+  std::unique_ptr<lab::Screen> screen =
+      lab::Screen::open(lab::Screen::Kind::pictures);  // 1024 x 768
+  struct Seen {
+    lab::Model model;
+    lab::Readings now;
+    std::vector<bool> pinned;
+  };
+
+  explicit LiveWindow(bool paused = true) {
+    screen->open_panels(0);
+    screen->set_paused(paused);
+  }
+  static lab::Model sheet() {
+    lab::Model m;
+    m.sheets = {{.u = Point(1, 0, 0), .v = Point(0, 0, 1), .nodes = {5, 5}}};
+    m.pins.push_back({0, 0, 1, {}});
+    m.view = lab::Box{Point(-0.2, 0, -0.2), Point(1.2, 0, 1.2)};
+    m.step.dt = 0.001;
+    m.t_end = 1e6;
+    return m;
+  }
+  /** Where a point [m] of the sheet is drawn. */
+  static std::array<int, 2> at(const Point& p) {
+    Picture picture{{}, 1024, 768};
+    picture.camera.set_hidden_left(300 / 1024.0);
+    picture.camera.look_from(Point(0.75, -1, 0.4));
+    picture.camera.fit(
+        (BoundingBox() |= Point(-0.2, 0, -0.2)) |= Point(1.2, 0, 1.2),
+        picture.aspect());
+    const Point q = picture.place_of(p);
+    return {int(q.x), int(q.y)};
+  }
+  Seen seen() {
+    std::lock_guard lock(mutex_);
+    return seen_;
+  }
+  bool sees(const std::function<bool(const Seen&)>& what) {
+    return soon([&] { return what(seen()); });
+  }
+  /** Where a control is, once it is drawn. */
+  std::array<int, 2> find(const std::string& control) {
+    std::array<double, 2> p{}, last{};
+    const bool there = soon([&] {
+      Mouse::expose();
+      CME212::sleep(0.02);
+      last = std::exchange(p, screen->place_of(control));
+      return p[0] > 0 && p == last;
+    });
+    EXPECT_TRUE(there) << control;
+    return {int(p[0]), int(p[1])};
+  }
+  void click(const std::string& control) {
+    const auto [x, y] = find(control);
+    Mouse::click(x, y);
+  }
+  /** Close a part of the panel: what is @a below moves up. */
+  void fold(const std::string& part, const std::string& below) {
+    const int y = find(below)[1];
+    click(part);
+    EXPECT_TRUE(soon([&] {
+      Mouse::expose();
+      CME212::sleep(0.02);
+      return screen->place_of(below)[1] < y - 1;
+    }));
+  }
+  /** Drag a slider to its end. */
+  void slide(const std::string& control, bool to_right) {
+    const auto [x, y] = find(control);
+    Mouse::drag(x - 30, y, to_right ? x + 250 : x - 250, y);
+  }
+  void run(const std::function<void()>& user) {
+    lab::Live live(sheet());
+    std::thread simulation([&] {
+      const auto show = [&] {
+        screen->show(live);
+        std::lock_guard lock(mutex_);
+        seen_ = {live.model(), live.readings(), {}};
+        for (unsigned k = 0; k < seen_.now.nodes; ++k)
+          seen_.pinned.push_back(live.is_pinned(k));
+      };
+      show();
+      while (!screen->closed()) {
+        if (screen->serve(live)) show();
+        if (screen->take_restart()) live.apply(lab::Restart()), show();
+        if (!screen->wait_while_paused(show)) continue;
+        if (live.step()) show();
+      }
+    });
+    std::thread thread([&] {
+      user();
+      screen->close();
+    });
+    screen->event_loop();
+    simulation.join();
+    thread.join();
+  }
+
+ private:
+  std::mutex mutex_;
+  Seen seen_;
+};
+
+TEST(LiveThreads, EachControlChangesTheSimulation) {
+  LiveWindow w;
+  using Seen = LiveWindow::Seen;
+  w.run([&] {
+    w.click("step");
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.now.steps == 1; }));
+    w.click("method");
+    w.click("method/rk4");
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      return s.model.method->info.name == std::string("rk4") &&
+             s.now.method == std::string("rk4");
+    }));
+    w.slide("dt / limit", true);
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      return std::abs(s.now.dt / s.now.dt_unit - 10) < 1e-9;
+    }));
+    w.slide("dt / limit", false);
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      return std::abs(s.now.dt / s.now.dt_unit - 0.01) < 1e-9;
+    }));
+    w.slide("K [N/m]", true);
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.model.stiffness == 1e5; }));
+    w.slide("drag [kg/s]", true);
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.model.damping == 1; }));
+    w.slide("g [m/s^2]", false);
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.model.gravity == -20; }));
+    EXPECT_EQ(w.screen->speed(), 0);
+    w.slide("time scale", false);
+    EXPECT_TRUE(soon([&] { return w.screen->speed() == 0.01; }));
+    w.click("step");
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.now.steps == 2; }));
+    w.click("restart");
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.now.time == 0; }));
+    w.click("play");
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.now.steps > 20; }));
+  });
+}
+
+TEST(LiveThreads, TwoMethodsAreCompared) {
+  LiveWindow w;
+  using Seen = LiveWindow::Seen;
+  w.run([&] {
+    w.fold("Numbers", "Plots"), w.fold("Plots", "Two methods");
+    w.click("Two methods");
+    w.click("second");
+    w.click("second/pefrl");
+    w.click("equal work");
+    w.click("compare");
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      return s.now.comparison &&
+             s.now.comparison->rival.method == std::string("pefrl") &&
+             s.now.comparison->at == lab::Compare::At::equal_work;
+    }));
+    w.click("side by side");
+    w.click("equal time");
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      return s.now.comparison &&
+             s.now.comparison->at == lab::Compare::At::equal_time;
+    }));
+    w.slide("its dt / limit", false);
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      const auto& c = s.now.comparison;
+      return c && c->rival.dt < 0.02 * c->rival.dt_unit;
+    }));
+    w.click("step");
+    EXPECT_TRUE(w.sees([](const Seen& s) {
+      return s.now.comparison && s.now.comparison->apart.largest > 0;
+    }));
+    w.click("stop comparing");
+    EXPECT_TRUE(w.sees([](const Seen& s) { return !s.now.comparison; }));
+  });
+}
+
+TEST(LiveThreads, ScenesAreChosenAndBroken) {
+  LiveWindow w;
+  using Seen = LiveWindow::Seen;
+  w.run([&] {
+    w.fold("Numbers", "Plots"), w.fold("Plots", "Two methods");
+    w.click("Scenes, and how to break them");
+    w.click("scene");
+    w.click("scene/drape");
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.model.name == "drape"; }));
+    for (const lab::Breakage& b : lab::breakages()) {
+      w.click(b.name);
+      EXPECT_TRUE(w.sees([&](const Seen& s) { return s.model.name == b.name; }))
+          << b.name;
+    }
+  });
+}
+
+TEST(LiveThreads, TheMousePullsCutsAndPinsTheCloth) {
+  LiveWindow w;
+  using Seen = LiveWindow::Seen;
+  w.run([&] {
+    w.find("play");
+    const auto [x, y] = LiveWindow::at(Point(1, 0, 0));
+    Mouse::move(x, y);
+    Mouse::key(SDLK_p);
+    const auto pins = [](const Seen& s) {
+      return std::count(s.pinned.begin(), s.pinned.end(), true);
+    };
+    EXPECT_TRUE(w.sees([&](const Seen& s) { return pins(s) == 2; }));
+    Mouse::key(SDLK_p, false);
+    Mouse::key(SDLK_p);
+    EXPECT_TRUE(w.sees([&](const Seen& s) { return pins(s) == 1; }));
+    Mouse::move(x, y), Mouse::button(x, y, true);
+    EXPECT_TRUE(w.sees([](const Seen& s) { return s.now.grabbed; }));
+    Mouse::move(x + 60, y, true);
+    Mouse::button(x + 60, y, false);
+    EXPECT_TRUE(w.sees([](const Seen& s) { return !s.now.grabbed; }));
+    // Between the first two columns of nodes: 5 sides and 8 diagonals.
+    const unsigned edges = w.seen().now.edges;
+    const auto [x0, y0] = LiveWindow::at(Point(0.125, 0, -0.1));
+    const auto [x1, y1] = LiveWindow::at(Point(0.125, 0, 1.1));
+    Mouse::key(SDLK_LCTRL);
+    Mouse::drag(x0, y0, x1, y1);
+    Mouse::key(SDLK_LCTRL, false);
+    EXPECT_TRUE(
+        w.sees([&](const Seen& s) { return s.now.edges == edges - 13; }));
+  });
 }
 
 }  // namespace

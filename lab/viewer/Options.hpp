@@ -25,11 +25,14 @@ struct Options {
   std::string advised;        ///< file for the advised scene
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
-  std::string record_input, replay;
 
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || !advised.empty(); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
+  /** True if the run shall leave files, or goes on from one. */
+  bool writes() const {
+    return !(csv + out + vtp + obj + ply + checkpoint + restart).empty();
+  }
 };
 
 /** Read the scene file, if there is one, and then the command line, which

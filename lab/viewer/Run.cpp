@@ -25,6 +25,79 @@ constexpr const char* warning = "cloth: warning: ";
 
 }  // namespace
 
+void announce(const Scene& scene, const Options& o, long long first_step) {
+  if (o.quiet) return;
+  using CME212::percent;
+  for (const std::string& line :
+       what_acts(o.model, scene.cloth(), scene.recipe().built->mesh))
+    std::cout << line << '\n';
+  const std::string method = scene.method().name;
+  const double dt = scene.dt(), limit = scene.safe_limit();
+  const bool sharp = scene.step_rule() == StepRule::sharp;
+  std::ostringstream out;
+  out.precision(3);
+  out << "dt = " << dt << " s";
+  if (sharp) {
+    out << " at first; auto:sharp takes " << percent(sharp_share)
+        << " of the stability limit in the present configuration, at most "
+        << limit << " s, the limit in any (" << method << ')';
+  } else if (scene.method().adaptive) {
+    out << ": " << method << " chooses its inner steps by their error";
+    if (const double t = o.model.step.tolerance; t > 0)
+      out << ", below " << t << " m each, for " << o.model.tolerance
+          << " m at the end";
+  } else if (limit == no_limit) {
+    const double verlet = scene.safe_limit(entry_of<Verlet>());
+    out << ": " << method << " has no stability limit";
+    if (std::isfinite(verlet))
+      out << "; this is " << percent(dt / verlet) << " of that of verlet ("
+          << verlet << " s)";
+  } else if (limit > 0) {
+    out << ": " << percent(dt / limit) << " of the stability limit (" << limit
+        << " s, " << method << ')';
+  } else {
+    out << ": no step is stable with " << method << " and no drag";
+  }
+  if (scene.control())
+    out << "; then as the energy balance allows: no gain above "
+        << percent(energy_tolerance) << " of kinetic and elastic energy";
+  if (first_step > 0)
+    std::cout << o.restart << ": goes on at t = " << scene.time() << " s\n";
+  std::cout << out.str() << std::endl;  // at once, also into a pipe
+  const auto& built = scene.recipe().built;
+  if (built && first_step == 0)  // they are about the cloth as it was made
+    for (const auto& w : warnings(o.model, built->mesh, scene.cloth(), dt))
+      std::cerr << warning << w << '\n';
+  if (dt <= limit || sharp) return;
+  out.str("");
+  if (limit > 0)
+    out << "dt exceeds the stability limit: expect divergence; use --dt "
+        << safe_share * limit << " or --dt auto";
+  else
+    out << "expect divergence; use --method verlet --dt auto";
+  std::cerr << warning << out.str() << '\n';
+}
+
+void tell_interrupt(const Scene& scene, const Model& m,
+                    const std::string& kept) {
+  using CME212::short_text;
+  std::cerr << "cloth: " << name_of_interrupt()
+            << " ended the run at t = " << short_text(scene.time()) << " s of "
+            << short_text(m.t_end) << " s; kept: "
+            << (kept.empty() ? "nothing, as no output was asked for" : kept)
+            << '\n';
+}
+
+void print_summary(const Scene& scene, const Model& m, double seconds) {
+  const Energies e = energies(scene.cloth(), m.gravity);
+  std::cout << scene.recipe().name << ": " << scene.steps()
+            << " steps to t = " << scene.time() << " s in " << seconds
+            << " s; energy " << e.total() << " J = " << e.kinetic
+            << " kinetic + " << e.elastic << " elastic + " << e.gravitational
+            << " gravitational; " << scene.cloth().num_nodes() << " nodes and "
+            << scene.cloth().num_edges() << " edges left\n";
+}
+
 Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
@@ -113,58 +186,7 @@ void Run::show_progress() {
                  t / t_end);
 }
 
-void Run::announce() const {
-  if (o_.quiet) return;
-  using CME212::percent;
-  for (const std::string& line :
-       what_acts(o_.model, scene_.cloth(), scene_.recipe().built->mesh))
-    std::cout << line << '\n';
-  const std::string method = scene_.method().name;
-  const double dt = scene_.dt(), limit = scene_.safe_limit();
-  const bool sharp = scene_.step_rule() == StepRule::sharp;
-  std::ostringstream out;
-  out.precision(3);
-  out << "dt = " << dt << " s";
-  if (sharp) {
-    out << " at first; auto:sharp takes " << percent(sharp_share)
-        << " of the stability limit in the present configuration, at most "
-        << limit << " s, the limit in any (" << method << ')';
-  } else if (scene_.method().adaptive) {
-    out << ": " << method << " chooses its inner steps by their error";
-    if (const double t = o_.model.step.tolerance; t > 0)
-      out << ", below " << t << " m each, for " << o_.model.tolerance
-          << " m at the end";
-  } else if (limit == no_limit) {
-    const double verlet = scene_.safe_limit(entry_of<Verlet>());
-    out << ": " << method << " has no stability limit";
-    if (std::isfinite(verlet))
-      out << "; this is " << percent(dt / verlet) << " of that of verlet ("
-          << verlet << " s)";
-  } else if (limit > 0) {
-    out << ": " << percent(dt / limit) << " of the stability limit (" << limit
-        << " s, " << method << ')';
-  } else {
-    out << ": no step is stable with " << method << " and no drag";
-  }
-  if (scene_.control())
-    out << "; then as the energy balance allows: no gain above "
-        << percent(energy_tolerance) << " of kinetic and elastic energy";
-  if (first_step_ > 0)
-    std::cout << o_.restart << ": goes on at t = " << scene_.time() << " s\n";
-  std::cout << out.str() << std::endl;  // at once, also into a pipe
-  const auto& built = scene_.recipe().built;
-  if (built && first_step_ == 0)  // they are about the cloth as it was made
-    for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
-      std::cerr << warning << w << '\n';
-  if (dt <= limit || sharp) return;
-  out.str("");
-  if (limit > 0)
-    out << "dt exceeds the stability limit: expect divergence; use --dt "
-        << safe_share * limit << " or --dt auto";
-  else
-    out << "expect divergence; use --method verlet --dt auto";
-  std::cerr << warning << out.str() << '\n';
-}
+void Run::announce() const { lab::announce(scene_, o_, first_step_); }
 
 int Run::finish() {
   progress_.end();
@@ -196,8 +218,8 @@ int Run::finish() {
     }
   });
   if (error) std::rethrow_exception(error);
-  if (cut_short()) tell_interrupt();
-  if (!o_.quiet) print_summary();
+  if (cut_short()) tell_interrupt(scene_, o_.model, kept_);
+  if (!o_.quiet) print_summary(scene_, o_.model, seconds_);
   if (scene_.control()) tell_steps(*scene_.control());
   if (!scene_.failure().empty()) return 3;
   return cut_short() ? 128 + interrupted() : 0;
@@ -302,15 +324,6 @@ void Run::write_mesh() {
   wrote(o_.out);
 }
 
-void Run::tell_interrupt() const {
-  using CME212::short_text;
-  std::cerr << "cloth: " << name_of_interrupt()
-            << " ended the run at t = " << short_text(scene_.time()) << " s of "
-            << short_text(o_.model.t_end) << " s; kept: "
-            << (kept_.empty() ? "nothing, as no output was asked for" : kept_)
-            << '\n';
-}
-
 void Run::add_row() {
   if (!csv_ || scene_.steps() == last_row_) return;
   last_row_ = scene_.steps();
@@ -376,16 +389,6 @@ void Run::tell_steps(const StepControl& c) const {
             << " s: shortened " << r.shortened << " times, lengthened "
             << r.lengthened << " times, " << r.taken_back
             << " steps taken back; " << out.str() << '\n';
-}
-
-void Run::print_summary() const {
-  const Energies e = energies(scene_.cloth(), o_.model.gravity);
-  std::cout << scene_.recipe().name << ": " << scene_.steps()
-            << " steps to t = " << scene_.time() << " s in " << seconds_
-            << " s; energy " << e.total() << " J = " << e.kinetic
-            << " kinetic + " << e.elastic << " elastic + " << e.gravitational
-            << " gravitational; " << scene_.cloth().num_nodes() << " nodes and "
-            << scene_.cloth().num_edges() << " edges left\n";
 }
 
 }  // namespace lab

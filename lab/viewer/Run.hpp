@@ -18,6 +18,15 @@ namespace lab {
 class Scene;
 class StepControl;
 
+/** Say how long the step of @a scene is and how long it may be.
+ * @param first_step Steps done before a checkpoint */
+void announce(const Scene& scene, const Options& o, long long first_step = 0);
+/** Say in a line what @a scene of @a m came to in @a seconds. */
+void print_summary(const Scene& scene, const Model& m, double seconds);
+/** Say that a signal ended the run of @a scene, and what was @a kept. */
+void tell_interrupt(const Scene& scene, const Model& m,
+                    const std::string& kept);
+
 /** One run of a scene with all that is written about it. */
 class Run {
  public:
@@ -45,7 +54,7 @@ class Run {
   /** Step until done(), with a call of @a after() after each step. */
   void to_end(const std::function<void()>& after = [] {});
 
-  /** Say how long the step is and how long it may be. */
+  /** As below, of this run. */
   void announce() const;
 
   /** A file was written by others: @a what in words, as "film x.mp4". */
@@ -94,9 +103,7 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
-  void tell_interrupt() const;
   void tell_steps(const StepControl& c) const;
-  void print_summary() const;
 };
 
 }  // namespace lab

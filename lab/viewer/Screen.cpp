@@ -9,12 +9,17 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <mutex>
 #include <optional>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/viewer/Live.hpp"
+#include "lab/viewer/Panel.hpp"
 
 namespace lab {
 namespace {
@@ -28,6 +33,8 @@ double strain_at(const Node& n) {
   return n.degree() > 0 ? strain / n.degree() : 0;
 }
 
+const CME212::Color rival_color(1.0f, 0.72f, 0.3f), pinned(0.9f, 0.3f, 0.55f);
+
 class SDLScreen : public Screen {
  public:
   explicit SDLScreen(Kind kind)
@@ -39,32 +46,7 @@ class SDLScreen : public Screen {
 
   void show_strain(bool on) override { viewer_.set_strain_colors(on); }
 
-  void show(const Scene& scene) override {
-    const Cloth& g = scene.cloth();
-    show_failure(scene);
-    if (!shown_) set_view(scene);
-    if (!shown_ || moving_) add_obstacles(scene);
-    const bool strain = colored_ = viewer_.strain_colors();
-    if (strain) set_scale(g);
-    auto color = [&](Node n) {
-      return strain ? CME212::Color::make_strain(
-                          float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
-                    : CME212::Color(1);
-    };
-    viewer_.set_label(label(scene));
-    if (shown_ && version_ == g.version()) {
-      viewer_.add_nodes(g.node_begin(), g.node_end(), color, nodes_);
-      return;
-    }
-    viewer_.clear();
-    nodes_.clear();
-    viewer_.add_nodes(g.node_begin(), g.node_end(), color, nodes_);
-    const auto faces = faces_of(scene);
-    viewer_.add_faces(faces.begin(), faces.end(), nodes_);
-    viewer_.add_edges(g.edge_begin(), g.edge_end(), nodes_);
-    version_ = g.version();
-    shown_ = true;
-  }
+  void show(const Scene& scene) override { show(scene, nullptr, nullptr); }
 
   void save_picture(const std::string& file) override {
     CME212::write_image(file, viewer_.snapshot());
@@ -88,8 +70,55 @@ class SDLScreen : public Screen {
   bool coloring_changed() const override {
     return viewer_.strain_colors() != colored_;
   }
-  bool wait_while_paused(const Scene& scene) override {
-    return viewer_.wait_while_paused([&] { show(scene); });
+  bool wait_while_paused(const std::function<void()>& show) override {
+    return viewer_.wait_while_paused(show);
+  }
+
+  void open_panels(double speed) override {
+    panel_.emplace(
+        requests_,
+        Player{[this] { return viewer_.paused(); },
+               [this](bool on) { viewer_.set_paused(on); },
+               [this] { viewer_.step_once(); },
+               [this] { viewer_.ask_restart(); }, [this] { viewer_.wake(); }},
+        speed);
+    viewer_.set_panels([this] { return panel_->draw(); });
+    viewer_.set_touch([this](const CME212::Touch& t) {
+      {
+        std::lock_guard lock(touches_mutex_);
+        touches_.push_back(t);
+      }
+      viewer_.wake();
+    });
+  }
+
+  bool serve(Live& live) override {
+    std::vector<CME212::Touch> touches;
+    {
+      std::lock_guard lock(touches_mutex_);
+      touches.swap(touches_);
+    }
+    std::vector<Request> requests = requests_.take();
+    for (const CME212::Touch& t : touches)
+      if (auto r = request_of(t, live)) requests.push_back(std::move(*r));
+    for (const Request& r : requests) try {
+        live.apply(r);
+        if (std::holds_alternative<LoadScene>(r) ||
+            std::holds_alternative<BreakIt>(r))
+          shown_ = moving_ = false, scale_ = 0.01;
+      } catch (const std::exception& e) {
+        panel_->refuse(e.what());
+      }
+    return !requests.empty();
+  }
+
+  void show(Live& live) override {
+    panel_->tell(live);
+    show(live.scene(), live.rival(), &live);
+  }
+  double speed() const override { return panel_->speed(); }
+  std::array<double, 2> place_of(const std::string& control) const override {
+    return panel_ ? panel_->place_of(control) : std::array{0.0, 0.0};
   }
 
  private:
@@ -105,6 +134,110 @@ class SDLScreen : public Screen {
   CME212::Clock clock_;
   long long steps_ = 0;  // when clock_ was started
   double rate_ = 0;      // [steps/s]
+
+  // A scene that the user changes:
+  RequestQueue requests_;
+  std::optional<Panel> panel_;
+  std::mutex touches_mutex_;
+  std::vector<CME212::Touch> touches_;
+  std::vector<unsigned> ids_;  // of the nodes shown, in their order; and those
+  std::size_t own_nodes_ = 0;  // of the first cloth are so many
+  std::map<Node, unsigned> rival_nodes_;
+  std::size_t rival_version_ = 0;
+  bool rival_shown_ = false;
+  Point beside_, grabbed_beside_;  // by which the rival is moved [m]
+
+  /** @param rival A second cloth, drawn in another color, or null
+   * @param live  Whose pins are colored, or null */
+  void show(const Scene& scene, const Scene* rival, const Live* live) {
+    const Cloth& g = scene.cloth();
+    show_failure(scene);
+    if (!shown_) set_view(scene);
+    if (!shown_ || moving_) add_obstacles(scene);
+    const bool strain = colored_ = viewer_.strain_colors();
+    if (strain) set_scale(g);
+    auto color_of = [&](CME212::Color plain) {
+      return [this, plain, strain, live](Node n) {
+        if (live && live->is_pinned(n.id())) return pinned;
+        return strain ? CME212::Color::make_strain(
+                            float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
+                      : plain;
+      };
+    };
+    viewer_.set_label(label(scene));
+    Point beside;
+    if (rival && panel_->side_by_side()) beside = place_beside(g);
+    const auto moved = [&](Node n) { return n.position() + beside; };
+    const bool same = shown_ && version_ == g.version() &&
+                      rival_shown_ == (rival != nullptr) &&
+                      (!rival || rival_version_ == rival->cloth().version());
+    if (!same) {
+      viewer_.clear();
+      nodes_.clear(), rival_nodes_.clear(), ids_.clear();
+    }
+    const auto add = [&](const Cloth& c, CME212::Color plain, auto place,
+                         std::map<Node, unsigned>& nodes) {
+      viewer_.add_nodes(c.node_begin(), c.node_end(), color_of(plain), place,
+                        nodes);
+      if (!same)
+        for (Node n : c.nodes()) ids_.push_back(n.id());
+    };
+    add(g, CME212::Color(1), CME212::DefaultPosition(), nodes_);
+    if (!same) own_nodes_ = ids_.size();
+    if (rival) add(rival->cloth(), rival_color, moved, rival_nodes_);
+    beside_ = beside;
+    if (same) return;
+    const auto join = [&](const Scene& s, std::map<Node, unsigned>& nodes) {
+      const Cloth& c = s.cloth();
+      const auto faces = faces_of(s);
+      viewer_.add_faces(faces.begin(), faces.end(), nodes);
+      viewer_.add_edges(c.edge_begin(), c.edge_end(), nodes);
+    };
+    join(scene, nodes_);
+    if (rival) join(*rival, rival_nodes_);
+    version_ = g.version();
+    rival_version_ = rival ? rival->cloth().version() : 0;
+    rival_shown_ = rival;
+    shown_ = true;
+  }
+
+  /** What @a t asks for; nothing if the node is gone. */
+  std::optional<Request> request_of(const CME212::Touch& t, const Live& live) {
+    using Kind = CME212::Touch::Kind;
+    const bool on_node = t.kind == Kind::grab || t.kind == Kind::pin;
+    if (on_node && t.node >= ids_.size()) return {};
+    const unsigned id = on_node ? ids_[t.node] : 0;
+    switch (t.kind) {
+      case Kind::grab:
+        grabbed_beside_ = t.node < own_nodes_ ? Point() : beside_;
+        return Grab{id, t.at - grabbed_beside_};
+      case Kind::move:
+        return MoveGrab{t.at - grabbed_beside_};
+      case Kind::release:
+        return Release{};
+      case Kind::pin:
+        if (live.is_pinned(id)) return UnpinNode{id};
+        return PinNode{id};
+      case Kind::cut: {
+        // Rays begin a little off the eye, where they are all one point.
+        const auto ray = [&t](const Point& far) {
+          return Ray{t.at + 0.01 * (far - t.at), far};
+        };
+        auto edges = crossed_edges(live.scene().cloth(),
+                                   std::array{ray(t.from), ray(t.to)});
+        if (edges.empty()) return {};
+        return Cut{std::move(edges)};
+      }
+    }
+    return {};
+  }
+
+  /** From a cloth to the one beside it: its width, and some more. */
+  static Point place_beside(const Cloth& g) {
+    CME212::BoundingBox box;
+    for (Node n : g.nodes()) box |= n.position();
+    return Point(1.25 * (box.max().x - box.min().x), 0, 0);
+  }
 
   void show_failure(const Scene& scene) {
     if (scene.failure() == failure_) return;

@@ -1,6 +1,8 @@
 #pragma once
 /** @file Screen.hpp
  * Screen: what ./cloth draws on, a window or pictures in memory. */
+#include <array>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -8,6 +10,7 @@
 
 namespace lab {
 
+class Live;
 class Scene;
 
 using CME212::NoDisplay;
@@ -59,9 +62,25 @@ class Screen {
   virtual bool wants_frame() const = 0;
   /** True if the user has switched the coloring since the last show(). */
   virtual bool coloring_changed() const = 0;
-  /** Wait while paused; the user may color @a scene meanwhile.
-   * @return true if one step may be made now */
-  virtual bool wait_while_paused(const Scene& scene) = 0;
+  /** Wait while paused, with a call of @a show() before and whenever the
+   * coloring changes.
+   * @return true if one step may be made now; false also if the user asked for
+   * something: see serve() */
+  virtual bool wait_while_paused(const std::function<void()>& show) = 0;
+
+  // A scene that the user changes, in a window.
+  /** Let the user change it by panels and by the mouse, at most @a speed times
+   * as fast as the clock; 0: without bound. Main thread, before event_loop() */
+  virtual void open_panels(double speed) = 0;
+  /** Do what the user asked for since the last call.
+   * @return true if there was anything  @pre open_panels() */
+  virtual bool serve(Live& live) = 0;
+  /** Show it, and its rival if there is one, with readings in the panels. */
+  virtual void show(Live& live) = 0;
+  /** At most so many times as fast as the clock; 0: without bound. */
+  virtual double speed() const = 0;
+  /** Panel::place_of(); {0, 0} without panels. Any thread. */
+  virtual std::array<double, 2> place_of(const std::string& control) const = 0;
 };
 
 }  // namespace lab

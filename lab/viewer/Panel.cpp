@@ -1,0 +1,424 @@
+/** @file Panel.cpp */
+#include "lab/viewer/Panel.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <limits>
+
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/SceneFile.hpp"
+#include "lab/viewer/Plot.hpp"
+
+namespace lab {
+namespace {
+
+constexpr std::size_t most_frames = 900;  // in plots
+const ImVec4 red(1, 0.36f, 0.33f, 1), dim(0.65f, 0.69f, 0.75f, 1);
+
+std::string text_of(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+/** dt as a share of a stability limit, in words. */
+std::string share_text(double dt, double limit) {
+  if (limit == no_limit) return "no limit";
+  if (limit == 0) return "no step is stable";
+  return text_of("%.3g", dt / limit);
+}
+/** True if theory says that the run blows up. */
+bool is_beyond(const RunReadings& r) {
+  return r.safe_limit != no_limit && r.dt >= r.safe_limit;
+}
+void row(const char* name, const std::string& value,
+         const ImVec4* color = nullptr) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextColored(dim, "%s", name);
+  ImGui::TableNextColumn();
+  if (color)
+    ImGui::TextColored(*color, "%s", value.c_str());
+  else
+    ImGui::TextUnformatted(value.c_str());
+}
+
+}  // namespace
+
+Panel::Panel(RequestQueue& requests, Player player, double speed)
+    : requests_(requests), player_(std::move(player)), speed_(speed) {
+  std::error_code none;  // without the folder there is no menu
+  for (const auto& entry :
+       std::filesystem::directory_iterator("data/scenes", none))
+    if (entry.path().extension() == ".toml")
+      scenes_.push_back(entry.path().string());
+  std::ranges::sort(scenes_);
+  rival_ = find_method("verlet");
+}
+
+// ------------------------------------------------- On the thread that steps
+
+void Panel::tell(Live& live) {
+  const bool sharp = !begun_ || sharp_clock_.seconds() > 0.25;
+  if (sharp) sharp_clock_.start();
+  Readings r = live.readings(sharp);
+  std::lock_guard lock(mutex_);
+  if (!begun_) told_.first = live.model();
+  if (!begun_ || r.time < rate_from_ || rate_clock_.seconds() > 0.5) {
+    const double moved = r.time - rate_from_;
+    told_.real_time = begun_ && moved > 0 ? moved / rate_clock_.seconds() : 0;
+    rate_from_ = r.time;
+    rate_clock_.start();
+  }
+  begun_ = true;
+  told_.model = live.model();
+  told_.now = std::move(r);
+  remember(told_.now);
+}
+
+/** Put @a r behind what is plotted. A restart or another scene begins anew. */
+void Panel::remember(const Readings& r) {
+  auto& past = told_.past;
+  if (!past[time].empty() && r.time <= past[time].back()) {
+    if (float(r.time) == past[time].back()) return;
+    for (auto& column : past) column.clear();
+  }
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();  // a gap
+  const auto share = [&](double limit) {
+    return limit > 0 && limit != no_limit ? r.dt / limit : none;
+  };
+  const auto& c = r.comparison;
+  const std::array<double, columns> values = {r.time,
+                                              r.energy.kinetic,
+                                              r.energy.elastic,
+                                              r.energy.gravitational,
+                                              r.energy.total(),
+                                              share(r.safe_limit),
+                                              share(r.sharp_limit),
+                                              1,
+                                              c ? c->apart.rms : none,
+                                              c ? c->error.rms : none,
+                                              c ? c->rival_error.rms : none};
+  for (int k = 0; k < columns; ++k) {
+    if (past[k].size() >= most_frames)
+      past[k].erase(past[k].begin(), past[k].begin() + most_frames / 8);
+    past[k].push_back(float(values[k]));
+  }
+}
+
+void Panel::refuse(const std::string& why) {
+  std::lock_guard lock(mutex_);
+  told_.refusal = why;
+}
+
+// ------------------------------------------------- On the thread that draws
+
+std::array<double, 2> Panel::place_of(const std::string& control) const {
+  std::lock_guard lock(mutex_);
+  const auto at = places_.find(control);
+  return at == places_.end() ? std::array{0.0, 0.0} : at->second;
+}
+
+/** Keep where the control that was drawn last is. */
+void Panel::mark(const char* control) {
+  if (!ImGui::IsItemVisible()) return;
+  const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
+  std::lock_guard lock(mutex_);
+  places_[control] = {(a.x + b.x) / 2, (a.y + b.y) / 2};
+}
+
+void Panel::ask(Request r) {
+  {
+    std::lock_guard lock(mutex_);
+    told_.refusal.clear();
+  }
+  requests_.push(std::move(r));
+  player_.wake();
+}
+
+bool Panel::button(const char* label, float width) {
+  const bool pressed = ImGui::Button(label, {width, 0});
+  mark(label);
+  return pressed;
+}
+
+bool Panel::slider(const char* label, double& value, double low, double high,
+                   const char* format, bool log) {
+  const bool moved = ImGui::SliderScalar(
+      label, ImGuiDataType_Double, &value, &low, &high, format,
+      ImGuiSliderFlags_AlwaysClamp | (log ? ImGuiSliderFlags_Logarithmic : 0));
+  mark(label);
+  return moved;
+}
+
+bool Panel::choose_method(const char* label, const MethodEntry*& method) {
+  const MethodEntry* const before = method;
+  const bool open =
+      ImGui::BeginCombo(label, method->info.name, ImGuiComboFlags_HeightLarge);
+  mark(label);
+  if (!open) return false;
+  for (const MethodEntry& m : methods) {
+    const bool is_it = std::string(m.info.name) == method->info.name;
+    if (ImGui::Selectable(m.info.name, is_it)) method = &m;
+    mark((std::string(label) + '/' + m.info.name).c_str());
+  }
+  ImGui::EndCombo();
+  return method != before;
+}
+
+double Panel::draw() {
+  {
+    std::lock_guard lock(mutex_);
+    shown_ = told_;
+    places_.clear();
+  }
+  unit_ = ImGui::GetFontSize() / 14;
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float width = std::min(300 * unit_, 0.46f * all.x);
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize({width, all.y});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, {0.05f, 0.06f, 0.08f, 0.94f});
+  ImGui::Begin("panel", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PushItemWidth(-84 * unit_);
+  draw_player();
+  const auto section = [this](const char* title, bool open, auto draw_it) {
+    const bool shown = ImGui::CollapsingHeader(
+        title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    mark(title);
+    if (shown) (this->*draw_it)();
+  };
+  section("Controls", true, &Panel::draw_controls);
+  section("Numbers", true, &Panel::draw_numbers);
+  section("Plots", true, &Panel::draw_plots);
+  section("Two methods", false, &Panel::draw_comparison);
+  section("Scenes, and how to break them", false, &Panel::draw_scenes);
+  ImGui::PopItemWidth();
+  ImGui::End();
+  ImGui::PopStyleColor();
+  return width;
+}
+
+void Panel::draw_player() {
+  const Readings& r = shown_.now;
+  const bool paused = player_.paused();
+  const float third =
+      (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) /
+      3;
+  if (ImGui::Button(paused ? "play###play" : "pause###play", {third, 0}))
+    player_.set_paused(!paused);
+  mark("play");
+  ImGui::SameLine();
+  if (button("step", third)) player_.step();
+  ImGui::SameLine();
+  if (button("restart", third)) player_.restart();
+  ImGui::Text("t = %.3f s of %g s", r.time, shown_.model.t_end);
+  ImGui::SameLine();
+  if (!r.failure.empty())
+    ImGui::TextColored(red, "it blew up");
+  else
+    ImGui::TextColored(dim, "%s",
+                       r.done   ? "end of the run"
+                       : paused ? "paused"
+                                : "");
+  if (!shown_.refusal.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, red);
+    ImGui::TextWrapped("%s", shown_.refusal.c_str());
+    ImGui::PopStyleColor();
+  }
+}
+
+void Panel::draw_controls() {
+  const Readings& r = shown_.now;
+  const Model& m = shown_.model;
+  const MethodEntry* method = m.method;
+  if (choose_method("method", method)) ask(SetMethod{method});
+
+  const bool beyond = is_beyond(r);
+  double share = r.dt / r.dt_unit;
+  if (beyond) {
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, {0.55f, 0.08f, 0.08f, 1});
+    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, {0.65f, 0.12f, 0.1f, 1});
+    ImGui::PushStyleColor(ImGuiCol_FrameBgActive, {0.65f, 0.12f, 0.1f, 1});
+    ImGui::PushStyleColor(ImGuiCol_SliderGrab, red);
+  }
+  if (slider("dt / limit", share, 0.01, 10, "%.3f")) ask(SetStepShare{share});
+  if (beyond) ImGui::PopStyleColor(4);
+  if (r.safe_limit == 0)
+    ImGui::TextColored(red, "No step is stable (shares of verlet's)");
+  else if (beyond)
+    ImGui::TextColored(red, "Beyond the limit: expect divergence");
+  else if (r.safe_limit == no_limit)
+    ImGui::TextColored(dim, "It has no limit: shares of verlet's");
+
+  double K = m.material.modulus.value_or(m.stiffness);
+  if (slider(m.material.modulus ? "modulus" : "K [N/m]", K, 0.1, 1e5,
+             m.material.modulus ? "%.3g N/m" : "%.3g"))
+    ask(SetStiffness{K});
+  double c = m.material.drag.value_or(m.damping);
+  if (slider(m.material.drag ? "drag" : "drag [kg/s]", c, 0,
+             m.material.drag ? 100 : 1,
+             m.material.drag ? "%.4f kg/(s m^2)" : "%.5f"))
+    ask(SetDrag{c});
+  double g = m.gravity;
+  if (slider("g [m/s^2]", g, -20, 20, "%.2f", false)) ask(SetGravity{g});
+  double speed = speed_ > 0 ? speed_.load() : 10;
+  if (slider("time scale", speed, 0.01, 10,
+             speed_ > 0 ? "%.3g of real time" : "as fast as it goes"))
+    speed_ = speed;
+}
+
+void Panel::draw_numbers() {
+  const Readings& r = shown_.now;
+  if (!ImGui::BeginTable("numbers", 2)) return;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 0.9f);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.1f);
+  row("method", r.method);
+  row("order", std::to_string(r.order));
+  row("dt", text_of("%.4g s", r.dt));
+  row("dt / limit, safe", share_text(r.dt, r.safe_limit),
+      is_beyond(r) ? &red : nullptr);
+  row("dt / limit, now", share_text(r.dt, r.sharp_limit),
+      r.sharp_limit != no_limit && r.dt >= r.sharp_limit ? &red : nullptr);
+  row("kinetic", text_of("%.4g J", r.energy.kinetic));
+  row("elastic", text_of("%.4g J", r.energy.elastic));
+  row("gravitational", text_of("%.4g J", r.energy.gravitational));
+  row("total", text_of("%.4g J", r.energy.total()));
+  row("drift", text_of("%+.2e J", r.drift));
+  row("real-time factor", text_of("%.3g", shown_.real_time));
+  row("nodes, edges", std::to_string(r.nodes) + ", " + std::to_string(r.edges));
+  row("torn",
+      std::to_string(r.torn_nodes) + ", " + std::to_string(r.torn_edges));
+  row("touching", CME212::count_of(r.touching, "node"));
+  row("force evaluations", text_of("%.4g a sim. s", r.evaluations_rate));
+  ImGui::EndTable();
+}
+
+void Panel::draw_plots() {
+  using namespace curve_colors;
+  const auto& p = shown_.past;
+  const Curve energies[] = {{"kinetic", orange, p[kinetic]},
+                            {"elastic", sky, p[elastic]},
+                            {"gravitational", green, p[gravitational]},
+                            {"total", white, p[total]}};
+  plot("Energy [J]", p[time], energies, 120 * unit_);
+  const Curve shares[] = {{"limit", curve_colors::red, p[one]},
+                          {"safe", orange, p[safe]},
+                          {"now (sharp)", sky, p[sharp]}};
+  const auto [low, high] = axis_range(shares, false);
+  plot("dt / limit [1]", p[time], shares, 105 * unit_, high > 5 || low < 0.0);
+}
+
+void Panel::draw_comparison() {
+  const auto& c = shown_.now.comparison;
+  bool changed = choose_method("second", rival_);
+  ImGui::BeginDisabled(at_ == Compare::At::equal_work);
+  changed |= slider("its dt / limit", rival_share_, 0.01, 10, "%.3f");
+  ImGui::EndDisabled();
+  int at = int(at_);
+  changed |= ImGui::RadioButton("equal time", &at, 0);
+  mark("equal time");
+  ImGui::SameLine();
+  changed |= ImGui::RadioButton("equal work", &at, 1);
+  mark("equal work");
+  at_ = Compare::At(at);
+  const float half =
+      (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  if (button(c ? "compare from here" : "compare", half) || (c && changed))
+    ask(Compare{rival_, rival_share_, at_});
+  ImGui::SameLine();
+  bool beside = side_by_side_;
+  if (ImGui::Checkbox("side by side", &beside)) {
+    side_by_side_ = beside;
+    player_.wake();
+  }
+  mark("side by side");
+  if (!c) return;
+  if (button("stop comparing", half)) ask(StopComparing{});
+
+  const Readings& r = shown_.now;
+  if (ImGui::BeginTable("two", 3)) {
+    const auto three = [](const char* name, const std::string& a,
+                          const std::string& b) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextColored(dim, "%s", name);
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(a.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextColored({1, 0.72f, 0.3f, 1}, "%s", b.c_str());
+    };
+    const RunReadings& b = c->rival;
+    three("", r.method, b.method);
+    three("dt [s]", text_of("%.3g", r.dt), text_of("%.3g", b.dt));
+    three("dt / limit", share_text(r.dt, r.safe_limit),
+          share_text(b.dt, b.safe_limit));
+    three("evaluations", std::to_string(r.evaluations),
+          std::to_string(b.evaluations));
+    three("drift [J]", text_of("%+.1e", r.drift), text_of("%+.1e", b.drift));
+    three("error, rms [m]", text_of("%.2e", c->error.rms),
+          text_of("%.2e", c->rival_error.rms));
+    three("error, max [m]", text_of("%.2e", c->error.largest),
+          text_of("%.2e", c->rival_error.largest));
+    ImGui::EndTable();
+  }
+  if (!c->rival.failure.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, red);
+    ImGui::TextWrapped("%s", c->rival.failure.c_str());
+    ImGui::PopStyleColor();
+  }
+  ImGui::TextWrapped(
+      "apart: %.2e m rms, %.2e m at most. Errors are distances "
+      "from %s at dt = %.2g s.",
+      c->apart.rms, c->apart.largest, c->reference, c->reference_dt);
+  using namespace curve_colors;
+  const auto& p = shown_.past;
+  const Curve distances[] = {{"apart", rose, p[apart]},
+                             {"error of the first", white, p[error]},
+                             {"of the second", orange, p[rival_error]}};
+  plot("Distance, rms [m]", p[time], distances, 130 * unit_, true);
+}
+
+void Panel::draw_scenes() {
+  const bool open = ImGui::BeginCombo("scene", shown_.model.name.c_str(),
+                                      ImGuiComboFlags_HeightLarge);
+  mark("scene");
+  if (open) {
+    if (ImGui::Selectable("as it was started")) ask(LoadScene{shown_.first});
+    for (const std::string& file : scenes_) {
+      const std::string name = std::filesystem::path(file).stem().string();
+      if (ImGui::Selectable(name.c_str(), name == shown_.model.name))
+        load(file);
+      mark(("scene/" + name).c_str());
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::TextColored(dim, "Break it:");
+  for (const Breakage& b : breakages()) {
+    if (ImGui::Button(b.title, {-1, 0})) ask(BreakIt{&b});
+    mark(b.name);
+  }
+}
+
+/** Load a scene; one that leaves its mesh open gets that of now, or grid1. */
+void Panel::load(const std::string& file) {
+  try {
+    Model m = load_open_model(file);
+    if (m.nodes.empty() && m.sheets.empty()) {
+      const bool has_files = !shown_.model.nodes.empty();
+      m.nodes = has_files ? shown_.model.nodes : "data/grid1.nodes";
+      m.tets = has_files ? shown_.model.tets : "data/grid1.tets";
+    }
+    ask(LoadScene{std::move(m)});
+  } catch (const std::exception& e) {
+    refuse(e.what());
+  }
+}
+
+}  // namespace lab
