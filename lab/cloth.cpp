@@ -34,6 +34,7 @@
 #include "lab/viewer/Live.hpp"
 #include "lab/viewer/Options.hpp"
 #include "lab/viewer/Run.hpp"
+#include "lab/viewer/RunReplay.hpp"
 #include "lab/viewer/Screen.hpp"
 
 using namespace lab;
@@ -228,12 +229,14 @@ void check_outputs(const Options& o) {
   std::map<std::string, const char*> option_of, input_of;
   for (const auto& [option, file] :
        {std::pair("nodes", o.model.nodes), std::pair("tets", o.model.tets),
-        std::pair("config", o.config), std::pair("restart", o.restart)})
+        std::pair("config", o.config), std::pair("restart", o.restart),
+        std::pair("replay", o.replay)})
     if (!file.empty()) input_of.emplace(CME212::output_target(file), option);
   const std::set<Pair> follow = {{"out", "nodes"},
                                  {"out", "tets"},
                                  {"write-config", "config"},
-                                 {"checkpoint", "restart"}};
+                                 {"checkpoint", "restart"},
+                                 {"record-input", "replay"}};
   auto add = [&](const char* option, const std::string& file) {
     const std::string target = CME212::output_target(file);
     const auto input = input_of.find(target);
@@ -267,7 +270,8 @@ void check_outputs(const Options& o) {
         std::pair("out", quads_beside(o.out)),
         std::pair("screenshot", o.screenshot), std::pair("record", o.video),
         std::pair("write-config", o.advised),
-        std::pair("checkpoint", o.checkpoint)}) {
+        std::pair("checkpoint", o.checkpoint),
+        std::pair("record-input", o.record_input)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
     if (file.empty() || std::filesystem::is_other(file)) continue;
     with_place(option, [&to = file] { CME212::OutputFile try_it(to); });
@@ -280,6 +284,7 @@ int run(Options o) {
   catch_interrupts();
   check_outputs(o);
   Sweep::set_threads(o.threads);
+  if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   const Model& m = o.model;

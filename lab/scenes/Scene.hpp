@@ -148,7 +148,8 @@ class Scene {
    * changed. */
   void change_method(const MethodEntry& method, const TimeStep& step);
   /** The forces, K and gravity of @a recipe, of the same cloth. Rest lengths,
-   * masses and constraints stay.  O(a new cloth) */
+   * masses and constraints stay.
+   * Invalidates: references into recipe().  O(a new cloth) */
   void change_forces(const Recipe& recipe);
   /** Hold a node where it is, at rest; or let go of it, whatever pin holds it.
    * @return false: it was held, or free, already, or it is gone

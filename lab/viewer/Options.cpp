@@ -53,6 +53,7 @@ const std::vector<Group> groups = {
       "record", "csv", "every", "out", "vtp", "obj", "ply", "frame-rate",
       "quiet"}},
     {"Interrupted runs", {"checkpoint", "every-seconds", "restart"}},
+    {"Changes while it runs", {"record-input", "replay"}},
     {"Advice", {"measure", "tolerance", "advise", "auto", "write-config"}},
     {"Other", {"dump-config", "list-methods", "version", "help"}}};
 
@@ -139,6 +140,24 @@ void check(Options& o) {
     throw SceneError("restart",
                      "does not go with --advise and --auto: the scene of a "
                      "checkpoint is one that was advised already");
+  if (!o.replay.empty())
+    for (const auto& [option, given] :
+         {std::pair("config", !o.config.empty()),
+          std::pair("restart", !o.restart.empty()),
+          std::pair("checkpoint", !o.checkpoint.empty()),
+          std::pair("csv", !o.csv.empty()), std::pair("vtp", !o.vtp.empty()),
+          std::pair("obj", !o.obj.empty()), std::pair("ply", !o.ply.empty()),
+          std::pair("at", o.at >= 0), std::pair("window", o.window),
+          std::pair("advise", o.asks_advice())})
+      if (given)
+        throw SceneError("replay",
+                         std::string("does not go with --") + option +
+                             ", but with --out, --screenshot of the end, "
+                             "--record and --record-input");
+  if (!o.record_input.empty() && o.replay.empty() &&
+      (o.headless || o.pictures()))
+    throw SceneError("record-input",
+                     "needs a window, where something can be asked for");
   if (o.window && (o.headless || o.pictures()))
     throw SceneError("window",
                      "does not go with --headless, --screenshot and --record");
@@ -248,6 +267,13 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
       "--restart", o.restart,
       "go on from a checkpoint, to the same bits as without; its scene need "
       "not be given; --csv goes on if it holds the rows so far"));
+  takes_file(app.add_option("--record-input", o.record_input,
+                            "in a window: write the scene and all that is "
+                            "asked of it, for --replay"));
+  takes_file(app.add_option(
+      "--replay", o.replay,
+      "run what --record-input wrote again, without a window, to the same "
+      "bits; with --out, --screenshot of its end and --record"));
   app.add_option("--threads", o.threads,
                  "threads for a large cloth; 0: one a processor. They change "
                  "no result")
@@ -341,6 +367,11 @@ int parse(int argc, char** argv, Options& o) {
   } catch (const CLI::ParseError& e) {
     return report(app, e);
   }
+  if (!o.replay.empty())
+    for (const std::string& key : scene_keys())
+      if (app.count("--" + key) > 0)
+        throw SceneError("replay", "does not go with --" + key +
+                                       ": a recording has its own scene");
   scene.overridden_by(app);
   o.origins = scene.origins();
   o.model = scene.model();
@@ -357,7 +388,7 @@ int parse(int argc, char** argv, Options& o) {
                    "--method away, or take --method dop853\n";
   }
   check(o);
-  check_has_cloth(o.model);
+  if (o.replay.empty()) check_has_cloth(o.model);
   if (!dump) return -1;
   std::cout << to_scene_file(o.model);
   return 0;

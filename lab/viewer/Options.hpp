@@ -25,6 +25,7 @@ struct Options {
   std::string advised;        ///< file for the advised scene
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
+  std::string record_input, replay;
 
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || !advised.empty(); }

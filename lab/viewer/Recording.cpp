@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Methods.hpp"
@@ -225,6 +226,12 @@ std::string end_recording(long long calls) {
   return std::to_string(calls) + " end\n";
 }
 
+void write_recording(const Live& live, const std::string& file) {
+  CME212::OutputFile out(file);
+  out.stream() << live.recording();
+  out.commit();
+}
+
 Recording read_recording(const std::string& file) {
   const std::string text = mesh_detail::read_file(file, "a recording");
   if (text.substr(0, text.find_first_of("\r\n")) != first_line)
@@ -319,7 +326,7 @@ void Replay::make(const Recorded& r) {
   } catch (const std::invalid_argument& e) {
     throw InputError(recording_.file, r.line, e.what());
   }
-  if (scene && checksum_of(live_->scene().cloth()) != r.cloth)
+  if (scene && r.cloth != 0 && checksum_of(live_->scene().cloth()) != r.cloth)
     throw InputError(recording_.file, r.line,
                      "is of another cloth: its files, or how the program makes "
                      "it, have changed");

@@ -16,7 +16,7 @@ namespace lab {
 struct Recorded {
   long long calls;  ///< Live::calls()
   Request request;
-  /** Of LoadScene: checksum_of() the cloth as it is made. */
+  /** Of LoadScene: checksum_of() the cloth as it is made; 0: not known. */
   std::uint64_t cloth = 0;
   std::size_t line = 0;  ///< of the file
 };
@@ -36,12 +36,17 @@ struct Recording {
 /** Throws InputError, SceneFileError: "FILE:LINE: what, expected what". */
 Recording read_recording(const std::string& file);
 
+/** Write Live::recording() to @a file.
+ * Throws std::runtime_error "FILE: why" */
+void write_recording(const Live& live, const std::string& file);
+
 /** Runs a recording again: to the same bits on the same kind of machine. */
 class Replay {
  public:
   /** At its start.  Throws as read_recording() and Live(). */
   explicit Replay(const std::string& file);
   Live& live() { return *live_; }
+  std::size_t requests() const { return recording_.requests.size(); }
 
   /** Make the requests that are due, and then a step.
    * @return false at its end, and no step was made

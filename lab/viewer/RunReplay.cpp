@@ -1,0 +1,97 @@
+#include "lab/viewer/RunReplay.hpp"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "CME212/OutputFile.hpp"
+#include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
+#include "lab/viewer/Options.hpp"
+#include "lab/viewer/Recording.hpp"
+#include "lab/viewer/Screen.hpp"
+
+namespace lab {
+
+namespace {
+
+/** The cloth as it is left. */
+void write_mesh(const Scene& scene, const std::string& file) {
+  const PointsAndQuads left = mesh_left(scene.cloth(), *scene.recipe().built);
+  const std::string quads = quads_beside(file);
+  CME212::OutputFile out(file);
+  write_nodes(out.stream(), left);
+  out.commit();
+  if (quads.empty()) return;
+  CME212::OutputFile beside(quads);
+  write_quads(beside.stream(), left);
+  beside.commit();
+}
+
+/** A film of what is shown, whatever times a user goes back to. */
+class Film {
+ public:
+  Film(Screen& screen, const std::string& file) : screen_(screen) {
+    screen_.start_film(file);
+  }
+  /** Frames for the time that @a scene has gone on since the last call. */
+  void add(const Scene& scene) {
+    if (scene.time() > last_) due_ += scene.time() - last_;
+    last_ = scene.time();
+    if (due_ < 0) return;
+    screen_.show(scene);
+    for (; due_ >= 0; due_ -= 1 / Screen::frames_per_second)
+      screen_.add_to_film();
+  }
+
+ private:
+  Screen& screen_;
+  double last_ = 0, due_ = 0;  // [s]
+};
+
+}  // namespace
+
+int run_replay(const Options& o) {
+  Replay replay(o.replay);
+  Live& live = replay.live();
+  const auto screen =
+      o.pictures() ? Screen::open(Screen::Kind::pictures) : nullptr;
+  if (screen) screen->show_strain(o.strain);
+  std::optional<Film> film;
+  if (!o.video.empty()) film.emplace(*screen, o.video);
+  while (!interrupted() && replay.step()) {
+    if (!film) continue;
+    live.check();
+    film->add(live.scene());
+  }
+  live.check();
+  const auto wrote = [&o](const std::string& what, const std::string& file) {
+    if (!o.quiet) std::cout << what << ": " << file << '\n';
+  };
+  if (film) wrote("film", screen->end_film());
+  if (!o.screenshot.empty()) {
+    screen->show(live.scene());
+    screen->save_picture(o.screenshot);
+    wrote("picture", o.screenshot);
+  }
+  if (!o.out.empty()) write_mesh(live.scene(), o.out);
+  if (!o.record_input.empty()) write_recording(live, o.record_input);
+  const Readings r = live.readings(false);
+  using CME212::short_text;
+  if (!o.quiet)
+    std::cout << CME212::count_of(replay.requests(), "request") << ", "
+              << CME212::count_of(std::size_t(live.calls()), "step")
+              << " to t = " << short_text(r.time) << " s; energy "
+              << short_text(r.energy.total()) << " J; " << r.nodes
+              << " nodes and " << r.edges << " edges left\n";
+  if (!r.failure.empty()) std::cerr << "cloth: " << r.failure << '\n';
+  if (interrupted()) {
+    std::cerr << "cloth: " << name_of_interrupt()
+              << " ended the replay at t = " << short_text(r.time) << " s\n";
+    return 128 + interrupted();
+  }
+  return r.failure.empty() ? 0 : 3;
+}
+
+}  // namespace lab

@@ -1,0 +1,111 @@
+// ./cloth --replay: what a user did to a running scene, again.
+#include <gtest/gtest.h>
+
+#include "lab/methods/Methods.hpp"
+#include "lab/viewer/Recording.hpp"
+#include "tests/ClothProgram.hpp"
+
+using namespace lab;
+
+namespace {
+
+class ClothReplay : public ClothProgram {
+ protected:
+  /** A recording of a torn, pulled and pinned cloth, beside a second method. */
+  Live live{[] {
+    Model m;
+    m.sheets = {{.nodes = {8, 8}}};
+    m.pins = {{0, 0, 0, {}}, {1, 0, 0, {}}};
+    return m;
+  }()};
+  void play() {
+    const auto steps = [this](int count) {
+      for (int k = 0; k < count; ++k) ASSERT_TRUE(live.step());
+    };
+    const auto ids = live.scene().recipe().built->ids;
+    steps(100);
+    live.apply(Grab{ids[63], Point(1, 1, 0.5)});
+    live.apply(Cut{{{ids[27], ids[28]}, {ids[35], ids[36]}}});
+    steps(50);
+    live.apply(SetGravity{3});
+    live.apply(Compare{find_method("rk4"), 0.5});
+    steps(20);
+    live.apply(PinNode{ids[20]});
+    live.apply(Release{});
+    steps(30);
+  }
+};
+
+TEST_F(ClothReplay, EndsWithTheSameBits) {
+  play();
+  write_recording(live, path("input.txt"));
+  const Result r =
+      run("--replay " + path("input.txt") + " --out " + path("end.nodes") +
+          " --record-input " + path("again.txt"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find("7 requests, 200 steps to t = "), std::string::npos)
+      << r.out;
+  EXPECT_NE(r.out.find("64 nodes and 208 edges left"), std::string::npos)
+      << r.out;
+  std::ostringstream nodes;
+  write_nodes(nodes,
+              mesh_left(live.scene().cloth(), *live.scene().recipe().built));
+  EXPECT_EQ(contents(path("end.nodes")), nodes.str());
+  EXPECT_EQ(contents(path("again.txt")), contents(path("input.txt")));
+}
+
+// Long before their 5 s; a failure is found at the next look of the guard, so
+// that of step 77 in the 96th.
+TEST_F(ClothReplay, OfEachOfTheGalleryFails) {
+  std::string scene = live.recording();
+  scene.erase(scene.rfind("0 end"));
+  const auto replay = [&](const std::string& name, int steps) {
+    return run("--replay " +
+               file("input.txt", scene + "0 break " + name + '\n' +
+                                     std::to_string(steps) + " end\n"));
+  };
+  const std::string ended = "the scene ended after ";
+  for (const Breakage& b : breakages()) {
+    const Result r = replay(b.name, 20000);
+    const auto at = r.err.find(ended);
+    ASSERT_NE(at, std::string::npos) << b.name << ": " << r.err;
+    const Model m = b.model();
+    EXPECT_LE(std::stoi(r.err.substr(at + ended.size())) * m.step.dt,
+              m.t_end < 5 ? m.t_end : 4.3)
+        << b.name;
+  }
+  const Result failed = replay("path", 96);
+  EXPECT_EQ(failed.status, 3) << failed.out << failed.err;
+  EXPECT_NE(failed.err.find("diverged in step 77 "), std::string::npos)
+      << failed.err;
+}
+
+TEST_F(ClothReplay, RefusesWhatItCanNotDo) {
+  write_recording(live, path("input.txt"));
+  const std::string replay = "--replay " + path("input.txt") + ' ';
+  for (const auto& [arguments, message] :
+       {std::pair("--sheet 'nodes 3 3'",
+                  "cloth: --replay does not go with "
+                  "--sheet: a recording has its own "
+                  "scene\n"),
+        std::pair("--csv x",
+                  "cloth: --replay does not go with --csv, but with "
+                  "--out, --screenshot of the end, --record and "
+                  "--record-input\n")}) {
+    const Result r = run(replay + arguments);
+    EXPECT_EQ(r.status, 2);
+    EXPECT_EQ(r.err, message);
+  }
+  EXPECT_EQ(run(grid0 + "--headless --record-input " + path("x")).err,
+            "cloth: --record-input needs a window, where something can be "
+            "asked for\n");
+  EXPECT_EQ(run("--replay " + path("none")).err,
+            path("none") +
+                ": can't be opened (No such file or directory), "
+                "expected a recording\n");
+  EXPECT_EQ(run("--replay " + file("bad", "mass_spring input 1\n3 x\n")).err,
+            path("bad") + ":2: begins with 'x', expected 0 scene\n");
+  EXPECT_EQ(files(), std::vector<std::string>({"bad", "input.txt"}));
+}
+
+}  // namespace
