@@ -29,6 +29,8 @@ double cost_of(const MethodEntry& m) {
   return cost != method_costs.end() ? cost->at_limit : m.info.sweeps;
 }
 
+}  // namespace
+
 /** The fewest steps after which two runs meet: @a main ones of the one are as
  * long as @a rival ones of the other. */
 struct Round {
@@ -51,6 +53,8 @@ struct Round {
     return {b / c, a / c};
   }
 };
+
+namespace {
 
 Distances distances(const Cloth& a, const Cloth& b) {
   double most = 0, sum = 0;
