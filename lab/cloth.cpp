@@ -25,6 +25,7 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
+#include "lab/Progress.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Method.hpp"
@@ -206,7 +207,21 @@ int run_live(const Options& o, Screen& screen) {
 int take_advice(Options& o) {
   std::optional<CME212::OutputFile> file;
   if (!o.advised.empty()) file.emplace(o.advised);
-  const Advice advice = advise(o.model);
+  Progress progress(o.quiet);
+  AdviceRules rules;
+  rules.tell = [&](const std::string& doing, double done) {
+    if (progress.due()) progress.show(doing, done);
+  };
+  // From seconds to work by what this machine does; a power of 2, so that it is
+  // the same from run to run.
+  const double rate = std::exp2(std::round(std::log2(measured_rate(o.model))));
+  const double run = work_of_run(o.model);
+  rules.budget =
+      rate * (o.advise_budget > 0
+                  ? o.advise_budget
+                  : std::max(2.0, std::isfinite(run) ? run / rate : 0));
+  const Advice advice = advise(o.model, rules);
+  progress.end();
   if (!o.quiet) std::cout << in_words(advice);
   if (!advice.refusal.empty()) {
     if (o.quiet) std::cerr << "cloth: no advice: " << advice.refusal << '\n';

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "lab/advice/Advise.hpp"
+#include "lab/advice/Refusals.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
@@ -28,13 +29,20 @@ Model hanging(double tolerance) {
   return m;
 }
 
-/** The answer on a grid of so many times the cells, by small steps of a fine
- * method: another one than the adviser's pilots use. */
+/** What the answer tends to on grids of up to so many times the cells, by small
+ * steps of a fine method: another one than the adviser's pilots use. */
 Answer truth(const Model& m, double factor) {
-  Model fine = refined(m, factor);
-  fine.method = find_method("pefrl");
-  fine.step = {.rule = StepRule::safe};
-  return try_out(fine).answer;
+  Refinement grids(m.measure);
+  for (double coarser : {4, 2, 1}) {
+    Model fine = refined(m, factor / coarser);
+    fine.method = find_method("pefrl");
+    fine.step = {.rule = StepRule::safe};
+    GridReport g;
+    g.factor = factor / coarser;
+    g.trial = try_out(fine);
+    grids.add(g);
+  }
+  return grids.limit();
 }
 
 GridReport grid(double factor, Answer answer) {
@@ -93,9 +101,9 @@ TEST(Refinement, OneGridIsTakenAsItIs) {
 }
 
 TEST(Advise, MeetsTheTolerance) {
-  const Answer right = truth(hanging(1), 8);
+  const Answer right = truth(hanging(1), 4);
   std::size_t nodes = 0;
-  for (double tolerance : {1e-2, 1e-4, 3e-5}) {
+  for (double tolerance : {1e-2, 1e-4}) {
     const Advice a = advise(hanging(tolerance));
     ASSERT_EQ(a.refusal, "");
     EXPECT_LE(a.error + a.uncertainty, tolerance);
@@ -154,7 +162,7 @@ TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
   one_grid.nodes = "data/grid1.nodes", one_grid.tets = "data/grid1.tets";
   const Advice b = advise(one_grid);
   EXPECT_NE(b.refusal.find("chaotic"), std::string::npos) << b.refusal;
-  EXPECT_NE(b.refusal.find("com to "), std::string::npos) << b.refusal;
+  EXPECT_NE(b.refusal.find("earlier --t-end"), std::string::npos) << b.refusal;
 }
 
 TEST(Advise, AsksOnlyWhatCanBeAnswered) {
@@ -181,10 +189,8 @@ TEST(Advise, TellsWhichGridIsNoScene) {
   m.t_end = 0.2;
   m.self_collision =
       read_self_collision("thickness 0.04");  // two sides of 81 nodes: 0.025 m
-  m.tolerance = 1e-6;
-  EXPECT_NE(
-      advise(m, rules).refusal.find(" nodes: --self-collision has thickness"),
-      std::string::npos);
+  // On finer grids it goes down, and is no reason to refuse.
+  EXPECT_EQ(advise(m, rules).refusal, "");
   m.t_end = 0;
   EXPECT_THROW(advise(m), SceneError);
 }
@@ -263,6 +269,145 @@ TEST(Advise, TakesTheAssignmentsScene) {
   ASSERT_EQ(a.parts.size(), 6u);
   EXPECT_EQ(a.parts[4].part, "plane");
   EXPECT_EQ(a.parts[4].change, 0);  // out of reach so far
+}
+
+// ---------------------------------------------------------------------- Budget
+
+TEST(Budget, ForeseesWhatARunCosts) {
+  Model m = hanging(1);
+  m.method = find_method("verlet");
+  m.step = {.dt = 0.002};
+  EXPECT_EQ(work_of_run(m), try_out(m).work);
+  m.step = {.rule = StepRule::safe};
+  EXPECT_NEAR(work_of_run(m), try_out(m).work, 1e-12 * work_of_run(m));
+  const double verlet = work_of_run(m);
+  m.method = find_method("tr-bdf2");
+  EXPECT_GT(work_of_run(m), 20 * verlet);  // by the same step, with solves
+}
+
+TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
+  double before = 0;
+  for (double budget : {1e4, 1e5, 1e6, 1e8}) {
+    AdviceRules rules;
+    rules.budget = budget;
+    int told = 0;
+    double last = 0;
+    rules.tell = [&](const std::string& doing, double done) {
+      EXPECT_NE(doing, "");
+      EXPECT_LE(done, 1);
+      EXPECT_GE(done, last);
+      last = done, ++told;
+    };
+    const Advice a = advise(hanging(1e-4), rules);
+    EXPECT_LE(a.spent_work, budget);
+    EXPECT_GE(a.spent_work, before);
+    before = a.spent_work;
+    EXPECT_GT(told, 0);
+    EXPECT_EQ(a.cut_short, budget < 1e8) << budget;
+    if (budget == 1e4) {
+      EXPECT_NE(a.refusal.find("the budget ended after "), std::string::npos);
+    }
+    // The same again: no clock has a say.
+    rules.tell = [](const std::string&, double) {};
+    EXPECT_EQ(advise(hanging(1e-4), rules).spent_work, a.spent_work);
+  }
+}
+
+// What is not run is foreseen, and said to be.
+TEST(Budget, EndsWithTheBestThatIsKnown) {
+  const Answer right = truth(hanging(1), 4);
+  int foreseen = 0;
+  for (double budget : {3e5, 6e5, 1e6}) {
+    AdviceRules rules;
+    rules.budget = budget;
+    const Advice a = advise(hanging(1.5e-4), rules);
+    if (a.checked || !a.refusal.empty()) continue;
+    ++foreseen;
+    EXPECT_NE(in_words(a).find("not run: "), std::string::npos);
+    EXPECT_GT(a.uncertainty, 0);
+    EXPECT_LE(distance(try_out(a.model).answer, right, a.measure),
+              a.error + a.uncertainty);
+  }
+  EXPECT_GT(foreseen, 0);
+}
+
+// Verlet would need 75,000 steps on the first grid.
+TEST(Budget, StiffPilotsAreImplicit) {
+  Model m = hanging(1e-2);
+  m.material.modulus = 1e9;
+  AdviceRules rules;
+  rules.budget = 1e6;
+  const Advice a = advise(m, rules);
+  EXPECT_LE(a.spent_work, rules.budget);
+  ASSERT_FALSE(a.grids.empty());
+  EXPECT_LE(a.grids[0].trial.steps, 32);
+}
+
+// ---------------------------------------------------------------------- Words
+
+TEST(InWords, TheAnswerComesFirstAndNamesAreWhole) {
+  Model m = hanging(1e-2);
+  m.planes = {
+      read_plane("at 0.123456 0.234567 -9 normal 0.01 0.02 1 friction "
+                 "0.345678")};
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  const std::string text = in_words(a);
+  EXPECT_EQ(text.find("advice: "), 0u);
+  EXPECT_NE(text.find("\n  ./cloth --sheet "), std::string::npos);
+  EXPECT_NE(text.find("plane: " + to_words(m.planes[0])), std::string::npos);
+  EXPECT_EQ(text.find('%'), std::string::npos);
+  EXPECT_NE(text.find("force evaluations"), std::string::npos);
+  EXPECT_NE(text.find("gravity 9.81 m/s^2"), std::string::npos);
+  EXPECT_EQ(text.find("+- 0 "), std::string::npos);
+}
+
+// ------------------------------------------------------------------ Robustness
+
+TEST(Advise, HoldsByHalfTheStepAndOnTwiceTheCells) {
+  const Model m = hanging(1e-3);
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  ASSERT_TRUE(a.robustness.half_step && a.robustness.finer_grid);
+  const Answer right = truth(m, 4);
+  Model smaller = a.model;
+  smaller.step.dt /= 2;
+  Model finer = refined(smaller, 2);
+  for (const Model& again : {smaller, finer})
+    EXPECT_LE(distance(try_out(again).answer, right, m.measure), m.tolerance);
+  EXPECT_GT(a.perturbed, 3);
+  EXPECT_GT(a.uncertainty, 0);
+}
+
+// -------------------------------------------------------------------- Refusals
+
+TEST(Refusals, TeachWhatHasALimit) {
+  Model m = hanging(1e-2);
+  m.pins = {read_pin("x 0 z 0")};
+  m.measure = Measure::max_stretch;
+  EXPECT_NE(diverging(m).find("--pin \"x 0\""), std::string::npos);
+  m.pins = {read_pin("x 0")};
+  EXPECT_EQ(diverging(m), "");
+  m.pins = {read_pin("x 0 z 0")};
+  m.measure = Measure::com;
+  EXPECT_EQ(diverging(m), "");
+}
+
+TEST(Refusals, OfferWhatOneWouldAsk) {
+  const Model m = hanging(1);
+  std::vector<Answer> still(5), shaken(5);
+  still[std::size_t(Measure::com)] = {0, 0, 0};
+  shaken[std::size_t(Measure::com)] = {0, 0, 1};  // 1 m of a cloth of 1.4 m
+  still[std::size_t(Measure::drape_height)] = {-1};
+  shaken[std::size_t(Measure::drape_height)] = {-1.01};
+  Model asked = m;
+  asked.measure = Measure::energy;
+  const std::string some = offers(asked, still, shaken);
+  EXPECT_NE(some.find("--measure drape-height to 0.04 m"), std::string::npos)
+      << some;
+  EXPECT_EQ(some.find("com"), std::string::npos);
+  EXPECT_NE(offers(asked, still, {}).find("earlier --t-end"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -194,8 +194,14 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
       "--t-end 0.1 --tolerance 0.01 --headless ";
   Result r = run(scene + "--advise --write-config " + path("a.toml"));
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find("not needed"), std::string::npos);
-  EXPECT_NE(r.out.find("\nadvice: "), std::string::npos);
+  EXPECT_EQ(r.out.find("advice: "), 0u);  // the answer first
+  EXPECT_NE(r.out.find(" dropped\n"), std::string::npos);
+  // Its command runs as it stands.
+  const auto line = r.out.find("./cloth ") + 8;
+  EXPECT_EQ(
+      run(r.out.substr(line, r.out.find('\n', line) - line) + " --headless")
+          .status,
+      0);
   const std::string advised = contents(dir / "a.toml");
   EXPECT_NE(advised.find("pin = [\"z 0\"]"), std::string::npos);
   EXPECT_EQ(advised.find("plane = "), std::string::npos);
@@ -205,8 +211,13 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
   EXPECT_NE(r.out.find("scene: "), std::string::npos);
   r = run(grid0 + "--advise");
   EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.out.find("\nno advice: "), std::string::npos);
+  EXPECT_EQ(r.out.find("no advice: "), 0u);
   EXPECT_EQ(run(grid0 + "--advise --quiet").err.find("cloth: no advice: "), 0u);
+  EXPECT_EQ(run(scene + "--advise --advise-budget -1").status, 2);
+  // A budget that allows nothing: said at once.
+  r = run(scene + "--advise --advise-budget 1e-9");
+  EXPECT_EQ(r.out.find("no advice: the budget ended after 0 grids"), 0u)
+      << r.out;
   r = run(scene + "--tear-strain 1 --measure positions --advise");
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("--measure is positions"), std::string::npos);

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <set>
+#include <sstream>
 
 #include "CME212/Util.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/scenes/SceneFile.hpp"
 
 namespace lab {
 
@@ -15,51 +19,198 @@ std::string with_unit(double x, Measure measure) {
          unit_of(measure);
 }
 
-std::string in_words(const Advice& a) {
+namespace {
+
+/** @a words as a shell takes them for one. */
+std::string for_shell(const std::string& words) {
+  if (!words.empty() &&
+      words.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUV"
+                              "WXYZ0123456789-_./:") == std::string::npos)
+    return words;
+  std::string text = "'";
+  for (char c : words)
+    text += c == '\'' ? std::string("'\\''") : std::string{c};
+  return text + '\'';
+}
+
+/** The lines of a scene file without comments. */
+std::vector<std::string> settings(const Model& m) {
+  std::vector<std::string> all;
+  std::istringstream in(to_scene_file(m));
+  for (std::string line; std::getline(in, line);)
+    if (!line.starts_with('#')) all.push_back(line);
+  return all;
+}
+
+/** A column of a table. */
+struct Column {
+  std::string title;
+  std::vector<std::string> cells;
+};
+/** As wide as its cells; all but the first are aligned to the right. */
+std::string table(const std::vector<Column>& columns) {
+  std::string text = "\n";
+  for (std::size_t row = 0; row <= columns[0].cells.size(); ++row) {
+    for (const Column& c : columns) {
+      auto cell = [&](std::size_t k) {
+        return k == 0 ? c.title : c.cells[k - 1];
+      };
+      std::size_t width = 0;
+      for (std::size_t k = 0; k <= c.cells.size(); ++k)
+        width = std::max(width, cell(k).size());
+      const std::string space(width - cell(row).size(), ' ');
+      text += &c == &columns[0] ? cell(row) + space : "  " + space + cell(row);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string number(double x) {
+  return std::isfinite(x) ? CME212::two_digits(x) : "failed";
+}
+/** Two digits of a count, without an exponent. */
+std::string count(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.0f",
+                std::strtod(CME212::two_digits(x).c_str(), nullptr));
+  return text;
+}
+
+/** What acts in @a m because nobody said otherwise. */
+std::string by_default(const Model& m) {
+  std::string all;
+  auto add = [&](bool acts, const std::string& what) {
+    if (acts) all += (all.empty() ? "" : ", ") + what;
+  };
+  add(m.gravity == grav, "gravity " + CME212::short_text(grav) + " m/s^2");
+  add(m.edges.diagonals, "springs along diagonals");
+  add(!m.material.density, "a total mass of 1 kg");
+  add(!m.material.modulus, "the same K in each spring");
+  return all;
+}
+
+/** What was not left out of a scene that asked for @a a, and its error. */
+std::string recommendation(const Advice& a) {
   using CME212::short_text;
-  std::string text;
-  char line[200];
+  std::string gone;
+  for (const PartReport& p : a.parts)
+    if (!p.needed) gone += (gone.empty() ? "" : ", ") + p.part;
+  const std::size_t nodes = mesh_of(a.model).points.size();
+  std::string text =
+      "advice: " + std::to_string(nodes) + " nodes, " +
+      a.model.method->info.name + ", dt " + short_text(a.model.step.dt) + " s" +
+      (gone.empty() ? "" : ", without " + gone) + ": " + name_of(a.measure) +
+      " to " + with_unit(a.error, a.measure) + " +- " +
+      with_unit(a.uncertainty, a.measure) +
+      " (asked: " + with_unit(a.tolerance, a.measure) + ")\n";
+  text += "  ./cloth " + as_options(a.model) + '\n';
+  const std::size_t from = a.grids.empty() ? 0 : a.grids[0].nodes;
+  if (!a.checked)
+    text += "  not run: foreseen from coarser grids, " + std::to_string(from) +
+            " nodes and up\n";
+  auto finer = [&](const std::optional<double>& error, const char* what) {
+    return std::string(what) +
+           (error ? " it is " + with_unit(*error, a.measure) + " off"
+                  : " was not run");
+  };
+  if (a.checked)
+    text += "  " + finer(a.robustness.half_step, "by half the step") +
+            (a.model.sheets.empty()
+                 ? "; the error of the mesh itself is not known"
+                 : finer(a.robustness.finer_grid, "; on twice the cells")) +
+            '\n';
+  return text;
+}
+
+}  // namespace
+
+std::string as_options(const Model& m) {
+  const std::vector<std::string> usual = settings(Model());
+  const std::set<std::string> left_out(usual.begin(), usual.end());
+  std::string all;
+  for (const std::string& line : settings(m)) {
+    const auto equals = line.find(" = ");
+    const std::string key = line.substr(0, equals);
+    if (left_out.contains(line) && key != "edges") continue;
+    std::string value = line.substr(equals + 3), text;
+    auto add = [&](const std::string& words) {
+      all += (all.empty() ? "--" : " --") + key + ' ' + for_shell(words);
+    };
+    if (value.find('"') == std::string::npos) {
+      add(value);
+      continue;
+    }
+    for (std::size_t k = 0, inside = 0; k < value.size(); ++k) {
+      if (value[k] == '"') {
+        if (inside) add(text);
+        inside = !inside, text.clear();
+      } else if (inside) {
+        if (value[k] == '\\') ++k;
+        text += value[k];
+      }
+    }
+  }
+  return all;
+}
+
+std::string in_words(const Advice& a) {
   const std::string unit =
       *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
-  auto add = [&](const char* format, auto... values) {
-    std::snprintf(line, sizeof line, format, values...);
-    text += line;
-  };
-  auto number = [](double x) {
-    return std::isfinite(x) ? CME212::two_digits(x) : std::string("-");
-  };
-  add("asked: %s%s to %s\n", name_of(a.measure), unit.c_str(),
-      short_text(a.tolerance).c_str());
-  if (a.grids.size() > 1) {
-    add("\n%-44s %10s %10s\n", "nodes", "error", "time [s]");
-    for (const GridReport& g : a.grids)
-      add("%-44zu %10s %10s\n", g.nodes, number(g.error).c_str(),
-          number(g.trial.seconds).c_str());
-  }
+  std::string text =
+      a.refusal.empty() ? recommendation(a) : "no advice: " + a.refusal + '\n';
+  if (a.cut_short)
+    text +=
+        "  the budget ended: what was not tried is kept as it was; more "
+        "may be known by a larger --advise-budget\n";
   if (!a.parts.empty()) {
-    add("\n%-44s %10s %10s\n", "part", "changes", "costs");
-    for (const PartReport& p : a.parts)
-      add("%-44.44s %10s %9.0f%%  %s\n", p.part.c_str(),
-          number(p.change).c_str(), 100 * std::max(0.0, p.cost),
-          p.needed ? "needed" : "not needed");
+    Column part{"part", {}},
+        effect{"effect on " + std::string(name_of(a.measure)) + unit, {}},
+        springs{"springs saved", {}}, kept{"", {}};
+    for (const PartReport& p : a.parts) {
+      part.cells.push_back(p.part);
+      effect.cells.push_back(p.tried ? number(p.change) : "not tried");
+      springs.cells.push_back(CME212::short_text(p.springs));
+      kept.cells.push_back(p.needed ? "kept" : "dropped");
+    }
+    text += table({part, effect, springs, kept});
+  }
+  if (a.grids.size() > 0) {
+    Column nodes{"nodes", {}}, error{"error" + unit, {}},
+        evaluations{"force evaluations", {}}, time{"time [s]", {}};
+    for (const GridReport& g : a.grids) {
+      nodes.cells.push_back(std::to_string(g.nodes));
+      error.cells.push_back(a.grids.size() < 3 ? "not known" : number(g.error));
+      evaluations.cells.push_back(count(g.evaluations));
+      time.cells.push_back(number(g.trial.seconds));
+    }
+    text += table({nodes, error, evaluations, time});
   }
   if (!a.steps.empty()) {
-    add("\n%-30s %13s %10s %10s\n", "method", "dt [s]", "error", "time [s]");
-    for (const StepReport& s : a.steps)
-      add("%-30s %13s %10s %10s\n", s.method.c_str(), number(s.dt).c_str(),
-          number(s.error).c_str(), number(s.seconds).c_str());
+    Column method{"method on " + std::to_string(a.tried_on) + " nodes", {}},
+        dt{"dt [s]", {}}, error{"error" + unit, {}},
+        evaluations{"force evaluations", {}}, time{"time [s]", {}};
+    for (const StepReport& s : a.steps) {
+      method.cells.push_back(s.method);
+      dt.cells.push_back(number(s.dt));
+      error.cells.push_back(number(s.error));
+      evaluations.cells.push_back(count(s.evaluations));
+      time.cells.push_back(number(s.seconds));
+    }
+    text += table({method, dt, error, evaluations, time});
   }
-  if (a.floor > 0)
-    add("\na start that is off by 1e-6 m changes the answer by %s\n",
-        number(a.floor).c_str());
-  if (!a.refusal.empty()) return text + "\nno advice: " + a.refusal + '\n';
-  add("\nadvice: %zu nodes, %s, dt = %s s: error %s +- %s; %s s; finding out "
-      "took %s s\n",
-      mesh_of(a.model).points.size(), a.model.method->info.name,
-      short_text(a.model.step.dt).c_str(),
-      with_unit(a.error, a.measure).c_str(), number(a.uncertainty).c_str(),
-      number(a.seconds).c_str(), number(a.spent).c_str());
-  return text;
+  if (a.perturbed > 0)
+    text += "\n" + std::to_string(a.perturbed) +
+            " runs that should give the same differ by up to " +
+            with_unit(a.scatter, a.measure) + '\n';
+  if (a.refusal.empty()) {
+    if (const std::string acts = by_default(a.model); !acts.empty())
+      text += "acts unless something else is named: " + acts + '\n';
+    text += "the run takes " + number(a.work) + " spring evaluations" +
+            (a.seconds > 0 ? ", " + number(a.seconds) + " s" : "") + "; ";
+  }
+  return text + "finding out took " + number(a.spent_work) + " of " +
+         number(a.budget) + ", " + number(a.spent) + " s\n";
 }
 
 }  // namespace lab

@@ -4,6 +4,7 @@
  * which grid, which method and step. README.md tells how, and how often it is
  * right. */
 #include "lab/advice/Advice.hpp"
+#include "lab/advice/Pilots.hpp"
 
 namespace lab {
 
@@ -17,13 +18,20 @@ struct AdviceRules {
    * uncertain are run if that takes at most so many spring evaluations, about a
    * second. */
   double patience = 1e8;
-  int most_checked = 12;          ///< choices that are run to see if they do
+  double shake = 1e-6;    ///< [m], of starts that should change nothing
+  int most_checked = 12;  ///< choices that are run to see if they do
+  /** What all pilots may take, in spring evaluations, so that advice is the
+   * same on every machine; 0: the larger of 2e8, about 2 s, and a run of the
+   * scene as it stands. */
+  double budget = 0;
+  /** Called often, with what is done and what is known. */
+  Pilots::Tell tell = [](const std::string&, double) {};
   double most_uncertainty = 0.2;  ///< of the tolerance, in the limit of all
                                   ///< grids
 };
 
-/** @a m as pilots compute it: by Verlet, with the step that is safe in every
- * configuration. */
+/** @a m as pilots compute it, unless it is stiff: by Verlet, with the step that
+ * is safe in every configuration. */
 Model as_pilot(Model m);
 
 /** Find out what @a m needs for its answer. Runs it many times: on coarser

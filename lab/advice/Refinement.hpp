@@ -29,8 +29,9 @@ struct Effect {
 struct GridReport {
   double factor = 1;  ///< cells along each side, of those named
   std::size_t nodes = 0;
-  double error = 0;  ///< of the answer, estimated; infinite: not known
-  Trial trial;       ///< all parts, by Verlet at safe_share of its limit
+  double error = 0;        ///< of the answer, estimated; infinite: not known
+  Trial trial;             ///< with all parts
+  double evaluations = 0;  ///< of all forces; a solve counts as what it takes
 };
 
 /** A scene on grids, each of twice as many cells along each side as the one

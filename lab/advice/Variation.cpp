@@ -21,6 +21,13 @@ Model refined(const Model& m, double factor) {
     after += double(s.nodes[0]) * s.nodes[1];
   }
   fine.damping *= before / after;
+  // On a grid with nodes nearer than the thickness it goes down with the grid.
+  if (fine.self_collision) {
+    const double apart =
+        shortest_side(fine) * (fine.edges.diagonals ? 2 : std::sqrt(2));
+    double& d = fine.self_collision->thickness;
+    if (d < shortest_side(m) * 2) d = std::min(d, 0.95 * apart);
+  }
   return fine;
 }
 

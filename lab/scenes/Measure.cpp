@@ -103,19 +103,21 @@ double step_of(const Model& m) {
   return m.t_end > 0 ? m.t_end / std::ceil(m.t_end / dt * (1 - 1e-12)) : dt;
 }
 
-Trial try_out(const Model& m, double shake,
-              const std::function<void(const Cloth&)>& look) {
+Trial try_out(const Model& m, const Shake& shake,
+              const std::function<void(const Cloth&)>& look,
+              const std::function<void(double)>& after) {
   const CME212::Clock clock;
   Trial result;
   result.dt = step_of(m);
   Scene scene(recipe_of(m), {.dt = result.dt}, *m.method);
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> off(-shake, shake);
-  if (shake > 0)
+  std::mt19937 random(shake.seed);
+  std::uniform_real_distribution<double> off(-shake.size, shake.size);
+  if (shake.size > 0)
     for (Node n : scene.cloth().nodes())
       n.position() += Point(off(random), off(random), off(random));
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
+    after(scene.time());
     if (scene.failure().empty())
       result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
   });

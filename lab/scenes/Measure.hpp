@@ -57,15 +57,22 @@ struct Trial {
  * t-end, so that a run ends there.  Throws as try_out(). */
 double step_of(const Model& m);
 
+/** How far nodes start from where they should [m], each of them in a direction
+ * of its own, which the seed chooses: what an answer makes of that tells
+ * whether it can be had at all. */
+struct Shake {
+  double size = 0;
+  unsigned seed = 1;
+};
+
 /** Run @a m to its end, with steps of step_of(m).
- * @param shake how far nodes start from where they should [m], each of them in
- *        a direction of its own: what an answer makes of that tells whether it
- *        can be had at all
  * @param look at the cloth at the end of a run that did not fail
+ * @param after each step, at time t [s]
  * Throws InputError, SceneError; std::invalid_argument as Scene does;
  * Interrupted. */
 Trial try_out(
-    const Model& m, double shake = 0,
-    const std::function<void(const Cloth&)>& look = [](const Cloth&) {});
+    const Model& m, const Shake& shake = {},
+    const std::function<void(const Cloth&)>& look = [](const Cloth&) {},
+    const std::function<void(double t)>& after = [](double) {});
 
 }  // namespace lab

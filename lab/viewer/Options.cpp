@@ -54,7 +54,9 @@ const std::vector<Group> groups = {
       "quiet"}},
     {"Interrupted runs", {"checkpoint", "every-seconds", "restart"}},
     {"Changes while it runs", {"record-input", "replay"}},
-    {"Advice", {"measure", "tolerance", "advise", "auto", "write-config"}},
+    {"Advice",
+     {"measure", "tolerance", "advise", "advise-budget", "auto",
+      "write-config"}},
     {"Other", {"dump-config", "list-methods", "version", "help"}}};
 
 /** @a text in lines of at most @a width characters, where words allow. */
@@ -132,6 +134,8 @@ void check(Options& o) {
                                 "FILE.nodes, into FILE.tets");
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
+  require(o.advise_budget >= 0, "advise-budget", o.advise_budget,
+          "seconds, 0 or more");
   require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
   require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
@@ -348,6 +352,9 @@ int parse(int argc, char** argv, Options& o) {
   app.add_flag("--advise", o.advise,
                "find out by short runs which parts, grid, method and step the "
                "measure needs to its tolerance; print it, and end");
+  app.add_option("--advise-budget", o.advise_budget,
+                 "seconds that finding out may take, counted in work; 0: the "
+                 "larger of 2 and what the run takes");
   app.add_flag("--auto", o.automatic, "run what --advise would advise");
   takes_file(app.add_option("--write-config", o.advised,
                             "write the scene that is advised to this file"));

@@ -19,6 +19,7 @@ struct Options {
   bool headless = false, window = false, paused = false, strain = false;
   bool quiet = false;
   bool advise = false, automatic = false;
+  double advise_budget = 0;  ///< [s]; 0: the larger of 2 and the run's
   std::string screenshot, video, csv, out;
   std::string vtp, obj, ply;  ///< folders
   double frame_rate = 30;     ///< of those [1/s]

@@ -1,0 +1,268 @@
+#include "lab/advice/Adviser.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "CME212/Util.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Scene.hpp"
+
+namespace lab::adviser_detail {
+
+void Adviser::find_parts() {
+  auto& parts = advice_.parts;
+  const double factor = base().factor, work = pilot_work(factor);
+  const Model all = pilot(on_grid(factor), factor);
+  const Trial& pilot = base().trial;
+  const double springs = springs_of(all);
+  advice_.tried_on = base().nodes;
+  parts.clear();
+  for (const Variation& v : without_parts(all)) {
+    PartReport r{v.part, infinite, springs - springs_of(v.model)};
+    r.tried = pilots_.affords(work, 0.1);
+    if (r.tried)
+      if (const Trial t = pilots_.run(v.model, "without " + v.part, work);
+          t.ok())
+        r.change = distance(t.answer, pilot.answer, advice_.measure);
+    parts.push_back(r);
+  }
+  std::vector<PartReport> order = parts;
+  std::ranges::sort(order, {}, &PartReport::change);
+  const double room = rules_.for_parts * advice_.tolerance;
+  less_ = {{{}, Effect(pilot.answer.size()), 1}};
+  for (const PartReport& part : order) {
+    if (!(part.change <= room)) break;
+    std::vector<std::string> gone = less_.back().gone;
+    gone.push_back(part.part);
+    const std::optional<Model> without = without_all(all, gone);
+    if (!without || !pilots_.affords(work, 0.2)) continue;
+    const Trial t = pilots_.run(*without, "without " + part.part, work);
+    if (!t.ok()) continue;
+    const Effect effect(t.answer, pilot.answer);
+    if (size_of(effect) <= room)
+      less_.push_back(
+          {gone, effect, springs_of(*without) / std::max(springs, 1.0)});
+  }
+}
+
+double Adviser::springs_of(const Model& m) {
+  Cloth g;
+  build_model(g, m, mesh_of(m));
+  return double(g.num_edges());
+}
+
+bool Adviser::try_steps() {
+  const Model on = on_grid(base().factor);
+  const StepCosts& costs = costs_.emplace(on);
+  const double verlet = costs.verlet(), few = scene_.t_end / 32;
+  struct Try {
+    const char* method;
+    double dt;
+  };
+  const Try tries[] = {
+      {method_->method->info.name, 1.5 * base().trial.dt},
+      {"verlet", 0.9 * verlet},
+      {"symplectic-euler", 0.9 * verlet},
+      {"pefrl", 1.3 * verlet},
+      {"srkn6b", 2.2 * verlet},
+      {"respa", 0.9 * costs.multirate()},
+      {"tr-bdf2", few},
+      {"tr-bdf2", few / 8},
+      {"implicit-euler", few / 4},
+  };
+  auto attempt = [&](const char* method, double dt) {
+    Model m = on;
+    m.method = find_method(method);
+    m.step = {.dt = std::min(dt, m.t_end)};
+    return std::pair(m, costs.of_run(m));
+  };
+  auto run = [&](const char* method, double dt) {
+    const auto [m, work] = attempt(method, dt);
+    return pilots_.run(
+        m, std::string(method) + " by " + CME212::two_digits(dt) + " s", work);
+  };
+  const char* own = method_->method->info.name;
+  const char* fine = "srkn6b";
+  double small = 0.55 * verlet;
+  if (!pilots_.affords(attempt(fine, small).second, 0.3))
+    fine = own, small = base().trial.dt / 4;
+  if (!pilots_.affords(attempt(fine, small).second))
+    return refuse(too_dear(attempt(fine, small).second));
+  const Trial exact = run(fine, small);
+  if (!exact.ok()) return refuse(exact.failure);
+  reference_ = exact.answer;
+  steps_.clear(), advice_.steps.clear();
+  double least = infinite;  // of the largest steps so far
+  for (const Try& t : tries) {
+    const bool first = steps_.empty();
+    const double work = attempt(t.method, t.dt).second;
+    const MethodEntry* method = find_method(t.method);
+    // A multirate method without stiff springs is Verlet.
+    if (!first && (std::string_view(t.method) == own || !(work <= 4 * least) ||
+                   (method->info.multirate && t.dt < verlet) ||
+                   !pilots_.affords(3 * work, 0.15)))
+      continue;
+    least = std::min(least, work);
+    Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1};
+    for (int k : {0, 1}) {
+      const double dt = k == 0 ? t.dt : s.dt / 2;
+      const Trial trial = run(t.method, dt);
+      s.works[k] = trial.ok();
+      if (s.works[k]) s.effect[k] = Effect(trial.answer, exact.answer);
+      if (k == 0 && trial.dt > 0) s.dt = trial.dt;
+      advice_.steps.push_back(
+          {t.method, k == 0 ? s.dt : s.dt / 2,
+           s.works[k] ? size_of(s.effect[k]) : infinite,
+           attempt(t.method, dt).second / std::max(1.0, costs.springs()),
+           trial.seconds});
+    }
+    // The two steps bear the order out, or they don't.
+    if (s.works[0] && s.works[1] && size_of(s.effect[0]) > 0) {
+      Effect surprise = s.effect[0];
+      surprise.add(-std::pow(2, s.method->info.order), s.effect[1].by);
+      s.uncertainty = std::clamp(size_of(surprise) / size_of(s.effect[0]),
+                                 rules_.uncertainty_of_effects, 1.0);
+    }
+    steps_.push_back(s);
+  }
+  return true;
+}
+
+Effect Adviser::of_step(const Step& s, double share, double finer) {
+  if (s.method->info.limit == no_limit) finer = 1;
+  const int k = share == 1 ? 0 : 1;
+  return Effect(s.effect[k].by.size())
+      .add(std::pow((k + 1) * share / finer, s.method->info.order),
+           s.effect[k].by);
+}
+
+void Adviser::choose() {
+  const Refinement& grids = advice_.grids;
+  // A mesh from files is all there is: its step is what can be wrong.
+  const Answer limit = scene_.sheets.empty() ? reference_ : grids.limit();
+  auto off = [&](const Model& m, double work, const std::string& doing,
+                 Trial& t) {
+    t = pilots_.run(m, doing, work);
+    return t.ok() ? size_of(Effect(t.answer, limit)) : infinite;
+  };
+  int runs = 0;
+  for (Choice& c : choices()) {
+    const bool looks = c.work <= rules_.patience && runs < rules_.most_checked;
+    if (!looks || !pilots_.affords(c.work, 0.5)) {
+      if (c.error + c.uncertainty <= advice_.tolerance && is_scene(c.model)) {
+        found_ = c;
+        return;
+      }
+      continue;
+    }
+    ++runs;
+    Trial t, half;
+    const std::string nodes = std::to_string(nodes_of(c.model)) + " nodes by " +
+                              c.model.method->info.name + ' ';
+    c.error = off(c.model, c.work, nodes, t);
+    c.uncertainty = grids.uncertainty_of_limit();
+    c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
+    if (!(c.error + c.uncertainty <= advice_.tolerance)) continue;
+    Model smaller = c.model;
+    smaller.step.dt /= 2;
+    c.robustness.half_step =
+        off(smaller, 2 * c.work, nodes + "and half the step", half);
+    c.half = half.answer;
+    // A mesh from files has no limit of grids to be uncertain of; what two
+    // fine steps differ by is what is known of its own.
+    if (scene_.sheets.empty() && half.ok())
+      c.uncertainty = std::max(*c.robustness.half_step,
+                               size_of(Effect(half.answer, t.answer)) / 3);
+    const double most = advice_.tolerance - grids.uncertainty_of_limit();
+    bool robust = *c.robustness.half_step <= most;
+    if (robust && !scene_.sheets.empty() && pilots_.affords(8 * c.work, 0.3)) {
+      Model finer = refined_without(2 * c.factor, c.gone);
+      finer.method = c.model.method;
+      finer.step = {.dt = c.model.step.dt / 2};
+      c.robustness.finer_grid =
+          off(finer, 8 * c.work, nodes + "and twice the cells", half);
+      robust = *c.robustness.finer_grid <= most;
+    }
+    if (robust) perturb(c);
+    robust = robust && c.error + c.uncertainty + scatter_share * c.scatter <=
+                           advice_.tolerance;
+    if (robust) {
+      found_ = c;
+      return;
+    }
+    if (!lucky_) lucky_ = c;
+  }
+  refuse("no method meets the tolerance by steps down to 1/64 of its largest");
+}
+
+bool Adviser::is_scene(const Model& m) {
+  try {
+    Scene scene(m);
+    return true;
+  } catch (const SceneError&) {
+    return false;
+  }
+}
+
+std::vector<Adviser::Choice> Adviser::choices() const {
+  std::vector<Choice> all;
+  for (double factor : factors()) {
+    const double finer = factor / base().factor;
+    const Effect of_grid = advice_.grids.error(factor);
+    // The pilots' own step is in that of the grid.
+    const double pilots = base().trial.dt / (steps_[0].dt / 2) / finer;
+    Effect of_pilot(of_grid.by.size());
+    if (steps_[0].works[1] && !scene_.sheets.empty())
+      of_pilot.add(pilots * pilots, steps_[0].effect[1].by);
+    for (auto less = less_.rbegin(); less != less_.rend(); ++less)
+      for (const Step& s : steps_)
+        for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
+          if (!s.works[share == 1 ? 0 : 1]) continue;
+          // Below its second step it goes as its order says, if at all.
+          if (share < 0.49 && s.uncertainty == 1) break;
+          const Effect step = of_step(s, share, finer);
+          auto off = [&](const Effect& grid, const Effect& by_step) {
+            Effect effect = grid;
+            effect.add(1, less->effect.by).add(1, by_step.by);
+            return size_of(effect.add(-1, of_pilot.by));
+          };
+          const double error = off(of_grid, step);
+          if (!(error <= advice_.tolerance) ||
+              !(off(of_grid, of_step(s, share / 2, finer)) <=
+                advice_.tolerance))
+            continue;
+          const double uncertainty =
+              advice_.grids.uncertainty(factor) +
+              s.uncertainty * size_of(step) +
+              rules_.uncertainty_of_effects *
+                  (size_of(less->effect) + size_of(of_pilot));
+          const bool shrinks = s.method->info.limit != no_limit;
+          const auto m = scene_with(factor, *less, s,
+                                    s.dt * share / (shrinks ? finer : 1));
+          if (!m) continue;
+          const double work = costs_->of_step(*s.method, m->step.dt * finer) *
+                              finer * finer * less->springs *
+                              std::ceil(m->t_end / m->step.dt);
+          all.push_back({*m, less->gone, factor, error, uncertainty, work});
+          if (error + uncertainty <= advice_.tolerance) break;
+        }
+  }
+  std::ranges::stable_sort(all, {}, &Choice::work);
+  return all;
+}
+
+std::optional<Model> Adviser::scene_with(double factor, const Less& less,
+                                         const Step& s, double dt) const {
+  std::optional<Model> m = without_all(on_grid(factor), less.gone);
+  if (!m) return m;
+  m->method = s.method;
+  m->step = {.dt = std::min(dt, m->t_end)};
+  m->step.dt = step_of(*m);
+  return m;
+}
+
+}  // namespace lab::adviser_detail

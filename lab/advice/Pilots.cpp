@@ -1,0 +1,117 @@
+#include "lab/advice/Pilots.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "CME212/Util.hpp"
+#include "lab/advice/Variation.hpp"
+#include "lab/methods/Costs.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/methods/StiffSplit.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/SceneFile.hpp"
+
+namespace lab {
+
+StepCosts::StepCosts(const Model& m) {
+  Model first = m;
+  first.step = {.dt = 1};
+  const Scene scene(first);
+  springs_ = double(scene.cloth().num_edges());
+  verlet_ = scene.safe_limit(*find_method("verlet"));
+  multirate_ = scene.safe_limit(*find_method("respa"));
+  const CombinedConstraints constraint = constraint_of(m, scene.cloth());
+  const StiffSplit split = split_springs(scene.cloth(), 1, constraint);
+  stiff_ = double(split.springs.size());
+  if (!split.empty()) inner_ = 2 / split.omega / inner_steps_at_limit;
+}
+
+double StepCosts::of_step(const MethodEntry& method, double dt) const {
+  const MethodInfo& info = method.info;
+  if (info.multirate) return springs_ + stiff_ * std::ceil(dt / inner_);
+  const auto cost =
+      std::ranges::find(method_costs, info.name, &MethodCost::method);
+  const bool solves = info.limit == no_limit || info.adaptive;
+  if (!solves || cost == method_costs.end()) return springs_ * info.sweeps;
+  if (!(cost->at_ten > 0)) return springs_ * cost->at_limit;
+  const double log_dt = std::clamp(std::log10(dt / verlet_), 0.0, 1.0);
+  return springs_ * cost->at_limit *
+         std::pow(cost->at_ten / cost->at_limit, log_dt);
+}
+
+double StepCosts::step(const Model& m) const {
+  if (m.step.fixed()) return m.step.dt;
+  const double limit = m.method->info.multirate ? multirate_
+                       : m.method->info.limit == no_limit
+                           ? verlet_
+                           : verlet_ * m.method->info.limit / 2;
+  return (m.step.rule == StepRule::safe ? safe_share : sharp_share) * limit;
+}
+
+double StepCosts::of_run(const Model& m) const {
+  const double dt = step(m);
+  return std::isfinite(dt) && dt > 0
+             ? of_step(*m.method, dt) * std::ceil(m.t_end / dt)
+             : no_limit;
+}
+
+double work_of_run(const Model& m) { return StepCosts(m).of_run(m); }
+
+namespace {
+double rate_on(Model m) {
+  m.method = find_method("verlet");
+  m.step = {.rule = StepRule::safe};
+  Scene scene(m);
+  const double springs = double(scene.cloth().num_edges());
+  const CME212::Clock clock;
+  double work = 0;
+  while (clock.seconds() < 0.02 && !scene.done(no_limit)) {
+    scene.step();
+    work += springs;
+  }
+  return work / clock.seconds();
+}
+}  // namespace
+
+double measured_rate(const Model& m) {
+  if (!m.sheets.empty() && m.sheets[0].nodes[0] > 25) try {
+      return rate_on(refined(m, 24. / (m.sheets[0].nodes[0] - 1)));
+    } catch (const SceneError&) {  // that grid misses a pin
+    }
+  return rate_on(m);
+}
+
+bool Pilots::affords(double work, double share) {
+  const bool fits = work <= share * left();
+  if (!fits) cut_short_ = true;
+  return fits;
+}
+
+Trial Pilots::run(const Model& m, const std::string& doing, double work,
+                  const Shake& shake,
+                  const std::function<void(const Cloth&)>& look) {
+  const std::string key = shake.size > 0 || look ? "" : to_scene_file(m);
+  if (const auto known = done_.find(key); known != done_.end())
+    return known->second;
+  const double before = spent_;
+  spent_ += work;
+  const std::string text = known_.empty() ? doing : doing + "; " + known_;
+  int steps = 0;
+  try {
+    const Trial t = try_out(
+        m, shake, look ? look : [](const Cloth&) {},
+        [&](double now) {
+          if (steps++ % 16 == 0)
+            tell_(text,
+                  std::min(1.0, (before + work * now / m.t_end) / budget_));
+        });
+    if (!key.empty()) done_.emplace(key, t);
+    return t;
+  } catch (const std::exception& e) {
+    Trial failed;
+    failed.failure = e.what();
+    return failed;
+  }
+}
+
+}  // namespace lab

@@ -1,0 +1,86 @@
+#pragma once
+/** @file Pilots.hpp
+ * Runs that find something out, within a budget, and what a run will cost
+ * before it is made. */
+#include <functional>
+#include <map>
+#include <string>
+
+#include "lab/methods/Method.hpp"
+#include "lab/scenes/Measure.hpp"
+
+namespace lab {
+
+/** What a step costs on a grid, in spring evaluations. Methods that solve cost
+ * what method_costs says, so that a comparison depends on no clock. */
+class StepCosts {
+ public:
+  /** Of the cloth of @a m.
+   * Throws InputError, SceneError   Complexity: as omega_safe(), twice */
+  explicit StepCosts(const Model& m);
+
+  double springs() const { return springs_; }
+  /** Verlet's largest stable step [s]; that of a multirate method. */
+  double verlet() const { return verlet_; }
+  double multirate() const { return multirate_; }
+  /** A step of @a dt [s] by @a method. */
+  double of_step(const MethodEntry& method, double dt) const;
+  /** The step [s] of @a m there, and a whole run of @a m; no_limit if the step
+   * isn't given and nothing is stable. */
+  double step(const Model& m) const;
+  double of_run(const Model& m) const;
+
+ private:
+  double springs_ = 0, verlet_ = no_limit, multirate_ = no_limit;
+  double stiff_ = 0, inner_ = no_limit;  // springs; their step [s]
+};
+
+/** Spring evaluations of a run of @a m as it stands, foreseen without running
+ * it.  Throws as StepCosts */
+double work_of_run(const Model& m);
+
+/** Spring evaluations a second of this machine in the cloth and the contacts of
+ * @a m, from some steps on a grid of about 25 x 25 nodes. Takes about 20 ms. */
+double measured_rate(const Model& m);
+
+/** What a run takes besides its steps, in force evaluations: building the cloth
+ * and finding its largest frequency. */
+inline constexpr double start_work = 100;
+
+/** Makes runs and counts what they take. */
+class Pilots {
+ public:
+  /** @param done share of the budget that is spent, up to 1 */
+  using Tell = std::function<void(const std::string& doing, double done)>;
+
+  /** @param budget in spring evaluations */
+  Pilots(double budget, Tell tell) : budget_(budget), tell_(std::move(tell)) {}
+
+  double budget() const { return budget_; }
+  double spent() const { return spent_; }
+  double left() const { return budget_ - spent_; }
+  /** Is a run of @a work within @a share of what is left? If not, the budget
+   * has left something out from now on. */
+  bool affords(double work, double share = 1);
+  bool cut_short() const { return cut_short_; }
+  /** What is known so far: told with all that is done. */
+  void knows(const std::string& so_far) { known_ = so_far; }
+
+  /** Run @a m, or tell what it gave before. What is no scene fails, like what
+   * blows up.
+   * @param doing what for, in words   @param work what it counts
+   * @param look as for try_out(); it looks anew each time
+   * Throws Interrupted */
+  Trial run(const Model& m, const std::string& doing, double work,
+            const Shake& shake = {},
+            const std::function<void(const Cloth&)>& look = nullptr);
+
+ private:
+  double budget_, spent_ = 0;
+  bool cut_short_ = false;
+  std::string known_;
+  std::map<std::string, Trial> done_;  // by scene file
+  Tell tell_;
+};
+
+}  // namespace lab

@@ -1,0 +1,58 @@
+#include "lab/advice/Refusals.hpp"
+
+#include <algorithm>
+
+#include "CME212/Util.hpp"
+#include "lab/advice/Advice.hpp"
+#include "lab/scenes/Compose.hpp"
+
+namespace lab {
+
+std::string diverging(const Model& m) {
+  if (m.measure != Measure::max_stretch) return "";
+  Cloth g;
+  build_model(g, m, mesh_of(m));
+  const auto held = held_of(m, g);
+  for (std::size_t k = 0; k < held.size(); ++k)
+    if (held[k].nodes.size() == 1)
+      return "the stretch at a pin that holds one node grows without bound as "
+             "the grid gets finer, as its whole load hangs by ever smaller "
+             "springs: hold a side, as by --pin \"x 0\", or ask for --measure "
+             "drape-height";
+  return "";
+}
+
+std::string offers(const Model& m, const std::vector<Answer>& still,
+                   const std::vector<Answer>& shaken) {
+  const PointsAndQuads mesh = mesh_of(m);
+  Cloth g;
+  build_model(g, m, mesh);
+  Point low = mesh.points[0], high = low;
+  double mass = 0;
+  for (Node n : g.nodes()) {
+    mass += n.value().mass;
+    for (unsigned k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], n.position()[k]);
+      high[k] = std::max(high[k], n.position()[k]);
+    }
+  }
+  const double size = norm(high - low);
+  std::string all;
+  for (std::size_t k = 0; k < std::min(still.size(), shaken.size()); ++k) {
+    if (still[k].empty() || shaken[k].empty()) continue;
+    const Measure what = Measure(k);
+    // Four times what one shake moved, as another one moves it more.
+    const double to = std::max(1e-5, 4 * distance(still[k], shaken[k], what));
+    const double scale = what == Measure::energy ? mass * m.gravity * size
+                         : what == Measure::max_stretch ? still[k][0]
+                                                        : size;
+    if (what != m.measure && to <= 0.1 * scale)
+      all += std::string(all.empty() ? "" : ", ") + "--measure " +
+             name_of(what) + " to " + with_unit(to, what);
+  }
+  return all.empty() ? "nothing else is known better: ask at an earlier --t-end"
+                     : "what can be had: " + all +
+                           "; or the same at an earlier --t-end";
+}
+
+}  // namespace lab
