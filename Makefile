@@ -88,7 +88,7 @@ demo: deps
 	  ./$(O)mass_spring data/grid2.nodes data/grid2.tets; \
 	else \
 	  $(MAKE) --no-print-directory $(O)cloth && \
-	  ./$(O)cloth --config data/scenes/tear.toml data/grid2.nodes data/grid2.tets; \
+	  ./$(O)cloth --config data/scenes/tear.toml data/grid2.nodes data/grid2.tets --t-end 1.2 --slow-motion 8; \
 	fi
 
 submit:

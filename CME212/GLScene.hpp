@@ -332,16 +332,19 @@ class GLScene {
                           GLsizei(high[1] - low[1]));
   }
 
+  /** A ball is drawn a little smaller: so a face that spans it, flat between
+   * nodes on its surface, does not sink into it. */
   static void place(const GLProgram& p, const SceneData::Sphere& s) {
     p.set("center", s.center);
-    p.set("radius", float(s.radius));
+    p.set("radius", float(0.98 * s.radius));
   }
   void make_shadow(const GLCamera& camera, bool faces) {
     shadow_.make(camera, [&](const GLProgram& p) {
       sphere_.bind();
       for (const auto& s : spheres_) place(p, s), sphere_.draw(GL_TRIANGLES);
       if (!faces) return;
-      place(p, {Point(), 1, {}});
+      p.set("center", Point());
+      p.set("radius", 1.0f);
       nodes_.bind();
       nodes_.draw(GL_TRIANGLES, num_lines_, num_triangles_);
     });

@@ -203,10 +203,11 @@ bool Video::start_ffmpeg(double rate) {
     add({"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-cpu-used", "4",
          "-f", "webm"});
   else if (ending == ".mkv")
-    add({"-c:v", "libx264", "-crf", "18", "-f", "matroska"});
+    add({"-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-f",
+         "matroska"});
   else if (ending != ".gif")
-    add({"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart", "-f",
-         "mp4"});
+    add({"-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-movflags",
+         "+faststart", "-f", "mp4"});
   add({to.c_str(), nullptr});
 
   // A socket, not a pipe: once ffmpeg is gone, send() returns an error where

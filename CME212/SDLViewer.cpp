@@ -392,6 +392,11 @@ void SDLViewer::set_message(std::vector<std::string> paragraphs) {
   d.change([&] { d.text.message = std::move(paragraphs); });
 }
 
+void SDLViewer::set_card(std::vector<std::string> lines) {
+  Display& d = *display_;
+  d.change([&] { d.text.card = std::move(lines); });
+}
+
 void SDLViewer::set_scale(ColorScale scale) {
   Display& d = *display_;
   d.change([&] { d.text.scale = std::move(scale); });

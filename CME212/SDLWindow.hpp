@@ -32,9 +32,11 @@ class SDLVideo {
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, driver, SDL_HINT_OVERRIDE);
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C ends the program
     SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
-    // Where the processor draws, half of it does; the rest is for simulating.
+    // Where the processor draws, half of it does; the rest is for simulating,
+    // which waits for pictures but not for a window.
     const unsigned cores = std::thread::hardware_concurrency();
-    setenv("LP_NUM_THREADS", std::to_string(std::max(cores / 2, 1u)).c_str(),
+    setenv("LP_NUM_THREADS",
+           std::to_string(std::max(offscreen ? cores : cores / 2, 1u)).c_str(),
            false);
     if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw NoDisplay(SDL_GetError());
   }

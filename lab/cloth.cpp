@@ -32,6 +32,7 @@
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/viewer/Film.hpp"
 #include "lab/viewer/Live.hpp"
 #include "lab/viewer/Options.hpp"
 #include "lab/viewer/Run.hpp"
@@ -59,37 +60,10 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
     run.to_end();
     return run.finish();
   }
-  const auto screen = Screen::open(Screen::Kind::pictures);
-  screen->show_strain(o.strain);
-  if (!o.video.empty()) screen->start_film(o.video);
-  const double frame_time = 1.0 / Screen::frames_per_second;
-  // One that goes on has the frames from there on.
-  long long frames = std::llround(scene.time() / frame_time);
-  bool shot = o.screenshot.empty();
-  auto draw = [&] {
-    // Half a step early is as good as half a step late.
-    const double now = scene.time() + scene.dt() / 2;
-    bool frame = !o.video.empty() && now >= double(frames) * frame_time;
-    bool picture = !shot && (run.done() || (o.at >= 0 && now >= o.at));
-    if (frame || picture) run.check();
-    const bool failed = !scene.failure().empty();
-    if (failed) frame = !o.video.empty(), picture = !shot;
-    if (frame || picture) screen->show(scene);
-    // A film of a failure ends with time to read why.
-    const double until = failed ? double(frames + 59) * frame_time : now;
-    while (frame && until >= double(frames) * frame_time)
-      screen->add_to_film(), ++frames;
-    if (picture) screen->save_picture(o.screenshot), shot = true;
-  };
-  draw();
-  run.to_end(draw);
-  if (!shot) draw();  // cut short between two steps
-  auto tell = [&](const std::string& what, const std::string& file) {
-    if (!o.quiet) std::cout << what << ": " << file << '\n';
-    run.wrote(what + ' ' + file);
-  };
-  if (!o.video.empty()) tell("film", screen->end_film());
-  if (!o.screenshot.empty()) tell("picture", o.screenshot);
+  Film film(scene, run, o);
+  film.draw();
+  run.to_end([&] { film.draw(); });
+  film.finish();
   return run.finish();
 }
 

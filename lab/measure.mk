@@ -160,6 +160,9 @@ pictures: test_screen $(B)/cloth
 	    || status=$$?; \
 	  [ $$status = 3 ] || { echo "$$name does not fail" >&2; exit 1; }; done
 	@tools/shrink_pictures.sh docs/pictures/*.png
+	@$(B)/cloth --quiet --config data/scenes/tear.toml data/grid2.* \
+	  --t-end 1.2 --slow-motion 10 --record $(B)/loop.mp4
+	@tools/loop.sh $(B)/loop.mp4 docs/pictures/tear.gif
 
 # ---- Fuzzing. The inputs that it starts from: tools/corpus.
 

@@ -175,6 +175,26 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
             "beside FILE.nodes, into FILE.tets\n");
 }
 
+// Between a title and an end of 45 frames each, one for each 1/30 s from 0 to
+// 0.2 s; the sheet comes to the floor at 0.09 s, and stays slow for 0.08 s.
+TEST_F(ClothProgram, FilmsHaveCardsAndShowContactSlower) {
+  if (!CME212::has_program("ffprobe")) GTEST_SKIP() << "no ffprobe";
+  auto frames = [this](const std::string& options) {
+    const Result r =
+        run("--sheet 'nodes 5 5' --plane 'at 0 0 -0.05' --t-end 0.2 --record " +
+            path("film.mp4") + options);
+    EXPECT_EQ(r.status, 0) << r.err;
+    return std::stoi(
+        CME212::output_of("ffprobe -v error -show_entries "
+                          "stream=nb_frames -of csv=p=0 " +
+                          path("film.mp4")));
+  };
+  EXPECT_EQ(frames(""), 45 + 7 + 45);
+  EXPECT_NEAR(frames(" --slow-motion 4"), 45 + 7 + 45 + 3 * 30 * 0.08, 2);
+  EXPECT_EQ(run("--sheet 'nodes 5 5' --slow-motion 0.5").err,
+            "cloth: --slow-motion is 0.5, expected a factor of 1 to 100\n");
+}
+
 // By default, too, a step of a method with four evaluations costs four times.
 TEST_F(ClothProgram, SaysWhatActsAndWhatItCosts) {
   const std::string scene =

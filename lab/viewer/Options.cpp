@@ -50,8 +50,8 @@ const std::vector<Group> groups = {
     {"Method and step", {"method", "dt", "threads"}},
     {"Output",
      {"headless", "window", "paused", "speed", "strain", "screenshot", "at",
-      "record", "csv", "every", "out", "vtp", "obj", "ply", "frame-rate",
-      "quiet"}},
+      "record", "slow-motion", "csv", "every", "out", "vtp", "obj", "ply",
+      "frame-rate", "quiet"}},
     {"Interrupted runs", {"checkpoint", "every-seconds", "restart"}},
     {"Changes while it runs", {"record-input", "replay"}},
     {"Advice",
@@ -112,6 +112,8 @@ void check(Options& o) {
                        "is " + short_text(value) + ", expected " + expected);
   };
   require(o.speed >= 0, "speed", o.speed, "0 or more");
+  require(o.slow_motion >= 1 && o.slow_motion <= 100, "slow-motion",
+          o.slow_motion, "a factor of 1 to 100");
   auto require_ending = [](const char* option, const std::string& file,
                            std::span<const std::string_view> endings) {
     if (file.empty() ||
@@ -244,6 +246,8 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
       "--record", o.video,
       "draw a film of 30 frames a second, without a window; the format by "
       "its ending: .mp4, .mkv, .webm or .gif"));
+  app.add_option("--slow-motion", o.slow_motion,
+                 "of --record: how many times slower contact and tearing are");
   takes_file(app.add_option("--csv", o.csv,
                             "write energies [J] and center of mass [m]"));
   app.add_option("--every", o.every, "steps between two rows of --csv");

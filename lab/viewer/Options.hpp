@@ -14,6 +14,7 @@ struct Options {
   std::string config;  ///< the scene file
   double at = -1;      ///< time of the screenshot [s]; the end if negative
   double speed = 1;
+  double slow_motion = 1;  ///< factor by which events of a film are slower
   long long every = 10;
   int threads = 0;  ///< of a large cloth; 0: one a processor
   bool headless = false, window = false, paused = false, strain = false;

@@ -30,9 +30,9 @@ void write_mesh(const Scene& scene, const std::string& file) {
 }
 
 /** A film of what is shown, whatever times a user goes back to. */
-class Film {
+class ReplayFilm {
  public:
-  Film(Screen& screen, const std::string& file) : screen_(screen) {
+  ReplayFilm(Screen& screen, const std::string& file) : screen_(screen) {
     screen_.start_film(file);
   }
   /** Frames for the time that @a scene has gone on since the last call. */
@@ -42,7 +42,7 @@ class Film {
     if (due_ < 0) return;
     screen_.show(scene);
     for (; due_ >= 0; due_ -= 1 / Screen::frames_per_second)
-      screen_.add_to_film();
+      screen_.add_to_film(1);
   }
 
  private:
@@ -56,9 +56,11 @@ int run_replay(const Options& o) {
   Replay replay(o.replay);
   Live& live = replay.live();
   const auto screen =
-      o.pictures() ? Screen::open(Screen::Kind::pictures) : nullptr;
+      !o.pictures() ? nullptr
+                    : Screen::open(o.video.empty() ? Screen::Kind::pictures
+                                                   : Screen::Kind::film);
   if (screen) screen->show_strain(o.strain);
-  std::optional<Film> film;
+  std::optional<ReplayFilm> film;
   if (!o.video.empty()) film.emplace(*screen, o.video);
   while (!interrupted() && replay.step()) {
     if (!film) continue;

@@ -39,8 +39,10 @@ class SDLScreen : public Screen {
  public:
   explicit SDLScreen(Kind kind)
       : kind_(kind),
-        viewer_({.title = "cloth",
-                 .offscreen = kind == Kind::pictures,
+        viewer_({.width = kind == Kind::film ? 800 : 1024,
+                 .height = kind == Kind::film ? 600 : 768,
+                 .title = "cloth",
+                 .offscreen = kind != Kind::window,
                  .restarts = true,
                  .colors = true}) {}
 
@@ -48,6 +50,9 @@ class SDLScreen : public Screen {
 
   void show(const Scene& scene) override { show(scene, nullptr, nullptr); }
 
+  void show_card(const std::vector<std::string>& lines) override {
+    viewer_.set_card(lines);
+  }
   void save_picture(const std::string& file) override {
     CME212::write_image(file, viewer_.snapshot());
   }
@@ -55,7 +60,10 @@ class SDLScreen : public Screen {
     auto picture = viewer_.snapshot();
     film_.emplace(file, picture.width, picture.height, frames_per_second);
   }
-  void add_to_film() override { film_->add(viewer_.snapshot()); }
+  void add_to_film(int times) override {
+    const auto picture = viewer_.snapshot();
+    for (; times > 0; --times) film_->add(picture);
+  }
   std::string end_film() override {
     film_->finish();
     return film_->wrote();
@@ -122,10 +130,14 @@ class SDLScreen : public Screen {
   }
 
  private:
+  static constexpr Point eye{0.75, -1, 0.4};  // its direction
+
   Kind kind_;
   CME212::SDLViewer viewer_;
   std::map<Node, unsigned> nodes_;
   std::optional<CME212::Video> film_;
+  CME212::BoundingBox room_;  // looked at, and as much as it may become
+  CME212::BoundingBox widest_;
   bool shown_ = false, colored_ = false;
   bool moving_ = false;      // whether an obstacle is
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
@@ -153,6 +165,7 @@ class SDLScreen : public Screen {
     const Cloth& g = scene.cloth();
     show_failure(scene);
     if (!shown_) set_view(scene);
+    if (kind_ == Kind::film) follow(g);
     if (!shown_ || moving_) add_obstacles(scene);
     const bool strain = colored_ = viewer_.strain_colors();
     if (strain) set_scale(g);
@@ -311,7 +324,7 @@ class SDLScreen : public Screen {
     std::snprintf(time, sizeof time, "t = %.3f s", scene.time());
     std::string text =
         time + ("   " + std::to_string(scene.cloth().num_nodes())) + " nodes";
-    if (kind_ == Kind::pictures) return text;
+    if (kind_ != Kind::window) return text;
     if (scene.steps() < steps_ || clock_.seconds() > 0.5) {
       rate_ = double(std::max(0LL, scene.steps() - steps_)) / clock_.seconds();
       steps_ = scene.steps();
@@ -336,7 +349,26 @@ class SDLScreen : public Screen {
       if (scene.time() == 0 && !room.empty())
         room |= room.min() - Point(0, 0, room.diagonal() / 2);
     }
-    viewer_.set_view(Point(0.75, -1, 0.4), room);
+    room_ = room;
+    const Point reach(room.diagonal() / 2, room.diagonal() / 2,
+                      room.diagonal() / 2);
+    if (!room.empty()) widest_ = {room.min() - reach, room.max() + reach};
+    viewer_.set_view(eye, room_);
+  }
+
+  /** Widen the view smoothly to where the cloth goes, but not after what flies
+   * or falls away. */
+  void follow(const Cloth& g) {
+    CME212::BoundingBox wanted = room_;
+    for (Node n : g.nodes())
+      if (widest_.contains(n.position())) wanted |= n.position();
+    if (room_.contains(wanted)) return;
+    auto nearer = [](const Point& from, const Point& to) {
+      return from + 0.15 * (to - from);
+    };
+    room_ = {nearer(room_.min(), wanted.min()),
+             nearer(room_.max(), wanted.max())};
+    viewer_.set_view(eye, room_);
   }
 
   /** Show what the cloth falls on where it is now, and nothing else. */

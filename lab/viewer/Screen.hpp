@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "CME212/NoDisplay.hpp"
 
@@ -15,13 +16,14 @@ class Scene;
 
 using CME212::NoDisplay;
 
-/** Draws scenes, in a window or into pictures of 1024 x 768 pixels.
+/** Draws scenes, in a window or into pictures of 1024 x 768 pixels, 800 x 600
+ * for a film.
  *
  * Threads: open(), the destructor, event_loop(), save_picture() and the film
  * belong to the main thread, all else to the thread that steps the scene. */
 class Screen {
  public:
-  enum class Kind { window, pictures };
+  enum class Kind { window, pictures, film };
   static constexpr double frames_per_second = 30;  ///< of a film
 
   /** False if built with VIEWER=0: then no screen opens. */
@@ -46,11 +48,14 @@ class Screen {
    * Throws std::runtime_error "FILE: why". */
   virtual void save_picture(const std::string& file) = 0;
 
-  /** Begin a film, add what was shown last to it, end it.
+  /** Write @a lines over the middle of the picture: a title, or a result. */
+  virtual void show_card(const std::vector<std::string>& lines) = 0;
+
+  /** Begin a film, add what was shown last to it so many times, end it.
    * @return of end_film(): the file or folder written
    * Throw std::runtime_error "FILE: why". */
   virtual void start_film(const std::string& file) = 0;
-  virtual void add_to_film() = 0;
+  virtual void add_to_film(int times) = 0;
   virtual std::string end_film() = 0;
 
   // The window; see SDLViewer.

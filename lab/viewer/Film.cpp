@@ -1,0 +1,133 @@
+#include "lab/viewer/Film.hpp"
+
+#include <cmath>
+#include <iostream>
+
+#include "CME212/Util.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/viewer/Run.hpp"
+
+namespace lab {
+
+using CME212::short_text;
+
+namespace {
+
+constexpr double rate = Screen::frames_per_second;
+int frames_in(double seconds) { return int(std::lround(seconds * rate)); }
+
+/** Is a node of @a g less than a tenth of a radius above @a o? Of a floor, less
+ * than 1 cm. */
+bool is_near(const Obstacle& o, const Cloth& g, double t) {
+  const Point at = o.at + o.motion.way(t);
+  for (Node n : g.nodes()) {
+    const Point p = n.position() - at;
+    if (o.kind == Obstacle::Kind::floor ? p.z < 0.01 : norm(p) < 1.1 * o.radius)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Film::Film(const Scene& scene, Run& run, const Options& o)
+    : scene_(scene),
+      run_(run),
+      o_(o),
+      screen_(Screen::open(o.video.empty() ? Screen::Kind::pictures
+                                           : Screen::Kind::film)),
+      // One that goes on has the frames from there on.
+      next_(std::llround(scene.time() * rate) / rate),
+      shot_(o.screenshot.empty()),
+      nodes_(scene.cloth().num_nodes()),
+      edges_(scene.cloth().num_edges()),
+      first_nodes_(nodes_),
+      touched_(scene.recipe().obstacles.size()) {
+  screen_->show_strain(o.strain);
+  if (o.video.empty()) return;
+  screen_->start_film(o.video);
+  if (scene.time() == 0) add_card(title());
+}
+
+void Film::draw() {
+  const bool failed = !scene_.failure().empty();
+  // Half a step early is as good as half a step late.
+  const double now = scene_.time() + scene_.dt() / 2;
+  const bool frame = !o_.video.empty() && (failed || now >= next_);
+  const bool picture =
+      !shot_ && (failed || run_.done() || (o_.at >= 0 && now >= o_.at));
+  if (!frame && !picture) return;
+  run_.check();
+  screen_->show(scene_);
+  if (picture) screen_->save_picture(o_.screenshot), shot_ = true;
+  if (!frame) return;
+  // A failure stays: there is a reason to read.
+  int times = scene_.failure().empty() ? 0 : frames_in(failure_seconds);
+  for (const double time = frame_time(); now >= next_; next_ += time) ++times;
+  screen_->add_to_film(times);
+}
+
+void Film::finish() {
+  if (!shot_) draw();  // cut short between two steps
+  auto tell = [&](const std::string& what, const std::string& file) {
+    if (!o_.quiet) std::cout << what << ": " << file << '\n';
+    run_.wrote(what + ' ' + file);
+  };
+  if (!o_.video.empty()) {
+    if (scene_.failure().empty()) add_card(end());
+    tell("film", screen_->end_film());
+  }
+  if (!o_.screenshot.empty()) tell("picture", o_.screenshot);
+}
+
+/** Simulated time until the frame after the next one [s]. */
+double Film::frame_time() {
+  if (o_.slow_motion > 1 && event()) slow_until_ = scene_.time() + slow_seconds;
+  return scene_.time() < slow_until_ ? 1 / (rate * o_.slow_motion) : 1 / rate;
+}
+
+/** Has the cloth torn since the last call, or come to an obstacle?  O(nodes) */
+bool Film::event() {
+  const Cloth& g = scene_.cloth();
+  bool is_new = g.num_nodes() < nodes_ || g.num_edges() < edges_;
+  nodes_ = g.num_nodes(), edges_ = g.num_edges();
+  const auto& obstacles = scene_.recipe().obstacles;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (touched_[k] || !is_near(obstacles[k], g, scene_.time())) continue;
+    is_new = true, touched_[k] = 1;
+  }
+  return is_new;
+}
+
+/** Show the scene as it is, behind these @a lines, for title_seconds. */
+void Film::add_card(const std::vector<std::string>& lines) {
+  screen_->show(scene_);
+  screen_->show_card(lines);
+  screen_->add_to_film(frames_in(title_seconds));
+  screen_->show_card({});
+}
+
+std::vector<std::string> Film::title() const {
+  const Cloth& g = scene_.cloth();
+  std::vector<std::string> lines{scene_.recipe().name,
+                                 std::to_string(g.num_nodes()) + " nodes, " +
+                                     std::to_string(g.num_edges()) + " springs",
+                                 std::string(scene_.method().name) + ", dt = " +
+                                     short_text(scene_.dt()) + " s"};
+  if (o_.slow_motion > 1)
+    lines.push_back("contact and tearing " + short_text(o_.slow_motion) +
+                    " times slower");
+  return lines;
+}
+
+std::vector<std::string> Film::end() const {
+  const Cloth& g = scene_.cloth();
+  std::vector<std::string> lines{"t = " + short_text(scene_.time()) + " s",
+                                 std::to_string(scene_.steps()) + " steps"};
+  if (g.num_nodes() < first_nodes_)
+    lines.push_back(std::to_string(first_nodes_ - g.num_nodes()) + " of " +
+                    std::to_string(first_nodes_) + " nodes torn off");
+  return lines;
+}
+
+}  // namespace lab

@@ -1,0 +1,57 @@
+#pragma once
+/** @file Film.hpp
+ * Film: when a run without a window is drawn, into a film and a picture. */
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lab/viewer/Options.hpp"
+#include "lab/viewer/Screen.hpp"
+
+namespace lab {
+
+class Run;
+class Scene;
+
+/** The picture and the film of one run.
+ *
+ * A film has a frame for each 1/30 s of simulated time, each the state after
+ * the step next to its time. With slow motion by a factor it has that many
+ * times more of them while nodes come to a ball or the floor for the first
+ * time, and while the cloth tears. It begins with a card of what runs, unless
+ * the run goes on from a checkpoint, and ends with one of what came of it; of
+ * a failure it ends with the reason. */
+class Film {
+ public:
+  static constexpr double title_seconds = 1.5, failure_seconds = 2;
+  /** How long an event is slow after it was seen [s], simulated. */
+  static constexpr double slow_seconds = 0.08;
+
+  /** Keeps references.  Throws NoDisplay, std::runtime_error "FILE: why". */
+  Film(const Scene& scene, Run& run, const Options& o);
+
+  /** Draw what is due; call it before the first step and after each.
+   * Throws std::runtime_error "FILE: why". */
+  void draw();
+  /** Complete the files and tell of them.  Throws as draw() */
+  void finish();
+
+ private:
+  const Scene& scene_;
+  Run& run_;
+  const Options& o_;
+  std::unique_ptr<Screen> screen_;
+  double next_ = 0;        // when the next frame is due [s]
+  double slow_until_ = 0;  // [s]
+  bool shot_;              // the picture was taken, or none is wanted
+  unsigned nodes_, edges_, first_nodes_;  // at the last frame, at first
+  std::vector<char> touched_;             // of each obstacle
+
+  double frame_time();
+  bool event();
+  void add_card(const std::vector<std::string>& lines);
+  std::vector<std::string> title() const;
+  std::vector<std::string> end() const;
+};
+
+}  // namespace lab
