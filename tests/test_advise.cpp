@@ -386,6 +386,9 @@ TEST(Refusals, TeachWhatHasALimit) {
   m.pins = {read_pin("x 0 z 0")};
   m.measure = Measure::max_stretch;
   EXPECT_NE(diverging(m).find("--pin \"x 0\""), std::string::npos);
+  const Advice a = advise(m);
+  EXPECT_EQ(a.refusal, diverging(m));
+  EXPECT_LE(a.grids.size(), 4u);
   m.pins = {read_pin("x 0")};
   EXPECT_EQ(diverging(m), "");
   m.pins = {read_pin("x 0 z 0")};

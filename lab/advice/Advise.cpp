@@ -90,9 +90,10 @@ bool Adviser::find_grid() {
     Trial t;
     try {
       if (!method_) choose_pilots(on);
-      // Of the first grid something has to be known; of others, half is for
-      // a second look.
-      if (!pilots_.affords(pilot_work(factor), grids.empty() ? 1 : 0.5))
+      // Below three grids nothing is known; then half is for a second look.
+      if (!pilots_.affords(pilot_work(factor), grids.empty()      ? 1
+                                               : grids.size() < 3 ? 0.8
+                                                                  : 0.5))
         return refuse(too_dear(pilot_work(factor)));
       const Model m = pilot(on, factor);
       t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all));
@@ -114,6 +115,8 @@ bool Adviser::find_grid() {
     // What coarser grids made believe counts no longer.
     found_.reset(), lucky_.reset();
     if (grids.size() >= 3) pilots_.knows(so_far());
+    if (!grids.settles() && !diverging(scene_).empty())
+      return refuse(diverging(scene_));
     if (scene_.sheets.empty()) return true;
     if (grids.size() >= 3 && may_suffice()) return true;
   }
@@ -170,7 +173,6 @@ std::string Adviser::too_dear(double work) const {
 }
 
 std::string Adviser::unsettled() const {
-  if (const std::string why = diverging(scene_); !why.empty()) return why;
   const auto& grids = advice_.grids;
   return "the answer does not settle as the grid gets finer: the last two "
          "steps changed it by " +
