@@ -35,6 +35,7 @@
 #include "lab/viewer/Film.hpp"
 #include "lab/viewer/Live.hpp"
 #include "lab/viewer/Options.hpp"
+#include "lab/viewer/Recording.hpp"
 #include "lab/viewer/Run.hpp"
 #include "lab/viewer/RunReplay.hpp"
 #include "lab/viewer/Screen.hpp"
@@ -170,7 +171,14 @@ int run_live(const Options& o, Screen& screen) {
   CME212::Clock clock;
   step_in_window(run, screen);
   live.check();
-  if (interrupted()) tell_interrupt(live.scene(), live.model(), "");
+  std::string kept;
+  const auto wrote = [&kept](const std::string& file) {
+    kept += (kept.empty() ? "" : ", ") + file;
+  };
+  if (!o.record_input.empty())
+    write_recording(live, o.record_input), wrote(o.record_input);
+  if (!o.out.empty()) write_mesh(live.scene(), o.out), wrote(o.out);
+  if (interrupted()) tell_interrupt(live.scene(), live.model(), kept);
   if (!o.quiet) print_summary(live.scene(), live.model(), clock.seconds());
   if (!live.scene().failure().empty()) return 3;
   return interrupted() ? 128 + interrupted() : 0;
@@ -292,7 +300,7 @@ int run(Options o) {
       check_outputs(o);
     }
   }
-  if (window && !o.writes()) return run_live(o, *window);
+  if (window && !o.is_fixed()) return run_live(o, *window);
   Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)

@@ -164,6 +164,10 @@ void check(Options& o) {
       (o.headless || o.pictures()))
     throw SceneError("record-input",
                      "needs a window, where something can be asked for");
+  if (!o.record_input.empty() && o.replay.empty() && o.is_fixed())
+    throw SceneError("record-input",
+                     "does not go with --csv, --vtp, --obj, --ply, "
+                     "--checkpoint and --restart: such a run has no panels");
   if (o.window && (o.headless || o.pictures()))
     throw SceneError("window",
                      "does not go with --headless, --screenshot and --record");

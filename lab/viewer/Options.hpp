@@ -32,9 +32,10 @@ struct Options {
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || !advised.empty(); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
-  /** True if the run shall leave files, or goes on from one. */
-  bool writes() const {
-    return !(csv + out + vtp + obj + ply + checkpoint + restart).empty();
+  /** True if a file tells of the whole run, so that it is that of its scene:
+   * then no user changes it. */
+  bool is_fixed() const {
+    return !(csv + vtp + obj + ply + checkpoint + restart).empty();
   }
 };
 

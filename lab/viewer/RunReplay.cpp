@@ -16,19 +16,6 @@ namespace lab {
 
 namespace {
 
-/** The cloth as it is left. */
-void write_mesh(const Scene& scene, const std::string& file) {
-  const PointsAndQuads left = mesh_left(scene.cloth(), *scene.recipe().built);
-  const std::string quads = quads_beside(file);
-  CME212::OutputFile out(file);
-  write_nodes(out.stream(), left);
-  out.commit();
-  if (quads.empty()) return;
-  CME212::OutputFile beside(quads);
-  write_quads(beside.stream(), left);
-  beside.commit();
-}
-
 /** A film of what is shown, whatever times a user goes back to. */
 class ReplayFilm {
  public:
@@ -51,6 +38,18 @@ class ReplayFilm {
 };
 
 }  // namespace
+
+void write_mesh(const Scene& scene, const std::string& file) {
+  const PointsAndQuads left = mesh_left(scene.cloth(), *scene.recipe().built);
+  const std::string quads = quads_beside(file);
+  CME212::OutputFile out(file);
+  write_nodes(out.stream(), left);
+  out.commit();
+  if (quads.empty()) return;
+  CME212::OutputFile beside(quads);
+  write_quads(beside.stream(), left);
+  beside.commit();
+}
 
 int run_replay(const Options& o) {
   Replay replay(o.replay);
