@@ -64,6 +64,7 @@ picture() {  # the window as rows of RGB in hexadecimal, one pixel a line
     -f rawvideo -pix_fmt rgb24 - | od -An -v -tx1 -w3
 }
 moves() { local p; p=$(picture | md5sum); sleep 0.5; [ "$p" != "$(picture | md5sum)" ]; }
+moves_not() { ! moves; }
 # A panel of a failure has a bar in the color of marks.
 no_panel() { [ "$(picture | grep -c "$mark")" -lt 100 ]; }
 panel() {
@@ -141,6 +142,26 @@ cloth --paused --csv "$tmp/w.csv"; kill -TERM "$run"
 ends "SIGTERM ends a paused window" 143 "SIGTERM ended the run at t = 0 s of 5 s; kept: $tmp/w.csv (1 row)"
 cloth --t-end 1e6; sleep 0.5; kill -HUP "$run"
 ends "SIGHUP ends a running one" 129 "SIGHUP ended the run at t = "
+
+# The panel: at these places in it are the buttons and sliders. What the mouse
+# does there is recorded, and run again to the same bits.
+click() { xdotool mousemove --window "$window" "$1" "$2" sleep 0.2 click 1; sleep 0.3; }
+slide() {
+  xdotool mousemove --window "$window" "$1" "$2" sleep 0.2 mousedown 1 \
+    sleep 0.2 mousemove --window "$window" "$3" "$2" sleep 0.2 mouseup 1
+  sleep 0.3
+}
+cloth --paused --record-input "$tmp/in.txt" --out "$tmp/end.nodes"
+click 148 18; slide 100 180 5; click 148 18; press n q
+ends "step in the panel" 0 ": 3 steps to t = 0.003 s"
+ok "gravity in the panel" grep -q '^1 gravity -20$' "$tmp/in.txt"
+"$folder/cloth" --replay "$tmp/in.txt" --out "$tmp/again.nodes" --quiet
+ok "the recording gives the same bits" cmp "$tmp/end.nodes" "$tmp/again.nodes"
+cloth --paused; click 50 18; sleep 0.5; click 50 18; ok "play and pause" moves_not
+click 245 18; press q
+ends "restart in the panel" 0 ": 0 steps to t = 0 s"
+cloth --paused; slide 100 108 290; click 50 18; told 1; press q
+ends "dt / limit of 10 blows up and says why" 3 "exceeds the stability limit"
 
 # DISPLAY leads nowhere.
 run_dead() { DISPLAY=:12345 "$folder/cloth" data/grid0.nodes data/grid0.tets --window; }

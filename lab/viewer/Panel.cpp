@@ -290,7 +290,7 @@ void Panel::draw_numbers() {
   row("elastic", text_of("%.4g J", r.energy.elastic));
   row("gravitational", text_of("%.4g J", r.energy.gravitational));
   row("total", text_of("%.4g J", r.energy.total()));
-  row("drift", text_of("%+.2e J", r.drift));
+  row("drift, contact", text_of("%+.3g J", r.drift));
   row("real-time factor", text_of("%.3g", shown_.real_time));
   row("nodes, edges", std::to_string(r.nodes) + ", " + std::to_string(r.edges));
   row("torn",
@@ -361,7 +361,7 @@ void Panel::draw_comparison() {
           share_text(b.dt, b.safe_limit));
     three("evaluations", std::to_string(r.evaluations),
           std::to_string(b.evaluations));
-    three("drift [J]", text_of("%+.1e", r.drift), text_of("%+.1e", b.drift));
+    three("drift [J]", text_of("%+.2g", r.drift), text_of("%+.2g", b.drift));
     three("error, rms [m]", text_of("%.2e", c->error.rms),
           text_of("%.2e", c->rival_error.rms));
     three("error, max [m]", text_of("%.2e", c->error.largest),

@@ -39,6 +39,13 @@ std::string tick_text(double value, double step) {
   return text;
 }
 
+/** A power of ten, short. */
+static std::string power_text(double value) {
+  const int k = int(std::lround(std::log10(value)));
+  if (k < -2 || k > 3) return "1e" + std::to_string(k);
+  return tick_text(value, value);
+}
+
 std::array<double, 2> axis_range(std::span<const Curve> curves, bool log) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& c : curves)
@@ -104,7 +111,7 @@ void plot(const char* title, std::span<const float> times,
   for (double v : rows) {
     const float y = std::round(y_of(v));
     list.AddLine({left, y}, {right, y}, grid, unit);
-    write(log ? tick_text(v, v)
+    write(log ? power_text(v)
               : tick_text(v, rows.size() > 1 ? rows[1] - rows[0] : high - low),
           left - 5 * unit, y - half, 1);
   }

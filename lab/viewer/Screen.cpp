@@ -179,7 +179,8 @@ class SDLScreen : public Screen {
     };
     viewer_.set_label(label(scene));
     Point beside;
-    if (rival && panel_->side_by_side()) beside = place_beside(g);
+    if (rival && panel_->side_by_side())
+      beside = norm(beside_) > 0 ? beside_ : place_beside(g);
     const auto moved = [&](Node n) { return n.position() + beside; };
     const bool same = shown_ && version_ == g.version() &&
                       rival_shown_ == (rival != nullptr) &&
@@ -198,6 +199,8 @@ class SDLScreen : public Screen {
     add(g, CME212::Color(1), CME212::DefaultPosition(), nodes_);
     if (!same) own_nodes_ = ids_.size();
     if (rival) add(rival->cloth(), rival_color, moved, rival_nodes_);
+    if (norm(beside) > 0 && norm(beside_) == 0) viewer_.center_view();
+    if (norm(beside) == 0 && norm(beside_) > 0) set_view(scene);
     beside_ = beside;
     if (same) return;
     const auto join = [&](const Scene& s, std::map<Node, unsigned>& nodes) {
