@@ -263,6 +263,7 @@ std::vector<HeldNodes> held_of(const Model& m, const Cloth& g) {
     held.motion = pin.motion;
     for (Node n : g.nodes())
       if (pin.holds(n.position())) held.nodes.push_back({n.id(), n.position()});
+    std::ranges::sort(held.nodes, {}, &HeldNodes::Held::id);
     if (held.nodes.empty())
       throw SceneError("pin", '"' + to_words(pin) + "\" holds no node");
   }

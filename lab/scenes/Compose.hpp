@@ -44,7 +44,7 @@ struct HeldNodes {
     unsigned id;
     Point place;  ///< at t = 0 [m]
   };
-  std::vector<Held> nodes;
+  std::vector<Held> nodes;  ///< by ascending id
   Motion motion = {};
 };
 

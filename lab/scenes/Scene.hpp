@@ -156,6 +156,7 @@ class Scene {
    * @pre recipe().holding */
   bool pin(unsigned node);
   bool unpin(unsigned node);
+  /** O(log pins) for each pin of the model. */
   bool is_pinned(unsigned node) const;
   const std::vector<HeldNodes>& held() const { return held_; }
   /** Remove edges, by the ids of their ends.  @return how many there were */

@@ -102,7 +102,7 @@ void Scene::change_forces(const Recipe& recipe) {
 
 bool Scene::is_pinned(unsigned node) const {
   return std::ranges::any_of(held_, [node](const HeldNodes& h) {
-    return std::ranges::count(h.nodes, node, &HeldNodes::Held::id) > 0;
+    return std::ranges::binary_search(h.nodes, node, {}, &HeldNodes::Held::id);
   });
 }
 
@@ -114,7 +114,9 @@ bool Scene::pin(unsigned node) {
   cloth_.node_values()[node].vel = Point();
   if (held_.empty() || held_.back().motion.velocity != Point())
     held_.emplace_back();
-  held_.back().nodes.push_back({node, cloth_.positions()[node]});
+  auto& nodes = held_.back().nodes;
+  nodes.insert(std::ranges::lower_bound(nodes, node, {}, &HeldNodes::Held::id),
+               {node, cloth_.positions()[node]});
   watched_.emplace(recipe_.holding(cloth_, held_));
   end_change(before);
   return true;
