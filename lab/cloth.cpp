@@ -288,7 +288,7 @@ int run(Options o) {
   Recipe recipe = recipe_of(m);
   std::unique_ptr<Screen> window;
   if (!o.headless && !o.pictures()) {
-    if (Screen::has_display() || o.window) {
+    if (Screen::has_display() || o.window || !o.record_input.empty()) {
       window = Screen::open(Screen::Kind::window);
     } else if (Screen::can_draw()) {
       std::filesystem::create_directories("demo");

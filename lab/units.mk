@@ -14,7 +14,9 @@ lab_objects := $(lab_lib:.cpp=.o)
 else
 dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
-drawing    := lab/viewer/Screen.cpp $(filter $(lab_panels),$(lab_lib))
+# What is linked with the window if a program uses it, and not otherwise.
+drawing    := $(filter $(lab_panels) $(patsubst %,lab/viewer/%.cpp, \
+                Screen Film RunReplay),$(lab_lib))
 united     := $(filter-out $(drawing),$(lab_lib))
 rooms      := $(sort $(dir $(united)))
 

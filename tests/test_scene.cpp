@@ -158,6 +158,28 @@ TEST(Scene, StopsAtTheLastGoodStateWhenItDiverges) {
   EXPECT_TRUE(std::isfinite(kinetic_energy(scene.cloth())));
 }
 
+// What a picture of a failure shows: the first state in which a node has gone
+// that far; the scene itself stays where it is.
+TEST(Scene, IsSeenBeyondItsFailure) {
+  Scene scene(stage_scene("tear", 100));
+  while (scene.step()) ASSERT_LT(scene.steps(), 100);
+  const double before = kinetic_energy(scene.cloth());
+  for (double distance : {0.1, 0.3}) {
+    const auto ahead = scene.beyond_failure(distance);
+    double farthest = 0;
+    for (Node n : scene.cloth().nodes())
+      farthest = std::max(
+          farthest,
+          norm(ahead->cloth().node(n.index()).position() - n.position()));
+    EXPECT_GT(farthest, distance);
+    EXPECT_LT(farthest, 30 * distance);  // a step multiplies it by less
+    EXPECT_GT(ahead->time(), scene.time());
+    EXPECT_EQ(ahead->failure(), scene.failure());
+  }
+  EXPECT_EQ(scene.steps(), 13);
+  EXPECT_EQ(kinetic_energy(scene.cloth()), before);
+}
+
 // At 300 times the gravity of the Earth the ball is two steps of 0.01 s away.
 TEST(Scene, WatchesFastNodesFromTheFirstStepOn) {
   Model m = stage_scene("tear", 5);

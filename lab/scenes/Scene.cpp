@@ -351,6 +351,27 @@ const Diagnosis& Scene::diagnosis() const {
   return *diagnosis_;
 }
 
+std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
+  const auto copy = [this] {
+    auto scene = std::make_unique<Scene>(
+        *this, TimeStep{.dt = clock_.dt, .tolerance = step_.tolerance}, entry_);
+    scene->failure_ = failure_;
+    return scene;
+  };
+  auto ahead = copy();
+  const auto is_far = [&] {
+    const auto now = std::as_const(ahead->cloth_).positions();
+    for (Node n : cloth_.nodes())
+      if (ahead->cloth_.node_in_use(n.id()) &&
+          norm(now[n.id()] - n.position()) > distance)
+        return true;
+    return false;
+  };
+  for (int left = 1000; left > 0 && !is_far() && ahead->advance(); --left) {
+  }
+  return ahead->is_finite() ? std::move(ahead) : copy();
+}
+
 /** Run the scene by another method and step: from its start; or from here, if
  * a user has changed it since. */
 Attempt Scene::attempt(const Cure& cure, double t_end) const {

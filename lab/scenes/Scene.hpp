@@ -122,6 +122,11 @@ class Scene {
   /** Both in one line.  @pre and throws as diagnosis() */
   std::string explanation() const { return failure_ + "; " + diagnosis().text; }
   static constexpr double trial_work = 3e8;
+  /** The failed run some steps later, had nobody stopped it: when a node is
+   * @a distance [m] from where the last good state has it, or after 1000 steps.
+   * For pictures.  @pre !failure().empty(), recipe().holding
+   * @return a scene in that state, with the same failure(); all is finite */
+  std::unique_ptr<Scene> beyond_failure(double distance) const;
   const std::optional<WorstPlace>& failed_at() const { return worst_; }
   /** What would have tunnelled through an obstacle. */
   const WatchedConstraint& watched() const { return *watched_; }

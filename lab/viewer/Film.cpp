@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/viewer/Run.hpp"
@@ -59,7 +60,7 @@ void Film::draw() {
   if (!frame && !picture) return;
   run_.check();
   screen_->show(scene_);
-  if (picture) screen_->save_picture(o_.screenshot), shot_ = true;
+  if (picture) save_picture();
   if (!frame) return;
   // A failure stays: there is a reason to read.
   int times = scene_.failure().empty() ? 0 : frames_in(failure_seconds);
@@ -78,6 +79,17 @@ void Film::finish() {
     tell("film", screen_->end_film());
   }
   if (!o_.screenshot.empty()) tell("picture", o_.screenshot);
+}
+
+/** What is shown; of a failure, what came of it. */
+void Film::save_picture() {
+  shot_ = true;
+  if (scene_.failure().empty()) return screen_->save_picture(o_.screenshot);
+  CME212::BoundingBox box;
+  for (Node n : scene_.cloth().nodes()) box |= n.position();
+  screen_->show(*scene_.beyond_failure(box.diagonal() / 10));
+  screen_->save_picture(o_.screenshot);
+  screen_->show(scene_);
 }
 
 /** Simulated time until the frame after the next one [s]. */

@@ -20,7 +20,8 @@ class Scene;
  * times more of them while nodes come to a ball or the floor for the first
  * time, and while the cloth tears. It begins with a card of what runs, unless
  * the run goes on from a checkpoint, and ends with one of what came of it; of
- * a failure it ends with the reason. */
+ * a failure it ends with the reason. A picture of a failure shows the cloth
+ * some steps later, when a node has gone a tenth of the cloth's extent. */
 class Film {
  public:
   static constexpr double title_seconds = 1.5, failure_seconds = 2;
@@ -47,6 +48,7 @@ class Film {
   unsigned nodes_, edges_, first_nodes_;  // at the last frame, at first
   std::vector<char> touched_;             // of each obstacle
 
+  void save_picture();
   double frame_time();
   bool event();
   void add_card(const std::vector<std::string>& lines);

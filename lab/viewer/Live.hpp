@@ -129,9 +129,10 @@ struct RunReadings {
   /** Force evaluations a simulated second: of the present dt, as counted. */
   double evaluations_rate = 0;
   Energies energy;  ///< [J]
-  /** The energy that came from nothing since the start [J]: the method's error.
-   * What drag took, what moved things and the hand gave, what changes of the
-   * user gave, and what torn nodes took along is not in it. */
+  /** The energy that came from nothing since the start [J]: the method's error,
+   * and what contact took, which is inelastic. What drag took, what moved
+   * things and the hand gave, what changes of the user gave, and what torn
+   * nodes took along is not in it. */
   double drift = 0;
   std::string failure;  ///< what, where, why, and what works; empty: it runs
 };

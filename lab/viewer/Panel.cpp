@@ -361,7 +361,8 @@ void Panel::draw_comparison() {
           share_text(b.dt, b.safe_limit));
     three("evaluations", std::to_string(r.evaluations),
           std::to_string(b.evaluations));
-    three("drift [J]", text_of("%+.2g", r.drift), text_of("%+.2g", b.drift));
+    three("drift, contact [J]", text_of("%+.2g", r.drift),
+          text_of("%+.2g", b.drift));
     three("error, rms [m]", text_of("%.2e", c->error.rms),
           text_of("%.2e", c->rival_error.rms));
     three("error, max [m]", text_of("%.2e", c->error.largest),
