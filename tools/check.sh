@@ -216,7 +216,7 @@ vtk() {
 # A sample of the suite of lab/advice/README.md; other scenes than the tables.
 advice() {
   build/check/adviser_suite --scenes 24 --first 501 --want-met 85 \
-    --want-cheap 75 --out build/check/adviser.csv
+    --want-cheap 40 --out build/check/adviser.csv
 }
 of_scripts() {
   step checks      tools/test_checks.sh
