@@ -10,7 +10,7 @@ if [ $# = 0 ]; then set -- *.hpp CME212/*.hpp lab/*.hpp lab/*/*.hpp; fi
 # others compile without. A header that draws only under MASS_SPRING_VIEWER is
 # compiled with it and without it; so is one that knows MASS_SPRING_CHOLMOD,
 # where CHOLMOD is installed.
-drawing='^CME212/(GL|SDLWindow)'
+drawing='^CME212/(GL|SDL(Window|Input|Settings))'
 packages="sdl2 gl imgui libpng"
 
 has_cholmod() {  # COMPILER
