@@ -58,7 +58,7 @@ more_lines() {  # wait until it has said $1 lines more
   done
   return 1
 }
-quiet() { local n; n=$(lines); sleep 1.5; [ "$(lines)" = "$n" ]; }
+quiet() { local n; n=$(lines); sleep 2.5; [ "$(lines)" = "$n" ]; }
 picture() {  # the window as rows of RGB in hexadecimal, one pixel a line
   ffmpeg -v error -f x11grab -video_size 1280x1024 -i "$DISPLAY" -frames:v 1 \
     -f rawvideo -pix_fmt rgb24 - | od -An -v -tx1 -w3
@@ -94,8 +94,8 @@ ends() {  # NAME STATUS WORDS
   fi
 }
 
-# The assignment's program: a line every second of its 10 s.
-driver 0 0.001 10
+# The assignment's program: a line every 2 s of its 20 s.
+driver 0 0.001 20
 ok "the driver steps" more_lines 1
 ok "and draws meanwhile" moves
 ok "and has no panel" no_panel
