@@ -157,8 +157,10 @@ void step_in_window(S& s, Screen& screen) {
 
 /** Run in a window in which the user may change everything.
  * @return exit status */
-int run_live(const Options& o, Screen& screen) {
+int run_live(const Options& o) {
   Live live(o.model);
+  const auto window = Screen::open(Screen::Kind::window);
+  Screen& screen = *window;
   if (!o.quiet) {
     std::cout << live.scene().cloth().num_nodes() << " nodes, "
               << live.scene().cloth().num_edges() << " edges\n";
@@ -177,7 +179,7 @@ int run_live(const Options& o, Screen& screen) {
   };
   if (!o.record_input.empty())
     write_recording(live, o.record_input), wrote(o.record_input);
-  if (!o.out.empty()) write_mesh(live.scene(), o.out), wrote(o.out);
+  if (!o.out.empty()) MeshOutput(o.out).write(live.scene()), wrote(o.out);
   if (interrupted()) tell_interrupt(live.scene(), live.model(), kept);
   if (!o.quiet) print_summary(live.scene(), live.model(), clock.seconds());
   if (!live.scene().failure().empty()) return 3;
@@ -285,10 +287,14 @@ int run(Options o) {
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   const Model& m = o.model;
+  const bool shows = !o.headless && !o.pictures();
+  const bool in_window =
+      shows && (o.window || !o.record_input.empty() || Screen::has_display());
+  if (in_window && !o.is_fixed()) return run_live(o);
   Recipe recipe = recipe_of(m);
   std::unique_ptr<Screen> window;
-  if (!o.headless && !o.pictures()) {
-    if (Screen::has_display() || o.window || !o.record_input.empty()) {
+  if (shows) {
+    if (in_window) {
       window = Screen::open(Screen::Kind::window);
     } else if (Screen::can_draw()) {
       std::filesystem::create_directories("demo");
@@ -300,7 +306,6 @@ int run(Options o) {
       check_outputs(o);
     }
   }
-  if (window && !o.is_fixed()) return run_live(o, *window);
   Scene scene(std::move(recipe), m.step, *m.method);
   Run run(scene, o);
   if (!o.quiet)

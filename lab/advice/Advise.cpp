@@ -115,8 +115,9 @@ bool Adviser::find_grid() {
     // What coarser grids made believe counts no longer.
     found_.reset(), lucky_.reset();
     if (grids.size() >= 3) pilots_.knows(so_far());
-    if (!grids.settles() && !diverging(scene_).empty())
-      return refuse(diverging(scene_));
+    if (!grids.settles())
+      if (const std::string why = diverging(scene_); !why.empty())
+        return refuse(why);
     if (scene_.sheets.empty()) return true;
     if (grids.size() >= 3 && may_suffice()) return true;
   }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
 #include "lab/advice/Advice.hpp"
+#include "lab/fast/Energy.hpp"
 #include "lab/scenes/Compose.hpp"
 
 namespace lab {
@@ -24,26 +26,19 @@ std::string diverging(const Model& m) {
 
 std::string offers(const Model& m, const std::vector<Answer>& still,
                    const std::vector<Answer>& shaken) {
-  const PointsAndQuads mesh = mesh_of(m);
   Cloth g;
-  build_model(g, m, mesh);
-  Point low = mesh.points[0], high = low;
-  double mass = 0;
-  for (Node n : g.nodes()) {
-    mass += n.value().mass;
-    for (unsigned k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], n.position()[k]);
-      high[k] = std::max(high[k], n.position()[k]);
-    }
-  }
-  const double size = norm(high - low);
+  build_model(g, m, mesh_of(m));
+  CME212::BoundingBox box;
+  for (Node n : g.nodes()) box |= n.position();
+  const double size = box.diagonal();
   std::string all;
   for (std::size_t k = 0; k < std::min(still.size(), shaken.size()); ++k) {
     if (still[k].empty() || shaken[k].empty()) continue;
     const Measure what = Measure(k);
     // Four times what one shake moved, as another one moves it more.
     const double to = std::max(1e-5, 4 * distance(still[k], shaken[k], what));
-    const double scale = what == Measure::energy ? mass * m.gravity * size
+    const double scale = what == Measure::energy
+                             ? total_mass(g) * m.gravity * size
                          : what == Measure::max_stretch ? still[k][0]
                                                         : size;
     if (what != m.measure && to <= 0.1 * scale)

@@ -240,6 +240,7 @@ class Scene {
   void end_change(double before);
   void plan_changed(const EnergyFlow& flow);
   void make_method();
+  bool is_there(unsigned node) const;
   void hand_changed();
   void watch_hand();
   double with_hand(double omega) const;

@@ -100,6 +100,11 @@ void Scene::change_forces(const Recipe& recipe) {
   end_change(before);
 }
 
+/** Is there a node of this id? */
+bool Scene::is_there(unsigned node) const {
+  return node < cloth_.node_slots() && cloth_.node_in_use(node);
+}
+
 bool Scene::is_pinned(unsigned node) const {
   return std::ranges::any_of(held_, [node](const HeldNodes& h) {
     return std::ranges::binary_search(h.nodes, node, {}, &HeldNodes::Held::id);
@@ -107,9 +112,7 @@ bool Scene::is_pinned(unsigned node) const {
 }
 
 bool Scene::pin(unsigned node) {
-  if (node >= cloth_.node_slots() || !cloth_.node_in_use(node) ||
-      is_pinned(node))
-    return false;
+  if (!is_there(node) || is_pinned(node)) return false;
   const double before = begin_change();
   cloth_.node_values()[node].vel = Point();
   if (held_.empty() || held_.back().motion.velocity != Point())
@@ -139,9 +142,7 @@ unsigned Scene::cut(std::span<const std::array<unsigned, 2>> edges) {
   const double before = begin_change();
   unsigned count = 0;
   const auto node = [this](unsigned id) {
-    return id < cloth_.node_slots() && cloth_.node_in_use(id)
-               ? cloth_.node_with_id(id)
-               : Node();
+    return is_there(id) ? cloth_.node_with_id(id) : Node();
   };
   for (const auto& [i, j] : edges)
     count += cloth_.remove_edge(node(i), node(j));
@@ -151,7 +152,7 @@ unsigned Scene::cut(std::span<const std::array<unsigned, 2>> edges) {
 
 bool Scene::grab(unsigned node, const Point& target) {
   constexpr double share = 1 / 8., weights = 2;
-  if (node >= cloth_.node_slots() || !cloth_.node_in_use(node)) return false;
+  if (!is_there(node)) return false;
   begin_change();
   double sum = 0;  // of K [N/m]
   for (Edge e : cloth_.node_with_id(node).edges()) sum += e.value().K;

@@ -98,6 +98,19 @@ void print_summary(const Scene& scene, const Model& m, double seconds) {
             << scene.cloth().num_edges() << " edges left\n";
 }
 
+MeshOutput::MeshOutput(const std::string& file) : nodes_(file) {
+  const std::string quads = quads_beside(file);
+  if (!quads.empty()) quads_.emplace(quads);
+}
+
+void MeshOutput::write(const Scene& scene) {
+  const PointsAndQuads left = mesh_left(scene.cloth(), *scene.recipe().built);
+  write_nodes(nodes_.stream(), left);
+  if (quads_) write_quads(quads_->stream(), left);
+  nodes_.commit();
+  if (quads_) quads_->commit();
+}
+
 Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
@@ -106,11 +119,7 @@ Run::Run(Scene& scene, const Options& o)
                {FrameFormat::obj, o.obj},
                {FrameFormat::ply, o.ply}},
               o.frame_rate) {
-  if (!o.out.empty()) {
-    out_.emplace(o.out);
-    const std::string quads = quads_beside(o.out);
-    if (!quads.empty()) out_quads_.emplace(quads);
-  }
+  if (!o.out.empty()) out_.emplace(o.out);
   if (!o.checkpoint.empty())
     archive_scene(scene_as_made_, o.model, scene.cloth());
   if (o.restart.empty())
@@ -209,7 +218,11 @@ int Run::finish() {
       csv_->commit();
       wrote(o_.csv + " (" + CME212::count_of(std::size_t(rows_), "row") + ')');
     });
-  if (out_) write([this] { write_mesh(); });
+  if (out_)
+    write([this] {
+      out_->write(scene_);
+      wrote(o_.out);
+    });
   write([this] {
     add_frame();  // of a run that is cut short
     for (const std::string& what : frames_.finish()) {
@@ -312,16 +325,6 @@ void Run::add_frame() {
   check();
   frames_.take_back(scene_);
   frames_.add(scene_, o_.model);
-}
-
-/** What is left of the mesh, so that it can be read again. */
-void Run::write_mesh() {
-  const PointsAndQuads left = mesh_left(scene_.cloth(), *scene_.recipe().built);
-  write_nodes(out_->stream(), left);
-  if (out_quads_) write_quads(out_quads_->stream(), left);
-  out_->commit();
-  if (out_quads_) out_quads_->commit();
-  wrote(o_.out);
 }
 
 void Run::add_row() {

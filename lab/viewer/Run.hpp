@@ -27,6 +27,20 @@ void print_summary(const Scene& scene, const Model& m, double seconds);
 void tell_interrupt(const Scene& scene, const Model& m,
                     const std::string& kept);
 
+/** What --out writes: the nodes of the mesh that are left and, beside them, its
+ * quads, so that they can be read again. */
+class MeshOutput {
+ public:
+  /** Open the files.  Throws std::runtime_error "FILE: why" */
+  explicit MeshOutput(const std::string& file);
+  /** Once.  Throws as the constructor */
+  void write(const Scene& scene);
+
+ private:
+  CME212::OutputFile nodes_;
+  std::optional<CME212::OutputFile> quads_;
+};
+
 /** One run of a scene with all that is written about it. */
 class Run {
  public:
@@ -71,7 +85,8 @@ class Run {
   Scene& scene_;
   const Options& o_;
   Progress progress_;
-  std::optional<CME212::OutputFile> csv_, out_, out_quads_;
+  std::optional<CME212::OutputFile> csv_;
+  std::optional<MeshOutput> out_;
   Export frames_;
   struct Row {
     long long step;
@@ -96,7 +111,6 @@ class Run {
   void tell_failure();
   void warn_of_missed();
   void add_frame();
-  void write_mesh();
   void begin_csv();
   void write_csv(const std::string& text);
   void archive(CME212::Archive& a);

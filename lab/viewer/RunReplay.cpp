@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
 #include "lab/viewer/Options.hpp"
 #include "lab/viewer/Recording.hpp"
+#include "lab/viewer/Run.hpp"
 #include "lab/viewer/Screen.hpp"
 
 namespace lab {
@@ -39,18 +39,6 @@ class ReplayFilm {
 
 }  // namespace
 
-void write_mesh(const Scene& scene, const std::string& file) {
-  const PointsAndQuads left = mesh_left(scene.cloth(), *scene.recipe().built);
-  const std::string quads = quads_beside(file);
-  CME212::OutputFile out(file);
-  write_nodes(out.stream(), left);
-  out.commit();
-  if (quads.empty()) return;
-  CME212::OutputFile beside(quads);
-  write_quads(beside.stream(), left);
-  beside.commit();
-}
-
 int run_replay(const Options& o) {
   Replay replay(o.replay);
   Live& live = replay.live();
@@ -76,7 +64,7 @@ int run_replay(const Options& o) {
     screen->save_picture(o.screenshot);
     wrote("picture", o.screenshot);
   }
-  if (!o.out.empty()) write_mesh(live.scene(), o.out);
+  if (!o.out.empty()) MeshOutput(o.out).write(live.scene());
   if (!o.record_input.empty()) write_recording(live, o.record_input);
   const Readings r = live.readings(false);
   using CME212::short_text;

@@ -6,11 +6,6 @@
 namespace lab {
 
 struct Options;
-class Scene;
-
-/** Write what is left of the mesh of @a scene, as --out does.
- * Throws std::runtime_error "FILE: why" */
-void write_mesh(const Scene& scene, const std::string& file);
 
 /** Run the recording o.replay again, without a window, and write what @a o asks
  * for: the cloth at its end, a picture of that, a film, the recording.
