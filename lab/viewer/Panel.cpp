@@ -276,11 +276,13 @@ void Panel::draw_controls() {
 
 void Panel::draw_numbers() {
   const Readings& r = shown_.now;
-  if (!ImGui::BeginTable("numbers", 2)) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4 * unit_, unit_ / 2});
+  const bool shown = ImGui::BeginTable("numbers", 2);
+  ImGui::PopStyleVar();
+  if (!shown) return;
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 0.9f);
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.1f);
-  row("method", r.method);
-  row("order", std::to_string(r.order));
+  row("method, order", std::string(r.method) + ", " + std::to_string(r.order));
   row("dt", text_of("%.4g s", r.dt));
   row("dt / limit, safe", share_text(r.dt, r.safe_limit),
       is_beyond(r) ? &red : nullptr);
@@ -302,17 +304,22 @@ void Panel::draw_numbers() {
 
 void Panel::draw_plots() {
   using namespace curve_colors;
+  // As high as leaves two closed sections in sight, if that is legible.
+  const float lines = 4 * ImGui::GetTextLineHeightWithSpacing() +
+                      2 * ImGui::GetFrameHeightWithSpacing() + 16 * unit_;
+  const float height = std::clamp(
+      (ImGui::GetContentRegionAvail().y - lines) / 2, 75 * unit_, 160 * unit_);
   const auto& p = shown_.past;
   const Curve energies[] = {{"kinetic", orange, p[kinetic]},
                             {"elastic", sky, p[elastic]},
                             {"gravitational", green, p[gravitational]},
                             {"total", white, p[total]}};
-  plot("Energy [J]", p[time], energies, 120 * unit_);
+  plot("Energy [J]", p[time], energies, height);
   const Curve shares[] = {{"limit", curve_colors::red, p[one]},
                           {"safe", orange, p[safe]},
                           {"now (sharp)", sky, p[sharp]}};
   const auto [low, high] = axis_range(shares, false);
-  plot("dt / limit [1]", p[time], shares, 105 * unit_, high > 5 || low < 0.0);
+  plot("dt / limit [1]", p[time], shares, height, high > 5 || low < 0.0);
 }
 
 void Panel::draw_comparison() {
@@ -343,19 +350,22 @@ void Panel::draw_comparison() {
   if (button("stop comparing", half)) ask(StopComparing{});
 
   const Readings& r = shown_.now;
+  const ImVec4 second(1, 0.72f, 0.3f, 1);
+  ImGui::TextUnformatted(r.method);
+  ImGui::SameLine();
+  ImGui::TextColored(second, "and %s", c->rival.method);
   if (ImGui::BeginTable("two", 3)) {
-    const auto three = [](const char* name, const std::string& a,
-                          const std::string& b) {
+    const auto three = [&second](const char* name, const std::string& a,
+                                 const std::string& b) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextColored(dim, "%s", name);
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(a.c_str());
       ImGui::TableNextColumn();
-      ImGui::TextColored({1, 0.72f, 0.3f, 1}, "%s", b.c_str());
+      ImGui::TextColored(second, "%s", b.c_str());
     };
     const RunReadings& b = c->rival;
-    three("", r.method, b.method);
     three("dt [s]", text_of("%.3g", r.dt), text_of("%.3g", b.dt));
     three("dt / limit", share_text(r.dt, r.safe_limit),
           share_text(b.dt, b.safe_limit));
