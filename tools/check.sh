@@ -253,6 +253,7 @@ case $tier in
     step build       build_tests
     rm -rf "$logs/taken"; mkdir "$logs/taken"
     beside one_worker other_worker
+    step chart_rule  python3 lab/charts/test_charts.py
     step drawn       drawn
     step readme      tools/check_readme.sh ;;
   check-full)

@@ -152,8 +152,8 @@ std::vector<Problem> make_problems() {
   all.back().constraint = on_a_ball;
   all.back().norm = Norm::functionals;
   all.push_back(grid_problem(
-      "tear", "the assignment's last scene with drag, 25 x 25, to 0.4 s", 0.4,
-      25));
+      "tear", "25 x 25, drag, pins, floor and tearing ball (7.2), to 0.4 s",
+      0.4, 25));
   all.back().constraint = torn_by_a_ball;
   all.back().norm = Norm::functionals;
   return all;

@@ -1,10 +1,11 @@
 """The chart to look at first: a scene and the error that is wanted say which
 method, which step, and how long a run takes."""
+import re
 import textwrap
 from collections import Counter
 
 from panels import DARK, GRAY, Picture, styles
-from results import TRUSTED, Table, cheapest, runs
+from results import RULE, TRUSTED, Table, cheapest, contenders, runs
 
 KINDS = (("linear", ("chain", "curtain")),
          ("cloth in free motion", ("grid1-short", "grid1", "grid0")),
@@ -14,13 +15,9 @@ WANTED = [10.0 ** -k for k in range(2, 10)]  # [m]
 LEFT, CELL, ROW = 224, 96, 54  # [pixels]
 
 
-def short(seconds):
+def milliseconds(seconds):
     """0.00123 as 1.2 ms."""
-    for unit, size in (("s", 1), ("ms", 1e-3), ("us", 1e-6)):
-        if seconds >= size:
-            break
-    number = f"{seconds / size:.2g}"
-    return f"{float(number):g} {unit}"
+    return f"{float(f'{1e3 * seconds:.2g}'):g} ms"
 
 
 def plain(value):
@@ -47,9 +44,8 @@ def decision(csv, out):
     height = 120 + ROW * sum(len(s) for _, s in kinds) + 12 * len(kinds)
     picture = Picture(
         out, LEFT + CELL * len(WANTED) + 8, height, message(answers),
-        "The cheapest measured run that keeps the error: method, step, time "
-        "of the run. Of those within 10 % the most exact one.",
-        table.footer())
+        "", table.footer())
+    picture.text(20, height - 42, f"A cell: {RULE}.", 11)
     y = height - 84
     picture.text(LEFT - 10, y + 12, "wanted error [m]:", 11, DARK, "right")
     for k, wanted in enumerate(WANTED):
@@ -61,6 +57,8 @@ def decision(csv, out):
             y -= ROW
             about = table.note("scene " + scene).split(";")[0]
             picture.text(20, y + 38, f"{kind}: {scene}", 11, DARK)
+            # A number stays with its unit.
+            about = re.sub(r"(\d) (s|N/m)\b", "\\1\u00a0\\2", about)
             for line, words in enumerate(textwrap.wrap(about, 38)):
                 picture.text(20, y + 23 - 12 * line, words, 9, GRAY)
             cells(picture, y, answers[scene], look)
@@ -73,23 +71,24 @@ def decision(csv, out):
 
 def answers_of(some):
     """The cheapest run for each wanted error; None below the reference's."""
-    return [cheapest(wanted, [r for r in some if r.method != "respa"],
-                     lambda run: run.seconds)
+    return [cheapest(wanted, contenders(some), lambda run: run.seconds)
             if wanted >= TRUSTED * some[0].floor else None
             for wanted in WANTED]
 
 
 def message(answers):
-    """The method that is chosen most often, with contact and without."""
-    def most(kinds, columns):
-        chosen = Counter(run.method for kind, scenes in KINDS if kind in kinds
-                         for scene in scenes
-                         for run in answers.get(scene, [])[columns] if run)
-        return chosen.most_common(1)[0][0] if chosen else "not measured"
-    free = ("linear", "cloth in free motion")
-    return (f"Contact: {most(('contact',), slice(0, None))}. Free motion: "
-            f"{most(free, slice(0, 2))} for millimeters, "
-            f"{most(free, slice(2, None))} for less")
+    """The method that answers most often, without contact and with it."""
+    words = []
+    for contact in (False, True):
+        chosen = [run.method for kind, scenes in KINDS
+                  if (kind == "contact") == contact for scene in scenes
+                  for run in answers.get(scene, []) if run]
+        if chosen:
+            method, count = Counter(chosen).most_common(1)[0]
+            words.append(f"{method}{'' if words else ' is the cheapest'} for "
+                         f"{count} of the {len(chosen)} errors "
+                         f"{'with' if contact else 'without'} contact")
+    return ", ".join(words)
 
 
 def cells(picture, y, answers, look):
@@ -110,9 +109,9 @@ def cells(picture, y, answers, look):
         picture.box(x0 + 1, y + 2, x1 - 1, y + ROW - 2,
                     lighter(look[run.method][0],
                             0.88 if look[run.method][2] == "implicit" else 0.7))
-        step = (f"step {short(run.dt)}" if run.dt
+        step = (f"step {milliseconds(run.dt)}" if run.dt
                 else f"tolerance {plain(run.tolerance)} m")
         for line, words in enumerate((f"{{/:Bold {run.method}}}", step,
-                                      f"run {short(run.seconds)}")):
+                                      f"run {milliseconds(run.seconds)}")):
             picture.text((x0 + x1) / 2, y + 41 - 14 * line, words, 9,
                          "#111111", "center")

@@ -9,6 +9,8 @@ from results import ROOT, ChartError
 GRAY, BEHIND, DARK = "#666666", "#d4d4d4", "#222222"
 LETTER, LINE = 6.6, 14  # width and height of a letter of size 11 [pixels]
 CELL = 4                # of the grid that knows where curves are [pixels]
+# Of each filled marker of gnuplot the one that is not.
+HOLLOW = {5: 4, 7: 6, 9: 8, 11: 10, 13: 12, 15: 14}
 
 
 def styles():
@@ -40,6 +42,7 @@ class Curve:
     label: str = ""
     rings: list = field(default_factory=list)   # points with a ring
     failed: list = field(default_factory=list)  # points of failed runs
+    beyond: list = field(default_factory=list)  # unstable, before points[0]
 
 
 @dataclass
@@ -71,7 +74,8 @@ class Crowd:
         self.rows = (panel.top - panel.bottom) // CELL + 2
         there = set()
         for curve in curves:
-            for x, y in dense([panel.pixel(p) for p in curve.points]):
+            for x, y in dense([panel.pixel(p)
+                               for p in curve.beyond + curve.points]):
                 there.add((int(x - self.left) // CELL,
                            int(y - self.bottom) // CELL))
         self.sums = [[0] * (self.columns + 1)]
@@ -243,6 +247,13 @@ class Picture:
             if c.rings:
                 plots.append(f"{self.block(c.rings)} with points "
                              f"lc rgb '{c.color}' pt 6 ps 1.8 lw 1.4")
+            if c.beyond:
+                line = self.block(c.beyond + c.points[:1])
+                plots.append(f"{line} with lines lc rgb '{c.color}' dt 3 "
+                             "lw 1.4")
+                plots.append(f"{self.block(c.beyond)} with points lc rgb "
+                             f"'{c.color}' pt {HOLLOW.get(c.marker, c.marker)}"
+                             " ps 0.9")
             if c.failed:
                 plots.append(f"{self.block(c.failed)} with points {style} "
                              f"ps 0.8")

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COARSE = 0.01  # the largest error that is wanted, of a cloth of 1 m [m]
-TIE = 0.9  # who takes less than this share of a cost is cheaper
+TIE = 0.9  # a cost of which the least one is more than this share ties with it
+# cheapest(), in words, for the charts that show what it chooses.
+RULE = ("the cheapest measured run that keeps this error, as do all finer runs "
+        "of its method; of runs within 10 % the most exact one")
 TRUSTED = 10  # an error below so many floors says nothing
 
 
@@ -130,32 +133,23 @@ def cheapest(error, some, cost):
                key=lambda f: f[0])[1]
 
 
-def winners(some, cost, least_width=0.5):
-    """(method, from, to), from COARSE or less down: the method that is
-    cheapest at these errors by cost_at, until another is so by TIE. One that
-    is so over less than least_width decades is left to its neighbor."""
-    of = by_method(some)
-    kept = [k for runs_ in of.values() for k, _ in reliable(runs_)]
-    if not kept:
-        return []
-    found = []
-    error, last = min(max(kept), COARSE), min(kept) * (1 + 1e-9)
-    while error >= last:
-        costs = {m: cost_at(error, runs_, cost) for m, runs_ in of.items()}
-        least, best = min((c, m) for m, c in costs.items() if c is not None)
-        if not found or TIE * (costs[found[-1][0]] or math.inf) > least:
-            found.append([best, error, error])
-        found[-1][2] = error = error / 10 ** 0.02
-    while len(found) > 1:
-        narrow = min(found, key=lambda s: s[1] / s[2])
-        if narrow[1] / narrow[2] >= 10 ** least_width:
-            break
-        at = found.index(narrow)
-        if at + 1 < len(found):
-            found[at + 1][1] = narrow[1]
+def contenders(some):
+    """Without respa: with one step for all springs it is verlet."""
+    return [run for run in some if run.method != "respa"]
+
+
+def winners(some, cost):
+    """(method, from, to), from COARSE or less down: whose run is the
+    cheapest() at the errors from @a from, which is not one of them, to @a to,
+    which is; at the first from it is too."""
+    kept = {k for of in by_method(some).values() for k, _ in reliable(of)}
+    found, start = [], min(max(kept, default=0), COARSE)
+    # Between two errors that runs keep the choice is the same.
+    for error in sorted((k for k in kept if k <= COARSE), reverse=True):
+        method = cheapest(error, some, cost).method
+        if found and found[-1][0] == method:
+            found[-1][2] = error
         else:
-            found[at - 1][2] = narrow[2]
-        del found[at]
-        if 0 < at < len(found) and found[at][0] == found[at - 1][0]:
-            found[at - 1][2] = found.pop(at)[2]
+            found.append([method, start, error])
+        start = error
     return [tuple(segment) for segment in found]

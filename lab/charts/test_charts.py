@@ -1,0 +1,189 @@
+"""Tests of what charts say: who is the cheapest at an error, in the bars of
+work and precision, in the cells of the decision chart and in the titles:
+python3 lab/charts/test_charts.py"""
+import math
+import random
+import re
+import sys
+import unittest
+
+import decision
+import precision
+from results import (COARSE, TRUSTED, Run, Table, cheapest, contenders, runs,
+                     winners)
+
+FLOOR = 1e-12
+
+
+def run(method, error, seconds, evaluations=0, share=0.5):
+    """A run; one that takes longer has more force evaluations."""
+    return Run(method, 0.01, 0, share, evaluations or seconds, seconds, error,
+               FLOOR, True)
+
+
+def seconds(some):
+    return some.seconds
+
+
+def some_runs(source):
+    """Random runs of three methods, the errors not always falling."""
+    found = []
+    for method in ("a", "b", "c"):
+        error, cost = 10 ** source.uniform(-3, -1), source.uniform(1, 5)
+        for _ in range(source.randint(1, 8)):
+            found.append(run(method, error, cost,
+                             share=source.choice((0.3, 0.9, 1, 1.9))))
+            error *= 10 ** source.uniform(-1, 0.1)
+            cost *= source.uniform(1.2, 2)
+    return found
+
+
+def by_the_rule(error, some):
+    """The method that RULE names, found by its words one after the other."""
+    fit = []
+    for one in some:
+        finer = [r for r in some if r.method == one.method and r.share <= 1 and
+                 r.seconds >= one.seconds]
+        if one.share <= 1:
+            kept = max([r.error for r in finer] + [TRUSTED * FLOOR])
+            if kept <= error:
+                fit.append((kept, one))
+    if not fit:
+        return None
+    least = min(r.seconds for _, r in fit)
+    return min((kept, r.method) for kept, r in fit
+               if least >= 0.9 * r.seconds)[1]
+
+
+def winner_at(error, segments):
+    return next(m for m, start, end in segments if start >= error >= end)
+
+
+class Rule(unittest.TestCase):
+    def test_a_run_keeps_its_own_error_and_no_smaller_one(self):
+        some = [run("a", 1e-3, 1), run("b", 1e-5, 5)]
+        self.assertEqual(cheapest(1e-3, some, seconds).method, "a")
+        self.assertEqual(cheapest(0.999e-3, some, seconds).method, "b")
+        self.assertIsNone(cheapest(0.999e-5, some, seconds))
+
+    def test_within_ten_percent_the_most_exact_one(self):
+        for cost, wins in ((1.11, "b"), (1.12, "a")):
+            some = [run("a", 1e-3, 1), run("b", 1e-5, cost)]
+            self.assertEqual(cheapest(1e-2, some, seconds).method, wins)
+
+    def test_finer_runs_must_keep_it_too(self):
+        some = [run("a", 1e-6, 1), run("a", 1e-4, 2), run("b", 1e-5, 9)]
+        self.assertEqual(cheapest(1e-4, some, seconds).method, "a")
+        self.assertEqual(cheapest(0.99e-4, some, seconds).method, "b")
+
+    def test_none_beyond_the_largest_stable_step(self):
+        for share, wins in ((1, "a"), (1.01, "b")):
+            some = [run("a", 1e-3, 1, share=share), run("b", 1e-3, 2)]
+            self.assertEqual(cheapest(1e-2, some, seconds).method, wins)
+
+    def test_bars_follow_the_rule_at_every_error(self):
+        for seed in range(200):
+            some = some_runs(random.Random(seed))
+            segments = winners(some, seconds)
+            if not segments:
+                self.assertIsNone(by_the_rule(COARSE, some))
+                continue
+            for (_, _, end), (_, start, _) in zip(segments, segments[1:]):
+                self.assertEqual(end, start)
+            top, last = segments[0][1], segments[-1][2]
+            for k in range(101):
+                error = min(top, max(last, top * (last / top) ** (k / 100)))
+                self.assertEqual(winner_at(error, segments),
+                                 by_the_rule(error, some), (seed, error))
+
+    def test_no_bar_without_a_stable_run(self):
+        self.assertEqual(winners([run("a", 1e-3, 1, share=2)], seconds), [])
+
+
+class Measured(unittest.TestCase):
+    """What the charts say of work_precision.csv."""
+
+    @classmethod
+    def setUpClass(cls):
+        table = Table("lab/charts/results/work_precision.csv")
+        cls.scenes = {scene: contenders(runs(table.where(scene=scene)))
+                      for scene in dict.fromkeys(r["scene"]
+                                                 for r in table.rows)}
+
+    def test_bars_and_cells_name_the_same_method(self):
+        compared = 0
+        for scene, some in self.scenes.items():
+            segments = winners(some, seconds)
+            for wanted, chosen in zip(decision.WANTED,
+                                      decision.answers_of(some)):
+                if chosen and segments[0][1] >= wanted:
+                    self.assertEqual(winner_at(wanted, segments),
+                                     chosen.method, (scene, wanted))
+                    compared += 1
+        self.assertGreater(compared, 40)
+
+    def test_titles_hold_on_both_sides_of_each_number(self):
+        for scene, some in self.scenes.items():
+            title = precision.message(winners(some, seconds))
+            bounds = [(m, float(e), 1 / 1.06)
+                      for m, e in re.findall(r"(\S+) below (\S+) m", title)]
+            bounds += [(m, float(e), 1.06)
+                       for m, e in re.findall(r"(\S+) above (\S+) m", title)]
+            for m, start, end in re.findall(r"(\S+) from (\S+) to (\S+) m",
+                                            title):
+                bounds += [(m, float(start), 1 / 1.06), (m, float(end), 1.06)]
+            self.assertTrue(bounds or "at every error" in title, title)
+            for method, error, inside in bounds:
+                self.assertEqual(cheapest(error * inside, some,
+                                          seconds).method, method, title)
+                self.assertNotEqual(cheapest(error / inside, some,
+                                             seconds).method, method, title)
+
+    def test_the_decision_chart_counts_its_cells(self):
+        answers = {s: decision.answers_of(r) for s, r in self.scenes.items()}
+        title = decision.message(answers)
+        said = re.findall(r"([\w-]+)(?: is the cheapest)? for (\d+) of the "
+                          r"(\d+)", title)
+        self.assertEqual(len(said), 2, title)
+        for (method, count, of), contact in zip(said, (False, True)):
+            chosen = [r.method for s, row in answers.items() for r in row
+                      if r and (s in ("drape", "tear")) == contact]
+            self.assertEqual((int(count), int(of)),
+                             (chosen.count(method), len(chosen)), title)
+            self.assertEqual(max(map(chosen.count, chosen)), int(count))
+
+
+class Words(unittest.TestCase):
+    def test_two_digits(self):
+        for value, text in ((1.34e-5, "1.3e-5"), (2e-3, "2e-3"),
+                            (9.96e-11, "1e-10"), (0.05, "5e-2")):
+            self.assertEqual(precision.digits(value), text)
+
+    def test_titles(self):
+        for segments, title in (
+                ([], "No run is stable and above the reference's own error"),
+                ([("a", 1e-2, 1e-9)], "a is the cheapest at every error"),
+                ([("a", 1e-2, 2e-3), ("b", 2e-3, 1e-9)],
+                 "Cheapest: a above 2e-3 m, b below 2e-3 m"),
+                ([("a", 1e-2, 5e-3), ("b", 5e-3, 1e-6), ("c", 1e-6, 1e-7),
+                  ("d", 1e-7, 1e-9)],
+                 "Cheapest: b from 5e-3 to 1e-6 m, d below 1e-7 m")):
+            self.assertEqual(precision.message(segments), title)
+
+    def test_a_title_passes_over_what_is_narrower_than_a_tenth_decade(self):
+        for width, title in ((0.09, "a is the cheapest at every error"),
+                             (0.11, "Cheapest: a above 1e-3 m, b from 1e-3 "
+                              "to 7.8e-4 m")):
+            end = 1e-3 * math.pow(10, -width)
+            self.assertEqual(precision.message(
+                [("a", 1e-2, 1e-3), ("b", 1e-3, end), ("a", end, 2e-4)]),
+                title)
+
+
+if __name__ == "__main__":
+    result = unittest.TextTestRunner(stream=sys.stdout).run(
+        unittest.defaultTestLoader.loadTestsFromModule(
+            sys.modules["__main__"]))
+    bad = len(result.failures) + len(result.errors)
+    print(f"{result.testsRun - bad} passed, {bad} failed")
+    sys.exit(bad != 0)
