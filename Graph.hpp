@@ -132,7 +132,7 @@ class Graph {
      * Order: as added, until an edge at this node is removed. */
     incident_iterator edge_begin() const { return {graph_, list().begin, id_}; }
     incident_iterator edge_end() const {
-      return {graph_, list().begin + list().size, id_};
+      return {graph_, std::size_t(list().begin) + list().size, id_};
     }
     graph_detail::Range<incident_iterator> edges() const {
       return {edge_begin(), edge_end()};
@@ -174,7 +174,7 @@ class Graph {
 
   // ------------------------------------------------------------------- Edge
 
-  /** A handle of one edge, seen from one of its ends: 16 bytes, to be passed
+  /** A handle of one edge, seen from one of its ends: 24 bytes, to be passed
    * by value. A default constructed Edge belongs to no graph.
    * @pre of all members but comparisons: the edge is in its graph. */
   class Edge : private totally_ordered<Edge> {
@@ -186,13 +186,13 @@ class Graph {
      * depends on where this handle comes from: Node::edges() gives the node
      * itself as node1(), add_edge(a, b) gives a, edge(i) the first one of the
      * call that added the edge. */
-    Node node1() const { return end(half_ % 2); }
-    Node node2() const { return end(1 - half_ % 2); }
+    Node node1() const { return Node(&graph(), near_); }
+    Node node2() const { return Node(&graph(), far_); }
 
     /** The value of the edge: one, whichever end it is seen from. */
     // BEGIN SOLUTION 4.1.edge_value 6pt
-    edge_value_type& value() { return graph().edge_value_[id()]; }
-    const edge_value_type& value() const { return graph().edge_value_[id()]; }
+    edge_value_type& value() { return graph().edge_value_[id_]; }
+    const edge_value_type& value() const { return graph().edge_value_[id_]; }
     // STUB edge_value_type& value() { return no_edges_; }
     // STUB const edge_value_type& value() const { return no_edges_; }
     // STUB static inline edge_value_type no_edges_{};  // belongs to no edge
@@ -203,40 +203,40 @@ class Graph {
       return norm(node1().position() - node2().position());
     }
     /** A number in [0, num_edges()); removals of others may change it. */
-    size_type index() const { return graph().edges_.index_of(id()); }
+    size_type index() const { return graph().edges_.index_of(id_); }
     /** Where Graph::edge_ends() and Graph::edge_values() hold this edge. It
      * stays the same for as long as the edge lives. */
-    size_type id() const { return half_ / 2; }
+    size_type id() const { return id_; }
 
     /** Same edge of the same graph, whichever end it is seen from. */
     bool operator==(const Edge& e) const {
-      return graph_ == e.graph_ && id() == e.id() &&
-             generation_ == e.generation_;
+      return graph_ == e.graph_ && id_ == e.id_ && generation_ == e.generation_;
     }
     /** A strict total order of all edges of all graphs; it never changes. */
     bool operator<(const Edge& e) const {
       if (graph_ != e.graph_)
         return std::less<const Graph*>()(graph_, e.graph_);
-      return id() != e.id() ? id() < e.id() : generation_ < e.generation_;
+      return id_ != e.id_ ? id_ < e.id_ : generation_ < e.generation_;
     }
 
    private:
     friend class Graph;
     Graph* graph_ = nullptr;
-    size_type half_ = 0;  // 2 id, + 1 if seen from the second of its ends
+    size_type id_ = 0, near_ = 0, far_ = 0;  // the ends' ids: node1(), node2()
     Generation generation_ = 0;
 
-    Edge(const Graph* g, size_type half)
+    Edge(const Graph* g, size_type id, size_type near, size_type far)
         : graph_(const_cast<Graph*>(g)),
-          half_(half),
-          generation_(g->edges_.generation(half / 2)) {}
+          id_(id),
+          near_(near),
+          far_(far),
+          generation_(g->edges_.generation(id)) {}
+    Edge(const Graph* g, size_type id)
+        : Edge(g, id, g->ends_[id][0], g->ends_[id][1]) {}
 
     Graph& graph() const {
       assert(graph_ != nullptr && graph_->has_edge(*this));
       return *graph_;
-    }
-    Node end(size_type which) const {
-      return Node(graph_, graph().ends_[id()][which]);
     }
   };
 
@@ -292,9 +292,9 @@ class Graph {
     // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
     size_type id = n.id_;  // n may be a reference into what changes below
-    for (Half h : pool_.items(neighbors_of_[id])) {
-      drop_from_list(h.node, h.edge / 2);
-      drop_edge(h.edge / 2);
+    for (Neighbor b : pool_.items(neighbors_of_[id])) {
+      drop_from_list(b.node, b.edge);
+      drop_edge(b.edge);
     }
     pool_.free(neighbors_of_[id]);
     position_[id] = Point();
@@ -336,10 +336,10 @@ class Graph {
    * Throws std::length_error beyond 2^31 edges, std::bad_alloc: no change. */
   Edge add_edge(const Node& a, const Node& b, const E& value = E()) {
     assert(has_node(a) && has_node(b) && !(a == b));
-    if (size_type half = find(a, b); half != none) return Edge(this, half);
+    size_type i = a.id_, j = b.id_;
+    if (size_type id = find(a, b); id != none) return Edge(this, id, i, j);
     E copy = value;
     size_type id = edges_.next();
-    size_type i = a.id_, j = b.id_;
     graph_detail::grow_to_hold(ends_, id);
     graph_detail::grow_to_hold(edge_value_, id);
     pool_.reserve_one(neighbors_of_[i]);
@@ -350,10 +350,10 @@ class Graph {
     edge_value_[id] = std::move(copy);
     // STUB (void)copy;
     // END SOLUTION
-    pool_.push_back(neighbors_of_[i], {j, 2 * id});
-    pool_.push_back(neighbors_of_[j], {i, 2 * id + 1});
+    pool_.push_back(neighbors_of_[i], {j, id});
+    pool_.push_back(neighbors_of_[j], {i, id});
     ++version_;
-    return Edge(this, 2 * id);
+    return Edge(this, id);
   }
 
   /** True if there is an edge between @a a and @a b in this graph now; false
@@ -364,13 +364,13 @@ class Graph {
   }
   /** True if @a e is an edge of this graph now. */
   bool has_edge(const Edge& e) const {
-    return e.graph_ == this && edges_.alive(e.id(), e.generation_);
+    return e.graph_ == this && edges_.alive(e.id_, e.generation_);
   }
 
   /** The edge of index @a i.  @pre i < num_edges() */
   Edge edge(size_type i) const {
     assert(i < num_edges());
-    return Edge(this, 2 * edges_.id_at(i));
+    return Edge(this, edges_.id_at(i));
   }
 
   /** Remove the edge between @a a and @a b.
@@ -384,8 +384,8 @@ class Graph {
    * Complexity: O(a.degree() + b.degree()), but for the first removal. */
   size_type remove_edge(const Node& a, const Node& b) {
     // BEGIN SOLUTION 7.1.remove_edge 6pt
-    size_type half = find(a, b);
-    return half == none ? 0 : remove_edge(Edge(this, half));
+    size_type id = find(a, b);
+    return id == none ? 0 : remove_edge(Edge(this, id));
     // STUB (void)a, (void)b;
     // STUB return 0;
     // END SOLUTION
@@ -394,7 +394,7 @@ class Graph {
   size_type remove_edge(const Edge& e) {
     // BEGIN SOLUTION 7.1.remove_edge
     if (!has_edge(e)) return 0;
-    size_type id = e.id();
+    size_type id = e.id_;
     for (size_type end : ends_[id]) drop_from_list(end, id);
     drop_edge(id);
     ++version_;
@@ -466,7 +466,7 @@ class Graph {
     assert(ids.size() == list.size);
     for (size_type k = list.begin; k < list.begin + list.size; ++k) {
       size_type at = k;
-      while (pool_[at].edge / 2 != ids[k - list.begin]) ++at;
+      while (pool_[at].edge != ids[k - list.begin]) ++at;
       std::swap(pool_[k], pool_[at]);
     }
     ++version_;
@@ -518,7 +518,7 @@ class Graph {
   }
   Edge edge_with_id(size_type id) const {
     assert(id < edge_slots() && edge_in_use(id));
-    return Edge(this, 2 * id);
+    return Edge(this, id);
   }
 
   /** One more Point lies behind the last: who reads four numbers at a time may
@@ -540,14 +540,14 @@ class Graph {
     return {edge_value_.data(), edge_slots()};
   }
 
-  /** An edge as one of its ends sees it: the other end's id, and 2 id() of the
-   * edge, + 1 if seen from the second of edge_ends(). */
-  struct Half {
+  /** An edge as one of its ends sees it: the ids of the other end and of the
+   * edge. */
+  struct Neighbor {
     size_type node, edge;
   };
   /** The edges at a node, in the order of Node::edges(); none at a slot that
    * is not in use. */
-  std::span<const Half> halves(size_type id) const {
+  std::span<const Neighbor> neighbors(size_type id) const {
     return pool_.items(neighbors_of_[id]);
   }
 
@@ -576,25 +576,25 @@ class Graph {
               "a neighbor list exceeds its block");
     require(pool_.is_filled_by(neighbors_of_),
             "a block of the pool is lost or used twice");
-    std::size_t halves = 0;
+    std::size_t neighbors = 0;
     for (size_type i = 0; i < node_slots(); ++i) {
       const auto& list = neighbors_of_[i];
-      halves += list.size;
+      neighbors += list.size;
       require(node_in_use(i) || list.capacity == 0,
               "a removed node has neighbors");
-      for (Half h : pool_.items(list)) {
-        size_type e = h.edge / 2;
+      for (auto [j, e] : pool_.items(list)) {
         require(e < edge_slots() && edge_in_use(e),
                 "a neighbor list holds a removed edge");
-        require(h.node != i, "a loop");
-        require(ends_[e][h.edge % 2] == i && ends_[e][1 - h.edge % 2] == h.node,
+        require(j != i, "a loop");
+        using Ends = std::array<size_type, 2>;
+        require(ends_[e] == Ends{i, j} || ends_[e] == Ends{j, i},
                 "a neighbor list and the ends of an edge disagree");
         size_type seen = 0;
-        for (Half other : pool_.items(list)) seen += other.node == h.node;
+        for (Neighbor other : pool_.items(list)) seen += other.node == j;
         require(seen == 1, "parallel edges");
       }
     }
-    require(halves == 2 * std::size_t(num_edges()),
+    require(neighbors == 2 * std::size_t(num_edges()),
             "an edge is not in the lists of both its ends");
     for (size_type e = 0; e < edge_slots(); ++e)
       require(edge_in_use(e) || ends_[e] == std::array<size_type, 2>{},
@@ -605,31 +605,31 @@ class Graph {
   static constexpr size_type none = std::numeric_limits<size_type>::max();
 
   graph_detail::SlotMap<Generation> nodes_, edges_;
-  graph_detail::ListPool<Half> pool_;
+  graph_detail::ListPool<Neighbor> pool_;
   graph_detail::Version version_;
   // By node id:
   Array<Point> position_;
   Array<V> node_value_;
-  Array<typename graph_detail::ListPool<Half>::List> neighbors_of_;
+  Array<typename graph_detail::ListPool<Neighbor>::List> neighbors_of_;
   // By edge id:
   Array<std::array<size_type, 2>> ends_;  // in the order of add_edge()
   Array<E> edge_value_;
 
   Graph* self() const { return const_cast<Graph*>(this); }
 
-  /** Edge::half_ of the edge as seen from @a a, or none. */
+  /** The id of the edge between @a a and @a b, or none. */
   size_type find(const Node& a, const Node& b) const {
     if (!has_node(a) || !has_node(b)) return none;
     bool from_a = a.degree() <= b.degree();
     const Node& from = from_a ? a : b;
     size_type to = from_a ? b.id_ : a.id_;
     size_type found = none;
-    for (Half h : pool_.items(neighbors_of_[from.id_])) {
+    for (Neighbor n : pool_.items(neighbors_of_[from.id_])) {
       // Not a branch on what is found: in lists this short, one that the
       // processor guesses wrong costs more than to read on to the end.
-      found &= h.edge | (0u - size_type(h.node != to));
+      found &= n.edge | (0u - size_type(n.node != to));
     }
-    return found == none || from_a ? found : found ^ 1u;
+    return found;
   }
 
   /** Take edge @a e out of the list of node @a i. */
@@ -637,7 +637,7 @@ class Graph {
     // BEGIN SOLUTION 7.1.remove_edge
     auto& list = neighbors_of_[i];
     for (size_type k = 0; k < list.size; ++k)
-      if (pool_[list.begin + k].edge / 2 == e) {
+      if (pool_[list.begin + k].edge == e) {
         pool_.erase(list, k);
         return;
       }
@@ -681,21 +681,21 @@ class Graph {
         [[maybe_unused]] const auto& list = graph_->neighbors_of_[node_];
         assert(at_ - list.begin < list.size &&
                "Node::edge_end() is dereferenced, or an iterator gone stale");
-        return Proxy(graph_, graph_->pool_[at_].edge);
+        const Neighbor& to = graph_->pool_[at_];
+        return Proxy(graph_, to.edge, node_, to.node);
       } else if constexpr (std::is_same_v<Proxy, Node>) {
         assert(at_ < graph_->num_nodes() && "node_end() is dereferenced");
-        return graph_->node(at_);
+        return graph_->node(size_type(at_));
       } else {
         assert(at_ < graph_->num_edges() && "edge_end() is dereferenced");
-        return graph_->edge(at_);
+        return graph_->edge(size_type(at_));
       }
     }
     pointer operator->() const { return {**this}; }
     Proxy operator[](difference_type n) const { return *(*this + n); }
 
     ProxyIterator& operator+=(difference_type n) {
-      at_ = static_cast<size_type>(at_ + n);
-      return *this;
+      return at_ += std::size_t(n), *this;
     }
     ProxyIterator& operator-=(difference_type n) { return *this += -n; }
     ProxyIterator& operator++() { return ++at_, *this; }
@@ -729,12 +729,13 @@ class Graph {
    private:
     friend class Graph;
     Graph* graph_ = nullptr;
-    size_type at_ = 0;    // index, or place in the pool
-    size_type node_ = 0;  // of_one_node: its id; only assertions read it
-    ProxyIterator(Graph* g, size_type at, size_type node = 0)
+    // Index, or place in the pool. As long as a pointer, so that compilers
+    // count in addresses.
+    std::size_t at_ = 0;
+    size_type node_ = 0;  // of_one_node: its id
+    ProxyIterator(Graph* g, std::size_t at, size_type node = 0)
         : graph_(g), at_(at), node_(node) {}
   };
 
-  static_assert(sizeof(Node) <= 16 && sizeof(Edge) <= 16);
-  static_assert(sizeof(IncidentIterator) <= 16);
+  static_assert(sizeof(Node) <= 16 && sizeof(Edge) <= 24);
 };

@@ -246,7 +246,7 @@ class SlotMap {
   }
 
  private:
-  // Edge packs an orientation bit beside the id.
+  // Each edge has two places in a ListPool, which counts in 32 bits.
   static constexpr size_type max_slots = 1u << 31;
 
   GrowingArray<Generation> generation_;  // by slot; odd: in use
@@ -283,8 +283,8 @@ class ListPool {
     size_type capacity = 0;  // 0 or a power of two
   };
 
-  const T& operator[](size_type at) const { return pool_[at]; }
-  T& operator[](size_type at) { return pool_[at]; }
+  const T& operator[](std::size_t at) const { return pool_[at]; }
+  T& operator[](std::size_t at) { return pool_[at]; }
   std::span<const T> items(const List& l) const {
     return {pool_.data() + l.begin, l.size};
   }

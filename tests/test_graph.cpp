@@ -567,13 +567,14 @@ using Grid = Graph<Traced, int>;
 }  // namespace
 
 template <>
-std::span<const Grid::Half> graph_detail::ListPool<Grid::Half>::items(
+std::span<const Grid::Neighbor> graph_detail::ListPool<Grid::Neighbor>::items(
     const List& l) const {
   reads += l.size;
   return {pool_.data() + l.begin, l.size};
 }
 template <>
-Grid::Half& graph_detail::ListPool<Grid::Half>::operator[](size_type at) {
+Grid::Neighbor& graph_detail::ListPool<Grid::Neighbor>::operator[](
+    std::size_t at) {
   return ++reads, pool_[at];
 }
 
@@ -600,7 +601,7 @@ std::size_t moves_between(const Grid& a, const Grid& b) {
   for (unsigned id = 0; id < a.node_slots(); ++id) {
     if (!a.node_in_use(id) || !b.node_in_use(id)) continue;
     moves += a.node_with_id(id).index() != b.node_with_id(id).index();
-    auto before = a.halves(id), after = b.halves(id);
+    auto before = a.neighbors(id), after = b.neighbors(id);
     for (std::size_t k = 0; k < std::min(before.size(), after.size()); ++k)
       moves += before[k].edge != after[k].edge;
   }
@@ -798,10 +799,7 @@ TEST(CheckInvariants, FindsDamagedEdges) {
   auto lists = [](G & g) -> auto& { return g.*open(Lists()); };
   auto pool = [](G & g) -> auto& { return g.*open(Pool()); };
   auto edge = [](G& g) { return g.edge(0).id(); };
-  EXPECT_TRUE(found([&](G& g) {
-    auto& e = ends(g)[edge(g)];
-    std::swap(e[0], e[1]);
-  }));
+  // Which end is the first one nobody else knows: that can't be found.
   EXPECT_TRUE(found([&](G& g) { ends(g)[edge(g)][0] = 7; }));
   EXPECT_TRUE(found([&](G& g) { ends(g).resize(3); }));
   auto shorten = [](auto& array) { array.resize(array.size() - 1); };

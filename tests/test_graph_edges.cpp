@@ -23,7 +23,7 @@ using G = Graph<int, double>;
 using Node = G::Node;
 using Edge = G::Edge;
 
-static_assert(sizeof(Edge) <= 16);
+static_assert(sizeof(Edge) <= 24);
 static_assert(std::is_same_v<G::edge_type, Edge>);
 static_assert(std::is_same_v<G::edge_value_type, double>);
 static_assert(std::is_same_v<G::edge_iterator, G::EdgeIterator>);

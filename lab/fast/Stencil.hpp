@@ -41,7 +41,7 @@ class Stencil {
   template <typename G>
   explicit Stencil(const G& g) : slots_(g.node_slots()) {
     row_begin_.reserve(num_blocks() + 1);
-    std::array<std::vector<typename G::Half>, W> left;  // without a row yet
+    std::array<std::vector<typename G::Neighbor>, W> left;  // without a row yet
     for (size_type b = 0; b < num_blocks(); ++b) {
       row_begin_.push_back(size_type(rows_.size()));
       add_block(g, b * W, left);
@@ -80,12 +80,12 @@ class Stencil {
 
   template <typename G>
   void add_block(const G& g, size_type first,
-                 std::array<std::vector<typename G::Half>, W>& left) {
+                 std::array<std::vector<typename G::Neighbor>, W>& left) {
     std::size_t most = 0;
     for (size_type k = 0; k < W; ++k) {
       left[k].clear();
       if (first + k >= slots_) continue;
-      auto all = g.halves(first + k);
+      auto all = g.neighbors(first + k);
       left[k].assign(all.begin(), all.end());
       for (const auto& h : all)
         reach_ = std::max(
@@ -99,12 +99,12 @@ class Stencil {
 
   /** If all nodes have a neighbor at the offset of number m of the first one,
    * add the row of these, and take them from @a left. */
-  template <typename Half>
+  template <typename Neighbor>
   bool add_at_offset(size_type first, std::size_t m,
-                     std::array<std::vector<Half>, W>& left) {
+                     std::array<std::vector<Neighbor>, W>& left) {
     std::array<std::size_t, W> place;
     bool in_sequence = true;
-    const Half start = left[0][m];
+    const Neighbor start = left[0][m];
     for (size_type k = 0; k < W; ++k) {
       // Neighbors mostly stand in the same order: begin at number m.
       const auto& l = left[k];
@@ -113,10 +113,9 @@ class Stencil {
         for (at = 0; at < l.size() && l[at].node != start.node + k;) ++at;
       if (at == l.size()) return false;
       place[k] = at;
-      in_sequence = in_sequence && l[at].edge / 2 == start.edge / 2 + k;
+      in_sequence = in_sequence && l[at].edge == start.edge + k;
     }
-    rows_.push_back({int(start.node - first),
-                     in_sequence ? start.edge / 2 : none,
+    rows_.push_back({int(start.node - first), in_sequence ? start.edge : none,
                      size_type(neighbor_.size())});
     for (size_type k = 0; k < W; ++k) {
       if (!in_sequence) list(left[k][place[k]]);
@@ -126,19 +125,19 @@ class Stencil {
   }
 
   /** Add the gathered row of number m of each node. */
-  template <typename Half>
+  template <typename Neighbor>
   void add_gathered(size_type first, std::size_t m,
-                    const std::array<std::vector<Half>, W>& left) {
+                    const std::array<std::vector<Neighbor>, W>& left) {
     rows_.push_back({0, none, size_type(neighbor_.size())});
     for (size_type k = 0; k < W; ++k)
       list(m < left[k].size() ? left[k][m]
-                              : Half{std::min(first + k, slots_ - 1), 0});
+                              : Neighbor{std::min(first + k, slots_ - 1), 0});
   }
 
-  template <typename Half>
-  void list(const Half& h) {
+  template <typename Neighbor>
+  void list(const Neighbor& h) {
     neighbor_.push_back(h.node);
-    edge_.push_back(h.edge / 2);
+    edge_.push_back(h.edge);
   }
 };
 

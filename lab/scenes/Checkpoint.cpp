@@ -159,7 +159,7 @@ void archive_cloth(CME212::Archive& a, Cloth& g) {
   std::vector<char> nodes, edges;  // by id: whether it is there
   std::vector<unsigned> node_ids, edge_ids, lists;  // by index; at all nodes
   auto each_edge_at = [&g](unsigned id, auto use) {
-    for (const auto& half : g.halves(id)) use(half.edge / 2);
+    for (const auto& to : g.neighbors(id)) use(to.edge);
   };
   for (unsigned i = 0; i < g.node_slots(); ++i) {
     nodes.push_back(g.node_in_use(i));

@@ -41,9 +41,9 @@ void CellTable::fill(const Cloth& g, double side) {
 namespace {
 
 bool connected(const Cloth& g, unsigned i, unsigned j) {
-  const auto halves = g.halves(i);
-  return std::any_of(halves.begin(), halves.end(),
-                     [j](const Cloth::Half& h) { return h.node == j; });
+  const auto all = g.neighbors(i);
+  return std::any_of(all.begin(), all.end(),
+                     [j](const Cloth::Neighbor& n) { return n.node == j; });
 }
 
 // Pushed so much farther than needed, nodes in a pile come to rest within a
