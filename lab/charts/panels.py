@@ -155,8 +155,8 @@ def place_labels(panel):
                         box[1] < panel.bottom + 3 or box[3] > panel.top):
                     continue
                 cost = (20 * everyone.within(box) + away +
-                        0.3 * min(k + (400 if panel.at_end else 20),
-                                  len(line) - 1 - k))
+                        (3 * (len(line) - 1 - k) if panel.at_end else
+                         0.3 * min(k + 20, len(line) - 1 - k)))
                 if cost >= best[0]:
                     continue
                 own = crowds[curve.name]

@@ -262,8 +262,8 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
   p.gamma = 0;
   write_head(out, "total energy against time");
   out << "# scene: " << p.about
-      << "; at equal cost of explicit methods, dt = "
-         "sweeps/(2 omega); methods without limit: dt = 10/omega\n"
+      << "; explicit methods at equal cost, omega dt = half the force "
+         "evaluations of a step; the others omega dt = 10\n"
       << "method,t [s],energy [J],status\n";
   for (const MethodEntry* entry : chosen) {
     Start s(p);
