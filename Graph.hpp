@@ -25,18 +25,6 @@
 #include "CME212/SlotMap.hpp"
 #include "CME212/Util.hpp"
 
-namespace graph_detail {
-
-/** A first and a last iterator, for range-for. */
-template <typename It>
-struct Range {
-  It first, last;
-  It begin() const { return first; }
-  It end() const { return last; }
-};
-
-}  // namespace graph_detail
-
 /** An undirected graph in space: no loops, no parallel edges.
  * @tparam V Type of the nodes' values: default constructible, copyable
  * @tparam E Type of the edges' values: likewise
@@ -52,9 +40,10 @@ struct Range {
  * O(num_nodes() + num_edges()), which is O(1) for each element added before.
  * So may the first one after clear() or reindex(). Memory, N nodes and M edges:
  * 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge on a grid, up to a
- * quarter of that to grow into, and 8 more each after the first removal; slots
- * of removed elements are used again by new ones, and given back when the
- * graph is destroyed.
+ * quarter of that to grow into, 8 more each after the first removal, and 8 an
+ * edge after many removals at nodes of a degree above 16; slots of removed
+ * elements are used again by new ones, and given back when the graph is
+ * destroyed.
  *
  * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
  * copied (the copy has the same indices and ids, and handles of its own), but
@@ -286,8 +275,8 @@ class Graph {
    * Invalidates: @a n, its copies and its edges; all edge and incident
    *       iterators; node iterators at @a n and at the highest index.
    * Keeps: every other Node and Edge; references and spans.
-   * Complexity: O(sum of degree() over @a n's neighbors), whatever
-   *       num_nodes(), but for the first removal: see Graph. */
+   * Complexity: O(degree()) amortized, whatever the neighbors' degrees, but for
+   *       the first removal: see Graph. */
   size_type remove_node(const Node& n) {
     // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
@@ -342,10 +331,13 @@ class Graph {
     size_type id = edges_.next();
     graph_detail::grow_to_hold(ends_, id);
     graph_detail::grow_to_hold(edge_value_, id);
+    if (keeps_places()) graph_detail::grow_to_hold(places_, id);
     pool_.reserve_one(neighbors_of_[i]);
     pool_.reserve_one(neighbors_of_[j]);
     edges_.acquire();
     ends_[id] = {i, j};
+    if (keeps_places())
+      places_[id] = {neighbors_of_[i].size, neighbors_of_[j].size};
     // BEGIN SOLUTION 4.1.edge_value
     edge_value_[id] = std::move(copy);
     // STUB (void)copy;
@@ -381,7 +373,8 @@ class Graph {
    * Invalidates: the edge and its copies; edge iterators at it and at the
    *       highest index; incident iterators of @a a and @a b.
    * Keeps: every Node and every other Edge; references and spans.
-   * Complexity: O(a.degree() + b.degree()), but for the first removal. */
+   * Complexity: O(min(a.degree(), b.degree())) amortized, but for the first
+   *       removal. */
   size_type remove_edge(const Node& a, const Node& b) {
     // BEGIN SOLUTION 7.1.remove_edge 6pt
     size_type id = find(a, b);
@@ -390,7 +383,7 @@ class Graph {
     // STUB return 0;
     // END SOLUTION
   }
-  /** Remove @a e: as above; 0 if !has_edge(e). */
+  /** Remove @a e: as above, in O(1) amortized; 0 if !has_edge(e). */
   size_type remove_edge(const Edge& e) {
     // BEGIN SOLUTION 7.1.remove_edge
     if (!has_edge(e)) return 0;
@@ -431,6 +424,8 @@ class Graph {
     nodes_.clear();
     edges_.clear();
     pool_.clear();
+    places_.clear();
+    searched_ = 0;
     ++version_;
   }
 
@@ -469,6 +464,7 @@ class Graph {
       while (pool_[at].edge != ids[k - list.begin]) ++at;
       std::swap(pool_[k], pool_[at]);
     }
+    if (keeps_places()) note_places(n.id_);
     ++version_;
   }
 
@@ -589,6 +585,9 @@ class Graph {
         using Ends = std::array<size_type, 2>;
         require(ends_[e] == Ends{i, j} || ends_[e] == Ends{j, i},
                 "a neighbor list and the ends of an edge disagree");
+        require(!keeps_places() ||
+                    pool_[list.begin + places_[e][side(e, i)]].edge == e,
+                "an edge has another place in a list than is noted");
         size_type seen = 0;
         for (Neighbor other : pool_.items(list)) seen += other.node == j;
         require(seen == 1, "parallel edges");
@@ -614,6 +613,8 @@ class Graph {
   // By edge id:
   Array<std::array<size_type, 2>> ends_;  // in the order of add_edge()
   Array<E> edge_value_;
+  Array<std::array<size_type, 2>> places_;  // in the ends' lists; see search()
+  std::size_t searched_ = 0;                // entries of long lists
 
   Graph* self() const { return const_cast<Graph*>(this); }
 
@@ -636,14 +637,37 @@ class Graph {
   void drop_from_list(size_type i, size_type e) {
     // BEGIN SOLUTION 7.1.remove_edge
     auto& list = neighbors_of_[i];
-    for (size_type k = 0; k < list.size; ++k)
-      if (pool_[list.begin + k].edge == e) {
-        pool_.erase(list, k);
-        return;
-      }
-    assert(false);
+    size_type k = search(list, i, e);
+    pool_.erase(list, k);
+    if (!keeps_places() || k == list.size) return;
+    const size_type moved = pool_[list.begin + k].edge;
+    places_[moved][side(moved, i)] = k;
     // STUB (void)i, (void)e;
     // END SOLUTION
+  }
+
+  /** Where edge @a e stands in the @a list of node @a i, one of its ends.
+   * Searched for, until searches of long lists have cost as much as to note
+   * the places of all edges. Noted from then on: O(1) amortized. */
+  template <typename List>
+  size_type search(const List& list, size_type i, size_type e) {
+    if (list.size > 16 && !keeps_places())
+      if ((searched_ += list.size) > num_edges()) {
+        graph_detail::grow_to_hold(places_, edge_slots() - 1);
+        for (size_type n = 0; n < node_slots(); ++n) note_places(n);
+      }
+    if (keeps_places()) return places_[e][side(e, i)];
+    size_type k = 0;
+    while (pool_[list.begin + k].edge != e) ++k;
+    return k;
+  }
+  bool keeps_places() const { return places_.size() != 0; }
+  /** Which one of the ends of edge @a e node @a i is. */
+  bool side(size_type e, size_type i) const { return ends_[e][1] == i; }
+  void note_places(size_type i) {
+    size_type k = 0;
+    for (Neighbor n : pool_.items(neighbors_of_[i]))
+      places_[n.edge][side(n.edge, i)] = k++;
   }
 
   /** Release edge @a e, whose ends' lists are not looked at. */
@@ -700,14 +724,8 @@ class Graph {
     ProxyIterator& operator-=(difference_type n) { return *this += -n; }
     ProxyIterator& operator++() { return ++at_, *this; }
     ProxyIterator& operator--() { return --at_, *this; }
-    ProxyIterator operator++(int) {
-      auto old = *this;
-      return ++at_, old;
-    }
-    ProxyIterator operator--(int) {
-      auto old = *this;
-      return --at_, old;
-    }
+    ProxyIterator operator++(int) { return std::exchange(*this, *this + 1); }
+    ProxyIterator operator--(int) { return std::exchange(*this, *this - 1); }
     friend ProxyIterator operator+(ProxyIterator it, difference_type n) {
       return it += n;
     }

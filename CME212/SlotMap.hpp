@@ -364,6 +364,14 @@ class ListPool {
   std::array<std::vector<size_type>, 32> free_;  // by log2 of the capacity
 };
 
+/** A first and a last iterator, for range-for. */
+template <typename It>
+struct Range {
+  It first, last;
+  It begin() const { return first; }
+  It end() const { return last; }
+};
+
 /** What nodes and edges without a value carry. */
 struct NoValue {
   bool operator==(const NoValue&) const = default;
