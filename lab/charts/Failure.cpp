@@ -85,7 +85,7 @@ constexpr std::array table = [] {
           .runs = {{{"symplectic-euler", cloth_limit / 2},
                     {"verlet", cloth_limit / 2}}}},
       Failure{.title = "5 % beyond its limit the fastest mode explodes",
-              .caption = "chain of 20 masses; distance from the exact solution",
+              .caption = "chain of 20 masses; steps as parts of verlet's limit",
               .scene = chain,
               .t_end = 1,
               .quantity = error,

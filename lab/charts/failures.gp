@@ -24,13 +24,19 @@ label_of(k) = system(rows(sprintf( \
   k - 1)))
 method(k) = word(methods, k)
 role(k) = word(roles, k)
-shade(k) = method(k) eq '-' ? '#777777' : color(method(k))
+# A cure by the same method is of another color.
+shade(k) = method(k) eq '-' ? '#777777' : \
+  role(k) eq 'cure' && method(k) eq method(1) ? '#444444' : color(method(k))
 sign_of(k) = method(k) eq '-' ? 0 : marker(method(k))
 dash_of(k) = role(k) eq 'fails' ? 1 : role(k) eq 'cure' ? 2 : 3
 weight(k) = role(k) eq 'fails' ? 2.6 : 1.8
 n = words(roles)
 
 eval headline(scene.': '.comment('title '.scene), comment('caption '.scene))
+if (int(system(rows('$9 != "" {++n} END {print n + 0}'))) > 0) {
+  set label 904 'Cross: the run diverged and was stopped.' at screen 0.03, \
+    screen 14. / height left front font ',10' textcolor rgb '#666666'
+}
 set tmargin 4.6
 unset key
 set lmargin 11

@@ -19,13 +19,14 @@ set rmargin at screen 0.97
 set tmargin at screen 0.84
 set bmargin at screen 0.2
 set xtics (0.05, 0.02, 0.01, 0.005, 0.002)
-set xlabel 'error of the height of the center of mass [m]'
+set xlabel 'error of the height of the center of mass [m], smaller to the right'
 set ylabel 'time of a run [s]'
 set xrange [0.06:0.002]
 set yrange [1e-5:1]
 unset key
-plot of('step') using 1:2 with linespoints lc rgb '#D55E00' pt 9 lw 1.8, \
-     of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 4 lw 1.8, \
+plot of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 4 ps 1.3 \
+       lw 1.8, \
+     of('step') using 1:2 with linespoints lc rgb '#D55E00' pt 9 lw 1.8, \
      of('both') using 1:2 with linespoints lc rgb '#000000' pt 7 lw 1.8, \
      of('both') using 1:2:(sprintf('%d x %d', $3, $3)) with labels left \
        offset 0.8, -0.6 font small textcolor rgb '#666666', \

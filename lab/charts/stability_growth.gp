@@ -8,16 +8,20 @@ load 'lab/charts/palette.gp'
 # Columns: 1 method, 2 stretch, 3 dt/safe, 4 predicted limit/safe, 5 growth.
 growth(m) = data(sprintf('$1 == "%s" {print $2 "," $3 "," $5}', m))
 limit(m) = data(sprintf('$1 == "%s" && !seen[$2]++ {print $2 "," $4}', m))
+most(m) = real(system(rows(sprintf('$1 == "%s" && $2 > 1 && $5 > x '. \
+  '{x = $5} END {print x + 0}', m))))
 least = 0.005
 shade(g) = g > least ? log10(g) : -9
 
 eval headline('The predicted limit is where disturbances begin to grow', \
   'A tiny disturbance of a stretched sheet. White: bounded; colored: '. \
-  'grows; line: the limit that is predicted; dashed: the safe one.')
+  'grows; line: the limit that is predicted; dashed: the safe one; '. \
+  'left of 1: it buckles.')
 set multiplot
 eval "set palette defined (0 'white', 0.05 'white', ".viridis.")"
 set cbrange [log10(least) - 0.05 * (log10(3) - log10(least)) / 0.95:log10(3)]
-set cbtics ('0.01' -2, '0.1' -1, '1' 0) scale 0.5
+set cbtics ('1.01' log10(log(1.01)), '1.1' log10(log(1.1)), \
+  '1.5' log10(log(1.5)), '3' log10(log(3)), '10' log10(log(10))) scale 0.5
 unset key
 unset grid
 set xrange [0.9:2.5]
@@ -40,14 +44,14 @@ do for [k = 1:words(names)] {
   set format y col == 0 ? '%g' : ''
   if (k == words(names)) {
     set colorbox user origin 0.942, 0.12 size 0.014, 0.73
-    set label 4 "ln of growth\nper step" at screen 0.985, 0.9 right font small
+    set label 4 "growth\nper step" at screen 0.985, 0.9 right font small
   } else {
     unset colorbox
   }
-  if (k == 1) {
-    set label 3 'buckles' at 0.95, 0.75 center rotate by 90 font small \
-      textcolor rgb 'white' front
-  }
+  set label 3 'buckles' at 0.945, 0.75 center rotate by 90 font ',11' \
+    textcolor rgb 'white' front
+  set label 5 sprintf('at most %.3g times a step', exp(most(m))) \
+    at 1.7, 1.75 center font ',11' textcolor rgb 'white' front
   plot growth(m) using 1:2:(shade($3)) with image, \
        limit(m) using 1:2 with lines lc rgb 'white' lw 5, \
        limit(m) using 1:2 with lines lc rgb 'black' lw 2, \

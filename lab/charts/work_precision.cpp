@@ -227,7 +227,8 @@ void grid_refinement(const Options& o, std::ostream& out, Progress& progress) {
     return static_cast<long long>(std::ceil(0.25 * side / 0.0577));
   };
   write_head(out, "refining the grid, the step, or both; Verlet");
-  out << "# scene: course cloth with drag; height of the center of mass at "
+  out << "# scene: the assignment's cloth with drag, by verlet; height of the "
+         "center of mass at "
          "0.25 s\n# reference: "
       << finest << " nodes a side, 1/4 of the stable step\n"
       << "refined,side,dt [s],sweeps,seconds [s],error [m]\n";
