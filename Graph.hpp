@@ -41,9 +41,8 @@
  * So may the first one after clear() or reindex(). Memory, N nodes and M edges:
  * 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge on a grid, up to a
  * quarter of that to grow into, 8 more each after the first removal, and 8 an
- * edge after many removals at nodes of a degree above 16; slots of removed
- * elements are used again by new ones, and given back when the graph is
- * destroyed.
+ * edge once hubs lost many edges; slots of removed elements are used again by
+ * new ones, and given back when the graph is destroyed.
  *
  * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
  * copied (the copy has the same indices and ids, and handles of its own), but
@@ -96,18 +95,18 @@ class Graph {
     /** The place of the node in space, to read or to move. */
     Point& position() {
       // BEGIN SOLUTION 3.1.position 4pt
-      return at(graph().position_);
+      return graph().position_[id_];
       // STUB // A copy, one of some that an expression may need together: what
       // STUB // is written to it does not reach the graph.
       // STUB thread_local Point copies[8];
       // STUB thread_local unsigned count = 0;
-      // STUB return copies[count++ % 8] = at(graph().position_);
+      // STUB return copies[count++ % 8] = graph().position_[id_];
       // END SOLUTION
     }
-    const Point& position() const { return at(graph().position_); }
+    const Point& position() const { return graph().position_[id_]; }
     /** The value of the node. */
-    node_value_type& value() { return at(graph().node_value_); }
-    const node_value_type& value() const { return at(graph().node_value_); }
+    node_value_type& value() { return graph().node_value_[id_]; }
+    const node_value_type& value() const { return graph().node_value_[id_]; }
 
     /** A number in [0, num_nodes()); removals of others may change it. */
     size_type index() const { return graph().nodes_.index_of(id_); }
@@ -153,10 +152,6 @@ class Graph {
     Graph& graph() const {
       assert(graph_ != nullptr && graph_->has_node(*this));
       return *graph_;
-    }
-    template <typename A>
-    auto& at(A& array) const {
-      return array[id_];
     }
     const auto& list() const { return graph().neighbors_of_[id_]; }
   };
@@ -373,8 +368,7 @@ class Graph {
    * Invalidates: the edge and its copies; edge iterators at it and at the
    *       highest index; incident iterators of @a a and @a b.
    * Keeps: every Node and every other Edge; references and spans.
-   * Complexity: O(min(a.degree(), b.degree())) amortized, but for the first
-   *       removal. */
+   * Complexity: O(min(degrees)) amortized, but for the first removal. */
   size_type remove_edge(const Node& a, const Node& b) {
     // BEGIN SOLUTION 7.1.remove_edge 6pt
     size_type id = find(a, b);
@@ -438,6 +432,15 @@ class Graph {
     nodes_.reindex();
     edges_.reindex();
     ++version_;
+  }
+  /** reindex(), if removals put so many nodes of a large graph out of the order
+   * of memory that loops over nodes() feel it. For the end of a step.
+   * Complexity: O(1) before the first removal, then O(num_nodes()); in all, no
+   *       more than 256 times reindex() until no node is left */
+  void restore_order() {
+    if (node_slots() >= 4096 && num_nodes() < node_slots() &&
+        nodes_.descents() > node_slots() / 256)
+      reindex();
   }
   /** Give the node of id @a ids[i] the index i: so nodes can lie in memory in
    * the order that sweeps like best, and be counted in another.
@@ -582,8 +585,7 @@ class Graph {
         require(e < edge_slots() && edge_in_use(e),
                 "a neighbor list holds a removed edge");
         require(j != i, "a loop");
-        using Ends = std::array<size_type, 2>;
-        require(ends_[e] == Ends{i, j} || ends_[e] == Ends{j, i},
+        require(ends_[e] == std::array{i, j} || ends_[e] == std::array{j, i},
                 "a neighbor list and the ends of an edge disagree");
         require(!keeps_places() ||
                     pool_[list.begin + places_[e][side(e, i)]].edge == e,
@@ -747,8 +749,7 @@ class Graph {
    private:
     friend class Graph;
     Graph* graph_ = nullptr;
-    // Index, or place in the pool. As long as a pointer, so that compilers
-    // count in addresses.
+    // Index, or place in the pool: as long as an address, for short loops.
     std::size_t at_ = 0;
     size_type node_ = 0;  // of_one_node: its id
     ProxyIterator(Graph* g, std::size_t at, size_type node = 0)

@@ -103,7 +103,8 @@ double symp_euler_step(G& g, double t, double dt, F&& force) {
 
 /** The same with a constraint, and no node is skipped (6.2):
  * x += dt v;  constrain;  v += dt F(x, t)/m.
- * @param constraint  void(G&, double), called once; may remove nodes */
+ * @param constraint  void(G&, double), called once; may remove nodes, and then
+ *        the others may get other indices: see Graph::restore_order() */
 template <typename G, typename F, typename C>
 double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
   // BEGIN SOLUTION 6.2.symp_euler_step 6pt
@@ -116,6 +117,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
     auto n = *it;
     n.value().vel += (dt / n.value().mass) * force(n, t);
   }
+  if constexpr (requires { g.restore_order(); }) g.restore_order();
   return t + dt;
   // STUB (void)g, (void)force, (void)constraint;
   // STUB return t + dt;

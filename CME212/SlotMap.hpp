@@ -122,6 +122,14 @@ class SlotMap {
     return identity_ ? id : index_of_[id];
   }
 
+  /** How many indices have a smaller id than the index before.  O(size()) */
+  size_type descents() const {
+    size_type n = 0;
+    for (std::size_t i = 1; i < id_at_.size(); ++i)
+      n += id_at_[i] < id_at_[i - 1];
+    return n;
+  }
+
   /** Let slots() grow to @a slots without moving anything. */
   void reserve(size_type slots) { generation_.reserve(slots); }
 

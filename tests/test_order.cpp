@@ -275,4 +275,88 @@ TEST(BuildOrderedCloth, MovesAShuffledMeshAsTheOrderedOne) {
   EXPECT_GT(moved, 1e-3);
 }
 
+// -------------------------------------------------- after nodes were removed
+
+/** How many indices have a smaller id than the index before. */
+unsigned descents(const Cloth& g) {
+  unsigned n = 0;
+  for (unsigned i = 1; i < g.num_nodes(); ++i)
+    n += g.node(i).id() < g.node(i - 1).id();
+  return n;
+}
+/** The ids of all nodes in random order. */
+std::vector<unsigned> random_ids(const Cloth& g) {
+  std::vector<unsigned> ids(g.num_nodes());
+  std::iota(ids.begin(), ids.end(), 0u);
+  std::shuffle(ids.begin(), ids.end(), std::mt19937(3));
+  return ids;
+}
+
+TEST(RestoreOrder, WaitsForManyNodesOfALargeGraph) {
+  for (unsigned columns : {64u, 63u}) {  // 4096 nodes, and a few less
+    Cloth g;
+    build_cloth(g, grid_points(64, columns), grid_quads(64, columns),
+                Mesh::plain);
+    int restored = 0;
+    for (unsigned id : random_ids(g)) {
+      g.remove_node(g.node_with_id(id));
+      const auto version = g.version();
+      const unsigned before = descents(g);
+      g.restore_order();
+      if (columns == 64 && before > 16) {
+        ASSERT_EQ(descents(g), 0u);
+        ++restored;
+      } else {
+        ASSERT_EQ(g.version(), version);
+      }
+    }
+    EXPECT_EQ(restored > 0, columns == 64);
+    EXPECT_LE(restored, 256);
+  }
+}
+
+TEST(RestoreOrder, LeavesAnOrderThatWasGivenToAWholeGraph) {
+  Cloth g;
+  build_cloth(g, grid_points(64), grid_quads(64), Mesh::plain);
+  const auto ids = random_ids(g);
+  g.reindex_nodes(ids);
+  g.restore_order();
+  for (unsigned i = 0; i < ids.size(); ++i) ASSERT_EQ(g.node(i).id(), ids[i]);
+}
+
+TEST(RestoreOrder, StepsThatTearDoItAndChangeNothingElse) {
+  Cloth g, by_hand;
+  for (Cloth* c : {&g, &by_hand}) {
+    build_cloth(*c, grid_points(70), grid_quads(70), Mesh::diagonals);
+    for (Node n : c->nodes()) n.value().vel = Point(0, 0, n.position().x);
+  }
+  const auto ids = random_ids(g);
+  const std::vector<Node> nodes(g.node_begin(), g.node_end());
+  const auto remove_next = [&ids](Cloth& c, double) {
+    const unsigned removed = c.node_slots() - c.num_nodes();
+    for (unsigned k = removed; k < removed + 100; ++k)
+      c.remove_node(c.node_with_id(ids[k]));
+  };
+  const auto force = make_combined_force(GravityForce(), MassSpringForce());
+  const double dt = 1e-4;
+  for (int step = 0; step < 20; ++step) {
+    symp_euler_step(g, 0, dt, force, remove_next);
+    EXPECT_EQ(descents(g), 0u);
+    for (Node n : by_hand.nodes()) n.position() += dt * n.value().vel;
+    remove_next(by_hand, 0);
+    for (Node n : by_hand.nodes())
+      n.value().vel += (dt / n.value().mass) * force(n, 0);
+  }
+  EXPECT_GT(descents(by_hand), 500u);
+  for (unsigned id = 0; id < nodes.size(); ++id) {
+    ASSERT_EQ(g.has_node(nodes[id]), by_hand.node_in_use(id));
+    ASSERT_EQ(g.positions()[id], by_hand.positions()[id]);
+    if (g.node_in_use(id)) {
+      ASSERT_EQ(g.node(nodes[id].index()), nodes[id]);
+    }
+  }
+  ConstraintPlan(make_combined_constraints(remove_next))(by_hand, 0);
+  EXPECT_EQ(descents(by_hand), 0u);
+}
+
 }  // namespace

@@ -188,7 +188,9 @@ void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
 }
 
 void ConstraintPlan::operator()(Cloth& g, double t) const {
+  const auto version = g.version();
   for (const auto& term : terms_) (*term)(g, t);
+  if (g.version() != version) g.restore_order();
 }
 
 bool ConstraintPlan::nodewise() const {

@@ -157,7 +157,8 @@ class ConstraintPlan {
     add(CME212::shared_from<ZeroConstraint, FunctionConstraint>(&c));
   }
 
-  /** Apply it to @a g at time @a t [s].  O(N) unless a term takes longer */
+  /** Apply it to @a g at time @a t [s]; then Graph::restore_order(), if nodes
+   * were removed.  O(N) unless a term takes longer */
   void operator()(Cloth& g, double t) const;
   // As in SweptConstraint; each is that of all terms together:
   bool nodewise() const;
