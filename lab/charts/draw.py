@@ -11,6 +11,7 @@ import re
 import sys
 
 import decision
+import peers
 import precision
 import speed
 from panels import gnuplot, quoted
@@ -30,7 +31,7 @@ CHARTS = {
        for m in ("limits", "table", "growth", "oscillator")},
     "adviser": ("advice", "adviser.csv", "advice/adviser.gp"),
     "solvers": ("bench", "solvers.csv", "bench/solvers.gp"),
-    "peers": ("bench", "peers.csv", precision.peers),
+    "peers": ("bench", "peers.csv", peers.peers),
     "history": ("bench", "*/history.csv", speed.history),
     "speed": ("bench", "*/bench.json", speed.speed),
 }

@@ -8,6 +8,7 @@ import sys
 import unittest
 
 import decision
+import peers
 import precision
 from results import (COARSE, TRUSTED, Run, Table, cheapest, contenders, runs,
                      winners)
@@ -151,6 +152,24 @@ class Measured(unittest.TestCase):
             self.assertEqual((int(count), int(of)),
                              (chosen.count(method), len(chosen)), title)
             self.assertEqual(max(map(chosen.count, chosen)), int(count))
+
+
+class Libraries(unittest.TestCase):
+    """Ours costs error^-1/2, the library's a power of its own."""
+    OURS = [run("a", 1e-3, 1), run("a", 1e-5, 10)]
+
+    def test_where_a_library_leads_most(self):
+        theirs = [run("lib-b", 1e-3, 1.2), run("lib-b", 1e-5, 5)]
+        share, error, method = peers.advantage(
+            self.OURS + theirs, ["lib-b"], seconds)
+        self.assertEqual(method, "lib-b")
+        self.assertLess(abs(math.log10(error / 1e-5)), 0.02)
+        self.assertAlmostEqual(share, 0.5, delta=0.01)
+
+    def test_a_library_that_never_leads(self):
+        theirs = [run("lib-b", 1e-3, 1.01), run("lib-b", 1e-5, 10.1)]
+        self.assertEqual(peers.advantage(
+            self.OURS + theirs, ["lib-b"], seconds)[0], 0)
 
 
 class Words(unittest.TestCase):
