@@ -12,7 +12,7 @@ import re
 import statistics
 import sys
 
-from results import ROOT, Table, by_method, cheapest, reliable, runs
+from results import ROOT, Table, by_method, cheapest, runs
 
 NUMBER = r"(?<![\d.])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
 tables = {}
