@@ -8,12 +8,12 @@ OPENMP  ?= 1
 
 # The programs: NAME is built as $(B)/NAME from the file.
 lab_main   := lab/cloth.cpp lab/advice/adviser_suite.cpp \
-              lab/viewer/frame_rate.cpp \
+              lab/viewer/frame_rate.cpp lab/page/page_positions.cpp \
               lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := data/make_grid.cpp docs/example_graph.cpp
 lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer
-lab_lib    := $(filter-out $(lab_main) $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
+lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
               $(wildcard lab/*.cpp lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
@@ -96,6 +96,6 @@ quick check check-full:
 format:
 	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
 
-include lab/measure.mk
+include lab/measure.mk lab/page/page.mk
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -218,6 +218,18 @@ advice() {
   build/check/adviser_suite --scenes 24 --first 501 --want-met 85 \
     --want-cheap 40 --out build/check/adviser.csv
 }
+# The web page in a headless browser, where it can be built: its size, bits,
+# controls; pictures of it are in build/check.
+page() {
+  local name
+  for name in clang++-19 wasm-ld-19 chromium ffmpeg; do
+    command -v $name >/dev/null ||
+      { echo "skipped: the page: $name is missing: make page-deps"; return 0; }
+  done
+  /usr/bin/python3 -c 'import websocket' 2>/dev/null ||
+    { echo "skipped: the page: websocket is missing: make page-deps"; return 0; }
+  in_folder . page page_positions && lab/page/test_page.py build/check
+}
 of_scripts() {
   step checks      tools/test_checks.sh
   step submit      tools/test_submit.sh
@@ -236,6 +248,7 @@ of_programs() {
   step grids       same_grids
   step vtk         vtk
   step pages       tools/check_pages.sh
+  step page        page
 }
 of_sweeps() {
   step charts      in_folder . -s charts QUICK=1

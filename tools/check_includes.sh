@@ -19,6 +19,7 @@ lab/advice    : lab/scenes
 lab/charts    : lab/stability lab
 lab/bench     : lab/charts
 lab/viewer    : lab/advice
+lab/page      : lab/viewer
 '
 # A program in the root may draw, and a test; of all else only these:
 drawing='CME212/GL* CME212/SDL* CME212/SFML* CME212/SceneBuilder.hpp

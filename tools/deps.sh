@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Install what is missing:  tools/deps.sh [build] [draw] [check] [peers] [grade]
+# [page]
 # Without arguments: build draw check. When all is there it says nothing and
 # asks no network. DEPS=skip does nothing: for systems without apt.
 set -euo pipefail
@@ -16,7 +17,10 @@ packages() {
     peers) echo "libsundials-dev libboost-dev liblemon-dev" \
                 "libbullet-dev libgsl-dev libsuitesparse-dev" ;;
     grade) echo "g++ git make python3 libseccomp-dev" ;;
-    *) echo "deps: no group '$1'; there are: build draw check peers grade" >&2
+    page)  echo "clang-19 lld-19 wasi-libc libc++-19-dev-wasm32" \
+                "libclang-rt-19-dev-wasm32 libeigen3-dev python3 ffmpeg" \
+                "chromium python3-websocket" ;;
+    *) echo "deps: no group '$1'; there are: build draw check peers grade page" >&2
        exit 2 ;;
   esac
 }
@@ -28,6 +32,7 @@ title() {
     check) echo "to test and check" ;;
     peers) echo "to compare with other libraries" ;;
     grade) echo "to grade submissions" ;;
+    page)  echo "to build the web page, and to test it" ;;
   esac
 }
 

@@ -107,8 +107,12 @@ system 0 "$everything"; run grade
 expect_status 0; says 'installing libseccomp-dev'
 ok "group grade"
 
+system 0 "$everything"; run page
+expect_status 0; says 'installing clang-19 lld-19 wasi-libc' 'chromium'
+ok "group page"
+
 system 0 "$everything"; run build toys
-expect_status 2; says "no group 'toys'.*build draw check peers grade"; calls apt 0
+expect_status 2; says "no group 'toys'.*build draw check peers grade page"; calls apt 0
 ok "a group that there is not"
 
 system 1000 "${everything/xvfb/}"; with_sudo; run

@@ -86,9 +86,10 @@ Ritz lanczos(Eigen::VectorXd v, Multiply&& multiply, int most,
 Eigen::VectorXd random_start(const std::vector<double>& scale, unsigned dim) {
   std::mt19937 random(1);
   Eigen::VectorXd v(Eigen::Index(dim * scale.size()));
-  for (unsigned k = 0; k < v.size(); ++k)
-    v[k] = scale[k / dim] > 0 ? double(random()) / double(random.max()) - 0.5
-                              : 0.0;
+  for (Eigen::Index k = 0; k < v.size(); ++k)
+    v[k] = scale[std::size_t(k) / dim] > 0
+               ? double(random()) / double(random.max()) - 0.5
+               : 0.0;
   return v;
 }
 

@@ -24,7 +24,7 @@ bool only_evaluates(const MethodEntry& m) {
 }
 /** The time of a step of @a m, as it was measured, in steps of Verlet. */
 double cost_of(const MethodEntry& m) {
-  const auto* cost = std::ranges::find(
+  const auto cost = std::ranges::find(
       method_costs, std::string_view(m.info.name), &MethodCost::method);
   return cost != method_costs.end() ? cost->at_limit : m.info.sweeps;
 }

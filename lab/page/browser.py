@@ -1,0 +1,143 @@
+"""A headless Chromium, driven by its own protocol over a web socket: needs
+chromium and python3-websocket (make page-deps)."""
+import base64
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+import websocket
+
+
+class Browser:
+    """One page. Use it in a with statement; lengths in CSS pixels."""
+
+    def __init__(self, width=1280, height=800, flags=()):
+        self.folder = tempfile.mkdtemp(prefix="page.")
+        self.process = subprocess.Popen(
+            ["chromium", "--headless=new", "--no-sandbox", "--no-first-run",
+             "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+             "--disable-background-networking", "--hide-scrollbars",
+             "--remote-debugging-port=0", "--remote-allow-origins=*",
+             f"--user-data-dir={self.folder}", *flags, "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        port = pathlib.Path(self.folder, "DevToolsActivePort")
+        self._until(lambda: port.exists() and "\n" in port.read_text(), 60,
+                    "the browser does not start")
+        number, path = port.read_text().split("\n")[:2]
+        self.socket = websocket.create_connection(
+            f"ws://127.0.0.1:{number}{path}", timeout=300)
+        self.count, self.session, self.faults = 0, None, []
+        target = self.send("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.send("Target.attachToTarget", targetId=target,
+                                 flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self.send(domain + ".enable")
+        self.resize(width, height)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+        self.process.terminate()
+        self.process.wait(30)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    @staticmethod
+    def _until(holds, seconds, what):
+        end = time.monotonic() + seconds
+        while not holds():
+            if time.monotonic() > end:
+                raise TimeoutError(what)
+            time.sleep(0.05)
+
+    def send(self, method, **values):
+        """The answer to a command. What the page complains of meanwhile goes
+        to self.faults."""
+        self.count += 1
+        message = {"id": self.count, "method": method, "params": values}
+        if self.session:
+            message["sessionId"] = self.session
+        self.socket.send(json.dumps(message))
+        while True:
+            answer = json.loads(self.socket.recv())
+            self._listen(answer)
+            if answer.get("id") == self.count:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return answer["result"]
+
+    def _listen(self, event):
+        values = event.get("params", {})
+        if event.get("method") == "Runtime.exceptionThrown":
+            details = values["exceptionDetails"]
+            self.faults.append(details.get("exception", {}).get(
+                "description", details["text"]))
+        elif event.get("method") == "Runtime.consoleAPICalled":
+            if values["type"] in ("error", "warning", "assert"):
+                self.faults.append(str(values["args"]))
+        elif event.get("method") == "Log.entryAdded":
+            if values["entry"]["level"] == "error":
+                self.faults.append(values["entry"]["text"])
+
+    def resize(self, width, height, touch=False, dark=False):
+        self.send("Emulation.setDeviceMetricsOverride", width=width,
+                  height=height, deviceScaleFactor=1, mobile=touch)
+        self.send("Emulation.setTouchEmulationEnabled", enabled=touch)
+        self.send("Emulation.setEmulatedMedia", features=[
+            {"name": "prefers-color-scheme",
+             "value": "dark" if dark else "light"}])
+
+    def open(self, address):
+        """Another page, also if only what is behind # is another."""
+        self.send("Page.navigate", url="about:blank")
+        self.send("Page.navigate", url=address)
+        self.wait("document.readyState === 'complete'")
+
+    def value(self, expression):
+        """What an expression of JavaScript is; it is waited for."""
+        answer = self.send("Runtime.evaluate", expression=expression,
+                           returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def wait(self, expression, seconds=60):
+        self._until(lambda: self.value(expression), seconds,
+                    f"never: {expression}")
+
+    def screenshot(self, file):
+        data = self.send("Page.captureScreenshot", format="png")["data"]
+        pathlib.Path(file).write_bytes(base64.b64decode(data))
+
+    def key(self, key, code="", text=""):
+        for kind in ("keyDown", "keyUp"):
+            values = {"text": text} if text and kind == "keyDown" else {}
+            self.send("Input.dispatchKeyEvent", type=kind, key=key,
+                      code=code or key, **values)
+
+    def mouse(self, kind, x, y, button="left", modifiers=0):
+        """kind: mousePressed, mouseMoved, mouseReleased"""
+        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y,
+                  button=button, buttons=int(kind != "mouseReleased"),
+                  clickCount=1, modifiers=modifiers)
+
+    def click(self, selector, modifiers=0):
+        x, y = self.value(
+            "(box => [box.x + box.width / 2, box.y + box.height / 2])("
+            f"(e => (e.scrollIntoView({{block: 'nearest'}}), e))"
+            f"(document.querySelector('{selector}')).getBoundingClientRect())")
+        self.mouse("mousePressed", x, y, modifiers=modifiers)
+        self.mouse("mouseReleased", x, y, modifiers=modifiers)
+
+    def wheel(self, x, y, down):
+        self.send("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y,
+                  deltaX=0, deltaY=down)
+
+    def touch(self, kind, *points):
+        """kind: touchStart, touchMove, touchEnd; points: (x, y)"""
+        self.send("Input.dispatchTouchEvent", type=kind, touchPoints=[
+            {"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)])

@@ -1,0 +1,401 @@
+'use strict';
+// The page: its controls, its frames, and the thread that computes.
+
+const $ = id => document.getElementById(id);
+const cssOf = name => getComputedStyle(document.documentElement)
+  .getPropertyValue(name).trim();
+
+const page = {
+  about: null,           // scenes and methods
+  settings: {scene: 2, side: 25, method: 2, share: 0.5, K: 100, drag: 0,
+    gravity: 9.81, rival: -1, rivalShare: 0.5},
+  speed: 1,              // simulated seconds a second, at most
+  playing: true, waiting: false, wanted: true, dirty: true,
+  sides: [],             // what is drawn
+  readings: null, failed: false, calls: 0, why: '',
+  frames: 0, errors: [],
+
+  ask(name, ...values) {
+    this.worker.postMessage(['ask', [name, ...values]]);
+    this.wanted = true;
+  },
+  changed() { this.dirty = true; },
+};
+
+// -------------------------------------------------------------------- Controls
+
+// A slider: its values from places 0 to 1 and back, and how they are shown.
+const byPower = (low, high) => ({
+  value: s => Number((low * (high / low) ** s).toPrecision(3)),
+  place: a => Math.log(a / low) / Math.log(high / low),
+});
+const fromZero = (high, power) => ({
+  value: s => Number((high * s ** power).toPrecision(3)),
+  place: a => (a / high) ** (1 / power),
+});
+const byArea = () => page.about.scenes[page.settings.scene].byArea;
+const sliders = {
+  share: {...byPower(0.01, 100), show: a => shortNumber(a)},
+  rivalShare: {...byPower(0.01, 100), show: a => shortNumber(a)},
+  K: {...byPower(1, 1e4), show: a => `${shortNumber(a)} N/m`},
+  drag: {...fromZero(20, 4), show: a =>
+    `${shortNumber(a)} ${byArea() ? 'kg/(s m\u00b2)' : 'kg/s'}`},
+  gravity: {...fromZero(30, 1), show: a => `${shortNumber(a)} m/s\u00b2`},
+  speed: {...byPower(0.01, 1), show: a => `${shortNumber(a)} s/s`},
+};
+const outputOf = input => input.parentElement.querySelector('output');
+
+function valueOf(name) {
+  return name === 'speed' ? page.speed : page.settings[name];
+}
+function showSlider(name) {
+  const value = valueOf(name), input = $(name);
+  input.value = Math.round(1000 * sliders[name].place(value));
+  outputOf(input).textContent = sliders[name].show(value);
+  input.setAttribute('aria-valuetext', outputOf(input).textContent);
+}
+
+function showControls() {
+  const s = page.settings;
+  for (const name of ['scene', 'side', 'method', 'rival'])
+    $(name).value = s[name];
+  for (const name of Object.keys(sliders)) showSlider(name);
+  const m = page.about.methods[s.method];
+  $('about').textContent = `Order ${m.order}, ${m.sweeps} force evaluation` +
+    `${m.sweeps === 1 ? '' : 's'} a step. Good for: ${m.goodFor}. Fails: ` +
+    `${m.failsWhen}.`;
+  $('row-rivalShare').hidden = s.rival < 0;
+  $('distance-figure').hidden = s.rival < 0;
+  $('play').textContent = page.playing ? 'Pause' : 'Play';
+  showLimits();
+  page.changed();
+}
+
+// The step is red where it is beyond the limit of the method.
+function showLimits() {
+  const r = page.readings;
+  for (const [name, run] of [['share', r && r.main],
+    ['rivalShare', r && r.rival]]) {
+    const share = page.settings[name];
+    const beyond = !!run && run.safe !== null && share * run.unit > run.safe;
+    $(`row-${name}`).classList.toggle('beyond', beyond);
+  }
+  if (!r) return;
+  const {dt, safe, sharp, unit} = r.main;
+  const ms = a => `${shortNumber(1e3 * a)} ms`;
+  $('limits').textContent = safe === null
+    ? `dt = ${ms(dt)}. Without a limit: 1 is that of Verlet, ${ms(unit)}.`
+    : safe === 0
+      ? `dt = ${ms(dt)}. No step is stable: 1 is Verlet's limit, ${ms(unit)}.`
+      : `dt = ${ms(dt)}. Stable in any shape up to ${ms(safe)}` +
+        (sharp ? `, in this one up to ${ms(sharp)}.` : '.');
+}
+
+function start() {
+  for (const plot of Object.values(plots)) plot.clear();
+  page.failed = false, page.why = '', showFailure('');
+  page.hand.release();
+  page.worker.postMessage(['load', {...page.settings}]);
+  page.waiting = true;
+  showControls();
+}
+
+function setPlaying(on) {
+  page.playing = on, page.lastTime = undefined;
+  $('play').textContent = on ? 'Pause' : 'Play';
+}
+
+function loadScene(k) {
+  const {K, drag, gravity} = page.about.scenes[k];
+  Object.assign(page.settings, {scene: k, K, drag, gravity});
+  start(), setPlaying(true);
+}
+
+// A change of what runs. One that failed goes on from its last good state.
+function change(name, value) {
+  page.settings[name] = value;
+  const s = page.settings;
+  const compares = name === 'rival' || name === 'rivalShare';
+  if (page.failed) {
+    start(), setPlaying(true);
+  } else if (compares && page.calls === 0 || name === 'rival') {
+    start();  // both from the same start
+  } else {
+    page.ask(...(compares ? ['compare', s.rival, s.rivalShare]
+      : [name, value]));
+    if (!compares && name === 'method') page.ask('share', s.share);
+  }
+  showControls();
+}
+
+function makeControls() {
+  const {scenes, methods} = page.about;
+  const option = (text, value) => new Option(text, value);
+  $('scene').append(...scenes.map((s, k) => option(s.title, k)));
+  $('method').append(...methods.map((m, k) => option(m.name, k)));
+  $('rival').append(option('nothing', -1),
+    ...methods.map((m, k) => option(m.name, k)));
+  $('scene').onchange = e => loadScene(Number(e.target.value));
+  $('side').onchange = e => {
+    page.settings.side = Number(e.target.value), start();
+  };
+  for (const name of ['method', 'rival'])
+    $(name).onchange = e => change(name, Number(e.target.value));
+  for (const [name, slider] of Object.entries(sliders)) {
+    Object.assign($(name), {min: 0, max: 1000, step: 5});
+    $(name).oninput = e => {
+      const value = slider.value(Number(e.target.value) / 1000);
+      if (name === 'speed') page.speed = value;
+      else change(name, value);
+      showSlider(name);
+    };
+  }
+  $('play').onclick = () => setPlaying(!page.playing);
+  $('step').onclick = () => { setPlaying(false), page.stepping = true; };
+  $('restart').onclick = () => { start(), setPlaying(true); };
+  $('dismiss').onclick = () => $('failure').hidden = true;
+  $('link').onclick = () => page.worker.postMessage(['link']);
+  for (const button of document.querySelectorAll('[data-tool]'))
+    button.onclick = () => setTool(button.dataset.tool);
+  setTool('grab');
+  addEventListener('keydown', e => {
+    if (e.target.matches('select, input') || e.ctrlKey || e.metaKey) return;
+    const action = {' ': 'play', n: 'step', r: 'restart'}[e.key.toLowerCase()];
+    if (!action || (e.key === ' ' && e.target.matches('button'))) return;
+    e.preventDefault(), $(action).click();
+  });
+}
+
+function setTool(tool) {
+  page.hand.tool = tool, $('canvas').dataset.tool = tool;
+  for (const button of document.querySelectorAll('[data-tool]'))
+    button.setAttribute('aria-pressed', String(button.dataset.tool === tool));
+}
+
+// ---------------------------------------------------------------------- Frames
+
+function colors() {
+  const four = name => cssOf(name).split(' ').map(
+    (a, k) => k < 3 ? Number(a) / 255 : Number(a));
+  page.theme = {cloth: [four('--cloth0'), four('--cloth1')],
+    stretched: four('--stretched'), wire: four('--wire'), pin: four('--pin'),
+    hand: four('--hand'), ball: four('--ball'), tears: four('--tears'),
+    floor: four('--floor'),
+    bad: [...(cssOf('--bad').match(/[0-9a-f]{2}/gi)).map(
+      a => parseInt(a, 16) / 255), 1]};
+  page.style = {edge: cssOf('--edge'), dim: cssOf('--dim'),
+    series: [0, 1, 2, 3].map(k => cssOf(`--series${k}`))};
+  page.changed();
+}
+
+const plots = {
+  energy: new Plot($('energy'), $('energy-title')),
+  distance: new Plot($('distance'), $('distance-title')),
+};
+
+function showNumbers() {
+  const r = page.readings;
+  if (!r) return;
+  const [blue, orange, green, dark] = page.style.series;
+  const {main, rival} = r;
+  if (rival) {
+    plots.energy.draw('Energy drift [J]',
+      [[main.method, blue], [rival.method, orange]], false, page.style);
+    plots.distance.draw('Distance [m]', [['apart', dark],
+      ['error', blue], ['error', orange]], true, page.style);
+  } else {
+    plots.energy.draw('Energy [J]', [['kinetic', blue], ['elastic', orange],
+      ['height', green], ['total', dark]], false, page.style);
+  }
+  const rows = [['time', `${main.time.toFixed(3)} s`],
+    ['steps', main.steps], ['nodes, springs', `${r.nodes}, ${r.edges}`],
+    ['energy drift', `${shortNumber(main.drift)} J`],
+    ['force evaluations', main.evaluations]];
+  if (r.tornNodes || r.tornEdges)
+    rows.push(['torn nodes, springs', `${r.tornNodes}, ${r.tornEdges}`]);
+  if (rival)
+    rows.push(['force evaluations beside', rival.evaluations],
+      ['distance of the two', `${shortNumber(r.apart)} m`]);
+  $('numbers').replaceChildren(...rows.map(row => {
+    const line = document.createElement('tr');
+    line.append(...row.map(text => {
+      const cell = document.createElement('td');
+      cell.textContent = text;
+      return cell;
+    }));
+    return line;
+  }));
+  $('name0').innerHTML = rival ? `${main.method}<small>dt = ${
+    shortNumber(1e3 * main.dt)} ms</small>` : '';
+  $('name1').innerHTML = rival ? `${rival.method}<small>dt = ${
+    shortNumber(1e3 * rival.dt)} ms${rival.failure ? ', diverged' : ''
+  }</small>` : '';
+}
+
+// The words of ./cloth, whose options are sliders here.
+function showFailure(words) {
+  const text = words.replace(/--dt (\S+)/g, 'dt = $1 s')
+    .replace(/--method (\S+)/g, 'method $1');
+  $('failure').hidden = !text;
+  // Where it happened; and behind the last good state, why and what works.
+  const at = text.indexOf(' s; ', text.indexOf('the last good state'));
+  const parts = at < 0 ? [text]
+    : [text.slice(0, at + 2), text.slice(at + 4)];
+  $('failure').querySelectorAll('p').forEach(p => p.remove());
+  parts.reverse().forEach((part, k) => {
+    const p = document.createElement('p');
+    p.textContent = part, p.id = k ? 'place' : 'words';
+    $('failure').insertBefore(p, $('dismiss'));
+  });
+}
+
+const replies = {
+  about(data) {
+    page.about = data.about;
+    makeControls();
+    const read = Link.read(location.hash, page.about);
+    const own = page.about.scenes[read.start.scene ?? page.settings.scene];
+    for (const name of ['K', 'drag', 'gravity'])
+      page.settings[name] = own[name];
+    Object.assign(page.settings, read.start);
+    if (read.speed) page.speed = read.speed;
+    if (read.camera)
+      [page.view.camera.yaw, page.view.camera.pitch, page.view.camera.zoom] =
+        read.camera;
+    start();
+    if (!read.calls && !read.log.length) return;
+    setPlaying(false);
+    page.worker.postMessage(['repeat',
+      {start: {...page.settings}, log: read.log, calls: read.calls}]);
+    for (const [, name, ...values] of read.log) {  // as they were at its end
+      if (name in page.settings) page.settings[name] = values[0];
+      if (name === 'compare')
+        [page.settings.rival, page.settings.rivalShare] = values;
+    }
+    showControls();
+  },
+  setting({setting}) {
+    page.view.obstacles = setting.obstacles;
+    page.room = setting.room, page.framed = false;
+  },
+  frame(data) {
+    page.waiting = false, page.calls = data.calls, ++page.frames;
+    $('busy').textContent = '';
+    const before = page.sides;
+    page.sides = data.sides.map((side, k) => {
+      const {view} = page;
+      const mesh = side.mesh || before[k];
+      if (side.mesh) view.cloths[k].setMesh(mesh.triangles, mesh.lines);
+      view.cloths[k].setPoints(side.points);
+      const {lines, triangles, pins} = mesh;
+      return {...side, lines, triangles, pins};
+    });
+    page.readings = data.readings;
+    frameScene(), remember(), showLimits();
+    if (data.failed && !page.failed) {
+      page.failed = true, setPlaying(false);
+      for (const plot of Object.values(plots)) plot.good = data.good;
+      showFailure(page.sides[0].failure + ' s; looking for the cause ...');
+    }
+    if (!data.failed) page.failed = false;
+    page.changed();
+  },
+  history({history}) {
+    for (const readings of history) page.readings = readings, remember();
+  },
+  why({why, readings}) {
+    page.why = why, page.readings = readings;
+    showFailure(why), page.changed();
+  },
+  link({link}) {
+    const hash = Link.write(link, page.about, page.view.camera, page.speed);
+    history.replaceState(null, '', hash);
+    const done = text => {
+      $('link').textContent = text;
+      setTimeout(() => $('link').textContent = 'Copy link', 1500);
+    };
+    const copied = navigator.clipboard &&
+      navigator.clipboard.writeText(location.href);
+    if (copied) copied.then(() => done('Copied'), () => done('In the address'));
+    else done('In the address');
+  },
+  positions(data) { page.positions = data; },
+  error({text}) { page.errors.push(text), console.error(text); },
+};
+
+// Look at what the scene says is its room; else at the cloth, and below it.
+function frameScene() {
+  if (page.framed || !page.sides.length) return;
+  page.framed = true;
+  const all = [...page.room];
+  if (!all.length)
+    for (const i of page.sides[0].lines) {
+      const p = [...page.sides[0].points.subarray(4 * i, 4 * i + 3)];
+      all.push(p, Vec.add(p, [0, 0, -0.35]));
+    }
+  page.view.camera.lookAt(all);
+}
+
+function remember() {
+  const r = page.readings;
+  if (!r) return;
+  const {main, rival} = r;
+  plots.energy.add(main.time, rival ? [main.drift, rival.drift]
+    : [main.kinetic, main.elastic, main.height, main.total]);
+  if (rival)
+    plots.distance.add(main.time, [r.apart, r.error, r.rivalError]);
+}
+
+function tick(now) {
+  requestAnimationFrame(tick);
+  if (!page.waiting && page.about) {
+    const passed = Math.min(0.05, (now - (page.lastTime ?? now)) / 1e3);
+    page.lastTime = now;
+    const runs = page.playing && !page.failed;
+    if (runs || page.wanted || page.stepping) {
+      page.hand.tell();
+      page.worker.postMessage(['frame',
+        page.stepping ? -1 : runs ? Math.max(passed * page.speed, 1e-9) : 0]);
+      page.waiting = true, page.wanted = page.stepping = false;
+    }
+    page.wanted ||= page.hand.moved;
+  }
+  if (!page.dirty || !page.sides.length) return;
+  page.dirty = false;
+  page.view.draw(page.sides, page.theme, page.hand.grabbed);
+  if (now - (page.numbersAt || 0) > 80 || !page.playing)
+    page.numbersAt = now, showNumbers();
+  const cross = page.hand.crossPlace();
+  $('cross').style.left = `${cross.half[0]}px`;
+  $('cross').style.top = `${cross.half[1]}px`;
+}
+
+async function begin() {
+  try {
+    page.view = new View($('canvas'));
+    if (!self.WebAssembly || !self.DecompressionStream)
+      throw new Error('no WebAssembly');
+  } catch (error) {
+    for (const id of ['stage', 'panel']) $(id).hidden = true;
+    $('fallback').hidden = false;
+    $('loop').src = 'loop.gif';
+    return;
+  }
+  page.hand = new Hand(page, $('canvas'));
+  colors();
+  matchMedia('(prefers-color-scheme: dark)').onchange = colors;
+  new ResizeObserver(() => page.changed()).observe($('stage'));
+  $('canvas').addEventListener('webglcontextlost', () => location.reload());
+  // From a blob, as a page that is opened as a file may start no other one.
+  const source = new Blob([$('worker').textContent], {type: 'text/javascript'});
+  page.worker = new Worker(URL.createObjectURL(source));
+  page.worker.onmessage = ({data}) => replies[data.kind](data);
+  page.worker.onerror = e => page.errors.push(e.message);
+  const packed = Uint8Array.from(atob($('wasm').textContent),
+    c => c.charCodeAt(0));
+  const bytes = await new Response(new Blob([packed]).stream().pipeThrough(
+    new DecompressionStream('gzip'))).arrayBuffer();
+  page.worker.postMessage(['module', bytes], [bytes]);
+  requestAnimationFrame(tick);
+}
+begin();

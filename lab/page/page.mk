@@ -1,0 +1,53 @@
+# The web page: make page writes $(B)/page, which any browser opens.
+#
+# The course's code and that of the laboratory which reads and writes no files,
+# by clang++ to WebAssembly: make page-deps. lab/page/README.md
+
+PAGE_CXX ?= clang++-19
+page    := $(B)/page
+page_o  := $(B)/page.o
+# Of the laboratory: all of these rooms, but what reads and writes files.
+page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
+  %,lab/scenes/%.cpp, Checkpoint KeyValues \
+  Measure Memory MeshFile SceneFile Warnings), $(wildcard $(patsubst \
+  %,lab/%/*.cpp,fast methods stability scenes page))) lab/viewer/Live.cpp
+page_objects := $(page_source:%.cpp=$(page_o)/%.o)
+page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
+  -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off
+page_names = $(sort $(shell grep -oE '\bpage_[a-z_]+' lab/page/Page.hpp))
+
+.PHONY: page page-deps page-picture page-serve
+page: $(page)/index.html $(page)/loop.gif
+	@echo "$(page)/index.html: $$(du -bc $(page)/* | tail -n 1 | cut -f 1) bytes"
+
+$(page_o)/%.o: %.cpp $(page_o)/flags
+	@mkdir -p $(@D) && echo '$(PAGE_CXX) $@'
+	@$(PAGE_CXX) $(page_flags) -include lab/page/wasi.hpp -MMD -MP -c -o $@ $<
+$(page_o)/flags: FORCE
+	@mkdir -p $(@D); echo '$(PAGE_CXX) $(page_flags)' | cmp -s - $@ \
+	  || echo '$(PAGE_CXX) $(page_flags)' > $@
+$(page_o)/cloth.wasm: $(page_objects) lab/page/Page.hpp
+	@echo 'link $@'
+	@$(PAGE_CXX) --target=wasm32-wasi -O2 -mexec-model=reactor -Wl,--no-entry \
+	  -Wl,--strip-all -Wl,--export=__stack_pointer -Wl,--export=page_thrown \
+	  $(page_names:%=-Wl,--export=%) -o $@ $(page_objects)
+
+$(page)/index.html: $(page_o)/cloth.wasm $(wildcard lab/page/*.js lab/page/*.py \
+                    lab/page/*.html lab/page/*.css)
+	@mkdir -p $(@D)
+	@python3 lab/page/assemble.py $< $@
+# What a browser shows that can't run it: half as large, 8 frames a second.
+fewer = fps=8,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=48[p]
+$(page)/loop.gif: docs/pictures/tear.gif
+	@mkdir -p $(@D)
+	@ffmpeg -loglevel error -y -i $< \
+	  -vf '$(fewer);[b][p]paletteuse=dither=none' $@
+
+page-picture: page
+	@/usr/bin/python3 lab/page/picture.py $(page)/index.html docs/pictures/page.png
+	@tools/shrink_pictures.sh docs/pictures/page.png
+
+page-deps:
+	@tools/deps.sh page
+page-serve: page
+	@python3 -m http.server -d $(page) 8000

@@ -1,0 +1,14 @@
+#!/usr/bin/python3
+"""The picture of the web page in lab/page/README.md: picture.py PAGE OUT.png"""
+import pathlib
+import sys
+
+from browser import Browser
+
+run = ("#scene=forces&side=25&method=verlet&share=0.5&rival=implicit-euler"
+       "&rivalShare=8&camera=-1.1_0.25_1.15&steps=38")
+with Browser(800, 800) as browser:
+    browser.open(f"file://{pathlib.Path(sys.argv[1]).resolve()}{run}")
+    browser.wait("page.calls === 38 && !page.waiting && !page.dirty", 300)
+    browser.value("new Promise(done => setTimeout(done, 500))")
+    browser.screenshot(sys.argv[2])

@@ -1,0 +1,389 @@
+#!/usr/bin/python3
+"""What the web page does, in a headless Chromium: test_page.py BUILD, where
+BUILD/page/index.html and BUILD/page_positions are. It is opened as a file. The
+pictures that it writes, BUILD/page-*.png, are to be looked at."""
+import base64
+import pathlib
+import struct
+import subprocess
+import sys
+import traceback
+
+from browser import Browser
+
+build = pathlib.Path(sys.argv[1])
+address = "file://" + str((build / "page/index.html").resolve())
+tests = []
+
+
+def test(run):
+    tests.append(run)
+
+
+def opened(browser, hash=""):
+    """The page as it is opened, with a frame drawn."""
+    browser.open(address + hash)
+    browser.wait("page.frames > 2 && page.readings && page.sides.length")
+    return browser
+
+
+def time_of(b):
+    return b.value("page.readings.main.time")
+
+
+def choose(b, name, value):
+    b.value(f"$('{name}').value = '{value}', "
+            f"$('{name}').dispatchEvent(new Event('change'))")
+
+
+def slide(b, name, value):
+    b.value(f"$('{name}').value = 1000 * sliders.{name}.place({value}), "
+            f"$('{name}').dispatchEvent(new Event('input'))")
+
+
+def place_of(b, node, side=0):
+    """Where a node is on the screen [CSS pixels]."""
+    return b.value(f"""(() => {{
+      const box = $('canvas').getBoundingClientRect();
+      const width = box.width / page.sides.length;
+      const {{camera}} = page.view;
+      const [x, y] = camera.place(camera.frame(width / box.height),
+        page.sides[{side}].points.subarray({4 * node}, {4 * node + 3}));
+      return [box.left + {side} * width + (x + 1) / 2 * width,
+              box.top + (1 - y) / 2 * box.height]; }})()""")
+
+
+def point_of(b, node, side=0):
+    return b.value(f"[...page.sides[{side}].points.slice({4 * node},"
+                   f" {4 * node + 3})]")
+
+
+def pause(b):
+    if b.value("page.playing"):
+        b.click("#play")
+    b.wait("!page.waiting")
+    assert not b.value("page.playing")
+
+
+@test
+def same_bits_as_the_native_program(b):
+    """After 1000 steps on grid1, of every method that solves no system."""
+    names = [m["name"] for m in opened(b).value("page.about.methods")]
+    assert len(names) >= 6
+    pause(b)
+    ours, asked = [], []
+    for k, name in enumerate(names):
+        # Forward Euler has no stable step.
+        share = 0.02 if name == "forward-euler" else 0.5
+        b.value(f"page.positions = null, Object.assign(page.settings, "
+                f"{{scene: 2, side: 25, method: {k}, K: 100, drag: 0,"
+                f" gravity: 9.81, share: {share}, rival: -1}}), start(),"
+                " page.worker.postMessage(['positions', 1000])")
+        b.wait("page.positions", 300)
+        assert b.value("page.positions.broken") == "", name
+        ours.append(base64.b64decode(b.value(
+            "(bytes => { let s = ''; for (const c of bytes) s +="
+            " String.fromCharCode(c); return btoa(s); })"
+            "(new Uint8Array(page.positions.all.buffer))")))
+        asked += [name, repr(b.value("page.positions.dt"))]
+    native = subprocess.run(
+        [build / "page_positions", "data/scenes/forces.toml", "data/grid1",
+         "1000", *asked], check=True, capture_output=True).stdout
+    size = 625 * 3 * 8
+    assert len(native) == size * len(names)
+    # Where linear systems are solved, by Eigen, the order of its sums depends
+    # on the processor; Newton's iteration ends within its tolerance.
+    solving = {"implicit-euler", "implicit-midpoint", "tr-bdf2"}
+    for k, name in enumerate(names):
+        theirs = native[k * size:(k + 1) * size]
+        a, c = (struct.unpack(f"<{size // 8}d", x) for x in (ours[k], theirs))
+        worst = max(abs(x - y) for x, y in zip(a, c))
+        print(f"  {name}: " + ("the same bits" if ours[k] == theirs else
+                               f"another by up to {worst} m"))
+        assert ours[k] == theirs or (name in solving and worst < 1e-3), name
+
+
+@test
+def it_runs_steps_pauses_and_restarts(b):
+    opened(b)
+    before = time_of(b)
+    b.wait(f"page.readings.main.time > {before} + 0.02")
+    pause(b)
+    steps = b.value("page.readings.main.steps")
+    b.click("#step")
+    b.wait(f"page.readings.main.steps === {steps} + 1")
+    b.key("n", text="n")
+    b.wait(f"page.readings.main.steps === {steps} + 2")
+    b.click("#restart")
+    b.wait(f"page.readings.main.steps < {steps} && page.playing")
+
+
+@test
+def a_node_that_is_dragged_follows(b):
+    opened(b)
+    pause(b)
+    node = 624  # the corner opposite to that of node 0
+    x, y = place_of(b, node)
+    b.mouse("mousePressed", x, y)
+    b.wait("page.hand.grabbed")
+    held = b.value("page.hand.grabbed.node")
+    before = point_of(b, held)
+    b.value("setPlaying(true)")
+    for k in range(1, 9):
+        b.mouse("mouseMoved", x + 15 * k, y - 10 * k)
+    b.wait("page.readings.grabbed")
+    target = b.value("page.hand.grabbed.target")
+    gap = "Math.hypot(...[0, 1, 2].map(k => page.sides[0].points[" + \
+        f"{4 * held} + k] - [{','.join(map(str, target))}][k]))"
+    start = sum((p - q) ** 2 for p, q in zip(before, target)) ** 0.5
+    assert start > 0.05
+    b.wait(f"{gap} < {start / 2}")
+    b.screenshot(build / "page-grab.png")
+    b.mouse("mouseReleased", x + 120, y - 80)
+    b.wait("!page.readings.grabbed")
+
+
+@test
+def a_stroke_cuts_and_a_click_pins(b):
+    opened(b)
+    pause(b)
+    before = b.value("page.readings.edges")
+    b.click("[data-tool=cut]")
+    (x0, y0), (x1, y1) = place_of(b, 300), place_of(b, 324)
+    assert abs(x0 - x1) + abs(y0 - y1) > 60
+    b.mouse("mousePressed", x0, y0)
+    for k in range(1, 11):
+        b.mouse("mouseMoved", x0 + (x1 - x0) * k / 10, y0 + (y1 - y0) * k / 10)
+    b.mouse("mouseReleased", x1, y1)
+    b.wait(f"page.readings.edges < {before} - 20")
+    assert b.value("page.readings.nodes") == 625
+    b.click("[data-tool=pin]")
+    pins = b.value("page.sides[0].pins.length")
+    assert pins == 2
+    x, y = place_of(b, 624)
+    b.mouse("mousePressed", x, y), b.mouse("mouseReleased", x, y)
+    b.wait("page.sides[0].pins.length === 3")
+    b.mouse("mousePressed", x, y), b.mouse("mouseReleased", x, y)
+    b.wait("page.sides[0].pins.length === 2")
+
+
+@test
+def it_turns_and_zooms(b):
+    opened(b)
+    pause(b)
+    b.click("[data-tool=turn]")
+    yaw, zoom = b.value("[page.view.camera.yaw, page.view.camera.zoom]")
+    b.mouse("mousePressed", 400, 300), b.mouse("mouseMoved", 480, 300)
+    b.mouse("mouseReleased", 480, 300)
+    assert abs(b.value("page.view.camera.yaw") - (yaw - 0.64)) < 1e-9
+    b.wheel(400, 300, -200)
+    b.wait(f"page.view.camera.zoom > 1.2 * {zoom}")
+
+
+@test
+def every_scene_and_every_method_runs(b):
+    opened(b)
+    for k in range(b.value("page.about.scenes.length")):
+        choose(b, "scene", k)
+        b.wait(f"page.settings.scene === {k} && !page.waiting &&"
+               " page.readings.main.time > 0.01 && page.calls > 0", 120)
+        assert b.value("page.failed") is False
+        b.screenshot(build / f"page-scene-{k}.png")
+    choose(b, "scene", 2), choose(b, "side", 5)
+    b.wait("page.readings.nodes === 25")
+    for k in range(b.value("page.about.methods.length")):
+        choose(b, "method", k)
+        name = b.value(f"page.about.methods[{k}].name")
+        b.wait(f"page.readings.main.method === '{name}'", 120)
+
+
+@test
+def sliders_change_what_runs(b):
+    opened(b)
+    pause(b)
+    dt = b.value("page.readings.main.dt")
+    slide(b, "share", 0.25)
+    b.wait(f"Math.abs(page.readings.main.dt / {dt} - 0.5) < 0.02")
+    # omega grows as the root of K: the limit falls as it.
+    limit = b.value("page.readings.main.safe")
+    slide(b, "K", 400)
+    b.wait(f"Math.abs(page.readings.main.safe / {limit} - 0.5) < 0.01")
+    slide(b, "K", 100)
+    # A cloth that nothing pulls stays where it is.
+    b.click("#restart")
+    slide(b, "gravity", 0)
+    b.wait("page.readings.main.time > 0.1")
+    slide(b, "drag", 0.1)
+    slide(b, "gravity", 9.81)
+    b.wait("page.readings.main.kinetic > 0.01")
+
+
+@test
+def a_step_beyond_the_limit_diverges_with_a_ring_and_a_reason(b):
+    opened(b)
+    assert not b.value("$('row-share').classList.contains('beyond')")
+    slide(b, "share", 2)
+    b.wait("$('row-share').classList.contains('beyond')")
+    b.wait("page.failed && page.sides[0].failedNode >= 0", 120)
+    b.wait("page.why", 300)
+    words = b.value("$('failure').textContent")
+    assert "times the stability limit" in words, words
+    assert "works" in words and "--" not in words, words
+    b.screenshot(build / "page-failure.png")
+    slide(b, "share", 0.5)
+    b.wait("!page.failed && page.readings.main.time > 0.02")
+    assert b.value("$('failure').hidden")
+
+
+@test
+def two_methods_run_beside_each_other(b):
+    opened(b)
+    choose(b, "rival", 1)
+    b.wait("page.readings.rival && page.sides.length === 2")
+    b.wait("page.readings.main.time > 0.3", 120)
+    r = b.value("page.readings")
+    assert r["rival"]["method"] == "symplectic-euler"
+    assert abs(r["main"]["time"] - r["rival"]["time"]) < 1e-9
+    assert 0 < r["apart"] < 0.5
+    # Symplectic Euler is of order 1, Verlet of order 2.
+    assert 0 < r["error"] < r["rivalError"]
+    assert b.value("plots.distance.times.length") > 3
+    b.screenshot(build / "page-two.png")
+    choose(b, "rival", -1)
+    b.wait("page.sides.length === 1")
+
+
+@test
+def a_link_shows_the_same_picture_twice(b):
+    opened(b)
+    slide(b, "K", 60)
+    choose(b, "rival", 1)
+    b.wait("page.readings.main.time > 0.15 && page.sides.length === 2", 120)
+    pause(b)
+    x, y = place_of(b, 624)
+    b.mouse("mousePressed", x, y)
+    b.mouse("mouseMoved", x + 40, y - 60), b.mouse("mouseReleased", x + 40, y)
+    b.click("#step")
+    b.wait("!page.waiting && !page.wanted && !page.stepping")
+    b.click("#link")
+    b.wait("location.hash.length > 10")
+    hash, calls = b.value("location.hash"), b.value("page.calls")
+    assert "log=" in hash and "_grab_" in hash, hash
+    before = b.value("[...page.sides[0].points]")
+    pictures = []
+    for k in range(2):
+        opened(b, hash)
+        b.wait(f"page.calls === {calls} && !page.waiting && !page.dirty", 120)
+        after = b.value("[...page.sides[0].points]")
+        assert after == before, max(map(abs, map(float.__sub__, after, before)))
+        pictures.append(b.value("(page.view.draw(page.sides, page.theme, null),"
+                                " $('canvas').toDataURL())"))
+    assert pictures[0] == pictures[1]
+    assert abs(b.value("page.settings.K") - 60) < 2
+    b.screenshot(build / "page-link.png")
+
+
+@test
+def a_keyboard_is_enough(b):
+    opened(b)
+    pause(b)
+    b.value("$('canvas').focus()")
+    yaw = b.value("page.view.camera.yaw")
+    b.key("ArrowLeft")
+    assert b.value("page.view.camera.yaw") != yaw
+    zoom = b.value("page.view.camera.zoom")
+    b.key("+", text="+")
+    assert b.value("page.view.camera.zoom") > zoom
+    b.key("g", text="g")
+    b.wait("page.hand.grabbed && page.readings.grabbed")
+    z = b.value("page.hand.grabbed.target[2]")
+    b.key("ArrowUp")
+    assert b.value("page.hand.grabbed.target[2]") > z
+    b.key("g", text="g")
+    b.wait("!page.readings.grabbed")
+    edges = b.value("page.readings.edges")
+    b.key("x", text="x")
+    b.wait(f"page.readings.edges < {edges}")
+    b.key("p", text="p")
+    b.wait("page.sides[0].pins.length === 3")
+    b.key(" ", code="Space", text=" ")
+    b.wait("page.playing")
+    # Tab reaches each control.
+    reached = set()
+    for _ in range(40):
+        b.key("Tab")
+        reached.add(b.value("document.activeElement.id ||"
+                            " document.activeElement.dataset.tool"))
+    missing = {"play", "step", "restart", "grab", "cut", "pin", "turn", "scene",
+               "side", "method", "share", "K", "drag", "gravity", "speed",
+               "rival", "link"} - reached
+    assert not missing, missing
+
+
+@test
+def it_works_on_a_phone(b):
+    b.resize(360, 640, touch=True)
+    opened(b)
+    assert b.value("document.documentElement.scrollWidth") <= 360
+    small = b.value("""[...document.querySelectorAll('button, select, input')]
+      .filter(e => e.offsetParent && e.getBoundingClientRect().height < 44)
+      .map(e => e.id || e.dataset.tool)""")
+    assert not small, small
+    pause(b)
+    x, y = place_of(b, 624)
+    b.touch("touchStart", (x, y))
+    b.touch("touchMove", (x - 10, y - 30))
+    b.wait("page.readings.grabbed")
+    b.screenshot(build / "page-phone.png")
+    b.touch("touchEnd")
+    b.wait("!page.readings.grabbed")
+    zoom = b.value("page.view.camera.zoom")
+    b.touch("touchStart", (150, 100), (200, 150))
+    b.touch("touchMove", (120, 70), (230, 180))
+    b.touch("touchEnd")
+    assert b.value("page.view.camera.zoom") > 1.5 * zoom
+    b.resize(360, 640, touch=True, dark=True)
+    b.value("page.view.camera.zoom = 1, setPlaying(true)")
+    choose(b, "rival", 12)
+    b.wait("page.sides.length === 2 && page.readings.main.time > 0.05", 120)
+    b.screenshot(build / "page-phone-dark.png")
+
+
+def without_webgl():
+    with Browser(flags=("--disable-3d-apis",)) as b:
+        b.open(address)
+        b.wait("!$('fallback').hidden && $('loop').naturalWidth > 0")
+        assert "WebGL" in b.value("$('fallback').innerText")
+        assert not b.faults, b.faults
+        b.screenshot(build / "page-fallback.png")
+
+
+def main():
+    size = sum(f.stat().st_size for f in (build / "page").iterdir())
+    assert size <= 1_000_000, f"{size} bytes"
+    print(f"  {size} bytes")
+    failed = 0
+    only = sys.argv[2:]
+    for run in tests:
+        if only and run.__name__ not in only:
+            continue
+        try:
+            with Browser() as b:
+                run(b)
+                faults = b.faults + b.value("page.errors")
+                assert not faults, faults
+            print("ok", run.__name__, flush=True)
+        except Exception:
+            failed += 1
+            print("FAIL", run.__name__)
+            traceback.print_exc(file=sys.stdout)
+    if not only:
+        without_webgl()
+        print("ok without_webgl")
+    count = len(only or tests) + (not only)
+    print(f"{count - failed} passed, {failed} failed")
+    return failed != 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

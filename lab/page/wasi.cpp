@@ -1,0 +1,55 @@
+/** @file wasi.cpp
+ * What a page lacks: exceptions, and files. Compiled for the page only. */
+#include <cstddef>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <typeinfo>
+
+#include "lab/scenes/Checkpoint.hpp"
+#include "lab/scenes/Memory.hpp"
+#include "lab/scenes/MeshFile.hpp"
+#include "lab/viewer/Recording.hpp"
+
+// ----------------------------------------------------------------- Exceptions
+// clang++ leaves out what a catch does. So a throw ends the call of the page by
+// a trap, and the page asks what was thrown. Our sources need no other word.
+
+namespace {
+const char* thrown = "";
+}
+
+extern "C" {
+
+/** what() of what ended the last call; "" if it was another fault. */
+const char* page_thrown() { return thrown; }
+
+void* __cxa_allocate_exception(std::size_t size) { return std::malloc(size); }
+void __cxa_free_exception(void*) {}
+
+/** All that is thrown here is a std::exception. */
+[[noreturn]] void __cxa_throw(void* object, std::type_info*, void (*)(void*)) {
+  thrown = static_cast<const std::exception*>(object)->what();
+  __builtin_trap();
+}
+}
+
+// ---------------------------------------------------------------------- Files
+// A page makes its meshes, and its link holds what was asked of it.
+
+namespace lab {
+
+PointsAndQuads load_mesh(const std::string& nodes, const std::string&) {
+  throw InputError(nodes, 0, "a page has no files");
+}
+double needed_memory(double, double) { return 0; }
+double available_memory() { return std::numeric_limits<double>::infinity(); }
+
+std::uint64_t checksum_of(const Cloth&) { return 0; }
+std::string begin_recording() { return {}; }
+std::string recorded(const Recorded&) { return {}; }
+std::string end_recording(long long) { return {}; }
+
+}  // namespace lab

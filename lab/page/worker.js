@@ -1,0 +1,219 @@
+'use strict';
+// The thread that computes. It holds the one scene, in WebAssembly: Page.hpp
+// says what each call does. A run is a function of its start and of a list of
+// requests, each with the number of steps before it: so a link repeats it.
+
+let wasm, module, about;       // exports; compiled; page_about()
+let start, log, calls;         // what a link holds
+let broken = '';               // what was thrown, until the next start
+let versions = [-1, -1];       // of the meshes that were sent
+let sharpAt = 0, explained = false, readings = null;
+
+const text = at => {
+  const bytes = new Uint8Array(wasm.memory.buffer, at);
+  return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
+};
+const copy = (Type, at, n) => new Type(wasm.memory.buffer, at, n).slice();
+
+// No file and no environment: success with nothing in it, or "bad descriptor".
+const nothing = (...sizes) => {
+  const view = new DataView(wasm.memory.buffer);
+  for (const at of sizes) view.setUint32(at, 0, true);
+  return 0;
+};
+const wasi = {
+  environ_get: () => 0, environ_sizes_get: nothing,
+  fd_close: () => 8, fd_seek: () => 8, fd_write: () => 8,
+  proc_exit: status => { throw new Error('exit ' + status); },
+};
+
+async function instantiate() {
+  const made = await WebAssembly.instantiate(module,
+    {wasi_snapshot_preview1: wasi});
+  wasm = made.exports;
+  wasm._initialize();
+}
+
+// Call of a page_ function. What throws traps: then the instance is used only
+// to draw what it has, until the next start makes another one.
+function call(name, ...values) {
+  const stack = wasm.__stack_pointer.value;
+  try {
+    return wasm['page_' + name](...values);
+  } catch (error) {
+    wasm.__stack_pointer.value = stack;
+    broken = text(wasm.page_thrown()) || String(error);
+    return undefined;
+  }
+}
+
+// ------------------------------------------------------------------- Requests
+
+const requests = {
+  method: m => call('set_method', m),
+  share: s => call('set_share', s),
+  K: k => call('set_stiffness', k),
+  drag: c => call('set_drag', c),
+  gravity: g => call('set_gravity', g),
+  compare: (m, share) => call('compare', m, share),
+  grab: (node, x, y, z) => call('grab', node, x, y, z),
+  move: (x, y, z) => call('move_hand', x, y, z),
+  release: () => call('release'),
+  pin: node => call('toggle_pin', node),
+  cut: (...rays) => {
+    const at = call('stroke', rays.length / 6);
+    new Float64Array(wasm.memory.buffer, at, rays.length).set(rays);
+    call('cut', rays.length / 6);
+  },
+};
+function apply(name, values) {
+  requests[name](...values);
+  explained = false;
+}
+
+function load(s) {
+  start = s, log = [], calls = 0, broken = '', explained = false;
+  call('load', s.scene, s.side, s.method);
+  const own = about.scenes[s.scene];
+  for (const name of ['K', 'drag', 'gravity'])
+    if (s[name] !== own[name]) apply(name, [s[name]]);
+  apply('share', [s.share]);
+  if (s.rival >= 0) apply('compare', [s.rival, s.rivalShare]);
+}
+
+// Steps until `time` [s], or as many as fit in `budget` [ms].
+// @return the time reached
+function run(time, budget) {
+  const until = performance.now() + budget;
+  let now = -1;
+  while (!broken && performance.now() < until) {
+    const next = call('step');
+    if (next === undefined || next === now) break;  // it failed
+    ++calls, now = next;
+    if (now >= time) break;
+  }
+  return now;
+}
+
+// The run of a link, once more.  @return readings of it, 150 at most
+function repeat(link) {
+  load(link.start);
+  const history = [], every = Math.ceil(link.calls / 150);
+  const runTo = end => {
+    while (calls < end && !broken) {
+      call('step');
+      if (++calls % every || broken || failureOf(0)) continue;
+      history.push(JSON.parse(text(call('readings', 0))));
+    }
+  };
+  for (const [at, name, ...values] of link.log) {
+    runTo(at);
+    apply(name, values), log.push([at, name, ...values]);
+  }
+  runTo(link.calls);
+  return history;
+}
+
+// ------------------------------------------------------------------ To be seen
+
+function failureOf(side) {
+  if (side === 0 && broken) return broken;
+  return wasm.page_slots(side) ? text(wasm.page_failure(side)) : '';
+}
+
+function frame() {
+  if (!broken) call('check');
+  const sides = [], parts = [];
+  for (const side of [0, 1]) {
+    const slots = wasm.page_slots(side);
+    if (!slots) { versions[side] = -1; continue; }
+    const points = copy(Float32Array, wasm.page_points(side), 4 * slots);
+    const s = {points, mesh: null, failure: failureOf(side),
+      failedNode: wasm.page_failed_node(side)};
+    const version = wasm.page_version(side);
+    if (version !== versions[side]) {
+      versions[side] = version;
+      const at = wasm.page_mesh(side);
+      const [lines, triangles, pins] = copy(Uint32Array, at, 3);
+      const all = copy(Uint32Array, at + 12, 2 * lines + 3 * triangles + pins);
+      s.mesh = {lines: all.slice(0, 2 * lines),
+        triangles: all.slice(2 * lines, 2 * lines + 3 * triangles),
+        pins: all.slice(2 * lines + 3 * triangles)};
+      parts.push(s.mesh.lines.buffer, s.mesh.triangles.buffer,
+        s.mesh.pins.buffer);
+    }
+    parts.push(points.buffer);
+    sides.push(s);
+  }
+  const failed = broken || (sides[0] && sides[0].failure);
+  const sharp = performance.now() - sharpAt > 250;
+  if (sharp) sharpAt = performance.now();
+  if (!failed) readings = JSON.parse(text(wasm.page_readings(sharp ? 1 : 0)));
+  const good = failed && !broken ? call('step') : Infinity;  // [s]
+  postMessage({kind: 'frame', sides, readings, calls, good, failed: !!failed},
+    parts);
+  if (failed && !explained) setTimeout(explain, 0);
+}
+
+// Why it failed and what works: it is found by trying, which takes a while.
+function explain() {
+  explained = true;
+  const before = broken;
+  const at = broken ? undefined : call('readings', 1);
+  if (at !== undefined) readings = JSON.parse(text(at));
+  const why = at === undefined ? failureOf(0) : readings.main.failure;
+  if (at !== undefined || before) broken = before;
+  postMessage({kind: 'why', why, readings});
+}
+
+function setting() {
+  versions = [-1, -1];
+  postMessage({kind: 'setting', setting: JSON.parse(text(call('setting')))});
+  frame();
+}
+
+const handlers = {
+  async module(bytes) {
+    module = await WebAssembly.compile(bytes);
+    await instantiate();
+    about = JSON.parse(text(call('about')));
+    postMessage({kind: 'about', about});
+  },
+  async load(s) {
+    if (broken) await instantiate();
+    load(s), setting();
+  },
+  async repeat(link) {
+    if (broken) await instantiate();
+    const history = repeat(link);
+    postMessage({kind: 'history', history});
+    setting();
+  },
+  ask([name, ...values]) {
+    if (broken) return;
+    apply(name, values), log.push([calls, name, ...values]);
+  },
+  // One frame: simulated time [s] to pass, or -1: one step.
+  frame(seconds) {
+    const budget = 24;  // [ms]
+    if (seconds < 0) run(0, budget);
+    else if (seconds > 0 && readings)
+      run(readings.main.time + seconds, budget);
+    frame();
+  },
+  link: () => postMessage({kind: 'link', link: {start, log, calls}}),
+  // For the test: after so many steps, all positions.
+  positions(steps) {
+    for (let k = 0; k < steps; ++k) call('step'), ++calls;
+    const n = wasm.page_slots(0);
+    const all = copy(Float64Array, wasm.page_positions(0), 3 * n);
+    const {dt} = JSON.parse(text(call('readings', 0))).main;
+    postMessage({kind: 'positions', all, dt, broken}, [all.buffer]);
+  },
+};
+// One message at a time, also while a handler waits.
+let last = Promise.resolve();
+onmessage = ({data: [name, value]}) => {
+  last = last.then(() => handlers[name](value)).catch(
+    error => postMessage({kind: 'error', text: String(error.stack || error)}));
+};
