@@ -87,8 +87,8 @@ demo: deps
 	  $(MAKE) --no-print-directory $(O)mass_spring && \
 	  ./$(O)mass_spring data/grid2.nodes data/grid2.tets; \
 	else \
-	  $(MAKE) --no-print-directory $(O)cloth && \
-	  ./$(O)cloth --config data/scenes/tear.toml data/grid2.nodes data/grid2.tets --t-end 1.2 --slow-motion 8; \
+	  $(MAKE) --no-print-directory $(B)/demo && \
+	  $(B)/demo; \
 	fi
 
 submit:
