@@ -84,10 +84,8 @@ constexpr std::array scenes = {
               [](unsigned side) {
                 Model m = cloth("membrane", side, 100, 0);
                 m.material.drag.reset();
-                for (double a : {0, 1}) {
-                  m.pins.push_back({a, {}, {}, {}});
-                  m.pins.push_back({{}, a, {}, {}});
-                }
+                for (double x : {0, 1}) m.pins.push_back({x, {}, {}, {}});
+                for (double y : {0, 1}) m.pins.push_back({{}, y, {}, {}});
                 return m;
               }},
     PageScene{"rip", "pulled apart until it rips", [](unsigned side) {

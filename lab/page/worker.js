@@ -158,11 +158,11 @@ function frame() {
 // Why it failed and what works: it is found by trying, which takes a while.
 function explain() {
   explained = true;
-  const before = broken;
-  const at = broken ? undefined : call('readings', 1);
+  if (broken) return postMessage({kind: 'why', why: broken, readings});
+  const short = failureOf(0), at = call('readings', 1);
   if (at !== undefined) readings = JSON.parse(text(at));
-  const why = at === undefined ? failureOf(0) : readings.main.failure;
-  if (at !== undefined || before) broken = before;
+  // A trial of what might work may throw: then nothing works that is known.
+  const why = at === undefined ? short : readings.main.failure;
   postMessage({kind: 'why', why, readings});
 }
 

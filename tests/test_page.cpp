@@ -1,0 +1,143 @@
+/** @file test_page.cpp
+ * What the web page calls, without a browser: lab/page. test_page.py has the
+ * rest. */
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "lab/methods/Methods.hpp"
+#include "lab/page/Page.hpp"
+#include "lab/page/PageScenes.hpp"
+#include "lab/scenes/SceneFile.hpp"
+
+using namespace lab;
+
+namespace {
+
+unsigned number_of(const char* scene) {
+  unsigned k = 0;
+  while (std::string(page_scenes()[k].name) != scene) ++k;
+  return k;
+}
+unsigned method_of(const char* name) {
+  return unsigned(find_method(name) - methods.data());
+}
+/** The number that follows "name": in the readings, of side 0 first. */
+double reading(const char* name) {
+  const std::string all = page_readings(0),
+                    key = '"' + std::string(name) + "\":";
+  return std::stod(all.substr(all.find(key) + key.size()));
+}
+unsigned springs() { return page_mesh(0)[0]; }
+
+TEST(PageScenes, AreThoseOfTheirFiles) {
+  ASSERT_EQ(page_scenes().size(), 9u);
+  for (const PageScene& s : page_scenes()) {
+    Model file =
+        load_open_model("data/scenes/" + std::string(s.name) + ".toml");
+    Model page = s.model(25);
+    // The page chooses how fine, how and how long; it asks nothing.
+    for (Model* m : {&file, &page}) {
+      m->method = default_method(), m->step = {}, m->t_end = 1;
+      m->measure = Measure::com, m->tolerance = 1, m->view.reset();
+    }
+    if (file.sheets.empty())
+      page.sheets.clear();
+    else
+      file.sheets[0].nodes = {25, 25};
+    EXPECT_EQ(to_scene_file(page), to_scene_file(file)) << s.name;
+  }
+}
+
+TEST(PageCalls, StepsGoBesideEachOtherToOneTime) {
+  page_load(number_of("forces"), 5, method_of("verlet"));
+  EXPECT_EQ(page_slots(0), 25u);
+  EXPECT_EQ(page_slots(1), 0u);
+  page_set_share(0.5);
+  page_compare(int(method_of("symplectic-euler")), 0.25);
+  ASSERT_EQ(page_slots(1), 25u);
+  double time = 0;
+  for (int k = 0; k < 40; ++k) time = page_step();
+  EXPECT_NEAR(reading("time"), time, 1e-12);
+  EXPECT_EQ(reading("steps"), 40);
+  EXPECT_NE(std::string(page_readings(1)).find("\"apart\":"),
+            std::string::npos);
+  page_compare(-1, 0);
+  EXPECT_EQ(page_slots(1), 0u);
+}
+
+TEST(PageCalls, WhatIsDrawnIsTheCloth) {
+  page_load(number_of("diagonals"), 5, method_of("verlet"));
+  // 2 n (n-1) sides, 2 (n-1)^2 diagonals; two triangles a quad; two corners.
+  const unsigned* mesh = page_mesh(0);
+  EXPECT_EQ(mesh[0], 2 * 5 * 4 + 2 * 4 * 4u);
+  EXPECT_EQ(mesh[1], 2 * 4 * 4u);
+  EXPECT_EQ(mesh[2], 2u);
+  const float* points = page_points(0);
+  for (unsigned i = 0; i < 25; ++i) {
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(points[4 * i + unsigned(k)],
+                float(page_positions(0)[3 * i + unsigned(k)]));
+    EXPECT_NEAR(points[4 * i + 3], 0, 1e-6);  // at rest
+  }
+}
+
+TEST(PageCalls, AStrokeCutsAndAPinHolds) {
+  page_load(number_of("problem1"), 5, method_of("verlet"));
+  const unsigned before = springs();
+  const double version = page_version(0);
+  EXPECT_EQ(page_version(0), version);
+  // A plane at x = 0.1, which five sides cross.
+  const double rays[] = {0.1, -1, 1.1, 0.1, -1, -1, 0.1, 2, 1.1, 0.1, 2, -1};
+  std::memcpy(page_stroke(2), rays, sizeof rays);
+  page_cut(2);
+  EXPECT_EQ(springs(), before - 5);
+  EXPECT_NE(page_version(0), version);
+  page_toggle_pin(12);
+  EXPECT_EQ(page_mesh(0)[2], 3u);
+  page_toggle_pin(12);
+  EXPECT_EQ(page_mesh(0)[2], 2u);
+}
+
+TEST(PageCalls, AHandPullsANode) {
+  page_load(number_of("forces"), 5, method_of("verlet"));
+  page_set_gravity(0);
+  page_grab(24, 1, 1, 0);
+  page_move_hand(1, 1, 0.5);
+  for (int k = 0; k < 200; ++k) page_step();
+  EXPECT_GT(page_positions(0)[3 * 24 + 2], 0.1);
+  page_release();
+  EXPECT_NE(std::string(page_readings(0)).find("\"grabbed\":false"),
+            std::string::npos);
+}
+
+TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
+  page_load(number_of("forces"), 5, method_of("verlet"));
+  page_set_share(0.9);
+  for (int k = 0; k < 300; ++k) page_step();
+  EXPECT_EQ(page_check(), 0);
+  EXPECT_STREQ(page_failure(0), "");
+  EXPECT_EQ(page_failed_node(0), -1);
+  page_load(number_of("forces"), 5, method_of("verlet"));
+  page_set_share(2);
+  int failed = 0;
+  for (int k = 0; k < 300 && !failed; ++k) page_step(), failed = page_check();
+  ASSERT_EQ(failed, 1);
+  EXPECT_NE(std::string(page_failure(0)).find("diverged"), std::string::npos);
+  EXPECT_GE(page_failed_node(0), 0);
+  // What is drawn is not the last good state.
+  float most = 0;
+  const float* points = page_points(0);
+  for (unsigned k = 0; k < 100; ++k)
+    if (k % 4 != 3)
+      most = std::max(
+          most,
+          std::abs(points[k] - float(page_positions(0)[k / 4 * 3 + k % 4])));
+  EXPECT_GT(most, 0.1f);
+  EXPECT_NE(std::string(page_readings(1)).find("works"), std::string::npos);
+}
+
+}  // namespace
