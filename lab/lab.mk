@@ -32,7 +32,10 @@ lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% $(lab_p
             tests/test_viewer.% tests/test_panels.% CME212/%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
-test_libs = -lgtest_main -lgtest -lrapidcheck
+# FAST=1 asks for tests of what is built for speed.
+tested     = $(if $(FAST),$(B),$(B)/asan)
+test_flags = $(if $(FAST),$(speed),$(debug) $(sanitizer))
+test_libs  = -lgtest_main -lgtest -lrapidcheck
 
 include lab/units.mk
 
@@ -70,7 +73,7 @@ $(1): $(2)/$(basename $(3)).o $(2)/liblab.a
 	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$(filter-out %/libviewer.a,$$^) $$(draw_libs) $(5) $$(lab_libs)
 endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
-$(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/$(call names,$(f)),$(B)/asan,$(f),$(debug) $(sanitizer),$$(test_libs))))
+$(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/$(call names,$(f)),$(tested),$(f),$(test_flags),$$(test_libs))))
 
 # Tests that run a program.
 $(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)) $(TEST_UNITS:%=$(B)/%): | $(B)/cloth

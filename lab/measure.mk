@@ -38,7 +38,7 @@ figures:
 # ---- Charts: lab/charts/README.md
 
 charts: work_precision
-	@$(sub) work_precision B=$(B)/float REAL=float
+	@$(sub) work_precision B=$(B)/float REAL=float VIEWER=0
 	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
 charts-quick:

@@ -1,7 +1,7 @@
 # Checks compile several sources as one unit, UNITY=1: what they include is read
 # once, which takes half of the time. Each room of the laboratory is a unit;
 # tests are dealt out by size to the programs tests_0, tests_1 ...
-UNITS ?= 10
+UNITS ?= 6
 
 # Programs of their own: three specialize templates of other namespaces, five are
 # linked with the window, one hooks malloc, one holds the course's headers to
@@ -28,9 +28,10 @@ $(foreach u,$(TEST_UNITS),$(eval in_$(u) := $(shell printf '%s\n' $(dealt) \
   | awk 'NR % $(UNITS) == $(u:tests_%=%)')))
 lab_objects := $(patsubst %,unity/%.o,$(subst /,_,$(rooms))) $(drawing:.cpp=.o)
 
-# All tests, those that take longest first; and their names.
+# All tests, and their names: those that take longest to build and to run first,
+# so that two jobs end together.
 .PHONY: units list-units
-units: $(tests_alone) $(TEST_UNITS)
+units: $(TEST_UNITS) $(tests_alone)
 list-units:
-	@echo $(tests_alone) $(TEST_UNITS)
+	@echo $(TEST_UNITS) $(tests_alone)
 endif

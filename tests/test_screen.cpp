@@ -156,8 +156,8 @@ TEST_P(Damage, OfOneEdgeOrNodeIsSeen) {
     remove();
     EXPECT_GT(difference(before, half(draw())), tolerance);
   };
-  for (unsigned k = 0; k < 10; ++k) {
-    Node n = g.node(60 + 50 * k);
+  for (unsigned k = 0; k < 5; ++k) {
+    Node n = g.node(60 + 100 * k);
     expect_seen([&] { g.remove_edge(*n.edge_begin()); });
     expect_seen([&] { g.remove_node(n); });
   }

@@ -183,7 +183,7 @@ TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
 
 // -------------------------------------------------------------------- threads
 
-/** Positions and velocities after 50 steps and a tear. */
+/** Positions and velocities after 20 steps and a tear. */
 std::vector<Point> run(Method& method, int threads,
                        const ConstraintPlan& constraint = ZeroConstraint(),
                        bool far = false) {
@@ -196,9 +196,9 @@ std::vector<Point> run(Method& method, int threads,
   if (far)  // as it may be, for all that is known of it
     force = make_combined_force(force, [](Node, double) { return Point(); });
   double t = 0;
-  for (int k = 0; k < 50; ++k) {
-    if (k == 25) remove_some(g, 300, 100);
-    t = method(g, t, 0.0002, force, constraint);
+  for (int k = 0; k < 20; ++k) {
+    if (k == 10) remove_some(g, 300, 100);
+    t = method(g, t, 0.0005, force, constraint);
   }
   std::vector<Point> end;
   for (Node n : g.nodes()) {

@@ -3,8 +3,9 @@
 The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
 an earlier one; each submission of course/wrong/*.toml loses what it says and
-nothing else. ONLY takes the cases whose names hold WORD; EVERY the first of
-each N wrong submissions.
+nothing else. ONLY takes the cases whose names hold WORD; EVERY one in N of the
+regions and of each file of wrong submissions, beginning with number FIRST, 0
+if it is not given: all FIRST < N together take each of them once.
 """
 
 import concurrent.futures
@@ -58,6 +59,8 @@ class Cases:
                          for name, text in self.texts.items()}
         self.order = {section.id: at for at, section
                       in enumerate(self.course.sections)}
+        self.sample = slice(int(os.environ.get("FIRST") or 0), None,
+                            int(os.environ.get("EVERY") or 1))
         self.regions = {}     # task: names of the files with its regions
         for name, text in self.texts.items():
             for region in markers.regions(text, name):
@@ -69,7 +72,7 @@ class Cases:
         yield Case("starter", {
             name: markers.starter(text, self.course, name)
             for name, text in self.texts.items()}, self.starter)
-        for task in self.regions:
+        for task in list(self.regions)[self.sample]:
             yield Case(f"without {task}", {
                 name: markers.stub(text, [task], self.course, name)
                 for name, text in self.texts.items()}, self.without(task))
@@ -88,8 +91,8 @@ class Cases:
 
     def wrong(self, path):
         at = path.relative_to(once.ROOT)
-        every = int(os.environ.get("EVERY") or 1)
-        for entry in tomllib.loads(path.read_text("utf-8"))["wrong"][::every]:
+        entries = tomllib.loads(path.read_text("utf-8"))["wrong"]
+        for entry in entries[self.sample]:
             where = f"{at}: {entry.get('name', 'an entry without a name')}"
             if unknown := entry.keys() - KEYS:
                 raise SystemExit(f"{where}: unknown keys {sorted(unknown)}")
