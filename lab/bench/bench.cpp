@@ -1,7 +1,6 @@
 /** @file bench.cpp
  * What a step costs, and each layer of it, beside flat arrays made by hand for
- * the same loop: lab/fast/README.md walks through
- * it.
+ * the same loop: lab/fast/README.md walks through it.
  *
  *   make bench CXXFLAGS=-march=native && taskset -c 0 build/bench
  *   build/bench --json FILE       the table for programs as well
@@ -24,10 +23,12 @@
 #include <CLI/CLI.hpp>
 
 #include "lab/bench/Bench.hpp"
+#include "lab/fast/OrderedCloth.hpp"
 #include "lab/methods/Flow.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
+#include "lab/scenes/Scene.hpp"
 
 using namespace lab;
 
@@ -38,7 +39,7 @@ namespace {
 /** - grid: ids and springs line by line, as load_cloth() makes it
  * - mixed: the same, ids and springs in random order within windows of 64:
  *   neighbors are as near, but none at a constant distance
- * - shuffled: from files in random order, as load_cloth() makes it
+ * - shuffled: from files in random order, put in order as they are loaded
  * - torn: the grid after a random half of its nodes was removed
  * - reindexed: torn, and then Graph::reindex() */
 enum class Kind { grid, mixed, shuffled, torn, reindexed };
@@ -86,7 +87,7 @@ void build(Cloth& g, unsigned side, Kind kind) {
     }
     return;
   }
-  build_cloth(g, points, quads, Mesh::diagonals);
+  build_ordered_cloth(g, points, quads, Mesh::diagonals);
   if (kind != Kind::torn && kind != Kind::reindexed) return;
   std::vector<Node> nodes(g.node_begin(), g.node_end());
   std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));
@@ -204,19 +205,19 @@ struct Figure {
   double bytes = 0;        // that a node must move through memory, if known
   Kind kind = Kind::grid;  // whose nodes count
   int threads = 1;
+  int steps = 1;  // that one call takes
 };
 
-/** Makes a method step on a cloth. */
-template <typename M>
+/** Makes a method take @a count steps on a cloth, by default as a scene. */
+template <typename M, int count = Scene::guard_interval>
 std::function<std::function<void()>(unsigned)> stepping(Kind kind) {
   return [kind](unsigned side) -> std::function<void()> {
-    auto method = std::make_shared<M>();
     const ForcePlan force =
         make_combined_force(GravityForce(), MassSpringForce());
-    auto t = std::make_shared<double>(0);
-    Cloth& g = cloth(side, kind);
-    return [=, none = ConstraintPlan(), &g] {
-      *t = method->step(g, *t, dt, force, none);
+    return [=, method = std::make_shared<M>(),
+            times = std::make_shared<StepTimes>(StepTimes{0, dt}),
+            none = ConstraintPlan(), &g = cloth(side, kind)] {
+      times->done += method->steps(g, *times, count, force, none);
     };
   };
 }
@@ -266,14 +267,15 @@ std::vector<Figure> figures() {
          true, 0, kind});
     add({"step: SymplecticEuler" + of, "step: flat arrays" + of,
          stepping<SymplecticEuler>(kind), true,
-         // once, as drift and forces go together: positions r w, springs and
-         // stencil r, velocities and masses r w
-         sizeof(Real) * (6 + 8 + 8.0) + (kind == Kind::grid ? 12 : 12 + 64),
-         kind});
+         sizeof(Real) * (6 + 6 + 1 + (kind == Kind::grid ? 8 : 16.0)) +
+             (kind == Kind::grid ? 0 : 32),
+         kind, 1, Scene::guard_interval});
   }
   add({"step: SymplecticEuler, shuffled", "step: SymplecticEuler",
-       stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled});
-  add({"step: Verlet", "step: flat arrays", stepping<Verlet>(Kind::grid)});
+       stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled, 1,
+       Scene::guard_interval});
+  add({"step: Verlet", "step: flat arrays", stepping<Verlet>(Kind::grid), true,
+       0, Kind::grid, 1, Scene::guard_interval});
   add({"step: symp_euler_step(), functor", "step: flat arrays",
        [](unsigned n) -> Make {
          return [&g = cloth(n, Kind::grid)] {
@@ -291,12 +293,10 @@ std::vector<Figure> figures() {
            symp_euler_step(g, 0, dt, *force);
          };
        }});
-  if (Sweep::processors() > 1) {
-    Figure f{"step: SymplecticEuler, threads", "step: SymplecticEuler",
-             stepping<SymplecticEuler>(Kind::grid)};
-    f.threads = Sweep::processors();
-    add(f);
-  }
+  if (Sweep::processors() > 1)
+    add({"step: SymplecticEuler, threads", "step: SymplecticEuler",
+         stepping<SymplecticEuler>(Kind::grid), true, 0, Kind::grid,
+         Sweep::processors(), Scene::guard_interval});
 
   // The springs' forces, layer by layer.
   for (auto [kind, of] : {std::pair(Kind::grid, std::string()),
@@ -475,7 +475,7 @@ int main(int argc, char** argv) {
     for (const Figure& f : figures())
       if (f.name.find(filter) != std::string::npos &&
           (side == 100 || f.million))
-        all.add({f.name, double(cloth(side, f.kind).num_nodes()),
+        all.add({f.name, double(f.steps) * cloth(side, f.kind).num_nodes(),
                  std::to_string(side * side) + " nodes with diagonals",
                  f.beside, f.make(side), side > 100 ? f.bytes : 0, f.threads});
   }

@@ -5,6 +5,7 @@
 #include <typeinfo>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/FlatCloth.hpp"
 
 namespace lab {
 
@@ -26,20 +27,37 @@ PinnedNodes::PinnedNodes(const std::vector<PinConstraint::Pin>& pins)
   std::ranges::sort(pins_, {}, &PinConstraint::Pin::node);
 }
 
-void PinnedNodes::project(Cloth& g, const Place& moved, unsigned first,
-                          unsigned last) const {
+/** Call @a use(pin) for those with ids in [first, last). */
+template <typename Use>
+void PinnedNodes::each_of_part(const Cloth& g, unsigned first, unsigned last,
+                               Use use) const {
   // Nodes of a graph are ordered by id; removed ones can't tell theirs.
   while (first < last && !g.node_in_use(first)) ++first;
   if (first == last) return;
   auto pin = std::ranges::lower_bound(pins_, g.node_with_id(first), {},
                                       &PinConstraint::Pin::node);
   for (; pin != pins_.end(); ++pin) {
-    Node n = pin->node;
-    if (!g.has_node(n)) continue;
-    if (n.id() >= last) return;
-    n.position() = pin->place + moved.at;
-    n.value().vel = moved.velocity;
+    if (!g.has_node(pin->node)) continue;
+    if (pin->node.id() >= last) return;
+    use(*pin);
   }
+}
+
+void PinnedNodes::project(Cloth& g, const Place& moved, unsigned first,
+                          unsigned last) const {
+  each_of_part(g, first, last, [&](const PinConstraint::Pin& pin) {
+    Node n = pin.node;
+    n.position() = pin.place + moved.at;
+    n.value().vel = moved.velocity;
+  });
+}
+
+void PinnedNodes::project_flat(FlatCloth& c, const Cloth& g, const Place& moved,
+                               unsigned first, unsigned last) const {
+  each_of_part(g, first, last, [&](const PinConstraint::Pin& pin) {
+    c.set_position(pin.node.id(), pin.place + moved.at);
+    c.set_velocity(pin.node.id(), moved.velocity);
+  });
 }
 
 void PinnedNodes::each_place(const Cloth& g, const Place& moved,
@@ -47,6 +65,23 @@ void PinnedNodes::each_place(const Cloth& g, const Place& moved,
   for (const auto& pin : pins_)
     if (g.has_node(pin.node))
       use(pin.node, {pin.place + moved.at, moved.velocity});
+}
+
+void SweptConstraint::project_flat(FlatCloth& c, Cloth& g, double t,
+                                   unsigned first, unsigned last) const {
+  for (; first < last; first += FlatCloth::tile) {
+    const unsigned end = std::min(first + FlatCloth::tile, last);
+    if (idle(c, t, first, end)) continue;
+    c.write(g, first, end);
+    project(g, t, first, end);
+    c.read_nodes(g, first, end);
+  }
+}
+
+void SweptConstraint::apply_flat(FlatCloth& c, Cloth& g, double t) const {
+  c.write(g);
+  (*this)(g, t);
+  c.take(g);
 }
 
 namespace {
@@ -60,10 +95,15 @@ class Pins final : public NodewiseConstraint {
                unsigned last) const override {
     pins_.project(g, {}, first, last);
   }
+  void project_flat(FlatCloth& c, Cloth& g, double /*t*/, unsigned first,
+                    unsigned last) const override {
+    pins_.project_flat(c, g, {}, first, last);
+  }
   void each_place(const Cloth& g, double /*t*/,
                   const PlaceVisitor& use) const override {
     pins_.each_place(g, {}, use);
   }
+  bool is_at_rest(double /*t*/) const override { return true; }
 
  private:
   PinnedNodes pins_;
@@ -78,6 +118,12 @@ class Plane final : public NodewiseConstraint {
     for_each_violating(
         g, first, last, [z](const Point& p) { return p.z < z; },
         [this](Node n) { plane_.project(n); });
+  }
+  bool is_at_rest(double /*t*/) const override { return true; }
+  bool idle(const FlatCloth& c, double /*t*/, unsigned first,
+            unsigned last) const override {
+    const double z = plane_.height();
+    return !c.any(first, last, [z](const Point& p) { return p.z < z; });
   }
 
  private:
@@ -94,6 +140,12 @@ class Round : public Base {
     return lab::first_hit(ball_, from, to);
   }
   double thinnest() const override { return ball_.radius; }
+  bool is_at_rest(double /*t*/) const override { return true; }
+  bool idle(const FlatCloth& c, double /*t*/, unsigned first,
+            unsigned last) const override {
+    return !c.any(first, last,
+                  [&ball = ball_](const Point& p) { return ball.holds(p); });
+  }
 
  protected:
   Ball ball_;
@@ -125,6 +177,9 @@ class Tear final : public Round<SweptConstraint> {
           g.remove_node(n);
         });
   }
+  void apply_flat(FlatCloth& c, Cloth& g, double t) const override {
+    if (!this->idle(c, t, 0, c.slots())) SweptConstraint::apply_flat(c, g, t);
+  }
   Exchange exchange() const override { return {0, moment_}; }
   void archive(CME212::Archive& a) const override { a(moment_); }
 
@@ -142,6 +197,7 @@ class Called final : public SweptConstraint {
     (*c_)(g, t);
     if (g.version() != version) moment_ += before - moment_of(g);
   }
+  bool is_at_rest(double /*t*/) const override { return true; }
   Exchange exchange() const override { return {0, moment_}; }
   void archive(CME212::Archive& a) const override { a(moment_); }
 
@@ -203,6 +259,23 @@ void ConstraintPlan::project(Cloth& g, double t, unsigned first,
   for (const auto& term : terms_) term->project(g, t, first, last);
 }
 
+void ConstraintPlan::project_flat(FlatCloth& c, Cloth& g, double t,
+                                  unsigned first, unsigned last) const {
+  for (const auto& term : terms_) term->project_flat(c, g, t, first, last);
+}
+
+void ConstraintPlan::apply_flat(FlatCloth& c, Cloth& g, double t) const {
+  const auto version = g.version();
+  for (const auto& term : terms_)
+    if (term->nodewise())
+      term->project_flat(c, g, t, 0, c.slots());
+    else
+      term->apply_flat(c, g, t);
+  if (g.version() == version) return;
+  g.restore_order();
+  if (c.version() != g.version()) c.write(g), c.take(g);
+}
+
 void ConstraintPlan::each_place(const Cloth& g, double t,
                                 const PlaceVisitor& use) const {
   for (const auto& term : terms_) term->each_place(g, t, use);
@@ -246,6 +319,11 @@ double ConstraintPlan::thinnest() const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& term : terms_) least = std::min(least, term->thinnest());
   return least;
+}
+
+bool ConstraintPlan::is_at_rest(double t) const {
+  return std::ranges::all_of(
+      terms_, [t](const auto& term) { return term->is_at_rest(t); });
 }
 
 Exchange ConstraintPlan::exchange() const {

@@ -25,6 +25,8 @@ struct StepError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+class FlatCloth;
+
 using NodeVisitor = std::function<void(Node)>;
 
 /** Where a held node is at some time, and how it moves then. */
@@ -58,6 +60,20 @@ class SweptConstraint : public ZeroConstraint {
    * @pre nodewise() */
   virtual void project(Cloth& /*g*/, double /*t*/, unsigned /*first*/,
                        unsigned /*last*/) const {}
+  /** project() of a cloth by component, whose graph is @a g: its positions and
+   * velocities may be older.  @pre as project()
+   * The default goes by tiles, and by the graph for those that are not idle().
+   */
+  virtual void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
+                            unsigned last) const;
+  /** True only if project() leaves all nodes with ids in [first, last) where
+   * they are. */
+  virtual bool idle(const FlatCloth& /*c*/, double /*t*/, unsigned /*first*/,
+                    unsigned /*last*/) const {
+    return false;
+  }
+  /** The call, of a cloth by component. The default goes by the graph. */
+  virtual void apply_flat(FlatCloth& c, Cloth& g, double t) const;
   /** Call @a use(node, place) for each node of @a g that is held: that is at a
    * place which only depends on the time, whatever forces act on it. The place
    * is that of time @a t [s], which stages may take a step before the start. */
@@ -76,6 +92,9 @@ class SweptConstraint : public ZeroConstraint {
                                          const Point& /*to*/) const {
     return std::nullopt;
   }
+  /** True only if from time @a t [s] on nothing of it moves, so that it does no
+   * work: exchange() changes at most in a call that removes something. */
+  virtual bool is_at_rest(double /*t*/) const { return false; }
   /** The size [m] of the smallest obstacle that can be tunnelled through. */
   virtual double thinnest() const {
     return std::numeric_limits<double>::infinity();
@@ -123,12 +142,18 @@ class PinnedNodes {
    * O(log(pins) + those of the part) */
   void project(Cloth& g, const Place& moved, unsigned first,
                unsigned last) const;
+  void project_flat(FlatCloth& c, const Cloth& g, const Place& moved,
+                    unsigned first, unsigned last) const;
   /** As SweptConstraint::each_place().  O(pins) */
   void each_place(const Cloth& g, const Place& moved,
                   const PlaceVisitor& use) const;
 
  private:
   std::vector<PinConstraint::Pin> pins_;  // in the order of the nodes
+
+  template <typename Use>
+  void each_of_part(const Cloth& g, unsigned first, unsigned last,
+                    Use use) const;
 };
 
 /** The terms of a constraint, in their order, by what methods need of them.
@@ -163,10 +188,14 @@ class ConstraintPlan {
   // As in SweptConstraint; each is that of all terms together:
   bool nodewise() const;
   void project(Cloth& g, double t, unsigned first, unsigned last) const;
+  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
+                    unsigned last) const;
+  void apply_flat(FlatCloth& c, Cloth& g, double t) const;
   void each_place(const Cloth& g, double t, const PlaceVisitor& use) const;
   double next_kink(double t) const;
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
   double thinnest() const;
+  bool is_at_rest(double t) const;
   Exchange exchange() const;
   void archive(CME212::Archive& a) const;
 
@@ -215,6 +244,14 @@ class WatchedConstraint final : public SweptConstraint {
                unsigned last) const override {
     c_.project(g, t, first, last);
   }
+  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
+                    unsigned last) const override {
+    c_.project_flat(c, g, t, first, last);
+  }
+  void apply_flat(FlatCloth& c, Cloth& g, double t) const override {
+    if (before_.empty()) return c_.apply_flat(c, g, t);
+    SweptConstraint::apply_flat(c, g, t);
+  }
   void each_place(const Cloth& g, double t,
                   const PlaceVisitor& use) const override {
     c_.each_place(g, t, use);
@@ -225,6 +262,7 @@ class WatchedConstraint final : public SweptConstraint {
     return c_.first_hit(from, to);
   }
   double thinnest() const override { return c_.thinnest(); }
+  bool is_at_rest(double t) const override { return c_.is_at_rest(t); }
   Exchange exchange() const override { return c_.exchange(); }
   void archive(CME212::Archive& a) const override {
     c_.archive(a);

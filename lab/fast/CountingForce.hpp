@@ -14,9 +14,9 @@ namespace lab {
  * Copies count together. */
 class CountingForce : public SweptForce {
  public:
-  void add_to(const Part& part, double, std::span<Point>) const override {
-    if (part.first == 0) ++*sweeps_;
-  }
+  void begin(double) const override { ++*sweeps_; }
+  bool acts() const override { return false; }
+  void add_to(const Part&, double, std::span<Point>) const override {}
   bool add_stiffness(const Cloth&, const StiffnessVisitor&) const override {
     return true;  // it has none
   }

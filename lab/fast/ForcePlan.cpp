@@ -26,11 +26,11 @@ void add_springs(const Part& part, std::span<Point> f) {
   auto sweep = [&]<bool prefetch_gathered>(
                    std::bool_constant<prefetch_gathered>) {
     lanes::run<kernels::SpringSweep<prefetch_gathered>>(
-        part.stencil, part.g.positions().data(), part.g.edge_values().data(),
+        *part.stencil, part.g.positions().data(), part.g.edge_values().data(),
         part.first / width, (part.last + width - 1) / width, f.data());
   };
   const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > kernels::cache;
-  if (is_large && 2 * part.stencil.num_gathered() > part.stencil.num_rows())
+  if (is_large && 2 * part.stencil->num_gathered() > part.stencil->num_rows())
     sweep(std::true_type());
   else
     sweep(std::false_type());
@@ -100,12 +100,42 @@ void ForcePlan::add_to(const Part& part, double t, std::span<Point> f) const {
         add_springs(part, f);
         break;
       case Kind::swept:
-        term.swept().add_to(part, t, f);
-        break;
       case Kind::call:
-        add_calls(part, *term.force, t, f);
+        add_other(term, part, t, f);
     }
   if (!drag_.none()) add_drag(part, drag_, f);
+}
+
+void ForcePlan::add_other(const Term& term, const Part& part, double t,
+                          std::span<Point> f) {
+  if (term.kind == Kind::call) return add_calls(part, *term.force, t, f);
+  if (term.swept().acts()) term.swept().add_to(part, t, f);
+}
+
+void ForcePlan::add_others(const Part& part, double t,
+                           std::span<Point> f) const {
+  for (const Term& term : terms_)
+    if (term.kind == Kind::swept || term.kind == Kind::call)
+      add_other(term, part, t, f);
+}
+
+bool ForcePlan::has_others() const {
+  return std::ranges::any_of(terms_, [](const Term& term) {
+    return term.kind == Kind::call ||
+           (term.kind == Kind::swept && term.swept().acts());
+  });
+}
+
+void ForcePlan::begin(double t) const {
+  for (const Term& term : terms_)
+    if (term.kind == Kind::swept) term.swept().begin(t);
+}
+
+double ForcePlan::gravity() const {
+  double sum = 0;
+  for (const Term& term : terms_)
+    if (term.kind == Kind::weight) sum += term.factor;
+  return sum;
 }
 
 double ForcePlan::energy(const Cloth& g) const {

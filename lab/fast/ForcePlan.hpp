@@ -24,7 +24,7 @@ using ClothStencil = Stencil<lanes::width>;
 /** A part of a cloth, for a sweep: the nodes with ids in [first, last). */
 struct Part {
   const Cloth& g;
-  const ClothStencil& stencil;  ///< of g
+  const ClothStencil* stencil;  ///< of g; null: MassSpringForce is not summed
   unsigned first, last;         ///< first a multiple of ClothStencil::width
 };
 
@@ -47,6 +47,10 @@ class SweptForce : public ZeroForce {
       if (part.g.node_in_use(i))
         f[i - part.first] += (*this)(part.g.node_with_id(i), t);
   }
+  /** Called once an evaluation, before add_to() of the first part. */
+  virtual void begin(double /*t*/) const {}
+  /** False if it is no force on any node: then add_to() need not be called. */
+  virtual bool acts() const { return true; }
   /** The energy [J] whose negative gradient the force is; 0 if it has none. */
   virtual double energy(const Cloth& /*g*/) const { return 0; }
   /** Call @a use(i, j, B) for each pair of nodes between which there is a force
@@ -91,6 +95,14 @@ class ForcePlan {
   /** The force on each node of @a part is added to @a f: as
    * SweptForce::add_to(). */
   void add_to(const Part& part, double t, std::span<Point> f) const;
+  /** The same of swept forces and calls alone; and whether there are any that
+   * act. */
+  void add_others(const Part& part, double t, std::span<Point> f) const;
+  bool has_others() const;
+  /** To be called once an evaluation, before the first part. */
+  void begin(double t) const;
+  /** The sum of all weight's g [m/s^2]. */
+  double gravity() const;
   /** The energy [J] of weight and springs, and of swept forces that have one.
    */
   double energy(const Cloth& g) const;
@@ -123,6 +135,8 @@ class ForcePlan {
   Drag drag_;
 
   void add(std::shared_ptr<const ZeroForce> force);
+  static void add_other(const Term& term, const Part& part, double t,
+                        std::span<Point> f);
 };
 
 }  // namespace lab

@@ -37,19 +37,24 @@ class Stencil {
     size_type list;        ///< where in neighbors() and edges()
   };
 
-  /** The stencil of @a g.  O(node_slots() + edges) */
-  template <typename G>
-  explicit Stencil(const G& g) : slots_(g.node_slots()) {
+  /** The stencil of @a g, without the edges between nodes of ids i and j of
+   * which @a skip(i, j) is true.  O(node_slots() + edges) */
+  template <typename G, typename Skip>
+  Stencil(const G& g, Skip skip) : slots_(g.node_slots()) {
     row_begin_.reserve(num_blocks() + 1);
     std::array<std::vector<typename G::Neighbor>, W> left;  // without a row yet
     for (size_type b = 0; b < num_blocks(); ++b) {
       row_begin_.push_back(size_type(rows_.size()));
-      add_block(g, b * W, left);
+      add_block(g, b * W, skip, left);
     }
     row_begin_.push_back(size_type(rows_.size()));
     for (size_type k = 0; k < W; ++k)
       last_block_[k] = std::min(num_blocks() * W - W + k, slots_ - 1);
   }
+
+  template <typename G>
+  explicit Stencil(const G& g)
+      : Stencil(g, [](size_type, size_type) { return false; }) {}
 
   /** Block b has the nodes of ids b W, ..., b W + W - 1, but the last one may
    * have less. */
@@ -62,6 +67,8 @@ class Stencil {
     return {rows_.data() + row_begin_[block],
             rows_.data() + row_begin_[block + 1]};
   }
+  /** How many rows the blocks before have. */
+  std::size_t row_number(size_type block) const { return row_begin_[block]; }
   /** The ids of the W neighbors, and edges, of a gathered row. */
   const size_type* neighbors(const Row& r) const { return &neighbor_[r.list]; }
   const size_type* edges(const Row& r) const { return &edge_[r.list]; }
@@ -78,18 +85,19 @@ class Stencil {
   std::vector<size_type> neighbor_, edge_;  // W for each gathered row
   std::array<size_type, W> last_block_ = {};
 
-  template <typename G>
-  void add_block(const G& g, size_type first,
+  template <typename G, typename Skip>
+  void add_block(const G& g, size_type first, Skip skip,
                  std::array<std::vector<typename G::Neighbor>, W>& left) {
     std::size_t most = 0;
     for (size_type k = 0; k < W; ++k) {
       left[k].clear();
       if (first + k >= slots_) continue;
-      auto all = g.neighbors(first + k);
-      left[k].assign(all.begin(), all.end());
-      for (const auto& h : all)
+      for (const auto& h : g.neighbors(first + k)) {
+        if (skip(h.node, first + k)) continue;
+        left[k].push_back(h);
         reach_ = std::max(
             reach_, std::max(h.node, first + k) - std::min(h.node, first + k));
+      }
     }
     for (std::size_t m = 0; m < left[0].size();)
       if (!add_at_offset(first, m, left)) ++m;

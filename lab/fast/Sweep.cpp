@@ -20,14 +20,6 @@ std::size_t whole_blocks(unsigned nodes) {
   return (std::size_t(nodes) + w - 1) / w * w;
 }
 
-std::size_t thread() {
-#ifdef _OPENMP
-  return std::size_t(omp_get_thread_num());
-#else
-  return 0;
-#endif
-}
-
 void add_forces(const Part& part, double t, const ForcePlan& force,
                 std::span<Point> f) {
   std::fill(f.begin(), f.end(), Point());
@@ -54,13 +46,23 @@ void Sweep::set_threads(int n) {
 #endif
 }
 
-void Sweep::update(const Cloth& g) {
+std::size_t Sweep::threads() {
 #ifdef _OPENMP
-  const auto threads = std::size_t(omp_get_max_threads());
+  return std::size_t(omp_get_max_threads());
 #else
-  const std::size_t threads = 1;
+  return 1;
 #endif
-  if (buffer_.size() < threads) buffer_.resize(threads);
+}
+std::size_t Sweep::thread() {
+#ifdef _OPENMP
+  return std::size_t(omp_get_thread_num());
+#else
+  return 0;
+#endif
+}
+
+void Sweep::update(const Cloth& g) {
+  if (buffer_.size() < threads()) buffer_.resize(threads());
   if (stencil_ && version_ == g.version()) return;
   stencil_.emplace(g);
   version_ = g.version();
@@ -76,24 +78,22 @@ int Sweep::halo_of(const ForcePlan& force) const {
 
 void Sweep::each_part(const Cloth& g, const PartVisitor& use) {
   update(g);
-  in_turn(g, 0, nothing, use);
+  const auto by_part = [&](unsigned first, unsigned last) {
+    use({g, &*stencil_, first, last});
+  };
+  in_turn(
+      g.node_slots(), 0, [](unsigned, unsigned) {}, std::ref(by_part));
 }
 
-/** Call @a move(part) and @a use(part) for each part, this one when all parts
- * up to @a halo away have been moved. Each thread goes through its own parts
- * in their order, and moves those in the halo before it needs them.
- * @pre the stencil is that of @a g */
-void Sweep::in_turn(const Cloth& g, int halo, const PartVisitor& move,
-                    const PartVisitor& use) {
-  const unsigned slots = g.node_slots();
+void Sweep::in_turn(unsigned slots, int halo, const IdVisitor& move,
+                    const IdVisitor& use) {
   const int count = int((slots + part_size - 1) / part_size);
   halo = std::min(halo, count);
   std::exception_ptr error;
-  const auto call = [&](const PartVisitor& what, int k) {
+  const auto call = [&](const IdVisitor& what, int k) {
     const unsigned first = unsigned(k) * part_size;
-    const Part part{g, *stencil_, first, std::min(first + part_size, slots)};
     try {
-      what(part);
+      what(first, std::min(first + part_size, slots));
     } catch (...) {  // no exception may leave a thread
 #ifdef _OPENMP
 #pragma omp critical(sweep_error)
@@ -140,13 +140,19 @@ void Sweep::add_up(const PartVisitor& move, const Cloth& g, double t,
                    const ForceVisitor& use) {
   if (all) all->resize(whole_blocks(g.node_slots()));
   update(g);
-  const auto sweep_and_use = [&](const Part& part) {
+  force.begin(t);
+  const auto move_part = [&](unsigned first, unsigned last) {
+    move({g, &*stencil_, first, last});
+  };
+  const auto sweep_and_use = [&](unsigned first, unsigned last) {
+    const Part part{g, &*stencil_, first, last};
     Point* place = all ? &(*all)[part.first] : buffer_[thread()].data();
     const std::span f(place, whole_blocks(part.last - part.first));
     add_forces(part, t, force, f);
     use(part, f);
   };
-  in_turn(g, halo_of(force), move, std::ref(sweep_and_use));
+  in_turn(g.node_slots(), halo_of(force), std::ref(move_part),
+          std::ref(sweep_and_use));
 }
 
 }  // namespace lab

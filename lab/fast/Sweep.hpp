@@ -32,6 +32,18 @@ class Sweep {
   static constexpr int many_parts = 32;
   static_assert(part_size % ClothStencil::width == 0);
 
+  /** Called with the first id of a part, and the one behind its last. */
+  using IdVisitor = std::function<void(unsigned first, unsigned last)>;
+  /** Call @a move and @a use for each part of @a slots ids, @a use when all
+   * parts up to @a halo away have been moved. Each thread goes through its own
+   * parts in their order, and moves those in the halo before it needs them.
+   * Throws as parts(). */
+  static void in_turn(unsigned slots, int halo, const IdVisitor& move,
+                      const IdVisitor& use);
+  /** How many threads that is at most, and which one is calling. */
+  static std::size_t threads();
+  static std::size_t thread();
+
   /** Call @a use(part) for parts that make up the cloth, several at once.
    * Throws what @a use throws, the first of it, when all are done. */
   template <typename Use>
@@ -86,8 +98,6 @@ class Sweep {
   void update(const Cloth& g);
   int halo_of(const ForcePlan& force) const;
   void each_part(const Cloth& g, const PartVisitor& use);
-  void in_turn(const Cloth& g, int halo, const PartVisitor& move,
-               const PartVisitor& use);
   void add_up(const PartVisitor& move, const Cloth& g, double t,
               const ForcePlan& force, std::vector<Point>* f,
               const ForceVisitor& use);

@@ -30,6 +30,15 @@ struct MethodInfo {
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
+/** The times of many steps [s]: multiples of one dt, as sums depend on
+ * rounding.
+ */
+struct StepTimes {
+  double from, dt;
+  long long done = 0;  ///< steps since @a from
+  double operator()(long long k) const { return from + double(done + k) * dt; }
+};
+
 /** A method: takes a cloth from t to t + dt, as often as it is called.
  *
  * It applies the constraint once a step: when the positions have reached t +
@@ -49,6 +58,19 @@ class Method {
    * can't handle this force. */
   virtual double step(Cloth& g, double t, double dt, const ForcePlan& force,
                       const ConstraintPlan& constraint) = 0;
+  /** Steps number 0, ..., @a count - 1 of @a times, to the same bits as by
+   * step(); the graph need not be current in between, but is at the end. A step
+   * that removed nodes or edges is the last one.
+   * @return how many were made: 1 to @a count   @pre @a count > 0
+   * Throws as step(). */
+  virtual int steps(Cloth& g, const StepTimes& times, int count,
+                    const ForcePlan& force, const ConstraintPlan& constraint) {
+    const auto version = g.version();
+    int k = 0;
+    do step(g, times(k), times.dt, force, constraint);
+    while (++k < count && g.version() == version);
+    return k;
+  }
   /** Forget what was kept from the last step. */
   virtual void restart() {}
   /** Save what was kept from the last step; or load it, so that the next step

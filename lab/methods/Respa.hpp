@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/StiffSplit.hpp"
 #include "lab/methods/Verlet.hpp"
 

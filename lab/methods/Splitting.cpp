@@ -2,9 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <span>
+#include <vector>
 
-#include "lab/methods/Flow.hpp"
 #include "lab/methods/Pefrl.hpp"
 #include "lab/methods/Srkn.hpp"
 #include "lab/methods/Verlet.hpp"
@@ -13,52 +12,51 @@
 namespace lab {
 
 template <typename Scheme>
-double Splitting<Scheme>::step(Cloth& g, double t, double dt,
-                               const ForcePlan& force,
-                               const ConstraintPlan& constraint) {
+int Splitting<Scheme>::steps(Cloth& g, const StepTimes& times, int count,
+                             const ForcePlan& force,
+                             const ConstraintPlan& constraint) {
+  const auto version = g.version();
+  bool has = kept(g, times(0), times.dt);
+  restart();  // if anything throws
+  flow_.begin(g, force, true);
+  int k = 0;
+  do {
+    one_step(times(k), times.dt, has, constraint);
+    has = Scheme::kicks_first;
+  } while (++k < count && g.version() == version);
+  flow_.end();
+  if (Scheme::kicks_first)
+    kept_for_ = &g, kept_version_ = g.version(),
+    kept_time_ = times(k - 1) + times.dt;
+  return k;
+}
+
+/** @param kept whether the accelerations at the start are */
+template <typename Scheme>
+void Splitting<Scheme>::one_step(double t, double dt, bool kept,
+                                 const ConstraintPlan& constraint) {
   constexpr auto& steps = Scheme::steps;
   constexpr std::size_t first_drift = Scheme::kicks_first ? 1 : 0;
-  const Drag& c = force.drag();
-  if (Scheme::kicks_first) {
-    const auto first_kick = [&](const Part& part, std::span<const Point> f) {
-      kick(g, part, steps[0] * dt, f);
-    };
-    if (kept(g, t, dt))
-      sweep_.parts(g, [&](const Part& part) {
-        first_kick(part, std::span(force_).subspan(part.first));
-      });
-    else
-      sweep_(g, t, force, force_, [&](const Part& part, std::span<Point> f) {
-        without_drag(part, force, f);
-        first_kick(part, f);
-      });
+  double first_kick = Scheme::kicks_first ? steps[0] * dt : 0;
+  if (Scheme::kicks_first && !kept) {
+    flow_.run({.t = t, .kick = first_kick});
+    first_kick = 0;
   }
   double now = t;
   for (std::size_t k = first_drift; k < steps.size(); k += 2) {
-    const double h = steps[k] * dt;
-    const auto move = [&](const Part& part) { drift(g, part, h, c); };
     const bool is_last = k + 2 >= steps.size();
-    now = is_last ? t + dt : now + h;
-    constraint.place_held_at_rest(g, now);
-    const ConstraintPlan none;  // but after the last drift
-    const ConstraintPlan& now_holds = is_last ? constraint : none;
-    if (k + 1 == steps.size()) {
-      sweep_.parts(g, move);
-      now_holds(g, now);
-      break;
-    }
-    move_and_sweep(
-        sweep_, g, now, force, now_holds, move,
-        [&](const Part& part, std::span<Point> f) {
-          without_drag(part, force, f);
-          kick(g, part, steps[k + 1] * dt, f);
-        },
-        force_);
+    now = is_last ? t + dt : now + steps[k] * dt;
+    FlatStage stage = {.t = now,
+                       .first_kick = first_kick,
+                       .drift = steps[k] * dt,
+                       .held = &constraint,
+                       .project = is_last ? &constraint : nullptr,
+                       .keep = Scheme::kicks_first && is_last};
+    if (k + 1 < steps.size()) stage.kick = steps[k + 1] * dt;
+    flow_.run(stage);
+    first_kick = 0;
   }
-  constraint.set_held_velocities(g, t + dt);
-  if (Scheme::kicks_first)
-    kept_for_ = &g, kept_version_ = g.version(), kept_time_ = t + dt;
-  return t + dt;
+  flow_.set_held_velocities(constraint, t + dt);
 }
 
 template <typename Scheme>
@@ -73,7 +71,9 @@ void Splitting<Scheme>::archive(CME212::Archive& a, const Cloth& g) {
   bool has = kept_for_ == &g && kept_version_ == g.version();
   a(has);
   if (!has) return restart();
-  a(force_)(kept_time_);
+  auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
+  a(accelerations)(kept_time_);
+  if (a.loads()) flow_.set_kept(g, accelerations);
   kept_for_ = &g, kept_version_ = g.version();
 }
 

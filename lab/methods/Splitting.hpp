@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/fast/Sweep.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -26,18 +26,24 @@ class Splitting : public Method {
   static constexpr MethodInfo info = Scheme::info;
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override;
+              const ConstraintPlan& constraint) override {
+    steps(g, {t, dt}, 1, force, constraint);
+    return t + dt;
+  }
+  int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
+            const ConstraintPlan& constraint) override;
   void restart() override { kept_for_ = nullptr; }
   void archive(CME212::Archive& a, const Cloth& g) override;
 
  private:
-  Sweep sweep_;
-  std::vector<Point> force_;         // [N], by node id, without drag
-  const Cloth* kept_for_ = nullptr;  // the cloth at whose state force_ is
+  FlatFlow flow_;                    // its accelerations are without drag
+  const Cloth* kept_for_ = nullptr;  // the cloth at whose state they are
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
 
   bool kept(const Cloth& g, double t, double dt) const;
+  void one_step(double t, double dt, bool kept,
+                const ConstraintPlan& constraint);
 };
 
 }  // namespace lab

@@ -1,20 +1,21 @@
 #include "lab/methods/SymplecticEuler.hpp"
 
-#include "lab/methods/Flow.hpp"
-
 namespace lab {
 
-double SymplecticEuler::step(Cloth& g, double t, double dt,
-                             const ForcePlan& force,
-                             const ConstraintPlan& constraint) {
-  move_and_sweep(
-      sweep_, g, t, force, constraint,
-      [&](const Part& part) { drift(g, part, dt, 0); },
-      [&](const Part& part, std::span<const Point> f) {
-        kick(g, part, dt, f);
-      });
-  constraint.set_held_velocities(g, t);
-  return t + dt;
+int SymplecticEuler::steps(Cloth& g, const StepTimes& times, int count,
+                           const ForcePlan& force,
+                           const ConstraintPlan& constraint) {
+  const auto version = g.version();
+  const double h = times.dt;
+  flow_.begin(g, force, false);
+  int k = 0;
+  do {
+    const double t = times(k);
+    flow_.run({.t = t, .drift = h, .project = &constraint, .kick = h});
+    flow_.set_held_velocities(constraint, t);
+  } while (++k < count && g.version() == version);
+  flow_.end();
+  return k;
 }
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file SymplecticEuler.hpp
  * The assignment's step as a method. */
-#include "lab/fast/Sweep.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -20,10 +20,15 @@ class SymplecticEuler : public Method {
                                       "accuracy: verlet costs the same"};
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override;
+              const ConstraintPlan& constraint) override {
+    steps(g, {t, dt}, 1, force, constraint);
+    return t + dt;
+  }
+  int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
+            const ConstraintPlan& constraint) override;
 
  private:
-  Sweep sweep_;
+  FlatFlow flow_;
 };
 
 }  // namespace lab

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "lab/fast/FlatCloth.hpp"
+
 namespace lab {
 
 namespace contact {
@@ -33,6 +35,10 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 void MovingPinConstraint::project(Cloth& g, double t, unsigned first,
                                   unsigned last) const {
   pins_.project(g, moved(t), first, last);
+}
+void MovingPinConstraint::project_flat(FlatCloth& c, Cloth& g, double t,
+                                       unsigned first, unsigned last) const {
+  pins_.project_flat(c, g, moved(t), first, last);
 }
 void MovingPinConstraint::each_place(const Cloth& g, double t,
                                      const PlaceVisitor& use) const {
@@ -68,6 +74,13 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
       [&](Node n) { touch(n, -height(n.position()), normal_, velocity); });
 }
 
+bool WallConstraint::idle(const FlatCloth& c, double t, unsigned first,
+                          unsigned last) const {
+  const Point at = at_ + motion_.way(t);
+  return !c.any(first, last,
+                [&](const Point& p) { return dot(p - at, normal_) < 0; });
+}
+
 // ----------------------------------------------------------------------- Ball
 
 BallConstraint::BallConstraint(const Ball& ball, const Motion& motion,
@@ -87,6 +100,12 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
             distance > 0 ? from_center / distance : Point(0, 0, 1);
         touch(n, ball.radius - distance, out, velocity);
       });
+}
+
+bool BallConstraint::idle(const FlatCloth& c, double t, unsigned first,
+                          unsigned last) const {
+  const Ball ball = {ball_.center + motion_.way(t), ball_.radius};
+  return !c.any(first, last, [&](const Point& p) { return ball.holds(p); });
 }
 
 std::optional<Point> BallConstraint::first_hit(const Point& from,

@@ -7,6 +7,7 @@
  * contact::touch(). One difference to the assignment's plane and sphere, which
  * take all of the normal velocity: here a node on its way out keeps it. */
 #include <cassert>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -55,9 +56,14 @@ class MovingPinConstraint : public NodewiseConstraint {
       : pins_(pins), motion_(motion) {}
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
+  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
+                    unsigned last) const override;
   void each_place(const Cloth& g, double t,
                   const PlaceVisitor& use) const override;
   double next_kink(double t) const override;
+  bool is_at_rest(double t) const override {
+    return motion_.velocity_at(t) == Point() && next_kink(t) == HUGE_VAL;
+  }
 
  private:
   PinnedNodes pins_;
@@ -73,6 +79,7 @@ class MovingPinConstraint : public NodewiseConstraint {
 class Touchable : public NodewiseConstraint {
  public:
   bool nodewise() const override { return motion_.velocity == Point(); }
+  bool is_at_rest(double /*t*/) const override { return nodewise(); }
   Exchange exchange() const override { return {work_, 0}; }
   void archive(CME212::Archive& a) const override { a(work_); }
 
@@ -106,6 +113,8 @@ class WallConstraint : public Touchable {
                  const Motion& motion = {}, double friction = 0);
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
+  bool idle(const FlatCloth& c, double t, unsigned first,
+            unsigned last) const override;
 
  private:
   Point at_, normal_;
@@ -129,6 +138,8 @@ class BallConstraint : public Touchable {
 
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
+  bool idle(const FlatCloth& c, double t, unsigned first,
+            unsigned last) const override;
   std::optional<Point> first_hit(const Point& from,
                                  const Point& to) const override;
   double thinnest() const override;
@@ -148,6 +159,7 @@ class StrainConstraint : public SweptConstraint {
     assert(limit >= 0);
   }
   void operator()(Cloth& g, double t) const override;
+  bool is_at_rest(double /*t*/) const override { return true; }
 
  private:
   double most_;

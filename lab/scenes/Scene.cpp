@@ -108,11 +108,13 @@ void Scene::archive(CME212::Archive& a) {
   }
 }
 
-bool Scene::step(double t_end) {
+bool Scene::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
   if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
   const bool steered = control_ && control_->can_shorten();
-  if (!advance()) return steered ? take_back() : replay(clock_.steps + 1);
+  most = steps_to_look(most);
+  if (!advance(most))
+    return steered ? take_back() : replay(clock_.steps + most);
   const bool now = cloth_.version() != version_ || done(t_end);
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
@@ -136,13 +138,33 @@ Energies Scene::energy() const {
 
 bool Scene::is_finite() const { return std::isfinite(energy().total()); }
 
+/** Steps between two samples of drag. */
+int Scene::drag_interval() const {
+  constexpr double most = 0.02;  // of a velocity
+  return std::clamp(int(most / (largest_gamma_ * clock_.dt)), 1,
+                    StepControl::look_interval);
+}
+
+/** How many steps, up to @a most, nobody has to look at but the last one; 1 if
+ * work is done on the cloth, which is summed up step by step. */
+int Scene::steps_to_look(int most) const {
+  if (hand_ || !constraint_.is_at_rest(time())) return 1;
+  const auto up_to_multiple = [&](int interval) {
+    most = std::min(most, interval - int(clock_.steps % interval));
+  };
+  most = std::min(most, guard_interval - int(clock_.steps - checked_.steps));
+  if (control_) up_to_multiple(StepControl::look_interval);
+  if ((control_ || follows_drag_) && !drag_.none()) {
+    up_to_multiple(drag_interval());
+    up_to_multiple(StepControl::look_interval);
+  }
+  return std::max(most, 1);
+}
+
 /** Add what drag took since the last sample, if velocities may have changed
  * since then, or if there is a look @a now. */
 void Scene::sample_drag(bool now) {
-  constexpr double most = 0.02;  // of a velocity
-  const int interval = std::clamp(int(most / (largest_gamma_ * clock_.dt)), 1,
-                                  StepControl::look_interval);
-  if (!now && clock_.steps % interval != 0 &&
+  if (!now && clock_.steps % drag_interval() != 0 &&
       clock_.steps % StepControl::look_interval != 0)
     return;
   const double power = drag_.power(cloth_);
@@ -205,6 +227,11 @@ bool Scene::look(const Energies& e) {
                                                : replay(clock_.steps);
   keep_clock();
   return true;
+}
+
+bool Scene::run_to(double t_end) {
+  while (!done(t_end)) steps_at_once(guard_interval, t_end);
+  return check();
 }
 
 bool Scene::run_to(double t_end, const std::function<void()>& after) {
@@ -276,8 +303,9 @@ void Scene::choose_step() {
   clock_.set_dt(dt);
 }
 
-/** One step; no look at what came out.  @return false if it can't be made */
-bool Scene::advance() {
+/** One step, or up to @a most of dt, the last of which may change the graph; no
+ * look at what came out.  @return false if one of them can't be made */
+bool Scene::advance(int most) {
   const double dt = clock_.dt;
   const double end = std::min(t_end_, constraint_.next_kink(time()));
   const double left = (end - time()) / dt;  // in steps
@@ -286,14 +314,20 @@ bool Scene::advance() {
                    : last                      ? end - time()
                                                : (end - time()) / 2;
   const double then = last ? end : time() + h;
+  const StepTimes times = {clock_.from, dt, clock_.steps - clock_.from_steps};
+  int count = 1;  // steps of dt
+  while (count < most && (end - times(count)) / dt > 2 - no_step) ++count;
   error_.clear();
   try {
-    method_->step(cloth_, time(), h, *force_, constraint_);
+    if (h == dt && count > 1)
+      count = method_->steps(cloth_, times, count, *force_, constraint_);
+    else
+      method_->step(cloth_, time(), h, *force_, constraint_), count = 1;
   } catch (const StepError& e) {
     error_ = e.what();
     return false;
   }
-  ++clock_.steps;
+  clock_.steps += count;
   if (last || h != dt) clock_.set_time(then);
   balance_->follow(cloth_, time(), constraint_);
   return true;
@@ -303,7 +337,7 @@ bool Scene::advance() {
  * @param last the step known to fail  @return false if one did */
 bool Scene::replay(long long last) {
   rewind();
-  while (clock_.steps < last) {
+  while (clock_.steps < last && time() < t_end_) {
     if (!advance()) return fail("failed (" + error_ + ")");
     if (!guard_->accept(cloth_, flow())) return fail("diverged");
     keep_clock();

@@ -65,7 +65,12 @@ class Scene {
    * cloth and the clock are those of the last good state.
    * @pre failure().empty(), time() < t_end
    * Throws std::invalid_argument if the method can't do with this force. */
-  bool step(double t_end = no_limit);
+  bool step(double t_end = no_limit) { return steps_at_once(1, t_end); }
+  /** Up to @a most steps as by step(), to the same bits: as many as lie before
+   * the next look at the state, whoever looks; so at least one. A method may
+   * take them in less time than one by one.  @return, @pre and throws as step()
+   */
+  bool steps_at_once(int most, double t_end = no_limit);
 
   /** Make sure that all numbers of the present state are finite: whoever shows
    * it or writes it down asks for that first.  @return as step()
@@ -75,13 +80,11 @@ class Scene {
   /** True at the end of a run to @a t_end [s], which it reaches to round-off;
    * and if the run failed. */
   bool done(double t_end) const { return !failure_.empty() || time() >= t_end; }
-  /** Step until done(@a t_end), with a call of @a after() after each step, and
-   * after the one that failed, if one did.
+  /** Step until done(@a t_end); the second one with a call of @a after() after
+   * each step, and after the one that failed, if one did.
    * @return as step()   Throws as step(), and what @a after throws. */
+  bool run_to(double t_end);
   bool run_to(double t_end, const std::function<void()>& after);
-  bool run_to(double t_end) {
-    return run_to(t_end, [] {});
-  }
 
   /** The cloth; between two steps it may be changed in any way. */
   Cloth& cloth() { return cloth_; }
@@ -249,7 +252,9 @@ class Scene {
   ForcePlan bounding(const MethodEntry& method) const;
   void choose_step();
   bool is_finite() const;
-  bool advance();
+  bool advance(int most = 1);
+  int steps_to_look(int most) const;
+  int drag_interval() const;
   void sample_drag(bool now);
   Energies energy() const;
   bool judge(const Energies& e);

@@ -155,9 +155,23 @@ void Run::check() {
   tell_failure();
 }
 
-void Run::advance() {
-  scene_.step(o_.model.t_end);
+void Run::advance(int most) {
+  scene_.steps_at_once(most, o_.model.t_end);
   look();
+}
+
+/** How many steps there are until something is written. */
+int Run::steps_to_write() const {
+  const bool any_step =
+      !frames_.empty() || (!o_.checkpoint.empty() && o_.every_seconds == 0);
+  if (any_step) return 1;
+  return int(std::min<long long>(o_.every - scene_.steps() % o_.every,
+                                 Scene::guard_interval));
+}
+
+void Run::to_end() {
+  while (!done()) advance(steps_to_write());
+  check();
 }
 
 void Run::to_end(const std::function<void()>& after) {

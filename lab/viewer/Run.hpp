@@ -62,11 +62,13 @@ class Run {
   /** Check the present state, which is to be shown; tell if it is not good. */
   void check();
 
-  /** One step. What is written down is checked. A failure is told at once.
+  /** One step, or up to @a most if nobody looks at the state in between. What
+   * is written down is checked. A failure is told at once.
    * @pre !done() */
-  void advance();
-  /** Step until done(), with a call of @a after() after each step. */
-  void to_end(const std::function<void()>& after = [] {});
+  void advance(int most = 1);
+  /** Step until done(); the second one with a call of @a after() after each. */
+  void to_end();
+  void to_end(const std::function<void()>& after);
 
   /** As below, of this run. */
   void announce() const;
@@ -103,6 +105,7 @@ class Run {
   double seconds_ = 0;             // until the last step
   bool warned_ = false, told_ = false;
 
+  int steps_to_write() const;
   void start();
   void look();
   void add_row();

@@ -1,0 +1,140 @@
+#include "lab/fast/FlatCloth.hpp"
+
+#include <algorithm>
+
+namespace lab {
+
+void FlatCloth::take(const Cloth& g, int multiplicity, const Drag& c) {
+  multiplicity_ = multiplicity, drag_ = &c;
+  if (version_ != g.version()) lay_out(g);
+  read_nodes(g, 0, slots_);
+  const NodeData* node = g.node_values().data();
+  Real* per_mass = nodes_[PerMass];
+  if (slots_ == g.num_nodes())
+    for (unsigned i = 0; i < slots_; ++i) per_mass[i] = 1 / node[i].mass;
+  else
+    for (unsigned i = 0; i < slots_; ++i)
+      per_mass[i] = g.node_in_use(i) ? 1 / node[i].mass : 0;
+  if (!c.none())
+    for (unsigned i = 0; i < slots_; ++i) nodes_[DragC][i] = Real(c[i]);
+  const EdgeData* edge = g.edge_values().data();
+  const Real times = Real(multiplicity);
+  for (const Run& run : runs_) {
+    const EdgeData* from = edge + run.edge;
+    Real *K = springs_[0] + run.number, *L = springs_[1] + run.number;
+    for (unsigned k = 0; k < run.count; ++k)
+      K[k] = times * from[k].K, L[k] = from[k].L;
+  }
+}
+
+void FlatCloth::read_nodes(const Cloth& g, unsigned first, unsigned last) {
+  const Point* x = g.positions().data();
+  const NodeData* node = g.node_values().data();
+  const bool all = slots_ == g.num_nodes();
+  for (unsigned i = first; i < last; ++i) {
+    if (!all && !g.node_in_use(i)) {
+      set_position(i, Point());
+      set_velocity(i, Point());
+      continue;
+    }
+    set_position(i, x[i]);
+    set_velocity(i, node[i].vel);
+  }
+}
+
+void FlatCloth::write(Cloth& g, unsigned first, unsigned last) const {
+  Point* x = g.positions().data();
+  NodeData* node = g.node_values().data();
+  const bool all = slots_ == g.num_nodes();
+  for (unsigned i = first; i < last; ++i) {
+    if (!all && !g.node_in_use(i)) continue;
+    x[i] = position(i);
+    node[i].vel = velocity(i);
+  }
+}
+
+void FlatCloth::lay_out(const Cloth& g) {
+  slots_ = g.node_slots(), reach_ = 0;
+  rows_.clear(), runs_.clear(), rest_.reset();
+  std::vector<char> is_row;
+  find_rows(g, is_row);
+  const std::size_t whole = (slots_ + tile - 1) / tile * tile;
+  // Rows begin at different places of a page, as columns do.
+  const std::size_t stride = whole + 9 * 64 / sizeof(Real);
+  std::vector<std::size_t> first(is_row.size());
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    first[rows_[r].offset] = rows_[r].first = r * stride;
+  rest_first_ = rows_.size() * stride;
+  std::size_t left = 0;
+  const auto ends = g.edge_ends();
+  for (unsigned e = 0; e < g.edge_slots(); ++e) {
+    if (!g.edge_in_use(e)) continue;
+    const auto [i, j] = std::minmax(ends[e][0], ends[e][1]);
+    reach_ = std::max(reach_, j - i);
+    if (j - i < is_row.size() && is_row[j - i])
+      add_run(e, first[j - i] + i);
+    else
+      ++left;
+  }
+  if (left > 0) add_rest(g, is_row);
+  springs_.resize(2, rest_first_ + (rest_ ? rest_->num_rows() : 0) *
+                                       std::size_t(lanes::width));
+  // A row's springs reach beyond the last node where they do nothing.
+  nodes_.resize(columns, whole + (rows_.empty() ? 0 : rows_.back().offset));
+  version_ = g.version();
+}
+
+/** The rows: offsets that a third of the nodes has a spring at. Evaluated once
+ * for each node, these take less time than gathered from both ends. */
+void FlatCloth::find_rows(const Cloth& g, std::vector<char>& is_row) {
+  std::vector<unsigned> count(std::min(slots_, longest_row + 1));
+  const auto ends = g.edge_ends();
+  for (unsigned e = 0; e < g.edge_slots(); ++e) {
+    if (!g.edge_in_use(e)) continue;
+    const auto [i, j] = std::minmax(ends[e][0], ends[e][1]);
+    if (j - i < count.size()) ++count[j - i];
+  }
+  for (unsigned o = 1; o < count.size(); ++o)
+    if (3 * std::size_t(count[o]) >= slots_) rows_.push_back({o, 0});
+  if (rows_.size() > most_rows) {
+    std::ranges::stable_sort(rows_, [&](const Row& a, const Row& b) {
+      return count[a.offset] > count[b.offset];
+    });
+    rows_.resize(most_rows);
+    std::ranges::sort(rows_, {}, &Row::offset);
+  }
+  is_row.assign(rows_.empty() ? 0 : rows_.back().offset + 1, false);
+  for (const Row& r : rows_) is_row[r.offset] = true;
+}
+
+void FlatCloth::add_rest(const Cloth& g, const std::vector<char>& is_row) {
+  rest_.emplace(g, [&](unsigned i, unsigned j) {
+    const unsigned offset = std::max(i, j) - std::min(i, j);
+    return offset < is_row.size() && is_row[offset];
+  });
+  std::size_t number = rest_first_;
+  for (unsigned b = 0; b < rest_->num_blocks(); ++b)
+    for (const auto& row : rest_->rows(b))
+      for (unsigned k = 0; k < lanes::width; ++k, ++number) {
+        if (row.offset == 0) {
+          // Its own neighbor: there is no spring.
+          const unsigned id = std::min(b * lanes::width + k, slots_ - 1);
+          if (rest_->neighbors(row)[k] == id) continue;
+        }
+        add_run(row.first_edge != Rest::none ? row.first_edge + k
+                                             : rest_->edges(row)[k],
+                number);
+      }
+}
+
+void FlatCloth::add_run(unsigned edge, std::size_t number) {
+  if (!runs_.empty())
+    if (Run& last = runs_.back();
+        last.edge + last.count == edge && last.number + last.count == number) {
+      ++last.count;
+      return;
+    }
+  runs_.push_back({edge, 1, number});
+}
+
+}  // namespace lab

@@ -1,0 +1,250 @@
+#pragma once
+/** @file FlatKernels.hpp
+ * The loops that a step by component spends its time in, written once for
+ * registers of any length (Lanes.hpp). README.md of this room walks through
+ * them. */
+#include <algorithm>
+
+#include "lab/fast/FlatCloth.hpp"
+#include "lab/fast/Kernels.hpp"
+
+namespace lab::kernels {
+
+using lanes::Points;
+
+/** The forces of a row's springs on their near ends, kept until the far ends
+ * come: in a ring, whose first tile stands behind its end, too, so that a tile
+ * of far ends reads without a seam. */
+struct RowRing {
+  unsigned offset, size;  // size: without the tile behind it
+  unsigned at;            // where the next tile goes
+  const Real *K, *L;      // of node 0
+  Real* kept;             // x, then y and z, each size + tile numbers
+  std::size_t stride() const { return size + FlatCloth::tile; }
+  /** Where the springs stand whose far ends are the next tile. */
+  const Real* far() const {
+    return kept + (at >= offset ? at - offset : at + size - offset);
+  }
+  void advance() {
+    at = at + FlatCloth::tile == size ? 0 : at + FlatCloth::tile;
+  }
+};
+
+/** What is to be done with the nodes of some tiles. */
+struct KickTask {
+  FlatCloth& cloth;
+  RowRing* rings;  ///< of the rows, at tile first
+  std::size_t num_rings;
+  const Point* others;  ///< other forces on node first and on; or null
+  bool drag, keep;      ///< whether drag acts; whether a is stored
+  Real gravity, h;      ///< [m/s^2], [s]
+};
+
+/** a = (springs + others - c v)/m - gravity, v += h a, for the tiles of nodes
+ * [first, last). Each spring of a row is evaluated at its near end. */
+struct KickTiles {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(const KickTask& task,
+                                                  unsigned first,
+                                                  unsigned last) {
+    using namespace lanes;
+    constexpr unsigned w = count_of<V>, tile = FlatCloth::tile;
+    Columns& nodes = task.cloth.nodes();
+    const std::size_t s = nodes.stride();
+    const FlatCloth::Rest* rest = task.cloth.rest();
+    for (unsigned begin = first; begin < last; begin += tile) {
+      for (std::size_t r = 0; r < task.num_rings; ++r)
+        if (task.rings[r].offset < tile)
+          Near::template apply<V>(nodes[FlatCloth::X], s, task.rings[r], begin);
+      for (unsigned k = 0; k < tile; k += w) {
+        const unsigned i = begin + k;
+        const Real* at = nodes[FlatCloth::X] + i;
+        const Points<V> x = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
+        Points<V> f;
+        for (std::size_t r = 0; r < task.num_rings; ++r) {
+          const RowRing& ring = task.rings[r];
+          Real* kept = ring.kept + ring.at + k;
+          const Real* far = ring.far() + k;
+          const std::size_t next = ring.stride();
+          Points<V> g;
+          if (ring.offset < tile) {
+            g = {load<V>(kept), load<V>(kept + next), load<V>(kept + 2 * next)};
+          } else {
+            g = Near::template pull<V>(x, at + ring.offset, s, ring.K + i,
+                                       ring.L + i);
+            store(kept, g.x), store(kept + next, g.y);
+            store(kept + 2 * next, g.z);
+          }
+          f.x += g.x - load<V>(far);
+          f.y += g.y - load<V>(far + next);
+          f.z += g.z - load<V>(far + 2 * next);
+        }
+        if (rest && i / width < rest->num_blocks())
+          add_rest<V>(task.cloth, *rest, i, x, f);
+        if (task.others) add_points<V>(task.others + (i - first), last - i, f);
+        Real* v = nodes[FlatCloth::VX] + i;
+        V vx = load<V>(v), vy = load<V>(v + s), vz = load<V>(v + 2 * s);
+        if (task.drag) {
+          const V c = load<V>(nodes[FlatCloth::DragC] + i);
+          f.x -= c * vx, f.y -= c * vy, f.z -= c * vz;
+        }
+        const V per_mass = load<V>(nodes[FlatCloth::PerMass] + i);
+        f.x *= per_mass, f.y *= per_mass;
+        f.z = f.z * per_mass - task.gravity;
+        if (task.keep) {
+          Real* a = nodes[FlatCloth::AX] + i;
+          store(a, f.x), store(a + s, f.y), store(a + 2 * s, f.z);
+        }
+        store(v, vx + task.h * f.x), store(v + s, vy + task.h * f.y);
+        store(v + 2 * s, vz + task.h * f.z);
+      }
+      for (std::size_t r = 0; r < task.num_rings; ++r) finish(task.rings[r]);
+    }
+  }
+
+  /** The springs of a tile alone: into its ring. */
+  struct Near {
+    template <typename V>
+    [[gnu::always_inline]] static inline Points<V> pull(const Points<V>& x,
+                                                        const Real* far,
+                                                        std::size_t s,
+                                                        const Real* K,
+                                                        const Real* L) {
+      using namespace lanes;
+      const V ux = load<V>(far) - x.x, uy = load<V>(far + s) - x.y,
+              uz = load<V>(far + 2 * s) - x.z;
+      const V p =
+          spring_pull<V>(ux * ux + uy * uy + uz * uz, load<V>(K), load<V>(L));
+      return {p * ux, p * uy, p * uz};
+    }
+    template <typename V>
+    [[gnu::always_inline]] static inline void apply(const Real* x,
+                                                    std::size_t s,
+                                                    const RowRing& ring,
+                                                    unsigned begin) {
+      using namespace lanes;
+      const std::size_t next = ring.stride();
+      for (unsigned k = 0; k < FlatCloth::tile; k += count_of<V>) {
+        const Real* at = x + begin + k;
+        const Points<V> here = {load<V>(at), load<V>(at + s),
+                                load<V>(at + 2 * s)};
+        const Points<V> g = pull<V>(here, at + ring.offset, s,
+                                    ring.K + begin + k, ring.L + begin + k);
+        Real* kept = ring.kept + ring.at + k;
+        store(kept, g.x), store(kept + next, g.y);
+        store(kept + 2 * next, g.z);
+      }
+      if (ring.at == 0) repeat_first_tile(ring);
+    }
+  };
+
+  [[gnu::always_inline]] static inline void repeat_first_tile(
+      const RowRing& ring) {
+    for (int c = 0; c < 3; ++c) {
+      Real* from = ring.kept + c * ring.stride();
+      std::memcpy(from + ring.size, from, FlatCloth::tile * sizeof(Real));
+    }
+  }
+  [[gnu::always_inline]] static inline void finish(RowRing& ring) {
+    if (ring.at == 0 && ring.offset >= FlatCloth::tile) repeat_first_tile(ring);
+    ring.advance();
+  }
+
+  /** Add the springs in no row at the nodes from @a i on, each from here. */
+  template <typename V>
+  [[gnu::always_inline]] static inline void add_rest(
+      const FlatCloth& cloth, const FlatCloth::Rest& rest, unsigned i,
+      const Points<V>& x, Points<V>& f) {
+    using namespace lanes;
+    const unsigned block = i / width, k = i % width;
+    const std::size_t s = cloth.nodes().stride();
+    const Real* all = cloth.nodes()[FlatCloth::X];
+    std::size_t number =
+        cloth.rest_first() + rest.row_number(block) * width + k;
+    for (const auto& row : rest.rows(block)) {
+      Points<V> y;
+      if (row.offset != 0) {
+        const Real* at = all + i + row.offset;
+        y = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
+      } else {
+        const unsigned* id = rest.neighbors(row) + k;
+        y = {pick<V>(all, id), pick<V>(all + s, id), pick<V>(all + 2 * s, id)};
+      }
+      const V ux = y.x - x.x, uy = y.y - x.y, uz = y.z - x.z;
+      const V p = spring_pull<V>(ux * ux + uy * uy + uz * uz,
+                                 load<V>(cloth.K() + number),
+                                 load<V>(cloth.L() + number));
+      f.x += p * ux, f.y += p * uy, f.z += p * uz;
+      number += width;
+    }
+  }
+  /** from[id[0]], from[id[1]], ... */
+  template <typename V>
+  [[gnu::always_inline]] static inline V pick(const Real* from,
+                                              const unsigned* id) {
+    constexpr int w = lanes::count_of<V>;
+    return pick<V>(from, id, std::make_index_sequence<w>());
+  }
+  template <typename V, std::size_t... k>
+  [[gnu::always_inline]] static inline V pick(const Real* from,
+                                              const unsigned* id,
+                                              std::index_sequence<k...>) {
+    return V{from[id[k]]...};
+  }
+
+  /** Add as many of @a points as there are, up to the register's length. */
+  template <typename V>
+  [[gnu::always_inline]] static inline void add_points(const Point* points,
+                                                       unsigned count,
+                                                       Points<V>& f) {
+    count = std::min(count, unsigned(lanes::count_of<V>));
+    for (unsigned k = 0; k < count; ++k)
+      f.x[k] += points[k].x, f.y[k] += points[k].y, f.z[k] += points[k].z;
+  }
+};
+
+/** The springs' forces of tiles [first, last), for far ends behind them. */
+struct NearTiles {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(const FlatCloth* cloth,
+                                                  RowRing* ring, unsigned first,
+                                                  unsigned last) {
+    for (unsigned i = first; i < last; i += FlatCloth::tile) {
+      KickTiles::Near::template apply<V>(cloth->nodes()[FlatCloth::X],
+                                         cloth->nodes().stride(), *ring, i);
+      ring->advance();
+    }
+  }
+};
+
+/** v += kick a; x += way v; v *= decay: for the nodes [first, last). */
+struct DriftNodes {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(FlatCloth* cloth,
+                                                  unsigned first, unsigned last,
+                                                  Real kick, Real way,
+                                                  Real decay) {
+    using namespace lanes;
+    Columns& nodes = cloth->nodes();
+    constexpr unsigned w = count_of<V>;
+    for (int c = 0; c < 3; ++c) {
+      Real *x = nodes[FlatCloth::X + c], *v = nodes[FlatCloth::VX + c];
+      const Real* a = nodes[FlatCloth::AX + c];
+      unsigned i = first;
+      for (; i + w <= last; i += w) {
+        V velocity = load<V>(v + i);
+        if (kick != 0) velocity += kick * load<V>(a + i);
+        store(x + i, load<V>(x + i) + way * velocity);
+        if (decay != 1) velocity *= decay;
+        if (decay != 1 || kick != 0) store(v + i, velocity);
+      }
+      for (; i < last; ++i) {
+        if (kick != 0) v[i] += kick * a[i];
+        x[i] += way * v[i];
+        if (decay != 1) v[i] *= decay;
+      }
+    }
+  }
+};
+
+}  // namespace lab::kernels

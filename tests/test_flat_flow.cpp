@@ -1,0 +1,356 @@
+// FlatCloth and FlatFlow: many steps on the state by component, against single
+// steps and against the loops over nodes.
+#include "lab/methods/FlatFlow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "lab/fast/OrderedCloth.hpp"
+#include "lab/fast/Sweep.hpp"
+#include "lab/methods/Pefrl.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "tests/Stages.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** Random numbers that a failure repeats. */
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : engine_(seed) {}
+  double real(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(engine_);
+  }
+  unsigned below(unsigned n) {
+    return std::uniform_int_distribution<unsigned>(0, n - 1)(engine_);
+  }
+  Point point(double a) {
+    return {Real(real(-a, a)), Real(real(-a, a)), Real(real(-a, a))};
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+NodeData heavy(Dice& dice) { return {dice.point(1), Real(dice.real(0.5, 2))}; }
+EdgeData spring(Dice& dice) {
+  return {Real(dice.real(1, 100)), Real(dice.real(0, 1))};
+}
+
+void add_random(Cloth& g, Dice& dice, unsigned nodes, unsigned edges) {
+  for (unsigned i = 0; i < nodes; ++i) g.add_node(dice.point(1), heavy(dice));
+  for (unsigned e = 0; e < edges && g.num_nodes() > 1; ++e) {
+    const unsigned i = dice.below(g.num_nodes()), j = dice.below(g.num_nodes());
+    if (i != j) g.add_edge(g.node(i), g.node(j), spring(dice));
+  }
+}
+
+/** A grid with diagonals, in order or not, or a graph without any order. */
+void make(Cloth& g, Dice& dice) {
+  const unsigned side = 2 + dice.below(14);
+  switch (dice.below(4)) {
+    case 0:
+      return add_random(g, dice, 1 + dice.below(200), dice.below(600));
+    case 1: {
+      auto quads = grid_quads(side);
+      std::shuffle(quads.begin(), quads.end(), std::mt19937(7));
+      build_ordered_cloth(g, grid_points(side), quads, Mesh::plain);
+      break;
+    }
+    default:
+      build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+  }
+  for (Node n : g.nodes()) n.position() += dice.point(0.3 / side);
+  for (Node n : g.nodes()) n.value() = heavy(dice);
+}
+
+/** What a caller may do with a cloth between two calls of a method. */
+void change(Cloth& g, Dice& dice) {
+  const auto some_node = [&] { return g.node(dice.below(g.num_nodes())); };
+  switch (dice.below(8)) {
+    case 0:
+      for (int k = 0; k < 5; ++k) some_node().position() += dice.point(0.01);
+      break;
+    case 1:
+      for (int k = 0; k < 5; ++k) some_node().value().vel = dice.point(1);
+      break;
+    case 2:
+      some_node().value().mass *= 2;
+      break;
+    case 3:
+      for (int k = 0; k < 9 && g.num_edges() > 0; ++k)
+        g.edge(dice.below(g.num_edges())).value() = spring(dice);
+      break;
+    case 4:
+      for (int k = 0; k < 3 && g.num_nodes() > 1; ++k)
+        g.remove_node(some_node());
+      break;
+    case 5:
+      for (int k = 0; k < 5 && g.num_edges() > 0; ++k)
+        g.remove_edge(g.edge(dice.below(g.num_edges())));
+      break;
+    case 6:
+      add_random(g, dice, 1 + dice.below(4), 8);
+      break;
+    default:
+      break;  // nothing
+  }
+}
+
+bool same_bits(const Cloth& a, const Cloth& b) {
+  if (a.num_nodes() != b.num_nodes()) return false;
+  for (unsigned i = 0; i < a.num_nodes(); ++i)
+    if (a.node(i).position() != b.node(i).position() ||
+        a.node(i).value().vel != b.node(i).value().vel)
+      return false;
+  return true;
+}
+
+/** The largest difference of two states, over 1 and what is there. */
+double difference(const Cloth& a, const Cloth& b) {
+  double most = 0;
+  for (unsigned i = 0; i < a.num_nodes(); ++i) {
+    const Point x = b.node(i).position(), v = b.node(i).value().vel;
+    most = std::max(most, norm(a.node(i).position() - x) / (1 + norm(x)));
+    most = std::max(most, norm(a.node(i).value().vel - v) / (1 + norm(v)));
+  }
+  return most;
+}
+
+constexpr double h = 1e-3;
+
+/** A step by the call node by node. */
+template <typename M>
+void step_by_node(Cloth& g, double t, const ZeroForce& force,
+                  const ZeroConstraint& constraint) {
+  if constexpr (std::is_same_v<M, SymplecticEuler>) {
+    symp_euler_step(g, t, h, force, constraint);
+  } else {
+    const auto kick = [&](double now) {
+      std::vector<Point> f;
+      for (Node n : g.nodes()) f.push_back(force(n, now));
+      for (Node n : g.nodes())
+        n.value().vel += (h / 2 / n.value().mass) * f[n.index()];
+    };
+    kick(t);
+    for (Node n : g.nodes()) n.position() += h * n.value().vel;
+    constraint(g, t + h);
+    kick(t + h);
+  }
+}
+
+template <typename M>
+class FlatFlowTest : public ::testing::Test {
+ protected:
+  ~FlatFlowTest() override { Sweep::set_threads(0); }
+
+  /** Rounds of changes and of steps, by batches of any length, one by one, and
+   * by node; from one state each. */
+  void interleave(unsigned seed, const CombinedForces& force,
+                  const CombinedConstraints& constraint) {
+    Dice dice(seed);
+    Cloth batches;
+    make(batches, dice);
+    Cloth singles = batches;
+    M by_batches, by_singles;
+    StepTimes times = {0, h};
+    for (int round = 0; round < 12; ++round) {
+      Dice again = dice;
+      change(batches, dice);
+      change(singles, again);
+      by_batches.restart(), by_singles.restart();
+      Cloth by_node = batches;
+      int left = 1 + int(dice.below(12));
+      for (int k = 0; k < left; ++k) {
+        const double t = times(k);
+        by_singles.step(singles, t, h, force, constraint);
+        step_by_node<M>(by_node, t, force, constraint);
+      }
+      while (left > 0) {
+        const int count = 1 + int(dice.below(unsigned(left)));
+        const int made =
+            by_batches.steps(batches, times, count, force, constraint);
+        ASSERT_EQ(made, count);
+        times.done += made, left -= made;
+      }
+      ASSERT_TRUE(same_bits(batches, singles)) << seed << ", round " << round;
+      ASSERT_LT(difference(batches, by_node),
+                500 * std::numeric_limits<Real>::epsilon())
+          << seed << ", round " << round;
+    }
+  }
+};
+using Methods = ::testing::Types<SymplecticEuler, Verlet>;
+TYPED_TEST_SUITE(FlatFlowTest, Methods);
+
+constexpr unsigned seeds = 15;
+
+TYPED_TEST(FlatFlowTest, BatchesAreSingleStepsAndLoopsOverNodes) {
+  for (unsigned seed = 0; seed < seeds; ++seed)
+    this->interleave(seed,
+                     make_combined_force(GravityForce(), MassSpringForce()),
+                     CombinedConstraints(CombinedConstraints::List()));
+}
+
+TYPED_TEST(FlatFlowTest, ThatHoldsForContact) {
+  for (unsigned seed = 0; seed < seeds; ++seed)
+    this->interleave(
+        seed, make_combined_force(MassSpringForce(), GravityForce(3)),
+        make_combined_constraints(PlaneConstraint(0.1),
+                                  SphereConstraint(Point(0.5, 0.5, 0.2), 0.3)));
+}
+
+// They see the graph as it is at their place in a step, and may change it.
+TYPED_TEST(FlatFlowTest, ThatHoldsForForcesAndConstraintsByCall) {
+  for (unsigned seed = 0; seed < seeds; ++seed)
+    this->interleave(seed,
+                     make_combined_force(MassSpringForce(),
+                                         [](Node n, double t) {
+                                           Point f = t * n.position();
+                                           for (Edge e : n.edges())
+                                             f += e.node2().position() -
+                                                  n.position();
+                                           return f;
+                                         }),
+                     make_combined_constraints([](Cloth& g, double t) {
+                       for (Node n : g.nodes())
+                         if (n.position().x < 0)
+                           n.value().vel.x += Real(t) * 0.1;
+                       for (Edge e : g.edges()) e.value().K *= Real(1.001);
+                     }));
+}
+
+// The springs count as often as they are in the sum.
+TYPED_TEST(FlatFlowTest, ThatHoldsForNoSpringsAndForTwice) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    const CombinedConstraints none(CombinedConstraints::List{});
+    this->interleave(seed, make_combined_force(GravityForce()), none);
+    this->interleave(
+        seed, make_combined_force(MassSpringForce(), MassSpringForce()), none);
+  }
+}
+
+TYPED_TEST(FlatFlowTest, NeitherThreadsNorProcessorsChangeABit) {
+  const auto run = [](int threads, lanes::Cpu cpu) {
+    Sweep::set_threads(threads);
+    lanes::cpu = cpu;
+    Dice dice(3);
+    Cloth g;  // rows of offsets up to 71, and others: 5 parts
+    build_cloth(g, grid_points(70), grid_quads(70), Mesh::diagonals);
+    for (Node n : g.nodes()) n.value() = heavy(dice);
+    for (int k = 0; k < 500; ++k) g.remove_node(g.node(dice.below(4000)));
+    for (int k = 0; k < 300; ++k) {
+      const Node a = g.node(dice.below(4000)), b = g.node(dice.below(4000));
+      if (a != b) g.add_edge(a, b, spring(dice));
+    }
+    TypeParam method;
+    method.steps(g, {0, h}, 40,
+                 make_combined_force(GravityForce(), MassSpringForce(),
+                                     DampingForce(0.1)),
+                 SphereConstraint());
+    lanes::cpu = lanes::best_cpu();
+    return g;
+  };
+  const Cloth one = run(1, lanes::Cpu::plain);
+  for (int cpu = 0; cpu <= int(lanes::best_cpu()); ++cpu)
+    for (int threads : {1, 3})
+      EXPECT_TRUE(same_bits(run(threads, lanes::Cpu(cpu)), one))
+          << threads << " threads, " << cpu;
+}
+
+TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {
+  Cloth g;
+  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  for (Node n : g.nodes()) n.value().vel = Point(0, 0, -1);
+  TypeParam method;
+  // The node of the middle is inside from the 51st millimetre on.
+  const TearConstraint tear(Ball{Point(0.5, 0.5, -0.1505), 0.1});
+  const ZeroForce none;
+  EXPECT_EQ(method.steps(g, {0, h}, 20, none, tear), 20);
+  EXPECT_EQ(g.num_nodes(), 25u);
+  EXPECT_EQ(method.steps(g, {0.02, h}, 100, none, tear), 31);
+  EXPECT_EQ(g.num_nodes(), 24u);
+}
+
+// Drag, solved exactly: v = v0 e^(-c t/m), by nodes of any mass.
+TEST(FlatFlow, DragDecaysAsItIsSolved) {
+  Dice dice(1);
+  Cloth g;
+  add_random(g, dice, 300, 0);
+  for (unsigned i = 100; i < 200; ++i) g.node(i).value().mass = 1;
+  const Cloth before = g;
+  const double c = 0.7;
+  Verlet verlet;
+  verlet.steps(g, {0, 0.01}, 50, DampingForce(c), ZeroConstraint());
+  for (Node n : g.nodes()) {
+    const NodeData old = before.node(n.index()).value();
+    const double left = std::exp(-c / old.mass * 0.5);
+    const Point x =
+        before.node(n.index()).position() + (1 - left) * old.mass / c * old.vel;
+    EXPECT_LT(norm(n.value().vel - left * old.vel),
+              100 * std::numeric_limits<Real>::epsilon());
+    EXPECT_LT(norm(n.position() - x),
+              100 * std::numeric_limits<Real>::epsilon());
+  }
+}
+
+// ------------------------------------------------------------------ FlatCloth
+
+TEST(FlatClothRows, AreTheOffsetsOfAGrid) {
+  const Drag none;
+  FlatCloth flat;
+  Cloth g;
+  build_cloth(g, grid_points(20), grid_quads(20), Mesh::diagonals);
+  flat.take(g, 1, none);
+  std::vector<unsigned> offsets;
+  for (const auto& row : flat.rows()) offsets.push_back(row.offset);
+  EXPECT_EQ(offsets, (std::vector<unsigned>{1, 19, 20, 21}));
+  EXPECT_EQ(flat.rest(), nullptr);
+  EXPECT_EQ(flat.reach(), 21u);
+  double K = 0, L = 0, K_rows = 0, L_rows = 0;
+  for (Edge e : g.edges()) K += e.value().K, L += e.value().L;
+  for (const auto& row : flat.rows())
+    for (unsigned i = 0; i < 400; ++i)
+      K_rows += flat.K()[row.first + i], L_rows += flat.L()[row.first + i];
+  EXPECT_NEAR(K_rows, K, 1e-3 * K);
+  EXPECT_NEAR(L_rows, L, 1e-3 * L);
+  g.add_edge(g.node(0), g.node(399), {1, 1});
+  flat.take(g, 1, none);
+  ASSERT_NE(flat.rest(), nullptr);
+  EXPECT_EQ(flat.rest()->num_rows(), 2u);
+  EXPECT_EQ(flat.reach(), 399u);
+}
+
+// ----------------------------------------------------------------------- Scene
+
+// Who looks at a run changes no bit of it, whether steps are chosen or not.
+TEST(FlatFlowScene, StepsAtOnceAreStepsOneByOne) {
+  for (const TimeStep& step :
+       {TimeStep{.dt = 0.0007}, TimeStep{.rule = StepRule::sharp}}) {
+    Model m = stage_scene("tear", 8);
+    m.step = step;
+    Scene at_once(m), one_by_one(m), mixed(m);
+    constexpr double end = 0.71;
+    EXPECT_TRUE(at_once.run_to(end)) << at_once.failure();
+    EXPECT_TRUE(one_by_one.run_to(end, [] {}));
+    while (!mixed.done(end))
+      mixed.steps_at_once(1 + int(mixed.steps() % 7), end);
+    for (const Scene* s : {&one_by_one, &mixed}) {
+      EXPECT_EQ(s->steps(), at_once.steps());
+      EXPECT_EQ(s->time(), at_once.time());
+      EXPECT_EQ(s->evaluations(), at_once.evaluations());
+      EXPECT_TRUE(same_bits(s->cloth(), at_once.cloth()));
+    }
+  }
+}
+
+}  // namespace
