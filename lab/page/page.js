@@ -237,6 +237,8 @@ function showFailure(words) {
   const text = words.replace(/--dt (\S+)/g, 'dt = $1 s')
     .replace(/--method (\S+)/g, 'method $1');
   $('failure').hidden = !text;
+  $('failure').querySelector('h2').textContent =
+    text.startsWith('diverged') ? 'It diverged' : 'It failed';
   // Where it happened; and behind the last good state, why and what works.
   const at = text.indexOf(' s; ', text.indexOf('the last good state'));
   const parts = at < 0 ? [text]

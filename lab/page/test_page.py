@@ -236,6 +236,19 @@ def a_step_beyond_the_limit_diverges_with_a_ring_and_a_reason(b):
 
 
 @test
+def a_step_that_can_not_be_made_is_told_and_the_page_goes_on(b):
+    opened(b, "#scene=forces&side=5&method=implicit-midpoint&K=1000000"
+              "&share=1000")
+    b.wait("page.failed && page.why", 120)
+    words = b.value("$('failure').innerText")
+    assert "It failed" in words and "Newton's method is at a residual" in words
+    choose(b, "method", 2)
+    slide(b, "share", 0.3)
+    b.wait("!page.failed && page.readings.main.method === 'verlet' &&"
+           " page.readings.main.time > 0.1")
+
+
+@test
 def two_methods_run_beside_each_other(b):
     opened(b)
     choose(b, "rival", 1)
