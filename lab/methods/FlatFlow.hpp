@@ -40,7 +40,9 @@ struct FlatStage {
 class FlatFlow {
  public:
   FlatFlow() = default;
-  FlatFlow(FlatFlow&&) = default;  // no copies: rings point into it
+  FlatFlow(FlatFlow&&) = default;
+  /** What is kept, too; rings, which point into the other one, come anew. */
+  FlatFlow(const FlatFlow& a) : cloth_(a.cloth_) {}
 
   /** Take the state of @a g. Kept accelerations are those of before if the
    * version() of @a g is, too.
