@@ -120,6 +120,13 @@ std::string recommendation(const Advice& a) {
                  ? "; the error of the mesh itself is not known"
                  : finer(a.robustness.finer_grid, "; on twice the cells")) +
             '\n';
+  const auto misses = [&](const std::optional<double>& error) {
+    return error && !(*error <= a.tolerance);
+  };
+  if (misses(a.robustness.half_step) || misses(a.robustness.finer_grid))
+    text +=
+        "  by accident: its errors cancel, and a finer run is worse; nothing "
+        "tried is within the tolerance however it is refined\n";
   return text;
 }
 

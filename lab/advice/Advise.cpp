@@ -139,8 +139,9 @@ std::vector<double> Adviser::factors() const {
   for (const GridReport& g : advice_.grids) {
     all.push_back(g.factor);
     if (scene_.sheets.empty()) break;
-    for (double f : {std::sqrt(2.0) * g.factor, 2 * g.factor})
-      if ((f < 2 * g.factor || &g == &advice_.grids.back()) &&
+    for (int k = 1; k <= between; ++k)
+      if (const double f = std::pow(2, double(k) / between) * g.factor;
+          (k < between || &g == &advice_.grids.back()) &&
           double(nodes_of(on_grid(f))) <= rules_.most_nodes)
         all.push_back(f);
   }
@@ -179,6 +180,12 @@ std::string Adviser::unsettled() const {
          "steps changed it by " +
          CME212::two_digits(grids.step_to(grids.size() - 2)) + " and " +
          with_unit(grids.step_to(grids.size() - 1), advice_.measure);
+}
+
+std::string Adviser::too_unsure() const {
+  return "what finer grids tend to is uncertain by " +
+         with_unit(advice_.grids.uncertainty_of_limit(), advice_.measure) +
+         " after " + std::to_string(advice_.grids.size()) + " grids";
 }
 
 std::string Adviser::too_coarse(std::size_t nodes) const {
@@ -254,7 +261,7 @@ void Adviser::perturb(Choice& c) {
 void Adviser::foresee() {
   const Refinement& grids = advice_.grids;
   if (grids.size() < 3) return;
-  for (double factor = grids[0].factor;; factor *= std::sqrt(2)) {
+  for (double factor = grids[0].factor;; factor *= std::pow(2, 1. / between)) {
     Model m = on_grid(factor);
     if (double(nodes_of(m)) > rules_.most_nodes) return;
     const double error = size_of(grids.error(factor));
@@ -279,7 +286,7 @@ bool Adviser::goes_on() const {
           advice_.grids.uncertainty_of_limit() >
               rules_.most_uncertainty * advice_.tolerance) &&
          8 * pilot_work(last.factor) <=
-             std::min(rules_.patience, pilots_.left() / 4) &&
+             std::min(rules_.patience, pilots_.left() / 2) &&
          double(nodes_of(on_grid(2 * last.factor))) <= rules_.most_nodes;
 }
 

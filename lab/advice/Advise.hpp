@@ -19,7 +19,7 @@ struct AdviceRules {
    * second. */
   double patience = 1e8;
   double shake = 1e-6;    ///< [m], of starts that should change nothing
-  int most_checked = 12;  ///< choices that are run to see if they do
+  int most_checked = 24;  ///< choices that are run to see if they do
   /** What all pilots may take, in spring evaluations, so that advice is the
    * same on every machine; 0: the larger of 2e8, about 2 s, and a run of the
    * scene as it stands. */
@@ -28,6 +28,13 @@ struct AdviceRules {
   Pilots::Tell tell = [](const std::string&, double) {};
   double most_uncertainty = 0.2;  ///< of the tolerance, in the limit of all
                                   ///< grids
+  /** Share of its uncertainty for which a choice that was run must leave room:
+   * to leave room for all of it takes a grid or two more, and few scenes need
+   * it: adviser_suite.cpp. */
+  double counted = 0.45;
+  /** With more than this share of the tolerance uncertain in the limit of all
+   * grids nothing is advised. */
+  double most_unsure = 0.6;
 };
 
 /** @a m as pilots compute it, unless it is stiff: by Verlet, with the step that

@@ -21,6 +21,9 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
  * give the same: a few runs don't show the largest of all. */
 constexpr double scatter_share = 1.5;
 
+/** What is uncertain of the error of a run, at least, as a share of it. */
+constexpr double of_itself = 0.06;
+
 inline std::size_t nodes_of(const Model& m) { return mesh_of(m).points.size(); }
 
 /** Finds an Advice. */
@@ -55,6 +58,8 @@ class Adviser {
     Model model;
     std::vector<std::string> gone;
     double factor, error, uncertainty, work;
+    double effects =
+        0;  // of parts and step: how much of its error may be theirs
     double seconds = 0;
     bool checked = false;
     Robustness robustness = {};
@@ -121,8 +126,11 @@ class Adviser {
    * grid, so its error is in it. */
   bool find_grid();
   double first_factor() const;
-  /** The grids to choose from, the coarsest first: those that were tried, the
-   * next one, and one in the midst between each two. */
+  /** Choices of a grid are this many from one that is tried to the next one, of
+   * twice the cells: each takes 1.4 times the work of the one before. */
+  static constexpr int between = 6;
+  /** The grids to choose from, the coarsest first: those that were tried, those
+   * between them, and the next one. */
   std::vector<double> factors() const;
   bool may_suffice() const;
 
@@ -130,6 +138,7 @@ class Adviser {
   std::string so_far() const;
   std::string too_dear(double work) const;
   std::string unsettled() const;
+  std::string too_unsure() const;
   std::string too_coarse(std::size_t nodes) const;
 
   // ------------------------------------------------------------------ Chaos

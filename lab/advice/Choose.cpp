@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -149,8 +150,16 @@ void Adviser::choose() {
     t = pilots_.run(m, doing, work);
     return t.ok() ? size_of(Effect(t.answer, limit)) : infinite;
   };
+  const double unsure = grids.uncertainty_of_limit();
+  if (unsure > rules_.most_unsure * advice_.tolerance) {
+    refuse(too_unsure());
+    return;
+  }
+  const double counted = rules_.counted * unsure;
   int runs = 0;
+  std::map<double, double> of_grid;  // by factor: the grid's error, at least
   for (Choice& c : choices()) {
+    if (of_grid[c.factor] - c.effects > advice_.tolerance) continue;
     const bool looks = c.work <= rules_.patience && runs < rules_.most_checked;
     if (!looks || !pilots_.affords(c.work, 0.5)) {
       if (c.error + c.uncertainty <= advice_.tolerance && is_scene(c.model)) {
@@ -164,9 +173,11 @@ void Adviser::choose() {
     const std::string nodes = std::to_string(nodes_of(c.model)) + " nodes by " +
                               c.model.method->info.name + ' ';
     c.error = off(c.model, c.work, nodes, t);
-    c.uncertainty = grids.uncertainty_of_limit();
+    c.uncertainty = std::max(unsure, of_itself * c.error);
     c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
-    if (!(c.error + c.uncertainty <= advice_.tolerance)) continue;
+    double& least = of_grid[c.factor];
+    if (t.ok()) least = std::max(least, c.error + counted - c.effects);
+    if (!(c.error + counted <= advice_.tolerance)) continue;
     Model smaller = c.model;
     smaller.step.dt /= 2;
     c.robustness.half_step =
@@ -177,7 +188,7 @@ void Adviser::choose() {
     if (scene_.sheets.empty() && half.ok())
       c.uncertainty = std::max(*c.robustness.half_step,
                                size_of(Effect(half.answer, t.answer)) / 3);
-    const double most = advice_.tolerance - grids.uncertainty_of_limit();
+    const double most = advice_.tolerance - counted;
     bool robust = *c.robustness.half_step <= most;
     if (robust && !scene_.sheets.empty() && pilots_.affords(8 * c.work, 0.3)) {
       Model finer = refined_without(2 * c.factor, c.gone);
@@ -188,8 +199,8 @@ void Adviser::choose() {
       robust = *c.robustness.finer_grid <= most;
     }
     if (robust) perturb(c);
-    robust = robust && c.error + c.uncertainty + scatter_share * c.scatter <=
-                           advice_.tolerance;
+    const double all = c.uncertainty + scatter_share * c.scatter;
+    robust = robust && c.error + rules_.counted * all <= advice_.tolerance;
     if (robust) {
       found_ = c;
       return;
@@ -247,7 +258,8 @@ std::vector<Adviser::Choice> Adviser::choices() const {
           const double work = costs_->of_step(*s.method, m->step.dt * finer) *
                               finer * finer * less->springs *
                               std::ceil(m->t_end / m->step.dt);
-          all.push_back({*m, less->gone, factor, error, uncertainty, work});
+          all.push_back({*m, less->gone, factor, error, uncertainty, work,
+                         size_of(less->effect) + size_of(step)});
           if (error + uncertainty <= advice_.tolerance) break;
         }
   }

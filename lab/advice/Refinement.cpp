@@ -7,11 +7,13 @@
 namespace lab {
 
 namespace {
-// Shares of an error; by experience, see adviser_suite.cpp.
-constexpr double of_limit = 0.15, of_untried = 0.2;
+// Shares of an error, and of how far two limits are apart: by experience, see
+// adviser_suite.cpp.
+constexpr double of_limit = 0.05, of_untried = 0.2, of_spread = 1.8;
 }  // namespace
 
 void Refinement::add(const GridReport& next) {
+  if (size() >= 3) limit_before_ = limit();
   grids_.push_back(next);
   if (size() >= 3) order_ = order();
   for (GridReport& g : grids_)
@@ -45,15 +47,22 @@ Answer Refinement::limit() const {
   return Effect(back().trial.answer, error(back().factor).by).by;
 }
 
+/** What the error a h + b h^2 of mesh width h makes the limit of three grids:
+ * Romberg's extrapolation.
+ * @pre k is at least 2, and a grid */
+Answer Refinement::limit_by_powers(std::size_t k) const {
+  const Answer &a = answer(k - 2), &b = answer(k - 1), &c = answer(k);
+  return Effect(a.size()).add(1 / 3., a).add(-2, b).add(8 / 3., c).by;
+}
+
 double Refinement::uncertainty_of_limit() const {
-  const std::size_t k = size() - 1;
-  if (k < 2) return 0;
+  const std::size_t n = size();
+  if (n < 3) return 0;
+  const double by_law = distance(limit(), limit_by_powers(n - 1), measure_);
   // The order of three grids fits them by choice; that of four has to.
-  const double share = of_limit + (k > 2 ? surprise(k - 1) / 2 : of_limit);
-  // What is unforeseen of one step may come again at the next ones.
-  const double more = std::pow(2, order_);
-  return std::min(1.0, share) * back().error +
-         surprise(k) * step_to(k - 1) / more / (more - 1);
+  const double by_grids =
+      n > 3 ? distance(limit(), limit_before_, measure_) / 2 : back().error / 4;
+  return of_limit * back().error + of_spread * std::max(by_law, by_grids);
 }
 
 double Refinement::uncertainty(double factor) const {
@@ -67,15 +76,6 @@ double Refinement::uncertainty(double factor) const {
 double Refinement::order() const {
   const double d = step_to(size() - 2), e = step_to(size() - 1);
   return std::clamp(e > 0 ? std::log2(d / e) : 2.0, 0.8, 2.0);
-}
-
-/** How far the step to grid k-1 is from what the step to grid k makes expect,
- * relative to it. */
-double Refinement::surprise(std::size_t k) const {
-  Effect d(answer(k - 1), answer(k - 2));
-  const double all = d.size(measure_);
-  d.add(-std::pow(2, order_), Effect(answer(k), answer(k - 1)).by);
-  return all > 0 ? d.size(measure_) / all : 0;
 }
 
 }  // namespace lab

@@ -64,7 +64,8 @@ class Refinement {
   Effect error(double factor) const;
   /** The limit of the answers.  @pre as for error() */
   Answer limit() const;
-  /** How far that may be from the truth. */
+  /** How far that may be from the truth: by how far apart limits are that
+   * another law of the error gives, and the grids without the last one. */
   double uncertainty_of_limit() const;
   /** How much larger than its size the error of the grid of @a factor may be.
    */
@@ -74,10 +75,11 @@ class Refinement {
   Measure measure_;
   std::vector<GridReport> grids_;
   double order_ = 1;
+  Answer limit_before_;  // of all grids but the last, if these are 3
 
   const Answer& answer(std::size_t k) const { return grids_[k].trial.answer; }
   double order() const;
-  double surprise(std::size_t k) const;
+  Answer limit_by_powers(std::size_t k) const;
 };
 
 }  // namespace lab
