@@ -219,7 +219,7 @@ vtk() {
 # A sample of the suite of lab/advice/README.md; other scenes than the tables.
 advice() {
   build/check/adviser_suite --scenes 12 --first 501 --want-met 85 \
-    --want-cheap 40 --out build/check/adviser.csv
+    --want-cheap 50 --out build/check/adviser.csv
 }
 # The web page in a headless browser, where it can be built: its size, bits,
 # controls; pictures of it are in build/check.

@@ -40,7 +40,7 @@ set rmargin at screen 0.97
 set xlabel 'spring evaluations (springs x force evaluations) of the best choice'
 set ylabel 'spring evaluations of the advised run'
 set autoscale xy
-set label 1 '1.5 times the best' at graph 0.33, 0.5 right \
+set label 1 '1.5 times the best' at graph 0.53, 0.68 right \
   textcolor rgb '#D55E00'
 set label 2 'as the best' at graph 0.6, 0.48 left textcolor rgb '#777777'
 plot x lc rgb '#999999' dt 2, 1.5*x lc rgb '#D55E00' lw 2, \

@@ -146,16 +146,25 @@ def bench(nodes, name, beside, column="median_s"):
 def advice(which):
     """How many scenes of the suite are so."""
     rows = table("advice/results/adviser.csv").rows
-    got = [{k: float(r[k]) for k in ("tolerance", "real", "work", "best work",
-                                     "lucky work")}
+    got = [{k: float(v) for k, v in r.items()
+            if k not in ("measure", "method", "refusal")}
            for r in rows if float(r["work"]) > 0]
-    return {"advised": len(got), "refused": len(rows) - len(got),
+    return {"scenes": len(rows),
+            "advised": len(got), "refused": len(rows) - len(got),
             "met": sum(r["real"] <= r["tolerance"] for r in got),
+            "robust": sum(max(r["real"], r["half step"], r["twice the cells"])
+                          <= r["tolerance"] for r in got),
+            "within": sum(abs(r["real"] - r["predicted"]) <= r["doubt"]
+                          for r in got),
             "cheap": sum(r["work"] <= 1.5 * r["best work"] for r in got),
-            "lucky": sum(r["work"] <= 1.5 * r["lucky work"] for r in got),
+            "worst": max(r["work"] / r["best work"] for r in got),
             "chaotic": sum("chaotic" in r["refusal"] for r in rows),
-            "nodes": sum("nodes would be too" in r["refusal"] for r in rows),
             }[which]
+
+
+def share(which):
+    """The same in percent of the scenes that got advice."""
+    return 100 * advice(which) / advice("advised")
 
 
 def solver(K, share, name, tolerance, column="seconds_median"):
