@@ -151,7 +151,7 @@ Watched run_chosen(unsigned seed, double seconds) {
 // Without drag, from 0.6 of the limit: a step of that length gains more than
 // the tolerance, the chosen one does not.
 TEST(SteeredStep, IsShortenedWhereAShareOfTheLimitGainsEnergy) {
-  for (unsigned seed : {0u, 43u, 118u}) {
+  for (unsigned seed : {0u, 36u, 118u}) {
     const RandomScene r(seed);
     const double first =
         Scene(r.recipe, {.rule = StepRule::safe}, *r.method).dt();

@@ -132,7 +132,7 @@ drawn() {
       { echo "$file:1: is no chart that draw.py draws"; return 1; }
   done
 }
-build_tests() { in_folder . units; }
+build_tests() { in_folder . units work_precision; }
 
 # ---- check-full
 

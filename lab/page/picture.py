@@ -6,8 +6,8 @@ import sys
 from browser import Browser
 
 run = ("#scene=forces&side=25&method=verlet&share=0.5&rival=implicit-euler"
-       "&rivalShare=8&camera=-1.1_0.25_0.95&steps=38")
-with Browser(800, 800) as browser:
+       "&rivalShare=8&camera=-1.1_0.25_0.85&steps=38")
+with Browser(1200, 860) as browser:
     browser.open(f"file://{pathlib.Path(sys.argv[1]).resolve()}{run}")
     browser.wait("page.calls === 38 && !page.waiting && !page.dirty", 300)
     browser.value("new Promise(done => setTimeout(done, 500))")

@@ -146,9 +146,11 @@ int Scene::drag_interval() const {
 }
 
 /** How many steps, up to @a most, nobody has to look at but the last one; 1 if
- * work is done on the cloth, which is summed up step by step. */
+ * work is done on the cloth, which is summed up step by step. Symplectic Euler
+ * puts held nodes where they were to be at the start of a step, so what comes
+ * to rest moves them once more. */
 int Scene::steps_to_look(int most) const {
-  if (hand_ || !constraint_.is_at_rest(time())) return 1;
+  if (hand_ || !constraint_.is_at_rest(time() - clock_.dt)) return 1;
   const auto up_to_multiple = [&](int interval) {
     most = std::min(most, interval - int(clock_.steps % interval));
   };
