@@ -239,8 +239,8 @@ unsigned page_slots(unsigned side) {
   const Scene* s = state().scene(side);
   return s ? s->cloth().node_slots() : 0;
 }
-const double* page_positions(unsigned side) {
-  static_assert(sizeof(Point) == 3 * sizeof(double));
+const Real* page_positions(unsigned side) {
+  static_assert(sizeof(Point) == 3 * sizeof(Real));
   return &state().scene(side)->cloth().positions()[0].x;
 }
 const float* page_points(unsigned side) {

@@ -6,7 +6,9 @@
  *
  * Scenes and methods are numbered as page_about() lists them, nodes by id. Side
  * 0 is the scene, side 1 the one beside it while page_compare() runs.
- * What throws ends a call: NoExceptions.cpp. */
+ * What throws ends a call: wasi.cpp. */
+
+#include "CME212/Point.hpp"
 
 extern "C" {
 
@@ -55,8 +57,8 @@ const char* page_readings(int sharp);
 
 /** Slots of nodes of a side; 0: there is no such side. */
 unsigned page_slots(unsigned side);
-/** Positions [m], three numbers a slot. */
-const double* page_positions(unsigned side);
+/** Positions [m], three numbers a slot; doubles where the page is built. */
+const Real* page_positions(unsigned side);
 /** What is drawn, as page_points() and page_mesh() were called last: a side
  * that failed is drawn some steps later, had nobody stopped it.
  * x y z [m] and the largest strain of a spring there, four numbers a slot. */
