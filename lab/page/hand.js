@@ -189,13 +189,21 @@ class Hand {
     } else if (name === 'p') {
       const node = this.nodeAt(place, 1e4);
       if (node >= 0) this.page.ask('pin', node);
-    } else if (name === 'x') {  // a stroke across the node next to the cross
+    } else if (name === 'x') {
+      // A stroke across the steepest edge of the node next to the cross.
       const node = this.nodeAt(place, 1e4);
       if (node < 0) return;
-      const at = this.page.sides[0].points.subarray(4 * node, 4 * node + 3);
-      const [x, y] = camera.place(place.frame, at);
+      const {lines, points} = this.page.sides[0];
+      const seen = i =>
+        camera.place(place.frame, points.subarray(4 * i, 4 * i + 3));
+      const [x, y] = seen(node);
+      let rise = 0;
+      lines.forEach((end, k) => {
+        const dy = end === node ? seen(lines[k ^ 1])[1] - y : 0;
+        if (Math.abs(dy) > Math.abs(rise)) rise = dy;
+      });
       const ends = [-1, 1].map(k =>
-        this.rayAt({...place, x: x + 0.3 * k, y: y + 0.02}));
+        this.rayAt({...place, x: x + 0.3 * k, y: y + 0.4 * rise}));
       this.page.ask('cut', ...ends[0], ...ends[1]);
     } else {
       return;
