@@ -27,7 +27,7 @@ struct Figure {
   std::string name;
   double items = 1;    ///< that one call works on: times are given for an item
   std::string group;   ///< the heading under which it stands; may be empty
-  std::string beside;  ///< name of the figure of its group to be divided by
+  std::string beside;  ///< figure of its group by whose time an item is divided
   std::function<void()> call = {};
   double bytes = 0;  ///< that an item must move through memory; 0: not known
   int threads = 1;
@@ -138,10 +138,14 @@ class Bench {
 
   static std::string key(const Figure& f) { return f.group + '|' + f.name; }
 
+  /** Of the times an item takes; 0 if it stands beside nothing. */
   double ratio(const Figure& f) const {
-    if (f.beside.empty()) return 0;
-    const double beside = seconds(f.group, f.beside).median;
-    return beside > 0 ? seconds(f.group, f.name).median / beside : 0;
+    const auto other = std::ranges::find_if(figures_, [&](const Figure& o) {
+      return o.group == f.group && o.name == f.beside;
+    });
+    if (other == figures_.end()) return 0;
+    const double beside = seconds(f.group, f.beside).median / other->items;
+    return beside > 0 ? seconds(f.group, f.name).median / f.items / beside : 0;
   }
 
   /** Takes down each repetition. */
