@@ -3,9 +3,9 @@
 # tests are dealt out by size to the programs tests_0, tests_1 ...
 UNITS ?= 6
 
-# Programs of their own: three specialize templates of other namespaces, five are
-# linked with the window, one hooks malloc, one holds the course's headers to
-# what they bring.
+# Programs of their own: three specialize templates of other namespaces, five
+# are linked with the window, one hooks malloc, one holds the course's headers
+# to what they bring.
 tests_alone := test_graph test_graph_hubs test_viewer test_panels test_faces \
                test_image test_screen test_slot_map test_cloth \
                test_course_interface

@@ -58,8 +58,7 @@ class Adviser {
     Model model;
     std::vector<std::string> gone;
     double factor, error, uncertainty, work;
-    double effects =
-        0;  // of parts and step: how much of its error may be theirs
+    double effects = 0;  // how much of its error parts and step may make
     double seconds = 0;
     bool checked = false;
     Robustness robustness = {};

@@ -3,6 +3,8 @@
  * Linear drag whose coefficient each node has for itself. */
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -57,6 +59,21 @@ class Drag {
  private:
   double same_;
   std::vector<double> by_id_;
+};
+
+/** The flow of x' = v, m v' = -c v over a time h, solved exactly: x += way v,
+ * v *= decay. */
+struct DragFlow {
+  double way, decay;
+  /** @param gamma c/m >= 0 [1/s]   @param h [s]; may be < 0 */
+  DragFlow(double gamma, double h)
+      : way(gamma > 0 ? -std::expm1(-gamma * h) / gamma : h),
+        decay(std::exp(-gamma * h)) {}
+  /** Most nodes have the same c/m, but for round-off. */
+  static bool is_same(double gamma, double other) {
+    constexpr double rounding = 4 * std::numeric_limits<Real>::epsilon();
+    return !(std::abs(gamma - other) > rounding * other);
+  }
 };
 
 }  // namespace lab

@@ -68,12 +68,10 @@ void Sweep::update(const Cloth& g) {
   version_ = g.version();
 }
 
-/** The halo: how many parts away the nodes may be whose positions @a force
- * reads. */
-int Sweep::halo_of(const ForcePlan& force) const {
+int Sweep::halo_of(const ForcePlan& force, unsigned reach) {
   if (!force.spring_multiplicity()) return std::numeric_limits<int>::max();
   // A gather reads one number behind the node, which may be of the next part.
-  return int(stencil_->reach() / part_size) + 1;
+  return int(reach / part_size) + 1;
 }
 
 void Sweep::each_part(const Cloth& g, const PartVisitor& use) {
@@ -151,8 +149,8 @@ void Sweep::add_up(const PartVisitor& move, const Cloth& g, double t,
     add_forces(part, t, force, f);
     use(part, f);
   };
-  in_turn(g.node_slots(), halo_of(force), std::ref(move_part),
-          std::ref(sweep_and_use));
+  in_turn(g.node_slots(), halo_of(force, stencil_->reach()),
+          std::ref(move_part), std::ref(sweep_and_use));
 }
 
 }  // namespace lab

@@ -40,6 +40,9 @@ class Sweep {
    * Throws as parts(). */
   static void in_turn(unsigned slots, int halo, const IdVisitor& move,
                       const IdVisitor& use);
+  /** The halo: how many parts away the nodes may be whose positions @a force
+   * reads.  @param reach the largest difference of two neighbors' ids */
+  static int halo_of(const ForcePlan& force, unsigned reach);
   /** How many threads that is at most, and which one is calling. */
   static std::size_t threads();
   static std::size_t thread();
@@ -96,7 +99,6 @@ class Sweep {
   std::vector<Buffer> buffer_;  // by thread
 
   void update(const Cloth& g);
-  int halo_of(const ForcePlan& force) const;
   void each_part(const Cloth& g, const PartVisitor& use);
   void add_up(const PartVisitor& move, const Cloth& g, double t,
               const ForcePlan& force, std::vector<Point>* f,

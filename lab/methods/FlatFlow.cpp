@@ -1,7 +1,6 @@
 #include "lab/methods/FlatFlow.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -41,15 +40,12 @@ void FlatFlow::prepare() {
   }
 }
 
-/** Most nodes have the same c/m, to round-off. */
 void FlatFlow::find_drag() {
-  constexpr double same = 4 * std::numeric_limits<Real>::epsilon();
   const NodeData* node = g_->node_values().data();
   const Drag& c = force_->drag();
   for (unsigned i = 0; i < cloth_.slots(); ++i) {
     const double gamma = c[i] / node[i].mass;
-    if (drag_.empty() ||
-        std::abs(gamma - drag_.back().gamma) > same * drag_.back().gamma)
+    if (drag_.empty() || !DragFlow::is_same(gamma, drag_.back().gamma))
       drag_.push_back({i, gamma});
     drag_.back().last = i + 1;
   }
@@ -59,9 +55,8 @@ void FlatFlow::run(const FlatStage& stage) {
   stage_ = stage;
   if (stage.drift)
     for (DragRun& run : drag_) {
-      const double h = *stage.drift, gamma = run.gamma;
-      run.way = Real(gamma > 0 ? -std::expm1(-gamma * h) / gamma : h);
-      run.decay = Real(std::exp(-gamma * h));
+      const DragFlow flow(run.gamma, *stage.drift);
+      run.way = Real(flow.way), run.decay = Real(flow.decay);
     }
   held_.clear();
   const auto take_place = [this](Node n, const Place& place) {
@@ -80,12 +75,6 @@ void FlatFlow::run(const FlatStage& stage) {
                       const Sweep::IdVisitor& then) {
     Sweep::in_turn(cloth_.slots(), halo, first, then);
   };
-  constexpr int all = std::numeric_limits<int>::max();
-  const auto halo = [&] {
-    return by_graph_ && !force_->spring_multiplicity()
-               ? all
-               : int(cloth_.reach() / Sweep::part_size) + 1;
-  };
   if (stage.project && !stage.project->nodewise()) {
     go(0, std::ref(move_part), nothing);
     stage.project->apply_flat(cloth_, *g_, stage.t);
@@ -93,7 +82,8 @@ void FlatFlow::run(const FlatStage& stage) {
     if (by_graph_ && stage.kick) cloth_.write(*g_);
     if (stage.kick) go(0, nothing, std::ref(kick_part));
   } else if (stage.kick) {
-    go(halo(), std::ref(move_part), std::ref(kick_part));
+    go(Sweep::halo_of(*force_, cloth_.reach()), std::ref(move_part),
+       std::ref(kick_part));
   } else {
     go(0, std::ref(move_part), nothing);
   }

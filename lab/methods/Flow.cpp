@@ -1,8 +1,5 @@
 #include "lab/methods/Flow.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include "lab/fast/Kernels.hpp"
 
 namespace lab {
@@ -18,18 +15,13 @@ void drift(Cloth& g, const Part& part, double h, const Drag& c) {
       x[i] += h * node[i].vel;
     return;
   }
-  // Most nodes have the same c/m, to round-off.
-  constexpr double same = 4 * std::numeric_limits<Real>::epsilon();
-  double gamma = 0, decay = 1, way = h;
+  double gamma = 0;
+  DragFlow flow(gamma, h);
   for (; i < part.last; ++i) {
     const double next = c[i] / node[i].mass;
-    if (std::abs(next - gamma) > same * gamma) {
-      gamma = next;
-      way = gamma > 0 ? -std::expm1(-gamma * h) / gamma : h;
-      decay = std::exp(-gamma * h);
-    }
-    x[i] += way * node[i].vel;
-    node[i].vel *= decay;
+    if (!DragFlow::is_same(next, gamma)) flow = DragFlow(gamma = next, h);
+    x[i] += flow.way * node[i].vel;
+    node[i].vel *= flow.decay;
   }
 }
 

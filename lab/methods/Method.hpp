@@ -108,6 +108,18 @@ class Method {
   }
 };
 
+/** A method whose step is a batch of one. */
+class BatchMethod : public Method {
+ public:
+  double step(Cloth& g, double t, double dt, const ForcePlan& force,
+              const ConstraintPlan& constraint) override {
+    steps(g, {t, dt}, 1, force, constraint);
+    return t + dt;
+  }
+  int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
+            const ConstraintPlan& constraint) override = 0;
+};
+
 /** A method by its name: a line of the table in Methods.hpp. */
 struct MethodEntry {
   MethodInfo info;

@@ -21,15 +21,10 @@ namespace lab {
  *         next step's first kick.
  */
 template <typename Scheme>
-class Splitting : public Method {
+class Splitting : public BatchMethod {
  public:
   static constexpr MethodInfo info = Scheme::info;
 
-  double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override {
-    steps(g, {t, dt}, 1, force, constraint);
-    return t + dt;
-  }
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;
   void restart() override { kept_for_ = nullptr; }

@@ -9,7 +9,7 @@ namespace lab {
 /** The assignment's step as a method, for speed: all forces in one sweep.
  * Equal to symp_euler_step() with a constraint, to round-off; like there, drag
  * is a force like others, and force and constraint are called with t. */
-class SymplecticEuler : public Method {
+class SymplecticEuler : public BatchMethod {
  public:
   static constexpr MethodInfo info = {"symplectic-euler",
                                       1,
@@ -19,11 +19,6 @@ class SymplecticEuler : public Method {
                                       "a first look; energy stays bounded",
                                       "accuracy: verlet costs the same"};
 
-  double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override {
-    steps(g, {t, dt}, 1, force, constraint);
-    return t + dt;
-  }
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;
 

@@ -97,6 +97,9 @@ struct State {
   }
   void apply(const Request& r) {
     live->apply(r);
+    draw_anew();
+  }
+  void draw_anew() {
     for (Drawn& d : drawn) d.beyond.reset(), ++d.changes;
   }
   void look_beyond() {
@@ -148,7 +151,7 @@ void page_load(unsigned scene, unsigned side, unsigned method) {
   m.method = &methods[method];
   State& s = state();
   s.live = std::make_unique<Live>(std::move(m));
-  for (Drawn& d : s.drawn) d.beyond.reset(), ++d.changes;
+  s.draw_anew();
 }
 const char* page_setting() {
   const Recipe& recipe = state().live->scene().recipe();
