@@ -253,6 +253,45 @@ TEST(CholeskyBackEnds, AreBothTested) {
 using Pair = BlockCholesky::Pair;
 constexpr std::size_t enough = 1'000'000;
 
+Matrix3 matrix(const Eigen::Matrix3d& m) {
+  Matrix3 all;
+  for (int i = 0; i < 3; ++i)
+    for (int c = 0; c < 3; ++c) all.column[c][i] = m(i, c);
+  return all;
+}
+Matrix3 diagonal(double x, double y, double z) {
+  return matrix(Eigen::Vector3d(x, y, z).asDiagonal());
+}
+
+TEST(Matrix3, IsAnArrayOfNumbers) {
+  CME212::default_generator.seed(7);
+  for (int turn = 0; turn < 20; ++turn) {
+    Eigen::Matrix3d dense;
+    for (int k = 0; k < 9; ++k) dense(k / 3, k % 3) = random(-1, 1);
+    Matrix3 a = matrix(dense);
+    const Point x(random(-1, 1), random(-1, 1), random(-1, 1));
+    const Eigen::Vector3d v(x.x, x.y, x.z), of_rows = dense * v,
+                                            of_columns = dense.transpose() * v;
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(times(a, four(x))[k], of_rows[k], 1e-15);
+      EXPECT_NEAR(turned_times(a, four(x))[k], of_columns[k], 1e-15);
+    }
+    // From left to right, to the last bit.
+    EXPECT_EQ(point(times(a, four(x))).y,
+              dense(1, 0) * x.x + dense(1, 1) * x.y + dense(1, 2) * x.z);
+    EXPECT_EQ(times(a, four(x))[3], 0);
+    const Eigen::Matrix3d square = dense * dense.transpose();
+    const Eigen::Matrix3d l = square.llt().matrixL();
+    a = matrix(square);
+    ASSERT_TRUE(invert_factor(a, Four()));
+    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(),
+                          inverse = l.triangularView<Eigen::Lower>().solve(one);
+    for (int k = 0; k < 9; ++k)
+      EXPECT_NEAR(a.column[k % 3][k / 3], inverse(k / 3, k % 3),
+                  1e-9 * inverse.norm());
+  }
+}
+
 /** A matrix of springs of random directions, in a BlockCholesky and dense. */
 struct Springs {
   std::vector<Pair> pairs;
@@ -266,19 +305,19 @@ struct Springs {
     dense.setZero();
     for (unsigned i = 0; i < a.rows(); ++i) {
       const Eigen::Matrix3d m = random(0.1, 1) * Eigen::Matrix3d::Identity();
-      a.add_diagonal(i, m.data());
+      a.add_diagonal(i, matrix(m));
       dense.block<3, 3>(3 * i, 3 * i) += m;
     }
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const Eigen::Vector3d n(random(-3, 3), random(-3, 3), random(-3, 3));
       Eigen::Matrix3d b = n * n.transpose();
       const auto [i, j] = pairs[k];
-      a.add_diagonal(i, b.data());
-      a.add_diagonal(j, b.data());
+      a.add_diagonal(i, matrix(b));
+      a.add_diagonal(j, matrix(b));
       dense.block<3, 3>(3 * i, 3 * i) += b;
       dense.block<3, 3>(3 * j, 3 * j) += b;
       b = -b;
-      a.add(k, b.data());
+      a.add(k, matrix(b));
       dense.block<3, 3>(3 * i, 3 * j) += b;
       dense.block<3, 3>(3 * j, 3 * i) += b;
     }
@@ -362,13 +401,12 @@ TEST(BlockCholesky, AllocatesForAnotherPatternOnly) {
   BlockCholesky a;
   ASSERT_TRUE(a.analyze(144, pairs, enough));
   std::vector<Point> x(144, Point(1, 2, 3));
-  const double one[9] = {9, 0, 0, 0, 9, 0, 0, 0, 9};
-  const double less[9] = {-1, 0, 0, 0, -1, 0, 0, 0, -1};
+  const Matrix3 nine = diagonal(9, 9, 9), less = diagonal(-1, -1, -1);
   const long before = allocations;
   for (int turn = 0; turn < 3; ++turn) {
     EXPECT_TRUE(a.analyze(144, pairs, enough));
     a.clear();
-    for (unsigned i = 0; i < 144; ++i) a.add_diagonal(i, one);
+    for (unsigned i = 0; i < 144; ++i) a.add_diagonal(i, nine);
     for (std::size_t k = 0; k < pairs.size(); ++k) a.add(k, less);
     EXPECT_TRUE(a.factorize());
     a.solve(x);
@@ -384,18 +422,14 @@ TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) {
   BlockCholesky a;
   ASSERT_TRUE(a.analyze(2, pairs, enough));
   for (double d : {-1.0, 0.0, 0.5, 1.0, nan, HUGE_VAL, 2.0}) {
-    const double diagonal[9] = {d, 0, 0, 0, d, 0, 0, 0, d};
-    const double other[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     a.clear();
-    for (unsigned i : {0u, 1u}) a.add_diagonal(i, diagonal);
-    a.add(0, other);
+    for (unsigned i : {0u, 1u}) a.add_diagonal(i, diagonal(d, d, d));
+    a.add(0, diagonal(1, 1, 1));
     EXPECT_EQ(a.factorize(), d == 2) << d;  // singular at 1
   }
-  const double diagonal[9] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
-  const double other[9] = {1, 0, 0, 0, nan, 0, 0, 0, 1};
   a.clear();
-  for (unsigned i : {0u, 1u}) a.add_diagonal(i, diagonal);
-  a.add(0, other);
+  for (unsigned i : {0u, 1u}) a.add_diagonal(i, diagonal(2, 2, 2));
+  a.add(0, diagonal(1, nan, 1));
   EXPECT_FALSE(a.factorize());
 }
 

@@ -358,6 +358,23 @@ TEST(Cuts, AreInFrontOfTheEye) {
   EXPECT_EQ(edges[0][0] + edges[0][1], 1u);
 }
 
+// Through the diagonal of the surface between two rays, at y = 0, or exactly
+// through the second ray: from either side, by a stroke of either way.
+TEST(Cuts, MissNothingWhereTrianglesMeet) {
+  const auto down = [](double y) {
+    return Ray{Point(0, y, 1), Point(0, y, -1)};
+  };
+  for (double way : {-1, 1})
+    for (double from : {-1, 1}) {
+      Cloth g;
+      for (double y : {0., way, 3.})
+        g.add_edge(g.add_node(Point(from, y, 0)),
+                   g.add_node(Point(-from, y, 0)));
+      const std::vector<Ray> stroke = {down(-way), down(way), down(2 * way)};
+      EXPECT_EQ(crossed_edges(g, stroke).size(), 2u) << way << from;
+    }
+}
+
 // ------------------------------------------------------------------------ Pins
 
 TEST(Pins, HoldANodeWhereItIs) {

@@ -225,10 +225,12 @@ advice() {
 # controls; pictures of it are in build/check.
 page() {
   local name
-  for name in clang++-19 wasm-ld-19 chromium ffmpeg; do
+  for name in chromium ffmpeg; do
     command -v $name >/dev/null ||
       { echo "skipped: the page: $name is missing: make page-deps"; return 0; }
   done
+  compgen -G '/usr/lib/llvm-*/lib/clang/*/lib/wasi' >/dev/null ||
+    { echo "skipped: the page: clang for wasm32: make page-deps"; return 0; }
   /usr/bin/python3 -c 'import websocket' 2>/dev/null ||
     { echo "skipped: the page: websocket is missing: make page-deps"; return 0; }
   in_folder . page page_positions && lab/page/test_page.py build/check

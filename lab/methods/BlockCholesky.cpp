@@ -13,44 +13,12 @@ namespace lab {
 
 namespace {
 
-using cholesky_detail::Four;
 using cholesky_detail::Row;
-using Block = BlockCholesky::Block;
 using Left = BlockCholesky::Left;
 
-/** The inverse of the factor of @a d, a lower triangle.
- * @param least what the squares of the factor's diagonal must exceed
- * @return false if they do not, or are not finite */
-[[gnu::always_inline]] inline bool invert_factor(Block& d, const Four& least) {
-  Four* const c = d.column;
-  double l[3][3] = {}, inverse[3][3] = {};
-  bool good = true;
-  for (int j = 0; j < 3; ++j) {
-    for (int i = j; i < 3; ++i) {
-      double sum = c[j][i];
-      for (int m = 0; m < j; ++m) sum -= l[i][m] * l[j][m];
-      if (i == j) {
-        good = good && sum > least[j] && sum < HUGE_VAL;
-        l[j][j] = std::sqrt(sum);
-      } else {
-        l[i][j] = sum / l[j][j];
-      }
-    }
-  }
-  for (int j = 0; j < 3; ++j)
-    for (int i = j; i < 3; ++i) {
-      double sum = i == j ? 1 : 0;
-      for (int m = j; m < i; ++m) sum -= l[i][m] * inverse[m][j];
-      inverse[i][j] = sum / l[i][i];
-    }
-  for (int j = 0; j < 3; ++j)
-    c[j] = Four{inverse[0][j], inverse[1][j], inverse[2][j], 0};
-  return good;
-}
-
 /** to -= from by^T */
-[[gnu::always_inline]] inline void subtract(Block& to, const Block& from,
-                                            const Block& by) {
+[[gnu::always_inline]] inline void subtract(Matrix3& to, const Matrix3& from,
+                                            const Matrix3& by) {
   for (int c = 0; c < 3; ++c)
     to.column[c] -= from.column[0] * by.column[0][c] +
                     from.column[1] * by.column[1][c] +
@@ -58,7 +26,7 @@ using Left = BlockCholesky::Left;
 }
 
 /** a = a by^T */
-[[gnu::always_inline]] inline void multiply(Block& a, const Block& by) {
+[[gnu::always_inline]] inline void multiply(Matrix3& a, const Matrix3& by) {
   Four product[3];
   for (int c = 0; c < 3; ++c)
     product[c] = a.column[0] * by.column[0][c] + a.column[1] * by.column[1][c] +
@@ -66,33 +34,22 @@ using Left = BlockCholesky::Left;
   for (int c = 0; c < 3; ++c) a.column[c] = product[c];
 }
 
-[[gnu::always_inline]] inline Four times(const Block& a, const Four& x) {
-  return a.column[0] * x[0] + a.column[1] * x[1] + a.column[2] * x[2];
-}
-/** a^T x */
-[[gnu::always_inline]] inline Four turned_times(const Block& a, const Four& x) {
-  const Four p = a.column[0] * x, q = a.column[1] * x, r = a.column[2] * x;
-  return Four{p[0] + p[1] + p[2], q[0] + q[1] + q[2], r[0] + r[1] + r[2], 0};
-}
-
 /** L in the place of A, column by column: of each, what the columns to the left
  * of it take away. */
 struct Factorize {
   template <typename>  // four numbers at a time, whatever the processor
-  [[gnu::always_inline]] static inline void apply(int columns, const int* begin,
-                                                  const int* row, Block* entry,
-                                                  Block* diagonal,
-                                                  const int* left_begin,
-                                                  const Left* left, int* into,
-                                                  bool* good) {
+  [[gnu::always_inline]] static inline void apply(
+      int columns, const int* begin, const int* row, Matrix3* entry,
+      Matrix3* diagonal, const int* left_begin, const Left* left, int* into,
+      bool* good) {
     for (int j = 0; j < columns && *good; ++j) {
-      const Block& d = diagonal[j];
+      const Matrix3& d = diagonal[j];
       const Four least =
           1e-15 * Four{d.column[0][0], d.column[1][1], d.column[2][2], 0};
       for (int p = begin[j]; p < begin[j + 1]; ++p) into[row[p]] = p;
       for (const Left* l = left + left_begin[j]; l < left + left_begin[j + 1];
            ++l) {
-        const Block by = entry[l->at];
+        const Matrix3 by = entry[l->at];
         subtract(diagonal[j], by, by);
         const int end = begin[l->column + 1];
         for (int p = l->at + 1; p < end; ++p)
@@ -109,8 +66,8 @@ struct Solve {
   template <typename>  // four numbers at a time, whatever the processor
   [[gnu::always_inline]] static inline void apply(int columns, const int* begin,
                                                   const int* row,
-                                                  const Block* entry,
-                                                  const Block* diagonal,
+                                                  const Matrix3* entry,
+                                                  const Matrix3* diagonal,
                                                   Row* x) {
     for (int j = 0; j < columns; ++j) {
       const Four y = x[j].c = times(diagonal[j], x[j].c);
@@ -125,11 +82,6 @@ struct Solve {
     }
   }
 };
-
-void add_to(Block& to, const double* from) {
-  for (int c = 0; c < 3; ++c, from += 3)
-    to.column[c] += Four{from[0], from[1], from[2], 0};
-}
 
 }  // namespace
 
@@ -218,14 +170,14 @@ bool BlockCholesky::find_pattern(std::size_t most) {
 }
 
 void BlockCholesky::clear() {
-  std::fill(entry_.begin(), entry_.end(), Block());
-  std::fill(diagonal_.begin(), diagonal_.end(), Block());
+  std::fill(entry_.begin(), entry_.end(), Matrix3());
+  std::fill(diagonal_.begin(), diagonal_.end(), Matrix3());
 }
-void BlockCholesky::add_diagonal(unsigned i, const double* block) {
-  add_to(diagonal_[unsigned(place_[i])], block);
+void BlockCholesky::add_diagonal(unsigned i, const Matrix3& block) {
+  lab::add(diagonal_[unsigned(place_[i])], block);
 }
-void BlockCholesky::add(std::size_t k, const double* block) {
-  add_to(entry_[unsigned(at_[k])], block);
+void BlockCholesky::add(std::size_t k, const Matrix3& block) {
+  lab::add(entry_[unsigned(at_[k])], block);
 }
 
 bool BlockCholesky::factorize() {
@@ -239,14 +191,12 @@ bool BlockCholesky::factorize() {
 void BlockCholesky::solve(std::span<Point> b) {
   assert(b.size() == order_.size());
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    const Point& from = b[unsigned(order_[k])];
-    x_[k].c = Four{from.x, from.y, from.z, 0};
+    x_[k].c = four(b[unsigned(order_[k])]);
   }
   lanes::run<Solve>(int(order_.size()), begin_.data(), row_.data(),
                     entry_.data(), diagonal_.data(), x_.data());
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    const Four& to = x_[k].c;
-    b[unsigned(order_[k])] = Point(to[0], to[1], to[2]);
+    b[unsigned(order_[k])] = point(x_[k].c);
   }
 }
 

@@ -44,10 +44,10 @@ class BlockCholesky {
 
   /** A = 0. */
   void clear();
-  /** A_ii += the symmetric 3 x 3 numbers @a block, by columns. */
-  void add_diagonal(unsigned i, const double* block);
-  /** A_ij and A_ji += @a block, for pair @a k of analyze(). */
-  void add(std::size_t k, const double* block);
+  /** A_ii += the symmetric @a block. */
+  void add_diagonal(unsigned i, const Matrix3& block);
+  /** A_ij and A_ji += the symmetric @a block, for pair @a k of analyze(). */
+  void add(std::size_t k, const Matrix3& block);
 
   /** Factor A; clear() makes the next one.
    * @return false if A is not positive definite to round-off, or not finite:
@@ -60,10 +60,6 @@ class BlockCholesky {
    * Complexity: O(blocks()). */
   void solve(std::span<Point> b);
 
-  /** Three columns of three numbers and a zero. */
-  struct Block {
-    cholesky_detail::Four column[3];
-  };
   /** L_ij, from row i: where it is among the blocks of column j. */
   struct Left {
     int column, at;
@@ -75,8 +71,8 @@ class BlockCholesky {
   bool fits_ = true;                // what it returned
   std::vector<int> order_, place_;  // node by row of L, and row by node
   std::vector<int> begin_, row_;    // by columns, below the diagonal
-  std::vector<Block> entry_;        // as row_
-  std::vector<Block> diagonal_;     // of A; then the inverse of that of L
+  std::vector<Matrix3> entry_;      // as row_
+  std::vector<Matrix3> diagonal_;   // of A; then the inverse of that of L
   std::vector<int> left_begin_;     // by rows
   std::vector<Left> left_;
   std::vector<int> at_;    // in entry_, by pair

@@ -109,16 +109,14 @@ void BlockFactor::assign(const Factor& f, std::size_t rows) {
 
 void BlockFactor::solve(std::span<Point> b) {
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    const Point& from = b[unsigned(order_[i])];
-    x_[i].c = Four{from.x, from.y, from.z, 0};
+    x_[i].c = four(b[unsigned(order_[i])]);
   }
   const Block *first = block_.data(), *end = first + block_.size();
   lanes::run<Forward>(first, end, entry_.data(), row_.data(), x_.data());
   lanes::run<Backward>(first, end, entry_.data() + entry_.size(),
                        row_.data() + row_.size(), x_.data());
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    const Four& to = x_[i].c;
-    b[unsigned(order_[i])] = Point(to[0], to[1], to[2]);
+    b[unsigned(order_[i])] = point(x_[i].c);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "CME212/Point.hpp"
+#include "lab/methods/Matrix3.hpp"
 
 namespace lab {
 
@@ -21,8 +22,6 @@ struct Factor {
   const int* order = nullptr;  // the row of A, by the row of L
 };
 
-// The three coordinates in one register, and a lane to spare.
-typedef double Four __attribute__((vector_size(32), aligned(32)));
 struct Row {
   Four c;
 };

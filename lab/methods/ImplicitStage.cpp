@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Cholesky>
-
 #include "CME212/Util.hpp"
 #include "lab/methods/Flow.hpp"
 
@@ -21,10 +19,24 @@ Stiffness clamped(const Stiffness& B) {
   return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
 }
 
-Eigen::Matrix3d full_matrix(const Stiffness& B) {
-  const Eigen::Vector3d n(B.direction.x, B.direction.y, B.direction.z);
-  return B.across * Eigen::Matrix3d::Identity() +
-         ((B.along - B.across) * n) * n.transpose();
+Matrix3 full_matrix(const Stiffness& B) {
+  const Four n = four(B.direction);
+  Matrix3 full;
+  for (int c = 0; c < 3; ++c)
+    full.column[c] = ((B.along - B.across) * n) * n[c];
+  add_identity(full, B.across);
+  return full;
+}
+/** The inverse of the positive definite @a d: by Cholesky, as a spring may be a
+ * million times stiffer along than across; the triangle makes it symmetric. */
+Matrix3 inverse(Matrix3 d) {
+  invert_factor(d, Four());
+  Matrix3 all;
+  for (int c = 0; c < 3; ++c) all.column[c] = turned_times(d, d.column[c]);
+  return all;
+}
+double trace(const Matrix3& a) {
+  return a.column[0][0] + a.column[1][1] + a.column[2][2];
 }
 
 double product(const std::vector<Point>& a, const std::vector<Point>& b) {
@@ -67,18 +79,11 @@ void Goal::fail(const char* what, int iterations, double residual,
                   " s");
 }
 
-/** A diagonal block of A, inverted. */
-struct ImplicitStage::DiagonalBlock {
-  Eigen::Matrix3d inverse;
-};
-
 ImplicitStage::ImplicitStage(double tolerance, int max_iterations,
                              bool line_search, double share)
     : goal_{tolerance, max_iterations},
       line_search_(line_search),
       share_(share) {}
-
-ImplicitStage::~ImplicitStage() = default;
 
 void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
                           const ConstraintPlan& constraint) {
@@ -143,7 +148,8 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
       first = left + filtered(g, s, direction_);
     } else {
       assemble(g, s, force);
-      enough = std::max(0.1 * std::pow(left / before, 1.5), 0.3 * goal / left);
+      const double fallen = left / before;
+      enough = std::max(0.1 * fallen * std::sqrt(fallen), 0.3 * goal / left);
       enough = std::clamp(enough, 1e-12, 0.03);
     }
     before = left;
@@ -235,32 +241,27 @@ void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
   diagonal_.resize(w.size());
   for (unsigned i = 0; i < w.size(); ++i) {
     diagonal_[i] = node[i].mass + s * c[i];
-    diagonal_blocks_[i].inverse = diagonal_[i] * Eigen::Matrix3d::Identity();
+    diagonal_blocks_[i] = Matrix3();
+    add_identity(diagonal_blocks_[i], diagonal_[i]);
   }
   blocks_.clear();
   factored_ = false;
   const double ss = s * s;
-  add_stiffness(goal_.method, force, g,
-                [this, ss](unsigned i, unsigned j, const Stiffness& B) {
-                  Stiffness b = {B.direction, ss * B.along, ss * B.across};
-                  blocks_.push_back({i, j, b});
-                  b = clamped(b);
-                  const Eigen::Matrix3d full = full_matrix(b);
-                  diagonal_blocks_[i].inverse += full;
-                  diagonal_blocks_[j].inverse += full;
-                });
+  add_stiffness(
+      goal_.method, force, g,
+      [this, ss](unsigned i, unsigned j, const Stiffness& B) {
+        const Stiffness b = {B.direction, ss * B.along, ss * B.across};
+        blocks_.push_back({i, j, b});
+        const Matrix3 full = full_matrix(clamped(b));
+        add(diagonal_blocks_[i], full);
+        add(diagonal_blocks_[j], full);
+      });
   contrast_ = 1;
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i])
-      contrast_ = std::max(
-          contrast_, diagonal_blocks_[i].inverse.trace() / diagonal_[i] - 2);
-  for (auto& [d] : diagonal_blocks_) {
-    // By Cholesky, as a spring may be a million times stiffer along than
-    // across; the triangle makes it symmetric.
-    Eigen::Matrix3d half =
-        d.llt().matrixL().solve(Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
-    d = half.transpose() * half;
-  }
+      contrast_ =
+          std::max(contrast_, trace(diagonal_blocks_[i]) / diagonal_[i] - 2);
+  for (Matrix3& d : diagonal_blocks_) d = inverse(d);
 }
 
 /** @a to = A @a from, without negative stiffness if @a clamp.  @pre @a from
@@ -280,12 +281,8 @@ void ImplicitStage::multiply(const std::vector<Point>& from,
 /** @a to = D^-1 @a from. */
 void ImplicitStage::precondition(const std::vector<Point>& from,
                                  std::vector<Point>& to) const {
-  for (unsigned i = 0; i < from.size(); ++i) {
-    const Point& a = from[i];
-    const Eigen::Vector3d b =
-        diagonal_blocks_[i].inverse * Eigen::Vector3d(a.x, a.y, a.z);
-    to[i] = Point(b.x(), b.y(), b.z());
-  }
+  for (unsigned i = 0; i < from.size(); ++i)
+    to[i] = point(times(diagonal_blocks_[i], four(from[i])));
 }
 /** What round-off leaves of D^-1 r/s [m/s^2], RMS over the nodes: that of w
  * by the inertia, that of x by the springs, as far as they make up D. */
@@ -295,8 +292,8 @@ double ImplicitStage::round_off(const Cloth& g, double s) const {
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i) {
     if (fixed_[i]) continue;
-    double share = std::clamp(
-        3 - diagonal_[i] * diagonal_blocks_[i].inverse.trace(), 0., 3.);
+    double share =
+        std::clamp(3 - diagonal_[i] * trace(diagonal_blocks_[i]), 0., 3.);
     sum += normSq(w[i]) + share * share / (s * s) * normSq(x[i]);
   }
   return epsilon / s * std::sqrt(sum / std::max(1u, g.num_nodes()));
@@ -334,19 +331,20 @@ double ImplicitStage::patience(double relative) {
 bool ImplicitStage::factor() {
   if (factor_work() == HUGE_VAL) return false;
   factor_.clear();
-  Eigen::Matrix3d full;
+  Matrix3 full;
   for (unsigned i = 0; i < w.size(); ++i) {
-    full = (fixed_[i] ? 1 : diagonal_[i]) * Eigen::Matrix3d::Identity();
-    factor_.add_diagonal(i, full.data());
+    full = Matrix3();
+    add_identity(full, fixed_[i] ? 1 : diagonal_[i]);
+    factor_.add_diagonal(i, full);
   }
   std::size_t pair = 0;
   for (const Block& b : blocks_) {
     full = full_matrix(clamped(b.B));
-    if (!fixed_[b.i]) factor_.add_diagonal(b.i, full.data());
-    if (!fixed_[b.j]) factor_.add_diagonal(b.j, full.data());
+    if (!fixed_[b.i]) factor_.add_diagonal(b.i, full);
+    if (!fixed_[b.j]) factor_.add_diagonal(b.j, full);
     if (fixed_[b.i] || fixed_[b.j]) continue;
-    full = -full;
-    factor_.add(pair++, full.data());
+    for (Four& c : full.column) c = -c;
+    factor_.add(pair++, full);
   }
   ++work_.factors;
   return factor_.factorize();

@@ -78,7 +78,6 @@ class ImplicitStage {
    * @param share of the local error that Newton's method may leave, too */
   ImplicitStage(double tolerance, int max_iterations, bool line_search = true,
                 double share = 0);
-  ~ImplicitStage();
 
   /** Ready for a step of @a g from @a t by @a dt [s]: who is fixed, and p = x,
    * q = w = v.  @param method whose name errors give */
@@ -127,9 +126,8 @@ class ImplicitStage {
   Sweep sweep_;
   std::vector<char> fixed_;
   std::vector<Block> blocks_;
-  struct DiagonalBlock;
-  std::vector<DiagonalBlock> diagonal_blocks_;  // of A, inverted
-  std::vector<double> diagonal_;                // m + s c [kg]
+  std::vector<Matrix3> diagonal_blocks_;  // of A, inverted
+  std::vector<double> diagonal_;          // m + s c [kg]
   std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
   LinearSolver solver_ = LinearSolver::automatic;
   BlockCholesky factor_;  // of A without negative stiffness

@@ -1,6 +1,7 @@
 #include "lab/page/Page.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -21,9 +22,11 @@ namespace {
 
 std::string json(const std::string& text) {
   std::string all = "\"";
-  for (char c : text)
-    all += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  return all + '"';
+  for (char c : text) {
+    if (c == '"' || c == '\\') all += '\\';
+    all += c;
+  }
+  return all += '"';
 }
 std::string json(const char* text) { return json(std::string(text)); }
 template <typename T>
@@ -43,19 +46,23 @@ class Object {
     return raw(name, json(value));
   }
   Object& raw(const char* name, const std::string& value) {
-    text_ += (text_.empty() ? "" : ",") + json(name) + ':' + value;
+    if (!text_.empty()) text_ += ',';
+    text_.append(json(name)).append(":").append(value);
     return *this;
   }
-  std::string text() const { return '{' + text_ + '}'; }
+  std::string text() const { return std::string("{") + text_ + '}'; }
 
  private:
   std::string text_;
 };
 template <typename Range, typename ToJson>
 std::string json_list(const Range& all, ToJson to_json) {
-  std::string text;
-  for (const auto& a : all) text += (text.empty() ? "" : ",") + to_json(a);
-  return '[' + text + ']';
+  std::string text = "[";
+  for (const auto& a : all) {
+    if (text.size() > 1) text += ',';
+    text += to_json(a);
+  }
+  return text += ']';
 }
 
 std::string json_of(const RunReadings& r) {
@@ -156,7 +163,7 @@ void page_load(unsigned scene, unsigned side, unsigned method) {
 const char* page_setting() {
   const Recipe& recipe = state().live->scene().recipe();
   const auto point = [](const Point& p) {
-    return '[' + json(p.x) + ',' + json(p.y) + ',' + json(p.z) + ']';
+    return json_list(std::array{p.x, p.y, p.z}, [](Real a) { return json(a); });
   };
   const auto obstacles = json_list(recipe.obstacles, [&](const Obstacle& o) {
     return Object()("kind", o.kind == Obstacle::Kind::floor ? "floor"

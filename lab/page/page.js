@@ -2,6 +2,10 @@
 // The page: its controls, its frames, and the thread that computes.
 
 const $ = id => document.getElementById(id);
+// Of what is as it was, nothing is laid out and painted anew.
+const setText = (element, text) => {
+  if (element.textContent !== text) element.textContent = text;
+};
 const cssOf = name => getComputedStyle(document.documentElement)
   .getPropertyValue(name).trim();
 
@@ -66,6 +70,7 @@ function showControls() {
     `${m.failsWhen}.`;
   $('row-rivalShare').hidden = s.rival < 0;
   $('distance-figure').hidden = s.rival < 0;
+  $('stage').classList.toggle('two', s.rival >= 0);
   $('play').textContent = page.playing ? 'Pause' : 'Play';
   showLimits();
   page.changed();
@@ -83,12 +88,12 @@ function showLimits() {
   if (!r) return;
   const {dt, safe, sharp, unit} = r.main;
   const ms = a => `${shortNumber(1e3 * a)} ms`;
-  $('limits').textContent = safe === null
+  setText($('limits'), safe === null
     ? `dt = ${ms(dt)}. Without a limit: 1 is that of Verlet, ${ms(unit)}.`
     : safe === 0
       ? `dt = ${ms(dt)}. No step is stable: 1 is Verlet's limit, ${ms(unit)}.`
       : `dt = ${ms(dt)}. Stable in any shape up to ${ms(safe)}` +
-        (sharp ? `, in this one up to ${ms(sharp)}.` : '.');
+        (sharp ? `, in this one up to ${ms(sharp)}.` : '.'));
 }
 
 function start() {
@@ -177,12 +182,12 @@ function setTool(tool) {
 function colors() {
   const four = name => cssOf(name).split(' ').map(
     (a, k) => k < 3 ? Number(a) / 255 : Number(a));
+  const hex = name => [...cssOf(name).match(/[0-9a-f]{2}/gi).map(
+    a => parseInt(a, 16) / 255), 1];
   page.theme = {cloth: [four('--cloth0'), four('--cloth1')],
     stretched: four('--stretched'), wire: four('--wire'), pin: four('--pin'),
     hand: four('--hand'), ball: four('--ball'), tears: four('--tears'),
-    floor: four('--floor'),
-    bad: [...(cssOf('--bad').match(/[0-9a-f]{2}/gi)).map(
-      a => parseInt(a, 16) / 255), 1]};
+    floor: four('--floor'), bad: hex('--bad'), sky: hex('--sky')};
   page.style = {edge: cssOf('--edge'), dim: cssOf('--dim'),
     series: [0, 1, 2, 3].map(k => cssOf(`--series${k}`))};
   page.changed();
@@ -216,20 +221,20 @@ function showNumbers() {
   if (rival)
     rows.push(['force evaluations beside', rival.evaluations],
       ['distance of the two', `${shortNumber(r.apart)} m`]);
-  $('numbers').replaceChildren(...rows.map(row => {
-    const line = document.createElement('tr');
-    line.append(...row.map(text => {
-      const cell = document.createElement('td');
-      cell.textContent = text;
-      return cell;
-    }));
-    return line;
-  }));
-  $('name0').innerHTML = rival ? `${main.method}<small>dt = ${
-    shortNumber(1e3 * main.dt)} ms</small>` : '';
-  $('name1').innerHTML = rival ? `${rival.method}<small>dt = ${
-    shortNumber(1e3 * rival.dt)} ms${rival.failure ? ', diverged' : ''
-  }</small>` : '';
+  const table = $('numbers');
+  while (table.rows.length > rows.length) table.deleteRow(-1);
+  rows.forEach((row, k) => {
+    const line = table.rows[k] || table.insertRow();
+    row.forEach((text, c) =>
+      setText(line.cells[c] || line.insertCell(), String(text)));
+  });
+  const dt = run => `dt = ${shortNumber(1e3 * run.dt)} ms${
+    run.failure ? ', diverged' : ''}`;
+  [main, rival].forEach((run, k) => {
+    const [name, step] = $(`name${k}`).children;
+    $(`name${k}`).hidden = !rival;
+    if (rival) setText(name, run.method), setText(step, dt(run));
+  });
 }
 
 // The words of ./cloth, whose options are sliders here.
@@ -282,7 +287,7 @@ const replies = {
   },
   frame(data) {
     page.waiting = false, page.calls = data.calls, ++page.frames;
-    $('busy').textContent = '';
+    setText($('busy'), '');
     const before = page.sides;
     page.sides = data.sides.map((side, k) => {
       const {view} = page;
@@ -293,7 +298,7 @@ const replies = {
       return {...side, lines, triangles, pins};
     });
     page.readings = data.readings;
-    frameScene(), remember(), showLimits();
+    frameScene(), remember();
     if (data.failed && !page.failed) {
       page.failed = true, setPlaying(false);
       for (const plot of Object.values(plots)) plot.good = data.good;
@@ -362,14 +367,14 @@ function tick(now) {
     }
     page.wanted ||= page.hand.moved;
   }
+  const moving = page.playing && !page.failed;
+  page.dirty = page.view.pace.frame(now, moving) || page.dirty;
   if (!page.dirty || !page.sides.length) return;
   page.dirty = false;
   page.view.draw(page.sides, page.theme, page.hand.grabbed);
-  if (now - (page.numbersAt || 0) > 80 || !page.playing)
-    page.numbersAt = now, showNumbers();
-  const cross = page.hand.crossPlace();
-  $('cross').style.left = `${cross.half[0]}px`;
-  $('cross').style.top = `${cross.half[1]}px`;
+  // Of a run that goes on, numbers and curves four times a second.
+  if (!moving || now - (page.numbersAt || 0) > 250)
+    page.numbersAt = now, showNumbers(), showLimits();
 }
 
 async function begin() {

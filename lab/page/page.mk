@@ -3,7 +3,10 @@
 # The course's code and that of the laboratory which reads and writes no files,
 # by clang++ to WebAssembly: make page-deps. lab/page/README.md
 
-PAGE_CXX ?= clang++-19
+# By the newest clang that has what WebAssembly needs at run time.
+PAGE_CXX ?= $(or $(patsubst %/lib/clang,%/bin/clang++,$(shell ls -d \
+  /usr/lib/llvm-*/lib/clang/*/lib/wasi 2>/dev/null | sort -V | tail -n 1 | \
+  sed 's|/[^/]*/lib/wasi$$||')),clang++)
 page    := $(B)/page
 page_o  := $(B)/page.o
 # Of the laboratory: all of these rooms, but what reads and writes files.
@@ -16,7 +19,7 @@ page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
   -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off
 page_names = $(sort $(shell grep -oE '\bpage_[a-z_]+' lab/page/Page.hpp))
 
-.PHONY: page page-deps page-picture page-serve
+.PHONY: page page-deps page-frames page-picture page-serve
 page: $(page)/index.html $(page)/loop.gif
 	@echo "$(page)/index.html: $$(du -bc $(page)/* | tail -n 1 | cut -f 1) bytes"
 
@@ -46,6 +49,9 @@ $(page)/loop.gif: docs/pictures/tear.gif
 page-picture: page
 	@/usr/bin/python3 lab/page/picture.py $(page)/index.html docs/pictures/page.png
 	@tools/shrink_pictures.sh docs/pictures/page.png
+
+page-frames: page
+	@/usr/bin/python3 lab/page/test_page.py $(B) --frames
 
 page-deps:
 	@tools/deps.sh page

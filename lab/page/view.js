@@ -154,9 +154,10 @@ function ballMesh(rings = 24, sectors = 36) {
   return [new Float32Array(points), new Uint32Array(triangles)];
 }
 
-// The normals of all nodes: the sum of those of the triangles there, by area.
-function normalsOf(points, triangles) {
-  const n = new Float32Array(points.length / 4 * 3);
+// The normals of all nodes, in n: the sum of those of the triangles there, by
+// area.
+function findNormals(points, triangles, n) {
+  n.fill(0);
   for (let k = 0; k < triangles.length; k += 3) {
     const [a, b, c] = [triangles[k], triangles[k + 1], triangles[k + 2]];
     const ux = points[4 * b] - points[4 * a],
@@ -169,7 +170,6 @@ function normalsOf(points, triangles) {
     for (const i of [a, b, c])
       n[3 * i] += x, n[3 * i + 1] += y, n[3 * i + 2] += z;
   }
-  return n;
 }
 
 // One set of points on the graphics card, with what is drawn of it.
@@ -178,6 +178,7 @@ class Shape {
     this.gl = gl, this.array = gl.createVertexArray();
     this.points = gl.createBuffer(), this.normals = gl.createBuffer();
     this.faces = gl.createBuffer(), this.lines = gl.createBuffer();
+    this.normal = new Float32Array();
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.points);
     gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 0, 0);
@@ -197,13 +198,13 @@ class Shape {
     }
   }
   setPoints(points) {
-    const {gl} = this;
-    this.at = points;
+    const {gl} = this, size = points.length / 4 * 3;
+    if (this.normal.length !== size) this.normal = new Float32Array(size);
+    findNormals(points, this.triangles, this.normal);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.points);
     gl.bufferData(gl.ARRAY_BUFFER, points, gl.DYNAMIC_DRAW);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.normals);
-    gl.bufferData(gl.ARRAY_BUFFER, normalsOf(points, this.triangles),
-      gl.DYNAMIC_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, this.normal, gl.DYNAMIC_DRAW);
   }
   draw(mode, buffer, count) {
     const {gl} = this;
@@ -217,12 +218,46 @@ class Shape {
   drawLines() { this.draw(this.gl.LINES, this.lines, this.lineCount); }
 }
 
+// How sharp to draw, so that frames keep up with the screen: pixels of the
+// picture by those of the screen. Where the processor draws, a frame takes as
+// long as it has pixels.
+class Pace {
+  constructor() {
+    this.level = 0, this.patience = 4000;  // [ms] before it is sharper again
+    this.begin(0);
+  }
+  static levels = [1, 0.75, 0.5];
+  get sharpness() { return this.moving ? Pace.levels[this.level] : 1; }
+  begin(now) { this.from = now, this.count = 0; }
+
+  // A frame at a time [ms].  moving: what stands still is drawn sharp.
+  // @return whether the picture is to be drawn anew
+  frame(now, moving) {
+    const turned = moving !== this.moving;
+    if (turned || now - this.last > 500) this.begin(now);
+    this.moving = moving, this.last = now;
+    if (turned || !moving) return turned && this.level > 0;
+    const passed = now - this.from, mean = passed / ++this.count;
+    if (passed > 700 && mean > 19 && this.level + 1 < Pace.levels.length) {
+      if (this.sharper) this.patience *= 4;  // it was so for too short a time
+      ++this.level, this.sharper = false, this.begin(now);
+    } else if (passed > this.patience) {
+      this.sharper = this.level > 0 && mean < 17.5;
+      if (this.sharper) --this.level;
+      this.begin(now);
+    }
+    return false;
+  }
+}
+
 class View {
   // Throws if there is no WebGL 2.
   constructor(canvas) {
-    const gl = canvas.getContext('webgl2', {antialias: !View.isSoftware()});
+    const gl = canvas.getContext('webgl2',
+      {alpha: false, antialias: !View.isSoftware()});
     if (!gl) throw new Error('no WebGL 2');
     this.gl = gl, this.canvas = canvas, this.camera = new Camera();
+    this.pace = new Pace();
     const program = gl.createProgram();
     for (const [type, source] of [[gl.VERTEX_SHADER, vertexShader],
       [gl.FRAGMENT_SHADER, fragmentShader]]) {
@@ -261,7 +296,8 @@ class View {
   // [x, y, width, height] in pixels of the canvas, y up
   panes(count) {
     const {canvas} = this;
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const ratio = this.pace.sharpness *
+      Math.min(window.devicePixelRatio || 1, 2);
     const w = Math.max(1, Math.round(canvas.clientWidth * ratio));
     const h = Math.max(1, Math.round(canvas.clientHeight * ratio));
     if (canvas.width !== w || canvas.height !== h)
@@ -293,7 +329,7 @@ class View {
     const {gl, camera} = this;
     const panes = this.panes(sides.length);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-    gl.clearColor(0, 0, 0, 0);
+    gl.clearColor(...theme.sky);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST), gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -316,7 +352,8 @@ class View {
       this.set(theme.cloth[k], 1, theme.stretched);
       cloth.drawFaces();
       gl.disable(gl.POLYGON_OFFSET_FILL);
-      this.set(theme.wire, 0), cloth.drawLines();
+      const [r, g, b, opacity] = theme.wire;  // a line is a pixel wide
+      this.set([r, g, b, opacity * this.pace.sharpness], 0), cloth.drawLines();
       const at = i => [...side.points.subarray(4 * i, 4 * i + 3)];
       this.drawMarks([...side.pins].map(at), 9 * ratio, theme.pin, 2);
       const floor = this.obstacles.find(o => o.kind === 'floor');

@@ -195,7 +195,7 @@ const handlers = {
   },
   // One frame: simulated time [s] to pass, or -1: one step.
   frame(seconds) {
-    const budget = 24;  // [ms]
+    const budget = 12;  // [ms]: the rest of a frame is for the drawing
     if (seconds < 0) run(0, budget);
     else if (seconds > 0 && readings)
       run(readings.main.time + seconds, budget);

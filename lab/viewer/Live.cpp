@@ -88,18 +88,28 @@ unsigned count_touching(const Model& m, const Cloth& g, double t) {
   return count;
 }
 
-/** Does the segment from @a p to @a q meet the triangle @a a, @a b, @a c? */
-bool meets(const Point& p, const Point& q, const Point& a, const Point& b,
-           const Point& c) {
-  // The sides of p and q, and how the line through them turns about each edge.
+/** Does the segment from @a p to @a q meet the surface between the rays @a a
+ * and @a b, two triangles? Of what passes exactly through a side that two
+ * triangles share, one of them has it: each side is asked for in one way. */
+bool meets(const Point& p, const Point& q, const Ray& a, const Ray& b) {
   const auto volume = [](const Point& o, const Point& x, const Point& y,
                          const Point& z) {
     return dot(x - o, cross(y - o, z - o));
   };
-  if ((volume(p, a, b, c) > 0) == (volume(q, a, b, c) > 0)) return false;
-  const bool ab = volume(p, q, a, b) > 0, bc = volume(p, q, b, c) > 0,
-             ca = volume(p, q, c, a) > 0;
-  return ab == bc && bc == ca;
+  // Are p and q on both sides of a triangle?
+  const auto parts = [&](const Point& x, const Point& y, const Point& z) {
+    return (volume(p, x, y, z) > 0) != (volume(q, x, y, z) > 0);
+  };
+  // How the line through p and q turns about a side.
+  const auto turns = [&](const Point& x, const Point& y) {
+    return volume(p, q, x, y) > 0;
+  };
+  const bool first = turns(a.near, a.far), last = turns(b.near, b.far),
+             across = turns(a.near, b.far);
+  return (first != across && first == turns(a.far, b.far) &&
+          parts(a.near, a.far, b.far)) ||
+         (last != across && last == turns(a.near, b.near) &&
+          parts(a.near, b.far, b.near));
 }
 
 }  // namespace
@@ -110,10 +120,7 @@ std::vector<std::array<unsigned, 2>> crossed_edges(
   for (Edge e : g.edges()) {
     const Point p = e.node1().position(), q = e.node2().position();
     for (std::size_t k = 1; k < stroke.size(); ++k) {
-      const Ray &a = stroke[k - 1], &b = stroke[k];
-      if (!meets(p, q, a.near, a.far, b.far) &&
-          !meets(p, q, a.near, b.far, b.near))
-        continue;
+      if (!meets(p, q, stroke[k - 1], stroke[k])) continue;
       all.push_back({e.node1().id(), e.node2().id()});
       break;
     }
