@@ -63,6 +63,11 @@ class GrowingArray {
     size_ = n;
   }
   void clear() { size_ = 0; }
+  void swap(GrowingArray& o) noexcept {
+    std::swap(data_, o.data_);
+    std::swap(size_, o.size_);
+    std::swap(capacity_, o.capacity_);
+  }
   /** Have room for @a n elements.  Throws std::bad_alloc: no change. */
   void reserve(std::size_t n) {
     if (n <= capacity_) return;
@@ -326,6 +331,29 @@ class ListPool {
   }
   void clear() {
     pool_.clear();
+    for (auto& f : free_) f.clear();
+  }
+  /** If the items of @a lists, which are all, need less than three quarters of
+   * the pool, move them to one of that size: list by list, in blocks that just
+   * hold them. Until the end there are both.
+   * Throws std::bad_alloc: no change.  O(lists), then O(items) */
+  void compact(std::span<List> lists) {
+    const auto needed = [](const List& l) {
+      return l.size == 0 ? 0 : std::bit_ceil(l.size);
+    };
+    std::size_t all = 0;
+    for (const List& l : lists) all += needed(l);
+    if (4 * all >= 3 * pool_.size()) return;
+    GrowingArray<T> smaller;
+    smaller.reserve(all);
+    smaller.resize(all);
+    size_type begin = 0;
+    for (List& l : lists) {
+      std::copy_n(pool_.data() + l.begin, l.size, smaller.data() + begin);
+      l = {begin, l.size, needed(l)};
+      begin += l.capacity;
+    }
+    pool_.swap(smaller);
     for (auto& f : free_) f.clear();
   }
   std::size_t pool_size() const { return pool_.size(); }

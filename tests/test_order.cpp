@@ -315,6 +315,34 @@ TEST(RestoreOrder, WaitsForManyNodesOfALargeGraph) {
   }
 }
 
+TEST(RestoreOrder, ClosesTheGapsBetweenListsOfNeighbors) {
+  Cloth g;
+  build_cloth(g, grid_points(70), grid_quads(70), Mesh::diagonals);
+  const auto ids = random_ids(g);
+  for (unsigned k = 0; k < ids.size() / 2; ++k)
+    g.remove_node(g.node_with_id(ids[k]));
+  std::vector<std::vector<unsigned>> before(g.node_slots());
+  for (Node n : g.nodes())
+    for (Edge e : n.edges()) before[n.id()].push_back(e.id());
+  g.restore_order();
+  const Cloth::Neighbor* end = nullptr;
+  for (Node n : g.nodes()) {
+    const auto list = g.neighbors(n.id());
+    std::vector<unsigned> now;
+    for (auto neighbor : list) now.push_back(neighbor.edge);
+    ASSERT_EQ(now, before[n.id()]);
+    if (list.empty()) continue;
+    if (end) {
+      ASSERT_LE(list.data() - end, 3);  // 5 of 8 are used, or more
+    }
+    end = list.data() + list.size();
+  }
+  g.check_invariants();
+  const Node a = g.node(0), b = g.node(g.num_nodes() - 1);
+  EXPECT_EQ(g.add_edge(a, b).node2(), b);
+  g.check_invariants();
+}
+
 TEST(RestoreOrder, LeavesAnOrderThatWasGivenToAWholeGraph) {
   Cloth g;
   build_cloth(g, grid_points(64), grid_quads(64), Mesh::plain);

@@ -121,6 +121,43 @@ TEST(ListPool, GivesBlocksOfEachSizeBack) {
   EXPECT_EQ(pool.pool_size(), grown);
 }
 
+// 16 lists of 8 items make up a pool of 128, of which 96 are three quarters: 97
+// are too many, 89 are not.
+TEST(ListPool, CompactsWhatNeedsLessThanThreeQuarters) {
+  using Pool = graph_detail::ListPool<int>;
+  for (const unsigned kept : {13u, 12u}) {
+    Pool pool;
+    std::vector<Pool::List> lists(16);
+    pool.reserve(16, 128);
+    for (unsigned i = 0; i < 16; ++i)
+      for (int k = 0; k < 8; ++k) {
+        pool.reserve_one(lists[i]);
+        pool.push_back(lists[i], int(10 * i) + k);
+      }
+    ASSERT_EQ(pool.pool_size(), 128u);
+    for (unsigned i = kept; i < 16; ++i) pool.free(lists[i]);
+    while (lists[1].size > 1) pool.erase(lists[1], 1);
+    while (lists[2].size > 5) pool.erase(lists[2], lists[2].size - 1);
+    pool.compact(lists);
+    // A block of 1 is enough for list 1, but not one of 4 for list 2.
+    EXPECT_EQ(pool.pool_size(), kept == 13 ? 128u : 89u);
+    EXPECT_EQ(lists[1].capacity, kept == 13 ? 8u : 1u);
+    EXPECT_TRUE(pool.is_filled_by(lists));
+    for (unsigned i = 0; i < kept; ++i) {
+      ASSERT_EQ(lists[i].size, i == 1 ? 1u : i == 2 ? 5u : 8u);
+      for (unsigned k = 0; k < lists[i].size; ++k)
+        EXPECT_EQ(pool.items(lists[i])[k], int(10 * i + k));
+    }
+    for (int k = 0; k < 4; ++k) {  // what is full moves to a longer block
+      pool.reserve_one(lists[0]);
+      pool.push_back(lists[0], 8 + k);
+    }
+    for (unsigned k = 0; k < 12; ++k)
+      EXPECT_EQ(pool.items(lists[0])[k], int(k));
+    EXPECT_TRUE(pool.is_filled_by(lists));
+  }
+}
+
 TEST(ListPool, BeginsWithABlockForTheAverageThatWasReserved) {
   for (auto [items, capacity] :
        {std::pair(0, 4), {40, 4}, {41, 8}, {80, 8}, {81, 16}, {10000, 64}}) {
