@@ -10,15 +10,32 @@ namespace lab {
 
 namespace spectrum_detail {
 
-void find_springs(const Cloth& g, const ForcePlan& force,
-                  std::vector<Spring>& springs) {
+namespace {
+
+/** What omega_safe() needs of a Spring, in a third of its memory. */
+struct Pull {
+  unsigned i, j;
+  double K;
+  Pull(unsigned near, unsigned far, const Stiffness& B)
+      : i(near), j(far), K(Spring{near, far, B}.K()) {}
+};
+
+template <typename S>
+void find(const Cloth& g, const ForcePlan& force, std::vector<S>& springs) {
   springs.clear();
   auto use = [&](unsigned i, unsigned j, const Stiffness& B) {
-    springs.push_back({i, j, B});
+    springs.push_back(S{i, j, B});
   };
   if (force.add_stiffness(g, use)) return;
   springs.clear();
   ForcePlan(MassSpringForce()).add_stiffness(g, use);
+}
+
+}  // namespace
+
+void find_springs(const Cloth& g, const ForcePlan& force,
+                  std::vector<Spring>& springs) {
+  find(g, force, springs);
 }
 
 void find_scales(const Cloth& g, const ConstraintPlan& constraint,
@@ -100,14 +117,17 @@ Eigen::VectorXd random_start(const std::vector<double>& scale, unsigned dim) {
 double omega_safe(const Cloth& g, const ForcePlan& force,
                   const ConstraintPlan& constraint) {
   using namespace spectrum_detail;
-  std::vector<Spring> springs;
+  std::vector<Pull> springs;
   std::vector<double> scale;
-  find_springs(g, force, springs);
+  find(g, force, springs);
   find_scales(g, constraint, scale);
+  std::vector<double> u(scale.size());
   auto multiply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& w) {
     w.setZero();
-    for (const Spring& s : springs) {
-      const double pull = s.K() * (scale[s.i] * v[s.i] - scale[s.j] * v[s.j]);
+    for (std::size_t i = 0; i < u.size(); ++i)
+      u[i] = scale[i] * v[Eigen::Index(i)];
+    for (const Pull& s : springs) {
+      const double pull = s.K * (u[s.i] - u[s.j]);
       w[s.i] += scale[s.i] * pull;
       w[s.j] -= scale[s.j] * pull;
     }
