@@ -13,17 +13,14 @@
  * slows all. One thread, but where the name says "threads". */
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <memory>
-#include <numeric>
-#include <random>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "lab/bench/Bench.hpp"
-#include "lab/fast/OrderedCloth.hpp"
+#include "lab/bench/Cloths.hpp"
 #include "lab/methods/Flow.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
@@ -31,153 +28,9 @@
 #include "lab/scenes/Scene.hpp"
 
 using namespace lab;
+using bench::Flat, bench::Kind, bench::cloth, bench::flat, bench::shuffle;
 
 namespace {
-
-// --------------------------------------------------------------------- Cloths
-
-/** - grid: ids and springs line by line, as load_cloth() makes it
- * - mixed: the same, ids and springs in random order within windows of 64:
- *   neighbors are as near, but none at a constant distance
- * - shuffled: from files in random order, put in order as they are loaded
- * - torn: the grid after a random half of its nodes was removed
- * - reindexed: torn, and then Graph::reindex() */
-enum class Kind { grid, mixed, shuffled, torn, reindexed };
-
-/** 0, ..., count - 1 in random order within windows of 64. */
-std::vector<unsigned> mixed_order(std::size_t count) {
-  std::vector<unsigned> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::mt19937 random(212);
-  for (std::size_t i = 0; i < count; i += 64)
-    std::shuffle(order.begin() + std::ptrdiff_t(i),
-                 order.begin() + std::ptrdiff_t(std::min(i + 64, count)),
-                 random);
-  return order;
-}
-
-/** Points and quads in random order. */
-void shuffle(std::vector<Point>& points, std::vector<Quad>& quads) {
-  std::mt19937 random(9);
-  std::vector<unsigned> place(points.size());
-  std::iota(place.begin(), place.end(), 0u);
-  std::shuffle(place.begin(), place.end(), random);
-  const auto before = points;
-  for (std::size_t i = 0; i < points.size(); ++i) points[place[i]] = before[i];
-  for (Quad& q : quads)
-    for (unsigned& i : q) i = place[i];
-  std::shuffle(quads.begin(), quads.end(), random);
-}
-
-void build(Cloth& g, unsigned side, Kind kind) {
-  auto points = grid_points(side);
-  auto quads = grid_quads(side);
-  if (kind == Kind::shuffled) shuffle(points, quads);
-  if (kind == Kind::mixed) {
-    Cloth grid;
-    build_cloth(grid, points, quads, Mesh::diagonals);
-    const auto order = mixed_order(points.size());
-    std::vector<Node> node(points.size());
-    for (unsigned i : order)
-      node[i] = g.add_node(points[i], grid.node(i).value());
-    for (unsigned e : mixed_order(grid.num_edges())) {
-      const Edge edge = grid.edge(e);
-      g.add_edge(node[edge.node1().index()], node[edge.node2().index()],
-                 edge.value());
-    }
-    return;
-  }
-  build_ordered_cloth(g, points, quads, Mesh::diagonals);
-  if (kind != Kind::torn && kind != Kind::reindexed) return;
-  std::vector<Node> nodes(g.node_begin(), g.node_end());
-  std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));
-  for (std::size_t k = 0; k < nodes.size() / 2; ++k) g.remove_node(nodes[k]);
-  if (kind == Kind::reindexed) g.reindex();
-}
-
-/** One cloth of each sort for all that is measured, its nodes shaken. */
-Cloth& cloth(unsigned side, Kind kind) {
-  static std::map<std::pair<unsigned, Kind>, Cloth> made;
-  auto [it, is_new] = made.try_emplace({side, kind});
-  if (is_new) {
-    build(it->second, side, kind);
-    std::mt19937 random(2);
-    std::uniform_real_distribution<Real> off(-0.1 / side, 0.1 / side);
-    for (Node n : it->second.nodes())
-      n.position() += Point(off(random), off(random), off(random));
-  }
-  return it->second;
-}
-
-// ----------------------------------------------------- Flat arrays, by hand
-
-/** A cloth in arrays of doubles that hold nothing but what the loop needs, in
- * the order in which it needs it: rows of neighbors, each with K and L. */
-struct Flat {
-  struct Vector {
-    double x = 0, y = 0, z = 0;
-  };
-  std::vector<Vector> x, v, f;
-  std::vector<double> mass, K, L;
-  std::vector<unsigned> row = {0}, neighbor;
-
-  explicit Flat(const Cloth& g) {
-    std::vector<unsigned> place(g.node_slots());
-    unsigned count = 0;
-    for (unsigned id = 0; id < g.node_slots(); ++id)
-      if (g.node_in_use(id)) place[id] = count++;
-    for (unsigned id = 0; id < g.node_slots(); ++id) {
-      if (!g.node_in_use(id)) continue;
-      const Node n = g.node_with_id(id);
-      x.push_back({n.position().x, n.position().y, n.position().z});
-      mass.push_back(n.value().mass);
-      for (Edge e : n.edges()) {
-        neighbor.push_back(place[e.node2().id()]);
-        K.push_back(e.value().K);
-        L.push_back(e.value().L);
-      }
-      row.push_back(unsigned(neighbor.size()));
-    }
-    v.resize(x.size());
-    f.resize(x.size());
-  }
-
-  /** The pull of all springs at node i. */
-  Vector springs(std::size_t i) const {
-    Vector sum;
-    for (unsigned k = row[i]; k < row[i + 1]; ++k) {
-      const Vector &a = x[i], &b = x[neighbor[k]];
-      const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
-      const double l = std::sqrt(ux * ux + uy * uy + uz * uz);
-      const double c = K[k] * (l - L[k]) / l;
-      sum.x += c * ux;
-      sum.y += c * uy;
-      sum.z += c * uz;
-    }
-    return sum;
-  }
-  void forces() {
-    for (std::size_t i = 0; i < x.size(); ++i) f[i] = springs(i);
-  }
-  void step(double dt) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i].x += dt * v[i].x;
-      x[i].y += dt * v[i].y;
-      x[i].z += dt * v[i].z;
-    }
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const Vector pull = springs(i);
-      const double h = dt / mass[i];
-      v[i].x += h * pull.x;
-      v[i].y += h * pull.y;
-      v[i].z += h * pull.z - dt * grav;
-    }
-  }
-};
-Flat& flat(unsigned side, Kind kind) {
-  static std::map<std::pair<unsigned, Kind>, Flat> made;
-  return made.try_emplace({side, kind}, cloth(side, kind)).first->second;
-}
 
 /** a = b + 3 c over three arrays of @a bytes in all: what memory can do. */
 struct Triad {
@@ -293,6 +146,16 @@ std::vector<Figure> figures() {
            symp_euler_step(g, 0, dt, *force);
          };
        }});
+  add({"step: SymplecticEuler, one at a time", "step: SymplecticEuler",
+       stepping<SymplecticEuler, 1>(Kind::grid)});
+  add({"step: scene of the assignment", "step: SymplecticEuler",
+       [](unsigned n) -> Make {
+         auto scene = std::make_shared<Scene>(
+             recipe_of(assignment_scene(), {grid_points(n), grid_quads(n)}),
+             TimeStep{.dt = dt}, *default_method());
+         return [scene] { scene->steps_at_once(Scene::guard_interval); };
+       },
+       false, 0, Kind::grid, 1, Scene::guard_interval});
   if (Sweep::processors() > 1)
     add({"step: SymplecticEuler, threads", "step: SymplecticEuler",
          stepping<SymplecticEuler>(Kind::grid), true, 0, Kind::grid,
@@ -446,7 +309,7 @@ int main(int argc, char** argv) {
   app.add_option("--repetitions", repetitions, "of each figure")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_flag("--small", small, "10^4 nodes only");
+  app.add_flag("--small", small, "no 10^6 nodes");
   app.add_option("--calls", calls, "only call that often what has this name");
   app.add_option("--cpu", lanes::cpu, "0 plain, 1 AVX2, 2 AVX-512, if it can")
       ->check(CLI::Range(0, int(lanes::best_cpu())));
@@ -470,11 +333,12 @@ int main(int argc, char** argv) {
   triad("in memory", far, 1);
   if (Sweep::processors() > 1)
     triad("in memory, all threads", far, Sweep::processors());
-  for (unsigned side : {100u, 1000u}) {
+  for (unsigned side : {25u, 100u, 1000u}) {  // 25: grid1, whole steps only
     if (side > 100 && small) continue;
     for (const Figure& f : figures())
       if (f.name.find(filter) != std::string::npos &&
-          (side == 100 || f.million))
+          (side >= 100 || f.name.starts_with("step: ")) &&
+          (side <= 100 || f.million))
         all.add({f.name, double(f.steps) * cloth(side, f.kind).num_nodes(),
                  std::to_string(side * side) + " nodes with diagonals",
                  f.beside, f.make(side), side > 100 ? f.bytes : 0, f.threads});
