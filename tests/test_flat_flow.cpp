@@ -330,6 +330,53 @@ TEST(FlatClothRows, AreTheOffsetsOfAGrid) {
   EXPECT_EQ(flat.reach(), 399u);
 }
 
+// Each node alone, by any processor, with the ends of runs wherever removed
+// nodes put them; whoever is gone has no mass, and nothing is written there.
+TEST(FlatClothNodes, AreTakenAndWritten) {
+  const Drag none;
+  const lanes::Cpu best = lanes::best_cpu();
+  for (int cpu = 0; cpu <= int(best); ++cpu) {
+    lanes::cpu = lanes::Cpu(cpu);
+    Dice dice(7);
+    for (unsigned gone : {0u, 1u, 9u}) {
+      Cloth g;
+      add_random(g, dice, 61, 40);
+      for (unsigned k = 0; k < gone; ++k)
+        g.remove_node(g.node(dice.below(g.num_nodes())));
+      FlatCloth flat;
+      flat.take(g, 3, none);
+      double K = 0, K_flat = 0;
+      for (Edge e : g.edges()) K += e.value().K;
+      for (unsigned k = 0; k < flat.rest()->num_rows() * lanes::width; ++k)
+        K_flat += flat.K()[flat.rest_first() + k];
+      EXPECT_NEAR(K_flat, 2 * 3 * K, 1e-3 * K);  // from both ends
+      for (unsigned i = 0; i < 61; ++i) {
+        const NodeData& node = g.node_values()[i];
+        EXPECT_EQ(flat.position(i), g.positions()[i]);
+        EXPECT_EQ(flat.velocity(i), node.vel);
+        EXPECT_EQ(flat.nodes()[FlatCloth::PerMass][i],
+                  g.node_in_use(i) ? 1 / node.mass : 0);
+        flat.set_position(i, Point(Real(i), 1, 2));
+        flat.set_velocity(i, Point(3, Real(i), 4));
+      }
+      flat.write(g, 5, 60);
+      for (unsigned i = 0; i < 61; ++i) {
+        const bool written = 5 <= i && i < 60 && g.node_in_use(i);
+        const NodeData& node = g.node_values()[i];
+        EXPECT_EQ(g.positions()[i] == Point(Real(i), 1, 2), written) << i;
+        EXPECT_EQ(node.vel == Point(3, Real(i), 4), written) << i;
+        if (g.node_in_use(i)) {
+          EXPECT_EQ(1 / node.mass, flat.nodes()[FlatCloth::PerMass][i]);
+        } else {
+          EXPECT_EQ(g.positions()[i], Point());
+          EXPECT_EQ(node.mass, NodeData().mass);
+        }
+      }
+    }
+  }
+  lanes::cpu = best;
+}
+
 // ----------------------------------------------------------------------- Scene
 
 // Who looks at a run changes no bit of it, whether steps are chosen or not.

@@ -2,54 +2,41 @@
 
 #include <algorithm>
 
+#include "lab/fast/FlatKernels.hpp"
+
 namespace lab {
 
 void FlatCloth::take(const Cloth& g, int multiplicity, const Drag& c) {
   multiplicity_ = multiplicity, drag_ = &c;
   if (version_ != g.version()) lay_out(g);
   read_nodes(g, 0, slots_);
-  const NodeData* node = g.node_values().data();
-  Real* per_mass = nodes_[PerMass];
-  if (slots_ == g.num_nodes())
-    for (unsigned i = 0; i < slots_; ++i) per_mass[i] = 1 / node[i].mass;
-  else
-    for (unsigned i = 0; i < slots_; ++i)
-      per_mass[i] = g.node_in_use(i) ? 1 / node[i].mass : 0;
   if (!c.none())
     for (unsigned i = 0; i < slots_; ++i) nodes_[DragC][i] = Real(c[i]);
-  const EdgeData* edge = g.edge_values().data();
-  const Real times = Real(multiplicity);
-  for (const Run& run : runs_) {
-    const EdgeData* from = edge + run.edge;
-    Real *K = springs_[0] + run.number, *L = springs_[1] + run.number;
-    for (unsigned k = 0; k < run.count; ++k)
-      K[k] = times * from[k].K, L[k] = from[k].L;
-  }
+  lanes::run<kernels::ReadSprings>(std::span<const Run>(runs_),
+                                   g.edge_values().data(), Real(multiplicity),
+                                   springs_[0], springs_[1]);
 }
 
 void FlatCloth::read_nodes(const Cloth& g, unsigned first, unsigned last) {
-  const Point* x = g.positions().data();
-  const NodeData* node = g.node_values().data();
-  const bool all = slots_ == g.num_nodes();
-  for (unsigned i = first; i < last; ++i) {
-    if (!all && !g.node_in_use(i)) {
-      set_position(i, Point());
-      set_velocity(i, Point());
-      continue;
-    }
-    set_position(i, x[i]);
-    set_velocity(i, node[i].vel);
-  }
+  lanes::run<kernels::ReadNodes>(&nodes_, g.positions().data(),
+                                 g.node_values().data(), first, last);
+  if (slots_ == g.num_nodes()) return;
+  for (unsigned i = first; i < last; ++i)
+    if (!g.node_in_use(i)) nodes_[PerMass][i] = 0;
 }
 
 void FlatCloth::write(Cloth& g, unsigned first, unsigned last) const {
-  Point* x = g.positions().data();
-  NodeData* node = g.node_values().data();
   const bool all = slots_ == g.num_nodes();
+  const auto write_nodes = [&](unsigned from, unsigned to) {
+    lanes::run<kernels::WriteNodes>(&nodes_, g.positions().data(),
+                                    g.node_values().data(), from, to);
+  };
+  if (all) return write_nodes(first, last);
+  // The nodes between two that were removed, at once.
   for (unsigned i = first; i < last; ++i) {
-    if (!all && !g.node_in_use(i)) continue;
-    x[i] = position(i);
-    node[i].vel = velocity(i);
+    const unsigned from = i;
+    while (i < last && g.node_in_use(i)) ++i;
+    if (from < i) write_nodes(from, i);
   }
 }
 

@@ -71,6 +71,11 @@ class FlatCloth {
     std::size_t first;
   };
   using Rest = Stencil<lanes::width>;
+  /** Springs of consecutive ids whose numbers are consecutive, too. */
+  struct Run {
+    unsigned edge, count;
+    std::size_t number;
+  };
 
   /** The state of @a g, with @a multiplicity K in place of K, and the drag
    * @a c. Accelerations stay as they are while the topology does, else they are
@@ -119,11 +124,6 @@ class FlatCloth {
   void set_acceleration(unsigned id, const Point& a) { set(AX, id, a); }
 
  private:
-  /** Springs of consecutive ids whose numbers are consecutive, too. */
-  struct Run {
-    unsigned edge, count;
-    std::size_t number;
-  };
   Columns nodes_, springs_;
   std::vector<Row> rows_;
   std::vector<Run> runs_;

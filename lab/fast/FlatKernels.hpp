@@ -4,6 +4,7 @@
  * registers of any length (Lanes.hpp). README.md of this room walks through
  * them. */
 #include <algorithm>
+#include <span>
 
 #include "lab/fast/FlatCloth.hpp"
 #include "lab/fast/Kernels.hpp"
@@ -243,6 +244,96 @@ struct DriftNodes {
         x[i] += way * v[i];
         if (decay != 1) v[i] *= decay;
       }
+    }
+  }
+};
+
+/** Positions, velocities and 1/m of the nodes [first, last) of a graph, by
+ * component. */
+struct ReadNodes {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(Columns* to, const Point* x,
+                                                  const NodeData* node,
+                                                  unsigned first,
+                                                  unsigned last) {
+    using namespace lanes;
+    constexpr unsigned w = count_of<V>;
+    const std::size_t s = to->stride();
+    unsigned i = first;
+    for (; i + w <= last; i += w) {
+      Real *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
+      const Points<V> p = load_points<V>(x + i);
+      store(at, p.x), store(at + s, p.y), store(at + 2 * s, p.z);
+      const Real* row = &node[i].vel.x;
+      const Pairs<V> a = load_pairs<V>(row), b = load_pairs<V>(row + 2 * w);
+      const Pairs<V> xz = unzip(a.first, b.first);
+      const Pairs<V> ym = unzip(a.second, b.second);
+      store(v, xz.first), store(v + s, ym.first), store(v + 2 * s, xz.second);
+      store((*to)[FlatCloth::PerMass] + i, 1 / ym.second);
+    }
+    for (; i < last; ++i) {
+      Real *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
+      at[0] = x[i].x, at[s] = x[i].y, at[2 * s] = x[i].z;
+      const Point& u = node[i].vel;
+      v[0] = u.x, v[s] = u.y, v[2 * s] = u.z;
+      (*to)[FlatCloth::PerMass][i] = 1 / node[i].mass;
+    }
+  }
+};
+
+/** Positions and velocities of the nodes [first, last) back to their graph. */
+struct WriteNodes {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(const Columns* from, Point* x,
+                                                  NodeData* node,
+                                                  unsigned first,
+                                                  unsigned last) {
+    using namespace lanes;
+    constexpr unsigned w = count_of<V>;
+    const std::size_t s = from->stride();
+    unsigned i = first;
+    for (; i + w <= last; i += w) {
+      const Real *at = (*from)[FlatCloth::X] + i,
+                 *v = (*from)[FlatCloth::VX] + i;
+      const Points<V> p = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
+      Real *to = &x[i].x, *row = &node[i].vel.x;
+      store(to, merged<0>(p)), store(to + w, merged<1>(p));
+      store(to + 2 * w, merged<2>(p));
+      const V a = load_pairs<V>(row).second,
+              b = load_pairs<V>(row + 2 * w).second;
+      const Pairs<V> xz = zip(load<V>(v), load<V>(v + 2 * s));
+      const Pairs<V> ym = zip(load<V>(v + s), unzip(a, b).second);
+      const Pairs<V> low = zip(xz.first, ym.first);
+      const Pairs<V> high = zip(xz.second, ym.second);
+      store(row, low.first), store(row + w, low.second);
+      store(row + 2 * w, high.first), store(row + 3 * w, high.second);
+    }
+    for (; i < last; ++i) {
+      const Real *at = (*from)[FlatCloth::X] + i,
+                 *v = (*from)[FlatCloth::VX] + i;
+      x[i] = Point(at[0], at[s], at[2 * s]);
+      node[i].vel = Point(v[0], v[s], v[2 * s]);
+    }
+  }
+};
+
+/** K and L of springs by component, @a times K in place of K. */
+struct ReadSprings {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(
+      std::span<const FlatCloth::Run> runs, const EdgeData* edge, Real times,
+      Real* K, Real* L) {
+    using namespace lanes;
+    constexpr unsigned w = count_of<V>;
+    for (const FlatCloth::Run& run : runs) {
+      const EdgeData* from = edge + run.edge;
+      Real *k = K + run.number, *l = L + run.number;
+      unsigned i = 0;
+      for (; i + w <= run.count; i += w) {
+        const Pairs<V> p = load_pairs<V>(&from[i].K);
+        store(k + i, times * p.first), store(l + i, p.second);
+      }
+      for (; i < run.count; ++i) k[i] = times * from[i].K, l[i] = from[i].L;
     }
   }
 };

@@ -285,11 +285,22 @@ template <typename V>
 struct Pairs {
   V first, second;
 };
+/** Of the pairs that a and b hold one after the other; and back: the first
+ * half of the pairs, and the second one. */
 template <typename V>
-[[gnu::always_inline]] inline Pairs<V> load_pairs(const Real* from) {
-  const V a = load<V>(from), b = load<V>(from + count_of<V>);
+[[gnu::always_inline]] inline Pairs<V> unzip(const V& a, const V& b) {
   return {shuffle(a, b, [](int k) { return 2 * k; }),
           shuffle(a, b, [](int k) { return 2 * k + 1; })};
+}
+template <typename V>
+[[gnu::always_inline]] inline Pairs<V> zip(const V& a, const V& b) {
+  constexpr int w = count_of<V>;
+  return {shuffle(a, b, [](int k) { return k / 2 + k % 2 * w; }),
+          shuffle(a, b, [](int k) { return (w + k) / 2 + k % 2 * w; })};
+}
+template <typename V>
+[[gnu::always_inline]] inline Pairs<V> load_pairs(const Real* from) {
+  return unzip(load<V>(from), load<V>(from + count_of<V>));
 }
 /** The pairs at from + 2 at[0], from + 2 at[1], ... */
 template <typename V>
