@@ -204,6 +204,8 @@ int take_advice(Options& o) {
       rate * (o.advise_budget > 0
                   ? o.advise_budget
                   : std::max(2.0, std::isfinite(run) ? run / rate : 0));
+  // A run takes 1e4 spring evaluations a node and more.
+  rules.most_nodes = std::max(rules.most_nodes, rules.budget / 1e4);
   const Advice advice = advise(o.model, rules);
   progress.end();
   if (!o.quiet) std::cout << in_words(advice);

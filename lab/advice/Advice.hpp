@@ -14,6 +14,7 @@ struct PartReport {
   std::string part;
   double change = 0;   ///< of the answer, in its unit; infinite: the run failed
   double springs = 0;  ///< of a step, that are saved without it
+  double step = 1;     ///< stable without it, in those with it
   bool tried = true;   ///< else the budget left it out
   bool needed = true;
 };
@@ -50,6 +51,9 @@ struct Advice {
   double error = 0;        ///< in the unit of the measure
   double uncertainty = 0;  ///< the error is at most that much larger
   Robustness robustness;
+  double t_end = 0;  ///< [s], of the question; the run may end earlier, at rest
+  /** What it changes to keep positions and velocities in single precision. */
+  std::optional<double> floats;
   double work = 0, seconds = 0;  ///< of the advised run: spring evaluations,
                                  ///< and of this machine
   double spent = 0, spent_work = 0, budget = 0;  ///< by the pilots: [s], spring

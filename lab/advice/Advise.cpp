@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "CME212/Util.hpp"
@@ -34,13 +35,18 @@ Advice Adviser::find() {
       base_ = find_base();
       if (!try_steps()) break;
       find_parts();
+      find_rest();
+      try_longer_steps();
     }
     choose();
   } while (goes_on());
   if (!found_) found_ = lucky_;
   if (!found_ && pilots_.cut_short()) foresee();
   // Chaos may be why nothing was found.
-  if (!advice_.grids.empty() && look_for_chaos() && found_) take(*found_);
+  if (!advice_.grids.empty() && look_for_chaos() && found_) {
+    try_floats(*found_);
+    take(*found_);
+  }
   advice_.cut_short = pilots_.cut_short();
   advice_.spent_work = pilots_.spent(), advice_.budget = pilots_.budget();
   advice_.spent = clock.seconds();
@@ -258,6 +264,18 @@ void Adviser::perturb(Choice& c) {
   look(other, {}, expected.by);
 }
 
+void Adviser::try_floats(const Choice& c) {
+  if (std::is_same_v<Real, float> || !c.checked || !pilots_.affords(c.work))
+    return;
+  auto round = [](Point& p) { p = Point(float(p.x), float(p.y), float(p.z)); };
+  const Trial t =
+      pilots_.run(c.model, "by floats", c.work, {}, nullptr, [&](Scene& scene) {
+        for (Node n : scene.cloth().nodes())
+          round(n.position()), round(n.value().vel);
+      });
+  if (t.ok()) advice_.floats = size_of(Effect(t.answer, c.answer));
+}
+
 void Adviser::foresee() {
   const Refinement& grids = advice_.grids;
   if (grids.size() < 3) return;
@@ -282,7 +300,7 @@ bool Adviser::goes_on() const {
   if (!found_) return true;
   if (!found_->checked) return false;
   const GridReport& last = advice_.grids.back();
-  return (advice_.grids.size() < 4 ||
+  return (advice_.grids.size() < 5 ||
           advice_.grids.uncertainty_of_limit() >
               rules_.most_uncertainty * advice_.tolerance) &&
          8 * pilot_work(last.factor) <=
@@ -298,6 +316,7 @@ void Adviser::take(const Choice& c) {
   advice_.uncertainty = c.uncertainty + scatter_share * advice_.scatter;
   advice_.robustness = c.robustness;
   advice_.work = c.work, advice_.seconds = c.seconds;
+  advice_.t_end = scene_.t_end;
   auto gone = c.gone;  // each of them once, if two parts are alike
   for (PartReport& p : advice_.parts) {
     const auto it = std::ranges::find(gone, p.part);

@@ -52,6 +52,7 @@ class Adviser {
     Effect effect[2];  // of its largest step, and of the half of that
     bool works[2];
     double uncertainty = 1;  // of what it changes, relative to that
+    std::size_t less = 0;    // of less_, from which on it holds
   };
 
   struct Choice {
@@ -78,6 +79,8 @@ class Adviser {
   std::size_t base_ = no_base;   // the grid on which parts and steps are tried
   std::optional<StepCosts> costs_;       // there
   std::vector<Less> less_;               // the first one: all parts
+  double rest_ = 0;                      // [s], from then on it is at rest
+  Effect rest_effect_;                   // of ending then
   std::vector<Step> steps_;              // the first one: the pilots'
   std::optional<Choice> found_, lucky_;  // lucky_: not robust
   static constexpr std::size_t no_base = ~std::size_t(0);
@@ -155,19 +158,37 @@ class Adviser {
   /** Run @a c from starts that are off, and by a step between its own and half
    * of it, for which both of these tell what to expect. */
   void perturb(Choice& c);
+  /** What it changes to keep positions and velocities in single precision. */
+  void try_floats(const Choice& c);
 
   // ------------------------------------------------------------------ Parts
 
   /** Leave out each part in turn; then one more each time, as long as together
-   * they change little: those that change least first. */
+   * they change little: first those that save springs or steps, of these and of
+   * the others those that change least. */
   void find_parts();
   static double springs_of(const Model& m);
+  /** When the scene comes to rest: from then on its answer keeps within a tenth
+   * of the tolerance. Only drag and friction bring that about. */
+  void find_rest();
+  static bool dissipates(const Model& m);
 
   // ------------------------------------------------------------------- Step
 
   /** Each method by two steps: the pilots' own first, then those that take less
    * than four times of it; implicit ones by as few steps as may do. */
   bool try_steps();
+  /** Without the parts of less_ that make it stiff a scene takes longer steps:
+   * these are tried, too. */
+  void try_longer_steps();
+  struct Try {
+    const char* method;
+    double dt;
+  };
+  /** The @a tries on @a on, which has not got the parts of less_[@a less], held
+   * against small steps of a fine method.  @return as refuse() */
+  bool try_methods(const Model& on, const StepCosts& costs,
+                   const std::vector<Try>& tries, std::size_t less);
 
   /** What @a share of the largest step of @a s changes on a grid of @a finer
    * times the cells. Never beyond the largest step: what lies there was not

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "CME212/Util.hpp"
@@ -24,6 +25,8 @@ void Adviser::find_parts() {
   parts.clear();
   for (const Variation& v : without_parts(all)) {
     PartReport r{v.part, infinite, springs - springs_of(v.model)};
+    if (const double limit = StepCosts(v.model).verlet(); limit < no_limit)
+      r.step = limit / costs_->verlet();
     r.tried = pilots_.affords(work, 0.1);
     if (r.tried)
       if (const Trial t = pilots_.run(v.model, "without " + v.part, work);
@@ -32,11 +35,15 @@ void Adviser::find_parts() {
     parts.push_back(r);
   }
   std::vector<PartReport> order = parts;
-  std::ranges::sort(order, {}, &PartReport::change);
+  // What saves work comes before what doesn't.
+  std::ranges::stable_sort(order, {}, [](const PartReport& p) {
+    const bool saves = p.springs > 0 || p.step > 1.2;
+    return std::tuple(p.change > 0, !saves, p.change);
+  });
   const double room = rules_.for_parts * advice_.tolerance;
   less_ = {{{}, Effect(pilot.answer.size()), 1}};
   for (const PartReport& part : order) {
-    if (!(part.change <= room)) break;
+    if (!(part.change <= room)) continue;
     std::vector<std::string> gone = less_.back().gone;
     gone.push_back(part.part);
     const std::optional<Model> without = without_all(all, gone);
@@ -50,6 +57,35 @@ void Adviser::find_parts() {
   }
 }
 
+bool Adviser::dissipates(const Model& m) {
+  auto rubs = [](const auto& part) { return part.friction > 0; };
+  return m.damping > 0 || m.material.drag.value_or(0) > 0 ||
+         std::ranges::any_of(m.planes, rubs) ||
+         std::ranges::any_of(m.spheres, rubs);
+}
+
+void Adviser::find_rest() {
+  constexpr int looks = 64;  // at the answer, in equal times
+  rest_ = scene_.t_end, rest_effect_ = Effect(base().trial.answer.size());
+  const double work = pilot_work(base().factor);
+  if (!dissipates(scene_) || !pilots_.affords(work, 0.1)) return;
+  const Model m = pilot(on_grid(base().factor), base().factor);
+  std::vector<std::pair<double, Answer>> seen;
+  const Trial t = pilots_.run(
+      m, "when it comes to rest", work, {}, nullptr, [&](Scene& scene) {
+        if (scene.time() >= double(seen.size()) * m.t_end / looks)
+          seen.emplace_back(scene.time(), answer(m, scene.cloth()));
+      });
+  if (!t.ok()) return;
+  while (!seen.empty()) {
+    const Effect e(seen.back().second, t.answer);
+    if (!(size_of(e) <= advice_.tolerance / 10)) break;
+    if (seen.back().first <= 0.9 * m.t_end)
+      rest_ = seen.back().first, rest_effect_ = e;
+    seen.pop_back();
+  }
+}
+
 double Adviser::springs_of(const Model& m) {
   Cloth g;
   build_model(g, m, mesh_of(m));
@@ -60,21 +96,37 @@ bool Adviser::try_steps() {
   const Model on = on_grid(base().factor);
   const StepCosts& costs = costs_.emplace(on);
   const double verlet = costs.verlet(), few = scene_.t_end / 32;
-  struct Try {
-    const char* method;
-    double dt;
-  };
-  const Try tries[] = {
-      {method_->method->info.name, 1.5 * base().trial.dt},
-      {"verlet", 0.9 * verlet},
-      {"symplectic-euler", 0.9 * verlet},
-      {"pefrl", 1.3 * verlet},
-      {"srkn6b", 2.2 * verlet},
-      {"respa", 0.9 * costs.multirate()},
-      {"tr-bdf2", few},
-      {"tr-bdf2", few / 8},
-      {"implicit-euler", few / 4},
-  };
+  steps_.clear(), advice_.steps.clear();
+  return try_methods(on, costs,
+                     {{method_->method->info.name, 1.5 * base().trial.dt},
+                      {"verlet", 0.9 * verlet},
+                      {"symplectic-euler", 0.9 * verlet},
+                      {"pefrl", 1.3 * verlet},
+                      {"srkn6b", 2.2 * verlet},
+                      {"respa", 0.9 * costs.multirate()},
+                      {"tr-bdf2", few},
+                      {"tr-bdf2", few / 8},
+                      {"implicit-euler", few / 4}},
+                     0);
+}
+
+void Adviser::try_longer_steps() {
+  double longest = costs_->verlet();
+  for (std::size_t k = 1; k < less_.size(); ++k) {
+    const auto on = without_all(on_grid(base().factor), less_[k].gone);
+    const StepCosts costs(*on);
+    if (!(costs.verlet() > 1.2 * longest) || costs.verlet() == no_limit)
+      continue;
+    longest = costs.verlet();
+    try_methods(
+        *on, costs,
+        {{"verlet", 0.9 * longest}, {"symplectic-euler", 0.9 * longest}}, k);
+  }
+}
+
+bool Adviser::try_methods(const Model& on, const StepCosts& costs,
+                          const std::vector<Try>& tries, std::size_t less) {
+  const double verlet = costs.verlet();
   auto attempt = [&](const char* method, double dt) {
     Model m = on;
     m.method = find_method(method);
@@ -95,20 +147,20 @@ bool Adviser::try_steps() {
     return refuse(too_dear(attempt(fine, small).second));
   const Trial exact = run(fine, small);
   if (!exact.ok()) return refuse(exact.failure);
-  reference_ = exact.answer;
-  steps_.clear(), advice_.steps.clear();
+  if (less == 0) reference_ = exact.answer;
   double least = infinite;  // of the largest steps so far
   for (const Try& t : tries) {
     const bool first = steps_.empty();
     const double work = attempt(t.method, t.dt).second;
     const MethodEntry* method = find_method(t.method);
     // A multirate method without stiff springs is Verlet.
-    if (!first && (std::string_view(t.method) == own || !(work <= 4 * least) ||
-                   (method->info.multirate && t.dt < verlet) ||
-                   !pilots_.affords(3 * work, 0.15)))
+    if (!first &&
+        ((less == 0 && std::string_view(t.method) == own) ||
+         !(work <= 4 * least) || (method->info.multirate && t.dt < verlet) ||
+         !pilots_.affords(3 * work, 0.15)))
       continue;
     least = std::min(least, work);
-    Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1};
+    Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1, less};
     for (int k : {0, 1}) {
       const double dt = k == 0 ? t.dt : s.dt / 2;
       const Trial trial = run(t.method, dt);
@@ -116,7 +168,8 @@ bool Adviser::try_steps() {
       if (s.works[k]) s.effect[k] = Effect(trial.answer, exact.answer);
       if (k == 0 && trial.dt > 0) s.dt = trial.dt;
       advice_.steps.push_back(
-          {t.method, k == 0 ? s.dt : s.dt / 2,
+          {t.method + std::string(less > 0 ? ", parts dropped" : ""),
+           k == 0 ? s.dt : s.dt / 2,
            s.works[k] ? size_of(s.effect[k]) : infinite,
            attempt(t.method, dt).second / std::max(1.0, costs.springs()),
            trial.seconds});
@@ -194,6 +247,7 @@ void Adviser::choose() {
       Model finer = refined_without(2 * c.factor, c.gone);
       finer.method = c.model.method;
       finer.step = {.dt = c.model.step.dt / 2};
+      finer.t_end = c.model.t_end;
       c.robustness.finer_grid =
           off(finer, 8 * c.work, nodes + "and twice the cells", half);
       robust = *c.robustness.finer_grid <= most;
@@ -230,7 +284,8 @@ std::vector<Adviser::Choice> Adviser::choices() const {
     if (steps_[0].works[1] && !scene_.sheets.empty())
       of_pilot.add(pilots * pilots, steps_[0].effect[1].by);
     for (auto less = less_.rbegin(); less != less_.rend(); ++less)
-      for (const Step& s : steps_)
+      for (const Step& s : steps_) {
+        if (std::size_t(less_.rend() - less) - 1 < s.less) continue;
         for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
           if (!s.works[share == 1 ? 0 : 1]) continue;
           // Below its second step it goes as its order says, if at all.
@@ -239,6 +294,7 @@ std::vector<Adviser::Choice> Adviser::choices() const {
           auto off = [&](const Effect& grid, const Effect& by_step) {
             Effect effect = grid;
             effect.add(1, less->effect.by).add(1, by_step.by);
+            effect.add(1, rest_effect_.by);
             return size_of(effect.add(-1, of_pilot.by));
           };
           const double error = off(of_grid, step);
@@ -258,10 +314,12 @@ std::vector<Adviser::Choice> Adviser::choices() const {
           const double work = costs_->of_step(*s.method, m->step.dt * finer) *
                               finer * finer * less->springs *
                               std::ceil(m->t_end / m->step.dt);
-          all.push_back({*m, less->gone, factor, error, uncertainty, work,
-                         size_of(less->effect) + size_of(step)});
+          all.push_back(
+              {*m, less->gone, factor, error, uncertainty, work,
+               size_of(less->effect) + size_of(step) + size_of(rest_effect_)});
           if (error + uncertainty <= advice_.tolerance) break;
         }
+      }
   }
   std::ranges::stable_sort(all, {}, &Choice::work);
   return all;
@@ -272,6 +330,7 @@ std::optional<Model> Adviser::scene_with(double factor, const Less& less,
   std::optional<Model> m = without_all(on_grid(factor), less.gone);
   if (!m) return m;
   m->method = s.method;
+  m->t_end = dissipates(*m) ? rest_ : scene_.t_end;
   m->step = {.dt = std::min(dt, m->t_end)};
   m->step.dt = step_of(*m);
   return m;

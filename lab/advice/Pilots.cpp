@@ -63,13 +63,18 @@ double rate_on(Model m) {
   m.step = {.rule = StepRule::safe};
   Scene scene(m);
   const double springs = double(scene.cloth().num_edges());
-  const CME212::Clock clock;
-  double work = 0;
-  while (clock.seconds() < 0.02 && !scene.done(no_limit)) {
-    scene.step();
-    work += springs;
+  // The best of some spans: in the others the machine did something else.
+  double best = 0;
+  for (int span = 0; span < 5; ++span) {
+    const CME212::Clock clock;
+    double work = 0;
+    while (clock.seconds() < 0.004 && !scene.done(no_limit)) {
+      scene.step();
+      work += springs;
+    }
+    best = std::max(best, work / clock.seconds());
   }
-  return work / clock.seconds();
+  return best;
 }
 }  // namespace
 
@@ -89,8 +94,10 @@ bool Pilots::affords(double work, double share) {
 
 Trial Pilots::run(const Model& m, const std::string& doing, double work,
                   const Shake& shake,
-                  const std::function<void(const Cloth&)>& look) {
-  const std::string key = shake.size > 0 || look ? "" : to_scene_file(m);
+                  const std::function<void(const Cloth&)>& look,
+                  const std::function<void(Scene&)>& after) {
+  const std::string key =
+      shake.size > 0 || look || after ? "" : to_scene_file(m);
   if (const auto known = done_.find(key); known != done_.end())
     return known->second;
   const double before = spent_;
@@ -100,10 +107,11 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
   try {
     const Trial t = try_out(
         m, shake, look ? look : [](const Cloth&) {},
-        [&](double now) {
+        [&](Scene& scene) {
+          if (after) after(scene);
           if (steps++ % 16 == 0)
-            tell_(text,
-                  std::min(1.0, (before + work * now / m.t_end) / budget_));
+            tell_(text, std::min(1.0, (before + work * scene.time() / m.t_end) /
+                                          budget_));
         });
     if (!key.empty()) done_.emplace(key, t);
     return t;

@@ -40,7 +40,9 @@ class StepCosts {
 double work_of_run(const Model& m);
 
 /** Spring evaluations a second of this machine in the cloth and the contacts of
- * @a m, from some steps on a grid of about 25 x 25 nodes. Takes about 20 ms. */
+ * @a m, from some steps on a grid of about 25 x 25 nodes. Takes about 20 ms.
+ * The best of what was measured: other programs take their share of the others.
+ */
 double measured_rate(const Model& m);
 
 /** What a run takes besides its steps, in force evaluations: building the cloth
@@ -69,11 +71,12 @@ class Pilots {
   /** Run @a m, or tell what it gave before. What is no scene fails, like what
    * blows up.
    * @param doing what for, in words   @param work what it counts
-   * @param look as for try_out(); it looks anew each time
+   * @param look, after as for try_out(): then it is run anew each time
    * Throws Interrupted */
   Trial run(const Model& m, const std::string& doing, double work,
             const Shake& shake = {},
-            const std::function<void(const Cloth&)>& look = nullptr);
+            const std::function<void(const Cloth&)>& look = nullptr,
+            const std::function<void(Scene&)>& after = nullptr);
 
  private:
   double budget_, spent_ = 0;

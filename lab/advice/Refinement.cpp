@@ -59,9 +59,11 @@ double Refinement::uncertainty_of_limit() const {
   const std::size_t n = size();
   if (n < 3) return 0;
   const double by_law = distance(limit(), limit_by_powers(n - 1), measure_);
-  // The order of three grids fits them by choice; that of four has to.
+  // The order of three grids fits them by choice; that of four has to. Limits
+  // come nearer to each other, too, if five grids tell so.
   const double by_grids =
-      n > 3 ? distance(limit(), limit_before_, measure_) / 2 : back().error / 4;
+      n > 3 ? distance(limit(), limit_before_, measure_) / (n > 4 ? 2 : 1)
+            : back().error / 4;
   return of_limit * back().error + of_spread * std::max(by_law, by_grids);
 }
 

@@ -147,7 +147,7 @@ def advice(which):
     """How many scenes of the suite are so."""
     rows = table("advice/results/adviser.csv").rows
     got = [{k: float(v) for k, v in r.items()
-            if k not in ("measure", "method", "refusal")}
+            if k not in ("measure", "method", "kinds", "refusal")}
            for r in rows if float(r["work"]) > 0]
     return {"scenes": len(rows),
             "advised": len(got), "refused": len(rows) - len(got),

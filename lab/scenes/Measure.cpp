@@ -105,7 +105,7 @@ double step_of(const Model& m) {
 
 Trial try_out(const Model& m, const Shake& shake,
               const std::function<void(const Cloth&)>& look,
-              const std::function<void(double)>& after) {
+              const std::function<void(Scene&)>& after) {
   const CME212::Clock clock;
   Trial result;
   result.dt = step_of(m);
@@ -117,7 +117,7 @@ Trial try_out(const Model& m, const Shake& shake,
       n.position() += Point(off(random), off(random), off(random));
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
-    after(scene.time());
+    after(scene);
     if (scene.failure().empty())
       result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
   });

@@ -10,6 +10,8 @@
 
 namespace lab {
 
+class Scene;  // lab/scenes/Scene.hpp
+
 /** Numbers in the unit of a measure. */
 using Answer = std::vector<double>;
 
@@ -67,12 +69,13 @@ struct Shake {
 
 /** Run @a m to its end, with steps of step_of(m).
  * @param look at the cloth at the end of a run that did not fail
- * @param after each step, at time t [s]
+ * @param after each step, with the scene, of which it may change the cloth as
+ * between two steps
  * Throws InputError, SceneError; std::invalid_argument as Scene does;
  * Interrupted. */
 Trial try_out(
     const Model& m, const Shake& shake = {},
     const std::function<void(const Cloth&)>& look = [](const Cloth&) {},
-    const std::function<void(double t)>& after = [](double) {});
+    const std::function<void(Scene&)>& after = [](Scene&) {});
 
 }  // namespace lab

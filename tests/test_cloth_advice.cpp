@@ -1,0 +1,218 @@
+// Advise.hpp: a scene of each kind. Advice meets its tolerance by an
+// independent finer run, keeps its budget, says the answer first, and its
+// command runs and gives the answer that was advised.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "lab/advice/Advise.hpp"
+#include "lab/advice/Refusals.hpp"
+#include "lab/advice/Variation.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Words.hpp"
+#include "tests/ClothProgram.hpp"
+
+using namespace lab;
+
+namespace {
+
+/** 1 m x 1 m, 1 kg/m^2, which hangs from its upper side if it is upright. */
+Model cloth_of(const std::string& sheet, double t_end, double tolerance) {
+  Model m;
+  m.sheets = {read_sheet(sheet)};
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.t_end = t_end;
+  m.tolerance = tolerance;
+  return m;
+}
+Model upright(double t_end, double tolerance) {
+  Model m = cloth_of("u 1 0 0 v 0 0 -1 nodes 11 11", t_end, tolerance);
+  m.pins = {read_pin("z 0")};
+  return m;
+}
+Model lying(double t_end, double tolerance) {
+  return cloth_of("nodes 11 11", t_end, tolerance);
+}
+
+class AdviceOfKind : public ClothProgram {
+ protected:
+  AdviceRules rules;
+  AdviceOfKind() {
+    rules.budget = 3e7;
+    rules.patience = 3e6;
+  }
+
+  /** On a grid of twice the cells of the last one that was tried, by a method
+   * that pilots don't use; from files by tiny steps. */
+  static Answer finer_run(const Model& m, const Advice& a) {
+    const double factor = m.sheets.empty() ? 1 : 2 * a.grids.back().factor;
+    Model fine = m.sheets.empty() ? m : refined(m, factor);
+    fine.method = find_method("pefrl");
+    fine.step = {.rule = StepRule::safe};
+    if (m.material.modulus > 1e6)
+      fine.method = find_method("tr-bdf2"), fine.step = {.dt = m.t_end / 256};
+    return try_out(fine).answer;
+  }
+
+  /** The claims on advice that is given. */
+  Advice holds(const Model& m) {
+    const Advice a = advise(m, rules);
+    EXPECT_EQ(a.refusal, "");
+    EXPECT_LE(a.spent_work, rules.budget);
+    if (!a.refusal.empty()) return a;
+    const Answer got = try_out(a.model).answer;
+    EXPECT_LE(distance(got, finer_run(m, a), m.measure), m.tolerance);
+    std::istringstream text(in_words(a));
+    std::string first, second;
+    std::getline(text, first), std::getline(text, second);
+    EXPECT_EQ(first.find("advice: "), 0u) << first;
+    EXPECT_NE(first.find(name_of(m.measure)), std::string::npos) << first;
+    EXPECT_EQ(second.find("  ./cloth "), 0u) << second;
+    const Result r =
+        run(second.substr(10) + " --headless --csv " + path("run.csv"));
+    EXPECT_EQ(r.status, 0) << second << '\n' << r.err;
+    if (r.status == 0 && m.measure == Measure::com) {
+      const auto last = rows(dir / "run.csv").back();
+      const std::size_t n = last.size();  // then nodes and edges
+      for (std::size_t k : {0, 1, 2})
+        EXPECT_NEAR(last[n - 5 + k], got[k], 1e-5 * m.tolerance + 1e-9);
+    }
+    return a;
+  }
+};
+
+TEST_F(AdviceOfKind, FallingSheet) {
+  Model m = lying(0.3, 1e-3);
+  m.planes = {read_plane("at 0 0 -2")};
+  EXPECT_TRUE(holds(m).model.planes.empty());
+}
+
+TEST_F(AdviceOfKind, Curtain) { holds(upright(0.2, 1e-2)); }
+
+TEST_F(AdviceOfKind, StretchAtAPointPinIsRefused) {
+  Model m = upright(0.2, 0.05);
+  m.pins = {read_pin("x 0 z 0")};
+  m.measure = Measure::max_stretch;
+  const Advice a = advise(m, rules);
+  EXPECT_EQ(a.refusal, diverging(m));
+  EXPECT_NE(in_words(a).find("no advice: the stretch at a pin"),
+            std::string::npos);
+}
+
+TEST_F(AdviceOfKind, StretchAtAHeldSide) {
+  Model m = upright(0.2, 0.01);
+  m.edges.diagonals = false;
+  m.measure = Measure::max_stretch;
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, DropOnABall) {
+  Model m = lying(0.22, 0.02);
+  m.spheres = {read_sphere("at 0.5 0.5 -0.35 radius 0.3")};
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, MovingBall) {
+  Model m = lying(0.2, 0.02);
+  m.pins = {read_pin("x 0"), read_pin("x 1")};
+  m.spheres = {read_sphere("at 0.5 0.5 -0.4 radius 0.3 velocity 0 0 0.5")};
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, FrictionOnAnIncline) {
+  Model m = lying(0.3, 0.01);
+  m.planes = {read_plane("at 0 0 -0.001 normal 0 0.5 1 friction 0.2")};
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, MovingPin) {
+  Model m = upright(0.2, 0.01);
+  m.pins = {read_pin("z 0 velocity 0.2 0 0.1 until 0.1")};
+  EXPECT_EQ(holds(m).model.pins, m.pins);
+}
+
+TEST_F(AdviceOfKind, TearingBall) {
+  Model m = lying(0.25, 0.02);
+  m.pins = {read_pin("x 0"), read_pin("x 1")};
+  m.tears = {read_tear("at 0.5 0.5 -0.2 radius 0.15")};
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, TearingByItsWeight) {
+  Model m = upright(0.25, 0.02);
+  m.tear_strain = 0.05;
+  EXPECT_TRUE(holds(m).model.tear_strain);
+}
+
+TEST_F(AdviceOfKind, Bend) {
+  Model m = lying(0.15, 1e-3);
+  m.pins = {read_pin("x 0")};
+  m.edges.bend = true;
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, Flying) {
+  Model m = lying(0.3, 1e-3);
+  m.sheets[0].velocity = Point(1, 0, 2);
+  EXPECT_LE(mesh_of(holds(m).model).points.size(), 36u);
+}
+
+TEST_F(AdviceOfKind, DragToRest) {
+  Model m = upright(10, 0.01);
+  m.material.drag = 20;
+  const Advice a = holds(m);
+  EXPECT_LT(a.model.t_end, 8);
+  EXPECT_NE(in_words(a).find("  it ends at "), std::string::npos);
+  m.material.drag.reset();  // it swings for ever
+  m.t_end = 0.2;
+  EXPECT_EQ(holds(m).model.t_end, 0.2);
+}
+
+TEST_F(AdviceOfKind, StiffSprings) {
+  Model m = upright(0.2, 0.01);
+  m.pins = {read_pin("x 0")};
+  m.material.modulus = 1e8;
+  m.material.drag = 20;
+  rules.budget = 1e8;
+  const Advice a = holds(m);
+  EXPECT_LT(a.work, 1e5);  // Verlet takes 1e4 steps on its first grid
+}
+
+TEST_F(AdviceOfKind, SelfCollision) {
+  Model m = upright(0.2, 0.01);
+  m.self_collision = read_self_collision("thickness 0.1");
+  holds(m);
+}
+
+TEST_F(AdviceOfKind, MeshFromFiles) {
+  Model m;
+  m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
+  m.pins = {read_pin("x 0")};
+  m.t_end = 0.3;
+  m.tolerance = 1e-4;
+  holds(m);
+}
+
+// Chaos: what is offered instead has a tolerance that tells something.
+TEST_F(AdviceOfKind, NoOfferIsAsLargeAsTheCloth) {
+  Model m = lying(1.5, 1e-3);
+  m.pins = {read_pin("x 0 y 0"), read_pin("x 1 y 0")};
+  m.measure = Measure::positions;
+  const Advice a = advise(m, rules);
+  ASSERT_NE(a.refusal, "");
+  for (std::size_t at = a.refusal.find("--measure"); at != std::string::npos;
+       at = a.refusal.find("--measure", at + 1)) {
+    std::istringstream words(a.refusal.substr(at + 9));
+    std::string measure, to;
+    double tolerance = 0;
+    words >> measure >> to >> tolerance;
+    // 1 kg of 1 m x 1 m: a tenth of its diagonal, or of its weight times that.
+    EXPECT_LE(tolerance, measure == "energy" ? 1.4 : 0.15) << a.refusal;
+  }
+}
+
+}  // namespace
