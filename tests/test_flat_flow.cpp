@@ -16,6 +16,7 @@
 #include "lab/methods/Pefrl.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
+#include "lab/scenes/Obstacle.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "tests/Stages.hpp"
 
@@ -265,6 +266,45 @@ TYPED_TEST(FlatFlowTest, NeitherThreadsNorProcessorsChangeABit) {
     for (int threads : {1, 3})
       EXPECT_TRUE(same_bits(run(threads, lanes::Cpu(cpu)), one))
           << threads << " threads, " << cpu;
+}
+
+// In a batch a part of 1024 nodes is some steps ahead of the next one; springs
+// join it to the next part only, to the one after that, or to others, too.
+TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
+  struct Shape {
+    unsigned wide, high, chord;  // chord: of ids, 0: none
+  };
+  for (const auto& [wide, high, chord] :
+       {Shape{90, 91, 0}, Shape{1100, 7, 0}, Shape{90, 91, 1500},
+        Shape{90, 91, 8000}}) {
+    Dice dice(wide + chord);
+    Cloth g;
+    build_cloth(g, grid_points(high, wide), grid_quads(high, wide),
+                Mesh::diagonals);
+    for (Node n : g.nodes()) n.value() = heavy(dice);
+    for (unsigned k = 0; chord > 0 && k + chord < g.num_nodes(); k += 97)
+      g.add_edge(g.node(k), g.node(k + chord), spring(dice));
+    const auto force = make_combined_force(GravityForce(), MassSpringForce(),
+                                           DampingForce(0.3));
+    const Node corner = g.node(0), inner = g.node(3000);
+    const MovingPinConstraint moving(PinConstraint(std::span(&inner, 1)),
+                                     Motion{.velocity = Point(0, 1, 2)});
+    const auto constraint = make_combined_constraints(
+        PinConstraint(std::span(&corner, 1)), moving, PlaneConstraint(-0.002),
+        SphereConstraint(Point(0.5, 0.5, -0.15), 0.2));
+    Cloth singles = g;
+    TypeParam one_by_one;
+    for (int k = 0; k < 11; ++k)
+      one_by_one.step(singles, k * h, h, force, constraint);
+    for (int threads : {1, 2, 3}) {
+      Sweep::set_threads(threads);
+      Cloth batch = g;
+      TypeParam method;
+      EXPECT_EQ(method.steps(batch, {0, h}, 11, force, constraint), 11);
+      EXPECT_TRUE(same_bits(batch, singles))
+          << wide << ", " << chord << ", " << threads;
+    }
+  }
 }
 
 TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {

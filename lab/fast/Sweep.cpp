@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <exception>
 #include <limits>
+#include <thread>
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -87,16 +87,13 @@ void Sweep::in_turn(unsigned slots, int halo, const IdVisitor& move,
                     const IdVisitor& use) {
   const int count = int((slots + part_size - 1) / part_size);
   halo = std::min(halo, count);
-  std::exception_ptr error;
+  FirstError error;
   const auto call = [&](const IdVisitor& what, int k) {
     const unsigned first = unsigned(k) * part_size;
     try {
       what(first, std::min(first + part_size, slots));
     } catch (...) {  // no exception may leave a thread
-#ifdef _OPENMP
-#pragma omp critical(sweep_error)
-#endif
-      if (!error) error = std::current_exception();
+      error.keep();
     }
   };
   const auto share = [&](int number, int threads) {
@@ -119,17 +116,37 @@ void Sweep::in_turn(unsigned slots, int halo, const IdVisitor& move,
       call(use, k);
     }
   };
+  together(slots, share);
+  error.rethrow();
+}
+
+void Sweep::together(unsigned slots, const Work& work) {
   bool alone = true;
 #ifdef _OPENMP
   // Calling a team takes longer than a step of 100 nodes.
+  const unsigned count = (slots + part_size - 1) / part_size;
   alone = count <= 1 || (threads_asked_for == 0 && count < many_parts);
   if (!alone) {
 #pragma omp parallel
-    share(omp_get_thread_num(), omp_get_num_threads());
+    work(omp_get_thread_num(), omp_get_num_threads());
   }
 #endif
-  if (alone) share(0, 1);
-  if (error) std::rethrow_exception(error);
+  if (alone) work(0, 1);
+}
+
+void Sweep::FirstError::keep() {
+#ifdef _OPENMP
+#pragma omp critical(sweep_error)
+#endif
+  if (!error_) error_ = std::current_exception();
+}
+
+void Sweep::await(const std::atomic<int>& count, int least) {
+  while (count.load(std::memory_order_acquire) < least) {
+#ifdef _OPENMP
+    std::this_thread::yield();
+#endif
+  }
 }
 
 /** As after(); the forces stay in @a all unless it is null. */

@@ -3,7 +3,9 @@
  * Sweep: the forces on all nodes of a cloth, a part at a time, by as many
  * threads as OpenMP has (OMP_NUM_THREADS, or --threads). */
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <span>
@@ -31,6 +33,25 @@ class Sweep {
    * longer than the sweep, if another program has a processor just then. */
   static constexpr int many_parts = 32;
   static_assert(part_size % ClothStencil::width == 0);
+
+  /** Call @a work(thread, threads) in each of as many threads as a cloth of
+   * @a slots ids has. It must not throw. */
+  using Work = std::function<void(int thread, int threads)>;
+  static void together(unsigned slots, const Work& work);
+  /** Wait until other threads have made @a count at least @a least. What they
+   * wrote before is seen then. */
+  static void await(const std::atomic<int>& count, int least);
+  /** The first exception of several threads, for the one that called them. */
+  class FirstError {
+   public:
+    void keep();  ///< the one that is being handled
+    void rethrow() const {
+      if (error_) std::rethrow_exception(error_);
+    }
+
+   private:
+    std::exception_ptr error_;
+  };
 
   /** Called with the first id of a part, and the one behind its last. */
   using IdVisitor = std::function<void(unsigned first, unsigned last)>;

@@ -9,6 +9,18 @@
 
 namespace lab {
 
+namespace {
+
+/** Call @a use(h) for those of @a all, sorted, with an id in [first, last). */
+template <typename Held, typename Use>
+void for_part(const std::vector<Held>& all, unsigned first, unsigned last,
+              Use use) {
+  auto h = std::ranges::lower_bound(all, first, {}, &Held::id);
+  for (; h != all.end() && h->id < last; ++h) use(*h);
+}
+
+}  // namespace
+
 void FlatFlow::begin(Cloth& g, const ForcePlan& force, bool exact) {
   g_ = &g, force_ = &force, exact_ = exact;
   by_graph_ = force.has_others();
@@ -18,11 +30,12 @@ void FlatFlow::begin(Cloth& g, const ForcePlan& force, bool exact) {
 
 /** What depends on the topology, and the drag of the nodes. */
 void FlatFlow::prepare() {
-  drag_.clear();
+  drag_.clear(), drifts_.clear();
   if (exact_ && !force_->drag().none()) find_drag();
-  if (version_ == cloth_.version() && rings_.size() >= Sweep::threads()) return;
+  const std::size_t needed = Sweep::threads() * group;
+  if (version_ == cloth_.version() && rings_.size() >= needed) return;
   version_ = cloth_.version();
-  rings_.resize(std::max(rings_.size(), Sweep::threads()));
+  rings_.resize(std::max(rings_.size(), needed));
   constexpr unsigned tile = FlatCloth::tile;
   for (Rings& r : rings_) {
     r.rings.clear();
@@ -51,25 +64,72 @@ void FlatFlow::find_drag() {
   }
 }
 
-void FlatFlow::run(const FlatStage& stage) {
-  stage_ = stage;
-  if (stage.drift)
-    for (DragRun& run : drag_) {
-      const DragFlow flow(run.gamma, *stage.drift);
-      run.way = Real(flow.way), run.decay = Real(flow.decay);
-    }
-  held_.clear();
-  const auto take_place = [this](Node n, const Place& place) {
-    held_.push_back({n.id(), held_.size(), place.at});
+const FlatFlow::Drift& FlatFlow::drift_by(double time) {
+  for (const Drift& d : drifts_)
+    if (d.time == time) return d;
+  Drift& made = drifts_.emplace_back(Drift{time, {}});
+  for (const DragRun& run : drag_) {
+    const DragFlow flow(run.gamma, time);
+    made.of_run.push_back({Real(flow.way), Real(flow.decay)});
+  }
+  return made;
+}
+
+void FlatFlow::prepare(Level& level, const FlatStage& stage) {
+  level.stage = stage;
+  level.drift =
+      stage.drift && !drag_.empty() ? &drift_by(*stage.drift) : nullptr;
+  const auto list = [&](const ConstraintPlan* of, auto value,
+                        std::vector<Held>& all) {
+    all.clear();
+    const auto add = [&](Node n, const Place& place) {
+      all.push_back({n.id(), all.size(), value(place)});
+    };
+    if (of) of->each_place(*g_, stage.t, std::ref(add));
+    std::ranges::sort(all, [](const Held& a, const Held& b) {
+      return std::pair(a.id, a.order) < std::pair(b.id, b.order);
+    });
   };
-  if (stage.held) stage.held->each_place(*g_, stage.t, std::ref(take_place));
-  std::ranges::sort(held_, [](const Held& a, const Held& b) {
-    return std::pair(a.id, a.order) < std::pair(b.id, b.order);
-  });
+  list(
+      stage.held, [](const Place& p) { return p.at; }, level.held);
+  list(
+      stage.last, [](const Place& p) { return p.velocity; }, level.ended);
+}
+
+std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
+  const auto version = g_->version();
+  if (overlaps(stages)) {
+    if (levels_.size() < stages.size()) levels_.resize(stages.size());
+    for (std::size_t k = 0; k < stages.size(); ++k)
+      prepare(levels_[k], stages[k]);
+    run_overlapping(stages.size());
+    return stages.size();
+  }
+  if (levels_.empty()) levels_.resize(1);
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    prepare(levels_[0], stages[k]);
+    run_alone(levels_[0]);
+    if (stages[k].last && g_->version() != version) return k + 1;
+  }
+  return stages.size();
+}
+
+/** Whether parts may be as many stages apart as a group has. */
+bool FlatFlow::overlaps(std::span<const FlatStage> stages) const {
+  return stages.size() > 1 && cloth_.slots() > Sweep::part_size && !by_graph_ &&
+         std::ranges::all_of(stages, [](const FlatStage& s) {
+           return !s.project || s.project->nodewise();
+         });
+}
+
+void FlatFlow::run_alone(Level& level) {
+  const FlatStage& stage = level.stage;
   for (Rings& r : rings_) r.next = std::numeric_limits<unsigned>::max();
   if (stage.kick) force_->begin(stage.t);
-  const auto move_part = [this](unsigned a, unsigned b) { move(a, b); };
-  const auto kick_part = [this](unsigned a, unsigned b) { kick(a, b); };
+  const auto move_part = [&](unsigned a, unsigned b) { move(level, a, b); };
+  const auto kick_part = [&](unsigned a, unsigned b) {
+    kick(level, rings_[Sweep::thread()], a, b);
+  };
   const auto nothing = [](unsigned, unsigned) {};
   const auto go = [&](int halo, const Sweep::IdVisitor& first,
                       const Sweep::IdVisitor& then) {
@@ -78,61 +138,124 @@ void FlatFlow::run(const FlatStage& stage) {
   if (stage.project && !stage.project->nodewise()) {
     go(0, std::ref(move_part), nothing);
     stage.project->apply_flat(cloth_, *g_, stage.t);
-    if (version_ != cloth_.version()) prepare();
+    if (version_ != cloth_.version()) {
+      prepare();
+      prepare(level, FlatStage(stage));
+    }
     if (by_graph_ && stage.kick) cloth_.write(*g_);
-    if (stage.kick) go(0, nothing, std::ref(kick_part));
-  } else if (stage.kick) {
-    go(Sweep::halo_of(*force_, cloth_.reach()), std::ref(move_part),
-       std::ref(kick_part));
+    go(0, nothing, std::ref(kick_part));
   } else {
-    go(0, std::ref(move_part), nothing);
+    go(stage.kick ? Sweep::halo_of(*force_, cloth_.reach()) : 0,
+       std::ref(move_part), std::ref(kick_part));
   }
 }
 
-/** All of a stage but its forces. */
-void FlatFlow::move(unsigned first, unsigned last) {
+/** The first @a count levels. Each thread takes every so many groups of them,
+ * and follows the thread that has the group before. */
+void FlatFlow::run_overlapping(std::size_t count) {
+  const std::size_t groups = (count + group - 1) / group;
+  if (done_.size() < groups) done_ = std::vector<std::atomic<int>>(groups);
+  for (auto& d : done_) d = 0;
+  Sweep::FirstError error;
+  Sweep::together(cloth_.slots(), [&](int thread, int threads) {
+    Rings* rings = &rings_[std::size_t(thread) * group];
+    try {
+      for (auto k = std::size_t(thread); k < groups; k += std::size_t(threads))
+        run_group(std::span(levels_).subspan(
+                      k * group, std::min(count - k * group, group)),
+                  rings, k > 0 ? &done_[k - 1] : nullptr, done_[k]);
+    } catch (...) {  // let all others come to their end
+      error.keep();
+      for (auto& d : done_) d = std::numeric_limits<int>::max();
+    }
+  });
+  error.rethrow();
+}
+
+/** The levels of a group: each @a lag parts behind the one before.
+ * @param before how many parts the group before has done; null: there is none
+ * @param done the same of this one */
+void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
+                         const std::atomic<int>* before,
+                         std::atomic<int>& done) {
+  constexpr unsigned size = Sweep::part_size;
+  const unsigned slots = cloth_.slots();
+  const int parts = int((slots + size - 1) / size);
+  const auto last = [&](int part) {
+    return std::min(unsigned(part + 1) * size, slots);
+  };
+  // A kick reads positions halo parts ahead; and behind, if springs that are
+  // in no row are gathered. Nothing may have moved on there.
+  const int halo = Sweep::halo_of(*force_, cloth_.reach());
+  const int lag = cloth_.rest() ? 2 * halo : halo;
+  const int count = int(levels.size());
+  for (int k = 0; k < count; ++k)
+    rings[k].next = std::numeric_limits<unsigned>::max();
+  for (int p = 0; p < parts + (count - 1) * lag; ++p)
+    for (int k = 0; k < count; ++k) {
+      const int part = p - k * lag;
+      if (part < 0 || part >= parts) continue;
+      if (k == 0 && before)
+        Sweep::await(*before, std::min(part + lag + 1, parts));
+      for (int m = part == 0 ? 0 : part + halo;
+           m <= std::min(part + halo, parts - 1); ++m)
+        move(levels[k], unsigned(m) * size, last(m));
+      kick(levels[k], rings[k], unsigned(part) * size, last(part));
+      if (k == count - 1) done.store(part + 1, std::memory_order_release);
+    }
+}
+
+/** All of a stage before its forces. */
+void FlatFlow::move(const Level& level, unsigned first, unsigned last) {
+  const FlatStage& stage = level.stage;
   const auto drift = [&](unsigned from, unsigned to, Real way, Real decay) {
-    lanes::run<kernels::DriftNodes>(&cloth_, from, to, Real(stage_->first_kick),
+    lanes::run<kernels::DriftNodes>(&cloth_, from, to, Real(stage.first_kick),
                                     way, decay);
   };
-  if (stage_->drift && drag_.empty()) {
-    drift(first, last, Real(*stage_->drift), Real(1));
-  } else if (stage_->drift) {
+  if (level.drift) {
     auto run = std::ranges::upper_bound(drag_, first, {}, &DragRun::last);
     for (unsigned i = first; i < last; ++run) {
       const unsigned end = std::min(run->last, last);
-      drift(i, end, run->way, run->decay);
+      const auto& by = level.drift->of_run[std::size_t(run - drag_.begin())];
+      drift(i, end, by.way, by.decay);
       i = end;
     }
+  } else if (stage.drift) {
+    drift(first, last, Real(*stage.drift), Real(1));
   }
-  auto held = std::ranges::lower_bound(held_, first, {}, &Held::id);
-  for (; held != held_.end() && held->id < last; ++held) {
-    cloth_.set_position(held->id, held->at);
-    cloth_.set_velocity(held->id, Point());
-  }
-  if (stage_->project && stage_->project->nodewise())
-    stage_->project->project_flat(cloth_, *g_, stage_->t, first, last);
+  for_part(level.held, first, last, [this](const Held& h) {
+    cloth_.set_position(h.id, h.value);
+    cloth_.set_velocity(h.id, Point());
+  });
+  if (stage.project && stage.project->nodewise())
+    stage.project->project_flat(cloth_, *g_, stage.t, first, last);
   if (by_graph_) cloth_.write(*g_, first, last);
 }
 
-/** The forces of a stage, and its kick. */
-void FlatFlow::kick(unsigned first, unsigned last) {
-  Rings& mine = rings_[Sweep::thread()];
-  if (mine.next != first) find_rings(mine, first);
-  mine.next = last;
-  if (by_graph_) {
-    std::ranges::fill(mine.others, Point());
-    force_->add_others({*g_, nullptr, first, last}, stage_->t, mine.others);
+/** The forces of a stage, its kick, and what ends a step. */
+void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
+                    unsigned last) {
+  const FlatStage& stage = level.stage;
+  if (stage.kick) {
+    if (mine.next != first) find_rings(mine, first);
+    mine.next = last;
+    if (by_graph_) {
+      std::ranges::fill(mine.others, Point());
+      force_->add_others({*g_, nullptr, first, last}, stage.t, mine.others);
+    }
+    const kernels::KickTask task = {
+        cloth_,
+        mine.rings.data(),
+        force_->springs() > 0 ? mine.rings.size() : 0,
+        by_graph_ ? mine.others.data() : nullptr,
+        !exact_ && !force_->drag().none(),
+        stage.keep,
+        Real(force_->gravity()),
+        Real(*stage.kick)};
+    lanes::run<kernels::KickTiles>(task, first, last);
   }
-  const kernels::KickTask task = {cloth_,
-                                  mine.rings.data(),
-                                  force_->springs() > 0 ? mine.rings.size() : 0,
-                                  by_graph_ ? mine.others.data() : nullptr,
-                                  !exact_ && !force_->drag().none(),
-                                  stage_->keep,
-                                  Real(force_->gravity()),
-                                  Real(*stage_->kick)};
-  lanes::run<kernels::KickTiles>(task, first, last);
+  for_part(level.ended, first, last,
+           [this](const Held& h) { cloth_.set_velocity(h.id, h.value); });
 }
 
 /** The rings as they are when a part begins with id @a first: with the springs
@@ -149,12 +272,6 @@ void FlatFlow::find_rings(Rings& r, unsigned first) {
     lanes::run<kernels::NearTiles>(&cloth_, &ring,
                                    first - std::min(before, first), first);
   }
-}
-
-void FlatFlow::set_held_velocities(const ConstraintPlan& constraint, double t) {
-  constraint.each_place(*g_, t, [this](Node n, const Place& place) {
-    cloth_.set_velocity(n.id(), place.velocity);
-  });
 }
 
 void FlatFlow::end() { cloth_.write(*g_); }

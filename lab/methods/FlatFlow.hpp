@@ -2,9 +2,12 @@
 /** @file FlatFlow.hpp
  * What explicit methods are composed of, drift and kick, on the state of a
  * cloth by component: for many steps, between which nobody looks. */
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
@@ -17,7 +20,8 @@ namespace lab {
  *   v += first_kick a, by the accelerations a that were kept;
  *   the flow of x' = v over drift, of m v' = -c v, too, if drag is exact;
  *   held nodes to their places at rest; the constraint;
- *   a = F/m at time t;  v += kick a. */
+ *   a = F/m at time t;  v += kick a;
+ *   held nodes get the velocities of their places. */
 struct FlatStage {
   double t;  ///< after the drift: of places, constraint and forces [s]
   double first_kick = 0;                    ///< [s]
@@ -26,6 +30,8 @@ struct FlatStage {
   const ConstraintPlan* project = nullptr;  ///< null: none
   std::optional<double> kick = {};          ///< [s]
   bool keep = false;                        ///< a, for a first_kick to come
+  /** Whose held nodes get their velocities: the stage ends a step. */
+  const ConstraintPlan* last = nullptr;
 };
 
 /** Stages of a cloth by component, between begin() and end().
@@ -35,8 +41,14 @@ struct FlatStage {
  * they should be; constraints are called with a graph that is current, and may
  * change anything in it.
  *
- * One thread computes all of a node's force, in an order that does not depend
- * on the number of threads. So the results are the same, bit by bit. */
+ * Where nothing but springs joins nodes, stages overlap: a part goes through
+ * several of them while a cache has it, each stage a few parts behind the one
+ * before (a wavefront; temporal blocking). Source: M. Wittmann, G. Hager,
+ * G. Wellein, doi:10.1109/IPDPSW.2010.5470813.
+ *
+ * One thread computes all of a node's force, in an order that depends neither
+ * on the number of threads nor on the overlap. So the results are the same, bit
+ * by bit. */
 class FlatFlow {
  public:
   FlatFlow() = default;
@@ -44,15 +56,18 @@ class FlatFlow {
   /** What is kept, too; rings, which point into the other one, come anew. */
   FlatFlow(const FlatFlow& a) : cloth_(a.cloth_) {}
 
+  /** The number of stages that overlap in one thread. */
+  static constexpr std::size_t group = 4;
+
   /** Take the state of @a g. Kept accelerations are those of before if the
    * version() of @a g is, too.
    * @param exact whether a drift solves drag; else it is one of the forces
    * @pre @a g and @a force outlive end()   O(N + springs) */
   void begin(Cloth& g, const ForcePlan& force, bool exact);
-  /** Throws what forces and constraints throw; then the cloth is undefined. */
-  void run(const FlatStage& stage);
-  /** Only sets velocities of held nodes to those of their places at @a t. */
-  void set_held_velocities(const ConstraintPlan& constraint, double t);
+  /** All of @a stages, but none after a step that removed nodes or edges.
+   * @return how many were run
+   * Throws what forces and constraints throw; then the cloth is undefined. */
+  std::size_t run(std::span<const FlatStage> stages);
   /** Give positions and velocities to the graph. */
   void end();
 
@@ -61,19 +76,32 @@ class FlatFlow {
   void set_kept(const Cloth& g, const std::vector<Point>& a);
 
  private:
-  /** Nodes of consecutive ids with the same c/m, but for round-off; and what a
-   * drift does with them. */
+  /** Nodes of consecutive ids with the same c/m, but for round-off. */
   struct DragRun {
     unsigned last;
     double gamma;  // [1/s]
-    Real way = 0, decay = 1;
   };
+  /** What a drift by so much time does with the nodes of each DragRun. */
+  struct Drift {
+    double time;
+    struct Factors {
+      Real way, decay;
+    };
+    std::vector<Factors> of_run;
+  };
+  /** A node that is held, and its place or velocity. */
   struct Held {
     unsigned id;
     std::size_t order;  // of two places of a node the later one counts
-    Point at;
+    Point value;
   };
-  /** Of one thread: the rows' springs, up to node next. */
+  /** A stage, with what does not depend on the part. */
+  struct Level {
+    FlatStage stage;
+    const Drift* drift;             // nullptr: no drag in it
+    std::vector<Held> held, ended;  // sorted: places before, velocities after
+  };
+  /** The rows' springs, up to node next. */
   struct Rings {
     std::vector<kernels::RowRing> rings;
     std::vector<Real> numbers;
@@ -84,17 +112,25 @@ class FlatFlow {
   FlatCloth cloth_;
   Cloth* g_ = nullptr;
   const ForcePlan* force_ = nullptr;
-  std::optional<FlatStage> stage_;
   bool exact_ = false, by_graph_ = false;
   std::uint64_t version_ = 0;  // that rings_ and drag_ are of
   std::vector<DragRun> drag_;
-  std::vector<Rings> rings_;  // by thread
-  std::vector<Held> held_;    // sorted
+  std::deque<Drift> drifts_;  // of this batch
+  std::vector<Rings> rings_;  // a group for each thread
+  std::vector<Level> levels_;
+  std::vector<std::atomic<int>> done_;  // by group: parts
 
   void prepare();
   void find_drag();
-  void move(unsigned first, unsigned last);
-  void kick(unsigned first, unsigned last);
+  const Drift& drift_by(double time);
+  void prepare(Level& level, const FlatStage& stage);
+  bool overlaps(std::span<const FlatStage> stages) const;
+  void run_alone(Level& level);
+  void run_overlapping(std::size_t count);
+  void run_group(std::span<Level> group, Rings* rings,
+                 const std::atomic<int>* before, std::atomic<int>& done);
+  void move(const Level& level, unsigned first, unsigned last);
+  void kick(const Level& level, Rings& mine, unsigned first, unsigned last);
   void find_rings(Rings& r, unsigned first);
 };
 

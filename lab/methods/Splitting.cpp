@@ -15,48 +15,46 @@ template <typename Scheme>
 int Splitting<Scheme>::steps(Cloth& g, const StepTimes& times, int count,
                              const ForcePlan& force,
                              const ConstraintPlan& constraint) {
-  const auto version = g.version();
+  stages_.clear();
   bool has = kept(g, times(0), times.dt);
+  const std::size_t before = Scheme::kicks_first && !has;
+  for (int k = 0; k < count; ++k, has = Scheme::kicks_first)
+    add_step(times(k), times.dt, has, constraint);
   restart();  // if anything throws
   flow_.begin(g, force, true);
-  int k = 0;
-  do {
-    one_step(times(k), times.dt, has, constraint);
-    has = Scheme::kicks_first;
-  } while (++k < count && g.version() == version);
+  const auto done = (flow_.run(stages_) - before) / stages_a_step;
   flow_.end();
   if (Scheme::kicks_first)
     kept_for_ = &g, kept_version_ = g.version(),
-    kept_time_ = times(k - 1) + times.dt;
-  return k;
+    kept_time_ = times(int(done) - 1) + times.dt;
+  return int(done);
 }
 
-/** @param kept whether the accelerations at the start are */
+/** The stages of a step. @param kept whether the accelerations at its start
+ * are: else another stage finds them first */
 template <typename Scheme>
-void Splitting<Scheme>::one_step(double t, double dt, bool kept,
+void Splitting<Scheme>::add_step(double t, double dt, bool kept,
                                  const ConstraintPlan& constraint) {
   constexpr auto& steps = Scheme::steps;
-  constexpr std::size_t first_drift = Scheme::kicks_first ? 1 : 0;
   double first_kick = Scheme::kicks_first ? steps[0] * dt : 0;
   if (Scheme::kicks_first && !kept) {
-    flow_.run({.t = t, .kick = first_kick});
+    stages_.push_back({.t = t, .kick = first_kick});
     first_kick = 0;
   }
   double now = t;
   for (std::size_t k = first_drift; k < steps.size(); k += 2) {
     const bool is_last = k + 2 >= steps.size();
     now = is_last ? t + dt : now + steps[k] * dt;
-    FlatStage stage = {.t = now,
+    stages_.push_back({.t = now,
                        .first_kick = first_kick,
                        .drift = steps[k] * dt,
                        .held = &constraint,
                        .project = is_last ? &constraint : nullptr,
-                       .keep = Scheme::kicks_first && is_last};
-    if (k + 1 < steps.size()) stage.kick = steps[k + 1] * dt;
-    flow_.run(stage);
+                       .keep = Scheme::kicks_first && is_last,
+                       .last = is_last ? &constraint : nullptr});
+    if (k + 1 < steps.size()) stages_.back().kick = steps[k + 1] * dt;
     first_kick = 0;
   }
-  flow_.set_held_velocities(constraint, t + dt);
 }
 
 template <typename Scheme>

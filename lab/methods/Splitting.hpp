@@ -31,13 +31,17 @@ class Splitting : public BatchMethod {
   void archive(CME212::Archive& a, const Cloth& g) override;
 
  private:
+  static constexpr std::size_t first_drift = Scheme::kicks_first ? 1 : 0,
+                               stages_a_step =
+                                   (Scheme::steps.size() - first_drift + 1) / 2;
+  std::vector<FlatStage> stages_;    // of a batch
   FlatFlow flow_;                    // its accelerations are without drag
   const Cloth* kept_for_ = nullptr;  // the cloth at whose state they are
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
 
   bool kept(const Cloth& g, double t, double dt) const;
-  void one_step(double t, double dt, bool kept,
+  void add_step(double t, double dt, bool kept,
                 const ConstraintPlan& constraint);
 };
 

@@ -5,17 +5,18 @@ namespace lab {
 int SymplecticEuler::steps(Cloth& g, const StepTimes& times, int count,
                            const ForcePlan& force,
                            const ConstraintPlan& constraint) {
-  const auto version = g.version();
   const double h = times.dt;
+  stages_.clear();
+  for (int k = 0; k < count; ++k)
+    stages_.push_back({.t = times(k),
+                       .drift = h,
+                       .project = &constraint,
+                       .kick = h,
+                       .last = &constraint});
   flow_.begin(g, force, false);
-  int k = 0;
-  do {
-    const double t = times(k);
-    flow_.run({.t = t, .drift = h, .project = &constraint, .kick = h});
-    flow_.set_held_velocities(constraint, t);
-  } while (++k < count && g.version() == version);
+  const auto done = flow_.run(stages_);
   flow_.end();
-  return k;
+  return int(done);
 }
 
 }  // namespace lab

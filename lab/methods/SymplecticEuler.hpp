@@ -24,6 +24,7 @@ class SymplecticEuler : public BatchMethod {
 
  private:
   FlatFlow flow_;
+  std::vector<FlatStage> stages_;  // of a batch
 };
 
 }  // namespace lab
