@@ -25,6 +25,29 @@ const Link = {
     return '#' + all;
   },
 
+  ranges: {share: [0.001, 1000], rivalShare: [0.001, 1000], K: [0.01, 1e6],
+    drag: [0, 100], gravity: [0, 100]},
+
+  // Whether this is a request that the page makes.
+  canAsk(name, values, methods) {
+    const within = (a, [low, high]) => a >= low && a <= high;
+    const [first, second] = values, n = values.length;
+    if (!values.every(Number.isFinite)) return false;
+    if (name in Link.ranges) return n === 1 && within(first, Link.ranges[name]);
+    const whole = Number.isInteger(first);
+    switch (name) {
+      case 'method': return n === 1 && whole && within(first, [0, methods - 1]);
+      case 'compare': return n === 2 && whole &&
+        within(first, [-1, methods - 1]) && within(second, Link.ranges.share);
+      case 'grab': return n === 4 && whole && first >= 0;
+      case 'pin': return n === 1 && whole && first >= 0;
+      case 'move': return n === 3;
+      case 'release': return n === 0;
+      case 'cut': return n === 12;
+      default: return false;
+    }
+  },
+
   // What write() wrote; what is missing or makes no sense is left out.
   // @return {start, log, calls, camera, speed}: start has what is known
   read(hash, about) {
@@ -42,8 +65,8 @@ const Link = {
     choice('scene', about.scenes);
     choice('method', about.methods), choice('rival', about.methods);
     number('side', 2, 100);
-    for (const name of ['share', 'rivalShare']) number(name, 0.001, 1000);
-    number('K', 0.01, 1e6), number('drag', 0, 100), number('gravity', 0, 100);
+    for (const [name, range] of Object.entries(Link.ranges))
+      number(name, ...range);
     const read = {start, log: [], calls: 0};
     if (start.side) start.side = Math.round(start.side);
     const steps = Number(all.get('steps'));
@@ -51,12 +74,11 @@ const Link = {
     for (const event of (all.get('log') || '').split('~').filter(Boolean)) {
       const [at, name, ...values] = event.split('_');
       const numbers = values.map(Number);
-      if (/^(method|share|K|drag|gravity|compare|grab|move|release|pin|cut)$/
-        .test(name) && Number(at) >= 0 && numbers.every(Number.isFinite))
+      if (Number(at) >= 0 && Link.canAsk(name, numbers, about.methods.length))
         read.log.push([Number(at), name, ...numbers]);
     }
     const camera = (all.get('camera') || '').split('_').map(Number);
-    if (camera.length === 3 && camera.every(Number.isFinite))
+    if (camera.length === 3 && camera.every(a => Math.abs(a) <= 1000))
       read.camera = camera;
     const speed = Number(all.get('speed'));
     if (speed > 0 && speed <= 4) read.speed = speed;

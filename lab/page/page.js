@@ -18,10 +18,11 @@ const page = {
   sides: [],             // what is drawn
   readings: null, failed: false, calls: 0, why: '',
   frames: 0, errors: [],
+  run: 0, asked: 0,      // runs and requests; the worker counts them, too
 
   ask(name, ...values) {
     this.worker.postMessage(['ask', [name, ...values]]);
-    this.wanted = true;
+    ++this.asked, this.wanted = true;
   },
   changed() { this.dirty = true; },
 };
@@ -61,6 +62,8 @@ function showSlider(name) {
 
 function showControls() {
   const s = page.settings;
+  if (![...$('side').options].some(o => Number(o.value) === s.side))
+    $('side').append(new Option(`${s.side} x ${s.side}`, s.side));
   for (const name of ['scene', 'side', 'method', 'rival'])
     $(name).value = s[name];
   for (const name of Object.keys(sliders)) showSlider(name);
@@ -74,6 +77,18 @@ function showControls() {
   $('play').textContent = page.playing ? 'Pause' : 'Play';
   showLimits();
   page.changed();
+}
+
+// K and drag change the limit, and dt stays: dt / limit is as it is computed,
+// once nothing that was asked is on its way.
+function followShares({asked, failed, readings}) {
+  if (asked !== page.asked || failed) return;
+  for (const [name, run] of [['share', readings.main],
+    ['rivalShare', readings.rival]]) {
+    const share = run && Number((run.dt / run.unit).toPrecision(3));
+    if (!run || Math.abs(share / page.settings[name] - 1) < 0.01) continue;
+    page.settings[name] = share, showSlider(name);
+  }
 }
 
 // The step is red where it is beyond the limit of the method.
@@ -101,7 +116,7 @@ function start() {
   page.failed = false, page.why = '', showFailure('');
   page.hand.release();
   page.worker.postMessage(['load', {...page.settings}]);
-  page.waiting = true;
+  ++page.run, page.waiting = true;
   showControls();
 }
 
@@ -206,8 +221,9 @@ function showNumbers() {
   if (rival) {
     plots.energy.draw('Energy drift [J]',
       [[main.method, blue], [rival.method, orange]], false, page.style);
-    plots.distance.draw('Distance [m]', [['apart', dark],
-      ['error', blue], ['error', orange]], true, page.style);
+    plots.distance.draw('Distance\u00a0[m]', [['apart', dark],
+      [`${main.method} to exact`, blue], [`${rival.method} to exact`, orange]],
+    true, page.style);
   } else {
     plots.energy.draw('Energy [J]', [['kinetic', blue], ['elastic', orange],
       ['height', green], ['total', dark]], false, page.style);
@@ -267,12 +283,11 @@ const replies = {
     Object.assign(page.settings, read.start);
     if (read.speed) page.speed = read.speed;
     if (read.camera)
-      [page.view.camera.yaw, page.view.camera.pitch, page.view.camera.zoom] =
-        read.camera;
+      page.view.camera.set(...read.camera);
     start();
     if (!read.calls && !read.log.length) return;
     setPlaying(false);
-    page.worker.postMessage(['repeat',
+    ++page.run, page.worker.postMessage(['repeat',
       {start: {...page.settings}, log: read.log, calls: read.calls}]);
     for (const [, name, ...values] of read.log) {  // as they were at its end
       if (name in page.settings) page.settings[name] = values[0];
@@ -298,7 +313,7 @@ const replies = {
       return {...side, lines, triangles, pins};
     });
     page.readings = data.readings;
-    frameScene(), remember();
+    followShares(data), frameScene(), remember();
     if (data.failed && !page.failed) {
       page.failed = true, setPlaying(false);
       for (const plot of Object.values(plots)) plot.good = data.good;
@@ -396,7 +411,10 @@ async function begin() {
   // From a blob, as a page that is opened as a file may start no other one.
   const source = new Blob([$('worker').textContent], {type: 'text/javascript'});
   page.worker = new Worker(URL.createObjectURL(source));
-  page.worker.onmessage = ({data}) => replies[data.kind](data);
+  page.worker.onmessage = ({data}) => {
+    // What was on its way of the run before comes too late.
+    if ((data.run ?? page.run) === page.run) replies[data.kind](data);
+  };
   page.worker.onerror = e => page.errors.push(e.message);
   const packed = Uint8Array.from(atob($('wasm').textContent),
     c => c.charCodeAt(0));

@@ -32,7 +32,8 @@ $(page_o)/flags: FORCE
 $(page_o)/cloth.wasm: $(page_objects) lab/page/Page.hpp
 	@echo 'link $@'
 	@$(PAGE_CXX) --target=wasm32-wasi -O2 -mexec-model=reactor -Wl,--no-entry \
-	  -Wl,--strip-all -Wl,--export=__stack_pointer -Wl,--export=page_thrown \
+	  -Wl,--stack-first -Wl,-z,stack-size=1048576 -Wl,--strip-all \
+	  -Wl,--export=__stack_pointer -Wl,--export=page_thrown \
 	  $(page_names:%=-Wl,--export=%) -o $@ $(page_objects)
 
 $(page)/index.html: $(page_o)/cloth.wasm $(wildcard lab/page/*.js lab/page/*.py \

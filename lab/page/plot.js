@@ -22,8 +22,8 @@ class Plot {
 
   // @param curves [name, color] for each value   @param log by powers of ten
   draw(name, curves, log, style) {
-    this.title.innerHTML = name + curves.map(([what, color]) =>
-      `<b style="color:${color}">${what}</b>`).join('');
+    this.title.innerHTML = [name, ...curves.map(([what, color]) =>
+      `<b style="color:${color}">${what}</b>`)].join(' ');
     const {canvas, times, rows} = this;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const width = canvas.clientWidth, height = canvas.clientHeight;

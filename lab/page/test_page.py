@@ -25,7 +25,7 @@ def test(run):
 def opened(browser, hash=""):
     """The page as it is opened, with a frame drawn."""
     browser.open(address + hash)
-    browser.wait("page.frames > 2 && page.readings && page.sides.length")
+    browser.wait("page.frames > 0 && page.readings && page.sides.length")
     return browser
 
 
@@ -205,6 +205,11 @@ def sliders_change_what_runs(b):
     limit = b.value("page.readings.main.safe")
     slide(b, "K", 400)
     b.wait(f"Math.abs(page.readings.main.safe / {limit} - 0.5) < 0.01")
+    # The step stays, so dt / limit is twice as large; and red beyond 1.
+    b.wait("Math.abs(page.settings.share / 0.5 - 1) < 0.02")
+    slide(b, "K", 10000)
+    b.wait("page.settings.share > 2 &&"
+           " $('row-share').classList.contains('beyond')")
     slide(b, "K", 100)
     # A cloth that nothing pulls stays where it is.
     b.click("#restart")
@@ -258,6 +263,9 @@ def two_methods_run_beside_each_other(b):
     # Symplectic Euler is of order 1, Verlet of order 2.
     assert 0 < r["error"] < r["rivalError"]
     assert b.value("plots.distance.times.length") > 3
+    # No reading of the run before, which had no other beside it.
+    assert b.value("plots.energy.rows.every(row => row.length === 2)")
+    assert b.value("plots.energy.times[0]") < 0.05
     b.screenshot(build / "page-two.png")
     choose(b, "rival", -1)
     b.wait("page.sides.length === 1")
@@ -291,6 +299,31 @@ def a_link_shows_the_same_picture_twice(b):
     assert pictures[0] == pictures[1]
     assert abs(b.value("page.settings.K") - 60) < 2
     b.screenshot(build / "page-link.png")
+
+
+@test
+def a_link_of_nonsense_is_a_page_all_the_same(b):
+    for hash in ("#%E0%A4%A", "#scene=x&side=y&method=%%&share=-5&steps=1e9x",
+                 "#log=2_method_77~3_method_0.5~3_method_-1&steps=20",
+                 "#log=3_compare_99_0.5~4_compare_-2_1~5_compare&steps=20",
+                 "#log=3_share_-1~3_share_0~4_K_0~5_gravity_1e300&steps=20",
+                 "#log=1_cut_1_2_3~2_pin_-1~3_pin_9999999~4_nothing&steps=20",
+                 "#log=3_grab_999999_1_1_1~4_grab~5_move_1&steps=20",
+                 "#side=3.7&camera=1e9_1_1", "#camera=0_99_-5"):
+        opened(b, hash)
+        b.value("setPlaying(true)")
+        b.wait("page.readings.main.time > 0.03")
+        assert b.value("page.failed") is False, hash
+    assert b.value("[page.view.camera.pitch, page.view.camera.zoom]") == [1.5,
+                                                                          0.2]
+
+
+@test
+def large_systems_are_factored(b):
+    """By Eigen's order, which takes 32 bytes a row of the stack."""
+    opened(b, "#side=50&method=implicit-euler&share=100")
+    b.wait("page.readings.main.steps > 3", 120)
+    assert b.value("page.failed") is False
 
 
 @test

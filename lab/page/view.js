@@ -32,6 +32,10 @@ class Camera {
   zoomBy(factor) {
     this.zoom = Math.max(0.2, Math.min(8, this.zoom * factor));
   }
+  set(yaw, pitch, zoom) {
+    this.yaw = yaw, this.pitch = pitch, this.zoom = zoom;
+    this.turn(0, 0), this.zoomBy(1);  // within their limits
+  }
   // Where it is, and its axes, for a picture of width / height = aspect.
   frame(aspect) {
     const c = Math.cos(this.pitch), s = Math.sin(this.pitch);
@@ -226,7 +230,7 @@ class Pace {
     this.level = 0, this.patience = 4000;  // [ms] before it is sharper again
     this.begin(0);
   }
-  static levels = [1, 0.75, 0.5];
+  static levels = [1, 0.8, 0.6];
   get sharpness() { return this.moving ? Pace.levels[this.level] : 1; }
   begin(now) { this.from = now, this.count = 0; }
 

@@ -5,6 +5,7 @@
 
 let wasm, module, about;       // exports; compiled; page_about()
 let start, log, calls;         // what a link holds
+let run = 0, asked = 0;        // how many were started; requests taken
 let broken = '';               // what was thrown, until the next start
 let versions = [-1, -1];       // of the meshes that were sent
 let sharpAt = 0, explained = false, readings = null;
@@ -72,7 +73,7 @@ function apply(name, values) {
 }
 
 function load(s) {
-  start = s, log = [], calls = 0, broken = '', explained = false;
+  ++run, start = s, log = [], calls = 0, broken = '', explained = false;
   call('load', s.scene, s.side, s.method);
   const own = about.scenes[s.scene];
   for (const name of ['K', 'drag', 'gravity'])
@@ -83,7 +84,7 @@ function load(s) {
 
 // Steps until `time` [s], or as many as fit in `budget` [ms].
 // @return the time reached
-function run(time, budget) {
+function advance(time, budget) {
   const until = performance.now() + budget;
   let now = -1;
   while (!broken && performance.now() < until) {
@@ -150,20 +151,20 @@ function frame() {
   if (sharp) sharpAt = performance.now();
   if (!failed) readings = JSON.parse(text(wasm.page_readings(sharp ? 1 : 0)));
   const good = failed && !broken ? call('step') : Infinity;  // [s]
-  postMessage({kind: 'frame', sides, readings, calls, good, failed: !!failed},
-    parts);
+  postMessage({kind: 'frame', run, asked, sides, readings, calls, good,
+    failed: !!failed}, parts);
   if (failed && !explained) setTimeout(explain, 0);
 }
 
 // Why it failed and what works: it is found by trying, which takes a while.
 function explain() {
   explained = true;
-  if (broken) return postMessage({kind: 'why', why: broken, readings});
+  if (broken) return postMessage({kind: 'why', run, why: broken, readings});
   const short = failureOf(0), at = call('readings', 1);
   if (at !== undefined) readings = JSON.parse(text(at));
   // A trial of what might work may throw: then nothing works that is known.
   const why = at === undefined ? short : readings.main.failure;
-  postMessage({kind: 'why', why, readings});
+  postMessage({kind: 'why', run, why, readings});
 }
 
 function setting() {
@@ -190,15 +191,16 @@ const handlers = {
     setting();
   },
   ask([name, ...values]) {
+    ++asked;
     if (broken) return;
     apply(name, values), log.push([calls, name, ...values]);
   },
   // One frame: simulated time [s] to pass, or -1: one step.
   frame(seconds) {
     const budget = 12;  // [ms]: the rest of a frame is for the drawing
-    if (seconds < 0) run(0, budget);
+    if (seconds < 0) advance(0, budget);
     else if (seconds > 0 && readings)
-      run(readings.main.time + seconds, budget);
+      advance(readings.main.time + seconds, budget);
     frame();
   },
   link: () => postMessage({kind: 'link', link: {start, log, calls}}),
