@@ -307,6 +307,39 @@ TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
   }
 }
 
+// A ball that tears may need all nodes, or none, as the steps before: batches
+// in which parts are steps apart begin again where it does.
+TYPED_TEST(FlatFlowTest, PartsAheadWaitForABallThatTears) {
+  Cloth g;
+  build_cloth(g, grid_points(40), grid_quads(40), Mesh::diagonals);
+  for (Node n : g.nodes()) n.value().vel = Point(0, 0, -1);
+  const auto force = make_combined_force(GravityForce(), MassSpringForce());
+  // Reached by some nodes a few steps from one another, until below.
+  const auto constraint = make_combined_constraints(
+      PlaneConstraint(-0.03),
+      TearConstraint(Ball{Point(0.5, 0.5, -0.305), 0.3}));
+  Cloth singles = g;
+  TypeParam one_by_one;
+  constexpr int steps = 60;
+  for (int k = 0; k < steps; ++k)
+    one_by_one.step(singles, k * h, h, force, constraint);
+  EXPECT_LT(singles.num_nodes(), 1590u);
+  for (int threads : {1, 3}) {
+    Sweep::set_threads(threads);
+    Cloth batch = g;
+    TypeParam method;
+    StepTimes times = {0, h};
+    int batches = 0;
+    for (; times.done < steps; ++batches)
+      times.done +=
+          method.steps(batch, times, std::min(8, steps - int(times.done)),
+                       force, constraint);
+    EXPECT_GT(batches, 9);
+    EXPECT_LT(batches, 40);
+    EXPECT_TRUE(same_bits(batch, singles)) << threads;
+  }
+}
+
 TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {
   Cloth g;
   build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);

@@ -276,6 +276,13 @@ void ConstraintPlan::apply_flat(FlatCloth& c, Cloth& g, double t) const {
   if (c.version() != g.version()) c.write(g), c.take(g);
 }
 
+bool ConstraintPlan::project_alone(FlatCloth& c, Cloth& g, double t,
+                                   unsigned first, unsigned last) const {
+  return std::ranges::all_of(terms_, [&](const auto& term) {
+    return term->project_alone(c, g, t, first, last);
+  });
+}
+
 void ConstraintPlan::each_place(const Cloth& g, double t,
                                 const PlaceVisitor& use) const {
   for (const auto& term : terms_) term->each_place(g, t, use);

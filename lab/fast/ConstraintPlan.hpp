@@ -74,6 +74,16 @@ class SweptConstraint : public ZeroConstraint {
   }
   /** The call, of a cloth by component. The default goes by the graph. */
   virtual void apply_flat(FlatCloth& c, Cloth& g, double t) const;
+  /** What the call does to the nodes with ids in [first, last), wherever the
+   * others are, if that is known: project_flat() of what is nodewise, nothing
+   * of what is idle().  @return false if it is not; then @a c is undefined
+   * Threads may call it for several parts at once. */
+  virtual bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
+                             unsigned last) const {
+    if (!nodewise()) return idle(c, t, first, last);
+    project_flat(c, g, t, first, last);
+    return true;
+  }
   /** Call @a use(node, place) for each node of @a g that is held: that is at a
    * place which only depends on the time, whatever forces act on it. The place
    * is that of time @a t [s], which stages may take a step before the start. */
@@ -191,6 +201,8 @@ class ConstraintPlan {
   void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
                     unsigned last) const;
   void apply_flat(FlatCloth& c, Cloth& g, double t) const;
+  bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
+                     unsigned last) const;
   void each_place(const Cloth& g, double t, const PlaceVisitor& use) const;
   double next_kink(double t) const;
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
@@ -251,6 +263,10 @@ class WatchedConstraint final : public SweptConstraint {
   void apply_flat(FlatCloth& c, Cloth& g, double t) const override {
     if (before_.empty()) return c_.apply_flat(c, g, t);
     SweptConstraint::apply_flat(c, g, t);
+  }
+  bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
+                     unsigned last) const override {
+    return before_.empty() && c_.project_alone(c, g, t, first, last);
   }
   void each_place(const Cloth& g, double t,
                   const PlaceVisitor& use) const override {

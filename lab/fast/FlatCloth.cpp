@@ -40,6 +40,26 @@ void FlatCloth::write(Cloth& g, unsigned first, unsigned last) const {
   }
 }
 
+namespace {
+constexpr auto state = {FlatCloth::X,  FlatCloth::Y,  FlatCloth::Z,
+                        FlatCloth::VX, FlatCloth::VY, FlatCloth::VZ,
+                        FlatCloth::AX, FlatCloth::AY, FlatCloth::AZ};
+}  // namespace
+
+void FlatCloth::save(std::vector<Real>& copy) const {
+  copy.resize(state.size() * slots_);
+  Real* to = copy.data();
+  for (const Column c : state) to = std::copy_n(nodes_[c], slots_, to);
+}
+
+void FlatCloth::restore(const std::vector<Real>& copy) {
+  const Real* from = copy.data();
+  for (const Column c : state) {
+    std::copy_n(from, slots_, nodes_[c]);
+    from += slots_;
+  }
+}
+
 void FlatCloth::lay_out(const Cloth& g) {
   slots_ = g.node_slots(), reach_ = 0;
   rows_.clear(), runs_.clear(), rest_.reset();

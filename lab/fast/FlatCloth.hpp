@@ -90,6 +90,11 @@ class FlatCloth {
 
   void write(Cloth& g) const { write(g, 0, slots_); }
 
+  /** Keep positions, velocities and accelerations in @a copy; take them back.
+   */
+  void save(std::vector<Real>& copy) const;
+  void restore(const std::vector<Real>& copy);
+
   /** True if @a holds(position) for any id in [first, last): 0 of a removed
    * node. */
   template <typename Holds>

@@ -98,12 +98,11 @@ void FlatFlow::prepare(Level& level, const FlatStage& stage) {
 
 std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
   const auto version = g_->version();
-  if (overlaps(stages)) {
+  if (may_overlap(stages)) {
     if (levels_.size() < stages.size()) levels_.resize(stages.size());
     for (std::size_t k = 0; k < stages.size(); ++k)
       prepare(levels_[k], stages[k]);
-    run_overlapping(stages.size());
-    return stages.size();
+    if (run_overlapping(stages)) return stages.size();
   }
   if (levels_.empty()) levels_.resize(1);
   for (std::size_t k = 0; k < stages.size(); ++k) {
@@ -114,19 +113,21 @@ std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
   return stages.size();
 }
 
-/** Whether parts may be as many stages apart as a group has. */
-bool FlatFlow::overlaps(std::span<const FlatStage> stages) const {
-  return stages.size() > 1 && cloth_.slots() > Sweep::part_size && !by_graph_ &&
-         std::ranges::all_of(stages, [](const FlatStage& s) {
-           return !s.project || s.project->nodewise();
-         });
+/** Whether parts may be some stages apart, for all that is known before. */
+bool FlatFlow::may_overlap(std::span<const FlatStage> stages) {
+  if (stages.size() < 2 || cloth_.slots() <= Sweep::part_size || by_graph_)
+    return false;
+  return waiting_ == 0 || --waiting_ == 0;
 }
 
 void FlatFlow::run_alone(Level& level) {
   const FlatStage& stage = level.stage;
   for (Rings& r : rings_) r.next = std::numeric_limits<unsigned>::max();
   if (stage.kick) force_->begin(stage.t);
-  const auto move_part = [&](unsigned a, unsigned b) { move(level, a, b); };
+  const bool by_part = !stage.project || stage.project->nodewise();
+  const auto move_part = [&](unsigned a, unsigned b) {
+    move(level, a, b, by_part);
+  };
   const auto kick_part = [&](unsigned a, unsigned b) {
     kick(level, rings_[Sweep::thread()], a, b);
   };
@@ -135,7 +136,7 @@ void FlatFlow::run_alone(Level& level) {
                       const Sweep::IdVisitor& then) {
     Sweep::in_turn(cloth_.slots(), halo, first, then);
   };
-  if (stage.project && !stage.project->nodewise()) {
+  if (!by_part) {
     go(0, std::ref(move_part), nothing);
     stage.project->apply_flat(cloth_, *g_, stage.t);
     if (version_ != cloth_.version()) {
@@ -150,34 +151,53 @@ void FlatFlow::run_alone(Level& level) {
   }
 }
 
-/** The first @a count levels. Each thread takes every so many groups of them,
- * and follows the thread that has the group before. */
-void FlatFlow::run_overlapping(std::size_t count) {
-  const std::size_t groups = (count + group - 1) / group;
+/** All of @a stages, whose levels are prepared. Each thread takes every so
+ * many groups of them, and follows the thread that has the group before.
+ * @return false if a constraint needs all nodes at once; then nothing is done,
+ * and the next attempt waits for twice as many batches as the last one */
+bool FlatFlow::run_overlapping(std::span<const FlatStage> stages) {
+  const bool sure = std::ranges::all_of(stages, [](const FlatStage& s) {
+    return !s.project || s.project->nodewise();
+  });
+  if (!sure) cloth_.save(before_);
+  const std::size_t count = stages.size(), groups = (count + group - 1) / group;
   if (done_.size() < groups) done_ = std::vector<std::atomic<int>>(groups);
   for (auto& d : done_) d = 0;
   Sweep::FirstError error;
+  std::atomic<bool> good = true;
   Sweep::together(cloth_.slots(), [&](int thread, int threads) {
     Rings* rings = &rings_[std::size_t(thread) * group];
     try {
-      for (auto k = std::size_t(thread); k < groups; k += std::size_t(threads))
+      for (auto k = std::size_t(thread); k < groups && good;
+           k += std::size_t(threads))
         run_group(std::span(levels_).subspan(
                       k * group, std::min(count - k * group, group)),
-                  rings, k > 0 ? &done_[k - 1] : nullptr, done_[k]);
-    } catch (...) {  // let all others come to their end
+                  rings, k > 0 ? &done_[k - 1] : nullptr, done_[k], good);
+    } catch (...) {
       error.keep();
-      for (auto& d : done_) d = std::numeric_limits<int>::max();
+      good = false;
     }
+    if (good) return;
+    for (auto& d : done_) d = std::numeric_limits<int>::max();  // none waits
   });
   error.rethrow();
+  if (good) {
+    wait_ = 1;
+    return true;
+  }
+  cloth_.restore(before_);
+  waiting_ = wait_;
+  wait_ = std::min(2 * wait_, longest_wait);
+  return false;
 }
 
 /** The levels of a group: each @a lag parts behind the one before.
  * @param before how many parts the group before has done; null: there is none
- * @param done the same of this one */
+ * @param done the same of this one
+ * @param good made false, and seen to be, where this can't go on */
 void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
-                         const std::atomic<int>* before,
-                         std::atomic<int>& done) {
+                         const std::atomic<int>* before, std::atomic<int>& done,
+                         std::atomic<bool>& good) {
   constexpr unsigned size = Sweep::part_size;
   const unsigned slots = cloth_.slots();
   const int parts = int((slots + size - 1) / size);
@@ -199,14 +219,18 @@ void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
         Sweep::await(*before, std::min(part + lag + 1, parts));
       for (int m = part == 0 ? 0 : part + halo;
            m <= std::min(part + halo, parts - 1); ++m)
-        move(levels[k], unsigned(m) * size, last(m));
+        if (!move(levels[k], unsigned(m) * size, last(m), true)) good = false;
+      if (!good) return;
       kick(levels[k], rings[k], unsigned(part) * size, last(part));
       if (k == count - 1) done.store(part + 1, std::memory_order_release);
     }
 }
 
-/** All of a stage before its forces. */
-void FlatFlow::move(const Level& level, unsigned first, unsigned last) {
+/** All of a stage before its forces.
+ * @param project whether that goes by part
+ * @return false if it does not; then the cloth is undefined */
+bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
+                    bool project) {
   const FlatStage& stage = level.stage;
   const auto drift = [&](unsigned from, unsigned to, Real way, Real decay) {
     lanes::run<kernels::DriftNodes>(&cloth_, from, to, Real(stage.first_kick),
@@ -227,9 +251,11 @@ void FlatFlow::move(const Level& level, unsigned first, unsigned last) {
     cloth_.set_position(h.id, h.value);
     cloth_.set_velocity(h.id, Point());
   });
-  if (stage.project && stage.project->nodewise())
-    stage.project->project_flat(cloth_, *g_, stage.t, first, last);
+  const bool good =
+      !project || !stage.project ||
+      stage.project->project_alone(cloth_, *g_, stage.t, first, last);
   if (by_graph_) cloth_.write(*g_, first, last);
+  return good;
 }
 
 /** The forces of a stage, its kick, and what ends a step. */

@@ -43,8 +43,10 @@ struct FlatStage {
  *
  * Where nothing but springs joins nodes, stages overlap: a part goes through
  * several of them while a cache has it, each stage a few parts behind the one
- * before (a wavefront; temporal blocking). Source: M. Wittmann, G. Hager,
- * G. Wellein, doi:10.1109/IPDPSW.2010.5470813.
+ * before (a wavefront; temporal blocking). A constraint that may need all nodes
+ * at once, as one that tears, is tried like that, too: if it turns out not to
+ * be idle, the batch begins again without overlap. Source: M. Wittmann, G.
+ * Hager, G. Wellein, doi:10.1109/IPDPSW.2010.5470813.
  *
  * One thread computes all of a node's force, in an order that depends neither
  * on the number of threads nor on the overlap. So the results are the same, bit
@@ -119,17 +121,21 @@ class FlatFlow {
   std::vector<Rings> rings_;  // a group for each thread
   std::vector<Level> levels_;
   std::vector<std::atomic<int>> done_;  // by group: parts
+  static constexpr int longest_wait = 64;
+  int waiting_ = 0, wait_ = 1;  // batches without overlap; the next time
+  std::vector<Real> before_;
 
   void prepare();
   void find_drag();
   const Drift& drift_by(double time);
   void prepare(Level& level, const FlatStage& stage);
-  bool overlaps(std::span<const FlatStage> stages) const;
+  bool may_overlap(std::span<const FlatStage> stages);
   void run_alone(Level& level);
-  void run_overlapping(std::size_t count);
+  bool run_overlapping(std::span<const FlatStage> stages);
   void run_group(std::span<Level> group, Rings* rings,
-                 const std::atomic<int>* before, std::atomic<int>& done);
-  void move(const Level& level, unsigned first, unsigned last);
+                 const std::atomic<int>* before, std::atomic<int>& done,
+                 std::atomic<bool>& good);
+  bool move(const Level& level, unsigned first, unsigned last, bool project);
   void kick(const Level& level, Rings& mine, unsigned first, unsigned last);
   void find_rings(Rings& r, unsigned first);
 };
