@@ -72,12 +72,15 @@ inline const Square square;
 
 // ------------------------------------------------------------- The contenders
 // Each has: build(edges, may_repeat), forces(f), energy(), count(questions)
-// and remove(nodes).
+// and remove(nodes); and make_room() if it can be told its size before.
 
 struct Ours {
   static constexpr const char* name = "ours";
   Cloth g;
 
+  void make_room() {
+    g.reserve(unsigned(square.points.size()), unsigned(square.springs.size()));
+  }
   void build(const std::vector<Pair>& edges, bool /*may_repeat*/) {
     for (const Point& p : square.points) g.add_node(p, square.node_value());
     for (Pair p : edges)
@@ -170,6 +173,10 @@ struct Lemon {
   std::optional<Map<typename G::Node, NodeData>> node_value;
   std::optional<Map<typename G::Edge, EdgeData>> edge_value;
 
+  void make_room() {
+    g.reserveNode(int(square.points.size()));
+    g.reserveEdge(int(square.springs.size()));
+  }
   void build(const std::vector<Pair>& edges, bool may_repeat) {
     for (std::size_t i = 0; i < square.points.size(); ++i) g.addNode();
     for (auto [i, j] : edges) {

@@ -53,10 +53,23 @@ C& built() {
 }
 
 template <typename C>
+concept CanMakeRoom = requires(C& c) {
+  c.make_room();
+};
+
+template <typename C>
 double time_of_build(bool by_quad) {
   C c;
   return time_of(
       [&] { c.build(by_quad ? square.quad_sides : square.springs, by_quad); });
+}
+template <CanMakeRoom C>
+double time_of_build_in_room() {
+  C c;
+  return time_of([&] {
+    c.make_room();
+    c.build(square.springs, false);
+  });
 }
 template <typename C>
 double time_of_removal() {
@@ -67,10 +80,11 @@ double time_of_removal() {
 
 std::string program;  // as it was called
 
-/** The time of the first build of a new process. */
+/** The time of the first build of a new process.
+ * @param how "first" or "first-in-room" */
 template <typename C>
-double time_of_first_build() {
-  FILE* p = popen((program + " --first '" + C::name + "'").c_str(), "r");
+double time_of_first_build(const std::string& how) {
+  FILE* p = popen((program + " --" + how + " '" + C::name + "'").c_str(), "r");
   double seconds = 0;
   if (!p || std::fscanf(p, "%lf", &seconds) != 1 || pclose(p) != 0)
     throw std::runtime_error("can't run " + program);
@@ -95,12 +109,18 @@ void add_all() {
   if constexpr (requires { &C::count; }) {
     add("build, each edge once", C::name, [] { return time_of_build<C>(0); });
     add("build, quad by quad", C::name, [] { return time_of_build<C>(1); });
-    add("build, first of a process", C::name, time_of_first_build<C>);
+    add("build, first of a process", C::name,
+        [] { return time_of_first_build<C>("first"); });
     add("has_edge", C::name, [] {
       return time_of([&c = built<C>()] {
         benchmark::DoNotOptimize(c.count(square.questions));
       });
     });
+  }
+  if constexpr (CanMakeRoom<C>) {
+    add("build, in room made first", C::name, time_of_build_in_room<C>);
+    add("build, first of a process, in room", C::name,
+        [] { return time_of_first_build<C>("first-in-room"); });
   }
   add("force on each node", C::name, [] {
     static std::vector<Point> f(square.points.size());
@@ -218,12 +238,16 @@ void each_graph(F f) {
 
 }  // namespace
 
-/** graph_peers [--benchmark_...], or --first NAME: build one, print [s]. */
+/** graph_peers [--benchmark_...], or --first NAME or --first-in-room NAME:
+ * build one, print [s]. */
 int main(int argc, char** argv) {
-  if (argc == 3 && argv[1] == std::string("--first")) {
+  if (argc == 3 && std::string(argv[1]).starts_with("--first")) {
     each_graph([&]<typename C>(std::type_identity<C>) {
-      if (argv[2] == std::string(C::name))
-        std::printf("%g\n", time_of_build<C>(false));
+      if (argv[2] != std::string(C::name)) return;
+      if constexpr (CanMakeRoom<C>)
+        if (argv[1] == std::string("--first-in-room"))
+          return void(std::printf("%g\n", time_of_build_in_room<C>()));
+      std::printf("%g\n", time_of_build<C>(false));
     });
     return 0;
   }
@@ -256,10 +280,12 @@ int main(int argc, char** argv) {
       [&]<typename C>(std::type_identity<C>) { graphs.push_back(C::name); });
   auto all = graphs;
   all.push_back(Flat::name);
-  table.print({"force on each node", "all edges", "build, each edge once",
-               "build, quad by quad", "build, first of a process", "has_edge",
-               "remove half of the nodes"},
-              all);
+  table.print(
+      {"force on each node", "all edges", "build, each edge once",
+       "build, quad by quad", "build, in room made first",
+       "build, first of a process", "build, first of a process, in room",
+       "has_edge", "remove half of the nodes"},
+      all);
   table.print({"step"}, {"ours", "Bullet"});
   Table::print_head("bytes", graphs);
   for (int k : {0, 1}) {
