@@ -82,13 +82,13 @@ method-costs: bench_methods
 	  cat $(B)/costs && printf '});\n\n}  // namespace lab\n'; } > $(B)/Costs.hpp
 	@clang-format -i $(B)/Costs.hpp && mv $(B)/Costs.hpp $(costs)
 
-# ---- Advice: lab/advice/README.md, on ADVISED random scenes; 1 to 800 were
+# ---- Advice: lab/advice/README.md, on ADVISED random scenes; 1 to 1000 were
 # looked at while it was written.
 
-ADVISED ?= 100
+ADVISED ?= 200
 adviser-suite: adviser_suite
 	@mkdir -p lab/advice/results
-	$(B)/adviser_suite --scenes $(ADVISED) --first 801 --out $(B)/adviser.csv
+	$(B)/adviser_suite --scenes $(ADVISED) --first 1001 --out $(B)/adviser.csv
 	@sed -i "1i # $(measured_on)" $(B)/adviser.csv
 	@mv $(B)/adviser.csv lab/advice/results/adviser.csv
 	@$(draw) adviser

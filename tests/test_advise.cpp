@@ -413,6 +413,20 @@ TEST(Refusals, TeachWhatHasALimit) {
   EXPECT_EQ(diverging(m), "");
 }
 
+TEST(Refusals, TellWhyGridsConvergeSlowly) {
+  Model m = hanging(1e-5);
+  m.pins = {read_pin("x 0 z 0"), read_pin("x 1 z 0")};
+  EXPECT_NE(converging_slowly(m).find("--pin \"x 0\""), std::string::npos);
+  AdviceRules rules;
+  rules.budget = 5e6;
+  const Advice a = advise(m, rules);
+  ASSERT_GE(a.grids.size(), 3u);
+  EXPECT_NE(a.refusal.find(converging_slowly(m)), std::string::npos)
+      << a.refusal;
+  m.pins = {read_pin("z 0")};
+  EXPECT_EQ(converging_slowly(m), "");
+}
+
 TEST(Refusals, OfferWhatOneWouldAsk) {
   const Model m = hanging(1);
   std::vector<Answer> still(5), shaken(5);

@@ -66,15 +66,17 @@ std::string table(const std::vector<Column>& columns) {
   return text;
 }
 
-std::string number(double x) {
-  return std::isfinite(x) ? CME212::two_digits(x) : "failed";
-}
 /** Two digits of a count, without an exponent. */
 std::string count(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.0f",
                 std::strtod(CME212::two_digits(x).c_str(), nullptr));
   return text;
+}
+std::string number(double x) {
+  return !std::isfinite(x) ? "failed"
+         : x >= 100        ? count(x)
+                           : CME212::two_digits(x);
 }
 
 /** What acts in @a m because nobody said otherwise. */
@@ -116,14 +118,15 @@ std::string recommendation(const Advice& a) {
             " nodes and up\n";
   auto finer = [&](const std::optional<double>& error, const char* what) {
     return std::string(what) +
-           (error ? " it is " + with_unit(*error, a.measure) + " off"
-                  : " was not run");
+           (error ? " the error is " + with_unit(*error, a.measure)
+                  : " it was not run");
   };
   if (a.checked)
-    text += "  " + finer(a.robustness.half_step, "by half the step") +
+    text += "  checked: " + finer(a.robustness.half_step, "by half the step") +
             (a.model.sheets.empty()
                  ? "; the error of the mesh itself is not known"
-                 : finer(a.robustness.finer_grid, "; on twice the cells")) +
+                 : finer(a.robustness.finer_grid,
+                         ", and with twice the cells along each side")) +
             '\n';
   const auto misses = [&](const std::optional<double>& error) {
     return error && !(*error <= a.tolerance);
@@ -177,7 +180,9 @@ std::string in_words(const Advice& a) {
         "may be known by a larger --advise-budget\n";
   if (!a.parts.empty()) {
     Column part{"part", {}},
-        effect{"effect on " + std::string(name_of(a.measure)) + unit, {}},
+        effect{"change of " + std::string(name_of(a.measure)) + " without it" +
+                   unit,
+               {}},
         springs{"springs saved", {}}, step{"longer step", {}}, kept{"", {}};
     for (const PartReport& p : a.parts) {
       part.cells.push_back(p.part);

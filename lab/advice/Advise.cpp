@@ -177,7 +177,8 @@ std::string Adviser::too_dear(double work) const {
          (n < 3 ? "no error can be told" : so_far()) +
          "; --advise-budget with " +
          CME212::two_digits(3 * work / pilots_.budget()) +
-         " times as many seconds goes on";
+         " times as many seconds goes on" +
+         (n < 3 ? "" : converging_slowly(scene_));
 }
 
 std::string Adviser::unsettled() const {
@@ -185,13 +186,15 @@ std::string Adviser::unsettled() const {
   return "the answer does not settle as the grid gets finer: the last two "
          "steps changed it by " +
          CME212::two_digits(grids.step_to(grids.size() - 2)) + " and " +
-         with_unit(grids.step_to(grids.size() - 1), advice_.measure);
+         with_unit(grids.step_to(grids.size() - 1), advice_.measure) +
+         converging_slowly(scene_);
 }
 
 std::string Adviser::too_unsure() const {
   return "what finer grids tend to is uncertain by " +
          with_unit(advice_.grids.uncertainty_of_limit(), advice_.measure) +
-         " after " + std::to_string(advice_.grids.size()) + " grids";
+         " after " + std::to_string(advice_.grids.size()) + " grids" +
+         converging_slowly(scene_);
 }
 
 std::string Adviser::too_coarse(std::size_t nodes) const {
@@ -201,7 +204,8 @@ std::string Adviser::too_coarse(std::size_t nodes) const {
                     "before is ";
   if (grids.size() < 3) return why + "not known";
   return why + with_unit(grids.back().error, advice_.measure) + " +- " +
-         with_unit(grids.uncertainty_of_limit(), advice_.measure);
+         with_unit(grids.uncertainty_of_limit(), advice_.measure) +
+         converging_slowly(scene_);
 }
 
 std::function<void(const Cloth&)> Adviser::all_answers(

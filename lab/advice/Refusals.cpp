@@ -10,18 +10,27 @@
 
 namespace lab {
 
-std::string diverging(const Model& m) {
-  if (m.measure != Measure::max_stretch) return "";
+namespace {
+bool has_point_pin(const Model& m) {
   Cloth g;
   build_model(g, m, mesh_of(m));
-  const auto held = held_of(m, g);
-  for (std::size_t k = 0; k < held.size(); ++k)
-    if (held[k].nodes.size() == 1)
-      return "the stretch at a pin that holds one node grows without bound as "
-             "the grid gets finer, as its whole load hangs by ever smaller "
-             "springs: hold a side, as by --pin \"x 0\", or ask for --measure "
-             "drape-height";
-  return "";
+  return std::ranges::any_of(
+      held_of(m, g), [](const HeldNodes& h) { return h.nodes.size() == 1; });
+}
+}  // namespace
+
+std::string converging_slowly(const Model& m) {
+  if (m.sheets.empty() || !has_point_pin(m)) return "";
+  return "; a pin that holds one node holds ever less of a finer cloth, so "
+         "that finer grids change much: hold a side, as by --pin \"x 0\"";
+}
+
+std::string diverging(const Model& m) {
+  if (m.measure != Measure::max_stretch || !has_point_pin(m)) return "";
+  return "the stretch at a pin that holds one node grows without bound as "
+         "the grid gets finer, as its whole load hangs by ever smaller "
+         "springs: hold a side, as by --pin \"x 0\", or ask for --measure "
+         "drape-height";
 }
 
 std::string offers(const Model& m, const std::vector<Answer>& still,

@@ -12,6 +12,10 @@ namespace lab {
  * no reason is known.  Throws InputError, SceneError */
 std::string diverging(const Model& m);
 
+/** Why its grids converge slowly, and what to hold instead: the end of a
+ * sentence, or empty.  Throws InputError, SceneError */
+std::string converging_slowly(const Model& m);
+
 /** What can be asked of @a m at its end although its motion is chaotic: the
  * measures that are known to a tenth of the size of the cloth or better, or
  * what to change if there are none.
