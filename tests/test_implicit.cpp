@@ -108,9 +108,6 @@ struct SweptSprings : SweptForce {
   Point operator()(Node n, double t) const override {
     return MassSpringForce()(n, t);
   }
-  void add_to(const Part& part, double t, std::span<Point> f) const override {
-    springs.add_to(part, t, f);
-  }
   double energy(const Cloth& g) const override { return springs.energy(g); }
   bool add_stiffness(const Cloth& g,
                      const StiffnessVisitor& use) const override {
@@ -124,7 +121,7 @@ struct Counted : SweptSprings {
   explicit Counted(int& n) : sweeps(n) {}
   void add_to(const Part& part, double t, std::span<Point> f) const override {
     if (part.first == 0) ++sweeps;
-    SweptSprings::add_to(part, t, f);
+    SweptForce::add_to(part, t, f);
   }
 };
 

@@ -10,6 +10,7 @@
 
 #include "lab/methods/Methods.hpp"
 #include "tests/Allocations.hpp"
+#include "tests/SweptForces.hpp"
 
 using namespace lab;
 
@@ -432,8 +433,7 @@ TEST(Verlet, IsSymplecticEulerWithHalfAKickAtTheStart) {
   shake(b);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   const double dt = 0.004;
-  std::vector<Point> f;
-  Sweep()(b, 0, force, f);
+  const auto f = swept_forces(b, force);
   for (Node n : b.nodes())
     n.value().vel += (dt / 2 / n.value().mass) * f[n.id()];
   Verlet verlet;

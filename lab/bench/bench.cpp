@@ -21,7 +21,8 @@
 
 #include "lab/bench/Bench.hpp"
 #include "lab/bench/Cloths.hpp"
-#include "lab/methods/Flow.hpp"
+#include "lab/methods/FlatFlow.hpp"
+#include "lab/methods/Rk4.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
@@ -75,15 +76,12 @@ std::function<std::function<void()>(unsigned)> stepping(Kind kind) {
   };
 }
 
-/** Makes a sweep of one force over a cloth. */
-std::function<void()> sweeping(unsigned side, const ForcePlan& force) {
-  auto sweep = std::make_shared<Sweep>();
-  Cloth& g = cloth(side, Kind::grid);
-  return [=, &g] {
-    (*sweep)(g, 0, force, [](const Part&, std::span<Point> f) {
-      benchmark::DoNotOptimize(f.data());
-    });
-  };
+/** Makes what a stage of a step does with a cloth by component. */
+std::function<void()> staging(unsigned side, const FlatStage& stage) {
+  const auto force = std::make_shared<ForcePlan>(MassSpringForce());
+  const auto flow = std::make_shared<FlatFlow>();
+  flow->begin(cloth(side, Kind::grid), *force, false);
+  return [force, flow, stage] { flow->run(stage); };
 }
 
 /** A loop over the nodes through Node and Edge. */
@@ -129,6 +127,8 @@ std::vector<Figure> figures() {
        Scene::guard_interval});
   add({"step: Verlet", "step: flat arrays", stepping<Verlet>(Kind::grid), true,
        0, Kind::grid, 1, Scene::guard_interval});
+  add({"step: Rk4", "step: flat arrays", stepping<Rk4>(Kind::grid), true, 0,
+       Kind::grid, 1, Scene::guard_interval});
   add({"step: symp_euler_step(), functor", "step: flat arrays",
        [](unsigned n) -> Make {
          return [&g = cloth(n, Kind::grid)] {
@@ -201,8 +201,9 @@ std::vector<Figure> figures() {
          });
        },
        false});
-  add({"springs: sweep", "springs: flat arrays",
-       [](unsigned n) { return sweeping(n, MassSpringForce()); }});
+  add({"springs: sweep", "springs: flat arrays", [](unsigned n) {
+         return staging(n, {.t = 0, .kick = 0, .keep = true});
+       }});
 
   // All edges, each once.
   add({"edges: flat arrays", "", [](unsigned n) -> Make {
@@ -236,15 +237,13 @@ std::vector<Figure> figures() {
        }});
 
   // The other parts of a step.
-  add({"part: gravity", "step: SymplecticEuler",
-       [](unsigned n) { return sweeping(n, GravityForce()); }, false});
-  add({"part: drag", "step: SymplecticEuler",
-       [](unsigned n) { return sweeping(n, DampingForce(1e-4)); }, false});
   add({"part: drift", "step: SymplecticEuler",
+       [](unsigned n) { return staging(n, {.t = 0, .drift = dt}); }, false});
+  add({"part: read and write", "step: SymplecticEuler",  // once a batch
        [](unsigned n) -> Make {
-         auto sweep = std::make_shared<Sweep>();
-         return [sweep, &g = cloth(n, Kind::grid)] {
-           sweep->parts(g, [&](const Part& part) { drift(g, part, dt, 0); });
+         return [flat = std::make_shared<FlatCloth>(), none = Drag(),
+                 &g = cloth(n, Kind::grid)] {
+           flat->take(g, 1, none), flat->write(g);
          };
        },
        false});
@@ -287,9 +286,9 @@ std::vector<Figure> figures() {
              benchmark::DoNotOptimize(g.num_edges());
            };
          }});
-  add({"new stencil", "springs: sweep", [](unsigned n) -> Make {
-         return [&g = cloth(n, Kind::grid)] {
-           benchmark::DoNotOptimize(ClothStencil(g));
+  add({"new layout", "springs: sweep", [](unsigned n) -> Make {
+         return [none = Drag(), &g = cloth(n, Kind::grid)] {
+           FlatCloth().take(g, 1, none);
          };
        }});
   return all;

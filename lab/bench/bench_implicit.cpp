@@ -51,11 +51,10 @@ void step(benchmark::State& state) {
   static std::map<unsigned, Course> made;  // a factor of 10^6 rows takes 20 s
   const auto side = unsigned(state.range(0));
   Course& c = made.try_emplace(side, side).first->second;
-  Sweep sweep;
-  std::vector<Point> f;
+  FlatFlow flow;
   double sweeps = 0, steps = 0;
   for (auto _ : state) {
-    sweeps += seconds([&] { sweep(c.g, c.t, c.force, f); });
+    sweeps += seconds([&] { flow.accelerate(c.g, c.t, c.force, true); });
     const double s = seconds([&] { c.step(); });
     steps += s;
     state.SetIterationTime(s);

@@ -13,7 +13,7 @@ counted() {  # CALLS FIGURE [OPTION...]
 }
 row() {  # NAME FIGURE [OPTION...]: 10 calls after the first one
   local steps=1  # a call of a method takes as many as a scene at once
-  case $2 in 'step: SymplecticEuler'*) steps=32 ;; esac
+  case $2 in 'step: SymplecticEuler'* | 'step: Rk4') steps=32 ;; esac
   echo "$1 $(counted 1 "${@:2}") $(counted 11 "${@:2}")" |
     awk -v steps=$steps '{n = ($NF - $(NF - 1)) / 1e5 / steps; NF -= 2
                           printf "| %s | %.1f |\n", $0, n}'
@@ -28,7 +28,7 @@ for figure in 'step: flat arrays' 'step: symp_euler_step(), functor' \
   row "$figure" "$figure"
 done
 for figure in 'step: SymplecticEuler' 'step: SymplecticEuler, mixed' \
-  'springs: sweep' 'part: gravity' 'part: drag' 'part: drift'; do
+  'step: Rk4' 'springs: sweep' 'part: drift' 'part: read and write'; do
   row "$figure, plain" "$figure" --cpu 0
   row "$figure, AVX2" "$figure" --cpu 1
 done

@@ -18,8 +18,7 @@ LAYERS = (("springs: virtual call a node", "a virtual call a node", BLACK),
           ("springs: Node and Edge", "loop over Node and Edge", BLACK),
           ("springs: flat arrays", "loop over arrays", BLACK),
           ("springs: sweep", "vectorized sweep", BLUE))
-PARTS = (("part: ball", "ball"), ("part: gravity", "gravity"),
-         ("part: drag", "drag"), ("part: drift", "drift"),
+PARTS = (("part: ball", "ball"), ("part: drift", "drift"),
          ("part: floor", "floor"))
 ROW = 21  # [pixels]
 

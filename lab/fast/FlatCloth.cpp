@@ -15,6 +15,15 @@ void FlatCloth::take(const Cloth& g, int multiplicity, const Drag& c) {
   lanes::run<kernels::ReadSprings>(std::span<const Run>(runs_),
                                    g.edge_values().data(), Real(multiplicity),
                                    springs_[0], springs_[1]);
+  if (!rest_) return;
+  const EdgeData* edge = g.edge_values().data();
+  Real *K = springs_[0] + rest_first_, *L = springs_[1] + rest_first_;
+  const unsigned* id = rest_->edges(0);
+  const std::size_t count = rest_->num_rows() * lanes::width;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (id[k] == Rest::none) continue;  // K = 0
+    K[k] = Real(multiplicity) * edge[id[k]].K, L[k] = edge[id[k]].L;
+  }
 }
 
 void FlatCloth::read_nodes(const Cloth& g, unsigned first, unsigned last) {
@@ -83,7 +92,11 @@ void FlatCloth::lay_out(const Cloth& g) {
     else
       ++left;
   }
-  if (left > 0) add_rest(g, is_row);
+  if (left > 0)
+    rest_.emplace(g, [&](unsigned i, unsigned j) {
+      const unsigned offset = std::max(i, j) - std::min(i, j);
+      return offset < is_row.size() && is_row[offset];
+    });
   springs_.resize(2, rest_first_ + (rest_ ? rest_->num_rows() : 0) *
                                        std::size_t(lanes::width));
   // A row's springs reach beyond the last node where they do nothing.
@@ -112,26 +125,6 @@ void FlatCloth::find_rows(const Cloth& g, std::vector<char>& is_row) {
   }
   is_row.assign(rows_.empty() ? 0 : rows_.back().offset + 1, false);
   for (const Row& r : rows_) is_row[r.offset] = true;
-}
-
-void FlatCloth::add_rest(const Cloth& g, const std::vector<char>& is_row) {
-  rest_.emplace(g, [&](unsigned i, unsigned j) {
-    const unsigned offset = std::max(i, j) - std::min(i, j);
-    return offset < is_row.size() && is_row[offset];
-  });
-  std::size_t number = rest_first_;
-  for (unsigned b = 0; b < rest_->num_blocks(); ++b)
-    for (const auto& row : rest_->rows(b))
-      for (unsigned k = 0; k < lanes::width; ++k, ++number) {
-        if (row.offset == 0) {
-          // Its own neighbor: there is no spring.
-          const unsigned id = std::min(b * lanes::width + k, slots_ - 1);
-          if (rest_->neighbors(row)[k] == id) continue;
-        }
-        add_run(row.first_edge != Rest::none ? row.first_edge + k
-                                             : rest_->edges(row)[k],
-                number);
-      }
 }
 
 void FlatCloth::add_run(unsigned edge, std::size_t number) {

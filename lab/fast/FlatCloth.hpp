@@ -9,7 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "lab/fast/ForcePlan.hpp"
+#include "lab/fast/Drag.hpp"
+#include "lab/fast/Lanes.hpp"
+#include "lab/fast/Stencil.hpp"
 
 namespace lab {
 
@@ -141,7 +143,6 @@ class FlatCloth {
 
   void lay_out(const Cloth& g);
   void find_rows(const Cloth& g, std::vector<char>& is_row);
-  void add_rest(const Cloth& g, const std::vector<char>& is_row);
   void add_run(unsigned edge, std::size_t number);
 
   Point point(Column c, unsigned id) const {

@@ -3,15 +3,28 @@
  * The loops that a step by component spends its time in, written once for
  * registers of any length (Lanes.hpp). README.md of this room walks through
  * them. */
-#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <span>
 
 #include "lab/fast/FlatCloth.hpp"
-#include "lab/fast/Kernels.hpp"
 
 namespace lab::kernels {
 
 using lanes::Points;
+
+/** Force per length of a spring, K (l - L)/l [N/m]: the force on node i is that
+ * times x_j - x_i. Finite at l = 0, where no direction is defined: no force.
+ * @param lengthSq l^2 [m^2]   @param K [N/m]   @param L rest length [m]
+ * @tparam T Real, or Lanes of many springs */
+template <typename T>
+[[gnu::always_inline]] inline T spring_pull(const T& lengthSq, const T& K,
+                                            const T& L) {
+  using lanes::sqrt, std::sqrt;
+  const T l = sqrt(lengthSq + std::numeric_limits<Real>::min());
+  return K * (l - L) / l;
+}
 
 /** The forces of a row's springs on their near ends, kept until the far ends
  * come: in a ring, whose first tile stands behind its end, too, so that a tile
@@ -36,9 +49,10 @@ struct KickTask {
   FlatCloth& cloth;
   RowRing* rings;  ///< of the rows, at tile first
   std::size_t num_rings;
-  const Point* others;  ///< other forces on node first and on; or null
-  bool drag, keep;      ///< whether drag acts; whether a is stored
-  Real gravity, h;      ///< [m/s^2], [s]
+  const Real* others;  ///< x of other forces on node first and on; or null
+  std::size_t others_stride;  ///< from x to y, and to z
+  bool drag, keep;            ///< whether drag acts; whether a is stored
+  Real gravity, h;            ///< [m/s^2], [s]
 };
 
 /** a = (springs + others - c v)/m - gravity, v += h a, for the tiles of nodes
@@ -82,7 +96,11 @@ struct KickTiles {
         }
         if (rest && i / width < rest->num_blocks())
           add_rest<V>(task.cloth, *rest, i, x, f);
-        if (task.others) add_points<V>(task.others + (i - first), last - i, f);
+        if (task.others) {
+          const Real* other = task.others + (i - first);
+          f.x += load<V>(other), f.y += load<V>(other + task.others_stride);
+          f.z += load<V>(other + 2 * task.others_stride);
+        }
         Real* v = nodes[FlatCloth::VX] + i;
         V vx = load<V>(v), vy = load<V>(v + s), vz = load<V>(v + 2 * s);
         if (task.drag) {
@@ -160,47 +178,24 @@ struct KickTiles {
     const unsigned block = i / width, k = i % width;
     const std::size_t s = cloth.nodes().stride();
     const Real* all = cloth.nodes()[FlatCloth::X];
-    std::size_t number =
-        cloth.rest_first() + rest.row_number(block) * width + k;
-    for (const auto& row : rest.rows(block)) {
+    const std::size_t end = rest.row_begin(block + 1);
+    for (std::size_t row = rest.row_begin(block); row < end; ++row) {
       Points<V> y;
-      if (row.offset != 0) {
-        const Real* at = all + i + row.offset;
+      if (const int offset = rest.offset(row)) {
+        const Real* at = all + i + offset;
         y = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
       } else {
         const unsigned* id = rest.neighbors(row) + k;
-        y = {pick<V>(all, id), pick<V>(all + s, id), pick<V>(all + 2 * s, id)};
+        y = {gather<V>(all, id), gather<V>(all + s, id),
+             gather<V>(all + 2 * s, id)};
       }
+      const std::size_t number = cloth.rest_first() + row * width + k;
       const V ux = y.x - x.x, uy = y.y - x.y, uz = y.z - x.z;
       const V p = spring_pull<V>(ux * ux + uy * uy + uz * uz,
                                  load<V>(cloth.K() + number),
                                  load<V>(cloth.L() + number));
       f.x += p * ux, f.y += p * uy, f.z += p * uz;
-      number += width;
     }
-  }
-  /** from[id[0]], from[id[1]], ... */
-  template <typename V>
-  [[gnu::always_inline]] static inline V pick(const Real* from,
-                                              const unsigned* id) {
-    constexpr int w = lanes::count_of<V>;
-    return pick<V>(from, id, std::make_index_sequence<w>());
-  }
-  template <typename V, std::size_t... k>
-  [[gnu::always_inline]] static inline V pick(const Real* from,
-                                              const unsigned* id,
-                                              std::index_sequence<k...>) {
-    return V{from[id[k]]...};
-  }
-
-  /** Add as many of @a points as there are, up to the register's length. */
-  template <typename V>
-  [[gnu::always_inline]] static inline void add_points(const Point* points,
-                                                       unsigned count,
-                                                       Points<V>& f) {
-    count = std::min(count, unsigned(lanes::count_of<V>));
-    for (unsigned k = 0; k < count; ++k)
-      f.x[k] += points[k].x, f.y[k] += points[k].y, f.z[k] += points[k].z;
   }
 };
 

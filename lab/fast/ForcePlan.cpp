@@ -2,45 +2,12 @@
 
 #include <algorithm>
 #include <mutex>
-#include <type_traits>
 #include <typeinfo>
 #include <utility>
-
-#include "lab/fast/Kernels.hpp"
 
 namespace lab {
 
 namespace {
-
-void add_weight(const Part& part, double gravity, std::span<Point> f) {
-  const NodeData* node = &part.g.node_values()[part.first];
-  const unsigned count = part.last - part.first;
-  const unsigned blocks = count / lanes::width;
-  lanes::run<kernels::Weight>(node, f.data(), blocks, Real(gravity));
-  for (unsigned k = blocks * lanes::width; k < count; ++k)
-    f[k].z -= node[k].mass * Real(gravity);
-}
-
-void add_springs(const Part& part, std::span<Point> f) {
-  constexpr unsigned width = ClothStencil::width;
-  auto sweep = [&]<bool prefetch_gathered>(
-                   std::bool_constant<prefetch_gathered>) {
-    lanes::run<kernels::SpringSweep<prefetch_gathered>>(
-        *part.stencil, part.g.positions().data(), part.g.edge_values().data(),
-        part.first / width, (part.last + width - 1) / width, f.data());
-  };
-  const bool is_large = part.g.edge_slots() * sizeof(EdgeData) > kernels::cache;
-  if (is_large && 2 * part.stencil->num_gathered() > part.stencil->num_rows())
-    sweep(std::true_type());
-  else
-    sweep(std::false_type());
-}
-
-void add_drag(const Part& part, const Drag& c, std::span<Point> f) {
-  const NodeData* node = part.g.node_values().data();
-  for (unsigned i = part.first; i < part.last; ++i)
-    f[i - part.first] -= c[i] * node[i].vel;
-}
 
 /** By one thread at a time: a functor of the assignment may keep a state. */
 void add_calls(const Part& part, const ZeroForce& force, double t,
@@ -91,32 +58,13 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   }
 }
 
-void ForcePlan::add_to(const Part& part, double t, std::span<Point> f) const {
-  for (const Term& term : terms_) switch (term.kind) {
-      case Kind::weight:
-        add_weight(part, term.factor, f);
-        break;
-      case Kind::springs:
-        add_springs(part, f);
-        break;
-      case Kind::swept:
-      case Kind::call:
-        add_other(term, part, t, f);
-    }
-  if (!drag_.none()) add_drag(part, drag_, f);
-}
-
-void ForcePlan::add_other(const Term& term, const Part& part, double t,
-                          std::span<Point> f) {
-  if (term.kind == Kind::call) return add_calls(part, *term.force, t, f);
-  if (term.swept().acts()) term.swept().add_to(part, t, f);
-}
-
 void ForcePlan::add_others(const Part& part, double t,
                            std::span<Point> f) const {
   for (const Term& term : terms_)
-    if (term.kind == Kind::swept || term.kind == Kind::call)
-      add_other(term, part, t, f);
+    if (term.kind == Kind::call)
+      add_calls(part, *term.force, t, f);
+    else if (term.kind == Kind::swept && term.swept().acts())
+      term.swept().add_to(part, t, f);
 }
 
 bool ForcePlan::has_others() const {

@@ -14,18 +14,13 @@
 
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/Energy.hpp"
-#include "lab/fast/Lanes.hpp"
-#include "lab/fast/Stencil.hpp"
 
 namespace lab {
-
-using ClothStencil = Stencil<lanes::width>;
 
 /** A part of a cloth, for a sweep: the nodes with ids in [first, last). */
 struct Part {
   const Cloth& g;
-  const ClothStencil* stencil;  ///< of g; null: MassSpringForce is not summed
-  unsigned first, last;         ///< first a multiple of ClothStencil::width
+  unsigned first, last;
 };
 
 /** Called with the ids of two nodes and the stiffness between them. */
@@ -40,7 +35,6 @@ class SweptForce : public ZeroForce {
    * f[i - part.first]. Equal to the call node by node, to round-off. What is
    * added at an id not in use does not count. Threads may evaluate several
    * parts at once.
-   * @pre @a f has room for whole blocks of the stencil
    * Complexity: O(nodes + edges at them) */
   virtual void add_to(const Part& part, double t, std::span<Point> f) const {
     for (unsigned i = part.first; i < part.last; ++i)
@@ -92,11 +86,8 @@ class ForcePlan {
     add(CME212::shared_from<ZeroForce, FunctionForce>(&force));
   }
 
-  /** The force on each node of @a part is added to @a f: as
-   * SweptForce::add_to(). */
-  void add_to(const Part& part, double t, std::span<Point> f) const;
-  /** The same of swept forces and calls alone; and whether there are any that
-   * act. */
+  /** The sum of its swept forces and calls is added to @a f: as
+   * SweptForce::add_to(); and whether there are any that act. */
   void add_others(const Part& part, double t, std::span<Point> f) const;
   bool has_others() const;
   /** To be called once an evaluation, before the first part. */
@@ -135,8 +126,6 @@ class ForcePlan {
   Drag drag_;
 
   void add(std::shared_ptr<const ZeroForce> force);
-  static void add_other(const Term& term, const Part& part, double t,
-                        std::span<Point> f);
 };
 
 }  // namespace lab

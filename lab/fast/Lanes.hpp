@@ -10,7 +10,6 @@
  * V being the Lanes of that processor. It calls only functions that are always
  * inlined: any other code is compiled for the plain processor.
  * run<Kernel>(...) calls it. */
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -128,54 +127,16 @@ template <typename V, typename Pick>
   return shuffle(a, b, pick, std::make_index_sequence<count_of<V>>());
 }
 
-/** The first half of @a a, and then that of @a b. */
-template <typename V>
-[[gnu::always_inline]] inline V first_halves(const V& a, const V& b) {
-  constexpr int w = count_of<V>;
-  return shuffle(a, b, [](int k) { return k < w / 2 ? k : k + w / 2; });
-}
-
-/** Of every two numbers of @a a the first one, and then that of @a b; and the
- * second ones. */
-template <typename V>
-[[gnu::always_inline]] inline V even_numbers(const V& a, const V& b) {
-  constexpr int w = count_of<V>;
-  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k : w + k - 1; });
+/** from[at[0]], from[at[1]], ... */
+template <typename V, std::size_t... k>
+[[gnu::always_inline]] inline V gather(const Real* from, const unsigned* at,
+                                       std::index_sequence<k...>) {
+  return V{from[at[k]]...};
 }
 template <typename V>
-[[gnu::always_inline]] inline V odd_numbers(const V& a, const V& b) {
-  constexpr int w = count_of<V>;
-  return shuffle(a, b, [](int k) { return k % 2 == 0 ? k + 1 : w + k; });
+[[gnu::always_inline]] inline V gather(const Real* from, const unsigned* at) {
+  return gather<V>(from, at, std::make_index_sequence<count_of<V>>());
 }
-
-/** A vector twice as long: @a a and then @a b. */
-template <typename A, std::size_t... k>
-[[gnu::always_inline]] inline auto join(const A& a, const A& b,
-                                        std::index_sequence<k...>) {
-  return __builtin_shufflevector(a, b, int(k)...);
-}
-template <typename A>
-[[gnu::always_inline]] inline auto join(const A& a, const A& b) {
-  return join(a, b, std::make_index_sequence<2 * sizeof(A) / sizeof(Real)>());
-}
-
-/** A vector of @a parts pieces of @a count numbers each: piece k lies at
- * @a from + stride at[every k]. */
-template <int count, int stride, int every, int parts>
-[[gnu::always_inline]] inline auto collect(const Real* from,
-                                           const unsigned* at) {
-  if constexpr (parts == 1) {
-    Lanes<count> a;
-    std::memcpy(&a, from + std::size_t(stride) * at[0], sizeof a);
-    return a;
-  } else {
-    constexpr int half = parts / 2;
-    return join(collect<count, stride, every, half>(from, at),
-                collect<count, stride, every, half>(from, at + every * half));
-  }
-}
-
-// ------------------------------------------------------------- Points, pairs
 
 /** Points side by side. */
 template <typename V>
@@ -221,65 +182,6 @@ template <int part, typename V>
   });
 }
 
-/** Add to to[0], to[1], ... */
-template <typename V>
-[[gnu::always_inline]] inline void add(Point* to, const Points<V>& p) {
-  constexpr int w = count_of<V>;
-  Real* first = &to->x;
-  store(first, load<V>(first) + merged<0>(p));
-  store(first + w, load<V>(first + w) + merged<1>(p));
-  store(first + 2 * w, load<V>(first + 2 * w) + merged<2>(p));
-}
-
-/** The points at from[at[0]], from[at[1]], ...
- * @pre there is one more number behind each of them: it is read, too */
-template <typename V>
-[[gnu::always_inline]] inline Points<V> gather(const Point* from,
-                                               const unsigned* at) {
-  constexpr int w = count_of<V>;
-  if constexpr (w < 4) {
-    const Point &p = from[at[0]], &q = from[at[1]];
-    return {V{p.x, q.x}, V{p.y, q.y}, V{p.z, q.z}};
-  } else {
-    // Four numbers a point, and every fourth point in a vector: what moves
-    // within a quarter of a register is cheap to move.
-    const Real* first = &from->x;
-    const V a = collect<4, 3, 4, w / 4>(first, at);
-    const V b = collect<4, 3, 4, w / 4>(first, at + 1);
-    const V c = collect<4, 3, 4, w / 4>(first, at + 2);
-    const V d = collect<4, 3, 4, w / 4>(first, at + 3);
-    // x and z of two points, of which there are four: x x z z x x z z ...
-    const V xz_ab = even_numbers(a, b), xz_cd = even_numbers(c, d);
-    const V y_ab = odd_numbers(a, b), y_cd = odd_numbers(c, d);
-    auto first_two = [](int k) { return k % 4 < 2 ? k : w + k - 2; };
-    auto last_two = [](int k) { return k % 4 < 2 ? k + 2 : w + k; };
-    return {shuffle(xz_ab, xz_cd, first_two), shuffle(y_ab, y_cd, first_two),
-            shuffle(xz_ab, xz_cd, last_two)};
-  }
-}
-
-/** Part @a part of the points a, b, c, with a number of no meaning after each:
- * four numbers a point. */
-template <int part, typename V>
-[[gnu::always_inline]] inline V with_fourth(const V& a, const V& b,
-                                            const V& c) {
-  return shuffle(part < 2 ? a : b, part < 2 ? b : c, [](int k) {
-    constexpr int w = count_of<V>, skip = part < 2 ? 0 : w;
-    const int four = part * w + k;
-    return 3 * (four / 4) + std::min(four % 4, 2) - skip;
-  });
-}
-/** Part @a part of points, a row of three numbers each, from @a a and @a b:
- * parts @a part and @a part + 1 of rows of four. */
-template <int part, typename V>
-[[gnu::always_inline]] inline V without_fourth(const V& a, const V& b) {
-  return shuffle(a, b, [](int k) {
-    constexpr int w = count_of<V>;
-    const int three = part * w + k;
-    return 4 * (three / 3) + three % 3 - part * w;
-  });
-}
-
 /** Pairs of numbers side by side: all first ones, and all second ones. */
 template <typename V>
 struct Pairs {
@@ -302,15 +204,5 @@ template <typename V>
 [[gnu::always_inline]] inline Pairs<V> load_pairs(const Real* from) {
   return unzip(load<V>(from), load<V>(from + count_of<V>));
 }
-/** The pairs at from + 2 at[0], from + 2 at[1], ... */
-template <typename V>
-[[gnu::always_inline]] inline Pairs<V> gather_pairs(const Real* from,
-                                                    const unsigned* at) {
-  const V a = collect<2, 2, 2, count_of<V> / 2>(from, at);
-  const V b = collect<2, 2, 2, count_of<V> / 2>(from, at + 1);
-  return {even_numbers(a, b), odd_numbers(a, b)};
-}
-
 }  // namespace lanes
-
 }  // namespace lab

@@ -1,7 +1,7 @@
 #include "lab/fast/Sweep.hpp"
 
 #include <algorithm>
-#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <thread>
 
@@ -12,24 +12,8 @@
 namespace lab {
 
 namespace {
-
 int threads_asked_for = 0;
-
-std::size_t whole_blocks(unsigned nodes) {
-  constexpr unsigned w = ClothStencil::width;
-  return (std::size_t(nodes) + w - 1) / w * w;
 }
-
-void add_forces(const Part& part, double t, const ForcePlan& force,
-                std::span<Point> f) {
-  std::fill(f.begin(), f.end(), Point());
-  force.add_to(part, t, f);
-  if (part.g.node_slots() == part.g.num_nodes()) return;
-  for (unsigned i = part.first; i < part.last; ++i)
-    if (!part.g.node_in_use(i)) f[i - part.first] = Point();
-}
-
-}  // namespace
 
 int Sweep::processors() {
 #ifdef _OPENMP
@@ -61,26 +45,9 @@ std::size_t Sweep::thread() {
 #endif
 }
 
-void Sweep::update(const Cloth& g) {
-  if (buffer_.size() < threads()) buffer_.resize(threads());
-  if (stencil_ && version_ == g.version()) return;
-  stencil_.emplace(g);
-  version_ = g.version();
-}
-
 int Sweep::halo_of(const ForcePlan& force, unsigned reach) {
   if (!force.spring_multiplicity()) return std::numeric_limits<int>::max();
-  // A gather reads one number behind the node, which may be of the next part.
-  return int(reach / part_size) + 1;
-}
-
-void Sweep::each_part(const Cloth& g, const PartVisitor& use) {
-  update(g);
-  const auto by_part = [&](unsigned first, unsigned last) {
-    use({g, &*stencil_, first, last});
-  };
-  in_turn(
-      g.node_slots(), 0, [](unsigned, unsigned) {}, std::ref(by_part));
+  return int((reach + part_size - 1) / part_size);
 }
 
 void Sweep::in_turn(unsigned slots, int halo, const IdVisitor& move,
@@ -147,27 +114,6 @@ void Sweep::await(const std::atomic<int>& count, int least) {
     std::this_thread::yield();
 #endif
   }
-}
-
-/** As after(); the forces stay in @a all unless it is null. */
-void Sweep::add_up(const PartVisitor& move, const Cloth& g, double t,
-                   const ForcePlan& force, std::vector<Point>* all,
-                   const ForceVisitor& use) {
-  if (all) all->resize(whole_blocks(g.node_slots()));
-  update(g);
-  force.begin(t);
-  const auto move_part = [&](unsigned first, unsigned last) {
-    move({g, &*stencil_, first, last});
-  };
-  const auto sweep_and_use = [&](unsigned first, unsigned last) {
-    const Part part{g, &*stencil_, first, last};
-    Point* place = all ? &(*all)[part.first] : buffer_[thread()].data();
-    const std::span f(place, whole_blocks(part.last - part.first));
-    add_forces(part, t, force, f);
-    use(part, f);
-  };
-  in_turn(g.node_slots(), halo_of(force, stencil_->reach()),
-          std::ref(move_part), std::ref(sweep_and_use));
 }
 
 }  // namespace lab

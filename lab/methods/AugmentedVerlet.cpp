@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
-#include "lab/methods/Flow.hpp"
 #include "lab/methods/ImplicitStage.hpp"
 
 namespace lab {
@@ -16,18 +15,24 @@ double AugmentedVerlet::step(Cloth& g, double t, double dt,
                              const ConstraintPlan& constraint) {
   const bool loaded = std::exchange(loaded_dt_, 0) == dt;
   const bool same = find_factor(g, dt, force, constraint) || loaded;
+  flow_.begin(g, force, true);
   // The same time, however the caller rounds it.
   if (!same || kept_for_ != &g || std::abs(kept_time_ - t) > 1e-6 * dt)
-    accelerate(g, t, force);
-  kick(g, dt / 2);
-  constraint.place_held_at_rest(g, t + dt);
-  sweep_.parts(g, [&](const Part& part) { drift(g, part, dt, force.drag()); });
+    accelerate(t);
   const std::size_t version = g.version();
-  constraint(g, t + dt);
-  constraint.set_held_velocities(g, t + dt);
-  if (g.version() != version) find_factor(g, dt, force, constraint);
-  accelerate(g, t + dt, force);
-  kick(g, dt / 2);
+  flow_.run({.t = t + dt,
+             .first_kick = dt / 2,
+             .drift = dt,
+             .held = &constraint,
+             .project = &constraint,
+             .last = &constraint});
+  if (g.version() != version) {
+    flow_.end();  // a stiffness may depend on positions
+    find_factor(g, dt, force, constraint);
+  }
+  accelerate(t + dt);
+  flow_.run({.t = t + dt, .first_kick = dt / 2});
+  flow_.end();
   kept_for_ = &g, kept_time_ = t + dt;
   return t + dt;
 }
@@ -39,6 +44,7 @@ void AugmentedVerlet::archive(CME212::Archive& a, const Cloth& g) {
   double dt = loaded_dt_ > 0 ? loaded_dt_ : key_.dt;
   a(acceleration_)(kept_time_)(dt);
   if (!a.loads()) return;
+  flow_.set_kept(g, acceleration_);
   kept_for_ = &g, loaded_dt_ = dt;
 }
 
@@ -114,19 +120,17 @@ void AugmentedVerlet::factorize() {
                   CME212::short_text(key_.dt) + " s");
 }
 
-/** acceleration_ = (M + (dt^2/4) L)^-1 F at the state of @a g. */
-void AugmentedVerlet::accelerate(const Cloth& g, double t,
-                                 const ForcePlan& force) {
-  sweep_without_drag(sweep_, g, t, force, acceleration_);
-  for (unsigned i = 0; i < key_.fixed.size(); ++i)
-    if (key_.fixed[i]) acceleration_[i] = Point();
+/** The accelerations (M + (dt^2/4) L)^-1 F of the present state. */
+void AugmentedVerlet::accelerate(double t) {
+  flow_.run({.t = t, .kick = 0, .keep = true});
+  const unsigned n = unsigned(key_.fixed.size());
+  acceleration_.resize(n);
+  for (unsigned i = 0; i < n; ++i)
+    acceleration_[i] =
+        key_.fixed[i] ? Point() : key_.mass[i] * flow_.acceleration(i);
   factor_.solve({acceleration_.data(), factor_.rows()});
-}
-
-void AugmentedVerlet::kick(Cloth& g, double h) const {
-  auto node = g.node_values();
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    node[i].vel += h * acceleration_[i];
+  for (unsigned i = 0; i < n; ++i)
+    flow_.cloth().set_acceleration(i, acceleration_[i]);
 }
 
 }  // namespace lab

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Cholesky.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -75,20 +75,18 @@ class AugmentedVerlet : public Method {
   std::vector<unsigned> held_;
   int factorizations_ = 0;
   SparseCholesky factor_;
-  Sweep sweep_;
-  std::vector<Point> acceleration_;  // [m/s^2], by node id
-  const Cloth* kept_for_ = nullptr;  // at whose state acceleration_ is
+  FlatFlow flow_;                    // its accelerations are the solution,
+  std::vector<Point> acceleration_;  // as these, by node id [m/s^2]
+  const Cloth* kept_for_ = nullptr;  // at whose state they are
   double kept_time_ = 0;
-  double loaded_dt_ =
-      0;  // acceleration_ was loaded: for the factor with that dt
+  double loaded_dt_ = 0;  // they were loaded: for the factor with that dt
 
   bool unchanged(const Cloth& g, double dt, const ForcePlan& force,
                  const ConstraintPlan& constraint);
   bool find_factor(const Cloth& g, double dt, const ForcePlan& force,
                    const ConstraintPlan& constraint);
   void factorize();
-  void accelerate(const Cloth& g, double t, const ForcePlan& force);
-  void kick(Cloth& g, double h) const;
+  void accelerate(double t);
 };
 
 }  // namespace lab

@@ -50,6 +50,7 @@ void FlatFlow::prepare() {
     Real* at = r.numbers.data();
     for (auto& ring : r.rings) ring.kept = at, at += 3 * ring.stride();
     r.others.resize(Sweep::part_size);
+    r.apart.resize(3 * Sweep::part_size);
   }
 }
 
@@ -102,7 +103,11 @@ std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
     if (levels_.size() < stages.size()) levels_.resize(stages.size());
     for (std::size_t k = 0; k < stages.size(); ++k)
       prepare(levels_[k], stages[k]);
-    if (run_overlapping(stages)) return stages.size();
+    if (run_overlapping(stages)) {
+      for (const FlatStage& s : stages)  // for those that do not act
+        if (s.kick) force_->begin(s.t);
+      return stages.size();
+    }
   }
   if (levels_.empty()) levels_.resize(1);
   for (std::size_t k = 0; k < stages.size(); ++k) {
@@ -244,8 +249,8 @@ bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
       drift(i, end, by.way, by.decay);
       i = end;
     }
-  } else if (stage.drift) {
-    drift(first, last, Real(*stage.drift), Real(1));
+  } else if (stage.drift || stage.first_kick != 0) {
+    drift(first, last, Real(stage.drift.value_or(0)), Real(1));
   }
   for_part(level.held, first, last, [this](const Held& h) {
     cloth_.set_position(h.id, h.value);
@@ -267,13 +272,17 @@ void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
     mine.next = last;
     if (by_graph_) {
       std::ranges::fill(mine.others, Point());
-      force_->add_others({*g_, nullptr, first, last}, stage.t, mine.others);
+      force_->add_others({*g_, first, last}, stage.t, mine.others);
+      for (unsigned k = 0; k < Sweep::part_size; ++k)
+        for (unsigned c = 0; c < 3; ++c)
+          mine.apart[c * Sweep::part_size + k] = mine.others[k][c];
     }
     const kernels::KickTask task = {
         cloth_,
         mine.rings.data(),
         force_->springs() > 0 ? mine.rings.size() : 0,
-        by_graph_ ? mine.others.data() : nullptr,
+        by_graph_ ? mine.apart.data() : nullptr,
+        Sweep::part_size,
         !exact_ && !force_->drag().none(),
         stage.keep,
         Real(force_->gravity()),

@@ -13,6 +13,7 @@
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/FlatCloth.hpp"
 #include "lab/fast/FlatKernels.hpp"
+#include "lab/fast/ForcePlan.hpp"
 
 namespace lab {
 
@@ -34,7 +35,8 @@ struct FlatStage {
   const ConstraintPlan* last = nullptr;
 };
 
-/** Stages of a cloth by component, between begin() and end().
+/** Stages of a cloth by component, between begin() and end(): what all methods
+ * evaluate forces by.
  *
  * If everything that acts can be evaluated by component, the graph is not
  * touched until end(). Other forces see positions and velocities that are as
@@ -70,6 +72,17 @@ class FlatFlow {
    * @return how many were run
    * Throws what forces and constraints throw; then the cloth is undefined. */
   std::size_t run(std::span<const FlatStage> stages);
+  void run(const FlatStage& stage) { run(std::span(&stage, 1)); }
+  /** The accelerations of the present state of @a g, whose positions and
+   * velocities stay: begin(), and a stage that keeps them. */
+  void accelerate(Cloth& g, double t, const ForcePlan& force, bool exact) {
+    begin(g, force, exact);
+    run({.t = t, .kick = 0, .keep = true});
+  }
+  /** The state between two calls of run(). */
+  FlatCloth& cloth() { return cloth_; }
+  /** That which was kept of a node [m/s^2]. */
+  Point acceleration(unsigned id) const { return cloth_.acceleration(id); }
   /** Give positions and velocities to the graph. */
   void end();
 
@@ -107,7 +120,8 @@ class FlatFlow {
   struct Rings {
     std::vector<kernels::RowRing> rings;
     std::vector<Real> numbers;
-    std::vector<Point> others;  // forces of a part
+    std::vector<Point> others;  // forces of a part,
+    std::vector<Real> apart;    // and by component
     unsigned next = 0;
   };
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "CME212/Util.hpp"
-#include "lab/methods/Flow.hpp"
 
 namespace lab::implicit_detail {
 
@@ -223,15 +222,16 @@ void ImplicitStage::advance(double a) {
 }
 
 /** s (F - c w) - M (w - q) [kg m/s] at the positions of @a g. */
-void ImplicitStage::find_residual(const Cloth& g, double t, double s,
+void ImplicitStage::find_residual(Cloth& g, double t, double s,
                                   const ForcePlan& force) {
-  sweep_without_drag(sweep_, g, t, force, force_);
+  flow_.accelerate(g, t, force, true);
   const Drag& c = force.drag();
   auto node = g.node_values();
   for (unsigned i = 0; i < w.size(); ++i)
-    residual_[i] = fixed_[i] ? Point()
-                             : s * (force_[i] - c[i] * w[i]) -
-                                   node[i].mass * (w[i] - q[i]);
+    residual_[i] =
+        fixed_[i] ? Point()
+                  : node[i].mass * (s * flow_.acceleration(i) - (w[i] - q[i])) -
+                        s * c[i] * w[i];
 }
 
 /** The springs' blocks of A, and the inverses of its diagonal ones. */

@@ -4,8 +4,8 @@
  * Newton's method and conjugate gradients. */
 #include <vector>
 
-#include "lab/fast/Sweep.hpp"
 #include "lab/methods/BlockCholesky.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -123,12 +123,12 @@ class ImplicitStage {
     unsigned i, j;
     Stiffness B;
   };
-  Sweep sweep_;
+  FlatFlow flow_;
   std::vector<char> fixed_;
   std::vector<Block> blocks_;
   std::vector<Matrix3> diagonal_blocks_;  // of A, inverted
   std::vector<double> diagonal_;          // m + s c [kg]
-  std::vector<Point> force_, residual_, step_, rest_, z_, direction_, product_;
+  std::vector<Point> residual_, step_, rest_, z_, direction_, product_;
   LinearSolver solver_ = LinearSolver::automatic;
   BlockCholesky factor_;  // of A without negative stiffness
   std::vector<BlockCholesky::Pair> pairs_;
@@ -148,8 +148,7 @@ class ImplicitStage {
   void find_still(const Cloth& g, double s, std::vector<Point>& still) const;
   void move(Cloth& g, double s) const;
   void advance(double a);
-  void find_residual(const Cloth& g, double t, double s,
-                     const ForcePlan& force);
+  void find_residual(Cloth& g, double t, double s, const ForcePlan& force);
   void assemble(const Cloth& g, double s, const ForcePlan& force);
   void multiply(const std::vector<Point>& from, std::vector<Point>& to,
                 bool clamp) const;

@@ -6,24 +6,39 @@
 #include <string>
 
 #include "CME212/Util.hpp"
-#include "lab/methods/Flow.hpp"
 
 namespace lab {
 
-double Respa::step(Cloth& g, double t, double dt, const ForcePlan& force,
-                   const ConstraintPlan& constraint) {
-  const bool same = kept_for_ == &g && kept_version_ == g.version() &&
+int Respa::steps(Cloth& g, const StepTimes& times, int count,
+                 const ForcePlan& force, const ConstraintPlan& constraint) {
+  const auto version = g.version();
+  const bool same = kept_for_ == &g && kept_version_ == version &&
                     multiplicity_ == force.springs();
   if (!same) find_split(g, force, constraint);
   inner_steps_ = 1;
-  if (split_.empty()) return verlet_.step(g, t, dt, force, constraint);
+  if (split_.empty()) return verlet_.steps(g, times, count, force, constraint);
   // The same time, however the caller rounds it.
-  if (!(same || loaded_) || std::abs(t - kept_time_) > 1e-6 * dt)
-    find_soft_forces(g, t, force);
+  bool kept =
+      (same || loaded_) && !(std::abs(times(0) - kept_time_) > 1e-6 * times.dt);
   loaded_ = false;
-  const auto kick_all = [&](const Part& part) {
-    kick(g, part, dt / 2, std::span(soft_).subspan(part.first));
-  };
+  flow_.begin(g, force, true);
+  int k = 0;
+  do {
+    one_step(g, times(k), times.dt, kept, force, constraint);
+    kept = true;
+  } while (++k < count && g.version() == version);
+  flow_.end();
+  kept_time_ = times(k - 1) + times.dt;
+  return k;
+}
+
+/** @param kept whether the accelerations at the start are */
+void Respa::one_step(Cloth& g, double t, double dt, bool kept,
+                     const ForcePlan& force, const ConstraintPlan& constraint) {
+  if (!kept) {
+    flow_.run({.t = t, .kick = 0, .keep = true});
+    leave_out_stiff(g);
+  }
   const double most = Verlet::info.limit / inner_steps_at_limit / split_.omega;
   if (!(dt / most < 1e6))
     throw StepError(std::string(info.name) +
@@ -31,23 +46,19 @@ double Respa::step(Cloth& g, double t, double dt, const ForcePlan& force,
                     "a step; dt = " +
                     CME212::short_text(dt) + " s");
   inner_steps_ = std::max(1, int(std::ceil(dt / most)));
-  sweep_.parts(g, kick_all);
   take_stiff_nodes(g, t + dt, dt, force.drag(), constraint);
   move_stiff_nodes(g, dt / inner_steps_);
-  constraint.place_held_at_rest(g, t + dt);
-  sweep_.parts(g, [&](const Part& part) { drift(g, part, dt, force.drag()); });
+  flow_.run(
+      {.t = t + dt, .first_kick = dt / 2, .drift = dt, .held = &constraint});
   for (std::size_t k = 0; k < stiff_.size(); ++k)
     if (stiff_[k].per_mass > 0) {
-      g.positions()[split_.nodes[k]] = stiff_[k].x;
-      g.node_values()[split_.nodes[k]].vel = stiff_[k].v;
+      flow_.cloth().set_position(split_.nodes[k], stiff_[k].x);
+      flow_.cloth().set_velocity(split_.nodes[k], stiff_[k].v);
     }
-  constraint(g, t + dt);
+  flow_.run({.t = t + dt, .project = &constraint, .kick = 0, .keep = true});
   if (g.version() != kept_version_) find_split(g, force, constraint);
-  find_soft_forces(g, t + dt, force);
-  sweep_.parts(g, kick_all);
-  constraint.set_held_velocities(g, t + dt);
-  kept_time_ = t + dt;
-  return t + dt;
+  leave_out_stiff(g);
+  flow_.run({.t = t + dt, .first_kick = dt / 2, .last = &constraint});
 }
 
 void Respa::archive(CME212::Archive& a, const Cloth& g) {
@@ -55,7 +66,10 @@ void Respa::archive(CME212::Archive& a, const Cloth& g) {
   bool has = !split_.empty() && kept_for_ == &g && kept_version_ == g.version();
   a(has);
   if (a.loads()) kept_for_ = nullptr, loaded_ = has;
-  if (has) a(soft_)(kept_time_);
+  if (!has) return;
+  auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
+  a(accelerations)(kept_time_);
+  if (a.loads()) flow_.set_kept(g, accelerations);
 }
 
 void Respa::find_split(const Cloth& g, const ForcePlan& force,
@@ -66,21 +80,24 @@ void Respa::find_split(const Cloth& g, const ForcePlan& force,
   kept_for_ = &g, kept_version_ = g.version();
 }
 
-/** All forces but the stiff springs and drag. */
-void Respa::find_soft_forces(const Cloth& g, double t, const ForcePlan& force) {
-  sweep_without_drag(sweep_, g, t, force, soft_);
-  const auto x = g.positions();
+/** Take the stiff springs out of the accelerations. */
+void Respa::leave_out_stiff(const Cloth& g) {
+  FlatCloth& c = flow_.cloth();
+  const auto add = [&](unsigned id, const Point& f) {
+    c.set_acceleration(
+        id, c.acceleration(id) + f / double(g.node_values()[id].mass));
+  };
   for (const auto& s : split_.springs) {
     const unsigned i = split_.nodes[s.i], j = split_.nodes[s.j];
-    const Point f =
-        multiplicity_ * spring_force(x[j] - x[i], g.edge_values()[s.edge]);
-    soft_[i] -= f;
-    soft_[j] += f;
+    const Point u = c.position(j) - c.position(i);
+    const Point f = multiplicity_ * spring_force(u, g.edge_values()[s.edge]);
+    add(i, -f), add(j, f);
   }
 }
 
-/** The nodes at stiff springs as they are, for inner steps that end after
- * @a dt at time @a end: until then held ones go straight to their place. */
+/** The nodes at stiff springs as they are after the first kick, for inner steps
+ * that end after @a dt at time @a end: until then held ones go straight to
+ * their place. */
 void Respa::take_stiff_nodes(const Cloth& g, double end, double dt,
                              const Drag& c, const ConstraintPlan& constraint) {
   const double h = dt / inner_steps_;
@@ -88,8 +105,9 @@ void Respa::take_stiff_nodes(const Cloth& g, double end, double dt,
     const unsigned id = split_.nodes[k];
     const NodeData& node = g.node_values()[id];
     const double gamma = c[id] / node.mass;
-    stiff_[k] = {g.positions()[id],
-                 node.vel,
+    const FlatCloth& flat = flow_.cloth();
+    stiff_[k] = {flat.position(id),
+                 flat.velocity(id) + dt / 2 * flat.acceleration(id),
                  Point(),
                  1 / double(node.mass),
                  gamma > 0 ? -std::expm1(-gamma * h) / gamma : h,

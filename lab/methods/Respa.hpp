@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/fast/Sweep.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/StiffSplit.hpp"
 #include "lab/methods/Verlet.hpp"
 
@@ -29,7 +29,7 @@ namespace lab {
  * Source: M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992)
  * 1990, doi:10.1063/1.463137; the resonances: J. A. Izaguirre, S. Reich, R. D.
  * Skeel, J. Chem. Phys. 110 (1999) 9853, doi:10.1063/1.478995. */
-class Respa : public Method {
+class Respa : public BatchMethod {
  public:
   static constexpr MethodInfo info = {
       "respa",
@@ -42,8 +42,8 @@ class Respa : public Method {
       false,
       true};
 
-  double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override;
+  int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
+            const ConstraintPlan& constraint) override;
   void restart() override {
     kept_for_ = nullptr, loaded_ = false;
     verlet_.restart();
@@ -56,14 +56,13 @@ class Respa : public Method {
 
  private:
   Verlet verlet_;  // if there is nothing to split
-  Sweep sweep_;
+  FlatFlow flow_;  // its accelerations are by the soft forces, without drag
   StiffSplit split_;
   int multiplicity_ = 0, inner_steps_ = 0;
-  std::vector<Point> soft_;          // [N], by node id, without drag
-  const Cloth* kept_for_ = nullptr;  // the cloth that split_ and soft_ are of
+  const Cloth* kept_for_ = nullptr;  // the cloth that split_ and they are of
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
-  bool loaded_ = false;  // soft_ and kept_time_ only
+  bool loaded_ = false;  // accelerations and kept_time_ only
   struct StiffNode {
     Point x, v, f;
     double per_mass;    // 1/m; 0 if held
@@ -73,8 +72,10 @@ class Respa : public Method {
 
   void find_split(const Cloth& g, const ForcePlan& force,
                   const ConstraintPlan& constraint);
-  void find_soft_forces(const Cloth& g, double t, const ForcePlan& force);
-  void take_stiff_nodes(const Cloth& g, double t, double dt, const Drag& c,
+  void one_step(Cloth& g, double t, double dt, bool kept,
+                const ForcePlan& force, const ConstraintPlan& constraint);
+  void leave_out_stiff(const Cloth& g);
+  void take_stiff_nodes(const Cloth& g, double end, double dt, const Drag& c,
                         const ConstraintPlan& constraint);
   void move_stiff_nodes(const Cloth& g, double h);
 };

@@ -121,13 +121,13 @@ template <typename Tableau>
 void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
                                  const ConstraintPlan& constraint,
                                  std::size_t s) {
-  sweep_(g, t, force, force_);
+  flow_.accelerate(g, t, force, false);
   auto node = g.node_values();
   v_[s].resize(g.node_slots());
   a_[s].resize(g.node_slots());
   for (unsigned i = 0; i < g.node_slots(); ++i) {
     v_[s][i] = node[i].vel;
-    a_[s][i] = force_[i] / node[i].mass;
+    a_[s][i] = flow_.acceleration(i);
   }
   constraint.each_held(
       g, [&](Node n) { v_[s][n.id()] = a_[s][n.id()] = Point(); });

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lab/fast/Sweep.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -63,8 +63,8 @@ class RungeKutta : public Method {
 
   double tolerance_;
   double inner_ = 0;  // next inner step [s]; 0: not chosen yet
-  Sweep sweep_;
-  std::vector<Point> x0_, v0_, force_;
+  FlatFlow flow_;
+  std::vector<Point> x0_, v0_;
   std::array<std::vector<Point>, stages> v_, a_;  // derivatives, by stage
   std::vector<Point> end_x_, end_v_;  // where the last stage was taken
   double end_t_ = 0;

@@ -12,9 +12,10 @@ double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
   auto node = g.node_values();
   const unsigned n = g.node_slots();
   x0_.assign(x.begin(), x.end());
-  sweep_(g, t, force, a0_);
+  flow_.accelerate(g, t, force, false);
+  a0_.resize(n);
   for (unsigned i = 0; i < n; ++i) {
-    a0_[i] = stage_.fixed(i) ? Point() : a0_[i] / node[i].mass;
+    a0_[i] = stage_.fixed(i) ? Point() : flow_.acceleration(i);
     stage_.p[i] = x[i] + s * node[i].vel;
     stage_.q[i] = node[i].vel + s * a0_[i];
     stage_.w[i] = stage_.guess[i] = stage_.q[i] + s * a0_[i];

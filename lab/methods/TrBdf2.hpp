@@ -35,7 +35,7 @@ class TrBdf2 : public NewtonMethod {
               const ConstraintPlan& constraint) override;
 
  private:
-  Sweep sweep_;
+  FlatFlow flow_;
   std::vector<Point> x0_, a0_;  // by node id
 };
 

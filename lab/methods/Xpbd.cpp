@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "lab/methods/Flow.hpp"
 #include "lab/methods/ImplicitStage.hpp"
 
 namespace lab {
@@ -50,7 +49,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   const bool springs = check_springs(g, force);
   implicit_detail::find_fixed(g, constraint, fixed_);
   constraint.place_held_at_rest(g, t);
-  find_forces(g, t, force, springs);
+  accelerate(g, t, force, springs);
   const double h = dt / substeps_;
   const Drag& c = force.drag();
   auto x = g.positions();
@@ -62,7 +61,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
       if (fixed_[i]) continue;
       const double m = node[i].mass;
       const double decay = c.none() ? 1 : std::exp(-c[i] / m * h);
-      node[i].vel = decay * (node[i].vel + (h / m) * force_[i]);
+      node[i].vel = decay * (node[i].vel + h * acceleration_[i]);
       x[i] += h * node[i].vel;
     }
     if (!springs) continue;
@@ -75,13 +74,16 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   return implicit_detail::finish(g, t + dt, constraint);
 }
 
-/** All forces but the springs and drag. */
-void Xpbd::find_forces(const Cloth& g, double t, const ForcePlan& force,
-                       bool springs) {
-  sweep_without_drag(sweep_, g, t, force, force_);
+/** By all forces but the springs and drag. */
+void Xpbd::accelerate(Cloth& g, double t, const ForcePlan& force,
+                      bool springs) {
+  const unsigned n = g.node_slots();
+  flow_.accelerate(g, t, force, true);
+  acceleration_.resize(n);
+  for (unsigned i = 0; i < n; ++i) acceleration_[i] = flow_.acceleration(i);
   if (!springs) return;
-  sweep_(g, t, springs_, pull_);
-  for (std::size_t i = 0; i < pull_.size(); ++i) force_[i] -= pull_[i];
+  flow_.accelerate(g, t, springs_, true);
+  for (unsigned i = 0; i < n; ++i) acceleration_[i] -= flow_.acceleration(i);
 }
 
 /** One round over the springs. */

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <vector>
 
-#include "lab/fast/Sweep.hpp"
+#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
@@ -49,13 +49,12 @@ class Xpbd : public Method {
 
  private:
   int substeps_;
-  Sweep sweep_;
+  FlatFlow flow_;
   ForcePlan springs_ = MassSpringForce();  // recognised: it need not live on
   std::vector<char> fixed_;                // by node id, as all that follows
-  std::vector<Point> free_, force_, pull_;
+  std::vector<Point> free_, acceleration_;
 
-  void find_forces(const Cloth& g, double t, const ForcePlan& force,
-                   bool springs);
+  void accelerate(Cloth& g, double t, const ForcePlan& force, bool springs);
   void pull_together(Cloth& g, double h) const;
 };
 

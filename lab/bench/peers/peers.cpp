@@ -55,6 +55,7 @@ class Problem {
       per_mass_.push_back(
           is_corner(g.positions()[i]) ? 0 : 1 / g.node_values()[i].mass);
     start_ = positions();
+    flow_.begin(g, force, true);
   }
   /** Number of coordinates. */
   std::size_t size() const { return 3 * g.node_slots(); }
@@ -70,10 +71,12 @@ class Problem {
   /** a = F(q)/m [m/s^2] */
   void acceleration(const double* q, double* a) {
     ++calls;
-    set_positions(q);
-    sweep_(g, 0, force, f_);
-    for (std::size_t i = 0; i < per_mass_.size(); ++i)
-      for (double c : f_[i]) *a++ = c * per_mass_[i];
+    const unsigned n = g.node_slots();
+    for (unsigned i = 0; i < n; ++i, q += 3)
+      flow_.cloth().set_position(i, Point(q[0], q[1], q[2]));
+    flow_.run({.t = 0, .kick = 0, .keep = true});
+    for (unsigned i = 0; i < n; ++i)
+      for (double c : flow_.acceleration(i)) *a++ = per_mass_[i] > 0 ? c : 0;
   }
   /** (q, v)' for y = (q, v) */
   void derivative(const double* y, double* dy) {
@@ -86,24 +89,23 @@ class Problem {
   /** The diagonal of -dF/dq / m at @a q [1/s^2]. */
   State stiffness_diagonal(const double* q) {
     set_positions(q);
-    f_.assign(g.node_slots(), Point());
+    std::vector<Point> sum(g.node_slots());
     for (Edge e : g.edges()) {
       Point u = e.node2().position() - e.node1().position();
       double l = norm(u), across = std::max(0.0, 1 - e.value().L / l);
       Point d = Point(across) + (1 - across) * (u / l) * (u / l);
-      f_[e.node1().id()] += e.value().K * d;
-      f_[e.node2().id()] += e.value().K * d;
+      sum[e.node1().id()] += e.value().K * d;
+      sum[e.node2().id()] += e.value().K * d;
     }
     State result;
     for (std::size_t i = 0; i < per_mass_.size(); ++i)
-      for (double k : f_[i]) result.push_back(k * per_mass_[i]);
+      for (double k : sum[i]) result.push_back(k * per_mass_[i]);
     return result;
   }
 
  private:
   std::vector<double> per_mass_;  // 1/m [1/kg] of each node, 0 if pinned
-  Sweep sweep_;
-  std::vector<Point> f_;
+  FlatFlow flow_;
   State start_;
 };
 

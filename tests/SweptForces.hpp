@@ -1,0 +1,25 @@
+#pragma once
+/** @file SweptForces.hpp
+ * Forces as methods evaluate them, for tests. */
+#include <vector>
+
+#include "lab/methods/FlatFlow.hpp"
+
+namespace lab {
+
+/** The forces [N] on @a g at time 0, by node id; none on removed nodes.
+ * @param flow may have seen another cloth before */
+inline std::vector<Point> swept_forces(Cloth& g, const ForcePlan& force,
+                                       FlatFlow& flow) {
+  flow.accelerate(g, 0, force, false);
+  std::vector<Point> f(g.node_slots());
+  for (Node n : g.nodes())
+    f[n.id()] = n.value().mass * flow.acceleration(n.id());
+  return f;
+}
+inline std::vector<Point> swept_forces(Cloth& g, const ForcePlan& force) {
+  FlatFlow flow;
+  return swept_forces(g, force, flow);
+}
+
+}  // namespace lab
