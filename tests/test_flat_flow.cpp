@@ -14,6 +14,7 @@
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Pefrl.hpp"
+#include "lab/methods/Rk4.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Obstacle.hpp"
@@ -352,6 +353,55 @@ TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {
   EXPECT_EQ(g.num_nodes(), 25u);
   EXPECT_EQ(method.steps(g, {0.02, h}, 100, none, tear), 31);
   EXPECT_EQ(g.num_nodes(), 24u);
+}
+
+/** A step of Kutta's method as his paper has it, node by node. */
+void kutta_step(Cloth& g, double t, const ZeroForce& force) {
+  const unsigned n = g.num_nodes();
+  std::vector<Point> x, v, dx(n), dv(n), at_x(n), at_v(n);
+  for (Node i : g.nodes()) x.push_back(i.position());
+  for (Node i : g.nodes()) v.push_back(i.value().vel);
+  const double c[] = {0, 0.5, 0.5, 1}, b[] = {1, 2, 2, 1};
+  for (int s = 0; s < 4; ++s) {
+    for (unsigned i = 0; i < n; ++i) {
+      g.node(i).position() = x[i] + c[s] * h * at_x[i];
+      g.node(i).value().vel = v[i] + c[s] * h * at_v[i];
+    }
+    for (unsigned i = 0; i < n; ++i) {
+      const NodeData& node = g.node(i).value();
+      at_x[i] = node.vel;
+      at_v[i] = force(g.node(i), t + c[s] * h) / node.mass;
+      dx[i] += b[s] / 6 * at_x[i];
+      dv[i] += b[s] / 6 * at_v[i];
+    }
+  }
+  for (unsigned i = 0; i < n; ++i) {
+    g.node(i).position() = x[i] + h * dx[i];
+    g.node(i).value().vel = v[i] + h * dv[i];
+  }
+}
+
+// What is kept of a stage is its accelerations alone.
+TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
+  const auto force =
+      make_combined_force(GravityForce(), MassSpringForce(), DampingForce(0.3),
+                          [](Node n, double t) { return t * n.value().vel; });
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    Dice dice(seed);
+    Cloth batch;
+    make(batch, dice);
+    Cloth single = batch, by_node = batch;
+    Rk4 rk4, again;
+    EXPECT_EQ(rk4.steps(batch, {0, h}, 9, force, ZeroConstraint()), 9);
+    for (int k = 0; k < 9; ++k) {
+      again.step(single, k * h, h, force, ZeroConstraint());
+      kutta_step(by_node, k * h, force);
+    }
+    EXPECT_TRUE(same_bits(batch, single)) << seed;
+    EXPECT_LT(difference(batch, by_node),
+              500 * std::numeric_limits<Real>::epsilon())
+        << seed;
+  }
 }
 
 // Drag, solved exactly: v = v0 e^(-c t/m), by nodes of any mass.

@@ -1,7 +1,5 @@
 #include "lab/fast/FlatCloth.hpp"
 
-#include <algorithm>
-
 #include "lab/fast/FlatKernels.hpp"
 
 namespace lab {
@@ -100,7 +98,7 @@ void FlatCloth::lay_out(const Cloth& g) {
   springs_.resize(2, rest_first_ + (rest_ ? rest_->num_rows() : 0) *
                                        std::size_t(lanes::width));
   // A row's springs reach beyond the last node where they do nothing.
-  nodes_.resize(columns, whole + (rows_.empty() ? 0 : rows_.back().offset));
+  nodes_.resize(columns_, whole + (rows_.empty() ? 0 : rows_.back().offset));
   version_ = g.version();
 }
 

@@ -3,6 +3,7 @@
  * FlatCloth: the state of a cloth by component, each number in an array of its
  * own, for methods that take many steps before anybody looks. README.md of this
  * room walks through it. */
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <new>
@@ -79,6 +80,9 @@ class FlatCloth {
     std::size_t number;
   };
 
+  /** @param more how many columns a method has for itself, behind those */
+  explicit FlatCloth(unsigned more = 0) : columns_(columns + more) {}
+
   /** The state of @a g, with @a multiplicity K in place of K, and the drag
    * @a c. Accelerations stay as they are while the topology does, else they are
    * 0.  O(N + springs) */
@@ -123,6 +127,22 @@ class FlatCloth {
   /** The largest difference of two neighbors' ids. */
   unsigned reach() const { return reach_; }
 
+  /** Of three columns: @a x and the two behind it. */
+  Point point(unsigned x, unsigned id) const {
+    const Real* at = nodes_[x] + id;
+    const std::size_t s = nodes_.stride();
+    return {at[0], at[s], at[2 * s]};
+  }
+  void set(unsigned x, unsigned id, const Point& p) {
+    Real* at = nodes_[x] + id;
+    const std::size_t s = nodes_.stride();
+    at[0] = p.x, at[s] = p.y, at[2 * s] = p.z;
+  }
+  /** Copy @a count columns.  O(count N) */
+  void copy(unsigned from, unsigned to, unsigned count) {
+    for (unsigned k = 0; k < count; ++k)
+      std::copy_n(nodes_[from + k], slots_, nodes_[to + k]);
+  }
   Point position(unsigned id) const { return point(X, id); }
   Point velocity(unsigned id) const { return point(VX, id); }
   Point acceleration(unsigned id) const { return point(AX, id); }
@@ -136,7 +156,7 @@ class FlatCloth {
   std::vector<Run> runs_;
   std::optional<Rest> rest_;
   std::size_t rest_first_ = 0;
-  unsigned slots_ = 0, reach_ = 0;
+  unsigned columns_, slots_ = 0, reach_ = 0;
   std::uint64_t version_ = 0;
   int multiplicity_ = 0;
   const Drag* drag_ = nullptr;
@@ -144,17 +164,6 @@ class FlatCloth {
   void lay_out(const Cloth& g);
   void find_rows(const Cloth& g, std::vector<char>& is_row);
   void add_run(unsigned edge, std::size_t number);
-
-  Point point(Column c, unsigned id) const {
-    const Real* at = nodes_[c] + id;
-    const std::size_t s = nodes_.stride();
-    return {at[0], at[s], at[2 * s]};
-  }
-  void set(Column c, unsigned id, const Point& p) {
-    Real* at = nodes_[c] + id;
-    const std::size_t s = nodes_.stride();
-    at[0] = p.x, at[s] = p.y, at[2 * s] = p.z;
-  }
 };
 
 }  // namespace lab

@@ -51,7 +51,8 @@ struct KickTask {
   std::size_t num_rings;
   const Real* others;  ///< x of other forces on node first and on; or null
   std::size_t others_stride;  ///< from x to y, and to z
-  bool drag, keep;            ///< whether drag acts; whether a is stored
+  bool drag;                  ///< whether drag acts
+  Real* kept;                 ///< x of node 0 where a is stored; or null
   Real gravity, h;            ///< [m/s^2], [s]
 };
 
@@ -110,8 +111,8 @@ struct KickTiles {
         const V per_mass = load<V>(nodes[FlatCloth::PerMass] + i);
         f.x *= per_mass, f.y *= per_mass;
         f.z = f.z * per_mass - task.gravity;
-        if (task.keep) {
-          Real* a = nodes[FlatCloth::AX] + i;
+        if (task.kept) {
+          Real* a = task.kept + i;
           store(a, f.x), store(a + s, f.y), store(a + 2 * s, f.z);
         }
         store(v, vx + task.h * f.x), store(v + s, vy + task.h * f.y);
@@ -329,6 +330,48 @@ struct ReadSprings {
         store(k + i, times * p.first), store(l + i, p.second);
       }
       for (; i < run.count; ++i) k[i] = times * from[i].K, l[i] = from[i].L;
+    }
+  }
+};
+
+/** A state as a sum of one at the start of a step and of accelerations. */
+struct StageSum {
+  static constexpr std::size_t most = 12;
+  struct Term {
+    unsigned column;  ///< x of the accelerations
+    Real to_x, to_v;  ///< [s^2], [s]
+  };
+  unsigned start;  ///< column of x; y, z and the velocities behind it
+  Real way;        ///< [s]
+  Term term[most];
+  unsigned count;  ///< of terms
+};
+
+/** x = x_0 + (way v_0 + sum of to_x a); v = v_0 + sum of to_v a: for the tiles
+ * of nodes [first, last). */
+struct SumTiles {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(FlatCloth* cloth,
+                                                  const StageSum* sum,
+                                                  unsigned first,
+                                                  unsigned last) {
+    using namespace lanes;
+    Columns& nodes = cloth->nodes();
+    const unsigned end = first + (last - first + FlatCloth::tile - 1) /
+                                     FlatCloth::tile * FlatCloth::tile;
+    for (unsigned c = 0; c < 3; ++c) {
+      const Real *x0 = nodes[sum->start + c], *v0 = nodes[sum->start + 3 + c];
+      for (unsigned i = first; i < end; i += count_of<V>) {
+        const V v = load<V>(v0 + i);
+        V dx = sum->way * v, dv = {};
+        for (unsigned k = 0; k < sum->count; ++k) {
+          const StageSum::Term& term = sum->term[k];
+          const V a = load<V>(nodes[term.column + c] + i);
+          dx += term.to_x * a, dv += term.to_v * a;
+        }
+        store(nodes[FlatCloth::X + c] + i, load<V>(x0 + i) + dx);
+        store(nodes[FlatCloth::VX + c] + i, v + dv);
+      }
     }
   }
 };

@@ -83,7 +83,7 @@ void Sweep::in_turn(unsigned slots, int halo, const IdVisitor& move,
       call(use, k);
     }
   };
-  together(slots, share);
+  together(slots, std::ref(share));  // nothing on the heap
   error.rethrow();
 }
 

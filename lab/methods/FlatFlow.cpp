@@ -30,7 +30,7 @@ void FlatFlow::begin(Cloth& g, const ForcePlan& force, bool exact) {
 
 /** What depends on the topology, and the drag of the nodes. */
 void FlatFlow::prepare() {
-  drag_.clear(), drifts_.clear();
+  drag_.clear(), num_drifts_ = 0;
   if (exact_ && !force_->drag().none()) find_drag();
   const std::size_t needed = Sweep::threads() * group;
   if (version_ == cloth_.version() && rings_.size() >= needed) return;
@@ -66,9 +66,11 @@ void FlatFlow::find_drag() {
 }
 
 const FlatFlow::Drift& FlatFlow::drift_by(double time) {
-  for (const Drift& d : drifts_)
-    if (d.time == time) return d;
-  Drift& made = drifts_.emplace_back(Drift{time, {}});
+  for (std::size_t k = 0; k < num_drifts_; ++k)
+    if (drifts_[k].time == time) return drifts_[k];
+  if (num_drifts_ == drifts_.size()) drifts_.emplace_back();
+  Drift& made = drifts_[num_drifts_++];
+  made.time = time, made.of_run.clear();
   for (const DragRun& run : drag_) {
     const DragFlow flow(run.gamma, time);
     made.of_run.push_back({Real(flow.way), Real(flow.decay)});
@@ -94,7 +96,8 @@ void FlatFlow::prepare(Level& level, const FlatStage& stage) {
   list(
       stage.held, [](const Place& p) { return p.at; }, level.held);
   list(
-      stage.last, [](const Place& p) { return p.velocity; }, level.ended);
+      stage.held_move ? stage.held : stage.last,
+      [](const Place& p) { return p.velocity; }, level.ended);
 }
 
 std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
@@ -170,7 +173,7 @@ bool FlatFlow::run_overlapping(std::span<const FlatStage> stages) {
   for (auto& d : done_) d = 0;
   Sweep::FirstError error;
   std::atomic<bool> good = true;
-  Sweep::together(cloth_.slots(), [&](int thread, int threads) {
+  const auto work = [&](int thread, int threads) {
     Rings* rings = &rings_[std::size_t(thread) * group];
     try {
       for (auto k = std::size_t(thread); k < groups && good;
@@ -184,7 +187,8 @@ bool FlatFlow::run_overlapping(std::span<const FlatStage> stages) {
     }
     if (good) return;
     for (auto& d : done_) d = std::numeric_limits<int>::max();  // none waits
-  });
+  };
+  Sweep::together(cloth_.slots(), std::ref(work));
   error.rethrow();
   if (good) {
     wait_ = 1;
@@ -241,7 +245,9 @@ bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
     lanes::run<kernels::DriftNodes>(&cloth_, from, to, Real(stage.first_kick),
                                     way, decay);
   };
-  if (level.drift) {
+  if (stage.sum) {
+    lanes::run<kernels::SumTiles>(&cloth_, stage.sum, first, last);
+  } else if (level.drift) {
     auto run = std::ranges::upper_bound(drag_, first, {}, &DragRun::last);
     for (unsigned i = first; i < last; ++run) {
       const unsigned end = std::min(run->last, last);
@@ -256,6 +262,7 @@ bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
     cloth_.set_position(h.id, h.value);
     cloth_.set_velocity(h.id, Point());
   });
+  if (stage.held_move) set_velocities(level, first, last);
   const bool good =
       !project || !stage.project ||
       stage.project->project_alone(cloth_, *g_, stage.t, first, last);
@@ -284,11 +291,17 @@ void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
         by_graph_ ? mine.apart.data() : nullptr,
         Sweep::part_size,
         !exact_ && !force_->drag().none(),
-        stage.keep,
+        stage.keep ? cloth_.nodes()[stage.keep_in] : nullptr,
         Real(force_->gravity()),
         Real(*stage.kick)};
     lanes::run<kernels::KickTiles>(task, first, last);
   }
+  set_velocities(level, first, last);
+}
+
+/** Those of held nodes that move with their places, or that end a step. */
+void FlatFlow::set_velocities(const Level& level, unsigned first,
+                              unsigned last) {
   for_part(level.ended, first, last,
            [this](const Held& h) { cloth_.set_velocity(h.id, h.value); });
 }
@@ -311,16 +324,17 @@ void FlatFlow::find_rings(Rings& r, unsigned first) {
 
 void FlatFlow::end() { cloth_.write(*g_); }
 
-std::vector<Point> FlatFlow::kept() const {
+std::vector<Point> FlatFlow::kept(unsigned x) const {
   std::vector<Point> a(cloth_.slots());
-  for (unsigned i = 0; i < a.size(); ++i) a[i] = cloth_.acceleration(i);
+  for (unsigned i = 0; i < a.size(); ++i) a[i] = cloth_.point(x, i);
   return a;
 }
 
-void FlatFlow::set_kept(const Cloth& g, const std::vector<Point>& a) {
+void FlatFlow::set_kept(const Cloth& g, const std::vector<Point>& a,
+                        unsigned x) {
   const Drag none;
   cloth_.take(g, 0, none);
-  for (unsigned i = 0; i < a.size(); ++i) cloth_.set_acceleration(i, a[i]);
+  for (unsigned i = 0; i < a.size(); ++i) cloth_.set(x, i, a[i]);
 }
 
 }  // namespace lab

@@ -20,17 +20,21 @@ namespace lab {
 /** One way through a cloth. In this order, as far as a stage has them:
  *   v += first_kick a, by the accelerations a that were kept;
  *   the flow of x' = v over drift, of m v' = -c v, too, if drag is exact;
- *   held nodes to their places at rest; the constraint;
+ *   or the state that is a sum;
+ *   held nodes to their places, at rest if they do not move; the constraint;
  *   a = F/m at time t;  v += kick a;
  *   held nodes get the velocities of their places. */
 struct FlatStage {
   double t;  ///< after the drift: of places, constraint and forces [s]
   double first_kick = 0;                    ///< [s]
   std::optional<double> drift = {};         ///< [s]
+  const kernels::StageSum* sum = nullptr;   ///< null: none
   const ConstraintPlan* held = nullptr;     ///< whose held nodes; null: none
+  bool held_move = false;                   ///< with their places
   const ConstraintPlan* project = nullptr;  ///< null: none
   std::optional<double> kick = {};          ///< [s]
-  bool keep = false;                        ///< a, for a first_kick to come
+  bool keep = false;                        ///< a, for a first_kick to come,
+  unsigned keep_in = FlatCloth::AX;         ///< or elsewhere: the column of x
   /** Whose held nodes get their velocities: the stage ends a step. */
   const ConstraintPlan* last = nullptr;
 };
@@ -55,7 +59,8 @@ struct FlatStage {
  * by bit. */
 class FlatFlow {
  public:
-  FlatFlow() = default;
+  /** @param more columns of the method: as FlatCloth */
+  explicit FlatFlow(unsigned more = 0) : cloth_(more) {}
   FlatFlow(FlatFlow&&) = default;
   /** What is kept, too; rings, which point into the other one, come anew. */
   FlatFlow(const FlatFlow& a) : cloth_(a.cloth_) {}
@@ -86,9 +91,10 @@ class FlatFlow {
   /** Give positions and velocities to the graph. */
   void end();
 
-  /** The accelerations kept, by node id [m/s^2]. */
-  std::vector<Point> kept() const;
-  void set_kept(const Cloth& g, const std::vector<Point>& a);
+  /** The accelerations kept, by node id [m/s^2]; or another column. */
+  std::vector<Point> kept(unsigned x = FlatCloth::AX) const;
+  void set_kept(const Cloth& g, const std::vector<Point>& a,
+                unsigned x = FlatCloth::AX);
 
  private:
   /** Nodes of consecutive ids with the same c/m, but for round-off. */
@@ -131,7 +137,8 @@ class FlatFlow {
   bool exact_ = false, by_graph_ = false;
   std::uint64_t version_ = 0;  // that rings_ and drag_ are of
   std::vector<DragRun> drag_;
-  std::deque<Drift> drifts_;  // of this batch
+  std::deque<Drift> drifts_;  // the first num_drifts_ are of this batch
+  std::size_t num_drifts_ = 0;
   std::vector<Rings> rings_;  // a group for each thread
   std::vector<Level> levels_;
   std::vector<std::atomic<int>> done_;  // by group: parts
@@ -151,6 +158,7 @@ class FlatFlow {
                  std::atomic<bool>& good);
   bool move(const Level& level, unsigned first, unsigned last, bool project);
   void kick(const Level& level, Rings& mine, unsigned first, unsigned last);
+  void set_velocities(const Level& level, unsigned first, unsigned last);
   void find_rings(Rings& r, unsigned first);
 };
 

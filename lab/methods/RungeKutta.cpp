@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "lab/methods/Dop853.hpp"
 #include "lab/methods/DormandPrince.hpp"
@@ -12,23 +14,35 @@
 namespace lab {
 
 template <typename Tableau>
-double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
-                                 const ForcePlan& force,
-                                 const ConstraintPlan& constraint) {
+int RungeKutta<Tableau>::steps(Cloth& g, const StepTimes& times, int count,
+                               const ForcePlan& force,
+                               const ConstraintPlan& constraint) {
+  const auto version = g.version();
+  flow_.begin(g, force, false);
+  int k = 0;
+  do one_step(g, times(k), times.dt, constraint);
+  while (++k < count && g.version() == version);
+  flow_.end();
+  return k;
+}
+
+template <typename Tableau>
+void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
+                                   const ConstraintPlan& constraint) {
   if (!adaptive || tolerance_ == no_limit) {
-    attempt(g, t, dt, force, constraint);
-    constraint(g, t + dt);
-    return t + dt;
+    attempt(g, t, dt, constraint);
+    flow_.run({.t = t + dt, .project = &constraint});
+    return;
   }
   if (inner_ == 0) inner_ = dt;
-  const double end = t + dt;
-  for (double now = t; now < end;) {
+  const double end_of_step = t + dt;
+  for (double now = t; now < end_of_step;) {
     // A last step that leaves a splinter takes it along.
     // It ends where a held node changes its velocity.
-    const double goal = std::min(end, constraint.next_kink(now));
+    const double goal = std::min(end_of_step, constraint.next_kink(now));
     const bool last = now + 1.01 * inner_ >= goal;
     const double h = last ? goal - now : inner_;
-    double error = attempt(g, now, h, force, constraint) / tolerance_;
+    double error = attempt(g, now, h, constraint) / tolerance_;
     // Written so that an error that is not finite makes the step smaller.
     bool good = error <= 1;
     double factor = 0.2;
@@ -36,21 +50,18 @@ double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
       factor = std::clamp(0.9 * std::pow(error, -1.0 / info.order), 0.2, 5.0);
     if (good) {
       now = last ? goal : now + h;
-      constraint(g, now);
+      flow_.run({.t = now, .project = &constraint});
       if (h >= inner_ || factor < 1) inner_ = h * factor;
     } else {
-      std::copy(x0_.begin(), x0_.end(), g.positions().begin());
-      for (unsigned i = 0; i < g.node_slots(); ++i)
-        g.node_values()[i].vel = v0_[i];
+      flow_.cloth().copy(start, FlatCloth::X, 6);
       inner_ = h * std::min(factor, 0.9);
-      if (inner_ < 1e-13 * std::max(1.0, end))
+      if (inner_ < 1e-13 * std::max(1.0, end_of_step))
         throw StepError(std::string(info.name) +
                         ": no step meets the "
                         "tolerance at t = " +
                         std::to_string(now) + " s");
     }
   }
-  return end;
 }
 
 /** One step without error control; takes no constraint but held nodes, which
@@ -58,89 +69,84 @@ double RungeKutta<Tableau>::step(Cloth& g, double t, double dt,
  * @return the estimated error [m]; 0 if the method has no estimate */
 template <typename Tableau>
 double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
-                                    const ForcePlan& force,
                                     const ConstraintPlan& constraint) {
-  const unsigned n = g.node_slots();
-  auto x = g.positions();
-  auto node = g.node_values();
-  constraint.place_held(g, t);
-  x0_.assign(x.begin(), x.end());
-  v0_.resize(n);
-  for (unsigned i = 0; i < n; ++i) v0_[i] = node[i].vel;
+  FlatCloth& cloth = flow_.cloth();
+  flow_.run({.t = t, .held = &constraint, .held_move = true});
+  cloth.copy(FlatCloth::X, start, 6);
   for (std::size_t s = 0; s < stages; ++s) {
-    const double now = t + Tableau::c[s] * h;
-    if (s > 0)
-      set_state(g, now, h, &Tableau::a[s * (s - 1) / 2], s, constraint);
+    FlatStage stage = {.t = t + Tableau::c[s] * h};
     if (s == 0 && first_same_as_last && at_end_of_last_step(t)) {
-      std::swap(v_[0], v_[stages - 1]);
-      std::swap(a_[0], a_[stages - 1]);
-    } else {
-      derive(g, now, force, constraint, s);
+      cloth.copy(acceleration(stages - 1), acceleration(0), 3);
+      continue;
     }
+    if (s > 0) {
+      weigh(Tableau::c[s], h, &Tableau::a[s * (s - 1) / 2], s);
+      stage.sum = &sum_, stage.held = &constraint, stage.held_move = true;
+    }
+    stage.kick = 0, stage.keep = true, stage.keep_in = acceleration(s);
+    flow_.run(stage);
+    const auto rest = [&cloth, s](Node n) {
+      cloth.set(acceleration(s), n.id(), Point());
+    };
+    constraint.each_held(g, std::ref(rest));  // nothing on the heap
   }
   if constexpr (first_same_as_last) {
     // The last stage stands at the end of the step already.
-    end_x_.assign(x.begin(), x.end());
-    end_v_.resize(n);
-    for (unsigned i = 0; i < n; ++i) end_v_[i] = node[i].vel;
-    end_t_ = t + h;
+    cloth.copy(FlatCloth::X, end, 6);
+    has_end_ = true, end_t_ = t + h, end_version_ = cloth.version();
   } else {
-    set_state(g, t + h, h, Tableau::b.data(), stages, constraint);
+    weigh(1, h, Tableau::b.data(), stages);
+    flow_.run(
+        {.t = t + h, .sum = &sum_, .held = &constraint, .held_move = true});
   }
-  if constexpr (adaptive) return h * error_rate(g);
+  if constexpr (adaptive) return h * error_rate(g, h);
   return 0;
 }
 
 template <typename Tableau>
-bool RungeKutta<Tableau>::at_end_of_last_step(double t) const {
-  return end_t_ == t && end_x_ == x0_ && end_v_ == v0_;
+bool RungeKutta<Tableau>::at_end_of_last_step(double t) {
+  const FlatCloth& cloth = flow_.cloth();
+  bool same = has_end_ && end_t_ == t && end_version_ == cloth.version();
+  for (unsigned c = 0; c < 6 && same; ++c)
+    same = std::equal(cloth.nodes()[start + c],
+                      cloth.nodes()[start + c] + cloth.slots(),
+                      cloth.nodes()[end + c]);
+  return same;
 }
 
-/** State 0 plus h times the weighted derivatives of @a count stages: that at
- * time @a t. */
+/** sum_ for the state c h after the start, by the weights of @a count
+ * stages. */
 template <typename Tableau>
-void RungeKutta<Tableau>::set_state(Cloth& g, double t, double h,
-                                    const double* weights, std::size_t count,
-                                    const ConstraintPlan& constraint) {
-  auto x = g.positions();
-  auto node = g.node_values();
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
-    Point dx, dv;
-    for (std::size_t s = 0; s < count; ++s) {
-      dx += weights[s] * v_[s][i];
-      dv += weights[s] * a_[s][i];
-    }
-    x[i] = x0_[i] + h * dx;
-    node[i].vel = v0_[i] + h * dv;
+void RungeKutta<Tableau>::weigh(double c, double h, const double* weights,
+                                std::size_t count) {
+  sum_ = {start, Real(c * h), {}, 0};
+  for (std::size_t k = 0; k < count; ++k) {
+    const double to_x = of_accelerations(weights, count, k);
+    if (weights[k] != 0 || to_x != 0)
+      sum_.term[sum_.count++] = {acceleration(k), Real(h * h * to_x),
+                                 Real(h * weights[k])};
   }
-  constraint.place_held(g, t);
 }
 
-/** The derivatives of the present state as those of stage @a s. */
+/** The derivative of x by weights w is v_0 sum(w) + h sum_k (w A)_k a_k.
+ * @return (w A)_k */
 template <typename Tableau>
-void RungeKutta<Tableau>::derive(Cloth& g, double t, const ForcePlan& force,
-                                 const ConstraintPlan& constraint,
-                                 std::size_t s) {
-  flow_.accelerate(g, t, force, false);
-  auto node = g.node_values();
-  v_[s].resize(g.node_slots());
-  a_[s].resize(g.node_slots());
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
-    v_[s][i] = node[i].vel;
-    a_[s][i] = flow_.acceleration(i);
-  }
-  constraint.each_held(
-      g, [&](Node n) { v_[s][n.id()] = a_[s][n.id()] = Point(); });
+double RungeKutta<Tableau>::of_accelerations(const double* weights,
+                                             std::size_t count, std::size_t k) {
+  double sum = 0;
+  for (std::size_t j = k + 1; j < count; ++j)
+    sum += weights[j] * Tableau::a[j * (j - 1) / 2 + k];
+  return sum;
 }
 
 /** The estimated error, RMS over the nodes, for h = 1. */
 template <typename Tableau>
-double RungeKutta<Tableau>::error_rate(const Cloth& g) const {
+double RungeKutta<Tableau>::error_rate(const Cloth& g, double h) {
   double error = 0;
-  if constexpr (adaptive) error = rms(g, Tableau::b_low.data());
+  if constexpr (adaptive) error = rms(g, h, Tableau::b_low);
   if constexpr (requires { Tableau::b_third; }) {
     if (!(error > 0)) return error;
-    const double third = rms(g, Tableau::b_third.data());
+    const double third = rms(g, h, Tableau::b_third);
     error *= error / std::sqrt(error * error + 0.01 * third * third);
   }
   return error;
@@ -148,20 +154,47 @@ double RungeKutta<Tableau>::error_rate(const Cloth& g) const {
 
 /** Of the difference to the weights @a other. */
 template <typename Tableau>
-double RungeKutta<Tableau>::rms(const Cloth& g, const double* other) const {
+double RungeKutta<Tableau>::rms(const Cloth& g, double h,
+                                const Weights& other) {
+  const Columns& nodes = flow_.cloth().nodes();
+  constexpr unsigned tile = FlatCloth::tile;
+  Weights w;
+  for (std::size_t k = 0; k < stages; ++k) w[k] = Tableau::b[k] - other[k];
   double x = 0, v = 0;
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
-    if (!g.node_in_use(i)) continue;
-    Point dx, dv;
-    for (std::size_t s = 0; s < stages; ++s) {
-      const double w = Tableau::b[s] - other[s];
-      dx += w * v_[s][i];
-      dv += w * a_[s][i];
+  for (unsigned begin = 0; begin < g.node_slots(); begin += tile) {
+    double x2[tile] = {}, v2[tile] = {};
+    for (unsigned c = 0; c < 3; ++c) {
+      double dx[tile] = {}, dv[tile] = {};
+      for (std::size_t k = 0; k < stages; ++k) {
+        const Real* a = nodes[acceleration(k) + c] + begin;
+        const double to_x = h * of_accelerations(w.data(), stages, k);
+        for (unsigned i = 0; i < tile; ++i)
+          dx[i] += to_x * a[i], dv[i] += w[k] * a[i];
+      }
+      for (unsigned i = 0; i < tile; ++i)
+        x2[i] += dx[i] * dx[i], v2[i] += dv[i] * dv[i];
     }
-    x += normSq(dx);
-    v += normSq(dv);
+    const unsigned count = std::min(tile, g.node_slots() - begin);
+    for (unsigned i = 0; i < count; ++i)
+      if (g.node_in_use(begin + i)) x += x2[i], v += v2[i];
   }
   return std::sqrt(std::max(x, v) / std::max(1u, g.num_nodes()));
+}
+
+template <typename Tableau>
+void RungeKutta<Tableau>::archive(CME212::Archive& a, const Cloth& g) {
+  bool has = has_end_ && end_version_ == g.version();
+  a(inner_)(has);
+  has_end_ = has;
+  if (!has) return;
+  end_version_ = g.version();
+  const unsigned last = acceleration(stages - 1);
+  for (unsigned column : {end, end + 3, last}) {
+    auto points = a.loads() ? std::vector<Point>() : flow_.kept(column);
+    a(points);
+    if (a.loads()) flow_.set_kept(g, points, column);
+  }
+  a(end_t_);
 }
 
 template class RungeKutta<ForwardEulerTableau>;

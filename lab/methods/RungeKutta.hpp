@@ -6,7 +6,7 @@
  */
 #include <array>
 #include <cstddef>
-#include <vector>
+#include <cstdint>
 
 #include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
@@ -21,6 +21,12 @@ inline constexpr double tolerance_share = 0.25;
 
 /** An explicit Runge-Kutta method for x' = v, v' = F(x, v, t)/m.
  *
+ * As the derivative of x is v, which is a sum of accelerations a_k itself, only
+ * these are kept of a stage:
+ *   v = v_0 + h sum_k w_k a_k,  x = x_0 + c h v_0 + h^2 sum_k (w A)_k a_k
+ * for a row w of the tableau A, or its weights b: the method as that of
+ * Nystroem (II.14 of the source).
+ *
  * @tparam Tableau has info; a, the lower triangle row by row, b and c. With
  *         also b_low, the weights of a lower order, it controls its error:
  *         then step() makes as many steps inside [t, t + dt] as it needs. With
@@ -34,7 +40,7 @@ inline constexpr double tolerance_share = 0.25;
  * 0.2 and at most 5 times. Source: Hairer, Norsett, Wanner, Solving Ordinary
  * Differential Equations I, II.4. */
 template <typename Tableau>
-class RungeKutta : public Method {
+class RungeKutta : public BatchMethod {
  public:
   static constexpr MethodInfo info = Tableau::info;
   static constexpr bool adaptive = requires { Tableau::b_low; };
@@ -48,36 +54,45 @@ class RungeKutta : public Method {
     if (adaptive) tolerance_ = tolerance;
   }
 
-  double step(Cloth& g, double t, double dt, const ForcePlan& force,
-              const ConstraintPlan& constraint) override;
-  void restart() override { inner_ = 0, end_x_.clear(); }
-  void archive(CME212::Archive& a, const Cloth& /*g*/) override {
-    a(inner_)(end_t_)(end_x_)(end_v_)(v_.back())(a_.back());
-  }
+  int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
+            const ConstraintPlan& constraint) override;
+  void restart() override { inner_ = 0, has_end_ = false; }
+  void archive(CME212::Archive& a, const Cloth& g) override;
 
  private:
   static constexpr std::size_t stages = Tableau::b.size();
+  using Weights = std::array<double, stages>;
+  static_assert(stages <= kernels::StageSum::most);
   // Dormand-Prince: the last stage is the first one of the next step.
   static constexpr bool first_same_as_last =
       Tableau::b.back() == 0 && stages > 1;
 
+  // Columns of the cloth: x and v at the start of a step, and at its end; the
+  // accelerations of each stage.
+  static constexpr unsigned start = FlatCloth::columns, end = start + 6,
+                            first = first_same_as_last ? end + 6 : end;
+  static constexpr unsigned acceleration(std::size_t stage) {
+    return first + 3 * unsigned(stage);
+  }
+
   double tolerance_;
   double inner_ = 0;  // next inner step [s]; 0: not chosen yet
-  FlatFlow flow_;
-  std::vector<Point> x0_, v0_;
-  std::array<std::vector<Point>, stages> v_, a_;  // derivatives, by stage
-  std::vector<Point> end_x_, end_v_;  // where the last stage was taken
-  double end_t_ = 0;
+  FlatFlow flow_{acceleration(stages) - FlatCloth::columns};
+  kernels::StageSum sum_;
+  bool has_end_ = false;  // the columns of the end, and the last stage's,
+  double end_t_ = 0;      // at this time
+  std::uint64_t end_version_ = 0;
 
-  double attempt(Cloth& g, double t, double h, const ForcePlan& force,
+  void one_step(Cloth& g, double t, double dt,
+                const ConstraintPlan& constraint);
+  double attempt(Cloth& g, double t, double h,
                  const ConstraintPlan& constraint);
-  bool at_end_of_last_step(double t) const;
-  void set_state(Cloth& g, double t, double h, const double* weights,
-                 std::size_t count, const ConstraintPlan& constraint);
-  void derive(Cloth& g, double t, const ForcePlan& force,
-              const ConstraintPlan& constraint, std::size_t s);
-  double error_rate(const Cloth& g) const;
-  double rms(const Cloth& g, const double* other) const;
+  bool at_end_of_last_step(double t);
+  void weigh(double c, double h, const double* weights, std::size_t count);
+  static double of_accelerations(const double* weights, std::size_t count,
+                                 std::size_t k);
+  double error_rate(const Cloth& g, double h);
+  double rms(const Cloth& g, double h, const Weights& other);
 };
 
 }  // namespace lab
