@@ -11,6 +11,7 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "lab/stability/StepLimit.hpp"
+#include "tests/SweptForces.hpp"
 
 using namespace lab;
 
@@ -60,8 +61,7 @@ TEST(AmplificationByTheory, IsOneOnKnownBoundaries) {
 TEST(StretchedSheet, IsAtRestAndHasTheFrequencyOfAMembrane) {
   for (double stretch : {1.05, 1.5, 2.5}) {
     Start s(stretched_sheet(9, Mesh::plain, stretch, 0));
-    std::vector<Point> f(s.cloth.node_slots());
-    Sweep()(s.cloth, 0, s.force, f);
+    auto f = swept_forces(s.cloth, s.force);
     s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
     for (const Point& p : f) EXPECT_LT(norm(p), 1e-11);
     EXPECT_NEAR(SharpOmega()(s.cloth, s.force, s.constraint, 80),

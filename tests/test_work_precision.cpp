@@ -18,6 +18,7 @@
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
+#include "tests/SweptForces.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;
@@ -50,8 +51,7 @@ TEST(Problem, ExactSolutionsStartAsTheClothAndObeyItsForces) {
     constexpr double t = 0.3, h = 1e-5;
     auto before = p.exact(t - h), now = p.exact(t), after = p.exact(t + h);
     std::copy(now.begin(), now.end(), s.cloth.positions().begin());
-    std::vector<Point> f(s.cloth.node_slots());
-    Sweep()(s.cloth, t, s.force, f);
+    auto f = swept_forces(s.cloth, s.force);
     s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
     for (unsigned i = 0; i < now.size(); ++i) {
       Point a = (after[i] - 2 * now[i] + before[i]) / (h * h);
