@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 

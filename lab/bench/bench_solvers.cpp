@@ -16,6 +16,7 @@
 #include <memory>
 #include <vector>
 
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/stability/Spectrum.hpp"
 

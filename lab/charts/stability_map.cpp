@@ -26,6 +26,7 @@
 #include "lab/charts/Growth.hpp"
 #include "lab/charts/Limits.hpp"
 #include "lab/charts/Report.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "lab/stability/StepLimit.hpp"

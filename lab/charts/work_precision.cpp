@@ -28,6 +28,7 @@
 #include "lab/charts/Precision.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/charts/Report.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"

@@ -4,6 +4,7 @@
  *   make peers-deps peers-bench
  * What is measured, row by row: README.md here. */
 #include "lab/bench/peers/contenders.hpp"
+#include "lab/fast/Sweep.hpp"
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>

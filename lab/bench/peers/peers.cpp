@@ -30,6 +30,7 @@
 #include <iostream>
 #include <vector>
 
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 
 using namespace lab;
