@@ -66,34 +66,36 @@ struct KickTiles {
     using namespace lanes;
     constexpr unsigned w = count_of<V>, tile = FlatCloth::tile;
     Columns& nodes = task.cloth.nodes();
-    const std::size_t s = nodes.stride();
+    const std::size_t s = nodes.stride(), num_rings = task.num_rings;
     const FlatCloth::Rest* rest = task.cloth.rest();
+    const V h = V{} + task.h, gravity = V{} + task.gravity;
+    Row row[FlatCloth::most_rows];
     for (unsigned begin = first; begin < last; begin += tile) {
-      for (std::size_t r = 0; r < task.num_rings; ++r)
-        if (task.rings[r].offset < tile)
+      Real* const xs = nodes[FlatCloth::X] + begin;
+      for (std::size_t r = 0; r < num_rings; ++r) {
+        row[r] = Row(task.rings[r], xs, begin);
+        if (!row[r].wide)
           Near::template apply<V>(nodes[FlatCloth::X], s, task.rings[r], begin);
+      }
       for (unsigned k = 0; k < tile; k += w) {
         const unsigned i = begin + k;
-        const Real* at = nodes[FlatCloth::X] + i;
+        const Real* at = xs + k;
         const Points<V> x = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
         Points<V> f;
-        for (std::size_t r = 0; r < task.num_rings; ++r) {
-          const RowRing& ring = task.rings[r];
-          Real* kept = ring.kept + ring.at + k;
-          const Real* far = ring.far() + k;
-          const std::size_t next = ring.stride();
+        for (std::size_t r = 0; r < num_rings; ++r) {
+          const Row& to = row[r];
           Points<V> g;
-          if (ring.offset < tile) {
-            g = {load<V>(kept), load<V>(kept + next), load<V>(kept + 2 * next)};
+          if (to.wide) {
+            g = Near::template pull<V>(x, to.x + k, s, to.K + k, to.L + k);
+            store(to.near[0] + k, g.x), store(to.near[1] + k, g.y);
+            store(to.near[2] + k, g.z);
           } else {
-            g = Near::template pull<V>(x, at + ring.offset, s, ring.K + i,
-                                       ring.L + i);
-            store(kept, g.x), store(kept + next, g.y);
-            store(kept + 2 * next, g.z);
+            g = {load<V>(to.near[0] + k), load<V>(to.near[1] + k),
+                 load<V>(to.near[2] + k)};
           }
-          f.x += g.x - load<V>(far);
-          f.y += g.y - load<V>(far + next);
-          f.z += g.z - load<V>(far + 2 * next);
+          f.x += g.x - load<V>(to.far[0] + k);
+          f.y += g.y - load<V>(to.far[1] + k);
+          f.z += g.z - load<V>(to.far[2] + k);
         }
         if (rest && i / width < rest->num_blocks())
           add_rest<V>(task.cloth, *rest, i, x, f);
@@ -110,17 +112,36 @@ struct KickTiles {
         }
         const V per_mass = load<V>(nodes[FlatCloth::PerMass] + i);
         f.x *= per_mass, f.y *= per_mass;
-        f.z = f.z * per_mass - task.gravity;
+        f.z = f.z * per_mass - gravity;
         if (task.kept) {
           Real* a = task.kept + i;
           store(a, f.x), store(a + s, f.y), store(a + 2 * s, f.z);
         }
-        store(v, vx + task.h * f.x), store(v + s, vy + task.h * f.y);
-        store(v + 2 * s, vz + task.h * f.z);
+        store(v, vx + h * f.x), store(v + s, vy + h * f.y);
+        store(v + 2 * s, vz + h * f.z);
       }
-      for (std::size_t r = 0; r < task.num_rings; ++r) finish(task.rings[r]);
+      for (std::size_t r = 0; r < num_rings; ++r) finish(task.rings[r]);
     }
   }
+
+  /** Where a row's numbers are of the first node of a tile. */
+  struct Row {
+    const Real *x, *K, *L;  ///< x: of the far end
+    Real* near[3];          ///< the forces of its springs, by component
+    const Real* far[3];     ///< those of the springs that end at the tile
+    bool wide;              ///< far ends in later tiles
+    Row() {}
+    Row(const RowRing& ring, const Real* xs, unsigned begin)
+        : x(xs + ring.offset),
+          K(ring.K + begin),
+          L(ring.L + begin),
+          wide(ring.offset >= FlatCloth::tile) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        near[c] = ring.kept + ring.at + c * ring.stride();
+        far[c] = ring.far() + c * ring.stride();
+      }
+    }
+  };
 
   /** The springs of a tile alone: into its ring. */
   struct Near {
