@@ -87,7 +87,7 @@ void Sweep::in_turn(unsigned slots, int halo, const IdVisitor& move,
   error.rethrow();
 }
 
-void Sweep::together(unsigned slots, const Work& work) {
+void Sweep::together([[maybe_unused]] unsigned slots, const Work& work) {
   bool alone = true;
 #ifdef _OPENMP
   // Calling a team takes longer than a step of 100 nodes.

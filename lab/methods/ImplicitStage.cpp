@@ -26,9 +26,10 @@ Matrix3 full_matrix(const Stiffness& B) {
   add_identity(full, B.across);
   return full;
 }
-/** The inverse of the positive definite @a d: by Cholesky, as a spring may be a
+/** The inverse of the positive definite @a a: by Cholesky, as a spring may be a
  * million times stiffer along than across; the triangle makes it symmetric. */
-Matrix3 inverse(Matrix3 d) {
+Matrix3 inverse(const Matrix3& a) {
+  Matrix3 d = a;
   invert_factor(d, Four());
   Matrix3 all;
   for (int c = 0; c < 3; ++c) all.column[c] = turned_times(d, d.column[c]);
