@@ -258,8 +258,8 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
                                 "checkpoint");
   EXPECT_EQ(error_with("0 0 0\n"), file + ": no checkpoint");
   std::string newer = good;
-  newer.replace(good.find(" 3 "), 3, " 4 ");
-  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 4"),
+  newer.replace(good.find(" 4 "), 3, " 5 ");
+  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 5"),
             0u);
   EXPECT_EQ(error_with(good.substr(0, good.size() - 3)),
             file + ": ends too early: it has " +

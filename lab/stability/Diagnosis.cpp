@@ -223,12 +223,12 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
     } else if (!d.cure || trial.time > d.trial.time) {
       d.cure = cure, d.trial = trial;
     }
-    if (d.cure && d.trial.time > run.time) break;
+    if (d.cure && d.trial.time >= run.time) break;
   }
   if (d.cure) {
     const std::string time = CME212::short_text(d.trial.time) + " s";
     d.text += d.cure->options(run.method) +
-              (d.trial.time > run.time
+              (d.trial.time >= run.time
                    ? " works: a trial to t = " + time + " passed"
                    : " may work: a trial was broken off at t = " + time +
                          ", before it could fail");
