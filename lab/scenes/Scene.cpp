@@ -373,7 +373,7 @@ const Diagnosis& Scene::diagnosis() const {
   if (diagnosis_) return *diagnosis_;
   FailedRun run = {.method = entry_, .dt = clock_.dt, .time = no_limit};
   if (is_finite()) {
-    run.time = time() + clock_.dt;
+    run.time = std::min(time() + clock_.dt, t_end_);
     run.solver = !error_.empty();
     run.sharp = sharp_limit(40);
     run.safe = safe_limit();
