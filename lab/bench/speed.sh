@@ -25,7 +25,7 @@ for file in "$folder/bench.json" "$folder/bench-float.json"; do
   commit=$(sed -n 's/.*# commit: \([^;]*\);.*/\1/p' "$file")
   real=$(sed -n 's/^ "real": "\(.*\)",$/\1/p' "$file")
   sed -i "/^[^,]*,$commit,$real,/d" "$history"
-  sed -n 's/.*"name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)", "items": \([0-9]*\),.*"ratio": \([0-9.e-]*\).*/\2,\1,\3/p' \
+  sed -n 's/.*"group": "\(10*\) nodes[^"]*", "name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)",.*"ratio": \([0-9.e-]*\).*/\1,\2,\3/p' \
     "$file" | sed 's/, mixed/ mixed/' | while read -r row; do
     echo "$(date +%F),$commit,$real,$row"
   done >>"$history"

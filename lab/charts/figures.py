@@ -137,7 +137,7 @@ def call(method):
 def bench(nodes, name, beside, column="median_s"):
     """A figure of bench.json over another one."""
     path = ROOT / "lab/bench/results/amd-epyc/bench.json"
-    found = {f["name"]: f[column]
+    found = {f["name"]: f[column] / f["items"]
              for f in json.loads(path.read_text())["figures"]
              if f["group"] == nodes + " nodes with diagonals"}
     return found[name] / found[beside]
