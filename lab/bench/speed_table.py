@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""The table of lab/fast/README.md, from bench.json and bench-float.json of the
+folder that is given: medians, and their share of the loop over flat arrays."""
+import json
+import pathlib
+import re
+import sys
+
+STEP, SPRINGS = "step: flat arrays", "springs: flat arrays"
+ROWS = ((STEP, ""), ("step: SymplecticEuler", STEP),
+        ("step: flat arrays, mixed", ""),
+        ("step: SymplecticEuler, mixed", STEP),
+        ("step: SymplecticEuler, shuffled", STEP), ("step: Verlet", STEP),
+        ("step: Rk4", STEP), ("step: symp_euler_step(), functor", STEP),
+        ("step: symp_euler_step(), forces", STEP),
+        ("step: SymplecticEuler, one at a time", STEP),
+        ("step: scene of the assignment", STEP),
+        ("step: SymplecticEuler, threads", STEP),
+        (SPRINGS, ""), ("springs: Node and Edge", SPRINGS),
+        ("springs: flat arrays, torn", ""),
+        ("springs: Node and Edge, torn", SPRINGS),
+        ("springs: Node and Edge, reindexed", SPRINGS),
+        ("springs: virtual call a node", SPRINGS), ("springs: sweep", SPRINGS),
+        ("edges: flat arrays", ""), ("edges: Edge", "edges: flat arrays"),
+        ("part: drift", ""), ("part: read and write", ""), ("part: floor", ""),
+        ("part: ball", ""), ("part: ball that tears", ""),
+        ("loading: text to numbers", ""), ("loading: build_cloth()", ""),
+        ("loading: build_cloth(), shuffled", ""), ("new layout", ""))
+
+
+def medians(path):
+    """{(nodes, figure): ns a node}"""
+    found = {}
+    for f in json.loads(path.read_text())["figures"]:
+        if nodes := re.match(r"(\d+) nodes", f["group"]):
+            found[int(nodes[1]), f["name"]] = 1e9 * f["median_s"] / f["items"]
+    return found
+
+
+def cell(all_of, nodes, name, beside):
+    if (nodes, name) not in all_of:
+        return ""
+    ns = all_of[nodes, name]
+    text = f"{ns:.2f}" if ns < 9.95 else f"{ns:.1f}"
+    for kind in (", mixed", ", torn", ", reindexed"):
+        if name.endswith(kind):
+            beside += kind
+    other = all_of.get((nodes, beside))
+    return f"{text} = {ns / other:.2f}" if other else text
+
+
+folder = pathlib.Path(sys.argv[1])
+double, single = (medians(folder / name)
+                  for name in ("bench.json", "bench-float.json"))
+print("| ns a node = share of the loop over flat arrays | 625 | 10,000 "
+      "| 1,000,000 | float: 10,000 | 1,000,000 |")
+print("|---|---|---|---|---|---|")
+for name, beside in ROWS:
+    cells = [cell(double, n, name, beside) for n in (625, 10000, 1000000)]
+    cells += [cell(single, n, name, beside) for n in (10000, 1000000)]
+    print(f"| {name} | {' | '.join(cells)} |")
