@@ -166,7 +166,7 @@ peers() {
 # All compiles by clang++; and tests under its ThreadSanitizer, whose OpenMP
 # tells what waits for what. Mesa's own threads are not ours to check.
 clang() {
-  in_folder clang all cloth units test_sweep \
+  in_folder clang all cloth units test_sweep test_flat_flow \
     test_graph_nodes test_graph_edges work_precision stability_map \
     adviser_suite bench bench_implicit bench_stability make_grid example_graph \
     CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
@@ -182,7 +182,8 @@ threads() {
     TSAN_OPTIONS=$suppress build/check/clang/test_panels \
       --gtest_filter='*Thread*' &&
     "${three[@]}" build/check/clang/test_sweep \
-      --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*'
+      --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*' &&
+    "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'
 }
 # Single precision: the sweeps, a run, and how far it ends from double.
 single() {

@@ -11,7 +11,7 @@ diff <(block cpp docs/graph.md | head -n "$(wc -l <docs/example_graph.cpp)") \
   { echo "docs/graph.md does not quote example_graph.cpp as it is"; exit 1; }
 
 results=lab/bench/results/amd-epyc
-diff <(lab/bench/speed_table.py "$results") \
+diff <(lab/charts/speed_table.py "$results") \
   <(sed -n '/^| ns a node =/,/^$/p' lab/fast/README.md | grep .) ||
   { echo "lab/fast/README.md does not quote $results as it is"; exit 1; }
 python3 lab/charts/figures.py

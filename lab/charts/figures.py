@@ -7,12 +7,11 @@ figures.txt has the rules: a page, and below it pieces of its text in which
 below. Each number that is another one is reported as FILE:LINE, or written.
 Exit status: 0 all are right, or were written; 1 some are not."""
 import argparse
-import json
 import re
 import statistics
 import sys
 
-from results import ROOT, Table, by_method, cheapest, runs
+from results import ROOT, Table, by_method, cheapest, ns_a_node, runs
 
 NUMBER = r"(?<![\d.])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
 tables = {}
@@ -134,13 +133,10 @@ def call(method):
                              for r in of("peers", method) if r.ok)
 
 
-def bench(nodes, name, beside, column="median_s"):
-    """A figure of bench.json over another one."""
-    path = ROOT / "lab/bench/results/amd-epyc/bench.json"
-    found = {f["name"]: f[column] / f["items"]
-             for f in json.loads(path.read_text())["figures"]
-             if f["group"] == nodes + " nodes with diagonals"}
-    return found[name] / found[beside]
+def bench(nodes, name, beside):
+    """The median of a figure of bench.json over another one's."""
+    of = ns_a_node(ROOT / "lab/bench/results/amd-epyc/bench.json")
+    return of[int(nodes), name][1] / of[int(nodes), beside][1]
 
 
 def advice(which):

@@ -1,5 +1,6 @@
 """Read the CSV files of lab/*/results, and answer what is asked of them."""
 import csv
+import json
 import math
 import pathlib
 import re
@@ -16,6 +17,17 @@ TRUSTED = 10  # an error below so many floors says nothing
 
 class ChartError(Exception):
     """A chart that can't be drawn, and why, in one line."""
+
+
+def ns_a_node(path):
+    """{(nodes, figure): (lowest, median, highest)} of a JSON of bench."""
+    found = {}
+    for f in json.loads(path.read_text())["figures"]:
+        if nodes := re.match(r"(\d+) nodes", f["group"]):
+            found[int(nodes[1]), f["name"]] = tuple(
+                1e9 * f[k] / f["items"]
+                for k in ("lowest_s", "median_s", "highest_s"))
+    return found
 
 
 class Table:

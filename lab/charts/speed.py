@@ -4,9 +4,8 @@ import json
 import re
 
 from panels import DARK, GRAY, Axis, Curve, Panel, Picture
-from results import ROOT, Table
+from results import ROOT, Table, ns_a_node
 
-NODES = "10000 nodes with diagonals"
 BLUE, BLACK, ORANGE, GREEN = "#0072B2", "#777777", "#D55E00", "#009E73"
 # Of bench.json: (what it says there, what the chart says, color).
 STEPS = (("step: symp_euler_step(), forces", "the assignment's step", BLACK),
@@ -21,14 +20,6 @@ LAYERS = (("springs: virtual call a node", "a virtual call a node", BLACK),
 PARTS = (("part: ball", "ball"), ("part: drift", "drift"),
          ("part: floor", "floor"))
 ROW = 21  # [pixels]
-
-
-def figures(path):
-    """{name: (lowest, median, highest)} at 10,000 nodes [ns a node]."""
-    return {f["name"]: tuple(1e9 * f[k] / f["items"] for k in
-                             ("lowest_s", "median_s", "highest_s"))
-            for f in json.loads(path.read_text())["figures"]
-            if f["group"] == NODES}
 
 
 def beside_ours():
@@ -73,9 +64,10 @@ class Bars:
 
 def speed(path, out):
     """Bars from bench.json, bench-float.json beside it, and the peers."""
-    of = figures(path)
-    of["float"] = figures(path.with_name("bench-float.json"))[
-        "step: SymplecticEuler"]
+    single = ns_a_node(path.with_name("bench-float.json"))
+    of = {name: times for (nodes, name), times in ns_a_node(path).items()
+          if nodes == 10000}
+    of["float"] = single[10000, "step: SymplecticEuler"]
     about = json.loads(path.read_text())["about"]
     machine, compiler, commit = (
         re.search(f"# {what}: ([^#]*);", about)[1].replace(";", ",")

@@ -49,11 +49,10 @@ struct KickTask {
   FlatCloth& cloth;
   RowRing* rings;  ///< of the rows, at tile first
   std::size_t num_rings;
-  const Real* others;  ///< x of other forces on node first and on; or null
-  std::size_t others_stride;  ///< from x to y, and to z
-  bool drag;                  ///< whether drag acts
-  Real* kept;                 ///< x of node 0 where a is stored; or null
-  Real gravity, h;            ///< [m/s^2], [s]
+  const Point* others;  ///< other forces on node first and on, for whole tiles
+  bool drag;            ///< whether drag acts
+  Real* kept;           ///< x of node 0 where a is stored; or null
+  Real gravity, h;      ///< [m/s^2], [s]
 };
 
 /** a = (springs + others - c v)/m - gravity, v += h a, for the tiles of nodes
@@ -100,9 +99,8 @@ struct KickTiles {
         if (rest && i / width < rest->num_blocks())
           add_rest<V>(task.cloth, *rest, i, x, f);
         if (task.others) {
-          const Real* other = task.others + (i - first);
-          f.x += load<V>(other), f.y += load<V>(other + task.others_stride);
-          f.z += load<V>(other + 2 * task.others_stride);
+          const Points<V> other = load_points<V>(task.others + (i - first));
+          f.x += other.x, f.y += other.y, f.z += other.z;
         }
         Real* v = nodes[FlatCloth::VX] + i;
         V vx = load<V>(v), vy = load<V>(v + s), vz = load<V>(v + 2 * s);

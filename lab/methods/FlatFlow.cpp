@@ -50,7 +50,6 @@ void FlatFlow::prepare() {
     Real* at = r.numbers.data();
     for (auto& ring : r.rings) ring.kept = at, at += 3 * ring.stride();
     r.others.resize(Sweep::part_size);
-    r.apart.resize(3 * Sweep::part_size);
   }
 }
 
@@ -280,16 +279,12 @@ void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
     if (by_graph_) {
       std::ranges::fill(mine.others, Point());
       force_->add_others({*g_, first, last}, stage.t, mine.others);
-      for (unsigned k = 0; k < Sweep::part_size; ++k)
-        for (unsigned c = 0; c < 3; ++c)
-          mine.apart[c * Sweep::part_size + k] = mine.others[k][c];
     }
     const kernels::KickTask task = {
         cloth_,
         mine.rings.data(),
         force_->springs() > 0 ? mine.rings.size() : 0,
-        by_graph_ ? mine.apart.data() : nullptr,
-        Sweep::part_size,
+        by_graph_ ? mine.others.data() : nullptr,
         !exact_ && !force_->drag().none(),
         stage.keep ? cloth_.nodes()[stage.keep_in] : nullptr,
         Real(force_->gravity()),

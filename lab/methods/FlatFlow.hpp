@@ -126,8 +126,7 @@ class FlatFlow {
   struct Rings {
     std::vector<kernels::RowRing> rings;
     std::vector<Real> numbers;
-    std::vector<Point> others;  // forces of a part,
-    std::vector<Real> apart;    // and by component
+    std::vector<Point> others;  // forces of a part
     unsigned next = 0;
   };
 

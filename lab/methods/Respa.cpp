@@ -104,14 +104,12 @@ void Respa::take_stiff_nodes(const Cloth& g, double end, double dt,
   for (std::size_t k = 0; k < stiff_.size(); ++k) {
     const unsigned id = split_.nodes[k];
     const NodeData& node = g.node_values()[id];
-    const double gamma = c[id] / node.mass;
+    const DragFlow flow(c[id] / node.mass, h);
     const FlatCloth& flat = flow_.cloth();
-    stiff_[k] = {flat.position(id),
-                 flat.velocity(id) + dt / 2 * flat.acceleration(id),
-                 Point(),
-                 1 / double(node.mass),
-                 gamma > 0 ? -std::expm1(-gamma * h) / gamma : h,
-                 std::exp(-gamma * h)};
+    stiff_[k] = {
+        flat.position(id), flat.velocity(id) + dt / 2 * flat.acceleration(id),
+        Point(),           1 / double(node.mass),
+        flow.way,          flow.decay};
   }
   const auto take_held = [&](Node n, const Place& place) {
     const auto found = std::ranges::lower_bound(split_.nodes, n.id());

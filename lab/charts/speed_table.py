@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The table of lab/fast/README.md, from bench.json and bench-float.json of the
 folder that is given: medians, and their share of the loop over flat arrays."""
-import json
 import pathlib
-import re
 import sys
+
+from results import ns_a_node
 
 STEP, SPRINGS = "step: flat arrays", "springs: flat arrays"
 ROWS = ((STEP, ""), ("step: SymplecticEuler", STEP),
@@ -28,29 +28,20 @@ ROWS = ((STEP, ""), ("step: SymplecticEuler", STEP),
         ("loading: build_cloth(), shuffled", ""), ("new layout", ""))
 
 
-def medians(path):
-    """{(nodes, figure): ns a node}"""
-    found = {}
-    for f in json.loads(path.read_text())["figures"]:
-        if nodes := re.match(r"(\d+) nodes", f["group"]):
-            found[int(nodes[1]), f["name"]] = 1e9 * f["median_s"] / f["items"]
-    return found
-
-
 def cell(all_of, nodes, name, beside):
     if (nodes, name) not in all_of:
         return ""
-    ns = all_of[nodes, name]
+    ns = all_of[nodes, name][1]
     text = f"{ns:.2f}" if ns < 9.95 else f"{ns:.1f}"
     for kind in (", mixed", ", torn", ", reindexed"):
         if name.endswith(kind):
             beside += kind
     other = all_of.get((nodes, beside))
-    return f"{text} = {ns / other:.2f}" if other else text
+    return f"{text} = {ns / other[1]:.2f}" if other else text
 
 
 folder = pathlib.Path(sys.argv[1])
-double, single = (medians(folder / name)
+double, single = (ns_a_node(folder / name)
                   for name in ("bench.json", "bench-float.json"))
 print("| ns a node = share of the loop over flat arrays | 625 | 10,000 "
       "| 1,000,000 | float: 10,000 | 1,000,000 |")
