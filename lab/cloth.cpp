@@ -192,20 +192,10 @@ int take_advice(Options& o) {
   std::optional<CME212::OutputFile> file;
   if (!o.advised.empty()) file.emplace(o.advised);
   Progress progress(o.quiet);
-  AdviceRules rules;
+  AdviceRules rules = rules_of(o.model, o.advise_budget);
   rules.tell = [&](const std::string& doing, double done) {
     if (progress.due()) progress.show(doing, done);
   };
-  // From seconds to work by what this machine does; a power of 2, so that it is
-  // the same from run to run.
-  const double rate = std::exp2(std::round(std::log2(measured_rate(o.model))));
-  const double run = work_of_run(o.model);
-  rules.budget =
-      rate * (o.advise_budget > 0
-                  ? o.advise_budget
-                  : std::max(2.0, std::isfinite(run) ? run / rate : 0));
-  // A run takes 1e4 spring evaluations a node and more.
-  rules.most_nodes = std::max(rules.most_nodes, rules.budget / 1e4);
   const Advice advice = advise(o.model, rules);
   progress.end();
   if (!o.quiet) std::cout << in_words(advice);

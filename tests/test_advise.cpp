@@ -2,6 +2,7 @@
 // refused, and the parts of a scene are told apart.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "lab/advice/Advise.hpp"
@@ -87,11 +88,55 @@ TEST(Refinement, IsUncertainOfWhatGoesByNoOrder) {
             uncertainty({4, 1, 0.25, 0.0625}));  // borne out by a fourth
   EXPECT_GT(uncertainty({3, 1, 0.25, 0.0625}),
             uncertainty({4, 1, 0.25, 0.0625}));
-  EXPECT_GT(uncertainty({1, -0.25, 0.0625}), 2 * regular);  // to and fro
   EXPECT_GT(uncertainty({1, -1, 1}), 0.5);  // it may be anything
   Refinement r(Measure::energy);
   for (double a : {1., 0., 0.9}) r.add(grid(1, {a}));
   EXPECT_FALSE(r.settles());
+}
+
+/** Grids of an error of order 1, from 1 to 1/16, and those half-way, which are
+ * off by so much more. */
+Refinement with_half_ways(const std::vector<double>& off) {
+  Refinement r(Measure::energy);
+  for (std::size_t k = 0; k < 5; ++k) {
+    r.add(grid(std::pow(2, k), {std::pow(0.5, k)}));
+    if (k > 0 && k <= off.size())
+      r.add_half_way(
+          grid(std::sqrt(2) * std::pow(2, k - 1),
+               {std::sqrt(0.5) * std::pow(0.5, k - 1) + off[k - 1]}));
+  }
+  return r;
+}
+
+// The error of the last grid is 1/16: a fifth of it is uncertain in any case,
+// and one and a half times that and what grids half-way say.
+TEST(Refinement, GridsHalfWayTellHowFarTheLimitIsSure) {
+  const double own = 1.5 * 0.2 / 16;
+  EXPECT_NEAR(with_half_ways({0, 0, 0, 0}).uncertainty_of_limit(), own, 1e-12);
+  // All are off: their limit is, and the last of them from the law.
+  EXPECT_NEAR(with_half_ways({0.1, 0.1, 0.1, 0.1}).uncertainty_of_limit(),
+              own + 1.5 * (0.1 + 0.1), 1e-12);
+  // By sides in turn, so that their limit is not known either.
+  const Refinement turns = with_half_ways({0.01, -0.01, 0.01, -0.01});
+  EXPECT_GT(turns.uncertainty_of_limit(), own + 1.5 * 0.02);
+  // Without the last one these tell nothing: what the last grid changed does.
+  EXPECT_NEAR(with_half_ways({0.1, 0.1, 0.1}).uncertainty_of_limit(), own,
+              1e-12);
+  EXPECT_NEAR(turns.limit()[0], 0, 1e-12);
+}
+
+TEST(Refinement, AGridHalfWayIsOneThatWasTried) {
+  const Refinement r = with_half_ways({0, 0, 0, 0.1});
+  ASSERT_EQ(r.tried().size(), 9u);
+  for (std::size_t k = 1; k < 9; ++k) {
+    EXPECT_NEAR(r.tried()[k].factor / r.tried()[k - 1].factor, std::sqrt(2),
+                1e-12);
+  }
+  const GridReport last = r.tried()[7];
+  EXPECT_NEAR(last.error, 0.1 + std::sqrt(0.5) / 8, 1e-12);
+  EXPECT_NEAR(r.error(last.factor).size(Measure::energy), last.error, 1e-12);
+  EXPECT_EQ(r.uncertainty(last.factor), r.uncertainty_of_limit());
+  EXPECT_GT(r.uncertainty(0.9 * last.factor), r.uncertainty_of_limit());
 }
 
 // A file's grid is the only one: its error is not known, nor its uncertainty.
@@ -287,9 +332,34 @@ TEST(Budget, ForeseesWhatARunCosts) {
   EXPECT_GT(work_of_run(m), 20 * verlet);  // by the same step, with solves
 }
 
+// Larger steps take more iterations, but none more than by a factor of the
+// matrix; on small grids both are less.
+TEST(Budget, ForeseesWhatSolversTake) {
+  const StepCosts costs(hanging(1));
+  const MethodEntry& method = *find_method("tr-bdf2");
+  const double limit = costs.verlet(), all = costs.springs();
+  const double one = costs.of_step(method, limit) / all,
+               ten = costs.of_step(method, 10 * limit) / all;
+  EXPECT_GT(one, 20);
+  EXPECT_GE(ten, one);
+  EXPECT_EQ(costs.of_step(method, limit / 2) / all, one);
+  EXPECT_EQ(costs.of_step(method, 1e3 * limit),
+            costs.of_step(method, 1e5 * limit));
+  // On 80 cells a step of one limit of 10 is one of 8 limits.
+  const double fine = costs.of_step(method, limit, 8) / (64 * all);
+  EXPECT_GT(fine, one);
+  EXPECT_LT(fine, costs.of_step(method, 100 * limit, 8) / (64 * all) / 2);
+  const MethodEntry& verlet = *find_method("verlet");
+  EXPECT_EQ(costs.of_step(verlet, limit, 2), 4 * all);
+  // xpbd iterates as often by any step.
+  const MethodEntry& xpbd = *find_method("xpbd");
+  EXPECT_NEAR(costs.of_step(xpbd, 100 * limit, 8),
+              costs.of_step(xpbd, limit, 8), 0.05 * 64 * 65 * all);
+}
+
 TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
   double before = 0;
-  for (double budget : {1e4, 1e5, 1e6, 1e8}) {
+  for (double budget : {1e4, 1e5, 1e6, 1e7}) {
     AdviceRules rules;
     rules.budget = budget;
     int told = 0;
@@ -305,7 +375,7 @@ TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
     EXPECT_GE(a.spent_work, before);
     before = a.spent_work;
     EXPECT_GT(told, 0);
-    EXPECT_EQ(a.cut_short, budget < 1e8) << budget;
+    EXPECT_TRUE(a.cut_short) << budget;
     if (budget == 1e4) {
       EXPECT_NE(a.refusal.find("the budget ended after "), std::string::npos);
     }
@@ -313,16 +383,17 @@ TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
     rules.tell = [](const std::string&, double) {};
     EXPECT_EQ(advise(hanging(1e-4), rules).spent_work, a.spent_work);
   }
+  EXPECT_FALSE(advise(hanging(1e-2)).cut_short);
 }
 
 // What is not run is foreseen, and said to be.
 TEST(Budget, EndsWithTheBestThatIsKnown) {
   const Answer right = truth(hanging(1), 4);
   int foreseen = 0;
-  for (double budget : {3e5, 6e5, 1e6}) {
+  for (auto [tolerance, budget] : {std::pair(2e-4, 4e6), {5e-4, 6e5}}) {
     AdviceRules rules;
     rules.budget = budget;
-    const Advice a = advise(hanging(1.5e-4), rules);
+    const Advice a = advise(hanging(tolerance), rules);
     if (a.checked || !a.refusal.empty()) continue;
     ++foreseen;
     EXPECT_NE(in_words(a).find("not run: "), std::string::npos);

@@ -196,7 +196,7 @@ std::string in_words(const Advice& a) {
   if (a.grids.size() > 0) {
     Column nodes{"nodes", {}}, error{"error of the grid" + unit, {}},
         evaluations{"force evaluations", {}}, time{"time [s]", {}};
-    for (const GridReport& g : a.grids) {
+    for (const GridReport& g : a.grids.tried()) {
       nodes.cells.push_back(std::to_string(g.nodes));
       error.cells.push_back(a.grids.size() < 3 ? "not known" : number(g.error));
       evaluations.cells.push_back(count(g.evaluations));

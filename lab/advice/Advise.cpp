@@ -38,7 +38,9 @@ Advice Adviser::find() {
       find_rest();
       try_longer_steps();
     }
+    if (may_go_on()) pilots_.keep(next_work());
     choose();
+    pilots_.keep(0);
   } while (goes_on());
   if (!found_) found_ = lucky_;
   if (!found_ && pilots_.cut_short()) foresee();
@@ -99,7 +101,7 @@ bool Adviser::find_grid() {
       // Below three grids nothing is known; then half is for a second look.
       if (!pilots_.affords(pilot_work(factor), grids.empty()      ? 1
                                                : grids.size() < 3 ? 0.8
-                                                                  : 0.5))
+                                                                  : most_left))
         return refuse(too_dear(pilot_work(factor)));
       const Model m = pilot(on, factor);
       t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all));
@@ -120,6 +122,7 @@ bool Adviser::find_grid() {
                pilot_work(factor) / std::max(1.0, springs_of(on))});
     // What coarser grids made believe counts no longer.
     found_.reset(), lucky_.reset();
+    if (grids.size() >= 2) try_half_way();
     if (grids.size() >= 3) pilots_.knows(so_far());
     if (!grids.settles())
       if (const std::string why = diverging(scene_); !why.empty())
@@ -127,6 +130,22 @@ bool Adviser::find_grid() {
     if (scene_.sheets.empty()) return true;
     if (grids.size() >= 3 && may_suffice()) return true;
   }
+}
+
+void Adviser::try_half_way() {
+  auto& grids = advice_.grids;
+  const double factor =
+      next_factor(grids[grids.size() - 2].factor, between / 2);
+  const Model on = on_grid(factor);
+  const double work = pilot_work(factor);
+  const std::size_t nodes = nodes_of(on);
+  if (!pilots_.affords(work)) return;
+  // One that misses a pin tells nothing.
+  const Trial t = pilots_.run(
+      pilot(on, factor), "grid of " + std::to_string(nodes) + " nodes", work);
+  if (t.ok())
+    grids.add_half_way(
+        {factor, nodes, infinite, t, work / std::max(1.0, springs_of(on))});
 }
 
 double Adviser::first_factor() const {
@@ -142,12 +161,13 @@ double Adviser::first_factor() const {
 
 std::vector<double> Adviser::factors() const {
   std::vector<double> all;
-  for (const GridReport& g : advice_.grids) {
-    all.push_back(g.factor);
+  const Refinement& grids = advice_.grids;
+  for (std::size_t g = 0; g < grids.size(); ++g) {
+    all.push_back(grids[g].factor);
     if (scene_.sheets.empty()) break;
     for (int k = 1; k <= between; ++k)
-      if (const double f = std::pow(2, double(k) / between) * g.factor;
-          (k < between || &g == &advice_.grids.back()) &&
+      if (const double f = next_factor(grids[g].factor, k);
+          (k < between || g + 1 == grids.size()) &&
           double(nodes_of(on_grid(f))) <= rules_.most_nodes)
         all.push_back(f);
   }
@@ -282,7 +302,7 @@ void Adviser::try_floats(const Choice& c) {
 
 void Adviser::foresee() {
   const Refinement& grids = advice_.grids;
-  if (grids.size() < 3) return;
+  if (grids.size() < 3 || too_uncertain()) return;
   for (double factor = grids[0].factor;; factor *= std::pow(2, 1. / between)) {
     Model m = on_grid(factor);
     if (double(nodes_of(m)) > rules_.most_nodes) return;
@@ -299,17 +319,25 @@ void Adviser::foresee() {
   }
 }
 
-bool Adviser::goes_on() const {
-  if (scene_.sheets.empty()) return false;
-  if (!found_) return true;
-  if (!found_->checked) return false;
-  const GridReport& last = advice_.grids.back();
-  return (advice_.grids.size() < 5 ||
-          advice_.grids.uncertainty_of_limit() >
+double Adviser::next_work() const {
+  const double finer = 2 * advice_.grids.back().factor;
+  return pilot_work(finer) + pilot_work(next_factor(finer / 2, between / 2));
+}
+
+bool Adviser::may_go_on() const {
+  const auto& grids = advice_.grids;
+  const double finer = 2 * grids.back().factor;
+  return !scene_.sheets.empty() &&
+         (grids.size() < 5 ||
+          grids.uncertainty_of_limit() >
               rules_.most_uncertainty * advice_.tolerance) &&
-         8 * pilot_work(last.factor) <=
-             std::min(rules_.patience, pilots_.left() / 2) &&
-         double(nodes_of(on_grid(2 * last.factor))) <= rules_.most_nodes;
+         pilot_work(finer) <=
+             std::min(rules_.patience, most_left * pilots_.left()) &&
+         double(nodes_of(on_grid(finer))) <= rules_.most_nodes;
+}
+
+bool Adviser::goes_on() const {
+  return !scene_.sheets.empty() && (!found_ || may_go_on());
 }
 
 void Adviser::take(const Choice& c) {
@@ -330,6 +358,19 @@ void Adviser::take(const Choice& c) {
 }
 
 }  // namespace adviser_detail
+
+AdviceRules rules_of(const Model& m, double seconds) {
+  AdviceRules rules;
+  // From seconds to work by what this machine does; a power of 2, so that it is
+  // the same from run to run.
+  const double rate = std::exp2(std::round(std::log2(measured_rate(m))));
+  const double run = work_of_run(m);
+  rules.budget = seconds > 0 ? rate * seconds
+                             : std::max(2 * rate, std::isfinite(run) ? run : 0);
+  // A run takes 1e4 spring evaluations a node and more.
+  rules.most_nodes = std::max(rules.most_nodes, rules.budget / 1e4);
+  return rules;
+}
 
 Advice advise(const Model& m, const AdviceRules& rules) {
   return adviser_detail::Adviser(m, rules).find();

@@ -20,6 +20,10 @@ struct AdviceRules {
   double patience = 1e8;
   double shake = 1e-6;    ///< [m], of starts that should change nothing
   int most_checked = 24;  ///< choices that are run to see if they do
+  /** What is foreseen between coarse grids is often wrong: choices of up to so
+   * many times the tolerance are run, too, if that takes at most this share of
+   * the budget that is left. */
+  double hope = 4, long_shots = 5e-4;
   /** What all pilots may take, in spring evaluations, so that advice is the
    * same on every machine; 0: the larger of 2e8, about 2 s, and a run of the
    * scene as it stands. */
@@ -36,6 +40,11 @@ struct AdviceRules {
    * grids nothing is advised. */
   double most_unsure = 0.6;
 };
+
+/** With a budget of so many @a seconds of this machine; of 0: the larger of 2 s
+ * and what a run of @a m takes as it stands. Grids may have as many nodes as
+ * that affords.  Throws as measured_rate() */
+AdviceRules rules_of(const Model& m, double seconds);
 
 /** @a m as pilots compute it, unless it is stiff: by Verlet, with the step that
  * is safe in every configuration. */

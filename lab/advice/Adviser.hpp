@@ -21,6 +21,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
  * give the same: a few runs don't show the largest of all. */
 constexpr double scatter_share = 1.5;
 
+/** A finer grid takes at most this share of the budget that is left: the one
+ * half-way to it takes a third of that, and what is found is tried. */
+constexpr double most_left = 0.6;
+
 /** What is uncertain of the error of a run, at least, as a share of it. */
 constexpr double of_itself = 0.06;
 
@@ -61,6 +65,7 @@ class Adviser {
     double factor, error, uncertainty, work;
     double effects = 0;  // how much of its error parts and step may make
     double seconds = 0;
+    bool long_shot = false;  // it is not foreseen to do
     bool checked = false;
     Robustness robustness = {};
     Answer answer = {}, half = {};  // if it was run: also by half the step
@@ -127,14 +132,23 @@ class Adviser {
    * or it can be foreseen that the next one is. The step goes down with the
    * grid, so its error is in it. */
   bool find_grid();
+  /** Run a grid half-way between the last two, if it is a scene. */
+  void try_half_way();
   double first_factor() const;
   /** Choices of a grid are this many from one that is tried to the next one, of
    * twice the cells: each takes 1.4 times the work of the one before. */
   static constexpr int between = 6;
+  static double next_factor(double factor, int k) {
+    return factor * std::pow(2, double(k) / between);
+  }
   /** The grids to choose from, the coarsest first: those that were tried, those
    * between them, and the next one. */
   std::vector<double> factors() const;
   bool may_suffice() const;
+  bool too_uncertain() const {
+    return advice_.grids.uncertainty_of_limit() >
+           rules_.most_unsure * advice_.tolerance;
+  }
 
   /** What the grids tell. */
   std::string so_far() const;
@@ -211,10 +225,14 @@ class Adviser {
   void foresee();
   /** False if the nodes of a grid that was not tried miss a pin. */
   static bool is_scene(const Model& m);
-  /** True if there is no choice yet; or if no fourth grid bears three out, or
-   * much of the tolerance is uncertainty, and a finer grid does not take long.
-   */
+  /** True if there is no choice yet, or if it may be made a better one. */
   bool goes_on() const;
+  /** True if there are less than five grids, or much of the tolerance is
+   * uncertain, and a finer grid does not take long. Its work is kept while
+   * choices are run. */
+  bool may_go_on() const;
+  /** Of the next grid, and of the one half-way to it. */
+  double next_work() const;
   void take(const Choice& c);
 
   /** All grids, sets of parts, methods and steps of which the effects, added

@@ -104,6 +104,8 @@ bool Adviser::try_steps() {
                       {"pefrl", 1.3 * verlet},
                       {"srkn6b", 2.2 * verlet},
                       {"respa", 0.9 * costs.multirate()},
+                      {"tr-bdf2", 16 * few},
+                      {"tr-bdf2", 4 * few},
                       {"tr-bdf2", few},
                       {"tr-bdf2", few / 8},
                       {"implicit-euler", few / 4}},
@@ -149,6 +151,8 @@ bool Adviser::try_methods(const Model& on, const StepCosts& costs,
   if (!exact.ok()) return refuse(exact.failure);
   if (less == 0) reference_ = exact.answer;
   double least = infinite;  // of the largest steps so far
+  // On finer grids all but implicit methods need smaller steps.
+  const double finest = factors().back() / base().factor;
   for (const Try& t : tries) {
     const bool first = steps_.empty();
     const double work = attempt(t.method, t.dt).second;
@@ -156,7 +160,8 @@ bool Adviser::try_methods(const Model& on, const StepCosts& costs,
     // A multirate method without stiff springs is Verlet.
     if (!first &&
         ((less == 0 && std::string_view(t.method) == own) ||
-         !(work <= 4 * least) || (method->info.multirate && t.dt < verlet) ||
+         !(work <= (method->info.limit == no_limit ? finest : 1) * 4 * least) ||
+         (method->info.multirate && t.dt < verlet) ||
          !pilots_.affords(3 * work, 0.15)))
       continue;
     least = std::min(least, work);
@@ -204,7 +209,7 @@ void Adviser::choose() {
     return t.ok() ? size_of(Effect(t.answer, limit)) : infinite;
   };
   const double unsure = grids.uncertainty_of_limit();
-  if (unsure > rules_.most_unsure * advice_.tolerance) {
+  if (too_uncertain()) {
     refuse(too_unsure());
     return;
   }
@@ -213,15 +218,16 @@ void Adviser::choose() {
   std::map<double, double> of_grid;  // by factor: the grid's error, at least
   for (Choice& c : choices()) {
     if (of_grid[c.factor] - c.effects > advice_.tolerance) continue;
-    const bool looks = c.work <= rules_.patience && runs < rules_.most_checked;
-    if (!looks || !pilots_.affords(c.work, 0.5)) {
-      if (c.error + c.uncertainty <= advice_.tolerance && is_scene(c.model)) {
+    if (c.long_shot && c.work > rules_.long_shots * pilots_.left()) continue;
+    if (!c.long_shot && !pilots_.affords(c.work, 0.5)) {
+      if (!pilots_.keeps() && c.error + c.uncertainty <= advice_.tolerance &&
+          is_scene(c.model)) {
         found_ = c;
         return;
       }
       continue;
     }
-    ++runs;
+    if (!c.long_shot && ++runs > rules_.most_checked) break;
     Trial t, half;
     const std::string nodes = std::to_string(nodes_of(c.model)) + " nodes by " +
                               c.model.method->info.name + ' ';
@@ -298,9 +304,11 @@ std::vector<Adviser::Choice> Adviser::choices() const {
             return size_of(effect.add(-1, of_pilot.by));
           };
           const double error = off(of_grid, step);
-          if (!(error <= advice_.tolerance) ||
-              !(off(of_grid, of_step(s, share / 2, finer)) <=
-                advice_.tolerance))
+          const bool long_shot =
+              !(std::max(error, off(of_grid, of_step(s, share / 2, finer))) <=
+                advice_.tolerance);
+          if (long_shot &&
+              (share < 0.49 || !(error <= rules_.hope * advice_.tolerance)))
             continue;
           const double uncertainty =
               advice_.grids.uncertainty(factor) +
@@ -311,12 +319,12 @@ std::vector<Adviser::Choice> Adviser::choices() const {
           const auto m = scene_with(factor, *less, s,
                                     s.dt * share / (shrinks ? finer : 1));
           if (!m) continue;
-          const double work = costs_->of_step(*s.method, m->step.dt * finer) *
-                              finer * finer * less->springs *
-                              std::ceil(m->t_end / m->step.dt);
+          const double work = costs_->of_step(*s.method, m->step.dt, finer) *
+                              less->springs * std::ceil(m->t_end / m->step.dt);
           all.push_back(
               {*m, less->gone, factor, error, uncertainty, work,
                size_of(less->effect) + size_of(step) + size_of(rest_effect_)});
+          all.back().long_shot = long_shot;
           if (error + uncertainty <= advice_.tolerance) break;
         }
       }

@@ -13,11 +13,20 @@
 
 namespace lab {
 
+namespace {
+// What a step that solves takes, as measured on cloths of 36 to 1681 nodes by 1
+// to 3000 times Verlet's limit: iterations grow by this power of the step, till
+// Newton's iterations by sparse factors take less, of so many evaluations for
+// each node along a side.
+constexpr double more_iterations = 0.6, of_factor = 10;
+}  // namespace
+
 StepCosts::StepCosts(const Model& m) {
   Model first = m;
   first.step = {.dt = 1};
   const Scene scene(first);
   springs_ = double(scene.cloth().num_edges());
+  factor_ = of_factor * std::sqrt(double(scene.cloth().num_nodes()));
   verlet_ = scene.safe_limit(*find_method("verlet"));
   multirate_ = scene.safe_limit(*find_method("respa"));
   const CombinedConstraints constraint = constraint_of(m, scene.cloth());
@@ -26,17 +35,24 @@ StepCosts::StepCosts(const Model& m) {
   if (!split.empty()) inner_ = 2 / split.omega / inner_steps_at_limit;
 }
 
-double StepCosts::of_step(const MethodEntry& method, double dt) const {
+double StepCosts::of_step(const MethodEntry& method, double dt,
+                          double finer) const {
   const MethodInfo& info = method.info;
-  if (info.multirate) return springs_ + stiff_ * std::ceil(dt / inner_);
+  const double springs = springs_ * finer * finer;
+  if (info.multirate)
+    return springs + stiff_ * finer * finer * std::ceil(dt * finer / inner_);
   const auto cost =
       std::ranges::find(method_costs, info.name, &MethodCost::method);
   const bool solves = info.limit == no_limit || info.adaptive;
-  if (!solves || cost == method_costs.end()) return springs_ * info.sweeps;
-  if (!(cost->at_ten > 0)) return springs_ * cost->at_limit;
-  const double log_dt = std::clamp(std::log10(dt / verlet_), 0.0, 1.0);
-  return springs_ * cost->at_limit *
-         std::pow(cost->at_ten / cost->at_limit, log_dt);
+  if (!solves || cost == method_costs.end()) return springs * info.sweeps;
+  if (!(cost->at_ten > 0)) return springs * cost->at_limit;
+  const double limits = std::max(1.0, dt * finer / verlet_);
+  const double grows = cost->at_ten / cost->at_limit;
+  double by_step = cost->at_limit * std::pow(grows, std::log10(limits));
+  if (limits > 10)
+    by_step = cost->at_ten *
+              (grows > 1.1 ? std::pow(limits / 10, more_iterations) : 1);
+  return springs * std::min(by_step, factor_ * finer);
 }
 
 double StepCosts::step(const Model& m) const {
@@ -88,7 +104,7 @@ double measured_rate(const Model& m) {
 
 bool Pilots::affords(double work, double share) {
   const bool fits = work <= share * left();
-  if (!fits) cut_short_ = true;
+  if (!fits && !keeps()) cut_short_ = true;
   return fits;
 }
 

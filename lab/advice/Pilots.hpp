@@ -23,15 +23,16 @@ class StepCosts {
   /** Verlet's largest stable step [s]; that of a multirate method. */
   double verlet() const { return verlet_; }
   double multirate() const { return multirate_; }
-  /** A step of @a dt [s] by @a method. */
-  double of_step(const MethodEntry& method, double dt) const;
+  /** A step of @a dt [s] by @a method, there or on a grid of @a finer times the
+   * cells along each side. */
+  double of_step(const MethodEntry& method, double dt, double finer = 1) const;
   /** The step [s] of @a m there, and a whole run of @a m; no_limit if the step
    * isn't given and nothing is stable. */
   double step(const Model& m) const;
   double of_run(const Model& m) const;
 
  private:
-  double springs_ = 0, verlet_ = no_limit, multirate_ = no_limit;
+  double springs_ = 0, factor_ = 0, verlet_ = no_limit, multirate_ = no_limit;
   double stiff_ = 0, inner_ = no_limit;  // springs; their step [s]
 };
 
@@ -60,7 +61,10 @@ class Pilots {
 
   double budget() const { return budget_; }
   double spent() const { return spent_; }
-  double left() const { return budget_ - spent_; }
+  double left() const { return budget_ - spent_ - kept_; }
+  /** From now on keep @a work for later: what it leaves out is only put off. */
+  void keep(double work) { kept_ = work; }
+  bool keeps() const { return kept_ > 0; }
   /** Is a run of @a work within @a share of what is left? If not, the budget
    * has left something out from now on. */
   bool affords(double work, double share = 1);
@@ -79,7 +83,7 @@ class Pilots {
             const std::function<void(Scene&)>& after = nullptr);
 
  private:
-  double budget_, spent_ = 0;
+  double budget_, spent_ = 0, kept_ = 0;
   bool cut_short_ = false;
   std::string known_;
   std::map<std::string, Trial> done_;  // by scene file

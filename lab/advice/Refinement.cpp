@@ -7,18 +7,44 @@
 namespace lab {
 
 namespace {
-// Shares of an error, and of how far two limits are apart: by experience, see
+// Shares of an error, and of how far limits are apart: by experience, see
 // adviser_suite.cpp.
-constexpr double of_limit = 0.05, of_untried = 0.2, of_spread = 1.8;
+constexpr double of_limit = 0.2, of_untried = 0.2, of_spread = 1.5;
+
+/** What an error that goes by this order is on a grid of @a finer times the
+ * cells, as a share of it. */
+double shrinks(double order, double finer) { return std::pow(finer, -order); }
 }  // namespace
 
 void Refinement::add(const GridReport& next) {
   if (size() >= 3) limit_before_ = limit();
+  if (!has_half_way()) half_way_.clear();
   grids_.push_back(next);
-  if (size() >= 3) order_ = order();
-  for (GridReport& g : grids_)
-    g.error = size() == 2 ? std::numeric_limits<double>::infinity()
-                          : error(g.factor).size(measure_);
+  if (size() >= 3) order_ = order_of(grids_);
+  for (GridReport& g : grids_) estimate(g);
+  for (GridReport& g : half_way_) estimate(g);
+}
+
+void Refinement::add_half_way(const GridReport& next) {
+  half_way_.push_back(next);
+  estimate(half_way_.back());
+}
+
+void Refinement::estimate(GridReport& g) const {
+  g.error = size() == 2 ? std::numeric_limits<double>::infinity()
+                        : error(g.factor).size(measure_);
+}
+
+std::vector<GridReport> Refinement::tried() const {
+  std::vector<GridReport> all = grids_;
+  all.insert(all.end(), half_way_.begin(), half_way_.end());
+  std::ranges::sort(all, {}, &GridReport::factor);
+  return all;
+}
+
+bool Refinement::has_half_way() const {
+  return size() > 1 && !half_way_.empty() &&
+         half_way_.back().factor > grids_[size() - 2].factor;
 }
 
 double Refinement::step_to(std::size_t k) const {
@@ -33,51 +59,66 @@ bool Refinement::settles() const {
 Effect Refinement::error(double factor) const {
   Effect all(answer(size() - 1).size());
   if (size() < 2) return all;
-  const GridReport &last = back(), &before = grids_[size() - 2];
-  all.add(1 / (std::pow(2, order_) - 1),
-          Effect(before.trial.answer, last.trial.answer).by);
-  for (const GridReport& g : grids_)
-    if (g.factor == factor)
-      return all.add(1, Effect(g.trial.answer, last.trial.answer).by);
+  const Answer &last = back().trial.answer, &before = answer(size() - 2);
+  const double next = shrinks(order_, 2);
+  all.add(next / (1 - next), Effect(before, last).by);
+  for (const auto* grids : {&grids_, &half_way_})
+    for (const GridReport& g : *grids)
+      if (g.factor == factor)
+        return all.add(1, Effect(g.trial.answer, last).by);
   return Effect(all.by.size())
-      .add(std::pow(last.factor / factor, order_), all.by);
+      .add(shrinks(order_, factor / back().factor), all.by);
 }
 
 Answer Refinement::limit() const {
   return Effect(back().trial.answer, error(back().factor).by).by;
 }
 
-/** What the error a h + b h^2 of mesh width h makes the limit of three grids:
- * Romberg's extrapolation.
- * @pre k is at least 2, and a grid */
-Answer Refinement::limit_by_powers(std::size_t k) const {
-  const Answer &a = answer(k - 2), &b = answer(k - 1), &c = answer(k);
-  return Effect(a.size()).add(1 / 3., a).add(-2, b).add(8 / 3., c).by;
+/** Of two grids by the order of the others. */
+Answer Refinement::limit_half_way() const {
+  const Answer &last = half_way_.back().trial.answer,
+               &before = half_way_[half_way_.size() - 2].trial.answer;
+  const double next =
+      shrinks(half_way_.size() > 2 ? order_of(half_way_) : order_, 2);
+  return Effect(last, Effect(before.size())
+                          .add(next / (1 - next), Effect(before, last).by)
+                          .by)
+      .by;
 }
 
 double Refinement::uncertainty_of_limit() const {
   const std::size_t n = size();
   if (n < 3) return 0;
-  const double by_law = distance(limit(), limit_by_powers(n - 1), measure_);
-  // The order of three grids fits them by choice; that of four has to. Limits
-  // come nearer to each other, too, if five grids tell so.
-  const double by_grids =
-      n > 3 ? distance(limit(), limit_before_, measure_) / (n > 4 ? 2 : 1)
-            : back().error / 4;
-  return of_limit * back().error + of_spread * std::max(by_law, by_grids);
+  // The order of three grids fits them by choice; that of four has to.
+  const double last = back().error, own = n > 3 ? of_limit * last : last;
+  double other = n > 3 ? 2 * distance(limit(), limit_before_, measure_) : last;
+  if (has_half_way() && half_way_.size() > 1) {
+    const GridReport& g = half_way_.back();
+    Effect surprise = error(g.factor);
+    surprise.add(-shrinks(order_, g.factor / back().factor),
+                 error(back().factor).by);
+    other =
+        distance(limit(), limit_half_way(), measure_) + surprise.size(measure_);
+  }
+  return of_spread * (own + other);
 }
 
 double Refinement::uncertainty(double factor) const {
-  const bool tried = std::ranges::count(grids_, factor, &GridReport::factor);
+  const bool known =
+      std::ranges::count(grids_, factor, &GridReport::factor) > 0 ||
+      std::ranges::count(half_way_, factor, &GridReport::factor) > 0;
   return uncertainty_of_limit() +
-         (tried ? 0 : of_untried * error(factor).size(measure_));
+         (known ? 0 : of_untried * error(factor).size(measure_));
 }
 
 /** The observed order, clamped to [0.8, 2]: below, extrapolation is
- * meaningless; above, no scheme here converges. */
-double Refinement::order() const {
-  const double d = step_to(size() - 2), e = step_to(size() - 1);
-  return std::clamp(e > 0 ? std::log2(d / e) : 2.0, 0.8, 2.0);
+ * meaningless; above, no scheme here converges.  @pre three grids */
+double Refinement::order_of(const std::vector<GridReport>& grids) const {
+  auto step = [&](std::size_t k) {
+    return distance(grids[grids.size() - k].trial.answer,
+                    grids[grids.size() - k - 1].trial.answer, measure_);
+  };
+  return std::clamp(step(1) > 0 ? std::log2(step(2) / step(1)) : 2.0, 0.8, 2.0);
 }
 
 }  // namespace lab

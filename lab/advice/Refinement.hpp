@@ -37,8 +37,13 @@ struct GridReport {
 /** A scene on grids, each of twice as many cells along each side as the one
  * before, by steps that go down with the grid. From three grids on, the
  * observed order of convergence tells their limit: Richardson's extrapolation.
- * Source: P. J. Roache, Verification and Validation in Computational Science
- * and Engineering, 1998, chapter 5. */
+ * Grids half-way between these, of sqrt(2) times the cells, tell how far that
+ * can be trusted: answers of grids scatter, as edges and contacts meet other
+ * nodes on each. Sources: P. J. Roache, Verification and Validation in
+ * Computational Science and Engineering, 1998, chapter 5; L. Eca, M. Hoekstra,
+ * A procedure for the estimation of the numerical uncertainty of CFD
+ * calculations based on grid refinement studies, J. Comput. Phys. 262, 2014:
+ * scatter is a part of the uncertainty. */
 class Refinement {
  public:
   explicit Refinement(Measure measure = Measure::com) : measure_(measure) {}
@@ -46,13 +51,15 @@ class Refinement {
   /** Add the next grid, and estimate the errors of all anew. One grid alone has
    * error 0: that of a mesh from files is not known. */
   void add(const GridReport& next);
-  void clear() { grids_.clear(); }
+  /** Add a grid half-way between the last two.  @pre there are two */
+  void add_half_way(const GridReport& next);
+  void clear() { grids_.clear(), half_way_.clear(); }
   std::size_t size() const { return grids_.size(); }
   bool empty() const { return grids_.empty(); }
   const GridReport& operator[](std::size_t k) const { return grids_[k]; }
   const GridReport& back() const { return grids_.back(); }
-  auto begin() const { return grids_.begin(); }
-  auto end() const { return grids_.end(); }
+  /** All that were tried, the coarsest first, those half-way among them. */
+  std::vector<GridReport> tried() const;
 
   /** How far apart the answers of grids k-1 and k are. */
   double step_to(std::size_t k) const;
@@ -64,8 +71,10 @@ class Refinement {
   Effect error(double factor) const;
   /** The limit of the answers.  @pre as for error() */
   Answer limit() const;
-  /** How far that may be from the truth: by how far apart limits are that
-   * another law of the error gives, and the grids without the last one. */
+  /** How far that may be from the truth: by how far apart it and the limit of
+   * the grids half-way are, and how far the last of these is from where the
+   * observed order puts it; without such grids, by what the last one changed.
+   */
   double uncertainty_of_limit() const;
   /** How much larger than its size the error of the grid of @a factor may be.
    */
@@ -73,13 +82,16 @@ class Refinement {
 
  private:
   Measure measure_;
-  std::vector<GridReport> grids_;
+  std::vector<GridReport> grids_, half_way_;  // the latter without a gap
   double order_ = 1;
   Answer limit_before_;  // of all grids but the last, if these are 3
 
   const Answer& answer(std::size_t k) const { return grids_[k].trial.answer; }
-  double order() const;
-  Answer limit_by_powers(std::size_t k) const;
+  void estimate(GridReport& g) const;
+  double order_of(const std::vector<GridReport>& grids) const;
+  /** True if there is one between the last two. */
+  bool has_half_way() const;
+  Answer limit_half_way() const;
 };
 
 }  // namespace lab

@@ -3,10 +3,13 @@
  * the true error of what was advised, and with the best choice in hindsight.
  *
  *   build/adviser_suite --scenes 100 --out lab/advice/results/adviser.csv
+ *   build/adviser_suite --scenes 40 --price --out lab/advice/results/price.csv
  *
  * Truth is a converged reference: grids of up to 4 times as many cells as the
  * advised one, and at least 80, by srkn6b, and what they tend to. Cost is
- * counted: spring evaluations. Exit status: 0 done; 1 less is right than was
+ * counted: spring evaluations. With --price the scenes are refined until a run
+ * takes more than two seconds: what advice takes of the time of that run, by a
+ * budget as ./cloth gives it. Exit status: 0 done; 1 less is right than was
  * wanted; 2 an option that can't be used, or an output that can't be written.
  */
 #include <algorithm>
@@ -276,6 +279,43 @@ Row look_at(const Model& scene) {
   return row;
 }
 
+/** @a scene on a grid of so many times the cells that it takes at least
+ * @a work to run it. */
+Model long_run(Model scene, double work) {
+  const Model first = scene;
+  for (double finer = 2; work_of_run(scene) < work; finer *= std::sqrt(2.))
+    scene = refined(first, finer);
+  return scene;
+}
+
+/** What advice takes where a run takes more than two seconds. */
+int look_at_prices(unsigned first, unsigned scenes, std::ostream& csv) {
+  constexpr double two_seconds = 2;
+  csv << "scene,nodes,run work,run [s],advice work,advice [s],refusal\n";
+  std::vector<double> shares;
+  for (unsigned k = first; k < first + scenes; ++k) {
+    const Model start = random_scene(k);
+    const double rate = measured_rate(start);
+    Model m = long_run(start, 1.5 * two_seconds * rate);
+    const CME212::Clock clock;
+    const Trial t = try_out(m);
+    const double run = clock.seconds();
+    const Advice a = advise(m, rules_of(m, 0));
+    if (!t.ok() || run < two_seconds) continue;
+    csv << k << ',' << mesh_of(m).points.size() << ',' << work_of_run(m) << ','
+        << run << ',' << a.spent_work << ',' << a.spent << ",\"" << a.refusal
+        << "\"\n";
+    shares.push_back(a.spent / run);
+  }
+  std::ranges::sort(shares);
+  if (shares.empty()) return 1;
+  const double median = shares[shares.size() / 2];
+  std::cout << shares.size() << " runs of more than 2 s: advice takes "
+            << CME212::two_digits(median) << " of their time in the median, "
+            << CME212::two_digits(shares.back()) << " at most\n";
+  return median > 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -284,6 +324,8 @@ int main(int argc, char** argv) {
   unsigned scenes = 100, first = 1;
   double want_met = 0, want_cheap = 0;
   std::string out;
+  bool price = false;
+  app.add_flag("--price", price, "what advice takes where a run takes long");
   app.add_option("--scenes", scenes, "how many")->capture_default_str();
   app.add_option("--first", first, "number of the first one")
       ->capture_default_str();
@@ -298,6 +340,11 @@ int main(int argc, char** argv) {
   try {
     Sweep::set_threads(1);
     CME212::OutputFile file(out);
+    if (price) {
+      const int status = look_at_prices(first, scenes, file.stream());
+      file.commit();
+      return status;
+    }
     file.stream() << "scene,measure,tolerance,method,predicted,doubt,real,work,"
                      "best work,"
                      "lucky work,advice [s],run [s],half step,twice the "

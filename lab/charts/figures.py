@@ -158,6 +158,14 @@ def advice(which):
             }[which]
 
 
+def price(which):
+    """Of advice where a run takes more than 2 s, in times of that run."""
+    rows = table("advice/results/price.csv").rows
+    shares = sorted(float(r["advice"]) / float(r["run"]) for r in rows)
+    return {"runs": len(rows), "median": shares[len(shares) // 2],
+            "most": shares[-1]}[which]
+
+
 def share(which):
     """The same in percent of the scenes that got advice."""
     return 100 * advice(which) / advice("advised")

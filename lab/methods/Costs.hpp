@@ -13,24 +13,24 @@ struct MethodCost {
   double at_limit;  ///< at 0.99 of Verlet's stability limit
   double at_ten;    ///< at 10 times the limit; 0: not for this method
 };
-// AMD EPYC, g++ (Debian 12.2.0-14+deb12u1) 12.2.0, commit 2067fce
+// AMD EPYC, g++ (Debian 12.2.0-14+deb12u1) 12.2.0, commit e9b2404-dirty
 inline constexpr auto method_costs = std::to_array<MethodCost>({
-    {"forward-euler", 1.08, 0},        //
-    {"symplectic-euler", 0.747, 0},    //
+    {"forward-euler", 1.2, 0},         //
+    {"symplectic-euler", 0.908, 0},    //
     {"verlet", 1, 0},                  //
-    {"respa", 0.994, 0},               //
-    {"yoshida4", 2.89, 0},             //
-    {"pefrl", 3.97, 0},                //
-    {"srkn6b", 5.81, 0},               //
-    {"srkn11b", 10.4, 0},              //
-    {"rk4", 5, 0},                     //
-    {"dormand-prince", 9.41, 0},       //
-    {"dop853", 24.4, 0},               //
-    {"implicit-euler", 42.9, 251},     //
-    {"implicit-midpoint", 68.3, 233},  //
-    {"tr-bdf2", 60.5, 124},            //
-    {"augmented-verlet", 3.05, 3.07},  //
-    {"xpbd", 62, 61.3},                //
+    {"respa", 1.05, 0},                //
+    {"yoshida4", 2.59, 0},             //
+    {"pefrl", 3.41, 0},                //
+    {"srkn6b", 4.87, 0},               //
+    {"srkn11b", 8.98, 0},              //
+    {"rk4", 3.91, 0},                  //
+    {"dormand-prince", 8.04, 0},       //
+    {"dop853", 16.1, 0},               //
+    {"implicit-euler", 50.3, 269},     //
+    {"implicit-midpoint", 85.5, 271},  //
+    {"tr-bdf2", 79.2, 150},            //
+    {"augmented-verlet", 4.69, 4.68},  //
+    {"xpbd", 65.1, 65.3},              //
 });
 
 }  // namespace lab
