@@ -101,7 +101,8 @@ bool Adviser::find_grid() {
       // Below three grids nothing is known; then half is for a second look.
       if (!pilots_.affords(pilot_work(factor), grids.empty()      ? 1
                                                : grids.size() < 3 ? 0.8
-                                                                  : most_left))
+                                               : found_           ? most_left
+                                                        : most_for_any))
         return refuse(too_dear(pilot_work(factor)));
       const Model m = pilot(on, factor);
       t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all));

@@ -23,7 +23,7 @@ struct AdviceRules {
   /** What is foreseen between coarse grids is often wrong: choices of up to so
    * many times the tolerance are run, too, if that takes at most this share of
    * the budget that is left. */
-  double hope = 4, long_shots = 5e-4;
+  double hope = 8, long_shots = 5e-4;
   /** What all pilots may take, in spring evaluations, so that advice is the
    * same on every machine; 0: the larger of 2e8, about 2 s, and a run of the
    * scene as it stands. */

@@ -21,9 +21,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
  * give the same: a few runs don't show the largest of all. */
 constexpr double scatter_share = 1.5;
 
-/** A finer grid takes at most this share of the budget that is left: the one
- * half-way to it takes a third of that, and what is found is tried. */
-constexpr double most_left = 0.6;
+/** A finer grid takes at most this share of the budget that is left, and this
+ * one as long as nothing is found: the one half-way to it takes a third of
+ * that, and what is found is tried. */
+constexpr double most_left = 0.6, most_for_any = 0.73;
 
 /** What is uncertain of the error of a run, at least, as a share of it. */
 constexpr double of_itself = 0.06;

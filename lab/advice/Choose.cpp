@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "CME212/Util.hpp"
@@ -215,9 +216,11 @@ void Adviser::choose() {
   }
   const double counted = rules_.counted * unsure;
   int runs = 0;
-  std::map<double, double> of_grid;  // by factor: the grid's error, at least
+  // By factor: the grid's error, at least. Of a long shot less is foreseen.
+  std::map<std::pair<double, bool>, double> of_grid;
   for (Choice& c : choices()) {
-    if (of_grid[c.factor] - c.effects > advice_.tolerance) continue;
+    double& least = of_grid[{c.factor, c.long_shot}];
+    if (least - c.effects > advice_.tolerance) continue;
     if (c.long_shot && c.work > rules_.long_shots * pilots_.left()) continue;
     if (!c.long_shot && !pilots_.affords(c.work, 0.5)) {
       if (!pilots_.keeps() && c.error + c.uncertainty <= advice_.tolerance &&
@@ -234,7 +237,6 @@ void Adviser::choose() {
     c.error = off(c.model, c.work, nodes, t);
     c.uncertainty = std::max(unsure, of_itself * c.error);
     c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
-    double& least = of_grid[c.factor];
     if (t.ok()) least = std::max(least, c.error + counted - c.effects);
     if (!(c.error + counted <= advice_.tolerance)) continue;
     Model smaller = c.model;
