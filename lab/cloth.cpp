@@ -196,7 +196,11 @@ int take_advice(Options& o) {
   rules.tell = [&](const std::string& doing, double done) {
     if (progress.due()) progress.show(doing, done);
   };
+  // The budget counts on one thread; a team that other programs keep waiting
+  // takes many times as long.
+  Sweep::set_threads(std::max(1, o.threads));
   const Advice advice = advise(o.model, rules);
+  Sweep::set_threads(o.threads);
   progress.end();
   if (!o.quiet) std::cout << in_words(advice);
   if (!advice.refusal.empty()) {

@@ -294,8 +294,9 @@ std::vector<Adviser::Choice> Adviser::choices() const {
     for (auto less = less_.rbegin(); less != less_.rend(); ++less)
       for (const Step& s : steps_) {
         if (std::size_t(less_.rend() - less) - 1 < s.less) continue;
+        if (!s.works[1]) continue;
         for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
-          if (!s.works[share == 1 ? 0 : 1]) continue;
+          if (share == 1 && !s.works[0]) continue;
           // Below its second step it goes as its order says, if at all.
           if (share < 0.49 && s.uncertainty == 1) break;
           const Effect step = of_step(s, share, finer);
