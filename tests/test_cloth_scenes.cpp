@@ -216,7 +216,7 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
   EXPECT_EQ(run(scene + "--advise --advise-budget -1").status, 2);
   // A budget that allows nothing: said at once.
   r = run(scene + "--advise --advise-budget 1e-9");
-  EXPECT_EQ(r.out.find("no advice: the budget ended after 0 grids"), 0u)
+  EXPECT_EQ(r.out.find("no advice: the budget ended before the first grid"), 0u)
       << r.out;
   r = run(scene + "--tear-strain 1 --measure positions --advise");
   EXPECT_EQ(r.status, 2);

@@ -106,7 +106,13 @@ std::string recommendation(const Advice& a) {
                      " +- " + with_unit(a.uncertainty, a.measure) +
                      " (asked: " + with_unit(a.tolerance, a.measure) + ")\n";
   text += "  ./cloth " + as_options(a.model) + '\n';
-  if (!gone.empty()) text += "  not needed: " + gone + '\n';
+  if (!a.answer.empty() && a.answer.size() <= 3) {
+    text += "  " + std::string(name_of(a.measure)) + " by this run:";
+    for (double x : a.answer) text += ' ' + short_text(x);
+    text += *unit_of(a.measure) ? std::string(" ") + unit_of(a.measure) : "";
+    text += '\n';
+  }
+  if (!gone.empty()) text += "  not needed for that: " + gone + '\n';
   if (a.model.t_end < a.t_end)
     text += "  it ends at " + number(a.model.t_end) + " s of " +
             number(a.t_end) + " s: from then on " + name_of(a.measure) +
@@ -117,17 +123,20 @@ std::string recommendation(const Advice& a) {
     text += "  not run: foreseen from coarser grids, " + std::to_string(from) +
             " nodes and up\n";
   auto finer = [&](const std::optional<double>& error, const char* what) {
-    return std::string(what) +
-           (error ? " the error is " + with_unit(*error, a.measure)
-                  : " it was not run");
+    return (error ? with_unit(*error, a.measure) : std::string("not run")) +
+           what;
   };
   if (a.checked)
-    text += "  checked: " + finer(a.robustness.half_step, "by half the step") +
+    text += "  checked: error " +
+            finer(a.robustness.half_step, " by half the step") +
             (a.model.sheets.empty()
-                 ? "; the error of the mesh itself is not known"
-                 : finer(a.robustness.finer_grid,
-                         ", and with twice the cells along each side")) +
+                 ? "; that of the mesh itself is not known"
+                 : ", " + finer(a.robustness.finer_grid,
+                                " on twice the cells along each side")) +
             '\n';
+  if (a.of_stable > 0)
+    text += "  dt is " + CME212::two_digits(a.of_stable) +
+            " of the largest stable step\n";
   const auto misses = [&](const std::optional<double>& error) {
     return error && !(*error <= a.tolerance);
   };
@@ -174,16 +183,19 @@ std::string in_words(const Advice& a) {
       *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
   std::string text =
       a.refusal.empty() ? recommendation(a) : "no advice: " + a.refusal + '\n';
-  if (a.cut_short && a.refusal.empty())
-    text +=
-        "  the budget ended: what was not tried is kept as it was; more "
-        "may be known by a larger --advise-budget\n";
+  if (!a.left_out.empty() && a.refusal.empty()) {
+    text += "  left out by the budget: ";
+    for (const std::string& what : a.left_out)
+      text += (&what == &a.left_out[0] ? "" : ", ") + what;
+    text += "; --advise-budget " + count(std::ceil(4 * a.budget / a.rate)) +
+            " tries more\n";
+  }
   if (!a.parts.empty()) {
-    Column part{"part", {}},
+    Column part{"part, on " + std::to_string(a.tried_on) + " nodes", {}},
         effect{"change of " + std::string(name_of(a.measure)) + " without it" +
                    unit,
                {}},
-        springs{"springs saved", {}}, step{"longer step", {}}, kept{"", {}};
+        springs{"springs saved", {}}, step{"step can grow", {}}, kept{"", {}};
     for (const PartReport& p : a.parts) {
       part.cells.push_back(p.part);
       effect.cells.push_back(p.tried ? number(p.change) : "not tried");
@@ -191,21 +203,38 @@ std::string in_words(const Advice& a) {
       step.cells.push_back(p.step > 1.01 ? number(p.step) + " times" : "");
       kept.cells.push_back(p.needed ? "kept" : "dropped");
     }
-    text += table({part, effect, springs, step, kept});
+    std::vector<Column> all = {part, effect, springs, step};
+    if (a.refusal.empty()) all.push_back(kept);
+    text += table(all);
   }
   if (a.grids.size() > 0) {
-    Column nodes{"nodes", {}}, error{"error of the grid" + unit, {}},
-        evaluations{"force evaluations", {}}, time{"time [s]", {}};
+    Column nodes{"grid of nodes", {}}, error{"estimated error" + unit, {}},
+        evaluations{"force evaluations", {}}, time{"time [s]", {}},
+        which{"", {}};
+    auto row = [&](std::size_t n, const std::string& off, double work,
+                   double seconds, const char* what) {
+      nodes.cells.push_back(std::to_string(n));
+      error.cells.push_back(off);
+      evaluations.cells.push_back(count(work));
+      time.cells.push_back(seconds > 0 ? number(seconds) : "not run");
+      which.cells.push_back(what);
+    };
+    auto advised = [&] {
+      row(mesh_of(a.model).points.size(), number(a.error), a.evaluations,
+          a.seconds, "advised");
+    };
+    bool told = !a.refusal.empty();
     for (const GridReport& g : a.grids.tried()) {
-      nodes.cells.push_back(std::to_string(g.nodes));
-      error.cells.push_back(a.grids.size() < 3 ? "not known" : number(g.error));
-      evaluations.cells.push_back(count(g.evaluations));
-      time.cells.push_back(number(g.trial.seconds));
+      if (!told && g.nodes >= mesh_of(a.model).points.size())
+        advised(), told = true;
+      row(g.nodes, a.grids.size() < 3 ? "not known" : number(g.error),
+          g.evaluations, g.trial.seconds, "");
     }
-    text += table({nodes, error, evaluations, time});
+    if (!told) advised();
+    text += table({nodes, error, evaluations, time, which});
   }
   if (!a.steps.empty()) {
-    Column method{"method on " + std::to_string(a.tried_on) + " nodes", {}},
+    Column method{"method, on " + std::to_string(a.tried_on) + " nodes", {}},
         dt{"dt [s]", {}}, error{"error of the step" + unit, {}},
         evaluations{"force evaluations", {}}, time{"time [s]", {}};
     for (const StepReport& s : a.steps) {
@@ -219,22 +248,26 @@ std::string in_words(const Advice& a) {
   }
   if (a.perturbed > 0)
     text += "\n" + std::to_string(a.perturbed) +
-            " runs that should give the same (starts 1e-6 m off, or a slightly "
-            "shorter step) differ by up to " +
+            (a.perturbed > 1 ? " runs" : " run") +
+            " that should give the same (start 1e-6 m off, or a slightly "
+            "shorter step): differ by up to " +
             with_unit(a.scatter, a.measure) + '\n';
   if (a.floats && 10 * *a.floats <= a.tolerance / 10)
-    text += "single precision would do: it changes the answer by " +
+    text += "single precision would do, it changes the answer by " +
             with_unit(*a.floats, a.measure) +
-            "; make cloth REAL=float saves half of the memory, and of a cloth "
-            "of 10000 nodes half of the time\n";
+            ": make cloth REAL=float halves the memory, and at 10000 nodes "
+            "the time\n";
   if (a.refusal.empty()) {
     if (const std::string acts = by_default(a.model); !acts.empty())
       text += "acts without being named: " + acts + '\n';
-    text += "the advised run takes " + count(a.work) + " spring evaluations" +
-            (a.seconds > 0 ? ", " + number(a.seconds) + " s" : "") + "; ";
+    text += "the advised run takes " +
+            (a.seconds > 0 ? number(a.seconds) + " s, " : "") +
+            CME212::two_digits(a.work) + " spring evaluations; ";
   }
-  return text + "finding out took " + count(a.spent_work) + " of a budget of " +
-         count(a.budget) + ", " + number(a.spent) + " s\n";
+  return text + "finding out took " + number(a.spent) + " s, " +
+         CME212::two_digits(a.spent_work) +
+         " spring evaluations of a budget of " + CME212::two_digits(a.budget) +
+         '\n';
 }
 
 }  // namespace lab

@@ -42,20 +42,24 @@ struct Advice {
   std::vector<PartReport> parts;
   std::size_t tried_on = 0;  ///< nodes of the grid of parts and steps
   std::vector<StepReport> steps;
-  double scatter = 0;      ///< of the answer, in runs that should be the same
-  int perturbed = 0;       ///< how many of these there were
-  std::string refusal;     ///< why there is no advice; empty: there is
-  Model model;             ///< the cheapest that was found
-  bool checked = false;    ///< it was run; else what it gives is predicted
-  bool cut_short = false;  ///< the budget left something out
-  double error = 0;        ///< in the unit of the measure
-  double uncertainty = 0;  ///< the error is at most that much larger
+  double scatter = 0;    ///< of the answer, in runs that should be the same
+  int perturbed = 0;     ///< how many of these there were
+  std::string refusal;   ///< why there is no advice; empty: there is
+  Model model;           ///< the cheapest that was found
+  bool checked = false;  ///< it was run; else what it gives is predicted
+  Answer answer;         ///< of that run
+  std::vector<std::string> left_out;  ///< by the budget
+  double error = 0;                   ///< in the unit of the measure
+  double uncertainty = 0;             ///< the error is at most that much larger
   Robustness robustness;
   double t_end = 0;  ///< [s], of the question; the run may end earlier, at rest
   /** What it changes to keep positions and velocities in single precision. */
   std::optional<double> floats;
   double work = 0, seconds = 0;  ///< of the advised run: spring evaluations,
                                  ///< and of this machine
+  double evaluations = 0;        ///< of all its forces
+  double of_stable = 0;  ///< its step, in largest stable ones; 0: any is
+  double rate = 0;       ///< spring evaluations a second
   double spent = 0, spent_work = 0, budget = 0;  ///< by the pilots: [s], spring
                                                  ///< evaluations, of these
 };

@@ -49,7 +49,7 @@ Advice Adviser::find() {
     try_floats(*found_);
     take(*found_);
   }
-  advice_.cut_short = pilots_.cut_short();
+  advice_.left_out = pilots_.left_out(), advice_.rate = rules_.rate;
   advice_.spent_work = pilots_.spent(), advice_.budget = pilots_.budget();
   advice_.spent = clock.seconds();
   return advice_;
@@ -99,10 +99,11 @@ bool Adviser::find_grid() {
     try {
       if (!method_) choose_pilots(on);
       // Below three grids nothing is known; then half is for a second look.
-      if (!pilots_.affords(pilot_work(factor), grids.empty()      ? 1
-                                               : grids.size() < 3 ? 0.8
-                                               : found_           ? most_left
-                                                        : most_for_any))
+      if (!pilots_.affords(pilot_work(factor), "a finer grid",
+                           grids.empty()      ? 1
+                           : grids.size() < 3 ? 0.8
+                           : found_           ? most_left
+                                              : most_for_any))
         return refuse(too_dear(pilot_work(factor)));
       const Model m = pilot(on, factor);
       t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all));
@@ -140,7 +141,7 @@ void Adviser::try_half_way() {
   const Model on = on_grid(factor);
   const double work = pilot_work(factor);
   const std::size_t nodes = nodes_of(on);
-  if (!pilots_.affords(work)) return;
+  if (!pilots_.affords(work, "a grid half-way")) return;
   // One that misses a pin tells nothing.
   const Trial t = pilots_.run(
       pilot(on, factor), "grid of " + std::to_string(nodes) + " nodes", work);
@@ -184,22 +185,23 @@ bool Adviser::may_suffice() const {
 
 std::string Adviser::so_far() const {
   const GridReport& last = advice_.grids.back();
-  return std::string(name_of(advice_.measure)) + " of " +
+  return "the error of " + std::string(name_of(advice_.measure)) + " on " +
          std::to_string(last.nodes) + " nodes is " +
          with_unit(last.error, advice_.measure) + " +- " +
          with_unit(advice_.grids.uncertainty_of_limit(), advice_.measure) +
-         " off";
+         " (asked: " + with_unit(advice_.tolerance, advice_.measure) + ')';
 }
 
 std::string Adviser::too_dear(double work) const {
-  const std::size_t n = advice_.grids.size();
-  return "the budget ended after " + std::to_string(n) +
-         (n == 1 ? " grid" : " grids") + ", of which " +
-         (n < 3 ? "no error can be told" : so_far()) +
-         "; --advise-budget with " +
-         CME212::two_digits(3 * work / pilots_.budget()) +
-         " times as many seconds goes on" +
-         (n < 3 ? "" : converging_slowly(scene_));
+  const auto& grids = advice_.grids;
+  return "the budget ended" +
+         (grids.empty()      ? std::string(" before the first grid")
+          : grids.size() < 3 ? " after " + std::to_string(grids.size()) +
+                                   " grids, which tell no error"
+                             : ": " + so_far()) +
+         "; --advise-budget " +
+         CME212::two_digits(std::ceil(3 * work / rules_.rate)) + " goes on" +
+         (grids.size() < 3 ? "" : converging_slowly(scene_));
 }
 
 std::string Adviser::unsettled() const {
@@ -219,14 +221,11 @@ std::string Adviser::too_unsure() const {
 }
 
 std::string Adviser::too_coarse(std::size_t nodes) const {
-  const auto& grids = advice_.grids;
-  std::string why = "a grid of " + std::to_string(nodes) +
-                    " nodes would be too much, and the error of the one "
-                    "before is ";
-  if (grids.size() < 3) return why + "not known";
-  return why + with_unit(grids.back().error, advice_.measure) + " +- " +
-         with_unit(grids.uncertainty_of_limit(), advice_.measure) +
-         converging_slowly(scene_);
+  const std::string why =
+      "a grid of " + std::to_string(nodes) + " nodes would be too much";
+  return advice_.grids.size() < 3
+             ? why + ", and the error of the one before is not known"
+             : why + ": " + so_far() + converging_slowly(scene_);
 }
 
 std::function<void(const Cloth&)> Adviser::all_answers(
@@ -244,7 +243,7 @@ bool Adviser::look_for_chaos() {
   std::vector<Answer> shaken;
   const double factor = advice_.grids.back().factor;
   const Model m = pilot(on_grid(factor), factor);
-  if (pilots_.affords(pilot_work(factor))) {
+  if (pilots_.affords(pilot_work(factor), "starts slightly off")) {
     const Trial t = pilots_.run(m, "a start that is off", pilot_work(factor),
                                 {rules_.shake}, all_answers(m, shaken));
     if (!t.ok()) return refuse(t.failure);
@@ -268,7 +267,7 @@ bool Adviser::look_for_chaos() {
 
 void Adviser::perturb(Choice& c) {
   auto look = [&](const Model& m, const Shake& shake, const Answer& expected) {
-    if (!pilots_.affords(c.work)) return;
+    if (!pilots_.affords(c.work, "starts slightly off")) return;
     const Trial t = pilots_.run(m, "the advised run once more, slightly off",
                                 c.work, shake);
     if (!t.ok()) return;
@@ -290,7 +289,8 @@ void Adviser::perturb(Choice& c) {
 }
 
 void Adviser::try_floats(const Choice& c) {
-  if (std::is_same_v<Real, float> || !c.checked || !pilots_.affords(c.work))
+  if (std::is_same_v<Real, float> || !c.checked ||
+      !pilots_.affords(c.work, "single precision"))
     return;
   auto round = [](Point& p) { p = Point(float(p.x), float(p.y), float(p.z)); };
   const Trial t =
@@ -348,7 +348,12 @@ void Adviser::take(const Choice& c) {
   advice_.error = c.error;
   advice_.uncertainty = c.uncertainty + scatter_share * advice_.scatter;
   advice_.robustness = c.robustness;
+  advice_.answer = c.answer;
   advice_.work = c.work, advice_.seconds = c.seconds;
+  advice_.evaluations = c.work / std::max(1.0, springs_of(c.model));
+  if (const double limit = StepCosts(c.model).limit(c.model.method->info);
+      limit != no_limit)
+    advice_.of_stable = c.model.step.dt / limit;
   advice_.t_end = scene_.t_end;
   auto gone = c.gone;  // each of them once, if two parts are alike
   for (PartReport& p : advice_.parts) {

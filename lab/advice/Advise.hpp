@@ -28,6 +28,7 @@ struct AdviceRules {
    * same on every machine; 0: the larger of 2e8, about 2 s, and a run of the
    * scene as it stands. */
   double budget = 0;
+  double rate = 1e8;  ///< spring evaluations a second: budgets in words
   /** Called often, with what is done and what is known. */
   Pilots::Tell tell = [](const std::string&, double) {};
   double most_uncertainty = 0.2;  ///< of the tolerance, in the limit of all

@@ -28,7 +28,7 @@ void Adviser::find_parts() {
     PartReport r{v.part, infinite, springs - springs_of(v.model)};
     if (const double limit = StepCosts(v.model).verlet(); limit < no_limit)
       r.step = limit / costs_->verlet();
-    r.tried = pilots_.affords(work, 0.1);
+    r.tried = pilots_.affords(work, "parts", 0.1);
     if (r.tried)
       if (const Trial t = pilots_.run(v.model, "without " + v.part, work);
           t.ok())
@@ -48,7 +48,7 @@ void Adviser::find_parts() {
     std::vector<std::string> gone = less_.back().gone;
     gone.push_back(part.part);
     const std::optional<Model> without = without_all(all, gone);
-    if (!without || !pilots_.affords(work, 0.2)) continue;
+    if (!without || !pilots_.affords(work, "parts together", 0.2)) continue;
     const Trial t = pilots_.run(*without, "without " + part.part, work);
     if (!t.ok()) continue;
     const Effect effect(t.answer, pilot.answer);
@@ -69,7 +69,8 @@ void Adviser::find_rest() {
   constexpr int looks = 64;  // at the answer, in equal times
   rest_ = scene_.t_end, rest_effect_ = Effect(base().trial.answer.size());
   const double work = pilot_work(base().factor);
-  if (!dissipates(scene_) || !pilots_.affords(work, 0.1)) return;
+  if (!dissipates(scene_) || !pilots_.affords(work, "an earlier end", 0.1))
+    return;
   const Model m = pilot(on_grid(base().factor), base().factor);
   std::vector<std::pair<double, Answer>> seen;
   const Trial t = pilots_.run(
@@ -144,9 +145,9 @@ bool Adviser::try_methods(const Model& on, const StepCosts& costs,
   const char* own = method_->method->info.name;
   const char* fine = "srkn6b";
   double small = 0.55 * verlet;
-  if (!pilots_.affords(attempt(fine, small).second, 0.3))
+  if (!pilots_.affords(attempt(fine, small).second, fine, 0.3))
     fine = own, small = base().trial.dt / 4;
-  if (!pilots_.affords(attempt(fine, small).second))
+  if (!pilots_.affords(attempt(fine, small).second, fine))
     return refuse(too_dear(attempt(fine, small).second));
   const Trial exact = run(fine, small);
   if (!exact.ok()) return refuse(exact.failure);
@@ -163,7 +164,7 @@ bool Adviser::try_methods(const Model& on, const StepCosts& costs,
         ((less == 0 && std::string_view(t.method) == own) ||
          !(work <= (method->info.limit == no_limit ? finest : 1) * 4 * least) ||
          (method->info.multirate && t.dt < verlet) ||
-         !pilots_.affords(3 * work, 0.15)))
+         !pilots_.affords(3 * work, t.method, 0.15)))
       continue;
     least = std::min(least, work);
     Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1, less};
@@ -222,7 +223,7 @@ void Adviser::choose() {
     double& least = of_grid[{c.factor, c.long_shot}];
     if (least - c.effects > advice_.tolerance) continue;
     if (c.long_shot && c.work > rules_.long_shots * pilots_.left()) continue;
-    if (!c.long_shot && !pilots_.affords(c.work, 0.5)) {
+    if (!c.long_shot && !pilots_.affords(c.work, "finer choices", 0.5)) {
       if (!pilots_.keeps() && c.error + c.uncertainty <= advice_.tolerance &&
           is_scene(c.model)) {
         found_ = c;
@@ -251,7 +252,8 @@ void Adviser::choose() {
                                size_of(Effect(half.answer, t.answer)) / 3);
     const double most = advice_.tolerance - counted;
     bool robust = *c.robustness.half_step <= most;
-    if (robust && !scene_.sheets.empty() && pilots_.affords(8 * c.work, 0.3)) {
+    if (robust && !scene_.sheets.empty() &&
+        pilots_.affords(8 * c.work, "a check on twice the cells", 0.3)) {
       Model finer = refined_without(2 * c.factor, c.gone);
       finer.method = c.model.method;
       finer.step = {.dt = c.model.step.dt / 2};

@@ -55,13 +55,17 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
   return springs * std::min(by_step, factor_ * finer);
 }
 
+double StepCosts::limit(const MethodInfo& method) const {
+  return method.multirate           ? multirate_
+         : method.limit == no_limit ? no_limit
+                                    : verlet_ * method.limit / 2;
+}
+
 double StepCosts::step(const Model& m) const {
   if (m.step.fixed()) return m.step.dt;
-  const double limit = m.method->info.multirate ? multirate_
-                       : m.method->info.limit == no_limit
-                           ? verlet_
-                           : verlet_ * m.method->info.limit / 2;
-  return (m.step.rule == StepRule::safe ? safe_share : sharp_share) * limit;
+  const double own = limit(m.method->info);
+  return (m.step.rule == StepRule::safe ? safe_share : sharp_share) *
+         (own == no_limit ? verlet_ : own);
 }
 
 double StepCosts::of_run(const Model& m) const {
@@ -102,9 +106,11 @@ double measured_rate(const Model& m) {
   return rate_on(m);
 }
 
-bool Pilots::affords(double work, double share) {
+bool Pilots::affords(double work, const std::string& what, double share) {
   const bool fits = work <= share * left();
-  if (!fits && !keeps()) cut_short_ = true;
+  if (!fits && !keeps() &&
+      std::ranges::find(left_out_, what) == left_out_.end())
+    left_out_.push_back(what);
   return fits;
 }
 

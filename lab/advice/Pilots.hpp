@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Measure.hpp"
@@ -23,6 +24,8 @@ class StepCosts {
   /** Verlet's largest stable step [s]; that of a multirate method. */
   double verlet() const { return verlet_; }
   double multirate() const { return multirate_; }
+  /** The largest stable step [s] of a method; no_limit if any is. */
+  double limit(const MethodInfo& method) const;
   /** A step of @a dt [s] by @a method, there or on a grid of @a finer times the
    * cells along each side. */
   double of_step(const MethodEntry& method, double dt, double finer = 1) const;
@@ -66,9 +69,11 @@ class Pilots {
   void keep(double work) { kept_ = work; }
   bool keeps() const { return kept_ > 0; }
   /** Is a run of @a work within @a share of what is left? If not, the budget
-   * has left something out from now on. */
-  bool affords(double work, double share = 1);
-  bool cut_short() const { return cut_short_; }
+   * has left out @a what. */
+  bool affords(double work, const std::string& what, double share = 1);
+  bool cut_short() const { return !left_out_.empty(); }
+  /** Each thing once. */
+  const std::vector<std::string>& left_out() const { return left_out_; }
   /** What is known so far: told with all that is done. */
   void knows(const std::string& so_far) { known_ = so_far; }
 
@@ -84,7 +89,7 @@ class Pilots {
 
  private:
   double budget_, spent_ = 0, kept_ = 0;
-  bool cut_short_ = false;
+  std::vector<std::string> left_out_;
   std::string known_;
   std::map<std::string, Trial> done_;  // by scene file
   Tell tell_;
