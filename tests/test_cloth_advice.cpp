@@ -199,7 +199,7 @@ TEST_F(AdviceOfKind, MeshFromFiles) {
 
 // Chaos: what is offered instead has a tolerance that tells something.
 TEST_F(AdviceOfKind, NoOfferIsAsLargeAsTheCloth) {
-  Model m = lying(1.5, 1e-3);
+  Model m = lying(3, 1e-3);
   m.pins = {read_pin("x 0 y 0"), read_pin("x 1 y 0")};
   m.measure = Measure::positions;
   const Advice a = advise(m, rules);
