@@ -211,6 +211,8 @@ std::string in_words(const Advice& a) {
     Column nodes{"grid of nodes", {}}, error{"estimated error" + unit, {}},
         evaluations{"force evaluations", {}}, time{"time [s]", {}},
         which{"", {}};
+    const std::size_t own =
+        a.refusal.empty() ? mesh_of(a.model).points.size() : 0;
     auto row = [&](std::size_t n, const std::string& off, double work,
                    double seconds, const char* what) {
       nodes.cells.push_back(std::to_string(n));
@@ -220,13 +222,11 @@ std::string in_words(const Advice& a) {
       which.cells.push_back(what);
     };
     auto advised = [&] {
-      row(mesh_of(a.model).points.size(), number(a.error), a.evaluations,
-          a.seconds, "advised");
+      row(own, number(a.error), a.evaluations, a.seconds, "advised");
     };
     bool told = !a.refusal.empty();
     for (const GridReport& g : a.grids.tried()) {
-      if (!told && g.nodes >= mesh_of(a.model).points.size())
-        advised(), told = true;
+      if (!told && g.nodes >= own) advised(), told = true;
       row(g.nodes, a.grids.size() < 3 ? "not known" : number(g.error),
           g.evaluations, g.trial.seconds, "");
     }

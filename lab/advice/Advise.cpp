@@ -120,8 +120,7 @@ bool Adviser::find_grid() {
       continue;
     }
     still_ = all;
-    grids.add({factor, nodes, infinite, t,
-               pilot_work(factor) / std::max(1.0, springs_of(on))});
+    grids.add(report(factor, on, t));
     // What coarser grids made believe counts no longer.
     found_.reset(), lucky_.reset();
     if (grids.size() >= 2) try_half_way();
@@ -140,14 +139,18 @@ void Adviser::try_half_way() {
       next_factor(grids[grids.size() - 2].factor, between / 2);
   const Model on = on_grid(factor);
   const double work = pilot_work(factor);
-  const std::size_t nodes = nodes_of(on);
   if (!pilots_.affords(work, "a grid half-way")) return;
   // One that misses a pin tells nothing.
-  const Trial t = pilots_.run(
-      pilot(on, factor), "grid of " + std::to_string(nodes) + " nodes", work);
-  if (t.ok())
-    grids.add_half_way(
-        {factor, nodes, infinite, t, work / std::max(1.0, springs_of(on))});
+  const Trial t =
+      pilots_.run(pilot(on, factor),
+                  "grid of " + std::to_string(nodes_of(on)) + " nodes", work);
+  if (t.ok()) grids.add_half_way(report(factor, on, t));
+}
+
+GridReport Adviser::report(double factor, const Model& on,
+                           const Trial& t) const {
+  return {factor, nodes_of(on), infinite, t,
+          pilot_work(factor) / std::max(1.0, springs_of(on))};
 }
 
 double Adviser::first_factor() const {

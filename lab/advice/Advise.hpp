@@ -14,9 +14,8 @@ struct AdviceRules {
   double for_parts = 0.7;               ///< of the tolerance, at most
   double first_cells = 5;     ///< along the shortest side of the first grid
   double most_nodes = 40000;  ///< of a grid that is tried or advised
-  /** A finer grid than advice needs, to make it cheaper, and a choice that is
-   * uncertain are run if that takes at most so many spring evaluations, about a
-   * second. */
+  /** A finer grid than advice needs, to make it cheaper, is run if that takes
+   * at most so many spring evaluations, about a second. */
   double patience = 1e8;
   double shake = 1e-6;    ///< [m], of starts that should change nothing
   int most_checked = 24;  ///< choices that are run to see if they do

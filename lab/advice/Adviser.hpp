@@ -135,6 +135,7 @@ class Adviser {
   bool find_grid();
   /** Run a grid half-way between the last two, if it is a scene. */
   void try_half_way();
+  GridReport report(double factor, const Model& on, const Trial& t) const;
   double first_factor() const;
   /** Choices of a grid are this many from one that is tried to the next one, of
    * twice the cells: each takes 1.4 times the work of the one before. */
@@ -237,8 +238,8 @@ class Adviser {
   void take(const Choice& c);
 
   /** All grids, sets of parts, methods and steps of which the effects, added
-   * up, are within the tolerance, uncertainties aside: the cheapest first, and
-   * of each method on a grid the largest step only. */
+   * up, are within the tolerance, uncertainties aside, and long shots: the
+   * cheapest first. */
   std::vector<Choice> choices() const;
   /** With a step of which t-end is a multiple, so that a run ends there. */
   std::optional<Model> scene_with(double factor, const Less& less,

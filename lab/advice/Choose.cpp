@@ -295,8 +295,8 @@ std::vector<Adviser::Choice> Adviser::choices() const {
       of_pilot.add(pilots * pilots, steps_[0].effect[1].by);
     for (auto less = less_.rbegin(); less != less_.rend(); ++less)
       for (const Step& s : steps_) {
-        if (std::size_t(less_.rend() - less) - 1 < s.less) continue;
-        if (!s.works[1]) continue;
+        if (std::size_t(less_.rend() - less) - 1 < s.less || !s.works[1])
+          continue;
         for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
           if (share == 1 && !s.works[0]) continue;
           // Below its second step it goes as its order says, if at all.

@@ -42,13 +42,23 @@ std::vector<GridReport> Refinement::tried() const {
   return all;
 }
 
+const GridReport* Refinement::find(double factor) const {
+  for (const auto* grids : {&grids_, &half_way_})
+    for (const GridReport& g : *grids)
+      if (g.factor == factor) return &g;
+  return nullptr;
+}
+
 bool Refinement::has_half_way() const {
   return size() > 1 && !half_way_.empty() &&
          half_way_.back().factor > grids_[size() - 2].factor;
 }
 
-double Refinement::step_to(std::size_t k) const {
-  return distance(answer(k - 1), answer(k), measure_);
+double Refinement::step_to(std::size_t k) const { return step_to(grids_, k); }
+
+double Refinement::step_to(const std::vector<GridReport>& grids,
+                           std::size_t k) const {
+  return distance(grids[k - 1].trial.answer, grids[k].trial.answer, measure_);
 }
 
 bool Refinement::settles() const {
@@ -62,10 +72,8 @@ Effect Refinement::error(double factor) const {
   const Answer &last = back().trial.answer, &before = answer(size() - 2);
   const double next = shrinks(order_, 2);
   all.add(next / (1 - next), Effect(before, last).by);
-  for (const auto* grids : {&grids_, &half_way_})
-    for (const GridReport& g : *grids)
-      if (g.factor == factor)
-        return all.add(1, Effect(g.trial.answer, last).by);
+  if (const GridReport* g = find(factor))
+    return all.add(1, Effect(g->trial.answer, last).by);
   return Effect(all.by.size())
       .add(shrinks(order_, factor / back().factor), all.by);
 }
@@ -104,21 +112,16 @@ double Refinement::uncertainty_of_limit() const {
 }
 
 double Refinement::uncertainty(double factor) const {
-  const bool known =
-      std::ranges::count(grids_, factor, &GridReport::factor) > 0 ||
-      std::ranges::count(half_way_, factor, &GridReport::factor) > 0;
   return uncertainty_of_limit() +
-         (known ? 0 : of_untried * error(factor).size(measure_));
+         (find(factor) ? 0 : of_untried * error(factor).size(measure_));
 }
 
 /** The observed order, clamped to [0.8, 2]: below, extrapolation is
  * meaningless; above, no scheme here converges.  @pre three grids */
 double Refinement::order_of(const std::vector<GridReport>& grids) const {
-  auto step = [&](std::size_t k) {
-    return distance(grids[grids.size() - k].trial.answer,
-                    grids[grids.size() - k - 1].trial.answer, measure_);
-  };
-  return std::clamp(step(1) > 0 ? std::log2(step(2) / step(1)) : 2.0, 0.8, 2.0);
+  const double d = step_to(grids, grids.size() - 2),
+               e = step_to(grids, grids.size() - 1);
+  return std::clamp(e > 0 ? std::log2(d / e) : 2.0, 0.8, 2.0);
 }
 
 }  // namespace lab

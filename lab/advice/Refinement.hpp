@@ -87,6 +87,9 @@ class Refinement {
   Answer limit_before_;  // of all grids but the last, if these are 3
 
   const Answer& answer(std::size_t k) const { return grids_[k].trial.answer; }
+  double step_to(const std::vector<GridReport>& grids, std::size_t k) const;
+  /** The grid of @a factor; nullptr if it was not tried. */
+  const GridReport* find(double factor) const;
   void estimate(GridReport& g) const;
   double order_of(const std::vector<GridReport>& grids) const;
   /** True if there is one between the last two. */
