@@ -3,7 +3,8 @@
  * see --help.
  *
  * Exit status: 0 done; 2 an input or an option that can't be used, or an
- * output that can't be written; 3 the run diverged; 4 no display; 128 + N
+ * output that can't be written; 3 the run failed: it diverged, or it could not
+ * keep what it was asked to keep; 4 no display; 128 + N
  * signal N ended it: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP. */
 #include <cerrno>
 #include <cmath>
@@ -29,6 +30,7 @@
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/scenes/Accuracy.hpp"
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
@@ -215,6 +217,29 @@ int take_advice(Options& o) {
   return o.automatic ? -1 : 0;
 }
 
+/** Measure what tolerance the run of @a o keeps, and by which inner steps:
+ * these go into o.model.  Throws as find_accuracy() */
+Accuracy measure_accuracy(Options& o) {
+  Progress progress(o.quiet);
+  const Accuracy found = find_accuracy(
+      o.model, o.model.tolerance, [&](const std::string& doing, double done) {
+        if (progress.due()) progress.show(doing, done);
+      });
+  progress.end();
+  o.model.step = found.step;
+  return found;
+}
+
+/** Say what a run that ends with @a status keeps.  @return the exit status */
+int tell_accuracy(const Accuracy& a, int status, bool quiet) {
+  if (a.kept()) {
+    if (!quiet && status == 0) std::cout << a.text() << '\n';
+    return status;
+  }
+  std::cerr << "cloth: " << a.text() << '\n';
+  return status == 0 ? 3 : status;
+}
+
 /** Wrong paths, two outputs in one file, and an output in a file that is read
  * shall end the run before it starts; but a mesh may be followed by that of the
  * end, a scene by the advised one, a checkpoint by a later one.
@@ -287,6 +312,8 @@ int run(Options o) {
   const bool in_window =
       shows && (o.window || !o.record_input.empty() || Screen::has_display());
   if (in_window && !o.is_fixed()) return run_live(o);
+  std::optional<Accuracy> accuracy;
+  if (m.step.tolerance > 0 && o.restart.empty()) accuracy = measure_accuracy(o);
   Recipe recipe = recipe_of(m);
   std::unique_ptr<Screen> window;
   if (shows) {
@@ -320,6 +347,7 @@ int run(Options o) {
     status = run_headless(scene, run, o);
   }
   if (scene.done(m.t_end) && status == 0 && !o.quiet) print_answer(scene, m);
+  if (accuracy) status = tell_accuracy(*accuracy, status, o.quiet);
   return status;
 }
 
@@ -351,8 +379,9 @@ int main(int argc, char** argv) {
     int status = parse(argc, argv, o);
     return after_output(status >= 0 ? status : run(o));
   } catch (const Interrupted&) {
-    std::cerr << "cloth: " << name_of_interrupt()
-              << " ended the advice; nothing was kept\n";
+    std::cerr << "cloth: " << name_of_interrupt() << " ended the "
+              << (o.asks_advice() ? "advice" : "measurement of the error")
+              << "; nothing was kept\n";
     return 128 + interrupted();
   } catch (const NoDisplay& e) {
     std::cerr << "cloth: " << e.what() << '\n';

@@ -95,6 +95,7 @@ bool Adviser::find_grid() {
       return refuse(grids.settles() ? too_coarse(nodes) : unsettled());
     const std::string doing = "grid of " + std::to_string(nodes) + " nodes";
     std::vector<Answer> all;
+    Track track(scene_.t_end, nodes);
     Trial t;
     try {
       if (!method_) choose_pilots(on);
@@ -106,7 +107,8 @@ bool Adviser::find_grid() {
                                               : most_for_any))
         return refuse(too_dear(pilot_work(factor)));
       const Model m = pilot(on, factor);
-      t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all));
+      t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all),
+                      [&track](Scene& scene) { track.look(scene); });
     } catch (const SceneError& e) {
       t.failure = e.what();
     }
@@ -119,7 +121,7 @@ bool Adviser::find_grid() {
       first_ *= 2, factor = first_ / 2;
       continue;
     }
-    still_ = all;
+    still_ = all, track_ = std::move(track);
     grids.add(report(factor, on, t));
     // What coarser grids made believe counts no longer.
     found_.reset(), lucky_.reset();
@@ -231,6 +233,15 @@ std::string Adviser::too_coarse(std::size_t nodes) const {
              : why + ": " + so_far() + converging_slowly(scene_);
 }
 
+/** Until when starts that are slightly off end close enough: of what is asked
+ * in meters, none of which changes by more than the positions. */
+std::string Adviser::same_until(const Separation& apart) const {
+  const bool in_meters = unit_of(advice_.measure) == std::string("m");
+  const double horizon = apart.horizon(advice_.tolerance / 2);
+  if (!in_meters || !(horizon > 0) || horizon >= scene_.t_end) return "";
+  return ", of up to " + CME212::short_text(horizon) + " s";
+}
+
 std::function<void(const Cloth&)> Adviser::all_answers(
     const Model& m, std::vector<Answer>& into) {
   return [m, &into](const Cloth& g) {
@@ -244,11 +255,13 @@ std::function<void(const Cloth&)> Adviser::all_answers(
 
 bool Adviser::look_for_chaos() {
   std::vector<Answer> shaken;
+  Track track = track_->beside();
   const double factor = advice_.grids.back().factor;
   const Model m = pilot(on_grid(factor), factor);
   if (pilots_.affords(pilot_work(factor), "starts slightly off")) {
     const Trial t = pilots_.run(m, "a start that is off", pilot_work(factor),
-                                {rules_.shake}, all_answers(m, shaken));
+                                {rules_.shake}, all_answers(m, shaken),
+                                [&track](Scene& scene) { track.look(scene); });
     if (!t.ok()) return refuse(t.failure);
     ++advice_.perturbed;
     const std::size_t k = std::size_t(advice_.measure);
@@ -265,7 +278,8 @@ bool Adviser::look_for_chaos() {
       "by a slightly shorter step, differ by " +
       with_unit(advice_.scatter, advice_.measure) +
       ", so no grid and no step can meet the tolerance; " +
-      offers(on_grid(factor), still_, shaken));
+      offers(on_grid(factor), still_, shaken) +
+      same_until(Separation(*track_, track)));
 }
 
 void Adviser::perturb(Choice& c) {

@@ -12,6 +12,7 @@
 #include "lab/advice/Advise.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Separation.hpp"
 
 namespace lab::adviser_detail {
 
@@ -78,6 +79,7 @@ class Adviser {
   Pilots pilots_;
   Advice advice_;
   std::vector<Answer> still_;    // of the finest grid, to all questions
+  std::optional<Track> track_;   // of its run
   double first_ = 1;             // factor of the first grid
   std::optional<Model> method_;  // of pilots, and its step on the first grid
   double first_work_ = 0;        // of a pilot there
@@ -167,10 +169,11 @@ class Adviser {
       const Model& m, std::vector<Answer>& into);
 
   /** What the answer, and others that could be asked for, make of a start that
-   * is off by a millionth of a meter, on the finest grid, as chaos grows; and
-   * what the advised run makes of that and of a slightly smaller step: all of
-   * these should give the same. */
+   * is off by a millionth of a meter, on the finest grid, as chaos grows, and
+   * until when positions stay together; and what the advised run makes of that
+   * and of a slightly smaller step: all of these should give the same. */
   bool look_for_chaos();
+  std::string same_until(const Separation& apart) const;
   /** Run @a c from starts that are off, and by a step between its own and half
    * of it, for which both of these tell what to expect. */
   void perturb(Choice& c);

@@ -6,6 +6,7 @@
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/scenes/Compose.hpp"
 #include "lab/scenes/Words.hpp"
 
 namespace lab {
@@ -29,14 +30,19 @@ std::string of_method(const MethodInfo& info) {
   return text;
 }
 
-std::string of_cloth(const Model& m, const Cloth& g) {
+std::string of_cloth(const Model& m, const Cloth& g,
+                     const PointsAndQuads& mesh) {
   std::string from;
   for (const Sheet& s : m.sheets)
     from += (from.empty() ? "" : " and ") + std::to_string(s.nodes[0]) + " x " +
             std::to_string(s.nodes[1]) + " nodes";
   if (m.sheets.empty()) from = m.nodes + " and " + m.tets;
-  return "cloth of " + from + ", " + short_text(total_mass(g)) +
-         " kg: " + count_of(g.num_nodes(), "node") + " moved";
+  return "cloth of " + from + ", " + short_text(total_mass(g)) + " kg: " +
+         count_of(
+             std::size_t(std::ranges::count_if(
+                 mesh.points, [&m](const Point& p) { return !is_held(m, p); })),
+             "node") +
+         " moved";
 }
 
 }  // namespace
@@ -47,7 +53,7 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
   auto add = [&](const std::string& what, const std::string& work) {
     all.push_back("  " + what + ": " + work);
   };
-  all.push_back("  " + of_cloth(m, g));
+  all.push_back("  " + of_cloth(m, g, mesh));
   const std::string each_node = count_of(g.num_nodes(), "node");
   const std::string times =
       m.method->info.sweeps > 1

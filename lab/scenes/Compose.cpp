@@ -264,7 +264,7 @@ std::vector<HeldNodes> held_of(const Model& m, const Cloth& g) {
     for (Node n : g.nodes())
       if (pin.holds(n.position())) held.nodes.push_back({n.id(), n.position()});
     std::ranges::sort(held.nodes, {}, &HeldNodes::Held::id);
-    if (held.nodes.empty())
+    if (held.nodes.empty() && !m.is_assignment())
       throw SceneError("pin", '"' + to_words(pin) + "\" holds no node");
   }
   return all;

@@ -100,7 +100,8 @@ CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
 /** The constraints of @a m on @a g, which lies as it was built. In this order:
  * tearing, obstacles, pins: where two disagree about a node, the later one has
  * its way. Self-collision goes on with all of these until none is violated.
- * Throws SceneError: a pin that holds no node, a distance that is too large. */
+ * Throws SceneError: a pin that holds no node, but for those of the assignment;
+ * a distance that is too large. */
 CombinedConstraints constraint_of(const Model& m, const Cloth& g);
 
 /** Whom the pins of @a m hold of @a g, which lies as it was built.

@@ -39,8 +39,23 @@ const MethodEntry* default_method() {
 bool Model::names_parts() const {
   return !sheets.empty() || edges != Edges() || material.density ||
          material.modulus || material.drag || !regions.empty() ||
-         !pins.empty() || !planes.empty() || !spheres.empty() ||
-         !tears.empty() || tear_strain || self_collision;
+         !pins.empty() || has_contact();
+}
+
+bool Model::has_contact() const {
+  return !planes.empty() || !spheres.empty() || !tears.empty() || tear_strain ||
+         self_collision;
+}
+
+bool Model::conserves_energy() const {
+  const bool moves = std::ranges::any_of(
+      pins, [](const Pin& pin) { return pin.motion.velocity != Point(); });
+  return !has_contact() && !moves && material.drag.value_or(damping) == 0;
+}
+
+bool Model::is_assignment() const {
+  const Model scene = assignment_scene();
+  return pins == scene.pins && planes == scene.planes;
 }
 
 Model assignment_scene() { return or_assignment({}); }

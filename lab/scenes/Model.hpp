@@ -175,6 +175,13 @@ struct Model {
   // How it is shown
   std::optional<Box> view;  ///< the box to look at
 
+  /** True if nodes may touch something, or edges break: what is not smooth. */
+  bool has_contact() const;
+  /** True if nothing changes its energy: no drag, no contact, no moving pin. */
+  bool conserves_energy() const;
+  /** True if it has the pins and the floor of assignment_scene(): pins that
+   * hold what is there, of whatever mesh. */
+  bool is_assignment() const;
   /** True if it names a part, from `sheet` to `self-collision` in README.md. */
   bool names_parts() const;
 };

@@ -80,6 +80,7 @@ class Finder {
   std::vector<std::string> all() {
     loose_nodes();
     springs_of_no_length();
+    nothing_held();
     for (const Wall& w : m_.planes) below(w);
     for (const Solid& s : m_.spheres) {
       const std::string name = name_of("sphere", s.ball);
@@ -147,6 +148,16 @@ class Finder {
         std::to_string(first.node2().index()) +
         " lie at the same place, so nothing but inertia keeps them apart; " +
         "make them one node");
+  }
+
+  void nothing_held() {
+    if (!m_.is_assignment()) return;
+    for (const Pin& pin : m_.pins)
+      if (std::ranges::none_of(mesh_.points,
+                               [&](const Point& p) { return pin.holds(p); }))
+        add("no node lies at " + to_words(pin) +
+            ", which the assignment's scene holds; name what holds this cloth, "
+            "as by --pin \"x 0\"");
   }
 
   void below(const Wall& w) {
@@ -241,8 +252,7 @@ class Finder {
 
   /** A contact is a jump, which an inner step sees only at its end. */
   void not_smooth() {
-    if (!m_.planes.empty() || !m_.spheres.empty() || !m_.tears.empty() ||
-        m_.tear_strain || m_.self_collision)
+    if (m_.has_contact())
       add(std::string(m_.method->info.name) +
           ": the error is not controlled where nodes touch or edges break: "
           "there it is of first or second order, as that of every method; "

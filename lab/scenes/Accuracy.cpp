@@ -1,0 +1,126 @@
+#include "lab/scenes/Accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Separation.hpp"
+
+namespace lab {
+
+namespace {
+
+using CME212::two_digits;
+
+/** Of inner steps, to the tolerance of the run beside it. */
+constexpr double finer = 10;
+/** The least tolerance [m] that round-off leaves room for. */
+constexpr double least = 450 * std::numeric_limits<Real>::epsilon();
+constexpr int most_pairs = 6;
+
+struct Pilot {
+  Track track;
+  long long evaluations;
+  std::string failure;
+};
+
+/** @param other to be held against it, or null */
+Pilot run_pilot(const Model& m, const Track* other, const std::string& doing,
+                const std::function<void(const std::string&, double)>& tell) {
+  Scene scene(m);
+  Pilot p = {
+      other ? other->beside() : Track(m.t_end, scene.cloth().num_nodes()),
+      0,
+      {}};
+  scene.run_to(m.t_end, [&] {
+    end_if_interrupted();
+    tell(doing, scene.time() / m.t_end);
+    p.track.look(scene);
+  });
+  p.evaluations = scene.evaluations();
+  p.failure = scene.failure();
+  return p;
+}
+
+}  // namespace
+
+Accuracy find_accuracy(
+    const Model& m, double asked,
+    const std::function<void(const std::string&, double)>& tell) {
+  Accuracy best = {asked, m.step, m.t_end, -1, 0, 0, {}};
+  Model coarse = m;
+  std::optional<Pilot> a;
+  int runs = 0;
+  const auto run = [&](const Model& pilot, const Track* other) {
+    return run_pilot(pilot, other,
+                     "measuring the error, run " + std::to_string(++runs),
+                     tell);
+  };
+  for (int pair = 1; pair <= most_pairs; ++pair) {
+    if (!a) a = run(coarse, nullptr);
+    Model fine = coarse;
+    fine.step.tolerance = coarse.step.tolerance / finer;
+    fine.step.dt /= 2;
+    Pilot b = a->failure.empty() ? run(fine, &a->track) : *a;
+    if (!b.failure.empty()) {
+      if (best.horizon < 0) best.unknown = b.failure;
+      break;
+    }
+    // An error e of the first leaves e/ratio of it in the second: at a contact
+    // errors go down with the step by first order.
+    const double ratio = m.has_contact()
+                             ? double(b.evaluations) / double(a->evaluations)
+                             : finer;
+    const double factor = 1 / (1 - 1 / std::max(ratio, 1.1));
+    const Separation apart(a->track, b.track);
+    const Accuracy now = {asked,
+                          coarse.step,
+                          m.t_end,
+                          apart.horizon(asked / factor),
+                          factor * apart.most().rms,
+                          factor * apart.most().largest,
+                          {}};
+    if (now.horizon <= best.horizon) break;  // round-off decides
+    const double before = best.horizon, step_before = best.step.tolerance;
+    best = now;
+    if (now.kept()) break;
+    // As far as errors are proportional to the tolerance; and where they have
+    // stopped growing, as the horizon grows by its logarithm.
+    double share = std::max(1e-4, asked / (3 * now.rms));
+    if (before >= 0)
+      share = std::min(
+          share, std::max(1e-3, std::pow(coarse.step.tolerance / step_before,
+                                         (m.t_end - now.horizon) /
+                                             (now.horizon - before))));
+    const double next = std::max(share * coarse.step.tolerance, least * finer);
+    if (next > coarse.step.tolerance / 2) break;
+    if (next >= fine.step.tolerance / 2) {
+      a = std::move(b), coarse = fine;
+    } else {
+      a.reset(), coarse.step.tolerance = next;
+    }
+  }
+  best.horizon = std::max(best.horizon, 0.);
+  return best;
+}
+
+std::string Accuracy::text() const {
+  using CME212::short_text;
+  const std::string to = "to " + short_text(asked) + " m";
+  if (!unknown.empty()) return "positions " + to + ": not measured: " + unknown;
+  const std::string known =
+      std::isfinite(rms)
+          ? "known to " + two_digits(rms) + " m (RMS over the nodes), " +
+                two_digits(largest) + " m at the worst node"
+          : "not known, as it depends on round-off which nodes are torn off";
+  if (kept()) return "positions " + to + ": kept; they are " + known;
+  return "positions " + to + ": predictable to " + short_text(horizon) +
+         " s; beyond that they are " + known;
+}
+
+}  // namespace lab
