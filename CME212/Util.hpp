@@ -111,7 +111,7 @@ inline std::string count_of(std::size_t n, const std::string& what) {
 /** "87 %" for 0.866; below 10 % two significant digits. */
 inline std::string percent(double share) {
   const double a = 100 * share;
-  return (a < 10 ? two_digits(a) : short_text(std::round(a))) + " %";
+  return (std::abs(a) < 10 ? two_digits(a) : short_text(std::round(a))) + " %";
 }
 
 /** @a a in as few digits as give back the same number. */

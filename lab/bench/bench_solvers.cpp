@@ -22,7 +22,6 @@
 
 using namespace lab;
 using implicit_detail::LinearSolver;
-using implicit_detail::Work;
 
 namespace {
 

@@ -27,8 +27,7 @@ class ImplicitEuler : public Method {
    *        ImplicitStage::solve_linearized() */
   explicit ImplicitEuler(double tolerance = 1e-8) : stage_(tolerance, 0) {}
 
-  /** What the solver has done since this method was made. */
-  const implicit_detail::Work& work() const { return stage_.work(); }
+  Work work() const override { return stage_.work(); }
   void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,

@@ -21,14 +21,6 @@ void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);
 
-/** What the solvers of a method have done since it was made: the same on every
- * machine. */
-struct Work {
-  long long newton = 0;    ///< linear systems
-  long long products = 0;  ///< with the matrix A, each about a force evaluation
-  long long factors = 0;   ///< Cholesky factors of A
-};
-
 /** How a linear system is solved: by conjugate gradients, preconditioned by the
  * diagonal blocks of A or by its Cholesky factor; automatic takes what is less
  * work, see ImplicitStage. */

@@ -39,6 +39,20 @@ struct StepTimes {
   double operator()(long long k) const { return from + double(done + k) * dt; }
 };
 
+/** What a method has done besides evaluating forces, since it was made: the
+ * same on every machine. */
+struct Work {
+  long long inner = 0;     ///< steps inside its steps, those refused, too
+  long long newton = 0;    ///< linear systems
+  long long products = 0;  ///< with the matrix A, each about a force evaluation
+  long long factors = 0;   ///< Cholesky factors of A
+  Work& operator+=(const Work& w) {
+    inner += w.inner, newton += w.newton;
+    products += w.products, factors += w.factors;
+    return *this;
+  }
+};
+
 /** A method: takes a cloth from t to t + dt, as often as it is called.
  *
  * It applies the constraint once a step: when the positions have reached t +
@@ -77,6 +91,7 @@ class Method {
    * gives the same bits as that of the method that saved it.
    * @pre of loading: @a g is as it was then. The default: nothing is kept */
   virtual void archive(CME212::Archive& /*a*/, const Cloth& /*g*/) {}
+  virtual Work work() const { return {}; }
   /** Keep the estimated error of each inner step below @a tolerance [m] > 0;
    * infinite: one inner step a step. Only adaptive methods have one. */
   virtual void set_tolerance(double /*tolerance*/) {}

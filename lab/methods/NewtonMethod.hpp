@@ -22,8 +22,7 @@ class NewtonMethod : public Method {
                         bool line_search = true)
       : stage_(tolerance, max_iterations, line_search) {}
 
-  /** What the solver has done since this method was made. */
-  const implicit_detail::Work& work() const { return stage_.work(); }
+  Work work() const override { return stage_.work(); }
   void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
 
  protected:

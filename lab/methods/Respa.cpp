@@ -46,6 +46,7 @@ void Respa::one_step(Cloth& g, double t, double dt, bool kept,
                     "a step; dt = " +
                     CME212::short_text(dt) + " s");
   inner_steps_ = std::max(1, int(std::ceil(dt / most)));
+  inner_done_ += inner_steps_;
   take_stiff_nodes(g, t + dt, dt, force.drag(), constraint);
   move_stiff_nodes(g, dt / inner_steps_);
   flow_.run(

@@ -53,12 +53,14 @@ class Respa : public BatchMethod {
   /** Of the last step: what it split, and the n of above. */
   const StiffSplit& split() const { return split_; }
   int inner_steps() const { return inner_steps_; }
+  Work work() const override { return {.inner = inner_done_}; }
 
  private:
   Verlet verlet_;  // if there is nothing to split
   FlatFlow flow_;  // its accelerations are by the soft forces, without drag
   StiffSplit split_;
   int multiplicity_ = 0, inner_steps_ = 0;
+  long long inner_done_ = 0;
   const Cloth* kept_for_ = nullptr;  // the cloth that split_ and they are of
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;

@@ -43,6 +43,7 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
     const bool last = now + 1.01 * inner_ >= goal;
     const double h = last ? goal - now : inner_;
     double error = attempt(g, now, h, constraint) / tolerance_;
+    ++attempts_;
     // Written so that an error that is not finite makes the step smaller.
     bool good = error <= 1;
     double factor = 0.2;

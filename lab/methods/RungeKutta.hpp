@@ -57,6 +57,7 @@ class RungeKutta : public BatchMethod {
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;
   void restart() override { inner_ = 0, has_end_ = false; }
+  Work work() const override { return {.inner = attempts_}; }
   void archive(CME212::Archive& a, const Cloth& g) override;
 
  private:
@@ -77,6 +78,7 @@ class RungeKutta : public BatchMethod {
 
   double tolerance_;
   double inner_ = 0;  // next inner step [s]; 0: not chosen yet
+  long long attempts_ = 0;
   FlatFlow flow_{acceleration(stages) - FlatCloth::columns};
   kernels::StageSum sum_;
   bool has_end_ = false;  // the columns of the end, and the last stage's,

@@ -51,6 +51,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   constraint.place_held_at_rest(g, t);
   accelerate(g, t, force, springs);
   const double h = dt / substeps_;
+  rounds_ += substeps_;
   const Drag& c = force.drag();
   auto x = g.positions();
   auto node = g.node_values();

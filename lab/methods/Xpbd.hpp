@@ -46,9 +46,11 @@ class Xpbd : public Method {
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
+  Work work() const override { return {.inner = rounds_}; }
 
  private:
   int substeps_;
+  long long rounds_ = 0;
   FlatFlow flow_;
   ForcePlan springs_ = MassSpringForce();  // recognised: it need not live on
   std::vector<char> fixed_;                // by node id, as all that follows

@@ -17,7 +17,7 @@ namespace lab {
 namespace {
 
 constexpr const char* magic = "mass_spring checkpoint ";
-constexpr int version = 4;
+constexpr int version = 5;
 
 std::string first_line() {
   return magic + std::to_string(version) +

@@ -14,11 +14,15 @@ namespace lab {
 
 namespace {
 constexpr double no_step = 1e-9;  // of a step
+
+/** What changes by a method's error, and where drag takes energy [J]. */
+double balance(const Energies& e, const EnergyFlow& flow) {
+  return e.total() - flow.work + flow.removed;
 }
+}  // namespace
 
 Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
     : recipe_(std::move(recipe)), step_(step), entry_(method) {
-  make_method();
   restart();
 }
 Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}
@@ -28,13 +32,14 @@ void Scene::restart() {
   recipe_.build(cloth_);
   acting_ = recipe_.force(cloth_);
   counter_ = {}, hand_.reset(), changed_ = false;
+  make_method();
+  evaluations_ = 0, work_ = {};
   held_.clear();
   if (recipe_.held) held_ = recipe_.held(cloth_);
   plan_forces();
   watched_.emplace(recipe_.constraint(cloth_));
   constraint_ = *watched_;
   balance_.emplace(cloth_, 0, acting_, constraint_, recipe_.gravity);
-  method_->restart();
   clock_ = {.dt = step_.dt};
   safe_omega_ = -1;
   start_energy_ = energy().total();
@@ -50,6 +55,19 @@ void Scene::restart() {
   guard_.emplace(cloth_, recipe_.gravity, clock_.dt, flow());
   keep_clock();
   start_control();
+  if (watch_) watch_.emplace(energy(), clock_.dt, *guard_);
+}
+
+void Scene::watch_energy(double t_end) {
+  constexpr double looks = 64;
+  watch_interval_ =
+      int(std::clamp(t_end / clock_.dt / looks, 1., double(guard_interval)));
+  watch_.emplace(energy(), clock_.dt, *guard_);
+}
+
+Work Scene::work() const {
+  Work all = work_;
+  return all += method_->work();
 }
 
 /** The plan of all that acts: what the recipe has, the hand, the counter. */
@@ -84,9 +102,12 @@ void Scene::follow_drag() {
 
 double Scene::drift(const Energies& now) const {
   const EnergyFlow& f = flow();
-  const double lately =
-      0.5 * (drag_power_ + drag_.power(cloth_)) * (time() - sampled_);
-  return now.total() - start_energy_ - f.work + f.removed + f.drag + lately;
+  return now.total() - start_energy_ - f.work + f.removed + drag_loss();
+}
+
+double Scene::drag_loss() const {
+  const double power = drag_.power(cloth_);
+  return flow().drag + 0.5 * (drag_power_ + power) * (time() - sampled_);
 }
 
 void Scene::archive(CME212::Archive& a) {
@@ -97,9 +118,15 @@ void Scene::archive(CME212::Archive& a) {
   guard_->archive(a);
   method_->archive(a, cloth_);
   if (a.loads()) version_ = cloth_.version();
+  long long evaluated = evaluations();
+  Work worked = work();
+  a(evaluated)(worked);
+  if (a.loads()) evaluations_ = evaluated - counter_.sweeps(), work_ = worked;
+  a(sampled_)(drag_power_);
+  if (watch_) watch_->archive(a);
   if (!control_) return;
   control_->archive(a);
-  a(looked_)(sampled_)(drag_power_);
+  a(looked_);
   for (Snapshot* s : {&before_, &latest_}) {
     bool whole = s->version == cloth_.version();  // nothing torn since
     s->nodes.archive(a);
@@ -119,10 +146,12 @@ bool Scene::steps_at_once(int most, double t_end) {
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
+  const bool watched = watch_ && (now || clock_.steps % watch_interval_ == 0);
   if ((control_ || follows_drag_) && !drag_.none())
     sample_drag(now || (guarded && !control_));
-  if (!judged && !guarded) return true;
+  if (!judged && !guarded && !watched) return true;
   const Energies e = energy();
+  if (watched) watch_->look(e);
   if (judged && !judge(e)) return take_back();
   return !guarded || look(e);
 }
@@ -155,6 +184,7 @@ int Scene::steps_to_look(int most) const {
     most = std::min(most, interval - int(clock_.steps % interval));
   };
   most = std::min(most, guard_interval - int(clock_.steps - checked_.steps));
+  if (watch_) up_to_multiple(watch_interval_);
   if (control_) up_to_multiple(StepControl::look_interval);
   if ((control_ || follows_drag_) && !drag_.none()) {
     up_to_multiple(drag_interval());
@@ -297,6 +327,11 @@ void Scene::choose_step() {
     // two looks: so never beyond what holds in every configuration.
     dt = std::min(sharp_share * sharp_limit(), safe_limit());
   }
+  if (entry_.info.adaptive)
+    throw std::invalid_argument(
+        std::string(entry_.info.name) +
+        " chooses its inner steps by their error: leave --dt away, and say "
+        "how exactly by --tolerance");
   if (!(dt > 0 && std::isfinite(dt)))
     throw std::invalid_argument(std::string("nothing bounds the step of ") +
                                 entry_.info.name +
@@ -408,26 +443,52 @@ std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   return ahead->is_finite() ? std::move(ahead) : copy();
 }
 
-/** Run the scene by another method and step: from its start; or from here, if
- * a user has changed it since. */
+/** The scene anew by @a cure: from its start; or from here, if a user has
+ * changed it since. */
+std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
+  const TimeStep step = {
+      .dt = cure.dt,
+      .rule = StepRule::fixed,
+      .tolerance = cure.method.info.adaptive ? step_.tolerance : 0};
+  return changed_ ? std::make_unique<Scene>(*this, step, cure.method)
+                  : std::make_unique<Scene>(recipe_, step, cure.method);
+}
+
+/** Try @a cure, and half of its step, which must have the same energy on the
+ * way: a run that does not fail may still be far from the motion. */
 Attempt Scene::attempt(const Cure& cure, double t_end) const {
   // An implicit step is worth some hundred force evaluations.
   const MethodInfo& info = cure.method.info;
   const double evaluations = info.sweeps * (info.limit == no_limit ? 100 : 1);
   try {
-    const TimeStep step = {.dt = cure.dt,
-                           .rule = StepRule::fixed,
-                           .tolerance = info.adaptive ? step_.tolerance : 0};
-    const auto trial =
-        changed_ ? std::make_unique<Scene>(*this, step, cure.method)
-                 : std::make_unique<Scene>(recipe_, step, cure.method);
-    const Cloth& g = trial->cloth();
+    const auto trial = anew(cure);
+    if (watch_) trial->watch_energy(t_end);
+    const auto size = [](const Cloth& g) {
+      return g.num_nodes() + g.num_edges();
+    };
+    const long long every =
+        1 + (long long)((t_end - trial->time()) / cure.dt / 64);
+    std::vector<std::pair<double, double>> on_the_way;  // time [s], balance [J]
+    double largest = 0;                                 // internal [J]
     double left = trial_work;
-    while (!trial->done(t_end) && left > 0 && trial->step(t_end))
-      left -= evaluations * (g.num_nodes() + g.num_edges());
-    return {trial->failure().empty() &&
-                (trial->done(t_end) || trial->look(trial->energy())),
-            trial->time()};
+    while (!trial->done(t_end) && left > 0 && trial->step(t_end)) {
+      left -= evaluations * size(trial->cloth());
+      if (trial->steps() % every != 0) continue;
+      const Energies e = trial->energy();
+      largest = std::max(largest, e.internal());
+      on_the_way.emplace_back(trial->time(), balance(e, trial->flow()));
+    }
+    const double end = trial->time();
+    bool passed = trial->failure().empty() &&
+                  (trial->done(t_end) || trial->look(trial->energy()));
+    if (watch_)
+      passed = passed && std::abs(trial->watch_->share()) <= energy_tolerance;
+    const auto finer = anew({cure.method, cure.dt / 2});
+    const double apart = energy_tolerance * largest + guard_->round_off();
+    for (const auto& [time, b] : on_the_way)
+      passed = passed && finer->run_to(time) &&
+               std::abs(balance(finer->energy(), finer->flow()) - b) <= apart;
+    return {passed, end};
   } catch (const std::invalid_argument&) {  // not with this force
     return {false, 0};
   }

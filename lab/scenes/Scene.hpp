@@ -16,6 +16,7 @@
 #include "lab/scenes/Compose.hpp"
 #include "lab/scenes/Hand.hpp"
 #include "lab/stability/Diagnosis.hpp"
+#include "lab/stability/EnergyWatch.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/StepControl.hpp"
 
@@ -109,17 +110,28 @@ class Scene {
   /** From now on flow() has what linear drag takes, also at fixed steps.
    * Complexity: up to a tenth of a force evaluation a step */
   void follow_drag();
+  /** The energy that linear drag took since the start [J].  @pre as drift() */
+  double drag_loss() const;
   /** The energy that came from nothing since the start [J]; what contact and
    * friction took lowers it.  @pre follow_drag(), or drag() takes part
    * @param now energies() of the present state */
   double drift(const Energies& now) const;
+  /** From now on energy_watch() tells how far the energy is off.
+   * @pre no step is done, and nothing changes the energy: see EnergyWatch
+   * @param t_end [s] of the run: it looks 64 times until then, or each
+   * guard_interval steps.  Complexity: 0.7 of a force evaluation a look */
+  void watch_energy(double t_end);
+  const std::optional<EnergyWatch>& energy_watch() const { return watch_; }
   /** Evaluations of all forces since the start, without linear solves. */
-  long long evaluations() const { return counter_.sweeps(); }
+  long long evaluations() const { return evaluations_ + counter_.sweeps(); }
+  /** What else the method has done since the start. */
+  Work work() const;
   /** What happened when step() returned false; empty before. And where. */
   const std::string& failure() const { return failure_; }
   /** Why that happened, and what works: the first call runs the scene anew by
    * up to 10 other methods and steps, each until t_end or for trial_work spring
-   * evaluations, which is about a second.  @pre !failure().empty()
+   * evaluations, which is about a second; and those that do not fail by half of
+   * the step, too.  @pre !failure().empty()
    * Throws what the recipe throws. */
   const Diagnosis& diagnosis() const;
   /** Both in one line.  @pre and throws as diagnosis() */
@@ -227,8 +239,12 @@ class Scene {
   double looked_ = 0;         // time of its last look [s]
   bool follows_drag_ = false;
   Drag drag_;
-  double start_energy_ = 0;              // [J]
-  double largest_gamma_ = 0;             // of it [1/s]
+  std::optional<EnergyWatch> watch_;
+  int watch_interval_ = 1;
+  long long evaluations_ = 0;  // before a checkpoint; besides counter_'s
+  Work work_;                  // of methods before this one
+  double start_energy_ = 0;    // [J]
+  double largest_gamma_ = 0;   // of it [1/s]
   double sampled_ = 0, drag_power_ = 0;  // at that time [s, W]
   mutable double safe_omega_ = -1;       // [1/s]; negative: not known yet
   mutable SharpOmega sharp_;
@@ -265,6 +281,7 @@ class Scene {
   bool replay(long long last);
   void rewind();
   bool fail(const std::string& what);
+  std::unique_ptr<Scene> anew(const Cure& cure) const;
   Attempt attempt(const Cure& cure, double t_end) const;
 };
 

@@ -83,6 +83,7 @@ void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
 }
 
 void Scene::make_method() {
+  if (method_) work_ += method_->work();
   method_ = entry_.make();
   if (step_.tolerance > 0) method_->set_tolerance(step_.tolerance);
 }

@@ -229,7 +229,8 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
     const std::string time = CME212::short_text(d.trial.time) + " s";
     d.text += d.cure->options(run.method) +
               (d.trial.time >= run.time
-                   ? " works: a trial to t = " + time + " passed"
+                   ? " works: a trial to t = " + time +
+                         " passed, with the energy of one by half of it"
                    : " may work: a trial was broken off at t = " + time +
                          ", before it could fail");
   } else if (!those.empty()) {

@@ -56,7 +56,7 @@ struct Cure {
 
 /** A trial of a cure: the scene from its start. */
 struct Attempt {
-  bool passed;  ///< it did not fail
+  bool passed;  ///< it did not fail, and half of its step has its energy
   double time;  ///< that it reached [s]
 };
 using TryOut = std::function<Attempt(const Cure&)>;

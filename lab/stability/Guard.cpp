@@ -16,11 +16,11 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
   height_ = e.gravitational + flow.removed;
   available_ = e.internal();
   const double fall = gravity * dt;  // [m/s]
-  floor_ = total_mass(g) * fall * fall;
   const double strain =
       std::max(1e-6, std::sqrt(double(std::numeric_limits<Real>::epsilon())));
   for (Edge e : g.edges())
-    floor_ += spring_energy((1 + strain) * e.value().L, e.value());
+    round_off_ += spring_energy((1 + strain) * e.value().L, e.value());
+  floor_ = total_mass(g) * fall * fall + round_off_;
   keep(g);
 }
 

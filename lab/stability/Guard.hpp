@@ -62,6 +62,8 @@ class DivergenceGuard {
   /** An energy that is next to nothing [J]: that of a free fall of one step,
    * and of springs strained by round-off. */
   double floor() const { return floor_; }
+  /** Of that, the energy of springs strained by round-off [J]. */
+  double round_off() const { return round_off_; }
 
   /** Give @a g the last good state: NodeStates::restore(). */
   void restore(Cloth& g) const { kept_.restore(g); }
@@ -70,10 +72,10 @@ class DivergenceGuard {
   void archive(CME212::Archive& a) { a(available_), kept_.archive(a); }
 
  private:
-  double gravity_, height_ = 0;   // height_: gravitational and removed [J]
-  double dt_;                     // [s]
-  double start_ = 0, floor_ = 0;  // start_: without work [J]
-  double available_ = 0;          // the most so far [J]
+  double gravity_, height_ = 0;  // height_: gravitational and removed [J]
+  double dt_;                    // [s]
+  double start_ = 0, floor_ = 0, round_off_ = 0;  // start_: without work [J]
+  double available_ = 0;                          // the most so far [J]
   NodeStates kept_;
 };
 

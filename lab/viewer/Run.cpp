@@ -119,6 +119,9 @@ Run::Run(Scene& scene, const Options& o)
                {FrameFormat::obj, o.obj},
                {FrameFormat::ply, o.ply}},
               o.frame_rate) {
+  if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
+    scene_.follow_drag();
+  if (o.model.conserves_energy()) scene_.watch_energy(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (!o.checkpoint.empty())
     archive_scene(scene_as_made_, o.model, scene.cloth());
@@ -246,9 +249,12 @@ int Run::finish() {
   });
   if (error) std::rethrow_exception(error);
   if (cut_short()) tell_interrupt(scene_, o_.model, kept_);
-  if (!o_.quiet) print_summary(scene_, o_.model, seconds_);
+  if (!o_.quiet) {
+    print_summary(scene_, o_.model, seconds_);
+    tell_work();
+  }
   if (scene_.control()) tell_steps(*scene_.control());
-  if (!scene_.failure().empty()) return 3;
+  if (!scene_.failure().empty() || !energy_is_kept()) return 3;
   return cut_short() ? 128 + interrupted() : 0;
 }
 
@@ -260,7 +266,8 @@ void Run::begin_csv() {
   csv_.emplace(o_.csv);
   csv_sum_ = 0;
   write_csv(
-      "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,nodes,edges\n");
+      "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,nodes,edges,"
+      "work,drag,balance,evaluations\n");
 }
 
 void Run::write_csv(const std::string& text) {
@@ -351,8 +358,12 @@ void Run::add_row() {
   for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
                    e.total(), double(c.x), double(c.y), double(c.z)})
     row += CME212::to_text(a) + ',';
-  recent_.push_back({last_row_, row + std::to_string(g.num_nodes()) + ',' +
-                                    std::to_string(g.num_edges()) + '\n'});
+  row += std::to_string(g.num_nodes()) + ',' + std::to_string(g.num_edges());
+  const EnergyFlow& flow = scene_.flow();
+  for (double a : {flow.work, scene_.drag_loss(), scene_.drift(e)})
+    row += ',' + CME212::to_text(a);
+  recent_.push_back(
+      {last_row_, row + ',' + std::to_string(scene_.evaluations()) + '\n'});
 }
 
 /** Forget the rows of steps that were taken back; write those of the first
@@ -389,6 +400,47 @@ void Run::warn_of_missed() {
             << scene_.dt() *
                    std::min(0.5, scene_.watched().thinnest() / missed.length)
             << '\n';
+}
+
+/** What the run has cost, in numbers that are the same on every machine. */
+void Run::tell_work() const {
+  using CME212::count_of;
+  std::string text =
+      count_of(std::size_t(scene_.evaluations()), "force evaluation");
+  const Work w = scene_.work();
+  for (const auto& [count, what] :
+       {std::pair(w.inner, "inner step"), std::pair(w.newton, "linear system"),
+        std::pair(w.products, "matrix product"),
+        std::pair(w.factors, "Cholesky factor")})
+    if (count > 0) text += ", " + count_of(std::size_t(count), what);
+  std::cout << "work: " << text << '\n';
+}
+
+/** Say how far the energy is off where nothing changes it.
+ * @return false: the method has made more of it than is tolerated */
+bool Run::energy_is_kept() const {
+  const auto& watch = scene_.energy_watch();
+  if (!watch) return true;
+  using CME212::short_text;
+  std::ostringstream out;
+  out.precision(3);
+  out << "energy off by " << watch->off() << " J";
+  if (const double share = watch->share(); share != 0)
+    out << " (" << CME212::percent(share) << " of the largest internal energy)";
+  const bool kept = scene_.control() || watch->gain() <= watch->tolerance();
+  if (!o_.quiet) std::cout << out.str() << '\n';
+  if (!kept)
+    std::cerr << "cloth: the method has made "
+              << CME212::two_digits(watch->gain())
+              << " J of energy from nothing, more than the "
+              << CME212::two_digits(watch->tolerance())
+              << " J that --dt auto tolerates: this is not the motion of the "
+                 "scene; use half of the step, or --method verlet --dt auto\n";
+  else if (std::abs(watch->share()) > energy_tolerance && !o_.quiet)
+    std::cerr << warning << out.str()
+              << ", though nothing changes it but the method: use half of the "
+                 "step\n";
+  return kept;
 }
 
 /** What steps were chosen, and what they did to the energy. */

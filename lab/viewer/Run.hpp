@@ -121,6 +121,8 @@ class Run {
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
   void tell_steps(const StepControl& c) const;
+  void tell_work() const;
+  bool energy_is_kept() const;
 };
 
 }  // namespace lab

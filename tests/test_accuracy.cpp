@@ -1,0 +1,196 @@
+// How far runs that should be the same get apart, what tolerance a run keeps,
+// and how far its energy is off.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Accuracy.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Separation.hpp"
+#include "lab/stability/EnergyWatch.hpp"
+
+using namespace lab;
+
+namespace {
+
+Model sheet(unsigned n, double t_end) {
+  Model m;
+  m.sheets = {Sheet{.nodes = {n, n}}};
+  m.t_end = t_end;
+  m.method = find_method("dop853");
+  m.step = {.dt = std::min(1 / 30., t_end)};
+  return m;
+}
+/** Hangs by two corners: it buckles. */
+Model hanging(unsigned n, double t_end) {
+  Model m = sheet(n, t_end);
+  m.pins = {Pin{.x = 0, .y = 0}, Pin{.x = 1, .y = 0}};
+  m.damping = 0.9 / (n * n);
+  return m;
+}
+
+Track track_of(const Model& m, const Point& off = Point(), double from = 0) {
+  Scene scene(m);
+  Track track(m.t_end, scene.cloth().num_nodes());
+  scene.run_to(m.t_end, [&] {
+    if (scene.time() > from)
+      for (Node n : scene.cloth().nodes()) n.position() += off;
+    track.look(scene);
+    for (Node n : scene.cloth().nodes()) n.position() -= off;
+  });
+  return track;
+}
+
+TEST(Separation, IsTheDistanceOfTheNodesAtEachTimeThatBothHaveKept) {
+  Model m = sheet(3, 0.5);
+  m.gravity = 0, m.stiffness = 0;
+  m.method = find_method("verlet"), m.step.dt = 0.01;
+  const Track still = track_of(m);
+  const Separation same(still, track_of(m));
+  EXPECT_EQ(same.most().rms, 0);
+  EXPECT_EQ(same.horizon(0), 0.5);
+  const Separation apart(still, track_of(m, Point(3e-4, 4e-4, 0), 0.245));
+  EXPECT_NEAR(apart.most().rms, 5e-4, 1e-15);
+  EXPECT_NEAR(apart.most().largest, 5e-4, 1e-15);
+  EXPECT_NEAR(apart.horizon(4.9e-4), 0.24, 1e-12);
+  EXPECT_EQ(apart.horizon(5.1e-4), 0.5);
+  EXPECT_EQ(apart.all().size(), 50u);  // each step
+}
+
+TEST(Separation, KeepsNoMoreStatesThanFitIntoMemory) {
+  Model m = sheet(3, 1);
+  m.method = find_method("verlet"), m.step.dt = 0.001;
+  EXPECT_EQ(Separation(track_of(m), track_of(m)).all().size(), 64u);
+}
+
+TEST(Separation, IsInfiniteOnceOtherNodesAreTornOff) {
+  Model m = sheet(4, 0.2);
+  m.method = find_method("verlet"), m.step.dt = 0.01;
+  Model torn = m;
+  torn.tears = {Ball{Point(0, 0, -0.05), 0.02}};
+  const Separation apart(track_of(m), track_of(torn));
+  EXPECT_TRUE(std::isinf(apart.most().rms));
+  EXPECT_GT(apart.horizon(1), 0);
+  EXPECT_LT(apart.horizon(1), 0.15);
+}
+
+/** The RMS distance over the nodes [m] of a run of @a m, as @a found says, from
+ * one by another method and much smaller errors, at t-end. */
+double error_of(Model m, const Accuracy& found) {
+  m.step = found.step;
+  Scene run(m);
+  EXPECT_TRUE(run.run_to(m.t_end));
+  m.method = find_method("dormand-prince");
+  m.step.tolerance = found.step.tolerance / 30;
+  Scene exact(m);
+  EXPECT_TRUE(exact.run_to(m.t_end));
+  double sum = 0;
+  for (Node n : run.cloth().nodes())
+    sum += normSq(n.position() - exact.cloth().node_with_id(n.id()).position());
+  return std::sqrt(sum / run.cloth().num_nodes());
+}
+
+Accuracy accuracy(Model m, double asked) {
+  m.step.tolerance = asked / 4;
+  return find_accuracy(m, asked, [](const std::string&, double) {});
+}
+
+TEST(Accuracy, OfASmoothMotionIsThatOfTheFirstTolerance) {
+  Model m = sheet(5, 1);
+  m.pins = {Pin{.y = 0}};
+  for (double asked : {1e-3, 1e-6, 1e-9}) {
+    const Accuracy a = accuracy(m, asked);
+    EXPECT_TRUE(a.kept()) << a.text();
+    EXPECT_EQ(a.step.tolerance, asked / 4);
+    EXPECT_LE(a.rms, asked);
+    EXPECT_LE(a.rms, a.largest);
+    EXPECT_LE(error_of(m, a), 1.2 * a.rms) << asked;
+  }
+}
+
+// One run by a local error of a quarter of the tolerance misses it by far.
+TEST(Accuracy, OfAClothThatBucklesTakesSmallerInnerSteps) {
+  const Model m = hanging(9, 2.5);
+  const Accuracy a = accuracy(m, 1e-4);
+  EXPECT_TRUE(a.kept()) << a.text();
+  EXPECT_LT(a.step.tolerance, 1e-4 / 8);
+  EXPECT_LE(error_of(m, a), 1e-4);
+  Accuracy first = a;
+  first.step.tolerance = 1e-4 / 4, first.step.dt = m.step.dt;
+  EXPECT_GT(error_of(m, first), 1e-4);
+}
+
+TEST(Accuracy, OfAChaoticMotionHasAHorizon) {
+  Model m = hanging(13, 3);
+  const Accuracy a = accuracy(m, 1e-9);
+  EXPECT_FALSE(a.kept());
+  EXPECT_GT(a.horizon, 0.3);
+  EXPECT_LT(a.horizon, 2.9);
+  EXPECT_LE(error_of(m, a), 3 * a.rms);
+  EXPECT_NE(a.text().find("positions to 1e-09 m: predictable to "),
+            std::string::npos)
+      << a.text();
+  // Until then it is kept; and beyond that it is not.
+  m.t_end = a.horizon;
+  EXPECT_LE(error_of(m, a), 1.5e-9);
+}
+
+TEST(Accuracy, OfContactCountsWithFirstOrder) {
+  Model m = sheet(6, 0.6);
+  m.spheres = {Solid{Ball{Point(0.5, 0.5, -0.4), 0.3}, 0, {}}};
+  const Accuracy a = accuracy(m, 1e-2);
+  const double error = error_of(m, a);
+  EXPECT_LE(error, std::max(1e-2, a.rms)) << a.text();
+}
+
+TEST(Accuracy, IsNotMadeUpWhereARunFails) {
+  Model m = hanging(4, 0.1);
+  m.step.tolerance = 1e-30;
+  const Accuracy a =
+      find_accuracy(m, 4e-30, [](const std::string&, double) {});
+  EXPECT_FALSE(a.kept());
+  EXPECT_NE(a.text().find("not measured: "), std::string::npos) << a.text();
+}
+
+// ---------------------------------------------------------------- Energy
+
+/** What the energy watch says of a run. */
+EnergyWatch watched(Model m, const char* method, double dt) {
+  m.method = find_method(method), m.step = {.dt = dt};
+  Scene scene(m);
+  scene.watch_energy(m.t_end);
+  EXPECT_TRUE(scene.run_to(m.t_end));
+  return *scene.energy_watch();
+}
+
+TEST(EnergyWatch, TellsWhatTheMethodMadeOrLost) {
+  Model m = hanging(9, 2);
+  m.damping = 0;
+  const double limit = 2 / std::sqrt(12 * 100. * 81);
+  const EnergyWatch good = watched(m, "verlet", limit / 4);
+  EXPECT_LT(std::abs(good.share()), 0.01);
+  EXPECT_LE(good.gain(), good.tolerance());
+  const EnergyWatch loss = watched(m, "implicit-euler", 0.02);
+  EXPECT_LT(loss.share(), -0.1);
+  EXPECT_LE(loss.gain(), loss.tolerance());
+  m.stiffness = 1e4;
+  const EnergyWatch sick = watched(m, "xpbd", 0.0333);
+  EXPECT_GT(sick.share(), 0.1);
+  EXPECT_GT(sick.gain(), sick.tolerance());
+}
+
+TEST(EnergyWatch, HasNoShareWhereNothingIsStretched) {
+  Model m = sheet(4, 0.5);
+  m.sheets[0].velocity = Point(1, 0, 2);
+  const EnergyWatch flight = watched(m, "verlet", 0.01);
+  EXPECT_EQ(flight.share(), 0);
+  EXPECT_LT(std::abs(flight.off()), 1e-12);
+  EXPECT_LE(flight.gain(), flight.tolerance());
+  const EnergyWatch early = watched(m, "symplectic-euler", 0.01);
+  EXPECT_EQ(early.share(), 0);
+  EXPECT_LE(early.gain(), early.tolerance());
+}
+
+}  // namespace
