@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,41 +30,37 @@ class ClothProgram : public ::testing::Test {
   Result run(const std::string& arguments) {
     return folder.run(CME212::program("cloth", "build/") + " " + arguments);
   }
-  /** Start it; what it says goes where run() has it. */
-  pid_t start(const std::string& arguments) {
-    const std::string command = "exec " + CME212::program("cloth", "build/") +
-                                ' ' + arguments + " >" + folder / "out" +
-                                " 2>" + folder / "err";
-    const pid_t child = fork();
-    if (child == 0) {
-      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-      _exit(127);
-    }
-    return child;
+  /** Start it, after commands @a before; what it says goes where run() has it.
+   */
+  CME212::Child start(const std::string& arguments,
+                      const std::string& before = "") {
+    return CME212::Child(before + "exec " + CME212::program("cloth", "build/") +
+                         ' ' + arguments + " >" + folder / "out" + " 2>" +
+                         folder / "err");
   }
   /** Of a program that ended with @a status, as waitpid() gives it. */
   Result result_of(int status) {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
             contents(dir / "out"), contents(dir / "err")};
   }
-  /** Start it, and send it @a signals: the first when it catches it and has run
-   * for a while, the next ones 0.2 s later each.
+  /** Start it as start(), and send it @a signals: the first as soon as @a ready
+   * holds, or else when it catches it; the next ones when it has caught the one
+   * before and waits.
    * @return as run(); its status is 1000 + a signal that ended it at once */
-  Result interrupt(const std::string& arguments, std::vector<int> signals) {
-    const pid_t child = start(arguments);
-    int status = 0;
-    bool ended = false;
-    while (!ended && !catches(child, signals[0])) {
-      usleep(1000);
-      ended = waitpid(child, &status, WNOHANG) == child;
-    }
-    usleep(50000);
+  Result interrupt(const std::string& arguments,
+                   const std::vector<int>& signals,
+                   const std::function<bool()>& ready = nullptr,
+                   const std::string& before = "") {
+    CME212::Child child = start(arguments, before);
+    child.until([&] { return ready ? ready() : catches(child, signals[0]); });
     for (int signal : signals) {
-      kill(child, signal);
-      if (signals.size() > 1) usleep(200000);
+      const bool caught = catches(child, signal);
+      child.signal(signal);
+      if (!caught) continue;
+      child.until([&] { return !catches(child, signal); });
+      child.until([&] { return waits(child); });
     }
-    if (!ended) waitpid(child, &status, 0);
-    return result_of(status);
+    return result_of(child.wait());
   }
   /** A file of this test with a content. */
   std::string file(const std::string& name, const std::string& text) {
@@ -80,23 +78,34 @@ class ClothProgram : public ::testing::Test {
     std::sort(names.begin(), names.end());
     return names;
   }
-  /** Start it, and kill it after so many microseconds; as interrupt(). */
-  Result kill_after(unsigned wait, const std::string& arguments) {
-    const pid_t child = start(arguments);
+  /** Start it, and kill it so many microseconds after @a ready holds; as
+   * interrupt(). */
+  Result kill_after(unsigned wait, const std::string& arguments,
+                    const std::function<bool()>& ready) {
+    CME212::Child child = start(arguments);
+    child.until(ready);
     usleep(wait);
-    kill(child, SIGKILL);
-    int status = 0;
-    waitpid(child, &status, 0);
-    return result_of(status);
+    child.signal(SIGKILL);
+    return result_of(child.wait());
+  }
+  /** What the system says of a process behind @a key, "SigCgt:"; a blank if it
+   * has ended. */
+  static std::string state(const CME212::Child& process,
+                           const std::string& key) {
+    const std::string all =
+        contents("/proc/" + std::to_string(process.pid()) + "/status");
+    const auto at = all.find(key);
+    return at == all.npos ? " " : all.substr(at + key.size() + 1);
+  }
+  /** Does it wait for something, as a pipe that is full? */
+  static bool waits(const CME212::Child& process) {
+    return state(process, "State:")[0] == 'S';
   }
   /** Does a process catch a signal now? */
-  static bool catches(pid_t process, int signal) {
-    const std::string status =
-        contents("/proc/" + std::to_string(process) + "/status");
-    const auto at = status.find("SigCgt:");
-    return at != std::string::npos &&
-           (std::stoull(status.substr(at + 7), nullptr, 16) >> (signal - 1)) %
-               2;
+  static bool catches(const CME212::Child& process, int signal) {
+    return std::strtoull(state(process, "SigCgt:").c_str(), nullptr, 16) >>
+               (signal - 1) &
+           1;
   }
   /** The numbers of a CSV file, without its head line. */
   static std::vector<std::vector<double>> rows(const fs::path& csv) {

@@ -13,7 +13,7 @@
 #include <string>
 #include <system_error>
 
-#include <sys/wait.h>
+#include "tests/Child.hpp"
 
 namespace CME212 {
 
@@ -63,10 +63,10 @@ class TestFolder {
     std::string out, err;
   };
   /** Run a command of the shell; its words are in the files out and err here.
-   */
+   * Throws std::runtime_error: Child::time_limit ended it. */
   Result run(const std::string& command) const {
-    const int status = std::system(
-        (command + " >" + *this / "out" + " 2>" + *this / "err").c_str());
+    const int status =
+        Child(command + " >" + *this / "out" + " 2>" + *this / "err").wait();
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
             contents(*this / "out"), contents(*this / "err")};
   }
@@ -94,11 +94,7 @@ class Environment {
 
 /** What @a command prints. */
 inline std::string output_of(const std::string& command) {
-  std::string out;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  for (int c; (c = std::fgetc(pipe)) != EOF;) out += char(c);
-  pclose(pipe);
-  return out;
+  return TestFolder().run(command).out;
 }
 inline bool has_program(const std::string& name) {
   return !output_of("command -v " + name).empty();

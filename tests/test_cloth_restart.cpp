@@ -54,7 +54,8 @@ TEST_F(ClothProgram, GoesOnToTheSameBitsWhereverItIsKilled) {
       const bool exists = fs::exists(dir / "c");
       const unsigned wait = 1000 + random() % 40000;  // [us]
       const Result r = kill_after(
-          wait, (exists ? "--headless --restart " + path("c") : run_of) + part);
+          wait, (exists ? "--headless --restart " + path("c") : run_of) + part,
+          [&] { return kills > 0 || fs::exists(dir / "c"); });
       killed += r.status == 1000 + SIGKILL;
     }
     const bool exists = fs::exists(dir / "c");
@@ -78,10 +79,14 @@ TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
       "--sheet 'nodes 12 12' --pin 'y 0' --method verlet --headless ";
   const std::string files_of =
       " --csv " + path("b.csv") + " --checkpoint " + path("c");
-  Result cut = interrupt(run_of + "--t-end 1e5" + files_of, {SIGTERM});
+  Result cut = interrupt(run_of + "--t-end 1e5" + files_of, {SIGTERM},
+                         [this] { return fs::exists(dir / "c"); });
   EXPECT_EQ(cut.status, 143) << cut.err;
   EXPECT_NE(cut.err.find("checkpoint " + path("c")), std::string::npos);
-  const double t = std::stod(cut.err.substr(cut.err.find("t = ") + 4));
+  const std::string ended = "SIGTERM ended the run at t = ";
+  ASSERT_NE(cut.err.find(ended), cut.err.npos) << cut.err;
+  const double t =
+      std::stod(cut.err.substr(cut.err.find(ended) + ended.size()));
   const std::string end = " --t-end " + std::to_string(t + 0.1);
   Result on = run("--headless --restart " + path("c") + end + " --csv " +
                   path("b.csv") + " --out " + path("b.nodes"));

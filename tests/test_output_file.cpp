@@ -6,12 +6,12 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <list>
 #include <string>
 #include <vector>
 
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "CME212/OutputFile.hpp"
@@ -77,19 +77,12 @@ TEST_P(Output, OfTwoWritersAtOnceTheLastHasTheFileWhole) {
 
 TEST_P(Output, SoDoTwoProcesses) {
   const std::string name = folder / "f";
-  std::vector<pid_t> children;
-  for (char c : {'a', 'b', 'c', 'd'}) {
-    children.push_back(fork());
-    if (children.back() == 0) {
+  std::list<CME212::Child> children;
+  for (char c : {'a', 'b', 'c', 'd'})
+    children.emplace_back("a writer", [&] {
       for (int k = 0; k < 20; ++k) write(name, std::string(50000, c));
-      _exit(0);
-    }
-  }
-  for (pid_t child : children) {
-    int status = 1;
-    waitpid(child, &status, 0);
-    EXPECT_EQ(status, 0);
-  }
+    });
+  for (auto& child : children) EXPECT_EQ(child.wait(), 0);
   const std::string text = contents(name);
   EXPECT_EQ(text, std::string(50000, text.empty() ? ' ' : text[0]));
   EXPECT_EQ(files(), Names{"f"});
@@ -116,13 +109,12 @@ TEST_P(Output, LeavesTheOldFileUnlessItIsCommitted) {
 
 TEST(OutputFile, LeavesNothingWhenItsProgramIsKilled) {
   const CME212::TestFolder folder;
-  const pid_t child = fork();
-  if (child == 0) {
+  CME212::Child child("a writer", [&] {
     OutputFile out(folder / "f");
     out.stream() << "half" << std::flush;
     raise(SIGKILL);
-  }
-  waitpid(child, nullptr, 0);
+  });
+  EXPECT_EQ(child.wait(), SIGKILL);
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
@@ -206,18 +198,15 @@ TEST_P(Output, SaysWhenTheDiskIsFull) {
   EXPECT_EQ(error_of([&] { full.commit(); }),
             "/dev/full: can't be written (No space left on device)");
   const std::string name = file("f", "old");
-  const pid_t child = fork();
-  if (child == 0) {  // no file may have more than 10 kB
+  CME212::Child child("a writer", [&] {  // no file may have more than 10 kB
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit = {10000, 10000};
     setrlimit(RLIMIT_FSIZE, &limit);
     const std::string said =
         error_of([&] { write(name, std::string(20000, 'x')); });
     _exit(said.find(name + ": can't be written (") == 0 ? 0 : 1);
-  }
-  int status = 1;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0);
+  });
+  EXPECT_EQ(child.wait(), 0);
   EXPECT_EQ(contents(name), "old");
   EXPECT_EQ(files(), Names{"f"});
 }

@@ -1,12 +1,8 @@
 /** @file test_viewer.cpp
  * Tests of SDLViewer and SceneBuilder. They need no display; the last one
  * makes its own. */
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -739,35 +735,26 @@ TEST(SDLViewer, KeysShowFacesWiresNodesAndPieces) {
 class XServer {
  public:
   XServer() {
-    int ends[2];
-    if (pipe(ends) != 0) return;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-    const char* args[] = {"Xvfb", "-displayfd",   "1",    "-noreset", "-screen",
-                          "0",    "1280x1024x24", nullptr};
-    if (posix_spawnp(&child_, args[0], &actions, nullptr,
-                     const_cast<char* const*>(args), environ) != 0)
-      child_ = -1;
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
     // It takes a free number and writes it when it is ready.
-    for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) display_ += c;
-    close(ends[0]);
+    server_.until([this] {
+      display_ = ":" + contents(folder_ / "number");
+      return display_.ends_with('\n');
+    });
+    display_.pop_back();
   }
   ~XServer() {
-    if (child_ < 0) return;
-    kill(child_, SIGTERM);
-    waitpid(child_, nullptr, 0);
+    server_.signal(SIGTERM);
+    server_.wait();
   }
   /** As for DISPLAY. */
-  std::string display() const { return ":" + display_; }
+  const std::string& display() const { return display_; }
 
  private:
-  pid_t child_ = -1;
   std::string display_;
+  const CME212::TestFolder folder_;
+  CME212::Child server_{
+      "exec Xvfb -displayfd 1 -noreset -screen 0 1280x1024x24 >" +
+      folder_ / "number" + " 2>/dev/null"};
 };
 
 TEST(SDLViewerWindow, ObeysTheKeyboard) {
@@ -782,11 +769,11 @@ TEST(SDLViewerWindow, ObeysTheKeyboard) {
       "xdotool search --sync --onlyvisible --name test_viewer_window ";
   auto key = [&](SDL_Keycode k) {
     std::string name = k == SDLK_SPACE ? "space" : std::string(1, char(k));
-    EXPECT_EQ(std::system((window + "windowfocus key " + name).c_str()), 0);
+    EXPECT_EQ(TestFolder().run(window + "windowfocus key " + name).status, 0);
   };
   run_with_user(viewer, key, [&] {
     // Another size is no harm, and is seen: then the window is closed.
-    EXPECT_EQ(std::system((window + "windowsize 800 300").c_str()), 0);
+    EXPECT_EQ(TestFolder().run(window + "windowsize 800 300").status, 0);
     EXPECT_TRUE(eventually([&] {
       return output_of(window + "getwindowgeometry").find("800x300") !=
              std::string::npos;

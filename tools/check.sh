@@ -16,22 +16,43 @@ export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 # Where tests look for programs.
 export BUILD=build/check
 # Line numbers are all that a failing test needs; -g takes a third of the time.
-export CXXFLAGS='-Werror -g1'
+[ "$tier" = run ] || export CXXFLAGS='-Werror -g1'
 # Where much is compiled: below 1 GB g++ collects no garbage, which would take a
 # tenth of the time.
-[ "$tier" = quick ] || CXXFLAGS+=' --param ggc-min-heapsize=1000000'
+[[ $tier =~ quick|run ]] || CXXFLAGS+=' --param ggc-min-heapsize=1000000'
 # Nothing here is timed.
 export SPEED=-O1
 # Sources are compiled several at once: lab/units.mk.
 export UNITY=1
 started=$SECONDS passed=0 failed=0
+# Seconds that a step may take: three times what a slow machine needs.
+limit=600 long=1800
+
+# A signal ends this, and all that it started.
+end() {  # STATUS
+  local all
+  trap '' INT TERM HUP
+  mapfile -t all < <(jobs -p)
+  kill "${all[@]}"
+  wait
+  kill -KILL -- "${all[@]/#/-}"
+  exit "$1"
+} 2>/dev/null
+end_in_order() { trap 'end 130' INT; trap 'end 143' TERM; trap 'end 129' HUP; }
+end_in_order
 
 # Run a step and count what it says it passed; a step that counts nothing is
-# one test.
+# one test. It is a process group of its own, with default signals; a function
+# runs in a copy of this script.
 step() {  # NAME COMMAND...
-  local name=$1 log=$logs/$1.log from=$SECONDS ok good bad
+  local name=$1 log=$logs/$1.log from=$SECONDS ok=0 good bad
   shift
-  "$@" >"$log" 2>&1 </dev/null && ok=1 || ok=0
+  [ "$(type -t "$1")" != function ] || set -- tools/check.sh run "$@"
+  env --default-signal timeout -k 10 "$limit" "$@" >"$log" 2>&1 </dev/null &
+  wait $! && ok=1
+  kill -KILL -- -$! 2>/dev/null  # what it left running
+  [ "$ok" = 1 ] || [ $((SECONDS - from)) -lt "$limit" ] ||
+    echo "$name: ended after $limit s, its time limit" >>"$log"
   good=$(sed -nE 's/^\[  PASSED  \] ([0-9]+) tests?.*/\1/p; s/^([0-9]+) passed, .*/\1/p' "$log" |
     tail -n 1)
   bad=$(sed -nE 's/^\[  FAILED  \] ([0-9]+) tests?, .*/\1/p; s/.* passed, ([0-9]+) failed.*/\1/p' "$log" |
@@ -54,6 +75,7 @@ beside() {  # LIST...
   local list good bad
   for list in "$@"; do
     (
+      end_in_order
       passed=0 failed=0
       "$list"
       echo "$passed $failed" >"$logs/$list.count"
@@ -284,20 +306,21 @@ of_sweeps() {
 }
 
 case $tier in
+  run) "${@:2}"; exit ;;
   quick | check)
     rm -f "$logs"/*.log
     beside of_files of_stages ;;&
   check)
-    step build       build_tests
+    limit=$long step build build_tests
     rm -rf "$logs/taken"; mkdir "$logs/taken"
     beside one_worker other_worker
     step chart_rule  python3 lab/charts/test_charts.py
     step drawn       drawn
     step readme      tools/check_readme.sh ;;
   check-full)
-    step programs    programs
-    step clang       clang
-    step kit         make --no-print-directory kit-check EVERY=10 \
+    limit=$long step programs programs
+    limit=$long step clang clang
+    limit=$long step kit make --no-print-directory kit-check EVERY=10 \
       FIRST=$((0x$(git rev-parse --short=6 HEAD || echo 0) % 10))
     beside of_scripts of_variants
     beside of_programs of_sweeps ;;

@@ -252,6 +252,36 @@ program='#include <gtest/gtest.h>'
 build_says "and with GoogleTest, under the sanitizers" \
   '-fsanitize=address,undefined.*' 'NDEBUG|libviewer'
 
+# ---- Steps that do not end
+steps() {  # LIMIT COMMAND: the only step of check.sh quick in small/
+  again small
+  { sed "/^case .tier in/,\$d; s/^limit=600/limit=$1/" tools/check.sh
+    echo "of_files() { :; }; of_stages() { step slow hangs; }; hangs() { $2; }"
+    sed -n '/^case .tier in/,$p' tools/check.sh; } >"$tmp/check.sh"
+  cp "$tmp/check.sh" tools; rm -f "$tmp/pid"
+}
+ended() { ! grep -q '^State:.[^Z]' "/proc/$(cat "$tmp/pid")/status"; } 2>/dev/null
+: >"$tmp/before"
+steps 1 'sleep 1000'
+caught "check: a step that does not end" "slow: ended after 1 s, its time limit" \
+  small tools/check.sh quick
+steps 100 "sleep 1000 & echo \$! >$tmp/pid"
+check small tools/check.sh quick; why=""
+[ "$status" = 0 ] || why=" status is $status;"
+ended || why+=" it is there;"
+ok "check: a step leaves nothing running"
+for name in INT TERM HUP; do
+  steps 100 "sleep 1000 & echo \$! >$tmp/pid; wait"
+  env --default-signal tools/check.sh quick >"$tmp/said" 2>&1 &
+  until [ -s "$tmp/pid" ] || ! kill -0 $! 2>/dev/null; do sleep 0.1; done
+  kill -$name $!
+  status=0; wait $! || status=$?
+  why=""; [ "$status" = $((128 + $(kill -l $name))) ] || why=" status is $status;"
+  ended || why+=" a step is left;"
+  out=$(cat "$tmp/said"); ok "check: SIG$name ends all steps"
+  check small true
+done
+
 # ---- Pages whose commands are run
 run=tools/check_commands.sh
 page() { again small; printf '%s\n' '```sh' "$@" >page.md; }
