@@ -99,6 +99,21 @@ quick check check-full:
 format:
 	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
 
+# How each source is compiled, for clangd and the like. A loop sets what a rule
+# would: $* the program, $< the source.
+.PHONY: compdb
+comma := ,
+entry = {"directory": "$(CURDIR)", "file": "$(1)", "command": \
+"$(subst ",\",$(subst \,\\,$(strip $(CXX) $(2) -c $(1))))"}
+compdb: course_draw = $(if $(filter 1,$(VIEWER)),$(call system,$(draw_pkg)))
+compdb:
+	$(file >compile_commands.json,[$(subst } {,}$(comma){,$(strip \
+	  $(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))) \
+	  $(foreach <,$(filter-out lab/page/wasi.cpp,$(wildcard CME212/*.cpp \
+	  lab/*.cpp lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
+	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS)))))])
+	@echo 'compile_commands.json'
+
 include lab/measure.mk lab/page/page.mk
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

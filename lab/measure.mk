@@ -10,6 +10,7 @@ help-lab:
 	@echo 'make test_NAME          a test of tests/, as build/test_NAME'
 	@echo 'make quick | check | check-full   what a commit must pass, in 2 and 6'
 	@echo '                        minutes; all else'
+	@echo 'make compdb             compile_commands.json, which clangd reads'
 	@echo 'make charts             work and precision, failures: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
 	@echo 'make figures            draws all charts, corrects the numbers in the text'

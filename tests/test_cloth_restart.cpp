@@ -68,6 +68,7 @@ TEST_F(ClothProgram, GoesOnToTheSameBitsWhereverItIsKilled) {
         << m.info.name;
     EXPECT_EQ(contents(dir / "b.csv"), contents(dir / "a.csv")) << m.info.name;
   }
+  EXPECT_EQ(went_on, runs);
   RecordProperty("killed", killed);
   RecordProperty("went_on", went_on);
   std::printf("killed %d times in %d, %d went on from a checkpoint\n", killed,

@@ -19,7 +19,7 @@ export BUILD=build/check
 [ "$tier" = run ] || export CXXFLAGS='-Werror -g1'
 # Where much is compiled: below 1 GB g++ collects no garbage, which would take a
 # tenth of the time.
-[[ $tier =~ quick|run ]] || CXXFLAGS+=' --param ggc-min-heapsize=1000000'
+[[ $tier =~ quick|run || ${CXX:-} =~ clang ]] || CXXFLAGS+=' --param ggc-min-heapsize=1000000'
 # Nothing here is timed.
 export SPEED=-O1
 # Sources are compiled several at once: lab/units.mk.
@@ -109,7 +109,8 @@ stages() {
 }
 # Markers and tasks of the teaching kit, what splits them; pages.
 kit_source() {
-  python3 course/kit/markers.py && python3 course/kit/test_markers.py &&
+  python3 course/kit/test_child.py && python3 course/kit/markers.py &&
+    python3 course/kit/test_markers.py &&
     python3 course/kit/pages.py && python3 course/kit/test_pages.py
 }
 course_test() { in_folder . "build/check/$1" && "build/check/$1"; }

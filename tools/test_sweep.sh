@@ -74,7 +74,7 @@ ok "interrupted and continued"
 
 # A real interrupt, at whatever moment: what is there is whole.
 start "$tmp/cut"
-timeout -s INT 0.3 make --no-print-directory -j2 cells B="$build" \
+env --default-signal timeout -s INT 0.3 make --no-print-directory -j2 cells B="$build" \
   EFFORT=tiny SWEEP="$tmp/cut" >"$tmp/log" 2>&1 || true
 cells "$tmp/cut" -j2 >"$tmp/log"
 same "$tmp/cut"

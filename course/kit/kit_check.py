@@ -12,12 +12,12 @@ import concurrent.futures
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import time
 import tomllib
 from dataclasses import dataclass
 
+import child
 import grade
 import judge
 import markers
@@ -193,13 +193,13 @@ class Check:
 def programs(check):
     """What is held by programs of its own."""
     folder = once.KIT
-    for name in ("test_markers.py", "pages.py", "test_report.py",
-                 "test_grader.py", "test_grading.py"):
+    for name in ("test_child.py", "test_markers.py", "pages.py",
+                 "test_report.py", "test_grader.py", "test_grading.py"):
         if not (folder / name).exists():
             continue
         started = time.monotonic()
-        done = subprocess.run([sys.executable, str(folder / name)], text=True,
-                              capture_output=True, check=False)
+        done = child.run([sys.executable, folder / name], 1500, text=True,
+                         capture_output=True)
         output = done.stdout + done.stderr
         ran = re.search(r"^Ran (\d+) tests? ", output, re.MULTILINE)
         faults = output.strip().split("\n") if done.returncode else []

@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 import build
+import child
 import once
 import starter
 import submission
@@ -173,9 +174,9 @@ class Take(Folder):
 
     def test_takes_a_tag_and_no_setting_of_the_clone(self):
         def git(*words):
-            subprocess.run(["git", "-C", self.folder, "-c", "user.name=a", "-c",
-                            "user.email=b", *words], check=True,
-                           capture_output=True)
+            child.run(["git", "-C", self.folder, "-c", "user.name=a", "-c",
+                       "user.email=b", *words], check=True,
+                      capture_output=True)
         git("init", "-q")
         self.put("Graph.hpp", "tagged")
         (self.folder / "link.hpp").symlink_to("/etc/passwd")
@@ -212,16 +213,16 @@ class Deny(Folder):
         kit = once.Kit()
         file = self.put("file", "text")
         program = self.top / "probe"
-        subprocess.run([once.CXX, "-w", "-x", "c++", "-", "-o", program],
-                       input=PROBE, text=True, check=True)
+        child.run([once.CXX, "-w", "-x", "c++", "-", "-o", program],
+                  input=PROBE, text=True, check=True)
         # A network that could be reached.
         with socket.socket() as listening:
             listening.listen()
-            done = subprocess.run(
+            done = child.run(
                 [*kit.jail, *build.flags("--read", [
                     "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
                     "/dev/null", program]), "--", program, file],
-                stderr=subprocess.PIPE, text=True, check=False)
+                stderr=subprocess.PIPE, text=True)
         denied, allowed, hidden = (part.strip().split("\n") for part
                                    in done.stderr.split("--\n"))
         self.assertEqual((len(denied), len(allowed)), (30, 4))
@@ -245,10 +246,10 @@ class Deny(Folder):
 
     def test_bad_input_ends_with_status_2(self):
         def run(**variables):
-            done = subprocess.run(
+            done = child.run(
                 [sys.executable, once.KIT / "grade.py"], text=True,
                 env={"PATH": os.environ["PATH"], **variables},
-                capture_output=True, check=False)
+                capture_output=True)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             return done.stderr
         self.assertIn("DIR is missing", run())
@@ -261,9 +262,9 @@ class Deny(Folder):
             DIR=str(self.folder), JSON=str(self.top / "none/x.json")))
 
     def test_make_runs_no_name(self):
-        done = subprocess.run(
+        done = child.run(
             ["make", "-s", "-C", once.ROOT, "grade", f"DIR={self.folder}"],
-            capture_output=True, text=True, check=False)
+            capture_output=True, text=True)
         self.assertIn("holds no Graph.hpp", done.stderr)
         for name in "xy":
             self.assertFalse((once.ROOT / name).exists())

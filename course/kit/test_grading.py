@@ -8,17 +8,18 @@ import json
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
 import zipfile
 
 import autograder
+import child
 import markers
 import once
 
 # A graph that crashes in some ways whose texts hold addresses or lines.
+BUILDS = 600  # seconds: the kit is compiled
 FAULTS = [
     ("    remove_edge(*it);\n    return it;",
      "    struct Down {\n"
@@ -48,9 +49,9 @@ class Grading(unittest.TestCase):
     def grade(self, folder, where):
         """The text and the three files."""
         files = [self.top / name for name in ("json", "junit", "results")]
-        done = subprocess.run(
-            [sys.executable, once.KIT / "grade.py"], cwd=where,
-            capture_output=True, text=True, check=False,
+        done = child.run(
+            [sys.executable, once.KIT / "grade.py"], BUILDS, cwd=where,
+            capture_output=True, text=True,
             env={"PATH": os.environ["PATH"], "DIR": str(folder),
                  **{file.name.upper(): str(file) for file in files}})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -102,8 +103,7 @@ class Grading(unittest.TestCase):
         shutil.copy(root / "source/run_autograder", root)
         for command in ([root / "source/setup.sh", root],
                         [root / "run_autograder", root]):
-            done = subprocess.run(command, capture_output=True, text=True,
-                                  check=False)
+            done = child.run(command, BUILDS, capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
         hidden = root / "source/course/tests/3.1.position.cpp"
         self.assertEqual(hidden.stat().st_mode & 0o077, 0)

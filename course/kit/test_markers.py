@@ -4,11 +4,11 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
 
+import child
 import markers
 import starter
 import tasks
@@ -276,7 +276,7 @@ class Repository(unittest.TestCase):
 
     def make(self, kind, out):
         """The status and what was said."""
-        done = subprocess.run(
+        done = child.run(
             [sys.executable, tasks.ROOT / "course/kit/starter.py", kind],
             env=os.environ | {"OUT": str(out)}, capture_output=True, text=True)
         return done.returncode, done.stdout + done.stderr
@@ -336,9 +336,9 @@ class Repository(unittest.TestCase):
 
         def commands(text, *arguments):
             own.write_text(text + "\nint main() {}\n")
-            done = subprocess.run(["make", "-n", "own", *arguments],
-                                  cwd=own.parent, capture_output=True,
-                                  text=True, env=os.environ | {"MAKEFLAGS": ""})
+            done = child.run(["make", "-n", "own", *arguments],
+                             cwd=own.parent, capture_output=True,
+                             text=True, env=os.environ | {"MAKEFLAGS": ""})
             self.assertEqual(done.returncode, 0, done.stderr)
             return done.stdout
 
