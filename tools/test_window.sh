@@ -2,6 +2,7 @@
 # Run mass_spring and cloth in a real window under Xvfb, press keys, and look at
 # what is seen and said. They are taken from the folder BUILD, or from here.
 # Needs: Xvfb, xdotool, ffmpeg, and both built with a viewer.
+# Nothing is decided by a wait: what a key does is waited for where it is seen.
 set -Eeuo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,7 +23,7 @@ export DISPLAY=:$number
 unset WAYLAND_DISPLAY
 
 start() {  # PROGRAM ARGUMENTS...: launch, and wait for the window
-  "$folder/$1" "${@:2}" >"$tmp/out" 2>"$tmp/err" &
+  env --default-signal "$folder/$1" "${@:2}" >"$tmp/out" 2>"$tmp/err" &
   run=$!
   # SDL tries windows that go again; xdotool ends where it meets such a one.
   for _ in {1..20}; do
@@ -34,13 +35,25 @@ start() {  # PROGRAM ARGUMENTS...: launch, and wait for the window
   echo "no window of $1"; cat "$tmp/err"
   return 1
 }
-cloth() { start cloth data/grid0.nodes data/grid0.tets --window --speed 0 "$@"; }
+ever() {  # CONDITION...: within a minute
+  local end=$((SECONDS + 60))
+  until "$@"; do
+    [ $SECONDS -lt $end ] || { echo "never: $*"; return 1; }
+    sleep 0.1
+  done
+}
+bare() { start cloth data/grid0.nodes data/grid0.tets --window --speed 0 "$@"; }
+cloth() {  # with a panel, and beside it the time
+  bare "$@"
+  eval "$(xdotool getwindowgeometry --shell "$window" | grep '^[XY]=')"
+  ever labelled
+}
 driver() {  # GRID ARGUMENTS...: the assignment's program
   start mass_spring "data/grid$1.nodes" "data/grid$1.tets" "${@:2}"
 }
 press() {
   local key
-  for key in "$@"; do xdotool key "$key"; sleep 0.15; done
+  for key in "$@"; do xdotool key "$key"; done
 }
 ok() {  # NAME CONDITION...
   if "${@:2}"; then
@@ -50,37 +63,31 @@ ok() {  # NAME CONDITION...
   fi
 }
 lines() { wc -l <"$tmp/out"; }
-more_lines() {  # wait until it has said $1 lines more
-  local want=$(($(lines) + $1))
-  for _ in {1..200}; do
-    [ "$(lines)" -lt "$want" ] || return 0
-    sleep 0.1
-  done
-  return 1
-}
+has_lines() { [ "$(lines)" -ge "$1" ]; }
+more_lines() { ever has_lines $(($(lines) + $1)); }  # it says so many more
 quiet() { local n; n=$(lines); sleep 2.5; [ "$(lines)" = "$n" ]; }
-picture() {  # the window as rows of RGB in hexadecimal, one pixel a line
-  ffmpeg -v error -f x11grab -video_size 1280x1024 -i "$DISPLAY" -frames:v 1 \
+rgb() {  # WIDTHxHEIGHT X,Y: of the screen in hexadecimal, one pixel a line
+  ffmpeg -v error -f x11grab -video_size "$1" -i "$DISPLAY+$2" -frames:v 1 \
     -f rawvideo -pix_fmt rgb24 - | od -An -v -tx1 -w3
 }
-moves() { local p; p=$(picture | md5sum); sleep 0.5; [ "$p" != "$(picture | md5sum)" ]; }
-moves_not() { ! moves; }
+picture() { rgb 1280x1024 0,0; }
+label() { rgb 100x28 $((X + 314)),$((Y + 12)); }  # t = 0.001 s
+labelled() { [ "$(label | grep -c '[ef]. [ef]. [ef].')" -gt 20 ]; }
+shows() { [ "$(label)" = "$1" ]; }  # a label
+differs() { [ "$("$1" | md5sum)" != "$2" ]; }
+changes() { ever differs "$1" "$("$1" | md5sum)"; }
+stays() { local t; t=$(label); sleep 1; shows "$t"; }
+steps() {  # COMMAND...: which shows another time
+  local before
+  before=$(label | md5sum)
+  "$@"
+  ever differs label "$before"
+}
 # A panel of a failure has a bar in the color of marks.
 no_panel() { [ "$(picture | grep -c "$mark")" -lt 100 ]; }
-panel() {
-  for _ in {1..100}; do
-    no_panel || return 0
-    sleep 0.1
-  done
-  return 1
-}
-told() {  # wait until it has said $1 times that it failed
-  for _ in {1..100}; do
-    [ "$(grep -c 'diverged in step' "$tmp/err")" -lt "$1" ] || return 0
-    sleep 0.1
-  done
-  echo "not told $1 times:"; cat "$tmp/err"
-}
+panel() { ! no_panel; }
+said() { [ "$(grep -c 'diverged in step' "$tmp/err")" -ge "$1" ]; }
+told() { ever said "$1"; }  # so many times that it failed
 # Wait for the end; expect status $2 and the words $3 in what it said.
 ends() {  # NAME STATUS WORDS
   local status=0
@@ -97,10 +104,10 @@ ends() {  # NAME STATUS WORDS
 # The assignment's program: a line every 2 s of its 20 s.
 driver 0 0.001 20
 ok "the driver steps" more_lines 1
-ok "and draws meanwhile" moves
+ok "and draws meanwhile" changes picture
 ok "and has no panel" no_panel
 press space
-ok "space pauses" quiet
+ok "space pauses" ever quiet
 press r s
 ok "r and s do nothing" quiet
 press space
@@ -108,28 +115,34 @@ ok "space goes on" more_lines 1
 press q
 ends "q quits the driver" 0 "nodes"
 driver 0 0.001 0.1
-sleep 1
+ok "a run of 0.1 s ends" ever grep -q '^t = 0.1 s' "$tmp/out"
 ok "the window stays at the end" kill -0 "$run"
 press Escape
 ends "Escape quits the driver" 0 "t = 0.1 s"
 driver 3
-ok "a run that diverges shows a panel" panel
+ok "a run that diverges shows a panel" ever panel
 ok "and stays" kill -0 "$run"
 press q
 ends "and ends with 3" 3 "diverged: at t = "
 
 # The laboratory's program.
-cloth --paused; press q
+cloth --paused; zero=$(label); press q
 ends "q quits, and nothing moves while paused" 0 ": 0 steps to t = 0 s"
-cloth --paused; press n n n Escape
+cloth --paused
+for _ in 1 2 3; do steps press n; done; press Escape
 ends "n makes one step, Escape quits" 0 ": 3 steps to t = 0.003 s"
-cloth --paused; press n n n r n q
+cloth --paused
+for _ in 1 2 3; do steps press n; done
+press r; ever shows "$zero"; steps press n; press q
 ends "r goes back to the start" 0 ": 1 steps to t = 0.001 s"
-cloth --paused --t-end 0.05; press space; sleep 1; press q
+cloth --paused --dt 0.01
+for _ in {1..5}; do steps press n; done; at_end=$(label); press q
+ends "five long steps" 0 ": 5 steps to t = 0.05 s"
+cloth --paused --t-end 0.05; press space; ever shows "$at_end"; press q
 ends "space goes on to the end, and the window stays" 0 ": 50 steps to t = 0.05 s"
-cloth --paused; press s c s n q
+cloth --paused; press s c s; steps press n; press q
 ends "coloring and centering change no step" 0 ": 1 steps"
-cloth --t-end 1e6; sleep 0.5; press q
+cloth --t-end 1e6; changes label; press q
 ends "q ends a running simulation" 0 "nodes and"
 # On grid0 every step beyond 0.0123 s diverges.
 cloth --dt 0.05; told 1; press space n s; kill -0 "$run"; press q
@@ -138,27 +151,27 @@ cloth --dt 0.05; told 1; press r; told 2; press r; told 3; press q
 ends "r runs it again" 3 "diverged in step"
 cloth --dt 0.05 --paused; press q
 ends "nothing has failed before it runs" 0 ": 0 steps to t = 0 s"
-cloth --paused --csv "$tmp/w.csv"; kill -TERM "$run"
+bare --paused --csv "$tmp/w.csv"; kill -TERM "$run"
 ends "SIGTERM ends a paused window" 143 "SIGTERM ended the run at t = 0 s of 5 s; kept: $tmp/w.csv (1 row)"
-cloth --t-end 1e6; sleep 0.5; kill -HUP "$run"
+cloth --t-end 1e6; changes label; kill -HUP "$run"
 ends "SIGHUP ends a running one" 129 "SIGHUP ended the run at t = "
 
 # The panel: at these places in it are the buttons and sliders. What the mouse
 # does there is recorded, and run again to the same bits.
-click() { xdotool mousemove --window "$window" "$1" "$2" sleep 0.2 click 1; sleep 0.3; }
+click() { xdotool mousemove --window "$window" "$1" "$2" click 1; }
 slide() {
-  xdotool mousemove --window "$window" "$1" "$2" sleep 0.2 mousedown 1 \
-    sleep 0.2 mousemove --window "$window" "$3" "$2" sleep 0.2 mouseup 1
-  sleep 0.3
+  xdotool mousemove --window "$window" "$1" "$2" mousedown 1 \
+    mousemove --window "$window" "$3" "$2" mouseup 1
 }
 cloth --paused --record-input "$tmp/in.txt" --out "$tmp/end.nodes"
-click 148 18; slide 100 180 5; click 148 18; press n q
+steps click 148 18
+slide 100 180 5; steps click 148 18; steps press n; press q
 ends "step in the panel" 0 ": 3 steps to t = 0.003 s"
 ok "gravity in the panel" grep -q '^1 gravity -20$' "$tmp/in.txt"
 "$folder/cloth" --replay "$tmp/in.txt" --out "$tmp/again.nodes" --quiet
 ok "the recording gives the same bits" cmp "$tmp/end.nodes" "$tmp/again.nodes"
-cloth --paused; click 50 18; sleep 0.5; click 50 18; ok "play and pause" moves_not
-click 245 18; press q
+cloth --paused; steps click 50 18; click 50 18; ok "play and pause" ever stays
+click 245 18; ever shows "$zero"; press q
 ends "restart in the panel" 0 ": 0 steps to t = 0 s"
 cloth --paused; slide 100 108 290; click 50 18; told 1; press q
 ends "dt / limit of 10 blows up and says why" 3 "times the stability limit"
