@@ -282,6 +282,19 @@ for name in INT TERM HUP; do
   check small true
 done
 
+# ---- What clangd reads
+again
+check tree bash -c 'make -s compdb && python3 - <<EOF
+import json, os
+flags = {e["file"]: e["command"] for e in json.load(open("compile_commands.json"))}
+assert all(map(os.path.isfile, flags)), "no file"
+assert "-DSTAGE=tear -DMASS_SPRING_VIEWER" in flags["mass_spring.cpp"]
+assert "-isystem /usr/include/eigen3" in flags["lab/scenes/Scene.cpp"]
+assert "MASS_SPRING_VIEWER" not in flags["tests/test_scene.cpp"]
+assert "-DMASS_SPRING_VIEWER" in flags["lab/viewer/Panel.cpp"]
+EOF'; why=""; [ "$status" = 0 ] || why=" status is $status;"
+ok "make compdb: how each source is compiled"
+
 # ---- Pages whose commands are run
 run=tools/check_commands.sh
 page() { again small; printf '%s\n' '```sh' "$@" >page.md; }
