@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -112,8 +113,6 @@ Image read_png(const std::string& path) {
 
 // ---------------------------------------------------------------------- Video
 
-void Video::Close::operator()(std::FILE* f) const { std::fclose(f); }
-
 Video::Video(const std::string& path, int width, int height, double rate)
     : path_(path), width_(width), height_(height) {
   assert(width >= 2 && height >= 2 && rate > 0);
@@ -125,6 +124,7 @@ Video::Video(const std::string& path, int width, int height, double rate)
 
 Video::~Video() {
   close_input();
+  if (said_ >= 0) close(said_);
   if (child_ >= 0) {
     kill(child_, SIGKILL);
     waitpid(child_, nullptr, 0);
@@ -211,16 +211,17 @@ bool Video::start_ffmpeg(double rate) {
   add({to.c_str(), nullptr});
 
   // A socket, not a pipe: once ffmpeg is gone, send() returns an error where
-  // write() would raise a signal.
-  int ends[2];
-  message_.reset(std::tmpfile());
-  if (!message_ || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
+  // write() would raise a signal. What it says goes through a pipe, not a file,
+  // which may be on the full disk; what does not fit into the pipe is lost.
+  int ends[2], said[2];
+  if (pipe2(said, O_CLOEXEC | O_NONBLOCK) ||
+      socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
     fail(path_, reason(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], 0);
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, fileno(message_.get()), 2);
+  posix_spawn_file_actions_adddup2(&actions, said[1], 2);
   if (const auto film = file_->descriptor())  // so that it is inherited
     posix_spawn_file_actions_adddup2(&actions, *film, *film);
   // Ctrl-C at a terminal is for this program, which then ends the film.
@@ -231,8 +232,8 @@ bool Video::start_ffmpeg(double rate) {
                            const_cast<char* const*>(args.data()), environ);
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&own_group);
-  close(ends[1]);
-  input_ = ends[0];
+  close(ends[1]), close(said[1]);
+  input_ = ends[0], said_ = said[0];
   if (error == 0) return true;
   child_ = -1;
   close_input();
@@ -260,12 +261,13 @@ void Video::wait_for_ffmpeg() {
   while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  std::string said(2000, '\0');
-  std::rewind(message_.get());
-  said.resize(std::fread(said.data(), 1, said.size(), message_.get()));
-  while (!said.empty() && said.back() == '\n') said.pop_back();
-  fail(path_, "ffmpeg failed: " + said);
+  // On a full disk it may end as if all were well: only its words tell.
+  std::string said(500, '\0');
+  said.resize(
+      std::size_t(std::max<ssize_t>(0, read(said_, said.data(), said.size()))));
+  if (said.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  // The first line is the cause.
+  fail(path_, "ffmpeg failed: " + said.substr(0, said.find('\n')));
 }
 
 void Video::close_input() {

@@ -106,19 +106,15 @@ class Video {
   int frames() const { return frames_; }
 
  private:
-  struct Close {
-    void operator()(std::FILE* f) const;
-  };
-
   std::string path_;
   int width_, height_;
   std::unique_ptr<OutputFile> file_;  // none: it becomes a folder
   std::string scratch_, folder_;      // that folder, before and after finish()
   int frames_ = 0;
   bool finished_ = false;
-  int child_ = -1;                             // ffmpeg, while it runs
-  int input_ = -1;                             // our end of its input
-  std::unique_ptr<std::FILE, Close> message_;  // its standard error
+  int child_ = -1;  // ffmpeg, while it runs
+  int input_ = -1;  // our end of its input
+  int said_ = -1;   // our end of its standard error
 
   std::string folder() const;
   void make_folder();

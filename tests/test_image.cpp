@@ -2,6 +2,10 @@
  * Tests of Color, GLCamera, Image and Video, which need no display. */
 #include <gtest/gtest.h>
 
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -260,6 +264,71 @@ TEST(Video, SaysWhatIsWrong) {
   });
   EXPECT_EQ(error, (folder / "v.mp4: ffmpeg failed: too bad"));
   EXPECT_NE(error_of([&] { video.finish(); }), "no error");
+}
+
+// As ffmpeg does on a full disk: half a film, words, and the status of success.
+TEST(Video, KeepsTheOldFilmIfFfmpegOnlySaysThatItFailed) {
+  TestFolder folder;
+  std::ofstream(folder / "ffmpeg")
+      << "#!/bin/sh\nfor to; do :; done\n/bin/cat >/dev/null\n"
+         "echo half >\"${to#file:}\"\n"
+         "echo 'No space left' >&2\necho 'No trailer' >&2\n";
+  fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+  Environment path("PATH", folder.path().c_str());
+  const std::string file = folder / "v.mp4";
+  std::ofstream(file) << "a good film";
+  Video video(file, 64, 48);
+  for (int i = 0; i < 5; ++i) video.add(test_image(64, 48, i));
+  EXPECT_EQ(error_of([&] { video.finish(); }),
+            file + ": ffmpeg failed: No space left");
+  EXPECT_EQ(contents(file), "a good film");
+  EXPECT_EQ(files_in(folder), 2u);
+}
+
+/** Files can't grow beyond some bytes while this lives: as on a full disk. */
+class FileLimit {
+ public:
+  explicit FileLimit(std::uintmax_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = signal(SIGXFSZ, SIG_IGN);
+};
+
+TEST(Video, KeepsTheOldFilmIfTheDiskIsFull) {
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
+  TestFolder folder;
+  for (std::string_view ending : film_endings) {
+    const std::string file = folder / ("v" + std::string(ending));
+    const auto film = [&] {
+      Video video(file, 64, 48);
+      for (int i = 0; i < 5; ++i) video.add(test_image(64, 48, i));
+      video.finish();
+    };
+    film();
+    const std::string before = contents(file);
+    for (std::size_t size :
+         {std::size_t(0), before.size() / 2, before.size() - 1}) {
+      std::string error;
+      {
+        const FileLimit limit(size);
+        error = error_of(film);
+      }
+      EXPECT_EQ(error.find(file + ": ffmpeg failed: "), 0u) << error << size;
+      EXPECT_EQ(std::ranges::count(error, '\n'), 0) << error;
+      EXPECT_TRUE(contents(file) == before) << ending << size;
+    }
+  }
+  EXPECT_EQ(files_in(folder), film_endings.size());
 }
 
 TEST(Video, LeavesNothingIfNotFinished) {
