@@ -17,6 +17,17 @@
 
 namespace CME212 {
 
+/** Give the descriptors of standard input, output and error that are closed to
+ * /dev/null, or the next file opened would get what is printed. It is opened to
+ * read, so that writing to it stays an error.  @return true */
+inline bool hold_standard_descriptors() {
+  for (int d : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(d, F_GETFD) < 0) open("/dev/null", O_RDONLY);  // the lowest free
+  return true;
+}
+/** Before main(), in each program that has an OutputFile. */
+inline const bool standard_descriptors_held = hold_standard_descriptors();
+
 /** What the file name @a file stands for: without symbolic links, also one
  * whose target is not there yet. Two names of one file have one target; two
  * hard links have two.  Throws std::runtime_error: links in a circle. */
