@@ -80,6 +80,29 @@ TEST_F(ClothReplay, OfEachOfTheGalleryFails) {
       << failed.err;
 }
 
+// In one step of a second method there is no end of those of the first one.
+TEST_F(ClothReplay, TakesNoMoreThanSomeStepsInARound) {
+  for (double share : {1e-300, 1e300})
+    for (auto at : {Compare::At::equal_time, Compare::At::equal_work}) {
+      live.apply(Compare{find_method("augmented-verlet"), share, at});
+      const Readings r = live.readings(false);
+      const double ratio = r.comparison->rival.dt / r.dt;
+      if (at == Compare::At::equal_time)
+        EXPECT_NEAR(ratio, share < 1 ? 1e-4 : 1e4, 1e-9 * ratio) << share;
+      EXPECT_GE(r.comparison->reference_dt, std::min(ratio, 1.) * r.dt / 1e4);
+    }
+  std::string text = live.recording();
+  text.insert(text.rfind("0 end"),
+              "0 compare augmented-verlet 1e300 equal-time\n");
+  text.replace(text.rfind("0 end"), 5, "2 end");
+  const Result r =
+      folder.run("timeout 60 " + CME212::program("cloth", "build/") +
+                 " --replay " + file("input.txt", text));
+  EXPECT_EQ(r.status, 2);  // 2 rounds are longer than the scene
+  EXPECT_NE(r.err.find("the scene ended after 1 steps"), std::string::npos)
+      << r.err;
+}
+
 TEST_F(ClothReplay, RefusesWhatItCanNotDo) {
   write_recording(live, path("input.txt"));
   const std::string replay = "--replay " + path("input.txt") + ' ';

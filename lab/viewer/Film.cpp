@@ -1,10 +1,12 @@
 #include "lab/viewer/Film.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/viewer/Run.hpp"
 
@@ -46,6 +48,11 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
       touched_(scene.recipe().obstacles.size()) {
   screen_->show_strain(o.strain);
   if (o.video.empty()) return;
+  constexpr double day = 86400;  // [s]
+  if (o.model.t_end > day)
+    throw SceneError("t-end", "is " + short_text(o.model.t_end) +
+                                  ", expected at most " + short_text(day) +
+                                  " s, a day, of a film");
   screen_->start_film(o.video);
   if (scene.time() == 0) add_card(title());
 }
@@ -65,7 +72,12 @@ void Film::draw() {
   // A failure stays: there is a reason to read.
   int times = scene_.failure().empty() ? 0 : frames_in(failure_seconds);
   for (const double time = frame_time(); now >= next_; next_ += time) ++times;
-  screen_->add_to_film(times);
+  // At least some, as a film has pictures.
+  constexpr int some = 30;
+  do {
+    screen_->add_to_film(std::min(times, some));
+    times -= some;
+  } while (times > 0 && !interrupted());
 }
 
 void Film::finish() {

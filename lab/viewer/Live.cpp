@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "lab/Interrupt.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
@@ -36,9 +37,12 @@ double cost_of(const MethodEntry& m) {
 struct Round {
   int main = 1, rival = 1;
 
-  /** @param ratio rival's step / main's step, which it is to 2 % */
+  /** The most steps that a scene takes in one. */
+  static constexpr double most = 1e4;
+
+  /** @param ratio rival's step / main's step, which it is to 2 %, up to most */
   static Round of_steps(double ratio) {
-    const double up = std::max(ratio, 1 / ratio);
+    const double up = std::min(std::max(ratio, 1 / ratio), most);
     int few = 0, many = 0;
     do {
       many = int(std::lround(++few * up));
@@ -330,8 +334,8 @@ void Live::Parts::tune() {
     side.mark();
   };
   set(*rival, whole / round.rival);
-  set(*reference,
-      whole / std::ceil(whole / (reference_share * reference->dt_unit)));
+  const double steps = whole / (reference_share * reference->dt_unit);
+  set(*reference, whole / std::min(std::ceil(steps), Round::most));
 }
 
 RunReadings Live::Parts::Side::readings(bool sharp) {
@@ -367,9 +371,16 @@ bool Live::step() {
   if (done()) return false;
   ++p.calls;
   const int count = p.rival ? p.round.main : 1;
-  for (int k = 0; k < count && !done(); ++k) p.main->scene->step(p.model.t_end);
-  for (auto* side : {&p.rival, &p.reference})
-    if (*side && (*side)->runs()) (*side)->scene->run_to(p.main->scene->time());
+  for (int k = 0; k < count && !done() && !interrupted(); ++k)
+    p.main->scene->step(p.model.t_end);
+  const double time = p.main->scene->time();
+  for (auto* side : {&p.rival, &p.reference}) {
+    if (!*side || !(*side)->runs()) continue;
+    Scene& s = *(*side)->scene;
+    while (!s.done(time) && !interrupted())
+      s.steps_at_once(Scene::guard_interval, time);
+    s.check();
+  }
   return !done();
 }
 

@@ -28,8 +28,10 @@ class ReplayFilm {
     last_ = scene.time();
     if (due_ < 0) return;
     screen_.show(scene);
-    for (; due_ >= 0; due_ -= 1 / Screen::frames_per_second)
+    do {
       screen_.add_to_film(1);
+      due_ -= 1 / Screen::frames_per_second;
+    } while (due_ >= 0 && !interrupted());
   }
 
  private:
@@ -75,7 +77,7 @@ int run_replay(const Options& o) {
               << short_text(r.energy.total()) << " J; " << r.nodes
               << " nodes and " << r.edges << " edges left\n";
   if (!r.failure.empty()) std::cerr << "cloth: " << r.failure << '\n';
-  if (interrupted()) {
+  if (interrupted() && r.failure.empty()) {
     std::cerr << "cloth: " << name_of_interrupt()
               << " ended the replay at t = " << short_text(r.time) << " s\n";
     return 128 + interrupted();
