@@ -42,14 +42,17 @@ double available_memory() {
   for (const auto& [limit, used] : of_groups)
     if (const double all = number_in(limit); all < unknown)
       least = std::min(least, all - std::min(all, number_in(used)));
+  return std::min(least, available_addresses());
+}
+
+double available_addresses() {
   rlimit addresses{};
-  if (getrlimit(RLIMIT_AS, &addresses) == 0 &&
-      addresses.rlim_cur != RLIM_INFINITY) {
-    const double taken = number_in("/proc/self/statm") * sysconf(_SC_PAGESIZE);
-    const double limit = double(addresses.rlim_cur);
-    least = std::min(least, limit - std::min(limit, taken));
-  }
-  return least;
+  if (getrlimit(RLIMIT_AS, &addresses) != 0 ||
+      addresses.rlim_cur == RLIM_INFINITY)
+    return unknown;
+  const double taken = number_in("/proc/self/statm") * sysconf(_SC_PAGESIZE);
+  const double limit = double(addresses.rlim_cur);
+  return limit - std::min(limit, taken);
 }
 
 }  // namespace lab

@@ -15,5 +15,7 @@ double needed_memory(double nodes, double springs);
  * available, the limit of its control group, and that of its addresses
  * (ulimit -v), whichever is least; infinity if none is known. */
 double available_memory();
+/** The last of these alone. */
+double available_addresses();
 
 }  // namespace lab

@@ -10,13 +10,16 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <new>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
+#include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/viewer/Live.hpp"
 #include "lab/viewer/Panel.hpp"
@@ -396,6 +399,11 @@ class SDLScreen : public Screen {
 bool Screen::can_draw() { return true; }
 bool Screen::has_display() { return CME212::SDLViewer::has_display(); }
 std::unique_ptr<Screen> Screen::open(Kind kind) {
+  // Without memory the software renderer ends the program by SIGSEGV; it took
+  // 660 MB of addresses on two processors, a thread on each.
+  if (available_addresses() <
+      550e6 + 75e6 * std::thread::hardware_concurrency())
+    throw std::bad_alloc();
   return std::make_unique<SDLScreen>(kind);
 }
 
