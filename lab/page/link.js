@@ -25,6 +25,7 @@ const Link = {
     return '#' + all;
   },
 
+  most: {steps: 1e6, node: 1e4 - 1},
   ranges: {share: [0.001, 1000], rivalShare: [0.001, 1000], K: [0.01, 1e6],
     drag: [0, 100], gravity: [0, 100]},
 
@@ -39,8 +40,9 @@ const Link = {
       case 'method': return n === 1 && whole && within(first, [0, methods - 1]);
       case 'compare': return n === 2 && whole &&
         within(first, [-1, methods - 1]) && within(second, Link.ranges.share);
-      case 'grab': return n === 4 && whole && first >= 0;
-      case 'pin': return n === 1 && whole && first >= 0;
+      case 'grab': return n === 4 && whole &&
+        within(first, [0, Link.most.node]);
+      case 'pin': return n === 1 && whole && within(first, [0, Link.most.node]);
       case 'move': return n === 3;
       case 'release': return n === 0;
       case 'cut': return n === 12;
@@ -49,7 +51,8 @@ const Link = {
   },
 
   // What write() wrote; what is missing or makes no sense is left out.
-  // @return {start, log, calls, camera, speed}: start has what is known
+  // @return {start, log, calls, camera, speed, leftOut}: start has what is known;
+  // leftOut: a step or a request made no sense
   read(hash, about) {
     const all = new URLSearchParams(hash.replace(/^#/, ''));
     const start = {};
@@ -67,15 +70,18 @@ const Link = {
     number('side', 2, 100);
     for (const [name, range] of Object.entries(Link.ranges))
       number(name, ...range);
-    const read = {start, log: [], calls: 0};
+    const read = {start, log: [], calls: 0, leftOut: false};
     if (start.side) start.side = Math.round(start.side);
     const steps = Number(all.get('steps'));
-    if (steps > 0 && steps <= 1e6) read.calls = Math.floor(steps);
+    if (steps >= 0 && steps <= Link.most.steps) read.calls = Math.floor(steps);
+    else read.leftOut = true;
     for (const event of (all.get('log') || '').split('~').filter(Boolean)) {
       const [at, name, ...values] = event.split('_');
-      const numbers = values.map(Number);
-      if (Number(at) >= 0 && Link.canAsk(name, numbers, about.methods.length))
-        read.log.push([Number(at), name, ...numbers]);
+      const numbers = values.map(Number), calls = Number(at);
+      if (calls >= 0 && calls <= read.calls &&
+        Link.canAsk(name, numbers, about.methods.length))
+        read.log.push([calls, name, ...numbers]);
+      else read.leftOut = true;
     }
     const camera = (all.get('camera') || '').split('_').map(Number);
     if (camera.length === 3 && camera.every(a => Math.abs(a) <= 1000))

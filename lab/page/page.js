@@ -259,7 +259,8 @@ function showFailure(words) {
     .replace(/--method (\S+)/g, 'method $1');
   $('failure').hidden = !text;
   $('failure').querySelector('h2').textContent =
-    text.startsWith('diverged') ? 'It diverged' : 'It failed';
+    text.startsWith('diverged') ? 'It diverged'
+      : text.startsWith('Of the link') ? 'Another run' : 'It failed';
   // Where it happened; and behind the last good state, why and what works.
   const at = text.indexOf(' s; ', text.indexOf('the last good state'));
   const parts = at < 0 ? [text]
@@ -285,6 +286,8 @@ const replies = {
     if (read.camera)
       page.view.camera.set(...read.camera);
     start();
+    if (read.leftOut) showFailure('Of the link, what makes no sense was left ' +
+      'out: its run may be another one.');
     if (!read.calls && !read.log.length) return;
     setPlaying(false);
     ++page.run, page.worker.postMessage(['repeat',
@@ -321,6 +324,10 @@ const replies = {
     }
     if (!data.failed) page.failed = false;
     page.changed();
+  },
+  repeating({part}) {
+    setText($('busy'),
+      `repeating the link: ${Math.floor(100 * part)} %; Restart ends that`);
   },
   history({history}) {
     for (const readings of history) page.readings = readings, remember();

@@ -325,6 +325,27 @@ def a_link_of_nonsense_is_a_page_all_the_same(b):
 
 
 @test
+def a_link_of_a_request_beyond_its_steps_says_so(b):
+    opened(b, "#log=1e300_release&steps=20")
+    b.wait("page.calls >= 20")
+    assert b.value("$('failure').querySelector('h2').textContent") == \
+        "Another run"
+    opened(b, "#log=3_release&steps=20")
+    b.wait("page.calls >= 20")
+    assert b.value("$('failure').hidden")
+
+
+@test
+def a_link_of_a_long_run_can_be_left(b):
+    """Hours of steps: on the way, another run is made at once."""
+    b.open(address + "#steps=1000000&side=100&method=implicit-euler")
+    b.wait("$('busy').textContent.startsWith('repeating the link')")
+    b.click("#restart")
+    b.wait("page.readings && page.frames > 0 && page.playing")
+    assert b.value("page.calls") < 1000
+
+
+@test
 def large_systems_are_factored(b):
     """By Eigen's order, which takes 32 bytes a row of the stack."""
     opened(b, "#side=50&method=implicit-euler&share=100")

@@ -9,6 +9,7 @@ let run = 0, asked = 0;        // how many were started; requests taken
 let broken = '';               // what was thrown, until the next start
 let versions = [-1, -1];       // of the meshes that were sent
 let sharpAt = 0, explained = false, readings = null;
+let newest = 0;                // number of the last run that the page asked for
 
 const text = at => {
   const bytes = new Uint8Array(wasm.memory.buffer, at);
@@ -96,22 +97,34 @@ function advance(time, budget) {
   return now;
 }
 
-// The run of a link, once more.  @return readings of it, 150 at most
-function repeat(link) {
+// The run of a link, once more, until the page asks for another one than `mine`.
+// @return readings of it, 150 at most
+async function repeat(link, mine) {
   load(link.start);
   const history = [], every = Math.ceil(link.calls / 150);
-  const runTo = end => {
-    while (calls < end && !broken) {
+  let until = performance.now();
+  // Now and then, say how far it is and let messages come in.
+  const goesOn = async () => {
+    if (performance.now() > until) {
+      postMessage({kind: 'repeating', run, part: calls / link.calls});
+      await new Promise(resolve => setTimeout(resolve));
+      until = performance.now() + 100;
+    }
+    return mine === newest && !broken;
+  };
+  const runTo = async end => {
+    while (calls < end && await goesOn()) {
       call('step');
       if (++calls % every || broken || failureOf(0)) continue;
       history.push(JSON.parse(text(call('readings', 0))));
     }
   };
   for (const [at, name, ...values] of link.log) {
-    runTo(at);
+    await runTo(at);
+    if (!await goesOn()) break;
     apply(name, values), log.push([at, name, ...values]);
   }
-  runTo(link.calls);
+  await runTo(link.calls);
   return history;
 }
 
@@ -184,10 +197,10 @@ const handlers = {
     if (broken) await instantiate();
     load(s), setting();
   },
-  async repeat(link) {
+  async repeat(link, mine) {
     if (broken) await instantiate();
-    const history = repeat(link);
-    postMessage({kind: 'history', history});
+    const history = await repeat(link, mine);
+    postMessage({kind: 'history', run, history});
     setting();
   },
   ask([name, ...values]) {
@@ -216,6 +229,7 @@ const handlers = {
 // One message at a time, also while a handler waits.
 let last = Promise.resolve();
 onmessage = ({data: [name, value]}) => {
-  last = last.then(() => handlers[name](value)).catch(
+  const number = name === 'load' || name === 'repeat' ? ++newest : newest;
+  last = last.then(() => handlers[name](value, number)).catch(
     error => postMessage({kind: 'error', text: String(error.stack || error)}));
 };
