@@ -2,7 +2,10 @@
 /** @file Mesh.hpp
  * What a cloth is made from: points and quads, read from files or generated.
  * Format of the files: data/README.md. */
+#include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +13,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -106,25 +108,37 @@ void read_rows(std::string_view text, const std::string& file, const char* kind,
     throw InputError(file, lines, "nothing in the file, expected " + expected);
 }
 
-/** All of a file.  Throws InputError. */
-inline std::string read_file(const std::string& file, const char* expected) {
+/** All of a file.
+ * @param waiting called now and then: a pipe may give nothing, or have no end
+ * Throws InputError, and what @a waiting throws. */
+inline std::string read_file(
+    const std::string& file, const char* expected, void (*waiting)() = [] {}) {
   auto fail = [&](const std::string& what) {
     throw InputError(file, 0, what + ", expected " + expected);
   };
   struct stat status {};
   const bool known = stat(file.c_str(), &status) == 0;
   if (known && S_ISDIR(status.st_mode)) fail("a directory");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail(std::string("can't be opened (") + std::strerror(errno) + ")");
+  const auto fail_to = [&](const char* what) {
+    fail(std::string("can't be ") + what + " (" + std::strerror(errno) + ')');
+  };
+  struct Input : pollfd {
+    ~Input() { close(fd); }
+  };
+  // So that a pipe is open before it has a writer.
+  constexpr int how = O_RDONLY | O_NONBLOCK | O_CLOEXEC;
+  Input in{{open(file.c_str(), how), POLLIN, 0}};
+  if (in.fd < 0) fail_to("opened");
   std::string text;
   if (known) text.reserve(std::size_t(status.st_size));  // of a pipe, 0
   std::vector<char> part(1 << 16);
-  do {
-    in.read(part.data(), std::streamsize(part.size()));
-    text.append(part.data(), std::size_t(in.gcount()));
-  } while (in);
-  if (in.bad()) fail("can't be read");
+  for (ssize_t got = 1; got != 0;) {
+    waiting();
+    if (poll(&in, 1, 100) <= 0) continue;  // nothing in 0.1 s, or a signal
+    got = read(in.fd, part.data(), part.size());
+    if (got > 0) text.append(part.data(), std::size_t(got));
+    if (got < 0 && errno != EAGAIN && errno != EINTR) fail_to("read");
+  }
   return text;
 }
 

@@ -380,7 +380,9 @@ int main(int argc, char** argv) {
     return after_output(status >= 0 ? status : run(o));
   } catch (const Interrupted&) {
     std::cerr << "cloth: " << name_of_interrupt() << " ended the "
-              << (o.asks_advice() ? "advice" : "measurement of the error")
+              << (o.asks_advice()              ? "advice"
+                  : o.model.step.tolerance > 0 ? "measurement of the error"
+                                               : "reading")
               << "; nothing was kept\n";
     return 128 + interrupted();
   } catch (const NoDisplay& e) {

@@ -135,6 +135,28 @@ TEST_F(ClothProgram, SaysWhenTheStandardOutputIsFull) {
             "status 0\n");
 }
 
+// A file that is opened must not get what is printed.
+TEST_F(ClothProgram, PrintsIntoNoFileIfItsDescriptorsAreClosed) {
+  const std::string outputs = small + "--checkpoint " + path("c") + " --csv " +
+                              path("e.csv") + " --out " + path("end.nodes");
+  const auto all = [this] {
+    return contents(dir / "e.csv") + contents(dir / "end.nodes") +
+           contents(dir / "end.tets") + contents(dir / "c");
+  };
+  EXPECT_EQ(run(outputs).status, 0);
+  const std::string right = all();
+  for (const auto& [closed, status] :
+       {std::pair(">&-", 2), std::pair("<&- >&-", 2),
+        std::pair("<&- >&- 2>&-", 2), std::pair("<&- 2>&-", 0)}) {
+    for (const std::string& name : files()) fs::remove(dir / name);
+    Result r = folder.run("sh -c \"" + CME212::program("cloth", "build/") +
+                          ' ' + outputs + ' ' + closed + "; exit \\$?\"");
+    EXPECT_EQ(r.status, status) << closed << r.err;
+    EXPECT_TRUE(all() == right) << closed;
+    EXPECT_EQ(files().size(), 4u);
+  }
+}
+
 TEST_F(ClothProgram, SaysWhenAnOutputIsOnAFullDisk) {
   for (const char* option : {"--csv ", "--out "}) {
     Result r = run(small + option + "/dev/full");
@@ -218,6 +240,26 @@ TEST_F(ClothProgram, LeavesIgnoredSignalsIgnored) {
       [this] { return fs::exists(dir / "c"); }, "trap '' HUP; ");
   EXPECT_EQ(r.status, 128 + SIGTERM);
   EXPECT_EQ(r.err.find("SIGHUP"), r.err.npos) << r.err;
+}
+
+TEST_F(ClothProgram, ReadsAPipeAndEndsByASignalIfNothingComes) {
+  const std::string pipe = path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string cloth = CME212::program("cloth", "build/");
+  const std::string rest = " data/grid0.tets --t-end 0.01 --headless --out ";
+  EXPECT_EQ(run("data/grid0.nodes" + rest + path("a.nodes")).status, 0);
+  Result r = folder.run("sh -c \"timeout 60 cat data/grid0.nodes >" + pipe +
+                        " & timeout 60 " + cloth + ' ' + pipe + rest +
+                        path("b.nodes") + '"');
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(contents(dir / "a.nodes"), contents(dir / "b.nodes"));
+  for (const std::string& reads :
+       {pipe + " data/grid0.tets", "data/grid0.nodes " + pipe,
+        "--replay " + pipe}) {
+    r = interrupt(reads + " --headless", {SIGTERM});
+    EXPECT_EQ(r.status, 143) << reads;
+    EXPECT_EQ(r.err, "cloth: SIGTERM ended the reading; nothing was kept\n");
+  }
 }
 
 TEST_F(ClothProgram, EndsTheAdviceByASignal) {

@@ -3,13 +3,17 @@
 #include "lab/stability/Diagnosis.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <cctype>
+#include <cstdlib>
+#include <iostream>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/viewer/Options.hpp"
@@ -322,6 +326,23 @@ TEST(Diagnosis, OfTwoHeldNodesThatMeetKnowsNoCure) {
   EXPECT_NE(scene.explanation().find("; no cure is known: trials of "),
             std::string::npos)
       << scene.explanation();
+}
+
+// A user who ends the program waits for no trials, but learns what happened.
+TEST(Diagnosis, IsCutShortByASignal) {
+  const Model m = parsed("--sheet 'nodes 5 5' --pin 'x 0' --dt 0.02");
+  Scene scene(m);
+  ASSERT_FALSE(scene.run_to(m.t_end));
+  const auto explain = [&] {
+    catch_interrupts();
+    raise(SIGTERM);
+    std::cerr << scene.explanation();
+    std::exit(0);
+  };
+  EXPECT_EXIT(explain(), testing::ExitedWithCode(0),
+              "^diverged in step .* of t = .* s; a signal ended the search for "
+              "its cause$");
+  EXPECT_TRUE(scene.diagnosis().cure);
 }
 
 TEST(Diagnosis, IsForgottenByARestart) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <typeinfo>
 
+#include "lab/Interrupt.hpp"
 #include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/MeshFile.hpp"
@@ -37,7 +38,8 @@ void __cxa_free_exception(void*) {}
 }
 
 // ---------------------------------------------------------------------- Files
-// A page makes its meshes, and its link holds what was asked of it.
+// A page makes its meshes, and its link holds what was asked of it. It knows no
+// signals.
 
 namespace lab {
 
@@ -46,6 +48,9 @@ PointsAndQuads load_mesh(const std::string& nodes, const std::string&) {
 }
 double needed_memory(double, double) { return 0; }
 double available_memory() { return std::numeric_limits<double>::infinity(); }
+
+int interrupted() { return 0; }
+void end_if_interrupted() {}
 
 std::uint64_t checksum_of(const Cloth&) { return 0; }
 std::string begin_recording() { return {}; }

@@ -1,13 +1,12 @@
 #pragma once
 /** @file wasi.hpp
- * What the C++ library of wasm32-wasi lacks of what our sources name: threads,
- * files and from_chars() of a double. Included before each source that is
- * compiled for the page, and by nothing else. A page has one thread and no
- * files, so most of it does nothing. */
+ * What the C++ library of wasm32-wasi lacks of what our sources name: threads
+ * and from_chars() of a double. Included before each source that is compiled
+ * for the page, and by nothing else. A page has one thread, so most of it does
+ * nothing. */
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
-#include <istream>
 #include <mutex>
 #include <string>
 
@@ -21,14 +20,6 @@ void sleep_for(const chrono::duration<Rep, Period>&) {}
 struct mutex {
   void lock() {}
   void unlock() {}
-};
-
-/** A file that can't be opened. */
-template <>
-class basic_ifstream<char> : public istream {
- public:
-  explicit basic_ifstream(const string&, ios::openmode = ios::in)
-      : istream(nullptr) {}
 };
 
 inline from_chars_result from_chars(const char* first, const char* last,

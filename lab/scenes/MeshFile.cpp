@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 
 namespace lab {
 
@@ -49,9 +50,12 @@ PointsAndQuads parse_nodes(std::string_view text, const std::string& file) {
 }
 
 PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets) {
-  PointsAndQuads mesh =
-      parse_nodes(mesh_detail::read_file(nodes, "a file of points"), nodes);
-  mesh.quads = load_quads(tets, mesh.points.size());
+  const auto read = [](const std::string& file, const char* expected) {
+    return mesh_detail::read_file(file, expected, end_if_interrupted);
+  };
+  PointsAndQuads mesh = parse_nodes(read(nodes, "a file of points"), nodes);
+  mesh.quads =
+      parse_quads(read(tets, "a file of quads"), tets, mesh.points.size());
   return mesh;
 }
 

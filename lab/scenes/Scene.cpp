@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
 #include "lab/stability/StepLimit.hpp"
@@ -422,6 +423,14 @@ const Diagnosis& Scene::diagnosis() const {
   return *diagnosis_;
 }
 
+std::string Scene::explanation() const {
+  try {
+    return failure_ + "; " + diagnosis().text;
+  } catch (const Interrupted&) {
+    return failure_ + "; a signal ended the search for its cause";
+  }
+}
+
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   const auto copy = [this] {
     auto scene = std::make_unique<Scene>(
@@ -438,8 +447,8 @@ std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
         return true;
     return false;
   };
-  for (int left = 1000; left > 0 && !is_far() && ahead->advance(); --left) {
-  }
+  for (int left = 1000; left > 0 && !is_far() && ahead->advance(); --left)
+    if (interrupted()) break;
   return ahead->is_finite() ? std::move(ahead) : copy();
 }
 
@@ -473,6 +482,7 @@ Attempt Scene::attempt(const Cure& cure, double t_end) const {
     double left = trial_work;
     while (!trial->done(t_end) && left > 0 && trial->step(t_end)) {
       left -= evaluations * size(trial->cloth());
+      end_if_interrupted();
       if (trial->steps() % every != 0) continue;
       const Energies e = trial->energy();
       largest = std::max(largest, e.internal());
@@ -486,7 +496,7 @@ Attempt Scene::attempt(const Cure& cure, double t_end) const {
     const auto finer = anew({cure.method, cure.dt / 2});
     const double apart = energy_tolerance * largest + guard_->round_off();
     for (const auto& [time, b] : on_the_way)
-      passed = passed && finer->run_to(time) &&
+      passed = passed && finer->run_to(time, end_if_interrupted) &&
                std::abs(balance(finer->energy(), finer->flow()) - b) <= apart;
     return {passed, end};
   } catch (const std::invalid_argument&) {  // not with this force

@@ -134,8 +134,9 @@ class Scene {
    * the step, too.  @pre !failure().empty()
    * Throws what the recipe throws. */
   const Diagnosis& diagnosis() const;
-  /** Both in one line.  @pre and throws as diagnosis() */
-  std::string explanation() const { return failure_ + "; " + diagnosis().text; }
+  /** Both in one line; if a signal came before a cure was found, without it.
+   * @pre and throws as diagnosis(), which throws Interrupted then */
+  std::string explanation() const;
   static constexpr double trial_work = 3e8;
   /** The failed run some steps later, had nobody stopped it: when a node is
    * @a distance [m] from where the last good state has it, or after 1000 steps.

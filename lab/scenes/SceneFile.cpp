@@ -12,6 +12,7 @@
 
 #include "CME212/Mesh.hpp"
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/KeyValues.hpp"
@@ -264,7 +265,7 @@ void SceneOptions::read(CLI::App& app, const std::string& file,
                         const std::function<void()>& check) {
   std::string text;
   try {
-    text = mesh_detail::read_file(file, "a scene file");
+    text = mesh_detail::read_file(file, "a scene file", end_if_interrupted);
   } catch (const InputError& e) {
     throw SceneFileError(e.what());
   }

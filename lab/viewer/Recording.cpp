@@ -8,6 +8,7 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
@@ -233,7 +234,8 @@ void write_recording(const Live& live, const std::string& file) {
 }
 
 Recording read_recording(const std::string& file) {
-  const std::string text = mesh_detail::read_file(file, "a recording");
+  const std::string text =
+      mesh_detail::read_file(file, "a recording", end_if_interrupted);
   if (text.substr(0, text.find_first_of("\r\n")) != first_line)
     throw InputError(file, 1,
                      std::string("expected \"") + first_line +
