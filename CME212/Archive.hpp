@@ -12,10 +12,16 @@
 
 namespace CME212 {
 
+/** What has a function archive(Archive&), as below. */
+template <typename T>
+concept Archived = requires {
+  &T::archive;
+};
+
 /** What is saved as the bytes it consists of. */
 template <typename T>
-concept Plain =
-    std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !requires {
+concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
+                !Archived<T> && !requires {
   typename T::element_type;
 };  // a span
 
@@ -25,7 +31,8 @@ concept Plain =
  *     void archive(Archive& a) { a(time_)(positions_); }
  *
  * Bytes are as in memory: of numbers and structs of numbers, without pointers,
- * for the same program on the same kind of machine. */
+ * for the same program on the same kind of machine. What is loaded may be
+ * forged: whoever relies on its range says require(). */
 class Archive {
  public:
   /** Saves. */
@@ -45,6 +52,17 @@ class Archive {
   template <typename T>
   requires Plain<T> Archive& operator()(T& x) { return copy(&x, 1); }
   template <typename T>
+  requires Archived<T> Archive& operator()(T& x) {
+    return x.archive(*this), *this;
+  }
+  /** Other bytes than those of true and false must not become a bool. */
+  Archive& operator()(bool& x) {
+    char byte = x;
+    copy(&byte, 1).require(byte == 0 || byte == 1);
+    x = byte == 1;
+    return *this;
+  }
+  template <typename T>
   Archive& operator()(std::vector<T>& list) {
     const std::uint64_t length = length_of(list.size(), sizeof(T));
     if (loads_) list.resize(length);
@@ -60,6 +78,11 @@ class Archive {
     if (length_of(list.size(), sizeof(T)) != list.size())
       throw std::runtime_error("a list of another length");
     return copy(list.data(), list.size());
+  }
+
+  /** Throws std::runtime_error if what was loaded is not @a ok. */
+  void require(bool ok) const {
+    if (loads_ && !ok) throw std::runtime_error("holds what no run saves");
   }
 
  private:

@@ -2,6 +2,9 @@
  * A run that goes on from what another saved: the same bits, or an error. */
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -14,6 +17,7 @@
 #include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/viewer/Run.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;
@@ -258,8 +262,8 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
                                 "checkpoint");
   EXPECT_EQ(error_with("0 0 0\n"), file + ": no checkpoint");
   std::string newer = good;
-  newer.replace(good.find(" 4 "), 3, " 5 ");
-  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 5"),
+  newer.replace(good.find(" 5 "), 3, " 6 ");
+  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 6"),
             0u);
   EXPECT_EQ(error_with(good.substr(0, good.size() - 3)),
             file + ": ends too early: it has " +
@@ -267,7 +271,77 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
                 std::to_string(a.bytes().size()));
   fs::remove(file);
   EXPECT_EQ(CME212::error_of([&] { read_checkpoint(file); }),
-            file + ": can't be read (No such file or directory)");
+            file +
+                ": can't be opened (No such file or directory), expected a "
+                "checkpoint");
+}
+
+// Words and bytes of a checkpoint that are others, with the checksum of that:
+// it is refused, or the run goes on and fails or ends.
+TEST(Checkpoint, ThatIsForgedIsRefusedOrGoesOn) {
+  const CME212::TestFolder folder;
+  const double huge = 1e300, nan = std::nan(""), inf = HUGE_VAL, minus = -1;
+  std::vector<std::uint64_t> words = {0, 2, ~0ull, 1ull << 63, 1ull << 62};
+  for (double a : {huge, nan, inf, minus, 1e-300})
+    words.push_back(std::bit_cast<std::uint64_t>(a));
+  constexpr int count = 8;  // of each
+  std::mt19937_64 random(1);
+  int refused = 0, went_on = 0;
+  for (Model m : scenes())
+    for (const char* dt : {"0.002", "auto", "auto:sharp"})
+      for (const MethodEntry& method : methods) {
+        m.sheets[0].nodes = {4, 4};
+        m.method = &method, m.step = read_time_step(dt);
+        m.t_end = 0.3;
+        Options o;
+        o.model = m, o.quiet = true, o.checkpoint = folder / "c", o.every = 3;
+        o.csv = folder / "e.csv";
+        try {
+          Scene scene(m);
+          lab::Run run(scene, o);
+          while (scene.steps() < 50 && !run.done()) run.advance(1);
+          if (!scene.failure().empty()) continue;
+          run.finish();
+        } catch (const std::invalid_argument&) {  // not with this step
+          continue;
+        }
+        const std::string good = CME212::contents(o.checkpoint);
+        o.restart = std::exchange(o.checkpoint, "");
+        const auto head = good.find('\n') + 9, end = good.size() - 8;
+        for (int k = 0; k < count; ++k) {
+          std::string bad = good;
+          const std::size_t at = head + random() % (end - head - 8);
+          if (k % 3 == 0)
+            bad[at] = char(random());
+          else
+            std::memcpy(&bad[at - (at - end) % 8],
+                        &words[random() % words.size()], 8);
+          const std::uint64_t sum = crc64(bad.substr(0, end));
+          std::memcpy(&bad[end], &sum, 8);
+          std::ofstream(o.restart, std::ios::binary) << bad;
+          Scene scene(m);
+          try {
+            lab::Run run(scene, o);
+            scene.cloth().check_invariants();
+            for (int step = 0; step < 40 && !run.done(); ++step) run.advance();
+            run.check();
+          } catch (const SceneError&) {
+            ++refused;
+            continue;
+          } catch (const std::runtime_error& e) {
+            EXPECT_NE(std::string(e.what()).find(": "), std::string::npos);
+            ++refused;
+            continue;
+          }
+          ++went_on;
+          ASSERT_TRUE(std::isfinite(energies(scene.cloth(), 1).total()));
+          ASSERT_TRUE(std::isfinite(scene.time()));
+          ASSERT_GT(scene.dt(), 0);
+        }
+      }
+  EXPECT_GT(refused, 10 * count);
+  EXPECT_GT(went_on, 10 * count);
+  RecordProperty("refused", refused), RecordProperty("went_on", went_on);
 }
 
 TEST(Checkpoint, IsOfOneScene) {

@@ -135,8 +135,9 @@ TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
   EXPECT_EQ(error("--restart " + file("no", "text")),
             "cloth: " + path("no") + ": no checkpoint\n");
   EXPECT_EQ(error("--restart " + path("none")),
-            "cloth: " + path("none") +
-                ": can't be read (No such file or directory)\n");
+            path("none") +
+                ": can't be opened (No such file or directory), expected a "
+                "checkpoint\n");
   EXPECT_EQ(error(scene + "--restart ''"),
             "cloth: --restart: is empty, expected a file\n");
   EXPECT_EQ(error(scene + "--checkpoint " + c + " --csv " + c),

@@ -181,7 +181,9 @@ class Tear final : public Round<SweptConstraint> {
     if (!this->idle(c, t, 0, c.slots())) SweptConstraint::apply_flat(c, g, t);
   }
   Exchange exchange() const override { return {0, moment_}; }
-  void archive(CME212::Archive& a) const override { a(moment_); }
+  void archive(CME212::Archive& a) const override {
+    a(moment_).require(std::isfinite(moment_));
+  }
 
  private:
   mutable double moment_ = 0;
@@ -199,7 +201,9 @@ class Called final : public SweptConstraint {
   }
   bool is_at_rest(double /*t*/) const override { return true; }
   Exchange exchange() const override { return {0, moment_}; }
-  void archive(CME212::Archive& a) const override { a(moment_); }
+  void archive(CME212::Archive& a) const override {
+    a(moment_).require(std::isfinite(moment_));
+  }
 
  private:
   std::shared_ptr<const ZeroConstraint> c_;

@@ -282,7 +282,7 @@ class WatchedConstraint final : public SweptConstraint {
   Exchange exchange() const override { return c_.exchange(); }
   void archive(CME212::Archive& a) const override {
     c_.archive(a);
-    a(before_)(count_)(first_);
+    a(before_)(count_)(first_.node)(first_.length).require(count_ >= 0);
   }
 
  private:

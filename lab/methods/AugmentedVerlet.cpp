@@ -42,7 +42,7 @@ void AugmentedVerlet::archive(CME212::Archive& a, const Cloth& g) {
   a(has);
   if (!has) return restart();
   double dt = loaded_dt_ > 0 ? loaded_dt_ : key_.dt;
-  a(acceleration_)(kept_time_)(dt);
+  a(acceleration_)(kept_time_)(dt).require(dt > 0 && std::isfinite(dt));
   if (!a.loads()) return;
   flow_.set_kept(g, acceleration_);
   kept_for_ = &g, loaded_dt_ = dt;

@@ -1,8 +1,10 @@
 #include "lab/methods/FlatFlow.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "lab/fast/Sweep.hpp"
@@ -329,6 +331,9 @@ void FlatFlow::set_kept(const Cloth& g, const std::vector<Point>& a,
                         unsigned x) {
   const Drag none;
   cloth_.take(g, 0, none);
+  if (a.size() != cloth_.slots() ||
+      !std::ranges::all_of(a, [](auto& p) { return std::isfinite(norm(p)); }))
+    throw std::runtime_error("holds no accelerations of this cloth");
   for (unsigned i = 0; i < a.size(); ++i) cloth_.set(x, i, a[i]);
 }
 

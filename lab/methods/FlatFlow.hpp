@@ -93,6 +93,7 @@ class FlatFlow {
 
   /** The accelerations kept, by node id [m/s^2]; or another column. */
   std::vector<Point> kept(unsigned x = FlatCloth::AX) const;
+  /** Throws std::runtime_error: they are of another cloth, or not finite. */
   void set_kept(const Cloth& g, const std::vector<Point>& a,
                 unsigned x = FlatCloth::AX);
 

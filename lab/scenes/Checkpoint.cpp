@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "CME212/Mesh.hpp"
 #include "CME212/OutputFile.hpp"
+#include "lab/Interrupt.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stability/Guard.hpp"
 
 namespace lab {
 
@@ -92,14 +93,9 @@ CME212::Archive read_checkpoint(const std::string& file) {
   auto fail = [&file](const std::string& why) {
     throw std::runtime_error(file + ": " + why);
   };
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  const std::string all = text.str();
-  if (all.empty())
-    fail(errno ? std::string("can't be read (") + std::strerror(errno) + ')'
-               : "nothing in the file, expected a checkpoint");
+  const std::string all =
+      mesh_detail::read_file(file, "a checkpoint", end_if_interrupted);
+  if (all.empty()) fail("nothing in the file, expected a checkpoint");
   if (!all.starts_with(magic)) fail("no checkpoint");
   const std::string line = all.substr(0, all.find('\n') + 1),
                     head = first_line();
@@ -176,17 +172,19 @@ void archive_cloth(CME212::Archive& a, Cloth& g) {
       if (!edges[e]) g.remove_edge(g.edge_with_id(e));
     for (unsigned i = 0; i < nodes.size(); ++i)
       if (!nodes[i]) g.remove_node(g.node_with_id(i));
-    auto name_all = [&require](const auto& ids, const auto& there,
-                               std::size_t size) {
+    auto name_all = [&require](const auto& ids, std::size_t size,
+                               std::size_t slots, auto there) {
       require(ids.size() == size);
-      std::vector<char> seen(there.size());
+      std::vector<char> seen(slots);
       for (unsigned id : ids) {
-        require(id < there.size() && there[id] && !seen[id]);
+        require(id < slots && there(id) && !seen[id]);
         seen[id] = true;
       }
     };
-    name_all(node_ids, nodes, g.num_nodes());
-    name_all(edge_ids, edges, g.num_edges());
+    name_all(node_ids, g.num_nodes(), nodes.size(),
+             [&g](unsigned id) { return g.node_in_use(id); });
+    name_all(edge_ids, g.num_edges(), edges.size(),
+             [&g](unsigned id) { return g.edge_in_use(id); });
     std::size_t at = 0;
     for (unsigned i = 0; i < nodes.size(); ++i) {
       std::vector<unsigned> now;
@@ -202,6 +200,7 @@ void archive_cloth(CME212::Archive& a, Cloth& g) {
     if (g.num_edges() < g.edge_slots()) g.reindex_edges(edge_ids);
   }
   a(g.positions())(g.node_values());
+  a.require(are_nodes(g.positions(), g.node_values()));
 }
 
 }  // namespace lab

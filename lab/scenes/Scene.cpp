@@ -111,9 +111,20 @@ double Scene::drag_loss() const {
   return flow().drag + 0.5 * (drag_power_ + power) * (time() - sampled_);
 }
 
+void Scene::Clock::archive(CME212::Archive& a) {
+  a(dt)(from)(steps)(from_steps);
+  a.require(dt > 0 && std::isfinite(dt) && from >= 0 && 0 <= from_steps &&
+            from_steps <= steps && steps < 1LL << 53 && std::isfinite(time()));
+}
+
 void Scene::archive(CME212::Archive& a) {
   archive_cloth(a, cloth_);
   a(clock_)(checked_)(flow_)(safe_omega_);
+  const auto not_after = [&](const Clock& c) {
+    return c.steps <= clock_.steps && c.time() <= clock_.time();
+  };
+  a.require(std::isfinite(safe_omega_) && not_after(checked_) &&
+            clock_.steps - checked_.steps <= guard_interval);
   watched_->archive(a);
   balance_->archive(a);
   guard_->archive(a);
@@ -121,17 +132,22 @@ void Scene::archive(CME212::Archive& a) {
   if (a.loads()) version_ = cloth_.version();
   long long evaluated = evaluations();
   Work worked = work();
-  a(evaluated)(worked);
+  a(evaluated)(worked)(sampled_)(drag_power_);
   if (a.loads()) evaluations_ = evaluated - counter_.sweeps(), work_ = worked;
-  a(sampled_)(drag_power_);
-  if (watch_) watch_->archive(a);
+  a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
+            std::min({worked.inner, worked.newton, worked.products,
+                      worked.factors}) >= 0 &&
+            sampled_ <= time() && std::isfinite(sampled_ + drag_power_));
+  if (watch_) a(*watch_);
   if (!control_) return;
   control_->archive(a);
   a(looked_);
+  a.require(control_->dt() == clock_.dt && looked_ <= time() &&
+            std::isfinite(looked_));
   for (Snapshot* s : {&before_, &latest_}) {
     bool whole = s->version == cloth_.version();  // nothing torn since
-    s->nodes.archive(a);
-    a(s->clock)(s->flow)(s->control)(whole);
+    a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
+    a.require(not_after(s->clock));
     if (a.loads()) s->version = whole ? cloth_.version() : ~cloth_.version();
   }
 }
@@ -171,8 +187,8 @@ bool Scene::is_finite() const { return std::isfinite(energy().total()); }
 /** Steps between two samples of drag. */
 int Scene::drag_interval() const {
   constexpr double most = 0.02;  // of a velocity
-  return std::clamp(int(most / (largest_gamma_ * clock_.dt)), 1,
-                    StepControl::look_interval);
+  return int(std::clamp(most / (largest_gamma_ * clock_.dt), 1.,
+                        double(StepControl::look_interval)));
 }
 
 /** How many steps, up to @a most, nobody has to look at but the last one; 1 if

@@ -205,6 +205,7 @@ class Scene {
       set_time(time());
       dt = next;
     }
+    void archive(CME212::Archive& a);
   };
 
   /** A state of the cloth to go back to. */

@@ -1,6 +1,7 @@
 #pragma once
 /** @file EnergyBalance.hpp
  * What a cloth's energy consists of, and what came in and went out. */
+#include <cmath>
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
@@ -27,6 +28,11 @@ struct EnergyFlow {
   Point carried = Point();  ///< mean velocity of the nodes that are held [m/s]
   /** Nothing holds it: its center of mass carries it. */
   bool loose = false;
+
+  void archive(CME212::Archive& a) {
+    a(work)(removed)(drag)(carried)(loose);
+    a.require(std::isfinite(work + removed + drag + norm(carried)));
+  }
 };
 
 /** Those of @a g.  @param gravity [m/s^2]   @param flow what carries the cloth
@@ -65,8 +71,13 @@ class EnergyBalance {
 
   /** Save or load all that follow() changes. */
   void archive(CME212::Archive& a) {
-    for (Held& h : held_) a(h.place)(h.velocity)(h.force);
+    for (Held& h : held_) {
+      a(h.place)(h.velocity)(h.force);
+      a.require(
+          std::isfinite(norm(h.place) + norm(h.velocity) + norm(h.force)));
+    }
     a(seen_)(flow_);
+    a.require(std::isfinite(seen_.work + seen_.moment));
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "lab/stability/EnergyWatch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lab/stability/StepControl.hpp"
 
@@ -36,6 +37,8 @@ double EnergyWatch::tolerance() const {
 
 void EnergyWatch::archive(CME212::Archive& a) {
   a(largest_)(fall_)(off_)(sum_)(least_)(gain_)(looks_);
+  a.require(std::isfinite(largest_ + fall_ + off_ + sum_ + least_ + gain_) &&
+            looks_ >= 0);
 }
 
 }  // namespace lab

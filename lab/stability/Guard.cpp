@@ -38,6 +38,21 @@ bool DivergenceGuard::accept(const Cloth& g, const Energies& e,
   return true;
 }
 
+bool are_nodes(std::span<const Point> positions,
+               std::span<const NodeData> values) {
+  return std::ranges::all_of(
+             positions,
+             [](const Point& x) { return std::isfinite(norm(x)); }) &&
+         std::ranges::all_of(values, [](const NodeData& n) {
+           return std::isfinite(norm(n.vel) + n.mass) && n.mass > 0;
+         });
+}
+
+void NodeStates::archive(CME212::Archive& a) {
+  a(position_)(value_);
+  a.require(position_.size() == value_.size() && are_nodes(position_, value_));
+}
+
 void NodeStates::keep(const Cloth& g) {
   auto x = g.positions();
   auto v = g.node_values();

@@ -1,11 +1,17 @@
 #pragma once
 /** @file Guard.hpp
  * DivergenceGuard: stops a run that gains energy from nothing. */
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "lab/stability/EnergyBalance.hpp"
 
 namespace lab {
+
+/** Are all numbers finite, and all masses above 0? */
+bool are_nodes(std::span<const Point> positions,
+               std::span<const NodeData> values);
 
 /** What nodes had at some time, by id. */
 class NodeStates {
@@ -15,7 +21,7 @@ class NodeStates {
   /** Give @a g the positions and values that were kept. Nodes added since stay
    * as they are, nodes removed since stay removed.  O(N) */
   void restore(Cloth& g) const;
-  void archive(CME212::Archive& a) { a(position_)(value_); }
+  void archive(CME212::Archive& a);
 
  private:
   std::vector<Point> position_;
@@ -69,7 +75,9 @@ class DivergenceGuard {
   void restore(Cloth& g) const { kept_.restore(g); }
 
   /** Save or load the last good state, and what was available. */
-  void archive(CME212::Archive& a) { a(available_), kept_.archive(a); }
+  void archive(CME212::Archive& a) {
+    a(available_)(kept_).require(std::isfinite(available_));
+  }
 
  private:
   double gravity_, height_ = 0;  // height_: gravitational and removed [J]

@@ -8,8 +8,9 @@ namespace lab {
 namespace {
 constexpr double none = std::numeric_limits<double>::infinity();
 constexpr double shorter = 0.7, longer = 1.15;
-constexpr double noise = 0.05;  // of the tolerance: no reason to shorten
-constexpr double seen = 0.8;    // of it: the rest is for steps between looks
+constexpr double noise = 0.05;    // of the tolerance: no reason to shorten
+constexpr double seen = 0.8;      // of it: the rest is for steps between looks
+constexpr int most_failures = 6;  // that count
 }  // namespace
 
 StepControl::StepControl(double dt, const Energies& start, double floor)
@@ -19,6 +20,27 @@ StepControl::StepControl(double dt, const Energies& start, double floor)
   now_.fall = 2 * start.fall_power * dt;
   now_.last = now_.least = now_.base = now_.mark = start.total();
   now_.low = none;
+}
+
+void StepControl::State::archive(CME212::Archive& a) {
+  for (double* x : {&dt, &ceiling, &scale, &fall, &last, &least, &base, &low,
+                    &mark, &sum, &gain, &time, &kinetic_time, &drag})
+    // Bounds that there are not yet are infinite.
+    a(*x).require(std::isfinite(*x) ||
+                  (*x == none && (x == &ceiling || x == &low)));
+  a(looks)(rounds)(calm)(since)(raises);
+  constexpr int most = 1 << 30;  // so that none runs over
+  a.require(dt > 0 && 0 <= looks && looks < round && 0 <= rounds &&
+            rounds < most && 0 <= calm && calm < most && 0 <= since &&
+            since < most && 0 <= raises && raises < most);
+}
+
+void StepControl::archive(CME212::Archive& a) {
+  auto& [shortest, longest, shortened, lengthened, taken_back] = report_;
+  a(now_)(shortest)(longest)(shortened)(lengthened)(taken_back)(failures_);
+  a.require(shortest_ <= now_.dt && 0 < shortest && shortest <= longest &&
+            std::isfinite(longest) && 0 <= shortened && 0 <= lengthened &&
+            0 <= taken_back && 0 <= failures_ && failures_ <= most_failures);
 }
 
 StepControl::Verdict StepControl::look(const Energies& e,
@@ -66,7 +88,7 @@ void StepControl::take_back(const State& then, long long steps) {
   change(std::max(shortest_, shorter * failed), then.drag);
   now_.ceiling = 0.95 * failed;
   now_.raises = now_.since = 0;
-  if (!again) failures_ = std::min(failures_ + 1, 6);
+  if (!again) failures_ = std::min(failures_ + 1, most_failures);
   ++report_.shortened;
   report_.taken_back += steps;
 }

@@ -51,6 +51,7 @@ class StepControl {
     int rounds = 0, calm = 0;           ///< of the run, since dt changed
     int since = 0, raises = 0;  ///< rounds since a failure, a raise; raises of
                                 ///< the ceiling since a failure
+    void archive(CME212::Archive& a);
   };
   /** What was chosen. */
   struct Report {
@@ -87,7 +88,7 @@ class StepControl {
   bool lengthen(const EnergyFlow& flow);
 
   /** Save or load all that changes. */
-  void archive(CME212::Archive& a) { a(now_)(report_)(failures_); }
+  void archive(CME212::Archive& a);
 
  private:
   double first_, shortest_;  // steps [s]

@@ -197,8 +197,7 @@ void Run::look() {
   if (at_end || frames_.due(scene_)) add_frame();
   if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
   if (!told_ && progress_.due()) show_progress();
-  if (!o_.checkpoint.empty() && seconds_ >= next_checkpoint_ &&
-      scene_.failure().empty())
+  if (!o_.checkpoint.empty() && seconds_ >= next_checkpoint_ && scene_.check())
     save();
 }
 
@@ -279,6 +278,7 @@ void Run::write_csv(const std::string& text) {
 void Run::archive(CME212::Archive& a) {
   std::uint64_t rows = recent_.size();
   a(rows_)(last_row_)(settled_row_)(warned_)(rows);
+  a.require(rows_ >= 0 && last_row_ >= -1 && settled_row_ >= -1);
   if (a.loads()) recent_.clear();
   for (std::uint64_t k = 0; k < rows; ++k) {
     if (a.loads()) recent_.emplace_back();
@@ -302,12 +302,14 @@ void Run::save() {
 void Run::load() {
   CME212::Archive a = read_checkpoint(o_.restart);
   std::uint64_t length = 0, sum = 0;
-  archive_scene(a, o_.model, scene_.cloth());
   try {
+    archive_scene(a, o_.model, scene_.cloth());
     a(length)(sum);
     archive(a);
     scene_.archive(a);
     if (!a.at_end()) throw std::runtime_error("goes on behind its end");
+  } catch (const SceneError&) {
+    throw;
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(o_.restart + ": " + e.what());
   }
@@ -321,7 +323,7 @@ void Run::load() {
   next_checkpoint_ = o_.every_seconds;
   frames_.add(scene_, o_.model);
   if (o_.csv.empty()) return recent_.clear();
-  if (std::filesystem::exists(o_.csv))
+  if (std::filesystem::is_regular_file(o_.csv))
     go_on_with_csv(length, sum);
   else
     begin_csv(), rows_ = 0;
@@ -330,10 +332,12 @@ void Run::load() {
 /** Take over the first @a length bytes of the CSV file that is there, if they
  * have the checksum @a sum.  Throws std::runtime_error: another file. */
 void Run::go_on_with_csv(std::uint64_t length, std::uint64_t sum) {
-  std::string before(length, '\0');
   std::ifstream in(o_.csv, std::ios::binary);
-  in.read(before.data(), std::streamsize(length));
-  if (length == 0 || !in || crc64(before) != sum)
+  std::string before(
+      std::min<std::uint64_t>(length, std::filesystem::file_size(o_.csv)),
+      '\0');
+  in.read(before.data(), std::streamsize(before.size()));
+  if (length == 0 || !in || before.size() < length || crc64(before) != sum)
     throw std::runtime_error(
         o_.csv + ": does not begin with the rows until the checkpoint " +
         o_.restart + ", expected the file of that run, or none");
