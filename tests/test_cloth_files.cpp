@@ -167,6 +167,29 @@ TEST_F(ClothProgram, SaysWhenAnOutputIsOnAFullDisk) {
   }
 }
 
+// The renderer would end by SIGSEGV.
+TEST_F(ClothProgram, SaysThatThereIsNoMemoryToDraw) {
+  const std::string film = path("v.mp4");
+  Result r = folder.run("sh -c \"ulimit -v 400000; exec timeout 60 " +
+                        CME212::program("cloth", "build/") + ' ' + small +
+                        "--record " + film + '"');
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err,
+            "cloth: out of memory: expected a cloth of fewer nodes, or more "
+            "memory\n");
+  EXPECT_FALSE(fs::exists(film));
+}
+
+TEST_F(ClothProgram, RefusesAFilmOfMoreThanADay) {
+  Result r =
+      run("--sheet 'nodes 4 4' --t-end 1e300 --dt auto --quiet --record " +
+          path("v.mp4"));
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err,
+            "cloth: --t-end is 1e+300, expected at most 86400 s, a day, of a "
+            "film\n");
+}
+
 // ------------------------------------------------------- Ended by a signal
 
 const std::string long_run =
