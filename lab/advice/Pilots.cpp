@@ -32,7 +32,7 @@ StepCosts::StepCosts(const Model& m) {
   const CombinedConstraints constraint = constraint_of(m, scene.cloth());
   const StiffSplit split = split_springs(scene.cloth(), 1, constraint);
   stiff_ = double(split.springs.size());
-  if (!split.empty()) inner_ = 2 / split.omega / inner_steps_at_limit;
+  if (!split.empty()) inner_ = split.inner_step();
 }
 
 double StepCosts::of_step(const MethodEntry& method, double dt,

@@ -39,13 +39,12 @@ void Respa::one_step(Cloth& g, double t, double dt, bool kept,
     flow_.run({.t = t, .kick = 0, .keep = true});
     leave_out_stiff(g);
   }
-  const double most = Verlet::info.limit / inner_steps_at_limit / split_.omega;
-  if (!(dt / most < 1e6))
+  if (!(dt / split_.inner_step() < 1e6))
     throw StepError(std::string(info.name) +
                     ": the stiff springs need more than a million inner steps "
                     "a step; dt = " +
                     CME212::short_text(dt) + " s");
-  inner_steps_ = std::max(1, int(std::ceil(dt / most)));
+  inner_steps_ = split_.inner_steps(dt);
   inner_done_ += inner_steps_;
   take_stiff_nodes(g, t + dt, dt, force.drag(), constraint);
   move_stiff_nodes(g, dt / inner_steps_);

@@ -22,10 +22,7 @@ namespace lab {
  *
  * Symmetric, symplectic, drag exact, as Splitting. dt is bounded by the soft
  * part: dt omega < 2 for its frequencies, see soft_stiffness(). Below that it
- * has resonances: where dt is close below a multiple of half a period of a
- * stiff spring, the oscillation of that spring grows; per step by at most
- * (dt omega_s)^2/(2 dt omega_f), omega_s^2 what the soft forces add to its
- * omega_f^2.
+ * has resonances with the stiff springs: Resonance.hpp.
  * Source: M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992)
  * 1990, doi:10.1063/1.463137; the resonances: J. A. Izaguirre, S. Reich, R. D.
  * Skeel, J. Chem. Phys. 110 (1999) 9853, doi:10.1063/1.478995. */

@@ -83,6 +83,7 @@ StiffSplit split_springs(const Cloth& g, int multiplicity,
   split.nodes.erase(std::unique(split.nodes.begin(), split.nodes.end()),
                     split.nodes.end());
   std::vector<double> sum(split.nodes.size());  // of K/m [1/s^2]
+  std::vector<int> springs(split.nodes.size());
   for (auto& [e, i, j] : split.springs) {
     const auto place = [&](unsigned id) {
       return unsigned(std::ranges::lower_bound(split.nodes, id) -
@@ -91,9 +92,20 @@ StiffSplit split_springs(const Cloth& g, int multiplicity,
     i = place(ends[e][0]), j = place(ends[e][1]);
     const double K = multiplicity * double(values[e].K);
     sum[i] += K * w[ends[e][0]], sum[j] += K * w[ends[e][1]];
+    ++springs[i], ++springs[j];
   }
-  for (const auto& [e, i, j] : split.springs)
-    split.omega = std::max(split.omega, std::sqrt(sum[i] + sum[j]));
+  const auto shared = [&](unsigned i) { return sum[i] > 0 && springs[i] > 1; };
+  for (const auto& [e, i, j] : split.springs) {
+    const double bound = std::sqrt(sum[i] + sum[j]);
+    split.omega = std::max(split.omega, bound);
+    if (shared(i) || shared(j))
+      split.connected = std::max(split.connected, bound);
+    else
+      split.alone.push_back(bound);
+  }
+  std::ranges::sort(split.alone);
+  split.alone.erase(std::unique(split.alone.begin(), split.alone.end()),
+                    split.alone.end());
   return split;
 }
 
