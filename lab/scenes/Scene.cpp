@@ -154,7 +154,8 @@ void Scene::archive(CME212::Archive& a) {
 
 bool Scene::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
-  if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
+  if (control_ && control_->lengthen(flow()))
+    clock_.set_dt(without_resonance(control_->dt()));
   const bool steered = control_ && control_->can_shorten();
   most = steps_to_look(most);
   if (!advance(most))
@@ -259,7 +260,7 @@ bool Scene::take_back() {
                     flow.drag - energy().total();
   clock_ = before_.clock;
   control_->take_back(before_.control, steps);
-  clock_.set_dt(control_->dt());
+  clock_.set_dt(without_resonance(control_->dt()));
   balance_->resume(cloth_, time(), constraint_, flow);
   method_->restart();
   looked_ = sampled_ = time(), drag_power_ = drag_.power(cloth_);
@@ -305,6 +306,20 @@ double Scene::safe_limit(const MethodEntry& method) const {
   if (safe_omega_ < 0) safe_omega_ = omega_safe(cloth_, *force_, constraint_);
   return step_limit(method, with_hand(safe_omega_),
                     largest_gamma(cloth_, force_->drag()));
+}
+
+std::optional<Resonances> Scene::resonances() const {
+  if (!entry_.info.multirate) return std::nullopt;
+  auto split = split_springs(cloth_, force_->springs(), constraint_);
+  if (split.empty()) return std::nullopt;
+  const double soft = omega_safe(cloth_, bounding(entry_), constraint_);
+  return Resonances(std::move(split), with_hand(soft));
+}
+
+/** A step up to @a dt that does not resonate. */
+double Scene::without_resonance(double dt) const {
+  const auto r = resonances();
+  return r ? r->below(dt) : dt;
 }
 
 double Scene::sharp_limit(int products) const {
@@ -354,7 +369,7 @@ void Scene::choose_step() {
                                 entry_.info.name +
                                 (dt > 0 ? " here" : ": it has no stable step") +
                                 ", so it can't be chosen: give a number");
-  clock_.set_dt(dt);
+  clock_.set_dt(without_resonance(dt));
 }
 
 /** One step, or up to @a most of dt, the last of which may change the graph; no
@@ -432,6 +447,8 @@ const Diagnosis& Scene::diagnosis() const {
     run.safe_without_drag =
         entry_.info.multirate ? run.safe : step_limit(entry_, safe_omega_);
     run.verlet = safe_limit(*find_method("verlet"));
+    if (const auto r = resonances(); r && r->at(run.dt))
+      run.resonance = r->text(run.dt), run.clear = r->below(run.dt);
   }
   const double end = std::isfinite(t_end_) ? t_end_ : 2 * run.time;
   diagnosis_ =

@@ -13,6 +13,7 @@
 
 #include "lab/fast/CountingForce.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/methods/Resonance.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/scenes/Hand.hpp"
 #include "lab/stability/Diagnosis.hpp"
@@ -153,6 +154,9 @@ class Scene {
    * Complexity: the first call as omega_safe(). */
   double safe_limit(const MethodEntry& method) const;
   double safe_limit() const { return safe_limit(entry_); }
+  /** Below it, the steps that resonate, if the method is a multirate one and
+   * splits off stiff springs.  Complexity: as safe_limit() */
+  std::optional<Resonances> resonances() const;
   /** That of this scene's method in the present configuration, by so many
    * @a products of SharpOmega. */
   double sharp_limit(int products = 15) const;
@@ -268,6 +272,7 @@ class Scene {
   void keep_clock();
   void watch_paths();
   ForcePlan bounding(const MethodEntry& method) const;
+  double without_resonance(double dt) const;
   void choose_step();
   bool is_finite() const;
   bool advance(int most = 1);

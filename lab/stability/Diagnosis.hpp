@@ -27,6 +27,7 @@ enum class Cause {
   step,       ///< beyond the stability limit
   drag,       ///< beyond it for its drag, which the method takes as a force
   no_step,    ///< the method has no stable step
+  resonance,  ///< within the limit; it resonates with stiff springs
   nonlinear,  ///< within the limit, which is that of small oscillations
   method,     ///< one without a limit fails all the same
   solver,     ///< a method or a constraint could not make the step
@@ -43,7 +44,9 @@ struct FailedRun {
   double sharp = 0;     ///< the stability limit [s] in the last good state
   double safe = 0;      ///< that in any state
   double safe_without_drag = 0;
-  double verlet = 0;  ///< Verlet's, in any state
+  double verlet = 0;           ///< Verlet's, in any state
+  std::string resonance = {};  ///< how dt resonates, in words, if it does
+  double clear = 0;            ///< a shorter step that does not [s]
 };
 
 /** Another way to compute the same scene. */
