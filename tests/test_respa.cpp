@@ -5,10 +5,18 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/Resonance.hpp"
 #include "lab/scenes/Obstacle.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -96,7 +104,10 @@ TEST(Respa, GetsTheStepOfTheSoftSprings) {
   };
   const double verlet = step_of(soft, "verlet");
   EXPECT_LT(step_of(stiff, "verlet"), verlet / 30);
-  EXPECT_NEAR(step_of(stiff, "respa"), verlet, 0.02 * verlet);
+  // In the nearest gap between resonances: they are pi/omega apart.
+  EXPECT_LE(step_of(stiff, "respa"), 1.02 * verlet);
+  EXPECT_GT(step_of(stiff, "respa"),
+            verlet - 2 * std::numbers::pi / std::sqrt(1e6 * 2 * 81));
   EXPECT_EQ(step_of(soft, "respa"), verlet);
 }
 
@@ -200,9 +211,8 @@ struct StiffOscillator {
     g.add_edge(ends[1], mass, {Real(s * s), 1});
     walls.emplace(ends);
   }
-  /** The growth of its motion in each step of @a h: from the trace of a step.
-   */
-  double growth(double h) {
+  /** Half the trace of a step of @a h. */
+  double half_trace(double h) {
     double trace = 0;
     for (int column : {0, 1}) {
       const double size = 1e-4;
@@ -213,30 +223,217 @@ struct StiffOscillator {
       EXPECT_EQ(respa.split().springs.size(), 1u);
       trace += (column == 0 ? mass.position().x : mass.value().vel.x) / size;
     }
-    const double half = std::abs(trace) / 2;
-    return half <= 1 ? 1 : half + std::sqrt(half * half - 1);
+    return trace / 2;
   }
 };
 
-// Half the trace of a step is cos(a) - (h omega_s^2/(2 omega_f)) sin(a), a = h
-// omega_f: below each a = k pi there is a gap, its width and growth as
-// Respa.hpp says. Inner steps make omega_f that of Verlet, and the other
-// factor 1/(omega_f cos), of the same.
-TEST(Respa, HasTheResonancesOfTheory) {
+// Also that of Verlet, of as many inner steps.
+TEST(Respa, HasTheTraceOfTheory) {
   StiffOscillator o(100, 4);
-  double worst = 1, worst_h = 0, between = 1;
-  for (double h = 0.02; h < 2 / 4.; h += 2e-4) {
-    const double growth = o.growth(h);
-    if (growth > worst) worst = growth, worst_h = h;
-    const double turns = h * 100 / std::numbers::pi;
-    if (std::abs(turns - std::round(turns)) > 0.35)
-      between = std::max(between, growth);
+  const StiffSplit split = split_springs(o.g, 1, *o.walls);
+  EXPECT_EQ(split.alone, std::vector{100.});
+  EXPECT_EQ(split.connected, 0);
+  std::set<int> inner;
+  for (double h = 1e-3; h < 2 / 4.; h += 1e-3) {
+    const int n = split.inner_steps(h);
+    inner.insert(n);
+    EXPECT_NEAR(o.half_trace(h), HalfTrace(100, 4, h, n).value, 1e-10) << h;
   }
-  EXPECT_GT(worst, 1 + 1e-3);
-  EXPECT_LT(worst, 1 + 1.1 * std::pow(4 * worst_h, 2) / (2 * 100 * worst_h));
-  EXPECT_LT(between, 1 + 1e-9);
-  // At the soft limit, where no spring is left that Verlet could not take.
-  EXPECT_LT(o.growth(0.45), 1.05);
+  EXPECT_EQ(*inner.begin(), 1);
+  EXPECT_GT(inner.size(), 90u);
+}
+
+/** Two masses in a line, a stiff spring between them, soft ones to the walls:
+ * while they move against each other the centers of the three springs rest. */
+struct StiffPair {
+  Cloth g;
+  std::vector<Node> mass;
+  std::optional<PinConstraint> walls;
+  static constexpr double omega = 100, soft = 6;
+
+  StiffPair() {
+    std::vector<Node> ends;
+    for (double x : {-2., 2.}) ends.push_back(g.add_node(Point(x, 0, 0)));
+    for (double x : {-1., 1.}) mass.push_back(g.add_node(Point(x, 0, 0)));
+    g.add_edge(mass[0], mass[1], {Real(omega * omega / 2), 2});
+    for (int k : {0, 1}) g.add_edge(ends[k], mass[k], {Real(soft * soft), 1});
+    walls.emplace(ends);
+  }
+  /** The largest motion of 20000 steps of @a h, in units of the first. */
+  double growth(double h) {
+    constexpr double size = 1e-9;
+    double most = 0;
+    for (int k : {0, 1}) {
+      const double side = k == 0 ? -1 : 1;
+      mass[k].position() = Point(side * (1 + size), 0, 0);
+      mass[k].value().vel = Point(side * size * omega, 0, 0);
+    }
+    Respa respa;
+    for (int n = 0; n < 20000 && most < 1e6; ++n) {
+      respa(g, 0, h, MassSpringForce(), *walls);
+      most = std::max(most, std::abs(mass[1].position().x - 1) / size);
+    }
+    return most;
+  }
+};
+
+TEST(Respa, GrowsInsideOfTheWindowsOfTheoryAndNotOutside) {
+  StiffPair pair;
+  const StiffSplit split = split_springs(pair.g, 1, *pair.walls);
+  ASSERT_EQ(split.alone, std::vector{pair.omega});
+  const Resonances resonances(split, pair.soft);
+  const auto grows = [&](double h) {
+    return std::abs(HalfTrace(pair.omega, pair.soft, h, split.inner_steps(h))
+                        .value) > 1;
+  };
+  int windows = 0;
+  for (double h = 1e-3, step = 1e-4; h < 0.2; h += step) {
+    if (grows(h) == grows(h + step)) continue;
+    double before = h, behind = h + step;
+    while (behind - before > 1e-12) {
+      const double middle = (before + behind) / 2;
+      (grows(middle) == grows(h) ? before : behind) = middle;
+    }
+    const double in = grows(h) ? -3e-5 : 3e-5;
+    EXPECT_GT(pair.growth(before + in), 1e6) << before;
+    EXPECT_LT(pair.growth(before - in), 100) << before;
+    EXPECT_TRUE(resonances.at(before + in));
+    if (windows++ == 0) {  // as close as the margin of 0.02 and side bands
+      EXPECT_LT(resonances.first(), before);
+      EXPECT_GT(resonances.first(), 0.9 * before);
+    }
+  }
+  EXPECT_GE(windows, 8);
+}
+
+/** A cloth of 25 to 81 nodes, pinned at two corners, without drag, drawn at
+ * random: masses, velocities, and which springs are of 1e4 to 1e6 N/m. */
+Problem drawn(const std::string& kind, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto draw = [](std::mt19937& r) { return double(r()) / 4294967296.; };
+  Problem p = grid_problem(kind, kind, 1, 5 + random() % 5);
+  p.gamma = 0;
+  p.build = [=, build = p.build](Cloth& g) mutable {
+    build(g);
+    const double K = std::pow(10, 4 + 2 * draw(random));
+    const double spread = draw(random) / 2, speed = draw(random);
+    for (Node n : g.nodes()) {
+      n.value().mass *= Real(1 + spread * (2 * draw(random) - 1));
+      for (int k : {0, 1, 2}) n.value().vel[k] = speed * (draw(random) - 0.5);
+    }
+    if (kind == "a band")
+      for (Edge e : g.edges())
+        if (e.node1().position().x + e.node2().position().x < 0.01)
+          e.value().K = Real(K);
+    const Edge any = g.edge(random() % g.num_edges());
+    if (kind != "a band") any.value().K = Real(K);
+    for (Edge e : any.node1().edges())
+      if (kind == "a triangle" && g.has_edge(e.node2(), any.node2())) {
+        e.value().K = Real(K);
+        for (Edge f : any.node2().edges())
+          if (f.node2() == e.node2()) f.value().K = Real(K);
+        break;
+      }
+    for (int k = 0; k < 2 && kind == "three edges"; ++k)
+      g.edge(random() % g.num_edges()).value().K = Real(K);
+  };
+  return p;
+}
+
+// The picture of README.md: SCENES=20 STEPS=20000 build/test_respa
+// --gtest_filter='*CallsResonant*' draws that many of each kind.
+TEST(Respa, DivergesOnlyAtStepsThatItCallsResonant) {
+  const auto number = [](const char* name, int other) {
+    const char* text = std::getenv(name);
+    return text ? std::atoi(text) : other;
+  };
+  const int scenes = number("SCENES", 1), steps = number("STEPS", 1500);
+  int diverged_of_all = 0;
+  for (const char* kind : {"an edge", "three edges", "a triangle", "a band"}) {
+    int count[2][2] = {};  // by: resonant, diverged
+    for (int seed = 1; seed <= scenes; ++seed) {
+      Problem p = drawn(kind, unsigned(seed));
+      const Start s(p);
+      const double soft =
+          omega_safe(s.cloth, soft_stiffness(s.cloth, s.force, s.constraint),
+                     s.constraint);
+      const Resonances resonances(split_springs(s.cloth, 1, s.constraint),
+                                  soft);
+      std::printf("%-12s", kind);
+      for (int k = 0; k < 17; ++k) {
+        const double dt = (0.3 + 0.6 * k / 16) * 2 / soft;
+        p.t_end = steps * dt;
+        Respa respa;
+        const bool resonant = resonances.at(dt);
+        const bool diverged = !run(p, respa, steps).ok();
+        ++count[resonant][diverged];
+        EXPECT_TRUE(resonant || !diverged) << kind << ' ' << seed << ' ' << dt;
+        std::printf(" %c%c", resonant ? 'r' : '-', diverged ? 'D' : '.');
+      }
+      std::printf("\n");
+    }
+    std::printf("%s: %d free, %d of them diverged; %d resonant, %d of them\n",
+                kind, count[0][0] + count[0][1], count[0][1],
+                count[1][0] + count[1][1], count[1][1]);
+    diverged_of_all += count[1][1];
+  }
+  EXPECT_GT(diverged_of_all, 10);
+}
+
+// Of a resonant step that diverges, and what is chosen instead.
+TEST(Respa, ChoosesAStepThatDoesNotResonateAndNamesTheOneThatDid) {
+  const auto scene_of = [](const Problem& p, const TimeStep& step) {
+    Recipe recipe;
+    recipe.gravity = p.gravity;
+    recipe.build = p.build;
+    recipe.force = [](const Cloth&) {
+      return make_combined_force(GravityForce(), MassSpringForce());
+    };
+    recipe.constraint = p.constraint;
+    return std::make_unique<Scene>(recipe, step, *find_method("respa"));
+  };
+  const Problem p = stiff_edge(5, 1);
+  const auto chosen = scene_of(p, {.rule = StepRule::safe});
+  const Resonances r = *chosen->resonances();
+  EXPECT_FALSE(r.at(chosen->dt()));
+  EXPECT_GT(chosen->dt(), 10 * r.first());
+  EXPECT_LT(chosen->dt(), chosen->safe_limit());
+  EXPECT_EQ(r.below(r.first() / 2), r.first() / 2);
+
+  double dt = chosen->dt();  // up to 1 % before a multiple of the half period
+  const StiffSplit split = split_springs(chosen->cloth(), 1, ConstraintPlan());
+  const auto inside = [&] {
+    const HalfTrace c(split.omega, 2 / chosen->safe_limit(), dt,
+                      split.inner_steps(dt));
+    return std::abs(c.value) > 1.002;
+  };
+  while (!inside()) dt *= 1 + 1e-5;
+  ASSERT_LT(dt, 0.9 * chosen->safe_limit());
+  const auto failed = scene_of(p, {.dt = dt});
+  ASSERT_FALSE(failed->run_to(50000 * dt));
+  const Diagnosis& d = failed->diagnosis();
+  EXPECT_EQ(d.cause, Cause::resonance);
+  EXPECT_EQ(d.text.find("the step resonates with the stiff springs: dt is "),
+            0u);
+  EXPECT_NE(d.text.find(" times half of their period of "), std::string::npos);
+  ASSERT_TRUE(d.cure) << d.text;
+  EXPECT_STREQ(d.cure->method.info.name, "respa");
+  EXPECT_FALSE(r.at(d.cure->dt));
+  EXPECT_GT(d.cure->dt, 0.8 * dt);
+}
+
+// All steps from the first resonance of connected springs on.
+TEST(Respa, FindsNoGapsBetweenResonancesOfConnectedSprings) {
+  Start s(drawn("a band", 1));
+  const StiffSplit split = split_springs(s.cloth, 1, s.constraint);
+  EXPECT_TRUE(split.alone.empty());
+  EXPECT_EQ(split.connected, split.omega);
+  const Resonances r(split, 300);
+  EXPECT_LT(r.first(), std::numbers::pi / split.omega);
+  EXPECT_GT(r.first(), 0.9 * std::numbers::pi / split.omega);
+  for (double share = 0.1; share < 50; share += 0.07)
+    EXPECT_EQ(r.at(share * r.first()), share > 1) << share;
+  EXPECT_NEAR(r.below(1) / r.first(), 0.6, 0.06);
 }
 
 TEST(Respa, TakesForcesByCallAsSoftOnes) {
