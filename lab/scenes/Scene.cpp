@@ -142,7 +142,7 @@ void Scene::archive(CME212::Archive& a) {
   if (!control_) return;
   control_->archive(a);
   a(looked_);
-  a.require(control_->dt() == clock_.dt && looked_ <= time() &&
+  a.require(clock_.dt <= control_->dt() && looked_ <= time() &&
             std::isfinite(looked_));
   for (Snapshot* s : {&before_, &latest_}) {
     bool whole = s->version == cloth_.version();  // nothing torn since
