@@ -320,7 +320,8 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
   EXPECT_EQ(run("data/grid0.nodes").status, 2);
   EXPECT_EQ(run("--headless --dt nan " + grid0).err,
             "cloth: --dt is nan, expected a positive time [s], auto or "
-            "auto:sharp\n");
+            "auto:sharp, or one of these and the share of energy it may gain, "
+            "of (0, 1]: auto:0.02\n");
 }
 
 TEST_F(ClothProgram, RunsEveryMethodAndListsIt) {
@@ -389,7 +390,7 @@ TEST_F(ClothProgram, ExplainsItsOptionsWithUnitsAndDefaults) {
   Result r = run("--help");
   EXPECT_EQ(r.status, 0);
   for (const char* text :
-       {"--dt FLOAT|auto|auto:sharp=0.001", "step [s]", "--t-end FLOAT=5",
+       {"--dt FLOAT|auto[:sharp][:G]=0.001", "step [s]", "--t-end FLOAT=5",
         "--gravity FLOAT=9.81", "[N/m]", "[kg/s]"})
     EXPECT_NE(r.out.find(text), std::string::npos) << text;
   // In groups, each option once, in lines that fit a terminal.

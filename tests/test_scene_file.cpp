@@ -115,6 +115,9 @@ TEST(Parts, AreWhatTheirWordsSay) {
   EXPECT_EQ(v.to, Point(1, 2, 3));
   EXPECT_EQ(read_time_step("auto").rule, StepRule::safe);
   EXPECT_EQ(read_time_step("auto:sharp").rule, StepRule::sharp);
+  EXPECT_EQ(read_time_step("auto").gain, 0.1);
+  EXPECT_EQ(read_time_step("auto:0.02").gain, 0.02);
+  EXPECT_EQ(read_time_step("auto:sharp:1").rule, StepRule::sharp);
   EXPECT_EQ(read_time_step("2e-3").dt, 0.002);
   EXPECT_TRUE(read_time_step("2e-3").fixed());
   EXPECT_STREQ(read_method("tr-bdf2")->info.name, "tr-bdf2");
@@ -157,6 +160,9 @@ TEST(Parts, HaveOneTextEach) {
   expect(read_time_step, "1e-3", "0.001");
   expect(read_time_step, "auto", "auto");
   expect(read_time_step, "auto:sharp", "auto:sharp");
+  expect(read_time_step, "auto:0.1", "auto");
+  expect(read_time_step, "auto:2e-2", "auto:0.02");
+  expect(read_time_step, "auto:sharp:.02", "auto:sharp:0.02");
 }
 
 TEST(Parts, RefuseWhatMakesNoSense) {
@@ -184,7 +190,9 @@ TEST(Parts, RefuseWhatMakesNoSense) {
   EXPECT_THROW(read_measure("max_stretch"), SceneError);
   EXPECT_THROW(read_view("from 0 0 0"), SceneError);
   EXPECT_THROW(read_view("from 0 0 1 to 0 0 1"), SceneError);
-  EXPECT_THROW(read_time_step("auto:"), SceneError);
+  for (const char* text : {"auto:", "auto:0", "auto:2", "auto:nan", "auto:0.1x",
+                           "auto:sharp:", "auto:0.1:sharp", "automatic"})
+    EXPECT_THROW(read_time_step(text), SceneError) << text;
   EXPECT_THROW(read_time_step("0"), SceneError);
   EXPECT_THROW(read_method("Verlet"), SceneError);
 }

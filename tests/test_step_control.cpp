@@ -1,7 +1,7 @@
 // StepControl.hpp: steps chosen by the measured energy balance: scenes that a
 // fixed share of the linear limit ruined, and random ones, by an independent
 // sum of their energies. `make stability-soak` runs more of it:
-//   SOAK_SCENES   random scenes (50; 1000 in the soak)
+//   SOAK_SCENES   random scenes (50; 1000 in the soak), and settling ones
 //   SOAK_SECONDS  of each [s] (1; 60 for a sample)
 //   SOAK_FIRST    the first of them (0)
 #include <gtest/gtest.h>
@@ -14,10 +14,12 @@
 
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 
 namespace {
+
 
 double setting(const char* name, double otherwise) {
   const char* text = std::getenv(name);
@@ -254,7 +256,7 @@ TEST(SteeredStep, IsTheSameWhoeverLooks) {
 
 TEST(StepControl, TakesBackWhatGainsAndSaysSoIfItCant) {
   using Verdict = StepControl::Verdict;
-  StepControl c(1, {.kinetic = 100}, 0);
+  StepControl c(1, {.kinetic = 100}, {});
   double energy = 100, share = 1;
   while (c.can_shorten()) {
     const auto then = c.state();
@@ -271,7 +273,7 @@ TEST(StepControl, TakesBackWhatGainsAndSaysSoIfItCant) {
 }
 
 TEST(StepControl, CountsWorkAndDragAndWhatWasRemoved) {
-  StepControl c(1, {.kinetic = 100}, 0);
+  StepControl c(1, {.kinetic = 100}, {});
   for (int k = 1; k < 50; ++k)
     ASSERT_NE(
         c.look({.kinetic = 100, .gravitational = 10. * k},
@@ -282,7 +284,7 @@ TEST(StepControl, CountsWorkAndDragAndWhatWasRemoved) {
 
 TEST(StepControl, LengthensWithDragOnly) {
   for (double gamma : {0.0, 0.1, 1.0}) {
-    StepControl c(0.01, {.kinetic = 1}, 0);
+    StepControl c(0.01, {.kinetic = 1}, {});
     double drag = 0;
     for (int k = 0; k < 500; ++k) {
       c.lengthen({.drag = drag});
@@ -294,6 +296,192 @@ TEST(StepControl, LengthensWithDragOnly) {
       EXPECT_EQ(c.dt(), 0.01);
     else
       EXPECT_GT(c.dt(), 0.1);
+  }
+}
+
+/** Of a cloth that hangs, taut. */
+Energies moving(double kinetic) {
+  return {.kinetic = kinetic,
+          .elastic = 50,
+          .gravitational = -50,
+          .relative = kinetic};
+}
+
+// A gain of 1 J of 150 J is none; when drag has left 1 J it is one.
+// What was gained long ago drag has taken, too.
+TEST(StepControl, MeasuresAGainByWhatDragLeft) {
+  using Verdict = StepControl::Verdict;
+  StepControl c(1, moving(100), {});
+  double kinetic = 100, drag = 0;
+  const auto look = [&](double gain) {
+    drag += 0.1 * kinetic, kinetic *= 0.9;
+    kinetic += gain;
+    return c.look(moving(kinetic), {.drag = drag}, 1, 0);
+  };
+  look(0);
+  EXPECT_NE(look(1), Verdict::take_back);
+  EXPECT_NEAR(c.state().gain, 1, 0.2);
+  while (kinetic > 1) ASSERT_NE(look(0), Verdict::take_back);
+  // In flight kinetic energy decays twice as fast as that of an oscillation.
+  EXPECT_LT(c.state().gain, 0.3);
+  EXPECT_NEAR(c.tolerance(), 0.1 * 150 * std::sqrt(kinetic / 100), 0.1);
+  EXPECT_EQ(look(2), Verdict::take_back);
+}
+
+// Round-off of a cloth at rest, and what was lost before it began.
+TEST(StepControl, HasNothingToDoAtRest) {
+  const EnergyFlow before = {.work = 3, .drag = 7};
+  StepControl c(1, moving(1), {.rest = 1e-10}, before);
+  for (int k = 0; k < 3000; ++k) {
+    const double kinetic = std::exp(-0.1 * k), drag = 8 - kinetic;
+    const double noise = (k % 5) * 1e-13;
+    ASSERT_NE(c.look(moving(kinetic + noise), {.work = 3, .drag = drag}, 1, 0),
+              StepControl::Verdict::take_back)
+        << k;
+  }
+}
+
+// rk4 takes (dt omega)^6/72 of the energy in a step, a splitting nothing.
+TEST(StepControl, KeepsWhatAMethodDampsBelowTheDrag) {
+  const MethodEntry& rk4 = *find_method("rk4");
+  const double omega = 2000, gamma = 0.3;
+  const double longest = std::pow(72 * 0.1 * gamma / std::pow(omega, 6), 0.2);
+  const double mild = mild_step(rk4, 1.7 / omega, omega, gamma, 0.1);
+  EXPECT_LT(mild, 1.02 * longest);
+  EXPECT_GT(mild, 0.88 * longest);
+  EXPECT_EQ(mild_step(rk4, 0.8 * longest, omega, gamma, 0.1), no_limit);
+  EXPECT_EQ(mild_step(rk4, 1.6 / omega, omega, 1e-9, 0.1), 0.1 / omega);
+  for (const char* name : {"verlet", "symplectic-euler", "pefrl"})
+    EXPECT_EQ(mild_step(*find_method(name), 1 / omega, omega, gamma, 0.1),
+              no_limit);
+}
+
+// -------------------------------------------------------------- Settling cloth
+
+/** A sheet thrown at up to 20 m/s, in air that stops it within 3 to 10 of its
+ * time constants; held at an edge, at one or two corners, or loose with half
+ * of it heavier. */
+Model settling(unsigned seed) {
+  std::mt19937 random(seed * 7919 + 13);
+  auto u = [&] { return double(random()) / double(random.max()); };
+  auto between = [&](double a, double b) { return a * std::pow(b / a, u()); };
+  Model m;
+  Sheet sheet;
+  sheet.nodes = {4 + unsigned(random() % 11), 4 + unsigned(random() % 11)};
+  sheet.u = Point(0.5 + u(), 0, 0), sheet.v = Point(0, 0.5 + u(), 0);
+  const double speed = between(0.3, 20);
+  sheet.velocity.x = speed * (u() - 0.5),
+  sheet.velocity.y = speed * (u() - 0.5);
+  sheet.velocity.z = speed;
+  m.sheets = {sheet};
+  m.edges.diagonals = random() % 3 != 0;
+  m.stiffness = between(30, 5000);
+  const double gamma = between(0.1, 2);  // [1/s]; a cloth has 1 kg
+  m.damping = gamma / (sheet.nodes[0] * sheet.nodes[1]);
+  m.gravity = random() % 4 == 0 ? 0 : random() % 3 == 0 ? 30 * u() : grav;
+  switch (random() % 4) {
+    case 0:
+      m.pins = {{.x = 0, .y = 0, .z = {}, .motion = {}},
+                {.x = sheet.u.x, .y = 0, .z = {}, .motion = {}}};
+      break;
+    case 1:
+      m.pins = {{.x = {}, .y = 0, .z = {}, .motion = {}}};
+      break;
+    case 2:
+      m.pins = {{.x = 0, .y = 0, .z = {}, .motion = {}}};
+      break;
+    default:
+      if (random() % 2) m.gravity = 0;
+      m.regions = {{{Point(-1, -1, -1), Point(sheet.u.x / 2, sheet.v.y / 2, 1)},
+                    1 + 10 * u()}};
+  }
+  m.t_end = (3 + 7 * u()) / gamma;
+  const std::array names = {"verlet", "symplectic-euler", "pefrl", "rk4"};
+  m.method = find_method(names[seed % 4]);
+  return m;
+}
+
+struct Settled {
+  std::string failure;
+  double kinetic = 0;  // relative to what carries it, mean of the last quarter
+  long long steps = 0;
+};
+
+Settled settle(const Model& m) {
+  Scene s(m);
+  std::vector<std::array<double, 2>> samples;  // time, energy
+  while (!s.done(m.t_end)) {
+    s.steps_at_once(8, m.t_end);
+    while (!samples.empty() && samples.back()[0] >= s.time())
+      samples.pop_back();  // steps were taken back
+    if (s.time() >= 0.75 * m.t_end)
+      samples.push_back(
+          {s.time(),
+           energies(s.cloth(), m.gravity, {.loose = m.pins.empty()}).relative});
+  }
+  s.check();
+  Settled all = {.failure = s.failure(), .steps = s.steps()};
+  for (const auto& [t, e] : samples) all.kinetic += e / double(samples.size());
+  if (s.control()) all.steps += s.control()->report().taken_back;
+  return all;
+}
+
+/** Energies by steps of this share of Verlet's limit. */
+double settled_by(Model m, double share) {
+  m.method = find_method("verlet");
+  m.step = {.rule = StepRule::safe};
+  m.step = {.dt = share * Scene(m).safe_limit()};
+  return settle(m).kinetic;
+}
+
+// Ones that were 4 and 32 times too hot by a tolerance that is a share of the
+// largest energy ever, as their motion decays to e^-5 to e^-7 of that.
+TEST(SteeredStep, LeavesAClothToSettle) {
+  for (unsigned seed : {18u, 24u}) {
+    Model m = settling(seed);
+    const double small = settled_by(m, 0.2);
+    m.step = {.rule = StepRule::safe};
+    const Settled chosen = settle(m);
+    EXPECT_EQ(chosen.failure, "");
+    EXPECT_NEAR(chosen.kinetic / small, 1, 0.1) << seed;
+  }
+}
+
+// The soak's table: those whose energy is outside of what two runs by small
+// steps give, by more than the tolerance.
+TEST(SteeredStep, SettlesInRandomScenes) {
+  if (!std::getenv("SOAK_SCENES")) GTEST_SKIP() << "a soak";
+  const int first = int(setting("SOAK_FIRST", 0));
+  const int scenes = std::min(int(setting("SOAK_SCENES", 50)), 100);
+  for (double share : {0.1, 0.02}) {
+    int within = 0, chaotic = 0;
+    std::vector<double> ratios, steps;
+    for (int seed = first; seed < first + scenes; ++seed) {
+      Model m = settling(unsigned(seed));
+      const double a = settled_by(m, 0.1), b = settled_by(m, 0.07);
+      m.step = {.rule = StepRule::safe, .gain = share};
+      const double dt = Scene(m).dt();
+      const Settled chosen = settle(m);
+      EXPECT_EQ(chosen.failure, "") << seed;
+      const auto [low, high] = std::minmax(a, b);
+      const double e = chosen.kinetic;
+      const bool good = e <= (1 + share) * high && e >= (1 - share) * low;
+      within += good, chaotic += high > (1 + share) * low;
+      ratios.push_back(2 * e / (a + b));
+      steps.push_back(double(chosen.steps) * dt / m.t_end);
+      std::cout << seed << ' ' << m.method->info.name << " small steps " << a
+                << " J, " << b << " J; chosen " << ratios.back()
+                << " of it, steps " << chosen.steps << ", by the first dt "
+                << steps.back() << (good ? "" : " OUTSIDE") << '\n';
+    }
+    std::ranges::sort(ratios), std::ranges::sort(steps);
+    std::cout << scenes << " settling scenes, tolerance " << share << ": "
+              << within << " within it of small steps; " << chaotic
+              << " in which these differ by more; ratio " << ratios.front()
+              << " to " << ratios.back() << ", median "
+              << ratios[ratios.size() / 2] << "; steps by the first dt: median "
+              << steps[steps.size() / 2] << ", most " << steps.back() << '\n';
+    EXPECT_GE(within, scenes * 9 / 10);
   }
 }
 
@@ -319,7 +507,8 @@ TEST(SteeredStep, KeepsItsToleranceInRandomScenes) {
         << "seed " << seed << ": gains " << w.share();
     EXPECT_EQ(w.failure, "") << seed;
     double ratio = 0;
-    if (talk && r.gamma > 0.2 && w.scale > 0) {
+    const bool lossy = r.method->info.name == std::string("rk4");
+    if (talk && r.gamma > 0.2 && w.scale > 0 && !lossy) {
       // The longest fixed step that keeps the tolerance, too.
       double low = start / 16, high = 4 * start;
       for (int k = 0; k < 12; ++k) {

@@ -35,6 +35,7 @@ enum class StepRule {
 struct TimeStep {
   double dt = 0.001;  ///< [s], > 0; of StepRule::fixed
   StepRule rule = StepRule::fixed;
+  double gain = 0.1;  ///< of energy, that chosen steps may gain: of (0, 1]
   /** Of the inner steps of a method with error control [m]; 0: its usual. */
   double tolerance = 0;
   bool fixed() const { return rule == StepRule::fixed; }

@@ -15,11 +15,7 @@ namespace lab {
 
 namespace {
 constexpr double no_step = 1e-9;  // of a step
-
-/** What changes by a method's error, and where drag takes energy [J]. */
-double balance(const Energies& e, const EnergyFlow& flow) {
-  return e.total() - flow.work + flow.removed;
-}
+static_assert(TimeStep{}.gain == energy_tolerance);
 }  // namespace
 
 Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
@@ -85,9 +81,27 @@ void Scene::start_control() {
   if (!failure_.empty()) return;
   if (!step_.fixed() || follows_drag_) start_drag();
   if (step_.fixed()) return;
-  control_.emplace(clock_.dt, energy(), guard_->floor());
+  const double longest = longest_step();
+  if (longest < clock_.dt) clock_.set_dt(longest);
+  const Energies now = energy();
+  control_.emplace(
+      clock_.dt, now,
+      StepControl::Limits{.share = step_.gain,
+                          .floor = guard_->floor(),
+                          .rest = guard_->round_off() + 1e-10 * now.internal(),
+                          .longest = longest,
+                          .early = entry_.info.order == 1},
+      flow());
   looked_ = time();
   keep_both();
+}
+
+/** A step beyond which the method takes energy that only drag should take. */
+double Scene::longest_step() const {
+  if (drag_.none() || entry_.info.multirate) return no_limit;
+  if (safe_omega_ < 0) safe_limit();
+  return mild_step(entry_, clock_.dt, with_hand(safe_omega_), largest_gamma_,
+                   step_.gain);
 }
 
 void Scene::start_drag() {
@@ -187,7 +201,7 @@ bool Scene::is_finite() const { return std::isfinite(energy().total()); }
 
 /** Steps between two samples of drag. */
 int Scene::drag_interval() const {
-  constexpr double most = 0.02;  // of a velocity
+  constexpr double most = 0.005;  // of a velocity
   return int(std::clamp(most / (largest_gamma_ * clock_.dt), 1.,
                         double(StepControl::look_interval)));
 }

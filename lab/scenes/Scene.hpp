@@ -260,6 +260,7 @@ class Scene {
 
   void plan_forces();
   void start_control();
+  double longest_step() const;
   void start_drag();
   double begin_change();
   void end_change(double before);

@@ -121,7 +121,9 @@ void each_option(T& m, Use use) {
   use("dt", m.dt,
       "step [s], the last ones shorter; auto: first 0.6 of the stability limit "
       "that holds in every configuration, then as the energy balance allows; "
-      "auto:sharp: first 0.9 of that in the present one");
+      "auto:sharp: first 0.9 of that in the present one; auto:G, "
+      "auto:sharp:G: it gains at most that share of the energy of motion "
+      "(0.1)");
   use("method", m.method, "name of a method: see --list-methods");
   use("measure", m.measure,
       "what is asked, at the end: com [m], energy [J], positions [m], "
@@ -228,7 +230,7 @@ void SceneOptions::add_to(CLI::App& app) {
                 if constexpr (std::is_same_v<T, Text::List>)
                   option->allow_extra_args(false);  // what follows may be NODES
                 if (name == "nodes" || name == "tets") takes_file(option);
-                if (name == "dt") option->type_name("FLOAT|auto|auto:sharp");
+                if (name == "dt") option->type_name("FLOAT|auto[:sharp][:G]");
               });
   CLI::Option* stiffness = app.get_option("--stiffness");
   CLI::Option* damping = app.get_option("--damping");

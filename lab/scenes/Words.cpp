@@ -4,7 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
+#include <string_view>
 
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
@@ -192,15 +194,29 @@ Measure read_measure(const std::string& text) {
                                   did_you_mean(text, measure_names));
 }
 TimeStep read_time_step(const std::string& text) {
-  if (text == "auto") return {.rule = StepRule::safe};
-  if (text == "auto:sharp") return {.rule = StepRule::sharp};
+  TimeStep step;
+  double* number = &step.dt;
+  std::string_view rest = text;
+  const auto skip = [&rest](std::string_view word) {
+    const bool there = rest.starts_with(word);
+    if (there) rest.remove_prefix(word.size());
+    return there;
+  };
+  if (skip("auto")) {
+    step.rule = skip(":sharp") ? StepRule::sharp : StepRule::safe;
+    if (rest.empty()) return step;
+    number = skip(":") ? &step.gain : nullptr;
+  }
   char* end = nullptr;
-  const double dt = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(dt > 0 && std::isfinite(dt)))
+  if (number) *number = std::strtod(rest.data(), &end);
+  if (rest.empty() || !end || *end != '\0' ||
+      !(*number > 0 &&
+        *number <= (step.fixed() ? std::numeric_limits<double>::max() : 1)))
     throw SceneError("dt", "is " + text +
                                ", expected a positive time [s], auto or "
-                               "auto:sharp");
-  return {.dt = dt};
+                               "auto:sharp, or one of these and the share of "
+                               "energy it may gain, of (0, 1]: auto:0.02");
+  return step;
 }
 const MethodEntry* read_method(const std::string& text) {
   if (const MethodEntry* method = find_method(text)) return method;
@@ -318,9 +334,9 @@ std::string to_words(const Box& v) {
   return Writer().point("from", v.from).point("to", v.to).text();
 }
 std::string to_words(const TimeStep& s) {
-  return s.rule == StepRule::safe    ? "auto"
-         : s.rule == StepRule::sharp ? "auto:sharp"
-                                     : exact_text(s.dt);
+  if (s.fixed()) return exact_text(s.dt);
+  return std::string(s.rule == StepRule::sharp ? "auto:sharp" : "auto") +
+         (s.gain == TimeStep().gain ? "" : ':' + exact_text(s.gain));
 }
 
 }  // namespace lab

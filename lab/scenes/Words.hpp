@@ -65,7 +65,7 @@ Ball read_tear(const std::string& text);
 Distance read_self_collision(const std::string& text);
 Box read_view(const std::string& text);
 Measure read_measure(const std::string& text);
-/** "auto", "auto:sharp" or a number [s] */
+/** A number [s]; or auto[:sharp][:GAIN], as "auto:0.02" */
 TimeStep read_time_step(const std::string& text);
 const MethodEntry* read_method(const std::string& text);
 

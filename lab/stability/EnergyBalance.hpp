@@ -39,6 +39,15 @@ struct EnergyFlow {
  * O(N + springs) */
 Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow = {});
 
+/** What a method may gain from nothing, as a share of the energy of motion,
+ * unless one says otherwise. */
+inline constexpr double energy_tolerance = 0.1;
+
+/** What never rises in the cloth itself [J], see EnergyBalance. */
+inline double balance(const Energies& e, const EnergyFlow& flow) {
+  return e.total() - flow.work + flow.removed + flow.drag;
+}
+
 /** Follows what comes into a cloth's energy and what leaves it, step by step.
  *
  * Contact, friction and tearing only lower kinetic and elastic energy, so

@@ -13,18 +13,22 @@ constexpr double seen = 0.8;      // of it: the rest is for steps between looks
 constexpr int most_failures = 6;  // that count
 }  // namespace
 
-StepControl::StepControl(double dt, const Energies& start, double floor)
-    : first_(dt), shortest_(dt / 64), floor_(floor), report_{dt, dt} {
+StepControl::StepControl(double dt, const Energies& start, const Limits& limits,
+                         const EnergyFlow& flow)
+    : first_(dt), shortest_(dt / 64), limits_(limits), report_{dt, dt} {
   now_.dt = dt, now_.ceiling = none;
   now_.scale = start.internal();
   now_.fall = 2 * start.fall_power * dt;
-  now_.last = now_.least = now_.base = now_.mark = start.total();
+  now_.last = now_.least = now_.base = now_.mark = balance(start, flow);
   now_.low = none;
+  now_.drag = now_.lost = flow.drag, now_.kinetic = start.kinetic;
+  now_.fall_power = start.fall_power;
 }
 
 void StepControl::State::archive(CME212::Archive& a) {
-  for (double* x : {&dt, &ceiling, &scale, &fall, &last, &least, &base, &low,
-                    &mark, &sum, &gain, &time, &kinetic_time, &drag})
+  for (double* x :
+       {&dt, &ceiling, &scale, &fall, &last, &least, &base, &low, &mark, &sum,
+        &gain, &time, &kinetic_time, &drag, &lost, &kinetic, &fall_power})
     // Bounds that there are not yet are infinite.
     a(*x).require(std::isfinite(*x) ||
                   (*x == none && (x == &ceiling || x == &low)));
@@ -47,10 +51,9 @@ StepControl::Verdict StepControl::look(const Energies& e,
                                        const EnergyFlow& flow, double h,
                                        double part) {
   State s = now_;
-  s.last = e.total() - flow.work + flow.removed + flow.drag;
+  s.last = balance(e, flow);
   s.low = std::min(s.low, s.last), s.sum += s.last;
-  s.scale = std::max(s.scale, e.internal());
-  s.fall = std::max(s.fall, 2 * e.fall_power * s.dt);
+  forget(s, e, flow);
   s.time += h, s.kinetic_time += e.kinetic * h;
   const double most = tolerance(s, s.looks + 1);
   const double least_noise = noise * most;
@@ -73,11 +76,31 @@ StepControl::Verdict StepControl::look(const Energies& e,
   return Verdict::keep;
 }
 
+/** Scale and fall at the energy @a e, and what drag left of older energies. */
+void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
+  const double lost = flow.drag - s.lost, twice_mean = s.kinetic + e.kinetic;
+  const double more_fall = std::abs(e.fall_power - s.fall_power) * s.dt;
+  s.lost = flow.drag, s.kinetic = e.kinetic, s.fall_power = e.fall_power;
+  if (!(lost > 0 && twice_mean > 0)) {
+    s.scale = std::max(s.scale, e.internal());
+    s.fall = std::max(s.fall, 2 * e.fall_power * s.dt);
+    return;
+  }
+  // Drag takes 2 gamma of kinetic energy, half of that of an oscillation.
+  const double left = std::exp(-lost / twice_mean);
+  s.scale =
+      std::max({left * s.scale, std::min(s.scale, limits_.rest), e.relative});
+  s.fall = limits_.early ? left * s.fall + more_fall : 0;
+  if (e.fall_power > 0) s.fall = std::max(s.fall, limits_.floor);
+  s.gain *= left;
+  s.least += (1 - left) * std::max(0.0, s.base - s.least);
+}
+
 double StepControl::tolerance(const State& s, int looks) const {
-  const double most = energy_tolerance * s.scale + s.fall;
+  const double most = limits_.share * s.scale + s.fall;
   if (s.rounds > 0) return most;
   // A fall from rest is counted as speed up to a step before it is as height.
-  return most + 2 * look_interval * looks * floor_;
+  return most + 2 * look_interval * looks * limits_.floor;
 }
 
 void StepControl::take_back(const State& then, long long steps) {
@@ -107,7 +130,7 @@ bool StepControl::lengthen(const EnergyFlow& flow) {
     ++now_.raises;
     if (!damped) now_.since = 0;
   }
-  const double most = damped ? now_.ceiling
+  const double most = damped ? std::min(now_.ceiling, limits_.longest)
                       : now_.calm >= 2 * patience
                           ? std::min(first_, now_.ceiling)
                           : 0;

@@ -7,11 +7,6 @@
 
 namespace lab {
 
-/** What a run of chosen steps may gain in energy, as a share of the largest
- * internal energy until then. A loose cloth in free fall may gain what it falls
- * in two steps besides: speeds of methods of order 1 are half a step early. */
-inline constexpr double energy_tolerance = 0.1;
-
 /** Chooses the step by what the last steps did to the energy.
  *
  * The balance b of EnergyBalance never rises in the cloth itself. A linear
@@ -26,6 +21,13 @@ inline constexpr double energy_tolerance = 0.1;
  *   each 1/(4 gamma) of time, gamma the drag measured, beyond any limit known.
  *   Without drag a step goes back to where it started at most. A step that
  *   failed is not tried again soon.
+ * What is gained is measured by the largest internal energy until then. Drag
+ * takes a gain as it takes all motion, by e^{-gamma t}: so with drag both are
+ * leaky, and the scale is the largest kinetic energy that is left, as the
+ * elastic energy of a cloth at rest is not motion. A loose cloth in free fall
+ * may gain what it falls in two steps besides: speeds of methods of order 1 are
+ * half a step early.
+ *
  * The energy of an oscillation by a symplectic method swings within a round, by
  * O((dt omega)^2) of it: so a gain is from the least of one round to the least
  * of the next. For methods that lose energy only gains count. Changes are rare,
@@ -38,17 +40,18 @@ class StepControl {
   /** All that it knows, as plain numbers: energies in J, times in s. */
   struct State {
     double dt = 0, ceiling = 0;  ///< the step, and the longest one for now
-    double scale = 0;            ///< the largest internal energy
+    double scale = 0;            ///< what a gain is measured by
     double fall = 0;             ///< the most of a loose cloth in two steps
     double last = 0, least = 0;  ///< b: now, and the least mean of a round
     double base = 0, low = 0;    ///< b: the least of the last round, of this
     double mark = 0, sum = 0;    ///< b: when dt changed; of this round's looks
-    double gain = 0;             ///< the most that b was above that
+    double gain = 0;             ///< the most that b was above least; leaky
     double time = 0, kinetic_time = 0;  ///< since dt changed; kinetic energy's
                                         ///< integral [J s]
     double drag = 0;                    ///< loss until dt changed
-    int looks = 0;                      ///< in this round
-    int rounds = 0, calm = 0;           ///< of the run, since dt changed
+    double lost = 0, kinetic = 0, fall_power = 0;  ///< at the last look
+    int looks = 0;                                 ///< in this round
+    int rounds = 0, calm = 0;   ///< of the run, since dt changed
     int since = 0, raises = 0;  ///< rounds since a failure, a raise; raises of
                                 ///< the ceiling since a failure
     void archive(CME212::Archive& a);
@@ -60,10 +63,18 @@ class StepControl {
     long long taken_back = 0;           ///< steps
   };
 
+  struct Limits {
+    double share = energy_tolerance;  ///< of the scale: what may be gained
+    double floor = 0;  ///< an energy that is next to nothing [J]:
+                       ///< DivergenceGuard::floor()
+    double rest = 0;   ///< that of a cloth at rest, by round-off [J]
+    double longest = std::numeric_limits<double>::infinity();  ///< step [s]
+    bool early = true;  ///< speeds are half a step early: order 1
+  };
   /** @param dt the first step [s]   @param start energy at the start
-   * @param floor an energy that is next to nothing: DivergenceGuard::floor()
-   */
-  StepControl(double dt, const Energies& start, double floor);
+   * @param flow into it until then */
+  StepControl(double dt, const Energies& start, const Limits& limits,
+              const EnergyFlow& flow = {});
 
   double dt() const { return now_.dt; }
   const State& state() const { return now_; }
@@ -92,11 +103,12 @@ class StepControl {
 
  private:
   double first_, shortest_;  // steps [s]
-  double floor_;             // [J]
+  Limits limits_;
   State now_;
   Report report_;
   int failures_ = 0;
 
+  void forget(State& s, const Energies& e, const EnergyFlow& flow);
   double tolerance(const State& s, int looks) const;
   void start_round();
   void change(double dt, double drag);

@@ -7,6 +7,11 @@
 
 namespace lab {
 
+namespace {
+constexpr double round_off =
+    std::max(1e-12, 10. * std::numeric_limits<Real>::epsilon());
+}
+
 double spectral_radius(double a, double b, double c, double d) {
   const double half = (a + d) / 2, det = a * d - b * c;
   const double root = half * half - det;
@@ -39,8 +44,6 @@ double step_limit(const MethodEntry& method, double omega, double gamma) {
   double high = (info.limit > 0 ? info.limit : 2) / omega;
   if (!(gamma > 0)) return info.limit > 0 ? high : 0;
   auto made = method.make();
-  constexpr double round_off =
-      std::max(1e-12, 10. * std::numeric_limits<Real>::epsilon());
   auto stable = [&](double dt) {
     return amplification(*made, dt, omega, gamma) <= 1 + round_off;
   };
@@ -51,6 +54,20 @@ double step_limit(const MethodEntry& method, double omega, double gamma) {
     (stable(middle) ? low : high) = middle;
   }
   return low;
+}
+
+double mild_step(const MethodEntry& method, double dt, double omega,
+                 double gamma, double share) {
+  auto made = method.make();
+  auto mild = [&](double h) {
+    const double taken = -2 * std::log(amplification(*made, h, omega, gamma));
+    return taken <= (1 + share) * gamma * h + round_off;
+  };
+  if (method.info.adaptive || !(omega > 0) || mild(dt)) return no_limit;
+  const double least = dt / 16;
+  do dt *= 0.9;
+  while (dt > least && !mild(dt));
+  return std::max(dt, least);
 }
 
 double largest_gamma(const Cloth& g, const Drag& c) {

@@ -25,6 +25,13 @@ double amplification(Method& method, double dt, double omega, double gamma = 0);
  * of that without drag and of what amplification() says with it. */
 double step_limit(const MethodEntry& method, double omega, double gamma = 0);
 
+/** The longest step [s] with which @a method damps a wave of @a omega [1/s] by
+ * at most @a share more than a drag of @a gamma > 0 [1/s] does; no_limit if
+ * @a dt is one, and no less than a 16th of it. Splittings damp nothing by
+ * themselves; rk4 takes (dt omega)^6/72 of the energy in every step. */
+double mild_step(const MethodEntry& method, double dt, double omega,
+                 double gamma, double share);
+
 /** The largest c/m [1/s] of a node of a cloth with drag @a c.  O(N) */
 double largest_gamma(const Cloth& g, const Drag& c);
 

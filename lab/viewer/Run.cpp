@@ -64,7 +64,7 @@ void announce(const Scene& scene, const Options& o, long long first_step) {
         << " s on may resonate with the stiff springs";
   if (scene.control())
     out << "; then as the energy balance allows: no gain above "
-        << percent(energy_tolerance) << " of kinetic and elastic energy";
+        << percent(o.model.step.gain) << " of the energy of motion";
   if (first_step > 0)
     std::cout << o.restart << ": goes on at t = " << scene.time() << " s\n";
   std::cout << out.str() << std::endl;  // at once, also into a pipe
