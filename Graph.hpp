@@ -13,13 +13,11 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "CME212/Point.hpp"
 #include "CME212/SlotMap.hpp"
@@ -44,11 +42,12 @@
  * edge once hubs lost many edges; slots of removed elements are used again by
  * new ones, and given back when the graph is destroyed.
  *
+ * A member that throws, std::bad_alloc or what a value throws, has changed no
+ * node, edge or value; but what it says it invalidates may be invalid.
  * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
  * copied (the copy has the same indices and ids, and handles of its own), but
  * not assigned: the handles of the old content would come to mean another. No
  * handle may be used when its graph is destroyed.
- *
  * Threads: as a std::vector. Reads may run together, a write runs alone;
  * writes to positions and values of different elements may run together. */
 template <typename V = graph_detail::NoValue,
@@ -235,17 +234,17 @@ class Graph {
    * Invalidates: references and spans to positions and node values.
    * Keeps: every Node, Edge and iterator (but an end stays where it was).
    * Complexity: O(1) amortized.
-   * Throws std::length_error beyond 2^31 nodes, std::bad_alloc: no change. */
+   * Throws std::length_error beyond 2^31 nodes. */
   Node add_node(const Point& position, const V& value = V()) {
     V copy = value;  // the caller's may lie in the array that grows
     Point p = position;
-    size_type id = nodes_.next();
+    size_type id = nodes_.reserve_one();
     graph_detail::grow_to_hold(position_, id + 1);  // one more: positions()
     graph_detail::grow_to_hold(node_value_, id);
     graph_detail::grow_to_hold(neighbors_of_, id);
+    node_value_[id] = std::move(copy);  // the last that may throw
     nodes_.acquire();
     position_[id] = p;
-    node_value_[id] = std::move(copy);
     ++version_;
     return Node(this, id);
   }
@@ -276,13 +275,15 @@ class Graph {
     // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
     size_type id = n.id_;  // n may be a reference into what changes below
+    nodes_.make_lists();
+    if (n.degree() > 0) prepare_drop();
     for (Neighbor b : pool_.items(neighbors_of_[id])) {
       drop_from_list(b.node, b.edge);
       drop_edge(b.edge);
     }
     pool_.free(neighbors_of_[id]);
     position_[id] = Point();
-    node_value_[id] = V();
+    graph_detail::reset(node_value_[id]);
     nodes_.release(id);
     ++version_;
     return 1;
@@ -317,34 +318,33 @@ class Graph {
    *       edge values and ends.
    * Keeps: every Node, Edge and other iterator.
    * Complexity: O(min(a.degree(), b.degree())), amortized.
-   * Throws std::length_error beyond 2^31 edges, std::bad_alloc: no change. */
+   * Throws std::length_error beyond 2^31 edges. */
   Edge add_edge(const Node& a, const Node& b, const E& value = E()) {
     assert(has_node(a) && has_node(b) && !(a == b));
     size_type i = a.id_, j = b.id_;
     if (size_type id = find(a, b); id != none) return Edge(this, id, i, j);
     E copy = value;
-    size_type id = edges_.next();
+    size_type id = edges_.reserve_one();
     graph_detail::grow_to_hold(ends_, id);
     graph_detail::grow_to_hold(edge_value_, id);
     if (keeps_places()) graph_detail::grow_to_hold(places_, id);
     pool_.reserve_one(neighbors_of_[i]);
     pool_.reserve_one(neighbors_of_[j]);
+    // BEGIN SOLUTION 4.1.edge_value
+    edge_value_[id] = std::move(copy);  // the last that may throw
+    // STUB (void)copy;
+    // END SOLUTION
     edges_.acquire();
     ends_[id] = {i, j};
     if (keeps_places())
       places_[id] = {neighbors_of_[i].size, neighbors_of_[j].size};
-    // BEGIN SOLUTION 4.1.edge_value
-    edge_value_[id] = std::move(copy);
-    // STUB (void)copy;
-    // END SOLUTION
     pool_.push_back(neighbors_of_[i], {j, id});
     pool_.push_back(neighbors_of_[j], {i, id});
     ++version_;
     return Edge(this, id);
   }
 
-  /** True if there is an edge between @a a and @a b in this graph now; false
-   * also if one of them is no node of it.
+  /** True if there is an edge between @a a and @a b, nodes of this graph now.
    * Complexity: O(min(a.degree(), b.degree())) */
   bool has_edge(const Node& a, const Node& b) const {
     return find(a, b) != none;
@@ -382,6 +382,7 @@ class Graph {
     // BEGIN SOLUTION 7.1.remove_edge
     if (!has_edge(e)) return 0;
     size_type id = e.id_;
+    prepare_drop();
     for (size_type end : ends_[id]) drop_from_list(end, id);
     drop_edge(id);
     ++version_;
@@ -409,10 +410,11 @@ class Graph {
    * Complexity: O(num_nodes() + num_edges()), whatever was removed before.
    *       Memory is kept for new elements, so dead handles stay dead. */
   void clear() {
-    for (Edge e : edges()) ends_[e.id()] = {}, edge_value_[e.id()] = E();
+    for (Edge e : edges())
+      ends_[e.id()] = {}, graph_detail::reset(edge_value_[e.id()]);
     for (Node n : nodes()) {
       position_[n.id_] = Point();
-      node_value_[n.id_] = V();
+      graph_detail::reset(node_value_[n.id_]);
       neighbors_of_[n.id_] = {};
     }
     nodes_.clear();
@@ -428,7 +430,7 @@ class Graph {
    * iteration nearly as fast as at first.
    * Invalidates: all iterators; spans of neighbors().
    * Keeps: every Node and Edge (with another index); references, other spans.
-   * Complexity: O(node_slots() + edge_slots())   Throws std::bad_alloc */
+   * Complexity: O(node_slots() + edge_slots()) */
   void reindex() {
     pool_.compact(neighbors_of_);
     nodes_.reindex();
@@ -502,8 +504,8 @@ class Graph {
   // ---------------------------------------------------------- Arrays, by id
   // The same storage without proxies, for sweeps over the whole graph: plain
   // arrays, addressed by Node::id() and Edge::id(). A slot whose element was
-  // removed holds Point(), V(), E() and the ends {0, 0}; skip it by
-  // node_in_use() and edge_in_use(). A loop over the slots is one over memory.
+  // removed holds Point(), V(), E() (unless these throw) and the ends {0, 0};
+  // skip it by node_in_use() and edge_in_use(). The loop is one over memory.
 
   /** All ids lie below this.  >= num_nodes() */
   size_type node_slots() const { return nodes_.slots(); }
@@ -562,8 +564,7 @@ class Graph {
     auto require = [](bool ok, const char* what) {
       if (!ok) throw std::logic_error(std::string("Graph: ") + what);
     };
-    nodes_.check_invariants();
-    edges_.check_invariants();
+    nodes_.check_invariants(), edges_.check_invariants();
     require(position_.size() >= node_slots() + (node_slots() > 0) &&
                 node_value_.size() >= node_slots() &&
                 neighbors_of_.size() >= node_slots() &&
@@ -604,8 +605,7 @@ class Graph {
   }
 
  private:
-  static constexpr size_type none = std::numeric_limits<size_type>::max();
-
+  static constexpr size_type none = graph_detail::none;
   graph_detail::SlotMap<Generation> nodes_, edges_;
   graph_detail::ListPool<Neighbor> pool_;
   graph_detail::Version version_;
@@ -618,7 +618,6 @@ class Graph {
   Array<E> edge_value_;
   Array<std::array<size_type, 2>> places_;  // in the ends' lists; see search()
   std::size_t searched_ = 0;                // entries of long lists
-
   Graph* self() const { return const_cast<Graph*>(this); }
 
   /** The id of the edge between @a a and @a b, or none. */
@@ -648,17 +647,18 @@ class Graph {
     // END SOLUTION
   }
 
-  /** Where edge @a e stands in the @a list of node @a i, one of its ends.
-   * Searched for, until searches of long lists have cost as much as to note
-   * the places of all edges. Noted from then on: O(1) amortized. */
-  template <typename List>
-  size_type search(const List& list, size_type i, size_type e) {
-    if (list.size > 16 && !keeps_places())
-      if ((searched_ += list.size) > num_edges()) {
-        graph_detail::grow_to_hold(places_, edge_slots() - 1);
-        for (size_type n = 0; n < node_slots(); ++n) note_places(n);
-      }
+  /** All that may throw when edges are removed. Notes the places of all edges
+   * once searches of long lists have cost as much. */
+  void prepare_drop() {
+    edges_.make_lists();
+    if (keeps_places() || searched_ <= num_edges()) return;
+    graph_detail::grow_to_hold(places_, edge_slots() - 1);
+    for (size_type n = 0; n < node_slots(); ++n) note_places(n);
+  }
+  /** Where edge @a e stands in the @a list of its end @a i.  O(1) amortized */
+  size_type search(const auto& list, size_type i, size_type e) {
     if (keeps_places()) return places_[e][side(e, i)];
+    if (list.size > 16) searched_ += list.size;
     size_type k = 0;
     while (pool_[list.begin + k].edge != e) ++k;
     return k;
@@ -676,7 +676,7 @@ class Graph {
   void drop_edge(size_type e) {
     // BEGIN SOLUTION 7.1.remove_edge
     ends_[e] = {};
-    edge_value_[e] = E();
+    graph_detail::reset(edge_value_[e]);
     edges_.release(e);
     // STUB (void)e;
     // END SOLUTION

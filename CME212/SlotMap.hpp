@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
@@ -94,6 +95,19 @@ void grow_to_hold(A& a, std::size_t i) {
   if (a.size() <= i) a.resize(i + 1);
 }
 
+/** Make @a value what a slot holds that is not in use, T(). If that throws, it
+ * stays as it is: a removal goes on. */
+template <typename T>
+void reset(T& value) noexcept {
+  try {
+    value = T();
+  } catch (...) {
+  }
+}
+
+/** No slot or block. */
+inline constexpr size_type none = std::numeric_limits<size_type>::max();
+
 /** Ids for things that come and go: an id stays with its thing, while the
  * indices of all things are 0, 1, ..., size() - 1 at any time.
  *
@@ -130,74 +144,69 @@ class SlotMap {
   /** How many indices have a smaller id than the index before.  O(size()) */
   size_type descents() const {
     size_type n = 0;
-    for (std::size_t i = 1; i < id_at_.size(); ++i)
-      n += id_at_[i] < id_at_[i - 1];
+    for (size_type i = 1; i < size_; ++i) n += id_at(i) < id_at(i - 1);
     return n;
   }
 
   /** Let slots() grow to @a slots without moving anything. */
   void reserve(size_type slots) { generation_.reserve(slots); }
 
-  /** The id that the next acquire() will give. */
-  size_type next() const { return free_.empty() ? slots_ : free_.back(); }
-
-  /** Take a slot into use.  @post index_of(result) == old size()
-   * Complexity: O(1) amortized. If memory runs out, nothing changed. */
+  /** Make room for one more.
+   * @return the id that acquire() will give
+   * Complexity: O(1) amortized
+   * Throws std::length_error, std::bad_alloc: no change. */
+  size_type reserve_one() {
+    size_type id = free_ == none ? slots_ : free_;
+    if (id >= generation_.size() || (!identity_ && id >= index_of_.size()))
+      grow(id);
+    return id;
+  }
+  /** Take a slot into use.  O(1)   @post index_of(result) == old size()
+   * @pre reserve_one() came before */
   size_type acquire() {
-    size_type id = next();
-    if (id >= max_slots) throw std::length_error("Graph: too many elements");
-    grow_to_hold(generation_, id);
-    if (!identity_) {
-      grow_to_hold(index_of_, id);
-      index_of_[id] = size_;
-      id_at_.push_back(id);
-    }
-    if (free_.empty())
-      ++slots_;
-    else
-      free_.pop_back();
+    size_type id = free_ == none ? slots_++ : free_;
+    if (free_ != none) free_ = index_of_[id];
+    if (!identity_) index_of_[id] = size_, id_at_[size_] = id;
     ++generation_[id];
     ++size_;
     return id;
   }
 
-  /** Give up a slot.  @pre in_use(id)
-   * @post The thing of highest index took the index of the released one.
-   * Complexity: O(1); but O(slots()) when it makes the two lists: the first
-   * time, and the first time after they were given up by clear() or reindex().
-   */
+  /** Make the lists of indices, which release() needs.
+   * Complexity: O(slots()) the first time, and the first time after they were
+   *       given up by clear() or reindex(); else O(1)
+   * Throws std::bad_alloc: no change. */
+  void make_lists() {
+    if (!identity_) return;
+    id_at_.reserve(slots_);
+    index_of_.reserve(slots_);  // the last that may throw
+    id_at_.resize(slots_);
+    index_of_.resize(slots_);
+    for (size_type id = 0; id < slots_; ++id) id_at_[id] = index_of_[id] = id;
+    identity_ = false;
+  }
+  /** Give up a slot.  O(1)   @pre in_use(id), and make_lists() came before
+   * @post The thing of highest index took the index of the released one. */
   void release(size_type id) {
-    make_lists();
     size_type hole = index_of_[id];
-    size_type last = id_at_.back();
+    size_type last = id_at_[--size_];
     id_at_[hole] = last;
     index_of_[last] = hole;
-    id_at_.pop_back();
-    --size_;
     retire(id);
-    if (reusable(id)) free_.push_back(id);
   }
 
   /** Release all; then begin anew with slot 0, unless one is used up.
-   * Complexity: O(size()) */
+   * Complexity: O(size()), with what make_lists() costs if one is used up.
+   * Throws std::bad_alloc in that case only: no change. */
   void clear() {
-    bool all_reusable = size_ + free_.size() == slots_;
-    for (size_type index = 0; index < size_; ++index) {
-      retire(id_at(index));
-      all_reusable &= reusable(id_at(index));
-    }
-    if (all_reusable) {
-      free_.clear();
-      index_of_.clear();
-      slots_ = 0;
-    } else {
-      for (size_type index = 0; index < size_; ++index)
-        if (reusable(id_at(index))) free_.push_back(id_at(index));
-      index_of_.resize(slots_);
-    }
-    id_at_.clear();
+    size_type used_up = used_up_;
+    for (size_type index = 0; index < size_; ++index)
+      used_up += generation_[id_at(index)] >= last_generation - 1;
+    if (used_up > 0) make_lists();
+    for (size_type index = 0; index < size_; ++index)
+      used_up > 0 ? retire(id_at(index)) : void(++generation_[id_at(index)]);
+    if (used_up == 0) forget_lists(), free_ = none, slots_ = 0;
     size_ = 0;
-    identity_ = all_reusable;
   }
 
   /** Give the indices anew, in the order of the ids.  O(slots()) */
@@ -209,26 +218,21 @@ class SlotMap {
         id_at_[index] = id;
         index_of_[id] = index++;
       }
-    if (size_ < slots_) return;
-    id_at_.clear();
-    index_of_.clear();
-    identity_ = true;
+    if (size_ == slots_) forget_lists();
   }
 
   /** Give the thing of id @a ids[i] the index i.  O(slots())
-   * @pre @a ids names each thing once */
+   * @pre @a ids names each thing once   Throws std::bad_alloc: no change. */
   void reindex(std::span<const size_type> ids) {
     assert(ids.size() == size_);
-    std::vector<size_type> id_at(ids.begin(), ids.end()), index_of(slots_);
+    make_lists();
     for (size_type index = 0; index < size_; ++index) {
       assert(ids[index] < slots_ && in_use(ids[index]));
-      index_of[ids[index]] = index;
+      id_at_[index] = ids[index];
+      index_of_[ids[index]] = index;
     }
     for (size_type index = 0; index < size_; ++index)
-      assert(index_of[ids[index]] == index);  // else an id comes twice
-    id_at_ = std::move(id_at);
-    index_of_ = std::move(index_of);
-    identity_ = false;
+      assert(index_of_[ids[index]] == index);  // else an id comes twice
   }
 
   /** Throw std::logic_error unless the representation is consistent. */
@@ -237,15 +241,15 @@ class SlotMap {
       if (!ok) throw std::logic_error("SlotMap: inconsistent");
     };
     require(generation_.size() >= slots_);
-    require(id_at_.size() == (identity_ ? 0 : size_));
-    require(identity_ ? index_of_.empty() : index_of_.size() >= slots_);
-    require(!identity_ || (size_ == slots_ && free_.empty()));
+    require(identity_ ? id_at_.size() == 0 : id_at_.size() >= size_);
+    require(identity_ ? index_of_.size() == 0 : index_of_.size() >= slots_);
+    require(!identity_ || (size_ == slots_ && free_ == none));
     std::vector<bool> is_free(slots_);
-    for (size_type id : free_) {
+    size_type used = 0, unused = used_up_;
+    for (size_type id = free_; id != none; id = index_of_[id], ++unused) {
       require(id < slots_ && !in_use(id) && reusable(id) && !is_free[id]);
       is_free[id] = true;
     }
-    size_type used = 0;
     for (size_type id = 0; id < generation_.size(); ++id) {
       if (in_use(id)) {
         ++used;
@@ -255,31 +259,53 @@ class SlotMap {
         require(id >= slots_ || is_free[id] || !reusable(id));
       }
     }
-    require(used == size_);
+    require(used == size_ && used + unused == slots_);
   }
 
  private:
   // Each edge has two places in a ListPool, which counts in 32 bits.
   static constexpr size_type max_slots = 1u << 31;
 
+  // The one of a slot that is used up.
+  static constexpr auto last_generation =
+      std::numeric_limits<Generation>::max() - 1;
+
   GrowingArray<Generation> generation_;  // by slot; odd: in use
-  std::vector<size_type> id_at_;         // by index; empty while identity_
-  std::vector<size_type> index_of_;      // by slot;  empty while identity_
-  std::vector<size_type> free_;          // slots to use again
+  // While not identity_:
+  GrowingArray<size_type> id_at_;  // by index
+  GrowingArray<size_type>
+      index_of_;           // by slot; of a free one the next free one
+  size_type free_ = none;  // the first free slot
   size_type size_ = 0;
   size_type slots_ = 0;
-  bool identity_ = true;  // index == id for all, and there is no free slot
+  size_type used_up_ = 0;  // slots not in use that are not free either
+  bool identity_ = true;   // index == id for all, and all slots are in use
 
-  void retire(size_type id) { ++generation_[id]; }
-  bool reusable(size_type id) const {
-    return generation_[id] < std::numeric_limits<Generation>::max() - 1;
+  // Apart: as GrowingArray::grow(). Generations for the next ones, too.
+  [[gnu::noinline]] void grow(size_type id) {
+    if (id >= max_slots) throw std::length_error("Graph: too many elements");
+    if (id >= generation_.size()) {
+      generation_.resize(id + std::size_t(1));
+      generation_.resize(
+          std::min(generation_.capacity(), id + std::size_t(64)));
+    }
+    if (!identity_) grow_to_hold(id_at_, id), grow_to_hold(index_of_, id);
   }
-  void make_lists() {
-    if (!identity_) return;
-    id_at_.resize(slots_);
-    index_of_.resize(slots_);
-    for (size_type id = 0; id < slots_; ++id) id_at_[id] = index_of_[id] = id;
-    identity_ = false;
+  bool reusable(size_type id) const {
+    return generation_[id] < last_generation;
+  }
+  /** Slot @a id is no longer in use: it is the next to be used again. */
+  void retire(size_type id) {
+    ++generation_[id];
+    if (reusable(id))
+      index_of_[id] = std::exchange(free_, id);
+    else
+      ++used_up_;
+  }
+  void forget_lists() {
+    id_at_.clear();
+    index_of_.clear();
+    identity_ = true;
   }
 };
 
@@ -290,6 +316,7 @@ class SlotMap {
 template <typename T>
 class ListPool {
  public:
+  static_assert(sizeof(T) >= sizeof(size_type));  // see free_
   struct List {
     size_type begin = 0;  // of the block, in the pool
     size_type size = 0;
@@ -306,11 +333,13 @@ class ListPool {
    * begins with a block for as many as the average of these has. */
   void reserve(std::size_t lists, std::size_t items) {
     if (lists == 0) return;
-    first_capacity_ = std::bit_ceil(
+    const auto first = std::bit_ceil(
         size_type(std::clamp<std::size_t>((items + lists - 1) / lists, 4, 64)));
-    pool_.reserve(lists * first_capacity_);
+    pool_.reserve(lists * first);
+    first_capacity_ = first;
   }
-  /** Make room for one more element in @a l.  O(1) amortized */
+  /** Make room for one more element in @a l.  O(1) amortized
+   * Throws std::length_error, std::bad_alloc: no change. */
   void reserve_one(List& l) {
     if (l.size == l.capacity) move_to_longer(l);
   }
@@ -326,12 +355,13 @@ class ListPool {
   }
   /** Empty the list and give its block back. */
   void free(List& l) {
-    if (l.capacity > 0) free_[std::countr_zero(l.capacity)].push_back(l.begin);
+    if (l.capacity > 0)
+      set_next(l.begin, std::exchange(free_of(l.capacity), l.begin));
     l = {};
   }
   void clear() {
     pool_.clear();
-    for (auto& f : free_) f.clear();
+    free_ = no_blocks();
   }
   /** If the items of @a lists, which are all, need less than three quarters of
    * the pool, move them to one of that size: list by list, in blocks that just
@@ -354,7 +384,7 @@ class ListPool {
       begin += l.capacity;
     }
     pool_.swap(smaller);
-    for (auto& f : free_) f.clear();
+    free_ = no_blocks();
   }
   std::size_t pool_size() const { return pool_.size(); }
   /** True if the blocks of @a lists and those that nobody uses make up the
@@ -364,8 +394,10 @@ class ListPool {
     for (const List& l : lists)
       if (l.capacity > 0) blocks.push_back({l.begin, l.capacity});
     for (std::size_t k = 0; k < free_.size(); ++k)
-      for (size_type begin : free_[k])
+      for (size_type begin = free_[k]; begin != none; begin = next(begin)) {
+        if (begin >= pool_.size() || blocks.size() > pool_.size()) return false;
         blocks.push_back({begin, std::size_t(1) << k});
+      }
     std::sort(blocks.begin(), blocks.end());
     std::size_t end = 0;
     for (auto [begin, capacity] : blocks) {
@@ -379,11 +411,9 @@ class ListPool {
   // Apart: as GrowingArray::grow().
   [[gnu::noinline]] void move_to_longer(List& l) {
     size_type capacity = l.capacity == 0 ? first_capacity_ : 2 * l.capacity;
-    auto& reuse = free_[std::countr_zero(capacity)];
-    size_type begin;
-    if (!reuse.empty()) {
-      begin = reuse.back();
-      reuse.pop_back();
+    size_type begin = free_of(capacity);
+    if (begin != none) {
+      free_of(capacity) = next(begin);
     } else {
       if (pool_.size() + capacity > std::numeric_limits<size_type>::max())
         throw std::length_error("Graph: too many edges");
@@ -397,7 +427,27 @@ class ListPool {
   }
   size_type first_capacity_ = 4;  // of a list
   GrowingArray<T> pool_;
-  std::array<std::vector<size_type>, 32> free_;  // by log2 of the capacity
+  // Where a free block begins, by log2 of its capacity. The block itself holds
+  // where the next one does, so to give one back takes no memory.
+  using Blocks = std::array<size_type, 32>;
+  Blocks free_ = no_blocks();
+
+  static constexpr Blocks no_blocks() {
+    Blocks b;
+    b.fill(none);
+    return b;
+  }
+  size_type& free_of(size_type capacity) {
+    return free_[std::size_t(std::countr_zero(capacity))];
+  }
+  size_type next(size_type begin) const {
+    size_type b;
+    std::memcpy(&b, pool_.data() + begin, sizeof b);
+    return b;
+  }
+  void set_next(size_type begin, size_type b) {
+    std::memcpy(static_cast<void*>(pool_.data() + begin), &b, sizeof b);
+  }
 };
 
 /** A first and a last iterator, for range-for. */

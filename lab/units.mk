@@ -4,11 +4,11 @@
 UNITS ?= 6
 
 # Programs of their own: three specialize templates of other namespaces, five
-# are linked with the window, one hooks malloc, one holds the course's headers
-# to what they bring.
-tests_alone := test_graph test_graph_hubs test_viewer test_panels test_faces \
-               test_image test_screen test_slot_map test_cloth \
-               test_course_interface
+# are linked with the window, one hooks malloc, one renames realloc, one holds
+# the course's headers to what they bring.
+tests_alone := test_graph test_graph_hubs test_graph_memory test_viewer \
+               test_panels test_faces test_image test_screen test_slot_map \
+               test_cloth test_course_interface
 
 ifeq ($(UNITY),)
 lab_objects := $(lab_lib:.cpp=.o)

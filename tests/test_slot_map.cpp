@@ -36,9 +36,11 @@ namespace {
  * there at once, and slots wore out or not. */
 std::size_t cost_of_clear(unsigned many, unsigned left, bool worn_out) {
   graph_detail::SlotMap<CountedGeneration> slots;
-  for (unsigned i = 0; i < many; ++i) slots.acquire();
+  const auto add = [&] { return slots.reserve_one(), slots.acquire(); };
+  for (unsigned i = 0; i < many; ++i) add();
+  slots.make_lists();
   for (unsigned life = 0, id = 0; life < (worn_out ? 200 : 1); ++life)
-    slots.release(id), id = slots.acquire();
+    slots.release(id), id = add();
   while (slots.size() > left) slots.release(slots.id_at(slots.size() - 1));
   slots.check_invariants();
   CountedGeneration::uses = 0;
