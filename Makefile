@@ -55,7 +55,8 @@ help:
 	@echo 'programs: $(PROGRAMS)'
 
 # A program is built anew when its sources or its flags have changed. What it
-# includes, and so what it is linked with, is found first: $(B)/NAME.uses.
+# includes, and so what it is linked with, is found first: $(B)/NAME.uses. That
+# is as new as a source dated in the future, or make would never end.
 source = $(if $(filter $(DRIVERS),$*),mass_spring,$*).cpp
 .SECONDEXPANSION:
 $(BUILT:%=$(O)%): $(O)%: $$(source) $(B)/%.flags
@@ -66,6 +67,7 @@ $(BUILT:%=$(B)/%.uses): $(B)/%.uses: $$(source) $(B)/%.flags
 	@$(CXX) $(flags) -M -MG -MP -MT '$(O)$* $@' $< >$@
 	@! grep -q CME212/SDLViewer.hpp $@ || echo '$(O)$*: $(B)/libviewer.a' >>$@
 	@! grep -q gtest/gtest.h $@ || echo '$(O)$*: test = 1' >>$@
+	@for f in $^; do [ ! "$$f" -nt $@ ] || touch -r "$$f" $@; done
 $(B)/%.flags: FORCE
 	@mkdir -p $(dir $@); echo '$(CXX) $(flags)' | cmp -s - $@ \
 	  || echo '$(CXX) $(flags)' > $@

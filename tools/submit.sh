@@ -34,7 +34,7 @@ show_origin() {
   [ "$remote_branch$remote_commit" = "$head$head" ] || refuse \
     "but this commit is $head: somebody else pushes there, too. Look at" \
     "origin and run this again."
-  echo "Both are this commit: $(git log -1 --format='%h %s')"
+  echo "Both are this commit: $(git log -1 --format='%h %s' "$head")"
 }
 
 # ---- What is handed in, and may it be?
@@ -62,6 +62,13 @@ changes=$(git status --porcelain --untracked-files=all)
 [ -z "$changes" ] || refuse \
   "these changes are not committed, so they would not be handed in:" \
   "$changes" "Commit them (git add, git commit) or remove them."
+# h, S or s: git does not look at such a file.
+unseen=$(git ls-files -v --full-name :/ | sed -n 's/^[a-zS] //p')
+[ -z "$unseen" ] || refuse \
+  "git is told not to look at these files, so what they hold here would not be" \
+  "handed in:" "$unseen" "Tell it to look, and run this again:" \
+  "git update-index --no-assume-unchanged FILE" \
+  "git update-index --no-skip-worktree FILE"
 url=$(git remote get-url --push origin) || refuse \
   "there is no remote 'origin' to push to: git remote add origin URL"
 ask_origin || refuse \
@@ -81,7 +88,7 @@ if [ "$remote_branch$remote_commit" = "$head$head" ]; then
 fi
 
 [ -z "$remote_branch" ] ||
-  git merge-base --is-ancestor "$remote_branch" HEAD 2>/dev/null || refuse \
+  git merge-base --is-ancestor "$remote_branch" "$head" 2>/dev/null || refuse \
   "branch $branch on origin has commits that are not here. Bring them in" \
   "and run this again: git pull --rebase origin $branch"
 
@@ -96,6 +103,11 @@ done
 
 bash -c "${SUBMIT_TEST:-$TESTS}" || refuse \
   "the tests fail. Nothing was tagged or pushed."
+now="$(git symbolic-ref -q HEAD || true) $(git rev-parse HEAD)"
+now+=$(git status --porcelain --untracked-files=no)
+[ "$now" = "$branch_ref $head" ] || refuse \
+  "there was a commit or a change while the tests ran, so they did not test" \
+  "what is here now. Nothing was tagged or pushed; run this again."
 
 # ---- Hand in. Until origin has accepted both, the tag here is put back.
 put_back() {
@@ -106,11 +118,13 @@ put_back() {
   fi
 }
 trap put_back EXIT
-git tag -a -f -m "$HW" "$HW" HEAD >/dev/null || refuse \
+git tag -a -f -m "$HW" "$HW" "$head" >/dev/null || refuse \
   "git could not make the tag (its reason is above). Nothing was pushed."
-# One push that replaces the tag, but only the tag that was seen above.
-git push --quiet --atomic --force-with-lease="$tag_ref:$remote_tag" \
-  origin "$branch_ref" "$tag_ref" || refuse \
+# One push that replaces the tag, but only the tag that was seen above. Both
+# names of each reference, or remote.origin.push would say where it goes.
+git push --quiet --atomic --no-follow-tags \
+  --force-with-lease="$tag_ref:$remote_tag" \
+  origin "$head:$branch_ref" "$tag_ref:$tag_ref" || refuse \
   "origin did not accept the push (git's reason is above). Nothing was" \
   "handed in; tag $HW here is as it was before. Run this again."
 trap - EXIT

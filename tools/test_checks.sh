@@ -251,6 +251,16 @@ build_says "it is linked with the viewer that it includes" \
 program='#include <gtest/gtest.h>'
 build_says "and with GoogleTest, under the sanitizers" \
   '-fsanitize=address,undefined.*' 'NDEBUG|libviewer'
+for makefile in Makefile course/starter/Makefile; do
+  for file in own.cpp own.hpp; do  # one that is dated in the future
+    again; printf '#include "own.hpp"\nint main() {}\n' >own.cpp; touch own.hpp
+    touch -d 'now + 2 days' "$file"
+    [ $makefile = Makefile ] || { cp $makefile Makefile; touch tests/tests.mk; }
+    check tree env -u SPEED timeout 60 make -n own B="$tmp/own"; why=""
+    [ "$status" = 0 ] || why=" status is $status;"
+    ok "make: $makefile ends, $file is dated in the future"; rm -rf "$tmp/own"
+  done
+done
 
 # ---- Steps that do not end
 steps() {  # LIMIT COMMAND: the only step of check.sh quick in small/

@@ -157,6 +157,13 @@ scene; git push -q origin main:hw2; before=$(refs); submit hw2
 expect_status 1; says "'hw2' is the name of a branch"; unchanged "$before"
 ok "a branch of the tag's name, only on origin"
 
+scene; git config remote.origin.push 'refs/heads/*:refs/heads/elsewhere/*'
+git config push.followTags true; git tag -a -m own own; submit hw2
+expect_status 0; holds hw2
+same "a branch elsewhere" "$(remote_id refs/heads/elsewhere/main)" none
+same "a tag of one's own" "$(remote_id refs/tags/own)" none
+ok "the branch goes to its own name, and no other tag, whatever is configured"
+
 # ---- Refusing before anything is done
 scene; echo more >>notes.txt; before=$(refs); submit hw2
 expect_status 1; says " M notes.txt"; says "not committed"; unchanged "$before"
@@ -175,6 +182,31 @@ scene; echo built >.gitignore; git add .gitignore; git commit -qm ignore
 touch built; submit hw2
 expect_status 0; holds hw2
 ok "an ignored file is no change"
+
+for flag in assume-unchanged skip-worktree; do
+  scene; git update-index --$flag notes.txt; echo more >>notes.txt
+  before=$(refs); mkdir sub; (cd sub; submit hw2; unchanged "$before"
+    echo "$status"; echo "$why$out") >"$tmp/said"
+  { read -r status; out=$(cat); } <"$tmp/said"
+  expect_status 1; says "notes.txt"; not_say "the tests run"
+  says "git update-index --no-$flag FILE"; not_say "references changed"
+  git update-index --no-$flag notes.txt
+  submit hw2; expect_status 1; says " M notes.txt"
+  ok "dirty tree: a changed file that is marked $flag"
+done
+
+for change in "git commit -q --allow-empty -m meanwhile" "git switch -qc other" \
+  "echo more >>notes.txt" "git switch -q --detach"; do
+  scene; submit hw2 "" "$change"
+  expect_status 1; says "a commit or a change while the tests ran"
+  same "branch on origin" "$(remote_id refs/heads/main)" none
+  same "tag here" "$(local_id refs/tags/hw2)" none
+  ok "while the tests run: $change"
+done
+
+scene; submit hw2 "" "touch leftover"
+expect_status 0; holds hw2
+ok "a file that the tests leave is no change"
 
 scene; before=$(refs); submit hw2 "" "echo 2 tests failed; false"
 expect_status 1; says "2 tests failed"; says "the tests fail"
