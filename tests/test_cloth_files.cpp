@@ -212,7 +212,7 @@ TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
       const auto table = rows(dir / "e.csv");
       ASSERT_GE(table.size(), 1u);
       for (std::size_t k = 0; k < table.size(); ++k) {
-        EXPECT_EQ(table[k].size(), 10u);
+        EXPECT_EQ(table[k].size(), 14u);
         EXPECT_NEAR(table[k][0], 0.005 * double(k), 1e-9);
       }
       EXPECT_EQ(

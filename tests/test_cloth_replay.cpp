@@ -87,8 +87,9 @@ TEST_F(ClothReplay, TakesNoMoreThanSomeStepsInARound) {
       live.apply(Compare{find_method("augmented-verlet"), share, at});
       const Readings r = live.readings(false);
       const double ratio = r.comparison->rival.dt / r.dt;
-      if (at == Compare::At::equal_time)
+      if (at == Compare::At::equal_time) {
         EXPECT_NEAR(ratio, share < 1 ? 1e-4 : 1e4, 1e-9 * ratio) << share;
+      }
       EXPECT_GE(r.comparison->reference_dt, std::min(ratio, 1.) * r.dt / 1e4);
     }
   std::string text = live.recording();

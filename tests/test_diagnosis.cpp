@@ -252,7 +252,7 @@ TEST(Diagnosis, NamesTheFirstCureThatOutlivesTheFailure) {
             "dt is 70 % of the stability limit (0.01 s, verlet), which is that "
             "of small oscillations: here motion is large or fast, or something "
             "moves or holds nodes; --dt 0.00175 works: a trial to t = 5 s "
-            "passed");
+            "passed, with the energy of one by half of it");
 }
 
 TEST(Diagnosis, SaysThatATrialWasTooShort) {

@@ -20,7 +20,6 @@ using namespace lab;
 
 namespace {
 
-
 double setting(const char* name, double otherwise) {
   const char* text = std::getenv(name);
   return text ? std::atof(text) : otherwise;
@@ -482,7 +481,9 @@ TEST(SteeredStep, SettlesInRandomScenes) {
               << ratios[ratios.size() / 2] << "; steps by the first dt: median "
               << steps[steps.size() / 2] << ", most " << steps.back() << '\n';
     // At 2 % chaos decides: two runs by small steps differ by more.
-    if (share == 0.1) EXPECT_GE(within, scenes * 4 / 5);
+    if (share == 0.1) {
+      EXPECT_GE(within, scenes * 4 / 5);
+    }
   }
 }
 

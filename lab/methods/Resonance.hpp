@@ -32,7 +32,7 @@ class Resonances {
   Resonances(StiffSplit split, double soft);
 
   /** Whether steps of @a dt [s] may resonate. If not, and dt soft < 2, they are
-   * stable by linear theory in every configuration of the cloth. */
+   * stable by linear theory; beyond first() large motion may change that. */
   bool at(double dt) const;
   /** No shorter step resonates [s]. */
   double first() const { return first_; }

@@ -51,8 +51,8 @@ const Link = {
   },
 
   // What write() wrote; what is missing or makes no sense is left out.
-  // @return {start, log, calls, camera, speed, leftOut}: start has what is known;
-  // leftOut: a step or a request made no sense
+  // @return {start, log, calls, camera, speed, leftOut}: start has what is
+  // known; leftOut: a step or a request made no sense
   read(hash, about) {
     const all = new URLSearchParams(hash.replace(/^#/, ''));
     const start = {};

@@ -97,7 +97,7 @@ function advance(time, budget) {
   return now;
 }
 
-// The run of a link, once more, until the page asks for another one than `mine`.
+// The run of a link, once more, until the page asks for another than `mine`.
 // @return readings of it, 150 at most
 async function repeat(link, mine) {
   load(link.start);

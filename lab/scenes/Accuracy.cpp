@@ -113,14 +113,12 @@ std::string Accuracy::text() const {
   using CME212::short_text;
   const std::string to = "to " + short_text(asked) + " m";
   if (!unknown.empty()) return "positions " + to + ": not measured: " + unknown;
-  const std::string known =
-      std::isfinite(rms)
-          ? "known to " + two_digits(rms) + " m (RMS over the nodes), " +
-                two_digits(largest) + " m at the worst node"
-          : "not known, as it depends on round-off which nodes are torn off";
-  if (kept()) return "positions " + to + ": kept; they are " + known;
+  const std::string size = two_digits(rms) + " m (RMS over the nodes), " +
+                           two_digits(largest) + " m at the worst node";
+  if (kept()) return "positions " + to + ": kept; they are known to " + size;
   return "positions " + to + ": predictable to " + short_text(horizon) +
-         " s; beyond that they are " + known;
+         " s; beyond that two runs that should be the same differ by " +
+         (std::isfinite(rms) ? size : "the nodes that are torn off");
 }
 
 }  // namespace lab
