@@ -108,11 +108,11 @@ int main(int argc, char** argv) try {
     std::cout << e.what() << "; running without a window\n";
   }
 
-  // Only gravity gives energy, which counts here. So a growth by the weight
-  // times the size is divergence. (In a fall the speed is a step ahead.)
+  // Only gravity gives energy, which counts here. So a growth by 100 times the
+  // weight times the size is divergence. (In a fall the speed is a step ahead.)
   double most = energy(g);  // [J]
   for (Node n : g.nodes())
-    most += n.value().mass * grav *
+    most += 100 * n.value().mass * grav *
             (norm(n.position() - g.node(0).position()) + grav * dt * t_end);
   std::string failure;
   double next_line = 0;  // [s]

@@ -446,6 +446,21 @@ TEST(SteeredStep, LeavesAClothToSettle) {
   }
 }
 
+// What lies on a floor is put back in each step: that is no gain.
+TEST(SteeredStep, LeavesAClothToLieOnAFloor) {
+  Model m;
+  m.sheets.resize(1), m.sheets[0].nodes = {9, 12};
+  m.planes.resize(1), m.planes[0].at = Point(0, 0, -0.3);
+  m.damping = 0.06, m.gravity = 25, m.t_end = 2;
+  for (const char* method : {"verlet", "pefrl"}) {
+    m.method = find_method(method), m.step = {.rule = StepRule::safe};
+    Scene s(m);
+    ASSERT_TRUE(s.run_to(m.t_end)) << method;
+    EXPECT_LE(s.control()->state().gain, s.control()->tolerance()) << method;
+    EXPECT_LT(s.control()->report().shortened, 3) << method;
+  }
+}
+
 // The soak's table: those whose energy is outside of what two runs by small
 // steps give, by more than the tolerance.
 TEST(SteeredStep, SettlesInRandomScenes) {

@@ -30,7 +30,7 @@ void Track::look(const Scene& scene) {
   while (next_ < due_.size() && due_[next_] <= now) ++next_;
   const Cloth& g = scene.cloth();
   const auto x = g.positions();
-  State& s = states_.emplace_back(scene.time());
+  State& s = states_.emplace_back(State{scene.time(), {}});
   s.x.assign(x.begin(), x.end());
   for (unsigned id = 0; id < s.x.size(); ++id)
     if (!g.node_in_use(id)) s.x[id] = Point(infinite, infinite, infinite);

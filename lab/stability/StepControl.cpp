@@ -91,7 +91,8 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
   s.scale =
       std::max({left * s.scale, std::min(s.scale, limits_.rest), e.relative});
   s.fall = limits_.early ? left * s.fall + more_fall : 0;
-  if (e.fall_power > 0) s.fall = std::max(s.fall, limits_.floor);
+  // Each step puts back what lies on something.
+  if (flow.loose) s.fall = std::max(s.fall, limits_.floor);
   s.gain *= left;
   s.least += (1 - left) * std::max(0.0, s.base - s.least);
 }
