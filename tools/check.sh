@@ -279,7 +279,7 @@ page() {
   in_folder . page page_positions && lab/page/test_page.py build/check
 }
 of_scripts() {
-  step checks      tools/test_checks.sh
+  limit=$long step checks tools/test_checks.sh
   step submit      tools/test_submit.sh
   step deps        tools/test_deps.sh
   step headers     env CXX=clang++ tools/check_headers.sh
