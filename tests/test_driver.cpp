@@ -212,7 +212,7 @@ TEST_F(Driver, StopsWhenItDivergesAndSaysWhenAndWhatHelps) {
     double latest;  // [s]
   } cases[] = {{3, "", 0.5},
                {1, "0.003 0.3", 0.3},
-               {1, "0.003", 0.7},
+               {1, "0.003", 0.9},
                {0, "0.02 2", 2},
                {0, "0.2 5", 5}};
   for (const std::string stage : stages)
@@ -235,7 +235,7 @@ TEST_F(Driver, StopsWhenItDivergesAndSaysWhenAndWhatHelps) {
                     name + ".tets --dt auto' finds a stable step\n");
       // Nothing that a reader could take for a result.
       for (const auto& line : Lines(r.out).lines)
-        EXPECT_LT(std::abs(line.energy), 20) << what;
+        EXPECT_LT(std::abs(line.energy), 1000) << what;
     }
 }
 
