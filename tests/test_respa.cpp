@@ -88,17 +88,22 @@ TEST(StiffSplit, LeavesWhatBoundsTheStep) {
   EXPECT_NEAR(omega_safe(s.cloth, left, s.constraint) / without, 1, 0.01);
 }
 
+/** The scene of @a p: weight and springs. */
+Recipe recipe_of(const Problem& p) {
+  Recipe recipe;
+  recipe.gravity = p.gravity;
+  recipe.build = p.build;
+  recipe.force = [](const Cloth&) {
+    return make_combined_force(GravityForce(), MassSpringForce());
+  };
+  recipe.constraint = p.constraint;
+  return recipe;
+}
+
 TEST(Respa, GetsTheStepOfTheSoftSprings) {
   const Problem stiff = stiff_edge(9, 1), soft = grid_problem("", "", 1, 9);
   const auto step_of = [](const Problem& p, const char* method) {
-    Recipe recipe;
-    recipe.gravity = p.gravity;
-    recipe.build = p.build;
-    recipe.force = [](const Cloth&) {
-      return make_combined_force(GravityForce(), MassSpringForce());
-    };
-    recipe.constraint = p.constraint;
-    Scene scene(recipe, {.rule = StepRule::safe}, *find_method(method));
+    Scene scene(recipe_of(p), {.rule = StepRule::safe}, *find_method(method));
     EXPECT_TRUE(scene.run_to(0.5)) << scene.failure();
     return scene.dt();
   };
@@ -389,14 +394,7 @@ TEST(Respa, DivergesOnlyBeyondTheFirstResonance) {
 // Of a resonant step that diverges, and what is chosen instead.
 TEST(Respa, ChoosesAStepThatDoesNotResonateAndNamesTheOneThatDid) {
   const auto scene_of = [](const Problem& p, const TimeStep& step) {
-    Recipe recipe;
-    recipe.gravity = p.gravity;
-    recipe.build = p.build;
-    recipe.force = [](const Cloth&) {
-      return make_combined_force(GravityForce(), MassSpringForce());
-    };
-    recipe.constraint = p.constraint;
-    return std::make_unique<Scene>(recipe, step, *find_method("respa"));
+    return std::make_unique<Scene>(recipe_of(p), step, *find_method("respa"));
   };
   const Problem p = stiff_edge(5, 1);
   const auto chosen = scene_of(p, {.rule = StepRule::safe});
