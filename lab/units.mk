@@ -16,8 +16,8 @@ else
 dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
 # What is linked with the window if a program uses it, and not otherwise.
-drawing    := $(filter $(lab_panels) $(patsubst %,lab/viewer/%.cpp, \
-                Screen Film RunReplay),$(lab_lib))
+drawing    := $(filter $(lab_panels) $(patsubst %,lab/%.cpp, \
+                viewer/Screen run/Film run/RunReplay),$(lab_lib))
 united     := $(filter-out $(drawing),$(lab_lib))
 rooms      := $(sort $(dir $(united)))
 

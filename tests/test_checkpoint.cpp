@@ -14,10 +14,10 @@
 
 #include "CME212/Archive.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/run/Run.hpp"
 #include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
-#include "lab/viewer/Run.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

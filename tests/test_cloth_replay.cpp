@@ -1,8 +1,8 @@
 // ./cloth --replay: what a user did to a running scene, again.
 #include <gtest/gtest.h>
 
+#include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/viewer/Recording.hpp"
 #include "tests/ClothProgram.hpp"
 
 using namespace lab;

@@ -15,8 +15,8 @@
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/run/Options.hpp"
 #include "lab/scenes/Scene.hpp"
-#include "lab/viewer/Options.hpp"
 
 using namespace lab;
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <sstream>
 
+#include "lab/run/Export.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
-#include "lab/viewer/Export.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

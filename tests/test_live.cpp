@@ -1,4 +1,4 @@
-// lab/viewer/Live.hpp: what each request does to the physics, in numbers from
+// lab/live/Live.hpp: what each request does to the physics, in numbers from
 // theory; two methods side by side; and that a recording runs again to the same
 // bits.
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
-#include "lab/viewer/Recording.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

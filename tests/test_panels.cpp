@@ -23,8 +23,8 @@
 #include "CME212/SDLWindow.hpp"  // SDL, to push its events
 #include "CME212/Util.hpp"
 #include "Graph.hpp"
+#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/viewer/Live.hpp"
 #include "lab/viewer/Plot.hpp"
 #include "lab/viewer/Screen.hpp"
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Hold the include arrows: who may include whom. This table is their one home; a
 # new room or a new arrow is a change of the design, made there first.
-#   ROOM : A B   may include itself, A, B and all that these may include
+#   ROOM : A B   may include itself, A, B and all that these may include, and
+#                does include a header of A and one of B
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,15 +17,17 @@ lab/methods   : lab/fast
 lab/stability : lab/methods
 lab/scenes    : lab/stability lab
 lab/advice    : lab/scenes
-lab/charts    : lab/stability lab
+lab/charts    : lab/stability
 lab/bench     : lab/charts
-lab/viewer    : lab/advice
-lab/page      : lab/viewer
+lab/live      : lab/scenes
+lab/viewer    : lab/live
+lab/run       : lab/viewer
+lab/page      : lab/live
 '
 # A program in the root may draw, and a test; of all else only these:
 drawing='CME212/GL* CME212/SDL* CME212/SFML* CME212/SceneBuilder.hpp
          CME212/Image.hpp CME212/Color.hpp'
-drawers='CME212/* lab/viewer/* tests/* course/*'
+drawers='CME212/* lab/viewer/* lab/run/* tests/* course/*'
 # And only these name SDL, OpenGL and Dear ImGui:
 gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/|imgui'
 gl_users='CME212/GL* CME212/SDL* lab/viewer/*'
@@ -35,10 +38,10 @@ set -f  # from here on * is a character of the table
 faults=0
 fault() { echo "$1"; faults=$((faults + 1)); }
 
-declare -A may
+declare -A may drawn used there
 while read -r room _ below; do
   [ -n "$room" ] || continue
-  may[$room]=" $room $below"
+  may[$room]=" $room $below" drawn[$room]=$below
   for b in $below; do may[$room]+=" ${may[$b]}"; done
 done <<<"$arrows"
 
@@ -92,6 +95,7 @@ while IFS=: read -r file line text; do
   esac
   set_room "$header"; of=$room
   set_room "$file"
+  used[$room:$of]=1 there[$room]=1
   if [ "$room" = . ]; then  # a program of the course
     [[ $header != lab/* && $header != course/* ]] ||
       fault "$file:$line: includes $header, which is not below it"
@@ -103,5 +107,12 @@ while IFS=: read -r file line text; do
       fault "$file:$line: includes $header, which is not below it"
   fi
 done < <(grep -nE "$include" /dev/null "${files[@]}")
+
+for room in "${!there[@]}"; do
+  for b in ${drawn[$room]-}; do
+    [ -n "${used[$room:$b]-}" ] ||
+      fault "$0: the arrow from $room to $b is not used"
+  done
+done
 
 [ "$faults" = 0 ]

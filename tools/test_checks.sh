@@ -88,6 +88,12 @@ arrow lab/scenes/Scene.hpp lab/charts/Problem.hpp
 arrow lab/charts/Problem.hpp lab/scenes/Scene.hpp
 arrow lab/charts/Problem.hpp lab/bench/Bench.hpp
 arrow lab/advice/Advise.hpp lab/viewer/Screen.hpp
+arrow lab/viewer/Screen.hpp lab/advice/Advise.hpp
+arrow lab/viewer/Screen.hpp lab/run/Run.hpp
+arrow lab/page/Page.hpp lab/viewer/Screen.hpp
+again; sed -i 's#^lab/page .*#& lab/advice#' $inc
+caught "includes: an arrow that nobody uses" \
+  "the arrow from lab/page to lab/advice is not used" tree $inc
 draws() {  # FILE HEADER
   again; sed -i "1i #include \"$2\"" "$1"
   caught "includes: $1 draws" "$1:1: includes $2, which draws" tree $inc

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/page/PageScenes.hpp"
-#include "lab/viewer/Live.hpp"
 
 namespace lab {
 

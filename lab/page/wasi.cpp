@@ -9,10 +9,10 @@
 #include <typeinfo>
 
 #include "lab/Interrupt.hpp"
+#include "lab/live/Recording.hpp"
 #include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/MeshFile.hpp"
-#include "lab/viewer/Recording.hpp"
 
 // ----------------------------------------------------------------- Exceptions
 // clang++ leaves out what a catch does. So a throw ends the call of the page by

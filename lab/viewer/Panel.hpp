@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "CME212/Util.hpp"
-#include "lab/viewer/Live.hpp"
+#include "lab/live/Live.hpp"
 
 namespace lab {
 

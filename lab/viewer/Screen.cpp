@@ -19,9 +19,9 @@
 
 #include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
+#include "lab/live/Live.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Scene.hpp"
-#include "lab/viewer/Live.hpp"
 #include "lab/viewer/Panel.hpp"
 
 namespace lab {

@@ -1,7 +1,7 @@
 /** @file Breakage.cpp
  * The scenes that fail: those of the gallery in lab/stability/README.md. */
+#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/viewer/Live.hpp"
 
 namespace lab {
 

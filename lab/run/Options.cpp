@@ -1,6 +1,6 @@
 /** @file Options.cpp
  * The options of ./cloth: their names, groups and help. */
-#include "lab/viewer/Options.hpp"
+#include "lab/run/Options.hpp"
 
 #include <algorithm>
 #include <cmath>

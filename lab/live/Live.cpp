@@ -1,4 +1,4 @@
-#include "lab/viewer/Live.hpp"
+#include "lab/live/Live.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "lab/Interrupt.hpp"
+#include "lab/live/Recording.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
-#include "lab/viewer/Recording.hpp"
 
 namespace lab {
 

@@ -1,4 +1,4 @@
-#include "lab/viewer/Recording.hpp"
+#include "lab/live/Recording.hpp"
 
 #include <cmath>
 #include <span>

@@ -1,4 +1,4 @@
-#include "lab/viewer/RunReplay.hpp"
+#include "lab/run/RunReplay.hpp"
 
 #include <iostream>
 #include <memory>
@@ -7,9 +7,9 @@
 
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
-#include "lab/viewer/Options.hpp"
-#include "lab/viewer/Recording.hpp"
-#include "lab/viewer/Run.hpp"
+#include "lab/live/Recording.hpp"
+#include "lab/run/Options.hpp"
+#include "lab/run/Run.hpp"
 #include "lab/viewer/Screen.hpp"
 
 namespace lab {

@@ -1,4 +1,4 @@
-#include "lab/viewer/Export.hpp"
+#include "lab/run/Export.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/viewer/Live.hpp"
+#include "lab/live/Live.hpp"
 
 namespace lab {
 

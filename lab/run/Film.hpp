@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/viewer/Options.hpp"
+#include "lab/run/Options.hpp"
 #include "lab/viewer/Screen.hpp"
 
 namespace lab {

@@ -10,8 +10,8 @@
 #include "CME212/Archive.hpp"
 #include "CME212/OutputFile.hpp"
 #include "lab/Progress.hpp"
-#include "lab/viewer/Export.hpp"
-#include "lab/viewer/Options.hpp"
+#include "lab/run/Export.hpp"
+#include "lab/run/Options.hpp"
 
 namespace lab {
 

@@ -1,5 +1,5 @@
 /** @file Run.cpp */
-#include "lab/viewer/Run.hpp"
+#include "lab/run/Run.hpp"
 
 #include <algorithm>
 #include <cmath>

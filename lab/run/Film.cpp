@@ -1,4 +1,4 @@
-#include "lab/viewer/Film.hpp"
+#include "lab/run/Film.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
+#include "lab/run/Run.hpp"
 #include "lab/scenes/Scene.hpp"
-#include "lab/viewer/Run.hpp"
 
 namespace lab {
 
