@@ -129,10 +129,10 @@ void SDLViewer::Display::serve() {
     const ms poll(now - last_frame_ < ms(200) ? 2 : 8);
     const auto rest = std::chrono::ceil<ms>(next - now);
     const auto wait = std::max(rest, needs_frame() ? ms(0) : poll);
-    SDL_Event e;
-    if (SDL_WaitEventTimeout(&e, int(wait.count()))) do
-        handle(e);
-      while (SDL_PollEvent(&e));
+    // Not SDL_WaitEventTimeout(): under X11 it wakes itself by a message over a
+    // second connection, an error if the window is destroyed before it arrives.
+    std::this_thread::sleep_for(wait);
+    for (SDL_Event e; SDL_PollEvent(&e);) handle(e);
     builder_.complete_if_quiet();
     const auto start = clock::now();
     if (closed || start < next || !needs_frame()) continue;
