@@ -11,7 +11,7 @@ lab_main   := lab/run/cloth.cpp lab/advice/adviser_suite.cpp \
               lab/viewer/frame_rate.cpp lab/page/page_positions.cpp \
               lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
-lab_others := data/make_grid.cpp docs/example_graph.cpp
+lab_others := data/make_grid.cpp $(wildcard docs/examples/*.cpp)
 lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer
 lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
               $(wildcard lab/*.cpp lab/*/*.cpp))
@@ -86,14 +86,15 @@ $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 
 # make NAME for each; ./cloth lies beside the course's program.
 .PHONY: $(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) $(TEST_UNITS)
-$(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) $(TEST_UNITS) make_grid example_graph: %: $(B)/%
+$(filter-out cloth,$(LAB_PROGRAMS)) $(LAB_TESTS) $(TEST_UNITS) $(call names,$(lab_others)): %: $(B)/%
 ifneq ($(O)cloth,$(B)/cloth)
 $(O)cloth: $(B)/cloth
 	@ln -f $< $@ 2>/dev/null || cp $< $@
 endif
 
-.PHONY: quick check check-full help-lab make_grid example_graph
+.PHONY: quick check check-full help-lab examples $(call names,$(lab_others))
 check check-full: deps
+examples: $(patsubst %,$(B)/%,$(filter example_%,$(call names,$(lab_others))))
 quick check check-full:
 	@tools/check.sh $@
 format:

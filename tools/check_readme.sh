@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Hold the README to the truth: each of its commands runs, and every file that
-# it and the other pages name is there; docs/graph.md quotes example_graph.cpp,
-# lab/fast/README.md the table of make speed; numbers are those of the CSVs.
+# it and the other pages name is there; docs/examples/README.md quotes its
+# programs, lab/fast/README.md the table of make speed; numbers are those of the
+# CSVs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-block() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$2" | grep -v '^```'; }
-diff <(block cpp docs/graph.md | head -n "$(wc -l <docs/example_graph.cpp)") \
-  docs/example_graph.cpp ||
-  { echo "docs/graph.md does not quote example_graph.cpp as it is"; exit 1; }
+for program in docs/examples/*.cpp; do
+  [[ $(<docs/examples/README.md) == *'```cpp'$'\n'"$(<"$program")"$'\n```'* ]] ||
+    { echo "docs/examples/README.md does not quote $program as it is"; exit 1; }
+done
 
 results=lab/bench/results/amd-epyc
 diff <(lab/charts/speed_table.py "$results") \

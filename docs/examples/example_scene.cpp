@@ -1,0 +1,20 @@
+// A scene from a file, by another method than the one that it names.
+#include <iostream>
+#include "lab/methods/Methods.hpp"
+#include "lab/scenes/Measure.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/SceneFile.hpp"
+int main() {
+  lab::Model model = lab::load_model("data/scenes/drape.toml");
+  model.method = lab::find_method("pefrl");
+  lab::Scene scene(model);
+  if (!scene.run_to(model.t_end)) {
+    std::cerr << scene.explanation() << '\n';
+    return 3;
+  }
+  const auto height =
+      lab::answer(model, scene.cloth(), lab::Measure::drape_height);
+  std::cout << scene.method().name << ": " << scene.steps() << " steps, "
+            << scene.evaluations() << " force evaluations; the lowest node is "
+            << "at z = " << height[0] << " m\n";
+}
