@@ -28,7 +28,7 @@ def of_section(id, course):
     """What is handed in of a section."""
     own = [task for task in course.tasks.values() if task.section.id == id]
     if not own:
-        return ["Nothing: this section is not asked for."]
+        return ["Nothing: this section is not part of the homework."]
     lines = []
     for task in own:
         lines += textwrap.wrap(
@@ -37,8 +37,8 @@ def of_section(id, course):
             break_on_hyphens=False)
     total = sum(task.counted for task in own)
     return [*lines, "", *textwrap.wrap(
-        f"Together {total} points. `make test SECTION={id}` shows what"
-        " passes; commit it, and hand in by"
+        f"Together {total} points. `make test SECTION={id}` shows which tests"
+        " pass. Commit your work, then hand it in:"
         f" `make submit HW={course.tag}`.", 80, break_on_hyphens=False)]
 
 

@@ -63,8 +63,8 @@ FULL = """# 3.2
 - **two**, 4 points: Two is done.
 - **more**, 7 extra: More is done.
 
-Together 5 points. `make test SECTION=3.2` shows what passes; commit it, and
-hand in by `make submit HW=hw9`.
+Together 5 points. `make test SECTION=3.2` shows which tests pass. Commit your
+work, then hand it in: `make submit HW=hw9`.
 <!-- end -->
 end
 """
@@ -80,8 +80,8 @@ class Filled(unittest.TestCase):
     def test_a_dropped_section_asks_for_nothing(self):
         self.assertEqual(
             pages.filled("<!-- tasks 4 -->\n<!-- end -->\n", COURSE),
-            "<!-- tasks 4 -->\nNothing: this section is not asked for.\n"
-            "<!-- end -->\n")
+            "<!-- tasks 4 -->\nNothing: this section is not part of the"
+            " homework.\n<!-- end -->\n")
 
     def test_the_table_of_all_has_their_sum(self):
         table = pages.filled("<!-- tasks -->\n<!-- end -->\n", COURSE)
