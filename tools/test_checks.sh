@@ -234,7 +234,7 @@ again; sed -i 's/is 46 times/is 47 times/' README.md
 caught "figures: a number that is not the CSV's" \
   "README.md:$(grep -n 'is 47 times' README.md | cut -d: -f1): 47, expected 46" \
   tree $figures
-again; sed -i 's/times as exact as Verlet/as exact as Verlet/' lab/charts/README.md
+again; sed -i 's/times as accurate as Verlet/as accurate as Verlet/' lab/charts/README.md
 caught "figures: a rule whose text is gone" \
   "lab/charts/README.md does not have this text" tree $figures
 
