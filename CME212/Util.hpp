@@ -137,8 +137,8 @@ std::istream& operator>>(std::istream& s, std::array<T, N>& v) {
  * @return @a s: failed at the end of the file and when the line is no T.
  *
  * It can't tell the two apart and ignores what follows the T on its line:
- * good for a first program. load_cloth() reads strictly and says what is
- * wrong, and in which line. */
+ * good for a first program. load_points() in Mesh.hpp reads strictly and says
+ * what is wrong, and in which line. */
 template <typename T>
 std::istream& getline_parsed(std::istream& s, T& value) {
   std::string line;

@@ -116,6 +116,7 @@ kit_source() {
 course_test() { in_folder . "build/check/$1" && "build/check/$1"; }
 of_files() {
   step tree        tools/check_tree.sh
+  step names       tools/check_names.sh
   step includes    tools/check_includes.sh
   step kit_source  kit_source
   step test_nodes  course_test test_nodes

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Show that each check of check_includes.sh, check_headers.sh, check_tree.sh,
-# check_commands.sh and figures.py can fail, on a scratch copy of the tree, one fault at a
-# time; and how the Makefile builds a program that somebody adds.
+# check_names.sh, check_commands.sh and figures.py can fail, on a scratch copy
+# of the tree, one fault at a time; and how the Makefile builds a program that somebody adds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -226,6 +226,22 @@ again; rm mass_spring.hpp
 check tree $tree; why=""
 ! grep -q 'No such file' <<<"$out" || why=" looks for it;"
 ok "tree: a deleted file is not looked for"
+
+# ---- Names of the text; '' keeps them out of the code that is searched
+names=tools/check_names.sh
+before $names
+quoted() {  # WHAT NAME TEXT: of a page
+  again; printf '\nSee `%s`.\n' "$3" >>lab/fast/README.md
+  caught "names: $1" "$(wc -l <lab/fast/README.md): $2 is nowhere" tree $names
+}
+quoted "a function that is gone" 'is_g''one' 'is_g''one(x)'
+quoted "a function of tests alone" 'load_c''loth' 'load_c''loth()'
+quoted "a member that is gone" 'Graph::is_g''one' 'Graph::is_g''one'
+quoted "a header that is gone" 'fast/G''one.hpp' 'fast/G''one.hpp'
+quoted "a target that is gone" 'make g''one-chart' 'make g''one-chart'
+quoted "an option that is gone" '--g''one-option' './cloth --g''one-option'
+again; sed -i '1s/^/\/\/ As is_g''one() does.\n/' lab/Nearest.hpp
+caught "names: a comment" "Nearest.hpp:1: is_g""one is nowhere" tree $names
 
 # ---- Numbers of the text
 figures='python3 lab/charts/figures.py'

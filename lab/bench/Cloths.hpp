@@ -16,7 +16,7 @@ namespace lab::bench {
 
 // --------------------------------------------------------------------- Cloths
 
-/** - grid: ids and springs line by line, as load_cloth() makes it
+/** - grid: ids and springs line by line, as build_cloth() makes them
  * - mixed: the same, ids and springs in random order within windows of 64:
  *   neighbors are as near, but none at a constant distance
  * - shuffled: from files in random order, put in order as they are loaded
