@@ -1,9 +1,7 @@
 #pragma once
 /** @file Point.hpp
  * Point: a vector of three numbers, with the arithmetic of R^3. */
-#include <concepts>
 #include <cstddef>
-#include <type_traits>
 
 #include "CME212/Util.hpp"  // brings the other standard headers
 
@@ -20,32 +18,6 @@ using Real = REAL;
  * Points is taken coordinate by coordinate (the scalar product is dot()).
  * Scalars come as doubles and are rounded to Real first. */
 struct Point {
-  /** The coordinates as the array that the course's Point has: p.elem[i] is
-   * p[i], and p.elem converts to a pointer to p.x. It takes no memory and lives
-   * as long as its Point. (A union of an array with x, y and z needs a compiler
-   * extension, the anonymous struct, and changes how compilers optimize.) */
-  class Elem {
-   public:
-    /** Coordinate @a i.  @pre 0 <= i < 3 */
-    template <std::integral I>
-    Real& operator[](I i);
-    template <std::integral I>
-    const Real& operator[](I i) const;
-    /** The address of the first of the three. */
-    operator Real*();
-    operator const Real*() const;
-    Real* begin() { return *this; }
-    Real* end() { return begin() + 3; }
-    const Real* begin() const { return *this; }
-    const Real* end() const { return begin() + 3; }
-
-   private:
-    friend struct Point;  // nobody else makes or copies one
-    constexpr Elem() = default;
-    Elem(const Elem&) = default;
-    Elem& operator=(const Elem&) = default;
-  };
-
   using value_type = Real;
   using reference = Real&;
   using const_reference = const Real&;
@@ -54,10 +26,16 @@ struct Point {
   using size_type = std::size_t;
   using difference_type = std::ptrdiff_t;
 
-  [[no_unique_address]] Elem elem;
-  Real x = 0, y = 0, z = 0;
+  /** Each coordinate by its name, and all in an array, as in the course's
+   * Point: elem[i] is the i-th. */
+  union {
+    struct {
+      Real x, y, z;
+    };
+    Real elem[3];
+  };
 
-  constexpr Point() = default;
+  constexpr Point() : Point(0) {}
   /** The point (b, b, b). */
   constexpr explicit Point(double b) : Point(b, b, b) {}
   constexpr Point(double x_, double y_, double z_)
@@ -112,23 +90,6 @@ struct Point {
   constexpr Point& operator/=(double b) { return *this /= Point(b); }
 };
 static_assert(sizeof(Point) == 3 * sizeof(Real));  // begin() counts on it
-
-// An Elem is the first member of a Point, so it has the address of the Point.
-static_assert(std::is_standard_layout_v<Point> && std::is_empty_v<Point::Elem>);
-inline Point::Elem::operator Real*() {
-  return reinterpret_cast<Point*>(this)->data();
-}
-inline Point::Elem::operator const Real*() const {
-  return reinterpret_cast<const Point*>(this)->data();
-}
-template <std::integral I>
-Real& Point::Elem::operator[](I i) {
-  return (*reinterpret_cast<Point*>(this))[size_type(i)];
-}
-template <std::integral I>
-const Real& Point::Elem::operator[](I i) const {
-  return (*reinterpret_cast<const Point*>(this))[size_type(i)];
-}
 
 constexpr Point operator+(const Point& a) { return a; }
 constexpr Point operator-(const Point& a) { return {-a.x, -a.y, -a.z}; }
