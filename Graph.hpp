@@ -19,6 +19,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "CME212/NeighborPool.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/SlotMap.hpp"
 #include "CME212/Util.hpp"
@@ -278,7 +279,7 @@ class Graph {
     nodes_.make_lists();
     if (n.degree() > 0) prepare_drop();
     for (Neighbor b : pool_.items(neighbors_of_[id])) {
-      drop_from_list(b.node, b.edge);
+      pool_.remove(neighbors_of_[b.node], b.node, {id, b.edge});
       drop_edge(b.edge);
     }
     pool_.free(neighbors_of_[id]);
@@ -327,19 +328,15 @@ class Graph {
     size_type id = edges_.reserve_one();
     graph_detail::grow_to_hold(ends_, id);
     graph_detail::grow_to_hold(edge_value_, id);
-    if (keeps_places()) graph_detail::grow_to_hold(places_, id);
-    pool_.reserve_one(neighbors_of_[i]);
-    pool_.reserve_one(neighbors_of_[j]);
+    pool_.reserve_edge(neighbors_of_[i], neighbors_of_[j], id);
     // BEGIN SOLUTION 4.1.edge_value
     edge_value_[id] = std::move(copy);  // the last that may throw
     // STUB (void)copy;
     // END SOLUTION
     edges_.acquire();
     ends_[id] = {i, j};
-    if (keeps_places())
-      places_[id] = {neighbors_of_[i].size, neighbors_of_[j].size};
-    pool_.push_back(neighbors_of_[i], {j, id});
-    pool_.push_back(neighbors_of_[j], {i, id});
+    pool_.add(neighbors_of_[i], i, {j, id});
+    pool_.add(neighbors_of_[j], j, {i, id});
     ++version_;
     return Edge(this, id);
   }
@@ -383,7 +380,9 @@ class Graph {
     if (!has_edge(e)) return 0;
     size_type id = e.id_;
     prepare_drop();
-    for (size_type end : ends_[id]) drop_from_list(end, id);
+    const auto [i, j] = ends_[id];
+    pool_.remove(neighbors_of_[i], i, {j, id});
+    pool_.remove(neighbors_of_[j], j, {i, id});
     drop_edge(id);
     ++version_;
     return 1;
@@ -420,8 +419,6 @@ class Graph {
     nodes_.clear();
     edges_.clear();
     pool_.clear();
-    places_.clear();
-    searched_ = 0;
     ++version_;
   }
 
@@ -436,15 +433,6 @@ class Graph {
     nodes_.reindex();
     edges_.reindex();
     ++version_;
-  }
-  /** reindex(), if removals put so many nodes of a large graph out of the order
-   * of memory that loops over nodes() feel it. For the end of a step.
-   * Complexity: O(1) before the first removal, then O(num_nodes()); in all, no
-   *       more than 256 times reindex() until no node is left */
-  void restore_order() {
-    if (node_slots() >= 4096 && num_nodes() < node_slots() &&
-        nodes_.descents() > node_slots() / 256)
-      reindex();
   }
   /** Give the node of id @a ids[i] the index i: so nodes can lie in memory in
    * the order that sweeps like best, and be counted in another.
@@ -471,7 +459,7 @@ class Graph {
       while (pool_[at].edge != ids[k - list.begin]) ++at;
       std::swap(pool_[k], pool_[at]);
     }
-    if (keeps_places()) note_places(n.id_);
+    pool_.note_places(list, n.id_);
     ++version_;
   }
 
@@ -589,13 +577,12 @@ class Graph {
         require(j != i, "a loop");
         require(ends_[e] == std::array{i, j} || ends_[e] == std::array{j, i},
                 "a neighbor list and the ends of an edge disagree");
-        require(!keeps_places() ||
-                    pool_[list.begin + places_[e][side(e, i)]].edge == e,
-                "an edge has another place in a list than is noted");
         size_type seen = 0;
         for (Neighbor other : pool_.items(list)) seen += other.node == j;
         require(seen == 1, "parallel edges");
       }
+      require(pool_.has_right_places(list, i),
+              "an edge has another place in a list than is noted");
     }
     require(neighbors == 2 * std::size_t(num_edges()),
             "an edge is not in the lists of both its ends");
@@ -607,17 +594,15 @@ class Graph {
  private:
   static constexpr size_type none = graph_detail::none;
   graph_detail::SlotMap<Generation> nodes_, edges_;
-  graph_detail::ListPool<Neighbor> pool_;
+  graph_detail::NeighborPool<Neighbor> pool_;
   graph_detail::Version version_;
   // By node id:
   Array<Point> position_;
   Array<V> node_value_;
-  Array<typename graph_detail::ListPool<Neighbor>::List> neighbors_of_;
+  Array<typename graph_detail::NeighborPool<Neighbor>::List> neighbors_of_;
   // By edge id:
   Array<std::array<size_type, 2>> ends_;  // in the order of add_edge()
   Array<E> edge_value_;
-  Array<std::array<size_type, 2>> places_;  // in the ends' lists; see search()
-  std::size_t searched_ = 0;                // entries of long lists
   Graph* self() const { return const_cast<Graph*>(this); }
 
   /** The id of the edge between @a a and @a b, or none. */
@@ -634,44 +619,12 @@ class Graph {
     return found;
   }
 
-  /** Take edge @a e out of the list of node @a i. */
-  void drop_from_list(size_type i, size_type e) {
-    // BEGIN SOLUTION 7.1.remove_edge
-    auto& list = neighbors_of_[i];
-    size_type k = search(list, i, e);
-    pool_.erase(list, k);
-    if (!keeps_places() || k == list.size) return;
-    const size_type moved = pool_[list.begin + k].edge;
-    places_[moved][side(moved, i)] = k;
-    // STUB (void)i, (void)e;
-    // END SOLUTION
-  }
-
-  /** All that may throw when edges are removed. Notes the places of all edges
-   * once searches of long lists have cost as much. */
+  /** All that may throw when edges are removed. */
   void prepare_drop() {
     edges_.make_lists();
-    if (keeps_places() || searched_ <= num_edges()) return;
-    graph_detail::grow_to_hold(places_, edge_slots() - 1);
-    for (size_type n = 0; n < node_slots(); ++n) note_places(n);
+    pool_.reserve_removal({neighbors_of_.data(), node_slots()}, num_edges(),
+                          edge_slots());
   }
-  /** Where edge @a e stands in the @a list of its end @a i.  O(1) amortized */
-  size_type search(const auto& list, size_type i, size_type e) {
-    if (keeps_places()) return places_[e][side(e, i)];
-    if (list.size > 16) searched_ += list.size;
-    size_type k = 0;
-    while (pool_[list.begin + k].edge != e) ++k;
-    return k;
-  }
-  bool keeps_places() const { return places_.size() != 0; }
-  /** Which one of the ends of edge @a e node @a i is. */
-  bool side(size_type e, size_type i) const { return ends_[e][1] == i; }
-  void note_places(size_type i) {
-    size_type k = 0;
-    for (Neighbor n : pool_.items(neighbors_of_[i]))
-      places_[n.edge][side(n.edge, i)] = k++;
-  }
-
   /** Release edge @a e, whose ends' lists are not looked at. */
   void drop_edge(size_type e) {
     // BEGIN SOLUTION 7.1.remove_edge

@@ -3,7 +3,6 @@
  * The assignment, section by section: a cloth of point masses and springs, the
  * step, the forces (5), the constraints (6) and tearing (7). SI units; z up. */
 #include <cassert>
-#include <concepts>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,7 +11,6 @@
 #include <vector>
 
 #include "CME212/Mesh.hpp"
-#include "CME212/Shared.hpp"
 #include "Graph.hpp"
 
 // ------------------------------------------------- 3 and 4.1: cloth and
@@ -103,8 +101,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force) {
 
 /** The same with a constraint, and no node is skipped (6.2):
  * x += dt v;  constrain;  v += dt F(x, t)/m.
- * @param constraint  void(G&, double), called once; may remove nodes, and then
- *        the others may get other indices: see Graph::restore_order() */
+ * @param constraint  void(G&, double), called once; may remove nodes */
 template <typename G, typename F, typename C>
 double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
   // BEGIN SOLUTION 6.2.symp_euler_step 6pt
@@ -117,7 +114,6 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
     auto n = *it;
     n.value().vel += (dt / n.value().mass) * force(n, t);
   }
-  if constexpr (requires { g.restore_order(); }) g.restore_order();
   return t + dt;
   // STUB (void)g, (void)force, (void)constraint;
   // STUB return t + dt;
@@ -250,10 +246,21 @@ class FunctionForce : public ZeroForce {
 
  public:
   explicit FunctionForce(F f) : f_(std::move(f)) {}
+  const F& function() const { return f_; }
   Point operator()(Node n, double t) const override { return f_(n, t); }
 
  private:
-  mutable F f_;  // a functor of the assignment need not be const
+  mutable F f_;  // the call of a student's force need not be const
+};
+
+/** Calls what @a p points to. */
+template <typename P>
+struct Pointer {
+  P p;
+  template <typename X>
+  auto operator()(X& x, double t) const -> decltype((*p)(x, t)) {
+    return (*p)(x, t);
+  }
 };
 
 /** 5.2: the sum of several forces. Copies share them. */
@@ -262,13 +269,13 @@ class CombinedForces : public ZeroForce {
   using List = std::vector<std::shared_ptr<const ZeroForce>>;
   /** @pre no pointer is null */
   explicit CombinedForces(List forces) : forces_(std::move(forces)) {}
-  /** The same from shared pointers to forces of any type; from unique ones,
-   * which it takes over; from plain ones, whose forces must outlive it. */
+  /** From other pointers to forces: shared ones, unique ones, which it takes
+   * over, and plain ones, whose forces must outlive it. */
   template <typename P>
   explicit CombinedForces(std::vector<P> forces) {
     for (P& p : forces)
-      forces_.push_back(
-          CME212::shared_from<ZeroForce, FunctionForce>(std::move(p)));
+      forces_.push_back(std::make_shared<FunctionForce<Pointer<P>>>(
+          Pointer<P>{std::move(p)}));
   }
   const List& parts() const { return forces_; }
   Point operator()(Node n, double t) const override {
@@ -290,7 +297,7 @@ template <typename... Fs>
 CombinedForces make_combined_force(Fs... fs) {
   // BEGIN SOLUTION 5.2.make_combined_force
   return CombinedForces(CombinedForces::List{
-      CME212::shared_as<ZeroForce, FunctionForce>(std::move(fs))...});
+      std::make_shared<FunctionForce<Fs>>(std::move(fs))...});
   // STUB ((void)fs, ...);
   // STUB return CombinedForces(CombinedForces::List());
   // END SOLUTION
@@ -434,6 +441,7 @@ class FunctionConstraint : public ZeroConstraint {
 
  public:
   explicit FunctionConstraint(C c) : c_(std::move(c)) {}
+  const C& function() const { return c_; }
   void operator()(Cloth& g, double t) const override { c_(g, t); }
 
  private:
@@ -441,20 +449,19 @@ class FunctionConstraint : public ZeroConstraint {
 };
 
 /** 6.2: several constraints, one after the other: where two disagree about a
- * node, the later one has its way. Copies share them. */
+ * node, the last one wins. Copies share them. */
 class CombinedConstraints : public ZeroConstraint {
  public:
   using List = std::vector<std::shared_ptr<const ZeroConstraint>>;
   /** @pre no pointer is null */
   explicit CombinedConstraints(List constraints)
       : constraints_(std::move(constraints)) {}
-  /** The same from other pointers, as CombinedForces. */
+  /** From other pointers to constraints: as CombinedForces. */
   template <typename P>
   explicit CombinedConstraints(std::vector<P> constraints) {
     for (P& p : constraints)
-      constraints_.push_back(
-          CME212::shared_from<ZeroConstraint, FunctionConstraint>(
-              std::move(p)));
+      constraints_.push_back(std::make_shared<FunctionConstraint<Pointer<P>>>(
+          Pointer<P>{std::move(p)}));
   }
   const List& parts() const { return constraints_; }
   void operator()(Cloth& g, double t) const override {
@@ -473,7 +480,7 @@ template <typename... Cs>
 CombinedConstraints make_combined_constraints(Cs... cs) {
   // BEGIN SOLUTION 6.2.make_combined_constraints
   return CombinedConstraints(CombinedConstraints::List{
-      CME212::shared_as<ZeroConstraint, FunctionConstraint>(std::move(cs))...});
+      std::make_shared<FunctionConstraint<Cs>>(std::move(cs))...});
   // STUB ((void)cs, ...);
   // STUB return CombinedConstraints(CombinedConstraints::List());
   // END SOLUTION

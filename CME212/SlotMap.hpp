@@ -141,13 +141,6 @@ class SlotMap {
     return identity_ ? id : index_of_[id];
   }
 
-  /** How many indices have a smaller id than the index before.  O(size()) */
-  size_type descents() const {
-    size_type n = 0;
-    for (size_type i = 1; i < size_; ++i) n += id_at(i) < id_at(i - 1);
-    return n;
-  }
-
   /** Let slots() grow to @a slots without moving anything. */
   void reserve(size_type slots) { generation_.reserve(slots); }
 

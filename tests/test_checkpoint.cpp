@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "CME212/Archive.hpp"
+#include "lab/Archive.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Run.hpp"
 #include "lab/scenes/Checkpoint.hpp"
@@ -21,7 +21,6 @@
 #include "tests/TestFolder.hpp"
 
 using namespace lab;
-using CME212::Archive;
 
 namespace fs = std::filesystem;
 

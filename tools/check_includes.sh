@@ -12,10 +12,10 @@ Graph         : CME212
 mass_spring   : Graph
 course        : mass_spring
 lab           : CME212
-lab/fast      : mass_spring
+lab/fast      : mass_spring lab
 lab/methods   : lab/fast
 lab/stability : lab/methods
-lab/scenes    : lab/stability lab
+lab/scenes    : lab/stability
 lab/advice    : lab/scenes
 lab/charts    : lab/stability
 lab/bench     : lab/charts

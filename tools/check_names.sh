@@ -45,6 +45,7 @@ for f in files:
         for block in re.findall(r"^```.*?^```$", text, flags=re.S | re.M):
             shown |= set(re.findall(r"\w+(?:\.cpp)?", block))
             text = text.replace(block, re.sub(r"[^\n]", " ", block))
+        text = re.sub(r"^> .*", "", text, flags=re.M)  # what programs print
         spans += [(f, text, shown, m) for m in re.finditer(r"`[^`]+`", text)]
     words |= found
     called |= found if f.parts[0] != "tests" else set()

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <typeinfo>
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/FlatCloth.hpp"
+#include "lab/fast/OrderedCloth.hpp"
 
 namespace lab {
 
@@ -181,7 +181,7 @@ class Tear final : public Round<SweptConstraint> {
     if (!this->idle(c, t, 0, c.slots())) SweptConstraint::apply_flat(c, g, t);
   }
   Exchange exchange() const override { return {0, moment_}; }
-  void archive(CME212::Archive& a) const override {
+  void archive(Archive& a) const override {
     a(moment_).require(std::isfinite(moment_));
   }
 
@@ -201,7 +201,7 @@ class Called final : public SweptConstraint {
   }
   bool is_at_rest(double /*t*/) const override { return true; }
   Exchange exchange() const override { return {0, moment_}; }
-  void archive(CME212::Archive& a) const override {
+  void archive(Archive& a) const override {
     a(moment_).require(std::isfinite(moment_));
   }
 
@@ -218,31 +218,24 @@ ConstraintPlan::ConstraintPlan(const ZeroConstraint& c) {
   add(std::shared_ptr<const ZeroConstraint>(std::shared_ptr<void>(), &c));
 }
 
-/** Exact types: a child may have another call. Pins that do not know their
- * nodes yet are called, and find them. */
+/** Pins that do not know their nodes yet are called, and find them. */
 void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
   const ZeroConstraint& c = *constraint;
-  const auto& type = typeid(c);
-  if (type == typeid(CombinedConstraints)) {
-    for (const auto& part : static_cast<const CombinedConstraints&>(c).parts())
-      add(part);
-  } else if (type == typeid(PinConstraint) &&
-             static_cast<const PinConstraint&>(c).has_pins()) {
-    terms_.push_back(
-        std::make_shared<Pins>(static_cast<const PinConstraint&>(c)));
-  } else if (type == typeid(PlaneConstraint)) {
-    terms_.push_back(
-        std::make_shared<Plane>(static_cast<const PlaneConstraint&>(c)));
-  } else if (type == typeid(SphereConstraint)) {
-    terms_.push_back(
-        std::make_shared<Sphere>(static_cast<const SphereConstraint&>(c)));
-  } else if (type == typeid(TearConstraint)) {
-    terms_.push_back(
-        std::make_shared<Tear>(static_cast<const TearConstraint&>(c)));
+  if (auto all = exactly<CombinedConstraints, FunctionConstraint>(c)) {
+    for (const auto& part : all->parts()) add(part);
+  } else if (auto pins = exactly<PinConstraint, FunctionConstraint>(c);
+             pins && pins->has_pins()) {
+    terms_.push_back(std::make_shared<Pins>(*pins));
+  } else if (auto floor = exactly<PlaneConstraint, FunctionConstraint>(c)) {
+    terms_.push_back(std::make_shared<Plane>(*floor));
+  } else if (auto ball = exactly<SphereConstraint, FunctionConstraint>(c)) {
+    terms_.push_back(std::make_shared<Sphere>(*ball));
+  } else if (auto tear = exactly<TearConstraint, FunctionConstraint>(c)) {
+    terms_.push_back(std::make_shared<Tear>(*tear));
   } else if (auto swept =
                  std::dynamic_pointer_cast<const SweptConstraint>(constraint)) {
     terms_.push_back(std::move(swept));
-  } else if (type != typeid(ZeroConstraint)) {
+  } else if (!exactly<ZeroConstraint, FunctionConstraint>(c)) {
     terms_.push_back(std::make_shared<Called>(std::move(constraint)));
   }
 }
@@ -250,7 +243,7 @@ void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
 void ConstraintPlan::operator()(Cloth& g, double t) const {
   const auto version = g.version();
   for (const auto& term : terms_) (*term)(g, t);
-  if (g.version() != version) g.restore_order();
+  if (g.version() != version) restore_order(g);
 }
 
 bool ConstraintPlan::nodewise() const {
@@ -276,7 +269,7 @@ void ConstraintPlan::apply_flat(FlatCloth& c, Cloth& g, double t) const {
     else
       term->apply_flat(c, g, t);
   if (g.version() == version) return;
-  g.restore_order();
+  restore_order(g);
   if (c.version() != g.version()) c.write(g), c.take(g);
 }
 
@@ -343,7 +336,7 @@ Exchange ConstraintPlan::exchange() const {
   return all;
 }
 
-void ConstraintPlan::archive(CME212::Archive& a) const {
+void ConstraintPlan::archive(Archive& a) const {
   for (const auto& term : terms_) term->archive(a);
 }
 

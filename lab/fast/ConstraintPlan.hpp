@@ -13,7 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "CME212/Archive.hpp"
+#include "lab/Archive.hpp"
+#include "lab/fast/Recognise.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -112,7 +113,7 @@ class SweptConstraint : public ZeroConstraint {
   /** Without the work of what moves held nodes: EnergyBalance sees that. */
   virtual Exchange exchange() const { return {}; }
   /** Save or load what it summed up; all else it has from its making. */
-  virtual void archive(CME212::Archive& /*a*/) const {}
+  virtual void archive(Archive& /*a*/) const {}
 };
 
 /** A constraint that projects each node independently: its children give
@@ -166,6 +167,15 @@ class PinnedNodes {
                     Use use) const;
 };
 
+/** Constraints one of which is swept: it stays what it is, whereas the course's
+ * function makes any constraint a call. */
+template <typename... Cs>
+requires(std::derived_from<Cs, SweptConstraint> || ...)  //
+    CombinedConstraints make_combined_constraints(Cs... cs) {
+  return CombinedConstraints(CombinedConstraints::List{
+      shared_as<ZeroConstraint, FunctionConstraint>(std::move(cs))...});
+}
+
 /** The terms of a constraint, in their order, by what methods need of them.
  *
  * It is made once for many steps. A ConstraintPlan shares the parts of a
@@ -182,17 +192,17 @@ class ConstraintPlan {
   template <std::derived_from<ZeroConstraint> C>
   requires(!std::is_reference_v<C> && !std::is_const_v<C>)  //
       ConstraintPlan(C&& c) {
-    add(CME212::shared_as<ZeroConstraint, FunctionConstraint>(std::move(c)));
+    add(shared_as<ZeroConstraint, FunctionConstraint>(std::move(c)));
   }
   /** A constraint with a call that does not override that of ZeroConstraint. */
   template <typename C>
   requires(std::derived_from<std::remove_const_t<C>, ZeroConstraint> &&
-           !CME212::Overrides<std::remove_const_t<C>, ZeroConstraint>)  //
+           !Overrides<std::remove_const_t<C>, ZeroConstraint>)  //
       ConstraintPlan(C& c) {
-    add(CME212::shared_from<ZeroConstraint, FunctionConstraint>(&c));
+    add(std::make_shared<FunctionConstraint<Pointer<C*>>>(Pointer<C*>{&c}));
   }
 
-  /** Apply it to @a g at time @a t [s]; then Graph::restore_order(), if nodes
+  /** Apply it to @a g at time @a t [s]; then restore_order(), if nodes
    * were removed.  O(N) unless a term takes longer */
   void operator()(Cloth& g, double t) const;
   // As in SweptConstraint; each is that of all terms together:
@@ -209,7 +219,7 @@ class ConstraintPlan {
   double thinnest() const;
   bool is_at_rest(double t) const;
   Exchange exchange() const;
-  void archive(CME212::Archive& a) const;
+  void archive(Archive& a) const;
 
   // The held nodes; each takes O(of them), as each_place().
   /** Call @a use(node) for each. */
@@ -280,7 +290,7 @@ class WatchedConstraint final : public SweptConstraint {
   double thinnest() const override { return c_.thinnest(); }
   bool is_at_rest(double t) const override { return c_.is_at_rest(t); }
   Exchange exchange() const override { return c_.exchange(); }
-  void archive(CME212::Archive& a) const override {
+  void archive(Archive& a) const override {
     c_.archive(a);
     a(before_)(count_)(first_.node)(first_.length).require(count_ >= 0);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <typeinfo>
 #include <utility>
 
 namespace lab {
@@ -35,25 +34,21 @@ ForcePlan::ForcePlan(const ZeroForce& force) {
   add(std::shared_ptr<const ZeroForce>(std::shared_ptr<void>(), &force));
 }
 
-/** Exact types: a child may have another call. */
 void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   const ZeroForce& f = *force;
-  const auto& type = typeid(f);
-  if (type == typeid(CombinedForces)) {
-    for (const auto& part : static_cast<const CombinedForces&>(f).parts())
-      add(part);
-  } else if (type == typeid(GravityForce)) {
-    const double g = static_cast<const GravityForce&>(f).gravity();
-    terms_.push_back({Kind::weight, g, nullptr});
-  } else if (type == typeid(MassSpringForce)) {
+  if (auto sum = exactly<CombinedForces, FunctionForce>(f)) {
+    for (const auto& part : sum->parts()) add(part);
+  } else if (auto weight = exactly<GravityForce, FunctionForce>(f)) {
+    terms_.push_back({Kind::weight, weight->gravity(), nullptr});
+  } else if (exactly<MassSpringForce, FunctionForce>(f)) {
     terms_.push_back({Kind::springs, 0, nullptr});
-  } else if (type == typeid(DampingForce)) {
-    drag_.add(static_cast<const DampingForce&>(f).coefficient());
-  } else if (type == typeid(NodeDrag)) {
-    drag_.add(static_cast<const NodeDrag&>(f));
+  } else if (auto drag = exactly<DampingForce, FunctionForce>(f)) {
+    drag_.add(drag->coefficient());
+  } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
+    drag_.add(*drags);
   } else if (dynamic_cast<const SweptForce*>(&f)) {
     terms_.push_back({Kind::swept, 0, std::move(force)});
-  } else if (type != typeid(ZeroForce)) {
+  } else if (!exactly<ZeroForce, FunctionForce>(f)) {
     terms_.push_back({Kind::call, 0, std::move(force)});
   }
 }

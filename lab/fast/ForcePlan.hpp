@@ -14,6 +14,7 @@
 
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/Recognise.hpp"
 
 namespace lab {
 
@@ -63,6 +64,15 @@ class SweptForce : public ZeroForce {
   }
 };
 
+/** The sum of forces one of which is swept: it stays what it is, whereas the
+ * course's function makes any force a call. */
+template <typename... Fs>
+requires(std::derived_from<Fs, SweptForce> || ...)  //
+    CombinedForces make_combined_force(Fs... fs) {
+  return CombinedForces(CombinedForces::List{
+      shared_as<ZeroForce, FunctionForce>(std::move(fs))...});
+}
+
 /** The terms of a force: weight and springs by kernels, others by SweptForce or
  * by call, in their order; and the sum of all linear drag.
  *
@@ -76,14 +86,14 @@ class ForcePlan {
   template <std::derived_from<ZeroForce> F>
   requires(!std::is_reference_v<F> && !std::is_const_v<F>)  //
       ForcePlan(F&& force) {
-    add(CME212::shared_as<ZeroForce, FunctionForce>(std::move(force)));
+    add(shared_as<ZeroForce, FunctionForce>(std::move(force)));
   }
   /** A force with a call that does not override that of ZeroForce. */
   template <typename F>
   requires(std::derived_from<std::remove_const_t<F>, ZeroForce> &&
-           !CME212::Overrides<std::remove_const_t<F>, ZeroForce>)  //
+           !Overrides<std::remove_const_t<F>, ZeroForce>)  //
       ForcePlan(F& force) {
-    add(CME212::shared_from<ZeroForce, FunctionForce>(&force));
+    add(std::make_shared<FunctionForce<Pointer<F*>>>(Pointer<F*>{&force}));
   }
 
   /** The sum of its swept forces and calls is added to @a f: as

@@ -37,4 +37,12 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
   g.reindex_edges(edge_id);
 }
 
+void restore_order(Cloth& g) {
+  if (g.node_slots() < 4096 || g.num_nodes() == g.node_slots()) return;
+  unsigned descents = 0;  // indices with a smaller id than the index before
+  for (unsigned i = 1; i < g.num_nodes(); ++i)
+    descents += g.node(i) < g.node(i - 1);
+  if (descents > g.node_slots() / 256) g.reindex();
+}
+
 }  // namespace lab

@@ -15,4 +15,10 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
                          std::span<const Quad> quads, Mesh mesh,
                          double K = 100);
 
+/** Graph::reindex(), if removals put so many nodes of a large cloth out of the
+ * order of memory that loops over nodes() feel it. For the end of a step.
+ * Complexity: O(1) before the first removal, then O(num_nodes()); in all at
+ *       most 256 times reindex() until no node is left */
+void restore_order(Cloth& g);
+
 }  // namespace lab

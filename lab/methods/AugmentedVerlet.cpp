@@ -37,7 +37,7 @@ double AugmentedVerlet::step(Cloth& g, double t, double dt,
   return t + dt;
 }
 
-void AugmentedVerlet::archive(CME212::Archive& a, const Cloth& g) {
+void AugmentedVerlet::archive(Archive& a, const Cloth& g) {
   bool has = kept_for_ == &g;
   a(has);
   if (!has) return restart();

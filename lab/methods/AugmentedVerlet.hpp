@@ -43,7 +43,7 @@ class AugmentedVerlet : public Method {
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
   void restart() override { kept_for_ = nullptr, source_.cloth = nullptr; }
-  void archive(CME212::Archive& a, const Cloth& g) override;
+  void archive(Archive& a, const Cloth& g) override;
 
   /** How often the matrix was factored since this method was made. */
   int factorizations() const { return factorizations_; }

@@ -8,7 +8,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "CME212/Archive.hpp"
+#include "lab/Archive.hpp"
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
 
@@ -90,7 +90,7 @@ class Method {
   /** Save what was kept from the last step; or load it, so that the next step
    * gives the same bits as that of the method that saved it.
    * @pre of loading: @a g is as it was then. The default: nothing is kept */
-  virtual void archive(CME212::Archive& /*a*/, const Cloth& /*g*/) {}
+  virtual void archive(Archive& /*a*/, const Cloth& /*g*/) {}
   virtual Work work() const { return {}; }
   /** Keep the estimated error of each inner step below @a tolerance [m] > 0;
    * infinite: one inner step a step. Only adaptive methods have one. */
@@ -114,7 +114,7 @@ class Method {
   static decltype(auto) as(T& x) {
     if constexpr (std::derived_from<std::remove_const_t<T>, Plan>)
       return static_cast<const Plan&>(x);
-    else if constexpr (CME212::Overrides<std::remove_const_t<T>, Base>)
+    else if constexpr (Overrides<std::remove_const_t<T>, Base>)
       return static_cast<const Base&>(x);
     else
       return Adapter([&x]<typename... Args>(Args&&... args) {

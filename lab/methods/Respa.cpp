@@ -61,7 +61,7 @@ void Respa::one_step(Cloth& g, double t, double dt, bool kept,
   flow_.run({.t = t + dt, .first_kick = dt / 2, .last = &constraint});
 }
 
-void Respa::archive(CME212::Archive& a, const Cloth& g) {
+void Respa::archive(Archive& a, const Cloth& g) {
   verlet_.archive(a, g);
   bool has = !split_.empty() && kept_for_ == &g && kept_version_ == g.version();
   a(has);

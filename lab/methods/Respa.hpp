@@ -45,7 +45,7 @@ class Respa : public BatchMethod {
     kept_for_ = nullptr, loaded_ = false;
     verlet_.restart();
   }
-  void archive(CME212::Archive& a, const Cloth& g) override;
+  void archive(Archive& a, const Cloth& g) override;
 
   /** Of the last step: what it split, and the n of above. */
   const StiffSplit& split() const { return split_; }

@@ -183,7 +183,7 @@ double RungeKutta<Tableau>::rms(const Cloth& g, double h,
 }
 
 template <typename Tableau>
-void RungeKutta<Tableau>::archive(CME212::Archive& a, const Cloth& g) {
+void RungeKutta<Tableau>::archive(Archive& a, const Cloth& g) {
   bool has = has_end_ && end_version_ == g.version();
   a(inner_)(has).require(inner_ >= 0 && std::isfinite(inner_));
   has_end_ = has;

@@ -58,7 +58,7 @@ class RungeKutta : public BatchMethod {
             const ConstraintPlan& constraint) override;
   void restart() override { inner_ = 0, has_end_ = false; }
   Work work() const override { return {.inner = attempts_}; }
-  void archive(CME212::Archive& a, const Cloth& g) override;
+  void archive(Archive& a, const Cloth& g) override;
 
  private:
   static constexpr std::size_t stages = Tableau::b.size();

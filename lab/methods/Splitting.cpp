@@ -65,7 +65,7 @@ bool Splitting<Scheme>::kept(const Cloth& g, double t, double dt) const {
 }
 
 template <typename Scheme>
-void Splitting<Scheme>::archive(CME212::Archive& a, const Cloth& g) {
+void Splitting<Scheme>::archive(Archive& a, const Cloth& g) {
   bool has = kept_for_ == &g && kept_version_ == g.version();
   a(has);
   if (!has) return restart();

@@ -28,7 +28,7 @@ class Splitting : public BatchMethod {
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;
   void restart() override { kept_for_ = nullptr; }
-  void archive(CME212::Archive& a, const Cloth& g) override;
+  void archive(Archive& a, const Cloth& g) override;
 
  private:
   static constexpr std::size_t first_drift = Scheme::kicks_first ? 1 : 0,

@@ -283,7 +283,7 @@ void Run::write_csv(const std::string& text) {
 }
 
 /** The state of the run besides that of the scene. */
-void Run::archive(CME212::Archive& a) {
+void Run::archive(Archive& a) {
   std::uint64_t rows = recent_.size();
   a(rows_)(last_row_)(settled_row_)(warned_)(rows);
   a.require(rows_ >= 0 && last_row_ >= -1 && settled_row_ >= -1);
@@ -298,7 +298,7 @@ void Run::archive(CME212::Archive& a) {
  * whoever goes on from it. */
 void Run::save() {
   if (csv_) csv_->commit_copy();
-  CME212::Archive a = scene_as_made_;
+  Archive a = scene_as_made_;
   std::uint64_t length = csv_ ? std::uint64_t(csv_->stream().tellp()) : 0;
   a(length)(csv_sum_);
   archive(a);
@@ -308,7 +308,7 @@ void Run::save() {
 }
 
 void Run::load() {
-  CME212::Archive a = read_checkpoint(o_.restart);
+  Archive a = read_checkpoint(o_.restart);
   std::uint64_t length = 0, sum = 0;
   try {
     archive_scene(a, o_.model, scene_.cloth());

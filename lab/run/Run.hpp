@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "CME212/Archive.hpp"
 #include "CME212/OutputFile.hpp"
+#include "lab/Archive.hpp"
 #include "lab/Progress.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/run/Options.hpp"
@@ -99,10 +99,10 @@ class Run {
   long long last_row_ = -1, settled_row_ = -1;  // steps: of all, of those
   std::uint64_t csv_sum_ = 0;                   // checksum of what csv_ has
   long long first_step_ = 0;                    // where a checkpoint was
-  CME212::Archive scene_as_made_;  // with which every checkpoint begins
-  double next_checkpoint_ = 0;     // [s] of progress_
-  std::string kept_;               // in words
-  double seconds_ = 0;             // until the last step
+  Archive scene_as_made_;       // with which every checkpoint begins
+  double next_checkpoint_ = 0;  // [s] of progress_
+  std::string kept_;            // in words
+  double seconds_ = 0;          // until the last step
   bool warned_ = false, told_ = false;
 
   int steps_to_write() const;
@@ -116,7 +116,7 @@ class Run {
   void add_frame();
   void begin_csv();
   void write_csv(const std::string& text);
-  void archive(CME212::Archive& a);
+  void archive(Archive& a);
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);

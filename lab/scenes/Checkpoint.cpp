@@ -81,7 +81,7 @@ std::uint64_t checksum_of(const Cloth& g) {
   return sum;
 }
 
-void write_checkpoint(const std::string& file, const CME212::Archive& saved) {
+void write_checkpoint(const std::string& file, const Archive& saved) {
   CME212::OutputFile out(file);
   const std::string head = first_line() + bytes_of(saved.bytes().size());
   out.stream() << head << saved.bytes()
@@ -89,7 +89,7 @@ void write_checkpoint(const std::string& file, const CME212::Archive& saved) {
   out.commit(true);
 }
 
-CME212::Archive read_checkpoint(const std::string& file) {
+Archive read_checkpoint(const std::string& file) {
   auto fail = [&file](const std::string& why) {
     throw std::runtime_error(file + ": " + why);
   };
@@ -113,17 +113,17 @@ CME212::Archive read_checkpoint(const std::string& file) {
   const std::size_t end = start + length;
   if (number_in(all, end) != crc64(std::string_view(all).substr(0, end)))
     fail("is damaged: its checksum is wrong");
-  return CME212::Archive(all.substr(start, length));
+  return Archive(all.substr(start, length));
 }
 
 SavedScene scene_in_checkpoint(const std::string& file) {
-  CME212::Archive a = read_checkpoint(file);
+  Archive a = read_checkpoint(file);
   SavedScene scene;
   a(scene.name)(scene.text)(scene.step_tolerance);
   return scene;
 }
 
-void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g) {
+void archive_scene(Archive& a, const Model& m, const Cloth& g) {
   std::string name = m.name, scene = to_scene_file(m);
   const std::uint64_t here = checksum_of(g);
   std::uint64_t cloth = here;
@@ -148,7 +148,7 @@ void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g) {
                      "makes it, have changed");
 }
 
-void archive_cloth(CME212::Archive& a, Cloth& g) {
+void archive_cloth(Archive& a, Cloth& g) {
   auto require = [](bool ok) {
     if (!ok) throw std::runtime_error("it does not belong to this cloth");
   };

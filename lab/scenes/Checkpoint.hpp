@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "CME212/Archive.hpp"
+#include "lab/Archive.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -23,12 +23,12 @@ std::uint64_t checksum_of(const Cloth& g);
 /** Write what @a saved holds to @a file, whole or not at all, and until it is
  * on the disk: a line with the version, the length, the bytes, the checksum of
  * all that.  Throws std::runtime_error "FILE: why" */
-void write_checkpoint(const std::string& file, const CME212::Archive& saved);
+void write_checkpoint(const std::string& file, const Archive& saved);
 
 /** What was saved in @a file, to load.
  * Throws std::runtime_error "FILE: why": it can't be read, is no checkpoint,
  * one of another version or of another precision, too short, damaged. */
-CME212::Archive read_checkpoint(const std::string& file);
+Archive read_checkpoint(const std::string& file);
 
 /** The scene that archive_scene() saved first of all. */
 struct SavedScene {
@@ -42,7 +42,7 @@ SavedScene scene_in_checkpoint(const std::string& file);
  * name, its file, a checksum of the cloth.
  * Throws SceneError: what is loaded is another scene. t-end, and what does not
  * change the run (measure, tolerance, view), may differ. */
-void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g);
+void archive_scene(Archive& a, const Model& m, const Cloth& g);
 
 /** Save or load the state of a cloth that has lost nodes and edges since it was
  * made: who is left, all orders, positions, velocities and masses.
@@ -50,6 +50,6 @@ void archive_scene(CME212::Archive& a, const Model& m, const Cloth& g);
  * @post of loading: every id, index and order of edges is as it was
  * Throws std::runtime_error: what is loaded does not belong to @a g.
  * Complexity: O(nodes + edges), if no node that lost an edge has very many */
-void archive_cloth(CME212::Archive& a, Cloth& g);
+void archive_cloth(Archive& a, Cloth& g);
 
 }  // namespace lab

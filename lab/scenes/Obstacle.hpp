@@ -81,7 +81,7 @@ class Touchable : public NodewiseConstraint {
   bool nodewise() const override { return motion_.velocity == Point(); }
   bool is_at_rest(double /*t*/) const override { return nodewise(); }
   Exchange exchange() const override { return {work_, 0}; }
-  void archive(CME212::Archive& a) const override {
+  void archive(Archive& a) const override {
     a(work_).require(std::isfinite(work_));
   }
 

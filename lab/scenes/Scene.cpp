@@ -124,13 +124,13 @@ double Scene::drag_loss() const {
   return flow().drag + 0.5 * (drag_power_ + power) * (time() - sampled_);
 }
 
-void Scene::Clock::archive(CME212::Archive& a) {
+void Scene::Clock::archive(Archive& a) {
   a(dt)(from)(steps)(from_steps);
   a.require(dt > 0 && std::isfinite(dt) && from >= 0 && 0 <= from_steps &&
             from_steps <= steps && steps < 1LL << 53 && std::isfinite(time()));
 }
 
-void Scene::archive(CME212::Archive& a) {
+void Scene::archive(Archive& a) {
   archive_cloth(a, cloth_);
   a(clock_)(checked_)(flow_)(safe_omega_);
   const auto not_after = [&](const Clock& c) {

@@ -51,7 +51,7 @@ class Scene {
    * bits as what was saved, which goes on as if nothing had been.
    * @pre failure().empty(); of loading: the same scene, at t = 0
    * Throws std::runtime_error: what is loaded is of another scene.  O(N) */
-  void archive(CME212::Archive& a);
+  void archive(Archive& a);
 
   /** One step of dt(), or less: it never passes @a t_end [s], where the run is
    * to end, and what is left for two steps they share. Less than 1e-9 dt() is
@@ -209,7 +209,7 @@ class Scene {
       set_time(time());
       dt = next;
     }
-    void archive(CME212::Archive& a);
+    void archive(Archive& a);
   };
 
   /** A state of the cloth to go back to. */

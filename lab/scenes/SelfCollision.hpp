@@ -148,7 +148,7 @@ class SelfCollision : public SweptConstraint {
   }
   double thinnest() const override { return others_.thinnest(); }
   Exchange exchange() const override { return others_.exchange(); }
-  void archive(CME212::Archive& a) const override { others_.archive(a); }
+  void archive(Archive& a) const override { others_.archive(a); }
 
  private:
   struct Pair {

@@ -29,7 +29,7 @@ struct EnergyFlow {
   /** Nothing holds it: its center of mass carries it. */
   bool loose = false;
 
-  void archive(CME212::Archive& a) {
+  void archive(Archive& a) {
     a(work)(removed)(drag)(carried)(loose);
     a.require(std::isfinite(work + removed + drag + norm(carried)));
   }
@@ -79,7 +79,7 @@ class EnergyBalance {
               const EnergyFlow& flow);
 
   /** Save or load all that follow() changes. */
-  void archive(CME212::Archive& a) {
+  void archive(Archive& a) {
     for (Held& h : held_) {
       a(h.place)(h.velocity)(h.force);
       a.require(

@@ -35,7 +35,7 @@ double EnergyWatch::tolerance() const {
   return energy_tolerance * largest_ + fall_ + floor_;
 }
 
-void EnergyWatch::archive(CME212::Archive& a) {
+void EnergyWatch::archive(Archive& a) {
   a(largest_)(fall_)(off_)(sum_)(least_)(gain_)(looks_);
   a.require(std::isfinite(largest_ + fall_ + off_ + sum_ + least_ + gain_) &&
             looks_ >= 0);

@@ -1,7 +1,7 @@
 #pragma once
 /** @file EnergyWatch.hpp
  * EnergyWatch: how far a run is off in an energy that nothing changes. */
-#include "CME212/Archive.hpp"
+#include "lab/Archive.hpp"
 #include "lab/stability/Guard.hpp"
 
 namespace lab {
@@ -33,7 +33,7 @@ class EnergyWatch {
   /** What StepControl would let it gain [J]. */
   double tolerance() const;
 
-  void archive(CME212::Archive& a);
+  void archive(Archive& a);
 
  private:
   double dt_, start_, floor_, round_off_;

@@ -48,7 +48,7 @@ bool are_nodes(std::span<const Point> positions,
          });
 }
 
-void NodeStates::archive(CME212::Archive& a) {
+void NodeStates::archive(Archive& a) {
   a(position_)(value_);
   a.require(position_.size() == value_.size() && are_nodes(position_, value_));
 }

@@ -21,7 +21,7 @@ class NodeStates {
   /** Give @a g the positions and values that were kept. Nodes added since stay
    * as they are, nodes removed since stay removed.  O(N) */
   void restore(Cloth& g) const;
-  void archive(CME212::Archive& a);
+  void archive(Archive& a);
 
  private:
   std::vector<Point> position_;
@@ -75,7 +75,7 @@ class DivergenceGuard {
   void restore(Cloth& g) const { kept_.restore(g); }
 
   /** Save or load the last good state, and what was available. */
-  void archive(CME212::Archive& a) {
+  void archive(Archive& a) {
     a(available_)(kept_).require(std::isfinite(available_));
   }
 

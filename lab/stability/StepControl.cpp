@@ -25,7 +25,7 @@ StepControl::StepControl(double dt, const Energies& start, const Limits& limits,
   now_.fall_power = start.fall_power;
 }
 
-void StepControl::State::archive(CME212::Archive& a) {
+void StepControl::State::archive(Archive& a) {
   for (double* x :
        {&dt, &ceiling, &scale, &fall, &last, &least, &base, &low, &mark, &sum,
         &gain, &time, &kinetic_time, &drag, &lost, &kinetic, &fall_power})
@@ -39,7 +39,7 @@ void StepControl::State::archive(CME212::Archive& a) {
             since < most && 0 <= raises && raises < most);
 }
 
-void StepControl::archive(CME212::Archive& a) {
+void StepControl::archive(Archive& a) {
   auto& [shortest, longest, shortened, lengthened, taken_back] = report_;
   a(now_)(shortest)(longest)(shortened)(lengthened)(taken_back)(failures_);
   a.require(shortest_ <= now_.dt && 0 < shortest && shortest <= longest &&

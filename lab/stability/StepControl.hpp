@@ -54,7 +54,7 @@ class StepControl {
     int rounds = 0, calm = 0;   ///< of the run, since dt changed
     int since = 0, raises = 0;  ///< rounds since a failure, a raise; raises of
                                 ///< the ceiling since a failure
-    void archive(CME212::Archive& a);
+    void archive(Archive& a);
   };
   /** What was chosen. */
   struct Report {
@@ -99,7 +99,7 @@ class StepControl {
   bool lengthen(const EnergyFlow& flow);
 
   /** Save or load all that changes. */
-  void archive(CME212::Archive& a);
+  void archive(Archive& a);
 
  private:
   double first_, shortest_;  // steps [s]

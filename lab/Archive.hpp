@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace CME212 {
+namespace lab {
 
 /** What has a function archive(Archive&), as below. */
 template <typename T>
@@ -113,4 +113,4 @@ class Archive {
   }
 };
 
-}  // namespace CME212
+}  // namespace lab
