@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "lab/live/Recording.hpp"
-#include "lab/methods/Methods.hpp"
 #include "tests/ClothProgram.hpp"
 
 using namespace lab;
@@ -24,14 +23,14 @@ class ClothReplay : public ClothProgram {
     };
     const auto ids = live.scene().recipe().built->ids;
     steps(100);
-    live.apply(Grab{ids[63], Point(1, 1, 0.5)});
-    live.apply(Cut{{{ids[27], ids[28]}, {ids[35], ids[36]}}});
+    live.apply(request("grab", ids[63], Point(1, 1, 0.5)));
+    live.apply(request("cut", ids[27], ids[28], ids[35], ids[36]));
     steps(50);
-    live.apply(SetGravity{3});
-    live.apply(Compare{find_method("rk4"), 0.5});
+    live.apply("gravity 3");
+    live.apply("compare rk4 0.5 equal-time");
     steps(20);
-    live.apply(PinNode{ids[20]});
-    live.apply(Release{});
+    live.apply(request("pin", ids[20]));
+    live.apply("release");
     steps(30);
   }
 };
@@ -83,11 +82,11 @@ TEST_F(ClothReplay, OfEachOfTheGalleryFails) {
 // In one step of a second method there is no end of those of the first one.
 TEST_F(ClothReplay, TakesNoMoreThanSomeStepsInARound) {
   for (double share : {1e-300, 1e300})
-    for (auto at : {Compare::At::equal_time, Compare::At::equal_work}) {
-      live.apply(Compare{find_method("augmented-verlet"), share, at});
+    for (const char* at : {"equal-time", "equal-work"}) {
+      live.apply(request("compare", "augmented-verlet", share, at));
       const Readings r = live.readings(false);
       const double ratio = r.comparison->rival.dt / r.dt;
-      if (at == Compare::At::equal_time) {
+      if (at == std::string("equal-time")) {
         EXPECT_NEAR(ratio, share < 1 ? 1e-4 : 1e4, 1e-9 * ratio) << share;
       }
       EXPECT_GE(r.comparison->reference_dt, std::min(ratio, 1.) * r.dt / 1e4);

@@ -22,9 +22,6 @@ unsigned number_of(const char* scene) {
   while (std::string(page_scenes()[k].name) != scene) ++k;
   return k;
 }
-unsigned method_of(const char* name) {
-  return unsigned(find_method(name) - methods.data());
-}
 /** The number that follows "name": in the readings, of side 0 first. */
 double reading(const char* name) {
   const std::string all = page_readings(0),
@@ -53,11 +50,11 @@ TEST(PageScenes, AreThoseOfTheirFiles) {
 }
 
 TEST(PageCalls, StepsGoBesideEachOtherToOneTime) {
-  page_load(number_of("forces"), 5, method_of("verlet"));
+  page_load(number_of("forces"), 5);
   EXPECT_EQ(page_slots(0), 25u);
   EXPECT_EQ(page_slots(1), 0u);
-  page_set_share(0.5);
-  page_compare(int(method_of("symplectic-euler")), 0.25);
+  page_request("step 0.5");
+  page_request("compare symplectic-euler 0.25 equal-time");
   ASSERT_EQ(page_slots(1), 25u);
   double time = 0;
   for (int k = 0; k < 40; ++k) time = page_step();
@@ -65,12 +62,12 @@ TEST(PageCalls, StepsGoBesideEachOtherToOneTime) {
   EXPECT_EQ(reading("steps"), 40);
   EXPECT_NE(std::string(page_readings(1)).find("\"apart\":"),
             std::string::npos);
-  page_compare(-1, 0);
+  page_request("alone");
   EXPECT_EQ(page_slots(1), 0u);
 }
 
 TEST(PageCalls, WhatIsDrawnIsTheCloth) {
-  page_load(number_of("diagonals"), 5, method_of("verlet"));
+  page_load(number_of("diagonals"), 5);
   // 2 n (n-1) sides, 2 (n-1)^2 diagonals; two triangles a quad; two corners.
   const unsigned* mesh = page_mesh(0);
   EXPECT_EQ(mesh[0], 2 * 5 * 4 + 2 * 4 * 4u);
@@ -86,43 +83,56 @@ TEST(PageCalls, WhatIsDrawnIsTheCloth) {
 }
 
 TEST(PageCalls, AStrokeCutsAndAPinHolds) {
-  page_load(number_of("problem1"), 5, method_of("verlet"));
+  page_load(number_of("problem1"), 5);
   const unsigned before = springs();
   const double version = page_version(0);
   EXPECT_EQ(page_version(0), version);
   // A plane at x = 0.1, which five sides cross.
-  const double rays[] = {0.1, -1, 1.1, 0.1, -1, -1, 0.1, 2, 1.1, 0.1, 2, -1};
-  std::memcpy(page_stroke(2), rays, sizeof rays);
-  page_cut(2);
+  const std::string stroke = "stroke 0.1 -1 1.1 0.1 -1 -1 0.1 2 1.1 0.1 2 -1";
+  char* const room = page_room(unsigned(stroke.size()) + 1);
+  std::memcpy(room, stroke.c_str(), stroke.size() + 1);
+  EXPECT_STREQ(page_request(room), "");
   EXPECT_EQ(springs(), before - 5);
   EXPECT_NE(page_version(0), version);
-  page_toggle_pin(12);
+  page_request("toggle 12");
   EXPECT_EQ(page_mesh(0)[2], 3u);
-  page_toggle_pin(12);
+  page_request("toggle 12");
   EXPECT_EQ(page_mesh(0)[2], 2u);
 }
 
+TEST(PageCalls, ARequestThatMakesNoSenseIsNotMade) {
+  page_load(number_of("forces"), 5);
+  const std::string before = page_recording();
+  EXPECT_STREQ(page_request("gravitas 3"),
+               "'gravitas' is no request: did you mean gravity?");
+  EXPECT_EQ(page_recording(), before);
+  EXPECT_STREQ(page_request("gravity 3"), "");
+  const std::string all = page_recording();
+  EXPECT_EQ(all.substr(all.rfind("0 gravity")), "0 gravity 3\n0 end\n");
+  EXPECT_EQ(reading("gravity"), 3);
+}
+
 TEST(PageCalls, AHandPullsANode) {
-  page_load(number_of("forces"), 5, method_of("verlet"));
-  page_set_gravity(0);
-  page_grab(24, 1, 1, 0);
-  page_move_hand(1, 1, 0.5);
+  page_load(number_of("forces"), 5);
+  page_request("gravity 0");
+  page_request("grab 24 1 1 0");
+  page_request("move 1 1 0.5");
   for (int k = 0; k < 200; ++k) page_step();
   EXPECT_GT(page_positions(0)[3 * 24 + 2], 0.1);
-  page_release();
+  page_request("release");
   EXPECT_NE(std::string(page_readings(0)).find("\"grabbed\":false"),
             std::string::npos);
 }
 
 TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
-  page_load(number_of("forces"), 5, method_of("verlet"));
-  page_set_share(0.9);
+  page_load(number_of("forces"), 5);
+  page_request("step 0.9");
   for (int k = 0; k < 300; ++k) page_step();
   EXPECT_EQ(page_check(), 0);
   EXPECT_STREQ(page_failure(0), "");
   EXPECT_EQ(page_failed_node(0), -1);
-  page_load(number_of("forces"), 5, method_of("verlet"));
-  page_set_share(2);
+  page_load(number_of("forces"), 5);
+  page_request("step 2");
   int failed = 0;
   for (int k = 0; k < 300 && !failed; ++k) page_step(), failed = page_check();
   ASSERT_EQ(failed, 1);

@@ -485,12 +485,12 @@ struct LiveWindow {
         std::lock_guard lock(mutex_);
         seen_ = {live.model(), live.readings(), {}};
         for (unsigned k = 0; k < seen_.now.nodes; ++k)
-          seen_.pinned.push_back(live.is_pinned(k));
+          seen_.pinned.push_back(live.scene().is_pinned(k));
       };
       show();
       while (!screen->closed()) {
         if (screen->serve(live)) show();
-        if (screen->take_restart()) live.apply(lab::Restart()), show();
+        if (screen->take_restart()) live.apply("restart"), show();
         if (!screen->wait_while_paused(show)) continue;
         if (live.step()) show();
       }
@@ -560,13 +560,12 @@ TEST(LiveThreads, TwoMethodsAreCompared) {
     EXPECT_TRUE(w.sees([](const Seen& s) {
       return s.now.comparison &&
              s.now.comparison->rival.method == std::string("pefrl") &&
-             s.now.comparison->at == lab::Compare::At::equal_work;
+             s.now.comparison->equal_work;
     }));
     w.click("side by side");
     w.click("equal time");
     EXPECT_TRUE(w.sees([](const Seen& s) {
-      return s.now.comparison &&
-             s.now.comparison->at == lab::Compare::At::equal_time;
+      return s.now.comparison && !s.now.comparison->equal_work;
     }));
     w.slide("its dt / limit", false);
     EXPECT_TRUE(w.sees([](const Seen& s) {

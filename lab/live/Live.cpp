@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 
 #include "lab/Interrupt.hpp"
+#include "lab/live/Line.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
@@ -18,6 +21,7 @@ namespace {
 /** Of what is compared, the reference: order 6, or 2 where there is contact. */
 constexpr MethodEntry reference_method = entry_of<Srkn11b>();
 constexpr double reference_share = 1 / 3.;  // of its limit
+constexpr double most_in_round = 1e4;       // steps of a scene
 
 /** Does a step cost its force evaluations, and nothing else? */
 bool only_evaluates(const MethodEntry& m) {
@@ -30,26 +34,21 @@ double cost_of(const MethodEntry& m) {
   return cost != method_costs.end() ? cost->at_limit : m.info.sweeps;
 }
 
-}  // namespace
-
-/** The fewest steps after which two runs meet: @a main ones of the one are as
- * long as @a rival ones of the other. */
+/** The fewest steps after which two runs meet: of the main one and of the
+ * rival. */
 struct Round {
-  int main = 1, rival = 1;
+  int main, rival;
 
-  /** The most steps that a scene takes in one. */
-  static constexpr double most = 1e4;
-
-  /** @param ratio rival's step / main's step, which it is to 2 %, up to most */
+  /** @param ratio rival's step / main's step, which it is to 2 %, up to 10^4 */
   static Round of_steps(double ratio) {
-    const double up = std::min(std::max(ratio, 1 / ratio), most);
+    const double up = std::min(std::max(ratio, 1 / ratio), most_in_round);
     int few = 0, many = 0;
     do {
       many = int(std::lround(++few * up));
     } while (std::abs(many / (few * up) - 1) > 0.02);
     return ratio >= 1 ? Round{many, few} : Round{few, many};
   }
-  /** Of the same work. */
+  /** At the same work. */
   static Round of_work(const MethodEntry& main, const MethodEntry& rival) {
     if (!only_evaluates(main) || !only_evaluates(rival))
       return of_steps(cost_of(rival) / cost_of(main));
@@ -58,7 +57,14 @@ struct Round {
   }
 };
 
-namespace {
+/** What a share of 1 is: RunReadings::dt_unit. */
+double unit_of(const Scene& s, const MethodEntry& m) {
+  for (const MethodEntry& like : {m, entry_of<Verlet>()})
+    if (const double limit = s.safe_limit(like);
+        limit > 0 && std::isfinite(limit))
+      return limit;
+  return TimeStep().dt;
+}
 
 Distances distances(const Cloth& a, const Cloth& b) {
   double most = 0, sum = 0;
@@ -134,211 +140,289 @@ std::vector<std::array<unsigned, 2>> crossed_edges(
 
 // ----------------------------------------------------------------------- Live
 
-struct Live::Parts {
-  /** A scene, and what its readings need. */
-  struct Side {
-    std::unique_ptr<Scene> scene;
-    MethodEntry method;
-    double dt_unit, safe_limit, sharp_limit;  // [s]; sharp: when last asked for
-    double from = 0;                          // since the last change [s]
-    long long evaluations = 0;                // at that time
-
-    Side(std::unique_ptr<Scene> s, const MethodEntry& m)
-        : scene(std::move(s)), method(m) {
-      scene->follow_drag();
-      mark();
-      sharp_limit = safe_limit;
-    }
-    void mark() {
-      from = scene->time(), evaluations = scene->evaluations();
-      safe_limit = scene->safe_limit();
-      dt_unit = unit_of(*scene, method);
-    }
-    bool runs() const { return scene->failure().empty(); }
-    RunReadings readings(bool sharp);
-  };
-
-  Model model;
-  PointsAndQuads mesh;
-  std::optional<Side> main, rival, reference;
-  Compare asked = {};     // if there is a rival
-  double rival_step = 0;  // that asked for [s]
-  Round round;
-  unsigned nodes = 0, edges = 0;  // at the start
-  long long calls = 0;
-  std::string recording;
-
-  explicit Parts(Model m) {
-    (*this)(LoadScene{std::move(m)});
-    recording = begin_recording();
-    record(LoadScene{model});
-  }
-
-  static double unit_of(const Scene& s, const MethodEntry& m);
-  /** What runs beside a scene that failed waits for it. */
-  void each_running(auto use) {
-    if (!main->runs()) return;
-    for (auto* side : {&main, &rival, &reference})
-      if (*side && (*side)->runs()) use((*side)->scene);
-  }
-  void record(const Request& r) {
-    const bool is_scene = std::holds_alternative<LoadScene>(r);
-    recording +=
-        recorded({.calls = calls,
-                  .request = r,
-                  .cloth = is_scene ? checksum_of(main->scene->cloth()) : 0});
-  }
-  void set_step(const MethodEntry& method, const TimeStep& step);
-  void change_forces();
-  void tune();
-
-  void operator()(const SetMethod& r);
-  void operator()(const SetStepShare& r);
-  void operator()(const SetStiffness& r);
-  void operator()(const SetDrag& r);
-  void operator()(const SetGravity& r);
-  void operator()(const LoadScene& r);
-  void operator()(const BreakIt& r) { (*this)(LoadScene{r.failure->model()}); }
-  void operator()(const Restart&);
-  void operator()(const Grab& r);
-  void operator()(const MoveGrab& r);
-  void operator()(const Release&);
-  void operator()(const Cut& r);
-  void operator()(const PinNode& r);
-  void operator()(const UnpinNode& r);
-  void operator()(const Compare& r);
-  void operator()(const StopComparing&) { rival.reset(), reference.reset(); }
-};
-
-/** What a share of 1 is: RunReadings::dt_unit. */
-double Live::Parts::unit_of(const Scene& s, const MethodEntry& m) {
-  for (const MethodEntry& like : {m, entry_of<Verlet>()})
-    if (const double limit = s.safe_limit(like);
-        limit > 0 && std::isfinite(limit))
-      return limit;
-  return TimeStep().dt;
+Live::Side::Side(std::unique_ptr<Scene> s, const MethodEntry& m)
+    : scene(std::move(s)), method(m) {
+  scene->follow_drag();
+  mark();
+  sharp_limit = safe_limit;
+}
+void Live::Side::mark() {
+  from = scene->time(), evaluations = scene->evaluations();
+  safe_limit = scene->safe_limit();
+  dt_unit = unit_of(*scene, method);
 }
 
-void Live::Parts::set_step(const MethodEntry& method, const TimeStep& step) {
-  main->scene->change_method(method, step);
-  main->method = method, model.step = step;
-  main->mark();
-  if (rival) tune();
+void Live::set_step(const MethodEntry& method, const TimeStep& step) {
+  main_->scene->change_method(method, step);
+  main_->method = method, model_.step = step;
+  main_->mark();
+  if (rival_) tune();
 }
 
-void Live::Parts::operator()(const SetMethod& r) {
-  TimeStep step = model.step;
-  if (step.fixed()) step.dt = main->scene->dt();
+/** The step stays the same. */
+void Live::set_method(const MethodEntry& method) {
+  TimeStep step = model_.step;
+  if (step.fixed()) step.dt = main_->scene->dt();
   try {
-    set_step(*r.method, step);
+    set_step(method, step);
   } catch (const std::invalid_argument&) {  // it can't choose
-    step.dt = main->scene->dt(), step.rule = StepRule::fixed;
-    set_step(*r.method, step);
+    step.dt = main_->scene->dt(), step.rule = StepRule::fixed;
+    set_step(method, step);
   }
-  model.method = r.method;
+  model_.method = find_method(method.info.name);
 }
 
-void Live::Parts::operator()(const SetStepShare& r) {
-  TimeStep step = model.step;
-  step.dt = r.share * main->dt_unit, step.rule = StepRule::fixed;
-  set_step(main->method, step);
-}
-
-/** To those of the model as it is now. */
-void Live::Parts::change_forces() {
-  const Recipe recipe = recipe_of(model, mesh);
-  for (auto* side : {&main, &rival, &reference})
+/** Use the forces of the model as it is now. */
+void Live::change_forces() {
+  const Recipe recipe = recipe_of(model_, mesh_);
+  for (auto* side : {&main_, &rival_, &reference_})
     if (*side) (*side)->scene->change_forces(recipe), (*side)->mark();
-  if (rival) tune();
-}
-void Live::Parts::operator()(const SetStiffness& r) {
-  (model.material.modulus ? *model.material.modulus : model.stiffness) = r.K;
-  change_forces();
-}
-void Live::Parts::operator()(const SetDrag& r) {
-  (model.material.drag ? *model.material.drag : model.damping) = r.c;
-  change_forces();
-}
-void Live::Parts::operator()(const SetGravity& r) {
-  model.gravity = r.g;
-  change_forces();
+  if (rival_) tune();
 }
 
-void Live::Parts::operator()(const LoadScene& r) {
-  Model m = r.model;
+void Live::load(Model m, std::uint64_t cloth) {
   PointsAndQuads points = mesh_of(m);
   auto scene = std::make_unique<Scene>(recipe_of(m, points), m.step, *m.method);
-  (*this)(StopComparing());
-  model = std::move(m), mesh = std::move(points);
-  nodes = scene->cloth().num_nodes(), edges = scene->cloth().num_edges();
-  main.emplace(std::move(scene), *model.method);
+  if (cloth != 0 && checksum_of(scene->cloth()) != cloth)
+    throw std::invalid_argument(
+        "is of another cloth: its files, or how the program makes it, have "
+        "changed");
+  alone();
+  model_ = std::move(m), mesh_ = std::move(points);
+  start_nodes_ = scene->cloth().num_nodes();
+  start_edges_ = scene->cloth().num_edges();
+  main_.emplace(std::move(scene), *model_.method);
 }
 
-void Live::Parts::operator()(const Restart&) {
-  main->scene->restart();
-  main->mark();
-  if (rival) (*this)(asked);
-}
-
-void Live::Parts::operator()(const Grab& r) {
-  each_running([&](auto& scene) { scene->grab(r.node, r.target); });
-  main->mark();
-}
-void Live::Parts::operator()(const MoveGrab& r) {
-  each_running([&](auto& scene) {
-    if (scene->hand()) scene->move_hand(r.target);
-  });
-}
-void Live::Parts::operator()(const Release&) {
-  each_running([&](auto& scene) { scene->release(); });
-  main->mark();
-}
-void Live::Parts::operator()(const Cut& r) {
-  each_running([&](auto& scene) { scene->cut(r.edges); });
-}
-void Live::Parts::operator()(const PinNode& r) {
-  each_running([&](auto& scene) { scene->pin(r.node); });
-}
-void Live::Parts::operator()(const UnpinNode& r) {
-  each_running([&](auto& scene) { scene->unpin(r.node); });
-  main->mark();
-  if (rival) tune();
-}
-
-void Live::Parts::operator()(const Compare& r) {
-  if (!main->runs()) return;
-  asked = r;
-  const double dt = main->scene->dt();
-  if (!model.step.fixed())
-    set_step(main->method, {.dt = dt, .tolerance = model.step.tolerance});
+/** Run a copy of the present state beside it. */
+void Live::compare() {
+  if (!main_->runs()) return;
+  const double dt = main_->scene->dt();
+  if (!model_.step.fixed())
+    set_step(main_->method, {.dt = dt, .tolerance = model_.step.tolerance});
   const auto copy = [&](const MethodEntry& method) {
     return Side(
-        std::make_unique<Scene>(*main->scene, TimeStep{.dt = dt}, method),
+        std::make_unique<Scene>(*main_->scene, TimeStep{.dt = dt}, method),
         method);
   };
-  rival.emplace(copy(*r.method));
-  reference.emplace(copy(reference_method));
-  rival_step = r.share * rival->dt_unit;
+  rival_.emplace(copy(*rival_method_));
+  reference_.emplace(copy(reference_method));
+  rival_step_ = rival_share_ * rival_->dt_unit;
   tune();
 }
 
-/** Let the rival and the reference have the steps by which they meet. */
-void Live::Parts::tune() {
-  const double dt = main->scene->dt();
-  round = asked.at == Compare::At::equal_work
-              ? Round::of_work(main->method, rival->method)
-              : Round::of_steps(rival_step / dt);
-  const double whole = round.main * dt;
+/** Give the rival and the reference the steps by which all three meet. */
+void Live::tune() {
+  const double dt = main_->scene->dt();
+  const Round round = equal_work_
+                          ? Round::of_work(main_->method, rival_->method)
+                          : Round::of_steps(rival_step_ / dt);
+  round_ = round.main;
+  const double whole = round_ * dt;
   const auto set = [](Side& side, double step) {
     side.scene->change_method(side.method, {.dt = step});
     side.mark();
   };
-  set(*rival, whole / round.rival);
-  const double steps = whole / (reference_share * reference->dt_unit);
-  set(*reference, whole / std::min(std::ceil(steps), Round::most));
+  set(*rival_, whole / round.rival);
+  const double steps = whole / (reference_share * reference_->dt_unit);
+  set(*reference_, whole / std::min(std::ceil(steps), most_in_round));
 }
 
-RunReadings Live::Parts::Side::readings(bool sharp) {
+// ------------------------------------------------------- The table of requests
+
+namespace {
+
+struct Share {
+  double of_unit;
+};
+using Ends = std::array<unsigned, 2>;
+
+// read(in, value): the next words as a value of a request.
+void read(Line& in, unsigned& node) {
+  node = in.number<unsigned>("the id of a node");
+}
+void read(Line& in, Point& p) {
+  for (int k = 0; k < 3; ++k) p[k] = Real(in.number("three coordinates [m]"));
+}
+void read(Line& in, Ends& edge) { read(in, edge[0]), read(in, edge[1]); }
+void read(Line& in, Ray& r) { read(in, r.near), read(in, r.far); }
+template <typename T>
+void read(Line& in, std::vector<T>& all) {
+  while (!in.at_end()) read(in, all.emplace_back());
+}
+void read(Line& in, Share& s) {
+  constexpr double least = std::numeric_limits<double>::denorm_min();
+  s.of_unit = in.number("a share above 0", least);
+}
+void read(Line& in, const MethodEntry*& method) {
+  const auto name_of = [](const MethodEntry& m) { return m.info.name; };
+  method = in.one_of("method", methods, name_of);
+}
+void read(Line& in, const Breakage*& failure) {
+  failure = in.one_of("failure", breakages(), &Breakage::name);
+}
+void read(Line& in, bool& equal_work) {
+  static constexpr const char* ways[] = {"equal-time", "equal-work"};
+  equal_work =
+      in.one_of("equal-time or equal-work", ways, std::identity()) == &ways[1];
+}
+void read(Line& in, std::string& rest) { rest = in.rest(); }
+
+}  // namespace
+
+/** The table of requests: what a line of text means that starts with a name. */
+struct Live::Table {
+  enum Kind {
+    plain,
+    override,  // see Live::overrides()
+    expand,    // recorded as the requests that it makes
+  };
+  struct Request {
+    std::string_view name;
+    Kind kind;
+    /** Read what follows the name; if the scene is not null, change it.
+     * @pre null, or the line makes sense */
+    std::function<void(Line&, Live*)> run;
+    double& (*parameter)(Model&) = nullptr;  // that it sets, if it sets one
+  };
+  std::vector<Request> all;
+
+  Table();
+  /** The one that the next word of @a in names; null if @a in fails. */
+  static const Request* find(Line& in) {
+    return in.one_of("request", get().all, &Request::name);
+  }
+  static const Table& get() {
+    static const Table table;
+    return table;
+  }
+  /** A request whose values are of the types that @a apply takes. */
+  void on(std::string_view name, Kind kind, auto apply) {
+    add(name, kind, std::function(apply));
+  }
+  template <typename... Values>
+  void add(std::string_view name, Kind kind,
+           const std::function<void(Live&, Values...)>& apply) {
+    const auto run = [apply](Line& in, Live* live) {
+      std::tuple<Values...> values;
+      std::apply([&](auto&... v) { (read(in, v), ...); }, values);
+      in.end();
+      if (live) std::apply([&](auto&... v) { apply(*live, v...); }, values);
+    };
+    all.push_back({name, kind, run});
+  }
+  /** A request that sets a number of the model, which is @a least or more. */
+  void sets(std::string_view name, const char* expected, double least,
+            double& (*parameter)(Model&)) {
+    const auto run = [=](Line& in, Live* live) {
+      const double a = in.number(expected, least);
+      in.end();
+      if (live) parameter(live->model_) = a, live->change_forces();
+    };
+    all.push_back({name, override, run, parameter});
+  }
+};
+
+Live::Table::Table() {
+  // From now on by this method; the step stays.
+  on("method", plain,
+     [](Live& live, const MethodEntry* m) { live.set_method(*m); });
+  // From now on by steps of this share of RunReadings::dt_unit.
+  on("step", override, [](Live& live, Share share) {
+    TimeStep step = live.model_.step;
+    step.dt = share.of_unit * live.main_->dt_unit;
+    step.rule = StepRule::fixed;
+    live.set_step(live.main_->method, step);
+  });
+  // K [N/m], or the modulus of a scene that has one; rest lengths stay.
+  sets("stiffness", "0 N/m or more", 0, [](Model& m) -> double& {
+    return m.material.modulus ? *m.material.modulus : m.stiffness;
+  });
+  // c of each node [kg/s]; or by area [kg/(s m^2)], if the scene has that.
+  sets("drag", "0 or more", 0, [](Model& m) -> double& {
+    return m.material.drag ? *m.material.drag : m.damping;
+  });
+  // g [m/s^2]
+  sets("gravity", "a number", -no_limit,
+       [](Model& m) -> double& { return m.gravity; });
+  // Load the scene that scene_request() wrote.
+  on("scene", expand, [](Live& live, std::string rest) {
+    SceneRequest r = read_scene("scene " + rest);
+    live.load(std::move(r.model), r.cloth);
+    live.record(scene_request(live.model_, checksum_of(live.scene().cloth())));
+  });
+  on("break", plain,
+     [](Live& live, const Breakage* b) { live.load(b->model()); });
+  // Back to t = 0, with the parameters as they are.
+  on("restart", plain, [](Live& live) {
+    live.main_->scene->restart();
+    live.main_->mark();
+    if (live.rival_) live.compare();
+  });
+  // Pull a node towards a point; move that point; let the node go.
+  on("grab", plain, [](Live& live, unsigned node, Point target) {
+    live.each_running([&](Scene& s) { s.grab(node, target); });
+    live.main_->mark();
+  });
+  on("move", override, [](Live& live, Point target) {
+    live.each_running([&](Scene& s) {
+      if (s.hand()) s.move_hand(target);
+    });
+  });
+  on("release", plain, [](Live& live) {
+    live.each_running([](Scene& s) { s.release(); });
+    live.main_->mark();
+  });
+  // Remove edges, each by its ends; or all that a stroke of rays crosses.
+  on("cut", plain, [](Live& live, std::vector<Ends> edges) {
+    live.each_running([&](Scene& s) { s.cut(edges); });
+  });
+  on("stroke", expand, [](Live& live, std::vector<Ray> rays) {
+    std::string cut = "cut";
+    for (const auto& [i, j] : crossed_edges(live.scene().cloth(), rays))
+      cut += request_word(i) + request_word(j);
+    if (cut != "cut") live.apply(cut);
+  });
+  // Hold a node where it is, at rest; let it go, whatever pin holds it; or
+  // whichever of both changes something.
+  on("pin", plain, [](Live& live, unsigned node) {
+    live.each_running([&](Scene& s) { s.pin(node); });
+  });
+  on("unpin", plain, [](Live& live, unsigned node) {
+    live.each_running([&](Scene& s) { s.unpin(node); });
+    live.main_->mark();
+    if (live.rival_) live.tune();
+  });
+  on("toggle", expand, [](Live& live, unsigned node) {
+    const bool held = live.main_->scene->is_pinned(node);
+    live.apply(request(held ? "unpin" : "pin", node));
+  });
+  // Run a copy of the present state beside it by another method: at equal
+  // time by this share of its dt_unit; at equal work by the step at which
+  // a simulated second costs both the same.
+  on("compare", plain,
+     [](Live& live, const MethodEntry* m, Share share, bool work) {
+       if (!live.main_->runs()) return;
+       live.rival_method_ = m, live.rival_share_ = share.of_unit,
+       live.equal_work_ = work;
+       live.compare();
+     });
+  on("alone", plain, [](Live& live) { live.alone(); });
+}
+
+void Live::apply(const std::string& text) {
+  if (const auto error = error_in(text); !error.empty())
+    throw std::invalid_argument(error);
+  Line in(text);
+  const Table::Request& request = *Table::find(in);
+  // A guard that looks now may find a failure that it would find later.
+  if (request.kind != Table::expand)
+    each_running([](Scene& scene) { scene.settle(); });
+  request.run(in, this);
+  if (request.kind != Table::expand) record(text);
+}
+
+RunReadings Live::Side::readings(bool sharp) {
   RunReadings r;
   r.method = method.info.name, r.order = method.info.order;
   r.dt = scene->dt(), r.dt_unit = dt_unit;
@@ -355,26 +439,37 @@ RunReadings Live::Parts::Side::readings(bool sharp) {
   return r;
 }
 
-Live::Live(Model m) : parts_(std::make_unique<Parts>(std::move(m))) {}
-Live::~Live() = default;
+Live::Live(Model m, std::uint64_t cloth)
+    : recording_(std::string(recording_begin) + '\n') {
+  load(std::move(m), cloth);
+  record(scene_request(model_, checksum_of(scene().cloth())));
+}
 
-void Live::apply(const Request& r) {
-  Parts& p = *parts_;
-  // Whoever looked may have found a failure, which else would be found later.
-  p.each_running([](auto& scene) { scene->settle(); });
-  std::visit(p, r);
-  p.record(r);
+std::string Live::error_in(std::string_view request) {
+  Line in(request);
+  if (const auto* found = Table::find(in)) found->run(in, nullptr);
+  return in.error();
+}
+bool Live::overrides(std::string_view request) {
+  Line in(request);
+  const auto* found = Table::find(in);
+  return found && found->kind == Table::override;
+}
+std::vector<std::pair<std::string_view, double>> Live::parameters(Model m) {
+  std::vector<std::pair<std::string_view, double>> all;
+  for (const auto& r : Table::get().all)
+    if (r.parameter) all.emplace_back(r.name, r.parameter(m));
+  return all;
 }
 
 bool Live::step() {
-  Parts& p = *parts_;
   if (done()) return false;
-  ++p.calls;
-  const int count = p.rival ? p.round.main : 1;
+  ++calls_;
+  const int count = rival_ ? round_ : 1;
   for (int k = 0; k < count && !done() && !interrupted(); ++k)
-    p.main->scene->step(p.model.t_end);
-  const double time = p.main->scene->time();
-  for (auto* side : {&p.rival, &p.reference}) {
+    main_->scene->step(model_.t_end);
+  const double time = main_->scene->time();
+  for (auto* side : {&rival_, &reference_}) {
     if (!*side || !(*side)->runs()) continue;
     Scene& s = *(*side)->scene;
     while (!s.done(time) && !interrupted())
@@ -385,41 +480,23 @@ bool Live::step() {
 }
 
 bool Live::check() {
-  parts_->each_running([](auto& scene) { scene->check(); });
-  return parts_->main->runs();
+  each_running([](Scene& scene) { scene.check(); });
+  return main_->runs();
 }
-bool Live::done() const { return scene().done(parts_->model.t_end); }
-long long Live::calls() const { return parts_->calls; }
-const Model& Live::model() const { return parts_->model; }
-const Scene& Live::scene() const { return *parts_->main->scene; }
-const Scene* Live::rival() const {
-  return parts_->rival ? parts_->rival->scene.get() : nullptr;
-}
-const Scene* Live::reference() const {
-  return parts_->reference ? parts_->reference->scene.get() : nullptr;
-}
-std::optional<Grab> Live::hand() const {
-  const auto& hand = scene().hand();
-  if (!hand || !scene().cloth().node_in_use(hand->node())) return std::nullopt;
-  return Grab{hand->node(), hand->target()};
-}
-bool Live::is_pinned(unsigned node) const { return scene().is_pinned(node); }
-
 Readings Live::readings(bool sharp) {
-  Parts& p = *parts_;
   Readings r;
-  static_cast<RunReadings&>(r) = p.main->readings(sharp);
+  static_cast<RunReadings&>(r) = main_->readings(sharp);
   if (!r.failure.empty()) r.failure = scene().explanation();
   const Cloth& g = scene().cloth();
   r.nodes = g.num_nodes(), r.edges = g.num_edges();
-  r.torn_nodes = p.nodes - r.nodes, r.torn_edges = p.edges - r.edges;
-  r.touching = count_touching(p.model, g, r.time);
-  r.grabbed = hand().has_value();
+  r.torn_nodes = start_nodes_ - r.nodes, r.torn_edges = start_edges_ - r.edges;
+  r.touching = count_touching(model_, g, r.time);
+  r.grabbed = scene().hand() && g.node_in_use(scene().hand()->node());
   r.done = done();
-  if (!p.rival) return r;
+  if (!rival_) return r;
   const Cloth &other = rival()->cloth(), &right = reference()->cloth();
-  r.comparison = {.rival = p.rival->readings(sharp),
-                  .at = p.asked.at,
+  r.comparison = {.rival = rival_->readings(sharp),
+                  .equal_work = equal_work_,
                   .apart = distances(g, other),
                   .error = distances(g, right),
                   .rival_error = distances(other, right),
@@ -429,20 +506,19 @@ Readings Live::readings(bool sharp) {
 }
 
 std::string Live::recording() const {
-  return parts_->recording + end_recording(parts_->calls);
+  return recording_ + std::to_string(calls_) + " end\n";
 }
 
-void RequestQueue::push(Request r) {
-  const bool overrides = std::holds_alternative<MoveGrab>(r) ||
-                         std::holds_alternative<SetStepShare>(r) ||
-                         std::holds_alternative<SetStiffness>(r) ||
-                         std::holds_alternative<SetDrag>(r) ||
-                         std::holds_alternative<SetGravity>(r);
+void RequestQueue::push(std::string request) {
+  const auto name = [](const std::string& r) {
+    return r.substr(0, r.find(' '));
+  };
   const std::lock_guard lock(mutex_);
-  if (overrides && !waiting_.empty() && waiting_.back().index() == r.index())
-    waiting_.back() = std::move(r);
+  if (!waiting_.empty() && name(waiting_.back()) == name(request) &&
+      Live::overrides(request))
+    waiting_.back() = std::move(request);
   else
-    waiting_.push_back(std::move(r));
+    waiting_.push_back(std::move(request));
 }
 
 }  // namespace lab

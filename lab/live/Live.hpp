@@ -1,10 +1,12 @@
 #pragma once
 /** @file Live.hpp
- * Live: a scene that a user changes while it runs: method, step, parameters;
- * grabbed, cut, pinned; beside a second method and a finer reference; recorded,
- * and run again to the same bits. Without a window; README.md of lab/.
+ * Live: a scene that a user changes while it runs. A change is a request, one
+ * line of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The same
+ * text is what the panel and the page send, and what a recording and a link
+ * hold. The table of all requests is in Live.cpp.
  *
- * Nodes are named by their id, Node::id(), which no removal of others changes.
+ * A node is named by its id, Node::id(), which stays the same when others are
+ * removed.
  */
 #include <array>
 #include <memory>
@@ -12,81 +14,31 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "CME212/Util.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
 
-struct Breakage;
-
-// ---- What a user asks for. Plain data.
-
-struct SetMethod {
-  const MethodEntry* method;  ///< not null; dt stays as it is
-};
-/** From now on steps are of one length.
- * @see Readings::dt_unit */
-struct SetStepShare {
-  double share;  ///< dt / dt_unit, > 0
-};
-/** Rest lengths stay. The modulus [N/m] of a scene that has one. */
-struct SetStiffness {
-  double K;  ///< [N/m], >= 0
-};
-/** The drag by area [kg/(s m^2)] of a scene that has that. */
-struct SetDrag {
-  double c;  ///< of each node [kg/s], >= 0
-};
-struct SetGravity {
-  double g;  ///< [m/s^2]
-};
-struct LoadScene {
-  Model model;
-};
-struct BreakIt {
-  const Breakage* failure;  ///< one of breakages()
-};
-struct Restart {};
-struct Grab {
-  unsigned node;
-  Point target;  ///< [m]
-};
-struct MoveGrab {
-  Point target;  ///< [m]
-};
-struct Release {};
-/** Remove edges, each by the ids of its ends: those of crossed_edges(). */
-struct Cut {
-  std::vector<std::array<unsigned, 2>> edges;
-};
-/** Hold a node where it is, at rest. */
-struct PinNode {
-  unsigned node;
-};
-/** Let go of a node, whatever pin holds it. */
-struct UnpinNode {
-  unsigned node;
-};
-/** Run a copy of the present state beside it by another method. */
-struct Compare {
-  enum class At {
-    equal_time,  ///< by the step asked for
-    equal_work,  ///< by the step at which both cost the same a simulated
-                 ///< second, and share is not used
-  };
-  const MethodEntry* method;  ///< not null
-  double share;               ///< of the rival's dt_unit, > 0
-  At at = At::equal_time;
-};
-struct StopComparing {};
-
-using Request =
-    std::variant<SetMethod, SetStepShare, SetStiffness, SetDrag, SetGravity,
-                 LoadScene, BreakIt, Restart, Grab, MoveGrab, Release, Cut,
-                 PinNode, UnpinNode, Compare, StopComparing>;
+inline std::string request_word(double a) {
+  return ' ' + CME212::exact_text(a);
+}
+inline std::string request_word(unsigned a) { return ' ' + std::to_string(a); }
+inline std::string request_word(std::string_view a) {
+  return ' ' + std::string(a);
+}
+inline std::string request_word(const Point& p) {
+  return request_word(p.x) + request_word(p.y) + request_word(p.z);
+}
+/** The text of a request. Numbers have all digits that count, so that a
+ * recording replays to the same bits. */
+template <typename... Values>
+std::string request(const char* name, const Values&... values) {
+  return (std::string(name) + ... + request_word(values));
+}
 
 /** A scene that fails, of the gallery in lab/stability/README.md. */
 struct Breakage {
@@ -94,11 +46,12 @@ struct Breakage {
   const char* title;  ///< what is seen
   Model (*model)();
 };
-/** All but tunnel, which Scene::watched() counts, end with a failure. */
+/** All of them end with a failure, except tunnel: there Scene::watched() counts
+ * the nodes that jump through the ball. */
 std::span<const Breakage> breakages();
 
-/** What the eye sees at a point of the screen: a line from the near plane to
- * the far one [m]. */
+/** The line behind a point of the screen, from the near plane to the far one
+ * [m]. */
 struct Ray {
   Point near, far;
 };
@@ -120,8 +73,8 @@ struct RunReadings {
   double safe_limit = 0;
   /** That in the present configuration [s]. */
   double sharp_limit = 0;
-  /** What a share of 1 is [s]: safe_limit; or that of verlet, if safe_limit is
-   * 0 or none; or 1 ms if verlet has none, either. Finite, > 0. */
+  /** A share of 1 of dt is this [s]: safe_limit; if that is 0 or no_limit, the
+   * one of verlet; if that is no_limit, too, 1 ms. Finite, > 0. */
   double dt_unit = 0.001;
   long long steps = 0;
   double time = 0;            ///< simulated [s]
@@ -129,12 +82,13 @@ struct RunReadings {
   /** Force evaluations a simulated second: of the present dt, as counted. */
   double evaluations_rate = 0;
   Energies energy;  ///< [J]
-  /** The energy that came from nothing since the start [J]: the method's error,
-   * and what contact took, which is inelastic. What drag took, what moved
-   * things and the hand gave, what changes of the user gave, and what torn
-   * nodes took along is not in it. */
+  /** The change of energy since the start that no force explains [J]: the
+   * method's error, and the loss in contact, which is inelastic. Left out are
+   * the work of drag, of moving obstacles and pins, of the hand and of the
+   * user's changes, and the energy of torn nodes. */
   double drift = 0;
-  std::string failure;  ///< what, where, why, and what works; empty: it runs
+  /** What happened, where, why, and what works instead; empty: it runs. */
+  std::string failure;
 };
 
 /** Distances between two states, over the nodes that both have [m]. */
@@ -144,13 +98,13 @@ struct Distances {
 
 struct Readings : RunReadings {
   unsigned nodes = 0, edges = 0;
-  unsigned torn_nodes = 0, torn_edges = 0;  ///< gone since the start
+  unsigned torn_nodes = 0, torn_edges = 0;  ///< removed since the start
   unsigned touching = 0;                    ///< nodes on an obstacle
-  bool grabbed = false;
-  bool done = false;  ///< t-end is reached, or it failed
+  bool grabbed = false;  ///< the hand pulls a node that is still there
+  bool done = false;     ///< t-end is reached, or it failed
   struct Comparison {
     RunReadings rival;
-    Compare::At at;
+    bool equal_work;
     Distances apart;               ///< of the two
     Distances error, rival_error;  ///< of each to the reference
     const char* reference;         ///< its method
@@ -161,82 +115,129 @@ struct Readings : RunReadings {
 
 // ---- The scene
 
-/** A scene that a user changes while it runs. What it does is a function of
- * its model and of the requests, with the number of step() calls before each:
- * the same bits whatever is read or shown meanwhile.
+/** A scene that a user changes while it runs. Its states depend only on the
+ * model and on the requests, with the number of step() calls before each; what
+ * is read or shown meanwhile does not change a bit.
  *
  * One thread at a time. A window's thread leaves requests in a RequestQueue.
  */
 class Live {
  public:
-  /** At t = 0.  Throws as Scene(model). */
-  explicit Live(Model m);
-  ~Live();
-  Live(const Live&) = delete;
-  Live& operator=(const Live&) = delete;
+  /** At t = 0.
+   * @param cloth checksum_of() the cloth that it must have; 0: any
+   * Throws as Scene(model), and std::invalid_argument: another cloth. */
+  explicit Live(Model m, std::uint64_t cloth = 0);
 
-  /** Change the scene between two steps. It goes on from its present state:
-   * positions, velocities, what is torn, time. One that failed goes on from its
-   * last good state; but for Grab, Cut and pins, which then do nothing, as
-   * they do for nodes and edges that are gone. A change of what acts is one of
-   * the rival and of the reference, too.
-   * Throws as Live(m) if the scene asked for can't be made, and
-   * std::invalid_argument if the method can't choose its step here; then
+  /** Change the scene between two steps, as @a request says. It continues from
+   * its present state: positions, velocities, what is torn, time. A scene that
+   * failed continues from its last good state; but grab, cut and pins do
+   * nothing then. They also do nothing if the node or the edge was removed. A
+   * change of forces applies to the rival and to the reference, too.
+   * Throws std::invalid_argument error_in(request); as Live(m) if a scene that
+   * was asked for can't be made, or the method can't choose its step here. Then
    * nothing has changed. */
-  void apply(const Request& r);
+  void apply(const std::string& request);
+  /** What is wrong with the text of a request; "" if nothing. */
+  static std::string error_in(std::string_view request);
+  /** Does this request replace the last one, if that has the same name? True of
+   * what a slider or the hand sends as it moves. */
+  static bool overrides(std::string_view request);
+  /** The parameters of @a m that requests set: each one's name and value. */
+  static std::vector<std::pair<std::string_view, double>> parameters(Model m);
 
-  /** One step; while comparing a round: the fewest steps after which both are
-   * at the same time, which is to 2 % of the rival's step asked for; no scene
-   * takes more than 10^4 steps in it. A signal cuts a round short.
+  /** One step; while comparing, one round: the fewest steps after which both
+   * runs are at the same time. For that the rival's step is the one asked for
+   * to 2 %; no scene takes more than 10^4 steps in a round. A signal cuts a
+   * round short.
    * @return false if done() */
   bool step();
-  /** Scene::check() of all that runs: before it is shown. */
+  /** Scene::check() of all that runs, needed before it is shown. */
   bool check();
   /** At t-end of the model, or failed. */
-  bool done() const;
-  /** Calls of step() since it was made that found it not done(). */
-  long long calls() const;
+  bool done() const { return scene().done(model_.t_end); }
+  /** The number of step() calls so far that found it not done(). */
+  long long calls() const { return calls_; }
 
-  /** The model as requests left it: what is to be seen on sliders. */
-  const Model& model() const;
-  const Scene& scene() const;
+  /** The model with all changes by requests: what sliders show. */
+  const Model& model() const { return model_; }
+  const Scene& scene() const { return *main_->scene; }
   /** Null unless comparing. */
-  const Scene* rival() const;
-  const Scene* reference() const;
-  /** Where the hand pulls to and the node it holds; nullopt: no hand. */
-  std::optional<Grab> hand() const;
-  /** Does a pin hold or move the node? */
-  bool is_pinned(unsigned node) const;
+  const Scene* rival() const { return rival_ ? rival_->scene.get() : nullptr; }
+  const Scene* reference() const {
+    return reference_ ? reference_->scene.get() : nullptr;
+  }
 
-  /** @param sharp find sharp_limit anew; else it is that of the last time
-   * Complexity: O(N + springs), as one force evaluation; sharp 30 of them; and
-   * the first reading of a failure up to some seconds, to find what works. */
+  /** @param sharp compute sharp_limit anew; else it is the last one computed
+   * Complexity: O(N + springs), as one force evaluation; 30 of them if sharp.
+   * The first reading of a failure takes up to some seconds, to find what works
+   * instead. */
   Readings readings(bool sharp = true);
 
-  /** All requests so far, with calls() at each: a file for Replay. O(its
+  /** All requests so far, with calls() before each: a file for Replay. O(its
    * length) */
   std::string recording() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Table;  // of requests
+  /** A scene, and what its readings need. */
+  struct Side {
+    std::unique_ptr<Scene> scene;
+    MethodEntry method;
+    double dt_unit, safe_limit, sharp_limit;  // [s]; sharp: when last asked for
+    double from = 0;                          // since the last change [s]
+    long long evaluations = 0;                // at that time
+
+    Side(std::unique_ptr<Scene> s, const MethodEntry& m);
+    void mark();
+    bool runs() const { return scene->failure().empty(); }
+    RunReadings readings(bool sharp);
+  };
+
+  Model model_;
+  PointsAndQuads mesh_;
+  std::optional<Side> main_, rival_, reference_;
+  const MethodEntry* rival_method_ = nullptr;  // as asked for, and its
+  double rival_share_ = 0, rival_step_ = 0;    // share of its dt_unit; [s]
+  bool equal_work_ = false;
+  int round_ = 1;  // steps of the main scene in one
+  unsigned start_nodes_ = 0, start_edges_ = 0;
+  long long calls_ = 0;
+  std::string recording_;
+
+  /** Call use(scene) for all that runs; the rival and the reference of a scene
+   * that failed wait for it. */
+  void each_running(auto use) {
+    if (!main_->runs()) return;
+    for (auto* side : {&main_, &rival_, &reference_})
+      if (*side && (*side)->runs()) use(*(*side)->scene);
+  }
+  void record(const std::string& text) {
+    recording_ += std::to_string(calls_) + ' ' + text + '\n';
+  }
+  void load(Model m, std::uint64_t cloth = 0);
+  void set_step(const MethodEntry& method, const TimeStep& step);
+  void set_method(const MethodEntry& method);
+  void change_forces();
+  void compare();
+  void tune();
+  void alone() { rival_.reset(), reference_.reset(); }
 };
 
 /** Requests on their way to the thread that steps. */
 class RequestQueue {
  public:
-  /** Any thread. A request that overrides the last one, as of a slider that
-   * moves, takes its place. */
-  void push(Request r);
-  /** All that came since the last call, in order. */
-  std::vector<Request> take() {
+  /** Any thread. A request replaces the last one that waits if
+   * Live::overrides() says so. */
+  void push(std::string request);
+  /** All requests since the last call, in order. */
+  std::vector<std::string> take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(waiting_, {});
   }
 
  private:
   std::mutex mutex_;
-  std::vector<Request> waiting_;
+  std::vector<std::string> waiting_;
 };
 
 }  // namespace lab

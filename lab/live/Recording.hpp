@@ -1,8 +1,9 @@
 #pragma once
 /** @file Recording.hpp
- * What a user asked of a running scene, as a file, and the same run again. A
- * line a request: Live::calls() at that time, a word, its values. Of a scene
- * the lines of its file follow, each behind a bar. lab/README.md */
+ * A recording: all requests of a run as a file, and the replay of it. Each line
+ * is Live::calls() and a request, such as "120 gravity 3". A request for a
+ * scene continues with the lines of its file, each after a bar. lab/README.md
+ */
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -12,29 +13,20 @@
 
 namespace lab {
 
-/** A request and when it was made. */
-struct Recorded {
-  long long calls;  ///< Live::calls()
-  Request request;
-  /** Of LoadScene: checksum_of() the cloth as it is made; 0: not known. */
-  std::uint64_t cloth = 0;
-  std::size_t line = 0;  ///< of the file
-};
+/** The first line of a recording. */
+inline constexpr const char* recording_begin = "mass_spring input 1";
 
-/** The parts of such a file. */
-std::string begin_recording();
-std::string recorded(const Recorded& r);
-std::string end_recording(long long calls);
-
-/** A recording that was read. */
-struct Recording {
-  std::string file;
-  std::vector<Recorded> requests;  ///< the first one: LoadScene at 0 calls
-  long long calls = 0;             ///< Live::calls() at its end
-  std::size_t last_line = 0;
+/** What a request for a scene says. */
+struct SceneRequest {
+  Model model;
+  std::uint64_t cloth = 0;  ///< checksum_of() the cloth as made; 0: not known
 };
-/** Throws InputError, SceneFileError: "FILE:LINE: what, expected what". */
-Recording read_recording(const std::string& file);
+std::string scene_request(const Model& m, std::uint64_t cloth = 0);
+/** @param line of @a file where the request stands, for messages
+ * Throws InputError, SceneFileError: "FILE:LINE: what, expected what" */
+SceneRequest read_scene(const std::string& request,
+                        const std::string& file = "scene",
+                        std::size_t line = 1);
 
 /** Write Live::recording() to @a file.
  * Throws std::runtime_error "FILE: why" */
@@ -43,23 +35,30 @@ void write_recording(const Live& live, const std::string& file);
 /** Runs a recording again: to the same bits on the same kind of machine. */
 class Replay {
  public:
-  /** At its start.  Throws as read_recording() and Live(). */
+  /** At its start.
+   * Throws as read_scene() and Live(): a file that is no recording. */
   explicit Replay(const std::string& file);
   Live& live() { return *live_; }
-  std::size_t requests() const { return recording_.requests.size(); }
+  std::size_t requests() const { return requests_.size() - 1; }
 
-  /** Make the requests that are due, and then a step.
+  /** Apply the requests that are due, then step.
    * @return false at its end, and no step was made
    * Throws InputError: a request that can't be met, a scene whose files have
    * changed, or steps beyond the end of a scene. */
   bool step();
 
  private:
-  Recording recording_;
-  std::size_t next_ = 1;  // request
+  struct Timed {
+    long long calls;   // Live::calls()
+    std::size_t line;  // of the file
+    std::string request;
+  };
+  std::string file_;
+  std::vector<Timed> requests_;  // the last one is "end"
+  std::size_t next_ = 1;
   std::unique_ptr<Live> live_;
 
-  void make(const Recorded& r);
+  void apply(const Timed& t);
 };
 
 }  // namespace lab

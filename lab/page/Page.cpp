@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -20,7 +21,7 @@ namespace {
 
 // ----------------------------------------------------------------------- JSON
 
-std::string json(const std::string& text) {
+std::string json(std::string_view text) {
   std::string all = "\"";
   for (char c : text) {
     if (c == '"' || c == '\\') all += '\\';
@@ -28,7 +29,6 @@ std::string json(const std::string& text) {
   }
   return all += '"';
 }
-std::string json(const char* text) { return json(std::string(text)); }
 template <typename T>
 requires std::is_arithmetic_v<T>  //
     std::string json(T a) {
@@ -38,41 +38,39 @@ requires std::is_arithmetic_v<T>  //
     return std::isfinite(double(a)) ? CME212::exact_text(double(a)) : "null";
 }
 
-/** {"name": value, ...} */
-class Object {
- public:
-  template <typename T>
-  Object& operator()(const char* name, const T& value) {
-    return raw(name, json(value));
-  }
-  Object& raw(const char* name, const std::string& value) {
-    if (!text_.empty()) text_ += ',';
-    text_.append(json(name)).append(":").append(value);
-    return *this;
-  }
-  std::string text() const { return std::string("{") + text_ + '}'; }
-
- private:
-  std::string text_;
+/** A text that is JSON already. */
+struct Json {
+  std::string text;
 };
-template <typename Range, typename ToJson>
-std::string json_list(const Range& all, ToJson to_json) {
-  std::string text = "[";
-  for (const auto& a : all) {
-    if (text.size() > 1) text += ',';
-    text += to_json(a);
-  }
-  return text += ']';
+std::string json(const Json& j) { return j.text; }
+
+std::string members() { return {}; }
+template <typename T, typename... Rest>
+std::string members(std::string_view name, const T& value,
+                    const Rest&... rest) {
+  return json(name) + ':' + json(value) + (sizeof...(rest) > 0 ? "," : "") +
+         members(rest...);
+}
+/** {"name": value, ...} */
+template <typename... NamesAndValues>
+Json object(const NamesAndValues&... all) {
+  return {'{' + members(all...) + '}'};
+}
+/** [to_json(element), ...], between other brackets if @a ends says so. */
+Json list(const auto& all, auto to_json, const char* ends = "[]") {
+  std::string text;
+  for (const auto& a : all)
+    text += (text.empty() ? "" : ",") + json(to_json(a));
+  return {ends[0] + text + ends[1]};
 }
 
-std::string json_of(const RunReadings& r) {
-  return Object()("method", r.method)("dt", r.dt)("unit", r.dt_unit)(
-             "safe", r.safe_limit)("sharp", r.sharp_limit)("steps", r.steps)(
-             "time", r.time)("evaluations", r.evaluations)(
-             "kinetic", r.energy.kinetic)("elastic", r.energy.elastic)(
-             "height", r.energy.gravitational)("total", r.energy.total())(
-             "drift", r.drift)("failure", r.failure)
-      .text();
+Json json_of(const RunReadings& r) {
+  return object("method", r.method, "dt", r.dt, "unit", r.dt_unit, "safe",
+                r.safe_limit, "sharp", r.sharp_limit, "steps", r.steps, "time",
+                r.time, "evaluations", r.evaluations, "kinetic",
+                r.energy.kinetic, "elastic", r.energy.elastic, "height",
+                r.energy.gravitational, "total", r.energy.total(), "drift",
+                r.drift, "failure", r.failure);
 }
 
 // ---------------------------------------------------------------- What is run
@@ -90,8 +88,7 @@ struct State {
   Drawn drawn[2];
   std::vector<float> points;
   std::vector<unsigned> mesh;
-  std::vector<double> stroke;
-  std::string text;
+  std::string room, text;
 
   const Scene* scene(unsigned side) const {
     if (!live) return nullptr;
@@ -101,13 +98,6 @@ struct State {
   const Scene& shown(unsigned side) const {
     const auto& beyond = drawn[side].beyond;
     return beyond ? *beyond : *scene(side);
-  }
-  void apply(const Request& r) {
-    live->apply(r);
-    draw_anew();
-  }
-  void draw_anew() {
-    for (Drawn& d : drawn) d.beyond.reset(), ++d.changes;
   }
   void look_beyond() {
     for (unsigned side : {0u, 1u}) {
@@ -123,8 +113,8 @@ State& state() {
   static State s;
   return s;
 }
-const char* say(std::string text) {
-  state().text = std::move(text);
+const char* say(Json text) {
+  state().text = std::move(text.text);
   return state().text.c_str();
 }
 
@@ -135,88 +125,56 @@ const char* say(std::string text) {
 using namespace lab;  // NOLINT
 
 const char* page_about() {
-  const auto scenes = json_list(page_scenes(), [](const PageScene& s) {
-    const Model m = s.model(2);
-    const bool by_area = m.material.modulus.has_value();
-    return Object()("name", s.name)("title", s.title)("byArea", by_area)(
-               "K", by_area ? *m.material.modulus : m.stiffness)(
-               "drag", by_area ? m.material.drag.value_or(0) : m.damping)(
-               "gravity", m.gravity)
-        .text();
-  });
-  const auto list = json_list(methods, [](const MethodEntry& m) {
-    return Object()("name", m.info.name)("order", m.info.order)(
-               "sweeps", m.info.sweeps)("limit", m.info.limit)(
-               "goodFor", m.info.good_for)("failsWhen", m.info.fails_when)
-        .text();
-  });
-  return say(Object().raw("scenes", scenes).raw("methods", list).text());
+  const auto of_scene = [](const PageScene& s) {
+    return object("name", s.name, "title", s.title, "byArea",
+                  s.model(2).material.modulus.has_value());
+  };
+  const auto of_method = [](const MethodEntry& m) {
+    return object("name", m.info.name, "order", m.info.order, "sweeps",
+                  m.info.sweeps, "goodFor", m.info.good_for, "failsWhen",
+                  m.info.fails_when);
+  };
+  return say(object("scenes", list(page_scenes(), of_scene), "methods",
+                    list(methods, of_method)));
 }
 
-void page_load(unsigned scene, unsigned side, unsigned method) {
-  Model m = page_scenes()[scene].model(side);
-  m.method = &methods[method];
+void page_load(unsigned scene, unsigned side) {
   State& s = state();
-  s.live = std::make_unique<Live>(std::move(m));
-  s.draw_anew();
+  s.live = std::make_unique<Live>(page_scenes()[scene].model(side));
+  for (Drawn& d : s.drawn) d.beyond.reset(), ++d.changes;
 }
 const char* page_setting() {
   const Recipe& recipe = state().live->scene().recipe();
   const auto point = [](const Point& p) {
-    return json_list(std::array{p.x, p.y, p.z}, [](Real a) { return json(a); });
+    return list(std::array{p.x, p.y, p.z}, [](Real a) { return a; });
   };
-  const auto obstacles = json_list(recipe.obstacles, [&](const Obstacle& o) {
-    return Object()("kind", o.kind == Obstacle::Kind::floor ? "floor"
-                            : o.kind == Obstacle::Kind::ball
-                                ? "ball"
-                                : "tears")("radius", o.radius)
-        .raw("at", point(o.at))
-        .text();
-  });
-  return say(Object()
-                 .raw("obstacles", obstacles)
-                 .raw("room", json_list(recipe.room, point))
-                 .text());
+  const auto obstacle = [&](const Obstacle& o) {
+    const char* const kind = o.kind == Obstacle::Kind::floor  ? "floor"
+                             : o.kind == Obstacle::Kind::ball ? "ball"
+                                                              : "tears";
+    return object("kind", kind, "radius", o.radius, "at", point(o.at));
+  };
+  return say(object("obstacles", list(recipe.obstacles, obstacle), "room",
+                    list(recipe.room, point)));
 }
-void page_set_share(double share) { state().apply(SetStepShare{share}); }
-void page_set_method(unsigned method) {
-  state().apply(SetMethod{&methods[method]});
+char* page_room(unsigned size) {
+  state().room.resize(size);
+  return state().room.data();
 }
-void page_set_stiffness(double K) { state().apply(SetStiffness{K}); }
-void page_set_drag(double c) { state().apply(SetDrag{c}); }
-void page_set_gravity(double g) { state().apply(SetGravity{g}); }
-void page_compare(int method, double share) {
-  if (method < 0) return state().apply(StopComparing());
-  state().apply(Compare{&methods[unsigned(method)], share});
-}
-
-void page_grab(unsigned node, double x, double y, double z) {
-  state().live->apply(Grab{node, Point(x, y, z)});
-}
-void page_move_hand(double x, double y, double z) {
-  state().live->apply(MoveGrab{Point(x, y, z)});
-}
-void page_release() { state().live->apply(Release()); }
-void page_toggle_pin(unsigned node) {
+const char* page_request(const char* text) {
   State& s = state();
-  if (s.live->is_pinned(node))
-    s.apply(UnpinNode{node});
-  else
-    s.apply(PinNode{node});
+  if (const auto error = Live::error_in(text); !error.empty())
+    return say({error});
+  s.live->apply(text);
+  for (unsigned side : {0u, 1u}) {
+    Drawn& d = s.drawn[side];
+    const Scene* const scene = s.scene(side);
+    if (!scene || scene->failure().empty()) d.beyond.reset();
+    if (!Live::overrides(text)) ++d.changes;  // as pins and edges may be
+  }
+  return "";
 }
-double* page_stroke(unsigned rays) {
-  state().stroke.resize(std::size_t(6) * rays);
-  return state().stroke.data();
-}
-void page_cut(unsigned rays) {
-  State& s = state();
-  std::vector<Ray> stroke;
-  const double* a = s.stroke.data();
-  for (unsigned k = 0; k < rays; ++k, a += 6)
-    stroke.push_back({Point(a[0], a[1], a[2]), Point(a[3], a[4], a[5])});
-  auto edges = crossed_edges(s.live->scene().cloth(), stroke);
-  if (!edges.empty()) s.apply(Cut{std::move(edges)});
-}
+const char* page_recording() { return say({state().live->recording()}); }
 
 double page_step() {
   State& s = state();
@@ -231,18 +189,23 @@ int page_check() {
 }
 const char* page_failure(unsigned side) {
   const Scene* s = state().scene(side);
-  return say(s ? s->failure() : "");
+  return say({s ? s->failure() : ""});
 }
 const char* page_readings(int sharp) {
   const Readings r = state().live->readings(sharp != 0);
-  Object all;
-  all.raw("main", json_of(r))("nodes", r.nodes)("edges", r.edges)(
-      "tornNodes", r.torn_nodes)("tornEdges", r.torn_edges)(
-      "touching", r.touching)("grabbed", r.grabbed);
+  const auto parameter = [](const auto& p) {
+    return Json{members(p.first, p.second)};
+  };
+  std::string all = members(
+      "parameters",
+      list(Live::parameters(state().live->model()), parameter, "{}"), "main",
+      json_of(r), "nodes", r.nodes, "edges", r.edges, "tornNodes", r.torn_nodes,
+      "tornEdges", r.torn_edges, "grabbed", r.grabbed);
   if (const auto& c = r.comparison)
-    all.raw("rival", json_of(c->rival))("apart", c->apart.rms)(
-        "error", c->error.rms)("rivalError", c->rival_error.rms);
-  return say(all.text());
+    all +=
+        ',' + members("rival", json_of(c->rival), "apart", c->apart.rms,
+                      "error", c->error.rms, "rivalError", c->rival_error.rms);
+  return say({'{' + all + '}'});
 }
 
 unsigned page_slots(unsigned side) {

@@ -2,7 +2,7 @@
 // Mouse, fingers and keys over the picture: what grabs, cuts, pins, turns.
 
 class Hand {
-  // @param page has view, sides, ask(name, ...values), changed()
+  // @param page has view, sides, ask(...words), changed()
   constructor(page, canvas) {
     this.page = page, this.canvas = canvas;
     this.tool = 'grab', this.pointers = new Map();
@@ -109,7 +109,7 @@ class Hand {
       pointer.pane = place.pane, pointer.trail = [];
       this.mark(pointer, e);
     } else if (tool === 'pin' && node >= 0) {
-      pointer.what = 'none', this.page.ask('pin', node);
+      pointer.what = 'none', this.page.ask('toggle', node);
     } else if (tool === 'grab' && node >= 0) {
       pointer.what = 'grab', this.grab(node, place);
     }
@@ -140,7 +140,7 @@ class Hand {
     if (pointer.what === 'cut' && Math.hypot(dx, dy) >= 4) {
       if (place.pane === pointer.pane) {
         const ray = this.rayAt(place);
-        this.page.ask('cut', ...pointer.ray, ...ray);
+        this.page.ask('stroke', ...pointer.ray, ...ray);
         pointer.ray = ray;
       }
       this.mark(pointer, e);
@@ -188,7 +188,7 @@ class Hand {
       else if (node >= 0) this.grab(node, place);
     } else if (name === 'p') {
       const node = this.nodeAt(place, 1e4);
-      if (node >= 0) this.page.ask('pin', node);
+      if (node >= 0) this.page.ask('toggle', node);
     } else if (name === 'x') {
       // A stroke across the steepest edge of the node next to the cross.
       const node = this.nodeAt(place, 1e4);
@@ -204,7 +204,7 @@ class Hand {
       });
       const ends = [-1, 1].map(k =>
         this.rayAt({...place, x: x + 0.3 * k, y: y + 0.4 * rise}));
-      this.page.ask('cut', ...ends[0], ...ends[1]);
+      this.page.ask('stroke', ...ends[0], ...ends[1]);
     } else {
       return;
     }

@@ -1,86 +1,44 @@
 'use strict';
-// The whole state of the page as the part of its address behind #: the start,
-// what was asked and after how many steps, the camera. Who opens it sees the
-// same run, to the same bits.
+// A run of the page as the part of its address behind #: scene, size, camera,
+// and the lines of its recording (lab/live/Recording.hpp), with _ for a blank
+// and ~ for the end of a line. Opened again, it is the same run, bit by bit.
 
 const Link = {
-  // @param link of the worker: {start, log, calls}
-  write(link, about, camera, speed) {
-    const {start, log, calls} = link;
+  // @param recording of the worker: two lines of the scene, then the requests
+  write(recording, settings, camera, speed) {
     const all = new URLSearchParams();
-    all.set('scene', about.scenes[start.scene].name);
-    all.set('side', start.side);
-    all.set('method', about.methods[start.method].name);
-    for (const name of ['share', 'K', 'drag', 'gravity'])
-      all.set(name, start[name]);
-    if (start.rival >= 0) {
-      all.set('rival', about.methods[start.rival].name);
-      all.set('rivalShare', start.rivalShare);
-    }
+    for (const name of ['scene', 'side']) all.set(name, settings[name]);
     all.set('speed', speed);
     all.set('camera', [camera.yaw, camera.pitch, camera.zoom].map(
       a => Number(a.toFixed(3))).join('_'));
-    if (log.length) all.set('log', log.map(event => event.join('_')).join('~'));
-    all.set('steps', calls);
+    all.set('run', recording.trim().split('\n').slice(2).join('~')
+      .replaceAll(' ', '_'));
     return '#' + all;
   },
 
-  most: {steps: 1e6, node: 1e4 - 1},
-  ranges: {share: [0.001, 1000], rivalShare: [0.001, 1000], K: [0.01, 1e6],
-    drag: [0, 100], gravity: [0, 100]},
-
-  // Whether this is a request that the page makes.
-  canAsk(name, values, methods) {
-    const within = (a, [low, high]) => a >= low && a <= high;
-    const [first, second] = values, n = values.length;
-    if (!values.every(Number.isFinite)) return false;
-    if (name in Link.ranges) return n === 1 && within(first, Link.ranges[name]);
-    const whole = Number.isInteger(first);
-    switch (name) {
-      case 'method': return n === 1 && whole && within(first, [0, methods - 1]);
-      case 'compare': return n === 2 && whole &&
-        within(first, [-1, methods - 1]) && within(second, Link.ranges.share);
-      case 'grab': return n === 4 && whole &&
-        within(first, [0, Link.most.node]);
-      case 'pin': return n === 1 && whole && within(first, [0, Link.most.node]);
-      case 'move': return n === 3;
-      case 'release': return n === 0;
-      case 'cut': return n === 12;
-      default: return false;
-    }
-  },
+  most: 1e6,  // steps, and the largest number of a request
 
   // What write() wrote; what is missing or makes no sense is left out.
-  // @return {start, log, calls, camera, speed, leftOut}: start has what is
-  // known; leftOut: a step or a request made no sense
+  // @return {start, lines, end, camera, speed, leftOut}: start has scene and
+  // side, if known; end: number of steps; leftOut: a line made no sense
   read(hash, about) {
     const all = new URLSearchParams(hash.replace(/^#/, ''));
-    const start = {};
-    const index = (list, name) => list.findIndex(a => a.name === name);
-    const number = (name, least, most) => {
-      const a = Number(all.get(name));
-      if (all.has(name) && a >= least && a <= most) start[name] = a;
-    };
-    const choice = (name, list) => {
-      const k = index(list, all.get(name));
-      if (k >= 0) start[name] = k;
-    };
-    choice('scene', about.scenes);
-    choice('method', about.methods), choice('rival', about.methods);
-    number('side', 2, 100);
-    for (const [name, range] of Object.entries(Link.ranges))
-      number(name, ...range);
-    const read = {start, log: [], calls: 0, leftOut: false};
-    if (start.side) start.side = Math.round(start.side);
-    const steps = Number(all.get('steps'));
-    if (steps >= 0 && steps <= Link.most.steps) read.calls = Math.floor(steps);
+    const read = {start: {}, lines: [], end: 0, leftOut: false};
+    if (about.scenes.some(s => s.name === all.get('scene')))
+      read.start.scene = all.get('scene');
+    const side = Math.round(Number(all.get('side')));
+    if (side >= 2 && side <= 100) read.start.side = side;
+    const lines = (all.get('run') || Link.old(all, about)).split('~')
+      .map(line => line.split('_'))
+      .map(([at, ...words]) => [Number(at), words]);
+    const [end, last] = lines.pop();
+    if (last[0] === 'end' && end >= 0 && end <= Link.most)
+      read.end = Math.floor(end);
     else read.leftOut = true;
-    for (const event of (all.get('log') || '').split('~').filter(Boolean)) {
-      const [at, name, ...values] = event.split('_');
-      const numbers = values.map(Number), calls = Number(at);
-      if (calls >= 0 && calls <= read.calls &&
-        Link.canAsk(name, numbers, about.methods.length))
-        read.log.push([calls, name, ...numbers]);
+    for (const [at, words] of lines) {
+      if (at >= 0 && at <= read.end && words.every(
+        word => !(Math.abs(word) > Link.most)))
+        read.lines.push([at, words.join(' ')]);
       else read.leftOut = true;
     }
     const camera = (all.get('camera') || '').split('_').map(Number);
@@ -89,5 +47,27 @@ const Link = {
     const speed = Number(all.get('speed'));
     if (speed > 0 && speed <= 4) read.speed = speed;
     return read;
+  },
+
+  // The lines of a link that has no `run`: links had other names once, numbers
+  // for methods, and what was asked at the start as parameters of their own.
+  old(all, about) {
+    const names = {K: 'stiffness', share: 'step', pin: 'toggle', cut: 'stroke'};
+    const lines = [['0', 'step', all.get('share') || '0.5']];
+    for (const key of ['K', 'drag', 'gravity', 'method'])
+      if (all.has(key)) lines.unshift(['0', names[key] || key, all.get(key)]);
+    if (all.has('rival'))
+      lines.push(['0', 'compare', all.get('rival'),
+        all.get('rivalShare') || '0.5', 'equal-time']);
+    for (const event of (all.get('log') || '').split('~').filter(Boolean)) {
+      const [at, name, ...values] = event.split('_');
+      const method = (about.methods[values[0]] || {}).name;
+      lines.push([at, ...name === 'method' ? [name, method]
+        : name !== 'compare' ? [names[name] || name, ...values]
+          : values[0] < 0 ? ['alone']
+            : [name, method, values[1], 'equal-time']]);
+    }
+    lines.push([all.get('steps') || '0', 'end']);
+    return lines.map(words => words.join('_')).join('~');
   },
 };

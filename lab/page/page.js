@@ -11,8 +11,8 @@ const cssOf = name => getComputedStyle(document.documentElement)
 
 const page = {
   about: null,           // scenes and methods
-  settings: {scene: 2, side: 25, method: 2, share: 0.5, K: 100, drag: 0,
-    gravity: 9.81, rival: -1, rivalShare: 0.5},
+  settings: {scene: 'forces', side: 25, method: 'verlet', share: 0.5, rival: '',
+    rivalShare: 0.5},    // and the parameters of the scene
   speed: 1,              // simulated seconds a second, at most
   playing: true, waiting: false, wanted: true, dirty: true,
   sides: [],             // what is drawn
@@ -20,8 +20,9 @@ const page = {
   frames: 0, errors: [],
   run: 0, asked: 0,      // runs and requests; the worker counts them, too
 
-  ask(name, ...values) {
-    this.worker.postMessage(['ask', [name, ...values]]);
+  // A request of lab/live/Live.cpp.
+  ask(...words) {
+    this.worker.postMessage(['ask', words.join(' ')]);
     ++this.asked, this.wanted = true;
   },
   changed() { this.dirty = true; },
@@ -29,7 +30,8 @@ const page = {
 
 // -------------------------------------------------------------------- Controls
 
-// A slider: its values from places 0 to 1 and back, and how they are shown.
+// A slider, by the name of its request: its values from places 0 to 1 and back,
+// and how they are shown.
 const byPower = (low, high) => ({
   value: s => Number((low * (high / low) ** s).toPrecision(3)),
   place: a => Math.log(a / low) / Math.log(high / low),
@@ -38,11 +40,12 @@ const fromZero = (high, power) => ({
   value: s => Number((high * s ** power).toPrecision(3)),
   place: a => (a / high) ** (1 / power),
 });
-const byArea = () => page.about.scenes[page.settings.scene].byArea;
+const named = (all, name) => all.find(a => a.name === name);
+const byArea = () => named(page.about.scenes, page.settings.scene).byArea;
 const sliders = {
   share: {...byPower(0.01, 100), show: a => shortNumber(a)},
   rivalShare: {...byPower(0.01, 100), show: a => shortNumber(a)},
-  K: {...byPower(1, 1e4), show: a => `${shortNumber(a)} N/m`},
+  stiffness: {...byPower(1, 1e4), show: a => `${shortNumber(a)} N/m`},
   drag: {...fromZero(20, 4), show: a =>
     `${shortNumber(a)} ${byArea() ? 'kg/(s m\u00b2)' : 'kg/s'}`},
   gravity: {...fromZero(30, 1), show: a => `${shortNumber(a)} m/s\u00b2`},
@@ -55,6 +58,7 @@ function valueOf(name) {
 }
 function showSlider(name) {
   const value = valueOf(name), input = $(name);
+  if (value === undefined) return;  // until the first frame
   input.value = Math.round(1000 * sliders[name].place(value));
   outputOf(input).textContent = sliders[name].show(value);
   input.setAttribute('aria-valuetext', outputOf(input).textContent);
@@ -67,28 +71,30 @@ function showControls() {
   for (const name of ['scene', 'side', 'method', 'rival'])
     $(name).value = s[name];
   for (const name of Object.keys(sliders)) showSlider(name);
-  const m = page.about.methods[s.method];
+  const m = named(page.about.methods, s.method);
   $('about').textContent = `Order ${m.order}, ${m.sweeps} force evaluation` +
     `${m.sweeps === 1 ? '' : 's'} a step. Good for: ${m.goodFor}. Fails: ` +
     `${m.failsWhen}.`;
-  $('row-rivalShare').hidden = s.rival < 0;
-  $('distance-figure').hidden = s.rival < 0;
-  $('stage').classList.toggle('two', s.rival >= 0);
+  $('row-rivalShare').hidden = !s.rival;
+  $('distance-figure').hidden = !s.rival;
+  $('stage').classList.toggle('two', !!s.rival);
   $('play').textContent = page.playing ? 'Pause' : 'Play';
   showLimits();
   page.changed();
 }
 
-// K and drag change the limit, and dt stays: dt / limit is as it is computed,
-// once nothing that was asked is on its way.
-function followShares({asked, failed, readings}) {
-  if (asked !== page.asked || failed) return;
-  for (const [name, run] of [['share', readings.main],
-    ['rivalShare', readings.rival]]) {
+// The settings are those of the run, once nothing that was asked is on its way.
+// K and drag change the limit, but dt stays; so dt / limit changes.
+function followRun({asked, readings}) {
+  if (asked !== page.asked || !readings) return;
+  const {main, rival} = readings, s = page.settings, before = {...s};
+  Object.assign(s, readings.parameters, {method: main.method,
+    rival: rival ? rival.method : ''});
+  for (const [name, run] of [['share', main], ['rivalShare', rival]]) {
     const share = run && Number((run.dt / run.unit).toPrecision(3));
-    if (!run || Math.abs(share / page.settings[name] - 1) < 0.01) continue;
-    page.settings[name] = share, showSlider(name);
+    if (run && Math.abs(share / s[name] - 1) >= 0.01) s[name] = share;
   }
+  if (Object.keys(s).some(name => s[name] !== before[name])) showControls();
 }
 
 // The step is red where it is beyond the limit of the method.
@@ -111,11 +117,28 @@ function showLimits() {
         (sharp ? `, in this one up to ${ms(sharp)}.` : '.'));
 }
 
-function start() {
+// The request by which the run gets what a control shows.
+function requestOf(name) {
+  const s = page.settings;
+  return name === 'share' ? ['step', s.share]
+    : name === 'rival' || name === 'rivalShare'
+      ? ['compare', s.rival, s.rivalShare, 'equal-time'] : [name, s[name]];
+}
+// What a scene is asked at its start, so that it is as the controls show. Its
+// parameters are in the settings once they are known.
+function startLines() {
+  const s = page.settings, names = Object.keys(sliders).filter(
+    name => name in s && !name.endsWith('hare'));
+  return ['method', ...names, 'share', ...s.rival ? ['rival'] : []].map(
+    name => [0, requestOf(name).join(' ')]);
+}
+function start(lines = startLines(), end = 0) {
   for (const plot of Object.values(plots)) plot.clear();
   page.failed = false, page.why = '', showFailure('');
   page.hand.release();
-  page.worker.postMessage(['load', {...page.settings}]);
+  const {scene, side} = page.settings;
+  page.worker.postMessage(['run', {side, lines, end,
+    scene: page.about.scenes.findIndex(a => a.name === scene)}]);
   ++page.run, page.waiting = true;
   showControls();
 }
@@ -125,42 +148,39 @@ function setPlaying(on) {
   $('play').textContent = on ? 'Pause' : 'Play';
 }
 
-function loadScene(k) {
-  const {K, drag, gravity} = page.about.scenes[k];
-  Object.assign(page.settings, {scene: k, K, drag, gravity});
+function loadScene(scene) {
+  page.settings.scene = scene;
+  for (const name of Object.keys(page.readings?.parameters || {}))
+    delete page.settings[name];
   start(), setPlaying(true);
 }
 
 // A change of what runs. One that failed goes on from its last good state.
 function change(name, value) {
   page.settings[name] = value;
-  const s = page.settings;
-  const compares = name === 'rival' || name === 'rivalShare';
   if (page.failed) {
     start(), setPlaying(true);
-  } else if (compares && page.calls === 0 || name === 'rival') {
+  } else if (name === 'rival' || name === 'rivalShare' && page.calls === 0) {
     start();  // both from the same start
   } else {
-    page.ask(...(compares ? ['compare', s.rival, s.rivalShare]
-      : [name, value]));
-    if (!compares && name === 'method') page.ask('share', s.share);
+    page.ask(...requestOf(name));
+    if (name === 'method') page.ask(...requestOf('share'));
   }
   showControls();
 }
 
 function makeControls() {
   const {scenes, methods} = page.about;
-  const option = (text, value) => new Option(text, value);
-  $('scene').append(...scenes.map((s, k) => option(s.title, k)));
-  $('method').append(...methods.map((m, k) => option(m.name, k)));
-  $('rival').append(option('nothing', -1),
-    ...methods.map((m, k) => option(m.name, k)));
-  $('scene').onchange = e => loadScene(Number(e.target.value));
+  $('scene').append(...scenes.map(s => new Option(s.title, s.name)));
+  $('rival').append(new Option('nothing', ''));
+  for (const name of ['method', 'rival'])
+    $(name).append(...methods.map(m => new Option(m.name)));
+  $('scene').onchange = e => loadScene(e.target.value);
   $('side').onchange = e => {
     page.settings.side = Number(e.target.value), start();
   };
   for (const name of ['method', 'rival'])
-    $(name).onchange = e => change(name, Number(e.target.value));
+    $(name).onchange = e => change(name, e.target.value);
   for (const [name, slider] of Object.entries(sliders)) {
     Object.assign($(name), {min: 0, max: 1000, step: 5});
     $(name).oninput = e => {
@@ -273,31 +293,21 @@ function showFailure(words) {
   });
 }
 
+const tellLeftOut = () => showFailure('Of the link, what makes no sense was ' +
+  'left out: its run may be another one.');
+
 const replies = {
   about(data) {
     page.about = data.about;
     makeControls();
     const read = Link.read(location.hash, page.about);
-    const own = page.about.scenes[read.start.scene ?? page.settings.scene];
-    for (const name of ['K', 'drag', 'gravity'])
-      page.settings[name] = own[name];
     Object.assign(page.settings, read.start);
     if (read.speed) page.speed = read.speed;
     if (read.camera)
       page.view.camera.set(...read.camera);
-    start();
-    if (read.leftOut) showFailure('Of the link, what makes no sense was left ' +
-      'out: its run may be another one.');
-    if (!read.calls && !read.log.length) return;
-    setPlaying(false);
-    ++page.run, page.worker.postMessage(['repeat',
-      {start: {...page.settings}, log: read.log, calls: read.calls}]);
-    for (const [, name, ...values] of read.log) {  // as they were at its end
-      if (name in page.settings) page.settings[name] = values[0];
-      if (name === 'compare')
-        [page.settings.rival, page.settings.rivalShare] = values;
-    }
-    showControls();
+    if (read.end) setPlaying(false);
+    start(read.lines, read.end);
+    if (read.leftOut) tellLeftOut();
   },
   setting({setting}) {
     page.view.obstacles = setting.obstacles;
@@ -316,7 +326,8 @@ const replies = {
       return {...side, lines, triangles, pins};
     });
     page.readings = data.readings;
-    followShares(data), frameScene(), remember();
+    if (!data.failed) followRun(data);
+    frameScene(), remember();
     if (data.failed && !page.failed) {
       page.failed = true, setPlaying(false);
       for (const plot of Object.values(plots)) plot.good = data.good;
@@ -329,15 +340,17 @@ const replies = {
     setText($('busy'),
       `repeating the link: ${Math.floor(100 * part)} %; Restart ends that`);
   },
-  history({history}) {
+  history({history, leftOut}) {
     for (const readings of history) page.readings = readings, remember();
+    if (leftOut) tellLeftOut();
   },
-  why({why, readings}) {
-    page.why = why, page.readings = readings;
+  why({why, readings, asked}) {
+    page.why = why, page.readings = readings, followRun({asked, readings});
     showFailure(why), page.changed();
   },
-  link({link}) {
-    const hash = Link.write(link, page.about, page.view.camera, page.speed);
+  link({recording}) {
+    const hash = Link.write(recording, page.settings, page.view.camera,
+      page.speed);
     history.replaceState(null, '', hash);
     const done = text => {
       $('link').textContent = text;

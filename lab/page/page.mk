@@ -13,7 +13,8 @@ page_o  := $(B)/page.o
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Checkpoint KeyValues \
   Measure Memory MeshFile SceneFile Warnings), $(wildcard $(patsubst \
-  %,lab/%/*.cpp,fast methods stability scenes page))) lab/live/Live.cpp
+  %,lab/%/*.cpp,fast methods stability scenes page))) \
+  lab/live/Breakage.cpp lab/live/Live.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o)
 page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
   -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off

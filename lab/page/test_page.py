@@ -74,12 +74,11 @@ def same_bits_as_the_native_program(b):
     assert len(names) >= 6
     pause(b)
     ours, asked = [], []
-    for k, name in enumerate(names):
+    for name in names:
         # Forward Euler has no stable step.
         share = 0.02 if name == "forward-euler" else 0.5
         b.value(f"page.positions = null, Object.assign(page.settings, "
-                f"{{scene: 2, side: 25, method: {k}, K: 100, drag: 0,"
-                f" gravity: 9.81, share: {share}, rival: -1}}), start(),"
+                f"{{method: '{name}', share: {share}}}), start(),"
                 " page.worker.postMessage(['positions', 1000])")
         b.wait("page.positions", 300)
         assert b.value("page.positions.broken") == "", name
@@ -186,17 +185,16 @@ def it_turns_and_zooms(b):
 @test
 def every_scene_and_every_method_runs(b):
     opened(b)
-    for k in range(b.value("page.about.scenes.length")):
-        choose(b, "scene", k)
-        b.wait(f"page.settings.scene === {k} && !page.waiting &&"
+    for k, scene in enumerate(b.value("page.about.scenes.map(s => s.name)")):
+        choose(b, "scene", scene)
+        b.wait(f"page.settings.scene === '{scene}' && !page.waiting &&"
                " page.readings.main.time > 0.01 && page.calls > 0", 120)
         assert b.value("page.failed") is False
         b.screenshot(build / f"page-scene-{k}.png")
-    choose(b, "scene", 2), choose(b, "side", 5)
+    choose(b, "scene", "forces"), choose(b, "side", 5)
     b.wait("page.readings.nodes === 25")
-    for k in range(b.value("page.about.methods.length")):
-        choose(b, "method", k)
-        name = b.value(f"page.about.methods[{k}].name")
+    for name in b.value("page.about.methods.map(m => m.name)"):
+        choose(b, "method", name)
         b.wait(f"page.readings.main.method === '{name}'", 120)
 
 
@@ -209,14 +207,14 @@ def sliders_change_what_runs(b):
     b.wait(f"Math.abs(page.readings.main.dt / {dt} - 0.5) < 0.02")
     # omega grows as the root of K: the limit falls as it.
     limit = b.value("page.readings.main.safe")
-    slide(b, "K", 400)
+    slide(b, "stiffness", 400)
     b.wait(f"Math.abs(page.readings.main.safe / {limit} - 0.5) < 0.01")
     # The step stays, so dt / limit is twice as large; and red beyond 1.
     b.wait("Math.abs(page.settings.share / 0.5 - 1) < 0.02")
-    slide(b, "K", 10000)
+    slide(b, "stiffness", 10000)
     b.wait("page.settings.share > 2 &&"
            " $('row-share').classList.contains('beyond')")
-    slide(b, "K", 100)
+    slide(b, "stiffness", 100)
     # A cloth that nothing pulls stays where it is.
     b.click("#restart")
     slide(b, "gravity", 0)
@@ -250,7 +248,7 @@ def a_step_that_can_not_be_made_is_told_and_the_page_goes_on(b):
     b.wait("page.failed && page.why", 120)
     words = b.value("$('failure').innerText")
     assert "It failed" in words and "Newton's method is at a residual" in words
-    choose(b, "method", 2)
+    choose(b, "method", "verlet")
     slide(b, "share", 0.3)
     b.wait("!page.failed && page.readings.main.method === 'verlet' &&"
            " page.readings.main.time > 0.1")
@@ -259,7 +257,7 @@ def a_step_that_can_not_be_made_is_told_and_the_page_goes_on(b):
 @test
 def two_methods_run_beside_each_other(b):
     opened(b)
-    choose(b, "rival", 1)
+    choose(b, "rival", "symplectic-euler")
     b.wait("page.readings.rival && page.sides.length === 2")
     b.wait("page.readings.main.time > 0.3", 120)
     r = b.value("page.readings")
@@ -273,15 +271,15 @@ def two_methods_run_beside_each_other(b):
     assert b.value("plots.energy.rows.every(row => row.length === 2)")
     assert b.value("plots.energy.times[0]") < 0.05
     b.screenshot(build / "page-two.png")
-    choose(b, "rival", -1)
+    choose(b, "rival", "")
     b.wait("page.sides.length === 1")
 
 
 @test
 def a_link_shows_the_same_picture_twice(b):
     opened(b)
-    slide(b, "K", 60)
-    choose(b, "rival", 1)
+    slide(b, "stiffness", 60)
+    choose(b, "rival", "symplectic-euler")
     b.wait("page.readings.main.time > 0.15 && page.sides.length === 2", 120)
     pause(b)
     x, y = place_of(b, 624)
@@ -292,7 +290,7 @@ def a_link_shows_the_same_picture_twice(b):
     b.click("#link")
     b.wait("location.hash.length > 10")
     hash, calls = b.value("location.hash"), b.value("page.calls")
-    assert "log=" in hash and "_grab_" in hash, hash
+    assert "run=0_method_verlet" in hash and "_grab_" in hash, hash
     before = b.value("[...page.sides[0].points]")
     pictures = []
     for k in range(2):
@@ -303,7 +301,7 @@ def a_link_shows_the_same_picture_twice(b):
         pictures.append(b.value("(page.view.draw(page.sides, page.theme, null),"
                                 " $('canvas').toDataURL())"))
     assert pictures[0] == pictures[1]
-    assert abs(b.value("page.settings.K") - 60) < 2
+    assert abs(b.value("page.settings.stiffness") - 60) < 2
     b.screenshot(build / "page-link.png")
 
 
@@ -315,6 +313,8 @@ def a_link_of_nonsense_is_a_page_all_the_same(b):
                  "#log=3_share_-1~3_share_0~4_K_0~5_gravity_1e300&steps=20",
                  "#log=1_cut_1_2_3~2_pin_-1~3_pin_9999999~4_nothing&steps=20",
                  "#log=3_grab_999999_1_1_1~4_grab~5_move_1&steps=20",
+                 "#run=0_gravitas_3~1e300_restart~1_gravity_1e300~x~20_end",
+                 "#run=0_break~1_scene_0~2_move_1_2", "#run=~&steps=5",
                  "#side=3.7&camera=1e9_1_1", "#camera=0_99_-5"):
         opened(b, hash)
         b.value("setPlaying(true)")
@@ -322,6 +322,29 @@ def a_link_of_nonsense_is_a_page_all_the_same(b):
         assert b.value("page.failed") is False, hash
     assert b.value("[page.view.camera.pitch, page.view.camera.zoom]") == [1.5,
                                                                           0.2]
+
+
+@test
+def a_link_of_former_names_shows_its_run(b):
+    """Methods by number, rays of a stroke, pins that are toggled."""
+    methods = [m["name"] for m in opened(b).value("page.about.methods")]
+    opened(b, "#scene=diagonals&side=9&method=pefrl&share=0.4&K=60&drag=0.01"
+              "&gravity=5&rival=rk4&rivalShare=0.2&log=2_share_0.3~3_K_70~"
+              f"4_method_{methods.index('verlet')}~5_pin_40~6_pin_41~7_pin_40~"
+              "8_cut_0.1_-1_9_0.1_-1_-9_0.1_2_9_0.1_2_-9~9_compare_-1_0.2~"
+              "10_drag_0.02~11_gravity_6~12_grab_50_1_1_1~13_move_1_1_2~"
+              "14_release&steps=20")
+    b.wait("page.calls === 20")
+    assert b.value("$('failure').hidden")
+    b.click("#link")
+    b.wait("location.hash.includes('run=')")
+    lines = b.value("new URLSearchParams(location.hash.slice(1)).get('run')")
+    assert lines.startswith(
+        "0_method_pefrl~0_gravity_5~0_drag_0.01~0_stiffness_60~0_step_0.4~"
+        "0_compare_rk4_0.2_equal-time~2_step_0.3~3_stiffness_70~"
+        "4_method_verlet~5_pin_40~6_pin_41~7_unpin_40~8_cut_"), lines
+    assert lines.endswith("~9_alone~10_drag_0.02~11_gravity_6~12_grab_50_1_1_1"
+                          "~13_move_1_1_2~14_release~20_end"), lines
 
 
 @test
@@ -385,8 +408,8 @@ def a_keyboard_is_enough(b):
         reached.add(b.value("document.activeElement.id ||"
                             " document.activeElement.dataset.tool"))
     missing = {"play", "step", "restart", "grab", "cut", "pin", "turn", "scene",
-               "side", "method", "share", "K", "drag", "gravity", "speed",
-               "rival", "link"} - reached
+               "side", "method", "share", "stiffness", "drag", "gravity",
+               "speed", "rival", "link"} - reached
     assert not missing, missing
 
 
@@ -414,7 +437,7 @@ def it_works_on_a_phone(b):
     assert b.value("page.view.camera.zoom") > 1.5 * zoom
     b.resize(360, 640, touch=True, dark=True)
     b.value("page.view.camera.zoom = 1, setPlaying(true)")
-    choose(b, "rival", 12)
+    choose(b, "rival", "implicit-midpoint")
     b.wait("page.sides.length === 2 && page.readings.main.time > 0.05", 120)
     b.screenshot(build / "page-phone-dark.png")
 

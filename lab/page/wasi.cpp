@@ -53,8 +53,10 @@ int interrupted() { return 0; }
 void end_if_interrupted() {}
 
 std::uint64_t checksum_of(const Cloth&) { return 0; }
-std::string begin_recording() { return {}; }
-std::string recorded(const Recorded&) { return {}; }
-std::string end_recording(long long) { return {}; }
+std::string scene_request(const Model&, std::uint64_t) { return "scene"; }
+SceneRequest read_scene(const std::string&, const std::string& file,
+                        std::size_t line) {
+  throw InputError(file, line, "a page has no files");
+}
 
 }  // namespace lab

@@ -1,10 +1,10 @@
 'use strict';
 // The thread that computes. It holds the one scene, in WebAssembly: Page.hpp
-// says what each call does. A run is a function of its start and of a list of
-// requests, each with the number of steps before it: so a link repeats it.
+// says what each call does. Requests are lines of text, lab/live/Live.cpp. A run
+// is repeated by its requests, each after the same number of steps.
 
 let wasm, module, about;       // exports; compiled; page_about()
-let start, log, calls;         // what a link holds
+let calls;                     // steps of this run
 let run = 0, asked = 0;        // how many were started; requests taken
 let broken = '';               // what was thrown, until the next start
 let versions = [-1, -1];       // of the meshes that were sent
@@ -49,38 +49,14 @@ function call(name, ...values) {
   }
 }
 
-// ------------------------------------------------------------------- Requests
-
-const requests = {
-  method: m => call('set_method', m),
-  share: s => call('set_share', s),
-  K: k => call('set_stiffness', k),
-  drag: c => call('set_drag', c),
-  gravity: g => call('set_gravity', g),
-  compare: (m, share) => call('compare', m, share),
-  grab: (node, x, y, z) => call('grab', node, x, y, z),
-  move: (x, y, z) => call('move_hand', x, y, z),
-  release: () => call('release'),
-  pin: node => call('toggle_pin', node),
-  cut: (...rays) => {
-    const at = call('stroke', rays.length / 6);
-    new Float64Array(wasm.memory.buffer, at, rays.length).set(rays);
-    call('cut', rays.length / 6);
-  },
-};
-function apply(name, values) {
-  requests[name](...values);
+// @return what is wrong with the request; '' if nothing
+function request(line) {
   explained = false;
-}
-
-function load(s) {
-  ++run, start = s, log = [], calls = 0, broken = '', explained = false;
-  call('load', s.scene, s.side, s.method);
-  const own = about.scenes[s.scene];
-  for (const name of ['K', 'drag', 'gravity'])
-    if (s[name] !== own[name]) apply(name, [s[name]]);
-  apply('share', [s.share]);
-  if (s.rival >= 0) apply('compare', [s.rival, s.rivalShare]);
+  const bytes = new TextEncoder().encode(line + '\0');
+  const at = call('room', bytes.length);
+  new Uint8Array(wasm.memory.buffer, at, bytes.length).set(bytes);
+  const wrong = call('request', at);
+  return wrong === undefined ? '' : text(wrong);
 }
 
 // Steps until `time` [s], or as many as fit in `budget` [ms].
@@ -97,35 +73,37 @@ function advance(time, budget) {
   return now;
 }
 
-// The run of a link, once more, until the page asks for another than `mine`.
-// @return readings of it, 150 at most
-async function repeat(link, mine) {
-  load(link.start);
-  const history = [], every = Math.ceil(link.calls / 150);
-  let until = performance.now();
+// Run a scene through its requests `lines`, [steps before it, text], and to
+// `end` steps, until the page asks for another run than `mine`.
+// @return whether all lines made sense, and 150 readings at most
+async function repeat({scene, side, lines, end}, mine) {
+  ++run, calls = 0, broken = '', explained = false;
+  call('load', scene, side);
+  const history = [], every = Math.ceil(end / 150);
+  let until = performance.now(), leftOut = false;
   // Now and then, say how far it is and let messages come in.
   const goesOn = async () => {
-    if (performance.now() > until) {
-      postMessage({kind: 'repeating', run, part: calls / link.calls});
+    if (end && performance.now() > until) {
+      postMessage({kind: 'repeating', run, part: calls / end});
       await new Promise(resolve => setTimeout(resolve));
       until = performance.now() + 100;
     }
     return mine === newest && !broken;
   };
-  const runTo = async end => {
-    while (calls < end && await goesOn()) {
+  const runTo = async at => {
+    while (calls < at && await goesOn()) {
       call('step');
       if (++calls % every || broken || failureOf(0)) continue;
       history.push(JSON.parse(text(call('readings', 0))));
     }
   };
-  for (const [at, name, ...values] of link.log) {
+  for (const [at, line] of lines) {
     await runTo(at);
     if (!await goesOn()) break;
-    apply(name, values), log.push([at, name, ...values]);
+    if (request(line)) leftOut = true;
   }
-  await runTo(link.calls);
-  return history;
+  await runTo(end);
+  return {history, leftOut};
 }
 
 // ------------------------------------------------------------------ To be seen
@@ -177,7 +155,7 @@ function explain() {
   if (at !== undefined) readings = JSON.parse(text(at));
   // A trial of what might work may throw: then nothing works that is known.
   const why = at === undefined ? short : readings.main.failure;
-  postMessage({kind: 'why', run, why, readings});
+  postMessage({kind: 'why', run, why, readings, asked});
 }
 
 function setting() {
@@ -193,20 +171,15 @@ const handlers = {
     about = JSON.parse(text(call('about')));
     postMessage({kind: 'about', about});
   },
-  async load(s) {
+  async run(what, mine) {
     if (broken) await instantiate();
-    load(s), setting();
-  },
-  async repeat(link, mine) {
-    if (broken) await instantiate();
-    const history = await repeat(link, mine);
-    postMessage({kind: 'history', run, history});
+    postMessage({kind: 'history', ...await repeat(what, mine), run});
     setting();
   },
-  ask([name, ...values]) {
+  ask(line) {
     ++asked;
-    if (broken) return;
-    apply(name, values), log.push([calls, name, ...values]);
+    const wrong = broken ? '' : request(line);
+    if (wrong) throw new Error(`${line}: ${wrong}`);
   },
   // One frame: simulated time [s] to pass, or -1: one step.
   frame(seconds) {
@@ -216,7 +189,7 @@ const handlers = {
       advance(readings.main.time + seconds, budget);
     frame();
   },
-  link: () => postMessage({kind: 'link', link: {start, log, calls}}),
+  link: () => postMessage({kind: 'link', recording: text(call('recording'))}),
   // For the test: after so many steps, all positions.
   positions(steps) {
     for (let k = 0; k < steps; ++k) call('step'), ++calls;
@@ -229,7 +202,7 @@ const handlers = {
 // One message at a time, also while a handler waits.
 let last = Promise.resolve();
 onmessage = ({data: [name, value]}) => {
-  const number = name === 'load' || name === 'repeat' ? ++newest : newest;
+  const number = name === 'run' ? ++newest : newest;
   last = last.then(() => handlers[name](value, number)).catch(
     error => postMessage({kind: 'error', text: String(error.stack || error)}));
 };

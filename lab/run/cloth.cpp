@@ -96,7 +96,7 @@ struct LiveRun {
   bool told = false;  // that it failed
 
   bool serve() { return screen.serve(live); }
-  void restart() { live.apply(Restart()); }
+  void restart() { live.apply("restart"); }
   void advance() { live.step(); }
   void show() {
     live.check();

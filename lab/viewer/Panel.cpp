@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/SceneFile.hpp"
-#include "lab/viewer/Plot.hpp"
 
 namespace lab {
 namespace {
@@ -49,8 +49,8 @@ void row(const char* name, const std::string& value,
 
 }  // namespace
 
-Panel::Panel(RequestQueue& requests, Player player, double speed)
-    : requests_(requests), player_(std::move(player)), speed_(speed) {
+Panel::Panel(RequestQueue& requests, CME212::SDLViewer& viewer, double speed)
+    : requests_(requests), viewer_(viewer), speed_(speed) {
   std::error_code none;  // without the folder there is no menu
   for (const auto& entry :
        std::filesystem::directory_iterator("data/scenes", none))
@@ -80,33 +80,32 @@ void Panel::tell(Live& live) {
   remember(told_.now);
 }
 
-/** Put @a r behind what is plotted. A restart or another scene begins anew. */
+/** Append @a r to what is plotted. A restart or another scene clears it. */
 void Panel::remember(const Readings& r) {
   auto& past = told_.past;
-  if (!past[time].empty() && r.time <= past[time].back()) {
-    if (float(r.time) == past[time].back()) return;
-    for (auto& column : past) column.clear();
+  if (auto& times = past["t"]; !times.empty() && r.time <= times.back()) {
+    if (float(r.time) == times.back()) return;
+    past.clear();
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();  // a gap
   const auto share = [&](double limit) {
     return limit > 0 && limit != no_limit ? r.dt / limit : none;
   };
   const auto& c = r.comparison;
-  const std::array<double, columns> values = {r.time,
-                                              r.energy.kinetic,
-                                              r.energy.elastic,
-                                              r.energy.gravitational,
-                                              r.energy.total(),
-                                              share(r.safe_limit),
-                                              share(r.sharp_limit),
-                                              1,
-                                              c ? c->apart.rms : none,
-                                              c ? c->error.rms : none,
-                                              c ? c->rival_error.rms : none};
-  for (int k = 0; k < columns; ++k) {
-    if (past[k].size() >= most_frames)
-      past[k].erase(past[k].begin(), past[k].begin() + most_frames / 8);
-    past[k].push_back(float(values[k]));
+  for (const auto& [name, value] :
+       {std::pair("t", r.time), std::pair("kinetic", r.energy.kinetic),
+        std::pair("elastic", r.energy.elastic),
+        std::pair("gravitational", r.energy.gravitational),
+        std::pair("total", r.energy.total()), std::pair("limit", 1.),
+        std::pair("safe", share(r.safe_limit)),
+        std::pair("now (sharp)", share(r.sharp_limit)),
+        std::pair("apart", c ? c->apart.rms : none),
+        std::pair("error of the first", c ? c->error.rms : none),
+        std::pair("of the second", c ? c->rival_error.rms : none)}) {
+    auto& values = past[name];
+    if (values.size() >= most_frames)
+      values.erase(values.begin(), values.begin() + most_frames / 8);
+    values.push_back(float(value));
   }
 }
 
@@ -131,13 +130,13 @@ void Panel::mark(const char* control) {
   places_[control] = {(a.x + b.x) / 2, (a.y + b.y) / 2};
 }
 
-void Panel::ask(Request r) {
+void Panel::ask(std::string request) {
   {
     std::lock_guard lock(mutex_);
     told_.refusal.clear();
   }
-  requests_.push(std::move(r));
-  player_.wake();
+  requests_.push(std::move(request));
+  viewer_.wake();
 }
 
 bool Panel::button(const char* label, float width) {
@@ -207,17 +206,17 @@ double Panel::draw() {
 
 void Panel::draw_player() {
   const Readings& r = shown_.now;
-  const bool paused = player_.paused();
+  const bool paused = viewer_.paused();
   const float third =
       (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) /
       3;
   if (ImGui::Button(paused ? "play###play" : "pause###play", {third, 0}))
-    player_.set_paused(!paused);
+    viewer_.set_paused(!paused);
   mark("play");
   ImGui::SameLine();
-  if (button("step", third)) player_.step();
+  if (button("step", third)) viewer_.step_once();
   ImGui::SameLine();
-  if (button("restart", third)) player_.restart();
+  if (button("restart", third)) ask("restart");
   ImGui::Text("t = %.3f s of %g s", r.time, shown_.model.t_end);
   ImGui::SameLine();
   if (!r.failure.empty())
@@ -238,7 +237,8 @@ void Panel::draw_controls() {
   const Readings& r = shown_.now;
   const Model& m = shown_.model;
   const MethodEntry* method = m.method;
-  if (choose_method("method", method)) ask(SetMethod{method});
+  if (choose_method("method", method))
+    ask(request("method", method->info.name));
 
   const bool beyond = is_beyond(r);
   double share = r.dt / r.dt_unit;
@@ -248,7 +248,8 @@ void Panel::draw_controls() {
     ImGui::PushStyleColor(ImGuiCol_FrameBgActive, {0.65f, 0.12f, 0.1f, 1});
     ImGui::PushStyleColor(ImGuiCol_SliderGrab, red);
   }
-  if (slider("dt / limit", share, 0.01, 10, "%.3f")) ask(SetStepShare{share});
+  if (slider("dt / limit", share, 0.01, 10, "%.3f"))
+    ask(request("step", share));
   if (beyond) ImGui::PopStyleColor(4);
   if (r.safe_limit == 0)
     ImGui::TextColored(red, "No step is stable (shares of verlet's)");
@@ -260,14 +261,15 @@ void Panel::draw_controls() {
   double K = m.material.modulus.value_or(m.stiffness);
   if (slider(m.material.modulus ? "modulus" : "K [N/m]", K, 0.1, 1e5,
              m.material.modulus ? "%.3g N/m" : "%.3g"))
-    ask(SetStiffness{K});
+    ask(request("stiffness", K));
   double c = m.material.drag.value_or(m.damping);
   if (slider(m.material.drag ? "drag" : "drag [kg/s]", c, 0,
              m.material.drag ? 100 : 1,
              m.material.drag ? "%.4f kg/(s m^2)" : "%.5f"))
-    ask(SetDrag{c});
+    ask(request("drag", c));
   double g = m.gravity;
-  if (slider("g [m/s^2]", g, -20, 20, "%.2f", false)) ask(SetGravity{g});
+  if (slider("g [m/s^2]", g, -20, 20, "%.2f", false))
+    ask(request("gravity", g));
   double speed = speed_ > 0 ? speed_.load() : 10;
   if (slider("time scale", speed, 0.01, 10,
              speed_ > 0 ? "%.3g of real time" : "as fast as it goes"))
@@ -302,6 +304,10 @@ void Panel::draw_numbers() {
   ImGui::EndTable();
 }
 
+Curve Panel::curve(const char* name, PanelColor color) {
+  return {name, color, shown_.past[name]};
+}
+
 void Panel::draw_plots() {
   using namespace curve_colors;
   // As high as leaves two closed sections in sight, if that is legible.
@@ -309,45 +315,44 @@ void Panel::draw_plots() {
                       2 * ImGui::GetFrameHeightWithSpacing() + 16 * unit_;
   const float height = std::clamp(
       (ImGui::GetContentRegionAvail().y - lines) / 2, 75 * unit_, 160 * unit_);
-  const auto& p = shown_.past;
-  const Curve energies[] = {{"kinetic", orange, p[kinetic]},
-                            {"elastic", sky, p[elastic]},
-                            {"gravitational", green, p[gravitational]},
-                            {"total", white, p[total]}};
-  plot("Energy [J]", p[time], energies, height);
-  const Curve shares[] = {{"limit", curve_colors::red, p[one]},
-                          {"safe", orange, p[safe]},
-                          {"now (sharp)", sky, p[sharp]}};
+  const Curve energies[] = {curve("kinetic", orange), curve("elastic", sky),
+                            curve("gravitational", green),
+                            curve("total", white)};
+  plot("Energy [J]", shown_.past["t"], energies, height);
+  const Curve shares[] = {curve("limit", curve_colors::red),
+                          curve("safe", orange), curve("now (sharp)", sky)};
   const auto [low, high] = axis_range(shares, false);
-  plot("dt / limit [1]", p[time], shares, height, high > 5 || low < 0.0);
+  plot("dt / limit [1]", shown_.past["t"], shares, height,
+       high > 5 || low < 0.0);
 }
 
 void Panel::draw_comparison() {
   const auto& c = shown_.now.comparison;
   bool changed = choose_method("second", rival_);
-  ImGui::BeginDisabled(at_ == Compare::At::equal_work);
+  ImGui::BeginDisabled(equal_work_);
   changed |= slider("its dt / limit", rival_share_, 0.01, 10, "%.3f");
   ImGui::EndDisabled();
-  int at = int(at_);
-  changed |= ImGui::RadioButton("equal time", &at, 0);
-  mark("equal time");
-  ImGui::SameLine();
-  changed |= ImGui::RadioButton("equal work", &at, 1);
-  mark("equal work");
-  at_ = Compare::At(at);
+  for (const bool work : {false, true}) {
+    const char* const label = work ? "equal work" : "equal time";
+    if (work) ImGui::SameLine();
+    if (ImGui::RadioButton(label, equal_work_ == work))
+      equal_work_ = work, changed = true;
+    mark(label);
+  }
   const float half =
       (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   if (button(c ? "compare from here" : "compare", half) || (c && changed))
-    ask(Compare{rival_, rival_share_, at_});
+    ask(request("compare", rival_->info.name, rival_share_,
+                equal_work_ ? "equal-work" : "equal-time"));
   ImGui::SameLine();
   bool beside = side_by_side_;
   if (ImGui::Checkbox("side by side", &beside)) {
     side_by_side_ = beside;
-    player_.wake();
+    viewer_.wake();
   }
   mark("side by side");
   if (!c) return;
-  if (button("stop comparing", half)) ask(StopComparing{});
+  if (button("stop comparing", half)) ask("alone");
 
   const Readings& r = shown_.now;
   const ImVec4 second(1, 0.72f, 0.3f, 1);
@@ -389,11 +394,10 @@ void Panel::draw_comparison() {
       "from %s at dt = %.2g s.",
       c->apart.rms, c->apart.largest, c->reference, c->reference_dt);
   using namespace curve_colors;
-  const auto& p = shown_.past;
-  const Curve distances[] = {{"apart", rose, p[apart]},
-                             {"error of the first", white, p[error]},
-                             {"of the second", orange, p[rival_error]}};
-  plot("Distance, rms [m]", p[time], distances, 130 * unit_, true);
+  const Curve distances[] = {curve("apart", rose),
+                             curve("error of the first", white),
+                             curve("of the second", orange)};
+  plot("Distance, rms [m]", shown_.past["t"], distances, 130 * unit_, true);
 }
 
 void Panel::draw_scenes() {
@@ -401,7 +405,8 @@ void Panel::draw_scenes() {
                                       ImGuiComboFlags_HeightLarge);
   mark("scene");
   if (open) {
-    if (ImGui::Selectable("as it was started")) ask(LoadScene{shown_.first});
+    if (ImGui::Selectable("as it was started"))
+      ask(scene_request(shown_.first));
     for (const std::string& file : scenes_) {
       const std::string name = std::filesystem::path(file).stem().string();
       if (ImGui::Selectable(name.c_str(), name == shown_.model.name))
@@ -412,7 +417,7 @@ void Panel::draw_scenes() {
   }
   ImGui::TextColored(dim, "Break it:");
   for (const Breakage& b : breakages()) {
-    if (ImGui::Button(b.title, {-1, 0})) ask(BreakIt{&b});
+    if (ImGui::Button(b.title, {-1, 0})) ask(request("break", b.name));
     mark(b.name);
   }
 }
@@ -426,7 +431,7 @@ void Panel::load(const std::string& file) {
       m.nodes = has_files ? shown_.model.nodes : "data/grid1.nodes";
       m.tets = has_files ? shown_.model.tets : "data/grid1.tets";
     }
-    ask(LoadScene{std::move(m)});
+    ask(scene_request(m));
   } catch (const std::exception& e) {
     refuse(e.what());
   }

@@ -1,38 +1,32 @@
 #pragma once
 /** @file Panel.hpp
- * Panel: what a user sees of a running scene in numbers and curves, and the
- * controls that change it. */
+ * Panel: numbers and curves of a running scene, and the controls that change
+ * it. A control sends a request: Live.hpp. */
 #include <array>
 #include <atomic>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "CME212/SDLViewer.hpp"
 #include "CME212/Util.hpp"
 #include "lab/live/Live.hpp"
+#include "lab/viewer/Plot.hpp"
 
 namespace lab {
 
-/** What a panel asks of its window. Called by the thread that draws. */
-struct Player {
-  std::function<bool()> paused;
-  std::function<void(bool)> set_paused;
-  std::function<void()> step, restart;
-  std::function<void()> wake;  ///< there are new requests
-};
-
 /** A panel at the left of a window.
  *
- * Threads: tell() belongs to the thread that steps, draw() to the one that
- * draws, all else to any. Neither thread waits
- * for more than the other's copying of some numbers. */
+ * Threads: only the thread that steps calls tell(), only the one that draws
+ * calls draw(), any calls the rest. Each waits for the other no longer than it
+ * takes to copy some numbers. */
 class Panel {
  public:
-  /** Requests of the user go to @a requests; both must outlive the panel.
+  /** Of @a viewer. Requests of the user go to @a requests. Both must outlive
+   * the panel.
    * @param speed Simulated seconds a second, at most; 0: without bound */
-  Panel(RequestQueue& requests, Player player, double speed);
+  Panel(RequestQueue& requests, CME212::SDLViewer& viewer, double speed);
 
   /** Show @a live as it is now.  As Live::readings(), sharp 4 times a second */
   void tell(Live& live);
@@ -43,42 +37,28 @@ class Panel {
    * @return its width [pixels] */
   double draw();
 
-  /** As the user wants it: simulated seconds a second, at most; 0: without
-   * bound. And a second cloth beside the first, not over it. */
+  /** What the user chose: simulated seconds a second, at most (0: without
+   * bound); and whether a second cloth is beside the first, not over it. */
   double speed() const { return speed_; }
   bool side_by_side() const { return side_by_side_; }
 
-  /** The middle of a control in the picture [pixels], as it was drawn last:
-   * for those who point at it. {0, 0} if it was not drawn or is scrolled out
-   * of sight. */
+  /** The middle of a control in the last picture [pixels], for a test's mouse.
+   * {0, 0} if it was not drawn or is scrolled out of sight. */
   std::array<double, 2> place_of(const std::string& control) const;
 
  private:
-  enum Column {
-    time,
-    kinetic,
-    elastic,
-    gravitational,
-    total,
-    safe,
-    sharp,
-    one,
-    apart,
-    error,
-    rival_error,
-    columns
-  };
   /** What the simulation tells. */
   struct State {
     Readings now;
     Model model, first;  // the present one, and that of the start
     std::string refusal;
-    double real_time = 0;                          // simulated seconds a second
-    std::array<std::vector<float>, columns> past;  // of the last frames
+    double real_time = 0;  // simulated seconds a second
+    // Of the last frames, what is plotted, by its name.
+    std::map<std::string, std::vector<float>> past;
   };
 
   RequestQueue& requests_;
-  const Player player_;
+  CME212::SDLViewer& viewer_;
   std::atomic<double> speed_;
   std::atomic<bool> side_by_side_ = false;
   mutable std::mutex mutex_;  // of the next two
@@ -91,11 +71,11 @@ class Panel {
   State shown_;
   const MethodEntry* rival_ = nullptr;
   double rival_share_ = 0.5;
-  Compare::At at_ = Compare::At::equal_time;
+  bool equal_work_ = false;
   std::vector<std::string> scenes_;  // files
   float unit_ = 1;                   // [pixels]
 
-  void ask(Request r);
+  void ask(std::string request);
   void mark(const char* control);
   bool button(const char* label, float width);
   bool slider(const char* label, double& value, double low, double high,
@@ -104,6 +84,7 @@ class Panel {
   void draw_player();
   void draw_controls();
   void draw_numbers();
+  Curve curve(const char* name, PanelColor color);
   void draw_plots();
   void draw_comparison();
   void draw_scenes();

@@ -14,7 +14,6 @@
 #include <optional>
 #include <thread>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "CME212/Image.hpp"
@@ -86,13 +85,7 @@ class SDLScreen : public Screen {
   }
 
   void open_panels(double speed) override {
-    panel_.emplace(
-        requests_,
-        Player{[this] { return viewer_.paused(); },
-               [this](bool on) { viewer_.set_paused(on); },
-               [this] { viewer_.step_once(); },
-               [this] { viewer_.ask_restart(); }, [this] { viewer_.wake(); }},
-        speed);
+    panel_.emplace(requests_, viewer_, speed);
     viewer_.set_panels([this] { return panel_->draw(); });
     viewer_.set_touch([this](const CME212::Touch& t) {
       {
@@ -109,13 +102,12 @@ class SDLScreen : public Screen {
       std::lock_guard lock(touches_mutex_);
       touches.swap(touches_);
     }
-    std::vector<Request> requests = requests_.take();
+    std::vector<std::string> requests = requests_.take();
     for (const CME212::Touch& t : touches)
-      if (auto r = request_of(t, live)) requests.push_back(std::move(*r));
-    for (const Request& r : requests) try {
+      if (auto r = request_of(t); !r.empty()) requests.push_back(std::move(r));
+    for (const std::string& r : requests) try {
         live.apply(r);
-        if (std::holds_alternative<LoadScene>(r) ||
-            std::holds_alternative<BreakIt>(r))
+        if (r.starts_with("scene ") || r.starts_with("break "))
           shown_ = moving_ = false, scale_ = 0.01;
       } catch (const std::exception& e) {
         panel_->refuse(e.what());
@@ -174,7 +166,7 @@ class SDLScreen : public Screen {
     if (strain) set_scale(g);
     auto color_of = [&](CME212::Color plain) {
       return [this, plain, strain, live](Node n) {
-        if (live && live->is_pinned(n.id())) return pinned;
+        if (live && live->scene().is_pinned(n.id())) return pinned;
         return strain ? CME212::Color::make_strain(
                             float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
                       : plain;
@@ -220,33 +212,27 @@ class SDLScreen : public Screen {
     shown_ = true;
   }
 
-  /** What @a t asks for; nothing if the node is gone. */
-  std::optional<Request> request_of(const CME212::Touch& t, const Live& live) {
+  /** What @a t asks for; "" if its node was removed. */
+  std::string request_of(const CME212::Touch& t) {
     using Kind = CME212::Touch::Kind;
     const bool on_node = t.kind == Kind::grab || t.kind == Kind::pin;
     if (on_node && t.node >= ids_.size()) return {};
-    const unsigned id = on_node ? ids_[t.node] : 0;
+    // Rays begin a little off the eye, where they are all one point.
+    const auto begin = [&t](const Point& far) {
+      return t.at + 0.01 * (far - t.at);
+    };
     switch (t.kind) {
       case Kind::grab:
         grabbed_beside_ = t.node < own_nodes_ ? Point() : beside_;
-        return Grab{id, t.at - grabbed_beside_};
+        return request("grab", ids_[t.node], t.at - grabbed_beside_);
       case Kind::move:
-        return MoveGrab{t.at - grabbed_beside_};
+        return request("move", t.at - grabbed_beside_);
       case Kind::release:
-        return Release{};
+        return "release";
       case Kind::pin:
-        if (live.is_pinned(id)) return UnpinNode{id};
-        return PinNode{id};
-      case Kind::cut: {
-        // Rays begin a little off the eye, where they are all one point.
-        const auto ray = [&t](const Point& far) {
-          return Ray{t.at + 0.01 * (far - t.at), far};
-        };
-        auto edges = crossed_edges(live.scene().cloth(),
-                                   std::array{ray(t.from), ray(t.to)});
-        if (edges.empty()) return {};
-        return Cut{std::move(edges)};
-      }
+        return request("toggle", ids_[t.node]);
+      case Kind::cut:
+        return request("stroke", begin(t.from), t.from, begin(t.to), t.to);
     }
     return {};
   }
