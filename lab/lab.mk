@@ -3,8 +3,7 @@
 # All of lab/ but its programs is one library, built once for speed in $(B), and
 # once with assertions and sanitizers, for tests, in $(B)/asan.
 
-CHOLMOD ?= 1
-OPENMP  ?= 1
+OPENMP ?= 1
 
 # The programs: NAME is built as $(B)/NAME from the file.
 lab_main   := lab/run/cloth.cpp lab/advice/adviser_suite.cpp \
@@ -20,18 +19,13 @@ names       = $(basename $(notdir $(1)))
 LAB_PROGRAMS := $(call names,$(lab_main))
 LAB_TESTS    := $(call names,$(lab_tests))
 
-# Where CHOLMOD is installed it factors sparse matrices, unless CHOLMOD=0.
-cholmod := $(if $(filter 1,$(CHOLMOD)),$(shell $(CXX) $(CPPFLAGS) \
-  -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null \
-  >/dev/null 2>&1 && echo -DMASS_SPRING_CHOLMOD))
 # No product and sum in one rounding: the same bits on every processor.
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
-            $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3) $(cholmod)
+            $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3)
 # What names SDL, or asks whether there is a viewer.
 lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% $(lab_panels) \
             tests/test_viewer.% tests/test_panels.% CME212/%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
-lab_libs  = $(cholmod:-D%=-Wl,--as-needed -lcholmod) $(LDLIBS)
 # FAST=1 asks for tests of what is built for speed.
 tested     = $(if $(FAST),$(B),$(B)/asan)
 test_flags = $(if $(FAST),$(speed),$(debug) $(sanitizer))
@@ -70,7 +64,7 @@ $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 define program
 $(1): $(2)/$(basename $(3)).o $(2)/liblab.a
 	@echo 'link $$@'
-	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$(filter-out %/libviewer.a,$$^) $$(draw_libs) $(5) $$(lab_libs)
+	@$$(CXX) $$(lab_flags) $(4) $$(CXXFLAGS) -o $$@ $$(filter-out %/libviewer.a,$$^) $$(draw_libs) $(5) $$(LDLIBS)
 endef
 $(foreach f,$(lab_main) $(lab_others),$(eval $(call program,$(B)/$(call names,$(f)),$(B),$(f),$(speed),$(if $(filter bench%,$(call names,$(f))),-lbenchmark))))
 $(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/$(call names,$(f)),$(tested),$(f),$(test_flags),$$(test_libs))))

@@ -51,10 +51,7 @@ TEST_F(ClothProgram, RunsEveryStage) {
               0u);
     EXPECT_NE(r.out.find(name + ": 5000 steps"), std::string::npos);
   }
-  const std::string version = run("--version").out;
-  EXPECT_TRUE(version == "cloth 1.0.0, Cholesky by CHOLMOD\n" ||
-              version == "cloth 1.0.0, Cholesky by Eigen\n")
-      << version;
+  EXPECT_EQ(run("--version").out, "cloth 1.0.0\n");
 }
 
 TEST_F(ClothProgram, WritesEnergiesThatAddUp) {

@@ -11,25 +11,17 @@ if [ $# = 0 ]; then
 fi
 # Headers that name SDL or OpenGL, and the packages whose flags these need; all
 # others compile without. A header that draws only under MASS_SPRING_VIEWER is
-# compiled with it and without it; so is one that knows MASS_SPRING_CHOLMOD,
-# where CHOLMOD is installed.
+# compiled with it and without it.
 drawing='^CME212/(GL|SDL(Window|Input|Settings))'
 packages="sdl2 gl imgui libpng"
 
-has_cholmod() {  # COMPILER
-  $1 -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null 2>/dev/null
-}
 compile() {  # COMPILER HEADER; one report, even when others write too
   local flags="" out ways=plain way
   if [[ $2 =~ $drawing ]]; then ways=draw
   elif grep -q 'MASS_SPRING_VIEWER' "$2"; then ways="plain draw"
-  elif grep -q 'MASS_SPRING_CHOLMOD' "$2" && has_cholmod "$1"; then
-    ways="plain cholmod"
   fi
   for way in $ways; do
-    if [ "$way" = cholmod ]; then
-      flags=" -DMASS_SPRING_CHOLMOD"
-    elif [ "$way" = draw ]; then
+    if [ "$way" = draw ]; then
       # shellcheck disable=SC2086  # a list of words
       flags=$(pkg-config --cflags $packages) ||
         { echo "$2:1: draws, but one is missing of: $packages"; return 1; }
@@ -49,7 +41,7 @@ eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
 CPPFLAGS="${CPPFLAGS:-} $eigen"
 
 export drawing packages CPPFLAGS
-export -f compile has_cholmod
+export -f compile
 for cxx in ${CXX:-g++ clang++}; do
   command -v "$cxx" >/dev/null || { echo "$cxx is missing: make deps"; exit 1; }
   printf '%s\n' "$@" | sed "s/^/$cxx /"

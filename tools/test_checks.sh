@@ -146,17 +146,6 @@ header "only without the viewer" g++ <<<'#pragma once
 #ifndef MASS_SPRING_VIEWER
 #error
 #endif'
-if g++ -fsyntax-only -x c++ -include suitesparse/cholmod.h /dev/null \
-  2>/dev/null; then
-  header "only with CHOLMOD" g++ <<<'#pragma once
-#ifdef MASS_SPRING_CHOLMOD
-#error
-#endif'
-fi
-header "only without CHOLMOD" g++ <<<'#pragma once
-#ifndef MASS_SPRING_CHOLMOD
-#error
-#endif'
 
 # ---- The tree. The words are put together here, not to be found here.
 tree=tools/check_tree.sh

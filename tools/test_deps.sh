@@ -100,7 +100,6 @@ ok "only the groups that are asked for"
 
 system 0 "$everything"; run peers
 expect_status 0; says 'installing libsundials-dev libboost-dev liblemon-dev'
-says 'libsuitesparse-dev'
 ok "group peers"
 
 system 0 "$everything"; run grade

@@ -95,25 +95,31 @@ bool AugmentedVerlet::find_factor(const Cloth& g, double dt,
   return false;
 }
 
-/** Factor the lower triangle of M + (dt^2/4) L, by node id. Fixed nodes have a
- * row, too, so that no other numbers are needed: that of a 1. */
+/** Factor M + (dt^2/4) L, by node id. Fixed nodes have a row, too, so that
+ * rows need no numbers of their own: that of the unit matrix. */
 void AugmentedVerlet::factorize() {
   ++factorizations_;
-  std::vector<SparseCholesky::Entry> entries;
+  constexpr std::size_t most = 100'000'000;  // entries, of 24 bytes
   const double h2 = key_.dt * key_.dt / 4;
-  auto add = [&](unsigned i, unsigned j, double a) {
-    if (!key_.fixed[i] && !key_.fixed[j])
-      entries.push_back({std::max(i, j), std::min(i, j), a});
-  };
-  const unsigned rows = unsigned(key_.fixed.size());
-  for (unsigned i = 0; i < rows; ++i)
-    entries.push_back({i, i, key_.fixed[i] ? 1 : key_.mass[i]});
-  for (const auto& [i, j, K] : key_.springs) {
-    add(i, i, h2 * K);
-    add(j, j, h2 * K);
-    add(i, j, -h2 * K);
+  const auto& fixed = key_.fixed;
+  const auto rows = unsigned(fixed.size());
+  std::vector<SparseCholesky<double>::Pair> pairs;
+  for (const auto& [i, j, K] : key_.springs)
+    if (!fixed[i] && !fixed[j]) pairs.push_back({i, j});
+  bool good = factor_.analyze(rows, pairs, most);
+  if (good) {
+    factor_.clear();
+    for (unsigned i = 0; i < rows; ++i)
+      factor_.add_diagonal(i, fixed[i] ? 1 : key_.mass[i]);
+    std::size_t pair = 0;
+    for (const auto& [i, j, K] : key_.springs) {
+      if (!fixed[i]) factor_.add_diagonal(i, h2 * K);
+      if (!fixed[j]) factor_.add_diagonal(j, h2 * K);
+      if (!fixed[i] && !fixed[j]) factor_.add(pair++, -h2 * K);
+    }
+    good = factor_.factorize();
   }
-  if (factor_.factorize(rows, entries)) return;
+  if (good) return;
   key_ = {}, source_ = {};
   throw StepError(std::string(info.name) +
                   ": the matrix of masses can't be factored; dt = " +

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "lab/methods/Cholesky.hpp"
 #include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/methods/SparseCholesky.hpp"
 
 namespace lab {
 
@@ -74,7 +74,7 @@ class AugmentedVerlet : public Method {
   Source source_;
   std::vector<unsigned> held_;
   int factorizations_ = 0;
-  SparseCholesky factor_;
+  SparseCholesky<double> factor_;
   FlatFlow flow_;                    // its accelerations are the solution,
   std::vector<Point> acceleration_;  // as these, by node id [m/s^2]
   const Cloth* kept_for_ = nullptr;  // at whose state they are

@@ -30,7 +30,7 @@ Matrix3 full_matrix(const Stiffness& B) {
  * million times stiffer along than across; the triangle makes it symmetric. */
 Matrix3 inverse(const Matrix3& a) {
   Matrix3 d = a;
-  invert_factor(d, Four());
+  invert_factor(d, Matrix3());
   Matrix3 all;
   for (int c = 0; c < 3; ++c) all.column[c] = turned_times(d, d.column[c]);
   return all;
@@ -309,7 +309,7 @@ double ImplicitStage::factor_work() {
   for (const Block& b : blocks_)
     if (!fixed_[b.i] && !fixed_[b.j]) pairs_.push_back({b.i, b.j});
   if (!factor_.analyze(unsigned(w.size()), pairs_, most)) return HUGE_VAL;
-  return (0.7 * factor_.updates() + 4 * double(factor_.blocks())) /
+  return (0.7 * factor_.updates() + 4 * double(factor_.entries())) /
          double(blocks_.size() + 1);
 }
 

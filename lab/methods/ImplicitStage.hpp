@@ -4,9 +4,9 @@
  * Newton's method and conjugate gradients. */
 #include <vector>
 
-#include "lab/methods/BlockCholesky.hpp"
 #include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/methods/SparseCholesky.hpp"
 
 namespace lab {
 
@@ -122,8 +122,8 @@ class ImplicitStage {
   std::vector<double> diagonal_;          // m + s c [kg]
   std::vector<Point> residual_, step_, rest_, z_, direction_, product_;
   LinearSolver solver_ = LinearSolver::automatic;
-  BlockCholesky factor_;  // of A without negative stiffness
-  std::vector<BlockCholesky::Pair> pairs_;
+  SparseCholesky<Matrix3> factor_;  // of A without negative stiffness
+  std::vector<SparseCholesky<Matrix3>::Pair> pairs_;
   bool factored_ = false;  // whether factor_ is that of this A
   bool tight_ = false;     // whether this step needed a factor before
   double contrast_ = 0;    // of D and M: the square of s omega, and 1

@@ -13,9 +13,9 @@ namespace lab {
 // Three coordinates in one register, and a lane to spare.
 typedef double Four __attribute__((vector_size(32), aligned(32)));
 
-/** 3 x 3 numbers by columns of three and a zero. Its sums run from the first
- * column to the last one, so that their bits are those of any compiler and
- * processor: the order of Eigen's depends on the registers there are. */
+/** 3 x 3 numbers by columns of three and a zero. Sums run from the first column
+ * to the last, so that every compiler and processor gets the same bits: in
+ * Eigen the order depends on the processor's registers. */
 struct Matrix3 {
   Four column[3] = {};
 };
@@ -46,11 +46,28 @@ struct Matrix3 {
   return Four{p[0] + p[1] + p[2], q[0] + q[1] + q[2], r[0] + r[1] + r[2], 0};
 }
 
-/** Put L^-1 in the place of L L^T, of which the lower triangle is read.
- * @param least what the squares of L's diagonal must exceed
- * @return false if they do not, or are not finite */
+/** to -= from by^T */
+[[gnu::always_inline]] inline void subtract(Matrix3& to, const Matrix3& from,
+                                            const Matrix3& by) {
+  for (int c = 0; c < 3; ++c)
+    to.column[c] -= from.column[0] * by.column[0][c] +
+                    from.column[1] * by.column[1][c] +
+                    from.column[2] * by.column[2][c];
+}
+/** a = a by^T */
+[[gnu::always_inline]] inline void multiply(Matrix3& a, const Matrix3& by) {
+  Four product[3];
+  for (int c = 0; c < 3; ++c)
+    product[c] = a.column[0] * by.column[0][c] + a.column[1] * by.column[1][c] +
+                 a.column[2] * by.column[2][c];
+  for (int c = 0; c < 3; ++c) a.column[c] = product[c];
+}
+
+/** Put L^-1 in the place of d = L L^T, of which the lower triangle is read.
+ * @return false if the square of an entry of L's diagonal is not finite, or
+ * only round-off beside that entry of @a before */
 [[gnu::always_inline]] inline bool invert_factor(Matrix3& d,
-                                                 const Four& least) {
+                                                 const Matrix3& before) {
   Four* const c = d.column;
   double l[3][3] = {}, inverse[3][3] = {};
   bool good = true;
@@ -59,7 +76,7 @@ struct Matrix3 {
       double sum = c[j][i];
       for (int m = 0; m < j; ++m) sum -= l[i][m] * l[j][m];
       if (i == j) {
-        good = good && sum > least[j] && sum < HUGE_VAL;
+        good = good && sum > 1e-15 * before.column[j][j] && sum < HUGE_VAL;
         l[j][j] = std::sqrt(sum);
       } else {
         l[i][j] = sum / l[j][j];
@@ -75,6 +92,25 @@ struct Matrix3 {
   for (int j = 0; j < 3; ++j)
     c[j] = Four{inverse[0][j], inverse[1][j], inverse[2][j], 0};
   return good;
+}
+
+// The same for a number in the place of a matrix.
+[[gnu::always_inline]] inline void add(double& to, double a) { to += a; }
+[[gnu::always_inline]] inline Four times(double a, const Four& x) {
+  return a * x;
+}
+[[gnu::always_inline]] inline Four turned_times(double a, const Four& x) {
+  return a * x;
+}
+[[gnu::always_inline]] inline void subtract(double& to, double from,
+                                            double by) {
+  to -= from * by;
+}
+[[gnu::always_inline]] inline void multiply(double& a, double by) { a *= by; }
+[[gnu::always_inline]] inline bool invert_factor(double& d, double before) {
+  const double square = d;
+  d = 1 / std::sqrt(square);
+  return square > 1e-15 * before && square < HUGE_VAL;
 }
 
 }  // namespace lab

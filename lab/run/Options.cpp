@@ -366,9 +366,7 @@ int parse(int argc, char** argv, Options& o) {
   app.add_flag("--auto", o.automatic, "run what --advise would advise");
   takes_file(app.add_option("--write-config", o.advised,
                             "write the scene that is advised to this file"));
-  app.set_version_flag("--version",
-                       std::string("cloth ") + version + ", Cholesky by " +
-                           SparseCholesky::back_end,
+  app.set_version_flag("--version", std::string("cloth ") + version,
                        "print the version, and end");
   app.add_flag_callback(
       "--list-methods",
