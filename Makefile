@@ -8,36 +8,36 @@ STAGES  = problem1 diagonals forces constraints tear
 VIEWER ?= 1
 REAL   ?= double
 HW     ?= hw2
+# Programs are built as $(O)NAME, all else in $(B).
 O       =
 B      ?= build
 
-# As they were given, whatever they hold: never expanded, and read by no shell.
+# tools/submit.sh gets these as they were given: make expands nothing in them.
 override HW    := $(value HW)
 override FORCE := $(value FORCE)
 export HW FORCE
 
 PROGRAMS := $(basename $(wildcard *.cpp))
 DRIVERS  := mass_spring $(STAGES:%=mass_spring_%)
-BUILT    := $(sort $(PROGRAMS) $(DRIVERS))
+OTHERS   := $(filter-out $(DRIVERS),$(PROGRAMS))
 
-# The driver is built for speed, any other program for the debugger, with all
-# assertions, and a program of GoogleTest under the sanitizers; FAST=1 asks for
-# speed.
-SANITIZE = address,undefined
-# Left out: checks that take half of the time to compile, and find next to none.
-unchecked = null,alignment,object-size,vptr,pointer-overflow
-speed     = $(or $(SPEED),-O3) -DNDEBUG -g1
-debug     = -Og -fno-omit-frame-pointer
-sanitizer = $(if $(SANITIZE),-fsanitize=$(SANITIZE) \
-              -fno-sanitize-recover=all -fno-sanitize=$(unchecked))
-system    = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(1) 2>/dev/null))
-stage_of  = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
+# mass_spring is built for speed; any other program for the debugger, with all
+# assertions, and with the sanitizers if it uses GoogleTest. FAST=1: for speed.
 common    = -std=c++20 -g -Wall -Wextra -pthread -I. \
             $(if $(filter-out double,$(REAL)),-DREAL=$(REAL))
-flags     = $(common) \
-            $(if $(or $(FAST),$(filter $(DRIVERS),$*)),$(speed),$(debug)) \
-            $(if $(filter $(DRIVERS),$*),-DSTAGE=$(stage_of)) \
-            $(if $(filter 1,$(VIEWER)),-DMASS_SPRING_VIEWER) $(CPPFLAGS) $(CXXFLAGS)
+speed     = $(or $(SPEED),-O3) -DNDEBUG -g1
+debug     = -Og -fno-omit-frame-pointer
+SANITIZE  = address,undefined
+# Left out: checks that double the time to compile and find next to nothing.
+unchecked = null,alignment,object-size,vptr,pointer-overflow
+sanitizer = $(if $(SANITIZE),-fsanitize=$(SANITIZE) \
+              -fno-sanitize-recover=all -fno-sanitize=$(unchecked))
+# The compiler's options for the program $*.
+stage     = $(or $(patsubst mass_spring_%,%,$(filter mass_spring_%,$*)),$(STAGE))
+mode      = $(if $(filter $(DRIVERS),$*),$(speed) -DSTAGE=$(stage), \
+              $(if $(FAST),$(speed),$(debug)))
+flags     = $(common) $(mode) $(if $(filter 1,$(VIEWER)),-DMASS_SPRING_VIEWER) \
+            $(CPPFLAGS) $(CXXFLAGS)
 
 MAKEFLAGS += --no-builtin-rules
 .PHONY: help all deps demo submit format clean FORCE
@@ -54,31 +54,38 @@ help:
 	@echo 'make help-lab           the laboratory: ./cloth, charts, checks'
 	@echo 'programs: $(PROGRAMS)'
 
-# A program is built anew when its sources or its flags have changed. What it
-# includes, and so what it is linked with, is found first: $(B)/NAME.uses. That
-# is as new as a source dated in the future, or make would never end.
-source = $(if $(filter $(DRIVERS),$*),mass_spring,$*).cpp
-.SECONDEXPANSION:
-$(BUILT:%=$(O)%): $(O)%: $$(source) $(B)/%.flags
-	@mkdir -p $(dir $@) && echo '$(CXX) $@'
-	@$(CXX) $(flags) $(draw_flags) $(if $(test),$(if $(FAST),,$(sanitizer))) \
-	  -o $@ $< $(draw_libs) $(if $(test),-lgtest_main -lgtest) $(LDLIBS)
-$(BUILT:%=$(B)/%.uses): $(B)/%.uses: $$(source) $(B)/%.flags
-	@$(CXX) $(flags) -M -MG -MP -MT '$(O)$* $@' $< >$@
-	@! grep -q CME212/SDLViewer.hpp $@ || echo '$(O)$*: $(B)/libviewer.a' >>$@
-	@! grep -q gtest/gtest.h $@ || echo '$(O)$*: test = 1' >>$@
-	@for f in $^; do [ ! "$$f" -nt $@ ] || touch -r "$$f" $@; done
-$(B)/%.flags: FORCE
-	@mkdir -p $(dir $@); echo '$(CXX) $(flags)' | cmp -s - $@ \
-	  || echo '$(CXX) $(flags)' > $@
--include $(patsubst %,$(B)/%.uses,$(if $(filter all,$(MAKECMDGOALS)),$(BUILT), \
-  $(filter $(BUILT),$(notdir $(MAKECMDGOALS)))))
+# How to build a program, and $(B)/NAME.uses: what it includes, and so what it
+# is linked with. NAME.uses is as new as a source dated in the future, or make
+# would never end.
+define build
+@mkdir -p $(@D) && echo '$(CXX) $@'
+@$(CXX) $(flags) $(draw_flags) $(if $(test),$(if $(FAST),,$(sanitizer))) \
+  -o $@ $< $(draw_libs) $(if $(test),-lgtest_main -lgtest) $(LDLIBS)
+endef
+define find_uses
+@$(CXX) $(flags) -M -MG -MP -MT '$(O)$* $@' $< >$@
+@! grep -q CME212/SDLViewer.hpp $@ || echo '$(O)$*: $(B)/libviewer.a' >>$@
+@! grep -q gtest/gtest.h $@ || echo '$(O)$*: test = 1' >>$@
+@for f in $^; do [ ! "$$f" -nt $@ ] || touch -r "$$f" $@; done
+endef
 
-all: $(BUILT:%=$(O)%)
-ifneq ($(O),)
-.PHONY: $(BUILT) cloth
-$(BUILT) cloth: %: $(O)%
-endif
+$(DRIVERS:%=$(O)%): $(O)%: mass_spring.cpp $(B)/%.flags
+	$(build)
+$(OTHERS:%=$(O)%): $(O)%: %.cpp $(B)/%.flags
+	$(build)
+$(DRIVERS:%=$(B)/%.uses): $(B)/%.uses: mass_spring.cpp $(B)/%.flags
+	$(find_uses)
+$(OTHERS:%=$(B)/%.uses): $(B)/%.uses: %.cpp $(B)/%.flags
+	$(find_uses)
+# This file changes when the options do; then the program is built again.
+$(B)/%.flags: FORCE
+	@mkdir -p $(@D); echo '$(CXX) $(flags)' | cmp -s - $@ \
+	  || echo '$(CXX) $(flags)' > $@
+
+all: $(DRIVERS:%=$(O)%) $(OTHERS:%=$(O)%)
+wanted = $(if $(filter all,$(MAKECMDGOALS)),$(DRIVERS) $(OTHERS), \
+           $(filter $(DRIVERS) $(OTHERS),$(notdir $(MAKECMDGOALS))))
+-include $(wanted:%=$(B)/%.uses)
 
 deps:
 	@tools/deps.sh
@@ -97,6 +104,6 @@ submit:
 	@tools/submit.sh
 
 clean:
-	rm -rf build demo cloth $(BUILT)
+	rm -rf build demo cloth $(DRIVERS) $(OTHERS)
 
 include CME212/viewer.mk lab/lab.mk course/course.mk

@@ -10,12 +10,14 @@
 #include <string>
 #include <thread>
 
+#include "mass_spring.hpp"
 #ifdef MASS_SPRING_VIEWER
 #include "CME212/SDLViewer.hpp"
+using Viewer = CME212::SDLViewer;
 #else
-#include "CME212/NoViewer.hpp"
+#include "CME212/viewer/NoViewer.hpp"
+using Viewer = CME212::NoViewer;
 #endif
-#include "mass_spring.hpp"
 
 /** The stages, by the section of the assignment. */
 enum class Stage {
@@ -96,7 +98,7 @@ int main(int argc, char** argv) try {
       return symp_euler_step(g, t, dt, force, torn);
   };
 
-  std::optional<CME212::SDLViewer> viewer;
+  std::optional<Viewer> viewer;
   try {
     viewer.emplace();
     viewer->add_faces(g, quads);

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "CME212/BoundingBox.hpp"
-#include "CME212/Hand.hpp"
-#include "CME212/Image.hpp"
-#include "CME212/Look.hpp"
-#include "CME212/NoDisplay.hpp"
 #include "CME212/Point.hpp"
-#include "CME212/SceneBuilder.hpp"
+#include "CME212/viewer/Image.hpp"
+#include "CME212/viewer/Look.hpp"
+#include "CME212/viewer/MouseTool.hpp"
+#include "CME212/viewer/NoDisplay.hpp"
+#include "CME212/viewer/SceneBuilder.hpp"
 
 namespace CME212 {
 

@@ -1,11 +1,12 @@
 # The viewer is compiled once, for all programs that include it. Its assertions
 # stay on: they check how programs call it. The graphics driver does the work,
 # so -O1 is enough.
+system     = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(1) 2>/dev/null))
 draw_pkg   = sdl2 gl imgui libpng
 draw_flags = $(if $(filter %/libviewer.a,$^),$(call system,$(draw_pkg)))
 draw_libs  = $(if $(filter %/libviewer.a,$^),$(filter %/libviewer.a,$^) \
                $(shell pkg-config --libs $(draw_pkg)))
-viewer    := $(patsubst %.cpp,$(B)/%.o,$(wildcard CME212/*.cpp))
+viewer    := $(patsubst %.cpp,$(B)/%.o,$(wildcard CME212/viewer/*.cpp))
 
 $(B)/libviewer.flags $(viewer): flags = $(common) -O1 -g1 \
   $(call system,$(draw_pkg)) $(CPPFLAGS) $(CXXFLAGS)

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "CME212/BoundingBox.hpp"
-#include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
 #include "CME212/Util.hpp"
+#include "CME212/viewer/Image.hpp"
 #include "mass_spring.hpp"
 
 int main() try {

@@ -31,7 +31,7 @@ tested     = $(if $(FAST),$(B),$(B)/asan)
 test_flags = $(if $(FAST),$(speed),$(debug) $(sanitizer))
 test_libs  = -lgtest_main -lgtest -lrapidcheck
 
-include lab/units.mk
+lab_objects := $(lab_lib:.cpp=.o)
 
 # $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
 define compile
@@ -42,12 +42,6 @@ endef
 define variant
 $(1)/%.o: %.cpp $(1)/lab.flags
 $(compile)
-$(1)/unity/%.o: $(1)/unity/%.cpp $(1)/lab.flags
-$(compile)
-.PRECIOUS: $(1)/unity/%.cpp
-$(1)/unity/%.cpp: FORCE
-	@mkdir -p $$(@D) && tools/unity.sh $$(in_$$*) | cmp -s - $$@ \
-	  || tools/unity.sh $$(in_$$*) > $$@
 $(1)/liblab.a: $(lab_objects:%=$(1)/%)
 	@rm -f $$@ && ar rcs $$@ $$^
 $(1)/lab.flags: FORCE
@@ -57,6 +51,9 @@ $(1)/lab/viewer/Screen.o: $(1)/viewer.flags
 $(1)/viewer.flags: FORCE
 	@mkdir -p $$(dir $$@); echo '$(VIEWER)' | cmp -s - $$@ || echo '$(VIEWER)' > $$@
 endef
+ifneq ($(O)$(UNITY),)
+include lab/units.mk
+endif
 $(eval $(call variant,$(B),$(speed)))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 
@@ -104,7 +101,7 @@ compdb: course_draw = $(if $(filter 1,$(VIEWER)),$(call system,$(draw_pkg)))
 compdb:
 	$(file >compile_commands.json,[$(subst } {,}$(comma){,$(strip \
 	  $(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))) \
-	  $(foreach <,$(filter-out lab/page/wasi.cpp,$(wildcard CME212/*.cpp \
+	  $(foreach <,$(filter-out lab/page/wasi.cpp,$(wildcard CME212/viewer/*.cpp \
 	  lab/*.cpp lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
 	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS)))))])
 	@echo 'compile_commands.json'

@@ -1,6 +1,15 @@
-# Checks compile several sources as one unit, UNITY=1: what they include is read
+# For the checks alone (tools/check.sh), which set O and UNITY.
+#
+# O=FOLDER/: programs are built there, and `make NAME` means FOLDER/NAME.
+ifneq ($(O),)
+.PHONY: $(DRIVERS) $(OTHERS) cloth
+$(DRIVERS) $(OTHERS) cloth: %: $(O)%
+endif
+
+# UNITY=1: several sources are compiled as one unit. What they include is read
 # once, which takes half of the time. Each room of the laboratory is a unit;
 # tests are dealt out by size to the programs tests_0, tests_1 ...
+ifneq ($(UNITY),)
 UNITS ?= 6
 
 # Programs of their own: three specialize templates of other namespaces, five
@@ -10,9 +19,6 @@ tests_alone := test_graph test_graph_hubs test_graph_memory test_viewer \
                test_panels test_faces test_image test_screen test_slot_map \
                test_cloth test_course_interface
 
-ifeq ($(UNITY),)
-lab_objects := $(lab_lib:.cpp=.o)
-else
 dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
 # What is linked with the window if a program uses it, and not otherwise.
@@ -27,6 +33,17 @@ $(foreach r,$(rooms),$(eval in_$(subst /,_,$(r)) := \
 $(foreach u,$(TEST_UNITS),$(eval in_$(u) := $(shell printf '%s\n' $(dealt) \
   | awk 'NR % $(UNITS) == $(u:tests_%=%)')))
 lab_objects := $(patsubst %,unity/%.o,$(subst /,_,$(rooms))) $(drawing:.cpp=.o)
+
+define unity
+$(1)/unity/%.o: $(1)/unity/%.cpp $(1)/lab.flags
+$(compile)
+.PRECIOUS: $(1)/unity/%.cpp
+$(1)/unity/%.cpp: FORCE
+	@mkdir -p $$(@D) && tools/unity.sh $$(in_$$*) | cmp -s - $$@ \
+	  || tools/unity.sh $$(in_$$*) > $$@
+endef
+$(eval $(call unity,$(B),$(speed)))
+$(eval $(call unity,$(B)/asan,$(debug) $(sanitizer)))
 
 # All tests, and their names: those that take longest to build and to run first,
 # so that two jobs end together.

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
-#include "CME212/Faces.hpp"
-#include "CME212/GLCamera.hpp"
-#include "CME212/Image.hpp"
 #include "CME212/Mesh.hpp"
 #include "CME212/SDLViewer.hpp"
+#include "CME212/viewer/Faces.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/Image.hpp"
 #include "Graph.hpp"
 
 namespace {

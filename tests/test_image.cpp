@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
-#include "CME212/GLCamera.hpp"
-#include "CME212/Image.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/Image.hpp"
 #include "tests/TestFolder.hpp"
 
 namespace {

@@ -1,7 +1,8 @@
 /** @file test_panels.cpp
- * Tests of what a user does in a window with panels: CME212/Hand.hpp,
- * SDLViewer::set_panels() and set_touch(); lab/viewer/Plot.hpp, and each
- * control of lab/viewer/Panel.hpp, moved by the mouse. They need no display. */
+ * Tests of what a user does in a window with panels:
+ * CME212/viewer/MouseTool.hpp, SDLViewer::set_panels() and set_touch();
+ * lab/viewer/Plot.hpp, and each control of lab/viewer/Panel.hpp, moved by the
+ * mouse. They need no display. */
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,12 +17,12 @@
 #include <utility>
 #include <vector>
 
-#include "CME212/GLOverlay.hpp"  // Dear ImGui, to draw a panel
-#include "CME212/Hand.hpp"
-#include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
-#include "CME212/SDLWindow.hpp"  // SDL, to push its events
 #include "CME212/Util.hpp"
+#include "CME212/viewer/GLOverlay.hpp"  // Dear ImGui, to draw a panel
+#include "CME212/viewer/Image.hpp"
+#include "CME212/viewer/MouseTool.hpp"
+#include "CME212/viewer/SDLWindow.hpp"  // SDL, to push its events
 #include "Graph.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
@@ -33,7 +34,7 @@ namespace {
 using namespace CME212;
 using Kind = Touch::Kind;
 
-// ---------------------------------------------------------------------- Hand
+// ----------------------------------------------------------------- MouseTool
 
 BoundingBox unit_box() {
   return (BoundingBox() |= Point(-1, -1, -1)) |= Point(1, 1, 1);
@@ -52,7 +53,7 @@ SceneData points(const std::vector<Point>& at) {
   return s;
 }
 
-TEST(Hand, PlacesAndPointsAreInverse) {
+TEST(MouseTool, PlacesAndPointsAreInverse) {
   for (double hidden : {0.0, 250.0})
     for (double width : {640.0, 300.0}) {
       const Picture p = front_picture(width, 480, hidden / 2);
@@ -72,9 +73,9 @@ TEST(Hand, PlacesAndPointsAreInverse) {
     }
 }
 
-TEST(Hand, MeansTheNearestNodeThatIsSeen) {
+TEST(MouseTool, MeansTheNearestNodeThatIsSeen) {
   const Picture p = front_picture(600, 600);
-  Hand hand;
+  MouseTool hand;
   SceneData s = points({{0, 0, 0}, {0.5, 0, 0}, {0, 0.8, 0.01}, {0, 30, -6}});
   hand.look(s, true);
   auto at = [&](const Point& where, double dx = 0) {
@@ -99,9 +100,9 @@ TEST(Hand, MeansTheNearestNodeThatIsSeen) {
   EXPECT_FALSE(at({0, 0, 0}));
 }
 
-TEST(Hand, TakesANodeAlongInThePlaneOfThePicture) {
+TEST(MouseTool, TakesANodeAlongInThePlaneOfThePicture) {
   const Picture p = front_picture(600, 600);
-  Hand hand;
+  MouseTool hand;
   hand.look(points({{0.25, 0.5, 0}}), true);
   const Point q = p.place_of(Point(0.25, 0.5, 0));
   EXPECT_FALSE(hand.grab(p, q.x + 50, q.y, 12));
@@ -121,9 +122,9 @@ TEST(Hand, TakesANodeAlongInThePlaneOfThePicture) {
   EXPECT_FALSE(hand.holds());
 }
 
-TEST(Hand, CutsThroughAllThatItsStrokeCovers) {
+TEST(MouseTool, CutsThroughAllThatItsStrokeCovers) {
   const Picture p = front_picture(600, 600);
-  Hand hand;
+  MouseTool hand;
   hand.start_cut(300, 100);
   const Touch t = hand.cut(p, 300, 500);  // downwards
   EXPECT_EQ(t.kind, Kind::cut);

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "CME212/Image.hpp"
+#include "CME212/viewer/Image.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/viewer/Screen.hpp"

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
-#include "CME212/GLCamera.hpp"
-#include "CME212/Image.hpp"
-#include "CME212/SDLWindow.hpp"  // SDL, to press its keys
 #include "CME212/SFML_Viewer.hpp"
-#include "CME212/SceneBuilder.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/Image.hpp"
+#include "CME212/viewer/SDLWindow.hpp"  // SDL, to press its keys
+#include "CME212/viewer/SceneBuilder.hpp"
 #include "Graph.hpp"
 #include "tests/TestFolder.hpp"
 

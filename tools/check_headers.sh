@@ -7,12 +7,12 @@ cd "$(dirname "$0")/.."
 shopt -s nullglob extglob
 # All but what stands for a part of another C++ library: lab/page/README.md
 if [ $# = 0 ]; then
-  set -- *.hpp CME212/*.hpp lab/*.hpp lab/*/!(wasi).hpp
+  set -- *.hpp CME212/*.hpp CME212/*/*.hpp lab/*.hpp lab/*/!(wasi).hpp
 fi
 # Headers that name SDL or OpenGL, and the packages whose flags these need; all
 # others compile without. A header that draws only under MASS_SPRING_VIEWER is
 # compiled with it and without it.
-drawing='^CME212/(GL|SDL(Window|Input|Settings))'
+drawing='^CME212/viewer/(GL|SDL(Window|Input|Settings))'
 packages="sdl2 gl imgui libpng"
 
 compile() {  # COMPILER HEADER; one report, even when others write too

@@ -8,8 +8,9 @@ cd "$(dirname "$0")/.."
 
 arrows='
 CME212        :
+CME212/viewer : CME212
 Graph         : CME212
-mass_spring   : Graph
+mass_spring   : Graph CME212/viewer
 course        : mass_spring
 lab           : CME212
 lab/fast      : mass_spring lab
@@ -25,12 +26,12 @@ lab/run       : lab/viewer
 lab/page      : lab/live
 '
 # A program in the root may draw, and a test; of all else only these:
-drawing='CME212/GL* CME212/SDL* CME212/SFML* CME212/SceneBuilder.hpp
-         CME212/Image.hpp CME212/Color.hpp'
+drawing='CME212/viewer/* CME212/SDLViewer.hpp CME212/SFML_Viewer.hpp
+         CME212/Color.hpp'
 drawers='CME212/* lab/viewer/* lab/run/* tests/* course/*'
 # And only these name SDL, OpenGL and Dear ImGui:
 gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/|imgui'
-gl_users='CME212/GL* CME212/SDL* lab/viewer/*'
+gl_users='CME212/viewer/GL* CME212/viewer/SDL* lab/viewer/*'
 
 mapfile -t files < <(git ls-files -co --exclude-standard -- '*.hpp' '*.cpp' |
   sort -u | while IFS= read -r file; do [ ! -f "$file" ] || echo "$file"; done)
@@ -57,6 +58,7 @@ is_program() { [[ $'\n'$programs$'\n' == *$'\n'$1$'\n'* ]]; }
 set_room() {  # of FILE, in $room: that of a program in the root is .
   case $1 in
     Graph.hpp) room=Graph ;;
+    CME212/*Viewer.hpp) room=CME212/viewer ;;
     mass_spring.hpp | mass_spring.cpp) room=mass_spring ;;
     lab/bench/*) room=lab/bench ;;
     course/*) room=course ;;

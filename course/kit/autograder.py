@@ -11,7 +11,7 @@ import zipfile
 
 from tasks import ROOT
 
-GLOBS = ["LICENSE", "Graph.hpp", "CME212/*.hpp", "tools/deps.sh",
+GLOBS = ["LICENSE", "Graph.hpp", "CME212/**/*.hpp", "tools/deps.sh",
          "course/tasks.toml", "course/kit/*.py", "course/kit/*.cpp",
          "course/tests/**/*"]
 LEFT_OUT = {"kit_check.py", "test_markers.py", "starter.py", "autograder.py"}

@@ -53,7 +53,7 @@ class Kit:
         # CME212/ apart from the root, whose Graph.hpp is no submission's.
         self.include = BUILT / "include"
         self.include.mkdir(parents=True, exist_ok=True)
-        course = sorted((ROOT / "CME212").glob("*.hpp"))
+        course = sorted((ROOT / "CME212").rglob("*.hpp"))
         with open(BUILT / "lock", "w", encoding="ascii") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             link = self.include / "CME212"

@@ -14,8 +14,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "CME212/Image.hpp"
 #include "CME212/Util.hpp"
+#include "CME212/viewer/Image.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"

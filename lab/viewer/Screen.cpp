@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "CME212/Image.hpp"
 #include "CME212/SDLViewer.hpp"
+#include "CME212/viewer/Image.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Scene.hpp"

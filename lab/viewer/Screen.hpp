@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "CME212/NoDisplay.hpp"
+#include "CME212/viewer/NoDisplay.hpp"
 
 namespace lab {
 

@@ -11,20 +11,20 @@
 #undef SDLViewer
 #endif
 
-#include "CME212/NoDisplay.hpp"
+#include "CME212/viewer/NoViewer.hpp"
 #include "film.hpp"
 
 namespace CME212 {
 
-class SDLViewer {
+class SDLViewer : public NoViewer {
  public:
   struct Options {
     int width = 1024, height = 768;
     std::string title;
     bool offscreen = false, restarts = false, colors = false;
   };
-  SDLViewer() = default;
-  explicit SDLViewer(const Options&) {}
+  SDLViewer() : NoViewer(Films()) {}
+  explicit SDLViewer(const Options&) : SDLViewer() {}
   SDLViewer(const SDLViewer&) = delete;
   static bool has_display() { return false; }
 
@@ -48,8 +48,6 @@ class SDLViewer {
   void add_edges(It first, It last, const Map&) {
     kit::film_edges(first, last);
   }
-  template <typename... T>
-  void add_faces(const T&...) {}
   template <typename G>
   void draw_graph(G& g) {
     draw_graph_nodes(g);
@@ -73,25 +71,6 @@ class SDLViewer {
       kit::film().t = double(label);
     }
   }
-  template <typename... T>
-  void add_sphere(const T&...) {}
-  template <typename... T>
-  void add_plane(const T&...) {}
-  template <typename... T>
-  void set_view(const T&...) {}
-  template <typename... T>
-  void set_scale(const T&...) {}
-  void set_message(const std::vector<std::string>&) {}
-  void set_paused(bool) {}
-  void set_strain_colors(bool) {}
-  bool strain_colors() const { return false; }
-  bool take_restart() { return false; }
-  void clear() {}
-  void clear_shapes() {}
-  void center_view() {}
-  void launch() {}
-  void close() {}
-
   bool closed() const {
     std::lock_guard lock(kit::film().mutex);
     return kit::film().ended;

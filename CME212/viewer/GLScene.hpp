@@ -12,14 +12,14 @@
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Color.hpp"
-#include "CME212/Faces.hpp"
-#include "CME212/GLCamera.hpp"
-#include "CME212/GLShaders.hpp"
-#include "CME212/GLShadow.hpp"
-#include "CME212/GLTools.hpp"
-#include "CME212/Look.hpp"
 #include "CME212/Point.hpp"
-#include "CME212/SceneBuilder.hpp"
+#include "CME212/viewer/Faces.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/GLShaders.hpp"
+#include "CME212/viewer/GLShadow.hpp"
+#include "CME212/viewer/GLTools.hpp"
+#include "CME212/viewer/Look.hpp"
+#include "CME212/viewer/SceneBuilder.hpp"
 
 namespace CME212 {
 

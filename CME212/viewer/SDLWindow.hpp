@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "CME212/NoDisplay.hpp"
+#include "CME212/viewer/NoDisplay.hpp"
 
 namespace CME212 {
 

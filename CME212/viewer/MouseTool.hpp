@@ -1,6 +1,6 @@
 #pragma once
-/** @file Hand.hpp
- * Hand: what a user does to a scene with the mouse, as places in it. Plain
+/** @file MouseTool.hpp
+ * MouseTool: what a user does to a scene with the mouse, as places in it. Plain
  * arithmetic: no window, no OpenGL. */
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "CME212/GLCamera.hpp"
 #include "CME212/Point.hpp"
-#include "CME212/SceneBuilder.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/SceneBuilder.hpp"
 
 namespace CME212 {
 
@@ -54,7 +54,7 @@ struct Picture {
 };
 
 /** The mouse on a scene: over a node, holding one, or cutting. */
-class Hand {
+class MouseTool {
  public:
   /** Be at @a scene from now on.  O(nodes), and O(edges) if they changed */
   void look(const SceneData& scene, bool edges_changed) {

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "CME212/BoundingBox.hpp"
-#include "CME212/GLCamera.hpp"
-#include "CME212/GLOverlay.hpp"
-#include "CME212/Look.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/GLOverlay.hpp"
+#include "CME212/viewer/Look.hpp"
 
 namespace CME212 {
 

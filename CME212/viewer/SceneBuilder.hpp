@@ -17,8 +17,8 @@
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Color.hpp"
-#include "CME212/Faces.hpp"
 #include "CME212/Point.hpp"
+#include "CME212/viewer/Faces.hpp"
 
 namespace CME212 {
 

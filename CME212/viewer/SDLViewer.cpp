@@ -13,13 +13,13 @@
 #include <thread>
 #include <utility>
 
-#include "CME212/GLCamera.hpp"
-#include "CME212/GLOverlay.hpp"
-#include "CME212/GLScene.hpp"
-#include "CME212/GLTools.hpp"
-#include "CME212/Hand.hpp"
-#include "CME212/SDLSettings.hpp"
-#include "CME212/SDLWindow.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/GLOverlay.hpp"
+#include "CME212/viewer/GLScene.hpp"
+#include "CME212/viewer/GLTools.hpp"
+#include "CME212/viewer/MouseTool.hpp"
+#include "CME212/viewer/SDLSettings.hpp"
+#include "CME212/viewer/SDLWindow.hpp"
 
 namespace CME212 {
 
@@ -65,7 +65,7 @@ class SDLViewer::Display : public SDLSettings {
   std::optional<Canvas> canvas_;
   clock::time_point last_frame_;
   double frame_period_ = 0;  // [s]
-  Hand hand_;
+  MouseTool mouse_tool_;
   Picture picture_;                // drawn last
   std::array<double, 2> mouse_{};  // in it
   double unit_ = 1;                // pixels to a unit of the mouse
@@ -157,7 +157,7 @@ void SDLViewer::Display::draw(int width, int height, double scale,
   if (std::exchange(shown_pieces_, pieces) != pieces) builder_.take_again();
   builder_.take([&](const SceneData& s, bool edges_changed) {
     canvas_->scene.upload(s, edges_changed, pieces);
-    if (touch) hand_.look(s, edges_changed);
+    if (touch) mouse_tool_.look(s, edges_changed);
   });
   OverlayText shown;
   GLCamera eye;
@@ -178,9 +178,9 @@ void SDLViewer::Display::draw(int width, int height, double scale,
   }
   picture_ = {eye, double(width), double(height)};
   if (interactive) {
-    shown.ring = hand_.ring(picture_);
-    shown.line = hand_.stroke();
-    if (shown.ring && hand_.holds())
+    shown.ring = mouse_tool_.ring(picture_);
+    shown.line = mouse_tool_.stroke();
+    if (shown.ring && mouse_tool_.holds())
       shown.line = {*shown.ring, {float(mouse_[0]), float(mouse_[1])}};
   }
   canvas_->scene.draw(eye, width, height, scale, what,
@@ -196,9 +196,9 @@ double SDLViewer::Display::interact() {
   unsettled_ = events.empty() ? std::max(unsettled_ - 1, 0) : 2;
   for (const SDL_Event& e : events) {
     point_at(e);
-    const bool held = hand_.holds() || hand_.cuts();
+    const bool held = mouse_tool_.holds() || mouse_tool_.cuts();
     if (held || !overlay.panels_want_mouse()) on_picture(e);
-    if (overlay.panels_want_mouse() && !held) hand_.leave();
+    if (overlay.panels_want_mouse() && !held) mouse_tool_.leave();
   }
   return panels && panels_shown ? panels() : 0;
 }
@@ -285,30 +285,30 @@ void SDLViewer::Display::on_picture(const SDL_Event& e) {
   switch (e.type) {
     case SDL_MOUSEBUTTONDOWN:
       if (!touch || !left) return;
-      if (ImGui::GetIO().KeyCtrl) return hand_.start_cut(x, y);
-      if (const auto t = hand_.grab(picture_, x, y, near)) touch(*t);
+      if (ImGui::GetIO().KeyCtrl) return mouse_tool_.start_cut(x, y);
+      if (const auto t = mouse_tool_.grab(picture_, x, y, near)) touch(*t);
       return;
     case SDL_MOUSEBUTTONUP:
       if (!left) return;
-      if (hand_.holds()) touch(hand_.release());
-      return hand_.end_cut();
+      if (mouse_tool_.holds()) touch(mouse_tool_.release());
+      return mouse_tool_.end_cut();
     case SDL_MOUSEMOTION: {
-      if (hand_.holds()) return touch(hand_.move(picture_, x, y));
-      if (hand_.cuts()) return touch(hand_.cut(picture_, x, y));
+      if (mouse_tool_.holds()) return touch(mouse_tool_.move(picture_, x, y));
+      if (mouse_tool_.cuts()) return touch(mouse_tool_.cut(picture_, x, y));
       const double right = e.motion.xrel * unit, up = -e.motion.yrel * unit;
       if (e.motion.state & SDL_BUTTON_LMASK)
         change([&] { camera.rotate(3 * right, 3 * up); });
       else if (e.motion.state & SDL_BUTTON_RMASK)
         change([&] { camera.pan(right, up); });
       else if (touch)
-        hand_.hover(picture_, x, y, near);
+        mouse_tool_.hover(picture_, x, y, near);
       return;
     }
     case SDL_MOUSEWHEEL:
       return change([&] { camera.zoom(std::pow(1.1, e.wheel.preciseY)); });
     case SDL_KEYDOWN:
       if (!touch || e.key.keysym.sym != SDLK_p || e.key.repeat) return;
-      if (const auto node = hand_.node_at(picture_, x, y, near))
+      if (const auto node = mouse_tool_.node_at(picture_, x, y, near))
         touch({Touch::Kind::pin, *node});
       return;
   }

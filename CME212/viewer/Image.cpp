@@ -1,6 +1,6 @@
 /** @file Image.cpp
  * PNG files by libpng; films by ffmpeg, a program of its own. */
-#include "CME212/Image.hpp"
+#include "CME212/viewer/Image.hpp"
 
 #include <fcntl.h>
 #include <png.h>

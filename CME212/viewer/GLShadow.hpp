@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "CME212/GLCamera.hpp"
-#include "CME212/GLTools.hpp"
 #include "CME212/Point.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/GLTools.hpp"
 
 namespace CME212 {
 

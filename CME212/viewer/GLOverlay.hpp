@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
-#include "CME212/Look.hpp"
-#include "CME212/SDLInput.hpp"
+#include "CME212/viewer/Look.hpp"
+#include "CME212/viewer/SDLInput.hpp"
 
 namespace CME212 {
 

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
-#include "CME212/GLCamera.hpp"
-#include "CME212/Image.hpp"
 #include "CME212/Point.hpp"
+#include "CME212/viewer/GLCamera.hpp"
+#include "CME212/viewer/Image.hpp"
 
 namespace CME212 {
 
