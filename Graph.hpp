@@ -1,10 +1,10 @@
 #pragma once
 /** @file Graph.hpp
- * Graph: an undirected graph whose nodes have a position in space and whose
- * nodes and edges carry a value each. Node and Edge are proxies: small
- * handles, passed by value, that read and write the graph's own arrays.
+ * Graph: an undirected graph. Each node has a position in space; each node and
+ * each edge carries a value. Node and Edge are proxies: small handles, passed
+ * by value, that read and write the graph's arrays.
  *
- * How it is stored, and why so: docs/graph.md. */
+ * How it is stored, and why: docs/graph.md. */
 #include <array>
 #include <bit>
 #include <cassert>
@@ -28,29 +28,30 @@
  * @tparam V Type of the nodes' values: default constructible, copyable
  * @tparam E Type of the edges' values: likewise
  *
- * The nodes have the indices 0, ..., num_nodes() - 1, the edges 0, ...,
- * num_edges() - 1. A removal moves indices; it never moves what a Node or an
- * Edge means: every handle keeps meaning the same element for as long as that
- * lives. A handle of a removed element is dead and stays so for ever, also
- * when new elements come (has_node() and has_edge() say false).
+ * Nodes have the indices 0, ..., num_nodes() - 1, edges 0, ...,
+ * num_edges() - 1. A removal changes indices, but not what a handle refers to:
+ * a Node or Edge refers to the same element until that is removed. Then the
+ * handle is dead for ever: has_node() or has_edge() is false, even when new
+ * elements are added.
  *
- * Complexity: O(1) where nothing is said; "degree" is a node's number of
- * edges. The first removal makes the lists of indices: it takes
- * O(num_nodes() + num_edges()), which is O(1) for each element added before.
- * So may the first one after clear() or reindex(). Memory, N nodes and M edges:
- * 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge on a grid, up to a
- * quarter of that to grow into, 8 more each after the first removal, and 8 an
- * edge once hubs lost many edges; slots of removed elements are used again by
- * new ones, and given back when the graph is destroyed.
+ * Complexity: O(1) unless stated; "degree" is a node's number of edges. The
+ * first removal makes the lists of indices: O(num_nodes() + num_edges()), which
+ * is O(1) for each element added before. The first removal after clear() or
+ * reindex() may do so, too.
+ * Memory: 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge of a grid; up
+ * to a quarter more, as arrays grow ahead; 8 a node and an edge for the lists
+ * of indices; 8 an edge after many removals at nodes of large degree. New
+ * elements reuse the slots of removed ones. Only the destructor frees memory.
  *
- * A member that throws, std::bad_alloc or what a value throws, has changed no
- * node, edge or value; but what it says it invalidates may be invalid.
- * Preconditions are asserted; with NDEBUG they cost nothing. A Graph may be
- * copied (the copy has the same indices and ids, and handles of its own), but
- * not assigned: the handles of the old content would come to mean another. No
- * handle may be used when its graph is destroyed.
- * Threads: as a std::vector. Reads may run together, a write runs alone;
- * writes to positions and values of different elements may run together. */
+ * If a member throws, std::bad_alloc or what a value throws, then no node, edge
+ * or value has changed; what it lists under Invalidates may be invalid.
+ * Preconditions are asserted, at no cost with NDEBUG.
+ * A copy of a Graph has the same indices and ids, and its own handles. A Graph
+ * can't be assigned to: handles of its old content would refer to the new one.
+ * No handle may be used after its graph is destroyed.
+ * Threads: as std::vector. Reads may run at the same time, a write runs alone;
+ * but positions and values of different elements may be written at the same
+ * time. */
 template <typename V = graph_detail::NoValue,
           typename E = graph_detail::NoValue>
 class Graph {
@@ -84,15 +85,15 @@ class Graph {
 
   // ------------------------------------------------------------------- Node
 
-  /** A handle of one node: 16 bytes, to be passed by value. A default
-   * constructed Node belongs to no graph.
+  /** A handle of one node: 16 bytes, passed by value. A default constructed
+   * Node belongs to no graph.
    * @pre of all members but comparisons: the node is in its graph. */
   class Node : private totally_ordered<Node> {
    public:
     /** An invalid node. */
     Node() = default;
 
-    /** The place of the node in space, to read or to move. */
+    /** The node's position; assign to it to move the node. */
     Point& position() {
       // BEGIN SOLUTION 3.1.position 4pt
       return graph().position_[id_];
@@ -110,8 +111,8 @@ class Graph {
 
     /** A number in [0, num_nodes()); removals of others may change it. */
     size_type index() const { return graph().nodes_.index_of(id_); }
-    /** Where Graph::positions() and Graph::node_values() hold this node. It
-     * stays the same for as long as the node lives. */
+    /** The node's element in Graph::positions() and Graph::node_values(). It
+     * stays the same until the node is removed. */
     size_type id() const { return graph(), id_; }
 
     /** Number of edges at this node. */
@@ -130,8 +131,8 @@ class Graph {
     bool operator==(const Node& n) const {
       return graph_ == n.graph_ && id_ == n.id_ && generation_ == n.generation_;
     }
-    /** A strict total order of all nodes of all graphs: in one graph that of
-     * their ids. It never changes, so a Node can be a key. */
+    /** A strict total order of all nodes of all graphs; within a graph it is
+     * that of the ids. It never changes, so a Node can be the key of a map. */
     bool operator<(const Node& n) const {
       if (graph_ != n.graph_)
         return std::less<const Graph*>()(graph_, n.graph_);
@@ -158,22 +159,21 @@ class Graph {
 
   // ------------------------------------------------------------------- Edge
 
-  /** A handle of one edge, seen from one of its ends: 24 bytes, to be passed
-   * by value. A default constructed Edge belongs to no graph.
+  /** A handle of one edge, seen from one of its ends: 24 bytes, passed by
+   * value. A default constructed Edge belongs to no graph.
    * @pre of all members but comparisons: the edge is in its graph. */
   class Edge : private totally_ordered<Edge> {
    public:
     /** An invalid edge. */
     Edge() = default;
 
-    /** The end from which the edge is seen, and the other one. Which is which
-     * depends on where this handle comes from: Node::edges() gives the node
-     * itself as node1(), add_edge(a, b) gives a, edge(i) the first one of the
-     * call that added the edge. */
+    /** The end from which the edge is seen, and the other end. node1() is n for
+     * an edge of n.edges(), and a for the result of add_edge(a, b). For edge(i)
+     * it is the first argument of the add_edge() that made the edge. */
     Node node1() const { return Node(&graph(), near_); }
     Node node2() const { return Node(&graph(), far_); }
 
-    /** The value of the edge: one, whichever end it is seen from. */
+    /** The value of the edge: the same from both ends. */
     // BEGIN SOLUTION 4.1.edge_value 6pt
     edge_value_type& value() { return graph().edge_value_[id_]; }
     const edge_value_type& value() const { return graph().edge_value_[id_]; }
@@ -182,17 +182,17 @@ class Graph {
     // STUB static inline edge_value_type no_edges_{};  // belongs to no edge
     // END SOLUTION
 
-    /** Distance of the two ends, now. */
+    /** Present distance of the two ends. */
     double length() const {
       return norm(node1().position() - node2().position());
     }
     /** A number in [0, num_edges()); removals of others may change it. */
     size_type index() const { return graph().edges_.index_of(id_); }
-    /** Where Graph::edge_ends() and Graph::edge_values() hold this edge. It
-     * stays the same for as long as the edge lives. */
+    /** The edge's element in Graph::edge_ends() and Graph::edge_values(). It
+     * stays the same until the edge is removed. */
     size_type id() const { return id_; }
 
-    /** Same edge of the same graph, whichever end it is seen from. */
+    /** Same edge of the same graph, seen from either end. */
     bool operator==(const Edge& e) const {
       return graph_ == e.graph_ && id_ == e.id_ && generation_ == e.generation_;
     }
@@ -233,24 +233,25 @@ class Graph {
   /** Add a node at @a position.
    * @return the new node; its index is old num_nodes().
    * Invalidates: references and spans to positions and node values.
-   * Keeps: every Node, Edge and iterator (but an end stays where it was).
+   * Keeps: every Node, Edge and iterator; an old node_end() is now at the new
+   *       node.
    * Complexity: O(1) amortized.
    * Throws std::length_error beyond 2^31 nodes. */
   Node add_node(const Point& position, const V& value = V()) {
-    V copy = value;  // the caller's may lie in the array that grows
+    V copy = value;  // first: it may refer into the array that grows
     Point p = position;
     size_type id = nodes_.reserve_one();
     graph_detail::grow_to_hold(position_, id + 1);  // one more: positions()
     graph_detail::grow_to_hold(node_value_, id);
     graph_detail::grow_to_hold(neighbors_of_, id);
-    node_value_[id] = std::move(copy);  // the last that may throw
+    node_value_[id] = std::move(copy);  // the last line that may throw
     nodes_.acquire();
     position_[id] = p;
     ++version_;
     return Node(this, id);
   }
 
-  /** True if @a n is a node of this graph now. */
+  /** True if @a n is a node of this graph and was not removed. */
   bool has_node(const Node& n) const {
     return n.graph_ == this && nodes_.alive(n.id_, n.generation_);
   }
@@ -263,19 +264,19 @@ class Graph {
   }
 
   /** Remove node @a n and every edge at it.
-   * @return 1 if removed; 0 if !has_node(@a n), and then nothing changed.
+   * @return 1 if removed; 0 if !has_node(@a n), then nothing has changed.
    * @post !has_node(@a n), and num_nodes() fell by the result.
    * @post If removed: num_edges() fell by old @a n.degree(); the node of
    *       highest index took @a n's index; all others kept their own.
    * Invalidates: @a n, its copies and its edges; all edge and incident
    *       iterators; node iterators at @a n and at the highest index.
    * Keeps: every other Node and Edge; references and spans.
-   * Complexity: O(degree()) amortized, whatever the neighbors' degrees, but for
-   *       the first removal: see Graph. */
+   * Complexity: O(n.degree()) amortized, also if a neighbor's degree is large.
+   *       The first removal takes longer: see Graph. */
   size_type remove_node(const Node& n) {
     // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
-    size_type id = n.id_;  // n may be a reference into what changes below
+    size_type id = n.id_;  // a copy: n may refer into what changes below
     nodes_.make_lists();
     if (n.degree() > 0) prepare_drop();
     for (Neighbor b : pool_.items(neighbors_of_[id])) {
@@ -293,8 +294,9 @@ class Graph {
     // END SOLUTION
   }
   /** Remove the node at @a it, as remove_node(*it).
-   * @return an iterator at the node that now has the index, or node_end(): so
-   *         `it = g.remove_node(it)` in place of ++it visits every node once.
+   * @return an iterator at the node that took the index, or node_end(). So a
+   *         loop visits each node once if it says `it = g.remove_node(it)`
+   *         instead of ++it where it removes.
    * @pre @a it != node_end() */
   node_iterator remove_node(node_iterator it) {
     // BEGIN SOLUTION 7.1.remove_node_iterator 3pt
@@ -311,10 +313,10 @@ class Graph {
   size_type num_edges() const { return edges_.size(); }
 
   /** Add the edge between @a a and @a b, unless it is there already.
-   * @return the edge, new or old, with node1() == a and node2() == b.
+   * @return the edge, new or not, with node1() == a and node2() == b.
    * @pre has_node(a) && has_node(b) && a != b
-   * @post has_edge(a, b); num_edges() grew by one if the edge is new, and then
-   *       its index is old num_edges(). The value of an old edge is kept.
+   * @post has_edge(a, b). If the edge is new, num_edges() grew by one and the
+   *       edge's index is old num_edges(); else its value is unchanged.
    * Invalidates: incident iterators of @a a and @a b; references and spans to
    *       edge values and ends.
    * Keeps: every Node, Edge and other iterator.
@@ -330,7 +332,7 @@ class Graph {
     graph_detail::grow_to_hold(edge_value_, id);
     pool_.reserve_edge(neighbors_of_[i], neighbors_of_[j], id);
     // BEGIN SOLUTION 4.1.edge_value
-    edge_value_[id] = std::move(copy);  // the last that may throw
+    edge_value_[id] = std::move(copy);  // the last line that may throw
     // STUB (void)copy;
     // END SOLUTION
     edges_.acquire();
@@ -341,12 +343,12 @@ class Graph {
     return Edge(this, id);
   }
 
-  /** True if there is an edge between @a a and @a b, nodes of this graph now.
+  /** True if @a a and @a b are nodes of this graph with an edge between them.
    * Complexity: O(min(a.degree(), b.degree())) */
   bool has_edge(const Node& a, const Node& b) const {
     return find(a, b) != none;
   }
-  /** True if @a e is an edge of this graph now. */
+  /** True if @a e is an edge of this graph and was not removed. */
   bool has_edge(const Edge& e) const {
     return e.graph_ == this && edges_.alive(e.id_, e.generation_);
   }
@@ -358,14 +360,15 @@ class Graph {
   }
 
   /** Remove the edge between @a a and @a b.
-   * @return 1 if removed; 0 if !has_edge(a, b), and then nothing changed.
+   * @return 1 if removed; 0 if !has_edge(a, b), then nothing has changed.
    * @post !has_edge(a, b), and num_edges() fell by the result.
    * @post If removed: the edge of highest index took its index; all others
    *       kept their own.
    * Invalidates: the edge and its copies; edge iterators at it and at the
    *       highest index; incident iterators of @a a and @a b.
    * Keeps: every Node and every other Edge; references and spans.
-   * Complexity: O(min(degrees)) amortized, but for the first removal. */
+   * Complexity: O(min(a.degree(), b.degree())) amortized; the first removal
+   *       takes longer. */
   size_type remove_edge(const Node& a, const Node& b) {
     // BEGIN SOLUTION 7.1.remove_edge 6pt
     size_type id = find(a, b);
@@ -374,7 +377,7 @@ class Graph {
     // STUB return 0;
     // END SOLUTION
   }
-  /** Remove @a e: as above, in O(1) amortized; 0 if !has_edge(e). */
+  /** Remove @a e, as above. Returns 0 if !has_edge(e). O(1) amortized. */
   size_type remove_edge(const Edge& e) {
     // BEGIN SOLUTION 7.1.remove_edge
     if (!has_edge(e)) return 0;
@@ -390,8 +393,8 @@ class Graph {
     // STUB return 0;
     // END SOLUTION
   }
-  /** Remove the edge at @a it: as above.
-   * @return an iterator at the edge that now has the index, or edge_end().
+  /** Remove the edge at @a it, as above.
+   * @return an iterator at the edge that took the index, or edge_end().
    * @pre @a it != edge_end() */
   edge_iterator remove_edge(edge_iterator it) {
     // BEGIN SOLUTION 7.1.remove_edge_iterator 3pt
@@ -406,8 +409,8 @@ class Graph {
 
   /** Remove all nodes and edges.
    * Invalidates: every Node, Edge, iterator, reference and span.
-   * Complexity: O(num_nodes() + num_edges()), whatever was removed before.
-   *       Memory is kept for new elements, so dead handles stay dead. */
+   * Complexity: O(num_nodes() + num_edges()), even if there were many more
+   *       before. Frees no memory. */
   void clear() {
     for (Edge e : edges())
       ends_[e.id()] = {}, graph_detail::reset(edge_value_[e.id()]);
@@ -422,9 +425,9 @@ class Graph {
     ++version_;
   }
 
-  /** Give the indices anew, in the order in which the elements lie in memory,
-   * and close gaps between lists of neighbors: after many removals this makes
-   * iteration nearly as fast as at first.
+  /** Number nodes and edges in the order in which they lie in memory, and close
+   * the gaps between lists of neighbors. After many removals this makes
+   * iteration nearly as fast as before them.
    * Invalidates: all iterators; spans of neighbors().
    * Keeps: every Node and Edge (with another index); references, other spans.
    * Complexity: O(node_slots() + edge_slots()) */
@@ -434,8 +437,8 @@ class Graph {
     edges_.reindex();
     ++version_;
   }
-  /** Give the node of id @a ids[i] the index i: so nodes can lie in memory in
-   * the order that sweeps like best, and be counted in another.
+  /** Give the node of id @a ids[i] the index i. So nodes can be numbered in one
+   * order, and lie in memory in another that makes loops faster.
    * @pre @a ids holds the id of each node once
    * Invalidates and keeps: as reindex(), of the nodes.
    * Complexity: O(node_slots()); memory as after a removal. */
@@ -448,7 +451,8 @@ class Graph {
     edges_.reindex(ids);
     ++version_;
   }
-  /** Give the edges at @a n the order of @a ids, which are theirs, each once.
+  /** Put the edges at @a n in the order of @a ids.
+   * @pre @a ids holds the id of each edge at @a n once
    * Invalidates: incident iterators of @a n.   Keeps: all else.
    * Complexity: O(degree squared) */
   void reorder_edges(const Node& n, std::span<const size_type> ids) {
@@ -463,8 +467,8 @@ class Graph {
     ++version_;
   }
 
-  /** Make room for so many nodes and edges in all: up to there, adding moves
-   * nothing; but lists of neighbors may, if most are far from full.
+  /** Allocate memory for a total of @a nodes and @a edges, so that adding them
+   * moves no data. (Lists of neighbors may move if degrees differ a lot.)
    * Invalidates: references and spans.   Keeps: all else. */
   void reserve(size_type nodes, size_type edges) {
     nodes_.reserve(nodes);
@@ -490,10 +494,10 @@ class Graph {
   }
 
   // ---------------------------------------------------------- Arrays, by id
-  // The same storage without proxies, for sweeps over the whole graph: plain
-  // arrays, addressed by Node::id() and Edge::id(). A slot whose element was
+  // The graph's arrays without proxies, for loops over the whole graph. The
+  // index into them is Node::id() or Edge::id(). A slot whose element was
   // removed holds Point(), V(), E() (unless these throw) and the ends {0, 0};
-  // skip it by node_in_use() and edge_in_use(). The loop is one over memory.
+  // node_in_use() and edge_in_use() tell it apart.
 
   /** All ids lie below this.  >= num_nodes() */
   size_type node_slots() const { return nodes_.slots(); }
@@ -511,8 +515,7 @@ class Graph {
     return Edge(this, id);
   }
 
-  /** One more Point lies behind the last: who reads four numbers at a time may
-   * read its x. */
+  /** One padding Point follows the last, so a 4-wide load stays inside. */
   std::span<Point> positions() { return {position_.data(), node_slots()}; }
   std::span<const Point> positions() const {
     return {position_.data(), node_slots()};
@@ -530,8 +533,7 @@ class Graph {
     return {edge_value_.data(), edge_slots()};
   }
 
-  /** An edge as one of its ends sees it: the ids of the other end and of the
-   * edge. */
+  /** An edge seen from one end: the ids of the other end and of the edge. */
   struct Neighbor {
     size_type node, edge;
   };
@@ -541,12 +543,12 @@ class Graph {
     return pool_.items(neighbors_of_[id]);
   }
 
-  /** Changes whenever a node or an edge came or went, or indices changed. No
-   * two graphs of a program ever have the same. */
+  /** A number that changes whenever a node or an edge is added or removed, or
+   * an index changes. No two graphs of a program ever have the same. */
   std::uint64_t version() const { return version_.number; }
 
-  /** Throw std::logic_error with what is wrong unless the whole representation
-   * is consistent. For tests.
+  /** For tests.  Throws std::logic_error, with what is wrong, unless the
+   * representation invariant holds: see the arrays, below.
    * Complexity: O(N log N + sum of squared degrees) */
   void check_invariants() const {
     auto require = [](bool ok, const char* what) {
@@ -593,6 +595,21 @@ class Graph {
 
  private:
   static constexpr size_type none = graph_detail::none;
+  // Representation. A slot is a place in the arrays; the id of an element is
+  // the number of its slot.
+  //
+  // Invariant:
+  // - nodes_ and edges_ know which slots are in use and which index each has:
+  //   0, ..., size() - 1, every one once. All other slots are free or worn out.
+  // - Every array reaches to the last slot; position_ has one Point more.
+  // - neighbors_of_[i] is a list in pool_. No two lists share a block, and each
+  //   block of the pool is in a list or free.
+  // - An edge e in use with ends_[e] = {i, j}: i != j, both are in use, the
+  // list
+  //   of i has the entry {j, e}, that of j the entry {i, e}. There are no other
+  //   entries, and no list has two entries of the same node.
+  // - Slots not in use: a node has no list, an edge has the ends {0, 0}.
+  // check_invariants() holds all of it; docs/graph.md explains it.
   graph_detail::SlotMap<Generation> nodes_, edges_;
   graph_detail::NeighborPool<Neighbor> pool_;
   graph_detail::Version version_;
@@ -612,20 +629,20 @@ class Graph {
     const Node& from = from_a ? a : b;
     size_type to = from_a ? b.id_ : a.id_;
     size_type found = none;
-    // Not a branch on what is found: in lists this short, one that the
-    // processor guesses wrong costs more than to read on to the end.
+    // No branch on what is found: lists are short, so a branch that is
+    // predicted wrong costs more than reading on to the end.
     for (Neighbor n : pool_.items(neighbors_of_[from.id_]))
       found &= n.edge | (0u - size_type(n.node != to));
     return found;
   }
 
-  /** All that may throw when edges are removed. */
+  /** Do all that may throw when edges are removed. */
   void prepare_drop() {
     edges_.make_lists();
     pool_.reserve_removal({neighbors_of_.data(), node_slots()}, num_edges(),
                           edge_slots());
   }
-  /** Release edge @a e, whose ends' lists are not looked at. */
+  /** Release the slot of edge @a e; its entries in the lists stay. */
   void drop_edge(size_type e) {
     // BEGIN SOLUTION 7.1.remove_edge
     ends_[e] = {};
@@ -635,8 +652,8 @@ class Graph {
     // END SOLUTION
   }
 
-  /** Iterates over proxies, made when asked for. Random access over all nodes
-   * or edges by index; over the edges of one node by place in the pool. */
+  /** Makes a proxy when it is dereferenced. Iterates over all nodes or all
+   * edges by index, and over the edges of one node by place in the pool. */
   template <typename Proxy, bool of_one_node>
   class ProxyIterator {
    public:
@@ -644,13 +661,13 @@ class Graph {
     using reference = Proxy;
     using difference_type = std::ptrdiff_t;
     using iterator_category = std::random_access_iterator_tag;
-    /** Holds the proxy while its member is called. */
+    /** Holds the proxy while a member of it is called. */
     struct pointer {
       Proxy proxy;
       Proxy* operator->() { return &proxy; }
     };
 
-    /** An iterator of no graph: only to be assigned to. */
+    /** An iterator of no graph. It can only be assigned to. */
     ProxyIterator() = default;
 
     /** @pre it belongs to a graph and is not at the end of its range */
@@ -702,7 +719,7 @@ class Graph {
    private:
     friend class Graph;
     Graph* graph_ = nullptr;
-    // Index, or place in the pool: as long as an address, for short loops.
+    // Index, or place in the pool; of 64 bits, which makes loops faster.
     std::size_t at_ = 0;
     size_type node_ = 0;  // of_one_node: its id
     ProxyIterator(Graph* g, std::size_t at, size_type node = 0)
