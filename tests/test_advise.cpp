@@ -96,12 +96,12 @@ TEST(Refinement, IsUncertainOfWhatGoesByNoOrder) {
 
 /** Grids of an error of order 1, from 1 to 1/16, and those half-way, which are
  * off by so much more. */
-Refinement with_half_ways(const std::vector<double>& off) {
+Refinement with_intermediate(const std::vector<double>& off) {
   Refinement r(Measure::energy);
   for (std::size_t k = 0; k < 5; ++k) {
     r.add(grid(std::pow(2, k), {std::pow(0.5, k)}));
     if (k > 0 && k <= off.size())
-      r.add_half_way(
+      r.add_intermediate(
           grid(std::sqrt(2) * std::pow(2, k - 1),
                {std::sqrt(0.5) * std::pow(0.5, k - 1) + off[k - 1]}));
   }
@@ -112,21 +112,22 @@ Refinement with_half_ways(const std::vector<double>& off) {
 // and one and a half times that and what grids half-way say.
 TEST(Refinement, GridsHalfWayTellHowFarTheLimitIsSure) {
   const double own = 1.5 * 0.2 / 16;
-  EXPECT_NEAR(with_half_ways({0, 0, 0, 0}).uncertainty_of_limit(), own, 1e-12);
+  EXPECT_NEAR(with_intermediate({0, 0, 0, 0}).uncertainty_of_limit(), own,
+              1e-12);
   // All are off: their limit is, and the last of them from the law.
-  EXPECT_NEAR(with_half_ways({0.1, 0.1, 0.1, 0.1}).uncertainty_of_limit(),
+  EXPECT_NEAR(with_intermediate({0.1, 0.1, 0.1, 0.1}).uncertainty_of_limit(),
               own + 1.5 * (0.1 + 0.1), 1e-12);
   // By sides in turn, so that their limit is not known either.
-  const Refinement turns = with_half_ways({0.01, -0.01, 0.01, -0.01});
+  const Refinement turns = with_intermediate({0.01, -0.01, 0.01, -0.01});
   EXPECT_GT(turns.uncertainty_of_limit(), own + 1.5 * 0.02);
   // Without the last one these tell nothing: what the last grid changed does.
-  EXPECT_NEAR(with_half_ways({0.1, 0.1, 0.1}).uncertainty_of_limit(), own,
+  EXPECT_NEAR(with_intermediate({0.1, 0.1, 0.1}).uncertainty_of_limit(), own,
               1e-12);
   EXPECT_NEAR(turns.limit()[0], 0, 1e-12);
 }
 
 TEST(Refinement, AGridHalfWayIsOneThatWasTried) {
-  const Refinement r = with_half_ways({0, 0, 0, 0.1});
+  const Refinement r = with_intermediate({0, 0, 0, 0.1});
   ASSERT_EQ(r.tried().size(), 9u);
   for (std::size_t k = 1; k < 9; ++k) {
     EXPECT_NEAR(r.tried()[k].factor / r.tried()[k - 1].factor, std::sqrt(2),
@@ -184,7 +185,7 @@ TEST(Advise, RefusesWhatNoGridCanGive) {
   AdviceRules rules;
   rules.most_nodes = 500;
   const Advice a = advise(hanging(1e-7), rules);
-  EXPECT_NE(a.refusal.find("would be too much"), std::string::npos)
+  EXPECT_NE(a.refusal.find("would be too large"), std::string::npos)
       << a.refusal;
   EXPECT_NE(in_words(a).find("no advice: "), std::string::npos);
   rules.most_nodes = 20;  // the first grid has 36

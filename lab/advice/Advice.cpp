@@ -21,7 +21,7 @@ std::string with_unit(double x, Measure measure) {
 
 namespace {
 
-/** @a words as a shell takes them for one. */
+/** @a words, quoted so that a shell reads them as one word. */
 std::string for_shell(const std::string& words) {
   if (!words.empty() &&
       words.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUV"
@@ -47,7 +47,7 @@ struct Column {
   std::string title;
   std::vector<std::string> cells;
 };
-/** As wide as its cells; all but the first are aligned to the right. */
+/** Columns as wide as their cells; all but the first are right-aligned. */
 std::string table(const std::vector<Column>& columns) {
   std::string text = "\n";
   for (std::size_t row = 0; row <= columns[0].cells.size(); ++row) {
@@ -66,7 +66,7 @@ std::string table(const std::vector<Column>& columns) {
   return text;
 }
 
-/** Two digits of a count, without an exponent. */
+/** A count rounded to two digits, without an exponent. */
 std::string count(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.0f",
@@ -79,7 +79,7 @@ std::string number(double x) {
                            : CME212::two_digits(x);
 }
 
-/** What acts in @a m because nobody said otherwise. */
+/** The parts of @a m that are active by default. */
 std::string by_default(const Model& m) {
   std::string all;
   auto add = [&](bool acts, const std::string& what) {
@@ -92,12 +92,12 @@ std::string by_default(const Model& m) {
   return all;
 }
 
-/** What was not left out of a scene that asked for @a a, and its error. */
+/** The advised scene, its command and its error. */
 std::string recommendation(const Advice& a) {
   using CME212::short_text;
-  std::string gone;
+  std::string removed;
   for (const PartReport& p : a.parts)
-    if (!p.needed) gone += (gone.empty() ? "" : "; ") + p.part;
+    if (!p.needed) removed += (removed.empty() ? "" : "; ") + p.part;
   const std::size_t nodes = mesh_of(a.model).points.size();
   std::string text = "advice: " + std::to_string(nodes) + " nodes, " +
                      a.model.method->info.name + ", dt " +
@@ -112,16 +112,16 @@ std::string recommendation(const Advice& a) {
     text += *unit_of(a.measure) ? std::string(" ") + unit_of(a.measure) : "";
     text += '\n';
   }
-  if (!gone.empty()) text += "  not needed for that: " + gone + '\n';
+  if (!removed.empty()) text += "  not needed for that: " + removed + '\n';
   if (a.model.t_end < a.t_end)
-    text += "  it ends at " + number(a.model.t_end) + " s of " +
-            number(a.t_end) + " s: from then on " + name_of(a.measure) +
+    text += "  it ends at " + number(a.model.t_end) + " s instead of " +
+            number(a.t_end) + " s: after that " + name_of(a.measure) +
             " changes by less than " + with_unit(a.tolerance / 10, a.measure) +
             '\n';
   const std::size_t from = a.grids.empty() ? 0 : a.grids[0].nodes;
   if (!a.checked)
-    text += "  not run: foreseen from coarser grids, " + std::to_string(from) +
-            " nodes and up\n";
+    text += "  not run: predicted from coarser grids of " +
+            std::to_string(from) + " nodes and more\n";
   auto finer = [&](const std::optional<double>& error, const char* what) {
     return (error ? with_unit(*error, a.measure) : std::string("not run")) +
            what;
@@ -130,7 +130,7 @@ std::string recommendation(const Advice& a) {
     text += "  checked: error " +
             finer(a.robustness.half_step, " by half the step") +
             (a.model.sheets.empty()
-                 ? "; that of the mesh itself is not known"
+                 ? "; the error of the mesh itself is unknown"
                  : ", " + finer(a.robustness.finer_grid,
                                 " on twice the cells along each side")) +
             '\n';
@@ -142,8 +142,8 @@ std::string recommendation(const Advice& a) {
   };
   if (misses(a.robustness.half_step) || misses(a.robustness.finer_grid))
     text +=
-        "  by accident: its errors cancel, and a finer run is worse; nothing "
-        "tried is within the tolerance however it is refined\n";
+        "  by accident: its errors cancel, and a finer run is worse; no run "
+        "was found that stays within the tolerance when it is refined\n";
   return text;
 }
 
@@ -184,11 +184,11 @@ std::string in_words(const Advice& a) {
   std::string text =
       a.refusal.empty() ? recommendation(a) : "no advice: " + a.refusal + '\n';
   if (!a.left_out.empty() && a.refusal.empty()) {
-    text += "  left out by the budget: ";
+    text += "  not run for lack of budget: ";
     for (const std::string& what : a.left_out)
       text += (&what == &a.left_out[0] ? "" : ", ") + what;
     text += "; --advise-budget " + count(std::ceil(4 * a.budget / a.rate)) +
-            " tries more\n";
+            " would allow more\n";
   }
   if (!a.parts.empty()) {
     Column part{"part, on " + std::to_string(a.tried_on) + " nodes", {}},
@@ -227,7 +227,7 @@ std::string in_words(const Advice& a) {
     bool told = !a.refusal.empty();
     for (const GridReport& g : a.grids.tried()) {
       if (!told && g.nodes >= own) advised(), told = true;
-      row(g.nodes, a.grids.size() < 3 ? "not known" : number(g.error),
+      row(g.nodes, a.grids.size() < 3 ? "unknown" : number(g.error),
           g.evaluations, g.trial.seconds, "");
     }
     if (!told) advised();
@@ -249,22 +249,22 @@ std::string in_words(const Advice& a) {
   if (a.perturbed > 0)
     text += "\n" + std::to_string(a.perturbed) +
             (a.perturbed > 1 ? " runs" : " run") +
-            " that should give the same (start 1e-6 m off, or a slightly "
-            "shorter step): differ by up to " +
+            " that should agree (start moved by 1e-6 m, or a slightly shorter "
+            "step) differ by up to " +
             with_unit(a.scatter, a.measure) + '\n';
   if (a.floats && 10 * *a.floats <= a.tolerance / 10)
-    text += "single precision would do, it changes the answer by " +
+    text += "single precision would do: it changes the answer by " +
             with_unit(*a.floats, a.measure) +
-            ": make cloth REAL=float halves the memory, and at 10000 nodes "
+            "; make cloth REAL=float halves the memory and, at 10000 nodes, "
             "the time\n";
   if (a.refusal.empty()) {
     if (const std::string acts = by_default(a.model); !acts.empty())
-      text += "acts without being named: " + acts + '\n';
+      text += "active by default: " + acts + '\n';
     text += "the advised run takes " +
             (a.seconds > 0 ? number(a.seconds) + " s, " : "") +
             CME212::two_digits(a.work) + " spring evaluations; ";
   }
-  return text + "finding out took " + number(a.spent) + " s, " +
+  return text + "the pilots took " + number(a.spent) + " s, " +
          CME212::two_digits(a.spent_work) +
          " spring evaluations of a budget of " + CME212::two_digits(a.budget) +
          '\n';

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Advice.hpp
- * What was found out about the needs of a scene, as data and as tables. */
+ * Advice: the result of advise(), and its text with tables. */
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,32 +9,31 @@
 
 namespace lab {
 
-/** A part, tried by leaving it out. */
+/** What leaving out one part of the scene changes. */
 struct PartReport {
   std::string part;
   double change = 0;   ///< of the answer, in its unit; infinite: the run failed
-  double springs = 0;  ///< of a step, that are saved without it
-  double step = 1;     ///< stable without it, in those with it
-  bool tried = true;   ///< else the budget left it out
+  double springs = 0;  ///< spring evaluations per step saved without the part
+  double step = 1;     ///< stable step without the part / with it
+  bool tried = true;   ///< false: no budget was left to try it
   bool needed = true;
 };
 
-/** A method and a step, tried on one grid. */
+/** A method with one step, run on one grid. */
 struct StepReport {
   std::string method;
-  double dt = 0;           ///< there [s]
+  double dt = 0;           ///< on that grid [s]
   double error = 0;        ///< of the answer; infinite: the run failed
-  double evaluations = 0;  ///< of all forces; a solve counts as what it takes
+  double evaluations = 0;  ///< of the forces; solves are counted by their cost
   double seconds = 0;
 };
 
-/** What a user finds who makes the advised run finer: the errors by half the
- * step, and by half the step on a grid of twice the cells. */
+/** The errors of two refinements of the advised run: half the step, and half
+ * the step on a grid of twice the cells. */
 struct Robustness {
   std::optional<double> half_step, finer_grid;  ///< nullopt: not run
 };
 
-/** What was found. */
 struct Advice {
   Measure measure = Measure::com;
   double tolerance = 0;
@@ -42,36 +41,36 @@ struct Advice {
   std::vector<PartReport> parts;
   std::size_t tried_on = 0;  ///< nodes of the grid of parts and steps
   std::vector<StepReport> steps;
-  double scatter = 0;    ///< of the answer, in runs that should be the same
-  int perturbed = 0;     ///< how many of these there were
-  std::string refusal;   ///< why there is no advice; empty: there is
-  Model model;           ///< the cheapest that was found
-  bool checked = false;  ///< it was run; else what it gives is predicted
+  double scatter = 0;    ///< of the answers of perturbed runs
+  int perturbed = 0;     ///< how many perturbed runs were made
+  std::string refusal;   ///< why no advice is given; empty: advice is given
+  Model model;           ///< the cheapest model that was found
+  bool checked = false;  ///< model was run; false: its error is predicted
   Answer answer;         ///< of that run
-  std::vector<std::string> left_out;  ///< by the budget
+  std::vector<std::string> left_out;  ///< runs that the budget did not allow
   double error = 0;                   ///< in the unit of the measure
-  double uncertainty = 0;             ///< the error is at most that much larger
+  double uncertainty = 0;             ///< the error may be that much larger
   Robustness robustness;
-  double t_end = 0;  ///< [s], of the question; the run may end earlier, at rest
-  /** What it changes to keep positions and velocities in single precision. */
+  double t_end = 0;  ///< [s] of the question; model may end earlier, at rest
+  /** Change of the answer if positions and velocities are rounded to floats. */
   std::optional<double> floats;
-  double work = 0, seconds = 0;  ///< of the advised run: spring evaluations,
-                                 ///< and of this machine
-  double evaluations = 0;        ///< of all its forces
-  double of_stable = 0;  ///< its step, in largest stable ones; 0: any is
-  double rate = 0;       ///< spring evaluations a second
-  double spent = 0, spent_work = 0, budget = 0;  ///< by the pilots: [s], spring
-                                                 ///< evaluations, of these
+  double work = 0;         ///< spring evaluations of the advised run
+  double seconds = 0;      ///< its time on this machine
+  double evaluations = 0;  ///< its force evaluations
+  double of_stable = 0;    ///< its step / the largest stable one; 0: no limit
+  double rate = 0;         ///< spring evaluations per second
+  double spent = 0;        ///< time of all pilots [s]
+  double spent_work = 0, budget = 0;  ///< of the pilots, in spring evaluations
 };
 
 /** @a x to two digits with the unit of @a measure, if it has one. */
 std::string with_unit(double x, Measure measure);
 
-/** The options that make ./cloth run @a m, and nothing else. */
+/** The options with which ./cloth runs @a m. */
 std::string as_options(const Model& m);
 
-/** @a a for people: what it comes to, with a command to paste, then tables.
- * Throws InputError, if there is advice on a mesh that can't be read again. */
+/** @a a as text: the recommendation, a command to paste, then tables.
+ * Throws InputError if the mesh of the advised scene cannot be read again. */
 std::string in_words(const Advice& a);
 
 }  // namespace lab

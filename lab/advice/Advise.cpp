@@ -42,7 +42,7 @@ Advice Adviser::find() {
     choose();
     pilots_.keep(0);
   } while (goes_on());
-  if (!found_) found_ = lucky_;
+  if (!found_) found_ = fragile_;
   if (!found_ && pilots_.cut_short()) foresee();
   // Chaos may be why nothing was found.
   if (!advice_.grids.empty() && look_for_chaos() && found_) {
@@ -92,20 +92,21 @@ bool Adviser::find_grid() {
     const Model on = on_grid(factor);
     const std::size_t nodes = nodes_of(on);
     if (double(nodes) > rules_.most_nodes)
-      return refuse(grids.settles() ? too_coarse(nodes) : unsettled());
+      return refuse(grids.settles() ? too_many_nodes(nodes) : not_converging());
     const std::string doing = "grid of " + std::to_string(nodes) + " nodes";
     std::vector<Answer> all;
     Track track(scene_.t_end, nodes);
     Trial t;
     try {
       if (!method_) choose_pilots(on);
-      // Below three grids nothing is known; then half is for a second look.
+      // With less than three grids there is no estimate. After that, half of
+      // the budget is kept for running choices.
       if (!pilots_.affords(pilot_work(factor), "a finer grid",
                            grids.empty()      ? 1
                            : grids.size() < 3 ? 0.8
                            : found_           ? most_left
                                               : most_for_any))
-        return refuse(too_dear(pilot_work(factor)));
+        return refuse(over_budget(pilot_work(factor)));
       const Model m = pilot(on, factor);
       t = pilots_.run(m, doing, pilot_work(factor), {}, all_answers(m, all),
                       [&track](Scene& scene) { track.look(scene); });
@@ -114,18 +115,18 @@ bool Adviser::find_grid() {
     }
     if (!t.ok()) {
       if (factor >= 1)
-        return refuse("of a grid of " + std::to_string(nodes) +
+        return refuse("on a grid of " + std::to_string(nodes) +
                       " nodes: " + t.failure);
-      // Too coarse for its pins, or to bear its load.
+      // The grid is too coarse for the pins, or to carry the load.
       grids.clear(), base_ = no_base, method_.reset();
       first_ *= 2, factor = first_ / 2;
       continue;
     }
-    still_ = all, track_ = std::move(track);
+    finest_answers_ = all, track_ = std::move(track);
     grids.add(report(factor, on, t));
-    // What coarser grids made believe counts no longer.
-    found_.reset(), lucky_.reset();
-    if (grids.size() >= 2) try_half_way();
+    // A finer grid corrects the estimates that these choices are based on.
+    found_.reset(), fragile_.reset();
+    if (grids.size() >= 2) try_intermediate();
     if (grids.size() >= 3) pilots_.knows(so_far());
     if (!grids.settles())
       if (const std::string why = diverging(scene_); !why.empty())
@@ -135,18 +136,18 @@ bool Adviser::find_grid() {
   }
 }
 
-void Adviser::try_half_way() {
+void Adviser::try_intermediate() {
   auto& grids = advice_.grids;
   const double factor =
       next_factor(grids[grids.size() - 2].factor, between / 2);
   const Model on = on_grid(factor);
   const double work = pilot_work(factor);
-  if (!pilots_.affords(work, "a grid half-way")) return;
-  // One that misses a pin tells nothing.
+  if (!pilots_.affords(work, "an intermediate grid")) return;
+  // A grid whose nodes miss a pin is skipped.
   const Trial t =
       pilots_.run(pilot(on, factor),
                   "grid of " + std::to_string(nodes_of(on)) + " nodes", work);
-  if (t.ok()) grids.add_half_way(report(factor, on, t));
+  if (t.ok()) grids.add_intermediate(report(factor, on, t));
 }
 
 GridReport Adviser::report(double factor, const Model& on,
@@ -197,44 +198,45 @@ std::string Adviser::so_far() const {
          " (asked: " + with_unit(advice_.tolerance, advice_.measure) + ')';
 }
 
-std::string Adviser::too_dear(double work) const {
+std::string Adviser::over_budget(double work) const {
   const auto& grids = advice_.grids;
   return "the budget ended" +
          (grids.empty()      ? std::string(" before the first grid")
           : grids.size() < 3 ? " after " + std::to_string(grids.size()) +
-                                   " grids, which tell no error"
+                                   " grids, too few to estimate an error"
                              : ": " + so_far()) +
          "; --advise-budget " +
-         CME212::two_digits(std::ceil(3 * work / rules_.rate)) + " goes on" +
+         CME212::two_digits(std::ceil(3 * work / rules_.rate)) +
+         " would continue" +
          (grids.size() < 3 ? "" : converging_slowly(scene_));
 }
 
-std::string Adviser::unsettled() const {
+std::string Adviser::not_converging() const {
   const auto& grids = advice_.grids;
-  return "the answer does not settle as the grid gets finer: the last two "
-         "steps changed it by " +
+  return "the answer does not converge as the grid gets finer: the last two "
+         "refinements changed it by " +
          CME212::two_digits(grids.step_to(grids.size() - 2)) + " and " +
          with_unit(grids.step_to(grids.size() - 1), advice_.measure) +
          converging_slowly(scene_);
 }
 
-std::string Adviser::too_unsure() const {
-  return "what finer grids tend to is uncertain by " +
+std::string Adviser::limit_uncertain() const {
+  return "the limit on finer grids is uncertain by " +
          with_unit(advice_.grids.uncertainty_of_limit(), advice_.measure) +
          " after " + std::to_string(advice_.grids.size()) + " grids" +
          converging_slowly(scene_);
 }
 
-std::string Adviser::too_coarse(std::size_t nodes) const {
+std::string Adviser::too_many_nodes(std::size_t nodes) const {
   const std::string why =
-      "a grid of " + std::to_string(nodes) + " nodes would be too much";
+      "a grid of " + std::to_string(nodes) + " nodes would be too large";
   return advice_.grids.size() < 3
-             ? why + ", and the error of the one before is not known"
+             ? why + ", and the error of the one before is unknown"
              : why + ": " + so_far() + converging_slowly(scene_);
 }
 
-/** Until when starts that are slightly off end close enough: of what is asked
- * in meters, none of which changes by more than the positions. */
+/** The end time, as text, until which perturbed starts stay close enough. Only
+ * for measures in meters, which change at most by as much as positions do. */
 std::string Adviser::same_until(const Separation& apart) const {
   const bool in_meters = unit_of(advice_.measure) == std::string("m");
   const double horizon = apart.horizon(advice_.tolerance / 2);
@@ -258,35 +260,34 @@ bool Adviser::look_for_chaos() {
   Track track = track_->beside();
   const double factor = advice_.grids.back().factor;
   const Model m = pilot(on_grid(factor), factor);
-  if (pilots_.affords(pilot_work(factor), "starts slightly off")) {
-    const Trial t = pilots_.run(m, "a start that is off", pilot_work(factor),
+  if (pilots_.affords(pilot_work(factor), "perturbed starts")) {
+    const Trial t = pilots_.run(m, "a perturbed start", pilot_work(factor),
                                 {rules_.shake}, all_answers(m, shaken),
                                 [&track](Scene& scene) { track.look(scene); });
     if (!t.ok()) return refuse(t.failure);
     ++advice_.perturbed;
     const std::size_t k = std::size_t(advice_.measure);
-    advice_.scatter = distance(still_[k], shaken[k], advice_.measure);
+    advice_.scatter = distance(finest_answers_[k], shaken[k], advice_.measure);
   }
   if (found_) advice_.scatter = std::max(advice_.scatter, found_->scatter);
   if (advice_.scatter <= advice_.tolerance / 2) return true;
-  // Below ten times the shake it is no more than what was put in.
+  // Less than ten times the shake is not chaos, but the shake itself.
   return refuse(
       (advice_.scatter > 10 * rules_.shake
            ? "the motion is chaotic: "
            : std::string("the tolerance is too small: ")) +
-      "runs that should give the same, by a start that is off by 1e-6 m or "
-      "by a slightly shorter step, differ by " +
+      "runs that should agree, with the start moved by 1e-6 m or with a "
+      "slightly shorter step, differ by " +
       with_unit(advice_.scatter, advice_.measure) +
       ", so no grid and no step can meet the tolerance; " +
-      offers(on_grid(factor), still_, shaken) +
+      offers(on_grid(factor), finest_answers_, shaken) +
       same_until(Separation(*track_, track)));
 }
 
 void Adviser::perturb(Choice& c) {
   auto look = [&](const Model& m, const Shake& shake, const Answer& expected) {
-    if (!pilots_.affords(c.work, "starts slightly off")) return;
-    const Trial t = pilots_.run(m, "the advised run once more, slightly off",
-                                c.work, shake);
+    if (!pilots_.affords(c.work, "perturbed starts")) return;
+    const Trial t = pilots_.run(m, "the advised run, perturbed", c.work, shake);
     if (!t.ok()) return;
     ++advice_.perturbed;
     c.scatter =
@@ -310,11 +311,11 @@ void Adviser::try_floats(const Choice& c) {
       !pilots_.affords(c.work, "single precision"))
     return;
   auto round = [](Point& p) { p = Point(float(p.x), float(p.y), float(p.z)); };
-  const Trial t =
-      pilots_.run(c.model, "by floats", c.work, {}, nullptr, [&](Scene& scene) {
-        for (Node n : scene.cloth().nodes())
-          round(n.position()), round(n.value().vel);
-      });
+  const Trial t = pilots_.run(c.model, "in single precision", c.work, {},
+                              nullptr, [&](Scene& scene) {
+                                for (Node n : scene.cloth().nodes())
+                                  round(n.position()), round(n.value().vel);
+                              });
   if (t.ok()) advice_.floats = size_of(Effect(t.answer, c.answer));
 }
 
@@ -372,11 +373,11 @@ void Adviser::take(const Choice& c) {
       limit != no_limit)
     advice_.of_stable = c.model.step.dt / limit;
   advice_.t_end = scene_.t_end;
-  auto gone = c.gone;  // each of them once, if two parts are alike
+  auto removed = c.removed;  // two equal parts are counted one by one
   for (PartReport& p : advice_.parts) {
-    const auto it = std::ranges::find(gone, p.part);
-    p.needed = it == gone.end() && !goes_with_another(p.part, c.gone);
-    if (it != gone.end()) gone.erase(it);
+    const auto it = std::ranges::find(removed, p.part);
+    p.needed = it == removed.end() && !goes_with_another(p.part, c.removed);
+    if (it != removed.end()) removed.erase(it);
   }
 }
 
@@ -384,13 +385,13 @@ void Adviser::take(const Choice& c) {
 
 AdviceRules rules_of(const Model& m, double seconds) {
   AdviceRules rules;
-  // From seconds to work by what this machine does; a power of 2, so that it is
-  // the same from run to run.
+  // Converts seconds to work; rounded to a power of 2, so that it is the same
+  // in every run.
   const double rate = std::exp2(std::round(std::log2(measured_rate(m))));
   const double run = work_of_run(m);
   rules.budget = seconds > 0 ? rate * seconds
                              : std::max(2 * rate, std::isfinite(run) ? run : 0);
-  // A run takes 1e4 spring evaluations a node and more.
+  // A run takes at least 1e4 spring evaluations per node.
   rules.most_nodes = std::max(rules.most_nodes, rules.budget / 1e4);
   return rules;
 }

@@ -36,25 +36,26 @@ void Adviser::find_parts() {
     parts.push_back(r);
   }
   std::vector<PartReport> order = parts;
-  // What saves work comes before what doesn't.
+  // Parts that save work come before the others.
   std::ranges::stable_sort(order, {}, [](const PartReport& p) {
     const bool saves = p.springs > 0 || p.step > 1.2;
     return std::tuple(p.change > 0, !saves, p.change);
   });
   const double room = rules_.for_parts * advice_.tolerance;
-  less_ = {{{}, Effect(pilot.answer.size()), 1}};
+  reductions_ = {{{}, Effect(pilot.answer.size()), 1}};
   for (const PartReport& part : order) {
     if (!(part.change <= room)) continue;
-    std::vector<std::string> gone = less_.back().gone;
-    gone.push_back(part.part);
-    const std::optional<Model> without = without_all(all, gone);
-    if (!without || !pilots_.affords(work, "parts together", 0.2)) continue;
+    std::vector<std::string> removed = reductions_.back().removed;
+    removed.push_back(part.part);
+    const std::optional<Model> without = without_all(all, removed);
+    if (!without || !pilots_.affords(work, "combinations of parts", 0.2))
+      continue;
     const Trial t = pilots_.run(*without, "without " + part.part, work);
     if (!t.ok()) continue;
     const Effect effect(t.answer, pilot.answer);
     if (size_of(effect) <= room)
-      less_.push_back(
-          {gone, effect, springs_of(*without) / std::max(springs, 1.0)});
+      reductions_.push_back(
+          {removed, effect, springs_of(*without) / std::max(springs, 1.0)});
   }
 }
 
@@ -66,8 +67,8 @@ bool Adviser::dissipates(const Model& m) {
 }
 
 void Adviser::find_rest() {
-  constexpr int looks = 64;  // at the answer, in equal times
-  rest_ = scene_.t_end, rest_effect_ = Effect(base().trial.answer.size());
+  constexpr int looks = 64;  // samples of the answer at equal intervals
+  rest_time_ = scene_.t_end, rest_effect_ = Effect(base().trial.answer.size());
   const double work = pilot_work(base().factor);
   if (!dissipates(scene_) || !pilots_.affords(work, "an earlier end", 0.1))
     return;
@@ -83,7 +84,7 @@ void Adviser::find_rest() {
     const Effect e(seen.back().second, t.answer);
     if (!(size_of(e) <= advice_.tolerance / 10)) break;
     if (seen.back().first <= 0.9 * m.t_end)
-      rest_ = seen.back().first, rest_effect_ = e;
+      rest_time_ = seen.back().first, rest_effect_ = e;
     seen.pop_back();
   }
 }
@@ -116,8 +117,8 @@ bool Adviser::try_steps() {
 
 void Adviser::try_longer_steps() {
   double longest = costs_->verlet();
-  for (std::size_t k = 1; k < less_.size(); ++k) {
-    const auto on = without_all(on_grid(base().factor), less_[k].gone);
+  for (std::size_t k = 1; k < reductions_.size(); ++k) {
+    const auto on = without_all(on_grid(base().factor), reductions_[k].removed);
     const StepCosts costs(*on);
     if (!(costs.verlet() > 1.2 * longest) || costs.verlet() == no_limit)
       continue;
@@ -129,7 +130,8 @@ void Adviser::try_longer_steps() {
 }
 
 bool Adviser::try_methods(const Model& on, const StepCosts& costs,
-                          const std::vector<Try>& tries, std::size_t less) {
+                          const std::vector<Try>& tries,
+                          std::size_t reduction) {
   const double verlet = costs.verlet();
   auto attempt = [&](const char* method, double dt) {
     Model m = on;
@@ -148,12 +150,12 @@ bool Adviser::try_methods(const Model& on, const StepCosts& costs,
   if (!pilots_.affords(attempt(fine, small).second, fine, 0.3))
     fine = own, small = base().trial.dt / 4;
   if (!pilots_.affords(attempt(fine, small).second, fine))
-    return refuse(too_dear(attempt(fine, small).second));
-  const Trial exact = run(fine, small);
-  if (!exact.ok()) return refuse(exact.failure);
-  if (less == 0) reference_ = exact.answer;
-  double least = infinite;  // of the largest steps so far
-  // On finer grids all but implicit methods need smaller steps.
+    return refuse(over_budget(attempt(fine, small).second));
+  const Trial accurate = run(fine, small);
+  if (!accurate.ok()) return refuse(accurate.failure);
+  if (reduction == 0) reference_ = accurate.answer;
+  double least = infinite;  // work by the largest step of a method so far
+  // On finer grids all methods except implicit ones need smaller steps.
   const double finest = factors().back() / base().factor;
   for (const Try& t : tries) {
     const bool first = steps_.empty();
@@ -161,31 +163,31 @@ bool Adviser::try_methods(const Model& on, const StepCosts& costs,
     const MethodEntry* method = find_method(t.method);
     // A multirate method without stiff springs is Verlet.
     if (!first &&
-        ((less == 0 && std::string_view(t.method) == own) ||
+        ((reduction == 0 && std::string_view(t.method) == own) ||
          !(work <= (method->info.limit == no_limit ? finest : 1) * 4 * least) ||
          (method->info.multirate && t.dt < verlet) ||
          !pilots_.affords(3 * work, t.method, 0.15)))
       continue;
     least = std::min(least, work);
-    Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1, less};
+    Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1, reduction};
     for (int k : {0, 1}) {
       const double dt = k == 0 ? t.dt : s.dt / 2;
       const Trial trial = run(t.method, dt);
       s.works[k] = trial.ok();
-      if (s.works[k]) s.effect[k] = Effect(trial.answer, exact.answer);
+      if (s.works[k]) s.effect[k] = Effect(trial.answer, accurate.answer);
       if (k == 0 && trial.dt > 0) s.dt = trial.dt;
       advice_.steps.push_back(
-          {t.method + std::string(less > 0 ? ", parts dropped" : ""),
+          {t.method + std::string(reduction > 0 ? ", parts dropped" : ""),
            k == 0 ? s.dt : s.dt / 2,
            s.works[k] ? size_of(s.effect[k]) : infinite,
            attempt(t.method, dt).second / std::max(1.0, costs.springs()),
            trial.seconds});
     }
-    // The two steps bear the order out, or they don't.
+    // Do the two steps confirm the order of the method?
     if (s.works[0] && s.works[1] && size_of(s.effect[0]) > 0) {
-      Effect surprise = s.effect[0];
-      surprise.add(-std::pow(2, s.method->info.order), s.effect[1].by);
-      s.uncertainty = std::clamp(size_of(surprise) / size_of(s.effect[0]),
+      Effect deviation = s.effect[0];
+      deviation.add(-std::pow(2, s.method->info.order), s.effect[1].by);
+      s.uncertainty = std::clamp(size_of(deviation) / size_of(s.effect[0]),
                                  rules_.uncertainty_of_effects, 1.0);
     }
     steps_.push_back(s);
@@ -203,27 +205,30 @@ Effect Adviser::of_step(const Step& s, double share, double finer) {
 
 void Adviser::choose() {
   const Refinement& grids = advice_.grids;
-  // A mesh from files is all there is: its step is what can be wrong.
+  // A mesh from files can't be refined: only the error of the step is known.
   const Answer limit = scene_.sheets.empty() ? reference_ : grids.limit();
-  auto off = [&](const Model& m, double work, const std::string& doing,
-                 Trial& t) {
+  auto error_of = [&](const Model& m, double work, const std::string& doing,
+                      Trial& t) {
     t = pilots_.run(m, doing, work);
     return t.ok() ? size_of(Effect(t.answer, limit)) : infinite;
   };
-  const double unsure = grids.uncertainty_of_limit();
+  const double uncertain = grids.uncertainty_of_limit();
   if (too_uncertain()) {
-    refuse(too_unsure());
+    refuse(limit_uncertain());
     return;
   }
-  const double counted = rules_.counted * unsure;
+  const double counted = rules_.counted_share * uncertain;
   int runs = 0;
-  // By factor: the grid's error, at least. Of a long shot less is foreseen.
+  // A lower bound of the error of the grid, by factor; long shots apart, as
+  // their predictions are less reliable.
   std::map<std::pair<double, bool>, double> of_grid;
   for (Choice& c : choices()) {
     double& least = of_grid[{c.factor, c.long_shot}];
     if (least - c.effects > advice_.tolerance) continue;
-    if (c.long_shot && c.work > rules_.long_shots * pilots_.left()) continue;
-    if (!c.long_shot && !pilots_.affords(c.work, "finer choices", 0.5)) {
+    if (c.long_shot && c.work > rules_.long_shot_work * pilots_.left())
+      continue;
+    if (!c.long_shot &&
+        !pilots_.affords(c.work, "more expensive choices", 0.5)) {
       if (!pilots_.keeps() && c.error + c.uncertainty <= advice_.tolerance &&
           is_scene(c.model)) {
         found_ = c;
@@ -235,18 +240,18 @@ void Adviser::choose() {
     Trial t, half;
     const std::string nodes = std::to_string(nodes_of(c.model)) + " nodes by " +
                               c.model.method->info.name + ' ';
-    c.error = off(c.model, c.work, nodes, t);
-    c.uncertainty = std::max(unsure, of_itself * c.error);
+    c.error = error_of(c.model, c.work, nodes, t);
+    c.uncertainty = std::max(uncertain, of_itself * c.error);
     c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
     if (t.ok()) least = std::max(least, c.error + counted - c.effects);
     if (!(c.error + counted <= advice_.tolerance)) continue;
     Model smaller = c.model;
     smaller.step.dt /= 2;
     c.robustness.half_step =
-        off(smaller, 2 * c.work, nodes + "and half the step", half);
+        error_of(smaller, 2 * c.work, nodes + "and half the step", half);
     c.half = half.answer;
-    // A mesh from files has no limit of grids to be uncertain of; what two
-    // fine steps differ by is what is known of its own.
+    // A mesh from files has no limit of grids; its uncertainty is estimated by
+    // the difference of two small steps.
     if (scene_.sheets.empty() && half.ok())
       c.uncertainty = std::max(*c.robustness.half_step,
                                size_of(Effect(half.answer, t.answer)) / 3);
@@ -254,24 +259,27 @@ void Adviser::choose() {
     bool robust = *c.robustness.half_step <= most;
     if (robust && !scene_.sheets.empty() &&
         pilots_.affords(8 * c.work, "a check on twice the cells", 0.3)) {
-      Model finer = refined_without(2 * c.factor, c.gone);
+      Model finer = refined_without(2 * c.factor, c.removed);
       finer.method = c.model.method;
       finer.step = {.dt = c.model.step.dt / 2};
       finer.t_end = c.model.t_end;
       c.robustness.finer_grid =
-          off(finer, 8 * c.work, nodes + "and twice the cells", half);
+          error_of(finer, 8 * c.work, nodes + "and twice the cells", half);
       robust = *c.robustness.finer_grid <= most;
     }
     if (robust) perturb(c);
     const double all = c.uncertainty + scatter_share * c.scatter;
-    robust = robust && c.error + rules_.counted * all <= advice_.tolerance;
+    robust =
+        robust && c.error + rules_.counted_share * all <= advice_.tolerance;
     if (robust) {
       found_ = c;
       return;
     }
-    if (!lucky_) lucky_ = c;
+    if (!fragile_) fragile_ = c;
   }
-  refuse("no method meets the tolerance by steps down to 1/64 of its largest");
+  refuse(
+      "no method meets the tolerance with steps down to 1/64 of its largest "
+      "one");
 }
 
 bool Adviser::is_scene(const Model& m) {
@@ -288,47 +296,50 @@ std::vector<Adviser::Choice> Adviser::choices() const {
   for (double factor : factors()) {
     const double finer = factor / base().factor;
     const Effect of_grid = advice_.grids.error(factor);
-    // The pilots' own step is in that of the grid.
+    // The error of the grid includes that of the pilots' step: subtract it.
     const double pilots = base().trial.dt / (steps_[0].dt / 2) / finer;
     Effect of_pilot(of_grid.by.size());
     if (steps_[0].works[1] && !scene_.sheets.empty())
       of_pilot.add(pilots * pilots, steps_[0].effect[1].by);
-    for (auto less = less_.rbegin(); less != less_.rend(); ++less)
+    for (std::size_t k = reductions_.size(); k-- > 0;)
       for (const Step& s : steps_) {
-        if (std::size_t(less_.rend() - less) - 1 < s.less || !s.works[1])
-          continue;
+        if (k < s.reduction || !s.works[1]) continue;
+        const Reduction& without = reductions_[k];
         for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
           if (share == 1 && !s.works[0]) continue;
-          // Below its second step it goes as its order says, if at all.
+          // Below its second step the error is predicted only if both steps
+          // confirmed the order.
           if (share < 0.49 && s.uncertainty == 1) break;
           const Effect step = of_step(s, share, finer);
-          auto off = [&](const Effect& grid, const Effect& by_step) {
+          auto error_with = [&](const Effect& grid, const Effect& by_step) {
             Effect effect = grid;
-            effect.add(1, less->effect.by).add(1, by_step.by);
+            effect.add(1, without.effect.by).add(1, by_step.by);
             effect.add(1, rest_effect_.by);
             return size_of(effect.add(-1, of_pilot.by));
           };
-          const double error = off(of_grid, step);
+          const double error = error_with(of_grid, step);
           const bool long_shot =
-              !(std::max(error, off(of_grid, of_step(s, share / 2, finer))) <=
+              !(std::max(error,
+                         error_with(of_grid, of_step(s, share / 2, finer))) <=
                 advice_.tolerance);
-          if (long_shot &&
-              (share < 0.49 || !(error <= rules_.hope * advice_.tolerance)))
+          if (long_shot && (share < 0.49 || !(error <= rules_.long_shot_error *
+                                                           advice_.tolerance)))
             continue;
           const double uncertainty =
               advice_.grids.uncertainty(factor) +
               s.uncertainty * size_of(step) +
               rules_.uncertainty_of_effects *
-                  (size_of(less->effect) + size_of(of_pilot));
+                  (size_of(without.effect) + size_of(of_pilot));
           const bool shrinks = s.method->info.limit != no_limit;
-          const auto m = scene_with(factor, *less, s,
+          const auto m = scene_with(factor, without, s,
                                     s.dt * share / (shrinks ? finer : 1));
           if (!m) continue;
           const double work = costs_->of_step(*s.method, m->step.dt, finer) *
-                              less->springs * std::ceil(m->t_end / m->step.dt);
-          all.push_back(
-              {*m, less->gone, factor, error, uncertainty, work,
-               size_of(less->effect) + size_of(step) + size_of(rest_effect_)});
+                              without.springs *
+                              std::ceil(m->t_end / m->step.dt);
+          all.push_back({*m, without.removed, factor, error, uncertainty, work,
+                         size_of(without.effect) + size_of(step) +
+                             size_of(rest_effect_)});
           all.back().long_shot = long_shot;
           if (error + uncertainty <= advice_.tolerance) break;
         }
@@ -338,12 +349,13 @@ std::vector<Adviser::Choice> Adviser::choices() const {
   return all;
 }
 
-std::optional<Model> Adviser::scene_with(double factor, const Less& less,
+std::optional<Model> Adviser::scene_with(double factor,
+                                         const Reduction& without,
                                          const Step& s, double dt) const {
-  std::optional<Model> m = without_all(on_grid(factor), less.gone);
+  std::optional<Model> m = without_all(on_grid(factor), without.removed);
   if (!m) return m;
   m->method = s.method;
-  m->t_end = dissipates(*m) ? rest_ : scene_.t_end;
+  m->t_end = dissipates(*m) ? rest_time_ : scene_.t_end;
   m->step = {.dt = std::min(dt, m->t_end)};
   m->step.dt = step_of(*m);
   return m;

@@ -14,10 +14,10 @@
 namespace lab {
 
 namespace {
-// What a step that solves takes, as measured on cloths of 36 to 1681 nodes by 1
-// to 3000 times Verlet's limit: iterations grow by this power of the step, till
-// Newton's iterations by sparse factors take less, of so many evaluations for
-// each node along a side.
+// Work of a step with linear solves, measured on cloths of 36 to 1681 nodes
+// with 1 to 3000 times Verlet's limit: it grows by this power of the step, and
+// is at most so many force evaluations for each node along a side, with which
+// Newton's iterations by sparse factorizations are cheaper.
 constexpr double more_iterations = 0.6, of_factor = 10;
 }  // namespace
 
@@ -83,7 +83,7 @@ double rate_on(Model m) {
   m.step = {.rule = StepRule::safe};
   Scene scene(m);
   const double springs = double(scene.cloth().num_edges());
-  // The best of some spans: in the others the machine did something else.
+  // The best of several spans: others were slowed down by other programs.
   double best = 0;
   for (int span = 0; span < 5; ++span) {
     const CME212::Clock clock;

@@ -1,7 +1,6 @@
 #pragma once
 /** @file Pilots.hpp
- * Runs that find something out, within a budget, and what a run will cost
- * before it is made. */
+ * Pilots: trial runs within a budget. StepCosts: predicts the work of a run. */
 #include <functional>
 #include <map>
 #include <string>
@@ -12,8 +11,8 @@
 
 namespace lab {
 
-/** What a step costs on a grid, in spring evaluations. Methods that solve cost
- * what method_costs says, so that a comparison depends on no clock. */
+/** The cost of a step on a grid, in spring evaluations. That of linear solves
+ * is from method_costs, so that comparisons do not depend on a clock. */
 class StepCosts {
  public:
   /** Of the cloth of @a m.
@@ -21,42 +20,41 @@ class StepCosts {
   explicit StepCosts(const Model& m);
 
   double springs() const { return springs_; }
-  /** Verlet's largest stable step [s]; that of a multirate method. */
+  /** The largest stable steps [s] of Verlet and of the multirate method. */
   double verlet() const { return verlet_; }
   double multirate() const { return multirate_; }
-  /** The largest stable step [s] of a method; no_limit if any is. */
+  /** The largest stable step [s] of a method; no_limit if it has none. */
   double limit(const MethodInfo& method) const;
-  /** A step of @a dt [s] by @a method, there or on a grid of @a finer times the
+  /** Work of a step of @a dt [s] by @a method, on a grid of @a finer times the
    * cells along each side. */
   double of_step(const MethodEntry& method, double dt, double finer = 1) const;
-  /** The step [s] of @a m there, and a whole run of @a m; no_limit if the step
-   * isn't given and nothing is stable. */
+  /** The step [s] of @a m on this grid, and the work of a whole run; no_limit
+   * if no step is given and none is stable. */
   double step(const Model& m) const;
   double of_run(const Model& m) const;
 
  private:
   double springs_ = 0, factor_ = 0, verlet_ = no_limit, multirate_ = no_limit;
-  double stiff_ = 0, inner_ = no_limit;  // springs; their step [s]
+  double stiff_ = 0, inner_ = no_limit;  // stiff springs; inner step [s]
 };
 
-/** Spring evaluations of a run of @a m as it stands, foreseen without running
- * it.  Throws as StepCosts */
+/** The spring evaluations of a run of @a m, predicted without running it.
+ * Throws as StepCosts */
 double work_of_run(const Model& m);
 
-/** Spring evaluations a second of this machine in the cloth and the contacts of
- * @a m, from some steps on a grid of about 25 x 25 nodes. Takes about 20 ms.
- * The best of what was measured: other programs take their share of the others.
- */
+/** Spring evaluations per second of this machine with the cloth and the
+ * contacts of @a m, measured on a grid of about 25 x 25 nodes in about 20 ms.
+ * The best of several measurements, as other programs slow the others down. */
 double measured_rate(const Model& m);
 
-/** What a run takes besides its steps, in force evaluations: building the cloth
- * and finding its largest frequency. */
+/** Work of a run besides its steps, in force evaluations: building the cloth
+ * and finding its highest frequency. */
 inline constexpr double start_work = 100;
 
-/** Makes runs and counts what they take. */
+/** Makes trial runs and adds up their work. */
 class Pilots {
  public:
-  /** @param done share of the budget that is spent, up to 1 */
+  /** @param done spent share of the budget, up to 1 */
   using Tell = std::function<void(const std::string& doing, double done)>;
 
   /** @param budget in spring evaluations */
@@ -65,22 +63,23 @@ class Pilots {
   double budget() const { return budget_; }
   double spent() const { return spent_; }
   double left() const { return budget_ - spent_ - kept_; }
-  /** From now on keep @a work for later: what it leaves out is only put off. */
+  /** Reserve @a work for later. Runs that do not fit meanwhile are postponed,
+   * not left out. */
   void keep(double work) { kept_ = work; }
   bool keeps() const { return kept_ > 0; }
-  /** Is a run of @a work within @a share of what is left? If not, the budget
-   * has left out @a what. */
+  /** Is a run of @a work within @a share of the remaining budget? If not, @a
+   * what is added to left_out(). */
   bool affords(double work, const std::string& what, double share = 1);
   bool cut_short() const { return !left_out_.empty(); }
   /** Each thing once. */
   const std::vector<std::string>& left_out() const { return left_out_; }
-  /** What is known so far: told with all that is done. */
+  /** Results so far: reported with each run. */
   void knows(const std::string& so_far) { known_ = so_far; }
 
-  /** Run @a m, or tell what it gave before. What is no scene fails, like what
-   * blows up.
-   * @param doing what for, in words   @param work what it counts
-   * @param look, after as for try_out(): then it is run anew each time
+  /** Run @a m, or return its earlier result. An invalid scene counts as failed,
+   * like a run that diverges.
+   * @param doing description for progress   @param work added to spent()
+   * @param look, after as for try_out(): with them earlier results are not used
    * Throws Interrupted */
   Trial run(const Model& m, const std::string& doing, double work,
             const Shake& shake = {},

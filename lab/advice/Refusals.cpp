@@ -21,19 +21,19 @@ bool has_point_pin(const Model& m) {
 
 std::string converging_slowly(const Model& m) {
   if (m.sheets.empty() || !has_point_pin(m)) return "";
-  return "; a pin that holds one node holds ever less of a finer cloth, so "
-         "that finer grids change much: hold a side, as by --pin \"x 0\"";
+  return "; a pin of one node holds a smaller piece of a finer cloth, so the "
+         "answer converges slowly: hold a side, for example by --pin \"x 0\"";
 }
 
 std::string diverging(const Model& m) {
   if (m.measure != Measure::max_stretch || !has_point_pin(m)) return "";
-  return "the stretch at a pin that holds one node grows without bound as "
-         "the grid gets finer, as its whole load hangs by ever smaller "
-         "springs: hold a side, as by --pin \"x 0\", or ask for --measure "
+  return "the stretch at a pin of one node grows without bound as the grid "
+         "gets finer, because ever narrower strips of cloth carry the load: "
+         "hold a side, for example by --pin \"x 0\", or ask for --measure "
          "drape-height";
 }
 
-std::string offers(const Model& m, const std::vector<Answer>& still,
+std::string offers(const Model& m, const std::vector<Answer>& answers,
                    const std::vector<Answer>& shaken) {
   Cloth g;
   build_model(g, m, mesh_of(m));
@@ -41,22 +41,23 @@ std::string offers(const Model& m, const std::vector<Answer>& still,
   for (Node n : g.nodes()) box |= n.position();
   const double size = box.diagonal();
   std::string all;
-  for (std::size_t k = 0; k < std::min(still.size(), shaken.size()); ++k) {
-    if (still[k].empty() || shaken[k].empty()) continue;
+  for (std::size_t k = 0; k < std::min(answers.size(), shaken.size()); ++k) {
+    if (answers[k].empty() || shaken[k].empty()) continue;
     const Measure what = Measure(k);
-    // Four times what one shake moved, as another one moves it more.
-    const double to = std::max(1e-5, 4 * distance(still[k], shaken[k], what));
+    // Four times the change by one perturbation, as others change it more.
+    const double to = std::max(1e-5, 4 * distance(answers[k], shaken[k], what));
     const double scale = what == Measure::energy
                              ? total_mass(g) * m.gravity * size
-                         : what == Measure::max_stretch ? still[k][0]
+                         : what == Measure::max_stretch ? answers[k][0]
                                                         : size;
     if (what != m.measure && to <= 0.1 * scale)
       all += std::string(all.empty() ? "" : ", ") + "--measure " +
              name_of(what) + " to " + with_unit(to, what);
   }
-  return all.empty() ? "nothing else is known better: ask at an earlier --t-end"
-                     : "what can be had: " + all +
-                           "; or the same at an earlier --t-end";
+  return all.empty()
+             ? "no other measure is more predictable: ask at an earlier --t-end"
+             : "what can be answered: " + all +
+                   "; or the same at an earlier --t-end";
 }
 
 }  // namespace lab

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Refusals.hpp
- * Why there is no advice, and what one would ask or change instead. */
+ * Texts of refusals: their cause, and a question or scene that would do. */
 #include <string>
 #include <vector>
 
@@ -8,20 +8,20 @@
 
 namespace lab {
 
-/** Why the answer of @a m has no limit on finer grids, and what has; empty if
- * no reason is known.  Throws InputError, SceneError */
+/** Why the answer of @a m has no limit on finer grids, and what to ask instead;
+ * empty if no reason is known.  Throws InputError, SceneError */
 std::string diverging(const Model& m);
 
-/** Why its grids converge slowly, and what to hold instead: the end of a
- * sentence, or empty.  Throws InputError, SceneError */
+/** Why the answers of @a m converge slowly, and what to hold instead: the end
+ * of a sentence, or empty.  Throws InputError, SceneError */
 std::string converging_slowly(const Model& m);
 
-/** What can be asked of @a m at its end although its motion is chaotic: the
- * measures that are known to a tenth of the size of the cloth or better, or
- * what to change if there are none.
- * @param still,shaken answers by Measure, of a run and of one that started
- *        slightly off; an empty one: not known */
-std::string offers(const Model& m, const std::vector<Answer>& still,
+/** Questions that can be answered at the end of @a m although its motion is
+ * chaotic: the measures that are known to a tenth of the size of the cloth or
+ * better, or what to change if there are none.
+ * @param answers,shaken by Measure, of a run and of one from a perturbed start;
+ *        an empty one: unknown */
+std::string offers(const Model& m, const std::vector<Answer>& answers,
                    const std::vector<Answer>& shaken);
 
 }  // namespace lab

@@ -1,17 +1,16 @@
 /** @file adviser_suite.cpp
- * How often --advise is right: random scenes, each of them with advice, with
- * the true error of what was advised, and with the best choice in hindsight.
+ * How often --advise is right: random scenes, each with its advice, the true
+ * error of the advised run, and the best choice in hindsight.
  *
  *   build/adviser_suite --scenes 100 --out lab/advice/results/adviser.csv
  *   build/adviser_suite --scenes 40 --price --out lab/advice/results/price.csv
  *
- * Truth is a converged reference: grids of up to 4 times as many cells as the
- * advised one, and at least 80, by srkn6b, and what they tend to. Cost is
- * counted: spring evaluations. With --price the scenes are refined until a run
- * takes more than two seconds: what advice takes of the time of that run, by a
- * budget as ./cloth gives it. Exit status: 0 done; 1 less is right than was
- * wanted; 2 an option that can't be used, or an output that can't be written.
- */
+ * The reference is the limit of grids of up to 4 times as many cells as the
+ * advised one, and at least 80, by srkn6b. Cost is counted in spring
+ * evaluations. With --price the scenes are refined until a run takes more than
+ * two seconds, and the time of the advice, with the default budget of ./cloth,
+ * is compared with that of the run. Exit status: 0 done; 1 less is right than
+ * was wanted; 2 bad option, or an output that can't be written. */
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -33,7 +32,7 @@ using namespace lab;
 
 namespace {
 
-/** A random scene, the same for the same number everywhere. */
+/** A random scene: the same on every machine for the same number. */
 Model random_scene(unsigned number) {
   std::mt19937 random(number);
   auto pick = [&](int n) { return int(random() % unsigned(n)); };
@@ -64,12 +63,12 @@ Model random_scene(unsigned number) {
   m.material.density = log_between(0.2, 2);
   m.material.modulus = log_between(1, 1e4);  // four decades
   if (pick(2)) m.material.drag = *m.material.density * log_between(0.1, 10);
-  // Time for the waves to cross the cloth up to some times.
+  // Time for waves to cross the cloth up to four times.
   const double wave = std::sqrt(*m.material.density / *m.material.modulus) *
                       std::max(width, height);
   m.t_end = std::min(wave * between(0.5, 4), 1.0);
   if (pick(4) == 0) m.planes = {read_plane("at 0 0 " + text(-height - 0.01))};
-  // What else may act: each in one scene of eight.
+  // Further parts, each in one scene of eight.
   auto sometimes = [&] { return pick(8) == 0; };
   const bool lies = hangs >= 2;
   if (lies && sometimes())
@@ -95,11 +94,11 @@ Model random_scene(unsigned number) {
                              " to " + text(0.21 * width) + ' ' + text(height) +
                              ' ' + text(height) + " stiffness-factor 100")};
   m = as_pilot(m);
-  // Without drag it keeps its energy, on any grid.
+  // Without drag the energy is conserved on any grid: no question.
   if (m.material.drag && pick(2)) m.measure = Measure::energy;
   m.tolerance = 1;
-  // To between 0.5 % and 5 % of how far it comes, or of the work done by its
-  // weight on that way.
+  // Tolerance: 0.5 % to 5 % of the way of the center of mass, or of the work of
+  // gravity on that way.
   Model com = m, start = m;
   com.measure = start.measure = Measure::com;
   start.t_end = 0;
@@ -112,8 +111,7 @@ Model random_scene(unsigned number) {
   return m;
 }
 
-/** What is in @a m besides a cloth that is held, falls and may have a floor.
- */
+/** The further parts of @a m, as words. */
 std::string kinds_of(const Model& m) {
   std::string all;
   auto add = [&](bool is_there, const char* kind) {
@@ -144,20 +142,20 @@ std::string kinds_of(const Model& m) {
   return all;
 }
 
-/** What became of a scene. */
+/** The result of a scene. */
 struct Row {
   std::string refusal;
   std::string method;
   double predicted = 0, uncertainty = 0, real = 0;  // errors
   double half = 0, finer = 0;  // errors by half the step; on twice the cells
-  double chosen = 0, best = 0, lucky = 0;  // counted work
-  double spent = 0;                        // [s], by the advice
-  double seconds = 0;                      // of the advised run
+  double chosen = 0, best = 0, fragile = 0;  // counted work
+  double spent = 0;                          // [s], by the advice
+  double seconds = 0;                        // of the advised run
 };
 
 double cells(const Model& m) { return m.sheets[0].nodes[0] - 1; }
 
-/** What the answer tends to on finer grids, those of @a advised among them. */
+/** The limit of the answer on finer grids than that of @a advised. */
 Answer truth(const Model& scene, const Model& advised) {
   const double factor = std::max(40., cells(advised)) / cells(scene);
   Refinement grids(scene.measure);
@@ -177,10 +175,9 @@ double error_of(const Model& m, const Answer& right) {
                 : std::numeric_limits<double>::infinity();
 }
 
-/** @a scene without every set of the parts that may be left out: those that
- * alone change the answer by less than the tolerance, on its own grid. Parts
- * that change nothing are always left out; of the others, the four that change
- * least. */
+/** @a scene without each combination of the parts that, left out alone, change
+ * the answer by less than the tolerance. Parts that change nothing are always
+ * left out; of the others, the four that change least are considered. */
 std::vector<Model> without_sets(const Model& scene) {
   const Answer all = try_out(scene).answer;
   std::vector<std::pair<double, std::string>> parts;
@@ -196,18 +193,17 @@ std::vector<Model> without_sets(const Model& scene) {
   some.resize(std::min<std::size_t>(some.size(), 4));
   std::vector<Model> sets;
   for (unsigned set = 0; set < 1u << some.size(); ++set) {
-    std::vector<std::string> gone = none;
+    std::vector<std::string> removed = none;
     for (unsigned k = 0; k < some.size(); ++k)
-      if (set >> k & 1) gone.push_back(some[k]);
-    if (const auto m = without_all(scene, gone)) sets.push_back(*m);
+      if (set >> k & 1) removed.push_back(some[k]);
+    if (const auto m = without_all(scene, removed)) sets.push_back(*m);
   }
   return sets;
 }
 
-/** The least work of all sets of parts, grids, methods and steps that the
- * adviser could have chosen and that meet the tolerance: of those that take
- * less than @a chosen. Reliably: not by accident, so that half of the step
- * meets it, too, and so do twice the cells. */
+/** The least work, at most @a chosen, of all combinations of parts, grid,
+ * method and step that meet the tolerance. @a reliably: half of the step and
+ * twice the cells must meet it, too. */
 double best_in_hindsight(const Model& scene, const std::vector<Model>& ways,
                          const Answer& right, double chosen, bool reliably) {
   double best = chosen;
@@ -238,7 +234,7 @@ double best_in_hindsight(const Model& scene, const std::vector<Model>& ways,
         const bool multirate = m.method->info.multirate;
         m.step = {.dt =
                       share * (multirate ? costs.multirate() : costs.verlet())};
-        if (multirate && m.step.dt < costs.verlet()) continue;  // as Verlet
+        if (multirate && m.step.dt < costs.verlet()) continue;  // it is Verlet
         const double work = costs.of_run(m);
         if (work >= best) continue;
         tried = true;
@@ -249,7 +245,7 @@ double best_in_hindsight(const Model& scene, const std::vector<Model>& ways,
         if (meets(m) && (!reliably || (meets(smaller) && meets(finer))))
           best = work;
       }
-      if (!tried) break;  // finer ones take even more
+      if (!tried) break;  // finer grids take even more
     }
   return best;
 }
@@ -257,7 +253,7 @@ double best_in_hindsight(const Model& scene, const std::vector<Model>& ways,
 Row look_at(const Model& scene) {
   Row row;
   AdviceRules rules;
-  rules.most_nodes = 27000;  // so that a reference can be had
+  rules.most_nodes = 27000;  // so that the reference takes little time
   const Advice a = advise(scene, rules);
   row.refusal = a.refusal;
   row.spent = a.spent;
@@ -275,12 +271,11 @@ Row look_at(const Model& scene) {
   row.seconds = t.seconds;
   const std::vector<Model> ways = without_sets(scene);
   row.best = best_in_hindsight(scene, ways, right, row.chosen, true);
-  row.lucky = best_in_hindsight(scene, ways, right, row.best, false);
+  row.fragile = best_in_hindsight(scene, ways, right, row.best, false);
   return row;
 }
 
-/** @a scene on a grid of so many times the cells that it takes at least
- * @a work to run it. */
+/** @a scene refined until a run takes at least @a work. */
 Model long_run(Model scene, double work) {
   const Model first = scene;
   for (double finer = 2; work_of_run(scene) < work; finer *= std::sqrt(2.))
@@ -288,7 +283,7 @@ Model long_run(Model scene, double work) {
   return scene;
 }
 
-/** What advice takes where a run takes more than two seconds. */
+/** The cost of advice where a run takes more than two seconds. */
 int look_at_prices(unsigned first, unsigned scenes, std::ostream& csv) {
   constexpr double two_seconds = 2;
   csv << "scene,nodes,run work,run [s],advice work,advice [s],refusal\n";
@@ -325,7 +320,8 @@ int main(int argc, char** argv) {
   double want_met = 0, want_cheap = 0;
   std::string out;
   bool price = false;
-  app.add_flag("--price", price, "what advice takes where a run takes long");
+  app.add_flag("--price", price,
+               "measure the cost of advice where a run takes long");
   app.add_option("--scenes", scenes, "how many")->capture_default_str();
   app.add_option("--first", first, "number of the first one")
       ->capture_default_str();
@@ -356,7 +352,7 @@ int main(int argc, char** argv) {
       file.stream() << k << ',' << name_of(m.measure) << ',' << m.tolerance
                     << ',' << r.method << ',' << r.predicted << ','
                     << r.uncertainty << ',' << r.real << ',' << r.chosen << ','
-                    << r.best << ',' << r.lucky << ',' << r.spent << ','
+                    << r.best << ',' << r.fragile << ',' << r.spent << ','
                     << r.seconds << ',' << r.half << ',' << r.finer << ','
                     << kinds_of(m) << ",\"" << r.refusal << "\"\n";
       if (!r.refusal.empty()) continue;
