@@ -5,8 +5,8 @@
  *   build/adviser_suite --scenes 100 --out lab/advice/results/adviser.csv
  *   build/adviser_suite --scenes 40 --price --out lab/advice/results/price.csv
  *
- * The reference is the limit of grids of up to 4 times as many cells as the
- * advised one, and at least 80, by srkn6b. Cost is counted in spring
+ * The reference is the limit of grids of 1, 2 and 4 times as many cells as the
+ * advised one, or as 40 if it has fewer, by srkn6b. Cost is counted in spring
  * evaluations. With --price the scenes are refined until a run takes more than
  * two seconds, and the time of the advice, with the default budget of ./cloth,
  * is compared with that of the run. Exit status: 0 done; 1 less is right than
