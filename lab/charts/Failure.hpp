@@ -1,8 +1,9 @@
 #pragma once
 /** @file Failure.hpp
- * How each method fails, and a cure: a table of runs, and the making of them.
- * FailureChart.hpp draws it, documents and tests quote it. */
+ * How each method fails, and a cure: a table of runs, which documents and tests
+ * quote, and their results as a CSV file. */
 #include <array>
+#include <iosfwd>
 #include <string_view>
 #include <vector>
 
@@ -19,28 +20,55 @@ enum class Quantity {
   error     ///< distance() from the true motion [m]
 };
 
-/** A run of a failure. */
+/** A run of a failure, and the text at its curve in the picture. */
 struct FailureRun {
   std::string_view method;  ///< empty: the true motion itself
-  double dt;                ///< [s]
+  double dt = 0;            ///< [s]
+  const char* label = "";   ///< # stands for the number of force evaluations
+  struct Place {
+    double t, up;  ///< [s], and lines of text above the curve
+  } place = {};
   double setting = 0;  ///< tolerance [m] of an adaptive one, substeps of xpbd
+
+  constexpr FailureRun() = default;
+  constexpr FailureRun(std::string_view method, double dt, const char* label,
+                       Place place, double setting = 0)
+      : method(method), dt(dt), label(label), place(place), setting(setting) {}
 };
 
 /** How a method fails, and a cure: runs[0] fails, the last one does not, those
  * in between are for comparison.
  *
- * The deviation of a run is the largest distance of what is looked at from what
- * is right: an energy from that at the start (there is no drag), a height or a
- * stretch from that of the true motion, an error from 0. */
+ * The deviation of a run is the largest distance of its quantity from the right
+ * value: of an energy from that at the start (there is no drag), of a height or
+ * a stretch from that of the true motion, of an error from 0. */
 struct Failure {
   const char* title;    ///< what is seen
-  const char* caption;  ///< on what
+  const char* caption;  ///< the scene
   Problem (*scene)();
   double t_end;  ///< [s]
   Quantity quantity;
-  double fails;  ///< the deviation of runs[0] is more
-  double cured;  ///< and that of the last run less
+  double fails;  ///< the deviation of runs[0] is larger
+  double cured;  ///< that of the last run is smaller
+  struct Axis {
+    double low, high;
+    bool log = false;
+  } axis;
   std::array<FailureRun, 4> runs;
+
+  template <typename... Runs>
+  constexpr Failure(const char* title, const char* caption, Problem (*scene)(),
+                    double t_end, Quantity quantity, double fails, double cured,
+                    Axis axis, const Runs&... runs)
+      : title(title),
+        caption(caption),
+        scene(scene),
+        t_end(t_end),
+        quantity(quantity),
+        fails(fails),
+        cured(cured),
+        axis(axis),
+        runs{runs...} {}
 
   constexpr std::string_view method() const { return runs[0].method; }
   /** Number of runs. */
@@ -71,5 +99,12 @@ struct Trace {
 
 /** Make the run @a r of @a f, until its end or until it fails. */
 Trace trace(const Failure& f, const FailureRun& r);
+
+/** Make the runs for @a chosen methods and write failures.csv, which
+ * failures.gp draws, to @a out: titles, axes and measured numbers in the head,
+ * then a row for each point of a curve.
+ * @param said the measured numbers go there as well, if not nullptr */
+void write_failures(const std::vector<const MethodEntry*>& chosen,
+                    std::ostream* said, std::ostream& out);
 
 }  // namespace lab

@@ -1,4 +1,4 @@
-#include "lab/charts/FailureChart.hpp"
+#include "lab/charts/Failure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,6 @@
 #include <string>
 
 #include "CME212/Util.hpp"
-#include "lab/charts/Failure.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/methods/DormandPrince.hpp"
 #include "lab/methods/Methods.hpp"
@@ -18,123 +17,6 @@ namespace lab {
 namespace {
 
 using report::cell;
-
-/** The text at the curve of a run. */
-struct Label {
-  const char* text;  // # stands for the force evaluations
-  double at;         // where: time [s]
-  double up;         // lines of text above the curve
-};
-
-/** How the picture of a failure looks. */
-struct Layout {
-  std::string_view method;
-  double low, high;  // ends of the axis
-  bool log;
-  std::array<Label, 4> labels;  // of the runs
-};
-
-/** In the order of `failures`. */
-constexpr std::array layouts = {
-    Layout{"forward-euler",
-           -1,
-           6,
-           false,
-           {{{"limit/4", 0.535, 0},
-             {"limit/16", 1.56, -0.5},
-             {"limit/64", 2.0, 1.6},
-             {"verlet at limit/2", 1.0, -1}}}},
-    Layout{"symplectic-euler",
-           -0.15,
-           0.15,
-           false,
-           {{{"symplectic-euler", 0.36, 1}, {"verlet", 1.1, -1}}}},
-    Layout{
-        "verlet",
-        1e-7,
-        1,
-        true,
-        {{{"1.05 of the limit", 0.3, -0.9}, {"0.97 of the limit", 0.6, 1.6}}}},
-    Layout{"respa",
-           0,
-           6,
-           false,
-           {{{"dt = 0.986 half periods", 1.3, 2.5},
-             {"dt = 0.9 half periods", 2, 1.2}}}},
-    Layout{"yoshida4",
-           1e-8,
-           1e-2,
-           true,
-           {{{"yoshida4: # evaluations", 1.6, 1.4},
-             {"pefrl: # evaluations", 2, -1}}}},
-    Layout{"pefrl",
-           1e-10,
-           1,
-           true,
-           {{{"pefrl: # evaluations", 0.12, -1.2},
-             {"verlet: # evaluations", 0.04, 2.2}}}},
-    Layout{"srkn6b",
-           1e-3,
-           1,
-           true,
-           {{{"dt omega = 3.166", 95, -0.9}, {"dt omega = 3.07", 120, -1}}}},
-    Layout{"srkn11b",
-           1e-3,
-           1,
-           true,
-           {{{"dt omega = 3.142", 480, -0.8}, {"dt omega = 3.05", 600, -1}}}},
-    Layout{"rk4", -1, 0.4, false, {{{"rk4", 3.5, 1}, {"pefrl", 3, 1}}}},
-    Layout{"dormand-prince",
-           -1,
-           4,
-           false,
-           {{{"tolerance 0.01 m: # evaluations", 8, -0.8},
-             {"tolerance 0.0001 m: # evaluations", 8, 0.9},
-             {"pefrl: # evaluations", 8, -0.9}}}},
-    Layout{"dop853",
-           -1.4,
-           0.4,
-           false,
-           {{{"tolerance 0.01 m: # evaluations", 2, -3.5},
-             {"tolerance 0.0001 m: # evaluations", 5, 1.2}}}},
-    Layout{"implicit-euler",
-           -0.7,
-           0.1,
-           false,
-           {{{"implicit-euler", 0.85, -1.2},
-             {"true motion", 1.14, 0.7},
-             {"tr-bdf2", 2.15, 1}}}},
-    Layout{"implicit-midpoint",
-           -3,
-           10,
-           false,
-           {{{"implicit-midpoint", 2.48, -0.8},
-             {"tr-bdf2", 3, 0.9},
-             {"at dt = 0.01 s", 3, 0.9}}}},
-    Layout{"tr-bdf2",
-           0,
-           0.1,
-           false,
-           {{{"tr-bdf2", 2, 1}, {"implicit-midpoint", 2, 1}}}},
-    Layout{"augmented-verlet",
-           -0.7,
-           0.1,
-           false,
-           {{{"augmented-verlet", 0.3, 0.5},
-             {"true motion", 0.62, -0.9},
-             {"tr-bdf2", 1.1, 1}}}},
-    Layout{"xpbd",
-           0,
-           1,
-           false,
-           {{{"1 substep", 0.72, 0.3},
-             {"2 substeps", 2, 0.9},
-             {"true motion", 1.3, -1.5},
-             {"20 substeps", 1.85, -0.9}}}}};
-static_assert(std::ranges::equal(layouts, methods, {}, &Layout::method,
-                                 [](const MethodEntry& m) {
-                                   return std::string_view(m.info.name);
-                                 }));
 
 const char* axis_of(Quantity q) {
   constexpr std::array names = {
@@ -154,8 +36,8 @@ const char* role_of(const Failure& f, std::size_t k) {
 }
 
 /** The text at a run's curve. */
-std::string text_of(const Label& l, const Trace& trace) {
-  std::string label = l.text;
+std::string text_of(const FailureRun& r, const Trace& trace) {
+  std::string label = r.label;
   if (auto at = label.find('#'); at != std::string::npos)
     label.replace(at, 1, std::to_string(trace.sweeps));
   return label;
@@ -195,15 +77,12 @@ void write_failures(const std::vector<const MethodEntry*>& chosen,
   for (const MethodEntry* m : chosen) {
     const Failure& f = failure_of(m->info.name);
     const std::string name = m->info.name;
-    const Layout& layout =
-        *std::ranges::find(layouts, m->info.name, &Layout::method);
     out << "# title " << name << ": " << f.title << "\n# caption " << name
         << ": " << f.caption << "\n# axis " << name << ": " << f.t_end << ' '
-        << layout.low << ' ' << layout.high << ' ' << layout.log << ' '
+        << f.axis.low << ' ' << f.axis.high << ' ' << f.axis.log << ' '
         << axis_of(f.quantity) << '\n';
     for (std::size_t k = 0; k < f.size(); ++k) {
       const FailureRun& r = f.runs[k];
-      const Label& label = layout.labels[k];
       const Trace trace = lab::trace(f, r);
       if (!r.method.empty()) {
         out << "# measured " << name << ": " << in_words(f, r, trace) << '\n';
@@ -212,14 +91,14 @@ void write_failures(const std::vector<const MethodEntry*>& chosen,
       const auto& samples = trace.samples;
       const std::size_t every = samples.size() / drawn + 1;
       const std::size_t label_at =
-          std::size_t(std::min(label.at / r.dt, double(samples.size() - 1)));
+          std::size_t(std::min(r.place.t / r.dt, double(samples.size() - 1)));
       for (std::size_t n = 0; n < samples.size(); ++n) {
         const bool last = n + 1 == samples.size(), at_label = n == label_at;
         if (n % every != 0 && !last && !at_label) continue;
         rows << name << ',' << r.method << ',' << role_of(f, k) << ',' << k
              << ',' << cell(samples[n].t) << ',' << cell(samples[n].value)
-             << ',' << (at_label ? cell(text_of(label, trace)) : "") << ','
-             << (at_label ? cell(label.up) : "") << ','
+             << ',' << (at_label ? cell(text_of(r, trace)) : "") << ','
+             << (at_label ? cell(r.place.up) : "") << ','
              << (last ? status_of(trace) : "") << '\n';
       }
     }

@@ -24,7 +24,7 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Progress.hpp"
-#include "lab/charts/FailureChart.hpp"
+#include "lab/charts/Failure.hpp"
 #include "lab/charts/Precision.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/charts/Report.hpp"
