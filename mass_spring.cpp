@@ -1,6 +1,6 @@
 /** @file mass_spring.cpp
  * The assignment's program: ./mass_spring NODES TETS [DT [T_END]]
- * The stage is chosen when it is compiled: make mass_spring STAGE=forces.
+ * The stage is set when it is compiled: make mass_spring STAGE=forces.
  * Exit status: 0 done; 2 bad input; 3 the run diverged. */
 #include <cmath>
 #include <exception>
@@ -29,8 +29,8 @@ enum class Stage {
 };
 constexpr Stage stage = Stage::STAGE;  // a misspelt stage does not compile
 
-/** Kinetic and gravitational energy [J], and that of the @a springs. A held
- * corner stands still, whatever the last kick left in its velocity. */
+/** Kinetic and gravitational energy [J], and that of springs if @a springs. A
+ * corner does not move, even if its velocity is not 0: it does not count. */
 double energy(const Cloth& g, bool springs = true) {
   double sum = 0;
   for (Node n : g.nodes()) {
@@ -44,7 +44,7 @@ double energy(const Cloth& g, bool springs = true) {
   return sum;
 }
 
-/** The time [s] > 0 that @a text is, the argument called @a name. */
+/** The time [s] > 0 that the argument called @a name holds as @a text. */
 double time_of(const char* text, const std::string& name) {
   char* end = nullptr;
   const double t = std::strtod(text, &end);
@@ -61,7 +61,7 @@ int main(int argc, char** argv) try {
   if (dt > t_end || t_end / dt > 1e15)
     throw std::runtime_error("DT is " + CME212::short_text(dt) +
                              " s, expected at most T_END, and 1e15 steps");
-  // Symplectic methods want equal steps: up to T_END, of at most DT.
+  // Symplectic methods need equal steps: they end at T_END and are at most DT.
   const long long steps = std::ceil(t_end / dt * (1 - 1e-9));  // 1e-9: rounding
   dt = t_end / steps;
 
@@ -110,8 +110,9 @@ int main(int argc, char** argv) try {
     std::cout << e.what() << "; running without a window\n";
   }
 
-  // Only gravity gives energy, which counts here. So a growth by 100 times the
-  // weight times the size is divergence. (In a fall the speed is a step ahead.)
+  // Springs hold no energy at first, so all other energy does not grow. If it
+  // does, by 100 times weight times size, that is divergence. (In a free fall
+  // the velocity is one step ahead of the position, hence the last term.)
   double most = energy(g);  // [J]
   for (Node n : g.nodes())
     most += 100 * n.value().mass * grav *
@@ -121,7 +122,7 @@ int main(int argc, char** argv) try {
   CME212::Clock clock;
   // Returns false if the run has diverged, or the window was closed.
   const auto draw = [&](double t) {
-    if (!(energy(g, false) <= most)) {  // or it is no number
+    if (!(energy(g, false) <= most)) {  // also if it is NaN
       failure = "diverged: at t = " + CME212::short_text(t) +
                 " s it gains energy from nothing; './cloth " + argv[1] + ' ' +
                 argv[2] + " --dt auto' finds a stable step";
@@ -137,7 +138,7 @@ int main(int argc, char** argv) try {
     if (!viewer) return true;
     const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
     if (viewer->wants_frame() || t > t_end - dt / 2) show();
-    CME212::sleep(dt - clock.seconds());  // no faster than the clock
+    CME212::sleep(dt - clock.seconds());  // at most as fast as real time
     clock.start();
     return viewer->wait_while_paused(show);
   };

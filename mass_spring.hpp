@@ -13,15 +13,14 @@
 #include "CME212/Mesh.hpp"
 #include "Graph.hpp"
 
-// ------------------------------------------------- 3 and 4.1: cloth and
-// springs
+// ----------------------------------------------- 3 and 4.1: cloth and springs
 
-/** What a node carries. */
+/** The value of a node: a point mass. */
 struct NodeData {
   Point vel;      ///< velocity [m/s]
   Real mass = 1;  ///< [kg], > 0
 };
-/** What an edge carries: a linear spring. */
+/** The value of an edge: a linear spring. */
 struct EdgeData {
   Real K = 100;  ///< spring constant [N/m], >= 0
   Real L = 0;    ///< rest length [m], >= 0
@@ -33,16 +32,16 @@ using Edge = Cloth::edge_type;
 
 inline constexpr double grav = 9.81;  ///< acceleration of free fall [m/s^2]
 
-/** Is @a p one of the two corners that the assignment holds? */
+/** Is @a p one of the two corners that the assignment holds fixed? */
 inline constexpr bool is_corner(const Point& p) {
   return p == Point(0, 0, 0) || p == Point(1, 0, 0);
 }
 
-/** Fill the empty graph @a g: at rest, mass 1/N each, every spring as long as
- * its rest length.  @param K spring constant [N/m]
+/** Make the cloth: N nodes of mass 1/N at rest, springs at their rest length.
+ * @param g an empty graph   @param K spring constant [N/m]
  * @pre the indices in @a quads are below points.size()
  * @post node(i) is at points[i]; the edges have the order of MeshSprings
- * Complexity: O(points + quads) if no point is in very many quads */
+ * Complexity: O(points + quads), unless a point is in very many quads */
 inline void build_cloth(Cloth& g, std::span<const Point> points,
                         std::span<const Quad> quads, Mesh mesh,
                         double K = 100) {
@@ -64,8 +63,8 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
 
 // ------------------------------------------------------- 3.2 and 6.2: the step
 
-/** Does the step without a constraint leave out a node at @a p? The corners,
- * from 5.2 on: the forces of section 5 act on them, too. */
+/** Does the step without constraints skip a node at @a p? From 5.2 on it skips
+ * the corners: the forces of section 5 act on them, too. */
 inline bool is_skipped(const Point& p) {
   // BEGIN SOLUTION 5.2.skip_corners 2pt
   return is_corner(p);
@@ -74,13 +73,14 @@ inline bool is_skipped(const Point& p) {
   // END SOLUTION
 }
 
-/** Symplectic Euler: x += dt v;  v += dt F(x, t)/m, of the nodes that are not
+/** Symplectic Euler: x += dt v;  v += dt F(x, t)/m, for each node that is not
  * skipped.
  * @param t   time at the start of the step [s]   @param dt step [s]
  * @param force  Point(Node, double): the force [N] on a node at time t
  * @return t + dt
  * Complexity: one call of @a force for each node that is not skipped.
- * Order 1; bounded while dt omega < 2 for every frequency omega [1/s]. */
+ * Order 1. Bounded if dt omega < 2 for each frequency omega [1/s] of the cloth.
+ */
 template <typename G, typename F>
 double symp_euler_step(G& g, double t, double dt, F&& force) {
   // BEGIN SOLUTION 3.2.symp_euler_step 7pt
@@ -99,7 +99,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force) {
   // END SOLUTION
 }
 
-/** The same with a constraint, and no node is skipped (6.2):
+/** The same with a constraint; no node is skipped (6.2):
  * x += dt v;  constrain;  v += dt F(x, t)/m.
  * @param constraint  void(G&, double), called once; may remove nodes */
 template <typename G, typename F, typename C>
@@ -122,8 +122,8 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
 
 // ----------------------------------------------------------------- The forces
 
-/** Force [N] of a spring on its one end, the other end being @a u [m] away:
- * K (|u| - L) along u; none where |u| = 0, as no direction is defined. */
+/** Force [N] of spring @a s on one end, where @a u [m] points to the other end:
+ * K (|u| - L) u/|u|; zero if u = 0, which has no direction. */
 inline Point spring_force(const Point& u, const EdgeData& s) {
   // BEGIN SOLUTION 3.2.Problem1Force 7pt
   const Real l = Real(norm(u));
@@ -133,13 +133,12 @@ inline Point spring_force(const Point& u, const EdgeData& s) {
   // END SOLUTION
 }
 
-/** 3.2 and 4.2: gravity and springs in one; a corner feels no force, so it
- * stays where it is. */
+/** 3.2 and 4.2: gravity plus springs; no force on a corner, so it stays. */
 class Problem1Force {
  public:
-  /** Each spring by its own K and L (4.2). */
+  /** Each spring has its own K and L (4.2). */
   Problem1Force() = default;
-  /** All springs alike (3.2).  @param K [N/m]   @param L rest length [m] */
+  /** All springs have the same K [N/m] and rest length L [m] (3.2). */
   Problem1Force(double K, double L) : same_{{Real(K), Real(L)}} {}
 
   template <typename NODE>
@@ -158,9 +157,9 @@ class Problem1Force {
   }
 
  private:
-  std::optional<EdgeData> same_;
+  std::optional<EdgeData> same_;  // K and L of all springs
 
-  /** K and L of the spring at @a e: its own (4.2), unless all are alike. */
+  /** K and L of the spring at @a e. */
   template <typename EDGE>
   EdgeData spring_of(const EDGE& e) const {
     if (same_) return *same_;
@@ -172,12 +171,12 @@ class Problem1Force {
   }
 };
 
-/** 5.1: no force, and the base of all forces. */
+/** 5.1: the base class of all forces; by itself no force. */
 class ZeroForce {
  public:
   virtual ~ZeroForce() = default;
-  /** The force [N] on @a n at time @a t [s]. It may read all positions, and of
-   * the velocities that of @a n. */
+  /** The force [N] on @a n at time @a t [s]. It may depend on all positions,
+   * and on the velocity of @a n. */
   virtual Point operator()(Node /*n*/, double /*t*/) const { return Point(); }
 };
 
@@ -199,7 +198,7 @@ class GravityForce : public ZeroForce {
   double gravity_;
 };
 
-/** The springs at a node, each by its own K and L. */
+/** The springs at a node, each with its own K and L. */
 class MassSpringForce : public ZeroForce {
  public:
   Point operator()(Node n, double /*t*/) const override {
@@ -214,14 +213,13 @@ class MassSpringForce : public ZeroForce {
   }
 };
 
-/** Linear drag: f = -c v. Takes c |v|^2 of power [W]; never gives any. */
+/** Linear drag: f = -c v. It dissipates the power c |v|^2 [W]. */
 class DampingForce : public ZeroForce {
  public:
   DampingForce() = delete;  // give it c, or the graph: then c is 1/N
   /** @param c drag coefficient [kg/s].  @pre c >= 0 */
   explicit DampingForce(double c) : c_(c) { assert(c >= 0); }
-  /** The assignment's c = 1/N [kg/s], N the number of nodes that @a g has now.
-   * @pre N > 0 */
+  /** With the assignment's c = 1/N [kg/s], where N = g.num_nodes() > 0. */
   explicit DampingForce(const Cloth& g) : DampingForce(1.0 / g.num_nodes()) {
     assert(g.num_nodes() > 0);
   }
@@ -240,20 +238,15 @@ class DampingForce : public ZeroForce {
 
 /** A function Point(Node, double) as a ZeroForce. */
 template <typename F>
-class FunctionForce : public ZeroForce {
+struct FunctionForce : ZeroForce {
   static_assert(std::is_invocable_r_v<Point, F&, Node&, double&>,
                 "A force needs a public call: Point operator()(Node, double).");
-
- public:
-  explicit FunctionForce(F f) : f_(std::move(f)) {}
-  const F& function() const { return f_; }
-  Point operator()(Node n, double t) const override { return f_(n, t); }
-
- private:
-  mutable F f_;  // the call of a student's force need not be const
+  mutable F function;  // its call need not be const
+  explicit FunctionForce(F f) : function(std::move(f)) {}
+  Point operator()(Node n, double t) const override { return function(n, t); }
 };
 
-/** Calls what @a p points to. */
+/** A call of what @a p points to. */
 template <typename P>
 struct Pointer {
   P p;
@@ -263,14 +256,14 @@ struct Pointer {
   }
 };
 
-/** 5.2: the sum of several forces. Copies share them. */
+/** 5.2: the sum of several forces, which copies of it share. */
 class CombinedForces : public ZeroForce {
  public:
   using List = std::vector<std::shared_ptr<const ZeroForce>>;
   /** @pre no pointer is null */
   explicit CombinedForces(List forces) : forces_(std::move(forces)) {}
-  /** From other pointers to forces: shared ones, unique ones, which it takes
-   * over, and plain ones, whose forces must outlive it. */
+  /** The same from shared or unique pointers, or from plain pointers to forces
+   * that outlive it. */
   template <typename P>
   explicit CombinedForces(std::vector<P> forces) {
     for (P& p : forces)
@@ -292,7 +285,7 @@ class CombinedForces : public ZeroForce {
   List forces_;
 };
 
-/** The sum of any number of forces; each is copied, so temporaries are fine. */
+/** The sum of any number of forces. It copies them: they may be temporaries. */
 template <typename... Fs>
 CombinedForces make_combined_force(Fs... fs) {
   // BEGIN SOLUTION 5.2.make_combined_force
@@ -305,7 +298,7 @@ CombinedForces make_combined_force(Fs... fs) {
 
 // ------------------------------------------------------------ The constraints
 
-/** 6.1: no constraint, and the base of all constraints. */
+/** 6.1: the base class of all constraints; by itself no constraint. */
 class ZeroConstraint {
  public:
   virtual ~ZeroConstraint() = default;
@@ -313,15 +306,15 @@ class ZeroConstraint {
   virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
 };
 
-/** Holds nodes where they were when it was made, at rest. Removing a pinned
- * node is fine: the pin goes on with the others.  O(pins) a call */
+/** Keeps nodes at rest, at the positions that they had when it was made. Pinned
+ * nodes may be removed.  Complexity: O(pins) a call */
 class PinConstraint : public ZeroConstraint {
  public:
   struct Pin {
     Node node;
     Point place;  ///< [m]
   };
-  /** Hold the nodes that @a holds(position) selects: the two corners. */
+  /** Pin each node with holds(position); by default, the two corners. */
   template <typename Pred = bool (*)(const Point&)>
   explicit PinConstraint(const Cloth& g, Pred holds = is_corner) {
     // BEGIN SOLUTION 6.1.PinConstraint 4pt
@@ -330,14 +323,14 @@ class PinConstraint : public ZeroConstraint {
     // STUB (void)g, (void)holds;
     // END SOLUTION
   }
-  /** Hold @a nodes.  @pre all in one graph */
+  /** Pin @a nodes.  @pre all in one graph */
   explicit PinConstraint(std::span<const Node> nodes) {
     for (Node n : nodes) pins_.push_back({n, n.position()});
   }
-  /** Hold the two corners of the graph that it is first called with. It looks
-   * for them in that call, O(N): until then nothing may have moved them. */
+  /** Pin the two corners of the graph of the first call. That call finds them
+   * by their position, in O(N); so they must not have moved before. */
   PinConstraint() : has_pins_(false) {}
-  /** False until the first call, if made without a graph. */
+  /** False if made without a graph and not yet called. */
   bool has_pins() const { return has_pins_; }
   /** @pre has_pins() */
   const std::vector<Pin>& pins() const { return assert(has_pins_), pins_; }
@@ -355,7 +348,7 @@ class PinConstraint : public ZeroConstraint {
   mutable bool has_pins_ = true;
 };
 
-/** A floor at height z. @post no node lies below; one that did has v_z = 0. */
+/** A floor at height z. @post No node is below; one that was has v_z = 0. */
 class PlaneConstraint : public ZeroConstraint {
  public:
   /** @param z height of the floor [m] */
@@ -384,9 +377,9 @@ struct Ball {
   }
 };
 
-/** A solid ball. @post no node lies inside by more than round-off; one that did
- * lies at the nearest point of the surface (the top one, if it was at the
- * center) and has no velocity normal to it. */
+/** A solid ball. @post No node is inside by more than round-off. One that was
+ * is at the nearest point of the surface (at the top, if it was at the center)
+ * and has no velocity normal to it. */
 class SphereConstraint : public ZeroConstraint {
  public:
   explicit SphereConstraint(const Ball& ball = {}) : ball_(ball) {}
@@ -434,29 +427,24 @@ class TearConstraint : public ZeroConstraint {
 
 /** A function void(Cloth&, double) as a ZeroConstraint. */
 template <typename C>
-class FunctionConstraint : public ZeroConstraint {
+struct FunctionConstraint : ZeroConstraint {
   static_assert(
       std::is_invocable_v<C&, Cloth&, double&>,
       "A constraint needs a public call: void operator()(Cloth&, double).");
-
- public:
-  explicit FunctionConstraint(C c) : c_(std::move(c)) {}
-  const C& function() const { return c_; }
-  void operator()(Cloth& g, double t) const override { c_(g, t); }
-
- private:
-  mutable C c_;
+  mutable C function;
+  explicit FunctionConstraint(C c) : function(std::move(c)) {}
+  void operator()(Cloth& g, double t) const override { function(g, t); }
 };
 
-/** 6.2: several constraints, one after the other: where two disagree about a
- * node, the last one wins. Copies share them. */
+/** 6.2: several constraints, applied in their order: if two disagree about a
+ * node, the last one wins. Copies of it share them. */
 class CombinedConstraints : public ZeroConstraint {
  public:
   using List = std::vector<std::shared_ptr<const ZeroConstraint>>;
   /** @pre no pointer is null */
   explicit CombinedConstraints(List constraints)
       : constraints_(std::move(constraints)) {}
-  /** From other pointers to constraints: as CombinedForces. */
+  /** The same from other pointers: as CombinedForces. */
   template <typename P>
   explicit CombinedConstraints(std::vector<P> constraints) {
     for (P& p : constraints)
@@ -475,7 +463,7 @@ class CombinedConstraints : public ZeroConstraint {
   List constraints_;
 };
 
-/** Any number of constraints in this order; each is copied. */
+/** Any number of constraints, applied in this order. It copies them. */
 template <typename... Cs>
 CombinedConstraints make_combined_constraints(Cs... cs) {
   // BEGIN SOLUTION 6.2.make_combined_constraints
@@ -485,7 +473,7 @@ CombinedConstraints make_combined_constraints(Cs... cs) {
   // STUB return CombinedConstraints(CombinedConstraints::List());
   // END SOLUTION
 }
-/** The same by the name that other years of the course give it. */
+/** The same under its name in other years of the course. */
 template <typename... Cs>
 CombinedConstraints make_combined_constraint(Cs... cs) {
   return make_combined_constraints(std::move(cs)...);

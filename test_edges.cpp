@@ -1,19 +1,19 @@
 /** @file test_edges.cpp
- * Tests the edges of Graph.hpp against the assignment, and nothing beyond it:
- * put any Graph.hpp of the course beside this file. A check that fails prints
- * the sentence of the specification that does not hold.
+ * Tests the edges of Graph.hpp against the assignment and nothing beyond it, so
+ * any Graph.hpp of the course can be tested. A check that fails prints the
+ * sentence of the specification that does not hold.
  *
  *   Homework 0    add_edge, edge, num_edges, has_edge, node1, node2, ==, <
  *   Homework 1    degree, the edges at a node, iterators
  *   Section 3.1   length, when positions are modified
  *   Section 4     values
  *   Section 7.1   remove_edge: by ends, by edge, at an iterator; remove_node
- *   All together  a long random history beside a model
+ *   All together  a long random history, compared with a model
  *
- * A removal may change indices and invalidate handles, in one graph more than
- * in another. So these tests know a node by its value, which no other node has,
- * and an edge by the values of its ends; after a removal they ask for a handle
- * anew. Nodes: test_nodes.cpp. */
+ * A removal may change indices and invalidate handles; which ones depends on
+ * the graph. So these tests identify a node by its value, which no other node
+ * has, and an edge by the values of its ends, and they get a new handle after
+ * each removal. Nodes: test_nodes.cpp. */
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ using NodeType = GraphType::node_type;
 using EdgeType = GraphType::edge_type;
 using size_type = GraphType::size_type;
 
-/** The values of the two ends of an edge, the lesser first. */
+/** The values of the two ends of an edge, the smaller one first. */
 using Ends = std::pair<int, int>;
 Ends ends(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 Ends ends(const EdgeType& e) {
@@ -43,7 +43,7 @@ std::string text(Ends e) {
   return std::to_string(e.first) + "-" + std::to_string(e.second);
 }
 
-/** What a graph has to hold: the value of each edge, by its ends. */
+/** What the graph must contain: the value of each edge, by its ends. */
 using Model = std::map<Ends, double>;
 
 /** The edges at the node of value @a v. */
@@ -57,14 +57,14 @@ void erase_node(Model& model, int v) {
   for (const auto& edge : edges_at(model, v)) model.erase(edge.first);
 }
 
-/** A fresh handle of the node of value @a v. */
+/** A new handle of the node of value @a v. */
 NodeType find_node(GraphType& g, int v) {
   for (size_type i = 0; i < g.num_nodes(); ++i)
     if (g.node(i).value() == v) return g.node(i);
   throw std::runtime_error("node(i) reaches every node: not the one of value " +
                            std::to_string(v));
 }
-/** A fresh handle of the edge between the nodes of values @a a and @a b. */
+/** A new handle of the edge between the nodes of values @a a and @a b. */
 EdgeType find_edge(GraphType& g, int a, int b) {
   for (size_type i = 0; i < g.num_edges(); ++i)
     if (ends(g.edge(i)) == ends(a, b)) return g.edge(i);
@@ -74,7 +74,7 @@ EdgeType find_edge(GraphType& g, int a, int b) {
 
 const Ends all_edges[] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {3, 4}};
 
-/** Add nodes 0 to 4 and all_edges, each of which gets a value of its own. */
+/** Add nodes 0 to 4 and all_edges, each with a different value. */
 Model build(GraphType& g) {
   Model model;
   for (int v = 0; v < 5; ++v) g.add_node(Point(v, 0, 0), v);
@@ -86,7 +86,8 @@ Model build(GraphType& g) {
   return model;
 }
 
-/** Hold the edges from @a it to @a end to those of the model, each once. */
+/** Check that the edges from @a it to @a end are those of the model, each once.
+ */
 template <typename It>
 void check_visits(It it, It end, const Model& model, const std::string& range) {
   std::set<Ends> seen;
@@ -103,7 +104,7 @@ void check_visits(It it, It end, const Model& model, const std::string& range) {
   EXPECT_EQ(seen.size(), model.size()) << range << " visits every edge";
 }
 
-/** Hold @a g to what is true of every graph of these edges. */
+/** Check what is true of every graph of these edges. */
 void check(GraphType& g, const Model& model) {
   ASSERT_EQ(g.num_edges(), model.size())
       << "num_edges() is the number of edges added and not removed";

@@ -1,17 +1,17 @@
 /** @file test_nodes.cpp
- * Tests the nodes of Graph.hpp against the assignment, and nothing beyond it:
- * put any Graph.hpp of the course beside this file. A check that fails prints
- * the sentence of the specification that does not hold.
+ * Tests the nodes of Graph.hpp against the assignment and nothing beyond it, so
+ * any Graph.hpp of the course can be tested. A check that fails prints the
+ * sentence of the specification that does not hold.
  *
  *   Homework 0    add_node, node, num_nodes, has_node, index, ==, <, clear
  *   Homework 1    values, iterators
  *   Section 3.1   positions that can be modified
  *   Section 7.1   remove_node: by node, at an iterator, with its edges
- *   All together  a long random history beside a model
+ *   All together  a long random history, compared with a model
  *
- * A removal may change indices and invalidate handles, in one graph more than
- * in another. So these tests know a node by its value, which no other node has,
- * and after a removal they ask for a handle anew. Edges: test_edges.cpp. */
+ * A removal may change indices and invalidate handles; which ones depends on
+ * the graph. So these tests identify a node by its value, which no other node
+ * has, and get a new handle after each removal. Edges: test_edges.cpp. */
 #include <gtest/gtest.h>
 
 #include <map>
@@ -28,10 +28,10 @@ using GraphType = Graph<int, double>;
 using NodeType = GraphType::node_type;
 using size_type = GraphType::size_type;
 
-/** What a graph has to hold: the position of each node, by its value. */
+/** What the graph must contain: the position of each node, by its value. */
 using Model = std::map<int, Point>;
 
-/** Where the node of value @a v stands at first. */
+/** The first position of the node of value @a v. */
 Point place(int v) { return Point(v, 2 * v, -v); }
 
 /** Add the nodes of values 0, ..., n - 1. */
@@ -44,7 +44,7 @@ Model add_nodes(GraphType& g, int n) {
   return model;
 }
 
-/** A fresh handle of the node of value @a v. */
+/** A new handle of the node of value @a v. */
 NodeType find_node(GraphType& g, int v) {
   for (size_type i = 0; i < g.num_nodes(); ++i)
     if (g.node(i).value() == v) return g.node(i);
@@ -52,7 +52,7 @@ NodeType find_node(GraphType& g, int v) {
                            std::to_string(v));
 }
 
-/** Hold @a g to what is true of every graph of these nodes. */
+/** Check what is true of every graph of these nodes. */
 void check(GraphType& g, const Model& model) {
   ASSERT_EQ(g.num_nodes(), model.size())
       << "num_nodes() is the number of nodes added and not removed";

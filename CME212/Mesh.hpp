@@ -1,7 +1,7 @@
 #pragma once
 /** @file Mesh.hpp
- * What a cloth is made from: points and quads, read from files or generated.
- * Format of the files: data/README.md. */
+ * The mesh of a cloth: points and quads, read from files or generated. Format
+ * of the files: data/README.md. */
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -22,8 +22,8 @@
 
 #include "CME212/Point.hpp"
 
-/** An input that can't be used; what() is "FILE:LINE: what is wrong, what was
- * expected", or "FILE: ..." of the file as a whole, line 0. */
+/** An input that can't be used. what() is "FILE:LINE: what is wrong, what was
+ * expected"; or "FILE: ..." if line is 0, which stands for the whole file. */
 struct InputError : std::runtime_error {
   InputError(const std::string& file, std::size_t line, const std::string& what)
       : std::runtime_error(file + (line ? ':' + std::to_string(line) : "") +
@@ -32,7 +32,7 @@ struct InputError : std::runtime_error {
 
 namespace mesh_detail {
 
-/** A word as it can be shown: short, and printable on any terminal. */
+/** A word for a message: at most 24 characters, all of them printable. */
 inline std::string quoted(std::string_view word) {
   std::string shown = "'";
   for (unsigned char c : word.substr(0, 24))
@@ -69,7 +69,7 @@ std::size_t for_each_line(std::string_view text, Use use) {
   return number;
 }
 
-/** The number that @a word is, all of it; or throw what is wrong with it. */
+/** @a word as a number.  Throws std::runtime_error that says what is wrong. */
 template <typename T>
 T parse_number(std::string_view word, const char* kind) {
   T value{};
@@ -83,8 +83,8 @@ T parse_number(std::string_view word, const char* kind) {
   return value;
 }
 
-/** Call add(row) for the N numbers of type T in each line of @a text. What
- * @a add throws as std::runtime_error is wrong with the line. */
+/** Call add(row) for each line of @a text: row is its N numbers of type T. If
+ * @a add throws a std::runtime_error, it says what is wrong with the line. */
 template <typename T, std::size_t N, typename Add>
 void read_rows(std::string_view text, const std::string& file, const char* kind,
                const std::string& expected, Add add) {
@@ -108,8 +108,9 @@ void read_rows(std::string_view text, const std::string& file, const char* kind,
     throw InputError(file, lines, "nothing in the file, expected " + expected);
 }
 
-/** All of a file.
- * @param waiting called now and then: a pipe may give nothing, or have no end
+/** The content of a file.
+ * @param waiting called at least each 0.1 s; it may throw to end the reading of
+ *        a pipe that gives nothing, or has no end
  * Throws InputError, and what @a waiting throws. */
 inline std::string read_file(
     const std::string& file, const char* expected, void (*waiting)() = [] {}) {
@@ -125,7 +126,7 @@ inline std::string read_file(
   struct Input : pollfd {
     ~Input() { close(fd); }
   };
-  // So that a pipe is open before it has a writer.
+  // Not blocking, so a pipe opens before it has a writer.
   constexpr int how = O_RDONLY | O_NONBLOCK | O_CLOEXEC;
   Input in{{open(file.c_str(), how), POLLIN, 0}};
   if (in.fd < 0) fail_to("opened");
@@ -147,9 +148,9 @@ inline std::string read_file(
 /** Four indices of nodes: a quad with the sides 01, 02, 13 and 23. */
 using Quad = std::array<unsigned, 4>;
 
-/** The points [m] of a .nodes file: "x y z" a line. Format: data/README.md.
- * @param text all of the file   @param file its name, for messages
- * Throws InputError: a line without exactly three finite numbers; no line. */
+/** The points [m] of a .nodes file: "x y z" in each line.
+ * @param text content of the file   @param file its name, for messages
+ * Throws InputError: a line is not three finite numbers; there is no line. */
 inline std::vector<Point> parse_points(std::string_view text,
                                        const std::string& file) {
   std::vector<Point> points;
@@ -164,8 +165,8 @@ inline std::vector<Point> parse_points(std::string_view text,
   return points;
 }
 
-/** The quads of a .tets file: four different indices below @a num_points a
- * line.  Throws InputError: any other line; no line. */
+/** The quads of a .tets file: four different indices below @a num_points in
+ * each line.  Throws InputError: a line is anything else; there is no line. */
 inline std::vector<Quad> parse_quads(std::string_view text,
                                      const std::string& file,
                                      std::size_t num_points) {
@@ -190,8 +191,8 @@ inline std::vector<Quad> parse_quads(std::string_view text,
   return quads;
 }
 
-/** parse_points() and parse_quads() of all of a file.  Throw InputError, also
- * if it can't be read. */
+/** parse_points() and parse_quads() of a file.  Throw InputError, also if it
+ * can't be read. */
 inline std::vector<Point> load_points(const std::string& file) {
   return parse_points(mesh_detail::read_file(file, "a file of points"), file);
 }
@@ -201,7 +202,7 @@ inline std::vector<Quad> load_quads(const std::string& file,
                      num_points);
 }
 
-/** The corners of a quad that its sides join, and its diagonals. */
+/** The two corners at the ends of each side of a quad, and of each diagonal. */
 inline constexpr std::array<std::array<unsigned, 2>, 4> quad_sides = {
     {{0, 1}, {0, 2}, {1, 3}, {2, 3}}};
 inline constexpr std::array<std::array<unsigned, 2>, 2> quad_diagonals = {
@@ -210,10 +211,9 @@ inline constexpr std::array<std::array<unsigned, 2>, 2> quad_diagonals = {
 /** Which edges a quad gives: its four sides, or both diagonals as well. */
 enum class Mesh { plain, diagonals };
 
-/** The springs of a mesh: the first ones of all quads, then the second ones,
- * and so on; thus on a grid springs that follow each other have ends that do.
- * One between two points that are in several quads together has several
- * numbers. */
+/** The springs of a mesh, numbered: the first spring of each quad, then the
+ * second spring of each, and so on; so on a grid consecutive springs have
+ * consecutive ends. A spring that several quads share has several numbers. */
 class MeshSprings {
  public:
   /** @pre @a quads outlives this */
@@ -228,9 +228,9 @@ class MeshSprings {
     auto [a, b] = pairs_[s / quads_.size()];
     return {quad[a], quad[b]};
   }
-  /** About how many different springs there are. Not one less if the quads make
-   * up one piece without holes that has all of @a num_points, as then, by
-   * Euler's formula, points - sides + quads = 1. */
+  /** An estimate of the number of different springs. It is not too low if the
+   * quads are one piece without holes that has all of @a num_points: then
+   * points - sides + quads = 1 (Euler). */
   std::size_t expected(std::size_t num_points) const {
     return num_points + (pairs_.size() - 3) * quads_.size();
   }
@@ -245,8 +245,8 @@ class MeshSprings {
 
 // ---------------------------------------------------------------------- Grids
 
-/** n x m points [m] over the unit square at z = 0, x in the outer loop and y in
- * the inner one.  @pre n, m >= 2 */
+/** n x m points [m] of the unit square at z = 0, with y in the inner loop.
+ * @pre n, m >= 2 */
 inline std::vector<Point> grid_points(unsigned n, unsigned m) {
   std::vector<Point> points;
   points.reserve(std::size_t(n) * m);
@@ -259,8 +259,8 @@ inline std::vector<Point> grid_points(unsigned side) {
   return grid_points(side, side);
 }
 
-/** The (n - 1) (m - 1) quads of that square: a corner, its neighbors along y
- * and along x, and the one across.  @pre n, m >= 2 */
+/** Its (n - 1) (m - 1) quads. The corners of each: the first, its neighbors
+ * along y and along x, and the opposite one.  @pre n, m >= 2 */
 inline std::vector<Quad> grid_quads(unsigned n, unsigned m) {
   std::vector<Quad> quads;
   quads.reserve(std::size_t(n - 1) * (m - 1));

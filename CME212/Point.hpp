@@ -3,20 +3,20 @@
  * Point: a vector of three numbers, with the arithmetic of R^3. */
 #include <cstddef>
 
-#include "CME212/Util.hpp"  // brings the other standard headers
+#include "CME212/Util.hpp"  // includes the other standard headers
 
-/** The numbers that a cloth is made of, so many that their size counts: `make
- * REAL=float` takes single precision for all of them. Times, energies and what
- * else there is one of are doubles. */
+/** The type of coordinates, velocities, masses and springs: `make REAL=float`
+ * makes them single precision, which halves their memory. Single numbers, as
+ * times and energies, are always doubles. */
 #ifndef REAL
 #define REAL double
 #endif
 using Real = REAL;
 
 /** A point or a vector in R^3. Plain data: three Reals, trivially copyable.
- * A scalar in a sum acts on every coordinate; a product or quotient of two
- * Points is taken coordinate by coordinate (the scalar product is dot()).
- * Scalars come as doubles and are rounded to Real first. */
+ * p + s adds the scalar s to each coordinate; p * q and p / q act coordinate by
+ * coordinate (the scalar product is dot()). Scalars are doubles; they are
+ * rounded to Real before they are used. */
 struct Point {
   using value_type = Real;
   using reference = Real&;
@@ -26,8 +26,7 @@ struct Point {
   using size_type = std::size_t;
   using difference_type = std::ptrdiff_t;
 
-  /** Each coordinate by its name, and all in an array, as in the course's
-   * Point: elem[i] is the i-th. */
+  /** The coordinates by name, and the same ones as an array. */
   union {
     struct {
       Real x, y, z;
@@ -50,7 +49,7 @@ struct Point {
     assert(i < 3);
     return i == 0 ? x : i == 1 ? y : z;
   }
-  /** The three coordinates in a row. */
+  /** The three coordinates as an array. */
   Real* data() { return &x; }
   const Real* data() const { return &x; }
   iterator begin() { return &x; }
@@ -109,7 +108,7 @@ constexpr Point operator/(Point a, double b) { return a /= b; }
 constexpr Point cross(const Point& a, const Point& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/** The scalar product a . b; in double, as sums over a cloth are made of it. */
+/** The scalar product a . b, in double: sums over a cloth need that. */
 constexpr double dot(const Point& a, const Point& b) {
   return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /** @file SlotMap.hpp
- * What Graph.hpp stores its elements with: SlotMap gives ids that stay, to
- * things that come and go; ListPool keeps many short lists in one array. */
+ * What Graph.hpp stores its elements with: a SlotMap gives each element an id
+ * that never changes; a ListPool keeps many short lists in one array. */
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -24,10 +24,10 @@ namespace graph_detail {
 
 using size_type = unsigned;
 
-/** A plain array that grows like a std::vector of T, but from 64 kB on by a
- * quarter where that doubles, so that little memory is spare; and by realloc(),
- * which moves the pages of a large block rather than copy it. Most of the time
- * in which a graph is built goes into pages touched for the first time. */
+/** An array that grows like a std::vector, with two differences that save time
+ * and memory when a large graph is built: from 64 kB on it grows by a quarter
+ * instead of doubling; and it grows by realloc(), which moves the pages of a
+ * large block instead of copying them. */
 template <typename T>
 class GrowingArray {
  public:
@@ -82,7 +82,7 @@ class GrowingArray {
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
 
-  // Apart, since it is rare: what adds an element stays short.
+  // Not inlined, as it is rare: so the code that adds an element stays short.
   [[gnu::noinline]] void grow(std::size_t n) {
     const bool small = capacity_ * sizeof(T) < 65536;
     reserve(std::max(n, capacity_ + (small ? capacity_ : capacity_ / 4)));
@@ -95,8 +95,8 @@ void grow_to_hold(A& a, std::size_t i) {
   if (a.size() <= i) a.resize(i + 1);
 }
 
-/** Make @a value what a slot holds that is not in use, T(). If that throws, it
- * stays as it is: a removal goes on. */
+/** Set @a value to T(), for a slot that is no longer in use. If T() throws, the
+ * value stays, as a removal must not fail. */
 template <typename T>
 void reset(T& value) noexcept {
   try {
@@ -108,17 +108,19 @@ void reset(T& value) noexcept {
 /** No slot or block. */
 inline constexpr size_type none = std::numeric_limits<size_type>::max();
 
-/** Ids for things that come and go: an id stays with its thing, while the
- * indices of all things are 0, 1, ..., size() - 1 at any time.
+/** Ids and indices of things that are added and removed. The id of a thing
+ * never changes; the indices of all things are 0, 1, ..., size() - 1 at any
+ * time.
  *
- * A slot counts its @e generation up at each birth and each death, so it is
- * odd while the slot is in use, and a handle of (id, generation) can tell its
- * thing from a later one in the same slot. A slot that ran out of generations
- * is never used again: no handle ever comes alive again.
+ * The id is the number of the thing's slot; the slots of removed things are
+ * used again. Each slot has a @e generation, which grows by 1 when the slot is
+ * taken and when it is released; so it is odd while the slot is in use. A
+ * handle (id, generation) is alive while its slot has that generation. A slot
+ * that runs out of generations is worn out and never used again: a dead handle
+ * stays dead.
  *
  * Memory: sizeof(Generation) a slot; after the first release() 8 bytes more.
- * @tparam Generation unsigned integer; only tests need another than the
- *         default */
+ * @tparam Generation an unsigned integer; tests take a short one */
 template <typename Generation = std::uint32_t>
 class SlotMap {
  public:
@@ -132,8 +134,8 @@ class SlotMap {
     return id < slots_ && generation_[id] == generation && in_use(id);
   }
 
-  /** The thing at @a index, and back.  O(1)
-   * While nothing was released the two are equal and no list is kept. */
+  /** The id at an index, and the index of an id.  O(1)
+   * They are equal, and need no lists, until something is released. */
   size_type id_at(size_type index) const {
     return identity_ ? index : id_at_[index];
   }
@@ -141,7 +143,7 @@ class SlotMap {
     return identity_ ? id : index_of_[id];
   }
 
-  /** Let slots() grow to @a slots without moving anything. */
+  /** Allocate memory for @a slots in all. */
   void reserve(size_type slots) { generation_.reserve(slots); }
 
   /** Make room for one more.
@@ -166,8 +168,8 @@ class SlotMap {
   }
 
   /** Make the lists of indices, which release() needs.
-   * Complexity: O(slots()) the first time, and the first time after they were
-   *       given up by clear() or reindex(); else O(1)
+   * Complexity: O(slots()) the first time, and the first time after clear() or
+   *       reindex(), which may drop the lists; else O(1)
    * Throws std::bad_alloc: no change. */
   void make_lists() {
     if (!identity_) return;
@@ -178,8 +180,8 @@ class SlotMap {
     for (size_type id = 0; id < slots_; ++id) id_at_[id] = index_of_[id] = id;
     identity_ = false;
   }
-  /** Give up a slot.  O(1)   @pre in_use(id), and make_lists() came before
-   * @post The thing of highest index took the index of the released one. */
+  /** Release a slot.  O(1)   @pre in_use(id), and make_lists() came before
+   * @post The thing of highest index has the index of the released one. */
   void release(size_type id) {
     size_type hole = index_of_[id];
     size_type last = id_at_[--size_];
@@ -188,9 +190,9 @@ class SlotMap {
     retire(id);
   }
 
-  /** Release all; then begin anew with slot 0, unless one is used up.
-   * Complexity: O(size()), with what make_lists() costs if one is used up.
-   * Throws std::bad_alloc in that case only: no change. */
+  /** Release all. The next slot is 0, unless a slot is worn out.
+   * Complexity: O(size()); plus make_lists() if one is worn out.
+   * Throws std::bad_alloc, only if one is worn out: no change. */
   void clear() {
     size_type used_up = used_up_;
     for (size_type index = 0; index < size_; ++index)
@@ -202,7 +204,7 @@ class SlotMap {
     size_ = 0;
   }
 
-  /** Give the indices anew, in the order of the ids.  O(slots()) */
+  /** Number the things in the order of their ids.  O(slots()) */
   void reindex() {
     if (identity_) return;
     size_type index = 0;
@@ -256,10 +258,10 @@ class SlotMap {
   }
 
  private:
-  // Each edge has two places in a ListPool, which counts in 32 bits.
+  // Each edge has two entries in a ListPool, which counts in 32 bits.
   static constexpr size_type max_slots = 1u << 31;
 
-  // The one of a slot that is used up.
+  // That of a slot that is worn out.
   static constexpr auto last_generation =
       std::numeric_limits<Generation>::max() - 1;
 
@@ -271,10 +273,10 @@ class SlotMap {
   size_type free_ = none;  // the first free slot
   size_type size_ = 0;
   size_type slots_ = 0;
-  size_type used_up_ = 0;  // slots not in use that are not free either
+  size_type used_up_ = 0;  // the number of worn-out slots
   bool identity_ = true;   // index == id for all, and all slots are in use
 
-  // Apart: as GrowingArray::grow(). Generations for the next ones, too.
+  // Not inlined: as GrowingArray::grow(). It prepares some more slots, too.
   [[gnu::noinline]] void grow(size_type id) {
     if (id >= max_slots) throw std::length_error("Graph: too many elements");
     if (id >= generation_.size()) {
@@ -287,7 +289,7 @@ class SlotMap {
   bool reusable(size_type id) const {
     return generation_[id] < last_generation;
   }
-  /** Slot @a id is no longer in use: it is the next to be used again. */
+  /** End the use of slot @a id; it is the next to be used again. */
   void retire(size_type id) {
     ++generation_[id];
     if (reusable(id))
@@ -302,9 +304,9 @@ class SlotMap {
   }
 };
 
-/** Lists of T that live together in one array, each in a block whose capacity
- * is a power of two; a list that outgrows its block moves to a larger one,
- * and the old block serves the next list of that size.
+/** Many lists of T in one array, each in a block whose capacity is a power of
+ * two. A list that outgrows its block moves to a larger one; the old block is
+ * free for the next list that needs its size.
  * Memory: at most about 4 sizeof(T) an element, 12 bytes a list. */
 template <typename T>
 class ListPool {
@@ -322,8 +324,8 @@ class ListPool {
     return {pool_.data() + l.begin, l.size};
   }
 
-  /** Make room for @a lists that hold @a items in all. From now on a list
-   * begins with a block for as many as the average of these has. */
+  /** Allocate memory for @a lists with a total of @a items. From now on the
+   * first block of a list holds the average number of items. */
   void reserve(std::size_t lists, std::size_t items) {
     if (lists == 0) return;
     const auto first = std::bit_ceil(
@@ -346,7 +348,7 @@ class ListPool {
     pool_[l.begin + k] = pool_[l.begin + l.size - 1];
     --l.size;
   }
-  /** Empty the list and give its block back. */
+  /** Empty the list and free its block. */
   void free(List& l) {
     if (l.capacity > 0)
       set_next(l.begin, std::exchange(free_of(l.capacity), l.begin));
@@ -356,10 +358,10 @@ class ListPool {
     pool_.clear();
     free_ = no_blocks();
   }
-  /** If the items of @a lists, which are all, need less than three quarters of
-   * the pool, move them to one of that size: list by list, in blocks that just
-   * hold them. Until the end there are both.
-   * Throws std::bad_alloc: no change.  O(lists), then O(items) */
+  /** Move all lists to a smaller array, one after the other, in blocks that
+   * just hold them; but only if that frees a quarter of the array or more.
+   * @param lists all lists of the pool
+   * Throws std::bad_alloc: no change.  Complexity: O(lists + items) */
   void compact(std::span<List> lists) {
     const auto needed = [](const List& l) {
       return l.size == 0 ? 0 : std::bit_ceil(l.size);
@@ -380,8 +382,8 @@ class ListPool {
     free_ = no_blocks();
   }
   std::size_t pool_size() const { return pool_.size(); }
-  /** True if the blocks of @a lists and those that nobody uses make up the
-   * whole pool, every place of it once. */
+  /** True if the blocks of @a lists and the free blocks make up the whole pool,
+   * without a gap or an overlap. */
   bool is_filled_by(std::span<const List> lists) const {
     std::vector<std::array<std::size_t, 2>> blocks;  // begin, capacity
     for (const List& l : lists)
@@ -401,7 +403,7 @@ class ListPool {
   }
 
  private:
-  // Apart: as GrowingArray::grow().
+  // Not inlined: as GrowingArray::grow().
   [[gnu::noinline]] void move_to_longer(List& l) {
     size_type capacity = l.capacity == 0 ? first_capacity_ : 2 * l.capacity;
     size_type begin = free_of(capacity);
@@ -420,8 +422,8 @@ class ListPool {
   }
   size_type first_capacity_ = 4;  // of a list
   GrowingArray<T> pool_;
-  // Where a free block begins, by log2 of its capacity. The block itself holds
-  // where the next one does, so to give one back takes no memory.
+  // The first free block of each size, by log2 of its capacity. A free block
+  // holds where the next one begins, so freeing a block needs no memory.
   using Blocks = std::array<size_type, 32>;
   Blocks free_ = no_blocks();
 
@@ -451,19 +453,19 @@ struct Range {
   It end() const { return last; }
 };
 
-/** What nodes and edges without a value carry. */
+/** The value of nodes and edges that need none. */
 struct NoValue {
   bool operator==(const NoValue&) const = default;
 };
 
-/** The plain array for a T: one that need not copy them one by one to grow,
- * if it may. (A bool may, so this is never a std::vector<bool>.) */
+/** The array for a T: a GrowingArray if a T may be copied as bytes. (A bool
+ * may, so this is never a std::vector<bool>.) */
 template <typename T>
 using Array = std::conditional_t<std::is_trivially_copyable_v<T> &&
                                      alignof(T) <= alignof(std::max_align_t),
                                  GrowingArray<T>, std::vector<T>>;
 
-/** Counts what changes a graph; each graph in a range of its own, a copy too.
+/** Counts the changes of a graph. Each graph and each copy has its own range.
  */
 struct Version {
   std::uint64_t number = next.fetch_add(std::uint64_t(1) << 36);

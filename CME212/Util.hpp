@@ -1,9 +1,9 @@
 #pragma once
 /** @file Util.hpp
- * Small helpers of the course: random numbers, a stopwatch, line-wise input
- * and operators derived from == and <. */
-// More than what this file needs: students' programs take from the course's
-// Util.hpp and Point.hpp what those include, so these are named here for all.
+ * Small helpers of the course: random numbers, a stopwatch, numbers as text,
+ * input by lines, and operators derived from == and <. */
+// More headers than this file needs: programs of students rely on those that
+// the course's Util.hpp and Point.hpp include.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -50,8 +50,7 @@ struct totally_ordered : equality_comparable<T>, less_than_comparable<T> {};
 
 namespace CME212 {
 
-/** The generator behind random(): one for the program, the same numbers in
- * every run. */
+/** The generator of random(): it gives the same numbers in every run. */
 inline std::mt19937 default_generator;
 
 /** A uniform random number in [a, b).  @pre a <= b */
@@ -62,7 +61,7 @@ inline double random(double a, double b) {
 /** A uniform random number in [0, 1). */
 inline double random() { return random(0, 1); }
 
-/** A stopwatch that runs from its construction or its last start(). */
+/** A stopwatch. It starts when it is constructed. */
 class Clock {
  public:
   using clock = std::chrono::steady_clock;
@@ -81,7 +80,7 @@ class Clock {
   time_point start_ = clock::now();
 };
 
-/** @a a with 17 significant digits, which read back as @a a; like %.17g. */
+/** @a a with 17 significant digits, like %.17g: reading it gives @a a. */
 inline std::string to_text(double a) {
   char text[32];
   auto end = std::to_chars(text, text + sizeof text, a,
@@ -114,7 +113,7 @@ inline std::string percent(double share) {
   return (std::abs(a) < 10 ? two_digits(a) : short_text(std::round(a))) + " %";
 }
 
-/** @a a in as few digits as give back the same number. */
+/** @a a with as few digits as possible so that reading it gives @a a. */
 inline std::string exact_text(double a) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, a).ptr};
@@ -133,12 +132,11 @@ std::istream& operator>>(std::istream& s, std::array<T, N>& v) {
   return s;
 }
 
-/** Read the next line of @a s that is neither blank nor starts with #, as a T.
- * @return @a s: failed at the end of the file and when the line is no T.
+/** Read a T from the next line of @a s that is neither blank nor starts with #.
+ * @return @a s; it has failed at the end of the file, and if the line is no T
  *
- * It can't tell the two apart and ignores what follows the T on its line:
- * good for a first program. load_points() in Mesh.hpp reads strictly and says
- * what is wrong, and in which line. */
+ * The caller can't tell the two apart, and what follows the T on its line is
+ * ignored. load_points() is strict, and says which line is wrong and why. */
 template <typename T>
 std::istream& getline_parsed(std::istream& s, T& value) {
   std::string line;

@@ -33,7 +33,7 @@ template <typename T, template <typename> class Adapter, typename Base>
 const T* exactly(const Base& x) {
   if (typeid(x) == typeid(T)) return static_cast<const T*>(&x);
   if (typeid(x) == typeid(Adapter<T>))
-    return &static_cast<const Adapter<T>&>(x).function();
+    return &static_cast<const Adapter<T>&>(x).function;
   return nullptr;
 }
 
