@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+#include <optional>
 
 #include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/Words.hpp"
 
 namespace lab {
 
@@ -33,66 +33,49 @@ Model refined(const Model& m, double factor) {
 
 namespace {
 
-/** Collects a scene without one part, and then without another one. */
-class Dropper {
- public:
-  explicit Dropper(const Model& m) : m_(m) {}
-
-  template <typename Change>
-  void drop(const std::string& part, Change change) {
-    Variation v{part, true, m_};
-    change(v.model);
-    all_.push_back(std::move(v));
-  }
-  /** Each part of a kind, and its friction. */
-  template <typename Part>
-  void drop_each(const std::string& key, std::vector<Part> Model::*list) {
-    for (std::size_t k = 0; k < (m_.*list).size(); ++k) {
-      const std::string words = to_words((m_.*list)[k]);
-      const std::string part = key + (words.empty() ? "" : ": " + words);
-      drop(part, [&](Model& x) {
-        (x.*list).erase((x.*list).begin() + std::ptrdiff_t(k));
-      });
-      if constexpr (requires(Part p) { p.friction; })
-        if ((m_.*list)[k].friction > 0)
-          drop("friction of " + part,
-               [&](Model& x) { (x.*list)[k].friction = 0; });
-    }
-  }
-  std::vector<Variation> all() && { return std::move(all_); }
-
- private:
-  const Model& m_;
-  std::vector<Variation> all_;
-};
+/** @a words without the friction that they name; nullopt if they name none. */
+std::optional<std::string> without_friction(std::string words) {
+  auto from = words.find("friction ");
+  if (from == std::string::npos) return std::nullopt;
+  const auto end = words.find(' ', from + sizeof "friction");
+  if (end == std::string::npos && from > 0) --from;  // the blank before it
+  return words.erase(from, end == std::string::npos ? end : end + 1 - from);
+}
 
 }  // namespace
 
 std::vector<Variation> without_parts(const Model& m) {
-  Dropper d(m);
+  std::vector<Variation> all;
+  auto drop = [&](const std::string& part, auto change) {
+    all.push_back({part, true, m});
+    change(all.back().model);
+  };
   if (m.edges.diagonals)
-    d.drop("edges: diagonals", [](Model& x) { x.edges.diagonals = false; });
-  if (m.edges.bend)
-    d.drop("edges: bend", [](Model& x) { x.edges.bend = false; });
-  if (m.gravity != 0) d.drop("gravity", [](Model& x) { x.gravity = 0; });
+    drop("edges: diagonals", [](Model& x) { x.edges.diagonals = false; });
+  if (m.edges.bend) drop("edges: bend", [](Model& x) { x.edges.bend = false; });
+  if (m.gravity != 0) drop("gravity", [](Model& x) { x.gravity = 0; });
   if (m.damping > 0 && !m.material.drag)
-    d.drop("damping", [](Model& x) { x.damping = 0; });
+    drop("damping", [](Model& x) { x.damping = 0; });
   if (m.material.drag && *m.material.drag > 0)
-    d.drop("drag", [](Model& x) { x.material.drag = 0; });
-  d.drop_each("region", &Model::regions);
-  d.drop_each("pin", &Model::pins);
-  d.drop_each("plane", &Model::planes);
-  d.drop_each("sphere", &Model::spheres);
-  d.drop_each("tear", &Model::tears);
-  if (m.tear_strain)
-    d.drop("tear-strain", [](Model& x) { x.tear_strain.reset(); });
-  if (m.self_collision) {
-    d.drop("self-collision", [](Model& x) { x.self_collision.reset(); });
-    if (m.self_collision->friction > 0)
-      d.drop("friction of self-collision",
-             [](Model& x) { x.self_collision->friction = 0; });
+    drop("drag", [](Model& x) { x.material.drag = 0; });
+  Model copy = m;
+  for (const Field& f : fields_of(copy)) {
+    if (f.role != Role::acts && f.role != Role::contact) continue;
+    const auto values = f.values();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      std::string part = f.name;
+      if (f.repeats() && !values[k].empty()) part += ": " + values[k];
+      auto others = values;
+      others.erase(others.begin() + std::ptrdiff_t(k));
+      drop(part, [&](Model& x) { set_field(x, f.name, others); });
+      if (const auto smooth = without_friction(values[k])) {
+        others.insert(others.begin() + std::ptrdiff_t(k), *smooth);
+        drop("friction of " + part,
+             [&](Model& x) { set_field(x, f.name, others); });
+      }
+    }
   }
-  return std::move(d).all();
+  return all;
 }
 
 bool goes_with_another(const std::string& part,

@@ -11,8 +11,8 @@ page    := $(B)/page
 page_o  := $(B)/page.o
 # Of the laboratory: all of these rooms, but what reads and writes files.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
-  %,lab/scenes/%.cpp, Checkpoint KeyValues \
-  Measure Memory MeshFile SceneFile Warnings), $(wildcard $(patsubst \
+  %,lab/scenes/%.cpp, Checkpoint \
+  Measure Memory MeshFile Warnings), $(wildcard $(patsubst \
   %,lab/%/*.cpp,fast methods stability scenes page))) \
   lab/live/Breakage.cpp lab/live/Live.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o)

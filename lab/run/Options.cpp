@@ -3,6 +3,7 @@
 #include "lab/run/Options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -20,6 +21,7 @@
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
+#include "lab/scenes/Fields.hpp"
 #include "lab/scenes/SceneFile.hpp"
 
 namespace lab {
@@ -36,28 +38,15 @@ constexpr const char* head =
 
 Usage: cloth [OPTIONS] [NODES TETS])";
 
-/** The options of the help, in its order. */
-struct Group {
-  const char* name;
-  std::vector<const char*> options;
-};
-const std::vector<Group> groups = {
-    {"Scene",
-     {"config", "nodes", "tets", "sheet", "edges", "pin", "plane", "sphere",
-      "tear", "tear-strain", "self-collision", "gravity", "t-end", "view"}},
-    {"Material",
-     {"stiffness", "modulus", "density", "damping", "drag", "region"}},
-    {"Method and step", {"method", "dt", "threads"}},
-    {"Output",
-     {"headless", "window", "paused", "speed", "strain", "screenshot", "at",
-      "record", "slow-motion", "csv", "every", "out", "vtp", "obj", "ply",
-      "frame-rate", "quiet"}},
-    {"Interrupted runs", {"checkpoint", "every-seconds", "restart"}},
-    {"Changes while it runs", {"record-input", "replay"}},
-    {"Advice",
-     {"measure", "tolerance", "advise", "advise-budget", "auto",
-      "write-config"}},
-    {"Other", {"dump-config", "list-methods", "version", "help"}}};
+/** The groups of the help, in its order. */
+constexpr std::array groups = {"Scene",
+                               "Material",
+                               "Method and step",
+                               "Output",
+                               "Interrupted runs",
+                               "Changes while it runs",
+                               "Advice",
+                               "Other"};
 
 /** @a text in lines of at most @a width characters, where words allow. */
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
@@ -77,10 +66,10 @@ class Help : public CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string /*name*/,
                         CLI::AppFormatMode /*mode*/) const override {
     std::string text = app->get_description() + '\n';
-    for (const Group& g : groups) {
-      text += std::string("\n") + g.name + ":\n";
-      for (const char* name : g.options)
-        text += make_option(app->get_option(std::string("--") + name), false);
+    for (const char* group : groups) {
+      text += std::string("\n") + group + ":\n";
+      for (const CLI::Option* o : app->get_options())
+        if (o->get_group() == group) text += make_option(o, false);
     }
     return text;
   }
@@ -219,18 +208,54 @@ void list_methods() {
  * the scene names one or leaves the choice to us.
  * @param given whether the option of a name is given, in a file or here */
 void control_error(Model& m, const std::function<bool(const char*)>& given) {
-  if (!given("--method") && !given("--dt"))
+  if (!given("method") && !given("dt"))
     m.method = find_method(Dop853::info.name);
   if (!m.method->info.adaptive) return;
   // Steps end where rows and frames are looked at, not where errors do.
-  if (!given("--dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);
+  if (!given("dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);
   m.step.tolerance = tolerance_share * m.tolerance;
 }
 
-/** Give @a app all options, which go to @a o and @a scene. */
-void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
-  app.option_defaults()->always_capture_default();
-  scene.add_to(app);
+/** Let @a option take the name of a file: neither an empty name, as of a
+ * shell's variable that is not set, nor the next option, as if the name had
+ * been forgotten.  @return it */
+CLI::Option* takes_file(CLI::Option* option) {
+  return option->type_name("FILE")->check([](const std::string& name) {
+    if (name.empty()) return std::string("is empty, expected a file");
+    if (!name.starts_with("--")) return std::string();
+    return "is " + name + ", expected a file; one of that name is ./" + name;
+  });
+}
+
+CLI::Option* add_file(CLI::App& app, const char* name, std::string& file,
+                      const char* help = "") {
+  return takes_file(app.add_option(name, file, help));
+}
+
+/** Give @a app an option for each field of a scene; the defaults in the help
+ * are those of @a m. */
+void add_fields(CLI::App& app, Model& m) {
+  for (const Field& f : fields_of(m)) {
+    const bool is_file = f.role == Role::mesh;  // may come without its name
+    std::string name = std::string("--") + f.name;
+    if (is_file) name += f.name == std::string("nodes") ? ",NODES" : ",TETS";
+    CLI::Option* option = app.add_option(
+        name, [](const CLI::results_t&) { return true; }, f.help);
+    option->type_name(f.type())->group(f.group);
+    if (is_file) takes_file(option);
+    if (f.repeats())  // what follows a value may be NODES
+      option->expected(1, CLI::detail::expected_max_vector_size)
+          ->allow_extra_args(false);
+    else if (const auto values = f.values(); !values.empty())
+      option->default_str(values[0]);
+    if (!f.instead_of.empty())
+      option->excludes(app.get_option("--" + std::string(f.instead_of)));
+  }
+}
+
+/** Give @a app the options of a run, which go to @a o. */
+void add_run_options(CLI::App& app, Options& o) {
+  app.option_defaults()->always_capture_default()->group("Output");
   app.add_flag("--headless", o.headless, "open no window");
   app.add_flag("--window", o.window,
                "require a window: without a display, exit with 4");
@@ -241,67 +266,62 @@ void add_options(CLI::App& app, Options& o, SceneOptions& scene) {
                  "as it goes");
   app.add_flag("--strain", o.strain,
                "color the nodes by their springs' strain");
-  takes_file(
-      app.add_option("--screenshot", o.screenshot,
-                     "draw a picture, without a window; the format by its "
-                     "ending: .png, .bmp or .ppm"));
+  add_file(app, "--screenshot", o.screenshot,
+           "draw a picture, without a window; the format by its "
+           "ending: .png, .bmp or .ppm");
   app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
-  takes_file(app.add_option(
-      "--record", o.video,
-      "draw a film of 30 frames a second, without a window; the format by "
-      "its ending: .mp4, .mkv, .webm or .gif"));
+  add_file(app, "--record", o.video,
+           "draw a film of 30 frames a second, without a window; the format by "
+           "its ending: .mp4, .mkv, .webm or .gif");
   app.add_option("--slow-motion", o.slow_motion,
                  "of --record: how many times slower contact and tearing are");
-  takes_file(app.add_option("--csv", o.csv,
-                            "write energies [J] and center of mass [m]"));
+  add_file(app, "--csv", o.csv, "write energies [J] and center of mass [m]");
   app.add_option("--every", o.every, "steps between two rows of --csv");
-  takes_file(app.add_option("--out", o.out,
-                            "write the cloth at the end, as NODES with "
-                            "velocities, and as TETS beside them"));
-  takes_file(app.add_option("--vtp", o.vtp,
-                            "write frames of all that is known for ParaView, "
-                            "and frames.pvd with their times"))
+  add_file(app, "--out", o.out,
+           "write the cloth at the end, as NODES with "
+           "velocities, and as TETS beside them");
+  add_file(app, "--vtp", o.vtp,
+           "write frames of all that is known for ParaView, "
+           "and frames.pvd with their times")
       ->type_name("FOLDER");
-  takes_file(app.add_option("--obj", o.obj,
-                            "write frames of points and quads for Blender"))
+  add_file(app, "--obj", o.obj, "write frames of points and quads for Blender")
       ->type_name("FOLDER");
-  takes_file(
-      app.add_option("--ply", o.ply, "the same with velocities and strains"))
+  add_file(app, "--ply", o.ply, "the same with velocities and strains")
       ->type_name("FOLDER");
   app.add_option("--frame-rate", o.frame_rate,
                  "frames of these a second of simulated time [1/s]");
-  takes_file(app.add_option(
-      "--checkpoint", o.checkpoint,
-      "write now and then, and at the end, all that --restart needs"));
+  app.add_flag("--quiet", o.quiet, "print nothing but errors");
+  app.option_defaults()->group("Interrupted runs");
+  add_file(app, "--checkpoint", o.checkpoint,
+           "write now and then, and at the end, all that --restart needs");
   app.add_option("--every-seconds", o.every_seconds,
                  "seconds of the clock between two checkpoints; 0: every step");
-  takes_file(app.add_option(
-      "--restart", o.restart,
+  add_file(
+      app, "--restart", o.restart,
       "go on from a checkpoint, to the same bits as without; its scene need "
-      "not be given; --csv goes on if it holds the rows so far"));
-  takes_file(app.add_option("--record-input", o.record_input,
-                            "in a window: write the scene and all that is "
-                            "asked of it, for --replay"));
-  takes_file(app.add_option(
-      "--replay", o.replay,
-      "run what --record-input wrote again, without a window, to the same "
-      "bits; with --out, --screenshot of its end and --record"));
+      "not be given; --csv goes on if it holds the rows so far");
+  app.option_defaults()->group("Changes while it runs");
+  add_file(app, "--record-input", o.record_input,
+           "in a window: write the scene and all that is "
+           "asked of it, for --replay");
+  add_file(app, "--replay", o.replay,
+           "run what --record-input wrote again, without a window, to the same "
+           "bits; with --out, --screenshot of its end and --record");
   app.add_option("--threads", o.threads,
                  "threads for a large cloth; 0: one a processor. They change "
                  "no result")
-      ->check(CLI::Range(0, 1024).description(""));
-  app.add_flag("--quiet", o.quiet, "print nothing but errors");
+      ->check(CLI::Range(0, 1024).description(""))
+      ->group("Method and step");
 }
 
 /** Say what is wrong with a command line.  @return the exit status */
 int report(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_exit_code() == 0) return app.exit(e);
   std::string message = e.what();
-  std::vector<std::string> names;
-  for (const Group& g : groups)
-    for (const char* name : g.options)
-      names.push_back(std::string("--") + name);
-  for (std::string word : app.remaining()) {
+  std::vector<std::string> names, words;
+  for (const CLI::Option* o : app.get_options()) names.push_back(o->get_name());
+  if (!app.get_allow_extras()) words = app.remaining();
+  for (std::string word : words) {
     word = word.substr(0, word.find('='));
     if (!word.starts_with("-") || std::ranges::count(names, word)) continue;
     const std::string meant = did_you_mean(word, names);
@@ -312,51 +332,63 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
   return 2;
 }
 
+/** Read the scene file @a file with the options of a run in it: into @a m what
+ * the file names, into @a o the options, and a scene to be checked. */
+void read_file(const std::string& file, const std::string& text, Model& m,
+               Options& o) {
+  CLI::App app;
+  add_run_options(app, o);
+  const auto option_of_run = [&](const KeyValue& found) {
+    CLI::Option* option = app.get_option_no_throw("--" + found.key);
+    if (!option || found.key == "help") return false;
+    const std::string type = option->get_type_name();
+    const bool is_file = type == "FILE" || type == "FOLDER";
+    for (const std::string& value : found.values)
+      option->add_result(is_file ? beside(file, value) : value);
+    return true;
+  };
+  const auto check_all = [&] {
+    app.parse(std::vector<std::string>());
+    o.model = checked(m);
+    check(o);
+  };
+  o.origins = set_fields(m, file, text, check_all, option_of_run);
+}
+
 }  // namespace
 
 int parse(int argc, char** argv, Options& o) {
-  std::string& file = o.config;
+  const std::string& file = o.config;
   bool dump = false;
-  std::vector<std::string> in_file;
   double kept_tolerance = 0;  // of a checkpoint's steps
-  SceneOptions scene;
+  Model m;
   CLI::App first;  // finds the scene file
   first.set_help_flag();
   first.allow_extras();
-  takes_file(first.add_option("--config", file));
-  takes_file(first.add_option("--restart", o.restart));
+  add_file(first, "--config", o.config);
+  add_file(first, "--restart", o.restart);
   try {
     first.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return report(first, e);
   }
-  if (!file.empty() || !o.restart.empty()) {
-    CLI::App app;
-    add_options(app, o, scene);
-    auto take = [&] {
-      if (!file.empty())
-        for (const CLI::Option* option : app.get_options())
-          if (option->count() > 0) in_file.push_back(option->get_name());
-      o.model = scene.model();
-      check(o);
-    };
-    if (!file.empty()) {
-      scene.read(app, file, take);
-    } else {
-      const std::string from = o.restart;
-      const SavedScene saved = scene_in_checkpoint(from);
-      scene.read_text(app, from, saved.name, saved.text, take);
-      kept_tolerance = saved.step_tolerance;
-    }
+  if (!file.empty()) {
+    m.name = scene_name(file);
+    read_file(file, scene_text(file), m, o);
+  } else if (const std::string from = o.restart; !from.empty()) {
+    const SavedScene saved = scene_in_checkpoint(from);
+    m.name = saved.name;
+    read_file(from, saved.text, m, o);
+    kept_tolerance = saved.step_tolerance;
   }
 
   CLI::App app(head, "cloth");
   app.formatter(std::make_shared<Help>());
-  app.set_help_flag("-h,--help", "print this, and end");
-  add_options(app, o, scene);
-  takes_file(
-      app.add_option("--config", file, "read options from a file: a scene"));
-  app.add_flag("--dump-config", dump, "print the scene as a file, and end");
+  add_file(app, "--config", o.config, "read options from a file: a scene")
+      ->group("Scene");
+  add_fields(app, m);
+  add_run_options(app, o);
+  app.option_defaults()->group("Advice");
   app.add_flag("--advise", o.advise,
                "find out by short runs which parts, grid, method and step the "
                "measure needs to its tolerance; print it, and end");
@@ -364,10 +396,10 @@ int parse(int argc, char** argv, Options& o) {
                  "seconds that finding out may take, counted in work; 0: the "
                  "larger of 2 and what the run takes");
   app.add_flag("--auto", o.automatic, "run what --advise would advise");
-  takes_file(app.add_option("--write-config", o.advised,
-                            "write the scene that is advised to this file"));
-  app.set_version_flag("--version", std::string("cloth ") + version,
-                       "print the version, and end");
+  add_file(app, "--write-config", o.advised,
+           "write the scene that is advised to this file");
+  app.option_defaults()->group("Other");
+  app.add_flag("--dump-config", dump, "print the scene as a file, and end");
   app.add_flag_callback(
       "--list-methods",
       [] {
@@ -375,6 +407,9 @@ int parse(int argc, char** argv, Options& o) {
         throw CLI::Success();
       },
       "print the table of methods, and end");
+  app.set_version_flag("--version", std::string("cloth ") + version,
+                       "print the version, and end");
+  app.set_help_flag("-h,--help", "print this, and end");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -385,14 +420,20 @@ int parse(int argc, char** argv, Options& o) {
       if (app.count("--" + key) > 0)
         throw SceneError("replay", "does not go with --" + key +
                                        ": a recording has its own scene");
-  scene.overridden_by(app);
-  o.origins = scene.origins();
-  o.model = scene.model();
-  o.model.step.tolerance = kept_tolerance;
-  const auto given = [&](const char* name) {
-    return app.count(name) > 0 || std::ranges::count(in_file, name) > 0;
+  const auto given = [&, in_file = o.origins.line_of](const char* name) {
+    return app.count(std::string("--") + name) > 0 ||
+           (!file.empty() && in_file.count(name) > 0);
   };
-  if (given("--tolerance") && !o.asks_advice()) {
+  // What the command line sets does not stand in the file any more.
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0)
+      o.origins.line_of.erase(option->get_name().substr(2));
+  for (const std::string& key : scene_keys())
+    if (app.count("--" + key) > 0)
+      set_field(m, key, app.get_option("--" + key)->results());
+  o.model = checked(m);
+  o.model.step.tolerance = kept_tolerance;
+  if (given("tolerance") && !o.asks_advice()) {
     control_error(o.model, given);
     if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet)
       std::cerr << "cloth: warning: --tolerance has no effect on "

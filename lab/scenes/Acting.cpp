@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Words.hpp"
 
 namespace lab {
@@ -75,23 +77,23 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
   else if (!drag && m.damping > 0)
     add("drag " + short_text(m.damping) + " kg/s a node", times + each_node);
   // Constraints
-  auto part = [](const std::string& name, const std::string& words) {
-    return name + (words.empty() ? "" : ' ' + words);
-  };
-  for (const Ball& b : m.tears) add(part("tear", to_words(b)), each_node);
-  if (m.tear_strain)
-    add("tear-strain " + short_text(*m.tear_strain),
-        count_of(g.num_edges(), "spring"));
-  for (const Wall& w : m.planes) add(part("plane", to_words(w)), each_node);
-  for (const Solid& s : m.spheres) add(part("sphere", to_words(s)), each_node);
+  Model copy = m;
+  for (const Field& f : fields_of(copy)) {
+    const std::string_view name = f.name;
+    const std::string work =
+        name == "tear-strain" ? count_of(g.num_edges(), "spring") : each_node;
+    if (f.role == Role::contact)
+      for (const std::string& value : f.values())
+        add(f.name + (value.empty() ? "" : ' ' + value),
+            name == "self-collision"
+                ? work + ", each with those within that distance"
+                : work);
+  }
   for (const Pin& pin : m.pins) {
     const auto held = std::ranges::count_if(
         mesh.points, [&](const Point& p) { return pin.holds(p); });
-    add(part("pin", to_words(pin)), count_of(std::size_t(held), "node"));
+    add("pin " + to_words(pin), count_of(std::size_t(held), "node"));
   }
-  if (m.self_collision)
-    add(part("self-collision", to_words(*m.self_collision)),
-        each_node + ", each with those within that distance");
   return all;
 }
 

@@ -10,6 +10,7 @@
 #include "CME212/Mesh.hpp"
 #include "CME212/OutputFile.hpp"
 #include "lab/Interrupt.hpp"
+#include "lab/scenes/Fields.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stability/Guard.hpp"
 
@@ -41,13 +42,15 @@ std::string_view bytes_of(std::span<T> list) {
 
 /** The lines of a scene file that say how the run goes on. */
 std::vector<std::string> lines_that_count(const std::string& scene) {
+  Model none;
+  const auto fields = fields_of(none);
   std::vector<std::string> lines;
   std::istringstream in(scene);
   for (std::string line; std::getline(in, line);) {
     const std::string key = line.substr(0, line.find(' '));
     // Files may have moved: what is in them is compared by itself.
-    if (key != "#" && key != "t-end" && key != "measure" &&
-        key != "tolerance" && key != "view" && key != "nodes" && key != "tets")
+    const auto f = std::ranges::find(fields, key, &Field::name);
+    if (f != fields.end() && f->role != Role::asked && f->role != Role::mesh)
       lines.push_back(line);
   }
   return lines;

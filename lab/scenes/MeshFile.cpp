@@ -85,4 +85,8 @@ std::string quads_beside(const std::string& nodes) {
   return nodes + ".tets";
 }
 
+std::string absolute(const std::string& file) {
+  return std::filesystem::absolute(file).string();
+}
+
 }  // namespace lab

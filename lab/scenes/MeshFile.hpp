@@ -38,4 +38,7 @@ void write_quads(std::ostream& out, const PointsAndQuads& mesh);
  * A.nodes, else A.tets with A; "" with a pipe or a device. */
 std::string quads_beside(const std::string& nodes);
 
+/** The name of a file from the root on. */
+std::string absolute(const std::string& file);
+
 }  // namespace lab

@@ -36,17 +36,6 @@ const MethodEntry* default_method() {
   return method;
 }
 
-bool Model::names_parts() const {
-  return !sheets.empty() || edges != Edges() || material.density ||
-         material.modulus || material.drag || !regions.empty() ||
-         !pins.empty() || has_contact();
-}
-
-bool Model::has_contact() const {
-  return !planes.empty() || !spheres.empty() || !tears.empty() || tear_strain ||
-         self_collision;
-}
-
 bool Model::conserves_energy() const {
   const bool moves = std::ranges::any_of(
       pins, [](const Pin& pin) { return pin.motion.velocity != Point(); });

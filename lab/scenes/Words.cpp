@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
@@ -16,174 +18,171 @@ namespace lab {
 
 using CME212::exact_text;
 using CME212::short_text;
+using enum Word::Range;
+using enum Word::Need;
 
-Words::Words(std::string option, std::string text,
-             std::initializer_list<Word> allowed)
-    : option_(std::move(option)), text_(std::move(text)) {
-  auto names = [&] {
-    std::string all;
-    for (const Word& w : allowed)
-      all += (all.empty() ? "" : ", ") + std::string(w.name);
-    return all;
-  };
-  std::istringstream in(text_);
-  std::string word;
-  std::vector<double>* numbers = nullptr;
-  while (in >> word) {
-    if (std::ranges::find(allowed, word, &Word::name) != allowed.end()) {
-      if (found_.count(word)) fail("has " + word + " twice");
-      numbers = &found_[word];
-      continue;
-    }
-    char* end = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    if (*end != '\0' || !std::isfinite(value) || !numbers)
-      fail("has \"" + word + "\", expected " +
-           (numbers ? "a number or one of " : "one of ") + names());
-    numbers->push_back(value);
-  }
-  for (const Word& w : allowed)
-    if (auto it = found_.find(w.name);
-        it != found_.end() && it->second.size() != w.numbers) {
-      const std::size_t n = it->second.size();
-      fail("has " + std::to_string(n) + (n == 1 ? " number" : " numbers") +
-           " after " + w.name + ", expected " + std::to_string(w.numbers));
-    }
-}
+// --------------------------------------------------------- The words of a part
 
-double Words::number(const char* name, double otherwise) const {
-  auto it = found_.find(name);
-  return it == found_.end() ? otherwise : it->second[0];
+namespace {
+Word velocity(Motion& m) {
+  const bool ends = m.until != Motion().until;
+  return {"velocity", &m.velocity, any, ends ? word : none};
 }
-Point Words::point(const char* name, const Point& otherwise) const {
-  auto it = found_.find(name);
-  if (it == found_.end()) return otherwise;
-  return Point(it->second[0], it->second[1], it->second[2]);
+constexpr bool* no_member = nullptr;
+Word until(Motion& m) { return {"until", &m.until, not_negative}; }
+}  // namespace
+
+Words words_of(Edges& e) {
+  return {"edges",
+          {{"sides", no_member, any, word},
+           {"diagonals", &e.diagonals},
+           {"bend", &e.bend}}};
 }
-double Words::above(const char* name, double low) const {
-  require(name);
-  const double value = number(name, 0);
-  if (!(value > low)) fail_range(name, value, "more than", low);
-  return value;
+Words words_of(Sheet& s) {
+  const bool has_area = norm(cross(s.u, s.v)) > 0;
+  return {"sheet",
+          {{"at", &s.at},
+           {"u", &s.u},
+           {"v", &s.v},
+           {"nodes", &s.nodes},
+           {"velocity", &s.velocity}},
+          has_area ? nullptr : "has sides u and v without an area"};
 }
-double Words::at_least(const char* name, double low, double otherwise) const {
-  const double value = number(name, otherwise);
-  if (!(value >= low)) fail_range(name, value, "at least", low);
-  return value;
+Words words_of(Region& r) {
+  return {"region",
+          {{"from", &r.box.from, any, word},
+           {"to", &r.box.to, any, word},
+           {"mass-factor", &r.mass, positive, some},
+           {"stiffness-factor", &r.stiffness, not_negative, some}}};
 }
-void Words::require(const char* name) const {
-  if (!has(name)) fail(std::string("has no ") + name);
+Words words_of(Pin& p) {
+  return {"pin",
+          {{"x", &p.x, any, some},
+           {"y", &p.y, any, some},
+           {"z", &p.z, any, some},
+           velocity(p.motion),
+           until(p.motion)}};
 }
-void Words::fail(const std::string& what) const {
-  throw SceneError(option_, "\"" + text_ + "\" " + what);
+Words words_of(Wall& w) {
+  return {"plane",
+          {{"at", &w.at},
+           {"normal", &w.normal},
+           {"friction", &w.friction, not_negative},
+           velocity(w.motion),
+           until(w.motion)},
+          norm(w.normal) > 0 ? nullptr : "has a normal without a direction"};
 }
-void Words::fail_range(const char* name, double value, const char* relation,
-                       double low) const {
-  fail(std::string("has ") + name + ' ' + short_text(value) + ", expected " +
-       relation + ' ' + short_text(low));
+Words words_of(Solid& s) {
+  return {"sphere",
+          {{"at", &s.ball.center},
+           {"radius", &s.ball.radius, positive},
+           {"friction", &s.friction, not_negative},
+           velocity(s.motion),
+           until(s.motion)}};
+}
+Words words_of(Ball& b) {
+  return {"tear", {{"at", &b.center}, {"radius", &b.radius, positive}}};
+}
+Words words_of(Distance& d) {
+  return {"self-collision",
+          {{"thickness", &d.thickness, positive, word},
+           {"friction", &d.friction, not_negative}}};
+}
+Words words_of(Box& v) {
+  return {"view",
+          {{"from", &v.from, any, word}, {"to", &v.to, any, word}},
+          v.from == v.to ? "is a box without a size" : nullptr};
 }
 
 // -------------------------------------------------------------------- Reading
 
 namespace {
 
-Motion motion_of(const Words& w) {
-  if (w.has("until")) w.require("velocity");
-  return {w.point("velocity", Point()), w.at_least("until", 0, Motion().until)};
+using Numbers = std::vector<double>;
+
+/** How many numbers follow the word. */
+std::size_t numbers_after(const Word& w) {
+  constexpr std::size_t counts[] = {0, 1, 1, 3, 2};  // of each kind of member
+  return counts[w.member.index()];
 }
-Ball ball_of(const Words& w) {
-  Ball ball;
-  ball.center = w.point("at", ball.center);
-  if (w.has("radius")) ball.radius = w.above("radius", 0);
-  return ball;
+
+/** Call @a use(number) for each number of a word, which is there from now on.
+ */
+template <typename Use>
+void each_number(const Word& w, Use use) {
+  if (auto* a = std::get_if<double*>(&w.member)) use(**a);
+  if (auto* a = std::get_if<std::optional<double>*>(&w.member))
+    use((*a)->has_value() ? ***a : (*a)->emplace());
+  if (auto* p = std::get_if<Point*>(&w.member))
+    for (Real& a : **p) use(a);
+  if (auto* n = std::get_if<std::array<unsigned, 2>*>(&w.member))
+    for (unsigned& a : **n) use(a);
 }
-unsigned count_of(const Words& w, double n) {
-  if (!(n >= 2 && n <= 10000 && n == std::floor(n)))
-    w.fail("has nodes " + short_text(n) + ", expected 2 to 10000");
-  return unsigned(n);
+
+/** What must be true of the number @a a of a word, and is not; or null. */
+const char* unmet(const Word& w, double a) {
+  if (std::holds_alternative<std::array<unsigned, 2>*>(w.member))
+    return a >= 2 && a <= 10000 && a == std::floor(a) ? nullptr : "2 to 10000";
+  if (w.range == positive && !(a > 0)) return "more than 0";
+  return w.range == not_negative && !(a >= 0) ? "at least 0" : nullptr;
 }
 
 }  // namespace
 
-Edges read_edges(const std::string& text) {
-  const Words w("edges", text, {{"sides", 0}, {"diagonals", 0}, {"bend", 0}});
-  w.require("sides");
-  return {w.has("diagonals"), w.has("bend")};
+void read_words(const std::string& text, const std::function<Words()>& words) {
+  const auto [option, allowed, _] = words();
+  auto fail = [&, &of = option](const std::string& what) {
+    throw SceneError(of, '"' + text + "\" " + what);
+  };
+  std::string names, some_names;
+  for (const Word& w : allowed) {
+    names.append(names.empty() ? "" : ", ").append(w.name);
+    if (w.need == some)
+      some_names.append(some_names.empty() ? "" : ", ").append(w.name);
+  }
+  std::map<std::string, Numbers> found;
+  std::istringstream in(text);
+  Numbers* numbers = nullptr;
+  for (std::string next; in >> next;) {
+    if (std::ranges::count(allowed, next, &Word::name)) {
+      if (found.count(next)) fail("has " + next + " twice");
+      numbers = &found[next];
+      continue;
+    }
+    char* end = nullptr;
+    const double value = std::strtod(next.c_str(), &end);
+    if (*end != '\0' || !std::isfinite(value) || !numbers)
+      fail("has \"" + next + "\", expected " +
+           (numbers ? "a number or one of " : "one of ") + names);
+    numbers->push_back(value);
+  }
+  bool has_some = some_names.empty();
+  for (const Word& w : allowed) {
+    const auto it = found.find(w.name);
+    if (auto* there = std::get_if<bool*>(&w.member); there && *there)
+      **there = it != found.end();
+    if (it == found.end()) continue;
+    const std::string name = std::string(" ") + w.name;
+    const std::size_t n = it->second.size();
+    if (n != numbers_after(w))
+      fail("has " + std::to_string(n) + (n == 1 ? " number" : " numbers") +
+           " after" + name + ", expected " + std::to_string(numbers_after(w)));
+    for (double a : it->second)
+      if (const char* expected = unmet(w, a))
+        fail("has" + name + ' ' + short_text(a) + ", expected " + expected);
+    each_number(w, [next = it->second.begin()](auto& a) mutable {
+      a = std::remove_reference_t<decltype(a)>(*next++);
+    });
+    has_some = has_some || w.need == some;
+  }
+  const Words now = words();  // what is needed may depend on what was read
+  for (const Word& w : now.all)
+    if (w.need == word && !found.count(w.name))
+      fail(std::string("has no ") + w.name);
+  if (!has_some) fail("has none of " + some_names);
+  if (now.wrong) fail(now.wrong);
 }
-Sheet read_sheet(const std::string& text) {
-  const Words w("sheet", text,
-                {{"at", 3}, {"u", 3}, {"v", 3}, {"nodes", 2}, {"velocity", 3}});
-  Sheet s;
-  s.at = w.point("at", s.at);
-  s.u = w.point("u", s.u), s.v = w.point("v", s.v);
-  if (w.has("nodes"))
-    for (int k : {0, 1}) s.nodes[k] = count_of(w, w.numbers("nodes")[k]);
-  if (!(norm(cross(s.u, s.v)) > 0)) w.fail("has sides u and v without an area");
-  s.velocity = w.point("velocity", s.velocity);
-  return s;
-}
-Region read_region(const std::string& text) {
-  const Words w(
-      "region", text,
-      {{"from", 3}, {"to", 3}, {"mass-factor", 1}, {"stiffness-factor", 1}});
-  w.require("from"), w.require("to");
-  if (!w.has("mass-factor") && !w.has("stiffness-factor"))
-    w.fail("has neither mass-factor nor stiffness-factor");
-  Region r;
-  r.box = {w.point("from", Point()), w.point("to", Point())};
-  if (w.has("mass-factor")) r.mass = w.above("mass-factor", 0);
-  r.stiffness = w.at_least("stiffness-factor", 0, r.stiffness);
-  return r;
-}
-Pin read_pin(const std::string& text) {
-  const Words w("pin", text,
-                {{"x", 1}, {"y", 1}, {"z", 1}, {"velocity", 3}, {"until", 1}});
-  Pin p;
-  if (w.has("x")) p.x = w.number("x", 0);
-  if (w.has("y")) p.y = w.number("y", 0);
-  if (w.has("z")) p.z = w.number("z", 0);
-  if (!p.x && !p.y && !p.z) w.fail("has none of x, y, z");
-  p.motion = motion_of(w);
-  return p;
-}
-Wall read_plane(const std::string& text) {
-  const Words w("plane", text,
-                {{"at", 3},
-                 {"normal", 3},
-                 {"friction", 1},
-                 {"velocity", 3},
-                 {"until", 1}});
-  Wall p;
-  p.at = w.point("at", p.at);
-  p.normal = w.point("normal", p.normal);
-  if (!(norm(p.normal) > 0)) w.fail("has a normal without a direction");
-  p.friction = w.at_least("friction", 0, 0);
-  p.motion = motion_of(w);
-  return p;
-}
-Solid read_sphere(const std::string& text) {
-  const Words w("sphere", text,
-                {{"at", 3},
-                 {"radius", 1},
-                 {"friction", 1},
-                 {"velocity", 3},
-                 {"until", 1}});
-  return {ball_of(w), w.at_least("friction", 0, 0), motion_of(w)};
-}
-Ball read_tear(const std::string& text) {
-  return ball_of(Words("tear", text, {{"at", 3}, {"radius", 1}}));
-}
-Distance read_self_collision(const std::string& text) {
-  const Words w("self-collision", text, {{"thickness", 1}, {"friction", 1}});
-  return {w.above("thickness", 0), w.at_least("friction", 0, 0)};
-}
-Box read_view(const std::string& text) {
-  const Words w("view", text, {{"from", 3}, {"to", 3}});
-  w.require("from"), w.require("to");
-  const Box v = {w.point("from", Point()), w.point("to", Point())};
-  if (v.from == v.to) w.fail("is a box without a size");
-  return v;
-}
+
 Measure read_measure(const std::string& text) {
   std::string names;
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
@@ -227,112 +226,45 @@ const MethodEntry* read_method(const std::string& text) {
                                  did_you_mean(text, names));
 }
 
-// ------------------------------------------------------------------- Printing
+// -------------------------------------------------------------------- Writing
 
 namespace {
 
-/** All digits of @a a that count. */
-std::string digits(Real a) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, a).ptr};
+/** A word and its numbers; "" if it is not there. */
+std::string text_of(const Word& w) {
+  if (auto* there = std::get_if<bool*>(&w.member); there && *there && !**there)
+    return "";
+  if (auto* a = std::get_if<std::optional<double>*>(&w.member); a && !**a)
+    return "";
+  std::string text = w.name;
+  each_number(w, [&text](const auto& a) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, a).ptr;
+    text.append(" ").append(digits, end);
+  });
+  return text;
 }
-
-/** Words, and the numbers that differ from their default. */
-class Writer {
- public:
-  Writer& word(const std::string& w) {
-    text_ += (text_.empty() ? "" : " ") + w;
-    return *this;
-  }
-  Writer& number(const char* name, double a, double otherwise) {
-    if (a != otherwise) word(name).word(exact_text(a));
-    return *this;
-  }
-  Writer& number(const char* name, const std::optional<double>& a) {
-    if (a) word(name).word(exact_text(*a));
-    return *this;
-  }
-  Writer& point(const char* name, const Point& p, const Point& otherwise) {
-    return p == otherwise ? *this : point(name, p);
-  }
-  Writer& point(const char* name, const Point& p) {
-    word(name);
-    for (Real a : {p.x, p.y, p.z}) word(digits(a));
-    return *this;
-  }
-  Writer& ball(const Ball& b) {
-    return point("at", b.center, Ball().center)
-        .number("radius", b.radius, Ball().radius);
-  }
-  Writer& motion(const Motion& m) {
-    if (m == Motion()) return *this;  // `until` needs a velocity before it
-    return point("velocity", m.velocity)
-        .number("until", m.until, Motion().until);
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
 
 }  // namespace
 
-std::string to_words(const Edges& e) {
-  return std::string("sides") + (e.diagonals ? " diagonals" : "") +
-         (e.bend ? " bend" : "");
+std::string written(const Words& words, const Words& usual) {
+  std::string all, last;
+  bool has_some = false;
+  for (std::size_t k = 0; k < words.all.size(); ++k) {
+    const Word& w = words.all[k];
+    const std::string text = text_of(w);
+    if (text.empty()) continue;
+    if (w.need == some) last = ' ' + text;
+    if (w.need != word && !std::holds_alternative<bool*>(w.member) &&
+        text == text_of(usual.all[k]))
+      continue;
+    all += ' ' + text;
+    has_some = has_some || w.need == some;
+  }
+  if (!has_some) all += last;
+  return all.substr(all.empty() ? 0 : 1);
 }
-std::string to_words(const Sheet& s) {
-  const Sheet otherwise;
-  Writer w;
-  w.point("at", s.at, otherwise.at).point("u", s.u, otherwise.u);
-  w.point("v", s.v, otherwise.v);
-  if (s.nodes != otherwise.nodes)
-    w.word("nodes")
-        .word(std::to_string(s.nodes[0]))
-        .word(std::to_string(s.nodes[1]));
-  return w.point("velocity", s.velocity, otherwise.velocity).text();
-}
-std::string to_words(const Region& r) {
-  Writer w;
-  w.point("from", r.box.from).point("to", r.box.to);
-  w.number("mass-factor", r.mass, 1);
-  if (r.stiffness != 1 || r.mass == 1)  // one of them is there
-    w.number("stiffness-factor", r.stiffness);
-  return w.text();
-}
-std::string to_words(const Pin& p) {
-  return Writer()
-      .number("x", p.x)
-      .number("y", p.y)
-      .number("z", p.z)
-      .motion(p.motion)
-      .text();
-}
-std::string to_words(const Wall& p) {
-  return Writer()
-      .point("at", p.at, Wall().at)
-      .point("normal", p.normal, Wall().normal)
-      .number("friction", p.friction, 0)
-      .motion(p.motion)
-      .text();
-}
-std::string to_words(const Solid& s) {
-  return Writer()
-      .ball(s.ball)
-      .number("friction", s.friction, 0)
-      .motion(s.motion)
-      .text();
-}
-std::string to_words(const Ball& b) { return Writer().ball(b).text(); }
-std::string to_words(const Distance& d) {
-  return Writer()
-      .number("thickness", d.thickness)
-      .number("friction", d.friction, 0)
-      .text();
-}
-std::string to_words(const Box& v) {
-  return Writer().point("from", v.from).point("to", v.to).text();
-}
+
 std::string to_words(const TimeStep& s) {
   if (s.fixed()) return exact_text(s.dt);
   return std::string(s.rule == StepRule::sharp ? "auto:sharp" : "auto") +

@@ -1,85 +1,91 @@
 #pragma once
 /** @file Words.hpp
- * Parts of a scene in words: names, each with its numbers, as in
- * "at 0.5 0.5 -0.5 radius 0.15 friction 0.3". The one place that reads and
- * prints them. README.md */
-#include <initializer_list>
-#include <map>
+ * A part of a scene as text: words, each followed by its numbers, as in
+ * "at 0.5 0.5 -0.5 radius 0.15 friction 0.3". words_of() declares the words of
+ * a part once; reading and writing both use it. README.md */
+#include <array>
+#include <functional>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lab/scenes/Model.hpp"
 
 namespace lab {
 
-/** The words of one part. */
-class Words {
- public:
-  /** A word that may be there, and how many numbers it has. */
-  struct Word {
-    const char* name;
-    std::size_t numbers;
+/** A word of a part. */
+struct Word {
+  enum class Range { any, not_negative, positive };
+  enum class Need {
+    none,
+    word,  ///< it must be there
+    some,  ///< one of these words or more must be there
   };
-
-  /** Read @a text, the value of @a option.
-   * Throws SceneError: another word, a word twice, too many or too few numbers,
-   * one that is none or not finite. */
-  Words(std::string option, std::string text,
-        std::initializer_list<Word> allowed);
-
-  bool has(const char* name) const { return found_.count(name) > 0; }
-  /** The number after @a name, or @a otherwise. */
-  double number(const char* name, double otherwise) const;
-  /** The three numbers after @a name, or @a otherwise. */
-  Point point(const char* name, const Point& otherwise) const;
-  /** The numbers after @a name.  @pre has(name) */
-  const std::vector<double>& numbers(const char* name) const {
-    return found_.at(name);
-  }
-  /** The number after @a name, which must be there, and be above @a low. */
-  double above(const char* name, double low) const;
-  /** The number after @a name or @a otherwise; it must be @a low or more. */
-  double at_least(const char* name, double low, double otherwise) const;
-  /** Throws SceneError unless @a name is there. */
-  void require(const char* name) const;
-  /** Throws SceneError: this part @a what. */
-  [[noreturn]] void fail(const std::string& what) const;
-
- private:
-  std::string option_, text_;
-  std::map<std::string, std::vector<double>> found_;
-
-  [[noreturn]] void fail_range(const char* name, double value,
-                               const char* relation, double low) const;
+  const char* name;
+  /** What its numbers set. A bool: whether the word is there; or null. */
+  std::variant<bool*, double*, std::optional<double>*, Point*,
+               std::array<unsigned, 2>*>
+      member;
+  Range range = Range::any;
+  Need need = Need::none;
+};
+/** All words that a part may have, in the order in which they are written. */
+struct Words {
+  const char* option;  ///< the key of the part
+  std::vector<Word> all;
+  const char* wrong = nullptr;  ///< what is wrong with the part as a whole
 };
 
-/** Each reads one part.  Throws SceneError: other words or numbers than it may
- * have. */
-Edges read_edges(const std::string& text);
-Sheet read_sheet(const std::string& text);
-Region read_region(const std::string& text);
-Pin read_pin(const std::string& text);
-Wall read_plane(const std::string& text);
-Solid read_sphere(const std::string& text);
-Ball read_tear(const std::string& text);
-Distance read_self_collision(const std::string& text);
-Box read_view(const std::string& text);
-Measure read_measure(const std::string& text);
-/** A number [s]; or auto[:sharp][:GAIN], as "auto:0.02" */
-TimeStep read_time_step(const std::string& text);
-const MethodEntry* read_method(const std::string& text);
+/** The words of a part, bound to its members. */
+Words words_of(Edges&);
+Words words_of(Sheet&);
+Words words_of(Region&);
+Words words_of(Pin&);
+Words words_of(Wall&);
+Words words_of(Solid&);
+Words words_of(Ball&);
+Words words_of(Distance&);
+Words words_of(Box&);
 
-/** The words of a part, in the order of README.md: what differs from the
- * default, with all digits. Read again, they are the same part. */
-std::string to_words(const Edges&);
-std::string to_words(const Sheet&);
-std::string to_words(const Region&);
-std::string to_words(const Pin&);
-std::string to_words(const Wall&);
-std::string to_words(const Solid&);
-std::string to_words(const Ball&);
-std::string to_words(const Distance&);
-std::string to_words(const Box&);
+/** Set the members of @a words() from @a text.
+ * Throws SceneError: another word, a word twice, a word that is missing, too
+ * many or too few numbers, one out of its range or not finite; what is wrong
+ * with the part. */
+void read_words(const std::string& text, const std::function<Words()>& words);
+/** The words whose members differ from @a usual, with all digits. */
+std::string written(const Words& words, const Words& usual);
+
+/** The part that @a text says.  Throws as read_words() */
+template <typename Part>
+Part read_part(const std::string& text) {
+  Part part;
+  read_words(text, [&part] { return words_of(part); });
+  return part;
+}
+/** Its text. Read again, it is the same part. */
+template <typename Part>
+std::string to_words(Part part) {
+  Part usual;
+  return written(words_of(part), words_of(usual));
+}
+
+inline constexpr auto read_edges = read_part<Edges>;
+inline constexpr auto read_sheet = read_part<Sheet>;
+inline constexpr auto read_region = read_part<Region>;
+inline constexpr auto read_pin = read_part<Pin>;
+inline constexpr auto read_plane = read_part<Wall>;
+inline constexpr auto read_sphere = read_part<Solid>;
+inline constexpr auto read_tear = read_part<Ball>;
+inline constexpr auto read_self_collision = read_part<Distance>;
+inline constexpr auto read_view = read_part<Box>;
+
+/** Throws SceneError: no name of a measure, no name of a method. */
+Measure read_measure(const std::string& text);
+const MethodEntry* read_method(const std::string& text);
+/** A number [s]; or auto[:sharp][:GAIN], as "auto:0.02"
+ * Throws SceneError: anything else */
+TimeStep read_time_step(const std::string& text);
 std::string to_words(const TimeStep&);
 
 }  // namespace lab

@@ -1,0 +1,223 @@
+#include "lab/scenes/Fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <type_traits>
+
+#include "CME212/Util.hpp"
+#include "lab/methods/Method.hpp"
+#include "lab/scenes/KeyValues.hpp"
+
+namespace lab {
+
+std::vector<Field> fields_of(Model& m) {
+  using enum Role;
+  constexpr auto scene = "Scene", material = "Material",
+                 step = "Method and step", advice = "Advice";
+  constexpr auto not_negative = Word::Range::not_negative,
+                 positive = Word::Range::positive;
+  return {
+      {"nodes", mesh, scene, &m.nodes,
+       "file of points 'x y z' [m], or 'x y z vx vy vz' [m/s]"},
+      {"tets", mesh, scene, &m.tets, "file of quads, four node indices each"},
+      {"sheet", cloth, scene, &m.sheets,
+       "a grid instead of files, any number: at X Y Z u X Y Z v X Y Z [m] "
+       "nodes N M velocity X Y Z [m/s]: a corner, two sides, nodes along them, "
+       "how it moves at first"},
+      {"edges", cloth, scene, &m.edges,
+       "springs: sides, and diagonals and bend if named"},
+      {"stiffness", number, material, &m.stiffness, "K of every edge [N/m]",
+       "a spring constant [N/m], 0 or more", not_negative},
+      {"modulus", cloth, material, &m.material.modulus,
+       "instead of it: force per width and strain [N/m]",
+       "a force per width [N/m], 0 or more", not_negative, "stiffness"},
+      {"density", cloth, material, &m.material.density,
+       "mass per area [kg/m^2], instead of 1 kg in all",
+       "a mass per area [kg/m^2], more than 0", positive},
+      {"damping", number, material, &m.damping,
+       "drag coefficient c of every node [kg/s] (1/N is moderate)",
+       "a drag coefficient [kg/s], 0 or more", not_negative},
+      {"drag", cloth, material, &m.material.drag,
+       "instead of it: drag per area [kg/(s m^2)]",
+       "a drag per area [kg/(s m^2)], 0 or more", not_negative, "damping"},
+      {"region", acts, material, &m.regions,
+       "another material in a box: from X Y Z to X Y Z [m] mass-factor F "
+       "stiffness-factor F: of nodes in it, of edges with both ends in it"},
+      {"gravity", number, scene, &m.gravity,
+       "acceleration of free fall [m/s^2]", "an acceleration [m/s^2]"},
+      {"pin", acts, scene, &m.pins,
+       "hold the nodes that start at x X y Y z Z [m] (one of them or more), or "
+       "move them: velocity X Y Z [m/s] until T [s]"},
+      {"plane", contact, scene, &m.planes,
+       "a floor or wall: at X Y Z [m] normal X Y Z friction F velocity X Y Z "
+       "[m/s] until T [s]"},
+      {"sphere", contact, scene, &m.spheres,
+       "a ball: at X Y Z radius R [m] friction F velocity X Y Z [m/s] until T "
+       "[s]"},
+      {"tear", contact, scene, &m.tears,
+       "a ball that removes what touches it: at X Y Z radius R [m]"},
+      {"tear-strain", contact, scene, &m.tear_strain,
+       "an edge breaks at this strain, l/L - 1",
+       "a strain above that at the start, 0", positive},
+      {"self-collision", contact, scene, &m.self_collision,
+       "nodes without a common edge stay apart: thickness D [m] friction F"},
+      {"t-end", asked, scene, &m.t_end, "time to reach [s], in steps of dt",
+       "a time [s], 0 or more", not_negative},
+      {"dt", Role::method, step, &m.step,
+       "step [s], the last ones shorter; auto: first 0.6 of the stability "
+       "limit that holds in every configuration, then as the energy balance "
+       "allows; auto:sharp: first 0.9 of that in the present one; auto:G, "
+       "auto:sharp:G: it gains at most that share of the energy of motion "
+       "(0.1)"},
+      {"method", Role::method, step, &m.method,
+       "name of a method: see --list-methods"},
+      {"measure", asked, advice, &m.measure,
+       "what is asked, at the end: com [m], energy [J], positions [m], "
+       "max-stretch, drape-height [m]"},
+      {"tolerance", asked, advice, &m.tolerance,
+       "how exactly, in the measure's unit; a run without --method and --dt "
+       "keeps the positions to it [m] by dop853",
+       "more than 0", positive},
+      {"view", asked, scene, &m.view,
+       "the box to look at: from X Y Z to X Y Z [m]"}};
+}
+
+// -------------------------------------------------------- Reading and writing
+
+namespace {
+
+template <typename T>
+concept List = requires(T a) {
+  a.emplace_back();
+};
+template <typename T>
+concept Optional = requires(T a) {
+  a.emplace();
+};
+
+[[noreturn]] void refuse(const char* name, const std::string& value,
+                         const std::string& expected) {
+  throw SceneError(name, "is " + value + ", expected " + expected);
+}
+
+template <typename T>
+void read(const Field& f, const std::string& text, T& a) {
+  if constexpr (List<T>) {
+    read(f, text, a.emplace_back());
+  } else if constexpr (Optional<T>) {
+    if (!text.empty()) read(f, text, a.emplace());
+  } else if constexpr (std::is_same_v<T, double>) {
+    char* end = nullptr;
+    a = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != '\0' || !std::isfinite(a) ||
+        (f.range != Word::Range::any && a < 0) ||
+        (f.range == Word::Range::positive && a == 0))
+      refuse(f.name, printable(text), f.expected);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    a = text;
+    if (a.empty()) throw SceneError(f.name, "is empty, expected a file");
+  } else if constexpr (std::is_same_v<T, TimeStep>) {
+    a = read_time_step(text);
+  } else if constexpr (std::is_same_v<T, Measure>) {
+    a = read_measure(text);
+  } else if constexpr (std::is_same_v<T, const MethodEntry*>) {
+    a = read_method(text);
+  } else {
+    a = read_part<T>(text);
+  }
+}
+
+template <typename T>
+void write(const T& a, std::vector<std::string>& values) {
+  if constexpr (List<T>) {
+    for (const auto& one : a) write(one, values);
+  } else if constexpr (Optional<T>) {
+    if (a) write(*a, values);
+  } else if constexpr (std::is_same_v<T, double>) {
+    values.push_back(CME212::exact_text(a));
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (!a.empty()) values.push_back(a);
+  } else if constexpr (std::is_same_v<T, Measure>) {
+    values.push_back(name_of(a));
+  } else if constexpr (std::is_same_v<T, const MethodEntry*>) {
+    values.push_back(a->info.name);
+  } else {
+    values.push_back(to_words(a));
+  }
+}
+
+}  // namespace
+
+const char* Field::type() const {
+  if (std::holds_alternative<std::string*>(member)) return "FILE";
+  if (std::holds_alternative<TimeStep*>(member))
+    return "FLOAT|auto[:sharp][:G]";
+  return std::holds_alternative<double*>(member) ||
+                 std::holds_alternative<std::optional<double>*>(member)
+             ? "FLOAT"
+             : "TEXT";
+}
+bool Field::repeats() const {
+  return std::visit(
+      [](auto* a) { return List<std::remove_pointer_t<decltype(a)>>; }, member);
+}
+std::vector<std::string> Field::values() const {
+  std::vector<std::string> all;
+  std::visit([&all](const auto* a) { write(*a, all); }, member);
+  return all;
+}
+
+bool set_field(Model& m, std::string_view name,
+               const std::vector<std::string>& values) {
+  const auto all = fields_of(m);
+  const auto field = std::ranges::find(all, name, &Field::name);
+  if (field == all.end()) return false;
+  if (values.size() > 1 && !field->repeats())
+    throw SceneError(field->name, "has " + std::to_string(values.size()) +
+                                      " values, expected one");
+  const auto clear = [](auto* a) {
+    using T = std::remove_pointer_t<decltype(a)>;
+    if constexpr (List<T> || Optional<T>) *a = T();
+  };
+  for (const Field& f : all)
+    if (f.name == name || f.instead_of == name) std::visit(clear, f.member);
+  for (const std::string& value : values)
+    std::visit([&](auto* a) { read(*field, value, *a); }, field->member);
+  return true;
+}
+
+Model checked(Model m) {
+  // No error of the user's if it is the default that is too long.
+  double& dt = m.step.dt;
+  const bool fixed = m.step.fixed();
+  if (fixed && dt == TimeStep().dt && m.t_end > 0) dt = std::min(dt, m.t_end);
+  if (fixed && dt > m.t_end && m.t_end > 0)
+    refuse("dt", CME212::short_text(dt), "at most --t-end");
+  if (fixed && !(m.t_end / dt < 1e15))
+    refuse("t-end", CME212::short_text(m.t_end),
+           "fewer than 1e15 steps of --dt");
+  if (!m.sheets.empty() && !(m.nodes.empty() && m.tets.empty()))
+    throw SceneError("sheet", "and files of a mesh: expected one of them");
+  return or_assignment(m);
+}
+
+// ---------------------------------------------------------- What a Model names
+
+bool Model::names_parts() const {
+  Model m = *this, none;
+  const auto all = fields_of(m), usual = fields_of(none);
+  return std::ranges::any_of(all, [&](const Field& f) {
+    const bool is_part = f.role == Role::cloth || f.role == Role::acts ||
+                         f.role == Role::contact;
+    return is_part && f.values() != usual[std::size_t(&f - &all[0])].values();
+  });
+}
+bool Model::has_contact() const {
+  Model m = *this;
+  return std::ranges::any_of(fields_of(m), [](const Field& f) {
+    return f.role == Role::contact && !f.values().empty();
+  });
+}
+
+}  // namespace lab
