@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "tests/ScatteredCloth.hpp"
 
 using namespace lab;

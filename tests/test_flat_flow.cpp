@@ -17,7 +17,7 @@
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "tests/Stages.hpp"
 

@@ -1,4 +1,4 @@
-// Obstacle.hpp: post-conditions, and Coulomb's law against theory.
+// Contact.hpp: post-conditions, and Coulomb's law against theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 
 using namespace lab;
@@ -397,9 +397,10 @@ TEST(MovingPin, IsPlacedAtAStage) {
   EXPECT_TRUE(is(Point(1, 2, 0), Point()));
   EXPECT_EQ(free.position(), Point(2, 0, 0));
   EXPECT_EQ(free.value().vel, Point(0, 0, 3));
-  EXPECT_EQ(plan.next_kink(0.2), 0.5);
-  EXPECT_EQ(plan.next_kink(0.5 * (1 - 1e-15)), HUGE_VAL);
-  EXPECT_EQ(ConstraintPlan(PinConstraint(held)).next_kink(0), HUGE_VAL);
+  EXPECT_EQ(plan.next_velocity_jump(0.2), 0.5);
+  EXPECT_EQ(plan.next_velocity_jump(0.5 * (1 - 1e-15)), HUGE_VAL);
+  EXPECT_EQ(ConstraintPlan(PinConstraint(held)).next_velocity_jump(0),
+            HUGE_VAL);
 }
 TEST(MovingPin, GoesOnWithoutANodeThatWasRemoved) {
   Cloth g;

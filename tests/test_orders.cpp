@@ -16,7 +16,7 @@
 
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 using namespace lab;

@@ -17,7 +17,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Resonance.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "tests/Allocations.hpp"

@@ -9,7 +9,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Verlet.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 #include "tests/Allocations.hpp"
 

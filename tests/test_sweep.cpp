@@ -20,7 +20,7 @@
 #include "lab/methods/Pefrl.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "tests/SweptForces.hpp"
 
 using namespace lab;

@@ -137,10 +137,6 @@ TEST(Problem, OmegaIsBoundedFromAboveAndClose) {
 // So what is measured is what the program does: a method that can spare
 // something spares it here, too.
 TEST(Problem, ItsCountersHideNothing) {
-  const ForcePlan force = make_combined_force(
-      GravityForce(), MassSpringForce(), DampingForce(0.1), CountingForce());
-  EXPECT_EQ(force.spring_multiplicity(), 1);
-  EXPECT_EQ(force.drag(), 0.1);
   for (const CombinedConstraints& c :
        {make_combined_constraints(PlaneConstraint()),
         make_combined_constraints(TearConstraint())}) {

@@ -278,7 +278,7 @@ Trace trace(const Failure& f, const FailureRun& r) {
       out.status = Outcome::Status::failed;
     }
   }
-  out.sweeps = s.counter.sweeps();
+  out.sweeps = s.force.evaluations();
   return out;
 }
 

@@ -14,40 +14,21 @@
 
 namespace lab {
 
-CountingConstraint::CountingConstraint(ConstraintPlan c) : c_(std::move(c)) {}
-void CountingConstraint::operator()(Cloth& g, double t) const {
-  ++calls_, c_(g, t);
-}
-bool CountingConstraint::nodewise() const { return c_.nodewise(); }
-void CountingConstraint::project(Cloth& g, double t, unsigned first,
-                                 unsigned last) const {
-  if (first == 0) ++calls_;  // one thread has that part
-  c_.project(g, t, first, last);
-}
-void CountingConstraint::each_place(const Cloth& g, double t,
-                                    const PlaceVisitor& use) const {
-  c_.each_place(g, t, use);
-}
-double CountingConstraint::next_kink(double t) const { return c_.next_kink(t); }
-
 namespace {
 
 /** Make the cloth and its force. */
-CombinedForces built(const Problem& p, Cloth& cloth,
-                     const CountingForce& counter) {
+CombinedForces built(const Problem& p, Cloth& cloth) {
   p.build(cloth);
   if (p.gamma == 0)
-    return make_combined_force(GravityForce(p.gravity), MassSpringForce(),
-                               counter);
+    return make_combined_force(GravityForce(p.gravity), MassSpringForce());
   return make_combined_force(GravityForce(p.gravity), MassSpringForce(),
-                             DampingForce(p.gamma / cloth.num_nodes()),
-                             counter);
+                             DampingForce(p.gamma / cloth.num_nodes()));
 }
 
 }  // namespace
 
 Start::Start(const Problem& p)
-    : force(built(p, cloth, counter)),
+    : force(built(p, cloth)),
       counted(p.constraint(cloth)),
       constraint(counted) {}
 
@@ -97,7 +78,7 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   }
   out.seconds = clock.seconds();
   out.steps = s.counted.calls();
-  out.sweeps = s.counter.sweeps();
+  out.sweeps = s.force.evaluations();
   out.end = end_of(s);
   return out;
 }

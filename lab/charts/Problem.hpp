@@ -8,27 +8,24 @@
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
-#include "lab/fast/CountingForce.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {
 
 /** Calls another constraint and counts the calls: the steps that a method with
  * error control makes. */
-class CountingConstraint : public SweptConstraint {
+class CountingConstraint : public ForwardingConstraint {
  public:
-  explicit CountingConstraint(ConstraintPlan c);
-  void operator()(Cloth& g, double t) const override;
-  bool nodewise() const override;
+  using ForwardingConstraint::ForwardingConstraint;
+  void operator()(Cloth& g, double t) const override { ++calls_, inner_(g, t); }
   void project(Cloth& g, double t, unsigned first,
-               unsigned last) const override;
-  void each_place(const Cloth& g, double t,
-                  const PlaceVisitor& use) const override;
-  double next_kink(double t) const override;
+               unsigned last) const override {
+    if (first == 0) ++calls_;  // one thread has that part
+    inner_.project(g, t, first, last);
+  }
   long long calls() const { return calls_; }
 
  private:
-  ConstraintPlan c_;
   mutable long long calls_ = 0;
 };
 
@@ -65,7 +62,6 @@ struct Problem {
  * it stays where it was made. */
 struct Start {
   Cloth cloth;
-  CountingForce counter;
   ForcePlan force;
   CountingConstraint counted;
   ConstraintPlan constraint;

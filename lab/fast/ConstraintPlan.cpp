@@ -285,9 +285,10 @@ void ConstraintPlan::each_place(const Cloth& g, double t,
   for (const auto& term : terms_) term->each_place(g, t, use);
 }
 
-double ConstraintPlan::next_kink(double t) const {
+double ConstraintPlan::next_velocity_jump(double t) const {
   double first = std::numeric_limits<double>::infinity();
-  for (const auto& term : terms_) first = std::min(first, term->next_kink(t));
+  for (const auto& term : terms_)
+    first = std::min(first, term->next_velocity_jump(t));
   return first;
 }
 
@@ -341,16 +342,16 @@ void ConstraintPlan::archive(Archive& a) const {
 }
 
 void WatchedConstraint::operator()(Cloth& g, double t) const {
-  if (before_.empty()) return c_(g, t);
+  if (before_.empty()) return inner_(g, t);
   for (Node n : g.nodes()) {
     if (n.id() >= before_.size()) continue;  // added since
-    auto place = c_.first_hit(before_[n.id()], n.position());
+    auto place = inner_.first_hit(before_[n.id()], n.position());
     if (!place) continue;
     if (count_++ == 0)
       first_ = {n.index(), norm(n.position() - before_[n.id()])};
     n.position() = *place;
   }
-  c_(g, t);
+  inner_(g, t);
   remember(g);
 }
 

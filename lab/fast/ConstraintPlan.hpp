@@ -92,7 +92,7 @@ class SweptConstraint : public ZeroConstraint {
                           const PlaceVisitor& /*use*/) const {}
   /** The first time [s] after @a t, by more than round-off, at which a place
    * changes its velocity; infinity if none does. */
-  virtual double next_kink(double /*t*/) const {
+  virtual double next_velocity_jump(double /*t*/) const {
     return std::numeric_limits<double>::infinity();
   }
   /** The first hit: the first place, to round-off, at which a node on its
@@ -214,7 +214,7 @@ class ConstraintPlan {
   bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
                      unsigned last) const;
   void each_place(const Cloth& g, double t, const PlaceVisitor& use) const;
-  double next_kink(double t) const;
+  double next_velocity_jump(double t) const;
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
   double thinnest() const;
   bool is_at_rest(double t) const;
@@ -238,9 +238,40 @@ class ConstraintPlan {
   void add(std::shared_ptr<const ZeroConstraint> constraint);
 };
 
-/** Wraps a constraint; stops nodes that would tunnel through an obstacle within
- * one step, and counts them. Off until watch() turns it on. */
-class WatchedConstraint final : public SweptConstraint {
+/** A constraint made of another one, of which it says what that one says. Its
+ * children give the call, and nodewise() or project() if these differ. */
+class ForwardingConstraint : public SweptConstraint {
+ public:
+  explicit ForwardingConstraint(ConstraintPlan inner)
+      : inner_(std::move(inner)) {}
+  bool nodewise() const override { return inner_.nodewise(); }
+  void project(Cloth& g, double t, unsigned first,
+               unsigned last) const override {
+    inner_.project(g, t, first, last);
+  }
+  void each_place(const Cloth& g, double t,
+                  const PlaceVisitor& use) const override {
+    inner_.each_place(g, t, use);
+  }
+  double next_velocity_jump(double t) const override {
+    return inner_.next_velocity_jump(t);
+  }
+  std::optional<Point> first_hit(const Point& from,
+                                 const Point& to) const override {
+    return inner_.first_hit(from, to);
+  }
+  double thinnest() const override { return inner_.thinnest(); }
+  bool is_at_rest(double t) const override { return inner_.is_at_rest(t); }
+  Exchange exchange() const override { return inner_.exchange(); }
+  void archive(CME212::Archive& a) const override { inner_.archive(a); }
+
+ protected:
+  ConstraintPlan inner_;
+};
+
+/** Stops nodes that would tunnel through an obstacle of another constraint
+ * within one step, and counts them. Off until watch() turns it on. */
+class WatchedConstraint final : public ForwardingConstraint {
  public:
   /** A node that was stopped. */
   struct Stopped {
@@ -248,7 +279,7 @@ class WatchedConstraint final : public SweptConstraint {
     double length;  ///< of its way since the last call [m]
   };
 
-  explicit WatchedConstraint(ConstraintPlan c) : c_(std::move(c)) {}
+  using ForwardingConstraint::ForwardingConstraint;
 
   /** Watch from the state of @a g on, or no more. O(N) if @a on, then and in
    * each call. */
@@ -261,42 +292,28 @@ class WatchedConstraint final : public SweptConstraint {
   const Stopped& first() const { return first_; }
 
   void operator()(Cloth& g, double t) const override;
-  bool nodewise() const override { return before_.empty() && c_.nodewise(); }
-  void project(Cloth& g, double t, unsigned first,
-               unsigned last) const override {
-    c_.project(g, t, first, last);
+  bool nodewise() const override {
+    return before_.empty() && inner_.nodewise();
   }
+  // While it is off nothing needs the graph:
   void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
                     unsigned last) const override {
-    c_.project_flat(c, g, t, first, last);
+    inner_.project_flat(c, g, t, first, last);
   }
   void apply_flat(FlatCloth& c, Cloth& g, double t) const override {
-    if (before_.empty()) return c_.apply_flat(c, g, t);
+    if (before_.empty()) return inner_.apply_flat(c, g, t);
     SweptConstraint::apply_flat(c, g, t);
   }
   bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
                      unsigned last) const override {
-    return before_.empty() && c_.project_alone(c, g, t, first, last);
+    return before_.empty() && inner_.project_alone(c, g, t, first, last);
   }
-  void each_place(const Cloth& g, double t,
-                  const PlaceVisitor& use) const override {
-    c_.each_place(g, t, use);
-  }
-  double next_kink(double t) const override { return c_.next_kink(t); }
-  std::optional<Point> first_hit(const Point& from,
-                                 const Point& to) const override {
-    return c_.first_hit(from, to);
-  }
-  double thinnest() const override { return c_.thinnest(); }
-  bool is_at_rest(double t) const override { return c_.is_at_rest(t); }
-  Exchange exchange() const override { return c_.exchange(); }
   void archive(Archive& a) const override {
-    c_.archive(a);
+    inner_.archive(a);
     a(before_)(count_)(first_.node)(first_.length).require(count_ >= 0);
   }
 
  private:
-  ConstraintPlan c_;
   mutable std::vector<Point> before_;  // by node id; empty: off
   mutable long long count_ = 0;
   mutable Stopped first_ = {};

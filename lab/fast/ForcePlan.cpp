@@ -69,11 +69,6 @@ bool ForcePlan::has_others() const {
   });
 }
 
-void ForcePlan::begin(double t) const {
-  for (const Term& term : terms_)
-    if (term.kind == Kind::swept) term.swept().begin(t);
-}
-
 double ForcePlan::gravity() const {
   double sum = 0;
   for (const Term& term : terms_)

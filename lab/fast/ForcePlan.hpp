@@ -42,8 +42,6 @@ class SweptForce : public ZeroForce {
       if (part.g.node_in_use(i))
         f[i - part.first] += (*this)(part.g.node_with_id(i), t);
   }
-  /** Called once an evaluation, before add_to() of the first part. */
-  virtual void begin(double /*t*/) const {}
   /** False if it is no force on any node: then add_to() need not be called. */
   virtual bool acts() const { return true; }
   /** The energy [J] whose negative gradient the force is; 0 if it has none. */
@@ -77,7 +75,8 @@ requires(std::derived_from<Fs, SweptForce> || ...)  //
  * by call, in their order; and the sum of all linear drag.
  *
  * It is made once for many steps. A ForcePlan shares the parts of a
- * CombinedForces; any other force that is no temporary must outlive it. */
+ * CombinedForces; any other force that is passed by reference must outlive it.
+ */
 class ForcePlan {
  public:
   /** O(terms). Implicit, so that a force can be handed to a method. */
@@ -100,8 +99,9 @@ class ForcePlan {
    * SweptForce::add_to(); and whether there are any that act. */
   void add_others(const Part& part, double t, std::span<Point> f) const;
   bool has_others() const;
-  /** To be called once an evaluation, before the first part. */
-  void begin(double t) const;
+  /** How often it was evaluated; methods call count_evaluation() each time. */
+  long long evaluations() const { return evaluations_; }
+  void count_evaluation() const { ++evaluations_; }
   /** The sum of all weight's g [m/s^2]. */
   double gravity() const;
   /** The energy [J] of weight and springs, and of swept forces that have one.
@@ -134,6 +134,7 @@ class ForcePlan {
   };
   std::vector<Term> terms_;
   Drag drag_;
+  mutable long long evaluations_ = 0;
 
   void add(std::shared_ptr<const ZeroForce> force);
 };

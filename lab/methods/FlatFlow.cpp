@@ -108,8 +108,8 @@ std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
     for (std::size_t k = 0; k < stages.size(); ++k)
       prepare(levels_[k], stages[k]);
     if (run_overlapping(stages)) {
-      for (const FlatStage& s : stages)  // for those that do not act
-        if (s.kick) force_->begin(s.t);
+      for (const FlatStage& s : stages)
+        if (s.kick) force_->count_evaluation();
       return stages.size();
     }
   }
@@ -132,7 +132,7 @@ bool FlatFlow::may_overlap(std::span<const FlatStage> stages) {
 void FlatFlow::run_alone(Level& level) {
   const FlatStage& stage = level.stage;
   for (Rings& r : rings_) r.next = std::numeric_limits<unsigned>::max();
-  if (stage.kick) force_->begin(stage.t);
+  if (stage.kick) force_->count_evaluation();
   const bool by_part = !stage.project || stage.project->nodewise();
   const auto move_part = [&](unsigned a, unsigned b) {
     move(level, a, b, by_part);

@@ -39,7 +39,8 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
   for (double now = t; now < end_of_step;) {
     // A last step that leaves a splinter takes it along.
     // It ends where a held node changes its velocity.
-    const double goal = std::min(end_of_step, constraint.next_kink(now));
+    const double goal =
+        std::min(end_of_step, constraint.next_velocity_jump(now));
     const bool last = now + 1.01 * inner_ >= goal;
     const double h = last ? goal - now : inner_;
     double error = attempt(g, now, h, constraint) / tolerance_;

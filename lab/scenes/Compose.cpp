@@ -10,8 +10,8 @@
 #include "CME212/Util.hpp"
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/OrderedCloth.hpp"
+#include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Memory.hpp"
-#include "lab/scenes/Obstacle.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 #include "lab/scenes/Words.hpp"
 

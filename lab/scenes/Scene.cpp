@@ -27,7 +27,7 @@ void Scene::restart() {
   cloth_.clear();
   recipe_.build(cloth_);
   acting_ = recipe_.force(cloth_);
-  counter_ = {}, hand_.reset(), changed_ = false;
+  force_.reset(), hand_.reset(), changed_ = false;
   make_method();
   evaluations_ = 0, work_ = {};
   held_.clear();
@@ -66,11 +66,11 @@ Work Scene::work() const {
   return all += method_->work();
 }
 
-/** The plan of all that acts: what the recipe has, the hand, the counter. */
+/** The plan of all that acts: what the recipe has, and the hand. */
 void Scene::plan_forces() {
   CombinedForces::List all = acting_.parts();
   if (hand_) all.push_back({std::shared_ptr<void>(), &*hand_});  // it moves
-  all.push_back(std::make_shared<CountingForce>(counter_));
+  if (force_) evaluations_ += force_->evaluations();
   force_.emplace(CombinedForces(std::move(all)));
 }
 
@@ -146,7 +146,8 @@ void Scene::archive(Archive& a) {
   long long evaluated = evaluations();
   Work worked = work();
   a(evaluated)(worked)(sampled_)(drag_power_);
-  if (a.loads()) evaluations_ = evaluated - counter_.sweeps(), work_ = worked;
+  if (a.loads())
+    evaluations_ = evaluated - force_->evaluations(), work_ = worked;
   a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
             std::min({worked.inner, worked.newton, worked.products,
                       worked.factors}) >= 0 &&
@@ -389,7 +390,7 @@ void Scene::choose_step() {
  * look at what came out.  @return false if one of them can't be made */
 bool Scene::advance(int most) {
   const double dt = clock_.dt;
-  const double end = std::min(t_end_, constraint_.next_kink(time()));
+  const double end = std::min(t_end_, constraint_.next_velocity_jump(time()));
   const double left = (end - time()) / dt;  // in steps
   const bool last = left < 1 + no_step, whole = std::abs(left - 1) < no_step;
   const double h = whole || left > 2 - no_step ? dt

@@ -11,11 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "lab/fast/CountingForce.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/methods/Resonance.hpp"
 #include "lab/scenes/Compose.hpp"
-#include "lab/scenes/Hand.hpp"
+#include "lab/scenes/HandForce.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/EnergyWatch.hpp"
 #include "lab/stability/Guard.hpp"
@@ -124,7 +123,7 @@ class Scene {
   void watch_energy(double t_end);
   const std::optional<EnergyWatch>& energy_watch() const { return watch_; }
   /** Evaluations of all forces since the start, without linear solves. */
-  long long evaluations() const { return evaluations_ + counter_.sweeps(); }
+  long long evaluations() const { return evaluations_ + force_->evaluations(); }
   /** What else the method has done since the start. */
   Work work() const;
   /** What happened when step() returned false; empty before. And where. */
@@ -186,16 +185,16 @@ class Scene {
   const std::vector<HeldNodes>& held() const { return held_; }
   /** Remove edges, by the ids of their ends.  @return how many there were */
   unsigned cut(std::span<const std::array<unsigned, 2>> edges);
-  /** Pull a node towards @a target [m]: Hand, k an eighth of the sum of K at
-   * the node, the force at most twice the weight of the cloth on Earth. As no
-   * K/m at a node is above omega^2, that raises omega by 6 % at most; limits
+  /** Pull a node towards @a target [m]: HandForce, k an eighth of the sum of K
+   * at the node, the force at most twice the weight of the cloth on Earth. As
+   * no K/m at a node is above omega^2, that raises omega by 6 % at most; limits
    * count it.  @return false: the node is gone */
   bool grab(unsigned node, const Point& target);
   /** @pre hand() */
   void move_hand(const Point& target);
   void release();
   /** nullopt: no hand. Its node may be gone. */
-  const std::optional<Hand>& hand() const { return hand_; }
+  const std::optional<HandForce>& hand() const { return hand_; }
 
  private:
   /** Steps and time: those of the last change of dt, and multiples of it, as
@@ -226,9 +225,8 @@ class Scene {
   MethodEntry entry_;
   Cloth cloth_;
   CombinedForces acting_{CombinedForces::List()};  // of the recipe
-  CountingForce counter_;
-  std::optional<Hand> hand_;
-  std::optional<ForcePlan> force_;  // of all three
+  std::optional<HandForce> hand_;
+  std::optional<ForcePlan> force_;  // of both
   std::vector<HeldNodes> held_;
   bool changed_ = false;  // by a user, since the start
   std::optional<WatchedConstraint> watched_;
@@ -247,7 +245,7 @@ class Scene {
   Drag drag_;
   std::optional<EnergyWatch> watch_;
   int watch_interval_ = 1;
-  long long evaluations_ = 0;  // before a checkpoint; besides counter_'s
+  long long evaluations_ = 0;  // before a checkpoint; besides force_'s
   Work work_;                  // of methods before this one
   double start_energy_ = 0;    // [J]
   double largest_gamma_ = 0;   // of it [1/s]

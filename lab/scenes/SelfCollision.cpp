@@ -7,7 +7,7 @@
 #include <string>
 
 #include "CME212/Util.hpp"
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 
 namespace lab {
 
@@ -70,20 +70,20 @@ double nearest_unconnected(const Cloth& g, double up_to) {
 }
 
 void SelfCollision::operator()(Cloth& g, double t) const {
-  others_(g, t);
+  inner_(g, t);
   rounds_ = 0;
   for (;;) {
     gather_near_pairs(g);
     if (!project_pairs(g)) return;
     int left = rounds_per_gathering;
-    do others_(g, t);
+    do inner_(g, t);
     while (--left > 0 && project_pairs(g));
   }
 }
 
 void SelfCollision::gather_near_pairs(const Cloth& g) const {
   held_.assign(g.node_slots(), false);
-  others_.each_held(g, [this](Node n) { held_[n.id()] = true; });
+  inner_.each_held(g, [this](Node n) { held_[n.id()] = true; });
   near_.clear();
   const double most = reach * thickness_;
   cells_.fill(g, most);

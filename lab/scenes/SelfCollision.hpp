@@ -117,7 +117,7 @@ double nearest_unconnected(const Cloth& g, double up_to);
  * rounds; some that lie in the gaps of each other ten to thirty. It allocates
  * when there are more nodes, or more pairs near, than ever before.
  * By one thread, so results do not depend on their number. */
-class SelfCollision : public SweptConstraint {
+class SelfCollision : public ForwardingConstraint {
  public:
   static constexpr int max_rounds = 200;
 
@@ -126,7 +126,9 @@ class SelfCollision : public SweptConstraint {
    * two sides if there are springs along the diagonals.
    * @param friction coefficient, >= 0   @param others called first */
   SelfCollision(double thickness, double friction, ConstraintPlan others)
-      : thickness_(thickness), friction_(friction), others_(std::move(others)) {
+      : ForwardingConstraint(std::move(others)),
+        thickness_(thickness),
+        friction_(friction) {
     assert(thickness > 0 && friction >= 0);
   }
 
@@ -137,25 +139,13 @@ class SelfCollision : public SweptConstraint {
    * was too near. */
   int rounds() const { return rounds_; }
 
-  void each_place(const Cloth& g, double t,
-                  const PlaceVisitor& use) const override {
-    others_.each_place(g, t, use);
-  }
-  double next_kink(double t) const override { return others_.next_kink(t); }
-  std::optional<Point> first_hit(const Point& from,
-                                 const Point& to) const override {
-    return others_.first_hit(from, to);
-  }
-  double thinnest() const override { return others_.thinnest(); }
-  Exchange exchange() const override { return others_.exchange(); }
-  void archive(Archive& a) const override { others_.archive(a); }
+  bool nodewise() const override { return false; }
 
  private:
   struct Pair {
     unsigned i, j;
   };
   double thickness_, friction_;
-  ConstraintPlan others_;
   mutable CellTable cells_;
   mutable std::vector<char> held_;  // by node id
   mutable std::vector<Pair> near_;  // by node ids; no edge between them

@@ -1,5 +1,5 @@
 #pragma once
-/** @file Obstacle.hpp
+/** @file Contact.hpp
  * The constraints that scenes ask for beyond those of the assignment: walls and
  * balls that may move and rub, pins that move, and edges that break.
  *
@@ -60,9 +60,10 @@ class MovingPinConstraint : public NodewiseConstraint {
                     unsigned last) const override;
   void each_place(const Cloth& g, double t,
                   const PlaceVisitor& use) const override;
-  double next_kink(double t) const override;
+  double next_velocity_jump(double t) const override;
   bool is_at_rest(double t) const override {
-    return motion_.velocity_at(t) == Point() && next_kink(t) == HUGE_VAL;
+    return motion_.velocity_at(t) == Point() &&
+           next_velocity_jump(t) == HUGE_VAL;
   }
 
  private:

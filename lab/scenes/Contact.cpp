@@ -1,4 +1,4 @@
-#include "lab/scenes/Obstacle.hpp"
+#include "lab/scenes/Contact.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -44,9 +44,10 @@ void MovingPinConstraint::each_place(const Cloth& g, double t,
                                      const PlaceVisitor& use) const {
   pins_.each_place(g, moved(t), use);
 }
-double MovingPinConstraint::next_kink(double t) const {
-  return t < motion_.until * (1 - 1e-12) ? motion_.until
-                                         : SweptConstraint::next_kink(t);
+double MovingPinConstraint::next_velocity_jump(double t) const {
+  return t < motion_.until * (1 - 1e-12)
+             ? motion_.until
+             : SweptConstraint::next_velocity_jump(t);
 }
 
 // ------------------------------------------------------------------ Touchable

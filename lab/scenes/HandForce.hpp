@@ -1,5 +1,5 @@
 #pragma once
-/** @file Hand.hpp
+/** @file HandForce.hpp
  * A hand that pulls one node of a cloth. */
 #include <algorithm>
 #include <span>
@@ -15,10 +15,10 @@ namespace lab {
  * that without it + k/m (Weyl). Methods that ask for a stiffness are told none:
  * beside the springs it is small, and a Newton iteration without it converges
  * all the same. */
-class Hand : public SweptForce {
+class HandForce : public SweptForce {
  public:
   /** @param node its id   @param k [N/m] >= 0   @param most [N] >= 0 */
-  Hand(unsigned node, const Point& target, double k, double most)
+  HandForce(unsigned node, const Point& target, double k, double most)
       : node_(node), target_(target), k_(k), most_(most) {}
   unsigned node() const { return node_; }
   const Point& target() const { return target_; }
