@@ -33,6 +33,13 @@ test_libs  = -lgtest_main -lgtest -lrapidcheck
 
 lab_objects := $(lab_lib:.cpp=.o)
 
+# The scenes of data/scenes as text in the library.
+lab_objects += stored_scenes.o
+vpath stored_scenes.cpp $(B)
+$(B)/stored_scenes.cpp: FORCE
+	@mkdir -p $(@D) && tools/stored_scenes.sh | cmp -s - $@ \
+	  || tools/stored_scenes.sh > $@
+
 # $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
 define compile
 	@mkdir -p $$(dir $$@) && echo '$(CXX) $$@'

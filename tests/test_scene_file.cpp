@@ -13,6 +13,7 @@
 #include "lab/scenes/KeyValues.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
 #include "tests/Stages.hpp"
 #include "tests/TestFolder.hpp"
@@ -506,6 +507,7 @@ TEST(SceneFiles, ThatAreNoneAreToldApart) {
 TEST(SceneFiles, OfThisRepositoryCanBeRead) {
   int count = 0, open = 0;
   for (const auto& entry : std::filesystem::directory_iterator("data/scenes")) {
+    if (entry.is_directory()) continue;  // failures
     const std::string file = entry.path().string();
     const Model m = load_open_model(file);
     EXPECT_TRUE(m.names_parts()) << file;
@@ -521,6 +523,29 @@ TEST(SceneFiles, OfThisRepositoryCanBeRead) {
   }
   EXPECT_EQ(open, 5);
   EXPECT_GE(count, 8 + open);
+}
+
+TEST(StoredScenes, AreTheFilesOfThisRepository) {
+  for (const auto& [all, folder] :
+       {std::pair(stored_scenes(), "data/scenes"),
+        std::pair(failing_scenes(), "data/scenes/failures")}) {
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      files += entry.path().extension() == ".toml";
+    EXPECT_EQ(all.size(), files);
+    for (const StoredScene& s : all) {
+      const std::string file = std::string(folder) + '/' + s.name + ".toml";
+      EXPECT_EQ(CME212::contents(file), s.text);
+      EXPECT_TRUE(
+          std::string(s.text).starts_with(std::string("# ") + s.title + '\n'))
+          << file;
+      const Model m = s.model(), read = load_open_model(file);
+      EXPECT_EQ(to_scene_file(m), to_scene_file(read));
+      EXPECT_EQ(m.name, read.name);
+    }
+  }
+  EXPECT_EQ(stored_scene("tear").model().tears.size(), 1u);
+  EXPECT_THROW(stored_scene("none"), std::out_of_range);
 }
 
 // ------------------------------------------------------------- The assignment

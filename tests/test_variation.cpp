@@ -23,6 +23,7 @@
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
 #include "tests/TestFolder.hpp"
 
@@ -416,10 +417,8 @@ TEST(Variation, AddsEachPartThatMayComeNext) {
  * is open, or those with a mesh. */
 std::vector<std::string> scene_names(bool open = false) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator("data/scenes"))
-    if (load_open_model(entry.path().string()).sheets.empty() == open)
-      names.push_back(entry.path().stem().string());
-  std::ranges::sort(names);
+  for (const StoredScene& s : stored_scenes())
+    if (s.model().sheets.empty() == open) names.push_back(s.name);
   return names;
 }
 

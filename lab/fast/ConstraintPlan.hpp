@@ -263,7 +263,7 @@ class ForwardingConstraint : public SweptConstraint {
   double thinnest() const override { return inner_.thinnest(); }
   bool is_at_rest(double t) const override { return inner_.is_at_rest(t); }
   Exchange exchange() const override { return inner_.exchange(); }
-  void archive(CME212::Archive& a) const override { inner_.archive(a); }
+  void archive(Archive& a) const override { inner_.archive(a); }
 
  protected:
   ConstraintPlan inner_;

@@ -20,6 +20,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 
 namespace lab {
 
@@ -41,14 +42,9 @@ std::string request(const char* name, const Values&... values) {
 }
 
 /** A scene that fails, of the gallery in lab/stability/README.md. */
-struct Breakage {
-  const char* name;   ///< one word
-  const char* title;  ///< what is seen
-  Model (*model)();
-};
-/** All of them end with a failure, except tunnel: there Scene::watched() counts
- * the nodes that jump through the ball. */
-std::span<const Breakage> breakages();
+using Breakage = StoredScene;
+/** All of them. */
+inline std::span<const Breakage> breakages() { return failing_scenes(); }
 
 /** The line behind a point of the screen, from the near plane to the far one
  * [m]. */

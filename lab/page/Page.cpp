@@ -125,9 +125,9 @@ const char* say(Json text) {
 using namespace lab;  // NOLINT
 
 const char* page_about() {
-  const auto of_scene = [](const PageScene& s) {
-    return object("name", s.name, "title", s.title, "byArea",
-                  s.model(2).material.modulus.has_value());
+  const auto of_scene = [](const StoredScene* s) {
+    return object("name", s->name, "title", s->title, "byArea",
+                  page_model(*s, 2).material.modulus.has_value());
   };
   const auto of_method = [](const MethodEntry& m) {
     return object("name", m.info.name, "order", m.info.order, "sweeps",
@@ -140,7 +140,7 @@ const char* page_about() {
 
 void page_load(unsigned scene, unsigned side) {
   State& s = state();
-  s.live = std::make_unique<Live>(page_scenes()[scene].model(side));
+  s.live = std::make_unique<Live>(page_model(*page_scenes()[scene], side));
   for (Drawn& d : s.drawn) d.beyond.reset(), ++d.changes;
 }
 const char* page_setting() {

@@ -3,20 +3,15 @@
  * The scenes that the web page offers. */
 #include <span>
 
-#include "lab/scenes/Model.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 
 namespace lab {
 
-/** A scene of the page. */
-struct PageScene {
-  const char* name;   ///< that of its file in data/scenes
-  const char* title;  ///< what is seen
-  Model (*model)(unsigned side);
-};
+/** The five stages of the assignment, and then others. */
+std::span<const StoredScene* const> page_scenes();
 
-/** The five stages of the assignment, and then others. Each is what its file
- * says, of side x side nodes in place of those of the file, by Verlet and
- * without an end.  @pre side >= 2 */
-std::span<const PageScene> page_scenes();
+/** What the file of @a s says, of side x side nodes in place of those of the
+ * file, by Verlet in steps of 1 ms and without an end.  @pre side >= 2 */
+Model page_model(const StoredScene& s, unsigned side);
 
 }  // namespace lab

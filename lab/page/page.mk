@@ -13,9 +13,8 @@ page_o  := $(B)/page.o
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Checkpoint \
   Measure Memory MeshFile Warnings), $(wildcard $(patsubst \
-  %,lab/%/*.cpp,fast methods stability scenes page))) \
-  lab/live/Breakage.cpp lab/live/Live.cpp
-page_objects := $(page_source:%.cpp=$(page_o)/%.o)
+  %,lab/%/*.cpp,fast methods stability scenes page))) lab/live/Live.cpp
+page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
 page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
   -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off
 page_names = $(sort $(shell grep -oE '\bpage_[a-z_]+' lab/page/Page.hpp))

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 
 namespace lab {
 
@@ -47,15 +48,17 @@ bool Model::is_assignment() const {
   return pins == scene.pins && planes == scene.planes;
 }
 
-Model assignment_scene() { return or_assignment({}); }
+Model assignment_scene() {
+  static const Model tear = stored_scene("tear").model();
+  return tear;
+}
 
 Model or_assignment(Model m) {
   if (m.names_parts()) return m;
-  if (m.name == Model().name) m.name = "tear";
-  for (double x : {0, 1}) m.pins.push_back({x, 0, 0, {}});
-  m.planes = {Wall()};
-  m.tears = {Ball()};
-  if (!m.view) m.view = Box{Point(0, -0.4, -0.75), Point(1, 0.6, 0)};
+  const Model scene = assignment_scene();
+  if (m.name == Model().name) m.name = scene.name;
+  m.pins = scene.pins, m.planes = scene.planes, m.tears = scene.tears;
+  if (!m.view) m.view = scene.view;
   return m;
 }
 

@@ -187,9 +187,8 @@ struct Model {
   bool names_parts() const;
 };
 
-/** The last scene of the assignment but for its mesh, which is open: two
- * corners held, a floor, and a ball that tears. Equal to
- * data/scenes/tear.toml. */
+/** The last scene of the assignment, data/scenes/tear.toml: two corners held, a
+ * floor, and a ball that tears. It has no mesh. */
 Model assignment_scene();
 
 /** @a m; or, if it names no part, @a m with those of assignment_scene(). */

@@ -9,6 +9,7 @@
 #include "lab/Nearest.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/MeshFile.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 
 namespace lab {
 
@@ -106,6 +107,14 @@ Model load_open_model(const std::string& file) {
 Model read_model(const std::string& file, const std::string& name,
                  const std::string& text) {
   return model_in(file, name, text, false);
+}
+Model StoredScene::model() const { return model_in(name, name, text, true); }
+
+const StoredScene& stored_scene(std::string_view name) {
+  const auto all = stored_scenes();
+  const auto it = std::ranges::find(all, name, &StoredScene::name);
+  if (it == all.end()) throw std::out_of_range("no scene " + std::string(name));
+  return *it;
 }
 
 // ------------------------------------------------------------------- Printing
