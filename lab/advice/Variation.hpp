@@ -1,7 +1,7 @@
 #pragma once
 /** @file Variation.hpp
- * A scene with one part less, and a scene with one part more: what shows which
- * parts a question needs. */
+ * Scenes with one part less or one part more. Their answers show which parts a
+ * question needs. */
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,20 +18,20 @@ struct Variation {
 };
 
 /** @a m on a grid of @a factor times as many cells along each side of each
- * sheet, at least 2: the same cloth, so the drag of a node goes down as nodes
- * become more, and a thickness of self-collision that two nodes would violate
- * at the start goes down with their distance.  @pre m has sheets */
+ * sheet, at least 2. It is the same cloth: the drag of all nodes together
+ * stays, and a thickness of self-collision that two nodes would violate at the
+ * start is reduced to less than their distance.  @pre m has sheets */
 Model refined(const Model& m, double factor);
 
-/** @a m without each part that it names, in turn. */
+/** For each part that @a m names, @a m without that part. */
 std::vector<Variation> without_parts(const Model& m);
 
-/** True if @a part is the friction of a part that is @a gone, too. */
+/** True if @a part is the friction of a part in @a gone. */
 bool goes_with_another(const std::string& part,
                        const std::vector<std::string>& gone);
 
-/** @a m without all parts that are @a gone, in the words of without_parts();
- * nullopt if it has not got one of them. */
+/** @a m without the parts @a gone, named as in without_parts(); nullopt if @a m
+ * lacks one of them. */
 std::optional<Model> without_all(Model m, const std::vector<std::string>& gone);
 
 /** @a m with each part that it could have next: diagonals, a grid of twice as

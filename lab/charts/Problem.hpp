@@ -48,7 +48,7 @@ struct Problem {
   Norm norm = Norm::positions;
   double gravity = grav;  ///< [m/s^2]
   double gamma = 0;       ///< drag [1/s]: c = gamma/N
-  /** Held nodes move, and do work: no run of it is guarded. */
+  /** Held nodes move and do work. As the energy may grow, no run is guarded. */
   bool driven = false;
   /** Make the cloth as it is at t = 0. */
   std::function<void(Cloth&)> build;
@@ -112,7 +112,7 @@ struct Reference {
   std::string made = {};  ///< the two, as "pefrl 120 steps, verlet 90 steps"
 };
 
-/** An answer and another one: the exact solution and srkn11b; or srkn11b and
+/** Two independent answers: the exact solution and srkn11b; or srkn11b and
  * srkn6b; or, where contact leaves no method more than order 2, Verlet and
  * pefrl. So the two differ in order and in step, and in where in a step their
  * constraint acts.

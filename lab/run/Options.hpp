@@ -32,8 +32,8 @@ struct Options {
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || !advised.empty(); }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
-  /** True if a file tells of the whole run, so that it is that of its scene:
-   * then no user changes it. */
+  /** True if an output describes the run from start to end. Then the user can't
+   * change the scene in a window. */
   bool is_fixed() const {
     return !(csv + vtp + obj + ply + checkpoint + restart).empty();
   }

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Acting.hpp
- * What acts in a scene, in words, with its share of the work of a step. */
+ * What ./cloth prints of a scene before it runs: all that acts in it. */
 #include <string>
 #include <vector>
 
@@ -9,9 +9,9 @@
 
 namespace lab {
 
-/** A line for the method, and one for the cloth, each force and each
- * constraint of @a m, "  WHAT: WORK", where work is counted a step: springs
- * evaluated, nodes looked at.
+/** A line for the method, and then a line "  WHAT: WORK" for the cloth, each
+ * force and each constraint of @a m. Its work in a step is the number of
+ * springs evaluated or nodes visited.
  * @param g the cloth of @a m   @param mesh what it was built from
  * Complexity: O(nodes + springs) */
 std::vector<std::string> what_acts(const Model& m, const Cloth& g,

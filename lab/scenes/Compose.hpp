@@ -1,7 +1,6 @@
 #pragma once
 /** @file Compose.hpp
- * Makes the cloth, the force and the constraint of a Model: what it names and
- * nothing else. */
+ * Makes the cloth, the forces and the constraints that a Model names. */
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,7 +12,7 @@
 
 namespace lab {
 
-/** Something to be seen besides the cloth. */
+/** Something that is drawn besides the cloth. */
 struct Obstacle {
   enum class Kind { floor, ball, tearing_ball } kind;
   Point at;           ///< on the floor, or the ball's center, at t = 0 [m]
@@ -29,8 +28,8 @@ struct BuiltMesh {
   std::optional<CombinedForces> force;
 };
 
-/** The quads of which all four nodes and all four sides are still in @a g, the
- * cloth that was built, in their order.  O(quads) */
+/** The quads of the mesh whose four nodes and four sides @a g still has, in
+ * their order.  @pre @a g was built from it  O(quads) */
 std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built);
 
 /** What is left of a mesh: points and velocities of the nodes that @a g still
@@ -48,7 +47,7 @@ struct HeldNodes {
   Motion motion = {};
 };
 
-/** How a scene is made, as often as it is restarted. */
+/** What makes a scene, at its start and at each restart. */
 struct Recipe {
   std::string name;
   double gravity = grav;  ///< of the force [m/s^2]
@@ -58,8 +57,8 @@ struct Recipe {
   std::shared_ptr<const BuiltMesh> built;
   std::function<CombinedForces(const Cloth&)> force;
   std::function<CombinedConstraints(const Cloth&)> constraint;
-  /** Whom pins hold at the start, and constraint() with other ones held; null
-   * if that can't be changed. */
+  /** The nodes that pins hold at the start; and constraint() with other nodes
+   * held. Null if the pins can't be changed. */
   std::function<std::vector<HeldNodes>(const Cloth&)> held;
   std::function<CombinedConstraints(const Cloth&,
                                     const std::vector<HeldNodes>&)>
@@ -98,24 +97,25 @@ CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
                         const Cloth& g);
 
 /** The constraints of @a m on @a g, which lies as it was built. In this order:
- * tearing, obstacles, pins: where two disagree about a node, the later one has
- * its way. Self-collision goes on with all of these until none is violated.
+ * tearing, obstacles, pins: at a node the last one wins. Self-collision repeats
+ * all of these until none is violated.
  * Throws SceneError: a pin that holds no node, but for those of the assignment;
  * a distance that is too large. */
 CombinedConstraints constraint_of(const Model& m, const Cloth& g);
 
-/** Whom the pins of @a m hold of @a g, which lies as it was built.
+/** The nodes of @a g that the pins of @a m hold.  @pre @a g is as it was built
  * Throws SceneError: a pin that holds no node */
 std::vector<HeldNodes> held_of(const Model& m, const Cloth& g);
-/** constraint_of() with @a held in place of the pins of @a m, those of them
- * that @a g still has; at any time, as it looks at no position. */
+/** constraint_of() with @a held in place of the pins of @a m; nodes that @a g
+ * has no more are skipped. It uses no positions, so it may be called at any
+ * time. */
 CombinedConstraints constraint_of(const Model& m, const Cloth& g,
                                   const std::vector<HeldNodes>& held);
 
-/** The recipe of @a m.  Throws InputError, SceneError: also of what is made
- * from it. */
+/** The recipe of @a m.  Throws InputError, SceneError, now or when it is used.
+ */
 Recipe recipe_of(const Model& m);
-/** The same of the mesh that is there already. */
+/** The same with a mesh that is there already. */
 Recipe recipe_of(const Model& m, PointsAndQuads mesh);
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file MeshFile.hpp
- * The files of a mesh as the laboratory reads and writes them: those of
- * CME212/Mesh.hpp, and velocities beside the points. data/README.md */
+ * Reads and writes the files of a mesh: those of CME212/Mesh.hpp, where a line
+ * of a point may have its velocity, too. data/README.md */
 #include <ostream>
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ struct PointsAndQuads {
  * Throws InputError: any other line, lines of both kinds; no line. */
 PointsAndQuads parse_nodes(std::string_view text, const std::string& file);
 
-/** Those of the file @a nodes with the quads of the file @a tets.
+/** The mesh in the files @a nodes and @a tets.
  * Throws InputError, also if one can't be read. */
 PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets);
 

@@ -16,27 +16,29 @@ namespace lab {
 
 struct MethodEntry;  // lab/methods/Method.hpp
 
-/** A scene that makes no sense. what() begins with the option's name. */
+/** A scene that can't be. what() begins with the option that is wrong. */
 struct SceneError : std::runtime_error {
   SceneError(const std::string& option, const std::string& what)
       : std::runtime_error("--" + option + " " + what) {}
 };
 
-/** Who chooses the step. */
+/** How the step is chosen. */
 enum class StepRule {
   fixed,  ///< the scene gives dt
-  safe,   ///< first safe_share of the limit in any configuration, then chosen
-          ///< by the energy balance: StepControl
-  sharp,  ///< the same, but first sharp_share of the limit in the present
-          ///< configuration; at most the limit in any configuration
+  safe,   ///< it starts at safe_share of the limit that holds in every
+          ///< configuration; then the energy balance chooses: StepControl
+  sharp,  ///< it starts at sharp_share of the limit in the present
+          ///< configuration, and never exceeds that in every one
 };
 
 /** How long a step is. */
 struct TimeStep {
   double dt = 0.001;  ///< [s], > 0; of StepRule::fixed
   StepRule rule = StepRule::fixed;
-  double gain = 0.1;  ///< of energy, that chosen steps may gain: of (0, 1]
-  /** Of the inner steps of a method with error control [m]; 0: its usual. */
+  double gain = 0.1;  ///< share of the energy of motion that chosen steps may
+                      ///< add, in (0, 1]
+  /** Error of an inner step of a method with error control [m]; 0: the
+   * method's default. */
   double tolerance = 0;
   bool fixed() const { return rule == StepRule::fixed; }
 };
@@ -59,13 +61,13 @@ struct Material {
 /** Motion at constant velocity until a time. */
 struct Motion {
   Point velocity;  ///< [m/s], from t = 0 on
-  /** It stands still from then on [s], >= 0. */
+  /** Then it stops [s], >= 0. */
   double until = std::numeric_limits<double>::infinity();
 
-  /** [m] at time @a t [s]; before t = 0 on the same line, for the stages of a
-   * first step */
+  /** Displacement [m] at time @a t [s]. Defined for @a t < 0, too: the first
+   * step of some methods looks there. */
   Point way(double t) const;
-  /** [m/s]; 0 when it stands */
+  /** [m/s]; 0 after it has stopped */
   Point velocity_at(double t) const;
   bool operator==(const Motion&) const = default;
 };
@@ -180,8 +182,8 @@ struct Model {
   bool has_contact() const;
   /** True if nothing changes its energy: no drag, no contact, no moving pin. */
   bool conserves_energy() const;
-  /** True if it has the pins and the floor of assignment_scene(): pins that
-   * hold what is there, of whatever mesh. */
+  /** True if it has the pins and the floor of assignment_scene(). These pins
+   * may hold no node, as they go with any mesh. */
   bool is_assignment() const;
   /** True if it names a part, from `sheet` to `self-collision` in README.md. */
   bool names_parts() const;
