@@ -5,20 +5,20 @@
 
 namespace CME212 {
 
-/** An axis-parallel box in R^3, with its faces. All functions take O(1). */
+/** An axis-parallel, closed box in R^3. All functions take O(1). */
 class BoundingBox {
  public:
   /** The empty box. */
   BoundingBox() = default;
-  /** The box of one point, or of two opposite corners, whichever they are.
-   * Points that are not finite are left out. */
+  /** The box of one point, or of any two opposite corners. Points that are not
+   * finite are ignored. */
   explicit BoundingBox(const Point& p) { *this |= p; }
   BoundingBox(const Point& p, const Point& q) { (*this |= p) |= q; }
 
-  /** True until the first finite point came. */
+  /** True if it has no finite point. */
   bool empty() const { return min_.x > max_.x; }
 
-  /** Grow to hold @a p. Points that are not finite are left out. */
+  /** Grow to contain @a p, if @a p is finite. */
   BoundingBox& operator|=(const Point& p) {
     for (double a : p)
       if (!std::isfinite(a)) return *this;
@@ -29,19 +29,19 @@ class BoundingBox {
     return *this;
   }
 
-  /** Grow to hold @a b. */
+  /** Grow to contain @a b. */
   BoundingBox& operator|=(const BoundingBox& b) {
     return b.empty() ? *this : (*this |= b.min_) |= b.max_;
   }
 
-  /** True if @a p is in the box or on a face of it; no box has a point that is
-   * not finite, the empty box has none at all. */
+  /** True if @a p is in the box or on a face of it. False for a point that is
+   * not finite, and for the empty box. */
   bool contains(const Point& p) const {
     for (Point::size_type i = 0; i < 3; ++i)
       if (!(min_[i] <= p[i] && p[i] <= max_[i])) return false;
     return true;
   }
-  /** True if every point of @a b is in this box; so is the empty box. */
+  /** True if every point of @a b is in this box; always, if @a b is empty. */
   bool contains(const BoundingBox& b) const {
     return b.empty() || (contains(b.min_) && contains(b.max_));
   }

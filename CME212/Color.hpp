@@ -50,8 +50,8 @@ struct Color {
   }
 
   /** A diverging scale for strain: -1 blue (slack), 0 light gray (at rest), +1
-   * red (taut). Both arms darken alike, and blue and red differ to the
-   * color-blind, too.  @pre -1 <= v <= 1 */
+   * red (taut). Both arms darken alike, and color-blind people can tell blue
+   * from red.  @pre -1 <= v <= 1 */
   static constexpr Color make_strain(float v) {
     assert(-1 <= v && v <= 1);
     constexpr Color slack[] = {
@@ -67,7 +67,7 @@ struct Color {
             std::lerp(at[i].b, at[i + 1].b, to)};
   }
 
-  /** Seven colors to tell pieces apart, again and again from @a k = 0 on.
+  /** Color @a k of pieces: one of seven that are easy to tell apart.
    * Source: M. Okabe and K. Ito, Color Universal Design, 2008, lighter. */
   static constexpr Color make_piece(unsigned k) {
     constexpr Color at[] = {{0.95f, 0.65f, 0.10f}, {0.40f, 0.75f, 0.95f},

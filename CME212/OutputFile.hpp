@@ -17,20 +17,20 @@
 
 namespace CME212 {
 
-/** Give the descriptors of standard input, output and error that are closed to
- * /dev/null, or the next file opened would get what is printed. It is opened to
- * read, so that writing to it stays an error.  @return true */
+/** Open /dev/null on those of the standard descriptors that are closed; else
+ * the next file opened would get what is printed. It is opened for reading, so
+ * writing to it remains an error.  @return true */
 inline bool hold_standard_descriptors() {
   for (int d : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(d, F_GETFD) < 0) open("/dev/null", O_RDONLY);  // the lowest free
   return true;
 }
-/** Before main(), in each program that has an OutputFile. */
+/** Runs before main() in each program that has an OutputFile. */
 inline const bool standard_descriptors_held = hold_standard_descriptors();
 
-/** What the file name @a file stands for: without symbolic links, also one
- * whose target is not there yet. Two names of one file have one target; two
- * hard links have two.  Throws std::runtime_error: links in a circle. */
+/** The path that @a file leads to by symbolic links, whether or not there is a
+ * file. Hard links have different targets.
+ * Throws std::runtime_error: links in a circle. */
 inline std::string output_target(const std::string& file) {
   namespace fs = std::filesystem;
   std::error_code none;
@@ -45,25 +45,25 @@ inline std::string output_target(const std::string& file) {
   return (whole.empty() ? path : whole).string();
 }
 
-/** A file that appears under its name, whole, when commit() is called. Until
- * then it grows without a name in the same folder, so that nothing is left
- * however the program ends. (Where the file system has no such files: as
- * NAME.PID-K.part, a name that nobody has; that is left by SIGKILL.) Of several
- * writers of one file the last to commit has it.
+/** A file that appears under its name when it is complete, by commit(). Until
+ * then it has no name, in the same folder, so a program that stops early leaves
+ * nothing behind. (If the file system can't do that, its name is
+ * NAME.PID-K.part; only SIGKILL leaves that behind.) If several writers write
+ * one file, the last commit() wins.
  *
- * A file that was there keeps its permissions, and, if the system allows, its
- * owner; a new one has those of the umask. Where the name is a symbolic link,
- * what that points to is replaced. Other hard links keep the old content.
+ * A replaced file keeps its permissions and, if the system allows, its owner; a
+ * new file follows the umask. If the name is a symbolic link, its target is
+ * replaced. Other hard links keep the old content.
  *
- * What is no regular file (a pipe, /dev/null) is written directly. */
+ * What is not a regular file (a pipe, /dev/null) is written directly. */
 class OutputFile {
  public:
   enum class Scratch { unnamed, named };
 
   /** @param file  path to write   @param scratch named: see above
-   * Throws std::runtime_error "FILE: why" if it can't be written there: also
-   * without a name, a folder, a file that is read-only, and that to which the
-   * standard output or error of this program goes. */
+   * Throws std::runtime_error "FILE: why" if it can't be written there; also if
+   * it has no name, is a folder, is read-only, or is the standard output or
+   * error of this program. */
   explicit OutputFile(const std::string& file,
                       Scratch scratch = Scratch::unnamed)
       : file_(file) {
@@ -94,17 +94,17 @@ class OutputFile {
 
   /** Where to write. */
   std::ostream& stream() { return out_; }
-  /** Path of what grows, for a program that opens it itself: one that inherits
-   * descriptor(), if there is one. */
+  /** The path of the unfinished file, for another program that writes it. That
+   * program must inherit descriptor(), if there is one. */
   const std::string& part() const { return part_; }
   std::optional<int> descriptor() const {
     return scratch_ < 0 ? std::nullopt : std::optional(scratch_);
   }
 
   /** Close the file and give it its name.
-   * @param to_disk wait until it is on the disk: it outlasts a power cut
-   * Throws std::runtime_error "FILE: why" if anything could not be written,
-   * and then what was there before is untouched. */
+   * @param to_disk wait until it is on the disk, so it survives a power cut
+   * Throws std::runtime_error "FILE: why" if anything could not be written; an
+   * old file is then unchanged. */
   void commit(bool to_disk = false) {
     errno = 0;
     out_.close();
@@ -121,7 +121,7 @@ class OutputFile {
     name_.clear();
   }
 
-  /** Give a copy of what was written so far the name, and go on.
+  /** Put a copy of what was written so far in place, and go on.
    * Throws as commit().  O(bytes so far) */
   void commit_copy() {
     out_.flush();
@@ -145,7 +145,7 @@ class OutputFile {
   }
 
   void check_may_be_replaced(const struct stat& old) const {
-    // Root may write everything; but whoever took away all rights meant it.
+    // Root may write everything, but a read-only file was meant to stay.
     if ((old.st_mode & 0222) == 0 || access(file_.c_str(), W_OK) != 0)
       fail(std::strerror(EACCES));
     for (int own : {STDOUT_FILENO, STDERR_FILENO}) {
@@ -204,7 +204,7 @@ class OutputFile {
     if ((now.st_uid != old.st_uid || now.st_gid != old.st_gid) &&
         fchown(scratch_, old.st_uid, old.st_gid) != 0 &&
         fchown(scratch_, uid_t(-1), old.st_gid) != 0) {
-      // It is ours, then.
+      // Then it stays ours.
     }
     if (fchmod(scratch_, old.st_mode & 07777) != 0) fail(std::strerror(errno));
   }

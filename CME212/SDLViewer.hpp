@@ -22,10 +22,9 @@ namespace CME212 {
 /** Shows the nodes and edges of a graph. SceneBuilder collects them, and
  * ensures that no half built scene is drawn.
  *
- * Threads: constructor, event_loop() or launch(), snapshot(), has_display() and
- * destructor, set_panels() and set_touch() belong to the main thread. All else
- * may be called by any thread,
- * also while the window is open.
+ * Threads: the constructor, the destructor, event_loop(), launch(), snapshot(),
+ * has_display(), set_panels() and set_touch() are for the main thread. Any
+ * thread may call all others, also while the window is open.
  *
  * A program simulates in a thread of its own and ends its main thread with
  * event_loop(); or, as in 2016, it calls launch() and simulates in its main
@@ -34,10 +33,10 @@ namespace CME212 {
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
  * Esc quits, + and - size the text, ? shows the keys; f, w, d and k change the
- * Look: faces, wires, nodes, pieces. The simulation serves pause, step, restart
- * and coloring: see wait_while_paused(), take_restart(), strain_colors(). With
- * panels, Tab hides them; with a program that serves touches the left button
- * grabs the cloth, Ctrl and drag cuts, p pins: see set_panels(), set_touch().
+ * Look: faces, wires, nodes, pieces. Pause, step, restart and coloring need the
+ * simulation's help: wait_while_paused(), take_restart(), strain_colors(). Tab
+ * hides panels: set_panels(). If the program handles touches, the left button
+ * grabs the cloth, Ctrl and drag cuts, p pins: set_touch().
  */
 class SDLViewer : public SceneBuilder {
  public:
@@ -45,7 +44,7 @@ class SDLViewer : public SceneBuilder {
     int width = 1024, height = 768;  ///< of the window and of snapshots
     std::string title = "mass_spring";
     bool offscreen = false;  ///< draw without a display, never show a window
-    /** The program serves the keys r and s: take_restart(), strain_colors().
+    /** The program handles the keys r and s: take_restart(), strain_colors().
      * Otherwise they do nothing, and the help does not name them. */
     bool restarts = false, colors = false;
   };
@@ -58,16 +57,16 @@ class SDLViewer : public SceneBuilder {
   explicit SDLViewer(const Options& o);
   SDLViewer() : SDLViewer(Options()) {}
   /** After launch() it waits until the window is closed.
-   * @pre no thread of the program uses the viewer any more */
+   * @pre no other thread uses the viewer */
   ~SDLViewer();
 
   /** True if a window can be shown: DISPLAY or WAYLAND_DISPLAY names a display
    * that answers. Takes some milliseconds.  @pre there is no viewer */
   static bool has_display();
 
-  // ------------------------------------------------------------ How it looks
+  // -------------------------------------------------------------- Appearance
 
-  /** Look at all nodes and spheres, as they are when drawn next. */
+  /** Show all nodes and spheres, from the next frame on. */
   void center_view();
   /** Look at @a box [m] from @a eye_direction, independent of the scene: the
    * view is the same in all pictures.  @pre norm(eye_direction) > 0 */
@@ -87,41 +86,39 @@ class SDLViewer : public SceneBuilder {
   void set_message(std::vector<std::string> paragraphs);
 
   /** Write lines over the middle of the picture, the first one large: the title
-   * of a film, or its end. Empty: no card. */
+   * of a film, or its end. Empty: nothing is written. */
   void set_card(std::vector<std::string> lines);
 
   /** Label the color scale, drawn while strain_colors(). */
   void set_scale(ColorScale scale);
 
-  /** What of the cloth is drawn; the user changes it as well. */
+  /** Which parts of the cloth are drawn. The user may change that, too. */
   Look look() const;
   void set_look(const Look& look);
 
   // ----------------------------------------------------------------- Control
 
-  /** True from the time the user closed the window. */
+  /** True once the window was closed. */
   bool closed() const;
-  /** Close the window, as the user does: event_loop() and every wait return. */
+  /** Close the window, as the user can: event_loop() and all waits return. */
   void close();
 
-  /** Pause or resume, as the user does with the space bar; make one step, as
-   * with n; restart, as with r. */
+  /** As the keys do: pause or resume (space), make one step (n), restart (r).
+   */
   void set_paused(bool on);
   void step_once();
   void ask_restart();
   bool paused() const;
   /** Wait while paused.
    * @return true if the program may make one step: not paused, or the user
-   *         pressed n; false at once if closed(), the user asked to restart,
-   *         or wake() was called.
-   * If a program never calls it, the help names no pause. */
+   *         pressed n; false, without waiting, if closed(), the user asked to
+   *         restart, or wake() was called.
+   * If a program never calls it, the help does not name the pause. */
   bool wait_while_paused();
-  /** As above. Calls @a show() on this thread before it waits and whenever
-   * strain_colors() changes: a paused window shows the latest scene in the
-   * right colors. */
+  /** As above. Calls @a show() on this thread before it waits, and when
+   * strain_colors() changes: so a paused window shows the latest scene. */
   bool wait_while_paused(const std::function<void()>& show);
-  /** Let wait_while_paused() return false, now or when called next: there is
-   * something else to do. */
+  /** Let wait_while_paused() return false, now or at its next call. */
   void wake();
   /** True if the user asked to restart since the last call. */
   bool take_restart();
@@ -132,47 +129,47 @@ class SDLViewer : public SceneBuilder {
 
   // -------------------------------------------------------- Panels and mouse
 
-  /** Let @a draw make the program's own panels with Dear ImGui, over the
-   * picture: it is called in every frame, on the thread that draws, with a
-   * frame of Dear ImGui open, and returns the width that panels take at the
-   * left [pixels]. The scene is centered in the rest. A snapshot has none.
+  /** Let @a draw make the program's panels with Dear ImGui, over the picture.
+   * It is called in every frame, on the thread that draws, with a frame of Dear
+   * ImGui open, and returns the width that panels take at the left [pixels].
+   * The scene is centered in the rest. A snapshot has no panels.
    * Text is 14 pixels high, times ImGui::GetFontSize() / 14 of that frame.
    * @pre neither launch() nor event_loop() was called */
   void set_panels(std::function<double()> draw);
 
-  /** Let @a serve know what the user does to nodes and edges with the mouse
-   * where no panel is. It is called on the thread that draws and shall return
-   * at once.  @pre as set_panels() */
+  /** Call @a serve when the user does something to nodes or edges with the
+   * mouse outside of panels. It runs on the thread that draws, so it must be
+   * fast.
+   * @pre as set_panels() */
   void set_touch(std::function<void(const Touch&)> serve);
 
   // ----------------------------------------------------- On the main thread
 
-  /** Show the window and serve the user until the window is closed.
-   * @pre launch() was not called: one thread serves a window
+  /** Show the window and handle its events until it is closed.
+   * @pre launch() was not called: one thread handles the events
    * @post closed() */
   void event_loop();
 
-  /** Show the window and let a thread of the viewer serve the user until the
-   * window is closed. Returns when the window is there; the destructor waits
-   * until it is closed, the program goes on meanwhile: see closed().
-   * That thread makes the window anew, since SDL wants a window made and its
-   * events read in one thread. (On macOS that is the main one: use
-   * event_loop() there.)
+  /** Show the window and return; a thread of the viewer handles its events
+   * until it is closed, see closed(). The destructor waits for that. That
+   * thread makes a new window, since SDL reads events in the thread that made
+   * the window. (On macOS that must be the main thread: use event_loop()
+   * there.)
    * @pre neither launch() nor event_loop() was called
-   * Throws NoDisplay if it can't be made again. */
+   * Throws NoDisplay if it can't be made. */
   void launch();
 
-  /** Draw the scene into a picture of the size in the options; needs no
-   * event_loop(). With label and scale, without help and frame rate: the same
-   * scene gives the same picture. A scene under construction is completed if
-   * this thread builds it, and left out if another does.
+  /** Draw the scene into a picture of the size in the options. It needs no
+   * event_loop(). The picture has the label and the scale, but no help and no
+   * frame rate, so the same scene gives the same picture. If a scene is under
+   * construction, it is completed if this thread builds it, else not drawn.
    * @pre launch() was not called: its thread has the window
    * Throws std::runtime_error if the driver has no memory for it. */
   Image snapshot();
 
  private:
-  // All that names SDL or OpenGL, in SDLViewer.cpp: programs that include this
-  // header compile without them.
+  // SDLViewer.cpp has all that needs SDL or OpenGL, so programs that include
+  // this header compile without them.
   class Display;
   std::unique_ptr<Display> display_;
 };

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Faces.hpp
- * The faces of a cloth, its quads, as a viewer needs them: which of them are
- * left, their normals, and the pieces that the cloth is in. */
+ * What a viewer needs of a cloth's faces, its quads: which ones are complete,
+ * their normals, and the connected pieces of the cloth. */
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,12 +20,12 @@ namespace CME212 {
 
 /** Both ends of an edge, as indices of nodes; the smaller one first. */
 using Ends = std::array<std::uint32_t, 2>;
-/** The corners of a Quad one after the other around it. Of a grid they turn
- * left where one looks down on it: that is its front. */
+/** The corners of a Quad in their order around it. For a grid seen from above,
+ * its front, that is counterclockwise. */
 inline constexpr std::array<unsigned, 4> around_quad = {0, 2, 3, 1};
 
-/** Those of @a faces of which all four sides are among @a edges: where a cloth
- * lost a node or a side it has a hole.
+/** Those of @a faces that have all four sides among @a edges. Where a cloth
+ * lost a node or a side, it has a hole.
  * @pre all indices are below @a num_nodes
  * Complexity: O(num_nodes + edges + faces), if no node has very many edges */
 inline std::vector<Quad> faces_left(std::span<const Quad> faces,
@@ -50,9 +50,9 @@ inline std::vector<Quad> faces_left(std::span<const Quad> faces,
   return left;
 }
 
-/** Normals of a smooth surface: at each node the sum of those of its faces,
- * each as long as its area; zero at a node in no face, and at one that is not
- * finite. The front is where they point to.
+/** Normals of a smooth surface: at each node the sum of the normals of its
+ * faces, weighted by area. Zero at a node without faces, and at one that is not
+ * finite. They point to the front.
  * @param position position(i) -> Point, of node i < @a num_nodes
  * Complexity: O(num_nodes + faces) */
 template <typename F>
@@ -68,9 +68,9 @@ std::vector<Point> face_normals(std::span<const Quad> faces,
   return normals;
 }
 
-/** The connected components of a graph: of each node the number of its piece.
- * Piece 0 has most nodes, and so on; of two alike the one with the first node
- * comes first. A node without edges is a piece of its own.
+/** The connected components of a graph: the number of each node's piece. Pieces
+ * are ordered by size, piece 0 is the largest; pieces of the same size, by
+ * their first node. A node without edges is a piece of its own.
  * @return the pieces, and the number of those of more than one node
  * Complexity: O((num_nodes + edges) log num_nodes) */
 inline std::pair<std::vector<std::uint32_t>, std::size_t> pieces_of(

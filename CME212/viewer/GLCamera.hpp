@@ -1,7 +1,7 @@
 #pragma once
 /** @file GLCamera.hpp
- * GLCamera: an eye that circles around a point and looks at it. Plain
- * arithmetic; the matrices are as OpenGL wants them. */
+ * GLCamera: an eye that circles around a point and looks at it. It only
+ * computes; the matrices have OpenGL's form. */
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -13,7 +13,7 @@
 
 namespace CME212 {
 
-/** An orbit camera: +z of the world is up on the screen, always.
+/** An orbit camera: +z of the world is always up on the screen.
  * "Aspect" is the width of the picture over its height, > 0. The field of
  * view is fixed in the smaller of the two, so that what fits into a square
  * picture fits into any. */
@@ -31,7 +31,7 @@ class GLCamera {
     look_from(Point(0.45, -1, 0.4));
     fit(usual_box(), 1);
   }
-  /** What it looks at at first. */
+  /** The box that it looks at first. */
   static BoundingBox usual_box() {
     return (BoundingBox() |= Point(0, 0, -1)) |= Point(1, 1, 0);
   }
@@ -46,15 +46,15 @@ class GLCamera {
                    : std::atan2(direction.y, direction.x);
   }
 
-  /** Center the scene right of what hides the left @a share of the picture's
-   * width, and fit it there.  @pre 0 <= share < 1 */
+  /** Center and fit the scene in the right part of the picture, as something
+   * hides the left @a share of its width.  @pre 0 <= share < 1 */
   void set_hidden_left(double share) {
     assert(0 <= share && share < 1);
     hidden_ = share;
   }
 
-  /** Turn the scene by angles [rad]: to the right about the z axis, and up,
-   * where it stops when the camera looks straight down. */
+  /** Turn the scene by angles [rad]: to the right about the z axis, and up, at
+   * most until the camera looks straight down. */
   void rotate(double right, double up) {
     constexpr double top = std::numbers::pi / 2;
     azimuth_ = std::remainder(azimuth_ - right, 2 * std::numbers::pi);
@@ -68,8 +68,8 @@ class GLCamera {
     center_ -= size * (right * this->right() + up * this->up());
   }
 
-  /** Go nearer (@a factor > 1) or away (< 1): what is at the center grows by
-   * @a factor, within bounds set by the last fit().  @pre factor > 0 */
+  /** Zoom: the center of the picture grows by @a factor, within bounds that the
+   * last fit() set.  @pre factor > 0 */
   void zoom(double factor) {
     assert(factor > 0);
     distance_ = std::clamp(distance_ / factor, extent_ / 100, extent_ * 100);

@@ -25,7 +25,7 @@ struct OverlayText {
   std::string label;              // large, top left
   std::string state;              // below it
   std::vector<std::string> help;  // lines, bottom left
-  // Paragraphs in a panel above; what matters most stands first and last.
+  // Paragraphs in a panel above; the first and the last matter most.
   std::vector<std::string> message;
   std::vector<std::string> card;  // lines in the middle, the first one large
   bool has_scale = false;         // draw scale at the right
@@ -37,8 +37,8 @@ struct OverlayText {
 
 /** Draws an OverlayText, and lets a program draw panels of its own: start(),
  * perhaps open() and then panels, finish().
- * Use: as GLScene, with one OpenGL context current. Only what is fixed goes
- * into the picture: without open() the same text gives the same pixels. */
+ * Use: as GLScene, with one OpenGL context current. Without open() the same
+ * text always gives the same pixels. */
 class GLOverlay {
  public:
   SDLInput input;  ///< what the user does, for panels
@@ -111,8 +111,8 @@ class GLOverlay {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   }
 
-  /** True if the mouse is on a panel, or was pressed there; if a text is
-   * written in one. */
+  /** True if the mouse is on a panel, or was pressed there. True if the user
+   * types into a panel. */
   bool panels_want_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
   bool panels_want_keys() const {
     ImGui::SetCurrentContext(context_);
@@ -128,7 +128,7 @@ class GLOverlay {
   ImGuiContext* context_ = ImGui::CreateContext();
   std::chrono::steady_clock::time_point last_open_;
   bool is_open_ = false;
-  double font_scale_ = 0;  // for which the letters are made
+  double font_scale_ = 0;  // the scale of the present letters
   // From start() to finish():
   ImDrawList* list_ = nullptr;
   float unit_ = 1;  // [pixels]

@@ -68,7 +68,7 @@ class GLScene {
     spheres_ = scene.spheres;
     planes_ = scene.planes;
     marks_ = scene.marks;
-    // A node is a fifth as wide as nodes would be apart, if spread evenly.
+    // A node is a fifth as wide as the distance of evenly spread nodes.
     box_ = scene.box();
     set_shades(vertices);
     const double size = box_.diagonal() > 0 ? box_.diagonal() : 1;
@@ -80,10 +80,10 @@ class GLScene {
   /** Of the scene. */
   const BoundingBox& box() const { return box_; }
 
-  /** Draw all, over what was there.
+  /** Draw all over the present content.
    * @param width,height Of the picture [pixels]
    * @param scale        Width of a line [pixels], 1 on a plain screen
-   * @param plain        The colors of nodes mean something: do not dye them */
+   * @param plain        Keep the colors of nodes, as they have a meaning */
   void draw(const GLCamera& camera, int width, int height, double scale,
             const Look& look, bool plain) {
     const bool faces = look.faces && has_faces();
@@ -136,8 +136,8 @@ class GLScene {
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     if (look.wires) {
       use_cloth(edge_program_, 0.75f, faces ? 0.995f : 0.99f);
-      // On faces wires are ink: the less, the closer they come together, and
-      // none where they would only darken.
+      // On faces, wires are dark lines. They fade out where they are so close
+      // together that they would only darken the cloth.
       const double apart = spacing_ * pixels / camera.distance() / scale;
       if (faces) edge_program_.set("ink", float(std::min(apart / 40, 0.4)));
       glEnable(GL_BLEND);
@@ -148,7 +148,7 @@ class GLScene {
       glDisable(GL_BLEND);
     }
     glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
-    use_cloth(node_program_, 1, 0.985f);  // in front of its edges
+    use_cloth(node_program_, 1, 0.985f);  // in front of the edges
     node_program_.set("show", float(look.nodes) - 1);
     glDrawArrays(GL_POINTS, 0, num_nodes_);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
@@ -211,7 +211,7 @@ class GLScene {
   GLsizei num_nodes_ = 0;
   // Indices, in this order: edges with an end in no face, other edges, faces.
   GLsizei num_loose_ = 0, num_lines_ = 0, num_triangles_ = 0;
-  double spacing_ = 0;  // length of an edge, the mean
+  double spacing_ = 0;  // mean length of an edge
   std::vector<SceneData::Sphere> spheres_;
   std::vector<SceneData::Plane> planes_;
   std::vector<SceneData::Mark> marks_;
@@ -274,8 +274,8 @@ class GLScene {
     }
   }
 
-  /** Draw the planes as seen from above, and the shadows on them. Opaque, which
-   * is quicker: at its rim a plane has the color of the ground. */
+  /** Draw the planes as seen from above, and the shadows on them. They are
+   * opaque, which is faster; at its rim a plane has the color of the ground. */
   template <typename Use>
   void draw_planes(const GLCamera& camera, bool faces, Use use) const {
     glEnable(GL_CULL_FACE);
@@ -307,7 +307,7 @@ class GLScene {
   void darken(const SceneData::Plane& plane, const GLCamera& camera,
               bool faces) const {
     const double cell = camera.extent() / 80;
-    // Borders of cells, fixed in the world: so no rim flickers.
+    // The borders of cells are fixed in the world, so no rim flickers.
     std::array<double, 2> low, high;
     BoundingBox b = sphere_shade_;
     if (faces) b |= face_shade_;
@@ -332,8 +332,8 @@ class GLScene {
                           GLsizei(high[1] - low[1]));
   }
 
-  /** A ball is drawn a little smaller: so a face that spans it, flat between
-   * nodes on its surface, does not sink into it. */
+  /** A ball is drawn a little smaller, so that a flat face between nodes on its
+   * surface does not sink into it. */
   static void place(const GLProgram& p, const SceneData::Sphere& s) {
     p.set("center", s.center);
     p.set("radius", float(0.98 * s.radius));

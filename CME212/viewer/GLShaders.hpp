@@ -6,8 +6,8 @@ namespace CME212 {
 
 namespace gl_detail {
 
-/** Faces, lit from both sides; against the light a little comes through. Light
- * is found at the nodes: there are fewer of them than pixels. */
+/** Faces, lit from both sides; a little light comes through from behind. Light
+ * is computed at nodes, of which there are fewer than pixels. */
 constexpr const char* face_vertex = R"(
   layout(location = 0) in vec3 at;
   layout(location = 1) in vec3 color;
@@ -35,8 +35,8 @@ constexpr const char* face_fragment = R"(
   out vec4 color;
   void main() { color = vec4(gl_FrontFacing ? front : back, 1); })";
 
-/** Edges and nodes. They come a little towards the eye along the line of sight,
- * nodes most, so that what lies on a surface is not hidden by it. */
+/** Edges and nodes. They are drawn a little nearer to the eye, nodes most, so
+ * that a surface does not hide what lies on it. */
 constexpr const char* cloth_vertex = R"(
   layout(location = 0) in vec3 at;
   layout(location = 1) in vec3 color_in;

@@ -1,7 +1,7 @@
 #pragma once
 /** @file GLShadow.hpp
- * The light of a scene: a distant lamp, and the shadow map that tells which
- * places it reaches. */
+ * The light of a scene: a distant lamp, and the shadow map, which says where
+ * its light falls. */
 #include <array>
 #include <cmath>
 
@@ -51,7 +51,7 @@ constexpr const char* caster_fragment = "void main() {}";
  * looks at the same box: so shadows don't flicker. */
 class GLShadow {
  public:
-  /** Where the lamp is: high, to the left of who looks along +y. */
+  /** The direction of the lamp: high and to the left, if one looks along +y. */
   static Point to_light() { return Point(-0.35, -0.4, 0.85) / 1.0025; }
 
   /** At right angles to it and to each other. */
@@ -95,7 +95,7 @@ class GLShadow {
    * viewport. */
   template <typename F>
   void make(const GLCamera& camera, F cast) {
-    // The room of which the camera shows half as much: folds fly about.
+    // Twice the space that the camera shows, as folds fly about.
     const double half = camera.extent();
     to_map_ = {};
     const std::array<Point, 3> axes{across() / half, along() / half,
@@ -112,7 +112,7 @@ class GLShadow {
     glViewport(0, 0, size, size);
     glEnable(GL_DEPTH_TEST);
     glClear(GL_DEPTH_BUFFER_BIT);
-    // A surface that the lamp grazes must not shade itself.
+    // A surface at a grazing angle to the light must not shade itself.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.5f, 4);
     caster_.use();
@@ -122,7 +122,7 @@ class GLShadow {
     glBindFramebuffer(GL_FRAMEBUFFER, GLuint(before));
   }
 
-  /** Give the light to @a p, the program in use. */
+  /** Set the light of @a p, the program in use. */
   void use(const GLProgram& p) const {
     glBindTexture(GL_TEXTURE_2D, map_);
     p.set("to_light", to_light());

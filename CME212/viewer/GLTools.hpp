@@ -1,10 +1,10 @@
 #pragma once
 /** @file GLTools.hpp
- * What OpenGL lacks to be used from C++: GLProgram, a pair of shaders; GLMesh,
- * vertices and indices in the graphics memory; GLFrame, a picture there.
+ * OpenGL objects as C++ classes: GLProgram, a pair of shaders; GLMesh, vertices
+ * and indices in graphics memory; GLFrame, a picture there.
  *
- * Each is to be made, used and destroyed with the same OpenGL context current,
- * so on one thread. */
+ * Make, use and destroy each with the same OpenGL context current, so on one
+ * thread. */
 #define GL_GLEXT_PROTOTYPES
 #include <SDL_opengl.h>
 
@@ -38,7 +38,7 @@ class GLProgram {
   ~GLProgram() { glDeleteProgram(id_); }
 
   void use() const { glUseProgram(id_); }
-  // All of these: of the program in use; a name it doesn't have is no error.
+  // These set variables of the program in use; unknown names are ignored.
   void set(const char* name, const GLCamera::Matrix& m) const {
     glUniformMatrix4fv(at(name), 1, GL_FALSE, m.data());
   }
@@ -72,7 +72,7 @@ class GLProgram {
   }
 };
 
-/** Vertices and, by index, what is made of them; both streamed. */
+/** Vertices, and indices that form primitives; both change often. */
 class GLMesh {
  public:
   GLMesh() {
@@ -155,10 +155,10 @@ class GLFrame {
     glDeleteRenderbuffers(3, stores_);
   }
 
-  /** From now on all is drawn here, until read(). */
+  /** Draw into this from now on, until read(). */
   void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, frames_[0]); }
 
-  /** What was drawn. From now on all is drawn into the window again. */
+  /** The picture. From now on, draw into the window again. */
   Image read() const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, frames_[0]);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[1]);

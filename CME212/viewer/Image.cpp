@@ -1,5 +1,5 @@
 /** @file Image.cpp
- * PNG files by libpng; films by ffmpeg, a program of its own. */
+ * PNG files by libpng; films by the program ffmpeg. */
 #include "CME212/viewer/Image.hpp"
 
 #include <fcntl.h>
@@ -161,13 +161,13 @@ std::string Video::wrote() const {
   return file_ ? path_ : finished_ ? folder_ + '/' : "";
 }
 
-/** The folder of the film without ffmpeg, but for a number. */
+/** The folder of a film without ffmpeg; a number may follow. */
 std::string Video::folder() const {
   std::filesystem::path stem(path_);
   return stem.replace_extension().string() + "_frames";
 }
 
-/** A new folder, in which the pictures grow in number. */
+/** Make a folder for the pictures, under a temporary name. */
 void Video::make_folder() {
   for (int k = 0; scratch_.empty(); ++k) {
     const std::string name = folder() + '.' + std::to_string(getpid()) + '-' +
@@ -186,11 +186,11 @@ bool Video::start_ffmpeg(double rate) {
   const std::string fps = std::to_string(rate);
   const std::string to = "file:" + file_->part();  // a ":" in it is no URL
   std::vector<const char*> args{"ffmpeg", "-loglevel", "error", "-y",
-                                // what comes
+                                // the input
                                 "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
                                 size.c_str(), "-r", fps.c_str(), "-i",
                                 "pipe:0"};
-  // what becomes of it: plays everywhere, no loss that one sees
+  // the output: plays everywhere, without visible loss
   auto add = [&args](std::initializer_list<const char*> more) {
     args.insert(args.end(), more);
   };
@@ -211,8 +211,8 @@ bool Video::start_ffmpeg(double rate) {
   add({to.c_str(), nullptr});
 
   // A socket, not a pipe: once ffmpeg is gone, send() returns an error where
-  // write() would raise a signal. What it says goes through a pipe, not a file,
-  // which may be on the full disk; what does not fit into the pipe is lost.
+  // write() would raise a signal. Its messages go through a pipe, not a file,
+  // as the disk may be full; what does not fit into the pipe is lost.
   int ends[2], said[2];
   if (pipe2(said, O_CLOEXEC | O_NONBLOCK) ||
       socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
@@ -224,7 +224,7 @@ bool Video::start_ffmpeg(double rate) {
   posix_spawn_file_actions_adddup2(&actions, said[1], 2);
   if (const auto film = file_->descriptor())  // so that it is inherited
     posix_spawn_file_actions_adddup2(&actions, *film, *film);
-  // Ctrl-C at a terminal is for this program, which then ends the film.
+  // Ctrl-C at a terminal must only reach this program, which ends the film.
   posix_spawnattr_t own_group;
   posix_spawnattr_init(&own_group);
   posix_spawnattr_setflags(&own_group, POSIX_SPAWN_SETPGROUP);
@@ -261,7 +261,7 @@ void Video::wait_for_ffmpeg() {
   while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
-  // On a full disk it may end as if all were well: only its words tell.
+  // On a full disk its exit status may be 0: only its message tells.
   std::string said(500, '\0');
   said.resize(
       std::size_t(std::max<ssize_t>(0, read(said_, said.data(), said.size()))));
@@ -275,8 +275,8 @@ void Video::close_input() {
   input_ = -1;
 }
 
-/** Nothing that has the name is touched: then it becomes FILE_frames-2, or the
- * next one that is free. An empty folder is. */
+/** Rename the folder to FILE_frames, or, if that exists and is not an empty
+ * folder, to FILE_frames-2, or the next name that is free. */
 void Video::put_folder_in_place() {
   folder_ = folder();
   for (int k = 2; std::rename(scratch_.c_str(), folder_.c_str()) != 0; ++k) {

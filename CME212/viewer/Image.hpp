@@ -2,8 +2,8 @@
 /** @file Image.hpp
  * Image: a picture in memory; PNG files; Video: a film from pictures.
  *
- * All that is written is written whole or not at all, see OutputFile. An error
- * is a std::runtime_error "FILE: reason". */
+ * A file appears only when it is complete, see OutputFile. An error is a
+ * std::runtime_error "FILE: reason". */
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -64,17 +64,17 @@ inline std::string ending_of(std::string_view path) {
 void write_image(const std::string& path, const Image& image);
 void write_png(const std::string& path, const Image& image);
 
-/** Read the PNG file @a path; what is transparent becomes black.
+/** Read the PNG file @a path; transparent pixels become black.
  * Throws std::runtime_error "path: reason". */
 Image read_png(const std::string& path);
 
 /** A film: FILE.mp4, or in the format of another ending of film_endings, if
  * there is an ffmpeg on the PATH, otherwise a folder FILE_frames/ of pictures
- * frame_000000.png, frame_000001.png, ... If there is such a folder already, it
- * is left alone: the new one is FILE_frames-2/, and so on.
+ * frame_000000.png, frame_000001.png, ... If there is such a folder already,
+ * the new one is FILE_frames-2/, and so on.
  *
- * Nothing has its name before finish(); a Video destroyed without it leaves
- * nothing. One thread at a time. */
+ * It appears by finish(); without that, the destructor leaves nothing behind.
+ * One thread at a time. */
 class Video {
  public:
   /** Begin the film @a path; it is an mp4 if its ending is not known.
@@ -94,13 +94,13 @@ class Video {
   void add(const Image& image);
 
   /** Complete the film.
-   * @post What wrote() says is there. An older file is replaced.
+   * @post The file or folder wrote() exists. An older file is replaced.
    * Throws std::runtime_error as add(), and if there is no picture. A second
    * call does nothing. */
   void finish();
 
   /** What finish() made: the file, or the folder with a slash at the end.
-   * Before, it knows no folder: then it is empty. */
+   * Before finish() it is empty for a folder. */
   std::string wrote() const;
   /** Number of pictures so far. */
   int frames() const { return frames_; }

@@ -5,7 +5,7 @@
 
 namespace CME212 {
 
-/** What of a cloth is drawn. */
+/** Which parts of a cloth are drawn. */
 struct Look {
   enum class Nodes { none, lone, all };  ///< lone: those in no face
   bool faces = true, wires = true;
@@ -14,17 +14,17 @@ struct Look {
   bool operator==(const Look&) const = default;
 };
 
-/** The choice that comes after @a n, and after the last one the first. */
+/** The next choice after @a n, in a circle. */
 constexpr Look::Nodes next(Look::Nodes n) {
   return n == Look::Nodes::all ? Look::Nodes::none : Look::Nodes(int(n) + 1);
 }
 
-/** What the colors of Color::make_strain mean. */
+/** The scale of the colors of Color::make_strain. */
 struct ColorScale {
   std::string title = {};
-  double limit = 1;  ///< value of its ends, +limit taut and -limit slack
+  double limit = 1;  ///< its ends are +limit (taut) and -limit (slack)
   std::string unit = {};
-  bool above = false, below = false;  ///< there are values beyond an end
+  bool above = false, below = false;  ///< some values are beyond that end
 };
 
 }  // namespace CME212

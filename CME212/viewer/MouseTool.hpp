@@ -1,7 +1,7 @@
 #pragma once
 /** @file MouseTool.hpp
- * MouseTool: what a user does to a scene with the mouse, as places in it. Plain
- * arithmetic: no window, no OpenGL. */
+ * MouseTool: translates what a user does with the mouse into changes of the
+ * scene. It only computes; it needs no window and no OpenGL. */
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,20 +18,19 @@ namespace CME212 {
 /** One thing that a user does to a scene. */
 struct Touch {
   enum class Kind {
-    grab,     ///< takes hold of node, which shall go to at
-    move,     ///< the node held shall go to at
-    release,  ///< lets it go
+    grab,     ///< grabs node, which must go to at
+    move,     ///< the grabbed node must go to at
+    release,  ///< releases the grabbed node
     cut,      ///< cuts all edges that cross the triangle at, from, to
-    pin,      ///< presses p at node
+    pin,      ///< pins node: the key p
   };
   Kind kind;
   unsigned node = 0;   ///< its index in the scene, in the order of add_nodes()
-  Point at = Point();  ///< [m]; of a cut the eye
-  Point from = Point(), to = Point();  ///< behind all that is seen [m]
+  Point at = Point();  ///< [m]; the eye, for a cut
+  Point from = Point(), to = Point();  ///< behind all that is visible [m]
 };
 
-/** A picture of a camera: places in it are [pixels] from its top left corner.
- */
+/** A camera's picture; coordinates are [pixels] from the top left corner. */
 struct Picture {
   GLCamera camera;
   double width = 1, height = 1;  ///< [pixels]
@@ -56,7 +55,7 @@ struct Picture {
 /** The mouse on a scene: over a node, holding one, or cutting. */
 class MouseTool {
  public:
-  /** Be at @a scene from now on.  O(nodes), and O(edges) if they changed */
+  /** Work on @a scene from now on.  O(nodes), and O(edges) if they changed */
   void look(const SceneData& scene, bool edges_changed) {
     nodes_ = scene.nodes;
     spheres_ = scene.spheres;
@@ -65,9 +64,8 @@ class MouseTool {
       if (*node && **node >= nodes_.size()) node->reset();
   }
 
-  /** The node that is meant at (x, y): of those within @a near [pixels] or
-   * 0.6 edges the nearest, unless another lies in front of it or a ball hides
-   * it.  O(nodes) */
+  /** The node at (x, y): the nearest one within @a near [pixels] or 0.6 edges,
+   * unless another node is in front of it, or a ball hides it.  O(nodes) */
   std::optional<unsigned> node_at(const Picture& picture, double x, double y,
                                   double near) const {
     const double ball = depth_of_ball(picture, x, y);
@@ -78,7 +76,7 @@ class MouseTool {
       if (!(q.z > 0) || q.z > ball) continue;
       const double reach = std::max(near, picture.pixels(0.6 * spacing_, q.z));
       const double away = std::hypot(q.x - x, q.y - y) / reach;
-      // Four edges further away from the eye count as much as the reach.
+      // A depth of four edges counts as much as the reach.
       const double cost =
           away * away + (spacing_ > 0 ? q.z / (4 * spacing_) : 0);
       if (away < 1 && cost < least) least = cost, best = i;
@@ -93,7 +91,7 @@ class MouseTool {
   void leave() { over_.reset(); }
 
   /** The left button went down at (x, y): grab the node there.
-   * @return nothing where there is none */
+   * @return nothing if there is no node */
   std::optional<Touch> grab(const Picture& picture, double x, double y,
                             double near) {
     held_ = node_at(picture, x, y, near);
@@ -102,8 +100,8 @@ class MouseTool {
     depth_ = picture.place_of(position(*held_)).z;
     return Touch{Touch::Kind::grab, *held_, picture.point_at(x, y, depth_)};
   }
-  /** The mouse takes the node held along, at the distance from the eye's
-   * plane at which it was grabbed.  @pre holds() */
+  /** Move the grabbed node with the mouse; its distance from the eye's plane
+   * stays the same.  @pre holds() */
   Touch move(const Picture& picture, double x, double y) const {
     return {Touch::Kind::move, *held_, picture.point_at(x, y, depth_)};
   }
@@ -115,8 +113,8 @@ class MouseTool {
   }
   bool holds() const { return held_.has_value(); }
 
-  /** Begin a cut at (x, y), go on with it, end it.
-   * @pre cuts(), but for the first */
+  /** Begin a cut at (x, y), continue it, end it.
+   * @pre cuts(), except for the first */
   void start_cut(double x, double y) {
     over_.reset();
     stroke_ = {{float(x), float(y)}};
@@ -147,7 +145,7 @@ class MouseTool {
   std::vector<SceneData::Sphere> spheres_;
   double spacing_ = 0;  // mean length of an edge [m]
   std::optional<unsigned> over_, held_;
-  double depth_ = 0;  // at which it was grabbed [m]
+  double depth_ = 0;  // of the node when it was grabbed [m]
   std::vector<std::array<float, 2>> stroke_;
 
   Point position(unsigned i) const {

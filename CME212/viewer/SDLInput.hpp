@@ -10,12 +10,12 @@
 
 namespace CME212 {
 
-/** Gives Dear ImGui what the user does, each press or release of a button or a
- * key in a frame of its own: a program that draws slowly loses none, and each
- * is found where the mouse was. */
+/** Gives Dear ImGui the user's input, with each press or release of a button or
+ * key in a separate frame. So a program that draws slowly loses none of them,
+ * and each has the mouse position of its time. */
 class SDLInput {
  public:
-  /** Name the keys that texts are written with.
+  /** Tell Dear ImGui which keys edit text.
    * @pre A context of Dear ImGui is current, here and in feed(). */
   static void name_keys() {
     auto& io = ImGui::GetIO();
@@ -36,10 +36,10 @@ class SDLInput {
   }
 
   void add(const SDL_Event& e) { waiting_.push_back(e); }
-  /** True if another frame is needed to give all. */
+  /** True if some input is left for the next frame. */
   bool waits() const { return !waiting_.empty(); }
 
-  /** Give all up to the next press or release, or that one.
+  /** Give all input before the next press or release, or else that one.
    * @param pixels To a unit of the mouse
    * @return what was given */
   std::vector<SDL_Event> feed(double pixels) {

@@ -1,6 +1,6 @@
 #pragma once
 /** @file SDLSettings.hpp
- * SDLSettings: what a viewer is told by its program and by its user. */
+ * SDLSettings: what the program and the user have set in a viewer. */
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -13,7 +13,7 @@
 
 namespace CME212 {
 
-/** What the program and the user set, from any thread. */
+/** The settings; any thread may change them. */
 struct SDLSettings {
   std::mutex mutex;  // of all below
   std::condition_variable control;
@@ -24,7 +24,7 @@ struct SDLSettings {
   int steps = 0;         // to be made while paused
   bool pauses = false;   // the program calls wait_while_paused()
   bool restart = false;  // not yet taken
-  bool woken = false;    // wait_while_paused() shall return
+  bool woken = false;    // wait_while_paused() must return
   double text_scale = 1;
   std::optional<bool> help;  // shown; if not set: where there are no panels
   // Written under the lock only, read without:

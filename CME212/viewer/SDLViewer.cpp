@@ -1,5 +1,5 @@
 /** @file SDLViewer.cpp
- * The drawing thread, and the events that it serves. */
+ * The drawing thread, and the events that it handles. */
 #include "CME212/SDLViewer.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 namespace CME212 {
 
-/** The settings, and what they are drawn on. */
+/** The settings, and the window. */
 class SDLViewer::Display : public SDLSettings {
  public:
   Display(SceneBuilder& builder, const Options& o)
@@ -34,11 +34,11 @@ class SDLViewer::Display : public SDLSettings {
 
   /** True if a thread of the viewer has the window. */
   bool launched() const { return thread_.joinable(); }
-  // Set before the window is served:
+  // Set before the window's events are handled:
   std::function<double()> panels;
   std::function<void(const Touch&)> touch;
   void launch();
-  /** Show the window and serve the user until closed. */
+  /** Show the window and handle its events until it is closed. */
   void serve();
   Image snapshot();
 
@@ -47,7 +47,8 @@ class SDLViewer::Display : public SDLSettings {
   using ms = std::chrono::milliseconds;
   static constexpr ms frame_time{16};  // between frames, at least
 
-  /** What is drawn on, made, used and destroyed by one thread. */
+  /** The window and its OpenGL objects: one thread makes, uses and destroys
+   * them. */
   struct Canvas {
     SDLWindow window;
     GLScene scene;
@@ -61,7 +62,7 @@ class SDLViewer::Display : public SDLSettings {
   SceneBuilder& builder_;
   const Options options_;
   std::thread thread_;  // of launch()
-  // Of the main thread, or of the one of launch():
+  // For the main thread only, or for that of launch():
   std::optional<Canvas> canvas_;
   clock::time_point last_frame_;
   double frame_period_ = 0;  // [s]
@@ -70,7 +71,7 @@ class SDLViewer::Display : public SDLSettings {
   std::array<double, 2> mouse_{};  // in it
   double unit_ = 1;                // pixels to a unit of the mouse
   double scale_ = 1;               // pixels to a unit of length
-  int unsettled_ = 0;              // frames until panels show what the user did
+  int unsettled_ = 0;              // frames until panels show the user's input
   bool shown_pieces_ = false;
 
   bool needs_frame() const {
@@ -93,7 +94,7 @@ class SDLViewer::Display : public SDLSettings {
 
 void SDLViewer::Display::launch() {
   canvas_.reset();
-  builder_.take_again();  // the new one was shown nothing
+  builder_.take_again();  // the new window has no scene yet
   std::promise<void> promise;
   auto made = promise.get_future();
   thread_ = std::thread([this, promise = std::move(promise)]() mutable {
@@ -124,7 +125,7 @@ void SDLViewer::Display::serve() {
   canvas_->window.show();
   auto next = clock::now();  // no frame before
   while (!closed) {
-    // Look for a new scene often while they come, seldom when none does.
+    // Look for a new scene often while scenes come, seldom otherwise.
     const auto now = clock::now();
     const ms poll(now - last_frame_ < ms(200) ? 2 : 8);
     const auto rest = std::chrono::ceil<ms>(next - now);
@@ -188,7 +189,7 @@ void SDLViewer::Display::draw(int width, int height, double scale,
   overlay.finish(shown, left);
 }
 
-/** Serve the user within the frame that is open.
+/** Handle input in the frame that is open.
  * @return the width that panels take at the left [pixels] */
 double SDLViewer::Display::interact() {
   GLOverlay& overlay = canvas_->overlay;
@@ -238,7 +239,7 @@ void SDLViewer::Display::show_frame() {
   const double period =
       std::chrono::duration<double>(now - last_frame_).count();
   last_frame_ = now;
-  // Smoothed over some 20 frames; a pause is no frame.
+  // Smoothed over some 20 frames; a pause does not count.
   if (period < 0.5)
     frame_period_ += (period - frame_period_) / (frame_period_ > 0 ? 20 : 1);
 }
@@ -267,7 +268,7 @@ void SDLViewer::Display::handle(const SDL_Event& e) {
     on_picture(e);
 }
 
-/** Keep where the mouse is. */
+/** Keep the position of the mouse. */
 void SDLViewer::Display::point_at(const SDL_Event& e) {
   if (e.type == SDL_MOUSEMOTION)
     mouse_ = {e.motion.x * unit_, e.motion.y * unit_};
@@ -275,7 +276,7 @@ void SDLViewer::Display::point_at(const SDL_Event& e) {
     mouse_ = {e.button.x * unit_, e.button.y * unit_};
 }
 
-/** What the mouse does where no panel is. */
+/** The mouse outside of panels. */
 void SDLViewer::Display::on_picture(const SDL_Event& e) {
   const auto [width, height] = canvas_->window.size();
   const double unit = 1.0 / std::min(width, height);
@@ -344,7 +345,7 @@ void SDLViewer::Display::press(SDL_Keycode key) {
   }
 }
 
-/** Keys that lie elsewhere on each keyboard, by what they write. */
+/** Keys whose place depends on the keyboard: by the text that they give. */
 void SDLViewer::Display::type(char key) {
   change([&] {
     if (key == '?') help = !help.value_or(!panels);

@@ -1,6 +1,6 @@
 #pragma once
 /** @file SDLWindow.hpp
- * SDLWindow: a window, or none, that OpenGL draws into. */
+ * SDLWindow: a window, shown or not, that OpenGL draws into. */
 #define SDL_DISABLE_IMMINTRIN_H  // unused here, and 100 MB for the compiler
 #include <SDL.h>
 #include <SDL_opengl.h>
@@ -16,14 +16,14 @@
 
 namespace CME212 {
 
-/** SDL's video, for as long as this lives. */
+/** Starts SDL's video; the destructor ends it. */
 class SDLVideo {
  public:
   /** @param offscreen Draw without any display, and without a window.
    * Throws NoDisplay with SDL's reason. */
   explicit SDLVideo(bool offscreen) {
-    // By name: left to itself, SDL falls silently from a display that can't be
-    // opened to a driver that shows nothing.
+    // By name: otherwise, if a display can't be opened, SDL silently takes a
+    // driver that shows nothing.
     const char* driver = "offscreen";
     if (!offscreen) driver = std::getenv("SDL_VIDEODRIVER");
     if (!driver && std::getenv("WAYLAND_DISPLAY")) driver = "x11,wayland";
@@ -32,8 +32,8 @@ class SDLVideo {
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, driver, SDL_HINT_OVERRIDE);
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C ends the program
     SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
-    // Where the processor draws, half of it does; the rest is for simulating,
-    // which waits for pictures but not for a window.
+    // If the processor draws, half of its cores do; the rest simulates, which
+    // waits for pictures but not for a window.
     const unsigned cores = std::thread::hardware_concurrency();
     setenv("LP_NUM_THREADS",
            std::to_string(std::max(offscreen ? cores : cores / 2, 1u)).c_str(),
@@ -44,7 +44,7 @@ class SDLVideo {
   SDLVideo& operator=(const SDLVideo&) = delete;
   ~SDLVideo() { SDL_QuitSubSystem(SDL_INIT_VIDEO); }
 
-  /** True if somebody can see a window. */
+  /** True if a window can be seen. */
   bool has_display() const {
     const std::string driver = SDL_GetCurrentVideoDriver();
     return driver != "offscreen" && driver != "dummy";
@@ -73,7 +73,7 @@ class SDLWindow {
                                          SDL_WINDOW_RESIZABLE |
                                          SDL_WINDOW_ALLOW_HIGHDPI));
       if (window_) context_.reset(SDL_GL_CreateContext(window_.get()));
-      if (context_ && !is_software()) break;  // that has no time for samples
+      if (context_ && !is_software()) break;  // software is slow with samples
     }
     if (!context_) throw NoDisplay(SDL_GetError());
     SDL_GL_SetSwapInterval(1);
@@ -110,7 +110,7 @@ class SDLWindow {
     void operator()(SDL_Window* w) const { SDL_DestroyWindow(w); }
     void operator()(void* context) const { SDL_GL_DeleteContext(context); }
   };
-  /** True if the processor does what a graphics card should. */
+  /** True if the processor draws, as there is no graphics card. */
   static bool is_software() {
     const auto* name = glGetString(GL_RENDERER);
     const std::string renderer(reinterpret_cast<const char*>(name));

@@ -1,7 +1,7 @@
 #pragma once
 /** @file SceneBuilder.hpp
- * SceneData: what a viewer shows, as plain data. SceneBuilder: the half of a
- * viewer that collects it from a graph, in whatever thread. */
+ * SceneData: what a viewer shows, as plain data. SceneBuilder: the part of a
+ * viewer that collects it from a graph, in any thread. */
 #include <algorithm>
 #include <any>
 #include <array>
@@ -22,7 +22,7 @@
 
 namespace CME212 {
 
-/** Color and position of a node, if a program passes no functor for them. */
+/** Color and position of a node, unless a program passes functors for them. */
 struct DefaultColor {
   template <typename Node>
   Color operator()(const Node&) const {
@@ -55,7 +55,7 @@ struct SceneData {
     double radius;
     Color color;
   };
-  /** A square of side 2 half in a horizontal plane. */
+  /** A square of side 2 * half in a horizontal plane. */
   struct Plane {
     Point center;
     double half;
@@ -74,7 +74,7 @@ struct SceneData {
   std::vector<Plane> planes;
   std::vector<Mark> marks;
 
-  /** Of nodes and spheres. */
+  /** The box of all nodes and spheres. */
   BoundingBox box() const {
     BoundingBox b;
     for (const Vertex& v : nodes) b |= Point(v.x, v.y, v.z);
@@ -114,10 +114,10 @@ class SceneBuilder {
    * are in @a node_map already.
    * @param color    color(Node) -> Color; white if left out
    * @param position position(Node) -> Point [m]; its position() if left out
-   * @post @a node_map has all of them.
+   * @post @a node_map contains all of them.
    * Complexity: O(nodes) if they come in the order of the map, as those of a
    *       graph do; else O(nodes log nodes).
-   * If a functor throws, the nodes before stay added. */
+   * If a functor throws, the nodes before that one are added. */
   template <typename It, typename ColorFn, typename PositionFn, typename Map>
   void add_nodes(It first, It last, ColorFn color, PositionFn position,
                  Map& node_map) {
@@ -131,7 +131,7 @@ class SceneBuilder {
       auto at = node_map.try_emplace(hint, n, unsigned(nodes.size()));
       if (at->second < nodes.size()) {
         nodes[at->second] = v;
-      } else {  // new, or the map was not cleared with the scene
+      } else {  // new, or the map was not cleared when the scene was
         at->second = unsigned(nodes.size());
         nodes.push_back(v);
         incomplete_ = true;
@@ -164,7 +164,7 @@ class SceneBuilder {
     auto one = node_map.end();
     for (; first != last; ++first) {
       const auto e = *first;
-      const auto n = e.node1();  // often that of the edge before
+      const auto n = e.node1();  // often the same as for the last edge
       if (one == node_map.end() || !(one->first == n)) one = node_map.find(n);
       const auto two = node_map.find(e.node2());
       if (one == node_map.end() || two == node_map.end()) continue;
@@ -180,8 +180,8 @@ class SceneBuilder {
   }
 
   /** Add the faces in [first, last), each an array of four nodes in the order
-   * of a Quad. One is shown if it has all nodes in @a node_map and all four
-   * sides among the edges, which are added after it.
+   * of a Quad. A face is shown if all its nodes are in @a node_map and all four
+   * sides are among the edges, which are added after it.
    * Complexity: O(faces log nodes) with a std::map. */
   template <typename It, typename Map>
   void add_faces(It first, It last, const Map& node_map) {
@@ -189,10 +189,10 @@ class SceneBuilder {
     place_faces(first, last, node_map);
   }
 
-  /** From now on draw_graph(@a g) shows these quads of nodes as cloth, lit and
-   * casting a shadow; one that lost a node or a side is a hole. Needs
-   * num_nodes() and node(i) of @a g.
-   * @param quads a range of Quad, the indices of nodes as they are now
+  /** From now on draw_graph(@a g) shows these quads as cloth, lit and with a
+   * shadow. A quad that loses a node or a side becomes a hole. Uses num_nodes()
+   * and node(i) of @a g.
+   * @param quads a range of Quad, of present indices of nodes
    * @pre these are below num_nodes()
    * Complexity: O(quads) */
   template <typename G, typename Quads>
@@ -204,10 +204,9 @@ class SceneBuilder {
     faces_ = std::move(faces);
   }
 
-  /** Show the nodes of @a g in white, its edges and the faces that add_faces()
-   * was given in place of the previous ones; spheres and planes stay. Needs no
-   * iterators of @a g, only num_nodes(), node(i), num_edges() and edge(i),
-   * which a graph of homework 0 has.
+  /** Replace the scene by @a g: its nodes in white, its edges, and the faces of
+   * add_faces(). Spheres and planes stay. Uses num_nodes(), node(i),
+   * num_edges() and edge(i), which a graph of homework 0 has; no iterators.
    * @post The scene is complete and shown, unless another thread adds to it.
    * Complexity: O((nodes + edges + faces) log nodes). */
   template <typename G>
@@ -223,7 +222,7 @@ class SceneBuilder {
       edges.push_back(g.edge(i));
     add_edges(edges.begin(), edges.end(), node_map);
   }
-  /** As draw_graph(), without the edges; O(nodes log nodes). */
+  /** As draw_graph(), but without edges.  O(nodes log nodes) */
   template <typename G>
   void draw_graph_nodes(const G& g) {
     start_with_nodes_of(g);
@@ -235,7 +234,7 @@ class SceneBuilder {
     std::lock_guard lock(build_mutex_);
     touch();
     if (incomplete_ && !building_.nodes.empty()) {
-      has_edges_ = false;  // nobody added any
+      has_edges_ = false;  // none were added
       publish();
     }
     building_.nodes.clear();
@@ -249,9 +248,9 @@ class SceneBuilder {
                   Color color = Color(0.80f, 0.47f, 0.36f)) {
     change_shapes([&] { shown_.spheres.push_back({center, radius, color}); });
   }
-  /** Add the plane z = @a z [m], drawn with a mesh of lines out to @a half [m]
-   * from @a center, where it fades; 10 lines on half. Stays until
-   * clear_shapes().  @pre half > 0 */
+  /** Add the plane z = @a z [m] until clear_shapes(). It is drawn as a mesh of
+   * lines around @a center that fades at distance @a half [m], with 10 lines
+   * on that distance.  @pre half > 0 */
   void add_plane(double z, double half = 1.5, Point center = Point(0.5, 0.5, 0),
                  Color color = Color(0.45f, 0.53f, 0.65f)) {
     center.z = z;
@@ -262,13 +261,13 @@ class SceneBuilder {
     change_shapes([&] { shown_.spheres.clear(), shown_.planes.clear(); });
   }
 
-  /** Mark these positions [m], and no others. Marks do not move with nodes. */
+  /** Mark these positions [m] only. The marks do not move with nodes. */
   void set_marks(std::vector<SceneData::Mark> marks) {
     change_shapes([&] { shown_.marks = std::move(marks); });
   }
 
-  /** True if take() has taken every complete scene. A simulation that builds a
-   * scene only then builds no more than are drawn. Costs one atomic read. */
+  /** True if the latest complete scene was taken by take(). If a simulation
+   * builds a scene only then, each scene is drawn. Costs one atomic read. */
   bool wants_frame() const { return wants_frame_; }
 
   /** Complete the scene under construction if the program draws no edges. */
@@ -276,7 +275,7 @@ class SceneBuilder {
     std::lock_guard lock(build_mutex_);
     if (incomplete_ && !has_edges_ && !building_.nodes.empty()) publish();
   }
-  /** Complete it if the calling thread was the last to add to it. */
+  /** Complete it if the calling thread was the last one that added to it. */
   void complete_own() {
     std::lock_guard lock(build_mutex_);
     if (incomplete_ && builder_ == std::this_thread::get_id()) publish();
@@ -286,14 +285,13 @@ class SceneBuilder {
   void complete_if_quiet() {
     std::unique_lock lock(build_mutex_, std::try_to_lock);
     if (!lock || !incomplete_) return;
-    // Edges come late if the simulation gets no processor for a while.
+    // Edges may come late: the simulation may have to wait for a processor.
     auto quiet = std::chrono::milliseconds(has_edges_ ? 1000 : 50);
     if (clock::now() - last_change_ > quiet) publish();
   }
 
   /** If the complete scene changed since the last call, call
-   * @a use(const SceneData&, bool edges_changed) under a lock: edges, or
-   * faces.
+   * @a use(const SceneData&, bool edges_or_faces_changed) under a lock.
    * @post wants_frame() */
   template <typename F>
   void take(F use) {
@@ -312,7 +310,7 @@ class SceneBuilder {
 
  private:
   using clock = std::chrono::steady_clock;
-  /** Nodes, not indices: a removal moves those. */
+  /** Nodes, not indices, which change by removals. */
   template <typename G>
   using FacesOf = std::vector<std::array<typename G::node_type, 4>>;
 
