@@ -79,7 +79,7 @@ auto* named_L(V& v) {
 #undef KIT_NUMBER
 #undef KIT_POINT
 
-/** Which of two numbers that have other names is L: the second one. */
+/** Which of two numbers that have other names is L: the second. */
 inline int place_of_L = 1;
 
 /** A class of so many numbers and nothing else. */
