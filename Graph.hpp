@@ -41,7 +41,7 @@
  * Memory: 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge of a grid; up
  * to a quarter more, as arrays grow ahead; 8 a node and an edge for the lists
  * of indices; 8 an edge after many removals at nodes of large degree. New
- * elements reuse the slots of removed ones. Only the destructor frees memory.
+ * elements reuse the slots of removed ones; only the destructor frees slots.
  *
  * If a member throws, std::bad_alloc or what a value throws, then no node, edge
  * or value has changed; what it lists under Invalidates may be invalid.
@@ -599,17 +599,18 @@ class Graph {
   // the number of its slot.
   //
   // Invariant:
-  // - nodes_ and edges_ know which slots are in use and which index each has:
-  //   0, ..., size() - 1, every one once. All other slots are free or worn out.
+  // - nodes_ and edges_ know which slots are in use: those of odd generation,
+  //   whose indices are 0, ..., size() - 1, each once. Every other slot is
+  //   free or worn out.
   // - Every array reaches to the last slot; position_ has one Point more.
-  // - neighbors_of_[i] is a list in pool_. No two lists share a block, and each
-  //   block of the pool is in a list or free.
-  // - An edge e in use with ends_[e] = {i, j}: i != j, both are in use, the
-  // list
-  //   of i has the entry {j, e}, that of j the entry {i, e}. There are no other
-  //   entries, and no list has two entries of the same node.
+  // - neighbors_of_[i] is a list in pool_, inside its block. Each block of the
+  //   pool belongs to one list or is free.
+  // - For each edge e in use, with ends_[e] = {i, j}: i != j, both in use; the
+  //   list of i has the entry {j, e}, that of j the entry {i, e}. There are no
+  //   other entries, and no list names a node twice. If the pool notes places
+  //   of entries, they are right.
   // - Slots not in use: a node has no list, an edge has the ends {0, 0}.
-  // check_invariants() holds all of it; docs/graph.md explains it.
+  // check_invariants() checks all of it; docs/graph.md explains it.
   graph_detail::SlotMap<Generation> nodes_, edges_;
   graph_detail::NeighborPool<Neighbor> pool_;
   graph_detail::Version version_;
