@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <stdexcept>
-#include <tuple>
 
 #include "lab/Interrupt.hpp"
-#include "lab/live/Line.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
@@ -80,27 +77,25 @@ Distances distances(const Cloth& a, const Cloth& b) {
 /** How many nodes lie on a plane or a ball of @a m at time @a t. */
 unsigned count_touching(const Model& m, const Cloth& g, double t) {
   constexpr double near = 1e-6;  // [m]
-  const auto on_plane = [t](const Point& p, const Wall& w) {
-    return dot(p - w.at - w.motion.way(t), w.out()) < near;
-  };
-  const auto on_ball = [t](const Point& p, const Solid& s) {
-    return norm(p - s.ball.center - s.motion.way(t)) < s.ball.radius + near;
-  };
   unsigned count = 0;
   for (Node n : g.nodes()) {
-    const auto touched = [&](auto on) {
-      return
-          [&, on](const auto& obstacle) { return on(n.position(), obstacle); };
-    };
-    count += std::ranges::any_of(m.planes, touched(on_plane)) ||
-             std::ranges::any_of(m.spheres, touched(on_ball));
+    const Point p = n.position();
+    count += std::ranges::any_of(m.planes,
+                                 [&](const Wall& w) {
+                                   return dot(p - w.at - w.motion.way(t),
+                                              w.out()) < near;
+                                 }) ||
+             std::ranges::any_of(m.spheres, [&](const Solid& s) {
+               return norm(p - s.ball.center - s.motion.way(t)) <
+                      s.ball.radius + near;
+             });
   }
   return count;
 }
 
 /** Does the segment from @a p to @a q meet the surface between the rays @a a
- * and @a b, two triangles? Of what passes exactly through a side that two
- * triangles share, one of them has it: each side is asked for in one way. */
+ * and @a b, two triangles? A segment through a side that two triangles share
+ * meets exactly one of them, as turns() gets each side in one direction. */
 bool meets(const Point& p, const Point& q, const Ray& a, const Ray& b) {
   const auto volume = [](const Point& o, const Point& x, const Point& y,
                          const Point& z) {
@@ -228,200 +223,6 @@ void Live::tune() {
   set(*reference_, whole / std::min(std::ceil(steps), most_in_round));
 }
 
-// ------------------------------------------------------- The table of requests
-
-namespace {
-
-struct Share {
-  double of_unit;
-};
-using Ends = std::array<unsigned, 2>;
-
-// read(in, value): the next words as a value of a request.
-void read(Line& in, unsigned& node) {
-  node = in.number<unsigned>("the id of a node");
-}
-void read(Line& in, Point& p) {
-  for (int k = 0; k < 3; ++k) p[k] = Real(in.number("three coordinates [m]"));
-}
-void read(Line& in, Ends& edge) { read(in, edge[0]), read(in, edge[1]); }
-void read(Line& in, Ray& r) { read(in, r.near), read(in, r.far); }
-template <typename T>
-void read(Line& in, std::vector<T>& all) {
-  while (!in.at_end()) read(in, all.emplace_back());
-}
-void read(Line& in, Share& s) {
-  constexpr double least = std::numeric_limits<double>::denorm_min();
-  s.of_unit = in.number("a share above 0", least);
-}
-void read(Line& in, const MethodEntry*& method) {
-  const auto name_of = [](const MethodEntry& m) { return m.info.name; };
-  method = in.one_of("method", methods, name_of);
-}
-void read(Line& in, const Breakage*& failure) {
-  failure = in.one_of("failure", breakages(), &Breakage::name);
-}
-void read(Line& in, bool& equal_work) {
-  static constexpr const char* ways[] = {"equal-time", "equal-work"};
-  equal_work =
-      in.one_of("equal-time or equal-work", ways, std::identity()) == &ways[1];
-}
-void read(Line& in, std::string& rest) { rest = in.rest(); }
-
-}  // namespace
-
-/** The table of requests: what a line of text means that starts with a name. */
-struct Live::Table {
-  enum Kind {
-    plain,
-    override,  // see Live::overrides()
-    expand,    // recorded as the requests that it makes
-  };
-  struct Request {
-    std::string_view name;
-    Kind kind;
-    /** Read what follows the name; if the scene is not null, change it.
-     * @pre null, or the line makes sense */
-    std::function<void(Line&, Live*)> run;
-    double& (*parameter)(Model&) = nullptr;  // that it sets, if it sets one
-  };
-  std::vector<Request> all;
-
-  Table();
-  /** The one that the next word of @a in names; null if @a in fails. */
-  static const Request* find(Line& in) {
-    return in.one_of("request", get().all, &Request::name);
-  }
-  static const Table& get() {
-    static const Table table;
-    return table;
-  }
-  /** A request whose values are of the types that @a apply takes. */
-  void on(std::string_view name, Kind kind, auto apply) {
-    add(name, kind, std::function(apply));
-  }
-  template <typename... Values>
-  void add(std::string_view name, Kind kind,
-           const std::function<void(Live&, Values...)>& apply) {
-    const auto run = [apply](Line& in, Live* live) {
-      std::tuple<Values...> values;
-      std::apply([&](auto&... v) { (read(in, v), ...); }, values);
-      in.end();
-      if (live) std::apply([&](auto&... v) { apply(*live, v...); }, values);
-    };
-    all.push_back({name, kind, run});
-  }
-  /** A request that sets a number of the model, which is @a least or more. */
-  void sets(std::string_view name, const char* expected, double least,
-            double& (*parameter)(Model&)) {
-    const auto run = [=](Line& in, Live* live) {
-      const double a = in.number(expected, least);
-      in.end();
-      if (live) parameter(live->model_) = a, live->change_forces();
-    };
-    all.push_back({name, override, run, parameter});
-  }
-};
-
-Live::Table::Table() {
-  // From now on by this method; the step stays.
-  on("method", plain,
-     [](Live& live, const MethodEntry* m) { live.set_method(*m); });
-  // From now on by steps of this share of RunReadings::dt_unit.
-  on("step", override, [](Live& live, Share share) {
-    TimeStep step = live.model_.step;
-    step.dt = share.of_unit * live.main_->dt_unit;
-    step.rule = StepRule::fixed;
-    live.set_step(live.main_->method, step);
-  });
-  // K [N/m], or the modulus of a scene that has one; rest lengths stay.
-  sets("stiffness", "0 N/m or more", 0, [](Model& m) -> double& {
-    return m.material.modulus ? *m.material.modulus : m.stiffness;
-  });
-  // c of each node [kg/s]; or by area [kg/(s m^2)], if the scene has that.
-  sets("drag", "0 or more", 0, [](Model& m) -> double& {
-    return m.material.drag ? *m.material.drag : m.damping;
-  });
-  // g [m/s^2]
-  sets("gravity", "a number", -no_limit,
-       [](Model& m) -> double& { return m.gravity; });
-  // Load the scene that scene_request() wrote.
-  on("scene", expand, [](Live& live, std::string rest) {
-    SceneRequest r = read_scene("scene " + rest);
-    live.load(std::move(r.model), r.cloth);
-    live.record(scene_request(live.model_, checksum_of(live.scene().cloth())));
-  });
-  on("break", plain,
-     [](Live& live, const Breakage* b) { live.load(b->model()); });
-  // Back to t = 0, with the parameters as they are.
-  on("restart", plain, [](Live& live) {
-    live.main_->scene->restart();
-    live.main_->mark();
-    if (live.rival_) live.compare();
-  });
-  // Pull a node towards a point; move that point; let the node go.
-  on("grab", plain, [](Live& live, unsigned node, Point target) {
-    live.each_running([&](Scene& s) { s.grab(node, target); });
-    live.main_->mark();
-  });
-  on("move", override, [](Live& live, Point target) {
-    live.each_running([&](Scene& s) {
-      if (s.hand()) s.move_hand(target);
-    });
-  });
-  on("release", plain, [](Live& live) {
-    live.each_running([](Scene& s) { s.release(); });
-    live.main_->mark();
-  });
-  // Remove edges, each by its ends; or all that a stroke of rays crosses.
-  on("cut", plain, [](Live& live, std::vector<Ends> edges) {
-    live.each_running([&](Scene& s) { s.cut(edges); });
-  });
-  on("stroke", expand, [](Live& live, std::vector<Ray> rays) {
-    std::string cut = "cut";
-    for (const auto& [i, j] : crossed_edges(live.scene().cloth(), rays))
-      cut += request_word(i) + request_word(j);
-    if (cut != "cut") live.apply(cut);
-  });
-  // Hold a node where it is, at rest; let it go, whatever pin holds it; or
-  // whichever of both changes something.
-  on("pin", plain, [](Live& live, unsigned node) {
-    live.each_running([&](Scene& s) { s.pin(node); });
-  });
-  on("unpin", plain, [](Live& live, unsigned node) {
-    live.each_running([&](Scene& s) { s.unpin(node); });
-    live.main_->mark();
-    if (live.rival_) live.tune();
-  });
-  on("toggle", expand, [](Live& live, unsigned node) {
-    const bool held = live.main_->scene->is_pinned(node);
-    live.apply(request(held ? "unpin" : "pin", node));
-  });
-  // Run a copy of the present state beside it by another method: at equal
-  // time by this share of its dt_unit; at equal work by the step at which
-  // a simulated second costs both the same.
-  on("compare", plain,
-     [](Live& live, const MethodEntry* m, Share share, bool work) {
-       if (!live.main_->runs()) return;
-       live.rival_method_ = m, live.rival_share_ = share.of_unit,
-       live.equal_work_ = work;
-       live.compare();
-     });
-  on("alone", plain, [](Live& live) { live.alone(); });
-}
-
-void Live::apply(const std::string& text) {
-  if (const auto error = error_in(text); !error.empty())
-    throw std::invalid_argument(error);
-  Line in(text);
-  const Table::Request& request = *Table::find(in);
-  // A guard that looks now may find a failure that it would find later.
-  if (request.kind != Table::expand)
-    each_running([](Scene& scene) { scene.settle(); });
-  request.run(in, this);
-  if (request.kind != Table::expand) record(text);
-}
-
 RunReadings Live::Side::readings(bool sharp) {
   RunReadings r;
   r.method = method.info.name, r.order = method.info.order;
@@ -443,23 +244,6 @@ Live::Live(Model m, std::uint64_t cloth)
     : recording_(std::string(recording_begin) + '\n') {
   load(std::move(m), cloth);
   record(scene_request(model_, checksum_of(scene().cloth())));
-}
-
-std::string Live::error_in(std::string_view request) {
-  Line in(request);
-  if (const auto* found = Table::find(in)) found->run(in, nullptr);
-  return in.error();
-}
-bool Live::overrides(std::string_view request) {
-  Line in(request);
-  const auto* found = Table::find(in);
-  return found && found->kind == Table::override;
-}
-std::vector<std::pair<std::string_view, double>> Live::parameters(Model m) {
-  std::vector<std::pair<std::string_view, double>> all;
-  for (const auto& r : Table::get().all)
-    if (r.parameter) all.emplace_back(r.name, r.parameter(m));
-  return all;
 }
 
 bool Live::step() {

@@ -3,7 +3,7 @@
  * Live: a scene that a user changes while it runs. A change is a request, one
  * line of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The same
  * text is what the panel and the page send, and what a recording and a link
- * hold. The table of all requests is in Live.cpp.
+ * hold. Requests.cpp has the table of all.
  *
  * A node is named by its id, Node::id(), which stays the same when others are
  * removed.

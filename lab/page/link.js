@@ -36,7 +36,7 @@ const Link = {
       read.end = Math.floor(end);
     else read.leftOut = true;
     for (const [at, words] of lines) {
-      if (at >= 0 && at <= read.end && words.every(
+      if (at >= 0 && at <= read.end && words[0] !== 'scene' && words.every(
         word => !(Math.abs(word) > Link.most)))
         read.lines.push([at, words.join(' ')]);
       else read.leftOut = true;

@@ -20,7 +20,7 @@ const page = {
   frames: 0, errors: [],
   run: 0, asked: 0,      // runs and requests; the worker counts them, too
 
-  // A request of lab/live/Live.cpp.
+  // A request of lab/live/Requests.cpp.
   ask(...words) {
     this.worker.postMessage(['ask', words.join(' ')]);
     ++this.asked, this.wanted = true;

@@ -308,7 +308,7 @@ def a_link_of_nonsense_is_a_page_all_the_same(b):
                  "#log=1_cut_1_2_3~2_pin_-1~3_pin_9999999~4_nothing&steps=20",
                  "#log=3_grab_999999_1_1_1~4_grab~5_move_1&steps=20",
                  "#run=0_gravitas_3~1e300_restart~1_gravity_1e300~x~20_end",
-                 "#run=0_break~1_scene_0~2_move_1_2", "#run=~&steps=5",
+                 "#run=0_break~1_scene_0~2_move_1_2", "#run=0_scene_0~9_end",
                  "#side=3.7&camera=1e9_1_1", "#camera=0_99_-5"):
         opened(b, hash)
         b.value("setPlaying(true)")

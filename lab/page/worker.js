@@ -1,7 +1,7 @@
 'use strict';
 // The thread that computes. It holds the one scene, in WebAssembly: Page.hpp
-// says what each call does. Requests are lines of text: lab/live/Live.cpp. A
-// run is repeated by its requests, each after the same number of steps.
+// says what each call does. Requests are lines of text: lab/live/Requests.cpp.
+// A run is repeated by its requests, each after the same number of steps.
 
 let wasm, module, about;       // exports; compiled; page_about()
 let calls;                     // steps of this run

@@ -35,16 +35,19 @@ std::string share_text(double dt, double limit) {
 bool is_beyond(const RunReadings& r) {
   return r.safe_limit != no_limit && r.dt >= r.safe_limit;
 }
-void row(const char* name, const std::string& value,
-         const ImVec4* color = nullptr) {
+/** A row of a table: a name, and values in their colors. */
+using Cell = std::pair<std::string, ImVec4>;
+void row(const char* name, std::initializer_list<Cell> values) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextColored(dim, "%s", name);
-  ImGui::TableNextColumn();
-  if (color)
-    ImGui::TextColored(*color, "%s", value.c_str());
-  else
-    ImGui::TextUnformatted(value.c_str());
+  for (const auto& [text, color] : values) {
+    ImGui::TableNextColumn();
+    ImGui::TextColored(color, "%s", text.c_str());
+  }
+}
+void row(const char* name, const std::string& value, bool bad = false) {
+  row(name, {{value, bad ? red : ImGui::GetStyle().Colors[ImGuiCol_Text]}});
 }
 
 }  // namespace
@@ -286,10 +289,9 @@ void Panel::draw_numbers() {
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.1f);
   row("method, order", std::string(r.method) + ", " + std::to_string(r.order));
   row("dt", text_of("%.4g s", r.dt));
-  row("dt / limit, safe", share_text(r.dt, r.safe_limit),
-      is_beyond(r) ? &red : nullptr);
+  row("dt / limit, safe", share_text(r.dt, r.safe_limit), is_beyond(r));
   row("dt / limit, now", share_text(r.dt, r.sharp_limit),
-      r.sharp_limit != no_limit && r.dt >= r.sharp_limit ? &red : nullptr);
+      r.sharp_limit != no_limit && r.dt >= r.sharp_limit);
   row("kinetic", text_of("%.4g J", r.energy.kinetic));
   row("elastic", text_of("%.4g J", r.energy.elastic));
   row("gravitational", text_of("%.4g J", r.energy.gravitational));
@@ -360,15 +362,10 @@ void Panel::draw_comparison() {
   ImGui::SameLine();
   ImGui::TextColored(second, "and %s", c->rival.method);
   if (ImGui::BeginTable("two", 3)) {
-    const auto three = [&second](const char* name, const std::string& a,
-                                 const std::string& b) {
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextColored(dim, "%s", name);
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(a.c_str());
-      ImGui::TableNextColumn();
-      ImGui::TextColored(second, "%s", b.c_str());
+    const ImVec4 first = ImGui::GetStyle().Colors[ImGuiCol_Text];
+    const auto three = [&](const char* name, const std::string& x,
+                           const std::string& y) {
+      row(name, {{x, first}, {y, second}});
     };
     const RunReadings& b = c->rival;
     three("dt [s]", text_of("%.3g", r.dt), text_of("%.3g", b.dt));
