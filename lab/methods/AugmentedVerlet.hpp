@@ -30,7 +30,7 @@ class AugmentedVerlet : public Method {
  public:
   // Besides the force evaluation: one check of all springs against those of
   // the factor, and one solve with it, of 20 to 60 nonzeros a node. A new
-  // factor costs as much as 25 to 50 steps at 1e4 nodes, 100 to 200 at 1e6.
+  // factor costs about as much as 40 steps at 1e4 nodes.
   static constexpr MethodInfo info = {
       "augmented-verlet",
       2,

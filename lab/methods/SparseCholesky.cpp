@@ -57,8 +57,16 @@ struct SparseCholesky<Entry>::Solve {
                                                   const Entry* entry, Row* x) {
     for (int j = 0; j < columns; ++j) {
       const Four y = x[j].c = times(entry[begin[j]], x[j].c);
-      for (int p = begin[j] + 1; p < begin[j + 1]; ++p)
-        x[row[p]].c -= times(entry[p], y);
+      int p = begin[j] + 1;
+      const int end = begin[j + 1];
+      if (p < end && row[p] == j + 1 && begin[j + 2] - end == end - p) {
+        // The next column has the same rows: both at once touch x once.
+        x[++j].c -= times(entry[p], y);
+        const Four z = x[j].c = times(entry[end], x[j].c);
+        for (int q = end + 1; ++p < end; ++q)
+          x[row[p]].c = x[row[p]].c - times(entry[p], y) - times(entry[q], z);
+      }
+      for (; p < end; ++p) x[row[p]].c -= times(entry[p], y);
     }
     for (int j = columns; j-- > 0;) {
       Four y = x[j].c;
