@@ -165,15 +165,6 @@ class Bench {
   };
 };
 
-/** The main() of a program that only registers benchmarks: one thread. */
-inline int main_of_registered(int argc, char** argv) {
-  Sweep::set_threads(1);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
-}
-
 }  // namespace bench
 
 }  // namespace lab

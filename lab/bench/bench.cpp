@@ -5,6 +5,7 @@
  *   make bench CXXFLAGS=-march=native && taskset -c 0 build/bench
  *   build/bench --json FILE       the table for programs as well
  *   build/bench --filter step      only what has this in its name
+ *   build/bench --filter solve --side 316   one size of cloth
  *   lab/bench/counts.sh           instructions in place of nanoseconds
  *   make bench REAL=float B=build/float   single precision, beside the same
  *                                         loop over doubles
@@ -21,12 +22,16 @@
 
 #include "lab/bench/Bench.hpp"
 #include "lab/bench/Cloths.hpp"
+#include "lab/methods/AugmentedVerlet.hpp"
 #include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "lab/stability/Guard.hpp"
+#include "lab/stability/Spectrum.hpp"
+#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 using bench::Flat, bench::Kind, bench::cloth, bench::flat, bench::shuffle;
@@ -259,6 +264,55 @@ std::vector<Figure> figures() {
   constraint("floor", [](Cloth&) { return PlaneConstraint(); });
   constraint("ball", [](Cloth&) { return SphereConstraint(); });
   constraint("ball that tears", [](Cloth&) { return TearConstraint(); });
+  // What a scene does after every 16th or 32nd step.
+  auto estimate = [&](const char* name, auto of) {
+    add({std::string("part: ") + name, "step: Verlet",
+         [of](unsigned n) -> Make {
+           Cloth& g = cloth(n, Kind::grid);
+           return [of, &g, pin = ConstraintPlan(PinConstraint(g)),
+                   force = ForcePlan(make_combined_force(
+                       GravityForce(), MassSpringForce()))]() mutable {
+             benchmark::DoNotOptimize(of(g, force, pin));
+           };
+         },
+         false});
+  };
+  estimate("sharp estimate",
+           [sharp = SharpOmega()](auto&... a) mutable { return sharp(a...); });
+  estimate("safe estimate", [](auto&... a) { return omega_safe(a...); });
+  estimate("cheap estimate", [](auto&... a) { return omega_gershgorin(a...); });
+  add({"part: guard", "step: Verlet",
+       [](unsigned n) -> Make {
+         Cloth& g = cloth(n, Kind::grid);
+         return
+             [&g, guard = std::make_shared<DivergenceGuard>(g, grav, 0.001)] {
+               benchmark::DoNotOptimize(guard->accept(g));
+             };
+       },
+       false});
+  // A step that solves a linear system: its factor is kept.
+  add({"solve: sweep", "",
+       [](unsigned n) { return staging(n, {.t = 0, .kick = 0, .keep = true}); },
+       false});
+  add({"solve: AugmentedVerlet", "solve: sweep",
+       [](unsigned n) -> Make {  // a cloth of its own, as it moves
+         struct Falling {
+           Cloth g;
+           ForcePlan force =
+               make_combined_force(GravityForce(), MassSpringForce());
+           ConstraintPlan pin;
+           AugmentedVerlet method;
+           StepTimes times = {0, 1e-3};
+         };
+         auto f = std::make_shared<Falling>();
+         bench::build(f->g, n, Kind::grid);
+         f->pin = PinConstraint(f->g);
+         return [f] {
+           f->times.done +=
+               f->method.steps(f->g, f->times, 1, f->force, f->pin);
+         };
+       },
+       false});
   // From the text of two files to a cloth.
   add({"loading: text to numbers", "", [](unsigned n) -> Make {
          std::string nodes, tets;
@@ -299,6 +353,7 @@ std::vector<Figure> figures() {
 int main(int argc, char** argv) {
   std::string json, filter;
   int repetitions = 9, calls = 0;
+  unsigned one_side = 0;
   bool small = false;
   CLI::App app("What a step costs, and each layer of it: lab/fast/README.md");
   app.add_option("--json", json, "write the table to this file")
@@ -309,6 +364,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_flag("--small", small, "no 10^6 nodes");
+  app.add_option("--side", one_side, "only the cloth of N x N nodes")
+      ->type_name("N");
   app.add_option("--calls", calls, "only call that often what has this name");
   app.add_option("--cpu", lanes::cpu, "0 plain, 1 AVX2, 2 AVX-512, if it can")
       ->check(CLI::Range(0, int(lanes::best_cpu())));
@@ -332,16 +389,17 @@ int main(int argc, char** argv) {
   triad("in memory", far, 1);
   if (Sweep::processors() > 1)
     triad("in memory, all threads", far, Sweep::processors());
-  for (unsigned side : {25u, 100u, 1000u}) {  // 25: grid1, whole steps only
-    if (side > 100 && small) continue;
+  std::vector<unsigned> sides = {25, 100};  // 25: grid1, whole steps only
+  if (!small) sides.push_back(1000);
+  if (one_side > 0) sides = {one_side};
+  for (unsigned side : sides)
     for (const Figure& f : figures())
       if (f.name.find(filter) != std::string::npos &&
-          (side >= 100 || f.name.starts_with("step: ")) &&
-          (side <= 100 || f.million))
+          (one_side > 0 || ((side >= 100 || f.name.starts_with("step: ")) &&
+                            (side <= 100 || f.million))))
         all.add({f.name, double(f.steps) * cloth(side, f.kind).num_nodes(),
                  std::to_string(side * side) + " nodes with diagonals",
                  f.beside, f.make(side), side > 100 ? f.bytes : 0, f.threads});
-  }
   all.run(repetitions);
   auto bandwidth = [&](const char* name) {
     const double s = all.seconds(triads, name).median;
