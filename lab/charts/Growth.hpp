@@ -1,8 +1,7 @@
 #pragma once
 /** @file Growth.hpp
- * How fast a tiny disturbance grows in a run, measured: of a sheet that is at
- * rest, so that its frequencies do not change; and by theory, of an oscillator,
- * from formulas that know nothing of a cloth. */
+ * How fast a tiny disturbance grows: measured on a sheet at rest, whose
+ * frequencies do not change, and by theory for an oscillator. */
 #include <string_view>
 
 #include "lab/charts/Problem.hpp"
@@ -30,16 +29,16 @@ struct Growth {
   double per_step = 0;  ///< ln of its growth per step in the later half
 };
 
-/** Disturb @a p, which is at rest, by random velocities and look how they grow.
+/** Give @a p, which is at rest, random velocities and measure their growth.
  * The size of a disturbance is the root of its energy, kinetic and, in the
  * springs as they are at rest, elastic; motion that is exact keeps it (or, with
  * drag, lowers it). It is kept small: below a thousandth of a spring's length.
  * @param steps how many, at least 2
- * @param every look at the size so often; it should not grow by more than 1e4
- *        in between
+ * @param every steps between two measurements of the size, in which it should
+ *        not grow by more than 1e4
  * @param enough stop when its ln has grown by so much
  * Not finite: an infinite growth.  Complexity: the steps, and the springs once
- * for each look. */
+ * for each measurement. */
 Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
               int every = 1, double enough = no_limit);
 

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Limits.hpp
- * The largest stable step of a method on a cloth: predicted from the
- * frequencies that the cloth has along its way, and measured by trying. */
+ * The largest stable step of a method on a cloth: predicted from the cloth's
+ * frequencies during a run, and measured by bisection. */
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
@@ -11,9 +11,9 @@ namespace lab {
 /** The assignment's cloth of side x side nodes with drag c = 1/N. */
 Problem cloth_for_limits(unsigned side, Mesh mesh, double t_end);
 
-/** The highest frequency of a cloth along its way. */
+/** The highest frequency of a cloth during a run. */
 struct Path {
-  double dt = 0;              ///< between two looks at it [s]
+  double dt = 0;              ///< between two values of omega [s]
   std::vector<double> omega;  ///< [1/s]
   double gamma = 0;           ///< largest c/m [1/s]
   double safe = 0;            ///< omega_safe() [1/s]
@@ -21,7 +21,7 @@ struct Path {
   double top() const;
 };
 
-/** The path of @a p, by Verlet at 0.8 of its limit, looked at every 4 steps.
+/** The path of @a p by Verlet at 0.8 of its limit, sampled every 4 steps.
  * Complexity: t_end omega_safe/1.6 steps, each as 10 force evaluations. */
 Path find_path(const Problem& p);
 

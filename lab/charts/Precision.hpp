@@ -1,8 +1,8 @@
 #pragma once
 /** @file Precision.hpp
- * How far a build in single precision (REAL=float) gets from one in double: the
- * one writes where its runs end, the other makes the same runs and compares. So
- * the error of the method cancels, and what is left is round-off. */
+ * How far single precision (REAL=float) ends from double: the float build
+ * writes the ends of its runs, the double build makes the same runs and
+ * compares. The error of the method cancels; round-off is left. */
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -27,9 +27,9 @@ struct Compared {
   double distance;  ///< [m], in the scene's norm
 };
 
-/** Make the runs whose ends @a text tells, in the form of write_ends().
+/** Make the runs whose ends are in @a text, in the form of write_ends().
  * @param file the name of the text, for messages
- * Throws InputError for a line that tells none of a scene of @a problems. */
+ * Throws InputError for a line that is not the end of a run of @a problems. */
 std::vector<Compared> compare_ends(const std::vector<Problem>& problems,
                                    const std::string& text,
                                    const std::string& file);

@@ -26,13 +26,13 @@ void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
  * work, see ImplicitStage. */
 enum class LinearSolver { automatic, gradients, cholesky };
 
-/** How a stage tells its error: see ImplicitStage::solve_newton(). */
+/** How a stage estimates its error: see ImplicitStage::solve_newton(). */
 struct LocalError {
   double scale = 0;    ///< the error [m/s^2] over the deviation from guess
   bool first = false;  ///< whether guess is of order 0, not 1
 };
 
-/** What a solver is asked for, and what its errors say. */
+/** The accuracy that a solver must reach, and the text of its errors. */
 struct Goal {
   double tolerance;  ///< of the iteration that throws
   int max_iterations;

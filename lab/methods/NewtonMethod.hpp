@@ -5,8 +5,9 @@
 
 namespace lab {
 
-/** The base of the methods that solve the equations of motion as they are, by
- * Newton's method. The force must be the slope of its energy(), but for drag.
+/** The base of the methods that solve the nonlinear equations of motion by
+ * Newton's method. The force, drag aside, must be minus the gradient of its
+ * energy().
  *
  * A step that folds the cloth many times over may need more iterations than
  * there are: a sheet of 50 x 50 nodes, stirred by 1 m/s at random, can't make
@@ -17,7 +18,7 @@ class NewtonMethod : public Method {
   /** @param tolerance [m/s^2] > 0, of each stage: what is left over does as an
    *        acceleration of that size would, see ImplicitStage::solve_newton()
    * @param max_iterations of Newton in each stage; then StepError
-   * @param line_search false to see what it is good for */
+   * @param line_search false to measure its effect */
   explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100,
                         bool line_search = true)
       : stage_(tolerance, max_iterations, line_search) {}
