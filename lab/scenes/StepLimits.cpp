@@ -1,0 +1,89 @@
+#include "lab/scenes/StepLimits.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lab {
+
+double StepLimits::chosen(const MethodEntry& method, StepRule rule) const {
+  const std::string name = method.info.name;
+  if (method.info.adaptive)
+    throw std::invalid_argument(
+        name +
+        " chooses its inner steps by their error: leave --dt away, and say "
+        "how exactly by --tolerance");
+  double dt = safe_share * safe(method);
+  // A cloth let go flat stiffens by 40 % within fewer steps than lie between
+  // two looks: so never beyond what holds in every configuration.
+  if (rule == StepRule::sharp)
+    dt = std::min(sharp_share * sharp(method, 15), safe(method));
+  if (!(dt > 0 && std::isfinite(dt)))
+    throw std::invalid_argument("nothing bounds the step of " + name +
+                                (dt > 0 ? " here" : ": it has no stable step") +
+                                ", so it can't be chosen: give a number");
+  return without_resonance(method, dt);
+}
+
+double StepLimits::without_resonance(const MethodEntry& method,
+                                     double dt) const {
+  const auto r = resonances(method);
+  return r ? r->below(dt) : dt;
+}
+
+std::optional<Resonances> StepLimits::resonances(
+    const MethodEntry& method) const {
+  if (!method.info.multirate) return std::nullopt;
+  auto split = split_springs(cloth_, force_->springs(), constraint_);
+  if (split.empty()) return std::nullopt;
+  const double soft = omega_safe(cloth_, bounding(method), constraint_);
+  return Resonances(std::move(split), with_hand(soft));
+}
+
+double StepLimits::safe(const MethodEntry& method) const {
+  const double omega = method.info.multirate
+                           ? omega_safe(cloth_, bounding(method), constraint_)
+                           : safe_omega();
+  return step_limit(method, with_hand(omega),
+                    largest_gamma(cloth_, force_->drag()));
+}
+
+double StepLimits::safe_without_drag(const MethodEntry& method) const {
+  return method.info.multirate ? safe(method)
+                               : step_limit(method, safe_omega());
+}
+
+double StepLimits::sharp(const MethodEntry& method, int products) const {
+  return step_limit(
+      method,
+      with_hand(sharp_(cloth_, bounding(method), constraint_, products)),
+      largest_gamma(cloth_, force_->drag()));
+}
+
+double StepLimits::mild(const MethodEntry& method, const Drag& drag, double dt,
+                        double share) const {
+  if (drag.none() || method.info.multirate) return no_limit;
+  return mild_step(method, dt, with_hand(safe_omega()),
+                   largest_gamma(cloth_, drag), share);
+}
+
+double StepLimits::safe_omega() const {
+  if (safe_omega_ < 0) safe_omega_ = omega_safe(cloth_, *force_, constraint_);
+  return safe_omega_;
+}
+
+/** A bound of omega [1/s] with the hand, if it is @a omega without. */
+double StepLimits::with_hand(double omega) const {
+  if (!hand_ || !cloth_.node_in_use(hand_->node())) return omega;
+  const double m = cloth_.node_values()[hand_->node()].mass;
+  return std::sqrt(omega * omega + hand_->stiffness() / m);
+}
+
+/** The force whose stiffness bounds the step of @a method. */
+ForcePlan StepLimits::bounding(const MethodEntry& method) const {
+  return method.info.multirate ? soft_stiffness(cloth_, *force_, constraint_)
+                               : *force_;
+}
+
+}  // namespace lab

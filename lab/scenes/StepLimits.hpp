@@ -1,0 +1,65 @@
+#pragma once
+/** @file StepLimits.hpp
+ * StepLimits: which steps a method can take on a cloth. */
+#include <cmath>
+#include <optional>
+
+#include "lab/methods/Resonance.hpp"
+#include "lab/scenes/HandForce.hpp"
+#include "lab/scenes/Model.hpp"
+#include "lab/stability/StepLimit.hpp"
+
+namespace lab {
+
+/** The limits of steps on a cloth, in its present state. It refers to the
+ * cloth, to what acts on it, and to the hand, which adds at most its stiffness
+ * over the mass of its node to omega^2. */
+class StepLimits {
+ public:
+  StepLimits(const Cloth& g, const std::optional<ForcePlan>& force,
+             const ConstraintPlan& constraint,
+             const std::optional<HandForce>& hand)
+      : cloth_(g), force_(force), constraint_(constraint), hand_(hand) {}
+
+  /** The stability limit [s] of @a method in every configuration of the cloth;
+   * no_limit if there is none, 0 if no step is stable.
+   * Complexity: the first call as omega_safe() */
+  double safe(const MethodEntry& method) const;
+  /** The same without drag and hand. */
+  double safe_without_drag(const MethodEntry& method) const;
+  /** The same in the present configuration, by so many @a products of
+   * SharpOmega. */
+  double sharp(const MethodEntry& method, int products) const;
+  /** A step beyond which @a method takes energy that only @a drag should take:
+   * mild_step(). */
+  double mild(const MethodEntry& method, const Drag& drag, double dt,
+              double share) const;
+  /** Which steps resonate, if @a method is multirate and splits off stiff
+   * springs.  Complexity: as omega_safe() */
+  std::optional<Resonances> resonances(const MethodEntry& method) const;
+  /** A step up to @a dt that does not resonate. */
+  double without_resonance(const MethodEntry& method, double dt) const;
+  /** The first step that @a rule chooses; not of StepRule::fixed.
+   * Throws std::invalid_argument if nothing bounds it. */
+  double chosen(const MethodEntry& method, StepRule rule) const;
+
+  /** Masses, stiffnesses or what is held have changed. */
+  void forget() { safe_omega_ = -1; }
+  void archive(Archive& a) {
+    a(safe_omega_).require(std::isfinite(safe_omega_));
+  }
+
+ private:
+  const Cloth& cloth_;
+  const std::optional<ForcePlan>& force_;
+  const ConstraintPlan& constraint_;
+  const std::optional<HandForce>& hand_;
+  mutable double safe_omega_ = -1;  // [1/s]; negative: not known yet
+  mutable SharpOmega sharp_;
+
+  double safe_omega() const;
+  double with_hand(double omega) const;
+  ForcePlan bounding(const MethodEntry& method) const;
+};
+
+}  // namespace lab

@@ -1,0 +1,375 @@
+/** @file Stepper.cpp
+ * In the order of the calls: how a run begins, then how a step goes. */
+#include "lab/scenes/Stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "CME212/Util.hpp"
+#include "lab/scenes/Checkpoint.hpp"
+
+namespace lab {
+
+namespace {
+constexpr double no_step = 1e-9;  // of a step
+static_assert(TimeStep{}.gain == energy_tolerance);
+}  // namespace
+
+// --------------------------------------------------------------------- A run
+
+Stepper::Stepper(const TimeStep& step, const MethodEntry& method,
+                 const Cloth& g)
+    : cloth_(g), step_(step), entry_(method) {}
+
+void Stepper::begin(double t) {
+  clock_ = {.dt = step_.dt, .from = t};
+  make_method();
+  plan();
+  evaluations_ = 0, work_ = {};
+  start_energy_ = energies(cloth_, gravity_).total();
+  if (!step_.fixed() && std::isfinite(start_energy_))
+    clock_.set_dt(limits_.chosen(entry_, step_.rule));
+  start({});
+  if (watch_) watch_.emplace(energy(), clock_.dt, *guard_);
+}
+
+void Stepper::make_method() {
+  if (method_) work_ += method_->work();
+  method_ = entry_.make();
+  if (step_.tolerance > 0) method_->set_tolerance(step_.tolerance);
+}
+
+void Stepper::start(const EnergyFlow& flow) {
+  plan();
+  failure_.clear(), error_.clear(), worst_.reset();
+  balance_.emplace(cloth_, time(), acting_, constraint_, gravity_);
+  go_on(clock_, flow);
+  hand_changed();
+  guard_.emplace(cloth_, gravity_, clock_.dt, this->flow());
+  if (!is_finite()) {
+    worst_.emplace(cloth_);
+    failure_ = "the energy at the start is not finite: " + worst_->text(cloth_);
+  }
+  start_control();
+}
+
+/** Plan all that acts: the forces of the scene and the hand, the constraint. */
+void Stepper::plan() {
+  CombinedForces::List all = acting_.parts();
+  if (hand_) all.push_back({std::shared_ptr<void>(), &*hand_});  // it moves
+  if (force_) evaluations_ += force_->evaluations();
+  force_.emplace(CombinedForces(std::move(all)));
+  constraint_ = *watched_;
+}
+
+void Stepper::hand_changed() {
+  plan();
+  method_->restart();
+  if (hand_ && cloth_.node_in_use(hand_->node()))
+    balance_->watch(cloth_.node_with_id(hand_->node()), &*hand_, time());
+  else
+    balance_->watch({}, nullptr, time());
+}
+
+/** Choose the steps from here on, if they are to be chosen. */
+void Stepper::start_control() {
+  control_.reset();
+  if (!failure_.empty()) return;
+  if (!step_.fixed() || follows_drag_) start_drag();
+  if (step_.fixed()) return;
+  const double longest = limits_.mild(entry_, drag_, clock_.dt, step_.gain);
+  if (longest < clock_.dt) clock_.set_dt(longest);
+  const Energies now = energy();
+  control_.emplace(
+      clock_.dt, now,
+      StepControl::Limits{.share = step_.gain,
+                          .floor = guard_->floor(),
+                          .rest = guard_->round_off() + 1e-10 * now.internal(),
+                          .longest = longest,
+                          .early = entry_.info.order == 1},
+      flow());
+  looked_ = time();
+  keep_both();
+}
+
+void Stepper::start_drag() {
+  drag_ = force_->drag(), largest_gamma_ = largest_gamma(cloth_, drag_);
+  drag_power_ = drag_.power(cloth_), sampled_ = time();
+}
+
+void Stepper::follow_drag() {
+  follows_drag_ = true;
+  if (!control_) start_drag();
+}
+
+void Stepper::watch_energy(double t_end) {
+  constexpr double looks = 64;
+  watch_interval_ =
+      int(std::clamp(t_end / clock_.dt / looks, 1., double(guard_interval)));
+  watch_.emplace(energy(), clock_.dt, *guard_);
+}
+
+bool Stepper::run_to(double t_end) {
+  while (!done(t_end)) steps_at_once(guard_interval, t_end);
+  return check();
+}
+
+bool Stepper::run_to(double t_end, const std::function<void()>& after) {
+  while (!done(t_end)) {
+    step(t_end);
+    after();
+  }
+  return check();
+}
+
+// -------------------------------------------------------------------- A step
+
+bool Stepper::steps_at_once(int most, double t_end) {
+  t_end_ = t_end;
+  if (control_ && control_->lengthen(flow()))
+    clock_.set_dt(limits_.without_resonance(entry_, control_->dt()));
+  most = steps_to_check(most);
+  if (!advance(most)) return not_good(clock_.steps + most);
+  const bool now = cloth_.version() != version_ || done(t_end);
+  const bool judged =
+      control_ && (now || clock_.steps % StepControl::look_interval == 0);
+  const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
+  const bool watched = watch_ && (now || clock_.steps % watch_interval_ == 0);
+  if (!drag_.none()) sample_drag(now || (guarded && !control_));
+  if (!judged && !guarded && !watched) return true;
+  const Energies e = energy();
+  if (watched) watch_->look(e);
+  if (judged && !judge(e)) return take_back();
+  return !guarded || guard(e);
+}
+
+/** How many steps, up to @a most, only the last of which is checked; 1 if work
+ * is done on the cloth, which is summed up step by step. Symplectic Euler puts
+ * held nodes where they were to be at the start of a step, so what comes to
+ * rest moves them once more. */
+int Stepper::steps_to_check(int most) const {
+  if (hand_ || !constraint_.is_at_rest(time() - clock_.dt)) return 1;
+  const auto up_to_multiple = [&](int interval) {
+    most = std::min(most, interval - int(clock_.steps % interval));
+  };
+  most = std::min(most, guard_interval - int(clock_.steps - checked_.steps));
+  if (watch_) up_to_multiple(watch_interval_);
+  if (control_ || !drag_.none()) up_to_multiple(StepControl::look_interval);
+  if (!drag_.none()) up_to_multiple(drag_interval());
+  return std::max(most, 1);
+}
+
+bool Stepper::advance(int most) {
+  const double dt = clock_.dt;
+  const double end = std::min(t_end_, constraint_.next_velocity_jump(time()));
+  const double left = (end - time()) / dt;  // in steps
+  const bool last = left < 1 + no_step, whole = std::abs(left - 1) < no_step;
+  const double h = whole || left > 2 - no_step ? dt
+                   : last                      ? end - time()
+                                               : (end - time()) / 2;
+  const double then = last ? end : time() + h;
+  const StepTimes times = clock_.times();
+  int count = 1;  // steps of dt
+  while (count < most && (end - times(count)) / dt > 2 - no_step) ++count;
+  error_.clear();
+  try {
+    if (h == dt && count > 1)
+      count = method_->steps(cloth_, times, count, *force_, constraint_);
+    else
+      method_->step(cloth_, time(), h, *force_, constraint_), count = 1;
+  } catch (const StepError& e) {
+    error_ = e.what();
+    return false;
+  }
+  clock_.steps += count;
+  if (last || h != dt) clock_.set_time(then);
+  balance_->follow(cloth_, time(), constraint_);
+  return true;
+}
+
+/** Steps between two samples of drag. */
+int Stepper::drag_interval() const {
+  constexpr double most = 0.005;  // of a velocity
+  return int(std::clamp(most / (largest_gamma_ * clock_.dt), 1.,
+                        double(StepControl::look_interval)));
+}
+
+/** Add what drag took since the last sample, if velocities may have changed
+ * since then, or if there is a check @a now. */
+void Stepper::sample_drag(bool now) {
+  if (!now && clock_.steps % drag_interval() != 0 &&
+      clock_.steps % StepControl::look_interval != 0)
+    return;
+  balance_->add_drag(drag_loss() - flow().drag);
+  drag_power_ = drag_.power(cloth_), sampled_ = time();
+}
+
+double Stepper::drag_loss() const {
+  const double power = drag_.power(cloth_);
+  return flow().drag + 0.5 * (drag_power_ + power) * (time() - sampled_);
+}
+
+double Stepper::drift(const Energies& now) const {
+  const EnergyFlow& f = flow();
+  return now.total() - start_energy_ - f.work + f.removed + drag_loss();
+}
+
+// -------------------------------------------------------------- Its checking
+
+/** StepControl's verdict on the present state, of energy @a e.
+ * @return false: take it back */
+bool Stepper::judge(const Energies& e) {
+  const double h = time() - looked_;
+  looked_ = time();
+  using Verdict = StepControl::Verdict;
+  const Verdict verdict = control_->look(e, flow(), h, time() / t_end_);
+  if (verdict == Verdict::take_back) return false;
+  if (cloth_.version() != version_) {
+    keep_both();  // removed nodes and edges do not come back
+  } else if (verdict == Verdict::keep) {
+    std::swap(before_, latest_);
+    keep(latest_);
+  }
+  return true;
+}
+
+/** Make the present state one to go back to. */
+void Stepper::keep_both() {
+  keep(latest_);
+  before_ = latest_;
+}
+void Stepper::keep(Snapshot& s) const {
+  s.nodes.keep(cloth_);
+  s.clock = clock_, s.flow = flow(), s.control = control_->state();
+  s.version = cloth_.version();
+}
+
+/** The guard's verdict on the present state, of energy @a e. */
+bool Stepper::guard(const Energies& e) {
+  if (!guard_->accept(cloth_, e, flow())) return not_good(clock_.steps);
+  keep_checked();
+  return true;
+}
+
+bool Stepper::check() {
+  if (!failure_.empty()) return false;
+  return is_finite() || replay(clock_.steps);
+}
+bool Stepper::is_finite() const { return std::isfinite(energy().total()); }
+
+/** Step number @a last, or one before it, is bad.  @return true: no failure */
+bool Stepper::not_good(long long last) {
+  return control_ && control_->can_shorten() ? take_back() : replay(last);
+}
+
+/** Go on from an earlier state by a shorter step.  @return true */
+bool Stepper::take_back() {
+  const long long steps = clock_.steps - before_.clock.steps;
+  before_.nodes.restore(cloth_);
+  EnergyFlow flow = before_.flow;
+  if (cloth_.version() != before_.version)  // torn meanwhile
+    flow.removed += before_.control.last + flow.work - flow.removed -
+                    flow.drag - energy().total();
+  control_->take_back(before_.control, steps);
+  clock_ = before_.clock;
+  clock_.set_dt(limits_.without_resonance(entry_, control_->dt()));
+  go_on(clock_, flow);
+  guard_->keep(cloth_);
+  looked_ = time();
+  keep_both();
+  return true;
+}
+
+/** Go back to the last good state, and on step by step until one fails.
+ * @param last the step known to fail  @return false if one did */
+bool Stepper::replay(long long last) {
+  guard_->restore(cloth_);
+  go_on(checked_, flow_);
+  while (clock_.steps < last && time() < t_end_) {
+    if (!advance()) return fail("failed (" + error_ + ")");
+    if (!guard_->accept(cloth_, flow())) return fail("diverged");
+    keep_checked();
+  }
+  return true;  // a node that was torn off meanwhile can't fail again
+}
+
+/** Say what happened to the step, and go back to before it. */
+bool Stepper::fail(const std::string& what) {
+  using CME212::short_text;
+  worst_.emplace(cloth_);
+  const std::string where = worst_->text(cloth_);
+  guard_->restore(cloth_);
+  go_on(checked_, flow_);
+  failure_ = what + " in step " + std::to_string(clock_.steps + 1) +
+             " with dt = " + short_text(clock_.dt) + " s, method " +
+             entry_.info.name + ": " + where + "; the last good state is " +
+             "that of t = " + short_text(time()) + " s";
+  return false;
+}
+
+/** Go on from the present state, which was that of @a clock and @a flow. */
+void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
+  clock_ = clock;
+  balance_->resume(cloth_, time(), constraint_, flow);
+  method_->restart();
+  sampled_ = time(), drag_power_ = drag_.power(cloth_);
+  keep_checked();
+}
+
+/** The present state is good. From here on watch nodes that are fast beside
+ * the obstacles: only here, so with room for speeds to grow. */
+void Stepper::keep_checked() {
+  checked_ = clock_;
+  flow_ = flow();
+  version_ = cloth_.version();
+  const double thin = watched_->thinnest();
+  if (!std::isfinite(thin)) return;
+  const double gain = std::abs(gravity_) * guard_interval * clock_.dt;
+  watched_->watch(cloth_, (max_speed(cloth_) + gain) * clock_.dt > thin / 8);
+}
+
+// ---------------------------------------------------------------- Checkpoints
+
+Work Stepper::work() const {
+  Work all = work_;
+  return all += method_->work();
+}
+
+void Stepper::archive(Archive& a) {
+  archive_cloth(a, cloth_);
+  a(clock_)(checked_)(flow_)(limits_);
+  const auto not_after = [&](const StepClock& c) {
+    return c.steps <= clock_.steps && c.time() <= clock_.time();
+  };
+  a.require(not_after(checked_) &&
+            clock_.steps - checked_.steps <= guard_interval);
+  watched_->archive(a);
+  balance_->archive(a);
+  guard_->archive(a);
+  method_->archive(a, cloth_);
+  if (a.loads()) version_ = cloth_.version();
+  long long evaluated = evaluations();
+  Work worked = work();
+  a(evaluated)(worked)(sampled_)(drag_power_);
+  if (a.loads())
+    evaluations_ = evaluated - force_->evaluations(), work_ = worked;
+  a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
+            std::min({worked.inner, worked.newton, worked.products,
+                      worked.factors}) >= 0 &&
+            sampled_ <= time() && std::isfinite(sampled_ + drag_power_));
+  if (watch_) a(*watch_);
+  if (!control_) return;
+  control_->archive(a);
+  a(looked_);
+  a.require(clock_.dt <= control_->dt() && looked_ <= time() &&
+            std::isfinite(looked_));
+  for (Snapshot* s : {&before_, &latest_}) {
+    bool whole = s->version == cloth_.version();  // nothing torn since
+    a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
+    a.require(not_after(s->clock));
+    if (a.loads()) s->version = whole ? cloth_.version() : ~cloth_.version();
+  }
+}
+
+}  // namespace lab
