@@ -33,13 +33,6 @@ test_libs  = -lgtest_main -lgtest -lrapidcheck
 
 lab_objects := $(lab_lib:.cpp=.o)
 
-# The scenes of data/scenes as text in the library.
-lab_objects += stored_scenes.o
-vpath stored_scenes.cpp $(B)
-$(B)/stored_scenes.cpp: FORCE
-	@mkdir -p $(@D) && tools/stored_scenes.sh | cmp -s - $@ \
-	  || tools/stored_scenes.sh > $@
-
 # $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
 define compile
 	@mkdir -p $$(dir $$@) && echo '$(CXX) $$@'
@@ -61,6 +54,13 @@ endef
 ifneq ($(O)$(UNITY),)
 include lab/units.mk
 endif
+# The scenes of data/scenes as text in the library.
+lab_objects += stored_scenes.o
+vpath stored_scenes.cpp $(B)
+$(B)/stored_scenes.cpp: FORCE
+	@mkdir -p $(@D) && tools/stored_scenes.sh | cmp -s - $@ \
+	  || tools/stored_scenes.sh > $@
+
 $(eval $(call variant,$(B),$(speed)))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 

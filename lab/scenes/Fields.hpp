@@ -3,10 +3,8 @@
  * The fields of a Model, in one table: name, help, reader and writer of each.
  * Scene files, options of ./cloth, help and dumps are made from it. README.md
  */
-#include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "lab/scenes/Model.hpp"
@@ -30,12 +28,7 @@ struct Field {
   const char* name;  ///< the key of a scene file; as an option --name
   Role role;
   const char* group;  ///< of the help
-  std::variant<double*, std::string*, TimeStep*, const MethodEntry**, Measure*,
-               Edges*, std::optional<double>*, std::optional<Distance>*,
-               std::optional<Box>*, std::vector<Sheet>*, std::vector<Region>*,
-               std::vector<Pin>*, std::vector<Wall>*, std::vector<Solid>*,
-               std::vector<Ball>*>
-      member;
+  Member member;
   const char* help;           ///< with units
   const char* expected = "";  ///< of a number
   Word::Range range = Word::Range::any;

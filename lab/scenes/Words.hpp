@@ -48,6 +48,14 @@ Words words_of(Ball&);
 Words words_of(Distance&);
 Words words_of(Box&);
 
+/** The member of a Model that a field sets. */
+using Member =
+    std::variant<double*, std::string*, TimeStep*, const MethodEntry**,
+                 Measure*, Edges*, std::optional<double>*,
+                 std::optional<Distance>*, std::optional<Box>*,
+                 std::vector<Sheet>*, std::vector<Region>*, std::vector<Pin>*,
+                 std::vector<Wall>*, std::vector<Solid>*, std::vector<Ball>*>;
+
 /** Set the members of @a words() from @a text.
  * Throws SceneError: another word, a word twice, a word that is missing, too
  * many or too few numbers, one out of its range or not finite; what is wrong
