@@ -223,7 +223,7 @@ double growth(const Trace& trace, double low, double high) {
 
 // An oscillation at h w = 2 c > 2 grows by (c + sqrt(c^2 - 1))^2 a step.
 TEST(Failure, VerletGrowsBeyondItsLimitAsTheoryHasIt) {
-  const Failure& f = failure_of("verlet");
+  const Failure& f = *failure_of("verlet");
   const double factor = std::pow(1.05 + std::sqrt(1.05 * 1.05 - 1), 2);
   EXPECT_NEAR(growth(trace(f, f.runs[0]), 1e-4, 1e-2), factor, 0.02 * factor);
 }
@@ -231,7 +231,7 @@ TEST(Failure, VerletGrowsBeyondItsLimitAsTheoryHasIt) {
 // Where a picture says that the work is equal, it is.
 TEST(Failure, ComparesAtEqualWork) {
   for (const char* name : {"symplectic-euler", "yoshida4", "pefrl", "rk4"}) {
-    const Failure& f = failure_of(name);
+    const Failure& f = *failure_of(name);
     const double fails = double(trace(f, f.runs[0]).sweeps),
                  cure = double(trace(f, f.runs[1]).sweeps);
     EXPECT_NEAR(fails / cure, 1, 0.01) << name;

@@ -282,6 +282,7 @@ page() {
 of_scripts() {
   limit=$long step checks tools/test_checks.sh
   step submit      tools/test_submit.sh
+  limit=$long step recipes tools/test_recipes.sh
   step deps        tools/test_deps.sh
   step headers     env CXX=clang++ tools/check_headers.sh
   step lanes       tools/check_lanes.sh

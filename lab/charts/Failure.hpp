@@ -4,6 +4,7 @@
  * quote, and their results as a CSV file. */
 #include <array>
 #include <iosfwd>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -79,11 +80,11 @@ struct Failure {
   }
 };
 
-/** One failure for each method, in the order of `methods`. */
-extern const std::array<Failure, methods.size()> failures;
+/** At most one failure for each method. */
+extern const std::span<const Failure> failures;
 
-/** @pre there is a method called @a name */
-const Failure& failure_of(std::string_view name);
+/** That of the method called @a name; nullptr if none is known. */
+const Failure* failure_of(std::string_view name);
 
 /** A run against time. */
 struct Trace {
@@ -100,9 +101,9 @@ struct Trace {
 /** Make the run @a r of @a f, until its end or until it fails. */
 Trace trace(const Failure& f, const FailureRun& r);
 
-/** Make the runs for @a chosen methods and write failures.csv, which
- * failures.gp draws, to @a out: titles, axes and measured numbers in the head,
- * then a row for each point of a curve.
+/** Make the runs of those of @a chosen that have a failure and write
+ * failures.csv, which failures.gp draws, to @a out: titles, axes and measured
+ * numbers in the head, then a row for each point of a curve.
  * @param said the measured numbers go there as well, if not nullptr */
 void write_failures(const std::vector<const MethodEntry*>& chosen,
                     std::ostream* said, std::ostream& out);
