@@ -23,6 +23,7 @@
 #include "lab/bench/Bench.hpp"
 #include "lab/bench/Cloths.hpp"
 #include "lab/methods/AugmentedVerlet.hpp"
+#include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Splitting.hpp"
@@ -367,8 +368,10 @@ int main(int argc, char** argv) {
   app.add_option("--side", one_side, "only the cloth of N x N nodes")
       ->type_name("N");
   app.add_option("--calls", calls, "only call that often what has this name");
-  app.add_option("--cpu", lanes::cpu, "0 plain, 1 AVX2, 2 AVX-512, if it can")
+  app.add_option("--cpu", lanes::cpu,
+                 "kernels: 0 plain, 1 AVX2, 2 AVX-512; default: the fastest")
       ->check(CLI::Range(0, int(lanes::best_cpu())));
+  lanes::cpu = fastest_cpu();
   CLI11_PARSE(app, argc, argv);
 
   if (calls > 0) {  // for lab/bench/counts.sh
@@ -405,10 +408,12 @@ int main(int argc, char** argv) {
     const double s = all.seconds(triads, name).median;
     return s > 0 ? 24e-9 * double(far.a.size()) / s : 0;
   };
-  std::printf("%s; %s; triad in memory %.1f GB/s, by %d threads %.1f GB/s\n",
-              report::machine().c_str(), sizeof(Real) == 8 ? "double" : "float",
-              bandwidth("in memory"), Sweep::processors(),
-              bandwidth("in memory, all threads"));
+  std::printf(
+      "%s; %s; kernels %s; triad in memory %.1f GB/s, by %d threads %.1f "
+      "GB/s\n",
+      report::machine().c_str(), sizeof(Real) == 8 ? "double" : "float",
+      lanes::name_of(lanes::cpu), bandwidth("in memory"), Sweep::processors(),
+      bandwidth("in memory, all threads"));
   all.print("node", bandwidth("in memory"));
   if (json.empty()) return 0;
   try {

@@ -6,6 +6,8 @@
 #include <ostream>
 #include <thread>
 
+#include "lab/fast/Lanes.hpp"
+
 namespace lab::report {
 
 namespace {
@@ -26,7 +28,10 @@ std::string first_line_of(const char* command) {
 }  // namespace
 
 std::string machine() {
-  return first_line_of("sed -n 's/^model name.*: //p' /proc/cpuinfo") + ", " +
+  return first_line_of(
+             "awk -F': ' '/^model name/ {n = $2} /^cpu family/ {f = $2} "
+             "/^$/ {print n \" (family \" f; exit}' /proc/cpuinfo") +
+         ", " + lanes::name_of(lanes::best_cpu()) + "), " +
          std::to_string(std::thread::hardware_concurrency()) + " cores";
 }
 

@@ -70,13 +70,17 @@ struct KickTiles {
     const V h = V{} + task.h, gravity = V{} + task.gravity;
     Row row[FlatCloth::most_rows];
     for (unsigned begin = first; begin < last; begin += tile) {
+      // As far as there are nodes: a small cloth has less than a tile.
+      const unsigned left = (last - begin + w - 1) / w * w;
+      const unsigned end = left < tile ? left : tile;
       Real* const xs = nodes[FlatCloth::X] + begin;
       for (std::size_t r = 0; r < num_rings; ++r) {
         row[r] = Row(task.rings[r], xs, begin);
         if (!row[r].wide)
-          Near::template apply<V>(nodes[FlatCloth::X], s, task.rings[r], begin);
+          Near::template apply<V>(nodes[FlatCloth::X], s, task.rings[r], begin,
+                                  end);
       }
-      for (unsigned k = 0; k < tile; k += w) {
+      for (unsigned k = 0; k < end; k += w) {
         const unsigned i = begin + k;
         const Real* at = xs + k;
         const Points<V> x = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
@@ -141,7 +145,7 @@ struct KickTiles {
     }
   };
 
-  /** The springs of a tile alone: into its ring. */
+  /** The springs of the first @a end nodes of a tile alone: into its ring. */
   struct Near {
     template <typename V>
     [[gnu::always_inline]] static inline Points<V> pull(const Points<V>& x,
@@ -160,10 +164,11 @@ struct KickTiles {
     [[gnu::always_inline]] static inline void apply(const Real* x,
                                                     std::size_t s,
                                                     const RowRing& ring,
-                                                    unsigned begin) {
+                                                    unsigned begin,
+                                                    unsigned end) {
       using namespace lanes;
       const std::size_t next = ring.stride();
-      for (unsigned k = 0; k < FlatCloth::tile; k += count_of<V>) {
+      for (unsigned k = 0; k < end; k += count_of<V>) {
         const Real* at = x + begin + k;
         const Points<V> here = {load<V>(at), load<V>(at + s),
                                 load<V>(at + 2 * s)};
@@ -227,7 +232,8 @@ struct NearTiles {
                                                   unsigned last) {
     for (unsigned i = first; i < last; i += FlatCloth::tile) {
       KickTiles::Near::template apply<V>(cloth->nodes()[FlatCloth::X],
-                                         cloth->nodes().stride(), *ring, i);
+                                         cloth->nodes().stride(), *ring, i,
+                                         FlatCloth::tile);
       ring->advance();
     }
   }
@@ -366,8 +372,8 @@ struct StageSum {
   unsigned count;  ///< of terms
 };
 
-/** x = x_0 + (way v_0 + sum of to_x a); v = v_0 + sum of to_v a: for the tiles
- * of nodes [first, last). */
+/** x = x_0 + (way v_0 + sum of to_x a); v = v_0 + sum of to_v a: for the nodes
+ * [first, last). */
 struct SumTiles {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(FlatCloth* cloth,
@@ -376,11 +382,11 @@ struct SumTiles {
                                                   unsigned last) {
     using namespace lanes;
     Columns& nodes = cloth->nodes();
-    const unsigned end = first + (last - first + FlatCloth::tile - 1) /
-                                     FlatCloth::tile * FlatCloth::tile;
+    constexpr unsigned w = count_of<V>;
+    const unsigned end = first + (last - first + w - 1) / w * w;
     for (unsigned c = 0; c < 3; ++c) {
       const Real *x0 = nodes[sum->start + c], *v0 = nodes[sum->start + 3 + c];
-      for (unsigned i = first; i < end; i += count_of<V>) {
+      for (unsigned i = first; i < end; i += w) {
         const V v = load<V>(v0 + i);
         V dx = sum->way * v, dv = {};
         for (unsigned k = 0; k < sum->count; ++k) {

@@ -2,8 +2,8 @@
 /** @file Lanes.hpp
  * Lanes: the numbers that one register of the processor holds, computed with
  * side by side (SIMD). A kernel is written once and compiled for three kinds of
- * x86-64 processor. The program runs the best that its processor can; on any
- * other processor it is plain code.
+ * x86-64 processor. The program runs the one that is fastest on its processor
+ * (FastestCpu.hpp); on any other processor it is plain code.
  *
  * A kernel is a struct with
  *   template <typename V> [[gnu::always_inline]] static inline void apply(...),
@@ -50,7 +50,7 @@ inline constexpr int count_of = int(sizeof(V) / sizeof(Real));
 
 enum class Cpu { plain, avx2, avx512 };
 
-/** The best that this processor can do. */
+/** That with the longest registers that this processor has. */
 inline Cpu best_cpu() {
 #ifdef __x86_64__
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
@@ -61,7 +61,10 @@ inline Cpu best_cpu() {
 #endif
   return Cpu::plain;
 }
-/** What kernels run on; tests and benchmarks set it to less. */
+inline const char* name_of(Cpu cpu) {
+  return cpu == Cpu::avx512 ? "AVX-512" : cpu == Cpu::avx2 ? "AVX2" : "plain";
+}
+/** What kernels run on: a program sets it to fastest_cpu(). */
 inline Cpu cpu = best_cpu();
 
 template <typename Kernel, typename... Args>

@@ -19,6 +19,7 @@
 #include "CME212/viewer/Image.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Costs.hpp"
+#include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Fields.hpp"
@@ -407,8 +408,14 @@ int parse(int argc, char** argv, Options& o) {
         throw CLI::Success();
       },
       "print the table of methods, and end");
-  app.set_version_flag("--version", std::string("cloth ") + version,
-                       "print the version, and end");
+  app.set_version_flag(
+      "--version",
+      [] {
+        return std::string("cloth ") + version + ", " +
+               (sizeof(Real) == 8 ? "double" : "single") +
+               " precision, kernels " + lanes::name_of(fastest_cpu());
+      },
+      "print the version, precision and the fastest kernels here, and end");
   app.set_help_flag("-h,--help", "print this, and end");
   try {
     app.parse(argc, argv);

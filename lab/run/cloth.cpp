@@ -31,6 +31,7 @@
 #include "lab/fast/Sweep.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/live/Recording.hpp"
+#include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
@@ -303,6 +304,7 @@ void check_outputs(const Options& o) {
 int run(Options o) {
   catch_interrupts();
   check_outputs(o);
+  lanes::cpu = fastest_cpu();
   Sweep::set_threads(o.threads);
   if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
