@@ -48,7 +48,7 @@ std::string WorstPlace::text(const Cloth& g) const {
 std::string Cure::options(const MethodEntry& before) const {
   const std::string step = "--dt " + CME212::short_text(dt);
   const bool same = std::string_view(method.info.name) == before.info.name;
-  // It may have been chosen because neither option was given.
+  // --dt alone would replace an adaptive method that --tolerance chose.
   return same && !before.info.adaptive
              ? step
              : "--method " + std::string(method.info.name) + ' ' + step;
@@ -128,15 +128,15 @@ std::string in_words(Cause cause, const FailedRun& run) {
   return out.str();
 }
 
-/** At most @a dt, in three digits: so what is tried is what is said. */
+/** @a dt rounded down to three digits: the step that is tried is printed. */
 double in_three_digits(double dt) {
   const double unit = std::pow(10, std::floor(std::log10(dt)) - 2);
-  // By its decimal digits, as whoever types it in.
+  // Read its decimal digits, as if the user had typed them.
   return std::stod(
       CME212::short_text(std::floor(dt / unit * (1 + 1e-9)) * unit));
 }
 
-/** What may help, the likeliest first. */
+/** Cures to try, the most promising first. */
 std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
   std::vector<Cure> all;
   auto add = [&](const MethodEntry& method, double dt) {
@@ -176,8 +176,8 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
       shorter(run.dt / 64);
       break;
     case Cause::method:
-      // Order 1 fails by its error, which goes down with the step; order 2 by
-      // fast waves that it does not damp.
+      // Order 1 fails by its error, which falls with the step; order 2 by fast
+      // waves that it does not damp.
       if (run.method.info.order > 1 && run.dt > run.verlet)
         add(tr_bdf2, in_three_digits(run.dt));
       if (run.method.info.order > 1) by_verlet(safe_share);
@@ -186,7 +186,7 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
       by_verlet(safe_share);
       break;
     case Cause::solver:
-      // Error control chose shorter ones already.
+      // Error control has already tried shorter steps.
       if (!run.method.info.adaptive) {
         shorter(run.dt / 4);
         shorter(run.dt / 16);
@@ -216,7 +216,7 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
   Diagnosis d = {cause_of(run), "", std::nullopt, {}};
   d.text = in_words(d.cause, run) + "; ";
   std::vector<Cure> failed;
-  std::string those;
+  std::string failed_text;
   for (const Cure& cure : candidates(d.cause, run)) {
     auto tried = [&](const Cure& other) { return same(cure, other); };
     if (failed.size() == most) break;
@@ -226,7 +226,8 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
     const Attempt trial = try_out(cure);
     if (!trial.passed) {
       failed.push_back(cure);
-      those += (those.empty() ? "" : ", ") + cure.options(run.method);
+      failed_text +=
+          (failed_text.empty() ? "" : ", ") + cure.options(run.method);
     } else if (!d.cure || trial.time > d.trial.time) {
       d.cure = cure, d.trial = trial;
     }
@@ -240,8 +241,8 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
                          " passed, with the energy of one by half of it"
                    : " may work: a trial was broken off at t = " + time +
                          ", before it could fail");
-  } else if (!those.empty()) {
-    d.text += "no cure is known: trials of " + those + " failed, too";
+  } else if (!failed_text.empty()) {
+    d.text += "no cure is known: trials of " + failed_text + " failed, too";
   } else {
     d.text += "look at its numbers";
   }

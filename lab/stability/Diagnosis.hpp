@@ -1,6 +1,6 @@
 #pragma once
 /** @file Diagnosis.hpp
- * Where a run failed, why, and what works instead. */
+ * Where a run failed, why, and a remedy that works. */
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,73 +9,72 @@
 
 namespace lab {
 
-/** The place where the state of a cloth is worst: the first node that is not
- * finite, or else the fastest one, and the most stretched spring there. */
+/** The first node whose state is not finite, or else the fastest node, and its
+ * longest spring. */
 struct WorstPlace {
-  Node node;          ///< not valid if the cloth has none
-  Edge spring;        ///< not valid if the node has none
-  double speed = 0;   ///< of the node [m/s]; infinite if it has no number
-  double length = 0;  ///< of the spring [m]; the same
+  Node node;          ///< invalid if the cloth has none
+  Edge spring;        ///< invalid if the node has none
+  double speed = 0;   ///< of the node [m/s]; infinite if not finite
+  double length = 0;  ///< of the spring [m]; infinite if not finite
 
   explicit WorstPlace(const Cloth& g);
-  /** The same in words. */
+  /** A description for the user. */
   std::string text(const Cloth& g) const;
 };
 
 /** Why a run fails. */
 enum class Cause {
-  step,       ///< beyond the stability limit
-  drag,       ///< beyond it for its drag, which the method takes as a force
+  step,       ///< longer than the stability limit
+  drag,       ///< too long with drag, which the method treats as a force
   no_step,    ///< the method has no stable step
-  resonance,  ///< within the limit; it resonates with stiff springs
-  nonlinear,  ///< within the limit, which is that of small oscillations
-  method,     ///< one without a limit fails all the same
-  solver,     ///< a method or a constraint could not make the step
-  start,      ///< the start is at fault
+  resonance,  ///< below the limit, but resonates with stiff springs
+  nonlinear,  ///< below the limit, which holds for small oscillations
+  method,     ///< it has no limit, but fails in another way
+  solver,     ///< the method or a constraint could not make the step
+  start,      ///< the initial state is at fault
 };
 
-/** What to know of a run that failed. */
+/** What diagnose() needs to know about a failed run. */
 struct FailedRun {
   MethodEntry method;
   double dt = 0;        ///< [s]
-  double time = 0;      ///< that the step which failed was to reach [s];
-                        ///< no_limit if the start is at fault
-  bool solver = false;  ///< the step could not be made
+  double time = 0;      ///< at the end of the step that failed [s];
+                        ///< no_limit if the initial state is at fault
+  bool solver = false;  ///< the step could not be made: StepError
   double sharp = 0;     ///< the stability limit [s] in the last good state
-  double safe = 0;      ///< that in any state
-  double safe_without_drag = 0;
-  double verlet = 0;           ///< Verlet's, in any state
-  std::string resonance = {};  ///< how dt resonates, in words, if it does
-  double clear = 0;            ///< a shorter step that does not [s]
+  double safe = 0;      ///< the limit in every configuration [s]
+  double safe_without_drag = 0;  ///< [s]
+  double verlet = 0;             ///< Verlet's safe limit [s]
+  std::string resonance = {};    ///< its description if dt resonates
+  double clear = 0;              ///< a shorter step without resonance [s]
 };
 
 /** Another way to compute the same scene. */
 struct Cure {
   MethodEntry method;
   double dt;  ///< [s]
-  /** As options of ./cloth, without the method if it is that of @a before. */
+  /** As options of ./cloth; --method only if it differs from @a before. */
   std::string options(const MethodEntry& before) const;
 };
 
-/** A trial of a cure: the scene from its start. */
+/** The result of running the scene from its start with a cure. */
 struct Attempt {
-  bool passed;  ///< it did not fail, and half of its step has its energy
-  double time;  ///< that it reached [s]
+  bool passed;  ///< it did not fail, and half the step has the same energy
+  double time;  ///< at its end [s]
 };
 using TryOut = std::function<Attempt(const Cure&)>;
 
-/** Why a run failed, and what works. */
+/** Why a run failed, and a cure that works. */
 struct Diagnosis {
   Cause cause;
   std::string text;          ///< the cause and the cure in words
-  std::optional<Cure> cure;  ///< one whose trial passed
-  Attempt trial = {};        ///< of it
+  std::optional<Cure> cure;  ///< one that passed a trial
+  Attempt trial = {};        ///< of the cure
 };
 
-/** Find out why @a run failed, and a cure. What it takes for one is tried:
- * shorter steps, other methods, the likeliest first, until a trial gets beyond
- * the time of the failure. So a cure that it names works as far as it says.
- * Calls @a try_out up to 10 times. */
+/** Find out why @a run failed, and a cure. Tries shorter steps and other
+ * methods, the most promising first, until a trial passes the time of the
+ * failure or 10 trials have failed. Every cure that it returns has passed. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 
 }  // namespace lab

@@ -84,8 +84,8 @@ void EnergyBalance::resume(const Cloth& g, double t,
   find_carrier(g, t, constraint);
 }
 
-/** By places: a held node may start with a velocity of its own, which carries
- * nothing. */
+/** Takes the prescribed velocities: the initial velocity of a held node may
+ * differ, and moves nothing. */
 void EnergyBalance::find_carrier(const Cloth& g, double t,
                                  const ConstraintPlan& constraint) {
   Point sum;

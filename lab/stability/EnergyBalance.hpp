@@ -1,6 +1,6 @@
 #pragma once
 /** @file EnergyBalance.hpp
- * What a cloth's energy consists of, and what came in and went out. */
+ * The energy of a cloth, and what entered and left it. */
 #include <cmath>
 #include <vector>
 
@@ -12,21 +12,21 @@ namespace lab {
 struct Energies {
   double kinetic = 0, elastic = 0;
   double gravitational = 0;  ///< 0 at z = 0
-  double relative = 0;       ///< kinetic, as seen from what carries the cloth
-  double fall_power = 0;     ///< of the weight of a loose cloth [W], >= 0
+  double relative = 0;       ///< kinetic, relative to what carries the cloth
+  double fall_power = 0;     ///< |power of gravity| on a loose cloth [W]
   double total() const { return kinetic + elastic + gravitational; }
-  /** That of which a method can make more: it does not depend on who looks. */
+  /** The same in every frame of reference; gains are compared with it. */
   double internal() const { return relative + elastic; }
 };
 
-/** What came into a cloth's energy and what left it, since the start [J]; and
- * what carries the cloth now. */
+/** The energy that entered and left a cloth since the start [J], and the
+ * velocity of what carries the cloth now. */
 struct EnergyFlow {
-  double work = 0;          ///< done by pins and obstacles that move
-  double removed = 0;       ///< gravitational energy of nodes that were removed
-  double drag = 0;          ///< taken by linear drag, where that is asked for
-  Point carried = Point();  ///< mean velocity of the nodes that are held [m/s]
-  /** Nothing holds it: its center of mass carries it. */
+  double work = 0;          ///< done by moving pins and obstacles
+  double removed = 0;       ///< gravitational energy of removed nodes
+  double drag = 0;          ///< taken by linear drag, if add_drag() is used
+  Point carried = Point();  ///< mean velocity of the held nodes [m/s]
+  /** No node is held: then the center of mass carries the cloth. */
   bool loose = false;
 
   void archive(Archive& a) {
@@ -35,27 +35,27 @@ struct EnergyFlow {
   }
 };
 
-/** Those of @a g.  @param gravity [m/s^2]   @param flow what carries the cloth
- * O(N + springs) */
+/** The energies of @a g.  O(N + springs)
+ * @param gravity [m/s^2]   @param flow only carried and loose are used */
 Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow = {});
 
-/** What a method may gain from nothing, as a share of the energy of motion,
- * unless one says otherwise. */
+/** The gain of energy that is tolerated by default, as a share of the largest
+ * internal energy; see StepControl. */
 inline constexpr double energy_tolerance = 0.1;
 
-/** What never rises in the cloth itself [J], see EnergyBalance. */
+/** The balance b of EnergyBalance [J]. */
 inline double balance(const Energies& e, const EnergyFlow& flow) {
   return e.total() - flow.work + flow.removed + flow.drag;
 }
 
-/** Follows what comes into a cloth's energy and what leaves it, step by step.
+/** Adds up the energy that enters and leaves a cloth, step by step.
  *
- * Contact, friction and tearing only lower kinetic and elastic energy, so
- *   b = energies().total() - work + removed + drag
- * of the cloth itself never rises: if it does, that is the method's error. Work
- * of a moving obstacle: the impulse on a node times the obstacle's velocity;
- * of a moving pin: -F . dx, the mean of the force F on the node before and
- * after a step, and what the node gains in kinetic energy. */
+ * Contact, friction and tearing only lower kinetic and elastic energy. So the
+ * exact motion never raises the balance
+ *   b = energies().total() - work + removed + drag:
+ * any rise is the method's error. Work of a moving obstacle: the impulse on a
+ * node times the obstacle's velocity. Work of a moving pin: the gain of the
+ * node's kinetic energy - F . dx, F the mean force before and after a step. */
 class EnergyBalance {
  public:
   /** @param g at the start, time @a t   @param gravity [m/s^2]
@@ -63,18 +63,18 @@ class EnergyBalance {
   EnergyBalance(const Cloth& g, double t, CombinedForces force,
                 const ConstraintPlan& constraint, double gravity);
 
-  /** Account for a step that ended at time @a t.
+  /** Add the energy that a step to time @a t brought or removed.
    * O(held nodes + springs at those that moved) */
   void follow(const Cloth& g, double t, const ConstraintPlan& constraint);
-  /** Count the work of @a pull on @a n, too, until @a n is removed: a force of
-   * which energies() knows nothing; null: of none.
+  /** From time @a t on, also add the work of @a pull on @a n, a force whose
+   * energy is not in energies(), until @a n is removed. Null: no such force.
    * @pre @a pull outlives this */
   void watch(Node n, const ZeroForce* pull, double t);
   /** Add the energy that linear drag took [J]. */
   void add_drag(double loss) { flow_.drag += loss; }
   const EnergyFlow& flow() const { return flow_; }
 
-  /** Go on from a state of @a g at time @a t with its @a flow. */
+  /** Continue from the state of @a g at time @a t and its @a flow. */
   void resume(const Cloth& g, double t, const ConstraintPlan& constraint,
               const EnergyFlow& flow);
 
@@ -97,9 +97,9 @@ class EnergyBalance {
   CombinedForces force_;
   double gravity_;
   std::vector<Held> held_;
-  Held pulled_;  // its force: that of pull_ alone
+  Held pulled_;  // force: that of pull_ alone
   const ZeroForce* pull_ = nullptr;
-  Exchange seen_;  // of the constraint, until the last step
+  Exchange seen_;  // constraint.exchange() after the last step
   EnergyFlow flow_;
 
   void find_carrier(const Cloth& g, double t, const ConstraintPlan& constraint);

@@ -1,36 +1,36 @@
 #pragma once
 /** @file EnergyWatch.hpp
- * EnergyWatch: how far a run is off in an energy that nothing changes. */
+ * EnergyWatch: the error of an energy that should be conserved. */
 #include "lab/Archive.hpp"
 #include "lab/stability/Guard.hpp"
 
 namespace lab {
 
-/** Follows the energy of a cloth on which nothing does work and from which
- * nothing takes any: no drag, no contact, nothing that moves or tears. So what
- * the energy changes by is the method's error.
+/** Follows the energy of a cloth that conserves it: without drag or contact,
+ * and nothing moves or tears. So any change is the method's error.
  *
- * As StepControl it counts gains from the least of the start and of the means
- * of rounds of 8 looks: the energy of an oscillation by a symplectic method
- * swings by O((dt omega)^2) of it. */
+ * With a symplectic method the energy of an oscillation swings by a share of
+ * O((dt omega)^2). So gains are measured, as in StepControl, from the least of
+ * the initial energy and of the means of all rounds of 8 looks. */
 class EnergyWatch {
  public:
-  static constexpr int round = 8;  ///< looks
+  static constexpr int round = 8;  ///< calls of look()
 
   /** @param start the energy [J] at the start, with a step of @a dt [s]
-   * @param guard at the start: what is next to nothing */
+   * @param guard for its floor() and round_off() */
   EnergyWatch(const Energies& start, double dt, const DivergenceGuard& guard);
 
+  /** Take the energies @a e after some steps into account. */
   void look(const Energies& e);
 
-  /** What the energy is off by now [J]: gained if positive. */
+  /** The error of the energy now [J]; positive if gained. */
   double off() const { return off_; }
-  /** The same as a share of the largest internal energy; 0 if that has stayed
-   * next to nothing, as of a cloth that falls freely. */
+  /** off() as a share of the largest internal energy; 0 if that energy has
+   * stayed below round_off(), as in a free fall. */
   double share() const;
-  /** The most that it has gained from nothing [J]. */
+  /** The largest gain so far [J]. */
   double gain() const { return gain_; }
-  /** What StepControl would let it gain [J]. */
+  /** The gain that StepControl would tolerate [J]. */
   double tolerance() const;
 
   void archive(Archive& a);
@@ -38,7 +38,7 @@ class EnergyWatch {
  private:
   double dt_, start_, floor_, round_off_;
   double largest_, fall_ = 0;  // internal energy; see StepControl::State [J]
-  double off_ = 0, sum_ = 0;   // sum_: of this round's
+  double off_ = 0, sum_ = 0;   // sum_: off_ over this round
   double least_ = 0, gain_ = 0;
   int looks_ = 0;
 };

@@ -12,11 +12,11 @@ namespace spectrum_detail {
 
 namespace {
 
-/** What omega_safe() needs of a Spring, in a third of its memory. */
-struct Pull {
+/** A spring for omega_safe(): K alone, in a third of a Spring's memory. */
+struct ScalarSpring {
   unsigned i, j;
   double K;
-  Pull(unsigned near, unsigned far, const Stiffness& B)
+  ScalarSpring(unsigned near, unsigned far, const Stiffness& B)
       : i(near), j(far), K(Spring{near, far, B}.K()) {}
 };
 
@@ -49,15 +49,15 @@ void find_scales(const Cloth& g, const ConstraintPlan& constraint,
 
 namespace {
 
-/** What the Lanczos method says about the largest eigenvalue: value is below
- * it, and an eigenvalue lies within error of value. */
+/** The Lanczos method's estimate of the largest eigenvalue: value is a lower
+ * bound of it, and some eigenvalue lies within error of value. */
 struct Ritz {
   double value = 0, error = 0;
   int products = 0;
 };
 
 /** The largest eigenvalue of a symmetric matrix A.
- * @param v start, not orthogonal to the eigenvector looked for
+ * @param v start, not orthogonal to the eigenvector
  * @param multiply w = A v, as void(const VectorXd& v, VectorXd& w)
  * @param most products, at most   @param tolerance stop at this error/value
  * Without orthogonalization: copies of converged eigenvalues appear, but the
@@ -98,8 +98,8 @@ Ritz lanczos(Eigen::VectorXd v, Multiply&& multiply, int most,
   return best;
 }
 
-/** A start for lanczos(): random, the same in every run; 0 where @a scale is,
- * which has one entry for each @a dim of v. */
+/** A start for lanczos(): random, the same in every run. v has @a dim entries
+ * for each of @a scale; they are 0 where that is 0. */
 Eigen::VectorXd random_start(const std::vector<double>& scale, unsigned dim) {
   std::mt19937 random(1);
   Eigen::VectorXd v(Eigen::Index(dim * scale.size()));
@@ -117,7 +117,7 @@ Eigen::VectorXd random_start(const std::vector<double>& scale, unsigned dim) {
 double omega_safe(const Cloth& g, const ForcePlan& force,
                   const ConstraintPlan& constraint) {
   using namespace spectrum_detail;
-  std::vector<Pull> springs;
+  std::vector<ScalarSpring> springs;
   std::vector<double> scale;
   find(g, force, springs);
   find_scales(g, constraint, scale);
@@ -126,7 +126,7 @@ double omega_safe(const Cloth& g, const ForcePlan& force,
     w.setZero();
     for (std::size_t i = 0; i < u.size(); ++i)
       u[i] = scale[i] * v[Eigen::Index(i)];
-    for (const Pull& s : springs) {
+    for (const ScalarSpring& s : springs) {
       const double pull = s.K * (u[s.i] - u[s.j]);
       w[s.i] += scale[s.i] * pull;
       w[s.j] -= scale[s.j] * pull;

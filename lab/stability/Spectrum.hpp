@@ -1,13 +1,12 @@
 #pragma once
 /** @file Spectrum.hpp
  * The highest frequency omega [1/s] of a cloth: omega^2 is the largest
- * eigenvalue of M^-1 H, M the masses, H the stiffness of all springs, without
- * the nodes that are held. It bounds the step of every explicit method
- * (StepLimit.hpp). Three estimates; the proofs are in README.md of this room.
+ * eigenvalue of M^-1 H, M the masses, H the stiffness of all springs, both of
+ * the nodes that are not held. It bounds the step of every explicit method
+ * (StepLimit.hpp). Three estimates; the proofs are in README.md beside this.
  *
- * A force that does not know its stiffness (SweptForce::add_stiffness) is taken
- * to have that of the cloth's edges. Where nothing can oscillate (no springs,
- * no free node), omega is 0. */
+ * A force without SweptForce::add_stiffness() is taken to have the stiffness of
+ * the cloth's edges. Without springs or free nodes, omega is 0. */
 #include <algorithm>
 #include <vector>
 
@@ -21,35 +20,34 @@ namespace spectrum_detail {
 struct Spring {  // between the nodes of ids i and j
   unsigned i, j;
   Stiffness B;
-  /** No direction is stiffer [N/m]. */
+  /** The stiffness in the stiffest direction [N/m]. */
   double K() const { return std::max({0.0, B.along, B.across}); }
 };
 
 void find_springs(const Cloth& g, const ForcePlan& force,
                   std::vector<Spring>& springs);
 
-/** m^(-1/2) [kg^(-1/2)] by node id; 0 for nodes that do not move. */
+/** m^(-1/2) [kg^(-1/2)] by node id; 0 for held nodes. */
 void find_scales(const Cloth& g, const ConstraintPlan& constraint,
                  std::vector<double>& scale);
 
 }  // namespace spectrum_detail
 
-/** The safe estimate: no frequency of the cloth exceeds it, in any
- * configuration, also after any removal of nodes and edges. omega^2 is the
- * largest eigenvalue of the mass-scaled Laplacian, (L x)_i = sum of K (x_i -
- * x_j) over the springs at i: the stiffness of MassSpringForce is nowhere above
- * K. It stays valid while masses and K do not change and no held node is let
- * go.
- * @return omega [1/s] to 0.1 %, from above: the Lanczos value plus its error
+/** The safe estimate: no frequency of the cloth exceeds it in any
+ * configuration, even after nodes and edges are removed. It holds while masses
+ * and K stay the same and no held node is released. omega^2 is the largest
+ * eigenvalue of the mass-scaled Laplacian, (L x)_i = sum of K (x_i - x_j) over
+ * the springs at i, because no direction of a spring is stiffer than K.
+ * @return omega [1/s], up to 0.1 % too high: the Lanczos value plus its error
  * Complexity: O(N + springs) for each of 20 to 200 products. */
 double omega_safe(const Cloth& g, const ForcePlan& force,
                   const ConstraintPlan& constraint);
 
 /** The sharp estimate: the highest frequency in the present configuration. It
- * rises when springs are stretched, up to omega_safe(). 15 products find it to
- * 2 %, from below; 60 to a thousandth and better.
- * Complexity: each product costs one to two force evaluations. Keeps its
- * memory. */
+ * rises when springs are stretched, up to omega_safe(). The result is at most
+ * 2 % too low after 15 products, 0.1 % after 60.
+ * Complexity: each product costs one to two force evaluations. Later calls
+ * reuse the memory of the first. */
 class SharpOmega {
  public:
   double operator()(const Cloth& g, const ForcePlan& force,
@@ -60,12 +58,12 @@ class SharpOmega {
   std::vector<double> scale_;
 };
 
-/** The cheap estimate: never below the highest frequency in the present
- * configuration, and up to a third above. By Gershgorin's circles for blocks:
+/** The cheap estimate: an upper bound of the highest frequency in the present
+ * configuration, up to a third too high. By Gershgorin's theorem for blocks:
  * (a - b) B (a - b) <= 2 a B a + 2 b B b, so omega^2 is at most the largest
- * eigenvalue of 2 sum B/m over the springs at any one node; a spring to a held
- * node counts once. Negative stiffness counts as 0. The stability map scales
- * its start by it.
+ * eigenvalue over all nodes of 2 sum B/m over the springs at the node; a spring
+ * to a held node counts once. Negative stiffness counts as 0. The stability map
+ * scales its initial perturbation by it.
  * Complexity: O(N + springs), two or three force evaluations. */
 double omega_gershgorin(const Cloth& g, const ForcePlan& force,
                         const ConstraintPlan& constraint);

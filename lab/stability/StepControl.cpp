@@ -29,11 +29,11 @@ void StepControl::State::archive(Archive& a) {
   for (double* x :
        {&dt, &ceiling, &scale, &fall, &last, &least, &base, &low, &mark, &sum,
         &gain, &time, &kinetic_time, &drag, &lost, &kinetic, &fall_power})
-    // Bounds that there are not yet are infinite.
+    // Bounds that are not set yet are infinite.
     a(*x).require(std::isfinite(*x) ||
                   (*x == none && (x == &ceiling || x == &low)));
   a(looks)(rounds)(calm)(since)(raises);
-  constexpr int most = 1 << 30;  // so that none runs over
+  constexpr int most = 1 << 30;  // so that none overflows
   a.require(dt > 0 && 0 <= looks && looks < round && 0 <= rounds &&
             rounds < most && 0 <= calm && calm < most && 0 <= since &&
             since < most && 0 <= raises && raises < most);
@@ -76,7 +76,7 @@ StepControl::Verdict StepControl::look(const Energies& e,
   return Verdict::keep;
 }
 
-/** Scale and fall at the energy @a e, and what drag left of older energies. */
+/** Update scale and fall by @a e; older energies decay with drag. */
 void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
   const double lost = flow.drag - s.lost, twice_mean = s.kinetic + e.kinetic;
   const double more_fall = std::abs(e.fall_power - s.fall_power) * s.dt;
@@ -91,7 +91,7 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
   s.scale =
       std::max({left * s.scale, std::min(s.scale, limits_.rest), e.relative});
   s.fall = limits_.early ? left * s.fall + more_fall : 0;
-  // Each step puts back what lies on something.
+  // In each step contact lifts a resting cloth back to the surface.
   if (flow.loose) s.fall = std::max(s.fall, limits_.floor);
   s.gain *= left;
   s.least += (1 - left) * std::max(0.0, s.base - s.least);
@@ -100,7 +100,7 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
 double StepControl::tolerance(const State& s, int looks) const {
   const double most = limits_.share * s.scale + s.fall;
   if (s.rounds > 0) return most;
-  // A fall from rest is counted as speed up to a step before it is as height.
+  // In a fall from rest, speed grows up to a step before height falls.
   return most + 2 * look_interval * looks * limits_.floor;
 }
 
@@ -123,8 +123,8 @@ bool StepControl::lengthen(const EnergyFlow& flow) {
   const double lost = flow.drag - now_.drag;
   const bool damped =
       lost > 0 && now_.time * lost >= 0.25 * 2 * now_.kinetic_time;
-  // A step that failed is tried again later and later; if that goes well, by
-  // larger and larger leaps.
+  // After each failure wait longer before the ceiling rises; each raise without
+  // a failure is larger.
   const int patience = 4 << failures_;
   if (failures_ > 0 && now_.since >= patience) {
     now_.ceiling *= std::pow(1.05, 1 << std::min(now_.raises, 3));

@@ -1,62 +1,61 @@
 #pragma once
 /** @file StepControl.hpp
- * StepControl: how long the next steps are, by the energy balance measured. */
+ * StepControl: chooses the step by the measured balance of the energy. */
 #include <limits>
 
 #include "lab/stability/EnergyBalance.hpp"
 
 namespace lab {
 
-/** Chooses the step by what the last steps did to the energy.
+/** Chooses the step by the change of the energy in the last steps.
  *
- * The balance b of EnergyBalance never rises in the cloth itself. A linear
- * limit does not tell when it rises by a method: a lattice of springs has
- * parametric resonances below it (that of Verlet is strongest at 0.71 of it),
- * and their growth shows after some 1000 steps only. So b is watched, in rounds
- * of some steps:
- * - a round that gains more than half of what is left of the tolerance, or a
- *   gain that uses it up faster than the run goes on, is taken back, with the
- *   one before, in which it may have begun; on it goes by a shorter step.
- * - a longer one is tried while drag takes away what a step may give: after
- *   each 1/(4 gamma) of time, gamma the drag measured, beyond any limit known.
- *   Without drag a step goes back to where it started at most. A step that
- *   failed is not tried again soon.
- * What is gained is measured by the largest internal energy until then. Drag
- * takes a gain as it takes all motion, by e^{-gamma t}: so with drag both are
- * leaky, and the scale is the largest kinetic energy that is left, as the
- * elastic energy of a cloth at rest is not motion. A loose cloth in free fall
- * may gain what it falls in two steps besides: speeds of methods of order 1 are
+ * The exact motion never raises the balance b of EnergyBalance. A method may
+ * raise it below its linear stability limit, too: a lattice of springs has
+ * parametric resonances (Verlet's is strongest at 0.71 of the limit), which
+ * need about 1000 steps to become visible. So b is judged in rounds of 8 looks:
+ * - If b rises in a round by more than half of the remaining tolerance, or if
+ *   the gain grows faster than in proportion to time, this round and the one
+ *   before, where the gain may have begun, are taken back; the step shrinks.
+ * - While drag removes energy, a longer step is tried after each 1/(4 gamma) of
+ *   time, gamma the measured drag, even beyond known limits. Without drag the
+ *   step grows at most to the first one. After each failure the control waits
+ *   longer before it tries that step again.
+ * The tolerance is a share of a scale: the largest internal energy so far. With
+ * drag a gain decays by e^{-gamma t}, as all motion does. So with drag gain and
+ * scale decay, and the scale is the largest remaining kinetic energy, because
+ * even a cloth at rest has elastic energy. A loose cloth may in addition gain
+ * the work of gravity in two steps: methods of order 1 have velocities that are
  * half a step early.
  *
- * The energy of an oscillation by a symplectic method swings within a round, by
- * O((dt omega)^2) of it: so a gain is from the least of one round to the least
- * of the next. For methods that lose energy only gains count. Changes are rare,
- * so that symplectic methods keep their virtue. */
+ * With a symplectic method the energy of an oscillation swings in a round by a
+ * share of O((dt omega)^2). So the least b of a round is compared with that of
+ * the round before. Losses of energy are accepted. The step changes rarely,
+ * since symplectic methods conserve energy well only while it is constant. */
 class StepControl {
  public:
   static constexpr int look_interval = 16;  ///< steps between two looks
   static constexpr int round = 8;           ///< looks
 
-  /** All that it knows, as plain numbers: energies in J, times in s. */
+  /** What the control has measured: energies in J, times in s. */
   struct State {
-    double dt = 0, ceiling = 0;  ///< the step, and the longest one for now
-    double scale = 0;            ///< what a gain is measured by
-    double fall = 0;             ///< the most of a loose cloth in two steps
-    double last = 0, least = 0;  ///< b: now, and the least mean of a round
-    double base = 0, low = 0;    ///< b: the least of the last round, of this
-    double mark = 0, sum = 0;    ///< b: when dt changed; of this round's looks
-    double gain = 0;             ///< the most that b was above least; leaky
-    double time = 0, kinetic_time = 0;  ///< since dt changed; kinetic energy's
-                                        ///< integral [J s]
-    double drag = 0;                    ///< loss until dt changed
+    double dt = 0, ceiling = 0;  ///< the step, and its upper bound for now
+    double scale = 0;            ///< the tolerance is a share of it
+    double fall = 0;             ///< gravity's work in two steps, if loose
+    double last = 0, least = 0;  ///< b: now, and its least mean over a round
+    double base = 0, low = 0;    ///< b: least in the last round, in this
+    double mark = 0, sum = 0;    ///< b: when dt changed; sum over this round
+    double gain = 0;             ///< largest b - least; decays with drag
+    double time = 0, kinetic_time = 0;  ///< since dt changed; integral of the
+                                        ///< kinetic energy [J s]
+    double drag = 0;                    ///< flow.drag when dt changed
     double lost = 0, kinetic = 0, fall_power = 0;  ///< at the last look
     int looks = 0;                                 ///< in this round
-    int rounds = 0, calm = 0;   ///< of the run, since dt changed
-    int since = 0, raises = 0;  ///< rounds since a failure, a raise; raises of
-                                ///< the ceiling since a failure
+    int rounds = 0, calm = 0;   ///< of the run; since dt changed
+    int since = 0, raises = 0;  ///< rounds since a failure or a raise of the
+                                ///< ceiling; raises since a failure
     void archive(Archive& a);
   };
-  /** What was chosen. */
+  /** The chosen steps. */
   struct Report {
     double shortest, longest;           ///< [s]
     int shortened = 0, lengthened = 0;  ///< times
@@ -64,38 +63,37 @@ class StepControl {
   };
 
   struct Limits {
-    double share = energy_tolerance;  ///< of the scale: what may be gained
-    double floor = 0;  ///< an energy that is next to nothing [J]:
-                       ///< DivergenceGuard::floor()
-    double rest = 0;   ///< that of a cloth at rest, by round-off [J]
+    double share = energy_tolerance;  ///< tolerated gain/scale
+    double floor = 0;                 ///< DivergenceGuard::floor() [J]
+    double rest = 0;  ///< energy of a cloth at rest, by round-off [J]
     double longest = std::numeric_limits<double>::infinity();  ///< step [s]
-    bool early = true;  ///< speeds are half a step early: order 1
+    bool early = true;  ///< order 1: velocities are half a step early
   };
-  /** @param dt the first step [s]   @param start energy at the start
-   * @param flow into it until then */
+  /** @param dt the first step [s]   @param start energies at the start
+   * @param flow until then */
   StepControl(double dt, const Energies& start, const Limits& limits,
               const EnergyFlow& flow = {});
 
   double dt() const { return now_.dt; }
   const State& state() const { return now_; }
   const Report& report() const { return report_; }
-  /** The most that the run may gain until now [J]. */
+  /** The tolerated gain of the run until now [J]. */
   double tolerance() const { return tolerance(now_, now_.looks); }
 
   enum class Verdict {
     go_on,
-    keep,      ///< the end of a good round: the state is one to go back to
+    keep,      ///< a good round ended: keep a copy of the state
     take_back  ///< call take_back()
   };
-  /** Judge the state after @a h [s] more. At the shortest step all is good.
-   * @param part of the run that is done, of [0, 1] */
+  /** Judge the state @a h [s] after the last one. The shortest step is never
+   * taken back.  @param part of the run that is done, from 0 to 1 */
   Verdict look(const Energies& e, const EnergyFlow& flow, double h,
                double part);
-  /** False if the step is as short as it gets. */
+  /** False at the shortest step: a 64th of the first. */
   bool can_shorten() const { return now_.dt > shortest_; }
-  /** To the state @a then, @a steps before, and on by a shorter step. */
+  /** Go back by @a steps to the state @a then; shorten the step. */
   void take_back(const State& then, long long steps);
-  /** Before a step: is it time for a longer one?  @return true if dt changed */
+  /** Lengthen the next step if it is time.  @return true if dt changed */
   bool lengthen(const EnergyFlow& flow);
 
   /** Save or load all that changes. */

@@ -1,47 +1,46 @@
 #pragma once
 /** @file StepLimit.hpp
- * How long a step of a method may be. */
+ * The longest step with which a method is stable. */
 #include "lab/methods/Method.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 namespace lab {
 
-/** The larger size of the eigenvalues of the matrix (a b; c d). */
+/** The spectral radius of the matrix (a b; c d). */
 double spectral_radius(double a, double b, double c, double d);
 
-/** By what factor a step of @a method makes an oscillator grow, x'' + gamma x'
- * + omega^2 x = 0, when it is repeated: the spectral radius of the step's
- * matrix. Found by stepping a mass on a spring of rest length 0, which is
- * exactly linear, from two states.
+/** The factor per step by which @a method amplifies the oscillator
+ * x'' + gamma x' + omega^2 x = 0: the spectral radius of the step's matrix. The
+ * matrix is found by stepping a mass on a spring of rest length 0, which is
+ * linear, from two states.
  * @param dt [s] > 0   @param omega [1/s] > 0   @param gamma [1/s] >= 0
  * Throws what the method throws. */
 double amplification(Method& method, double dt, double omega, double gamma = 0);
 
-/** The largest step [s] with which @a method stays bounded on all frequencies
- * up to @a omega [1/s], with a drag of @a gamma = c/m [1/s]; no_limit if all
- * do. Without drag info.limit/omega. Drag that is treated exactly does not
- * lower that; drag as a force does: symplectic Euler needs (dt omega)^2 + 2 dt
- * gamma < 4, forward Euler dt < gamma/omega^2. So the limit is the smaller one
- * of that without drag and of what amplification() says with it. */
+/** The largest step [s] with which @a method is stable at all frequencies up
+ * to @a omega [1/s] with drag @a gamma = c/m [1/s]; no_limit if it is stable
+ * with any step. Without drag this is info.limit/omega. Drag that the method
+ * solves exactly does not lower it; drag that is treated as a force does:
+ * symplectic Euler needs (dt omega)^2 + 2 dt gamma < 4, forward Euler dt <
+ * gamma/omega^2. Then a bisection finds where amplification() exceeds 1. */
 double step_limit(const MethodEntry& method, double omega, double gamma = 0);
 
-/** The longest step [s] with which @a method damps a wave of @a omega [1/s] by
- * at most @a share more than a drag of @a gamma > 0 [1/s] does; no_limit if
- * @a dt is one, and no less than a 16th of it. Splittings damp nothing by
- * themselves; rk4 takes (dt omega)^6/72 of the energy in every step. */
+/** The longest step [s] <= @a dt with which @a method damps a wave of @a omega
+ * [1/s] at most (1 + @a share) times as much as drag @a gamma > 0 [1/s] does;
+ * no_limit if @a dt itself does; at least dt/16. Splitting methods have no
+ * damping of their own; rk4 removes (dt omega)^6/72 of the energy a step. */
 double mild_step(const MethodEntry& method, double dt, double omega,
                  double gamma, double share);
 
-/** The largest c/m [1/s] of a node of a cloth with drag @a c.  O(N) */
+/** The largest c/m [1/s] of the nodes of @a g with drag @a c.  O(N) */
 double largest_gamma(const Cloth& g, const Drag& c);
 
-/** The share of a safe limit that `--dt auto` begins with, and of a sharp one;
- * StepControl goes on from there.
+/** `--dt auto` starts with this share of the safe limit, `--dt auto:sharp` with
+ * that of the sharp limit; then StepControl adapts the step.
  *
- * The safe limit is that of oscillations about any one configuration. A cloth
- * without drag that moves violently also gains energy from its changes of
- * configuration, below the limit, too. The sharp share also covers what
- * SharpOmega misses. */
+ * The safe limit holds for oscillations about one configuration. A cloth that
+ * moves violently without drag changes its configuration, and can gain energy
+ * below that limit. The sharp share also covers the error of SharpOmega. */
 inline constexpr double safe_share = 0.6, sharp_share = 0.9;
 
 }  // namespace lab
