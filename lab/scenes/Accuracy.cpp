@@ -17,9 +17,9 @@ namespace {
 
 using CME212::two_digits;
 
-/** Of inner steps, to the tolerance of the run beside it. */
+/** The tolerance of a run divided by that of its second run. */
 constexpr double finer = 10;
-/** The least tolerance [m] that round-off leaves room for. */
+/** The smallest useful tolerance [m], some hundred times round-off. */
 constexpr double least = 450 * std::numeric_limits<Real>::epsilon();
 constexpr int most_pairs = 6;
 
@@ -29,7 +29,7 @@ struct Pilot {
   std::string failure;
 };
 
-/** @param other to be held against it, or null */
+/** @param other the run to compare it with, or null */
 Pilot run_pilot(const Model& m, const Track* other, const std::string& doing,
                 const std::function<void(const std::string&, double)>& tell) {
   Scene scene(m);
@@ -71,8 +71,8 @@ Accuracy find_accuracy(
       if (best.horizon < 0) best.unknown = b.failure;
       break;
     }
-    // An error e of the first leaves e/ratio of it in the second: at a contact
-    // errors go down with the step by first order.
+    // If the first run has the error e, the second one has e/ratio. At contacts
+    // the error is of first order in the step.
     const double ratio = m.has_contact()
                              ? double(b.evaluations) / double(a->evaluations)
                              : finer;
@@ -89,8 +89,8 @@ Accuracy find_accuracy(
     const double before = best.horizon, step_before = best.step.tolerance;
     best = now;
     if (now.kept()) break;
-    // As far as errors are proportional to the tolerance; and where they have
-    // stopped growing, as the horizon grows by its logarithm.
+    // Small errors are proportional to the tolerance. If they have saturated,
+    // the horizon grows with the logarithm of the tolerance.
     double share = std::max(1e-4, asked / (3 * now.rms));
     if (before >= 0)
       share = std::min(

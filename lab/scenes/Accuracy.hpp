@@ -1,7 +1,7 @@
 #pragma once
 /** @file Accuracy.hpp
- * A tolerance for the positions of a run: the inner steps that keep it, found
- * by runs, and what they keep. */
+ * Finds the inner steps by which positions stay within a tolerance, and
+ * measures the error. */
 #include <functional>
 #include <string>
 
@@ -9,36 +9,35 @@
 
 namespace lab {
 
-/** What a run by error control keeps, as measured. */
+/** The measured accuracy of a run with error control. */
 struct Accuracy {
-  double asked = 0;    ///< [m]
-  TimeStep step;       ///< by which the run is to be made
+  double asked = 0;    ///< the tolerance [m]
+  TimeStep step;       ///< the run should use it
   double t_end = 0;    ///< [s]
-  double horizon = 0;  ///< until when the RMS error stays within asked [s]
-  /** The largest error at any time [m]: RMS over the nodes, and of a node;
-   * infinite if runs tear off different nodes. */
+  double horizon = 0;  ///< how long the RMS error stays within asked [s]
+  /** The largest error at any time [m]: RMS over the nodes, and of one node;
+   * infinite if the runs remove different nodes. */
   double rms = 0, largest = 0;
-  std::string unknown;  ///< why it could not be measured; else empty
+  std::string unknown;  ///< why no error could be measured; else empty
 
   bool kept() const { return unknown.empty() && horizon >= t_end; }
   /** The verdict in one sentence. */
   std::string text() const;
 };
 
-/** Find out by which inner steps the scene @a m keeps its positions, RMS over
- * the nodes, within @a asked [m] until its end, and what it keeps.
+/** Find inner steps with which the RMS error of the positions of @a m stays
+ * within @a asked [m] until the end, and measure that error.
  *
  * Local errors within m.step.tolerance do not bound the error at the end: where
- * a cloth buckles or touches something, nearby motions separate. So the run is
- * made twice, the second time with a tenth of that tolerance and half of dt;
- * the distance between them is the error of the first, up to a factor that is
- * taken into account. If it exceeds @a asked, both are made again with a
- * smaller tolerance, down to some 1000 times round-off. If that does not do
- * either the motion is chaotic, and the positions are predictable up to the
- * horizon only.
+ * a cloth buckles or touches something, nearby trajectories separate. So the
+ * scene is run twice, the second time with a tenth of that tolerance and half
+ * of dt. The distance of the two runs, times a known factor, is the error of
+ * the first. If it exceeds @a asked, both runs are repeated with a smaller
+ * tolerance, down to about 1000 times round-off. If that is not enough either,
+ * the motion is chaotic, and positions are predictable only up to the horizon.
  *
  * @pre m.method is adaptive, m.step.fixed(), m.step.tolerance > 0
- * @param tell what is being done, and its share that is done; now and then
+ * @param tell called with a text and the finished share of the present run
  * Throws InputError, SceneError, Interrupted.
  * Complexity: 2.4 times the run for a smooth motion by dop853, up to 20 times
  * for a chaotic one. */

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Acting.hpp
- * What ./cloth prints of a scene before it runs: all that acts in it. */
+ * The list that ./cloth prints before a run: what acts in the scene. */
 #include <string>
 #include <vector>
 

@@ -40,15 +40,15 @@ std::string_view bytes_of(std::span<T> list) {
   return {reinterpret_cast<const char*>(list.data()), list.size_bytes()};
 }
 
-/** The lines of a scene file that say how the run goes on. */
-std::vector<std::string> lines_that_count(const std::string& scene) {
+/** The lines of a scene file that change the steps of a run. */
+std::vector<std::string> relevant_lines(const std::string& scene) {
   Model none;
   const auto fields = fields_of(none);
   std::vector<std::string> lines;
   std::istringstream in(scene);
   for (std::string line; std::getline(in, line);) {
     const std::string key = line.substr(0, line.find(' '));
-    // Files may have moved: what is in them is compared by itself.
+    // Files may have moved; checksum_of() compares their contents.
     const auto f = std::ranges::find(fields, key, &Field::name);
     if (f != fields.end() && f->role != Role::asked && f->role != Role::mesh)
       lines.push_back(line);
@@ -135,8 +135,8 @@ void archive_scene(Archive& a, const Model& m, const Cloth& g) {
   if (!a.loads()) return;
   if (tolerance != m.step.tolerance)
     throw SceneError("restart", "is of steps of another tolerance");
-  const auto there = lines_that_count(scene);
-  const auto now = lines_that_count(to_scene_file(m));
+  const auto there = relevant_lines(scene);
+  const auto now = relevant_lines(to_scene_file(m));
   auto quoted = [](const auto& lines, std::size_t k) {
     return k < lines.size() ? lines[k] : "nothing";
   };
@@ -155,7 +155,7 @@ void archive_cloth(Archive& a, Cloth& g) {
   auto require = [](bool ok) {
     if (!ok) throw std::runtime_error("it does not belong to this cloth");
   };
-  std::vector<char> nodes, edges;  // by id: whether it is there
+  std::vector<char> nodes, edges;  // by id: whether it is in use
   std::vector<unsigned> node_ids, edge_ids, lists;  // by index; at all nodes
   auto each_edge_at = [&g](unsigned id, auto use) {
     for (const auto& to : g.neighbors(id)) use(to.edge);
@@ -175,8 +175,8 @@ void archive_cloth(Archive& a, Cloth& g) {
       if (!edges[e]) g.remove_edge(g.edge_with_id(e));
     for (unsigned i = 0; i < nodes.size(); ++i)
       if (!nodes[i]) g.remove_node(g.node_with_id(i));
-    auto name_all = [&require](const auto& ids, std::size_t size,
-                               std::size_t slots, auto there) {
+    auto require_each_once = [&require](const auto& ids, std::size_t size,
+                                        std::size_t slots, auto there) {
       require(ids.size() == size);
       std::vector<char> seen(slots);
       for (unsigned id : ids) {
@@ -184,10 +184,10 @@ void archive_cloth(Archive& a, Cloth& g) {
         seen[id] = true;
       }
     };
-    name_all(node_ids, g.num_nodes(), nodes.size(),
-             [&g](unsigned id) { return g.node_in_use(id); });
-    name_all(edge_ids, g.num_edges(), edges.size(),
-             [&g](unsigned id) { return g.edge_in_use(id); });
+    require_each_once(node_ids, g.num_nodes(), nodes.size(),
+                      [&g](unsigned id) { return g.node_in_use(id); });
+    require_each_once(edge_ids, g.num_edges(), edges.size(),
+                      [&g](unsigned id) { return g.edge_in_use(id); });
     std::size_t at = 0;
     for (unsigned i = 0; i < nodes.size(); ++i) {
       std::vector<unsigned> now;

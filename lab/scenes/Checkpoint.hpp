@@ -1,6 +1,6 @@
 #pragma once
 /** @file Checkpoint.hpp
- * The file from which a run goes on. lab/README.md says how to use it. */
+ * Checkpoints: files from which a run continues. See lab/README.md. */
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -12,44 +12,45 @@ namespace lab {
 
 struct Model;
 
-/** CRC-64/XZ of @a bytes; or of what had the checksum @a before and @a bytes:
- * the polynomial of ECMA-182, reflected. Any change of up to 64 bits in a row
- * is found, any other one but for one in 2^64.  O(bytes) */
+/** CRC-64/XZ of @a bytes: the polynomial of ECMA-182, reflected. Detects all
+ * burst errors of up to 64 bits, and all but one in 2^64 of the others.
+ * @param before checksum of the bytes in front of these.  O(bytes) */
 std::uint64_t crc64(std::string_view bytes, std::uint64_t before = 0);
 
-/** The crc64() of nodes and springs of a cloth as it was made.  O(N) */
+/** The crc64() of the nodes and springs of a new cloth.  O(N) */
 std::uint64_t checksum_of(const Cloth& g);
 
-/** Write what @a saved holds to @a file, whole or not at all, and until it is
- * on the disk: a line with the version, the length, the bytes, the checksum of
- * all that.  Throws std::runtime_error "FILE: why" */
+/** Write @a saved to @a file, which appears when it is complete and on the
+ * disk: a line with the version, the length, the bytes, and a checksum of all
+ * this. Throws std::runtime_error "FILE: why" */
 void write_checkpoint(const std::string& file, const Archive& saved);
 
-/** What was saved in @a file, to load.
- * Throws std::runtime_error "FILE: why": it can't be read, is no checkpoint,
- * one of another version or of another precision, too short, damaged. */
+/** The archive in @a file, ready to load from.
+ * Throws std::runtime_error "FILE: why" if it can't be read, is no checkpoint,
+ * is of another version or precision, too short, or damaged. */
 Archive read_checkpoint(const std::string& file);
 
-/** The scene that archive_scene() saved first of all. */
+/** What archive_scene() saves first. */
 struct SavedScene {
-  std::string name, text;     ///< of a scene file
-  double step_tolerance = 0;  ///< TimeStep::tolerance, which is not in it
+  std::string name, text;     ///< Model::name; to_scene_file()
+  double step_tolerance = 0;  ///< TimeStep::tolerance, not in the text
 };
-/** That of a checkpoint.  Throws as read_checkpoint() */
+/** The scene of a checkpoint.  Throws as read_checkpoint() */
 SavedScene scene_in_checkpoint(const std::string& file);
 
-/** Save or load the scene @a m whose cloth starts as @a g: its
- * name, its file, a checksum of the cloth.
- * Throws SceneError: what is loaded is another scene. t-end, and what does not
- * change the run (measure, tolerance, view), may differ. */
+/** Save the scene @a m, whose cloth starts as @a g: its name, its text, a
+ * checksum of the cloth. Or load a scene and compare it with @a m.
+ * Throws SceneError if they differ; but t-end, measure, tolerance and view,
+ * which do not change the steps, may differ. */
 void archive_scene(Archive& a, const Model& m, const Cloth& g);
 
-/** Save or load the state of a cloth that has lost nodes and edges since it was
- * made: who is left, all orders, positions, velocities and masses.
- * @pre of loading: @a g is as it was made. Springs are the same
- * @post of loading: every id, index and order of edges is as it was
+/** Save or load what changes in a cloth that may lose nodes and edges: which
+ * are left, all orders, positions, velocities, masses; but no rest lengths or
+ * K.
+ * @pre of loading: @a g is as it was built
+ * @post of loading: all ids, indices and orders of edges are the saved ones
  * Throws std::runtime_error: what is loaded does not belong to @a g.
- * Complexity: O(nodes + edges), if no node that lost an edge has very many */
+ * Complexity: O(nodes + edges), if nodes that lost an edge have few */
 void archive_cloth(Archive& a, Cloth& g);
 
 }  // namespace lab

@@ -33,15 +33,15 @@ void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
   mesh.velocities.resize(mesh.points.size(), s.velocity);
 }
 
-/** Two points, the quad of which they are a side, and their neighbors along
- * the sides that go on from them. */
+/** A side of a quad: its two points, the quad, and the quad's other two points
+ * in the order of their neighbors. */
 struct Side {
   std::array<unsigned, 2> ends;  // the smaller one first
   std::size_t quad;
-  std::array<unsigned, 2> beyond;  // the ends of the side across
+  std::array<unsigned, 2> beyond;  // the ends of the opposite side
 };
 
-/** All sides of all quads; those of the same ends follow each other. */
+/** All sides of all quads; sides with the same ends are adjacent. */
 std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
   std::vector<Side> all;
   for (std::size_t k = 0; k < quads.size(); ++k)
@@ -61,7 +61,7 @@ std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
   return all;
 }
 
-/** Call @a use(p, q, i, j) for each two points @a p and @a q that are two sides
+/** Call @a use(p, q, i, j) for each pair of points p and q that lie two sides
  * apart, across a side that quads i and j share: twice inside a grid. */
 template <typename Use>
 void each_bend(const std::vector<Quad>& quads, Use use) {
@@ -80,9 +80,7 @@ double area(const PointsAndQuads& mesh, const Quad& q) {
   return norm(cross(p[q[3]] - p[q[0]], p[q[2]] - p[q[1]])) / 2;
 }
 
-/** K of all springs by the modulus Y [N/m]: a spring stands for the width of
- * cloth at its side, so that cloth of squares has K = Y, and half of that in
- * sides at its rim. */
+/** Set K of all springs by the modulus Y [N/m], as build_model() says. */
 void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
                    double modulus) {
   for (Edge e : g.edges()) e.value().K = 0;
@@ -124,7 +122,7 @@ void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
   }
 }
 
-/** Throws SceneError: a region in which there is nothing of what it changes. */
+/** Throws SceneError: a region without a node or an edge that it changes. */
 void change_region(Cloth& g, const Region& r) {
   auto fail = [&](const char* what) {
     throw SceneError("region", '"' + to_words(r) + "\" holds no " + what);
@@ -203,7 +201,6 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
   if (m.material.modulus) set_stiffness(g, mesh, m.edges, *m.material.modulus);
   if (m.material.density) set_masses(g, mesh, *m.material.density);
   for (const Region& r : m.regions) change_region(g, r);
-  // What is held is at rest, whatever the cloth around it does.
   for (unsigned i = 0; i < mesh.velocities.size(); ++i)
     if (!is_held(m, mesh.points[i])) g.node(i).value().vel = mesh.velocities[i];
 }
@@ -299,7 +296,7 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
     std::vector<PinConstraint::Pin> pins;
     for (const auto& [id, place] : h.nodes)
       if (g.node_in_use(id)) pins.push_back({g.node_with_id(id), place});
-    // One at rest has no time at which it stops.
+    // A pin at rest has no time at which it stops.
     add(MovingPinConstraint(
         pins, h.motion.velocity == Point() ? Motion() : h.motion));
   }
@@ -333,7 +330,7 @@ Recipe recipe_of(const Model& m, PointsAndQuads mesh) {
   };
   using Kind = Obstacle::Kind;
   for (const Wall& w : m.planes)
-    // One that is inclined would hide what lies on it.
+    // An inclined plane would hide what lies on it.
     if (w.out() == Point(0, 0, 1))
       r.obstacles.push_back({Kind::floor, w.at, 0, w.motion});
   for (const Solid& s : m.spheres)

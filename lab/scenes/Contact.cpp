@@ -11,7 +11,7 @@ namespace contact {
 
 Point kick(const Point& u, const Point& out, double friction) {
   const double in = -dot(u, out);
-  if (!(in > 0)) return Point();  // it is about to leave
+  if (!(in > 0)) return Point();  // it moves outwards
   const Point along = u + in * out;
   const double slide = norm(along), brake = std::min(friction * in, slide);
   return in * out + (slide > 0 ? along * (-brake / slide) : Point());
@@ -55,7 +55,7 @@ double MovingPinConstraint::next_velocity_jump(double t) const {
 void Touchable::touch(Node n, double depth, const Point& out,
                       const Point& velocity) const {
   const double work = contact::touch(n, depth, out, velocity, friction_);
-  if (!nodewise()) work_ += work;  // else parts may be projected at once
+  if (!nodewise()) work_ += work;  // else several threads may be here
 }
 
 // ----------------------------------------------------------------------- Wall

@@ -1,11 +1,10 @@
 #pragma once
 /** @file Contact.hpp
- * The constraints that scenes ask for beyond those of the assignment: walls and
- * balls that may move and rub, pins that move, and edges that break.
+ * The constraints of scenes beyond those of the assignment: walls and balls
+ * with friction that may move, moving pins, and edges that break.
  *
- * Where a node meets a moving obstacle, only their relative velocity counts:
- * contact::touch(). One difference to the assignment's plane and sphere, which
- * take all of the normal velocity: here a node on its way out keeps it. */
+ * The assignment's plane and sphere remove all of a node's normal velocity;
+ * walls and balls remove only the inward part, relative to the obstacle. */
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -18,39 +17,39 @@ namespace lab {
 
 namespace contact {
 
-/** The change of a velocity [m/s] in a contact, if it is @a u relative to what
- * is touched. The inward part of u is taken away, and with it, by Coulomb's law
- * for impulses, up to @a friction times as much of the part along the surface,
- * but no more than there is of it. Nothing is ever added, so the energy of the
- * relative motion does not grow. Source: R. Bridson, R. Fedkiw, J. Anderson,
- * ACM Trans. Graph. 21 (2002) 594, doi:10.1145/566654.566623
- * @param out of length 1, the way out   @param friction coefficient, >= 0 */
+/** The change of a node's velocity [m/s] in a contact.  @param u its velocity
+ * relative to the obstacle   @param out the outward unit normal
+ * @param friction coefficient, >= 0
+ * Removes the inward part of u and, by Coulomb's law for impulses, up to
+ * @a friction times as much of the tangential part, at most all of it. So the
+ * energy of the relative motion does not grow. Source: R. Bridson, R. Fedkiw,
+ * J. Anderson, ACM Trans. Graph. 21 (2002) 594, doi:10.1145/566654.566623 */
 Point kick(const Point& u, const Point& out, double friction);
 
-/** Node @a n lies @a depth [m] inside of what moves at @a velocity [m/s]: put
- * it back to the surface, and let kick() change its velocity.
+/** Node @a n lies @a depth [m] inside an obstacle that moves at @a velocity
+ * [m/s]: put it back to the surface, and change its velocity by kick().
  *
- * It should have had that kick when it came to the surface: depth/in ago, in =
- * the speed at which it went in. So it also goes back along the surface by the
- * kick times that time, which is what it slid too far, and never more than
- * friction times depth. Without this a node at rest on a slope of angle a
- * creeps by g sin a dt^2 in each step; with it, it stands.
- * @return the work done on the node by what moves [J]: impulse . velocity */
+ * The contact began depth/in ago, where in is the inward speed. Had friction
+ * acted since then, the node would have slid less: so it also moves along the
+ * surface by the tangential kick times depth/in, at most friction times depth.
+ * Without that, a node at rest on a slope of angle a would creep by
+ * g sin a dt^2 in each step.
+ * @return the obstacle's work on the node [J]: impulse . velocity */
 double touch(Node n, double depth, const Point& out, const Point& velocity,
              double friction);
 
 }  // namespace contact
 
-/** Moves nodes along a line: at time t they are where they were when the pin
- * was made + way(t), with the velocity of that. Methods ask where at each of
- * their stages. Removing a pinned node is fine: the pin goes on with the
- * others.  Complexity of a call: O(pins). */
+/** Moves nodes along a line: at time t they are at their initial places +
+ * way(t), with the velocity of that. Methods ask for the places at each of
+ * their stages. Pinned nodes may be removed; the others are still moved.
+ * Complexity of a call: O(pins). */
 class MovingPinConstraint : public NodewiseConstraint {
  public:
   /** The nodes of @a pins move.  @pre all in one graph */
   MovingPinConstraint(const PinConstraint& pins, const Motion& motion)
       : MovingPinConstraint(pins.pins(), motion) {}
-  /** The same by nodes and their places at t = 0. */
+  /** The same for nodes with their places at t = 0. */
   MovingPinConstraint(const std::vector<PinConstraint::Pin>& pins,
                       const Motion& motion)
       : pins_(pins), motion_(motion) {}
@@ -75,8 +74,8 @@ class MovingPinConstraint : public NodewiseConstraint {
   }
 };
 
-/** What nodes touch, and what may move and rub: the part that a wall and a ball
- * share. While it moves it adds up its work, node by node in one order. */
+/** The common part of wall and ball: an obstacle with friction that may move.
+ * While it moves it adds up its work, node by node in a fixed order. */
 class Touchable : public NodewiseConstraint {
  public:
   bool nodewise() const override { return motion_.velocity == Point(); }
@@ -103,14 +102,13 @@ class Touchable : public NodewiseConstraint {
   mutable double work_ = 0;  // [J]
 };
 
-/** A half space that no node enters, bounded by a plane.
+/** A half space bounded by a plane, which no node enters.
  * @post no node lies below the plane by more than round-off; without friction,
- * one that did lies at the nearest point of it. Velocities: contact::touch().
- */
+ * a node that did is at its nearest point. Velocities: contact::touch(). */
 class WallConstraint : public Touchable {
  public:
   /** @param at a point of the plane at t = 0 [m]
-   * @param normal out of the wall, of any length > 0
+   * @param normal pointing out of the wall, of any length > 0
    * @param friction coefficient, >= 0 */
   WallConstraint(const Point& at, const Point& normal,
                  const Motion& motion = {}, double friction = 0);
@@ -124,19 +122,18 @@ class WallConstraint : public Touchable {
 };
 
 /** A solid ball that may move. @post no node lies inside by more than
- * round-off; without friction, one that did lies at the nearest point of the
- * surface (the top one, if it was at the center). Velocities:
- * contact::touch().
+ * round-off; without friction, a node that did is at the nearest point of the
+ * surface (the top, if it was at the center). Velocities: contact::touch().
  *
- * A node that tunnels through a ball within a step is caught only while the
- * ball is at rest. Whoever lets it move keeps steps so short that the speeds
- * of ball and nodes, times dt, stay well below the radius. */
+ * first_hit() finds a node that tunnels through the ball only if the ball is at
+ * rest. If it moves, choose steps so short that the speeds of ball and nodes,
+ * times dt, stay well below the radius. */
 class BallConstraint : public Touchable {
  public:
   /** @param ball at t = 0   @param friction coefficient, >= 0 */
   explicit BallConstraint(const Ball& ball, const Motion& motion = {},
                           double friction = 0);
-  /** Of the ball, while it moves [m/s]. */
+  /** The speed of the ball while it moves [m/s]. */
   double speed() const { return norm(motion_.velocity); }
 
   void project(Cloth& g, double t, unsigned first,
@@ -151,8 +148,8 @@ class BallConstraint : public Touchable {
   Ball ball_;
 };
 
-/** Edges that break. @post no edge is longer than (1 + limit) times its rest
- * length L. Nodes stay, also those without an edge: what hung on them falls.
+/** Removes overstretched edges. @post no edge is longer than (1 + limit) times
+ * its rest length L. Nodes stay, even those without any edge left.
  * Invalidates: as Graph::remove_edge(), for each edge removed.
  * Complexity: O(edges); the first removal as that of the graph. */
 class StrainConstraint : public SweptConstraint {

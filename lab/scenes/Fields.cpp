@@ -188,7 +188,7 @@ bool set_field(Model& m, std::string_view name,
 }
 
 Model checked(Model m) {
-  // No error of the user's if it is the default that is too long.
+  // A default that is too long is no error of the user.
   double& dt = m.step.dt;
   const bool fixed = m.step.fixed();
   if (fixed && dt == TimeStep().dt && m.t_end > 0) dt = std::min(dt, m.t_end);

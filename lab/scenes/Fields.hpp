@@ -1,8 +1,7 @@
 #pragma once
 /** @file Fields.hpp
  * The fields of a Model, in one table: name, help, reader and writer of each.
- * Scene files, options of ./cloth, help and dumps are made from it. README.md
- */
+ * Scene files, options of ./cloth, help and dumps use it. See README.md. */
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,47 +11,47 @@
 
 namespace lab {
 
-/** What a field says of a scene. */
+/** What a field describes. */
 enum class Role {
-  mesh,     ///< a file of the cloth
-  cloth,    ///< a part: what the cloth is
-  number,   ///< acts with its default, too
-  acts,     ///< a part: holds nodes, or changes the material in a place
-  contact,  ///< a part: not smooth
-  method,   ///< how it is computed
-  asked,    ///< what is asked of it, how long it runs, what is shown
+  mesh,     ///< a file of the mesh
+  cloth,    ///< a part that makes up the cloth
+  number,   ///< a number, which has an effect by its default, too
+  acts,     ///< a part that holds nodes or changes the material in a region
+  contact,  ///< a part by which the motion is not smooth
+  method,   ///< how the motion is computed
+  asked,    ///< what is asked, how long the run is, what is shown
 };
 
 /** A field of one Model. */
 struct Field {
   const char* name;  ///< the key of a scene file; as an option --name
   Role role;
-  const char* group;  ///< of the help
+  const char* group;  ///< its heading in the help
   Member member;
   const char* help;           ///< with units
-  const char* expected = "";  ///< of a number
+  const char* expected = "";  ///< of a number, for messages
   Word::Range range = Word::Range::any;
-  /** The name of the field that has no effect while this one has a value. */
+  /** While this field has a value, the field of this name has no effect. */
   std::string_view instead_of = {};
 
-  /** FILE, FLOAT, TEXT or another form of a value. */
+  /** The form of a value: FILE, FLOAT, TEXT ... */
   const char* type() const;
   bool repeats() const;  ///< it may have several values
-  /** Its values; empty: it is not there. */
+  /** Its values as text; empty if it is not set. */
   std::vector<std::string> values() const;
 };
 
 /** All fields of @a m, in the order in which they are written. */
 std::vector<Field> fields_of(Model& m);
 
-/** Set the field @a name to the @a values, and clear the one that would replace
+/** Set the field @a name to @a values, and clear the field that would replace
  * it.  @return false if there is no such field
- * Throws SceneError: a wrong value; several for a field that has one */
+ * Throws SceneError: a wrong value; several values for a field of one */
 bool set_field(Model& m, std::string_view name,
                const std::vector<std::string>& values);
 
-/** @a m as it is run. If it names no part, it gets those of assignment_scene();
- * a default step that is longer than t-end becomes t-end.
+/** The scene that is run for @a m: if @a m names no part, it gets those of
+ * assignment_scene(); a default step longer than t-end becomes t-end.
  * Throws SceneError: fields that contradict each other */
 Model checked(Model m);
 

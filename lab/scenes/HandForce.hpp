@@ -1,6 +1,6 @@
 #pragma once
 /** @file HandForce.hpp
- * A hand that pulls one node of a cloth. */
+ * HandForce: the force by which a user drags one node of a cloth. */
 #include <algorithm>
 #include <span>
 
@@ -8,23 +8,23 @@
 
 namespace lab {
 
-/** A spring of rest length 0 from a node to a target, whose force is bounded:
- * f = k d, but never more than most, d = target - x.
+/** A spring of rest length 0 from a node to a target, with a bounded force:
+ * f = k d with d = target - x, cut off at |f| = most.
  *
- * Its stiffness is nowhere above k, so a cloth with it has omega^2 of at most
- * that without it + k/m (Weyl). Methods that ask for a stiffness are told none:
- * beside the springs it is small, and a Newton iteration without it converges
- * all the same. */
+ * Its stiffness never exceeds k, so it raises omega^2 of the cloth by at most
+ * k/m (Weyl). add_stiffness() omits it: it is small beside the springs, and a
+ * Newton iteration converges without it. */
 class HandForce : public SweptForce {
  public:
-  /** @param node its id   @param k [N/m] >= 0   @param most [N] >= 0 */
+  /** @param node the id of the node   @param k [N/m] >= 0   @param most [N] >=
+   * 0 */
   HandForce(unsigned node, const Point& target, double k, double most)
       : node_(node), target_(target), k_(k), most_(most) {}
   unsigned node() const { return node_; }
   const Point& target() const { return target_; }
   double stiffness() const { return k_; }
   double most() const { return most_; }
-  /** Between two steps.  @param target [m] */
+  /** Move the target between two steps.  @param target [m] */
   void move(const Point& target) { target_ = target; }
 
   /** The force [N] at @a x [m]. */
@@ -41,7 +41,7 @@ class HandForce : public SweptForce {
     if (part.first <= node_ && node_ < part.last && part.g.node_in_use(node_))
       f[node_ - part.first] += pull(part.g.positions()[node_]);
   }
-  /** Of both parts of the force: k d^2/2, and from there on linear. */
+  /** k d^2/2 up to the cut-off, linear in d beyond it [J]. */
   double energy(const Cloth& g) const override {
     if (!g.node_in_use(node_)) return 0;
     const double d = norm(target_ - g.positions()[node_]);

@@ -23,8 +23,8 @@ void append_utf8(std::string& text, unsigned c) {
   for (int k = more - 1; k >= 0; --k) text += char(0x80 | (c >> 6 * k & 0x3F));
 }
 
-/** Reads the values of one line from its front. What is thrown goes on after
- * the key. */
+/** Reads the values of one line from its front. what() of its errors continues
+ * a sentence that begins with the key. */
 class Reader {
  public:
   explicit Reader(std::string_view rest) : rest_(rest) {}

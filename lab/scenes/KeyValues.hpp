@@ -1,6 +1,6 @@
 #pragma once
 /** @file KeyValues.hpp
- * Lines KEY = VALUE, as in TOML: the grammar of a scene file. README.md */
+ * Reads lines KEY = VALUE, the grammar of a scene file. See README.md. */
 #include <functional>
 #include <string>
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace lab {
 
-/** What stands in one line. */
+/** The content of one line. */
 struct KeyValue {
   std::string key;
   std::vector<std::string> values;  ///< one, unless it is a list
@@ -19,7 +19,7 @@ struct KeyValue {
  * of TOML; text in single quotes, as it stands; a list of values in brackets,
  * on one line; or anything else, up to a comment. A byte order mark is skipped.
  * @param file its name, for messages
- * Throws InputError: another line. */
+ * Throws InputError: any other line. */
 void each_key_value(
     std::string_view text, const std::string& file,
     const std::function<void(const KeyValue&, std::size_t line)>& use);
@@ -27,8 +27,8 @@ void each_key_value(
 /** @a text as a message can show it: short, without control characters. */
 std::string printable(std::string_view text);
 
-/** @a text in double quotes, on one line: read again it is the same, whatever
- * bytes it has. */
+/** @a text in double quotes, on one line, with escapes: each_key_value() reads
+ * the same bytes. */
 std::string in_quotes(std::string_view text);
 
 }  // namespace lab

@@ -24,7 +24,7 @@ double distance(const Answer& a, const Answer& b, Measure measure) {
 
 namespace {
 
-/** Places on each sheet, along u and along v, whose positions are compared. */
+/** Sampled places on each sheet, along u and along v. */
 constexpr int samples = 9;
 
 /** The position of the place (s, t) of [0, 1]^2 on a sheet whose first node has

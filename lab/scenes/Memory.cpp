@@ -34,7 +34,7 @@ double needed_memory(double nodes, double springs) {
 
 double available_memory() {
   double least = 1024 * number_in("/proc/meminfo", "MemAvailable:");
-  // A control group says how much all of its processes may have, and have.
+  // The limit of a control group, and what all of its processes use.
   const char* of_groups[][2] = {
       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"},
       {"/sys/fs/cgroup/memory/memory.limit_in_bytes",

@@ -1,21 +1,21 @@
 #pragma once
 /** @file Memory.hpp
- * How much memory a cloth takes, and how much there is: said before it is
- * taken. */
+ * The memory that a run needs and the memory that is available: compared before
+ * a cloth is built. */
 #include <cstddef>
 
 namespace lab {
 
 /** The least memory [bytes] of a run of a cloth of that many nodes and springs:
- * measured with the method that takes least. One with stages takes up to twice
- * as much, an implicit one more. */
+ * measured with the method that needs least. Methods with several stages need
+ * up to twice as much, implicit methods more. */
 double needed_memory(double nodes, double springs);
 
-/** Memory [bytes] that this process can still take: what the system says is
- * available, the limit of its control group, and that of its addresses
- * (ulimit -v), whichever is least; infinity if none is known. */
+/** Memory [bytes] that this process can still allocate: the least of what the
+ * system has available, the rest of the control group's limit, and
+ * available_addresses(); infinity if none is known. */
 double available_memory();
-/** The last of these alone. */
+/** The rest of the address space [bytes] (ulimit -v); infinity: no limit. */
 double available_addresses();
 
 }  // namespace lab

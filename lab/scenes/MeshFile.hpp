@@ -1,7 +1,7 @@
 #pragma once
 /** @file MeshFile.hpp
- * Reads and writes the files of a mesh: those of CME212/Mesh.hpp, where a line
- * of a point may have its velocity, too. data/README.md */
+ * Reads and writes the files of a mesh: those of CME212/Mesh.hpp, in which a
+ * point may also have a velocity. See data/README.md. */
 #include <ostream>
 #include <string>
 #include <vector>
@@ -14,15 +14,15 @@ namespace lab {
 struct PointsAndQuads {
   std::vector<Point> points;  ///< [m]
   std::vector<Quad> quads;
-  /** Of the points, at t = 0 [m/s]; or none: at rest. */
+  /** Of the points at t = 0 [m/s]; empty: at rest. */
   std::vector<Point> velocities = {};
 };
 
 /** The points of a .nodes file, and their velocities if it has them: "x y z"
  * [m] in each line, or "x y z vx vy vz" [m, m/s] in each.
- * @param text all of the file   @param file its name, for messages
- * @return without quads
- * Throws InputError: any other line, lines of both kinds; no line. */
+ * @param text the whole file   @param file its name, for messages
+ * @return a mesh without quads
+ * Throws InputError: any other line, lines of both kinds, or no line. */
 PointsAndQuads parse_nodes(std::string_view text, const std::string& file);
 
 /** The mesh in the files @a nodes and @a tets.
@@ -30,15 +30,15 @@ PointsAndQuads parse_nodes(std::string_view text, const std::string& file);
 PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets);
 
 /** Write the lines of a .nodes file, with velocities if @a mesh has them, and
- * of a .tets file: read again they are the same numbers. */
+ * of a .tets file. Reading them gives the same numbers. */
 void write_nodes(std::ostream& out, const PointsAndQuads& mesh);
 void write_quads(std::ostream& out, const PointsAndQuads& mesh);
 
-/** The .tets file that goes with the file of points @a nodes: A.tets with
- * A.nodes, else A.tets with A; "" with a pipe or a device. */
+/** The .tets file that belongs to the file of points @a nodes: A.tets to
+ * A.nodes, else A.tets to A; "" to a pipe or a device. */
 std::string quads_beside(const std::string& nodes);
 
-/** The name of a file from the root on. */
+/** The absolute path of @a file. */
 std::string absolute(const std::string& file);
 
 }  // namespace lab

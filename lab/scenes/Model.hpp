@@ -1,7 +1,7 @@
 #pragma once
 /** @file Model.hpp
  * Model: a scene as plain data: a cloth, what acts on it, how it is computed,
- * and what is asked of it. SI units; z up. README.md */
+ * and what is asked of it. SI units; z points up. See README.md. */
 #include <array>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ namespace lab {
 
 struct MethodEntry;  // lab/methods/Method.hpp
 
-/** A scene that can't be. what() begins with the option that is wrong. */
+/** An error in a scene. what() begins with the option that is wrong. */
 struct SceneError : std::runtime_error {
   SceneError(const std::string& option, const std::string& what)
       : std::runtime_error("--" + option + " " + what) {}
@@ -25,19 +25,19 @@ struct SceneError : std::runtime_error {
 /** How the step is chosen. */
 enum class StepRule {
   fixed,  ///< the scene gives dt
-  safe,   ///< it starts at safe_share of the limit that holds in every
-          ///< configuration; then the energy balance chooses: StepControl
-  sharp,  ///< it starts at sharp_share of the limit in the present
-          ///< configuration, and never exceeds that in every one
+  safe,   ///< StepControl chooses it, starting at safe_share of the stability
+          ///< limit that holds in every configuration
+  sharp,  ///< the same, starting at sharp_share of the limit in the present
+          ///< configuration, but at most at the limit in every one
 };
 
 /** How long a step is. */
 struct TimeStep {
   double dt = 0.001;  ///< [s], > 0; of StepRule::fixed
   StepRule rule = StepRule::fixed;
-  double gain = 0.1;  ///< share of the energy of motion that chosen steps may
-                      ///< add, in (0, 1]
-  /** Error of an inner step of a method with error control [m]; 0: the
+  double gain = 0.1;  ///< tolerated gain of energy by chosen steps, as a share
+                      ///< of the internal energy, in (0, 1]
+  /** Tolerated error of an inner step of an adaptive method [m]; 0: the
    * method's default. */
   double tolerance = 0;
   bool fixed() const { return rule == StepRule::fixed; }
@@ -46,12 +46,12 @@ struct TimeStep {
 /** Which springs a cloth has besides the sides of its quads. */
 struct Edges {
   bool diagonals = true;
-  bool bend = false;  ///< across two sides in a line
+  bool bend = false;  ///< between nodes two sides apart in a line
   bool operator==(const Edges&) const = default;
 };
 
-/** Material by area and length, so that a finer grid is the same cloth. A
- * member that is set replaces the assignment's value for each node or edge. */
+/** Material per area and length, so that a finer grid is the same cloth. A
+ * member that is set replaces the assignment's values of nodes or edges. */
 struct Material {
   std::optional<double> density;  ///< [kg/m^2], > 0
   std::optional<double> modulus;  ///< force per width and strain [N/m], >= 0
@@ -61,11 +61,11 @@ struct Material {
 /** Motion at constant velocity until a time. */
 struct Motion {
   Point velocity;  ///< [m/s], from t = 0 on
-  /** Then it stops [s], >= 0. */
+  /** The time at which it stops [s], >= 0. */
   double until = std::numeric_limits<double>::infinity();
 
-  /** Displacement [m] at time @a t [s]. Defined for @a t < 0, too: the first
-   * step of some methods looks there. */
+  /** Displacement [m] at time @a t [s]. Also for @a t < 0, where the first step
+   * of some methods evaluates it. */
   Point way(double t) const;
   /** [m/s]; 0 after it has stopped */
   Point velocity_at(double t) const;
@@ -84,8 +84,7 @@ struct Sheet {
 /** Opposite corners of a box. */
 struct Box {
   Point from, to;  ///< [m], in any order
-  /** Inside or on the rim, to 1e-9 m: within round-off of a cloth of some
-   * meters. */
+  /** True inside and on the boundary, to 1e-9 m. */
   bool holds(const Point& p) const;
   bool operator==(const Box&) const = default;
 };
@@ -100,20 +99,20 @@ struct Region {
   bool operator==(const Region&) const = default;
 };
 
-/** Holds or moves the nodes whose start has the given coordinates [m]; at least
- * one is given. */
+/** Holds or moves the nodes whose initial positions have the given coordinates
+ * [m]; at least one is given. */
 struct Pin {
   std::optional<double> x, y, z;
   Motion motion;
-  /** To 1e-9 m, as a Box. */
+  /** True if it holds a node that starts at @a p, to 1e-9 m. */
   bool holds(const Point& p) const;
   bool operator==(const Pin&) const = default;
 };
 
-/** A half space that no node enters: below a plane. */
+/** The half space below a plane, which no node enters. */
 struct Wall {
   Point at = Point(0, 0, -0.75);  ///< on the plane [m]
-  Point normal = Point(0, 0, 1);  ///< away from it, of any length > 0
+  Point normal = Point(0, 0, 1);  ///< out of the wall, of any length > 0
   double friction = 0;            ///< Coulomb's coefficient, >= 0
   Motion motion;
   /** The normal, of length 1. */
@@ -149,11 +148,11 @@ constexpr const char* unit_of(Measure m) {
 /** symplectic-euler, the method of the assignment. */
 const MethodEntry* default_method();
 
-/** A scene. It has the parts that it names, and nothing else acts. */
+/** A scene. Parts that it does not name do not act. */
 struct Model {
   std::string name = "scene";  ///< of its output files
   // The cloth
-  std::string nodes, tets;  ///< files; or
+  std::string nodes, tets;  ///< files, or else sheets
   std::vector<Sheet> sheets;
   Edges edges;
   double stiffness = 100;  ///< K of every spring [N/m], >= 0
@@ -178,7 +177,7 @@ struct Model {
   // How it is shown
   std::optional<Box> view;  ///< the box to look at
 
-  /** True if nodes may touch something, or edges break: what is not smooth. */
+  /** True if nodes may touch something or edges break: not smooth motion. */
   bool has_contact() const;
   /** True if nothing changes its energy: no drag, no contact, no moving pin. */
   bool conserves_energy() const;

@@ -40,8 +40,8 @@ void Scene::restart() {
 
 // ------------------------------------------------------------------- Changes
 
-/** Settle the steps so far: the present state is good, or the scene has failed
- * and it is the last good one. Then change it, and go on. */
+/** Make sure that the present state is good, or go back to the last good one.
+ * Then apply @a change and continue. */
 template <typename Change>
 void Scene::edit(Change change) {
   settle();
@@ -64,7 +64,7 @@ void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
 }
 
 void Scene::change_forces(const Recipe& recipe) {
-  Cloth fresh;  // its ids are those of this cloth when it was made
+  Cloth fresh;  // has the ids that this cloth had when it was built
   recipe.build(fresh);
   CombinedForces acting = recipe.force(fresh);
   edit([&] {
@@ -146,7 +146,7 @@ void Scene::move_hand(const Point& target) {
 
 void Scene::release() { pull(std::nullopt); }
 
-/** From here on by @a hand, or by none. */
+/** Continue with @a hand, or with none. */
 void Scene::pull(std::optional<HandForce> hand) {
   settle();
   hand_ = std::move(hand);

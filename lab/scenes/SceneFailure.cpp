@@ -23,7 +23,7 @@ FailedRun failed_run(const Scene& s) {
   run.safe = s.safe_limit();
   run.safe_without_drag = s.limits().safe_without_drag(method);
   run.verlet = s.safe_limit(*find_method("verlet"));
-  // In a gap between resonances large motion may still meet one.
+  // Between two resonances, large motion may still reach one of them.
   if (const auto r = s.resonances(); r && run.dt > r->first()) {
     run.resonance = r->text(run.dt);
     run.clear = r->below(r->at(run.dt) ? run.dt : r->first());
@@ -31,10 +31,10 @@ FailedRun failed_run(const Scene& s) {
   return run;
 }
 
-/** Try @a cure, and half of its step, which must have the same energy on the
- * way: a run that does not fail may still be far from the motion. */
+/** Run with @a cure and with half of its step; the energies of both runs must
+ * agree at all times, because a run that does not fail may still be wrong. */
 Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
-  // An implicit step is worth some hundred force evaluations.
+  // An implicit step costs about a hundred force evaluations.
   const MethodInfo& info = cure.method.info;
   const double evaluations = info.sweeps * (info.limit == no_limit ? 100 : 1);
   const bool watches = failed.energy_watch().has_value();
@@ -43,8 +43,8 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
     if (watches) trial->watch_energy(t_end);
     const long long every =
         1 + (long long)((t_end - trial->time()) / cure.dt / 64);
-    std::vector<std::pair<double, double>> on_the_way;  // time [s], balance [J]
-    double largest = 0;                                 // internal [J]
+    std::vector<std::pair<double, double>> samples;  // time [s], balance [J]
+    double largest = 0;                              // internal [J]
     double left = Scene::trial_work;
     while (!trial->done(t_end) && left > 0 && trial->step(t_end)) {
       const Cloth& g = trial->cloth();
@@ -53,7 +53,7 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
       if (trial->steps() % every != 0) continue;
       const Energies e = trial->energy();
       largest = std::max(largest, e.internal());
-      on_the_way.emplace_back(trial->time(), balance(e, trial->flow()));
+      samples.emplace_back(trial->time(), balance(e, trial->flow()));
     }
     const double end = trial->time();
     bool passed =
@@ -63,7 +63,7 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
                std::abs(trial->energy_watch()->share()) <= energy_tolerance;
     const auto finer = failed.anew({cure.method, cure.dt / 2});
     const double apart = energy_tolerance * largest + failed.round_off();
-    for (const auto& [time, b] : on_the_way)
+    for (const auto& [time, b] : samples)
       passed = passed && finer->run_to(time, end_if_interrupted) &&
                std::abs(balance(finer->energy(), finer->flow()) - b) <= apart;
     return {passed, end};

@@ -1,7 +1,6 @@
 #pragma once
 /** @file SceneFile.hpp
- * Scene files: read into a Model, and written from one. Nothing but
- * load_model() and load_open_model() reads a file. README.md */
+ * Scene files: read into a Model, and written from one. See README.md. */
 #include <functional>
 #include <map>
 #include <stdexcept>
@@ -13,7 +12,7 @@
 
 namespace lab {
 
-/** A scene file that makes no sense: "FILE:LINE: what is wrong". */
+/** An error in a scene file: "FILE:LINE: what is wrong". */
 struct SceneFileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -21,51 +20,51 @@ struct SceneFileError : std::runtime_error {
 /** Where the keys of a scene stand in its file. */
 struct Origins {
   std::string file;
-  std::map<std::string, std::size_t> line_of;  ///< of each key of the file
+  std::map<std::string, std::size_t> line_of;  ///< by key
 
   /** "FILE:LINE: " of the first option that @a message names; @a otherwise if
-   * that does not stand in the file. */
+   * the file does not have it. */
   std::string of(const std::string& message,
                  const std::string& otherwise) const;
 };
 
-/** Set the fields of @a m that the @a text of a @a file names, and then call
- * @a check().
- * @param other called with each key that is no field; false: unknown
- * @return where its keys stand
- * Throws SceneFileError: a wrong line, an unknown key, a wrong value; and what
- * check() throws, with its place */
+/** Set the fields of @a m that @a text, the content of @a file, names; then
+ * call @a check().
+ * @param other called with each other key; returns false if it is unknown
+ * @return the lines of the keys
+ * Throws SceneFileError: a wrong line, an unknown key, a wrong value; what
+ * check() throws, with its line */
 Origins set_fields(Model& m, const std::string& file, const std::string& text,
                    const std::function<void()>& check,
                    const std::function<bool(const KeyValue&)>& other = {});
 
 /** The text of a scene file.  Throws SceneFileError if it can't be read. */
 std::string scene_text(const std::string& file);
-/** The name of its scene: of the file, without folder and ending. */
+/** The name of the scene in @a file: the file's, without folder and ending. */
 std::string scene_name(const std::string& file);
-/** A file that the scene file @a scene names, as the program opens it: names
- * are relative to the folder of the scene file. */
+/** The path of the file that the scene file @a scene calls @a name: names are
+ * relative to the folder of the scene file. */
 std::string beside(const std::string& scene, const std::string& name);
 
-/** Throws SceneError unless @a m has a cloth: a scene file may leave it to the
- * command line. */
+/** Throws SceneError if @a m has no cloth. A scene file may leave the cloth to
+ * the command line. */
 void check_has_cloth(const Model& m);
 
-/** The scene of a file; that of load_open_model() may have no mesh.
+/** The scene in @a file; for load_open_model() it may have no mesh.
  * Throws SceneFileError */
 Model load_model(const std::string& file);
 Model load_open_model(const std::string& file);
-/** The scene in the @a text of a @a file, called @a name.
+/** The scene @a name in @a text, the content of @a file.
  * Throws SceneFileError */
 Model read_model(const std::string& file, const std::string& name,
                  const std::string& text);
 
-/** @a m as a scene file: the help of each field as a comment, and then its
- * value. What is not named is left out; names of files are absolute. Read
- * again it is the same scene, whatever the names hold. */
+/** @a m as a scene file: the help of each field as a comment, and its value.
+ * Fields that are not set are left out; file names are absolute. Reading the
+ * text gives the same scene, whatever characters its names have. */
 std::string to_scene_file(const Model& m);
 
-/** The names of fields(), in their order. */
+/** The names of fields_of() a Model, in their order. */
 std::vector<std::string> scene_keys();
 
 }  // namespace lab

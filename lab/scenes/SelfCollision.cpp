@@ -32,7 +32,7 @@ void CellTable::fill(const Cloth& g, double side) {
     ++start_[bucket(key)];
   }
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
-  // Each bucket's entry is its end now, and runs down to its start.
+  // Each bucket's entry is its end now; the loop lowers it to its start.
   node_.resize(placed_.size());
   for (std::size_t k = placed_.size(); k-- > 0;)
     node_[--start_[bucket(placed_[k].key)]] = placed_[k].node;
@@ -46,11 +46,11 @@ bool connected(const Cloth& g, unsigned i, unsigned j) {
                      [j](const Cloth::Neighbor& n) { return n.node == j; });
 }
 
-// Pushed so much farther than needed, nodes in a pile come to rest within a
-// few rounds; else each would approach the thickness but never reach it.
+// Pairs are pushed by this share farther than needed. Otherwise distances in a
+// pile would approach the thickness round by round but never reach it.
 constexpr double margin = 1e-3;
-// Pairs up to so many times the thickness apart are gathered: those that may
-// get too near in rounds to come.
+// Pairs up to this many times the thickness apart are gathered, because they
+// may become too near in the next rounds.
 constexpr double reach = 1.1;
 constexpr int rounds_per_gathering = 8;
 

@@ -48,10 +48,10 @@ Separation::Separation(const Track& a, const Track& b) {
     std::size_t count = 0;
     for (std::size_t id = 0; id < std::min(s.x.size(), other->x.size()); ++id) {
       const Point &p = s.x[id], &q = other->x[id];
-      const bool gone = std::isinf(p.x);
-      if (gone && std::isinf(q.x)) continue;
+      const bool p_removed = std::isinf(p.x), q_removed = std::isinf(q.x);
+      if (p_removed && q_removed) continue;
       const double d2 =
-          gone || std::isinf(q.x) ? infinite : double(normSq(p - q));
+          p_removed || q_removed ? infinite : double(normSq(p - q));
       ++count, at.rms += d2;
       at.largest = std::max(at.largest, std::sqrt(d2));
     }

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Separation.hpp
- * How far two runs get apart that should be the same: the test for chaos, and
- * the error of a run. */
+ * The distance of two runs that should agree: it shows chaos, and estimates the
+ * error of a run. */
 #include <cstddef>
 #include <vector>
 
@@ -11,27 +11,27 @@ namespace lab {
 
 class Scene;  // lab/scenes/Scene.hpp
 
-/** The positions that a run has at some times. */
+/** The positions of a run at some times. */
 class Track {
  public:
-  /** Of a run of @a nodes nodes to @a t_end [s]: its states after the first
-   * step at or behind each of 64 equal parts of it; of a million nodes, of 20,
-   * which take 500 MB. */
+  /** Keeps the first state of a run at or after each of 64 equally spaced times
+   * up to @a t_end [s]. Fewer if there are many @a nodes: 20 for a million
+   * nodes, which take 500 MB. */
   Track(double t_end, std::size_t nodes);
-  /** An empty one of a run to be held against this: at the same times. */
+  /** An empty track with the same times, for a run to compare with this. */
   Track beside() const;
 
-  /** Keep the state of @a scene if it is due. To be called after each step.
-   * O(1), or O(N) */
+  /** Keep the state of @a scene if it is due. Call it after each step.
+   * O(1), or O(N) if it is due */
   void look(const Scene& scene);
 
  private:
   struct State {
     double time;           // [s]
-    std::vector<Point> x;  // by id [m]; infinite: the node was removed
+    std::vector<Point> x;  // by node id [m]; infinite if it was removed
   };
   std::vector<double> due_;  // [s]; the last one is t_end
-  std::size_t next_ = 0;     // of due_
+  std::size_t next_ = 0;     // index in due_
   Track() = default;
   double round_off() const { return due_.empty() ? 0 : 1e-9 * due_.back(); }
   std::vector<State> states_;
@@ -39,22 +39,22 @@ class Track {
   friend class Separation;
 };
 
-/** The distance of two runs [m] at each time that both have kept. */
+/** The distance of two runs [m] at each time that both tracks have. */
 class Separation {
  public:
   struct At {
     double time;  ///< [s]
-    double rms;   ///< over the nodes; infinite once other nodes were torn off
-    double largest;  ///< of a node
+    double rms;   ///< over the nodes; infinite if different nodes are removed
+    double largest;  ///< of any node
   };
 
   Separation(const Track& a, const Track& b);
 
-  /** By time. */
+  /** In the order of time. */
   const std::vector<At>& all() const { return all_; }
-  /** Until when the RMS has stayed within @a tolerance [s]; 0: never. */
+  /** How long rms stays within @a tolerance [s]; 0: never. */
   double horizon(double tolerance) const;
-  /** The largest that each has been at any time [m]. */
+  /** The largest rms and the largest distance at any time [m]. */
   At most() const;
 
  private:

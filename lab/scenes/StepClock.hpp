@@ -1,17 +1,17 @@
 #pragma once
 /** @file StepClock.hpp
- * StepClock: how many steps are done, and what time they reached. */
+ * StepClock: the number of steps done and the time reached. */
 #include <cmath>
 
 #include "lab/methods/Method.hpp"
 
 namespace lab {
 
-/** Counts steps. A time is a multiple of dt since dt last changed: a sum of
- * steps would depend on rounding. */
+/** Counts steps. The time is from + (steps - from_steps) dt: in a sum of steps
+ * rounding errors would add up. */
 struct StepClock {
-  double dt = 0, from = 0;              ///< step, and when dt last changed [s]
-  long long steps = 0, from_steps = 0;  ///< done now, and then
+  double dt = 0, from = 0;              ///< step; time of the last change [s]
+  long long steps = 0, from_steps = 0;  ///< done now; done then
 
   StepTimes times() const { return {from, dt, steps - from_steps}; }
   double time() const { return times()(0); }

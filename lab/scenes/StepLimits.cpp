@@ -15,8 +15,8 @@ double StepLimits::chosen(const MethodEntry& method, StepRule rule) const {
         " chooses its inner steps by their error: leave --dt away, and say "
         "how exactly by --tolerance");
   double dt = safe_share * safe(method);
-  // A cloth let go flat stiffens by 40 % within fewer steps than lie between
-  // two looks: so never beyond what holds in every configuration.
+  // A cloth released flat becomes 40 % stiffer before StepControl looks again,
+  // so the safe limit is never exceeded.
   if (rule == StepRule::sharp)
     dt = std::min(sharp_share * sharp(method, 15), safe(method));
   if (!(dt > 0 && std::isfinite(dt)))
@@ -73,7 +73,7 @@ double StepLimits::safe_omega() const {
   return safe_omega_;
 }
 
-/** A bound of omega [1/s] with the hand, if it is @a omega without. */
+/** A bound of omega [1/s] with the hand, where @a omega is one without. */
 double StepLimits::with_hand(double omega) const {
   if (!hand_ || !cloth_.node_in_use(hand_->node())) return omega;
   const double m = cloth_.node_values()[hand_->node()].mass;

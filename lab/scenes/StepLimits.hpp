@@ -11,9 +11,9 @@
 
 namespace lab {
 
-/** The limits of steps on a cloth, in its present state. It refers to the
- * cloth, to what acts on it, and to the hand, which adds at most its stiffness
- * over the mass of its node to omega^2. */
+/** The limits of the step for a cloth in its present state. Keeps references to
+ * all arguments of the constructor. The hand adds at most its stiffness,
+ * divided by the mass of its node, to omega^2. */
 class StepLimits {
  public:
   StepLimits(const Cloth& g, const std::optional<ForcePlan>& force,
@@ -30,20 +30,20 @@ class StepLimits {
   /** The same in the present configuration, by so many @a products of
    * SharpOmega. */
   double sharp(const MethodEntry& method, int products) const;
-  /** A step beyond which @a method takes energy that only @a drag should take:
-   * mild_step(). */
+  /** The longest step with which @a method itself damps little compared to
+   * @a drag: mild_step(). */
   double mild(const MethodEntry& method, const Drag& drag, double dt,
               double share) const;
-  /** Which steps resonate, if @a method is multirate and splits off stiff
-   * springs.  Complexity: as omega_safe() */
+  /** The steps that resonate; nullopt unless @a method is multirate and splits
+   * off stiff springs.  Complexity: as omega_safe() */
   std::optional<Resonances> resonances(const MethodEntry& method) const;
-  /** A step up to @a dt that does not resonate. */
+  /** The step @a dt, or a shorter one if that resonates. */
   double without_resonance(const MethodEntry& method, double dt) const;
-  /** The first step that @a rule chooses; not of StepRule::fixed.
+  /** The first step by @a rule, which is not StepRule::fixed.
    * Throws std::invalid_argument if nothing bounds it. */
   double chosen(const MethodEntry& method, StepRule rule) const;
 
-  /** Masses, stiffnesses or what is held have changed. */
+  /** To call after masses, stiffnesses or held nodes have changed. */
   void forget() { safe_omega_ = -1; }
   void archive(Archive& a) {
     a(safe_omega_).require(std::isfinite(safe_omega_));

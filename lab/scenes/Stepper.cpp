@@ -1,5 +1,5 @@
 /** @file Stepper.cpp
- * In the order of the calls: how a run begins, then how a step goes. */
+ * In the order of the calls: the start of a run, a step, the checks. */
 #include "lab/scenes/Stepper.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace lab {
 
 namespace {
-constexpr double no_step = 1e-9;  // of a step
+constexpr double no_step = 1e-9;  // of dt: a rest that is skipped
 static_assert(TimeStep{}.gain == energy_tolerance);
 }  // namespace
 
@@ -54,7 +54,7 @@ void Stepper::start(const EnergyFlow& flow) {
   start_control();
 }
 
-/** Plan all that acts: the forces of the scene and the hand, the constraint. */
+/** Make the plans of all forces, with the hand, and of the constraint. */
 void Stepper::plan() {
   CombinedForces::List all = acting_.parts();
   if (hand_) all.push_back({std::shared_ptr<void>(), &*hand_});  // it moves
@@ -72,7 +72,7 @@ void Stepper::hand_changed() {
     balance_->watch({}, nullptr, time());
 }
 
-/** Choose the steps from here on, if they are to be chosen. */
+/** Start to choose steps, unless they are fixed. */
 void Stepper::start_control() {
   control_.reset();
   if (!failure_.empty()) return;
@@ -144,10 +144,10 @@ bool Stepper::steps_at_once(int most, double t_end) {
   return !guarded || guard(e);
 }
 
-/** How many steps, up to @a most, only the last of which is checked; 1 if work
- * is done on the cloth, which is summed up step by step. Symplectic Euler puts
- * held nodes where they were to be at the start of a step, so what comes to
- * rest moves them once more. */
+/** The number of steps, up to @a most, until the next check; 1 if moving pins
+ * or obstacles do work, which is added up step by step. Symplectic Euler puts
+ * held nodes to their places at the start of a step, so after a pin has stopped
+ * they move once more. */
 int Stepper::steps_to_check(int most) const {
   if (hand_ || !constraint_.is_at_rest(time() - clock_.dt)) return 1;
   const auto up_to_multiple = [&](int interval) {
@@ -215,10 +215,10 @@ double Stepper::drift(const Energies& now) const {
   return now.total() - start_energy_ - f.work + f.removed + drag_loss();
 }
 
-// -------------------------------------------------------------- Its checking
+// -------------------------------------------------------------------- Checks
 
 /** StepControl's verdict on the present state, of energy @a e.
- * @return false: take it back */
+ * @return false if it has to be taken back */
 bool Stepper::judge(const Energies& e) {
   const double h = time() - looked_;
   looked_ = time();
@@ -234,7 +234,7 @@ bool Stepper::judge(const Energies& e) {
   return true;
 }
 
-/** Make the present state one to go back to. */
+/** Make the present state the one to go back to. */
 void Stepper::keep_both() {
   keep(latest_);
   before_ = latest_;
@@ -258,12 +258,12 @@ bool Stepper::check() {
 }
 bool Stepper::is_finite() const { return std::isfinite(energy().total()); }
 
-/** Step number @a last, or one before it, is bad.  @return true: no failure */
+/** Step @a last or an earlier one is bad.  @return true if the run continues */
 bool Stepper::not_good(long long last) {
   return control_ && control_->can_shorten() ? take_back() : replay(last);
 }
 
-/** Go on from an earlier state by a shorter step.  @return true */
+/** Continue from an earlier state with a shorter step.  @return true */
 bool Stepper::take_back() {
   const long long steps = clock_.steps - before_.clock.steps;
   before_.nodes.restore(cloth_);
@@ -281,8 +281,8 @@ bool Stepper::take_back() {
   return true;
 }
 
-/** Go back to the last good state, and on step by step until one fails.
- * @param last the step known to fail  @return false if one did */
+/** Repeat the steps since the last good state until one fails.
+ * @param last the step that is known to fail  @return false if one did */
 bool Stepper::replay(long long last) {
   guard_->restore(cloth_);
   go_on(checked_, flow_);
@@ -291,10 +291,10 @@ bool Stepper::replay(long long last) {
     if (!guard_->accept(cloth_, flow())) return fail("diverged");
     keep_checked();
   }
-  return true;  // a node that was torn off meanwhile can't fail again
+  return true;  // a node that failed and was then removed can't fail again
 }
 
-/** Say what happened to the step, and go back to before it. */
+/** Set failure(), and go back to the state before the step.  @return false */
 bool Stepper::fail(const std::string& what) {
   using CME212::short_text;
   worst_.emplace(cloth_);
@@ -308,7 +308,7 @@ bool Stepper::fail(const std::string& what) {
   return false;
 }
 
-/** Go on from the present state, which was that of @a clock and @a flow. */
+/** Continue from the present state, to which @a clock and @a flow belong. */
 void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   clock_ = clock;
   balance_->resume(cloth_, time(), constraint_, flow);
@@ -317,8 +317,8 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   keep_checked();
 }
 
-/** The present state is good. From here on watch nodes that are fast beside
- * the obstacles: only here, so with room for speeds to grow. */
+/** Record that the present state is good. Until the next call, watch for
+ * tunnelling if nodes may become fast for the thinnest obstacle. */
 void Stepper::keep_checked() {
   checked_ = clock_;
   flow_ = flow();
@@ -365,7 +365,7 @@ void Stepper::archive(Archive& a) {
   a.require(clock_.dt <= control_->dt() && looked_ <= time() &&
             std::isfinite(looked_));
   for (Snapshot* s : {&before_, &latest_}) {
-    bool whole = s->version == cloth_.version();  // nothing torn since
+    bool whole = s->version == cloth_.version();  // nothing removed since
     a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
     a.require(not_after(s->clock));
     if (a.loads()) s->version = whole ? cloth_.version() : ~cloth_.version();

@@ -20,7 +20,7 @@ using Triangle = std::array<Point, 3>;
 
 const char* it_or_them(std::size_t n) { return n == 1 ? "it" : "them"; }
 
-/** Also what a scene leaves to the default. */
+/** The option that makes @a b, with its default values. */
 std::string name_of(const std::string& option, const Ball& b) {
   const Point& at = b.center;
   return "--" + option + " \"at " + short_text(at.x) + ' ' + short_text(at.y) +
@@ -36,9 +36,9 @@ std::array<Triangle, 2> halves(const PointsAndQuads& mesh, const Quad& q) {
   return {{{p(1), p(2), p(0)}, {p(1), p(2), p(3)}}};
 }
 
-/** How far a point of @a t may be from the nearest corner [m]: the radius of
- * the circle around it, if its center lies inside. If not, the points farthest
- * off lie on the longest side, as far from one of its ends as from the third
+/** The largest distance of a point of @a t from its nearest corner [m]: the
+ * circumradius if the circumcenter lies inside. Otherwise the farthest point
+ * lies on the longest side, as far from one of its ends as from the third
  * corner. */
 double opening(const Triangle& t) {
   std::array<double, 3> side;
@@ -52,8 +52,8 @@ double opening(const Triangle& t) {
   return a / (2 * std::sqrt(std::max(0., 1 - cos_a * cos_a)));
 }
 
-/** The distance of @a p from the triangle @a t [m]; a folded one counts as its
- * sides. */
+/** The distance of @a p from the triangle @a t [m]; if @a t is degenerate, from
+ * its sides. */
 double distance(const Point& p, const Triangle& t) {
   double least = std::numeric_limits<double>::infinity();
   bool inside = true;
@@ -93,7 +93,7 @@ class Finder {
       inside(b, name, false);
     }
     if (m_.self_collision) passes_itself(*m_.self_collision);
-    if (m_.method->info.adaptive) not_smooth(), too_exact();
+    if (m_.method->info.adaptive) not_smooth(), below_round_off();
     return found_;
   }
 
@@ -210,8 +210,8 @@ class Finder {
         short_text(energy) + " J to the springs; move it");
   }
 
-  /** A ball that no node is inside of, but whose inner half is cut by quads:
-   * the cloth is on both of its sides. */
+  /** A ball that contains no node, but quads cut its inner half: the cloth is
+   * on both of its sides. */
   void across(const Ball& b, const std::string& name, bool solid) {
     std::size_t n = 0;
     for (const Quad& q : mesh_.quads) {
@@ -250,7 +250,7 @@ class Finder {
         "take a thickness above that, 0.71 times the side of a square");
   }
 
-  /** A contact is a jump, which an inner step sees only at its end. */
+  /** A contact is a jump, which error control sees only after a step. */
   void not_smooth() {
     if (m_.has_contact())
       add(std::string(m_.method->info.name) +
@@ -259,8 +259,8 @@ class Finder {
           "--method verlet --dt auto costs less");
   }
 
-  /** Errors that are round-off go down with no step, and steps end nowhere. */
-  void too_exact() {
+  /** Round-off errors do not fall with the step, so no step is accepted. */
+  void below_round_off() {
     double size = 0;
     for (Node n : g_.nodes()) size = std::max(size, norm(n.position()));
     const double least = size * std::numeric_limits<Real>::epsilon();

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Warnings.hpp
- * What will go wrong in a run, as far as can be said before its first step. */
+ * Warnings about a scene before its first step. */
 #include <string>
 #include <vector>
 
@@ -8,20 +8,19 @@
 
 namespace lab {
 
-/** The radius [m] of the opening between four nodes: of the largest ball that
- * touches none of them, with its center on the quad, which is folded along its
- * shorter diagonal. A square of side L has L/sqrt(2). */
+/** The radius [m] of the opening between the nodes of a quad: of the largest
+ * ball around a point of the quad that contains none of them. The quad is
+ * folded along its shorter diagonal. A square of side L has L/sqrt(2). */
 double opening(const PointsAndQuads& mesh, const Quad& q);
 
-/** What is wrong with a scene before its first step: a sentence each, with
- * numbers and a cure. None of them is a guess: each says what is the case.
+/** The faults of a scene: a sentence each, with numbers and a remedy.
  *  - nodes in no quad; springs of length 0
- *  - nodes below a plane, inside a solid or a tearing ball; a ball across quads
- *    without a node inside; with what the first step then does
- *  - openings of the mesh through which a solid ball fits, or will when springs
- * are stretched by less than a half; or which a self-collision does not close
+ *  - nodes below a plane, inside a solid or a tearing ball; a ball that cuts
+ *    quads but contains no node; and what the first step does then
+ *  - openings of the mesh through which a solid ball fits, now or when springs
+ *    are stretched by up to a half; or which a self-collision does not close
  *  - a ball that moves by more than half of its radius in a step
- *  - a method with error control where motion is not smooth
+ *  - a method with error control if the motion is not smooth
  * @param mesh that of mesh_of(m)   @param g the cloth of @a m at t = 0
  * @param dt the first step [s]
  * Complexity: O((points + quads + springs) parts) */

@@ -106,8 +106,7 @@ std::size_t numbers_after(const Word& w) {
   return counts[w.member.index()];
 }
 
-/** Call @a use(number) for each number of a word, which is there from now on.
- */
+/** Call @a use(number) for each number of @a w; an optional one is set. */
 template <typename Use>
 void each_number(const Word& w, Use use) {
   if (auto* a = std::get_if<double*>(&w.member)) use(**a);
@@ -119,7 +118,7 @@ void each_number(const Word& w, Use use) {
     for (unsigned& a : **n) use(a);
 }
 
-/** What must be true of the number @a a of a word, and is not; or null. */
+/** The condition that the number @a a of a word violates; or null. */
 const char* unmet(const Word& w, double a) {
   if (std::holds_alternative<std::array<unsigned, 2>*>(w.member))
     return a >= 2 && a <= 10000 && a == std::floor(a) ? nullptr : "2 to 10000";

@@ -2,7 +2,7 @@
 /** @file Words.hpp
  * A part of a scene as text: words, each followed by its numbers, as in
  * "at 0.5 0.5 -0.5 radius 0.15 friction 0.3". words_of() declares the words of
- * a part once; reading and writing both use it. README.md */
+ * a part once; reading and writing both use it. See README.md. */
 #include <array>
 #include <functional>
 #include <optional>
@@ -18,12 +18,12 @@ namespace lab {
 struct Word {
   enum class Range { any, not_negative, positive };
   enum class Need {
-    none,
+    none,  ///< it may be missing
     word,  ///< it must be there
-    some,  ///< one of these words or more must be there
+    some,  ///< at least one of these words must be there
   };
   const char* name;
-  /** What its numbers set. A bool: whether the word is there; or null. */
+  /** What its numbers set; a bool, unless null, says if the word is there. */
   std::variant<bool*, double*, std::optional<double>*, Point*,
                std::array<unsigned, 2>*>
       member;
@@ -57,21 +57,20 @@ using Member =
                  std::vector<Wall>*, std::vector<Solid>*, std::vector<Ball>*>;
 
 /** Set the members of @a words() from @a text.
- * Throws SceneError: another word, a word twice, a word that is missing, too
- * many or too few numbers, one out of its range or not finite; what is wrong
- * with the part. */
+ * Throws SceneError: an unknown, repeated or missing word; too many or too few
+ * numbers; a number out of its range or not finite; Words::wrong. */
 void read_words(const std::string& text, const std::function<Words()>& words);
-/** The words whose members differ from @a usual, with all digits. */
+/** The words whose members differ from @a usual, numbers with all digits. */
 std::string written(const Words& words, const Words& usual);
 
-/** The part that @a text says.  Throws as read_words() */
+/** The part that @a text describes.  Throws as read_words() */
 template <typename Part>
 Part read_part(const std::string& text) {
   Part part;
   read_words(text, [&part] { return words_of(part); });
   return part;
 }
-/** Its text. Read again, it is the same part. */
+/** The text of @a part. Reading it gives the same part. */
 template <typename Part>
 std::string to_words(Part part) {
   Part usual;
@@ -88,7 +87,7 @@ inline constexpr auto read_tear = read_part<Ball>;
 inline constexpr auto read_self_collision = read_part<Distance>;
 inline constexpr auto read_view = read_part<Box>;
 
-/** Throws SceneError: no name of a measure, no name of a method. */
+/** Throws SceneError: no such measure, no such method. */
 Measure read_measure(const std::string& text);
 const MethodEntry* read_method(const std::string& text);
 /** A number [s]; or auto[:sharp][:GAIN], as "auto:0.02"
