@@ -38,7 +38,7 @@ TEST(Matrix3, IsAnArrayOfNumbers) {
                                             of_columns = dense.transpose() * v;
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(times(a, four(x))[k], of_rows[k], 1e-15);
-      EXPECT_NEAR(turned_times(a, four(x))[k], of_columns[k], 1e-15);
+      EXPECT_NEAR(transposed_times(a, four(x))[k], of_columns[k], 1e-15);
     }
     // From left to right, to the last bit.
     EXPECT_EQ(point(times(a, four(x))).y,

@@ -48,8 +48,8 @@ void AugmentedVerlet::archive(Archive& a, const Cloth& g) {
   kept_for_ = &g, loaded_dt_ = dt;
 }
 
-/** Whether nothing that key_ was made of has changed: in one look at the
- * arrays, without the forces.  @post held_ are the held nodes */
+/** True if key_ is still right: compares arrays, without asking the forces.
+ * @post held_ are the held nodes */
 bool AugmentedVerlet::unchanged(const Cloth& g, double dt,
                                 const ForcePlan& force,
                                 const ConstraintPlan& constraint) {
@@ -69,7 +69,7 @@ bool AugmentedVerlet::unchanged(const Cloth& g, double dt,
   return same;
 }
 
-/** The factor for @a g as it is.  @return true if it was that already */
+/** Make factor_ that of @a g.  @return true if it was already */
 bool AugmentedVerlet::find_factor(const Cloth& g, double dt,
                                   const ForcePlan& force,
                                   const ConstraintPlan& constraint) {
@@ -95,8 +95,8 @@ bool AugmentedVerlet::find_factor(const Cloth& g, double dt,
   return false;
 }
 
-/** Factor M + (dt^2/4) L, by node id. Fixed nodes have a row, too, so that
- * rows need no numbers of their own: that of the unit matrix. */
+/** Factor M + (dt^2/4) L. Its rows are node ids, so fixed nodes have rows, too:
+ * those of the unit matrix. */
 void AugmentedVerlet::factorize() {
   ++factorizations_;
   constexpr std::size_t most = 100'000'000;  // entries, of 24 bytes

@@ -13,23 +13,23 @@ namespace lab {
 
 /** Verlet with the mass M + (dt^2/4) L in place of M, where
  *   (L x)_i = sum over the springs at i of K (x_i - x_j).
- * No spring is stiffer than K in any direction, so no frequency reaches the
- * limit 2/dt, in whatever configuration: linearized there, it is bounded. (A
- * cloth that buckles can still gain energy at large dt, unless drag takes it.)
- * Springs without rest length oscillate as by the implicit midpoint rule.
- * Linear momentum is kept to round-off, and so is the angular momentum of the
- * heavier mass, sum x_i x (M v + dt^2/4 L v)_i. Drag as in Splitting: by the
+ * No spring is stiffer than K in any direction, so no frequency reaches 2/dt in
+ * any configuration: the linearized method is stable with every dt. (A cloth
+ * that buckles may still gain energy at large dt, unless drag removes it.)
+ * Springs of rest length 0 oscillate as by the implicit midpoint rule. Linear
+ * momentum is conserved to round-off, and so is the angular momentum of the
+ * augmented mass, sum x_i x (M v + dt^2/4 L v)_i. Drag as in Splitting, by the
  * true mass.
  *
- * The matrix is that of the nodes that move, N x N for the three coordinates
- * alike. Its Cholesky factor is kept until dt, a mass, a spring's K or ends, or
- * what is held has changed.
+ * The N x N matrix of the nodes that are not held is the same for x, y and z.
+ * Its Cholesky factor is kept until dt, a mass, a spring's K or ends, or the
+ * held nodes change.
  * Source: A. Stern, E. Grinspun, Multiscale Model. Simul. 7 (2009) 1779,
  * doi:10.1137/080732936. */
 class AugmentedVerlet : public Method {
  public:
-  // Besides the force evaluation: one check of all springs against those of
-  // the factor, and one solve with it, of 20 to 60 nonzeros a node. A new
+  // In addition to the force evaluation: one comparison of all springs with
+  // those of the factor, and one solve with 20 to 60 nonzeros a node. A new
   // factor costs about as much as 40 steps at 1e4 nodes.
   static constexpr MethodInfo info = {
       "augmented-verlet",
@@ -63,9 +63,9 @@ class AugmentedVerlet : public Method {
     bool operator==(const Key&) const = default;
   };
   Key key_, next_;
-  /** What key_ was made of, if its springs are those of the edges. */
+  /** The cloth that key_ was made from, if only edges are springs. */
   struct Source {
-    std::optional<int> springs;  // nothing: of other forces, too
+    std::optional<int> springs;  // nullopt: other forces have springs, too
     const Cloth* cloth = nullptr;
     std::size_t version = 0;
     std::vector<unsigned> held;  // their ids, in the constraint's order
@@ -75,11 +75,11 @@ class AugmentedVerlet : public Method {
   std::vector<unsigned> held_;
   int factorizations_ = 0;
   SparseCholesky<double> factor_;
-  FlatFlow flow_;                    // its accelerations are the solution,
-  std::vector<Point> acceleration_;  // as these, by node id [m/s^2]
-  const Cloth* kept_for_ = nullptr;  // at whose state they are
+  FlatFlow flow_;                    // its accelerations: the solution
+  std::vector<Point> acceleration_;  // the same by node id [m/s^2]
+  const Cloth* kept_for_ = nullptr;  // the cloth to which they belong
   double kept_time_ = 0;
-  double loaded_dt_ = 0;  // they were loaded: for the factor with that dt
+  double loaded_dt_ = 0;  // > 0: they were loaded, computed with this dt
 
   bool unchanged(const Cloth& g, double dt, const ForcePlan& force,
                  const ConstraintPlan& constraint);

@@ -122,7 +122,7 @@ std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
   return stages.size();
 }
 
-/** Whether parts may be some stages apart, for all that is known before. */
+/** Whether stages may overlap, as far as is known in advance. */
 bool FlatFlow::may_overlap(std::span<const FlatStage> stages) {
   if (stages.size() < 2 || cloth_.slots() <= Sweep::part_size || by_graph_)
     return false;
@@ -160,10 +160,10 @@ void FlatFlow::run_alone(Level& level) {
   }
 }
 
-/** All of @a stages, whose levels are prepared. Each thread takes every so
- * many groups of them, and follows the thread that has the group before.
- * @return false if a constraint needs all nodes at once; then nothing is done,
- * and the next attempt waits for twice as many batches as the last one */
+/** Run @a stages, whose levels are prepared, with overlap. The threads take
+ * groups of stages in turn; each group follows the one before, part by part.
+ * @return false if a constraint needs all nodes at once. Then the state is as
+ * before, and the next batches, more each time, run without overlap */
 bool FlatFlow::run_overlapping(std::span<const FlatStage> stages) {
   const bool sure = std::ranges::all_of(stages, [](const FlatStage& s) {
     return !s.project || s.project->nodewise();
@@ -201,10 +201,10 @@ bool FlatFlow::run_overlapping(std::span<const FlatStage> stages) {
   return false;
 }
 
-/** The levels of a group: each @a lag parts behind the one before.
- * @param before how many parts the group before has done; null: there is none
- * @param done the same of this one
- * @param good made false, and seen to be, where this can't go on */
+/** Run the levels of a group, each `lag` parts behind the one before.
+ * @param before parts that the group before has finished; null: no such group
+ * @param done parts that this group has finished
+ * @param good set to false by any group that can't continue; then all stop */
 void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
                          const std::atomic<int>* before, std::atomic<int>& done,
                          std::atomic<bool>& good) {
@@ -214,8 +214,8 @@ void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
   const auto last = [&](int part) {
     return std::min(unsigned(part + 1) * size, slots);
   };
-  // A kick reads positions halo parts ahead; and behind, if springs that are
-  // in no row are gathered. Nothing may have moved on there.
+  // A kick reads positions halo parts ahead, and behind, too, for springs that
+  // are in no row. The next stage must not have moved these nodes yet.
   const int halo = Sweep::halo_of(*force_, cloth_.reach());
   const int lag = cloth_.rest() ? 2 * halo : halo;
   const int count = int(levels.size());
@@ -236,9 +236,9 @@ void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
     }
 }
 
-/** All of a stage before its forces.
- * @param project whether that goes by part
- * @return false if it does not; then the cloth is undefined */
+/** The operations of a stage before its forces, on one part.
+ * @param project whether to apply the constraint to the part
+ * @return false if that is impossible; then the cloth is undefined */
 bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
                     bool project) {
   const FlatStage& stage = level.stage;
@@ -271,7 +271,7 @@ bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
   return good;
 }
 
-/** The forces of a stage, its kick, and what ends a step. */
+/** The forces of a stage, its kick, and the end of a step. */
 void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
                     unsigned last) {
   const FlatStage& stage = level.stage;
@@ -296,15 +296,15 @@ void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
   set_velocities(level, first, last);
 }
 
-/** Those of held nodes that move with their places, or that end a step. */
+/** Set velocities of held nodes, if they move or at the end of a step. */
 void FlatFlow::set_velocities(const Level& level, unsigned first,
                               unsigned last) {
   for_part(level.ended, first, last,
            [this](const Held& h) { cloth_.set_velocity(h.id, h.value); });
 }
 
-/** The rings as they are when a part begins with id @a first: with the springs
- * of as many nodes before it as a far end may be away. */
+/** Fill the rings for a part that begins with id @a first: with the springs of
+ * the nodes before it from which a spring may reach into it. */
 void FlatFlow::find_rings(Rings& r, unsigned first) {
   constexpr unsigned tile = FlatCloth::tile;
   for (auto& ring : r.rings) {

@@ -9,11 +9,11 @@ namespace lab {
  * x += dt v. One linear system a step, by conjugate gradients.
  * Source: D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH
  * 1998, doi:10.1145/280814.280821; here compressed springs have no stiffness
- * across. */
+ * in the perpendicular directions. */
 class ImplicitEuler : public Method {
  public:
-  // Besides the force evaluation: about dt omega products with the matrix, each
-  // at the cost of one.
+  // In addition to the force evaluation: about dt omega products with the
+  // matrix, each as expensive as one.
   static constexpr MethodInfo info = {
       "implicit-euler",
       1,

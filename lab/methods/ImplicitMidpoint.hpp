@@ -6,15 +6,15 @@
 namespace lab {
 
 /** v1 = v0 + dt F(x, v)/m, x1 = x0 + dt v, at x = (x0 + x1)/2 and v = (v0 +
- * v1)/2. Symmetric and symplectic; linear and angular momentum are kept.
+ * v1)/2. Symmetric and symplectic; conserves linear and angular momentum.
  * Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration,
  * II.1.3. */
 class ImplicitMidpoint : public NewtonMethod {
  public:
-  // Force evaluations of a linear force. Any other takes one more for each
-  // further Newton iteration: on a cloth 4 to 6 in all, and more when it
-  // buckles. Each iteration takes about dt omega products with the matrix,
-  // each at the cost of one evaluation.
+  // Force evaluations if the force is linear. Otherwise one more for each
+  // further Newton iteration: 4 to 6 in all on a cloth, more when it buckles.
+  // Each iteration takes about dt omega products with the matrix, each as
+  // expensive as one evaluation.
   static constexpr MethodInfo info = {
       "implicit-midpoint",
       2,

@@ -12,7 +12,7 @@ namespace lab::implicit_detail {
 
 namespace {
 
-constexpr double few = 100;  // products, before a factor is thought of
+constexpr double few = 100;  // products before a factor is considered
 
 Stiffness clamped(const Stiffness& B) {
   return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
@@ -32,7 +32,7 @@ Matrix3 inverse(const Matrix3& a) {
   Matrix3 d = a;
   invert_factor(d, Matrix3());
   Matrix3 all;
-  for (int c = 0; c < 3; ++c) all.column[c] = turned_times(d, d.column[c]);
+  for (int c = 0; c < 3; ++c) all.column[c] = transposed_times(d, d.column[c]);
   return all;
 }
 double trace(const Matrix3& a) {
@@ -110,7 +110,7 @@ void ImplicitStage::hold(Cloth& g, double t, const ConstraintPlan& constraint) {
 
 void ImplicitStage::solve_linearized(Cloth& g, double t, double s,
                                      const ForcePlan& force) {
-  find_still(g, s, w);
+  find_w(g, s, w);
   find_residual(g, t, s, force);
   assemble(g, s, force);
   for (unsigned i = 0; i < w.size(); ++i) direction_[i] = q[i] - w[i];
@@ -138,12 +138,12 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
     if (left <= goal || left <= round_off(g, s)) return balance(g, s, force);
     if (iteration == goal_.max_iterations || !std::isfinite(left))
       goal_.fail("Newton's method", iteration, left, " m/s^2");
-    // Solve the better, the faster Newton closes in, but not for nothing: the
-    // forcing terms of S. Eisenstat, H. Walker, SIAM J. Sci. Comput. 17 (1996)
-    // 16, choice 2.
+    // The faster Newton converges, the more accurate is the linear solve, but
+    // not more than needed: forcing terms of S. Eisenstat, H. Walker, SIAM J.
+    // Sci. Comput. 17 (1996) 16, choice 2.
     double enough = 0.01;
     if (iteration == 0) {
-      // What a start at w = q would leave, or more.
+      // An upper bound of the residual at w = q.
       for (unsigned i = 0; i < w.size(); ++i) direction_[i] = w[i] - q[i];
       first = left + filtered(g, s, direction_);
     } else {
@@ -158,7 +158,7 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
     const bool found = search(g, t, s, force, here, left < 0.01 * first);
     if (!found && clamp)
       goal_.fail("Newton's line search", iteration, left, " m/s^2");
-    clamp = !found;  // A was all but singular, and the step far too long
+    clamp = !found;  // A was nearly singular, so step_ was far too long
   }
 }
 
@@ -186,8 +186,8 @@ double ImplicitStage::allowed(const Cloth& g, double s,
   return std::max(goal_.tolerance, share_ * error.scale * d);
 }
 
-/** Without fixed nodes: shift w by what makes the sum of the residual 0. Such a
- * shift changes no spring. */
+/** Without fixed nodes: shift w so that the sum of the residual is 0. That does
+ * not change any spring. */
 void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
   Point sum;
   double mass = 0;
@@ -205,13 +205,13 @@ void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
   move(g, s);
 }
 
-/** The @a still [m/s] that leaves @a g where it is. */
-void ImplicitStage::find_still(const Cloth& g, double s,
-                               std::vector<Point>& still) const {
+/** The w @a now of the present positions x = p + s w. */
+void ImplicitStage::find_w(const Cloth& g, double s,
+                           std::vector<Point>& now) const {
   auto x = g.positions();
-  for (unsigned i = 0; i < w.size(); ++i) still[i] = (x[i] - p[i]) / s;
+  for (unsigned i = 0; i < w.size(); ++i) now[i] = (x[i] - p[i]) / s;
 }
-/** The positions p + s w. */
+/** Set the positions to p + s w. */
 void ImplicitStage::move(Cloth& g, double s) const {
   auto x = g.positions();
   for (unsigned i = 0; i < w.size(); ++i)
@@ -285,8 +285,8 @@ void ImplicitStage::precondition(const std::vector<Point>& from,
   for (unsigned i = 0; i < from.size(); ++i)
     to[i] = point(times(diagonal_blocks_[i], four(from[i])));
 }
-/** What round-off leaves of D^-1 r/s [m/s^2], RMS over the nodes: that of w
- * by the inertia, that of x by the springs, as far as they make up D. */
+/** The round-off in D^-1 r/s [m/s^2], RMS over the nodes: that of w through the
+ * inertia, that of x through the springs' part of D. */
 double ImplicitStage::round_off(const Cloth& g, double s) const {
   constexpr double epsilon = std::numeric_limits<Real>::epsilon();
   auto x = g.positions();
@@ -300,9 +300,10 @@ double ImplicitStage::round_off(const Cloth& g, double s) const {
   return epsilon / s * std::sqrt(sum / std::max(1u, g.num_nodes()));
 }
 
-/** How many products a factor of A is worth; infinite if it can't be had. By
- * count: as measured, a product of two blocks takes 0.7 times as long as a
- * spring in a product with A, a block in a solution 2 times; there are two. */
+/** The work of a factor of A, in products with A; infinite if it is too large.
+ * Counted, with measured weights: a product of two blocks takes 0.7 times as
+ * long as a spring in a product with A, a block in each of two solves 2 times.
+ */
 double ImplicitStage::factor_work() {
   constexpr std::size_t most = 10'000'000;  // blocks, of 100 bytes
   pairs_.clear();
@@ -313,11 +314,11 @@ double ImplicitStage::factor_work() {
          double(blocks_.size() + 1);
 }
 
-/** After how many products of conjugate gradients a factor is tried. They take
- * about sqrt(condition)/2 ln(2/relative), the root being s omega, but no more
- * than the way across a sheet, there and back. If that is far more than a
- * factor's work, it is made at once; else after as much work as its own, so
- * that both together never take more than twice the lesser. */
+/** The number of products of CG after which a factor is tried. CG takes about
+ * sqrt(condition)/2 ln(2/relative) products; the root is s omega, but at most
+ * twice the width of a sheet in nodes. If that is far more than the work of a
+ * factor, the factor is made at once; else after as much work as its own, so
+ * that both together take at most twice the lesser. */
 double ImplicitStage::patience(double relative) {
   if (factored_ || solver_ == LinearSolver::gradients) return HUGE_VAL;
   if (tight_ || solver_ == LinearSolver::cholesky) return 0;
@@ -359,12 +360,13 @@ void ImplicitStage::apply(const std::vector<Point>& from,
   factor_.solve(to);
 }
 
-/** Solve A step_ = residual_ by conjugate gradients, preconditioned by D or by
- * the factor of A without negative stiffness, P, until the residual r has
- * fallen by the factor @a relative in the norm sqrt(r P^-1 r).
- * Without @a clamp, A may turn out not to be positive definite: then step_ is
- * as far as it got, which goes downhill still.
- * @return false if it got nowhere; never with @a clamp  Throws StepError. */
+/** Solve A step_ = residual_ by conjugate gradients until the residual r has
+ * fallen by the factor @a relative in the norm sqrt(r P^-1 r). The
+ * preconditioner P is D, or the factor of A without negative stiffness.
+ * Without @a clamp, A may be indefinite: then step_ is the last iterate, which
+ * is still a descent direction.
+ * @return false if there is no iterate; never with @a clamp  Throws StepError.
+ */
 bool ImplicitStage::solve(double relative, bool clamp) {
   double tries = patience(relative);
   std::fill(step_.begin(), step_.end(), Point());
@@ -417,41 +419,42 @@ ImplicitStage::Objective ImplicitStage::objective(
   return {0.5 * sum, force.energy(g)};
 }
 
-/** Keep w, or take the one that leaves @a g where it is: that of the lower
- * objective, which is returned. */
+/** Keep w, or take that of the present positions, whichever has the lower
+ * objective.  @return that objective */
 ImplicitStage::Objective ImplicitStage::choose_start(Cloth& g, double s,
                                                      const ForcePlan& force) {
-  find_still(g, s, rest_);
+  find_w(g, s, rest_);
   std::swap(w, rest_);
-  const Objective still = objective(g, s, force);
+  const Objective now = objective(g, s, force);
   std::swap(w, rest_);
   move(g, s);
   const Objective moved = objective(g, s, force);
-  if (moved.value() < still.value()) return moved;
+  if (moved.value() < now.value()) return moved;
   std::swap(w, rest_);
-  return still;
+  return now;
 }
 
-/** Go along step_ by 1, 1/2, 1/4, ... until the objective has fallen from
- * @a here by a ten thousandth of what its slope promises (Armijo's rule).
- * Round-off may hide such a fall: go all the way if it is that small; and if
- * @a close to the end, also if there is no slope left there, as at the bottom
- * of a parabola.
- * @return false if it does not fall; then w is as before, to round-off */
+/** Add step_ times 1, 1/2, 1/4, ... to w until the objective has fallen from
+ * @a here by 1e-4 of what its slope predicts (Armijo's rule). Round-off may
+ * hide the fall: so the full step is taken if the predicted fall is below
+ * round-off, and, @a close to the solution, if the slope at its end is a tenth
+ * or less.
+ * @return false if the objective does not fall; then w is as before, to
+ * round-off */
 bool ImplicitStage::search(Cloth& g, double t, double s, const ForcePlan& force,
                            Objective& here, bool close) {
-  const double promise = product(residual_, step_);
+  const double predicted = product(residual_, step_);
   advance(1);
   if (!line_search_) return true;
-  if (promise <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
+  if (predicted <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
   double a = 1;
   for (; a > 1e-9; a /= 2) {
     move(g, s);
     const Objective there = objective(g, s, force);
-    bool good = there.value() <= here.value() - 1e-4 * a * promise;
+    bool good = there.value() <= here.value() - 1e-4 * a * predicted;
     if (!good && close && a == 1) {
       find_residual(g, t, s, force);
-      good = std::abs(product(residual_, step_)) <= 0.1 * promise;
+      good = std::abs(product(residual_, step_)) <= 0.1 * predicted;
     }
     if (good) {
       here = there;

@@ -1,6 +1,6 @@
 #pragma once
 /** @file ImplicitStage.hpp
- * What the implicit methods share: the equation of one stage, solved by
+ * ImplicitStage: the equation of one stage of an implicit method, solved by
  * Newton's method and conjugate gradients. */
 #include <vector>
 
@@ -12,29 +12,29 @@ namespace lab {
 
 namespace implicit_detail {
 
-/** Call force.add_stiffness(), and throw std::invalid_argument in the name of
+/** Call force.add_stiffness(). Throws std::invalid_argument with the name of
  * @a method if the force does not know its stiffness. */
 void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
                    const StiffnessVisitor& use);
 
-/** The nodes that do not move in a step, by node id: held and removed ones. */
+/** Mark, by node id, the nodes that forces do not move: held and removed. */
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);
 
-/** How a linear system is solved: by conjugate gradients, preconditioned by the
- * diagonal blocks of A or by its Cholesky factor; automatic takes what is less
- * work, see ImplicitStage. */
+/** The preconditioner of the conjugate gradient method: the diagonal blocks of
+ * A, its Cholesky factor, or (automatic) what is less work: see ImplicitStage.
+ */
 enum class LinearSolver { automatic, gradients, cholesky };
 
 /** How a stage estimates its error: see ImplicitStage::solve_newton(). */
 struct LocalError {
-  double scale = 0;    ///< the error [m/s^2] over the deviation from guess
-  bool first = false;  ///< whether guess is of order 0, not 1
+  double scale = 0;    ///< the error over the deviation from guess
+  bool first = false;  ///< true if guess is of order 0, else 1
 };
 
 /** The accuracy that a solver must reach, and the text of its errors. */
 struct Goal {
-  double tolerance;  ///< of the iteration that throws
+  double tolerance;  ///< of the iteration that failed
   int max_iterations;
   const char* method = "";
   double dt = 0;  ///< of the whole step [s]
@@ -42,71 +42,69 @@ struct Goal {
                          const char* unit) const;
 };
 
-/** The equation that all implicit steps here are made of: find w [m/s] with
+/** The equation of all implicit steps here: find w [m/s] with
  *   M (w - q) = s (F(y) - c w),   y = p + s w,
  * for given p [m], q [m/s] and s [s]; c is the drag by node, F the other
- * forces. It is where the objective (w - q) M (w - q)/2 + s c w w/2 + V(y) [J]
- * has no slope, V being the energy of F. The matrix of its derivative in w,
- *   A = M + s c + s^2 H,   H the stiffness at y,
- * is applied spring by spring. The linear system is solved by conjugate
- * gradients; where a sparse factor of A is less work, that preconditions them:
- * what is tight and stiff takes about s omega products, a factor as many as
- * some 60 (25 x 25 nodes) to 230 (100 x 100). Both are counted, so that each
- * machine decides alike. The factor's pattern is kept until the springs have
- * other ends or others are fixed; finding it allocates.
- * Compressed springs may keep A from being positive definite: then the linear
- * system is solved in part, or with their negative stiffness taken as 0 (J.
- * Teran et al., SCA 2005, 181), as in the factor always. No residual is changed
- * by that.
- * Fixed nodes have p = x and q = w = 0: hold() moves them to another x. */
+ * forces. The solution is a stationary point of the objective
+ *   (w - q) M (w - q)/2 + s c w w/2 + V(y) [J],   V the energy of F.
+ * The Jacobian with respect to w, A = M + s c + s^2 H with the stiffness H at
+ * y, is applied spring by spring. Linear systems are solved by conjugate
+ * gradients (CG). If it is less work, a sparse factor of A preconditions them:
+ * on a taut, stiff cloth CG takes about s omega products; a factor costs as
+ * much as 60 (25 x 25 nodes) to 230 (100 x 100). Work is counted, not timed, so
+ * every machine decides alike. The factor's pattern is kept until the springs'
+ * ends or the fixed nodes change; finding it allocates.
+ * Compressed springs can make A indefinite: then CG stops early, or negative
+ * stiffness is taken as 0 (J. Teran et al., SCA 2005, 181), as it always is in
+ * the factor. The residual is not affected.
+ * Fixed nodes have p = x and q = w = 0; hold() moves them to another x. */
 class ImplicitStage {
  public:
   std::vector<Point> p, q, w;  // by node id
-  /** What w would be if accelerations went on as in the past; by node id. */
+  /** w extrapolated from past accelerations; by node id. */
   std::vector<Point> guess;
 
-  /** @param tolerance > 0 and @param max_iterations: see the solvers
+  /** @param tolerance > 0   @param max_iterations   see the solvers
    * @param line_search whether Newton's method has one
-   * @param share of the local error that Newton's method may leave, too */
+   * @param share Newton's method may leave this share of the local error */
   ImplicitStage(double tolerance, int max_iterations, bool line_search = true,
                 double share = 0);
 
-  /** Ready for a step of @a g from @a t by @a dt [s]: who is fixed, and p = x,
-   * q = w = v.  @param method whose name errors give */
+  /** Begin a step of @a g from @a t by @a dt [s]: find the fixed nodes, and set
+   * p = x, q = w = v.  @param method its name, for errors */
   void begin(const char* method, double t, double dt, Cloth& g,
              const ConstraintPlan& constraint);
-  /** Put held nodes where they are at @a t, the time of the next solve.
+  /** Put held nodes to their places at @a t, the time of the next solve.
    * @pre p, q, w and guess are set */
   void hold(Cloth& g, double t, const ConstraintPlan& constraint);
   bool fixed(unsigned i) const { return fixed_[i]; }
   const Work& work() const { return work_; }
   void use(LinearSolver solver) { solver_ = solver; }
 
-  /** One Newton step from where @a g is, whatever is left over: the linear
-   * system, without negative stiffness, is solved until its residual has fallen
-   * by the factor tolerance from that of w = q. So what is left over does what
-   * a wrong acceleration would, and small steps have no more of it.
+  /** One Newton step from the positions of @a g. The linear system, without
+   * negative stiffness, is solved until its residual has fallen by the factor
+   * tolerance from that of w = q. So the error is that of accelerations wrong
+   * by a share of tolerance, however small the step.
    * @post g's positions are p + s w */
   void solve_linearized(Cloth& g, double t, double s, const ForcePlan& force);
 
-  /** Newton's method with a line search, from @a w or from where @a g is: the
-   * former is nearer, unless it stretches springs.
+  /** Newton's method with a line search, started from @a w or from the
+   * positions of @a g, whichever has the lower objective.
    * @post g's positions are p + s w, and the RMS over the nodes of D^-1 r/s, r
    * the residual and D the diagonal blocks of A, is at most tolerance [m/s^2],
-   * share times the local error, or round_off(). Such a residual does what a
-   * wrong acceleration would: while s omega is small, it moves the cloth by
-   * tolerance T^2/2 at most in a time T, however many steps that takes. Without
-   * fixed nodes the sum of r is 0: linear momentum is kept to round-off.
+   * share times the local error, or round_off(). Such a residual acts like an
+   * error of the acceleration: while s omega is small, it moves the cloth by at
+   * most tolerance T^2/2 in a time T, with any number of steps. Without fixed
+   * nodes the sum of r is 0: linear momentum is conserved to round-off.
    * Throws StepError.
    *
    * The local error [m/s^2], in the norm of the residual, is
    *   error.scale d,   d = RMS(D^-1 M (w - guess))/s,
-   * so d of a guess of order 1 is its second difference, the embedded formula.
-   * A guess of order 0, q + s a for the acceleration a at the start, has a
-   * first difference only; but |a'|^2 <= |a| |a''| in the mean square (Hardy,
-   * Littlewood, Polya, Inequalities, chapter 7), so that
-   *   error.scale d min(1, d/RMS(D^-1 M a))
-   * does not exceed the error by more than a small factor. */
+   * the embedded formula, if guess is of order 1: then d is a second
+   * difference. If guess is of order 0, q + s a with the acceleration a at the
+   * start, d is only a first difference. But |a'|^2 <= |a| |a''| in the mean
+   * square (Hardy, Littlewood, Polya, Inequalities, chapter 7), so error.scale
+   * d min(1, d/RMS(D^-1 M a)) exceeds the error by at most a small factor. */
   void solve_newton(Cloth& g, double t, double s, const ForcePlan& force,
                     const LocalError& error = {});
 
@@ -124,9 +122,9 @@ class ImplicitStage {
   LinearSolver solver_ = LinearSolver::automatic;
   SparseCholesky<Matrix3> factor_;  // of A without negative stiffness
   std::vector<SparseCholesky<Matrix3>::Pair> pairs_;
-  bool factored_ = false;  // whether factor_ is that of this A
-  bool tight_ = false;     // whether this step needed a factor before
-  double contrast_ = 0;    // of D and M: the square of s omega, and 1
+  bool factored_ = false;  // whether factor_ is the factor of this A
+  bool tight_ = false;     // whether an earlier A of this step was factored
+  double contrast_ = 0;    // of D and M: about 1 + (s omega)^2
   Goal goal_;
   bool line_search_;
   double share_;
@@ -137,7 +135,7 @@ class ImplicitStage {
     double value() const { return inertia + energy; }
   };
 
-  void find_still(const Cloth& g, double s, std::vector<Point>& still) const;
+  void find_w(const Cloth& g, double s, std::vector<Point>& now) const;
   void move(Cloth& g, double s) const;
   void advance(double a);
   void find_residual(Cloth& g, double t, double s, const ForcePlan& force);
@@ -161,7 +159,8 @@ class ImplicitStage {
               Objective& here, bool close);
 };
 
-/** End of a step: the constraint at @a end, and the held nodes' velocities. */
+/** End a step: apply the constraint, set held nodes' velocities.  @return end
+ */
 double finish(Cloth& g, double end, const ConstraintPlan& constraint);
 
 }  // namespace implicit_detail

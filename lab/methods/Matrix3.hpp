@@ -7,10 +7,10 @@
 
 namespace lab {
 
-// None of these is passed to code of another kind: all is inlined.
+// All functions are inlined, so the ABI of vector arguments does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-// Three coordinates in one register, and a lane to spare.
+// Three coordinates in one register; the fourth lane is unused.
 typedef double Four __attribute__((vector_size(32), aligned(32)));
 
 /** 3 x 3 numbers by columns of three and a zero. Sums run from the first column
@@ -40,8 +40,8 @@ struct Matrix3 {
   return a.column[0] * x[0] + a.column[1] * x[1] + a.column[2] * x[2];
 }
 /** a^T x */
-[[gnu::always_inline]] inline Four turned_times(const Matrix3& a,
-                                                const Four& x) {
+[[gnu::always_inline]] inline Four transposed_times(const Matrix3& a,
+                                                    const Four& x) {
   const Four p = a.column[0] * x, q = a.column[1] * x, r = a.column[2] * x;
   return Four{p[0] + p[1] + p[2], q[0] + q[1] + q[2], r[0] + r[1] + r[2], 0};
 }
@@ -63,9 +63,9 @@ struct Matrix3 {
   for (int c = 0; c < 3; ++c) a.column[c] = product[c];
 }
 
-/** Put L^-1 in the place of d = L L^T, of which the lower triangle is read.
- * @return false if the square of an entry of L's diagonal is not finite, or
- * only round-off beside that entry of @a before */
+/** Replace d = L L^T, of which the lower triangle is read, by L^-1.
+ * @return false if the square of a diagonal entry of L is not finite, or is
+ * only round-off compared to that entry of @a before */
 [[gnu::always_inline]] inline bool invert_factor(Matrix3& d,
                                                  const Matrix3& before) {
   Four* const c = d.column;
@@ -94,12 +94,12 @@ struct Matrix3 {
   return good;
 }
 
-// The same for a number in the place of a matrix.
+// The same for a number instead of a matrix.
 [[gnu::always_inline]] inline void add(double& to, double a) { to += a; }
 [[gnu::always_inline]] inline Four times(double a, const Four& x) {
   return a * x;
 }
-[[gnu::always_inline]] inline Four turned_times(double a, const Four& x) {
+[[gnu::always_inline]] inline Four transposed_times(double a, const Four& x) {
   return a * x;
 }
 [[gnu::always_inline]] inline void subtract(double& to, double from,

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Method.hpp
- * Method: a step in time from t to t + dt, and what each method says about
- * itself. The order within a step: positions, constraints, forces,
+ * Method: a step in time from t to t + dt, and the properties that each method
+ * declares. The order within a step: positions, constraints, forces,
  * velocities. */
 #include <concepts>
 #include <limits>
@@ -14,37 +14,36 @@
 
 namespace lab {
 
-/** What a method says about itself; the tests hold it to that. */
+/** What a method declares about itself; the tests measure it. */
 struct MethodInfo {
   const char* name;
   int order;     ///< error ~ dt^order
   int sweeps;    ///< force evaluations a step, without linear solves
-  double limit;  ///< bounded while dt omega < limit, without drag
+  double limit;  ///< stable while dt omega < limit, without drag
   const char* source;
   const char* good_for;
   const char* fails_when;
-  bool adaptive = false;  ///< steps inside a step: dt does not bound them
-  /** Takes stiff springs in inner steps: limit is that of the others, see
+  bool adaptive = false;  ///< makes inner steps, so dt may be of any length
+  /** Stiff springs are taken in inner steps. limit holds for the others, see
    * soft_stiffness(). */
   bool multirate = false;
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-/** The times of many steps [s]: multiples of one dt, as sums depend on
- * rounding.
- */
+/** The times of many steps [s]: multiples of one dt, because in a sum of steps
+ * rounding errors would add up. */
 struct StepTimes {
   double from, dt;
   long long done = 0;  ///< steps since @a from
   double operator()(long long k) const { return from + double(done + k) * dt; }
 };
 
-/** What a method has done besides evaluating forces, since it was made: the
+/** The work of a method besides force evaluations, since it was made. It is the
  * same on every machine. */
 struct Work {
-  long long inner = 0;     ///< steps inside its steps, those refused, too
+  long long inner = 0;     ///< inner steps, with rejected ones
   long long newton = 0;    ///< linear systems
-  long long products = 0;  ///< with the matrix A, each about a force evaluation
+  long long products = 0;  ///< with the matrix A; each costs a force evaluation
   long long factors = 0;   ///< Cholesky factors of A
   Work& operator+=(const Work& w) {
     inner += w.inner, newton += w.newton;
@@ -53,16 +52,16 @@ struct Work {
   }
 };
 
-/** A method: takes a cloth from t to t + dt, as often as it is called.
+/** A method: each call of step() takes a cloth from t to t + dt.
  *
- * It applies the constraint once a step: when the positions have reached t +
- * dt, and before the force there is evaluated. A nodewise constraint it may
- * project part by part. In between, held nodes are where they are held at the
- * time of each stage. The constraint may remove nodes, and so may the caller
- * between steps. Only the first step allocates, and one after the cloth grew.
+ * It applies the constraint once a step: after the positions have reached
+ * t + dt, before the force is evaluated there. A nodewise constraint may be
+ * projected part by part. At each stage, held nodes are at their places at the
+ * time of the stage. The constraint may remove nodes, and so may the caller
+ * between steps. Only the first step, and one after the cloth grew, allocates.
  *
- * A method may keep the force at the end of a step for the next one: whoever
- * moves nodes between two steps calls restart(). */
+ * A method may keep the force at the end of a step for the next one: call
+ * restart() after moving nodes between two steps. */
 class Method {
  public:
   virtual ~Method() = default;
@@ -72,10 +71,10 @@ class Method {
    * can't handle this force. */
   virtual double step(Cloth& g, double t, double dt, const ForcePlan& force,
                       const ConstraintPlan& constraint) = 0;
-  /** Steps number 0, ..., @a count - 1 of @a times, to the same bits as by
-   * step(); the graph need not be current in between, but is at the end. A step
+  /** Steps number 0, ..., @a count - 1 of @a times, with the same bits as by
+   * step(). The graph is current at the end, but maybe not in between. A step
    * that removed nodes or edges is the last one.
-   * @return how many were made: 1 to @a count   @pre @a count > 0
+   * @return the number of steps: 1 to @a count   @pre @a count > 0
    * Throws as step(). */
   virtual int steps(Cloth& g, const StepTimes& times, int count,
                     const ForcePlan& force, const ConstraintPlan& constraint) {
@@ -88,16 +87,16 @@ class Method {
   /** Forget what was kept from the last step. */
   virtual void restart() {}
   /** Save what was kept from the last step; or load it, so that the next step
-   * gives the same bits as that of the method that saved it.
-   * @pre of loading: @a g is as it was then. The default: nothing is kept */
+   * gives the same bits as that of the method that saved it. By default nothing
+   * is kept.  @pre of loading: @a g is as it was when saved */
   virtual void archive(Archive& /*a*/, const Cloth& /*g*/) {}
   virtual Work work() const { return {}; }
   /** Keep the estimated error of each inner step below @a tolerance [m] > 0;
    * infinite: one inner step a step. Only adaptive methods have one. */
   virtual void set_tolerance(double /*tolerance*/) {}
 
-  /** The call of symp_euler_step(): any force, any constraint; or their plans,
-   * which save making them in each step. */
+  /** step() with the arguments of symp_euler_step(): any force, any constraint.
+   * Plans can be passed, too; then they are not made in each step. */
   template <typename F, typename C = ZeroConstraint>
   double operator()(Cloth& g, double t, double dt, F&& force,
                     C&& constraint = C()) {
@@ -123,7 +122,7 @@ class Method {
   }
 };
 
-/** A method whose step is a batch of one. */
+/** A method that implements steps(); step() is a batch of one. */
 class BatchMethod : public Method {
  public:
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
@@ -135,7 +134,7 @@ class BatchMethod : public Method {
             const ConstraintPlan& constraint) override = 0;
 };
 
-/** A method by its name: a line of the table in Methods.hpp. */
+/** A line of the table of methods in Methods.hpp. */
 struct MethodEntry {
   MethodInfo info;
   std::unique_ptr<Method> (*make)();

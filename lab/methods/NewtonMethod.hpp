@@ -6,18 +6,18 @@
 namespace lab {
 
 /** The base of the methods that solve the nonlinear equations of motion by
- * Newton's method. The force, drag aside, must be minus the gradient of its
+ * Newton's method. The force without drag must be minus the gradient of its
  * energy().
  *
- * A step that folds the cloth many times over may need more iterations than
- * there are: a sheet of 50 x 50 nodes, stirred by 1 m/s at random, can't make
- * steps of 0.2 s (170 times verlet's limit), one of K = 10000 N/m none of
- * 0.02 s by the midpoint rule. A shorter step can be made. */
+ * A step in which the cloth folds many times may need more than max_iterations:
+ * a sheet of 50 x 50 nodes with random velocities of 1 m/s fails in steps of
+ * 0.2 s (170 times verlet's limit); one of K = 10000 N/m fails in steps of
+ * 0.02 s by the midpoint rule. Shorter steps succeed. */
 class NewtonMethod : public Method {
  public:
-  /** @param tolerance [m/s^2] > 0, of each stage: what is left over does as an
-   *        acceleration of that size would, see ImplicitStage::solve_newton()
-   * @param max_iterations of Newton in each stage; then StepError
+  /** @param tolerance [m/s^2] > 0, of each stage: the residual acts like an
+   *        acceleration of that size, see ImplicitStage::solve_newton()
+   * @param max_iterations of Newton's method in a stage; then StepError
    * @param line_search false to measure its effect */
   explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100,
                         bool line_search = true)
@@ -27,8 +27,8 @@ class NewtonMethod : public Method {
   void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
 
  protected:
-  /** Of a method that tells its local error.
-   * @param share of it that each stage may leave over */
+  /** For a method that estimates its local error.
+   * @param share the residual of a stage, as a share of that error */
   struct Share {
     double share;
   };

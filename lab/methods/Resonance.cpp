@@ -13,8 +13,8 @@ namespace lab {
 using std::numbers::pi;
 
 namespace {
-// Waves in the soft springs may be that much faster than their bound: large
-// motion adds side bands. Measured: 1.2 is too little, README.md.
+// Large motion adds side bands: waves in the soft springs may exceed their
+// bound by this factor. Measured: 1.2 is too little, see README.md.
 constexpr double side_bands = 1.3;
 constexpr double margin = 0.02;  // of c
 // A third of the shortest period, as Izaguirre, Reich, Skeel 1999 advise for
@@ -41,11 +41,12 @@ Resonances::Resonances(StiffSplit split, double soft)
 }
 
 /** The eigenvalues of a step are pairs e^{+-ib} with cos(b) = c. Those of stiff
- * springs with sin(a) < 0 have the other sign of Krein than all others: where
- * they meet one of these both leave the unit circle; and any pair does where
- * |c| = 1. So stable is where some number separates the c of both signs. A
- * stiff spring beyond the first half turn that turns no faster than soft waves,
- * c >= 1 - (dt soft)^2/2, takes energy from them until all is heated. */
+ * springs with sin(a) < 0 have the opposite Krein signature to all others.
+ * Where the two kinds meet, both leave the unit circle; and any pair does at
+ * |c| = 1. So a step is stable if some number separates the c of both kinds. In
+ * addition, a stiff spring past its first half turn that turns no faster than
+ * soft waves, c >= 1 - (dt soft)^2/2, takes up energy from them and heats up.
+ */
 bool Resonances::at(double dt) const {
   const int inner = split_.inner_steps(dt);
   const double waves = dt * side_bands * soft_;
@@ -53,7 +54,7 @@ bool Resonances::at(double dt) const {
   if (split_.connected > 0) {
     const HalfTrace top(split_.connected, soft_, dt, inner);
     if (top.phase >= pi) return true;
-    high = top.value;  // a lower frequency has a larger one
+    high = top.value;  // lower frequencies have larger values
   }
   for (double omega : split_.alone) {
     const HalfTrace c(omega, soft_, dt, inner);
@@ -68,7 +69,7 @@ bool Resonances::at(double dt) const {
 }
 
 double Resonances::below(double dt) const {
-  // What is returned can be typed in, so it has few digits.
+  // Few digits, so that a user can type in the result.
   const double least =
       std::min(dt, std::stod(CME212::two_digits(share_of_first * first_)));
   if (dt <= least || split_.connected > 0) return least;
@@ -81,7 +82,7 @@ double Resonances::below(double dt) const {
 
 std::string Resonances::text(double dt) const {
   const int inner = split_.inner_steps(dt);
-  // The one that is nearest to a multiple of its half period.
+  // The spring for which dt is nearest to a multiple of its half period.
   double worst = split_.connected, off = pi;
   if (!(HalfTrace(worst, soft_, dt, inner).phase >= pi))
     for (double omega : split_.alone) {

@@ -1,18 +1,18 @@
 #pragma once
 /** @file Resonance.hpp
- * Which steps of r-RESPA resonate with its stiff springs. */
+ * Finds the steps of r-RESPA that resonate with its stiff springs. */
 #include <string>
 
 #include "lab/methods/StiffSplit.hpp"
 
 namespace lab {
 
-/** Half the trace of a step of r-RESPA of @a dt [s], with @a inner steps, on
- * x'' = -(omega^2 + soft^2) x, of which omega^2 is the stiff spring's [1/s^2]:
+/** Half the trace of the matrix of a step of r-RESPA, for x'' = -(omega^2 +
+ * soft^2) x, where omega [1/s] is the frequency of the stiff spring:
  *   c = cos(a) - dt soft^2/(2 omega') sin(a),
  * with a = 2 inner asin(y), omega' = omega sqrt(1 - y^2), y = dt omega/(2
- * inner), as the inner steps are Verlet's. The step is stable if |c| < 1.
- * @pre y < 1 */
+ * inner), since the inner steps are Verlet's. The step is stable if |c| < 1.
+ * @param dt [s]   @param inner number of inner steps   @pre y < 1 */
 struct HalfTrace {
   double phase;  ///< a
   double value;  ///< c
@@ -20,27 +20,28 @@ struct HalfTrace {
 };
 
 /** The steps of r-RESPA that resonate with stiff springs. Springs that share no
- * node have a frequency each, so there are gaps between their resonances.
- * Connected ones have bands that move as the cloth does: all steps from their
- * first resonance on count as resonant. README.md of this room has the theory.
+ * node have one frequency each, so there are gaps between their resonances.
+ * Connected springs have bands of frequencies, which change as the cloth moves:
+ * all steps from their first resonance on count as resonant. Theory: README.md.
  */
 class Resonances {
  public:
   /** @param split not empty
-   * @param soft no frequency of the soft springs is higher [1/s]: that of
-   *        soft_stiffness() */
+   * @param soft a bound of the frequencies of the soft springs [1/s]:
+   *        omega_safe() of soft_stiffness() */
   Resonances(StiffSplit split, double soft);
 
-  /** Whether steps of @a dt [s] may resonate. If not, and dt soft < 2, they are
-   * stable by linear theory; beyond first() large motion may change that. */
+  /** True if steps of @a dt [s] may resonate. If not, and dt soft < 2, they are
+   * stable by linear theory; beyond first(), large motion may still resonate.
+   */
   bool at(double dt) const;
-  /** No shorter step resonates [s]. */
+  /** The shortest step that resonates [s]. */
   double first() const { return first_; }
-  /** The step up to @a dt [s] to use: the longest one in a gap, a number of few
-   * digits; if there is none up to 0.6 of first().
-   * Complexity: 100 dt omega calls of at(), at most */
+  /** A step up to @a dt [s] that does not resonate, in few digits: the longest
+   * one in a gap or, if there is none, at most 0.6 first().
+   * Complexity: at most 100 dt omega calls of at() */
   double below(double dt) const;
-  /** @a dt [s] in periods of the stiff springs, in words. */
+  /** How @a dt [s] compares with the periods of the stiff springs, in words. */
   std::string text(double dt) const;
 
  private:

@@ -15,10 +15,10 @@ namespace lab {
  * the stiff springs alone; half a kick. Only nodes at stiff springs move in the
  * inner steps, all others drift once. So a step takes one force evaluation.
  *
- * StiffSplit chooses the springs, from K/m, and n is the least with which dt/n
- * is a quarter of Verlet's limit for them. Where springs are alike there are
- * none, and it is Verlet, bit by bit. A spring whose K is changed counts as
- * such after restart().
+ * split_springs() chooses the stiff springs from K/m; n is the least number for
+ * which dt/n is at most a quarter of Verlet's limit for them. If all springs
+ * are alike, none is stiff, and the method is Verlet, bit by bit. A change of K
+ * takes effect after restart().
  *
  * Symmetric, symplectic, drag exact, as Splitting. dt is bounded by the soft
  * part: dt omega < 2 for its frequencies, see soft_stiffness(). Below that it
@@ -47,7 +47,7 @@ class Respa : public BatchMethod {
   }
   void archive(Archive& a, const Cloth& g) override;
 
-  /** Of the last step: what it split, and the n of above. */
+  /** The stiff springs and the n of the last step. */
   const StiffSplit& split() const { return split_; }
   int inner_steps() const { return inner_steps_; }
   Work work() const override { return {.inner = inner_done_}; }
@@ -58,10 +58,10 @@ class Respa : public BatchMethod {
   StiffSplit split_;
   int multiplicity_ = 0, inner_steps_ = 0;
   long long inner_done_ = 0;
-  const Cloth* kept_for_ = nullptr;  // the cloth that split_ and they are of
+  const Cloth* kept_for_ = nullptr;  // to which split_ and they belong
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
-  bool loaded_ = false;  // accelerations and kept_time_ only
+  bool loaded_ = false;  // only the accelerations and kept_time_ are
   struct StiffNode {
     Point x, v, f;
     double per_mass;    // 1/m; 0 if held

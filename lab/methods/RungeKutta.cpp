@@ -37,8 +37,8 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
   if (inner_ == 0) inner_ = dt;
   const double end_of_step = t + dt;
   for (double now = t; now < end_of_step;) {
-    // A last step that leaves a splinter takes it along.
-    // It ends where a held node changes its velocity.
+    // An inner step ends where a held node changes its velocity. It is
+    // lengthened if the rest up to there would be less than 1 %.
     const double goal =
         std::min(end_of_step, constraint.next_velocity_jump(now));
     const bool last = now + 1.01 * inner_ >= goal;
@@ -66,8 +66,8 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
   }
 }
 
-/** One step without error control; takes no constraint but held nodes, which
- * have no error.
+/** One inner step, which applies no constraint but to held nodes; these have no
+ * error.
  * @return the estimated error [m]; 0 if the method has no estimate */
 template <typename Tableau>
 double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
@@ -93,7 +93,7 @@ double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
     constraint.each_held(g, std::ref(rest));  // nothing on the heap
   }
   if constexpr (first_same_as_last) {
-    // The last stage stands at the end of the step already.
+    // The last stage is the state at the end of the step.
     cloth.copy(FlatCloth::X, end, 6);
     has_end_ = true, end_t_ = t + h, end_version_ = cloth.version();
   } else {
@@ -154,7 +154,7 @@ double RungeKutta<Tableau>::error_rate(const Cloth& g, double h) {
   return error;
 }
 
-/** Of the difference to the weights @a other. */
+/** RMS of the difference to the weights @a other. */
 template <typename Tableau>
 double RungeKutta<Tableau>::rms(const Cloth& g, double h,
                                 const Weights& other) {

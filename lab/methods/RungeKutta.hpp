@@ -13,26 +13,25 @@
 
 namespace lab {
 
-/** What share of a tolerance for the end of a run its inner steps get. On six
+/** The tolerance of inner steps, as a share of the tolerance of a run. On six
  * smooth problems the error at the end was then 1e-4 to 0.5 of the tolerance,
- * from 1e-3 to 1e-9 m (test_cloth_tolerance). Where motions diverge, as in a
- * cloth that buckles for long, nothing local bounds it. */
+ * from 1e-3 to 1e-9 m (test_cloth_tolerance). In chaotic motion, as of a cloth
+ * that buckles for long, no local tolerance bounds that error. */
 inline constexpr double tolerance_share = 0.25;
 
 /** An explicit Runge-Kutta method for x' = v, v' = F(x, v, t)/m.
  *
- * As the derivative of x is v, which is a sum of accelerations a_k itself, only
- * these are kept of a stage:
+ * Since x' = v, and v is a sum of accelerations a_k, a stage stores only these:
  *   v = v_0 + h sum_k w_k a_k,  x = x_0 + c h v_0 + h^2 sum_k (w A)_k a_k
- * for a row w of the tableau A, or its weights b: the method as that of
- * Nystroem (II.14 of the source).
+ * where w is a row of the tableau's A, or b: its Nystroem form (II.14 of the
+ * source).
  *
- * @tparam Tableau has info; a, the lower triangle row by row, b and c. With
- *         also b_low, the weights of a lower order, it controls its error:
- *         then step() makes as many steps inside [t, t + dt] as it needs. With
- *         b_third, too, a third order, the estimate is e^2/sqrt(e^2 + e3^2/100)
- *         of the differences e and e3 to both: it scales as order 8 does if
- *         they are of 5 and 3 (II.10 of the source).
+ * @tparam Tableau has info; a, the lower triangle row by row; b and c. If it
+ * has b_low, weights of a lower order, too, the error is controlled: step()
+ *         makes as many inner steps in [t, t + dt] as necessary. If it also has
+ *         b_third, of a third order, the estimate is e^2/sqrt(e^2 + e3^2/100),
+ *         where e and e3 are the differences to b_low and b_third. For orders 5
+ *         and 3 it is of order 8 (II.10 of the source).
  *
  * Error control: in each inner step the RMS over the nodes of the estimated
  * error stays below tolerance(), for positions in [m] and for velocities times
@@ -81,8 +80,8 @@ class RungeKutta : public BatchMethod {
   long long attempts_ = 0;
   FlatFlow flow_{acceleration(stages) - FlatCloth::columns};
   kernels::StageSum sum_;
-  bool has_end_ = false;  // the columns of the end, and the last stage's,
-  double end_t_ = 0;      // at this time
+  bool has_end_ = false;  // whether columns `end` and the last stage are valid,
+  double end_t_ = 0;      // for this time
   std::uint64_t end_version_ = 0;
 
   void one_step(Cloth& g, double t, double dt,

@@ -12,7 +12,7 @@ namespace lab {
 
 namespace {
 
-/** Eigen's factor of single numbers, which has the pattern of ours. */
+/** Eigen's factor of single numbers; its pattern is used here. */
 struct Pattern : Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> {
   /** Of L below the diagonal.  @pre analyzePattern() */
   double entries() const { return m_nonZerosPerCol.cast<double>().sum(); }
@@ -20,8 +20,8 @@ struct Pattern : Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> {
 
 }  // namespace
 
-/** L in the place of A, column by column: subtract what the columns to the left
- * contribute, then divide by the diagonal. */
+/** Replaces A by L, column by column: subtract the contributions of the columns
+ * to the left, then divide by the diagonal. */
 template <typename Entry>
 struct SparseCholesky<Entry>::Factorize {
   template <typename>  // Four on every processor
@@ -60,7 +60,7 @@ struct SparseCholesky<Entry>::Solve {
       int p = begin[j] + 1;
       const int end = begin[j + 1];
       if (p < end && row[p] == j + 1 && begin[j + 2] - end == end - p) {
-        // The next column has the same rows: both at once touch x once.
+        // The next column has the same rows: one pass over x for both.
         x[++j].c -= times(entry[p], y);
         const Four z = x[j].c = times(entry[end], x[j].c);
         for (int q = end + 1; ++p < end; ++q)
@@ -71,8 +71,8 @@ struct SparseCholesky<Entry>::Solve {
     for (int j = columns; j-- > 0;) {
       Four y = x[j].c;
       for (int p = begin[j] + 1; p < begin[j + 1]; ++p)
-        y -= turned_times(entry[p], x[row[p]].c);
-      x[j].c = turned_times(entry[begin[j]], y);
+        y -= transposed_times(entry[p], x[row[p]].c);
+      x[j].c = transposed_times(entry[begin[j]], y);
     }
   }
 };

@@ -1,7 +1,7 @@
 #pragma once
 /** @file SparseCholesky.hpp
- * SparseCholesky: factors sparse matrices that have one pattern, and solves
- * linear systems with the factor. */
+ * SparseCholesky: factors sparse matrices of one pattern and solves linear
+ * systems with the factor. */
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -12,31 +12,31 @@
 
 namespace lab {
 
-/** Solves A x = b for symmetric positive definite A by P A P^T = L L^T, b being
+/** Solves A x = b for symmetric positive definite A by P A P^T = L L^T; b has
  * one Point a row. Eigen finds the order P (approximate minimum degree) and the
- * pattern of L once for each pattern of A. The numbers are ours: Eigen factors
- * the 3 x 3 blocks as single numbers, which takes 6 to 8 times as long, and
+ * pattern of L once for each pattern of A. The entries are computed here: Eigen
+ * factors 3 x 3 blocks as single numbers, which takes 6 to 8 times as long, and
  * solves for one coordinate at a time, which takes 3 to 4 times as long.
- * The sums run in a fixed order: every processor gets the same bits.
+ * Sums are in a fixed order, so every processor gets the same bits.
  * Source: T. Davis, Direct Methods for Sparse Linear Systems, SIAM 2006, 4.8:
  * left-looking.
  * @tparam Entry of A: Matrix3, or double if A acts alike on each coordinate */
 template <typename Entry>
 class SparseCholesky {
  public:
-  /** The place of an entry off the diagonal. */
+  /** Row and column of an entry off the diagonal. */
   struct Pair {
     unsigned i, j;
     bool operator==(const Pair&) const = default;
   };
 
   /** Set the pattern of A. If it is the present one, nothing changes.
-   * @param pairs i != j; the same place may be in several pairs
-   * @param most entries that L may have; the same in every call
+   * @param pairs i != j; pairs may be repeated
+   * @param most the largest number of entries of L; the same in every call
    * @return false if L would have more: then rows() == 0
    * @pre all i, j < @a rows
-   * Complexity: O(pairs) for the present pattern. A new one allocates, and is
-   * as much work as a factor of single numbers. */
+   * Complexity: O(pairs) for the present pattern. A new pattern allocates, and
+   * takes as much work as a factor of single numbers. */
   bool analyze(unsigned rows, std::span<const Pair> pairs, std::size_t most);
 
   unsigned rows() const { return unsigned(order_.size()); }
@@ -53,13 +53,13 @@ class SparseCholesky {
   /** A_ij and A_ji += the symmetric @a entry, for pair @a k of analyze(). */
   void add(std::size_t k, const Entry& entry);
 
-  /** Put L in the place of A: clear() before the next one.
+  /** Replace A by L. Call clear() before the next A.
    * @return false if A is not positive definite to round-off, or not finite:
    *   then solve() must not be called
    * Complexity: O(updates()); nothing is allocated. */
   bool factorize();
 
-  /** Put x in the place of @a b, A x = b.
+  /** Replace @a b by the solution x of A x = b.
    * @pre b.size() == rows(), and factorize() returned true
    * Complexity: O(entries()); nothing is allocated. */
   void solve(std::span<Point> b);
@@ -76,8 +76,8 @@ class SparseCholesky {
   bool fits_ = true;   // what analyze() returned
   double updates_ = 0;
   std::vector<int> order_, place_;  // row of A by row of L, and the inverse
-  // L by columns, each from its diagonal entry down. While L is not factored it
-  // has the entries of A; afterwards the diagonal has inverses.
+  // L by columns, each from its diagonal entry down. Before factorize() these
+  // are the entries of A; afterwards the diagonal entries are inverted.
   std::vector<int> begin_, row_;
   std::vector<Entry> entry_;
   Eigen::SparseMatrix<int> left_;  // L by rows: column, and index in entry_

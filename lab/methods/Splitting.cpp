@@ -30,8 +30,8 @@ int Splitting<Scheme>::steps(Cloth& g, const StepTimes& times, int count,
   return int(done);
 }
 
-/** The stages of a step. @param kept whether the accelerations at its start
- * are: else another stage finds them first */
+/** Add the stages of a step.  @param kept whether the accelerations at its
+ * start are kept; otherwise one more stage computes them */
 template <typename Scheme>
 void Splitting<Scheme>::add_step(double t, double dt, bool kept,
                                  const ConstraintPlan& constraint) {
@@ -59,7 +59,7 @@ void Splitting<Scheme>::add_step(double t, double dt, bool kept,
 
 template <typename Scheme>
 bool Splitting<Scheme>::kept(const Cloth& g, double t, double dt) const {
-  // A caller may add up its times or multiply them: that is the same time.
+  // Equal up to round-off: a caller may add up its times or multiply them.
   return kept_for_ == &g && kept_version_ == g.version() &&
          std::abs(t - kept_time_) < 1e-6 * dt;
 }

@@ -10,16 +10,15 @@
 
 namespace lab {
 
-/** A splitting method: A moves the positions (and lets drag slow the nodes
- * down, exactly), B kicks the velocities, in turn, by fractions of dt. Time
- * runs in A. Symmetric and symplectic (without drag), so energy is bounded and
- * a run can be taken back.
+/** A splitting method: alternates two flows over fractions of dt. A moves the
+ * positions and applies drag, exactly; B kicks the velocities. Time advances in
+ * A. Symmetric and, without drag, symplectic: so the error of the energy stays
+ * bounded, and a run can be reversed.
  *
  * @tparam Scheme has the fractions, `constexpr std::array steps`, kicks_first
- *         (whether they begin and end with B) and info. One that begins with B
- *         saves one force evaluation: the last kick's force is that of the
- *         next step's first kick.
- */
+ *         (whether they begin and end with B) and info. A scheme that begins
+ *         with B saves one force evaluation: the last kick and the first kick
+ *         of the next step use the same force. */
 template <typename Scheme>
 class Splitting : public BatchMethod {
  public:
@@ -36,7 +35,7 @@ class Splitting : public BatchMethod {
                                    (Scheme::steps.size() - first_drift + 1) / 2;
   std::vector<FlatStage> stages_;    // of a batch
   FlatFlow flow_;                    // its accelerations are without drag
-  const Cloth* kept_for_ = nullptr;  // the cloth at whose state they are
+  const Cloth* kept_for_ = nullptr;  // the cloth to which they belong
   std::uint64_t kept_version_ = 0;
   double kept_time_ = 0;
 

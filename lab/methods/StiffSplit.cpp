@@ -9,7 +9,7 @@ namespace lab {
 
 namespace {
 
-/** 1/m [1/kg] by node id; 0 of a held one. */
+/** 1/m [1/kg] by node id; 0 for held nodes. */
 std::vector<double> inverse_masses(const Cloth& g,
                                    const ConstraintPlan& constraint) {
   std::vector<double> w(g.node_slots());
@@ -19,8 +19,8 @@ std::vector<double> inverse_masses(const Cloth& g,
   return w;
 }
 
-/** What a spring costs in an inner step, in springs of a sweep, which are
- * evaluated several at once; and a sweep, besides its springs. */
+/** In units of a spring in a sweep, where several are evaluated at once: the
+ * cost of a spring in an inner step, and that of a sweep without springs. */
 constexpr double cost_inside = 2, cost_of_sweep = 64;
 
 /** Springs of omega_e^2 in [2^k, 2^(k + 1)). */
@@ -32,7 +32,7 @@ int octave_of(double omega2) {
   return std::clamp(std::ilogb(omega2) - lowest, 0, octaves - 1);
 }
 
-/** The first octave that is stiff; octaves: none. */
+/** The first octave that is stiff; `octaves` if there is none. */
 int first_stiff(const std::array<Octave, octaves>& of, double edges) {
   const double all = edges + cost_of_sweep;
   double top = 0;

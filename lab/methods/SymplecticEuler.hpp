@@ -7,8 +7,8 @@
 namespace lab {
 
 /** The assignment's step as a method, for speed: all forces in one sweep.
- * Equal to symp_euler_step() with a constraint, to round-off; like there, drag
- * is a force like others, and force and constraint are called with t. */
+ * Equal to symp_euler_step() with a constraint, to round-off: as there, drag is
+ * a force like others, and force and constraint are called with t. */
 class SymplecticEuler : public BatchMethod {
  public:
   static constexpr MethodInfo info = {"symplectic-euler",

@@ -1,6 +1,6 @@
 #pragma once
 /** @file TrBdf2.hpp
- * The trapezoidal rule and BDF2, in turn. */
+ * TR-BDF2: each step is a stage by the trapezoidal rule and one by BDF2. */
 #include <vector>
 
 #include "lab/methods/NewtonMethod.hpp"
@@ -9,14 +9,14 @@ namespace lab {
 
 /** The trapezoidal rule up to t + gamma dt, then the backward differentiation
  * formula of order 2 over both parts, gamma = 2 - sqrt 2. L-stable: waves too
- * fast for dt die out at once.
+ * fast for dt are damped at once.
  * Source: R. E. Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992,
  * doi:10.1109/T-ED.1985.22232. */
 class TrBdf2 : public NewtonMethod {
  public:
-  // Force evaluations of a linear force: one at the start and two a stage. On
-  // a cloth 6; besides, in each stage, products with the matrix as
-  // ImplicitMidpoint, at large steps about a quarter of its number.
+  // Force evaluations if the force is linear: one at the start and two a stage.
+  // On a cloth 6. In addition, each stage takes products with the matrix as in
+  // ImplicitMidpoint; at large steps about a quarter of their number.
   static constexpr MethodInfo info = {
       "tr-bdf2",
       2,
@@ -27,8 +27,8 @@ class TrBdf2 : public NewtonMethod {
       "energy that must not be lost; steps near verlet's limit"};
 
   using NewtonMethod::NewtonMethod;
-  /** Each stage is solved to a tenth of the local error: that of a run grows by
-   * 1 % at most, where 1e-9 m/s^2 takes two to four times the products. */
+  /** Stages are solved to a tenth of the local error. That raises the error of
+   * a run by at most 1 %; 1e-9 m/s^2 would take 2 to 4 times the products. */
   TrBdf2() : NewtonMethod(Share{0.1}) {}
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,

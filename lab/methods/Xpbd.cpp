@@ -11,8 +11,8 @@ namespace lab {
 
 namespace {
 
-/** Are the edges of @a g all that has a stiffness?  @return false if nothing
- * has.  Throws std::invalid_argument if something else has. */
+/** True if the edges of @a g have stiffness, false if nothing has.
+ * Throws std::invalid_argument if anything else has. */
 bool check_springs(const Cloth& g, const ForcePlan& force) {
   struct {
     const Cloth& g;
@@ -75,7 +75,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   return implicit_detail::finish(g, t + dt, constraint);
 }
 
-/** By all forces but the springs and drag. */
+/** Find the accelerations by all forces but the springs and drag. */
 void Xpbd::accelerate(Cloth& g, double t, const ForcePlan& force,
                       bool springs) {
   const unsigned n = g.node_slots();

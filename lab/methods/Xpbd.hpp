@@ -16,20 +16,20 @@ namespace lab {
  *   each spring of compliance 1/K:  x_i += w_i d n,  x_j -= w_j d n,
  *     d = (l - L)/(w_i + w_j + 1/(K h^2)),  w = 1/m, n from i to j;
  *   v = (x - x before)/h.
- * F is all forces but springs and drag, taken once a step, at its start. Held
- * nodes weigh infinitely: w = 0. For one spring this is implicit Euler. Linear
- * momentum is kept to round-off; angular momentum is not.
+ * F is all forces but springs and drag, evaluated at the start of each step.
+ * Held nodes have w = 0. For one spring this is implicit Euler. Linear momentum
+ * is conserved to round-off; angular momentum is not.
  *
- * The springs are those of the cloth's edges. So the force must consist of
- * MassSpringForce, once, and of others without stiffness; or it has no
- * stiffness at all, and then there are no springs. Any other is refused.
+ * The springs are the cloth's edges. So the force must consist of one
+ * MassSpringForce and of others without stiffness; or it has no stiffness at
+ * all, and then there are no springs. Any other force is rejected.
  * Source: M. Macklin, M. Mueller, N. Chentanez, "XPBD", MIG 2016,
  * doi:10.1145/2994258.2994272; M. Macklin et al., "Small steps in physics
  * simulation", SCA 2019, doi:10.1145/3309486.3340247. */
 class Xpbd : public Method {
  public:
-  // Besides the force evaluation: one of the springs, to leave them out of it,
-  // and n rounds, each at the cost of 2 evaluations.
+  // In addition to the force evaluation: one of the springs, to subtract them,
+  // and n rounds, each as expensive as 2 evaluations.
   static constexpr MethodInfo info = {
       "xpbd",
       1,
@@ -52,7 +52,7 @@ class Xpbd : public Method {
   int substeps_;
   long long rounds_ = 0;
   FlatFlow flow_;
-  ForcePlan springs_ = MassSpringForce();  // recognised: it need not live on
+  ForcePlan springs_ = MassSpringForce();  // recognised: may be temporary
   std::vector<char> fixed_;                // by node id, as all that follows
   std::vector<Point> free_, acceleration_;
 
