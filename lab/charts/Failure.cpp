@@ -12,8 +12,8 @@ namespace lab {
 
 namespace {
 
-/** Verlet's limit on the 5 x 5 cloth [s], 2/omega with omega^2 = 12 K N, and
- * that on the 9 x 9 cloth. */
+/** Verlet's limits on the 5 x 5 cloth and on the 9 x 9 cloth [s]: 2/omega with
+ * omega^2 = 12 K N. */
 constexpr double cloth_limit = 0.011547, drape_limit = 0.0064150;
 Problem cloth() { return grid_problem("", "", 5, 5); }
 Problem free_cloth() {
@@ -35,8 +35,8 @@ Problem oscillator() {
 }
 constexpr double oscillator_omega = 14.142135623730951;
 
-/** The same with one spring of 10000 N/m: the frequencies of the springs are
- * 100 1/s and 10 1/s. */
+/** The same, but one spring has 10000 N/m: the springs' frequencies are 100 1/s
+ * and 10 1/s. */
 Problem stiff_oscillator() {
   Problem p = oscillator();
   p.build = [build = p.build](Cloth& g) {
@@ -48,8 +48,8 @@ Problem stiff_oscillator() {
 }
 constexpr double half_period = 0.031415927;  // [s], of the stiff spring
 
-/** The chain of 20, with a little of its highest mode; and with a slow, a
- * middling and a fast mode. */
+/** The chain of 20 nodes, with a small amplitude of its highest mode; and with
+ * a slow, a medium and a fast mode. */
 Problem chain() {
   return chain_problem("", "", 5, {.modes = {{1, 1e-3}, {20, 1e-6}}});
 }
@@ -196,8 +196,9 @@ double look(Quantity q, const Start& s) {
   return largest;
 }
 
-/** The true motion, beside a run: exact; or by srkn11b at small steps; or, as
- * contact leaves no method more than order 2, by Verlet at smaller ones. */
+/** The true motion at the times of a run: exact, or by srkn11b with small
+ * steps. With contact, where every method has at most order 2, by Verlet with
+ * smaller steps. */
 class Truth {
  public:
   explicit Truth(const Problem& p) : p_(p), s_(p) {
@@ -266,7 +267,7 @@ Trace trace(const Failure& f, const FailureRun& r) {
       if (method) method->step(s.cloth, t, r.dt, s.force, s.constraint);
       if (!energy) truth.step(t, r.dt);
       add(t + r.dt);
-      // To be seen on the chart: as far as it can be drawn.
+      // As large as the chart can show.
       if (!guard.accept(s.cloth) &&
           (out.deviation > f.fails || !std::isfinite(kinetic_energy(s.cloth))))
         out.status = Outcome::Status::diverged;

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Failure.hpp
- * How each method fails, and a cure: a table of runs, which documents and tests
- * quote, and their results as a CSV file. */
+ * How each method fails, and a cure: a table of runs, used by documents and
+ * tests, and their results as a CSV file. */
 #include <array>
 #include <iosfwd>
 #include <span>
@@ -13,23 +13,23 @@
 
 namespace lab {
 
-/** What is looked at in a run, against time. */
+/** The quantity that is plotted against time. */
 enum class Quantity {
-  energy,   ///< kinetic, of springs and of gravity [J]
+  energy,   ///< kinetic, elastic and gravitational [J]
   height,   ///< of the center of mass [m]
-  stretch,  ///< of the spring for which it is largest
+  stretch,  ///< the largest l/L - 1 of a spring
   error     ///< distance() from the true motion [m]
 };
 
-/** A run of a failure, and the text at its curve in the picture. */
+/** A run of a Failure, and the label of its curve in the picture. */
 struct FailureRun {
-  std::string_view method;  ///< empty: the true motion itself
+  std::string_view method;  ///< empty: the true motion
   double dt = 0;            ///< [s]
   const char* label = "";   ///< # stands for the number of force evaluations
   struct Place {
-    double t, up;  ///< [s], and lines of text above the curve
+    double t, up;  ///< time [s]; lines of text above the curve
   } place = {};
-  double setting = 0;  ///< tolerance [m] of an adaptive one, substeps of xpbd
+  double setting = 0;  ///< tolerance [m] if adaptive; substeps of xpbd
 
   constexpr FailureRun() = default;
   constexpr FailureRun(std::string_view method, double dt, const char* label,
@@ -37,20 +37,20 @@ struct FailureRun {
       : method(method), dt(dt), label(label), place(place), setting(setting) {}
 };
 
-/** How a method fails, and a cure: runs[0] fails, the last one does not, those
+/** How a method fails, and a cure: runs[0] fails, the last run does not, those
  * in between are for comparison.
  *
- * The deviation of a run is the largest distance of its quantity from the right
- * value: of an energy from that at the start (there is no drag), of a height or
- * a stretch from that of the true motion, of an error from 0. */
+ * The deviation of a run is the largest difference of its quantity to the right
+ * value: for an energy the initial one (there is no drag), for a height or a
+ * stretch that of the true motion, for an error 0. */
 struct Failure {
-  const char* title;    ///< what is seen
+  const char* title;    ///< what the picture shows
   const char* caption;  ///< the scene
   Problem (*scene)();
   double t_end;  ///< [s]
   Quantity quantity;
-  double fails;  ///< the deviation of runs[0] is larger
-  double cured;  ///< that of the last run is smaller
+  double fails;  ///< runs[0] has a larger deviation
+  double cured;  ///< the last run has a smaller deviation
   struct Axis {
     double low, high;
     bool log = false;
@@ -86,7 +86,7 @@ extern const std::span<const Failure> failures;
 /** That of the method called @a name; nullptr if none is known. */
 const Failure* failure_of(std::string_view name);
 
-/** A run against time. */
+/** The quantity of a run against time. */
 struct Trace {
   struct Sample {
     double t;             // [s]
@@ -98,13 +98,13 @@ struct Trace {
   double deviation = 0;
 };
 
-/** Make the run @a r of @a f, until its end or until it fails. */
+/** Run @a r of @a f, until its end or until it fails. */
 Trace trace(const Failure& f, const FailureRun& r);
 
-/** Make the runs of those of @a chosen that have a failure and write
- * failures.csv, which failures.gp draws, to @a out: titles, axes and measured
- * numbers in the head, then a row for each point of a curve.
- * @param said the measured numbers go there as well, if not nullptr */
+/** Run the failures known of the @a chosen methods and write failures.csv, which
+ * failures.gp draws, to @a out: titles, axes and measured numbers in the head,
+ * then a row for each point of a curve.
+ * @param said gets the measured numbers, too, unless null */
 void write_failures(const std::vector<const MethodEntry*>& chosen,
                     std::ostream* said, std::ostream& out);
 

@@ -29,13 +29,13 @@ const char* unit_of(Quantity q) {
   return q == Quantity::energy ? " J" : q == Quantity::stretch ? "" : " m";
 }
 
-/** What the run @a k is in the picture. */
+/** The role of run @a k in the picture. */
 const char* role_of(const Failure& f, std::size_t k) {
   if (f.runs[k].method.empty()) return "true";
   return k == 0 ? "fails" : k + 1 == f.size() ? "cure" : "other";
 }
 
-/** The text at a run's curve. */
+/** The label of a run's curve. */
 std::string text_of(const FailureRun& r, const Trace& trace) {
   std::string label = r.label;
   if (auto at = label.find('#'); at != std::string::npos)
@@ -43,13 +43,13 @@ std::string text_of(const FailureRun& r, const Trace& trace) {
   return label;
 }
 
-/** How a run ended; nothing if well. */
+/** How a run ended; empty if well. */
 const char* status_of(const Trace& trace) {
   constexpr std::array names = {"", "diverged", "failed"};
   return names[static_cast<std::size_t>(trace.status)];
 }
 
-/** What was measured in the run @a r of @a f, in one line. */
+/** The measured numbers of the run @a r of @a f, in one line. */
 std::string in_words(const Failure& f, const FailureRun& r,
                      const Trace& trace) {
   using CME212::short_text;

@@ -31,8 +31,8 @@ double spectral_radius(const Matrix& m) {
   return lab::spectral_radius(m[0], m[1], m[2], m[3]);
 }
 
-/** The stages of a splitting one after the other: A is x' = v, v' = -gamma v,
- * B a kick of -omega^2 x. */
+/** The product of the stages of a splitting: A is x' = v, v' = -gamma v; B is a
+ * kick of -omega^2 x. */
 template <typename Scheme>
 Matrix matrix_of(double y, double d) {
   Matrix all = {1, 0, 0, 1};
@@ -108,7 +108,7 @@ Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
   std::vector<spectrum_detail::Spring> springs;
   spectrum_detail::find_scales(s.cloth, s.constraint, scale);
   spectrum_detail::find_springs(s.cloth, s.force, springs);
-  // What a compressed spring would take away makes no size.
+  // Negative stiffness of compressed springs is left out of the size.
   for (auto& spring : springs) spring.B.across = std::max(0.0, spring.B.across);
   auto x = s.cloth.positions();
   auto node = s.cloth.node_values();
@@ -134,7 +134,7 @@ Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
          ++k)  // the generator is drawn for held ones too
       node[i].vel[k] = (double(random()) / double(random.max()) - 0.5) *
                        (scale[i] > 0 ? 1.0 : 0.0);
-  // As a move of the fastest wave: 1e-7 of a spring.
+  // In the fastest wave this is a displacement of 1e-7 of a spring.
   double length = no_limit;
   for (const auto& spring : springs)
     length = std::min(length, norm(rest[spring.i] - rest[spring.j]));

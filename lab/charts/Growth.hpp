@@ -1,6 +1,6 @@
 #pragma once
 /** @file Growth.hpp
- * How fast a tiny disturbance grows: measured on a sheet at rest, whose
+ * The growth of a small perturbation: measured on a sheet at rest, whose
  * frequencies do not change, and by theory for an oscillator. */
 #include <string_view>
 
@@ -8,42 +8,42 @@
 
 namespace lab {
 
-/** The factor by which a step makes an oscillator grow, x'' + gamma x' +
- * omega^2 x = 0: what amplification() should measure.
- * Runge-Kutta: the larger |R(z)| of z^2 + d z + y^2 = 0, R the Taylor
- * polynomial of exp of the method's order; others: the spectral radius of the
- * product of their stages.
+/** The factor per step by which @a method amplifies the oscillator
+ * x'' + gamma x' + omega^2 x = 0, by a formula: a check of amplification().
+ * Runge-Kutta: the larger |R(z)| of the roots z of z^2 + d z + y^2 = 0, R the
+ * Taylor polynomial of exp of the method's order. Others: the spectral radius
+ * of the product of their stages.
  * @param y dt omega > 0   @param d dt gamma >= 0
- * Throws std::invalid_argument for a method whose formula is not here. */
+ * Throws std::invalid_argument for methods without a formula here. */
 double amplification_by_theory(std::string_view method, double y, double d);
 
 /** A square of side x side nodes of 1 kg together, K = 100 N/m, stretched
- * evenly to @a stretch times its size and held at its whole rim, without
- * gravity: at rest for ever, if @a stretch >= 1; else it buckles.
+ * evenly to @a stretch times its size and held along its boundary, without
+ * gravity. It stays at rest if @a stretch >= 1; otherwise it buckles.
  * @param gamma drag c/m [1/s] */
 Problem stretched_sheet(unsigned side, Mesh mesh, double stretch, double gamma);
 
-/** How a disturbance grew. */
+/** The growth of a perturbation. */
 struct Growth {
   double total = 0;     ///< ln of its size at the end over that at the start
   double per_step = 0;  ///< ln of its growth per step in the later half
 };
 
 /** Give @a p, which is at rest, random velocities and measure their growth.
- * The size of a disturbance is the root of its energy, kinetic and, in the
- * springs as they are at rest, elastic; motion that is exact keeps it (or, with
- * drag, lowers it). It is kept small: below a thousandth of a spring's length.
- * @param steps how many, at least 2
+ * The size of a perturbation is the square root of its energy: kinetic, and
+ * elastic with the stiffness at rest. The exact motion conserves it; drag
+ * lowers it. The size is kept below a thousandth of a spring's length.
+ * @param steps number of steps, at least 2
  * @param every steps between two measurements of the size, in which it should
  *        not grow by more than 1e4
- * @param enough stop when its ln has grown by so much
- * Not finite: an infinite growth.  Complexity: the steps, and the springs once
- * for each measurement. */
+ * @param enough stop when ln of the size has grown by so much
+ * A state that is not finite counts as infinite growth.  Complexity: the steps,
+ * and one pass over the springs for each measurement. */
 Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
               int every = 1, double enough = no_limit);
 
-/** The largest step [s] with which a disturbance of @a p grows no more than
- * tenfold within @a steps, found as measured_limit() does. */
+/** The largest step [s] with which a perturbation of @a p grows at most tenfold
+ * in @a steps, found by bisection as in measured_limit(). */
 double measured_sheet_limit(const Problem& p, const MethodEntry& method,
                             double low, double high, int steps,
                             double precision = 0.01);

@@ -66,7 +66,7 @@ double predicted_limit(const MethodEntry& method, const Path& path,
     }
     return false;
   };
-  // Upwards, as a method may be stable again beyond: PEFRL is.
+  // Upwards, since a method may be stable again beyond its limit: PEFRL is.
   double dt = 0.9 * limit / top;
   while (dt < 1.6 * limit / top && !blows_up(dt)) dt *= 1.001;
   return dt;

@@ -17,7 +17,7 @@ struct Path {
   std::vector<double> omega;  ///< [1/s]
   double gamma = 0;           ///< largest c/m [1/s]
   double safe = 0;            ///< omega_safe() [1/s]
-  /** The highest of them all. */
+  /** The highest omega of the path. */
   double top() const;
 };
 
@@ -25,25 +25,25 @@ struct Path {
  * Complexity: t_end omega_safe/1.6 steps, each as 10 force evaluations. */
 Path find_path(const Problem& p);
 
-/** The largest step [s] with which @a method should stay bounded along a path.
- * A step beyond limit/omega blows up only if omega stays that high for long
- * enough: the fastest wave has to grow from round-off to the size of the cloth.
- * So this is the step where its growth in a row reaches @a growth: the product
- * of amplification() over the steps, from wherever it is highest. For a path of
- * one omega and no end it is step_limit().
+/** The largest step [s] with which @a method should be stable along a path.
+ * A run with steps beyond limit/omega diverges only if omega stays that high
+ * long enough: the fastest wave has to grow from round-off to the size of the
+ * cloth. So this is the step for which the product of amplification() over
+ * consecutive steps reaches @a growth in the worst part of the path. If omega
+ * is constant and the path endless, it is step_limit().
  * @pre method.info.limit is finite and > 0 */
 double predicted_limit(const MethodEntry& method, const Path& path,
                        double growth = 1e8);
 
-/** True if @a p run by @a method with steps of @a dt [s] stays bounded: nothing
- * gives energy to the cloth, so it never rises by more than a thousandth of
- * M g 1 m above the lowest so far. That also sees an instability which never
- * blows up, as the cloth's own stiffening stops it. By a method of order 1 the
- * energy swings by more than that: there it is 2 %. */
+/** True if @a p, run by @a method with steps of @a dt [s], is stable. Nothing
+ * does work on the cloth, so the energy must not rise by more than 0.001 M g
+ * (1 m) above its lowest value so far. That also detects an instability which
+ * the stiffening of the cloth stops. With a method of order 1 the energy swings
+ * more: there the bound is 0.02 M g (1 m). */
 bool stays_bounded(const Problem& p, const MethodEntry& method, double dt);
 
-/** The largest step that is @a good, by halving the interval from @a low, which
- * is, to @a high, which is not, until it is @a precision of itself.
+/** The largest step that is @a good, by bisection between @a low, which is
+ * good, and @a high, which is not, to a relative @a precision.
  * @param good as bool(double) */
 template <typename Good>
 double largest_that(Good&& good, double low, double high, double precision) {
@@ -54,8 +54,7 @@ double largest_that(Good&& good, double low, double high, double precision) {
   return low;
 }
 
-/** The largest step [s] with which @a p stays bounded, between @a low and
- * @a high. */
+/** The largest step [s] from @a low to @a high for which stays_bounded(). */
 double measured_limit(const Problem& p, const MethodEntry& method, double low,
                       double high, double precision = 0.01);
 

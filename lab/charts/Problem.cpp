@@ -64,7 +64,7 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   method.restart();
   CME212::Clock clock;
   try {
-    double t = 0;  // as the method counts it, or it forgets the force it kept
+    double t = 0;  // as the method returns it; else it drops the force it kept
     for (long long n = 0; n < steps; ++n) {
       t = method.step(s.cloth, t, dt, s.force, s.constraint);
       if (!guard || guard->accept(s.cloth)) continue;
@@ -72,7 +72,7 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
       out.reason = "energy out of bounds at t = " + short_text(t) + " s";
       break;
     }
-  } catch (const std::exception& e) {  // StepError, or a force it can't take
+  } catch (const std::exception& e) {  // StepError, or a force it can't use
     out.status = Outcome::Status::failed;
     out.reason = e.what();
   }

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Problem.hpp
- * Problems that methods are compared on: a cloth, its forces and constraints,
- * an end time, and what the right answer there is. */
+ * Problems for comparing methods: a cloth, its forces and constraints, an end
+ * time, and the right answer at that time. */
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,7 +20,7 @@ class CountingConstraint : public ForwardingConstraint {
   void operator()(Cloth& g, double t) const override { ++calls_, inner_(g, t); }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override {
-    if (first == 0) ++calls_;  // one thread has that part
+    if (first == 0) ++calls_;  // one thread projects that part
     inner_.project(g, t, first, last);
   }
   long long calls() const { return calls_; }
@@ -29,11 +29,11 @@ class CountingConstraint : public ForwardingConstraint {
   mutable long long calls_ = 0;
 };
 
-/** How two ends of a run are compared; both give a length [m].
+/** How two final states of a run are compared; both norms are lengths [m].
  * positions    RMS over the nodes of the distance between their positions
  * functionals  sqrt(|dc|^2 + (dE/(M g))^2): distance of the centers of mass,
- *              and the difference of energies as a height. For contact, which
- *              positions are too sensitive to. */
+ *              and the difference of energies as a height. For contact, to
+ *              which positions are too sensitive. */
 enum class Norm { positions, functionals };
 constexpr const char* name_of(Norm norm) {
   return norm == Norm::positions ? "rms position"
@@ -48,18 +48,18 @@ struct Problem {
   Norm norm = Norm::positions;
   double gravity = grav;  ///< [m/s^2]
   double gamma = 0;       ///< drag [1/s]: c = gamma/N
-  /** Held nodes move and do work. As the energy may grow, no run is guarded. */
+  /** Held nodes move and do work. Runs are not guarded: energy may grow. */
   bool driven = false;
-  /** Make the cloth as it is at t = 0. */
+  /** Build the cloth at t = 0. */
   std::function<void(Cloth&)> build;
   std::function<CombinedConstraints(const Cloth&)> constraint;
   /** The exact positions at a time [s], by node id; empty if not known.
-   * Without drag, so that the energy stays what it is at the start. */
+   * Such a problem has no drag, so its energy is constant. */
   std::function<std::vector<Point>(double)> exact = {};
 };
 
-/** A problem at t = 0, ready to run. Its pins hold handles into the cloth, so
- * it stays where it was made. */
+/** A problem at t = 0, ready to run. It can't be copied: pins hold handles into
+ * the cloth. */
 struct Start {
   Cloth cloth;
   ForcePlan force;
@@ -70,11 +70,11 @@ struct Start {
   Start(const Start&) = delete;
   Start& operator=(const Start&) = delete;
 
-  /** Kinetic and potential energy now [J]. */
+  /** The present kinetic and potential energy [J]. */
   double energy() const;
 };
 
-/** What is looked at when a run ends. */
+/** The final state of a run. */
 struct End {
   std::vector<Point> positions;  // [m], by node id
   Point center;                  // [m]
@@ -82,7 +82,7 @@ struct End {
 };
 End end_of(const Start& s);
 
-/** The distance [m] of two ends of @a p.
+/** The distance [m] of two final states of @a p.
  * @pre for Norm::positions: no node was removed in either */
 double distance(const Problem& p, const End& a, const End& b);
 
@@ -98,35 +98,35 @@ struct Outcome {
   bool ok() const { return status == Status::ok; }
 };
 
-/** Take @a p to its end in @a steps steps of equal length.
+/** Run @a p to its end in @a steps steps of equal length.
  * @param guarded stop when the energy leaves its bounds; else only the end is
- *        looked at, and nothing but the method takes time
+ *        checked, so that only the method takes time
  * @pre steps > 0 */
 Outcome run(const Problem& p, Method& method, long long steps,
             bool guarded = true);
 
-/** The answer to a problem, and how far it can be trusted. */
+/** The answer to a problem, and its accuracy. */
 struct Reference {
   End end;
-  double floor;           ///< [m]: how far two independent answers are apart
+  double floor;           ///< distance of two independent answers [m]
   std::string made = {};  ///< the two, as "pefrl 120 steps, verlet 90 steps"
 };
 
 /** Two independent answers: the exact solution and srkn11b; or srkn11b and
- * srkn6b; or, where contact leaves no method more than order 2, Verlet and
- * pefrl. So the two differ in order and in step, and in where in a step their
- * constraint acts.
- * @param fineness steps are shorter than the stable ones by this factor; by
- *        more for the lower orders, and with contact
+ * srkn6b; or, with contact, where every method has at most order 2, Verlet and
+ * pefrl. So the two differ in order, in step, and in the point of a step at
+ * which the constraint is applied.
+ * @param fineness the stable step over the step; more for the lower orders and
+ *        with contact
  * Throws std::runtime_error if one of the runs does not reach the end. */
 Reference reference(const Problem& p, double fineness = 16);
 
 // ------------------------------------------------------- Problems
 // (Problems.cpp)
 
-/** @a n masses of 1/n kg in a row along x, between two walls 1 m apart,
- * springs of @a K longer than at rest, so that they stay straight. Some modes
- * at once, let go at rest. Exactly linear:
+/** @a n masses of 1/n kg in a row along x, between two walls 1 m apart, with
+ * springs of @a K under tension, so that the row stays straight. It starts at
+ * rest, with several modes at once. The motion is linear:
  *   omega_k = 2 sqrt(K n) sin(k pi/(2(n + 1))) */
 struct Chain {
   struct Mode {
@@ -147,8 +147,8 @@ struct Chain {
 Problem chain_problem(std::string name, std::string about, double t_end,
                       Chain chain = {});
 /** A square cloth of side x side nodes, K = 100 N/m, without diagonals and
- * drag, that hangs from its whole upper row; let go unstretched. Exactly
- * linear: each column is a chain of its own. */
+ * drag, that hangs from its whole upper row and starts unstretched. The motion
+ * is linear: each column is a chain. */
 Problem curtain_problem(std::string name, std::string about, double t_end,
                         unsigned side = 16);
 /** The assignment's cloth on a mesh: diagonals, K [N/m], pinned at its

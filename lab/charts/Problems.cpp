@@ -50,14 +50,14 @@ Problem chain_problem(std::string name, std::string about, double t_end,
 namespace {
 
 /** A square cloth of n x n nodes, plain mesh, that hangs from its whole upper
- * row, and is let go unstretched: each column is a chain of its own. */
+ * row and starts unstretched: each column is a chain. */
 struct Curtain {
   unsigned n = 16;
   double K = 100;
 
   std::vector<Point> exact(double t) const {
     const double m = 1.0 / (n * n), width = 1.0 / (n - 1);
-    std::vector<double> hangs(n);  // at rest, below the unstretched place [m]
+    std::vector<double> hangs(n);  // displacement at rest, downwards [m]
     for (unsigned j = 1; j < n; ++j)
       hangs[j] = hangs[j - 1] + (n - j) * m * grav / K;
     std::vector<double> z(n);

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Report.hpp
- * What the programs that measure have in common: where their numbers come from,
- * the cells of a CSV file, and lists of names as options. */
+ * For all programs that measure: the origin of their numbers, the cells of a
+ * CSV file, and options that are lists of names. */
 #include <algorithm>
 #include <iosfwd>
 #include <stdexcept>
@@ -11,22 +11,22 @@
 
 namespace lab::report {
 
-/** Processor and number of cores. */
+/** The processor and the number of cores. */
 std::string machine();
 
-/** The head of a CSV file, lines that begin with #: @a what it holds, machine,
- * compiler, and commit, "-dirty" if the sources differ from it. */
+/** Write the head of a CSV file, lines that begin with #: @a what it holds,
+ * machine, compiler, and commit, "-dirty" if the sources differ from it. */
 void write_head(std::ostream& out, const char* what);
 
-/** @a text as a cell: no comma, quote or end of line in it. */
+/** @a text as a cell, without commas, quotes and ends of lines. */
 std::string cell(std::string text);
 /** @a a as a cell, six digits; empty if it is not finite. */
 std::string cell(double a);
 
-/** The elements of @a all that are named, in the order of @a all; all of them
- * if @a names is empty.
- * @param option for messages   @param name_of an element, as string
- * Throws std::runtime_error for a name that is not there. */
+/** The elements of @a all whose names are in @a names, in the order of @a all;
+ * all of them if @a names is empty.
+ * @param option for messages   @param name_of the name of an element
+ * Throws std::runtime_error for an unknown name. */
 template <typename All, typename NameOf>
 auto pick(const std::vector<std::string>& names, const All& all,
           const char* option, NameOf name_of) {

@@ -1,13 +1,13 @@
 /** @file stability_map.cpp
- * Where methods are stable: maps of measured limits beside predicted ones. A
- * map is a list of independent runs, its cells, each with a file of its own;
- * whoever runs them in whatever order, joined they give the same bytes.
+ * Maps of the stability of methods: measured and predicted limits. A map
+ * consists of independent runs, its cells, each with a file of its own. They
+ * can be run in any order; joined they give the same bytes.
  *
- *   build/stability_map --list                       all cells: name, cost,
- * what build/stability_map --cell NAME --out DIR/NAME.csv build/stability_map
- * --join DIR --map limits --out limits.csv
+ *   build/stability_map --list                # all cells: name, cost, content
+ *   build/stability_map --cell NAME --out DIR/NAME.csv
+ *   build/stability_map --join DIR --map limits --out limits.csv
  *
- * `make stability` does all of it, tools/sweep.sbatch does it with Slurm. The
+ * `make stability` does all this, tools/sweep.sbatch does it with Slurm. The
  * columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an input
  * that can't be used, or an output that can't be written. */
 #include <algorithm>
@@ -38,7 +38,7 @@ using report::cell;
 
 namespace {
 
-/** How much is looked at: for the charts, for a first look, for a test. */
+/** The amount of work: for the charts, for a first look, for a test. */
 enum class Effort { full, quick, tiny };
 
 /** One of three values, by effort. */
@@ -47,10 +47,10 @@ T by(Effort e, T full, T quick, T tiny) {
   return e == Effort::full ? full : e == Effort::quick ? quick : tiny;
 }
 
-/** A part of a map that is run by itself. */
+/** A part of a map, with runs of its own. */
 struct Cell {
   std::string map, name;
-  double cost;       // about: seconds on a core of 2.4 GHz
+  double cost;       // estimated seconds on a core of 2.4 GHz
   std::string what;  // its parameters, for people
   std::function<void(std::ostream&)> run;  // writes its rows
 };
@@ -126,8 +126,8 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
       }
 }
 
-/** Predicted and measured on the assignment's cloth. All methods in one cell:
- * the prediction needs the way of the cloth, which is dear. */
+/** Predicted and measured on the assignment's cloth. All methods are in one
+ * cell, because the prediction needs the Path of the cloth, which is costly. */
 void add_table(std::vector<Cell>& cells, Effort effort) {
   using Sides = std::vector<unsigned>;
   const double precision = by(effort, 0.002, 0.01, 0.05);
@@ -157,8 +157,8 @@ void add_table(std::vector<Cell>& cells, Effort effort) {
     }
 }
 
-/** Growth against stretch and step: a column of the map, one method at one
- * stretch, is a cell. */
+/** Growth against stretch and step: a cell is a column of the map, one method
+ * at one stretch. */
 void add_growth(std::vector<Cell>& cells, Effort effort) {
   constexpr unsigned side = 15;
   const int columns = by(effort, 40, 16, 2), rows = by(effort, 60, 24, 3);
@@ -192,8 +192,8 @@ void add_growth(std::vector<Cell>& cells, Effort effort) {
     }
 }
 
-/** Write where theory says that the growth crosses 1, along lines of equal dt
- * omega and of equal dt gamma; the measured growth stays empty.
+/** Write where the growth by theory crosses 1, along lines of equal dt omega
+ * and of equal dt gamma; the column of the measured growth is empty.
  * @param right, top largest dt omega and dt gamma   @param lines of each */
 void write_boundary(std::ostream& out, const char* name, double right,
                     double top, int lines) {
@@ -203,7 +203,7 @@ void write_boundary(std::ostream& out, const char* name, double right,
   auto write = [&](double y, double d) {
     out << name << ',' << cell(y) << ',' << cell(d) << ",,1\n";
   };
-  const int places = 5 * lines;  // on a line
+  const int places = 5 * lines;  // points on a line
   for (int k = 0; k < lines; ++k) {
     const double y = right * (k + 0.5) / lines, d = top * (k + 0.5) / lines;
     for (int j = 1; j < places; ++j) {
@@ -296,7 +296,7 @@ void run(const Options& o) {
                 "there are: limits table growth oscillator");
   };
   std::ostringstream text;
-  if (o.list) {  // dear ones first, so that no long one is left at the end
+  if (o.list) {  // costly cells first, so that none is left at the end
     std::ranges::stable_sort(cells, std::greater(), &Cell::cost);
     for (const Cell& c : cells)
       text << c.name << ' ' << short_text(c.cost) << ' ' << c.what << '\n';

@@ -1,6 +1,6 @@
 /** @file work_precision.cpp
- * Work against precision: runs every method on every problem at every step
- * that makes sense, and writes what it cost and how wrong it was as CSV.
+ * Work-precision diagrams: runs every method on every problem with many steps,
+ * and writes the cost and the error of each run as CSV.
  *
  *   build/work_precision --out FILE.csv
  *   build/work_precision --quick --scenes grid0,chain --methods verlet,pefrl
@@ -48,20 +48,20 @@ struct Options {
   double t_end = 0.25;
   int repeats = 7;
   bool grid_refinement = false, energy = false, failures = false, ends = false;
-  std::string floor;  // file of ends
+  std::string floor;  // file by --ends
   bool quick = false, quiet = false;
 };
 
-/** How far a ladder of steps goes down. */
+/** The limits of a ladder of steps. */
 struct Effort {
-  double springs;  // spring evaluations of a run, at most
-  double seconds;  // that a run takes, at most
+  double springs;  // most spring evaluations of a run
+  double seconds;  // most seconds of a run
 };
 constexpr Effort full = {6e7, 0.6}, rough = {2e6, 0.05};
 
 // -------------------------------------------------------------- Work-precision
 
-/** A method at a step, or at a tolerance, on a problem. */
+/** A method with a step or a tolerance, on a problem. */
 struct Case {
   const MethodEntry* method;
   long long steps = 1;
@@ -79,11 +79,11 @@ struct Case {
   }
 };
 
-/** The cases of a method on a problem: explicit methods at twice their largest
- * stable step, at that step, and at smaller ones by factors of 2; methods
- * without a limit from 1/8 of the time on down; error control by tolerances.
- * Until the error is below 10 floors, or the effort is spent: how far a ladder
- * goes depends on the machine, what stands on it does not. */
+/** The cases of a method on a problem: explicit methods start at twice their
+ * largest stable step, methods without a limit at 1/8 of the time; then the
+ * step is halved. Adaptive methods have tolerances. The ladder ends when the
+ * error is below 10 floors, or the effort is spent: so its length depends on
+ * the machine, but its steps do not. */
 std::vector<Case> ladder(const Problem& p, const Reference& r,
                          const MethodEntry& method, double omega,
                          std::size_t springs, const Effort& effort) {
@@ -105,7 +105,7 @@ std::vector<Case> ladder(const Problem& p, const Reference& r,
     return cases;
   }
   const bool limited = info.limit != no_limit;
-  // One without any stable step starts where Verlet does.
+  // A method without any stable step starts where Verlet does.
   const double limit = info.limit > 0 ? info.limit : 2;
   double steps = limited ? p.t_end * omega / limit / 2 : 8;
   for (int k = 0; k < 24; ++k, steps *= 2) {
@@ -121,7 +121,7 @@ std::vector<Case> ladder(const Problem& p, const Reference& r,
   return cases;
 }
 
-/** How the reference was made, and what it says of the cloth as a whole. */
+/** How the reference was made, and its center of mass and energy. */
 void write_reference(std::ostream& out, const Problem& p, const Reference& r) {
   char text[160];
   const Point& c = r.end.center;
@@ -141,7 +141,7 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
   const double least = ok ? s.front() : NAN;
   const double median = ok ? s[s.size() / 2] : NAN;
   const bool by_tolerance = c.tolerance > 0;
-  // A failed run stands at the cost that it would have had.
+  // A failed run is plotted at the cost that it would have had.
   double sweeps =
       ok ? double(c.first.sweeps) : double(c.steps) * c.method->info.sweeps;
   out << p.name << ',' << c.method->info.name << ','
@@ -155,7 +155,7 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
       << ',' << cell(c.first.reason) << '\n';
 }
 
-/** Print the method that is cheapest at an error, by its fastest run. */
+/** Print the cheapest method for an error, by its fastest run. */
 void print_cheapest(const Problem& p, const Reference& r,
                     const std::vector<Case>& cases) {
   std::printf("%s: floor %.1e m\n", p.name.c_str(), r.floor);
@@ -199,8 +199,8 @@ void work_precision(const std::vector<Problem>& problems,
                             o.quick ? rough : full))
         cases.push_back(std::move(c));
     }
-    // The first runs were the warm-up. Interleaved, so that what slows the
-    // machine down for a while slows all methods.
+    // The first runs were the warm-up. Runs are interleaved, so that a machine
+    // that slows down for a while slows all methods.
     for (int k = 0; k < o.repeats; ++k) {
       progress.show(p.name + ": repeats",
                     (part + .2 + .8 * k / double(o.repeats)) / parts);

@@ -103,8 +103,9 @@ class ImplicitStage {
    * the embedded formula, if guess is of order 1: then d is a second
    * difference. If guess is of order 0, q + s a with the acceleration a at the
    * start, d is only a first difference. But |a'|^2 <= |a| |a''| in the mean
-   * square (Hardy, Littlewood, Polya, Inequalities, chapter 7), so error.scale
-   * d min(1, d/RMS(D^-1 M a)) exceeds the error by at most a small factor. */
+   * square (Hardy, Littlewood, Polya, Inequalities, chapter 7), so
+   *   error.scale d min(1, d/RMS(D^-1 M a))
+   * exceeds the error by at most a small factor. */
   void solve_newton(Cloth& g, double t, double s, const ForcePlan& force,
                     const LocalError& error = {});
 
@@ -159,8 +160,7 @@ class ImplicitStage {
               Objective& here, bool close);
 };
 
-/** End a step: apply the constraint, set held nodes' velocities.  @return end
- */
+/** End a step: apply the constraint, set held velocities.  @return @a end */
 double finish(Cloth& g, double end, const ConstraintPlan& constraint);
 
 }  // namespace implicit_detail
