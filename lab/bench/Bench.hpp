@@ -1,7 +1,7 @@
 #pragma once
 /** @file Bench.hpp
- * Bench: measures calls beside each other, and prints a table of their ratios.
- * What the programs bench and bench_* have in common. */
+ * Bench: measures calls in turn and prints a table of their times and ratios,
+ * for the programs bench and bench_*. */
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -22,18 +22,18 @@ namespace lab {
 
 namespace bench {
 
-/** Something to be measured. */
+/** A call to be measured. */
 struct Figure {
   std::string name;
-  double items = 1;    ///< that one call works on: times are given for an item
-  std::string group;   ///< the heading under which it stands; may be empty
-  std::string beside;  ///< figure of its group by whose time an item is divided
+  double items = 1;    ///< in one call: times are given for one item
+  std::string group;   ///< its heading in the table; may be empty
+  std::string beside;  ///< the figure of its group to which it is compared
   std::function<void()> call = {};
-  double bytes = 0;  ///< that an item must move through memory; 0: not known
+  double bytes = 0;  ///< moved through memory for an item; 0: not known
   int threads = 1;
 };
 
-/** Lowest, median and highest of some numbers; 0 of none. */
+/** Lowest, median and highest of some numbers; 0 if there are none. */
 struct Spread {
   double low = 0, median = 0, high = 0;
   explicit Spread(std::vector<double> a) {
@@ -43,20 +43,20 @@ struct Spread {
   }
 };
 
-/** Measures figures in turn, in random order: a machine that slows down slows
- * all of them. */
+/** Measures figures in turn, in random order, so that a machine that slows down
+ * slows all of them. */
 class Bench {
  public:
   void add(Figure f) { figures_.push_back(std::move(f)); }
 
-  /** @param repetitions of each, each of 0.05 s or one call at least */
+  /** @param repetitions of each figure, of at least 0.05 s and one call */
   void run(int repetitions) {
     for (const Figure& f : figures_)
       benchmark::RegisterBenchmark(
           key(f).c_str(),
           [&f](benchmark::State& state) {
             Sweep::set_threads(f.threads);
-            f.call();  // fills caches, and what it keeps
+            f.call();  // fills the caches, and allocates
             for (auto _ : state) {
               f.call();
               benchmark::ClobberMemory();
@@ -80,8 +80,8 @@ class Bench {
     return Spread(it == seconds_.end() ? std::vector<double>() : it->second);
   }
 
-  /** @param unit of the items   @param bandwidth [GB/s] of the memory, by
-   * which the figures that say how many bytes they move are divided */
+  /** @param unit of the items   @param bandwidth of the memory [GB/s], to which
+   * figures with known bytes are compared */
   void print(const char* unit, double bandwidth) const {
     std::string group;
     for (const Figure& f : figures_) {
@@ -101,7 +101,7 @@ class Bench {
     }
   }
 
-  /** The same for programs.  Throws std::runtime_error */
+  /** Write the table as JSON.  Throws std::runtime_error */
   void write_json(const std::string& file) const {
     CME212::OutputFile out(file);
     std::ostringstream head;
@@ -138,7 +138,7 @@ class Bench {
 
   static std::string key(const Figure& f) { return f.group + '|' + f.name; }
 
-  /** Of the times an item takes; 0 if it stands beside nothing. */
+  /** The time of an item over that of the figure beside; 0: there is none. */
   double ratio(const Figure& f) const {
     const auto other = std::ranges::find_if(figures_, [&](const Figure& o) {
       return o.group == f.group && o.name == f.beside;
@@ -148,7 +148,7 @@ class Bench {
     return beside > 0 ? seconds(f.group, f.name).median / f.items / beside : 0;
   }
 
-  /** Takes down each repetition. */
+  /** Records each repetition. */
   class Times : public benchmark::BenchmarkReporter {
    public:
     explicit Times(Bench& to) : to_(to) {}

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Cloths.hpp
- * The cloths that bench measures, and the same as flat arrays made by hand. */
+ * The cloths that bench measures, and the same as flat arrays. */
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,11 +16,11 @@ namespace lab::bench {
 
 // --------------------------------------------------------------------- Cloths
 
-/** - grid: ids and springs line by line, as build_cloth() makes them
- * - mixed: the same, ids and springs in random order within windows of 64:
- *   neighbors are as near, but none at a constant distance
- * - shuffled: from files in random order, put in order as they are loaded
- * - torn: the grid after a random half of its nodes was removed
+/** - grid: ids and springs row by row, as build_cloth() makes them
+ * - mixed: the same, but ids and springs are in random order within windows of
+ *   64: neighbors are as near in memory, but not at a constant distance
+ * - shuffled: read in random order, and reordered by build_ordered_cloth()
+ * - torn: the grid, after a random half of its nodes was removed
  * - reindexed: torn, and then Graph::reindex() */
 enum class Kind { grid, mixed, shuffled, torn, reindexed };
 
@@ -75,7 +75,7 @@ inline void build(Cloth& g, unsigned side, Kind kind) {
   if (kind == Kind::reindexed) g.reindex();
 }
 
-/** One cloth of each sort for all that is measured, its nodes shaken. */
+/** One cloth of each kind for all figures, its nodes moved at random. */
 inline Cloth& cloth(unsigned side, Kind kind) {
   static std::map<std::pair<unsigned, Kind>, Cloth> made;
   auto [it, is_new] = made.try_emplace({side, kind});
@@ -91,8 +91,8 @@ inline Cloth& cloth(unsigned side, Kind kind) {
 
 // ----------------------------------------------------- Flat arrays, by hand
 
-/** A cloth in arrays of doubles that hold nothing but what the loop needs, in
- * the order in which it needs it: rows of neighbors, each with K and L. */
+/** A cloth in arrays of doubles, which contain only what the loop needs, in the
+ * order of the loop: rows of neighbors, each with K and L. */
 struct Flat {
   struct Vector {
     double x = 0, y = 0, z = 0;
@@ -122,7 +122,7 @@ struct Flat {
     f.resize(x.size());
   }
 
-  /** The pull of all springs at node i. */
+  /** The force of all springs at node i [N]. */
   Vector springs(std::size_t i) const {
     Vector sum;
     for (unsigned k = row[i]; k < row[i + 1]; ++k) {

@@ -1,17 +1,17 @@
 /** @file bench.cpp
- * What a step costs, and each layer of it, beside flat arrays made by hand for
- * the same loop: lab/fast/README.md walks through it.
+ * The cost of a step and of each of its layers, compared with the same loop
+ * over flat arrays: lab/fast/README.md explains the table.
  *
  *   make bench CXXFLAGS=-march=native && taskset -c 0 build/bench
- *   build/bench --json FILE       the table for programs as well
- *   build/bench --filter step      only what has this in its name
+ *   build/bench --json FILE       also writes the table as JSON
+ *   build/bench --filter step      only figures with this in their names
  *   build/bench --filter solve --side 316   one size of cloth
  *   lab/bench/counts.sh           instructions in place of nanoseconds
- *   make bench REAL=float B=build/float   single precision, beside the same
- *                                         loop over doubles
+ *   make bench REAL=float B=build/float   single precision, compared with the
+ *                                         same loop over doubles
  *
- * All of it is measured in turn, in random order: a machine that slows down
- * slows all. One thread, but where the name says "threads". */
+ * Figures are measured in turn, in random order, so that a machine that slows
+ * down slows all. One thread, unless the name has "threads". */
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -39,7 +39,7 @@ using bench::Flat, bench::Kind, bench::cloth, bench::flat, bench::shuffle;
 
 namespace {
 
-/** a = b + 3 c over three arrays of @a bytes in all: what memory can do. */
+/** a = b + 3 c over three arrays of @a bytes in all: the memory's bandwidth. */
 struct Triad {
   std::vector<double> a, b, c;
   explicit Triad(std::size_t bytes)
@@ -55,17 +55,17 @@ struct Triad {
 
 // ----------------------------------------------------------- What is measured
 
-constexpr double dt = 1e-7;  // [s]: the cloths stay as they are
+constexpr double dt = 1e-7;  // [s]: the cloths hardly change
 
-/** Something to be measured, at each size. */
+/** A call to be measured, at each size. */
 struct Figure {
   std::string name, beside;  // as in bench::Figure
   std::function<std::function<void()>(unsigned side)> make;
   bool million = true;     // also with 10^6 nodes
-  double bytes = 0;        // that a node must move through memory, if known
-  Kind kind = Kind::grid;  // whose nodes count
+  double bytes = 0;        // moved through memory for a node, if known
+  Kind kind = Kind::grid;  // of the cloth whose nodes are counted
   int threads = 1;
-  int steps = 1;  // that one call takes
+  int steps = 1;  // in one call
 };
 
 /** Makes a method take @a count steps on a cloth, by default as a scene. */

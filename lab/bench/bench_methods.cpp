@@ -1,8 +1,8 @@
-// What a step of each method costs, in steps of Verlet: on the 25 x 25 cloth of
-// the assignment with diagonals and drag, over its first quarter of a second,
-// at Verlet's stability limit and, where there is no limit, at ten times that.
-// The least of seven runs, of all methods in turn. `make method-costs` writes
-// what it prints to lab/methods/Costs.hpp, from where --list-methods has it.
+// The time of a step of each method over that of Verlet, on the assignment's
+// cloth of 25 x 25 nodes with diagonals and drag, up to t = 0.25 s. Steps are
+// at Verlet's limit and, for methods without a limit, ten times as long. The
+// least of seven runs, with all methods in turn. `make method-costs` writes the
+// output to lab/methods/Costs.hpp, which --list-methods prints.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -18,13 +18,13 @@ using namespace lab;
 
 namespace {
 
-/** Of a step of @a dt [s]; 0 if the method can't make them. */
+/** The time of a step of @a dt [s]; 0 if the method can't make it. */
 double seconds_a_step(const Problem& p, const MethodEntry& entry, double dt) {
   Start s(p);
   const auto method = entry.make();
   method->set_tolerance(no_limit);
   const int steps = int(p.t_end / dt);
-  std::clock_t start = 0;  // of the processor: others may use it, too
+  std::clock_t start = 0;  // processor time: other programs may run, too
   try {
     method->step(s.cloth, 0, dt, s.force, s.constraint);
     start = std::clock();  // after the first, which allocates

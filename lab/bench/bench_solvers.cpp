@@ -1,12 +1,12 @@
 /** @file bench_solvers.cpp
- * Where a Cholesky factor takes less time than conjugate gradients: one step of
- * implicit Euler, which is one linear system, on a sheet of 100 x 100 nodes
- * with diagonals that has fallen for 1/3 s.
+ * Finds where a Cholesky factor takes less time than conjugate gradients: one
+ * step of implicit Euler, which is one linear system, on a sheet of 100 x 100
+ * nodes with diagonals that has fallen for 1/3 s.
  *
  *   make solver-chart
  *   build/bench_solvers [REPEATS] > solvers.csv
  *
- * All runs take turns, the first of each is not counted. */
+ * All runs take turns; the first one of each is not counted. */
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -1,10 +1,10 @@
 #pragma once
 /** @file contenders.hpp
- * The same square of 100 x 100 nodes as a graph of ours, of Boost and of LEMON,
- * and as a cloth of ours and of Bullet; for graph_peers.cpp.
+ * The same square of 100 x 100 nodes as a Graph, a graph of Boost and one of
+ * LEMON, and as a Cloth and a soft body of Bullet; for graph_peers.cpp.
  *
- * Each library does the work as its manual suggests, with the values of a
- * cloth at every node and edge and with one formula for the spring. */
+ * Each library is used as its manual suggests, with the values of a cloth at
+ * all nodes and edges and with the same formula for springs. */
 #if !__has_include(<boost/graph/adjacency_list.hpp>) || \
     !__has_include(<lemon/list_graph.h>) || \
     !__has_include(<bullet/BulletSoftBody/btSoftBody.h>)

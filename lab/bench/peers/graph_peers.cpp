@@ -1,8 +1,8 @@
 /** @file graph_peers.cpp
- * Our Graph beside those of Boost and LEMON, and a step of our cloth beside
- * one of Bullet's soft body. Prints tables of Markdown:
+ * Compares Graph with the graphs of Boost and LEMON, and a step of our cloth
+ * with a step of Bullet's soft body. Prints tables of Markdown:
  *   make peers-deps peers-bench
- * What is measured, row by row: README.md here. */
+ * README.md beside explains each row. */
 #include "lab/bench/peers/contenders.hpp"
 #include "lab/fast/Sweep.hpp"
 

@@ -1,13 +1,12 @@
 /** @file peers.cpp
- * Our methods beside those of Boost.odeint, SUNDIALS and GSL, on one problem,
- * one force kernel and one clock: grid1 with diagonals, pinned at the corners,
- * from rest to t = 0.25 s. Writes CSV to the standard output:
+ * Compares our methods with those of Boost.odeint, SUNDIALS and GSL, with the
+ * same problem, force kernel and clock: grid1 with diagonals, pinned at the
+ * corners, from rest to t = 0.25 s. Writes CSV to the standard output:
  *   make peers-deps peers-chart
  *
- * Every library runs as its own manual suggests for such a problem; the time
- * of each run is measured in turn with all others, REPEATS times. A library
- * calls our kernel through a copy of the positions, which takes 15 % of it.
- */
+ * Each library is used as its manual suggests for such a problem. All runs take
+ * turns, REPEATS times. A library calls our kernel with a copy of the
+ * positions, which takes 15 % of the time. */
 #if !__has_include(<boost/numeric/odeint.hpp>) || \
     !__has_include(<cvode/cvode.h>) || !__has_include(<gsl/gsl_odeiv2.h>)
 #error "Boost, SUNDIALS or GSL is missing: make peers-deps"
