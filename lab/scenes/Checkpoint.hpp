@@ -20,9 +20,9 @@ std::uint64_t crc64(std::string_view bytes, std::uint64_t before = 0);
 /** The crc64() of the nodes and springs of a new cloth.  O(N) */
 std::uint64_t checksum_of(const Cloth& g);
 
-/** Write @a saved to @a file, which appears when it is complete and on the
- * disk: a line with the version, the length, the bytes, and a checksum of all
- * this. Throws std::runtime_error "FILE: why" */
+/** Write @a saved to @a file, which appears when it is complete and on disk: a
+ * line with the version, the length, the bytes, and a checksum of all three.
+ * Throws std::runtime_error "FILE: why" */
 void write_checkpoint(const std::string& file, const Archive& saved);
 
 /** The archive in @a file, ready to load from.
@@ -45,8 +45,7 @@ SavedScene scene_in_checkpoint(const std::string& file);
 void archive_scene(Archive& a, const Model& m, const Cloth& g);
 
 /** Save or load what changes in a cloth that may lose nodes and edges: which
- * are left, all orders, positions, velocities, masses; but no rest lengths or
- * K.
+ * are left, all orders, positions, velocities and masses, but no springs.
  * @pre of loading: @a g is as it was built
  * @post of loading: all ids, indices and orders of edges are the saved ones
  * Throws std::runtime_error: what is loaded does not belong to @a g.

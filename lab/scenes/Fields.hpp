@@ -15,9 +15,9 @@ namespace lab {
 enum class Role {
   mesh,     ///< a file of the mesh
   cloth,    ///< a part that makes up the cloth
-  number,   ///< a number, which has an effect by its default, too
+  number,   ///< a number whose default has an effect, too
   acts,     ///< a part that holds nodes or changes the material in a region
-  contact,  ///< a part by which the motion is not smooth
+  contact,  ///< a part that makes the motion not smooth
   method,   ///< how the motion is computed
   asked,    ///< what is asked, how long the run is, what is shown
 };

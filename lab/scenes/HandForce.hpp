@@ -16,8 +16,7 @@ namespace lab {
  * Newton iteration converges without it. */
 class HandForce : public SweptForce {
  public:
-  /** @param node the id of the node   @param k [N/m] >= 0   @param most [N] >=
-   * 0 */
+  /** @param node its id   @param k [N/m] >= 0   @param most [N] >= 0 */
   HandForce(unsigned node, const Point& target, double k, double most)
       : node_(node), target_(target), k_(k), most_(most) {}
   unsigned node() const { return node_; }

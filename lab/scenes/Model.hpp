@@ -28,7 +28,7 @@ enum class StepRule {
   safe,   ///< StepControl chooses it, starting at safe_share of the stability
           ///< limit that holds in every configuration
   sharp,  ///< the same, starting at sharp_share of the limit in the present
-          ///< configuration, but at most at the limit in every one
+          ///< configuration, but not above the limit in all configurations
 };
 
 /** How long a step is. */

@@ -35,11 +35,10 @@ class Scene : public Stepper {
 
   const Recipe& recipe() const { return recipe_; }
 
-  // Changes between two steps. The scene continues from its present state,
-  // after a failure from the last good one. The energy that a change adds
-  // counts as work in flow(). Each change but those of the hand restarts the
-  // guard. Complexity: O(N + springs) each, and the first step after it may
-  // allocate.
+  // Changes between two steps: of the present state or, after a failure, of the
+  // last good one. The energy that a change adds counts as work in flow(). All
+  // changes but those of the hand restart the guard.
+  // Complexity: O(N + springs) each, and the first step after it may allocate.
 
   /** Another method and step.  Throws as the constructor; then nothing has
    * changed. */

@@ -112,8 +112,7 @@ double nearest_unconnected(const Cloth& g, double up_to);
  * thickness; for each further round, a call of the others and O(near pairs).
  * Two layers need two or three rounds if node lies on node; ten to thirty if
  * nodes lie in the gaps of the other layer. Allocates when there are more nodes
- * or near pairs than ever before. Serial, so results do not depend on threads.
- */
+ * or near pairs than ever before. Serial, so threads do not change results. */
 class SelfCollision : public ForwardingConstraint {
  public:
   static constexpr int max_rounds = 200;

@@ -53,8 +53,7 @@ class Stepper {
   /** Check that all numbers of the present state are finite, before it is shown
    * or written.  @return as step()   O(N + springs) */
   bool check();
-  /** Let the guard check the present state. No later failure goes
-   * back to an earlier one.
+  /** Let the guard check the present state; later failures go back no further.
    * @return as step()   O(N + springs) */
   bool settle() { return failure_.empty() && guard(energy()); }
 
@@ -84,7 +83,7 @@ class Stepper {
   /** The energy that entered and left the cloth since the start. */
   const EnergyFlow& flow() const { return balance_->flow(); }
   /** From now on flow() includes the loss by linear drag, even with fixed
-   * steps. Complexity: up to a tenth of a force evaluation a step */
+   * steps.  Complexity: up to a tenth of a force evaluation a step */
   void follow_drag();
   /** The energy that linear drag took since the start [J].  @pre as drift() */
   double drag_loss() const;
@@ -95,8 +94,7 @@ class Stepper {
   /** From now on energy_watch() follows the error of the energy.
    * @pre no step is done, and energy is conserved: see EnergyWatch
    * @param t_end end of the run [s]: it looks 64 times until then, but at least
-   * every guard_interval steps.  Complexity: 0.7 of a force evaluation a look
-   */
+   * every guard_interval steps.  Complexity: 0.7 of a force evaluation each */
   void watch_energy(double t_end);
   const std::optional<EnergyWatch>& energy_watch() const { return watch_; }
   /** The energy of springs strained by round-off [J]. */

@@ -24,12 +24,12 @@ struct WorstPlace {
 
 /** Why a run fails. */
 enum class Cause {
-  step,       ///< longer than the stability limit
-  drag,       ///< too long with drag, which the method treats as a force
+  step,       ///< dt is longer than the stability limit
+  drag,       ///< dt is too long for drag that is treated as a force
   no_step,    ///< the method has no stable step
-  resonance,  ///< below the limit, but resonates with stiff springs
-  nonlinear,  ///< below the limit, which holds for small oscillations
-  method,     ///< it has no limit, but fails in another way
+  resonance,  ///< dt is below the limit; it resonates with stiff springs
+  nonlinear,  ///< dt is below the limit, but motion is large
+  method,     ///< a method without a limit fails in another way
   solver,     ///< the method or a constraint could not make the step
   start,      ///< the initial state is at fault
 };
@@ -45,7 +45,7 @@ struct FailedRun {
   double safe = 0;      ///< the limit in every configuration [s]
   double safe_without_drag = 0;  ///< [s]
   double verlet = 0;             ///< Verlet's safe limit [s]
-  std::string resonance = {};    ///< its description if dt resonates
+  std::string resonance = {};    ///< how dt resonates; empty: not
   double clear = 0;              ///< a shorter step without resonance [s]
 };
 

@@ -12,21 +12,21 @@ namespace lab {
 struct Energies {
   double kinetic = 0, elastic = 0;
   double gravitational = 0;  ///< 0 at z = 0
-  double relative = 0;       ///< kinetic, relative to what carries the cloth
+  double relative = 0;       ///< kinetic, relative to the carrier: EnergyFlow
   double fall_power = 0;     ///< |power of gravity| on a loose cloth [W]
   double total() const { return kinetic + elastic + gravitational; }
-  /** The same in every frame of reference; gains are compared with it. */
+  /** Equal in all frames of reference. Gains are compared with it. */
   double internal() const { return relative + elastic; }
 };
 
-/** The energy that entered and left a cloth since the start [J], and the
- * velocity of what carries the cloth now. */
+/** The energy that entered and left a cloth since the start [J], and its
+ * carrier now: the held nodes or, if there are none, the center of mass. */
 struct EnergyFlow {
   double work = 0;          ///< done by moving pins and obstacles
   double removed = 0;       ///< gravitational energy of removed nodes
   double drag = 0;          ///< taken by linear drag, if add_drag() is used
   Point carried = Point();  ///< mean velocity of the held nodes [m/s]
-  /** No node is held: then the center of mass carries the cloth. */
+  /** No node is held. */
   bool loose = false;
 
   void archive(Archive& a) {

@@ -6,8 +6,8 @@
 
 namespace lab {
 
-/** Follows the energy of a cloth that conserves it: without drag or contact,
- * and nothing moves or tears. So any change is the method's error.
+/** Follows the energy of a cloth that should conserve it: one without drag,
+ * contact, tearing and moving pins. So any change is the method's error.
  *
  * With a symplectic method the energy of an oscillation swings by a share of
  * O((dt omega)^2). So gains are measured, as in StepControl, from the least of

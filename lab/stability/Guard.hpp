@@ -30,8 +30,8 @@ class NodeStates {
 
 /** Checks the energy of a run and keeps the last good state.
  *
- * A state is good if its energy is finite and not much larger than the initial
- * energy, the work of gravity, of moving pins and of moving obstacles allow:
+ * The energy of a cloth is the initial one, the work of gravity, and the work
+ * of moving pins and obstacles. So a state is good if its energy is finite, and
  *   internal <= margin (available + floor)
  * internal: elastic energy, and kinetic energy relative to the held nodes, or
  *   to the center of mass of a loose cloth: Energies::internal()

@@ -35,8 +35,8 @@ double mild_step(const MethodEntry& method, double dt, double omega,
 /** The largest c/m [1/s] of the nodes of @a g with drag @a c.  O(N) */
 double largest_gamma(const Cloth& g, const Drag& c);
 
-/** `--dt auto` starts with this share of the safe limit, `--dt auto:sharp` with
- * that of the sharp limit; then StepControl adapts the step.
+/** `--dt auto` starts with safe_share of the safe limit, `--dt auto:sharp` with
+ * sharp_share of the sharp limit; then StepControl adapts the step.
  *
  * The safe limit holds for oscillations about one configuration. A cloth that
  * moves violently without drag changes its configuration, and can gain energy
