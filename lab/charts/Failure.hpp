@@ -101,9 +101,9 @@ struct Trace {
 /** Run @a r of @a f, until its end or until it fails. */
 Trace trace(const Failure& f, const FailureRun& r);
 
-/** Run the failures known of the @a chosen methods and write failures.csv, which
- * failures.gp draws, to @a out: titles, axes and measured numbers in the head,
- * then a row for each point of a curve.
+/** Run the known failures of the @a chosen methods and write failures.csv to
+ * @a out, which failures.gp draws: titles, axes and measured numbers in the
+ * head, then a row for each point of a curve.
  * @param said gets the measured numbers, too, unless null */
 void write_failures(const std::vector<const MethodEntry*>& chosen,
                     std::ostream* said, std::ostream& out);

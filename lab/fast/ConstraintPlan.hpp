@@ -19,9 +19,9 @@
 
 namespace lab {
 
-/** A step that can't be made: an iteration does not converge, an error
- * tolerance can't be met, or the constraints can't. what() says why. The cloth
- * is then undefined. */
+/** A step can't be made: an iteration does not converge, or an error tolerance
+ * or the constraints can't be satisfied. what() says why. The cloth is then
+ * undefined. */
 struct StepError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -37,10 +37,10 @@ struct Place {
 };
 using PlaceVisitor = std::function<void(Node, const Place&)>;
 
-/** What a constraint gave to a cloth and took from it, summed up over all calls
- * since it was made. */
+/** What a constraint added to a cloth and removed from it, summed over all
+ * calls since the constraint was made. */
 struct Exchange {
-  double work = 0;    ///< done by what moves: impulse times its velocity [J]
+  double work = 0;    ///< by moving obstacles: impulse times velocity [J]
   double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
   Exchange& operator+=(const Exchange& b) {
     work += b.work, moment += b.moment;
@@ -48,9 +48,8 @@ struct Exchange {
   }
 };
 
-/** A constraint that knows more than its call: what methods and the guard ask
- * for. Only the laboratory uses it; the defaults are right for every
- * constraint. */
+/** A constraint with functions that methods and the guard use besides its call.
+ * Only the laboratory uses it; the defaults are right for every constraint. */
 class SweptConstraint : public ZeroConstraint {
  public:
   /** True if each node is projected independently and none is removed. Then
@@ -61,10 +60,9 @@ class SweptConstraint : public ZeroConstraint {
    * @pre nodewise() */
   virtual void project(Cloth& /*g*/, double /*t*/, unsigned /*first*/,
                        unsigned /*last*/) const {}
-  /** project() of a cloth by component, whose graph is @a g: its positions and
-   * velocities may be older.  @pre as project()
-   * The default goes by tiles, and by the graph for those that are not idle().
-   */
+  /** project() for a cloth by component, whose graph is @a g; the positions and
+   * velocities in @a g may be out of date.  @pre as project()
+   * The default calls project() for each tile that is not idle(). */
   virtual void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
                             unsigned last) const;
   /** True only if project() leaves all nodes with ids in [first, last) where
@@ -73,11 +71,11 @@ class SweptConstraint : public ZeroConstraint {
                     unsigned /*last*/) const {
     return false;
   }
-  /** The call, of a cloth by component. The default goes by the graph. */
+  /** The call for a cloth by component. The default applies it to @a g. */
   virtual void apply_flat(FlatCloth& c, Cloth& g, double t) const;
-  /** What the call does to the nodes with ids in [first, last), wherever the
-   * others are, if that is known: project_flat() of what is nodewise, nothing
-   * of what is idle().  @return false if it is not; then @a c is undefined
+  /** Do what the call does to the nodes with ids in [first, last), if that does
+   * not depend on other nodes: project_flat() if nodewise(), nothing if idle().
+   * @return false if it depends on them; then @a c is undefined
    * Threads may call it for several parts at once. */
   virtual bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
                              unsigned last) const {
@@ -85,9 +83,9 @@ class SweptConstraint : public ZeroConstraint {
     project_flat(c, g, t, first, last);
     return true;
   }
-  /** Call @a use(node, place) for each node of @a g that is held: that is at a
-   * place which only depends on the time, whatever forces act on it. The place
-   * is that of time @a t [s], which stages may take a step before the start. */
+  /** Call @a use(node, place) for each held node of @a g: a node whose place
+   * depends only on the time. The place is that at time @a t [s]; stages may
+   * use times up to a step before the start. */
   virtual void each_place(const Cloth& /*g*/, double /*t*/,
                           const PlaceVisitor& /*use*/) const {}
   /** The first time [s] after @a t, by more than round-off, at which a place
@@ -95,30 +93,30 @@ class SweptConstraint : public ZeroConstraint {
   virtual double next_velocity_jump(double /*t*/) const {
     return std::numeric_limits<double>::infinity();
   }
-  /** The first hit: the first place, to round-off, at which a node on its
-   * straight way @a from one place @a to another is inside an obstacle that
-   * holds neither of them. A check of the ends alone misses it: tunnelling.
-   * nullopt if there is none. A floor can't be tunnelled through. */
+  /** The first point, to round-off, of the line @a from one place @a to another
+   * that is inside an obstacle, if the obstacle contains neither end: a node on
+   * that line would tunnel through it. nullopt if there is none. Nothing can
+   * tunnel through a floor. */
   virtual std::optional<Point> first_hit(const Point& /*from*/,
                                          const Point& /*to*/) const {
     return std::nullopt;
   }
-  /** True only if from time @a t [s] on nothing of it moves, so that it does no
-   * work: exchange() changes at most in a call that removes something. */
+  /** True only if nothing in it moves from time @a t [s] on, so that it does no
+   * work: exchange() changes only in calls that remove nodes. */
   virtual bool is_at_rest(double /*t*/) const { return false; }
-  /** The size [m] of the smallest obstacle that can be tunnelled through. */
+  /** The size [m] of the smallest obstacle through which a node can tunnel. */
   virtual double thinnest() const {
     return std::numeric_limits<double>::infinity();
   }
-  /** Without the work of what moves held nodes: EnergyBalance sees that. */
+  /** Without the work on held nodes, which EnergyBalance adds up. */
   virtual Exchange exchange() const { return {}; }
-  /** Save or load what it summed up; all else it has from its making. */
+  /** Save or load the sums of exchange(). */
   virtual void archive(Archive& /*a*/) const {}
 };
 
-/** A constraint that projects each node independently: its children give
- * project(). One that sums up what it does says that it is not nodewise while
- * it has something to sum up: then no two threads do. */
+/** A constraint that projects each node independently: derived classes define
+ * project(). While one adds up its work, it must not be nodewise(), so that
+ * only one thread does. */
 class NodewiseConstraint : public SweptConstraint {
  public:
   void operator()(Cloth& g, double t) const final {
@@ -130,8 +128,8 @@ class NodewiseConstraint : public SweptConstraint {
 };
 
 /** Call @a use(node) for each node with an id in [first, last) whose position
- * @a violates. Goes through the positions in the order of memory: few of them
- * ever violate a constraint. */
+ * @a violates. The positions are tested in the order of memory, before
+ * node_in_use(): only a few violate a constraint. */
 template <typename Violates, typename Use>
 void for_each_violating(Cloth& g, unsigned first, unsigned last,
                         Violates violates, Use use) {
@@ -143,13 +141,13 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 
-/** Pinned nodes, sorted, to find those of a part. */
+/** Pinned nodes, sorted by id, so that those of a part are found. */
 class PinnedNodes {
  public:
-  /** Removed ones are fine.  @pre all were in one graph  O(pins log pins) */
+  /** Nodes may be removed.  @pre all were in one graph  O(pins log pins) */
   explicit PinnedNodes(const std::vector<PinConstraint::Pin>& pins);
-  /** Put the pinned nodes of ids in [first, last) to their places, which moved
-   * by @a moved.at and go on at @a moved.velocity.
+  /** Put the pinned nodes with ids in [first, last) to their places, which have
+   * moved by @a moved.at and have the velocity @a moved.velocity.
    * O(log(pins) + those of the part) */
   void project(Cloth& g, const Place& moved, unsigned first,
                unsigned last) const;
@@ -167,8 +165,8 @@ class PinnedNodes {
                     Use use) const;
 };
 
-/** Constraints one of which is swept: it stays what it is, whereas the course's
- * function makes any constraint a call. */
+/** The course's function for constraints of which one is swept: such a
+ * constraint stays swept instead of becoming a call. */
 template <typename... Cs>
 requires(std::derived_from<Cs, SweptConstraint> || ...)  //
     CombinedConstraints make_combined_constraints(Cs... cs) {
@@ -176,7 +174,7 @@ requires(std::derived_from<Cs, SweptConstraint> || ...)  //
       shared_as<ZeroConstraint, FunctionConstraint>(std::move(cs))...});
 }
 
-/** The terms of a constraint, in their order, by what methods need of them.
+/** The terms of a constraint, in their order, ready for methods.
  *
  * It is made once for many steps. A ConstraintPlan shares the parts of a
  * CombinedConstraints; any other constraint that it does not recognise must
@@ -188,7 +186,7 @@ class ConstraintPlan {
   /** O(terms + pins log pins). Implicit, so that a constraint can be handed to
    * a method. */
   ConstraintPlan(const ZeroConstraint& c);  // NOLINT
-  /** The same of a temporary, which is kept. */
+  /** The same for a temporary, which is kept. */
   template <std::derived_from<ZeroConstraint> C>
   requires(!std::is_reference_v<C> && !std::is_const_v<C>)  //
       ConstraintPlan(C&& c) {
@@ -205,7 +203,7 @@ class ConstraintPlan {
   /** Apply it to @a g at time @a t [s]; then restore_order(), if nodes
    * were removed.  O(N) unless a term takes longer */
   void operator()(Cloth& g, double t) const;
-  // As in SweptConstraint; each is that of all terms together:
+  // As in SweptConstraint, for all terms together:
   bool nodewise() const;
   void project(Cloth& g, double t, unsigned first, unsigned last) const;
   void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
@@ -238,8 +236,8 @@ class ConstraintPlan {
   void add(std::shared_ptr<const ZeroConstraint> constraint);
 };
 
-/** A constraint made of another one, of which it says what that one says. Its
- * children give the call, and nodewise() or project() if these differ. */
+/** A constraint that forwards all functions to another one. Derived classes
+ * define the call, and nodewise() or project() if these differ. */
 class ForwardingConstraint : public SweptConstraint {
  public:
   explicit ForwardingConstraint(ConstraintPlan inner)
@@ -276,13 +274,13 @@ class WatchedConstraint final : public ForwardingConstraint {
   /** A node that was stopped. */
   struct Stopped {
     unsigned node;  ///< its index
-    double length;  ///< of its way since the last call [m]
+    double length;  ///< of its path since the last call [m]
   };
 
   using ForwardingConstraint::ForwardingConstraint;
 
-  /** Watch from the state of @a g on, or no more. O(N) if @a on, then and in
-   * each call. */
+  /** Start watching from the state of @a g, or stop. While on, this and each
+   * call take O(N). */
   void watch(const Cloth& g, bool on) {
     before_.clear();
     if (on) remember(g);
@@ -295,7 +293,7 @@ class WatchedConstraint final : public ForwardingConstraint {
   bool nodewise() const override {
     return before_.empty() && inner_.nodewise();
   }
-  // While it is off nothing needs the graph:
+  // While it is off, the graph is not needed:
   void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
                     unsigned last) const override {
     inner_.project_flat(c, g, t, first, last);

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Drag.hpp
- * Linear drag whose coefficient each node has for itself. */
+ * Linear drag with a coefficient for each node. */
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,9 +12,8 @@
 
 namespace lab {
 
-/** Linear drag f = -c v, c by node. A node that is added later has none; one
- * that is removed takes its c along. Methods that split treat it exactly, as
- * they do a DampingForce. */
+/** Linear drag f = -c v, with c by node id. Nodes that are added later have
+ * none. Splitting methods solve it exactly, as they do a DampingForce. */
 class NodeDrag : public ZeroForce {
  public:
   /** @param c [kg/s] by node id, each >= 0 */

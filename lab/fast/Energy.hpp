@@ -9,9 +9,9 @@ namespace lab {
 
 // -------------------------------------------------------------------- Springs
 
-/** How the force between two nodes answers to their moving apart, u = x_j -
- * x_i: the force on i changes by B du, that on j by -B du, B = along n n^T +
- * across (I - n n^T), so B is the Hessian of the energy in u. */
+/** The derivative of the force between two nodes with respect to u = x_j - x_i:
+ * the force on i changes by B du, that on j by -B du, where B = along n n^T +
+ * across (I - n n^T) is the Hessian of the energy in u. */
 struct Stiffness {
   Point direction;    ///< n, of length 1
   double along = 0;   ///< [N/m]
@@ -24,8 +24,8 @@ struct Stiffness {
 
 /** The stiffness of a spring whose ends lie @a u [m] apart: K along it and
  * K (1 - L/l) across, negative while it is compressed. At l = 0, where no
- * direction is defined, K in all directions: that is the limit for L = 0, and
- * as no direction is ever stiffer than K, an upper bound for L > 0. */
+ * direction is defined, K in all directions: the limit for L = 0, and an upper
+ * bound for L > 0, since no direction is stiffer than K. */
 inline Stiffness spring_stiffness(const Point& u, const EdgeData& s) {
   double l = norm(u);
   if (l == 0) return {Point(1, 0, 0), s.K, s.K};

@@ -1,8 +1,7 @@
 #pragma once
 /** @file FlatCloth.hpp
- * FlatCloth: the state of a cloth by component, each number in an array of its
- * own, for methods that take many steps before anybody looks. README.md of this
- * room walks through it. */
+ * FlatCloth: the state of a cloth by component, with an array for each, for
+ * methods that make many steps without the graph. Explained in README.md. */
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +15,8 @@
 
 namespace lab {
 
-/** Arrays of numbers, all of one length: aligned for vectors, and beginning at
- * different places of a page, so that a cache can hold the same part of all. */
+/** Arrays of one length, aligned for vectors. They start at different offsets
+ * in a page, so that a cache can hold the same part of all. */
 class Columns {
  public:
   /** @a count arrays of zeros of at least @a length numbers.  O(all) */
@@ -30,7 +29,7 @@ class Columns {
   const Real* operator[](std::size_t column) const {
     return &all_[column * stride_];
   }
-  /** How far one array lies behind the one before. */
+  /** The distance of the starts of consecutive arrays. */
   std::size_t stride() const { return stride_; }
 
  private:
@@ -54,14 +53,14 @@ class Columns {
 /** Positions, velocities, 1/m, K and L of a cloth by component, and its springs
  * as the kernels go through them.
  *
- * An offset of ids that many springs have is a row: the spring of node i to
- * node i + offset has number i of it, with K = 0 where there is none. Each
- * spring of a row is evaluated once. All other springs are gathered, by a
- * stencil, from both of their ends.
+ * If many springs have the same offset of ids, they form a row: the spring from
+ * node i to node i + offset is number i of the row; K = 0 if there is none.
+ * Each spring of a row is evaluated once. All other springs are in a stencil,
+ * and evaluated at both of their ends.
  *
- * The graph stays the owner: read() takes its state, write() gives positions
- * and velocities back. The rows are found anew when its version() is another;
- * memory is allocated only then. */
+ * The graph owns the state: take() reads it, write() writes positions and
+ * velocities back. When its version() changes, the rows are found anew; only
+ * then memory is allocated. */
 class FlatCloth {
  public:
   static constexpr unsigned tile = 64;  ///< nodes; arrays have whole tiles
@@ -74,35 +73,34 @@ class FlatCloth {
     std::size_t first;
   };
   using Rest = Stencil<lanes::width>;
-  /** Springs of consecutive ids whose numbers are consecutive, too. */
+  /** Springs with consecutive ids and consecutive numbers. */
   struct Run {
     unsigned edge, count;
     std::size_t number;
   };
 
-  /** @param more how many columns a method has for itself, behind those */
+  /** @param more number of additional columns, for a method */
   explicit FlatCloth(unsigned more = 0) : columns_(columns + more) {}
 
-  /** The state of @a g, with @a multiplicity K in place of K, and the drag
-   * @a c. Accelerations stay as they are while the topology does, else they are
-   * 0.  O(N + springs) */
+  /** Read the state of @a g, with @a multiplicity K instead of K, and the drag
+   * @a c. If the topology has changed, accelerations become 0; else they stay.
+   * O(N + springs) */
   void take(const Cloth& g, int multiplicity, const Drag& c);
-  /** The same again, with what the last read() had.  @pre its drag lives */
+  /** The same with the arguments of the last take().  @pre its drag exists */
   void take(const Cloth& g) { take(g, multiplicity_, *drag_); }
-  /** Positions and velocities of the nodes of ids in [first, last). */
+  /** Read positions and velocities of the nodes with ids in [first, last). */
   void read_nodes(const Cloth& g, unsigned first, unsigned last);
-  /** Give them to @a g. Removed nodes have none. */
+  /** Write them to @a g; removed nodes are skipped. */
   void write(Cloth& g, unsigned first, unsigned last) const;
 
   void write(Cloth& g) const { write(g, 0, slots_); }
 
-  /** Keep positions, velocities and accelerations in @a copy; take them back.
-   */
+  /** Copy positions, velocities and accelerations, and restore them. */
   void save(std::vector<Real>& copy) const;
   void restore(const std::vector<Real>& copy);
 
-  /** True if @a holds(position) for any id in [first, last): 0 of a removed
-   * node. */
+  /** True if @a holds(position) for any id in [first, last). Removed nodes have
+   * position 0. */
   template <typename Holds>
   bool any(unsigned first, unsigned last, Holds holds) const {
     const Real *x = nodes_[X], *y = nodes_[Y], *z = nodes_[Z];
@@ -120,14 +118,14 @@ class FlatCloth {
   const std::vector<Row>& rows() const { return rows_; }
   const Real* K() const { return springs_[0]; }
   const Real* L() const { return springs_[1]; }
-  /** The springs in no row, whose numbers in K() and L() go on behind the rows:
-   * those of row r from rest_first() + r lanes::width on; nullptr: none. */
+  /** The springs in no row; null if there are none. In K() and L() they follow
+   * the rows: row r of the stencil starts at rest_first() + r lanes::width. */
   const Rest* rest() const { return rest_ ? &*rest_ : nullptr; }
   std::size_t rest_first() const { return rest_first_; }
   /** The largest difference of two neighbors' ids. */
   unsigned reach() const { return reach_; }
 
-  /** Of three columns: @a x and the two behind it. */
+  /** The Point in columns @a x, x + 1 and x + 2. */
   Point point(unsigned x, unsigned id) const {
     const Real* at = nodes_[x] + id;
     const std::size_t s = nodes_.stride();

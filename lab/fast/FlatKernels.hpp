@@ -1,8 +1,7 @@
 #pragma once
 /** @file FlatKernels.hpp
- * The loops that a step by component spends its time in, written once for
- * registers of any length (Lanes.hpp). README.md of this room walks through
- * them. */
+ * The loops in which a step by component spends its time, written once for
+ * registers of any length (Lanes.hpp). Explained in README.md. */
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -26,16 +25,16 @@ template <typename T>
   return K * (l - L) / l;
 }
 
-/** The forces of a row's springs on their near ends, kept until the far ends
- * come: in a ring, whose first tile stands behind its end, too, so that a tile
- * of far ends reads without a seam. */
+/** A ring buffer of the forces of a row's springs on their near ends, kept
+ * until the far ends are reached. The first tile is repeated after the end, so
+ * that any tile can be read without wrapping around. */
 struct RowRing {
   unsigned offset, size;  // size: without the tile behind it
   unsigned at;            // where the next tile goes
   const Real *K, *L;      // of node 0
   Real* kept;             // x, then y and z, each size + tile numbers
   std::size_t stride() const { return size + FlatCloth::tile; }
-  /** Where the springs stand whose far ends are the next tile. */
+  /** The forces of the springs whose far ends are the next tile. */
   const Real* far() const {
     return kept + (at >= offset ? at - offset : at + size - offset);
   }
@@ -44,7 +43,7 @@ struct RowRing {
   }
 };
 
-/** What is to be done with the nodes of some tiles. */
+/** The arguments of KickTiles. */
 struct KickTask {
   FlatCloth& cloth;
   RowRing* rings;  ///< of the rows, at tile first
@@ -126,7 +125,7 @@ struct KickTiles {
     }
   }
 
-  /** Where a row's numbers are of the first node of a tile. */
+  /** The numbers of a row at the first node of a tile. */
   struct Row {
     const Real *x, *K, *L;  ///< x: of the far end
     Real* near[3];          ///< the forces of its springs, by component
@@ -194,7 +193,7 @@ struct KickTiles {
     ring.advance();
   }
 
-  /** Add the springs in no row at the nodes from @a i on, each from here. */
+  /** Add the springs in no row at the nodes from @a i on. */
   template <typename V>
   [[gnu::always_inline]] static inline void add_rest(
       const FlatCloth& cloth, const FlatCloth::Rest& rest, unsigned i,
@@ -224,7 +223,7 @@ struct KickTiles {
   }
 };
 
-/** The springs' forces of tiles [first, last), for far ends behind them. */
+/** Put the forces of the springs of tiles [first, last) into the ring. */
 struct NearTiles {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(const FlatCloth* cloth,
@@ -338,7 +337,7 @@ struct WriteNodes {
   }
 };
 
-/** K and L of springs by component, @a times K in place of K. */
+/** K and L of springs by component, with @a times K instead of K. */
 struct ReadSprings {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(

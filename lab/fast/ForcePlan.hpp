@@ -28,14 +28,13 @@ struct Part {
 using StiffnessVisitor =
     std::function<void(unsigned i, unsigned j, const Stiffness& B)>;
 
-/** A force that knows more than its call. Only the laboratory uses it: methods
- * get faster by it, and implicit methods possible. */
+/** A force with functions that methods use besides its call: for speed, and for
+ * implicit methods. Only the laboratory uses it. */
 class SweptForce : public ZeroForce {
  public:
-  /** Add the force on each node of @a part to @a f: that on the node of id i to
-   * f[i - part.first]. Equal to the call node by node, to round-off. What is
-   * added at an id not in use does not count. Threads may evaluate several
-   * parts at once.
+  /** Add the force on each node of @a part to @a f: that on the node with id i
+   * to f[i - part.first]. Equal to the call node by node, to round-off. Entries
+   * of ids not in use are ignored. Threads may evaluate several parts at once.
    * Complexity: O(nodes + edges at them) */
   virtual void add_to(const Part& part, double t, std::span<Point> f) const {
     for (unsigned i = part.first; i < part.last; ++i)
@@ -48,22 +47,22 @@ class SweptForce : public ZeroForce {
   virtual double energy(const Cloth& /*g*/) const { return 0; }
   /** Call @a use(i, j, B) for each pair of nodes between which there is a force
    * that depends on x_j - x_i, at the positions that @a g has now.
-   * @return false if the force does not know its stiffness; then what @a use
-   *         was called with does not count
+   * @return false if the force does not know its stiffness; then the calls of
+   *         @a use are to be ignored
    * Complexity: O(nodes + edges) */
   virtual bool add_stiffness(const Cloth& /*g*/,
                              const StiffnessVisitor& /*use*/) const {
     return false;
   }
-  /** Number of times the edge springs occur in it, if it reads the position of
-   * no other node besides; else nullopt. */
+  /** How many times the force contains the springs of the edges; nullopt if it
+   * reads positions of other nodes in any other way. */
   virtual std::optional<int> spring_multiplicity() const {
     return std::nullopt;
   }
 };
 
-/** The sum of forces one of which is swept: it stays what it is, whereas the
- * course's function makes any force a call. */
+/** The course's function for forces of which one is swept: such a force stays
+ * swept instead of becoming a call. */
 template <typename... Fs>
 requires(std::derived_from<Fs, SweptForce> || ...)  //
     CombinedForces make_combined_force(Fs... fs) {
@@ -81,7 +80,7 @@ class ForcePlan {
  public:
   /** O(terms). Implicit, so that a force can be handed to a method. */
   ForcePlan(const ZeroForce& force);  // NOLINT
-  /** The same of a temporary, which is kept. */
+  /** The same for a temporary, which is kept. */
   template <std::derived_from<ZeroForce> F>
   requires(!std::is_reference_v<F> && !std::is_const_v<F>)  //
       ForcePlan(F&& force) {
@@ -95,31 +94,29 @@ class ForcePlan {
     add(std::make_shared<FunctionForce<Pointer<F*>>>(Pointer<F*>{&force}));
   }
 
-  /** The sum of its swept forces and calls is added to @a f: as
-   * SweptForce::add_to(); and whether there are any that act. */
+  /** Add its swept forces and calls to @a f, as SweptForce::add_to(); and tell
+   * whether any of them act. */
   void add_others(const Part& part, double t, std::span<Point> f) const;
   bool has_others() const;
-  /** How often it was evaluated; methods call count_evaluation() each time. */
+  /** The number of evaluations; methods call count_evaluation() each time. */
   long long evaluations() const { return evaluations_; }
   void count_evaluation() const { ++evaluations_; }
-  /** The sum of all weight's g [m/s^2]. */
+  /** The sum of g of all GravityForce terms [m/s^2]. */
   double gravity() const;
-  /** The energy [J] of weight and springs, and of swept forces that have one.
-   */
+  /** The energy [J] of weight, springs, and swept forces that have one. */
   double energy(const Cloth& g) const;
   /** The sum of its terms -c v: drag()[id] is the c [kg/s] of a node. */
   const Drag& drag() const { return drag_; }
   /** The stiffness of all terms: as SweptForce::add_stiffness(); false if there
-   * is a term by call. Together with drag() it is how the force changes with
-   * the state. */
+   * is a term by call. With drag() it is the derivative of the force with
+   * respect to the state. */
   bool add_stiffness(const Cloth& g, const StiffnessVisitor& use) const;
-  /** Number of times the edge springs occur, if nothing else reads positions of
-   * other nodes; else nullopt. Then no direction between two nodes is stiffer
-   * than that many K, and a node's force may be evaluated as soon as its
-   * neighbors have moved. */
+  /** How many times it contains the springs of the edges; nullopt if it reads
+   * positions of other nodes in any other way. If not nullopt, no direction
+   * between two nodes is stiffer than that many K, and the force on a node may
+   * be evaluated as soon as its neighbors have moved. */
   std::optional<int> spring_multiplicity() const;
-  /** Number of times the edge springs occur as such (MassSpringForce), whatever
-   * else there is. */
+  /** The number of its MassSpringForce terms. */
   int springs() const;
 
  private:

@@ -1,14 +1,14 @@
 #pragma once
 /** @file Lanes.hpp
- * Lanes: the numbers that one register of the processor holds, computed with
- * side by side (SIMD). A kernel is written once and compiled for three kinds of
- * x86-64 processor. The program runs the one that is fastest on its processor
- * (FastestCpu.hpp); on any other processor it is plain code.
+ * Lanes: a SIMD register of numbers. A kernel is written once and compiled for
+ * three kinds of x86-64 processor; the program runs the version that is fastest
+ * on its processor (FastestCpu.hpp). On any other processor a kernel is plain
+ * code.
  *
  * A kernel is a struct with
  *   template <typename V> [[gnu::always_inline]] static inline void apply(...),
- * V being the Lanes of that processor. It calls only functions that are always
- * inlined: any other code is compiled for the plain processor.
+ * where V is the Lanes type of that processor. It may call only functions that
+ * are always inlined: other code is compiled for the plain processor.
  * run<Kernel>(...) calls it. */
 #include <cmath>
 #include <cstddef>
@@ -19,13 +19,13 @@
 
 namespace lab {
 
-// No Lanes are passed to code of another kind: all is inlined.
+// All functions are inlined, so the ABI of vector arguments does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace lanes {
 
 /** Nodes a block: as many as the longest register has numbers, 8 doubles or 16
- * floats. Where registers are shorter a block takes several. */
+ * floats. With shorter registers a block takes several. */
 inline constexpr int width = 64 / sizeof(Real);
 
 namespace detail {
@@ -36,17 +36,17 @@ struct Vector {
 };
 }  // namespace detail
 
-/** @a count numbers in a register. Aligned by hand: what a compiler takes for
- * granted depends on the processor it compiles for. Longer than the registers
- * they would be right, but moved by way of memory, number by number. */
+/** @a count numbers in a register. The alignment is explicit, because a
+ * compiler's default depends on the processor. Types longer than a register
+ * give right results, but are moved through memory, number by number. */
 template <int count>
 using Lanes = typename detail::Vector<count>::type;
 
-/** How many numbers a vector has. */
+/** The number of numbers in a vector. */
 template <typename V>
 inline constexpr int count_of = int(sizeof(V) / sizeof(Real));
 
-// -------------------------------------------------------------- Which machine
+// ------------------------------------------------------------------ Processor
 
 enum class Cpu { plain, avx2, avx512 };
 
@@ -64,7 +64,7 @@ inline Cpu best_cpu() {
 inline const char* name_of(Cpu cpu) {
   return cpu == Cpu::avx512 ? "AVX-512" : cpu == Cpu::avx2 ? "AVX2" : "plain";
 }
-/** What kernels run on: a program sets it to fastest_cpu(). */
+/** The kind that kernels use; a program sets it to fastest_cpu(). */
 inline Cpu cpu = best_cpu();
 
 template <typename Kernel, typename... Args>
@@ -83,9 +83,9 @@ template <typename Kernel, typename... Args>
 }
 #endif
 
-/** Kernel::apply<V>(args...), compiled for this processor. Each lane does what
- * plain code does, in the same order: with -ffp-contract=off, as the Makefile
- * has it, the results are the same on all of them, bit by bit. */
+/** Kernel::apply<V>(args...), compiled for this processor. Each lane computes
+ * as plain code does, in the same order. With -ffp-contract=off, as in the
+ * Makefile, the results are bitwise the same on all processors. */
 template <typename Kernel, typename... Args>
 void run(const Args&... args) {
 #ifdef __x86_64__
@@ -118,8 +118,8 @@ template <typename V>
   std::memcpy(to, &a, sizeof a);
 }
 
-/** Number k of the result is number pick(k) of @a a and @a b one after the
- * other.  @param pick a lambda without captures */
+/** Number k of the result is number pick(k) of @a a followed by @a b.
+ * @param pick a lambda without captures */
 template <typename V, typename Pick, std::size_t... k>
 [[gnu::always_inline]] inline V shuffle(const V& a, const V& b, Pick pick,
                                         std::index_sequence<k...>) {
@@ -141,7 +141,7 @@ template <typename V>
   return gather<V>(from, at, std::make_index_sequence<count_of<V>>());
 }
 
-/** Points side by side. */
+/** Several Points, by component. */
 template <typename V>
 struct Points {
   V x = {}, y = {}, z = {};

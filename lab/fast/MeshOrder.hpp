@@ -1,7 +1,7 @@
 #pragma once
 /** @file MeshOrder.hpp
  * A better order of a mesh in memory, if its own is bad: a sweep over a cloth
- * is fast when neighbors are in the cache together. docs/graph.md */
+ * is fast if neighbors are in the cache together. See docs/graph.md. */
 #include <cstddef>
 #include <functional>
 #include <span>

@@ -1,7 +1,7 @@
 #pragma once
 /** @file OrderedCloth.hpp
- * A cloth whose nodes and springs lie in memory in an order that is good for
- * sweeps, whatever the order of its mesh. */
+ * Builds a cloth whose nodes and springs are in memory in an order that is good
+ * for sweeps, whatever the order of its mesh. */
 #include <span>
 
 #include "mass_spring.hpp"
@@ -15,8 +15,8 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
                          std::span<const Quad> quads, Mesh mesh,
                          double K = 100);
 
-/** Graph::reindex(), if removals put so many nodes of a large cloth out of the
- * order of memory that loops over nodes() feel it. For the end of a step.
+/** At the end of a step: Graph::reindex() if removals put so many nodes of a
+ * large cloth out of the order of memory that loops over nodes() become slow.
  * Complexity: O(1) before the first removal, then O(num_nodes()); in all at
  *       most 256 times reindex() until no node is left */
 void restore_order(Cloth& g);

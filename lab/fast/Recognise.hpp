@@ -1,7 +1,7 @@
 #pragma once
 /** @file Recognise.hpp
- * Which force or constraint of the course an object is, whether it is handed to
- * the laboratory itself or was copied by make_combined_force(). */
+ * Finds out which force or constraint of the course an object is, also if
+ * make_combined_force() has copied it. */
 #include <concepts>
 #include <memory>
 #include <type_traits>

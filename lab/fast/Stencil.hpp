@@ -11,13 +11,13 @@
 
 namespace lab {
 
-/** The neighbors of all nodes of a graph: by blocks of W nodes of consecutive
- * ids, and in a block by rows of one neighbor for each node.
+/** The neighbors of all nodes of a graph, in blocks of W nodes of consecutive
+ * ids. A block consists of rows, each with one neighbor of each node.
  *
  * If the neighbors of a row lie at a constant offset of ids, a sweep can read
  * their data with unit stride; those of other rows are gathered.
  *
- * It holds topology only, and must be made anew when that has changed.
+ * It contains only topology, and must be made anew when that has changed.
  * Memory: 4 + 8 W bytes a row.
  * @tparam W nodes a block */
 template <int W>
@@ -44,16 +44,16 @@ class Stencil {
   explicit Stencil(const G& g)
       : Stencil(g, [](size_type, size_type) { return false; }) {}
 
-  /** Block b has the nodes of ids b W, ..., b W + W - 1, but the last one may
-   * have less. */
+  /** Block b has the nodes with ids b W, ..., b W + W - 1; the last block may
+   * have fewer. */
   size_type num_blocks() const { return (slots_ + W - 1) / W; }
   std::size_t num_rows() const { return offset_.size(); }
   /** The rows of a block are [row_begin(block), row_begin(block + 1)). */
   std::size_t row_begin(size_type block) const { return row_begin_[block]; }
-  /** A neighbor's id less the node's, if all of a row have the same; else 0. */
+  /** Neighbor's id - node's id if it is the same in all the row; else 0. */
   int offset(std::size_t row) const { return offset_[row]; }
-  /** The ids of the W neighbors of a row, and of the edges to them. A node that
-   * has no more of them is its own neighbor, by the edge none. */
+  /** The ids of the W neighbors of a row, and of the edges to them. A node with
+   * fewer neighbors is its own neighbor, with the edge `none`. */
   const size_type* neighbors(std::size_t row) const {
     return &neighbor_[row * W];
   }
@@ -87,15 +87,15 @@ class Stencil {
     }
   }
 
-  /** If all nodes have a neighbor at the offset of number m of the first one,
-   * add the row of these, and take them from @a left. */
+  /** If all nodes have a neighbor at the same offset as neighbor m of the first
+   * node, add a row of these, and remove them from @a left. */
   template <typename Neighbor>
   bool add_at_offset(size_type first, std::size_t m,
                      std::array<std::vector<Neighbor>, W>& left) {
     std::array<std::size_t, W> place;
     const size_type start = left[0][m].node;
     for (size_type k = 0; k < W; ++k) {
-      // Neighbors mostly stand in the same order: begin at number m.
+      // Neighbors mostly are in the same order: start at number m.
       const auto& l = left[k];
       std::size_t at = std::min(m, l.size());
       if (at == l.size() || l[at].node != start + k)

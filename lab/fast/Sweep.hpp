@@ -1,7 +1,7 @@
 #pragma once
 /** @file Sweep.hpp
- * Sweep: the way over all nodes of a cloth, a part at a time, by as many
- * threads as OpenMP has (OMP_NUM_THREADS, or --threads). */
+ * Sweep: a parallel loop over the nodes of a cloth, in parts, with OpenMP
+ * (OMP_NUM_THREADS, or --threads). */
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -11,34 +11,34 @@
 
 namespace lab {
 
-/** Goes over all ids of a cloth, in parts that fit in a cache. Which thread
- * takes a part depends on their number, the order within a part does not. */
+/** Loops over all ids of a cloth, in parts that fit in a cache. The number of
+ * threads decides which thread takes a part, but not the order in a part. */
 struct Sweep {
-  /** How many processors this program may use. */
+  /** The number of processors that this program may use. */
   static int processors();
-  /** Let all sweeps have @a n threads from now on. 0, the default: those that
-   * OpenMP gives, and one for small cloths. */
+  /** Let all sweeps have @a n threads from now on. 0, the default: as many as
+   * OpenMP has, but one for small cloths. */
   static void set_threads(int n);
-  /** How many threads that is at most, and which one is calling. */
+  /** The largest number of threads, and the number of the calling one. */
   static std::size_t threads();
   static std::size_t thread();
 
   static constexpr unsigned part_size = 1024;
   /** By default a cloth of fewer parts has one thread: starting more may take
-   * longer than the sweep, if another program has a processor just then. */
+   * longer than the sweep, if other programs use the processors. */
   static constexpr int many_parts = 32;
 
-  /** Call @a work(thread, threads) in each of as many threads as a cloth of
-   * @a slots ids has. It must not throw. */
+  /** Call @a work(thread, threads) in each thread of a sweep over @a slots ids.
+   * It must not throw. */
   using Work = std::function<void(int thread, int threads)>;
   static void together(unsigned slots, const Work& work);
-  /** Wait until other threads have made @a count at least @a least. What they
-   * wrote before is seen then. */
+  /** Wait until @a count, which other threads raise, is at least @a least. Then
+   * all that they wrote before is visible. */
   static void await(const std::atomic<int>& count, int least);
-  /** The first exception of several threads, for the one that called them. */
+  /** The first exception of several threads, for the one that starts them. */
   class FirstError {
    public:
-    void keep();  ///< the one that is being handled
+    void keep();  ///< keep the present exception
     void rethrow() const {
       if (error_) std::rethrow_exception(error_);
     }
@@ -47,17 +47,17 @@ struct Sweep {
     std::exception_ptr error_;
   };
 
-  /** Called with the first id of a part, and the one behind its last. */
+  /** Called with a part: the ids in [first, last). */
   using IdVisitor = std::function<void(unsigned first, unsigned last)>;
-  /** Call @a move and @a use for each part of @a slots ids, @a use when all
-   * parts up to @a halo away have been moved. Each thread goes through its own
-   * parts in their order, and moves those in the halo before it needs them: so
-   * the data go through the cache once for both. Throws what they throw, the
-   * first of it, when all are done. */
+  /** Call @a move and @a use for each part of @a slots ids; @a use when all
+   * parts up to @a halo away have been moved. Each thread takes its own parts
+   * in order, and moves those of the halo just before it needs them: so data
+   * pass through the cache once for both. Throws the first of their exceptions
+   * when all threads are done. */
   static void in_turn(unsigned slots, int halo, const IdVisitor& move,
                       const IdVisitor& use);
-  /** The halo: how many parts away the nodes may be whose positions @a force
-   * reads.  @param reach the largest difference of two neighbors' ids */
+  /** The halo: the distance in parts up to which @a force reads positions.
+   * @param reach the largest difference of two neighbors' ids */
   static int halo_of(const ForcePlan& force, unsigned reach);
 };
 
