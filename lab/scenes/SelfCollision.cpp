@@ -106,7 +106,7 @@ bool SelfCollision::project_pairs(Cloth& g) const {
       pushed = true;
     }
   if (++rounds_ >= max_rounds && pushed)
-    throw StepError("self-collision: nodes are nearer than the thickness, " +
+    throw StepError("self-collision: nodes are closer than the thickness, " +
                     CME212::short_text(thickness_) + " m, after " +
                     std::to_string(max_rounds) + " rounds");
   return pushed;
@@ -121,7 +121,7 @@ void SelfCollision::push_apart(Cloth& g, unsigned i, unsigned j) const {
     throw StepError("self-collision: nodes " +
                     std::to_string(g.node_with_id(i).index()) + " and " +
                     std::to_string(g.node_with_id(j).index()) +
-                    " are held, nearer than the thickness, " +
+                    " are held closer than the thickness, " +
                     CME212::short_text(thickness_) + " m");
   const Point apart = x[i] - x[j];
   const double distance = norm(apart);

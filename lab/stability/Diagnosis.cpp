@@ -37,7 +37,7 @@ std::string WorstPlace::text(const Cloth& g) const {
   if (!g.has_edge(spring)) return out.str();
   out << ", its spring to node " << spring.node2().index() << " is ";
   if (!std::isfinite(length))
-    out << "beyond all bounds";
+    out << "too long to be represented";
   else if (double L = spring.value().L; L > 0)
     out << length / L << " times its rest length of " << L << " m";
   else
@@ -94,8 +94,8 @@ std::string in_words(Cause cause, const FailedRun& run) {
     case Cause::drag:
       limit(run.safe);
       out << ", " << info.name << "), which is " << run.safe_without_drag
-          << " s without drag: " << info.name << " takes drag as a force, and "
-          << "a step takes away too much";
+          << " s without drag: " << info.name
+          << " treats drag as a force, and a step removes too much velocity";
       break;
     case Cause::no_step:
       out << info.name << " has no stable step: it fails with "
@@ -108,22 +108,21 @@ std::string in_words(Cause cause, const FailedRun& run) {
       if (std::isfinite(run.safe))
         out << "dt is " << CME212::percent(run.dt / run.safe)
             << " of the stability limit (" << run.safe << " s, " << info.name
-            << "), which is that of small oscillations";
+            << "), which holds for small oscillations only";
       else
-        out << "no spring bounds the step";
-      out << ": here motion is large or fast, or something moves or holds "
-             "nodes";
+        out << "there is no stability limit";
+      out << ": the motion is large or fast, or nodes are held or moved";
       break;
     case Cause::method:
       out << info.name << " fails with: " << info.fails_when;
       in_verlets();
       break;
     case Cause::solver:
-      out << "that step can't be made";
+      out << "this step could not be computed";
       in_verlets();
       break;
     case Cause::start:
-      out << "the start itself is at fault, whatever the method and the step";
+      out << "the initial state fails with every method and step";
   }
   return out.str();
 }
@@ -238,13 +237,13 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
     d.text += d.cure->options(run.method) +
               (d.trial.time >= run.time
                    ? " works: a trial to t = " + time +
-                         " passed, with the energy of one by half of it"
-                   : " may work: a trial was broken off at t = " + time +
+                         " passed, and half of that step gives the same energy"
+                   : " may work: a trial was stopped at t = " + time +
                          ", before it could fail");
   } else if (!failed_text.empty()) {
-    d.text += "no cure is known: trials of " + failed_text + " failed, too";
+    d.text += "no remedy was found: trials of " + failed_text + " failed, too";
   } else {
-    d.text += "look at its numbers";
+    d.text += "check its values";
   }
   return d;
 }
