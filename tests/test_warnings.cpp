@@ -91,7 +91,7 @@ TEST(Warnings, NodesInNoQuad) {
   m.nodes = "data/grid1.nodes", m.tets = "data/grid0.tets";
   EXPECT_EQ(warning_of(m),
             "600 of 625 nodes lie in no quad, node 25 first: no spring holds "
-            "them; take nodes and quads that belong together");
+            "them; use nodes and quads of the same mesh");
   m.tets = "data/grid1.tets";
   EXPECT_EQ(warning_of(m), "");
 }
@@ -105,8 +105,8 @@ TEST(Warnings, SpringsOfLengthZero) {
   const auto found = warnings(m, mesh, g, 0.001);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0],
-            "1 spring has length 0: nodes 7 and 12 lie at the same place, so "
-            "nothing but inertia keeps them apart; make them one node");
+            "1 spring has length 0: nodes 7 and 12 are at the same point, and "
+            "no spring force keeps them apart; make them one node");
   mesh.points[7].z += 1e-6;
   Cloth apart;
   build_model(apart, m, mesh);
@@ -118,9 +118,10 @@ TEST(Warnings, SpringsOfLengthZero) {
 TEST(Warnings, AFloorAboveTheCloth) {
   Model m = sheet("u 1 0 1");
   m.planes = {read_plane("at 0 0 0.3")};
-  EXPECT_EQ(warning_of(m),
-            "10 of 25 nodes start below --plane \"at 0 0 0.3\", up to 0.3 m: "
-            "the first step puts them onto it; let it go through 0 0 0");
+  EXPECT_EQ(
+      warning_of(m),
+      "10 of 25 nodes start below --plane \"at 0 0 0.3\", up to 0.3 m: the "
+      "first step moves them onto it; to avoid that, put the plane at 0 0 0");
   m.planes = {read_plane("at 0 0 0")};
   EXPECT_EQ(warning_of(m), "");
   m.planes = {read_plane("at 0 0 0 normal 0 0 -1")};  // a ceiling
@@ -133,10 +134,11 @@ TEST(Warnings, AFloorAboveTheCloth) {
 TEST(Warnings, ASolidBallThatStartsAroundNodes) {
   Model m = with_sphere("at 0.5 0.5 0.1 radius 0.28");
   const std::string w = warning_of(m);
-  EXPECT_EQ(w.find("5 of 25 nodes start inside --sphere \"at 0.5 0.5 0.1 "
-                   "radius 0.28\": the first step puts them onto its "
-                   "surface, which gives "),
-            0u)
+  EXPECT_EQ(
+      w.find(
+          "5 of 25 nodes start inside --sphere \"at 0.5 0.5 0.1 radius 0.28\": "
+          "the first step moves them onto its surface, which gives "),
+      0u)
       << w;
   // The energy is what the projection gives.
   Cloth g;
@@ -153,8 +155,8 @@ TEST(Warnings, ABallBetweenTheNodes) {
   const std::string at = "at 0.625 0.625 ";  // in the middle of a quad
   EXPECT_EQ(warnings_of(with_sphere(at + "0.05 radius 0.17"))[0],
             "--sphere \"at 0.625 0.625 0.05 radius 0.17\" starts in 1 quad, "
-            "between the nodes: none is pushed; move it, or take a larger "
-            "radius or a finer grid");
+            "between the nodes: no node is pushed; move the ball, or use a "
+            "larger radius or a finer grid");
   auto starts_in = [&](const Model& m) {
     return warning_of(m).find(" starts in ") != std::string::npos;
   };
@@ -168,7 +170,7 @@ TEST(Warnings, ABallBetweenTheNodes) {
 TEST(Warnings, ATearingBallThatStartsAroundNodes) {
   EXPECT_EQ(warning_of(with_tear("at 0.5 0.5 0 radius 0.2")),
             "1 of 25 nodes starts inside --tear \"at 0.5 0.5 0 radius 0.2\": "
-            "the first step takes it away; move it");
+            "the first step removes it; move the ball");
   EXPECT_EQ(warning_of(with_tear("at 0.5 0.5 -0.2 radius 0.2")), "");
 }
 
@@ -179,7 +181,7 @@ TEST(Warnings, ABallThatFitsThroughTheMesh) {
   EXPECT_EQ(warning_of(below(0.17)),
             "--sphere \"at 0.5 0.5 -1 radius 0.17\" fits through the openings "
             "of 16 of 16 quads: their middle is up to 0.176777 m from the "
-            "nearest node, and it is nodes that it pushes; take a radius above "
+            "nearest node, and the ball only touches nodes; use a radius above "
             "0.265165 m, or a finer grid");
   EXPECT_NE(
       warning_of(below(0.18))
@@ -210,9 +212,9 @@ TEST(Warnings, ASelfCollisionThatDoesNotCloseTheMesh) {
   m.self_collision = read_self_collision("thickness 0.1765");
   EXPECT_EQ(warning_of(m),
             "--self-collision \"thickness 0.1765\" does not close 16 of 16 "
-            "quads, where a node may be 0.176777 m from the nearest one: the "
-            "cloth passes through itself there; take a thickness above that, "
-            "0.71 times the side of a square");
+            "quads, where a node may be 0.176777 m from the nearest one, so "
+            "the cloth can pass through itself there; use a thickness above "
+            "that, 0.71 times the side of a square");
   m.self_collision = read_self_collision("thickness 0.177");
   EXPECT_EQ(warning_of(m), "");
   // One of two sheets is finer.

@@ -134,7 +134,7 @@ class Finder {
         (n == 1 ? " lies" : " lie") + " in no quad, node " +
         std::to_string(first) + (n == 1 ? "" : " first") +
         ": no spring holds " + it_or_them(n) +
-        "; take nodes and quads that belong together");
+        "; use nodes and quads of the same mesh");
   }
 
   void springs_of_no_length() {
@@ -146,7 +146,7 @@ class Finder {
     add(count_of(n, "spring") + (n == 1 ? " has" : " have") +
         " length 0: nodes " + std::to_string(first.node1().index()) + " and " +
         std::to_string(first.node2().index()) +
-        " lie at the same place, so nothing but inertia keeps them apart; " +
+        " are at the same point, and no spring force keeps them apart; " +
         "make them one node");
   }
 
@@ -156,8 +156,8 @@ class Finder {
       if (std::ranges::none_of(mesh_.points,
                                [&](const Point& p) { return pin.holds(p); }))
         add("no node lies at " + to_words(pin) +
-            ", which the assignment's scene holds; name what holds this cloth, "
-            "as by --pin \"x 0\"");
+            ", which the assignment's scene pins; pin this cloth, for example "
+            "by --pin \"x 0\"");
   }
 
   void below(const Wall& w) {
@@ -173,8 +173,8 @@ class Finder {
     lower.at -= deepest * w.out();
     add(std::to_string(n) + " of " + count_of(g_.num_nodes(), "node") +
         (n == 1 ? " starts" : " start") + " below --plane \"" + to_words(w) +
-        "\", up to " + short_text(deepest) + " m: the first step puts " +
-        it_or_them(n) + " onto it; let it go through " +
+        "\", up to " + short_text(deepest) + " m: the first step moves " +
+        it_or_them(n) + " onto it; to avoid that, put the plane at " +
         short_text(lower.at.x) + ' ' + short_text(lower.at.y) + ' ' +
         short_text(lower.at.z));
   }
@@ -196,7 +196,8 @@ class Finder {
                        count_of(g_.num_nodes(), "node") +
                        (n == 1 ? " starts" : " start") + " inside " + name +
                        ": the first step ";
-    if (!solid) return add(what + "takes " + it_or_them(n) + " away; move it");
+    if (!solid)
+      return add(what + "removes " + it_or_them(n) + "; move the ball");
     double energy = 0;
     for (Edge e : g_.edges()) {
       Point p = e.node1().position(), q = e.node2().position();
@@ -206,8 +207,8 @@ class Finder {
       if (is_inside(q)) q = surface(b, q);
       energy += spring_energy(norm(p - q), e.value());
     }
-    add(what + "puts " + it_or_them(n) + " onto its surface, which gives " +
-        short_text(energy) + " J to the springs; move it");
+    add(what + "moves " + it_or_them(n) + " onto its surface, which gives " +
+        short_text(energy) + " J to the springs; move the ball");
   }
 
   /** A ball that contains no node, but quads cut its inner half: the cloth is
@@ -222,8 +223,8 @@ class Finder {
     }
     if (n == 0) return;
     add(name + " starts in " + count_of(n, "quad") + ", between the nodes: " +
-        (solid ? "none is pushed" : "none is taken away") +
-        "; move it, or take a larger radius or a finer grid");
+        (solid ? "no node is pushed" : "no node is removed") +
+        "; move the ball, or use a larger radius or a finer grid");
   }
 
   void fits_through(const Ball& b, const std::string& name) {
@@ -236,7 +237,7 @@ class Finder {
                        : " where springs are stretched by " +
                              CME212::percent(b.radius / wide.most - 1)) +
         ": their middle is up to " + short_text(wide.most) +
-        " m from the nearest node, and it is nodes that it pushes; take a "
+        " m from the nearest node, and the ball only touches nodes; use a "
         "radius above " +
         short_text(stretched * wide.most) + " m, or a finer grid");
   }
@@ -246,17 +247,17 @@ class Finder {
     if (wide.quads == 0) return;
     add("--self-collision \"" + to_words(d) + "\" does not close " +
         of_all(wide.quads) + ", where a node may be " + short_text(wide.most) +
-        " m from the nearest one: the cloth passes through itself there; "
-        "take a thickness above that, 0.71 times the side of a square");
+        " m from the nearest one, so the cloth can pass through itself there; "
+        "use a thickness above that, 0.71 times the side of a square");
   }
 
   /** A contact is a jump, which error control sees only after a step. */
   void not_smooth() {
     if (m_.has_contact())
       add(std::string(m_.method->info.name) +
-          ": the error is not controlled where nodes touch or edges break: "
-          "there it is of first or second order, as that of every method; "
-          "--method verlet --dt auto costs less");
+          " does not control the error where nodes touch or edges break: there "
+          "it has order 1 or 2, like every method; --method verlet --dt auto "
+          "costs less");
   }
 
   /** Round-off errors do not fall with the step, so no step is accepted. */
@@ -265,10 +266,10 @@ class Finder {
     for (Node n : g_.nodes()) size = std::max(size, norm(n.position()));
     const double least = size * std::numeric_limits<Real>::epsilon();
     if (m_.step.tolerance == 0 || m_.step.tolerance >= least) return;
-    add(std::string(m_.method->info.name) + ": inner steps are asked for " +
+    add(std::string(m_.method->info.name) + ": an inner step may err by " +
         short_text(m_.step.tolerance) +
         " m, below the round-off of positions, " + short_text(least) +
-        " m: they get tiny, and may never end; take a larger --tolerance");
+        " m: steps get tiny and may never end; use a larger --tolerance");
   }
 
   /** A ball that jumps over nodes pushes none of them. */
