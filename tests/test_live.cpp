@@ -566,13 +566,13 @@ TEST(Requests, AreRefusedAndChangeNothing) {
   Live live(hung(4));
   const std::string before = live.recording();
   for (const auto& [text, error] :
-       {std::pair("", "ends too early, expected request"),
+       {std::pair("", "ends too early, expected a request"),
         std::pair("gravitas 3",
-                  "'gravitas' is no request: did you mean gravity?"),
+                  "'gravitas' is not a request: did you mean gravity?"),
         std::pair("gravity nan", "is not finite, expected a number"),
         std::pair("gravity 1e999", "'1e999' is not a number"),
         std::pair("move 1 2 3 4",
-                  "goes on with '4', expected the end of the line"),
+                  "continues with '4', expected the end of the line"),
         std::pair("stiffness -1", "-1 is not 0 N/m or more")}) {
     EXPECT_EQ(Live::error_in(text), error);
     EXPECT_THROW(live.apply(text), std::invalid_argument) << text;
@@ -751,35 +751,36 @@ TEST_F(Recordings, AreRefusedWithTheLine) {
   };
   EXPECT_EQ(at("2 end\n"), "no error");
   EXPECT_EQ(at("2 methode verlet\n"),
-            "'methode' is no request: did you mean method?");
+            "'methode' is not a request: did you mean method?");
   EXPECT_EQ(at("2 method verlett\n"),
-            "'verlett' is no method: did you mean verlet?");
-  EXPECT_EQ(at("2 step -1\n"), "-1 is not a share above 0");
+            "'verlett' is not a method: did you mean verlet?");
+  EXPECT_EQ(at("2 step -1\n"),
+            "-1 is not a positive multiple of the stability limit");
   EXPECT_EQ(at("2 stiffness inf\n"), "is not finite, expected 0 N/m or more");
   EXPECT_EQ(at("2 drag x\n"), "'x' is not 0 or more");
   EXPECT_EQ(at("2 grab 1 0 0\n"),
             "ends too early, expected three coordinates [m]");
   EXPECT_EQ(at("2 cut 1\n"), "ends too early, expected the id of a node");
   EXPECT_EQ(at("2 pin -1\n"), "'-1' is not the id of a node");
-  EXPECT_EQ(at("2 break steps\n"), "'steps' is no failure: did you mean step?");
+  EXPECT_EQ(at("2 break steps\n"),
+            "'steps' is not a failure: did you mean step?");
   EXPECT_EQ(at("2 compare rk4 1 equal\n"),
-            "'equal' is no equal-time or equal-work");
+            "'equal' is not equal-time or equal-work");
   EXPECT_EQ(at("2 restart now\n"),
-            "goes on with 'now', expected the end of the line");
+            "continues with 'now', expected the end of the line");
   EXPECT_EQ(at("x restart\n"), "'x' is not a number of steps");
   EXPECT_EQ(at("2\n"), "ends too early, expected a request");
   EXPECT_EQ(at("2 step 1\n1 step 1\n").substr(file("").size()),
             ":" + std::to_string(lines + 2) +
-                ": 1 comes after 2, expected no smaller number");
+                ": 1 comes after 2, expected 2 or more");
   EXPECT_EQ(at("2 end\n3 restart\n").substr(file("").size()),
             ":" + std::to_string(lines + 2) +
-                ": goes on behind the end, expected nothing");
+                ": comes after \"end\", expected no more lines");
   EXPECT_EQ(at("10000 end\n"),
             "the scene ended after 5000 steps, expected no request later than "
             "that");
   EXPECT_EQ(at("2 scene 5 0 \"x\"\n| sheet = [\"nodes 3 3\"]\n3 end\n"),
-            "is of another cloth: its files, or how the program makes it, have "
-            "changed");
+            "belongs to another cloth: the mesh files or the program changed");
   EXPECT_EQ(at("2 scene 5 0 \"x\"\n3 end\n"),
             "--nodes is missing: expected files NODES and TETS, or --sheet");
   EXPECT_EQ(at("2 scene 5 0 \"x\"\n| sheet = [\"nodes 3\"]\n3 end\n")
@@ -796,9 +797,10 @@ TEST_F(Recordings, AreRefusedWithTheLine) {
             ":1: expected \"mass_spring input 1\", the first line of a "
             "recording");
   EXPECT_EQ(whole("mass_spring input 1\n0 restart\n"),
-            ":2: begins with 'restart', expected 0 scene");
-  EXPECT_EQ(whole("mass_spring input 1\n| nodes = 3\n"),
-            ":2: is no part of a scene, expected a request");
+            ":2: begins with 'restart', expected \"0 scene\"");
+  EXPECT_EQ(
+      whole("mass_spring input 1\n| nodes = 3\n"),
+      ":2: begins with | but does not follow a scene, expected a request");
 }
 
 // ----------------------------------------------------------------------- Queue

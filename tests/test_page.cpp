@@ -101,7 +101,7 @@ TEST(PageCalls, ARequestThatMakesNoSenseIsNotMade) {
   page_load(number_of("forces"), 5);
   const std::string before = page_recording();
   EXPECT_STREQ(page_request("gravitas 3"),
-               "'gravitas' is no request: did you mean gravity?");
+               "'gravitas' is not a request: did you mean gravity?");
   EXPECT_EQ(page_recording(), before);
   EXPECT_STREQ(page_request("gravity 3"), "");
   const std::string all = page_recording();

@@ -35,7 +35,7 @@ class Line {
   /** Fails unless every word was read. */
   void end() {
     if (!at_end())
-      fail("goes on with " + mesh_detail::quoted(word("")) +
+      fail("continues with " + mesh_detail::quoted(word("")) +
            ", expected the end of the line");
   }
   std::string_view word(const char* expected) {
@@ -70,7 +70,7 @@ class Line {
       names.push_back(std::invoke(name_of, a));
       if (names.back() == name) return &a;
     }
-    fail(mesh_detail::quoted(name) + " is no " + expected +
+    fail(mesh_detail::quoted(name) + " is not " + expected +
          did_you_mean(name, names));
     return decltype(&*std::begin(all))(nullptr);
   }

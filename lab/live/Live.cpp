@@ -180,8 +180,7 @@ void Live::load(Model m, std::uint64_t cloth) {
   auto scene = std::make_unique<Scene>(recipe_of(m, points), m.step, *m.method);
   if (cloth != 0 && checksum_of(scene->cloth()) != cloth)
     throw std::invalid_argument(
-        "is of another cloth: its files, or how the program makes it, have "
-        "changed");
+        "belongs to another cloth: the mesh files or the program changed");
   alone();
   model_ = std::move(m), mesh_ = std::move(points);
   start_nodes_ = scene->cloth().num_nodes();

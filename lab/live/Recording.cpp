@@ -92,10 +92,10 @@ Replay::Replay(const std::string& file) : file_(file) {
     const auto check = [&](const std::string& error) {
       if (!error.empty()) throw InputError(file, number, error);
     };
-    if (ended()) check("goes on behind the end, expected nothing");
+    if (ended()) check("comes after \"end\", expected no more lines");
     if (words[0] == "|") {
       if (requests_.empty() || !is_scene(requests_.back().request))
-        check("is no part of a scene, expected a request");
+        check("begins with | but does not follow a scene, expected a request");
       Timed& scene = requests_.back();
       return put_line(scene.request, number - scene.line + 1, join(words));
     }
@@ -104,13 +104,13 @@ Replay::Replay(const std::string& file) : file_(file) {
     const long long before = requests_.empty() ? 0 : requests_.back().calls;
     if (calls < before)
       in.fail(std::to_string(calls) + " comes after " + std::to_string(before) +
-              ", expected no smaller number");
+              ", expected " + std::to_string(before) + " or more");
     if (in.at_end()) in.word("a request");
     check(in.error());
     const std::string request(in.rest());
     if (requests_.empty() && (calls != 0 || !is_scene(request)))
       check("begins with " + mesh_detail::quoted(words[1]) +
-            ", expected 0 scene");
+            ", expected \"0 scene\"");
     if (request != "end") check(Live::error_in(request));
     requests_.push_back({calls, number, request});
   };
@@ -146,8 +146,9 @@ bool Replay::step() {
   }
   if (live_->done())
     throw InputError(file_, requests_[next_].line,
-                     "the scene ended after " + std::to_string(live_->calls()) +
-                         " steps, expected no request later than that");
+                     "the scene ended after " +
+                         CME212::count_of(std::size_t(live_->calls()), "step") +
+                         ", expected no request later than that");
   live_->step();
   return true;
 }

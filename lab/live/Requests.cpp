@@ -40,14 +40,14 @@ void read(Line& in, std::vector<T>& all) {
 }
 void read(Line& in, Share& s) {
   constexpr double least = std::numeric_limits<double>::denorm_min();
-  s.of_unit = in.number("a share above 0", least);
+  s.of_unit = in.number("a positive multiple of the stability limit", least);
 }
 void read(Line& in, const MethodEntry*& method) {
   const auto name_of = [](const MethodEntry& m) { return m.info.name; };
-  method = in.one_of("method", methods, name_of);
+  method = in.one_of("a method", methods, name_of);
 }
 void read(Line& in, const Breakage*& failure) {
-  failure = in.one_of("failure", breakages(), &Breakage::name);
+  failure = in.one_of("a failure", breakages(), &Breakage::name);
 }
 void read(Line& in, bool& equal_work) {
   static constexpr const char* ways[] = {"equal-time", "equal-work"};
@@ -78,7 +78,7 @@ struct Live::Table {
   Table();
   /** The one that the next word of @a in names; null if @a in fails. */
   static const Request* find(Line& in) {
-    return in.one_of("request", get().all, &Request::name);
+    return in.one_of("a request", get().all, &Request::name);
   }
   static const Table& get() {
     static const Table table;
