@@ -213,11 +213,11 @@ TEST_F(ClothProgram, ChoosesItsStep) {
       EXPECT_EQ(safe.err,
                 m.info.adaptive
                     ? std::string("cloth: ") + m.info.name +
-                          " chooses its inner steps by their error: leave "
-                          "--dt away, and say how exactly by --tolerance\n"
-                    : std::string("cloth: nothing bounds the step of ") +
-                          m.info.name +
-                          " here, so it can't be chosen: give a number\n");
+                          " chooses its inner steps by their error: omit --dt "
+                          "and give --tolerance\n"
+                    : std::string("cloth: ") + m.info.name +
+                          " has no stability limit here, so no step can be "
+                          "chosen: give --dt a number\n");
       EXPECT_EQ(sharp.status, 2) << m.info.name;
       continue;
     }
@@ -236,8 +236,8 @@ TEST_F(ClothProgram, ChoosesItsStep) {
                                number(safe.out, "\ndt = ", " s: "));
   }
   EXPECT_EQ(run(grid0 + "--headless --dt auto --method forward-euler").err,
-            "cloth: nothing bounds the step of forward-euler: it has no "
-            "stable step, so it can't be chosen: give a number\n");
+            "cloth: forward-euler has no stable step, so no step can be "
+            "chosen: give --dt a number\n");
   EXPECT_EQ(run(grid0 + "--headless --dt auto --stiffness 0").status, 2);
 }
 
@@ -327,10 +327,10 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
     EXPECT_EQ(files(), std::vector<std::string>{}) << options;
   }
   EXPECT_EQ(run("data/grid0.nodes").status, 2);
-  EXPECT_EQ(run("--headless --dt nan " + grid0).err,
-            "cloth: --dt is nan, expected a positive time [s], auto or "
-            "auto:sharp, or one of these and the share of energy it may gain, "
-            "of (0, 1]: auto:0.02\n");
+  EXPECT_EQ(
+      run("--headless --dt nan " + grid0).err,
+      "cloth: --dt is nan, expected a positive time [s] or auto[:sharp][:G] "
+      "with G in (0, 1], the energy gain tolerated, as auto:0.02\n");
 }
 
 TEST_F(ClothProgram, RunsEveryMethodAndListsIt) {

@@ -275,12 +275,13 @@ TEST(KeyValues, SayWhatIsWrong) {
               "f:1: k has a value that is not closed on its line")
         << open;
   EXPECT_EQ(error("k = \"a\" b"), "f:1: k has text after its value");
-  EXPECT_EQ(error("k = [1, , 2]"), "f:1: k has an empty place in its list");
+  EXPECT_EQ(error("k = [1, , 2]"), "f:1: k has an empty item in its list");
   EXPECT_EQ(error("k = # 1"), "f:1: k has no value");
   for (const char* code : {"q", "u12x4", "uD800", "U00110000", "u0000"})
-    EXPECT_EQ(error(std::string("k = \"\\") + code + '"'),
-              std::string("f:1: k has \\") + code[0] +
-                  " in its text, which is no character: a backslash is \\\\");
+    EXPECT_EQ(
+        error(std::string("k = \"\\") + code + '"'),
+        std::string("f:1: k has \\") + code[0] +
+            " in its text, which is not a valid escape: write \\ as \\\\");
   EXPECT_EQ(error("= 1"), "f:1: \"= 1\", expected KEY = VALUE");
   EXPECT_EQ(
       error("\x1B[2J" + std::string(99, 'a')),
@@ -444,7 +445,7 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
   EXPECT_EQ(complaint(sheet + "t-end =\n"), "2: t-end has no value");
   EXPECT_EQ(complaint(sheet + "t-end = # 3\n"), "2: t-end has no value");
   EXPECT_EQ(complaint(sheet + "t-end = 1\nt-end = 2\n"),
-            "3: t-end for the second time, first on line 2");
+            "3: t-end is set a second time, first on line 2");
   for (const char* open : {"pin = [\"x 0\"", "pin = \"x 0", "pin = \"x 0\"]"})
     EXPECT_EQ(complaint(sheet + open + std::string("\n")),
               "2: pin has a value that is not closed on its line");
@@ -458,8 +459,7 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
             "1: --pin \"q 3\" has \"q\", expected one of x, y, z, velocity, "
             "until");
   EXPECT_EQ(complaint(sheet + "tear = \"radius 1\"\ntear-strain = -1\n"),
-            "3: --tear-strain is -1, expected a strain above that at the "
-            "start, 0");
+            "3: --tear-strain is -1, expected a strain above 0");
   EXPECT_EQ(complaint(sheet + "modulus = 1\nstiffness = 1\n"),
             "2: --modulus excludes --stiffness");
 }

@@ -142,8 +142,8 @@ std::string recommendation(const Advice& a) {
   };
   if (misses(a.robustness.half_step) || misses(a.robustness.finer_grid))
     text +=
-        "  by accident: its errors cancel, and a finer run is worse; no run "
-        "was found that stays within the tolerance when it is refined\n";
+        " right by accident: its errors cancel, and a finer run is worse; no "
+        "run was found that stays within the tolerance when it is refined\n";
   return text;
 }
 

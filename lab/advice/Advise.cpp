@@ -26,7 +26,7 @@ namespace adviser_detail {
 Advice Adviser::find() {
   check_question(scene_);
   if (!(scene_.t_end > 0))
-    throw SceneError("t-end", "is 0, so there is nothing to find out");
+    throw SceneError("t-end", "is 0, expected a time to simulate");
   const CME212::Clock clock;
   do {
     if (!find_grid()) break;

@@ -115,10 +115,10 @@ std::string Accuracy::text() const {
   if (!unknown.empty()) return "positions " + to + ": not measured: " + unknown;
   const std::string size = two_digits(rms) + " m (RMS over the nodes), " +
                            two_digits(largest) + " m at the worst node";
-  if (kept()) return "positions " + to + ": kept; they are known to " + size;
+  if (kept()) return "positions " + to + ": kept; measured error " + size;
   return "positions " + to + ": predictable to " + short_text(horizon) +
-         " s; beyond that two runs that should be the same differ by " +
-         (std::isfinite(rms) ? size : "the nodes that are torn off");
+         " s; after that two runs of different accuracy differ by " +
+         (std::isfinite(rms) ? size : "the nodes that are removed");
 }
 
 }  // namespace lab

@@ -28,7 +28,7 @@ std::string of_method(const MethodInfo& info) {
   if (info.adaptive)
     text += " in each of its inner steps";
   else if (info.limit == no_limit)
-    text += ", and what it solves (--list-methods)";
+    text += " and linear solves (cost: --list-methods)";
   return text;
 }
 
@@ -86,7 +86,7 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
       for (const std::string& value : f.values())
         add(f.name + (value.empty() ? "" : ' ' + value),
             name == "self-collision"
-                ? work + ", each with those within that distance"
+                ? work + ", each compared with the nodes within that distance"
                 : work);
   }
   for (const Pin& pin : m.pins) {

@@ -22,33 +22,33 @@ std::vector<Field> fields_of(Model& m) {
        "file of points 'x y z' [m], or 'x y z vx vy vz' [m/s]"},
       {"tets", mesh, scene, &m.tets, "file of quads, four node indices each"},
       {"sheet", cloth, scene, &m.sheets,
-       "a grid instead of files, any number: at X Y Z u X Y Z v X Y Z [m] "
-       "nodes N M velocity X Y Z [m/s]: a corner, two sides, nodes along them, "
-       "how it moves at first"},
+       "a grid of nodes instead of files; may be repeated: at X Y Z u X Y Z v "
+       "X Y Z [m] nodes N M velocity X Y Z [m/s] (corner, two sides, numbers "
+       "of nodes along them, initial velocity)"},
       {"edges", cloth, scene, &m.edges,
-       "springs: sides, and diagonals and bend if named"},
+       "kinds of springs: sides, diagonals, bend"},
       {"stiffness", number, material, &m.stiffness, "K of every edge [N/m]",
        "a spring constant [N/m], 0 or more", not_negative},
       {"modulus", cloth, material, &m.material.modulus,
-       "instead of it: force per width and strain [N/m]",
+       "instead of stiffness: force per width and strain [N/m]",
        "a force per width [N/m], 0 or more", not_negative, "stiffness"},
       {"density", cloth, material, &m.material.density,
-       "mass per area [kg/m^2], instead of 1 kg in all",
+       "mass per area [kg/m^2], instead of a total of 1 kg",
        "a mass per area [kg/m^2], more than 0", positive},
       {"damping", number, material, &m.damping,
        "drag coefficient c of every node [kg/s] (1/N is moderate)",
        "a drag coefficient [kg/s], 0 or more", not_negative},
       {"drag", cloth, material, &m.material.drag,
-       "instead of it: drag per area [kg/(s m^2)]",
+       "instead of damping: drag per area [kg/(s m^2)]",
        "a drag per area [kg/(s m^2)], 0 or more", not_negative, "damping"},
       {"region", acts, material, &m.regions,
        "another material in a box: from X Y Z to X Y Z [m] mass-factor F "
-       "stiffness-factor F: of nodes in it, of edges with both ends in it"},
+       "stiffness-factor F, for the mass of nodes and K of edges in it"},
       {"gravity", number, scene, &m.gravity,
        "acceleration of free fall [m/s^2]", "an acceleration [m/s^2]"},
       {"pin", acts, scene, &m.pins,
-       "hold the nodes that start at x X y Y z Z [m] (one of them or more), or "
-       "move them: velocity X Y Z [m/s] until T [s]"},
+       "hold the nodes that start at x X y Y z Z [m] (at least one of these), "
+       "or move them: velocity X Y Z [m/s] until T [s]"},
       {"plane", contact, scene, &m.planes,
        "a floor or wall: at X Y Z [m] normal X Y Z friction F velocity X Y Z "
        "[m/s] until T [s]"},
@@ -56,28 +56,27 @@ std::vector<Field> fields_of(Model& m) {
        "a ball: at X Y Z radius R [m] friction F velocity X Y Z [m/s] until T "
        "[s]"},
       {"tear", contact, scene, &m.tears,
-       "a ball that removes what touches it: at X Y Z radius R [m]"},
+       "a ball that removes the nodes that touch it: at X Y Z radius R [m]"},
       {"tear-strain", contact, scene, &m.tear_strain,
-       "an edge breaks at this strain, l/L - 1",
-       "a strain above that at the start, 0", positive},
+       "an edge breaks at this strain, l/L - 1", "a strain above 0", positive},
       {"self-collision", contact, scene, &m.self_collision,
        "nodes without a common edge stay apart: thickness D [m] friction F"},
-      {"t-end", asked, scene, &m.t_end, "time to reach [s], in steps of dt",
+      {"t-end", asked, scene, &m.t_end, "time at which the run ends [s]",
        "a time [s], 0 or more", not_negative},
       {"dt", Role::method, step, &m.step,
-       "step [s], the last ones shorter; auto: first 0.6 of the stability "
-       "limit that holds in every configuration, then as the energy balance "
-       "allows; auto:sharp: first 0.9 of that in the present one; auto:G, "
-       "auto:sharp:G: it gains at most that share of the energy of motion "
-       "(0.1)"},
+       "step [s]; the last steps may be shorter; auto: starts with 0.6 of the "
+       "stability limit that holds in every configuration, and is adapted to "
+       "the energy balance; auto:sharp: starts with 0.9 of the limit in the "
+       "present configuration; auto:G, auto:sharp:G: tolerated gain of energy, "
+       "as a share of the energy of motion (0.1)"},
       {"method", Role::method, step, &m.method,
        "name of a method: see --list-methods"},
       {"measure", asked, advice, &m.measure,
-       "what is asked, at the end: com [m], energy [J], positions [m], "
-       "max-stretch, drape-height [m]"},
+       "the quantity asked for, at the end of the run: com [m], energy [J], "
+       "positions [m], max-stretch, drape-height [m]"},
       {"tolerance", asked, advice, &m.tolerance,
-       "how exactly, in the measure's unit; a run without --method and --dt "
-       "keeps the positions to it [m] by dop853",
+       "error allowed in the measure, in its unit; without --method and --dt a "
+       "run uses dop853 and bounds the error of the positions by it [m]",
        "more than 0", positive},
       {"view", asked, scene, &m.view,
        "the box to look at: from X Y Z to X Y Z [m]"}};
@@ -116,7 +115,7 @@ void read(const Field& f, const std::string& text, T& a) {
       refuse(f.name, printable(text), f.expected);
   } else if constexpr (std::is_same_v<T, std::string>) {
     a = text;
-    if (a.empty()) throw SceneError(f.name, "is empty, expected a file");
+    if (a.empty()) throw SceneError(f.name, "is empty, expected a file name");
   } else if constexpr (std::is_same_v<T, TimeStep>) {
     a = read_time_step(text);
   } else if constexpr (std::is_same_v<T, Measure>) {
@@ -198,7 +197,7 @@ Model checked(Model m) {
     refuse("t-end", CME212::short_text(m.t_end),
            "fewer than 1e15 steps of --dt");
   if (!m.sheets.empty() && !(m.nodes.empty() && m.tets.empty()))
-    throw SceneError("sheet", "and files of a mesh: expected one of them");
+    throw SceneError("sheet", "cannot be combined with NODES and TETS");
   return or_assignment(m);
 }
 

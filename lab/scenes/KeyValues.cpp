@@ -87,7 +87,7 @@ class Reader {
     const auto bare = next(std::min(rest_.find_first_of(stops), rest_.size()));
     if (bare.find_first_of("\"[]") != std::string_view::npos) fail(not_closed);
     const auto last = bare.find_last_not_of(blanks);
-    if (last == std::string_view::npos) fail("has an empty place in its list");
+    if (last == std::string_view::npos) fail("has an empty item in its list");
     return std::string(bare.substr(0, last + 1));
   }
 
@@ -119,7 +119,7 @@ class Reader {
         }
       }
       fail("has \\" + printable({&code, 1}) +
-           " in its text, which is no character: a backslash is \\\\");
+           " in its text, which is not a valid escape: write \\ as \\\\");
     }
   }
 };

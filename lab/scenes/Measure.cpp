@@ -94,8 +94,8 @@ Answer answer(const Model& m, const Cloth& g, Measure what) {
 void check_question(const Model& m) {
   if (!can_answer(m, m.measure))
     throw SceneError("measure",
-                     "is positions, which a cloth that tears does not keep: "
-                     "expected another one");
+                     "is positions, which cannot be compared in a cloth that "
+                     "tears: expected another measure");
 }
 
 double step_of(const Model& m) {

@@ -24,7 +24,7 @@ Origins set_fields(Model& m, const std::string& file, const std::string& text,
     const auto [first, is_new] = origins.line_of.emplace(key, line);
     if (!is_new)
       throw InputError(file, line,
-                       key + " for the second time, first on line " +
+                       key + " is set a second time, first on line " +
                            std::to_string(first->second));
     if (!set_field(m, key, found.values) && !(other && other(found)))
       throw InputError(

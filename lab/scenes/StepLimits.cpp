@@ -10,19 +10,19 @@ namespace lab {
 double StepLimits::chosen(const MethodEntry& method, StepRule rule) const {
   const std::string name = method.info.name;
   if (method.info.adaptive)
-    throw std::invalid_argument(
-        name +
-        " chooses its inner steps by their error: leave --dt away, and say "
-        "how exactly by --tolerance");
+    throw std::invalid_argument(name +
+                                " chooses its inner steps by their error: omit "
+                                "--dt and give --tolerance");
   double dt = safe_share * safe(method);
   // A cloth released flat becomes 40 % stiffer before StepControl looks again,
   // so the safe limit is never exceeded.
   if (rule == StepRule::sharp)
     dt = std::min(sharp_share * sharp(method, 15), safe(method));
   if (!(dt > 0 && std::isfinite(dt)))
-    throw std::invalid_argument("nothing bounds the step of " + name +
-                                (dt > 0 ? " here" : ": it has no stable step") +
-                                ", so it can't be chosen: give a number");
+    throw std::invalid_argument(
+        name +
+        (dt > 0 ? " has no stability limit here" : " has no stable step") +
+        ", so no step can be chosen: give --dt a number");
   return without_resonance(method, dt);
 }
 

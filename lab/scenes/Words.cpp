@@ -46,7 +46,7 @@ Words words_of(Sheet& s) {
            {"v", &s.v},
            {"nodes", &s.nodes},
            {"velocity", &s.velocity}},
-          has_area ? nullptr : "has sides u and v without an area"};
+          has_area ? nullptr : "has parallel sides u and v"};
 }
 Words words_of(Region& r) {
   return {"region",
@@ -70,7 +70,7 @@ Words words_of(Wall& w) {
            {"friction", &w.friction, not_negative},
            velocity(w.motion),
            until(w.motion)},
-          norm(w.normal) > 0 ? nullptr : "has a normal without a direction"};
+          norm(w.normal) > 0 ? nullptr : "has a normal of length 0"};
 }
 Words words_of(Solid& s) {
   return {"sphere",
@@ -91,7 +91,7 @@ Words words_of(Distance& d) {
 Words words_of(Box& v) {
   return {"view",
           {{"from", &v.from, any, word}, {"to", &v.to, any, word}},
-          v.from == v.to ? "is a box without a size" : nullptr};
+          v.from == v.to ? "is an empty box" : nullptr};
 }
 
 // -------------------------------------------------------------------- Reading
@@ -210,10 +210,10 @@ TimeStep read_time_step(const std::string& text) {
   if (rest.empty() || !end || *end != '\0' ||
       !(*number > 0 &&
         *number <= (step.fixed() ? std::numeric_limits<double>::max() : 1)))
-    throw SceneError("dt", "is " + text +
-                               ", expected a positive time [s], auto or "
-                               "auto:sharp, or one of these and the share of "
-                               "energy it may gain, of (0, 1]: auto:0.02");
+    throw SceneError(
+        "dt", "is " + text +
+                  ", expected a positive time [s] or auto[:sharp][:G] with G "
+                  "in (0, 1], the energy gain tolerated, as auto:0.02");
   return step;
 }
 const MethodEntry* read_method(const std::string& text) {
