@@ -76,13 +76,13 @@ class Archive {
   template <typename T>
   Archive& operator()(std::span<T> list) {
     if (length_of(list.size(), sizeof(T)) != list.size())
-      throw std::runtime_error("a list of another length");
+      throw std::runtime_error("has a list of the wrong length");
     return copy(list.data(), list.size());
   }
 
   /** Throws std::runtime_error if what was loaded is not @a ok. */
   void require(bool ok) const {
-    if (loads_ && !ok) throw std::runtime_error("holds what no run saves");
+    if (loads_ && !ok) throw std::runtime_error("has an invalid value");
   }
 
  private:
@@ -93,7 +93,7 @@ class Archive {
   std::uint64_t length_of(std::uint64_t length, std::size_t size) {
     (*this)(length);
     if (loads_ && length > (bytes_.size() - at_) / size)
-      throw std::runtime_error("it ends too early");
+      throw std::runtime_error("ends too early");
     return length;
   }
   template <typename T>
@@ -105,8 +105,7 @@ class Archive {
       bytes_.append(reinterpret_cast<const char*>(x), size);
       return *this;
     }
-    if (size > bytes_.size() - at_)
-      throw std::runtime_error("it ends too early");
+    if (size > bytes_.size() - at_) throw std::runtime_error("ends too early");
     std::memcpy(static_cast<void*>(x), bytes_.data() + at_, size);
     at_ += size;
     return *this;

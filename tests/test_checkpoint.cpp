@@ -255,11 +255,11 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
     const std::size_t cut = k < 60 ? std::size_t(k) : random() % good.size();
     EXPECT_EQ(error_with(good.substr(0, cut)).find(file + ": "), 0u) << cut;
   }
-  EXPECT_EQ(error_with(good + "x"), file + ": goes on behind its end");
+  EXPECT_EQ(error_with(good + "x"), file + ": has data after its end");
   EXPECT_EQ(error_with(""), file +
                                 ": nothing in the file, expected a "
                                 "checkpoint");
-  EXPECT_EQ(error_with("0 0 0\n"), file + ": no checkpoint");
+  EXPECT_EQ(error_with("0 0 0\n"), file + ": is not a checkpoint");
   std::string newer = good;
   newer.replace(good.find(" 5 "), 3, " 6 ");
   EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 6"),
@@ -360,12 +360,13 @@ TEST(Checkpoint, IsOfOneScene) {
   EXPECT_EQ(error_of(other), "no error");
   other.step.dt = 0.002;
   EXPECT_EQ(error_of(other),
-            "--restart is of another scene: there dt = \"0.001\", here dt = "
-            "\"0.002\"");
+            "--restart belongs to another scene: it has dt = \"0.001\", "
+            "expected dt = \"0.002\"");
   other = m;
   other.tears.clear();
-  EXPECT_EQ(error_of(other).find("--restart is of another scene: there tear"),
-            0u);
+  EXPECT_EQ(
+      error_of(other).find("--restart belongs to another scene: it has tear"),
+      0u);
   // What is damaged and has a good checksum is no crash either.
   for (const Model& model : scenes()) {
     Scene s(model);

@@ -84,7 +84,7 @@ TEST_F(ClothProgram, RefusesFoldersThatAreInUse) {
                 ": has files in it, expected a new or an empty folder\n");
   EXPECT_EQ(error("--vtp " + path("new") + " --obj " + path("./new")),
             "cloth: --obj is " + path("./new") +
-                ", where --vtp writes, expected another file\n");
+                ", which --vtp also writes, expected another file\n");
   EXPECT_NE(error("--out " + path("a.nodes") + " --csv " + path("a.tets")), "");
   EXPECT_EQ(error("--frame-rate 0 --vtp " + path("new")),
             "cloth: --frame-rate is 0, expected more than 0 frames a second\n");
@@ -175,8 +175,8 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
             "cloth: --record is png, expected a name that ends in .mp4, .mkv, "
             ".webm or .gif\n");
   EXPECT_EQ(error("--out o.tets"),
-            "cloth: --out is o.tets, expected a name of points: quads go "
-            "beside FILE.nodes, into FILE.tets\n");
+            "cloth: --out is o.tets, expected a file of points, such as "
+            "FILE.nodes: the quads go into FILE.tets\n");
 }
 
 // Between a title and an end of 45 frames each, one for each 1/30 s from 0 to

@@ -22,7 +22,8 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
     Result r = run(small + a + ' ' + b);
     EXPECT_EQ(r.status, 2) << a << b;
     EXPECT_EQ(r.out, "") << a << b;
-    EXPECT_NE(r.err.find(" writes, expected another file\n"), std::string::npos)
+    EXPECT_NE(r.err.find(" also writes, expected another file\n"),
+              std::string::npos)
         << r.err;
     EXPECT_TRUE(fs::is_empty(dir / "d")) << a << b;
   };
@@ -32,7 +33,7 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
   clash("--auto --write-config " + one, "--csv " + one);
   EXPECT_EQ(run(small + "--out " + one + " --csv " + one).err,
             "cloth: --out is " + one +
-                ", where --csv writes, expected another file\n");
+                ", which --csv also writes, expected another file\n");
   EXPECT_EQ(run(small + "--csv /dev/null --out /dev/null").status, 0);
   EXPECT_EQ(run(small + "--csv " + path("d/a") + " --out " + one).status, 0);
 }
@@ -81,7 +82,7 @@ TEST_F(ClothProgram, RefusesAnEmptyNameOfAFile) {
       EXPECT_EQ(r.status, 2) << option;
       EXPECT_EQ(r.out, "") << option;
       EXPECT_EQ(r.err, std::string("cloth: --") + option +
-                           ": is empty, expected a file\n");
+                           ": is empty, expected a file name\n");
     }
 }
 
@@ -91,9 +92,9 @@ TEST_F(ClothProgram, TakesNoOptionForTheNameOfAFile) {
       Result r = run(small + "--" + option + end);
       EXPECT_EQ(r.status, 2) << option;
       EXPECT_EQ(r.out, "") << option;
-      EXPECT_EQ(r.err, std::string("cloth: --") + option +
-                           ": is --quiet, expected a file; one of that name "
-                           "is ./--quiet\n");
+      EXPECT_EQ(r.err,
+                std::string("cloth: --") + option +
+                    ": is --quiet, expected a file name, such as ./--quiet\n");
       EXPECT_FALSE(fs::exists("--quiet"));
     }
 }
@@ -186,7 +187,7 @@ TEST_F(ClothProgram, RefusesAFilmOfMoreThanADay) {
           path("v.mp4"));
   EXPECT_EQ(r.status, 2);
   EXPECT_EQ(r.err,
-            "cloth: --t-end is 1e+300, expected at most 86400 s, a day, of a "
+            "cloth: --t-end is 1e+300, expected at most 86400 s (a day) for a "
             "film\n");
 }
 
@@ -234,7 +235,7 @@ TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
                                                    "end.tets"}));
     }
   EXPECT_NE(interrupt(long_run, {SIGTERM})
-                .err.find("kept: nothing, as no output was asked for\n"),
+                .err.find("kept: nothing, as no output was requested\n"),
             std::string::npos);
 }
 

@@ -171,7 +171,7 @@ TEST_F(ClothProgram, SaysHowLongTheStepIsAndMayBe) {
               limit * std::sqrt(2), 0.0002);
   text = out("--method tr-bdf2 --dt 0.05");
   EXPECT_NEAR(number(text, "tr-bdf2 has no stability limit; this is ",
-                     " % of that of verlet ("),
+                     " % of the stability limit of verlet ("),
               5 / limit, 3);
   EXPECT_NE(out("--method forward-euler").find("no step is stable with"),
             std::string::npos);
@@ -444,11 +444,11 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
     return r.err;
   };
   EXPECT_EQ(complaint(grid0 + "--methd verlet"),
-            "cloth: --methd is no option: did you mean --method?\n");
+            "cloth: --methd is not an option: did you mean --method?\n");
   EXPECT_EQ(complaint("--t_end=3 " + grid0),
-            "cloth: --t_end is no option: did you mean --t-end?\n");
+            "cloth: --t_end is not an option: did you mean --t-end?\n");
   EXPECT_EQ(complaint("--no-such-option"),
-            "cloth: --no-such-option is no option: see --help\n");
+            "cloth: --no-such-option is not an option: see --help\n");
   EXPECT_EQ(
       complaint(grid0 + "--method verlt"),
       "cloth: --method is verlt, expected a name of --list-methods: did you "

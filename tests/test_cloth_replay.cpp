@@ -108,20 +108,19 @@ TEST_F(ClothReplay, RefusesWhatItCanNotDo) {
   const std::string replay = "--replay " + path("input.txt") + ' ';
   for (const auto& [arguments, message] :
        {std::pair("--sheet 'nodes 3 3'",
-                  "cloth: --replay does not go with "
-                  "--sheet: a recording has its own "
-                  "scene\n"),
-        std::pair("--csv x",
-                  "cloth: --replay does not go with --csv, but with "
-                  "--out, --screenshot of the end, --record and "
-                  "--record-input\n")}) {
+                  "cloth: --replay cannot be combined with --sheet: a "
+                  "recording has its own scene\n"),
+        std::pair(
+            "--csv x",
+            "cloth: --replay cannot be combined with --csv, only with --out, "
+            "--record, --record-input and --screenshot of the end\n")}) {
     const Result r = run(replay + arguments);
     EXPECT_EQ(r.status, 2);
     EXPECT_EQ(r.err, message);
   }
   EXPECT_EQ(run(grid0 + "--headless --record-input " + path("x")).err,
-            "cloth: --record-input needs a window, where something can be "
-            "asked for\n");
+            "cloth: --record-input needs a window, in which the scene can be "
+            "changed\n");
   EXPECT_EQ(run("--replay " + path("none")).err,
             path("none") +
                 ": can't be opened (No such file or directory), "

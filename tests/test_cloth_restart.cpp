@@ -94,7 +94,7 @@ TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
   Result whole = run(run_of + end + " --csv " + path("a.csv") + " --out " +
                      path("a.nodes"));
   EXPECT_EQ(on.status, 0) << on.err;
-  EXPECT_NE(on.out.find(path("c") + ": goes on at t = "), std::string::npos);
+  EXPECT_NE(on.out.find(path("c") + ": continues at t = "), std::string::npos);
   EXPECT_EQ(result(on.out), result(whole.out));
   EXPECT_EQ(contents(dir / "b.csv"), contents(dir / "a.csv"));
   // A new CSV file has the rows from there on; another one is left alone.
@@ -108,10 +108,11 @@ TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
   Result refused =
       run("--headless --restart " + path("c") + end + " --csv " + other);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_EQ(refused.err.find("cloth: " + other +
-                             ": does not begin with the "
-                             "rows until the checkpoint "),
-            0u)
+  EXPECT_EQ(
+      refused.err.find(
+          "cloth: " + other +
+          ": its first rows are not those of the run until the checkpoint "),
+      0u)
       << refused.err;
   EXPECT_EQ(contents(other), "mine\n");
 }
@@ -126,24 +127,25 @@ TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
   };
   const std::string c = path("c");
   EXPECT_EQ(error(scene + "--dt 0.002 --restart " + c),
-            "cloth: --restart is of another scene: there dt = \"0.001\", here "
-            "dt = \"0.002\"\n");
+            "cloth: --restart belongs to another scene: it has dt = \"0.001\", "
+            "expected dt = \"0.002\"\n");
   EXPECT_EQ(run(scene + "--restart " + c).status, 0);  // to where it is
   EXPECT_EQ(error("--headless --t-end 0.05 --restart " + c),
             "cloth: --t-end is 0.05, but " + c +
-                " is of t = 0.1 s, expected at least that\n");
+                " was saved at t = 0.1 s, expected at least that\n");
   EXPECT_EQ(error("--restart " + file("no", "text")),
-            "cloth: " + path("no") + ": no checkpoint\n");
+            "cloth: " + path("no") + ": is not a checkpoint\n");
   EXPECT_EQ(error("--restart " + path("none")),
             path("none") +
                 ": can't be opened (No such file or directory), expected a "
                 "checkpoint\n");
   EXPECT_EQ(error(scene + "--restart ''"),
-            "cloth: --restart: is empty, expected a file\n");
+            "cloth: --restart: is empty, expected a file name\n");
   EXPECT_EQ(error(scene + "--checkpoint " + c + " --csv " + c),
             "cloth: --checkpoint is " + c +
-                ", where --csv writes, expected another file\n");
-  EXPECT_EQ(error("--auto --restart " + c).find("cloth: --restart does not go"),
+                ", which --csv also writes, expected another file\n");
+  EXPECT_EQ(error("--auto --restart " + c)
+                .find("cloth: --restart cannot be combined"),
             0u);
   EXPECT_EQ(error(scene + "--every-seconds -1"),
             "cloth: --every-seconds is -1, expected 0 or more\n");
@@ -156,8 +158,8 @@ TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
   EXPECT_EQ(run(moved + " --headless --t-end 0.2 --restart " + c).err, "");
   file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0.001\n");
   EXPECT_EQ(error("--headless --restart " + c),
-            "cloth: --restart is of another cloth: its files, or how the "
-            "program makes it, have changed\n");
+            "cloth: --restart belongs to another cloth: the mesh files or the "
+            "program changed\n");
 }
 
 }  // namespace

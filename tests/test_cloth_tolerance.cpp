@@ -56,7 +56,7 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   const Result r = run(sheet + "--tolerance 1e-6");
   EXPECT_EQ(r.err, "");
   EXPECT_NE(r.out.find("dop853 chooses its inner steps by their error, below "
-                       "2.5e-07 m each, for 1e-06 m at the end"),
+                       "2.5e-07 m per inner step, for 1e-06 m at the end"),
             std::string::npos)
       << r.out;
   EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 "),
@@ -66,7 +66,7 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 --method verlet --dt 0.002 "),
             at_end(sheet + "--method verlet --dt 0.002 "));
   EXPECT_NE(run(sheet + "--tolerance 1e-3 --method dormand-prince")
-                .out.find("below 0.00025 m each"),
+                .out.find("below 0.00025 m per"),
             std::string::npos);
 }
 
@@ -130,10 +130,10 @@ TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
                 "does not control the error where nodes touch or edges break"),
         std::string::npos)
         << part;
-  EXPECT_EQ(run(sheet + "--plane 'at 0 0 -1' --method verlet --dt 0.001").err,
-            "cloth: warning: --tolerance has no effect on verlet, which does "
-            "not control its error: leave --dt and --method away, or take "
-            "--method dop853\n");
+  EXPECT_EQ(
+      run(sheet + "--plane 'at 0 0 -1' --method verlet --dt 0.001").err,
+      "cloth: warning: --tolerance has no effect on verlet, which does not "
+      "control its error: omit --dt and --method, or use --method dop853\n");
 }
 
 }  // namespace

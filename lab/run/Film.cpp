@@ -52,7 +52,7 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
   if (o.model.t_end > day)
     throw SceneError("t-end", "is " + short_text(o.model.t_end) +
                                   ", expected at most " + short_text(day) +
-                                  " s, a day, of a film");
+                                  " s (a day) for a film");
   screen_->start_film(o.video);
   if (scene.time() == 0) add_card(title());
 }
@@ -150,7 +150,7 @@ std::vector<std::string> Film::end() const {
                                  std::to_string(scene_.steps()) + " steps"};
   if (g.num_nodes() < first_nodes_)
     lines.push_back(std::to_string(first_nodes_ - g.num_nodes()) + " of " +
-                    std::to_string(first_nodes_) + " nodes torn off");
+                    std::to_string(first_nodes_) + " nodes removed");
   return lines;
 }
 

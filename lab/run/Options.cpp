@@ -31,7 +31,7 @@ namespace {
 constexpr const char* version = "1.0.0";
 
 constexpr const char* head =
-    R"(Simulates a cloth of masses and springs: that of two files, or a scene.
+    R"(Simulates a cloth of masses and springs from mesh files or a scene.
 
   ./cloth data/grid2.nodes data/grid2.tets --dt auto
   ./cloth --config data/scenes/drape.toml --strain --csv energies.csv
@@ -122,20 +122,20 @@ void check(Options& o) {
   require_ending("record", o.video, CME212::film_endings);
   if (CME212::ending_of(o.out) == ".tets")
     throw SceneError("out", "is " + o.out +
-                                ", expected a name of points: quads go beside "
-                                "FILE.nodes, into FILE.tets");
+                                ", expected a file of points, such as "
+                                "FILE.nodes: the quads go into FILE.tets");
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
   require(o.advise_budget >= 0, "advise-budget", o.advise_budget,
           "seconds, 0 or more");
   require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
-  require(o.every > 0, "every", double(o.every), "a number of steps, 1 up");
+  require(o.every > 0, "every", double(o.every), "at least 1 step");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
           "a time up to --t-end");
   if (!o.restart.empty() && (o.advise || o.automatic))
     throw SceneError("restart",
-                     "does not go with --advise and --auto: the scene of a "
-                     "checkpoint is one that was advised already");
+                     "cannot be combined with --advise or --auto: the scene of "
+                     "a checkpoint is fixed");
   if (!o.replay.empty())
     for (const auto& [option, given] :
          {std::pair("config", !o.config.empty()),
@@ -147,20 +147,21 @@ void check(Options& o) {
           std::pair("advise", o.asks_advice())})
       if (given)
         throw SceneError("replay",
-                         std::string("does not go with --") + option +
-                             ", but with --out, --screenshot of the end, "
-                             "--record and --record-input");
+                         std::string("cannot be combined with --") + option +
+                             ", only with --out, --record, --record-input and "
+                             "--screenshot of the end");
   if (!o.record_input.empty() && o.replay.empty() &&
       (o.headless || o.pictures()))
     throw SceneError("record-input",
-                     "needs a window, where something can be asked for");
+                     "needs a window, in which the scene can be changed");
   if (!o.record_input.empty() && o.replay.empty() && o.is_fixed())
     throw SceneError("record-input",
-                     "does not go with --csv, --vtp, --obj, --ply, "
-                     "--checkpoint and --restart: such a run has no panels");
+                     "cannot be combined with --csv, --vtp, --obj, --ply, "
+                     "--checkpoint or --restart: such a run cannot be changed");
   if (o.window && (o.headless || o.pictures()))
-    throw SceneError("window",
-                     "does not go with --headless, --screenshot and --record");
+    throw SceneError(
+        "window",
+        "cannot be combined with --headless, --screenshot or --record");
 }
 
 /** As "42 / 249", or "1" of a method with a limit; "" if never measured. */
@@ -179,12 +180,12 @@ std::string cost_of(std::string_view method) {
 /** Print name, order, cost, limit and advice of every method. */
 void list_methods() {
   std::printf(
-      "cost: of a step, in steps of verlet; at verlet's limit / at 10 times "
-      "that,\n      25 x 25 nodes, solves included (make method-costs)\n"
+      "cost: work of a step in verlet steps, at verlet's limit / at 10 times "
+      "that,\n      25 x 25 nodes, linear solves included (make method-costs)\n"
       "dt omega <: the stability limit without drag; omega: the cloth's "
       "largest\n            frequency [rad/s]\n\n"
-      "drag that is not linear in the velocity lowers all splittings, from "
-      "verlet to\nsrkn11b, to order 1\n\n"
+      "with drag that is not linear in the velocity all splitting methods, "
+      "verlet to\nsrkn11b, have order 1\n\n"
       "%-18s %5s %9s %10s  %s\n",
       "method", "order", "cost", "dt omega <", "good for");
   for (const MethodEntry& m : methods) {
@@ -222,9 +223,9 @@ void control_error(Model& m, const std::function<bool(const char*)>& given) {
  * been forgotten.  @return it */
 CLI::Option* takes_file(CLI::Option* option) {
   return option->type_name("FILE")->check([](const std::string& name) {
-    if (name.empty()) return std::string("is empty, expected a file");
+    if (name.empty()) return std::string("is empty, expected a file name");
     if (!name.starts_with("--")) return std::string();
-    return "is " + name + ", expected a file; one of that name is ./" + name;
+    return "is " + name + ", expected a file name, such as ./" + name;
   });
 }
 
@@ -259,58 +260,56 @@ void add_run_options(CLI::App& app, Options& o) {
   app.option_defaults()->always_capture_default()->group("Output");
   app.add_flag("--headless", o.headless, "open no window");
   app.add_flag("--window", o.window,
-               "require a window: without a display, exit with 4");
+               "require a window: exit with status 4 without a display");
   app.add_flag("--paused", o.paused,
-               "in a window: wait for space or n at first");
+               "in a window: start paused; space continues, n makes one step");
   app.add_option("--speed", o.speed,
-                 "in a window: simulated seconds a second, at most; 0: as fast "
-                 "as it goes");
+                 "in a window: limit on simulated seconds per second; 0: none");
   app.add_flag("--strain", o.strain,
-               "color the nodes by their springs' strain");
+               "color the nodes by the mean strain of their springs");
   add_file(app, "--screenshot", o.screenshot,
-           "draw a picture, without a window; the format by its "
-           "ending: .png, .bmp or .ppm");
+           "draw a picture without a window; the ending of FILE sets the "
+           "format: .png, .bmp or .ppm");
   app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
   add_file(app, "--record", o.video,
-           "draw a film of 30 frames a second, without a window; the format by "
-           "its ending: .mp4, .mkv, .webm or .gif");
+           "draw a film of 30 frames per second without a window; the ending "
+           "of FILE sets the format: .mp4, .mkv, .webm or .gif");
   app.add_option("--slow-motion", o.slow_motion,
-                 "of --record: how many times slower contact and tearing are");
+                 "of --record: slow contact and tearing down by this factor");
   add_file(app, "--csv", o.csv, "write energies [J] and center of mass [m]");
   app.add_option("--every", o.every, "steps between two rows of --csv");
   add_file(app, "--out", o.out,
-           "write the cloth at the end, as NODES with "
-           "velocities, and as TETS beside them");
+           "write the final points and velocities as NODES, and the remaining "
+           "quads as TETS beside it");
   add_file(app, "--vtp", o.vtp,
-           "write frames of all that is known for ParaView, "
-           "and frames.pvd with their times")
+           "write frames for ParaView with all data of nodes, springs and "
+           "quads, and frames.pvd with their times")
       ->type_name("FOLDER");
   add_file(app, "--obj", o.obj, "write frames of points and quads for Blender")
       ->type_name("FOLDER");
-  add_file(app, "--ply", o.ply, "the same with velocities and strains")
+  add_file(app, "--ply", o.ply, "like --obj, with velocities and strains")
       ->type_name("FOLDER");
   app.add_option("--frame-rate", o.frame_rate,
-                 "frames of these a second of simulated time [1/s]");
+                 "of --vtp, --obj, --ply: frames per simulated second [1/s]");
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   app.option_defaults()->group("Interrupted runs");
   add_file(app, "--checkpoint", o.checkpoint,
-           "write now and then, and at the end, all that --restart needs");
+           "save the run for --restart, regularly and at the end");
   app.add_option("--every-seconds", o.every_seconds,
-                 "seconds of the clock between two checkpoints; 0: every step");
-  add_file(
-      app, "--restart", o.restart,
-      "go on from a checkpoint, to the same bits as without; its scene need "
-      "not be given; --csv goes on if it holds the rows so far");
+                 "real time between two checkpoints [s]; 0: one in every step");
+  add_file(app, "--restart", o.restart,
+           "continue from a checkpoint, to the same bits as without the "
+           "interruption; the scene may be omitted; --csv continues the file "
+           "of that run");
   app.option_defaults()->group("Changes while it runs");
   add_file(app, "--record-input", o.record_input,
-           "in a window: write the scene and all that is "
-           "asked of it, for --replay");
+           "in a window: write the scene and every change, for --replay");
   add_file(app, "--replay", o.replay,
-           "run what --record-input wrote again, without a window, to the same "
-           "bits; with --out, --screenshot of its end and --record");
+           "repeat a run of --record-input without a window, to the same bits; "
+           "can be combined with --out, --record and --screenshot of the end");
   app.add_option("--threads", o.threads,
-                 "threads for a large cloth; 0: one a processor. They change "
-                 "no result")
+                 "threads for a large cloth, which change no result; 0: one "
+                 "per processor")
       ->check(CLI::Range(0, 1024).description(""))
       ->group("Method and step");
 }
@@ -326,7 +325,8 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
     word = word.substr(0, word.find('='));
     if (!word.starts_with("-") || std::ranges::count(names, word)) continue;
     const std::string meant = did_you_mean(word, names);
-    message = word + " is no option" + (meant.empty() ? ": see --help" : meant);
+    message =
+        word + " is not an option" + (meant.empty() ? ": see --help" : meant);
     break;
   }
   std::cerr << "cloth: " << message << '\n';
@@ -385,29 +385,29 @@ int parse(int argc, char** argv, Options& o) {
 
   CLI::App app(head, "cloth");
   app.formatter(std::make_shared<Help>());
-  add_file(app, "--config", o.config, "read options from a file: a scene")
+  add_file(app, "--config", o.config, "read a scene and options from a file")
       ->group("Scene");
   add_fields(app, m);
   add_run_options(app, o);
   app.option_defaults()->group("Advice");
   app.add_flag("--advise", o.advise,
-               "find out by short runs which parts, grid, method and step the "
-               "measure needs to its tolerance; print it, and end");
+               "find by trial runs which parts, grid, method and step the "
+               "measure needs to reach its tolerance; print them and exit");
   app.add_option("--advise-budget", o.advise_budget,
-                 "seconds that finding out may take, counted in work; 0: the "
-                 "larger of 2 and what the run takes");
-  app.add_flag("--auto", o.automatic, "run what --advise would advise");
+                 "time for the trial runs [s], converted to work; 0: the "
+                 "larger of 2 s and the time of one run");
+  app.add_flag("--auto", o.automatic, "run the scene that --advise recommends");
   add_file(app, "--write-config", o.advised,
-           "write the scene that is advised to this file");
+           "write the recommended scene to this file");
   app.option_defaults()->group("Other");
-  app.add_flag("--dump-config", dump, "print the scene as a file, and end");
+  app.add_flag("--dump-config", dump, "print the scene as a file and exit");
   app.add_flag_callback(
       "--list-methods",
       [] {
         list_methods();
         throw CLI::Success();
       },
-      "print the table of methods, and end");
+      "print the table of methods and exit");
   app.set_version_flag(
       "--version",
       [] {
@@ -415,8 +415,8 @@ int parse(int argc, char** argv, Options& o) {
                (sizeof(Real) == 8 ? "double" : "single") +
                " precision, kernels " + lanes::name_of(fastest_cpu());
       },
-      "print the version, precision and the fastest kernels here, and end");
-  app.set_help_flag("-h,--help", "print this, and end");
+      "print the version, precision and the fastest kernels here and exit");
+  app.set_help_flag("-h,--help", "print this help and exit");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -425,7 +425,7 @@ int parse(int argc, char** argv, Options& o) {
   if (!o.replay.empty())
     for (const std::string& key : scene_keys())
       if (app.count("--" + key) > 0)
-        throw SceneError("replay", "does not go with --" + key +
+        throw SceneError("replay", "cannot be combined with --" + key +
                                        ": a recording has its own scene");
   const auto given = [&, in_file = o.origins.line_of](const char* name) {
     return app.count(std::string("--") + name) > 0 ||
@@ -445,8 +445,8 @@ int parse(int argc, char** argv, Options& o) {
     if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet)
       std::cerr << "cloth: warning: --tolerance has no effect on "
                 << o.model.method->info.name
-                << ", which does not control its error: leave --dt and "
-                   "--method away, or take --method dop853\n";
+                << ", which does not control its error: omit --dt and "
+                   "--method, or use --method dop853\n";
   }
   check(o);
   if (o.replay.empty()) check_has_cloth(o.model);

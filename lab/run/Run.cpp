@@ -44,14 +44,14 @@ void announce(const Scene& scene, const Options& o, long long first_step) {
   } else if (scene.method().adaptive) {
     out << ": " << method << " chooses its inner steps by their error";
     if (const double t = o.model.step.tolerance; t > 0)
-      out << ", below " << t << " m each, for " << o.model.tolerance
+      out << ", below " << t << " m per inner step, for " << o.model.tolerance
           << " m at the end";
   } else if (limit == no_limit) {
     const double verlet = scene.safe_limit(entry_of<Verlet>());
     out << ": " << method << " has no stability limit";
     if (std::isfinite(verlet))
-      out << "; this is " << percent(dt / verlet) << " of that of verlet ("
-          << verlet << " s)";
+      out << "; this is " << percent(dt / verlet)
+          << " of the stability limit of verlet (" << verlet << " s)";
   } else if (limit > 0) {
     out << ": " << percent(dt / limit) << " of the stability limit (" << limit
         << " s, " << method << ')';
@@ -63,10 +63,10 @@ void announce(const Scene& scene, const Options& o, long long first_step) {
     out << "; steps from " << resonances->first()
         << " s on may resonate with the stiff springs";
   if (scene.control())
-    out << "; then as the energy balance allows: no gain above "
+    out << "; afterwards adapted to the energy balance: gain of at most "
         << percent(o.model.step.gain) << " of the energy of motion";
   if (first_step > 0)
-    std::cout << o.restart << ": goes on at t = " << scene.time() << " s\n";
+    std::cout << o.restart << ": continues at t = " << scene.time() << " s\n";
   std::cout << out.str() << std::endl;  // at once, also into a pipe
   const auto& built = scene.recipe().built;
   if (built && first_step == 0)  // they are about the cloth as it was made
@@ -92,7 +92,7 @@ void tell_interrupt(const Scene& scene, const Model& m,
   std::cerr << "cloth: " << name_of_interrupt()
             << " ended the run at t = " << short_text(scene.time()) << " s of "
             << short_text(m.t_end) << " s; kept: "
-            << (kept.empty() ? "nothing, as no output was asked for" : kept)
+            << (kept.empty() ? "nothing, as no output was requested" : kept)
             << '\n';
 }
 
@@ -315,7 +315,7 @@ void Run::load() {
     a(length)(sum);
     archive(a);
     scene_.archive(a);
-    if (!a.at_end()) throw std::runtime_error("goes on behind its end");
+    if (!a.at_end()) throw std::runtime_error("has data after its end");
   } catch (const SceneError&) {
     throw;
   } catch (const std::runtime_error& e) {
@@ -325,7 +325,7 @@ void Run::load() {
       t > end * (1 + 1e-9))
     throw SceneError("t-end", "is " + CME212::short_text(end) + ", but " +
                                   o_.restart +
-                                  " is of t = " + CME212::short_text(t) +
+                                  " was saved at t = " + CME212::short_text(t) +
                                   " s, expected at least that");
   first_step_ = scene_.steps();
   next_checkpoint_ = o_.every_seconds;
@@ -347,8 +347,9 @@ void Run::go_on_with_csv(std::uint64_t length, std::uint64_t sum) {
   in.read(before.data(), std::streamsize(before.size()));
   if (length == 0 || !in || before.size() < length || crc64(before) != sum)
     throw std::runtime_error(
-        o_.csv + ": does not begin with the rows until the checkpoint " +
-        o_.restart + ", expected the file of that run, or none");
+        o_.csv +
+        ": its first rows are not those of the run until the checkpoint " +
+        o_.restart + ", expected the CSV file of that run, or no file");
   csv_.emplace(o_.csv);
   write_csv(before);
 }
@@ -442,16 +443,15 @@ bool Run::energy_is_kept() const {
   const bool kept = scene_.control() || watch->gain() <= watch->tolerance();
   if (!o_.quiet) std::cout << out.str() << '\n';
   if (!kept)
-    std::cerr << "cloth: the method has made "
+    std::cerr << "cloth: an error of the method has added "
               << CME212::two_digits(watch->gain())
-              << " J of energy from nothing, more than the "
+              << " J of energy, more than the "
               << CME212::two_digits(watch->tolerance())
               << " J that --dt auto tolerates: this is not the motion of the "
                  "scene; use half of the step, or --method verlet --dt auto\n";
   else if (std::abs(watch->share()) > energy_tolerance && !o_.quiet)
     std::cerr << warning << out.str()
-              << ", though nothing changes it but the method: use half of the "
-                 "step\n";
+              << ", which is an error of the method: use half of the step\n";
   return kept;
 }
 

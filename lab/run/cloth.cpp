@@ -266,8 +266,8 @@ void check_outputs(const Options& o) {
                                    " reads, expected another file");
     const auto [other, is_new] = option_of.emplace(target, option);
     if (!is_new)
-      throw SceneError(option, "is " + file + ", where --" + other->second +
-                                   " writes, expected another file");
+      throw SceneError(option, "is " + file + ", which --" + other->second +
+                                   " also writes, expected another file");
   };
   auto with_place = [&o](const char* option, auto try_it) {
     try {
@@ -369,7 +369,7 @@ int after_output(int status) {
   if (std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout))
     return status;
   std::cerr << "cloth: the standard output can't be written ("
-            << (errno ? std::strerror(errno) : "not all was written") << ")\n";
+            << (errno ? std::strerror(errno) : "it is incomplete") << ")\n";
   return status == 0 ? 2 : status;
 }
 

@@ -99,7 +99,7 @@ Archive read_checkpoint(const std::string& file) {
   const std::string all =
       mesh_detail::read_file(file, "a checkpoint", end_if_interrupted);
   if (all.empty()) fail("nothing in the file, expected a checkpoint");
-  if (!all.starts_with(magic)) fail("no checkpoint");
+  if (!all.starts_with(magic)) fail("is not a checkpoint");
   const std::string line = all.substr(0, all.find('\n') + 1),
                     head = first_line();
   if (line != head)
@@ -112,7 +112,7 @@ Archive read_checkpoint(const std::string& file) {
   if (all.size() - start - 8 < length)
     fail("ends too early: it has " + std::to_string(all.size() - start - 8) +
          " bytes of " + std::to_string(length));
-  if (all.size() - start - 8 > length) fail("goes on behind its end");
+  if (all.size() - start - 8 > length) fail("has data after its end");
   const std::size_t end = start + length;
   if (number_in(all, end) != crc64(std::string_view(all).substr(0, end)))
     fail("is damaged: its checksum is wrong");
@@ -134,7 +134,7 @@ void archive_scene(Archive& a, const Model& m, const Cloth& g) {
   a(name)(scene)(tolerance)(cloth);
   if (!a.loads()) return;
   if (tolerance != m.step.tolerance)
-    throw SceneError("restart", "is of steps of another tolerance");
+    throw SceneError("restart", "has inner steps of another tolerance");
   const auto there = relevant_lines(scene);
   const auto now = relevant_lines(to_scene_file(m));
   auto quoted = [](const auto& lines, std::size_t k) {
@@ -142,18 +142,18 @@ void archive_scene(Archive& a, const Model& m, const Cloth& g) {
   };
   for (std::size_t k = 0; k < std::max(there.size(), now.size()); ++k)
     if (quoted(there, k) != quoted(now, k))
-      throw SceneError("restart", "is of another scene: there " +
-                                      quoted(there, k) + ", here " +
+      throw SceneError("restart", "belongs to another scene: it has " +
+                                      quoted(there, k) + ", expected " +
                                       quoted(now, k));
   if (cloth != here)
-    throw SceneError("restart",
-                     "is of another cloth: its files, or how the program "
-                     "makes it, have changed");
+    throw SceneError(
+        "restart",
+        "belongs to another cloth: the mesh files or the program changed");
 }
 
 void archive_cloth(Archive& a, Cloth& g) {
   auto require = [](bool ok) {
-    if (!ok) throw std::runtime_error("it does not belong to this cloth");
+    if (!ok) throw std::runtime_error("belongs to another cloth");
   };
   std::vector<char> nodes, edges;  // by id: whether it is in use
   std::vector<unsigned> node_ids, edge_ids, lists;  // by index; at all nodes
