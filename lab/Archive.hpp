@@ -1,6 +1,6 @@
 #pragma once
 /** @file Archive.hpp
- * Archive: what an object holds as bytes, and back. */
+ * Archive: saves objects as bytes and loads them again. */
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -32,7 +32,7 @@ concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
  *
  * Bytes are as in memory: of numbers and structs of numbers, without pointers,
  * for the same program on the same kind of machine. What is loaded may be
- * forged: whoever relies on its range says require(). */
+ * forged: call require() to check its range. */
 class Archive {
  public:
   /** Saves. */
@@ -48,14 +48,14 @@ class Archive {
 
   /** Save @a x, or load it. Of a list its length, too; of a span the length
    * must be the same.
-   * Throws std::runtime_error: there is not so much left, another length. */
+   * Throws std::runtime_error: too few bytes are left, or another length. */
   template <typename T>
   requires Plain<T> Archive& operator()(T& x) { return copy(&x, 1); }
   template <typename T>
   requires Archived<T> Archive& operator()(T& x) {
     return x.archive(*this), *this;
   }
-  /** Other bytes than those of true and false must not become a bool. */
+  /** Only 0 and 1 are loaded as a bool. */
   Archive& operator()(bool& x) {
     char byte = x;
     copy(&byte, 1).require(byte == 0 || byte == 1);

@@ -1,12 +1,12 @@
 #pragma once
 /** @file Interrupt.hpp
- * SIGINT (Ctrl-C), SIGTERM and SIGHUP end a program in order. */
+ * SIGINT (Ctrl-C), SIGTERM and SIGHUP end a program cleanly. */
 
 namespace lab {
 
 /** From now on the first signal of each kind only makes interrupted() true; the
- * second one of a kind ends the program at once, as without this. Signals that
- * are ignored stay so, as by nohup. Calls of the system go on. */
+ * second one of a kind ends the program at once. Signals that are ignored, as
+ * by nohup, stay ignored. System calls are resumed. */
 void catch_interrupts();
 
 /** The number of the signal that came last, SIGINT, SIGTERM or SIGHUP; 0 if
@@ -15,8 +15,8 @@ int interrupted();
 /** Its name; "" if none came. */
 const char* name_of_interrupt();
 
-/** What ends a computation that has nothing to keep. Not derived from
- * std::exception, so that nobody takes it for a computation that failed. */
+/** Thrown to end a computation whose results are not kept. Not derived from
+ * std::exception, so that it is not caught as a failure. */
 struct Interrupted {};
 /** Throws Interrupted if a signal came. */
 void end_if_interrupted();

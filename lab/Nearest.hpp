@@ -1,6 +1,6 @@
 #pragma once
 /** @file Nearest.hpp
- * What somebody meant who misspelt a name. */
+ * Suggests the nearest known name for a misspelt one. */
 #include <algorithm>
 #include <cstddef>
 #include <numeric>

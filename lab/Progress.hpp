@@ -7,7 +7,7 @@
 
 namespace lab {
 
-/** A bar on a terminal, else lines.
+/** Shows a bar on a terminal, and lines elsewhere.
  *
  *     while (work) {
  *       if (progress.due()) progress.show("t = 3 of 5 s", 0.6);

@@ -24,8 +24,9 @@ struct AdviceRules {
    * error of up to long_shot_error tolerances are run, too, if their work is at
    * most the share long_shot_work of the remaining budget. */
   double long_shot_error = 8, long_shot_work = 5e-4;
-  /** Of all pilots, in spring evaluations, so that advice is the same on every
-   * machine; 0: the larger of 2e8, about 2 s, and one run of the scene. */
+  /** The work of all pilots, in spring evaluations, so that advice is the same
+   * on every machine; 0: the larger of 2e8, about 2 s, and one run of the
+   * scene. */
   double budget = 0;
   double rate = 1e8;  ///< spring evaluations per second, for messages
   /** Called often, with the current run and the results so far. */

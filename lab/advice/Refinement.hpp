@@ -37,7 +37,7 @@ struct GridReport {
  * one before, with steps that shrink with the cells. From three grids on, the
  * observed order of convergence gives their limit: Richardson's extrapolation.
  * Intermediate grids, of sqrt(2) times the cells, show how reliable that is:
- * answers scatter, as edges and contacts meet other nodes on each grid.
+ * answers scatter, as the nodes at edges and contacts differ from grid to grid.
  * Sources: P. J. Roache, Verification and Validation in Computational Science
  * and Engineering, 1998, chapter 5; L. Eca, M. Hoekstra, A procedure for the
  * estimation of the numerical uncertainty of CFD calculations based on grid

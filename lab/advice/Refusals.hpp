@@ -1,6 +1,6 @@
 #pragma once
 /** @file Refusals.hpp
- * Texts of refusals: their cause, and a question or scene that would do. */
+ * Texts of refusals: their cause, and what can be answered instead. */
 #include <string>
 #include <vector>
 
@@ -12,8 +12,8 @@ namespace lab {
  * empty if no reason is known.  Throws InputError, SceneError */
 std::string diverging(const Model& m);
 
-/** Why the answers of @a m converge slowly, and what to hold instead: the end
- * of a sentence, or empty.  Throws InputError, SceneError */
+/** Why the answers of @a m converge slowly, and which pins would be better: the
+ * end of a sentence, or empty.  Throws InputError, SceneError */
 std::string converging_slowly(const Model& m);
 
 /** Questions that can be answered at the end of @a m although its motion is

@@ -128,6 +128,18 @@ std::vector<Figure> figures() {
              (kind == Kind::grid ? 0 : 32),
          kind, 1, Scene::guard_interval});
   }
+  for (int k = 0; k <= int(lanes::best_cpu()); ++k)
+    add({std::string("step: SymplecticEuler, ") + lanes::name_of(lanes::Cpu(k)),
+         "step: flat arrays",
+         [k](unsigned n) -> Make {
+           return [k, step = stepping<SymplecticEuler>(Kind::grid)(n)] {
+             const lanes::Cpu before = lanes::cpu;
+             lanes::cpu = lanes::Cpu(k);
+             step();
+             lanes::cpu = before;
+           };
+         },
+         true, 0, Kind::grid, 1, Scene::guard_interval});
   add({"step: SymplecticEuler, shuffled", "step: SymplecticEuler",
        stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled, 1,
        Scene::guard_interval});

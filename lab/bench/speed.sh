@@ -9,8 +9,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-machine=$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1 |
-  tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
+# The processor's name, its family and its longest vectors.
+machine=$(awk -F': ' '/^model name/ {n = $2} /^cpu family/ {f = "-" $2}
+  /^flags/ {v = / avx512f / ? "-avx512" : / avx2 / ? "-avx2" : ""}
+  /^$/ {print n f v; exit}' /proc/cpuinfo | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
 folder=lab/bench/results/${machine:-unknown}
 mkdir -p "$folder"
 "${1:-build/native/bench}" --json "$folder/bench.json" |

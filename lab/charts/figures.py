@@ -135,7 +135,7 @@ def call(method):
 
 def bench(nodes, name, beside):
     """The median of a figure of bench.json over another one's."""
-    of = ns_a_node(ROOT / "lab/bench/results/amd-epyc/bench.json")
+    of = ns_a_node(ROOT / "lab/bench/results/amd-epyc-26-avx512/bench.json")
     return of[int(nodes), name][1] / of[int(nodes), beside][1]
 
 

@@ -45,7 +45,7 @@ class Line {
     skip_blanks();
     return word;
   }
-  /** All that is left, as it stands there, over any number of lines. */
+  /** The rest of the text, unchanged, over any number of lines. */
   std::string_view rest() { return std::exchange(text_, {}); }
   /** A finite number. */
   template <typename T = double>

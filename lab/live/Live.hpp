@@ -3,11 +3,10 @@
  * Live: a scene that a user changes while it runs. A change is a request, one
  * line of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The same
  * text is what the panel and the page send, and what a recording and a link
- * hold. Requests.cpp has the table of all.
+ * hold. Requests.cpp lists all requests.
  *
  * A node is named by its id, Node::id(), which stays the same when others are
- * removed.
- */
+ * removed. */
 #include <array>
 #include <memory>
 #include <mutex>
@@ -34,7 +33,7 @@ inline std::string request_word(std::string_view a) {
 inline std::string request_word(const Point& p) {
   return request_word(p.x) + request_word(p.y) + request_word(p.z);
 }
-/** The text of a request. Numbers have all digits that count, so that a
+/** The text of a request. Numbers are written with all digits, so that a
  * recording replays to the same bits. */
 template <typename... Values>
 std::string request(const char* name, const Values&... values) {
@@ -51,8 +50,8 @@ inline std::span<const Breakage> breakages() { return failing_scenes(); }
 struct Ray {
   Point near, far;
 };
-/** The edges of @a g that a stroke across the screen crosses: those that meet
- * the surface that a ray sweeps from each of @a stroke to the next one.
+/** The edges of @a g that a stroke across the screen crosses. A ray that moves
+ * from each of @a stroke to the next one sweeps a surface; these edges meet it.
  * O(edges * rays) */
 std::vector<std::array<unsigned, 2>> crossed_edges(const Cloth& g,
                                                    std::span<const Ray> stroke);

@@ -5,7 +5,7 @@
  * returns is valid until the next call. page.mk exports all of them.
  *
  * Scenes are numbered as page_about() lists them, nodes by id. Side 0 is the
- * scene, side 1 the one that a request `compare` puts beside it.
+ * scene; side 1 is the second scene that the request `compare` starts.
  * A call that throws ends there: wasi.cpp. */
 
 #include "CME212/Point.hpp"
@@ -21,7 +21,7 @@ void page_load(unsigned scene, unsigned side);
 /** The obstacles around its cloth, and the corners of the box to look at: a
  * JSON text. */
 const char* page_setting();
-/** Room for a text of @a size bytes, which the caller writes there. */
+/** A buffer of @a size bytes, into which the caller writes a text. */
 char* page_room(unsigned size);
 /** Live::apply().  @return what is wrong with the text; "" if nothing */
 const char* page_request(const char* text);

@@ -10,8 +10,8 @@ namespace lab {
 /** The five stages of the assignment, and then others. */
 std::span<const StoredScene* const> page_scenes();
 
-/** What the file of @a s says, of side x side nodes in place of those of the
- * file, by Verlet in steps of 1 ms and without an end.  @pre side >= 2 */
+/** The scene in the file of @a s, but with side x side nodes, by Verlet in
+ * steps of 1 ms and without an end.  @pre side >= 2 */
 Model page_model(const StoredScene& s, unsigned side);
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file wasi.hpp
- * What the C++ library of wasm32-wasi lacks of what our sources name: threads
- * and from_chars() of a double. Included before each source that is compiled
+ * The parts of the C++ library that wasm32-wasi lacks: threads and from_chars()
+ * of a double. Included before each source that is compiled
  * for the page, and by nothing else. A page has one thread, so most of it does
  * nothing. */
 #include <charconv>

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Export.hpp
- * Series of files for other programs: what a cloth did, frame by frame. */
+ * Series of files for other programs: the states of a cloth, frame by frame. */
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,36 +14,36 @@ class Scene;
 /** A frame: the state of a cloth as files hold it. */
 struct Frame {
   double time = 0;  ///< [s]
-  /** Of each point of the mesh at the start, in its order: if its node is still
-   * there, and its place [m], the last one it had. */
+  /** For each point of the first mesh, in its order: whether its node is in
+   * use, and the last position of the node [m]. */
   std::vector<char> there;
   std::vector<Point> places;
-  /** [m/s], [N], [kg], 1, of each point; 0 where the node is gone. Strain: the
-   * mean l/L - 1 of the springs at the node. */
+  /** [m/s], [N], [kg], 1, of each point; 0 where the node was removed. Strain:
+   * the mean l/L - 1 of the springs at the node. */
   std::vector<Point> velocities, forces;
   std::vector<double> masses, strains;
   std::vector<char> pinned;
-  /** The ends of each spring that is left, by the points, and its l/L - 1. */
+  /** The ends of each remaining spring, by the points, and its l/L - 1. */
   std::vector<std::array<unsigned, 2>> springs;
   std::vector<double> spring_strains;
-  std::vector<Quad> quads;  ///< that are left: see mesh_left()
+  std::vector<Quad> quads;  ///< that remain: see mesh_left()
 };
 
 /** The formats.
- * vtp: VTK PolyData in XML, arrays in base64: all that a Frame has of what is
- *   left; positions in double precision, else in single. frames.pvd lists the
- *   files with their times. docs.vtk.org, "VTK XML Formats"
+ * vtp: VTK PolyData in XML, arrays in base64: all data of a Frame about what
+ *   remains; positions in double precision, else in single. frames.pvd lists
+ *   the files with their times. docs.vtk.org, "VTK XML Formats"
  * obj: Wavefront, positions and quads.
  * ply: binary, single precision: positions, velocities, strains, quads.
- * obj and ply have all points of the start in each frame and in one order: a
- * node that is gone stays at its last place, and its quads are gone. */
+ * obj and ply have all points of the first frame in each frame, in one order: a
+ * removed node stays at its last position, and its quads are removed. */
 enum class FrameFormat { vtp, obj, ply };
 
 /** The text of the file of one frame.  O(points + springs) */
 std::string to_file(const Frame& frame, FrameFormat format);
 
 /** The state of @a scene, which a recipe_of() @a m made.
- * @param before the frame before it, for the places of nodes that went since;
+ * @param before the frame before it, for the positions of nodes removed since;
  *        null: the first one  O(points + springs) */
 Frame frame_of(const Scene& scene, const Model& m, const Frame* before);
 

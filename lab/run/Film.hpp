@@ -16,12 +16,12 @@ class Scene;
 /** The picture and the film of one run.
  *
  * A film has a frame for each 1/30 s of simulated time, each the state after
- * the step next to its time. With slow motion by a factor it has that many
- * times more of them while nodes come to a ball or the floor for the first
- * time, and while the cloth tears. It begins with a card of what runs, unless
- * the run goes on from a checkpoint, and ends with one of what came of it; of
- * a failure it ends with the reason. A picture of a failure shows the cloth
- * some steps later, when a node has gone a tenth of the cloth's extent. */
+ * the step next to its time. With slow motion it has so many times more
+ * frames while nodes first touch a ball or the floor, and while the cloth
+ * tears. It begins with a card of what runs, unless
+ * the run goes on from a checkpoint, and ends with a card of the result; a
+ * failed run ends with the reason. A picture of a failure shows the cloth
+ * some steps later, when a node has moved by a tenth of the cloth's extent. */
 class Film {
  public:
   static constexpr double title_seconds = 1.5, failure_seconds = 2;

@@ -1,13 +1,13 @@
 #pragma once
 /** @file Options.hpp
- * Options: what ./cloth is asked for. */
+ * Options: the command line of ./cloth. */
 #include <string>
 
 #include "lab/scenes/SceneFile.hpp"
 
 namespace lab {
 
-/** What a run is asked for; see ./cloth --help. */
+/** The options of a run; see ./cloth --help. */
 struct Options {
   Model model;
   Origins origins;     ///< of the model's parts

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Run.hpp
- * Run: a scene taken to its end, with all that is written about it. */
+ * Run: runs a scene to its end and writes its files. */
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -21,7 +21,7 @@ class StepControl;
 /** Say how long the step of @a scene is and how long it may be.
  * @param first_step Steps done before a checkpoint */
 void announce(const Scene& scene, const Options& o, long long first_step = 0);
-/** Say in a line what @a scene of @a m came to in @a seconds. */
+/** Print a line with the result of @a scene of @a m after @a seconds. */
 void print_summary(const Scene& scene, const Model& m, double seconds);
 /** Say that a signal ended the run of @a scene, and what was @a kept. */
 void tell_interrupt(const Scene& scene, const Model& m,
@@ -41,7 +41,7 @@ class MeshOutput {
   std::optional<CME212::OutputFile> quads_;
 };
 
-/** One run of a scene with all that is written about it. */
+/** One run of a scene, with the files that it writes. */
 class Run {
  public:
   /** Output files are opened now, so that a wrong path ends the run before it
@@ -62,8 +62,8 @@ class Run {
   /** Check the present state, which is to be shown; tell if it is not good. */
   void check();
 
-  /** One step, or up to @a most if nobody looks at the state in between. What
-   * is written down is checked. A failure is told at once.
+  /** One step, or up to @a most if no state in between is needed. A state is
+   * checked before it is written. A failure is reported immediately.
    * @pre !done() */
   void advance(int most = 1);
   /** Step until done(); the second one with a call of @a after() after each. */

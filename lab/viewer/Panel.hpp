@@ -19,8 +19,8 @@ namespace lab {
 /** A panel at the left of a window.
  *
  * Threads: only the thread that steps calls tell(), only the one that draws
- * calls draw(), any calls the rest. Each waits for the other no longer than it
- * takes to copy some numbers. */
+ * calls draw(); any thread may call the other functions. Each waits for the
+ * other no longer than it takes to copy some numbers. */
 class Panel {
  public:
   /** Of @a viewer. Requests of the user go to @a requests. Both must outlive
@@ -47,7 +47,7 @@ class Panel {
   std::array<double, 2> place_of(const std::string& control) const;
 
  private:
-  /** What the simulation tells. */
+  /** The readings that tell() passes to draw(). */
   struct State {
     Readings now;
     Model model, first;  // the present one, and that of the start

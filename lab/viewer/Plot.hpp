@@ -10,7 +10,7 @@ namespace lab {
 
 /** A color as Dear ImGui has it: alpha, blue, green, red from the top. */
 using PanelColor = unsigned;
-/** Of curves; told apart by those who are color-blind (Okabe and Ito). */
+/** Colors of curves, safe for color-blind readers (Okabe and Ito). */
 namespace curve_colors {
 constexpr PanelColor white = 0xfff0f0f0, sky = 0xffe9b456, orange = 0xff009fe6,
                      green = 0xff73b400, rose = 0xffb78fdd, red = 0xff4a4aff;
@@ -35,9 +35,9 @@ std::string tick_text(double value, double step);
  * of ten to one above it. */
 std::array<double, 2> axis_range(std::span<const Curve> curves, bool log);
 
-/** Draw @a curves over @a times [s] (all of one length) as wide as there is
- * room, @a height [pixels]; below @a title, which names the unit, their names.
- */
+/** Draw @a curves over @a times [s] (all of one length) over the full width of
+ * the panel, @a height [pixels] high; their names stand below @a title, which
+ * names the unit. */
 void plot(const char* title, std::span<const float> times,
           std::span<const Curve> curves, float height, bool log = false);
 

@@ -36,11 +36,11 @@ class Screen {
   static std::unique_ptr<Screen> open(Kind kind);
   virtual ~Screen() = default;
 
-  /** Color the nodes by the mean l/L - 1 of their springs, or no longer.
+  /** Whether to color the nodes by the mean l/L - 1 of their springs.
    * In a window the user switches it as well. */
   virtual void show_strain(bool on) = 0;
 
-  /** Show @a scene as it is now, whole. If it failed, this is its last good
+  /** Show the present state of @a scene. If it failed, this is its last good
    * state, with a mark where it failed, and the reason. */
   virtual void show(const Scene& scene) = 0;
 
