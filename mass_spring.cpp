@@ -69,10 +69,11 @@ int main(int argc, char** argv) try {
   const auto points = load_points(argv[1]);
   const auto quads = load_quads(argv[2], points.size());
   // BEGIN SOLUTION 4.2.build_cloth
-  const Mesh mesh = stage == Stage::problem1 ? Mesh::plain : Mesh::diagonals;
-  // STUB const Mesh mesh = Mesh::plain;
+  const auto springs =
+      stage == Stage::problem1 ? MeshSprings::plain : MeshSprings::diagonals;
+  // STUB const auto springs = MeshSprings::plain;
   // END SOLUTION
-  build_cloth(g, points, quads, mesh);
+  build_cloth(g, points, quads, springs);
   std::cout << g.num_nodes() << " nodes, " << g.num_edges() << " edges, "
             << steps << " steps of " << dt << " s\n";
 

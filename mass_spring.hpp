@@ -43,7 +43,7 @@ inline constexpr bool is_corner(const Point& p) {
  * @post node(i) is at points[i]; the edges have the order of MeshSprings
  * Complexity: O(points + quads), unless a point is in very many quads */
 inline void build_cloth(Cloth& g, std::span<const Point> points,
-                        std::span<const Quad> quads, Mesh mesh,
+                        std::span<const Quad> quads, MeshSprings::Kind mesh,
                         double K = 100) {
   assert(g.size() == 0);
   const MeshSprings springs(quads, mesh);

@@ -208,18 +208,16 @@ inline constexpr std::array<std::array<unsigned, 2>, 4> quad_sides = {
 inline constexpr std::array<std::array<unsigned, 2>, 2> quad_diagonals = {
     {{0, 3}, {1, 2}}};
 
-/** Which edges a quad gives: its four sides, or both diagonals as well. */
-enum class Mesh { plain, diagonals };
-
 /** The springs of a mesh, numbered: the first spring of each quad, then the
  * second spring of each, and so on; so on a grid consecutive springs have
  * consecutive ends. A spring that several quads share has several numbers. */
 class MeshSprings {
  public:
+  /** Which springs a quad gives: its four sides, or both diagonals as well. */
+  enum Kind { plain, diagonals };
   /** @pre @a quads outlives this */
-  MeshSprings(std::span<const Quad> quads, Mesh mesh)
-      : quads_(quads),
-        pairs_(mesh == Mesh::plain ? Pairs(quad_sides) : Pairs(all)) {}
+  MeshSprings(std::span<const Quad> quads, Kind kind)
+      : quads_(quads), pairs_(kind == plain ? Pairs(quad_sides) : Pairs(all)) {}
 
   std::size_t size() const { return pairs_.size() * quads_.size(); }
   /** The points that spring @a s joins.  @pre s < size() */

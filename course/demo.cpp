@@ -24,7 +24,7 @@ int main() try {
   Cloth g;
   const auto points = load_points("data/grid2.nodes");
   const auto quads = load_quads("data/grid2.tets", points.size());
-  build_cloth(g, points, quads, Mesh::diagonals);
+  build_cloth(g, points, quads, MeshSprings::diagonals);
   const auto force = make_combined_force(GravityForce(), MassSpringForce());
   const auto constraint = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), TearConstraint());

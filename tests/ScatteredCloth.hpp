@@ -16,7 +16,7 @@ class ScatteredCloth : public ::testing::Test {
 
   void SetUp() override {
     CME212::default_generator.seed(2);
-    build_cloth(g, grid_points(8), grid_quads(8), Mesh::diagonals);
+    build_cloth(g, grid_points(8), grid_quads(8), MeshSprings::diagonals);
     using CME212::random;
     for (Node n : g.nodes()) {
       n.position() = ball.center +

@@ -16,7 +16,7 @@ class ShakenCloth : public ::testing::Test {
 
   void SetUp() override {
     CME212::default_generator.seed(1);
-    build_cloth(g, grid_points(6), grid_quads(6), Mesh::diagonals);
+    build_cloth(g, grid_points(6), grid_quads(6), MeshSprings::diagonals);
     for (Node n : g.nodes()) {
       n.position() += random_vector(0.08);
       n.value().vel = random_vector(1);

@@ -33,7 +33,7 @@ EdgeData spring(const Cloth& g, unsigned i, unsigned j) {
 TEST(Compose, ASheetOfTheUnitSquareIsTheGridOfTheAssignment) {
   Cloth sheet, grid;
   build(sheet, with_sheet("nodes 7 7"));
-  build_cloth(grid, grid_points(7), grid_quads(7), Mesh::diagonals);
+  build_cloth(grid, grid_points(7), grid_quads(7), MeshSprings::diagonals);
   ASSERT_EQ(sheet.num_nodes(), grid.num_nodes());
   ASSERT_EQ(sheet.num_edges(), grid.num_edges());
   for (unsigned i = 0; i < grid.num_nodes(); ++i)

@@ -79,7 +79,7 @@ TEST_F(ScatteredCloth, WhatRemovesOrIsNotKnownIsNotNodewise) {
 
 TEST(ConstraintPlanPins, GoOnWithoutAPinnedNodeThatWasRemoved) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
   const PinConstraint pin(g);
   const ConstraintPlan plan(pin);
   Node second = g.node(20);

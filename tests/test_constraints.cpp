@@ -134,7 +134,7 @@ TEST(TearConstraint, KeepsANodeOnTheSurfaceAndCanTakeAll) {
 
 TEST(PinConstraint, HoldsTheCornersWhateverMoves) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
   PinConstraint pin(g);
   for (Node n : g.nodes()) {
     n.position() += Point(1, 2, 3);
@@ -154,7 +154,7 @@ TEST(PinConstraint, HoldsTheCornersWhateverMoves) {
 
 TEST(PinConstraint, HoldsTheRightNodesWhenIndicesHaveMoved) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
   PinConstraint pin(g);
   Node first = g.node(0), second = g.node(20);
   for (unsigned i : {1u, 2u, 3u, 5u, 8u}) g.remove_node(g.node(i));
@@ -171,7 +171,7 @@ TEST(PinConstraint, HoldsTheRightNodesWhenIndicesHaveMoved) {
 
 TEST(PinConstraint, GoesOnWithoutAPinnedNodeThatWasRemoved) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
   PinConstraint pin(g);
   Node second = g.node(20);
   g.remove_node(g.node(0));
@@ -188,7 +188,7 @@ TEST(PinConstraint, WithoutAGraphFindsTheCornersInItsFirstCall) {
   const PinConstraint copy = pin;
   EXPECT_FALSE(pin.has_pins());
   EXPECT_DEATH(pin.pins(), "has_pins");
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
   const auto all = make_combined_constraints(pin);
   pin(g, 0);
   ASSERT_TRUE(pin.has_pins());

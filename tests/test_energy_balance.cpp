@@ -106,7 +106,7 @@ TEST(Work, OfABallBoundsTheEnergyOfTheCloth) {
 TEST(Flow, CountsTheEnergyOfNodesThatAreRemoved) {
   for (bool by_call : {false, true}) {
     Cloth g;
-    build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+    build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
     for (Node n : g.nodes()) n.position().z = -2;
     const TearConstraint tear(Ball{Point(0.5, 0.5, -2), 0.3});
     auto call = [&](Cloth& cloth, double t) { tear(cloth, t); };

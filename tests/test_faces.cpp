@@ -25,7 +25,7 @@ using NetNode = NetGraph::node_type;
 void make_cloth(NetGraph& g, unsigned n) {
   for (const Point& p : grid_points(n)) g.add_node(p);
   const auto quads = grid_quads(n);
-  const MeshSprings springs(quads, Mesh::diagonals);
+  const MeshSprings springs(quads, MeshSprings::diagonals);
   for (unsigned s = 0; s < springs.size(); ++s)
     g.add_edge(g.node(springs[s][0]), g.node(springs[s][1]));
 }

@@ -65,11 +65,12 @@ void make(Cloth& g, Dice& dice) {
     case 1: {
       auto quads = grid_quads(side);
       std::shuffle(quads.begin(), quads.end(), std::mt19937(7));
-      build_ordered_cloth(g, grid_points(side), quads, Mesh::plain);
+      build_ordered_cloth(g, grid_points(side), quads, MeshSprings::plain);
       break;
     }
     default:
-      build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+      build_cloth(g, grid_points(side), grid_quads(side),
+                  MeshSprings::diagonals);
   }
   for (Node n : g.nodes()) n.position() += dice.point(0.3 / side);
   for (Node n : g.nodes()) n.value() = heavy(dice);
@@ -247,7 +248,7 @@ TYPED_TEST(FlatFlowTest, NeitherThreadsNorProcessorsChangeABit) {
     lanes::cpu = cpu;
     Dice dice(3);
     Cloth g;  // rows of offsets up to 71, and others: 5 parts
-    build_cloth(g, grid_points(70), grid_quads(70), Mesh::diagonals);
+    build_cloth(g, grid_points(70), grid_quads(70), MeshSprings::diagonals);
     for (Node n : g.nodes()) n.value() = heavy(dice);
     for (int k = 0; k < 500; ++k) g.remove_node(g.node(dice.below(4000)));
     for (int k = 0; k < 300; ++k) {
@@ -281,7 +282,7 @@ TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
     Dice dice(wide + chord);
     Cloth g;
     build_cloth(g, grid_points(high, wide), grid_quads(high, wide),
-                Mesh::diagonals);
+                MeshSprings::diagonals);
     for (Node n : g.nodes()) n.value() = heavy(dice);
     for (unsigned k = 0; chord > 0 && k + chord < g.num_nodes(); k += 97)
       g.add_edge(g.node(k), g.node(k + chord), spring(dice));
@@ -312,7 +313,7 @@ TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
 // in which parts are steps apart begin again where it does.
 TYPED_TEST(FlatFlowTest, PartsAheadWaitForABallThatTears) {
   Cloth g;
-  build_cloth(g, grid_points(40), grid_quads(40), Mesh::diagonals);
+  build_cloth(g, grid_points(40), grid_quads(40), MeshSprings::diagonals);
   for (Node n : g.nodes()) n.value().vel = Point(0, 0, -1);
   const auto force = make_combined_force(GravityForce(), MassSpringForce());
   // Reached by some nodes a few steps from one another, until below.
@@ -343,7 +344,7 @@ TYPED_TEST(FlatFlowTest, PartsAheadWaitForABallThatTears) {
 
 TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::plain);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
   for (Node n : g.nodes()) n.value().vel = Point(0, 0, -1);
   TypeParam method;
   // The node of the middle is inside from the 51st millimetre on.
@@ -432,7 +433,7 @@ TEST(FlatClothRows, AreTheOffsetsOfAGrid) {
   const Drag none;
   FlatCloth flat;
   Cloth g;
-  build_cloth(g, grid_points(20), grid_quads(20), Mesh::diagonals);
+  build_cloth(g, grid_points(20), grid_quads(20), MeshSprings::diagonals);
   flat.take(g, 1, none);
   std::vector<unsigned> offsets;
   for (const auto& row : flat.rows()) offsets.push_back(row.offset);

@@ -67,7 +67,7 @@ struct Sheet {
       : force(make_combined_force(GravityForce(), MassSpringForce(),
                                   DampingForce(drag))),
         pin((build_cloth(g, grid_points(side), grid_quads(side),
-                         Mesh::diagonals, K),
+                         MeshSprings::diagonals, K),
              g)) {}
   void stir() {
     CME212::default_generator.seed(3);

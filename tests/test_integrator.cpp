@@ -115,7 +115,7 @@ TEST_P(SymplecticEulerStep, IsBoundedBelowItsLimitOnly) {
 
 TEST_P(SymplecticEulerStep, ConservesMomentumAndAngularMomentum) {
   CME212::default_generator.seed(3);
-  build_cloth(g, grid_points(6), grid_quads(6), Mesh::diagonals);
+  build_cloth(g, grid_points(6), grid_quads(6), MeshSprings::diagonals);
   using CME212::random;
   for (Node n : g.nodes())
     n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
@@ -170,7 +170,7 @@ TEST_P(SymplecticEulerStep, ConstrainsAfterPositionsAndBeforeForces) {
 }
 
 TEST_P(SymplecticEulerStep, GoesOnWhenAConstraintRemovesNodes) {
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   auto cut = make_combined_constraints(PinConstraint(g), [](Cloth& h, double) {
     if (h.num_nodes() > 3) h.remove_node(h.node(h.num_nodes() / 2));
   });
@@ -186,7 +186,7 @@ TEST_P(SymplecticEulerStep, GoesOnWhenAConstraintRemovesNodes) {
 // The assignment's step kicks pinned nodes, too; the next constraint stops
 // them.
 TEST_P(SymplecticEulerStep, LeavesNoVelocityInPinnedNodes) {
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   PinConstraint pin(g);
   for (int n = 0; n < 3; ++n) {
     step(0, 0.001, GravityForce(), pin);
@@ -212,7 +212,7 @@ double distance(const Cloth& a, const Cloth& b) {
 TEST(SymplecticEuler, EqualsTheStepNodeByNode) {
   Cloth a, b;
   for (Cloth* g : {&a, &b})
-    build_cloth(*g, grid_points(5), grid_quads(5), Mesh::diagonals);
+    build_cloth(*g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   auto force = make_combined_force(GravityForce(), MassSpringForce(),
                                    DampingForce(1.0 / 25));
   auto constraints = [](Cloth& g) {
@@ -234,7 +234,8 @@ TEST(SymplecticEuler, CombinedForcesMoveAsProblem1ForceDoes) {
   for (unsigned side : {5u, 25u}) {
     Cloth a, b;
     for (Cloth* g : {&a, &b})
-      build_cloth(*g, grid_points(side), grid_quads(side), Mesh::diagonals);
+      build_cloth(*g, grid_points(side), grid_quads(side),
+                  MeshSprings::diagonals);
     auto force = make_combined_force(GravityForce(), MassSpringForce());
     // Later, buckling makes any round-off grow.
     int steps = side == 5 ? 2000 : 400;

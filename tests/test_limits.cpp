@@ -29,12 +29,14 @@ long setting(const char* name, long otherwise) {
 
 // --------------------------------------------------------------- Course grids
 
-class CourseGrid : public ::testing::TestWithParam<std::tuple<unsigned, Mesh>> {
+class CourseGrid
+    : public ::testing::TestWithParam<std::tuple<unsigned, MeshSprings::Kind>> {
 };
 
 std::string grid_name(const auto& info) {
   const auto [side, mesh] = info.param;
-  return (mesh == Mesh::plain ? "Plain" : "Diagonals") + std::to_string(side);
+  return (mesh == MeshSprings::plain ? "Plain" : "Diagonals") +
+         std::to_string(side);
 }
 
 // The prediction from the frequencies along the way: bounded at 0.97 of it, and
@@ -64,11 +66,12 @@ TEST_P(CourseGrid, IsBoundedBelowThePredictedLimitAndNotAbove) {
 INSTANTIATE_TEST_SUITE_P(
     Limits, CourseGrid,
     ::testing::Combine(::testing::Values(5u, 25u, 50u, 100u),
-                       ::testing::Values(Mesh::plain, Mesh::diagonals)),
+                       ::testing::Values(MeshSprings::plain,
+                                         MeshSprings::diagonals)),
     [](const auto& info) { return grid_name(info); });
 
 TEST(Limits, AreMeasuredToThePrecisionAskedFor) {
-  const Problem p = cloth_for_limits(5, Mesh::diagonals, 5);
+  const Problem p = cloth_for_limits(5, MeshSprings::diagonals, 5);
   const MethodEntry& verlet = *find_method("verlet");
   const double limit = predicted_limit(verlet, find_path(p));
   const double measured =
@@ -110,7 +113,7 @@ struct RandomScene {
   explicit RandomScene(unsigned seed) : random(seed) {
     const unsigned side = 3 + random() % 12;
     build_cloth(g, grid_points(side), grid_quads(side),
-                random() % 2 ? Mesh::plain : Mesh::diagonals);
+                random() % 2 ? MeshSprings::plain : MeshSprings::diagonals);
     const double decades = 2 * uniform();
     for (Edge e : g.edges())
       e.value().K = 10 * std::pow(10, decades * uniform());
@@ -202,7 +205,7 @@ TEST(ForwardEulerFails, AtEveryStepAtThePredictedRate) {
     }
   }
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   PinConstraint pin(g);
   const ForcePlan force =
       make_combined_force(GravityForce(), MassSpringForce());

@@ -170,7 +170,7 @@ TYPED_TEST(Explicit, HasOnlyWeakGapsBelowItsLimit) {
 
 TYPED_TEST(Explicit, MovesNothingThatIsHeld) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   PinConstraint pin(g);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   TypeParam method = fixed_step<TypeParam>();
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryMethod, ::testing::ValuesIn(methods),
 
 TEST_P(EveryMethod, TearsWithASoundGraph) {
   Cloth g;
-  build_cloth(g, grid_points(9), grid_quads(9), Mesh::diagonals);
+  build_cloth(g, grid_points(9), grid_quads(9), MeshSprings::diagonals);
   auto constraint = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), TearConstraint());
   auto force = make_combined_force(GravityForce(), MassSpringForce(),
@@ -213,7 +213,7 @@ TEST_P(EveryMethod, TearsWithASoundGraph) {
 
 TEST_P(EveryMethod, AllocatesNothingAfterItsFirstStep) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   const ConstraintPlan constraint = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), SphereConstraint());
   const ForcePlan force = make_combined_force(GravityForce(), MassSpringForce(),
@@ -254,7 +254,7 @@ std::vector<Point> swing(const MethodEntry& entry, double K,
                          const ZeroForce& force,
                          const ZeroConstraint& constraint) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals, K);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals, K);
   for (Node n : g.nodes())
     n.value().vel = Point(n.position().y, 0, -n.position().x);
   const auto method = entry.make();
@@ -320,7 +320,7 @@ TYPED_TEST_SUITE(Symmetric, SymmetricOnes, Names);
 /** A grid in motion, without pins. */
 void shake(Cloth& g) {
   CME212::default_generator.seed(4);
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   using CME212::random;
   for (Node n : g.nodes())
     n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
@@ -725,7 +725,7 @@ TEST(Problem, MembraneSwingsInItsModes) {
   const double s = 1.25, K = 100, A = 1e-5, L = 1.0 / (n - 1);
   for (auto [j, k] : {std::pair(1, 1), {2, 1}, {3, 2}}) {
     Cloth g;
-    build_cloth(g, grid_points(n), grid_quads(n), Mesh::plain, K);
+    build_cloth(g, grid_points(n), grid_quads(n), MeshSprings::plain, K);
     auto shape = [&, j = j, k = k](unsigned i) {
       return std::sin(j * pi * (i / n) / (n - 1)) *
              std::sin(k * pi * (i % n) / (n - 1));

@@ -232,7 +232,7 @@ class Sliding : public ::testing::TestWithParam<MethodEntry> {
     auto points = grid_points(3);
     for (Point& p : points) p = p.x * down + p.y * across;
     g.clear();
-    build_cloth(g, points, grid_quads(3), Mesh::diagonals);
+    build_cloth(g, points, grid_quads(3), MeshSprings::diagonals);
     const Point before = center_of_mass(g);
     run(dt, 0.5, make_combined_force(GravityForce(), MassSpringForce()),
         WallConstraint(Point(), out, {}, friction));
@@ -325,7 +325,7 @@ TEST(Obstacles, AreTheSameForAllWhoMoveAlike) {
   for (int train : {0, 1}) {
     const Motion motion = {train * speed};
     Cloth g;
-    build_cloth(g, grid_points(6), grid_quads(6), Mesh::diagonals, 5);
+    build_cloth(g, grid_points(6), grid_quads(6), MeshSprings::diagonals, 5);
     for (Node n : g.nodes()) n.value().vel = motion.velocity;
     Verlet verlet;
     const double dt = 0.002;
@@ -352,7 +352,7 @@ TEST(Obstacles, AreTheSameForAllWhoMoveAlike) {
 
 TEST(MovingPin, TakesItsNodesAlong) {
   Cloth g;
-  build_cloth(g, grid_points(4), grid_quads(4), Mesh::plain);
+  build_cloth(g, grid_points(4), grid_quads(4), MeshSprings::plain);
   const std::vector<Node> held = {g.node(2), g.node(9)};
   const Point starts[] = {held[0].position(), held[1].position()};
   const MovingPinConstraint pin(PinConstraint(held), {Point(0, 1, 2), 0.5});
@@ -451,7 +451,7 @@ TEST(Strain, BreaksWhatIsLongerThanTheLimitAndNothingElse) {
 TEST(Strain, BreaksExactlyTheLongEdgesOfACloth) {
   CME212::default_generator.seed(5);
   Cloth g;
-  build_cloth(g, grid_points(8), grid_quads(8), Mesh::diagonals);
+  build_cloth(g, grid_points(8), grid_quads(8), MeshSprings::diagonals);
   for (unsigned i : {3u, 17u, 40u}) g.remove_node(g.node(i));
   for (Node n : g.nodes()) n.position() += random_point(0.03);
   std::vector<Edge> good, bad;

@@ -53,13 +53,13 @@ Shape shuffled(unsigned side) {
 
 /** A cloth as build_ordered_cloth() says, in no other order than that of the
  * mesh. */
-void build_simply(Cloth& g, const Shape& s, Mesh mesh) {
+void build_simply(Cloth& g, const Shape& s, MeshSprings::Kind mesh) {
   std::vector<Node> n;
   for (Point p : s.points)
     n.push_back(g.add_node(p, {Point(), Real(1. / double(s.points.size()))}));
   for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
     for (const Quad& q : s.quads)
-      if (mesh == Mesh::diagonals || a + b != 3)
+      if (mesh == MeshSprings::diagonals || a + b != 3)
         g.add_edge(n[q[a]], n[q[b]],
                    {100, Real(norm(s.points[q[a]] - s.points[q[b]]))});
 }
@@ -198,9 +198,9 @@ TEST(CuthillMcKee, HasEveryPointAndEveryQuadOnce) {
 TEST(BuildOrderedCloth, OrdersAShuffledMeshInMemory) {
   const Shape s = shuffled(100), rows = grid(100);
   Cloth g, simple, ordered;
-  build_ordered_cloth(g, s.points, s.quads, Mesh::diagonals);
-  build_simply(simple, s, Mesh::diagonals);
-  build_simply(ordered, rows, Mesh::diagonals);
+  build_ordered_cloth(g, s.points, s.quads, MeshSprings::diagonals);
+  build_simply(simple, s, MeshSprings::diagonals);
+  build_simply(ordered, rows, MeshSprings::diagonals);
   expect_same(g, simple);
   EXPECT_GT(mean_distance(simple), 30 * mean_distance(ordered));
   EXPECT_LT(mean_distance(g), 1.5 * mean_distance(ordered));
@@ -225,8 +225,8 @@ TEST(BuildOrderedCloth, OrdersAShuffledMeshInMemory) {
 TEST(BuildOrderedCloth, LeavesAMeshThatIsInOrder) {
   Cloth g, simple;
   const Shape s = grid(100);
-  build_ordered_cloth(g, s.points, s.quads, Mesh::diagonals);
-  build_simply(simple, s, Mesh::diagonals);
+  build_ordered_cloth(g, s.points, s.quads, MeshSprings::diagonals);
+  build_simply(simple, s, MeshSprings::diagonals);
   expect_same(g, simple);
   for (Node n : g.nodes()) EXPECT_EQ(n.id(), n.index());
   for (Edge e : g.edges()) EXPECT_EQ(e.id(), e.index());
@@ -236,7 +236,8 @@ TEST(BuildOrderedCloth, ShowsEveryMeshInItsOwnOrder) {
   unsigned reordered = 0;
   EXPECT_TRUE(rc::check([&] {
     const Shape s = *meshes();
-    for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
+    for (MeshSprings::Kind mesh :
+         {MeshSprings::plain, MeshSprings::diagonals}) {
       Cloth g, simple;
       // In a graph that was used before, ids are not given in order.
       std::vector<Node> old;
@@ -257,8 +258,9 @@ TEST(BuildOrderedCloth, MovesAShuffledMeshAsTheOrderedOne) {
   const Shape s = shuffled(60), rows = grid(60);
   ASSERT_FALSE(is_local(s.quads));
   Cloth g, expected;
-  build_ordered_cloth(g, s.points, s.quads, Mesh::diagonals);
-  build_ordered_cloth(expected, rows.points, rows.quads, Mesh::diagonals);
+  build_ordered_cloth(g, s.points, s.quads, MeshSprings::diagonals);
+  build_ordered_cloth(expected, rows.points, rows.quads,
+                      MeshSprings::diagonals);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   Verlet method, expected_method;
   PinConstraint pin(g), expected_pin(expected);
@@ -296,7 +298,7 @@ TEST(RestoreOrder, WaitsForManyNodesOfALargeGraph) {
   for (unsigned columns : {64u, 63u}) {  // 4096 nodes, and a few less
     Cloth g;
     build_cloth(g, grid_points(64, columns), grid_quads(64, columns),
-                Mesh::plain);
+                MeshSprings::plain);
     int restored = 0;
     for (unsigned id : random_ids(g)) {
       g.remove_node(g.node_with_id(id));
@@ -317,7 +319,7 @@ TEST(RestoreOrder, WaitsForManyNodesOfALargeGraph) {
 
 TEST(RestoreOrder, ClosesTheGapsBetweenListsOfNeighbors) {
   Cloth g;
-  build_cloth(g, grid_points(70), grid_quads(70), Mesh::diagonals);
+  build_cloth(g, grid_points(70), grid_quads(70), MeshSprings::diagonals);
   const auto ids = random_ids(g);
   for (unsigned k = 0; k < ids.size() / 2; ++k)
     g.remove_node(g.node_with_id(ids[k]));
@@ -345,7 +347,7 @@ TEST(RestoreOrder, ClosesTheGapsBetweenListsOfNeighbors) {
 
 TEST(RestoreOrder, LeavesAnOrderThatWasGivenToAWholeGraph) {
   Cloth g;
-  build_cloth(g, grid_points(64), grid_quads(64), Mesh::plain);
+  build_cloth(g, grid_points(64), grid_quads(64), MeshSprings::plain);
   const auto ids = random_ids(g);
   g.reindex_nodes(ids);
   restore_order(g);
@@ -355,7 +357,7 @@ TEST(RestoreOrder, LeavesAnOrderThatWasGivenToAWholeGraph) {
 TEST(RestoreOrder, StepsThatTearDoItAndChangeNothingElse) {
   Cloth g, by_hand;
   for (Cloth* c : {&g, &by_hand}) {
-    build_cloth(*c, grid_points(70), grid_quads(70), Mesh::diagonals);
+    build_cloth(*c, grid_points(70), grid_quads(70), MeshSprings::diagonals);
     for (Node n : c->nodes()) n.value().vel = Point(0, 0, n.position().x);
   }
   const auto ids = random_ids(g);

@@ -32,7 +32,7 @@ TEST(Scene, HoldsTheCornersInEveryStage) {
 TEST(Scene, StageForcesIsTheStepThatSkipsTheCorners) {
   Scene scene(stage_scene("forces", 10));
   Cloth g;
-  build_cloth(g, grid_points(10), grid_quads(10), Mesh::diagonals);
+  build_cloth(g, grid_points(10), grid_quads(10), MeshSprings::diagonals);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   for (int n = 0; n < 400; ++n) {
     scene.step();

@@ -60,7 +60,7 @@ void add_sheet(Cloth& g, unsigned side, const Point& at, double K,
   const unsigned first = g.num_nodes();
   for (const Point& p : points) g.add_node(at + size * p, {Point(), 0.01});
   const auto quads = grid_quads(side);
-  const MeshSprings springs(quads, Mesh::diagonals);
+  const MeshSprings springs(quads, MeshSprings::diagonals);
   for (unsigned s = 0; s < springs.size(); ++s) {
     auto [i, j] = springs[s];
     Node a = g.node(first + i), b = g.node(first + j);
@@ -105,8 +105,9 @@ TEST(NearestUnconnected, LooksAtNoEdges) {
 }
 TEST(NearestUnconnected, IsWhatAGridSays) {
   Cloth plain, diagonals;
-  build_cloth(plain, grid_points(11), grid_quads(11), Mesh::plain);
-  build_cloth(diagonals, grid_points(11), grid_quads(11), Mesh::diagonals);
+  build_cloth(plain, grid_points(11), grid_quads(11), MeshSprings::plain);
+  build_cloth(diagonals, grid_points(11), grid_quads(11),
+              MeshSprings::diagonals);
   EXPECT_NEAR(nearest_unconnected(plain, 1), 0.1 * std::sqrt(2), 1e-15);
   EXPECT_NEAR(nearest_unconnected(diagonals, 1), 0.2, 1e-15);
 }
@@ -442,7 +443,8 @@ TEST(SelfCollision, LooksAtAFixedNumberOfPairsANode) {
   for (double thickness_by_side : {0.1, 0.5, 0.99, 1.99})
     for (unsigned side : {20u, 40u, 80u, 160u}) {
       Cloth g;
-      build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+      build_cloth(g, grid_points(side), grid_quads(side),
+                  MeshSprings::diagonals);
       CellTable cells;
       cells.fill(g, thickness_by_side / (side - 1));
       long long calls = 0;
@@ -454,7 +456,7 @@ TEST(SelfCollision, LooksAtAFixedNumberOfPairsANode) {
 }
 TEST(SelfCollision, AllocatesInItsFirstCallOnly) {
   Cloth g;
-  build_cloth(g, grid_points(20), grid_quads(20), Mesh::diagonals);
+  build_cloth(g, grid_points(20), grid_quads(20), MeshSprings::diagonals);
   Node a = g.node(0);
   a.position() = g.node(210).position() + Point(0, 0, 0.01);
   const SelfCollision c(0.03, 0.3, make_combined_constraints(PinConstraint(g)));

@@ -23,7 +23,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void build_grid(Cloth& g, unsigned side) {
-  build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+  build_cloth(g, grid_points(side), grid_quads(side), MeshSprings::diagonals);
 }
 
 // ------------------------------------------------------------------ Estimates
@@ -137,7 +137,7 @@ TEST(Omega, IsThatOfChainsAndGrids) {
   EXPECT_NEAR(omega_safe(chain, springs, pin), exact, 1e-3 * exact);
 
   for (auto [mesh, most] :
-       {std::pair(Mesh::plain, 8.0), {Mesh::diagonals, 12.0}}) {
+       {std::pair(MeshSprings::plain, 8.0), {MeshSprings::diagonals, 12.0}}) {
     Cloth g;
     build_cloth(g, grid_points(30), grid_quads(30), mesh);
     PinConstraint corners_held(g);

@@ -60,7 +60,7 @@ TEST(AmplificationByTheory, IsOneOnKnownBoundaries) {
 
 TEST(StretchedSheet, IsAtRestAndHasTheFrequencyOfAMembrane) {
   for (double stretch : {1.05, 1.5, 2.5}) {
-    Start s(stretched_sheet(9, Mesh::plain, stretch, 0));
+    Start s(stretched_sheet(9, MeshSprings::plain, stretch, 0));
     auto f = swept_forces(s.cloth, s.force);
     s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
     for (const Point& p : f) EXPECT_LT(norm(p), 1e-11);
@@ -71,7 +71,7 @@ TEST(StretchedSheet, IsAtRestAndHasTheFrequencyOfAMembrane) {
 
 TEST(Growth, IsThatOfTheFastestWaveBeyondTheLimitAndNoneBelow) {
   constexpr double stretch = 1.4;
-  const Problem p = stretched_sheet(9, Mesh::plain, stretch, 0);
+  const Problem p = stretched_sheet(9, MeshSprings::plain, stretch, 0);
   const double omega = omega_of_sheet(9, stretch);
   for (const char* name :
        {"symplectic-euler", "verlet", "yoshida4", "srkn6b", "rk4"}) {
@@ -89,7 +89,7 @@ TEST(Growth, IsThatOfTheFastestWaveBeyondTheLimitAndNoneBelow) {
 
 // Compressed, no step is small enough: its energy itself falls when it moves.
 TEST(Growth, OfACompressedSheetIsThatOfBuckling) {
-  const Problem p = stretched_sheet(9, Mesh::plain, 0.9, 0);
+  const Problem p = stretched_sheet(9, MeshSprings::plain, 0.9, 0);
   const MethodEntry& verlet = *find_method("verlet");
   const double edge = std::sin(std::numbers::pi * 7 / 16.);
   // Out of the plane K (1/s - 1) pushes from all four sides.
@@ -100,7 +100,7 @@ TEST(Growth, OfACompressedSheetIsThatOfBuckling) {
 }
 
 TEST(Growth, IsInfiniteWhereNothingIsFinite) {
-  const Problem p = stretched_sheet(5, Mesh::diagonals, 1.5, 1);
+  const Problem p = stretched_sheet(5, MeshSprings::diagonals, 1.5, 1);
   EXPECT_EQ(growth(p, *find_method("rk4"), 1e200, 4).total, no_limit);
   EXPECT_EQ(growth(p, *find_method("verlet"), 1, 100, 5, 2).total, no_limit);
 }
@@ -108,7 +108,7 @@ TEST(Growth, IsInfiniteWhereNothingIsFinite) {
 TEST(Growth, GivesTheLimitOfASheetToItsPrecision) {
   for (const char* name : {"symplectic-euler", "verlet", "rk4"}) {
     const MethodEntry& m = *find_method(name);
-    const Problem p = stretched_sheet(9, Mesh::plain, 1.5, 1);
+    const Problem p = stretched_sheet(9, MeshSprings::plain, 1.5, 1);
     const double right = step_limit(m, omega_of_sheet(9, 1.5), 1);
     EXPECT_NEAR(
         measured_sheet_limit(p, m, 0.7 * right, 1.4 * right, 300, 0.002), right,

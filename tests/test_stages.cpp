@@ -24,8 +24,9 @@ class Course {
  public:
   Course(const std::string& stage, const std::string& grid) {
     const auto points = load_points(grid + ".nodes");
-    build_cloth(g, points, load_quads(grid + ".tets", points.size()),
-                stage == "problem1" ? Mesh::plain : Mesh::diagonals);
+    build_cloth(
+        g, points, load_quads(grid + ".tets", points.size()),
+        stage == "problem1" ? MeshSprings::plain : MeshSprings::diagonals);
     const double L = g.edge(0).value().L;
     const auto force = make_combined_force(GravityForce(), MassSpringForce());
     if (stage == "problem1")

@@ -91,7 +91,8 @@ struct RandomScene {
     auto uniform = [&] { return double(random()) / double(random.max()); };
     auto one_in = [&](unsigned n) { return random() % n == 0; };
     const unsigned rows = 3 + random() % 7, columns = 3 + random() % 7;
-    const Mesh mesh = one_in(2) ? Mesh::plain : Mesh::diagonals;
+    const MeshSprings::Kind mesh =
+        one_in(2) ? MeshSprings::plain : MeshSprings::diagonals;
     const double masses = one_in(2) ? 50 : 1;
     const double decades = one_in(2) ? 4 * uniform() : 0;
     const double speed = one_in(3) ? 0 : std::pow(20, uniform());
@@ -189,7 +190,7 @@ Recipe thrown_sheet(double speed) {
     auto u = [&] {
       return 10 * (double(random()) / double(random.max()) - 0.5);
     };
-    build_cloth(g, grid_points(9, 9), grid_quads(9, 9), Mesh::diagonals);
+    build_cloth(g, grid_points(9, 9), grid_quads(9, 9), MeshSprings::diagonals);
     for (Node n : g.nodes()) n.value().vel = Point(u(), u(), u() + speed);
   };
   r.force = [](const Cloth&) { return make_combined_force(MassSpringForce()); };

@@ -67,7 +67,7 @@ void make_random(Cloth& g, unsigned nodes, unsigned edges) {
 }
 /** A grid with diagonals, its nodes up to a third of its mesh away. */
 void make_grid(Cloth& g, unsigned side) {
-  build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+  build_cloth(g, grid_points(side), grid_quads(side), MeshSprings::diagonals);
   for (Node n : g.nodes()) {
     n.position() += (0.3 / side) * random_point();
     n.value().vel = random_point();
@@ -481,11 +481,12 @@ TEST(Stencil, NamesEachEdgeFromBothEnds) {
 // line of n nodes at most two blocks of eight, and the first and last line.
 TEST(Stencil, FindsTheConstantOffsetsOfAGrid) {
   for (unsigned side : {40u, 100u}) {
-    for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
+    for (MeshSprings::Kind mesh :
+         {MeshSprings::plain, MeshSprings::diagonals}) {
       Cloth g;
       build_cloth(g, grid_points(side), grid_quads(side), mesh);
       const Stencil<8> s(g);
-      const unsigned degree = mesh == Mesh::plain ? 4 : 8;
+      const unsigned degree = mesh == MeshSprings::plain ? 4 : 8;
       EXPECT_GE(s.num_rows(), degree * (side - 2) * side / 8);
       EXPECT_LE(s.num_rows(), degree * (side * side / 8 + 2 * side));
       std::size_t gathered = 0;

@@ -109,11 +109,11 @@ static Start start_of_cloth(G& g) {
   const std::vector<Quad> quads = cloth_quads();
   if constexpr (requires {
                   {
-                    ::build_cloth(g, points, quads, Mesh::diagonals)
+                    ::build_cloth(g, points, quads, MeshSprings::diagonals)
                     } -> Present;
                 }) {
     DID("build_cloth() of 3 x 4 points and 6 quads, with diagonals");
-    ::build_cloth(g, points, quads, Mesh::diagonals);
+    ::build_cloth(g, points, quads, MeshSprings::diagonals);
     return start_of(g);
   }
   return start_of_program();

@@ -5,7 +5,7 @@ int main() {
   Cloth g;
   const auto points = load_points("data/grid1.nodes");
   const auto quads = load_quads("data/grid1.tets", points.size());
-  build_cloth(g, points, quads, Mesh::diagonals);
+  build_cloth(g, points, quads, MeshSprings::diagonals);
   const auto force = make_combined_force(GravityForce(), MassSpringForce(),
                                          DampingForce(1.0 / g.num_nodes()));
   const auto constraint =

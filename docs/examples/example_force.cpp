@@ -11,7 +11,7 @@ struct WindForce {
 };
 int main() {
   Cloth g;
-  build_cloth(g, grid_points(25), grid_quads(25), Mesh::diagonals);
+  build_cloth(g, grid_points(25), grid_quads(25), MeshSprings::diagonals);
   const auto force =
       make_combined_force(GravityForce(), MassSpringForce(),
                           WindForce{1.0 / g.num_nodes(), Point(0, 10, 0)});

@@ -55,7 +55,7 @@ inline void build(Cloth& g, unsigned side, Kind kind) {
   if (kind == Kind::shuffled) shuffle(points, quads);
   if (kind == Kind::mixed) {
     Cloth grid;
-    build_cloth(grid, points, quads, Mesh::diagonals);
+    build_cloth(grid, points, quads, MeshSprings::diagonals);
     const auto order = mixed_order(points.size());
     std::vector<Node> node(points.size());
     for (unsigned i : order)
@@ -67,7 +67,7 @@ inline void build(Cloth& g, unsigned side, Kind kind) {
     }
     return;
   }
-  build_ordered_cloth(g, points, quads, Mesh::diagonals);
+  build_ordered_cloth(g, points, quads, MeshSprings::diagonals);
   if (kind != Kind::torn && kind != Kind::reindexed) return;
   std::vector<Node> nodes(g.node_begin(), g.node_end());
   std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));

@@ -349,7 +349,7 @@ std::vector<Figure> figures() {
            if (shuffled) shuffle(points, quads);
            return [points, quads] {
              Cloth g;
-             build_cloth(g, points, quads, Mesh::diagonals);
+             build_cloth(g, points, quads, MeshSprings::diagonals);
              benchmark::DoNotOptimize(g.num_edges());
            };
          }});

@@ -36,7 +36,8 @@ struct Sheet {
   double omega;  // [1/s]
 
   explicit Sheet(double K) {
-    build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals, K);
+    build_cloth(g, grid_points(side), grid_quads(side), MeshSprings::diagonals,
+                K);
     pin = PinConstraint(g);
     omega = omega_safe(g, force, pin);
     ImplicitEuler fall;

@@ -21,7 +21,8 @@ double amplification_by_theory(std::string_view method, double y, double d);
  * evenly to @a stretch times its size and held along its boundary, without
  * gravity. It stays at rest if @a stretch >= 1; otherwise it buckles.
  * @param gamma drag c/m [1/s] */
-Problem stretched_sheet(unsigned side, Mesh mesh, double stretch, double gamma);
+Problem stretched_sheet(unsigned side, MeshSprings::Kind mesh, double stretch,
+                        double gamma);
 
 /** The growth of a perturbation. */
 struct Growth {

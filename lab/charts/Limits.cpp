@@ -11,7 +11,7 @@
 
 namespace lab {
 
-Problem cloth_for_limits(unsigned side, Mesh mesh, double t_end) {
+Problem cloth_for_limits(unsigned side, MeshSprings::Kind mesh, double t_end) {
   Problem p = grid_problem(std::to_string(side), "", t_end, side);
   p.build = [side, mesh](Cloth& g) {
     build_cloth(g, grid_points(side), grid_quads(side), mesh);

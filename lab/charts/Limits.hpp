@@ -9,7 +9,7 @@
 namespace lab {
 
 /** The assignment's cloth of side x side nodes with drag c = 1/N. */
-Problem cloth_for_limits(unsigned side, Mesh mesh, double t_end);
+Problem cloth_for_limits(unsigned side, MeshSprings::Kind mesh, double t_end);
 
 /** The highest frequency of a cloth during a run. */
 struct Path {

@@ -78,7 +78,7 @@ struct Curtain {
   void build(Cloth& g) const {
     auto points = grid_points(n);
     for (Point& p : points) p = Point(p.x, 0, -p.y);
-    build_cloth(g, points, grid_quads(n), Mesh::plain, K);
+    build_cloth(g, points, grid_quads(n), MeshSprings::plain, K);
   }
   CombinedConstraints pins(const Cloth& g) const {
     std::vector<Node> row;
@@ -123,7 +123,7 @@ Problem cloth_problem(std::string name, std::string about, double t_end,
       .gamma = 1,
       .build =
           [points = std::move(points), quads = std::move(quads), K](Cloth& g) {
-            build_cloth(g, points, quads, Mesh::diagonals, K);
+            build_cloth(g, points, quads, MeshSprings::diagonals, K);
           },
       .constraint = pinned};
 }

@@ -79,8 +79,8 @@ constexpr std::array maps = {
         "theory",
         "method,dt omega,dt gamma,measured,theory"}};
 
-constexpr const char* name_of(Mesh mesh) {
-  return mesh == Mesh::plain ? "plain" : "diagonals";
+constexpr const char* name_of(MeshSprings::Kind mesh) {
+  return mesh == MeshSprings::plain ? "plain" : "diagonals";
 }
 const std::vector<const char*> explicit_methods = {
     "symplectic-euler", "verlet", "yoshida4", "pefrl", "rk4", "srkn6b"};
@@ -101,7 +101,7 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
   const auto sides = by<Sides>(effort, {5, 10, 25, 50, 100, 200, 500, 1000},
                                {5, 10, 25, 50, 100}, {5});
   for (unsigned side : sides)
-    for (Mesh mesh : {Mesh::plain, Mesh::diagonals})
+    for (MeshSprings::Kind mesh : {MeshSprings::plain, MeshSprings::diagonals})
       for (const char* name : {"symplectic-euler", "verlet", "rk4"}) {
         const int steps = side >= 500 ? 150 : 300;
         const MethodEntry& m = *find_method(name);
@@ -119,7 +119,7 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
                          "limits-" + std::to_string(side) + '-' +
                              name_of(mesh) + '-' + name,
                          1e-7 * side * side * steps * (m.info.sweeps + 0.5) *
-                             (mesh == Mesh::plain ? 0.6 : 1),
+                             (mesh == MeshSprings::plain ? 0.6 : 1),
                          "stretch=1.5 gamma=1 precision=0.01 steps=" +
                              std::to_string(steps),
                          run});
@@ -132,7 +132,8 @@ void add_table(std::vector<Cell>& cells, Effort effort) {
   using Sides = std::vector<unsigned>;
   const double precision = by(effort, 0.002, 0.01, 0.05);
   for (unsigned side : by<Sides>(effort, {5, 25, 50, 100}, {5, 25}, {5}))
-    for (Mesh mesh : {Mesh::plain, Mesh::diagonals}) {
+    for (MeshSprings::Kind mesh :
+         {MeshSprings::plain, MeshSprings::diagonals}) {
       const double t_end =
           by(effort, side < 20 ? 5.0 : 2.0, side < 20 ? 5.0 : 1.0, 0.2);
       auto run = [=](std::ostream& out) {
@@ -170,7 +171,7 @@ void add_growth(std::vector<Cell>& cells, Effort effort) {
       const double stretch = low + (high - low) * (k + 0.5) / columns;
       const MethodEntry& m = *find_method(name);
       auto run = [=, &m](std::ostream& out) {
-        const Problem p = stretched_sheet(side, Mesh::plain, stretch, 0);
+        const Problem p = stretched_sheet(side, MeshSprings::plain, stretch, 0);
         auto [safe, sharp] = frequencies(p);
         for (int row = 0; row < rows; ++row) {
           const double of_safe = least + (most - least) * (row + 0.5) / rows;

@@ -8,7 +8,8 @@
 namespace lab {
 
 void build_ordered_cloth(Cloth& g, std::span<const Point> points,
-                         std::span<const Quad> quads, Mesh mesh, double K) {
+                         std::span<const Quad> quads, MeshSprings::Kind mesh,
+                         double K) {
   if (is_local(quads)) return build_cloth(g, points, quads, mesh, K);
   assert(g.size() == 0);
   const MeshSprings springs(quads, mesh);

@@ -12,7 +12,7 @@ namespace lab {
  * springs lie in memory in Cuthill-McKee order; indices are those of the mesh.
  * @pre and @post as build_cloth(); fewer than 2^32 springs */
 void build_ordered_cloth(Cloth& g, std::span<const Point> points,
-                         std::span<const Quad> quads, Mesh mesh,
+                         std::span<const Quad> quads, MeshSprings::Kind mesh,
                          double K = 100);
 
 /** At the end of a step: Graph::reindex() if removals put so many nodes of a

@@ -189,9 +189,10 @@ double shortest_side(const Model& m) {
 }
 
 void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
-  build_ordered_cloth(g, mesh.points, mesh.quads,
-                      m.edges.diagonals ? Mesh::diagonals : Mesh::plain,
-                      m.stiffness);
+  build_ordered_cloth(
+      g, mesh.points, mesh.quads,
+      m.edges.diagonals ? MeshSprings::diagonals : MeshSprings::plain,
+      m.stiffness);
   if (m.edges.bend)
     each_bend(mesh.quads,
               [&](unsigned p, unsigned q, std::size_t, std::size_t) {

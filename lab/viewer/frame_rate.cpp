@@ -31,7 +31,7 @@ void measure(const char* name, const CME212::Look& look, double seconds) {
   const auto points = grid_points(100);
   const auto quads = grid_quads(100);
   Cloth g;
-  build_cloth(g, points, quads, Mesh::diagonals);
+  build_cloth(g, points, quads, MeshSprings::diagonals);
   CME212::SDLViewer::Options options;
   options.offscreen = true;
   CME212::SDLViewer viewer(options);

@@ -291,7 +291,8 @@ struct OurCloth {
   SymplecticEuler method;
 
   OurCloth() {
-    build_cloth(g, square.points, grid_quads(square.side), Mesh::diagonals);
+    build_cloth(g, square.points, grid_quads(square.side),
+                MeshSprings::diagonals);
     pin = PinConstraint(g);
   }
   void step(double dt) { method.step(g, 0, dt, force, pin); }

@@ -50,7 +50,7 @@ class Problem {
 
   /** A grid of side x side nodes with diagonals. */
   Problem(unsigned side, double end, double c) : t_end(end), drag(c) {
-    build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+    build_cloth(g, grid_points(side), grid_quads(side), MeshSprings::diagonals);
     for (unsigned i = 0; i < g.node_slots(); ++i)
       per_mass_.push_back(
           is_corner(g.positions()[i]) ? 0 : 1 / g.node_values()[i].mass);
