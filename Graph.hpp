@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <compare>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,6 +20,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "CME212/AnyGraph.hpp"
 #include "CME212/NeighborPool.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/SlotMap.hpp"
@@ -90,8 +92,15 @@ class Graph {
    * @pre of all members but comparisons: the node is in its graph. */
   class Node : private totally_ordered<Node> {
    public:
+    using graph_type = Graph;
     /** An invalid node. */
     Node() = default;
+    /** The graph that it is in. */
+    Graph& graph() const {
+      assert(graph_ && graph_->has_node(*this) &&
+             "a node is used that is in no graph: removed, or *node_end()");
+      return *graph_;
+    }
 
     /** The node's position; assign to it to move the node. */
     Point& position() {
@@ -123,7 +132,7 @@ class Graph {
     incident_iterator edge_end() const {
       return {graph_, std::size_t(list().begin) + list().size, id_};
     }
-    graph_detail::Range<incident_iterator> edges() const {
+    CME212::Range<incident_iterator> edges() const {
       return {edge_begin(), edge_end()};
     }
 
@@ -138,6 +147,8 @@ class Graph {
         return std::less<const Graph*>()(graph_, n.graph_);
       return id_ != n.id_ ? id_ < n.id_ : generation_ < n.generation_;
     }
+    /** For std::hash: equal nodes have equal numbers, which never change. */
+    std::size_t hash() const { return std::size_t(generation_) << 32 | id_; }
 
    private:
     friend class Graph;
@@ -149,11 +160,6 @@ class Graph {
         : graph_(const_cast<Graph*>(g)),
           id_(id),
           generation_(g->nodes_.generation(id)) {}
-
-    Graph& graph() const {
-      assert(graph_ != nullptr && graph_->has_node(*this));
-      return *graph_;
-    }
     const auto& list() const { return graph().neighbors_of_[id_]; }
   };
 
@@ -164,6 +170,7 @@ class Graph {
    * @pre of all members but comparisons: the edge is in its graph. */
   class Edge : private totally_ordered<Edge> {
    public:
+    using graph_type = Graph;
     /** An invalid edge. */
     Edge() = default;
 
@@ -202,6 +209,8 @@ class Graph {
         return std::less<const Graph*>()(graph_, e.graph_);
       return id_ != e.id_ ? id_ < e.id_ : generation_ < e.generation_;
     }
+    /** As of a Node. */
+    std::size_t hash() const { return std::size_t(generation_) << 32 | id_; }
 
    private:
     friend class Graph;
@@ -300,6 +309,7 @@ class Graph {
    * @pre @a it != node_end() */
   node_iterator remove_node(node_iterator it) {
     // BEGIN SOLUTION 7.1.remove_node_iterator 3pt
+    assert(it.at_ < num_nodes());
     remove_node(*it);
     return it;
     // STUB (void)it;
@@ -486,10 +496,10 @@ class Graph {
   edge_iterator edge_begin() const { return {self(), 0}; }
   edge_iterator edge_end() const { return {self(), num_edges()}; }
   /** For range-for: for (auto n : g.nodes()) ... */
-  graph_detail::Range<node_iterator> nodes() const {
+  CME212::Range<node_iterator> nodes() const {
     return {node_begin(), node_end()};
   }
-  graph_detail::Range<edge_iterator> edges() const {
+  CME212::Range<edge_iterator> edges() const {
     return {edge_begin(), edge_end()};
   }
 
@@ -671,7 +681,8 @@ class Graph {
     /** An iterator of no graph. It can only be assigned to. */
     ProxyIterator() = default;
 
-    /** @pre it belongs to a graph and is not at the end of its range */
+    /** At node_end() an invalid node, which may only be passed on.
+     * @pre it belongs to a graph, and is not at the end of a range of edges */
     Proxy operator*() const {
       assert(graph_ && "an iterator of no graph is dereferenced");
       if constexpr (of_one_node) {
@@ -681,7 +692,8 @@ class Graph {
         const Neighbor& to = graph_->pool_[at_];
         return Proxy(graph_, to.edge, node_, to.node);
       } else if constexpr (std::is_same_v<Proxy, Node>) {
-        assert(at_ < graph_->num_nodes() && "node_end() is dereferenced");
+        assert(at_ <= graph_->num_nodes() && "beyond node_end()");
+        if (at_ == graph_->num_nodes()) return Node();
         return graph_->node(size_type(at_));
       } else {
         assert(at_ < graph_->num_edges() && "edge_end() is dereferenced");
@@ -728,4 +740,12 @@ class Graph {
   };
 
   static_assert(sizeof(Node) <= 16 && sizeof(Edge) <= 24);
+};
+
+/** Nodes and edges can be the keys of a std::unordered_map. */
+template <typename T>
+requires std::same_as<T, typename T::graph_type::node_type> ||
+    std::same_as<T, typename T::graph_type::edge_type>
+struct std::hash<T> {
+  std::size_t operator()(const T& handle) const { return handle.hash(); }
 };

@@ -10,8 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "CME212/AnyGraph.hpp"
 #include "CME212/Mesh.hpp"
 #include "Graph.hpp"
+
+using CME212::edges, CME212::nodes;  // for range-for, of any graph
 
 // ----------------------------------------------- 3 and 4.1: cloth and springs
 
@@ -43,18 +46,18 @@ inline constexpr bool is_corner(const Point& p) {
  * @post node(i) is at points[i]; the edges have the order of MeshSprings
  * Complexity: O(points + quads), unless a point is in very many quads */
 inline void build_cloth(Cloth& g, std::span<const Point> points,
-                        std::span<const Quad> quads, MeshSprings::Kind mesh,
+                        std::span<const Quad> quads, MeshSprings::Kind kind,
                         double K = 100) {
-  assert(g.size() == 0);
-  const MeshSprings springs(quads, mesh);
-  g.reserve(unsigned(points.size()), unsigned(springs.expected(points.size())));
+  assert(g.num_nodes() == 0);
+  const MeshSprings springs(quads, kind);
+  CME212::reserve(g, points.size(), springs.expected(points.size()));
   for (const Point& p : points)
     g.add_node(p, {Point(), Real(1.0 / double(points.size()))});
   for (unsigned s = 0; s < springs.size(); ++s) {
     const auto [i, j] = springs[s];
     // BEGIN SOLUTION 4.2.build_cloth 4pt
     const Real L = Real(norm(points[i] - points[j]));
-    g.add_edge(g.node(i), g.node(j), {Real(K), L});
+    g.add_edge(g.node(i), g.node(j)).value() = {Real(K), L};
     // STUB (void)K;
     // STUB g.add_edge(g.node(i), g.node(j));
     // END SOLUTION
@@ -84,15 +87,11 @@ inline bool is_skipped(const Point& p) {
 template <typename G, typename F>
 double symp_euler_step(G& g, double t, double dt, F&& force) {
   // BEGIN SOLUTION 3.2.symp_euler_step 7pt
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
+  for (auto n : nodes(g))
     if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
-  }
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
+  for (auto n : nodes(g))
     if (!is_skipped(n.position()))
       n.value().vel += (dt / n.value().mass) * force(n, t);
-  }
   return t + dt;
   // STUB (void)g, (void)force;
   // STUB return t + dt;
@@ -105,15 +104,9 @@ double symp_euler_step(G& g, double t, double dt, F&& force) {
 template <typename G, typename F, typename C>
 double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
   // BEGIN SOLUTION 6.2.symp_euler_step 6pt
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
-    n.position() += dt * n.value().vel;
-  }
+  for (auto n : nodes(g)) n.position() += dt * n.value().vel;
   constraint(g, t);
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
-    n.value().vel += (dt / n.value().mass) * force(n, t);
-  }
+  for (auto n : nodes(g)) n.value().vel += (dt / n.value().mass) * force(n, t);
   return t + dt;
   // STUB (void)g, (void)force, (void)constraint;
   // STUB return t + dt;
@@ -146,10 +139,8 @@ class Problem1Force {
     // BEGIN SOLUTION 3.2.Problem1Force
     if (is_corner(n.position())) return Point();
     Point f = n.value().mass * Point(0, 0, -grav);
-    for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
-      auto e = *it;  // seen from n, so that node2() is the other end
+    for (auto e : edges(n))  // seen from n, so that node2() is the other end
       f += spring_force(e.node2().position() - n.position(), spring_of(e));
-    }
     return f;
     // STUB (void)n;
     // STUB return Point();
@@ -204,7 +195,7 @@ class MassSpringForce : public ZeroForce {
   Point operator()(Node n, double /*t*/) const override {
     // BEGIN SOLUTION 5.1.MassSpringForce 3pt
     Point f;
-    for (Edge e : n.edges())
+    for (Edge e : edges(n))
       f += spring_force(e.node2().position() - n.position(), e.value());
     return f;
     // STUB (void)n;
@@ -216,15 +207,18 @@ class MassSpringForce : public ZeroForce {
 /** Linear drag: f = -c v. It dissipates the power c |v|^2 [W]. */
 class DampingForce : public ZeroForce {
  public:
-  DampingForce() = delete;  // give it c, or the graph: then c is 1/N
   /** @param c drag coefficient [kg/s].  @pre c >= 0 */
   explicit DampingForce(double c) : c_(c) { assert(c >= 0); }
   /** With the assignment's c = 1/N [kg/s], where N = g.num_nodes() > 0. */
   explicit DampingForce(const Cloth& g) : DampingForce(1.0 / g.num_nodes()) {
     assert(g.num_nodes() > 0);
   }
+  /** The same for the graph of the first call. */
+  DampingForce() = default;
+  /** c; or -1 if it was made without an argument and not yet called. */
   double coefficient() const { return c_; }
   Point operator()(Node n, double /*t*/) const override {
+    if (c_ < 0) c_ = 1.0 / double(CME212::num_nodes_with(n));
     // BEGIN SOLUTION 5.1.DampingForce 3pt
     return -c_ * n.value().vel;
     // STUB (void)n;
@@ -233,7 +227,7 @@ class DampingForce : public ZeroForce {
   }
 
  private:
-  double c_;
+  mutable double c_ = -1;
 };
 
 /** A function Point(Node, double) as a ZeroForce. */
@@ -318,7 +312,7 @@ class PinConstraint : public ZeroConstraint {
   template <typename Pred = bool (*)(const Point&)>
   explicit PinConstraint(const Cloth& g, Pred holds = is_corner) {
     // BEGIN SOLUTION 6.1.PinConstraint 4pt
-    for (Node n : g.nodes())
+    for (Node n : nodes(g))
       if (holds(n.position())) pins_.push_back({n, n.position()});
     // STUB (void)g, (void)holds;
     // END SOLUTION
@@ -361,7 +355,7 @@ class PlaneConstraint : public ZeroConstraint {
     // END SOLUTION
   }
   void operator()(Cloth& g, double /*t*/) const override {
-    for (Node n : g.nodes()) project(n);
+    for (Node n : nodes(g)) project(n);
   }
 
  private:
@@ -397,7 +391,7 @@ class SphereConstraint : public ZeroConstraint {
     // END SOLUTION
   }
   void operator()(Cloth& g, double /*t*/) const override {
-    for (Node n : g.nodes()) project(n);
+    for (Node n : nodes(g)) project(n);
   }
 
  private:

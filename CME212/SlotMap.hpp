@@ -445,14 +445,6 @@ class ListPool {
   }
 };
 
-/** A first and a last iterator, for range-for. */
-template <typename It>
-struct Range {
-  It first, last;
-  It begin() const { return first; }
-  It end() const { return last; }
-};
-
 /** The value of nodes and edges that need none. */
 struct NoValue {
   bool operator==(const NoValue&) const = default;

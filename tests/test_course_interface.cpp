@@ -301,6 +301,10 @@ Box3D TagBoundary::box = Box3D(Point(-.3, -.3, -1), Point(.3, .3, 1));
 
 #include <gtest/gtest.h>
 
+#include <ranges>
+#include <unordered_map>
+#include <unordered_set>
+
 #include "tests/TestFolder.hpp"
 
 namespace {
@@ -491,7 +495,8 @@ TEST_F(PathFixture, ShortestPathLengths) {
 
 TEST_F(PathFixture, DeathAtTheEndOfARange) {
   auto n = g.node(3);
-  EXPECT_DEATH(*g.node_end(), "node_end\\(\\) is dereferenced");
+  EXPECT_DEATH((*g.node_end()).value(), "in no graph: .* \\*node_end");
+  EXPECT_DEATH(*(g.node_end() + 1), "beyond node_end");
   EXPECT_DEATH(*g.edge_end(), "edge_end\\(\\) is dereferenced");
   EXPECT_DEATH(*n.edge_end(), "Node::edge_end\\(\\) is dereferenced");
   EXPECT_DEATH(n.edge_end()->node2(), "Node::edge_end");
@@ -528,6 +533,55 @@ TEST_F(PathFixture, FilterIterators) {
     for (; it != end; ++it) ++edges;
   }
   EXPECT_EQ(edges, 10);
+}
+
+// An end that is taken by its node, and never read.
+TEST_F(PathFixture, TheNodeAtTheEndIsPassedOn) {
+  auto count = [](const auto& first, const auto& last, auto it) {
+    int nodes = 0;
+    for (auto n = first; !(n == last); n = *++it) ++nodes;
+    return nodes;
+  };
+  EXPECT_EQ(count(*g.node_begin(), *g.node_end(), g.node_begin()), 11);
+  Graph<int> empty;
+  EXPECT_EQ(count(*empty.node_begin(), *empty.node_end(), empty.node_end()), 0);
+}
+
+TEST_F(PathFixture, NodesAndEdgesAreKeysOfHashTables) {
+  std::unordered_map<Graph<int>::node_type, int> place;
+  std::unordered_set<Graph<int>::edge_type> seen;
+  for (auto n : g.nodes()) {
+    place[n] = int(n.index());
+    for (auto e : n.edges()) seen.insert(e);
+  }
+  EXPECT_EQ(place.size(), 11u);
+  EXPECT_EQ(seen.size(), 10u) << "an edge is the same from both ends";
+  const auto gone = g.node(4);
+  g.remove_node(gone);
+  EXPECT_EQ(place.at(gone), 4) << "a removed node is found, too";
+  EXPECT_EQ(place.count(g.add_node(Point())), 0u) << "in its slot, and new";
+}
+
+TEST_F(PathFixture, RangesAreThoseOfTheStandard) {
+  using G = Graph<int, char>;
+  static_assert(std::random_access_iterator<G::node_iterator>);
+  static_assert(std::random_access_iterator<G::edge_iterator>);
+  static_assert(std::random_access_iterator<G::incident_iterator>);
+  using Nodes = decltype(std::declval<const G&>().nodes());
+  using Edges = decltype(std::declval<G::node_type>().edges());
+  static_assert(std::ranges::random_access_range<Nodes>);
+  static_assert(std::ranges::sized_range<Nodes>);
+  static_assert(std::ranges::view<Nodes> && std::ranges::view<Edges>);
+  static_assert(std::ranges::borrowed_range<Edges>);
+  for (auto n : g.nodes()) n.value() = int(10 - n.index());
+  using N = Graph<int>::node_type;
+  const auto least = std::ranges::min_element(
+      g.nodes(), {}, [](const N& n) { return n.value(); });
+  EXPECT_EQ(*least, g.node(10));
+  EXPECT_EQ(std::ranges::count_if(
+                g.nodes(), [](const N& n) { return n.value() % 2 == 0; }),
+            6);
+  EXPECT_EQ(std::ranges::distance(g.node(3).edges()), 2);
 }
 
 // ------------------------------------------------- homework 2: mass and spring

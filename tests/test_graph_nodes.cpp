@@ -477,7 +477,9 @@ TEST_F(NodesDeathTest, AnInvalidOrDeadNodeIsNotUsed) {
     EXPECT_DEATH(m.edge_end(), "has_node");
   }
   EXPECT_DEATH(g.node(5), "num_nodes");
-  EXPECT_DEATH(*g.node_end(), "num_nodes");
+  EXPECT_FALSE(g.has_node(*g.node_end())) << "it may be passed on";
+  EXPECT_DEATH((*g.node_end()).index(), "\\*node_end\\(\\)");
+  EXPECT_DEATH(*(g.node_end() + 1), "num_nodes");
   EXPECT_DEATH(g.remove_node(g.node_end()), "num_nodes");
   g.remove_node(g.node(0));
   EXPECT_DEATH(g.node_with_id(0), "node_in_use");

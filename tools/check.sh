@@ -319,6 +319,7 @@ case $tier in
     beside one_worker other_worker
     step chart_rule  python3 lab/charts/test_charts.py
     step drawn       drawn
+    step graphs      in_folder . graphs
     step readme      tools/check_readme.sh ;;
   check-full)
     limit=$long step programs programs

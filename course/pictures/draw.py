@@ -24,9 +24,7 @@ HEIGHTS = {2: 416, 3: 330}  # [pixels], by the number of panels
 CLOTH, PROGRAM = "mass_spring.hpp", "mass_spring.cpp"
 MOVE = """    if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
 """
-NEXT_LOOP = """  }
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {
-    auto n = *it;
+NEXT_LOOP = """  for (auto n : nodes(g))
 """
 TWO_FORCES = "make_combined_force(GravityForce(), MassSpringForce()"
 SLIDE = "n.value().vel -= dot(n.value().vel, normal) * normal;"
@@ -35,12 +33,13 @@ SLIDE = "n.value().vel -= dot(n.value().vel, normal) * normal;"
 # time), and what stands there then.
 MISTAKES = {
     "sign": [(CLOTH, "s.K * (l - s.L)", "s.K * (s.L - l)")],
-    "one loop": [(CLOTH, MOVE + NEXT_LOOP, MOVE)],
+    "one loop": [(CLOTH, MOVE + NEXT_LOOP, MOVE),
+                 (CLOTH, "(auto n : nodes(g))", "(auto n : nodes(g)) {"),
+                 (CLOTH, "* force(n, t);", "* force(n, t);\n  }")],
     "old positions": [
-        (CLOTH, "  for (auto it = g.node_begin(); it != g.node_end(); ++it) {",
-         """  std::vector<Point> f;
-  for (auto n : g.nodes()) f.push_back(force(n, t));
-  for (auto it = g.node_begin(); it != g.node_end(); ++it) {"""),
+        (CLOTH, NEXT_LOOP, """  std::vector<Point> f;
+  for (auto n : nodes(g)) f.push_back(force(n, t));
+""" + NEXT_LOOP),
         (CLOTH, "* force(n, t);", "* f[n.index()];")],
     "first length": [(CLOTH, "norm(points[i] - points[j])",
                       "norm(points[0] - points[1])")],

@@ -42,7 +42,8 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
     terms_.push_back({Kind::weight, weight->gravity(), nullptr});
   } else if (exactly<MassSpringForce, FunctionForce>(f)) {
     terms_.push_back({Kind::springs, 0, nullptr});
-  } else if (auto drag = exactly<DampingForce, FunctionForce>(f)) {
+  } else if (auto drag = exactly<DampingForce, FunctionForce>(f);
+             drag && drag->coefficient() >= 0) {
     drag_.add(drag->coefficient());
   } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
     drag_.add(*drags);
