@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Hold the pages to tasks.toml.
+"""Hold the pages, and all that names the homework, to tasks.toml.
 
     course/kit/pages.py            names what differs, FILE:LINE; status 1
-    course/kit/pages.py --write    writes tasks and points into the pages
+    course/kit/pages.py --write    writes tasks, points, tag and title
 
-A page has a place for them: all between the lines <!-- tasks 3.2 --> and
+A page has a place for its tasks: all between the lines <!-- tasks 3.2 --> and
 <!-- end --> is made from the tasks of section 3.2; <!-- tasks --> is for a
-table of all that count.
+table of all that count. The tag is what stands behind HW= or HW ?=; the title
+is the first line of the starter's README.
 """
 import re
 import sys
@@ -18,6 +19,11 @@ COURSE = tasks.ROOT / "course"
 PLACE = re.compile(r"^<!-- tasks *(\S*) -->\n(.*?)^<!-- end -->\n",
                    re.MULTILINE | re.DOTALL)
 LONGEST = 80  # lines of a section's page
+# What names the homework, beside the pages.
+STARTER = "course/starter/README.md"
+NAMING = ("README.md", "Makefile", STARTER, "course/starter/Makefile",
+          "tools/submit.sh", "tools/README.md")
+TAG = re.compile(r"\b(HW *\??= *)[A-Za-z0-9][\w.-]*")
 
 
 def worth(task):
@@ -52,6 +58,13 @@ def of_course(course):
     return rows + [f"| | together | {course.points} |"]
 
 
+def named(file, text, course):
+    """The text of a file with the tag and the title of the homework."""
+    if file == STARTER:
+        text = re.sub("^# .*", lambda _: f"# {course.title}", text, count=1)
+    return TAG.sub(lambda found: found[1] + course.tag, text)
+
+
 def filled(text, course):
     """The text of a page with its places filled."""
     def fill(place):
@@ -70,12 +83,16 @@ def first_difference(one, other):
                 min(len(one), len(other)))
 
 
-def faults(page, text, course):
-    """What is wrong with a page, as LINE: what."""
-    right = filled(text, course)
+def difference(text, right):
+    """What is wrong with a text that should be `right`, as LINE: what."""
     if right != text:
         yield (f"{first_difference(text, right)}: differs from tasks.toml:"
                " course/kit/pages.py --write")
+
+
+def faults(page, text, course):
+    """The same of a page."""
+    yield from difference(text, filled(text, course))
     lines = text.splitlines()
     for section in course.sections:
         if section.page == page:
@@ -86,27 +103,39 @@ def faults(page, text, course):
                 yield f"{len(lines)}: has no place for tasks {section.id}"
 
 
+def check(course, write=False):
+    """What differs in the repository from its tasks.toml, FILE:LINE: what. The
+    files that `write` changes it names on the standard output."""
+    wrong = [f"course/tasks.toml:{section.line}: there is no page "
+             f"{section.page}" for section in course.sections
+             if section.page and not (COURSE / section.page).is_file()]
+    pages = [f"course/{page.name}" for page in sorted(COURSE.glob("*.md"))]
+    for file in (*pages, *NAMING):
+        path = tasks.ROOT / file
+        text = path.read_text(encoding="utf-8")
+        right = named(file, text, course)
+        if file in pages:
+            right = filled(right, course)
+        if write and right != text:
+            text = right
+            path.write_text(text, encoding="utf-8")
+            print(f"{file} written")
+        found = (faults(path.name, text, course) if file in pages else ())
+        wrong += [f"{file}:{fault}" for fault in
+                  dict.fromkeys((*difference(text, right), *found))]
+    return wrong
+
+
 def main():
     write = sys.argv[1:] == ["--write"]
     if sys.argv[1:] and not write:
         sys.exit(__doc__.strip())
     try:
-        course = tasks.load()
+        wrong = check(tasks.load(), write)
     except tasks.TasksError as error:
         sys.exit(str(error))
-    wrong = [f"tasks.toml:{section.line}: there is no page {section.page}"
-             for section in course.sections
-             if section.page and not (COURSE / section.page).is_file()]
-    for page in sorted(COURSE.glob("*.md")):
-        text = page.read_text(encoding="utf-8")
-        if write and filled(text, course) != text:
-            text = filled(text, course)
-            page.write_text(text, encoding="utf-8")
-            print(f"course/{page.name} written")
-        wrong += [f"{page.name}:{fault}"
-                  for fault in faults(page.name, text, course)]
     for fault in wrong:
-        print(f"course/{fault}")
+        print(fault)
     return 1 if wrong else 0
 
 

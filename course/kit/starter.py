@@ -14,6 +14,7 @@ import sys
 import tempfile
 
 import markers
+import pages
 import tasks
 
 # Globs in the repository -> the folder of the starter, and what stays out.
@@ -41,6 +42,8 @@ class StarterError(Exception):
 def tree(kind, root=tasks.ROOT):
     """{path: (bytes, is it a program?)} of a starter or a solution."""
     texts, course = markers.load(root)
+    if wrong := pages.check(course):
+        raise StarterError("\n".join(wrong))
     files = {}
 
     def add(path, content, program=False):

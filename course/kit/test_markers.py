@@ -10,6 +10,7 @@ import unittest
 
 import child
 import markers
+import pages
 import starter
 import tasks
 
@@ -294,6 +295,44 @@ class Repository(unittest.TestCase):
             self.assertEqual(first, self.content(self.folder / kind / "c/d"))
             self.assertEqual(sorted(os.listdir(self.folder / kind)),
                              ["a b", "c"])
+
+    def test_a_renamed_homework_is_renamed_everywhere(self):
+        copy = self.folder / "copy"
+        for name in ("course", "CME212", "docs", "tools", "data"):
+            shutil.copytree(tasks.ROOT / name, copy / name)
+        for path in tasks.ROOT.glob("*"):
+            if path.is_file():
+                shutil.copy(path, copy)
+        course = copy / "course/tasks.toml"
+        text = course.read_text(encoding="utf-8")
+        old = tasks.load()
+        for key, value in (("tag", old.tag), ("title", old.title)):
+            self.assertEqual(text.count(f'{key} = "{value}"'), 1)
+            text = text.replace(f'{key} = "{value}"', f'{key} = "new-{key}"')
+        course.write_text(text, encoding="utf-8")
+
+        def run(program, *arguments):
+            done = child.run([sys.executable, copy / "course/kit" / program,
+                              *arguments], capture_output=True, text=True,
+                             env=os.environ | {"OUT": str(self.folder / "s")})
+            return done.returncode, done.stdout + done.stderr
+
+        status, said = run("starter.py", "starter")
+        self.assertEqual(status, 1)
+        for name in ("README.md", "Makefile", "course/3.1.md",
+                     "course/starter/README.md:1", "tools/submit.sh"):
+            self.assertRegex(said, rf"(?m)^{name}\S*: differs from tasks")
+        self.assertFalse((self.folder / "s").exists())
+        self.assertEqual(run("pages.py", "--write")[0], 0)
+        self.assertEqual(run("pages.py"), (0, ""))
+        self.assertEqual(run("starter.py", "starter")[0], 0)
+        files = self.content(self.folder / "s")
+        for name, (content, _) in files.items():
+            self.assertNotRegex(content, rf"\b{old.tag}\b".encode(), name)
+        self.assertIn(b"# new-title\n", files["README.md"][0])
+        self.assertIn(b"HW     ?= new-tag\n", files["Makefile"][0])
+        for name in pages.NAMING:
+            self.assertNotIn(old.tag, (copy / name).read_text("utf-8"), name)
 
     def test_a_starter_holds_what_it_should(self):
         self.make("starter", self.folder / "s")

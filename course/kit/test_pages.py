@@ -95,6 +95,21 @@ class Filled(unittest.TestCase):
                          "a\n<!-- b -->\nc\n")
 
 
+class Named(unittest.TestCase):
+    def test_the_tag_is_what_stands_behind_HW(self):
+        text = ("make submit HW=hw2 FORCE=1, `make submit HW=hw-2.b`\n"
+                "HW     ?= hw2\noverride HW := $(value HW)\nHW=${HW:-}\n")
+        self.assertEqual(
+            pages.named("Makefile", text, COURSE),
+            text.replace("hw2", "hw9").replace("hw-2.b", "hw9"))
+
+    def test_the_title_is_the_first_line_of_the_starter(self):
+        text = "# Homework 2\n\n# 2\n"
+        self.assertEqual(pages.named(pages.STARTER, text, COURSE),
+                         "# A course\n\n# 2\n")
+        self.assertEqual(pages.named("README.md", text, COURSE), text)
+
+
 class Faults(unittest.TestCase):
     def test_a_page_that_is_right_has_none(self):
         self.assertEqual(list(pages.faults("3.2.md", FULL, COURSE)), [])
