@@ -1,10 +1,14 @@
 """Build test programs of a submission.
 
-A test program is one unit: the bridge, then the tests, one file each. All
-files that it reads are listed by the compiler; one from outside of the
-submission and the kit is refused.
+A test program is one unit: the bridge, then the tests, one file each, and what
+the judge asks beside them (course/asked). All files that it reads are listed by
+the compiler; one from outside of the submission and the kit is refused.
+
+The kit's files are named by whole paths, so no file of a submission can stand
+for them; and its macros end where the kit's own code begins.
 """
 
+import functools
 import itertools
 import os
 import pathlib
@@ -13,6 +17,7 @@ from dataclasses import dataclass, field
 
 import once
 import sandbox
+import submission
 from once import ROOT, TESTS
 
 # In a comment of a test: how it is built, and names that it wants defined.
@@ -20,6 +25,10 @@ WISH = re.compile(r"^(?://| \*) (Build|Define): (\w+)\b", re.MULTILINE)
 COMPILING = sandbox.Limits(cpu=60, wall=120, memory=3 << 30, output=64 << 20,
                            size=512 << 20)
 SYSTEM = ("/usr/include", "/usr/lib", "/usr/local/include", "/usr/local/lib")
+ASKED = ROOT / "course/asked"
+WORD = re.compile(r"[A-Za-z_]\w*")
+SPACE = r"(?:[ \t]|/\*(?:[^*]|\*(?!/)){0,60}+\*/){0,20}+"
+MACRO = re.compile(rf"(?:#|%:|\?\?=){SPACE}define{SPACE}([A-Za-z_]\w*)")
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
 
 
@@ -53,6 +62,23 @@ def way_of(test, needs):
         value for key, value in wishes if key == "Define"))
 
 
+@functools.cache
+def words_of_tests():
+    """Each word that the kit's own code is written with."""
+    sources = [*TESTS.glob("*.[hc]pp"), *ASKED.glob("*.[hc]pp")]
+    return {word for path in sources
+            for word in WORD.findall(path.read_text(encoding="utf-8"))}
+
+
+def macros(files):
+    """The macros of a submission that would change the kit's code."""
+    names = set()
+    for text in files.values():
+        names |= set(MACRO.findall(
+            submission.joined(text.decode("utf-8", "replace"))))
+    return sorted(names & words_of_tests())
+
+
 class Room:
     """A folder with a submission's sources, in which tests are built."""
 
@@ -69,15 +95,21 @@ class Room:
             path = self.source / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(text)
+        (self.built / "undefined.hpp").write_text("".join(
+            f"#undef {name}\n" for name in macros(files))
+            + "#include <cassert>\n", encoding="utf-8")
         self.numbers = itertools.count(1)
 
     def compile(self, way, tests, link=True):
         """The unit of some tests; without tests just the bridge."""
         name = f"unit{next(self.numbers)}"
         unit = self.built / f"{name}.cpp"
-        headers = [f"{way.needs}.hpp", *(f"{test}.cpp" for test in tests)]
+        headers = [TESTS / f"{way.needs}.hpp"]
+        for test in tests:
+            headers += [folder / f"{test}.cpp" for folder in (TESTS, ASKED)
+                        if (folder / f"{test}.cpp").exists()]
         unit.write_text("".join(f'#include "{header}"\n' for header in headers),
-                        encoding="ascii")
+                        encoding="utf-8")
         assembly, program = self.built / f"{name}.s", self.built / name
         prelude = self.kit.preludes / way.kind / "prelude.hpp"
         command = [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-H",
@@ -85,7 +117,9 @@ class Room:
                    "-ftemplate-depth=400",
                    "-include", prelude,
                    "-I", TESTS / "headless", "-I", self.kit.include,
-                   "-I", ".", "-I", TESTS, f'-DKIT_TESTS="{TESTS}"',
+                   # A header of the system is no file of the submission's.
+                   "-iquote", ".", "-idirafter", ".",
+                   f'-DKIT_UNDEFINED="{self.built}/undefined.hpp"',
                    *(f"-D{name}" for name in way.defines),
                    f"-fdebug-prefix-map={self.source}=.",
                    *(["-S", "-o", assembly] if link else ["-fsyntax-only"]),
@@ -116,8 +150,9 @@ class Room:
 
     def run(self, command):
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
-                "/etc/ld.so.cache", "/proc/self", once.BUILT, TESTS,
-                ROOT / "CME212", self.folder]
+                "/etc/ld.so.cache", "/proc/self", self.kit.preludes,
+                self.kit.include, TESTS, ASKED, ROOT / "CME212", self.folder,
+                *self.kit.linked]
         jail = [*self.kit.jail, *flags("--read", read),
                 *flags("--write", [self.built, "/dev/null"])]
         done = sandbox.run_compiler(jail, [str(word) for word in command],
@@ -135,7 +170,7 @@ class Room:
         """The first path from outside, and names in the submission."""
         inside, source = set(), os.path.realpath(self.source) + "/"
         kit = tuple(os.path.realpath(path) + "/" for path in (
-            TESTS, ROOT / "CME212", once.BUILT, self.built))
+            TESTS, ASKED, ROOT / "CME212", self.kit.preludes, self.built))
         for path in paths:
             real = os.path.realpath(os.path.join(self.source, path))
             if real.startswith(source):
@@ -148,6 +183,7 @@ class Room:
         """Without the names of this machine's folders."""
         for path, name in ((f"{self.source}/", ""), (f"{self.built}/", ""),
                            (f"{TESTS}/", "course/tests/"),
+                           (f"{ASKED}/", "course/tests/"),
                            (f"{self.kit.include}/", ""),
                            (f"{ROOT}/", "")):
             text = text.replace(path, name)

@@ -39,6 +39,7 @@ def tests_of(course):
 
 def grade(course, kit, taken, name, jobs):
     tests = tests_of(course)
+    judge.prepare(kit, tests, jobs)
     results = judge.judge(kit, taken.files, tests, jobs)
     return report.combine(course, name, taken, results)
 

@@ -4,16 +4,24 @@ One unit holds all tests of a kind. If it does not compile, the tests that the
 errors come from are built apart, so that what is missing costs its own task.
 Cloth tests run on the kit's own graph first, so that a broken graph costs its
 own tasks, and then, if they fail, on the submission's: either may pass.
+
+A test shares its process with the submission, so what it says is not enough:
+a task also passes only if its answers (course/asked) are those of the solution,
+which has been graded here before, in processes of its own.
 """
 
 import concurrent.futures
 import dataclasses
+import json
+import os
 import pathlib
+import random
+import secrets
 import shutil
 import signal
 import tempfile
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import build
 import diagnosis
@@ -23,6 +31,7 @@ import once
 import sandbox
 
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
+SOLUTION = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp")
 LIMITS = sandbox.Limits()
 STOPPED = {
     "time": f"it takes more than {LIMITS.cpu} s of processor time, or waits",
@@ -43,14 +52,17 @@ class Result:
     got: str = ""
     did: str = ""
     name: str = ""         # of the function in the test
+    answers: dict = field(default_factory=dict)
+    doubtful: bool = False  # passed, and could not answer
 
     @property
     def passed(self):
         return self.status == "passed"
 
 
-def result_of(outcome, names):
-    """A test passed if it says so with the word, and ends in peace."""
+def result_of(outcome, names, expected):
+    """A test passed if it says so, ends in peace, and has answered what is
+    expected: {name: (tolerance, numbers)}, or None if nobody knows that."""
     did, name = outcome.did, outcome.name
     verdict = outcome.verdict
     if verdict[:1] == ["failed"] and len(verdict) == 3:
@@ -62,10 +74,35 @@ def result_of(outcome, names):
     if verdict[:1] == ["passed"] and len(verdict) == 3 and outcome.code == 0:
         if verdict[1] == "0":
             return Result("missing", "no such test is in the kit")
+        if expected is not None and not right(outcome.answers, expected):
+            return Result(
+                "failed", "", "what the solution computes from numbers drawn "
+                "at random", "something else, after its own tests had passed",
+                doubtful=True)
         if verdict[2] != "0":
-            return Result("passed")
+            return Result("passed", answers=outcome.answers)
     return Result("crashed", diagnosis.crash(outcome, names),
                   did=diagnosis.short(did), name=name)
+
+
+def right(answers, expected):
+    """Are all answers there that are needed, and none wrong? asked.hpp says
+    what the last sign of a name means."""
+    some_of, found = set(), set()
+    for name, (tolerance, numbers) in expected.items():
+        if name[-1] == "?":
+            some_of.add(name.split()[0])
+        if name not in answers:
+            if name[-1] not in "?~":
+                return False
+            continue
+        found.add(name.split()[0])
+        given = answers[name][1]
+        if len(given) != len(numbers) or not all(
+                abs(a - b) <= tolerance * max(1, abs(b))    # false of NaN
+                for a, b in zip(given, numbers)):
+            return False
+    return some_of <= found
 
 
 class Memory:
@@ -94,7 +131,11 @@ class Judge:
         self.kit, self.memory = kit, memory
         self.jobs = threading.Semaphore(jobs)
         self.files = files
+        self.data = folder / "data"
+        shutil.copytree(kit.data, self.data)
         self.names = names.defines(files)
+        if kit.answers is None:     # it answers all questions
+            self.names += ("KIT_SOLUTION",)
         own = build.Room(kit, folder / "own", files)
         self.rooms = {"graph": [own], "cloth": [own]}
         graph = markers.solution((once.ROOT / "Graph.hpp").read_text("utf-8"))
@@ -198,13 +239,16 @@ class Judge:
             jail = [*self.kit.jail, *build.flags("--read", [
                 "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
                 "/dev/null", "/dev/zero", "/dev/urandom", unit.program,
-                once.TESTS / "data"])]
+                self.data])]
+            expected = self.kit.answers
+            expected = expected if expected is None else expected.get(test, {})
             crashing, tries = 0, 3
             while True:
                 with self.jobs:
                     outcome = sandbox.run_test(
-                        jail, unit.program, test, LIMITS, crashing)
-                result = result_of(outcome, names)
+                        jail, unit.program, test, LIMITS, self.kit.seed,
+                        self.data, crashing)
+                result = result_of(outcome, names, expected)
                 # What earlier homework left crashes: without it once more.
                 if (outcome.aspect & ~crashing
                         and result.status in ("crashed", "stopped")):
@@ -219,6 +263,51 @@ class Judge:
             results = dict(zip(unit.tests, pool.map(one, unit.tests)))
         unit.program.unlink()
         return results
+
+
+def prepare(kit, tests, jobs):
+    """Grade the solution, once for each kit: it has to get all points. Its
+    answers are what is expected of a submission."""
+    def make(folder):
+        kit.seed = secrets.token_bytes(32)
+        kit.data = folder / "data"
+        draw_cloth(kit.data, random.Random(kit.seed))
+        results = judge(kit, files, tests, jobs)
+        for test, result in sorted(results.items()):
+            if not result.passed:
+                raise once.KitError(
+                    f"the solution itself does not pass {test} here, so "
+                    f"nothing is graded: {result.status}: "
+                    f"{result.text or f'expected {result.expected}'}"
+                    + (f", got {result.got}" if result.got else ""))
+        text = json.dumps({"seed": kit.seed.hex(), "answers": {
+            test: result.answers for test, result in results.items()}})
+        with open(os.open(folder / "answers.json", os.O_WRONLY | os.O_CREAT,
+                          0o600), "w", encoding="ascii") as file:
+            file.write(text)
+
+    files = {name: markers.solution((once.ROOT / name).read_text("utf-8"))
+             .encode() for name in SOLUTION}
+    kit.answers = None
+    folder = kit.locked_part("solution", [
+        *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *build.ASKED.glob("*"),
+        *(once.ROOT / name for name in SOLUTION),
+        *(once.ROOT / "CME212").rglob("*.hpp")], make, sorted(tests.items()))
+    kept = json.loads((folder / "answers.json").read_text("ascii"))
+    kit.data = folder / "data"
+    kit.seed, kit.answers = bytes.fromhex(kept["seed"]), kept["answers"]
+
+
+def draw_cloth(folder, dice):
+    """The kit's small cloth, each node but the corners moved a little."""
+    shutil.copytree(once.TESTS / "data", folder)
+    lines = (folder / "cloth.nodes").read_text("ascii").split("\n")
+    for at, line in enumerate(lines):
+        if line and line not in ("0 0 0", "1 0 0"):
+            x, y, z = map(float, line.split())
+            lines[at] = (f"{x + dice.uniform(-0.02, 0.02):.6f} "
+                         f"{y + dice.uniform(-0.02, 0.02):.6f} {z:g}")
+    (folder / "cloth.nodes").write_text("\n".join(lines), "ascii")
 
 
 def judge(kit, files, tests, jobs, memory=None):

@@ -50,7 +50,8 @@ class Cases:
     all that its file serves; []: none, as it is right), and edits of a `file`,
     by default Graph.hpp: `replace` ([[old, new], ...], each old text occurring
     once), `prepend`, `append`, or its whole `content`. It starts from the
-    solution, or from `base` = "simple".
+    solution, or from `base` = "simple". One whose base is the starter gets no
+    point that the starter does not get.
     """
 
     def __init__(self):
@@ -69,9 +70,7 @@ class Cases:
 
     def all(self):
         yield Case("solution", self.solution, self.loses(set()))
-        yield Case("starter", {
-            name: markers.starter(text, self.course, name)
-            for name, text in self.texts.items()}, self.starter)
+        yield Case("starter", self.base("starter"), self.starter)
         for task in list(self.regions)[self.sample]:
             yield Case(f"without {task}", {
                 name: markers.stub(text, [task], self.course, name)
@@ -84,6 +83,9 @@ class Cases:
     def base(self, name):
         """The sources of a correct submission; what it lacks is ours."""
         files = dict(self.solution)
+        if name == "starter":
+            return {name: markers.starter(text, self.course, name)
+                    for name, text in self.texts.items()}
         if BASES[name]:
             for path in BASES[name].iterdir():
                 files[path.name] = path.read_text(encoding="utf-8")
@@ -98,7 +100,7 @@ class Cases:
                 raise SystemExit(f"{where}: unknown keys {sorted(unknown)}")
             files = self.base(entry.get("base", "solution"))
             file = entry.get("file", "Graph.hpp")
-            text = entry.get("content", files[file])
+            text = entry.get("content", files.get(file, ""))
             for old, new in entry.get("replace", []):
                 if text.count(old) != 1:
                     raise SystemExit(f"{where}: '{old}' occurs "
@@ -106,6 +108,9 @@ class Cases:
                 text = text.replace(old, new)
             files[file] = (entry.get("prepend", "") + text
                            + entry.get("append", "") + "\n")
+            if entry.get("base") == "starter":
+                yield Case(f"{path.stem}: {entry['name']}", files, self.starter)
+                continue
             loses = self.ids(entry["loses"], file, where)
             if loses or not entry["loses"]:     # else its tasks are dropped
                 yield Case(f"{path.stem}: {entry['name']}", files,
@@ -151,6 +156,7 @@ class Check:
         self.cases = cases
         self.kit = once.Kit()
         self.tests = grade.tests_of(cases.course)
+        judge.prepare(self.kit, self.tests, 2)
         self.memory = judge.Memory()
         self.passed = self.failed = 0
 

@@ -38,7 +38,8 @@ LINK = {
                 "--wrap=memchr,--wrap=memcmp"],
 }
 # What each test program is linked with, of the kit's own.
-LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp"]
+LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp",
+          ROOT / "course/asked/tell.cpp"]
 UNUSED = 3600       # seconds after which a part that is not used is removed
 
 
@@ -51,37 +52,48 @@ class Kit:
 
     def __init__(self, unsafe=False, probe=True):
         # CME212/ apart from the root, whose Graph.hpp is no submission's.
+        os.umask(0o022)     # another user may run what is built here
         self.include = BUILT / "include"
         self.include.mkdir(parents=True, exist_ok=True)
         course = sorted((ROOT / "CME212").rglob("*.hpp"))
-        with open(BUILT / "lock", "w", encoding="ascii") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            link = self.include / "CME212"
-            if not link.is_symlink():
-                link.symlink_to(ROOT / "CME212")
-            self.jail = [str(self.part(
-                "jail", [KIT / "jail.cpp"], self.make_jail) / "jail")]
-            tests = sorted(TESTS.glob("*.hpp"))
-            linked = self.part("linked", [*LINKED, *tests, *course],
-                               self.make_linked)
-            self.preludes = self.part(
-                "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
+        link = self.include / "CME212"
+        # A folder that was copied has the link to the old place.
+        if not link.is_symlink() or os.readlink(link) != str(ROOT / "CME212"):
+            link.unlink(missing_ok=True)
+            link.symlink_to(ROOT / "CME212")
+        self.jail = [str(self.locked_part(
+            "jail", [KIT / "jail.cpp"], self.make_jail) / "jail")]
+        tests = sorted(TESTS.glob("*.hpp"))
+        linked = self.locked_part(
+            "linked", [*LINKED, KIT.parent / "asked/asked.hpp", *tests,
+                       *course], self.make_linked)
+        self.preludes = self.locked_part(
+            "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
+        # Of the solution, which judge.prepare() grades before all others.
+        self.seed, self.answers, self.data = b"", None, None
         self.linked = sorted(linked.glob("*.o"))
         if unsafe:
             self.jail.append("--unsafe")
         elif probe:
             self.probe()
 
+    @classmethod
+    def locked_part(cls, *part):
+        """The same part for all graders that run at a time."""
+        with open(BUILT / "lock", "w", encoding="ascii") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            return cls.part(*part)
+
     @staticmethod
-    def part(name, sources, make):
+    def part(name, sources, make, more=()):
         """The folder of a part, which is made if its sources are new."""
         version = subprocess.run([CXX, "--version"], capture_output=True,
                                  check=False)
         if version.returncode:
             raise KitError("there is no g++: make deps")
         key = hashlib.sha256(version.stdout)
-        key.update(repr((FLAGS, COMMON, str(ROOT))).encode())
-        for path in sources:
+        key.update(repr((FLAGS, COMMON, str(ROOT), more)).encode())
+        for path in sorted(sources):
             key.update(path.name.encode() + b"\0" + path.read_bytes())
         folder = BUILT / f"{name}-{key.hexdigest()[:16]}"
         if not folder.exists():
@@ -90,8 +102,12 @@ class Kit:
                     shutil.rmtree(old)
             new = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="new-"))
             new.chmod(0o755)
-            make(new)
-            new.rename(folder)
+            try:
+                make(new)
+                new.rename(folder)
+            except BaseException:
+                shutil.rmtree(new, ignore_errors=True)
+                raise
         os.utime(folder)
         return folder
 

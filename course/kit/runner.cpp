@@ -1,24 +1,29 @@
 /** @file runner.cpp
  * main() of a test program for the grader:  PROGRAM TASK IN OUT PAGE CRASHING
- * Runs the functions of TASK that are linked in, and says on the descriptor OUT
- * how they ended: lines that begin with the word which the grader sends by IN
- * once main() has begun. PAGE is memory shared with the grader; it keeps what
- * was done last, also when the program crashes or is ended. CRASHING are
- * aspects that no test is to look at: see probes() in check.hpp.
+ * Runs the functions of TASK that are linked in, and writes to the descriptor
+ * OUT how they ended. Then it runs those that ask for numbers (asked.hpp), and
+ * writes what they answer; whether that is right is known to the grader alone.
+ * What is asked is drawn from a seed that the grader sends by IN once main()
+ * has begun. PAGE is memory shared with the grader; it keeps what was done
+ * last, also when the program crashes or is ended. CRASHING are aspects that
+ * no test is to look at: see probes() in check.hpp.
  *
  * Compiled apart from the submission: its macros reach nothing here. */
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "check.hpp"
+#include "../asked/asked.hpp"
 
 namespace {
 
@@ -37,7 +42,8 @@ constexpr std::size_t longest = 2000;  // characters of a text
 
 char* page = nullptr;  // "name aspect\0did\0"
 int out = -1;
-char word[65];
+std::uint64_t seed = 0;
+std::map<std::string, std::string> answers;  // "tolerance\tnumber number ..."
 unsigned long checks = 0;
 unsigned crashing = 0;  // aspects that probes() has nobody look at
 std::string test;       // the name of the present one
@@ -52,7 +58,7 @@ std::string plain(std::string_view text) {
 }
 
 void send(const std::string& line) {
-  const std::string all = std::string(word) + '\t' + line + '\n';
+  const std::string all = line + '\n';
   for (std::size_t at = 0; at < all.size();) {
     const ssize_t n = write(out, all.data() + at, all.size() - at);
     if (n <= 0) _exit(3);
@@ -82,11 +88,31 @@ void say_what_was_thrown() {
   try {
     throw;
   } catch (const kit::Failure&) {
+    failed("no exception", "one of the tests' own");  // if it is a forged one
   } catch (const std::exception& e) {
     failed("no exception", std::string("one that says: ") + e.what());
   } catch (...) {
     failed("no exception", "one of an unusual type");
   }
+}
+
+/** Run all functions of this id, or end the program.  @return their number */
+std::size_t run_all(const std::string& id) {
+  // By name, whatever the order in which files were linked.
+  std::vector<Test> mine;
+  for (const Test& one : tests())
+    if (id == one.id) mine.push_back(one);
+  for (const Test& one : mine) {
+    keep(0, test = one.name);
+    keep(1, "");
+    try {
+      one.run();
+    } catch (...) {
+      say_what_was_thrown();
+    }
+    if (has_failed) _exit(1);
+  }
+  return mine.size();
 }
 
 }  // namespace
@@ -106,6 +132,24 @@ void fail(std::string expected, std::string got) {
   failed(expected, got);
   throw Failure{"", expected, got};
 }
+
+// As splitmix64 makes it.
+double drawn(double least, double most) {
+  std::uint64_t x = seed += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  x ^= x >> 31;
+  return least + (most - least) * double(x >> 11) / 9007199254740992.;
+}
+void answer(const std::string& what, double number, double tolerance) {
+  char text[40];
+  auto put = [&text](double a) {
+    return std::string(text, std::to_chars(text, text + sizeof text, a).ptr);
+  };
+  std::string& all = answers[what];
+  all += all.empty() ? put(tolerance) + '\t' : " ";
+  all += put(number);
+}
 }  // namespace kit
 
 int main(int count, char** arg) {
@@ -119,25 +163,17 @@ int main(int count, char** arg) {
   page = static_cast<char*>(map);
   if (write(out, "begun\n", 6) != 6) return 2;
   const int in = std::atoi(arg[2]);
-  if (read(in, word, sizeof word - 1) != sizeof word - 1) return 2;
+  unsigned char word[32];
+  if (read(in, word, sizeof word) != sizeof word) return 2;
   close(in);
 
-  // By name, whatever the order in which files were linked.
-  std::vector<Test> mine;
-  for (const Test& test : tests())
-    if (id == test.id) mine.push_back(test);
-  std::size_t ran = 0;
-  for (const Test& one : mine) {
-    keep(0, test = one.name);
-    keep(1, "");
-    try {
-      one.run();
-    } catch (...) {
-      say_what_was_thrown();
-    }
-    if (has_failed) _exit(1);
-    ++ran;
-  }
+  const std::size_t ran = run_all(id);
+  for (unsigned char byte : word) seed = (seed ^ byte) * 0x100000001b3u;
+  for (char letter : id)
+    seed = (seed ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
+  run_all('?' + id);
+  for (const auto& [what, numbers] : answers)
+    send("answer\t" + plain(what) + '\t' + numbers);
   send("passed\t" + std::to_string(ran) + '\t' + std::to_string(checks));
   _exit(0);
 }

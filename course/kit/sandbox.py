@@ -6,7 +6,6 @@ watched; whatever it does, the whole group of processes is ended and reaped.
 
 import os
 import re
-import secrets
 import selectors
 import signal
 import subprocess
@@ -15,6 +14,7 @@ from dataclasses import dataclass, field
 
 PAGE = 4096     # bytes of runner.cpp's page; a text on each half
 KEPT = 65536    # bytes of output kept at each end
+SPOKEN = 1 << 18    # bytes of a verdict and its answers
 LOOK = 0.01     # seconds between two looks at the memory
 READ_AT_ONCE = 1 << 17
 MEGABYTE = 1 << 20
@@ -38,7 +38,8 @@ class Outcome:
     code: int = 0                  # of exit, or -signal
     output: str = ""               # what it wrote to stderr (and stdout)
     begun: bool = False            # main() has begun
-    verdict: list = field(default_factory=list)   # fields of the last line
+    verdict: list = field(default_factory=list)   # its fields
+    answers: dict = field(default_factory=dict)   # name: (tolerance, numbers)
     name: str = ""                 # the function of the test
     did: str = ""                  # what it did last
     aspect: int = 0                # the one that it looked at: model.hpp
@@ -47,15 +48,16 @@ class Outcome:
 class Output:
     """The first and the last bytes of what a program writes."""
 
-    def __init__(self, most):
+    def __init__(self, most, kept=KEPT):
         self.first, self.last, self.total, self.most = b"", b"", 0, most
+        self.kept = kept
 
     def add(self, data):
         """Is it still no more than the limit?"""
         self.total += len(data)
-        room = max(0, KEPT - len(self.first))
+        room = max(0, self.kept - len(self.first))
         self.first += data[:room]
-        self.last = (self.last + data[room:])[-KEPT:]
+        self.last = (self.last + data[room:])[-self.kept:]
         return self.total <= self.most
 
     def text(self):
@@ -156,20 +158,19 @@ def run_compiler(jail, command, folder, scratch, limits):
     return Outcome(stopped, process.returncode, output.text())
 
 
-def run_test(jail, program, task, limits, crashing=0):
+def run_test(jail, program, task, limits, seed, data, crashing=0):
     """Run the test functions of a task in a process of its own."""
-    word = secrets.token_hex(32)
-    to_read, to_write = os.pipe()         # the word, to the program
+    to_read, to_write = os.pipe()         # the seed, to the program
     from_read, from_write = os.pipe()     # how it ended
     page = os.memfd_create("page")
     os.ftruncate(page, PAGE)
     descriptors = (to_read, from_write, page)
-    written, spoken = Output(limits.output), Output(KEPT)
+    written, spoken = Output(limits.output), Output(SPOKEN, SPOKEN)
 
     def heard(data):
         if not spoken.total and data.startswith(b"begun\n"):
             try:
-                os.write(to_write, word.encode())
+                os.write(to_write, seed)
             except BrokenPipeError:
                 pass
         return spoken.add(data)
@@ -179,7 +180,9 @@ def run_test(jail, program, task, limits, crashing=0):
             [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
              "--", str(program), task, *map(str, descriptors),
              str(crashing)],
-            cwd="/", env=clean_environment("/nowhere"), pass_fds=descriptors,
+            cwd="/", env={**clean_environment("/nowhere"),
+                          "KIT_DATA": str(data)},
+            pass_fds=descriptors,
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, start_new_session=True)
         os.close(to_read)
@@ -192,12 +195,29 @@ def run_test(jail, program, task, limits, crashing=0):
     finally:
         for one in (*descriptors, to_write, from_read):
             os.close(one)
-    said = spoken.text().split("\n")
-    verdict = [line.split("\t")[1:] for line in said
-               if line.startswith(word + "\t")]
+    begun, *said = spoken.first.decode("utf-8", "replace").split("\n")
+    said = [line.split("\t") for line in said]
+    # A failure counts, whatever else is said.
+    verdict = sorted((words for words in said
+                      if words[0] in ("failed", "passed")),
+                     key=lambda words: words[0])
     name, did = (texts[at:at + PAGE // 2].partition(b"\0")[0]
                  .decode("ascii", "replace") for at in (0, PAGE // 2))
     name, _, aspect = name.partition(" ")
     return Outcome(stopped, process.returncode, written.text(),
-                   said[0] == "begun", verdict[0] if verdict else [], name, did,
+                   begun == "begun", verdict[0] if verdict else [],
+                   answers_of(said), name, did,
                    int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0)
+
+
+def answers_of(said):
+    """{name: (tolerance, numbers)} of the lines of a program."""
+    answers = {}
+    for words in said:
+        if words[0] == "answer" and len(words) == 4:
+            try:
+                answers[words[1]] = (float(words[2]),
+                                     [float(x) for x in words[3].split(" ")])
+            except ValueError:
+                pass
+    return answers

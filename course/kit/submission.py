@@ -36,8 +36,11 @@ SUSPECT = [
     (r"\bno_sanitize|redefine_extname|pragma\s+weak|\b(alias|ifunc"
      r"|constructor|destructor|section|init_priority)\s*\(\s*\"?",
      "has attributes that change how a program is linked or checked"),
+    (r"\bnamespace\s+(kit|kit_missing|std)\b|\bextern\s*\"C",
+     "adds to what is not its own"),
     (r"#\s*define\s+(private|protected|public|class|struct|return|if|while"
-     r"|for|static|const|int|main|assert)\b", "defines a keyword anew"),
+     r"|for|static|const|int|main|assert|static_cast)\b",
+     "defines a keyword anew"),
 ]
 
 
@@ -217,15 +220,33 @@ def take(folder, tag=""):
     return taken
 
 
+def joined(text):
+    """C++ without broken lines; as many lines."""
+    lines, broken = [], []
+    for line in text.split("\n"):
+        if line.endswith("\\"):
+            broken.append(line[:-1])
+        else:
+            lines.append(" ".join([*broken, line]))
+            lines += [""] * len(broken)
+            broken = []
+    return "\n".join([*lines, *broken])
+
+
+# What has no end goes to the end: each character is looked at once.
+COMMENT_OR_TEXT = re.compile(
+    r"""R"(?P<mark>[^()\\\s]{0,16})\(.*?(?:\)(?P=mark)"|\Z)"""
+    r"""|//[^\n]*|/\*.*?(?:\*/|\Z)"""
+    r"""|"(?:\\.|[^"\\\n])*+(?:"|\\?\Z|(?=\n))"""
+    r"""|'(?:\\.|[^'\\\n])*+(?:'|\\?\Z|(?=\n))""", re.DOTALL)
+
+
 def without_comments(text):
     """C++ without comments and without broken lines; as many lines."""
     def blank(match):
-        found = match.group(0)
-        return found if found[0] in "\"'" else " " + "\n" * found.count("\n")
-    text = re.sub(r"(?:[^\n]*\\\n)+[^\n]*", lambda broken: broken[0].replace(
-        "\\\n", " ") + "\n" * broken[0].count("\n"), text)
-    return re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\""
-                  r"|'(?:\\.|[^'\\\n])*'", blank, text, flags=re.DOTALL)
+        found = match[0]
+        return " " + "\n" * found.count("\n") if found[0] == "/" else found
+    return COMMENT_OR_TEXT.sub(blank, joined(text))
 
 
 def suspects(name, text):

@@ -208,6 +208,38 @@ class Take(Folder):
         self.assertEqual(submission.suspects("Graph.hpp", own), [])
 
 
+LONG = [
+    "x" * 500000, "struct a{" * 30000, "/*" * 200000, '"\\' * 200000,
+    'R"a(' * 100000, "typedef Graph <" + " " * 400000, "#/*" * 100000,
+    "typedef Graph <" * 30000, "GravityForce:" * 30000, "\\\n" * 200000]
+
+
+class Read(unittest.TestCase):
+    """No text takes long: the program ends far before its limit."""
+
+    def test_all_that_reads_sources(self):
+        child.run([sys.executable, "-c", """
+import json, sys
+import build, names, submission
+for text in json.load(sys.stdin):
+    files = {"mass_spring.hpp": text.encode()}
+    submission.suspects("a.hpp", files["mass_spring.hpp"])
+    names.defines(files)
+    build.macros(files)
+"""], 100, cwd=once.KIT, input=json.dumps(LONG), text=True, check=True)
+
+    def test_comments_end_and_strings_stay(self):
+        self.assertEqual(submission.without_comments(
+            'a /* b\n */ c // d \\\n e\nR"x( /* )x" "//" \'"\' /* f'),
+            'a  \n c  \n\nR"x( /* )x" "//" \'"\'  ')
+
+    def test_macros_for_words_of_the_tests_end(self):
+        self.assertEqual(build.macros({
+            "a.hpp": b"#define check_near(...)\n#  define N_OF_MINE 5\n",
+            "b.hpp": b"#/**/define \\\nstatic_cast x\n%:define hold(a)"}),
+            ["check_near", "hold", "static_cast"])
+
+
 class Deny(Folder):
     def test_a_program_in_the_jail(self):
         kit = once.Kit()

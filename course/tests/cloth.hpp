@@ -56,6 +56,9 @@
 #undef v
 #undef x
 #undef dt
+#ifdef KIT_UNDEFINED
+#include KIT_UNDEFINED
+#endif
 #include "check.hpp"
 #include "values.hpp"
 

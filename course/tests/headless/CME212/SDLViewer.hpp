@@ -11,8 +11,8 @@
 #undef SDLViewer
 #endif
 
+#include "../../film.hpp"
 #include "CME212/viewer/NoViewer.hpp"
-#include "film.hpp"
 
 namespace CME212 {
 
