@@ -12,8 +12,8 @@ import zipfile
 from tasks import ROOT
 
 GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
-         "tools/deps.sh", "course/tasks.toml", "course/kit/*.py", "course/kit/*.cpp",
-         "course/tests/**/*", "course/asked/*"]
+         "tools/deps.sh", "course/tasks.toml", "course/kit/*.py",
+         "course/kit/*.cpp", "course/tests/**/*", "course/asked/*"]
 LEFT_OUT = {"kit_check.py", "test_markers.py", "starter.py", "autograder.py"}
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
