@@ -7,11 +7,13 @@ DIR holds Graph.hpp and mass_spring.hpp or mass_spring.cpp. With HW, DIR is a
 clone, and graded is what its tag HW holds. The table goes to the standard
 output; FILEs get it as JSON, as JUnit XML and as Gradescope's results.json.
 SAFE=0 runs the submission even where the kernel allows no jail.
-Exit status: 0 it was graded, whatever the points; 2 it can't be.
+Exit status: 0 it was graded, whatever the points; 2 it can't be. The solution
+is graded first, once for each kit: if it does not get all points, nothing is.
 """
 
 import os
 import pathlib
+import signal
 import sys
 import tempfile
 
@@ -37,6 +39,31 @@ def tests_of(course):
     return tests
 
 
+READING = 120   # seconds, at most, to read a submission
+
+
+def too_long(*_):
+    raise submission.BadInput("the submission takes too long to read")
+
+
+def number_of_jobs(text):
+    if not text:
+        return len(os.sched_getaffinity(0))
+    if text.isascii() and text.isdecimal() and 0 < int(text) <= 1000:
+        return int(text)
+    raise submission.BadInput(f"JOBS is '{submission.shown(text)}', expected "
+                              "a number from 1 to 1000")
+
+
+def less_safe(kit, unsafe):
+    """What the jail has not, on this machine."""
+    if unsafe:
+        yield "it ran without a jail (SAFE=0)"
+    if "landlock" not in kit.has():
+        yield ("this kernel has no Landlock: a submission can read the files "
+               "of this machine that the grader's user can read")
+
+
 def grade(course, kit, taken, name, jobs):
     tests = tests_of(course)
     judge.prepare(kit, tests, jobs)
@@ -54,6 +81,11 @@ def write(path, text):
     os.replace(file.name, path)
 
 
+def refuse(why):
+    print(f"grade: {why}", file=sys.stderr)
+    return 2
+
+
 def main():
     get = os.environ.get
     folder, tag = get("DIR", ""), get("HW", "")
@@ -64,28 +96,42 @@ def main():
             raise submission.BadInput(
                 "DIR is missing: make grade DIR=submission [HW=hw2]")
         for path in filter(None, outputs):
-            if not pathlib.Path(path).parent.is_dir():
-                raise submission.BadInput(f"{submission.shown(path)}: its "
-                                          "folder does not exist")
+            try:    # before the work
+                tempfile.TemporaryFile(dir=pathlib.Path(path).parent).close()
+            except OSError as error:
+                raise submission.BadInput(
+                    f"{submission.shown(path)}: its folder can't be written "
+                    f"({error.strerror})") from None
+        jobs = number_of_jobs(get("JOBS"))
+        signal.signal(signal.SIGALRM, too_long)
+        signal.alarm(READING)
         taken = submission.take(folder, tag)
+        signal.alarm(0)
         course = tasks.load()
         tests_of(course)        # before anything is built for them
-        kit = once.Kit(unsafe=get("SAFE") == "0")
-        jobs = int(get("JOBS") or 0) or len(os.sched_getaffinity(0))
+        unsafe = get("SAFE") == "0"
+        kit = once.Kit(unsafe)
+        taken.notes += less_safe(kit, unsafe)
         name = submission.shown(os.path.basename(os.path.realpath(folder)))
         graded = grade(course, kit, taken, name, jobs)
     except submission.BadInput as error:
         if get("RESULTS"):
             write(get("RESULTS"), report.refused(str(error)))
-        print(f"grade: {error}", file=sys.stderr)
-        return 2
+        return refuse(error)
     except (once.KitError, tasks.TasksError) as error:
-        print(f"grade: {error}", file=sys.stderr)
-        return 2
+        return refuse(error)
+    except OSError as error:
+        return refuse(f"{submission.shown(error.filename or 'this machine')}: "
+                      f"{error.strerror}")
+    except MemoryError:
+        return refuse("there is not enough memory")
     print(report.as_text(graded), end="")
-    for path, form in outputs.items():
-        if path:
-            write(path, form(graded))
+    try:
+        for path, form in outputs.items():
+            if path:
+                write(path, form(graded))
+    except OSError as error:
+        return refuse(f"{submission.shown(error.filename)}: {error.strerror}")
     return 0
 
 

@@ -40,11 +40,23 @@ LINK = {
 # What each test program is linked with, of the kit's own.
 LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp",
           ROOT / "course/asked/tell.cpp"]
+PATIENCE = 600      # seconds for a step of the kit's own
 UNUSED = 3600       # seconds after which a part that is not used is removed
 
 
 class KitError(Exception):
     """The kit itself can't be built or used here."""
+
+
+def ended(command):
+    """The command, which runs nothing of a submission, after it has ended."""
+    try:
+        return subprocess.run(command, capture_output=True, text=True,
+                              errors="replace", timeout=PATIENCE, check=False)
+    except FileNotFoundError as error:
+        raise KitError(f"there is no {error.filename}: make deps") from None
+    except subprocess.TimeoutExpired:
+        raise KitError(f"{command[0]} takes more than {PATIENCE} s") from None
 
 
 class Kit:
@@ -87,11 +99,10 @@ class Kit:
     @staticmethod
     def part(name, sources, make, more=()):
         """The folder of a part, which is made if its sources are new."""
-        version = subprocess.run([CXX, "--version"], capture_output=True,
-                                 check=False)
+        version = ended([CXX, "--version"])
         if version.returncode:
             raise KitError("there is no g++: make deps")
-        key = hashlib.sha256(version.stdout)
+        key = hashlib.sha256(version.stdout.encode())
         key.update(repr((FLAGS, COMMON, str(ROOT), more)).encode())
         for path in sorted(sources):
             key.update(path.name.encode() + b"\0" + path.read_bytes())
@@ -136,20 +147,17 @@ class Kit:
     @staticmethod
     def run(words, complaint, before=()):
         command = [str(word) for word in (*before, CXX, *COMMON, *words)]
-        done = subprocess.run(command, capture_output=True, text=True,
-                              errors="replace", check=False)
+        done = ended(command)
         if done.returncode:
             raise KitError(f"{complaint}\n{done.stderr[:2000]}")
 
     def has(self):
         """What the kernel has for the jail beside the filter of calls."""
-        return subprocess.run([*self.jail, "--has"], capture_output=True,
-                              text=True, check=True).stdout.split()
+        return ended([*self.jail, "--has"]).stdout.split()
 
     def probe(self):
         """Without a filter of system calls there is no grading."""
-        done = subprocess.run([*self.jail, "--", "/bin/true"],
-                              capture_output=True, text=True, check=False)
+        done = ended([*self.jail, "--", "/bin/true"])
         if done.returncode:
             raise KitError(
                 f"{done.stderr.strip() or 'jail: does not run'}\nWithout it a "

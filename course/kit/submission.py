@@ -4,8 +4,11 @@ Nothing of the submission is run or trusted here: no symbolic link is followed,
 no setting of its clone is used, and what is too large is not read.
 """
 
+import itertools
 import os
 import re
+import resource
+import signal
 import stat
 import subprocess
 from dataclasses import dataclass, field
@@ -15,6 +18,9 @@ MOST_ENTRIES = 20000
 LARGEST = 1 << 20          # bytes of a file
 LARGEST_ALL = 8 << 20
 DEEPEST = 5                # folders below DIR
+GIT_SECONDS = 30
+GIT_MEMORY = 1 << 30       # bytes of address space
+GIT_OUTPUT = 16 << 20      # bytes of an answer
 PLAIN = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_+. -]*")   # a name
 TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 # What a starter holds beside the sources: the kit has its own.
@@ -80,16 +86,20 @@ def in_folder(folder):
                 return file.read(LARGEST + 1)
         return do
 
-    entries, waiting = [], [""]
+    entries, waiting, seen = [], [""], 0
     while waiting:
         inside = waiting.pop()
         try:
-            found = sorted(os.scandir(os.path.join(folder, inside)),
-                           key=lambda entry: os.fsencode(entry.name))
+            with os.scandir(os.path.join(folder, inside)) as content:
+                found = sorted(itertools.islice(content, MOST_ENTRIES + 1),
+                               key=lambda entry: os.fsencode(entry.name))
         except OSError as error:
             if not inside:
                 raise BadInput(f"{shown(folder)}: {error.strerror}") from None
             continue
+        seen += len(found)
+        if seen > MOST_ENTRIES:
+            raise BadInput(f"{shown(folder)}: holds too many files")
         for entry in found:
             path = os.path.join(inside, entry.name)
             if entry.is_dir(follow_symlinks=False):
@@ -101,8 +111,6 @@ def in_folder(folder):
                 "is a symbolic link" if entry.is_symlink() else "is no file")
             entries.append(Entry(path, problem, status.st_size,
                                  read(entry.path)))
-            if len(entries) > MOST_ENTRIES:
-                raise BadInput(f"{shown(folder)}: holds too many files")
     return entries
 
 
@@ -125,16 +133,30 @@ def git(folder, *words):
     command = ["git", "-c", "safe.directory=*", "-c", "core.fsmonitor=false",
                "-c", "core.hooksPath=/dev/null", "-c", "protocol.allow=never",
                "-C", folder, *words]
-    try:
-        done = subprocess.run(
+    with subprocess.Popen(
             command, env=environment, stdin=subprocess.DEVNULL,
-            capture_output=True, timeout=60, check=False)
-    except subprocess.TimeoutExpired:
-        raise BadInput(f"{shown(folder)}: git does not answer") from None
-    if done.returncode:
-        raise BadInput(f"{shown(folder)}: git says: " + shown(
-            done.stderr.decode("utf-8", "replace").strip().split("\n")[0]))
-    return done.stdout
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            preexec_fn=limit_git) as process:
+        try:
+            output = process.stdout.read(GIT_OUTPUT + 1)
+            if len(output) > GIT_OUTPUT:
+                raise BadInput(f"{shown(folder)}: holds too many files")
+            errors = process.stderr.read(GIT_OUTPUT)
+        finally:
+            process.kill()
+    if process.returncode:
+        said = errors.decode("utf-8", "replace").strip().split("\n")[0]
+        raise BadInput(f"{shown(folder)}: git says: "
+                       + (shown(said) or "nothing within its limits"))
+    return output
+
+
+def limit_git():
+    for what, most in ((resource.RLIMIT_CPU, GIT_SECONDS),
+                       (resource.RLIMIT_AS, GIT_MEMORY),
+                       (resource.RLIMIT_CORE, 0)):
+        resource.setrlimit(what, (most, most))
+    signal.alarm(4 * GIT_SECONDS)       # it may wait, too
 
 
 def in_tag(folder, tag):
@@ -153,7 +175,8 @@ def in_tag(folder, tag):
     entries = []
     for line in listing.split(b"\0")[:-1]:
         description, _, path = line.partition(b"\t")
-        mode, kind, blob, size = description.decode().split()
+        mode, kind, blob, size = description.decode("ascii",
+                                                    "replace").split()
         if kind != "blob":
             continue
         path = os.fsdecode(path)
@@ -161,8 +184,10 @@ def in_tag(folder, tag):
         if not all(may_look_into("/".join(folders[:n + 1]))
                    for n in range(len(folders))):
             continue
+        problem = ("is a symbolic link" if mode == "120000" else
+                   "" if size.isdecimal() else "is not in the clone")
         entries.append(Entry(
-            path, "is a symbolic link" if mode == "120000" else "", int(size),
+            path, problem, int(size) if size.isdecimal() else 0,
             lambda blob=blob: git(folder, "cat-file", "blob", blob)))
     return entries
 

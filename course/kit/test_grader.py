@@ -195,6 +195,42 @@ class Take(Folder):
         self.refused("git says: fatal: not a git repository", "hw2")
         self.assertFalse(bad.exists())
 
+    def git(self, *words, **options):
+        return child.run(["git", "-C", self.folder, "-c", "user.name=a", "-c",
+                          "user.email=b", *words], check=True, text=True,
+                         capture_output=True, **options).stdout.strip()
+
+    def test_a_tree_that_holds_itself_many_times_is_refused(self):
+        self.git("init", "-q")
+        blob = self.git("hash-object", "-w", "--stdin", input="")
+        tree = self.git("mktree", input=f"100644 blob {blob}\tGraph.hpp\n")
+        for _ in range(9):
+            tree = self.git("mktree", input="".join(
+                f"040000 tree {tree}\t{name}\n" for name in "abcdefghij"))
+        commit = self.git("commit-tree", tree, "-m", "x")
+        self.git("tag", "hw2", commit)
+        self.refused("holds too many files", "hw2")
+
+    def test_a_blob_that_is_missing_is_left_out(self):
+        self.git("init", "-q")
+        self.put("Graph.hpp", "1"), self.put("more.hpp", "2")
+        self.git("add", "."), self.git("commit", "-qm", "x")
+        self.git("tag", "hw2")
+        for name in ("more.hpp", "Graph.hpp"):
+            blob = self.git("rev-parse", f"hw2:{name}")
+            (self.folder / ".git/objects" / blob[:2] / blob[2:]).unlink()
+            if name == "more.hpp":
+                taken = submission.take(str(self.folder), "hw2")
+                self.assertEqual(taken.files, {"Graph.hpp": b"1"})
+                self.assertEqual(taken.notes,
+                                 ["more.hpp is not in the clone: left out"])
+        self.refused("Graph.hpp is not in the clone", "hw2")
+
+    def test_many_folders_are_refused(self):
+        for number in range(submission.MOST_ENTRIES + 1):
+            (self.folder / str(number)).mkdir()
+        self.refused("holds too many files")
+
     def test_flags_what_a_person_should_see(self):
         text = b"""// syscall(1) in a comment
             const char* s = "/proc/self/exe";
@@ -290,8 +326,17 @@ class Deny(Folder):
                                           RESULTS=results))
         self.assertEqual(json.loads(pathlib.Path(results).read_text())["score"],
                          0)
-        self.assertIn("folder does not exist", run(
+        self.assertIn("can't be written (No such file", run(
             DIR=str(self.folder), JSON=str(self.top / "none/x.json")))
+        for jobs in ("x", "0", "-1", "1e3", "9999999999"):
+            self.assertEqual(
+                run(DIR=str(self.folder), JOBS=jobs), f"grade: JOBS is '{jobs}'"
+                ", expected a number from 1 to 1000\n")
+        # A folder that nobody can write to, root neither.
+        self.put("Graph.hpp")
+        self.assertRegex(run(DIR=str(self.folder), JSON="/proc/x.json"),
+                         "^grade: /proc/x.json: its folder can't be written "
+                         "[^\n]*\n$")
 
     def test_make_runs_no_name(self):
         done = child.run(

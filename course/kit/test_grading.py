@@ -11,10 +11,12 @@ import shutil
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import zipfile
 
 import autograder
 import child
+import judge
 import markers
 import once
 
@@ -64,6 +66,18 @@ class Grading(unittest.TestCase):
         self.hold(first)
         self.assertEqual(first[3], self.at_gradescope())
 
+    def test_nothing_is_graded_where_the_solution_fails(self):
+        def judged(*_):
+            return {"a": judge.Result("passed"),
+                    "b": judge.Result("failed", "", "1", "2")}
+        kit = once.Kit()
+        with unittest.mock.patch("judge.judge", judged):
+            for _ in range(2):      # and it is not kept
+                with self.assertRaisesRegex(once.KitError, "^the solution "
+                                            "itself does not pass b here, .*: "
+                                            "failed: expected 1, got 2$"):
+                    judge.prepare(kit, {"a": "graph", "b": "graph"}, 1)
+
     def hold(self, texts):
         text, data = texts[0], json.loads(texts[1])
         self.assertRegex(text, "7.1 remove_node\\(iterator\\) 0/3\\.\n(.*\n)+?"
@@ -98,12 +112,17 @@ class Grading(unittest.TestCase):
                          info.external_attr >> 16 & 0o777)
         shutil.copytree(self.submission, root / "submission")
         (root / "results").mkdir()
-        # Reachable for nobody, as /autograder is.
-        self.top.chmod(0o755)
+        # Files that only their owner may read, below a folder that only he may
+        # enter; and a build/ that was copied from elsewhere.
+        self.top.chmod(0o700)
         shutil.copy(root / "source/run_autograder", root)
+        old = root / "source/build/kit/include/CME212"
+        old.parent.mkdir(parents=True)
+        old.symlink_to("/nowhere/CME212")
         for command in ([root / "source/setup.sh", root],
                         [root / "run_autograder", root]):
-            done = child.run(command, BUILDS, capture_output=True, text=True)
+            done = child.run(command, BUILDS, capture_output=True, text=True,
+                             umask=0o077)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
         hidden = root / "source/course/tests/3.1.position.cpp"
         self.assertEqual(hidden.stat().st_mode & 0o077, 0)
