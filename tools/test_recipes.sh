@@ -235,7 +235,7 @@ TEST(Method, HasItsOrderAndItsLimit) {
 }
 TEST(Force, MovesTheCenterOfMass) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   const Point a(0, 2, 0), before = center_of_mass(g);
   const auto force = make_combined_force(MassSpringForce(), PushForce(a));
   Verlet verlet;
@@ -244,7 +244,7 @@ TEST(Force, MovesTheCenterOfMass) {
 }
 TEST(Constraint, HoldsAndChangesNothingTheSecondTime) {
   Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), Mesh::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   for (Node n : g.nodes()) n.position().z = 0.1 * n.position().x;
   CeilingConstraint ceiling(0.05);
   const Point first = g.node(0).position();

@@ -15,7 +15,7 @@ lanes::Cpu fastest_cpu() {
   if (count == 1) return lanes::best_cpu();
   constexpr unsigned side = 24;
   Cloth g;
-  build_cloth(g, grid_points(side), grid_quads(side), Mesh::diagonals);
+  build_cloth(g, grid_points(side), grid_quads(side), MeshSprings::diagonals);
   const ForcePlan force = MassSpringForce();
   FlatFlow flow;
   flow.begin(g, force, false);
