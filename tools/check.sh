@@ -279,6 +279,15 @@ page() {
     { echo "skipped: the page: websocket is missing: make page-deps"; return 0; }
   in_folder . page page_positions && lab/page/test_page.py build/check
 }
+# The same bits by an ARM processor, in an emulator.
+arm() {
+  local name
+  for name in aarch64-linux-gnu-g++ qemu-aarch64; do
+    command -v $name >/dev/null ||
+      { echo "skipped: ARM: apt-get install g++-aarch64-linux-gnu qemu-user"; return 0; }
+  done
+  tools/check_arm.sh
+}
 of_scripts() {
   limit=$long step checks tools/test_checks.sh
   step submit      tools/test_submit.sh
@@ -292,6 +301,7 @@ of_variants() {
   step plain       plain
   step threads     threads
   step single      single
+  limit=$long step arm arm
 }
 of_programs() {
   step window      tools/test_window.sh

@@ -3,7 +3,7 @@
 # root and one vector division for a register full of springs, no scalar one.
 # No number is stored alone, which takes several times as long as the rest. No
 # product and sum are rounded at once: other processors would give other bits.
-# By both compilers.
+# By both compilers; for ARM by g++, if it is installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -29,9 +29,9 @@ expect() {  # COMPILER CPU ROOT DIVISION REGISTER
   text=$(kernel "$1" "$2")
   if grep -qE "[[:space:]]$3[[:space:]].*$5" <<<"$text" &&
     grep -qE "[[:space:]]$4[[:space:]].*$5" <<<"$text" &&
-    ! grep -qE '[[:space:]]v?(sqrt|div)sd[[:space:]]' <<<"$text" &&
+    ! grep -qE '[[:space:]](v?(sqrt|div)sd|f(sqrt|div)[[:space:]]+d[0-9])' <<<"$text" &&
     ! grep -qE '[[:space:]]vmov[slh]p?d[[:space:]]+%xmm[0-9]+, ' <<<"$text" &&
-    ! grep -qE '[[:space:]]vfn?m(add|sub)' <<<"$text"; then
+    ! grep -qE '[[:space:]](vfn?m(add|sub)|fml[as]|fn?m(add|sub)[[:space:]])' <<<"$text"; then
     passed=$((passed + 1))
   else
     echo "$1 does not keep the springs in vectors for $2"
@@ -44,5 +44,10 @@ for compiler in g++ clang++; do
   expect $compiler avx2 vsqrtpd vdivpd ymm
   expect $compiler plain sqrtpd divpd xmm
 done
+if command -v aarch64-linux-gnu-g++ >/dev/null; then
+  expect aarch64-linux-gnu-g++ plain fsqrt fdiv 'v[0-9]+\.2d'
+else
+  echo 'skipped: ARM: apt-get install g++-aarch64-linux-gnu'
+fi
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
