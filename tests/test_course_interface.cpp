@@ -633,6 +633,40 @@ TEST(MassSpring, RemovalAsTheAssignmentUsesIt) {
     EXPECT_EQ(graph.node(i).index(), i);
 }
 
+// ------------------------------------------------------- layout of other years
+
+TEST(OtherYears, ProgramsOfTheOldLayoutAreBuiltWithOneFlag) {
+  CME212::TestFolder folder;
+  std::ofstream(folder / "old.cpp") << R"(
+    #include "CS207/SDLViewer.hpp"
+    #include "CS207/Util.hpp"
+    #include "CS207/Color.hpp"
+    #include "Graph.hpp"
+    #include "Point.hpp"
+    template <typename V> class Mesh { V value; };  // of homework 4
+    struct ByValue {
+      template <typename N> CS207::Color operator()(const N& n) const {
+        return CS207::Color::make_heat(float(n.value()));
+      }
+    };
+    int main(int, char** argv) {
+      CS207::Clock clock;
+      Graph<double, double> g;
+      std::ifstream in(argv[1]);
+      for (Point p; CS207::getline_parsed(in, p);) g.add_node(p);
+      CS207::SDLViewer viewer;
+      auto node_map = viewer.empty_node_map(g);
+      viewer.add_nodes(g.node_begin(), g.node_end(), ByValue(), node_map);
+      viewer.launch();
+      CS207::sleep(CS207::random() * clock.seconds());
+    })";
+  const std::string compile = "c++ -std=c++20 -fsyntax-only -I. ";
+  const auto result =
+      folder.run(compile + "-Icourse/years " + folder / "old.cpp");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(folder.run(compile + folder / "old.cpp").status, 0);
+}
+
 // --------------------------------------------- homework 3: boundary and matrix
 
 TEST(Homework3, TagsTheBoundaryAndCutsABox) {
