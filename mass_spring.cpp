@@ -82,6 +82,7 @@ int main(int argc, char** argv) try {
             << steps << " steps of " << dt << " s\n";
 
   const double L = g.num_edges() > 0 ? length_of(*g.edge_begin()) : 0;
+  // BEGIN GUIDED
   const auto force = make_combined_force(GravityForce(), MassSpringForce());
   const auto on_ball = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), SphereConstraint());
@@ -105,14 +106,24 @@ int main(int argc, char** argv) try {
     else
       return symp_euler_step(g, t, dt, force, torn());
   };
+  // OPEN const auto step = [&](double t) {  // from 5.2 on another one
+  // OPEN   return stage == Stage::problem1
+  // OPEN              ? symp_euler_step(g, t, dt, Problem1Force(100, L))
+  // OPEN              : symp_euler_step(g, t, dt, Problem1Force());
+  // OPEN };
+  // END GUIDED
 
   std::optional<Viewer> viewer;
   try {
     viewer.emplace();
     viewer->add_faces(g, quads);
     if (stage >= Stage::constraints) {
+      // BEGIN GUIDED
       viewer->add_sphere(Ball().center, Ball().radius);
       viewer->add_plane(PlaneConstraint().height());
+      // OPEN viewer->add_sphere(Point(0.5, 0.5, -0.5), 0.15);
+      // OPEN viewer->add_plane(-0.75);
+      // END GUIDED
     }
   } catch (const CME212::NoDisplay& e) {
     std::cout << e.what() << "; running without a window\n";

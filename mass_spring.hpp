@@ -162,6 +162,7 @@ class Problem1Force {
   }
 };
 
+// BEGIN GUIDED
 /** 5.1: the base class of all forces; by itself no force. */
 class ZeroForce {
  public:
@@ -472,3 +473,4 @@ template <typename... Cs>
 CombinedConstraints make_combined_constraint(Cs... cs) {
   return make_combined_constraints(std::move(cs)...);
 }
+// END GUIDED

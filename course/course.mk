@@ -1,10 +1,12 @@
 # The teaching kit: course/README.md
 
 # As it was given, whatever it holds: never expanded, and read by no shell.
-override OUT := $(value OUT)
+override OUT   := $(value OUT)
+override LEVEL := $(value LEVEL)
 
 .PHONY: starter solution
 starter solution: export OUT := $(OUT)
+starter solution: export LEVEL := $(LEVEL)
 starter solution:
 	@python3 course/kit/starter.py $@
 

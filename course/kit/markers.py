@@ -9,6 +9,15 @@
 The solution stands between BEGIN and the first STUB, if there is one. In a
 starter a comment and the stubs stand in its place. The points stand at the
 first region of a task. Run as a program it checks the repository's sources.
+
+    // BEGIN GUIDED
+    ...
+    // OPEN code
+    // END GUIDED
+
+A starter of the level open leaves out what students are to design: all up to
+the first OPEN, with the regions in it. Comments that name their tasks, and the
+code behind each OPEN, stand in its place.
 """
 import re
 import sys
@@ -22,8 +31,12 @@ SOURCES = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp")
 BEGIN = re.compile(r"( *)// BEGIN SOLUTION (\S+)(?: (\d+)pt)?")
 STUB = re.compile(r"( *)// STUB (\S.*| +\S.*)")
 END = re.compile(r" *// END SOLUTION")
+BEGIN_GUIDED = re.compile(r"( *)// BEGIN GUIDED")
+END_GUIDED = re.compile(r" *// END GUIDED")
+OPEN = re.compile(r"( *)// OPEN (\S.*| +\S.*)")
 LOOKS_LIKE_ONE = re.compile(
-    r"\b(begin|end)\W+solution\b|//\W*stub\b", re.IGNORECASE)
+    r"\b(begin|end)\W+(solution|guided)\b|//\W*(stub|open)\b",
+    re.IGNORECASE)
 
 
 class MarkerError(tasks.Faults):
@@ -45,6 +58,7 @@ def split(text, file):
     """`text` as a list of lines and Regions.  Throws MarkerError."""
     pieces, faults = [], []
     begin = None  # the line number and the match of an open region
+    guided = None  # the line number of BEGIN GUIDED
     solution, stubs = [], []
 
     def fault(what, at):
@@ -68,6 +82,17 @@ def split(text, file):
             pieces.append(Region(head[2], points, head[1], tuple(solution),
                                  tuple(stubs), file, at))
             begin = None
+        elif BEGIN_GUIDED.fullmatch(bare):
+            if begin or guided:
+                fault("BEGIN GUIDED in a region", number)
+            guided = number
+        elif END_GUIDED.fullmatch(bare):
+            if begin or not guided:
+                fault("END GUIDED without a BEGIN GUIDED", number)
+            guided = None
+        elif OPEN.fullmatch(bare):
+            if begin or not guided:
+                fault("OPEN outside of BEGIN GUIDED", number)
         elif match := STUB.fullmatch(bare):
             if not begin:
                 fault("STUB outside of a region", number)
@@ -84,6 +109,8 @@ def split(text, file):
             solution.append(line)
     if begin:
         fault("BEGIN SOLUTION without an END SOLUTION", begin[0])
+    if guided:
+        fault("BEGIN GUIDED without an END GUIDED", guided)
     if faults:
         raise MarkerError(faults)
     return pieces
@@ -130,9 +157,37 @@ def comment(id, task, further):
     return f"// YOUR CODE {id}{points}{page}"
 
 
-def starter(text, course, file="text"):
+def starter(text, course, file="text", level="guided"):
     """`text` as the students get it: stubs for all tasks that are asked."""
+    if level == "open":
+        text = opened(text, course, file)
     return stub(text, course.tasks, course, file)
+
+
+def opened(text, course, file="text"):
+    """`text` without what is guided.  Throws MarkerError."""
+    split(text, file)
+    out, inside, named = [], False, set()
+    for number, line in enumerate(text.splitlines(keepends=True), 1):
+        bare = line.rstrip("\r\n")
+        if match := BEGIN_GUIDED.fullmatch(bare):
+            inside, indent = True, match[1]
+        elif END_GUIDED.fullmatch(bare):
+            inside = False
+        elif not inside:
+            out.append(line)
+        elif match := OPEN.fullmatch(bare):
+            out.append(match[1] + match[2] + "\n")
+        elif match := BEGIN.fullmatch(bare):
+            id = match[2]
+            if id in course.dropped:
+                raise MarkerError([f"{file}:{number}: {id} was dropped, so its"
+                                   " solution is given: LEVEL=guided"])
+            if id not in named:
+                out.append(indent + comment(id, course.tasks.get(id), False)
+                           + "\n")
+            named.add(id)
+    return "".join(out)
 
 
 def check(texts, course, tests=(), tasks_file=tasks.FILE):

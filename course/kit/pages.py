@@ -8,6 +8,10 @@ A page has a place for its tasks: all between the lines <!-- tasks 3.2 --> and
 <!-- end --> is made from the tasks of section 3.2; <!-- tasks --> is for a
 table of all that count. The tag is what stands behind HW= or HW ?=; the title
 is the first line of the starter's README.
+
+What a page says between the lines <!-- guided --> and <!-- end guided -->, a
+starter of the level open leaves out. It has what stands between the lines
+<!-- open and --> in its place.
 """
 import re
 import sys
@@ -19,6 +23,10 @@ COURSE = tasks.ROOT / "course"
 PLACE = re.compile(r"^<!-- tasks *(\S*) -->\n(.*?)^<!-- end -->\n",
                    re.MULTILINE | re.DOTALL)
 LONGEST = 80  # lines of a section's page
+LEVELS = ("guided", "open")
+GUIDED = re.compile(r"^<!-- guided -->\n(.*?)^<!-- end guided -->\n",
+                    re.MULTILINE | re.DOTALL)
+OPEN = re.compile(r"^<!-- open\n(.*?)^-->\n", re.MULTILINE | re.DOTALL)
 # What names the homework, beside the pages.
 STARTER = "course/starter/README.md"
 NAMING = ("README.md", "Makefile", STARTER, "course/starter/Makefile",
@@ -56,6 +64,13 @@ def of_course(course):
             shown = worth(task) if task.extra else task.points
             rows.append(f"| {task.section.id} | {task.title} | {shown} |")
     return rows + [f"| | together | {course.points} |"]
+
+
+def of_level(text, level):
+    """A page without what is for the other level."""
+    if level == "open":
+        return OPEN.sub(r"\1", GUIDED.sub("", text))
+    return OPEN.sub("", GUIDED.sub(r"\1", text))
 
 
 def named(file, text, course):
@@ -96,9 +111,14 @@ def faults(page, text, course):
     lines = text.splitlines()
     for section in course.sections:
         if section.page == page:
-            if len(lines) > LONGEST:
-                yield (f"{LONGEST}: goes on to line {len(lines)}, expected at"
+            longest = max(len(of_level(text, level).splitlines())
+                          for level in LEVELS)
+            if longest > LONGEST:
+                yield (f"{LONGEST}: goes on to line {longest}, expected at"
                        f" most {LONGEST}")
+            if re.search("^<!-- (end )?guided|^<!-- open|^-->",
+                         of_level(text, "open"), re.MULTILINE):
+                yield "1: <!-- guided --> or <!-- open has no end"
             if f"<!-- tasks {section.id} -->" not in lines:
                 yield f"{len(lines)}: has no place for tasks {section.id}"
 

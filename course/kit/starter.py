@@ -1,9 +1,11 @@
 """Make what a student starts from, or the same tree solved:
 
-    OUT=DIR python3 course/kit/starter.py starter|solution
+    OUT=DIR [LEVEL=open] python3 course/kit/starter.py starter|solution
 
 OUT must be new or empty; it appears whole or not at all. The same sources give
-the same bytes.
+the same bytes. At the level open, students design what a starter otherwise
+gives them: the graph's storage, the base classes of forces and constraints, and
+the classes that own several of them.
 """
 import json
 import os
@@ -32,6 +34,10 @@ COPIED = [
     ("tools/submit.sh", "tools", ""),
 ]
 TESTS = "course/tests"
+# At the level open: what stays out, and what stands in its place.
+GUIDED = ("CME212/SlotMap.hpp", "CME212/NeighborPool.hpp", "docs/graph.md")
+OPEN = "course/starter/open"
+TO_WRITE = re.compile(r"^( *)// YOUR CODE (\S+)$", re.MULTILINE)
 WORKFLOW = "course/starter/classroom.yml"
 
 
@@ -39,7 +45,7 @@ class StarterError(Exception):
     pass
 
 
-def tree(kind, root=tasks.ROOT):
+def tree(kind, level="guided", root=tasks.ROOT):
     """{path: (bytes, is it a program?)} of a starter or a solution."""
     texts, course = markers.load(root)
     if wrong := pages.check(course):
@@ -52,8 +58,8 @@ def tree(kind, root=tasks.ROOT):
         files[path] = (content, program)
 
     for file, text in texts.items():
-        add(file, markers.starter(text, course, file) if kind == "starter"
-            else markers.solution(text, file))
+        add(file, markers.starter(text, course, file, level)
+            if kind == "starter" else markers.solution(text, file))
     for globs, folder, but in COPIED:
         for glob in globs.split():
             for path in sorted(root.glob(glob)):
@@ -68,10 +74,28 @@ def tree(kind, root=tasks.ROOT):
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
     add(".github/workflows/classroom.yml",
         workflow((root / WORKFLOW).read_text(encoding="utf-8"), course))
+    if level == "open":
+        for path in GUIDED:
+            del files[path]
+        for path in sorted((root / OPEN).iterdir()):
+            add(path.name, to_write(path.read_text(encoding="utf-8"), course))
     for path, (content, _) in files.items():
         if path.endswith(".md"):
+            content = pages.of_level(content.decode(), level).encode()
             add(path, without_dead_links(content.decode(), path, files))
     return files
+
+
+def to_write(text, course):
+    """`text` whose comments YOUR CODE say points and page."""
+    def full(found):
+        id = found[2]
+        if id in course.dropped:
+            raise StarterError(f"{id} was dropped, so its solution is given: "
+                               "LEVEL=guided")
+        return found[1] + markers.comment(id, course.tasks[id], False)
+
+    return TO_WRITE.sub(full, text)
 
 
 def without_dead_links(text, path, files):
@@ -164,10 +188,12 @@ def write(files, path):
 def main(arguments):
     if len(arguments) != 1 or arguments[0] not in ("starter", "solution"):
         sys.exit("usage: OUT=DIR starter.py starter|solution")
-    kind = arguments[0]
+    kind, level = arguments[0], os.environ.get("LEVEL") or "guided"
     try:
         path = place(os.environ.get("OUT", ""))
-        files = tree(kind)
+        if level not in pages.LEVELS:
+            raise StarterError(f"LEVEL is '{level}', expected guided or open")
+        files = tree(kind, level if kind == "starter" else "guided")
         write(files, path)
     except (StarterError, tasks.TasksError, markers.MarkerError) as error:
         sys.exit(str(error))

@@ -149,6 +149,13 @@ class Faults(unittest.TestCase):
             "    return h(x);\n", "    // BEGIN SOLUTION 7.1.g\n"
             "    return h(x);\n"), "S.hpp:11", "began in line 10")
 
+    def test_guided(self):
+        begin, end = "// BEGIN GUIDED\n", "// END GUIDED\n"
+        self.one(SOURCE + begin, "S.hpp:20", "without an END GUIDED")
+        self.one(SOURCE + end, "S.hpp:20", "without a BEGIN GUIDED")
+        self.one(SOURCE + "// OPEN x();\n", "S.hpp:20", "outside of BEGIN")
+        markers.check({"S.hpp": begin + SOURCE + end}, COURSE)
+
     def test_malformed(self):
         for line in ("// BEGIN SOLUTION", "// BEGIN SOLUTION 3.1.f 4",
                      "int x;  // BEGIN SOLUTION 3.1.f", "// begin solution a",
@@ -275,11 +282,12 @@ class Repository(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def make(self, kind, out):
+    def make(self, kind, out, level=""):
         """The status and what was said."""
         done = child.run(
             [sys.executable, tasks.ROOT / "course/kit/starter.py", kind],
-            env=os.environ | {"OUT": str(out)}, capture_output=True, text=True)
+            env=os.environ | {"OUT": str(out), "LEVEL": level},
+            capture_output=True, text=True)
         return done.returncode, done.stdout + done.stderr
 
     def content(self, folder):
@@ -358,6 +366,53 @@ class Repository(unittest.TestCase):
                              marked, task.id)
         self.assertIsNone(markers.LOOKS_LIKE_ONE.search(sources.decode()))
 
+    def test_the_open_level_gives_no_design_away(self):
+        said = {level: self.make("starter", self.folder / level, level)
+                for level in ("guided", "open", "none")}
+        self.assertEqual([status for status, _ in said.values()], [0, 0, 1])
+        self.assertIn("'none', expected guided or open", said["none"][1])
+        guided, given = (self.content(self.folder / level)
+                         for level in ("guided", "open"))
+        self.assertEqual(set(guided) - set(given),
+                         {"CME212/SlotMap.hpp", "CME212/NeighborPool.hpp",
+                          "docs/graph.md"})
+        self.assertLess(set(given), set(guided))
+        design = re.compile(rb"Zero(Force|Constraint)|Combined|shared_ptr|SlotM"
+                            rb"ap|NeighborPool|virtual ~|GUIDED|// OPEN|<!-- o")
+        for name, (text, _) in given.items():
+            if not re.match(r"tests/|CME212/", name):
+                self.assertIsNone(design.search(text), name)
+        for name in ("pages/5.1.md", "mass_spring.hpp"):
+            self.assertIsNotNone(design.search(guided[name][0]), name)
+        # All that is asked in the one is asked in the other.
+        asked = re.compile(rb"YOUR CODE ([\w.]+\w)")
+        ids = [{found[0] for name in markers.SOURCES
+                for found in asked.finditer(files[name][0])}
+               for files in (guided, given)]
+        self.assertEqual(ids[0], ids[1])
+
+    def test_an_open_starter_compiles_with_any_graph(self):
+        self.make("starter", self.folder / "s", "open")
+        for graph in ("", tasks.ROOT / "course/graphs/lists/Graph.hpp"):
+            if graph:
+                shutil.copy(graph, self.folder / "s")
+            child.run(["g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra",
+                       "-Werror", "-I.", "-DSTAGE=tear", "mass_spring.cpp"],
+                      check=True, cwd=self.folder / "s")
+
+    def test_what_was_dropped_can_not_be_left_open(self):
+        course = tasks.parse(TASKS.replace('id = "7.1"',
+                                           'id = "7.1"\ndropped = true'))
+        guided = f"// BEGIN GUIDED\n{SOURCE}// OPEN int x;\n// END GUIDED\n"
+        self.assertEqual(markers.solution(guided), SOLUTION)
+        self.assertEqual(
+            markers.starter(guided, COURSE, level="open"),
+            "// YOUR CODE 3.1.f (4 points): course page 3.1\n"
+            "// YOUR CODE 7.1.g (1 point)\nint x;\n")
+        with self.assertRaisesRegex(markers.MarkerError,
+                                    "^S.hpp:11: 7.1.g was dropped"):
+            markers.starter(guided, course, "S.hpp", "open")
+
     def test_every_link_of_a_starter_holds(self):
         self.make("starter", self.folder / "s")
         pages = list((self.folder / "s").rglob("*.md"))
@@ -419,7 +474,7 @@ class Repository(unittest.TestCase):
         last = len((root / "mass_spring.cpp").read_text().splitlines())
         with self.assertRaisesRegex(markers.MarkerError,
                                     f"^mass_spring.cpp:{last}: END SOLUTION"):
-            starter.tree("starter", root)
+            starter.tree("starter", root=root)
 
     def test_a_write_that_fails_leaves_nothing(self):
         with self.assertRaises(OSError):

@@ -110,6 +110,20 @@ class Named(unittest.TestCase):
         self.assertEqual(pages.named("README.md", text, COURSE), text)
 
 
+class Level(unittest.TestCase):
+    TEXT = "a\n<!-- guided -->\nb\n<!-- end guided -->\n<!-- open\nc\n-->\nd\n"
+
+    def test_a_page_has_what_is_for_its_level(self):
+        self.assertEqual(pages.of_level(self.TEXT, "guided"), "a\nb\nd\n")
+        self.assertEqual(pages.of_level(self.TEXT, "open"), "a\nc\nd\n")
+
+    def test_what_has_no_end_is_a_fault(self):
+        for end in ("<!-- end guided -->\n", "-->\nd\n"):
+            text = FULL + self.TEXT.replace(end, "")
+            self.assertEqual(list(pages.faults("3.2.md", text, COURSE)),
+                             ["1: <!-- guided --> or <!-- open has no end"])
+
+
 class Faults(unittest.TestCase):
     def test_a_page_that_is_right_has_none(self):
         self.assertEqual(list(pages.faults("3.2.md", FULL, COURSE)), [])
