@@ -152,7 +152,7 @@ class Problem1Force {
 
   /** K and L of the spring at @a e. */
   template <typename EDGE>
-  EdgeData spring_of(const EDGE& e) const {
+  EdgeData spring_of(EDGE e) const {
     if (same_) return *same_;
     // BEGIN SOLUTION 4.2.Problem1Force 6pt
     return e.value();
