@@ -16,8 +16,8 @@ ASKED("6.2.symp_euler_step", constrained_step_asked) {
     }
   };
   TestConstraint constraint(change);
-  const auto pull = [&](ClothNode n, double) {
-    return 3 * place(g, (int(n.index()) + 1) % b.size);
+  const auto pull = [&](ClothNode n, double time) {
+    return 3 * place(g, (int(n.index()) + 1) % b.size) + time * lift;
   };
   TestForce force(pull);
   step_with(g, drawn(0, 1), drawn(0.01, 0.3), force, constraint);

@@ -68,18 +68,31 @@ def named(file):
     return {test[1]} if test else set()
 
 
-def compile_message(output, names, test=""):
-    """The first error that a student can do something about."""
+def helpful(output, names, test=""):
+    """The first error that a student can do something about, or None."""
     errors = compile_errors(output)
     if test:
         errors = [e for e in errors if test in e.tests] or errors
     for error in errors:
         if error.file in names or TEST.fullmatch(error.file):
-            break
-    else:
-        if not errors:
-            return link_message(output)
-        error = next((e for e in errors if e.needed_by), errors[0])
+            return error
+    return next((e for e in errors if e.needed_by), (errors or [None])[0])
+
+
+def first_error(output, names, test):
+    """The same in a line; its place, if that is the student's."""
+    error = helpful(output, names, test)
+    if not error:
+        return ""
+    place = f"{error.file}:{error.line}: " if error.file in names else ""
+    return place + short(error.text)
+
+
+def compile_message(output, names, test=""):
+    """The same, and what led to it."""
+    error = helpful(output, names, test)
+    if not error:
+        return link_message(output)
     owner = "the kit's " if error.file == "Graph.hpp" not in names else ""
     text = f"{owner}{error.file}:{error.line}: {short(error.text)}"
     if error.needed_by:
@@ -108,7 +121,8 @@ def first_frame(output, names):
 def crash(outcome, names):
     """Why a program ended before it said how its test went."""
     output = outcome.output
-    if found := re.search(r"ERROR: (AddressSanitizer: .*)", output):
+    found = re.search(r"ERROR: (AddressSanitizer: .*)", output)
+    if found and ": ABRT " not in found[1]:
         words = re.sub(r" on (unknown )?address .*| \(pc .*| \(T\d+\).*"
                        r"|: attempting .*", "", found[1])
         rest = output[found.end():]
@@ -123,11 +137,14 @@ def crash(outcome, names):
         return short(found[3]) + first_frame(output[found.end():], names)
     if found := re.search(r"^[^\n]*?(?:\./)?([^\s:]+):(\d+): .*Assertion "
                           r"[`'](.*)' failed", output, re.MULTILINE):
-        where = f" at {found[1]}:{found[2]}" if found[1] in names else ""
+        where = (f" at {found[1]}:{found[2]}" if found[1] in names
+                 else first_frame(output, names))
         return f"assertion failed: {short(found[3])}{where}"
     if found := re.search(r"terminate called after throwing .*\n? *(what.*)?",
                           output):
-        return short(found[0])
+        return short(found[0]) + first_frame(output, names)
+    if "AddressSanitizer: ABRT " in output:
+        return "ended by abort()" + first_frame(output, names)
     if outcome.code < 0:
         try:
             name = signal.Signals(-outcome.code).name

@@ -171,7 +171,11 @@ class Judge:
                     if test not in results or not results[test].passed]
             for test, result in self.remembered(room, way, left).items():
                 best = results.setdefault(test, result)
-                if RANK.index(result.status) > RANK.index(best.status):
+                # What is said of the kit's graph is no help if the same is
+                # wrong with the student's own.
+                better = (RANK.index(result.status) - RANK.index(best.status)
+                          or result.status in ("not compiled", "crashed"))
+                if better > 0:
                     results[test] = result
         return results
 
@@ -192,7 +196,8 @@ class Judge:
             return {}
         unit = self.compile(room, way, tests, read)
         if unit.program:
-            return self.run_all(unit, room.names)
+            return self.explained(room, way, self.run_all(unit, room.names),
+                                  read)
         if unit.refused:
             return {test: Result("not compiled", unit.refused)
                     for test in tests}
@@ -217,6 +222,19 @@ class Judge:
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
             results.update(zip(alone, pool.map(
                 lambda test: self.alone(room, way, test, read), alone)))
+        return self.explained(room, way, results, read)
+
+    def explained(self, room, way, results, read):
+        """With the compiler's own words for calls that do not compile."""
+        way = dataclasses.replace(
+            way, defines=way.defines + ("KIT_MUST_COMPILE",))
+        for test, result in results.items():
+            if result.status == "failed" and result.got == "an error":
+                unit = self.compile(room, way, [test], read, link=False)
+                error = diagnosis.first_error(unit.output, room.names, test)
+                if error:
+                    results[test] = dataclasses.replace(
+                        result, got=f"an error: {error}")
         return results
 
     def alone(self, room, way, test, read):

@@ -71,8 +71,8 @@ def clean_environment(folder):
         "TMPDIR": str(folder),
         # Leaks are no fault in this course. What else stands here, the jail
         # would deny, or differs from run to run.
-        "ASAN_OPTIONS": "detect_leaks=0:disable_coredump=0:color=never:"
-                        "max_allocation_size_mb=1024:"
+        "ASAN_OPTIONS": "detect_leaks=0:handle_abort=1:disable_coredump=0:"
+                        "color=never:max_allocation_size_mb=1024:"
                         "detect_stack_use_after_return=1",
         "UBSAN_OPTIONS": "print_stacktrace=1:color=never:halt_on_error=1",
     }

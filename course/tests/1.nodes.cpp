@@ -32,7 +32,9 @@ TASK("1.nodes", nodes_are_known_by_their_graph) {
 namespace kit {
 template <typename S>
 static void check_order_of_nodes(S& one, S& two) {
-  constexpr bool ordered = requires { one.node(0) < two.node(0); };
+  constexpr bool ordered = must_compile || requires {
+    one.node(0) < two.node(0);
+  };
   need<ordered>("n < m");
   for (S* a : {&one, &two})
     for (S* b : {&one, &two})

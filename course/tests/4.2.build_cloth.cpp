@@ -10,7 +10,8 @@
 namespace kit {
 
 /** The cloth of cloth.nodes and cloth.tets: 3 x 4 nodes, such that edges have
- * different lengths. */
+ * different lengths. One of its corners is the last node: a pin that holds
+ * indices lets it go when the cloth tears. */
 static std::vector<Point> cloth_points() {
   std::vector<Point> points;
   std::ifstream file(data_file("cloth.nodes"));
@@ -19,8 +20,9 @@ static std::vector<Point> cloth_points() {
 }
 static std::vector<std::array<unsigned, 4>> cloth_quads() {
   std::vector<std::array<unsigned, 4>> quads;
-  for (unsigned a : {0u, 1u, 2u, 4u, 5u, 6u})
-    quads.push_back({a, a + 1, a + 4, a + 5});
+  std::ifstream file(data_file("cloth.tets"));
+  for (std::array<unsigned, 4> q; file >> q[0] >> q[1] >> q[2] >> q[3];)
+    quads.push_back(q);
   return quads;
 }
 /** The ends of all edges, the smaller one first: sides and diagonals. */

@@ -68,7 +68,8 @@ static void compare_sum(Sum sum, int how_many) {
 /** What the submission makes of these; or a failure. */
 template <typename... Fs>
 static auto sum_of(Fs&&... fs) {
-  if constexpr (requires { ::make_combined_force(std::forward<Fs>(fs)...); })
+  if constexpr (must_compile ||
+                requires { ::make_combined_force(std::forward<Fs>(fs)...); })
     return ::make_combined_force(std::forward<Fs>(fs)...);
   else
     return Missing();

@@ -7,7 +7,7 @@ namespace kit {
 /** What the submission makes of these, by either name; or Missing. */
 template <typename... Cs>
 static auto constraints_of(Cs&&... cs) {
-  if constexpr (requires {
+  if constexpr (must_compile || requires {
                   {
                     ::make_combined_constraints(std::forward<Cs>(cs)...)
                     } -> Present;

@@ -35,6 +35,14 @@ void checked();
  * not any more.  @return false if an earlier run crashed there: look away */
 bool probes(unsigned aspect);
 
+/** A grader that wants the compiler's own words for what does not compile
+ * defines KIT_MUST_COMPILE: then no test looks whether it does. */
+#ifdef KIT_MUST_COMPILE
+inline constexpr bool must_compile = true;
+#else
+inline constexpr bool must_compile = false;
+#endif
+
 // ------------------ What kit.cpp defines: compiled once, without a submission
 
 /** A word of a text: a value as a reader would write it, the same on every

@@ -147,6 +147,15 @@ using TestConstraint =
     decltype(child_of_one_of<FreeConstraint, ::KIT_CONSTRAINT_BASE,
                              ::ZeroConstraint, ::Constraint>())::type;
 
+/** A force or constraint of the submission is a child of its base class, if
+ * that has a virtual call. */
+template <typename Base, typename C>
+void check_base(const char* child, const char* base) {
+  if constexpr (HasVirtualCall<Base>)
+    check(std::is_convertible_v<C*, Base*>,
+          words(child, " to inherit from ", base, ", publicly"));
+}
+
 inline TestConstraint no_constraint() {
   static constexpr auto nothing = [](Cloth&, double) {};
   return TestConstraint(nothing);

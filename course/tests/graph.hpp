@@ -142,25 +142,29 @@ auto add_edge(G& g, N a, N b, const E& value) {
   }
 }
 
-// Removals. Their result, which is a number or a bool, as a bool: was anything
-// removed? What they take is a copy that is no temporary.
+// Removals. What they take is a copy that is no temporary. What remove_node()
+// returns the assignment does not say: nothing asks for it.
 template <typename G, typename N>
-bool remove_node(G& g, N n) {
-  constexpr bool there = requires { static_cast<bool>(g.remove_node(n)); };
-  need<there>("g.remove_node(node), with a number as its result,");
-  if constexpr (there) return static_cast<bool>(g.remove_node(n));
-  return false;
+void remove_node(G& g, N n) {
+  constexpr bool there = must_compile || requires { g.remove_node(n); };
+  need<there>("g.remove_node(node)");
+  if constexpr (there) g.remove_node(n);
 }
+// A number or a bool, as a bool: was anything removed?
 template <typename G, typename N>
 bool remove_edge(G& g, N a, N b) {
-  constexpr bool there = requires { static_cast<bool>(g.remove_edge(a, b)); };
+  constexpr bool there = must_compile || requires {
+    static_cast<bool>(g.remove_edge(a, b));
+  };
   need<there>("g.remove_edge(node, node), with a number as its result,");
   if constexpr (there) return static_cast<bool>(g.remove_edge(a, b));
   return false;
 }
 template <typename G, typename E>
 bool remove_edge(G& g, E e) {
-  constexpr bool there = requires { static_cast<bool>(g.remove_edge(e)); };
+  constexpr bool there = must_compile || requires {
+    static_cast<bool>(g.remove_edge(e));
+  };
   need<there>("g.remove_edge(edge), with a number as its result,");
   if constexpr (there) return static_cast<bool>(g.remove_edge(e));
   return false;
@@ -274,8 +278,9 @@ struct Subject : Beside {
          "never");
   }
   auto edge(int v, int w) {
-    if (!(works & edge_indices)) return edge_seen_from(v, w);
-    return kit::edge_at(g, index_of(Ends(v, w)));
+    if constexpr (requires { g.edge(g.num_edges()); })
+      if (works & edge_indices) return kit::edge_at(g, index_of(Ends(v, w)));
+    return edge_seen_from(v, w);
   }
 
   // What a test does to the graph, it does to the model, too.
@@ -312,12 +317,11 @@ struct Subject : Beside {
     }
     return works & still_works();
   }
-  /** @return true if the graph says that it removed the node */
-  bool remove_node(int v) {
-    bool removed = kit::remove_node(g, node(v));
+  void remove_node(int v) {
+    kit::remove_node(g, node(v));
     m.remove(v);
-    return removed;
   }
+  /** @return true if the graph says that it removed the edge */
   bool remove_edge(int v, int w) {
     bool removed = kit::remove_edge(g, node(v), node(w));
     m.remove(Ends(v, w));
