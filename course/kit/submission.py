@@ -37,13 +37,14 @@ SUSPECT = [
     (r"\b(signal|sigaction|raise|fork|vfork|clone|execv\w*|execl\w*|popen"
      r"|system|dlopen|dlsym|mmap|dup2?|pipe|socket|environ|getenv|setrlimit)"
      r"\s*\(", "calls the system"),
-    (r"\bkit\s*::|check\.hpp|runner\.cpp|\bKIT_\w+|\bTASK\s*\("
+    (r"\bkit\b|check\.hpp|runner\.cpp|\bKIT_\w+|\bTASK\s*\("
      r"|__(a|ub)san_|__sanitizer", "names a part of the grader"),
     (r"\bno_sanitize|redefine_extname|pragma\s+weak|\b(alias|ifunc"
      r"|constructor|destructor|section|init_priority)\s*\(\s*\"?",
      "has attributes that change how a program is linked or checked"),
-    (r"\bnamespace\s+(kit|kit_missing|std)\b|\bextern\s*\"C",
+    (r"\bkit_missing\b|\bextern\s*\"C",
      "adds to what is not its own"),
+    (r"##|%:%:|\b_Pragma\b|\bpush_macro\b", "makes words of parts"),
     (r"#\s*define\s+(private|protected|public|class|struct|return|if|while"
      r"|for|static|const|int|main|assert|static_cast)\b",
      "defines a keyword anew"),

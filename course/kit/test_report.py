@@ -49,6 +49,50 @@ READ of size 8 at 0x602 thread T0
         self.assertEqual(crash("", -11), "ended by the signal SIGSEGV")
         self.assertEqual(crash("", 0), "the program ended before the test did")
 
+    def test_a_failed_assertion_is_told_with_the_students_line(self):
+        outcome = judge.sandbox.Outcome(code=1, begun=True, output="""\
+/usr/include/c++/12/bits/stl_vector.h:1123: T& std::vector<T>::operator[](\
+std::size_t): Assertion '__n < this->size()' failed.
+==7==ERROR: AddressSanitizer: ABRT on unknown address 0x7 (pc 0x5 bp 0x0)
+    #0 0x55 in raise (/lib/libc.so.6+0x8)
+    #1 0x56 in std::vector<int>::operator[](unsigned long) /usr/inc/x.h:3
+    #2 0x57 in Graph<int>::remove_node(int) ./Graph.hpp:41
+""")
+        self.assertEqual(
+            diagnosis.crash(outcome, {"Graph.hpp": b""}),
+            "assertion failed: __n < this->size() at Graph.hpp:41")
+        outcome.output = outcome.output.partition("\n")[2]
+        self.assertEqual(diagnosis.crash(outcome, {"Graph.hpp": b""}),
+                         "ended by abort() at Graph.hpp:41")
+
+    def test_a_call_that_does_not_compile_is_told_in_the_compilers_words(self):
+        output = """\
+course/tests/7.1.b.cpp: In function 'void f()':
+course/tests/7.1.b.cpp:3:1: error: 'class Graph' has no member named 'take'
+"""
+        self.assertEqual(diagnosis.first_error(output, {"Graph.hpp"}, "7.1.b"),
+                         "'class Graph' has no member named 'take'")
+        self.assertEqual(diagnosis.first_error(
+            "Graph.hpp:5:7: error: 'z' was not declared\n" + output,
+            {"Graph.hpp"}, "7.2.c"), "Graph.hpp:5: 'z' was not declared")
+        self.assertEqual(diagnosis.first_error("", {}, "7.1.b"), "")
+
+    def test_answers_are_right_if_all_that_is_needed_is(self):
+        expected = {"x": (1e-9, [1, 1e6]), "K~": (0, [2]),
+                    "nodes by index?": (0, [3]), "nodes in a loop?": (0, [4])}
+        def right(**change):
+            answers = {"x": (9e9, [1, 1e6]), "nodes in a loop?": (0, [4])}
+            return judge.right({**answers, **change}, expected)
+        self.assertTrue(right())
+        self.assertTrue(right(x=(0, [1 + 1e-10, 1e6 + 1e-4]), more=(0, [1])))
+        for wrong in ({"x": (9, [1.1, 1e6])}, {"x": (9, [1])}, {"x": (9, [])},
+                      {"x": (9, [float("nan"), 1e6])}, {"K~": (0, [1])},
+                      {"nodes by index?": (0, [4])},
+                      {"nodes in a loop?": (0, [5])}):
+            self.assertFalse(right(**wrong), wrong)
+        self.assertFalse(judge.right({"x": (0, [1, 1e6])}, expected))
+        self.assertFalse(judge.right({"nodes by index?": (0, [3])}, expected))
+
     def test_names_of_a_submission(self):
         found = names.defines({"mass_spring.cpp": b"""
             typedef Graph<NodeData, EdgeData> Net;
