@@ -16,7 +16,7 @@ static void ask_for_values(Handle set, const std::vector<double>& values) {
         for (Ends e : s.m.edges)
           answer(
               words("values set by ", name(set), ", read by ", name(get), "?"),
-              handle(s, e, get).value());
+              static_cast<double>(handle(s, e, get).value()));
   }
 }
 }  // namespace kit

@@ -78,7 +78,7 @@ static void compare_damping(const Bodies& b, double number) {
 TASK("5.1.DampingForce", damping_slows) {
   const Bodies b = four_bodies();
   with<KIT_FORCE(DampingForce)>("DampingForce", [&]<typename F>() {
-    check_base<::ZeroForce, F>("DampingForce", "ZeroForce");
+    check_is_force<F>("DampingForce");
     for (double number : {4., 0.375}) compare_damping<F>(b, number);
   });
 }

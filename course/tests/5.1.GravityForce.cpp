@@ -24,7 +24,7 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
-    check_base<::ZeroForce, F>("GravityForce", "ZeroForce");
+    check_is_force<F>("GravityForce");
     auto gravity = gravity_force<F>();
     for (int i = 0; i < b.size; ++i) {
       DID("a node of mass ", b.m[i], " kg at ", b.x[i], " with velocity ",

@@ -20,7 +20,7 @@ static void compare_springs(const Bodies& b) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(MassSpringForce)>("MassSpringForce", [&]<typename F>() {
-    check_base<::ZeroForce, F>("MassSpringForce", "ZeroForce");
+    check_is_force<F>("MassSpringForce");
     const Owned<F> springs(mass_spring_force<F>(g));
     for (int i = 0; i < b.size; ++i) {
       const Point force = force_on(*springs, g, i);

@@ -22,7 +22,7 @@ static Bodies cloth_with_corners() {
 
 template <typename Pin>
 static void check_pins() {
-  check_base<::ZeroConstraint, Pin>("PinConstraint", "ZeroConstraint");
+  check_is_constraint<Pin>("PinConstraint");
   const Bodies b = cloth_with_corners();
   const Point moved(0.125, 0.25, -0.5), v(1, 2, -4);
   Cloth g;

@@ -10,7 +10,7 @@ TASK("6.1.PlaneConstraint", plane_is_solid) {
   Cloth g;
   fill(g, b);
   with<KIT_CONSTRAINT(PlaneConstraint)>("PlaneConstraint", [&]<typename C>() {
-    check_base<::ZeroConstraint, C>("PlaneConstraint", "ZeroConstraint");
+    check_is_constraint<C>("PlaneConstraint");
     auto plane = made_plane<C>();
     constrain(plane, g);
   });

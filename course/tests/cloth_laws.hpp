@@ -147,13 +147,29 @@ using TestConstraint =
     decltype(child_of_one_of<FreeConstraint, ::KIT_CONSTRAINT_BASE,
                              ::ZeroConstraint, ::Constraint>())::type;
 
-/** A force or constraint of the submission is a child of its base class, if
- * that has a virtual call. */
-template <typename Base, typename C>
-void check_base(const char* child, const char* base) {
-  if constexpr (HasVirtualCall<Base>)
-    check(std::is_convertible_v<C*, Base*>,
+template <typename C, typename Base>
+constexpr bool inherits_from() {
+  if constexpr (Complete<Base>)
+    return std::is_convertible_v<C*, Base*>;
+  else
+    return false;
+}
+/** A force of the submission is a child of one of its base classes, if there
+ * is any with a virtual call; so is a constraint. */
+template <typename C, typename... Bases>
+void check_inherits(const char* child, const char* base) {
+  if constexpr ((HasVirtualCall<Bases> || ...))
+    check((inherits_from<C, Bases>() || ...),
           words(child, " to inherit from ", base, ", publicly"));
+}
+template <typename F>
+void check_is_force(const char* name) {
+  check_inherits<F, ::KIT_FORCE_BASE, ::ZeroForce, ::Force>(name, "ZeroForce");
+}
+template <typename C>
+void check_is_constraint(const char* name) {
+  check_inherits<C, ::KIT_CONSTRAINT_BASE, ::ZeroConstraint, ::Constraint>(
+      name, "ZeroConstraint");
 }
 
 inline TestConstraint no_constraint() {
