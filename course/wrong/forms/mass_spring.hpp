@@ -78,18 +78,18 @@ struct Constraint {
 };
 class PinConstraint : public Constraint {
   Fabric* g_;
-  std::vector<Fabric::size_type> at_;
+  std::vector<Node> nodes_;
   std::vector<Point> where_;
   virtual void operator()(Fabric* g, double) {
-    for (std::size_t i = 0; i < at_.size(); ++i)
-      g->node(at_[i]).position() = where_[i];
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (g->has_node(nodes_[i])) nodes_[i].position() = where_[i];
   }
 
  public:
   explicit PinConstraint(Fabric* g) : g_(g) {
     for (auto it = g_->node_begin(); it != g_->node_end(); ++it)
       if (held((*it).position())) {
-        at_.push_back((*it).index());
+        nodes_.push_back(*it);
         where_.push_back((*it).position());
       }
   }
