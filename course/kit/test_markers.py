@@ -391,14 +391,17 @@ class Repository(unittest.TestCase):
                for files in (guided, given)]
         self.assertEqual(ids[0], ids[1])
 
-    def test_an_open_starter_compiles_with_any_graph(self):
-        self.make("starter", self.folder / "s", "open")
-        for graph in ("", tasks.ROOT / "course/graphs/lists/Graph.hpp"):
+    def test_a_starter_compiles_with_any_graph(self):
+        for level, graph in (("open", ""), ("open", "lists"),
+                             ("guided", "erase")):
+            folder = self.folder / f"{level} {graph}"
+            self.make("starter", folder, level)
             if graph:
-                shutil.copy(graph, self.folder / "s")
+                shutil.copy(tasks.ROOT / f"course/graphs/{graph}/Graph.hpp",
+                            folder)
             child.run(["g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra",
                        "-Werror", "-I.", "-DSTAGE=tear", "mass_spring.cpp"],
-                      check=True, cwd=self.folder / "s")
+                      check=True, cwd=folder)
 
     def test_what_was_dropped_can_not_be_left_open(self):
         course = tasks.parse(TASKS.replace('id = "7.1"',
