@@ -22,7 +22,7 @@ from once import ROOT, TESTS
 
 # In a comment of a test: how it is built, and names that it wants defined.
 WISH = re.compile(r"^(?://| \*) (Build|Define): (\w+)\b", re.MULTILINE)
-COMPILING = sandbox.Limits(cpu=60, wall=120, memory=3 << 30, output=64 << 20,
+COMPILING = sandbox.Limits(cpu=60, wall=900, memory=3 << 30, output=64 << 20,
                            size=512 << 20)
 SYSTEM = ("/usr/include", "/usr/lib", "/usr/local/include", "/usr/local/lib")
 ASKED = ROOT / "course/asked"
