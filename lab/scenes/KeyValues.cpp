@@ -1,5 +1,6 @@
 #include "lab/scenes/KeyValues.hpp"
 
+#include <cctype>
 #include <charconv>
 #include <stdexcept>
 
@@ -158,7 +159,7 @@ std::string printable(std::string_view text) {
   constexpr std::size_t longest = 60;
   std::string shown(text.substr(0, longest));
   for (char& c : shown)
-    if ((0 <= c && c < 0x20) || c == 0x7F) c = '?';
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
   return shown + (text.size() > longest ? "..." : "");
 }
 
