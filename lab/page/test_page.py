@@ -237,8 +237,7 @@ def a_step_beyond_the_limit_diverges_with_a_ring_and_a_reason(b):
 
 @test
 def a_step_that_can_not_be_made_is_told_and_the_page_goes_on(b):
-    opened(b, "#scene=forces&side=5&method=implicit-midpoint&K=1000000"
-              "&share=1000")
+    opened(b, "#scene=forces&side=5&method=tr-bdf2&K=100000&share=1000")
     b.wait("page.failed && page.why", 120)
     words = b.value("$('failure').innerText")
     assert "It failed" in words and "Newton's method is at a residual" in words
@@ -365,7 +364,7 @@ def a_link_of_a_long_run_can_be_left(b):
 @test
 def large_systems_are_factored(b):
     """By Eigen's order, which takes 32 bytes a row of the stack."""
-    opened(b, "#side=50&method=implicit-euler&share=100")
+    opened(b, "#side=50&method=implicit-euler&share=20")
     b.wait("page.readings.main.steps > 3", 120)
     assert b.value("page.failed") is False
 
