@@ -129,7 +129,7 @@ of_stages() {
 
 # ---- check
 
-# Two workers, as tests use one core: each takes what the other has not taken.
+# Two workers, as most steps use one core: each takes what the other has not.
 worker() {
   local test
   for test in $(make -s list-units); do
@@ -288,36 +288,39 @@ arm() {
   done
   tools/check_arm.sh
 }
-of_scripts() {
-  limit=$long step checks tools/test_checks.sh
-  step submit      tools/test_submit.sh
-  limit=$long step recipes tools/test_recipes.sh
-  step deps        tools/test_deps.sh
-  step headers     env CXX=clang++ tools/check_headers.sh
-  step lanes       tools/check_lanes.sh
-  step peers       peers
+# A step, unless the other worker has taken it.
+turn() {  # NAME LIMIT COMMAND...
+  mkdir "$logs/taken/$1" 2>/dev/null || return 0
+  limit=$2 step "$1" "${@:3}"
 }
-of_variants() {
-  step plain       plain
-  step threads     threads
-  step single      single
-  limit=$long step arm arm
+# All that needs nothing of each other; the longest first.
+turns() {
+  turn checks    "$long"  tools/test_checks.sh
+  turn headers   "$limit" env CXX=clang++ tools/check_headers.sh
+  turn recipes   "$long"  tools/test_recipes.sh
+  turn plain     "$limit" plain
+  turn page      "$limit" page
+  turn single    "$limit" single
+  turn advice    "$limit" advice
+  turn arm       "$long"  arm
+  turn pages     "$limit" tools/check_pages.sh
+  turn window    "$limit" tools/test_window.sh
+  turn threads   "$limit" threads
+  turn charts    "$limit" in_folder . -s charts QUICK=1
+  turn stability "$limit" in_folder . -s stability QUICK=1
+  turn lanes     "$limit" tools/check_lanes.sh
+  turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
+  turn submit    "$limit" tools/test_submit.sh
+  turn sweep     "$limit" tools/test_sweep.sh
+  turn deps      "$limit" tools/test_deps.sh
+  turn vtk       "$limit" vtk
+  turn grids     "$limit" same_grids
+  turn peers     "$limit" peers
 }
-of_programs() {
-  step window      tools/test_window.sh
-  step grids       same_grids
-  step vtk         vtk
-  step pages       tools/check_pages.sh
-  step page        page
-}
-of_sweeps() {
-  step charts      in_folder . -s charts QUICK=1
-  step stability   in_folder . -s stability QUICK=1
-  step sweep       tools/test_sweep.sh
-  step fuzz        in_folder . -s fuzz RUNS=100000
-  step advice      advice
-}
+one_half() { turns; }
+other_half() { turns; }
 
+[ "$tier" = run ] || { rm -rf "$logs/taken"; mkdir "$logs/taken"; }
 case $tier in
   run) "${@:2}"; exit ;;
   quick | check)
@@ -325,7 +328,6 @@ case $tier in
     beside of_files of_stages ;;&
   check)
     limit=$long step build build_tests
-    rm -rf "$logs/taken"; mkdir "$logs/taken"
     beside one_worker other_worker
     step chart_rule  python3 lab/charts/test_charts.py
     step drawn       drawn
@@ -334,10 +336,9 @@ case $tier in
   check-full)
     limit=$long step programs programs
     limit=$long step clang clang
-    limit=$long step kit make --no-print-directory kit-check EVERY=10 \
-      FIRST=$((0x$(git rev-parse --short=6 HEAD || echo 0) % 10))
-    beside of_scripts of_variants
-    beside of_programs of_sweeps ;;
+    limit=$long step kit make --no-print-directory kit-check EVERY=20 \
+      FIRST=$((0x$(git rev-parse --short=6 HEAD || echo 0) % 20))
+    beside one_half other_half ;;
   quick) ;;
   *) echo "usage: tools/check.sh quick | check | check-full" >&2; exit 2 ;;
 esac

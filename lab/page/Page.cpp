@@ -59,8 +59,10 @@ Json object(const NamesAndValues&... all) {
 /** [to_json(element), ...], between other brackets if @a ends says so. */
 Json list(const auto& all, auto to_json, const char* ends = "[]") {
   std::string text;
-  for (const auto& a : all)
-    text += (text.empty() ? "" : ",") + json(to_json(a));
+  for (const auto& a : all) {
+    if (!text.empty()) text += ',';
+    text += json(to_json(a));
+  }
   return {ends[0] + text + ends[1]};
 }
 
