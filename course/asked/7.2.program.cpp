@@ -5,8 +5,8 @@
 
 ASKED("7.2.program", program_asked) {
 #ifdef KIT_HAS_MAIN
-  for (double z : watched.at_150_ms) answer("heights at 0.15 s", z, 0.01);
-  for (double z : watched.at_220_ms) answer("heights at 0.22 s", z, 0.03);
-  answer("torn", film().bodies.size() < film().start.size());
+  for (double z : watched->at_150_ms) answer("heights at 0.15 s", z, 0.01);
+  for (double z : watched->at_220_ms) answer("heights at 0.22 s", z, 0.03);
+  answer("torn", watched->torn);
 #endif
 }

@@ -137,13 +137,21 @@ class Judge:
         if kit.answers is None:     # it answers all questions
             self.names += ("KIT_SOLUTION",)
         own = build.Room(kit, folder / "own", files)
-        self.rooms = {"graph": [own], "cloth": [own]}
-        graph = markers.solution((once.ROOT / "Graph.hpp").read_text("utf-8"))
-        if files["Graph.hpp"] != graph.encode():
-            given = build.Room(kit, folder / "given",
-                               {**files, "Graph.hpp": graph.encode()})
-            given.names.remove("Graph.hpp")
-            self.rooms["cloth"].insert(0, given)
+        self.rooms = {"graph": [own], "cloth": [own], "program": []}
+        ours = {name: markers.solution((once.ROOT / name).read_text("utf-8"))
+                .encode() for name in ("Graph.hpp", "mass_spring.hpp")}
+
+        def with_ours(folder_name, *names_of_ours):
+            room = build.Room(kit, folder / folder_name, {
+                **files, **{name: ours[name] for name in names_of_ours}})
+            room.names -= set(names_of_ours)
+            return room
+        if files["Graph.hpp"] != ours["Graph.hpp"]:
+            self.rooms["cloth"].insert(0, with_ours("given", "Graph.hpp"))
+        # A main() is judged by what it does with right forces, too.
+        if (PROGRAM <= files.keys()
+                and files["mass_spring.hpp"] != ours["mass_spring.hpp"]):
+            self.rooms["program"].append(with_ours("program", *ours))
 
     def run(self, tests):
         """{test: Result} of {test: what it needs}."""
@@ -166,10 +174,10 @@ class Judge:
         if way.needs == "cloth" and not PROGRAM & self.files.keys():
             return {test: Result("missing", "there is no mass_spring.hpp and "
                                  "no mass_spring.cpp") for test in tests}
-        for room in self.rooms[way.needs]:
+        for room, way in self.attempts(way, tests):
             left = [test for test in tests
                     if test not in results or not results[test].passed]
-            for test, result in self.remembered(room, way, left).items():
+            for test, result in self.judged(room, way, left).items():
                 best = results.setdefault(test, result)
                 # What is said of the kit's graph is no help if the same is
                 # wrong with the student's own.
@@ -177,6 +185,27 @@ class Judge:
                           or result.status in ("not compiled", "crashed"))
                 if better > 0:
                     results[test] = result
+        return results
+
+    def attempts(self, way, tests):
+        """In what tests are built: each passes if it does in any of them."""
+        for room in self.rooms[way.needs]:
+            yield room, way
+        own = build.way_of(tests[0], way.needs)
+        if "KIT_PROGRAM" in own.defines:
+            for room in self.rooms["program"]:
+                yield room, dataclasses.replace(
+                    way, defines=own.defines + names.defines(room.files))
+
+    def judged(self, room, way, tests):
+        """Stage by stage, if main() compiles in that way."""
+        results = self.remembered(room, way, tests)
+        again = [test for test in results
+                 if results[test].status == "not compiled"]
+        if "KIT_STAGES" in way.defines and again:
+            results.update(self.remembered(room, dataclasses.replace(
+                way, defines=tuple(name for name in way.defines
+                                   if name != "KIT_STAGES")), again))
         return results
 
     def remembered(self, room, way, tests):

@@ -69,6 +69,12 @@ def needs_program(parts):
         or not INCLUDED.search(parts["mass_spring.cpp"]))
 
 
+def has_stages(parts):
+    """Is the program made from our starter, with all stages in one main()?"""
+    return (PROGRAM <= parts.keys() and not needs_program(parts)
+            and re.search(r"\bSTAGE\b", parts["mass_spring.cpp"]) is not None)
+
+
 def defines(files):
     """-D words without their -D."""
     parts = {}
@@ -88,5 +94,7 @@ def defines(files):
                        key=lambda name: name == "SphereConstraint"):
         found.setdefault("KIT_TEAR", name)
     main = ("KIT_PROGRAM",) if needs_program(parts) else ()
+    if has_stages(parts):
+        main += ("KIT_STAGES",)
     return main + tuple(f"{key}={name}" for key, name in sorted(found.items())
                         if name not in USUAL)

@@ -18,6 +18,9 @@ of_test   = -Itests/headless $(common) -Itests $(debug) -O0 \
             -MMD -MP -MF $@.d -MT $@
 wrap      = $(foreach f,move cpy set chr cmp,-Wl,--wrap=mem$(f))
 defined   = $(shell sed -nE 's/.*(Define: |ifndef )(KIT_[A-Z]+)$$/-D\2/p' $(together))
+# Where main() has the stages of the starter, it is compiled in each of them.
+stages    = $(if $(findstring KIT_PROGRAM,$(defined)),$(shell \
+              grep -qsw STAGE mass_spring.cpp && echo -DKIT_STAGES))
 unit      = @mkdir -p $(@D); printf '\#include "%s"\n' $(1) >$(B)/tests/$*.cpp
 
 .PHONY: test section
@@ -39,7 +42,9 @@ endif
 $(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame)
 	@echo '$(CXX) $@'
 	$(call unit,$(together))
-	@$(CXX) $(of_test) $(defined) $(sanitizer) -o $@ $@.cpp $(frame)
+	@$(if $(stages),$(CXX) $(stages) $(of_test) $(defined) $(sanitizer) -o $@ \
+	  $@.cpp $(frame) 2>/dev/null ||) \
+	$(CXX) $(of_test) $(defined) $(sanitizer) -o $@ $@.cpp $(frame)
 $(counted:%=$(B)/tests/%): $(B)/tests/%: tests/%.cpp $(frame)
 	@echo '$(CXX) $@'
 	@$(CXX) $(of_test) -O1 -g1 -fsanitize-coverage=trace-pc -c -o $@.o $<

@@ -10,7 +10,13 @@ static void check_move(S& s, int v) {
   constexpr bool assigns = must_compile || requires { n.position() = Point(); };
   constexpr bool adds = must_compile || requires { n.position() += Point(); };
   need<assigns && adds>("n.position() = p and n.position() += p");
-  if constexpr (assigns && adds) {
+  constexpr bool reads = must_compile || requires {
+    std::as_const(n).position();
+  };
+  need<reads>("position() of a const Node");
+  if constexpr (assigns && adds && reads) {
+    check_equal(Point(std::as_const(n).position()), place(v),
+                "position() of a const Node");
     const auto index = n.index();
     auto others = [&s, index] {
       std::vector<Point> all;

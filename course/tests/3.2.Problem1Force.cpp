@@ -127,7 +127,7 @@ static void check_corners() {
   const double K = K_of_way[way];
   Bodies b;
   for (const Point& p : {Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0),
-                         Point(1, 1, 0), Point(0, 0, 1)})
+                         Point(1, 1, 0), Point(0, 0, 1), Point(0.04, 0, 0)})
     b.add(p);
   for (int i = 1; i < b.size; ++i) b.join(0, i, K, L);
   b.join(1, 3, K, L);

@@ -42,14 +42,20 @@ static void check_values_set_by(Handle set, const Model& shape) {
   constexpr bool there =
       must_compile || (HasValue<Edge> && requires(Edge e) { e.value() = 1.5; });
   need<there>("Graph<int, double> and e.value() = 1.5");
-  if constexpr (there) {
+  constexpr bool reads = must_compile || requires(const Edge e) {
+    static_cast<double>(e.value());
+  };
+  need<reads>("value() of a const Edge");
+  if constexpr (there && reads) {
     DID(description(shape), "; set the value of each edge by ", name(set));
     for (Ends e : s.m.edges) handle(s, e, set).value() = 1 + e.value();
     for (Handle get : {added, added_again, first_end, second_end, indexed}) {
       if (!usable(s, get)) continue;
-      for (Ends e : s.m.edges)
-        check_equal(handle(s, e, get).value(), 1 + e.value(),
+      for (Ends e : s.m.edges) {
+        const auto edge = handle(s, e, get);
+        check_equal(static_cast<double>(edge.value()), 1 + e.value(),
                     words("the value of ", name(e), " by ", name(get)));
+      }
     }
     if (!(s.works & edge_loop)) return;
     for (auto it = s.g.edge_begin(), end = s.g.edge_end(); !same(it, end); ++it)

@@ -37,6 +37,7 @@ TASK("5.2.skip_corners", step_skips_corners) {
   b.add(Point(1, 0, 0), 2);
   b.add(Point(1, 1, 0), 2);
   b.add(Point(0.5, 0, 0), 1);
+  b.add(Point(0.04, 0, 0), 1);  // a neighbor of the corner
   b.join(0, 1, 100, 1);
   b.join(2, 3, 100, 1);
   b.join(1, 4, 100, 0.5);
@@ -45,13 +46,13 @@ TASK("5.2.skip_corners", step_skips_corners) {
   const auto law = [](ClothNode, double) { return Point(1, -2, -4); };
   TestForce force(law);
   step_with_corners(g, force, [&](int steps) {
-    DID("five nodes at rest, two of them corners, a force of (1, -2, -4) N on ",
+    DID("six nodes at rest, two of them corners, a force of (1, -2, -4) N on ",
         "each, steps: ", steps);
     const Point first_corner = place(g, 1), second_corner = place(g, 2);
     CHECK_NEAR(first_corner, b.x[1], 0);
     CHECK_NEAR(second_corner, b.x[2], 0);
   });
-  for (int i : {0, 3, 4})
+  for (int i : {0, 3, 4, 5})
     CHECK(norm(place(g, i) - b.x[i]) > 0.01,
           words("the node that starts at ", b.x[i], " to move"));
 }

@@ -14,6 +14,8 @@ static Bodies cloth_with_corners() {
   b.add(Point(0, 0, 0), 2);
   b.add(Point(1, 1, 0), 4);
   b.add(Point(0.5, 0, 0));
+  b.add(Point(0.04, 0, 0));  // neighbors of the corners
+  b.add(Point(1, 0.04, 0));
   b.join(0, 1, 100, 0.5);
   b.join(3, 2, 100, 1);
   b.join(0, 4, 100, 1);
@@ -40,7 +42,7 @@ static void check_pins() {
     const Point corner_0 = place(g, 3), corner_1 = place(g, 1);
     CHECK_NEAR(corner_0, Point(0, 0, 0), 1e-12);
     CHECK_NEAR(corner_1, Point(1, 0, 0), 1e-12);
-    for (int i : {0, 2, 4, 5}) {
+    for (int i : {0, 2, 4, 5, 6, 7}) {
       const Point other_node = place(g, i), other_velocity = velocity(g, i);
       CHECK_NEAR(other_node, b.x[i] + moved, 0);
       CHECK_NEAR(other_velocity, v, 0);

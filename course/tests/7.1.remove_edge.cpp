@@ -53,6 +53,27 @@ TASK("7.1.remove_edge", an_edge_that_is_not_there_is_not_removed) {
   s.hold();
 }
 
+namespace kit {
+template <typename S>
+static void check_dead_edge(S& s) {
+  auto e = s.edge(0, 1);
+  s.remove_edge(e);
+  // Another graph may assert that the edge is alive, and is as right.
+  if (!probes(dead_edges)) return;
+  DID("two nodes, the edge e between them; remove_edge(e) twice");
+  check_result(kit::remove_edge(s.g, e), 0);
+  probes(0);
+  s.hold();
+}
+}  // namespace kit
+
+TASK("7.1.remove_edge", a_removed_edge_is_not_removed_again) {
+  Model pair = nodes(2);
+  pair.add(Ends(0, 1));
+  TestSubject s(pair);
+  check_dead_edge(s);
+}
+
 TASK("7.1.remove_edge", all_edges_are_removed) {
   TestSubject s(complete(6));
   Dice dice{71};

@@ -45,10 +45,10 @@ struct Film {
     if (ended) news.notify_all();
   }
 };
-inline Film& film() {
-  static Film the_film;
-  return the_film;
-}
+inline std::unique_ptr<Film> the_film = std::make_unique<Film>();
+inline Film& film() { return *the_film; }
+/** For the next program; threads of the one before have ended. */
+inline Film& new_film() { return *(the_film = std::make_unique<Film>()); }
 
 /** Tells the film when a thread that draws comes to its end. */
 struct DrawingThread {

@@ -105,7 +105,8 @@ enum Aspect : unsigned {
   incident_values = 512,
   degrees = 1024,
   adjacency = 2048,  // has_edge()
-  all_aspects = 4095
+  all_aspects = 4095,
+  dead_edges = 4096  // what a handle of a removed edge does
 };
 
 /** A graph under test and what it should hold.

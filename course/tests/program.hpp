@@ -48,18 +48,19 @@ void call_main(Main main_of, int argc, char** argv) {
     main_of();
 }
 
-/** Run main() with the cloth of cloth.nodes and cloth.tets until it
+/** Run a main() with the cloth of cloth.nodes and cloth.tets until it
  * returns, or @a enough(film()) says so after a frame. */
-inline const Film& run_program(std::function<bool(const Film&)> enough) {
+template <typename Main>
+const Film& run_program(Main main_of, std::function<bool(const Film&)> enough) {
   std::string words[] = {"mass_spring", data_file("cloth.nodes"),
                          data_file("cloth.tets")};
   char* argv[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
-  film().enough = std::move(enough);
+  new_film().enough = std::move(enough);
   auto* out = std::cout.rdbuf(nullptr);  // what it prints is of no interest
   auto* errors = std::cerr.rdbuf(nullptr);
   auto restore = [&] { std::cout.rdbuf(out), std::cerr.rdbuf(errors); };
   try {
-    call_main(&::submitted_main, 3, argv);
+    call_main(main_of, 3, argv);
   } catch (...) {
     restore();
     throw;

@@ -51,6 +51,7 @@ class SDLViewer : public NoViewer {
   template <typename G>
   void draw_graph(G& g) {
     draw_graph_nodes(g);
+    if (!kit::film().edges.empty()) return;  // the first ones are kept
     std::vector<std::decay_t<decltype(g.edge(0))>> edges;
     for (decltype(g.num_edges()) i = 0; i < g.num_edges(); ++i)
       edges.push_back(g.edge(i));
