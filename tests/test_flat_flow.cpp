@@ -19,6 +19,7 @@
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Scene.hpp"
+#include "methods.hpp"
 #include "tests/Stages.hpp"
 
 using namespace lab;
@@ -135,20 +136,10 @@ constexpr double h = 1e-3;
 template <typename M>
 void step_by_node(Cloth& g, double t, const ZeroForce& force,
                   const ZeroConstraint& constraint) {
-  if constexpr (std::is_same_v<M, SymplecticEuler>) {
+  if constexpr (std::is_same_v<M, SymplecticEuler>)
     symp_euler_step(g, t, h, force, constraint);
-  } else {
-    const auto kick = [&](double now) {
-      std::vector<Point> f;
-      for (Node n : g.nodes()) f.push_back(force(n, now));
-      for (Node n : g.nodes())
-        n.value().vel += (h / 2 / n.value().mass) * f[n.index()];
-    };
-    kick(t);
-    for (Node n : g.nodes()) n.position() += h * n.value().vel;
-    constraint(g, t + h);
-    kick(t + h);
-  }
+  else
+    verlet_step(g, t, h, force, constraint);
 }
 
 template <typename M>

@@ -11,6 +11,7 @@ CME212        :
 CME212/viewer : CME212
 Graph         : CME212
 mass_spring   : Graph CME212/viewer
+methods       : CME212
 course        : mass_spring
 lab           : CME212
 lab/fast      : mass_spring lab
@@ -57,7 +58,7 @@ is_program() { [[ $'\n'$programs$'\n' == *$'\n'$1$'\n'* ]]; }
 
 set_room() {  # of FILE, in $room: that of a program in the root is .
   case $1 in
-    Graph.hpp) room=Graph ;;
+    Graph.hpp | methods.hpp) room=${1%.hpp} ;;
     CME212/*Viewer.hpp) room=CME212/viewer ;;
     mass_spring.hpp | mass_spring.cpp) room=mass_spring ;;
     lab/bench/*) room=lab/bench ;;

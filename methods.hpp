@@ -1,0 +1,407 @@
+#pragma once
+/** @file methods.hpp
+ * Methods as plain steps, to read after section 7 and to copy from. Each has
+ * the form of the assignment's symp_euler_step(), which is one of them, and
+ * advances a cloth from time t to t + dt. Any graph of the assignment will do.
+ *
+ *   force       Point(Node, double): the force F [N] on a node at a time. It
+ *               may depend on all positions and on the velocity of that node.
+ *   constraint  void(G&, double): called with the time that the nodes have
+ *               reached, each time they have moved. So a pin that moves is at
+ *               its place at every stage of a step.
+ *   returns     t + dt, to round-off
+ *
+ * Order p: half the step divides the error by 2^p. A method with the limit L is
+ * stable while dt omega < L for each frequency omega [1/s] of the cloth,
+ * without drag. x, v and m are a node's position, velocity and mass. */
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "CME212/AnyGraph.hpp"
+#include "CME212/Point.hpp"
+
+using CME212::edges, CME212::nodes;
+
+// ---------------------------------------------------------------- Splittings
+
+/** A force with linear drag, F - c v. Drag depends on the velocity that a kick
+ * changes, so as an ordinary force it lowers every splitting to order 1. Given
+ * by this class, it is left to the drift, which solves it exactly, and each
+ * method keeps its order. */
+template <typename F>
+struct WithDrag {
+  mutable F others;  ///< F, all forces but the drag
+  double drag;       ///< c [kg/s], >= 0
+  WithDrag(F f, double c) : others(std::move(f)), drag(c) {}
+  /** The whole force, for methods that are no splittings. */
+  template <typename N>
+  Point operator()(N n, double t) const {
+    return others(n, t) - drag * n.value().vel;
+  }
+};
+
+/** c of a WithDrag; 0 of any other force. */
+template <typename F>
+double drag_of(const F&) {
+  return 0;
+}
+template <typename F>
+double drag_of(const WithDrag<F>& force) {
+  return force.drag;
+}
+/** F of a WithDrag; any other force itself. */
+template <typename F>
+F& without_drag(F& force) {
+  return force;
+}
+template <typename F>
+F& without_drag(WithDrag<F>& force) {
+  return force.others;
+}
+template <typename F>
+F& without_drag(const WithDrag<F>& force) {
+  return force.others;
+}
+
+/** Kick, over the time h: v += h F(x, t)/m. */
+template <typename G, typename F>
+void kick(G& g, double t, double h, F& force) {
+  auto& others = without_drag(force);
+  for (auto n : nodes(g)) n.value().vel += (h / n.value().mass) * others(n, t);
+}
+
+/** Drift, from t to t + h: x += h v; constrain. With drag, where r = c/m:
+ * x += v (1 - e^(-r h))/r;  v *= e^(-r h).
+ * @return t + h */
+template <typename G, typename F, typename C>
+double drift(G& g, double t, double h, F& force, C& constraint) {
+  for (auto n : nodes(g)) {
+    Point &x = n.position(), &v = n.value().vel;
+    const double r = drag_of(force) / n.value().mass;
+    x += (r > 0 ? -std::expm1(-r * h) / r : h) * v;
+    if (r > 0) v *= std::exp(-r * h);
+  }
+  constraint(g, t + h);
+  return t + h;
+}
+
+/** Half a kick, a drift, half a kick. Order 2, limit 2. The last kick and the
+ * first one of the next step need the same force: a program that keeps it
+ * computes one a step.
+ * Source: L. Verlet, Phys. Rev. 159 (1967) 98. */
+template <typename G, typename F, typename C>
+double verlet_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  kick(g, t, dt / 2, force);
+  t = drift(g, t, dt, force, constraint);
+  kick(g, t, dt / 2, force);
+  return t;
+}
+
+/** Three steps of Verlet, the middle one back in time: their errors of order 2
+ * cancel, and as the step is symmetric it has none of order 3. Order 4,
+ * limit 1.573; 3 forces a step if those at equal positions are computed once.
+ * Sources: H. Yoshida, Phys. Lett. A 150 (1990) 262; E. Forest, R. D. Ruth,
+ * Physica D 43 (1990) 105. */
+template <typename G, typename F, typename C>
+double yoshida4_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  const double forth = 1 / (2 - std::cbrt(2.0)), back = 1 - 2 * forth;
+  t = verlet_step(g, t, forth * dt, force, constraint);
+  t = verlet_step(g, t, back * dt, force, constraint);
+  return verlet_step(g, t, forth * dt, force, constraint);
+}
+
+/** Drifts and kicks in a symmetric order: one kick more than order 4 needs, so
+ * that xi, lambda and chi could be chosen for the least error. Order 4,
+ * limit 2.989, 4 forces a step.
+ * Source: I. P. Omelyan, I. M. Mryglod, R. Folk, Comput. Phys. Commun. 146
+ * (2002) 188. */
+template <typename G, typename F, typename C>
+double pefrl_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054,
+                   chi = -0.06626458266981849;
+  t = drift(g, t, xi * dt, force, constraint);
+  kick(g, t, (0.5 - lambda) * dt, force);
+  t = drift(g, t, chi * dt, force, constraint);
+  kick(g, t, lambda * dt, force);
+  t = drift(g, t, (1 - 2 * (chi + xi)) * dt, force, constraint);
+  kick(g, t, lambda * dt, force);
+  t = drift(g, t, chi * dt, force, constraint);
+  kick(g, t, (0.5 - lambda) * dt, force);
+  return drift(g, t, xi * dt, force, constraint);
+}
+
+/** 12 kicks and 11 drifts in a symmetric order. Its order holds for forces that
+ * depend on positions alone (Runge-Kutta-Nystroem methods): these need to meet
+ * fewer conditions. Order 6, limit 9.074, where an oscillation of dt omega near
+ * pi and 2 pi grows slowly; 11 forces a step, as Verlet has one.
+ * Source: S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313. */
+template <typename G, typename F, typename C>
+double srkn11b_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  double b[] = {.0414649985182624, .198128671918067,   -.0400061921041533,
+                .0752539843015807, -.0115113874206879, .5};
+  double a[] = {.123229775946271,  .290553797799558, -.127049212625417,
+                -.246331761062075, .357208872795928, 1};
+  for (int k = 0; k < 5; ++k) b[5] -= b[k], a[5] -= 2 * a[k];
+  for (int k = 0; k < 11; ++k) {
+    kick(g, t, b[k < 6 ? k : 11 - k] * dt, force);
+    t = drift(g, t, a[k < 6 ? k : 10 - k] * dt, force, constraint);
+  }
+  kick(g, t, b[0] * dt, force);
+  return t;
+}
+
+// -------------------------------------------------------------- Runge-Kutta
+
+/** Position and velocity of a node, or their derivatives by time. */
+struct NodeState {
+  Point x, v;
+};
+
+/** The states of all nodes, by index. */
+template <typename G>
+std::vector<NodeState> states(G& g) {
+  std::vector<NodeState> y(g.num_nodes());
+  for (auto n : nodes(g)) y[n.index()] = {n.position(), n.value().vel};
+  return y;
+}
+
+/** Their derivatives: x' = v, v' = F(x, v, t)/m. */
+template <typename G, typename F>
+std::vector<NodeState> slopes(G& g, double t, F& force) {
+  std::vector<NodeState> k(g.num_nodes());
+  for (auto n : nodes(g))
+    k[n.index()] = {n.value().vel, force(n, t) / n.value().mass};
+  return k;
+}
+
+/** Throws if the constraint has removed any of @a count nodes: then what is
+ * stored by index belongs to others. Only the last call in a step may. */
+template <typename G>
+void expect_all(G& g, std::size_t count) {
+  if (g.num_nodes() != count)
+    throw std::logic_error("the constraint removed a node within a step");
+}
+
+/** Put all nodes to y + h k, and constrain them at time t. */
+template <typename G, typename C>
+void put(G& g, const std::vector<NodeState>& y, double h,
+         const std::vector<NodeState>& k, double t, C& constraint) {
+  for (auto n : nodes(g)) {
+    const auto i = n.index();
+    n.position() = y[i].x + h * k[i].x;
+    n.value().vel = y[i].v + h * k[i].v;
+  }
+  constraint(g, t);
+}
+
+/** Along the slope at the start: x += dt v;  v += dt F/m, both with the old x
+ * and v. Order 1, 1 force a step. Without drag no step is stable.
+ * Source: L. Euler, Institutionum calculi integralis I (1768). */
+template <typename G, typename F, typename C>
+double forward_euler_step(G& g, double t, double dt, F&& force,
+                          C&& constraint) {
+  put(g, states(g), dt, slopes(g, t, force), t + dt, constraint);
+  return t + dt;
+}
+
+/** Along the mean of four slopes: at the start, twice in the middle, at the
+ * end. Order 4, limit 2.828, 4 forces a step; each step loses (dt omega)^6/72
+ * of the energy of an oscillation.
+ * Source: W. Kutta, Z. Math. Phys. 46 (1901) 435. */
+template <typename G, typename F, typename C>
+double rk4_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  const auto y = states(g);
+  const auto slope_after = [&](double h, const auto& k) {
+    put(g, y, h, k, t + h, constraint);
+    expect_all(g, y.size());
+    return slopes(g, t + h, force);
+  };
+  auto k1 = slopes(g, t, force);
+  const auto k2 = slope_after(dt / 2, k1), k3 = slope_after(dt / 2, k2),
+             k4 = slope_after(dt, k3);
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    k1[i].x = (k1[i].x + 2 * k2[i].x + 2 * k3[i].x + k4[i].x) / 6;
+    k1[i].v = (k1[i].v + 2 * k2[i].v + 2 * k3[i].v + k4[i].v) / 6;
+  }
+  put(g, y, dt, k1, t + dt, constraint);
+  return t + dt;
+}
+
+// ----------------------------------- Implicit Euler and XPBD: edges are
+// springs
+
+/** The nodes that a constraint holds, by index: it gives them the same velocity
+ * whatever they had. Puts them to their places at time t; all others keep
+ * position and velocity. */
+template <typename G, typename C>
+std::vector<char> held_nodes(G& g, double t, C& constraint) {
+  const auto before = states(g);
+  std::vector<std::vector<NodeState>> after;
+  for (const double sign : {-1, 1}) {
+    for (auto n : nodes(g)) n.value().vel = sign * Point(1, 2, 3);
+    constraint(g, t);
+    expect_all(g, before.size());
+    after.push_back(states(g));
+  }
+  std::vector<char> held(before.size());
+  for (auto n : nodes(g)) {
+    const auto i = n.index();
+    held[i] = after[0][i].v == after[1][i].v;
+    if (held[i]) continue;
+    n.position() = before[i].x;
+    n.value().vel = before[i].v;
+  }
+  return held;
+}
+
+/** The length l [m] of a spring, and its direction n from node1() to node2();
+ * 0 if l = 0. */
+template <typename E>
+std::pair<double, Point> span_of(const E& e) {
+  const Point u = e.node2().position() - e.node1().position();
+  const double l = norm(u);
+  return {l, l > 0 ? u / l : Point()};
+}
+
+/** H d, by node index: by how much the pull of the springs on each node falls
+ * if all nodes move by d [m]. Along a spring the stiffness is K, across it
+ * K (1 - L/l); 0 if it is compressed, so that H is positive. */
+template <typename G>
+std::vector<Point> stiffness_times(G& g, const std::vector<Point>& d) {
+  std::vector<Point> f(d.size());
+  for (auto e : edges(g)) {
+    const auto i = e.node1().index(), j = e.node2().index();
+    const auto [l, n] = span_of(e);
+    const double K = e.value().K, L = e.value().L;
+    const double across = l > 0 ? std::max(0., K * (1 - L / l)) : K;
+    const Point by = d[i] - d[j];
+    const Point pull = across * by + (K - across) * dot(n, by) * n;
+    f[i] += pull, f[j] -= pull;
+  }
+  return f;
+}
+
+/** Sum of the products of all nodes. */
+inline double product(const std::vector<Point>& a,
+                      const std::vector<Point>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
+  return sum;
+}
+
+/** The solution x of A x = b up to |A x - b| <= tolerance |b|, by conjugate
+ * gradients: A, symmetric and positive, is only needed as the function A(x).
+ * Source: M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409. */
+template <typename Product>
+std::vector<Point> solve(const Product& A, const std::vector<Point>& b,
+                         double tolerance) {
+  std::vector<Point> x(b.size()), r = b, p = b;
+  double rr = product(r, r);
+  const double enough = tolerance * tolerance * rr;
+  for (auto left = 10 * b.size() + 100; rr > enough; --left) {
+    if (left == 0) throw std::runtime_error("conjugate gradients: no solution");
+    const auto Ap = A(p);
+    const double a = rr / product(p, Ap), before = rr;
+    for (std::size_t i = 0; i < b.size(); ++i)
+      x[i] += a * p[i], r[i] -= a * Ap[i];
+    rr = product(r, r);
+    for (std::size_t i = 0; i < b.size(); ++i) p[i] = r[i] + rr / before * p[i];
+  }
+  return x;
+}
+
+/** v += dt F/m with the force at the end of the step, then x += dt v. That
+ * force is found by one step of Newton's method, with the springs' stiffness H:
+ *   (M + dt c + dt^2 H) dv = dt (F - dt H v - c v).
+ * Order 1, no limit, 1 force and about dt omega products with H a step. Drag
+ * is implicit if it is given by WithDrag.
+ * @param tolerance of the linear equations, as a share of their right side
+ * Source: D. Baraff, A. Witkin, SIGGRAPH 1998, doi:10.1145/280814.280821. */
+template <typename G, typename F, typename C>
+double implicit_euler_step(G& g, double t, double dt, F&& force, C&& constraint,
+                           double tolerance = 1e-8) {
+  const auto held = held_nodes(g, t + dt, constraint);
+  const double c = drag_of(force);
+  std::vector<Point> v(held.size()), b(held.size());
+  for (auto n : nodes(g))
+    if (!held[n.index()]) v[n.index()] = n.value().vel;
+  const auto Hv = stiffness_times(g, v);
+  for (auto n : nodes(g))
+    if (const auto i = n.index(); !held[i])
+      b[i] = dt * (without_drag(force)(n, t + dt) - dt * Hv[i] - c * v[i]);
+  const auto A = [&](const std::vector<Point>& w) {
+    auto Aw = stiffness_times(g, w);
+    for (auto n : nodes(g)) {
+      const auto i = n.index();
+      Aw[i] = held[i] ? Point()
+                      : (n.value().mass + dt * c) * w[i] + dt * dt * Aw[i];
+    }
+    return Aw;
+  };
+  const auto dv = solve(A, b, tolerance);
+  for (auto n : nodes(g)) {
+    n.value().vel = v[n.index()] + dv[n.index()];
+    n.position() += dt * n.value().vel;
+  }
+  constraint(g, t + dt);
+  return t + dt;
+}
+
+/** Moves the ends of each spring in turn towards its rest length:
+ *   x_i += w_i d n,  x_j -= w_j d n,  d = (l - L)/(w_i + w_j + 1/(K h^2)).
+ * @param w 1/m of each node, or 0 if it is held   @param h step [s] */
+template <typename G>
+void relax_springs(G& g, const std::vector<double>& w, double h) {
+  for (auto e : edges(g)) {
+    const auto i = e.node1().index(), j = e.node2().index();
+    const auto [l, n] = span_of(e);
+    const double K = e.value().K, L = e.value().L;
+    const double d = (l - L) / (w[i] + w[j] + 1 / (K * h * h));
+    e.node1().position() += w[i] * d * n;
+    e.node2().position() -= w[j] * d * n;
+  }
+}
+
+/** Extended position-based dynamics, in substeps of h: all other forces move
+ * the nodes, then relax_springs(), and the velocities follow from the
+ * positions. Order 1, no limit, 1 force a step.
+ * @param force with that of the springs, as in all steps here
+ * Sources: M. Macklin, M. Mueller, N. Chentanez, MIG 2016,
+ * doi:10.1145/2994258.2994272; M. Macklin et al., SCA 2019,
+ * doi:10.1145/3309486.3340247. */
+template <typename G, typename F, typename C>
+double xpbd_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  constexpr int substeps = 10;
+  const double h = dt / substeps;
+  const auto held = held_nodes(g, t, constraint);
+  std::vector<double> w(held.size());
+  std::vector<Point> a(held.size());  // accelerations without the springs
+  for (auto n : nodes(g)) {
+    const auto i = n.index();
+    w[i] = held[i] ? 0 : 1 / n.value().mass;
+    a[i] = w[i] * without_drag(force)(n, t);
+    for (auto e : edges(n)) {
+      const auto [l, direction] = span_of(e);
+      a[i] -= w[i] * e.value().K * (l - e.value().L) * direction;
+    }
+  }
+  for (int k = 1; k <= substeps; ++k) {
+    for (auto n : nodes(g)) {
+      const auto i = n.index();
+      Point& v = n.value().vel;
+      v = std::exp(-drag_of(force) * w[i] * h) * (v + h * a[i]);
+      n.position() += h * v;
+    }
+    constraint(g, t + k * h);
+    expect_all(g, held.size());
+    const auto free = states(g);
+    relax_springs(g, w, h);
+    for (auto n : nodes(g))
+      n.value().vel += (n.position() - free[n.index()].x) / h;
+  }
+  constraint(g, t + dt);
+  return t + dt;
+}
