@@ -3,7 +3,7 @@
 
 .PHONY: adviser-suite cells charts charts-quick figures fuzz grids \
         method-costs orders peers-bench peers-chart peers-deps pictures \
-        solver-chart speed stability stability-soak
+        solver-chart speed stability stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -11,6 +11,8 @@ help-lab:
 	@echo 'make quick | check | check-full   what a commit must pass, in 2 and 6'
 	@echo '                        minutes; all else'
 	@echo 'make compdb             compile_commands.json, which clangd reads'
+	@echo 'make try FILE=mine.hpp  what a step of your own is worth; STEP=my_step;'
+	@echo '                        lab/try/README.md'
 	@echo 'make charts             work and precision, failures: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
@@ -35,6 +37,15 @@ draw = python3 lab/charts/draw.py
 figures:
 	@$(draw)
 	@python3 lab/charts/figures.py --write
+
+# ---- A step of your own: lab/try/README.md. As it was given: FILE is read by
+# no shell.
+override FILE := $(value FILE)
+override STEP := $(value STEP)
+try: export FILE := $(FILE)
+try: export STEP := $(STEP)
+try:
+	@tools/deps.sh grade draw && python3 lab/try/try.py
 
 # ---- Charts: lab/charts/README.md
 

@@ -20,6 +20,7 @@ lab/stability : lab/methods
 lab/scenes    : lab/stability
 lab/advice    : lab/scenes
 lab/charts    : lab/stability
+lab/try       : mass_spring
 lab/bench     : lab/charts
 lab/live      : lab/scenes
 lab/viewer    : lab/live

@@ -1,0 +1,303 @@
+"""What is wrong with a step, from its table and the order of its calls.
+
+Each fault is (its sentence, what to do about it). The first one is what a
+teacher would say first: a later one may follow from it.
+"""
+
+import table as tables
+from table import near
+from workshop import BadInput
+
+NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh",
+           "eighth", "ninth", "tenth", "eleventh", "twelfth")
+FULL, HALF = .25, .125      # the steps of the trace
+FRACTIONS = {(p / q): f"{p}/{q}" for q in (6, 4, 3, 2, 8) for p in range(1, q)}
+
+
+def ordinal(k):
+    return NUMBERS[k] if k < len(NUMBERS) else f"{k + 1}th"
+
+
+def digits(x):
+    for value, text in FRACTIONS.items():
+        if near(abs(x), value):
+            return ("-" if x < 0 else "") + text
+    return f"{x:.6g}"
+
+
+def bad_input(where, runs, lines):
+    """BadInput if the step can't be measured at all."""
+    for what, numbers in lines:
+        if what == "nodes" and numbers[0] != 3:
+            raise BadInput(f"{where}: changes the number of nodes from 3 to "
+                           f"{numbers[0]:.0f}; only the constraint may remove")
+    for (h, _), events in runs.items():
+        for e in events:
+            if e.what == "call" and not -1 <= (e.time - 3) / h <= 2:
+                raise BadInput(
+                    f"{where}: calls the force with t = {e.time:.6g} in a "
+                    f"step from 3 to {3 + h:g}, expected a time of the step")
+            if any(x != x or abs(x) > 1e100 for pair in e.x + e.v
+                   for x in pair):
+                raise BadInput(f"{where}: writes NaN or infinity in a step "
+                               "with finite forces")
+
+
+def loops(events):
+    """Are all masses at one stage when a force is asked for?"""
+    for e in events:
+        if e.what == "call" and any(
+                not near(e.x[i][0], e.x[0][0]) for i in (1, 2)):
+            return [(
+                f"it moves nodes one by one: when the force on node {e.node} "
+                "is computed, some nodes have moved and others have not",
+                "Use two loops: first move all nodes, then compute the "
+                "forces; a force depends on the neighbors' positions.")]
+    return []
+
+
+def counts(events):
+    asked = [sum(e.what == "call" and e.node == i for e in events)
+             for i in range(3)]
+    if len(set(asked)) > 1:
+        return [("it asks for "
+                 + " and ".join(f"{n} force{'s' * (n != 1)} on node {i}"
+                                for i, n in enumerate(asked)),
+                 "Each loop has to run over all nodes.")]
+    if asked[0] == 0:
+        return [("it never asks for the force", "Call force(n, t) for each "
+                 "node and add dt/m times it to the velocity.")]
+    return []
+
+
+def masses(one, two):
+    """Tables of mass 1 and of mass 2, each times its mass."""
+    pairs = [("the velocity", one.b, two.b), ("the position", one.B, two.B)]
+    for what, b1, b2 in pairs:
+        for j, (x, y) in enumerate(zip(b1, b2)):
+            if near(x, y):
+                continue
+            kick = (f"the {ordinal(j)} force" if one.stages > 1
+                    else "the force")
+            if near(y, 2 * x):
+                return [(f"the mass is forgotten: {what} gets {kick} itself, "
+                         "in place of force/mass",
+                         "Divide the force by n.value().mass: a = F/m.")]
+            if near(2 * y, x):
+                return [(f"{kick} is divided by the mass twice",
+                         "Divide the force by n.value().mass once: a = F/m.")]
+            return [(f"what {kick} adds to {what} is not in proportion to "
+                     "1/mass", "Newton: a = F/m, for each node its own m.")]
+    return []
+
+
+def steps(full, half):
+    """Tables of steps 1/4 and 1/8: all coefficients should be the same."""
+    def ratio(x, y):
+        return x / y if abs(y) > 1e-9 else 1
+    for what, x, y, power in (("the drift", full.C, half.C, 1),
+                              ("the kick", sum(full.b), sum(half.b), 1),
+                              ("the force's part of the position",
+                               sum(full.B), sum(half.B), 2)):
+        r = ratio(x, y)
+        if near(r, 1):
+            continue
+        if near(r, 2) or near(r, 4):
+            return [(f"dt enters {what} {power + round(r / 2)} times, "
+                     f"expected {'once' if power == 1 else 'twice'}",
+                     "Look at the units: x += dt v, v += dt F/m.")]
+        if near(r, .5):
+            return [(f"dt is forgotten in {what}",
+                     "Look at the units: x += dt v, v += dt F/m.")]
+        return [(f"{what} is not in proportion to dt",
+                 "Look at the units: x += dt v, v += dt F/m.")]
+    return []
+
+
+def own_drag(t):
+    if near(t.V, 1):
+        return []
+    if abs(t.V) > 1:
+        return [(f"without any force a step of {FULL} s multiplies the "
+                 f"velocity by {t.V:.4g}: a drag of the wrong sign, which "
+                 "adds energy",
+                 "An implicit drag divides by (1 + dt c/m); better leave "
+                 "drag to the force.")]
+    if near(t.V, 0):
+        return [("it forgets the velocity: without any force v becomes 0",
+                 "v += dt F/m, not v = dt F/m.")]
+    return [(f"without any force a step of {FULL} s multiplies the velocity "
+             f"by {t.V:.4g}: the step has a drag of its own",
+             "Leave drag to the force, or to a function of its own: a step "
+             "should do nothing that the forces do not say.")]
+
+
+def times(t, order_one):
+    """(faults, notes) of the times at which forces are asked for."""
+    for s, (tau, c) in enumerate(zip(t.tau, t.c)):
+        if near(tau, c):
+            continue
+        which = f"the {ordinal(s)} force" if t.stages > 1 else "the force"
+        names = {0: "t", .5: "t + dt/2", 1: "t + dt"}
+        got = names.get(round(tau, 9), f"t + {tau:.4g} dt")
+        due = names.get(round(c, 9), f"t + {c:.4g} dt")
+        words = (f"{which} is asked for at time {got}, but the positions are "
+                 f"those of {due}")
+        if order_one:
+            return [], [words + ": as in the assignment; of order 1 both are"]
+        return [(words, f"Call force(n, {due}) there: a force that depends on "
+                 "time lowers the order otherwise.")], []
+    return [], []
+
+
+def constraint(runs, h=FULL):
+    """(faults, notes) of where the constraint is applied."""
+    events = runs[h, -1]
+    holds = [e for e in events if e.what == "hold"]
+    if not holds:
+        return [("the constraint is never called", "Call constraint(g, t + "
+                 "dt) when all positions have moved.")], []
+    start, end = events[0], events[-1]
+    impulses = [run for (step, j), run in runs.items() if step == h]
+
+    def at_end(k):
+        """Are positions at event k, in all runs, those of the end?"""
+        return all(len(run) > k and all(
+            near(p, q) for x, y in zip(run[k].x, run[-1].x)
+            for p, q in zip(x, y)) for run in impulses)
+    last = max(k for k, e in enumerate(events) if e.what == "hold")
+    notes = []
+    if not at_end(last):
+        first = all(near(e.x[0][0], start.x[0][0]) for e in holds)
+        return [("the constraint is applied before the positions move"
+                 + ("" if first else " for the last time")
+                 + ": a node may end a step inside of an obstacle",
+                 "Call the constraint after the last change of positions, "
+                 "before the force there.")], notes
+    calls = [k for k, e in enumerate(events) if e.what == "call"]
+    firsts = [k for k, e in enumerate(events)
+              if e.what == "hold" and at_end(k)]
+    early = [k for k in calls if k < firsts[0] and at_end(k)
+             and not near(events[k].x[0][0], start.x[0][0])]
+    if early:
+        return [("the constraint comes after the velocities: the force at the "
+                 "new positions sees nodes that violate it",
+                 "Order: move, constrain, then compute the force.")], notes
+    tau = (holds[-1].time - start.time) / h
+    if near(tau, 0):
+        notes.append("the constraint gets the time t, as in the assignment, "
+                     "at positions of t + dt: pins that move lag one step")
+    elif not near(tau, 1):
+        return [(f"the constraint at the end of a step gets the time t + "
+                 f"{tau:.4g} dt", "Call constraint(g, t + dt).")], notes
+    return [], notes
+
+
+def returned(runs):
+    found = []
+    for h in (FULL,):
+        end = runs[h, -1][-1].time
+        if not near(end, 3 + h):
+            found.append((f"it returns {end:.6g} after a step from 3 to "
+                          f"{3 + h:g}", "return t + dt;"))
+    return found
+
+
+def differences(t, other):
+    """(what differs, ours, the other's), the first ones of a cause."""
+    found = []
+    for kind, x, y in (("the time", t.tau, other.tau),):
+        del kind, x, y
+    for s in range(t.stages):
+        if not near(t.c[s], other.c[s]):
+            found.append((f"positions at the {ordinal(s)} force: drift of",
+                          t.c[s], other.c[s]))
+        for j in range(s):
+            if not near(t.a[s][j], other.a[s][j]):
+                found.append((f"positions at the {ordinal(s)} force: share "
+                              f"of the {ordinal(j)} force", t.a[s][j],
+                              other.a[s][j]))
+    for name, x, y in (("velocity", t.b, other.b), ("position", t.B, other.B)):
+        for j in range(t.stages):
+            if not near(x[j], y[j]):
+                found.append((f"new {name}: weight of the {ordinal(j)} force",
+                              x[j], y[j]))
+    if not near(t.C, other.C):
+        found.append(("new position: drift of", t.C, other.C))
+    return found
+
+
+def velocity_weights(t, other):
+    """The differences that a reader finds in the code: weights first."""
+    return sorted(differences(t, other),
+                  key=lambda d: not d[0].startswith("new velocity"))
+
+
+def nearest(t, methods):
+    """(name, differences, share of the coefficients that differ) of the
+    known method that has most in common; or None."""
+    best = None
+    for name, other in methods.items():
+        if other.stages != t.stages:
+            continue
+        found = velocity_weights(t, other)
+        all_ = len([x for x in other.numbers() if x]) + 1
+        far = max((abs(x - y) for _, x, y in found), default=0)
+        key = (far > .02, len(found) / all_)
+        if best is None or key < best[0]:
+            best = key, name, found, far
+    return best and best[1:]
+
+
+def one_coefficient(t, methods):
+    """A known method, but for small or for few differences."""
+    close = nearest(t, methods)
+    if not close or not close[1]:
+        return []
+    name, found, far = close
+    what, own, right = found[0]
+    if far <= .02:
+        return [(f"it is {name} with a wrong coefficient: {what} is "
+                 f"{own:.8g}, in {name} {right:.8g}",
+                 f"Copy the coefficients of {name} again, with all digits.")]
+    if t.stages > 1 and len(found) <= max(2, .4 * len(t.numbers())):
+        return [(f"it is close to {name}, but {what} is {digits(own)}, in "
+                 f"{name} {digits(right)}",
+                 f"Compare your step with {name}, stage by stage.")]
+    return []
+
+
+def sums(t):
+    total, B = sum(t.b), sum(t.B)
+    if near(t.C, 0):
+        return [("the positions do not move with the velocities",
+                 "x += dt v, for all nodes.")]
+    if near(total, .5):
+        return [("half a kick is forgotten: the velocities get dt/2 times "
+                 "F/m in a step, expected dt",
+                 "A kick of dt/2 before the drift needs another one after "
+                 "it.")]
+    if near(total, -1):
+        return [("the force has the wrong sign", "v += dt F/m.")]
+    if not near(total, 1):
+        return [(f"the kicks of a step add up to {digits(total)} dt, "
+                 "expected dt", "The weights of the forces have to add up "
+                 "to 1.")]
+    if not near(t.C, 1):
+        return [(f"the drifts of a step add up to {digits(t.C)} dt, expected "
+                 "dt", "The weights of the velocities have to add up to 1.")]
+    if t.stages > 1 and not near(B, .5):
+        return [(f"the forces move the positions by {digits(B)} dt^2 F/m, "
+                 "expected 1/2: of order 1 whatever the rest",
+                 "A symmetric sequence of kicks and drifts has 1/2.")]
+    return []
+
+
+def later(t, methods):
+    """Where a method of several forces has but one place."""
+    if t.stages > 1 and all(near(c, 0) for c in t.c) and all(
+            near(x, 0) for x in sum(t.a, [])):
+        return [("all forces are computed at the old positions",
+                 "Move the nodes before you compute the next force.")]
+    del methods
+    return []

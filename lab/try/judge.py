@@ -1,0 +1,409 @@
+"""What the probe's numbers say about a step: a Verdict, in words."""
+
+import cmath
+import math
+from dataclasses import dataclass, field
+
+import faults
+import orders
+import table as tables
+from workshop import BadInput
+
+ROUNDOFF = 1e-11
+WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight",
+         "nine", "ten", "eleven", "twelve")
+
+
+@dataclass
+class Verdict:
+    step: str
+    is_a: str = ""              # what it is, in a sentence
+    name: str = ""              # of a known method that it equals
+    faults: list = field(default_factory=list)     # (sentence, advice)
+    notes: list = field(default_factory=list)
+    facts: list = field(default_factory=list)      # (what, words)
+    advice: str = ""
+    table: object = None        # of an explicit step
+    evaluations: int = 0        # a step; a force kept counts once
+    orders: dict = field(default_factory=dict)     # problem: Order
+    order: object = None        # int, or None
+    limit: float = 0            # dt omega, without drag; inf: none found
+    weak: tuple = ()            # (dt omega, growth a step) below the limit
+    data: dict = field(default_factory=dict)       # what the charts draw
+
+
+def by_name(lines):
+    found = {}
+    for name, numbers in lines:
+        found.setdefault(name, []).append(numbers)
+    return found
+
+
+def plural(n, what):
+    word = WORDS[n] if n < len(WORDS) else str(n)
+    return f"{word} {what}{'s' * (n != 1)}"
+
+
+def size(x):
+    return f"{x:.2g}".replace("e-0", "e-").replace("e+0", "e")
+
+
+# ---- What it is
+
+SPRINGS = [(i, j) for i in range(4) for j in range(i)]
+
+
+def tangle_force(x, v, t, i):
+    """That of same() in probe.cpp."""
+    f = [math.cos(5 * t), math.sin(3 * t), t]
+    for k, (a, b) in enumerate(SPRINGS):
+        if i not in (a, b):
+            continue
+        other = b if i == a else a
+        u = [q - p for p, q in zip(x[i], x[other])]
+        length = math.sqrt(sum(c * c for c in u))
+        pull = (4 + k) * (length - .7 - .1 * k) / length
+        f = [c + pull * d for c, d in zip(f, u)]
+    return [c - .3 * d for c, d in zip(f, v[i])]
+
+
+def simulate(t, state, h=.0625, start=.25, steps=3):
+    """The state of the tangle after some steps by a table."""
+    n = len(state) // 6
+    x = [state[6 * i:6 * i + 3] for i in range(n)]
+    v = [state[6 * i + 3:6 * i + 6] for i in range(n)]
+    mass = [.5 + .25 * i for i in range(n)]
+    for k in range(steps):
+        acc = []
+
+        def moved(c, a, vel, i):
+            return [x[i][d] * vel + (v[i][d] * c * h if vel else v[i][d] * c)
+                    + h ** (1 + vel) * sum(
+                        w * f[i][d] for w, f in zip(a, acc))
+                    for d in range(3)]
+        for s in range(t.stages):
+            xs = [moved(t.c[s], t.a[s], 1, i) for i in range(n)]
+            vs = [moved(1, t.w[s], 0, i) for i in range(n)]
+            acc.append([[c / mass[i] for c in tangle_force(
+                xs, vs, start + (k + t.tau[s]) * h, i)] for i in range(n)])
+        x, v = ([moved(t.C, t.B, 1, i) for i in range(n)],
+                [moved(t.V, t.b, 0, i) for i in range(n)])
+    return [c for p, q in zip(x, v) for c in p + q]
+
+
+def distance(one, other):
+    far = max(abs(a - b) for a, b in zip(one, other))
+    return far / max(1, *map(abs, one)) if math.isfinite(far) else math.inf
+
+
+def trace(verdict, where, lines, constrained):
+    """Read the table; everything that it shows at once."""
+    shown = [(n, x) for n, x in lines
+             if n in ("begin", "call", "hold", "end")]
+    runs = tables.events(shown)
+    faults.bad_input(where, runs, lines)
+    base = runs[faults.FULL, -1]
+    found = faults.counts(base)
+    loop = [] if found else faults.loops(base)
+    found += loop
+    one, two, half = (None,) * 3
+    if not found or loop:
+        one = tables.read(runs, faults.FULL, 0)
+        two = tables.read(runs, faults.FULL, 1)
+        half = tables.read(runs, faults.HALF, 0)
+    usable = one and two and half and one.stages == half.stages
+    if usable and not loop:
+        found += faults.own_drag(one)
+        found += faults.masses(one, two)
+        if not found:
+            found += faults.steps(one, half)
+        verdict.table = tables.pruned(tables.merged(one))
+    found += faults.returned(runs)
+    verdict.data["raw"] = one
+    if constrained and not faults.counts(base):
+        held, notes = faults.constraint(runs)
+        found += held
+        verdict.notes += notes
+    verdict.faults += found
+    verdict.calls = sum(e.what == "call" and e.node == 0 for e in base)
+
+
+def keeps_state(where, same):
+    ends = same["tangle.end"]
+    if any(x != x for end in ends for x in end):
+        raise BadInput(f"{where}: writes NaN on four masses and springs")
+    if any(distance(ends[0], end) > 0 for end in ends[1:]):
+        raise BadInput(f"{where}: keeps something from one run to the next, "
+                       "in a global or static variable: the same run ends "
+                       "elsewhere after another one")
+
+
+def identify(verdict, same):
+    """Compare with the known methods, by table and by a run."""
+    t = verdict.table
+    explicit = t and distance(same["tangle.end"][0], simulate(
+        verdict.data["raw"], same["tangle.begin"][0])) < 1e-9
+    raw = verdict.data["raw"]
+    verdict.evaluations = verdict.calls
+    if not explicit:
+        if not verdict.faults:
+            verdict.is_a = ("it looks at the springs itself, beside the "
+                            "forces: an implicit or position-based step")
+        verdict.table = None
+        return
+    verdict.evaluations = t.stages - t.reuses()
+    words = f"{verdict.calls} call{'s' * (verdict.calls != 1)} a node and step"
+    more = []
+    if t.stages < raw.stages:
+        more.append(f"{t.stages} at different positions")
+    if t.reuses():
+        more.append(f"{t.stages - 1} if the last force of a step is kept for "
+                    "the next one, as in the charts")
+    verdict.facts.append(("force evaluations", "; ".join([words, *more])))
+    methods = tables.known()
+    verdict.name = next((name for name, other in methods.items() if tables.same(
+        t, other, ROUNDOFF)), "")
+    late, notes = faults.times(t, t.stages == 1)
+    if verdict.faults:
+        return
+    if verdict.name:
+        verdict.is_a = f"it is equal to {verdict.name} to round-off"
+        verdict.faults += late
+        verdict.notes += notes
+        return
+    verdict.faults += (faults.later(t, methods) or faults.sums(t)
+                       or faults.one_coefficient(t, methods))
+    if not verdict.faults:
+        verdict.faults += late
+        verdict.notes += notes
+
+
+# ---- Order
+
+def order(verdict, numbers):
+    for name in orders.END:
+        rows = numbers.get(name, [])
+        verdict.orders[name] = orders.measured(rows, name)
+    smooth = [verdict.orders[n] for n in ("chain", "kepler", "driven")]
+    if not all(o.order == o.order for o in smooth):
+        verdict.facts.append(("order", "not measurable: no run with a small "
+                              "step comes close to the exact solution"))
+        return
+    least = min(smooth, key=lambda o: o.order)
+    verdict.order = least.whole
+    words = []
+    for name in ("chain", "kepler", "driven"):
+        o = verdict.orders[name]
+        n0, n1 = o.points[o.first][0], o.points[o.last][0]
+        words.append(f"{o.order:.2f} for {orders.ABOUT[name]} ({n0} to {n1} "
+                     "steps)")
+        if o.coarser == o.coarser:
+            words[-1] += (f", {o.coarser:.1f} only down to an error of "
+                          f"{size(o.ends)}")
+    verdict.facts.append(("order", "; ".join(words)))
+    d = verdict.orders["drag"]
+    if d.order == d.order:
+        verdict.facts.append(("order with drag in the force",
+                              f"{d.order:.2f}"))
+    apart = numbers.get("apart")
+    if apart and any(distance(x[2:], y[2:]) > 1e-13
+                     for x, y in zip(apart, numbers["drag"])):
+        o = orders.measured(apart, "drag")
+        verdict.facts.append(("order with drag given apart (WithDrag)",
+                              f"{o.order:.2f}"))
+
+
+# ---- What it keeps
+
+def physics(verdict, numbers):
+    there = numbers["there"][0]
+    back = distance(there, numbers["back"][0])
+    turned = distance(there, numbers["reversed"][0])
+    verdict.symmetric = back < 1e-10
+    verdict.facts.append(("symmetric", f"{yes(back < 1e-10)}: a step and one "
+                          f"back by -dt end {size(back)} m from the start"))
+    verdict.facts.append(("reversible", f"{yes(turned < 1e-10)}: with reversed "
+                          f"velocities it ends {size(turned)} m from the "
+                          "start"))
+    off = symplectic(numbers["jacobian"])
+    verdict.symplectic = off < 1e-7
+    verdict.facts.append(("symplectic", f"{yes(verdict.symplectic)}: the "
+                          f"Jacobian of a step misses J^T S J = S by "
+                          f"{size(off)}"))
+    rows = numbers["invariants"]
+    p = drift(rows, slice(2, 5))
+    spin = drift(rows, slice(5, 8))
+    verdict.facts.append(("momentum", kept(p)))
+    verdict.facts.append(("angular momentum", kept(spin)))
+    verdict.energy = energy(rows)
+    verdict.facts.append(("energy", verdict.energy[1]))
+    verdict.data["energy"] = rows
+
+
+def yes(is_it):
+    return "yes" if is_it else "no"
+
+
+def kept(off):
+    if off != off:
+        return "lost: the run diverges"
+    return (f"kept to {size(off)} in 20,000 steps" if off < 1e-9
+            else f"changes by {size(off)} of its size in 20,000 steps")
+
+
+def drift(rows, columns):
+    first = rows[0][columns]
+    if not all(math.isfinite(x) for r in rows for x in r[columns]):
+        return math.nan
+    scale = max(1e-3, math.sqrt(sum(x * x for x in first)))
+    return max(math.dist(first, r[columns]) for r in rows) / scale
+
+
+def energy(rows):
+    """(gained share a step, words)"""
+    e = [r[1] for r in rows]
+    first = e[0]
+    for k, value in enumerate(e):
+        if not math.isfinite(value) or abs(value) > 100 * abs(first):
+            return math.inf, (f"grows without bound: more than 100 times as "
+                              f"much after {20 * k} steps")
+    begin, late = (sum(part) / len(part) for part in (
+        e[:len(e) // 50], e[-len(e) // 4:]))
+    swing = (max(e) - min(e)) / first
+    gained = (late - begin) / first
+    if abs(gained) > .05 or abs(gained) > .5 * swing > 1e-9:
+        return gained, (f"{'gains' if gained > 0 else 'loses'} "
+                        f"{abs(gained):.1%} in 20,000 steps at a quarter of "
+                        "Verlet's limit: it drifts")
+    return 0, (f"oscillates by {size(100 * swing)} % without drift, in 20,000 "
+               "steps at a quarter of Verlet's limit")
+
+
+def symplectic(columns):
+    """|J^T S J - S| with S of the masses of the tangle."""
+    n = len(columns)
+    mass = [.5 + .25 * (i // 6) for i in range(n)]
+
+    def form(a, b):
+        return sum(mass[i] * (a[i] * b[i + 3] - a[i + 3] * b[i])
+                   for i in range(n) if i % 6 < 3)
+    units = [[float(i == k) for i in range(n)] for k in range(n)]
+    worst = 0
+    for k in range(n):
+        for j in range(k):
+            off = abs(form(columns[j], columns[k]) - form(units[j], units[k]))
+            worst = max(worst, off if off == off else math.inf)
+    return worst
+
+
+# ---- Limits
+
+def radius(m):
+    """The largest |eigenvalue| of a step; m: its matrix by columns."""
+    a, c, b, d = m
+    if not all(map(math.isfinite, m)):
+        return math.inf
+    half, det = (a + d) / 2, a * d - b * c
+    root = cmath.sqrt(half * half - det)
+    return max(abs(half + root), abs(half - root))
+
+
+def limits(verdict, numbers):
+    line = [(row[0], radius(row[2:])) for row in numbers["line"]]
+    stable = [(z, r <= 1 + 1e-6) for z, r in line]
+    limit, weak, k = math.inf, (), 0
+    while k < len(line):
+        if stable[k][1]:
+            k += 1
+            continue
+        end = next((j for j in range(k, len(line)) if stable[j][1]), None)
+        growth = max(r for _, r in line[k:end or len(line)])
+        if end is None or growth > 1.02:
+            limit = line[k - 1][0] if k else 0
+            break
+        weak = weak or (line[k][0], growth)
+        k = end
+    verdict.limit, verdict.weak = limit, weak
+    if limit == 0:
+        words = "none: an oscillation grows at any step, without drag"
+    elif limit == math.inf:
+        words = "none found: stable for all dt omega up to 12"
+    else:
+        share = limit / max(1, verdict.evaluations)
+        words = f"dt omega < {limit:.3f}"
+        if verdict.table:
+            words += (f", {share:.2f} for each force evaluation; no explicit "
+                      "step has more than 2")
+    if weak:
+        words += (f"; from {weak[0]:.2f} on there are gaps in which it grows "
+                  f"by up to {weak[1] - 1:.1%} a step")
+    verdict.facts.append(("limit on an oscillator", words))
+    verdict.data["map"] = [(r[0], r[1], radius(r[2:])) for r in numbers["map"]]
+    if 0 < limit < math.inf:
+        words = []
+        for drag in (.5, 1, 2):
+            z = next((r[0] for r in numbers["drag"] if r[1] == drag
+                      and radius(r[2:]) > 1 + 1e-6), 6.01)
+            words.append(f"{max(0, z - .01):.2f} where dt c/m = {drag:g}")
+        verdict.facts.append(("limit with drag as a force", "dt omega < "
+                              + ", ".join(words)))
+    for gamma, low, high, first in numbers.get("grid1", []):
+        what = "grid1" + (f", drag {gamma:g} 1/s" if gamma else "")
+        if low == 0:
+            words = (f"gains energy already at {high:.3g} s, 1/16 of "
+                     "Verlet's safe step")
+        else:
+            words = (f"{low:.4g} s, {low / first:.2f} times Verlet's safe step"
+                     " (0.25 s without a gain of energy)")
+        verdict.facts.append((f"largest step on {what}", words))
+        if gamma == 0:
+            verdict.data["grid1"] = low, high, first
+    for name in ("inside", "outside", "shape"):
+        verdict.data[name] = numbers.get(name, [])
+
+
+# ---- Contact, tearing, pins
+
+def tearing(verdict, numbers):
+    runs = {}
+    for removing, mass, *state in numbers["torn"]:
+        runs.setdefault(removing, {})[mass] = state
+    whole = runs.pop(0)
+    mixed = any(m not in torn or distance(whole[m], torn[m]) > 1e-12
+                for torn in runs.values() for m in whole if m != 100)
+    words = "the others move as if nothing had been removed"
+    if mixed:
+        words = "the nodes that stay get positions or velocities of others"
+        verdict.faults.append((
+            "after the constraint removes a node it mixes up the others",
+            "Indices change when a node is removed: store nothing by index "
+            "across a call of the constraint."))
+    for removing, in numbers.get("torn.throws", []):
+        words += ("; it throws if the constraint removes one at its "
+                  f"{faults.ordinal(int(removing) - 1)} call in a step")
+    verdict.facts.append(("removal of nodes", words))
+
+
+def contact(verdict, numbers):
+    if "torn" not in numbers:
+        return
+    deep, off = numbers["deepest"][0]
+    verdict.facts.append(("obstacles", "no node is inside at the end of a step"
+                          if deep < 1e-12 else f"nodes are up to {size(deep)} "
+                          "m inside at the end of a step"))
+    if off > 1e-12:
+        verdict.facts.append(("pins", f"they leave their place by {size(off)} "
+                              "m"))
+    tearing(verdict, numbers)
+    base = verdict.orders["chain"].order
+    for name, what in (("still", "order with a pin at rest"),
+                       ("pins", "order with a moving pin"),
+                       ("ball", "order with contact")):
+        o = orders.by_differences(numbers.get(name, []))
+        verdict.data[name] = o
+        if o.order != o.order:
+            continue
+        words = f"{o.order:.2f}"
+        if o.order < base - .3:
+            words += f": it loses {base - o.order:.1f}"
+        verdict.facts.append((what, words))

@@ -1,0 +1,408 @@
+/** @file probe.cpp
+ * Runs a step that somebody has written, and writes numbers; judge.py says what
+ * they mean. try.py compiles it, against the course's classes alone, with
+ *   -DTRY_FILE='"mine.hpp"' -DTRY_STEP=my_step -DTRY_ARGUMENTS=5
+ * (4: the step takes no constraint).
+ *   probe PART DESCRIPTOR    PART: one of those in main()
+ * A line is a name and numbers. */
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lab/try/World.hpp"
+// The step, after all that it may use.
+#include TRY_FILE
+
+namespace probe {
+
+std::FILE* out;
+
+void put(const std::string& name, const Numbers& numbers) {
+  std::fprintf(out, "%s", name.c_str());
+  for (double x : numbers) std::fprintf(out, " %.17g", x);
+  std::fputc('\n', out);
+  std::fflush(out);  // what is known before a crash counts
+}
+
+// ---- Steps
+
+struct Acting {
+  World& w;
+  template <typename N>
+  Point operator()(N n, double t) const {
+    return ++w.calls, w.force(n, t);
+  }
+};
+/** Drag apart, for steps that solve it: as WithDrag of methods.hpp. */
+struct ActingApart {
+  Acting others;
+  double drag;
+  template <typename N>
+  Point operator()(N n, double t) const {
+    return others(n, t) - drag * n.value().vel;
+  }
+};
+
+/** One step of the stranger's. */
+void advance(World& w, double t, double h) {
+  auto hold = [&w](auto&, double at) { w.constrain(at); };
+  auto by = [&](auto force) {
+#if TRY_ARGUMENTS == 5
+    return TRY_STEP(w.g, t, h, force, hold);
+#else
+    (void)hold;
+    return TRY_STEP(w.g, t, h, force);
+#endif
+  };
+  w.apart > 0 ? by(ActingApart{{w}, w.apart}) : by(Acting{w});
+}
+void run(World& w, double t, double h, long long steps) {
+  for (long long k = 0; k < steps; ++k) advance(w, t + double(k) * h, h);
+}
+
+void verlet(World& w, double t, double h) {
+  auto kick = [&](double at) {
+    for (Node n : nodes(w.g))
+      n.value().vel += (h / 2 / n.value().mass) * w.force(n, at);
+  };
+  kick(t);
+  for (Node n : nodes(w.g)) n.position() += h * n.value().vel;
+  w.constrain(t + h);
+  kick(t + h);
+}
+
+/** Runs of n, 2n, 4n, ... steps: "NAME steps calls positions...". */
+void refine(const std::string& name, double t0, double t1, long long first,
+            long long last, World (*make)()) {
+  for (long long steps = first; steps <= last; steps *= 2) {
+    World w = make();
+    run(w, t0, (t1 - t0) / double(steps), steps);
+    Numbers row = positions(w);
+    row.insert(row.begin(), {double(steps), double(w.calls) / w.g.num_nodes()});
+    put(name, row);
+    if (w.calls > 6'000'000) break;  // a dear step: fewer refinements
+  }
+}
+
+// ---- trace: who asks for which force when, and what comes of it
+
+/** Three free masses. The force on all is 0; or, in turn, 1 along y at one of
+ * the calls for each node: the step as a table of coefficients. */
+void trace() {
+  unsigned calls = 0;  // for a node
+  for (const double h : {.125, .25})
+    for (int impulse = -1; impulse < int(std::min(calls, 48u)); ++impulse) {
+      World w;
+      for (unsigned i = 0; i < 3; ++i)
+        w.add(Point(2 + i, 0, 0), Point(1, 0, 0), 1 << i);
+      auto row = [&](const char* what, double n, double t) {
+        Numbers numbers = {h, double(impulse), n, t};
+        for (unsigned i = 0; i < 3 && i < w.g.num_nodes(); ++i) {
+          const Point x = w.g.node(i).position() - Point(2 + i, 0, 0);
+          const Point v = w.g.node(i).value().vel;
+          numbers.insert(numbers.end(), {x.x, x.y, v.x, v.y});
+        }
+        put(what, numbers);
+      };
+      std::vector<unsigned> called(3);
+      w.extra = [&](Node n, double t) {
+        const auto i = unsigned(std::log2(n.value().mass));
+        row("call", i, t);
+        return Point(0, int(called[i]++) == impulse, 0);
+      };
+      w.hold = [&](GraphType&, double t) { row("hold", -1, t); };
+      row("begin", -1, 3);
+#if TRY_ARGUMENTS == 5
+      const double end = TRY_STEP(w.g, 3., h, Acting{w},
+                                  [&](auto&, double t) { w.constrain(t); });
+#else
+      const double end = TRY_STEP(w.g, 3., h, Acting{w});
+#endif
+      put("nodes", {double(w.g.num_nodes())});
+      row("end", -1, end);
+      calls = *std::max_element(called.begin(), called.end());
+    }
+}
+
+// ---- same: the same run twice, and among others
+
+void same() {
+  auto forced = [] {
+    World w = tangle();
+    w.extra = [](Node n, double t) {
+      return Point(std::cos(5 * t), std::sin(3 * t), t) - .3 * n.value().vel;
+    };
+    return w;
+  };
+  World start = forced();
+  put("tangle.begin", state(start));
+  for (int time = 0; time < 3; ++time) {
+    World w = forced(), other = oscillator(.5, 2, .5, 1);
+    for (int k = 0; k < 3; ++k) {
+      advance(w, .25 + k * .0625, .0625);
+      if (time == 2) advance(other, 7, .125);  // a step that keeps something
+    }
+    put("tangle.end", state(w));
+    run(other, 7, .125, time + 1);
+  }
+}
+
+// ---- order: problems with exact solutions, those of orders.py
+
+void order() {
+  constexpr long long most = 1 << 14;
+  refine("chain", 0, 2.3, 4, most / 2, [] {
+    World w;  // eight masses under tension between two walls
+    for (unsigned j = 0; j < 10; ++j) {
+      const double a = M_PI * j / 9;
+      const double u = j % 9 ? .2 * std::sin(a) + .1 * std::sin(3 * a) : 0;
+      w.add(Point(j + .5 + u, .5, 0), Point(), .25);
+    }
+    for (unsigned j = 0; j < 9; ++j) w.spring(j, j + 1, 1, .5);
+    return pin(w, {0, 9}, true);
+  });
+  refine("kepler", 0, 3, 8, most, [] {
+    World w;  // eccentricity 0.3, period 2 pi
+    w.add(Point(.7, 0, 0), Point(0, std::sqrt(1.3 / .7), 0), .5);
+    w.extra = [](Node n, double) {
+      const double r = norm(n.position());
+      return -n.value().mass / (r * r * r) * n.position();
+    };
+    return w;
+  });
+  refine("driven", .4, 2.4, 8, most, [] {
+    World w = oscillator(2, 2, .5, .6);
+    w.extra = [](Node n, double t) {
+      return n.value().mass * Point(1.5 * std::cos(3 * t), 0, 0);
+    };
+    return w;
+  });
+  refine("drag", 0, 2, 8, most, [] {
+    World w = oscillator(2, 2, .5, .6);
+    w.gamma = .7;
+    return w;
+  });
+  refine("apart", 0, 2, 8, most, [] {
+    World w = oscillator(2, 2, .5, .6);
+    w.apart = 1.4;
+    return w;
+  });
+}
+
+// ---- physics: what the step keeps
+
+void physics() {
+  constexpr double h = .125;
+  World w = tangle();  // there and back, by -h, and with reversed velocities
+  put("there", state(w));
+  run(w, 0, h, 1), run(w, h, -h, 1);
+  put("back", state(w));
+  World reversed = tangle();
+  for (int time = 0; time < 2; ++time) {
+    run(reversed, 0, h, 1);
+    for (Node n : nodes(reversed.g)) n.value().vel = -n.value().vel;
+  }
+  put("reversed", state(reversed));
+
+  World moved = tangle();  // the Jacobian, by differences of order 4
+  const Numbers s = state(moved);
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    constexpr double apart = 1e-3;
+    Numbers column(s.size());
+    for (const auto& [at, weight] :
+         {std::pair{-2., 1.}, {-1., -8.}, {1., 8.}, {2., -1.}}) {
+      Numbers from = s;
+      from[k] += at * apart;
+      set_state(moved, from);
+      advance(moved, 0, h);
+      const Numbers end = state(moved);
+      for (std::size_t i = 0; i < s.size(); ++i)
+        column[i] += weight * end[i] / (12 * apart);
+    }
+    put("jacobian", column);
+  }
+
+  World far = tangle();  // a quarter of Verlet's limit, for long
+  constexpr double step = .25 * 2 / 5.4;
+  for (int k = 0; k < 20000; ++k) {
+    if (k % 20 == 0) {
+      Point p, l;
+      for (Node n : nodes(far.g)) {
+        p += n.value().mass * n.value().vel;
+        l += n.value().mass * cross(n.position(), n.value().vel);
+      }
+      put("invariants", {k * step, energy(far), p.x, p.y, p.z, l.x, l.y, l.z});
+    }
+    advance(far, k * step, step);
+  }
+}
+
+// ---- limits: the largest stable step
+
+/** A step for x'' + gamma x' + omega^2 x = 0, dt = 1, as a matrix of x and
+ * v/omega, by columns. */
+void matrix(const char* name, double omega, double gamma) {
+  Numbers row = {omega, gamma};
+  for (int k = 0; k < 2; ++k) {
+    World w = oscillator(.5, omega, k ? 0 : .5, k ? .5 * omega : 0);
+    w.gamma = gamma;
+    advance(w, 0, 1);
+    const Node n = w.g.node(1);
+    row.push_back(2 * n.position().x);
+    row.push_back(2 * n.value().vel.x / omega);
+  }
+  put(name, row);
+}
+
+/** Does the cloth, which begins with 0 J, gain no energy in 0.25 s? */
+bool holds(double h, double gamma, const char* say = nullptr) {
+  World w = grid1();
+  w.gamma = gamma;
+  double e = 0;
+  for (int k = 1; e < .5; ++k) {
+    if (k * h > .25 + h) return true;
+    advance(w, (k - 1) * h, h);
+    e = energy(w);
+    if (!(e < .5)) break;
+    if (say && k % std::max(1, int(.25 / h / 400)) == 0) put(say, {k * h, e});
+  }
+  if (say) put(say, {.25, e}), put("shape", positions(w));
+  return false;
+}
+
+void limits() {
+  for (int k = 1; k <= 3000; ++k) matrix("line", k * .004, 0);
+  for (const double drag : {.5, 1., 2.})
+    for (int k = 1; k <= 600; ++k) matrix("drag", k * .01, drag);
+  for (int j = 0; j <= 48; ++j)
+    for (int k = 1; k <= 96; ++k) matrix("map", k * .0625, j * .125);
+  const double safe = 2 / std::sqrt(12 * 100 * 625);  // Verlet's
+  for (const double gamma : {0., 20.}) {
+    double low = safe / 16, high = safe * 16;
+    if (!holds(low, gamma)) high = low, low = 0;
+    while (low > 0 && high / low > 1.01) {
+      const double middle = std::sqrt(low * high);
+      (holds(middle, gamma) ? low : high) = middle;
+    }
+    put("grid1", {gamma, low, high, safe});
+    if (gamma > 0) continue;
+    if (low > 0) holds(low, gamma, "inside");
+    holds(high * 1.02, gamma, "outside");
+  }
+}
+
+// ---- contact: pins that move, a floor, removal
+
+/** Five free masses and springs. The node of mass 100, joined to none, goes in
+ * the third step, at call @a removing of the constraint (0: it stays). Writes
+ * "torn removing mass state", as an index may change.
+ * @return calls of the constraint in that step */
+int torn(int removing) {
+  World w;
+  w.add(Point(9, 9, 9), Point(0, 1, 0), 100);
+  for (unsigned i = 0; i < 5; ++i)
+    w.add(Point(.3 * i, .2 + .1 * i * i, .1), Point(0, .1 * i, .2), 1 + i);
+  for (unsigned i = 1; i < 5; ++i) w.spring(i, i + 1, 20, .3);
+  int step = 0, called = 0;
+  w.hold = [&](GraphType& g, double) {
+    if (step == 2 && ++called == removing)
+      g.remove_node(*std::find_if(g.node_begin(), g.node_end(), [](Node n) {
+        return n.value().mass == 100;
+      }));
+  };
+  try {
+    for (; step < 5; ++step) advance(w, step * .05, .05);
+  } catch (...) {
+    put("torn.throws", {double(removing)});
+    return called;
+  }
+  const Numbers s = state(w);
+  for (unsigned i = 0; i < w.g.num_nodes(); ++i) {
+    Numbers row = {double(removing), w.g.node(i).value().mass};
+    row.insert(row.end(), s.begin() + 6 * i, s.begin() + 6 * i + 6);
+    put("torn", row);
+  }
+  return called;
+}
+
+void contact() {
+  if (!constrained) return;
+  double deepest = 0, off = 0;
+  World w = falling();
+  for (int k = 0; k < 40; ++k) {
+    advance(w, k * .01, .01);
+    for (Node n : nodes(w.g))
+      deepest =
+          std::max(deepest, .2 - norm(n.position() - Point(.5, .55, -.25)));
+    off = std::max(off, norm(w.g.node(0).position()));
+  }
+  put("deepest", {deepest, off});
+  refine("still", 0, .7, 16, 1 << 13, [] { return swinging(false); });
+  refine("pins", 0, .7, 16, 1 << 13, [] { return swinging(true); });
+  refine("ball", 0, .4, 64, 1 << 13, falling);
+  const int last = torn(0);
+  if (last > 0) torn(last);
+  if (last > 1) torn(1);
+}
+
+// ---- chart: Chain and Curtain of lab/charts/Problems.cpp; and seconds
+
+void chart() {
+  refine("chart.chain", 0, .8, 9, 9 << 13, [] {
+    constexpr unsigned n = 20;
+    World w;
+    for (unsigned j = 0; j < n + 2; ++j) {
+      double x = j / double(n + 1);
+      if (j % (n + 1) > 0)
+        for (const auto& [k, a] : {std::pair{1, .02}, {2, .01}, {5, .005}})
+          x += a * std::sin(k * M_PI / (n + 1) * j);
+      w.add(Point(x, 0, 0), Point(), 1. / n);
+      if (j > 0) w.spring(j - 1, j, 100, .5 / (n + 1));
+    }
+    return pin(w, {0, n + 1}, false);
+  });
+  refine("chart.curtain", 0, 1, 40, 40 << 7, [] {
+    World w = cloth(16, true, false);
+    std::vector<unsigned> top;
+    for (unsigned i = 0; i < 16; ++i) top.push_back(16 * i);
+    return pin(w, top, false);
+  });
+  // Seconds of 20 steps, beside Verlet by loops of the same kind: the least.
+  using Clock = std::chrono::steady_clock;
+  double own = 1e9, other = 1e9;
+  for (int k = 0; k < 15; ++k) {
+    World a = grid1(), b = grid1();
+    const auto t0 = Clock::now();
+    run(a, 0, 1e-4, 20);
+    const auto t1 = Clock::now();
+    for (int i = 0; i < 20; ++i) verlet(b, i * 1e-4, 1e-4);
+    const auto t2 = Clock::now();
+    own = std::min(own, std::chrono::duration<double>(t1 - t0).count());
+    other = std::min(other, std::chrono::duration<double>(t2 - t1).count());
+  }
+  put("seconds", {own, other});
+}
+
+}  // namespace probe
+
+int main(int count, char** words) {
+  const std::map<std::string, void (*)()> parts = {
+      {"trace", probe::trace},   {"same", probe::same},
+      {"order", probe::order},   {"physics", probe::physics},
+      {"limits", probe::limits}, {"contact", probe::contact},
+      {"chart", probe::chart}};
+  const auto part = parts.find(count == 3 ? words[1] : "");
+  if (part == parts.end()) return 2;
+  probe::constrained = TRY_ARGUMENTS == 5;
+  probe::out = fdopen(std::atoi(words[2]), "w");
+  probe::put("begun", {});
+  part->second();
+  probe::put("done", {});
+}

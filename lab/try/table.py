@@ -1,0 +1,247 @@
+"""A step as a table of coefficients, read from what it does with known forces.
+
+Three free masses with velocity 1 along x; the force is 0, or 1 along y at one
+of the calls. So an explicit step shows where it asks for each force j and what
+it makes of it:
+    X_s = x + c_s h v + h^2 sum a_sj f_j/m      V_s = v + h sum w_sj f_j/m
+    x_1 = x + C h v + h^2 sum B_j f_j/m         v_1 = V v + h sum b_j f_j/m
+and tau_s, the time of call s, in steps.
+"""
+
+from dataclasses import dataclass, field
+
+EXACT = 1e-11       # round-off of a coefficient
+
+
+@dataclass
+class Table:
+    tau: list = field(default_factory=list)
+    c: list = field(default_factory=list)
+    a: list = field(default_factory=list)      # rows
+    w: list = field(default_factory=list)
+    b: list = field(default_factory=list)
+    B: list = field(default_factory=list)
+    C: float = 1
+    V: float = 1
+
+    @property
+    def stages(self):
+        return len(self.c)
+
+    def numbers(self):
+        """All but the times."""
+        return [*self.c, *sum(self.a, []), *self.b, *self.B, self.C, self.V]
+
+    def reuses(self):
+        """Is the last force of a step the first of the next one?"""
+        return (self.stages > 1 and near(self.c[0], 0) and near(self.c[-1], 1)
+                and all(near(x, 0) for x in self.a[0])
+                and all(near(x, y) for x, y in zip(self.a[-1], self.B)))
+
+
+def near(x, y, tolerance=EXACT):
+    return abs(x - y) <= tolerance * max(1, abs(x), abs(y))
+
+
+def same(one, other, tolerance=EXACT):
+    """Equal, but for the times of the calls?"""
+    return one.stages == other.stages and all(
+        near(x, y, tolerance)
+        for x, y in zip(one.numbers(), other.numbers()))
+
+
+# ---- Known methods
+
+def splitting(parts):
+    """[("drift" or "kick", coefficient)]"""
+    t, kicks = Table(), [k for kind, k in parts if kind == "kick"]
+    n = len(kicks)
+    at, moved, done = 0.0, [0.0] * n, [0.0] * n
+    for kind, k in parts:
+        if kind == "drift":
+            at += k
+            moved = [x + k * v for x, v in zip(moved, done)]
+        else:
+            t.tau.append(at)
+            t.c.append(at)
+            t.a.append(list(moved))
+            t.w.append(list(done))
+            done[len(t.c) - 1] += k
+    t.b, t.B, t.C = done, moved, at
+    return t
+
+
+def runge_kutta(A, b):
+    n = len(b)
+    A = [[*row, *[0.0] * (n - len(row))] for row in A]
+    c = [sum(row) for row in A]
+    square = [[sum(A[i][k] * A[k][j] for k in range(n)) for j in range(n)]
+              for i in range(n)]
+    return Table(list(c), c, square, A, list(b),
+                 [sum(b[i] * A[i][j] for i in range(n)) for j in range(n)])
+
+
+def nystroem(c, a, b, B):
+    n = len(c)
+    full = [[*row, *[0.0] * (n - len(row))] for row in a]
+    return Table(list(c), list(c), full, full, list(b), list(B))
+
+
+def alternate(first, coefficients):
+    kinds = ("drift", "kick") if first == "drift" else ("kick", "drift")
+    return splitting([(kinds[k % 2], x) for k, x in enumerate(coefficients)])
+
+
+def mirrored(half):
+    return [*half, *half[-2::-1]]
+
+
+def known():
+    """{name: table}"""
+    theta = 1 / (2 - 2 ** (1 / 3))
+    xi, lam, chi = 0.1786178958448091, -0.2123418310626054, \
+        -0.06626458266981849
+    b6 = [.0829844064174052, .396309801498368, -.0390563049223486]
+    a6 = [.245298957184271, .604872665711080]
+    b11 = [.0414649985182624, .198128671918067, -.0400061921041533,
+           .0752539843015807, -.0115113874206879]
+    a11 = [.123229775946271, .290553797799558, -.127049212625417,
+           -.246331761062075, .357208872795928]
+    b11.append(.5 - sum(b11))
+    a11.append(1 - 2 * sum(a11))
+    a6.append(.5 - sum(a6))
+    b6.append(1 - 2 * sum(b6))
+    six = [x for pair in zip(b6, a6) for x in pair] + [b6[3]]
+    eleven = [x for pair in zip(b11, a11) for x in pair]
+    yoshida = [theta, 1 - 2 * theta, theta]
+    y = [theta / 2, theta, (1 - theta) / 2, 1 - 2 * theta]
+    third = [7 / 24, 2 / 3, 3 / 4, -2 / 3, -1 / 24, 1]
+    dp = [[], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9],
+          [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
+          [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]]
+    return {
+        "forward Euler": runge_kutta([[]], [1.0]),
+        "symplectic Euler": alternate("drift", [1.0, 1.0]),
+        "symplectic Euler, velocities first": alternate("kick", [1.0, 1.0]),
+        "Verlet": alternate("kick", [.5, 1.0, .5]),
+        "Verlet, positions first": alternate("drift", [.5, 1.0, .5]),
+        "a Taylor step, x + h v + h^2 a/2 and v + h a":
+            nystroem([0.0], [[]], [1.0], [.5]),
+        "the midpoint rule": runge_kutta([[], [.5]], [0.0, 1.0]),
+        "Heun's method": runge_kutta([[], [1.0]], [.5, .5]),
+        "Ralston's method": runge_kutta([[], [2 / 3]], [.25, .75]),
+        "Kutta's method of order 3": runge_kutta(
+            [[], [.5], [-1.0, 2.0]], [1 / 6, 2 / 3, 1 / 6]),
+        "RK4": runge_kutta([[], [.5], [0, .5], [0, 0, 1.0]],
+                           [1 / 6, 1 / 3, 1 / 3, 1 / 6]),
+        "the 3/8 rule": runge_kutta(
+            [[], [1 / 3], [-1 / 3, 1.0], [1.0, -1.0, 1.0]],
+            [1 / 8, 3 / 8, 3 / 8, 1 / 8]),
+        "Nystroem's method of order 4": nystroem(
+            [0.0, .5, 1.0], [[], [1 / 8], [0, .5]],
+            [1 / 6, 2 / 3, 1 / 6], [1 / 6, 1 / 3, 0.0]),
+        "Dormand-Prince": runge_kutta(
+            dp, [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]),
+        "Ruth's method of order 3": alternate("kick", third),
+        "Yoshida 4": alternate("kick", [y[0], y[1], y[2], y[3], y[2], y[1],
+                                        y[0]]),
+        "Yoshida 4, positions first": alternate(
+            "drift", [y[0], yoshida[0], y[2], y[3], y[2], yoshida[2], y[0]]),
+        "PEFRL": alternate("drift", mirrored(
+            [xi, .5 - lam, chi, lam, 1 - 2 * (chi + xi)])),
+        "srkn6b": alternate("kick", mirrored(six)),
+        "srkn11b": alternate("kick", mirrored(eleven)),
+    }
+
+
+# The laboratory's name of a method, for its curve in the charts.
+IN_CHARTS = {
+    "forward Euler": "forward-euler", "symplectic Euler": "symplectic-euler",
+    "Verlet": "verlet", "RK4": "rk4", "Yoshida 4": "yoshida4",
+    "PEFRL": "pefrl", "srkn6b": "srkn6b", "srkn11b": "srkn11b",
+    "Dormand-Prince": "dormand-prince"}
+
+
+def merged(table):
+    """Calls at the same place and time, which one call would do, made one."""
+    groups = []
+    for s in range(table.stages):
+        twin = next((g for g in groups if near(table.c[g[0]], table.c[s])
+                     and all(near(x, y) for x, y in zip(
+                         table.a[g[0]], table.a[s]))
+                     and near(table.tau[g[0]], table.tau[s])), None)
+        if twin:
+            twin.append(s)
+        else:
+            groups.append([s])
+
+    def folded(row):
+        return [sum(row[s] for s in g) for g in groups]
+    first = [g[0] for g in groups]
+    return Table([table.tau[s] for s in first], [table.c[s] for s in first],
+                 [folded(table.a[s]) for s in first],
+                 [folded(table.w[s]) for s in first],
+                 folded(table.b), folded(table.B), table.C, table.V)
+
+
+def pruned(table):
+    """Without forces that nothing depends on."""
+    keep = [j for j in range(table.stages) if not (
+        near(table.b[j], 0) and near(table.B[j], 0)
+        and all(near(row[j], 0) for row in table.a))]
+
+    def of(row):
+        return [row[j] for j in keep]
+    return Table(of(table.tau), of(table.c), [of(table.a[s]) for s in keep],
+                 [of(table.w[s]) for s in keep], of(table.b), of(table.B),
+                 table.C, table.V)
+
+
+# ---- Reading the trace
+
+@dataclass
+class Event:
+    what: str       # begin, call, hold, end
+    node: int
+    time: float
+    x: list         # (along v, along the force) of the three masses
+    v: list
+
+
+def events(trace):
+    """{(h, impulse): events in their order}; from lines in their order."""
+    found = {}
+    for what, numbers in trace:
+        h, impulse, node, time, *rest = numbers
+        x = [(rest[4 * i], rest[4 * i + 1]) for i in range(len(rest) // 4)]
+        v = [(rest[4 * i + 2], rest[4 * i + 3]) for i in range(len(rest) // 4)]
+        found.setdefault((h, int(impulse)), []).append(
+            Event(what, int(node), time, x, v))
+    return found
+
+
+def read(runs, h, node):
+    """The table of one of the masses, at a step h."""
+    mass = 2.0 ** node
+    base = runs[h, -1]
+    calls = [e for e in base if e.what == "call" and e.node == node]
+    n = len(calls)
+    t = Table([(e.time - base[0].time) / h for e in calls],
+              [e.x[node][0] / h for e in calls])
+    t.a = [[0.0] * n for _ in range(n)]
+    t.w = [[0.0] * n for _ in range(n)]
+    t.b, t.B = [0.0] * n, [0.0] * n
+    t.C, t.V = base[-1].x[node][0] / h, base[-1].v[node][0]
+    for j in range(n):
+        run = runs.get((h, j))
+        if not run:
+            return None
+        own = [e for e in run if e.what == "call" and e.node == node]
+        if len(own) != n:
+            return None
+        for s, e in enumerate(own):
+            t.a[s][j] = mass * e.x[node][1] / h ** 2
+            t.w[s][j] = mass * e.v[node][1] / h
+        t.B[j] = mass * run[-1].x[node][1] / h ** 2
+        t.b[j] = mass * run[-1].v[node][1] / h
+    return t

@@ -1,0 +1,215 @@
+"""Find a step in a file, build the probe with it and run the probe's parts.
+
+The file is a stranger's: it is compiled and run in the grader's jail
+(course/kit/jail.cpp), with limits on time, memory and output.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "course/kit"))
+
+import diagnosis  # noqa: E402  (from course/kit)
+import once       # noqa: E402
+import sandbox    # noqa: E402
+
+BUILT = ROOT / "build/try"
+PARTS = ("trace", "same", "order", "physics", "limits", "contact", "chart")
+SECONDS = {"limits": 25, "contact": 20, "chart": 20, "trace": 4}
+COMPILING = sandbox.Limits(cpu=60, wall=120, memory=3 << 30, output=8 << 20,
+                           size=256 << 20)
+FLAGS = {"fast": ["-O2", "-g1"],
+         "checked": ["-O1", "-g1", "-fsanitize=address,undefined",
+                     "-fno-sanitize-recover=all", "-D_GLIBCXX_ASSERTIONS"]}
+
+
+class BadInput(Exception):
+    """What is wrong with the file, in a line."""
+
+
+# ---- The step's name
+
+def without_comments(text):
+    """The same length and lines, with blanks for comments and strings."""
+    pattern = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", re.S)
+    return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+
+
+def arguments(text, at):
+    """Those from the bracket at `at` on, and where it closes; or None."""
+    depth, start, found = 0, at + 1, []
+    for k in range(at, len(text)):
+        if text[k] in "([{<":
+            depth += 1
+        elif text[k] in ")]}>":
+            depth -= 1
+        if (text[k] == "," and depth == 1) or (text[k] == ")" and depth == 0):
+            found.append(" ".join(text[start:k].split()))
+            start = k + 1
+        if depth == 0:
+            return found, k
+    return None
+
+
+def steps_in(text):
+    """{name: number of arguments} of functions of the step's form; of two
+    with one name the one with a constraint."""
+    text, found = without_comments(text), {}
+    for match in re.finditer(r"\bdouble\s+(\w+)\s*(\()", text):
+        read = arguments(text, match.start(2))
+        if not read or not re.match(r"\s*(noexcept\s*)?\{", text[read[1] + 1:]):
+            continue
+        words = [word for word in read[0] if "=" not in word]
+        if len(words) in (4, 5) and "&" in words[0] and all(
+                re.fullmatch(r"(const )?double( const)?( \w+)?", word)
+                for word in words[1:3]):
+            found[match[1]] = max(found.get(match[1], 0), len(words))
+    named = {name: n for name, n in found.items() if name.endswith("step")}
+    return named or found
+
+
+def choose(path, wanted):
+    """(name, number of arguments) of the step in a file."""
+    try:
+        found = steps_in(path.read_text(encoding="utf-8", errors="replace"))
+    except OSError as error:
+        raise BadInput(f"{path}: {error.strerror}") from None
+    form = ("template <typename G, typename F, typename C> double NAME(G& g, "
+            "double t, double dt, F&& force, C&& constraint)")
+    if not found:
+        raise BadInput(f"{path}:1: has no step, expected {form}")
+    if wanted:
+        if wanted not in found:
+            raise BadInput(f"{path}:1: has no step {wanted}; it has "
+                           + ", ".join(found))
+        return wanted, found[wanted]
+    if len(found) > 1:
+        raise BadInput(f"{path}:1: has {len(found)} steps: choose one by STEP="
+                       + " or STEP=".join(found))
+    return next(iter(found.items()))
+
+
+# ---- Building and running
+
+class Workshop:
+    """A folder in which the probe of one step is built."""
+
+    def __init__(self, path, step, arguments_):
+        self.path, self.step = path.resolve(), step
+        self.arguments = arguments_
+        BUILT.mkdir(parents=True, exist_ok=True)
+        once.BUILT.mkdir(parents=True, exist_ok=True)
+        try:
+            self.jail = [str(once.Kit.locked_part(
+                "jail", [once.KIT / "jail.cpp"],
+                lambda folder: once.Kit.make_jail(once.Kit, folder)) / "jail")]
+        except once.KitError as error:
+            raise BadInput(str(error)) from None
+        self.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="room-"))
+        self.folder.chmod(0o755)
+        self.programs = {}
+        self.slow = []      # parts that took too long
+
+    def compile(self, kind="fast"):
+        """The probe; BadInput names the first error of the file."""
+        if kind in self.programs:
+            return self.programs[kind]
+        program = self.folder / kind
+        command = [once.CXX, "-std=c++20", "-w", "-pthread", *FLAGS[kind],
+                   "-fmax-errors=20", "-fdiagnostics-plain-output",
+                   "-iquote", self.path.parent, "-I", ROOT,
+                   f'-DTRY_FILE="{self.path}"', f"-DTRY_STEP={self.step}",
+                   f"-DTRY_ARGUMENTS={self.arguments}",
+                   ROOT / "lab/try/probe.cpp", "-o", program]
+        read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
+                "/etc/ld.so.cache", "/proc/self", ROOT / "CME212",
+                ROOT / "lab/try", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
+                ROOT / "methods.hpp", self.path.parent]
+        words = [*self.jail]
+        for name in read:
+            words += ["--read", str(name)]
+        for name in (self.folder, "/dev/null"):
+            words += ["--write", str(name)]
+        done = sandbox.run_compiler(words, [str(word) for word in command],
+                                    ROOT, self.folder, COMPILING)
+        if done.stopped:
+            raise BadInput(f"{self.path}:1: takes too long to compile")
+        if done.code:
+            raise BadInput(self.first_error(done.output))
+        self.programs[kind] = program
+        return program
+
+    def first_error(self, output):
+        """In the stranger's own file, if one is there."""
+        errors = diagnosis.compile_errors(output)
+        own = [e for e in errors if os.path.realpath(e.file) == str(self.path)]
+        if own:
+            return f"{self.path}:{own[0].line}: {diagnosis.short(own[0].text)}"
+        # An error in a class of the course; the file's line led to it.
+        place = re.search(re.escape(str(self.path)) + r":(\d+)", output)
+        text = errors[0].text if errors else diagnosis.link_message(output)
+        return (f"{self.path}:{place[1] if place else 1}: "
+                + diagnosis.short(text))
+
+    def run(self, part, kind="fast"):
+        """(its lines, name and numbers; outcome) of a part of the probe."""
+        program = self.programs[kind]
+        seconds = SECONDS.get(part, 8) * (1 if kind == "fast" else 8)
+        limits = sandbox.Limits(cpu=seconds, wall=4 * seconds)
+        from_read, from_write = os.pipe()
+        written = sandbox.Output(limits.output)
+        spoken = sandbox.Output(limits.output, limits.output)
+        command = [*self.jail, "--cpu", str(limits.cpu)]
+        for name in (self.folder, "/usr/lib", "/lib", "/lib64",
+                     "/etc/ld.so.cache", "/proc/self"):
+            command += ["--read", str(name)]
+        process = subprocess.Popen(
+            [*command, "--", str(program), part, str(from_write)], cwd="/",
+            env=sandbox.clean_environment("/nowhere"), pass_fds=[from_write],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, start_new_session=True)
+        os.close(from_write)
+        try:
+            with process.stderr as pipe:
+                stopped = sandbox.watch(process, limits, {
+                    pipe.fileno(): written.add, from_read: spoken.add})
+        finally:
+            os.close(from_read)
+        found = []
+        for line in spoken.first.decode("ascii", "replace").splitlines():
+            name, *numbers = line.split(" ")
+            try:
+                found.append((name, [float(x) for x in numbers]))
+            except ValueError:      # a line that was cut
+                pass
+        return found, sandbox.Outcome(stopped, process.returncode,
+                                      written.text(), bool(found))
+
+    def why(self, part, outcome):
+        """Why a part of the probe did not end, in words."""
+        name = f"{self.path}:1: {self.step}"
+        if outcome.stopped == "time":
+            return (f"{name}: loops for ever, or takes too long: "
+                    f"stopped after {SECONDS.get(part, 8)} s")
+        if outcome.stopped:
+            return f"{name}: uses too much {outcome.stopped}"
+        # What the sanitizers say has the line.
+        self.compile("checked")
+        _, checked = self.run(part, "checked")
+        said = checked if checked.code and not checked.stopped else outcome
+        thrown = re.search(r"terminate called after throwing an instance of "
+                           r"'(.*)'(?:\n *what\(\): +(.*))?", said.output)
+        if thrown:
+            what = f": {diagnosis.short(thrown[2])}" if thrown[2] else ""
+            return f"{name}: throws {thrown[1]}{what}"
+        text = diagnosis.crash(said, {str(self.path)})
+        place = re.search(rf" at {re.escape(str(self.path))}:(\d+)", text)
+        if place:
+            return (f"{self.path}:{place[1]}: {self.step}: crashes: "
+                    + text.replace(place[0], ""))
+        return f"{name}: crashes: {text}"
