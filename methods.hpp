@@ -1,7 +1,7 @@
 #pragma once
 /** @file methods.hpp
  * Methods as plain steps, to read after section 7 and to copy from. Each has
- * the form of the assignment's symp_euler_step(), which is one of them, and
+ * the form of symp_euler_step() in mass_spring.hpp, which is one of them, and
  * advances a cloth from time t to t + dt. Any graph of the assignment will do.
  *
  *   force       Point(Node, double): the force F [N] on a node at a time. It
@@ -13,7 +13,9 @@
  *
  * Order p: half the step divides the error by 2^p. A method with the limit L is
  * stable while dt omega < L for each frequency omega [1/s] of the cloth,
- * without drag. x, v and m are a node's position, velocity and mass. */
+ * without drag. Tests measure these numbers, and the forces a step: how often a
+ * step computes the forces on all nodes. x, v and m are a node's position,
+ * velocity and mass. */
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -88,9 +90,10 @@ double drift(G& g, double t, double h, F& force, C& constraint) {
   return t + h;
 }
 
-/** Half a kick, a drift, half a kick. Order 2, limit 2. The last kick and the
- * first one of the next step need the same force: a program that keeps it
- * computes one a step.
+/** Half a kick, a drift, half a kick:
+ * v += dt/2 F(x, t)/m;  x += dt v;  v += dt/2 F(x, t + dt)/m.
+ * Order 2, limit 2. The last kick and the first one of the next step need the
+ * same force: a program that keeps it has 1 force a step.
  * Source: L. Verlet, Phys. Rev. 159 (1967) 98. */
 template <typename G, typename F, typename C>
 double verlet_step(G& g, double t, double dt, F&& force, C&& constraint) {
@@ -102,7 +105,7 @@ double verlet_step(G& g, double t, double dt, F&& force, C&& constraint) {
 
 /** Three steps of Verlet, the middle one back in time: their errors of order 2
  * cancel, and as the step is symmetric it has none of order 3. Order 4,
- * limit 1.573; 3 forces a step if those at equal positions are computed once.
+ * limit 1.573; 3 forces a step if those at equal positions are kept.
  * Sources: H. Yoshida, Phys. Lett. A 150 (1990) 262; E. Forest, R. D. Ruth,
  * Physica D 43 (1990) 105. */
 template <typename G, typename F, typename C>
@@ -133,13 +136,14 @@ double pefrl_step(G& g, double t, double dt, F&& force, C&& constraint) {
   return drift(g, t, xi * dt, force, constraint);
 }
 
-/** 12 kicks and 11 drifts in a symmetric order. Its order holds for forces that
- * depend on positions alone (Runge-Kutta-Nystroem methods): these need to meet
- * fewer conditions. Order 6, limit 9.074, where an oscillation of dt omega near
- * pi and 2 pi grows slowly; 11 forces a step, as Verlet has one.
+/** A Runge-Kutta-Nystroem method: 12 kicks and 11 drifts in a symmetric order,
+ * which meet the conditions for forces that depend on positions alone; those
+ * for all forces are more. Order 6, limit 9.074, but an oscillation of dt omega
+ * near pi or 2 pi grows slowly; 11 forces a step if the last one is kept.
  * Source: S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313. */
 template <typename G, typename F, typename C>
 double srkn11b_step(G& g, double t, double dt, F&& force, C&& constraint) {
+  // Kicks b and drifts a up to the middle, where the sum of all becomes 1.
   double b[] = {.0414649985182624, .198128671918067,   -.0400061921041533,
                 .0752539843015807, -.0115113874206879, .5};
   double a[] = {.123229775946271,  .290553797799558, -.127049212625417,
@@ -207,9 +211,11 @@ double forward_euler_step(G& g, double t, double dt, F&& force,
   return t + dt;
 }
 
-/** Along the mean of four slopes: at the start, twice in the middle, at the
- * end. Order 4, limit 2.828, 4 forces a step; each step loses (dt omega)^6/72
- * of the energy of an oscillation.
+/** Along the mean of four slopes, y' = f(y, t) of y = (x, v): y += dt k where
+ * k = (k1 + 2 k2 + 2 k3 + k4)/6,  k1 = f(y, t),  k2 = f(y + dt/2 k1, t + dt/2),
+ * k3 = f(y + dt/2 k2, t + dt/2),  k4 = f(y + dt k3, t + dt).
+ * Order 4, limit 2.828, 4 forces a step; each step loses (dt omega)^6/72 of the
+ * energy of an oscillation.
  * Source: W. Kutta, Z. Math. Phys. 46 (1901) 435. */
 template <typename G, typename F, typename C>
 double rk4_step(G& g, double t, double dt, F&& force, C&& constraint) {
@@ -230,8 +236,7 @@ double rk4_step(G& g, double t, double dt, F&& force, C&& constraint) {
   return t + dt;
 }
 
-// ----------------------------------- Implicit Euler and XPBD: edges are
-// springs
+// ------------------- Implicit Euler and XPBD, which take edges to be springs
 
 /** The nodes that a constraint holds, by index: it gives them the same velocity
  * whatever they had. Puts them to their places at time t; all others keep
@@ -268,7 +273,8 @@ std::pair<double, Point> span_of(const E& e) {
 
 /** H d, by node index: by how much the pull of the springs on each node falls
  * if all nodes move by d [m]. Along a spring the stiffness is K, across it
- * K (1 - L/l); 0 if it is compressed, so that H is positive. */
+ * K (1 - L/l), but 0 if it is compressed, so that H is positive. If l = 0 it is
+ * K in all directions. */
 template <typename G>
 std::vector<Point> stiffness_times(G& g, const std::vector<Point>& d) {
   std::vector<Point> f(d.size());
@@ -365,9 +371,9 @@ void relax_springs(G& g, const std::vector<double>& w, double h) {
   }
 }
 
-/** Extended position-based dynamics, in substeps of h: all other forces move
- * the nodes, then relax_springs(), and the velocities follow from the
- * positions. Order 1, no limit, 1 force a step.
+/** Extended position-based dynamics, in substeps: all forces but the springs
+ * move the nodes, relax_springs() corrects the positions, and the velocities
+ * follow from these. Order 1, no limit, 1 force a step.
  * @param force with that of the springs, as in all steps here
  * Sources: M. Macklin, M. Mueller, N. Chentanez, MIG 2016,
  * doi:10.1145/2994258.2994272; M. Macklin et al., SCA 2019,

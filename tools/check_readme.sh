@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Hold the README to the truth: each of its commands runs, and every file that
 # it and the other pages name is there; docs/examples/README.md quotes its
-# programs, lab/fast/README.md the table of make speed; numbers are those of the
-# CSVs.
+# programs, lab/methods/README.md the plain steps, lab/fast/README.md the table
+# of make speed; numbers are those of the CSVs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,6 +10,23 @@ for program in docs/examples/*.cpp; do
   [[ $(<docs/examples/README.md) == *'```cpp'$'\n'"$(<"$program")"$'\n```'* ]] ||
     { echo "docs/examples/README.md does not quote $program as it is"; exit 1; }
 done
+
+python3 - <<'END'
+import re
+import sys
+
+page = "lab/methods/README.md"
+blocks = re.findall("^```cpp\n(.*?)\n```$", open(page).read(), re.M | re.S)
+quoted = [piece for block in blocks for piece in block.split("\n\n")]
+steps = open("methods.hpp").read()
+code = steps + open("mass_spring.hpp").read()
+for piece in quoted:
+    if piece + "\n" not in code:
+        sys.exit(f"{page} does not quote as it is:\n{piece}")
+for step in re.findall(r"^double \w+_step\(", steps, re.M):
+    if not any(step in piece for piece in quoted):
+        sys.exit(f"{page} does not quote {step[7:]}) of methods.hpp")
+END
 
 results=lab/bench/results/amd-epyc-26-avx512
 diff <(lab/charts/speed_table.py "$results") \
