@@ -347,32 +347,6 @@ TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {
   EXPECT_EQ(g.num_nodes(), 24u);
 }
 
-/** A step of Kutta's method as his paper has it, node by node. */
-void kutta_step(Cloth& g, double t, const ZeroForce& force) {
-  const unsigned n = g.num_nodes();
-  std::vector<Point> x, v, dx(n), dv(n), at_x(n), at_v(n);
-  for (Node i : g.nodes()) x.push_back(i.position());
-  for (Node i : g.nodes()) v.push_back(i.value().vel);
-  const double c[] = {0, 0.5, 0.5, 1}, b[] = {1, 2, 2, 1};
-  for (int s = 0; s < 4; ++s) {
-    for (unsigned i = 0; i < n; ++i) {
-      g.node(i).position() = x[i] + c[s] * h * at_x[i];
-      g.node(i).value().vel = v[i] + c[s] * h * at_v[i];
-    }
-    for (unsigned i = 0; i < n; ++i) {
-      const NodeData& node = g.node(i).value();
-      at_x[i] = node.vel;
-      at_v[i] = force(g.node(i), t + c[s] * h) / node.mass;
-      dx[i] += b[s] / 6 * at_x[i];
-      dv[i] += b[s] / 6 * at_v[i];
-    }
-  }
-  for (unsigned i = 0; i < n; ++i) {
-    g.node(i).position() = x[i] + h * dx[i];
-    g.node(i).value().vel = v[i] + h * dv[i];
-  }
-}
-
 // What is kept of a stage is its accelerations alone.
 TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
   const auto force =
@@ -387,7 +361,7 @@ TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
     EXPECT_EQ(rk4.steps(batch, {0, h}, 9, force, ZeroConstraint()), 9);
     for (int k = 0; k < 9; ++k) {
       again.step(single, k * h, h, force, ZeroConstraint());
-      kutta_step(by_node, k * h, force);
+      rk4_step(by_node, k * h, h, force, ZeroConstraint());
     }
     EXPECT_TRUE(same_bits(batch, single)) << seed;
     EXPECT_LT(difference(batch, by_node),
