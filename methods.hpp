@@ -238,9 +238,9 @@ double rk4_step(G& g, double t, double dt, F&& force, C&& constraint) {
 
 // ------------------- Implicit Euler and XPBD, which take edges to be springs
 
-/** The nodes that a constraint holds, by index: it gives them the same velocity
- * whatever they had. Puts them to their places at time t; all others keep
- * position and velocity. */
+/** The nodes that a constraint holds, by index: those that get the same
+ * velocity from it whatever they had, for which it is called twice. They are
+ * put to their places at time t; all others keep position and velocity. */
 template <typename G, typename C>
 std::vector<char> held_nodes(G& g, double t, C& constraint) {
   const auto before = states(g);
