@@ -122,7 +122,11 @@ def crash(outcome, names):
     """Why a program ended before it said how its test went."""
     output = outcome.output
     found = re.search(r"ERROR: (AddressSanitizer: .*)", output)
-    if found and ": ABRT " not in found[1]:
+    # Not each machine tells AddressSanitizer which signal it was.
+    aborted = found and (": ABRT " in found[1]
+                         or re.search(r"^ +#\d+ 0x[0-9a-f]+ in \S*abort\b",
+                                      output, re.MULTILINE))
+    if found and not aborted:
         words = re.sub(r" on (unknown )?address .*| \(pc .*| \(T\d+\).*"
                        r"|: attempting .*", "", found[1])
         rest = output[found.end():]
@@ -143,7 +147,7 @@ def crash(outcome, names):
     if found := re.search(r"terminate called after throwing .*\n? *(what.*)?",
                           output):
         return short(found[0]) + first_frame(output, names)
-    if "AddressSanitizer: ABRT " in output:
+    if aborted:
         return "ended by abort()" + first_frame(output, names)
     if outcome.code < 0:
         try:

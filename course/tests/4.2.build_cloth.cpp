@@ -117,7 +117,7 @@ static Start start_of_cloth(G& g) {
                     ::build_cloth(g, points, quads, MeshSprings::diagonals)
                     } -> Present;
                 }) {
-    DID("build_cloth() of 3 x 4 points and 6 quads, with diagonals");
+    DID("build_cloth() of 16 points and 7 quads, with diagonals");
     ::build_cloth(g, points, quads, MeshSprings::diagonals);
     return start_of(g);
   }

@@ -73,6 +73,20 @@ static void compare_damping(const Bodies& b, double number) {
   }
 }
 
+/** A force that is made from a graph, too, has its c = 1/N. */
+template <typename F>
+static void compare_damping_of_a_graph(const Bodies& b) {
+  Cloth g;
+  fill(g, b);
+  if constexpr (std::is_constructible_v<F, Cloth&>) {
+    DID("DampingForce(g), g being a graph of ", b.size,
+        " nodes, on a node of velocity ", b.v[1]);
+    F damping(g);
+    const Point force = force_on(damping, g, 1);
+    CHECK_NEAR(force, -1. / b.size * b.v[1], 1e-9);
+  }
+}
+
 }  // namespace kit
 
 TASK("5.1.DampingForce", damping_slows) {
@@ -80,5 +94,6 @@ TASK("5.1.DampingForce", damping_slows) {
   with<KIT_FORCE(DampingForce)>("DampingForce", [&]<typename F>() {
     check_is_force<F>("DampingForce");
     for (double number : {4., 0.375}) compare_damping<F>(b, number);
+    compare_damping_of_a_graph<F>(b);
   });
 }

@@ -15,7 +15,7 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
   Place places[Bodies::most];
   for (const Point& direction :
        {Point(0, 0, 1), Point(1. / 3, -2. / 3, 2. / 3), Point(0, -0.6, -0.8)})
-    for (double how_far : {0.5, 1.1, 0.9, 3., 0.125}) {
+    for (double how_far : {0.5, 1.01, 0.9, 3., 0.125}) {
       places[b.size] = {direction, how_far};
       b.add(c + how_far * r * direction, 0.5, Point(1, -2, -4));
     }

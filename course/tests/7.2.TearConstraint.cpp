@@ -33,9 +33,9 @@ static Bodies row(const char* inside) {
   Bodies b;
   for (; *inside; ++inside) {
     const double s = 0.001 * b.size;
-    b.add(
-        *inside == 'i' ? Point(0.5 + s, 0.5, -0.4) : Point(0.5, 0.7 + s, -0.5),
-        1, Point(0, 0, s));
+    b.add(*inside == 'i' ? Point(0.5 + s, 0.5, -0.4)
+                         : Point(0.5, 0.651 + s, -0.5),
+          1, Point(0, 0, s));
   }
   for (int i = 1; i < b.size; ++i) {
     b.join(i - 1, i, 100, 0.5);
