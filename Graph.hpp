@@ -37,12 +37,12 @@
  * elements are added.
  *
  * Complexity: O(1) unless stated; "degree" is a node's number of edges. The
- * first removal makes the lists of indices: O(num_nodes() + num_edges()), which
+ * first removal makes lists of indices: O(num_nodes() + num_edges()), which
  * is O(1) for each element added before. The first removal after clear() or
  * reindex() may do so, too.
- * Memory: 40 + sizeof(V) bytes a node and 28 + sizeof(E) an edge of a grid; up
- * to a quarter more, as arrays grow ahead; 8 a node and an edge for the lists
- * of indices; 8 an edge after many removals at nodes of large degree. New
+ * Memory: 36 + sizeof(V) bytes a node and 24 + sizeof(E) an edge of a grid; up
+ * to an eighth more, as arrays grow ahead; 12 a node and an edge from the first
+ * removal on; 8 an edge after many removals at nodes of large degree. New
  * elements reuse the slots of removed ones; only the destructor frees slots.
  *
  * If a member throws, std::bad_alloc or what a value throws, then no node, edge
@@ -422,6 +422,7 @@ class Graph {
    * Complexity: O(num_nodes() + num_edges()), even if there were many more
    *       before. Frees no memory. */
   void clear() {
+    nodes_.make_generations(), edges_.make_generations();
     for (Edge e : edges())
       ends_[e.id()] = {}, graph_detail::reset(edge_value_[e.id()]);
     for (Node n : nodes()) {
@@ -481,11 +482,9 @@ class Graph {
    * moves no data. (Lists of neighbors may move if degrees differ a lot.)
    * Invalidates: references and spans.   Keeps: all else. */
   void reserve(size_type nodes, size_type edges) {
-    nodes_.reserve(nodes);
     position_.reserve(nodes + 1);
     node_value_.reserve(nodes);
     neighbors_of_.reserve(nodes);
-    edges_.reserve(edges);
     ends_.reserve(edges);
     edge_value_.reserve(edges);
     pool_.reserve(nodes, 2 * std::size_t(edges));

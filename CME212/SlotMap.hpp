@@ -25,7 +25,7 @@ namespace graph_detail {
 using size_type = unsigned;
 
 /** An array that grows like a std::vector, with two differences that save time
- * and memory when a large graph is built: from 64 kB on it grows by a quarter
+ * and memory when a large graph is built: from 64 kB on it grows by an eighth
  * instead of doubling; and it grows by realloc(), which moves the pages of a
  * large block instead of copying them. */
 template <typename T>
@@ -85,7 +85,7 @@ class GrowingArray {
   // Not inlined, as it is rare: so the code that adds an element stays short.
   [[gnu::noinline]] void grow(std::size_t n) {
     const bool small = capacity_ * sizeof(T) < 65536;
-    reserve(std::max(n, capacity_ + (small ? capacity_ : capacity_ / 4)));
+    reserve(std::max(n, capacity_ + (small ? capacity_ : capacity_ / 8)));
   }
 };
 
@@ -119,7 +119,9 @@ inline constexpr size_type none = std::numeric_limits<size_type>::max();
  * that runs out of generations is worn out and never used again: a dead handle
  * stays dead.
  *
- * Memory: sizeof(Generation) a slot; after the first release() 8 bytes more.
+ * Memory: none until the first release(): all slots are in use, their
+ * generation is 1, and index == id. From then on 8 bytes and sizeof(Generation)
+ * a slot.
  * @tparam Generation an unsigned integer; tests take a short one */
 template <typename Generation = std::uint32_t>
 class SlotMap {
@@ -128,10 +130,13 @@ class SlotMap {
   size_type size() const { return size_; }
   /** All ids in use lie below slots(). */
   size_type slots() const { return slots_; }
-  bool in_use(size_type id) const { return generation_[id] % 2 == 1; }
-  Generation generation(size_type id) const { return generation_[id]; }
-  bool alive(size_type id, Generation generation) const {
-    return id < slots_ && generation_[id] == generation && in_use(id);
+  /** @pre id < slots() */
+  bool in_use(size_type id) const { return generation(id) % 2 == 1; }
+  Generation generation(size_type id) const {
+    return id < generation_.size() ? generation_[id] : first;
+  }
+  bool alive(size_type id, Generation number) const {
+    return id < slots_ && generation(id) == number && number % 2 == 1;
   }
 
   /** The id at an index, and the index of an id.  O(1)
@@ -143,17 +148,13 @@ class SlotMap {
     return identity_ ? id : index_of_[id];
   }
 
-  /** Allocate memory for @a slots in all. */
-  void reserve(size_type slots) { generation_.reserve(slots); }
-
   /** Make room for one more.
    * @return the id that acquire() will give
    * Complexity: O(1) amortized
    * Throws std::length_error, std::bad_alloc: no change. */
   size_type reserve_one() {
     size_type id = free_ == none ? slots_ : free_;
-    if (id >= generation_.size() || (!identity_ && id >= index_of_.size()))
-      grow(id);
+    if (id >= max_slots || (!identity_ && id >= index_of_.size())) grow(id);
     return id;
   }
   /** Take a slot into use.  O(1)   @post index_of(result) == old size()
@@ -162,25 +163,31 @@ class SlotMap {
     size_type id = free_ == none ? slots_++ : free_;
     if (free_ != none) free_ = index_of_[id];
     if (!identity_) index_of_[id] = size_, id_at_[size_] = id;
-    ++generation_[id];
+    if (id < generation_.size()) ++generation_[id];
     ++size_;
     return id;
   }
 
-  /** Make the lists of indices, which release() needs.
+  /** Give each slot a generation of its own, which release() and clear()
+   * need.  Complexity: O(1) for each slot taken since the last time
+   * Throws std::bad_alloc: no change. */
+  void make_generations() {
+    const std::size_t old = generation_.size();
+    if (old >= slots_) return;
+    generation_.resize(slots_);
+    for (std::size_t id = old; id < slots_; ++id) generation_[id] = first;
+  }
+  /** Make all lists that release() needs.
    * Complexity: O(slots()) the first time, and the first time after clear() or
-   *       reindex(), which may drop the lists; else O(1)
+   *       reindex(), which may drop the lists of indices; else O(1) for each
+   *       slot taken since the last time
    * Throws std::bad_alloc: no change. */
   void make_lists() {
-    if (!identity_) return;
-    id_at_.reserve(slots_);
-    index_of_.reserve(slots_);  // the last that may throw
-    id_at_.resize(slots_);
-    index_of_.resize(slots_);
-    for (size_type id = 0; id < slots_; ++id) id_at_[id] = index_of_[id] = id;
-    identity_ = false;
+    make_generations();
+    make_indices();
   }
-  /** Release a slot.  O(1)   @pre in_use(id), and make_lists() came before
+  /** Release a slot.  O(1)
+   * @pre in_use(id), and make_lists() came after the slot was taken
    * @post The thing of highest index has the index of the released one. */
   void release(size_type id) {
     size_type hole = index_of_[id];
@@ -192,12 +199,13 @@ class SlotMap {
 
   /** Release all. The next slot is 0, unless a slot is worn out.
    * Complexity: O(size()); plus make_lists() if one is worn out.
-   * Throws std::bad_alloc, only if one is worn out: no change. */
+   * Throws std::bad_alloc: no change. */
   void clear() {
+    make_generations();
     size_type used_up = used_up_;
     for (size_type index = 0; index < size_; ++index)
       used_up += generation_[id_at(index)] >= last_generation - 1;
-    if (used_up > 0) make_lists();
+    if (used_up > 0) make_indices();
     for (size_type index = 0; index < size_; ++index)
       used_up > 0 ? retire(id_at(index)) : void(++generation_[id_at(index)]);
     if (used_up == 0) forget_lists(), free_ = none, slots_ = 0;
@@ -220,7 +228,7 @@ class SlotMap {
    * @pre @a ids names each thing once   Throws std::bad_alloc: no change. */
   void reindex(std::span<const size_type> ids) {
     assert(ids.size() == size_);
-    make_lists();
+    make_indices();
     for (size_type index = 0; index < size_; ++index) {
       assert(ids[index] < slots_ && in_use(ids[index]));
       id_at_[index] = ids[index];
@@ -235,7 +243,6 @@ class SlotMap {
     auto require = [](bool ok) {
       if (!ok) throw std::logic_error("SlotMap: inconsistent");
     };
-    require(generation_.size() >= slots_);
     require(identity_ ? id_at_.size() == 0 : id_at_.size() >= size_);
     require(identity_ ? index_of_.size() == 0 : index_of_.size() >= slots_);
     require(!identity_ || (size_ == slots_ && free_ == none));
@@ -245,7 +252,8 @@ class SlotMap {
       require(id < slots_ && !in_use(id) && reusable(id) && !is_free[id]);
       is_free[id] = true;
     }
-    for (size_type id = 0; id < generation_.size(); ++id) {
+    const auto ever = std::max<std::size_t>(generation_.size(), slots_);
+    for (size_type id = 0; id < ever; ++id) {
       if (in_use(id)) {
         ++used;
         require(id < slots_ && index_of(id) < size_);
@@ -264,8 +272,9 @@ class SlotMap {
   // That of a slot that is worn out.
   static constexpr auto last_generation =
       std::numeric_limits<Generation>::max() - 1;
+  static constexpr Generation first{1};  // of a slot that was never released
 
-  GrowingArray<Generation> generation_;  // by slot; odd: in use
+  GrowingArray<Generation> generation_;  // by slot, odd: in use; beyond: first
   // While not identity_:
   GrowingArray<size_type> id_at_;  // by index
   GrowingArray<size_type>
@@ -276,19 +285,21 @@ class SlotMap {
   size_type used_up_ = 0;  // the number of worn-out slots
   bool identity_ = true;   // index == id for all, and all slots are in use
 
-  // Not inlined: as GrowingArray::grow(). It prepares some more slots, too.
+  void make_indices() {
+    if (!identity_) return;
+    id_at_.reserve(slots_);
+    index_of_.reserve(slots_);  // the last that may throw
+    id_at_.resize(slots_);
+    index_of_.resize(slots_);
+    for (size_type id = 0; id < slots_; ++id) id_at_[id] = index_of_[id] = id;
+    identity_ = false;
+  }
+  // Not inlined: as GrowingArray::grow().
   [[gnu::noinline]] void grow(size_type id) {
     if (id >= max_slots) throw std::length_error("Graph: too many elements");
-    if (id >= generation_.size()) {
-      generation_.resize(id + std::size_t(1));
-      generation_.resize(
-          std::min(generation_.capacity(), id + std::size_t(64)));
-    }
-    if (!identity_) grow_to_hold(id_at_, id), grow_to_hold(index_of_, id);
+    grow_to_hold(id_at_, id), grow_to_hold(index_of_, id);
   }
-  bool reusable(size_type id) const {
-    return generation_[id] < last_generation;
-  }
+  bool reusable(size_type id) const { return generation(id) < last_generation; }
   /** End the use of slot @a id; it is the next to be used again. */
   void retire(size_type id) {
     ++generation_[id];

@@ -38,9 +38,9 @@ std::size_t cost_of_clear(unsigned many, unsigned left, bool worn_out) {
   graph_detail::SlotMap<CountedGeneration> slots;
   const auto add = [&] { return slots.reserve_one(), slots.acquire(); };
   for (unsigned i = 0; i < many; ++i) add();
-  slots.make_lists();
   for (unsigned life = 0, id = 0; life < (worn_out ? 200 : 1); ++life)
-    slots.release(id), id = add();
+    slots.make_lists(), slots.release(id), id = add();
+  slots.make_lists();
   while (slots.size() > left) slots.release(slots.id_at(slots.size() - 1));
   slots.check_invariants();
   CountedGeneration::uses = 0;
@@ -83,7 +83,7 @@ TEST(GrowingArray, HoldsWhatAVectorHolds) {
   expect_equal(a);
 }
 
-TEST(GrowingArray, GrowsSeldomAndSparesAQuarter) {
+TEST(GrowingArray, GrowsSeldomAndSparesAnEighth) {
   graph_detail::GrowingArray<Point> a;
   const std::size_t many = 1000000;
   int times = 0;
@@ -93,9 +93,9 @@ TEST(GrowingArray, GrowsSeldomAndSparesAQuarter) {
     times += a.capacity() != before;
     std::size_t spare = a.capacity() - size;
     ASSERT_LE(spare * sizeof(Point),
-              std::max<std::size_t>(65536, size * sizeof(Point) / 4));
+              std::max<std::size_t>(65536, size * sizeof(Point) / 8));
   }
-  EXPECT_LE(times, 40);  // log2 of 64 kB, then log1.25 of the rest
+  EXPECT_LE(times, 66);  // log2 of 64 kB, then log1.125 of the rest
   EXPECT_EQ(graph_detail::GrowingArray<Point>(a).capacity(), many);
 }
 
