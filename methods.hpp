@@ -45,27 +45,29 @@ struct WithDrag {
   }
 };
 
-/** c of a WithDrag; 0 of any other force. */
+/** WithDrag, or another class with these members. */
 template <typename F>
-double drag_of(const F&) {
-  return 0;
+concept DragApart = requires(F& force) {
+  force.others;
+  force.drag;
+};
+
+/** c of a force with its drag apart; 0 of any other. */
+template <typename F>
+double drag_of(const F& force) {
+  if constexpr (DragApart<F>)
+    return force.drag;
+  else
+    return 0;
 }
+
+/** F of a force with its drag apart; any other force itself. */
 template <typename F>
-double drag_of(const WithDrag<F>& force) {
-  return force.drag;
-}
-/** F of a WithDrag; any other force itself. */
-template <typename F>
-F& without_drag(F& force) {
-  return force;
-}
-template <typename F>
-F& without_drag(WithDrag<F>& force) {
-  return force.others;
-}
-template <typename F>
-F& without_drag(const WithDrag<F>& force) {
-  return force.others;
+auto& without_drag(F& force) {
+  if constexpr (DragApart<F>)
+    return force.others;
+  else
+    return force;
 }
 
 /** Kick, over the time h: v += h F(x, t)/m. */
