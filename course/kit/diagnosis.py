@@ -1,8 +1,11 @@
 """What a compiler, a sanitizer or a crash says, in a line or two."""
 
+import pathlib
 import re
 import signal
 from dataclasses import dataclass
+
+import once
 
 PLACE = re.compile(r"(?P<file>[^\s:][^:\n]*):(?P<line>\d+)(?::\d+)?: +"
                    r"(?P<text>.*)")
@@ -10,6 +13,9 @@ CHAIN = re.compile(r"(?:In file included| +) +from (?P<file>[^:]+):\d+[,:]")
 HEADING = re.compile(r"[^:]+: (?:In|At) .*:$")
 TEST = re.compile(r"course/tests/([^/]+)\.cpp")
 ADDRESS = re.compile(r"0x[0-9a-f]+")
+UNCLOSED = re.compile(r"error: expected '\}' at end of input\n"
+                      r"(?:(?:In file included| +) +from .*\n){0,20}"
+                      r"(?P<file>[^\s:]+):(?P<line>\d+):\d+: note: to match")
 LONGEST = 300
 
 
@@ -90,6 +96,10 @@ def first_error(output, names, test):
 
 def compile_message(output, names, test=""):
     """The same, and what led to it."""
+    for unclosed in UNCLOSED.finditer(output):  # what follows makes no sense
+        if unclosed["file"] in names:
+            return (f"{unclosed['file']}:{unclosed['line']}: this '{{' has no "
+                    "'}'")
     error = helpful(output, names, test)
     if not error:
         return link_message(output)
@@ -109,13 +119,26 @@ def link_message(output):
 
 
 def first_frame(output, names):
-    """The first line of a trace that is in the submission: " at FILE:LINE"."""
+    """The first line of a trace that is in the submission: " at FILE:LINE". Or
+    what the test did with what it was given, such as a null reference."""
+    test = ""
     for frame in re.finditer(r"^ +#\d+ 0x[0-9a-f]+ (?:in )?(.*)$", output,
                              re.MULTILINE):
         place = re.search(r" (?:\./)?([^ ]+?):(\d+)(?::\d+)?$", frame[1])
         if place and place[1] in names:
             return f" at {place[1]}:{place[2]}"
-    return ""
+        if place and not test:
+            test = line_of_test(pathlib.Path(place[1]), int(place[2]))
+    return test
+
+
+def line_of_test(path, number):
+    """What stands there; a submission may have named any file."""
+    if path.parent != once.TESTS or ".." in path.parts or not path.is_file():
+        return ""
+    lines = path.read_text("utf-8").split("\n")
+    return (f" where the test says: {lines[number - 1].strip()}"
+            if 0 < number <= len(lines) else "")
 
 
 def crash(outcome, names):
@@ -146,7 +169,9 @@ def crash(outcome, names):
         return f"assertion failed: {short(found[3])}{where}"
     if found := re.search(r"terminate called after throwing .*\n? *(what.*)?",
                           output):
-        return short(found[0]) + first_frame(output, names)
+        return (short(found[0]).replace("terminate called after throwing",
+                                        "nothing catches")
+                + first_frame(output, names))
     if aborted:
         return "ended by abort()" + first_frame(output, names)
     if outcome.code < 0:

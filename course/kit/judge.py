@@ -177,6 +177,9 @@ class Judge:
         for room, way in self.attempts(way, tests):
             left = [test for test in tests
                     if test not in results or not results[test].passed]
+            if room in self.rooms["program"]:   # what is no program gets none
+                left = [test for test in left
+                        if results[test].status != "not compiled"]
             for test, result in self.judged(room, way, left).items():
                 best = results.setdefault(test, result)
                 # What is said of the kit's graph is no help if the same is
@@ -254,7 +257,18 @@ class Judge:
         return self.explained(room, way, results, read)
 
     def explained(self, room, way, results, read):
-        """With the compiler's own words for calls that do not compile."""
+        """With the compiler's own words for calls that do not compile, and with
+        the place of a crash in what was built without sanitizers."""
+        crashed = [test for test, result in results.items()
+                   if result.status == "crashed" and way.kind == "counted"]
+        if crashed:
+            unit = self.compile(room, dataclasses.replace(
+                way, kind="checked",
+                defines=way.defines + ("KIT_UNCOUNTED",)), crashed, read)
+            found = self.run_all(unit, room.names) if unit.program else {}
+            results.update({test: dataclasses.replace(
+                results[test], text=found[test].text)
+                for test in found if found[test].status == "crashed"})
         way = dataclasses.replace(
             way, defines=way.defines + ("KIT_MUST_COMPILE",))
         for test, result in results.items():

@@ -7,6 +7,7 @@ import xml.etree.ElementTree
 import diagnosis
 import judge
 import names
+import once
 import report
 import tasks
 
@@ -46,6 +47,16 @@ READ of size 8 at 0x602 thread T0
         self.assertEqual(
             crash("unit1: Graph.hpp:8: int f(): Assertion `a < b' failed.\n"),
             "assertion failed: a < b at Graph.hpp:8")
+        for path, said in ((once.TESTS / "graph.hpp", " where the test says: "
+                            "#ifndef KIT_GRAPH_HPP"),
+                           (once.KIT / "judge.py", ""),
+                           (f"{once.TESTS}/../kit/judge.py", "")):
+            lines = (once.TESTS / "graph.hpp").read_text().split("\n")
+            number = lines.index("#ifndef KIT_GRAPH_HPP") + 1
+            self.assertEqual(crash(
+                "==7==ERROR: AddressSanitizer: SEGV on unknown address 0x0\n"
+                f"    #0 0x5 in f() {path}:{number}\n"),
+                "AddressSanitizer: SEGV" + said)
         self.assertEqual(crash("", -11), "ended by the signal SIGSEGV")
         self.assertEqual(crash("", 0), "the program ended before the test did")
 
@@ -82,6 +93,12 @@ course/tests/7.1.b.cpp:3:1: error: 'class Graph' has no member named 'take'
             "Graph.hpp:5:7: error: 'z' was not declared\n" + output,
             {"Graph.hpp"}, "7.2.c"), "Graph.hpp:5: 'z' was not declared")
         self.assertEqual(diagnosis.first_error("", {}, "7.1.b"), "")
+        self.assertEqual(diagnosis.compile_message("""\
+unit1.cpp:2:1: error: expected '}' at end of input
+In file included from course/tests/cloth.hpp:25:
+Graph.hpp:5:7: note: to match this '{'
+Graph.hpp:9:1: error: 'z' was not declared
+""", {"Graph.hpp"}), "Graph.hpp:5: this '{' has no '}'")
 
     def test_answers_are_right_if_all_that_is_needed_is(self):
         expected = {"x": (1e-9, [1, 1e6]), "K~": (0, [2]),
