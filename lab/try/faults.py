@@ -11,7 +11,7 @@ from workshop import BadInput
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh",
            "eighth", "ninth", "tenth", "eleventh", "twelfth")
 FULL, HALF = .25, .125      # the steps of the trace
-FRACTIONS = {(p / q): f"{p}/{q}" for q in (6, 4, 3, 2, 8) for p in range(1, q)}
+FRACTIONS = {(p / q): f"{p}/{q}" for q in (8, 6, 4, 3, 2) for p in range(1, q)}
 
 
 def ordinal(k):
@@ -204,71 +204,72 @@ def returned(runs):
 
 
 def differences(t, other):
-    """(what differs, ours, the other's), the first ones of a cause."""
+    """(what differs, ours, the other's): what a reader finds in the code; if
+    none of it differs, what follows from it."""
     found = []
-    for kind, x, y in (("the time", t.tau, other.tau),):
-        del kind, x, y
-    for s in range(t.stages):
-        if not near(t.c[s], other.c[s]):
-            found.append((f"positions at the {ordinal(s)} force: drift of",
-                          t.c[s], other.c[s]))
+
+    def compare(words, x, y):
+        if not near(x, y):
+            found.append((words, x, y))
+    n = range(t.stages)
+    for j in n:
+        compare(f"weight of the {ordinal(j)} force", t.b[j], other.b[j])
+    for s in n:
+        compare(f"place of the {ordinal(s)} force, in dt v", t.c[s],
+                other.c[s])
         for j in range(s):
-            if not near(t.a[s][j], other.a[s][j]):
-                found.append((f"positions at the {ordinal(s)} force: share "
-                              f"of the {ordinal(j)} force", t.a[s][j],
-                              other.a[s][j]))
-    for name, x, y in (("velocity", t.b, other.b), ("position", t.B, other.B)):
-        for j in range(t.stages):
-            if not near(x[j], y[j]):
-                found.append((f"new {name}: weight of the {ordinal(j)} force",
-                              x[j], y[j]))
-    if not near(t.C, other.C):
-        found.append(("new position: drift of", t.C, other.C))
+            compare(f"share of the {ordinal(j)} force in the velocity at the "
+                    f"{ordinal(s)}", t.w[s][j], other.w[s][j])
+    compare("drift of the step", t.C, other.C)
+    if found:
+        return found
+    for s in n:
+        for j in range(s):
+            compare(f"share of the {ordinal(j)} force in the place of the "
+                    f"{ordinal(s)}", t.a[s][j], other.a[s][j])
+    for j in n:
+        compare(f"share of the {ordinal(j)} force in the new position",
+                t.B[j], other.B[j])
     return found
 
 
-def velocity_weights(t, other):
-    """The differences that a reader finds in the code: weights first."""
-    return sorted(differences(t, other),
-                  key=lambda d: not d[0].startswith("new velocity"))
-
-
-def nearest(t, methods):
-    """(name, differences, share of the coefficients that differ) of the
-    known method that has most in common; or None."""
+def nearest(ours, methods):
+    """(key, name, differences) of the known method that has most in common
+    with one of the tables, the smaller key the more; or None."""
     best = None
-    for name, other in methods.items():
-        if other.stages != t.stages:
-            continue
-        found = velocity_weights(t, other)
-        all_ = len([x for x in other.numbers() if x]) + 1
-        far = max((abs(x - y) for _, x, y in found), default=0)
-        key = (far > .02, len(found) / all_)
-        if best is None or key < best[0]:
-            best = key, name, found, far
-    return best and best[1:]
+    for t in ours:
+        for name, other in methods.items():
+            if other.stages == t.stages > 1:
+                found = differences(t, other)
+                far = max((abs(x - y) for _, x, y in found), default=0)
+                key = far > .02, len(found) / t.stages
+                if best is None or key < best[0]:
+                    best = key, name, found
+    return best
 
 
-def one_coefficient(t, methods):
-    """A known method, but for small or for few differences."""
-    close = nearest(t, methods)
-    if not close or not close[1]:
+def small(close):
+    """A known method, but for a small difference?"""
+    if not close or close[0][0] or not close[2]:
         return []
-    name, found, far = close
-    what, own, right = found[0]
-    if far <= .02:
-        return [(f"it is {name} with a wrong coefficient: {what} is "
-                 f"{own:.8g}, in {name} {right:.8g}",
-                 f"Copy the coefficients of {name} again, with all digits.")]
-    if t.stages > 1 and len(found) <= max(2, .4 * len(t.numbers())):
-        return [(f"it is close to {name}, but {what} is {digits(own)}, in "
-                 f"{name} {digits(right)}",
-                 f"Compare your step with {name}, stage by stage.")]
-    return []
+    _, name, ((what, own, right), *_) = close
+    return [(f"it is {name} with a wrong coefficient: the {what} is "
+             f"{own:.8g}, in {name} {right:.8g}",
+             f"Copy the coefficients of {name} again, with all digits.")]
+
+
+def few(close):
+    """A known method, but for few differences?"""
+    if not close or not close[2] or close[0][1] > .75:
+        return []
+    _, name, ((what, own, right), *_) = close
+    return [(f"it is close to {name}, but the {what} is {digits(own)}, in "
+             f"{name} {digits(right)}",
+             f"Compare your step with {name}, stage by stage.")]
 
 
 def sums(t):
-    total, B = sum(t.b), sum(t.B)
+    total = sum(t.b)
     if near(t.C, 0):
         return [("the positions do not move with the velocities",
                  "x += dt v, for all nodes.")]
@@ -286,6 +287,11 @@ def sums(t):
     if not near(t.C, 1):
         return [(f"the drifts of a step add up to {digits(t.C)} dt, expected "
                  "dt", "The weights of the velocities have to add up to 1.")]
+    return []
+
+
+def position(t):
+    B = sum(t.B)
     if t.stages > 1 and not near(B, .5):
         return [(f"the forces move the positions by {digits(B)} dt^2 F/m, "
                  "expected 1/2: of order 1 whatever the rest",
@@ -293,11 +299,23 @@ def sums(t):
     return []
 
 
-def later(t, methods):
-    """Where a method of several forces has but one place."""
+def at_start(t):
+    """Are all forces computed at the start?"""
     if t.stages > 1 and all(near(c, 0) for c in t.c) and all(
             near(x, 0) for x in sum(t.a, [])):
         return [("all forces are computed at the old positions",
                  "Move the nodes before you compute the next force.")]
-    del methods
     return []
+
+
+def coefficients(raw, t, methods):
+    """What is wrong with the coefficients of a step that no one has."""
+    close = nearest((raw, t), methods)
+    return (at_start(t) or small(close) or sums(t) or few(close)
+            or position(t))
+
+
+def second_order(t):
+    """As far as forces on one mass that depend on positions can tell."""
+    return (near(sum(t.b), 1) and near(sum(t.B), .5) and
+            near(sum(b * c for b, c in zip(t.b, t.c)), .5))

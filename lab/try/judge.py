@@ -20,6 +20,7 @@ class Verdict:
     is_a: str = ""              # what it is, in a sentence
     name: str = ""              # of a known method that it equals
     faults: list = field(default_factory=list)     # (sentence, advice)
+    later: list = field(default_factory=list)      # those said last
     notes: list = field(default_factory=list)
     facts: list = field(default_factory=list)      # (what, words)
     advice: str = ""
@@ -96,12 +97,16 @@ def distance(one, other):
     return far / max(1, *map(abs, one)) if math.isfinite(far) else math.inf
 
 
+def events(where, lines):
+    runs = tables.events([(name, numbers) for name, numbers in lines
+                          if name in ("begin", "call", "hold", "end")])
+    faults.bad_input(where, runs, lines)
+    return runs
+
+
 def trace(verdict, where, lines, constrained):
     """Read the table; everything that it shows at once."""
-    shown = [(n, x) for n, x in lines
-             if n in ("begin", "call", "hold", "end")]
-    runs = tables.events(shown)
-    faults.bad_input(where, runs, lines)
+    runs = events(where, lines)
     base = runs[faults.FULL, -1]
     found = faults.counts(base)
     loop = [] if found else faults.loops(base)
@@ -118,13 +123,13 @@ def trace(verdict, where, lines, constrained):
         if not found:
             found += faults.steps(one, half)
         verdict.table = tables.pruned(tables.merged(one))
-    found += faults.returned(runs)
     verdict.data["raw"] = one
+    verdict.faults += found
+    verdict.later += faults.returned(runs)
     if constrained and not faults.counts(base):
         held, notes = faults.constraint(runs)
-        found += held
+        verdict.later += held
         verdict.notes += notes
-    verdict.faults += found
     verdict.calls = sum(e.what == "call" and e.node == 0 for e in base)
 
 
@@ -163,17 +168,14 @@ def identify(verdict, same):
     methods = tables.known()
     verdict.name = next((name for name, other in methods.items() if tables.same(
         t, other, ROUNDOFF)), "")
-    late, notes = faults.times(t, t.stages == 1)
     if verdict.faults:
         return
     if verdict.name:
         verdict.is_a = f"it is equal to {verdict.name} to round-off"
-        verdict.faults += late
-        verdict.notes += notes
-        return
-    verdict.faults += (faults.later(t, methods) or faults.sums(t)
-                       or faults.one_coefficient(t, methods))
+    else:
+        verdict.faults += faults.coefficients(raw, t, methods)
     if not verdict.faults:
+        late, notes = faults.times(t, not faults.second_order(t))
         verdict.faults += late
         verdict.notes += notes
 
@@ -324,6 +326,7 @@ def limits(verdict, numbers):
         weak = weak or (line[k][0], growth)
         k = end
     verdict.limit, verdict.weak = limit, weak
+    verdict.data["line"] = numbers["line"]
     if limit == 0:
         words = "none: an oscillation grows at any step, without drag"
     elif limit == math.inf:
@@ -407,3 +410,16 @@ def contact(verdict, numbers):
         if o.order < base - .3:
             words += f": it loses {base - o.order:.1f}"
         verdict.facts.append((what, words))
+
+
+# ---- Among the laboratory's methods
+
+def chart(verdict, numbers):
+    for scene, solution in (("chain", orders.chart_chain()),
+                            ("curtain", orders.chart_curtain())):
+        verdict.data[f"chart.{scene}"] = [
+            (steps, steps * verdict.evaluations, orders.rms(x, solution))
+            for steps, _, *x in numbers[f"chart.{scene}"]]
+    own, verlet = numbers["seconds"][0]
+    verdict.facts.append(("time of a step", f"{own / verlet:.2f} times that of "
+                          "Verlet, both by plain loops on grid1"))

@@ -7,12 +7,13 @@ The file is a stranger's: it is compiled and run in the grader's jail
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "course/kit"))
+sys.path.append(str(ROOT / "course/kit"))
 
 import diagnosis  # noqa: E402  (from course/kit)
 import once       # noqa: E402
@@ -26,6 +27,13 @@ COMPILING = sandbox.Limits(cpu=60, wall=120, memory=3 << 30, output=8 << 20,
 FLAGS = {"fast": ["-O2", "-g1"],
          "checked": ["-O1", "-g1", "-fsanitize=address,undefined",
                      "-fno-sanitize-recover=all", "-D_GLIBCXX_ASSERTIONS"]}
+
+
+# What every probe includes, compiled once for each kind of build.
+PRELUDE = "".join(f"#include {name}\n" for name in (
+    "<algorithm>", "<chrono>", "<cmath>", "<functional>", "<map>", "<string>",
+    "<vector>", '"mass_spring.hpp"'))
+COMMON = ["-std=c++20", "-w", "-pthread", "-I", str(ROOT)]
 
 
 class BadInput(Exception):
@@ -108,28 +116,52 @@ class Workshop:
             self.jail = [str(once.Kit.locked_part(
                 "jail", [once.KIT / "jail.cpp"],
                 lambda folder: once.Kit.make_jail(once.Kit, folder)) / "jail")]
+            self.prelude = once.Kit.locked_part(
+                "try", [ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
+                        *(ROOT / "CME212").glob("*.hpp")], self.make_prelude,
+                (PRELUDE, COMMON, FLAGS))
         except once.KitError as error:
             raise BadInput(str(error)) from None
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="room-"))
         self.folder.chmod(0o755)
+        self.where = f"{self.path}:1: {step}"
         self.programs = {}
         self.slow = []      # parts that took too long
+
+    def make_prelude(self, folder):
+        """In the jail, where addresses are not by chance: it is used there."""
+        jail = [*self.jail, "--compiler", "--cpu", "300", "--size",
+                str(1 << 30), "--"]
+        for kind, flags in FLAGS.items():
+            header = folder / f"{kind}.hpp"
+            header.write_text(PRELUDE, encoding="utf-8")
+            once.Kit.run([*COMMON, *flags, "-x", "c++-header", header, "-o",
+                          f"{header}.gch"], "the course's classes can't be "
+                         "built", jail)
+
+    def of_the_course(self):
+        """Are Graph.hpp and mass_spring.hpp those of the course?"""
+        return self.path.parent == ROOT or not any(
+            (self.path.parent / name).exists()
+            for name in ("Graph.hpp", "mass_spring.hpp", "CME212"))
 
     def compile(self, kind="fast"):
         """The probe; BadInput names the first error of the file."""
         if kind in self.programs:
             return self.programs[kind]
         program = self.folder / kind
-        command = [once.CXX, "-std=c++20", "-w", "-pthread", *FLAGS[kind],
+        command = [once.CXX, *COMMON, *FLAGS[kind],
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
-                   "-iquote", self.path.parent, "-I", ROOT,
+                   "-iquote", self.path.parent,
+                   *(["-include", self.prelude / f"{kind}.hpp"]
+                     if self.of_the_course() else []),
                    f'-DTRY_FILE="{self.path}"', f"-DTRY_STEP={self.step}",
                    f"-DTRY_ARGUMENTS={self.arguments}",
                    ROOT / "lab/try/probe.cpp", "-o", program]
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
                 "/etc/ld.so.cache", "/proc/self", ROOT / "CME212",
                 ROOT / "lab/try", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
-                ROOT / "methods.hpp", self.path.parent]
+                ROOT / "methods.hpp", self.prelude, self.path.parent]
         words = [*self.jail]
         for name in read:
             words += ["--read", str(name)]
@@ -190,9 +222,12 @@ class Workshop:
         return found, sandbox.Outcome(stopped, process.returncode,
                                       written.text(), bool(found))
 
+    def close(self):
+        shutil.rmtree(self.folder, ignore_errors=True)
+
     def why(self, part, outcome):
         """Why a part of the probe did not end, in words."""
-        name = f"{self.path}:1: {self.step}"
+        name = self.where
         if outcome.stopped == "time":
             return (f"{name}: loops for ever, or takes too long: "
                     f"stopped after {SECONDS.get(part, 8)} s")
