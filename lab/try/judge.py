@@ -361,7 +361,7 @@ def limits(verdict, numbers):
         verdict.facts.append((f"largest step on {what}", words))
         if gamma == 0:
             verdict.data["grid1"] = low, high, first
-    for name in ("inside", "outside", "shape"):
+    for name in ("inside", "outside", "shape.outside"):
         verdict.data[name] = numbers.get(name, [])
 
 

@@ -264,19 +264,26 @@ void matrix(const char* name, double omega, double gamma) {
 }
 
 /** Does the cloth, which begins with 0 J, gain no energy in 0.25 s? */
-bool holds(double h, double gamma, const char* say = nullptr) {
+bool holds(double h, double gamma) {
   World w = grid1();
   w.gamma = gamma;
-  double e = 0;
-  for (int k = 1; e < .5; ++k) {
-    if (k * h > .25 + h) return true;
-    advance(w, (k - 1) * h, h);
-    e = energy(w);
-    if (!(e < .5)) break;
-    if (say && k % std::max(1, int(.25 / h / 400)) == 0) put(say, {k * h, e});
+  for (int k = 0; k * h <= .25; ++k) {
+    advance(w, k * h, h);
+    if (!(energy(w) < .5)) return false;
   }
-  if (say) put(say, {.25, e}), put("shape", positions(w));
-  return false;
+  return true;
+}
+/** The energy of such a run, "NAME t energy", until it has gained 50 J; then
+ * the shape of the cloth. */
+void tell(const char* name, double h) {
+  World w = grid1();
+  double e = 0;
+  for (int k = 0; k * h <= .25 && e < 50; ++k) {
+    advance(w, k * h, h);
+    e = energy(w);
+    if (k % std::max(1, int(.25 / h / 400)) == 0) put(name, {(k + 1) * h, e});
+  }
+  put(std::string("shape.") + name, positions(w));
 }
 
 void limits() {
@@ -295,8 +302,8 @@ void limits() {
     }
     put("grid1", {gamma, low, high, safe});
     if (gamma > 0) continue;
-    if (low > 0) holds(low, gamma, "inside");
-    holds(high * 1.02, gamma, "outside");
+    if (low > 0) tell("inside", low);
+    tell("outside", high * 1.02);
   }
 }
 

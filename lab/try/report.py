@@ -24,11 +24,6 @@ STABLE, WEAK, UNSTABLE = "#cfe6f5", "#fdecc8", "#f7dcdc"
 EVALUATIONS = "force evaluations"
 
 
-def powers(lo, hi):
-    return [10.0 ** k for k in range(math.ceil(math.log10(lo)),
-                                     math.floor(math.log10(hi)) + 1)]
-
-
 # ---- Its dot among the laboratory's methods
 
 def among_methods(verdict, out):
@@ -54,9 +49,10 @@ def among_methods(verdict, out):
             else:
                 behind.append(Curve(method, points, GRAY))
         about = table.note("scene " + scene).split("; ")[0]
-        panel = Panel(90 + 475 * k, 70, 500 + 475 * k, 385, x, y,
+        panel = Panel(90 + 475 * k, 90, 500 + 475 * k, 385, x, y,
                       f"{scene}: {about}", curves, behind)
-        picture.draw(panel, "set format x '10^{%T}'", "set xtics 1000",
+        picture.draw(panel, "set xtics (" + ", ".join(
+            f"'10^{{{k}}}' 1e{k}" for k in range(-11, 0, 2)) + ")",
                      "set xlabel 'RMS error of the positions [m]'",
                      *(["set format y '10^{%T}'",
                         f"set ylabel '{EVALUATIONS}'"] if k == 0 else
@@ -93,10 +89,6 @@ def convergence(verdict, out):
 
 
 # ---- Where it fails
-
-def matrices(verdict):
-    return verdict.data["line"]
-
 
 def around(verdict):
     """[(words, dt omega, matrix, color)] just inside and just outside."""
@@ -148,7 +140,7 @@ def region(verdict, out):
                       cause(verdict)[:cause(verdict).find(":")
                                      if ":" in cause(verdict) else None], "")
     x, y = Axis(0, 6, False), Axis(0, 6, False)
-    panel = Panel(80, 80, 460, 350, x, y, "dt omega and drag", [])
+    panel = Panel(80, 100, 460, 350, x, y, "frequency and drag", [])
     rows = {}
     for z, drag, r in verdict.data["map"]:
         rows.setdefault(drag, []).append((z, r))
@@ -167,9 +159,9 @@ def region(verdict, out):
     for k, (color, words) in enumerate(((STABLE, "stable"),
                                         (WEAK, "grows < 2 % a step"),
                                         (UNSTABLE, "unstable"))):
-        picture.box(80 + 110 * k + 30 * (k > 1), 20,
-                    94 + 110 * k + 30 * (k > 1), 32, color)
-        picture.text(98 + 110 * k + 30 * (k > 1), 26, words, 10, DARK)
+        left = (80, 160, 310)[k]
+        picture.box(left, 20, left + 14, 32, color)
+        picture.text(left + 18, 26, words, 10, DARK)
     picture.line(*panel.pixel((2, 0)), *panel.pixel((2, 6)), GRAY, 1, 2)
     picture.text(panel.pixel((2.08, 0))[0], panel.top - 10, "Verlet's limit",
                  10, GRAY)
@@ -182,7 +174,7 @@ def region(verdict, out):
                   if abs(u) < 40]
         curves.append(Curve(words, points, color, 0,
                             f"{words}: dt omega = {z:.2f}"))
-    picture.draw(Panel(560, 80, 970, 350, Axis(0, 60, False),
+    picture.draw(Panel(560, 100, 970, 350, Axis(0, 60, False),
                        Axis(-4, 4, False), "without drag", curves),
                  "set xtics 10", "set ytics 2", "set xlabel 'steps'",
                  "set ylabel 'position / position at the start'")
@@ -209,8 +201,8 @@ def failure(verdict, out):
                   Axis(min(-.05, *finite, 0), .6, False), "energy", curves)
     picture.draw(panel, "set format '%g'", "set xtics .05", "set ytics .1",
                  "set xlabel 'time [s]'", "set ylabel 'energy [J]'")
-    if verdict.data["shape"]:
-        p = verdict.data["shape"][0]
+    if verdict.data["shape.outside"]:
+        p = verdict.data["shape.outside"][0]
         n = math.isqrt(len(p) // 3)
         at = [[(p[3 * (i * n + j)], p[3 * (i * n + j) + 2]) for i in range(n)]
               for j in range(n)]
@@ -309,7 +301,7 @@ def write(verdict, folder, source):
                         + inline(out.read_text(encoding="utf-8"), number))
             if draw is region:
                 body.append(f"<p>{said(cause(verdict))}</p>")
-    if verdict.table and not isinstance(verdict.table, str):
+    if verdict.table:
         body.append(coefficients(tables.pruned(verdict.data["raw"])))
     text = (f"<!doctype html><html lang=en><meta charset=utf-8><title>"
             f"{said(verdict.step)}</title><style>{STYLE}</style>"
