@@ -112,7 +112,7 @@ ABOUT = {"chain": "eight masses between two walls",
 
 def rms(x, y):
     """RMS distance of points, as lists of coordinates."""
-    total = sum((a - b) ** 2 for a, b in zip(x, y))
+    total = sum((a - b) * (a - b) for a, b in zip(x, y))
     return math.sqrt(total / (len(x) / 3)) if math.isfinite(total) else math.inf
 
 

@@ -233,12 +233,11 @@ def long_run(verdict, out):
     picture = Picture(out, 1000, 330, f"Energy: {verdict.energy[1]}",
                       "Four masses and six springs, without drag: the true "
                       "energy stays.", "")
-    panel = Panel(90, 70, 960, 250, Axis(0, rows[-1][0], False),
+    panel = Panel(90, 70, 960, 250, Axis(0, points[-1][0] or 1, False),
                   Axis(min(1, lo) - margin, max(1, hi) + margin, False), "",
                   [Curve("e", points, OWN)])
     picture.draw(panel, "set format '%g'", "set xtics auto", "set ytics auto",
-                 "set xlabel 'time [s]'",
-                 "set ylabel 'energy / energy at the start'")
+                 "set xlabel 'time [s]'", "set ylabel 'energy / at first'")
     picture.finish()
 
 

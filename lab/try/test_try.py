@@ -18,8 +18,10 @@ import tomllib
 
 import measure
 import teacher
-from orders import rms  # noqa: F401
 from workshop import ROOT, BadInput
+
+sys.path.append(str(ROOT / "lab/charts"))
+from results import Table, by_method, believed, runs  # noqa: E402
 
 QUICK = ("trace", "same", "order")
 FORM = """#include <stdexcept>
@@ -158,10 +160,10 @@ DECLARED = [
 
 
 def declared(row):
-    step, name, order, evaluations, limit, _ = row
+    step, name, order, evaluations, limit, method = row
     try:
         v = measure.measure(ROOT / "methods.hpp", step,
-                            (*QUICK, "physics", "limits", "chart"))
+                            (*QUICK, "limits", "chart"))
     except BadInput as error:
         return [str(error)]
     found = [f"{what}: {got}, expected {wanted}" for what, got, wanted in (
@@ -171,7 +173,32 @@ def declared(row):
         found.append(f"limit: {v.limit}, expected {limit}")
     if v.faults:
         found.append(f"fault: {v.faults[0][0]}")
+    off = off_the_curve(v, method) if method else 0
+    if off > .02:
+        found.append(f"{off:.1%} off the curve of {method}")
     return found
+
+
+def off_the_curve(v, method):
+    """By which share the errors of a step lie off the laboratory's curve, at
+    most, where that is straight."""
+    table = Table("lab/charts/results/work_precision.csv")
+    worst, met = 0, 0
+    for scene in ("chain", "curtain"):
+        curve = by_method(believed(runs(table.where(scene=scene))))[method]
+        for _, evaluations, error in v.data[f"chart.{scene}"]:
+            for a, b in zip(curve, curve[1:]):
+                if not a.evaluations <= evaluations <= b.evaluations:
+                    continue
+                slope = (math.log(a.error / b.error)
+                         / math.log(b.evaluations / a.evaluations))
+                if abs(slope - v.order) > .05 or b.error < 1e-11:
+                    continue
+                share = (math.log(evaluations / a.evaluations)
+                         / math.log(b.evaluations / a.evaluations))
+                here = a.error * (b.error / a.error) ** share
+                worst, met = max(worst, abs(error / here - 1)), met + 1
+    return worst if met > 2 else math.inf
 
 
 class Check:

@@ -31,7 +31,7 @@ FLAGS = {"fast": ["-O2", "-g1"],
 
 # What every probe includes, compiled once for each kind of build.
 PRELUDE = "".join(f"#include {name}\n" for name in (
-    "<algorithm>", "<chrono>", "<cmath>", "<functional>", "<map>", "<string>",
+    "<algorithm>", "<cmath>", "<functional>", "<map>", "<string>",
     "<vector>", '"mass_spring.hpp"'))
 COMMON = ["-std=c++20", "-w", "-pthread", "-I", str(ROOT)]
 
