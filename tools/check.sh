@@ -288,6 +288,8 @@ arm() {
   done
   tools/check_arm.sh
 }
+# Which cases are taken where not all are: by the commit.
+turn_of=$((0x$(git rev-parse --short=6 HEAD 2>/dev/null || echo 0)))
 # A step, unless the other worker has taken it.
 turn() {  # NAME LIMIT COMMAND...
   mkdir "$logs/taken/$1" 2>/dev/null || return 0
@@ -302,6 +304,8 @@ turns() {
   turn page      "$limit" page
   turn single    "$limit" single
   turn advice    "$limit" advice
+  turn try       "$long"  env EVERY=5 FIRST=$((turn_of % 5)) \
+    python3 lab/try/test_try.py
   turn arm       "$long"  arm
   turn pages     "$limit" tools/check_pages.sh
   turn window    "$limit" tools/test_window.sh
@@ -337,7 +341,7 @@ case $tier in
     limit=$long step programs programs
     limit=$long step clang clang
     limit=$long step kit make --no-print-directory kit-check EVERY=20 \
-      FIRST=$((0x$(git rev-parse --short=6 HEAD || echo 0) % 20))
+      FIRST=$((turn_of % 20))
     beside one_half other_half ;;
   quick) ;;
   *) echo "usage: tools/check.sh quick | check | check-full" >&2; exit 2 ;;
