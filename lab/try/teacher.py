@@ -52,7 +52,7 @@ def conclude(v):
     elif v.limit == 0:
         v.advice = ("It gains energy at any step without drag: compute the "
                     "forces at the new positions.")
-    elif getattr(v, "energy", (0,))[0] not in (0,) and not v.symplectic:
+    elif v.energy[0] and not v.symplectic:
         v.advice = ("It is not symplectic, so its energy drifts: for long runs "
                     "use kicks and drifts, in a symmetric order.")
     elif v.order == 1:
