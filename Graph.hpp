@@ -422,7 +422,6 @@ class Graph {
    * Complexity: O(num_nodes() + num_edges()), even if there were many more
    *       before. Frees no memory. */
   void clear() {
-    nodes_.make_generations(), edges_.make_generations();
     for (Edge e : edges())
       ends_[e.id()] = {}, graph_detail::reset(edge_value_[e.id()]);
     for (Node n : nodes()) {

@@ -120,8 +120,8 @@ inline constexpr size_type none = std::numeric_limits<size_type>::max();
  * stays dead.
  *
  * Memory: none until the first release(): all slots are in use, their
- * generation is 1, and index == id. From then on 8 bytes and sizeof(Generation)
- * a slot.
+ * generation is the same, and index == id. From then on 8 bytes and
+ * sizeof(Generation) a slot.
  * @tparam Generation an unsigned integer; tests take a short one */
 template <typename Generation = std::uint32_t>
 class SlotMap {
@@ -133,7 +133,7 @@ class SlotMap {
   /** @pre id < slots() */
   bool in_use(size_type id) const { return generation(id) % 2 == 1; }
   Generation generation(size_type id) const {
-    return id < generation_.size() ? generation_[id] : first;
+    return id < generation_.size() ? generation_[id] : common_;
   }
   bool alive(size_type id, Generation number) const {
     return id < slots_ && generation(id) == number && number % 2 == 1;
@@ -168,15 +168,6 @@ class SlotMap {
     return id;
   }
 
-  /** Give each slot a generation of its own, which release() and clear()
-   * need.  Complexity: O(1) for each slot taken since the last time
-   * Throws std::bad_alloc: no change. */
-  void make_generations() {
-    const std::size_t old = generation_.size();
-    if (old >= slots_) return;
-    generation_.resize(slots_);
-    for (std::size_t id = old; id < slots_; ++id) generation_[id] = first;
-  }
   /** Make all lists that release() needs.
    * Complexity: O(slots()) the first time, and the first time after clear() or
    *       reindex(), which may drop the lists of indices; else O(1) for each
@@ -199,15 +190,18 @@ class SlotMap {
 
   /** Release all. The next slot is 0, unless a slot is worn out.
    * Complexity: O(size()); plus make_lists() if one is worn out.
-   * Throws std::bad_alloc: no change. */
+   * Throws std::bad_alloc, only if one is worn out: no change. */
   void clear() {
-    make_generations();
     size_type used_up = used_up_;
     for (size_type index = 0; index < size_; ++index)
-      used_up += generation_[id_at(index)] >= last_generation - 1;
-    if (used_up > 0) make_indices();
+      used_up += generation(id_at(index)) >= last_generation - 1;
+    if (used_up > 0) make_lists();
     for (size_type index = 0; index < size_; ++index)
-      used_up > 0 ? retire(id_at(index)) : void(++generation_[id_at(index)]);
+      if (const size_type id = id_at(index); used_up > 0)
+        retire(id);
+      else if (id < generation_.size())
+        ++generation_[id];
+    if (slots_ > generation_.size()) ++common_, ++common_;
     if (used_up == 0) forget_lists(), free_ = none, slots_ = 0;
     size_ = 0;
   }
@@ -272,9 +266,9 @@ class SlotMap {
   // That of a slot that is worn out.
   static constexpr auto last_generation =
       std::numeric_limits<Generation>::max() - 1;
-  static constexpr Generation first{1};  // of a slot that was never released
 
-  GrowingArray<Generation> generation_;  // by slot, odd: in use; beyond: first
+  GrowingArray<Generation> generation_;  // by slot; odd: in use
+  Generation common_{1};  // of all slots from generation_.size() on, in use
   // While not identity_:
   GrowingArray<size_type> id_at_;  // by index
   GrowingArray<size_type>
@@ -285,6 +279,13 @@ class SlotMap {
   size_type used_up_ = 0;  // the number of worn-out slots
   bool identity_ = true;   // index == id for all, and all slots are in use
 
+  /** Give each slot a generation of its own. */
+  void make_generations() {
+    const std::size_t old = generation_.size();
+    if (old >= slots_) return;
+    generation_.resize(slots_);
+    for (std::size_t id = old; id < slots_; ++id) generation_[id] = common_;
+  }
   void make_indices() {
     if (!identity_) return;
     id_at_.reserve(slots_);
