@@ -28,6 +28,7 @@ struct Watch {
 
   Stage stage;
   double nearest_to_ball = 1, lowest = 0, farthest_corner = 0;
+  double nearest_spring = 1;  // by its middle, to the center of the ball
   /** The two frames before, and the steps between them by their labels. */
   std::vector<Film::Body> before, last;
   double t_last = 0, step = 0;
@@ -55,6 +56,10 @@ struct Watch {
     }
     for (double d : corner) farthest_corner = std::max(farthest_corner, d);
     if (f.frames == 2) find_joints(f);
+    if (now.size() == f.start.size())
+      for (const Joint& j : joints)
+        nearest_spring = std::min(nearest_spring,
+                                  norm((now[j.a].x + now[j.b].x) / 2 - center));
     const double t = time(f);
     if (t > 0.15 && at_150_ms.empty()) at_150_ms = heights(now);
     if (t > 0.22 && at_220_ms.empty()) at_220_ms = heights(now);
@@ -160,7 +165,10 @@ static Watch watch(Main main_of, const Stage& stage) {
     CHECK(w.nearest_to_ball > 0.14, "no node inside the ball, at any time");
     CHECK(w.lowest > -0.77, "no node below the floor at -0.75 m");
   } else {
-    CHECK(w.nearest_to_ball < 0.13,
+    // Where no spring has its own length, the quad apart swings, and its nodes
+    // pass beside the ball in 43 of 100 draws. The middle of a side was 0.118 m
+    // from the ball's center at the most, in 20,000 draws.
+    CHECK((stage.alike ? w.nearest_spring : w.nearest_to_ball) < 0.13,
           "the cloth to fall, and no ball to hold it up");
   }
   return w;
