@@ -1,3 +1,4 @@
+#pragma once
 // An example for `make try`: what a student may write first.
 #include "mass_spring.hpp"
 
