@@ -301,7 +301,7 @@ turns() {
   turn headers   "$limit" env CXX=clang++ tools/check_headers.sh
   turn recipes   "$long"  tools/test_recipes.sh
   turn plain     "$limit" plain
-  turn page      "$limit" page
+  turn page      "$long"  page
   turn single    "$limit" single
   turn advice    "$limit" advice
   turn try       "$long"  env EVERY=5 FIRST=$((turn_of % 5)) \
