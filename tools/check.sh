@@ -304,8 +304,6 @@ turns() {
   turn page      "$long"  page
   turn single    "$limit" single
   turn advice    "$limit" advice
-  turn try       "$long"  env EVERY=5 FIRST=$((turn_of % 5)) \
-    python3 lab/try/test_try.py
   turn arm       "$long"  arm
   turn pages     "$limit" tools/check_pages.sh
   turn window    "$limit" tools/test_window.sh
