@@ -29,6 +29,7 @@ ASKED = ROOT / "course/asked"
 WORD = re.compile(r"[A-Za-z_]\w*")
 SPACE = r"(?:[ \t]|/\*(?:[^*]|\*(?!/)){0,60}+\*/){0,20}+"
 MACRO = re.compile(rf"(?:#|%:|\?\?=){SPACE}define{SPACE}([A-Za-z_]\w*)")
+DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
 
 
@@ -39,7 +40,9 @@ class Unit:
     output: str = ""                 # of the compiler, without its includes
     included: frozenset = frozenset()     # names in the submission's folder
     refused: str = ""                # why it was not even compiled
+    doubtful: str = ""               # what a person should look at
     tests: list = field(default_factory=list)
+    stage: str = ""                  # the only one of main(); "": all
 
 
 @dataclass(frozen=True, order=True)
@@ -60,6 +63,11 @@ def way_of(test, needs):
             + " or ".join(once.FLAGS))
     return Way(needs, kind[0], tuple(
         value for key, value in wishes if key == "Define"))
+
+
+def all_stages(way):
+    """Is main() compiled in all of its stages?"""
+    return {"KIT_STAGES", "KIT_PROGRAM"} <= set(way.defines)
 
 
 @functools.cache
@@ -127,9 +135,15 @@ class Room:
         done = self.run(command)
         paths, text = self.split(done.output)
         outside, inside = self.sort(paths)
+        if denied := DENIED.search(text):
+            outside = denied[1]
         result = Unit(None, self.plain(text), inside, tests=list(tests))
+        result.stage = next((name.partition("=")[2] for name in way.defines
+                             if name.startswith("KIT_STAGE=")), "")
         if outside:
-            result.refused = f"#include of {outside}: it is not yours"
+            result.refused = (f"#include of {self.plain(outside)}: it is not "
+                              "yours")
+            result.doubtful = "includes a file that is not its own"
             result.output = ""
             result.included = frozenset(self.files)     # or any other
         elif done.stopped:
@@ -138,7 +152,7 @@ class Room:
                                   done.stopped, "it takes too much to compile")
         elif done.code == 0 and link:
             if reads_files(assembly):
-                result.refused = "it writes assembler"
+                result.refused = result.doubtful = "it writes assembler"
                 return result
             done = self.run([once.CXX, *once.LINK[way.kind], assembly,
                              *self.kit.linked, "-pthread", "-o", program])

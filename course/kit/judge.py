@@ -12,6 +12,7 @@ which has been graded here before, in processes of its own.
 
 import concurrent.futures
 import dataclasses
+import itertools
 import json
 import os
 import pathlib
@@ -26,12 +27,14 @@ from dataclasses import dataclass, field
 import build
 import diagnosis
 import markers
+import mend
 import names
 import once
 import sandbox
 
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
 SOLUTION = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp")
+LAST_STAGE, *STAGES_BEFORE = names.STAGES
 LIMITS = sandbox.Limits()
 STOPPED = {
     "time": f"it takes more than {LIMITS.cpu} s of processor time, or waits",
@@ -53,7 +56,8 @@ class Result:
     did: str = ""
     name: str = ""         # of the function in the test
     answers: dict = field(default_factory=dict)
-    doubtful: bool = False  # passed, and could not answer
+    doubtful: str = ""      # what a person should look at
+    mended: bool = False    # "not compiled" is a function, not the submission
 
     @property
     def passed(self):
@@ -78,7 +82,8 @@ def result_of(outcome, names, expected):
             return Result(
                 "failed", "", "what the solution computes from numbers drawn "
                 "at random", "something else, after its own tests had passed",
-                doubtful=True)
+                doubtful="passed the tests of {task}, but can't compute what "
+                "they ask for")
         if verdict[2] != "0":
             return Result("passed", answers=outcome.answers)
     return Result("crashed", diagnosis.crash(outcome, names),
@@ -103,6 +108,20 @@ def right(answers, expected):
                 for a, b in zip(given, numbers)):
             return False
     return some_of <= found
+
+
+def refused(unit):
+    """Of what was not even compiled."""
+    return Result("not compiled", unit.refused, doubtful=unit.doubtful)
+
+
+def mended(result):
+    """A crash in a function that does not compile tells the reason."""
+    said = mend.said(result.text) if result.status == "crashed" else None
+    if not said:
+        return result
+    return dataclasses.replace(result, status="not compiled", text=said, did="",
+                               mended=True)
 
 
 class Memory:
@@ -130,7 +149,8 @@ class Judge:
     def __init__(self, kit, folder, files, jobs, memory=None):
         self.kit, self.memory = kit, memory
         self.jobs = threading.Semaphore(jobs)
-        self.files = files
+        self.folder, self.files = folder, files
+        self.numbers = itertools.count(1)
         self.data = folder / "data"
         shutil.copytree(kit.data, self.data)
         self.names = names.defines(files)
@@ -178,8 +198,8 @@ class Judge:
             left = [test for test in tests
                     if test not in results or not results[test].passed]
             if room in self.rooms["program"]:   # what is no program gets none
-                left = [test for test in left
-                        if results[test].status != "not compiled"]
+                left = [test for test in left if results[test].mended
+                        or results[test].status != "not compiled"]
             for test, result in self.judged(room, way, left).items():
                 best = results.setdefault(test, result)
                 # What is said of the kit's graph is no help if the same is
@@ -201,14 +221,22 @@ class Judge:
                     way, defines=own.defines + names.defines(room.files))
 
     def judged(self, room, way, tests):
-        """Stage by stage, if main() compiles in that way."""
+        """All stages of a main() in one unit, or else in one each: a header
+        that may be included once is no part of the others."""
         results = self.remembered(room, way, tests)
         again = [test for test in results
                  if results[test].status == "not compiled"]
-        if "KIT_STAGES" in way.defines and again:
-            results.update(self.remembered(room, dataclasses.replace(
-                way, defines=tuple(name for name in way.defines
-                                   if name != "KIT_STAGES")), again))
+        if build.all_stages(way) and again:
+            others = tuple(name for name in way.defines if name != "KIT_STAGES")
+            for stage in (LAST_STAGE, *STAGES_BEFORE):
+                found = self.remembered(room, dataclasses.replace(
+                    way, defines=(*others, f"KIT_STAGE={stage}")), again)
+                if stage != LAST_STAGE:     # else it is true of all
+                    found = {test: dataclasses.replace(
+                        result, did=result.did or f"built with STAGE={stage}")
+                        for test, result in found.items()}
+                results.update(found)
+                again = [test for test in again if results[test].passed]
         return results
 
     def remembered(self, room, way, tests):
@@ -231,16 +259,15 @@ class Judge:
             return self.explained(room, way, self.run_all(unit, room.names),
                                   read)
         if unit.refused:
-            return {test: Result("not compiled", unit.refused)
-                    for test in tests}
+            return {test: refused(unit) for test in tests}
         errors = diagnosis.compile_errors(unit.output)
         blamed = set().union(*(error.tests for error in errors))
         if not all(error.tests for error in errors):
             bridge = self.compile(room, way, [], read, link=False)
-            if diagnosis.compile_errors(bridge.output) or bridge.refused:
-                text = bridge.refused or diagnosis.compile_message(
-                    bridge.output, room.names)
-                return {test: Result("not compiled", text) for test in tests}
+            if bridge.refused:
+                return {test: refused(bridge) for test in tests}
+            if diagnosis.compile_errors(bridge.output):
+                return self.mended(room, way, tests, bridge, read)
         results, alone = {}, [test for test in tests if test in blamed]
         others = [test for test in tests if test not in blamed]
         if alone and others:
@@ -255,6 +282,29 @@ class Judge:
             results.update(zip(alone, pool.map(
                 lambda test: self.alone(room, way, test, read), alone)))
         return self.explained(room, way, results, read)
+
+    def mended(self, room, way, tests, bridge, read):
+        """The same without the functions that do not compile."""
+        told = Result("not compiled", diagnosis.compile_message(
+            bridge.output, room.names))
+        whole, files = room, room.files
+        # All stages: what is wrong may be that they share a unit.
+        for _ in range(0 if build.all_stages(way) else mend.ROUNDS):
+            files = mend.without_broken(files, [
+                error for error in diagnosis.compile_errors(bridge.output)
+                if error.file in whole.names])
+            if not files:
+                break
+            room = build.Room(
+                self.kit, self.folder / f"mended{next(self.numbers)}", files)
+            room.names = whole.names
+            bridge = self.compile(room, way, [], read, link=False)
+            if bridge.refused:
+                break
+            if not diagnosis.compile_errors(bridge.output):
+                results = self.attempt(room, way, tests, read)
+                return {test: mended(results[test]) for test in tests}
+        return {test: told for test in tests}
 
     def explained(self, room, way, results, read):
         """With the compiler's own words for calls that do not compile, and with
@@ -284,7 +334,9 @@ class Judge:
         unit = self.compile(room, way, [test], read)
         if unit.program:
             return self.run_all(unit, room.names)[test]
-        return Result("not compiled", unit.refused or diagnosis.compile_message(
+        if unit.refused:
+            return refused(unit)
+        return Result("not compiled", diagnosis.compile_message(
             unit.output, room.names, test))
 
     def compile(self, room, way, tests, read, link=True):
@@ -302,7 +354,9 @@ class Judge:
                 "/dev/null", "/dev/zero", "/dev/urandom", unit.program,
                 self.data])]
             expected = self.kit.answers
-            expected = expected if expected is None else expected.get(test, {})
+            if expected is not None:    # what is asked is the last stage's
+                expected = (expected.get(test, {})
+                            if unit.stage in ("", LAST_STAGE) else {})
             crashing, tries = 0, 3
             while True:
                 with self.jobs:

@@ -51,9 +51,9 @@ def combine(course, name, taken, results):
         mine = [results[test] for test in task.tests]
         failed = [result for result in mine if not result.passed]
         graded.append(Graded(task, (failed or mine)[0]))
-        if graded[-1].result.doubtful:
-            flags.append((WHERE[task.needs], 1, f"passed the tests of {task.id}"
-                          ", but can't compute what they ask for"))
+        if doubtful := graded[-1].result.doubtful:
+            flag = (WHERE[task.needs], 1, doubtful.format(task=task.id))
+            flags += [flag] * (flag not in flags)
     return Report(course, name, graded, taken.notes, flags)
 
 

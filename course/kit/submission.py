@@ -30,7 +30,8 @@ NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools"}
 # shown, and never decides: most of it has honest uses.
 SUSPECT = [
     (r"\basm\b|\b__asm", "writes assembler"),
-    (r"\bsyscall\b|\bptrace\b|\bprctl\b|\bseccomp", "makes system calls"),
+    (r"\bsyscall\b|\bptrace\b|\bprctl\b|\bseccomp|\bmprotect\b",
+     "makes system calls"),
     (r"/proc/|/dev/fd|/autograder", "names a file of the system"),
     (r"\b(_exit|_Exit|quick_exit|at_quick_exit|atexit|on_exit|longjmp"
      r"|siglongjmp)\b", "leaves the program"),

@@ -6,9 +6,11 @@ import xml.etree.ElementTree
 
 import diagnosis
 import judge
+import mend
 import names
 import once
 import report
+import submission
 import tasks
 
 
@@ -131,6 +133,69 @@ Graph.hpp:9:1: error: 'z' was not declared
             using Cloth = Graph<A, B>; using GraphType = Cloth;"""}), ())
 
 
+class Mend(unittest.TestCase):
+    SOURCE = """\
+namespace a { struct B : C<int> {  // { not code
+  B(int x) : x_{x} {
+    y_ = "}{";
+  }
+  template <class T> void call(T t) const override { t(); }
+  enum class E { one };
+  int x_ = 0, y_[2] = {1, 2};
+}; }
+extern "C" {
+int f() {
+  auto g = [] { return 1; };
+  return g();
+}
+}
+auto h = [](int x) { return x; };
+"""
+
+    def bodies(self, *lines):
+        """The lines of the source, mended, where it differs."""
+        errors = [diagnosis.Error("a.hpp", line, 'no "x" here', frozenset(), "")
+                  for line in lines]
+        files = {"a.hpp": self.SOURCE.encode(), "b.hpp": b"int f() {}"}
+        mended = mend.without_broken(files, errors)
+        if mended is None:
+            return None
+        self.assertEqual(mended["b.hpp"], files["b.hpp"])
+        old = submission.without_comments(self.SOURCE).split("\n")
+        new = mended["a.hpp"].decode().split("\n")
+        self.assertEqual(len(old), len(new))
+        self.assertIsNone(mend.without_broken(mended, errors))
+        return {number: text for number, (text, before)
+                in enumerate(zip(new, old), 1) if text != before}
+
+    def test_only_functions_with_errors_are_left_out(self):
+        def ends(line):
+            return ('{ ::__assert_fail("this function does not compile: no '
+                    f'\\"x\\" here", "a.hpp", {line}, ""); ')
+        self.assertEqual(self.bodies(3), {
+            2: "  B(int x) : x_{x} " + ends(3), 3: "", 4: "}"})
+        self.assertEqual(self.bodies(11, 5, 12), {
+            5: "  template <class T> void call(T t) const override "
+               + ends(5) + "}",
+            10: "int f() " + ends(11), 11: "", 12: ""})
+        self.assertEqual(self.bodies(15), {
+            15: f"auto h = [](int x) {ends(15)}}};"})
+        for line in (1, 6, 7, 8, 9, 14):
+            self.assertIsNone(self.bodies(line), line)
+
+    def test_a_crash_there_is_told_as_an_error(self):
+        self.assertEqual(mend.said("assertion failed: " + mend.SAYS
+                                   + "no 'x' at all at a.hpp:3"),
+                         "a.hpp:3: no 'x' at all")
+        self.assertIsNone(mend.said("assertion failed: x at a.hpp:3"))
+
+    def test_no_source_takes_long(self):
+        for text in ("class " * 150000 + "(", "struct a{" * 100000,
+                     "void f() {}\n" * 80000, '"{' * 300000,
+                     "f() : a{}" + ", a{}" * 150000):
+            list(mend.functions(text))
+
+
 class Reports(unittest.TestCase):
     def setUp(self):
         course = tasks.load()
@@ -150,6 +215,19 @@ class Reports(unittest.TestCase):
                       f'a < b && "c", got <&>.\n  Try: {self.lost.hint}\n',
                       text)
         self.assertIn("\nLook at this by hand:\n  Graph.hpp:3: writes", text)
+
+    def test_what_is_doubtful_is_flagged_once(self):
+        results = {test: judge.Result("passed") for task
+                   in self.report.course.tasks.values() for test in task.tests}
+        for test in ("5.1.GravityForce", "5.1.DampingForce", "7.1.cost"):
+            results[test] = judge.Result("failed", doubtful="is odd")
+        results["3.1.position"] = judge.Result("failed",
+                                               doubtful="forges {task}")
+        combined = report.combine(self.report.course, "x",
+                                  submission.Submission({}), results)
+        self.assertEqual(combined.flags, [
+            ("Graph.hpp", 1, "forges 3.1.position"),
+            ("mass_spring.hpp", 1, "is odd"), ("Graph.hpp", 1, "is odd")])
 
     def test_json(self):
         data = json.loads(report.as_json(self.report))

@@ -73,6 +73,21 @@ static void compare_damping(const Bodies& b, double number) {
   }
 }
 
+/** Each force keeps its own c, whatever is made after it. */
+template <typename F>
+static void compare_two_dampings(const Bodies& b) {
+  if constexpr (takes_real<F>) {
+    Cloth g;
+    fill(g, b);
+    DID("two forces, DampingForce(0.5) and then DampingForce(0.25), the first "
+        "one on a node of velocity (1, 0, 0)");
+    F first{0.5}, second{0.25};
+    const double force = -force_on(first, g, 0).x;
+    CHECK(near(force, 0.5, 1e-9) || near(force, 2, 1e-9),  // c, or N
+          "a force of 0.5 N");
+  }
+}
+
 /** A force that is made from a graph, too, has its c = 1/N. */
 template <typename F>
 static void compare_damping_of_a_graph(const Bodies& b) {
@@ -94,6 +109,7 @@ TASK("5.1.DampingForce", damping_slows) {
   with<KIT_FORCE(DampingForce)>("DampingForce", [&]<typename F>() {
     check_is_force<F>("DampingForce");
     for (double number : {4., 0.375}) compare_damping<F>(b, number);
+    compare_two_dampings<F>(b);
     compare_damping_of_a_graph<F>(b);
   });
 }

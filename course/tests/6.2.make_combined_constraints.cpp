@@ -85,8 +85,10 @@ static void combine_constraints() {
     compare_combined(all, 2);
   }
   {
-    DID("x -> 2x + t, then x -> 3x - 5t, then x -> 7x + 11t, all temporaries");
+    DID("x -> 2x + t, then x -> 3x - 5t, then x -> 7x + 11t, all temporaries; "
+        "others were combined after them");
     auto all = constraints_of(part<C, 1>(), part<C, 2>(), part<C, 3>());
+    auto others = constraints_of(part<C, 3>(), part<C, 1>());
     compare_combined(all, 3);
   }
 }

@@ -12,12 +12,17 @@
  * A grader may define
  *   KIT_PROGRAM           main() is wanted, too: 7.2.program
  *   KIT_STAGES            main() has the stages of our starter, by STAGE
+ *   KIT_STAGE             the only one of them; else tear
  *   KIT_GRAPH             the type of the cloth; else GraphType
  *   KIT_FORCE_BASE        the base of the forces; else ZeroForce or Force
  *   KIT_CONSTRAINT_BASE   of the constraints; else ZeroConstraint, Constraint
  *   KIT_TEAR              the constraint that removes nodes */
 #ifndef KIT_CLOTH_HPP
 #define KIT_CLOTH_HPP
+
+#ifndef KIT_STAGE
+#define KIT_STAGE tear
+#endif
 
 // The program includes its header itself, which may have no include guard.
 #if __has_include("mass_spring.hpp") && \
@@ -61,7 +66,7 @@ namespace kit_tear {  // in one of its own, too: else a call would find both
 }  // namespace kit_tear
 #define KIT_MAIN ::kit_tear::submitted_main
 #else
-#define STAGE tear
+#define STAGE KIT_STAGE
 #include "mass_spring.cpp"
 #define KIT_MAIN ::submitted_main
 #endif
