@@ -6,9 +6,9 @@
 OPENMP ?= 1
 
 # The programs: NAME is built as $(B)/NAME from the file.
-lab_main   := lab/run/cloth.cpp lab/advice/adviser_suite.cpp \
-              lab/viewer/frame_rate.cpp lab/page/page_positions.cpp \
-              lab/charts/work_precision.cpp lab/charts/stability_map.cpp \
+lab_main   := lab/run/cloth.cpp lab/viewer/frame_rate.cpp \
+              lab/page/page_positions.cpp lab/charts/work_precision.cpp \
+              lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := data/make_grid.cpp $(wildcard docs/examples/*.cpp)
 lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer

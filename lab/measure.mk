@@ -94,16 +94,15 @@ method-costs: bench_methods
 	  cat $(B)/costs && printf '});\n\n}  // namespace lab\n'; } > $(B)/Costs.hpp
 	@clang-format -i $(B)/Costs.hpp && mv $(B)/Costs.hpp $(costs)
 
-# ---- Advice: lab/advice/README.md, on ADVISED random scenes; 1 to 1200 were
-# looked at while it was written.
+# ---- Advice: lab/advice/README.md, on ADVISED random scenes from seed FIRST.
 
-ADVISED ?= 200
-adviser-suite: adviser_suite
-	@mkdir -p lab/advice/results
-	$(B)/adviser_suite --scenes $(ADVISED) --first 1201 --out $(B)/adviser.csv
-	$(B)/adviser_suite --scenes 60 --first 1201 --price --out $(B)/price.csv
-	@sed -i "1i # $(measured_on)" $(B)/adviser.csv $(B)/price.csv
-	@mv $(B)/adviser.csv $(B)/price.csv lab/advice/results
+ADVISED ?= 150
+FIRST   ?= 1
+adviser-suite: $(B)/cloth
+	lab/advice/suite.py --cloth $< --out $(B)/adviser.csv --first $(FIRST) \
+	  --scenes $(ADVISED) $(if $(JOBS),--jobs $(JOBS))
+	@sed -i "1i # $(measured_on)" $(B)/adviser.csv
+	@mv $(B)/adviser.csv lab/advice/results
 	@$(draw) adviser
 
 # ---- Speed: lab/bench/README.md

@@ -13,6 +13,9 @@ import sys
 
 from results import ROOT, Table, by_method, cheapest, ns_a_node, runs
 
+sys.path.append(str(ROOT / "lab/advice"))
+import suite
+
 NUMBER = r"(?<![\d.])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
 tables = {}
 
@@ -140,35 +143,8 @@ def bench(nodes, name, beside):
 
 
 def advice(which):
-    """How many scenes of the suite are so."""
-    rows = table("advice/results/adviser.csv").rows
-    got = [{k: float(v) for k, v in r.items()
-            if k not in ("measure", "method", "kinds", "refusal")}
-           for r in rows if float(r["work"]) > 0]
-    return {"scenes": len(rows),
-            "advised": len(got), "refused": len(rows) - len(got),
-            "met": sum(r["real"] <= r["tolerance"] for r in got),
-            "robust": sum(max(r["real"], r["half step"], r["twice the cells"])
-                          <= r["tolerance"] for r in got),
-            "within": sum(abs(r["real"] - r["predicted"]) <= r["doubt"]
-                          for r in got),
-            "cheap": sum(r["work"] <= 1.5 * r["best work"] for r in got),
-            "worst": max(r["work"] / r["best work"] for r in got),
-            "chaotic": sum("chaotic" in r["refusal"] for r in rows),
-            }[which]
-
-
-def price(which):
-    """Of advice where a run takes more than 2 s, in times of that run."""
-    rows = table("advice/results/price.csv").rows
-    shares = sorted(float(r["advice"]) / float(r["run"]) for r in rows)
-    return {"runs": len(rows), "median": shares[len(shares) // 2],
-            "most": shares[-1]}[which]
-
-
-def share(which):
-    """The same in percent of the scenes that got advice."""
-    return 100 * advice(which) / advice("advised")
+    """A figure of the suite of questions: lab/advice/suite.py."""
+    return suite.rates(table("advice/results/adviser.csv").rows)[which]
 
 
 def solver(K, share, name, tolerance, column="seconds_median"):

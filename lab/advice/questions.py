@@ -1,0 +1,231 @@
+"""Random scenes, each with a question: what suite.py asks --advise.
+
+draw(seed) is the same on every machine. The seeds take the 15 kinds in turn;
+units as in ./cloth --help."""
+import math
+import random
+
+KINDS = ("three-pins", "banner", "late-ball", "strip", "two-materials",
+         "damped", "undamped", "incline", "two-sheets", "thrown", "taut",
+         "tearing", "landing", "L-mesh", "ring-mesh")
+
+
+class Dice(random.Random):
+    """Numbers of two digits, so that a command is short to read."""
+
+    def between(self, low, high):
+        return float(f"{low + (high - low) * self.random():.2g}")
+
+    def log(self, low, high):
+        return float(f"{low * (high / low) ** self.random():.2g}")
+
+    def one(self, *of):
+        return of[int(len(of) * self.random())]
+
+
+class Scene:
+    """A scene; cells: of each sheet along u and v, as the question has them.
+
+    A cloth from files has no sheets, but mesh: (points, quads)."""
+
+    def __init__(self, kind):
+        self.kind = kind
+        self.sheets, self.sides, self.cells = [], [], []
+        self.mesh = None
+        self.args = []
+        self.t_end = 0
+        self.measure = "com"
+        self.share = 0  # tolerance in shares of the answer's scale
+
+    def sheet(self, dice, u, v, at=(0, 0, 0), velocity=None):
+        """Add a sheet of sides u and v; its grid is coarse or fine, and its
+        cells are squares or not."""
+        words = [word for name, value in (
+            ("at", at if any(at) else None), ("u", u), ("v", v),
+            ("velocity", velocity)) if value
+            for word in (name, *(f"{x:g}" for x in value))]
+        sides = math.hypot(*u), math.hypot(*v)
+        along = dice.log(6, 90)
+        stretched = dice.one(1, 1, 1, 2, 0.5, dice.log(0.4, 2.5))
+        size = max(sides) / along
+        self.sheets.append(" ".join(words))
+        self.sides.append(sides)
+        self.cells.append((max(3, round(sides[0] / size)),
+                           max(3, round(sides[1] / size * stretched))))
+
+    def add(self, option, *words):
+        self.args += ["--" + option,
+                      " ".join(w if isinstance(w, str) else f"{w:.4g}"
+                               for w in words)]
+
+    def grid(self, cells=None):
+        """Arguments that name the cloth, on other grids if given."""
+        if self.mesh:
+            return ["mesh.nodes", "mesh.tets"]
+        return [arg for words, (n, m) in zip(self.sheets, cells or self.cells)
+                for arg in ("--sheet", f"{words} nodes {n + 1} {m + 1}")]
+
+    def files(self):
+        """The mesh, as files: name, text."""
+        if not self.mesh:
+            return {}
+        points, quads = self.mesh
+        return {"mesh.nodes": "".join("%.8g %.8g %.8g\n" % p for p in points),
+                "mesh.tets": "".join("%d %d %d %d\n" % q for q in quads)}
+
+
+def l_mesh(n, side):
+    """A square of n by n cells without one quarter, in the plane y = 0."""
+    keep = [(i, j) for i in range(n + 1) for j in range(n + 1)
+            if 2 * i <= n or 2 * j <= n]
+    index = {place: k for k, place in enumerate(keep)}
+    points = [(side * i / n, 0, -side * j / n) for i, j in keep]
+    quads = [tuple(index[p] for p in corners)
+             for i in range(n) for j in range(n)
+             for corners in [((i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1))]
+             if all(p in index for p in corners)]
+    return points, quads
+
+
+def ring_mesh(across, around, inner, outer):
+    """A ring about the origin in z = 0; two of its spokes lie on y = 0."""
+    points, quads = [], []
+    for k in range(around):
+        angle = 2 * math.pi * k / around
+        for j in range(across + 1):
+            r = inner + (outer - inner) * j / across
+            points.append((r * math.cos(angle),
+                           0 if 2 * k % around == 0 else r * math.sin(angle),
+                           0))
+    row = across + 1
+    for k in range(around):
+        a, b = k * row, (k + 1) % around * row
+        quads += [(a + j, b + j, a + j + 1, b + j + 1) for j in range(across)]
+    return points, quads
+
+
+def draw(seed):
+    d = Dice(f"question {seed}")
+    s = Scene(KINDS[seed % len(KINDS)])
+    w, h = d.between(0.5, 1.6), d.between(0.4, 1.4)
+    density, modulus = d.log(0.1, 0.8), d.log(40, 1500)
+    drag = d.one(0, 0, density * d.log(0.3, 8))
+    s.t_end = d.between(0.15, 0.8)
+    flat = ((w, 0, 0), (0, h, 0))
+    hanging = ((w, 0, 0), (0, 0, -h))
+    measures = ["com", "com", "positions", "max-stretch", "drape-height"]
+    lossy = False  # energy is lost or gained without drag, too
+
+    if s.kind == "three-pins":
+        s.sheet(d, *flat)
+        for x, y in ((0, 0), (w, 0), (0, h)):
+            s.add("pin", "x", x, "y", y)
+    elif s.kind == "banner":
+        slope = d.between(0.3, 1.4)
+        # Rounded once, as the sheet has it.
+        v = (0, float(f"{h * math.cos(slope):g}"),
+             float(f"{-h * math.sin(slope):g}"))
+        s.sheet(d, (w, 0, 0), v, velocity=d.one(None, (0, d.between(1, 3), 0)))
+        s.add("pin", *d.one(("x", 0), ("y", 0)))
+    elif s.kind == "late-ball":
+        s.sheet(d, *flat)
+        s.add("pin", "x", 0)
+        s.add("pin", "x", w)
+        radius, speed = d.between(0.1, 0.3), d.between(0.8, 2)
+        gap = speed * s.t_end * d.between(0.5, 0.9)
+        s.add("sphere", "at", w * d.between(0.4, 0.6), h * d.between(0.4, 0.6),
+              -gap - radius - 0.05, "radius", radius, "velocity 0 0", speed)
+        lossy = True
+    elif s.kind == "strip":
+        h = float(f"{w * d.between(0.1, 0.35):.2g}")
+        s.sheet(d, (w, 0, 0), (0, h, 0))
+        s.add("pin", "x", 0)
+        until = s.t_end * d.between(0.3, 0.7)
+        speed = w * d.between(0.05, 0.3) / until
+        s.add("pin", "x", w, "velocity", speed, 0,
+              d.one(0, speed), "until", until)
+        lossy = True
+    elif s.kind == "two-materials":
+        s.sheet(d, *d.one(flat, hanging), velocity=(0, d.between(0, 1), 0.1))
+        s.add("pin", "x", 0)
+        s.add("region", "from -1 -1 -3 to",
+              w * d.one(0.5, 0.25), 3, 3,
+              *d.one(("stiffness-factor", d.log(2, 30)),
+                     ("mass-factor", d.log(2, 6))))
+    elif s.kind == "damped":
+        s.sheet(d, *d.one(flat, hanging))
+        s.add("pin", "x", 0)
+        if d.random() < 0.7:
+            s.add("pin", "x", w)
+        drag = density * d.between(5, 25)
+        modulus = d.log(40, 400)
+        s.t_end = d.between(1, 3)
+    elif s.kind == "undamped":
+        s.sheet(d, *hanging, velocity=(0, d.between(0.3, 3), 0))
+        s.add("pin", "z", 0)
+        drag = 0
+    elif s.kind == "incline":
+        s.sheet(d, *flat)
+        slope = d.between(0.1, 0.6)
+        s.add("plane", "at 0 0", -slope * w - d.between(0.01, 0.1), "normal",
+              -slope, 0, 1, "friction", d.between(0.05, 0.6))
+        lossy = True
+    elif s.kind == "two-sheets":
+        s.sheet(d, *flat)
+        s.sheet(d, (d.between(0.3, 1), 0, 0), (0, d.between(0.3, 1), 0),
+                at=(d.one(0, 0.2), 0.1, d.between(0.2, 0.5)))
+        s.add("pin", "x", 0)
+        s.add("plane", "at 0 0", -d.between(0.1, 0.6))
+        lossy = True
+    elif s.kind == "thrown":
+        s.sheet(d, *d.one(flat, hanging), velocity=(
+            d.between(0.5, 3), d.between(-1, 1), d.between(0, 3)))
+        if d.random() < 0.6:
+            s.add("plane", "at", w + 0.1, "0 0 normal -1 0", d.between(0, 1),
+                  "friction", d.between(0, 0.5))
+            lossy = True
+    elif s.kind == "taut":
+        s.sheet(d, *flat)
+        s.add("pin", "x", 0)
+        until = s.t_end * d.between(0.5, 1)
+        s.add("pin", "x", w, "velocity", w * d.between(0.1, 0.4) / until,
+              "0 0 until", until)
+        lossy = True
+    elif s.kind == "tearing":
+        s.sheet(d, *flat)
+        s.add("pin", "x", 0)
+        if d.random() < 0.5:
+            s.add("pin", "x", w, "velocity", d.between(0.5, 2), 0, 0)
+            s.add("tear-strain", d.between(0.1, 0.5))
+        else:
+            s.add("tear", "at", w / 2, h / 2, -d.between(0.15, 0.4), "radius",
+                  d.between(0.1, 0.2))
+        measures, lossy = ["com", "com", "drape-height"], True
+    elif s.kind == "landing":
+        s.sheet(d, *flat)
+        if d.random() < 0.5:
+            s.add("sphere", "at", w / 2, h / 2, -0.35, "radius", 0.3,
+                  "friction", d.between(0, 0.5))
+        s.add("plane", "at 0 0", -d.between(0.05, 0.5), "friction",
+              d.between(0, 0.5))
+        lossy = True
+    elif s.kind == "L-mesh":
+        s.mesh = l_mesh(2 * round(d.log(5, 25)), w)
+        s.add("pin", "z", 0)
+        s.add("pin", "x", 0, "z", -w)
+    else:
+        inner, outer = d.between(0.15, 0.4), d.between(0.5, 1)
+        across = round(d.log(4, 16))
+        s.mesh = ring_mesh(across, 2 * round(across * d.between(2, 4)), inner,
+                           outer)
+        s.add("pin", "y", 0)
+
+    s.args += ["--density", f"{density:g}", "--modulus", f"{modulus:g}"]
+    if drag:
+        s.args += ["--drag", f"{drag:.3g}"]
+    if drag or lossy:
+        measures.append("energy")
+    s.args += ["--t-end", f"{s.t_end:g}"]
+    s.measure = d.one(*measures)
+    s.share = d.log(0.003, 0.1)
+    return s

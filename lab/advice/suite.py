@@ -1,0 +1,274 @@
+#!/usr/bin/env python3
+"""How often --advise is right: random scenes, each judged by ./cloth alone.
+
+    lab/advice/suite.py --cloth ./cloth --out build/adviser.csv --scenes 75
+
+asks for advice on each scene of questions.py, runs the advised command as
+printed, and compares it with the truth and with the cheapest choice that
+trials.py finds. A scene counts as answered if brute force finds a robust choice
+and knows the truth to a third of the tolerance. A suite that was interrupted
+goes on where it was. Exit status: 0 done; 1 a goal of --goals is missed; 2 bad
+option, or --out is of another ./cloth."""
+import argparse
+import concurrent.futures
+import csv
+import hashlib
+import math
+import os
+import pathlib
+import re
+import shlex
+import statistics
+import sys
+import tempfile
+
+import trials
+from trials import NUMBER, distance, numbers
+
+LONG_RUN = 2e7  # spring evaluations of a run of about 0.2 s
+COLUMNS = ("seed", "kind", "measure", "tolerance", "question", "outcome",
+           "nodes", "method", "predicted", "uncertainty", "real", "half",
+           "next", "twice", "truth_error", "work", "best_work", "best_error",
+           "best", "own_work", "advice_work", "silent", "right", "same")
+# name: goal (at least; at most if negative), in words.
+GOALS = {
+    "advised": (90, "% of the scenes that brute force answers are advised"),
+    "met": (97, "% of these meet the tolerance"),
+    "robust": (95, "% also with half the step and on the next two grids"),
+    "cheap": (80, "% cost at most 1.5 times the cheapest robust choice"),
+    "fair": (95, "% cost at most 3 times that"),
+    "doubt": (-5, "times the real error is the uncertainty, in the median"),
+    "within": (90, "% of the real errors are within the uncertainty"),
+    "contradicted": (-5, "% of the refusals are contradicted by brute force"),
+    "price": (-1, "times the work of a long run is the advice's, median"),
+    "silent": (100, "% of the advised commands run as pasted, silently"),
+    "announced": (100, "% of them give the answer that was announced"),
+    "same": (100, "% of the questions asked twice have the same advice"),
+}
+
+
+# ---- Judging: from numbers alone
+
+def rates(rows):
+    """The figures of the suite from its rows, by name; NaN without a row."""
+    def value(r, name):
+        return float(r[name] or "nan")
+
+    def meets(r, *names):
+        """NaN is a run that failed."""
+        return all(value(r, name) <= value(r, "tolerance") for name in names)
+
+    def share(part):
+        part = list(part)
+        return 100 * sum(part) / len(part) if part else math.nan
+
+    def median(values):
+        return statistics.median(values) if values else math.nan
+
+    known = [r for r in rows if r["best_work"]]
+    advised = [r for r in known if r["outcome"] == "advised"]
+    refused = [r for r in rows if r["outcome"] == "refused"]
+    cost = [value(r, "work") / value(r, "best_work") for r in advised]
+    price = [value(r, "advice_work") / value(r, "own_work") for r in rows
+             if r["advice_work"] and value(r, "own_work") >= LONG_RUN]
+    return {
+        "scenes": len(rows), "known": len(known), "given": len(advised),
+        "refused": len(refused), "long": len(price),
+        "advised": share(r["outcome"] == "advised" for r in known),
+        "met": share(meets(r, "real") for r in advised),
+        "robust": share(
+            meets(r, "real", "half") and (r["kind"].endswith("-mesh") or
+                                          meets(r, "next", "twice"))
+            for r in advised),
+        "cheap": share(c <= 1.5 for c in cost),
+        "fair": share(c <= 3 for c in cost),
+        "cost": median(cost), "dearest": max(cost, default=math.nan),
+        "doubt": median([value(r, "uncertainty") / value(r, "real")
+                         for r in advised if value(r, "real") > 0]),
+        "within": share(abs(value(r, "real") - value(r, "predicted")) <=
+                        value(r, "uncertainty") + value(r, "truth_error")
+                        for r in advised),
+        "contradicted": share(value(r, "best_error") <=
+                              0.6 * value(r, "tolerance") for r in refused),
+        "price": median(price),
+        **{name: share(r[column] == "yes" for r in rows if r[column])
+           for name, column in (("silent", "silent"), ("announced", "right"),
+                                ("same", "same"))}}
+
+
+def missed(figures, goals):
+    """Those of the goals that are not reached; NaN is not judged."""
+    return [name for name, goal in goals.items()
+            if (figures[name] < goal if goal > 0 else figures[name] > -goal)]
+
+
+def report(rows):
+    f = rates(rows)
+    print(f"{f['scenes']} scenes; brute force answers {f['known']}, of which "
+          f"{f['given']} got advice; {f['refused']} refusals; "
+          f"{f['long']} long runs\ncost: {f['cost']:.2g} times the cheapest "
+          f"in the median, {f['dearest']:.2g} at most")
+    for name, (goal, words) in GOALS.items():
+        print(f"{name:12} {f[name]:6.3g} {'>=' if goal > 0 else '<='}"
+              f"{abs(goal):4} {'MISSED' if missed(f, {name: goal}) else '':6} "
+              f"{words}")
+    return f
+
+
+# ---- A scene
+
+def judge(seed, cloth, ask):
+    """The row of a scene; None if its question is none: the scene can't be
+    run, or its answer is that at the start."""
+    with tempfile.TemporaryDirectory() as folder:
+        s = trials.Scene(seed, folder, cloth)
+        steps = s.steps(s.cells, 0.6)
+        own = steps and s.at(s.cells, "verlet", steps)
+        scale = own and distance(own[0], s.start(s.cells)[0], s.points)
+        if not own or scale < 1e-5:
+            return None
+        tolerance = f"{s.share * scale:.2g}"
+        words = [*s.grid(), *s.args, "--measure", s.measure, "--tolerance",
+                 tolerance]
+        row = dict.fromkeys(COLUMNS, "") | {
+            "seed": seed, "kind": s.kind, "measure": s.measure,
+            "tolerance": float(tolerance), "own_work": own[1],
+            "question": "./cloth " + shlex.join(words)}
+        command = advice_of(s, row, ["./cloth", *words, "--advise", *ask])
+        if command:
+            paste(s, row, command)
+        right, row["truth_error"] = s.truth() or ("", "")
+        if right and row["truth_error"] <= float(tolerance) / 3:
+            if command:
+                compare(s, row, shlex.split(command)[1:], right)
+            look_for_best(s, row, right)
+        return {k: f"{v:.6g}" if isinstance(v, float) else v
+                for k, v in row.items()}
+
+
+def advice_of(s, row, ask):
+    """Fill in what is advised; the advised command, '' if none."""
+    status, text, _ = s.child(ask)
+    if row["seed"] % 3 == 0:
+        row["same"] = "yes" if (s.child(ask)[1].partition("\n\n")[0] ==
+                                text.partition("\n\n")[0]) else "no"
+    work = re.search("pilots took .*?" + NUMBER + " spring evaluations", text)
+    row["advice_work"] = float(work[1]) if work else ""
+    first = text.partition("\n")[0]
+    said = re.search(r"(\d+) nodes.* error of \S+ " + NUMBER + r".*?\+- " +
+                     NUMBER, first)
+    command = re.search(r"^ *(\./cloth .*)$", text, re.M)
+    if not said or not command:
+        row["outcome"] = ("refused" if first.startswith("no advice") else
+                          f"failed: {status}")
+        return ""
+    row["outcome"] = "advised"
+    row["nodes"], row["predicted"], row["uncertainty"] = map(float,
+                                                             said.groups())
+    announced = re.search(r"by this run: (.*)$", text, re.M)
+    s.announced = announced and numbers(announced[1])
+    return command[1]
+
+
+def paste(s, row, command):
+    """Is the command silent, does it write nothing, is its answer as said?"""
+    before = set(os.listdir(s.folder))
+    status, output, errors = s.child(command)
+    row["silent"] = "yes" if status == 0 and not errors.strip() and set(
+        os.listdir(s.folder)) == before else "no"
+    answer = re.search(rf"^{s.measure}: (.*?) at t", output, re.M)
+    if s.announced and answer:
+        off = distance(s.announced, numbers(answer[1]), 1)
+        row["right"] = "yes" if off <= 1e-5 * max(
+            map(abs, s.announced)) else "no"
+
+
+def compare(s, row, words, right):
+    """The real errors of the advised run, by half the step, on finer grids."""
+    given = {"--method": "symplectic-euler", "--dt": "0.001"}
+    for name in ("--method", "--dt", "--measure", "--tolerance"):
+        if name in words:
+            at = words.index(name)
+            given[name], words = words[at + 1], words[:at] + words[at + 2:]
+    row["method"] = given["--method"]
+    words = [w for w in words if w != "--headless"]
+
+    def run(factor, share):
+        cells = []
+
+        def refine(found):
+            cells.append(tuple(math.ceil(factor * (int(n) - 1) - 1e-9)
+                               for n in found.groups()))
+            return f"nodes {cells[-1][0] + 1} {cells[-1][1] + 1}"
+        grid = [re.sub(r"nodes (\d+) (\d+)", refine, w) for w in words]
+        trial = s.run(grid, row["method"], repr(float(given["--dt"]) * share),
+                      cells)
+        return s.error(trial, right), trial[1] if trial else math.inf
+    row["real"], row["work"] = run(1, 1)
+    row["half"], _ = run(1, 1 / 2)
+    if not s.mesh:
+        row["next"], _ = run(math.sqrt(2), math.sqrt(1 / 2))
+        row["twice"], _ = run(2, 1 / 2)
+
+
+def look_for_best(s, row, right):
+    """A refusal is contradicted only by a choice that leaves some room."""
+    best = None
+    if row["outcome"] != "advised":
+        best = s.search(right, row["tolerance"], 0.6)
+    best = best or s.search(right, row["tolerance"], 1)
+    if best:
+        row["best_work"], row["best_error"], row["best"] = best
+
+
+def read(path):
+    """The rows of a table, by their seeds."""
+    lines = path.read_text().splitlines()
+    return {int(r["seed"]): r for r in csv.DictReader(
+        x for x in lines if not x.startswith("#"))}
+
+
+def goals_of(text):
+    goals = dict(item.split("=") for item in text.split(","))
+    if not goals.keys() <= GOALS.keys():
+        raise ValueError
+    return {k: math.copysign(float(v), GOALS[k][0]) for k, v in goals.items()}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--cloth", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--scenes", type=int, default=75)
+    parser.add_argument("--first", type=int, default=1, help="its seed")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--ask", type=shlex.split, default=[],
+                        help="further words for --advise")
+    parser.add_argument("--goals", type=goals_of, default={},
+                        help="such as met=97,cheap=80")
+    options = parser.parse_args()
+    if not os.access(options.cloth, os.X_OK):
+        parser.error(f"{options.cloth} can't be run, expected ./cloth")
+    made_by = "# cloth " + hashlib.sha256(
+        options.cloth.read_bytes()).hexdigest()[:12]
+    if not options.out.exists():
+        options.out.write_text(f"{made_by}\n{','.join(COLUMNS)}\n")
+    if made_by not in options.out.read_text().splitlines():
+        parser.error(f"{options.out} is of another ./cloth, expected a new "
+                     "file")
+    seeds = range(options.first, options.first + options.scenes)
+    left = [k for k in seeds if k not in read(options.out)]
+    with open(options.out, "a", newline="") as out, \
+            concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
+        for row in pool.map(
+                lambda k: judge(k, options.cloth, options.ask), left):
+            if row:
+                table.writerow(row)
+                out.flush()
+    f = report([r for k, r in read(options.out).items() if k in seeds])
+    return int(bool(missed(f, options.goals)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,180 @@
+"""Tests of what the suite computes: limits, choices and figures, on made-up
+runs with a known answer: python3 lab/advice/test_suite.py"""
+import itertools
+import math
+import random
+import unittest
+
+import questions
+import suite
+import trials
+
+WIDTHS = [2 ** (k / 4) / 45 for k in range(6, -1, -1)]
+
+
+class Limits(unittest.TestCase):
+    def test_exact_for_each_order(self):
+        for order in (0.5, 1, 2):
+            answers = [[3 + 2 * h ** order, -h ** order] for h in WIDTHS]
+            right, doubt = trials.extrapolate(WIDTHS, answers, 1)
+            self.assertAlmostEqual(right[0], 3)
+            self.assertAlmostEqual(right[1], 0)
+            self.assertLess(doubt, 1e-9)
+
+    def test_scatter_is_in_the_doubt_and_not_much_more(self):
+        """The error is within the doubt in nine of ten, for both orders, and
+        the doubt is at most ten times the error in the median."""
+        dice = random.Random(7)
+        for order in (1, 2):
+            within, ratios = 0, []
+            for _ in range(300):
+                size = 10 ** dice.uniform(-3, 1)
+                answers = [[5 + h ** order + dice.gauss(0, 1e-2 * size * h)]
+                           for h in WIDTHS]
+                right, doubt = trials.extrapolate(WIDTHS, answers, 1)
+                within += abs(right[0] - 5) <= doubt
+                ratios.append(doubt / abs(right[0] - 5))
+            self.assertGreater(within, 270)
+            self.assertLess(sorted(ratios)[150], 10)
+
+    def test_root_mean_square_over_points(self):
+        self.assertAlmostEqual(
+            trials.distance([3, 4, 0, 0, 0, 0], [0] * 6, 2), 5 / math.sqrt(2))
+
+
+def row(**changes):
+    """A scene that is answered as well as can be."""
+    return {k: str(v) for k, v in (dict.fromkeys(suite.COLUMNS, "") | dict(
+        kind="taut", tolerance=1, outcome="advised", predicted=0.5,
+        uncertainty=0.1, real=0.45, half=0.4, next=0.4, twice=0.2,
+        truth_error=0, work=100, best_work=100, best_error=0.9, own_work=1e9,
+        advice_work=5e8, silent="yes", right="yes", same="yes")
+        | changes).items()}
+
+
+def missed(figures):
+    return suite.missed(figures, {k: v[0] for k, v in suite.GOALS.items()})
+
+
+class Figures(unittest.TestCase):
+    def figures(self, *rows):
+        return suite.rates([*rows] + [row()] * (100 - len(rows)))
+
+    def test_all_goals_are_reached(self):
+        self.assertEqual(missed(self.figures()), [])
+
+    def test_each_goal_can_be_missed(self):
+        bad = {
+            "met": row(real=1.01), "robust": row(twice=1.01),
+            "cheap": row(work=151), "fair": row(work=301),
+            "doubt": row(uncertainty=2.5), "within": row(real=0.7),
+            "advised": row(outcome="refused"),
+            "contradicted": row(outcome="refused", best_error=0.5),
+            "price": row(advice_work=1.1e9), "silent": row(silent="no"),
+            "announced": row(right="no"), "same": row(same="no")}
+        self.assertEqual(set(bad), set(suite.GOALS))
+        for goal, one in bad.items():
+            with self.subTest(goal):
+                self.assertIn(goal, missed(self.figures(*[one] * 60)))
+
+    def test_shares_and_medians(self):
+        f = self.figures(*[row(real=2)] * 4, row(work=200), *[row(
+            outcome="refused", work="", real="", best_error=0.7)] * 5)
+        self.assertEqual(f["given"], 95)
+        self.assertEqual(f["refused"], 5)
+        self.assertAlmostEqual(f["met"], 100 * 91 / 95)
+        self.assertAlmostEqual(f["cheap"], 100 * 94 / 95)
+        self.assertEqual(f["contradicted"], 0)  # only within 0.7
+        self.assertEqual(f["dearest"], 2)
+        self.assertAlmostEqual(f["price"], 0.5)
+
+    def test_scenes_without_an_answer_count_only_as_refusals(self):
+        f = self.figures(*[row(outcome="refused", best_work="", best_error="",
+                               real="", work="")] * 50)
+        self.assertEqual((f["known"], f["refused"]), (50, 50))
+        self.assertEqual(f["advised"], 100)
+        self.assertEqual(f["contradicted"], 0)
+
+    def test_a_run_that_fails_is_not_robust(self):
+        f = self.figures(row(half="inf"), row(next=""))
+        self.assertAlmostEqual(f["robust"], 98)
+        f = self.figures(row(kind="L-mesh", next="", twice=""))
+        self.assertAlmostEqual(f["robust"], 100)  # has one grid
+
+
+class Made(trials.Scene):
+    """A scene whose runs are made up: error 1/n + 1/m^2 + (dt/limit)^2/100, and
+    1/100 of the last by pefrl; limit 1/max(n, m)."""
+
+    def __init__(self):
+        super(trials.Scene, self).__init__("taut")
+        self.sides, self.t_end, self.points = [(1, 1)], 8, 1
+
+    def start(self, cells):
+        return [9.], 0, 1 / max(cells[0])
+
+    def at(self, cells, method, steps):
+        (n, m), = cells
+        step = self.t_end / steps / self.start(cells)[2]
+        if step > 1 and method == "verlet":
+            return None
+        error = 1 / n + 1 / m ** 2 + step ** 2 / (
+            10000 if method == "pefrl" else 100)
+        calls = steps * trials.EVALUATIONS.get(method, 99)
+        return [error], 4 * n * m * calls, None
+
+
+class Search(unittest.TestCase):
+    def test_finds_the_cheapest_of_all(self):
+        """Each side has its own grid: 8 by 6 cells in place of 8 by 8."""
+        for tolerance in (0.4, 0.18, 0.1, 0.06, 0.035):
+            s = Made()
+            work, error, _ = s.search([0.], tolerance, 1)
+            self.assertLessEqual(error, tolerance)
+            least = math.inf
+            for n, m in itertools.product(trials.LADDER, repeat=2):
+                for method, share in trials.STEPS[:11]:
+                    choice = ((n, m),), method, math.ceil(
+                        8 * max(n, m) / share - 1e-9)
+                    t = s.at(*choice)
+                    if t and t[0][0] <= tolerance and 1 / 9 < m / n < 9 and (
+                            s.robust(*choice, [0.], tolerance)):
+                        least = min(least, t[1])
+            self.assertEqual(work, least)
+
+    def test_finds_none_where_there_is_none(self):
+        self.assertIsNone(Made().search([0.], 1e-9, 1))
+
+    def test_a_choice_by_accident_is_not_robust(self):
+        """It meets the tolerance; the next grid doesn't."""
+        s = Made()
+        plain = s.at
+        s.at = lambda cells, *rest: (
+            ([0.], 1, None) if cells == ((2, 2),) else plain(cells, *rest))
+        self.assertGreater(s.search([0.], 0.18, 1)[0], 1)
+
+
+class Questions(unittest.TestCase):
+    def test_same_seed_same_scene_and_all_kinds(self):
+        def words(seed):
+            s = questions.draw(seed)
+            return s.kind, s.grid(), s.args, s.measure, s.files()
+        self.assertTrue(all(words(k) == words(k) for k in range(60)))
+        self.assertEqual({words(k)[0] for k in range(15)},
+                         set(questions.KINDS))
+        self.assertNotEqual(words(0)[1:], words(15)[1:])
+
+    def test_meshes(self):
+        points, quads = questions.l_mesh(4, 1)
+        self.assertEqual((len(points), len(quads)), (21, 12))
+        points, quads = questions.ring_mesh(2, 24, 1, 2)
+        self.assertEqual((len(points), len(quads)), (72, 48))
+        self.assertEqual(sum(p[1] == 0 for p in points), 6)  # that are pinned
+        for q in quads:
+            a, b, c, d = (points[k] for k in q)  # sides a-b a-c b-d c-d
+            self.assertLess(math.dist(a, b), math.dist(a, d))
+            self.assertLess(math.dist(c, d), math.dist(b, c))
+
+
+if __name__ == "__main__":
+    unittest.main()

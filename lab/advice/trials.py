@@ -1,0 +1,266 @@
+"""The right answer of a scene, and its cheapest model, by brute force: runs of
+./cloth, of which only what it prints and writes is used.
+
+Cost is counted in spring evaluations: force evaluations and matrix products,
+times springs; a Cholesky factor counts as FACTOR of these for each node along a
+side. No time decides; a run of more than LONGEST seconds counts as failed."""
+import math
+import os
+import pathlib
+import re
+import subprocess
+
+import questions
+
+LONGEST = 300       # limit of a child process [s]
+TRUTH_WORK = 2e8    # spring evaluations of the finest run of the truth
+SEARCH_WORK = 3e7   # and of the longest run of the search
+FACTOR = 10
+LADDER = (2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128)  # cells
+# Steps in units of Verlet's limit. The first two tell whether a grid will do;
+# the implicit ones are tried where Verlet meets the tolerance.
+STEPS = [("verlet", s) for s in (0.95, 0.5, 1.5, 1.2, 0.7, 0.25)] + [
+    ("symplectic-euler", s) for s in (0.95, 0.5, 0.25)] + [
+    ("pefrl", 1.35), ("srkn6b", 2.2)] + [
+    (m, s) for m in ("tr-bdf2", "implicit-midpoint", "implicit-euler")
+    for s in (300, 100, 30)]
+EVALUATIONS = {"verlet": 1, "symplectic-euler": 1, "pefrl": 4, "srkn6b": 6}
+NUMBER = r"(-?\d[\d.]*(?:e[-+]?\d+)?)"
+
+
+def numbers(text):
+    return [float(x) for x in re.findall(NUMBER, text)]
+
+
+def distance(a, b, points):
+    """Root mean square over points of |a - b|; one point for other measures."""
+    return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / points)
+
+
+def line(h, answers, order, points):
+    """The least-squares fit answer = limit + slope h^order: the limit, twice
+    its standard error, and the standard deviation of the answers."""
+    t = [x ** order for x in h]
+    n, mean = len(t), sum(t) / len(t)
+    spread = sum((x - mean) ** 2 for x in t)
+    limit, squares = [], 0.
+    for values in zip(*answers):
+        middle = sum(values) / n
+        slope = sum((x - mean) * (v - middle)
+                    for x, v in zip(t, values)) / spread
+        limit.append(middle - slope * mean)
+        squares += sum((v - limit[-1] - slope * x) ** 2
+                       for x, v in zip(t, values))
+    scatter = math.sqrt(squares / points / (n - 2))
+    return limit, 2 * scatter * math.sqrt(1 / n + mean ** 2 / spread), scatter
+
+
+def extrapolate(h, answers, points):
+    """The limit of answers on four or more grids of widths h, the widest
+    first, and how far it may be off: by its standard error, and by the limits
+    that other orders give which fit nearly as well, of all grids and without
+    the coarsest (the form of Eca and Hoekstra, 2014). Order 1/2, of a cloth
+    held at a point, only if it fits clearly better than 1 and 2."""
+    fits = [(order, *line(h, answers, order, points)) for order in (1, 2)]
+    rough = line(h, answers, 0.5, points)
+    if rough[2] < 0.5 * min(f[3] for f in fits):
+        fits.append((0.5, *rough))
+    _, limit, error, scatter = min(fits, key=lambda f: f[3])
+    others = [other for order, whole, _, s in fits if s <= 2 * scatter
+              for other in (whole, line(h[1:], answers[1:], order, points)[0])]
+    return limit, error + max(distance(limit, o, points) for o in others)
+
+
+def finer(cells, factor):
+    """The grids of all sheets with so many times the cells, rounded up."""
+    return tuple(tuple(math.ceil(factor * n - 1e-9) for n in sheet)
+                 for sheet in cells)
+
+
+def springs(cells):
+    return sum(4 * n * m for n, m in cells)
+
+
+class Scene(questions.Scene):
+    """A scene in a folder of its own, where ./cloth is, and what its runs
+    gave. A trial is (answer, work, Verlet's limit [s]), None if it failed."""
+
+    def __init__(self, seed, folder, cloth):
+        self.__dict__ = questions.draw(seed).__dict__
+        self.folder, self.memo, self.points = pathlib.Path(folder), {}, 1
+        for name, text in self.files().items():
+            (self.folder / name).write_text(text)
+        (self.folder / "cloth").symlink_to(cloth.resolve())
+
+    def child(self, command):
+        """(exit status, output, errors) of words, or of a line for a shell."""
+        env = {k: v for k, v in os.environ.items()
+               if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        try:
+            done = subprocess.run(
+                command, shell=isinstance(command, str), cwd=self.folder,
+                env=env, capture_output=True, text=True, timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            return 124, "", f"more than {LONGEST} s"
+        return done.returncode, done.stdout, done.stderr
+
+    def run(self, words, method, dt, cells):
+        """The trial of a scene on sheets of such cells."""
+        key = tuple(words), method, dt
+        if key not in self.memo:
+            self.memo[key] = self.fresh_run(*key, cells)
+        return self.memo[key]
+
+    def fresh_run(self, words, method, dt, cells):
+        out = ["--out", "end.nodes"] if self.measure == "positions" else []
+        status, text, _ = self.child(
+            ["./cloth", *words, "--measure", self.measure, "--headless",
+             "--threads", "1", "--method", method, "--dt", dt, *out])
+        if status:
+            return None
+        nodes, edges = map(int, re.search(r"^(\d+) nodes, (\d+) edges$", text,
+                                          re.M).groups())
+        work = edges * sum(
+            int(k) * (FACTOR * math.sqrt(nodes) if what == "Cholesky" else 1)
+            for k, what in re.findall(
+                r"(\d+) (force evaluation|matrix product|Cholesky)",
+                re.search("^work: .*", text, re.M)[0]))
+        limit = re.search(NUMBER + " s, verlet|of verlet " + r"\(" + NUMBER,
+                          text)
+        answer = (self.positions(cells) if out else numbers(
+            re.search(rf"^{self.measure}: (.*?) at t", text, re.M)[1]))
+        return answer, work, limit and float(limit[1] or limit[2])
+
+    def positions(self, cells):
+        """Positions of 9 x 9 points on each sheet; of all nodes of a mesh."""
+        lines = (self.folder / "end.nodes").read_text().splitlines()
+        nodes = [tuple(map(float, x.split()[:3])) for x in lines]
+        points, first = [], 0
+        for n, m in cells:
+            def at(i, j):
+                return nodes[first + i * (m + 1) + j]
+            for k in range(81):
+                a, b = k // 9 / 8 * n, k % 9 / 8 * m
+                i, j = min(int(a), n - 1), min(int(b), m - 1)
+                a, b = a - i, b - j
+                points.append([(1 - a) * ((1 - b) * p + b * q)
+                               + a * ((1 - b) * r + b * s)
+                               for p, q, r, s in zip(at(i, j), at(i, j + 1),
+                                                     at(i + 1, j),
+                                                     at(i + 1, j + 1))])
+            first += (n + 1) * (m + 1)
+        points = points or nodes
+        self.points = len(points)
+        return [x for point in points for x in point]
+
+    def at(self, cells, method, steps):
+        """The trial on a grid, in so many equal steps."""
+        return self.run(self.grid(cells) + self.args, method,
+                        repr(self.t_end / steps), cells)
+
+    def start(self, cells):
+        """The trial of no time: its answer at the start, and the limit."""
+        args = list(self.args)
+        args[args.index("--t-end") + 1] = "1e-7"
+        return self.run(self.grid(cells) + args, "verlet", "auto", cells)
+
+    def steps(self, cells, share):
+        """Steps of at most that share of Verlet's limit; None if no scene."""
+        start = self.start(cells)
+        return start and max(1, math.ceil(
+            self.t_end / (share * start[2]) - 1e-9))
+
+    def error(self, trial, right):
+        return distance(trial[0], right, self.points) if trial else math.inf
+
+    def scaled(self, along):
+        """Square cells of all sheets, so many along the longest side."""
+        longest = max(side for sides in self.sides for side in sides)
+        return tuple(tuple(max(2, round(side * along / longest))
+                           for side in sides) for sides in self.sides)
+
+    def truth(self):
+        """(the right answer, how far it may be off), None if unknown: the limit
+        of grids by pefrl at half of Verlet's limit. A mesh has one grid: the
+        limit of its steps."""
+        coarse = () if self.mesh else self.scaled(8)
+        steps = self.steps(coarse, 0.5)
+        if not steps:
+            return None
+        if self.mesh:
+            runs = [((), math.ceil(steps * f)) for f in (0.75, 1, 1.5, 2)]
+            widths = [1 / n for _, n in runs]
+        else:
+            # Work increases with the third power of cells along a side.
+            most = min(128, 8 * (TRUTH_WORK / (4 * steps * springs(coarse)))
+                       ** (1 / 3))
+            grids = list(dict.fromkeys(self.scaled(most / 2 ** (k / 4))
+                                       for k in range(6, -1, -1)))
+            runs = [(g, self.steps(g, 0.5) or 1) for g in grids]
+            widths = [sum(n * m for n, m in g) ** -0.5 for g in grids]
+        trials = [self.at(g, "pefrl", n) for g, n in runs]
+        if None in trials or len(trials) < 4:
+            return None
+        right, doubt = extrapolate(widths, [t[0] for t in trials], self.points)
+        grid, n = runs[-3]
+        again = self.at(grid, "pefrl", 2 * n)
+        return right, doubt + self.error(again, trials[-3][0])
+
+    def robust(self, cells, method, steps, right, tolerance):
+        """Does it hold with half the step, and on the next two grids?"""
+        others = [(cells, 2 * steps)]
+        if cells:
+            others += [(finer(cells, f), math.ceil(f * steps))
+                       for f in (math.sqrt(2), 2)]
+        return all(self.error(self.at(g, method, n), right) <= tolerance
+                   for g, n in others)
+
+    def search(self, right, tolerance, most):
+        """The cheapest of all choices within @a most of the tolerance that is
+        robust: (work, error, words); None if there is none."""
+        work, best = SEARCH_WORK, None
+        for predicted, cells in self.choices():
+            if predicted / 1.5 >= work:
+                break
+            errors, count = [], springs(cells)
+            for method, share in STEPS:
+                steps = self.steps(cells, share)
+                if not steps or (len(errors) == 2
+                                 and min(errors) > 3 * tolerance):
+                    break  # no scene, or too coarse
+                if share > 2.5 and min(errors, default=0) > tolerance:
+                    break
+                # An implicit step takes more than 40 evaluations.
+                if count * steps * EVALUATIONS.get(method, 40) >= work and (
+                        best or share > 2.5):
+                    continue
+                trial = self.at(cells, method, steps)
+                errors.append(self.error(trial, right))
+                if errors[-1] <= most * tolerance and trial[1] < work and (
+                        self.robust(cells, method, steps, right, tolerance)):
+                    work = trial[1]
+                    best = work, errors[-1], f"{method} {share:g} " + " ".join(
+                        f"{n}x{m}" for n, m in cells)
+        return best
+
+    def choices(self):
+        """(predicted work by Verlet, cells), the cheapest first: both sides
+        of a sheet are refined on their own, a second sheet as the first."""
+        if self.mesh:
+            return [(0, ())]
+        (u, v), *_ = self.sides
+        coarse = self.scaled(8)
+        steps = self.steps(coarse, 1)
+        if not steps:
+            return []
+        pace = steps / math.hypot(coarse[0][0] / u, coarse[0][1] / v)
+        found = []
+        for n in LADDER:
+            for m in LADDER:
+                if 1 / 9 < (u / n) / (v / m) < 9:
+                    cells = tuple((max(1, round(n * a / u)),
+                                   max(1, round(m * b / v)))
+                                  for a, b in self.sides)
+                    found.append((springs(cells) * pace *
+                                  math.hypot(n / u, m / v), cells))
+        return sorted(found)
