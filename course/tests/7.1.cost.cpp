@@ -139,6 +139,9 @@ static double cost(G& g, Call call, double limit) {
     } else {
       auto at = a.edge_begin(), end = a.edge_end();
       if (same(at, end)) continue;  // it lost all its edges
+      // In turn the first one and the last, which mostly were added from either
+      // end: some find an edge from one alone, which is of another task, too.
+      for (auto next = at; i % 2 == 1 && !same(++next, end);) at = next;
       auto e = *at;
       if (call == edge_value_is_read) {
         if constexpr (HasValue<decltype(e)>) {
