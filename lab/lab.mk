@@ -12,7 +12,7 @@ lab_main   := lab/run/cloth.cpp lab/viewer/frame_rate.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := data/make_grid.cpp $(wildcard docs/examples/*.cpp)
 lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer
-lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp lab/try/probe.cpp $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
+lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(wildcard lab/try/*.cpp) $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
               $(wildcard lab/*.cpp lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
@@ -108,7 +108,7 @@ compdb: course_draw = $(if $(filter 1,$(VIEWER)),$(call system,$(draw_pkg)))
 compdb:
 	$(file >compile_commands.json,[$(subst } {,}$(comma){,$(strip \
 	  $(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))) \
-	  $(foreach <,$(filter-out lab/page/wasi.cpp lab/try/probe.cpp,$(wildcard CME212/viewer/*.cpp \
+	  $(foreach <,$(filter-out lab/page/wasi.cpp $(wildcard lab/try/*.cpp),$(wildcard CME212/viewer/*.cpp \
 	  lab/*.cpp lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
 	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS)))))])
 	@echo 'compile_commands.json'

@@ -306,6 +306,8 @@ turns() {
   turn advice    "$limit" advice
   turn arm       "$long"  arm
   turn pages     "$limit" tools/check_pages.sh
+  turn try       "$limit" env EVERY=8 FIRST=$((turn_of % 8)) \
+    python3 lab/try/test_try.py build/check/try
   turn window    "$limit" tools/test_window.sh
   turn threads   "$limit" threads
   turn charts    "$limit" in_folder . -s charts QUICK=1

@@ -4,13 +4,16 @@
  */
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "mass_spring.hpp"
 
 namespace probe {
 
+inline std::FILE* out;
 inline bool constrained = true;  // does the step take a constraint?
 using Numbers = std::vector<double>;
 
@@ -67,6 +70,15 @@ inline Numbers positions(World& w) {
     for (unsigned d = 0; d < 3; ++d) x.push_back(w.g.node(i).position()[d]);
   return x;
 }
+/** What no step changes: masses, K and L. */
+inline Numbers data(World& w) {
+  Numbers is;
+  for (Node n : nodes(w.g)) is.push_back(n.value().mass);
+  for (unsigned i = 0; i < w.g.num_nodes(); ++i)
+    for (Edge e : edges(w.g.node(i)))
+      is.insert(is.end(), {e.value().K, e.value().L});
+  return is;
+}
 inline void set_state(World& w, const Numbers& s) {
   for (unsigned i = 0; i < w.g.num_nodes(); ++i) {
     const double* p = &s[6 * i];
@@ -87,6 +99,24 @@ inline double energy(World& w) {
     }
   }
   return sum;
+}
+
+inline void put(const std::string& name, const Numbers& numbers) {
+  std::fprintf(out, "%s", name.c_str());
+  for (double x : numbers) std::fprintf(out, " %.17g", x);
+  std::fputc('\n', out);
+  std::fflush(out);  // what is known before a crash counts
+}
+
+inline void verlet(World& w, double t, double h) {
+  auto kick = [&](double at) {
+    for (Node n : nodes(w.g))
+      n.value().vel += (h / 2 / n.value().mass) * w.force(n, at);
+  };
+  kick(t);
+  for (Node n : nodes(w.g)) n.position() += h * n.value().vel;
+  w.constrain(t + h);
+  kick(t + h);
 }
 
 // ---- Scenes

@@ -79,6 +79,14 @@ def masses(one, two):
                 continue
             kick = (f"the {ordinal(j)} force" if one.stages > 1
                     else "the force")
+            if any(near(x, k) for k in (3, 7)) and any(
+                    near(y, k / 3) for k in (1, 7)):
+                return [(f"{what} gets the force on another node",
+                         "Call force(n, t) with the node that moves.")]
+            if near(y, 2 * x) and near(sum(b1), 1):
+                return [("the force is divided by the mass of another node",
+                         "Divide by the mass of the node that moves: a = "
+                         "force(n, t) / n.value().mass.")]
             if near(y, 2 * x):
                 return [(f"the mass is forgotten: {what} gets {kick} itself, "
                          "in place of force/mass",
@@ -111,6 +119,20 @@ def steps(full, half):
                      "Look at the units: x += dt v, v += dt F/m.")]
         return [(f"{what} is not in proportion to dt",
                  "Look at the units: x += dt v, v += dt F/m.")]
+    return []
+
+
+def own_force(lines):
+    """From the velocities along y and z after a step."""
+    for h, impulse, y, z in (row for what, row in lines if what == "along"):
+        if impulse < 0 and max(abs(y), abs(z)) > 1e-12:
+            return [(f"without any force a step accelerates nodes by "
+                     f"{max(y, z, key=abs) / h:.4g} m/s^2",
+                     "Leave all forces to force(n, t), also gravity.")]
+        if impulse >= 0 and not near(y, z):
+            return [("a force along z does not move a node as one along y "
+                     f"does: after a step the velocities are {z:.4g} and "
+                     f"{y:.4g} m/s", "Use the whole Point: v += dt/m F.")]
     return []
 
 
@@ -204,9 +226,10 @@ def returned(runs):
 
 
 def differences(t, other):
-    """(what differs, ours, the other's): what a reader finds in the code; if
-    none of it differs, what follows from it."""
-    found = []
+    """What differs, as (words, ours, the other's): a list of what a reader
+    finds in the code, and a list of what follows from it."""
+    read, follows = [], []
+    found = read
 
     def compare(words, x, y):
         if not near(x, y):
@@ -221,8 +244,7 @@ def differences(t, other):
             compare(f"share of the {ordinal(j)} force in the velocity at the "
                     f"{ordinal(s)}", t.w[s][j], other.w[s][j])
     compare("drift of the step", t.C, other.C)
-    if found:
-        return found
+    found = follows
     for s in n:
         for j in range(s):
             compare(f"share of the {ordinal(j)} force in the place of the "
@@ -230,29 +252,33 @@ def differences(t, other):
     for j in n:
         compare(f"share of the {ordinal(j)} force in the new position",
                 t.B[j], other.B[j])
-    return found
+    return read, follows
 
 
 def nearest(ours, methods):
-    """(key, name, differences) of the known method that has most in common
-    with one of the tables, the smaller key the more; or None."""
+    """(is a difference large, how many there are, name, those that a reader
+    finds first, forces) of the known method that has most in common with one
+    of the tables; or None."""
     best = None
     for t in ours:
         for name, other in methods.items():
             if other.stages == t.stages > 1:
-                found = differences(t, other)
+                read, follows = differences(t, other)
+                found = read or follows
                 far = max((abs(x - y) for _, x, y in found), default=0)
-                key = far > .02, len(found) / t.stages
-                if best is None or key < best[0]:
-                    best = key, name, found
+                # What follows counts half.
+                key = (far > .02, (len(read) + len(follows) / 2) / t.stages,
+                       name, found, t.stages)
+                if best is None or key[:2] < best[:2]:
+                    best = key
     return best
 
 
 def small(close):
     """A known method, but for a small difference?"""
-    if not close or close[0][0] or not close[2]:
+    if not close or close[0] or not close[3]:
         return []
-    _, name, ((what, own, right), *_) = close
+    _, _, name, ((what, own, right), *_), _ = close
     return [(f"it is {name} with a wrong coefficient: the {what} is "
              f"{own:.8g}, in {name} {right:.8g}",
              f"Copy the coefficients of {name} again, with all digits.")]
@@ -260,12 +286,25 @@ def small(close):
 
 def few(close):
     """A known method, but for few differences?"""
-    if not close or not close[2] or close[0][1] > .75:
+    if not close or not 0 < len(close[3]) <= .75 * close[4]:
         return []
-    _, name, ((what, own, right), *_) = close
+    _, _, name, ((what, own, right), *_), _ = close
     return [(f"it is close to {name}, but the {what} is {digits(own)}, in "
              f"{name} {digits(right)}",
              f"Compare your step with {name}, stage by stage.")]
+
+
+def velocities(t, methods):
+    """Do the positions move as in a known method, and the velocities not?"""
+    for name, other in methods.items():
+        if other.stages == t.stages > 1 and all(map(near, [
+                *t.c, *sum(t.a, []), *t.B, t.C], [
+                *other.c, *sum(other.a, []), *other.B, other.C])):
+            own, right = (" and ".join(map(digits, x)) for x in (t.b, other.b))
+            return [(f"the positions move as in {name}, but the weights of "
+                     f"the forces in the velocity are {own}, in {name} "
+                     f"{right}", "Use the same weights as there.")]
+    return []
 
 
 def sums(t):
@@ -311,8 +350,8 @@ def at_start(t):
 def coefficients(raw, t, methods):
     """What is wrong with the coefficients of a step that no one has."""
     close = nearest((raw, t), methods)
-    return (at_start(t) or small(close) or sums(t) or few(close)
-            or position(t))
+    return (at_start(t) or small(close) or sums(t)
+            or velocities(t, methods) or few(close) or position(t))
 
 
 def second_order(t):

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+import struct
 from dataclasses import dataclass, field
 
 import faults
@@ -124,7 +125,7 @@ def trace(verdict, where, lines, constrained):
         half = tables.read(runs, faults.HALF, 0)
     usable = one and two and half and one.stages == half.stages
     if usable and not loop:
-        found += faults.own_drag(one)
+        found += faults.own_force(lines) or faults.own_drag(one)
         found += faults.masses(one, two)
         if not found:
             found += faults.steps(one, half)
@@ -149,8 +150,30 @@ def keeps_state(where, same):
                        "elsewhere after another one")
 
 
+def single_precision(numbers):
+    return all(struct.unpack("f", struct.pack("f", x))[0] == x
+               for x in numbers)
+
+
+def unchanged(verdict, same):
+    """What a step has to leave as it is."""
+    before, *after = same["data"]
+    if any(data != before for data in after):
+        verdict.faults.append((
+            "it changes the masses, or K or L of the springs",
+            "A step moves nodes and changes velocities, nothing else."))
+    x = same["tangle.end"][0]
+    for what, first in (("positions", 0), ("velocities", 3)):
+        if single_precision(x[k] for k in range(len(x))
+                            if first <= k % 6 < first + 3):
+            verdict.faults.append((
+                f"it keeps {what} in single precision: errors below about "
+                "1e-7 of their size are lost", "Use double, not float."))
+
+
 def identify(verdict, same):
     """Compare with the known methods, by table and by a run."""
+    unchanged(verdict, same)
     t = verdict.table
     explicit = t and distance(same["tangle.end"][0], simulate(
         verdict.data["raw"], same["tangle.begin"][0])) < 1e-9
@@ -427,11 +450,13 @@ def contact(verdict, numbers):
 
 # ---- Among the laboratory's methods
 
+CHARTED = {"chain": orders.chart_chain(), "curtain": orders.chart_curtain()}
+
+
 def chart(verdict, numbers):
     # A force that is kept from step to step is computed once at the start.
     first = bool(verdict.table and verdict.table.reuses())
-    for scene, solution in (("chain", orders.chart_chain()),
-                            ("curtain", orders.chart_curtain())):
+    for scene, solution in CHARTED.items():
         verdict.data[f"chart.{scene}"] = [
             (steps, steps * verdict.evaluations + first,
              orders.rms(x, solution))

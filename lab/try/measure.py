@@ -3,6 +3,7 @@
 import concurrent.futures
 
 import judge
+import orders
 import teacher
 from workshop import PARTS, SECONDS, BadInput, Workshop, choose
 
@@ -55,6 +56,25 @@ def verdict_of(shop, found):
     verdict.faults += verdict.later
     teacher.conclude(verdict)
     return verdict
+
+
+def dots(path, step, counts):
+    """{number of steps: {scene: the error [m]}} of a step in the charts."""
+    shop = Workshop(path, *choose(path, step))
+    try:
+        shop.compile()
+        found = {}
+        for steps in counts:
+            lines, outcome = shop.run("chart", "fast", steps)
+            if not any(name == "done" for name, _ in lines):
+                raise BadInput(shop.why("chart", outcome))
+            numbers = judge.by_name(lines)
+            found[steps] = {
+                scene: orders.rms(numbers[f"chart.{scene}"][0][2:], solution)
+                for scene, solution in judge.CHARTED.items()}
+        return found
+    finally:
+        shop.close()
 
 
 def measure(path, wanted="", parts=PARTS, say=silent):

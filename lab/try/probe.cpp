@@ -3,7 +3,8 @@
  * they mean. try.py compiles it, against the course's classes alone, with
  *   -DTRY_FILE='"mine.hpp"' -DTRY_STEP=my_step -DTRY_ARGUMENTS=5
  * (4: the step takes no constraint).
- *   probe PART DESCRIPTOR    PART: one of those in main()
+ *   probe PART DESCRIPTOR [STEPS]    PART: one of those in main(); STEPS of
+ *                                    the only run of each problem of chart
  * A line is a name and numbers. */
 #include <unistd.h>
 
@@ -22,14 +23,7 @@
 
 namespace probe {
 
-std::FILE* out;
-
-void put(const std::string& name, const Numbers& numbers) {
-  std::fprintf(out, "%s", name.c_str());
-  for (double x : numbers) std::fprintf(out, " %.17g", x);
-  std::fputc('\n', out);
-  std::fflush(out);  // what is known before a crash counts
-}
+long long asked = 0;  // steps; 0: several
 
 // ---- Steps
 
@@ -67,17 +61,6 @@ void run(World& w, double t, double h, long long steps) {
   for (long long k = 0; k < steps; ++k) advance(w, t + double(k) * h, h);
 }
 
-void verlet(World& w, double t, double h) {
-  auto kick = [&](double at) {
-    for (Node n : nodes(w.g))
-      n.value().vel += (h / 2 / n.value().mass) * w.force(n, at);
-  };
-  kick(t);
-  for (Node n : nodes(w.g)) n.position() += h * n.value().vel;
-  w.constrain(t + h);
-  kick(t + h);
-}
-
 /** Runs of n, 2n, 4n, ... steps: "NAME steps calls positions...". */
 void refine(const std::string& name, double t0, double t1, long long first,
             long long last, World (*make)()) {
@@ -93,15 +76,16 @@ void refine(const std::string& name, double t0, double t1, long long first,
 
 // ---- trace: who asks for which force when, and what comes of it
 
-/** Three free masses. The force on all is 0; or, in turn, 1 along y at one of
- * the calls for each node: the step as a table of coefficients. */
+/** Three free masses of 1/2, 1 and 2 kg. The force on all is 0; or, in turn,
+ * 1, 3 and 7 N along y and z at one of the calls for each node: the step as a
+ * table of coefficients. */
 void trace() {
   unsigned calls = 0;  // for a node
   for (const double h : {.125, .25})
     for (int impulse = -1; impulse < int(std::min(calls, 48u)); ++impulse) {
       World w;
       for (unsigned i = 0; i < 3; ++i)
-        w.add(Point(2 + i, 0, 0), Point(1, 0, 0), 1 << i);
+        w.add(Point(2 + i, 0, 0), Point(1, 0, 0), .5 * (1 << i));
       int rows = 0;
       auto row = [&](const char* what, double n, double t) {
         if (++rows > 20000) return;  // it loops for ever
@@ -115,9 +99,10 @@ void trace() {
       };
       std::vector<unsigned> called(3);
       w.extra = [&](Node n, double t) {
-        const auto i = unsigned(std::log2(n.value().mass));
+        const auto i = unsigned(std::log2(2 * n.value().mass));
         row("call", i, t);
-        return Point(0, int(called[i]++) == impulse, 0);
+        const double f = int(called[i]++) == impulse ? 2 * (1 << i) - 1 : 0;
+        return Point(0, f, f);
       };
       w.hold = [&](GraphType&, double t) { row("hold", -1, t); };
       row("begin", -1, 3);
@@ -129,6 +114,8 @@ void trace() {
 #endif
       put("nodes", {double(w.g.num_nodes())});
       row("end", -1, end);
+      const Numbers all = state(w);  // the first node's v along y and z
+      put("along", {h, double(impulse), all[4], all[5]});
       calls = *std::max_element(called.begin(), called.end());
     }
 }
@@ -145,6 +132,7 @@ void same() {
   };
   World start = forced();
   put("tangle.begin", state(start));
+  put("data", data(start));
   for (int time = 0; time < 3; ++time) {
     World w = forced(), other = oscillator(.5, 2, .5, 1);
     for (int k = 0; k < 3; ++k) {
@@ -152,6 +140,7 @@ void same() {
       if (time == 2) advance(other, 7, .125);  // a step that keeps something
     }
     put("tangle.end", state(w));
+    put("data", data(w));
     run(other, 7, .125, time + 1);
   }
 }
@@ -364,7 +353,8 @@ void contact() {
 // ---- chart: Chain and Curtain of lab/charts/Problems.cpp; and seconds
 
 void chart() {
-  refine("chart.chain", 0, .8, 9, 9 << 13, [] {
+  const long long n = asked ? asked : 9, last = asked ? asked : 9 << 13;
+  refine("chart.chain", 0, .8, n, last, [] {
     constexpr unsigned n = 20;
     World w;
     for (unsigned j = 0; j < n + 2; ++j) {
@@ -377,7 +367,8 @@ void chart() {
     }
     return pin(w, {0, n + 1}, false);
   });
-  refine("chart.curtain", 0, 1, 40, 40 << 7, [] {
+  const long long m = asked ? asked : 40, end = asked ? asked : 40 << 7;
+  refine("chart.curtain", 0, 1, m, end, [] {
     World w = cloth(16, true, false);
     std::vector<unsigned> top;
     for (unsigned i = 0; i < 16; ++i) top.push_back(16 * i);
@@ -404,8 +395,9 @@ int main(int count, char** words) {
       {"order", probe::order},   {"physics", probe::physics},
       {"limits", probe::limits}, {"contact", probe::contact},
       {"chart", probe::chart}};
-  const auto part = parts.find(count == 3 ? words[1] : "");
+  const auto part = parts.find(count > 2 ? words[1] : "");
   if (part == parts.end()) return 2;
+  if (count > 3) probe::asked = std::atoll(words[3]);
   probe::constrained = TRY_ARGUMENTS == 5;
   probe::out = fdopen(std::atoi(words[2]), "w");
   probe::put("begun", {});

@@ -274,7 +274,7 @@ def coefficients(t):
 
 
 CHARTS = ((among_methods, "chart.chain", "Among the laboratory's methods"),
-          (convergence, "", "Order"), (region, "map", "Where it fails"),
+          (convergence, "raw", "Order"), (region, "map", "Where it fails"),
           (failure, "grid1", "On the assignment's cloth"),
           (long_run, "energy", "Energy"))
 
@@ -292,7 +292,7 @@ def write(verdict, folder, source):
     body += [f"<p>Note: {said(note)}.</p>" for note in verdict.notes]
     with tempfile.TemporaryDirectory() as drawn:
         for number, (draw, needs, title) in enumerate(CHARTS):
-            if needs and needs not in verdict.data:
+            if needs not in verdict.data:
                 continue
             out = pathlib.Path(drawn) / f"{number}.svg"
             draw(verdict, out)

@@ -1,8 +1,8 @@
 """A step as a table of coefficients, read from what it does with known forces.
 
-Three free masses with velocity 1 along x; the force is 0, or 1 along y at one
-of the calls. So an explicit step shows where it asks for each force j and what
-it makes of it:
+Three free masses with velocity 1 along x; the force is 0, or FORCES along y
+and z at one of the calls. So an explicit step shows where it asks for each
+force j and what it makes of it:
     X_s = x + c_s h v + h^2 sum a_sj f_j/m      V_s = v + h sum w_sj f_j/m
     x_1 = x + C h v + h^2 sum B_j f_j/m         v_1 = V v + h sum b_j f_j/m
 and tau_s, the time of call s, in steps.
@@ -11,6 +11,7 @@ and tau_s, the time of call s, in steps.
 from dataclasses import dataclass, field
 
 EXACT = 1e-11       # round-off of a coefficient
+FORCES = (1, 3, 7)  # on the three masses [N]
 
 
 @dataclass
@@ -222,7 +223,7 @@ def events(trace):
 
 def read(runs, h, node):
     """The table of one of the masses, at a step h."""
-    mass = 2.0 ** node
+    mass = 2.0 ** (node - 1) / FORCES[node]
     base = runs[h, -1]
     calls = [e for e in base if e.what == "call" and e.node == node]
     n = len(calls)

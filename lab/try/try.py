@@ -1,23 +1,37 @@
-"""Measure a step that you have written:
+"""Measure a step, a force or a constraint that you have written:
 
     make try FILE=mine.hpp [STEP=my_step]      lab/try/README.md
 
 Writes try/report.html and says the same here. Exit status: 0 there is a report
-(whatever it says of the step); 2 the file has no step that can be measured."""
+(whatever it says); 2 the file has nothing that can be measured."""
 import os
 import pathlib
 import sys
 import time
 
+import functor
 import measure
 import report
 import teacher
-from workshop import BadInput
+from workshop import BadInput, steps_in
 
 
 def progress(text):
     if sys.stderr.isatty():
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+
+
+def measured(path, wanted):
+    """The Verdict on the step in a file or, if that is none, on the force or
+    constraint."""
+    try:
+        steps = steps_in(path.read_text(encoding="utf-8", errors="replace"))
+        if wanted not in steps if wanted else not steps:
+            if chosen := functor.choose(path, wanted):
+                return functor.measure(path, *chosen)
+    except OSError:
+        pass        # measure() says why
+    return measure.measure(path, wanted, say=progress)
 
 
 def main():
@@ -26,7 +40,7 @@ def main():
         raise BadInput("make try: no file, expected FILE=mine.hpp")
     started = time.monotonic()
     try:
-        verdict = measure.measure(pathlib.Path(path), wanted, say=progress)
+        verdict = measured(pathlib.Path(path), wanted)
         progress("drawing ...")
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)

@@ -105,11 +105,16 @@ def choose(path, wanted):
 # ---- Building and running
 
 class Workshop:
-    """A folder in which the probe of one step is built."""
+    """A folder in which the probe of one step is built, or another `source`
+    with its own `defines`."""
 
-    def __init__(self, path, step, arguments_):
+    def __init__(self, path, step, arguments_, source="probe.cpp",
+                 defines=None):
         self.path, self.step = path.resolve(), step
         self.arguments = arguments_
+        self.source = ROOT / "lab/try" / source
+        self.defines = defines or [f"-DTRY_STEP={step}",
+                                   f"-DTRY_ARGUMENTS={arguments_}"]
         BUILT.mkdir(parents=True, exist_ok=True)
         once.BUILT.mkdir(parents=True, exist_ok=True)
         try:
@@ -155,9 +160,8 @@ class Workshop:
                    "-iquote", self.path.parent,
                    *(["-include", self.prelude / f"{kind}.hpp"]
                      if self.of_the_course() else []),
-                   f'-DTRY_FILE="{self.path}"', f"-DTRY_STEP={self.step}",
-                   f"-DTRY_ARGUMENTS={self.arguments}",
-                   ROOT / "lab/try/probe.cpp", "-o", program]
+                   f'-DTRY_FILE="{self.path}"', *self.defines, self.source,
+                   "-o", program]
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
                 "/etc/ld.so.cache", "/proc/self", ROOT / "CME212",
                 ROOT / "lab/try", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
@@ -188,7 +192,7 @@ class Workshop:
         return (f"{self.path}:{place[1] if place else 1}: "
                 + diagnosis.short(text))
 
-    def run(self, part, kind="fast"):
+    def run(self, part, kind="fast", *more):
         """(its lines, name and numbers; outcome) of a part of the probe."""
         program = self.programs[kind]
         seconds = SECONDS.get(part, 8) * (1 if kind == "fast" else 8)
@@ -201,7 +205,8 @@ class Workshop:
                      "/etc/ld.so.cache", "/proc/self"):
             command += ["--read", str(name)]
         process = subprocess.Popen(
-            [*command, "--", str(program), part, str(from_write)], cwd="/",
+            [*command, "--", str(program), part, str(from_write),
+             *map(str, more)], cwd="/",
             env=sandbox.clean_environment("/nowhere"), pass_fds=[from_write],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, start_new_session=True)
