@@ -142,7 +142,7 @@ TEST_F(AdviceOfKind, TearingBall) {
 }
 
 TEST_F(AdviceOfKind, TearingByItsWeight) {
-  Model m = upright(0.25, 0.02);
+  Model m = upright(0.25, 0.03);
   m.tear_strain = 0.03;
   EXPECT_TRUE(holds(m).model.tear_strain);
 }

@@ -2,6 +2,7 @@
 // is asked of it, and advice.
 #include <gtest/gtest.h>
 
+#include "lab/advice/Advice.hpp"
 #include "tests/ClothProgram.hpp"
 
 namespace {
@@ -196,12 +197,12 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.out.find("advice: "), 0u);  // the answer first
   EXPECT_NE(r.out.find(" dropped\n"), std::string::npos);
-  // Its command runs as it stands.
+  // Its command runs as it stands: without a warning, a window or a film.
   const auto line = r.out.find("./cloth ") + 8;
-  EXPECT_EQ(
-      run(r.out.substr(line, r.out.find('\n', line) - line) + " --headless")
-          .status,
-      0);
+  const Result pasted = run(r.out.substr(line, r.out.find('\n', line) - line));
+  EXPECT_EQ(pasted.status, 0);
+  EXPECT_EQ(pasted.err, "");
+  EXPECT_EQ(pasted.out.find("no display"), std::string::npos) << pasted.out;
   const std::string advised = contents(dir / "a.toml");
   EXPECT_NE(advised.find("pin = [\"z 0\"]"), std::string::npos);
   EXPECT_EQ(advised.find("plane = "), std::string::npos);
@@ -214,13 +215,74 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
   EXPECT_EQ(r.out.find("no advice: "), 0u);
   EXPECT_EQ(run(grid0 + "--advise --quiet").err.find("cloth: no advice: "), 0u);
   EXPECT_EQ(run(scene + "--advise --advise-budget -1").status, 2);
+  EXPECT_EQ(run(scene + "--advise --advise-work -1").status, 2);
+  EXPECT_EQ(run(scene + "--advise --advise-work 1e6 --advise-budget 1").status,
+            2);
   // A budget that allows nothing: said at once.
   r = run(scene + "--advise --advise-budget 1e-9");
   EXPECT_EQ(r.out.find("no advice: the budget ended before the first grid"), 0u)
       << r.out;
+  r = run(scene + "--advise --advise-work 300");
+  EXPECT_NE(r.out.find("of a budget of 3e+02"), std::string::npos) << r.out;
   r = run(scene + "--tear-strain 1 --measure positions --advise");
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("--measure is positions"), std::string::npos);
+}
+
+TEST_F(ClothProgram, AdviceKeepsTheMethodAndStepOfTheCommand) {
+  const std::string scene =
+      "--sheet 'u 1 0 0 v 0 0 -1' --pin 'z 0' --t-end 0.1 --tolerance 0.01 "
+      "--advise ";
+  Result r = run(scene + "--method pefrl");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find(" --method pefrl "), std::string::npos) << r.out;
+  r = run(scene + "--dt 0.002");
+  EXPECT_NE(r.out.find(" --dt 0.002 "), std::string::npos) << r.out;
+  r = run(scene + "--method symplectic-euler --dt 0.002");
+  EXPECT_NE(r.out.find("nodes, symplectic-euler, dt 0.002 s"),
+            std::string::npos)
+      << r.out;
+}
+
+// A default written in words: nobody would type ''.
+TEST_F(ClothProgram, AdvisedCommandNamesItsSheet) {
+  lab::Model m;
+  m.sheets.resize(1), m.planes.resize(1), m.spheres.resize(1);
+  const std::string options = lab::as_options(m);
+  EXPECT_EQ(options.find("''"), std::string::npos) << options;
+  EXPECT_NE(options.find("--sheet 'nodes 20 20'"), std::string::npos);
+}
+
+TEST_F(ClothProgram, WriteConfigAloneAsksNothing) {
+  const std::string scene = "--sheet 'nodes 4 4' --pin 'x 0' --t-end 0.1 ";
+  const Result r = run(scene + "--write-config " + path("a.toml"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.out + r.err, "");
+  EXPECT_EQ(contents(dir / "a.toml"), run(scene + "--dump-config").out);
+}
+
+TEST_F(ClothProgram, AdviceSaysWhatIsTrivial) {
+  const std::string swing =
+      "--sheet 'u 1 0 0 v 0 0 -1 nodes 9 9' --pin 'z 0' --t-end 0.1 --advise ";
+  const auto trivial = [&](const std::string& question) {
+    return run(swing + question).out.find("  trivial: ") != std::string::npos;
+  };
+  EXPECT_TRUE(trivial("--measure energy --tolerance 0.001"));
+  EXPECT_FALSE(
+      trivial("--measure energy --density 1 --drag 1 "
+              "--tolerance 0.001"));
+  EXPECT_TRUE(trivial("--tolerance 0.5"));  // it falls by millimeters
+  EXPECT_FALSE(trivial("--tolerance 0.001"));
+}
+
+// A body in flight is almost at rest at its apex, where a perturbation of the
+// start was once taken for divergence.
+TEST_F(ClothProgram, AdvisesARigidFlight) {
+  const Result r =
+      run("--sheet 'u 0.6 0 0 v 0 0.6 0 velocity 1 0 2 nodes 25 25' --density "
+          "0.29 --modulus 1400 --t-end 0.3 --measure com --tolerance 0.001 "
+          "--advise");
+  EXPECT_EQ(r.out.find("advice: 9 nodes"), 0u) << r.out;
 }
 
 }  // namespace

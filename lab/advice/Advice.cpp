@@ -92,36 +92,55 @@ std::string by_default(const Model& m) {
   return all;
 }
 
+/** The numbers of @a answer, or nothing if they are many. */
+std::string numbers(const Answer& answer, Measure measure) {
+  std::string text;
+  if (answer.size() <= 3)
+    for (double x : answer) text += ' ' + CME212::short_text(x);
+  const std::string unit = unit_of(measure);
+  return text.empty() || unit.empty() ? text : text + ' ' + unit;
+}
+
+/** The limit of the grids, which is an answer itself. */
+std::string extrapolated(const Advice& a) {
+  if (a.grids.size() < 4) return "";
+  const std::string name = name_of(a.measure);
+  return "  " + name +
+         " on ever finer grids:" + numbers(a.grids.limit(), a.measure) +
+         " +- " + with_unit(a.grids.uncertainty(), a.measure) + " (95 %), " +
+         (a.grids.asymptotic()
+              ? "observed order " + CME212::two_digits(a.grids.order()) +
+                    ": the grids are in the asymptotic range"
+              : "no order observed: the grids are not in the asymptotic "
+                "range") +
+         '\n';
+}
+
 /** The advised scene, its command and its error. */
 std::string recommendation(const Advice& a) {
   using CME212::short_text;
   std::string removed;
   for (const PartReport& p : a.parts)
     if (!p.needed) removed += (removed.empty() ? "" : "; ") + p.part;
-  const std::size_t nodes = mesh_of(a.model).points.size();
-  std::string text = "advice: " + std::to_string(nodes) + " nodes, " +
-                     a.model.method->info.name + ", dt " +
-                     short_text(a.model.step.dt) + " s: error of " +
-                     name_of(a.measure) + ' ' + with_unit(a.error, a.measure) +
-                     " +- " + with_unit(a.uncertainty, a.measure) +
-                     " (asked: " + with_unit(a.tolerance, a.measure) + ")\n";
-  text += "  ./cloth " + as_options(a.model) + '\n';
-  if (!a.answer.empty() && a.answer.size() <= 3) {
-    text += "  " + std::string(name_of(a.measure)) + " by this run:";
-    for (double x : a.answer) text += ' ' + short_text(x);
-    text += *unit_of(a.measure) ? std::string(" ") + unit_of(a.measure) : "";
-    text += '\n';
-  }
+  std::string text =
+      "advice: " + std::to_string(mesh_of(a.model).points.size()) + " nodes, " +
+      a.model.method->info.name + ", dt " + short_text(a.model.step.dt) +
+      " s: error of " + name_of(a.measure) + ' ' +
+      with_unit(a.error, a.measure) + " +- " +
+      with_unit(a.uncertainty, a.measure) +
+      " (asked: " + with_unit(a.tolerance, a.measure) +
+      (a.error + a.uncertainty > a.tolerance ? "; it may be more" : "") + ")\n";
+  text += "  ./cloth " + as_options(a.model) + " --headless\n";
+  if (!a.answer.empty() && a.answer.size() <= 3)
+    text += "  " + std::string(name_of(a.measure)) +
+            " by this run:" + numbers(a.answer, a.measure) + '\n';
+  text += extrapolated(a);
   if (!removed.empty()) text += "  not needed for that: " + removed + '\n';
   if (a.model.t_end < a.t_end)
     text += "  it ends at " + number(a.model.t_end) + " s instead of " +
             number(a.t_end) + " s: after that " + name_of(a.measure) +
             " changes by less than " + with_unit(a.tolerance / 10, a.measure) +
             '\n';
-  const std::size_t from = a.grids.empty() ? 0 : a.grids[0].nodes;
-  if (!a.checked)
-    text += "  not run: predicted from coarser grids of " +
-            std::to_string(from) + " nodes and more\n";
   auto finer = [&](const std::optional<double>& error, const char* what) {
     return (error ? with_unit(*error, a.measure) : std::string("not run")) +
            what;
@@ -134,17 +153,21 @@ std::string recommendation(const Advice& a) {
                  : ", " + finer(a.robustness.finer_grid,
                                 " on twice the cells along each side")) +
             '\n';
+  else
+    text += "  not run: predicted from " + std::to_string(a.grids.size()) +
+            " coarser grids\n";
   if (a.of_stable > 0)
     text += "  dt is " + CME212::two_digits(a.of_stable) +
             " of the largest stable step\n";
-  const auto misses = [&](const std::optional<double>& error) {
-    return error && !(*error <= a.tolerance);
-  };
-  if (misses(a.robustness.half_step) || misses(a.robustness.finer_grid))
-    text +=
-        " right by accident: its errors cancel, and a finer run is worse; no "
-        "run was found that stays within the tolerance when it is refined\n";
   return text;
+}
+
+/** Words of a part that is all default, as nobody would type ''. */
+std::string named_default(const std::string& key) {
+  return key == "sheet"                     ? "'nodes 20 20'"
+         : key == "plane"                   ? "'at 0 0 -0.75'"
+         : key == "tear" || key == "sphere" ? "'radius 0.15'"
+                                            : "''";
 }
 
 }  // namespace
@@ -156,10 +179,13 @@ std::string as_options(const Model& m) {
   for (const std::string& line : settings(m)) {
     const auto equals = line.find(" = ");
     const std::string key = line.substr(0, equals);
-    if (left_out.contains(line) && key != "edges") continue;
+    // A run by the advised method has no use for the tolerance.
+    if ((left_out.contains(line) && key != "edges") || key == "tolerance")
+      continue;
     std::string value = line.substr(equals + 3), text;
     auto add = [&](const std::string& words) {
-      all += (all.empty() ? "--" : " --") + key + ' ' + for_shell(words);
+      all += (all.empty() ? "--" : " --") + key + ' ' +
+             (words.empty() ? named_default(key) : for_shell(words));
     };
     if (value.find('"') == std::string::npos) {
       add(value);
@@ -181,13 +207,15 @@ std::string as_options(const Model& m) {
 std::string in_words(const Advice& a) {
   const std::string unit =
       *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
-  std::string text =
-      a.refusal.empty() ? recommendation(a) : "no advice: " + a.refusal + '\n';
+  std::string text = a.refusal.empty()
+                         ? recommendation(a)
+                         : "no advice: " + a.refusal + '\n' + extrapolated(a);
+  if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
   if (!a.left_out.empty() && a.refusal.empty()) {
     text += "  not run for lack of budget: ";
     for (const std::string& what : a.left_out)
       text += (&what == &a.left_out[0] ? "" : ", ") + what;
-    text += "; --advise-budget " + count(std::ceil(4 * a.budget / a.rate)) +
+    text += "; --advise-work " + CME212::two_digits(4 * a.budget) +
             " would allow more\n";
   }
   if (!a.parts.empty()) {
@@ -225,7 +253,8 @@ std::string in_words(const Advice& a) {
       row(own, number(a.error), a.evaluations, a.seconds, "advised");
     };
     bool told = !a.refusal.empty();
-    for (const GridReport& g : a.grids.tried()) {
+    for (std::size_t k = 0; k < a.grids.size(); ++k) {
+      const GridReport& g = a.grids[k];
       if (!told && g.nodes >= own) advised(), told = true;
       row(g.nodes, a.grids.size() < 3 ? "unknown" : number(g.error),
           g.evaluations, g.trial.seconds, "");
@@ -233,18 +262,20 @@ std::string in_words(const Advice& a) {
     if (!told) advised();
     text += table({nodes, error, evaluations, time, which});
   }
-  if (!a.steps.empty()) {
-    Column method{"method, on " + std::to_string(a.tried_on) + " nodes", {}},
-        dt{"dt [s]", {}}, error{"error of the step" + unit, {}},
-        evaluations{"force evaluations", {}}, time{"time [s]", {}};
-    for (const StepReport& s : a.steps) {
-      method.cells.push_back(s.method);
-      dt.cells.push_back(number(s.dt));
-      error.cells.push_back(number(s.error));
-      evaluations.cells.push_back(count(s.evaluations));
-      time.cells.push_back(number(s.seconds));
+  if (!a.choices.empty()) {
+    Column nodes{"nodes tried", {}}, method{"method", {}}, dt{"dt [s]", {}},
+        error{"error" + unit, {}}, work{"spring evaluations", {}};
+    const std::size_t most = 12;  // the last ones
+    for (std::size_t k = a.choices.size() - std::min(a.choices.size(), most);
+         k < a.choices.size(); ++k) {
+      const ChoiceReport& c = a.choices[k];
+      nodes.cells.push_back(std::to_string(c.nodes));
+      method.cells.push_back(c.method);
+      dt.cells.push_back(number(c.dt));
+      error.cells.push_back(number(c.error));
+      work.cells.push_back(CME212::two_digits(c.work));
     }
-    text += table({method, dt, error, evaluations, time});
+    text += table({nodes, method, dt, error, work});
   }
   if (a.perturbed > 0)
     text += "\n" + std::to_string(a.perturbed) +

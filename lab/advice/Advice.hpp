@@ -19,13 +19,13 @@ struct PartReport {
   bool needed = true;
 };
 
-/** A method with one step, run on one grid. */
-struct StepReport {
+/** A choice that was run. */
+struct ChoiceReport {
+  std::size_t nodes = 0;
   std::string method;
-  double dt = 0;           ///< on that grid [s]
-  double error = 0;        ///< of the answer; infinite: the run failed
-  double evaluations = 0;  ///< of the forces; solves are counted by their cost
-  double seconds = 0;
+  double dt = 0;     ///< [s]
+  double error = 0;  ///< of the answer; infinite: the run failed
+  double work = 0;   ///< spring evaluations
 };
 
 /** The errors of two refinements of the advised run: half the step, and half
@@ -40,10 +40,11 @@ struct Advice {
   Refinement grids;
   std::vector<PartReport> parts;
   std::size_t tried_on = 0;  ///< nodes of the grid of parts and steps
-  std::vector<StepReport> steps;
+  std::vector<ChoiceReport> choices;
   double scatter = 0;    ///< of the answers of perturbed runs
   int perturbed = 0;     ///< how many perturbed runs were made
   std::string refusal;   ///< why no advice is given; empty: advice is given
+  std::string trivial;   ///< why nothing has to be computed; or empty
   Model model;           ///< the cheapest model that was found
   bool checked = false;  ///< model was run; false: its error is predicted
   Answer answer;         ///< of that run
@@ -58,7 +59,6 @@ struct Advice {
   double seconds = 0;      ///< its time on this machine
   double evaluations = 0;  ///< its force evaluations
   double of_stable = 0;    ///< its step / the largest stable one; 0: no limit
-  double rate = 0;         ///< spring evaluations per second
   double spent = 0;        ///< time of all pilots [s]
   double spent_work = 0, budget = 0;  ///< of the pilots, in spring evaluations
 };

@@ -10,30 +10,26 @@ namespace lab {
 
 /** Safety margins of the estimates, and bounds of the pilots. */
 struct AdviceRules {
-  /** Relative uncertainty of the change by a part or a step. */
-  double uncertainty_of_effects = 0.2;
-  double for_parts = 0.7;     ///< share of the tolerance for parts left out
-  double first_cells = 5;     ///< along the shortest side of the first grid
-  double most_nodes = 40000;  ///< of a grid that is run or advised
+  double for_parts = 0.7;  ///< share of the tolerance for parts left out
+  /** Of a grid that is run or advised; 0: 40,000, or one for each 1e4 of
+   * a larger budget, as a run takes so many spring evaluations per node. */
+  double most_nodes = 0;
   /** Once a choice is found, a finer grid is run to find a cheaper one if that
-   * takes at most so many spring evaluations, about a second. */
-  double patience = 1e8;
-  double shake = 1e-6;    ///< [m], perturbation of the start
-  int most_checked = 24;  ///< choices that are run
-  /** Predictions between coarse grids are often wrong: choices with a predicted
-   * error of up to long_shot_error tolerances are run, too, if their work is at
-   * most the share long_shot_work of the remaining budget. */
-  double long_shot_error = 8, long_shot_work = 5e-4;
+   * takes at most so many spring evaluations, or 0.3 of the scene's own run. */
+  double patience = 2e6;
+  double stiff = 2e6;   ///< work on 8 cells from which pilots are implicit
+  double shake = 1e-6;  ///< [m], perturbation of the start
   /** The work of all pilots, in spring evaluations, so that advice is the same
-   * on every machine; 0: the larger of 2e8, about 2 s, and one run of the
-   * scene. */
+   * on every machine; 0: the larger of usual and one run of the scene. */
   double budget = 0;
-  double rate = 1e8;  ///< spring evaluations per second, for messages
+  static constexpr double usual = 4e8;
+  /** Advise the method or the step of the scene. */
+  bool keeps_method = false, keeps_step = false;
   /** Called often, with the current run and the results so far. */
   Pilots::Tell tell = [](const std::string&, double) {};
   /** Finer grids are run until the limit of the grids is known to this share of
-   * the tolerance. */
-  double most_uncertainty = 0.2;
+   * the tolerance, if they are cheap. */
+  double most_uncertainty = 0.25;
   /** Share of the uncertainty that is added to the error of a choice that was
    * run. All of it would take one or two more grids, and few scenes need that:
    * adviser_suite.cpp. */
@@ -43,8 +39,7 @@ struct AdviceRules {
   double most_uncertain = 0.6;
 };
 
-/** Rules with a budget of @a seconds on this machine; 0: the larger of 2 s and
- * the time of one run of @a m. The budget also limits the nodes of a grid.
+/** Rules with a budget of @a seconds on this machine; 0: the usual one.
  * Throws as measured_rate() */
 AdviceRules rules_of(const Model& m, double seconds);
 

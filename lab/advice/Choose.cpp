@@ -1,16 +1,16 @@
-#include "lab/advice/Adviser.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "CME212/Util.hpp"
+#include "lab/advice/Adviser.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
 
@@ -18,16 +18,16 @@ namespace lab::adviser_detail {
 
 void Adviser::find_parts() {
   auto& parts = advice_.parts;
-  const double factor = base().factor, work = pilot_work(factor);
-  const Model all = pilot(on_grid(factor), factor);
-  const Trial& pilot = base().trial;
-  const double springs = springs_of(all);
-  advice_.tried_on = base().nodes;
+  const Model all = seen_[base_].model;
+  const Trial& pilot = advice_.grids[base_].trial;
+  const double work = seen_[base_].work;
+  const double springs = springs_of(all), verlet = StepCosts(all).verlet();
+  advice_.tried_on = advice_.grids[base_].nodes;
   parts.clear();
   for (const Variation& v : without_parts(all)) {
     PartReport r{v.part, infinite, springs - springs_of(v.model)};
-    if (const double limit = StepCosts(v.model).verlet(); limit < no_limit)
-      r.step = limit / costs_->verlet();
+    const StepCosts costs(v.model);
+    if (costs.verlet() < no_limit) r.step = costs.verlet() / verlet;
     r.tried = pilots_.affords(work, "parts", 0.1);
     if (r.tried)
       if (const Trial t = pilots_.run(v.model, "without " + v.part, work);
@@ -42,7 +42,7 @@ void Adviser::find_parts() {
     return std::tuple(p.change > 0, !saves, p.change);
   });
   const double room = rules_.for_parts * advice_.tolerance;
-  reductions_ = {{{}, Effect(pilot.answer.size()), 1}};
+  reductions_ = {{{}, Effect(pilot.answer.size())}};
   for (const PartReport& part : order) {
     if (!(part.change <= room)) continue;
     std::vector<std::string> removed = reductions_.back().removed;
@@ -53,9 +53,12 @@ void Adviser::find_parts() {
     const Trial t = pilots_.run(*without, "without " + part.part, work);
     if (!t.ok()) continue;
     const Effect effect(t.answer, pilot.answer);
-    if (size_of(effect) <= room)
-      reductions_.push_back(
-          {removed, effect, springs_of(*without) / std::max(springs, 1.0)});
+    if (!(size_of(effect) <= room)) continue;
+    // Parts that change nothing need no choice of their own.
+    if (size_of(Effect(effect.by, reductions_.back().effect.by)) <=
+        1e-3 * advice_.tolerance)
+      reductions_.pop_back();
+    reductions_.push_back({removed, effect});
   }
 }
 
@@ -68,24 +71,21 @@ bool Adviser::dissipates(const Model& m) {
 
 void Adviser::find_rest() {
   constexpr int looks = 64;  // samples of the answer at equal intervals
-  rest_time_ = scene_.t_end, rest_effect_ = Effect(base().trial.answer.size());
-  const double work = pilot_work(base().factor);
+  rest_time_ = scene_.t_end;
+  const double work = seen_[base_].work;
   if (!dissipates(scene_) || !pilots_.affords(work, "an earlier end", 0.1))
     return;
-  const Model m = pilot(on_grid(base().factor), base().factor);
-  std::vector<std::pair<double, Answer>> seen;
+  const Model& m = seen_[base_].model;
+  std::vector<std::pair<double, Answer>> looked;
   const Trial t = pilots_.run(
       m, "when it comes to rest", work, {}, nullptr, [&](Scene& scene) {
-        if (scene.time() >= double(seen.size()) * m.t_end / looks)
-          seen.emplace_back(scene.time(), answer(m, scene.cloth()));
+        if (scene.time() >= double(looked.size()) * m.t_end / looks)
+          looked.emplace_back(scene.time(), answer(m, scene.cloth()));
       });
-  if (!t.ok()) return;
-  while (!seen.empty()) {
-    const Effect e(seen.back().second, t.answer);
-    if (!(size_of(e) <= advice_.tolerance / 10)) break;
-    if (seen.back().first <= 0.9 * m.t_end)
-      rest_time_ = seen.back().first, rest_effect_ = e;
-    seen.pop_back();
+  for (; t.ok() && !looked.empty(); looked.pop_back()) {
+    const auto& [time, then] = looked.back();
+    if (!(size_of(Effect(then, t.answer)) <= advice_.tolerance / 10)) break;
+    if (time <= 0.9 * m.t_end) rest_time_ = time;
   }
 }
 
@@ -95,270 +95,208 @@ double Adviser::springs_of(const Model& m) {
   return double(g.num_edges());
 }
 
-bool Adviser::try_steps() {
-  const Model on = on_grid(base().factor);
-  const StepCosts& costs = costs_.emplace(on);
-  const double verlet = costs.verlet(), few = scene_.t_end / 32;
-  steps_.clear(), advice_.steps.clear();
-  return try_methods(on, costs,
-                     {{method_->method->info.name, 1.5 * base().trial.dt},
-                      {"verlet", 0.9 * verlet},
-                      {"symplectic-euler", 0.9 * verlet},
-                      {"pefrl", 1.3 * verlet},
-                      {"srkn6b", 2.2 * verlet},
-                      {"respa", 0.9 * costs.multirate()},
-                      {"tr-bdf2", 16 * few},
-                      {"tr-bdf2", 4 * few},
-                      {"tr-bdf2", few},
-                      {"tr-bdf2", few / 8},
-                      {"implicit-euler", few / 4}},
-                     0);
-}
-
-void Adviser::try_longer_steps() {
-  double longest = costs_->verlet();
-  for (std::size_t k = 1; k < reductions_.size(); ++k) {
-    const auto on = without_all(on_grid(base().factor), reductions_[k].removed);
-    const StepCosts costs(*on);
-    if (!(costs.verlet() > 1.2 * longest) || costs.verlet() == no_limit)
-      continue;
-    longest = costs.verlet();
-    try_methods(
-        *on, costs,
-        {{"verlet", 0.9 * longest}, {"symplectic-euler", 0.9 * longest}}, k);
-  }
-}
-
-bool Adviser::try_methods(const Model& on, const StepCosts& costs,
-                          const std::vector<Try>& tries,
-                          std::size_t reduction) {
-  const double verlet = costs.verlet();
-  auto attempt = [&](const char* method, double dt) {
-    Model m = on;
-    m.method = find_method(method);
-    m.step = {.dt = std::min(dt, m.t_end)};
-    return std::pair(m, costs.of_run(m));
-  };
-  auto run = [&](const char* method, double dt) {
-    const auto [m, work] = attempt(method, dt);
-    return pilots_.run(
-        m, std::string(method) + " by " + CME212::two_digits(dt) + " s", work);
-  };
-  const char* own = method_->method->info.name;
-  const char* fine = "srkn6b";
-  double small = 0.55 * verlet;
-  if (!pilots_.affords(attempt(fine, small).second, fine, 0.3))
-    fine = own, small = base().trial.dt / 4;
-  if (!pilots_.affords(attempt(fine, small).second, fine))
-    return refuse(over_budget(attempt(fine, small).second));
-  const Trial accurate = run(fine, small);
-  if (!accurate.ok()) return refuse(accurate.failure);
-  if (reduction == 0) reference_ = accurate.answer;
-  double least = infinite;  // work by the largest step of a method so far
-  // On finer grids all methods except implicit ones need smaller steps.
-  const double finest = factors().back() / base().factor;
-  for (const Try& t : tries) {
-    const bool first = steps_.empty();
-    const double work = attempt(t.method, t.dt).second;
-    const MethodEntry* method = find_method(t.method);
-    // A multirate method without stiff springs is Verlet.
-    if (!first &&
-        ((reduction == 0 && std::string_view(t.method) == own) ||
-         !(work <= (method->info.limit == no_limit ? finest : 1) * 4 * least) ||
-         (method->info.multirate && t.dt < verlet) ||
-         !pilots_.affords(3 * work, t.method, 0.15)))
-      continue;
-    least = std::min(least, work);
-    Step s{method, std::min(t.dt, scene_.t_end), work, {}, {}, 1, reduction};
-    for (int k : {0, 1}) {
-      const double dt = k == 0 ? t.dt : s.dt / 2;
-      const Trial trial = run(t.method, dt);
-      s.works[k] = trial.ok();
-      if (s.works[k]) s.effect[k] = Effect(trial.answer, accurate.answer);
-      if (k == 0 && trial.dt > 0) s.dt = trial.dt;
-      advice_.steps.push_back(
-          {t.method + std::string(reduction > 0 ? ", parts dropped" : ""),
-           k == 0 ? s.dt : s.dt / 2,
-           s.works[k] ? size_of(s.effect[k]) : infinite,
-           attempt(t.method, dt).second / std::max(1.0, costs.springs()),
-           trial.seconds});
-    }
-    // Do the two steps confirm the order of the method?
-    if (s.works[0] && s.works[1] && size_of(s.effect[0]) > 0) {
-      Effect deviation = s.effect[0];
-      deviation.add(-std::pow(2, s.method->info.order), s.effect[1].by);
-      s.uncertainty = std::clamp(size_of(deviation) / size_of(s.effect[0]),
-                                 rules_.uncertainty_of_effects, 1.0);
-    }
-    steps_.push_back(s);
-  }
-  return true;
-}
-
-Effect Adviser::of_step(const Step& s, double share, double finer) {
-  if (s.method->info.limit == no_limit) finer = 1;
-  const int k = share == 1 ? 0 : 1;
-  return Effect(s.effect[k].by.size())
-      .add(std::pow((k + 1) * share / finer, s.method->info.order),
-           s.effect[k].by);
-}
-
-void Adviser::choose() {
-  const Refinement& grids = advice_.grids;
-  // A mesh from files can't be refined: only the error of the step is known.
-  const Answer limit = scene_.sheets.empty() ? reference_ : grids.limit();
-  auto error_of = [&](const Model& m, double work, const std::string& doing,
-                      Trial& t) {
-    t = pilots_.run(m, doing, work);
-    return t.ok() ? size_of(Effect(t.answer, limit)) : infinite;
-  };
-  const double uncertain = grids.uncertainty_of_limit();
-  if (too_uncertain()) {
-    refuse(limit_uncertain());
-    return;
-  }
-  const double counted = rules_.counted_share * uncertain;
-  int runs = 0;
-  // A lower bound of the error of the grid, by factor; long shots apart, as
-  // their predictions are less reliable.
-  std::map<std::pair<double, bool>, double> of_grid;
-  for (Choice& c : choices()) {
-    double& least = of_grid[{c.factor, c.long_shot}];
-    if (least - c.effects > advice_.tolerance) continue;
-    if (c.long_shot && c.work > rules_.long_shot_work * pilots_.left())
-      continue;
-    if (!c.long_shot &&
-        !pilots_.affords(c.work, "more expensive choices", 0.5)) {
-      if (!pilots_.keeps() && c.error + c.uncertainty <= advice_.tolerance &&
-          is_scene(c.model)) {
-        found_ = c;
-        return;
-      }
-      continue;
-    }
-    if (!c.long_shot && ++runs > rules_.most_checked) break;
-    Trial t, half;
-    const std::string nodes = std::to_string(nodes_of(c.model)) + " nodes by " +
-                              c.model.method->info.name + ' ';
-    c.error = error_of(c.model, c.work, nodes, t);
-    c.uncertainty = std::max(uncertain, of_itself * c.error);
-    c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
-    if (t.ok()) least = std::max(least, c.error + counted - c.effects);
-    if (!(c.error + counted <= advice_.tolerance)) continue;
-    Model smaller = c.model;
-    smaller.step.dt /= 2;
-    c.robustness.half_step =
-        error_of(smaller, 2 * c.work, nodes + "and half the step", half);
-    c.half = half.answer;
-    // A mesh from files has no limit of grids; its uncertainty is estimated by
-    // the difference of two small steps.
-    if (scene_.sheets.empty() && half.ok())
-      c.uncertainty = std::max(*c.robustness.half_step,
-                               size_of(Effect(half.answer, t.answer)) / 3);
-    const double most = advice_.tolerance - counted;
-    bool robust = *c.robustness.half_step <= most;
-    if (robust && !scene_.sheets.empty() &&
-        pilots_.affords(8 * c.work, "a check on twice the cells", 0.3)) {
-      Model finer = refined_without(2 * c.factor, c.removed);
-      finer.method = c.model.method;
-      finer.step = {.dt = c.model.step.dt / 2};
-      finer.t_end = c.model.t_end;
-      c.robustness.finer_grid =
-          error_of(finer, 8 * c.work, nodes + "and twice the cells", half);
-      robust = *c.robustness.finer_grid <= most;
-    }
-    if (robust) perturb(c);
-    const double all = c.uncertainty + scatter_share * c.scatter;
-    robust =
-        robust && c.error + rules_.counted_share * all <= advice_.tolerance;
-    if (robust) {
-      found_ = c;
-      return;
-    }
-    if (!fragile_) fragile_ = c;
-  }
-  refuse(
-      "no method meets the tolerance with steps down to 1/64 of its largest "
-      "one");
-}
-
-bool Adviser::is_scene(const Model& m) {
+bool Adviser::suffices(const Sides& s, double most_work, double& work) {
   try {
-    Scene scene(m);
-    return true;
-  } catch (const SceneError&) {
+    const Model m = pilot(on_grid(s), std::max(s.u, s.v));
+    work = work_of_run(m);
+    if (!(work < most_work) || !pilots_.affords(work, "coarser grids", 0.3))
+      return false;
+    const std::string nodes = std::to_string(nodes_of(m)) + " nodes";
+    return error_of(pilots_.run(m, nodes, work)) +
+               rules_.counted_share * uncertainty_ <=
+           advice_.tolerance;
+  } catch (const SceneError&) {  // its nodes miss a pin
     return false;
   }
 }
 
-std::vector<Adviser::Choice> Adviser::choices() const {
-  std::vector<Choice> all;
-  for (double factor : factors()) {
-    const double finer = factor / base().factor;
-    const Effect of_grid = advice_.grids.error(factor);
-    // The error of the grid includes that of the pilots' step: subtract it.
-    const double pilots = base().trial.dt / (steps_[0].dt / 2) / finer;
-    Effect of_pilot(of_grid.by.size());
-    if (steps_[0].works[1] && !scene_.sheets.empty())
-      of_pilot.add(pilots * pilots, steps_[0].effect[1].by);
-    for (std::size_t k = reductions_.size(); k-- > 0;)
-      for (const Step& s : steps_) {
-        if (k < s.reduction || !s.works[1]) continue;
-        const Reduction& without = reductions_[k];
-        for (double share = 1; share > 1 / 64.; share /= std::sqrt(2)) {
-          if (share == 1 && !s.works[0]) continue;
-          // Below its second step the error is predicted only if both steps
-          // confirmed the order.
-          if (share < 0.49 && s.uncertainty == 1) break;
-          const Effect step = of_step(s, share, finer);
-          auto error_with = [&](const Effect& grid, const Effect& by_step) {
-            Effect effect = grid;
-            effect.add(1, without.effect.by).add(1, by_step.by);
-            effect.add(1, rest_effect_.by);
-            return size_of(effect.add(-1, of_pilot.by));
-          };
-          const double error = error_with(of_grid, step);
-          const bool long_shot =
-              !(std::max(error,
-                         error_with(of_grid, of_step(s, share / 2, finer))) <=
-                advice_.tolerance);
-          if (long_shot && (share < 0.49 || !(error <= rules_.long_shot_error *
-                                                           advice_.tolerance)))
-            continue;
-          const double uncertainty =
-              advice_.grids.uncertainty(factor) +
-              s.uncertainty * size_of(step) +
-              rules_.uncertainty_of_effects *
-                  (size_of(without.effect) + size_of(of_pilot));
-          const bool shrinks = s.method->info.limit != no_limit;
-          const auto m = scene_with(factor, without, s,
-                                    s.dt * share / (shrinks ? finer : 1));
-          if (!m) continue;
-          const double work = costs_->of_step(*s.method, m->step.dt, finer) *
-                              without.springs *
-                              std::ceil(m->t_end / m->step.dt);
-          all.push_back({*m, without.removed, factor, error, uncertainty, work,
-                         size_of(without.effect) + size_of(step) +
-                             size_of(rest_effect_)});
-          all.back().long_shot = long_shot;
-          if (error + uncertainty <= advice_.tolerance) break;
-        }
+std::vector<int> Adviser::starts() const {
+  if (from_files()) return {0};  // its own error is unknown
+  auto meets = [this](std::size_t k) {
+    return error_of(advice_.grids[k].trial) +
+               rules_.counted_share * uncertainty_ <=
+           advice_.tolerance;
+  };
+  std::vector<int> all;
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    const auto twice = std::ranges::find(levels_, levels_[k] + 2);
+    if (meets(k) &&
+        (twice == levels_.end() || meets(std::size_t(twice - levels_.begin()))))
+      all.push_back(levels_[k]);
+  }
+  return all;
+}
+
+std::vector<Adviser::Sides> Adviser::frontier(int start) {
+  if (from_files()) return {{}};
+  std::vector<std::pair<double, Sides>> all;
+  double most = infinite;
+  auto meets = [&](const Sides& s, double& work) {
+    const bool ok = suffices(s, most, work);
+    if (ok) all.push_back({work, s}), most = work;
+    return ok;
+  };
+  double work = 0;
+  meets({factor(start), factor(start)}, work);
+  // Fewer cells along one side; more along the other one only if that is
+  // needed and still cheaper.
+  for (int side : {0, 1})
+    for (int level = start - 1, other = start;
+         other <= levels_.back() && cells(factor(level + 1), side) > 2;
+         --level) {
+      if (cells(factor(level), side) == cells(factor(level + 1), side))
+        continue;
+      for (bool ok = false; !ok && other <= levels_.back();) {
+        const double a = factor(level), b = factor(other);
+        ok = meets(side == 0 ? Sides{a, b} : Sides{b, a}, work);
+        if (!ok && !(work < most)) other = levels_.back();
+        if (!ok) ++other;
       }
+    }
+  std::ranges::stable_sort(all, {}, &std::pair<double, Sides>::first);
+  std::vector<Sides> best;
+  for (const auto& [cost, s] : all)
+    if (best.size() < 3 && cost <= 1.6 * all[0].first) best.push_back(s);
+  return best;
+}
+
+std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
+  std::vector<const char*> methods = {
+      "verlet", "symplectic-euler", "pefrl", "srkn6b", "respa", "tr-bdf2"};
+  if (rules_.keeps_method) methods = {scene_.method->info.name};
+  std::vector<Choice> all;
+  for (std::size_t k = reductions_.size(); k-- > 0;) {
+    const auto& removed = reductions_[k].removed;
+    std::optional<Model> m = without_all(on_grid(s), removed);
+    if (!m) continue;
+    m->t_end = dissipates(*m) ? rest_time_ : scene_.t_end;
+    const StepCosts costs(*m);
+    for (const char* name : methods) {
+      m->method = find_method(name);
+      const MethodInfo& info = m->method->info;
+      const double limit = costs.limit(info);
+      // A multirate method without stiff springs is Verlet.
+      if (info.multirate && !rules_.keeps_method && !(limit > costs.verlet()))
+        continue;
+      const bool bounded = limit != no_limit;
+      double dt = bounded ? 0.9 * limit : m->t_end / 2;
+      for (int n = 0; n < (bounded ? 7 : 10); ++n) {
+        m->step = {.dt = std::min(dt, m->t_end)};
+        if (rules_.keeps_step) m->step = scene_.step;
+        m->step.dt = step_of(*m);
+        const double work = costs.of_run(*m);
+        all.push_back(
+            {*m, removed, s, work, bounded ? m->step.dt / limit : dt});
+        dt /= bounded ? std::sqrt(2) : 2;
+        if (rules_.keeps_step) break;
+      }
+    }
   }
   std::ranges::stable_sort(all, {}, &Choice::work);
   return all;
 }
 
-std::optional<Model> Adviser::scene_with(double factor,
-                                         const Reduction& without,
-                                         const Step& s, double dt) const {
-  std::optional<Model> m = without_all(on_grid(factor), without.removed);
-  if (!m) return m;
-  m->method = s.method;
-  m->t_end = dissipates(*m) ? rest_time_ : scene_.t_end;
-  m->step = {.dt = std::min(dt, m->t_end)};
-  m->step.dt = step_of(*m);
-  return m;
+bool Adviser::holds(Choice& c) {
+  const double counted = rules_.counted_share;
+  auto run = [&](const Model& m, double work, const std::string& by) {
+    return pilots_.run(m,
+                       std::to_string(nodes_of(m)) + " nodes by " +
+                           c.model.method->info.name + by,
+                       work);
+  };
+  const Trial t = run(c.model, c.work, "");
+  c.error = error_of(t);
+  c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
+  c.uncertainty = uncertainty_;
+  advice_.choices.push_back({nodes_of(c.model), c.model.method->info.name,
+                             c.model.step.dt, c.error, c.work});
+  const double most = advice_.tolerance - counted * uncertainty_;
+  if (!(c.error <= most)) return false;
+  Model finer = c.model;
+  finer.step.dt /= 2;
+  const Trial half = run(finer, 2 * c.work, " and half the step");
+  c.robustness.half_step = error_of(half);
+  if (!(*c.robustness.half_step <= most)) return false;
+  c.half = half.answer;
+  // From files the limit is that of small steps, and as uncertain as the last
+  // of them.
+  if (from_files())
+    c.uncertainty += size_of(Effect(half.answer, t.answer)) / 3;
+  else if (pilots_.affords(8 * c.work, "a check on twice the cells", 0.5)) {
+    finer = *without_all(on_grid({2 * c.sides.u, 2 * c.sides.v}), c.removed);
+    finer.method = c.model.method, finer.t_end = c.model.t_end;
+    finer.step = {.dt = c.model.step.dt / 2};
+    c.robustness.finer_grid =
+        error_of(run(finer, 8 * c.work, " and twice the cells"));
+    if (!(*c.robustness.finer_grid <= most)) return false;
+  }
+  c.scatter = perturb(c);
+  c.uncertainty += scatter_share * c.scatter;
+  return c.error + counted * c.uncertainty <= advice_.tolerance;
+}
+
+void Adviser::choose() {
+  // What was found before still holds if finer grids do not contradict it.
+  if (found_) {
+    found_->error = size_of(Effect(found_->answer, limit_));
+    found_->uncertainty = uncertainty_ + scatter_share * found_->scatter;
+    if (!(found_->error <= advice_.tolerance)) found_.reset();
+  }
+  const double most = advice_.tolerance - rules_.counted_share * uncertainty_;
+  advice_.choices.clear();
+  std::map<std::string, double> too_long;  // by method: Choice::step
+  std::optional<Choice> best;
+  const auto try_all = [&](const Sides& s) {
+    // Parts left out for which smaller steps are no remedy, and the last error
+    // of each method with them.
+    std::set<std::size_t> fail;
+    std::map<std::pair<std::size_t, std::string>, double> errors;
+    for (Choice& c : choices(s)) {
+      if (best && !(c.work < best->work)) break;
+      if (fail.contains(c.removed.size())) continue;
+      const std::string method = c.model.method->info.name;
+      const auto fails = too_long.find(method);
+      if (fails != too_long.end() && c.step > 0.99 * fails->second) continue;
+      if (!pilots_.affords(c.work, "more expensive choices", 0.5)) break;
+      if (holds(c)) {
+        best = c;
+        break;
+      }
+      if (!(c.error <= 1.5 * advice_.tolerance)) too_long[method] = c.step;
+      double& before = errors.try_emplace({c.removed.size(), method}, infinite)
+                           .first->second;
+      if (c.error <= most || c.error > 0.9 * before)
+        fail.insert(c.removed.size());
+      before = c.error;
+    }
+  };
+  for (int start : starts()) {
+    if (best) break;
+    for (const Sides& s : frontier(start)) try_all(s);
+  }
+  if (best) found_ = best;
+}
+
+void Adviser::foresee() {
+  const Refinement& grids = advice_.grids;
+  if (grids.size() < 5 || too_uncertain()) return;
+  for (int level = level_; level < level_ + 12; ++level) {
+    Model m = on_level(level);
+    if (double(nodes_of(m)) > rules_.most_nodes) return;
+    const double error = size_of(grids.error(cells_over(m)));
+    if (!(error + uncertainty_ <= advice_.tolerance)) continue;
+    m = pilot(m, factor(level));
+    try {
+      m.step = {.dt = step_of(m)};
+    } catch (const SceneError&) {
+      continue;  // a pin holds no node
+    }
+    const Sides sides{factor(level), factor(level)};
+    found_ = Choice{.model = m, .removed = {}, .sides = sides};
+    found_->work = work_of_run(m);
+    found_->error = error, found_->uncertainty = uncertainty_;
+    return;
+  }
 }
 
 }  // namespace lab::adviser_detail

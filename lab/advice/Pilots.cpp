@@ -119,8 +119,8 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
                   const std::function<void(const Cloth&)>& look,
                   const std::function<void(Scene&)>& after) {
   const std::string key =
-      shake.size > 0 || look || after ? "" : to_scene_file(m);
-  if (const auto known = done_.find(key); known != done_.end())
+      shake.size > 0 || (after && !look) ? "" : to_scene_file(m);
+  if (const auto known = done_.find(key); !look && known != done_.end())
     return known->second;
   const double before = spent_;
   spent_ += work;

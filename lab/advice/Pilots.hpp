@@ -79,7 +79,8 @@ class Pilots {
   /** Run @a m, or return its earlier result. An invalid scene counts as failed,
    * like a run that diverges.
    * @param doing description for progress   @param work added to spent()
-   * @param look, after as for try_out(): with them earlier results are not used
+   * @param look, after as for try_out(): with them earlier results are not
+   *        used; with a look, later runs use this one
    * Throws Interrupted */
   Trial run(const Model& m, const std::string& doing, double work,
             const Shake& shake = {},

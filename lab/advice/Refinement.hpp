@@ -2,6 +2,7 @@
 /** @file Refinement.hpp
  * Refinement: estimates the error of each of several grids of one scene. */
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "lab/scenes/Measure.hpp"
@@ -33,66 +34,65 @@ struct GridReport {
   double evaluations = 0;  ///< of the forces; solves are counted by their cost
 };
 
-/** Runs of a scene on grids, each of twice as many cells along each side as the
- * one before, with steps that shrink with the cells. From three grids on, the
- * observed order of convergence gives their limit: Richardson's extrapolation.
- * Intermediate grids, of sqrt(2) times the cells, show how reliable that is:
- * answers scatter, as the nodes at edges and contacts differ from grid to grid.
- * Sources: P. J. Roache, Verification and Validation in Computational Science
- * and Engineering, 1998, chapter 5; L. Eca, M. Hoekstra, A procedure for the
- * estimation of the numerical uncertainty of CFD calculations based on grid
- * refinement studies, J. Comput. Phys. 262, 2014: scatter is a part of the
- * uncertainty. */
+/** Runs of a scene on grids of ever more cells, with steps that shrink with the
+ * cells. From three grids on, a least-squares fit to the finest of them, of
+ * weights that grow with the cells,
+ *   a_k = a + c h_k^p,   h_k = 1 / factor,
+ * gives the limit a, the error c h_k^p of each grid and the observed order p.
+ * Outside of [0.5, 2.1] the order is not believed: then the better one of the
+ * fits of order 1 and 2 is taken. Source: L. Eca, M. Hoekstra, A procedure for
+ * the estimation of the numerical uncertainty of CFD calculations based on grid
+ * refinement studies, J. Comput. Phys. 262, 2014. */
 class Refinement {
  public:
   explicit Refinement(Measure measure = Measure::com) : measure_(measure) {}
 
-  /** Add the next grid and update all errors. The error of a single grid is 0:
-   * that of a mesh from files is unknown. */
+  /** Add a run and update all errors.  @pre next.factor > back().factor
+   * The error of a single grid is 0: that of a mesh from files is unknown. */
   void add(const GridReport& next);
-  /** Add an intermediate grid of the last two.  @pre there are two */
-  void add_intermediate(const GridReport& next);
-  void clear() { grids_.clear(), intermediate_.clear(); }
+  void clear() { grids_.clear(); }
   std::size_t size() const { return grids_.size(); }
   bool empty() const { return grids_.empty(); }
   const GridReport& operator[](std::size_t k) const { return grids_[k]; }
   const GridReport& back() const { return grids_.back(); }
-  /** All grids, also intermediate ones, the coarsest first. */
-  std::vector<GridReport> tried() const;
 
-  /** The distance between the answers of grids k-1 and k. */
-  double step_to(std::size_t k) const;
-  /** False if the answers of the last three grids do not converge. */
-  bool settles() const;
-
-  /** The error of the grid of @a factor, measured or predicted.
-   * @pre size() is not 0 or 2 */
+  /** The observed order of convergence; or that of the fit, if not believed.
+   * @pre size() > 2, as for all that follow */
+  double order() const { return fit_.order; }
+  /** True if the observed order is believed: the grids are in the asymptotic
+   * range, where the error goes by a power of the mesh width. */
+  bool asymptotic() const { return fit_.believed; }
+  /** The standard deviation of the answers from the fit. */
+  double deviation() const { return fit_.deviation; }
+  /** The error of the grid of @a factor, measured or predicted. */
   Effect error(double factor) const;
-  /** The limit of the answers.  @pre as for error() */
-  Answer limit() const;
-  /** The uncertainty of limit(): from its distance to the limit of the
-   * intermediate grids, and from the distance of the last of these to its value
-   * by the observed order; without them, from the change by the last grid. */
-  double uncertainty_of_limit() const;
-  /** The uncertainty of error(@a factor). */
-  double uncertainty(double factor) const;
+  /** The limit of the answers. */
+  const Answer& limit() const { return fit_.limit; }
+  /** The uncertainty of limit() at a confidence of 95 %: a fifth of the error
+   * of the finest grid, the standard deviation of the fit, and the change of
+   * the limit if the finest or the coarsest grid of the fit is left out; the
+   * first two 1.5 times if the order is not believed. Of three grids, which
+   * have no deviation, three times the error. */
+  double uncertainty() const { return uncertainty_; }
+  /** False if the answers drift apart by more than @a negligible: refinements
+   * change them by more each time. */
+  bool converges(double negligible) const;
 
  private:
+  struct Fit {
+    Answer limit, slope;  // slope: the error at the smallest h
+    double order = 1, deviation = 0;
+    bool believed = false;
+  };
   Measure measure_;
-  std::vector<GridReport> grids_,
-      intermediate_;  // the latter to the last but one grid
-  double order_ = 1;
-  Answer limit_before_;  // without the last grid, if 3 others are left
+  std::vector<GridReport> grids_;  // the coarsest first
+  Fit fit_;
+  double uncertainty_ = 0;
 
-  const Answer& answer(std::size_t k) const { return grids_[k].trial.answer; }
-  double step_to(const std::vector<GridReport>& grids, std::size_t k) const;
-  /** The grid of @a factor; nullptr if it was not run. */
-  const GridReport* find(double factor) const;
-  void estimate(GridReport& g) const;
-  double order_of(const std::vector<GridReport>& grids) const;
-  /** True if there is an intermediate grid of the last two. */
-  bool has_intermediate() const;
-  Answer limit_of_intermediate() const;
+  /** O(grids * numbers) for each order */
+  Fit fit_of_order(std::span<const GridReport> grids, double order) const;
+  Fit best_fit(std::span<const GridReport> grids) const;
+  double change(std::size_t k) const;  // of the answer from grid k-1 to k
 };
 
 }  // namespace lab

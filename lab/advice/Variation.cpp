@@ -11,13 +11,14 @@
 
 namespace lab {
 
-Model refined(const Model& m, double factor) {
+Model refined(const Model& m, double u, double v) {
   Model fine = m;
   double before = 0, after = 0;
   for (Sheet& s : fine.sheets) {
     before += double(s.nodes[0]) * s.nodes[1];
-    for (unsigned& n : s.nodes)
-      n = 1 + unsigned(std::max(2.0, std::round((n - 1) * factor)));
+    for (auto [n, factor] :
+         {std::pair(&s.nodes[0], u), std::pair(&s.nodes[1], v)})
+      *n = 1 + unsigned(std::max(2.0, std::round((*n - 1) * factor)));
     after += double(s.nodes[0]) * s.nodes[1];
   }
   fine.damping *= before / after;

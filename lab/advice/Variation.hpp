@@ -17,11 +17,15 @@ struct Variation {
   Model model;
 };
 
-/** @a m on a grid of @a factor times as many cells along each side of each
- * sheet, at least 2. It is the same cloth: the drag of all nodes together
- * stays, and a thickness of self-collision that two nodes would violate at the
- * start is reduced to less than their distance.  @pre m has sheets */
-Model refined(const Model& m, double factor);
+/** @a m on a grid of @a u and @a v times as many cells along the sides u and v
+ * of each sheet, at least 2. It is the same cloth: the drag of all nodes
+ * together stays, and a thickness of self-collision that two nodes would
+ * violate at the start is reduced to less than their distance.  @pre m has
+ * sheets */
+Model refined(const Model& m, double u, double v);
+inline Model refined(const Model& m, double factor) {
+  return refined(m, factor, factor);
+}
 
 /** For each part that @a m names, @a m without that part. */
 std::vector<Variation> without_parts(const Model& m);

@@ -128,6 +128,8 @@ void check(Options& o) {
           o.frame_rate, "more than 0 frames a second");
   require(o.advise_budget >= 0, "advise-budget", o.advise_budget,
           "seconds, 0 or more");
+  require(o.advise_work >= 0 && std::isfinite(o.advise_work), "advise-work",
+          o.advise_work, "spring evaluations, 0 or more");
   require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
   require(o.every > 0, "every", double(o.every), "at least 1 step");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
@@ -393,12 +395,16 @@ int parse(int argc, char** argv, Options& o) {
   app.add_flag("--advise", o.advise,
                "find by trial runs which parts, grid, method and step the "
                "measure needs to reach its tolerance; print them and exit");
+  app.add_option("--advise-work", o.advise_work,
+                 "spring evaluations that the trial runs may take; 0: the "
+                 "larger of 4e8, a few seconds, and the work of one run");
   app.add_option("--advise-budget", o.advise_budget,
-                 "time for the trial runs [s], converted to work; 0: the "
-                 "larger of 2 s and the time of one run");
+                 "the same in seconds of this machine [s]; 0: --advise-work")
+      ->excludes("--advise-work");
   app.add_flag("--auto", o.automatic, "run the scene that --advise recommends");
   add_file(app, "--write-config", o.advised,
-           "write the recommended scene to this file");
+           "write the scene, or with --advise or --auto the recommended one, "
+           "to this file; without --auto, exit then");
   app.option_defaults()->group("Other");
   app.add_flag("--dump-config", dump, "print the scene as a file and exit");
   app.add_flag_callback(
@@ -439,6 +445,8 @@ int parse(int argc, char** argv, Options& o) {
     if (app.count("--" + key) > 0)
       set_field(m, key, app.get_option("--" + key)->results());
   o.model = checked(m);
+  o.keeps_method = app.count("--method") > 0;
+  o.keeps_step = app.count("--dt") > 0 && o.model.step.fixed();
   o.model.step.tolerance = kept_tolerance;
   if (given("tolerance") && !o.asks_advice()) {
     control_error(o.model, given);

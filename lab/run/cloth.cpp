@@ -189,13 +189,21 @@ int run_live(const Options& o) {
   return interrupted() ? 128 + interrupted() : 0;
 }
 
+/** Write @a m, as a file for --config, to @a file if it has a name. */
+void write_scene(const Model& m, const std::string& file) {
+  if (file.empty()) return;
+  CME212::OutputFile out(file);
+  out.stream() << to_scene_file(m);
+  out.commit();
+}
+
 /** Take the advice on the scene of @a o: print it, write it, or put it into
  * o.model.  @return the exit status to end with, or -1 */
 int take_advice(Options& o) {
-  std::optional<CME212::OutputFile> file;
-  if (!o.advised.empty()) file.emplace(o.advised);
   Progress progress(o.quiet);
   AdviceRules rules = rules_of(o.model, o.advise_budget);
+  if (o.advise_work > 0) rules.budget = o.advise_work;
+  rules.keeps_method = o.keeps_method, rules.keeps_step = o.keeps_step;
   rules.tell = [&](const std::string& doing, double done) {
     if (progress.due()) progress.show(doing, done);
   };
@@ -210,10 +218,7 @@ int take_advice(Options& o) {
     if (o.quiet) std::cerr << "cloth: no advice: " << advice.refusal << '\n';
     return 2;
   }
-  if (file) {
-    file->stream() << to_scene_file(advice.model);
-    file->commit();
-  }
+  write_scene(advice.model, o.advised);
   o.model = advice.model;
   return o.automatic ? -1 : 0;
 }
@@ -309,6 +314,10 @@ int run(Options o) {
   if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
+  if (!o.asks_advice() && !o.advised.empty()) {
+    write_scene(o.model, o.advised);
+    return 0;
+  }
   const Model& m = o.model;
   const bool shows = !o.headless && !o.pictures();
   const bool in_window =

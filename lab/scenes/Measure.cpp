@@ -112,9 +112,12 @@ Trial try_out(const Model& m, const Shake& shake,
   Scene scene(recipe_of(m), {.dt = result.dt}, *m.method);
   std::mt19937 random(shake.seed);
   std::uniform_real_distribution<double> off(-shake.size, shake.size);
-  if (shake.size > 0)
+  if (shake.size > 0) {
     for (Node n : scene.cloth().nodes())
       n.position() += Point(off(random), off(random), off(random));
+    // The guard starts anew: it would take these strains for a divergence.
+    scene.change_method(*m.method, {.dt = result.dt});
+  }
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
     after(scene);
