@@ -2,7 +2,10 @@
 runs with a known answer: python3 lab/advice/test_suite.py"""
 import itertools
 import math
+import pathlib
 import random
+import sys
+import tempfile
 import unittest
 
 import questions
@@ -152,6 +155,79 @@ class Search(unittest.TestCase):
         s.at = lambda cells, *rest: (
             ([0.], 1, None) if cells == ((2, 2),) else plain(cells, *rest))
         self.assertGreater(s.search([0.], 0.18, 1)[0], 1)
+
+
+FAKE = """#!{python} -SE
+import math, sys
+words = dict(zip(sys.argv[1:], sys.argv[2:] + ['']))
+n, m = (int(k) - 1 for k in words['--sheet'].split()[-2:])
+t_end = float(words['--t-end'])
+if '--advise' in words:
+    print({advice!r})
+    sys.exit()
+dt = 1e-3 if words['--dt'] == 'auto' else float(words['--dt'])
+x = 0 if t_end < 1e-6 else 1 + 1 / (n * m) + 100 * dt ** 2
+print((n + 1) * (m + 1), 'nodes,', 4 * n * m, 'edges')
+print(f'dt = 1 s: 60 % of the stability limit ({{0.2 / n}} s, verlet)')
+print('work:', math.ceil(t_end / dt - 1e-9), 'force evaluations')
+print('com:', x, '0 0 m at t = 1 s')
+{also}
+"""
+
+
+class Judge(unittest.TestCase):
+    """Of a ./cloth that answers 1 + 1/cells + 100 dt^2 [m]."""
+
+    def setUp(self):
+        self.seed = next(
+            k for k in range(0, 1000, 3) for s in [questions.draw(k)]
+            if (s.kind, s.measure) == ("undamped", "com") and s.share > 0.08)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def fake(self, advice, also=""):
+        fake = self.folder / "fake"
+        fake.write_text(FAKE.format(python=sys.executable, also=also,
+                                    advice=advice))
+        fake.chmod(0o755)
+        return fake
+
+    def advice(self, answer):
+        return ("advice: 121 nodes, verlet, dt 0.01 s: error of com 0.02 m +- "
+                "0.004 m (asked: 0.05 m)\n"
+                "  ./cloth --sheet 'nodes 11 11' --t-end 1 --dt 0.01 --method "
+                f"verlet\n  com by this run: {answer} 0 0 m\n\n"
+                "the pilots took 1 s, 3e+07 spring evaluations of 4e+07")
+
+    def test_of_an_advised_run(self):
+        r = suite.judge(self.seed, self.fake(self.advice(1.02)), [])
+        self.assertEqual(
+            [r[k] for k in ("outcome", "silent", "right", "same", "work",
+                            "advice_work", "predicted", "uncertainty")],
+            ["advised", "yes", "yes", "yes", 40000, "3e+07", "0.02", "0.004"])
+        for name, error in (("real", 0.02), ("half", 0.0125), ("twice", 0.005),
+                            ("next", 1 / 225 + 0.005)):
+            self.assertAlmostEqual(float(r[name]), error, 3)
+        self.assertLess(r["best_work"], r["work"])
+        self.assertLessEqual(float(r["best_error"]), float(r["tolerance"]))
+
+    def test_of_a_command_that_says_or_answers_something_else(self):
+        for also in ("print('warning', file=sys.stderr)",
+                     "if '--headless' not in words: open('film', 'w')"):
+            r = {"seed": 1}
+            with tempfile.TemporaryDirectory() as folder:
+                s = trials.Scene(self.seed, folder,
+                                 self.fake(self.advice(1.03), also))
+                suite.paste(s, r, suite.advice_of(
+                    s, r, ["./cloth", *s.grid(), *s.args, "--advise"]))
+            self.assertEqual((r["silent"], r["right"]), ("no", "no"))
+
+    def test_of_a_refusal(self):
+        r = suite.judge(self.seed, self.fake("no advice: the budget ended"), [])
+        self.assertEqual((r["outcome"], r["real"]), ("refused", ""))
+        self.assertGreater(r["best_work"], 0)
+        self.assertEqual(suite.rates([r])["contradicted"], 100)
 
 
 class Questions(unittest.TestCase):
