@@ -32,7 +32,7 @@ struct AdviceRules {
   double most_uncertainty = 0.25;
   /** Share of the uncertainty that is added to the error of a choice that was
    * run. All of it would take one or two more grids, and few scenes need that:
-   * adviser_suite.cpp. */
+   * suite.py. */
   double counted_share = 0.45;
   /** Nothing is advised if the limit of the grids is uncertain by more than
    * this share of the tolerance. */

@@ -169,6 +169,7 @@ dt = 1e-3 if words['--dt'] == 'auto' else float(words['--dt'])
 x = 0 if t_end < 1e-6 else 1 + 1 / (n * m) + 100 * dt ** 2
 print((n + 1) * (m + 1), 'nodes,', 4 * n * m, 'edges')
 print(f'dt = 1 s: 60 % of the stability limit ({{0.2 / n}} s, verlet)')
+print('energy 1 J = 0.5 kinetic + 0.5 elastic')
 print('work:', math.ceil(t_end / dt - 1e-9), 'force evaluations')
 print('com:', x, '0 0 m at t = 1 s')
 {also}

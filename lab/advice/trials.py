@@ -12,9 +12,9 @@ import subprocess
 
 import questions
 
-LONGEST = 300       # limit of a child process [s]
-TRUTH_WORK = 2e8    # spring evaluations of the finest run of the truth
-SEARCH_WORK = 3e7   # and of the longest run of the search
+LONGEST = 300            # limit of a child process [s]
+TRUTH_WORK = (2e8, 8e8)  # spring evaluations of the finest run of the truth
+SEARCH_WORK = 3e7        # and of the longest run of the search
 FACTOR = 10
 LADDER = (2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128)  # cells
 # Steps in units of Verlet's limit. The first two tell whether a grid will do;
@@ -83,7 +83,8 @@ def springs(cells):
 
 class Scene(questions.Scene):
     """A scene in a folder of its own, where ./cloth is, and what its runs
-    gave. A trial is (answer, work, Verlet's limit [s]), None if it failed."""
+    gave. A trial is (answer, work, Verlet's limit [s], kinetic energy [J]), or
+    None if it failed."""
 
     def __init__(self, seed, folder, cloth):
         self.__dict__ = questions.draw(seed).__dict__
@@ -129,7 +130,9 @@ class Scene(questions.Scene):
                           text)
         answer = (self.positions(cells) if out else numbers(
             re.search(rf"^{self.measure}: (.*?) at t", text, re.M)[1]))
-        return answer, work, limit and float(limit[1] or limit[2])
+        kinetic = re.search(NUMBER + " kinetic", text)
+        return (answer, work, limit and float(limit[1] or limit[2]),
+                float(kinetic[1]))
 
     def positions(self, cells):
         """Positions of 9 x 9 points on each sheet; of all nodes of a mesh."""
@@ -179,10 +182,19 @@ class Scene(questions.Scene):
         return tuple(tuple(max(2, round(side * along / longest))
                            for side in sides) for sides in self.sides)
 
-    def truth(self):
-        """(the right answer, how far it may be off), None if unknown: the limit
-        of grids by pefrl at half of Verlet's limit. A mesh has one grid: the
-        limit of its steps."""
+    def truth(self, tolerance):
+        """(the right answer, how far it may be off), None if unknown; with more
+        work if that may give a third of the tolerance."""
+        for work in TRUTH_WORK:
+            found = self.limit(work)
+            if not found or self.mesh or not (
+                    tolerance / 3 < found[1] < 2 * tolerance):
+                break
+        return found
+
+    def limit(self, work):
+        """The limit of grids by pefrl at half of Verlet's limit. A mesh has
+        one grid: the limit of its steps."""
         coarse = () if self.mesh else self.scaled(8)
         steps = self.steps(coarse, 0.5)
         if not steps:
@@ -192,7 +204,7 @@ class Scene(questions.Scene):
             widths = [1 / n for _, n in runs]
         else:
             # Work increases with the third power of cells along a side.
-            most = min(128, 8 * (TRUTH_WORK / (4 * steps * springs(coarse)))
+            most = min(200, 8 * (work / (4 * steps * springs(coarse)))
                        ** (1 / 3))
             grids = list(dict.fromkeys(self.scaled(most / 2 ** (k / 4))
                                        for k in range(6, -1, -1)))
