@@ -113,7 +113,8 @@ TEST_F(ClothReplay, RefusesWhatItCanNotDo) {
         std::pair(
             "--csv x",
             "cloth: --replay cannot be combined with --csv, only with --out, "
-            "--record, --record-input and --screenshot of the end\n")}) {
+            "--record, --record-input, --screenshot of the end and "
+            "--window\n")}) {
     const Result r = run(replay + arguments);
     EXPECT_EQ(r.status, 2);
     EXPECT_EQ(r.err, message);

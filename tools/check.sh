@@ -315,6 +315,7 @@ turns() {
   turn lanes     "$limit" tools/check_lanes.sh
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
   turn submit    "$limit" tools/test_submit.sh
+  turn contest   "$limit" python3 lab/try/test_contest.py build/check/try
   turn sweep     "$limit" tools/test_sweep.sh
   turn deps      "$limit" tools/test_deps.sh
   turn vtk       "$limit" vtk

@@ -20,7 +20,7 @@ lab/stability : lab/methods
 lab/scenes    : lab/stability
 lab/advice    : lab/scenes
 lab/charts    : lab/stability
-lab/try       : mass_spring
+lab/try       : mass_spring lab/methods
 lab/bench     : lab/charts
 lab/live      : lab/scenes
 lab/viewer    : lab/live

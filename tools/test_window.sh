@@ -170,6 +170,8 @@ ends "step in the panel" 0 ": 3 steps to t = 0.003 s"
 ok "gravity in the panel" grep -q '^1 gravity -20$' "$tmp/in.txt"
 "$folder/cloth" --replay "$tmp/in.txt" --out "$tmp/again.nodes" --quiet
 ok "the recording gives the same bits" cmp "$tmp/end.nodes" "$tmp/again.nodes"
+start cloth --replay "$tmp/in.txt" --window --paused --speed 0; press q
+ends "a recording goes on in a window" 0 ": 3 steps to t = 0.003 s"
 cloth --paused; steps click 50 18; click 50 18; ok "play and pause" ever stays
 click 245 18; ever shows "$zero"; press q
 ends "restart in the panel" 0 ": 0 steps to t = 0 s"

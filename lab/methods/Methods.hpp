@@ -40,6 +40,9 @@ inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<AugmentedVerlet>(),
                                        entry_of<Xpbd>()};
 
+/** A method that a program adds to the table, or nullptr. */
+inline const MethodEntry* own_method = nullptr;
+
 /** The method called @a name, or nullptr. */
 const MethodEntry* find_method(std::string_view name);
 

@@ -145,13 +145,12 @@ void check(Options& o) {
           std::pair("checkpoint", !o.checkpoint.empty()),
           std::pair("csv", !o.csv.empty()), std::pair("vtp", !o.vtp.empty()),
           std::pair("obj", !o.obj.empty()), std::pair("ply", !o.ply.empty()),
-          std::pair("at", o.at >= 0), std::pair("window", o.window),
-          std::pair("advise", o.asks_advice())})
+          std::pair("at", o.at >= 0), std::pair("advise", o.asks_advice())})
       if (given)
         throw SceneError("replay",
                          std::string("cannot be combined with --") + option +
-                             ", only with --out, --record, --record-input and "
-                             "--screenshot of the end");
+                             ", only with --out, --record, --record-input, "
+                             "--screenshot of the end and --window");
   if (!o.record_input.empty() && o.replay.empty() &&
       (o.headless || o.pictures()))
     throw SceneError("record-input",
@@ -308,7 +307,8 @@ void add_run_options(CLI::App& app, Options& o) {
            "in a window: write the scene and every change, for --replay");
   add_file(app, "--replay", o.replay,
            "repeat a run of --record-input without a window, to the same bits; "
-           "can be combined with --out, --record and --screenshot of the end");
+           "can be combined with --out, --record and --screenshot of the end; "
+           "with --window it goes on in a window");
   app.add_option("--threads", o.threads,
                  "threads for a large cloth, which change no result; 0: one "
                  "per processor")

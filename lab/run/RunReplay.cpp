@@ -23,11 +23,12 @@ class ReplayFilm {
     screen_.start_film(file);
   }
   /** Frames for the time that @a scene has gone on since the last call. */
-  void add(const Scene& scene) {
+  void add(const Live& live) {
+    const Scene& scene = live.scene();
     if (scene.time() > last_) due_ += scene.time() - last_;
     last_ = scene.time();
     if (due_ < 0) return;
-    screen_.show(scene);
+    screen_.show(scene, live.rival());
     do {
       screen_.add_to_film(1);
       due_ -= 1 / Screen::frames_per_second;
@@ -54,7 +55,7 @@ int run_replay(const Options& o) {
   while (!interrupted() && replay.step()) {
     if (!film) continue;
     live.check();
-    film->add(live.scene());
+    film->add(live);
   }
   live.check();
   const auto wrote = [&o](const std::string& what, const std::string& file) {
@@ -62,7 +63,7 @@ int run_replay(const Options& o) {
   };
   if (film) wrote("film", screen->end_film());
   if (!o.screenshot.empty()) {
-    screen->show(live.scene());
+    screen->show(live.scene(), live.rival());
     screen->save_picture(o.screenshot);
     wrote("picture", o.screenshot);
   }

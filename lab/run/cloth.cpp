@@ -160,14 +160,13 @@ void step_in_window(S& s, Screen& screen) {
 
 /** Run in a window in which the user may change everything.
  * @return exit status */
-int run_live(const Options& o) {
-  Live live(o.model);
+int run_live(Live& live, const Options& o) {
   const auto window = Screen::open(Screen::Kind::window);
   Screen& screen = *window;
   if (!o.quiet) {
     std::cout << live.scene().cloth().num_nodes() << " nodes, "
               << live.scene().cloth().num_edges() << " edges\n";
-    announce(live.scene(), o);
+    if (o.replay.empty()) announce(live.scene(), o);
   }
   screen.show_strain(o.strain);
   screen.set_paused(o.paused);
@@ -311,6 +310,11 @@ int run(Options o) {
   check_outputs(o);
   lanes::cpu = fastest_cpu();
   Sweep::set_threads(o.threads);
+  if (!o.replay.empty() && o.window) {
+    Replay replay(o.replay);
+    while (!interrupted() && replay.step()) continue;
+    return run_live(replay.live(), o);
+  }
   if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
@@ -322,7 +326,10 @@ int run(Options o) {
   const bool shows = !o.headless && !o.pictures();
   const bool in_window =
       shows && (o.window || !o.record_input.empty() || Screen::has_display());
-  if (in_window && !o.is_fixed()) return run_live(o);
+  if (in_window && !o.is_fixed()) {
+    Live live(m);
+    return run_live(live, o);
+  }
   std::optional<Accuracy> accuracy;
   if (m.step.tolerance > 0 && o.restart.empty()) accuracy = measure_accuracy(o);
   Recipe recipe = recipe_of(m);

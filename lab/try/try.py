@@ -13,12 +13,7 @@ import functor
 import measure
 import report
 import teacher
-from workshop import BadInput, steps_in
-
-
-def progress(text):
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+from workshop import BadInput, progress, steps_in
 
 
 def measured(path, wanted):
@@ -44,6 +39,12 @@ def main():
         progress("drawing ...")
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)
+        if os.environ.get("WINDOW") or os.environ.get("RECORD"):
+            progress("building the window ...")
+            import window
+            progress("")
+            return window.show(verdict, pathlib.Path(path),
+                               os.environ.get("RECORD", ""))
     finally:
         progress("")
     print(teacher.words(verdict))
@@ -52,7 +53,7 @@ def main():
 
 if __name__ == "__main__":
     try:
-        main()
+        sys.exit(main())
     except BadInput as error:
         print(error, file=sys.stderr)
         sys.exit(2)

@@ -4,6 +4,7 @@ The file is a stranger's: it is compiled and run in the grader's jail
 (course/kit/jail.cpp), with limits on time, memory and output.
 """
 
+import fcntl
 import os
 import pathlib
 import re
@@ -38,6 +39,11 @@ COMMON = ["-std=c++20", "-w", "-pthread", "-I", str(ROOT)]
 
 class BadInput(Exception):
     """What is wrong with the file, in a line."""
+
+
+def progress(text):
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 
 # ---- The step's name
@@ -107,6 +113,7 @@ def choose(path, wanted):
 class Workshop:
     """A folder in which the probe of one step is built, or another `source`
     with its own `defines`."""
+    given = b""     # what it reads once it has begun, less than 1 MB
 
     def __init__(self, path, step, arguments_, source="probe.cpp",
                  defines=None):
@@ -198,8 +205,17 @@ class Workshop:
         seconds = SECONDS.get(part, 8) * (1 if kind == "fast" else 8)
         limits = sandbox.Limits(cpu=seconds, wall=4 * seconds)
         from_read, from_write = os.pipe()
+        to_read, to_write = os.pipe()
+        fcntl.fcntl(to_write, fcntl.F_SETPIPE_SZ, 1 << 20)
         written = sandbox.Output(limits.output)
         spoken = sandbox.Output(limits.output, limits.output)
+        waiting = [to_write]
+
+        def heard(data):
+            if waiting:
+                with open(waiting.pop(), "wb") as pipe:
+                    pipe.write(self.given)
+            return spoken.add(data)
         command = [*self.jail, "--cpu", str(limits.cpu)]
         for name in (self.folder, "/usr/lib", "/lib", "/lib64",
                      "/etc/ld.so.cache", "/proc/self"):
@@ -208,15 +224,16 @@ class Workshop:
             [*command, "--", str(program), part, str(from_write),
              *map(str, more)], cwd="/",
             env=sandbox.clean_environment("/nowhere"), pass_fds=[from_write],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stdin=to_read, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, start_new_session=True)
         os.close(from_write)
         try:
             with process.stderr as pipe:
                 stopped = sandbox.watch(process, limits, {
-                    pipe.fileno(): written.add, from_read: spoken.add})
+                    pipe.fileno(): written.add, from_read: heard})
         finally:
-            os.close(from_read)
+            for pipe in (from_read, to_read, *waiting):
+                os.close(pipe)
         found = []
         for line in spoken.first.decode("ascii", "replace").splitlines():
             name, *numbers = line.split(" ")

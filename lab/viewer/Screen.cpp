@@ -50,7 +50,9 @@ class SDLScreen : public Screen {
 
   void show_strain(bool on) override { viewer_.set_strain_colors(on); }
 
-  void show(const Scene& scene) override { show(scene, nullptr, nullptr); }
+  void show(const Scene& scene, const Scene* rival) override {
+    show(scene, rival, nullptr);
+  }
 
   void show_card(const std::vector<std::string>& lines) override {
     viewer_.set_card(lines);
@@ -174,7 +176,7 @@ class SDLScreen : public Screen {
     };
     viewer_.set_label(label(scene));
     Point beside;
-    if (rival && panel_->side_by_side())
+    if (rival && (!panel_ || panel_->side_by_side()))
       beside = norm(beside_) > 0 ? beside_ : place_beside(g);
     const auto moved = [&](Node n) { return n.position() + beside; };
     const bool same = shown_ && version_ == g.version() &&
