@@ -17,14 +17,6 @@
 
 namespace probe {
 
-std::FILE* out;
-
-void put(const std::string& name, const Numbers& numbers) {
-  std::fprintf(out, "%s", name.c_str());
-  for (double x : numbers) std::fprintf(out, " %.17g", x);
-  std::fputc('\n', out), std::fflush(out);
-}
-
 /** By name the lines of a scene: "node x y z vx vy vz m", "spring i j K L",
  * "wind a omega" (m a cos(omega t) along y), "pin i x y z a omega" (it moves by
  * a sin(omega t) along x). */
