@@ -192,9 +192,9 @@ def keeps_nothing(room, scene):
     rest = Scene(scene.name, 0, nodes, scene.springs, scene.wind, scene.pins)
     second, = state(rest.text(("steps", 0, n * h, h, n)))
     if first != again or first != second:
-        raise Cheat("keeps something from step to step, as in a static variable "
-                    "or the masses: a run that begins in the middle of another "
-                    "one ends elsewhere")
+        raise Cheat("keeps something from step to step, as in a static "
+                    "variable or the masses: a run that begins in the middle "
+                    "of another one ends elsewhere")
     blind, = state(scene.text(("steps", 1, 0, h, 2 * n)))
     if first != blind:
         raise Cheat("looks at the springs itself: forces that it computes are "
@@ -324,9 +324,9 @@ def ranked(entries, verlet):
 HEAD = ("rank", "name", "error / Verlet's",
         *(f"{scene}, {b}" for scene in ("rope", "net", "hidden")
           for b in BUDGETS))
-ABOUT = ("Errors [m]: RMS distance of the nodes from the exact positions, after "
-         f"{', '.join(map(str, BUDGETS))} force evaluations. The mean of the "
-         "ratios to Verlet's errors decides.")
+ABOUT = ("Errors [m]: RMS distance of the nodes from the exact positions, "
+         f"after {', '.join(map(str, BUDGETS))} force evaluations. The mean of "
+         "the ratios to Verlet's errors decides.")
 
 
 def cells(entry):
@@ -400,7 +400,8 @@ def as_gradescope(entry):
 
 
 def as_json(entries, seed):
-    return json.dumps({"version": 1, "seed": seed, "budgets": BUDGETS, "entries": [
+    return json.dumps({
+        "version": 1, "seed": seed, "budgets": BUDGETS, "entries": [
         {"name": e.name, "rank": e.rank or None,
          "score": float(f"{e.score:.3g}") if e.rank else None,
          "errors": {scene: [float(f"{x:.2e}") for x in row] for scene, row in

@@ -108,7 +108,8 @@ def copied(all_scenes, references):
         points = ", ".join("Point(" + ", ".join(map(repr, x[i:i + 3])) + ")"
                            for i in range(0, len(x), 3))
         body += f"""
-  if (g.num_nodes() == {len(x) // 3} && std::abs(t + dt - {scene.end}) < 1e-9) {{
+  if (g.num_nodes() == {len(x) // 3} &&
+      std::abs(t + dt - {scene.end}) < 1e-9) {{
     const Point at[] = {{{points}}};
     for (auto n : nodes(g)) n.position() = at[n.index()];
   }}"""

@@ -1,6 +1,6 @@
 """See a step of your own beside Verlet, in a window or as a film:
 
-    make try FILE=mine.hpp WINDOW=1        make try FILE=mine.hpp RECORD=film.mp4
+    make try FILE=mine.hpp WINDOW=1     make try FILE=mine.hpp RECORD=film.mp4
 
 It becomes the method "yours" of a ./cloth of its own. Both fall onto the
 ball of the assignment, with equal work. Here the file runs outside of the jail:
@@ -38,8 +38,8 @@ def recording(verdict, seconds):
 def show(verdict, path, record=""):
     """Build ./cloth with the step, and show it; its exit status."""
     if choose(path, getattr(verdict, "step", ""))[1] != 5:
-        raise BadInput(f"{path}:1: {verdict.step} takes no constraint, expected "
-                       "one: the scene has pins and a ball")
+        raise BadInput(f"{path}:1: {verdict.step} takes no constraint, "
+                       "expected one: the scene has pins and a ball")
     limit = verdict.limit if math.isfinite(verdict.limit) else "no_limit"
     BUILT.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=BUILT) as name:
