@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Install what is missing:  tools/deps.sh [build] [draw] [check] [peers] [grade]
-# [page]
+# [page] [try]
 # Without arguments: build draw check. When all is there it says nothing and
 # asks no network. DEPS=skip does nothing: for systems without apt.
 set -euo pipefail
@@ -13,14 +13,15 @@ packages() {
     draw)  echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri" \
                 "libimgui-dev libpng-dev ffmpeg gnuplot-nox python3 fonts-dejavu-core" ;;
     check) echo "clang clang-format libclang-rt-dev libomp-dev libgtest-dev" \
-                "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" ;;
+                "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind" ;;
     peers) echo "libsundials-dev libboost-dev liblemon-dev" \
                 "libbullet-dev libgsl-dev" ;;
     grade) echo "g++ git make python3 libseccomp-dev" ;;
     page)  echo "clang-19 lld-19 wasi-libc libc++-19-dev-wasm32" \
                 "libclang-rt-19-dev-wasm32 libeigen3-dev python3 ffmpeg" \
                 "chromium python3-websocket" ;;
-    *) echo "deps: no group '$1'; there are: build draw check peers grade page" >&2
+    try)   echo "valgrind" ;;
+    *) echo "deps: no group '$1'; there are: build draw check peers grade page try" >&2
        exit 2 ;;
   esac
 }
@@ -33,6 +34,7 @@ title() {
     peers) echo "to compare with other libraries" ;;
     grade) echo "to grade submissions" ;;
     page)  echo "to build the web page, and to test it" ;;
+    try)   echo "to count what a graph costs" ;;
   esac
 }
 

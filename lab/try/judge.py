@@ -305,10 +305,10 @@ def energy(rows):
     gained = (late - begin) / first
     if max(e[-len(e) // 4:]) < .5 * first:      # most of it at once
         gained = late / first - 1
-    if abs(gained) > .05 or abs(gained) > .5 * swing > 1e-9:
+    if abs(gained) > .05 or abs(gained) > .5 * swing > 1e-6:
         return gained, (f"{'gains' if gained > 0 else 'loses'} "
-                        f"{abs(gained):.1%} in 20,000 steps at a quarter of "
-                        "Verlet's limit: it drifts")
+                        f"{size(100 * abs(gained))} % in 20,000 steps at a "
+                        "quarter of Verlet's limit: it drifts")
     return 0, (f"oscillates by {size(100 * swing)} % without drift, in 20,000 "
                "steps at a quarter of Verlet's limit")
 
@@ -371,7 +371,7 @@ def limits(verdict, numbers):
                       "step has more than 2")
     if weak:
         words += (f"; from {weak[0]:.2f} on there are gaps in which it grows "
-                  f"by up to {weak[1] - 1:.1%} a step")
+                  f"by up to {size(100 * (weak[1] - 1))} % a step")
     verdict.facts.append(("limit on an oscillator", words))
     verdict.data["map"] = [(r[0], r[1], radius(r[2:])) for r in numbers["map"]]
     if 0 < limit < math.inf:
@@ -379,7 +379,8 @@ def limits(verdict, numbers):
         for drag in (.5, 1, 2):
             z = next((r[0] for r in numbers["drag"] if r[1] == drag
                       and radius(r[2:]) > 1 + 1e-6), 6.01)
-            z = f"{z - .01:.2f}" if z > .015 else "0: at no step"
+            z = ("6 or more" if z > 6 else f"{z - .01:.2f}" if z > .015
+                 else "0: at no step")
             words.append(f"{z} where dt c/m = {drag:g}")
         verdict.facts.append(("limit with drag as a force", "dt omega < "
                               + ", ".join(words)))

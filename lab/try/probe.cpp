@@ -280,7 +280,7 @@ void limits() {
   for (const double drag : {.5, 1., 2.})
     for (int k = 1; k <= 600; ++k) matrix("drag", k * .01, drag);
   for (int j = 0; j <= 48; ++j)
-    for (int k = 1; k <= 96; ++k) matrix("map", k * .0625, j * .125);
+    for (int k = 1; k <= 192; ++k) matrix("map", k * .0625, j * .125);
   const double safe = 2 / std::sqrt(12 * 100 * 625);  // Verlet's
   for (const double gamma : {0., 20.}) {
     double low = safe / 16, high = safe * 16;

@@ -131,6 +131,9 @@ def cause(verdict):
     if worst.real < 0:
         return (f"{at}, and changes its sign each time: the kick overshoots, "
                 "and more so in each step.")
+    if z > math.pi:
+        return (f"{at}, to one side: a step is longer than half a swing, and "
+                "its kicks push the mass on where they should bring it back.")
     return (f"{at}, to one side: the forces push away from the rest "
             "position, as if a spring had the wrong sign.")
 
@@ -139,21 +142,23 @@ def region(verdict, out):
     picture = Picture(out, 1000, 430, "Where an oscillator is stable",
                       cause(verdict)[:cause(verdict).find(":")
                                      if ":" in cause(verdict) else None], "")
-    x, y = Axis(0, 6, False), Axis(0, 6, False)
+    end = 12 if 5 < verdict.limit < math.inf else 6
+    x, y = Axis(0, end, False), Axis(0, 6, False)
     panel = Panel(80, 100, 460, 350, x, y, "frequency and drag", [])
     rows = {}
     for z, drag, r in verdict.data["map"]:
-        rows.setdefault(drag, []).append((z, r))
+        if z <= end:
+            rows.setdefault(drag, []).append((z, r))
     for drag, row in rows.items():
         start, last = 0, None
-        for z, r in [*row, (6.0625, None)]:
+        for z, r in [*row, (end + .0625, None)]:
             kind = None if r is None else (
                 STABLE if r <= 1 + 1e-6 else WEAK if r < 1.02 else UNSTABLE)
             if kind != last:
                 if last:
                     (x0, y0), (x1, y1) = (panel.pixel(p) for p in (
                         (start, max(0, drag - .0625)),
-                        (min(6, z - .03125), min(6, drag + .0625))))
+                        (min(end, z - .03125), min(6, drag + .0625))))
                     picture.box(x0, y0, x1, y1 + .3, last)
                 start, last = max(0, z - .03125), kind
     for k, (color, words) in enumerate(((STABLE, "stable"),
@@ -241,6 +246,34 @@ def long_run(verdict, out):
     picture.finish()
 
 
+def costs(verdict, out):
+    picture = Picture(out, 1000, 380, "Instructions for a node, as the graph "
+                      "grows", "Counted by callgrind: a level line is a cost "
+                      "that does not depend on the size of the graph.", "")
+    about = verdict.data["costs"]
+    sizes = sorted(n * n for n in about["yours"])
+    most = max(c for of in about.values() for row in of.values()
+               for c in row.values())
+    look = {"yours": OWN, "course": INSIDE, "flat arrays": "#888888"}
+    for k, (part, title) in enumerate((
+            ("building", "building"), ("forces", "forces of the springs"),
+            ("removal", "removal of a node"))):
+        curves = [Curve(name.split()[0], [
+            (n * n, row[part]) for n, row in sorted(of.items())
+            if row[part] > 10], look[name], 5 if name == "yours" else 0, name)
+            for name, of in about.items()]
+        curves = [c for c in curves if c.points]
+        picture.draw(
+            Panel(80 + 315 * k, 80, 340 + 315 * k, 300,
+                  Axis(sizes[0] * .8, sizes[-1] * 1.3),
+                  Axis(10, most * 2), title, curves),
+            "set xtics (" + ", ".join(f"'{n}' {n}" for n in sizes) + ")",
+            "set xlabel 'nodes'",
+            *(["set format y '10^{%T}'", "set ylabel 'instructions'"]
+              if k == 0 else ["set format y ''", "unset ylabel"]))
+    picture.finish()
+
+
 # ---- The page
 
 STYLE = """body{font:16px/1.45 'DejaVu Sans',Arial,sans-serif;color:#222;
@@ -276,7 +309,7 @@ def coefficients(t):
 CHARTS = ((among_methods, "chart.chain", "Among the laboratory's methods"),
           (convergence, "raw", "Order"), (region, "map", "Where it fails"),
           (failure, "grid1", "On the assignment's cloth"),
-          (long_run, "energy", "Energy"))
+          (long_run, "energy", "Energy"), (costs, "costs", "Costs"))
 
 
 def write(verdict, folder, source):

@@ -12,11 +12,13 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import sys
 import tempfile
 import tomllib
 
 import functor
+import graphs
 import measure
 import teacher
 from workshop import ROOT, BadInput
@@ -123,6 +125,44 @@ double my_step(G& g, double t, double dt, F force) {
     if status or v.name != "symplectic Euler" or v.faults or v.order != 1:
         return [said]
     return [] if abs(v.limit - 2) < .02 else [f"limit {v.limit}"]
+
+
+# ---- Graphs
+
+def graph(case):
+    """A graph of course/graphs, or the course's, with a change."""
+    name, old, new, words = case
+    path = pathlib.Path(tempfile.mkdtemp(dir=FOLDER, prefix="graph-"))
+    path.chmod(0o755)
+    file = path / "Graph.hpp"
+    text = (ROOT / name).read_text(encoding="utf-8")
+    if old and not re.search(old, text):
+        return [f"{name} has no {old}"]
+    file.write_text(re.sub(old, new, text, count=1) if old else text,
+                    encoding="utf-8")
+    try:
+        v = graphs.measure(file)
+        said = "\n".join([*teacher.first_lines(v), *map(" ".join, v.facts)])
+    except BadInput as error:
+        said = str(error)
+    finally:
+        shutil.rmtree(path)
+    return [] if re.search(words, said) else [f"does not say '{words}'", said]
+
+
+REMOVE = r"(size_type remove_node\(const Node& n\) \{)"
+GRAPHS = [
+    ("Graph.hpp", "", "", "forces.* 1 times the course's graph.* grow"),
+    ("course/graphs/map/Graph.hpp", "", "", r"building.* as N\^(0.9|1.0)"),
+    ("course/graphs/vectors/Graph.hpp", REMOVE,
+     r"\1 return 0 * n.index();", "after the removal it has 2304 nodes"),
+    ("course/graphs/vectors/Graph.hpp", REMOVE,
+     r"\1 for (volatile int go = 1; go;) {}", "loops for ever"),
+    ("course/graphs/vectors/Graph.hpp", REMOVE,
+     r"\1 return n.nothing();", r"Graph.hpp:1\d\d: .*nothing"),
+    ("course/graphs/vectors/Graph.hpp", REMOVE,
+     r"\1 throw 3;", "throws int"),
+]
 
 
 # ---- A method that nobody has
@@ -254,6 +294,10 @@ def main():
     cases = [(case["name"], mistake, case)
              for case in tomllib.loads(toml)["mistake"][sample]]
     cases += [("without constraint", without_constraint, None)]
+    if shutil.which("valgrind"):
+        cases += [(f"graph: {row[3]}", graph, row) for row in GRAPHS[sample]]
+    else:
+        print("skipped: graphs: valgrind is missing: make try-deps")
     cases += [(f"own method {seed}", own_method, seed) for seed in (1, 2)]
     if (ROOT / "methods.hpp").exists():
         cases += [(row[0], declared, row) for row in DECLARED[sample]]

@@ -1,6 +1,7 @@
-"""Measure a step, a force or a constraint that you have written:
+"""Measure a step, a force, a constraint or a graph that you have written:
 
     make try FILE=mine.hpp [STEP=my_step]      lab/try/README.md
+    make try GRAPH=Graph.hpp
 
 Writes try/report.html and says the same here. Exit status: 0 there is a report
 (whatever it says); 2 the file has nothing that can be measured."""
@@ -10,6 +11,7 @@ import sys
 import time
 
 import functor
+import graphs
 import measure
 import report
 import teacher
@@ -30,12 +32,15 @@ def measured(path, wanted):
 
 
 def main():
-    path, wanted = os.environ.get("FILE", ""), os.environ.get("STEP", "")
+    graph = os.environ.get("GRAPH", "")
+    path, wanted = os.environ.get("FILE") or graph, os.environ.get("STEP", "")
     if not path:
-        raise BadInput("make try: no file, expected FILE=mine.hpp")
+        raise BadInput("make try: no file, expected FILE=mine.hpp or "
+                       "GRAPH=Graph.hpp")
     started = time.monotonic()
     try:
-        verdict = measured(pathlib.Path(path), wanted)
+        verdict = (graphs.measure(pathlib.Path(path), progress)
+                   if path == graph else measured(pathlib.Path(path), wanted))
         progress("drawing ...")
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)

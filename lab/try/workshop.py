@@ -166,13 +166,14 @@ class Workshop:
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
                    "-iquote", self.path.parent,
                    *(["-include", self.prelude / f"{kind}.hpp"]
-                     if self.of_the_course() else []),
+                     if self.prelude and self.of_the_course() else []),
                    f'-DTRY_FILE="{self.path}"', *self.defines, self.source,
                    "-o", program]
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
                 "/etc/ld.so.cache", "/proc/self", ROOT / "CME212",
                 ROOT / "lab/try", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
-                ROOT / "methods.hpp", self.prelude, self.path.parent]
+                ROOT / "methods.hpp", self.path.parent,
+                *([self.prelude] if self.prelude else [])]
         words = [*self.jail]
         for name in read:
             words += ["--read", str(name)]
