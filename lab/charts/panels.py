@@ -167,7 +167,7 @@ def place_labels(panel):
         return best
 
     # Who comes first has the best place: so some orders are tried.
-    named = [c for c in panel.curves if c.points]
+    named = [c for c in panel.curves if c.points and c.label]
     orders = [sorted(named, key=key, reverse=down) for down in (0, 1)
               for key in (lambda c: len(c.points),
                           lambda c: panel.pixel(c.points[-1])[0])]

@@ -106,7 +106,10 @@ def read(v, where, numbers):
     again(v, used, once, twice, more)
     velocities(v, placed)
     rest(v, numbers, before, once, twice, removed, used)
-    picture(v, before, once)
+    if moved := [(before[k][i][:3], row[:3]) for k in used if k
+                 for i, row in once[k].items()
+                 if distance(before[k][i][:3], row[:3]) > NEAR]:
+        v.data["call"] = moved
 
 
 def again(v, used, once, twice, more):
@@ -193,11 +196,3 @@ def rest(v, numbers, before, once, twice, removed, used):
 def energy(before, once):
     return sum((.02 * (dot(a[3:], a[3:]) - dot(before[i][3:], before[i][3:])))
                for i, a in once.items())
-
-
-def picture(v, before, once):
-    k = max(once, key=lambda k: (len(before[k]) - len(once[k]) + sum(
-        distance(before[k][i], row) > NEAR for i, row in once[k].items()))
-        if k < 6 else -1)
-    v.data["call"] = ([before[k][i] for i in before[k]],
-                      [row for row in once[k].values() if row[0] == row[0]])

@@ -203,6 +203,8 @@ def read(v, where, numbers):
         parts.append(springs(v, minus(at_rest, soft), x, masses))
         if not v.faults:
             compressed(v, numbers["length"])
+        v.data["length"] = [(k * .7 / 4, row) for k, row in enumerate(
+            numbers["length"]) if row[0] == row[0]]
     if biggest(soft) > NEAR:
         parts.append(field(v, soft, of[0, 2][1], shifted(of), masses))
     if any(biggest(minus(of[s, 1][0], at_rest)) > NEAR for s in (1, 2, -1)):
@@ -213,7 +215,6 @@ def read(v, where, numbers):
                          "Return no force if l = 0: there is no direction."))
     v.is_a = "it is " + (" and ".join(parts) or "no force: 0 on all nodes")
     facts(v, numbers, of, x, speeds)
-    v.data["length"] = [row for row in numbers["length"] if row[0] == row[0]]
 
 
 def shifted(of):

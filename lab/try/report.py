@@ -122,7 +122,8 @@ def cause(verdict):
     half, det = (a + d) / 2, a * d - b * c
     root = cmath.sqrt(half * half - det)
     worst = max((half + root, half - root), key=abs)
-    growth = f"grows by {abs(worst) - 1:.2%} a step"
+    growth = (f"grows {abs(worst):.3g} times a step" if abs(worst) > 2 else
+              f"grows by {abs(worst) - 1:.2%} a step")
     at = f"At dt omega = {z:.2f} an oscillation {growth}"
     if abs(worst.imag) > 1e-9:
         return (f"{at}, and goes on swinging: each step ends a little outside "
@@ -246,6 +247,46 @@ def long_run(verdict, out):
     picture.finish()
 
 
+def one_spring(verdict, out):
+    rows = verdict.data["length"]
+    own = [(length, row[0] - rows[-2][1][0]) for length, row in rows]
+    right = [(length, 4 * (length - .7)) for length, _ in rows]
+    most = max(2.9, *(abs(f) for _, f in own)) * 1.15
+    picture = Picture(out, 1000, 330, "The force of one spring against its "
+                      "length", "K = 4 N/m, L = 0.7 m; the pull on one end. "
+                      "Of length 0 it has no direction: no force.", "")
+    panel = Panel(90, 70, 560, 250, Axis(0, 1, False),
+                  Axis(-most, most, False), "", [
+                      Curve("right", right, INSIDE, 0, "K (l - L)"),
+                      Curve("yours", own, OWN, 7, verdict.step)])
+    picture.draw(panel, "set format '%g'", "set xtics .2", "set ytics auto",
+                 "set xlabel 'length [m]'", "set ylabel 'pull [N]'")
+    picture.finish()
+
+
+def one_call(verdict, out):
+    """Where a constraint moves nodes, from two sides."""
+    picture = Picture(out, 1000, 430, "Where nodes are moved, from two sides",
+                      "Red: a node after a call; gray: its way from where it "
+                      "was. Cloths in seven positions.", "")
+    moves = verdict.data["call"]
+    zs = [p[2] for move in moves for p in move]
+    for k, axis in enumerate((0, 1)):
+        xs = [p[axis] for move in moves for p in move]
+        flat = [[(p[axis], p[2]) for p in move] for move in moves]
+        picture.draw(
+            Panel(90 + 475 * k, 80, 500 + 475 * k, 350,
+                  Axis(min(xs) - .05, max(xs) + .05, False),
+                  Axis(min(zs) - .05, max(zs) + .05, False),
+                  f"along {'yx'[k]}",
+                  [Curve(f"a{j}", [to], OWN, 7)
+                   for j, (_, to) in enumerate(flat)],
+                  [Curve(f"b{j}", way, GRAY) for j, way in enumerate(flat)]),
+            "set format '%g'", "set xtics auto", "set ytics auto",
+            f"set xlabel '{'xy'[k]} [m]'", "set ylabel 'z [m]'")
+    picture.finish()
+
+
 def costs(verdict, out):
     picture = Picture(out, 1000, 380, "Instructions for a node, as the graph "
                       "grows", "Counted by callgrind: a level line is a cost "
@@ -309,7 +350,8 @@ def coefficients(t):
 CHARTS = ((among_methods, "chart.chain", "Among the laboratory's methods"),
           (convergence, "raw", "Order"), (region, "map", "Where it fails"),
           (failure, "grid1", "On the assignment's cloth"),
-          (long_run, "energy", "Energy"), (costs, "costs", "Costs"))
+          (long_run, "energy", "Energy"), (costs, "costs", "Costs"),
+          (one_spring, "length", "A spring"), (one_call, "call", "A call"))
 
 
 def write(verdict, folder, source):
