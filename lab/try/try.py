@@ -45,6 +45,9 @@ def main():
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)
         if os.environ.get("WINDOW") or os.environ.get("RECORD"):
+            if "raw" not in verdict.data:
+                raise BadInput(f"{path}: {verdict.step} is no step: WINDOW= "
+                               "and RECORD= show steps alone")
             progress("building the window ...")
             import window
             progress("")
