@@ -398,6 +398,34 @@ TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
   EXPECT_TRUE(advise(hanging(1e-2)).left_out.empty());
 }
 
+// What was found is found with more work, too; what is named to go on with is
+// more than what there was.
+TEST(Budget, MoreOfItLosesNothing) {
+  Model swing = hanging(2e-3), late = hanging(0.02);
+  late.sheets = {read_sheet("nodes 11 11")};
+  late.pins = {read_pin("x 0"), read_pin("x 1")};
+  late.spheres = {read_sphere("at 0.5 0.5 -0.5 radius 0.3 velocity 0 0 1")};
+  for (const Model& m : {swing, late}) {
+    std::string found;
+    for (double budget : {1e3, 3e4, 3e5, 3e6, 3e7, 3e8}) {
+      AdviceRules rules;
+      rules.budget = budget;
+      const Advice a = advise(m, rules);
+      EXPECT_EQ(a.refusal == "", found != "" || a.refusal == "") << budget;
+      if (found != "") {
+        EXPECT_EQ(as_options(a.model), found) << budget;
+      }
+      if (a.refusal.empty() && a.checked && a.left_out.empty())
+        found = as_options(a.model);
+      const auto at = a.refusal.find("--advise-work ");
+      if (at != std::string::npos) {
+        EXPECT_GT(std::stod(a.refusal.substr(at + 14)), budget);
+      }
+    }
+    EXPECT_NE(found, "");
+  }
+}
+
 // What is not run is foreseen, and said to be.
 TEST(Budget, EndsWithTheBestThatIsKnown) {
   const Answer right = truth(hanging(1), 4);

@@ -64,6 +64,9 @@ class AdviceOfKind : public ClothProgram {
     EXPECT_EQ(a.refusal, "");
     EXPECT_LE(a.spent_work, rules.budget);
     if (!a.refusal.empty()) return a;
+    if (a.checked) {
+      EXPECT_LE(a.error + 0.45 * a.uncertainty, a.tolerance);
+    }
     const Answer got = try_out(a.model).answer;
     EXPECT_LE(distance(got, finer_run(m, a), m.measure), m.tolerance);
     std::istringstream text(in_words(a));

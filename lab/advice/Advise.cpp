@@ -50,9 +50,16 @@ Advice Adviser::find() {
     throw SceneError("t-end", "is 0, expected a time to simulate");
   const CME212::Clock clock;
   choose_pilots();
+  bool calm = true;
   while (add_grid()) {
     const auto& grids = advice_.grids;
-    if (!from_files() && (grids.size() < 5 || too_uncertain())) continue;
+    if (!from_files() && (grids.size() < 5 || too_uncertain())) {
+      if (found_) break;  // it stays
+      if (grids.size() < 7) continue;
+      calm = look_for_chaos(0);
+      if (!calm || hopeless()) break;
+      continue;
+    }
     std::size_t base = 0;
     while (base + 1 < grids.size() &&
            !(grids[base].error <= 2 * advice_.tolerance))
@@ -65,13 +72,13 @@ Advice Adviser::find() {
     choose();
     if (from_files() || (found_ && !may_go_on())) break;
   }
-  if (!found_) foresee();
+  if (!found_ && calm) foresee();
   if (!found_ && advice_.refusal.empty())
     refuse(
         "no method meets the tolerance with the steps that were tried: the "
         "smallest was 1/8 of the largest stable one");
   // Chaos may be why nothing was found.
-  if (!seen_.empty() && look_for_chaos(found_ ? found_->scatter : 0) &&
+  if (calm && !seen_.empty() && look_for_chaos(found_ ? found_->scatter : 0) &&
       found_) {
     try_floats(*found_);
     take(*found_);
@@ -225,6 +232,17 @@ bool Adviser::may_go_on() const {
          double(nodes_of(next)) <= rules_.most_nodes &&
          seen_.back().work * 3 <= std::max(rules_.patience, 0.3 * run_work_) &&
          seen_.back().work * 3 <= 0.5 * pilots_.left();
+}
+
+bool Adviser::hopeless() {
+  // By order 2 at best, the uncertainty falls with the square of the cells.
+  const double work = seen_.back().work,
+               finer = std::cbrt(std::max(1., 0.7 * pilots_.left() / work)),
+               needed = std::sqrt(uncertainty_ / advice_.tolerance /
+                                  rules_.most_uncertain);
+  if (finer >= needed) return false;
+  refuse(over_budget(work * std::pow(needed, 3)));
+  return true;
 }
 
 std::string Adviser::so_far() const {

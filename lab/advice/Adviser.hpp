@@ -112,6 +112,8 @@ class Adviser {
   bool too_uncertain() const {
     return uncertainty_ > rules_.most_uncertain * advice_.tolerance;
   }
+  /** True, with a refusal, if the budget is too small to know the limit. */
+  bool hopeless();
   /** True if a finer grid is cheap and may lead to a cheaper choice. */
   bool may_go_on() const;
 

@@ -265,7 +265,10 @@ void Adviser::choose() {
       if (!(c.error <= 1.5 * advice_.tolerance)) too_long[method] = c.step;
       double& before = errors.try_emplace({c.removed.size(), method}, infinite)
                            .first->second;
-      if (c.error <= most || c.error > 0.9 * before)
+      // From files all error is by the step; implicit steps begin very long.
+      const bool bounded = c.model.method->info.limit != no_limit;
+      if (!from_files() &&
+          (c.error <= most || (bounded && c.error > 0.9 * before)))
         fail.insert(c.removed.size());
       before = c.error;
     }
