@@ -43,6 +43,32 @@ kit-check:
 graphs:
 	@BUILD='$(B)' python3 course/graphs/check.py
 
+# ---- A whole class
+override DUE      := $(value DUE)
+override TASK     := $(value TASK)
+override FEEDBACK := $(value FEEDBACK)
+override LIST     := $(value LIST)
+
+grade autograder: export FEEDBACK := $(FEEDBACK)
+.PHONY: class
+class: export DIR      := $(DIR)
+class: export OUT      := $(OUT)
+class: export DUE      := $(DUE)
+class: export TASK     := $(TASK)
+class: export FEEDBACK := $(FEEDBACK)
+class: export LIST     := $(LIST)
+class: override HW := $(if $(filter HW=%,$(MAKEOVERRIDES)),$(HW))
+class:
+	@tools/deps.sh grade && python3 course/kit/whole_class.py
+
+# ---- Tests that students write
+override FILE := $(value FILE)
+.PHONY: grade-tests
+grade-tests: export FILE := $(FILE)
+grade-tests: export JSON := $(JSON)
+grade-tests:
+	@tools/deps.sh grade && python3 course/kit/grade_tests.py
+
 # ---- The pages
 .PHONY: course-pictures
 course-pictures:

@@ -15,7 +15,7 @@ EXCEPTIONS = {"Add", "Mul",           # of Google Highway
               "usleep", "SDL_WaitEventTimeout",  # of POSIX, of SDL
               "Sanitizers",           # words of a debugger's message
               "FILE_frames",          # FILE is what the user names
-              ".github/workflows/classroom.yml"}  # in a class's repository
+              ".github/workflows/tests.yml"}  # in a class's repository
 CODE = "hpp cpp py sh js html mk toml gp txt yml sbatch".split()
 CALL = re.compile(r"\w+\(\)")
 COMMENT = re.compile(r"/\*.*?\*/|(?<!:)//[^\n]*", re.S)

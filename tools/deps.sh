@@ -2,7 +2,8 @@
 # Install what is missing:  tools/deps.sh [build] [draw] [check] [peers] [grade]
 # [page] [try]
 # Without arguments: build draw check. When all is there it says nothing and
-# asks no network. DEPS=skip does nothing: for systems without apt.
+# asks no network. DEPS=skip does nothing: for systems without apt;
+# with Homebrew or Fedora it prints the command that installs all.
 set -euo pipefail
 
 # Debian and Ubuntu packages of a group. A|B: either will do, A is installed.
@@ -24,6 +25,38 @@ packages() {
     *) echo "deps: no group '$1'; there are: build draw check peers grade page try" >&2
        exit 2 ;;
   esac
+}
+
+# What others call them: Debian's name, Homebrew's, Fedora's. Homebrew's - comes
+# with macOS or is not there, and what needs it is skipped or says so.
+names="
+g++ - gcc-c++                     make make make
+pkgconf pkgconf pkgconf-pkg-config          git git git
+libcli11-dev cli11 cli11-devel    libeigen3-dev eigen eigen3-devel
+libspectra-dev spectra spectra-devel        libsdl2-dev sdl2 SDL2-devel
+libgl-dev - mesa-libGL-devel      libegl1 - mesa-libEGL
+libgl1-mesa-dri - mesa-dri-drivers          libimgui-dev imgui imgui-devel
+libpng-dev libpng libpng-devel    ffmpeg ffmpeg ffmpeg-free
+gnuplot-nox gnuplot gnuplot       python3 python python3
+fonts-dejavu-core font-dejavu dejavu-sans-fonts
+clang llvm clang                  clang-format clang-format clang-tools-extra
+libclang-rt-dev - compiler-rt     libomp-dev libomp libomp-devel
+libgtest-dev googletest gtest-devel
+librapidcheck-dev rapidcheck rapidcheck-devel
+libbenchmark-dev google-benchmark google-benchmark-devel
+xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
+xdotool - xdotool                 libseccomp-dev - libseccomp-devel
+"
+renamed() {  # COLUMN: all that is wanted, in the names of another system
+  local group debian found
+  for group in $groups; do
+    for debian in $(missing "$group"); do
+      # shellcheck disable=SC2086  # a list of words
+      found=$(printf '%s %s %s\n' $names | sed -n "s/^$debian //p")
+      case $1 in brew) found=${found% *} ;; dnf) found=${found#* } ;; esac
+      [ "$found" = - ] || printf ' %s' "${found:-$debian}"
+    done
+  done
 }
 
 title() {
@@ -68,6 +101,13 @@ for group in $groups; do packages "$group" >/dev/null; done
 
 have=" "
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  for other in "brew brew install" "dnf sudo dnf install"; do
+    command -v "${other%% *}" >/dev/null || continue
+    echo "deps: install, unless it is there:"
+    echo "  ${other#* }$(renamed "${other%% *}")"
+    echo "Then tell make that all is there: make DEPS=skip ..."
+    exit 1
+  done >&2
   by_hand "there is no apt-get here. Install by hand (names as in Debian):" \
     "Then tell make that all is there: make DEPS=skip ..."
 fi

@@ -136,6 +136,18 @@ says 'to draw, record and chart:'; says 'libsdl2-dev'
 says 'to test and check:'; says 'DEPS=skip'; not_say libsundials
 ok "no apt-get: lists all, by group"
 
+for other in brew dnf; do
+  system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"
+  stub $other <<<"#!/bin/sh"; run
+  expect_status 1; says "$other install"; says 'DEPS=skip'
+  not_say '[a-z]-dev( |$)| - '
+  case $other in
+    brew) says ' sdl2'; not_say 'g\+\+' ;;
+    dnf) says ' gcc-c\+\+ .* SDL2-devel' ;;
+  esac
+  ok "no apt-get, but $other: the command, in its names"
+done
+
 system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"
 DEPS=skip run
 expect_status 0; silent

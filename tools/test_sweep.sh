@@ -117,7 +117,7 @@ ok "a bad cell"
 # ----------------------------------------------------------------------- Slurm
 sbatch_refuses() {
   local status=0
-  SLURM_ARRAY_TASK_ID=1000 bash tools/sweep.sbatch "$tmp/one" --tiny \
+  SLURM_ARRAY_TASK_ID=1000 bash tools/sweep.sbatch "$tmp/one/list" \
     >"$tmp/said" 2>&1 || status=$?
   [ "$status" = 2 ] && grep -q 'has no line 1000' "$tmp/said" ||
     why+=" a task beyond the list ends with $status: $(cat "$tmp/said");"
@@ -185,18 +185,41 @@ for ((k = 0; k < 300; ++k)); do
   [ "$(timeout 5 sinfo -h -o %t 2>/dev/null)" != idle ] || break
   sleep 0.2
 done
+array() {  # LIST: run by the cluster
+  timeout 300 sbatch --wait --array="1-$(wc -l <"$1")" \
+    --output="$cluster/task-%a.txt" tools/sweep.sbatch "$1" >"$tmp/log" 2>&1 ||
+    why+=" sbatch: $(cat "$tmp/log" "$cluster"/task-*.txt);"
+  grep -q '^Submitted batch job' "$tmp/log" || why+=" nothing was submitted;"
+}
+grades() {  # of a class, to OUT
+  make -s class DIR="$tmp/clones" HW=hw2 DUE="2026-03-08 09:30 +0000" \
+    OUT="$1" "${@:2}"
+}
+broken=""
 if [ "$(timeout 5 sinfo -h -o %t 2>&1)" != idle ]; then
+  broken=1
   why+=" the cluster does not come up: $(tail -n 5 "$cluster"/*.log \
     "$cluster"/*.out 2>&1);"
 else
-  mkdir "$tmp/slurm"
-  timeout 300 sbatch --wait --array="1-$total" --output="$cluster/task-%a.txt" \
-    tools/sweep.sbatch "$tmp/slurm" --tiny >"$tmp/log" 2>&1 ||
-    why+=" sbatch: $(cat "$tmp/log" "$cluster"/task-*.txt);"
-  grep -q '^Submitted batch job' "$tmp/log" || why+=" nothing was submitted;"
+  start "$tmp/slurm"
+  while read -r cell _; do
+    echo "$stability_map --tiny --cell $cell --out $tmp/slurm/$cell.csv"
+  done <"$tmp/slurm/list" >"$tmp/slurm.list"
+  array "$tmp/slurm.list"
   same "$tmp/slurm"
 fi
 ok "a Slurm array of $total tasks"
+
+# A class of students, graded here and by the cluster.
+if [ -z "$broken" ]; then
+  python3 course/kit/synthetic.py "$tmp/clones" 7 &&
+    grades "$tmp/here" >"$tmp/log" 2>&1 &&
+    grades "$tmp/there" LIST=1 >"$tmp/class.list" && array "$tmp/class.list" &&
+    grades "$tmp/there" >"$tmp/said" 2>&1 || why+=" $(cat "$tmp/log");"
+  ! grep -q '^1/' "$tmp/said" || why+=" the array left some: $(cat "$tmp/said");"
+  diff -r -x kept "$tmp/here" "$tmp/there" || why+=" other bytes;"
+  ok "a class as a Slurm array of $(wc -l <"$tmp/class.list") tasks"
+fi
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -1,4 +1,5 @@
-"""Make the zip that Gradescope takes:  make autograder [OUT=FILE.zip]
+"""Make the zip that Gradescope takes:
+  make autograder [OUT=FILE.zip] [FEEDBACK=all|names|none]
 
 It holds setup.sh, run_autograder and what the grader needs. The same files
 give the same bytes.
@@ -9,12 +10,16 @@ import pathlib
 import sys
 import zipfile
 
+import grade
+import submission
 from tasks import ROOT
 
 GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
          "tools/deps.sh", "course/tasks.toml", "course/kit/*.py",
          "course/kit/*.cpp", "course/tests/**/*", "course/asked/*"]
-LEFT_OUT = {"kit_check.py", "test_markers.py", "starter.py", "autograder.py"}
+LEFT_OUT = {"kit_check.py", "test_markers.py", "test_class.py",
+            "test_grade_tests.py", "grade_tests.py", "starter.py",
+            "autograder.py", "synthetic.py"}
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
 
@@ -28,12 +33,14 @@ def content(root=ROOT):
     return files
 
 
-def write(out, root=ROOT):
+def write(out, feedback="all", root=ROOT):
     out = pathlib.Path(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     beside = out.with_name(f".{out.name}.{os.getpid()}")
     try:
         with zipfile.ZipFile(beside, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr(zipfile.ZipInfo("feedback", (1980, 1, 1, 0, 0, 0)),
+                             feedback + "\n")
             for name, path in sorted(content(root).items()):
                 info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
                 info.compress_type = zipfile.ZIP_DEFLATED
@@ -49,7 +56,9 @@ def write(out, root=ROOT):
 def main():
     out = os.environ.get("OUT") or "build/autograder.zip"
     try:
-        write(out)
+        write(out, grade.feedback())
+    except submission.BadInput as error:
+        sys.exit(f"autograder: {error}")
     except OSError as error:
         sys.exit(f"autograder: {error.filename}: {error.strerror}")
     print(f"autograder: {len(content())} files in {out}")

@@ -93,7 +93,7 @@ class Room:
     def __init__(self, kit, folder, files):
         self.kit, self.files = kit, files
         self.names = set(files)     # of those that the student wrote
-        self.folder = folder
+        self.folder, self.tests = folder, (TESTS, ASKED)
         self.source = folder / "source"
         self.built = folder / "built"
         for path in (self.source, self.built):
@@ -114,7 +114,7 @@ class Room:
         unit = self.built / f"{name}.cpp"
         headers = [TESTS / f"{way.needs}.hpp"]
         for test in tests:
-            headers += [folder / f"{test}.cpp" for folder in (TESTS, ASKED)
+            headers += [folder / f"{test}.cpp" for folder in self.tests
                         if (folder / f"{test}.cpp").exists()]
         unit.write_text("".join(f'#include "{header}"\n' for header in headers),
                         encoding="utf-8")

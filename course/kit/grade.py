@@ -1,12 +1,14 @@
 """Grade a submission:  make grade DIR=submission [HW=hw2]
 
-    DIR=DIR [HW=TAG] [JSON=FILE] [JUNIT=FILE] [RESULTS=FILE] [SAFE=0] [JOBS=N]
-      python3 course/kit/grade.py
+    DIR=DIR [HW=TAG] [JSON=FILE] [JUNIT=FILE] [RESULTS=FILE] [FEEDBACK=names]
+      [SAFE=0] [JOBS=N] python3 course/kit/grade.py
 
 DIR holds Graph.hpp and mass_spring.hpp or mass_spring.cpp. With HW, DIR is a
 clone, and graded is what its tag HW holds. The table goes to the standard
 output; FILEs get it as JSON, as JUnit XML and as Gradescope's results.json.
-SAFE=0 runs the submission even where the kernel allows no jail.
+FEEDBACK says what students see of the table and of results.json: all, the names
+of the tasks with their points, or none. SAFE=0 runs the submission even where
+the kernel allows no jail.
 Exit status: 0 it was graded, whatever the points; 2 it can't be. The solution
 is graded first, once for each kit: if it does not get all points, nothing is.
 """
@@ -74,11 +76,21 @@ def grade(course, kit, taken, name, jobs):
 def write(path, text):
     """The whole text, or nothing."""
     path = pathlib.Path(path)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False,
-                                     encoding="utf-8") as file:
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=".new-",
+                                     delete=False, encoding="utf-8") as file:
         file.write(text)
     os.chmod(file.name, 0o644)
     os.replace(file.name, path)
+
+
+def feedback():
+    """How much students see."""
+    asked = os.environ.get("FEEDBACK") or "all"
+    if asked not in report.FEEDBACK:
+        raise submission.BadInput(
+            f"FEEDBACK is '{submission.shown(asked)}', expected one of: "
+            + " ".join(report.FEEDBACK))
+    return asked
 
 
 def refuse(why):
@@ -90,7 +102,7 @@ def main():
     get = os.environ.get
     folder, tag = get("DIR", ""), get("HW", "")
     outputs = {get("JSON"): report.as_json, get("JUNIT"): report.as_junit,
-               get("RESULTS"): report.as_gradescope}
+               get("RESULTS"): lambda made: report.as_gradescope(made, seen)}
     try:
         if not folder:
             raise submission.BadInput(
@@ -102,7 +114,7 @@ def main():
                 raise submission.BadInput(
                     f"{submission.shown(path)}: its folder can't be written "
                     f"({error.strerror})") from None
-        jobs = number_of_jobs(get("JOBS"))
+        jobs, seen = number_of_jobs(get("JOBS")), feedback()
         signal.signal(signal.SIGALRM, too_long)
         signal.alarm(READING)
         taken = submission.take(folder, tag)
@@ -125,7 +137,7 @@ def main():
                       f"{error.strerror}")
     except MemoryError:
         return refuse("there is not enough memory")
-    print(report.as_text(graded), end="")
+    print(report.as_text(graded, seen), end="")
     try:
         for path, form in outputs.items():
             if path:

@@ -41,6 +41,7 @@ class Case:
     name: str
     files: dict
     faults: object      # a function: {task: is it lost?} to a list of faults
+    lost: frozenset = frozenset()       # tasks, of a wrong submission
 
 
 class Cases:
@@ -114,7 +115,7 @@ class Cases:
             loses = self.ids(entry["loses"], file, where)
             if loses or not entry["loses"]:     # else its tasks are dropped
                 yield Case(f"{path.stem}: {entry['name']}", files,
-                           self.loses(loses))
+                           self.loses(loses), frozenset(loses))
 
     def ids(self, loses, file, where):
         if loses == ["*"]:
@@ -200,7 +201,8 @@ def programs(check):
     """What is held by programs of its own."""
     folder = once.KIT
     for name in ("test_child.py", "test_markers.py", "pages.py",
-                 "test_report.py", "test_grader.py", "test_grading.py"):
+                 "test_report.py", "test_grader.py", "test_grading.py",
+                 "test_class.py", "test_grade_tests.py"):
         if not (folder / name).exists():
             continue
         started = time.monotonic()

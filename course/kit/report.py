@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
 VERSION = 1     # of the JSON
+# How much of a report students see: FEEDBACK.
+FEEDBACK = ("all", "names", "none")
+RECEIVED = "Received. Points and tests are not shown."
 WHERE = {"graph": "Graph.hpp", "cloth": "mass_spring.hpp"}
 
 
@@ -107,8 +110,11 @@ def score(graded):
     return f"{graded.points}/{graded.task.points}{extra}"
 
 
-def as_text(report):
+def as_text(report, feedback="all"):
+    """What students see: all, no more than the points of each task, or none."""
     lines = [f"{report.course.title}: {report.name}", ""]
+    if feedback == "none":
+        return "\n".join([*lines, RECEIVED, ""])
     rows = [(g.task.section.id, g.task.title, score(g)) for g in report.graded]
     wide = max((len(row[1]) for row in rows), default=5)
     far = max((len(row[2]) for row in rows), default=6)
@@ -119,6 +125,8 @@ def as_text(report):
         lines.append(f"{shown:<4} {title:<{wide}}  {points:>{far}}")
     total = f"{report.points}/{report.of}"
     lines.append(f"{'':<4} {'all':<{wide}}  {total:>{far}}")
+    if feedback == "names":
+        return "\n".join([*lines, ""])
     for graded, others in alike(report.graded):
         lines.append("")
         if others:
@@ -191,19 +199,21 @@ def as_junit(report):
         *suites, "</testsuites>", ""])
 
 
-def as_gradescope(report):
+def as_gradescope(report, feedback="all"):
     """results.json of a Gradescope autograder. A task with no points is shown
     as one of no points; its status says how it went."""
-    tests = []
+    tests, hidden = [], feedback == "none"
     for graded in report.graded:
+        silent = graded.passed or feedback == "names"
         tests.append({
             "name": graded.task.title, "number": graded.task.id,
             "score": float(graded.points),
             "max_score": 0.0 if graded.task.extra else float(
                 graded.task.points),
             "status": "passed" if graded.passed else "failed",
-            "output": "" if graded.passed else "\n".join(failure(graded)),
-            "output_format": "text", "visibility": "visible"})
+            "output": "" if silent else "\n".join(failure(graded)),
+            "output_format": "text",
+            "visibility": "hidden" if hidden else "visible"})
     notes = "".join(f"Note: {note}.\n" for note in report.notes)
     # Flags are for the teacher: in a test that students do not see.
     if report.flags:
@@ -213,8 +223,8 @@ def as_gradescope(report):
             "output": "\n".join(f"{file}:{line}: {what}"
                                 for file, line, what in report.flags),
             "output_format": "text", "visibility": "hidden"})
-    return gradescope(report.points, f"{report.points} of {report.of} points"
-                      f"\n{notes}", tests)
+    return gradescope(report.points, RECEIVED if hidden else
+                      f"{report.points} of {report.of} points\n{notes}", tests)
 
 
 def gradescope(points, output, tests):

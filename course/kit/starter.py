@@ -38,7 +38,7 @@ TESTS = "course/tests"
 GUIDED = ("CME212/SlotMap.hpp", "CME212/NeighborPool.hpp", "docs/graph.md")
 OPEN = "course/starter/open"
 TO_WRITE = re.compile(r"^( *)// YOUR CODE (\S+)$", re.MULTILINE)
-WORKFLOW = "course/starter/classroom.yml"
+WORKFLOW = "course/starter/tests.yml"
 
 
 class StarterError(Exception):
@@ -72,8 +72,7 @@ def tree(kind, level="guided", root=tasks.ROOT):
             add(f"tests/{name}", path.read_bytes())
     add("tests/tasks.inc", table_of(course))
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
-    add(".github/workflows/classroom.yml",
-        workflow((root / WORKFLOW).read_text(encoding="utf-8"), course))
+    add(".github/workflows/tests.yml", (root / WORKFLOW).read_bytes())
     if level == "open":
         for path in GUIDED:
             del files[path]
@@ -129,27 +128,6 @@ def table_of(course):
         lines.append(f"X({texts[0]}, {texts[1]}, {task.points},\n  "
                      f"{texts[2]},\n  {texts[3]})")
     return "\n".join(lines) + "\n"
-
-
-def workflow(text, course):
-    """The template with its lines between `# EACH TASK` and `# END` once for
-    each task that counts, and the names of these steps in @RUNNERS@."""
-    before, _, rest = text.partition("      # EACH TASK\n")
-    each, _, after = rest.partition("      # END\n")
-    counted = [task for task in course.tasks.values() if task.counted]
-    steps, results = [], []
-    for task in counted:
-        step = "task-" + task.id.replace(".", "-")
-        results.append((step.upper(), step))
-        steps.append(each.replace("@STEP@", step).replace("@ID@", task.id)
-                     .replace("@TITLE@", json.dumps(f"{task.id} {task.title}"))
-                     .replace("@POINTS@", str(task.points)))
-    environment = "".join(
-        f"          {name}_RESULTS: ${{{{ steps.{step}.outputs.result }}}}\n"
-        for name, step in results)
-    after = after.replace("          @RESULTS@\n", environment)
-    return before + "".join(steps) + after.replace(
-        "@RUNNERS@", ",".join(step for _, step in results))
 
 
 def place(out):

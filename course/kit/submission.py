@@ -161,14 +161,19 @@ def limit_git():
     signal.alarm(4 * GIT_SECONDS)       # it may wait, too
 
 
-def in_tag(folder, tag):
-    """All that a tag of a clone holds."""
+def tags(folder, tag):
+    """The tags of a clone, in which `tag` is looked for."""
     if not TAG.fullmatch(tag):
         raise BadInput(f"HW={shown(tag)}: no name of a tag")
     if not os.path.isdir(folder):
         raise BadInput(f"{shown(folder)}: no such folder")
-    names = git(folder, "for-each-ref", "--format=%(refname:strip=2)",
-                "refs/tags").decode("utf-8", "replace").split()
+    return git(folder, "for-each-ref", "--format=%(refname:strip=2)",
+               "refs/tags").decode("utf-8", "replace").split()
+
+
+def in_tag(folder, tag):
+    """All that a tag of a clone holds."""
+    names = tags(folder, tag)
     if tag not in names:
         there = ", ".join(map(shown, names[:20])) or "none"
         raise BadInput(f"{shown(folder)}: has no tag {tag}; tags: {there}")

@@ -260,19 +260,6 @@ class Table(unittest.TestCase):
                                        {"x.md": 0, "docs/p/q": 0}),
             text.replace("[c d](../lab/z.md)", "c d"))
 
-    def test_the_workflow(self):
-        text = ("steps:\n      # EACH TASK\n      - @STEP@ @ID@ @TITLE@ "
-                "@POINTS@\n      # END\nenv:\n          @RESULTS@\n@RUNNERS@\n")
-        self.assertEqual(
-            starter.workflow(text, COURSE),
-            'steps:\n      - task-3-1-f 3.1.f "3.1.f f" 4\n'
-            '      - task-7-1-g 7.1.g "7.1.g g" 1\nenv:\n'
-            "          TASK-3-1-F_RESULTS: "
-            "${{ steps.task-3-1-f.outputs.result }}\n"
-            "          TASK-7-1-G_RESULTS: "
-            "${{ steps.task-7-1-g.outputs.result }}\n"
-            "task-3-1-f,task-7-1-g\n")
-
 
 class Repository(unittest.TestCase):
     """make starter and make solution, of this repository."""
@@ -351,7 +338,7 @@ class Repository(unittest.TestCase):
         self.assertEqual({f for f in files if files[f] != solved[f]},
                          set(markers.SOURCES))
         for name in ("LICENSE", ".gitignore", "Makefile", "README.md",
-                     ".github/workflows/classroom.yml", "tests/tasks.inc",
+                     ".github/workflows/tests.yml", "tests/tasks.inc",
                      "test_nodes.cpp", "CME212/Point.hpp", "CME212/viewer.mk",
                      "data/grid1.nodes", "tools/submit.sh"):
             self.assertIn(name, files)

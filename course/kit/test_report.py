@@ -1,7 +1,9 @@
 """Tests of the grader: what it makes of errors and crashes, and its reports."""
 
 import json
+import sys
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 import diagnosis
@@ -12,6 +14,9 @@ import once
 import report
 import submission
 import tasks
+
+sys.path.append(str(once.ROOT / "course/autograder"))
+import classroom50      # noqa: E402: it stands apart from the kit
 
 
 class Say(unittest.TestCase):
@@ -248,6 +253,54 @@ class Reports(unittest.TestCase):
     def test_gradescope(self):
         for text in (report.as_gradescope(self.report), report.refused("no")):
             self.check_gradescope(json.loads(text))
+
+    def test_students_see_as_much_as_the_teacher_says(self):
+        names = report.as_text(self.report, "names")
+        self.assertIn(f"0/{self.lost.points}\n", names)
+        self.assertTrue(names.endswith(f"/{self.report.of}\n"))
+        self.assertNotIn("Specification", names)
+        self.assertEqual(report.as_text(self.report, "none").split("\n", 2)[2],
+                         f"{report.RECEIVED}\n")
+        for feedback, outputs, seen in (
+                ("all", 2, {"visible", "hidden"}),      # hidden: the flags
+                ("names", 1, {"visible", "hidden"}), ("none", 2, {"hidden"})):
+            data = json.loads(report.as_gradescope(self.report, feedback))
+            self.check_gradescope(data)
+            self.assertEqual({test["visibility"] for test in data["tests"]},
+                             seen)
+            self.assertEqual(sum(test["output"] != "" for test
+                                 in data["tests"]), outputs)
+        self.assertEqual(data["output"], report.RECEIVED)
+
+    def test_classroom_50(self):
+        """As the page Advanced-Autograding of its wiki has it."""
+        data = json.loads(report.as_json(self.report))
+        told = {"CLASSROOM": "c", "ASSIGNMENT": "a", "OWNER": "ann",
+                "SUBMISSION_TAG": "submit/1", "COMMIT_URL": "https://c",
+                "RELEASE_URL": "https://r", "ASSIGNMENT_TYPE": "group"}
+        with unittest.mock.patch.dict("os.environ", told, clear=True):
+            made = {feedback: classroom50.result(data, feedback, 86400)
+                    for feedback in report.FEEDBACK}
+        for result in made.values():
+            self.assertEqual(
+                {key: value for key, value in result.items()
+                 if type(value) is str}, {
+                    "schema": "classroom50/result/v1", "classroom": "c",
+                    "assignment": "a", "assignment_type": "group",
+                    "owner": "ann", "submission": "submit/1",
+                    "commit": "https://c", "release": "https://r",
+                    "review": "https://c", "datetime": "1970-01-02T00:00:00Z"})
+            for key, of in (("score", "score"), ("max-score", "max-score")):
+                self.assertIs(type(result[key]), int)
+                self.assertEqual(result[key], sum(
+                    test[of] for test in result["tests"]))
+        tests = made["all"]["tests"]
+        self.assertEqual([test["passed"] for test in tests].count(False), 1)
+        self.assertEqual(made["all"]["score"], self.report.points)
+        self.assertEqual(made["all"]["max-score"], self.report.of)
+        self.assertIn("got <&>.", tests[4]["output"])
+        self.assertNotIn("output", made["names"]["tests"][4])
+        self.assertEqual(made["none"]["tests"], [])
 
     def check_gradescope(self, data):
         """As Gradescope's page "Autograder Specifications" has it."""

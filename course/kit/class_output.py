@@ -1,0 +1,89 @@
+"""What a graded class leaves: a table, reports for students, a page."""
+
+import csv
+import datetime
+import io
+import statistics
+
+import grade
+import judge
+import jplag
+import report
+import submission
+from class_page import page
+
+COLUMNS = ("student", "commit", "tag", "kind of tag", "tagged", "committed",
+           "time", "days late", "points", "of")
+
+
+def made(whole, row):
+    """The report on a row, from what is kept of its content."""
+    kept = whole.known(row.content)
+    results = {test: judge.Result(**{key: value for key, value
+                                     in kept[test].items() if key != "kit"})
+               for test in whole.tests}
+    taken = submission.Submission({}, row.notes, row.flags)
+    return report.combine(whole.course, submission.shown(row.student), taken,
+                          results)
+
+
+def write(whole, rows):
+    folder = whole.out / "reports"
+    folder.mkdir(exist_ok=True)
+    texts = {}
+    for row in rows:
+        text = f"This can't be graded: {row.reason}.\n"
+        if not row.reason:
+            row.report = made(whole, row)
+            text = report.as_text(row.report, whole.feedback)
+            texts[f"{row.student}.json"] = report.as_json(row.report)
+        texts[f"{row.student}.txt"] = text
+    for old in {path.name for path in folder.iterdir()} - texts.keys():
+        (folder / old).unlink()
+    for name, text in texts.items():
+        grade.write(folder / name, text)
+    grade.write(whole.out / "class.csv", table(whole, rows))
+    grade.write(whole.out / "class.html", page(whole, rows))
+
+
+def table(whole, rows):
+    """A line for each student: CSV."""
+    text = io.StringIO()
+    lines = csv.writer(text, lineterminator="\n")
+    ids = list(whole.course.tasks)
+    lines.writerow([*COLUMNS, *ids, "note"])
+    zone = whole.due.tzinfo if whole.due else datetime.timezone.utc
+    for row in rows:
+        made = row.made
+        dates = [time and time.isoformat(" ") for time in (
+            made.tagged, made.committed, made.time
+            and made.time.astimezone(zone))]
+        points = [""] * (2 + len(ids))
+        notes = [row.reason] if row.reason else list(row.notes)
+        if row.report:
+            points = [row.report.points, row.report.of,
+                      *(graded.points for graded in row.report.graded)]
+            if row.report.flags:
+                notes.append(f"{len(row.report.flags)} lines to look at by "
+                             "hand: the report")
+        lines.writerow([
+            submission.shown(row.student), made.commit,
+            whole.tag if made.commit else "", made.kind, *dates, row.late,
+            *points, "; ".join(notes)])
+    return text.getvalue()
+
+
+def summary(whole, rows):
+    """What make class says at last."""
+    graded = [row.report.points for row in rows if row.report]
+    lines = [f"{len(rows)} submissions: {len(graded)} graded, "
+             f"{len(rows) - len(graded)} that can't be"]
+    if whole.due:
+        late = sum(bool(row.late) for row in rows)
+        lines[0] += f", {late} late (after {whole.due.isoformat(' ')})"
+    if graded:
+        lines.append(f"median {statistics.median(graded):g} of "
+                     f"{whole.course.points} points")
+    lines += [f"written: {whole.out}/class.csv class.html reports/ jplag/",
+              f"similar submissions: {jplag.command(whole)}"]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,124 @@
+"""A class as one page: points, and which sentences of the specification do not
+hold. It has no name of a student but of those who can't be graded, and asks
+nothing of a network.
+"""
+
+import collections
+import html
+import statistics
+
+import report
+import submission
+
+STYLE = """
+:root { color-scheme: light dark; --ink: #1c1c1c; --paper: #fff; --line: #ccc;
+  --bar: #3465a4; --dim: #595959; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e8e8e8; --paper: #161616;
+  --line: #444; --bar: #729fcf; --dim: #a8a8a8; } }
+body { font: 16px/1.45 system-ui, sans-serif; color: var(--ink);
+  background: var(--paper); max-width: 46rem; margin: 0 auto;
+  padding: 0 1rem 3rem;  overflow-wrap: anywhere; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.2rem; margin-top: 2rem; }
+h3 { font-size: 1rem; margin: 1.2rem 0 .2rem; }
+p, ul { margin: .3rem 0; } ul { padding-left: 1.2rem; }
+.dim { color: var(--dim); }
+.track { background: var(--line); height: .5rem; }
+.track div { background: var(--bar); height: 100%; }
+table { border-collapse: collapse; width: 100%; }
+td, th { padding: .15rem .6rem .15rem 0; text-align: left; font-weight: normal;
+  white-space: nowrap; }
+td:last-child { width: 100%; }
+"""
+SHOWN = 3       # failures of a task, and three times as many of all
+LONGEST = 300   # characters of a failure
+
+
+def text(words):
+    return html.escape(str(words))
+
+
+def bar(share):
+    return ('<div class="track"><div style="width:'
+            f'{100 * share:.1f}%"></div></div>')
+
+
+def distribution(points, of):
+    """How many got how much, in tenths; all points apart."""
+    bins = collections.Counter(
+        min(10 * one // of, 9) if one < of else 10 for one in points)
+    most = max(bins.values())
+    yield "<table>"
+    for tenth in range(11):
+        least = -(-of * tenth // 10)
+        last = of if tenth == 10 else -(-of * (tenth + 1) // 10) - 1
+        name = f"{least}" if least == last else f"{least} to {last}"
+        yield (f"<tr><th>{name}</th><td>{bins[tenth]}</td>"
+               f"<td>{bar(bins[tenth] / most)}</td></tr>")
+    yield "</table>"
+
+
+def failures(graded):
+    """[(how often, what was said)] of tasks that failed."""
+    said = collections.Counter(
+        report.outcome(one.result).split("\n")[0][:LONGEST] for one in graded)
+    return sorted(((number, words) for words, number in said.items()),
+                  key=lambda pair: (-pair[0], pair[1]))
+
+
+def listed(found):
+    yield "<ul>"
+    for number, words in found:
+        yield f"<li>{number} \u00d7 {text(words)}</li>"
+    yield "</ul>"
+
+
+def of_task(graded):
+    """One sentence of the specification."""
+    task = graded[0].task
+    failed = [one for one in graded if not one.passed]
+    yield f"<h3>{text(report.heading(task))}</h3>"
+    yield bar(len(failed) / len(graded))
+    worth = f"{task.points} point" + "s" * (task.points != 1)
+    yield (f"<p>{len(failed)} of {len(graded)} failed "
+           f'<span class="dim">({worth})</span></p>')
+    yield f'<p class="dim">{text(task.says)}</p>'
+    if failed:
+        yield from listed(failures(failed)[:SHOWN])
+
+
+def page(whole, rows):
+    graded = [row.report for row in rows if row.report]
+    refused = [row for row in rows if row.reason]
+    title = f"{whole.course.title}: the class"
+    lines = ['<!DOCTYPE html>', '<html lang="en"><meta charset="utf-8">',
+             '<meta name="viewport" content="width=device-width">',
+             f"<title>{text(title)}</title><style>{STYLE}</style>",
+             f"<h1>{text(title)}</h1>",
+             f"<p>{len(rows)} submissions: {len(graded)} graded, "
+             f"{len(refused)} that can't be.</p>"]
+    if whole.due:
+        days = collections.Counter(row.late for row in rows if row.late)
+        late = "".join(f", {number} by {day} day{'s' * (day != 1)}"
+                       for day, number in sorted(days.items()))
+        lines.append(f"<p>{sum(days.values())} after the deadline, "
+                     f"{text(whole.due.isoformat(' '))}{late}.</p>")
+    if graded:
+        points = [one.points for one in graded]
+        lines += ["<h2>Points</h2>",
+                  f"<p>Median {statistics.median(points):g}, mean "
+                  f"{statistics.fmean(points):.1f} of {graded[0].of}.</p>"]
+        if graded[0].of:
+            lines += distribution(points, graded[0].of)
+        failed = [one for each in graded for one in each.graded
+                  if not one.passed]
+        if failed:
+            lines.append("<h2>Most frequent failures</h2>")
+            lines += listed(failures(failed)[:3 * SHOWN])
+        lines.append("<h2>Sentences of the specification</h2>")
+        for same in zip(*(one.graded for one in graded)):
+            lines += of_task(same)
+    if refused:
+        lines += ["<h2>Not graded</h2>", "<ul>",
+                  *(f"<li>{text(submission.shown(row.student))}: "
+                    f"{text(row.reason)}</li>" for row in refused), "</ul>"]
+    return "\n".join([*lines, "</html>", ""])

@@ -1,0 +1,110 @@
+"""When a submission was made, and by how much it is late.
+
+A deadline is '2026-02-14 16:30 -0800' or '2026-02-14 16:30 Europe/Berlin', with
+or without seconds. A submission counts from the later of two dates: of its
+commit, and of its tag if that is annotated. A lightweight tag has none. Both
+are what the student's clock said.
+"""
+
+import datetime
+import re
+import zoneinfo
+from dataclasses import dataclass
+
+from submission import BadInput, git, shown
+
+DEADLINE = re.compile(r"(\d{4}-\d\d-\d\d) (\d\d:\d\d(?::\d\d)?) "
+                      r"([+-]\d{4}|[A-Za-z][\w+-]*(?:/[\w+-]+)*)")
+PERSON = re.compile(rb"^(?:committer|tagger) .*> (-?\d+) ([+-]\d{4})$",
+                    re.MULTILINE)
+DAY = datetime.timedelta(days=1)
+
+
+def offset(text):
+    """The zone that '-0800' names."""
+    minutes = int(text[1:3]) * 60 + int(text[3:])
+    return datetime.timezone(datetime.timedelta(
+        minutes=-minutes if text[0] == "-" else minutes))
+
+
+def deadline(text):
+    """The moment that `text` says, in its zone."""
+    def refuse(why):
+        raise BadInput(f"DUE is '{shown(text)}', {why}")
+
+    parts = DEADLINE.fullmatch(text)
+    if not parts:
+        refuse("expected a date, a time and a zone, as in "
+               "'2026-02-14 16:30 -0800' or '2026-02-14 16:30 Europe/Berlin'")
+    try:
+        naive = datetime.datetime.fromisoformat(f"{parts[1]} {parts[2]}")
+        zone = (offset(parts[3]) if parts[3][0] in "+-"
+                else zoneinfo.ZoneInfo(parts[3]))
+        due = naive.replace(tzinfo=zone)
+        there = due.astimezone(datetime.timezone.utc).astimezone(zone)
+    except zoneinfo.ZoneInfoNotFoundError:
+        refuse("and this machine knows no such zone: -0800 is one, too")
+    except (ValueError, OverflowError):
+        refuse("which is no time of a calendar")
+    if there.replace(tzinfo=None) != naive:
+        refuse("a time that summer time leaves out")
+    if due.utcoffset() != due.replace(fold=1).utcoffset():
+        refuse("a time that comes twice there: give its offset, as -0800")
+    return due
+
+
+def days_late(moment, due):
+    """Days that have begun since the deadline: it comes again each day at the
+    same time of its own clock, also where that is not 24 hours later."""
+    days = max(0, (moment - due) // DAY - 1)
+    while moment > due + days * DAY:    # of the same zone: by its clock
+        days += 1
+    return days
+
+
+@dataclass
+class Made:
+    """A submission by a tag. Dates are None where there are none."""
+    commit: str = ""
+    kind: str = ""           # of the tag: annotated or lightweight
+    tagged: object = None
+    committed: object = None
+
+    @property
+    def time(self):
+        return max(filter(None, (self.tagged, self.committed)), default=None)
+
+    def doubts(self):
+        if self.commit and not self.committed:
+            yield "its commit has no date that can be read"
+        if self.kind == "annotated" and not self.tagged:
+            yield "its tag has no date that can be read"
+        if self.tagged and self.committed and self.tagged < self.committed:
+            yield "its tag is older than its commit"
+
+
+def date_of(thing):
+    """The date that a commit or a tag says, in the student's zone."""
+    person = PERSON.search(thing.partition(b"\n\n")[0])
+    try:
+        seconds = int(person[1])
+        if seconds >= 1 << 36:      # years after 4000: days are counted
+            return None
+        return datetime.datetime.fromtimestamp(
+            seconds, offset(person[2].decode()))
+    except (TypeError, ValueError, OverflowError, OSError):
+        return None
+
+
+def made(folder, tag):
+    """What a tag of a clone says. It names a commit, as submission.take()
+    found."""
+    name = f"refs/tags/{tag}"
+    commit = git(folder, "rev-parse", "--verify",
+                 f"{name}^{{commit}}").decode().strip()
+    found = Made(commit, "lightweight",
+                 committed=date_of(git(folder, "cat-file", "commit", commit)))
+    if git(folder, "cat-file", "-t", name).strip() == b"tag":
+        found.kind = "annotated"
+        found.tagged = date_of(git(folder, "cat-file", "tag", name))
+    return found

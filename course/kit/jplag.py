@@ -1,0 +1,30 @@
+"""The submissions of a class as JPlag wants them (github.com/jplag/JPlag): a
+folder for each student, and the starter as its base code, which is no match.
+"""
+
+import shlex
+import shutil
+
+import markers
+
+
+def lay_out(whole, rows, do_all):
+    """Write jplag/ anew: submissions/STUDENT/ and base/."""
+    folder = whole.out / "jplag"
+    shutil.rmtree(folder, ignore_errors=True)
+    base = folder / "base"
+    base.mkdir(parents=True)
+    texts, course = markers.load()
+    for name, text in texts.items():
+        (base / name).write_text(markers.starter(text, course, name), "utf-8")
+    there = folder / "submissions"
+    there.mkdir()
+    do_all([("lay_out", row.student, str(there))
+            for row in rows if not row.reason])
+
+
+def command(whole):
+    return shlex.join([
+        "java", "-jar", "jplag.jar", "-l", "cpp", "-bc",
+        str(whole.out / "jplag/base"), "-r",
+        str(whole.out / "jplag/result"), str(whole.out / "jplag/submissions")])

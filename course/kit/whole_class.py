@@ -1,0 +1,295 @@
+"""Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
+
+    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TASK=ID] [FEEDBACK=names] [LIST=1]
+      [SAFE=0] [JOBS=N] python3 course/kit/whole_class.py [STUDENT]
+
+DIR holds a folder for each student, as grade.py takes one; dates.py says what
+DUE is. OUT gets class.csv, class.html, reports/STUDENT.txt (for the student, as
+FEEDBACK says) and .json (all), and jplag/. It keeps what each test said of each
+content in kept/: equal submissions are graded once, and a class that was ended
+goes on where it was. Tests that have changed since are made anew, with TASK
+those of this task alone. LIST=1 prints what is left to grade as one command a
+line: each grades what STUDENT handed in, on any machine with these folders.
+Exit status: 0 it was graded; 2 it can't be, or some who could not have a reason
+that is no fault of theirs.
+"""
+
+import concurrent.futures
+import dataclasses
+import fcntl
+import hashlib
+import json
+import os
+import pathlib
+import shlex
+import signal
+import sys
+from dataclasses import dataclass, field
+
+import child
+import class_output
+import dates
+import grade
+import jplag
+import judge
+import once
+import submission
+import tasks
+
+KEPT = "kept"
+
+
+@dataclass
+class Row:
+    """A student, and what became of the submission."""
+    student: str               # the folder in DIR
+    content: str = ""          # of its sources: a digest
+    made: object = field(default_factory=dates.Made)
+    notes: list = field(default_factory=list)
+    flags: list = field(default_factory=list)
+    reason: str = ""           # why it can't be graded
+    report: object = None
+    late: int | None = None    # days
+
+
+class Class:
+    def __init__(self, get):
+        self.folder, self.tag = get("DIR", ""), get("HW", "")
+        if not self.folder or not get("OUT"):
+            raise submission.BadInput(
+                "make class DIR=clones OUT=grades: DIR holds a folder for each "
+                "student, OUT gets the grades")
+        self.out = pathlib.Path(os.path.realpath(get("OUT")))
+        clones = pathlib.Path(os.path.realpath(self.folder))
+        if clones in (self.out, *self.out.parents) or (
+                self.out in clones.parents):
+            raise submission.BadInput(
+                "OUT and DIR lie in each other: grades are not kept among "
+                "submissions")
+        try:
+            self.students = sorted(entry.name for entry in os.scandir(clones)
+                                   if entry.is_dir() and entry.name[0] != ".")
+        except OSError as error:
+            raise submission.BadInput(f"{submission.shown(self.folder)}: "
+                                      f"{error.strerror}") from None
+        if not self.students:
+            raise submission.BadInput(f"{submission.shown(self.folder)} holds "
+                                      "no folder of a student")
+        if get("DUE") and not self.tag:
+            raise submission.BadInput("DUE needs HW: a folder has no date")
+        self.due = dates.deadline(get("DUE")) if get("DUE") else None
+        self.feedback = grade.feedback()
+        self.jobs = grade.number_of_jobs(get("JOBS"))
+        self.unsafe = get("SAFE") == "0"
+        self.course = tasks.load()
+        self.tests = grade.tests_of(self.course)
+        task = get("TASK", "")
+        if task and task not in self.course.tasks:
+            raise submission.BadInput(
+                f"TASK is '{submission.shown(task)}', expected one of: "
+                + " ".join(self.course.tasks))
+        self.anew = (set(self.course.tasks[task].tests) if task
+                     else set(self.tests))
+        self.kept = self.out / KEPT
+        if self.out.is_dir() and any(self.out.iterdir()) and (
+                not self.kept.is_dir()):
+            raise submission.BadInput(
+                f"{submission.shown(get('OUT'))} holds other files than "
+                "grades: OUT is a folder that is new")
+        self.kept.mkdir(parents=True, exist_ok=True)
+
+    def prepare(self):
+        """The solution, graded once: workers begin with what it answered."""
+        self.kit = once.Kit(self.unsafe)
+        self.lacks = list(grade.less_safe(self.kit, self.unsafe))
+        judge.prepare(self.kit, self.tests, self.jobs)
+        self.version = self.kit.data.parent.name    # of all that judges
+
+    # ------------------------------------------------------- By one worker
+
+    def take(self, student):
+        """The submission and its digest."""
+        signal.signal(signal.SIGALRM, grade.too_long)
+        signal.alarm(grade.READING)
+        try:
+            taken = submission.take(os.path.join(self.folder, student),
+                                    self.tag)
+        finally:
+            signal.alarm(0)
+        digest = hashlib.sha256()
+        for name, text in sorted(taken.files.items()):
+            digest.update(f"{name}\0{len(text)}\0".encode() + text)
+        return taken, digest.hexdigest()[:32]
+
+    def read(self, student):
+        row, folder = Row(student), os.path.join(self.folder, student)
+        try:
+            if self.tag and self.tag in submission.tags(folder, self.tag):
+                row.made = dates.made(folder, self.tag)
+            taken, row.content = self.take(student)
+            row.notes, row.flags = taken.notes, taken.flags
+        except submission.BadInput as error:
+            row.reason = str(error).removeprefix(
+                f"{submission.shown(folder)}: ")
+        except (OSError, MemoryError, RecursionError, ValueError) as error:
+            row.reason = f"reading it fails: {type(error).__name__}"
+        return row
+
+    def lay_out(self, student, place):
+        """Its sources, as they were graded, in a folder of another program."""
+        for name, text in self.take(student)[0].files.items():
+            path = pathlib.Path(place, student, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(text)
+
+    def place(self, content):
+        return self.kept / f"{content}.json"
+
+    def known(self, content):
+        """{test: what is kept of it}, of those that need not be made anew."""
+        try:
+            found = json.loads(self.place(content).read_text("ascii"))
+        except FileNotFoundError:
+            return {}
+        return {test: result for test, result in found.items()
+                if result["kit"] == self.version or test not in self.anew}
+
+    def grade(self, student, content):
+        """Grade what is left of a content. @return why that fails, or ''"""
+        known = self.known(content)
+        left = {test: needs for test, needs in self.tests.items()
+                if test not in known}
+        if not left:
+            return ""
+        taken, now = self.take(student)
+        if now != content:
+            return "it changed while the class was graded"
+        judge.prepare(self.kit, self.tests, 1)      # it is in use
+        for test, result in judge.judge(self.kit, taken.files, left,
+                                        1).items():
+            kept = dataclasses.asdict(result)
+            del kept["answers"]
+            known[test] = kept | {"kit": self.version}
+        grade.write(self.place(content), json.dumps(known, indent=0,
+                                                    sort_keys=True))
+        return ""
+
+    # --------------------------------------------------------- The whole class
+
+    def rows(self, pool):
+        rows = list(pool.map(work, [("read", name) for name in self.students],
+                             chunksize=4))
+        self.watch_tags(rows)
+        for row in rows:
+            if self.due and row.made.time:
+                row.late = dates.days_late(row.made.time, self.due)
+            row.notes = [*row.notes, *row.made.doubts(), *self.lacks]
+        return rows
+
+    def watch_tags(self, rows):
+        """Say of a tag where it was when it was seen first."""
+        path = self.kept / "tags.json"
+        seen = json.loads(path.read_text("ascii")) if path.exists() else {}
+        for row in rows:
+            if row.made.commit:
+                first = seen.setdefault(f"{self.tag} {row.student}",
+                                        row.made.commit)
+                if first != row.made.commit:
+                    row.notes.append(f"its tag was on {first[:10]} when it was "
+                                     "seen first")
+        grade.write(path, json.dumps(seen, indent=0, sort_keys=True))
+
+    def left(self, rows):
+        """{content: those who handed it in}, of what has to be graded."""
+        groups = {}
+        for row in rows:
+            if row.content and not row.reason:
+                groups.setdefault(row.content, []).append(row)
+        return {content: group for content, group in groups.items()
+                if self.tests.keys() - self.known(content).keys()}
+
+    def grade_all(self, rows, pool):
+        groups = self.left(rows)
+        waiting = {pool.submit(work, ("grade", group[0].student, content)):
+                   group for content, group in groups.items()}
+        done = concurrent.futures.as_completed(waiting)
+        for number, one in enumerate(done, 1):
+            first, *others = waiting[one]
+            try:
+                reason = one.result()
+            except Exception as error:  # of one submission, whatever it is
+                reason = ("the grader fails, which is no fault of the "
+                          f"student's: {type(error).__name__}: {error}")
+            for row in waiting[one]:
+                row.reason = submission.shown(reason)
+            print(f"{number}/{len(groups)} {submission.shown(first.student)}"
+                  + (f" and {len(others)} with the same files" if others
+                     else "") + (f": {row.reason}" if reason else ""),
+                  flush=True)
+        return all("the grader fails" not in row.reason for row in rows)
+
+def work(job):
+    """What a worker does: a process of its own, which a signal may end."""
+    name, *arguments = job
+    return getattr(THE_CLASS, name)(*arguments)
+
+
+def ends_with_us():
+    child.LIBC.prctl(child.PR_SET_PDEATHSIG, signal.SIGKILL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def commands(whole, rows):
+    """One command for each content that is left."""
+    for group in whole.left(rows).values():
+        words = [f"{name}={os.environ[name]}" for name in
+                 ("DIR", "OUT", "HW", "TASK", "SAFE") if os.environ.get(name)]
+        yield shlex.join(["env", *words, "python3", "course/kit/whole_class.py",
+                          group[0].student])
+
+
+def run(student):
+    global THE_CLASS
+    THE_CLASS = whole = Class(os.environ.get)
+    if student:
+        whole.prepare()
+        row = whole.read(student)
+        reason = row.reason or whole.grade(student, row.content)
+        if reason:
+            raise submission.BadInput(reason)
+        return 0
+    with open(whole.kept / "lock", "w", encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise submission.BadInput("another make class writes to OUT") \
+                from None
+        whole.prepare()
+        with concurrent.futures.ProcessPoolExecutor(
+                whole.jobs, initializer=ends_with_us) as pool:
+            rows = whole.rows(pool)
+            if os.environ.get("LIST"):
+                print("\n".join(commands(whole, rows)))
+                return 0
+            fine = whole.grade_all(rows, pool)
+            class_output.write(whole, rows)
+            jplag.lay_out(whole, rows, lambda jobs: list(pool.map(work, jobs)))
+        for path in whole.out.rglob(".new-*"):      # of runs that were ended
+            path.unlink()
+        print(class_output.summary(whole, rows), end="")
+    return 0 if fine else 2
+
+
+def main():
+    try:
+        return run(sys.argv[1] if len(sys.argv) > 1 else "")
+    except (submission.BadInput, once.KitError, tasks.TasksError) as error:
+        print(f"class: {error}", file=sys.stderr)
+    except OSError as error:
+        print(f"class: {submission.shown(error.filename or 'this machine')}: "
+              f"{error.strerror}", file=sys.stderr)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())
