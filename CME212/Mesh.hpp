@@ -3,12 +3,19 @@
  * The mesh of a cloth: points and quads, read from files or generated. Format
  * of the files: data/README.md. */
 #include <fcntl.h>
+#include <locale.h>
 #include <poll.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#ifdef __APPLE__
+#include <xlocale.h>
+#endif
+
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -18,6 +25,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <vector>
 
 #include "CME212/Point.hpp"
@@ -69,13 +77,50 @@ std::size_t for_each_line(std::string_view text, Use use) {
   return number;
 }
 
+/** std::from_chars() of a real by the C library: the same values and errors. */
+template <typename T>
+std::from_chars_result real_of_c(const char* first, const char* last,
+                                 T& value) {
+  static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  // No hexadecimals, which strtod_l() reads, too; nor blanks and '+' in front.
+  auto starts_hex = [](char c) { return c == 'x' || c == 'X'; };
+  const std::string text(first, std::find_if(first, last, starts_hex));
+  char* end = nullptr;
+  errno = 0;
+  const T a = sizeof(T) == sizeof(float)
+                  ? T(strtof_l(text.c_str(), &end, locale))
+                  : T(strtod_l(text.c_str(), &end, locale));
+  if (end == text.c_str() || text[0] == '+' || std::isspace(text[0] & 0xff))
+    return {first, std::errc::invalid_argument};
+  const char* const behind = first + (end - text.c_str());
+  if (errno == ERANGE && (a == 0 || std::isinf(a)))
+    return {behind, std::errc::result_out_of_range};
+  value = a;
+  return {behind, std::errc()};
+}
+
+#ifdef __cpp_lib_to_chars  // of reals, too: not in libc++ of Macs and of wasm
+inline constexpr bool library_reads_reals = true;
+#else
+inline constexpr bool library_reads_reals = false;
+#endif
+template <typename T>
+std::from_chars_result from_chars(const char* first, const char* last,
+                                  T& value) {
+  if constexpr (std::is_integral_v<T> || library_reads_reals)
+    return std::from_chars(first, last, value);
+  else
+    return real_of_c(first, last, value);
+}
+
 /** @a word as a number.  Throws std::runtime_error that says what is wrong. */
 template <typename T>
 T parse_number(std::string_view word, const char* kind) {
   T value{};
   const char* first = word.data();
   if (word.starts_with('+') && !word.starts_with("+-")) ++first;
-  auto [end, error] = std::from_chars(first, word.data() + word.size(), value);
+  auto [end, error] =
+      mesh_detail::from_chars(first, word.data() + word.size(), value);
   if (error == std::errc::result_out_of_range)
     throw std::runtime_error(quoted(word) + " is out of range");
   if (error != std::errc() || end != word.data() + word.size())

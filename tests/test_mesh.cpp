@@ -2,7 +2,14 @@
 // which words, and grids.
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "CME212/Mesh.hpp"
 #include "lab/scenes/MeshFile.hpp"
@@ -172,6 +179,37 @@ TEST(Grid, HasXOutsideAndYInsideOverTheUnitSquare) {
   ASSERT_EQ(q.size(), 16u);
   EXPECT_EQ(q[0], (Quad{0, 1, 5, 6}));
   EXPECT_EQ(q[15], (Quad{18, 19, 23, 24}));
+}
+
+// Libraries without from_chars() of a real: the C library's gives the same.
+template <typename T>
+static void same_as_from_chars(const std::string& word) {
+  const char *first = word.data(), *last = first + word.size();
+  T a = 7, b = 7;
+  const auto wanted = std::from_chars(first, last, a);
+  const auto got = mesh_detail::real_of_c(first, last, b);
+  EXPECT_EQ(wanted.ec, got.ec) << "'" << word << "'";
+  EXPECT_EQ(wanted.ptr - first, got.ptr - first) << "'" << word << "'";
+  EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << "'" << word << "'";
+}
+TEST(Mesh, RealsOfTheCLibraryAreThoseOfFromChars) {
+  std::vector<std::string> words = {
+      "1",    "-1",  "+1",       "1e",     "1e+5",   "1e-400", "-1e400",
+      "1e39", "inf", "INFINITY", "-nan",   "nan(",   ".5",     "5.",
+      ".",    "-.",  "",         "--1",    "-+1",    "0x10",   "0X1p3",
+      "1,5",  " 1",  "\f1",      "4e-320", "2e-324", "infx",   "0.1"};
+  std::mt19937 dice(1);
+  const std::string letters = "0123456789..eE+-xinf ";
+  for (int k = 0; k < 20000; ++k) {
+    std::string& word = words.emplace_back();
+    for (auto n = dice() % 8; n; --n) word += letters[dice() % letters.size()];
+    double any = std::bit_cast<double>(std::uint64_t(dice()) << 32 | dice());
+    words.push_back(std::isfinite(any) ? CME212::short_text(any) : "1");
+  }
+  for (const std::string& word : words) {
+    same_as_from_chars<double>(word);
+    same_as_from_chars<float>(word);
+  }
 }
 
 }  // namespace

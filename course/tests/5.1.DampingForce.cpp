@@ -24,6 +24,15 @@ constexpr bool takes_whole = requires(unsigned N) {
   F(N);
 };
 
+template <typename T>
+static bool set_if_it_is_there(T& global, double number) {
+  if constexpr (std::is_assignable_v<T&, double>) {
+    global = number;
+    return true;
+  }
+  return false;
+}
+
 /** The force from a number, which may be c or N, from N, or from a graph.
  * @param c  what its coefficient should be; 0 if nobody can know */
 template <typename F>
@@ -46,10 +55,10 @@ static F* damping_from(Cloth& g, double number, double& c) {
     c = 0;
     if constexpr (requires { force->c = number; }) force->c = c = number;
     // A global one, which main() would set.
-    else if constexpr (std::is_assignable_v<decltype((::C)), double>)
-      ::C = c = number;
-    else if constexpr (std::is_assignable_v<decltype((::c)), double>)
-      ::c = c = number;
+    else if (!set_if_it_is_there(::C, number) &&
+             !set_if_it_is_there(::c, number))
+      return force;
+    c = number;
     return force;
   }
 }

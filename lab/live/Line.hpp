@@ -53,7 +53,7 @@ class Line {
     const std::string_view text = word(expected);
     const char* const last = text.data() + text.size();
     T a{};
-    const auto [end, fault] = std::from_chars(text.data(), last, a);
+    const auto [end, fault] = mesh_detail::from_chars(text.data(), last, a);
     if (fault != std::errc() || end != last)
       fail(mesh_detail::quoted(text) + " is not " + expected);
     else if (!std::isfinite(double(a)))
