@@ -158,7 +158,7 @@ class Whole(unittest.TestCase):
 
     def hold_page(self, page):
         self.assertNotRegex(page, r"https?:|src=|@import|url\(|<script")
-        self.assertIn("14 submissions: 11 graded, 3 that can&#x27;t be", page)
+        self.assertIn("14 submissions: 11 graded, 3 that can't be", page)
         self.assertIn("student003: holds no Graph.hpp", page)
         self.assertNotIn("student000", page)
 
