@@ -35,14 +35,13 @@ class Run {
       w_.spring(i, j, hidden ? 0 : e[2], hidden ? 1 : e[3]);
       springs_[i * n_ + j] = springs_[j * n_ + i] = {e[2], e[3]};
     }
-    w_.hold = [this](GraphType& g, double t) { hold(g, t); };
   }
   Run(const Run&) = delete;
 
   void step(double t, double h) {
     TRY_STEP(
         w_.g, t, h, [this](auto n, double at) { return force(n, at); },
-        [this](auto&, double at) { w_.constrain(at); });
+        [this](auto& g, double at) { hold(g, at); });
   }
   /** Forces on all nodes. An answer as before, at the same place, is free. */
   double evaluations() const { return double(calls_) / n_; }
