@@ -121,8 +121,8 @@ method-costs: bench_methods
 
 # ---- Advice: lab/advice/README.md, on ADVISED random scenes from seed FIRST.
 
-ADVISED ?= 150
-FIRST   ?= 1
+ADVISED ?= 75
+FIRST   ?= 301
 adviser-suite: $(B)/cloth
 	lab/advice/suite.py --cloth $< --out $(B)/adviser.csv --first $(FIRST) \
 	  --scenes $(ADVISED) $(if $(JOBS),--jobs $(JOBS))
