@@ -126,7 +126,7 @@ def judge(seed, cloth, ask):
         own = steps and s.at(s.cells, "verlet", steps)
         scale = own and distance(own[0], s.start(s.cells)[0], s.points)
         if own and s.measure == "energy":
-            scale = max(scale, own[3])  # little of what moves may be lost
+            scale = max(scale, own[3])  # drag may take little
         if not own or scale < 1e-5:
             return None
         tolerance = f"{s.share * scale:.2g}"
