@@ -36,8 +36,8 @@ def sphere(points):
         abs(math.dist(p, center) - radius) < 1e-7 for p in points) else None
 
 
-def surface(v, moves, deepest):
-    """What nodes are moved to. moves: (x, v before, x, v after, variant)"""
+def surface(v, moves):
+    """What nodes are moved to. moves: (x and v before, x and v after)"""
     ends = [after[:3] for _, after in moves]
     planes = [d for d in range(3) if all(
         abs(p[d] - ends[0][d]) < NEAR for p in ends)]
@@ -96,7 +96,7 @@ def read(v, where, numbers):
             v.faults.append(("pinned nodes keep a velocity", "Set the velocity "
                              "of a pinned node to 0, too."))
     if placed:
-        is_a.append(surface(v, placed, 0))
+        is_a.append(surface(v, placed))
     elif moves:
         is_a.append("a change of velocities alone")
     if removed:

@@ -22,10 +22,14 @@ def measured(path, wanted):
     """The Verdict on the step in a file or, if that is none, on the force or
     constraint."""
     try:
-        steps = steps_in(path.read_text(encoding="utf-8", errors="replace"))
+        text = path.read_text(encoding="utf-8", errors="replace")
+        steps = steps_in(text)
         if wanted not in steps if wanted else not steps:
             if chosen := functor.choose(path, wanted):
                 return functor.measure(path, *chosen)
+            if not steps and (names := functor.functors_in(text)):
+                raise BadInput(f"{path}:1: has no {wanted}; it has "
+                               + ", ".join(names))
     except OSError:
         pass        # measure() says why
     return measure.measure(path, wanted, say=progress)

@@ -96,7 +96,8 @@ def choose(path, wanted):
     form = ("template <typename G, typename F, typename C> double NAME(G& g, "
             "double t, double dt, F&& force, C&& constraint)")
     if not found:
-        raise BadInput(f"{path}:1: has no step, expected {form}")
+        raise BadInput(f"{path}:1: has no step, expected {form}; nor a struct "
+                       "with a call (Node, double) or (GraphType&, double)")
     if wanted:
         if wanted not in found:
             raise BadInput(f"{path}:1: has no step {wanted}; it has "
