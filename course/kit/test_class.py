@@ -164,11 +164,12 @@ class Whole(unittest.TestCase):
 
     def move_a_tag(self):
         clone = self.top / "clones/student000"
-        child.run(["git", "-C", clone, "-c", "user.name=a", "-c",
-                   "user.email=b", "commit", "-q", "--allow-empty", "-m", "x"],
-                  check=True, env=os.environ | {
-                      "GIT_COMMITTER_DATE": "2026-12-01T00:00:00Z"})
-        child.run(["git", "-C", clone, "tag", "-f", "hw2", "HEAD"], check=True,
+        commit = child.run(
+            ["git", "-C", clone, "-c", "user.name=a", "-c", "user.email=b",
+             "commit-tree", "-p", "hw2^{commit}", "-m", "x", "hw2^{tree}"],
+            check=True, capture_output=True, text=True, env=os.environ | {
+                "GIT_COMMITTER_DATE": "2026-12-01T00:00:00Z"}).stdout.strip()
+        child.run(["git", "-C", clone, "tag", "-f", "hw2", commit], check=True,
                   capture_output=True)
         self.run_class(FEEDBACK="names")
         row = next(csv.DictReader(
