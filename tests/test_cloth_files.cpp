@@ -288,8 +288,9 @@ TEST_F(ClothProgram, ReadsAPipeAndEndsByASignalIfNothingComes) {
 
 TEST_F(ClothProgram, EndsTheAdviceByASignal) {
   Result r = interrupt(
-      "--sheet 'u 1 0 0 v 0 0 -1' --pin 'x 0 z 0' --pin 'x 1 z 0' --t-end 0.2 "
-      "--tolerance 1e-6 --advise --advise-work 1e16 --write-config " +
+      "--sheet 'u 1 0 0 v 0 0 -1' --pin 'z 0' --modulus 100 --density 1 "
+      "--t-end "
+      "0.2 --tolerance 1e-5 --advise --advise-work 1e13 --write-config " +
           path("a.toml"),
       {SIGINT}, [this] { return !contents(dir / "err").empty(); });
   EXPECT_EQ(r.status, 130);
