@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <map>
 #include <set>
@@ -124,6 +125,57 @@ TEST(Answers, PositionsAreOfTheSamePlacesOnAllGrids) {
   EXPECT_EQ(b[3 * 81 + 2], 1);  // the second sheet's corner
   EXPECT_LT(distance(b, positions_on_a_saddle(fine), Measure::positions),
             1e-15);
+}
+
+/** The drape height of a sheet of @a n x @a p nodes at heights z(s, t), where
+ * (s, t) of [0, 1]^2 is the place on the sheet. */
+double drape_height(unsigned n, unsigned p,
+                    const std::function<double(double, double)>& z) {
+  const Model m =
+      with_sheet("nodes " + std::to_string(n) + ' ' + std::to_string(p));
+  Cloth g;
+  build(g, m);
+  unsigned k = 0;
+  for (unsigned i = 0; i < n; ++i)
+    for (unsigned j = 0; j < p; ++j) {
+      const double s = i / double(n - 1), t = j / double(p - 1);
+      g.node(k++).position() = Point(s, t, z(s, t));
+    }
+  return answer(m, g, Measure::drape_height)[0];
+}
+
+TEST(Answers, TheLowestPointOfAParaboloidIsTheSameOnAllGrids) {
+  // Lowest where 2 (s - 0.47) + 0.3 t = 0 and 4 (t - 0.52) + 0.3 s = 0.
+  auto bowl = [](double s, double t) {
+    return (s - 0.47) * (s - 0.47) + 2 * (t - 0.52) * (t - 0.52) + 0.3 * s * t;
+  };
+  const double s = (0.94 * 4 - 0.3 * 2.08) / (8 - 0.09),
+               t = (2.08 - 0.3 * s) / 4;
+  for (unsigned n : {4u, 5u, 8u, 25u})
+    for (unsigned p : {4u, 7u, 40u})
+      EXPECT_NEAR(drape_height(n, p, bowl), bowl(s, t), 1e-13) << n << ' ' << p;
+  // At a border, and in a corner of a sheet of one cell.
+  EXPECT_NEAR(
+      drape_height(
+          6, 9, [](double u, double v) { return u + (v - 0.3) * (v - 0.3); }),
+      0, 1e-13);
+  EXPECT_EQ(drape_height(2, 2, [](double u, double v) { return 1 - u * v; }),
+            0);
+}
+
+TEST(Answers, TheLowestPointIsNotBelowAFloor) {
+  // Flat up to s = 0.5, lifted from there on.
+  for (unsigned n : {5u, 6u, 7u, 12u})
+    EXPECT_EQ(drape_height(n, n,
+                           [](double s, double) {
+                             return s <= 0.5 ? -1 : -1 + (s - 0.5) * (s - 0.5);
+                           }),
+              -1)
+        << n;
+  // A ridge between two valleys: the lower one counts.
+  EXPECT_NEAR(drape_height(
+                  81, 5, [](double s, double) { return std::cos(12 * s) - s; }),
+              std::cos(12 * 0.792351) - 0.792351, 5e-5);
 }
 
 TEST(Answers, PositionsOfAMeshAreItsNodes) {

@@ -15,6 +15,6 @@ int main() {
   const auto height =
       lab::answer(model, scene.cloth(), lab::Measure::drape_height);
   std::cout << scene.method().name << ": " << scene.steps() << " steps, "
-            << scene.evaluations() << " force evaluations; the lowest node is "
+            << scene.evaluations() << " force evaluations; the lowest point is "
             << "at z = " << height[0] << " m\n";
 }

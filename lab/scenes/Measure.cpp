@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "CME212/Util.hpp"
@@ -61,6 +62,84 @@ Answer positions(const Model& m, const Cloth& g) {
   return all;
 }
 
+/** The curvature between two points of a line, per cell squared: of the second
+ * differences at both ends the smaller one, 0 if their signs differ. A sheet
+ * that lies on a floor up to a node gets no dip beside it. */
+double curvature(std::optional<double> a, std::optional<double> b) {
+  if (!a || !b) return a ? *a : b.value_or(0);
+  return *a * *b <= 0 ? 0 : std::abs(*a) < std::abs(*b) ? *a : *b;
+}
+
+/** Where the parabola of curvature @a c from @a a at 0 to @a b at 1 is lowest,
+ * in [0, 1]. */
+double lowest_at(double a, double b, double c) {
+  return c > 0 ? std::clamp(0.5 - (b - a) / c, 0.0, 1.0) : b < a ? 1 : 0;
+}
+
+/** The lowest height of a sheet's surface [m]: in the cells around its lowest
+ * node, quadratic along each grid line (ENO interpolation: Harten, Engquist,
+ * Osher, Chakravarthy, J. Comput. Phys. 71, 1987).
+ * @param first index of the sheet's first node */
+double lowest_height(const Cloth& g, const Sheet& sheet, unsigned first) {
+  const int n = int(sheet.nodes[0]), m = int(sheet.nodes[1]);
+  auto z = [&](int i, int j) {
+    return double(g.node(first + unsigned(i * m + j)).position().z);
+  };
+  int i = 0, j = 0;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < m; ++b)
+      if (z(a, b) < z(i, j)) i = a, j = b;
+  auto bend_u = [&](int a, int b) -> std::optional<double> {
+    if (a < 1 || a > n - 2) return {};
+    return z(a - 1, b) - 2 * z(a, b) + z(a + 1, b);
+  };
+  auto bend_v = [&](int a, int b) -> std::optional<double> {
+    if (b < 1 || b > m - 2) return {};
+    return z(a, b - 1) - 2 * z(a, b) + z(a, b + 1);
+  };
+  double lowest = z(i, j);
+  for (int di : {-1, 1})
+    for (int dj : {-1, 1}) {
+      const int a = i + di, b = j + dj;
+      if (a < 0 || a >= n || b < 0 || b >= m) continue;
+      const double cu = curvature(bend_u(i, j), bend_u(a, j)),
+                   cv = curvature(bend_v(i, j), bend_v(i, b));
+      // Lowest along u and along v in turn: this converges quickly, as the
+      // cell's twist is small against its curvatures.
+      double s = 0, t = 0;
+      for (int k = 0; k < 8; ++k) {
+        s = lowest_at(std::lerp(z(i, j), z(i, b), t),
+                      std::lerp(z(a, j), z(a, b), t), cu);
+        t = lowest_at(std::lerp(z(i, j), z(a, j), s),
+                      std::lerp(z(i, b), z(a, b), s), cv);
+      }
+      lowest =
+          std::min(lowest, std::lerp(std::lerp(z(i, j), z(a, j), s),
+                                     std::lerp(z(i, b), z(a, b), s), t) -
+                               cu * s * (1 - s) / 2 - cv * t * (1 - t) / 2);
+    }
+  return lowest;
+}
+
+/** The lowest height of @a g [m]; 0 if it has no nodes. Of a mesh from files,
+ * and of a cloth that has lost nodes, the height of the lowest node. */
+double lowest_height(const Model& m, const Cloth& g) {
+  if (g.num_nodes() == 0) return 0;
+  double lowest = std::numeric_limits<double>::infinity();
+  unsigned first = 0;
+  for (const Sheet& sheet : m.sheets) first += sheet.nodes[0] * sheet.nodes[1];
+  if (first != g.num_nodes()) {
+    for (Node n : g.nodes()) lowest = std::min(lowest, double(n.position().z));
+    return lowest;
+  }
+  first = 0;
+  for (const Sheet& sheet : m.sheets) {
+    lowest = std::min(lowest, lowest_height(g, sheet, first));
+    first += sheet.nodes[0] * sheet.nodes[1];
+  }
+  return lowest;
+}
+
 }  // namespace
 
 Answer answer(const Model& m, const Cloth& g, Measure what) {
@@ -81,12 +160,8 @@ Answer answer(const Model& m, const Cloth& g, Measure what) {
           most = std::max(most, double(e.length() / e.value().L) - 1);
       return {most};
     }
-    case Measure::drape_height: {
-      double lowest = std::numeric_limits<double>::infinity();
-      for (Node n : g.nodes())
-        lowest = std::min(lowest, double(n.position().z));
-      return {g.num_nodes() > 0 ? lowest : 0};
-    }
+    case Measure::drape_height:
+      return {lowest_height(m, g)};
   }
   return {};
 }
