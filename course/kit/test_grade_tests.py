@@ -26,7 +26,7 @@ TASK("5.1.GravityForce", weight) {
   });
 }
 TASK("5.1.GravityForce", empty) {}
-TASK("5.1.GravityForce", idle) { CHECK(true, "nothing"); }
+TASK("5.1.DampingForce", idle) { CHECK(true, "nothing"); }
 TASK("5.1.GravityForce", always_fails) { CHECK(false, "pigs to fly"); }
 """
 
