@@ -163,6 +163,21 @@ TEST(Answers, TheLowestPointOfAParaboloidIsTheSameOnAllGrids) {
             0);
 }
 
+TEST(Answers, OfATornClothTheLowestNodeCounts) {
+  for (bool tears : {false, true}) {
+    Model m = with_sheet("nodes 3 3");
+    if (tears) m.tear_strain = 0.5;
+    Cloth g;
+    build(g, m);
+    for (unsigned k = 0; k < 9; ++k) g.node(k).position().z = k / 3 == 2;
+    g.node(4).position().z = -0.1;  // beside 0 and 1: lower between the nodes
+    const double lowest = answer(m, g, Measure::drape_height)[0];
+    EXPECT_TRUE(tears ? lowest == -0.1 : lowest < -0.2) << lowest;
+    g.remove_node(g.node(8));
+    EXPECT_EQ(answer(m, g, Measure::drape_height)[0], -0.1);
+  }
+}
+
 TEST(Answers, TheLowestPointIsNotBelowAFloor) {
   // Flat up to s = 0.5, lifted from there on.
   for (unsigned n : {5u, 6u, 7u, 12u})

@@ -198,8 +198,10 @@ class Check:
 
 
 def programs(check):
-    """What is held by programs of its own."""
+    """What is held by programs of its own: they take cases by their names."""
     folder = once.KIT
+    own = {name: value for name, value in os.environ.items()
+           if name not in ("EVERY", "FIRST")}
     for name in ("test_child.py", "test_markers.py", "pages.py",
                  "test_report.py", "test_grader.py", "test_grading.py",
                  "test_class.py", "test_grade_tests.py"):
@@ -207,7 +209,7 @@ def programs(check):
             continue
         started = time.monotonic()
         done = child.run([sys.executable, folder / name], 1500, text=True,
-                         capture_output=True)
+                         capture_output=True, env=own)
         output = done.stdout + done.stderr
         ran = re.search(r"^Ran (\d+) tests? ", output, re.MULTILINE)
         faults = output.strip().split("\n") if done.returncode else []

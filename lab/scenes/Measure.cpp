@@ -122,13 +122,13 @@ double lowest_height(const Cloth& g, const Sheet& sheet, unsigned first) {
 }
 
 /** The lowest height of @a g [m]; 0 if it has no nodes. Of a mesh from files,
- * and of a cloth that has lost nodes, the height of the lowest node. */
+ * and of a cloth that may have torn, the height of the lowest node. */
 double lowest_height(const Model& m, const Cloth& g) {
   if (g.num_nodes() == 0) return 0;
   double lowest = std::numeric_limits<double>::infinity();
   unsigned first = 0;
   for (const Sheet& sheet : m.sheets) first += sheet.nodes[0] * sheet.nodes[1];
-  if (first != g.num_nodes()) {
+  if (first != g.num_nodes() || m.tear_strain) {
     for (Node n : g.nodes()) lowest = std::min(lowest, double(n.position().z));
     return lowest;
   }

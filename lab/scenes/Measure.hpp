@@ -27,7 +27,8 @@ double distance(const Answer& a, const Answer& b, Measure measure);
  * - max-stretch: the largest l/L - 1 of an edge; 0 if there is none
  * - drape-height: the height of the lowest point of the surface [m], quadratic
  *   between the nodes of a sheet, so that grids with odd and even cells agree;
- *   of a mesh from files, or if nodes were removed, of the lowest node
+ *   of a mesh from files, or if the cloth has lost nodes or may tear by
+ *   strain, of the lowest node
  * @pre no node was removed, for positions: see check_question() */
 Answer answer(const Model& m, const Cloth& g, Measure what);
 /** The answer to the scene's own question. */
