@@ -306,7 +306,7 @@ turns() {
   turn advice    "$limit" advice
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
-  turn pages     "$limit" tools/check_pages.sh
+  turn pages     "$long"  tools/check_pages.sh
   turn try       "$limit" env EVERY=8 FIRST=$((turn_of % 8)) \
     python3 lab/try/test_try.py build/check/try
   turn window    "$limit" tools/test_window.sh
