@@ -27,6 +27,15 @@ double work_or_0(const Model& m) {
   const double work = work_of_run(m);
   return std::isfinite(work) ? work : 0;
 }
+
+/** The answer to every measure; empty where @a m has none. */
+std::vector<Answer> all_answers(const Model& m, const Cloth& g) {
+  std::vector<Answer> all;
+  for (std::size_t k = 0; k < measure_names.size(); ++k)
+    all.push_back(can_answer(m, Measure(k)) ? answer(m, g, Measure(k))
+                                            : Answer());
+  return all;
+}
 }  // namespace
 
 Adviser::Adviser(const Model& m, const AdviceRules& rules)
@@ -177,12 +186,7 @@ bool Adviser::add_grid() {
       const Model& m = seen.model;
       t = pilots_.run(
           m, on, seen.work, {},
-          [&](const Cloth& g) {
-            for (std::size_t k = 0; k < measure_names.size(); ++k)
-              seen.all.push_back(can_answer(m, Measure(k))
-                                     ? answer(m, g, Measure(k))
-                                     : Answer());
-          },
+          [&](const Cloth& g) { seen.all = all_answers(m, g); },
           [&](Scene& scene) { seen.track.look(scene); });
       invalid_ = 0;
     } catch (const SceneError& e) {
@@ -309,12 +313,7 @@ bool Adviser::look_for_chaos(double scatter) {
     const Model& m = seen.model;
     const Trial t = pilots_.run(
         m, "a perturbed start", seen.work, {rules_.shake},
-        [&](const Cloth& g) {
-          for (std::size_t k = 0; k < measure_names.size(); ++k)
-            shaken.push_back(can_answer(m, Measure(k))
-                                 ? answer(m, g, Measure(k))
-                                 : Answer());
-        },
+        [&](const Cloth& g) { shaken = all_answers(m, g); },
         [&](Scene& scene) { track.look(scene); });
     if (!t.ok()) return refuse(t.failure);
     ++advice_.perturbed;

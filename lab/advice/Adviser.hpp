@@ -85,6 +85,10 @@ class Adviser {
   double error_of(const Trial& t) const {
     return t.ok() ? distance(t.answer, limit_, advice_.measure) : infinite;
   }
+  /** The rule of acceptance, for an error that is uncertain by so much. */
+  bool accepts(double error, double uncertainty) const {
+    return error + rules_.counted_share * uncertainty <= advice_.tolerance;
+  }
 
   // ------------------------------------------------------------------- Grids
 

@@ -102,9 +102,7 @@ bool Adviser::suffices(const Sides& s, double most_work, double& work) {
     if (!(work < most_work) || !pilots_.affords(work, "coarser grids", 0.3))
       return false;
     const std::string nodes = std::to_string(nodes_of(m)) + " nodes";
-    return error_of(pilots_.run(m, nodes, work)) +
-               rules_.counted_share * uncertainty_ <=
-           advice_.tolerance;
+    return accepts(error_of(pilots_.run(m, nodes, work)), uncertainty_);
   } catch (const SceneError&) {  // its nodes miss a pin
     return false;
   }
@@ -113,9 +111,7 @@ bool Adviser::suffices(const Sides& s, double most_work, double& work) {
 std::vector<int> Adviser::starts() const {
   if (from_files()) return {0};  // its own error is unknown
   auto meets = [this](std::size_t k) {
-    return error_of(advice_.grids[k].trial) +
-               rules_.counted_share * uncertainty_ <=
-           advice_.tolerance;
+    return accepts(error_of(advice_.grids[k].trial), uncertainty_);
   };
   std::vector<int> all;
   for (std::size_t k = 0; k < levels_.size(); ++k) {
@@ -197,7 +193,6 @@ std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
 }
 
 bool Adviser::holds(Choice& c) {
-  const double counted = rules_.counted_share;
   auto run = [&](const Model& m, double work, const std::string& by) {
     return pilots_.run(m,
                        std::to_string(nodes_of(m)) + " nodes by " +
@@ -210,13 +205,12 @@ bool Adviser::holds(Choice& c) {
   c.uncertainty = uncertainty_;
   advice_.choices.push_back({nodes_of(c.model), c.model.method->info.name,
                              c.model.step.dt, c.error, c.work});
-  const double most = advice_.tolerance - counted * uncertainty_;
-  if (!(c.error <= most)) return false;
+  if (!accepts(c.error, uncertainty_)) return false;
   Model finer = c.model;
   finer.step.dt /= 2;
   const Trial half = run(finer, 2 * c.work, " and half the step");
   c.robustness.half_step = error_of(half);
-  if (!(*c.robustness.half_step <= most)) return false;
+  if (!accepts(*c.robustness.half_step, uncertainty_)) return false;
   c.half = half.answer;
   // From files the limit is that of small steps, and as uncertain as the last
   // of them.
@@ -228,11 +222,11 @@ bool Adviser::holds(Choice& c) {
     finer.step = {.dt = c.model.step.dt / 2};
     c.robustness.finer_grid =
         error_of(run(finer, 8 * c.work, " and twice the cells"));
-    if (!(*c.robustness.finer_grid <= most)) return false;
+    if (!accepts(*c.robustness.finer_grid, uncertainty_)) return false;
   }
   c.scatter = perturb(c);
   c.uncertainty += scatter_share * c.scatter;
-  return c.error + counted * c.uncertainty <= advice_.tolerance;
+  return accepts(c.error, c.uncertainty);
 }
 
 void Adviser::choose() {
@@ -242,7 +236,6 @@ void Adviser::choose() {
     found_->uncertainty = uncertainty_ + scatter_share * found_->scatter;
     if (!(found_->error <= advice_.tolerance)) found_.reset();
   }
-  const double most = advice_.tolerance - rules_.counted_share * uncertainty_;
   advice_.choices.clear();
   std::map<std::string, double> too_long;  // by method: Choice::step
   std::optional<Choice> best;
@@ -267,8 +260,8 @@ void Adviser::choose() {
                            .first->second;
       // From files all error is by the step; implicit steps begin very long.
       const bool bounded = c.model.method->info.limit != no_limit;
-      if (!from_files() &&
-          (c.error <= most || (bounded && c.error > 0.9 * before)))
+      if (!from_files() && (accepts(c.error, uncertainty_) ||
+                            (bounded && c.error > 0.9 * before)))
         fail.insert(c.removed.size());
       before = c.error;
     }
