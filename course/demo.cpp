@@ -63,7 +63,7 @@ int main() try {
     t = symp_euler_step(g, t, dt, force, constraint);
   }
   film.finish();
-  CME212::write_image("demo/tear.png", picture);
+  CME212::write_png("demo/tear.png", picture);
   std::cout << "no display: see demo/tear.png and " << film.wrote() << '\n';
 } catch (const std::exception& e) {
   std::cerr << "demo: " << e.what() << '\n';

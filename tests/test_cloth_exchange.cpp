@@ -169,8 +169,8 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
     return r.err;
   };
   EXPECT_EQ(error("--screenshot a.jpg"),
-            "cloth: --screenshot is a.jpg, expected a name that ends in .png, "
-            ".bmp or .ppm\n");
+            "cloth: --screenshot is a.jpg, expected a name that ends in "
+            ".png\n");
   EXPECT_EQ(error("--record png"),
             "cloth: --record is png, expected a name that ends in .mp4, .mkv, "
             ".webm or .gif\n");

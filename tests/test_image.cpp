@@ -160,22 +160,21 @@ TEST(Image, SaysWhatIsWrong) {
   EXPECT_EQ(files_in(folder), 2u);
 }
 
-TEST(Image, HasTheFormatOfItsEnding) {
+TEST(Image, IsReadByFfmpeg) {
   EXPECT_EQ(ending_of("a.b/c.D.PnG"), ".png");
   EXPECT_EQ(ending_of("a.b/c"), "");
   EXPECT_EQ(ending_of("c."), ".");
   if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   TestFolder folder;
-  for (int width : {4, 5, 6, 7})
-    for (std::string_view ending : picture_endings) {
-      const Image image = test_image(width, 3);
-      const std::string file = folder / ("a" + std::string(ending));
-      write_image(file, image);
-      EXPECT_EQ(output_of("ffmpeg -v error -i " + file +
-                          " -f rawvideo -pix_fmt rgb24 -"),
-                std::string(image.rgb.begin(), image.rgb.end()))
-          << ending << width;
-    }
+  for (int width : {4, 5, 6, 7}) {
+    const Image image = test_image(width, 3);
+    const std::string file = folder / "a.png";
+    write_png(file, image);
+    EXPECT_EQ(output_of("ffmpeg -v error -i " + file +
+                        " -f rawvideo -pix_fmt rgb24 -"),
+              std::string(image.rgb.begin(), image.rgb.end()))
+        << width;
+  }
 }
 
 TEST(Video, HasTheFormatOfItsEnding) {

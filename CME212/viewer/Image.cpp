@@ -56,49 +56,6 @@ void write_png(const std::string& path, const Image& image) {
   file.commit();
 }
 
-namespace {
-
-/** The @a n lowest bytes of @a a, the lowest one first. */
-void append(std::string& bytes, std::uint32_t a, int n) {
-  for (; n > 0; --n, a >>= 8) bytes += char(a & 255);
-}
-
-/** Windows bitmap: 24 bits a pixel, rows from below, padded to 4 bytes. */
-std::string to_bmp(const Image& image) {
-  const auto width = std::uint32_t(image.width),
-             height = std::uint32_t(image.height);
-  const std::uint32_t padding = width % 4, head = 14 + 40,
-                      size = (3 * width + padding) * height;
-  std::string bytes = "BM";
-  append(bytes, head + size, 4), append(bytes, 0, 4), append(bytes, head, 4);
-  append(bytes, 40, 4), append(bytes, width, 4), append(bytes, height, 4);
-  append(bytes, 1, 2), append(bytes, 24, 2);  // planes, bits
-  append(bytes, 0, 4), append(bytes, size, 4);
-  bytes.append(16, '\0');
-  for (int y = image.height - 1; y >= 0; --y) {
-    for (int x = 0; x < image.width; ++x)
-      for (int c : {2, 1, 0}) bytes += char(image.pixel(x, y)[c]);
-    bytes.append(padding, '\0');
-  }
-  return bytes;
-}
-
-std::string to_ppm(const Image& image) {
-  return "P6\n" + std::to_string(image.width) + ' ' +
-         std::to_string(image.height) + "\n255\n" +
-         std::string(image.rgb.begin(), image.rgb.end());
-}
-
-}  // namespace
-
-void write_image(const std::string& path, const Image& image) {
-  const std::string ending = ending_of(path);
-  if (ending != ".bmp" && ending != ".ppm") return write_png(path, image);
-  OutputFile file(path);
-  file.stream() << (ending == ".bmp" ? to_bmp(image) : to_ppm(image));
-  file.commit();
-}
-
 Image read_png(const std::string& path) {
   Png png;
   if (!png_image_begin_read_from_file(&png, path.c_str()))

@@ -44,9 +44,7 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-/** The formats of pictures and films, by the ending of a name. */
-inline constexpr std::array<std::string_view, 3> picture_endings = {
-    ".png", ".bmp", ".ppm"};
+/** The formats of films, by the ending of a name. */
 inline constexpr std::array<std::string_view, 4> film_endings = {
     ".mp4", ".mkv", ".webm", ".gif"};
 
@@ -59,9 +57,8 @@ inline std::string ending_of(std::string_view path) {
   return ending;
 }
 
-/** Write @a image to the file @a path: in the format of its ending, or as PNG.
+/** Write @a image to the file @a path as PNG.
  * Throws std::runtime_error "path: reason"; then @a path is as it was. */
-void write_image(const std::string& path, const Image& image);
 void write_png(const std::string& path, const Image& image);
 
 /** Read the PNG file @a path; transparent pixels become black.

@@ -109,16 +109,14 @@ void check(Options& o) {
     if (file.empty() ||
         std::ranges::count(endings, CME212::ending_of(file)) > 0)
       return;
-    std::string known;
-    for (std::string_view e : endings)
-      known += (known.empty()         ? ""
-                : e == endings.back() ? " or "
-                                      : ", ") +
-               std::string(e);
+    std::string known(endings.front());
+    for (std::string_view e : endings.subspan(1))
+      known += (e == endings.back() ? " or " : ", ") + std::string(e);
     throw SceneError(option,
                      "is " + file + ", expected a name that ends in " + known);
   };
-  require_ending("screenshot", o.screenshot, CME212::picture_endings);
+  require_ending("screenshot", o.screenshot,
+                 std::array{std::string_view(".png")});
   require_ending("record", o.video, CME212::film_endings);
   if (CME212::ending_of(o.out) == ".tets")
     throw SceneError("out", "is " + o.out +
@@ -269,8 +267,7 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_flag("--strain", o.strain,
                "color the nodes by the mean strain of their springs");
   add_file(app, "--screenshot", o.screenshot,
-           "draw a picture without a window; the ending of FILE sets the "
-           "format: .png, .bmp or .ppm");
+           "draw a picture FILE.png without a window");
   app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
   add_file(app, "--record", o.video,
            "draw a film of 30 frames per second without a window; the ending "

@@ -58,7 +58,7 @@ class SDLScreen : public Screen {
     viewer_.set_card(lines);
   }
   void save_picture(const std::string& file) override {
-    CME212::write_image(file, viewer_.snapshot());
+    CME212::write_png(file, viewer_.snapshot());
   }
   void start_film(const std::string& file) override {
     auto picture = viewer_.snapshot();
