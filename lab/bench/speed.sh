@@ -9,8 +9,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-# The processor's name, its family and its longest vectors.
+# The processor's name, its family (6 is most of Intel's: the model, too) and
+# its longest vectors.
 machine=$(awk -F': ' '/^model name/ {n = $2} /^cpu family/ {f = "-" $2}
+  /^model\t/ {m = $2} /^flags/ && f == "-6" {f = f "-" m}
   /^flags/ {v = / avx512f / ? "-avx512" : / avx2 / ? "-avx2" : ""}
   /^$/ {print n f v; exit}' /proc/cpuinfo | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
 folder=lab/bench/results/${machine:-unknown}

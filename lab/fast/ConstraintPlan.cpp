@@ -67,6 +67,12 @@ void PinnedNodes::each_place(const Cloth& g, const Place& moved,
       use(pin.node, {pin.place + moved.at, moved.velocity});
 }
 
+bool SweptConstraint::idle(const FlatCloth& c, double t, unsigned first,
+                           unsigned last) const {
+  const auto where = zone(t);
+  return where && !c.any_inside(*where, first, last);
+}
+
 void SweptConstraint::project_flat(FlatCloth& c, Cloth& g, double t,
                                    unsigned first, unsigned last) const {
   for (; first < last; first += FlatCloth::tile) {
@@ -120,10 +126,8 @@ class Plane final : public NodewiseConstraint {
         [this](Node n) { plane_.project(n); });
   }
   bool is_at_rest(double /*t*/) const override { return true; }
-  bool idle(const FlatCloth& c, double /*t*/, unsigned first,
-            unsigned last) const override {
-    const double z = plane_.height();
-    return !c.any(first, last, [z](const Point& p) { return p.z < z; });
+  std::optional<Zone> zone(double /*t*/) const override {
+    return Zone::behind({0, 0, plane_.height()}, {0, 0, 1});
   }
 
  private:
@@ -141,10 +145,8 @@ class Round : public Base {
   }
   double thinnest() const override { return ball_.radius; }
   bool is_at_rest(double /*t*/) const override { return true; }
-  bool idle(const FlatCloth& c, double /*t*/, unsigned first,
-            unsigned last) const override {
-    return !c.any(first, last,
-                  [&ball = ball_](const Point& p) { return ball.holds(p); });
+  std::optional<Zone> zone(double /*t*/) const override {
+    return Zone::inside(ball_);
   }
 
  protected:

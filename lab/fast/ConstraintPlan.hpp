@@ -48,6 +48,24 @@ struct Exchange {
   }
 };
 
+/** Where a constraint lets no node be: inside a ball, or behind a plane. In
+ * single precision it is larger by 10 um, more than the rounding errors within
+ * 30 m of @a at; in double precision the test is that of project(). */
+struct Zone {
+  static constexpr double margin = sizeof(Real) < sizeof(double) ? 1e-5 : 0;
+  Point at;        ///< the center, or a point of the plane [m]
+  Point normal;    ///< of the plane, of length 1, pointing out
+  Real limit = 0;  ///< of |p - at|^2 [m^2], or of (p - at) . normal [m]
+  bool is_ball = false;
+  static Zone inside(const Ball& b) {
+    const double r = b.radius + margin;
+    return {b.center, Point(), Real(r * r), true};
+  }
+  static Zone behind(const Point& at, const Point& normal) {
+    return {at, normal, Real(margin), false};
+  }
+};
+
 /** A constraint with functions that methods and the guard use besides its call.
  * Only the laboratory uses it; the defaults are right for every constraint. */
 class SweptConstraint : public ZeroConstraint {
@@ -65,12 +83,11 @@ class SweptConstraint : public ZeroConstraint {
    * The default calls project() for each tile that is not idle(). */
   virtual void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
                             unsigned last) const;
-  /** True only if project() leaves all nodes with ids in [first, last) where
-   * they are. */
-  virtual bool idle(const FlatCloth& /*c*/, double /*t*/, unsigned /*first*/,
-                    unsigned /*last*/) const {
-    return false;
-  }
+  /** The call at time @a t [s] changes no node outside of it; nullopt if no
+   * zone is known. */
+  virtual std::optional<Zone> zone(double /*t*/) const { return std::nullopt; }
+  /** True only if the call changes no node with an id in [first, last). */
+  bool idle(const FlatCloth& c, double t, unsigned first, unsigned last) const;
   /** The call for a cloth by component. The default applies it to @a g. */
   virtual void apply_flat(FlatCloth& c, Cloth& g, double t) const;
   /** Do what the call does to the nodes with ids in [first, last), if that does

@@ -53,6 +53,13 @@ constexpr auto state = {FlatCloth::X,  FlatCloth::Y,  FlatCloth::Z,
                         FlatCloth::AX, FlatCloth::AY, FlatCloth::AZ};
 }  // namespace
 
+bool FlatCloth::any_inside(const Zone& zone, unsigned first,
+                           unsigned last) const {
+  bool found = false;
+  lanes::run<kernels::AnyInside>(&nodes_, &zone, first, last, &found);
+  return found;
+}
+
 void FlatCloth::save(std::vector<Real>& copy) const {
   copy.resize(state.size() * slots_);
   Real* to = copy.data();

@@ -15,6 +15,8 @@
 
 namespace lab {
 
+struct Zone;
+
 /** Arrays of one length, aligned for vectors. They start at different offsets
  * in a page, so that a cache can hold the same part of all. */
 class Columns {
@@ -99,16 +101,9 @@ class FlatCloth {
   void save(std::vector<Real>& copy) const;
   void restore(const std::vector<Real>& copy);
 
-  /** True if @a holds(position) for any id in [first, last). Removed nodes have
-   * position 0. */
-  template <typename Holds>
-  bool any(unsigned first, unsigned last, Holds holds) const {
-    const Real *x = nodes_[X], *y = nodes_[Y], *z = nodes_[Z];
-    bool found = false;
-    for (unsigned i = first; i < last; ++i)
-      found |= holds(Point(x[i], y[i], z[i]));
-    return found;
-  }
+  /** True if any node with an id in [first, last) may be inside @a zone.
+   * Removed nodes have position 0. */
+  bool any_inside(const Zone& zone, unsigned first, unsigned last) const;
 
   unsigned slots() const { return slots_; }
   /** The version() of the graph whose topology this is. */

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/FlatCloth.hpp"
 
 namespace lab::kernels {
@@ -265,6 +266,38 @@ struct DriftNodes {
         if (decay != 1) v[i] *= decay;
       }
     }
+  }
+};
+
+/** Whether any of the nodes [first, last) is inside a zone. */
+struct AnyInside {
+  template <typename V>
+  [[gnu::always_inline]] static inline void apply(const Columns* nodes,
+                                                  const Zone* zone,
+                                                  unsigned first, unsigned last,
+                                                  bool* found) {
+    using namespace lanes;
+    constexpr unsigned w = count_of<V>;
+    const Real *x = (*nodes)[FlatCloth::X], *y = (*nodes)[FlatCloth::Y],
+               *z = (*nodes)[FlatCloth::Z];
+    std::size_t i = first;
+    auto inside = V{} < V{};  // none
+    for (; i + w <= last; i += w)
+      inside |=
+          is_inside(load<V>(x + i), load<V>(y + i), load<V>(z + i), *zone);
+    bool any = false;
+    for (unsigned k = 0; k < w; ++k) any |= inside[k] != 0;
+    for (; i < last; ++i) any |= is_inside(x[i], y[i], z[i], *zone);
+    *found = any;
+  }
+  template <typename T>
+  [[gnu::always_inline]] static inline auto is_inside(const T& x, const T& y,
+                                                      const T& z,
+                                                      const Zone& r) {
+    const T ux = x - r.at.x, uy = y - r.at.y, uz = z - r.at.z;
+    return r.is_ball
+               ? ux * ux + uy * uy + uz * uz < r.limit
+               : ux * r.normal.x + uy * r.normal.y + uz * r.normal.z < r.limit;
   }
 };
 

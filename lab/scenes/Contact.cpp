@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "lab/fast/FlatCloth.hpp"
-
 namespace lab {
 
 namespace contact {
@@ -75,11 +73,8 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
       [&](Node n) { touch(n, -height(n.position()), normal_, velocity); });
 }
 
-bool WallConstraint::idle(const FlatCloth& c, double t, unsigned first,
-                          unsigned last) const {
-  const Point at = at_ + motion_.way(t);
-  return !c.any(first, last,
-                [&](const Point& p) { return dot(p - at, normal_) < 0; });
+std::optional<Zone> WallConstraint::zone(double t) const {
+  return Zone::behind(at_ + motion_.way(t), normal_);
 }
 
 // ----------------------------------------------------------------------- Ball
@@ -103,10 +98,8 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
       });
 }
 
-bool BallConstraint::idle(const FlatCloth& c, double t, unsigned first,
-                          unsigned last) const {
-  const Ball ball = {ball_.center + motion_.way(t), ball_.radius};
-  return !c.any(first, last, [&](const Point& p) { return ball.holds(p); });
+std::optional<Zone> BallConstraint::zone(double t) const {
+  return Zone::inside({ball_.center + motion_.way(t), ball_.radius});
 }
 
 std::optional<Point> BallConstraint::first_hit(const Point& from,

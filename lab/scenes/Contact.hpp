@@ -114,8 +114,7 @@ class WallConstraint : public Touchable {
                  const Motion& motion = {}, double friction = 0);
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  bool idle(const FlatCloth& c, double t, unsigned first,
-            unsigned last) const override;
+  std::optional<Zone> zone(double t) const override;
 
  private:
   Point at_, normal_;
@@ -138,8 +137,7 @@ class BallConstraint : public Touchable {
 
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  bool idle(const FlatCloth& c, double t, unsigned first,
-            unsigned last) const override;
+  std::optional<Zone> zone(double t) const override;
   std::optional<Point> first_hit(const Point& from,
                                  const Point& to) const override;
   double thinnest() const override;

@@ -148,28 +148,23 @@ State run_ours(const MethodEntry& entry, int steps) {
 
 namespace odeint = boost::numeric::odeint;
 
-State run_odeint_m4(int steps) {
-  odeint::symplectic_rkn_sb3a_m4_mclachlan<State> stepper;
-  State q = problem->start(), v(q.size(), 0.0);
-  auto f = [](const State& x, State& a) {
+struct Acceleration {
+  void operator()(const State& x, State& a) const {
     problem->acceleration(x.data(), a.data());
-  };
-  const double dt = problem->t_end / steps;
-  for (int n = 0; n < steps; ++n)
-    stepper.do_step(f, std::pair(std::ref(q), std::ref(v)), n * dt, dt);
-  return q;
-}
+  }
+  void operator()(const State& x, const State&, State& a, double) const {
+    (*this)(x, a);
+  }
+};
 
-/** Calls itself order 1, and is of order 2. */
-State run_odeint_verlet(int steps) {
-  odeint::velocity_verlet<State> stepper;
+template <typename Stepper>
+State run_odeint(int steps) {
+  Stepper stepper;
   State q = problem->start(), v(q.size(), 0.0);
-  auto f = [](const State& x, const State&, State& a, double) {
-    problem->acceleration(x.data(), a.data());
-  };
   const double dt = problem->t_end / steps;
   for (int n = 0; n < steps; ++n)
-    stepper.do_step(f, std::pair(std::ref(q), std::ref(v)), n * dt, dt);
+    stepper.do_step(Acceleration(), std::pair(std::ref(q), std::ref(v)), n * dt,
+                    dt);
   return q;
 }
 
@@ -218,21 +213,30 @@ struct Sundials {
   }
 };
 
-State run_cvode_adams(double tolerance) {
+/** @param set_up(s, mem) makes a solver, and returns what frees it */
+template <typename SetUp>
+State run_cvode(int family, double tolerance, SetUp set_up) {
   Sundials s;
-  void* mem = CVodeCreate(CV_ADAMS, s.context);
+  void* mem = CVodeCreate(family, s.context);
   CVodeInit(mem, sundials_rhs, 0, s.vector);
   CVodeSStolerances(mem, tolerance, tolerance);
   CVodeSetMaxNumSteps(mem, 10000000);
-  SUNNonlinearSolver solver = SUNNonlinSol_FixedPoint(s.vector, 0, s.context);
-  CVodeSetNonlinearSolver(mem, solver);
   CVodeSetStopTime(mem, problem->t_end);
+  const auto free_solver = set_up(s, mem);
   realtype t;
   int flag = CVode(mem, problem->t_end, s.vector, &t, CV_NORMAL);
-  SUNNonlinSolFree(solver);
+  free_solver();
   CVodeFree(&mem);
-  require(flag >= 0, "CVODE Adams failed");
+  require(flag >= 0, "CVODE failed");
   return first_half(s.y.data());
+}
+
+State run_cvode_adams(double tolerance) {
+  return run_cvode(CV_ADAMS, tolerance, [](Sundials& s, void* mem) {
+    auto solver = SUNNonlinSol_FixedPoint(s.vector, 0, s.context);
+    CVodeSetNonlinearSolver(mem, solver);
+    return [solver] { SUNNonlinSolFree(solver); };
+  });
 }
 
 State diagonal;  // of the preconditioner below
@@ -259,23 +263,13 @@ int precondition(realtype, N_Vector, N_Vector, N_Vector r, N_Vector z,
 }
 
 State run_cvode_bdf(double tolerance, int max_order) {
-  Sundials s;
-  void* mem = CVodeCreate(CV_BDF, s.context);
-  CVodeInit(mem, sundials_rhs, 0, s.vector);
-  CVodeSStolerances(mem, tolerance, tolerance);
-  CVodeSetMaxNumSteps(mem, 10000000);
-  CVodeSetMaxOrd(mem, max_order);
-  SUNLinearSolver solver =
-      SUNLinSol_SPGMR(s.vector, SUN_PREC_LEFT, 10, s.context);
-  CVodeSetLinearSolver(mem, solver, nullptr);
-  CVodeSetPreconditioner(mem, setup, precondition);
-  CVodeSetStopTime(mem, problem->t_end);
-  realtype t;
-  int flag = CVode(mem, problem->t_end, s.vector, &t, CV_NORMAL);
-  SUNLinSolFree(solver);
-  CVodeFree(&mem);
-  require(flag >= 0, "CVODE BDF failed");
-  return first_half(s.y.data());
+  return run_cvode(CV_BDF, tolerance, [=](Sundials& s, void* mem) {
+    CVodeSetMaxOrd(mem, max_order);
+    auto solver = SUNLinSol_SPGMR(s.vector, SUN_PREC_LEFT, 10, s.context);
+    CVodeSetLinearSolver(mem, solver, nullptr);
+    CVodeSetPreconditioner(mem, setup, precondition);
+    return [solver] { SUNLinSolFree(solver); };
+  });
 }
 
 State run_arkode_dopri(double tolerance) {
@@ -316,7 +310,7 @@ struct Candidate {
   const char* method;
   double parameter;  // step [s], or tolerance
   std::function<State()> run;
-  std::vector<double> seconds;
+  std::vector<double> seconds = {};
   double error = 0;
   long calls = 0;
   std::string status = "ok";
@@ -333,32 +327,23 @@ std::vector<Candidate> candidates() {
     for (double factor = 1; factor < 3000; factor *= 1.2) {
       int steps = int(std::ceil(least * factor));
       if (double(steps) * m.info.sweeps > 20000) break;
-      all.push_back({m.info.name,
-                     problem->t_end / steps,
-                     [&m, steps] { return run_ours(m, steps); },
-                     {},
-                     0,
-                     0,
-                     "ok"});
+      all.push_back({m.info.name, problem->t_end / steps,
+                     [&m, steps] { return run_ours(m, steps); }});
     }
   }
   for (int steps = 70; steps < 10000; steps = steps * 6 / 5) {
     auto add = [&](const char* name, State (*run)(int)) {
-      all.push_back({name,
-                     problem->t_end / steps,
-                     [run, steps] { return run(steps); },
-                     {},
-                     0,
-                     0,
-                     "ok"});
+      all.push_back(
+          {name, problem->t_end / steps, [run, steps] { return run(steps); }});
     };
-    add("odeint-m4", run_odeint_m4);
-    add("odeint-verlet", run_odeint_verlet);
+    add("odeint-m4",
+        run_odeint<odeint::symplectic_rkn_sb3a_m4_mclachlan<State>>);
+    // Calls itself order 1, and is of order 2.
+    add("odeint-verlet", run_odeint<odeint::velocity_verlet<State>>);
   }
   for (double tol = 1e-2; tol > 1e-13; tol /= 4) {
     auto add = [&](const char* name, auto run) {
-      all.push_back(
-          {name, tol, [run, tol] { return run(tol); }, {}, 0, 0, "ok"});
+      all.push_back({name, tol, [run, tol] { return run(tol); }});
     };
     add("odeint-dopri5", run_odeint_dopri5);
     add("cvode-adams", run_cvode_adams);
