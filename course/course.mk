@@ -50,6 +50,7 @@ override FEEDBACK := $(value FEEDBACK)
 override LIST     := $(value LIST)
 
 grade autograder: export FEEDBACK := $(FEEDBACK)
+grade class: export SEED := $(SEED)
 .PHONY: class
 class: export DIR      := $(DIR)
 class: export OUT      := $(OUT)

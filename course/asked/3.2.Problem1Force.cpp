@@ -6,8 +6,9 @@ namespace kit {
 template <typename P>
 static void ask_for_force() {
   const int way = way_to_make<P>();
-  const double K = K_of_way[way];
+  const double K = K_of_way(way);
   Bodies b = drawn_bodies(6, K);
+  const double L = rest_length();
   for (int k = 0; k < b.num_springs; ++k) b.springs[k].L = L;
   b.join(b.add(Point(0, 0, 0)), 2, K, L);
   for (int i = 0; i < b.size; ++i) {

@@ -19,7 +19,7 @@ GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
          "course/kit/*.cpp", "course/tests/**/*", "course/asked/*"]
 LEFT_OUT = {"kit_check.py", "test_markers.py", "test_class.py",
             "test_grade_tests.py", "grade_tests.py", "starter.py",
-            "autograder.py", "synthetic.py"}
+            "autograder.py", "synthetic.py", "seeds.py", "test_seeds.py"}
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
 

@@ -19,12 +19,22 @@ COLUMNS = ("student", "commit", "tag", "kind of tag", "tagged", "committed",
 def made(whole, row):
     """The report on a row, from what is kept of its content."""
     kept = whole.known(row.content)
-    results = {test: judge.Result(**{key: value for key, value
-                                     in kept[test].items() if key != "kit"})
-               for test in whole.tests}
-    taken = submission.Submission({}, row.notes, row.flags)
+    results = {test: judge.Result(**{
+        key: value for key, value in kept[test].items()
+        if key not in ("kit", "seed")}) for test in whole.tests}
+    taken = submission.Submission({}, [*row.notes, *seeds(
+        {test: kept[test]["seed"] for test in whole.tests})], row.flags)
     return report.combine(whole.course, submission.shown(row.student), taken,
                           results)
+
+
+def seeds(of):
+    """What a report says of the seeds, {test: seed}: of one task another."""
+    for seed in sorted(set(of.values())):
+        tests = [test for test in of if of[test] == seed]
+        for said in grade.named(seed):
+            yield said + (f": {' '.join(tests)}" if len(tests) < len(of)
+                          else "")
 
 
 def write(whole, rows):
@@ -61,6 +71,7 @@ def table(whole, rows):
         points = [""] * (2 + len(ids))
         notes = [row.reason] if row.reason else list(row.notes)
         if row.report:
+            notes = list(row.report.notes)
             points = [row.report.points, row.report.of,
                       *(graded.points for graded in row.report.graded)]
             if row.report.flags:

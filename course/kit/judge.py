@@ -348,45 +348,46 @@ class Judge:
     def run_all(self, unit, names):
         """Each test of a program in a process of its own. Messages name places
         in these files first."""
-        def one(test):
-            jail = [*self.kit.jail, *build.flags("--read", [
-                "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
-                "/dev/null", "/dev/zero", "/dev/urandom", unit.program,
-                self.data])]
-            expected = self.kit.answers
-            if expected is not None:    # what is asked is the last stage's
-                expected = (expected.get(test, {})
-                            if unit.stage in ("", LAST_STAGE) else {})
-            crashing, tries = 0, 3
-            while True:
-                with self.jobs:
-                    outcome = sandbox.run_test(
-                        jail, unit.program, test, LIMITS, self.kit.seed,
-                        self.data, crashing)
-                result = result_of(outcome, names, expected)
-                # What earlier homework left crashes: without it once more.
-                if (outcome.aspect & ~crashing
-                        and result.status in ("crashed", "stopped")):
-                    crashing |= outcome.aspect
-                # Where addresses are by chance, AddressSanitizer at times finds
-                # no room for itself and ends before anything has run.
-                elif outcome.begun or outcome.code != -signal.SIGSEGV:
-                    return result
-                elif not (tries := tries - 1):
-                    return result
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
-            results = dict(zip(unit.tests, pool.map(one, unit.tests)))
+            results = dict(zip(unit.tests, pool.map(
+                lambda test: self.run_one(unit, names, test, self.kit,
+                                          self.data), unit.tests)))
         unit.program.unlink()
         return results
+
+    def run_one(self, unit, names, test, kit, data):
+        jail = [*kit.jail, *build.flags("--read", [
+            "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
+            "/dev/null", "/dev/zero", "/dev/urandom", unit.program, data])]
+        expected = kit.answers
+        if expected is not None:    # what is asked is the last stage's
+            expected = (expected.get(test, {})
+                        if unit.stage in ("", LAST_STAGE) else {})
+        crashing, tries = 0, 3
+        while True:
+            with self.jobs:
+                outcome = sandbox.run_test(
+                    jail, unit.program, test, LIMITS, kit, data, crashing)
+            result = result_of(outcome, names, expected)
+            # What earlier homework left crashes: without it once more.
+            if (outcome.aspect & ~crashing
+                    and result.status in ("crashed", "stopped")):
+                crashing |= outcome.aspect
+            # Where addresses are by chance, AddressSanitizer at times finds no
+            # room for itself and ends before anything has run.
+            elif outcome.begun or outcome.code != -signal.SIGSEGV:
+                return result
+            elif not (tries := tries - 1):
+                return result
 
 
 def prepare(kit, tests, jobs):
     """Grade the solution, once for each kit: it has to get all points. Its
     answers are what is expected of a submission."""
     def make(folder):
-        kit.seed = secrets.token_bytes(32)
+        kit.secret = secrets.token_bytes(32)
         kit.data = folder / "data"
-        draw_cloth(kit.data, random.Random(kit.seed))
+        draw_cloth(kit.data, kit)
         results = judge(kit, files, tests, jobs)
         for test, result in sorted(results.items()):
             if not result.passed:
@@ -395,7 +396,7 @@ def prepare(kit, tests, jobs):
                     f"nothing is graded: {result.status}: "
                     f"{result.text or f'expected {result.expected}'}"
                     + (f", got {result.got}" if result.got else ""))
-        text = json.dumps({"seed": kit.seed.hex(), "answers": {
+        text = json.dumps({"secret": kit.secret.hex(), "answers": {
             test: result.answers for test, result in results.items()}})
         with open(os.open(folder / "answers.json", os.O_WRONLY | os.O_CREAT,
                           0o600), "w", encoding="ascii") as file:
@@ -407,22 +408,38 @@ def prepare(kit, tests, jobs):
     folder = kit.locked_part("solution", [
         *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *build.ASKED.glob("*"),
         *(once.ROOT / name for name in SOLUTION),
-        *(once.ROOT / "CME212").rglob("*.hpp")], make, sorted(tests.items()))
+        *(once.ROOT / "CME212").rglob("*.hpp")], make,
+        (sorted(tests.items()), kit.seed))
     kept = json.loads((folder / "answers.json").read_text("ascii"))
     kit.data = folder / "data"
-    kit.seed, kit.answers = bytes.fromhex(kept["seed"]), kept["answers"]
+    kit.secret, kit.answers = bytes.fromhex(kept["secret"]), kept["answers"]
 
 
-def draw_cloth(folder, dice):
-    """The kit's small cloth, each node but the corners moved a little."""
+CORNERS = ("0 0 0", "1 0 0")
+
+
+def draw_cloth(folder, kit):
+    """The kit's small cloth, each node but the corners moved a little; with a
+    seed in another order, too, in which a corner is the last node again."""
     shutil.copytree(once.TESTS / "data", folder)
-    lines = (folder / "cloth.nodes").read_text("ascii").split("\n")
+    nodes, quads = (folder / f"cloth.{name}" for name in ("nodes", "tets"))
+    lines = nodes.read_text("ascii").splitlines()
+    dice = random.Random(f"seed {kit.seed}" if kit.seed else kit.secret)
     for at, line in enumerate(lines):
-        if line and line not in ("0 0 0", "1 0 0"):
+        if line not in CORNERS:
             x, y, z = map(float, line.split())
             lines[at] = (f"{x + dice.uniform(-0.02, 0.02):.6f} "
                          f"{y + dice.uniform(-0.02, 0.02):.6f} {z:g}")
-    (folder / "cloth.nodes").write_text("\n".join(lines), "ascii")
+    if kit.seed:
+        order = dice.sample(range(len(lines)), len(lines))
+        last = lines.index(dice.choice(CORNERS))
+        order.remove(last)
+        order.append(last)
+        lines = [lines[old] for old in order]
+        quads.write_text("".join(
+            " ".join(str(order.index(int(old))) for old in line.split()) + "\n"
+            for line in quads.read_text("ascii").splitlines()), "ascii")
+    nodes.write_text("\n".join(lines) + "\n", "ascii")
 
 
 def judge(kit, files, tests, jobs, memory=None):

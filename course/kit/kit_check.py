@@ -204,7 +204,7 @@ def programs(check):
            if name not in ("EVERY", "FIRST")}
     for name in ("test_child.py", "test_markers.py", "pages.py",
                  "test_report.py", "test_grader.py", "test_grading.py",
-                 "test_class.py", "test_grade_tests.py"):
+                 "test_class.py", "test_grade_tests.py", "test_seeds.py"):
         if not (folder / name).exists():
             continue
         started = time.monotonic()

@@ -62,7 +62,7 @@ def ended(command):
 class Kit:
     """The parts, built if they are not there; `jail` starts a command."""
 
-    def __init__(self, unsafe=False, probe=True):
+    def __init__(self, unsafe=False, probe=True, seed=""):
         # CME212/ apart from the root, whose Graph.hpp is no submission's.
         os.umask(0o022)     # another user may run what is built here
         self.include = BUILT / "include"
@@ -82,7 +82,8 @@ class Kit:
         self.preludes = self.locked_part(
             "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
         # Of the solution, which judge.prepare() grades before all others.
-        self.seed, self.answers, self.data = b"", None, None
+        self.secret, self.answers, self.data = b"", None, None
+        self.seed = seed    # of the tests' numbers; "": the public ones
         self.linked = sorted(linked.glob("*.o"))
         if unsafe:
             self.jail.append("--unsafe")

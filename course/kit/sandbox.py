@@ -158,8 +158,9 @@ def run_compiler(jail, command, folder, scratch, limits):
     return Outcome(stopped, process.returncode, output.text())
 
 
-def run_test(jail, program, task, limits, seed, data, crashing=0):
-    """Run the test functions of a task in a process of its own."""
+def run_test(jail, program, task, limits, kit, data, crashing=0):
+    """Run the test functions of a task in a process of its own, with the seeds
+    of a kit and the cloth in the folder `data`."""
     to_read, to_write = os.pipe()         # the seed, to the program
     from_read, from_write = os.pipe()     # how it ended
     page = os.memfd_create("page")
@@ -170,7 +171,7 @@ def run_test(jail, program, task, limits, seed, data, crashing=0):
     def heard(data):
         if not spoken.total and data.startswith(b"begun\n"):
             try:
-                os.write(to_write, seed)
+                os.write(to_write, kit.secret)
             except BrokenPipeError:
                 pass
         return spoken.add(data)
@@ -179,7 +180,7 @@ def run_test(jail, program, task, limits, seed, data, crashing=0):
         process = subprocess.Popen(
             [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
              "--", str(program), task, *map(str, descriptors),
-             str(crashing)],
+             str(crashing), kit.seed],
             cwd="/", env={**clean_environment("/nowhere"),
                           "KIT_DATA": str(data)},
             pass_fds=descriptors,

@@ -1,7 +1,7 @@
 """Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
 
-    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TASK=ID] [FEEDBACK=names] [LIST=1]
-      [SAFE=0] [JOBS=N] python3 course/kit/whole_class.py [STUDENT]
+    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TASK=ID] [FEEDBACK=names] [SEED=N]
+      [LIST=1] [SAFE=0] [JOBS=N] python3 course/kit/whole_class.py [STUDENT]
 
 DIR holds a folder for each student, as grade.py takes one; dates.py says what
 DUE is. OUT gets class.csv, class.html, reports/STUDENT.txt (for the student, as
@@ -81,6 +81,7 @@ class Class:
         self.feedback = grade.feedback()
         self.jobs = grade.number_of_jobs(get("JOBS"))
         self.unsafe = get("SAFE") == "0"
+        self.seed = grade.seed_of_tests(get("SEED"))
         self.course = tasks.load()
         self.tests = grade.tests_of(self.course)
         task = get("TASK", "")
@@ -100,7 +101,7 @@ class Class:
 
     def prepare(self):
         """The solution, graded once: workers begin with what it answered."""
-        self.kit = once.Kit(self.unsafe)
+        self.kit = once.Kit(self.unsafe, seed=self.seed)
         self.lacks = list(grade.less_safe(self.kit, self.unsafe))
         judge.prepare(self.kit, self.tests, self.jobs)
         self.version = self.kit.data.parent.name    # of all that judges
@@ -169,7 +170,7 @@ class Class:
                                         1).items():
             kept = dataclasses.asdict(result)
             del kept["answers"]
-            known[test] = kept | {"kit": self.version}
+            known[test] = kept | {"kit": self.version, "seed": self.seed}
         grade.write(self.place(content), json.dumps(known, indent=0,
                                                     sort_keys=True))
         return ""
@@ -242,8 +243,8 @@ def ends_with_us():
 def commands(whole, rows):
     """One command for each content that is left."""
     for group in whole.left(rows).values():
-        words = [f"{name}={os.environ[name]}" for name in
-                 ("DIR", "OUT", "HW", "TASK", "SAFE") if os.environ.get(name)]
+        words = [f"{name}={os.environ[name]}" for name in (
+            "DIR", "OUT", "HW", "TASK", "SEED", "SAFE") if os.environ.get(name)]
         yield shlex.join(["env", *words, "python3", "course/kit/whole_class.py",
                           group[0].student])
 

@@ -11,24 +11,27 @@ static Bodies three_bodies() {
   b.add(Point(0.3, 0.1, 0.2), 2.0, Point(1, -2, 0.5));
   b.add(Point(0.7, 0.4, -0.1), 0.5, Point(-3, 0, 1));
   b.add(Point(0.2, 0.9, 0.6), 4.0, Point(0, 2, -1));
+  b.move(0.1);
   return b;
 }
 
 /** Take a step and hold it to x += dt v; v += dt F(x, t)/m. */
 static void step_and_compare(Cloth& g, Bodies& b, double t, double dt) {
   const int n = b.size;
+  const Point from = varied(Point(1, 2, 3), 1);
+  const double K = varied(3, 1);
   // Pulls at each body towards where the next one is now.
-  const auto law = [&g, n](ClothNode node, double time) {
+  const auto law = [&](ClothNode node, double time) {
     const int i = int(node.index());
-    return 3 * (place(g, (i + 1) % n) - Point(1, 2, 3)) + Point(0, 5 * time, 0);
+    return K * (place(g, (i + 1) % n) - from) + Point(0, 5 * time, 0);
   };
   TestForce force(law);
   const double returned = free_step(g, t, dt, force);
 
   for (int i = 0; i < n; ++i) b.x[i] += dt * b.v[i];
   for (int i = 0; i < n; ++i)
-    b.v[i] += dt / b.m[i] *
-              (3 * (b.x[(i + 1) % n] - Point(1, 2, 3)) + Point(0, 5 * t, 0));
+    b.v[i] +=
+        dt / b.m[i] * (K * (b.x[(i + 1) % n] - from) + Point(0, 5 * t, 0));
 
   for (int i = 0; i < n; ++i) {
     const Point position = place(g, i);
@@ -48,10 +51,11 @@ TASK("3.2.symp_euler_step", step_moves_then_kicks) {
   Cloth g;
   Bodies b = three_bodies();
   fill(g, b);
-  DID("three nodes of masses 2, 0.5 and 4, one step of dt = 0.125 from t = "
-      "0.5 ",
-      "with a force that depends on t and on the next node's position");
-  step_and_compare(g, b, 0.5, 0.125);
+  const double t = varied(0.5, 0.4), dt = varied(0.125, 0.05);
+  DID("three nodes of masses ", b.m[0], ", ", b.m[1], " and ", b.m[2],
+      ", one step of dt = ", dt, " from t = ", t,
+      " with a force that depends on t and on the next node's position");
+  step_and_compare(g, b, t, dt);
 }
 
 TASK("3.2.symp_euler_step", step_after_step) {
@@ -59,8 +63,10 @@ TASK("3.2.symp_euler_step", step_after_step) {
   Bodies b = three_bodies();
   fill(g, b);
   double t = 0;
-  for (int step = 1; step <= 5; ++step, t += 0.25) {
-    DID("three nodes of masses 2, 0.5 and 4, step ", step, " of dt = 0.25");
-    step_and_compare(g, b, t, 0.25);
+  const double dt = varied(0.25, 0.1);
+  for (int step = 1; step <= 5; ++step, t += dt) {
+    DID("three nodes of masses ", b.m[0], ", ", b.m[1], " and ", b.m[2],
+        ", step ", step, " of dt = ", dt);
+    step_and_compare(g, b, t, dt);
   }
 }

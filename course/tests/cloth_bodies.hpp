@@ -30,6 +30,51 @@ struct Bodies {
     springs[num_springs++] = {a, b, K, L};
   }
 
+  /** With a seed: other places, within @a by [m], velocities that are not 0,
+   * and masses. Corners stay. */
+  void move(double by) {
+    for (int i = 0; i < size; ++i) {
+      if (!is_corner(x[i])) x[i] = varied(x[i], by, i);
+      v[i] *= varied(Point(1, 1, 1), 0.4, i);
+      m[i] = varied(m[i], 0.4 * m[i], i);
+    }
+  }
+  /** Also other L. */
+  void vary(double by) {
+    move(by);
+    for (int k = 0; k < num_springs; ++k)
+      springs[k].L = varied(springs[k].L, 0.1 * springs[k].L, k);
+  }
+  /** The same bodies with other numbers: in the order of their ranks. */
+  void reorder(const double* rank) {
+    const Bodies old = *this;
+    int number_of[most] = {};
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j) number_of[i] += rank[j] < rank[i];
+      const int at = number_of[i];
+      x[at] = old.x[i], v[at] = old.v[i], m[at] = old.m[i];
+    }
+    for (int k = 0; k < num_springs; ++k) {
+      springs[k].a = number_of[old.springs[k].a];
+      springs[k].b = number_of[old.springs[k].b];
+    }
+  }
+  /** With a seed: any order. */
+  void shuffle() {
+    double rank[most];
+    for (int i = 0; i < most; ++i) rank[i] = varied(i, 1e3);
+    reorder(rank);
+  }
+  /** The number of the body at @a p, which has one. */
+  int at(const Point& p) const {
+    int i = 0;
+    while (!(x[i] == p)) ++i;
+    return i;
+  }
+  static bool is_corner(const Point& p) {
+    return p == Point(0, 0, 0) || p == Point(1, 0, 0);
+  }
+
   /** The springs' force on body @a i, by Hooke's law. */
   Point pull(int i) const {
     Point sum(0, 0, 0);

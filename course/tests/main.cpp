@@ -4,6 +4,7 @@
  *   ./tests            all tasks, each in a process of its own: a crash or an
  *                      endless loop costs its own task only
  *   ./tests 3.1.position    this task, in this process: for a debugger
+ *   SEED=7 ./tests          with other numbers in the tests of the cloth
  *
  * What a failure prints: the task, the sentence of the specification that does
  * not hold, what was done, what was expected, and what to try. */
@@ -153,6 +154,16 @@ bool probes(unsigned) { return true; }
 
 int main(int argc, char** argv) {
   using namespace kit;
+  if (const char* seed = std::getenv("SEED"); seed && *seed) {
+    std::uint64_t number = 0;
+    const auto [end, error] =
+        std::from_chars(seed, seed + std::strlen(seed), number);
+    if (error != std::errc() || *end) {
+      std::cout << "SEED is '" << seed << "', expected a whole number\n";
+      return 2;
+    }
+    vary(number);
+  }
   auto all = tasks();
   auto known = [&all](const std::string& id) {
     return std::any_of(all.begin(), all.end(),
