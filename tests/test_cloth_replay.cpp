@@ -64,7 +64,7 @@ TEST_F(ClothReplay, OfEachOfTheGalleryFails) {
                                      std::to_string(steps) + " end\n"));
   };
   const std::string ended = "the scene ended after ";
-  for (const Breakage& b : breakages()) {
+  for (const StoredScene& b : failing_scenes()) {
     const Result r = replay(b.name, 20000);
     const auto at = r.err.find(ended);
     ASSERT_NE(at, std::string::npos) << b.name << ": " << r.err;

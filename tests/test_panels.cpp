@@ -591,7 +591,7 @@ TEST(LiveThreads, ScenesAreChosenAndBroken) {
     w.click("scene");
     w.click("scene/drape");
     EXPECT_TRUE(w.sees([](const Seen& s) { return s.model.name == "drape"; }));
-    for (const lab::Breakage& b : lab::breakages()) {
+    for (const lab::StoredScene& b : lab::failing_scenes()) {
       w.click(b.name);
       EXPECT_TRUE(w.sees([&](const Seen& s) { return s.model.name == b.name; }))
           << b.name;

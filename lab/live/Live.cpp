@@ -54,15 +54,6 @@ struct Round {
   }
 };
 
-/** What a share of 1 is: RunReadings::dt_unit. */
-double unit_of(const Scene& s, const MethodEntry& m) {
-  for (const MethodEntry& like : {m, entry_of<Verlet>()})
-    if (const double limit = s.safe_limit(like);
-        limit > 0 && std::isfinite(limit))
-      return limit;
-  return TimeStep().dt;
-}
-
 Distances distances(const Cloth& a, const Cloth& b) {
   double most = 0, sum = 0;
   unsigned count = 0;
@@ -119,6 +110,14 @@ bool meets(const Point& p, const Point& q, const Ray& a, const Ray& b) {
 
 }  // namespace
 
+double dt_unit(const Scene& s, const MethodEntry& m) {
+  for (const MethodEntry& like : {m, entry_of<Verlet>()})
+    if (const double limit = s.safe_limit(like);
+        limit > 0 && std::isfinite(limit))
+      return limit;
+  return TimeStep().dt;
+}
+
 std::vector<std::array<unsigned, 2>> crossed_edges(
     const Cloth& g, std::span<const Ray> stroke) {
   std::vector<std::array<unsigned, 2>> all;
@@ -144,7 +143,7 @@ Live::Side::Side(std::unique_ptr<Scene> s, const MethodEntry& m)
 void Live::Side::mark() {
   from = scene->time(), evaluations = scene->evaluations();
   safe_limit = scene->safe_limit();
-  dt_unit = unit_of(*scene, method);
+  dt_unit = lab::dt_unit(*scene, method);
 }
 
 void Live::set_step(const MethodEntry& method, const TimeStep& step) {
@@ -269,7 +268,6 @@ bool Live::check() {
 Readings Live::readings(bool sharp) {
   Readings r;
   static_cast<RunReadings&>(r) = main_->readings(sharp);
-  if (!r.failure.empty()) r.failure = scene().explanation();
   const Cloth& g = scene().cloth();
   r.nodes = g.num_nodes(), r.edges = g.num_edges();
   r.torn_nodes = start_nodes_ - r.nodes, r.torn_edges = start_edges_ - r.edges;

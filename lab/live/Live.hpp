@@ -40,11 +40,6 @@ std::string request(const char* name, const Values&... values) {
   return (std::string(name) + ... + request_word(values));
 }
 
-/** A scene that fails, of the gallery in lab/stability/README.md. */
-using Breakage = StoredScene;
-/** All of them. */
-inline std::span<const Breakage> breakages() { return failing_scenes(); }
-
 /** The line behind a point of the screen, from the near plane to the far one
  * [m]. */
 struct Ray {
@@ -82,7 +77,7 @@ struct RunReadings {
    * the work of drag, of moving obstacles and pins, of the hand and of the
    * user's changes, and the energy of torn nodes. */
   double drift = 0;
-  /** What happened, where, why, and what works instead; empty: it runs. */
+  /** Scene::failure(); empty: it runs. */
   std::string failure;
 };
 
@@ -107,6 +102,9 @@ struct Readings : RunReadings {
   };
   std::optional<Comparison> comparison;
 };
+
+/** RunReadings::dt_unit of @a s, if it ran by @a m. */
+double dt_unit(const Scene& s, const MethodEntry& m);
 
 // ---- The scene
 
@@ -164,8 +162,7 @@ class Live {
 
   /** @param sharp compute sharp_limit anew; else it is the last one computed
    * Complexity: O(N + springs), as one force evaluation; 30 of them if sharp.
-   * The first reading of a failure takes up to some seconds, to find what works
-   * instead. */
+   */
   Readings readings(bool sharp = true);
 
   /** All requests so far, with calls() before each: a file for Replay. O(its

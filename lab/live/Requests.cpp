@@ -46,8 +46,8 @@ void read(Line& in, const MethodEntry*& method) {
   const auto name_of = [](const MethodEntry& m) { return m.info.name; };
   method = in.one_of("a method", methods, name_of);
 }
-void read(Line& in, const Breakage*& failure) {
-  failure = in.one_of("a failure", breakages(), &Breakage::name);
+void read(Line& in, const StoredScene*& failure) {
+  failure = in.one_of("a failure", failing_scenes(), &StoredScene::name);
 }
 void read(Line& in, bool& equal_work) {
   static constexpr const char* ways[] = {"equal-time", "equal-work"};
@@ -140,7 +140,7 @@ Live::Table::Table() {
     live.record(scene_request(live.model_, checksum_of(live.scene().cloth())));
   });
   on("break", plain,
-     [](Live& live, const Breakage* b) { live.load(b->model()); });
+     [](Live& live, const StoredScene* b) { live.load(b->model()); });
   // Back to t = 0, with the parameters as they are.
   on("restart", plain, [](Live& live) {
     live.main_->scene->restart();

@@ -78,10 +78,14 @@ Json json_of(const RunReadings& r) {
 // ---------------------------------------------------------------- What is run
 
 struct Drawn {
-  std::unique_ptr<Scene> beyond;  // some steps after a failure
-  std::uint64_t version = 0;      // of the cloth, at the last mesh
-  bool beyond_drawn = false;      // then
+  std::unique_ptr<Scene> beyond;  // so many steps after a failure; or null
+  unsigned steps = 0;
+  std::uint64_t version = 0;  // of the cloth, at the last mesh
   double changes = 0;
+
+  void go_back() {
+    if (beyond) beyond.reset(), steps = 0, ++changes;
+  }
 };
 
 /** The one scene of the page, and what was made of it to be drawn. */
@@ -100,14 +104,6 @@ struct State {
   const Scene& shown(unsigned side) const {
     const auto& beyond = drawn[side].beyond;
     return beyond ? *beyond : *scene(side);
-  }
-  void look_beyond() {
-    for (unsigned side : {0u, 1u}) {
-      const Scene* s = scene(side);
-      if (!s || s->failure().empty() || drawn[side].beyond) continue;
-      constexpr double far = 0.1;  // [m]: it grows by much in the last step
-      drawn[side].beyond = s->beyond_failure(far);
-    }
   }
 };
 
@@ -129,7 +125,8 @@ using namespace lab;  // NOLINT
 const char* page_about() {
   const auto of_scene = [](const StoredScene* s) {
     return object("name", s->name, "title", s->title, "byArea",
-                  page_model(*s, 2).material.modulus.has_value());
+                  page_model(*s, 2).material.modulus.has_value(), "fails",
+                  always_fails(*s));
   };
   const auto of_method = [](const MethodEntry& m) {
     return object("name", m.info.name, "order", m.info.order, "sweeps",
@@ -143,7 +140,7 @@ const char* page_about() {
 void page_load(unsigned scene, unsigned side) {
   State& s = state();
   s.live = std::make_unique<Live>(page_model(*page_scenes()[scene], side));
-  for (Drawn& d : s.drawn) d.beyond.reset(), ++d.changes;
+  for (Drawn& d : s.drawn) d.go_back(), ++d.changes;
 }
 const char* page_setting() {
   const Recipe& recipe = state().live->scene().recipe();
@@ -171,7 +168,7 @@ const char* page_request(const char* text) {
   for (unsigned side : {0u, 1u}) {
     Drawn& d = s.drawn[side];
     const Scene* const scene = s.scene(side);
-    if (!scene || scene->failure().empty()) d.beyond.reset();
+    if (!scene || scene->failure().empty()) d.go_back();
     if (!Live::overrides(text)) ++d.changes;  // as pins and edges may be
   }
   return "";
@@ -186,12 +183,26 @@ double page_step() {
 int page_check() {
   State& s = state();
   s.live->check();
-  s.look_beyond();
   return !s.live->scene().failure().empty();
 }
 const char* page_failure(unsigned side) {
   const Scene* s = state().scene(side);
   return say({s ? s->failure() : ""});
+}
+double page_beyond(unsigned side, unsigned steps) {
+  State& s = state();
+  Drawn& d = s.drawn[side];
+  if (steps < d.steps) d.go_back();
+  for (; d.steps < steps; ++d.steps) d.beyond = s.shown(side).beyond_failure(0);
+  return s.shown(side).time();
+}
+const char* page_explain() {
+  const Scene& scene = state().live->scene();
+  const auto& cure = scene.diagnosis().cure;
+  return say(object("text", scene.explanation(), "cure",
+                    cure ? object("method", cure->method.info.name, "share",
+                                  cure->dt / dt_unit(scene, cure->method))
+                         : Json{"null"}));
 }
 const char* page_readings(int sharp) {
   const Readings r = state().live->readings(sharp != 0);
@@ -240,8 +251,7 @@ double page_version(unsigned side) {
   State& s = state();
   Drawn& d = s.drawn[side];
   const std::uint64_t now = s.shown(side).cloth().version();
-  if (now != d.version || d.beyond_drawn != bool(d.beyond)) ++d.changes;
-  d.version = now, d.beyond_drawn = bool(d.beyond);
+  if (std::exchange(d.version, now) != now) ++d.changes;
   return d.changes;
 }
 const unsigned* page_mesh(unsigned side) {

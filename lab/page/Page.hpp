@@ -36,16 +36,21 @@ double page_step();
 int page_check();
 /** What happened to a side that failed; empty: it runs. */
 const char* page_failure(unsigned side);
-/** Live::readings() as a JSON text. Of a scene that failed: up to some seconds,
- * to find what works. */
+/** Draw a side that failed as it is so many steps after its last good state.
+ * O(steps) since the last call.  @return its time then [s], which stays the
+ * same if there are no more steps  @pre page_failure(side) is not empty */
+double page_beyond(unsigned side, unsigned steps);
+/** Why side 0 failed, and a cure, its method and share of dt_unit(), or null: a
+ * JSON text. Takes up to some seconds.  @pre page_failure(0) is not empty */
+const char* page_explain();
+/** Live::readings() as a JSON text. */
 const char* page_readings(int sharp);
 
 /** Slots of nodes of a side; 0: there is no such side. */
 unsigned page_slots(unsigned side);
 /** Positions [m], three numbers a slot; doubles where the page is built. */
 const Real* page_positions(unsigned side);
-/** x y z [m] and the largest strain of a spring there, four numbers a slot. A
- * side that failed is drawn as it would be some steps later. */
+/** x y z [m] and the largest strain of a spring there, four numbers a slot. */
 const float* page_points(unsigned side);
 /** Counts up when page_mesh() would return another mesh. */
 double page_version(unsigned side);

@@ -7,11 +7,14 @@
 
 namespace lab {
 
-/** The five stages of the assignment, and then others. */
+/** The five stages of the assignment, then others, then failing_scenes(). */
 std::span<const StoredScene* const> page_scenes();
 
-/** The scene in the file of @a s, but with side x side nodes, by Verlet in
- * steps of 1 ms and without an end.  @pre side >= 2 */
+/** Is @a s one of failing_scenes()? */
+bool always_fails(const StoredScene& s);
+
+/** The scene in the file of @a s without an end. Unless it always fails, it has
+ * side x side nodes and runs by Verlet in steps of 1 ms.  @pre side >= 2 */
 Model page_model(const StoredScene& s, unsigned side);
 
 }  // namespace lab

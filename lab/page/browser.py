@@ -83,13 +83,18 @@ class Browser:
             if values["entry"]["level"] == "error":
                 self.faults.append(values["entry"]["text"])
 
-    def resize(self, width, height, touch=False, dark=False):
+    def resize(self, width, height, touch=False):
         self.send("Emulation.setDeviceMetricsOverride", width=width,
                   height=height, deviceScaleFactor=1, mobile=touch)
         self.send("Emulation.setTouchEmulationEnabled", enabled=touch)
+
+    def prefer(self, dark=False, still=False, forced=False):
+        """What the person prefers: colors, no motion, colors of their own."""
+        chosen = {"prefers-color-scheme": "dark" if dark else "light",
+                  "prefers-reduced-motion": "reduce" if still else "",
+                  "forced-colors": "active" if forced else "none"}
         self.send("Emulation.setEmulatedMedia", features=[
-            {"name": "prefers-color-scheme",
-             "value": "dark" if dark else "light"}])
+            {"name": name, "value": value} for name, value in chosen.items()])
 
     def open(self, address):
         """Another page, also if only what is behind # is another."""
@@ -119,19 +124,19 @@ class Browser:
             self.send("Input.dispatchKeyEvent", type=kind, key=key,
                       code=code or key, **values)
 
-    def mouse(self, kind, x, y, button="left", modifiers=0):
+    def mouse(self, kind, x, y):
         """kind: mousePressed, mouseMoved, mouseReleased"""
         self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y,
-                  button=button, buttons=int(kind != "mouseReleased"),
-                  clickCount=1, modifiers=modifiers)
+                  button="left", buttons=int(kind != "mouseReleased"),
+                  clickCount=1)
 
-    def click(self, selector, modifiers=0):
+    def click(self, selector):
         x, y = self.value(
             "(box => [box.x + box.width / 2, box.y + box.height / 2])("
             f"(e => (e.scrollIntoView({{block: 'nearest'}}), e))"
             f"(document.querySelector('{selector}')).getBoundingClientRect())")
-        self.mouse("mousePressed", x, y, modifiers=modifiers)
-        self.mouse("mouseReleased", x, y, modifiers=modifiers)
+        self.mouse("mousePressed", x, y)
+        self.mouse("mouseReleased", x, y)
 
     def wheel(self, x, y, down):
         self.send("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y,

@@ -90,7 +90,6 @@ class Hand {
   }
 
   down(e) {
-    this.canvas.focus({preventScroll: true});
     this.canvas.setPointerCapture(e.pointerId);
     const place = this.locate(e.clientX, e.clientY);
     const pointer = {x: e.clientX, y: e.clientY, what: 'turn'};

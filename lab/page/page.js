@@ -12,11 +12,12 @@ const cssOf = name => getComputedStyle(document.documentElement)
 const page = {
   about: null,           // scenes and methods
   settings: {scene: 'forces', side: 25, method: 'verlet', share: 0.5, rival: '',
-    rivalShare: 0.5},    // and the parameters of the scene
+    rivalShare: 0.5, drag: 0.003},  // and the other parameters of the scene
   speed: 1,              // simulated seconds a second, at most
-  playing: true, waiting: false, wanted: true, dirty: true,
+  playing: false, waiting: false, wanted: true, dirty: true,
   sides: [],             // what is drawn
-  readings: null, failed: false, calls: 0, why: '',
+  readings: null, failed: false, calls: 0, why: '', cure: null,
+  beyond: null,          // the motion after a failure: its frames, and from when
   frames: 0, errors: [],
   run: 0, asked: 0,      // runs and requests; the worker counts them, too
 
@@ -41,7 +42,7 @@ const fromZero = (high, power) => ({
   place: a => (a / high) ** (1 / power),
 });
 const named = (all, name) => all.find(a => a.name === name);
-const byArea = () => named(page.about.scenes, page.settings.scene).byArea;
+const byArea = () => scene().byArea;
 const sliders = {
   share: {...byPower(0.01, 100), show: a => shortNumber(a)},
   rivalShare: {...byPower(0.01, 100), show: a => shortNumber(a)},
@@ -64,6 +65,10 @@ function showSlider(name) {
   input.setAttribute('aria-valuetext', outputOf(input).textContent);
 }
 
+// Does the person want nothing to move by itself?
+const isStill = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
+const scene = () => named(page.about.scenes, page.settings.scene);
+
 function showControls() {
   const s = page.settings;
   if (![...$('side').options].some(o => Number(o.value) === s.side))
@@ -75,6 +80,7 @@ function showControls() {
   $('about').textContent = `Order ${m.order}, ${m.sweeps} force evaluation` +
     `${m.sweeps === 1 ? '' : 's'} a step. Good for: ${m.goodFor}. Fails: ` +
     `${m.failsWhen}.`;
+  $('side').disabled = scene().fails;
   $('row-rivalShare').hidden = !s.rival;
   $('distance-figure').hidden = !s.rival;
   $('stage').classList.toggle('two', !!s.rival);
@@ -129,12 +135,13 @@ function requestOf(name) {
 function startLines() {
   const s = page.settings, names = Object.keys(sliders).filter(
     name => name in s && !name.endsWith('hare'));
+  if (scene().fails && !names.length) return [];  // as its file says
   return ['method', ...names, 'share', ...s.rival ? ['rival'] : []].map(
     name => [0, requestOf(name).join(' ')]);
 }
 function start(lines = startLines(), end = 0) {
   for (const plot of Object.values(plots)) plot.clear();
-  page.failed = false, page.why = '', showFailure('');
+  forget();
   page.hand.release();
   const {scene, side} = page.settings;
   page.worker.postMessage(['run', {side, lines, end,
@@ -147,23 +154,33 @@ function setPlaying(on) {
   page.playing = on, page.lastTime = undefined;
   $('play').textContent = on ? 'Pause' : 'Play';
 }
-
-function loadScene(scene) {
-  page.settings.scene = scene;
-  for (const name of Object.keys(page.readings?.parameters || {}))
-    delete page.settings[name];
-  start(), setPlaying(true);
+// Play after a failure shows it again.
+function play() {
+  if (page.beyond) page.beyond.from = undefined, page.changed();
+  else if (page.failed) start(), setPlaying(true);
+  else setPlaying(!page.playing);
 }
 
-// A change of what runs. One that failed goes on from its last good state.
+function loadScene(name) {
+  const s = page.settings, failed = scene().fails;
+  s.scene = name;
+  for (const key of Object.keys(page.readings?.parameters || {}))
+    delete s[key];
+  if (scene().fails) s.rival = '';
+  else if (failed) s.method = 'verlet', s.share = 0.5;
+  start(), setPlaying(!isStill());
+}
+
+// A change of what runs. One that failed goes on from its last good state,
+// unless nothing of it can go on.
 function change(name, value) {
   page.settings[name] = value;
-  if (page.failed) {
+  if (page.broken) {
     start(), setPlaying(true);
   } else if (name === 'rival' || name === 'rivalShare' && page.calls === 0) {
     start();  // both from the same start
   } else {
-    page.ask(...requestOf(name));
+    goOn(), page.ask(...requestOf(name));
     if (name === 'method') page.ask(...requestOf('share'));
   }
   showControls();
@@ -171,7 +188,13 @@ function change(name, value) {
 
 function makeControls() {
   const {scenes, methods} = page.about;
-  $('scene').append(...scenes.map(s => new Option(s.title, s.name)));
+  for (const fails of [false, true]) {
+    const group = document.createElement('optgroup');
+    group.label = fails ? 'Ways to break it' : 'Cloths';
+    group.append(...scenes.filter(s => s.fails === fails).map(
+      s => new Option(s.title, s.name)));
+    $('scene').append(group);
+  }
   $('rival').append(new Option('nothing', ''));
   for (const name of ['method', 'rival'])
     $(name).append(...methods.map(m => new Option(m.name)));
@@ -190,15 +213,17 @@ function makeControls() {
       showSlider(name);
     };
   }
-  $('play').onclick = () => setPlaying(!page.playing);
+  $('play').onclick = play;
   $('step').onclick = () => { setPlaying(false), page.stepping = true; };
   $('restart').onclick = () => { start(), setPlaying(true); };
   $('dismiss').onclick = () => $('failure').hidden = true;
+  $('cure').onclick = applyCure;
   $('link').onclick = () => page.worker.postMessage(['link']);
   for (const button of document.querySelectorAll('[data-tool]'))
     button.onclick = () => setTool(button.dataset.tool);
   setTool('grab');
   addEventListener('keydown', e => {
+    if (e.key === 'Escape') $('failure').hidden = true;
     if (e.target.matches('select, input') || e.ctrlKey || e.metaKey) return;
     const action = {' ': 'play', n: 'step', r: 'restart'}[e.key.toLowerCase()];
     if (!action || (e.key === ' ' && e.target.matches('button'))) return;
@@ -225,6 +250,9 @@ function colors() {
     floor: four('--floor'), bad: hex('--bad'), sky: hex('--sky')};
   page.style = {edge: cssOf('--edge'), dim: cssOf('--dim'),
     series: [0, 1, 2, 3].map(k => cssOf(`--series${k}`))};
+  const mixed = name => `rgb(${cssOf(name).split(' ').slice(0, 3).join(' ')})`;
+  $('strain').querySelector('i').style.background = 'linear-gradient(90deg, ' +
+    `${mixed('--cloth0')}, ${mixed('--stretched')})`;
   page.changed();
 }
 
@@ -273,10 +301,75 @@ function showNumbers() {
   });
 }
 
+// ------------------------------------------------------------------- A failure
+
+const playback = 2000;  // [ms], of the motion beyond a failure
+
+function forget() {
+  page.failed = page.broken = false, page.why = '', page.cure = null;
+  if (page.beyond) setText($('busy'), '');
+  page.beyond = null, clearTimeout(page.lookingBeyond), showFailure('');
+}
+// From the last good state.
+function goOn() {
+  if (!page.failed) return;
+  for (const plot of Object.values(plots)) plot.goOn();
+  forget(), setPlaying(true);
+}
+function fail({broken, readings}) {
+  page.failed = true, page.broken = broken, setPlaying(false);
+  for (const plot of Object.values(plots))
+    plot.good = readings ? readings.main.time : Infinity;
+  showFailure(page.sides[0].failure + ' s; looking for the cause ...');
+  // A slider that moves on may end it; meanwhile the thread has no time.
+  page.lookingBeyond = setTimeout(() => {
+    if (!broken) page.worker.postMessage(['beyond']);
+    page.worker.postMessage(['explain']);
+  }, 300);
+}
+function applyCure() {
+  const {method, share} = page.cure, s = page.settings;
+  goOn(), s.method = method, s.share = share;
+  page.ask(...requestOf('method')), page.ask(...requestOf('share'));
+  showControls();
+}
+
+// What is drawn at a time [ms]: of a failure, the motion beyond it. Between two
+// steps it is straight.
+function sidesAt(now) {
+  const {beyond} = page;
+  if (!beyond) return page.sides;
+  beyond.from ??= isStill() && !beyond.seen ? now - playback : now;
+  beyond.seen = true;
+  const {frames} = beyond, last = frames.length - 1;
+  const at = Math.min(1, (now - beyond.from) / playback) * last;
+  const k = Math.min(Math.floor(at), last - 1);
+  if (at >= last) {
+    setText($('busy'), '');
+    if (beyond.drawn !== undefined) page.view.setSide(0, page.sides[0]);
+    beyond.drawn = undefined;
+    return page.sides;
+  }
+  setText($('busy'), `beyond the failure, ${shortNumber(Number((playback / 1e3 /
+    (frames[last].time - frames[0].time)).toPrecision(2)))} times slower`);
+  const {points} = frames[k], next = frames[k + 1].points;
+  const side = {...page.sides[0], ...frames[k].mesh, failedNode: -1,
+    points: frames[k + 1].newMesh ? points : points.map(
+      (a, i) => a + (at - k) * (next[i] - a))};
+  page.view.setSide(0, side, beyond.drawn !== k), beyond.drawn = k;
+  page.changed();
+  return [side, ...page.sides.slice(1)];
+}
+
 // The words of ./cloth, whose options are sliders here.
 function showFailure(words) {
+  const {cure} = page, share = cure && shortNumber(cure.share);
   const text = words.replace(/--dt (\S+)/g, 'dt = $1 s')
     .replace(/--method (\S+)/g, 'method $1');
+  $('cure').hidden = !cure;
+  setText($('cure'), cure && cure.method !== page.settings.method
+    ? `Apply the cure: ${cure.method}, dt / limit ${share}`
+    : `Apply the cure: dt / limit ${share}`);
   $('failure').hidden = !text;
   $('failure').querySelector('h2').textContent =
     text.startsWith('diverged') ? 'It diverged'
@@ -285,12 +378,8 @@ function showFailure(words) {
   const at = text.indexOf(' s; ', text.indexOf('the last good state'));
   const parts = at < 0 ? [text]
     : [text.slice(0, at + 2), text.slice(at + 4)];
-  $('failure').querySelectorAll('p').forEach(p => p.remove());
-  parts.reverse().forEach((part, k) => {
-    const p = document.createElement('p');
-    p.textContent = part, p.id = k ? 'place' : 'words';
-    $('failure').insertBefore(p, $('dismiss'));
-  });
+  setText($('words'), parts[1] ?? parts[0]);
+  setText($('place'), parts[1] ? parts[0] : '');
 }
 
 const tellLeftOut = () => showFailure('Of the link, what makes no sense was ' +
@@ -305,8 +394,8 @@ const replies = {
     if (read.speed) page.speed = read.speed;
     if (read.camera)
       page.view.camera.set(...read.camera);
-    if (read.end) setPlaying(false);
-    start(read.lines, read.end);
+    setPlaying(!read.end && !isStill());
+    start(location.hash ? read.lines : startLines(), read.end);
     if (read.leftOut) tellLeftOut();
   },
   setting({setting}) {
@@ -315,26 +404,32 @@ const replies = {
   },
   frame(data) {
     page.waiting = false, page.calls = data.calls, ++page.frames;
-    setText($('busy'), '');
+    // One that failed may run by what is on its way.
+    if (data.failed && data.asked !== page.asked) page.wanted = true;
+    if (page.beyond) page.beyond.drawn = undefined;
+    else setText($('busy'), '');
     const before = page.sides;
-    page.sides = data.sides.map((side, k) => {
-      const {view} = page;
-      const mesh = side.mesh || before[k];
-      if (side.mesh) view.cloths[k].setMesh(mesh.triangles, mesh.lines);
-      view.cloths[k].setPoints(side.points);
-      const {lines, triangles, pins} = mesh;
-      return {...side, lines, triangles, pins};
+    page.sides = data.sides.map(({mesh, ...side}, k) => {
+      const {lines, triangles, pins} = mesh || before[k];
+      const all = {...side, lines, triangles, pins};
+      page.view.setSide(k, all, !!mesh);
+      return all;
     });
     page.readings = data.readings;
-    if (!data.failed) followRun(data);
+    if (!data.broken) followRun(data);
     frameScene(), remember();
-    if (data.failed && !page.failed) {
-      page.failed = true, setPlaying(false);
-      for (const plot of Object.values(plots)) plot.good = data.good;
-      showFailure(page.sides[0].failure + ' s; looking for the cause ...');
-    }
-    if (!data.failed) page.failed = false;
+    if (data.failed && !page.failed && !page.wanted) fail(data);
     page.changed();
+  },
+  beyond({frames, asked}) {
+    if (!page.failed || asked !== page.asked || frames.length < 2) return;
+    let mesh = page.sides[0];
+    for (const frame of frames) {
+      frame.newMesh = !!frame.mesh;
+      const {lines, triangles, pins} = frame.mesh || mesh;
+      mesh = frame.mesh = {lines, triangles, pins};
+    }
+    page.beyond = {frames}, page.changed();
   },
   repeating({part}) {
     setText($('busy'),
@@ -344,8 +439,9 @@ const replies = {
     for (const readings of history) page.readings = readings, remember();
     if (leftOut) tellLeftOut();
   },
-  why({why, readings, asked}) {
-    page.why = why, page.readings = readings, followRun({asked, readings});
+  why({why, cure, broken, asked}) {
+    if (!page.failed || asked !== page.asked) return;
+    page.why = why, page.cure = cure, page.broken = broken;
     showFailure(why), page.changed();
   },
   link({recording}) {
@@ -402,11 +498,12 @@ function tick(now) {
     }
     page.wanted ||= page.hand.moved;
   }
-  const moving = page.playing && !page.failed;
+  const moving = page.playing && !page.failed ||
+    page.beyond?.drawn !== undefined;
   page.dirty = page.view.pace.frame(now, moving) || page.dirty;
   if (!page.dirty || !page.sides.length) return;
   page.dirty = false;
-  page.view.draw(page.sides, page.theme, page.hand.grabbed);
+  page.view.draw(sidesAt(now), page.theme, page.hand.grabbed);
   // Of a run that goes on, numbers and curves four times a second.
   if (!moving || now - (page.numbersAt || 0) > 250)
     page.numbersAt = now, showNumbers(), showLimits();

@@ -8,6 +8,12 @@ class Plot {
   }
   // good: from this time on [s] the run is known to have failed.
   clear() { this.times = [], this.rows = [], this.good = Infinity; }
+  // Continue from the last good state.
+  goOn() {
+    while (this.times.length && this.times.at(-1) > this.good)
+      this.times.pop(), this.rows.pop();
+    this.good = Infinity;
+  }
 
   // Add the values of all curves at a time [s]; a value may be NaN.
   add(time, row) {
@@ -22,9 +28,12 @@ class Plot {
 
   // @param curves [name, color] for each value   @param log by powers of ten
   draw(name, curves, log, style) {
-    this.title.innerHTML = [name, ...curves.map(([what, color]) =>
-      `<b style="color:${color}">${what}</b>`)].join(' ');
+    this.title.innerHTML = [name, ...curves.map(([what, color], k) =>
+      `<b style="color:${color}"><i>${dashes[k][0]}</i> ${what}</b>`)].join(' ');
     const {canvas, times, rows} = this;
+    canvas.setAttribute('aria-label', `${name} over ${
+      shortNumber(times.at(-1) ?? 0)} s; now ${curves.map(([what], k) =>
+      `${what} ${shortNumber(rows.at(-1)?.[k])}`).join(', ')}`);
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const width = canvas.clientWidth, height = canvas.clientHeight;
     if (!width) return;
@@ -61,7 +70,7 @@ class Plot {
     g.textAlign = 'left', g.fillText('0', left, bottom + 4);
     g.lineWidth = 1.8, g.lineJoin = 'round';
     curves.forEach(([, color], k) => {
-      g.strokeStyle = color, g.beginPath();
+      g.strokeStyle = color, g.setLineDash(dashes[k][1]), g.beginPath();
       let down = false;
       rows.forEach((row, i) => {
         const a = value(row[k]);
@@ -74,6 +83,10 @@ class Plot {
     });
   }
 }
+
+// How curves are told apart without colors: as text, and on the canvas.
+const dashes = [['\u2014', []], ['- -', [6, 4]], ['\u00b7\u00b7\u00b7', [2, 3]],
+  ['-\u00b7-', [8, 3, 2, 3]]];
 
 // Round numbers between low and high, at most five.
 function ticks(low, high, least) {

@@ -235,6 +235,227 @@ def a_step_beyond_the_limit_diverges_with_a_ring_and_a_reason(b):
     assert b.value("$('failure').hidden")
 
 
+def fail_by_stiffness(b):
+    """@return the time of the last good state"""
+    b.wait("page.readings.main.time > 0.1")
+    slide(b, "stiffness", 10000)
+    b.wait("page.failed", 120)
+    return time_of(b)
+
+
+@test
+def what_failed_is_shown_as_it_was(b):
+    """A larger K lowers the limit: dt / limit is red at once."""
+    fail_by_stiffness(opened(b))
+    assert b.value("page.why") == ""
+    share = b.value("page.readings.main.dt / page.readings.main.unit")
+    assert share > 4, share
+    assert abs(b.value("page.settings.share") / share - 1) < 0.01
+    shown = float(b.value("$('row-share').querySelector('output').textContent"))
+    assert abs(shown / share - 1) < 0.01, shown
+    assert b.value("$('row-share').classList.contains('beyond')")
+
+
+@test
+def a_change_goes_on_from_the_last_good_state(b):
+    good = fail_by_stiffness(opened(b))
+    assert good > 0.1
+    slide(b, "stiffness", 100)
+    b.wait("!page.failed && page.playing")
+    first = b.value(f"plots.energy.times.filter(t => t <= {good}).length")
+    b.wait(f"page.readings.main.time > {good} + 0.05")
+    assert first > 1 and b.value("plots.energy.times.length") > first
+    # One that fails at once stops again, with a reason.
+    slide(b, "stiffness", 10000)
+    b.wait("page.failed", 120)
+    slide(b, "stiffness", 9000)
+    b.wait("page.failed && !page.playing && page.why", 120)
+    assert time_of(b) > good
+
+
+@test
+def an_explosion_is_seen(b):
+    fail_by_stiffness(opened(b))
+    b.wait("page.beyond?.drawn !== undefined", 120)
+    assert "times slower" in b.value("$('busy').textContent")
+    moved = """(frames => frames.map(f => Math.max(...f.points.map((a, i) =>
+      i % 4 < 3 ? Math.abs(a - frames[0].points[i]) : 0))))
+      (page.beyond.frames)"""
+    way = b.value(moved)
+    assert way[0] == 0 and way == sorted(way) and way[-1] > 1, way
+    # Then back to where it began, with its ring.
+    b.wait("page.beyond.drawn === undefined && page.why", 120)
+    b.screenshot(build / "page-failure.png")
+    node = b.value("page.sides[0].failedNode")
+    x, y = place_of(b, node)
+    box = b.value("(b => [b.left, b.top, b.right, b.bottom])"
+                  "($('canvas').getBoundingClientRect())")
+    assert box[0] < x < box[2] and box[1] < y < box[3]
+    # The words are beside the cloth.
+    assert b.value("$('failure').getBoundingClientRect().top") >= box[3]
+    # Play shows it again.
+    b.click("#play")
+    b.wait("page.beyond.drawn !== undefined")
+    assert b.value("page.failed")
+
+
+@test
+def a_cure_is_applied(b):
+    good = fail_by_stiffness(opened(b))
+    b.wait("page.why && page.cure", 300)
+    cure = b.value("page.cure")
+    assert cure["method"] == "verlet" and 0 < cure["share"] < 1.3
+    assert b.value("$('cure').textContent") == "Apply the cure: dt / limit " + \
+        b.value("shortNumber(page.cure.share)")
+    b.click("#cure")
+    b.wait(f"!page.failed && page.readings.main.time > {good} + 0.02", 120)
+    assert abs(b.value("page.readings.main.dt / page.readings.main.unit")
+               / cure["share"] - 1) < 1e-9
+    assert b.value("$('failure').hidden && page.playing")
+
+
+@test
+def ways_to_break_it_fail_as_their_files_say(b):
+    failing = opened(b).value(
+        "page.about.scenes.filter(s => s.fails).map(s => s.name)")
+    assert len(failing) == 8, failing
+    for name, method in (("drag", "symplectic-euler"), ("xpbd", "xpbd")):
+        choose(b, "scene", name)
+        b.wait("page.failed", 300)
+        assert b.value("page.settings.method") == method
+        assert b.value("$('method').value") == method
+    choose(b, "scene", "forces")
+    b.wait("!page.failed && page.readings.main.method === 'verlet'")
+    assert b.value("page.settings.share") == 0.5
+
+
+@test
+def the_first_scene_comes_to_rest(b):
+    opened(b)
+    b.value("start(startLines(), 12000)")
+    b.wait("page.calls === 12000", 300)
+    assert b.value("page.readings.main.kinetic") < 1e-3
+
+
+@test
+def nothing_moves_by_itself_if_so_preferred(b):
+    b.prefer(still=True)
+    opened(b)
+    assert b.value("page.playing") is False
+    choose(b, "scene", "drape")
+    b.wait("page.readings.nodes && !page.waiting")
+    assert b.value("page.playing") is False and b.value("page.calls") == 0
+    b.click("#play")
+    b.wait("page.readings.main.time > 0.05")
+
+
+# The smallest contrast of a text to what is behind it, by WCAG 2.
+contrast = """(() => {
+  const channels = color => color.match(/[\\d.]+/g).map(Number);
+  const light = color => {
+    const [r, g, b] = channels(color).slice(0, 3).map(c => c / 255).map(
+      c => c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const behind = e => {
+    for (; e; e = e.parentElement) {
+      const color = getComputedStyle(e).backgroundColor;
+      if (channels(color).length < 4 || channels(color)[3] > 0) return color;
+    }
+    return 'rgb(255, 255, 255)';
+  };
+  const all = [...document.querySelectorAll('body *')].filter(e =>
+    e.offsetParent && [...e.childNodes].some(n => n.nodeType === 3 &&
+      n.textContent.trim())).map(e => {
+    const [a, b] = [light(getComputedStyle(e).color), light(behind(e))];
+    return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05),
+      e.id || e.textContent.trim()];
+  });
+  return [all.length, ...all.sort((a, b) => a[0] - b[0])[0]];
+})()"""
+
+
+@test
+def text_can_be_read(b):
+    for dark in (False, True):
+        b.prefer(dark=dark)
+        opened(b)
+        choose(b, "rival", "rk4")
+        b.wait("page.sides.length === 2")
+        slide(b, "share", 3)
+        b.wait("page.failed", 120)
+        b.wait("page.why", 300)
+        count, least, where = b.value(contrast)
+        assert count > 40 and least >= 4.5, (dark, count, least, where)
+        b.screenshot(build / f"page-{'dark' if dark else 'light'}.png")
+
+
+@test
+def colors_of_the_person_keep_tools_and_curves_apart(b):
+    b.prefer(forced=True)
+    opened(b)
+    back = ("[...document.querySelectorAll('[data-tool]')].map("
+            "e => getComputedStyle(e).backgroundColor)")
+    grab, cut = b.value(back)[:2]
+    assert grab != cut
+    curves = b.value("[...$('energy-title').querySelectorAll('b')].map("
+                     "e => getComputedStyle(e).color + e.textContent)")
+    assert len(set(curves)) == 4, curves
+    assert len(set(b.value("dashes.map(d => d[1].join())"))) == 4
+    b.screenshot(build / "page-forced.png")
+
+
+@test
+def everything_has_a_name(b):
+    opened(b)
+    choose(b, "rival", "rk4")
+    b.wait("page.sides.length === 2 && page.readings.main.time > 0.05")
+    nameless = b.value("""[...document.querySelectorAll(
+      'canvas, button, select, input, section, aside, fieldset > *')].filter(
+      e => e.offsetParent && !(e.ariaLabel || e.labels?.length || e.title ||
+        e.textContent.trim() || e.matches('section:not([id])')))
+      .map(e => e.id || e.outerHTML)""")
+    assert not nameless, nameless
+    assert b.value("$('canvas').getAttribute('role')") == "application"
+    label = b.value("$('energy').ariaLabel")
+    assert "verlet" in label and "J" in label, label
+
+
+@test
+def a_frame_around_what_has_the_focus_is_for_keys(b):
+    opened(b)
+    b.key("Tab")
+    assert b.value("document.activeElement.matches(':focus-visible')")
+    x, y = place_of(b, 624)
+    for at in ("#step", "canvas"):
+        if at == "canvas":
+            b.mouse("mousePressed", x, y), b.mouse("mouseReleased", x, y)
+        else:
+            b.click(at)
+        assert b.value("document.activeElement.matches(':focus-visible')") \
+            is False, at
+    assert b.value("document.activeElement.id") == "canvas"
+    assert b.value("$('cross').hidden")
+
+
+@test
+def it_fits_small_screens(b):
+    for width in (320, 360, 820):
+        b.resize(width, 640, touch=True)
+        opened(b)
+        slide(b, "share", 3)
+        b.wait("page.failed", 120)
+        b.wait("page.why", 300)
+        assert b.value("document.documentElement.scrollWidth") <= width
+        wide = b.value("""[...document.querySelectorAll(
+          'button, select, input, #failure, output')].filter(e => e.offsetParent).map(e =>
+            [e.id || e.textContent, e.getBoundingClientRect()]).filter(
+            ([, r]) => r.left < 0 || r.right > innerWidth + 0.5)
+            .map(([id]) => id)""")
+        assert not wide, (width, wide)
+        b.screenshot(build / f"page-{width}.png")
+
+
 @test
 def a_step_that_can_not_be_made_is_told_and_the_page_goes_on(b):
     opened(b, "#scene=forces&side=5&method=tr-bdf2&K=100000&share=1000")
@@ -428,7 +649,7 @@ def it_works_on_a_phone(b):
     b.touch("touchMove", (120, 70), (230, 180))
     b.touch("touchEnd")
     assert b.value("page.view.camera.zoom") > 1.5 * zoom
-    b.resize(360, 640, touch=True, dark=True)
+    b.prefer(dark=True)
     b.value("page.view.camera.zoom = 1, setPlaying(true)")
     choose(b, "rival", "implicit-midpoint")
     b.wait("page.sides.length === 2 && page.readings.main.time > 0.05", 120)

@@ -296,6 +296,12 @@ class View {
       gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
   }
 
+  // What is drawn of a side; its mesh, too, if that is another one.
+  setSide(k, {points, triangles, lines}, isNew = true) {
+    if (isNew) this.cloths[k].setMesh(triangles, lines);
+    this.cloths[k].setPoints(points);
+  }
+
   // Fit the picture to the canvas.  @return its panes, one a cloth:
   // [x, y, width, height] in pixels of the canvas, y up
   panes(count) {

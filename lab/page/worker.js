@@ -8,7 +8,8 @@ let calls;                     // steps of this run
 let run = 0, asked = 0;        // how many were started; requests taken
 let broken = '';               // what was thrown, until the next start
 let versions = [-1, -1];       // of the meshes that were sent
-let sharpAt = 0, explained = false, readings = null;
+let sharpAt = 0, readings = null;
+let rivalIsShown = false;      // that it failed
 let newest = 0;                // number of the last run that the page asked for
 
 const text = at => {
@@ -51,7 +52,6 @@ function call(name, ...values) {
 
 // @return what is wrong with the request; '' if nothing
 function request(line) {
-  explained = false;
   const bytes = new TextEncoder().encode(line + '\0');
   const at = call('room', bytes.length);
   new Uint8Array(wasm.memory.buffer, at, bytes.length).set(bytes);
@@ -77,7 +77,7 @@ function advance(time, budget) {
 // `end` steps, until the page asks for another run than `mine`.
 // @return whether all lines made sense, and 150 readings at most
 async function repeat({scene, side, lines, end}, mine) {
-  ++run, calls = 0, broken = '', explained = false;
+  ++run, calls = 0, broken = '';
   call('load', scene, side);
   const history = [], every = Math.ceil(end / 150);
   let until = performance.now(), leftOut = false;
@@ -113,49 +113,70 @@ function failureOf(side) {
   return wasm.page_slots(side) ? text(wasm.page_failure(side)) : '';
 }
 
-function frame() {
-  if (!broken) call('check');
-  const sides = [], parts = [];
-  for (const side of [0, 1]) {
-    const slots = wasm.page_slots(side);
-    if (!slots) { versions[side] = -1; continue; }
-    const points = copy(Float32Array, wasm.page_points(side), 4 * slots);
-    const s = {points, mesh: null, failure: failureOf(side),
-      failedNode: wasm.page_failed_node(side)};
-    const version = wasm.page_version(side);
-    if (version !== versions[side]) {
-      versions[side] = version;
-      const at = wasm.page_mesh(side);
-      const [lines, triangles, pins] = copy(Uint32Array, at, 3);
-      const all = copy(Uint32Array, at + 12, 2 * lines + 3 * triangles + pins);
-      s.mesh = {lines: all.slice(0, 2 * lines),
-        triangles: all.slice(2 * lines, 2 * lines + 3 * triangles),
-        pins: all.slice(2 * lines + 3 * triangles)};
-      parts.push(s.mesh.lines.buffer, s.mesh.triangles.buffer,
-        s.mesh.pins.buffer);
-    }
-    parts.push(points.buffer);
-    sides.push(s);
-  }
-  const failed = broken || (sides[0] && sides[0].failure);
-  const sharp = performance.now() - sharpAt > 250;
-  if (sharp) sharpAt = performance.now();
-  if (!failed) readings = JSON.parse(text(wasm.page_readings(sharp ? 1 : 0)));
-  const good = failed && !broken ? call('step') : Infinity;  // [s]
-  postMessage({kind: 'frame', run, asked, sides, readings, calls, good,
-    failed: !!failed}, parts);
-  if (failed && !explained) setTimeout(explain, 0);
+// What is drawn of a side; its mesh if that is another one than the last.
+function drawn(side) {
+  const points = copy(Float32Array, wasm.page_points(side),
+    4 * wasm.page_slots(side));
+  const version = wasm.page_version(side);
+  if (version === versions[side]) return {points, mesh: null};
+  versions[side] = version;
+  const at = wasm.page_mesh(side);
+  const [lines, triangles, pins] = copy(Uint32Array, at, 3);
+  const all = copy(Uint32Array, at + 12, 2 * lines + 3 * triangles + pins);
+  return {points, mesh: {lines: all.slice(0, 2 * lines),
+    triangles: all.slice(2 * lines, 2 * lines + 3 * triangles),
+    pins: all.slice(2 * lines + 3 * triangles)}};
 }
 
-// Why it failed and what works: it is found by trying, which takes a while.
-function explain() {
-  explained = true;
-  if (broken) return postMessage({kind: 'why', run, why: broken, readings});
-  const short = failureOf(0), at = call('readings', 1);
-  if (at !== undefined) readings = JSON.parse(text(at));
-  // A trial of what might work may throw: then nothing works that is known.
-  const why = at === undefined ? short : readings.main.failure;
-  postMessage({kind: 'why', run, why, readings, asked});
+function frame() {
+  if (!broken) call('check');
+  const failed = !!failureOf(0), sides = [];
+  if (!failed && failureOf(1) && !rivalIsShown) beyond(1);
+  rivalIsShown = !!failureOf(1);
+  for (const side of [0, 1]) {
+    if (wasm.page_slots(side))
+      sides.push({...drawn(side), failure: failureOf(side),
+        failedNode: wasm.page_failed_node(side)});
+    else versions[side] = -1;
+  }
+  const sharp = failed || performance.now() - sharpAt > 250;
+  if (sharp) sharpAt = performance.now();
+  if (!broken) readings = JSON.parse(text(wasm.page_readings(sharp ? 1 : 0)));
+  postMessage({kind: 'frame', run, asked, sides, readings, calls, failed,
+    broken: !!broken}, sides.map(s => s.points.buffer));
+}
+
+// ----------------------------------------------------------------- A failure
+
+// The steps after a side's last good state, without the guard that stops it,
+// until a node is far from there: as many as fit in a second. From then on the
+// side is drawn as it is while its nodes are still near.
+// @return what is drawn of each step
+function beyond(side) {
+  const far = 3, near = 0.2;  // [m]
+  const frames = [], until = performance.now() + 1000;
+  let shown = 0, moved = 0, time = -1;
+  versions[side] = -1;
+  for (let k = 0; moved < far && performance.now() < until; ++k) {
+    const next = call('beyond', side, k);
+    if (next === undefined || next === time) break;  // it can't go on
+    time = next, frames.push({time, ...drawn(side)});
+    moved = largestMove(frames[0].points, frames[k].points);
+    if (moved < near) shown = k;
+  }
+  if (!broken) call('beyond', side, shown);
+  versions[side] = -1;
+  return frames;
+}
+// Of nodes that are in both [m].
+function largestMove(from, to) {
+  let most = 0;
+  for (let i = 0; i < to.length; i += 4) {
+    const size = Math.hypot(to[i], to[i + 1], to[i + 2]);
+    if (size > 0) most = Math.max(most, Math.hypot(to[i] - from[i],
+      to[i + 1] - from[i + 1], to[i + 2] - from[i + 2]));
+  }
+  return most;
 }
 
 function setting() {
@@ -188,6 +209,21 @@ const handlers = {
     else if (seconds > 0 && readings)
       advance(readings.main.time + seconds, budget);
     frame();
+  },
+  // After a failure: the motion beyond it.
+  beyond() {
+    if (!failureOf(0) || broken) return;
+    postMessage({kind: 'beyond', run, asked, frames: beyond(0)}), frame();
+  },
+  // Why it failed and what works: it is found by trying, which takes a while.
+  explain() {
+    const short = failureOf(0);
+    if (!short) return;
+    const at = broken ? undefined : call('explain');
+    // A trial of what might work may throw: then nothing works that is known.
+    const {text: why, cure} = at === undefined ? {text: short, cure: null}
+      : JSON.parse(text(at));
+    postMessage({kind: 'why', run, asked, why, cure, broken: !!broken});
   },
   link: () => postMessage({kind: 'link', recording: text(call('recording'))}),
   // For the test: after so many steps, all positions.

@@ -413,7 +413,7 @@ void Panel::draw_scenes() {
     ImGui::EndCombo();
   }
   ImGui::TextColored(dim, "Break it:");
-  for (const Breakage& b : breakages()) {
+  for (const StoredScene& b : failing_scenes()) {
     if (ImGui::Button(b.title, {-1, 0})) ask(request("break", b.name));
     mark(b.name);
   }
