@@ -29,7 +29,8 @@ class Plot {
   // @param curves [name, color] for each value   @param log by powers of ten
   draw(name, curves, log, style) {
     this.title.innerHTML = [name, ...curves.map(([what, color], k) =>
-      `<b style="color:${color}"><i>${dashes[k][0]}</i> ${what}</b>`)].join(' ');
+      `<b style="color:${color}"><i>${dashes[k][0]}</i> ${what}</b>`)]
+      .join(' ');
     const {canvas, times, rows} = this;
     canvas.setAttribute('aria-label', `${name} over ${
       shortNumber(times.at(-1) ?? 0)} s; now ${curves.map(([what], k) =>

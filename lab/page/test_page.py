@@ -398,6 +398,7 @@ def colors_of_the_person_keep_tools_and_curves_apart(b):
             "e => getComputedStyle(e).backgroundColor)")
     grab, cut = b.value(back)[:2]
     assert grab != cut
+    b.wait("$('energy-title').querySelector('b')")
     curves = b.value("[...$('energy-title').querySelectorAll('b')].map("
                      "e => getComputedStyle(e).color + e.textContent)")
     assert len(set(curves)) == 4, curves
@@ -448,7 +449,8 @@ def it_fits_small_screens(b):
         b.wait("page.why", 300)
         assert b.value("document.documentElement.scrollWidth") <= width
         wide = b.value("""[...document.querySelectorAll(
-          'button, select, input, #failure, output')].filter(e => e.offsetParent).map(e =>
+          'button, select, input, #failure, output')].filter(
+            e => e.offsetParent).map(e =>
             [e.id || e.textContent, e.getBoundingClientRect()]).filter(
             ([, r]) => r.left < 0 || r.right > innerWidth + 0.5)
             .map(([id]) => id)""")
