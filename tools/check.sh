@@ -309,6 +309,7 @@ turns() {
   turn pages     "$long"  tools/check_pages.sh
   turn try       "$limit" env EVERY=8 FIRST=$((turn_of % 8)) \
     python3 lab/try/test_try.py build/check/try
+  turn mistakes  "$limit" python3 course/pictures/test_mistakes.py
   turn window    "$limit" tools/test_window.sh
   turn threads   "$limit" threads
   turn charts    "$limit" in_folder . -s charts QUICK=1

@@ -19,7 +19,7 @@ ROOT = HERE.parent.parent
 sys.path.insert(0, str(HERE.parent / "kit"))
 import markers  # noqa: E402
 
-HEIGHTS = {2: 416, 3: 330}  # [pixels], by the number of panels
+HEIGHTS = {2: 416, 3: 330, 4: 300}  # [pixels], by the number of panels
 
 CLOTH, PROGRAM = "mass_spring.hpp", "mass_spring.cpp"
 MOVE = """    if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
@@ -49,6 +49,8 @@ MISTAKES = {
     const auto [i, j] = springs[s];""")],
     "no mass": [(CLOTH, "n.value().mass * Point(0, 0, -gravity_)",
                  "Point(0, 0, -gravity_)")],
+    "gravity twice": [
+        (PROGRAM, TWO_FORCES, TWO_FORCES + ", GravityForce()")],
     "damped": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(g)")],
     "+ c v": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(g)"),
               (CLOTH, "return -c_ *", "return c_ *")],
@@ -64,7 +66,7 @@ MISTAKES = {
 }
 
 # A picture is a row of panels: a mistake or none, the stage, times [s], and
-# down to which z it looks [m].
+# down to which z it looks [m]. Beside mistakes that look right stands what is.
 PICTURES = {
     "3.2": [("", "problem1", [0.3, 0.6], -1.25)],
     "3.2-mistakes": [("sign", "problem1", [0.04], -0.45),
@@ -72,15 +74,18 @@ PICTURES = {
                      ("old positions", "problem1", [0.17], -0.45)],
     "4.2": [("", "diagonals", [0.3, 0.6], -1.15)],
     "4.2-mistakes": [("first length", "diagonals", [0.3], -0.75),
-                     ("no length", "diagonals", [0.3], -0.75),
-                     ("one diagonal", "diagonals", [0.6], -1.05)],
-    "5.1-mistakes": [("no mass", "forces", [0.02], -1.05),
-                     ("+ c v", "forces", [1.2], -1.05),
-                     ("c = 1", "forces", [2], -1.05)],
+                     ("no length", "diagonals", [0.1], -0.75),
+                     ("one diagonal", "diagonals", [0.6], -1.05),
+                     ("", "diagonals", [0.6], -1.05)],
+    "5.1-mistakes": [("no mass", "forces", [0.006], -1.05),
+                     ("+ c v", "forces", [0.85], -1.05),
+                     ("c = 1", "forces", [2], -1.05),
+                     ("damped", "forces", [2], -1.05)],
     "5.2": [("", "forces", [0.7], -1.15), ("damped", "forces", [5], -1.15)],
     "6.1-mistakes": [("pin by place", "constraints", [0.45], -0.75),
+                     ("ball keeps v", "constraints", [0.37], -0.75),
                      ("floor keeps v", "constraints", [2.5], -0.75),
-                     ("ball keeps v", "constraints", [0.42], -0.75)],
+                     ("", "constraints", [2.5], -0.75)],
     "6.2": [("", "constraints", [0.35, 0.45], -0.75)],
     "6.2-mistakes": [("ball only", "constraints", [0.35, 0.45, 0.6], -0.75)],
     "7.2": [("", "tear", [0.45, 0.6], -0.75)],
@@ -97,23 +102,30 @@ def with_mistake(text, file, mistake):
     return text
 
 
-def build(folder, mistake, stage):
-    """The program with a mistake, in the folder. Returns its path."""
+def compiled(folder, mistake, stage, source, *more):
+    """A program from the sources with a mistake, in the folder: @a source, one
+    of these or another file, with more flags. Returns the program's path."""
     for file in markers.SOURCES:
         text = markers.solution((ROOT / file).read_text(), file)
         (folder / file).write_text(with_mistake(text, file, mistake))
+    program = folder / "program"
+    subprocess.run(
+        [os.environ.get("CXX", "g++"), "-std=c++20", "-O1", "-pthread",
+         f"-DSTAGE={stage}", f"-I{folder}", f"-I{ROOT}", "-o", program,
+         folder / source, *more], check=True)
+    return program
+
+
+def build(folder, mistake, stage):
+    """The program that draws the panels of a mistake."""
     viewer = os.environ.get("B", "build") + "/libviewer.a"
     subprocess.run(["make", "-s", viewer], cwd=ROOT, check=True)
     libraries = subprocess.run(
         ["pkg-config", "--libs", "sdl2", "gl", "imgui", "libpng"],
         check=True, stdout=subprocess.PIPE, text=True).stdout
-    program = folder / "picture"
-    subprocess.run(
-        [os.environ.get("CXX", "g++"), "-std=c++20", "-O1", "-pthread",
-         f"-DSTAGE={stage}", "-DMASS_SPRING_VIEWER", f"-I{folder}",
-         f"-I{ROOT}", "-o", program, HERE / "picture.cpp", ROOT / viewer,
-         *shlex.split(libraries)], check=True)
-    return program
+    return compiled(folder, mistake, stage, HERE / "picture.cpp",
+                    "-DMASS_SPRING_VIEWER", ROOT / viewer,
+                    *shlex.split(libraries))
 
 
 def draw(name, folder):
@@ -123,10 +135,13 @@ def draw(name, folder):
     files = []
     for number, (mistake, stage, times, low) in enumerate(PICTURES[name]):
         out = folder / f"panel{number}"
+        right = mistake in ("", "damped") and "mistakes" in name
+        title = "correct" if right else mistake or stage
         subprocess.run(
-            [build(folder, mistake, stage), out, mistake or stage, *size,
+            [build(folder, mistake, stage), out, title, *size,
              str(low), "data/grid1.nodes", "data/grid1.tets", "0.001",
-             *map(str, times)], cwd=ROOT, stdout=subprocess.DEVNULL)
+             *map(str, times)], cwd=ROOT, stdout=subprocess.DEVNULL,
+            check=True)
         for k in range(len(times)):
             files += ["-i", f"{out}-{k}.png"]
     picture = HERE / f"{name}.png"
