@@ -78,7 +78,7 @@ def of_task(graded):
     failed = [one for one in graded if not one.passed]
     yield f"<h3>{text(report.heading(task))}</h3>"
     yield bar(len(failed) / len(graded))
-    worth = f"{task.points} point" + "s" * (task.points != 1)
+    worth = task.worth + ", extra" * task.extra
     yield (f"<p>{len(failed)} of {len(graded)} failed "
            f'<span class="dim">({worth})</span></p>')
     yield f'<p class="dim">{text(task.says)}</p>'

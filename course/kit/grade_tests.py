@@ -1,10 +1,10 @@
 """Grade tests that a student wrote:  make grade-tests FILE=mine.cpp [JSON=FILE]
 
-FILE is like one of course/tests: it includes graph.hpp or cloth.hpp, and has a
-TASK("7.1.remove_node", name) { ... } for each test. A test counts if each right
-submission of the kit passes it. What it finds are wrong submissions, those of
-course/wrong that lose the tasks which FILE names, and the solution without one
-of them. The table shows who was found (x), and who passed (.).
+FILE is like one of course/tests: it includes graph.hpp, cloth.hpp or step.hpp,
+and has a TASK("7.1.remove_node", name) { ... } for each test. A test counts if
+each right submission of the kit passes it. What it finds are wrong submissions,
+those of course/wrong that lose the tasks which FILE names, and the solution
+without one of them. The table shows who was found (x), and who passed (.).
 Exit status: 0 it was graded, whatever was found; 2 it can't be.
 """
 
@@ -30,7 +30,8 @@ import tasks
 
 TEST = re.compile(r'\bTASK\s{0,9}\(\s{0,9}"([\w.]{1,80})"\s{0,9},'
                   r'\s{0,9}([A-Za-z_]\w{0,80})\s{0,9}\)')
-FILES = ("graph", "cloth", "program", "forms")  # of course/wrong: no cheats
+# Of course/wrong: no cheats.
+FILES = ("graph", "cloth", "program", "step", "forms")
 INCLUDE = re.compile(r'(#\s{0,9}include\s{0,9}")(\w{1,80}\.hpp")')
 OWN = "own"     # the name of FILE where it is built
 
@@ -67,8 +68,8 @@ def read(path, course):
     names = [name for _, name in found]
     if len(set(names)) < len(names):
         refuse("two tests have the same name")
-    needs = "cloth" if re.search(r'#\s{0,9}include\s{0,9}"cloth\.hpp"',
-                                 text) else "graph"
+    needs = next((name for name in ("step", "cloth") if re.search(
+        rf'#\s{{0,9}}include\s{{0,9}}"{name}\.hpp"', text)), "graph")
     # Each test is asked for by its name.
     text = TEST.sub(lambda test: f'TASK("{test[2]}", {test[2]})', text)
     text = INCLUDE.sub(
@@ -107,7 +108,7 @@ def run(kit, case, tests):
         room.tests = (room.built,)
         (room.built / f"{OWN}.cpp").write_text(tests.text, encoding="utf-8")
         way = build.Way(tests.needs, "checked",
-                        one.names if tests.needs == "cloth" else ())
+                        one.names if tests.needs != "graph" else ())
         unit = room.compile(way, [OWN])
         if unit.program:
             unit.tests = tests.names

@@ -33,7 +33,7 @@ import once
 import sandbox
 
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
-SOLUTION = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp")
+STEP = "mine.hpp"
 LAST_STAGE, *STAGES_BEFORE = names.STAGES
 LIMITS = sandbox.Limits()
 STOPPED = {
@@ -124,6 +124,12 @@ def mended(result):
                                mended=True)
 
 
+def solution():
+    """{name: bytes} of the solution."""
+    return {name: markers.solution(text, name).encode()
+            for name, text in markers.read_sources().items()}
+
+
 class Memory:
     """Results of tests of other submissions that read the same files: to
     grade many that differ little. Given to Judge, it saves most of the work."""
@@ -157,9 +163,10 @@ class Judge:
         if kit.answers is None:     # it answers all questions
             self.names += ("KIT_SOLUTION",)
         own = build.Room(kit, folder / "own", files)
-        self.rooms = {"graph": [own], "cloth": [own], "program": []}
-        ours = {name: markers.solution((once.ROOT / name).read_text("utf-8"))
-                .encode() for name in ("Graph.hpp", "mass_spring.hpp")}
+        self.rooms = {"graph": [own], "cloth": [own], "step": [own],
+                      "program": []}
+        ours = {name: text for name, text in solution().items()
+                if name in ("Graph.hpp", "mass_spring.hpp")}
 
         def with_ours(folder_name, *names_of_ours):
             room = build.Room(kit, folder / folder_name, {
@@ -168,17 +175,21 @@ class Judge:
             return room
         if files["Graph.hpp"] != ours["Graph.hpp"]:
             self.rooms["cloth"].insert(0, with_ours("given", "Graph.hpp"))
-        # A main() is judged by what it does with right forces, too.
-        if (PROGRAM <= files.keys()
-                and files["mass_spring.hpp"] != ours["mass_spring.hpp"]):
-            self.rooms["program"].append(with_ours("program", *ours))
+        # A main() and a step are judged by what they do with right forces, too.
+        self.beside = None
+        if any(files.get(name) != text for name, text in ours.items()):
+            self.beside = with_ours("beside", *ours)
+            self.rooms["step"].insert(0, self.beside)
+            if (PROGRAM <= files.keys()
+                    and files["mass_spring.hpp"] != ours["mass_spring.hpp"]):
+                self.rooms["program"].append(self.beside)
 
     def run(self, tests):
         """{test: Result} of {test: what it needs}."""
         groups = {}
         for test, needs in tests.items():
             way = build.way_of(test, needs)
-            if needs == "cloth":
+            if needs != "graph":
                 way = dataclasses.replace(way, defines=way.defines + self.names)
             groups.setdefault(way, []).append(test)
         # What takes longest first.
@@ -194,10 +205,14 @@ class Judge:
         if way.needs == "cloth" and not PROGRAM & self.files.keys():
             return {test: Result("missing", "there is no mass_spring.hpp and "
                                  "no mass_spring.cpp") for test in tests}
+        if way.needs == "step" and STEP not in self.files:
+            return {test: Result("missing", f"there is no {STEP}")
+                    for test in tests}
         for room, way in self.attempts(way, tests):
             left = [test for test in tests
                     if test not in results or not results[test].passed]
-            if room in self.rooms["program"]:   # what is no program gets none
+            # What is no program gets none.
+            if room in self.rooms["program"] and way.needs != "step":
                 left = [test for test in left if results[test].mended
                         or results[test].status != "not compiled"]
             for test, result in self.judged(room, way, left).items():
@@ -212,13 +227,12 @@ class Judge:
 
     def attempts(self, way, tests):
         """In what tests are built: each passes if it does in any of them."""
-        for room in self.rooms[way.needs]:
-            yield room, way
         own = build.way_of(tests[0], way.needs)
-        if "KIT_PROGRAM" in own.defines:
-            for room in self.rooms["program"]:
-                yield room, dataclasses.replace(
-                    way, defines=own.defines + names.defines(room.files))
+        main = "KIT_PROGRAM" in own.defines
+        for room in self.rooms[way.needs] + main * self.rooms["program"]:
+            yield room, (way if room is not self.beside else
+                         dataclasses.replace(way, defines=own.defines
+                                             + names.defines(room.files)))
 
     def judged(self, room, way, tests):
         """All stages of a main() in one unit, or else in one each: a header
@@ -402,12 +416,11 @@ def prepare(kit, tests, jobs):
                           0o600), "w", encoding="ascii") as file:
             file.write(text)
 
-    files = {name: markers.solution((once.ROOT / name).read_text("utf-8"))
-             .encode() for name in SOLUTION}
+    files = solution()
     kit.answers = None
     folder = kit.locked_part("solution", [
         *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *build.ASKED.glob("*"),
-        *(once.ROOT / name for name in SOLUTION),
+        *map(markers.path_of, markers.SOURCES),
         *(once.ROOT / "CME212").rglob("*.hpp")], make,
         (sorted(tests.items()), kit.seed))
     kept = json.loads((folder / "answers.json").read_text("ascii"))

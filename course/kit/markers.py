@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import tasks
 
 # The sources with markers, in the order in which they are read.
-SOURCES = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp")
+SOURCES = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp", "mine.hpp")
 
 BEGIN = re.compile(r"( *)// BEGIN SOLUTION (\S+)(?: (\d+)pt)?")
 STUB = re.compile(r"( *)// STUB (\S.*| +\S.*)")
@@ -153,7 +153,7 @@ def comment(id, task, further):
         return f"// YOUR CODE {id}, too{page}"
     points = ""
     if task and task.points:
-        points = f" ({task.worth})"
+        points = f" ({task.worth}{', extra' if task.extra else ''})"
     return f"// YOUR CODE {id}{points}{page}"
 
 
@@ -234,12 +234,18 @@ def check_region(region, first, course, tasks_file):
     return []
 
 
+def path_of(name, root=tasks.ROOT):
+    """Where the repository has a source with markers: in its root, or, if only
+    students have it there, in course/."""
+    return root / ("course" if name == "mine.hpp" else "") / name
+
+
 def read_sources(root=tasks.ROOT):
     """{file: text} of the sources with markers."""
     texts = {}
     for name in SOURCES:
         try:
-            texts[name] = (root / name).read_text(encoding="utf-8")
+            texts[name] = path_of(name, root).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or "it is not UTF-8"
             raise MarkerError([f"{name}: can't be read ({reason})"]) from None

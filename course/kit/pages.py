@@ -50,8 +50,10 @@ def of_section(id, course):
             subsequent_indent="  ", break_long_words=False,
             break_on_hyphens=False)
     total = sum(task.counted for task in own)
+    together = "" if all(task.extra for task in own) else (
+        f"Together {total} points. ")
     return [*lines, "", *textwrap.wrap(
-        f"Together {total} points. `make test SECTION={id}` shows which tests"
+        f"{together}`make test SECTION={id}` shows which tests"
         " pass. Commit your work, then hand it in:"
         f" `make submit HW={course.tag}`.", 80, break_on_hyphens=False)]
 

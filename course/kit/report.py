@@ -12,7 +12,8 @@ VERSION = 1     # of the JSON
 # How much of a report students see: FEEDBACK.
 FEEDBACK = ("all", "names", "none")
 RECEIVED = "Received. Points and tests are not shown."
-WHERE = {"graph": "Graph.hpp", "cloth": "mass_spring.hpp"}
+WHERE = {"graph": "Graph.hpp", "cloth": "mass_spring.hpp",
+         "step": "mine.hpp"}
 
 
 @dataclass
@@ -200,16 +201,18 @@ def as_junit(report):
 
 
 def as_gradescope(report, feedback="all"):
-    """results.json of a Gradescope autograder. A task with no points is shown
-    as one of no points; its status says how it went."""
+    """results.json of a Gradescope autograder. A task that does not count is
+    shown as one of no points; its status says how it went, and the name of an
+    extra one its points."""
     tests, hidden = [], feedback == "none"
     for graded in report.graded:
         silent = graded.passed or feedback == "names"
+        extra = graded.task.extra
         tests.append({
-            "name": graded.task.title, "number": graded.task.id,
-            "score": float(graded.points),
-            "max_score": 0.0 if graded.task.extra else float(
-                graded.task.points),
+            "name": graded.task.title + f" ({score(graded)})" * extra,
+            "number": graded.task.id,
+            "score": 0.0 if extra else float(graded.points),
+            "max_score": float(graded.task.counted),
             "status": "passed" if graded.passed else "failed",
             "output": "" if silent else "\n".join(failure(graded)),
             "output_format": "text",

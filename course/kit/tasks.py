@@ -7,7 +7,7 @@ from dataclasses import dataclass
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILE = "course/tasks.toml"
 
-NEEDS = ("graph", "cloth")
+NEEDS = ("graph", "cloth", "step")
 SECTION_ID = re.compile(r"[A-Za-z0-9]+(\.[A-Za-z0-9]+)*")
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 TEST = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
@@ -39,7 +39,8 @@ class Task:
     id: str
     title: str
     points: int
-    needs: str  # "graph": Graph.hpp alone; "cloth": mass_spring.*, too
+    needs: str  # "graph": Graph.hpp alone; "cloth": mass_spring.*, too;
+    #             "step": mine.hpp, too
     says: str
     hint: str
     tests: tuple  # names in course/tests, without .cpp: all must pass
@@ -196,7 +197,7 @@ def tasks_of(data, read, sections, unasked):
             read.fault(line, f"{id}: points are negative")
         if table["needs"] not in NEEDS:
             read.fault(line, f"{id}: needs '{table['needs']}', expected "
-                       "graph or cloth")
+                       "graph, cloth or step")
         tests = table.get("tests", [id])
         if not tests or not all(
                 isinstance(t, str) and TEST.fullmatch(t) for t in tests):

@@ -235,7 +235,7 @@ class Tasks(unittest.TestCase):
         self.fault("7.1.g\"\ntitle", "3.1.f\"\ntitle", 18, "line 11")
         self.fault('id = "7.1"', 'id = "3.1"', 8, "line 4")
         self.fault('id = "3.1"', 'id = "3/1"', 4, "no id of a section")
-        self.fault('"cloth"', '"silk"', 18, "expected graph or cloth")
+        self.fault('"cloth"', '"silk"', 18, "expected graph, cloth or step")
         self.fault('"7.1.g_more"', '"../x"', 18, "names of files")
         self.fault("[course]", "[curse]", 1, "unknown table 'curse'")
         self.fault('tag = "hw2"\n', "", 1, "'tag' is missing")
@@ -458,7 +458,7 @@ class Repository(unittest.TestCase):
         for name in ("course", "CME212"):
             shutil.copytree(tasks.ROOT / name, root / name)
         for name in markers.SOURCES:
-            shutil.copy(tasks.ROOT / name, root)
+            shutil.copy(markers.path_of(name), markers.path_of(name, root))
         with open(root / "mass_spring.cpp", "a", encoding="utf-8") as file:
             file.write("// END SOLUTION\n")
         last = len((root / "mass_spring.cpp").read_text().splitlines())

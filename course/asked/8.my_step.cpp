@@ -1,0 +1,29 @@
+/** @file 8.my_step.cpp
+ * Where two nets end, drawn at random and run in turn. The solution answers
+ * with a finer run, and with half the error of symplectic Euler as tolerance.
+ */
+#include "asked.hpp"
+
+ASKED("8.my_step", my_step_asked) {
+  const Trial first(drawn), second(drawn);
+  if constexpr (answers_all) {
+    for (const Trial* trial : {&first, &second}) {
+      const Bodies exact = trial->exact();
+      for (int i = 0; i < Trial::size; ++i)
+        answer(trial == &first ? "first" : "second", exact.x[i],
+               trial->error_of_euler(exact) / 2);
+    }
+    return;
+  }
+  const int steps = steps_of(first, Trial::forces);
+  const long most = long(Trial::forces) * Trial::size;
+  TrialRun one(first, most), other(second, most);
+  for (int step = 0; step < steps; ++step) {
+    one.step(Trial::seconds / steps);
+    other.step(Trial::seconds / steps);
+  }
+  for (int i = 0; i < Trial::size; ++i) {
+    answer("first", one.at(i));
+    answer("second", other.at(i));
+  }
+}
