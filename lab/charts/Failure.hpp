@@ -29,7 +29,7 @@ struct FailureRun {
   struct Place {
     double t, up;  ///< time [s]; lines of text above the curve
   } place = {};
-  double setting = 0;  ///< tolerance [m] if adaptive; substeps of xpbd
+  double setting = 0;  ///< tolerance [m] if adaptive; substeps or rounds
 
   constexpr FailureRun() = default;
   constexpr FailureRun(std::string_view method, double dt, const char* label,

@@ -9,6 +9,7 @@
 #include "CME212/Util.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/methods/DormandPrince.hpp"
+#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Xpbd.hpp"
 
@@ -57,6 +58,8 @@ std::string in_words(const Failure& f, const FailureRun& r,
   text += ", dt = " + short_text(r.dt) + " s";
   if (r.setting > 0 && r.method == Xpbd::info.name)
     text += ", substeps " + short_text(r.setting);
+  else if (r.setting > 0 && r.method == FastMassSpring::info.name)
+    text += ", rounds " + short_text(r.setting);
   else if (r.setting > 0)
     text += ", tolerance " + short_text(r.setting) + " m";
   text += ": off by " + short_text(trace.deviation) + unit_of(f.quantity) +

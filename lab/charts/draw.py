@@ -17,6 +17,10 @@ import speed
 from panels import gnuplot, quoted
 from results import ROOT, ChartError, Table, believed, runs
 
+# In dark mode light and dark change places, and hues stay.
+DARK_MODE = ("<style>@media (prefers-color-scheme: dark) {#gnuplot_canvas "
+             "{filter: invert(0.92) hue-rotate(180deg)}}</style>\n")
+
 # name: room, CSV, what draws it (a function, or a script of gnuplot).
 CHARTS = {
     "work_precision": ("charts", "work_precision.csv",
@@ -64,7 +68,9 @@ def draw(name, csv, to):
                      f"out = {quoted(str(part))}", f"load 'lab/{how}'"], part)
         # Cells of a map stay cells when they are magnified.
         part.write_text(part.read_text().replace(
-            "<image ", "<image style='image-rendering:pixelated' "))
+            "<image ", "<image style='image-rendering:pixelated' ").replace(
+                "<g id=\"gnuplot_canvas\">", DARK_MODE +
+                "<g id=\"gnuplot_canvas\">", 1))
         part.replace(out)
         yield out
 

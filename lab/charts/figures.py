@@ -11,7 +11,9 @@ import re
 import statistics
 import sys
 
-from results import ROOT, Table, by_method, cheapest, ns_a_node, runs
+import decision
+from results import (ROOT, Table, by_method, cheapest, contenders, ns_a_node,
+                     runs, tied)
 
 sys.path.append(str(ROOT / "lab/advice"))
 import suite
@@ -50,6 +52,21 @@ def ratio(scene, worse, better, share=1):
 def best(scene, error, method=None, cost="seconds"):
     """The cheapest run that keeps an error."""
     return cheapest(error, of(scene, method), lambda r: getattr(r, cost))
+
+
+def cells_of(method=None, shared=False):
+    """How many cells of the decision chart a method wins; or, being named
+    second, shares; of all cells if no method is given."""
+    count = 0
+    for scenes in dict(decision.KINDS).values():
+        for scene in scenes:
+            some = contenders(of(scene))
+            for wanted, run in zip(decision.WANTED,
+                                   decision.answers_of(some)):
+                count += bool(run) and (
+                    method in tied(wanted, some, decision.work) if shared
+                    else method in (None, run.method))
+    return count
 
 
 def first(scene, error, method):

@@ -295,16 +295,16 @@ def energy(csv, out):
         off = [worst[m] for m in worst if chosen(m)]
         if off:
             words.append(f"{who} {pick(off):.2g} J{how}")
-    picture = Picture(out, 1000, 440, "Energy error: " + ", ".join(words),
+    picture = Picture(out, 1000, 456, "Energy error: " + ", ".join(words),
                       f"{about}: the true energy stays at 0 J. A curve: the "
                       "largest distance from it up to that time.",
                       table.footer())
-    picture.text(20, 14, rest, 10)
+    picture.text(20, 30, rest, 10)
     x, y = Axis(0, 6.8, False), Axis(1e-6, 300)  # names stand behind the end
     picture.say("set xtics 0, 1, 5")
     for k, (family, title) in enumerate(FAMILIES):
         own = [c for m, c in curves.items() if look[m][2] == family]
-        panel = Panel(80 + 305 * k, 80, 375 + 305 * k, 360, x, y, title, own,
+        panel = Panel(80 + 305 * k, 96, 375 + 305 * k, 376, x, y, title, own,
                       [c for c in curves.values() if c not in own],
                       at_end=True)
         picture.draw(panel, "set xlabel 'time [s]'", *(

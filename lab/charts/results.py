@@ -12,6 +12,7 @@ TIE = 0.9  # a cost of which the least one is more than this share ties with it
 # cheapest(), in words, for the charts that show what it chooses.
 RULE = ("the cheapest measured run that keeps this error, as do all finer runs "
         "of its method; of runs within 10 % the most exact one")
+RATIOS = "lab/methods/Costs.hpp"  # a step of each method in steps of Verlet
 TRUSTED = 10  # an error below so many floors says nothing
 
 
@@ -69,6 +70,21 @@ class Table:
                 if all(row[k] == v for k, v in wanted.items())]
 
 
+def solver_steps():
+    """{method: (force evaluations of a step, what the whole step costs in
+    force evaluations)} of the methods that spend work on more than forces: as
+    measured by `make method-costs`, at the cheaper one of its two steps."""
+    costs = {m: (float(a), float(b)) for m, a, b in re.findall(
+        r'{"([\w-]+)", ([\d.]+), ([\d.]+)}', (ROOT / RATIOS).read_text())}
+    lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
+    each = {line.split(",")[0]: int(line.split(",")[5]) for line in lines
+            if not line.startswith("#")}
+    return {m: (each[m], min(pair)) for m, pair in costs.items() if min(pair)}
+
+
+SOLVERS = solver_steps()
+
+
 @dataclass(frozen=True)
 class Run:
     """A run of a method on a problem; what is not known is 0."""
@@ -81,6 +97,14 @@ class Run:
     error: float      # [m]
     floor: float      # [m]: error of the reference
     ok: bool
+    median: float = 0  # of the seconds of the repeats
+
+    @property
+    def work(self):
+        """Counted, the same on every machine, in force evaluations. The
+        solves of a step count as many as they take as long as."""
+        evaluations, whole = SOLVERS.get(self.method, (1, 1))
+        return self.evaluations / evaluations * whole
 
 
 def runs(rows):
@@ -90,7 +114,8 @@ def runs(rows):
     return [Run(row["method"], number(row, "dt"), number(row, "tolerance"),
                 number(row, "dt/limit"), number(row, "sweeps"),
                 number(row, "seconds_min"), number(row, "error"),
-                number(row, "floor"), row["status"] == "ok") for row in rows]
+                number(row, "floor"), row["status"] == "ok",
+                number(row, "seconds_median")) for row in rows]
 
 
 def believed(some):
@@ -143,6 +168,16 @@ def cheapest(error, some, cost):
     return min(((kept, run) for kept, run in fit
                 if TIE * cost(run) <= least), default=(0, None),
                key=lambda f: f[0])[1]
+
+
+def tied(error, some, cost):
+    """The other methods that keep an error for at most 1/TIE of the least
+    cost, by name."""
+    best = cheapest(error, some, cost)
+    least = {m: min((cost(r) for kept, r in reliable(of) if kept <= error),
+                    default=math.inf) for m, of in by_method(some).items()}
+    return sorted(m for m, c in least.items() if best and m != best.method and
+                  TIE * c <= min(least.values()))
 
 
 def contenders(some):

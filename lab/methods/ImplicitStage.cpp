@@ -211,7 +211,6 @@ void ImplicitStage::find_w(const Cloth& g, double s,
   auto x = g.positions();
   for (unsigned i = 0; i < w.size(); ++i) now[i] = (x[i] - p[i]) / s;
 }
-/** Set the positions to p + s w. */
 void ImplicitStage::move(Cloth& g, double s) const {
   auto x = g.positions();
   for (unsigned i = 0; i < w.size(); ++i)
@@ -222,9 +221,8 @@ void ImplicitStage::advance(double a) {
   for (unsigned i = 0; i < w.size(); ++i) w[i] += a * step_[i];
 }
 
-/** s (F - c w) - M (w - q) [kg m/s] at the positions of @a g. */
-void ImplicitStage::find_residual(Cloth& g, double t, double s,
-                                  const ForcePlan& force) {
+std::vector<Point>& ImplicitStage::find_residual(Cloth& g, double t, double s,
+                                                 const ForcePlan& force) {
   flow_.accelerate(g, t, force, true);
   const Drag& c = force.drag();
   auto node = g.node_values();
@@ -233,6 +231,7 @@ void ImplicitStage::find_residual(Cloth& g, double t, double s,
         fixed_[i] ? Point()
                   : node[i].mass * (s * flow_.acceleration(i) - (w[i] - q[i])) -
                         s * c[i] * w[i];
+  return residual_;
 }
 
 /** The springs' blocks of A, and the inverses of its diagonal ones. */

@@ -109,6 +109,13 @@ class ImplicitStage {
   void solve_newton(Cloth& g, double t, double s, const ForcePlan& force,
                     const LocalError& error = {});
 
+  /** Set the positions to p + s w. */
+  void move(Cloth& g, double s) const;
+  /** s (F - c w) - M (w - q) [kg m/s] by node id, at the positions p + s w of
+   * @a g; the caller may overwrite it. */
+  std::vector<Point>& find_residual(Cloth& g, double t, double s,
+                                    const ForcePlan& force);
+
  private:
   struct Block {  // of s^2 H, between nodes i and j
     unsigned i, j;
@@ -137,9 +144,7 @@ class ImplicitStage {
   };
 
   void find_w(const Cloth& g, double s, std::vector<Point>& now) const;
-  void move(Cloth& g, double s) const;
   void advance(double a);
-  void find_residual(Cloth& g, double t, double s, const ForcePlan& force);
   void assemble(const Cloth& g, double s, const ForcePlan& force);
   void multiply(const std::vector<Point>& from, std::vector<Point>& to,
                 bool clamp) const;

@@ -8,6 +8,7 @@
 #include "lab/methods/AugmentedVerlet.hpp"
 #include "lab/methods/Dop853.hpp"
 #include "lab/methods/DormandPrince.hpp"
+#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/ImplicitMidpoint.hpp"
@@ -38,6 +39,7 @@ inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<ImplicitMidpoint>(),
                                        entry_of<TrBdf2>(),
                                        entry_of<AugmentedVerlet>(),
+                                       entry_of<FastMassSpring>(),
                                        entry_of<Xpbd>()};
 
 /** A method that a program adds to the table, or nullptr. */
