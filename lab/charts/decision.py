@@ -80,7 +80,8 @@ def decision(csv, out):
     for line, words in enumerate((
             "Error: RMS of the positions; with contact, of center of mass and "
             "energy as a height.",
-            f"Time: the least of seven runs, and the median. {table.footer()}")):
+            "Time: the least of seven runs, and the median. "
+            + table.footer())):
         picture.text(20, 28 - 15 * line, words, 11)
     picture.say("unset border", "unset tics", "set xrange [0:1]",
                 "set yrange [0:1]", "plot NaN")

@@ -1,0 +1,55 @@
+#pragma once
+/** @file Sheet.hpp
+ * A sheet for the tests of implicit methods, and what two of them differ by. */
+#include <cmath>
+
+#include "lab/fast/ConstraintPlan.hpp"
+#include "lab/fast/ForcePlan.hpp"
+
+namespace lab::sheets {
+
+/** A grid with diagonals, K [N/m]; gravity, springs and drag. */
+struct Sheet {
+  Cloth g;
+  CombinedForces force;
+  PinConstraint pin;
+  explicit Sheet(unsigned side, double K = 100, double drag = 0)
+      : force(make_combined_force(GravityForce(), MassSpringForce(),
+                                  DampingForce(drag))),
+        pin((build_cloth(g, grid_points(side), grid_quads(side),
+                         MeshSprings::diagonals, K),
+             g)) {}
+  void stir() {
+    CME212::default_generator.seed(3);
+    using CME212::random;
+    for (Node n : g.nodes())
+      n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
+  }
+  template <typename M>
+  void run(M& method, double h, int steps) {
+    for (int n = 0; n < steps; ++n) method(g, n * h, h, force, pin);
+  }
+};
+
+/** The distance of two cloths in positions [m] and velocities times 1 s. */
+inline double distance(const Cloth& a, const Cloth& b) {
+  double sum = 0;
+  for (unsigned i = 0; i < a.num_nodes(); ++i)
+    sum += normSq(a.node(i).position() - b.node(i).position()) +
+           normSq(a.node(i).value().vel - b.node(i).value().vel);
+  return std::sqrt(sum);
+}
+
+inline Point momentum(const Cloth& g) {
+  Point sum;
+  for (Node n : g.nodes()) sum += n.value().mass * n.value().vel;
+  return sum;
+}
+inline Point angular_momentum(const Cloth& g) {
+  Point sum;
+  for (Node n : g.nodes())
+    sum += n.value().mass * cross(n.position(), n.value().vel);
+  return sum;
+}
+
+}  // namespace lab::sheets
