@@ -4,11 +4,11 @@
  * Exit status: 0 done; 2 bad input; 3 the run diverged. */
 #include <cmath>
 #include <exception>
+#include <future>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "mass_spring.hpp"
 #ifdef MASS_SPRING_VIEWER
@@ -162,18 +162,12 @@ int main(int argc, char** argv) try {
     return viewer->wait_while_paused(show);
   };
 
-  std::exception_ptr error;
-  std::jthread simulation([&] {
-    try {
-      double t = 0;
-      for (auto left = steps; draw(t) && left > 0; --left) t = step(t);
-    } catch (...) {
-      error = std::current_exception();
-    }
+  auto simulation = std::async(std::launch::async, [&] {
+    double t = 0;
+    for (auto left = steps; draw(t) && left > 0; --left) t = step(t);
   });
   if (viewer) viewer->event_loop();
-  simulation.join();
-  if (error) std::rethrow_exception(error);
+  simulation.get();  // throws what the simulation threw
   return failure.empty() ? 0 : 3;
 } catch (const std::exception& e) {
   std::cerr << e.what() << '\n';

@@ -15,8 +15,7 @@ together  = $(filter-out $(counted:%=tests/%.cpp),$(wildcard tests/$*.*.cpp))
 frame     = $(B)/tests/main.o
 of_test   = -Itests/headless $(common) -Itests $(debug) -O0 \
             -include tests/prelude.hpp -DKIT_TESTS='"tests"' \
-            -MMD -MP -MF $@.d -MT $@
-wrap      = $(foreach f,move cpy set chr cmp,-Wl,--wrap=mem$(f))
+            -MMD -MP -MF $@.d -MT $@ $(CPPFLAGS) $(CXXFLAGS)
 defined   = $(shell sed -nE 's/.*(Define: |ifndef )(KIT_[A-Z]+)$$/-D\2/p' $(together))
 # Where main() has the stages of the starter, it is compiled in each of them.
 stages    = $(if $(findstring KIT_PROGRAM,$(defined)),$(shell \
@@ -48,7 +47,7 @@ $(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame)
 $(counted:%=$(B)/tests/%): $(B)/tests/%: tests/%.cpp $(frame)
 	@echo '$(CXX) $@'
 	@$(CXX) $(of_test) -O1 -g1 -fsanitize-coverage=trace-pc -c -o $@.o $<
-	@$(CXX) -o $@ $@.o $(frame) $(wrap)
+	@$(CXX) $(CXXFLAGS) -o $@ $@.o $(frame)
 $(frame): $(B)/tests/%.o: tests/%.cpp tests/kit.cpp
 	@echo '$(CXX) $@'
 	$(call unit,$^)

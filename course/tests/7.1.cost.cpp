@@ -4,10 +4,8 @@
  * It is counted in a graph of 1,000 nodes and in one of 10,000.
  *
  * Build: counted
- * That is: -O1 -fsanitize-coverage=trace-pc and, to link,
- * -Wl,--wrap=memmove,--wrap=memcpy,--wrap=memset,--wrap=memchr,--wrap=memcmp
- * With KIT_UNCOUNTED nothing is counted: to see under sanitizers where it
- * crashes. */
+ * That is: -O1 -fsanitize-coverage=trace-pc. With KIT_UNCOUNTED nothing is
+ * counted: to see under sanitizers where it crashes. */
 #include "graph.hpp"
 
 #if defined(__clang__)
@@ -27,41 +25,76 @@ extern "C" {
 KIT_NOT_COUNTED void __sanitizer_cov_trace_pc() {
   if (kit::counting) kit::counted = kit::counted + 1;
 }
-
-void* __real_memmove(void*, const void*, std::size_t);
-void* __real_memcpy(void*, const void*, std::size_t);
-void* __real_memset(void*, int, std::size_t);
-void* __real_memchr(const void*, int, std::size_t);
-int __real_memcmp(const void*, const void*, std::size_t);
 }
 
+// The C library's functions that touch many bytes at once are defined here, by
+// the names that the linker knows them by: so they count, with any linker.
+#define KIT_TEXT(x) #x
+#define KIT_PREFIX(x) KIT_TEXT(x)
+#define KIT_SYMBOL(name) __asm__(KIT_PREFIX(__USER_LABEL_PREFIX__) name)
+
 namespace kit {
+// Volatile: else a compiler may put a call of memcpy() in place of the loop.
+using Byte = volatile unsigned char;
+typedef volatile std::uint64_t Eight __attribute__((may_alias, aligned(1)));
+
 KIT_NOT_COUNTED static void count_bytes(std::size_t n) {
   if (counting) counted = counted + double(n) / 8;
+}
+KIT_NOT_COUNTED static void* copy(void* to, const void* from, std::size_t n) {
+  count_bytes(n);
+  auto* const t = static_cast<Byte*>(to);
+  auto* const f = static_cast<const Byte*>(from);
+  if (t <= f || t >= f + n) {
+    std::size_t i = 0;
+    for (; i + 8 <= n; i += 8) *(Eight*)(t + i) = *(const Eight*)(f + i);
+    for (; i < n; ++i) t[i] = f[i];
+  } else {
+    for (; n >= 8; n -= 8) *(Eight*)(t + n - 8) = *(const Eight*)(f + n - 8);
+    for (; n > 0; --n) t[n - 1] = f[n - 1];
+  }
+  return to;
 }
 }  // namespace kit
 
 extern "C" {
-KIT_NOT_COUNTED void* __wrap_memmove(void* to, const void* from,
-                                     std::size_t n) {
-  kit::count_bytes(n);
-  return __real_memmove(to, from, n);
+void* kit_memmove(void*, const void*, std::size_t) KIT_SYMBOL("memmove");
+void* kit_memcpy(void*, const void*, std::size_t) KIT_SYMBOL("memcpy");
+void* kit_memset(void*, int, std::size_t) KIT_SYMBOL("memset");
+void* kit_memchr(const void*, int, std::size_t) KIT_SYMBOL("memchr");
+int kit_memcmp(const void*, const void*, std::size_t) KIT_SYMBOL("memcmp");
+
+KIT_NOT_COUNTED void* kit_memmove(void* to, const void* from, std::size_t n) {
+  return kit::copy(to, from, n);
 }
-KIT_NOT_COUNTED void* __wrap_memcpy(void* to, const void* from, std::size_t n) {
-  kit::count_bytes(n);
-  return __real_memcpy(to, from, n);
+KIT_NOT_COUNTED void* kit_memcpy(void* to, const void* from, std::size_t n) {
+  return kit::copy(to, from, n);
 }
-KIT_NOT_COUNTED void* __wrap_memset(void* to, int what, std::size_t n) {
+KIT_NOT_COUNTED void* kit_memset(void* to, int what, std::size_t n) {
   kit::count_bytes(n);
-  return __real_memset(to, what, n);
+  auto* const t = static_cast<kit::Byte*>(to);
+  const auto byte = static_cast<unsigned char>(what);
+  std::size_t i = 0;
+  for (; i + 8 <= n; i += 8)
+    *(kit::Eight*)(t + i) = byte * std::uint64_t(0x0101010101010101u);
+  for (; i < n; ++i) t[i] = byte;
+  return to;
 }
-KIT_NOT_COUNTED void* __wrap_memchr(const void* in, int what, std::size_t n) {
+KIT_NOT_COUNTED void* kit_memchr(const void* in, int what, std::size_t n) {
   kit::count_bytes(n);
-  return __real_memchr(in, what, n);
+  auto* const bytes = static_cast<const kit::Byte*>(in);
+  for (std::size_t i = 0; i < n; ++i)
+    if (bytes[i] == static_cast<unsigned char>(what))
+      return const_cast<unsigned char*>(bytes + i);
+  return nullptr;
 }
-KIT_NOT_COUNTED int __wrap_memcmp(const void* a, const void* b, std::size_t n) {
+KIT_NOT_COUNTED int kit_memcmp(const void* a, const void* b, std::size_t n) {
   kit::count_bytes(n);
-  return __real_memcmp(a, b, n);
+  auto* const x = static_cast<const kit::Byte*>(a);
+  auto* const y = static_cast<const kit::Byte*>(b);
+  for (std::size_t i = 0; i < n; ++i)
+    if (x[i] != y[i]) return x[i] < y[i] ? -1 : 1;
+  return 0;
 }
 }
 #endif

@@ -153,7 +153,8 @@ struct Watch {
 template <typename Main>
 static Watch watch(Main main_of, const Stage& stage) {
   DID("the program, stage ", stage.name, ", on a cloth of 16 nodes");
-  Watch w{.stage = stage};
+  Watch w;
+  w.stage = stage;
   const Film& f = run_program(main_of, [&](const Film& frame) {
     w.look(frame);
     return frame.frames >= 6000 || Watch::time(frame) > stage.until;
