@@ -27,25 +27,27 @@ packages() {
   esac
 }
 
-# What others call them: Debian's name, Homebrew's, Fedora's. Homebrew's - comes
-# with macOS or is not there, and what needs it is skipped or says so.
+# What others call them: Debian's name, Homebrew's, Fedora's. One with - comes
+# with macOS or is not there, as one that is not listed, and what needs it is
+# skipped or says so.
 names="
 g++ - gcc-c++                     make make make
 pkgconf pkgconf pkgconf-pkg-config          git git git
 libcli11-dev cli11 cli11-devel    libeigen3-dev eigen eigen3-devel
-libspectra-dev spectra spectra-devel        libsdl2-dev sdl2 SDL2-devel
+libspectra-dev spectra spectra-devel        libsdl2-dev sdl2-compat SDL2-devel
 libgl-dev - mesa-libGL-devel      libegl1 - mesa-libEGL
-libgl1-mesa-dri - mesa-dri-drivers          libimgui-dev imgui imgui-devel
+libgl1-mesa-dri - mesa-dri-drivers          libimgui-dev imgui -
 libpng-dev libpng libpng-devel    ffmpeg ffmpeg ffmpeg-free
 gnuplot-nox gnuplot gnuplot       python3 python python3
 fonts-dejavu-core font-dejavu dejavu-sans-fonts
 clang llvm clang                  clang-format clang-format clang-tools-extra
 libclang-rt-dev - compiler-rt     libomp-dev libomp libomp-devel
 libgtest-dev googletest gtest-devel
-librapidcheck-dev rapidcheck rapidcheck-devel
+librapidcheck-dev - rapidcheck-devel
 libbenchmark-dev google-benchmark google-benchmark-devel
 xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
 xdotool - xdotool                 libseccomp-dev - libseccomp-devel
+valgrind - valgrind
 "
 renamed() {  # COLUMN: all that is wanted, in the names of another system
   local group debian found
@@ -54,7 +56,7 @@ renamed() {  # COLUMN: all that is wanted, in the names of another system
       # shellcheck disable=SC2086  # a list of words
       found=$(printf '%s %s %s\n' $names | sed -n "s/^$debian //p")
       case $1 in brew) found=${found% *} ;; dnf) found=${found#* } ;; esac
-      [ "$found" = - ] || printf ' %s' "${found:-$debian}"
+      [ "${found:--}" = - ] || printf ' %s' "$found"
     done
   done
 }
@@ -105,6 +107,8 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     command -v "${other%% *}" >/dev/null || continue
     echo "deps: install, unless it is there:"
     echo "  ${other#* }$(renamed "${other%% *}")"
+    echo "What has no package there is left out: without SDL2 and Dear ImGui"
+    echo "there is no window, and some checks are skipped."
     echo "Then tell make that all is there: make DEPS=skip ..."
     exit 1
   done >&2

@@ -142,9 +142,10 @@ for other in brew dnf; do
   expect_status 1; says "$other install"; says 'DEPS=skip'
   not_say '[a-z]-dev( |$)| - '
   case $other in
-    brew) says ' sdl2'; not_say 'g\+\+' ;;
-    dnf) says ' gcc-c\+\+ .* SDL2-devel' ;;
+    brew) says ' sdl2-compat imgui '; not_say 'g\+\+|rapidcheck|valgrind' ;;
+    dnf) says ' gcc-c\+\+ .* SDL2-devel'; not_say imgui-devel ;;
   esac
+  says 'is left out'
   ok "no apt-get, but $other: the command, in its names"
 done
 

@@ -1,5 +1,6 @@
-"""The submissions of a class as JPlag wants them (github.com/jplag/JPlag): a
+"""The submissions of a class as JPlag 6 wants them (github.com/jplag/JPlag): a
 folder for each student, and the starter as its base code, which is no match.
+Its option --mode RUN writes the result and opens no browser.
 """
 
 import shlex
@@ -25,6 +26,8 @@ def lay_out(whole, rows, do_all):
 
 def command(whole):
     return shlex.join([
-        "java", "-jar", "jplag.jar", "-l", "cpp", "-bc",
-        str(whole.out / "jplag/base"), "-r",
-        str(whole.out / "jplag/result"), str(whole.out / "jplag/submissions")])
+        "java", "-jar", "jplag.jar", "--language", "cpp",
+        "--mode", "RUN", "--overwrite",
+        "--base-code", str(whole.out / "jplag/base"),
+        "--result-file", str(whole.out / "jplag/result"),
+        str(whole.out / "jplag/submissions")])
