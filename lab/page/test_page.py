@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""What the web page does, in a headless Chromium: test_page.py BUILD [TEST]...,
-where BUILD/page/index.html and BUILD/page_positions are. It is opened as a
-file. The pictures that it writes, BUILD/page-*.png, are to be looked at.
+"""What the web page does, in a headless Chromium and in Firefox, where that is
+installed: test_page.py BUILD [TEST]..., where BUILD/page/index.html and
+BUILD/page_positions are. It is opened as a file. The pictures that Chromium
+writes, BUILD/page-*.png, are to be looked at.
 test_page.py BUILD --frames measures frames a second: make page-frames."""
 import base64
 import pathlib
@@ -12,6 +13,7 @@ import time
 import traceback
 
 from browser import Browser
+from firefox import Firefox, Skipped
 
 build = pathlib.Path(sys.argv[1])
 address = "file://" + str((build / "page/index.html").resolve())
@@ -398,7 +400,7 @@ def colors_of_the_person_keep_tools_and_curves_apart(b):
             "e => getComputedStyle(e).backgroundColor)")
     grab, cut = b.value(back)[:2]
     assert grab != cut
-    b.wait("$('energy-title').querySelector('b')")
+    b.wait("!!$('energy-title').querySelector('b')")
     curves = b.value("[...$('energy-title').querySelectorAll('b')].map("
                      "e => getComputedStyle(e).color + e.textContent)")
     assert len(set(curves)) == 4, curves
@@ -690,26 +692,35 @@ def main():
     size = sum(f.stat().st_size for f in (build / "page").iterdir())
     assert size <= 1_000_000, f"{size} bytes"
     print(f"  {size} bytes")
-    failed = 0
     only = sys.argv[2:]
-    for run in tests:
-        if only and run.__name__ not in only:
-            continue
-        try:
-            with Browser() as b:
-                run(b)
-                faults = b.faults + b.value("page.errors")
-                assert not faults, faults
-            print("ok", run.__name__, flush=True)
-        except Exception:
-            failed += 1
-            print("FAIL", run.__name__)
-            traceback.print_exc(file=sys.stdout)
+    passed = failed = 0
+    engines = [Browser, Firefox]
+    for name in Firefox.missing():
+        print(f"skipped: the page in Firefox: {name} is missing")
+        engines = [Browser]
+    for engine in engines:
+        for run in tests:
+            if only and run.__name__ not in only:
+                continue
+            name = f"{run.__name__} {engine.__name__}"
+            try:
+                with engine() as b:
+                    run(b)
+                    faults = b.faults + b.value("page.errors")
+                    assert not faults, faults
+                passed += 1
+                print("ok", name, flush=True)
+            except Skipped as what:
+                print(f"left out {name}: {what}")
+            except Exception:
+                failed += 1
+                print("FAIL", name)
+                traceback.print_exc(file=sys.stdout)
     if not only:
         without_webgl()
+        passed += 1
         print("ok without_webgl")
-    count = len(only or tests) + (not only)
-    print(f"{count - failed} passed, {failed} failed")
+    print(f"{passed} passed, {failed} failed")
     return failed != 0
 
 

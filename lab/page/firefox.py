@@ -1,0 +1,120 @@
+"""Firefox with the interface of browser.py, driven by WebDriver BiDi over a web
+socket: needs firefox-esr, which draws WebGL in a window alone, so Xvfb, and
+python3-websocket. https://w3c.github.io/webdriver-bidi"""
+import base64
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+
+import websocket
+
+from browser import Browser
+
+KEYS = {"Tab": "\ue004", "ArrowLeft": "\ue012", "ArrowUp": "\ue013",
+        "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Escape": "\ue00c"}
+
+
+class Skipped(Exception):
+    """Firefox has no way to do this."""
+
+
+class Firefox(Browser):
+    """One page. Use it in a with statement; lengths in CSS pixels."""
+
+    @staticmethod
+    def missing():
+        """The programs that it needs and that are not here."""
+        return [name for name in ("firefox-esr", "xvfb-run")
+                if not shutil.which(name)]
+
+    def __init__(self, width=1280, height=800):
+        self.folder = tempfile.mkdtemp(prefix="page.")
+        pathlib.Path(self.folder, "user.js").write_text(
+            'user_pref("webgl.force-enabled", true);\n'
+            'user_pref("ui.prefersReducedMotion", 0);\n')
+        said = pathlib.Path(self.folder, "said")
+        with said.open("w") as out:
+            self.process = subprocess.Popen(
+                ["xvfb-run", "-a", "firefox-esr", "--no-remote", "--profile",
+                 self.folder, "--remote-debugging-port", "0"],
+                stdout=subprocess.DEVNULL, stderr=out)
+        found = r"WebDriver BiDi listening on (ws://\S+)"
+        self._until(lambda: re.search(found, said.read_text()), 120,
+                    "the browser does not start")
+        self.socket = websocket.create_connection(
+            re.search(found, said.read_text())[1] + "/session", timeout=300,
+            suppress_origin=True)
+        self.count, self.session, self.faults = 0, None, []
+        self.send("session.new", capabilities={})
+        self.send("session.subscribe", events=["log.entryAdded"])
+        tree = self.send("browsingContext.getTree")
+        self.context = tree["contexts"][0]["context"]
+        self.resize(width, height)
+
+    def __exit__(self, *_):
+        self.send("browser.close")
+        self.socket.close()
+        self.process.wait(60)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _listen(self, event):
+        values = event.get("params", {})
+        if event.get("method") == "log.entryAdded" and \
+                values["level"] == "error":
+            self.faults.append(values["text"])
+        if event.get("type") == "error":
+            event["error"] = event["error"] + ": " + event["message"]
+
+    def resize(self, width, height, touch=False):
+        if touch:
+            raise Skipped("a screen that is touched")
+        self.send("browsingContext.setViewport", context=self.context,
+                  viewport={"width": width, "height": height})
+
+    def prefer(self, dark=False, still=False, forced=False):
+        raise Skipped("what the person prefers")
+
+    def open(self, address):
+        for url in ("about:blank", address):
+            self.send("browsingContext.navigate", context=self.context,
+                      url=url, wait="complete")
+
+    def value(self, expression):
+        answer = self.send(
+            "script.evaluate", target={"context": self.context},
+            awaitPromise=True, expression="(async () => JSON.stringify("
+            f"await ({expression})))()")
+        if answer["type"] != "success":
+            raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
+        text = answer["result"].get("value")
+        return None if text is None else json.loads(text)
+
+    def screenshot(self, file):
+        data = self.send("browsingContext.captureScreenshot",
+                         context=self.context)["data"]
+        file = pathlib.Path(file)
+        file.with_name("firefox-" + file.name).write_bytes(
+            base64.b64decode(data))
+
+    def _act(self, kind, name, *actions, **more):
+        self.send("input.performActions", context=self.context, actions=[
+            {"type": kind, "id": name, "actions": list(actions), **more}])
+
+    def key(self, key, code="", text=""):
+        value = KEYS.get(key, key)
+        self._act("key", "keys", {"type": "keyDown", "value": value},
+                  {"type": "keyUp", "value": value})
+
+    def mouse(self, kind, x, y):
+        actions = [{"type": "pointerMove", "x": round(x), "y": round(y)}]
+        if kind != "mouseMoved":
+            press = "pointerDown" if kind == "mousePressed" else "pointerUp"
+            actions.append({"type": press, "button": 0})
+        self._act("pointer", "mouse", *actions)
+
+    def wheel(self, x, y, down):
+        self._act("wheel", "wheel", {"type": "scroll", "x": x, "y": y,
+                                     "deltaX": 0, "deltaY": down})
