@@ -31,8 +31,6 @@
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/stability/Guard.hpp"
-#include "lab/stability/Spectrum.hpp"
-#include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
 using bench::Flat, bench::Kind, bench::cloth, bench::flat, bench::shuffle;
@@ -277,23 +275,7 @@ std::vector<Figure> figures() {
   constraint("floor", [](Cloth&) { return PlaneConstraint(); });
   constraint("ball", [](Cloth&) { return SphereConstraint(); });
   constraint("ball that tears", [](Cloth&) { return TearConstraint(); });
-  // What a scene does after every 16th or 32nd step.
-  auto estimate = [&](const char* name, auto of) {
-    add({std::string("part: ") + name, "step: Verlet",
-         [of](unsigned n) -> Make {
-           Cloth& g = cloth(n, Kind::grid);
-           return [of, &g, pin = ConstraintPlan(PinConstraint(g)),
-                   force = ForcePlan(make_combined_force(
-                       GravityForce(), MassSpringForce()))]() mutable {
-             benchmark::DoNotOptimize(of(g, force, pin));
-           };
-         },
-         false});
-  };
-  estimate("sharp estimate",
-           [sharp = SharpOmega()](auto&... a) mutable { return sharp(a...); });
-  estimate("safe estimate", [](auto&... a) { return omega_safe(a...); });
-  estimate("cheap estimate", [](auto&... a) { return omega_gershgorin(a...); });
+  // What a scene does after every 32nd step.
   add({"part: guard", "step: Verlet",
        [](unsigned n) -> Make {
          Cloth& g = cloth(n, Kind::grid);

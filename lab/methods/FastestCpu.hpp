@@ -5,7 +5,7 @@
 
 namespace lab {
 
-/** Time some stages of a small cloth with each kind of kernel in turn, and
+/** Time steps of a small cloth with each kind of kernel in turn, and
  * @return the kind of the shortest time. The longest registers are not always
  * the fastest: a root and a division of 512 bits may take longer than two of
  * 256 bits. All kinds give the same bits, so the choice changes no result.

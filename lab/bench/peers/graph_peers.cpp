@@ -3,13 +3,11 @@
  * with a step of Bullet's soft body. Prints tables of Markdown:
  *   make peers-deps peers-bench
  * README.md beside explains each row. */
+#include "lab/bench/Bench.hpp"
 #include "lab/bench/peers/contenders.hpp"
-#include "lab/fast/Sweep.hpp"
 
-#include <benchmark/benchmark.h>
 #include <malloc.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ctime>
@@ -22,6 +20,7 @@
 #include <vector>
 
 using namespace lab;
+using bench::Spread;
 
 namespace {
 
@@ -59,17 +58,12 @@ concept CanMakeRoom = requires(C& c) {
 };
 
 template <typename C>
-double time_of_build(bool by_quad) {
-  C c;
-  return time_of(
-      [&] { c.build(by_quad ? square.quad_sides : square.springs, by_quad); });
-}
-template <CanMakeRoom C>
-double time_of_build_in_room() {
+double time_of_build(bool by_quad, bool in_room = false) {
   C c;
   return time_of([&] {
-    c.make_room();
-    c.build(square.springs, false);
+    if constexpr (CanMakeRoom<C>)
+      if (in_room) c.make_room();
+    c.build(by_quad ? square.quad_sides : square.springs, by_quad);
   });
 }
 template <typename C>
@@ -119,7 +113,8 @@ void add_all() {
     });
   }
   if constexpr (CanMakeRoom<C>) {
-    add("build, in room made first", C::name, time_of_build_in_room<C>);
+    add("build, in room made first", C::name,
+        [] { return time_of_build<C>(0, true); });
     add("build, first of a process, in room", C::name,
         [] { return time_of_first_build<C>("first-in-room"); });
   }
@@ -187,7 +182,7 @@ class Table : public benchmark::BenchmarkReporter {
     for (const auto& row : rows) {
       const auto& ours = times_[row]["ours"];
       if (ours.empty()) continue;
-      std::printf("| %s | %.0f us |", row.c_str(), median(ours));
+      std::printf("| %s | %.0f us |", row.c_str(), Spread(ours).median);
       for (const auto& column : columns) {
         if (column == "ours") continue;
         const auto& theirs = times_[row][column];
@@ -197,9 +192,9 @@ class Table : public benchmark::BenchmarkReporter {
         if (ratio.empty())
           std::printf(" |");
         else
-          std::printf(" %.2f (%.2f-%.2f) |", median(theirs) / median(ours),
-                      *std::min_element(ratio.begin(), ratio.end()),
-                      *std::max_element(ratio.begin(), ratio.end()));
+          std::printf(" %.2f (%.2f-%.2f) |",
+                      Spread(theirs).median / Spread(ours).median,
+                      Spread(ratio).low, Spread(ratio).high);
       }
       std::printf("\n");
     }
@@ -214,11 +209,6 @@ class Table : public benchmark::BenchmarkReporter {
   }
 
  private:
-  static double median(std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2),
-                     v.end());
-    return v[v.size() / 2];
-  }
   std::map<std::string, std::map<std::string, std::vector<double>>> times_;
 };
 
@@ -245,10 +235,8 @@ int main(int argc, char** argv) {
   if (argc == 3 && std::string(argv[1]).starts_with("--first")) {
     each_graph([&]<typename C>(std::type_identity<C>) {
       if (argv[2] != std::string(C::name)) return;
-      if constexpr (CanMakeRoom<C>)
-        if (argv[1] == std::string("--first-in-room"))
-          return void(std::printf("%g\n", time_of_build_in_room<C>()));
-      std::printf("%g\n", time_of_build<C>(false));
+      std::printf("%g\n", time_of_build<C>(
+                              0, argv[1] == std::string("--first-in-room")));
     });
     return 0;
   }

@@ -360,18 +360,18 @@ std::vector<Candidate> candidates() {
   return all;
 }
 
+double median(std::vector<double> a) {
+  std::ranges::sort(a);
+  return a[a.size() / 2];
+}
+
 /** The fastest run of a method whose error is at most @a error [m]. */
 const Candidate* fastest(const std::vector<Candidate>& all,
                          std::string_view method, double error) {
   const Candidate* best = nullptr;
-  auto median = [](const Candidate& c) {
-    auto sorted = c.seconds;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
-  };
   for (const Candidate& c : all)
     if (c.method == method && c.status == "ok" && c.error <= error &&
-        (!best || median(c) < median(*best)))
+        (!best || median(c.seconds) < median(best->seconds)))
       best = &c;
   return best;
 }
@@ -388,9 +388,7 @@ void print_ratios(const std::vector<Candidate>& all, double error) {
       continue;
     if (const Candidate* b = fastest(all, c.method, error)) best.push_back(b);
   }
-  auto first = [](const Candidate* c) {
-    return *std::min_element(c->seconds.begin(), c->seconds.end());
-  };
+  auto first = [](auto* c) { return std::ranges::min(c->seconds); };
   std::sort(best.begin(), best.end(),
             [&](auto* a, auto* b) { return first(a) < first(b); });
   const Candidate* ours = nullptr;
@@ -405,11 +403,11 @@ void print_ratios(const std::vector<Candidate>& all, double error) {
     std::vector<double> ratio;
     for (std::size_t k = 0; k < c->seconds.size(); ++k)
       ratio.push_back(c->seconds[k] / ours->seconds[k]);
-    std::sort(ratio.begin(), ratio.end());
+    const auto [low, high] = std::ranges::minmax(ratio);
     std::fprintf(stderr, "%-18s %9.3f %7ld %9.2g %7.2f %6.2f (%.2f-%.2f)\n",
                  c->method, 1e3 * first(c), c->calls, c->error,
-                 double(c->calls) / double(ours->calls),
-                 ratio[ratio.size() / 2], ratio.front(), ratio.back());
+                 double(c->calls) / double(ours->calls), median(ratio), low,
+                 high);
   }
 }
 
@@ -462,10 +460,8 @@ int main(int argc, char** argv) {
   for (const Candidate& c : all) {
     std::cout << c.method << ',' << c.parameter << ',';
     if (c.status == "ok") {
-      auto seconds = c.seconds;
-      std::sort(seconds.begin(), seconds.end());
-      std::cout << c.calls << ',' << seconds[0] << ','
-                << seconds[seconds.size() / 2] << ',' << c.error << ',';
+      std::cout << c.calls << ',' << std::ranges::min(c.seconds) << ','
+                << median(c.seconds) << ',' << c.error << ',';
     } else {
       std::cout << ",,,,";
     }
