@@ -321,6 +321,20 @@ std::vector<Point> solve(const Product& A, const std::vector<Point>& b,
   return x;
 }
 
+/** (M + dt c + dt^2 H) d, by node index: by what an implicit step multiplies
+ * changes of velocity. 0 at @a held nodes. */
+template <typename G>
+std::vector<Point> matrix_times(G& g, const std::vector<char>& held, double dt,
+                                double c, const std::vector<Point>& d) {
+  auto Ad = stiffness_times(g, d);
+  for (auto n : nodes(g)) {
+    const auto i = n.index();
+    const double inertia = n.value().mass + dt * c;
+    Ad[i] = held[i] ? Point() : inertia * d[i] + dt * dt * Ad[i];
+  }
+  return Ad;
+}
+
 /** v += dt F/m with the force at the end of the step, then x += dt v. That
  * force is found by one step of Newton's method, with the springs' stiffness H:
  *   (M + dt c + dt^2 H) dv = dt (F - dt H v - c v).
@@ -340,15 +354,7 @@ double implicit_euler_step(G& g, double t, double dt, F&& force, C&& constraint,
   for (auto n : nodes(g))
     if (const auto i = n.index(); !held[i])
       b[i] = dt * (without_drag(force)(n, t + dt) - dt * Hv[i] - c * v[i]);
-  const auto A = [&](const std::vector<Point>& w) {
-    auto Aw = stiffness_times(g, w);
-    for (auto n : nodes(g)) {
-      const auto i = n.index();
-      Aw[i] = held[i] ? Point()
-                      : (n.value().mass + dt * c) * w[i] + dt * dt * Aw[i];
-    }
-    return Aw;
-  };
+  const auto A = [&](auto& d) { return matrix_times(g, held, dt, c, d); };
   const auto dv = solve(A, b, tolerance);
   for (auto n : nodes(g)) {
     n.value().vel = v[n.index()] + dv[n.index()];
@@ -358,11 +364,30 @@ double implicit_euler_step(G& g, double t, double dt, F&& force, C&& constraint,
   return t + dt;
 }
 
+/** Accelerations (F - F of the springs)/m, by node index.
+ * @param w 1/m of each node, or 0 if it is held */
+template <typename G, typename F>
+std::vector<Point> without_springs(G& g, double t, F& force,
+                                   const std::vector<double>& w) {
+  std::vector<Point> a(w.size());
+  for (auto n : nodes(g)) {
+    const auto i = n.index();
+    a[i] = w[i] * without_drag(force)(n, t);
+    for (auto e : edges(n)) {
+      const auto [l, direction] = span_of(e);
+      a[i] -= w[i] * e.value().K * (l - e.value().L) * direction;
+    }
+  }
+  return a;
+}
+
 /** Moves the ends of each spring in turn towards its rest length:
  *   x_i += w_i d n,  x_j -= w_j d n,  d = (l - L)/(w_i + w_j + 1/(K h^2)).
+ * The velocities follow: v += (what a node has moved)/h.
  * @param w 1/m of each node, or 0 if it is held   @param h step [s] */
 template <typename G>
 void relax_springs(G& g, const std::vector<double>& w, double h) {
+  const auto before = states(g);
   for (auto e : edges(g)) {
     const auto i = e.node1().index(), j = e.node2().index();
     const auto [l, n] = span_of(e);
@@ -371,11 +396,13 @@ void relax_springs(G& g, const std::vector<double>& w, double h) {
     e.node1().position() += w[i] * d * n;
     e.node2().position() -= w[j] * d * n;
   }
+  for (auto n : nodes(g))
+    n.value().vel += (n.position() - before[n.index()].x) / h;
 }
 
 /** Extended position-based dynamics, in substeps: all forces but the springs
- * move the nodes, relax_springs() corrects the positions, and the velocities
- * follow from these. Order 1, no limit, 1 force a step.
+ * move the nodes, then relax_springs() corrects them. Order 1, no limit,
+ * 1 force a step.
  * @param force with that of the springs, as in all steps here
  * Sources: M. Macklin, M. Mueller, N. Chentanez, MIG 2016,
  * doi:10.1145/2994258.2994272; M. Macklin et al., SCA 2019,
@@ -386,16 +413,9 @@ double xpbd_step(G& g, double t, double dt, F&& force, C&& constraint) {
   const double h = dt / substeps;
   const auto held = held_nodes(g, t, constraint);
   std::vector<double> w(held.size());
-  std::vector<Point> a(held.size());  // accelerations without the springs
-  for (auto n : nodes(g)) {
-    const auto i = n.index();
-    w[i] = held[i] ? 0 : 1 / n.value().mass;
-    a[i] = w[i] * without_drag(force)(n, t);
-    for (auto e : edges(n)) {
-      const auto [l, direction] = span_of(e);
-      a[i] -= w[i] * e.value().K * (l - e.value().L) * direction;
-    }
-  }
+  for (auto n : nodes(g))
+    w[n.index()] = held[n.index()] ? 0 : 1 / n.value().mass;
+  const auto a = without_springs(g, t, force, w);
   for (int k = 1; k <= substeps; ++k) {
     for (auto n : nodes(g)) {
       const auto i = n.index();
@@ -405,10 +425,7 @@ double xpbd_step(G& g, double t, double dt, F&& force, C&& constraint) {
     }
     constraint(g, t + k * h);
     expect_all(g, held.size());
-    const auto free = states(g);
     relax_springs(g, w, h);
-    for (auto n : nodes(g))
-      n.value().vel += (n.position() - free[n.index()].x) / h;
   }
   constraint(g, t + dt);
   return t + dt;
