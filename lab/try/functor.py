@@ -31,10 +31,42 @@ def functors_in(text):
     return found
 
 
+FUNCTION = re.compile(r"\b(?:Point|void|auto)\s+(\w+)\s*(?:=\s*\[[^]]*\]\s*)?"
+                      r"(\()")
+NUMBERS = re.compile(r"(?:const )?(?:Point|double|float|int|unsigned|std)\b")
+
+
+def functions_in(text):
+    """Names of functions and lambdas that are called as a force or constraint,
+    outside of classes."""
+    text, found = without_comments(text), []
+    for match in FUNCTION.finditer(text):
+        before = text[:match.start()]
+        words = arguments(text, match.start(2))
+        if (words and len(words[0]) == 2 and "double" in words[0][1]
+                and not NUMBERS.match(words[0][0])
+                and before.count("{") == before.count("}")):
+            found.append(match[1])
+    return found
+
+
+def type_of(path, name):
+    """A class, or that of a function object which calls the function."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    if name not in functions_in(text):
+        return name
+    return (f"decltype([](auto&& x, double t) -> decltype({name}(x, t)) "
+            f"{{ return {name}(x, t); }})")
+
+
 def choose(path, wanted):
     """(name, how it is made or "") of a force or constraint in a file; None if
     there is none of that name."""
-    found = functors_in(path.read_text(encoding="utf-8", errors="replace"))
+    text = path.read_text(encoding="utf-8", errors="replace")
+    found = functors_in(text)
+    functions = functions_in(text)
+    if wanted in functions if wanted else not found:
+        found = functions
     made = re.fullmatch(r"(\w+)\s*([({].*[)}])?", wanted)
     if wanted:
         return ((made[1], wanted if made[2] else "")
@@ -50,7 +82,8 @@ def choose(path, wanted):
 def measure(path, name, made=""):
     """The Verdict on a force or a constraint in a file, or BadInput."""
     shop = Workshop(path, name, 0, source="functor.cpp", defines=[
-        f"-DTRY_NAME={name}", *([f"-DTRY_MADE={made}"] if made else [])])
+        f"-DTRY_NAME={type_of(path, name)}",
+        *([f"-DTRY_MADE={made}"] if made else [])])
     try:
         shop.compile()
         lines, outcome = shop.run("functor")

@@ -104,6 +104,7 @@ def drag(t, x0=.5, v0=.6, omega=2, gamma=.7):
 
 END = {"chain": (chain, 2.3, 0), "kepler": (kepler, 3, 0),
        "driven": (driven, 2.4, .4), "drag": (drag, 2, 0)}
+SMOOTH = ("chain", "kepler", "driven")
 ABOUT = {"chain": "eight masses between two walls",
          "kepler": "a planet, eccentricity 0.3",
          "driven": "an oscillator and a force that depends on time",

@@ -142,6 +142,7 @@ void same() {
     put("tangle.end", state(w));
     put("data", data(w));
     run(other, 7, .125, time + 1);
+    if (time == 1) run(w, 7, .125, 1);
   }
 }
 

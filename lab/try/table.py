@@ -155,6 +155,19 @@ def known():
     }
 
 
+def repeated():
+    """The same of steps that are several shorter ones of a method."""
+    steps = {}
+    for k in (2, 3, 4):
+        each = f", {k} steps of dt/{k}"
+        steps["symplectic Euler" + each] = alternate("drift", [1 / k] * 2 * k)
+        steps["symplectic Euler, velocities first" + each] = alternate(
+            "kick", [1 / k] * 2 * k)
+        steps["Verlet" + each] = alternate(
+            "kick", [.5 / k, *[1 / k] * (2 * k - 1), .5 / k])
+    return steps
+
+
 # The laboratory's name of a method, for its curve in the charts.
 IN_CHARTS = {
     "forward Euler": "forward-euler", "symplectic Euler": "symplectic-euler",

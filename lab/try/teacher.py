@@ -3,6 +3,8 @@
 import math
 import textwrap
 
+import orders
+
 ADVICE = {
     "forward Euler": "Your kick uses the old positions: this is forward Euler; "
     "it gains energy at any step. Move the nodes first, then compute the "
@@ -33,8 +35,13 @@ def conclude(v):
     """What it is, and what to do next."""
     if not v.is_a:
         if v.order is None:
-            o = [x.order for x in v.orders.values() if x.order == x.order]
+            all_orders = [v.orders[name].order for name in orders.SMOOTH
+                          if name in v.orders]
+            o = [x for x in all_orders if x == x]
             v.is_a = ("it does not converge" if not o or min(o) < .3 else
+                      f"it is of order {min(o):.1f} on some problems, and on "
+                      "others it does not converge"
+                      if len(o) < len(all_orders) else
                       f"its order is no whole number: {min(o):.2f}")
         elif v.order <= 0:
             v.is_a = ("it does not converge: with smaller steps the error "

@@ -102,7 +102,9 @@ def said_of(text, parts=QUICK, step=""):
 
 def mistake(case):
     """Faults of what is said of one."""
-    parts = FUNCTOR if "thing" in case else case.get("parts", QUICK)
+    parts = case.get("parts", QUICK)
+    if "thing" in case or parts == "functor":
+        parts = FUNCTOR
     status, said, _ = said_of(text_of(case), parts)
     found = [] if status == case.get("status", 0) else [f"status {status}"]
     found += [f"does not say '{words}'" for words in case["says"]

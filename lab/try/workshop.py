@@ -96,8 +96,10 @@ def choose(path, wanted):
     form = ("template <typename G, typename F, typename C> double NAME(G& g, "
             "double t, double dt, F&& force, C&& constraint)")
     if not found:
-        raise BadInput(f"{path}:1: has no step, expected {form}; nor a struct "
-                       "with a call (Node, double) or (GraphType&, double)")
+        raise BadInput(f"{path}:1: has no step, expected {form}; nor a force "
+                       "or constraint: a function Point NAME(Node, double) or "
+                       "void NAME(GraphType&, double), or a struct with such "
+                       "an operator()")
     if wanted:
         if wanted not in found:
             raise BadInput(f"{path}:1: has no step {wanted}; it has "
