@@ -3,7 +3,7 @@
 
 .PHONY: adviser-suite cells charts charts-quick figures fuzz grids \
         method-costs orders peers-bench peers-chart peers-deps pictures \
-        solver-chart speed stability stability-soak try try-deps contest
+        rounds-chart speed stability stability-soak try try-deps contest
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -22,7 +22,7 @@ help-lab:
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
-	@echo 'make solver-chart       conjugate gradients beside a Cholesky factor'
+	@echo 'make rounds-chart       rounds of implicit steps; needs valgrind'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
 	@echo 'make peers-deps peers-chart peers-bench   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
@@ -143,10 +143,11 @@ speed:
 # Written whole: a run that fails leaves the results alone.
 measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
   $$($(CXX) --version | head -n 1), commit $$(git describe --always --dirty)
-solver-chart: bench_solvers
-	@{ echo "# $(measured_on)" && $(B)/bench_solvers; } > $(B)/solvers.csv
-	@mv $(B)/solvers.csv lab/bench/results/solvers.csv
-	@$(draw) solvers
+rounds-chart: bench_rounds
+	@{ echo "# $(measured_on)" && lab/bench/rounds.py $(B)/bench_rounds; } \
+	  > $(B)/rounds.csv
+	@mv $(B)/rounds.csv lab/bench/results/rounds.csv
+	@$(draw) rounds decision
 
 # Other libraries beside ours: lab/bench/peers/README.md
 peers := lab/bench/peers

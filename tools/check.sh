@@ -192,7 +192,7 @@ peers() {
 clang() {
   in_folder clang all cloth units test_sweep test_flat_flow \
     test_graph_nodes test_graph_edges work_precision stability_map \
-    bench bench_solvers make_grid examples \
+    bench bench_rounds make_grid examples \
     CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
     build/check/clang/test_nodes && build/check/clang/test_edges &&
     build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges
@@ -245,7 +245,7 @@ plain() {
 }
 programs() {
   in_folder . all cloth work_precision stability_map make_grid \
-    bench bench_solvers examples
+    bench bench_rounds examples
 }
 # Frames of a cloth that tears, read by VTK.
 vtk() {

@@ -13,6 +13,7 @@ import sys
 import decision
 import peers
 import precision
+import rounds
 import speed
 from panels import gnuplot, quoted
 from results import ROOT, ChartError, Table, believed, runs
@@ -34,7 +35,7 @@ CHARTS = {
                           f"charts/stability_{m}.gp")
        for m in ("limits", "table", "growth", "oscillator")},
     "adviser": ("advice", "adviser.csv", "advice/adviser.gp"),
-    "solvers": ("bench", "solvers.csv", "bench/solvers.gp"),
+    "rounds": ("bench", "rounds.csv", rounds.rounds),
     "peers": ("bench", "peers.csv", peers.peers),
     "history": ("bench", "*/history.csv", speed.history),
     "speed": ("bench", "*/bench.json", speed.speed),
@@ -52,6 +53,9 @@ def pictures(name, csv):
     if name == "failures":
         notes = re.findall("^# title ([^:]*):", csv.read_text(), re.M)
         return [(method, "failure-" + method) for method in notes]
+    if name == "rounds":
+        sizes = dict.fromkeys(row["nodes"] for row in Table(csv).rows)
+        return [(nodes, "rounds-" + nodes) for nodes in sizes]
     return [("", name)]
 
 

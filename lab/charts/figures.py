@@ -164,12 +164,13 @@ def advice(which):
     return suite.rates(table("advice/results/adviser.csv").rows)[which]
 
 
-def solver(K, share, name, tolerance, column="seconds_median"):
-    """Milliseconds of a linear system, at the step nearest to a share."""
-    rows = table("bench/results/solvers.csv").where(
-        K=K, solver=name, tolerance=tolerance)
-    row = min(rows, key=lambda r: abs(float(r["dt"]) / share - 1))
-    return 1e3 * float(row[column])
+def round_of(nodes, K, method, rounds, what="work"):
+    """A row of rounds.csv: work [force evaluations], or a distance over the
+    way that the cloth moves in the step [%]."""
+    row = table("bench/results/rounds.csv").where(
+        nodes=nodes, K=K, method=method, rounds=str(rounds))[0]
+    return (float(row[what]) if what == "work" else
+            100 * float(row[what]) / float(row["moved"]))
 
 
 def refined(what, column, k=-1):

@@ -12,7 +12,7 @@ TIE = 0.9  # a cost of which the least one is more than this share ties with it
 # cheapest(), in words, for the charts that show what it chooses.
 RULE = ("the cheapest measured run that keeps this error, as do all finer runs "
         "of its method; of runs within 10 % the most exact one")
-RATIOS = "lab/methods/Costs.hpp"  # a step of each method in steps of Verlet
+RATIOS = "lab/bench/results/rounds.csv"  # instructions of a step
 TRUSTED = 10  # an error below so many floors says nothing
 
 
@@ -72,14 +72,15 @@ class Table:
 
 def solver_steps():
     """{method: (force evaluations of a step, what the whole step costs in
-    force evaluations)} of the methods that spend work on more than forces: as
-    measured by `make method-costs`, at the cheaper one of its two steps."""
-    costs = {m: (float(a), float(b)) for m, a, b in re.findall(
-        r'{"([\w-]+)", ([\d.]+), ([\d.]+)}', (ROOT / RATIOS).read_text())}
+    force evaluations)} of the methods that spend work on more than forces:
+    instructions of a step at Verlet's limit, as `make rounds-chart` counts
+    them. Conjugate gradients take more at longer steps."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
     each = {line.split(",")[0]: int(line.split(",")[5]) for line in lines
             if not line.startswith("#")}
-    return {m: (each[m], min(pair)) for m, pair in costs.items() if min(pair)}
+    return {m: (each[m], float(cost)) for m, cost in re.findall(
+        r"# a step at verlet's limit ([\w-]+): ([\d.]+)",
+        (ROOT / RATIOS).read_text())}
 
 
 SOLVERS = solver_steps()
@@ -101,8 +102,8 @@ class Run:
 
     @property
     def work(self):
-        """Counted, the same on every machine, in force evaluations. The
-        solves of a step count as many as they take as long as."""
+        """Counted, in force evaluations. What a step does besides counts
+        by its instructions."""
         evaluations, whole = SOLVERS.get(self.method, (1, 1))
         return self.evaluations / evaluations * whole
 

@@ -1,0 +1,96 @@
+"""How near the rounds of an implicit step come to the converged step, and to
+the true motion, for how much work a frame."""
+import math
+
+from panels import GRAY, Axis, Curve, Panel, Picture, styles
+from results import Table
+
+# In the CSV, in the chart, color and marker; None: as in methods.csv.
+CURVES = (("fast-mass-spring", "fast-mass-spring", None, None),
+          ("local-global", "the same, not accelerated", "#888888", 4),
+          ("xpbd", "xpbd (substeps)", None, None),
+          ("newton-gradients", "Newton, conjugate gradients", "#0072B2", 7),
+          ("newton-factor", "Newton, Cholesky factor", "#000000", 5))
+TARGETS = (("from step", "from implicit Euler / moved"),
+           ("from motion", "from true motion / moved"))
+WITHIN = 0.01  # of the distance moved: what the title asks for
+LEAST = 1e-4  # what is closer is drawn here
+
+
+def cheapest_within(rows, share=WITHIN):
+    """(method, work) of the least work that keeps a share of the motion, of
+    the converged step; None if no row does."""
+    good = [(float(r["work"]), r["method"]) for r in rows
+            if float(r["from step"]) <= share * float(r["moved"])]
+    return min(good)[::-1] if good else None
+
+
+def message(table, nodes):
+    """Which method comes within WITHIN of the converged step for least work,
+    by stiffness."""
+    names = {name: name for name, *_ in CURVES} | {
+        "newton-gradients": "conjugate gradients",
+        "newton-factor": "a factor"}
+    words = []
+    for K in dict.fromkeys(r["K"] for r in table.rows):
+        best = cheapest_within(table.where(nodes=nodes, K=K))
+        words.append((names[best[0]] if best else "none", K))
+    parts = []
+    for name in dict.fromkeys(n for n, _ in words):
+        at = [K for n, K in words if n == name]
+        parts.append(f"{name} at K = {', '.join(at)}")
+    return (f"To {100 * WITHIN:.0f} % of implicit Euler: "
+            f"{'; '.join(parts)}")
+
+
+def verlet(nodes, K):
+    """The force evaluations of a frame by Verlet at its limit, on a sheet
+    with diagonals."""
+    return math.sqrt(12 * float(K) * int(nodes)) / 2 / 60
+
+
+def rounds(csv, out, nodes):
+    """A row of panels for each target, a column for each stiffness."""
+    table, look = Table(csv), styles()
+    some = table.where(nodes=nodes)
+    stiffness = list(dict.fromkeys(r["K"] for r in some))
+    picture = Picture(out, 800, 560, message(table, nodes), "", "")
+    for k, words in enumerate((
+            f"One step of 1/60 s of a falling sheet of {int(nodes):,} nodes. "
+            "Points: 1, 2, 5, 10, 20 rounds. moved: how far it",
+            "moves in that time. Dashed line: verlet takes this work to make "
+            "that step, at its limit, with the true motion.")):
+        picture.text(20, 518 - 15 * k, words, 11)
+    x = 20
+    for name, label, color, _ in CURVES:
+        picture.text(x, 478, label, 11, color or look[name][0])
+        x += 6.3 * len(label) + 14
+    work = [float(r["work"]) for r in some] + [
+        verlet(nodes, K) for K in stiffness]
+    ax = Axis(min(work) / 1.5, max(work) * 1.5)
+    width = (800 - 76 - 16) // len(stiffness)
+    for row, (column, what) in enumerate(TARGETS):
+        for k, K in enumerate(stiffness):
+            of = [r for r in some if r["K"] == K]
+            share = {m: [(float(r["work"]),
+                          max(float(r[column]) / float(r["moved"]), LEAST))
+                         for r in of if r["method"] == m]
+                     for m, *_ in CURVES}
+            curves = [Curve(m, share[m], color or look[m][0],
+                            marker or look[m][1])
+                      for m, _, color, marker in CURVES]
+            left = 76 + width * k
+            panel = Panel(left, 266 - 204 * row, left + width - 10,
+                          444 - 204 * row, ax, Axis(LEAST / 2, 0.5),
+                          f"K = {K} N/m" if row == 0 else "", curves)
+            at = panel.pixel((verlet(nodes, K), 1))[0]
+            picture.line(at, panel.bottom, at, panel.top, GRAY, 1, 2)
+            settings = ["set xtics (10, 100, 1000, 1e4)", "unset ylabel",
+                        "set format x '%g'", "set format y ''"]
+            settings.append("set xlabel 'work [steps of verlet]'"
+                            if row else "unset xlabel")
+            if k == 0:
+                settings += ["set format y '10^{%T}'",
+                             f"set ylabel '{what}' offset 1, 0"]
+            picture.draw(panel, *settings)
+    picture.finish()
