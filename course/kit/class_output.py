@@ -23,7 +23,7 @@ def made(whole, row):
         key: value for key, value in kept[test].items()
         if key not in ("kit", "seed")}) for test in whole.tests}
     taken = submission.Submission({}, [*row.notes, *seeds(
-        {test: kept[test]["seed"] for test in whole.tests})], row.flags)
+        {test: kept[test].get("seed", "") for test in whole.tests})], row.flags)
     return report.combine(whole.course, submission.shown(row.student), taken,
                           results)
 

@@ -12,7 +12,7 @@ import dates
 import kit_check
 
 DUE = "2026-03-08 01:30 America/Los_Angeles"    # clocks change 30 minutes later
-WRONG = "the velocities change before the positions"
+WRONG = "remove_node(it) is written anew and forgets the edges"
 TOUCH = "/tmp/kit-cheat"
 CHEAT = ("#include <cstdlib>\n"
          f'static const int x = std::system("touch {TOUCH}");\n')
@@ -22,11 +22,12 @@ def contents():
     """{what: files} of those that differ."""
     cases = kit_check.Cases()
     wrong = {case.name: case.files for case in
-             cases.wrong(kit_check.WRONG / "cloth.toml")}
+             cases.wrong(kit_check.WRONG / "graph.toml")}
     graph = {"Graph.hpp": cases.solution["Graph.hpp"]}
     return {"right": cases.solution, "starter": {
                 "Graph.hpp": cases.base("starter")["Graph.hpp"]},
-            "wrong": wrong[f"cloth: {WRONG}"], "half": graph,
+            "wrong": {"Graph.hpp": wrong[f"graph: {WRONG}"]["Graph.hpp"]},
+            "half": graph,
             "broken": {"Graph.hpp": graph["Graph.hpp"] + "}\n"},
             "cheat": {"Graph.hpp": graph["Graph.hpp"] + CHEAT},
             "empty": {"notes.txt": "nothing yet\n"}}

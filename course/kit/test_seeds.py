@@ -84,7 +84,8 @@ class Seeds(unittest.TestCase):
         self.assertEqual(list(class_output.seeds({"a": "", "b": "7"})),
                          ["tests with the numbers of SEED=7: b"])
         self.assertEqual(grade.seed_of_tests("007"), "7")
-        self.assertEqual(grade.seed_of_tests(""), "")
+        for none in ("", None):
+            self.assertEqual(grade.seed_of_tests(none), "")
         for bad in ("x", "-1", "1.5", str(1 << 63), "9" * 30, "\u0663"):
             with self.assertRaisesRegex(submission.BadInput, "^SEED is '"):
                 grade.seed_of_tests(bad)
