@@ -85,8 +85,8 @@ class SDLViewer : public SceneBuilder {
   /** Show a message in a panel: why the run stopped. Empty: no panel. */
   void set_message(std::vector<std::string> paragraphs);
 
-  /** Write lines over the middle of the picture, the first one large: the title
-   * of a film, or its end. Empty: nothing is written. */
+  /** Write lines at the bottom left of the picture, the first one large: the
+   * title of a film, or its end. Empty: nothing is written. */
   void set_card(std::vector<std::string> lines);
 
   /** Label the color scale, drawn while strain_colors(). */

@@ -19,7 +19,7 @@ int main() try {
   constexpr double t_end = 1.2;             // [s]; by then it has torn
   // While nodes are removed, and so long after [s], time is slower.
   constexpr double slow = 8, slow_seconds = 0.08;
-  constexpr int title = 45;  // [frames]
+  constexpr double title = 0.4;  // until then [s]
 
   Cloth g;
   const auto points = load_points("data/grid2.nodes");
@@ -48,14 +48,13 @@ int main() try {
   viewer.set_card(
       {"A ball tears a cloth", std::to_string(g.num_nodes()) + " nodes, " +
                                    std::to_string(g.num_edges()) + " springs"});
-  for (int k = 0; k < title; ++k) show(0);
-  viewer.set_card({});
 
   double next = 0, slow_until = 0;  // [s]
   auto nodes = g.num_nodes();
   for (double t = 0; t < t_end;) {
     if (t > next - dt / 2) {
       show(t);
+      if (t > title) viewer.set_card({});
       if (g.num_nodes() < nodes) slow_until = t + slow_seconds;
       nodes = g.num_nodes();
       next += 1 / (t < slow_until ? slow * rate : rate);

@@ -6,7 +6,7 @@
 OPENMP ?= 1
 
 # The programs: NAME is built as $(B)/NAME from the file.
-lab_main   := lab/run/cloth.cpp lab/viewer/frame_rate.cpp \
+lab_main   := lab/run/cloth.cpp \
               lab/page/page_positions.cpp lab/charts/work_precision.cpp \
               lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
@@ -76,7 +76,7 @@ $(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/
 # Tests that run a program.
 $(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)) $(TEST_UNITS:%=$(B)/%): | $(B)/cloth
 ifeq ($(VIEWER),1)
-$(B)/cloth $(B)/frame_rate: $(B)/libviewer.a
+$(B)/cloth: $(B)/libviewer.a
 $(patsubst %,$(B)/test_%,viewer panels faces image screen): $(B)/asan/libviewer.a
 endif
 $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)

@@ -179,9 +179,9 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
             "FILE.nodes: the quads go into FILE.tets\n");
 }
 
-// Between a title and an end of 45 frames each, one for each 1/30 s from 0 to
-// 0.2 s; the sheet comes to the floor at 0.09 s, and stays slow for 0.08 s.
-TEST_F(ClothProgram, FilmsHaveCardsAndShowContactSlower) {
+// A frame for each 1/30 s from 0 to 0.2 s, and a ninth of all at the end; the
+// sheet comes to the floor at 0.09 s, and stays slow for 0.08 s.
+TEST_F(ClothProgram, FilmsMoveAndShowContactSlower) {
   if (!CME212::has_program("ffprobe")) GTEST_SKIP() << "no ffprobe";
   auto frames = [this](const std::string& options) {
     const Result r =
@@ -193,8 +193,18 @@ TEST_F(ClothProgram, FilmsHaveCardsAndShowContactSlower) {
                           "stream=nb_frames -of csv=p=0 " +
                           path("film.mp4")));
   };
-  EXPECT_EQ(frames(""), 45 + 7 + 45);
-  EXPECT_NEAR(frames(" --slow-motion 4"), 45 + 7 + 45 + 3 * 30 * 0.08, 2);
+  EXPECT_EQ(frames(""), 7 + 1);
+  EXPECT_NEAR(frames(" --slow-motion 4"), 7 + 1 + 3 * 30 * 0.08, 2);
+  EXPECT_EQ(frames(" --size 320x200"), 7 + 1);
+  EXPECT_EQ(CME212::output_of("ffprobe -v error -show_entries "
+                              "stream=width,height -of csv=p=0 " +
+                              path("film.mp4")),
+            "320,200\n");
+  for (const std::string size : {"320", "320x201", "0x200", "320x200x", "axb"})
+    EXPECT_EQ(run("--sheet 'nodes 5 5' --size " + size).err,
+              "cloth: --size is " + size +
+                  ", expected WIDTHxHEIGHT, even numbers of pixels from 64 to "
+                  "8190\n");
   EXPECT_EQ(run("--sheet 'nodes 5 5' --slow-motion 0.5").err,
             "cloth: --slow-motion is 0.5, expected a factor of 1 to 100\n");
 }

@@ -510,6 +510,19 @@ struct LiveWindow {
   Seen seen_;
 };
 
+// A step beyond the limit is told where nothing moves for it.
+TEST(LiveThreads, AWarningMovesNoControl) {
+  LiveWindow w(true);
+  w.run([&] {
+    const int before = w.find("K [N/m]")[1];
+    w.slide("dt / limit", true);
+    EXPECT_TRUE(w.sees([](const LiveWindow::Seen& s) {
+      return s.now.dt > 2 * s.now.safe_limit;
+    }));
+    EXPECT_EQ(w.find("K [N/m]")[1], before);
+  });
+}
+
 TEST(LiveThreads, EachControlChangesTheSimulation) {
   LiveWindow w;
   using Seen = LiveWindow::Seen;

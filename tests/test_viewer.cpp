@@ -734,7 +734,9 @@ TEST(SDLViewer, KeysShowFacesWiresNodesAndPieces) {
 /** An X server of our own that shows nothing, as long as this lives. */
 class XServer {
  public:
-  XServer() {
+  explicit XServer(const std::string& size = "1280x1024")
+      : server_("exec Xvfb -displayfd 1 -noreset -screen 0 " + size + "x24 >" +
+                folder_ / "number" + " 2>/dev/null") {
     // It takes a free number and writes it when it is ready.
     server_.until([this] {
       display_ = ":" + contents(folder_ / "number");
@@ -752,10 +754,16 @@ class XServer {
  private:
   std::string display_;
   const CME212::TestFolder folder_;
-  CME212::Child server_{
-      "exec Xvfb -displayfd 1 -noreset -screen 0 1280x1024x24 >" +
-      folder_ / "number" + " 2>/dev/null"};
+  CME212::Child server_;
 };
+
+TEST(SDLViewerWindow, FitsOnASmallScreen) {
+  if (!has_program("Xvfb")) GTEST_SKIP() << "no Xvfb";
+  XServer server("800x600");
+  Environment display("DISPLAY", server.display().c_str());
+  const CME212::SDLWindow window("small", 1024, 768, false);
+  EXPECT_EQ(window.size(), (std::array{800, 600}));
+}
 
 TEST(SDLViewerWindow, ObeysTheKeyboard) {
   if (!has_program("Xvfb") || !has_program("xdotool"))

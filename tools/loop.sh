@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
-# Make a film a picture that moves for ever: without its title and end, of half
-# the frames, 480 pixels wide. At most 1.5 MB, as a page loads it each time.
+# Make a film a picture that moves for ever: without its end, of half the
+# frames, 480 pixels wide. At most 1.5 MB, as a page loads it each time.
 #   tools/loop.sh FILM.mp4 LOOP.gif
 set -euo pipefail
 
-card=45 rate=30 most=1500000  # frames of a card, frames a second, bytes
+rate=30 most=1500000  # frames a second, bytes
 frames=$(ffprobe -v error -show_entries stream=nb_frames -of csv=p=0 "$1")
-last=$((frames - card))
+end=$(((frames + 8) / 9)) # frames of the card: lab/run/Film.cpp
+last=$((frames - (end < 45 ? end : 45)))
 part=$(mktemp --suffix=.gif)
 trap 'rm -f "$part"' EXIT
 
 # The last frame stays for a second.
 ffmpeg -v error -y -i "$1" -vf "
-  trim=start_frame=$card:end_frame=$last, setpts=PTS-STARTPTS, fps=$rate/2,
+  trim=end_frame=$last, setpts=PTS-STARTPTS, fps=$rate/2,
   tpad=stop_mode=clone:stop_duration=1, scale=480:-2:flags=lanczos, split[a][b];
   [a]palettegen=max_colors=96[p]; [b][p]paletteuse=dither=bayer:bayer_scale=4
   " "$part" </dev/null

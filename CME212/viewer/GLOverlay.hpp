@@ -27,7 +27,7 @@ struct OverlayText {
   std::vector<std::string> help;  // lines, bottom left
   // Paragraphs in a panel above; the first and the last matter most.
   std::vector<std::string> message;
-  std::vector<std::string> card;  // lines in the middle, the first one large
+  std::vector<std::string> card;  // lines, bottom left, the first one large
   bool has_scale = false;         // draw scale at the right
   ColorScale scale;
   // What the mouse does [pixels]:
@@ -104,7 +104,7 @@ class GLOverlay {
     if (!text.message.empty())
       draw_message(text.message, from, to,
                    text.help.empty() ? y : y - 8 * unit_);
-    if (!text.card.empty()) draw_card(text.card, size);
+    if (!text.card.empty()) draw_card(text.card, from, size.y - margin);
     if (text.has_scale) draw_scale(text.scale, to, margin);
     draw_mouse(text);
     ImGui::Render();
@@ -215,24 +215,23 @@ class GLOverlay {
     }
   }
 
-  /** Lines in the middle of a picture of this @a size, on a veil. */
-  void draw_card(const std::vector<std::string>& lines, ImVec2 size) const {
+  /** Lines on a veil, right of @a left and up from @a bottom. */
+  void draw_card(const std::vector<std::string>& lines, float left,
+                 float bottom) const {
     auto style = [&](const std::string& s) {
       return &s == &lines.front() ? large : medium;
     };
-    const float pad = 24 * unit_;
+    const float pad = 12 * unit_;
     float wide = 0, high = 0;
     for (const auto& s : lines) {
       wide = std::max(wide, text_width(style(s), s));
       high += text_height(style(s), s, 0);
     }
-    const float x = size.x / 2, half = wide / 2 + pad;
-    float y = (size.y - high) / 2;
-    list_->AddRectFilled({x - half, y - pad}, {x + half, y + high + pad},
-                         IM_COL32(8, 10, 14, 215), 8 * unit_);
+    float y = bottom - high - pad;
+    list_->AddRectFilled({left, y - pad}, {left + wide + 2 * pad, bottom},
+                         IM_COL32(8, 10, 14, 190), 8 * unit_);
     for (const auto& s : lines)
-      y += write(x - text_width(style(s), s) / 2, y, style(s),
-                 style(s) == large ? bright : dim, s);
+      y += write(left + pad, y, style(s), style(s) == large ? bright : dim, s);
   }
 
   /** A ring around a node, and the line from it to the mouse or of a cut. */

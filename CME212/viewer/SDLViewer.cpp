@@ -231,8 +231,11 @@ void SDLViewer::Display::add_state(OverlayText& shown) const {
 
 void SDLViewer::Display::show_frame() {
   const auto [width, height] = canvas_->window.pixels();
-  unit_ = double(height) / canvas_->window.size()[1];
-  scale_ = unit_ * text_scale;
+  const auto [wide, high] = canvas_->window.size();
+  unit_ = double(height) / high;
+  // Text and panels are larger in a large window, and fit into a small one.
+  const double fit = std::min(wide / 1024.0, high / 768.0);
+  scale_ = unit_ * text_scale * std::clamp(fit, 0.75, 2.0);
   draw(width, height, scale_, true);
   canvas_->window.swap();
   const auto now = clock::now();

@@ -54,7 +54,8 @@ class SDLVideo {
 /** A window with an OpenGL 3.3 core context, hidden at first. Main thread. */
 class SDLWindow {
  public:
-  /** @param width,height In the units of the desktop
+  /** @param width,height In the units of the desktop; a window that is seen
+   * has no more than fits
    * Throws NoDisplay with SDL's reason. */
   SDLWindow(const std::string& title, int width, int height, bool offscreen)
       : video_(offscreen) {
@@ -63,6 +64,9 @@ class SDLWindow {
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 3);
     SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
+    SDL_Rect room;
+    if (!offscreen && SDL_GetDisplayUsableBounds(0, &room) == 0)
+      width = std::min(width, room.w), height = std::min(height, room.h);
     for (int samples : {4, 0}) {
       SDL_GL_SetAttribute(SDL_GL_MULTISAMPLEBUFFERS, samples > 0);
       SDL_GL_SetAttribute(SDL_GL_MULTISAMPLESAMPLES, samples);

@@ -249,7 +249,7 @@ class SceneBuilder {
 
   /** Add a ball that stays until clear_shapes().  @pre radius > 0 [m] */
   void add_sphere(const Point& center, double radius,
-                  Color color = Color(0.80f, 0.47f, 0.36f)) {
+                  Color color = Color(0.80f, 0.33f, 0.0f)) {
     change_shapes([&] { shown_.spheres.push_back({center, radius, color}); });
   }
   /** Add the plane z = @a z [m] until clear_shapes(). It is drawn as a mesh of

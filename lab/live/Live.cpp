@@ -249,7 +249,7 @@ bool Live::step() {
   ++calls_;
   const int count = rival_ ? round_ : 1;
   for (int k = 0; k < count && !done() && !interrupted(); ++k)
-    main_->scene->step(model_.t_end);
+    main_->scene->step();
   const double time = main_->scene->time();
   for (auto* side : {&rival_, &reference_}) {
     if (!*side || !(*side)->runs()) continue;
@@ -273,7 +273,6 @@ Readings Live::readings(bool sharp) {
   r.torn_nodes = start_nodes_ - r.nodes, r.torn_edges = start_edges_ - r.edges;
   r.touching = count_touching(model_, g, r.time);
   r.grabbed = scene().hand() && g.node_in_use(scene().hand()->node());
-  r.done = done();
   if (!rival_) return r;
   const Cloth &other = rival()->cloth(), &right = reference()->cloth();
   r.comparison = {.rival = rival_->readings(sharp),

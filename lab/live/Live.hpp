@@ -91,7 +91,6 @@ struct Readings : RunReadings {
   unsigned torn_nodes = 0, torn_edges = 0;  ///< removed since the start
   unsigned touching = 0;                    ///< nodes on an obstacle
   bool grabbed = false;  ///< the hand pulls a node that is still there
-  bool done = false;     ///< t-end is reached, or it failed
   struct Comparison {
     RunReadings rival;
     bool equal_work;
@@ -146,8 +145,8 @@ class Live {
   bool step();
   /** Scene::check() of all that runs, needed before it is shown. */
   bool check();
-  /** At t-end of the model, or failed. */
-  bool done() const { return scene().done(model_.t_end); }
+  /** It failed. The t-end of the model does not end a run that is played. */
+  bool done() const { return !scene().failure().empty(); }
   /** The number of step() calls so far that found it not done(). */
   long long calls() const { return calls_; }
 

@@ -37,8 +37,9 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
     : scene_(scene),
       run_(run),
       o_(o),
-      screen_(Screen::open(o.video.empty() ? Screen::Kind::pictures
-                                           : Screen::Kind::film)),
+      screen_(Screen::open(
+          o.video.empty() ? Screen::Kind::pictures : Screen::Kind::film,
+          o.pixels)),
       // One that goes on has the frames from there on.
       next_(std::llround(scene.time() * rate) / rate),
       shot_(o.screenshot.empty()),
@@ -54,7 +55,7 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
                                   ", expected at most " + short_text(day) +
                                   " s (a day) for a film");
   screen_->start_film(o.video);
-  if (scene.time() == 0) add_card(title());
+  if (scene.time() == 0) screen_->show_card(title());
 }
 
 void Film::draw() {
@@ -72,12 +73,14 @@ void Film::draw() {
   // A failure stays: there is a reason to read.
   int times = scene_.failure().empty() ? 0 : frames_in(failure_seconds);
   for (const double time = frame_time(); now >= next_; next_ += time) ++times;
+  frames_ += times;
   // At least some, as a film has pictures.
   constexpr int some = 30;
   do {
     screen_->add_to_film(std::min(times, some));
     times -= some;
   } while (times > 0 && !interrupted());
+  if (frames_ >= frames_in(title_seconds)) screen_->show_card({});
 }
 
 void Film::finish() {
@@ -87,7 +90,12 @@ void Film::finish() {
     run_.wrote(what + ' ' + file);
   };
   if (!o_.video.empty()) {
-    if (scene_.failure().empty()) add_card(end());
+    if (scene_.failure().empty()) {
+      screen_->show_card(end());
+      screen_->add_to_film(
+          std::clamp(frames_ / 8, 1, frames_in(title_seconds)));
+      screen_->show_card({});
+    }
     tell("film", screen_->end_film());
   }
   if (!o_.screenshot.empty()) tell("picture", o_.screenshot);
@@ -96,6 +104,7 @@ void Film::finish() {
 /** What is shown; of a failure, what came of it. */
 void Film::save_picture() {
   shot_ = true;
+  screen_->show_card({});
   if (scene_.failure().empty()) return screen_->save_picture(o_.screenshot);
   CME212::BoundingBox box;
   for (Node n : scene_.cloth().nodes()) box |= n.position();
@@ -121,14 +130,6 @@ bool Film::event() {
     is_new = true, touched_[k] = 1;
   }
   return is_new;
-}
-
-/** Show the scene as it is, behind these @a lines, for title_seconds. */
-void Film::add_card(const std::vector<std::string>& lines) {
-  screen_->show(scene_);
-  screen_->show_card(lines);
-  screen_->add_to_film(frames_in(title_seconds));
-  screen_->show_card({});
 }
 
 std::vector<std::string> Film::title() const {

@@ -18,10 +18,11 @@ class Scene;
  * A film has a frame for each 1/30 s of simulated time, each the state after
  * the step next to its time. With slow motion it has so many times more
  * frames while nodes first touch a ball or the floor, and while the cloth
- * tears. It begins with a card of what runs, unless
- * the run goes on from a checkpoint, and ends with a card of the result; a
- * failed run ends with the reason. A picture of a failure shows the cloth
- * some steps later, when a node has moved by a tenth of the cloth's extent. */
+ * tears. In its first frames a card says what runs, unless the run goes on from
+ * a checkpoint; after the last one there is a card of the result, for at most a
+ * ninth of the film. A failed run ends with the reason. A picture of a failure
+ * shows the cloth some steps later, when a node has moved by a tenth of the
+ * cloth's extent. */
 class Film {
  public:
   static constexpr double title_seconds = 1.5, failure_seconds = 2;
@@ -46,12 +47,12 @@ class Film {
   double slow_until_ = 0;  // [s]
   bool shot_;              // the picture was taken, or none is wanted
   unsigned nodes_, edges_, first_nodes_;  // at the last frame, at first
+  int frames_ = 0;                        // of motion
   std::vector<char> touched_;             // of each obstacle
 
   void save_picture();
   double frame_time();
   bool event();
-  void add_card(const std::vector<std::string>& lines);
   std::vector<std::string> title() const;
   std::vector<std::string> end() const;
 };

@@ -118,6 +118,19 @@ void check(Options& o) {
   require_ending("screenshot", o.screenshot,
                  std::array{std::string_view(".png")});
   require_ending("record", o.video, CME212::film_endings);
+  if (!o.size.empty()) {
+    auto& [width, height] = o.pixels;
+    char x = 0, more = 0;
+    const int read =
+        std::sscanf(o.size.c_str(), "%d%c%d%c", &width, &x, &height, &more);
+    const auto is_good = [](int a) {
+      return a % 2 == 0 && 64 <= a && a < 8192;
+    };
+    if (read != 3 || x != 'x' || !is_good(width) || !is_good(height))
+      throw SceneError("size", "is " + o.size +
+                                   ", expected WIDTHxHEIGHT, even numbers of "
+                                   "pixels from 64 to 8190");
+  }
   if (CME212::ending_of(o.out) == ".tets")
     throw SceneError("out", "is " + o.out +
                                 ", expected a file of points, such as "
@@ -272,6 +285,8 @@ void add_run_options(CLI::App& app, Options& o) {
   add_file(app, "--record", o.video,
            "draw a film of 30 frames per second without a window; the ending "
            "of FILE sets the format: .mp4, .mkv, .webm or .gif");
+  app.add_option("--size", o.size,
+                 "of --screenshot and --record: WIDTHxHEIGHT [pixels]");
   app.add_option("--slow-motion", o.slow_motion,
                  "of --record: slow contact and tearing down by this factor");
   add_file(app, "--csv", o.csv, "write energies [J] and center of mass [m]");

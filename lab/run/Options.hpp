@@ -1,6 +1,7 @@
 #pragma once
 /** @file Options.hpp
  * Options: the command line of ./cloth. */
+#include <array>
 #include <string>
 
 #include "lab/scenes/SceneFile.hpp"
@@ -23,10 +24,11 @@ struct Options {
   double advise_work = 0;    ///< spring evaluations; 0: advise_budget
   double advise_budget = 0;  ///< [s]; 0: that of AdviceRules
   bool keeps_method = false, keeps_step = false;  ///< advice keeps this option
-  std::string screenshot, video, csv, out;
-  std::string vtp, obj, ply;  ///< folders
-  double frame_rate = 30;     ///< of those [1/s]
-  std::string advised;        ///< file for the scene, or the advised one
+  std::string screenshot, video, csv, out, size;
+  std::array<int, 2> pixels{};  ///< what size says; 0: Screen's own size
+  std::string vtp, obj, ply;    ///< folders
+  double frame_rate = 30;       ///< of those [1/s]
+  std::string advised;          ///< file for the scene, or the advised one
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
   std::string record_input, replay;

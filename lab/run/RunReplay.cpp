@@ -48,7 +48,8 @@ int run_replay(const Options& o) {
   const auto screen =
       !o.pictures() ? nullptr
                     : Screen::open(o.video.empty() ? Screen::Kind::pictures
-                                                   : Screen::Kind::film);
+                                                   : Screen::Kind::film,
+                                   o.pixels);
   if (screen) screen->show_strain(o.strain);
   std::optional<ReplayFilm> film;
   if (!o.video.empty()) film.emplace(*screen, o.video);

@@ -83,12 +83,15 @@ void Panel::tell(Live& live) {
   remember(told_.now);
 }
 
-/** Append @a r to what is plotted. A restart or another scene clears it. */
+/** Append @a r to what is plotted. What is not later than the last frame takes
+ * its place, and that of all after it; a failure leaves them. */
 void Panel::remember(const Readings& r) {
   auto& past = told_.past;
   if (auto& times = past["t"]; !times.empty() && r.time <= times.back()) {
-    if (float(r.time) == times.back()) return;
-    past.clear();
+    if (float(r.time) == times.back() || !r.failure.empty()) return;
+    const auto later = std::ranges::lower_bound(times, float(r.time));
+    const auto left = std::size_t(later - times.begin());
+    for (auto& [name, values] : past) values.resize(left);
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();  // a gap
   const auto share = [&](double limit) {
@@ -151,9 +154,14 @@ bool Panel::button(const char* label, float width) {
 bool Panel::slider(const char* label, double& value, double low, double high,
                    const char* format, bool log) {
   const bool moved = ImGui::SliderScalar(
-      label, ImGuiDataType_Double, &value, &low, &high, format,
+      (std::string("##") + label).c_str(), ImGuiDataType_Double, &value, &low,
+      &high, "",
       ImGuiSliderFlags_AlwaysClamp | (log ? ImGuiSliderFlags_Logarithmic : 0));
   mark(label);
+  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+  ImGui::TextUnformatted(label);  // the number beside, not under, the grab
+  ImGui::SameLine(0, 6 * unit_);
+  ImGui::TextUnformatted(text_of(format, value).c_str());
   return moved;
 }
 
@@ -188,7 +196,7 @@ double Panel::draw() {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoNav);
-  ImGui::PushItemWidth(-84 * unit_);
+  ImGui::PushItemWidth(-150 * unit_);
   draw_player();
   const auto section = [this](const char* title, bool open, auto draw_it) {
     const bool shown = ImGui::CollapsingHeader(
@@ -220,15 +228,12 @@ void Panel::draw_player() {
   if (button("step", third)) viewer_.step_once();
   ImGui::SameLine();
   if (button("restart", third)) ask("restart");
-  ImGui::Text("t = %.3f s of %g s", r.time, shown_.model.t_end);
+  ImGui::Text("t = %.3f s", r.time);
   ImGui::SameLine();
   if (!r.failure.empty())
     ImGui::TextColored(red, "it blew up");
   else
-    ImGui::TextColored(dim, "%s",
-                       r.done   ? "end of the run"
-                       : paused ? "paused"
-                                : "");
+    ImGui::TextColored(dim, "%s", paused ? "paused" : "");
   if (!shown_.refusal.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, red);
     ImGui::TextWrapped("%s", shown_.refusal.c_str());
@@ -258,8 +263,10 @@ void Panel::draw_controls() {
     ImGui::TextColored(red, "No step is stable (shares of verlet's)");
   else if (beyond)
     ImGui::TextColored(red, "Beyond the limit: expect divergence");
-  else if (r.safe_limit == no_limit)
-    ImGui::TextColored(dim, "It has no limit: shares of verlet's");
+  else  // a line in any case, so that nothing moves below it
+    ImGui::TextColored(dim, r.safe_limit == no_limit
+                                ? "It has no limit: shares of verlet's"
+                                : "Below the limit");
 
   double K = m.material.modulus.value_or(m.stiffness);
   if (slider(m.material.modulus ? "modulus" : "K [N/m]", K, 0.1, 1e5,
@@ -268,14 +275,14 @@ void Panel::draw_controls() {
   double c = m.material.drag.value_or(m.damping);
   if (slider(m.material.drag ? "drag" : "drag [kg/s]", c, 0,
              m.material.drag ? 100 : 1,
-             m.material.drag ? "%.4f kg/(s m^2)" : "%.5f"))
+             m.material.drag ? "%.3g kg/(s m^2)" : "%.5f"))
     ask(request("drag", c));
   double g = m.gravity;
   if (slider("g [m/s^2]", g, -20, 20, "%.2f", false))
     ask(request("gravity", g));
   double speed = speed_ > 0 ? speed_.load() : 10;
   if (slider("time scale", speed, 0.01, 10,
-             speed_ > 0 ? "%.3g of real time" : "as fast as it goes"))
+             speed_ > 0 ? "%.3g s/s" : "unbounded"))
     speed_ = speed;
 }
 

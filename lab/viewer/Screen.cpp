@@ -39,14 +39,20 @@ const CME212::Color rival_color(1.0f, 0.72f, 0.3f), pinned(0.9f, 0.3f, 0.55f);
 
 class SDLScreen : public Screen {
  public:
-  explicit SDLScreen(Kind kind)
+  SDLScreen(Kind kind, std::array<int, 2> pixels)
       : kind_(kind),
-        viewer_({.width = kind == Kind::film ? 800 : 1024,
-                 .height = kind == Kind::film ? 600 : 768,
+        viewer_({.width = pixels[0]            ? pixels[0]
+                          : kind == Kind::film ? 800
+                                               : 1024,
+                 .height = pixels[1]            ? pixels[1]
+                           : kind == Kind::film ? 600
+                                                : 768,
                  .title = "cloth",
                  .offscreen = kind != Kind::window,
                  .restarts = true,
-                 .colors = true}) {}
+                 .colors = true}) {
+    viewer_.set_look({.wires = kind != Kind::film});
+  }
 
   void show_strain(bool on) override { viewer_.set_strain_colors(on); }
 
@@ -386,13 +392,13 @@ class SDLScreen : public Screen {
 
 bool Screen::can_draw() { return true; }
 bool Screen::has_display() { return CME212::SDLViewer::has_display(); }
-std::unique_ptr<Screen> Screen::open(Kind kind) {
+std::unique_ptr<Screen> Screen::open(Kind kind, std::array<int, 2> pixels) {
   // Without memory the software renderer ends the program by SIGSEGV; it took
   // 660 MB of addresses on two processors, a thread on each.
   if (available_addresses() <
       550e6 + 75e6 * std::thread::hardware_concurrency())
     throw std::bad_alloc();
-  return std::make_unique<SDLScreen>(kind);
+  return std::make_unique<SDLScreen>(kind, pixels);
 }
 
 }  // namespace lab
@@ -403,7 +409,7 @@ namespace lab {
 
 bool Screen::can_draw() { return false; }
 bool Screen::has_display() { return false; }
-std::unique_ptr<Screen> Screen::open(Kind) {
+std::unique_ptr<Screen> Screen::open(Kind, std::array<int, 2>) {
   throw NoDisplay("built without a viewer, VIEWER=0");
 }
 

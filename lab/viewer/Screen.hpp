@@ -32,8 +32,10 @@ class Screen {
   static bool has_display();
 
   /** One at a time.
+   * @param pixels Width and height; 0: as above
    * Throws NoDisplay: no display for a window, no OpenGL 3.3, no viewer. */
-  static std::unique_ptr<Screen> open(Kind kind);
+  static std::unique_ptr<Screen> open(Kind kind,
+                                      std::array<int, 2> pixels = {});
   virtual ~Screen() = default;
 
   /** Whether to color the nodes by the mean l/L - 1 of their springs.
@@ -49,7 +51,7 @@ class Screen {
    * Throws std::runtime_error "FILE: why". */
   virtual void save_picture(const std::string& file) = 0;
 
-  /** Write @a lines over the middle of the picture: a title, or a result. */
+  /** Write @a lines at the bottom left: a title, or a result. */
   virtual void show_card(const std::vector<std::string>& lines) = 0;
 
   /** Begin a film, add what was shown last to it so many times, end it.
