@@ -271,7 +271,6 @@ std::vector<Figure> figures() {
          },
          false});
   };
-  constraint("pins", [](Cloth& g) { return PinConstraint(g); });
   constraint("floor", [](Cloth&) { return PlaneConstraint(); });
   constraint("ball", [](Cloth&) { return SphereConstraint(); });
   constraint("ball that tears", [](Cloth&) { return TearConstraint(); });

@@ -33,8 +33,8 @@ struct RowRing {
   unsigned offset, size;  // size: without the tile behind it
   unsigned at;            // where the next tile goes
   const Real *K, *L;      // of node 0
-  Real* kept;             // x, then y and z, each size + tile numbers
-  std::size_t stride() const { return size + FlatCloth::tile; }
+  Real* kept;             // x; y and z at the next multiples of stride, which
+  std::size_t stride;     // is the same for all rows, at least size + tile
   /** The forces of the springs whose far ends are the next tile. */
   const Real* far() const {
     return kept + (at >= offset ? at - offset : at + size - offset);
@@ -66,6 +66,7 @@ struct KickTiles {
     constexpr unsigned w = count_of<V>, tile = FlatCloth::tile;
     Columns& nodes = task.cloth.nodes();
     const std::size_t s = nodes.stride(), num_rings = task.num_rings;
+    const std::size_t next = num_rings > 0 ? task.rings[0].stride : 0;
     const FlatCloth::Rest* rest = task.cloth.rest();
     const V h = V{} + task.h, gravity = V{} + task.gravity;
     Row row[FlatCloth::most_rows];
@@ -87,18 +88,19 @@ struct KickTiles {
         Points<V> f;
         for (std::size_t r = 0; r < num_rings; ++r) {
           const Row& to = row[r];
+          Real* const near = to.near + k;
+          const Real* const far = to.far + k;
           Points<V> g;
           if (to.wide) {
             g = Near::template pull<V>(x, to.x + k, s, to.K + k, to.L + k);
-            store(to.near[0] + k, g.x), store(to.near[1] + k, g.y);
-            store(to.near[2] + k, g.z);
+            store(near, g.x), store(near + next, g.y);
+            store(near + 2 * next, g.z);
           } else {
-            g = {load<V>(to.near[0] + k), load<V>(to.near[1] + k),
-                 load<V>(to.near[2] + k)};
+            g = {load<V>(near), load<V>(near + next), load<V>(near + 2 * next)};
           }
-          f.x += g.x - load<V>(to.far[0] + k);
-          f.y += g.y - load<V>(to.far[1] + k);
-          f.z += g.z - load<V>(to.far[2] + k);
+          f.x += g.x - load<V>(far);
+          f.y += g.y - load<V>(far + next);
+          f.z += g.z - load<V>(far + 2 * next);
         }
         if (rest && i / width < rest->num_blocks())
           add_rest<V>(task.cloth, *rest, i, x, f);
@@ -129,20 +131,17 @@ struct KickTiles {
   /** The numbers of a row at the first node of a tile. */
   struct Row {
     const Real *x, *K, *L;  ///< x: of the far end
-    Real* near[3];          ///< the forces of its springs, by component
-    const Real* far[3];     ///< those of the springs that end at the tile
+    Real* near;             ///< the forces of its springs, x
+    const Real* far;        ///< those of the springs that end at the tile
     bool wide;              ///< far ends in later tiles
     Row() {}
     Row(const RowRing& ring, const Real* xs, unsigned begin)
         : x(xs + ring.offset),
           K(ring.K + begin),
           L(ring.L + begin),
-          wide(ring.offset >= FlatCloth::tile) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        near[c] = ring.kept + ring.at + c * ring.stride();
-        far[c] = ring.far() + c * ring.stride();
-      }
-    }
+          near(ring.kept + ring.at),
+          far(ring.far()),
+          wide(ring.offset >= FlatCloth::tile) {}
   };
 
   /** The springs of the first @a end nodes of a tile alone: into its ring. */
@@ -167,7 +166,7 @@ struct KickTiles {
                                                     unsigned begin,
                                                     unsigned end) {
       using namespace lanes;
-      const std::size_t next = ring.stride();
+      const std::size_t next = ring.stride;
       for (unsigned k = 0; k < end; k += count_of<V>) {
         const Real* at = x + begin + k;
         const Points<V> here = {load<V>(at), load<V>(at + s),
@@ -185,7 +184,7 @@ struct KickTiles {
   [[gnu::always_inline]] static inline void repeat_first_tile(
       const RowRing& ring) {
     for (int c = 0; c < 3; ++c) {
-      Real* from = ring.kept + c * ring.stride();
+      Real* from = ring.kept + c * ring.stride;
       std::memcpy(from + ring.size, from, FlatCloth::tile * sizeof(Real));
     }
   }
@@ -271,6 +270,15 @@ struct DriftNodes {
 
 /** Whether any of the nodes [first, last) is inside a zone. */
 struct AnyInside {
+  template <typename T>
+  [[gnu::always_inline]] static inline auto is_inside(const T& x, const T& y,
+                                                      const T& z,
+                                                      const Zone& r) {
+    const T ux = x - r.at.x, uy = y - r.at.y, uz = z - r.at.z;
+    return r.is_ball
+               ? ux * ux + uy * uy + uz * uz < r.limit
+               : ux * r.normal.x + uy * r.normal.y + uz * r.normal.z < r.limit;
+  }
   template <typename V>
   [[gnu::always_inline]] static inline void apply(const Columns* nodes,
                                                   const Zone* zone,
@@ -289,15 +297,6 @@ struct AnyInside {
     for (unsigned k = 0; k < w; ++k) any |= inside[k] != 0;
     for (; i < last; ++i) any |= is_inside(x[i], y[i], z[i], *zone);
     *found = any;
-  }
-  template <typename T>
-  [[gnu::always_inline]] static inline auto is_inside(const T& x, const T& y,
-                                                      const T& z,
-                                                      const Zone& r) {
-    const T ux = x - r.at.x, uy = y - r.at.y, uz = z - r.at.z;
-    return r.is_ball
-               ? ux * ux + uy * uy + uz * uz < r.limit
-               : ux * r.normal.x + uy * r.normal.y + uz * r.normal.z < r.limit;
   }
 };
 

@@ -41,16 +41,17 @@ void FlatFlow::prepare() {
   constexpr unsigned tile = FlatCloth::tile;
   for (Rings& r : rings_) {
     r.rings.clear();
-    std::size_t all = 0;
-    for (const auto& row : cloth_.rows()) {
+    const auto& rows = cloth_.rows();  // by offset
+    const std::size_t stride =
+        rows.empty() ? 0 : (rows.back().offset + 3 * tile - 1) / tile * tile;
+    r.numbers.resize(3 * rows.size() * stride);
+    Real* at = r.numbers.data();
+    for (const auto& row : rows) {
       const unsigned size = (row.offset + 2 * tile - 1) / tile * tile;
       r.rings.push_back({row.offset, size, 0, cloth_.K() + row.first,
-                         cloth_.L() + row.first, nullptr});
-      all += 3 * r.rings.back().stride();
+                         cloth_.L() + row.first, at, stride});
+      at += 3 * stride;
     }
-    r.numbers.resize(all);
-    Real* at = r.numbers.data();
-    for (auto& ring : r.rings) ring.kept = at, at += 3 * ring.stride();
     r.others.resize(Sweep::part_size);
   }
 }
@@ -310,7 +311,7 @@ void FlatFlow::find_rings(Rings& r, unsigned first) {
   for (auto& ring : r.rings) {
     ring.at = 0;
     for (int c = 0; c < 3; ++c) {  // no node has an id below 0
-      Real* end = ring.kept + c * ring.stride() + ring.size;
+      Real* end = ring.kept + c * ring.stride + ring.size;
       std::fill(end - ring.offset, end, Real(0));
     }
     const unsigned before = (ring.offset + tile - 1) / tile * tile;
