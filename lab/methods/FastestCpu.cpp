@@ -24,12 +24,10 @@ lanes::Cpu fastest_cpu() {
   // are slower. After the first round, only kinds that may win.
   std::array<double, 3> best;
   best.fill(std::numeric_limits<double>::max());
-  const auto first = best.begin(), last = first + std::ptrdiff_t(count);
   const lanes::Cpu before = lanes::cpu;
   for (int round = 0; round < 3; ++round)
     for (std::size_t k = 0; k < count; ++k) {
-      if (round > 0 && best[k] > 1.25 * *std::min_element(first, last))
-        continue;
+      if (round > 0 && best[k] > 1.25 * std::ranges::min(best)) continue;
       lanes::cpu = lanes::Cpu(k);
       for (int step = 0; step < 16; ++step) {
         const CME212::Clock clock;
@@ -38,7 +36,7 @@ lanes::Cpu fastest_cpu() {
       }
     }
   lanes::cpu = before;
-  return lanes::Cpu(std::min_element(first, last) - first);
+  return lanes::Cpu(std::ranges::min_element(best) - best.begin());
 }
 
 }  // namespace lab
