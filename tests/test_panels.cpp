@@ -561,6 +561,25 @@ TEST(LiveThreads, EachControlChangesTheSimulation) {
   });
 }
 
+TEST(LiveThreads, AMethodOfTheProgramStaysInTheList) {
+  lab::MethodEntry own = *lab::find_method("verlet");
+  own.info.name = "yours";
+  lab::own_method = &own;
+  LiveWindow w;
+  using Seen = LiveWindow::Seen;
+  w.run([&] {
+    for (const char* name : {"rk4", "yours"}) {
+      w.click("method");
+      w.click(std::string("method/") + name);
+      EXPECT_TRUE(w.sees([name](const Seen& s) {
+        return s.model.method->info.name == std::string(name) &&
+               s.now.method == std::string(name);
+      }));
+    }
+  });
+  lab::own_method = nullptr;
+}
+
 TEST(LiveThreads, TwoMethodsAreCompared) {
   LiveWindow w;
   using Seen = LiveWindow::Seen;

@@ -53,7 +53,10 @@ void row(const char* name, const std::string& value, bool bad = false) {
 }  // namespace
 
 Panel::Panel(RequestQueue& requests, CME212::SDLViewer& viewer, double speed)
-    : requests_(requests), viewer_(viewer), speed_(speed) {
+    : requests_(requests),
+      viewer_(viewer),
+      speed_(speed),
+      side_by_side_(own_method != nullptr) {
   std::error_code none;  // without the folder there is no menu
   for (const auto& entry :
        std::filesystem::directory_iterator("data/scenes", none))
@@ -171,11 +174,13 @@ bool Panel::choose_method(const char* label, const MethodEntry*& method) {
       ImGui::BeginCombo(label, method->info.name, ImGuiComboFlags_HeightLarge);
   mark(label);
   if (!open) return false;
-  for (const MethodEntry& m : methods) {
+  const auto offer = [&](const MethodEntry& m) {
     const bool is_it = std::string(m.info.name) == method->info.name;
     if (ImGui::Selectable(m.info.name, is_it)) method = &m;
     mark((std::string(label) + '/' + m.info.name).c_str());
-  }
+  };
+  if (own_method) offer(*own_method);
+  std::for_each(std::begin(methods), std::end(methods), offer);
   ImGui::EndCombo();
   return method != before;
 }
