@@ -312,7 +312,7 @@ TEST(Advise, ItsSceneCanBeWrittenAndRun) {
   Scene scene(again);
   ASSERT_TRUE(scene.run_to(again.t_end));
   EXPECT_NEAR(scene.time(), again.t_end, 1e-12);
-  EXPECT_EQ(answer(again, scene.cloth()), try_out(again).answer);
+  EXPECT_EQ(answer(again, scene, again.measure), try_out(again).answer);
   EXPECT_NE(to_scene_file(a.model).find("method = "), std::string::npos);
   EXPECT_NE(in_words(a).find("advice: "), std::string::npos);
 }

@@ -14,9 +14,14 @@
 
 namespace lab {
 
-std::string with_unit(double x, Measure measure) {
+std::string with_unit(double x, const Measure& measure) {
   return CME212::two_digits(x) + (*unit_of(measure) ? " " : "") +
          unit_of(measure);
+}
+
+std::string asked(const Advice& a) {
+  return "(asked: " + (a.share.empty() ? "" : a.share + ", ") +
+         with_unit(a.tolerance, a.measure) + ')';
 }
 
 namespace {
@@ -42,24 +47,17 @@ std::vector<std::string> settings(const Model& m) {
   return all;
 }
 
-/** A column of a table. */
-struct Column {
-  std::string title;
-  std::vector<std::string> cells;
-};
-/** Columns as wide as their cells; all but the first are right-aligned. */
-std::string table(const std::vector<Column>& columns) {
+using Row = std::vector<std::string>;
+/** Rows of cells, the titles first, in columns as wide as their cells; all but
+ * the first are right-aligned. */
+std::string table(const std::vector<Row>& rows) {
   std::string text = "\n";
-  for (std::size_t row = 0; row <= columns[0].cells.size(); ++row) {
-    for (const Column& c : columns) {
-      auto cell = [&](std::size_t k) {
-        return k == 0 ? c.title : c.cells[k - 1];
-      };
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
       std::size_t width = 0;
-      for (std::size_t k = 0; k <= c.cells.size(); ++k)
-        width = std::max(width, cell(k).size());
-      const std::string space(width - cell(row).size(), ' ');
-      text += &c == &columns[0] ? cell(row) + space : "  " + space + cell(row);
+      for (const Row& other : rows) width = std::max(width, other[c].size());
+      const std::string space(width - row[c].size(), ' ');
+      text += c == 0 ? row[c] + space : "  " + space + row[c];
     }
     text += '\n';
   }
@@ -93,7 +91,7 @@ std::string by_default(const Model& m) {
 }
 
 /** The numbers of @a answer, or nothing if they are many. */
-std::string numbers(const Answer& answer, Measure measure) {
+std::string numbers(const Answer& answer, const Measure& measure) {
   std::string text;
   if (answer.size() <= 3)
     for (double x : answer) text += ' ' + CME212::short_text(x);
@@ -127,12 +125,11 @@ std::string recommendation(const Advice& a) {
       a.model.method->info.name + ", dt " + short_text(a.model.step.dt) +
       " s: error of " + name_of(a.measure) + ' ' +
       with_unit(a.error, a.measure) + " +- " +
-      with_unit(a.uncertainty, a.measure) +
-      " (asked: " + with_unit(a.tolerance, a.measure) +
-      (a.error + a.uncertainty > a.tolerance ? "; it may be more" : "") + ")\n";
+      with_unit(a.uncertainty, a.measure) + " " + asked(a) +
+      (a.error + a.uncertainty > a.tolerance ? "; it may be more\n" : "\n");
   text += "  ./cloth " + as_options(a.model) + " --headless\n";
   if (!a.answer.empty() && a.answer.size() <= 3)
-    text += "  " + std::string(name_of(a.measure)) +
+    text += "  " + name_of(a.measure) +
             " by this run:" + numbers(a.answer, a.measure) + '\n';
   text += extrapolated(a);
   if (!removed.empty()) text += "  not needed for that: " + removed + '\n';
@@ -160,6 +157,41 @@ std::string recommendation(const Advice& a) {
     text += "  dt is " + CME212::two_digits(a.of_stable) +
             " of the largest stable step\n";
   return text;
+}
+
+/** The errors of the scene's own run, and its best step. */
+std::string assessment(const Advice& a) {
+  const Assessment& own = *a.own;
+  const bool from_files = own.model.sheets.empty();
+  const double u = from_files ? 0 : a.grids.uncertainty();
+  auto size = [&](double error) {
+    return std::isfinite(error) ? with_unit(error, a.measure) : "unknown";
+  };
+  std::string text =
+      "assessment: error of " + name_of(a.measure) + ' ' + size(own.total) +
+      (from_files ? " by its step" : " +- " + with_unit(u, a.measure)) + ' ' +
+      asked(a) +
+      (own.total + u <= a.tolerance  ? ": this run meets it\n"
+       : own.total - u > a.tolerance ? ": this run does not meet it\n"
+                                     : ": the uncertainty decides\n");
+  if (a.refusal.empty())
+    text += "  the largest step that meets it: ./cloth " + as_options(a.model) +
+            " --headless\n";
+  else
+    text += "  " + a.refusal + '\n';
+  const Model& m = own.model;
+  return text + extrapolated(a) +
+         table({{"part of this run", "error", ""},
+                {"grid of " + std::to_string(own.nodes) + " nodes",
+                 size(own.grid), ""},
+                {"step of " + CME212::short_text(m.step.dt) + " s by " +
+                     m.method->info.name,
+                 size(own.step),
+                 own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
+                                         " of the largest stable step"
+                                   : ""},
+                {"both", size(from_files ? no_limit : own.total),
+                 "+- " + size(from_files ? no_limit : u)}});
 }
 
 /** Words of a part that is all default, as nobody would type ''. */
@@ -207,7 +239,8 @@ std::string as_options(const Model& m) {
 std::string in_words(const Advice& a) {
   const std::string unit =
       *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
-  std::string text = a.refusal.empty()
+  std::string text = a.own ? assessment(a)
+                     : a.refusal.empty()
                          ? recommendation(a)
                          : "no advice: " + a.refusal + '\n' + extrapolated(a);
   if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
@@ -218,65 +251,49 @@ std::string in_words(const Advice& a) {
     text += "; --advise-work " + CME212::two_digits(4 * a.budget) +
             " would allow more\n";
   }
-  if (!a.parts.empty()) {
-    Column part{"part, on " + std::to_string(a.tried_on) + " nodes", {}},
-        effect{"change of " + std::string(name_of(a.measure)) + " without it" +
-                   unit,
-               {}},
-        springs{"springs saved", {}}, step{"step can grow", {}}, kept{"", {}};
-    for (const PartReport& p : a.parts) {
-      part.cells.push_back(p.part);
-      effect.cells.push_back(p.tried ? number(p.change) : "not tried");
-      springs.cells.push_back(CME212::short_text(p.springs));
-      step.cells.push_back(p.step > 1.01 ? number(p.step) + " times" : "");
-      kept.cells.push_back(p.needed ? "kept" : "dropped");
-    }
-    std::vector<Column> all = {part, effect, springs, step};
-    if (a.refusal.empty()) all.push_back(kept);
-    text += table(all);
+  std::vector<Row> rows = {
+      {"part, on " + std::to_string(a.tried_on) + " nodes",
+       "change of " + name_of(a.measure) + " without it" + unit,
+       "springs saved", "step can grow", ""}};
+  for (const PartReport& p : a.parts)
+    rows.push_back({p.part, p.tried ? number(p.change) : "not tried",
+                    CME212::short_text(p.springs),
+                    p.step > 1.01 ? number(p.step) + " times" : "",
+                    !a.refusal.empty() ? ""
+                    : p.needed         ? "kept"
+                                       : "dropped"});
+  if (!a.parts.empty()) text += table(rows);
+  rows = {{"grid of nodes", "estimated error" + unit, "force evaluations",
+           "time [s]", ""}};
+  auto row = [&](std::size_t n, const std::string& off, double work,
+                 double seconds, const char* what) {
+    rows.push_back({std::to_string(n), off, count(work),
+                    seconds > 0 ? number(seconds) : "not run", what});
+  };
+  bool told = !a.refusal.empty();
+  const std::size_t own = told ? 0 : mesh_of(a.model).points.size();
+  auto advised = [&] {
+    if (!told) row(own, number(a.error), a.evaluations, a.seconds, "advised");
+    told = true;
+  };
+  for (std::size_t k = 0; k < a.grids.size(); ++k) {
+    const GridReport& g = a.grids[k];
+    if (g.nodes >= own) advised();
+    row(g.nodes, a.grids.size() < 3 ? "unknown" : number(g.error),
+        g.evaluations, g.trial.seconds, "");
   }
-  if (a.grids.size() > 0) {
-    Column nodes{"grid of nodes", {}}, error{"estimated error" + unit, {}},
-        evaluations{"force evaluations", {}}, time{"time [s]", {}},
-        which{"", {}};
-    const std::size_t own =
-        a.refusal.empty() ? mesh_of(a.model).points.size() : 0;
-    auto row = [&](std::size_t n, const std::string& off, double work,
-                   double seconds, const char* what) {
-      nodes.cells.push_back(std::to_string(n));
-      error.cells.push_back(off);
-      evaluations.cells.push_back(count(work));
-      time.cells.push_back(seconds > 0 ? number(seconds) : "not run");
-      which.cells.push_back(what);
-    };
-    auto advised = [&] {
-      row(own, number(a.error), a.evaluations, a.seconds, "advised");
-    };
-    bool told = !a.refusal.empty();
-    for (std::size_t k = 0; k < a.grids.size(); ++k) {
-      const GridReport& g = a.grids[k];
-      if (!told && g.nodes >= own) advised(), told = true;
-      row(g.nodes, a.grids.size() < 3 ? "unknown" : number(g.error),
-          g.evaluations, g.trial.seconds, "");
-    }
-    if (!told) advised();
-    text += table({nodes, error, evaluations, time, which});
+  advised();
+  if (!a.grids.empty()) text += table(rows);
+  rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
+           "spring evaluations"}};
+  const std::size_t most = 12;  // the last ones
+  for (std::size_t k = a.choices.size() - std::min(a.choices.size(), most);
+       k < a.choices.size(); ++k) {
+    const ChoiceReport& c = a.choices[k];
+    rows.push_back({std::to_string(c.nodes), c.method, number(c.dt),
+                    number(c.error), CME212::two_digits(c.work)});
   }
-  if (!a.choices.empty()) {
-    Column nodes{"nodes tried", {}}, method{"method", {}}, dt{"dt [s]", {}},
-        error{"error" + unit, {}}, work{"spring evaluations", {}};
-    const std::size_t most = 12;  // the last ones
-    for (std::size_t k = a.choices.size() - std::min(a.choices.size(), most);
-         k < a.choices.size(); ++k) {
-      const ChoiceReport& c = a.choices[k];
-      nodes.cells.push_back(std::to_string(c.nodes));
-      method.cells.push_back(c.method);
-      dt.cells.push_back(number(c.dt));
-      error.cells.push_back(number(c.error));
-      work.cells.push_back(CME212::two_digits(c.work));
-    }
-    text += table({nodes, method, dt, error, work});
-  }
+  if (!a.choices.empty()) text += table(rows);
   if (a.perturbed > 0)
     text += "\n" + std::to_string(a.perturbed) +
             (a.perturbed > 1 ? " runs" : " run") +
@@ -299,6 +316,56 @@ std::string in_words(const Advice& a) {
          CME212::two_digits(a.spent_work) +
          " spring evaluations of a budget of " + CME212::two_digits(a.budget) +
          '\n';
+}
+
+std::string as_json(const Advice& a) {
+  std::string text = "{";
+  auto add = [&](const std::string& name, const std::string& value) {
+    text += (text == "{" ? "\n  \"" : ",\n  \"") + name + "\": " + value;
+  };
+  auto quoted = [&](const std::string& name, const std::string& value) {
+    std::string all = "\"";
+    for (char c : value)
+      all += c == '"' || c == '\\' ? std::string{'\\', c}
+             : c < ' '             ? std::string{' '}
+                                   : std::string{c};
+    add(name, all + '"');
+  };
+  auto number = [&](const std::string& name, double x) {
+    add(name, std::isfinite(x) ? CME212::to_text(x) : "null");
+  };
+  auto list = [&](const std::string& name, const Answer& all) {
+    std::string value;
+    for (double x : all)
+      value += (value.empty() ? "" : ", ") + CME212::to_text(x);
+    add(name, '[' + value + ']');
+  };
+  quoted("measure", name_of(a.measure));
+  quoted("unit", unit_of(a.measure));
+  number("tolerance", a.tolerance);
+  quoted("refusal", a.refusal), quoted("trivial", a.trivial);
+  if (a.grids.size() > 2) {
+    list("limit", a.grids.limit());
+    number("limit_uncertainty", a.grids.uncertainty());
+    number("observed_order", a.grids.asymptotic() ? a.grids.order() : no_limit);
+  }
+  if (a.own) {
+    number("own_error", a.own->total), number("own_grid_error", a.own->grid);
+    number("own_step_error", a.own->step),
+        number("own_dt_s", a.own->model.step.dt);
+    number("own_dt_over_stable", a.own->of_stable);
+  }
+  if (a.refusal.empty()) {
+    quoted("options", as_options(a.model));
+    number("nodes", double(mesh_of(a.model).points.size()));
+    quoted("method", a.model.method->info.name);
+    number("dt_s", a.model.step.dt), number("t_end_s", a.model.t_end);
+    number("error", a.error), number("uncertainty", a.uncertainty);
+    list("answer", a.answer);
+    number("work_spring_evaluations", a.work);
+  }
+  number("spent_spring_evaluations", a.spent_work);
+  return text + "\n}\n";
 }
 
 }  // namespace lab

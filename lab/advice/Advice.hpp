@@ -34,9 +34,21 @@ struct Robustness {
   std::optional<double> half_step, finer_grid;  ///< nullopt: not run
 };
 
+/** The error of the scene's own run, in the unit of the measure, and its
+ * parts: infinite if not known. */
+struct Assessment {
+  std::size_t nodes = 0;
+  double total = 0;
+  double grid = 0, step = 0;
+  double of_stable = 0;  ///< its step / the largest stable one; 0: no limit
+  Model model;           ///< with its step as a number
+};
+
 struct Advice {
   Measure measure = Measure::com;
-  double tolerance = 0;
+  double tolerance = 0;           ///< in the unit of the measure
+  std::string share;              ///< what it is a share of, in words; or empty
+  std::optional<Assessment> own;  ///< of assess()
   Refinement grids;
   std::vector<PartReport> parts;
   std::size_t tried_on = 0;  ///< nodes of the grid of parts and steps
@@ -64,7 +76,10 @@ struct Advice {
 };
 
 /** @a x to two digits with the unit of @a measure, if it has one. */
-std::string with_unit(double x, Measure measure);
+std::string with_unit(double x, const Measure& measure);
+
+/** What was asked: "(asked: 0.01 m)". */
+std::string asked(const Advice& a);
 
 /** The options with which ./cloth runs @a m. */
 std::string as_options(const Model& m);
@@ -72,5 +87,8 @@ std::string as_options(const Model& m);
 /** @a a as text: the recommendation, a command to paste, then tables.
  * Throws InputError if the mesh of the advised scene cannot be read again. */
 std::string in_words(const Advice& a);
+
+/** @a a as a JSON object: README.md has its members.  Throws as in_words() */
+std::string as_json(const Advice& a);
 
 }  // namespace lab

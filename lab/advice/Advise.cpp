@@ -28,12 +28,13 @@ double work_or_0(const Model& m) {
   return std::isfinite(work) ? work : 0;
 }
 
-/** The answer to every measure; empty where @a m has none. */
+/** Every quantity of a cloth at the end; empty where @a m has none. */
 std::vector<Answer> all_answers(const Model& m, const Cloth& g) {
   std::vector<Answer> all;
-  for (std::size_t k = 0; k < measure_names.size(); ++k)
-    all.push_back(can_answer(m, Measure(k)) ? answer(m, g, Measure(k))
-                                            : Answer());
+  for (int k = 0; k < Measure::pin_force; ++k) {
+    const Measure what = Measure::Quantity(k);
+    all.push_back(can_answer(m, what) ? answer(m, g, what) : Answer());
+  }
   return all;
 }
 }  // namespace
@@ -54,9 +55,7 @@ Adviser::Adviser(const Model& m, const AdviceRules& rules)
 }
 
 Advice Adviser::find() {
-  check_question(scene_);
-  if (!(scene_.t_end > 0))
-    throw SceneError("t-end", "is 0, expected a time to simulate");
+  check();
   const CME212::Clock clock;
   choose_pilots();
   bool calm = true;
@@ -81,6 +80,7 @@ Advice Adviser::find() {
     choose();
     if (from_files() || (found_ && !may_go_on())) break;
   }
+  calm = calm && advice_.tolerance > 0;
   if (!found_ && calm) foresee();
   if (!found_ && advice_.refusal.empty())
     refuse(
@@ -92,11 +92,21 @@ Advice Adviser::find() {
     try_floats(*found_);
     take(*found_);
   }
+  end(clock);
+  return advice_;
+}
+
+void Adviser::end(const CME212::Clock& clock) {
   advice_.trivial = trivial();
   advice_.left_out = pilots_.left_out();
   advice_.spent_work = pilots_.spent(), advice_.budget = pilots_.budget();
   advice_.spent = clock.seconds();
-  return advice_;
+}
+
+void Adviser::check() const {
+  check_question(scene_);
+  if (!(scene_.t_end > 0))
+    throw SceneError("t-end", "is 0, expected a time to simulate");
 }
 
 // ---------------------------------------------------------------------- Grids
@@ -220,8 +230,10 @@ bool Adviser::add_grid() {
     const Trial t = pilots_.run(fine, "small steps", work);
     if (!t.ok()) return refuse(t.failure);
     limit_ = t.answer;
+    return know_tolerance();
   } else if (grids.size() > 2) {
     uncertainty_ = grids.uncertainty();
+    if (!know_tolerance()) return false;
     pilots_.knows(so_far());
     if (!grids.converges(advice_.tolerance / 10))
       if (const std::string why = diverging(scene_); !why.empty())
@@ -256,8 +268,7 @@ std::string Adviser::so_far() const {
            " grids are too few to estimate an error";
   const std::string name = name_of(advice_.measure),
                     limit = with_unit(uncertainty_, advice_.measure),
-                    asked = " (asked: " +
-                            with_unit(advice_.tolerance, advice_.measure) + ')';
+                    asked = ' ' + lab::asked(advice_);
   if (too_uncertain())
     return "uncertainty is the reason: the limit of " + name +
            " on finer grids is known only to +- " + limit + asked;
@@ -276,15 +287,36 @@ std::string Adviser::over_budget(double work) const {
          (advice_.grids.size() < 3 ? "" : converging_slowly(scene_));
 }
 
+Answer Adviser::answer_at_start() const {
+  const Model& m = seen_.back().model;
+  const Scene start(m);
+  return Observer(m, start).answer(m, start);
+}
+
+bool Adviser::know_tolerance() {
+  if (!scene_.percent) return true;
+  const auto what = advice_.measure.quantity;
+  const bool itself = what == Measure::max_stretch ||
+                      what == Measure::pin_force || what == Measure::tear_time;
+  const double whole = size_of(itself ? Effect(limit_.size()).add(1, limit_)
+                                      : Effect(limit_, answer_at_start()));
+  advice_.tolerance = whole > 1e-9 ? scene_.tolerance / 100 * whole : 0;
+  advice_.share = CME212::short_text(scene_.tolerance) + " % of " +
+                  (itself ? "the answer" : "the change since t = 0");
+  return advice_.tolerance > 0 || refuse(advice_.share +
+                                         ", but that is 0: expected a "
+                                         "tolerance with its unit");
+}
+
 std::string Adviser::trivial() const {
   const std::string name = name_of(advice_.measure);
-  if (scene_.measure == Measure::energy && scene_.conserves_energy())
+  if (scene_.measure.quantity == Measure::energy && scene_.conserves_energy())
     return "nothing changes the energy of this scene: any grid and any step "
            "keeps its initial value";
   if (seen_.empty() || limit_.empty()) return "";
-  const Model& m = seen_.back().model;
-  const double change =
-      distance(answer(m, Scene(m).cloth()), limit_, advice_.measure);
+  const Answer at_start = answer_at_start();
+  if (at_start.empty()) return "";
+  const double change = distance(at_start, limit_, advice_.measure);
   if (!(change + uncertainty_ <= advice_.tolerance)) return "";
   return name + " changes by only " + with_unit(change, advice_.measure) +
          " until the end, which is less than the tolerance: its initial value "

@@ -53,4 +53,9 @@ Model as_pilot(Model m);
  * Throws InputError, SceneError: also if @a m can't answer its question. */
 Advice advise(const Model& m, const AdviceRules& rules = {});
 
+/** How large the errors of the grid, the step and the method of @a m are; and
+ * as advice the largest step by which they meet the tolerance, or a refusal.
+ * @pre, throws as advise() */
+Advice assess(const Model& m, const AdviceRules& rules = {});
+
 }  // namespace lab

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/scenes/Compose.hpp"
@@ -28,6 +29,7 @@ class Adviser {
   Adviser(const Model& m, const AdviceRules& rules);
 
   Advice find();
+  Advice assess();
 
  private:
   /** Cells along u and v of each sheet, over those of the scene. */
@@ -125,6 +127,12 @@ class Adviser {
   std::string so_far() const;
   std::string over_budget(double work) const;
   std::string not_converging() const;
+  /** The tolerance in the unit of the measure, if it is a share of the change
+   * since t = 0, or of the answer.  @return as refuse(), if that is 0 */
+  bool know_tolerance();
+  Answer answer_at_start() const;
+  void check() const;
+  void end(const CME212::Clock& clock);
   /** Why the answer of this scene needs no computation; or empty. */
   std::string trivial() const;
 

@@ -77,14 +77,19 @@ void Adviser::find_rest() {
     return;
   const Model& m = seen_[base_].model;
   std::vector<std::pair<double, Answer>> looked;
+  std::optional<Observer> observer;
   const Trial t = pilots_.run(
       m, "when it comes to rest", work, {}, nullptr, [&](Scene& scene) {
+        if (!observer) observer.emplace(m, scene);
+        if (m.measure.over_time()) observer->look(m, scene);
         if (scene.time() >= double(looked.size()) * m.t_end / looks)
-          looked.emplace_back(scene.time(), answer(m, scene.cloth()));
+          looked.emplace_back(scene.time(), observer->answer(m, scene));
       });
   for (; t.ok() && !looked.empty(); looked.pop_back()) {
     const auto& [time, then] = looked.back();
-    if (!(size_of(Effect(then, t.answer)) <= advice_.tolerance / 10)) break;
+    if (then.empty() ||
+        !(size_of(Effect(then, t.answer)) <= advice_.tolerance / 10))
+      break;
     if (time <= 0.9 * m.t_end) rest_time_ = time;
   }
 }
@@ -226,7 +231,7 @@ bool Adviser::holds(Choice& c) {
   }
   c.scatter = perturb(c);
   c.uncertainty += scatter_share * c.scatter;
-  return accepts(c.error, c.uncertainty);
+  return c.scatter <= advice_.tolerance / 2 && accepts(c.error, c.uncertainty);
 }
 
 void Adviser::choose() {
@@ -270,7 +275,12 @@ void Adviser::choose() {
     if (best) break;
     for (const Sides& s : frontier(start)) try_all(s);
   }
-  if (best) found_ = best;
+  if (best) {
+    found_ = best;
+  } else if (!found_ && rest_time_ < scene_.t_end) {
+    rest_time_ = scene_.t_end;  // other grids come to rest later
+    choose();
+  }
 }
 
 void Adviser::foresee() {

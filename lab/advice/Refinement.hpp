@@ -20,7 +20,7 @@ struct Effect {
     for (std::size_t k = 0; k < by.size(); ++k) by[k] += factor * b[k];
     return *this;
   }
-  double size(Measure measure) const {
+  double size(const Measure& measure) const {
     return distance(by, Answer(by.size()), measure);
   }
 };

@@ -26,7 +26,8 @@ std::string converging_slowly(const Model& m) {
 }
 
 std::string diverging(const Model& m) {
-  if (m.measure != Measure::max_stretch || !has_point_pin(m)) return "";
+  if (m.measure.quantity != Measure::max_stretch || !has_point_pin(m))
+    return "";
   return "the stretch at a pin of one node grows without bound as the grid "
          "gets finer, because ever narrower strips of cloth carry the load: "
          "hold a side, for example by --pin \"x 0\", or ask for --measure "
@@ -43,13 +44,13 @@ std::string offers(const Model& m, const std::vector<Answer>& answers,
   std::string all;
   for (std::size_t k = 0; k < std::min(answers.size(), shaken.size()); ++k) {
     if (answers[k].empty() || shaken[k].empty()) continue;
-    const Measure what = Measure(k);
+    const Measure what = Measure::Quantity(k);
     // Four times the change by one perturbation, as others change it more.
     const double to = std::max(1e-5, 4 * distance(answers[k], shaken[k], what));
-    const double scale = what == Measure::energy
+    const double scale = what == Measure(Measure::energy)
                              ? total_mass(g) * m.gravity * size
-                         : what == Measure::max_stretch ? answers[k][0]
-                                                        : size;
+                         : what == Measure(Measure::max_stretch) ? answers[k][0]
+                                                                 : size;
     if (what != m.measure && to <= 0.1 * scale)
       all += std::string(all.empty() ? "" : ", ") + "--measure " +
              name_of(what) + " to " + with_unit(to, what);

@@ -145,10 +145,12 @@ void check(Options& o) {
   require(o.every > 0, "every", double(o.every), "at least 1 step");
   require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
           "a time up to --t-end");
-  if (!o.restart.empty() && (o.advise || o.automatic))
+  if (!o.restart.empty() && o.asks_advice())
     throw SceneError("restart",
-                     "cannot be combined with --advise or --auto: the scene of "
-                     "a checkpoint is fixed");
+                     "cannot be combined with --advise, --assess or --auto: "
+                     "the scene of a checkpoint is fixed");
+  if (!o.json.empty() && !o.asks_advice())
+    throw SceneError("json", "needs --advise, --assess or --auto");
   if (!o.replay.empty())
     for (const auto& [option, given] :
          {std::pair("config", !o.config.empty()),
@@ -413,6 +415,11 @@ int parse(int argc, char** argv, Options& o) {
   app.add_option("--advise-budget", o.advise_budget,
                  "the same in seconds of this machine [s]; 0: --advise-work")
       ->excludes("--advise-work");
+  app.add_flag("--assess", o.assess,
+               "find by trial runs how large the errors of this grid, step and "
+               "method are, and the largest step that meets the tolerance")
+      ->excludes("--advise");
+  add_file(app, "--json", o.json, "write what --advise or --assess finds");
   app.add_flag("--auto", o.automatic, "run the scene that --advise recommends");
   add_file(app, "--write-config", o.advised,
            "write the scene, or with --advise or --auto the recommended one, "
@@ -461,6 +468,11 @@ int parse(int argc, char** argv, Options& o) {
   o.keeps_step = app.count("--dt") > 0 && o.model.step.fixed();
   o.model.step.tolerance = kept_tolerance;
   if (given("tolerance") && !o.asks_advice()) {
+    if (o.model.percent)
+      throw SceneError("tolerance",
+                       "is " + CME212::short_text(o.model.tolerance) +
+                           "%, which needs --advise, --assess or --auto: "
+                           "expected an error of the positions [m]");
     control_error(o.model, given);
     if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet)
       std::cerr << "cloth: warning: --tolerance has no effect on "

@@ -20,7 +20,7 @@ struct Options {
   int threads = 0;  ///< of a large cloth; 0: one a processor
   bool headless = false, window = false, paused = false, strain = false;
   bool quiet = false;
-  bool advise = false, automatic = false;
+  bool advise = false, automatic = false, assess = false;
   double advise_work = 0;    ///< spring evaluations; 0: advise_budget
   double advise_budget = 0;  ///< [s]; 0: that of AdviceRules
   bool keeps_method = false, keeps_step = false;  ///< advice keeps this option
@@ -29,12 +29,13 @@ struct Options {
   std::string vtp, obj, ply;    ///< folders
   double frame_rate = 30;       ///< of those [1/s]
   std::string advised;          ///< file for the scene, or the advised one
+  std::string json;             ///< file for the advice
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
   std::string record_input, replay;
 
   /** True if advice comes before the run, or instead of it. */
-  bool asks_advice() const { return advise || automatic; }
+  bool asks_advice() const { return advise || automatic || assess; }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
   /** True if an output describes the run from start to end. Then the user can't
    * change the scene in a window. */

@@ -123,6 +123,7 @@ Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
       progress_(o.quiet),
+      observer_(o.model, scene),
       frames_({{FrameFormat::vtp, o.vtp},
                {FrameFormat::obj, o.obj},
                {FrameFormat::ply, o.ply}},
@@ -141,6 +142,7 @@ Run::Run(Scene& scene, const Options& o)
 
 void Run::start() {
   progress_ = Progress(o_.quiet);
+  observer_ = Observer(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
   rows_ = 0, last_row_ = settled_row_ = -1;
   recent_.clear();
@@ -173,8 +175,8 @@ void Run::advance(int most) {
 
 /** How many steps there are until something is written. */
 int Run::steps_to_write() const {
-  const bool any_step =
-      !frames_.empty() || (!o_.checkpoint.empty() && o_.every_seconds == 0);
+  const bool any_step = !frames_.empty() || o_.model.measure.over_time() ||
+                        (!o_.checkpoint.empty() && o_.every_seconds == 0);
   if (any_step) return 1;
   return int(std::min<long long>(o_.every - scene_.steps() % o_.every,
                                  Scene::guard_interval));
@@ -196,6 +198,7 @@ void Run::to_end(const std::function<void()>& after) {
 /** After a step, which may have taken others back. */
 void Run::look() {
   settle_rows(scene_.settled_steps());
+  if (o_.model.measure.over_time()) observer_.look(o_.model, scene_);
   frames_.take_back(scene_);
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
@@ -274,7 +277,8 @@ void Run::begin_csv() {
   csv_sum_ = 0;
   write_csv(
       "t,kinetic,elastic,gravitational,total,com_x,com_y,com_z,nodes,edges,"
-      "work,drag,balance,evaluations\n");
+      "work,drag,balance,evaluations" +
+      columns_of(o_.model.measure) + '\n');
 }
 
 void Run::write_csv(const std::string& text) {
@@ -285,6 +289,14 @@ void Run::write_csv(const std::string& text) {
 /** The state of the run besides that of the scene. */
 void Run::archive(Archive& a) {
   std::uint64_t rows = recent_.size();
+  std::string asked = name_of(o_.model.measure);
+  a(asked)(observer_);
+  if (asked != name_of(o_.model.measure) &&
+      (o_.model.measure.over_time() || !o_.csv.empty()))
+    throw SceneError("measure", "is " + name_of(o_.model.measure) +
+                                    ", but the run until "
+                                    "the checkpoint was asked for " +
+                                    asked);
   a(rows_)(last_row_)(settled_row_)(warned_)(rows);
   a.require(rows_ >= 0 && last_row_ >= -1 && settled_row_ >= -1);
   if (a.loads()) recent_.clear();
@@ -375,8 +387,11 @@ void Run::add_row() {
   const EnergyFlow& flow = scene_.flow();
   for (double a : {flow.work, scene_.drag_loss(), scene_.drift(e)})
     row += ',' + CME212::to_text(a);
-  recent_.push_back(
-      {last_row_, row + ',' + std::to_string(scene_.evaluations()) + '\n'});
+  row += ',' + std::to_string(scene_.evaluations());
+  if (!columns_of(o_.model.measure).empty())
+    for (double a : lab::answer(o_.model, scene_, o_.model.measure))
+      row += ',' + CME212::to_text(a);
+  recent_.push_back({last_row_, row + '\n'});
 }
 
 /** Forget the rows of steps that were taken back; write those of the first

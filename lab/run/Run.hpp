@@ -12,6 +12,7 @@
 #include "lab/Progress.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/run/Options.hpp"
+#include "lab/scenes/Measure.hpp"
 
 namespace lab {
 
@@ -56,6 +57,8 @@ class Run {
 
   /** True at the end, if the run failed, or if a signal ends it. */
   bool done() const;
+  /** The answer to the scene's question so far: Observer::answer(). */
+  Answer answer() const { return observer_.answer(o_.model, scene_); }
   /** True if a signal ended the run before its end. */
   bool cut_short() const;
 
@@ -87,6 +90,7 @@ class Run {
   Scene& scene_;
   const Options& o_;
   Progress progress_;
+  Observer observer_;
   std::optional<CME212::OutputFile> csv_;
   std::optional<MeshOutput> out_;
   Export frames_;

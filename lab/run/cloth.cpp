@@ -49,13 +49,15 @@ namespace {
 
 /** Print what a scene of parts is asked, and what this run answers; but for
  * positions, which are many: --out writes them. */
-void print_answer(const Scene& scene, const Model& m) {
-  if (m.measure == Measure::positions) return;
+void print_answer(const Run& run, const Scene& scene, const Model& m) {
+  if (m.measure.quantity == Measure::positions) return;
+  const Answer answer = run.answer();
   std::cout << name_of(m.measure) << ':';
-  for (double a : answer(m, scene.cloth())) std::cout << ' ' << a;
+  for (double a : answer) std::cout << ' ' << a;
   const std::string unit = unit_of(m.measure);
-  std::cout << (unit.empty() ? "" : " ") << unit << " at t = " << scene.time()
-            << " s\n";
+  std::cout << (unit.empty() ? "" : " ") << (answer.empty() ? "none" : unit)
+            << (m.measure.over_time() ? " until t = " : " at t = ")
+            << scene.time() << " s\n";
 }
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
@@ -188,11 +190,10 @@ int run_live(Live& live, const Options& o) {
   return interrupted() ? 128 + interrupted() : 0;
 }
 
-/** Write @a m, as a file for --config, to @a file if it has a name. */
-void write_scene(const Model& m, const std::string& file) {
+void write_text(const std::string& text, const std::string& file) {
   if (file.empty()) return;
   CME212::OutputFile out(file);
-  out.stream() << to_scene_file(m);
+  out.stream() << text;
   out.commit();
 }
 
@@ -209,15 +210,18 @@ int take_advice(Options& o) {
   // The budget counts on one thread; a team that other programs keep waiting
   // takes many times as long.
   Sweep::set_threads(std::max(1, o.threads));
-  const Advice advice = advise(o.model, rules);
+  const Advice advice =
+      o.assess ? assess(o.model, rules) : advise(o.model, rules);
   Sweep::set_threads(o.threads);
   progress.end();
   if (!o.quiet) std::cout << in_words(advice);
+  if (!o.json.empty()) write_text(as_json(advice), o.json);
+  if (advice.own && !o.automatic) return 0;
   if (!advice.refusal.empty()) {
     if (o.quiet) std::cerr << "cloth: no advice: " << advice.refusal << '\n';
     return 2;
   }
-  write_scene(advice.model, o.advised);
+  write_text(to_scene_file(advice.model), o.advised);
   o.model = advice.model;
   return o.automatic ? -1 : 0;
 }
@@ -294,7 +298,7 @@ void check_outputs(const Options& o) {
        {std::pair("csv", o.csv), std::pair("out", o.out),
         std::pair("out", quads_beside(o.out)),
         std::pair("screenshot", o.screenshot), std::pair("record", o.video),
-        std::pair("write-config", o.advised),
+        std::pair("write-config", o.advised), std::pair("json", o.json),
         std::pair("checkpoint", o.checkpoint),
         std::pair("record-input", o.record_input)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
@@ -319,7 +323,7 @@ int run(Options o) {
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   if (!o.asks_advice() && !o.advised.empty()) {
-    write_scene(o.model, o.advised);
+    write_text(to_scene_file(o.model), o.advised);
     return 0;
   }
   const Model& m = o.model;
@@ -364,7 +368,8 @@ int run(Options o) {
   } else {
     status = run_headless(scene, run, o);
   }
-  if (scene.done(m.t_end) && status == 0 && !o.quiet) print_answer(scene, m);
+  if (scene.done(m.t_end) && status == 0 && !o.quiet)
+    print_answer(run, scene, m);
   if (accuracy) status = tell_accuracy(*accuracy, status, o.quiet);
   return status;
 }

@@ -8,6 +8,7 @@
 #include "CME212/Util.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/KeyValues.hpp"
+#include "lab/scenes/Measure.hpp"
 
 namespace lab {
 
@@ -72,12 +73,22 @@ std::vector<Field> fields_of(Model& m) {
       {"method", Role::method, step, &m.method,
        "name of a method: see --list-methods"},
       {"measure", asked, advice, &m.measure,
-       "the quantity asked for, at the end of the run: com [m], energy [J], "
-       "positions [m], max-stretch, drape-height [m]"},
-      {"tolerance", asked, advice, &m.tolerance,
-       "error allowed in the measure, in its unit; without --method and --dt a "
-       "run uses dop853 and bounds the error of the positions by it [m]",
-       "more than 0", positive},
+       "the quantity asked for at the end of the run, or [max|min] over time: "
+       "com [x|y|z], drape-height, point u U v V [sheet N] [x|y|z], positions "
+       "[m], energy [J], max-stretch, tear-time [s], pin-force [x X] [y Y] [z "
+       "Z] [N]; 'max stretch' is the largest over time"},
+      {"tolerance",
+       asked,
+       advice,
+       &m.tolerance,
+       "error allowed in the measure, in its unit; for advice also P%: of the "
+       "change since t = 0, or of a stretch, force or time itself; without "
+       "--method and --dt a run uses dop853 and bounds the error of the "
+       "positions by it [m]",
+       "more than 0",
+       positive,
+       {},
+       &m.percent},
       {"view", asked, scene, &m.view,
        "the box to look at: from X Y Z to X Y Z [m]"}};
 }
@@ -109,6 +120,7 @@ void read(const Field& f, const std::string& text, T& a) {
   } else if constexpr (std::is_same_v<T, double>) {
     char* end = nullptr;
     a = std::strtod(text.c_str(), &end);
+    if (f.percent && (*f.percent = *end == '%')) ++end;
     if (text.empty() || *end != '\0' || !std::isfinite(a) ||
         (f.range != Word::Range::any && a < 0) ||
         (f.range == Word::Range::positive && a == 0))
@@ -164,6 +176,7 @@ bool Field::repeats() const {
 std::vector<std::string> Field::values() const {
   std::vector<std::string> all;
   std::visit([&all](const auto* a) { write(*a, all); }, member);
+  if (percent && *percent) all[0] += '%';
   return all;
 }
 

@@ -33,6 +33,7 @@ struct Field {
   Word::Range range = Word::Range::any;
   /** While this field has a value, the field of this name has no effect. */
   std::string_view instead_of = {};
+  bool* percent = nullptr;  ///< says if its number is followed by %
 
   /** The form of a value: FILE, FLOAT, TEXT ... */
   const char* type() const;

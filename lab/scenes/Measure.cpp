@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <span>
 
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
@@ -14,12 +15,12 @@
 
 namespace lab {
 
-double distance(const Answer& a, const Answer& b, Measure measure) {
+double distance(const Answer& a, const Answer& b, const Measure& measure) {
   assert(a.size() == b.size());
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k)
     sum += (a[k] - b[k]) * (a[k] - b[k]);
-  if (measure == Measure::positions) sum /= double(a.size()) / 3;
+  if (measure.quantity == Measure::positions) sum /= double(a.size()) / 3;
   return std::sqrt(sum);
 }
 
@@ -44,21 +45,26 @@ Point position_on(const Cloth& g, const Sheet& sheet, unsigned first, double s,
          p * ((1 - q) * at(1, 0) + q * at(1, 1));
 }
 
-Answer positions(const Model& m, const Cloth& g) {
+/** The first index of the sheet of number @a k of @a m, or all nodes. */
+unsigned first_index(const Model& m, std::size_t k) {
+  unsigned first = 0;
+  for (const Sheet& s : std::span(m.sheets).first(k))
+    first += s.nodes[0] * s.nodes[1];
+  return first;
+}
+
+Answer positions(const Model& m, const Cloth& g, const Scene*, const Measure&) {
   Answer all;
   auto add = [&](const Point& p) {
     all.insert(all.end(), {double(p.x), double(p.y), double(p.z)});
   };
   if (m.sheets.empty())
     for (Node n : g.nodes()) add(n.position());
-  unsigned first = 0;
-  for (const Sheet& sheet : m.sheets) {
+  for (std::size_t k = 0; k < m.sheets.size(); ++k)
     for (int i = 0; i < samples; ++i)
       for (int j = 0; j < samples; ++j)
-        add(position_on(g, sheet, first, i / double(samples - 1),
-                        j / double(samples - 1)));
-    first += sheet.nodes[0] * sheet.nodes[1];
-  }
+        add(position_on(g, m.sheets[k], first_index(m, k),
+                        i / double(samples - 1), j / double(samples - 1)));
   return all;
 }
 
@@ -123,54 +129,171 @@ double lowest_height(const Cloth& g, const Sheet& sheet, unsigned first) {
 
 /** The lowest height of @a g [m]; 0 if it has no nodes. Of a mesh from files,
  * and of a cloth that may have torn, the height of the lowest node. */
-double lowest_height(const Model& m, const Cloth& g) {
-  if (g.num_nodes() == 0) return 0;
+Answer lowest_height(const Model& m, const Cloth& g, const Scene*,
+                     const Measure&) {
+  if (g.num_nodes() == 0) return {0};
   double lowest = std::numeric_limits<double>::infinity();
-  unsigned first = 0;
-  for (const Sheet& sheet : m.sheets) first += sheet.nodes[0] * sheet.nodes[1];
-  if (first != g.num_nodes() || m.tear_strain) {
+  const std::size_t sheets = m.sheets.size();
+  if (first_index(m, sheets) != g.num_nodes() || m.tear_strain)
     for (Node n : g.nodes()) lowest = std::min(lowest, double(n.position().z));
-    return lowest;
-  }
-  first = 0;
-  for (const Sheet& sheet : m.sheets) {
-    lowest = std::min(lowest, lowest_height(g, sheet, first));
-    first += sheet.nodes[0] * sheet.nodes[1];
-  }
-  return lowest;
+  else
+    for (std::size_t k = 0; k < sheets; ++k)
+      lowest =
+          std::min(lowest, lowest_height(g, m.sheets[k], first_index(m, k)));
+  return {lowest};
+}
+
+/** @a p, or its component that @a what names. */
+Answer components(const Point& p, const Measure& what) {
+  Answer all;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (what.has(k)) all.push_back(double(p[k]));
+  return all;
+}
+
+Answer stretch(const Model&, const Cloth& g, const Scene*, const Measure&) {
+  double most = 0;
+  for (Edge e : g.edges())
+    if (e.value().L > 0)
+      most = std::max(most, double(e.length() / e.value().L) - 1);
+  return {most};
+}
+
+/** The sum of all forces on the held nodes that @a what names [N]: what the
+ * pins carry, as held nodes do not accelerate.  O(springs at them) */
+Answer pin_force(const Model&, const Cloth& g, const Scene* scene,
+                 const Measure& what) {
+  Point sum;
+  bool some = false;
+  for (const HeldNodes& h : scene->held())
+    for (const auto& [id, place] : h.nodes) {
+      if (!what.pin.holds(place)) continue;
+      some = true;
+      if (g.node_in_use(id))
+        sum +=
+            (*scene->recipe().built->force)(g.node_with_id(id), scene->time());
+    }
+  if (!some)
+    throw SceneError("measure",
+                     "is " + name_of(what) + ", where no pin holds a node");
+  return {norm(sum)};
+}
+
+Answer tear_time(const Model&, const Cloth& g, const Scene* scene,
+                 const Measure&) {
+  const bool torn =
+      g.num_nodes() < g.node_slots() || g.num_edges() < g.edge_slots();
+  return {torn ? scene->time() : std::numeric_limits<double>::infinity()};
+}
+
+Answer point(const Model& m, const Cloth& g, const Scene*,
+             const Measure& what) {
+  const auto k = std::size_t(what.sheet) - 1;
+  return components(
+      position_on(g, m.sheets[k], first_index(m, k), what.u, what.v), what);
 }
 
 }  // namespace
 
-Answer answer(const Model& m, const Cloth& g, Measure what) {
-  switch (what) {
-    case Measure::com: {
-      const Point c = center_of_mass(g);
-      return {c.x, c.y, c.z};
-    }
-    case Measure::energy:
-      return {kinetic_energy(g) + elastic_energy(g) +
-              gravitational_energy(g, m.gravity)};
-    case Measure::positions:
-      return positions(m, g);
-    case Measure::max_stretch: {
-      double most = 0;
-      for (Edge e : g.edges())
-        if (e.value().L > 0)
-          most = std::max(most, double(e.length() / e.value().L) - 1);
-      return {most};
-    }
-    case Measure::drape_height:
-      return {lowest_height(m, g)};
-  }
-  return {};
+const std::array<Quantity, 8> quantities = {{
+    {"com", "m",
+     [](auto&, const Cloth& g, auto*, const Measure& what) {
+       return components(center_of_mass(g), what);
+     }},
+    {"energy", "J",
+     [](const Model& m, const Cloth& g, auto*, auto&) {
+       return Answer{kinetic_energy(g) + elastic_energy(g) +
+                     gravitational_energy(g, m.gravity)};
+     }},
+    {"positions", "m", positions},
+    {"max-stretch", "", stretch},
+    {"drape-height", "m", lowest_height},
+    {"pin-force", "N", pin_force},
+    {"tear-time", "s", tear_time},
+    {"point", "m", point},
+}};
+
+std::string columns_of(const Measure& m) {
+  if (m.quantity <= Measure::positions || m.quantity == Measure::tear_time)
+    return "";
+  std::string name = quantities[m.quantity].name, all;
+  std::ranges::replace(name, '-', '_');
+  if (m.quantity != Measure::point) return ',' + name;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (m.has(k)) all += ',' + name + '_' + "xyz"[k];
+  return all;
+}
+
+const char* unit_of(const Measure& m) { return quantities[m.quantity].unit; }
+
+Answer answer(const Model& m, const Cloth& g, const Measure& what) {
+  assert(what.quantity < Measure::pin_force);
+  return quantities[what.quantity].read(m, g, nullptr, what);
+}
+Answer answer(const Model& m, const Scene& scene, const Measure& what) {
+  return quantities[what.quantity].read(m, scene.cloth(), &scene, what);
+}
+
+namespace {
+/** What @a m lacks for an answer; or empty. */
+std::string lacks(const Model& m, const Measure& what) {
+  const bool tears = !m.tears.empty() || m.tear_strain,
+             is_point = what.quantity == Measure::point;
+  if (is_point && double(m.sheets.size()) < what.sheet)
+    return "names a sheet that the scene does not have";
+  if (tears && (is_point || what.quantity == Measure::positions))
+    return "cannot be compared in a cloth that tears";
+  if (what.quantity == Measure::tear_time && !tears)
+    return "needs --tear or --tear-strain";
+  return "";
+}
+}  // namespace
+
+bool can_answer(const Model& m, const Measure& what) {
+  return lacks(m, what).empty();
 }
 
 void check_question(const Model& m) {
-  if (!can_answer(m, m.measure))
-    throw SceneError("measure",
-                     "is positions, which cannot be compared in a cloth that "
-                     "tears: expected another measure");
+  if (const std::string why = lacks(m, m.measure); !why.empty())
+    throw SceneError("measure", "is " + name_of(m.measure) + ", which " + why +
+                                    ": expected another measure");
+}
+
+double Observer::better(const Measure& what, double a, double b) {
+  return what.over == Measure::largest ? std::max(a, b) : std::min(a, b);
+}
+
+Observer::Observer(const Model& m, const Scene& scene)
+    : best_(std::numeric_limits<double>::infinity()) {
+  if (m.measure.over == Measure::largest) best_ = -best_;
+  if (m.measure.quantity == Measure::positions) return;
+  check_question(m);
+  look(m, scene);
+}
+
+void Observer::look(const Model& m, const Scene& scene) {
+  const Answer now = lab::answer(m, scene, m.measure);
+  if (!m.measure.over_time()) return;
+  std::erase_if(recent_, [&](const Look& l) {
+    if (l.step <= scene.settled_steps())
+      best_ = better(m.measure, best_, l.value);
+    return l.step <= scene.settled_steps() || l.step > scene.steps();
+  });
+  recent_.push_back({scene.steps(), now[0]});
+}
+
+Answer Observer::answer(const Model& m, const Scene& scene) const {
+  if (!m.measure.over_time()) return lab::answer(m, scene, m.measure);
+  double best = best_;
+  for (const Look& l : recent_)
+    if (l.step <= scene.steps()) best = better(m.measure, best, l.value);
+  return std::isfinite(best) ? Answer{best} : Answer{};
+}
+
+void Observer::archive(Archive& a) {
+  a(best_)(recent_);
+  a.require(best_ == best_);  // no NaN
+  for (const Look& l : recent_) a.require(l.value == l.value);
 }
 
 double step_of(const Model& m) {
@@ -193,17 +316,22 @@ Trial try_out(const Model& m, const Shake& shake,
     // The guard starts anew: it would take these strains for a divergence.
     scene.change_method(*m.method, {.dt = result.dt});
   }
+  Observer observer(m, scene);
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
     after(scene);
+    if (m.measure.over_time()) observer.look(m, scene);
     if (scene.failure().empty())
       result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
   });
+  result.failure = scene.failure();
   if (ok) {
-    result.answer = answer(m, scene.cloth());
+    result.answer = observer.answer(m, scene);
+    if (result.answer.empty())
+      result.failure =
+          "nothing tears until t = " + CME212::short_text(m.t_end) + " s";
     look(scene.cloth());
   }
-  result.failure = scene.failure();
   result.steps = scene.steps();
   result.seconds = clock.seconds();
   return result;

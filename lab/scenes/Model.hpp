@@ -133,17 +133,33 @@ struct Distance {
   double friction = 0;
 };
 
-/** What is asked of a scene at its end. */
-enum class Measure { com, energy, positions, max_stretch, drape_height };
-
-constexpr std::array<const char*, 5> measure_names = {
-    "com", "energy", "positions", "max-stretch", "drape-height"};
-constexpr const char* name_of(Measure m) {
-  return measure_names[static_cast<std::size_t>(m)];
-}
-constexpr const char* unit_of(Measure m) {
-  return m == Measure::energy ? "J" : m == Measure::max_stretch ? "" : "m";
-}
+/** What is asked of a scene: a quantity at its end, or its largest or smallest
+ * value over time. Measure.hpp has the table of quantities. */
+struct Measure {
+  enum Quantity {
+    com,
+    energy,
+    positions,
+    max_stretch,
+    drape_height,
+    pin_force,
+    tear_time,
+    point
+  };
+  enum Over { at_end, largest, smallest };
+  Quantity quantity;
+  Over over = at_end;
+  std::array<bool, 3> only = {};  ///< of com, point: one component, x, y or z
+  Pin pin = {};  ///< of pin-force: where its nodes start; empty: all pins
+  double u = 0.5, v = 0.5;  ///< of point: its place along both sides, 0 to 1
+  double sheet = 1;         ///< of point: the number of its sheet
+  Measure(Quantity q = com) : quantity(q) {}  // NOLINT: a quantity at the end
+  /** True if it depends on all states of a run, not on the last one alone. */
+  bool over_time() const { return over != at_end || quantity == tear_time; }
+  /** True if component k, 0 to 2, is asked for: by name, or as all are. */
+  bool has(std::size_t k) const { return only[k] || only == Measure().only; }
+  bool operator==(const Measure&) const = default;
+};
 
 /** symplectic-euler, the method of the assignment. */
 const MethodEntry* default_method();
@@ -174,6 +190,7 @@ struct Model {
   // What is asked
   Measure measure = Measure::com;
   double tolerance = 0.01;  ///< in the unit of the measure
+  bool percent = false;     ///< tolerance is in percent: Advice::asked
   // How it is shown
   std::optional<Box> view;  ///< the box to look at
 

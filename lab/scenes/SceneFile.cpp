@@ -133,7 +133,7 @@ std::string to_scene_file(const Model& m) {
     std::string list;
     for (const std::string& value : values) {
       if (!list.empty()) list += ", ";
-      if (f.type() == std::string_view("FLOAT"))
+      if (f.type() == std::string_view("FLOAT") && !value.ends_with('%'))
         list += value;
       else
         list += in_quotes(f.role == Role::mesh ? absolute(value) : value);

@@ -13,6 +13,7 @@
 #include "CME212/Util.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/Measure.hpp"
 
 namespace lab {
 
@@ -87,6 +88,25 @@ Words words_of(Distance& d) {
   return {"self-collision",
           {{"thickness", &d.thickness, positive, word},
            {"friction", &d.friction, not_negative}}};
+}
+Words words_of(Measure& m) {
+  Words all = {"measure", {}};
+  const bool place = m.quantity == Measure::point;
+  if (m.quantity == Measure::pin_force)
+    all.all = {{"x", &m.pin.x}, {"y", &m.pin.y}, {"z", &m.pin.z}};
+  if (place)
+    all.all = {{"u", &m.u, not_negative},
+               {"v", &m.v, not_negative},
+               {"sheet", &m.sheet, positive}};
+  if (!place && m.quantity != Measure::com) return all;
+  for (std::size_t k = 0; k < 3; ++k)
+    all.all.push_back({&"x\0y\0z"[2 * k], &m.only[k]});
+  const auto components = std::ranges::count(m.only, true);
+  if (components > 1 || (components == 0 && m.over != Measure::at_end))
+    all.wrong = "has no single component, expected one of x, y, z";
+  if (m.u > 1 || m.v > 1 || m.sheet != std::floor(m.sheet))
+    all.wrong = "has no place on a sheet, expected u and v from 0 to 1";
+  return all;
 }
 Words words_of(Box& v) {
   return {"view",
@@ -182,14 +202,45 @@ void read_words(const std::string& text, const std::function<Words()>& words) {
   if (now.wrong) fail(now.wrong);
 }
 
+namespace {
+/** The name of @a q after max or min: the largest stretch is "max stretch". */
+std::string over_time(const Quantity& q) {
+  return q.name == std::string("max-stretch") ? "stretch" : q.name;
+}
+}  // namespace
+
 Measure read_measure(const std::string& text) {
-  std::string names;
-  for (std::size_t k = 0; k < measure_names.size(); ++k) {
-    if (text == measure_names[k]) return Measure(k);
-    names += std::string(k == 0 ? "" : ", ") + measure_names[k];
+  std::istringstream in(text);
+  Measure m;
+  std::string first, name, words, names;
+  in >> first;
+  m.over = first == "max"   ? Measure::largest
+           : first == "min" ? Measure::smallest
+                            : Measure::at_end;
+  if (m.over == Measure::at_end)
+    name = first;
+  else
+    in >> name;
+  std::vector<std::string> known;
+  for (const Quantity& q : quantities) {
+    known.push_back(m.over == Measure::at_end ? q.name : over_time(q));
+    names += (names.empty() ? "" : ", ") + known.back();
   }
-  throw SceneError("measure", "is " + text + ", expected one of " + names +
-                                  did_you_mean(text, measure_names));
+  const auto found = std::ranges::find(known, name);
+  if (found == known.end())
+    throw SceneError("measure", "is " + text + ", expected one of " + names +
+                                    did_you_mean(name, known) +
+                                    ", or one after max or min");
+  m.quantity = Measure::Quantity(found - known.begin());
+  std::getline(in, words);
+  if (words_of(m).all.empty() && !words.empty())
+    throw SceneError("measure",
+                     "is " + text + ", expected nothing after " + name);
+  read_words(words, [&m] { return words_of(m); });
+  if (m.over != Measure::at_end &&
+      (m.quantity == Measure::positions || m.quantity == Measure::tear_time))
+    throw SceneError("measure", "is " + text + ", expected " + name + " alone");
+  return m;
 }
 TimeStep read_time_step(const std::string& text) {
   TimeStep step;
@@ -262,6 +313,15 @@ std::string written(const Words& words, const Words& usual) {
   }
   if (!has_some) all += last;
   return all.substr(all.empty() ? 0 : 1);
+}
+
+std::string name_of(const Measure& m) {
+  const Quantity& q = quantities[m.quantity];
+  Measure now = m, usual = m.quantity;
+  const std::string words = written(words_of(now), words_of(usual));
+  const char* over[] = {"", "max ", "min "};
+  return over[m.over] + (m.over ? over_time(q) : q.name) +
+         (words.empty() ? "" : ' ' + words);
 }
 
 std::string to_words(const TimeStep& s) {

@@ -46,6 +46,7 @@ Words words_of(Wall&);
 Words words_of(Solid&);
 Words words_of(Ball&);
 Words words_of(Distance&);
+Words words_of(Measure&);
 Words words_of(Box&);
 
 /** The member of a Model that a field sets. */
@@ -87,7 +88,8 @@ inline constexpr auto read_tear = read_part<Ball>;
 inline constexpr auto read_self_collision = read_part<Distance>;
 inline constexpr auto read_view = read_part<Box>;
 
-/** Throws SceneError: no such measure, no such method. */
+/** "[max|min] NAME [words]", NAME as in Measure.hpp.
+ * Throws SceneError: anything else; no such method. */
 Measure read_measure(const std::string& text);
 const MethodEntry* read_method(const std::string& text);
 /** A number [s]; or auto[:sharp][:GAIN], as "auto:0.02"

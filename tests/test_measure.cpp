@@ -1,0 +1,254 @@
+// Measure.hpp: quantities whose values are known by hand, over time and at the
+// end, and their words.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "lab/fast/Energy.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/run/Run.hpp"
+#include "lab/scenes/Measure.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/Words.hpp"
+#include "tests/TestFolder.hpp"
+
+using namespace lab;
+
+namespace {
+
+Model scene_of(const std::string& sheet, double t_end, double dt) {
+  Model m;
+  m.sheets = {read_sheet(sheet)};
+  m.method = find_method("verlet");
+  m.t_end = t_end, m.step.dt = dt;
+  return m;
+}
+
+double answer_of(Model m, const std::string& measure) {
+  m.measure = read_measure(measure);
+  const Trial t = try_out(m);
+  EXPECT_EQ(t.failure, "");
+  return t.ok() ? t.answer.at(0) : std::nan("");
+}
+
+/** Two masses of 1/4 kg below two pinned ones, by springs of 100 N/m: they
+ * fall by 2 m g/K and come back to rest after a period. */
+constexpr double omega = 20, amplitude = grav * 0.25 / 100;
+Model oscillator(double dt, double periods = 1) {
+  Model m = scene_of("v 0 0 -1 nodes 2 2", periods * 2 * M_PI / omega, dt);
+  m.edges.diagonals = false;
+  m.pins = {read_pin("z 0")};
+  return m;
+}
+
+TEST(Measure, OverTimeFindsTheAmplitudeOfAnOscillator) {
+  for (double dt : {0.01, 0.001}) {
+    const Model m = oscillator(dt);
+    // Verlet's amplitude is off by (omega dt)^2/4 of it, and the state of the
+    // largest stretch lies up to half a step away.
+    const double off = amplitude * (omega * dt) * (omega * dt) / 2;
+    EXPECT_NEAR(answer_of(m, "max stretch"), 2 * amplitude, off);
+    EXPECT_NEAR(answer_of(m, "min drape-height"), -1 - 2 * amplitude, off);
+    EXPECT_NEAR(answer_of(m, "max drape-height"), -1, 1e-12);
+    EXPECT_NEAR(answer_of(m, "min com z"), -0.5 - amplitude, off);
+    EXPECT_NEAR(answer_of(m, "min point u 1 v 1 z"), -1 - 2 * amplitude, off);
+    // Two springs, and the weight of the two nodes that are held.
+    EXPECT_NEAR(answer_of(m, "max pin-force"), 1.5 * grav, 200 * off);
+    EXPECT_NEAR(answer_of(m, "min pin-force"), 0.5 * grav, 1e-12);
+    EXPECT_LT(answer_of(m, "max-stretch"), 4 * off) << "at the end";
+  }
+}
+
+TEST(Measure, PinsCarryTheWholeWeightAtRest) {
+  // A chain, and a cloth of two densities with drag, each at rest.
+  Model chain = scene_of("v 0 0 -1 nodes 2 9", 12, 0.002);
+  chain.edges.diagonals = false, chain.damping = 0.2,
+  chain.pins = {read_pin("z 0")};
+  EXPECT_NEAR(answer_of(chain, "pin-force"), grav, 1e-6);
+  EXPECT_NEAR(answer_of(chain, "pin-force x 1"), grav / 2, 1e-6);
+  Model cloth = scene_of("nodes 7 7", 30, 0.002);
+  cloth.pins = {read_pin("x 0 y 0"), read_pin("x 1 y 0")};
+  cloth.material = {.density = 0.3, .modulus = 100, .drag = 2};
+  cloth.regions = {read_region("from 0 0 0 to 1 0.5 0 mass-factor 3")};
+  Cloth g;
+  build_model(g, cloth, mesh_of(cloth));
+  EXPECT_NEAR(answer_of(cloth, "pin-force"), total_mass(g) * grav, 1e-6);
+  // Both pull up with half of the weight, and against each other.
+  const double one = answer_of(cloth, "pin-force x 0");
+  EXPECT_GT(one, total_mass(g) * grav / 2);
+  EXPECT_NEAR(one, answer_of(cloth, "pin-force x 1 y 0"), 1e-6);
+  EXPECT_THROW(answer_of(cloth, "pin-force x 0.5"), SceneError);
+  cloth.pins.clear();
+  EXPECT_THROW(answer_of(cloth, "pin-force"), SceneError);
+}
+
+/** Springs of 1 m between two rows, pulled apart at 0.5 m/s. */
+Model pulled(double limit, double dt) {
+  Model m = scene_of("nodes 2 2", 1, dt);
+  m.gravity = 0, m.edges.diagonals = false, m.tear_strain = limit;
+  m.pins = {read_pin("x 0"), read_pin("x 1 velocity 0.5 0 0")};
+  return m;
+}
+
+TEST(Measure, TearTimeIsThatOfTheStrainLimit) {
+  for (double dt : {0.01, 0.0013})
+    for (double limit : {0.1, 0.2003}) {
+      const double t = answer_of(pulled(limit, dt), "tear-time");
+      EXPECT_GE(t, limit / 0.5 - 1e-9);
+      EXPECT_LE(t, limit / 0.5 + dt + 1e-9);
+    }
+  Model whole = pulled(0.6, 0.01);
+  whole.measure = Measure::tear_time;
+  EXPECT_EQ(try_out(whole).failure, "nothing tears until t = 1 s");
+  whole.tear_strain.reset();
+  EXPECT_THROW(check_question(whole), SceneError);
+  whole.tears = {read_tear("at 0 0 5")};
+  EXPECT_NO_THROW(check_question(whole));
+}
+
+TEST(Measure, PointOfAFreeFallIsWhereItFell) {
+  Model m = scene_of("nodes 4 3 velocity 1 2 3", 0.5, 0.01);
+  m.sheets.push_back(read_sheet("at 0 0 9 u 0 2 0 v 0 0 4 nodes 3 6"));
+  const double fall = grav / 2 * 0.25;
+  m.measure = read_measure("point u 0.25 v 0.9");
+  const Answer a = try_out(m).answer;
+  ASSERT_EQ(a.size(), 3u);
+  EXPECT_NEAR(a[0], 0.25 + 0.5, 1e-12);
+  EXPECT_NEAR(a[1], 0.9 + 1, 1e-12);
+  EXPECT_NEAR(a[2], 1.5 - fall, 1e-12);
+  EXPECT_NEAR(answer_of(m, "point v 0.9 u 0.25 z"), 1.5 - fall, 1e-12);
+  EXPECT_NEAR(answer_of(m, "point sheet 2 u 0.3 v 0.6 z"), 11.4 - fall, 1e-12);
+  EXPECT_NEAR(answer_of(m, "point sheet 2 u 0.3 v 0.6 y"), 0.6, 1e-12);
+  EXPECT_THROW(answer_of(m, "point sheet 3"), SceneError);
+  m.tear_strain = 1;
+  EXPECT_THROW(answer_of(m, "point"), SceneError);
+}
+
+TEST(Measure, WordsAreReadAndWritten) {
+  for (const char* text :
+       {"com", "com x", "max com z", "energy", "min energy", "positions",
+        "max-stretch", "max stretch", "min stretch", "drape-height",
+        "max drape-height", "pin-force", "pin-force x 0 z 0.5",
+        "max pin-force y 1", "tear-time", "point", "point u 0.25 v 1",
+        "point u 0.25 sheet 2", "min point v 0 sheet 3 y"}) {
+    EXPECT_EQ(name_of(read_measure(text)), text);
+    EXPECT_EQ(read_measure(name_of(read_measure(text))), read_measure(text));
+  }
+  EXPECT_EQ(unit_of(read_measure("max pin-force")), std::string("N"));
+  EXPECT_EQ(unit_of(read_measure("tear-time")), std::string("s"));
+  for (const char* text :
+       {"", "max", "max-com", "com w", "com x y", "max com", "min point",
+        "max positions", "max tear-time", "energy x", "max max stretch",
+        "point u 1.01", "point u -0.01", "point sheet 1.5", "point sheet 0",
+        "point u", "pin-force x"})
+    EXPECT_THROW(read_measure(text), SceneError) << text;
+  EXPECT_NO_THROW(read_measure("point u 1 v 0"));
+}
+
+TEST(Measure, SeesNoStepThatIsTakenBack) {
+  Model m = scene_of("nodes 15 15", 2, 0.001);
+  m.step = read_time_step("auto:sharp:0.001");
+  m.pins = {read_pin("x 0")};
+  m.spheres = {read_sphere("at 0.6 0.5 -0.4 radius 0.2")};
+  Scene scene(m);
+  struct Asked {
+    Model m;
+    Observer observer;
+    std::map<long long, double> seen;  // by step
+    double most_ever;                  // also of steps that are taken back
+  };
+  std::vector<Asked> all;
+  for (const char* text :
+       {"max stretch", "max com x", "max com y", "max energy", "max pin-force",
+        "max point u 1 z", "max point u 1 v 0 x", "max point v 0 y",
+        "max point u 0.25 z"}) {
+    m.measure = read_measure(text);
+    const double start = answer(m, scene, m.measure)[0];
+    all.push_back({m, Observer(m, scene), {{0, start}}, start});
+  }
+  scene.run_to(m.t_end, [&] {
+    for (Asked& a : all) {
+      a.observer.look(a.m, scene);
+      a.seen.erase(a.seen.upper_bound(scene.steps()), a.seen.end());
+      const double now = answer(a.m, scene, a.m.measure)[0];
+      a.seen[scene.steps()] = now;
+      a.most_ever = std::max(a.most_ever, now);
+    }
+  });
+  ASSERT_EQ(scene.failure(), "");
+  int differ = 0;
+  for (const Asked& a : all) {
+    const auto most = std::ranges::max_element(
+        a.seen, {}, [](const auto& at) { return at.second; });
+    EXPECT_EQ(a.observer.answer(a.m, scene), Answer{most->second});
+    differ += a.most_ever > most->second;
+  }
+  EXPECT_GT(differ, 0);
+}
+
+TEST(Measure, GoesOnFromACheckpointWithTheSameBits) {
+  const CME212::TestFolder folder;
+  // The largest stretch is that of step 52, the tear that of step 134.
+  for (const auto& [text, stop] :
+       {std::pair("max stretch", 70), std::pair("max stretch", 54),
+        std::pair("max stretch", 20), std::pair("tear-time", 40),
+        std::pair("tear-time", 200)}) {
+    const bool tears = text == std::string("tear-time");
+    Options o;
+    o.model = tears ? pulled(0.2, 0.003) : oscillator(0.003);
+    o.model.measure = read_measure(text), o.quiet = true;
+    auto end = [&](const Options& options) {
+      Scene scene(options.model);
+      lab::Run run(scene, options);
+      run.to_end();
+      EXPECT_EQ(run.finish(), 0);
+      return run.answer();
+    };
+    const Answer whole = end(o);
+    ASSERT_EQ(whole.size(), 1u);
+    Options first = o;
+    first.checkpoint = folder / "c", first.every_seconds = 0;
+    Scene scene(first.model);
+    lab::Run run(scene, first);
+    while (scene.steps() < stop) run.advance();
+    Options rest = o;
+    rest.restart = first.checkpoint;
+    EXPECT_EQ(end(rest), whole) << text << ' ' << stop;
+    rest.model.measure = read_measure("min stretch");
+    EXPECT_THROW(end(rest), SceneError) << "was not looked at before";
+    rest.model.measure = Measure::max_stretch;
+    EXPECT_NO_THROW(end(rest));
+  }
+}
+
+TEST(Measure, HasColumnsOfItsOwnAtTheEndOfATable) {
+  const CME212::TestFolder folder;
+  for (const auto& [text, columns] :
+       {std::pair("point u 1 v 1", ",point_x,point_y,point_z"),
+        std::pair("max point u 1 v 1 z", ",point_z"),
+        std::pair("pin-force", ",pin_force"), std::pair("max energy", ""),
+        std::pair("com", ""), std::pair("max stretch", ",max_stretch")}) {
+    Options o;
+    o.model = oscillator(0.01), o.quiet = true, o.every = 7;
+    o.model.measure = read_measure(text);
+    o.csv = folder / "e.csv";
+    Scene scene(o.model);
+    lab::Run run(scene, o);
+    run.to_end();
+    ASSERT_EQ(run.finish(), 0);
+    const std::string table = CME212::contents(o.csv);
+    const std::string head = table.substr(0, table.find('\n'));
+    EXPECT_EQ(head.substr(head.find("evaluations") + 11), columns);
+    const std::string last = table.substr(table.rfind('\n', table.size() - 2));
+    EXPECT_EQ(std::ranges::count(last, ','), std::ranges::count(head, ','));
+    if (*columns) {
+      EXPECT_EQ(std::strtod(&last[last.rfind(',') + 1], nullptr),
+                answer(o.model, scene, o.model.measure).back());
+    }
+  }
+}
+
+}  // namespace
