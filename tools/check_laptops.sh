@@ -61,15 +61,20 @@ if command -v $arm qemu-aarch64 >/dev/null; then
   counted=$(having 'Build: counted') program=$(having 'Define: KIT_PROGRAM')
   cloth=$(having '^#include "cloth.hpp"' | grep -vxF "$program")
   graph=$(having '^#include "graph.hpp"' | grep -vxF "$counted")
-  arm_program frame "" tests/main.cpp tests/kit.cpp
+  step=$(having '^#include "step.hpp"')
+  arm_program frame """" tests/main.cpp tests/kit.cpp
   # shellcheck disable=SC2086  # lists of words
   {
     arm_program graph "" $graph
     arm_program cloth "" $cloth
     arm_program program "-DKIT_PROGRAM -DKIT_STAGES" $program
+    arm_program step "" $step
     arm_program counted "-O1 -fsanitize-coverage=trace-pc" $counted
   }
-  for kind in graph cloth program counted; do
+  [ "$(wc -w <<<"$tests")" = \
+    "$(wc -w <<<"$graph $cloth $step $program $counted")" ] ||
+    { failed=$((failed + 1)) && echo "ARM: a test is in no program"; }
+  for kind in graph cloth step program counted; do
     for test in ${!kind}; do
       task=$(basename "$test" .cpp)
       timeout 600 qemu-aarch64 -L /usr/aarch64-linux-gnu ./$kind "$task" \
