@@ -3,6 +3,7 @@
  * LaplacianFactor: the Cholesky factor of masses and springs, kept as long as
  * neither changes. */
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -61,7 +62,7 @@ class LaplacianFactor {
   struct Source {
     std::optional<int> springs;  // nullopt: other forces have springs, too
     const Cloth* cloth = nullptr;
-    std::size_t version = 0;
+    std::uint64_t version = 0;
     std::vector<unsigned> held;  // their ids, in the constraint's order
     std::vector<double> K;       // [N/m], by edge id
   };
