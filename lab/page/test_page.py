@@ -181,7 +181,10 @@ def it_turns_and_zooms(b):
 @test
 def every_scene_and_every_method_runs(b):
     opened(b)
-    for k, scene in enumerate(b.value("page.about.scenes.map(s => s.name)")):
+    scenes = b.value(
+        "page.about.scenes.filter(s => !s.fails).map(s => s.name)")
+    assert len(scenes) == 9
+    for k, scene in enumerate(scenes):
         choose(b, "scene", scene)
         b.wait(f"page.settings.scene === '{scene}' && !page.waiting &&"
                " page.readings.main.time > 0.01 && page.calls > 0", 120)
