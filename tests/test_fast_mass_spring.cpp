@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/methods/FastMassSpring.hpp"
-#include "tests/Sheet.hpp"
+#include "tests/PinnedSheet.hpp"
 
 using namespace lab;
 using namespace lab::sheets;
@@ -33,14 +33,14 @@ class NewtonEuler : public Method {
 TEST(FastMassSpring, TendsToTheStepOfImplicitEuler) {
   constexpr double h = 0.01;
   for (bool accelerated : {false, true}) {
-    Sheet right(6, 100, 0.01), sheet(6, 100, 0.01);
+    PinnedSheet right(6, 100, 0.01), sheet(6, 100, 0.01);
     right.stir();
     NewtonEuler newton;
     FastMassSpring few(2, accelerated), ten(10, accelerated),
         many(1500, accelerated);
     double after_two = 0, after_ten = 0;
     for (int n = 0; n < 10; ++n) {
-      Sheet before(6, 100, 0.01);
+      PinnedSheet before(6, 100, 0.01);
       auto copy = [](const Cloth& from, Cloth& to) {
         for (unsigned i = 0; i < from.num_nodes(); ++i) {
           to.node(i).position() = from.node(i).position();
@@ -67,8 +67,8 @@ TEST(FastMassSpring, TendsToTheStepOfImplicitEuler) {
 // implicit Euler after any number of them, to round-off.
 TEST(FastMassSpring, FliesAndTurnsAsImplicitEulerAfterAnyRounds) {
   for (int rounds : {1, 2, 5, 10}) {
-    Sheet a(5, 1e6, 0.01), b(5, 1e6, 0.01);
-    for (Sheet* s : {&a, &b})
+    PinnedSheet a(5, 1e6, 0.01), b(5, 1e6, 0.01);
+    for (PinnedSheet* s : {&a, &b})
       for (Node n : s->g.nodes()) n.value().vel = Point(1, 2, 3);
     auto force = make_combined_force(GravityForce(), MassSpringForce(),
                                      DampingForce(.01));
@@ -97,7 +97,7 @@ TEST(FastMassSpring, FliesAndTurnsAsImplicitEulerAfterAnyRounds) {
 
 TEST(FastMassSpring, KeepsLinearMomentumAfterAnyRounds) {
   for (int rounds : {1, 3, 12}) {
-    Sheet s(5);
+    PinnedSheet s(5);
     s.stir();
     const Point before = momentum(s.g);
     FastMassSpring method(rounds);
@@ -109,7 +109,7 @@ TEST(FastMassSpring, KeepsLinearMomentumAfterAnyRounds) {
 
 // Drag is in the matrix; a tear changes it.
 TEST(FastMassSpring, FactorsAnewOnlyWhenItMust) {
-  Sheet s(6);
+  PinnedSheet s(6);
   FastMassSpring method;
   auto step = [&](double dt, const ForcePlan& force) {
     method.step(s.g, 0, dt, force, s.pin);

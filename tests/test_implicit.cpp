@@ -16,7 +16,7 @@
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/StepLimit.hpp"
-#include "tests/Sheet.hpp"
+#include "tests/PinnedSheet.hpp"
 
 using namespace lab;
 using namespace lab::sheets;
@@ -116,7 +116,7 @@ TYPED_TEST(Implicit, DeliversTheOrderItDeclares) {
 TYPED_TEST(Implicit, DeliversItsOrderOnNonlinearCloth) {
   const double T = 0.2;
   auto start = [] {
-    auto sheet = std::make_unique<Sheet>(4, 10, 0.05);
+    auto sheet = std::make_unique<PinnedSheet>(4, 10, 0.05);
     sheet->stir();
     return sheet;
   };
@@ -144,7 +144,7 @@ TYPED_TEST(Implicit, SweepsTheForcesAsOftenAsItDeclares) {
 }
 
 TYPED_TEST(Implicit, KeepsMomentumWithoutPinsAndGravity) {
-  Sheet s(5);
+  PinnedSheet s(5);
   s.stir();
   TypeParam method;
   const Point before = momentum(s.g);
@@ -155,7 +155,7 @@ TYPED_TEST(Implicit, KeepsMomentumWithoutPinsAndGravity) {
 }
 
 TYPED_TEST(Implicit, HoldsPinsExactlyAndStopsThem) {
-  Sheet s(6);
+  PinnedSheet s(6);
   s.stir();
   TypeParam method;
   s.run(method, 0.01, 50);
@@ -168,7 +168,7 @@ TYPED_TEST(Implicit, HoldsPinsExactlyAndStopsThem) {
 
 // A node vanishes in each step, and another one between two steps.
 TYPED_TEST(Implicit, GoesOnWhenNodesAreRemoved) {
-  Sheet s(6);
+  PinnedSheet s(6);
   auto cut =
       make_combined_constraints(PinConstraint(s.g), [](Cloth& g, double) {
         if (g.num_nodes() > 3) g.remove_node(g.node(g.num_nodes() / 2));
@@ -190,7 +190,7 @@ TYPED_TEST(Implicit, GoesOnWhenNodesAreRemoved) {
 }
 
 TYPED_TEST(Implicit, TearsTheClothAndTheRestIsRight) {
-  Sheet s(8, 100, 0.02);
+  PinnedSheet s(8, 100, 0.02);
   auto constraint = make_combined_constraints(
       PinConstraint(s.g), PlaneConstraint(), TearConstraint());
   TypeParam method;
@@ -223,7 +223,7 @@ TYPED_TEST(Implicit, CallsTheConstraintOnceAtTheEnd) {
 }
 
 TYPED_TEST(Implicit, RefusesAForceOfUnknownStiffness) {
-  Sheet s(3);
+  PinnedSheet s(3);
   TypeParam method;
   auto wind = [](Node, double) { return Point(1, 0, 0); };
   try {
@@ -254,7 +254,7 @@ TYPED_TEST(Implicit, FallsFreelyWithoutSprings) {
 /** Steps of 10 times the explicit limit that are good, of @a steps. */
 template <typename M>
 int good_steps(double drag, int steps) {
-  Sheet s(30, 100, drag);
+  PinnedSheet s(30, 100, drag);
   const double h = 10 * 0.0577 / 30;
   DivergenceGuard guard(s.g, grav, h);
   M method;
@@ -343,7 +343,7 @@ TEST(AugmentedVerlet, SwingsAtTheFrequencyOfMidpoint) {
 /** The change of angular momentum [kg m^2/s] in 100 steps of a free sheet. */
 template <typename M>
 double turn(M method) {
-  Sheet s(5);
+  PinnedSheet s(5);
   s.stir();
   const Point before = angular_momentum(s.g);
   for (int n = 0; n < 100; ++n)
@@ -359,7 +359,7 @@ TEST(ImplicitMidpoint, KeepsAngularMomentumAsOthersDoNot) {
 }
 
 TEST(AugmentedVerlet, KeepsTheAngularMomentumOfTheHeavierMass) {
-  Sheet s(5);
+  PinnedSheet s(5);
   s.stir();
   const double h = 0.01;
   auto angular = [&] {
@@ -378,7 +378,7 @@ TEST(AugmentedVerlet, KeepsTheAngularMomentumOfTheHeavierMass) {
 }
 
 TEST(AugmentedVerlet, FactorsAnewOnlyWhenItMust) {
-  Sheet s(6);
+  PinnedSheet s(6);
   AugmentedVerlet method;
   int expected = 1;
   double t = 0;
@@ -419,7 +419,7 @@ struct Stiffer : SweptSprings {
 
 // Where a force may be stiffer than the edges, each step asks it anew.
 TEST(AugmentedVerlet, AsksAForceThatIsNotTheEdges) {
-  Sheet s(6);
+  PinnedSheet s(6);
   AugmentedVerlet method;
   Stiffer stiffer;
   double t = 0;
@@ -444,7 +444,7 @@ TEST(AugmentedVerlet, AsksAForceThatIsNotTheEdges) {
 
 // The same numbers, but other nodes at the ends of the springs, or held.
 TEST(AugmentedVerlet, SeesOtherEndsAndOtherPins) {
-  Sheet s(6);
+  PinnedSheet s(6);
   AugmentedVerlet method;
   auto step = [&](const ConstraintPlan& c) {
     method.step(s.g, 0, 0.01, s.force, c);
@@ -462,7 +462,7 @@ TEST(AugmentedVerlet, SeesOtherEndsAndOtherPins) {
 
 // Kept accelerations may not outlive the state that they belong to.
 TEST(AugmentedVerlet, StartsAnewWhenTold) {
-  Sheet a(4), b(4);
+  PinnedSheet a(4), b(4);
   AugmentedVerlet used, fresh;
   a.run(used, 0.01, 5);
   for (unsigned i = 0; i < a.g.num_nodes(); ++i) {
@@ -478,7 +478,7 @@ TEST(AugmentedVerlet, StartsAnewWhenTold) {
 }
 
 TEST(NewtonMethod, SaysWhyAStepCantBeMade) {
-  Sheet s(4);
+  PinnedSheet s(4);
   s.stir();
   for (auto [method, name] :
        {std::pair<std::shared_ptr<Method>, std::string>{
@@ -504,9 +504,9 @@ template <typename M>
 void expect_error_of_tolerance(double tolerance) {
   const double T = 0.1;
   for (int steps : {20, 200, 2000}) {
-    Sheet loose(5), tight(5);
+    PinnedSheet loose(5), tight(5);
     M coarse(tolerance), fine(1e-30);  // down to round-off
-    for (Sheet* s : {&loose, &tight}) s->stir();
+    for (PinnedSheet* s : {&loose, &tight}) s->stir();
     loose.run(coarse, T / steps, steps);
     tight.run(fine, T / steps, steps);
     double sum = 0;
@@ -525,11 +525,11 @@ TEST(NewtonMethod, LeavesNoMoreThanItsToleranceHoweverSmallTheSteps) {
 // stiff sheet, at 20 times verlet's limit.
 TEST(TrBdf2, SolvesAsWellAsItsErrorAsksFor) {
   const double T = 0.125;
-  Sheet exact(25, 1e4, 1.0 / 625);
+  PinnedSheet exact(25, 1e4, 1.0 / 625);
   Srkn11b reference;
   exact.run(reference, T / 150, 150);
   auto error = [&](TrBdf2& method) {
-    Sheet s(25, 1e4, 1.0 / 625);
+    PinnedSheet s(25, 1e4, 1.0 / 625);
     s.run(method, T / 32, 32);
     double sum = 0;
     for (unsigned i = 0; i < 625; ++i)
@@ -544,7 +544,7 @@ TEST(TrBdf2, SolvesAsWellAsItsErrorAsksFor) {
 
 // Angular momentum [kg m^2/s] shows if Newton stops before round_off().
 TEST(NewtonMethod, GoesDownToRoundOffAtSmallSteps) {
-  Sheet s(5);
+  PinnedSheet s(5);
   s.stir();
   ImplicitMidpoint method(1e-30);
   const Point before = angular_momentum(s.g);
@@ -556,7 +556,7 @@ TEST(NewtonMethod, GoesDownToRoundOffAtSmallSteps) {
 TEST(NewtonMethod, StopsAtRoundOff) {
   for (double dt : {2e-5, 2e-4, 2e-3, 2e-2}) {
     for (double K : {100.0, 1e4}) {
-      Sheet s(5, K);
+      PinnedSheet s(5, K);
       s.stir();
       for (Node n : s.g.nodes()) n.position() += Point(1000);
       ImplicitMidpoint midpoint(1e-30, 20);
@@ -608,7 +608,7 @@ using implicit_detail::LinearSolver;
 TEST(LinearSolver, GivesTheSameOnCompressedCloth) {
   const double limit = 0.0577 / 10;
   auto end_of = [](auto& method, double h, LinearSolver solver) {
-    auto s = std::make_unique<Sheet>(10);
+    auto s = std::make_unique<PinnedSheet>(10);
     for (Node n : s->g.nodes()) n.position() *= 0.7;
     s->stir();
     method.use(solver);
@@ -642,7 +642,7 @@ TEST(LinearSolver, FactorsWhereThatIsLessWork) {
                                         {1e-2, 1e-8, true},
                                         {0.1, 1e-8, true}}) {
     auto work = [&, dt = dt, tolerance = tolerance](LinearSolver solver) {
-      Sheet s(20, 1e5);
+      PinnedSheet s(20, 1e5);
       s.stir();
       ImplicitEuler method(tolerance);
       method.use(solver);
@@ -677,7 +677,7 @@ TEST(LinearSolver, FactorsWhenGradientsDragOn) {
 // time step.
 TEST(ImplicitEuler, WhatIsLeftOverIsAnAcceleration) {
   const double dt = 1e-5;
-  Sheet s(8);
+  PinnedSheet s(8);
   for (Node n : s.g.nodes()) n.value().vel = Point(1, 2, 3 * n.position().x);
   s.pin(s.g, 0);
   const Cloth before = s.g;
@@ -689,7 +689,7 @@ TEST(ImplicitEuler, WhatIsLeftOverIsAnAcceleration) {
 }
 
 TEST(ImplicitEuler, SaysThatItsSystemCantBeSolved) {
-  Sheet s(4);
+  PinnedSheet s(4);
   s.g.node(5).value().vel = Point(HUGE_VAL);
   ImplicitEuler method;
   EXPECT_THROW(method(s.g, 0, 0.02, s.force, s.pin), StepError);
@@ -707,7 +707,7 @@ TEST(NewtonMethod, ConvergesThroughFlippingSprings) {
 
 // Compressed springs give A negative curvature: the sheet crumples.
 TEST(NewtonMethod, ConvergesOnCrumplingCloth) {
-  Sheet s(12);
+  PinnedSheet s(12);
   for (Node n : s.g.nodes()) n.position() *= 0.6;
   s.stir();
   TrBdf2 method;
@@ -720,7 +720,7 @@ TEST(NewtonMethod, ConvergesOnCrumplingCloth) {
 // as if there was no line search: then none of these steps can be made.
 template <typename M>
 void expect_steps_of_a_stiff_sheet() {
-  Sheet s(8, 1e4);
+  PinnedSheet s(8, 1e4);
   s.stir();
   M method;
   for (int n = 0; n < 5; ++n)
@@ -759,7 +759,7 @@ TEST(Xpbd, TendsToSymplecticEuler) {
 
 // Substeps are steps as far as the springs go.
 TEST(Xpbd, TakesSubstepsAsSteps) {
-  Sheet a(5), b(5);
+  PinnedSheet a(5), b(5);
   Xpbd one(1), ten(10);
   a.run(one, 0.001, 200);
   b.run(ten, 0.01, 20);
@@ -767,7 +767,7 @@ TEST(Xpbd, TakesSubstepsAsSteps) {
 }
 
 TEST(Xpbd, RefusesSpringsThatAreNotTheEdges) {
-  Sheet s(3);
+  PinnedSheet s(3);
   Xpbd method;
   auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
   EXPECT_THROW(method(s.g, 0, 0.01, twice), std::invalid_argument);

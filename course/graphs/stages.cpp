@@ -3,11 +3,11 @@
  * and runs with each graph of this folder. */
 #include <cmath>
 #include <exception>
+#include <future>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "CME212/viewer/NoViewer.hpp"
 #include "mass_spring.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/** @file Sheet.hpp
+/** @file PinnedSheet.hpp
  * A sheet for the tests of implicit methods, and what two of them differ by. */
 #include <cmath>
 
@@ -9,11 +9,11 @@
 namespace lab::sheets {
 
 /** A grid with diagonals, K [N/m]; gravity, springs and drag. */
-struct Sheet {
+struct PinnedSheet {
   Cloth g;
   CombinedForces force;
   PinConstraint pin;
-  explicit Sheet(unsigned side, double K = 100, double drag = 0)
+  explicit PinnedSheet(unsigned side, double K = 100, double drag = 0)
       : force(make_combined_force(GravityForce(), MassSpringForce(),
                                   DampingForce(drag))),
         pin((build_cloth(g, grid_points(side), grid_quads(side),
