@@ -161,7 +161,9 @@ TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
     ++steps;
     EXPECT_NEAR(page_beyond(0, steps), time + steps * dt, 1e-9);
     ASSERT_LT(steps, 100u);
-    if (steps > 3) EXPECT_GT(beyond(), before) << steps;
+    if (steps > 3) {
+      EXPECT_GT(beyond(), before) << steps;
+    }
   }
   EXPECT_EQ(page_beyond(0, 0), time);
   EXPECT_LT(beyond(), 1e-6);
