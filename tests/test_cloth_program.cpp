@@ -455,7 +455,8 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
       "mean verlet?\n");
   EXPECT_EQ(complaint(grid0 + "--measure conm"),
             "cloth: --measure is conm, expected one of com, energy, positions, "
-            "max-stretch, drape-height: did you mean com?\n");
+            "max-stretch, drape-height, pin-force, tear-time, point, or one "
+            "after max or min: did you mean com?\n");
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST(FastMassSpring, FactorsAnewOnlyWhenItMust) {
   FastMassSpring method;
   auto step = [&](double dt, const ForcePlan& force) {
     method.step(s.g, 0, dt, force, s.pin);
-    return method.work().factors;
+    return method.factorizations();
   };
   const auto drag = make_combined_force(MassSpringForce(), DampingForce(0.1));
   for (int n = 0; n < 10; ++n) EXPECT_EQ(step(0.01, s.force), 1);

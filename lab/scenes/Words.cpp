@@ -229,8 +229,8 @@ Measure read_measure(const std::string& text) {
   const auto found = std::ranges::find(known, name);
   if (found == known.end())
     throw SceneError("measure", "is " + text + ", expected one of " + names +
-                                    did_you_mean(name, known) +
-                                    ", or one after max or min");
+                                    ", or one after max or min" +
+                                    did_you_mean(name, known));
   m.quantity = Measure::Quantity(found - known.begin());
   std::getline(in, words);
   if (words_of(m).all.empty() && !words.empty())
