@@ -106,7 +106,7 @@ def compiled(folder, mistake, stage, source, *more):
     """A program from the sources with a mistake, in the folder: @a source, one
     of these or another file, with more flags. Returns the program's path."""
     for file in markers.SOURCES:
-        text = markers.solution((ROOT / file).read_text(), file)
+        text = markers.solution(markers.path_of(file).read_text(), file)
         (folder / file).write_text(with_mistake(text, file, mistake))
     program = folder / "program"
     subprocess.run(

@@ -12,7 +12,7 @@ page_o  := $(B)/page.o
 # Of the laboratory: all of these rooms, but what reads and writes files.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Checkpoint \
-  Measure Memory MeshFile Warnings) lab/live/Recording.cpp, \
+  Memory MeshFile Warnings) lab/live/Recording.cpp, \
   $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes live page)))
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
 page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
