@@ -174,13 +174,16 @@ insert lab/scenes/Compose.cpp 'for (const Ball& b : m.tears) add(' <<'END'
 END
 takes "part of a scene" 5
 
-# ---- A control: the time at which the scene ends
+# ---- A control: the strain at which edges break
 insert -b lab/live/Requests.cpp '// Load the scene that scene_request() wrote.' <<'END'
-  sets("t-end", "0 s or more", 0, [](Model& m) -> double& { return m.t_end; });
+  sets("tear-strain", "0 or more", 0, [](Model& m) -> double& {
+    return m.tear_strain ? *m.tear_strain : m.tear_strain.emplace(no_limit);
+  });
 END
 insert -b lab/viewer/Panel.cpp 'double speed = speed_ > 0' <<'END'
-  double end = m.t_end;
-  if (slider("t end [s]", end, 0.1, 100, "%.3g")) ask(request("t-end", end));
+  double strain = m.tear_strain.value_or(1);
+  if (slider("tear strain [1]", strain, 0.01, 1, "%.3g"))
+    ask(request("tear-strain", strain));
 END
 takes "control" 3
 
@@ -276,13 +279,15 @@ TEST(Part, IsReadWrittenAndKept) {
   }
   EXPECT_NEAR(most, 0.8, 1e-12);  // thrown against it
 }
-TEST(Control, ChangesTheEnd) {
+TEST(Control, ChangesTheStrainAtWhichEdgesBreak) {
   Live live(stored_scene("flag").model());
-  live.apply("t-end 0.02");
-  while (live.step()) {
-  }
-  EXPECT_NEAR(live.scene().time(), 0.02, 1e-12);
-  EXPECT_THROW(live.apply("t-end -1"), std::invalid_argument);
+  const unsigned edges = live.scene().cloth().num_edges();
+  for (int k = 0; k < 50; ++k) live.step();
+  EXPECT_EQ(live.scene().cloth().num_edges(), edges);
+  live.apply("tear-strain 1e-6");
+  live.step();
+  EXPECT_LT(live.scene().cloth().num_edges(), edges);
+  EXPECT_THROW(live.apply("tear-strain -1"), std::invalid_argument);
 }
 END
 built() {

@@ -415,7 +415,7 @@ def colors_of_the_person_keep_tools_and_curves_apart(b):
 def everything_has_a_name(b):
     opened(b)
     choose(b, "rival", "rk4")
-    b.wait("page.sides.length === 2 && page.readings.main.time > 0.05")
+    b.wait("page.sides.length === 2 && $('distance').ariaLabel")
     nameless = b.value("""[...document.querySelectorAll(
       'canvas, button, select, input, section, aside, fieldset > *')].filter(
       e => e.offsetParent && !(e.ariaLabel || e.labels?.length || e.title ||
@@ -706,13 +706,14 @@ def main():
             if only and run.__name__ not in only:
                 continue
             name = f"{run.__name__} {engine.__name__}"
+            from_ = time.monotonic()
             try:
                 with engine() as b:
                     run(b)
                     faults = b.faults + b.value("page.errors")
                     assert not faults, faults
                 passed += 1
-                print("ok", name, flush=True)
+                print(f"ok {name} {time.monotonic() - from_:.0f} s", flush=True)
             except Skipped as what:
                 print(f"left out {name}: {what}")
             except Exception:
