@@ -11,7 +11,7 @@ cd "$(dirname "$0")/../.."
 
 # The processor's name, its family (6 is most of Intel's: the model, too) and
 # its longest vectors.
-machine=$(awk -F': ' '/^model name/ {n = $2} /^cpu family/ {f = "-" $2}
+machine=$(awk -F': ' '/^model name/ {n = $2; gsub(/\((R|TM)\)/, "", n)} /^cpu family/ {f = "-" $2}
   /^model\t/ {m = $2} /^flags/ && f == "-6" {f = f "-" m}
   /^flags/ {v = / avx512f / ? "-avx512" : / avx2 / ? "-avx2" : ""}
   /^$/ {print n f v; exit}' /proc/cpuinfo | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')

@@ -56,6 +56,8 @@ def pictures(name, csv):
     if name == "rounds":
         sizes = dict.fromkeys(row["nodes"] for row in Table(csv).rows)
         return [(nodes, "rounds-" + nodes) for nodes in sizes]
+    if name == "history" and len({r["commit"] for r in Table(csv).rows}) < 2:
+        return []
     return [("", name)]
 
 

@@ -75,15 +75,16 @@ def speed(path, out):
     ratio = (of["step: symp_euler_step(), forces"][1] /
              of["step: SymplecticEuler"][1])
     proxies = of["springs: Node and Edge"][1] / of["springs: flat arrays"][1]
-    peers = re.search(r"commit \w+", (
-        ROOT / "lab/bench/peers/README.md").read_text())[0]
+    text = (ROOT / "lab/bench/peers/README.md").read_text()
+    where, when = re.search(r"^([^\n]*\(family \d+, model \d+\)), .*?"
+                            r"(commit \w+)", text, re.M | re.S).groups()
     picture = Picture(
         out, 1000, 500, f"The laboratory's step is {ratio:.1f} times as fast "
         f"as the assignment's; the graph adds "
         f"{100 * proxies - 100:.0f} % to a loop",
         "10,000 nodes with diagonals. Bar: median; thin line: lowest to "
         "highest. Right: graph classes of Boost and LEMON, Bullet's cloth.",
-        f"{machine}; {compiler}; commit {commit}; peers {peers}")
+        f"{machine}; {compiler}; commit {commit}. Right: {where}; {when}")
     left = Bars(picture, 190, 452, 5.6)
     left.title("One step [ns a node]")
     for key, name, color in STEPS:

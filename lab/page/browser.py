@@ -35,16 +35,26 @@ class Browser:
                                  flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self.send(domain + ".enable")
+        self.size = width, height
         self.resize(width, height)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
+        self.close()
+
+    def close(self):
         self.socket.close()
         self.process.terminate()
-        self.process.wait(30)
+        self.process.wait(60)
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def as_new(self):
+        """For the next test, as it was at first."""
+        self.faults = []
+        self.resize(*self.size)
+        self.prefer()
 
     @staticmethod
     def _until(holds, seconds, what):

@@ -27,7 +27,7 @@ class Firefox(Browser):
     @staticmethod
     def missing():
         """The programs that it needs and that are not here."""
-        return [name for name in ("firefox-esr", "xvfb-run")
+        return [name for name in ("firefox-esr", "xvfb-run", "xdotool")
                 if not shutil.which(name)]
 
     def __init__(self, width=1280, height=800):
@@ -38,27 +38,51 @@ class Firefox(Browser):
         said = pathlib.Path(self.folder, "said")
         with said.open("w") as out:
             self.process = subprocess.Popen(
-                ["xvfb-run", "-a", "firefox-esr", "--no-remote", "--profile",
-                 self.folder, "--remote-debugging-port", "0"],
+                ["xvfb-run", "-a", "bash", "-c", 'env >"$1/env"; exec '
+                 'firefox-esr --no-remote --profile "$1" '
+                 '--remote-debugging-port 0', "bash", self.folder],
                 stdout=subprocess.DEVNULL, stderr=out)
         found = r"WebDriver BiDi listening on (ws://\S+)"
-        self._until(lambda: re.search(found, said.read_text()), 120,
+        self._until(lambda: re.search(found, said.read_text()), 300,
                     "the browser does not start")
         self.socket = websocket.create_connection(
-            re.search(found, said.read_text())[1] + "/session", timeout=300,
+            re.search(found, said.read_text())[1] + "/session", timeout=900,
             suppress_origin=True)
         self.count, self.session, self.faults = 0, None, []
         self.send("session.new", capabilities={})
         self.send("session.subscribe", events=["log.entryAdded"])
         tree = self.send("browsingContext.getTree")
         self.context = tree["contexts"][0]["context"]
+        self.size = width, height
         self.resize(width, height)
+        self._until(self._focused, 300, "the page has no focus")
 
-    def __exit__(self, *_):
-        self.send("browser.close")
-        self.socket.close()
-        self.process.wait(60)
+    def _focused(self):
+        """Does the page have the focus, and not the line of the address? Only
+        a click of a real mouse moves it."""
+        words = pathlib.Path(self.folder, "env").read_text().splitlines()
+        subprocess.run(["xdotool", "mousemove", "500", "500", "click", "1"],
+                       env=dict(w.split("=", 1) for w in words if "=" in w),
+                       timeout=300)
+        return self.value("document.hasFocus()")
+
+    def close(self):
+        try:
+            self.send("browser.close")
+            self.socket.close()
+            self.process.wait(60)
+        except (OSError, RuntimeError, websocket.WebSocketException,
+                subprocess.TimeoutExpired):
+            self.process.kill()
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def as_new(self):
+        self.faults = []
+        self.resize(*self.size)
+
+    def wait(self, expression, seconds=60):
+        # A processor that draws by itself is slower here than in Chromium.
+        super().wait(expression, 5 * seconds)
 
     def _listen(self, event):
         values = event.get("params", {})

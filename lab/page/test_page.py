@@ -337,6 +337,7 @@ def ways_to_break_it_fail_as_their_files_say(b):
 @test
 def the_first_scene_comes_to_rest(b):
     opened(b)
+    pause(b)
     b.value("start(startLines(), 12000)")
     b.wait("page.calls === 12000", 300)
     assert b.value("page.readings.main.kinetic") < 1e-3
@@ -702,24 +703,28 @@ def main():
         print(f"skipped: the page in Firefox: {name} is missing")
         engines = [Browser]
     for engine in engines:
+        b = None
         for run in tests:
             if only and run.__name__ not in only:
                 continue
             name = f"{run.__name__} {engine.__name__}"
-            from_ = time.monotonic()
+            start = time.monotonic()
             try:
-                with engine() as b:
-                    run(b)
-                    faults = b.faults + b.value("page.errors")
-                    assert not faults, faults
+                b = b or engine()
+                b.as_new()
+                run(b)
+                faults = b.faults + b.value("page.errors")
+                assert not faults, faults
                 passed += 1
-                print(f"ok {name} {time.monotonic() - from_:.0f} s", flush=True)
+                print(f"ok {name} {time.monotonic() - start:.0f} s", flush=True)
             except Skipped as what:
                 print(f"left out {name}: {what}")
             except Exception:
                 failed += 1
                 print("FAIL", name)
                 traceback.print_exc(file=sys.stdout)
+                b = b and b.close()
+        b = b and b.close()
     if not only:
         without_webgl()
         passed += 1
