@@ -50,6 +50,7 @@ help:
 	@echo '                        make mass_spring_forces; VIEWER=0 no window'
 	@echo 'make test_nodes test_edges   the tests of the graph'
 	@echo 'make demo               the cloth on data/grid2: all in one command'
+	@echo 'make web                your cloth as one file, web.html; web-deps first'
 	@echo 'make submit HW=hw2      tag and push; FORCE=1 moves the tag'
 	@echo 'make starter OUT=DIR    what students start from; solution OUT=DIR'
 	@echo 'make deps | clean | format'
@@ -106,6 +107,6 @@ submit:
 	@tools/submit.sh
 
 clean:
-	rm -rf build demo cloth $(DRIVERS) $(OTHERS)
+	rm -rf build demo cloth web.html $(DRIVERS) $(OTHERS)
 
-include CME212/viewer.mk lab/lab.mk course/course.mk
+include CME212/viewer.mk lab/lab.mk course/course.mk course/web/web.mk

@@ -74,3 +74,8 @@ grade-tests:
 .PHONY: course-pictures
 course-pictures:
 	@python3 course/pictures/draw.py
+
+# ---- Figures of the pages: course/web/README.md
+.PHONY: web-figures
+web-figures:
+	@python3 course/web/web.py figures $(B)/figures

@@ -16,6 +16,7 @@ EXCEPTIONS = {"Add", "Mul",           # of Google Highway
               "Sanitizers",           # words of a debugger's message
               "--install",            # of wsl and xcode-select
               "FILE_frames",          # FILE is what the user names
+              "web.html",             # what make web writes
               ".github/workflows/tests.yml"}  # in a class's repository
 CODE = "hpp cpp py sh js html mk toml gp txt yml sbatch".split()
 CALL = re.compile(r"\w+\(\)")

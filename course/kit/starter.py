@@ -32,6 +32,8 @@ COPIED = [
     ("course/starter/Makefile course/starter/README.md", ".", ""),
     ("course/starter/tests.mk", "tests", ""),
     ("tools/submit.sh", "tools", ""),
+    ("course/web/*.?pp course/web/*.js course/web/*.css course/web/*.html "
+     "course/web/web.*", "web", "positions.cpp"),
 ]
 TESTS = "course/tests"
 # At the level open: what stays out, and what stands in its place.

@@ -2,12 +2,6 @@
 // The page: its controls, its frames, and the thread that computes.
 
 const $ = id => document.getElementById(id);
-// Of what is as it was, nothing is laid out and painted anew.
-const setText = (element, text) => {
-  if (element.textContent !== text) element.textContent = text;
-};
-const cssOf = name => getComputedStyle(document.documentElement)
-  .getPropertyValue(name).trim();
 
 const page = {
   about: null,           // scenes and methods
@@ -65,8 +59,6 @@ function showSlider(name) {
   input.setAttribute('aria-valuetext', outputOf(input).textContent);
 }
 
-// Does the person want nothing to move by itself?
-const isStill = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 const scene = () => named(page.about.scenes, page.settings.scene);
 
 function showControls() {
@@ -240,19 +232,7 @@ function setTool(tool) {
 // ---------------------------------------------------------------------- Frames
 
 function colors() {
-  const four = name => cssOf(name).split(' ').map(
-    (a, k) => k < 3 ? Number(a) / 255 : Number(a));
-  const hex = name => [...cssOf(name).match(/[0-9a-f]{2}/gi).map(
-    a => parseInt(a, 16) / 255), 1];
-  page.theme = {cloth: [four('--cloth0'), four('--cloth1')],
-    stretched: four('--stretched'), wire: four('--wire'), pin: four('--pin'),
-    hand: four('--hand'), ball: four('--ball'), tears: four('--tears'),
-    floor: four('--floor'), bad: hex('--bad'), sky: hex('--sky')};
-  page.style = {edge: cssOf('--edge'), dim: cssOf('--dim'),
-    series: [0, 1, 2, 3].map(k => cssOf(`--series${k}`))};
-  const mixed = name => `rgb(${cssOf(name).split(' ').slice(0, 3).join(' ')})`;
-  $('strain').querySelector('i').style.background = 'linear-gradient(90deg, ' +
-    `${mixed('--cloth0')}, ${mixed('--stretched')})`;
+  Object.assign(page, looksOf(document.documentElement));
   page.changed();
 }
 

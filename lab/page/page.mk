@@ -13,7 +13,8 @@ page_o  := $(B)/page.o
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Checkpoint \
   Memory MeshFile Warnings) lab/live/Recording.cpp, \
-  $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes live page)))
+  $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes live page))) \
+  course/web/thrown.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
 page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
   -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off
@@ -25,7 +26,7 @@ page: $(page)/index.html $(page)/loop.gif
 
 $(page_o)/%.o: %.cpp $(page_o)/flags
 	@mkdir -p $(@D) && echo '$(PAGE_CXX) $@'
-	@$(PAGE_CXX) $(page_flags) -include lab/page/wasi.hpp -MMD -MP -c -o $@ $<
+	@$(PAGE_CXX) $(page_flags) -include course/web/wasi.hpp -MMD -MP -c -o $@ $<
 $(page_o)/flags: FORCE
 	@mkdir -p $(@D); echo '$(PAGE_CXX) $(page_flags)' | cmp -s - $@ \
 	  || echo '$(PAGE_CXX) $(page_flags)' > $@
@@ -36,8 +37,8 @@ $(page_o)/cloth.wasm: $(page_objects) lab/page/Page.hpp
 	  -Wl,--export=__stack_pointer -Wl,--export=page_thrown \
 	  $(page_names:%=-Wl,--export=%) -o $@ $(page_objects)
 
-$(page)/index.html: $(page_o)/cloth.wasm $(wildcard lab/page/*.js lab/page/*.py \
-                    lab/page/*.html lab/page/*.css)
+$(page)/index.html: $(page_o)/cloth.wasm $(wildcard $(patsubst \
+  %,lab/page/*.%,js py html css) course/web/*.js course/web/*.css)
 	@mkdir -p $(@D)
 	@python3 lab/page/assemble.py $< $@
 # What a browser shows that can't run it: half as large, 8 frames a second.

@@ -1,12 +1,9 @@
 /** @file wasi.cpp
- * What a page lacks: exceptions, and files. Compiled for the page only. */
+ * What a page lacks: files. Compiled for the page only. */
 #include <cstddef>
-#include <cstdlib>
-#include <exception>
+#include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <string>
-#include <typeinfo>
 
 #include "lab/Interrupt.hpp"
 #include "lab/live/Recording.hpp"
@@ -14,30 +11,6 @@
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/MeshFile.hpp"
 
-// ----------------------------------------------------------------- Exceptions
-// clang++ leaves out what a catch does. So a throw ends the call of the page by
-// a trap, and the page asks what was thrown. Our sources need no other word.
-
-namespace {
-const char* thrown = "";
-}
-
-extern "C" {
-
-/** what() of what ended the last call; "" if it was another fault. */
-const char* page_thrown() { return thrown; }
-
-void* __cxa_allocate_exception(std::size_t size) { return std::malloc(size); }
-void __cxa_free_exception(void*) {}
-
-/** All that is thrown here is a std::exception. */
-[[noreturn]] void __cxa_throw(void* object, std::type_info*, void (*)(void*)) {
-  thrown = static_cast<const std::exception*>(object)->what();
-  __builtin_trap();
-}
-}
-
-// ---------------------------------------------------------------------- Files
 // A page makes its meshes, and its link holds what was asked of it. It knows no
 // signals.
 

@@ -1,54 +1,13 @@
-'use strict';
 // The thread that computes. It holds the one scene, in WebAssembly: Page.hpp
 // says what each call does. Requests are lines of text: lab/live/Requests.cpp.
 // A run is repeated by its requests, each after the same number of steps.
 
-let wasm, module, about;       // exports; compiled; page_about()
+let about;                     // page_about()
 let calls;                     // steps of this run
 let run = 0, asked = 0;        // how many were started; requests taken
-let broken = '';               // what was thrown, until the next start
-let versions = [-1, -1];       // of the meshes that were sent
 let sharpAt = 0, readings = null;
 let rivalIsShown = false;      // that it failed
 let newest = 0;                // number of the last run that the page asked for
-
-const text = at => {
-  const bytes = new Uint8Array(wasm.memory.buffer, at);
-  return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
-};
-const copy = (Type, at, n) => new Type(wasm.memory.buffer, at, n).slice();
-
-// No file and no environment: success with nothing in it, or "bad descriptor".
-const nothing = (...sizes) => {
-  const view = new DataView(wasm.memory.buffer);
-  for (const at of sizes) view.setUint32(at, 0, true);
-  return 0;
-};
-const wasi = {
-  environ_get: () => 0, environ_sizes_get: nothing,
-  fd_close: () => 8, fd_seek: () => 8, fd_write: () => 8,
-  proc_exit: status => { throw new Error('exit ' + status); },
-};
-
-async function instantiate() {
-  const made = await WebAssembly.instantiate(module,
-    {wasi_snapshot_preview1: wasi});
-  wasm = made.exports;
-  wasm._initialize();
-}
-
-// Call of a page_ function. What throws traps: then the instance is used only
-// to draw what it has, until the next start makes another one.
-function call(name, ...values) {
-  const stack = wasm.__stack_pointer.value;
-  try {
-    return wasm['page_' + name](...values);
-  } catch (error) {
-    wasm.__stack_pointer.value = stack;
-    broken = text(wasm.page_thrown()) || String(error);
-    return undefined;
-  }
-}
 
 // @return what is wrong with the request; '' if nothing
 function request(line) {
@@ -111,21 +70,6 @@ async function repeat({scene, side, lines, end}, mine) {
 function failureOf(side) {
   if (side === 0 && broken) return broken;
   return wasm.page_slots(side) ? text(wasm.page_failure(side)) : '';
-}
-
-// What is drawn of a side; its mesh if that is another one than the last.
-function drawn(side) {
-  const points = copy(Float32Array, wasm.page_points(side),
-    4 * wasm.page_slots(side));
-  const version = wasm.page_version(side);
-  if (version === versions[side]) return {points, mesh: null};
-  versions[side] = version;
-  const at = wasm.page_mesh(side);
-  const [lines, triangles, pins] = copy(Uint32Array, at, 3);
-  const all = copy(Uint32Array, at + 12, 2 * lines + 3 * triangles + pins);
-  return {points, mesh: {lines: all.slice(0, 2 * lines),
-    triangles: all.slice(2 * lines, 2 * lines + 3 * triangles),
-    pins: all.slice(2 * lines + 3 * triangles)}};
 }
 
 function frame() {

@@ -2,6 +2,35 @@
 // Draws cloths by WebGL 2 and looks at them from a camera that turns about a
 // point. Lengths in meters, z up; matrices by columns.
 
+// Of what is as it was, nothing is laid out and painted anew.
+const setText = (element, text) => {
+  if (element.textContent !== text) element.textContent = text;
+};
+// Does the person want nothing to move by itself?
+const isStill = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+// The colors that look.css gives to an element: of what View draws, and of
+// curves. Its legend of the strain gets them.
+function looksOf(element) {
+  const css = getComputedStyle(element);
+  const textOf = name => css.getPropertyValue(name).trim();
+  const four = name => textOf(name).split(' ').map(
+    (a, k) => k < 3 ? Number(a) / 255 : Number(a));
+  const hex = name => [...textOf(name).match(/[0-9a-f]{2}/gi).map(
+    a => parseInt(a, 16) / 255), 1];
+  const theme = {cloth: [four('--cloth0'), four('--cloth1')],
+    stretched: four('--stretched'), wire: four('--wire'), pin: four('--pin'),
+    hand: four('--hand'), ball: four('--ball'), tears: four('--tears'),
+    floor: four('--floor'), bad: hex('--bad'), sky: hex('--sky')};
+  const style = {edge: textOf('--edge'), dim: textOf('--dim'),
+    series: [0, 1, 2, 3].map(k => textOf(`--series${k}`))};
+  const mixed = name =>
+    `rgb(${textOf(name).split(' ').slice(0, 3).join(' ')})`;
+  element.querySelector('.strain i').style.background = 'linear-gradient(' +
+    `90deg, ${mixed('--cloth0')}, ${mixed('--stretched')})`;
+  return {theme, style};
+}
+
 const Vec = {
   sub: (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]],
   add: (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]],

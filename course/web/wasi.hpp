@@ -1,7 +1,7 @@
 #pragma once
 /** @file wasi.hpp
  * The parts of the C++ library that wasm32-wasi lacks: threads. Included before
- * each source that is compiled for the page, and by nothing else. A page has
+ * each source that is compiled for a page, and by nothing else. A page has
  * one thread, so it does nothing. */
 #include <chrono>
 #include <mutex>

@@ -9,7 +9,8 @@ class Hand {
     this.grabbed = null;   // {node, at, target}: at as it was grabbed
     this.moved = false;    // the target, since it was last told
     this.cross = [0, 0];   // of the keyboard, in pane 0, each -1 to 1
-    this.line = document.querySelector('#stroke polyline');
+    const beside = what => canvas.parentElement.querySelector(what);
+    this.line = beside('.stroke polyline');
     const on = (name, use) => canvas.addEventListener(name, use);
     on('pointerdown', e => this.down(e));
     on('pointermove', e => this.move(e));
@@ -20,7 +21,7 @@ class Hand {
       page.view.camera.zoomBy(Math.exp(-0.0012 * e.deltaY)), page.changed();
     });
     on('keydown', e => this.key(e));
-    const cross = document.querySelector('#cross');
+    const cross = beside('.cross');
     on('focus', () => cross.hidden = !canvas.matches(':focus-visible'));
     on('blur', () => cross.hidden = true);
   }

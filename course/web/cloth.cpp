@@ -1,0 +1,325 @@
+/** @file cloth.cpp
+ * The cloth of the Graph.hpp and the mass_spring.hpp that are found first, for
+ * a web page: the stages of mass_spring.cpp, on a grid. These are C functions,
+ * as WebAssembly has no others; a pointer that one returns is valid until the
+ * next call. A call that throws ends there: thrown.cpp.
+ *
+ * A slot is a node's index at the start, which it keeps. */
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "CME212/viewer/Faces.hpp"
+#include "mass_spring.hpp"
+
+#ifndef WEB_STAGES
+#define WEB_STAGES 5  // 2: those that need no code of section 5 and later
+#endif
+
+namespace web {  // a student's names do not meet these
+
+enum Stage { problem1, diagonals, forces, constraints, tear };
+
+double length_of(Edge e) {
+  return norm(e.node1().position() - e.node2().position());
+}
+
+template <typename G>
+bool cut_edge(G& g, const Node& a, const Node& b) {
+  if constexpr (requires { g.remove_edge(a, b); })
+    return g.remove_edge(a, b);
+  else
+    return false;
+}
+
+class Run {
+ public:
+  /** @pre stage < WEB_STAGES, side >= 2, dt > 0 */
+  Run(Stage stage, unsigned side, double dt)
+      : dt_(dt), points_(grid_points(side)), quads_(grid_quads(side)) {
+    build_cloth(
+        g, points_, quads_,
+        stage == problem1 ? MeshSprings::plain : MeshSprings::diagonals);
+    for (unsigned i = 0; i < g.num_nodes(); ++i) slots_.push_back(i);
+    if (g.num_edges() > 0) length_ = length_of(*g.edge_begin());
+    if (stage != problem1) length_ = 0;  // each has its own
+    make_step(stage);
+    // As in mass_spring.cpp; five seconds are its time.
+    bound_ = energy(false);
+    for (Node n : nodes(g))
+      bound_ += 100 * n.value().mass * grav *
+                (norm(n.position() - g.node(0).position()) + grav * dt * 5);
+  }
+  Run(const Run&) = delete;
+
+  /** @return the time reached [s] */
+  double step() {
+    save_places();
+    t_ = step_(t_);
+    follow();
+    ++steps_;
+    if (gain_at_ < 0 && !(energy(false) <= bound_)) gain_at_ = t_;
+    for (Node n : nodes(g))
+      if (!(norm_inf(n.position()) < far)) failed_ = int(slots_[n.index()]);
+    return t_;
+  }
+  /** Kinetic, elastic, potential energy [J], nodes, edges, time [s], steps,
+   * the time [s] at which it gained energy from nothing or -1, the node that
+   * is too far away or -1. */
+  std::array<double, 9> readings() {
+    energy(true);
+    const auto& [kinetic, elastic, height] = energies_;
+    return {kinetic,
+            elastic,
+            height,
+            double(g.num_nodes()),
+            double(g.num_edges()),
+            t_,
+            double(steps_),
+            gain_at_,
+            double(failed_)};
+  }
+
+  void set_step(double dt) { dt_ = dt; }
+  void grab(unsigned slot, const Point& target) {
+    hand_ = int(slot), target_ = target;
+  }
+  void move_hand(const Point& target) { target_ = target; }
+  void release() { hand_ = -1; }
+  /** @return whether the student's remove_edge() removed it */
+  bool cut(unsigned slot, unsigned other) {
+    const unsigned before = g.num_edges();
+    const int i = index_of(slot), j = index_of(other);
+    if (i < 0 || j < 0) return false;
+    cut_edge(g, g.node(unsigned(i)), g.node(unsigned(j)));
+    return g.num_edges() < before;
+  }
+
+  unsigned slots() const { return unsigned(points_.size()); }
+  /** By index. */
+  const std::vector<Point>& places() {
+    save_places();
+    return places_;
+  }
+  /** x y z [m] and the largest strain of a spring there, for each slot. */
+  const std::vector<float>& drawn() {
+    drawn_.assign(4 * points_.size(), 0);
+    for (Node n : nodes(g))
+      for (unsigned k = 0; k < 3; ++k)
+        drawn_[4 * slots_[n.index()] + k] = float(n.position()[k]);
+    for (Edge e : edges(g)) {
+      const double L = length_ > 0 ? length_ : e.value().L;
+      const auto strain = float(L > 0 ? std::abs(length_of(e) / L - 1) : 0);
+      for (Node n : {e.node1(), e.node2()}) {
+        float& most = drawn_[4 * slots_[n.index()] + 3];
+        most = std::max(most, strain);
+      }
+    }
+    return drawn_;
+  }
+  /** Counts up when mesh() would be another one. */
+  double version() {
+    const std::array now = {g.num_nodes(), g.num_edges()};
+    if (std::exchange(counts_, now) != now) ++version_;
+    return version_;
+  }
+  /** The numbers of edges, triangles and pins; then the slots of each. */
+  const std::vector<unsigned>& mesh() {
+    std::vector<CME212::Ends> ends;
+    for (Edge e : edges(g)) {
+      const auto [low, high] =
+          std::minmax({slots_[e.node1().index()], slots_[e.node2().index()]});
+      ends.push_back({low, high});
+    }
+    std::vector<unsigned> triangles, pins;
+    for (const Quad& q : CME212::faces_left(quads_, ends, points_.size()))
+      for (unsigned k : {0, 1, 2, 1, 3, 2}) triangles.push_back(q[k]);
+    for (unsigned slot : slots_)
+      if (is_corner(points_[slot])) pins.push_back(slot);
+    mesh_ = {unsigned(ends.size()), unsigned(triangles.size() / 3),
+             unsigned(pins.size())};
+    for (const auto& e : ends) mesh_.insert(mesh_.end(), e.begin(), e.end());
+    for (const auto* list : {&triangles, &pins})
+      mesh_.insert(mesh_.end(), list->begin(), list->end());
+    return mesh_;
+  }
+
+ private:
+  static constexpr double far = 20;  // [m]
+
+  void make_step(Stage stage) {
+    if (stage == problem1)
+      step_ = stepped(Problem1Force(100, length_));
+    else if (stage == diagonals)
+      step_ = stepped(Problem1Force());
+#if WEB_STAGES > 2
+    const auto force = make_combined_force(GravityForce(), MassSpringForce());
+    const auto on_ball = make_combined_constraints(
+        PinConstraint(g), PlaneConstraint(), SphereConstraint());
+    if (stage == forces)
+      step_ = stepped(force);
+    else if (stage == constraints)
+      step_ = stepped(force, [on_ball] { return on_ball; });
+    else if (stage == tear)
+      // Made for each step: where a Node is an index, a removal moves it.
+      step_ = stepped(force, [this] {
+        return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                         TearConstraint());
+      });
+#endif
+  }
+  /** The step with this force, and with the hand. */
+  template <typename F>
+  auto pulled(F force) {
+    return [this, force = std::make_shared<F>(std::move(force))](auto n,
+                                                                 double t) {
+      Point f = (*force)(n, t);
+      if (hand_ >= 0 && slots_[n.index()] == unsigned(hand_)) f += pull(n);
+      return f;
+    };
+  }
+  template <typename F>
+  std::function<double(double)> stepped(F force) {
+    return [this, f = pulled(std::move(force))](double t) {
+      return symp_euler_step(g, t, dt_, f);
+    };
+  }
+#if WEB_STAGES > 2
+  /** @param make returns the constraint of the next step */
+  template <typename F, typename Make>
+  std::function<double(double)> stepped(F force, Make make) {
+    return [this, f = pulled(std::move(force)), make](double t) {
+      auto constraint = make();
+      return symp_euler_step(g, t, dt_, f, [&](Cloth& cloth, double time) {
+        save_places();
+        constraint(cloth, time);
+        follow();
+      });
+    };
+  }
+#endif
+  /** An eighth of the springs' K, at most twice the weight of the cloth. */
+  Point pull(Node n) const {
+    double K = 0;
+    for (Edge e : edges(n)) K += length_ > 0 ? 100 : e.value().K;
+    const Point f = K / 8 * (target_ - n.position());
+    const double most = 2 * grav;  // the cloth has 1 kg
+    return norm(f) > most ? most / norm(f) * f : f;
+  }
+
+  /** Kinetic and potential energy [J], and that of springs if @a springs. */
+  double energy(bool springs) {
+    auto& [kinetic, elastic, height] = energies_ = {};
+    for (Node n : nodes(g)) {
+      height += n.value().mass * grav * n.position().z;
+      if (!is_corner(n.position()))
+        kinetic += n.value().mass * normSq(n.value().vel) / 2;
+    }
+    if (springs)
+      for (Edge e : edges(g)) {
+        const double K = length_ > 0 ? 100 : e.value().K;
+        const double L = length_ > 0 ? length_ : e.value().L;
+        elastic += K * std::pow(length_of(e) - L, 2) / 2;
+      }
+    return kinetic + elastic + height;
+  }
+
+  int index_of(unsigned slot) const {
+    const auto at = std::find(slots_.begin(), slots_.end(), slot);
+    return at == slots_.end() ? -1 : int(at - slots_.begin());
+  }
+  void save_places() {
+    places_.clear();
+    for (Node n : nodes(g)) places_.push_back(n.position());
+  }
+  /** After a removal: which node is which, by its place as it was before; of
+   * one that has moved since, by the nearest place. A Node may be an index. */
+  void follow() {
+    if (g.num_nodes() == slots_.size()) return;
+    std::multimap<std::array<Real, 3>, unsigned> left;
+    const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
+    for (unsigned i = 0; i < slots_.size(); ++i)
+      left.emplace(key(places_[i]), slots_[i]);
+    slots_.assign(g.num_nodes(), 0);
+    std::vector<Node> moved;
+    for (Node n : nodes(g)) {
+      const auto at = left.find(key(n.position()));
+      if (at == left.end()) {
+        moved.push_back(n);
+      } else {
+        slots_[n.index()] = at->second;
+        left.erase(at);
+      }
+    }
+    for (Node n : moved) {
+      const auto distance = [&](const auto& item) {
+        return normSq(n.position() -
+                      Point(item.first[0], item.first[1], item.first[2]));
+      };
+      const auto at = std::min_element(
+          left.begin(), left.end(),
+          [&](auto& a, auto& b) { return distance(a) < distance(b); });
+      if (at == left.end()) return;  // a node was added
+      slots_[n.index()] = at->second;
+      left.erase(at);
+    }
+    save_places();
+    if (hand_ >= 0 && index_of(unsigned(hand_)) < 0) release();
+  }
+
+  Cloth g;
+  double t_ = 0, dt_;  // [s]
+  double length_ = 0;  // rest length of all springs [m], or 0
+  double bound_ = 0, gain_at_ = -1;
+  unsigned steps_ = 0;
+  int hand_ = -1, failed_ = -1;  // slots
+  Point target_;
+  std::vector<Point> points_, places_;
+  std::vector<Quad> quads_;
+  std::vector<unsigned> slots_, mesh_;  // slots_ by index
+  std::vector<float> drawn_;
+  std::array<double, 3> energies_ = {};
+  std::array<unsigned, 2> counts_ = {};
+  double version_ = 0;
+  std::function<double(double)> step_;
+};
+
+std::unique_ptr<Run> run;
+
+}  // namespace web
+
+extern "C" {
+
+using web::run;
+
+unsigned page_stages() { return WEB_STAGES; }
+void page_start(unsigned stage, unsigned side, double dt) {
+  run.reset();
+  run = std::make_unique<web::Run>(web::Stage(stage), side, dt);
+}
+double page_step() { return run->step(); }
+void page_set_step(double dt) { run->set_step(dt); }
+const double* page_readings() {
+  static std::array<double, 9> all;
+  all = run->readings();
+  return all.data();
+}
+
+void page_grab(unsigned slot, double x, double y, double z) {
+  run->grab(slot, Point(x, y, z));
+}
+void page_move(double x, double y, double z) { run->move_hand(Point(x, y, z)); }
+void page_release() { run->release(); }
+int page_cut(unsigned slot, unsigned other) { return run->cut(slot, other); }
+
+unsigned page_nodes() { return unsigned(run->places().size()); }
+unsigned page_slots(unsigned) { return run ? run->slots() : 0; }
+const float* page_points(unsigned) { return run->drawn().data(); }
+const Real* page_positions(unsigned) { return &run->places().data()->x; }
+double page_version(unsigned) { return run->version(); }
+const unsigned* page_mesh(unsigned) { return run->mesh().data(); }
+}

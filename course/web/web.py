@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""The cloth as a web page.
+
+    web.py page OUT.html         make web: of the Graph.hpp and mass_spring.hpp
+                                 of the folder in which it runs
+    web.py figures OUT [NAME...] make web-figures: figure.js, and NAME.js for
+                                 the solution (right) and each mistake of
+                                 course/pictures/draw.py
+
+Needs clang++ and a C++ library for WebAssembly: make web-deps. Exit status: 0
+done, 1 the code does not compile, 2 something is missing."""
+import base64
+import concurrent.futures
+import gzip
+import hashlib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOM = pathlib.Path(__file__).resolve().parent
+SOURCES = ("cloth.cpp", "thrown.cpp")
+FLAGS = """--target=wasm32-wasi -std=c++20 -O2 -g0 -Wall -Wextra
+  -ffp-contract=off -fno-math-errno -fno-finite-loops
+  -D_LIBCPP_HARDENING_MODE=_LIBCPP_HARDENING_MODE_DEBUG
+  -mexec-model=reactor -Wl,--no-entry -Wl,--stack-first
+  -Wl,-z,stack-size=1048576 -Wl,--max-memory=1073741824
+  -Wl,--export=__stack_pointer""".split()
+# Names that stage forces and those after it need.
+FROM_5_ON = ("GravityForce MassSpringForce make_combined_force PinConstraint "
+             "PlaneConstraint SphereConstraint TearConstraint "
+             "make_combined_constraints").split()
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+def compiler():
+    """The newest clang++ that has what WebAssembly needs at run time."""
+    if os.environ.get("WASM_CXX"):
+        return os.environ["WASM_CXX"]
+    found = sorted(pathlib.Path("/usr/lib").glob(
+        "llvm-*/lib/clang/*/lib/wasi"), key=lambda path: [
+            int(a) for a in re.findall(r"\d+", str(path))])
+    if not found:
+        print("make web: clang++ for WebAssembly is missing; this installs it: "
+              "make web-deps", file=sys.stderr)
+        sys.exit(2)
+    return str(found[-1].parents[3].with_name("bin") / "clang++")
+
+
+def compiled(folders, shim, *more):
+    """The module made of the sources in the folders: its bytes; None if they
+    do not compile, which the compiler has said then."""
+    names = set(re.findall(r"\bpage_\w+", "".join(
+        (ROOM / name).read_text() for name in SOURCES)))
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder, "cloth.wasm")
+        done = subprocess.run(
+            [compiler(), *FLAGS, *more, *(f"-I{f}" for f in folders),
+             *(f"-Wl,--export={name}" for name in sorted(names)), "-include",
+             ROOM / "wasi.hpp", "-o", out, shim, ROOM / "thrown.cpp"])
+        return None if done.returncode else out.read_bytes()
+
+
+def packed(wasm):
+    return base64.b64encode(gzip.compress(wasm, 9, mtime=0)).decode()
+
+
+def script():
+    """figure.js: all of a figure but its modules."""
+    def text(*names):
+        return "\n".join((ROOM / name).read_text() for name in names)
+
+    return ("(() => {\n"
+            f"const look = {json.dumps(text('look.css'))};\n"
+            f"const workerSource = {json.dumps(text('wasm.js', 'worker.js'))};"
+            "\n" + text("view.js", "plot.js", "hand.js", "figure.js")
+            + "\n})();\n")
+
+
+def write_page(out):
+    here = pathlib.Path.cwd()
+    words = set(re.findall(r"\w+", "".join(
+        COMMENT.sub(" ", path.read_text(errors="replace"))
+        for path in here.glob("*.hpp"))))
+    stages = 5 if words.issuperset(FROM_5_ON) else 2
+    wasm = compiled(["."], ROOM / "cloth.cpp", f"-DWEB_STAGES={stages}")
+    if wasm is None:
+        return 1
+    html = (ROOM / "page.html").read_text()
+    for place, content in (
+            ("look.css", f"<style>{(ROOM / 'look.css').read_text()}</style>"),
+            ("figure.js", f"<script>{script()}</script>"),
+            ("cloth.js", f"<script>figure.add('cloth', '{packed(wasm)}')"
+                         "</script>"),
+            ("page.js", f"<script>{(ROOM / 'page.js').read_text()}</script>")):
+        html = html.replace(f"<!-- {place} -->", content)
+    pathlib.Path(out).write_text(html)
+    print(f"{out}: {len(html)} bytes; open it in a browser, or send it")
+    return 0
+
+
+# ------------------------------------------------------------------- Figures
+
+def write_figures(out, names):
+    root = ROOM.parents[1]
+    sys.path[:0] = [str(root / "course/pictures"), str(root / "course/kit")]
+    import draw
+    import markers
+    mistakes = {"right": "", **{name.replace(" ", "-").replace("+-", "plus-")
+                                .replace("=-", ""): name
+                                for name in draw.MISTAKES}}
+    if unknown := set(names) - set(mistakes):
+        sys.exit(f"there is no {', '.join(sorted(unknown))}; there are "
+                 + ", ".join(mistakes))
+    out = pathlib.Path(out)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "figure.js").write_text(script())
+    common = "".join(path.read_text() for path in sorted(
+        [*ROOM.glob("*.?pp"), *root.glob("CME212/*.hpp"),
+         root / "CME212/viewer/Faces.hpp", ROOM / "web.py"])) + compiler()
+
+    def write(name):
+        mistake = mistakes[name]
+        texts = {file: draw.with_mistake(
+            markers.solution(markers.path_of(file).read_text(), file), file,
+            mistake) for file in markers.SOURCES}
+        texts["cloth.cpp"] = draw.with_mistake(
+            (ROOM / "cloth.cpp").read_text(), draw.PROGRAM, mistake)
+        mark = "// " + hashlib.sha256(
+            (common + "".join(texts.values())).encode()).hexdigest() + "\n"
+        file = out / f"{name}.js"
+        if file.exists() and file.read_text().startswith(mark):
+            return True
+        with tempfile.TemporaryDirectory() as folder:
+            for path, text in texts.items():
+                pathlib.Path(folder, path).write_text(text)
+            wasm = compiled([folder, root], pathlib.Path(folder, "cloth.cpp"),
+                            "-Wl,--strip-all")
+        if wasm is None:
+            return False
+        file.write_text(f"{mark}figure.add('{name}', '{packed(wasm)}');\n")
+        print(f"{file}: {file.stat().st_size} bytes", flush=True)
+        return True
+
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        return not all(pool.map(write, names or mistakes))
+
+
+def main(arguments):
+    if arguments[:1] == ["page"] and len(arguments) == 2:
+        return write_page(arguments[1])
+    if arguments[:1] == ["figures"] and len(arguments) > 1:
+        return write_figures(arguments[1], arguments[2:])
+    sys.exit("usage: web.py page OUT.html | figures OUT [NAME...]")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
