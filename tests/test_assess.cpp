@@ -116,27 +116,25 @@ TEST(Json, HasTheAdvice) {
   Model m = hanging("nodes 9 9");
   m.measure = Measure::drape_height, m.tolerance = 0.002;
   const std::string text = as_json(advise(m));
-  EXPECT_EQ(
-      text.find("{\n  \"measure\": \"drape-height\",\n  \"unit\": \"m\",\n"
-                "  \"tolerance\": 0.002"),
-      0u)
+  EXPECT_EQ(text.find("{\"measure\":\"drape-height\",\"unit\":\"m\","
+                      "\"tolerance\":0.002,"),
+            0u)
       << text;
   for (const char* name :
-       {"limit", "limit_uncertainty", "observed_order", "options", "nodes",
-        "method", "dt_s", "t_end_s", "error", "uncertainty", "answer",
-        "work_spring_evaluations", "spent_spring_evaluations"})
-    EXPECT_NE(text.find("\n  \"" + std::string(name) + "\": "),
-              std::string::npos)
+       {"limit", "limit_uncertainty", "limit_change", "observed_order",
+        "options", "nodes", "method", "dt_s", "t_end_s", "error", "uncertainty",
+        "answer", "work_spring_evaluations", "spent_spring_evaluations"})
+    EXPECT_NE(text.find(",\"" + std::string(name) + "\":"), std::string::npos)
         << name;
   EXPECT_EQ(text.find("own_"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   EXPECT_EQ(text.find("inf"), std::string::npos);
-  EXPECT_NE(as_json(assess(m)).find("\"own_step_error\": "), std::string::npos);
+  EXPECT_NE(as_json(assess(m)).find("\"own_step_error\":"), std::string::npos);
   m.tolerance = 1e-9;
   AdviceRules little;
   little.budget = 1e5;
   const std::string refused = as_json(advise(m, little));
-  EXPECT_NE(refused.find("\"refusal\": \"the budget ended"), std::string::npos);
+  EXPECT_NE(refused.find("\"refusal\":\"the budget ended"), std::string::npos);
   EXPECT_EQ(refused.find("options"), std::string::npos);
 }
 

@@ -214,12 +214,9 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
   EXPECT_EQ(r.status, 2);
   EXPECT_EQ(r.out.find("no advice: "), 0u);
   EXPECT_EQ(run(grid0 + "--advise --quiet").err.find("cloth: no advice: "), 0u);
-  EXPECT_EQ(run(scene + "--advise --advise-budget -1").status, 2);
   EXPECT_EQ(run(scene + "--advise --advise-work -1").status, 2);
-  EXPECT_EQ(run(scene + "--advise --advise-work 1e6 --advise-budget 1").status,
-            2);
   // A budget that allows nothing: said at once.
-  r = run(scene + "--advise --advise-budget 1e-9");
+  r = run(scene + "--advise --advise-work 1");
   EXPECT_EQ(r.out.find("no advice: the budget ended before the first grid"), 0u)
       << r.out;
   r = run(scene + "--advise --advise-work 300");

@@ -68,6 +68,19 @@ TEST(PageCalls, StepsGoBesideEachOtherToOneTime) {
   EXPECT_EQ(page_slots(1), 0u);
 }
 
+TEST(PageCalls, ReadTheMeasureOfTheScene) {
+  page_load(number_of("membrane"), 9);
+  for (int k = 0; k < 40; ++k) page_step();
+  double lowest = 1;
+  for (unsigned i = 0; i < page_slots(0); ++i)
+    lowest = std::min(lowest, double(page_positions(0)[3 * i + 2]));
+  const std::string all = page_readings(0),
+                    key = R"("measure":"drape-height","unit":"m","answer":[)";
+  ASSERT_NE(all.find(key), std::string::npos) << all;
+  EXPECT_NEAR(std::stod(all.substr(all.find(key) + key.size())), lowest,
+              0.01 * std::abs(lowest));
+}
+
 TEST(PageCalls, WhatIsDrawnIsTheCloth) {
   page_load(number_of("diagonals"), 5);
   // 2 n (n-1) sides, 2 (n-1)^2 diagonals; two triangles a quad; two corners.

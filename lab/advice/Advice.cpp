@@ -4,13 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <set>
-#include <sstream>
 
 #include "CME212/Util.hpp"
+#include "lab/Json.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
-#include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/Fields.hpp"
 
 namespace lab {
 
@@ -36,15 +35,6 @@ std::string for_shell(const std::string& words) {
   for (char c : words)
     text += c == '\'' ? std::string("'\\''") : std::string{c};
   return text + '\'';
-}
-
-/** The lines of a scene file without comments. */
-std::vector<std::string> settings(const Model& m) {
-  std::vector<std::string> all;
-  std::istringstream in(to_scene_file(m));
-  for (std::string line; std::getline(in, line);)
-    if (!line.starts_with('#')) all.push_back(line);
-  return all;
 }
 
 using Row = std::vector<std::string>;
@@ -104,14 +94,14 @@ std::string extrapolated(const Advice& a) {
   if (a.grids.size() < 4) return "";
   const std::string name = name_of(a.measure);
   return "  " + name +
-         " on ever finer grids:" + numbers(a.grids.limit(), a.measure) +
-         " +- " + with_unit(a.grids.uncertainty(), a.measure) + " (95 %), " +
+         (a.from_files ? " by ever smaller steps:" : " on ever finer grids:") +
+         numbers(a.grids.limit(), a.measure) + " +- " +
+         with_unit(a.grids.uncertainty(), a.measure) + " (95 %), " +
          (a.grids.asymptotic()
-              ? "observed order " + CME212::two_digits(a.grids.order()) +
-                    ": the grids are in the asymptotic range"
-              : "no order observed: the grids are not in the asymptotic "
-                "range") +
-         '\n';
+              ? "observed order " + CME212::two_digits(a.grids.order()) + ": "
+              : "no order observed: ") +
+         (a.from_files ? "the steps are " : "the grids are ") +
+         (a.grids.asymptotic() ? "" : "not ") + "in the asymptotic range\n";
 }
 
 /** The advised scene, its command and its error. */
@@ -126,7 +116,8 @@ std::string recommendation(const Advice& a) {
       " s: error of " + name_of(a.measure) + ' ' +
       with_unit(a.error, a.measure) + " +- " +
       with_unit(a.uncertainty, a.measure) + " " + asked(a) +
-      (a.error + a.uncertainty > a.tolerance ? "; it may be more\n" : "\n");
+      (a.error + a.uncertainty > a.tolerance ? "; it may be more" : "") +
+      (a.from_files ? "; the mesh's own error is not known\n" : "\n");
   text += "  ./cloth " + as_options(a.model) + " --headless\n";
   if (!a.answer.empty() && a.answer.size() <= 3)
     text += "  " + name_of(a.measure) +
@@ -143,16 +134,15 @@ std::string recommendation(const Advice& a) {
            what;
   };
   if (a.checked)
-    text += "  checked: error " +
-            finer(a.robustness.half_step, " by half the step") +
-            (a.model.sheets.empty()
-                 ? "; the error of the mesh itself is unknown"
-                 : ", " + finer(a.robustness.finer_grid,
-                                " on twice the cells along each side")) +
+    text += "  checked: error " + finer(a.half_step, " by half the step") +
+            (a.from_files ? ""
+                          : ", " + finer(a.finer_grid,
+                                         " on twice the cells along each "
+                                         "side")) +
             '\n';
   else
     text += "  not run: predicted from " + std::to_string(a.grids.size()) +
-            " coarser grids\n";
+            (a.from_files ? " steps\n" : " coarser grids\n");
   if (a.of_stable > 0)
     text += "  dt is " + CME212::two_digits(a.of_stable) +
             " of the largest stable step\n";
@@ -162,15 +152,14 @@ std::string recommendation(const Advice& a) {
 /** The errors of the scene's own run, and its best step. */
 std::string assessment(const Advice& a) {
   const Assessment& own = *a.own;
-  const bool from_files = own.model.sheets.empty();
-  const double u = from_files ? 0 : a.grids.uncertainty();
+  const double u = a.grids.uncertainty();
   auto size = [&](double error) {
     return std::isfinite(error) ? with_unit(error, a.measure) : "unknown";
   };
   std::string text =
       "assessment: error of " + name_of(a.measure) + ' ' + size(own.total) +
-      (from_files ? " by its step" : " +- " + with_unit(u, a.measure)) + ' ' +
-      asked(a) +
+      (a.from_files ? " by its step" : "") + " +- " + with_unit(u, a.measure) +
+      ' ' + asked(a) +
       (own.total + u <= a.tolerance  ? ": this run meets it\n"
        : own.total - u > a.tolerance ? ": this run does not meet it\n"
                                      : ": the uncertainty decides\n");
@@ -190,8 +179,8 @@ std::string assessment(const Advice& a) {
                  own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
                                          " of the largest stable step"
                                    : ""},
-                {"both", size(from_files ? no_limit : own.total),
-                 "+- " + size(from_files ? no_limit : u)}});
+                {"both", size(a.from_files ? no_limit : own.total),
+                 "+- " + size(a.from_files ? no_limit : u)}});
 }
 
 /** Words of a part that is all default, as nobody would type ''. */
@@ -205,35 +194,23 @@ std::string named_default(const std::string& key) {
 }  // namespace
 
 std::string as_options(const Model& m) {
-  const std::vector<std::string> usual = settings(Model());
-  const std::set<std::string> left_out(usual.begin(), usual.end());
-  std::string all;
-  for (const std::string& line : settings(m)) {
-    const auto equals = line.find(" = ");
-    const std::string key = line.substr(0, equals);
+  Model copy = m, none;
+  const auto all = fields_of(copy), usual = fields_of(none);
+  std::string text;
+  for (const Field& f : all) {
+    const auto values = f.values();
+    const bool replaced = std::ranges::any_of(all, [&](const Field& other) {
+      return other.instead_of == f.name && !other.values().empty();
+    });
     // A run by the advised method has no use for the tolerance.
-    if ((left_out.contains(line) && key != "edges") || key == "tolerance")
+    if (replaced || values == usual[std::size_t(&f - &all[0])].values() ||
+        f.name == std::string("tolerance"))
       continue;
-    std::string value = line.substr(equals + 3), text;
-    auto add = [&](const std::string& words) {
-      all += (all.empty() ? "--" : " --") + key + ' ' +
-             (words.empty() ? named_default(key) : for_shell(words));
-    };
-    if (value.find('"') == std::string::npos) {
-      add(value);
-      continue;
-    }
-    for (std::size_t k = 0, inside = 0; k < value.size(); ++k) {
-      if (value[k] == '"') {
-        if (inside) add(text);
-        inside = !inside, text.clear();
-      } else if (inside) {
-        if (value[k] == '\\') ++k;
-        text += value[k];
-      }
-    }
+    for (const std::string& words : values)
+      text += std::string(text.empty() ? "--" : " --") + f.name + ' ' +
+              (words.empty() ? named_default(f.name) : for_shell(words));
   }
-  return all;
+  return text;
 }
 
 std::string in_words(const Advice& a) {
@@ -244,6 +221,7 @@ std::string in_words(const Advice& a) {
                          ? recommendation(a)
                          : "no advice: " + a.refusal + '\n' + extrapolated(a);
   if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
+  if (!a.buckles.empty()) text += "  note: " + a.buckles + '\n';
   if (!a.left_out.empty() && a.refusal.empty()) {
     text += "  not run for lack of budget: ";
     for (const std::string& what : a.left_out)
@@ -263,26 +241,23 @@ std::string in_words(const Advice& a) {
                     : p.needed         ? "kept"
                                        : "dropped"});
   if (!a.parts.empty()) text += table(rows);
-  rows = {{"grid of nodes", "estimated error" + unit, "force evaluations",
-           "time [s]", ""}};
-  auto row = [&](std::size_t n, const std::string& off, double work,
+  rows = {{a.from_files ? "step [s]" : "grid of nodes",
+           "estimated error" + unit, "force evaluations", "time [s]", ""}};
+  auto row = [&](const std::string& name, const std::string& error, double work,
                  double seconds, const char* what) {
-    rows.push_back({std::to_string(n), off, count(work),
+    rows.push_back({name, error, count(work),
                     seconds > 0 ? number(seconds) : "not run", what});
-  };
-  bool told = !a.refusal.empty();
-  const std::size_t own = told ? 0 : mesh_of(a.model).points.size();
-  auto advised = [&] {
-    if (!told) row(own, number(a.error), a.evaluations, a.seconds, "advised");
-    told = true;
   };
   for (std::size_t k = 0; k < a.grids.size(); ++k) {
     const GridReport& g = a.grids[k];
-    if (g.nodes >= own) advised();
-    row(g.nodes, a.grids.size() < 3 ? "unknown" : number(g.error),
-        g.evaluations, g.trial.seconds, "");
+    row(a.from_files ? number(g.trial.dt) : std::to_string(g.nodes),
+        a.grids.size() < 3 ? "unknown" : number(g.error), g.evaluations,
+        g.trial.seconds, "");
   }
-  advised();
+  if (a.refusal.empty())
+    row(a.from_files ? number(a.model.step.dt)
+                     : std::to_string(mesh_of(a.model).points.size()),
+        number(a.error), a.evaluations, a.seconds, "advised");
   if (!a.grids.empty()) text += table(rows);
   rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
            "spring evaluations"}};
@@ -319,53 +294,28 @@ std::string in_words(const Advice& a) {
 }
 
 std::string as_json(const Advice& a) {
-  std::string text = "{";
-  auto add = [&](const std::string& name, const std::string& value) {
-    text += (text == "{" ? "\n  \"" : ",\n  \"") + name + "\": " + value;
+  using json::list;
+  std::string all = json::members("measure", name_of(a.measure), "unit",
+                                  unit_of(a.measure), "tolerance", a.tolerance,
+                                  "refusal", a.refusal, "trivial", a.trivial);
+  auto add = [&all](const auto&... more) {
+    all += ',' + json::members(more...);
   };
-  auto quoted = [&](const std::string& name, const std::string& value) {
-    std::string all = "\"";
-    for (char c : value)
-      all += c == '"' || c == '\\' ? std::string{'\\', c}
-             : c < ' '             ? std::string{' '}
-                                   : std::string{c};
-    add(name, all + '"');
-  };
-  auto number = [&](const std::string& name, double x) {
-    add(name, std::isfinite(x) ? CME212::to_text(x) : "null");
-  };
-  auto list = [&](const std::string& name, const Answer& all) {
-    std::string value;
-    for (double x : all)
-      value += (value.empty() ? "" : ", ") + CME212::to_text(x);
-    add(name, '[' + value + ']');
-  };
-  quoted("measure", name_of(a.measure));
-  quoted("unit", unit_of(a.measure));
-  number("tolerance", a.tolerance);
-  quoted("refusal", a.refusal), quoted("trivial", a.trivial);
-  if (a.grids.size() > 2) {
-    list("limit", a.grids.limit());
-    number("limit_uncertainty", a.grids.uncertainty());
-    number("observed_order", a.grids.asymptotic() ? a.grids.order() : no_limit);
-  }
-  if (a.own) {
-    number("own_error", a.own->total), number("own_grid_error", a.own->grid);
-    number("own_step_error", a.own->step),
-        number("own_dt_s", a.own->model.step.dt);
-    number("own_dt_over_stable", a.own->of_stable);
-  }
-  if (a.refusal.empty()) {
-    quoted("options", as_options(a.model));
-    number("nodes", double(mesh_of(a.model).points.size()));
-    quoted("method", a.model.method->info.name);
-    number("dt_s", a.model.step.dt), number("t_end_s", a.model.t_end);
-    number("error", a.error), number("uncertainty", a.uncertainty);
-    list("answer", a.answer);
-    number("work_spring_evaluations", a.work);
-  }
-  number("spent_spring_evaluations", a.spent_work);
-  return text + "\n}\n";
+  if (a.grids.size() > 2)
+    add("limit", list(a.grids.limit()), "limit_uncertainty",
+        a.grids.uncertainty(), "limit_change", a.grids.change_of_limit(),
+        "observed_order", a.grids.asymptotic() ? a.grids.order() : no_limit);
+  if (a.own)
+    add("own_error", a.own->total, "own_grid_error", a.own->grid,
+        "own_step_error", a.own->step, "own_dt_s", a.own->model.step.dt,
+        "own_dt_over_stable", a.own->of_stable);
+  if (a.refusal.empty())
+    add("options", as_options(a.model), "nodes", mesh_of(a.model).points.size(),
+        "method", a.model.method->info.name, "dt_s", a.model.step.dt, "t_end_s",
+        a.model.t_end, "error", a.error, "uncertainty", a.uncertainty, "answer",
+        list(a.answer), "work_spring_evaluations", a.work);
+  add("spent_spring_evaluations", a.spent_work);
+  return '{' + all + "}\n";
 }
 
 }  // namespace lab

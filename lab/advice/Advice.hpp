@@ -1,6 +1,7 @@
 #pragma once
 /** @file Advice.hpp
  * Advice: the result of advise(), and its text with tables. */
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,12 +29,6 @@ struct ChoiceReport {
   double work = 0;   ///< spring evaluations
 };
 
-/** The errors of two refinements of the advised run: half the step, and half
- * the step on a grid of twice the cells. */
-struct Robustness {
-  std::optional<double> half_step, finer_grid;  ///< nullopt: not run
-};
-
 /** The error of the scene's own run, in the unit of the measure, and its
  * parts: infinite if not known. */
 struct Assessment {
@@ -44,32 +39,42 @@ struct Assessment {
   Model model;           ///< with its step as a number
 };
 
-struct Advice {
+/** A run that may be advised. */
+struct AdvisedRun {
+  Model model;
+  double work = 0;  ///< spring evaluations
+  /** In the unit of the measure; infinite: the run failed. */
+  double error = std::numeric_limits<double>::infinity();
+  double uncertainty = 0;  ///< the error may be that much larger
+  double seconds = 0;      ///< its time on this machine
+  bool checked = false;    ///< it was run; false: its error is predicted
+  Answer answer = {};      ///< if it was run
+  /** The errors by half the step, and by half the step on a grid of twice the
+   * cells; nullopt: not run. */
+  std::optional<double> half_step = {}, finer_grid = {};
+};
+
+/** What is advised is the cheapest run that was found. */
+struct Advice : AdvisedRun {
   Measure measure = Measure::com;
   double tolerance = 0;           ///< in the unit of the measure
   std::string share;              ///< what it is a share of, in words; or empty
   std::optional<Assessment> own;  ///< of assess()
+  bool from_files = false;        ///< then grids are steps on that mesh
   Refinement grids;
   std::vector<PartReport> parts;
   std::size_t tried_on = 0;  ///< nodes of the grid of parts and steps
   std::vector<ChoiceReport> choices;
-  double scatter = 0;    ///< of the answers of perturbed runs
-  int perturbed = 0;     ///< how many perturbed runs were made
-  std::string refusal;   ///< why no advice is given; empty: advice is given
-  std::string trivial;   ///< why nothing has to be computed; or empty
-  Model model;           ///< the cheapest model that was found
-  bool checked = false;  ///< model was run; false: its error is predicted
-  Answer answer;         ///< of that run
+  double scatter = 0;   ///< of the answers of perturbed runs
+  int perturbed = 0;    ///< how many perturbed runs were made
+  std::string refusal;  ///< why no advice is given; empty: advice is given
+  std::string trivial;  ///< why nothing has to be computed; or empty
+  std::string buckles;  ///< a motion in a plane that would leave it; or empty
   std::vector<std::string> left_out;  ///< runs that the budget did not allow
-  double error = 0;                   ///< in the unit of the measure
-  double uncertainty = 0;             ///< the error may be that much larger
-  Robustness robustness;
   double t_end = 0;  ///< [s] of the question; model may end earlier, at rest
   /** Change of the answer if positions and velocities are rounded to floats. */
   std::optional<double> floats;
-  double work = 0;         ///< spring evaluations of the advised run
-  double seconds = 0;      ///< its time on this machine
-  double evaluations = 0;  ///< its force evaluations
+  double evaluations = 0;  ///< force evaluations of the advised run
   double of_stable = 0;    ///< its step / the largest stable one; 0: no limit
   double spent = 0;        ///< time of all pilots [s]
   double spent_work = 0, budget = 0;  ///< of the pilots, in spring evaluations

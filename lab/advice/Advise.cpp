@@ -39,12 +39,14 @@ std::vector<Answer> all_answers(const Model& m, const Cloth& g) {
 }
 }  // namespace
 
-Adviser::Adviser(const Model& m, const AdviceRules& rules)
+Adviser::Adviser(const Model& m, const AdviceRules& rules, bool assesses)
     : scene_(m),
       rules_(rules),
       run_work_(work_or_0(m)),
-      pilots_(rules.budget > 0 ? rules.budget
-                               : std::max(AdviceRules::usual, run_work_),
+      pilots_(rules.budget > 0
+                  ? rules.budget
+                  : std::max(AdviceRules::usual,
+                             (from_files() || assesses ? 8 : 1) * run_work_),
               rules.tell) {
   if (!(rules_.most_nodes > 0))
     rules_.most_nodes = std::max(AdviceRules::usual, pilots_.budget()) / 1e4;
@@ -52,6 +54,7 @@ Adviser::Adviser(const Model& m, const AdviceRules& rules)
   advice_.tolerance = m.tolerance;
   advice_.grids = Refinement(advice_.measure);
   advice_.t_end = m.t_end;
+  advice_.from_files = from_files();
 }
 
 Advice Adviser::find() {
@@ -61,9 +64,9 @@ Advice Adviser::find() {
   bool calm = true;
   while (add_grid()) {
     const auto& grids = advice_.grids;
-    if (!from_files() && (grids.size() < 5 || too_uncertain())) {
+    if (grids.size() < fewest() || too_uncertain()) {
       if (found_) break;  // it stays
-      if (grids.size() < 7) continue;
+      if (grids.size() < fewest() + 2) continue;
       calm = look_for_chaos(0);
       if (!calm || hopeless()) break;
       continue;
@@ -73,21 +76,25 @@ Advice Adviser::find() {
            !(grids[base].error <= 2 * advice_.tolerance))
       ++base;
     if (base_ != base) {
+      // Of a mesh all runs are long: its parts and steps come afterwards.
+      if (from_files() && base_ == no_base) calm = look_for_chaos(0);
+      if (!calm) break;
       base_ = base;
       find_parts();
       find_rest();
     }
     choose();
-    if (from_files() || (found_ && !may_go_on())) break;
+    if (found_ ? !may_go_on() : from_files() && is_certain()) break;
   }
   calm = calm && advice_.tolerance > 0;
-  if (!found_ && calm) foresee();
+  if (!found_ && calm && !pilots_.left_out().empty()) foresee();
   if (!found_ && advice_.refusal.empty())
     refuse(
         "no method meets the tolerance with the steps that were tried: the "
         "smallest was 1/8 of the largest stable one");
   // Chaos may be why nothing was found.
-  if (calm && !seen_.empty() && look_for_chaos(found_ ? found_->scatter : 0) &&
+  if (calm && !seen_.empty() &&
+      (from_files() || look_for_chaos(found_ ? found_->scatter : 0)) &&
       found_) {
     try_floats(*found_);
     take(*found_);
@@ -124,19 +131,22 @@ double Adviser::cells(double factor, int side) const {
   return std::max(2., most);
 }
 
-double Adviser::cells_over(const Model& m) const {
+double Adviser::over(const Model& m) const {
+  if (from_files())
+    return seen_.empty() ? 1 : step_of(seen_[0].model) / step_of(m);
   auto count = [](const Model& m) {
     double all = 0;
     for (const Sheet& s : m.sheets)
       all += double(s.nodes[0] - 1) * (s.nodes[1] - 1);
     return all;
   };
-  return from_files() ? 1 : std::sqrt(count(m) / count(scene_));
+  return std::sqrt(count(m) / count(scene_));
 }
 
 Model Adviser::pilot(Model m, double factor) const {
   m.method = method_->method;
   m.step = method_->step;
+  if (from_files()) m.step = {.dt = step_of(m)};
   if (m.step.fixed()) m.step.dt = std::min(m.step.dt / factor, m.t_end);
   return m;
 }
@@ -150,24 +160,21 @@ void Adviser::choose_pilots() {
   level_ = first_level_;
   const double some = from_files() ? 1 : factor(first_level_ + 4);
   method_ = as_pilot(scene_);
-  Model m = method_.value();
-  m.method = find_method("respa");
-  std::vector<Model> others = {m};
-  m.method = find_method("tr-bdf2");
-  m.step = {.dt = m.t_end / 50 * some};  // over the cells
-  others.push_back(m);
   try {
     const Model on = on_grid({some, some});
     const StepCosts costs(on);
     double least = costs.of_run(pilot(on, some));
     if (!(least > rules_.stiff)) return;
     least /= 2;
-    for (const Model& other : others) {
-      Model run = on;
-      run.method = other.method, run.step = other.step;
-      if (run.step.fixed()) run.step.dt /= some;
-      if (const double work = costs.of_run(run); work < least)
-        method_ = other, least = work;
+    for (const char* name : {"respa", "tr-bdf2"}) {
+      const std::optional<Model> before = method_;
+      method_->method = find_method(name);
+      if (method_->method->info.limit == no_limit)
+        method_->step = {.dt = scene_.t_end / 50 * some};  // over the cells
+      if (const double work = costs.of_run(pilot(on, some)); work < least)
+        least = work;
+      else
+        method_ = before;
     }
   } catch (const SceneError&) {  // that grid misses a pin
   }
@@ -175,28 +182,32 @@ void Adviser::choose_pilots() {
 
 bool Adviser::add_grid() {
   auto& grids = advice_.grids;
-  if (from_files() && !grids.empty()) return false;
   for (;; ++level_) {
     Seen seen{{}, Track(scene_.t_end, 1), on_level(level_), 0};
     const std::size_t nodes = nodes_of(seen.model);
-    const double over = cells_over(seen.model);
-    if (!grids.empty() && !(over > grids.back().factor)) continue;
-    const std::string on = "a grid of " + std::to_string(nodes) + " nodes";
-    if (double(nodes) > rules_.most_nodes)
+    const std::string on = (from_files() ? "the mesh of " : "a grid of ") +
+                           std::to_string(nodes) + " nodes";
+    if (!from_files() && double(nodes) > rules_.most_nodes)
       return refuse(on + " would be too large" +
                     (grids.empty() ? "" : ": " + so_far()));
     Trial t;
     try {
-      seen.track = Track(scene_.t_end, nodes);
       seen.model = pilot(seen.model, factor(level_));
+      if (!grids.empty() && !(over(seen.model) > grids.back().factor)) continue;
+      seen.track = Track(scene_.t_end, nodes);
       seen.work = work_of_run(seen.model);
-      if (!pilots_.affords(seen.work, "a finer grid",
-                           grids.size() < 5 ? 1 : 0.7))
+      if (from_files() && rules_.budget == 0) pilots_.allow(8 * seen.work);
+      if (!pilots_.affords(seen.work,
+                           from_files() ? "smaller steps" : "a finer grid",
+                           grids.size() < fewest() ? 1 : 0.7))
         return refuse(over_budget(seen.work));
       const Model& m = seen.model;
       t = pilots_.run(
           m, on, seen.work, {},
-          [&](const Cloth& g) { seen.all = all_answers(m, g); },
+          [&](const Cloth& g) {
+            seen.all = all_answers(m, g);
+            find_plane(g);
+          },
           [&](Scene& scene) { seen.track.look(scene); });
       invalid_ = 0;
     } catch (const SceneError& e) {
@@ -214,24 +225,12 @@ bool Adviser::add_grid() {
     }
     seen_.push_back(seen);
     levels_.push_back(level_++);
-    grids.add({over, nodes, infinite, t,
+    grids.add({over(seen.model), nodes, infinite, t,
                seen.work / std::max(1.0, springs_of(seen.model))});
     break;
   }
   limit_ = grids.limit();
-  if (from_files()) {
-    Model fine = scene_;
-    fine.method = find_method("srkn6b");
-    fine.step = {.dt = 0.5 * StepCosts(scene_).verlet()};
-    if (fine.step.dt == no_limit) fine.step.dt = scene_.t_end / 64;
-    const double work = work_of_run(fine);
-    if (!pilots_.affords(work, "small steps", 0.5))
-      return refuse(over_budget(work));
-    const Trial t = pilots_.run(fine, "small steps", work);
-    if (!t.ok()) return refuse(t.failure);
-    limit_ = t.answer;
-    return know_tolerance();
-  } else if (grids.size() > 2) {
+  if (grids.size() > 2) {
     uncertainty_ = grids.uncertainty();
     if (!know_tolerance()) return false;
     pilots_.knows(so_far());
@@ -244,7 +243,7 @@ bool Adviser::add_grid() {
 
 bool Adviser::may_go_on() const {
   const Model next = on_level(level_);
-  return uncertainty_ > rules_.most_uncertainty * advice_.tolerance &&
+  return !from_files() && !is_certain() &&
          double(nodes_of(next)) <= rules_.most_nodes &&
          seen_.back().work * 3 <= std::max(rules_.patience, 0.3 * run_work_) &&
          seen_.back().work * 3 <= 0.5 * pilots_.left();
@@ -252,29 +251,35 @@ bool Adviser::may_go_on() const {
 
 bool Adviser::hopeless() {
   // By order 2 at best, the uncertainty falls with the square of the cells.
-  const double work = seen_.back().work,
-               finer = std::cbrt(std::max(1., 0.7 * pilots_.left() / work)),
+  const double work = seen_.back().work, power = from_files() ? 1 : 3,
+               finer = std::pow(std::max(1., 0.7 * pilots_.left() / work),
+                                1 / power),
                needed = std::sqrt(uncertainty_ / advice_.tolerance /
                                   rules_.most_uncertain);
   if (finer >= needed) return false;
-  refuse(over_budget(work * std::pow(needed, 3)));
+  refuse(over_budget(work * std::pow(needed, power)));
   return true;
 }
 
 std::string Adviser::so_far() const {
   const auto& grids = advice_.grids;
-  if (grids.size() < 5)
-    return std::to_string(grids.size()) +
-           " grids are too few to estimate an error";
+  if (grids.size() < fewest())
+    return CME212::count_of(grids.size(), from_files() ? "step" : "grid") +
+           (grids.size() == 1 ? " is" : " are") +
+           " not enough to estimate an error";
   const std::string name = name_of(advice_.measure),
                     limit = with_unit(uncertainty_, advice_.measure),
                     asked = ' ' + lab::asked(advice_);
   if (too_uncertain())
     return "uncertainty is the reason: the limit of " + name +
-           " on finer grids is known only to +- " + limit + asked;
-  return "the error of " + name + " on " + std::to_string(grids.back().nodes) +
-         " nodes is " + with_unit(grids.back().error, advice_.measure) +
-         " +- " + limit + asked;
+           (from_files() ? " by smaller steps" : " on finer grids") +
+           " is known only to +- " + limit + asked;
+  return "the error of " + name +
+         (from_files()
+              ? " by the smallest step"
+              : " on " + std::to_string(grids.back().nodes) + " nodes") +
+         " is " + with_unit(grids.back().error, advice_.measure) + " +- " +
+         limit + asked;
 }
 
 std::string Adviser::over_budget(double work) const {
@@ -334,6 +339,14 @@ std::string Adviser::same_until(const Separation& apart) const {
   return ", of up to " + CME212::short_text(horizon) + " s";
 }
 
+void Adviser::find_plane(const Cloth& g) {
+  for (unsigned k = 0; k < 3; ++k)
+    shake_.along[k] = std::ranges::any_of(g.nodes(), [&, k](Node n) {
+      return n.position()[k] != g.node(0).position()[k] ||
+             n.value().vel[k] != 0;
+    });
+}
+
 bool Adviser::look_for_chaos(double scatter) {
   std::size_t k = seen_.size() - 1;
   while (k > 0 && advice_.grids[k].factor > 0.55 * advice_.grids.back().factor)
@@ -341,10 +354,10 @@ bool Adviser::look_for_chaos(double scatter) {
   const Seen& seen = seen_[k];
   std::vector<Answer> shaken;
   Track track = seen.track.beside();
+  const Model& m = seen.model;
   if (pilots_.affords(seen.work, "perturbed starts")) {
-    const Model& m = seen.model;
     const Trial t = pilots_.run(
-        m, "a perturbed start", seen.work, {rules_.shake},
+        m, "a perturbed start", seen.work, shake_,
         [&](const Cloth& g) { shaken = all_answers(m, g); },
         [&](Scene& scene) { track.look(scene); });
     if (!t.ok()) return refuse(t.failure);
@@ -353,10 +366,13 @@ bool Adviser::look_for_chaos(double scatter) {
                                          t.answer, advice_.measure));
   }
   advice_.scatter = scatter;
-  if (scatter <= advice_.tolerance / 2) return true;
+  if (scatter <= advice_.tolerance / 2) {
+    find_buckling(m, seen.work, advice_.grids[k].trial.answer);
+    return true;
+  }
   // Less than ten times the shake is not chaos, but the shake itself.
   return refuse(
-      (scatter > 10 * rules_.shake
+      (scatter > 10 * shake_.size
            ? "the motion is chaotic: "
            : std::string("the tolerance is too small: ")) +
       "runs that should agree, with the start moved by 1e-6 m or with a "
@@ -365,6 +381,24 @@ bool Adviser::look_for_chaos(double scatter) {
       ", so no grid and no step can meet the tolerance; " +
       offers(seen.model, seen.all, shaken) +
       same_until(Separation(seen.track, track)));
+}
+
+void Adviser::find_buckling(const Model& m, double work, const Answer& plane) {
+  const auto along = std::ranges::find(shake_.along, false);
+  if (along == shake_.along.end() ||
+      !pilots_.affords(work, "a start moved out of its plane", 0.3))
+    return;
+  const Trial t = pilots_.run(m, "out of its plane", work, {shake_.size});
+  const double off =
+      t.ok() ? distance(t.answer, plane, advice_.measure) : infinite;
+  if (off > advice_.tolerance / 2)
+    advice_.buckles = std::string("no node ever leaves its plane along ") +
+                      "xyz"[along - shake_.along.begin()] +
+                      ", but the cloth buckles: " +
+                      (t.ok() ? name_of(advice_.measure) + " changes by " +
+                                    with_unit(off, advice_.measure)
+                              : t.failure) +
+                      " if its start is moved out of that plane by 1e-6 m";
 }
 
 double Adviser::perturb(const Choice& c) {
@@ -377,7 +411,7 @@ double Adviser::perturb(const Choice& c) {
     most = std::max(most, distance(t.answer, expected, advice_.measure));
   };
   for (unsigned seed : {2, 3, 4})
-    look(c.model, {(seed - 1) * rules_.shake, seed}, c.answer);
+    look(c.model, {(seed - 1) * shake_.size, seed, shake_.along}, c.answer);
   Model other = c.model;
   other.step.dt *= 0.8;
   other.step.dt = step_of(other);
@@ -405,13 +439,7 @@ void Adviser::try_floats(const Choice& c) {
 
 void Adviser::take(const Choice& c) {
   advice_.refusal.clear();
-  advice_.model = c.model;
-  advice_.checked = c.checked;
-  advice_.error = c.error;
-  advice_.uncertainty = c.uncertainty;
-  advice_.robustness = c.robustness;
-  advice_.answer = c.answer;
-  advice_.work = c.work, advice_.seconds = c.seconds;
+  static_cast<AdvisedRun&>(advice_) = c;
   advice_.evaluations = c.work / std::max(1.0, springs_of(c.model));
   if (const double limit = StepCosts(c.model).limit(c.model.method->info);
       limit != no_limit)
@@ -425,14 +453,6 @@ void Adviser::take(const Choice& c) {
 }
 
 }  // namespace adviser_detail
-
-AdviceRules rules_of(const Model& m, double seconds) {
-  AdviceRules rules;
-  // Rounded to a power of 2, so that it is the same in every run.
-  if (seconds > 0)
-    rules.budget = seconds * std::exp2(std::round(std::log2(measured_rate(m))));
-  return rules;
-}
 
 Advice advise(const Model& m, const AdviceRules& rules) {
   return adviser_detail::Adviser(m, rules).find();

@@ -17,10 +17,10 @@ struct AdviceRules {
   /** Once a choice is found, a finer grid is run to find a cheaper one if that
    * takes at most so many spring evaluations, or 0.3 of the scene's own run. */
   double patience = 2e6;
-  double stiff = 2e6;   ///< work on 8 cells from which pilots are implicit
-  double shake = 1e-6;  ///< [m], perturbation of the start
+  double stiff = 2e6;  ///< work on 8 cells from which pilots are implicit
   /** The work of all pilots, in spring evaluations, so that advice is the same
-   * on every machine; 0: the larger of usual and one run of the scene. */
+   * on every machine; 0: the larger of usual and one run of the scene; eight
+   * runs, if its own grid is run: of a mesh from files, and by assess(). */
   double budget = 0;
   static constexpr double usual = 4e8;
   /** Advise the method or the step of the scene. */
@@ -38,10 +38,6 @@ struct AdviceRules {
    * this share of the tolerance. */
   double most_uncertain = 0.6;
 };
-
-/** Rules with a budget of @a seconds on this machine; 0: the usual one.
- * Throws as measured_rate() */
-AdviceRules rules_of(const Model& m, double seconds);
 
 /** @a m by Verlet with the step that is safe in every configuration: how pilots
  * run unless the scene is stiff. */

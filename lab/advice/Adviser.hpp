@@ -26,7 +26,7 @@ inline std::size_t nodes_of(const Model& m) { return mesh_of(m).points.size(); }
 
 class Adviser {
  public:
-  Adviser(const Model& m, const AdviceRules& rules);
+  Adviser(const Model& m, const AdviceRules& rules, bool assesses = false);
 
   Advice find();
   Advice assess();
@@ -41,16 +41,12 @@ class Adviser {
     std::vector<std::string> removed;
     Effect effect;
   };
-  struct Choice {
-    Model model;
-    std::vector<std::string> removed;
-    Sides sides;
-    double work = 0;
+  struct Choice : AdvisedRun {
+    std::vector<std::string> removed = {};
+    Sides sides = {};
     double step = 1;  // over the largest stable one; if there is none, [s]
-    double error = infinite, uncertainty = 0, scatter = 0, seconds = 0;
-    bool checked = false;
-    Robustness robustness = {};
-    Answer answer = {}, half = {};  // if it was run; half: by half the step
+    double scatter = 0;
+    Answer half = {};  // by half the step
   };
   /** What a run on a grid told besides its answer. */
   struct Seen {
@@ -65,20 +61,24 @@ class Adviser {
   double run_work_;  // of the scene's own run
   Pilots pilots_;
   Advice advice_;
+  // A mesh from files is never refined: its "grids" are runs by smaller steps.
   int level_ = 0, first_level_ = 0;  // of the next grid and of the first one
   int invalid_ = 0;                  // grids without a scene, one after another
   std::vector<int> levels_;          // of the grids that were run
   std::vector<Seen> seen_;           // on these grids
   std::optional<Model> method_;      // of pilots, with the step on level 0
-  Answer limit_;                     // of the grids; from files: of small steps
+  Answer limit_;                     // of the grids
   double uncertainty_ = 0;           // of limit_
   std::size_t base_ = no_base;       // the grid on which parts are tried
   std::vector<Reduction> reductions_;  // of more parts each time
   double rest_time_ = 0;               // [s]: the cloth is at rest afterwards
   std::optional<Choice> found_;
+  Shake shake_ = {1e-6};  // within the plane in which the cloth moves, if any
   static constexpr std::size_t no_base = ~std::size_t(0);
 
   bool from_files() const { return scene_.sheets.empty(); }
+  /** Grids, or steps on a mesh from files, that tell an error. */
+  std::size_t fewest() const { return from_files() ? 3 : 5; }
   bool refuse(const std::string& why) {
     advice_.refusal = why;
     return false;
@@ -104,8 +104,9 @@ class Adviser {
   }
   /** The cells of the largest sheet along u (0) or v (1). */
   double cells(double factor, int side) const;
-  /** Cells along a side of @a m over those of the scene, in the mean. */
-  double cells_over(const Model& m) const;
+  /** Cells along a side of @a m over those of the scene, in the mean; of a mesh
+   * from files, the first step over that of @a m. */
+  double over(const Model& m) const;
   /** @a m as pilots run it: by Verlet; or, where its limit makes a grid of few
    * cells cost more than rules_.stiff, by a multirate or an implicit method if
    * that takes less than half of the work. Steps shrink with the cells. */
@@ -115,6 +116,9 @@ class Adviser {
    * coarse to carry the load are forgotten.
    * @return as refuse(), also if there are no finer grids */
   bool add_grid();
+  bool is_certain() const {
+    return uncertainty_ <= rules_.most_uncertainty * advice_.tolerance;
+  }
   bool too_uncertain() const {
     return uncertainty_ > rules_.most_uncertain * advice_.tolerance;
   }
@@ -126,7 +130,6 @@ class Adviser {
   // Texts for progress and refusals.
   std::string so_far() const;
   std::string over_budget(double work) const;
-  std::string not_converging() const;
   /** The tolerance in the unit of the measure, if it is a share of the change
    * since t = 0, or of the answer.  @return as refuse(), if that is 0 */
   bool know_tolerance();
@@ -138,7 +141,12 @@ class Adviser {
 
   // ------------------------------------------------------------------- Chaos
 
-  /** Repeat a run from a start moved by rules_.shake, on a grid of half the
+  /** Let shake_ move no node along an axis along which none has moved until the
+   * end, @a g: a motion that is symmetric stays so. */
+  void find_plane(const Cloth& g);
+  /** Say if a cloth that moves in a plane would buckle. */
+  void find_buckling(const Model& m, double work, const Answer& plane);
+  /** Repeat a run from a start moved by shake_, on a grid of half the
    * cells of the finest, and compare the answers for every Measure and, over
    * time, the positions.
    * @return as refuse(), if this or @a scatter, that of the advised run,
@@ -184,8 +192,9 @@ class Adviser {
   /** Run @a c, which meets the tolerance if its error and a share of the
    * uncertainty do; then its refinements and, last, from perturbed starts. */
   bool holds(Choice& c);
-  /** Without a run: take all parts, by the pilots' method, on the coarsest grid
-   * that is predicted to meet the tolerance. */
+  /** The budget ended: take all parts, by the pilots' method, on the coarsest
+   * grid that is predicted to meet the tolerance; on a mesh from files by the
+   * largest step that does. */
   void foresee();
   void take(const Choice& c);
 };

@@ -14,10 +14,9 @@ Advice Adviser::assess() {
   const CME212::Clock clock;
   choose_pilots();
   auto& grids = advice_.grids;
-  while (add_grid() && !from_files())
-    if (grids.size() >= 5 &&
-        (uncertainty_ <= rules_.most_uncertainty * advice_.tolerance ||
-         (grids.size() >= 7 && hopeless())))
+  while (add_grid())
+    if (grids.size() >= fewest() &&
+        (is_certain() || (grids.size() >= fewest() + 2 && hopeless())))
       break;
   Assessment own{.model = scene_};
   own.nodes = nodes_of(scene_);
@@ -29,7 +28,7 @@ Advice Adviser::assess() {
   Model half = own.model;
   half.step.dt /= 2;
   const double work = costs.of_run(own.model);
-  if ((grids.size() < 3 && !from_files()) || advice_.tolerance == 0 ||
+  if (grids.size() < 3 || advice_.tolerance == 0 ||
       !pilots_.affords(3 * work, "the scene's own run")) {
     if (advice_.refusal.empty()) refuse(over_budget(3 * work));
     return end(clock), advice_;
@@ -52,12 +51,12 @@ Advice Adviser::assess() {
   reductions_ = {{}}, rest_time_ = scene_.t_end;
   if (from_files() || !run.ok() || accepts(own.grid, uncertainty_))
     for (Choice& c : choices({}))
-      if (pilots_.affords(c.work, "smaller steps", 0.5) && holds(c)) {
+      if (pilots_.affords(c.work, "smaller steps", 0.33) && holds(c)) {
         take(c);
         break;
       }
   if (!advice_.checked)
-    refuse(too_uncertain() && !from_files()
+    refuse(too_uncertain()
                ? so_far() + "; --advise-work " +
                      CME212::two_digits(8 * pilots_.budget()) +
                      " would continue"
@@ -71,11 +70,7 @@ Advice Adviser::assess() {
 }  // namespace adviser_detail
 
 Advice assess(const Model& m, const AdviceRules& rules) {
-  AdviceRules more = rules;  // the scene's own run is needed several times
-  const double work = 8 * work_of_run(m);
-  if (rules.budget == 0 && std::isfinite(work))
-    more.budget = std::max(AdviceRules::usual, work);
-  return adviser_detail::Adviser(m, more).assess();
+  return adviser_detail::Adviser(m, rules, true).assess();
 }
 
 }  // namespace lab

@@ -185,15 +185,16 @@ std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
         m->step = {.dt = std::min(dt, m->t_end)};
         if (rules_.keeps_step) m->step = scene_.step;
         m->step.dt = step_of(*m);
-        const double work = costs.of_run(*m);
-        all.push_back(
-            {*m, removed, s, work, bounded ? m->step.dt / limit : dt});
+        all.push_back({{.model = *m, .work = costs.of_run(*m)},
+                       removed,
+                       s,
+                       bounded ? m->step.dt / limit : dt});
         dt /= bounded ? std::sqrt(2) : 2;
         if (rules_.keeps_step) break;
       }
     }
   }
-  std::ranges::stable_sort(all, {}, &Choice::work);
+  std::ranges::stable_sort(all, {}, &AdvisedRun::work);
   return all;
 }
 
@@ -214,20 +215,16 @@ bool Adviser::holds(Choice& c) {
   Model finer = c.model;
   finer.step.dt /= 2;
   const Trial half = run(finer, 2 * c.work, " and half the step");
-  c.robustness.half_step = error_of(half);
-  if (!accepts(*c.robustness.half_step, uncertainty_)) return false;
+  c.half_step = error_of(half);
+  if (!accepts(*c.half_step, uncertainty_)) return false;
   c.half = half.answer;
-  // From files the limit is that of small steps, and as uncertain as the last
-  // of them.
-  if (from_files())
-    c.uncertainty += size_of(Effect(half.answer, t.answer)) / 3;
-  else if (pilots_.affords(8 * c.work, "a check on twice the cells", 0.5)) {
+  if (!from_files() &&
+      pilots_.affords(8 * c.work, "a check on twice the cells", 0.5)) {
     finer = *without_all(on_grid({2 * c.sides.u, 2 * c.sides.v}), c.removed);
     finer.method = c.model.method, finer.t_end = c.model.t_end;
     finer.step = {.dt = c.model.step.dt / 2};
-    c.robustness.finer_grid =
-        error_of(run(finer, 8 * c.work, " and twice the cells"));
-    if (!accepts(*c.robustness.finer_grid, uncertainty_)) return false;
+    c.finer_grid = error_of(run(finer, 8 * c.work, " and twice the cells"));
+    if (!accepts(*c.finer_grid, uncertainty_)) return false;
   }
   c.scatter = perturb(c);
   c.uncertainty += scatter_share * c.scatter;
@@ -255,7 +252,7 @@ void Adviser::choose() {
       const std::string method = c.model.method->info.name;
       const auto fails = too_long.find(method);
       if (fails != too_long.end() && c.step > 0.99 * fails->second) continue;
-      if (!pilots_.affords(c.work, "more expensive choices", 0.5)) break;
+      if (!pilots_.affords(c.work, "more expensive choices", 0.33)) break;
       if (holds(c)) {
         best = c;
         break;
@@ -285,22 +282,32 @@ void Adviser::choose() {
 
 void Adviser::foresee() {
   const Refinement& grids = advice_.grids;
-  if (grids.size() < 5 || too_uncertain()) return;
-  for (int level = level_; level < level_ + 12; ++level) {
+  if (grids.size() < fewest() || too_uncertain()) return;
+  for (int level = from_files() ? 0 : level_; level < level_ + 12; ++level) {
     Model m = on_level(level);
-    if (double(nodes_of(m)) > rules_.most_nodes) return;
-    const double error = size_of(grids.error(cells_over(m)));
-    if (!(error + uncertainty_ <= advice_.tolerance)) continue;
-    m = pilot(m, factor(level));
+    if (!from_files() && double(nodes_of(m)) > rules_.most_nodes) return;
     try {
+      m = pilot(m, factor(level));
       m.step = {.dt = step_of(m)};
     } catch (const SceneError&) {
       continue;  // a pin holds no node
     }
-    const Sides sides{factor(level), factor(level)};
-    found_ = Choice{.model = m, .removed = {}, .sides = sides};
-    found_->work = work_of_run(m);
-    found_->error = error, found_->uncertainty = uncertainty_;
+    const double error = size_of(grids.error(over(m))),
+                 uncertainty = uncertainty_ + scatter_share * advice_.scatter;
+    if (!(error + uncertainty <= advice_.tolerance)) continue;
+    found_ = Choice{{.model = m,
+                     .work = work_of_run(m),
+                     .error = error,
+                     .uncertainty = uncertainty}};
+    // A step on a mesh from files was run, maybe with half of it.
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      const Trial& t = grids[k].trial;
+      if (levels_[k] == level)
+        found_->answer = t.answer, found_->seconds = t.seconds,
+        found_->checked = true;
+      if (levels_[k] == level + 2 && found_->checked)
+        found_->half_step = grids[k].error;
+    }
     return;
   }
 }

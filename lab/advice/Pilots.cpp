@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "CME212/Util.hpp"
-#include "lab/advice/Variation.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/StiffSplit.hpp"
@@ -77,39 +75,9 @@ double StepCosts::of_run(const Model& m) const {
 
 double work_of_run(const Model& m) { return StepCosts(m).of_run(m); }
 
-namespace {
-double rate_on(Model m) {
-  m.method = find_method("verlet");
-  m.step = {.rule = StepRule::safe};
-  Scene scene(m);
-  const double springs = double(scene.cloth().num_edges());
-  // The best of several spans: others were slowed down by other programs.
-  double best = 0;
-  for (int span = 0; span < 5; ++span) {
-    const CME212::Clock clock;
-    double work = 0;
-    while (clock.seconds() < 0.004 && !scene.done(no_limit)) {
-      scene.step();
-      work += springs;
-    }
-    best = std::max(best, work / clock.seconds());
-  }
-  return best;
-}
-}  // namespace
-
-double measured_rate(const Model& m) {
-  if (!m.sheets.empty() && m.sheets[0].nodes[0] > 25) try {
-      return rate_on(refined(m, 24. / (m.sheets[0].nodes[0] - 1)));
-    } catch (const SceneError&) {  // that grid misses a pin
-    }
-  return rate_on(m);
-}
-
 bool Pilots::affords(double work, const std::string& what, double share) {
   const bool fits = work <= share * left();
-  if (!fits && !keeps() &&
-      std::ranges::find(left_out_, what) == left_out_.end())
+  if (!fits && std::ranges::find(left_out_, what) == left_out_.end())
     left_out_.push_back(what);
   return fits;
 }

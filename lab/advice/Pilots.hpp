@@ -1,6 +1,7 @@
 #pragma once
 /** @file Pilots.hpp
  * Pilots: trial runs within a budget. StepCosts: predicts the work of a run. */
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -42,15 +43,6 @@ class StepCosts {
  * Throws as StepCosts */
 double work_of_run(const Model& m);
 
-/** Spring evaluations per second of this machine with the cloth and the
- * contacts of @a m, measured on a grid of about 25 x 25 nodes in about 20 ms.
- * The best of several measurements, as other programs slow the others down. */
-double measured_rate(const Model& m);
-
-/** Work of a run besides its steps, in force evaluations: building the cloth
- * and finding its highest frequency. */
-inline constexpr double start_work = 100;
-
 /** Makes trial runs and adds up their work. */
 class Pilots {
  public:
@@ -61,16 +53,13 @@ class Pilots {
   Pilots(double budget, Tell tell) : budget_(budget), tell_(std::move(tell)) {}
 
   double budget() const { return budget_; }
+  /** Let the budget be at least @a work. */
+  void allow(double work) { budget_ = std::max(budget_, work); }
   double spent() const { return spent_; }
-  double left() const { return budget_ - spent_ - kept_; }
-  /** Reserve @a work for later. Runs that do not fit meanwhile are postponed,
-   * not left out. */
-  void keep(double work) { kept_ = work; }
-  bool keeps() const { return kept_ > 0; }
+  double left() const { return budget_ - spent_; }
   /** Is a run of @a work within @a share of the remaining budget? If not, @a
    * what is added to left_out(). */
   bool affords(double work, const std::string& what, double share = 1);
-  bool cut_short() const { return !left_out_.empty(); }
   /** Each thing once. */
   const std::vector<std::string>& left_out() const { return left_out_; }
   /** Results so far: reported with each run. */
@@ -88,7 +77,7 @@ class Pilots {
             const std::function<void(Scene&)>& after = nullptr);
 
  private:
-  double budget_, spent_ = 0, kept_ = 0;
+  double budget_, spent_ = 0;
   std::vector<std::string> left_out_;
   std::string known_;
   std::map<std::string, Trial> done_;  // by scene file

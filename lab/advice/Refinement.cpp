@@ -32,17 +32,17 @@ void Refinement::add(const GridReport& next) {
   const auto used = std::span<const GridReport>(grids_).subspan(from);
   fit_ = best_fit(used);
   for (GridReport& g : grids_) g.error = error(g.factor).size(measure_);
-  double moves = 0;
+  moves_ = 0;
   if (used.size() > 3)
     for (const auto& others :
          {used.first(used.size() - 1), used.last(used.size() - 1)})
-      moves = std::max(moves,
-                       distance(best_fit(others).limit, fit_.limit, measure_));
+      moves_ = std::max(moves_,
+                        distance(best_fit(others).limit, fit_.limit, measure_));
   const double error =
       distance(fit_.slope, Answer(fit_.slope.size()), measure_);
   uncertainty_ =
       (fit_.believed ? 1 : not_believed) * (of_error * error + fit_.deviation) +
-      moves;
+      moves_;
   if (used.size() == 3) uncertainty_ = of_three_grids * error;
 }
 

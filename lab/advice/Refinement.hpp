@@ -74,6 +74,8 @@ class Refinement {
    * first two 1.5 times if the order is not believed. Of three grids, which
    * have no deviation, three times the error. */
   double uncertainty() const { return uncertainty_; }
+  /** The change of the limit in it. */
+  double change_of_limit() const { return moves_; }
   /** False if the answers drift apart by more than @a negligible: refinements
    * change them by more each time. */
   bool converges(double negligible) const;
@@ -87,7 +89,7 @@ class Refinement {
   Measure measure_;
   std::vector<GridReport> grids_;  // the coarsest first
   Fit fit_;
-  double uncertainty_ = 0;
+  double uncertainty_ = 0, moves_ = 0;
 
   /** O(grids * numbers) for each order */
   Fit fit_of_order(std::span<const GridReport> grids, double order) const;

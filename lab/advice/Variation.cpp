@@ -48,7 +48,7 @@ std::optional<std::string> without_friction(std::string words) {
 std::vector<Variation> without_parts(const Model& m) {
   std::vector<Variation> all;
   auto drop = [&](const std::string& part, auto change) {
-    all.push_back({part, true, m});
+    all.push_back({part, m});
     change(all.back().model);
   };
   if (m.edges.diagonals)
@@ -96,23 +96,6 @@ std::optional<Model> without_all(Model m,
     m = it->model;
   }
   return m;
-}
-
-std::vector<Variation> with_more_parts(const Model& m) {
-  std::vector<Variation> all;
-  auto add = [&](const std::string& part, auto change) {
-    all.push_back({part, false, m});
-    change(all.back().model);
-  };
-  if (!m.edges.diagonals)
-    add("edges: diagonals", [](Model& x) { x.edges.diagonals = true; });
-  if (!m.sheets.empty()) add("finer grid", [](Model& x) { x = refined(x, 2); });
-  add("half the step", [](Model& x) { x.step = {.dt = step_of(x) / 2}; });
-  if (!m.self_collision)
-    add("self-collision", [](Model& x) {
-      x.self_collision = Distance{.thickness = 0.75 * shortest_side(x)};
-    });
-  return all;
 }
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Variation.hpp
- * Scenes with one part less or one part more. Their answers show which parts a
- * question needs. */
+ * Scenes with one part less, and on other grids. Their answers show which parts
+ * and which grid a question needs. */
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,10 +10,9 @@
 
 namespace lab {
 
-/** A scene that differs from another one in one part. */
+/** A scene that lacks one part of another one. */
 struct Variation {
   std::string part;  ///< "KEY: WORDS", as the scene file has them
-  bool dropped;      ///< else added
   Model model;
 };
 
@@ -37,11 +36,5 @@ bool goes_with_another(const std::string& part,
 /** @a m without the parts @a gone, named as in without_parts(); nullopt if @a m
  * lacks one of them. */
 std::optional<Model> without_all(Model m, const std::vector<std::string>& gone);
-
-/** @a m with each part that it could have next: diagonals, a grid of twice as
- * many cells along each side, half the step, and self-collision with a
- * thickness that lets no node through a quad of squares.
- * Throws as step_of(). */
-std::vector<Variation> with_more_parts(const Model& m);
 
 }  // namespace lab

@@ -13,6 +13,7 @@ import argparse
 import concurrent.futures
 import csv
 import hashlib
+import json
 import math
 import os
 import pathlib
@@ -29,7 +30,8 @@ LONG_RUN = 2e7  # spring evaluations of a run of about 0.2 s
 COLUMNS = ("seed", "kind", "measure", "tolerance", "question", "outcome",
            "nodes", "method", "predicted", "uncertainty", "real", "half",
            "next", "twice", "truth_error", "work", "best_work", "best_error",
-           "best", "own_work", "advice_work", "silent", "right", "same")
+           "best", "own_work", "advice_work", "silent", "right", "same",
+           "order", "limit_error", "limit_uncertainty", "limit_change")
 # name: goal (at least; at most if negative), in words.
 GOALS = {
     "advised": (90, "% of the scenes that brute force answers are advised"),
@@ -96,6 +98,24 @@ def rates(rows):
                                 ("same", "same"))}}
 
 
+def limits(rows, factor):
+    """Of the limits of grids without an observed order: how many, the share
+    [%] whose error is within the uncertainty, and uncertainty over error in
+    the median, if the uncertainty had this factor: Refinement.cpp has 1.5."""
+    known = []
+    for r in rows:
+        if r.get("limit_error") and not r["order"]:
+            error, all_of_it, change = (
+                float(r["limit_" + x])
+                for x in ("error", "uncertainty", "change"))
+            known.append((error, float(r["truth_error"]), change + (
+                all_of_it - change) * factor / 1.5))
+    inside = [error <= u + truth for error, truth, u in known]
+    over = [u / error for error, _, u in known if error > 0]
+    return (len(known), 100 * sum(inside) / len(known) if known else math.nan,
+            statistics.median(over) if over else math.nan)
+
+
 def missed(figures, goals):
     """Those of the goals that are not reached; NaN is not judged."""
     return [name for name, goal in goals.items()
@@ -112,6 +132,10 @@ def report(rows):
         print(f"{name:12} {f[name]:6.3g} {'>=' if goal > 0 else '<='}"
               f"{abs(goal):4} {'MISSED' if missed(f, {name: goal}) else '':6} "
               f"{words}")
+    for factor in (1, 1.5, 2, 3):
+        n, within, over = limits(rows, factor)
+        print(f"factor {factor}, of {n} limits without an order: {within:.3g} "
+              f"% within the uncertainty, which is {over:.2g} times the error")
     return f
 
 
@@ -136,10 +160,13 @@ def judge(seed, cloth, ask):
             "seed": seed, "kind": s.kind, "measure": s.measure,
             "tolerance": float(tolerance), "own_work": own[1],
             "question": "./cloth " + shlex.join(words)}
-        command = advice_of(s, row, ["./cloth", *words, "--advise", *ask])
+        command = advice_of(s, row, ["./cloth", *words, "--advise", "--json",
+                                     "advice.json", *ask])
         if command:
             paste(s, row, command)
         right, row["truth_error"] = s.truth(float(tolerance)) or ("", "")
+        if right:
+            judge_limit(s, row, right)
         if right and row["truth_error"] <= float(tolerance) / 3:
             if command:
                 compare(s, row, shlex.split(command)[1:], right)
@@ -170,6 +197,18 @@ def advice_of(s, row, ask):
     announced = re.search(r"by this run: (.*)$", text, re.M)
     s.announced = announced and numbers(announced[1])
     return command[1]
+
+
+def judge_limit(s, row, right):
+    """The error of the limit that the adviser found, with its uncertainty;
+    only where the truth is known better than that."""
+    file = s.folder / "advice.json"
+    found = json.loads(file.read_text()) if file.exists() else {}
+    if row["truth_error"] < found.get("limit_uncertainty", 0) / 3:
+        row["limit_error"] = distance(found["limit"], right, s.points)
+        row["order"] = found["observed_order"] or ""
+        for name in ("uncertainty", "change"):
+            row["limit_" + name] = found["limit_" + name]
 
 
 def paste(s, row, command):

@@ -6,65 +6,20 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "lab/Json.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/page/PageScenes.hpp"
+#include "lab/scenes/Measure.hpp"
 
 namespace lab {
 
 namespace {
 
-// ----------------------------------------------------------------------- JSON
-
-std::string json(std::string_view text) {
-  std::string all = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') all += '\\';
-    all += c;
-  }
-  return all += '"';
-}
-template <typename T>
-requires std::is_arithmetic_v<T>  //
-    std::string json(T a) {
-  if constexpr (std::is_same_v<T, bool>)
-    return a ? "true" : "false";
-  else
-    return std::isfinite(double(a)) ? CME212::exact_text(double(a)) : "null";
-}
-
-/** A text that is JSON already. */
-struct Json {
-  std::string text;
-};
-std::string json(const Json& j) { return j.text; }
-
-std::string members() { return {}; }
-template <typename T, typename... Rest>
-std::string members(std::string_view name, const T& value,
-                    const Rest&... rest) {
-  return json(name) + ':' + json(value) + (sizeof...(rest) > 0 ? "," : "") +
-         members(rest...);
-}
-/** {"name": value, ...} */
-template <typename... NamesAndValues>
-Json object(const NamesAndValues&... all) {
-  return {'{' + members(all...) + '}'};
-}
-/** [to_json(element), ...], between other brackets if @a ends says so. */
-Json list(const auto& all, auto to_json, const char* ends = "[]") {
-  std::string text;
-  for (const auto& a : all) {
-    if (!text.empty()) text += ',';
-    text += json(to_json(a));
-  }
-  return {ends[0] + text + ends[1]};
-}
+using json::Json, json::list, json::members, json::object;
 
 Json json_of(const RunReadings& r) {
   return object("method", r.method, "dt", r.dt, "unit", r.dt_unit, "safe",
@@ -218,6 +173,12 @@ const char* page_readings(int sharp) {
     all +=
         ',' + members("rival", json_of(c->rival), "apart", c->apart.rms,
                       "error", c->error.rms, "rivalError", c->rival_error.rms);
+  const Model& m = state().live->model();
+  if (const Measure& what = m.measure;
+      what.quantity < Measure::pin_force && what.quantity != Measure::positions)
+    all +=
+        ',' + members("measure", name_of(what), "unit", unit_of(what), "answer",
+                      list(answer(m, state().live->scene().cloth(), what)));
   return say({'{' + all + '}'});
 }
 

@@ -43,7 +43,8 @@ double page_beyond(unsigned side, unsigned steps);
 /** Why side 0 failed, and a cure, its method and share of dt_unit(), or null: a
  * JSON text. Takes up to some seconds.  @pre page_failure(0) is not empty */
 const char* page_explain();
-/** Live::readings() as a JSON text. */
+/** Live::readings() as a JSON text, and the present value of the scene's
+ * measure, if that is a number or three. */
 const char* page_readings(int sharp);
 
 /** Slots of nodes of a side; 0: there is no such side. */

@@ -260,6 +260,8 @@ function showNumbers() {
     ['steps', main.steps], ['nodes, springs', `${r.nodes}, ${r.edges}`],
     ['energy drift', `${shortNumber(main.drift)} J`],
     ['force evaluations', main.evaluations]];
+  if (r.measure)
+    rows.push([r.measure, `${r.answer.map(shortNumber).join(' ')} ${r.unit}`]);
   if (r.tornNodes || r.tornEdges)
     rows.push(['torn nodes, springs', `${r.tornNodes}, ${r.tornEdges}`]);
   if (rival)

@@ -137,8 +137,6 @@ void check(Options& o) {
                                 "FILE.nodes: the quads go into FILE.tets");
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
-  require(o.advise_budget >= 0, "advise-budget", o.advise_budget,
-          "seconds, 0 or more");
   require(o.advise_work >= 0 && std::isfinite(o.advise_work), "advise-work",
           o.advise_work, "spring evaluations, 0 or more");
   require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
@@ -411,10 +409,8 @@ int parse(int argc, char** argv, Options& o) {
                "measure needs to reach its tolerance; print them and exit");
   app.add_option("--advise-work", o.advise_work,
                  "spring evaluations that the trial runs may take; 0: the "
-                 "larger of 4e8, a few seconds, and the work of one run");
-  app.add_option("--advise-budget", o.advise_budget,
-                 "the same in seconds of this machine [s]; 0: --advise-work")
-      ->excludes("--advise-work");
+                 "larger of 4e8, a few seconds, and the work of one run, or of "
+                 "eight for a mesh from files and --assess");
   app.add_flag("--assess", o.assess,
                "find by trial runs how large the errors of this grid, step and "
                "method are, and the largest step that meets the tolerance")

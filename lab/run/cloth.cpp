@@ -201,8 +201,8 @@ void write_text(const std::string& text, const std::string& file) {
  * o.model.  @return the exit status to end with, or -1 */
 int take_advice(Options& o) {
   Progress progress(o.quiet);
-  AdviceRules rules = rules_of(o.model, o.advise_budget);
-  if (o.advise_work > 0) rules.budget = o.advise_work;
+  AdviceRules rules;
+  rules.budget = o.advise_work;
   rules.keeps_method = o.keeps_method, rules.keeps_step = o.keeps_step;
   rules.tell = [&](const std::string& doing, double done) {
     if (progress.due()) progress.show(doing, done);

@@ -312,7 +312,9 @@ Trial try_out(const Model& m, const Shake& shake,
   std::uniform_real_distribution<double> off(-shake.size, shake.size);
   if (shake.size > 0) {
     for (Node n : scene.cloth().nodes())
-      n.position() += Point(off(random), off(random), off(random));
+      for (unsigned k = 0; k < 3; ++k)
+        if (const double by = off(random); shake.along[k])
+          n.position()[k] += by;
     // The guard starts anew: it would take these strains for a divergence.
     scene.change_method(*m.method, {.dt = result.dt});
   }

@@ -107,6 +107,7 @@ double step_of(const Model& m);
 struct Shake {
   double size = 0;
   unsigned seed = 1;
+  std::array<bool, 3> along = {true, true, true};  ///< x, y, z
 };
 
 /** Run @a m to its end, with steps of step_of(m).
