@@ -265,18 +265,28 @@ advice() {
     --first 5002 --scenes 5 --ask '--advise-work 1e8' \
     --goals met=99,robust=99,advised=75
 }
-# The web page in a headless browser, where it can be built: its size, bits,
-# controls; pictures of it are in build/check.
-page() {
+# Is anything missing that a page needs, to be built and to be tested?
+skips_page() {
   local name
   for name in chromium ffmpeg; do
     command -v $name >/dev/null ||
-      { echo "skipped: the page: $name is missing: make page-deps"; return 0; }
+      { echo "skipped: the page: $name is missing: make page-deps"; return; }
   done
   compgen -G '/usr/lib/llvm-*/lib/clang/*/lib/wasi' >/dev/null ||
-    { echo "skipped: the page: clang for wasm32: make page-deps"; return 0; }
-  /usr/bin/python3 -c 'import websocket' 2>/dev/null ||
-    { echo "skipped: the page: websocket is missing: make page-deps"; return 0; }
+    { echo "skipped: the page: clang for wasm32: make page-deps"; return; }
+  ! /usr/bin/python3 -c 'import websocket' 2>/dev/null ||
+    return 1
+  echo "skipped: the page: websocket is missing: make page-deps"
+}
+# The cloth of a starter and a solution as a page, and figures of mistakes.
+web() {
+  ! skips_page || return 0
+  /usr/bin/python3 course/web/test_web.py build/check
+}
+# The web page in a headless browser, where it can be built: its size, bits,
+# controls; pictures of it are in build/check.
+page() {
+  ! skips_page || return 0
   in_folder . page page_positions && lab/page/test_page.py build/check
 }
 # The same bits by an ARM processor, in an emulator.
@@ -302,6 +312,7 @@ turns() {
   turn recipes   "$long"  tools/test_recipes.sh
   turn plain     "$limit" plain
   turn page      "$long"  page
+  turn web       "$long"  web
   turn single    "$limit" single
   turn advice    "$limit" advice
   turn arm       "$long"  arm

@@ -3,8 +3,9 @@
 
 const $ = id => document.getElementById(id);
 const {Plot, shortNumber, setText, stages} = figure;
-const page = figure($('stage'), {wasm: ['cloth'], stage: 'problem1',
-  whole: true});
+const {stage} = document.body.dataset;
+const page = figure($('stage'), {wasm: ['cloth'], whole: true,
+  stage: stages[stage] ? stage : 'problem1'});
 const plot = new Plot($('energy'), $('energy-title'));
 
 // A slider whose places are logarithmic.
@@ -30,6 +31,7 @@ slider('speed', 0.01, 1, a => `${shortNumber(a)} s/s`,
 function restart() { plot.clear(), page.restart(); }
 $('stages').append(...Object.entries(stages).map(
   ([name, {title}]) => new Option(title, name)));
+$('stages').value = page.stage;
 $('stages').onchange = e => { page.stage = e.target.value, restart(); };
 $('grid').onchange = e => { page.grid = Number(e.target.value), restart(); };
 page.on('.restart', restart);

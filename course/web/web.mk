@@ -8,7 +8,7 @@ web_packages  = clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 \
 web:
 	@command -v python3 >/dev/null || \
 	  { echo 'make web: python3 is missing: make web-deps'; exit 2; }
-	@python3 $(web_room)web.py page $(O)web.html
+	@python3 $(web_room)web.py page $(O)web.html $(STAGE)
 web-deps:
 	@command -v apt-get >/dev/null || { echo 'make web-deps: needs Debian or \
 	Ubuntu, whose packages it installs: $(web_packages)'; exit 2; }

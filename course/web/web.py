@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The cloth as a web page.
 
-    web.py page OUT.html         make web: of the Graph.hpp and mass_spring.hpp
-                                 of the folder in which it runs
+    web.py page OUT.html STAGE   make web: of the Graph.hpp and mass_spring.hpp
+                                 of the folder in which it runs; it shows this
+                                 stage first
     web.py figures OUT [NAME...] make web-figures: figure.js, and NAME.js for
                                  the solution (right) and each mistake of
                                  course/pictures/draw.py
@@ -80,7 +81,7 @@ def script():
             + "\n})();\n")
 
 
-def write_page(out):
+def write_page(out, stage):
     here = pathlib.Path.cwd()
     words = set(re.findall(r"\w+", "".join(
         COMMENT.sub(" ", path.read_text(errors="replace"))
@@ -89,7 +90,7 @@ def write_page(out):
     wasm = compiled(["."], ROOM / "cloth.cpp", f"-DWEB_STAGES={stages}")
     if wasm is None:
         return 1
-    html = (ROOM / "page.html").read_text()
+    html = (ROOM / "page.html").read_text().replace("STAGE", stage)
     for place, content in (
             ("look.css", f"<style>{(ROOM / 'look.css').read_text()}</style>"),
             ("figure.js", f"<script>{script()}</script>"),
@@ -150,11 +151,11 @@ def write_figures(out, names):
 
 
 def main(arguments):
-    if arguments[:1] == ["page"] and len(arguments) == 2:
-        return write_page(arguments[1])
+    if arguments[:1] == ["page"] and len(arguments) == 3:
+        return write_page(*arguments[1:])
     if arguments[:1] == ["figures"] and len(arguments) > 1:
         return write_figures(arguments[1], arguments[2:])
-    sys.exit("usage: web.py page OUT.html | figures OUT [NAME...]")
+    sys.exit("usage: web.py page OUT.html STAGE | figures OUT [NAME...]")
 
 
 if __name__ == "__main__":

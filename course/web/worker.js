@@ -36,8 +36,8 @@ function placeOf(error) {
 function fail() {
   const said = text(wasm.page_thrown()).replace(/^.*\/c\+\+\/.* failed: /, '');
   const words = faults.find(([found]) => found.test(said || broken));
-  failure = words && (!said || words[0].test('bad_alloc')) ? words[1]
-    : said || broken;
+  failure = (words && (!said || words[0].test('bad_alloc')) ? words[1]
+    : said || broken).trim();
   if (!/:\d+: /.test(failure)) failure += placeOf(fault);
 }
 
