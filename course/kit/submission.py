@@ -24,7 +24,8 @@ GIT_OUTPUT = 16 << 20      # bytes of an answer
 PLAIN = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_+. -]*")   # a name
 TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 # What a starter holds beside the sources: the kit has its own.
-NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools"}
+NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools",
+                   "web"}
 
 # What may be an attempt to be graded by other means than by good work. It is
 # shown, and never decides: most of it has honest uses.
