@@ -10,7 +10,7 @@ lab_main   := lab/run/cloth.cpp \
               lab/page/page_positions.cpp lab/charts/work_precision.cpp \
               lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
-lab_others := data/make_grid.cpp $(wildcard docs/examples/*.cpp)
+lab_others := $(wildcard docs/examples/*.cpp)
 lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer
 lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(wildcard lab/try/*.cpp) $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
               $(wildcard lab/*.cpp lab/*/*.cpp))

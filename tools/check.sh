@@ -160,7 +160,7 @@ build_tests() { in_folder . units work_precision; }
 
 # ---- check-full
 
-# The committed grids are what make_grid makes.
+# The committed grids are what make_grid.py makes.
 same_grids() {
   mkdir -p build/check/grids && in_folder . grids TO=build/check/grids || return 1
   local file
@@ -192,7 +192,7 @@ peers() {
 clang() {
   in_folder clang all cloth units test_sweep test_flat_flow \
     test_graph_nodes test_graph_edges work_precision stability_map \
-    bench bench_rounds make_grid examples \
+    bench bench_rounds examples \
     CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
     build/check/clang/test_nodes && build/check/clang/test_edges &&
     build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges
@@ -244,7 +244,7 @@ plain() {
     SPEED=-O0
 }
 programs() {
-  in_folder . all cloth work_precision stability_map make_grid \
+  in_folder . all cloth work_precision stability_map \
     bench bench_rounds examples
 }
 # Frames of a cloth that tears, read by VTK.
