@@ -155,8 +155,7 @@ $(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
   -lsundials_cvode -lsundials_arkode -lsundials_nvecserial \
   -lsundials_sunlinsolspgmr -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
 $(eval $(call program,$(B)/graph_peers,$(B),$(peers)/graph_peers.cpp,$(speed), \
-  -lbenchmark -lBulletSoftBody -lBulletDynamics -lBulletCollision -lLinearMath))
-$(B)/$(peers)/graph_peers.o: CPPFLAGS += -isystem /usr/include/bullet
+  -lbenchmark))
 
 peers-deps:
 	@tools/deps.sh peers

@@ -83,7 +83,7 @@ def speed(path, out):
         f"as the assignment's; the graph adds "
         f"{100 * proxies - 100:.0f} % to a loop",
         "10,000 nodes with diagonals. Bar: median; thin line: lowest to "
-        "highest. Right: graph classes of Boost and LEMON, Bullet's cloth.",
+        "highest. Right: graph classes of Boost and LEMON.",
         f"{machine}; {compiler}; commit {commit}. Right: {where}; {when}")
     left = Bars(picture, 190, 452, 5.6)
     left.title("One step [ns a node]")
@@ -101,7 +101,7 @@ def speed(path, out):
     tasks = dict(beside_ours())
     for task, title in (("force on each node", "Springs of each node"),
                         ("build, each edge once", "Build the graph"),
-                        ("step", "A step of a cloth")):
+                        ("has_edge", "Look for edges")):
         right.title(title + ": time over ours")
         for library, low, middle, high in tasks[task]:
             right.bar(library, low, middle, high, ORANGE, f"{middle:.2f}")

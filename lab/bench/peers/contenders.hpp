@@ -1,31 +1,28 @@
 #pragma once
 /** @file contenders.hpp
  * The same square of 100 x 100 nodes as a Graph, a graph of Boost and one of
- * LEMON, and as a Cloth and a soft body of Bullet; for graph_peers.cpp.
+ * LEMON; for graph_peers.cpp.
  *
  * Each library is used as its manual suggests, with the values of a cloth at
  * all nodes and edges and with the same formula for springs. */
 #if !__has_include(<boost/graph/adjacency_list.hpp>) || \
-    !__has_include(<lemon/list_graph.h>) || \
-    !__has_include(<bullet/BulletSoftBody/btSoftBody.h>)
-#error "Boost, LEMON or Bullet is missing: make peers-deps"
+    !__has_include(<lemon/list_graph.h>)
+#error "Boost or LEMON is missing: make peers-deps"
 #endif
 
-#include <bullet/BulletSoftBody/btSoftBody.h>
 #include <lemon/list_graph.h>
 #include <lemon/smart_graph.h>
 
 #include <algorithm>
 #include <array>
 #include <boost/graph/adjacency_list.hpp>
-#include <memory>
 #include <optional>
 #include <random>
 #include <set>
 #include <type_traits>
 #include <vector>
 
-#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/fast/Energy.hpp"
 
 namespace lab {
 
@@ -279,50 +276,6 @@ struct Boost {
       clear_vertex(node[i], g);
       remove_vertex(node[i], g);
     }
-  }
-};
-
-/** A cloth of ours, pinned at two corners. */
-struct OurCloth {
-  static constexpr const char* name = "ours";
-  Cloth g;
-  ForcePlan force = make_combined_force(GravityForce(), MassSpringForce());
-  ConstraintPlan pin;
-  SymplecticEuler method;
-
-  OurCloth() {
-    build_cloth(g, square.points, grid_quads(square.side),
-                MeshSprings::diagonals);
-    pin = PinConstraint(g);
-  }
-  void step(double dt) { method.step(g, 0, dt, force, pin); }
-};
-
-/** The same with Bullet's soft body at its defaults: one substep, one pass of
- * its position solver, in single precision. */
-struct BulletCloth {
-  static constexpr const char* name = "Bullet";
-  btSoftBodyWorldInfo world;
-  std::unique_ptr<btSoftBody> body;
-
-  BulletCloth() {
-    world.m_gravity = {0, 0, -btScalar(grav)};
-    world.air_density = 0;
-    std::vector<btVector3> x;
-    std::vector<btScalar> mass;  // 0 holds a node fixed
-    for (const Point& p : square.points) {
-      x.push_back({btScalar(p.x), btScalar(p.y), btScalar(p.z)});
-      mass.push_back(is_corner(p) ? 0 : btScalar(square.node_value().mass));
-    }
-    body = std::make_unique<btSoftBody>(&world, int(x.size()), x.data(),
-                                        mass.data());
-    for (auto [i, j] : square.springs) body->appendLink(int(i), int(j));
-    body->m_ndbvt.optimizeTopDown();  // else its tree is as deep as a list
-  }
-  void step(double dt) {
-    body->predictMotion(btScalar(dt));
-    body->solveConstraints();
-    body->integrateMotion();
   }
 };
 

@@ -1,6 +1,5 @@
 /** @file graph_peers.cpp
- * Compares Graph with the graphs of Boost and LEMON, and a step of our cloth
- * with a step of Bullet's soft body. Prints tables of Markdown:
+ * Compares Graph with the graphs of Boost and LEMON. Prints tables of Markdown:
  *   make peers-deps peers-bench
  * README.md beside explains each row. */
 #include "lab/bench/Bench.hpp"
@@ -13,7 +12,6 @@
 #include <ctime>
 #include <functional>
 #include <map>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -127,14 +125,6 @@ void add_all() {
   });
   if constexpr (requires { &C::remove; })
     add("remove half of the nodes", C::name, time_of_removal<C>);
-}
-/** One step among the first hundred: later ones are another cloth's. */
-template <typename C>
-void add_step() {
-  add("step", C::name, [c = std::shared_ptr<C>(), n = 0]() mutable {
-    if (n++ % 100 == 0) c = std::make_shared<C>();
-    return time_of([&] { c->step(1e-4); });
-  });
 }
 
 /** Bytes that malloc has handed out. */
@@ -253,8 +243,6 @@ int main(int argc, char** argv) {
 
   each_graph([]<typename C>(std::type_identity<C>) { add_all<C>(); });
   add_all<Flat>();
-  add_step<OurCloth>();
-  add_step<BulletCloth>();
   std::vector<char*> args(argv, argv + argc);
   char interleaved[] = "--benchmark_enable_random_interleaving=true";
   char short_time[] = "--benchmark_min_time=0.02";
@@ -275,7 +263,6 @@ int main(int argc, char** argv) {
        "build, first of a process", "build, first of a process, in room",
        "has_edge", "remove half of the nodes"},
       all);
-  table.print({"step"}, {"ours", "Bullet"});
   Table::print_head("bytes", graphs);
   for (int k : {0, 1}) {
     std::printf("| %s |", k == 0 ? "a node" : "an edge");
