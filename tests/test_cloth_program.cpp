@@ -105,7 +105,7 @@ TEST_F(ClothProgram, DumpsPositionsThatCanBeRunAgain) {
   EXPECT_EQ(contents(dir / "again.nodes"), text);
 }
 
-// In memory this mesh gets another order: lab/fast/MeshOrder.hpp.
+// In memory this mesh gets another order: lab/fast/OrderedCloth.hpp.
 TEST_F(ClothProgram, WritesPositionsInTheOrderInWhichTheyWereRead) {
   const unsigned side = 80, n = side * side;
   auto number = [](unsigned i) { return i * 2467 % n; };  // any order

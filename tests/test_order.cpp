@@ -1,5 +1,5 @@
-// MeshOrder.hpp: which meshes get another order in memory, which one, and that
-// nobody can tell by the indices.
+// OrderedCloth.hpp: which meshes get another order in memory, which one, and
+// that nobody can tell by the indices.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -10,7 +10,6 @@
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
-#include "lab/fast/MeshOrder.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/Verlet.hpp"

@@ -112,18 +112,19 @@ class GLCamera {
             std::cos(elevation_) * std::sin(azimuth_), std::sin(elevation_)};
   }
 
-  /** World to eye coordinates (x right, y up, z towards the eye). */
-  Matrix view() const {
+  /** World to the coordinates along @a axes, which are 0 at @a origin. */
+  static Matrix along(const std::array<Point, 3>& axes, const Point& origin) {
     Matrix m{};
-    const std::array<Point, 3> axes{right(), up(), backward()};
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column)
         m[4 * column + row] = float(axes[row][column]);
-      m[12 + row] = float(-dot(axes[row], eye()));
+      m[12 + row] = float(-dot(axes[row], origin));
     }
     m[15] = 1;
     return m;
   }
+  /** World to eye coordinates (x right, y up, z towards the eye). */
+  Matrix view() const { return along({right(), up(), backward()}, eye()); }
 
   /** Eye to clip coordinates.  @pre aspect > 0 */
   Matrix projection(double aspect) const {

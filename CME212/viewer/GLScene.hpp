@@ -225,19 +225,13 @@ class GLScene {
       for (std::uint32_t corner : f) in_face[corner] = 1;
     std::vector<std::uint32_t> indices;
     indices.reserve(2 * scene.edges.size() + 6 * scene.faces.size());
-    spacing_ = 0;
     for (bool loose : {true, false}) {
       for (const auto& [a, b] : scene.edges)
         if (loose != (in_face[a] && in_face[b]))
           indices.insert(indices.end(), {a, b});
       if (loose) num_loose_ = GLsizei(indices.size());
     }
-    for (const auto& [a, b] : scene.edges) {
-      const auto &p = scene.nodes[a], &q = scene.nodes[b];
-      const double length = std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
-      if (std::isfinite(length))
-        spacing_ += length / double(scene.edges.size());
-    }
+    spacing_ = scene.mean_edge();
     num_lines_ = GLsizei(indices.size());
     const auto [a, b, c, d] = around_quad;
     for (const Quad& f : scene.faces)

@@ -2,7 +2,6 @@
 /** @file GLShadow.hpp
  * The light of a scene: a distant lamp, and the shadow map, which says where
  * its light falls. */
-#include <array>
 #include <cmath>
 
 #include "CME212/Point.hpp"
@@ -97,15 +96,9 @@ class GLShadow {
   void make(const GLCamera& camera, F cast) {
     // Twice the space that the camera shows, as folds fly about.
     const double half = camera.extent();
-    to_map_ = {};
-    const std::array<Point, 3> axes{across() / half, along() / half,
-                                    -to_light() / (3 * half)};
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column)
-        to_map_[4 * column + row] = float(axes[row][column]);
-      to_map_[12 + row] = float(-dot(axes[row], camera.center()));
-    }
-    to_map_[15] = 1;
+    to_map_ = GLCamera::along(
+        {across() / half, along() / half, -to_light() / (3 * half)},
+        camera.center());
     GLint before = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
     glBindFramebuffer(GL_FRAMEBUFFER, frame_);

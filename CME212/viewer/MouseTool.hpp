@@ -59,7 +59,7 @@ class MouseTool {
   void look(const SceneData& scene, bool edges_changed) {
     nodes_ = scene.nodes;
     spheres_ = scene.spheres;
-    if (edges_changed) spacing_ = mean_length(scene);
+    if (edges_changed) spacing_ = scene.mean_edge();
     for (auto* node : {&over_, &held_})
       if (*node && **node >= nodes_.size()) node->reset();
   }
@@ -150,15 +150,6 @@ class MouseTool {
 
   Point position(unsigned i) const {
     return {nodes_[i].x, nodes_[i].y, nodes_[i].z};
-  }
-  static double mean_length(const SceneData& s) {
-    double sum = 0, n = 0;
-    for (const auto& [i, j] : s.edges) {
-      const auto &a = s.nodes[i], &b = s.nodes[j];
-      const double l = std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
-      if (std::isfinite(l)) sum += l, n += 1;
-    }
-    return n > 0 ? sum / n : 0;
   }
   /** Where the ray through (x, y) enters the first ball; infinite if none. */
   double depth_of_ball(const Picture& picture, double x, double y) const {

@@ -372,38 +372,32 @@ bool SDLViewer::has_display() {
 }
 
 void SDLViewer::center_view() {
-  Display& d = *display_;
   complete_without_edges();
-  d.change([&] { d.look_at = BoundingBox(); });
+  display_->change([&] { display_->look_at = BoundingBox(); });
 }
 
 void SDLViewer::set_view(const Point& eye_direction, const BoundingBox& box) {
-  Display& d = *display_;
-  d.change([&] {
-    d.camera.look_from(eye_direction);
-    d.look_at = box;
+  display_->change([&] {
+    display_->camera.look_from(eye_direction);
+    display_->look_at = box;
   });
 }
 
 void SDLViewer::set_label(const std::string& label) {
-  Display& d = *display_;
   complete_without_edges();
-  d.change([&] { d.text.label = label; });
+  display_->change([&] { display_->text.label = label; });
 }
 
 void SDLViewer::set_message(std::vector<std::string> paragraphs) {
-  Display& d = *display_;
-  d.change([&] { d.text.message = std::move(paragraphs); });
+  display_->change([&] { display_->text.message = std::move(paragraphs); });
 }
 
 void SDLViewer::set_card(std::vector<std::string> lines) {
-  Display& d = *display_;
-  d.change([&] { d.text.card = std::move(lines); });
+  display_->change([&] { display_->text.card = std::move(lines); });
 }
 
 void SDLViewer::set_scale(ColorScale scale) {
-  Display& d = *display_;
-  d.change([&] { d.text.scale = std::move(scale); });
+  display_->change([&] { display_->text.scale = std::move(scale); });
 }
 
 Look SDLViewer::look() const {
@@ -411,8 +405,7 @@ Look SDLViewer::look() const {
   return display_->look;
 }
 void SDLViewer::set_look(const Look& look) {
-  Display& d = *display_;
-  d.change([&] { d.look = look; });
+  display_->change([&] { display_->look = look; });
 }
 
 bool SDLViewer::closed() const { return display_->closed; }
@@ -423,8 +416,7 @@ bool SDLViewer::paused() const { return display_->paused; }
 void SDLViewer::step_once() { display_->step_once(); }
 void SDLViewer::ask_restart() { display_->ask_restart(); }
 void SDLViewer::wake() {
-  Display& d = *display_;
-  d.change([&] { d.woken = true; });
+  display_->change([&] { display_->woken = true; });
 }
 
 void SDLViewer::set_panels(std::function<double()> draw) {
@@ -465,8 +457,7 @@ bool SDLViewer::take_restart() {
 
 bool SDLViewer::strain_colors() const { return display_->strain_colors; }
 void SDLViewer::set_strain_colors(bool on) {
-  Display& d = *display_;
-  d.change([&] { d.strain_colors = on; });
+  display_->change([&] { display_->strain_colors = on; });
 }
 
 void SDLViewer::event_loop() {

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <map>
@@ -74,6 +75,16 @@ struct SceneData {
   std::vector<Plane> planes;
   std::vector<Mark> marks;
 
+  /** The mean length of the edges that are finite; 0 if there are none. */
+  double mean_edge() const {
+    double sum = 0, count = 0;
+    for (const auto& [i, j] : edges) {
+      const Vertex &a = nodes[i], &b = nodes[j];
+      const double l = std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+      if (std::isfinite(l)) sum += l, ++count;
+    }
+    return count > 0 ? sum / count : 0;
+  }
   /** The box of all nodes and spheres. */
   BoundingBox box() const {
     BoundingBox b;

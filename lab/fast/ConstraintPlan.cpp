@@ -168,7 +168,19 @@ class Sphere final : public Round<NodewiseConstraint> {
   SphereConstraint sphere_;
 };
 
-class Tear final : public Round<SweptConstraint> {
+/** What removes nodes, and adds up their moment. */
+class Removing : public SweptConstraint {
+ public:
+  Exchange exchange() const override { return {0, moment_}; }
+  void archive(Archive& a) const override {
+    a(moment_).require(std::isfinite(moment_));
+  }
+
+ protected:
+  mutable double moment_ = 0;
+};
+
+class Tear final : public Round<Removing> {
  public:
   explicit Tear(const TearConstraint& c) : Round(c.ball()) {}
   void operator()(Cloth& g, double /*t*/) const override {
@@ -182,17 +194,10 @@ class Tear final : public Round<SweptConstraint> {
   void apply_flat(FlatCloth& c, Cloth& g, double t) const override {
     if (!this->idle(c, t, 0, c.slots())) SweptConstraint::apply_flat(c, g, t);
   }
-  Exchange exchange() const override { return {0, moment_}; }
-  void archive(Archive& a) const override {
-    a(moment_).require(std::isfinite(moment_));
-  }
-
- private:
-  mutable double moment_ = 0;
 };
 
 /** Of which nothing is known. */
-class Called final : public SweptConstraint {
+class Called final : public Removing {
  public:
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
@@ -202,14 +207,9 @@ class Called final : public SweptConstraint {
     if (g.version() != version) moment_ += before - moment_of(g);
   }
   bool is_at_rest(double /*t*/) const override { return true; }
-  Exchange exchange() const override { return {0, moment_}; }
-  void archive(Archive& a) const override {
-    a(moment_).require(std::isfinite(moment_));
-  }
 
  private:
   std::shared_ptr<const ZeroConstraint> c_;
-  mutable double moment_ = 0;
 
   static double moment_of(const Cloth& g) { return gravitational_energy(g, 1); }
 };

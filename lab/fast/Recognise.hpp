@@ -4,7 +4,6 @@
  * make_combined_force() has copied it. */
 #include <concepts>
 #include <memory>
-#include <type_traits>
 #include <typeinfo>
 #include <utility>
 

@@ -13,36 +13,21 @@ namespace lab {
 
 namespace {
 int threads_asked_for = 0;
-}
-
-int Sweep::processors() {
-#ifdef _OPENMP
-  return omp_get_num_procs();
-#else
-  return 1;
+#ifndef _OPENMP  // the same for one thread
+int omp_get_num_procs() { return 1; }
+int omp_get_max_threads() { return 1; }
+int omp_get_thread_num() { return 0; }
+void omp_set_num_threads(int) {}
 #endif
-}
+}  // namespace
+
+int Sweep::processors() { return omp_get_num_procs(); }
+std::size_t Sweep::threads() { return std::size_t(omp_get_max_threads()); }
+std::size_t Sweep::thread() { return std::size_t(omp_get_thread_num()); }
 
 void Sweep::set_threads(int n) {
   threads_asked_for = n;
-#ifdef _OPENMP
   omp_set_num_threads(n == 0 ? processors() : n);
-#endif
-}
-
-std::size_t Sweep::threads() {
-#ifdef _OPENMP
-  return std::size_t(omp_get_max_threads());
-#else
-  return 1;
-#endif
-}
-std::size_t Sweep::thread() {
-#ifdef _OPENMP
-  return std::size_t(omp_get_thread_num());
-#else
-  return 0;
-#endif
 }
 
 int Sweep::halo_of(const ForcePlan& force, unsigned reach) {

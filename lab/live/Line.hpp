@@ -2,7 +2,6 @@
 /** @file Line.hpp
  * Reads one line of a request or of a recording, word by word. */
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>

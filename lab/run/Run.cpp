@@ -182,15 +182,10 @@ int Run::steps_to_write() const {
                                  Scene::guard_interval));
 }
 
-void Run::to_end() {
-  while (!done()) advance(steps_to_write());
-  check();
-}
-
 void Run::to_end(const std::function<void()>& after) {
   while (!done()) {
-    advance();
-    after();
+    advance(after ? 1 : steps_to_write());
+    if (after) after();
   }
   check();
 }

@@ -69,9 +69,8 @@ class Run {
    * checked before it is written. A failure is reported immediately.
    * @pre !done() */
   void advance(int most = 1);
-  /** Step until done(); the second one with a call of @a after() after each. */
-  void to_end();
-  void to_end(const std::function<void()>& after);
+  /** Step until done(). Call @a after(), if there is one, after each step. */
+  void to_end(const std::function<void()>& after = {});
 
   /** As below, of this run. */
   void announce() const;

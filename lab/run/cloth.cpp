@@ -62,14 +62,14 @@ void print_answer(const Run& run, const Scene& scene, const Model& m) {
 
 /** Run without a window; draw if pictures are wanted.  @return exit status */
 int run_headless(Scene& scene, Run& run, const Options& o) {
-  if (!o.pictures()) {
+  if (o.pictures()) {
+    Film film(scene, run, o);
+    film.draw();
+    run.to_end([&] { film.draw(); });
+    film.finish();
+  } else {
     run.to_end();
-    return run.finish();
   }
-  Film film(scene, run, o);
-  film.draw();
-  run.to_end([&] { film.draw(); });
-  film.finish();
   return run.finish();
 }
 

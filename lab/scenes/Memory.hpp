@@ -2,7 +2,6 @@
 /** @file Memory.hpp
  * The memory that a run needs and the memory that is available: compared before
  * a cloth is built. */
-#include <cstddef>
 
 namespace lab {
 

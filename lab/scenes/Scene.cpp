@@ -5,7 +5,6 @@
 
 #include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
-#include "lab/scenes/SceneFailure.hpp"
 
 namespace lab {
 
@@ -155,11 +154,6 @@ void Scene::pull(std::optional<HandForce> hand) {
 }
 
 // ------------------------------------------------------------------- Failure
-
-const Diagnosis& Scene::diagnosis() const {
-  if (!diagnosis_) diagnosis_ = diagnose(*this);
-  return *diagnosis_;
-}
 
 std::string Scene::explanation() const {
   try {

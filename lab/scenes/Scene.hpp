@@ -70,14 +70,17 @@ class Scene : public Stepper {
 
   // After a failure:
 
-  /** The cause and a cure, by diagnose(*this) in the first call.
-   * @pre !failure().empty() */
+  /** The cause and a cure, found in the first call: the scene is run with other
+   * methods and steps, each to t_end() or for trial_work. Trials that do not
+   * fail are repeated with half the step.
+   * @pre !failure().empty()
+   * Throws what the recipe throws; Interrupted. */
   const Diagnosis& diagnosis() const;
   /** Failure and diagnosis in one line; only the failure if a signal interrupts
    * the diagnosis.
    * @pre and throws as diagnosis(), but not Interrupted */
   std::string explanation() const;
-  /** Spring evaluations of the trial of a cure: about a second. */
+  /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** The scene with the method and step of @a cure: from its start, or from the
    * present state if there was a change since the start. */

@@ -1,4 +1,5 @@
-#include "lab/scenes/SceneFailure.hpp"
+/** @file SceneFailure.cpp
+ * Scene::diagnosis(): why a scene failed, and a cure that works. */
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "lab/Interrupt.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/Scene.hpp"
 
 namespace lab {
 
@@ -74,12 +76,12 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
 
 }  // namespace
 
-Diagnosis diagnose(const Scene& scene) {
-  const FailedRun run = failed_run(scene);
-  const double end =
-      std::isfinite(scene.t_end()) ? scene.t_end() : 2 * run.time;
-  return diagnose(run,
-                  [&](const Cure& cure) { return attempt(scene, cure, end); });
+const Diagnosis& Scene::diagnosis() const {
+  if (diagnosis_) return *diagnosis_;
+  const FailedRun run = failed_run(*this);
+  const double end = std::isfinite(t_end()) ? t_end() : 2 * run.time;
+  return diagnosis_.emplace(diagnose(
+      run, [&](const Cure& cure) { return attempt(*this, cure, end); }));
 }
 
 }  // namespace lab

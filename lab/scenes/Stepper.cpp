@@ -110,15 +110,10 @@ void Stepper::watch_energy(double t_end) {
   watch_.emplace(energy(), clock_.dt, *guard_);
 }
 
-bool Stepper::run_to(double t_end) {
-  while (!done(t_end)) steps_at_once(guard_interval, t_end);
-  return check();
-}
-
 bool Stepper::run_to(double t_end, const std::function<void()>& after) {
   while (!done(t_end)) {
-    step(t_end);
-    after();
+    steps_at_once(after ? 1 : guard_interval, t_end);
+    if (after) after();
   }
   return check();
 }

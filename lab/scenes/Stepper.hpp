@@ -1,13 +1,13 @@
 #pragma once
 /** @file Stepper.hpp
  * Stepper: steps a cloth through time and checks its states. */
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "lab/scenes/StepClock.hpp"
 #include "lab/scenes/StepLimits.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/EnergyWatch.hpp"
@@ -15,6 +15,27 @@
 #include "lab/stability/StepControl.hpp"
 
 namespace lab {
+
+/** Counts steps. The time is from + (steps - from_steps) dt: in a sum of steps
+ * rounding errors would add up. */
+struct StepClock {
+  double dt = 0, from = 0;              ///< step; time of the last change [s]
+  long long steps = 0, from_steps = 0;  ///< done now; done then
+
+  StepTimes times() const { return {from, dt, steps - from_steps}; }
+  double time() const { return times()(0); }
+  void set_time(double t) { from = t, from_steps = steps; }
+  void set_dt(double next) {
+    set_time(time());
+    dt = next;
+  }
+  void archive(Archive& a) {
+    a(dt)(from)(steps)(from_steps);
+    a.require(dt > 0 && std::isfinite(dt) && from >= 0 && 0 <= from_steps &&
+              from_steps <= steps && steps < 1LL << 53 &&
+              std::isfinite(time()));
+  }
+};
 
 /** A cloth with what acts on it, a method and a clock.
  *
@@ -42,11 +63,10 @@ class Stepper {
   /** One to @a most steps, up to the next check. The same bits as by step(), in
    * less time with some methods.  @return, @pre and throws as step() */
   bool steps_at_once(int most, double t_end = no_limit);
-  /** Step until done(@a t_end). The second overload calls @a after() after each
+  /** Step until done(@a t_end). Call @a after(), if there is one, after each
    * step, even if the step failed.
    * @return as step()   Throws as step(), and what @a after throws. */
-  bool run_to(double t_end);
-  bool run_to(double t_end, const std::function<void()>& after);
+  bool run_to(double t_end, const std::function<void()>& after = {});
   /** True at the end of a run to @a t_end [s], and if the run failed. */
   bool done(double t_end) const { return !failure_.empty() || time() >= t_end; }
 

@@ -108,6 +108,28 @@ inline void put(const std::string& name, const Numbers& numbers) {
   std::fflush(out);  // what is known before a crash counts
 }
 
+/** The derivatives of what @a make() returns in the state of @a w, by
+ * differences of order 4: a row for each number of the state. */
+template <typename Make>
+void put_jacobian(World& w, Make make) {
+  constexpr double apart = 1e-3;
+  const Numbers s = state(w);
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    Numbers column;
+    for (const auto& [at, weight] :
+         {std::pair{-2., 1.}, {-1., -8.}, {1., 8.}, {2., -1.}}) {
+      Numbers from = s;
+      from[k] += at * apart;
+      set_state(w, from);
+      const Numbers made = make();
+      column.resize(made.size());
+      for (std::size_t i = 0; i < made.size(); ++i)
+        column[i] += weight * made[i] / (12 * apart);
+    }
+    put("jacobian", column);
+  }
+}
+
 inline void verlet(World& w, double t, double h) {
   auto kick = [&](double at) {
     for (Node n : nodes(w.g))
@@ -175,7 +197,7 @@ inline World cloth(unsigned n, bool hangs, bool diagonals) {
   }
   return w;
 }
-World grid1() {
+inline World grid1() {
   World w = cloth(25, false, true);
   return pin(w, {0, 600}, false);
 }

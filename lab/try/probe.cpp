@@ -203,23 +203,8 @@ void physics() {
   }
   put("reversed", state(reversed));
 
-  World moved = tangle();  // the Jacobian, by differences of order 4
-  const Numbers s = state(moved);
-  for (std::size_t k = 0; k < s.size(); ++k) {
-    constexpr double apart = 1e-3;
-    Numbers column(s.size());
-    for (const auto& [at, weight] :
-         {std::pair{-2., 1.}, {-1., -8.}, {1., 8.}, {2., -1.}}) {
-      Numbers from = s;
-      from[k] += at * apart;
-      set_state(moved, from);
-      advance(moved, 0, h);
-      const Numbers end = state(moved);
-      for (std::size_t i = 0; i < s.size(); ++i)
-        column[i] += weight * end[i] / (12 * apart);
-    }
-    put("jacobian", column);
-  }
+  World moved = tangle();
+  put_jacobian(moved, [&] { return advance(moved, 0, h), state(moved); });
 
   World far = tangle();  // a quarter of Verlet's limit, for long
   constexpr double step = .25 * 2 / 5.4;

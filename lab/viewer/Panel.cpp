@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <filesystem>
 #include <limits>
 
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 
 namespace lab {
 namespace {
@@ -56,15 +54,8 @@ Panel::Panel(RequestQueue& requests, CME212::SDLViewer& viewer, double speed)
     : requests_(requests),
       viewer_(viewer),
       speed_(speed),
-      side_by_side_(own_method != nullptr) {
-  std::error_code none;  // without the folder there is no menu
-  for (const auto& entry :
-       std::filesystem::directory_iterator("data/scenes", none))
-    if (entry.path().extension() == ".toml")
-      scenes_.push_back(entry.path().string());
-  std::ranges::sort(scenes_);
-  rival_ = find_method("verlet");
-}
+      side_by_side_(own_method != nullptr),
+      rival_(find_method("verlet")) {}
 
 // ------------------------------------------------- On the thread that steps
 
@@ -416,11 +407,10 @@ void Panel::draw_scenes() {
   if (open) {
     if (ImGui::Selectable("as it was started"))
       ask(scene_request(shown_.first));
-    for (const std::string& file : scenes_) {
-      const std::string name = std::filesystem::path(file).stem().string();
-      if (ImGui::Selectable(name.c_str(), name == shown_.model.name))
-        load(file);
-      mark(("scene/" + name).c_str());
+    for (const StoredScene& scene : stored_scenes()) {
+      if (ImGui::Selectable(scene.name, scene.name == shown_.model.name))
+        load(scene.model());
+      mark((std::string("scene/") + scene.name).c_str());
     }
     ImGui::EndCombo();
   }
@@ -431,19 +421,14 @@ void Panel::draw_scenes() {
   }
 }
 
-/** Load a scene; one that leaves its mesh open gets that of now, or grid1. */
-void Panel::load(const std::string& file) {
-  try {
-    Model m = load_open_model(file);
-    if (m.nodes.empty() && m.sheets.empty()) {
-      const bool has_files = !shown_.model.nodes.empty();
-      m.nodes = has_files ? shown_.model.nodes : "data/grid1.nodes";
-      m.tets = has_files ? shown_.model.tets : "data/grid1.tets";
-    }
-    ask(scene_request(m));
-  } catch (const std::exception& e) {
-    refuse(e.what());
+/** Load @a m; if it leaves its mesh open it gets that of now, or grid1. */
+void Panel::load(Model m) {
+  if (m.nodes.empty() && m.sheets.empty()) {
+    const bool has_files = !shown_.model.nodes.empty();
+    m.nodes = has_files ? shown_.model.nodes : "data/grid1.nodes";
+    m.tets = has_files ? shown_.model.tets : "data/grid1.tets";
   }
+  ask(scene_request(m));
 }
 
 }  // namespace lab

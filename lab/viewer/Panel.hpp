@@ -69,11 +69,10 @@ class Panel {
   bool begun_ = false;
   // Of the thread that draws:
   State shown_;
-  const MethodEntry* rival_ = nullptr;
+  const MethodEntry* rival_;
   double rival_share_ = 0.5;
   bool equal_work_ = false;
-  std::vector<std::string> scenes_;  // files
-  float unit_ = 1;                   // [pixels]
+  float unit_ = 1;  // [pixels]
 
   void ask(std::string request);
   void mark(const char* control);
@@ -88,7 +87,7 @@ class Panel {
   void draw_plots();
   void draw_comparison();
   void draw_scenes();
-  void load(const std::string& file);
+  void load(Model m);
   void remember(const Readings& r);
 };
 
