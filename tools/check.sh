@@ -252,10 +252,10 @@ vtk() {
   local folder=build/check/vtk
   rm -rf "$folder" && in_folder . cloth && mkdir "$folder" &&
     build/check/cloth data/grid1.nodes data/grid1.tets --headless --t-end 0.75 \
-      --vtp "$folder/vtp" --obj "$folder/obj" --ply "$folder/ply" \
+      --vtp "$folder/vtp" --ply "$folder/ply" \
       --csv "$folder/table.csv" --every 1 &&
     tools/check_vtk.py "$folder/vtp" "$folder/table.csv" \
-      --obj "$folder/obj" --ply "$folder/ply"
+      --ply "$folder/ply"
 }
 # Does advice still do what it did? How often it is right is in
 # lab/advice/README.md, from more scenes.

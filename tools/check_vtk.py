@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Read frames that ./cloth --vtp FOLDER wrote with VTK, a reader of others, and
-check them against the table of the same run, a row a step; those of --obj and
+check them against the table of the same run, a row a step; those of
 --ply of that run, too; and draw the last frame.
 Without python3-vtk9 it says so: "skipped: ..." """
 import argparse
@@ -19,7 +19,6 @@ except ImportError:
 options = argparse.ArgumentParser(description=__doc__)
 options.add_argument("folder")
 options.add_argument("table")
-options.add_argument("--obj", metavar="FOLDER")
 options.add_argument("--ply", metavar="FOLDER")
 options.add_argument("--picture", metavar="FILE.png")
 options = options.parse_args()
@@ -76,12 +75,9 @@ for entry in frames:
     assert all(arrays["pinned"].GetValue(i) in (0, 1) for i in range(n))
     # Frames for Blender: all points of the start, those of this frame where
     # this frame has them, and its quads.
-    for kind, reader in (("obj", vtk.vtkOBJReader), ("ply", vtk.vtkPLYReader)):
-        other = getattr(options, kind)
-        if not other:
-            continue
-        name = entry.get("file").replace(".vtp", "." + kind)
-        mesh = read(os.path.join(other, name), reader())
+    if options.ply:
+        name = entry.get("file").replace(".vtp", ".ply")
+        mesh = read(os.path.join(options.ply, name), vtk.vtkPLYReader())
         points_of_start = mesh.GetNumberOfPoints()
         assert points_of_start == int(rows[min(rows)]["nodes"]), points_of_start
         assert mesh.GetNumberOfPolys() == data.GetNumberOfPolys()

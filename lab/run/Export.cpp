@@ -8,14 +8,13 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <limits>
-#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <type_traits>
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
+#include "CME212/viewer/Faces.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -63,10 +62,6 @@ Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
 // -------------------------------------------------------------------- Formats
 
 namespace {
-
-/** A quad's corners, one after the other around it; of a sheet u x v is where
- * they turn left. */
-constexpr std::array<unsigned, 4> around = {0, 2, 3, 1};
 
 std::string base64(std::string_view bytes) {
   constexpr char digits[] =
@@ -137,7 +132,7 @@ class Vtp {
     array<float>("strain", 1, cell_strains());
     close("CellData");
     cells("Lines", f_.springs, std::array<unsigned, 2>{0, 1});
-    cells("Polys", f_.quads, around);
+    cells("Polys", f_.quads, CME212::around_quad);
     close("Piece"), close("PolyData"), close("VTKFile");
     return "<?xml version=\"1.0\"?>\n" + std::move(text_);
   }
@@ -218,19 +213,6 @@ class Vtp {
   }
 };
 
-std::string to_obj(const Frame& f) {
-  std::string text = "# t = " + exact_text(f.time) + " s\n";
-  for (const Point& p : f.places)
-    text += "v " + exact_text(p.x) + ' ' + exact_text(p.y) + ' ' +
-            exact_text(p.z) + '\n';
-  for (const Quad& q : f.quads) {
-    text += 'f';
-    for (unsigned k : around) text += ' ' + std::to_string(q[k] + 1);
-    text += '\n';
-  }
-  return text;
-}
-
 std::string to_ply(const Frame& f) {
   std::string text =
       std::string("ply\nformat binary_") + (little ? "little" : "big") +
@@ -247,15 +229,13 @@ std::string to_ply(const Frame& f) {
   }
   for (const Quad& q : f.quads) {
     text += char(4);
-    for (unsigned k : around) append(text, std::int32_t(q[k]));
+    for (unsigned k : CME212::around_quad) append(text, std::int32_t(q[k]));
   }
   return text;
 }
 
 constexpr const char* ending_of(FrameFormat format) {
-  return format == FrameFormat::vtp   ? ".vtp"
-         : format == FrameFormat::obj ? ".obj"
-                                      : ".ply";
+  return format == FrameFormat::vtp ? ".vtp" : ".ply";
 }
 
 void write_file(const std::string& name, const std::string& text) {
@@ -267,9 +247,7 @@ void write_file(const std::string& name, const std::string& text) {
 }  // namespace
 
 std::string to_file(const Frame& frame, FrameFormat format) {
-  return format == FrameFormat::vtp   ? Vtp(frame).text()
-         : format == FrameFormat::obj ? to_obj(frame)
-                                      : to_ply(frame);
+  return format == FrameFormat::vtp ? Vtp(frame).text() : to_ply(frame);
 }
 
 // --------------------------------------------------------------------- Folder

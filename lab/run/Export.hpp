@@ -33,11 +33,10 @@ struct Frame {
  * vtp: VTK PolyData in XML, arrays in base64: all data of a Frame about what
  *   remains; positions in double precision, else in single. frames.pvd lists
  *   the files with their times. docs.vtk.org, "VTK XML Formats"
- * obj: Wavefront, positions and quads.
- * ply: binary, single precision: positions, velocities, strains, quads.
- * obj and ply have all points of the first frame in each frame, in one order: a
- * removed node stays at its last position, and its quads are removed. */
-enum class FrameFormat { vtp, obj, ply };
+ * ply: binary, single precision: positions, velocities, strains, quads. Each
+ *   frame has all points of the first one, in one order: a removed node stays
+ *   at its last position, and its quads are removed. */
+enum class FrameFormat { vtp, ply };
 
 /** The text of the file of one frame.  O(points + springs) */
 std::string to_file(const Frame& frame, FrameFormat format);

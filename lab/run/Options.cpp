@@ -155,8 +155,8 @@ void check(Options& o) {
           std::pair("restart", !o.restart.empty()),
           std::pair("checkpoint", !o.checkpoint.empty()),
           std::pair("csv", !o.csv.empty()), std::pair("vtp", !o.vtp.empty()),
-          std::pair("obj", !o.obj.empty()), std::pair("ply", !o.ply.empty()),
-          std::pair("at", o.at >= 0), std::pair("advise", o.asks_advice())})
+          std::pair("ply", !o.ply.empty()), std::pair("at", o.at >= 0),
+          std::pair("advise", o.asks_advice())})
       if (given)
         throw SceneError("replay",
                          std::string("cannot be combined with --") + option +
@@ -168,7 +168,7 @@ void check(Options& o) {
                      "needs a window, in which the scene can be changed");
   if (!o.record_input.empty() && o.replay.empty() && o.is_fixed())
     throw SceneError("record-input",
-                     "cannot be combined with --csv, --vtp, --obj, --ply, "
+                     "cannot be combined with --csv, --vtp, --ply, "
                      "--checkpoint or --restart: such a run cannot be changed");
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
@@ -298,12 +298,12 @@ void add_run_options(CLI::App& app, Options& o) {
            "write frames for ParaView with all data of nodes, springs and "
            "quads, and frames.pvd with their times")
       ->type_name("FOLDER");
-  add_file(app, "--obj", o.obj, "write frames of points and quads for Blender")
-      ->type_name("FOLDER");
-  add_file(app, "--ply", o.ply, "like --obj, with velocities and strains")
+  add_file(app, "--ply", o.ply,
+           "write frames of points, with velocities and strains, and quads for "
+           "Blender")
       ->type_name("FOLDER");
   app.add_option("--frame-rate", o.frame_rate,
-                 "of --vtp, --obj, --ply: frames per simulated second [1/s]");
+                 "of --vtp and --ply: frames per simulated second [1/s]");
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   app.option_defaults()->group("Interrupted runs");
   add_file(app, "--checkpoint", o.checkpoint,

@@ -25,7 +25,7 @@ struct Options {
   bool keeps_method = false, keeps_step = false;  ///< advice keeps this option
   std::string screenshot, video, csv, out, size;
   std::array<int, 2> pixels{};  ///< what size says; 0: Screen's own size
-  std::string vtp, obj, ply;    ///< folders
+  std::string vtp, ply;         ///< folders
   double frame_rate = 30;       ///< of those [1/s]
   std::string advised;          ///< file for the scene, or the advised one
   std::string json;             ///< file for the advice
@@ -39,7 +39,7 @@ struct Options {
   /** True if an output describes the run from start to end. Then the user can't
    * change the scene in a window. */
   bool is_fixed() const {
-    return !(csv + vtp + obj + ply + checkpoint + restart).empty();
+    return !(csv + vtp + ply + checkpoint + restart).empty();
   }
 };
 

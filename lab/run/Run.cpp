@@ -124,9 +124,7 @@ Run::Run(Scene& scene, const Options& o)
       o_(o),
       progress_(o.quiet),
       observer_(o.model, scene),
-      frames_({{FrameFormat::vtp, o.vtp},
-               {FrameFormat::obj, o.obj},
-               {FrameFormat::ply, o.ply}},
+      frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
               o.frame_rate) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.follow_drag();

@@ -287,8 +287,7 @@ void check_outputs(const Options& o) {
     }
   };
   for (const auto& [option, folder] :
-       {std::pair("vtp", o.vtp), std::pair("obj", o.obj),
-        std::pair("ply", o.ply)}) {
+       {std::pair("vtp", o.vtp), std::pair("ply", o.ply)}) {
     if (folder.empty()) continue;
     with_place(option,
                [&in = folder] { FrameFolder try_it(in, FrameFormat::vtp); });
