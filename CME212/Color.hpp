@@ -81,14 +81,6 @@ struct Color {
    * is between cloth and ground, so draw it with a dark rim for the
    * colour-blind. */
   static constexpr Color make_mark() { return {1.0f, 0.25f, 0.7f}; }
-
-  /** Relative luminance, 0 black to 1 white (ITU-R BT.709, sRGB). */
-  float luminance() const {
-    auto linear = [](float c) {
-      return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-    };
-    return 0.2126f * linear(r) + 0.7152f * linear(g) + 0.0722f * linear(b);
-  }
 };
 
 }  // namespace CME212

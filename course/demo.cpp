@@ -63,7 +63,7 @@ int main() try {
   }
   film.finish();
   CME212::write_png("demo/tear.png", picture);
-  std::cout << "no display: see demo/tear.png and " << film.wrote() << '\n';
+  std::cout << "no display: see demo/tear.png and demo/tear.mp4\n";
 } catch (const std::exception& e) {
   std::cerr << "demo: " << e.what() << '\n';
   return 2;

@@ -14,6 +14,7 @@
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
 #include "tests/ClothProgram.hpp"
+#include "tests/ReadParts.hpp"
 
 using namespace lab;
 

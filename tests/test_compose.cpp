@@ -8,6 +8,7 @@
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
+#include "tests/ReadParts.hpp"
 
 using namespace lab;
 

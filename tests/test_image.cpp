@@ -16,6 +16,7 @@
 #include "CME212/Color.hpp"
 #include "CME212/viewer/GLCamera.hpp"
 #include "CME212/viewer/Image.hpp"
+#include "tests/ReadPng.hpp"
 #include "tests/TestFolder.hpp"
 
 namespace {
@@ -29,18 +30,26 @@ std::size_t files_in(const TestFolder& folder) {
 
 // ---------------------------------------------------------- Color and camera
 
+/** Relative luminance, 0 black to 1 white (ITU-R BT.709, sRGB). */
+float luminance(const Color& a) {
+  auto linear = [](float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+  };
+  return 0.2126f * linear(a.r) + 0.7152f * linear(a.g) + 0.0722f * linear(a.b);
+}
+
 TEST(Color, StrainScaleDarkensFromRestToBothEnds) {
   for (float sign : {-1.0f, 1.0f}) {
-    float before = Color::make_strain(0).luminance();
+    float before = luminance(Color::make_strain(0));
     for (int i = 1; i <= 1000; ++i) {
       const Color c = Color::make_strain(sign * float(i) / 1000);
-      EXPECT_LT(c.luminance(), before) << i;
+      EXPECT_LT(luminance(c), before) << i;
       EXPECT_GT(sign * (c.r - c.b), 0) << i;  // red is taut, blue is slack
-      before = c.luminance();
+      before = luminance(c);
     }
   }
-  EXPECT_NEAR(Color(1).luminance(), 1, 1e-6);
-  EXPECT_EQ(Color(0).luminance(), 0);
+  EXPECT_NEAR(luminance(Color(1)), 1, 1e-6);
+  EXPECT_EQ(luminance(Color(0)), 0);
 }
 
 TEST(GLCamera, ShowsTheClothUpright) {
@@ -142,22 +151,17 @@ TEST(Image, SurvivesPng) {
 
 TEST(Image, SaysWhatIsWrong) {
   TestFolder folder;
-  const std::string nowhere = folder / "none/a.png", text = folder / "t.png";
+  const std::string nowhere = folder / "none/a.png";
   const Image image = test_image(2, 2);
   for (auto& [file, f] : std::map<std::string, std::function<void()>>{
            {nowhere, [&] { write_png(nowhere, image); }},
-           {folder / "", [&] { write_png(folder / "", image); }},
-           {folder / "b.png", [&] { read_png(folder / "b.png"); }},
-           {text, [&] {
-              std::ofstream(text) << "no picture";
-              read_png(text);
-            }}})
+           {folder / "", [&] { write_png(folder / "", image); }}})
     EXPECT_EQ(error_of(f).find(file + ": "), 0u) << error_of(f);
   write_png(folder / "old.png", image);
   EXPECT_NE(error_of([&] { write_png(folder / "old.png", Image()); }),
             "no error");
   EXPECT_EQ(read_png(folder / "old.png"), image);
-  EXPECT_EQ(files_in(folder), 2u);
+  EXPECT_EQ(files_in(folder), 1u);
 }
 
 TEST(Image, IsReadByFfmpeg) {
@@ -207,7 +211,6 @@ TEST(Video, MakesAPlayableFile) {
   for (int i = 0; i < 10; ++i) video.add(test_image(65, 48, i));
   EXPECT_FALSE(fs::exists(file));
   video.finish();
-  EXPECT_EQ(video.wrote(), file);
   EXPECT_EQ(video.frames(), 10);
   EXPECT_EQ(files_in(folder), 1u);
   fs::rename(file, folder / "v.mp4");
@@ -219,40 +222,19 @@ TEST(Video, MakesAPlayableFile) {
             "64,48,yuv420p,25/1,10\n");
 }
 
-TEST(Video, WithoutFfmpegIsAFolderOfPictures) {
-  TestFolder folder;
-  Environment path("PATH", (folder / "none").c_str());
-  auto film = [&](int length) {
-    Video video(folder / "v.mp4", 8, 6);
-    for (int i = 0; i < length; ++i) video.add(test_image(8, 6, i));
-    video.finish();
-    return video.wrote();
-  };
-  EXPECT_EQ(film(2), folder / "v_frames/");
-  EXPECT_EQ(read_png(folder / "v_frames/frame_000001.png"),
-            test_image(8, 6, 1));
-  EXPECT_EQ(files_in(folder), 1u);
-  // What is there is left alone.
-  std::ofstream(folder / "v_frames/frame_000000.png") << "mine";
-  std::ofstream(folder / "v_frames-2") << "mine, too";
-  EXPECT_EQ(film(1), folder / "v_frames-3/");
-  EXPECT_EQ(contents(folder / "v_frames/frame_000000.png"), "mine");
-  EXPECT_EQ(contents(folder / "v_frames-2"), "mine, too");
-  EXPECT_EQ(files_in(folder), 3u);
-  // Also what has the name of a folder while it grows.
-  fs::create_directory(folder / "w_frames.part");
-  std::ofstream(folder / "w_frames.part/notes.txt") << "keep";
-  { Video(folder / "w.mp4", 8, 6).add(test_image(8, 6)); }
-  EXPECT_TRUE(fs::exists(folder / "w_frames.part/notes.txt"));
-  EXPECT_EQ(files_in(folder), 4u);
-}
-
 TEST(Video, SaysWhatIsWrong) {
   TestFolder folder;
   EXPECT_EQ(error_of([&] {
               Video(folder / "none/v.mp4", 8, 6);
             }).find(folder / "none/v.mp4: "),
             0u);
+  {
+    Environment path("PATH", (folder / "none").c_str());
+    EXPECT_EQ(error_of([&] { Video(folder / "v.mp4", 8, 6); }),
+              folder / "v.mp4" +
+                  ": no film without ffmpeg, which `make deps` installs");
+  }
+  EXPECT_EQ(files_in(folder), 0u);
   // An ffmpeg that complains and stops: an error, not a signal.
   std::ofstream(folder / "ffmpeg") << "#!/bin/sh\necho too bad >&2\nexit 3\n";
   fs::permissions(folder / "ffmpeg", fs::perms::owner_all);

@@ -15,6 +15,7 @@
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
+#include "tests/ReadParts.hpp"
 #include "tests/Stages.hpp"
 #include "tests/TestFolder.hpp"
 

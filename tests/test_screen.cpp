@@ -11,6 +11,7 @@
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/viewer/Screen.hpp"
+#include "tests/ReadPng.hpp"
 
 using namespace lab;
 
@@ -41,7 +42,7 @@ Image picture_of(Screen& screen) {
   auto file = std::filesystem::temp_directory_path() /
               ("mass_spring_" + std::to_string(getpid()) + ".png");
   screen.save_picture(file);
-  Image image = CME212::read_png(file);
+  Image image = read_png(file);
   std::filesystem::remove(file);
   return image;
 }
@@ -96,7 +97,7 @@ void expect_committed(const std::string& name, const Image& image) {
     CME212::write_png("docs/pictures/" + name + ".png", image);
     CME212::write_png(committed, half(image));
   }
-  int differs = difference(half(image), CME212::read_png(committed));
+  int differs = difference(half(image), read_png(committed));
   if (differs > tolerance) CME212::write_png("build/" + name + ".png", image);
   EXPECT_LE(differs, tolerance)
       << "see build/" << name << ".png beside " << committed;

@@ -27,6 +27,7 @@
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
+#include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

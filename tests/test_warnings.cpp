@@ -9,6 +9,7 @@
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
+#include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

@@ -7,14 +7,11 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
@@ -31,19 +28,12 @@ namespace {
 }
 std::string reason(int error) { return std::system_category().message(error); }
 
-/** libpng's description of an RGB picture; frees what libpng allocated. */
-struct Png : png_image {
-  Png() : png_image{} { version = PNG_IMAGE_VERSION; }
-  ~Png() { png_image_free(this); }
-  Png(const Png&) = delete;
-  Png& operator=(const Png&) = delete;
-};
-
 }  // namespace
 
 void write_png(const std::string& path, const Image& image) {
   OutputFile file(path);
-  Png png;
+  png_image png = {};
+  png.version = PNG_IMAGE_VERSION;
   png.width = png_uint_32(image.width);
   png.height = png_uint_32(image.height);
   png.format = PNG_FORMAT_RGB;
@@ -56,27 +46,15 @@ void write_png(const std::string& path, const Image& image) {
   file.commit();
 }
 
-Image read_png(const std::string& path) {
-  Png png;
-  if (!png_image_begin_read_from_file(&png, path.c_str()))
-    fail(path, png.message);
-  png.format = PNG_FORMAT_RGB;
-  Image image(int(png.width), int(png.height));
-  const png_color black{};
-  if (!png_image_finish_read(&png, &black, image.rgb.data(), 0, nullptr))
-    fail(path, png.message);
-  return image;
-}
-
 // ---------------------------------------------------------------------- Video
 
 Video::Video(const std::string& path, int width, int height, double rate)
-    : path_(path), width_(width), height_(height) {
+    : path_(path),
+      width_(width),
+      height_(height),
+      file_(std::make_unique<OutputFile>(path)) {
   assert(width >= 2 && height >= 2 && rate > 0);
-  file_ = std::make_unique<OutputFile>(path);
-  if (start_ffmpeg(rate)) return;
-  file_.reset();
-  make_folder();
+  start_ffmpeg(rate);
 }
 
 Video::~Video() {
@@ -86,58 +64,24 @@ Video::~Video() {
     kill(child_, SIGKILL);
     waitpid(child_, nullptr, 0);
   }
-  std::error_code ignored;
-  if (!scratch_.empty()) std::filesystem::remove_all(scratch_, ignored);
 }
 
 void Video::add(const Image& image) {
   assert(!finished_ && image.width == width_ && image.height == height_);
-  if (file_) {
-    send_all(image.rgb);
-  } else {
-    char name[32];
-    std::snprintf(name, sizeof name, "/frame_%06d.png", frames_);
-    write_png(scratch_ + name, image);
-  }
+  send_all(image.rgb);
   ++frames_;
 }
 
 void Video::finish() {
   if (finished_) return;
   if (frames_ == 0) fail(path_, "a film of no pictures");
-  if (file_) {
-    wait_for_ffmpeg();
-    file_->commit();
-  } else {
-    put_folder_in_place();
-  }
+  wait_for_ffmpeg();
+  file_->commit();
   finished_ = true;
 }
 
-std::string Video::wrote() const {
-  return file_ ? path_ : finished_ ? folder_ + '/' : "";
-}
-
-/** The folder of a film without ffmpeg; a number may follow. */
-std::string Video::folder() const {
-  std::filesystem::path stem(path_);
-  return stem.replace_extension().string() + "_frames";
-}
-
-/** Make a folder for the pictures, under a temporary name. */
-void Video::make_folder() {
-  for (int k = 0; scratch_.empty(); ++k) {
-    const std::string name = folder() + '.' + std::to_string(getpid()) + '-' +
-                             std::to_string(k) + ".part";
-    if (mkdir(name.c_str(), 0777) == 0)
-      scratch_ = name;
-    else if (errno != EEXIST)
-      fail(folder(), reason(errno));
-  }
-}
-
-/** Start ffmpeg.  @return false if there is none. */
-bool Video::start_ffmpeg(double rate) {
+/** Throws std::runtime_error if there is none. */
+void Video::start_ffmpeg(double rate) {
   const std::string size =
       std::to_string(width_) + "x" + std::to_string(height_);
   const std::string fps = std::to_string(rate);
@@ -191,10 +135,11 @@ bool Video::start_ffmpeg(double rate) {
   posix_spawnattr_destroy(&own_group);
   close(ends[1]), close(said[1]);
   input_ = ends[0], said_ = said[0];
-  if (error == 0) return true;
-  child_ = -1;
-  close_input();
-  return false;
+  if (error == 0) return;
+  close_input(), close(said_);  // as there is no destructor of this
+  fail(path_, error == ENOENT ? "no film without ffmpeg, which `make deps` "
+                                "installs"
+                              : "ffmpeg does not start: " + reason(error));
 }
 
 void Video::send_all(const std::vector<std::uint8_t>& bytes) {
@@ -230,18 +175,6 @@ void Video::wait_for_ffmpeg() {
 void Video::close_input() {
   if (input_ >= 0) close(input_);
   input_ = -1;
-}
-
-/** Rename the folder to FILE_frames, or, if that exists and is not an empty
- * folder, to FILE_frames-2, or the next name that is free. */
-void Video::put_folder_in_place() {
-  folder_ = folder();
-  for (int k = 2; std::rename(scratch_.c_str(), folder_.c_str()) != 0; ++k) {
-    if (errno != ENOTEMPTY && errno != EEXIST && errno != ENOTDIR)
-      fail(folder_, reason(errno));
-    folder_ = folder() + '-' + std::to_string(k);
-  }
-  scratch_.clear();
 }
 
 }  // namespace CME212

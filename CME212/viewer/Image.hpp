@@ -4,7 +4,6 @@
  *
  * A file appears only when it is complete, see OutputFile. An error is a
  * std::runtime_error "FILE: reason". */
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cctype>
@@ -61,14 +60,8 @@ inline std::string ending_of(std::string_view path) {
  * Throws std::runtime_error "path: reason"; then @a path is as it was. */
 void write_png(const std::string& path, const Image& image);
 
-/** Read the PNG file @a path; transparent pixels become black.
- * Throws std::runtime_error "path: reason". */
-Image read_png(const std::string& path);
-
-/** A film: FILE.mp4, or in the format of another ending of film_endings, if
- * there is an ffmpeg on the PATH, otherwise a folder FILE_frames/ of pictures
- * frame_000000.png, frame_000001.png, ... If there is such a folder already,
- * the new one is FILE_frames-2/, and so on.
+/** A film: FILE.mp4, or in the format of another ending of film_endings. It is
+ * encoded by the program ffmpeg.
  *
  * It appears by finish(); without that, the destructor leaves nothing behind.
  * One thread at a time. */
@@ -79,7 +72,8 @@ class Video {
    *                     an odd last column or row is left out of it
    * @param rate         Pictures a second [1/s], usually 25 to 60
    * @pre width, height >= 2 and rate > 0
-   * Throws std::runtime_error "path: reason" if it can't be written there. */
+   * Throws std::runtime_error "path: reason" if it can't be written there, or
+   * no ffmpeg is on the PATH. */
   Video(const std::string& path, int width, int height, double rate = 30);
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
@@ -87,39 +81,32 @@ class Video {
 
   /** Add the next picture.  @pre not finished; it has the film's size
    * Throws std::runtime_error with ffmpeg's message if that gave up, or with
-   * the reason for which the picture can't be written. */
+   * the reason for which it does not take the picture. */
   void add(const Image& image);
 
   /** Complete the film.
-   * @post The file or folder wrote() exists. An older file is replaced.
+   * @post The file exists. An older one is replaced.
    * Throws std::runtime_error as add(), and if there is no picture. A second
    * call does nothing. */
   void finish();
 
-  /** What finish() made: the file, or the folder with a slash at the end.
-   * Before finish() it is empty for a folder. */
-  std::string wrote() const;
   /** Number of pictures so far. */
   int frames() const { return frames_; }
 
  private:
   std::string path_;
   int width_, height_;
-  std::unique_ptr<OutputFile> file_;  // none: it becomes a folder
-  std::string scratch_, folder_;      // that folder, before and after finish()
+  std::unique_ptr<OutputFile> file_;
   int frames_ = 0;
   bool finished_ = false;
   int child_ = -1;  // ffmpeg, while it runs
   int input_ = -1;  // our end of its input
   int said_ = -1;   // our end of its standard error
 
-  std::string folder() const;
-  void make_folder();
-  bool start_ffmpeg(double rate);
+  void start_ffmpeg(double rate);
   void send_all(const std::vector<std::uint8_t>& bytes);
   void wait_for_ffmpeg();
   void close_input();
-  void put_folder_in_place();
 };
 
 }  // namespace CME212

@@ -96,7 +96,8 @@ void Film::finish() {
           std::clamp(frames_ / 8, 1, frames_in(title_seconds)));
       screen_->show_card({});
     }
-    tell("film", screen_->end_film());
+    screen_->end_film();
+    tell("film", o_.video);
   }
   if (!o_.screenshot.empty()) tell("picture", o_.screenshot);
 }

@@ -62,7 +62,7 @@ int run_replay(const Options& o) {
   const auto wrote = [&o](const std::string& what, const std::string& file) {
     if (!o.quiet) std::cout << what << ": " << file << '\n';
   };
-  if (film) wrote("film", screen->end_film());
+  if (film) screen->end_film(), wrote("film", o.video);
   if (!o.screenshot.empty()) {
     screen->show(live.scene(), live.rival());
     screen->save_picture(o.screenshot);

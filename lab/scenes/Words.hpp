@@ -78,16 +78,6 @@ std::string to_words(Part part) {
   return written(words_of(part), words_of(usual));
 }
 
-inline constexpr auto read_edges = read_part<Edges>;
-inline constexpr auto read_sheet = read_part<Sheet>;
-inline constexpr auto read_region = read_part<Region>;
-inline constexpr auto read_pin = read_part<Pin>;
-inline constexpr auto read_plane = read_part<Wall>;
-inline constexpr auto read_sphere = read_part<Solid>;
-inline constexpr auto read_tear = read_part<Ball>;
-inline constexpr auto read_self_collision = read_part<Distance>;
-inline constexpr auto read_view = read_part<Box>;
-
 /** "[max|min] NAME [words]", NAME as in Measure.hpp.
  * Throws SceneError: anything else; no such method. */
 Measure read_measure(const std::string& text);

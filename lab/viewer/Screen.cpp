@@ -74,10 +74,7 @@ class SDLScreen : public Screen {
     const auto picture = viewer_.snapshot();
     for (; times > 0; --times) film_->add(picture);
   }
-  std::string end_film() override {
-    film_->finish();
-    return film_->wrote();
-  }
+  void end_film() override { film_->finish(); }
 
   void event_loop() override { viewer_.event_loop(); }
   void close() override { viewer_.close(); }

@@ -55,11 +55,10 @@ class Screen {
   virtual void show_card(const std::vector<std::string>& lines) = 0;
 
   /** Begin a film, add what was shown last to it so many times, end it.
-   * @return of end_film(): the file or folder written
    * Throw std::runtime_error "FILE: why". */
   virtual void start_film(const std::string& file) = 0;
   virtual void add_to_film(int times) = 0;
-  virtual std::string end_film() = 0;
+  virtual void end_film() = 0;
 
   // The window; see SDLViewer.
   virtual void event_loop() = 0;
