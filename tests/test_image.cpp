@@ -314,8 +314,7 @@ TEST(Video, KeepsTheOldFilmIfTheDiskIsFull) {
 
 TEST(Video, LeavesNothingIfNotFinished) {
   TestFolder folder;
-  Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
-  Environment path("PATH", (folder / "none").c_str());
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   Video(folder / "v.mp4", 8, 6).add(test_image(8, 6));
   EXPECT_EQ(files_in(folder), 0u);
 }
