@@ -95,21 +95,18 @@ double lowest_height(const Cloth& g, const Sheet& sheet, unsigned first) {
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < m; ++b)
       if (z(a, b) < z(i, j)) i = a, j = b;
-  auto bend_u = [&](int a, int b) -> std::optional<double> {
-    if (a < 1 || a > n - 2) return {};
-    return z(a - 1, b) - 2 * z(a, b) + z(a + 1, b);
-  };
-  auto bend_v = [&](int a, int b) -> std::optional<double> {
-    if (b < 1 || b > m - 2) return {};
-    return z(a, b - 1) - 2 * z(a, b) + z(a, b + 1);
+  // The second difference along u, (1, 0), or along v, (0, 1).
+  auto bend = [&](int a, int b, int u, int v) -> std::optional<double> {
+    if (a < u || a > n - 1 - u || b < v || b > m - 1 - v) return {};
+    return z(a - u, b - v) - 2 * z(a, b) + z(a + u, b + v);
   };
   double lowest = z(i, j);
   for (int di : {-1, 1})
     for (int dj : {-1, 1}) {
       const int a = i + di, b = j + dj;
       if (a < 0 || a >= n || b < 0 || b >= m) continue;
-      const double cu = curvature(bend_u(i, j), bend_u(a, j)),
-                   cv = curvature(bend_v(i, j), bend_v(i, b));
+      const double cu = curvature(bend(i, j, 1, 0), bend(a, j, 1, 0)),
+                   cv = curvature(bend(i, j, 0, 1), bend(i, b, 0, 1));
       // Lowest along u and along v in turn: this converges quickly, as the
       // cell's twist is small against its curvatures.
       double s = 0, t = 0;
