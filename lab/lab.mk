@@ -113,6 +113,6 @@ compdb:
 	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS)))))])
 	@echo 'compile_commands.json'
 
-include lab/measure.mk lab/page/page.mk
+include lab/measure.mk lab/page/page.mk docs/site/site.mk
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -287,7 +287,18 @@ web() {
 # controls; pictures of it are in build/check.
 page() {
   ! skips_page || return 0
-  in_folder . page page_positions && lab/page/test_page.py build/check
+  one_builds page page_positions && lab/page/test_page.py build/check
+}
+# The site: its size, links, width on a phone, figures that move.
+site() {
+  ! skips_page || return 0
+  command -v pandoc >/dev/null ||
+    { echo "skipped: the site: pandoc is missing: make page-deps"; return 0; }
+  one_builds site && docs/site/test_site.py build/check/site
+}
+# The page is a part of the site: of two builds the second waits.
+one_builds() {  # TARGET...
+  (flock 9 && in_folder . "$@") 9>build/check/page.lock
 }
 # The same bits by an ARM processor, in an emulator.
 arm() {
@@ -312,6 +323,7 @@ turns() {
   turn recipes   "$long"  tools/test_recipes.sh
   turn plain     "$limit" plain
   turn page      "$long"  page
+  turn site      "$long"  site
   turn web       "$long"  web
   turn single    "$limit" single
   turn advice    "$limit" advice

@@ -19,7 +19,7 @@ packages() {
     grade) echo "g++ git make python3 libseccomp-dev" ;;
     page)  echo "clang-19 lld-19 wasi-libc libc++-19-dev-wasm32" \
                 "libclang-rt-19-dev-wasm32 libeigen3-dev python3 ffmpeg" \
-                "chromium python3-websocket" ;;
+                "pandoc git chromium python3-websocket" ;;
     try)   echo "valgrind" ;;
     *) echo "deps: no group '$1'; there are: build draw check peers grade page try" >&2
        exit 2 ;;
@@ -46,7 +46,7 @@ librapidcheck-dev - rapidcheck-devel
 libbenchmark-dev google-benchmark google-benchmark-devel
 xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
 xdotool - xdotool                 libseccomp-dev - libseccomp-devel
-valgrind - valgrind
+valgrind - valgrind               pandoc pandoc pandoc
 "
 renamed() {  # COLUMN: all that is wanted, in the names of another system
   local group debian found
@@ -67,7 +67,7 @@ title() {
     check) echo "to test and check" ;;
     peers) echo "to compare with other libraries" ;;
     grade) echo "to grade submissions" ;;
-    page)  echo "to build the web page, and to test it" ;;
+    page)  echo "to build the web page and the site, and to test them" ;;
     try)   echo "to count what a graph costs" ;;
   esac
 }

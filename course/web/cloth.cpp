@@ -28,6 +28,14 @@ double length_of(Edge e) {
   return norm(e.node1().position() - e.node2().position());
 }
 
+/** Half a metre down from a corner that is held. */
+std::vector<Point> line_points(unsigned count) {
+  std::vector<Point> points;
+  for (unsigned i = 0; i < count; ++i)
+    points.push_back(Point(0, 0, -0.5 * i / (count - 1)));
+  return points;
+}
+
 template <typename G>
 bool cut_edge(G& g, const Node& a, const Node& b) {
   if constexpr (requires { g.remove_edge(a, b); })
@@ -38,12 +46,16 @@ bool cut_edge(G& g, const Node& a, const Node& b) {
 
 class Run {
  public:
-  /** @pre stage < WEB_STAGES, side >= 2, dt > 0 */
-  Run(Stage stage, unsigned side, double dt)
-      : dt_(dt), points_(grid_points(side)), quads_(grid_quads(side)) {
+  /** @param chain so many nodes, hanging in a line, in place of a grid; or 0
+   * @pre stage < WEB_STAGES, side >= 2, dt > 0, chain != 1 */
+  Run(Stage stage, unsigned side, double dt, unsigned chain)
+      : dt_(dt),
+        points_(chain > 0 ? line_points(chain) : grid_points(side)),
+        quads_(chain > 0 ? std::vector<Quad>() : grid_quads(side)) {
     build_cloth(
         g, points_, quads_,
         stage == problem1 ? MeshSprings::plain : MeshSprings::diagonals);
+    for (unsigned i = 1; i < chain; ++i) g.add_edge(g.node(i - 1), g.node(i));
     for (unsigned i = 0; i < g.num_nodes(); ++i) slots_.push_back(i);
     if (g.num_edges() > 0) length_ = length_of(*g.edge_begin());
     if (stage != problem1) length_ = 0;  // each has its own
@@ -297,9 +309,9 @@ extern "C" {
 using web::run;
 
 unsigned page_stages() { return WEB_STAGES; }
-void page_start(unsigned stage, unsigned side, double dt) {
+void page_start(unsigned stage, unsigned side, double dt, unsigned chain) {
   run.reset();
-  run = std::make_unique<web::Run>(web::Stage(stage), side, dt);
+  run = std::make_unique<web::Run>(web::Stage(stage), side, dt, chain);
 }
 double page_step() { return run->step(); }
 void page_set_step(double dt) { run->set_step(dt); }

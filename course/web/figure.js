@@ -5,8 +5,8 @@ const stages = {
   problem1: {title: '3.2 problem1', low: -1.25},
   diagonals: {title: '4.2 diagonals', low: -1.2},
   forces: {title: '5.2 forces', low: -1.2},
-  constraints: {title: '6.2 constraints', low: -0.75, ball: 'ball'},
-  tear: {title: '7.2 tear', low: -0.75, ball: 'tears'},
+  constraints: {title: '6.2 constraints', low: -0.75, ball: true},
+  tear: {title: '7.2 tear', low: -0.75, ball: true},
 };
 const patience = 10;  // [s], of a step that may never end
 
@@ -91,8 +91,8 @@ class Cloth {
 
 class Figure {
   constructor(element, options) {
-    Object.assign(this, {stage: 'problem1', grid: 25, dt: 0.001, speed: 1,
-      end: Infinity, wasm: [], beside: false, whole: false}, options);
+    Object.assign(this, {stage: 'problem1', grid: 25, chain: 0, dt: 0.001,
+      speed: 1, end: Infinity, wasm: [], beside: false, whole: false}, options);
     this.names ??= this.wasm;
     this.element = element, this.clock = 0, this.sides = [], this.panes = [];
     this.playing = false, this.dirty = true;
@@ -192,16 +192,16 @@ class Figure {
   oneStep() { this.play(false), this.stepping = this.wanted = true; }
 
   start() {
-    const {stage, grid: side, dt} = this, {low, ball} = stages[stage];
+    const {stage, grid: side, dt, chain} = this, {low, ball} = stages[stage];
     this.hand?.release();
     this.clock = 0, this.ended = 0, this.touched = false;
     for (const c of this.cloths)
-      c.start({stage: Object.keys(stages).indexOf(stage), side, dt});
+      c.start({stage: Object.keys(stages).indexOf(stage), side, dt, chain});
     this.view.obstacles = !ball ? [] : [
       {kind: 'floor', at: [0.5, 0.5, -0.75]},
-      {kind: ball, at: [0.5, 0.5, -0.5], radius: 0.15}];
+      {kind: 'ball', at: [0.5, 0.5, -0.5], radius: 0.15}];
     const box = [];
-    for (const x of [-0.05, 1.05])
+    for (const x of chain ? [-0.5, 0.5] : [-0.05, 1.05])
       for (const y of [-0.1, ball ? 1 : 0.8])
         for (const z of [low, 0]) box.push([x, y, z]);
     this.view.camera.lookAt(box);
@@ -322,6 +322,8 @@ class Figure {
 const folder = (document.currentScript?.src || '').replace(/[^/]*$/, '');
 const packed = {}, asked = {};
 
+const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+
 async function moduleOf(name) {
   asked[name] ??= packed[name] ? Promise.resolve() : new Promise(
     (done, fail) => {
@@ -331,9 +333,15 @@ async function moduleOf(name) {
       document.head.append(script);
     });
   await asked[name];
-  const bytes = Uint8Array.from(atob(packed[name]), c => c.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(
-    new DecompressionStream('gzip'))).arrayBuffer();
+  const {text, base} = packed[name];
+  const bytes = await new Response(new Blob([bytesOf(text)]).stream()
+    .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  if (!base) return bytes;
+  // web.py: the parts that it has from its base, by place, and its own.
+  const from = await moduleOf(base);
+  return new Blob(JSON.parse(new TextDecoder().decode(bytes)).map(part =>
+    typeof part === 'string' ? bytesOf(part) : from.slice(...part)))
+    .arrayBuffer();
 }
 
 // The figure in an element, which gets what README.md says.
@@ -346,5 +354,5 @@ function figure(element, options) {
   return new Figure(element, options);
 }
 Object.assign(figure, {Plot, shortNumber, setText, stages,
-  add(name, text) { packed[name] = text; }});
+  add(name, text, base) { packed[name] = {text, base}; }});
 self.figure = figure;

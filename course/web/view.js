@@ -20,7 +20,7 @@ function looksOf(element) {
     a => parseInt(a, 16) / 255), 1];
   const theme = {cloth: [four('--cloth0'), four('--cloth1')],
     stretched: four('--stretched'), wire: four('--wire'), pin: four('--pin'),
-    hand: four('--hand'), ball: four('--ball'), tears: four('--tears'),
+    hand: four('--hand'), ball: four('--ball'),
     floor: four('--floor'), bad: hex('--bad'), sky: hex('--sky')};
   const style = {edge: textOf('--edge'), dim: textOf('--dim'),
     series: [0, 1, 2, 3].map(k => textOf(`--series${k}`))};
@@ -382,7 +382,7 @@ class View {
       for (const o of this.obstacles) {
         if (o.kind === 'floor') continue;
         this.place(o.at, 0.985 * o.radius);
-        this.set(o.kind === 'ball' ? theme.ball : theme.tears, 1);
+        this.set(theme.ball, 1);
         this.ball.drawFaces();
       }
       this.place([0, 0, 0], 1);
@@ -391,10 +391,14 @@ class View {
       this.set(theme.cloth[k], 1, theme.stretched);
       cloth.drawFaces();
       gl.disable(gl.POLYGON_OFFSET_FILL);
-      const [r, g, b, opacity] = theme.wire;  // a line is a pixel wide
+      const bare = !cloth.triangles.length;  // a chain
+      const [r, g, b, opacity] = bare ? theme.pin
+        : theme.wire;  // a line is a pixel wide
       this.set([r, g, b, opacity * this.pace.sharpness], 0), cloth.drawLines();
       const at = i => [...side.points.subarray(4 * i, 4 * i + 3)];
-      this.drawMarks([...side.pins].map(at), 9 * ratio, theme.pin, 2);
+      const marked = bare ? [...side.points.keys()].slice(0,
+        side.points.length / 4) : [...side.pins];
+      this.drawMarks(marked.map(at), (bare ? 16 : 9) * ratio, theme.pin, 2);
       const floor = this.obstacles.find(o => o.kind === 'floor');
       if (floor) {
         const far = 3 * camera.radius;

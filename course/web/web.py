@@ -12,8 +12,10 @@ Needs clang++ and a C++ library for WebAssembly: make web-deps. Exit status: 0
 done, 1 the code does not compile, 2 something is missing."""
 import base64
 import concurrent.futures
+import difflib
 import gzip
 import hashlib
+import itertools
 import json
 import os
 import pathlib
@@ -69,6 +71,27 @@ def packed(wasm):
     return base64.b64encode(gzip.compress(wasm, 9, mtime=0)).decode()
 
 
+def module_of(text):
+    """What a file of write_figures() holds."""
+    return gzip.decompress(base64.b64decode(re.search(r"', '(.*)'", text)[1]))
+
+
+def changed(wasm, base):
+    """A module as JSON: parts that it has from its base, as [start, end], and
+    parts of its own, in base64. A part ends where WebAssembly has its `end`."""
+    old, new = (re.findall(rb"[^\x0b]*\x0b|[^\x0b]+$", code)
+                for code in (base, wasm))
+    starts = [0, *itertools.accumulate(map(len, old))]
+    parts = []
+    for kind, i, j, k, l in difflib.SequenceMatcher(
+            None, old, new, autojunk=False).get_opcodes():
+        if kind == "equal":
+            parts.append([starts[i], starts[j]])
+        elif k < l:
+            parts.append(base64.b64encode(b"".join(new[k:l])).decode())
+    return json.dumps(parts, separators=(",", ":")).encode()
+
+
 def script():
     """figure.js: all of a figure but its modules."""
     def text(*names):
@@ -105,14 +128,18 @@ def write_page(out, stage):
 
 # ------------------------------------------------------------------- Figures
 
+def slug(mistake):
+    """The name of the module with a mistake of draw.py, or with none."""
+    return mistake.replace(" ", "-").replace("+-", "plus-").replace(
+        "=-", "") or "right"
+
+
 def write_figures(out, names):
     root = ROOM.parents[1]
     sys.path[:0] = [str(root / "course/pictures"), str(root / "course/kit")]
     import draw
     import markers
-    mistakes = {"right": "", **{name.replace(" ", "-").replace("+-", "plus-")
-                                .replace("=-", ""): name
-                                for name in draw.MISTAKES}}
+    mistakes = {slug(name): name for name in ["", *draw.MISTAKES]}
     if unknown := set(names) - set(mistakes):
         sys.exit(f"there is no {', '.join(sorted(unknown))}; there are "
                  + ", ".join(mistakes))

@@ -72,11 +72,11 @@ function frame() {
 }
 
 const handlers = {
-  async start({bytes, stage, side, dt, number}) {
+  async start({bytes, stage, side, dt, chain, number}) {
     module ??= await WebAssembly.compile(bytes);
     await instantiate();
     run = number, broken = failure = '', versions = [-1, -1];
-    call('start', stage, side, dt);
+    call('start', stage, side, dt, chain);
     if (broken) fail();
     postMessage({kind: 'started', run, stages: wasm.page_stages()});
     frame();

@@ -418,10 +418,13 @@ async function begin() {
   } catch (error) {
     for (const id of ['stage', 'panel']) $(id).hidden = true;
     $('fallback').hidden = false;
-    $('loop').src = 'loop.gif';
+    $('loop').src = 'loop.webp';
     return;
   }
   page.hand = new Hand(page, $('canvas'));
+  // In a frame of another page: index.html?controls=none#scene=drape
+  if (new URLSearchParams(location.search).get('controls') === 'none')
+    document.body.className = 'bare';
   colors();
   matchMedia('(prefers-color-scheme: dark)').onchange = colors;
   new ResizeObserver(() => page.changed()).observe($('stage'));

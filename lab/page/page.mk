@@ -21,7 +21,7 @@ page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
 page_names = $(sort $(shell grep -oE '\bpage_[a-z_]+' lab/page/Page.hpp))
 
 .PHONY: page page-deps page-frames page-picture page-serve
-page: $(page)/index.html $(page)/loop.gif
+page: $(page)/index.html $(page)/loop.webp
 	@echo "$(page)/index.html: $$(du -bc $(page)/* | tail -n 1 | cut -f 1) bytes"
 
 $(page_o)/%.o: %.cpp $(page_o)/flags
@@ -42,11 +42,10 @@ $(page)/index.html: $(page_o)/cloth.wasm $(wildcard $(patsubst \
 	@mkdir -p $(@D)
 	@python3 lab/page/assemble.py $< $@
 # What a browser shows that can't run it: half as large, 8 frames a second.
-fewer = fps=8,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=48[p]
-$(page)/loop.gif: docs/pictures/tear.gif
+$(page)/loop.webp: docs/pictures/tear.gif
 	@mkdir -p $(@D)
-	@ffmpeg -loglevel error -y -i $< \
-	  -vf '$(fewer);[b][p]paletteuse=dither=none' $@
+	@ffmpeg -loglevel error -y -i $< -vf fps=8,scale=320:-1:flags=lanczos \
+	  -loop 0 -quality 40 $@
 
 page-picture: page
 	@/usr/bin/python3 lab/page/picture.py $(page)/index.html docs/pictures/page.png

@@ -1,0 +1,52 @@
+'use strict';
+// A page of the site: its charts, its live figures, its list of contents.
+
+// Beside the text the list is open; above it, on a small screen, closed.
+const contents = document.getElementById('contents');
+const narrow = matchMedia('(max-width: 900px)');
+const fold = () => { contents.open = !narrow.matches; };
+narrow.addEventListener('change', fold), fold();
+contents.querySelector('[aria-current]')?.scrollIntoView({block: 'nearest'});
+
+for (const image of document.querySelectorAll('[data-gz]')) {
+  const bytes = Uint8Array.from(atob(image.dataset.gz), c => c.charCodeAt(0));
+  const chart = new Response(new Blob([bytes]).stream().pipeThrough(
+    new DecompressionStream('gzip')));
+  chart.arrayBuffer().then(text => {
+    image.src = URL.createObjectURL(new Blob([text], {type: 'image/svg+xml'}));
+  });
+}
+
+// How another page shows the same figure.
+function embedding(name) {
+  const address = new URL('embed.html', document.currentScript.src);
+  address.search = `scene=${name}&controls=none`;
+  const details = document.createElement('details');
+  details.className = 'embed';
+  details.innerHTML = '<summary>Embed this figure</summary><pre></pre>';
+  details.querySelector('pre').textContent = `<iframe src="${address}" ` +
+    'title="A cloth of masses and springs" width="640" height="400"></iframe>';
+  return details;
+}
+
+// A figure, and below it the lines that the chosen mistake changes.
+for (const element of document.querySelectorAll('.live')) {
+  const name = element.dataset.scene;
+  const shown = figure(element, self.scenes[name]);
+  const edits = document.querySelectorAll(`.edit[data-of="${name}"]`);
+  const choose = k => edits.forEach(edit => {
+    edit.hidden = edit.dataset.name !== shown.names[k];
+  });
+  element.querySelectorAll('.switch button').forEach((button, k) =>
+    button.addEventListener('click', () => choose(k)));
+  choose(shown.choice);
+
+  if (name === 'drag') {
+    const hint = document.createElement('p');
+    hint.className = 'hint', hint.textContent = 'Drag me';
+    hint.setAttribute('aria-hidden', true);
+    element.querySelector('.picture').append(hint);
+    element.addEventListener('pointerdown', () => hint.remove(), {once: true});
+  }
+  ([...edits].at(-1) ?? element).after(embedding(name));
+}

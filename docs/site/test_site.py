@@ -1,0 +1,186 @@
+#!/usr/bin/python3
+"""Test the site in a headless Chromium: test_site.py SITE. The last line
+counts the tests. Exit status: 0 all right, else 1."""
+import html
+import pathlib
+import re
+import sys
+
+ROOM = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(ROOM.parents[1] / "lab/page"), str(ROOM)]
+import make_site  # noqa: E402
+from browser import Browser  # noqa: E402
+
+LARGEST = 2_000_000  # bytes
+SITE = pathlib.Path(sys.argv[1]).resolve()
+HTML = sorted(file for file in SITE.rglob("*.html"))
+faults = []
+
+
+class Recorder(Browser):
+    """It notes what a page asks for that is not on the disk."""
+
+    def __init__(self, *arguments):
+        self.asked = []
+        super().__init__(*arguments)
+        self.send("Network.enable")
+
+    def _listen(self, event):
+        super()._listen(event)
+        if event.get("method") == "Network.requestWillBeSent":
+            url = event["params"]["request"]["url"]
+            if not re.match(r"file:|blob:|data:|about:", url):
+                self.asked.append(url)
+
+
+def expect(holds, words):
+    if not holds:
+        faults.append(words)
+
+
+def size_is_small():
+    size = sum(file.stat().st_size for file in SITE.rglob("*")
+               if file.is_file())
+    expect(size < LARGEST, f"{SITE}: {size} bytes, expected less than "
+           f"{LARGEST}")
+
+
+def nothing_comes_from_elsewhere():
+    """No page, style or script names a resource of another host."""
+    resource = re.compile(r"<(?:script|img|iframe|source)\b[^>]*\bsrc=\"?"
+                          r"https?:|<link\b[^>]*\bhref=\"?https?:|"
+                          r"url\([\"']?https?:|"
+                          r"@import|\bfetch\(|importScripts")
+    for file in SITE.rglob("*"):
+        if file.suffix in (".html", ".css", ".js"):
+            found = resource.search(file.read_text())
+            expect(not found, f"{file}: asks for {found and found[0]}")
+
+
+def links_resolve():
+    ids = {file: set(re.findall(r'\bid="([^"]+)"', file.read_text()))
+           for file in HTML}
+    count = 0
+    for file in HTML:
+        for url in re.findall(r'<a\b[^>]*\bhref="([^"]*)"', file.read_text()):
+            if re.match("https?:", url):
+                continue
+            count += 1
+            path, _, anchor = html.unescape(url).partition("#")
+            target = (file.parent / path).resolve() if path else file
+            expect(target.is_file(), f"{file}: {url} is not there")
+            if anchor and target.is_file() and target.suffix == ".html":
+                expect(anchor in ids[target], f"{file}: {url} is no section")
+    expect(count > 500, f"only {count} links")
+
+
+def broken_links_are_reported():
+    """A page of the repository that names what is not there."""
+    page = make_site.Page("course/4.2.md")
+    page.text = ("# Title\n\nSee [this](3.2.md), [that](nowhere.md)\n"
+                 "and [a section](3.2.md#none).\n\n![a](pictures/none.png)\n")
+    good = make_site.Page("course/3.2.md").read()
+    found = make_site.faults_of({"course/4.2.md": page.read(),
+                                 "course/3.2.md": good})
+    for words in ("course/4.2.md:3: nowhere.md is not there",
+                  "course/4.2.md:4: course/3.2.md has no section #none",
+                  "course/4.2.md:6: pictures/none.png is not there"):
+        expect(words in found, f"expected {words!r}, got {found}")
+    expect(len(found) == 3, f"expected 3 faults, got {found}")
+
+
+def pages_fit_and_say_nothing():
+    """Pages of 360 pixels do not scroll sideways, have a title and a language,
+    and every picture has words and is there."""
+    with Recorder(360, 740) as browser:
+        for file in HTML:
+            browser.open(file.as_uri())
+            browser.wait("[...document.images].every(i => !i.src || "
+                         "i.loading === 'lazy' && !i.complete || "
+                         "i.naturalWidth > 0)", 120)
+            wide = browser.value("document.documentElement.scrollWidth")
+            expect(wide <= 360, f"{file}: {wide} pixels wide at 360")
+            expect(browser.value("document.title && document.documentElement"
+                                 ".lang === 'en'"), f"{file}: title, lang")
+            bare = browser.value("[...document.images].filter("
+                                 "i => !i.alt).map(i => i.src.slice(0, 80))")
+            expect(not bare, f"{file}: no words for {bare}")
+            expect(not browser.faults, f"{file}: {browser.faults}")
+            browser.faults.clear()
+        expect(not browser.asked, f"asked for {browser.asked}")
+
+
+def figures_move():
+    """Each, once it is seen; and not by itself if the person prefers that."""
+    time = "document.querySelectorAll('.live .busy')[{}].textContent"
+    pages = [file for file in HTML if 'class="live"' in file.read_text()]
+    count = 0
+    with Recorder(1280, 800) as browser:
+        for file in pages:
+            browser.open(file.as_uri())
+            for k in range(browser.value(
+                    "document.querySelectorAll('.live').length")):
+                count += 1
+                browser.value(f"document.querySelectorAll('.live')[{k}]"
+                              ".scrollIntoView({block: 'center'})")
+                moves = (f"/t = (?!0.000)/.test({time.format(k)})")
+                browser.wait(moves, 120)
+            expect(not browser.faults, f"{file}: {browser.faults}")
+            browser.faults.clear()
+        browser.prefer(still=True)
+        browser.open((SITE / "index.html").as_uri())
+        browser.wait(f"{time.format(0)} === 't = 0.000 s'", 120)
+        expect(browser.value("document.querySelector('.play').textContent")
+               == "Play", "it moves by itself, whatever the person prefers")
+    expect(count > 10, f"only {count} figures")
+
+
+def beyond_the_limit_it_explodes():
+    """And below it does not: the mass, the chain, the cloth."""
+    with Recorder(1280, 800) as browser:
+        browser.open((SITE / "docs/site/explode.html").as_uri())
+        for k in range(3):
+            browser.value(f"all = document.querySelectorAll('.explode')[{k}],"
+                          "all.scrollIntoView(), it = all.explosion, 0")
+            now = "it.figure.cloths[0].readings"
+            browser.wait(f"{now}?.time > 0.3", 300)
+            expect(browser.value(f"{now}.gainAt < 0 && it.omega < 1.001 * "
+                                 "2 / it.limit && it.omega > 1 / it.limit"),
+                   f"{k}: below the limit it explodes, or omega is wrong")
+            browser.value("it.slider.value = 1.3, it.slider.oninput()")
+            browser.wait(f"{now}?.gainAt >= 0", 300)
+            expect("larger" in browser.value("it.words.textContent"),
+                   f"{k}: beyond the limit its words are those of below")
+        expect(not browser.faults, str(browser.faults))
+
+
+def figures_can_be_framed():
+    with Recorder(640, 400) as browser:
+        address = (SITE / "embed.html").as_uri()
+        browser.open(f"{address}?scene=3.2-mistakes&controls=none")
+        browser.wait("/t = (?!0.000)/.test(document.querySelector('.busy')"
+                     ".textContent)", 120)
+        expect(browser.value("document.querySelector('.tools').offsetHeight")
+               == 0, "controls=none shows controls")
+        browser.open(f"{address}?scene=nothing")
+        expect("there are drag" in browser.value("document.body.innerText"),
+               "an unknown scene is not named")
+        expect(not browser.faults, str(browser.faults))
+
+
+TESTS = (size_is_small, nothing_comes_from_elsewhere, links_resolve,
+         broken_links_are_reported, pages_fit_and_say_nothing, figures_move,
+         beyond_the_limit_it_explodes, figures_can_be_framed)
+bad = 0
+for test in TESTS:
+    faults = []
+    try:
+        test()
+    except Exception as error:  # of the browser, too: a test that fails
+        faults.append(f"{type(error).__name__}: {error}")
+    bad += bool(faults)
+    print("ok  " if not faults else "FAIL", test.__name__, flush=True)
+    for words in faults:
+        print("     ", words)
+print(f"{len(TESTS) - bad} passed, {bad} failed")
+sys.exit(bad > 0)
