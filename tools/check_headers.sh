@@ -4,10 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-shopt -s nullglob extglob
-# All but what stands for a part of another C++ library: lab/page/README.md
+shopt -s nullglob
 if [ $# = 0 ]; then
-  set -- *.hpp CME212/*.hpp CME212/*/*.hpp lab/*.hpp lab/*/!(wasi).hpp
+  set -- *.hpp CME212/*.hpp CME212/*/*.hpp lab/*.hpp lab/*/*.hpp
 fi
 # Headers that name SDL or OpenGL, and the packages whose flags these need; all
 # others compile without. A header that draws only under MASS_SPRING_VIEWER is

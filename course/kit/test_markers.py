@@ -12,6 +12,7 @@ import child
 import markers
 import pages
 import starter
+import submission
 import tasks
 
 TASKS = """[course]
@@ -345,6 +346,11 @@ class Repository(unittest.TestCase):
         for name in files:
             self.assertNotRegex(name, r"^lab|scenes|grid4|pages/README|"
                                 r"(?<!web)\.py$")
+        # Of a starter that is handed in, this is looked at.
+        taken = submission.take(self.folder / "s")
+        self.assertEqual(set(taken.files), {
+            *markers.SOURCES, "test_nodes.cpp", "test_edges.cpp"})
+        self.assertEqual(taken.flags, [])
         sources = b"".join(files[name][0] for name in markers.SOURCES)
         for task in tasks.load().tasks.values():
             # A task without a region asks for no code of its own.

@@ -37,11 +37,8 @@ std::vector<Point> line_points(unsigned count) {
 }
 
 template <typename G>
-bool cut_edge(G& g, const Node& a, const Node& b) {
-  if constexpr (requires { g.remove_edge(a, b); })
-    return g.remove_edge(a, b);
-  else
-    return false;
+void cut_edge(G& g, const Node& a, const Node& b) {
+  if constexpr (requires { g.remove_edge(a, b); }) g.remove_edge(a, b);
 }
 
 class Run {
@@ -56,7 +53,7 @@ class Run {
         g, points_, quads_,
         stage == problem1 ? MeshSprings::plain : MeshSprings::diagonals);
     for (unsigned i = 1; i < chain; ++i) g.add_edge(g.node(i - 1), g.node(i));
-    for (unsigned i = 0; i < g.num_nodes(); ++i) slots_.push_back(i);
+    for (unsigned i = 0; i < num_nodes(); ++i) slots_.push_back(i);
     if (g.num_edges() > 0) length_ = length_of(*g.edge_begin());
     if (stage != problem1) length_ = 0;  // each has its own
     make_step(stage);
@@ -88,8 +85,8 @@ class Run {
     return {kinetic,
             elastic,
             height,
-            double(g.num_nodes()),
-            double(g.num_edges()),
+            double(num_nodes()),
+            double(num_edges()),
             t_,
             double(steps_),
             gain_at_,
@@ -104,11 +101,11 @@ class Run {
   void release() { hand_ = -1; }
   /** @return whether the student's remove_edge() removed it */
   bool cut(unsigned slot, unsigned other) {
-    const unsigned before = g.num_edges();
+    const unsigned before = num_edges();
     const int i = index_of(slot), j = index_of(other);
     if (i < 0 || j < 0) return false;
     cut_edge(g, g.node(unsigned(i)), g.node(unsigned(j)));
-    return g.num_edges() < before;
+    return num_edges() < before;
   }
 
   unsigned slots() const { return unsigned(points_.size()); }
@@ -135,7 +132,7 @@ class Run {
   }
   /** Counts up when mesh() would be another one. */
   double version() {
-    const std::array now = {g.num_nodes(), g.num_edges()};
+    const std::array now = {num_nodes(), num_edges()};
     if (std::exchange(counts_, now) != now) ++version_;
     return version_;
   }
@@ -162,6 +159,10 @@ class Run {
 
  private:
   static constexpr double far = 20;  // [m]
+
+  // A graph may count by another type.
+  unsigned num_nodes() const { return unsigned(g.num_nodes()); }
+  unsigned num_edges() const { return unsigned(g.num_edges()); }
 
   void make_step(Stage stage) {
     if (stage == problem1)
@@ -251,12 +252,12 @@ class Run {
   /** After a removal: which node is which, by its place as it was before; of
    * one that has moved since, by the nearest place. A Node may be an index. */
   void follow() {
-    if (g.num_nodes() == slots_.size()) return;
+    if (num_nodes() == slots_.size()) return;
     std::multimap<std::array<Real, 3>, unsigned> left;
     const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
     for (unsigned i = 0; i < slots_.size(); ++i)
       left.emplace(key(places_[i]), slots_[i]);
-    slots_.assign(g.num_nodes(), 0);
+    slots_.assign(num_nodes(), 0);
     std::vector<Node> moved;
     for (Node n : nodes(g)) {
       const auto at = left.find(key(n.position()));

@@ -126,6 +126,7 @@ class Figure {
       this.element.classList.add('cannot');
       return;
     }
+    this.view.camera.set(-0.93, 0.32, 1);  // as the stills
     this.hand = new Hand(this, this.canvas);
     if (!this.whole) this.letScroll();
     const color = () => {
@@ -135,8 +136,11 @@ class Figure {
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change',
       color);
     new ResizeObserver(() => this.changed()).observe(this.canvas);
-    this.canvas.addEventListener('webglcontextlost', () => {
-      this.view = new View(this.canvas), this.show(this.choice);
+    this.canvas.addEventListener('webglcontextlost', e => e.preventDefault());
+    this.canvas.addEventListener('webglcontextrestored', () => {
+      const {camera, obstacles} = this.view;
+      this.view = Object.assign(new View(this.canvas), {camera, obstacles});
+      this.show(this.choice), this.changed();
     });
     setInterval(() => this.cloths.forEach(c => c.second()), 1000);
     this.start(), this.play(!isStill());
