@@ -88,7 +88,8 @@ TEST(ConstraintPlanPins, GoOnWithoutAPinnedNodeThatWasRemoved) {
   other.value().vel = Point(1);
   second.position().z = -1;
   plan(g, 0);
-  plan.place_held(g, 0);
+  plan.place_held_at_rest(g, 0);
+  plan.set_held_velocities(g, 0);
   EXPECT_EQ(other.position(), Point(9, 9, 9));
   EXPECT_EQ(other.value().vel, Point(1));
   EXPECT_EQ(second.position(), Point(1, 0, 0));

@@ -387,13 +387,15 @@ TEST(MovingPin, IsPlacedAtAStage) {
   const auto is = [&](Point place, Point velocity) {
     return held[0].position() == place && held[0].value().vel == velocity;
   };
-  plan.place_held(g, 0.25);
+  plan.place_held_at_rest(g, 0.25);
+  plan.set_held_velocities(g, 0.25);
   EXPECT_TRUE(is(Point(1, 1, 0), Point(0, 4, 0)));
   plan.place_held_at_rest(g, -0.25);
   EXPECT_TRUE(is(Point(1, -1, 0), Point()));
   plan.set_held_velocities(g, 0.25);
   EXPECT_TRUE(is(Point(1, -1, 0), Point(0, 4, 0)));
-  plan.place_held(g, 0.5);
+  plan.place_held_at_rest(g, 0.5);
+  plan.set_held_velocities(g, 0.5);
   EXPECT_TRUE(is(Point(1, 2, 0), Point()));
   EXPECT_EQ(free.position(), Point(2, 0, 0));
   EXPECT_EQ(free.value().vel, Point(0, 0, 3));
@@ -409,7 +411,8 @@ TEST(MovingPin, GoesOnWithoutANodeThatWasRemoved) {
   g.remove_node(held[0]);
   Node other = g.add_node(Point(9));  // may take its slot
   pin(g, 1);
-  ConstraintPlan(pin).place_held(g, 1);
+  ConstraintPlan(pin).place_held_at_rest(g, 1);
+  ConstraintPlan(pin).set_held_velocities(g, 1);
   EXPECT_EQ(other.position(), Point(9));
   EXPECT_EQ(held[1].position(), Point(3, 2, 2));
 }

@@ -43,6 +43,32 @@ struct Spread {
   }
 };
 
+/** Runs all registered benchmarks in turn, in random order. */
+class Times : public benchmark::BenchmarkReporter {
+ public:
+  /** Of each repetition a call [s], by the name of the benchmark. */
+  std::map<std::string, std::vector<double>> seconds;
+
+  /** @param options more of them, as --benchmark_min_time=0.02 */
+  void run(std::vector<std::string> options = {}) {
+    options.insert(options.begin(),
+                   {"bench", "--benchmark_enable_random_interleaving=true"});
+    std::vector<char*> words;
+    for (std::string& option : options) words.push_back(option.data());
+    int count = int(words.size());
+    benchmark::Initialize(&count, words.data());
+    benchmark::RunSpecifiedBenchmarks(this);
+    benchmark::ClearRegisteredBenchmarks();
+  }
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (run.run_type == Run::RT_Iteration)
+        seconds[run.run_name.function_name].push_back(
+            run.real_accumulated_time / double(run.iterations));
+  }
+};
+
 /** Measures figures in turn, in random order, so that a machine that slows down
  * slows all of them. */
 class Bench {
@@ -64,20 +90,14 @@ class Bench {
           })
           ->Repetitions(repetitions)
           ->MinTime(0.05);
-    char name[] = "bench",
-         random[] = "--benchmark_enable_random_interleaving=true";
-    char* args[] = {name, random};
-    int count = 2;
-    benchmark::Initialize(&count, args);
-    Times times(*this);
-    benchmark::RunSpecifiedBenchmarks(&times);
-    benchmark::ClearRegisteredBenchmarks();
+    times_.run();
   }
 
   /** Seconds a call.  @pre run(); there is such a figure */
   Spread seconds(const std::string& group, const std::string& name) const {
-    auto it = seconds_.find(group + '|' + name);
-    return Spread(it == seconds_.end() ? std::vector<double>() : it->second);
+    auto it = times_.seconds.find(group + '|' + name);
+    return Spread(it == times_.seconds.end() ? std::vector<double>()
+                                             : it->second);
   }
 
   /** @param unit of the items   @param bandwidth of the memory [GB/s], to which
@@ -134,7 +154,7 @@ class Bench {
 
  private:
   std::vector<Figure> figures_;
-  std::map<std::string, std::vector<double>> seconds_;  // by key()
+  Times times_;  // by key()
 
   static std::string key(const Figure& f) { return f.group + '|' + f.name; }
 
@@ -147,22 +167,6 @@ class Bench {
     const double beside = seconds(f.group, f.beside).median / other->items;
     return beside > 0 ? seconds(f.group, f.name).median / f.items / beside : 0;
   }
-
-  /** Records each repetition. */
-  class Times : public benchmark::BenchmarkReporter {
-   public:
-    explicit Times(Bench& to) : to_(to) {}
-    bool ReportContext(const Context&) override { return true; }
-    void ReportRuns(const std::vector<Run>& runs) override {
-      for (const Run& run : runs)
-        if (run.run_type == Run::RT_Iteration)
-          to_.seconds_[run.run_name.function_name].push_back(
-              run.real_accumulated_time / double(run.iterations));
-    }
-
-   private:
-    Bench& to_;
-  };
 };
 
 }  // namespace bench

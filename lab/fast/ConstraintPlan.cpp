@@ -43,28 +43,28 @@ void PinnedNodes::each_of_part(const Cloth& g, unsigned first, unsigned last,
   }
 }
 
-void PinnedNodes::project(Cloth& g, const Place& moved, unsigned first,
+void PinnedNodes::project(Cloth& g, double t, unsigned first,
                           unsigned last) const {
-  each_of_part(g, first, last, [&](const PinConstraint::Pin& pin) {
+  each_of_part(g, first, last, [&, by = moved(t)](const auto& pin) {
     Node n = pin.node;
-    n.position() = pin.place + moved.at;
-    n.value().vel = moved.velocity;
+    n.position() = pin.place + by.at;
+    n.value().vel = by.velocity;
   });
 }
 
-void PinnedNodes::project_flat(FlatCloth& c, const Cloth& g, const Place& moved,
-                               unsigned first, unsigned last) const {
-  each_of_part(g, first, last, [&](const PinConstraint::Pin& pin) {
-    c.set_position(pin.node.id(), pin.place + moved.at);
-    c.set_velocity(pin.node.id(), moved.velocity);
+void PinnedNodes::project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
+                               unsigned last) const {
+  each_of_part(g, first, last, [&, by = moved(t)](const auto& pin) {
+    c.set_position(pin.node.id(), pin.place + by.at);
+    c.set_velocity(pin.node.id(), by.velocity);
   });
 }
 
-void PinnedNodes::each_place(const Cloth& g, const Place& moved,
+void PinnedNodes::each_place(const Cloth& g, double t,
                              const PlaceVisitor& use) const {
+  const Place by = moved(t);
   for (const auto& pin : pins_)
-    if (g.has_node(pin.node))
-      use(pin.node, {pin.place + moved.at, moved.velocity});
+    if (g.has_node(pin.node)) use(pin.node, {pin.place + by.at, by.velocity});
 }
 
 bool SweptConstraint::idle(const FlatCloth& c, double t, unsigned first,
@@ -93,27 +93,6 @@ void SweptConstraint::apply_flat(FlatCloth& c, Cloth& g, double t) const {
 namespace {
 
 // The course's constraints as swept ones.
-
-class Pins final : public NodewiseConstraint {
- public:
-  explicit Pins(const PinConstraint& c) : pins_(c.pins()) {}
-  void project(Cloth& g, double /*t*/, unsigned first,
-               unsigned last) const override {
-    pins_.project(g, {}, first, last);
-  }
-  void project_flat(FlatCloth& c, Cloth& g, double /*t*/, unsigned first,
-                    unsigned last) const override {
-    pins_.project_flat(c, g, {}, first, last);
-  }
-  void each_place(const Cloth& g, double /*t*/,
-                  const PlaceVisitor& use) const override {
-    pins_.each_place(g, {}, use);
-  }
-  bool is_at_rest(double /*t*/) const override { return true; }
-
- private:
-  PinnedNodes pins_;
-};
 
 class Plane final : public NodewiseConstraint {
  public:
@@ -227,7 +206,7 @@ void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
     for (const auto& part : all->parts()) add(part);
   } else if (auto pins = exactly<PinConstraint, FunctionConstraint>(c);
              pins && pins->has_pins()) {
-    terms_.push_back(std::make_shared<Pins>(*pins));
+    terms_.push_back(std::make_shared<PinnedNodes>(pins->pins()));
   } else if (auto floor = exactly<PlaneConstraint, FunctionConstraint>(c)) {
     terms_.push_back(std::make_shared<Plane>(*floor));
   } else if (auto ball = exactly<SphereConstraint, FunctionConstraint>(c)) {
@@ -296,11 +275,6 @@ double ConstraintPlan::next_velocity_jump(double t) const {
 
 void ConstraintPlan::each_held(const Cloth& g, const NodeVisitor& use) const {
   each_place(g, 0, [&use](Node n, const Place&) { use(n); });
-}
-void ConstraintPlan::place_held(Cloth& g, double t) const {
-  each_place(g, t, [](Node n, const Place& place) {
-    n.position() = place.at, n.value().vel = place.velocity;
-  });
 }
 void ConstraintPlan::place_held_at_rest(Cloth& g, double t) const {
   each_place(g, t, [](Node n, const Place& place) {

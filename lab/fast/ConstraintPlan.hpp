@@ -158,21 +158,26 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 
-/** Pinned nodes, sorted by id, so that those of a part are found. */
-class PinnedNodes {
+/** Holds nodes at their places, or moves all of them along. They are sorted by
+ * id, so that those of a part are found. Nodes may be removed. */
+class PinnedNodes : public NodewiseConstraint {
  public:
-  /** Nodes may be removed.  @pre all were in one graph  O(pins log pins) */
+  /** @pre all were in one graph  O(pins log pins) */
   explicit PinnedNodes(const std::vector<PinConstraint::Pin>& pins);
-  /** Put the pinned nodes with ids in [first, last) to their places, which have
-   * moved by @a moved.at and have the velocity @a moved.velocity.
-   * O(log(pins) + those of the part) */
-  void project(Cloth& g, const Place& moved, unsigned first,
-               unsigned last) const;
-  void project_flat(FlatCloth& c, const Cloth& g, const Place& moved,
-                    unsigned first, unsigned last) const;
-  /** As SweptConstraint::each_place().  O(pins) */
-  void each_place(const Cloth& g, const Place& moved,
-                  const PlaceVisitor& use) const;
+  /** O(log(pins) + those of the part) */
+  void project(Cloth& g, double t, unsigned first,
+               unsigned last) const override;
+  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
+                    unsigned last) const override;
+  /** O(pins) */
+  void each_place(const Cloth& g, double t,
+                  const PlaceVisitor& use) const override;
+  bool is_at_rest(double /*t*/) const override { return true; }
+
+ protected:
+  /** How far all have moved from their places at time @a t, and how fast they
+   * move then. */
+  virtual Place moved(double /*t*/) const { return {}; }
 
  private:
   std::vector<PinConstraint::Pin> pins_;  // in the order of the nodes
@@ -239,9 +244,8 @@ class ConstraintPlan {
   // The held nodes; each takes O(of them), as each_place().
   /** Call @a use(node) for each. */
   void each_held(const Cloth& g, const NodeVisitor& use) const;
-  /** Put each to its place at time @a t, with the velocity of its place. */
-  void place_held(Cloth& g, double t) const;
-  /** The same, but at rest: so a drift that ends at @a t leaves it there. */
+  /** Put each to its place at time @a t, at rest: so a drift that ends at @a t
+   * leaves it there. */
   void place_held_at_rest(Cloth& g, double t) const;
   /** Only set its velocity: after a kick. Positions and other velocities are
    * not touched, so no trajectory changes, only energies. */

@@ -39,94 +39,57 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   if (auto sum = exactly<CombinedForces, FunctionForce>(f)) {
     for (const auto& part : sum->parts()) add(part);
   } else if (auto weight = exactly<GravityForce, FunctionForce>(f)) {
-    terms_.push_back({Kind::weight, weight->gravity(), nullptr});
+    gravity_ += weight->gravity();
   } else if (exactly<MassSpringForce, FunctionForce>(f)) {
-    terms_.push_back({Kind::springs, 0, nullptr});
+    ++springs_;
   } else if (auto drag = exactly<DampingForce, FunctionForce>(f);
              drag && drag->coefficient() >= 0) {
     drag_.add(drag->coefficient());
   } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
     drag_.add(*drags);
-  } else if (dynamic_cast<const SweptForce*>(&f)) {
-    terms_.push_back({Kind::swept, 0, std::move(force)});
   } else if (!exactly<ZeroForce, FunctionForce>(f)) {
-    terms_.push_back({Kind::call, 0, std::move(force)});
+    others_.push_back({std::move(force), dynamic_cast<const SweptForce*>(&f)});
   }
 }
 
 void ForcePlan::add_others(const Part& part, double t,
                            std::span<Point> f) const {
-  for (const Term& term : terms_)
-    if (term.kind == Kind::call)
-      add_calls(part, *term.force, t, f);
-    else if (term.kind == Kind::swept && term.swept().acts())
-      term.swept().add_to(part, t, f);
+  for (const Other& other : others_)
+    if (!other.swept)
+      add_calls(part, *other.force, t, f);
+    else if (other.acts())
+      other.swept->add_to(part, t, f);
 }
 
 bool ForcePlan::has_others() const {
-  return std::ranges::any_of(terms_, [](const Term& term) {
-    return term.kind == Kind::call ||
-           (term.kind == Kind::swept && term.swept().acts());
-  });
-}
-
-double ForcePlan::gravity() const {
-  double sum = 0;
-  for (const Term& term : terms_)
-    if (term.kind == Kind::weight) sum += term.factor;
-  return sum;
+  return std::ranges::any_of(others_, &Other::acts);
 }
 
 double ForcePlan::energy(const Cloth& g) const {
-  double sum = 0;
-  for (const Term& term : terms_) switch (term.kind) {
-      case Kind::weight:
-        sum += gravitational_energy(g, term.factor);
-        break;
-      case Kind::springs:
-        sum += elastic_energy(g);
-        break;
-      case Kind::swept:
-        sum += term.swept().energy(g);
-        break;
-      case Kind::call:
-        break;
-    }
+  double sum = gravitational_energy(g, gravity_);
+  if (springs_ > 0) sum += springs_ * elastic_energy(g);
+  for (const Other& other : others_)
+    if (other.swept) sum += other.swept->energy(g);
   return sum;
 }
 
 bool ForcePlan::add_stiffness(const Cloth& g,
                               const StiffnessVisitor& use) const {
-  for (const Term& term : terms_) switch (term.kind) {
-      case Kind::springs:
-        add_spring_stiffness(g, use);
-        break;
-      case Kind::swept:
-        if (!term.swept().add_stiffness(g, use)) return false;
-        break;
-      case Kind::call:
-        return false;
-      case Kind::weight:
-        break;  // it does not depend on positions
-    }
-  return true;
+  for (int k = 0; k < springs_; ++k) add_spring_stiffness(g, use);
+  return std::ranges::all_of(others_, [&](const Other& other) {
+    return other.swept && other.swept->add_stiffness(g, use);
+  });
 }
 
 std::optional<int> ForcePlan::spring_multiplicity() const {
-  int sum = 0;
-  for (const Term& term : terms_) {
-    if (term.kind == Kind::call) return std::nullopt;
-    if (term.kind == Kind::springs) ++sum;
-    if (term.kind != Kind::swept) continue;
-    const auto some = term.swept().spring_multiplicity();
+  int sum = springs_;
+  for (const Other& other : others_) {
+    const auto some =
+        other.swept ? other.swept->spring_multiplicity() : std::optional<int>();
     if (!some) return std::nullopt;
     sum += *some;
   }
   return sum;
-}
-
-int ForcePlan::springs() const {
-  return int(std::ranges::count(terms_, Kind::springs, &Term::kind));
 }
 
 }  // namespace lab

@@ -102,7 +102,7 @@ class ForcePlan {
   long long evaluations() const { return evaluations_; }
   void count_evaluation() const { ++evaluations_; }
   /** The sum of g of all GravityForce terms [m/s^2]. */
-  double gravity() const;
+  double gravity() const { return gravity_; }
   /** The energy [J] of weight, springs, and swept forces that have one. */
   double energy(const Cloth& g) const;
   /** The sum of its terms -c v: drag()[id] is the c [kg/s] of a node. */
@@ -117,19 +117,17 @@ class ForcePlan {
    * be evaluated as soon as its neighbors have moved. */
   std::optional<int> spring_multiplicity() const;
   /** The number of its MassSpringForce terms. */
-  int springs() const;
+  int springs() const { return springs_; }
 
  private:
-  enum class Kind { weight, springs, swept, call };
-  struct Term {
-    Kind kind;
-    double factor;                           // of weight: gravity [m/s^2]
-    std::shared_ptr<const ZeroForce> force;  // of swept and call
-    const SweptForce& swept() const {
-      return static_cast<const SweptForce&>(*force);
-    }
+  struct Other {
+    std::shared_ptr<const ZeroForce> force;
+    const SweptForce* swept;  // the same; null: it is called
+    bool acts() const { return !swept || swept->acts(); }
   };
-  std::vector<Term> terms_;
+  double gravity_ = 0;  // [m/s^2]
+  int springs_ = 0;
+  std::vector<Other> others_;  // in their order
   Drag drag_;
   mutable long long evaluations_ = 0;
 

@@ -30,18 +30,6 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 
 // ----------------------------------------------------------------------- Pins
 
-void MovingPinConstraint::project(Cloth& g, double t, unsigned first,
-                                  unsigned last) const {
-  pins_.project(g, moved(t), first, last);
-}
-void MovingPinConstraint::project_flat(FlatCloth& c, Cloth& g, double t,
-                                       unsigned first, unsigned last) const {
-  pins_.project_flat(c, g, moved(t), first, last);
-}
-void MovingPinConstraint::each_place(const Cloth& g, double t,
-                                     const PlaceVisitor& use) const {
-  pins_.each_place(g, moved(t), use);
-}
 double MovingPinConstraint::next_velocity_jump(double t) const {
   return t < motion_.until * (1 - 1e-12)
              ? motion_.until

@@ -44,7 +44,7 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
  * way(t), with the velocity of that. Methods ask for the places at each of
  * their stages. Pinned nodes may be removed; the others are still moved.
  * Complexity of a call: O(pins). */
-class MovingPinConstraint : public NodewiseConstraint {
+class MovingPinConstraint : public PinnedNodes {
  public:
   /** The nodes of @a pins move.  @pre all in one graph */
   MovingPinConstraint(const PinConstraint& pins, const Motion& motion)
@@ -52,26 +52,20 @@ class MovingPinConstraint : public NodewiseConstraint {
   /** The same for nodes with their places at t = 0. */
   MovingPinConstraint(const std::vector<PinConstraint::Pin>& pins,
                       const Motion& motion)
-      : pins_(pins), motion_(motion) {}
-  void project(Cloth& g, double t, unsigned first,
-               unsigned last) const override;
-  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
-                    unsigned last) const override;
-  void each_place(const Cloth& g, double t,
-                  const PlaceVisitor& use) const override;
+      : PinnedNodes(pins), motion_(motion) {}
   double next_velocity_jump(double t) const override;
   bool is_at_rest(double t) const override {
     return motion_.velocity_at(t) == Point() &&
            next_velocity_jump(t) == HUGE_VAL;
   }
 
- private:
-  PinnedNodes pins_;
-  Motion motion_;
-
-  Place moved(double t) const {
+ protected:
+  Place moved(double t) const override {
     return {motion_.way(t), motion_.velocity_at(t)};
   }
+
+ private:
+  Motion motion_;
 };
 
 /** The common part of wall and ball: an obstacle with friction that may move.

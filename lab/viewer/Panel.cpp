@@ -33,6 +33,11 @@ std::string share_text(double dt, double limit) {
 bool is_beyond(const RunReadings& r) {
   return r.safe_limit != no_limit && r.dt >= r.safe_limit;
 }
+void write_red(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, red);
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
 /** A row of a table: a name, and values in their colors. */
 using Cell = std::pair<std::string, ImVec4>;
 void row(const char* name, std::initializer_list<Cell> values) {
@@ -230,11 +235,7 @@ void Panel::draw_player() {
     ImGui::TextColored(red, "it blew up");
   else
     ImGui::TextColored(dim, "%s", paused ? "paused" : "");
-  if (!shown_.refusal.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, red);
-    ImGui::TextWrapped("%s", shown_.refusal.c_str());
-    ImGui::PopStyleColor();
-  }
+  if (!shown_.refusal.empty()) write_red(shown_.refusal);
 }
 
 void Panel::draw_controls() {
@@ -384,11 +385,7 @@ void Panel::draw_comparison() {
           text_of("%.2e", c->rival_error.largest));
     ImGui::EndTable();
   }
-  if (!c->rival.failure.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, red);
-    ImGui::TextWrapped("%s", c->rival.failure.c_str());
-    ImGui::PopStyleColor();
-  }
+  if (!c->rival.failure.empty()) write_red(c->rival.failure);
   ImGui::TextWrapped(
       "apart: %.2e m rms, %.2e m at most. Errors are distances "
       "from %s at dt = %.2g s.",

@@ -41,12 +41,8 @@ class SDLScreen : public Screen {
  public:
   SDLScreen(Kind kind, std::array<int, 2> pixels)
       : kind_(kind),
-        viewer_({.width = pixels[0]            ? pixels[0]
-                          : kind == Kind::film ? 800
-                                               : 1024,
-                 .height = pixels[1]            ? pixels[1]
-                           : kind == Kind::film ? 600
-                                                : 768,
+        viewer_({.width = pixels[0],
+                 .height = pixels[1],
                  .title = "cloth",
                  .offscreen = kind != Kind::window,
                  .restarts = true,
@@ -395,6 +391,8 @@ std::unique_ptr<Screen> Screen::open(Kind kind, std::array<int, 2> pixels) {
   if (available_addresses() <
       550e6 + 75e6 * std::thread::hardware_concurrency())
     throw std::bad_alloc();
+  if (pixels[0] == 0)
+    pixels = kind == Kind::film ? std::array{800, 600} : std::array{1024, 768};
   return std::make_unique<SDLScreen>(kind, pixels);
 }
 

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <ctime>
 #include <functional>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -92,8 +91,7 @@ void add(const char* row, const char* column, std::function<double()> run) {
                                    state.SetIterationTime(run());
                                })
       ->UseManualTime()
-      ->Repetitions(15)
-      ->Unit(benchmark::kMicrosecond);
+      ->Repetitions(15);
 }
 
 /** All that contender C can do. */
@@ -150,57 +148,39 @@ std::array<double, 2> bytes_per_node_and_edge() {
 
 // -------------------------------------------------------------------- Tables
 
-/** Keeps the times of all repetitions [us], by row and column. */
-class Table : public benchmark::BenchmarkReporter {
- public:
-  bool ReportContext(const Context&) override { return true; }
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration) continue;
-      const std::string& name = run.run_name.function_name;
-      auto slash = name.find('/');
-      times_[name.substr(0, slash)][name.substr(slash + 1)].push_back(
-          run.GetAdjustedRealTime());
+void print_head(const char* corner, const std::vector<std::string>& columns) {
+  std::printf("\n| %s |", corner);
+  for (const auto& column : columns) std::printf(" %s |", column.c_str());
+  std::printf("\n|---|");
+  for (std::size_t i = 0; i < columns.size(); ++i) std::printf("---|");
+  std::printf("\n");
+}
+/** A row of Markdown for each of @a rows: our median, then for each other
+ * column the ratio of its median to ours, and the lowest and the highest ratio
+ * of all repetitions. */
+void print(bench::Times& times, const std::vector<std::string>& rows,
+           const std::vector<std::string>& columns) {
+  print_head("", columns);
+  for (const auto& row : rows) {
+    const auto& ours = times.seconds[row + "/ours"];
+    if (ours.empty()) continue;
+    std::printf("| %s | %.0f us |", row.c_str(), 1e6 * Spread(ours).median);
+    for (const auto& column : columns) {
+      if (column == "ours") continue;
+      const auto& theirs = times.seconds[row + '/' + column];
+      std::vector<double> ratio;
+      for (std::size_t k = 0; k < theirs.size(); ++k)
+        ratio.push_back(theirs[k] / ours[k]);
+      if (ratio.empty())
+        std::printf(" |");
+      else
+        std::printf(" %.2f (%.2f-%.2f) |",
+                    Spread(theirs).median / Spread(ours).median,
+                    Spread(ratio).low, Spread(ratio).high);
     }
-  }
-  /** A row of Markdown for each of @a rows: our median, then for each other
-   * column the ratio of its median to ours, and the lowest and the highest
-   * ratio of all repetitions. */
-  void print(const std::vector<std::string>& rows,
-             const std::vector<std::string>& columns) {
-    print_head("", columns);
-    for (const auto& row : rows) {
-      const auto& ours = times_[row]["ours"];
-      if (ours.empty()) continue;
-      std::printf("| %s | %.0f us |", row.c_str(), Spread(ours).median);
-      for (const auto& column : columns) {
-        if (column == "ours") continue;
-        const auto& theirs = times_[row][column];
-        std::vector<double> ratio;
-        for (std::size_t k = 0; k < theirs.size(); ++k)
-          ratio.push_back(theirs[k] / ours[k]);
-        if (ratio.empty())
-          std::printf(" |");
-        else
-          std::printf(" %.2f (%.2f-%.2f) |",
-                      Spread(theirs).median / Spread(ours).median,
-                      Spread(ratio).low, Spread(ratio).high);
-      }
-      std::printf("\n");
-    }
-  }
-  static void print_head(const char* corner,
-                         const std::vector<std::string>& columns) {
-    std::printf("\n| %s |", corner);
-    for (const auto& column : columns) std::printf(" %s |", column.c_str());
-    std::printf("\n|---|");
-    for (std::size_t i = 0; i < columns.size(); ++i) std::printf("---|");
     std::printf("\n");
   }
-
- private:
-  std::map<std::string, std::map<std::string, std::vector<double>>> times_;
-};
+}
 
 using BoostVec = Boost<boost::vecS, boost::vecS>;
 using BoostSet = Boost<boost::setS, boost::listS>;
@@ -243,27 +223,23 @@ int main(int argc, char** argv) {
 
   each_graph([]<typename C>(std::type_identity<C>) { add_all<C>(); });
   add_all<Flat>();
-  std::vector<char*> args(argv, argv + argc);
-  char interleaved[] = "--benchmark_enable_random_interleaving=true";
-  char short_time[] = "--benchmark_min_time=0.02";
-  args.insert(args.begin() + 1, {interleaved, short_time});
-  argc = int(args.size());
-  benchmark::Initialize(&argc, args.data());
-  Table table;
-  benchmark::RunSpecifiedBenchmarks(&table);
+  std::vector<std::string> options(argv + 1, argv + argc);
+  options.insert(options.begin(), "--benchmark_min_time=0.02");
+  bench::Times times;
+  times.run(options);
 
   std::vector<std::string> graphs;
   each_graph(
       [&]<typename C>(std::type_identity<C>) { graphs.push_back(C::name); });
   auto all = graphs;
   all.push_back(Flat::name);
-  table.print(
-      {"force on each node", "all edges", "build, each edge once",
-       "build, quad by quad", "build, in room made first",
-       "build, first of a process", "build, first of a process, in room",
-       "has_edge", "remove half of the nodes"},
-      all);
-  Table::print_head("bytes", graphs);
+  print(times,
+        {"force on each node", "all edges", "build, each edge once",
+         "build, quad by quad", "build, in room made first",
+         "build, first of a process", "build, first of a process, in room",
+         "has_edge", "remove half of the nodes"},
+        all);
+  print_head("bytes", graphs);
   for (int k : {0, 1}) {
     std::printf("| %s |", k == 0 ? "a node" : "an edge");
     for (auto m : memory) std::printf(" %.0f |", m[std::size_t(k)]);
