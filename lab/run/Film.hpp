@@ -15,14 +15,14 @@ class Scene;
 
 /** The picture and the film of one run.
  *
- * A film has a frame for each 1/30 s of simulated time, each the state after
- * the step next to its time. With slow motion it has so many times more
- * frames while nodes first touch a ball or the floor, and while the cloth
- * tears. In its first frames a card says what runs, unless the run goes on from
- * a checkpoint; after the last one there is a card of the result, for at most a
- * ninth of the film. A failed run ends with the reason. A picture of a failure
- * shows the cloth some steps later, when a node has moved by a tenth of the
- * cloth's extent. */
+ * A film has 30 frames for each second of simulated time. Each shows the state
+ * after the step that is closest to the frame's time. With slow motion there
+ * are more frames, by that factor, while nodes first touch a ball or the floor,
+ * and while the cloth tears. The first frames have a card with the title,
+ * unless the run continues from a checkpoint; the end has one with the result,
+ * for at most a ninth of the film. The film of a failed run ends with the
+ * reason. The picture of a failure shows the cloth some steps later, when a
+ * node has moved by a tenth of the cloth's extent. */
 class Film {
  public:
   static constexpr double title_seconds = 1.5, failure_seconds = 2;

@@ -218,9 +218,9 @@ void list_methods() {
   }
 }
 
-/** A run is asked for a tolerance: let a method with error control keep it, if
- * the scene names one or leaves the choice to us.
- * @param given whether the option of a name is given, in a file or here */
+/** A run has a tolerance: set the method and the inner steps that keep it,
+ * unless the scene names a method or a step without error control.
+ * @param given(NAME) true if the option NAME is given, in a file or here */
 void control_error(Model& m, const std::function<bool(const char*)>& given) {
   if (!given("method") && !given("dt"))
     m.method = find_method(Dop853::info.name);

@@ -72,7 +72,7 @@ class Run {
   /** Step until done(). Call @a after(), if there is one, after each step. */
   void to_end(const std::function<void()>& after = {});
 
-  /** As below, of this run. */
+  /** lab::announce() of this run. */
   void announce() const;
 
   /** A file was written by others: @a what in words, as "film x.mp4". */

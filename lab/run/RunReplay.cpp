@@ -16,7 +16,8 @@ namespace lab {
 
 namespace {
 
-/** A film of what is shown, whatever times a user goes back to. */
+/** A film of a replay. Its time goes on, also when the user restarted the scene
+ * or loaded another one. */
 class ReplayFilm {
  public:
   ReplayFilm(Screen& screen, const std::string& file) : screen_(screen) {

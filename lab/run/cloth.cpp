@@ -47,8 +47,8 @@ using namespace lab;
 
 namespace {
 
-/** Print what a scene of parts is asked, and what this run answers; but for
- * positions, which are many: --out writes them. */
+/** Print the measure of the scene and its value in this run. Positions are not
+ * printed, as there are many: --out writes them. */
 void print_answer(const Run& run, const Scene& scene, const Model& m) {
   if (m.measure.quantity == Measure::positions) return;
   const Answer answer = run.answer();
@@ -73,7 +73,7 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   return run.finish();
 }
 
-/** A run in a window that writes files: that of its scene. */
+/** A run in a window that writes files, so that the user can't change it. */
 struct PlainRun {
   Scene& scene;
   Run& run;
@@ -226,8 +226,8 @@ int take_advice(Options& o) {
   return o.automatic ? -1 : 0;
 }
 
-/** Measure what tolerance the run of @a o keeps, and by which inner steps:
- * these go into o.model.  Throws as find_accuracy() */
+/** Measure the error of the run of @a o, and set the inner steps of o.model
+ * that keep its tolerance.  Throws as find_accuracy() */
 Accuracy measure_accuracy(Options& o) {
   Progress progress(o.quiet);
   const Accuracy found = find_accuracy(
@@ -239,7 +239,8 @@ Accuracy measure_accuracy(Options& o) {
   return found;
 }
 
-/** Say what a run that ends with @a status keeps.  @return the exit status */
+/** Say whether the tolerance was kept by a run that ended with @a status.
+ * @return the exit status: 3 if it was not */
 int tell_accuracy(const Accuracy& a, int status, bool quiet) {
   if (a.kept()) {
     if (!quiet && status == 0) std::cout << a.text() << '\n';
@@ -249,9 +250,10 @@ int tell_accuracy(const Accuracy& a, int status, bool quiet) {
   return status == 0 ? 3 : status;
 }
 
-/** Wrong paths, two outputs in one file, and an output in a file that is read
- * shall end the run before it starts; but a mesh may be followed by that of the
- * end, a scene by the advised one, a checkpoint by a later one.
+/** Before a run starts: check that all outputs can be written, that no two go
+ * to one file, and that none replaces a file that the run reads. But --out may
+ * replace the mesh, --write-config the scene, --checkpoint the file of
+ * --restart, and --record-input that of --replay.
  * Throws std::runtime_error, SceneError */
 void check_outputs(const Options& o) {
   using Pair = std::pair<std::string, std::string>;
@@ -373,8 +375,8 @@ int run(Options o) {
   return status;
 }
 
-/** Where the scene names the file of a mesh that can't be read: "FILE:LINE: ".
- * @param what the error; one in a line of that file needs no other place */
+/** If a whole file of the mesh is wrong: the line of the scene file that names
+ * it, as "FILE:LINE: ". Else "".  @param what the error */
 std::string place_of(const Options& o, const std::string& what) {
   for (const auto& [option, file] :
        {std::pair("--nodes", o.model.nodes), std::pair("--tets", o.model.tets)})
