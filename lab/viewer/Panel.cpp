@@ -82,8 +82,8 @@ void Panel::tell(Live& live) {
   remember(told_.now);
 }
 
-/** Append @a r to what is plotted. What is not later than the last frame takes
- * its place, and that of all after it; a failure leaves them. */
+/** Append @a r to what is plotted. If its time is earlier than that of the last
+ * frame, it replaces all frames from there on; but a failure leaves them. */
 void Panel::remember(const Readings& r) {
   auto& past = told_.past;
   if (auto& times = past["t"]; !times.empty() && r.time <= times.back()) {

@@ -267,10 +267,10 @@ class SDLScreen : public Screen {
     viewer_.set_message(std::move(paragraphs));
   }
 
-  /** Make the scale end at the |strain| that one node in fifty exceeds: what
-   * is beyond has the color of the end, since the few nodes at the corners
-   * would leave no colors for the others. It only grows, so that a color goes
-   * on meaning the same. */
+  /** Let the scale end at the |strain| that one node in fifty exceeds, since a
+   * few nodes at corners would leave no colors for the others; larger strains
+   * have the color of its end. It only grows, so that a color keeps its
+   * meaning. */
   void set_scale(const Cloth& g) {
     std::vector<double> strains, sizes;
     for (Node n : g.nodes()) {
@@ -326,8 +326,8 @@ class SDLScreen : public Screen {
     return text + "   " + std::to_string(std::llround(rate_)) + " steps/s";
   }
 
-  /** Look at the room that the scene names; else at the cloth as it is now and
-   * at what it may fall on, and at the start below it as well. */
+  /** Look at the room that the scene names; else at the cloth as it is now, at
+   * what it may fall on and, at the start, at the space below it. */
   void set_view(const Scene& scene) {
     CME212::BoundingBox room;
     for (const Point& p : scene.recipe().room) room |= p;
