@@ -28,6 +28,13 @@ void print_summary(const Scene& scene, const Model& m, double seconds);
 void tell_interrupt(const Scene& scene, const Model& m,
                     const std::string& kept);
 
+/** ./cloth --replay FILE: run the recording o.replay again, without a window,
+ * and write what @a o asks for: the cloth and a picture of it at the end, a
+ * film, the recording.
+ * @return the exit status: 0, 3 if it ends with a failure, 128 + a signal
+ * Throws InputError, SceneFileError; std::runtime_error "FILE: why" */
+int run_replay(const Options& o);
+
 /** What --out writes: the nodes of the mesh that are left and, beside them, its
  * quads, so that they can be read again. */
 class MeshOutput {

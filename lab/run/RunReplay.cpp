@@ -1,5 +1,5 @@
-#include "lab/run/RunReplay.hpp"
-
+/** @file RunReplay.cpp
+ * ./cloth --replay FILE */
 #include <iostream>
 #include <memory>
 #include <optional>

@@ -36,7 +36,6 @@
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Run.hpp"
-#include "lab/run/RunReplay.hpp"
 #include "lab/scenes/Accuracy.hpp"
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"

@@ -1,6 +1,5 @@
 /** @file SceneFailure.cpp
  * Scene::diagnosis(): why a scene failed, and a cure that works. */
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
