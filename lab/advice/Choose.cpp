@@ -283,7 +283,7 @@ void Adviser::choose() {
 void Adviser::foresee() {
   const Refinement& grids = advice_.grids;
   if (grids.size() < fewest() || too_uncertain()) return;
-  for (int level = from_files() ? 0 : level_; level < level_ + 12; ++level) {
+  for (int level = levels_.front(); level < level_ + 12; ++level) {
     Model m = on_level(level);
     if (!from_files() && double(nodes_of(m)) > rules_.most_nodes) return;
     try {
@@ -302,7 +302,7 @@ void Adviser::foresee() {
     // A step on a mesh from files was run, maybe with half of it.
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       const Trial& t = grids[k].trial;
-      if (levels_[k] == level)
+      if (levels_[k] == level && from_files())
         found_->answer = t.answer, found_->seconds = t.seconds,
         found_->checked = true;
       if (levels_[k] == level + 2 && found_->checked)
