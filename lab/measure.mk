@@ -2,7 +2,7 @@
 # results of their room; a quick run draws in $(B)/charts.
 
 .PHONY: adviser-suite cells charts charts-quick figures fuzz grids \
-        method-costs orders peers-bench peers-chart peers-deps pictures \
+        long-runs method-costs orders peers-bench peers-chart peers-deps pictures \
         rounds-chart speed stability stability-soak try try-deps contest
 
 help-lab:
@@ -19,6 +19,7 @@ help-lab:
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
 	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
+	@echo 'make long-runs          averages over 60 s, past what can be predicted'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
@@ -81,6 +82,10 @@ charts: work_precision
 	  lab/charts/make.sh
 charts-quick:
 	@$(sub) charts QUICK=1
+long-runs: cloth
+	@{ echo "# $(measured_on)" && lab/charts/long_runs.py $(B)/cloth; } \
+	  > $(B)/long_runs.csv
+	@mv $(B)/long_runs.csv lab/charts/results/long_runs.csv
 
 # A sweep is a list of runs, each with a file of its own, so it goes on where it
 # was interrupted. `make cells` runs what $(SWEEP)/list names, and no more.

@@ -82,8 +82,8 @@ double error_of(Model m, const Accuracy& found) {
   m.step = found.step;
   Scene run(m);
   EXPECT_TRUE(run.run_to(m.t_end));
-  m.method = find_method("dormand-prince");
-  m.step.tolerance = found.step.tolerance / 30;
+  m.method = find_method("rkn64");
+  m.step.tolerance = found.step.tolerance / 1e4;
   Scene exact(m);
   EXPECT_TRUE(exact.run_to(m.t_end));
   double sum = 0;

@@ -30,7 +30,7 @@ TEST_P(Smooth, EndsWithinTheTolerance) {
   const Problem& p = *std::ranges::find(all, GetParam(), &Problem::name);
   const Reference right = reference(p, p.exact ? 16 : 1.5);
   for (double tolerance : {1e-3, 1e-5, 1e-7})
-    for (const char* name : {"dormand-prince", "dop853"}) {
+    for (const char* name : {"rkn64", "dop853"}) {
       if (tolerance < 100 * right.floor) continue;
       auto method = find_method(name)->make();
       method->set_tolerance(tolerance_share * tolerance);
@@ -65,7 +65,7 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   // One that has no error control is taken as it is.
   EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 --method verlet --dt 0.002 "),
             at_end(sheet + "--method verlet --dt 0.002 "));
-  EXPECT_NE(run(sheet + "--tolerance 1e-3 --method dormand-prince")
+  EXPECT_NE(run(sheet + "--tolerance 1e-3 --method rkn64")
                 .out.find("below 0.00025 m per"),
             std::string::npos);
 }

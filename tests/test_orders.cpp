@@ -45,8 +45,8 @@ const std::array<Course, 5>& courses() {
 }
 
 /** dt omega of a method's longest step on each course: there the next term of
- * its error is small, and three decades lower round-off is. rk4 and
- * dormand-prince need short steps on linear springs, as their errors of
+ * its error is small, and three decades lower round-off is. rk4 needs short
+ * steps on linear springs, as their errors of
  * amplitude and phase are one order apart only; Newton's methods start at long
  * ones, as their tolerance adds up over many short ones. */
 const std::map<std::string, std::array<double, 5>> first_steps = {
@@ -59,8 +59,8 @@ const std::map<std::string, std::array<double, 5>> first_steps = {
     {"srkn6b", {0.6, 0.6, 1.1, 0.6, 0.7}},
     {"srkn11b", {1.8, 2.5, 2.8, 1.8, 2}},
     {"rk4", {0.09, 0.3, 0.8, 0.09, 0.3}},
-    {"dormand-prince", {0.14, 0.25, 0.7, 0.13, 0.25}},
     {"dop853", {1, 1.5, 2.5, 1, 1.6}},
+    {"rkn64", {1, 1, 1.15, 1, 1}},
     {"implicit-euler", {0.2, 1, 2, 0.2, 0.8}},
     {"implicit-midpoint", {0.35, 0.5, 2, 0.35, 0.7}},
     {"tr-bdf2", {0.35, 0.5, 2, 0.35, 1}},

@@ -182,7 +182,7 @@ TEST_P(PlainMethod, EqualsItsTwinOnTheProblemsOfTheCharts) {
     const double epsilon = std::numeric_limits<Real>::epsilon();
     const double apart = distance(plain, fast, dt, constraint);
     EXPECT_LT(apart, 100 * steps * epsilon);
-    EXPECT_GT(distance(plain, scene.at->cloth, dt, constraint), 1e-5);
+    EXPECT_GT(distance(plain, scene.at->cloth, dt, constraint), 1e-6);
     if (scene.problem.name == "tear") {
       EXPECT_LT(plain.num_nodes(), 625u);
     }

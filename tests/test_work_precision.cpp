@@ -154,9 +154,9 @@ TEST(Problem, ItsCountersHideNothing) {
 
 // A method that keeps its last force takes one sweep more in its first step.
 TEST(Problem, CountsTheSweepsThatMethodsDeclare) {
-  const std::set<std::string> keeps = {
-      "verlet",  "yoshida4",         "respa",         "srkn6b",
-      "srkn11b", "augmented-verlet", "dormand-prince"};
+  const std::set<std::string> keeps = {"verlet", "yoshida4", "respa",
+                                       "srkn6b", "srkn11b",  "augmented-verlet",
+                                       "rkn64"};
   // What they take depends on the force; see their MethodInfo.
   const std::set<std::string> newton = {"implicit-midpoint", "tr-bdf2"};
   Problem p = problem("grid0");
@@ -280,7 +280,7 @@ class WorkPrecision : public ::testing::Test {
 
 TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
   ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
-                        "forward-euler,verlet,dormand-prince --out " +
+                        "forward-euler,verlet,rkn64 --out " +
                         csv()),
             0)
       << err();
@@ -308,13 +308,13 @@ TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
   }
   EXPECT_EQ(seen, (std::set<std::string>{"forward-euler diverged",
                                          "forward-euler ok", "verlet diverged",
-                                         "verlet ok", "dormand-prince ok"}));
+                                         "verlet ok", "rkn64 ok"}));
 }
 
 // What the columns say, found once more here.
 TEST_F(WorkPrecision, WritesWhatIsTrue) {
   ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
-                        "forward-euler,verlet,dormand-prince --out " +
+                        "forward-euler,verlet,rkn64 --out " +
                         csv()),
             0)
       << err();
@@ -355,7 +355,7 @@ TEST_F(WorkPrecision, WritesWhatIsTrue) {
   }
   EXPECT_GT(of["verlet"].size(), 2u);
   // A tenth of the tolerance each time, and nothing beyond ten floors.
-  auto& adaptive = of["dormand-prince"];
+  auto& adaptive = of["rkn64"];
   for (std::size_t k = 0; k < adaptive.size(); ++k) {
     EXPECT_NEAR(number(adaptive[k], "tolerance [m]") * std::pow(10, 2 + k), 1,
                 1e-5);

@@ -8,7 +8,6 @@
 
 #include "CME212/Util.hpp"
 #include "lab/charts/Report.hpp"
-#include "lab/methods/DormandPrince.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Xpbd.hpp"

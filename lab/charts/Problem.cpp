@@ -79,6 +79,7 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   out.seconds = clock.seconds();
   out.steps = s.counted.calls();
   out.sweeps = s.force.evaluations();
+  out.work = method.work();
   out.end = end_of(s);
   return out;
 }

@@ -92,6 +92,7 @@ struct Outcome {
   std::string reason;  // empty if ok
   long long steps = 0;
   long long sweeps = 0;  // force evaluations
+  Work work = {};        // besides those
   double seconds = 0;
   End end;
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -90,6 +91,12 @@ struct Curtain {
 CombinedConstraints pinned(const Cloth& g) {
   return make_combined_constraints(PinConstraint(g));
 }
+CombinedConstraints held_at_a_side(const Cloth& g) {
+  std::vector<Node> side;
+  for (unsigned i = 0; i < g.num_nodes(); ++i)
+    if (g.node(i).position().y == 0) side.push_back(g.node(i));
+  return make_combined_constraints(PinConstraint(side));
+}
 CombinedConstraints torn_by_a_ball(const Cloth& g) {
   return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
                                    TearConstraint());
@@ -147,6 +154,17 @@ std::vector<Problem> make_problems() {
                              "25 x 25 cloth with drag, to 0.25 s", 0.25, 25));
   all.push_back(grid_problem("stiff", "25 x 25 cloth, K = 10000 N/m, to 0.25 s",
                              0.25, 25, 1e4));
+  all.push_back(grid_problem(
+      "mixed", "25 x 25 cloth, a band of K = 1e6 N/m, held at a side, to 0.1 s",
+      0.1, 25));
+  all.back().constraint = held_at_a_side;
+  all.back().build = [build = all.back().build](Cloth& g) {
+    build(g);
+    for (unsigned e = 0; e < g.num_edges(); ++e)
+      if (Edge edge = g.edge(e);
+          std::max(edge.node1().position().x, edge.node2().position().x) < 0.09)
+        edge.value().K *= 1e4;
+  };
   all.push_back(grid_problem(
       "drape", "25 x 25 cloth falling on a ball, to 0.4 s", 0.4, 25));
   all.back().constraint = on_a_ball;

@@ -108,6 +108,12 @@ def measured(method, k, what):
     return float(re.search(words[what], notes[k])[1])
 
 
+def long_run(method, column):
+    """A number of the table of long runs."""
+    return float(table("charts/results/long_runs.csv").where(
+        method=method)[0][column])
+
+
 def last_energy(method):
     """[J], and [s] of that."""
     row = table("charts/results/energy.csv").where(method=method)[-1]

@@ -70,20 +70,27 @@ class Table:
                 if all(row[k] == v for k, v in wanted.items())]
 
 
-def solver_steps():
-    """{method: (force evaluations of a step, what the whole step costs in
-    force evaluations)} of the methods that spend work on more than forces:
-    instructions of a step at Verlet's limit, as `make rounds-chart` counts
-    them. Conjugate gradients take more at longer steps."""
+def solver_costs():
+    """What methods spend on more than forces, in force evaluations, by the
+    instructions that `make rounds-chart` counts: {method: (force evaluations
+    of a step, cost of the whole step)}, the cost of the factor that such a
+    method makes once, and those of a linear system, of a product with its
+    matrix and of its factor, for Newton's methods."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
     each = {line.split(",")[0]: int(line.split(",")[5]) for line in lines
             if not line.startswith("#")}
-    return {m: (each[m], float(cost)) for m, cost in re.findall(
-        r"# a step at verlet's limit ([\w-]+): ([\d.]+)",
-        (ROOT / RATIOS).read_text())}
+    text = (ROOT / RATIOS).read_text()
+    steps = {m: (each[m], float(cost)) for m, cost in re.findall(
+        r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
+    once = float(re.search("# the factor of .*: (.*)", text)[1])
+    (system, product), (by_factor, _) = (
+        map(float, re.search(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
+                             "(.*) a product", text).groups())
+        for by in ("gradients", "factor"))
+    return steps, once, (system - 1, product, by_factor - system)
 
 
-SOLVERS = solver_steps()
+SOLVERS, ONCE, NEWTON = solver_costs()
 
 
 @dataclass(frozen=True)
@@ -99,13 +106,18 @@ class Run:
     floor: float      # [m]: error of the reference
     ok: bool
     median: float = 0  # of the seconds of the repeats
+    solves: tuple = (0, 0, 0)  # linear systems, products, factors
 
     @property
     def work(self):
-        """Counted, in force evaluations. What a step does besides counts
+        """Counted, in force evaluations. What a run does besides counts
         by its instructions."""
-        evaluations, whole = SOLVERS.get(self.method, (1, 1))
-        return self.evaluations / evaluations * whole
+        if self.method in SOLVERS:
+            evaluations, whole = SOLVERS[self.method]
+            once = 0 if self.method == "xpbd" else ONCE
+            return self.evaluations / evaluations * whole + once
+        return self.evaluations + sum(
+            n * cost for n, cost in zip(self.solves, NEWTON))
 
 
 def runs(rows):
@@ -116,7 +128,9 @@ def runs(rows):
                 number(row, "dt/limit"), number(row, "sweeps"),
                 number(row, "seconds_min"), number(row, "error"),
                 number(row, "floor"), row["status"] == "ok",
-                number(row, "seconds_median")) for row in rows]
+                number(row, "seconds_median"),
+                tuple(number(row, n) for n in ("systems", "products",
+                                               "factors"))) for row in rows]
 
 
 def believed(some):
@@ -125,11 +139,11 @@ def believed(some):
 
 
 def by_method(some):
-    """{method: its runs, the cheapest first}."""
+    """{method: its runs, the coarsest first}."""
     found = {}
     for run in some:
         found.setdefault(run.method, []).append(run)
-    return {m: sorted(of, key=lambda r: r.evaluations)
+    return {m: sorted(of, key=lambda r: (-r.tolerance, r.evaluations))
             for m, of in found.items()}
 
 

@@ -149,8 +149,9 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
       << (by_tolerance ? cell(c.tolerance) : "") << ','
       << (c.of_limit > 0 ? cell(c.of_limit) : "") << ','
       << (by_tolerance ? c.first.steps : c.steps) << ',' << std::llround(sweeps)
-      << ',' << cell(least) << ',' << cell(median) << ','
-      << (ok ? cell(c.error) : "") << ',' << cell(r.floor) << ','
+      << ',' << c.first.work.newton << ',' << c.first.work.products << ','
+      << c.first.work.factors << ',' << cell(least) << ',' << cell(median)
+      << ',' << (ok ? cell(c.error) : "") << ',' << cell(r.floor) << ','
       << name_of(p.norm) << ',' << statuses[static_cast<int>(c.first.status)]
       << ',' << cell(c.first.reason) << '\n';
 }
@@ -181,8 +182,9 @@ void work_precision(const std::vector<Problem>& problems,
   for (const Problem& p : problems)
     out << "# scene " << p.name << ": " << p.about
         << "; error: " << name_of(p.norm) << '\n';
-  out << "scene,method,dt [s],tolerance [m],dt/limit,steps,sweeps,"
-         "seconds_min [s],seconds_median [s],error [m],floor [m],norm,status,"
+  out << "scene,method,dt [s],tolerance [m],dt/limit,steps,sweeps,systems,"
+         "products,factors,seconds_min [s],seconds_median [s],error [m],floor "
+         "[m],norm,status,"
          "reason\n";
   double parts = double(problems.size()), part = 0;
   for (const Problem& p : problems) {

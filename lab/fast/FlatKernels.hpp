@@ -401,10 +401,11 @@ struct StageSum {
   Real way;        ///< [s]
   Term term[most];
   unsigned count;  ///< of terms
+  Real decay = 1;  ///< of v
 };
 
-/** x = x_0 + (way v_0 + sum of to_x a); v = v_0 + sum of to_v a: for the nodes
- * [first, last). */
+/** x = x_0 + (way v_0 + sum of to_x a); v = decay (v_0 + sum of to_v a): for
+ * the nodes [first, last). */
 struct SumTiles {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(FlatCloth* cloth,
@@ -426,7 +427,7 @@ struct SumTiles {
           dx += term.to_x * a, dv += term.to_v * a;
         }
         store(nodes[FlatCloth::X + c] + i, load<V>(x0 + i) + dx);
-        store(nodes[FlatCloth::VX + c] + i, v + dv);
+        store(nodes[FlatCloth::VX + c] + i, sum->decay * (v + dv));
       }
     }
   }

@@ -24,8 +24,8 @@ inline constexpr auto method_costs = std::to_array<MethodCost>({
     {"srkn6b", 4.87, 0},               //
     {"srkn11b", 8.98, 0},              //
     {"rk4", 3.91, 0},                  //
-    {"dormand-prince", 8.04, 0},       //
     {"dop853", 16.1, 0},               //
+    {"rkn64", 6.6, 0},                 //
     {"implicit-euler", 50.3, 269},     //
     {"implicit-midpoint", 85.5, 271},  //
     {"tr-bdf2", 79.2, 150},            //

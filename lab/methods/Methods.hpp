@@ -7,7 +7,6 @@
 
 #include "lab/methods/AugmentedVerlet.hpp"
 #include "lab/methods/Dop853.hpp"
-#include "lab/methods/DormandPrince.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
@@ -15,6 +14,7 @@
 #include "lab/methods/Pefrl.hpp"
 #include "lab/methods/Respa.hpp"
 #include "lab/methods/Rk4.hpp"
+#include "lab/methods/Rkn64.hpp"
 #include "lab/methods/Srkn.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/TrBdf2.hpp"
@@ -33,8 +33,8 @@ inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<Srkn6b>(),
                                        entry_of<Srkn11b>(),
                                        entry_of<Rk4>(),
-                                       entry_of<DormandPrince>(),
                                        entry_of<Dop853>(),
+                                       entry_of<Rkn64>(),
                                        entry_of<ImplicitEuler>(),
                                        entry_of<ImplicitMidpoint>(),
                                        entry_of<TrBdf2>(),

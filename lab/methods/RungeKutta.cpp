@@ -3,22 +3,44 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "lab/methods/Dop853.hpp"
-#include "lab/methods/DormandPrince.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/Rk4.hpp"
+#include "lab/methods/Rkn64.hpp"
 
 namespace lab {
+
+namespace {
+
+/** c/m of all nodes [1/s].
+ * Throws std::invalid_argument if it differs from node to node.  O(N) */
+double common_drag(const Cloth& g, const Drag& c) {
+  double r = 0;
+  if (c.none()) return r;
+  for (Node n : g.nodes()) {
+    const double own = c[n.id()] / n.value().mass;
+    if (n.index() == 0) r = own;
+    if (!DragFlow::is_same(r, own) || !DragFlow::is_same(own, r))
+      throw std::invalid_argument(
+          "rkn64: drag over mass differs from node to node, expected the same "
+          "at all; dop853 does without");
+  }
+  return r;
+}
+
+}  // namespace
 
 template <typename Tableau>
 int RungeKutta<Tableau>::steps(Cloth& g, const StepTimes& times, int count,
                                const ForcePlan& force,
                                const ConstraintPlan& constraint) {
   const auto version = g.version();
-  flow_.begin(g, force, false);
+  flow_.begin(g, force, nystroem);
+  if constexpr (nystroem) drag_ = common_drag(g, force.drag());
   int k = 0;
   do one_step(g, times(k), times.dt, constraint);
   while (++k < count && g.version() == version);
@@ -49,7 +71,8 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
     bool good = error <= 1;
     double factor = 0.2;
     if (std::isfinite(error))
-      factor = std::clamp(0.9 * std::pow(error, -1.0 / info.order), 0.2, 5.0);
+      factor = std::clamp(
+          0.9 * std::pow(error, -1.0 / (nystroem ? 5 : info.order)), 0.2, 5.0);
     if (good) {
       now = last ? goal : now + h;
       flow_.run({.t = now, .project = &constraint});
@@ -75,14 +98,18 @@ double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
   FlatCloth& cloth = flow_.cloth();
   flow_.run({.t = t, .held = &constraint, .held_move = true});
   cloth.copy(FlatCloth::X, start, 6);
+  const double way = DragFlow(drag_, h).way;  // h in the time s
   for (std::size_t s = 0; s < stages; ++s) {
+    const double part = Tableau::c[s] * way;
     FlatStage stage = {.t = t + Tableau::c[s] * h};
-    if (s == 0 && first_same_as_last && at_end_of_last_step(t)) {
+    if (drag_ > 0 && Tableau::c[s] < 1)
+      stage.t = t - std::log1p(-drag_ * part) / drag_;
+    if (s == 0 && nystroem && at_end_of_last_step(t)) {
       cloth.copy(acceleration(stages - 1), acceleration(0), 3);
       continue;
     }
     if (s > 0) {
-      weigh(Tableau::c[s], h, &Tableau::a[s * (s - 1) / 2], s);
+      weigh(s, way);
       stage.sum = &sum_, stage.held = &constraint, stage.held_move = true;
     }
     stage.kick = 0, stage.keep = true, stage.keep_in = acceleration(s);
@@ -92,16 +119,13 @@ double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
     };
     constraint.each_held(g, std::ref(rest));  // nothing on the heap
   }
-  if constexpr (first_same_as_last) {
-    // The last stage is the state at the end of the step.
+  weigh(stages, way);
+  flow_.run({.t = t + h, .sum = &sum_, .held = &constraint, .held_move = true});
+  if constexpr (nystroem) {
     cloth.copy(FlatCloth::X, end, 6);
     has_end_ = true, end_t_ = t + h, end_version_ = cloth.version();
-  } else {
-    weigh(1, h, Tableau::b.data(), stages);
-    flow_.run(
-        {.t = t + h, .sum = &sum_, .held = &constraint, .held_move = true});
   }
-  if constexpr (adaptive) return h * error_rate(g, h);
+  if constexpr (adaptive) return way * error_rate(g, way);
   return 0;
 }
 
@@ -116,18 +140,36 @@ bool RungeKutta<Tableau>::at_end_of_last_step(double t) {
   return same;
 }
 
-/** sum_ for the state c h after the start, by the weights of @a count
- * stages. */
+/** sum_ for the state of a @a stage, or at the end of a step of @a h if it is
+ * the number of stages. */
 template <typename Tableau>
-void RungeKutta<Tableau>::weigh(double c, double h, const double* weights,
-                                std::size_t count) {
-  sum_ = {start, Real(c * h), {}, 0};
-  for (std::size_t k = 0; k < count; ++k) {
-    const double to_x = of_accelerations(weights, count, k);
-    if (weights[k] != 0 || to_x != 0)
+void RungeKutta<Tableau>::weigh(std::size_t stage, double h) {
+  const bool last = stage == stages;
+  const double c = last ? 1 : Tableau::c[stage];
+  // Of a Nystroem method the last row of a is that of the end, too.
+  const std::size_t row = nystroem && last ? stages - 1 : stage;
+  const double* weights =
+      last && !nystroem ? Tableau::b.data() : &Tableau::a[row * (row - 1) / 2];
+  sum_ = {start, Real(c * h), {}, 0, Real(1 - drag_ * c * h)};
+  for (std::size_t k = 0; k < stage; ++k) {
+    double to_x, to_v;
+    if constexpr (nystroem) {
+      to_x = k < row ? stretch(k, h) * weights[k] : 0;
+      to_v = last ? stretch(k, h) * Tableau::b[k] : k == 0 ? c : 0;
+    } else {
+      to_x = of_accelerations(weights, stage, k), to_v = weights[k];
+    }
+    if (to_x != 0 || to_v != 0)
       sum_.term[sum_.count++] = {acceleration(k), Real(h * h * to_x),
-                                 Real(h * weights[k])};
+                                 Real(h * to_v)};
   }
+}
+
+/** The factor of the acceleration of @a stage, 1/(1 - r s)^2. */
+template <typename Tableau>
+double RungeKutta<Tableau>::stretch(std::size_t stage, double h) const {
+  const double decay = 1 - drag_ * Tableau::c[stage] * h;
+  return 1 / (decay * decay);
 }
 
 /** The derivative of x by weights w is v_0 sum(w) + h sum_k (w A)_k a_k.
@@ -160,8 +202,16 @@ double RungeKutta<Tableau>::rms(const Cloth& g, double h,
                                 const Weights& other) {
   const Columns& nodes = flow_.cloth().nodes();
   constexpr unsigned tile = FlatCloth::tile;
-  Weights w;
+  Weights w, to_x;
   for (std::size_t k = 0; k < stages; ++k) w[k] = Tableau::b[k] - other[k];
+  for (std::size_t k = 0; k < stages; ++k)
+    if constexpr (!nystroem) {
+      to_x[k] = h * of_accelerations(w.data(), stages, k);
+    } else {
+      const double* x = &Tableau::a[(stages - 1) * (stages - 2) / 2];
+      to_x[k] = k + 1 < stages ? x[k] - Tableau::x_low[k] : 0;
+      to_x[k] *= h * stretch(k, h), w[k] *= stretch(k, h);
+    }
   double x = 0, v = 0;
   for (unsigned begin = 0; begin < g.node_slots(); begin += tile) {
     double x2[tile] = {}, v2[tile] = {};
@@ -169,9 +219,8 @@ double RungeKutta<Tableau>::rms(const Cloth& g, double h,
       double dx[tile] = {}, dv[tile] = {};
       for (std::size_t k = 0; k < stages; ++k) {
         const Real* a = nodes[acceleration(k) + c] + begin;
-        const double to_x = h * of_accelerations(w.data(), stages, k);
         for (unsigned i = 0; i < tile; ++i)
-          dx[i] += to_x * a[i], dv[i] += w[k] * a[i];
+          dx[i] += to_x[k] * a[i], dv[i] += w[k] * a[i];
       }
       for (unsigned i = 0; i < tile; ++i)
         x2[i] += dx[i] * dx[i], v2[i] += dv[i] * dv[i];
@@ -201,7 +250,7 @@ void RungeKutta<Tableau>::archive(Archive& a, const Cloth& g) {
 
 template class RungeKutta<ForwardEulerTableau>;
 template class RungeKutta<Rk4Tableau>;
-template class RungeKutta<DormandPrinceTableau>;
 template class RungeKutta<Dop853Tableau>;
+template class RungeKutta<Rkn64Tableau>;
 
 }  // namespace lab

@@ -1,9 +1,7 @@
 #pragma once
 /** @file RungeKutta.hpp
- * Explicit Runge-Kutta methods: ForwardEuler, Rk4, DormandPrince, Dop853 are
- * their tableaus. They treat positions and velocities alike, and drag as a
- * force like others. A new tableau needs a line at the end of RungeKutta.cpp.
- */
+ * Explicit Runge-Kutta methods: ForwardEuler, Rk4, Dop853, Rkn64 are their
+ * tableaus. A new tableau needs a line at the end of RungeKutta.cpp. */
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +22,24 @@ inline constexpr double tolerance_share = 0.25;
  * Since x' = v, and v is a sum of accelerations a_k, a stage stores only these:
  *   v = v_0 + h sum_k w_k a_k,  x = x_0 + c h v_0 + h^2 sum_k (w A)_k a_k
  * where w is a row of the tableau's A, or b: its Nystroem form (II.14 of the
- * source).
+ * source). Drag is a force like others.
+ *
+ * A Runge-Kutta-Nystroem method is one for x'' = F(x)/m: its rows of A weigh
+ * the accelerations for x, the last one for x at the end; b weighs them for v
+ * there. The last stage is the first one of the next step. Drag r = c/m that
+ * all nodes share is solved exactly: with s = (1 - e^(-r t))/r,
+ *   d^2 x/ds^2 = F/m/(1 - r s)^2,   v = (1 - r s) dx/ds.
+ * In the stages, v is of order 1 only: that is the order with forces that
+ * depend on v in another way.
  *
  * @tparam Tableau has info; a, the lower triangle row by row; b and c. If it
  * has b_low, weights of a lower order, too, the error is controlled: step()
- *         makes as many inner steps in [t, t + dt] as necessary. If it also has
- *         b_third, of a third order, the estimate is e^2/sqrt(e^2 + e3^2/100),
- *         where e and e3 are the differences to b_low and b_third. For orders 5
- *         and 3 it is of order 8 (II.10 of the source).
+ *         makes as many inner steps in [t, t + dt] as necessary. With x_low,
+ *         the weights of that order for x, it is a Nystroem method, of which
+ *         the order 4 is the lower one. If it has b_third, of a third order,
+ * the estimate is e^2/sqrt(e^2 + e3^2/100), where e and e3 are the differences
+ * to b_low and b_third. For orders 5 and 3 it is of order 8 (II.10 of the
+ * source).
  *
  * Error control: in each inner step the RMS over the nodes of the estimated
  * error stays below tolerance(), for positions in [m] and for velocities times
@@ -63,20 +71,19 @@ class RungeKutta : public BatchMethod {
   static constexpr std::size_t stages = Tableau::b.size();
   using Weights = std::array<double, stages>;
   static_assert(stages <= kernels::StageSum::most);
-  // Dormand-Prince: the last stage is the first one of the next step.
-  static constexpr bool first_same_as_last =
-      Tableau::b.back() == 0 && stages > 1;
+  static constexpr bool nystroem = requires { Tableau::x_low; };
 
   // Columns of the cloth: x and v at the start of a step, and at its end; the
   // accelerations of each stage.
   static constexpr unsigned start = FlatCloth::columns, end = start + 6,
-                            first = first_same_as_last ? end + 6 : end;
+                            first = nystroem ? end + 6 : end;
   static constexpr unsigned acceleration(std::size_t stage) {
     return first + 3 * unsigned(stage);
   }
 
   double tolerance_;
   double inner_ = 0;  // next inner step [s]; 0: not chosen yet
+  double drag_ = 0;   // r of a Nystroem method [1/s]
   long long attempts_ = 0;
   FlatFlow flow_{acceleration(stages) - FlatCloth::columns};
   kernels::StageSum sum_;
@@ -89,7 +96,8 @@ class RungeKutta : public BatchMethod {
   double attempt(Cloth& g, double t, double h,
                  const ConstraintPlan& constraint);
   bool at_end_of_last_step(double t);
-  void weigh(double c, double h, const double* weights, std::size_t count);
+  void weigh(std::size_t stage, double h);
+  double stretch(std::size_t stage, double h) const;
   static double of_accelerations(const double* weights, std::size_t count,
                                  std::size_t k);
   double error_rate(const Cloth& g, double h);

@@ -172,8 +172,7 @@ def repeated():
 IN_CHARTS = {
     "forward Euler": "forward-euler", "symplectic Euler": "symplectic-euler",
     "Verlet": "verlet", "RK4": "rk4", "Yoshida 4": "yoshida4",
-    "PEFRL": "pefrl", "srkn6b": "srkn6b", "srkn11b": "srkn11b",
-    "Dormand-Prince": "dormand-prince"}
+    "PEFRL": "pefrl", "srkn6b": "srkn6b", "srkn11b": "srkn11b"}
 
 
 def merged(table):

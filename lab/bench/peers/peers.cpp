@@ -311,7 +311,6 @@ std::vector<Candidate> candidates() {
   std::vector<Candidate> all;
   for (const MethodEntry& m : methods) {
     if (m.info.limit == 0 || m.info.limit == no_limit) continue;
-    if (std::string_view(m.info.name) == "dormand-prince") continue;
     // h_safe omega_max = limit with omega_max^2 = 12 K N (docs: Stability).
     double largest = m.info.limit / std::sqrt(12.0 * 100 * 625);
     int least = int(std::ceil(problem->t_end / largest));
