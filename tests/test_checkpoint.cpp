@@ -331,6 +331,11 @@ TEST(Checkpoint, ThatIsForgedIsRefusedOrGoesOn) {
             EXPECT_NE(std::string(e.what()).find(": "), std::string::npos);
             ++refused;
             continue;
+          } catch (const std::invalid_argument& e) {
+            // Other masses: the method can't do it.
+            EXPECT_EQ(std::string(e.what()).find("rkn64: drag over mass"), 0);
+            ++refused;
+            continue;
           }
           ++went_on;
           ASSERT_TRUE(std::isfinite(energies(scene.cloth(), 1).total()));
