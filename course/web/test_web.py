@@ -50,7 +50,7 @@ def tree(kind, name, graph=""):
     run("make", "-s", kind, f"OUT={folder}")
     if graph:
         shutil.copy(ROOT / graph, folder)
-    said = run("make", "web", folder=folder)
+    said = run("make", "--no-print-directory", "web", folder=folder)
     assert re.fullmatch(r"web.html: \d+ bytes; .*\n", said), said
     return folder
 
@@ -194,7 +194,7 @@ def the_page_says_what_is_wrong_with_the_code(b):
          ("    if (n.position().z < z_) n.position().z = Real(z_),",
           "    if (std::vector<int>()[3] > 0) return;\n"
           "    if (n.position().z < z_) n.position().z = Real(z_),"))
-    run("make", "web", folder=folder)
+    run("make", "--no-print-directory", "web", folder=folder)
     open_page(b, folder)
     fault = "page.find('.fault').textContent"
     for stage, words in (
@@ -209,7 +209,7 @@ def the_page_says_what_is_wrong_with_the_code(b):
     # It does not compile: the file and the line.
     line = file.read_text()[:file.read_text().index("my words")].count("\n") + 1
     edit(file, ('"my words");', '"my words")'))
-    said = run("make", "web", folder=folder, status=2)
+    said = run("make", "--no-print-directory", "web", folder=folder, status=2)
     assert re.search(rf"mass_spring\.hpp:{line}:\d+: error: expected ';'",
                      said), said
 
