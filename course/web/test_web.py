@@ -2,7 +2,6 @@
 """What make web and the figures do, in a headless Chromium:
 test_web.py BUILD [TEST]... writes all into BUILD/web; its pictures are to be
 looked at."""
-import base64
 import functools
 import os
 import pathlib
@@ -111,10 +110,7 @@ def same_bits_as_the_native_program(b):
                "!all[0].cloths[0].waiting")
         b.value("all[0].cloths[0].post('positions', 500)")
         b.wait("all[0].cloths[0].all")
-        ours = base64.b64decode(b.value(
-            "(bytes => { let s = ''; for (const c of bytes) s +="
-            " String.fromCharCode(c); return btoa(s); })"
-            "(new Uint8Array(all[0].cloths[0].all.all.buffer))"))
+        ours = b.bytes_of("all[0].cloths[0].all.all")
         theirs = native(mistake, stage)
         assert len(theirs) > 500 * 24, len(theirs)
         assert ours == theirs, f"{name} in {stage}: other bits"
@@ -172,11 +168,7 @@ def the_hand_pulls_and_cuts(b):
     b.wait("!page.cloths[0].waiting")
     edges = b.value("page.cloths[0].readings.edges")
     b.click(".cut")
-    (x0, y0), (x1, y1) = place(300), place(324)
-    b.mouse("mousePressed", x0, y0)
-    for k in range(1, 11):
-        b.mouse("mouseMoved", x0 + (x1 - x0) * k / 10, y0 + (y1 - y0) * k / 10)
-    b.mouse("mouseReleased", x1, y1)
+    b.stroke(place(300), place(324))
     b.wait(f"page.cloths[0].readings.edges < {edges} - 20")
     assert b.value("page.cloths[0].readings.nodes") == 625
 

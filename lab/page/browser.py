@@ -120,6 +120,13 @@ class Browser:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
+    def bytes_of(self, array):
+        """The bytes of an array of numbers, given as an expression."""
+        return base64.b64decode(self.value(
+            "(bytes => { let s = ''; for (const c of bytes) s +="
+            " String.fromCharCode(c); return btoa(s); })"
+            f"(new Uint8Array(({array}).buffer))"))
+
     def wait(self, expression, seconds=60):
         self._until(lambda: self.value(expression), seconds,
                     f"never: {expression}")
@@ -147,6 +154,15 @@ class Browser:
             f"(document.querySelector('{selector}')).getBoundingClientRect())")
         self.mouse("mousePressed", x, y)
         self.mouse("mouseReleased", x, y)
+
+    def stroke(self, start, end):
+        """Press, draw a straight line in ten moves, release."""
+        (x0, y0), (x1, y1) = start, end
+        self.mouse("mousePressed", x0, y0)
+        for k in range(1, 11):
+            self.mouse("mouseMoved", x0 + (x1 - x0) * k / 10,
+                       y0 + (y1 - y0) * k / 10)
+        self.mouse("mouseReleased", x1, y1)
 
     def wheel(self, x, y, down):
         self.send("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y,

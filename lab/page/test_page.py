@@ -4,7 +4,6 @@ installed: test_page.py BUILD [TEST]..., where BUILD/page/index.html and
 BUILD/page_positions are. It is opened as a file. The pictures that Chromium
 writes, BUILD/page-*.png, are to be looked at.
 test_page.py BUILD --frames measures frames a second: make page-frames."""
-import base64
 import pathlib
 import struct
 import subprocess
@@ -84,10 +83,7 @@ def same_bits_as_the_native_program(b):
                 " page.worker.postMessage(['positions', 1000])")
         b.wait("page.positions", 300)
         assert b.value("page.positions.broken") == "", name
-        ours.append(base64.b64decode(b.value(
-            "(bytes => { let s = ''; for (const c of bytes) s +="
-            " String.fromCharCode(c); return btoa(s); })"
-            "(new Uint8Array(page.positions.all.buffer))")))
+        ours.append(b.bytes_of("page.positions.all"))
         asked += [name, repr(b.value("page.positions.dt"))]
     native = subprocess.run(
         [build / "page_positions", "data/scenes/forces.toml", "data/grid1",
@@ -149,10 +145,7 @@ def a_stroke_cuts_and_a_click_pins(b):
     b.click("[data-tool=cut]")
     (x0, y0), (x1, y1) = place_of(b, 300), place_of(b, 324)
     assert abs(x0 - x1) + abs(y0 - y1) > 60
-    b.mouse("mousePressed", x0, y0)
-    for k in range(1, 11):
-        b.mouse("mouseMoved", x0 + (x1 - x0) * k / 10, y0 + (y1 - y0) * k / 10)
-    b.mouse("mouseReleased", x1, y1)
+    b.stroke((x0, y0), (x1, y1))
     b.wait(f"page.readings.edges < {before} - 20")
     assert b.value("page.readings.nodes") == 625
     b.click("[data-tool=pin]")
