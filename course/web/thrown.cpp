@@ -14,12 +14,14 @@ namespace {
 
 char thrown[1000] = "";
 
+[[noreturn]] void end_with(const char* format, std::va_list values) {
+  std::vsnprintf(thrown, sizeof thrown, format, values);
+  __builtin_trap();
+}
 [[noreturn]] void end(const char* format, ...) {
   std::va_list values;
   va_start(values, format);
-  std::vsnprintf(thrown, sizeof thrown, format, values);
-  va_end(values);
-  __builtin_trap();
+  end_with(format, values);
 }
 
 /** How the ABI of C++ stores the type of a class with one base. */
@@ -70,7 +72,5 @@ void __cxa_free_exception(void*) {}
 void std::__libcpp_verbose_abort(const char* format, ...) {
   std::va_list values;
   va_start(values, format);
-  std::vsnprintf(thrown, sizeof thrown, format, values);
-  va_end(values);
-  __builtin_trap();
+  end_with(format, values);
 }

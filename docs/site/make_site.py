@@ -56,10 +56,10 @@ class Page:
         self.anchors, self.pictures = [], []
         self.text = (ROOT / source).read_text()
 
-    def fault(self, url, words):
-        at = self.text.find(url)
-        line = self.text.count("\n", 0, max(at, 0)) + 1
-        self.faults.append(f"{self.source}:{line}: {words}")
+    def at(self, url, words):
+        """Words on what stands at a link or a picture: FILE:LINE: words."""
+        line = self.text.count("\n", 0, max(self.text.find(url), 0)) + 1
+        return f"{self.source}:{line}: {words}"
 
     def read(self):
         text = self.text
@@ -108,7 +108,7 @@ class Page:
         name, _, anchor = url.partition("#")
         path = self.path_of(name) if name else self.source
         if not (ROOT / path).exists():
-            self.fault(url, f"{url} is not there")
+            self.faults.append(self.at(url, f"{url} is not there"))
         if (ROOT / path).is_dir() and f"{path}/README.md" in SOURCES:
             path += "/README.md"
         if path in SOURCES:
@@ -127,7 +127,7 @@ class Page:
         url, rest = html.unescape(match[1]), match[2].replace("/", "").strip()
         path = self.path_of(url)
         if not (ROOT / path).is_file():
-            self.fault(url, f"{url} is not there")
+            self.faults.append(self.at(url, f"{url} is not there"))
             return ""
         if 'alt="' not in rest:
             rest += ' alt=""'
@@ -257,12 +257,9 @@ def link_home(file):
 
 def faults_of(pages):
     faults = [words for page in pages.values() for words in page.faults]
-    for page in pages.values():
-        for url, path, anchor in page.anchors:
-            if anchor not in pages[path].ids:
-                page.faults = []
-                page.fault(url, f"{path} has no section #{anchor}")
-                faults += page.faults
+    faults += [page.at(url, f"{path} has no section #{anchor}")
+               for page in pages.values() for url, path, anchor in page.anchors
+               if anchor not in pages[path].ids]
     tracked = subprocess.run(["git", "ls-files", "*.md"], cwd=ROOT, check=True,
                              stdout=subprocess.PIPE, text=True).stdout.split()
     return faults + [f"{path}:1: is in no group of docs/site/contents.py"
