@@ -168,13 +168,6 @@ def repeated():
     return steps
 
 
-# The laboratory's name of a method, for its curve in the charts.
-IN_CHARTS = {
-    "forward Euler": "forward-euler", "symplectic Euler": "symplectic-euler",
-    "Verlet": "verlet", "RK4": "rk4", "Yoshida 4": "yoshida4",
-    "PEFRL": "pefrl", "srkn6b": "srkn6b", "srkn11b": "srkn11b"}
-
-
 def merged(table):
     """Calls at the same place and time, which one call would do, made one."""
     groups = []
