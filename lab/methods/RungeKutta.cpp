@@ -17,8 +17,9 @@ namespace lab {
 namespace {
 
 /** c/m of all nodes [1/s].
- * Throws std::invalid_argument if it differs from node to node.  O(N) */
-double common_drag(const Cloth& g, const Drag& c) {
+ * Throws std::invalid_argument, for @a method, if it differs from node to node.
+ * O(N) */
+double common_drag(const Cloth& g, const Drag& c, const char* method) {
   double r = 0;
   if (c.none()) return r;
   for (Node n : g.nodes()) {
@@ -26,8 +27,9 @@ double common_drag(const Cloth& g, const Drag& c) {
     if (n.index() == 0) r = own;
     if (!DragFlow::is_same(r, own) || !DragFlow::is_same(own, r))
       throw std::invalid_argument(
-          "rkn64: drag over mass differs from node to node, expected the same "
-          "at all; dop853 does without");
+          std::string(method) +
+          ": drag over mass differs from node to node, expected the same at "
+          "all; dop853 does without");
   }
   return r;
 }
@@ -40,7 +42,7 @@ int RungeKutta<Tableau>::steps(Cloth& g, const StepTimes& times, int count,
                                const ConstraintPlan& constraint) {
   const auto version = g.version();
   flow_.begin(g, force, nystroem);
-  if constexpr (nystroem) drag_ = common_drag(g, force.drag());
+  if constexpr (nystroem) drag_ = common_drag(g, force.drag(), info.name);
   int k = 0;
   do one_step(g, times(k), times.dt, constraint);
   while (++k < count && g.version() == version);
@@ -71,8 +73,8 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
     bool good = error <= 1;
     double factor = 0.2;
     if (std::isfinite(error))
-      factor = std::clamp(
-          0.9 * std::pow(error, -1.0 / (nystroem ? 5 : info.order)), 0.2, 5.0);
+      factor =
+          std::clamp(0.9 * std::pow(error, -1.0 / estimate_order), 0.2, 5.0);
     if (good) {
       now = last ? goal : now + h;
       flow_.run({.t = now, .project = &constraint});

@@ -34,12 +34,11 @@ inline constexpr double tolerance_share = 0.25;
  *
  * @tparam Tableau has info; a, the lower triangle row by row; b and c. If it
  * has b_low, weights of a lower order, too, the error is controlled: step()
- *         makes as many inner steps in [t, t + dt] as necessary. With x_low,
- *         the weights of that order for x, it is a Nystroem method, of which
- *         the order 4 is the lower one. If it has b_third, of a third order,
- * the estimate is e^2/sqrt(e^2 + e3^2/100), where e and e3 are the differences
- * to b_low and b_third. For orders 5 and 3 it is of order 8 (II.10 of the
- * source).
+ * makes as many inner steps in [t, t + dt] as necessary. With x_low, the
+ * weights of that order for x, it is a Nystroem method, whose lower order is 4.
+ * With b_third, weights of a third order, the estimate is
+ * e^2/sqrt(e^2 + e3^2/100), where e and e3 are the differences to b_low and
+ * b_third. For orders 5 and 3 it is of order 8 (II.10 of the source).
  *
  * Error control: in each inner step the RMS over the nodes of the estimated
  * error stays below tolerance(), for positions in [m] and for velocities times
@@ -72,6 +71,8 @@ class RungeKutta : public BatchMethod {
   using Weights = std::array<double, stages>;
   static_assert(stages <= kernels::StageSum::most);
   static constexpr bool nystroem = requires { Tableau::x_low; };
+  // p of the estimate: one more than the lower order, or that of b.
+  static constexpr int estimate_order = nystroem ? 5 : Tableau::info.order;
 
   // Columns of the cloth: x and v at the start of a step, and at its end; the
   // accelerations of each stage.
