@@ -417,14 +417,12 @@ TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
   for (std::string line; std::getline(in, line);) {
     if (line[0] == '#') continue;
     std::istringstream cells(line);
-    std::string name, color, marker, dash, family, number;
-    for (std::string* cell : {&name, &color, &marker, &dash, &family, &number})
+    std::string name, color, family, number;
+    for (std::string* cell : {&name, &color, &family, &number})
       std::getline(cells, *cell, ',');
     evaluations[name] = std::stoi(number);
     EXPECT_TRUE(styles.insert(color + family).second)
         << line << ": its color is another's of its family";
-    EXPECT_TRUE(styles.insert(marker + ' ' + dash).second)
-        << line << ": marker and dash are another's";
   }
   for (const MethodEntry& m : methods)
     EXPECT_EQ(evaluations[m.info.name], m.info.sweeps) << m.info.name;

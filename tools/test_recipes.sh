@@ -71,7 +71,7 @@ sed -i 's/"lab\/methods\/Yoshida4.hpp"/"lab\/methods\/Suzuki4.hpp"\n#include &/
 sed -i 's/#include "lab\/methods\/Yoshida4.hpp"/&\n#include "lab\/methods\/Suzuki4.hpp"/
   s/template class Splitting<Yoshida4Scheme>;/&\ntemplate class Splitting<Suzuki4Scheme>;/' \
   lab/methods/Splitting.cpp
-echo 'suzuki4,#56B4E9,9,1,splitting,5' >>lab/charts/methods.csv
+echo 'suzuki4,#56B4E9,splitting,5' >>lab/charts/methods.csv
 takes method 4
 
 # ---- A force of the assignment: f = m a

@@ -35,4 +35,4 @@ for file in "$folder/bench.json" "$folder/bench-float.json"; do
   done >>"$history"
 done
 
-python3 lab/charts/draw.py history speed --folder lab/bench/results
+python3 lab/charts/draw.py speed --folder lab/bench/results

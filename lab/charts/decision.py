@@ -13,9 +13,10 @@ KINDS = (("linear", ("chain", "curtain")),
          ("contact", ("drape", "tear")))
 WANTED = [10.0 ** -k for k in range(2, 10)]  # [m]
 ROUGH = 1e-3  # the smallest of the errors that a title calls rough [m]
-LEFT, CELL, ROW = 158, 79, 62  # [pixels]
-SHORT = {"symplectic-euler": "symp. euler", "augmented-verlet": "augm. verlet",
-         "fast-mass-spring": "fast m.-spring"}
+LEFT, CELL, ROW = 156, 80, 62  # [pixels]
+SHORT = {"symplectic-euler": "symp. euler",
+         "augmented-verlet": "augm. verlet",
+         "fast-mass-spring": "fast spring"}
 
 
 def times(run):
@@ -31,7 +32,7 @@ def plain(value):
     return f"{value:.0e}".replace("e-0", "e-")
 
 
-def lighter(color, share=0.72):
+def lighter(color, share=0.7):
     """A color mixed with so much white."""
     parts = [int(color[k:k + 2], 16) for k in (1, 3, 5)]
     return "#" + "".join(f"{round(c + (255 - c) * share):02x}" for c in parts)
@@ -52,14 +53,13 @@ def decision(csv, out):
              for kind, scenes in KINDS]
     kinds = [(kind, scenes) for kind, scenes in kinds if scenes]
     height = 152 + ROW * sum(len(s) for _, s in kinds) + 22 * len(kinds)
-    picture = Picture(out, LEFT + CELL * len(WANTED) + 8, height,
+    picture = Picture(out, LEFT + CELL * len(WANTED) + 4, height,
                       message(answers), "", "")
     for line, words in enumerate((
-            "A cell: the method that keeps this error with the least counted "
-            "work, as do all of its finer runs; its force evaluations; time.",
-            "= a method within 10 % of that work. respa is verlet here, bit by "
-            "bit. Solves count by their instructions, told in force "
-            "evaluations.")):
+            "A cell: the method that keeps this error with the least work, as "
+            "do all of its finer runs; that work; and its time.",
+            "=: another method within 10 % of that work. Work: force "
+            "evaluations, and solves by their instructions.")):
         picture.text(20, height - 42 - 15 * line, words, 11)
     y = height - 92
     picture.text(LEFT - 10, y + 8, "wanted error [m]:", 12, DARK, "right")
@@ -75,14 +75,14 @@ def decision(csv, out):
             picture.text(20, y + ROW - 12, scene, 11, DARK)
             # A number stays with its unit.
             about = re.sub(r"(\d) (s|N/m)\b", "\\1\u00a0\\2", about)
-            for line, words in enumerate(textwrap.wrap(about, 24)):
+            for line, words in enumerate(textwrap.wrap(about, 21)):
                 picture.text(20, y + ROW - 26 - 13 * line, words, 11, GRAY)
             cells(picture, y, known[scene], answers[scene], look)
     for line, words in enumerate((
             "Error: RMS of the positions; with contact, of center of mass and "
             "energy as a height.",
-            "Time: the least of seven runs, and the median. "
-            + table.footer())):
+            "Time: the least of seven runs, and the median. respa is verlet "
+            "here. " + table.footer())):
         picture.text(20, 28 - 15 * line, words, 11)
     picture.say("unset border", "unset tics", "set xrange [0:1]",
                 "set yrange [0:1]", "plot NaN")
@@ -132,12 +132,11 @@ def cells(picture, y, some, answers, look):
                          "center")
             continue
         picture.box(x0 + 1, y + 2, x1 - 1, y + ROW - 2,
-                    lighter(look[run.method][0],
-                            0.88 if look[run.method][2] == "implicit" else 0.7))
+                    lighter(look[run.method][0]))
         lines = [f"{{/:Bold {SHORT.get(run.method, run.method)}}}",
                  f"{run.work:,.0f}", times(run)]
         if others:
-            lines.insert(1, "= " + (SHORT.get(others[0], others[0])
+            lines.insert(1, "=" + (SHORT.get(others[0], others[0])
                                     if len(others) == 1 or end - first > 1
                                     else f"{len(others)} others"))
         top = y + ROW / 2 + 6.5 * (len(lines) - 1)

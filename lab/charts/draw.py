@@ -37,7 +37,6 @@ CHARTS = {
     "adviser": ("advice", "adviser.csv", "advice/adviser.gp"),
     "rounds": ("bench", "rounds.csv", rounds.rounds),
     "peers": ("bench", "peers.csv", peers.peers),
-    "history": ("bench", "*/history.csv", speed.history),
     "speed": ("bench", "*/bench.json", speed.speed),
 }
 
@@ -56,8 +55,6 @@ def pictures(name, csv):
     if name == "rounds":
         sizes = dict.fromkeys(row["nodes"] for row in Table(csv).rows)
         return [(nodes, "rounds-" + nodes) for nodes in sizes]
-    if name == "history" and len({r["commit"] for r in Table(csv).rows}) < 2:
-        return []
     return [("", name)]
 
 

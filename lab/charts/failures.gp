@@ -2,8 +2,7 @@
 # Solid: what fails; dashed: the cure; dotted: further runs; gray: the truth.
 key = 2
 key_is_method = 1
-width = 720
-height = 380
+height = 400
 load 'lab/charts/style.gp'
 
 axis = comment('axis '.scene)
@@ -13,7 +12,6 @@ unit = axis[strlen(word(axis, 1).word(axis, 2).word(axis, 3).word(axis, 4)) + \
 # The role, the method (- for the true motion) and the points of each run.
 roles = system(rows('!seen[$4]++ {print $3}'))
 methods = system(rows('!seen[$4]++ {print $2 == "" ? "-" : $2}'))
-counts = system(rows('1 {++n[$4]} END {for (k = 0; k in n; ++k) print n[k]}'))
 run(k, condition) = data(sprintf('$4 == %d && %s {print $5 "," $6}', k - 1, \
   condition))
 lost(k) = data(sprintf( \
@@ -27,16 +25,13 @@ role(k) = word(roles, k)
 # A cure by the same method is of another color.
 shade(k) = method(k) eq '-' ? '#777777' : \
   role(k) eq 'cure' && method(k) eq method(1) ? '#444444' : color(method(k))
-sign_of(k) = method(k) eq '-' ? 0 : marker(method(k))
 dash_of(k) = role(k) eq 'fails' ? 1 : role(k) eq 'cure' ? 2 : 3
 weight(k) = role(k) eq 'fails' ? 2.6 : 1.8
 n = words(roles)
 
-eval headline(scene.': '.comment('title '.scene), comment('caption '.scene))
-if (int(system(rows('$9 != "" {++n} END {print n + 0}'))) > 0) {
-  set label 904 'Cross: the run diverged and was stopped.' at screen 0.03, \
-    screen 14. / height left front font ',10' textcolor rgb '#666666'
-}
+diverged = int(system(rows('$9 != "" {++n} END {print n + 0}')))
+eval headline(scene.': '.comment('title '.scene), comment('caption '.scene). \
+  (diverged ? '. Cross: the run diverged and was stopped.' : ''))
 set tmargin 4.6
 unset key
 set lmargin 11
@@ -49,7 +44,7 @@ eval sprintf('set xrange [0:%s]', word(axis, 1))
 eval sprintf('set yrange [%s:%s]', word(axis, 2), word(axis, 3))
 if (logarithmic) {
   set logscale y
-  set format y '10^{%T}'
+  set format y '1e%T'
 }
 set style textbox opaque noborder margins 0.4, 0.2
 do for [k = 1:n] {
@@ -60,8 +55,7 @@ do for [k = 1:n] {
 }
 plot for [k = 1:n] run(k, '$3 == "true"') using 1:2 with lines \
        lc rgb '#b8b8b8' lw 5, \
-     for [k = 1:n] run(k, '$3 != "true"') using 1:2 with linespoints \
-       lc rgb shade(k) pt sign_of(k) ps 0.8 pi 1 + int(word(counts, k)) / 12 \
-       dt dash_of(k) lw weight(k), \
+     for [k = 1:n] run(k, '$3 != "true"') using 1:2 with lines \
+       lc rgb shade(k) dt dash_of(k) lw weight(k), \
      for [k = 1:n] lost(k) using 1:2 with points lc rgb shade(k) pt 2 \
        lw 2.2 ps 1.6

@@ -13,9 +13,9 @@ named(what, n) = data(sprintf('$1 == "%s" {p[++k] = $6 "," $5} '. \
 eval headline('Refine grid and step together; the step alone gains nothing', \
   comment('scene'))
 set logscale xy
-set format y '10^{%T}'
+set format y '1e%T'
 set lmargin at screen 0.085
-set rmargin at screen 0.97
+set rmargin at screen 0.95
 set tmargin at screen 0.84
 set bmargin at screen 0.2
 set xtics (0.05, 0.02, 0.01, 0.005, 0.002)
@@ -24,10 +24,10 @@ set ylabel 'time of a run [s]'
 set xrange [0.06:0.002]
 set yrange [1e-5:1]
 unset key
-plot of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 4 ps 1.3 \
+plot of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 7 ps 0.7 \
        lw 1.8, \
-     of('step') using 1:2 with linespoints lc rgb '#D55E00' pt 9 lw 1.8, \
-     of('both') using 1:2 with linespoints lc rgb '#000000' pt 7 lw 1.8, \
+     of('step') using 1:2 with linespoints lc rgb '#D55E00' pt 7 ps 0.7 lw 1.8, \
+     of('both') using 1:2 with linespoints lc rgb '#000000' pt 7 ps 0.7 lw 1.8, \
      of('both') using 1:2:(sprintf('%d x %d', $3, $3)) with labels left \
        offset 0.8, -0.6 font small textcolor rgb '#666666', \
      named('step', 0) using 1:2:('step alone, '.fixed.' x '.fixed.' nodes') \
@@ -35,5 +35,5 @@ plot of('grid') using 1:2 with linespoints lc rgb '#0072B2' pt 4 ps 1.3 \
      named('grid', 1) using 1:2:('grid alone, at the step that '. \
        finest.' x '.finest.' needs') with labels right offset -1, 0.8 \
        textcolor rgb '#0072B2', \
-     named('both', 1) using 1:2:('both: each grid at its largest stable step') \
-       with labels left offset 0, -2 textcolor rgb '#000000'
+     named('both', 1) using 1:2:('both: each grid at its limit') \
+       with labels left offset 0, -2.2 textcolor rgb '#000000'

@@ -6,18 +6,16 @@ from dataclasses import dataclass, field
 
 from results import ROOT, ChartError
 
-GRAY, BEHIND, DARK = "#666666", "#d4d4d4", "#222222"
+GRAY, BEHIND, DARK = "#666666", "#c4c4c4", "#222222"
 LETTER, LINE = 6.6, 14  # width and height of a letter of size 11 [pixels]
 CELL = 4                # of the grid that knows where curves are [pixels]
-# Of each filled marker of gnuplot the one that is not.
-HOLLOW = {5: 4, 7: 6, 9: 8, 11: 10, 13: 12, 15: 14}
 
 
 def styles():
-    """{method: (color, marker, family)} of methods.csv."""
+    """{method: (color, family)} of methods.csv."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
     cells = [line.split(",") for line in lines if not line.startswith("#")]
-    return {c[0]: (c[1], int(c[2]), c[4]) for c in cells}
+    return {c[0]: (c[1], c[2]) for c in cells}
 
 
 @dataclass(frozen=True)
@@ -40,9 +38,8 @@ class Curve:
     color: str
     marker: int = 0
     label: str = ""
-    rings: list = field(default_factory=list)   # points with a ring
-    failed: list = field(default_factory=list)  # points of failed runs
-    beyond: list = field(default_factory=list)  # unstable, before points[0]
+    rings: list = field(default_factory=list)  # points with a ring
+    width: float = 1.8
 
 
 @dataclass
@@ -74,8 +71,7 @@ class Crowd:
         self.rows = (panel.top - panel.bottom) // CELL + 2
         there = set()
         for curve in curves:
-            for x, y in dense([panel.pixel(p)
-                               for p in curve.beyond + curve.points]):
+            for x, y in dense([panel.pixel(p) for p in curve.points]):
                 there.add((int(x - self.left) // CELL,
                            int(y - self.bottom) // CELL))
         self.sums = [[0] * (self.columns + 1)]
@@ -175,7 +171,9 @@ def place_labels(panel):
 
 
 class Picture:
-    """A script for gnuplot, that is written piece by piece."""
+    """A script for gnuplot, that is written piece by piece; @a about is of
+    one or more lines. Texts have 11 pixels or more at the width of 800 at which
+    pages show a picture."""
 
     def __init__(self, out, width, height, title, about, footer):
         self.out, self.width, self.height = out, width, height
@@ -185,9 +183,9 @@ class Picture:
         self.count = 0
         self.say("set multiplot", "unset key")
         self.text(20, height - 22, f"{{/:Bold=15 {title}}}", color=DARK)
-        if about:
-            self.text(20, height - 42, about, size=12, color=GRAY)
-        self.text(width - 15, 14, footer, size=10, color=GRAY, at="right")
+        for k, line in enumerate(about.splitlines()):
+            self.text(20, height - 42 - 15 * k, line)
+        self.text(width - 15, 14, footer, at="right", more="noenhanced")
 
     def say(self, *lines):
         self.lines += lines
@@ -196,6 +194,8 @@ class Picture:
         return f"screen {x / self.width:.5f}, screen {y / self.height:.5f}"
 
     def text(self, x, y, text, size=11, color=GRAY, at="left", more=""):
+        if not text:
+            return
         self.count += 1
         self.say(f"set label {self.count} {quoted(text)} at "
                  f"{self.screen(x, y)} {at} front font ',{size}' "
@@ -242,26 +242,18 @@ class Picture:
             style = f"lc rgb '{c.color}' pt {c.marker}"
             plots.append(
                 f"{self.block(c.points)} with " +
-                (f"linespoints {style} ps 0.7 lw 1.8" if c.marker
-                 else f"lines lc rgb '{c.color}' lw 1.8"))
+                (f"linespoints {style} ps {c.width / 3:g} lw {c.width}"
+                 if c.marker
+                 else f"lines lc rgb '{c.color}' lw {c.width}"))
             if c.rings:
                 plots.append(f"{self.block(c.rings)} with points "
                              f"lc rgb '{c.color}' pt 6 ps 1.8 lw 1.4")
-            if c.beyond:
-                line = self.block(c.beyond + c.points[:1])
-                plots.append(f"{line} with lines lc rgb '{c.color}' dt 3 "
-                             "lw 1.4")
-                plots.append(f"{self.block(c.beyond)} with points lc rgb "
-                             f"'{c.color}' pt {HOLLOW.get(c.marker, c.marker)}"
-                             " ps 0.9")
-            if c.failed:
-                plots.append(f"{self.block(c.failed)} with points {style} "
-                             f"ps 0.8")
             if c.name in labels:
                 middle, point = labels[c.name]
                 self.line(*point, *toward(middle, point, len(c.label)),
                           c.color, 0.8)
-                self.text(*middle, c.label, 11, c.color, "center",
+                self.text(*middle, c.label, 11,
+                          GRAY if c.color == BEHIND else c.color, "center",
                           "boxed noenhanced")
         self.say(*settings, "plot " + ", ".join(plots or ["NaN"]))
         self.say("unset label", "unset object", "unset arrow")

@@ -1,14 +1,13 @@
-"""Charts of panels by family: time against error, energy against time. Who is
-cheapest at an error stands in a bar along the lower edge."""
+"""Time against error, with the methods that are the cheapest at some error in
+color and a bar along the lower edge that says where; energy against time."""
 import math
 
-from panels import (BEHIND, DARK, GRAY, LETTER, Axis, Curve, Panel, Picture,
-                    styles)
-from results import (RULE, TRUSTED, Table, believed, by_method, contenders,
-                     runs, winners)
+from panels import BEHIND, LETTER, Axis, Curve, Panel, Picture, styles
+from results import (COARSE, TRUSTED, Table, believed, by_method,
+                     contenders, runs, winners)
 
 FAMILIES = (("splitting", "splitting methods"),
-            ("runge-kutta", "Runge-Kutta and Runge-Kutta-Nystroem"),
+            ("runge-kutta", "Runge-Kutta(-Nystroem)"),
             ("implicit", "implicit and position-based"))
 NORMS = {"rms position": "RMS error of the positions [m]",
          "center of mass and energy/(M g)":
@@ -27,7 +26,7 @@ def decades(low, high):
     """Tics at every other power of ten, and no others."""
     tics = range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)
     return "set xtics (" + ", ".join(
-        f"'10^{{{k}}}' 1e{k}" for k in tics if k % 2 == 0) + ")"
+        f"'1e{k}' 1e{k}" for k in tics if k % 2 == 0) + ")"
 
 
 def merged(of):
@@ -45,89 +44,27 @@ def merged(of):
     return kept, labels
 
 
-def curve_of(method, some, cost, style, label, x, coarsest):
-    """Of one method's runs; failed ones stand left of the coarsest error, at
-    the cost that they would have had. A run beyond the largest stable step
-    that ended well is apart."""
-    ok = believed(some)
-    largest = [r for r in ok if 0 < r.share <= 1][:1]
-    stable, beyond = ([(max(r.error, x.hi), cost(r)) for r in ok
-                       if r.error < coarsest and (r.share > 1) == unstable]
-                      for unstable in (False, True))
-    rings = [(r.error, cost(r)) for r in largest]
-    each = [cost(r) / r.evaluations for r in ok]
-    failed = [(coarsest, r.evaluations * sum(each) / len(each))
-              for r in some if not r.ok and each and x.lo > coarsest]
-    return Curve(method, stable, style[0], style[1], label, rings, failed,
-                 beyond)
+def points_of(some, cost, coarsest):
+    """(error, cost) of a method's runs, from its largest stable step on, to
+    the first one whose error is less than the axis shows."""
+    good = [r for r in some if r.ok and r.share <= 1 and r.error < coarsest]
+    shown = len(believed(good)) + 1
+    return [(max(r.error, TRUSTED * r.floor), cost(r)) for r in good[:shown]]
 
 
-def strip(picture, panel, segments, color_of):
-    """The winners along the lower edge of a panel: (method, from, to). A name
-    that has no room in its segment stands above it, if it has room there."""
-    y, free, named = panel.bottom, [panel.left] * 2, set()
+def strip(picture, panel, segments, colors):
+    """The winners along the lower edge of a panel, (method, from, to), each
+    with its name if there is room for it."""
+    y = panel.bottom
     for method, start, end in segments:
-        x0 = max(panel.pixel((start, panel.y.lo))[0], panel.left)
-        x1 = min(panel.pixel((end, panel.y.lo))[0], panel.right)
-        if x1 <= x0:
-            continue
-        color, own = color_of(method)
-        picture.box(x0 + 0.5, y + 2, max(x1 - 0.5, x0 + 1), y + STRIP - 4,
-                    color, "front")
-        half = len(method) * LETTER / 2
-        middle = min(max((x0 + x1) / 2, panel.left + half),
-                     panel.right - half)
-        if own and 2 * half < x1 - x0:
-            picture.text(middle, y + STRIP / 2 - 1, method, 10, "white",
+        x0, x1 = (panel.pixel((error, panel.y.lo))[0]
+                  for error in (start, end))
+        picture.box(x0 + 0.5, y + 2, max(x1 - 0.5, x0 + 1), y + STRIP - 2,
+                    colors.get(method, BEHIND), "front")
+        if method in colors and len(method) * LETTER < x1 - x0:
+            picture.text((x0 + x1) / 2, y + STRIP / 2, method, 11, "white",
                          "center", "noenhanced")
-            named.add(method)
-            continue
-        row = next((k for k, at in enumerate(free) if middle - half >= at), 2)
-        if own and row < 2 and x1 - x0 > 4 and method not in named:
-            named.add(method)
-            at = y + STRIP + 4 + 12 * row
-            picture.text(middle, at, method, 10, color, "center",
-                         "noenhanced")
-            free[row] = middle + half
-            panel.keep_free.append((middle - half, at - 6, middle + half,
-                                    at + 6))
-
-
-def orders(picture, panel, y):
-    """Slope triangles of orders 1, 2, 4, 6 from the height y [pixels] on in
-    the lower right corner, where no method can be: exact and cheap."""
-    per_x = (panel.right - panel.left) / abs(math.log10(panel.x.hi /
-                                                       panel.x.lo))
-    per_y = (panel.top - panel.bottom) / math.log10(panel.y.hi / panel.y.lo)
-    decades = min(0.45, 12 / per_x)
-    x = panel.right - 6 * decades * per_x - 8
-    top = y + decades * per_y
-    for order in (1, 2, 4, 6):
-        at = x + order * decades * per_x
-        picture.line(x, y, at, top)
-        picture.text(at, top + 7, str(order), 10, GRAY, "center")
-    picture.line(x, y, x, top)
-    picture.line(x, top, x + 6 * decades * per_x, top)
-    picture.text(x + 6 * decades * per_x, y + 2, "order", 10, GRAY, "right")
-    panel.keep_free.append((x - 4, y, panel.right, top + 14))
-
-
-def row_of_panels(picture, groups, box, x, y, segments, color_of):
-    """Panels in a row, cost against error, each to be drawn before the next
-    one: groups is (title, curves, curves behind) for each; box the pixels
-    left, bottom, right, top of all."""
-    left, bottom, right, top = box
-    gap = 14
-    width = (right - left - gap * (len(groups) - 1)) / len(groups)
-    for k, (title, curves, behind) in enumerate(groups):
-        at = round(left + k * (width + gap))
-        panel = Panel(at, bottom, round(at + width), top, x, y, title, curves,
-                      behind)
-        panel.keep_free.append((panel.left, panel.bottom, panel.right,
-                                panel.bottom + STRIP))
-        strip(picture, panel, segments,
-              lambda m, own={c.name for c in curves}: color_of(m, own))
-        yield panel
+    panel.keep_free.append((panel.left, y, panel.right, y + STRIP))
 
 
 def message(segments):
@@ -154,113 +91,52 @@ def message(segments):
     return f"Cheapest: {', '.join(words)}"
 
 
-def failed_band(picture, panel, coarsest):
-    """Failed runs stand left of every error: a column for a method."""
-    edge = panel.pixel((coarsest, panel.y.lo))[0]
-    picture.box(panel.left, panel.bottom, edge, panel.top, "#f6eeee")
-    some = [c for c in panel.curves if c.failed]
-    for line, words in enumerate(("failed",) if some else ("none", "failed")):
-        picture.text((panel.left + edge) / 2, panel.top - 8 - 12 * line,
-                     words, 10, "#aa4444", "center")
-    panel.keep_free.append((panel.left, panel.bottom, edge, panel.top))
-    for k, curve in enumerate(some):
-        x = panel.x.lo * (coarsest / panel.x.lo) ** ((k + 0.5) / len(some))
-        curve.failed = [(x, y) for _, y in curve.failed]
-
-
 def work_precision(csv, out, scene):
-    """Time against error for one scene, a panel for a family; some of its
-    runs are believed."""
-    table = Table(csv)
+    """Time against error for one scene; some of its runs are believed."""
+    table, look = Table(csv), styles()
     some = runs(table.where(scene=scene))
-    look = styles()
     of, labels = merged(by_method(some))
     floor, norm = some[0].floor, table.where(scene=scene)[0]["norm"]
 
     def seconds(run):
         return run.seconds
-    good = believed([r for r in some if r.method in of])
-    coarsest = 10 ** math.ceil(math.log10(min(
-        max(r.error for r in good), 1)) + 0.1)
-    x = Axis(coarsest * (coarsest / TRUSTED / floor) ** 0.16, TRUSTED * floor)
-    least, most = (f(map(seconds, good)) for f in (min, max))
-    y = Axis(least / 5, most * 2)
-    curves = {m: curve_of(m, of[m], seconds, look[m], labels[m], x,
-                          coarsest)
-              for m in of}
-    curves = {m: c for m, c in curves.items() if c.points}
-    groups = []
-    for family, title in FAMILIES:
-        own = [c for m, c in curves.items()
-               if look[m][2] == family]
-        groups.append((title, own,
-                       [c for c in curves.values() if c not in own]))
     segments = winners(contenders(some), seconds)
+    colors = {m: look[m][0] for m, start, end in segments
+              if start / end >= 10 ** NARROW}
+    x = Axis(10 * COARSE, TRUSTED * floor)
+    points = {m: points_of(own, seconds, x.lo) for m, own in of.items()}
+    times = [t for own in points.values() for _, t in own]
+    y = Axis(min(times) / 4, max(times) * 1.5)
     about = table.note("scene " + scene).split("; error")[0]
     about = about.replace("; exact", "; against the exact solution")
-    picture = Picture(out, 1000, 548, message(segments), "", table.footer())
-    picture.text(20, 506, f"{scene}: {about}", 12, GRAY, more="noenhanced")
-    picture.text(20, 487, "Lower is cheaper, further right more exact. Ring: "
-                 "largest stable step; hollow, dotted: beyond it, where a run "
-                 "ends well by luck. Gray curves: the other panels' methods.",
-                 10, DARK)
-    picture.text(20, 472, f"Bar at the bottom: {RULE}; gray: of another "
-                 "panel.", 10, DARK)
-    panels = row_of_panels(
-        picture, groups, (72, 80, 930, 434), x, y, segments,
-        lambda m, own: (look[m][0], True) if m in own else (BEHIND, False))
-    picture.say(decades(x.hi, coarsest))
-    # The same in force evaluations: what one of Verlet's takes.
-    verlet = [r for r in of.get("verlet", []) if r.ok]
-    each = min((r.seconds / r.evaluations for r in verlet), default=0)
+    picture = Picture(
+        out, 800, 560, message(segments),
+        "Down is faster, right is more accurate. A method is a curve: smaller "
+        "and smaller steps, from its largest stable one on.\n"
+        "In color: the methods that are the fastest at some error, as the bar "
+        "at the bottom says; in gray: all others.", table.footer())
+    picture.text(20, 485, f"{scene}: {about}", more="noenhanced")
+    panel = Panel(72, 82, 785, 466, x, y, "", [
+        Curve(m, own, colors.get(m, BEHIND), 7, labels[m],
+              width=2.1 if m in colors else 1.2)
+        for m, own in sorted(points.items(), key=lambda p: p[0] in colors)
+        if own])
+    strip(picture, panel, segments, colors)
+    never = [m for m, own in of.items() if not any(r.ok for r in own)]
+    if never:
+        picture.text(20, 14, f"{', '.join(never)}: no step succeeded.")
     single = Table(csv.parent / "float_floor.csv").note(
         f"single precision floor {scene}") if (
             csv.parent / "float_floor.csv").exists() else ""
-    for k, panel in enumerate(panels):
-        low = max(box[3] for box in panel.keep_free) + 8
-        failed_band(picture, panel, coarsest)
-        nowhere(picture, panel, coarsest, [
-            (m, of[m], look[m][0]) for m in of
-            if look[m][2] == FAMILIES[k][0] and not any(r.ok for r in of[m])])
-        orders(picture, panel, low)
-        if single and float(single.split()[0]) > x.hi:
-            at = panel.pixel((float(single.split()[0]), panel.y.lo))[0]
-            picture.line(at, low, at, panel.top, "#999999", 1, 3)
-            picture.text(at + 6, low + 4, "floats end here", 10, "#888888",
-                         "left", "rotate by 90")
-            panel.keep_free.append((at, low, at + 12, low + 100))
-        settings = ["set format y ''", "unset ylabel", "unset y2tics",
-                    "unset y2label", f"set xlabel '{NORMS[norm]}' "
-                    "offset 0, 0.2"]
-        if k == 0:
-            settings[:2] = ["set format y '10^{%T}'",
-                            "set ylabel 'time of a run [s]' offset 1, 0"]
-            notes = ["verlet = respa: one step for all springs."]
-            if "energy" in norm:
-                notes.append("energy/(M g): the height to which it lifts "
-                             "the cloth.")
-            if "verlet = respa" not in labels.values():
-                del notes[0]
-            picture.text(20, 14, " ".join(notes), 10, DARK)
-        elif k == len(groups) - 1 and each:
-            settings += [
-                f"set y2range [{y.lo / each:.6g}:{y.hi / each:.6g}]",
-                "set logscale y2", "set y2tics out scale 0.5",
-                "set format y2 '10^{%T}'",
-                "set y2label 'in force evaluations of verlet' offset -1, 0"]
-        picture.draw(panel, *settings)
+    if single and float(single.split()[0]) > x.hi:
+        at = panel.pixel((float(single.split()[0]), y.lo))[0]
+        picture.line(at, panel.bottom + STRIP, at, panel.top, BEHIND, 1, 3)
+        picture.text(at + 4, panel.bottom + STRIP + 8, "floats end here")
+        panel.keep_free.append((at, panel.bottom, at + 110, panel.bottom + 36))
+    picture.draw(panel, decades(x.hi, x.lo), "set format y '1e%T'",
+                 "set ylabel 'time of a run [s]' offset 1, 0",
+                 f"set xlabel '{NORMS[norm]}' offset 0, 0.2")
     picture.finish()
-
-
-def nowhere(picture, panel, coarsest, methods):
-    """(method, runs, color) of methods that have no curve, in words."""
-    x, y = panel.pixel((coarsest, panel.y.hi))
-    for method, some, color in methods:
-        finest = digits(min(r.dt for r in some))
-        for text in (f"{method}: no step", f"down to {finest} s succeeded"):
-            y -= 13
-            picture.text(x + 8, y + 5, text, 10, color, more="noenhanced")
-            panel.keep_free.append((x, y, x + 8 + LETTER * len(text), y + 12))
 
 
 def energy(csv, out):
@@ -271,8 +147,7 @@ def energy(csv, out):
     curves, worst = {}, {}
     for row in table.rows:
         m, t, off = row["method"], float(row["t"]), abs(float(row["energy"]))
-        color, marker, _ = look[m]
-        c = curves.setdefault(m, Curve(m, [], color, 0, m))
+        c = curves.setdefault(m, Curve(m, [], look[m][0], 0, m))
         if off > 0 and (not c.points or off > 1.05 * c.points[-1][1]):
             c.points.append((t, min(off, 20)))
         c.end, worst[m] = t, max(worst.get(m, 0), off)
@@ -287,28 +162,27 @@ def energy(csv, out):
     about, _, rest = table.note("scene").partition("; ")
     words = []
     for who, pick, how, chosen in (
-            ("splitting methods", max, " at most",
-             lambda m: look[m][2] == "splitting"),
+            ("splittings at most", max, "",
+             lambda m: look[m][1] == "splitting"),
             ("rk4", max, "", lambda m: m == "rk4"),
-            ("implicit ones and xpbd", min, " or more",
-             lambda m: look[m][2] == "implicit")):
+            ("implicit", min, " or more",
+             lambda m: look[m][1] == "implicit")):
         off = [worst[m] for m in worst if chosen(m)]
         if off:
             words.append(f"{who} {pick(off):.2g} J{how}")
-    picture = Picture(out, 1000, 456, "Energy error: " + ", ".join(words),
+    picture = Picture(out, 800, 456, "Energy error: " + ", ".join(words),
                       f"{about}: the true energy stays at 0 J. A curve: the "
-                      "largest distance from it up to that time.",
-                      table.footer())
-    picture.text(20, 30, rest, 10)
+                      "largest distance from it up to that time.\n" +
+                      rest[:1].upper() + rest[1:] + ".", table.footer())
     x, y = Axis(0, 6.8, False), Axis(1e-6, 300)  # names stand behind the end
     picture.say("set xtics 0, 1, 5")
     for k, (family, title) in enumerate(FAMILIES):
-        own = [c for m, c in curves.items() if look[m][2] == family]
-        panel = Panel(80 + 305 * k, 96, 375 + 305 * k, 376, x, y, title, own,
+        own = [c for m, c in curves.items() if look[m][1] == family]
+        panel = Panel(72 + 240 * k, 82, 302 + 240 * k, 362, x, y, title, own,
                       [c for c in curves.values() if c not in own],
                       at_end=True)
         picture.draw(panel, "set xlabel 'time [s]'", *(
-            ["set format y '10^{%T}'", "set ylabel "
+            ["set format y '1e%T'", "set ylabel "
              "'largest error of the energy so far [J]'"]
             if k == 0 else ["set format y ''", "unset ylabel"]))
     picture.finish()

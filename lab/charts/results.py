@@ -9,9 +9,6 @@ from dataclasses import dataclass
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COARSE = 0.01  # the largest error that is wanted, of a cloth of 1 m [m]
 TIE = 0.9  # a cost of which the least one is more than this share ties with it
-# cheapest(), in words, for the charts that show what it chooses.
-RULE = ("the cheapest measured run that keeps this error, as do all finer runs "
-        "of its method; of runs within 10 % the most exact one")
 RATIOS = "lab/bench/results/rounds.csv"  # instructions of a step
 TRUSTED = 10  # an error below so many floors says nothing
 
@@ -77,7 +74,7 @@ def solver_costs():
     method makes once, and those of a linear system, of a product with its
     matrix and of its factor, for Newton's methods."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
-    each = {line.split(",")[0]: int(line.split(",")[5]) for line in lines
+    each = {line.split(",")[0]: int(line.split(",")[3]) for line in lines
             if not line.startswith("#")}
     text = (ROOT / RATIOS).read_text()
     steps = {m: (each[m], float(cost)) for m, cost in re.findall(

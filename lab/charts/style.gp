@@ -1,25 +1,20 @@
 # What the charts share that gnuplot draws by a script. Given: csv, the file of
-# data; scene, or '' for all rows of csv; out; height, and width if it is not
-# 1000; key, the column of csv that names the method, and key_is_method, 0 if
-# it names something else. Makes: names, the methods in csv, in the order of
-# lab/charts/methods.csv; stops if one of them is not in that table.
-if (!exists('width')) { width = 1000 }
+# data; scene, or '' for all rows of csv; out; height; key, the column of csv
+# that names the method, and key_is_method, 0 if it names something else.
+# Makes: names, the methods in csv, in the order of lab/charts/methods.csv;
+# stops if one of them is not in that table.
+width = 800
 load 'lab/charts/terminal.gp'
 table = 'lab/charts/methods.csv'
 column_of(k) = \
   system(sprintf("grep -v '^#' %s | cut -d, -f%d | tr '\\n' ' '", table, k))
 in_table = column_of(1)
 colors = column_of(2)
-markers = column_of(3)
-dashes = column_of(4)
-per_step = column_of(6)
+per_step = column_of(4)
 index_in(list, name) = \
   sum [k = 1:words(list)] (word(list, k) eq name ? k : 0)
 # An empty list of methods is still asked for the style of ''.
 color(m) = m eq '' ? '#000000' : word(colors, index_in(in_table, m))
-marker(m) = m eq '' ? 0 : int(word(markers, index_in(in_table, m)))
-dash(m) = m eq '' ? 1 : int(word(dashes, index_in(in_table, m)))
-
 evaluations(m) = int(word(per_step, index_in(in_table, m)))
 
 # awk on the rows of the scene, as a command and as data.
@@ -38,9 +33,9 @@ footer = strlen(comment('commit')) ? comment('machine').'; '. \
 headline(message, about) = sprintf( \
   "set label 901 \"{/:Bold=15 %s}\" at screen %g, screen %g left front; ". \
   "set label 902 \"%s\" at screen %g, screen %g left front ". \
-  "font ',12' textcolor rgb '#666666'; ". \
+  "font ',11' textcolor rgb '#666666'; ". \
   "set label 903 \"%s\" at screen %g, screen %g right front ". \
-  "font ',10' textcolor rgb '#666666' noenhanced", \
+  "font ',11' textcolor rgb '#666666' noenhanced", \
   message, 20. / width, 1 - 22. / height, \
   about, 20. / width, 1 - 43. / height, \
   footer, 1 - 15. / width, 14. / height)

@@ -10,6 +10,5 @@ set tics nomirror out scale 0.5 textcolor rgb '#222222'
 set grid xtics ytics back lc rgb '#eeeeee' lw 1 dt 1
 set dashtype 2 (10, 4)
 set dashtype 3 (2, 4)
-set dashtype 4 (8, 3, 2, 3)
 set style textbox opaque noborder margins 0.3, 0.1 fillcolor rgb 'white'
-small = ',10'
+small = ',11'

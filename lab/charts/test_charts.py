@@ -7,12 +7,13 @@ import re
 import sys
 import unittest
 from dataclasses import replace
+from itertools import chain
 
 import decision
 import peers
 import precision
-from results import (COARSE, TRUSTED, Run, Table, cheapest, contenders, runs,
-                     tied, winners)
+from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest, contenders,
+                     runs, tied, winners)
 
 FLOOR = 1e-12
 
@@ -41,7 +42,7 @@ def some_runs(source):
 
 
 def by_the_rule(error, some):
-    """The method that RULE names, found by its words one after the other."""
+    """The method that cheapest() names, found by its words one after the other."""
     fit = []
     for one in some:
         finer = [r for r in some if r.method == one.method and r.share <= 1 and
@@ -222,6 +223,21 @@ class Words(unittest.TestCase):
             self.assertEqual(precision.message(
                 [("a", 1e-2, 1e-3), ("b", 1e-3, end), ("a", end, 2e-4)]),
                 title)
+
+
+class Pictures(unittest.TestCase):
+    def test_texts_have_11_pixels_where_a_picture_has_800(self):
+        pictures = list(chain(ROOT.glob("lab/*/results/**/*.svg"),
+                              ROOT.glob("course/pictures/*.svg")))
+        self.assertGreater(len(pictures), 30)
+        small = []
+        for picture in pictures:
+            svg = picture.read_text()
+            width = float(re.search('viewBox="0 0 ([0-9.]+)', svg)[1])
+            least = min(map(float, re.findall('font-size="([0-9.]+)', svg)))
+            if least * 800 < 11 * width:
+                small.append((picture.name, least * 800 / width))
+        self.assertEqual(small, [])
 
 
 if __name__ == "__main__":

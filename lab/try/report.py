@@ -28,9 +28,9 @@ EVALUATIONS = "force evaluations"
 
 def among_methods(verdict, out):
     table = Table("lab/charts/results/work_precision.csv")
-    picture = Picture(out, 1000, 470, "Error against force evaluations: yours "
-                      "in red", "Lower is cheaper, further right more exact. "
-                      "Gray: other methods of the laboratory. With a force "
+    picture = Picture(out, 800, 450, "Error against force evaluations: yours "
+                      "in red", "Down is cheaper, right is more accurate. "
+                      "Gray: other methods of the laboratory.\nWith a force "
                       "kept for the next step if it can be.",
                       table.footer())
     look = styles()
@@ -49,13 +49,14 @@ def among_methods(verdict, out):
             else:
                 behind.append(Curve(method, points, GRAY))
         about = table.note("scene " + scene).split("; ")[0]
-        panel = Panel(90 + 475 * k, 90, 500 + 475 * k, 385, x, y,
+        panel = Panel(72 + 370 * k, 82, 415 + 370 * k, 365, x, y,
                       f"{scene}: {about}", curves, behind)
         picture.draw(panel, "set xtics (" + ", ".join(
-            f"'10^{{{k}}}' 1e{k}" for k in range(-11, 0, 2)) + ")",
+            f"'1e{k}' 1e{k}" for k in range(-11, 0, 2)) + ")",
                      "set xlabel 'RMS error of the positions [m]'",
-                     *(["set format y '10^{%T}'",
-                        f"set ylabel '{EVALUATIONS}'"] if k == 0 else
+                     *(["set format y '1e%T'",
+                        f"set ylabel '{EVALUATIONS}' offset 1, 0"]
+                       if k == 0 else
                        ["set format y ''", "unset ylabel"]))
     picture.finish()
 
