@@ -85,11 +85,11 @@ constexpr std::array table = [] {
           Run("verlet", 0.97 * chain_limit, "0.97 of the limit", {0.6, 1.6})),
       Failure(
           "without drag, a stiff spring of half period dt grows",
-          "one mass between a stiff and a soft spring", stiff_oscillator, 3,
-          energy, 1, 0.1, {0, 2.5},
+          "one mass between a stiff and a soft spring", stiff_oscillator, 2.4,
+          energy, 1, 0.1, {0, 2.2},
           Run("respa", 0.986 * half_period, "dt = 0.986 half periods",
-              {1.3, 2.5}),
-          Run("respa", 0.9 * half_period, "dt = 0.9 half periods", {2, 1.2})),
+              {0.5, 3}),
+          Run("respa", 0.9 * half_period, "dt = 0.9 half periods", {1.6, 1.2})),
       Failure("hundreds of times the error of pefrl for equal work",
               "5 x 5 cloth with drag", cloth, 5, error, 5e-4, 1e-5,
               {1e-8, 1e-2, true},
@@ -165,9 +165,8 @@ constexpr std::array table = [] {
               Run("fast-mass-spring", 1 / 60.0, "100 rounds", {0.5, -1}, 100)),
       Failure("with few substeps the springs are rubber",
               "9 x 9 cloth with drag, dt = 1/60 s", fine_cloth, 3, stretch, 0.3,
-              0.1, {-0.15, 1},
-              Run("xpbd", 1 / 60.0, "1 substep", {0.72, 0.3}, 1),
-              Run("xpbd", 1 / 60.0, "2 substeps", {2, 0.9}, 2),
+              0.1, {0, 1}, Run("xpbd", 1 / 60.0, "1 substep", {0.72, 0.3}, 1),
+              Run("xpbd", 1 / 60.0, "2 substeps", {2, 1.4}, 2),
               Run("", 0.01, "true motion", {1.3, -1.5}),
               Run("xpbd", 1 / 60.0, "20 substeps", {1.85, -0.9}, 20))};
 }();

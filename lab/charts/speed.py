@@ -47,8 +47,8 @@ class Bars:
 
     def title(self, text):
         self.y -= 36
-        self.picture.text(self.x - self.indent, self.y, f"{{/:Bold {text}}}", 11,
-                          DARK)
+        self.picture.text(self.x - self.indent, self.y, f"{{/:Bold {text}}}",
+                          color=DARK)
 
     def bar(self, name, low, middle, high, color, text):
         self.y -= ROW

@@ -37,7 +37,7 @@ do for [col = 0:1] {
   } else {
     unset ylabel
   }
-  set label 1 sprintf('safe for verlet: %.4f s/√nodes', bound) \
+  set label 1 sprintf('safe for verlet: %.4f/sqrt(nodes) s', bound) \
     at graph 0.04, 0.07 left font small textcolor rgb '#666666'
   set label 2 'rk4' at 1e4, bound / 100 * 2.6 left textcolor rgb color('rk4')
   set label 3 'verlet = symplectic-euler' at graph 0.04, 0.17 left \

@@ -42,7 +42,7 @@ def some_runs(source):
 
 
 def by_the_rule(error, some):
-    """The method that cheapest() names, found by its words one after the other."""
+    """The method that cheapest() names, found by its words in turn."""
     fit = []
     for one in some:
         finer = [r for r in some if r.method == one.method and r.share <= 1 and
