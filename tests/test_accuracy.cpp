@@ -19,7 +19,7 @@ Model sheet(unsigned n, double t_end) {
   Model m;
   m.sheets.resize(1), m.sheets[0].nodes = {n, n};
   m.t_end = t_end;
-  m.method = find_method("dop853");
+  m.method = find_method("rkn64");
   m.step = {.dt = std::min(1 / 30., t_end)};
   return m;
 }

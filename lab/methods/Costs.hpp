@@ -24,7 +24,6 @@ inline constexpr auto method_costs = std::to_array<MethodCost>({
     {"srkn6b", 4.4, 0},                //
     {"srkn11b", 7.85, 0},              //
     {"rk4", 3.78, 0},                  //
-    {"dop853", 14.4, 0},               //
     {"rkn64", 6.23, 0},                //
     {"implicit-euler", 43, 223},       //
     {"implicit-midpoint", 79.1, 231},  //

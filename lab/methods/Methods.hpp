@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "lab/methods/AugmentedVerlet.hpp"
-#include "lab/methods/Dop853.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
@@ -33,7 +32,6 @@ inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<Srkn6b>(),
                                        entry_of<Srkn11b>(),
                                        entry_of<Rk4>(),
-                                       entry_of<Dop853>(),
                                        entry_of<Rkn64>(),
                                        entry_of<ImplicitEuler>(),
                                        entry_of<ImplicitMidpoint>(),

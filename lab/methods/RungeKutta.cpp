@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "lab/methods/Dop853.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Rkn64.hpp"
@@ -29,7 +28,7 @@ double common_drag(const Cloth& g, const Drag& c, const char* method) {
       throw std::invalid_argument(
           std::string(method) +
           ": drag over mass differs from node to node, expected the same at "
-          "all; dop853 does without");
+          "all: use rk4, or verlet with --dt auto");
   }
   return r;
 }
@@ -53,7 +52,7 @@ int RungeKutta<Tableau>::steps(Cloth& g, const StepTimes& times, int count,
 template <typename Tableau>
 void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
                                    const ConstraintPlan& constraint) {
-  if (!adaptive || tolerance_ == no_limit) {
+  if (tolerance_ == no_limit) {
     attempt(g, t, dt, constraint);
     flow_.run({.t = t + dt, .project = &constraint});
     return;
@@ -73,8 +72,7 @@ void RungeKutta<Tableau>::one_step(Cloth& g, double t, double dt,
     bool good = error <= 1;
     double factor = 0.2;
     if (std::isfinite(error))
-      factor =
-          std::clamp(0.9 * std::pow(error, -1.0 / estimate_order), 0.2, 5.0);
+      factor = std::clamp(0.9 * std::pow(error, -0.2), 0.2, 5.0);
     if (good) {
       now = last ? goal : now + h;
       flow_.run({.t = now, .project = &constraint});
@@ -123,12 +121,10 @@ double RungeKutta<Tableau>::attempt(Cloth& g, double t, double h,
   }
   weigh(stages, way);
   flow_.run({.t = t + h, .sum = &sum_, .held = &constraint, .held_move = true});
-  if constexpr (nystroem) {
-    cloth.copy(FlatCloth::X, end, 6);
-    has_end_ = true, end_t_ = t + h, end_version_ = cloth.version();
-  }
-  if constexpr (adaptive) return way * error_rate(g, way);
-  return 0;
+  if (!nystroem) return 0;
+  cloth.copy(FlatCloth::X, end, 6);
+  has_end_ = true, end_t_ = t + h, end_version_ = cloth.version();
+  return way * error_rate(g, way);
 }
 
 template <typename Tableau>
@@ -185,35 +181,20 @@ double RungeKutta<Tableau>::of_accelerations(const double* weights,
   return sum;
 }
 
-/** The estimated error, RMS over the nodes, for h = 1. */
+/** The estimated error of a Nystroem method, RMS over the nodes, for h = 1. */
 template <typename Tableau>
 double RungeKutta<Tableau>::error_rate(const Cloth& g, double h) {
-  double error = 0;
-  if constexpr (adaptive) error = rms(g, h, Tableau::b_low);
-  if constexpr (requires { Tableau::b_third; }) {
-    if (!(error > 0)) return error;
-    const double third = rms(g, h, Tableau::b_third);
-    error *= error / std::sqrt(error * error + 0.01 * third * third);
-  }
-  return error;
-}
-
-/** RMS of the difference to the weights @a other. */
-template <typename Tableau>
-double RungeKutta<Tableau>::rms(const Cloth& g, double h,
-                                const Weights& other) {
-  const Columns& nodes = flow_.cloth().nodes();
-  constexpr unsigned tile = FlatCloth::tile;
-  Weights w, to_x;
-  for (std::size_t k = 0; k < stages; ++k) w[k] = Tableau::b[k] - other[k];
-  for (std::size_t k = 0; k < stages; ++k)
-    if constexpr (!nystroem) {
-      to_x[k] = h * of_accelerations(w.data(), stages, k);
-    } else {
-      const double* x = &Tableau::a[(stages - 1) * (stages - 2) / 2];
-      to_x[k] = k + 1 < stages ? x[k] - Tableau::x_low[k] : 0;
+  std::array<double, stages> w{}, to_x{};  // differences of the weights
+  if constexpr (nystroem) {
+    const double* x = &Tableau::a[(stages - 1) * (stages - 2) / 2];
+    for (std::size_t k = 0; k < stages; ++k) {
+      if (k + 1 < stages) to_x[k] = x[k] - Tableau::x_low[k];
+      w[k] = Tableau::b[k] - Tableau::b_low[k];
       to_x[k] *= h * stretch(k, h), w[k] *= stretch(k, h);
     }
+  }
+  const Columns& nodes = flow_.cloth().nodes();
+  constexpr unsigned tile = FlatCloth::tile;
   double x = 0, v = 0;
   for (unsigned begin = 0; begin < g.node_slots(); begin += tile) {
     double x2[tile] = {}, v2[tile] = {};
@@ -252,7 +233,6 @@ void RungeKutta<Tableau>::archive(Archive& a, const Cloth& g) {
 
 template class RungeKutta<ForwardEulerTableau>;
 template class RungeKutta<Rk4Tableau>;
-template class RungeKutta<Dop853Tableau>;
 template class RungeKutta<Rkn64Tableau>;
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file RungeKutta.hpp
- * Explicit Runge-Kutta methods: ForwardEuler, Rk4, Dop853, Rkn64 are their
- * tableaus. A new tableau needs a line at the end of RungeKutta.cpp. */
+ * Explicit Runge-Kutta methods: ForwardEuler, Rk4, Rkn64 are their tableaus. A
+ * new tableau needs a line at the end of RungeKutta.cpp. */
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,32 +32,27 @@ inline constexpr double tolerance_share = 0.25;
  * In the stages, v is of order 1 only: that is the order with forces that
  * depend on v in another way.
  *
- * @tparam Tableau has info; a, the lower triangle row by row; b and c. If it
- * has b_low, weights of a lower order, too, the error is controlled: step()
- * makes as many inner steps in [t, t + dt] as necessary. With x_low, the
- * weights of that order for x, it is a Nystroem method, whose lower order is 4.
- * With b_third, weights of a third order, the estimate is
- * e^2/sqrt(e^2 + e3^2/100), where e and e3 are the differences to b_low and
- * b_third. For orders 5 and 3 it is of order 8 (II.10 of the source).
+ * @tparam Tableau has info; a, the lower triangle row by row; b and c. A
+ * Nystroem method has x_low and b_low, too, the weights of order 4 for x and v,
+ * and its error is controlled: step() makes as many inner steps in [t, t + dt]
+ * as necessary.
  *
  * Error control: in each inner step the RMS over the nodes of the estimated
- * error stays below tolerance(), for positions in [m] and for velocities times
- * 1 s. The next step is 0.9 (tolerance/error)^(1/p) times as long, at least
- * 0.2 and at most 5 times. Source: Hairer, Norsett, Wanner, Solving Ordinary
- * Differential Equations I, II.4. */
+ * error stays below the tolerance, for positions in [m] and for velocities
+ * times 1 s. The next step is 0.9 (tolerance/error)^(1/5) times as long, at
+ * least 0.2 and at most 5 times. Source: Hairer, Norsett, Wanner, Solving
+ * Ordinary Differential Equations I, II.4. */
 template <typename Tableau>
 class RungeKutta : public BatchMethod {
  public:
   static constexpr MethodInfo info = Tableau::info;
-  static constexpr bool adaptive = requires { Tableau::b_low; };
 
   /** @param tolerance [m] > 0; infinite: one inner step for each step(). Only
-   * an adaptive method has one. */
-  explicit RungeKutta(double tolerance = adaptive ? 1e-6 : no_limit)
+   * a Nystroem method has one. */
+  explicit RungeKutta(double tolerance = nystroem ? 1e-6 : no_limit)
       : tolerance_(tolerance) {}
-  double tolerance() const { return tolerance_; }
   void set_tolerance(double tolerance) override {
-    if (adaptive) tolerance_ = tolerance;
+    if (nystroem) tolerance_ = tolerance;
   }
 
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
@@ -68,11 +63,8 @@ class RungeKutta : public BatchMethod {
 
  private:
   static constexpr std::size_t stages = Tableau::b.size();
-  using Weights = std::array<double, stages>;
   static_assert(stages <= kernels::StageSum::most);
   static constexpr bool nystroem = requires { Tableau::x_low; };
-  // p of the estimate: one more than the lower order, or that of b.
-  static constexpr int estimate_order = nystroem ? 5 : Tableau::info.order;
 
   // Columns of the cloth: x and v at the start of a step, and at its end; the
   // accelerations of each stage.
@@ -102,7 +94,6 @@ class RungeKutta : public BatchMethod {
   static double of_accelerations(const double* weights, std::size_t count,
                                  std::size_t k);
   double error_rate(const Cloth& g, double h);
-  double rms(const Cloth& g, double h, const Weights& other);
 };
 
 }  // namespace lab

@@ -223,7 +223,7 @@ void list_methods() {
  * @param given(NAME) true if the option NAME is given, in a file or here */
 void control_error(Model& m, const std::function<bool(const char*)>& given) {
   if (!given("method") && !given("dt"))
-    m.method = find_method(Dop853::info.name);
+    m.method = find_method(Rkn64::info.name);
   if (!m.method->info.adaptive) return;
   // Steps end where rows and frames are looked at, not where errors do.
   if (!given("dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);
@@ -474,7 +474,7 @@ int parse(int argc, char** argv, Options& o) {
       std::cerr << "cloth: warning: --tolerance has no effect on "
                 << o.model.method->info.name
                 << ", which does not control its error: omit --dt and "
-                   "--method, or use --method dop853\n";
+                   "--method, or use --method rkn64\n";
   }
   check(o);
   if (o.replay.empty()) check_has_cloth(o.model);

@@ -39,7 +39,7 @@ struct Accuracy {
  * @pre m.method is adaptive, m.step.fixed(), m.step.tolerance > 0
  * @param tell called with a text and the finished share of the present run
  * Throws InputError, SceneError, Interrupted.
- * Complexity: 2.4 times the run for a smooth motion by dop853, up to 20 times
+ * Complexity: 2.4 times the run for a smooth motion by rkn64, up to 20 times
  * for a chaotic one. */
 Accuracy find_accuracy(
     const Model& m, double asked,

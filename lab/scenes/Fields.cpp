@@ -83,7 +83,7 @@ std::vector<Field> fields_of(Model& m) {
        &m.tolerance,
        "error allowed in the measure, in its unit; for advice also P%: of the "
        "change since t = 0, or of a stretch, force or time itself; without "
-       "--method and --dt a run uses dop853 and bounds the error of the "
+       "--method and --dt a run uses rkn64 and bounds the error of the "
        "positions by it [m]",
        "more than 0",
        positive,
