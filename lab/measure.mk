@@ -87,13 +87,15 @@ long-runs: cloth
 	  > $(B)/long_runs.csv
 	@mv $(B)/long_runs.csv lab/charts/results/long_runs.csv
 
-# A sweep is a list of runs, each with a file of its own, so it goes on where it
-# was interrupted. `make cells` runs what $(SWEEP)/list names, and no more.
+# A sweep is a list of runs, costly ones first, each with a file of its own, so
+# it goes on where it was interrupted. `make cells` runs what $(SWEEP)/list
+# names, and no more.
 EFFORT = $(if $(QUICK),quick,full)
 SWEEP  = $(B)/stability/$(EFFORT)
 effort = $(filter-out --full,--$(EFFORT))
 stability: stability_map
-	@mkdir -p $(SWEEP) && $(B)/stability_map --list $(effort) > $(SWEEP)/list
+	@mkdir -p $(SWEEP)
+	@$(B)/stability_map --list $(effort) | sort -srgk2,2 > $(SWEEP)/list
 	@$(sub) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) \
 	  cells EFFORT=$(EFFORT) SWEEP=$(SWEEP)
 	@BUILD='$(B)' lab/charts/stability.sh $(EFFORT) $(SWEEP)
@@ -173,7 +175,7 @@ peers-bench:
 	@$(sub) $(B)/native/graph_peers B=$(B)/native \
 	  CXXFLAGS='$(native) $(CXXFLAGS)'
 	@echo "$(measured_on)"
-	@taskset -c 0 $(B)/native/graph_peers
+	@taskset -c 0 $(peers)/graphs.py $(B)/native/graph_peers
 
 # ---- Grids and pictures
 

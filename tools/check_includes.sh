@@ -21,7 +21,7 @@ lab/scenes    : lab/stability
 lab/advice    : lab/scenes
 lab/charts    : lab/stability
 lab/try       : mass_spring lab/methods
-lab/bench     : lab/charts
+lab/bench     : lab/fast
 lab/live      : lab/scenes
 lab/viewer    : lab/live
 lab/run       : lab/viewer

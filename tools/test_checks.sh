@@ -86,7 +86,7 @@ arrow lab/stability/Guard.hpp lab/charts/Problem.hpp
 arrow lab/scenes/Scene.hpp lab/advice/Advise.hpp
 arrow lab/scenes/Scene.hpp lab/charts/Problem.hpp
 arrow lab/charts/Problem.hpp lab/scenes/Scene.hpp
-arrow lab/charts/Problem.hpp lab/bench/Bench.hpp
+arrow lab/charts/Problem.hpp lab/bench/Cloths.hpp
 arrow lab/advice/Advise.hpp lab/viewer/Screen.hpp
 arrow lab/viewer/Screen.hpp lab/advice/Advise.hpp
 arrow lab/viewer/Screen.hpp lab/run/Run.hpp

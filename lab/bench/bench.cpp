@@ -2,26 +2,29 @@
  * The cost of a step and of each of its layers, compared with the same loop
  * over flat arrays: lab/fast/README.md explains the table.
  *
- *   make bench CXXFLAGS=-march=native && taskset -c 0 build/bench
- *   build/bench --json FILE       also writes the table as JSON
- *   build/bench --filter step      only figures with this in their names
- *   build/bench --filter solve --side 316   one size of cloth
+ *   make bench CXXFLAGS=-march=native
+ *   taskset -c 0 lab/bench/table.py build/bench
+ *   lab/bench/table.py build/bench --sides 316 --filter solve
  *   lab/bench/counts.sh           instructions in place of nanoseconds
  *   make bench REAL=float B=build/float   single precision, compared with the
  *                                         same loop over doubles
  *
- * Figures are measured in turn, in random order, so that a machine that slows
- * down slows all. One thread, unless the name has "threads". */
-#include <algorithm>
+ * table.py runs bench [SIDE...] [--benchmark_...], which writes times as JSON.
+ * bench --calls N FIGURE KERNELS only calls a figure, of 100 x 100 nodes:
+ * kernels 0 plain, 1 AVX2, 2 AVX-512. One thread, unless the name has
+ * "threads". */
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "lab/bench/Bench.hpp"
 #include "lab/bench/Cloths.hpp"
+#include "lab/charts/Report.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/AugmentedVerlet.hpp"
 #include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/FlatFlow.hpp"
@@ -57,7 +60,7 @@ constexpr double dt = 1e-7;  // [s]: the cloths hardly change
 
 /** A call to be measured, at each size. */
 struct Figure {
-  std::string name, beside;  // as in bench::Figure
+  std::string name, beside;  // the figure to which it is compared
   std::function<std::function<void()>(unsigned side)> make;
   bool million = true;     // also with 10^6 nodes
   double bytes = 0;        // moved through memory for a node, if known
@@ -342,78 +345,69 @@ std::vector<Figure> figures() {
   return all;
 }
 
+/** Let it be measured on a cloth of @a side x @a side nodes. */
+void add(const Figure& f, unsigned side) {
+  const std::string group =
+      std::to_string(side * side) + " nodes with diagonals";
+  auto measure = [=, call = std::function<void()>()](
+                     benchmark::State& state) mutable {
+    Sweep::set_threads(f.threads);
+    if (!call) call = f.make(side);
+    call();  // fills the caches, and allocates
+    for (auto _ : state) {
+      call();
+      benchmark::ClobberMemory();
+    }
+    state.counters["items"] = double(f.steps) * cloth(side, f.kind).num_nodes();
+    state.counters["bytes"] = side > 100 ? f.bytes : 0;
+    state.SetLabel(f.beside);
+  };
+  benchmark::RegisterBenchmark((group + '|' + f.name).c_str(), measure);
+}
+void add_triad(const char* name, std::size_t bytes, int threads) {
+  const auto measure = [=](benchmark::State& state) {
+    Triad triad(bytes);
+    Sweep::set_threads(threads);
+    for (auto _ : state) {
+      triad.run();
+      benchmark::ClobberMemory();
+    }
+    state.counters["items"] = double(triad.a.size());
+  };
+  benchmark::RegisterBenchmark(
+      (std::string("triad, three arrays of doubles|") + name).c_str(), measure);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string json, filter;
-  int repetitions = 9, calls = 0;
-  unsigned one_side = 0;
-  bool small = false;
-  CLI::App app("What a step costs, and each layer of it: lab/fast/README.md");
-  app.add_option("--json", json, "write the table to this file")
-      ->type_name("FILE");
-  app.add_option("--filter", filter, "only what has this in its name")
-      ->type_name("TEXT");
-  app.add_option("--repetitions", repetitions, "of each figure")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_flag("--small", small, "no 10^6 nodes");
-  app.add_option("--side", one_side, "only the cloth of N x N nodes")
-      ->type_name("N");
-  app.add_option("--calls", calls, "only call that often what has this name");
-  app.add_option("--cpu", lanes::cpu,
-                 "kernels: 0 plain, 1 AVX2, 2 AVX-512; default: the fastest")
-      ->check(CLI::Range(0, int(lanes::best_cpu())));
   lanes::cpu = fastest_cpu();
-  CLI11_PARSE(app, argc, argv);
-
-  if (calls > 0) {  // for lab/bench/counts.sh
+  if (argc == 5 && std::string(argv[1]) == "--calls") {  // for counts.sh
+    lanes::cpu = lanes::Cpu(std::atoi(argv[4]));
     Sweep::set_threads(1);
     for (const Figure& f : figures())
-      if (auto call = f.name == filter ? f.make(100) : nullptr)
-        for (int k = 0; k < calls; ++k) call();
+      if (auto call = f.name == argv[3] ? f.make(100) : nullptr)
+        for (int k = 0; k < std::atoi(argv[2]); ++k) call();
     return 0;
   }
-  bench::Bench all;
-  const char* triads = "triad, three arrays of doubles";
-  Triad near(1 << 19), far(std::size_t(192) << 20);
-  auto triad = [&](const char* name, Triad& t, int threads) {
-    all.add(
-        {name, double(t.a.size()), triads, "", [&t] { t.run(); }, 0, threads});
-  };
-  triad("in the cache", near, 1);
-  triad("in memory", far, 1);
+  benchmark::Initialize(&argc, argv);
+  std::ostringstream head;
+  report::write_head(head, "bench");
+  benchmark::AddCustomContext("about", head.str());
+  benchmark::AddCustomContext("machine", report::machine());
+  benchmark::AddCustomContext("real", sizeof(Real) == 8 ? "double" : "float");
+  benchmark::AddCustomContext("kernels", lanes::name_of(lanes::cpu));
+  add_triad("in the cache", 1 << 19, 1);
+  add_triad("in memory", std::size_t(192) << 20, 1);
   if (Sweep::processors() > 1)
-    triad("in memory, all threads", far, Sweep::processors());
-  std::vector<unsigned> sides = {25, 100};  // 25: grid1, whole steps only
-  if (!small) sides.push_back(1000);
-  if (one_side > 0) sides = {one_side};
-  for (unsigned side : sides)
+    add_triad("in memory, all threads", std::size_t(192) << 20,
+              Sweep::processors());
+  for (int k = 1; k < argc; ++k)
+    for (const Figure& f : figures()) add(f, unsigned(std::atoi(argv[k])));
+  for (unsigned side : {25u, 100u, 1000u})  // 25: grid1, whole steps only
     for (const Figure& f : figures())
-      if (f.name.find(filter) != std::string::npos &&
-          (one_side > 0 || ((side >= 100 || f.name.starts_with("step: ")) &&
-                            (side <= 100 || f.million))))
-        all.add({f.name, double(f.steps) * cloth(side, f.kind).num_nodes(),
-                 std::to_string(side * side) + " nodes with diagonals",
-                 f.beside, f.make(side), side > 100 ? f.bytes : 0, f.threads});
-  all.run(repetitions);
-  auto bandwidth = [&](const char* name) {
-    const double s = all.seconds(triads, name).median;
-    return s > 0 ? 24e-9 * double(far.a.size()) / s : 0;
-  };
-  std::printf(
-      "%s; %s; kernels %s; triad in memory %.1f GB/s, by %d threads %.1f "
-      "GB/s\n",
-      report::machine().c_str(), sizeof(Real) == 8 ? "double" : "float",
-      lanes::name_of(lanes::cpu), bandwidth("in memory"), Sweep::processors(),
-      bandwidth("in memory, all threads"));
-  all.print("node", bandwidth("in memory"));
-  if (json.empty()) return 0;
-  try {
-    all.write_json(json);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "bench: %s\n", e.what());
-    return 2;
-  }
-  return 0;
+      if (argc == 1 && (side >= 100 || f.name.starts_with("step: ")) &&
+          (side <= 100 || f.million))
+        add(f, side);
+  benchmark::RunSpecifiedBenchmarks();
 }

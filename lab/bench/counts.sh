@@ -6,12 +6,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-counted() {  # CALLS FIGURE [OPTION...]
+counted() {  # CALLS FIGURE KERNELS
   valgrind --tool=callgrind --callgrind-out-file=/dev/null \
-    "${BUILD:-build}/bench" --small --calls "$1" --filter "${@:2}" 2>&1 |
+    "${BUILD:-build}/bench" --calls "$@" 2>&1 |
     sed -n 's/.*Collected : //p'
 }
-row() {  # NAME FIGURE [OPTION...]: 10 calls after the first one
+row() {  # NAME FIGURE KERNELS: 10 calls after the first one
   local steps=1  # a call of a method takes as many as a scene at once
   case $2 in 'step: SymplecticEuler'* | 'step: Rk4') steps=32 ;; esac
   echo "$1 $(counted 1 "${@:2}") $(counted 11 "${@:2}")" |
@@ -25,10 +25,10 @@ for figure in 'step: flat arrays' 'step: symp_euler_step(), functor' \
   'step: symp_euler_step(), forces' 'springs: flat arrays' \
   'springs: Node and Edge' 'springs: virtual call a node' \
   'springs: adjacency alone' 'springs: edge values alone'; do
-  row "$figure" "$figure"
+  row "$figure" "$figure" 0
 done
 for figure in 'step: SymplecticEuler' 'step: SymplecticEuler, mixed' \
   'step: Rk4' 'springs: sweep' 'part: drift' 'part: read and write'; do
-  row "$figure, plain" "$figure" --cpu 0
-  row "$figure, AVX2" "$figure" --cpu 1
+  row "$figure, plain" "$figure" 0
+  row "$figure, AVX2" "$figure" 1
 done

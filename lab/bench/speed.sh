@@ -17,9 +17,9 @@ machine=$(awk -F': ' '/^model name/ {n = $2; gsub(/\((R|TM)\)/, "", n)} /^cpu fa
   /^$/ {print n f v; exit}' /proc/cpuinfo | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9-')
 folder=lab/bench/results/${machine:-unknown}
 mkdir -p "$folder"
-"${1:-build/native/bench}" --json "$folder/bench.json" |
+lab/bench/table.py "${1:-build/native/bench}" --json "$folder/bench.json" |
   tee "$folder/bench.txt"
-"${2:-build/native-float/bench}" --filter 'step: ' \
+lab/bench/table.py "${2:-build/native-float/bench}" --filter 'step: ' \
   --json "$folder/bench-float.json" | tee "$folder/bench-float.txt"
 
 # A commit that was measured before gets its lines anew.

@@ -111,51 +111,6 @@ struct Ours {
   }
 };
 
-/** Arrays made by hand for the two loops: no graph, but their measure. */
-struct Flat {
-  static constexpr const char* name = "flat arrays";
-  std::vector<Point> position;
-  std::vector<unsigned> row, neighbor;
-  std::vector<EdgeData> value_at_end;  // by place in neighbor
-  std::vector<Pair> ends;
-  std::vector<EdgeData> value;
-
-  void build(const std::vector<Pair>& edges, bool) {
-    position = square.points;
-    std::vector<std::vector<Pair>> at(position.size());  // neighbor, edge
-    for (Pair p : edges) {
-      at[p[0]].push_back({p[1], unsigned(ends.size())});
-      at[p[1]].push_back({p[0], unsigned(ends.size())});
-      ends.push_back(p);
-      value.push_back(square.spring(p));
-    }
-    for (auto& list : at) {
-      row.push_back(unsigned(neighbor.size()));
-      for (auto [j, e] : list) {
-        neighbor.push_back(j);
-        value_at_end.push_back(value[e]);
-      }
-    }
-    row.push_back(unsigned(neighbor.size()));
-  }
-  void forces(std::vector<Point>& force) {
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      Point f;
-      for (unsigned k = row[i]; k < row[i + 1]; ++k)
-        f += spring_force(position[neighbor[k]] - position[i], value_at_end[k]);
-      force[i] = f;
-    }
-  }
-  double energy() {
-    double sum = 0;
-    for (std::size_t e = 0; e < ends.size(); ++e) {
-      Point u = position[ends[e][0]] - position[ends[e][1]];
-      sum += spring_energy(norm(u), value[e]);
-    }
-    return sum;
-  }
-};
-
 /** @tparam G SmartGraph, which can only grow, or ListGraph */
 template <typename G>
 struct Lemon {

@@ -355,52 +355,6 @@ double median(std::vector<double> a) {
   return a[a.size() / 2];
 }
 
-/** The fastest run of a method whose error is at most @a error [m]. */
-const Candidate* fastest(const std::vector<Candidate>& all,
-                         std::string_view method, double error) {
-  const Candidate* best = nullptr;
-  for (const Candidate& c : all)
-    if (c.method == method && c.status == "ok" && c.error <= error &&
-        (!best || median(c.seconds) < median(best->seconds)))
-      best = &c;
-  return best;
-}
-
-/** How many times the time of our best every other method takes to the same
- * error: run by run, so that a slow moment of the machine hits both. And how
- * many times its force evaluations, which no library's call makes slower. */
-void print_ratios(const std::vector<Candidate>& all, double error) {
-  std::vector<const Candidate*> best;
-  for (const Candidate& c : all) {
-    if (std::any_of(best.begin(), best.end(), [&](const Candidate* b) {
-          return std::string_view(b->method) == c.method;
-        }))
-      continue;
-    if (const Candidate* b = fastest(all, c.method, error)) best.push_back(b);
-  }
-  auto first = [](auto* c) { return std::ranges::min(c->seconds); };
-  std::sort(best.begin(), best.end(),
-            [&](auto* a, auto* b) { return first(a) < first(b); });
-  const Candidate* ours = nullptr;
-  for (const Candidate* c : best)
-    if (!ours && find_method(c->method)) ours = c;
-  if (!ours) return;
-  std::fprintf(stderr,
-               "\nRMS error at most %g m; ours: %s\n%-18s %9s %7s %9s   sweeps "
-               "and time over ours, median (lowest-highest)\n",
-               error, ours->method, "method", "ms", "sweeps", "error [m]");
-  for (const Candidate* c : best) {
-    std::vector<double> ratio;
-    for (std::size_t k = 0; k < c->seconds.size(); ++k)
-      ratio.push_back(c->seconds[k] / ours->seconds[k]);
-    const auto [low, high] = std::ranges::minmax(ratio);
-    std::fprintf(stderr, "%-18s %9.3f %7ld %9.2g %7.2f %6.2f (%.2f-%.2f)\n",
-                 c->method, 1e3 * first(c), c->calls, c->error,
-                 double(c->calls) / double(ours->calls), median(ratio), low,
-                 high);
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -447,7 +401,4 @@ int main(int argc, char** argv) {
     }
     std::cout << floor << ',' << c.status << '\n';
   }
-  std::fflush(stdout);
-  std::fprintf(stderr, "the reference is known to %.2g m\n", floor);
-  for (double error : {1e-2, 1e-3, 1e-6, 1e-9}) print_ratios(all, error);
 }
