@@ -16,9 +16,13 @@ mkdir -p "$to"
 
 draw() { python3 lab/charts/draw.py "$@" --folder "$to"; }
 
-"$build/float/work_precision" --ends --out "$build/ends.txt" \
-  ${SCENE:+--scenes "$SCENE"}
-"$build/work_precision" --floor "$build/ends.txt" --out "$to/float_floor.csv"
+for precision in . float; do
+  "$build/$precision/work_precision" --ends --out "$build/$precision/ends.txt" \
+    ${SCENE:+--scenes "$SCENE"}
+done
+lab/charts/float_floor.py "$build/ends.txt" "$build/float/ends.txt" \
+  >"$build/float_floor.csv"
+mv "$build/float_floor.csv" "$to"
 csv=$to/work_precision.csv
 "$build/work_precision" ${options[@]+"${options[@]}"} --out "$csv" \
   ${SCENE:+--scenes "$SCENE"}

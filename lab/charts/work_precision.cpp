@@ -4,9 +4,8 @@
  *
  *   build/work_precision --out FILE.csv
  *   build/work_precision --quick --scenes grid0,chain --methods verlet,pefrl
- *   build/work_precision --grid-refinement     # or --energy, --failures
- *   build/float/work_precision --ends --out ends.csv
- *   build/work_precision --floor ends.csv --out FILE.csv
+ *   build/work_precision --grid-refinement     # or --energy, --failures,
+ * --ends
  *
  * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
  * input that can't be used, or an output that can't be written. */
@@ -14,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -25,7 +25,6 @@
 #include "CME212/Util.hpp"
 #include "lab/Progress.hpp"
 #include "lab/charts/Failure.hpp"
-#include "lab/charts/Precision.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
@@ -35,7 +34,6 @@
 
 using namespace lab;
 
-using CME212::short_text;
 using report::cell;
 using report::pick;
 using report::write_head;
@@ -44,11 +42,9 @@ namespace {
 
 struct Options {
   std::vector<std::string> scenes, methods;
-  std::string nodes, tets, out;
-  double t_end = 0.25;
+  std::string out;
   int repeats = 7;
   bool grid_refinement = false, energy = false, failures = false, ends = false;
-  std::string floor;  // file by --ends
   bool quick = false, quiet = false;
 };
 
@@ -71,7 +67,6 @@ struct Case {
   double error = 0;                  // [m]
   std::vector<double> seconds = {};  // of the repeats
 
-  double least() const { return *std::ranges::min_element(seconds); }
   Outcome run_on(const Problem& p, bool guarded) const {
     auto made = method->make();
     if (tolerance > 0) made->set_tolerance(tolerance);
@@ -156,25 +151,6 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
       << ',' << cell(c.first.reason) << '\n';
 }
 
-/** Print the cheapest method for an error, by its fastest run. */
-void print_cheapest(const Problem& p, const Reference& r,
-                    const std::vector<Case>& cases) {
-  std::printf("%s: floor %.1e m\n", p.name.c_str(), r.floor);
-  for (double wanted : {1e-3, 1e-6, 1e-9}) {
-    if (wanted < 10 * r.floor) continue;
-    const Case* best = nullptr;
-    for (const Case& c : cases)
-      if (c.first.ok() && c.error <= wanted &&
-          (!best || c.least() < best->least()))
-        best = &c;
-    if (best)
-      std::printf("  %.0e m: %-18s %8lld evaluations %9.3f ms\n", wanted,
-                  best->method->info.name, best->first.sweeps,
-                  1e3 * best->least());
-  }
-  std::fflush(stdout);
-}
-
 void work_precision(const std::vector<Problem>& problems,
                     const std::vector<const MethodEntry*>& chosen,
                     const Options& o, std::ostream& out, Progress& progress) {
@@ -211,9 +187,8 @@ void work_precision(const std::vector<Problem>& problems,
     }
     for (const Case& c : cases) write_case(out, p, r, c);
     part += 1;
-    progress.end();
-    if (!o.quiet) print_cheapest(p, r, cases);
   }
+  progress.end();
 }
 
 // -------------------------------------------------------------- Other charts
@@ -298,6 +273,31 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
   }
 }
 
+/** The final states of runs, a line each: "scene method end steps", the end
+ * [s], energy [J], center of mass [m], and the positions [m] if the norm uses
+ * them. By Verlet and srkn11b, at 1/2, 1/8 and 1/32 of their largest stable
+ * steps. float_floor.py compares those of two precisions. */
+void write_ends(const std::vector<Problem>& problems, std::ostream& out) {
+  write_head(out, "where runs end");
+  out.precision(std::numeric_limits<double>::max_digits10);
+  for (const Problem& p : problems) {
+    Start start(p);
+    const double omega = omega_safe(start.cloth, start.force, start.constraint);
+    for (const auto& method : {entry_of<Verlet>(), entry_of<Srkn11b>()})
+      for (double finer : {2, 8, 32}) {
+        const auto steps = static_cast<long long>(
+            std::ceil(p.t_end * omega / method.info.limit * finer));
+        const Outcome r = run(p, *method.make(), steps);
+        if (!r.ok()) throw std::runtime_error(p.name + ": " + r.reason);
+        out << p.name << ' ' << method.info.name << ' ' << p.t_end << ' '
+            << steps << ' ' << r.end.energy << ' ' << r.end.center;
+        if (p.norm == Norm::positions)
+          for (const Point& x : r.end.positions) out << ' ' << x;
+        out << '\n';
+      }
+  }
+}
+
 // -------------------------------------------------------------------- Options
 
 /** Read the command line.  @return the exit status to end with, or -1 */
@@ -311,12 +311,6 @@ int parse(int argc, char** argv, Options& o) {
       ->delimiter(',');
   app.add_flag("--quick", o.quick, "rough: few steps, one repeat");
   app.add_option("--repeats", o.repeats, "timed runs of each case, 1 up");
-  auto* nodes = app.add_option("--nodes", o.nodes,
-                               "file of points: one more scene, 'mesh'");
-  auto* tets = app.add_option("--tets", o.tets, "file of quads to --nodes");
-  nodes->needs(tets);
-  tets->needs(nodes);
-  app.add_option("--t-end", o.t_end, "end of the scene 'mesh' [s]");
   app.add_option("--out", o.out, "file to write; the terminal if none")
       ->type_name("FILE");
   auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
@@ -328,17 +322,10 @@ int parse(int argc, char** argv, Options& o) {
       app.add_flag("--failures", o.failures, "how each method fails instead")
           ->excludes(grid)
           ->excludes(energies);
-  auto* ends = app.add_flag("--ends", o.ends, "where runs end instead")
-                   ->excludes(grid)
-                   ->excludes(energies)
-                   ->excludes(failures);
-  app.add_option("--floor", o.floor,
-                 "how far the ends in a file, written by --ends of a build "
-                 "with REAL=float, are from those here instead")
+  app.add_flag("--ends", o.ends, "where runs end instead")
       ->excludes(grid)
       ->excludes(energies)
-      ->excludes(failures)
-      ->excludes(ends);
+      ->excludes(failures);
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   try {
     app.parse(argc, argv);
@@ -349,24 +336,12 @@ int parse(int argc, char** argv, Options& o) {
   if (o.repeats < 1)
     throw std::runtime_error("--repeats is " + std::to_string(o.repeats) +
                              ", expected 1 or more");
-  if (!(o.t_end > 0 && o.t_end < 1e6))
-    throw std::runtime_error("--t-end is " + short_text(o.t_end) +
-                             ", expected a positive time [s]");
   return -1;
 }
 
 void run(Options o) {
-  auto problems = make_problems();
-  if (!o.nodes.empty()) {
-    auto points = load_points(o.nodes);
-    auto quads = load_quads(o.tets, points.size());
-    problems.push_back(cloth_problem(
-        "mesh", o.nodes + " with drag, to " + short_text(o.t_end) + " s",
-        o.t_end, std::move(points), std::move(quads)));
-    if (o.scenes.empty()) o.scenes = {"mesh"};
-  }
-  problems = pick(o.scenes, problems, "--scenes",
-                  [](const Problem& p) { return p.name; });
+  const auto problems = pick(o.scenes, make_problems(), "--scenes",
+                             [](const Problem& p) { return p.name; });
   std::vector<const MethodEntry*> chosen;
   for (const MethodEntry& m :
        pick(o.methods, methods, "--methods",
@@ -384,12 +359,6 @@ void run(Options o) {
     write_failures(chosen, file && !o.quiet ? &std::cout : nullptr, out);
   else if (o.ends)
     write_ends(problems, out);
-  else if (!o.floor.empty())
-    write_compared(
-        compare_ends(problems,
-                     mesh_detail::read_file(o.floor, "a file of ends"),
-                     o.floor),
-        out);
   else
     work_precision(problems, chosen, o, out, progress);
   if (file) file->commit();
@@ -404,8 +373,6 @@ int main(int argc, char** argv) {
     if (int status = parse(argc, argv, o); status >= 0) return status;
     run(std::move(o));
     return 0;
-  } catch (const InputError& e) {
-    std::cerr << e.what() << '\n';
   } catch (const std::exception& e) {
     std::cerr << "work_precision: " << e.what() << '\n';
   }
