@@ -5,18 +5,16 @@
  *
  *   build/stability_map --list                # all cells: name, cost, content
  *   build/stability_map --cell NAME --out DIR/NAME.csv
- *   build/stability_map --join DIR --map limits --out limits.csv
+ *   build/stability_map --map limits          # the head of a map
  *
- * `make stability` does all this, tools/sweep.sbatch does it with Slurm. The
- * columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an input
- * that can't be used, or an output that can't be written. */
+ * `make stability` runs and joins all, tools/sweep.sbatch runs them with Slurm.
+ * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
+ * input that can't be used, or an output that can't be written. */
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -47,9 +45,9 @@ T by(Effort e, T full, T quick, T tiny) {
   return e == Effort::full ? full : e == Effort::quick ? quick : tiny;
 }
 
-/** A part of a map, with runs of its own. */
+/** A part of a map, with runs of its own. Its name begins with the map's. */
 struct Cell {
-  std::string map, name;
+  std::string name;
   double cost;       // estimated seconds on a core of 2.4 GHz
   std::string what;  // its parameters, for people
   std::function<void(std::ostream&)> run;  // writes its rows
@@ -115,8 +113,7 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
                                            steps))
               << ',' << cell(least) << '\n';
         };
-        cells.push_back({"limits",
-                         "limits-" + std::to_string(side) + '-' +
+        cells.push_back({"limits-" + std::to_string(side) + '-' +
                              name_of(mesh) + '-' + name,
                          1e-7 * side * side * steps * (m.info.sweeps + 0.5) *
                              (mesh == MeshSprings::plain ? 0.6 : 1),
@@ -151,7 +148,7 @@ void add_table(std::vector<Cell>& cells, Effort effort) {
         }
       };
       cells.push_back(
-          {"table", "table-" + std::to_string(side) + '-' + name_of(mesh),
+          {"table-" + std::to_string(side) + '-' + name_of(mesh),
            3e-5 * t_end * std::pow(side, 3),
            "t_end=" + short_text(t_end) + " precision=" + short_text(precision),
            run});
@@ -185,7 +182,7 @@ void add_growth(std::vector<Cell>& cells, Effort effort) {
         }
       };
       cells.push_back(
-          {"growth", std::string("growth-") + name + '-' + short_text(stretch),
+          {std::string("growth-") + name + '-' + short_text(stretch),
            4e-6 * (m.info.sweeps + 1) * rows * steps,
            "side=15 steps=" + std::to_string(steps) +
                " rows=" + std::to_string(rows),
@@ -239,9 +236,9 @@ void add_oscillator(std::vector<Cell>& cells, Effort effort) {
         }
       write_boundary(out, name, right, top, 3 * rows);
     };
-    cells.push_back(
-        {"oscillator", std::string("oscillator-") + name, 2e-5 * columns * rows,
-         std::to_string(columns) + "x" + std::to_string(rows), run});
+    cells.push_back({std::string("oscillator-") + name, 2e-5 * columns * rows,
+                     std::to_string(columns) + "x" + std::to_string(rows),
+                     run});
   }
 }
 
@@ -259,7 +256,7 @@ std::vector<Cell> make_cells(Effort effort) {
 
 struct Options {
   bool list = false, quick = false, tiny = false;
-  std::string cell, join, map, out;
+  std::string cell, map, out;
 };
 
 /** The one of @a all called @a name; throws std::runtime_error if none is. */
@@ -272,59 +269,31 @@ const auto& find(const All& all, const std::string& name, const char* what,
                            "'; " + see);
 }
 
-/** The rows of @a dir/NAME.csv, which has to start with @a columns. */
-std::string rows_of(const std::string& dir, const std::string& name,
-                    const std::string& columns) {
-  const std::string file = dir + '/' + name + ".csv";
-  std::ifstream in(file);
-  if (!in)
-    throw std::runtime_error(file + ": can't be opened; --cell " + name +
-                             " makes it");
-  std::string head;
-  std::ostringstream rows;
-  if (!std::getline(in, head) || head != columns || !(rows << in.rdbuf()))
-    throw std::runtime_error(file + ":1: is no whole cell, expected '" +
-                             columns + "' and rows");
-  return rows.str();
-}
-
 void run(const Options& o) {
-  auto cells = make_cells(o.quick  ? Effort::quick
-                          : o.tiny ? Effort::tiny
-                                   : Effort::full);
+  const auto cells = make_cells(o.quick  ? Effort::quick
+                                : o.tiny ? Effort::tiny
+                                         : Effort::full);
   auto map_of = [](const std::string& name) {
     return find(maps, name, "--map",
                 "there are: limits table growth oscillator");
   };
-  std::ostringstream text;
-  if (o.list) {  // costly cells first, so that none is left at the end
-    std::ranges::stable_sort(cells, std::greater(), &Cell::cost);
+  std::optional<CME212::OutputFile> file;
+  if (!o.out.empty()) file.emplace(o.out);  // fail before the run, not after
+  std::ostream& out = file ? file->stream() : std::cout;
+  if (o.list) {
     for (const Cell& c : cells)
-      text << c.name << ' ' << short_text(c.cost) << ' ' << c.what << '\n';
+      out << c.name << ' ' << short_text(c.cost) << ' ' << c.what << '\n';
   } else if (!o.cell.empty()) {
     const Cell& chosen = find(cells, o.cell, "--cell", "--list prints all");
-    text << map_of(chosen.map).columns << '\n';
-    std::optional<CME212::OutputFile> file;
-    if (!o.out.empty()) file.emplace(o.out);  // fail before the run, not after
-    chosen.run(text);
-    (file ? file->stream() : std::cout) << text.str();
-    if (file) file->commit();
-    return;
+    out << map_of(o.cell.substr(0, o.cell.find('-'))).columns << '\n';
+    chosen.run(out);
   } else {
     const Map map = map_of(o.map);
-    report::write_head(text, "stability; columns: lab/charts/README.md");
-    text << "# map " << map.name << ": " << map.about << '\n'
-         << map.columns << '\n';
-    for (const Cell& c : cells)
-      if (c.map == map.name) text << rows_of(o.join, c.name, map.columns);
+    report::write_head(out, "stability; columns: lab/charts/README.md");
+    out << "# map " << map.name << ": " << map.about << '\n'
+        << map.columns << '\n';
   }
-  if (o.out.empty()) {
-    std::cout << text.str();
-    return;
-  }
-  CME212::OutputFile file(o.out);
-  file.stream() << text.str();
-  file.commit();
+  if (file) file->commit();
 }
 
 /** Read the command line.  @return the exit status to end with, or -1 */
@@ -335,13 +304,9 @@ int parse(int argc, char** argv, Options& o) {
   what->add_flag("--list", o.list,
                  "print the cells: name, cost [s], parameters");
   what->add_option("--cell", o.cell, "run this cell")->type_name("NAME");
-  auto* join = what->add_option("--join", o.join,
-                                "join the cells of a map, DIR/NAME.csv")
-                   ->type_name("DIR");
+  what->add_option("--map", o.map, "print the head of this map")
+      ->type_name("NAME");
   what->require_option(1);
-  auto* map = app.add_option("--map", o.map, "the map to join");
-  map->needs(join);
-  join->needs(map);
   app.add_option("--out", o.out, "file to write; the terminal if none")
       ->type_name("FILE");
   auto* quick = app.add_flag("--quick", o.quick, "fewer and smaller cells");
