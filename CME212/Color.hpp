@@ -67,16 +67,6 @@ struct Color {
             std::lerp(at[i].b, at[i + 1].b, to)};
   }
 
-  /** Color @a k of pieces: one of seven that are easy to tell apart.
-   * Source: M. Okabe and K. Ito, Color Universal Design, 2008, lighter. */
-  static constexpr Color make_piece(unsigned k) {
-    constexpr Color at[] = {{0.95f, 0.65f, 0.10f}, {0.40f, 0.75f, 0.95f},
-                            {0.10f, 0.70f, 0.52f}, {0.95f, 0.90f, 0.35f},
-                            {0.25f, 0.55f, 0.85f}, {0.90f, 0.45f, 0.20f},
-                            {0.85f, 0.55f, 0.72f}};
-    return at[k % 7];
-  }
-
   /** For marks: magenta, which no scale, cloth or obstacle has. Its luminance
    * is between cloth and ground, so draw it with a dark rim for the
    * colour-blind. */

@@ -32,8 +32,8 @@ namespace CME212 {
  *
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
- * Esc quits, + and - size the text, ? shows the keys; f, w, d and k change the
- * Look: faces, wires, nodes, pieces. Pause, step, restart and coloring need the
+ * Esc quits, + and - size the text, ? shows the keys; f, w and d change the
+ * Look: faces, wires, nodes. Pause, step, restart and coloring need the
  * simulation's help: wait_while_paused(), take_restart(), strain_colors(). Tab
  * hides panels: set_panels(). If the program handles touches, the left button
  * grabs the cloth, Ctrl and drag cuts, p pins: set_touch().

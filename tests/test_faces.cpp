@@ -54,13 +54,6 @@ TEST(Faces, GoWithTheirNodesAndSides) {
   EXPECT_EQ(faces(), 0u);
 }
 
-TEST(Faces, PiecesAreNumberedBySize) {
-  const std::vector<Ends> edges{{0, 1}, {2, 5}, {5, 6}, {3, 4}};
-  const auto [piece, several] = pieces_of(edges, 9);
-  EXPECT_EQ(several, 3u);
-  EXPECT_EQ(piece, (std::vector<std::uint32_t>{1, 1, 0, 2, 2, 0, 0, 3, 4}));
-}
-
 /** A cloth of 9 x 9 nodes at z = 0 in a viewer that looks at it from above and
  * in front, or from below, and where its points are in the picture. */
 struct ClothPicture {

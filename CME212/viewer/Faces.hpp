@@ -1,7 +1,7 @@
 #pragma once
 /** @file Faces.hpp
  * What a viewer needs of a cloth's faces, its quads: which ones are complete,
- * their normals, and the connected pieces of the cloth. */
+ * and their normals. */
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include <iterator>
 #include <numeric>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "CME212/Mesh.hpp"
@@ -66,36 +65,6 @@ std::vector<Point> face_normals(std::span<const Quad> faces,
     for (std::uint32_t corner : f) normals[corner] += n;
   }
   return normals;
-}
-
-/** The connected components of a graph: the number of each node's piece. Pieces
- * are ordered by size, piece 0 is the largest; pieces of the same size, by
- * their first node. A node without edges is a piece of its own.
- * @return the pieces, and the number of those of more than one node
- * Complexity: O((num_nodes + edges) log num_nodes) */
-inline std::pair<std::vector<std::uint32_t>, std::size_t> pieces_of(
-    std::span<const Ends> edges, std::size_t num_nodes) {
-  // Union-find with path halving: the root of a piece is its first node.
-  std::vector<std::uint32_t> parent(num_nodes), size(num_nodes), roots;
-  std::iota(parent.begin(), parent.end(), 0u);
-  auto root = [&](std::uint32_t i) {
-    for (; parent[i] != i; i = parent[i]) parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto& [a, b] : edges) {
-    const auto [low, high] = std::minmax({root(a), root(b)});
-    parent[high] = low;
-  }
-  for (std::uint32_t i = 0; i < num_nodes; ++i)
-    if (size[root(i)]++ == 0) roots.push_back(i);
-  std::ranges::stable_sort(roots,
-                           [&](auto a, auto b) { return size[a] > size[b]; });
-  const auto single =
-      std::ranges::find(roots, 1u, [&](auto r) { return size[r]; });
-  std::vector<std::uint32_t> piece(num_nodes), rank(num_nodes);
-  for (std::uint32_t k = 0; k < roots.size(); ++k) rank[roots[k]] = k;
-  for (std::uint32_t i = 0; i < num_nodes; ++i) piece[i] = rank[root(i)];
-  return {std::move(piece), std::size_t(single - roots.begin())};
 }
 
 }  // namespace CME212

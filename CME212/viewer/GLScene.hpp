@@ -49,9 +49,8 @@ class GLScene {
 
   /** Take over @a scene, to be drawn from now on.
    * @param edges_changed Edges or faces differ from those of the last call
-   * @param pieces        Color each piece, see Look
    * Complexity: O(nodes + edges + faces), by 20 ns each */
-  void upload(const SceneData& scene, bool edges_changed, bool pieces) {
+  void upload(const SceneData& scene, bool edges_changed) {
     if (edges_changed) set_indices(scene);
     const auto normals =
         face_normals(scene.faces, scene.nodes.size(), [&](std::uint32_t i) {
@@ -62,7 +61,6 @@ class GLScene {
     vertices.reserve(scene.nodes.size());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i)
       vertices.emplace_back(scene.nodes[i], normals[i]);
-    if (pieces) color_pieces(vertices, scene.edges);
     nodes_.set_vertices(vertices);
     num_nodes_ = GLsizei(scene.nodes.size());
     spheres_ = scene.spheres;
@@ -254,18 +252,6 @@ class GLScene {
       if (v.normal[3])
         add(face_shade_, Point(v.node.x, v.node.y, v.node.z), rim);
     for (const auto& s : spheres_) add(sphere_shade_, s.center, s.radius + rim);
-  }
-
-  /** The largest piece keeps its color; single nodes are gray. */
-  static void color_pieces(std::vector<Vertex>& vertices,
-                           const std::vector<Ends>& edges) {
-    const auto [piece, several] = pieces_of(edges, vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      if (piece[i] == 0) continue;
-      const Color c =
-          piece[i] < several ? Color::make_piece(piece[i] - 1) : Color(0.55f);
-      vertices[i].node.set(c);
-    }
   }
 
   /** Draw the planes as seen from above, and the shadows on them. They are

@@ -10,7 +10,6 @@ struct Look {
   enum class Nodes { none, lone, all };  ///< lone: those in no face
   bool faces = true, wires = true;
   Nodes nodes = Nodes::lone;
-  bool pieces = false;  ///< each connected component in a color of its own
   bool operator==(const Look&) const = default;
 };
 

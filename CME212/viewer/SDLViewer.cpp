@@ -72,7 +72,6 @@ class SDLViewer::Display : public SDLSettings {
   double unit_ = 1;                // pixels to a unit of the mouse
   double scale_ = 1;               // pixels to a unit of length
   int unsettled_ = 0;              // frames until panels show the user's input
-  bool shown_pieces_ = false;
 
   bool needs_frame() const {
     return (redraw || builder_.has_new() || unsettled_ > 0 ||
@@ -150,14 +149,8 @@ void SDLViewer::Display::draw(int width, int height, double scale,
   GLOverlay& overlay = canvas_->overlay;
   overlay.start(width, height, scale);
   const double left = interactive ? interact() : 0;
-  bool pieces;
-  {
-    std::lock_guard lock(mutex);
-    pieces = look.pieces;
-  }
-  if (std::exchange(shown_pieces_, pieces) != pieces) builder_.take_again();
   builder_.take([&](const SceneData& s, bool edges_changed) {
-    canvas_->scene.upload(s, edges_changed, pieces);
+    canvas_->scene.upload(s, edges_changed);
     if (touch) mouse_tool_.look(s, edges_changed);
   });
   OverlayText shown;
@@ -184,8 +177,7 @@ void SDLViewer::Display::draw(int width, int height, double scale,
     if (shown.ring && mouse_tool_.holds())
       shown.line = {*shown.ring, {float(mouse_[0]), float(mouse_[1])}};
   }
-  canvas_->scene.draw(eye, width, height, scale, what,
-                      shown.has_scale || what.pieces);
+  canvas_->scene.draw(eye, width, height, scale, what, shown.has_scale);
   overlay.finish(shown, left);
 }
 
@@ -222,7 +214,7 @@ void SDLViewer::Display::add_state(OverlayText& shown) const {
   if (options_.colors) keys += "s strain   ";
   shown.help = {keys + "c center"};
   if (canvas_->scene.has_faces())
-    shown.help.push_back("f faces   w wires   d nodes   k pieces");
+    shown.help.push_back("f faces   w wires   d nodes");
   if (touch)
     shown.help.push_back("drag the cloth   Ctrl-drag cut   p pin or unpin");
   if (panels) shown.help.push_back("Tab panels   + - size   ? keys");
@@ -336,8 +328,6 @@ void SDLViewer::Display::press(SDL_Keycode key) {
       return change([&] { look.wires = !look.wires; });
     case SDLK_d:
       return change([&] { look.nodes = next(look.nodes); });
-    case SDLK_k:
-      return change([&] { look.pieces = !look.pieces; });
     case SDLK_c:
       return change([&] { look_at = BoundingBox(); });
     case SDLK_TAB:

@@ -44,10 +44,10 @@ struct SceneData {
     float x, y, z;
     std::array<std::uint8_t, 4> rgba;
     Vertex(const Point& p, const Color& c)
-        : x(float(p.x)), y(float(p.y)), z(float(p.z)) {
-      set(c);
-    }
-    void set(const Color& c) { rgba = {byte(c.r), byte(c.g), byte(c.b), 255}; }
+        : x(float(p.x)),
+          y(float(p.y)),
+          z(float(p.z)),
+          rgba{byte(c.r), byte(c.g), byte(c.b), 255} {}
     static std::uint8_t byte(float c) { return std::uint8_t(255 * c + 0.5f); }
   };
   using Ends = CME212::Ends;
