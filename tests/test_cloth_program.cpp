@@ -339,6 +339,8 @@ TEST_F(ClothProgram, RunsEveryMethodAndListsIt) {
   std::istringstream in(list.out);
   for (std::string line; std::getline(in, line);)
     EXPECT_LE(line.size(), 80u) << line;
+  EXPECT_NE(list.out.find("60 frames a second, take verlet"),
+            std::string::npos);
   for (const MethodEntry& m : methods) {
     EXPECT_NE(list.out.find(m.info.name), std::string::npos);
     std::string method = std::string(" --method ") + m.info.name;
