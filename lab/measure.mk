@@ -200,7 +200,7 @@ pictures: test_screen $(B)/cloth
 	    --t-end $${stage#*:}; done; \
 	for scene in $(filter-out $(STAGES),$(call names,$(wildcard data/scenes/*.toml))); do \
 	  draw scene-$$scene.png --config $$scenes/$$scene.toml \
-	    $$(case $$scene in (tablecloth|push) echo --strain; esac); done; \
+	    $$(case $$scene in (tablecloth|push|mixed) echo --strain; esac); done; \
 	for run in 'step diagonals grid3' 'path problem1 grid1 --dt 0.0034' \
 	  'drag forces grid1 --damping 3' \
 	  'euler problem1 grid1 --method forward-euler --dt 1e-4' \
