@@ -265,6 +265,33 @@ TEST(Advise, CoarsensEachSideOnItsOwn) {
   EXPECT_GT(a.model.sheets[0].nodes[1], 5u);
 }
 
+// A sheet that falls freely needs no cells, whatever the other one needs.
+TEST(Advise, CoarsensEachSheetOnItsOwn) {
+  Model m = hanging(1e-4);
+  m.edges.diagonals = false;
+  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 9 9"),
+              read_sheet("at 3 0 0 u 1 0 0 v 0 1 0 nodes 15 12")};
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  using Nodes = std::array<unsigned, 2>;
+  EXPECT_EQ(a.model.sheets[1].nodes, (Nodes{3, 3}));
+  EXPECT_EQ(a.model.sheets[0].nodes[0], 3u);
+  EXPECT_GT(a.model.sheets[0].nodes[1], 5u);
+}
+
+TEST(Advise, SaysWhereTheShapeOfTheCellsDecides) {
+  for (auto [nodes, depends] : {std::pair("17 9", true), {"9 9", false}}) {
+    Model m = hanging(1e-3);
+    m.sheets = {read_sheet(std::string("u 1 0 0 v 0 0 -1 nodes ") + nodes)};
+    const Advice a = advise(m);
+    ASSERT_EQ(a.refusal, "");
+    EXPECT_EQ(a.oblong.empty(), !depends) << a.oblong;
+    EXPECT_EQ(
+        in_words(a).find("note: springs along oblong") != std::string::npos,
+        depends);
+  }
+}
+
 TEST(Advise, LeavesOutAPartWithItsFriction) {
   Model m = hanging(1e-2);
   m.planes = {read_plane("at 0 0 -9 friction 0.5")};

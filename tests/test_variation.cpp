@@ -299,6 +299,10 @@ TEST(Refined, IsTheSameCloth) {
   EXPECT_EQ(nodes(1), (Nodes{5, 4}));
   EXPECT_EQ(nodes(0.75), (Nodes{4, 3}));
   EXPECT_EQ(nodes(0.01), (Nodes{3, 3}));  // never less than 2 x 2 cells
+  m.sheets = {m.sheets[0], m.sheets[0]};
+  const Model own = refined(m, {{2, 1}, {0.5, 3}});
+  EXPECT_EQ(own.sheets[0].nodes, (Nodes{9, 4}));
+  EXPECT_EQ(own.sheets[1].nodes, (Nodes{3, 10}));
 }
 
 /** The answers on grids of 8, 16 and 32 cells along each side. */

@@ -221,7 +221,8 @@ std::string in_words(const Advice& a) {
                          ? recommendation(a)
                          : "no advice: " + a.refusal + '\n' + extrapolated(a);
   if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
-  if (!a.buckles.empty()) text += "  note: " + a.buckles + '\n';
+  for (const std::string& note : {a.buckles, a.oblong})
+    if (!note.empty()) text += "  note: " + note + '\n';
   if (!a.left_out.empty() && a.refusal.empty()) {
     text += "  not run for lack of budget: ";
     for (const std::string& what : a.left_out)

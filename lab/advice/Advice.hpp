@@ -70,6 +70,7 @@ struct Advice : AdvisedRun {
   std::string refusal;  ///< why no advice is given; empty: advice is given
   std::string trivial;  ///< why nothing has to be computed; or empty
   std::string buckles;  ///< a motion in a plane that would leave it; or empty
+  std::string oblong;   ///< what square cells would change; or empty
   std::vector<std::string> left_out;  ///< runs that the budget did not allow
   double t_end = 0;  ///< [s] of the question; model may end earlier, at rest
   /** Change of the answer if positions and velocities are rounded to floats. */

@@ -97,6 +97,7 @@ Advice Adviser::find() {
       (from_files() || look_for_chaos(found_ ? found_->scatter : 0)) &&
       found_) {
     try_floats(*found_);
+    try_squares();
     take(*found_);
   }
   end(clock);
@@ -161,7 +162,7 @@ void Adviser::choose_pilots() {
   const double some = from_files() ? 1 : factor(first_level_ + 4);
   method_ = as_pilot(scene_);
   try {
-    const Model on = on_grid({some, some});
+    const Model on = on_grid(all_sides(some, some));
     const StepCosts costs(on);
     double least = costs.of_run(pilot(on, some));
     if (!(least > rules_.stiff)) return;
@@ -435,6 +436,36 @@ void Adviser::try_floats(const Choice& c) {
                                   round(n.position()), round(n.value().vel);
                               });
   if (t.ok()) advice_.floats = size_of(Effect(t.answer, c.answer));
+}
+
+void Adviser::try_squares() {
+  const double f = from_files() ? 1 : factor(levels_.back());
+  Sides s = all_sides(f, f);
+  double longest = 1;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const Sheet& sheet = scene_.sheets[k];
+    const double ratio = norm(sheet.u) / (sheet.nodes[0] - 1.) /
+                         (norm(sheet.v) / (sheet.nodes[1] - 1.));
+    s[k] = {f * std::sqrt(ratio), f / std::sqrt(ratio)};
+    longest = std::max({longest, ratio, 1 / ratio});
+  }
+  if (!(longest > 1.2) ||
+      !pilots_.affords(longest * seen_.back().work, "square cells", 0.5))
+    return;
+  try {
+    const Model m = pilot(on_grid(s), f * std::sqrt(longest));
+    const Trial t = pilots_.run(m, "on square cells", work_of_run(m));
+    if (!t.ok()) return;
+    const double off =
+        distance(t.answer, advice_.grids.back().trial.answer, advice_.measure);
+    if (off > advice_.tolerance / 2)
+      advice_.oblong =
+          "springs along oblong cells are another material: on "
+          "square cells " +
+          name_of(advice_.measure) + " changes by " +
+          with_unit(off, advice_.measure);
+  } catch (const SceneError&) {  // that grid misses a pin
+  }
 }
 
 void Adviser::take(const Choice& c) {

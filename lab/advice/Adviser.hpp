@@ -32,10 +32,6 @@ class Adviser {
   Advice assess();
 
  private:
-  /** Cells along u and v of each sheet, over those of the scene. */
-  struct Sides {
-    double u = 1, v = 1;
-  };
   /** Parts left out together. */
   struct Reduction {
     std::vector<std::string> removed;
@@ -97,10 +93,14 @@ class Adviser {
   /** Cells over those of the scene: 1, 1.5, 2, 3, 4, 6 ..., and down from 1. */
   static double factor(int level);
   Model on_grid(const Sides& s) const {
-    return from_files() ? scene_ : refined(scene_, s.u, s.v);
+    return from_files() ? scene_ : refined(scene_, s);
+  }
+  /** The same factor along all sides. */
+  Sides all_sides(double u, double v) const {
+    return Sides(scene_.sheets.size(), {u, v});
   }
   Model on_level(int level) const {
-    return on_grid({factor(level), factor(level)});
+    return on_grid(all_sides(factor(level), factor(level)));
   }
   /** The cells of the largest sheet along u (0) or v (1). */
   double cells(double factor, int side) const;
@@ -157,6 +157,8 @@ class Adviser {
    * it; the answers by these two steps predict that by the third.
    * @return the largest difference from what was expected */
   double perturb(const Choice& c);
+  /** Say if the answer on the finest grid depends on the shape of its cells. */
+  void try_squares();
   /** Run @a c with positions and velocities rounded to floats. */
   void try_floats(const Choice& c);
 
@@ -184,6 +186,10 @@ class Adviser {
    * that of level @a start, and those of fewer cells along one side.
    * Cost: about a run for each level and side */
   std::vector<Sides> frontier(int start);
+  /** @a s, whose pilot takes @a work, with fewer cells along one side of one
+   * sheet more each time, as long as that meets the tolerance and is cheaper.
+   */
+  std::vector<Sides> thinned(Sides s, double work);
   /** True if the pilot on this grid meets the tolerance. */
   bool suffices(const Sides& s, double most_work, double& work);
   /** All methods and steps with these parts on this grid, the cheapest first.

@@ -102,7 +102,9 @@ double Adviser::springs_of(const Model& m) {
 
 bool Adviser::suffices(const Sides& s, double most_work, double& work) {
   try {
-    const Model m = pilot(on_grid(s), std::max(s.u, s.v));
+    double finest = 1e-9;
+    for (const auto& sheet : s) finest = std::max({finest, sheet[0], sheet[1]});
+    const Model m = pilot(on_grid(s), finest);
     work = work_of_run(m);
     if (!(work < most_work) || !pilots_.affords(work, "coarser grids", 0.3))
       return false;
@@ -128,7 +130,7 @@ std::vector<int> Adviser::starts() const {
   return all;
 }
 
-std::vector<Adviser::Sides> Adviser::frontier(int start) {
+std::vector<Sides> Adviser::frontier(int start) {
   if (from_files()) return {{}};
   std::vector<std::pair<double, Sides>> all;
   double most = infinite;
@@ -138,7 +140,7 @@ std::vector<Adviser::Sides> Adviser::frontier(int start) {
     return ok;
   };
   double work = 0;
-  meets({factor(start), factor(start)}, work);
+  meets(all_sides(factor(start), factor(start)), work);
   // Fewer cells along one side; more along the other one only if that is
   // needed and still cheaper.
   for (int side : {0, 1})
@@ -149,7 +151,7 @@ std::vector<Adviser::Sides> Adviser::frontier(int start) {
         continue;
       for (bool ok = false; !ok && other <= levels_.back();) {
         const double a = factor(level), b = factor(other);
-        ok = meets(side == 0 ? Sides{a, b} : Sides{b, a}, work);
+        ok = meets(side == 0 ? all_sides(a, b) : all_sides(b, a), work);
         if (!ok && !(work < most)) other = levels_.back();
         if (!ok) ++other;
       }
@@ -158,7 +160,35 @@ std::vector<Adviser::Sides> Adviser::frontier(int start) {
   std::vector<Sides> best;
   for (const auto& [cost, s] : all)
     if (best.size() < 3 && cost <= 1.6 * all[0].first) best.push_back(s);
+  if (!best.empty()) {
+    const auto thin = thinned(best[0], most);
+    best.insert(best.begin(), thin.rbegin(), thin.rend());
+  }
   return best;
+}
+
+std::vector<Sides> Adviser::thinned(Sides s, double work) {
+  std::vector<Sides> found;
+  double less = 0;
+  for (std::size_t k = 0; k < s.size(); ++k)
+    for (unsigned along : {0, 1}) {
+      const Sides before = s;
+      const double all = scene_.sheets[k].nodes[along] - 1.;
+      double now = std::max(2., std::round(all * s[k][along]));
+      auto with = [&](double cells) {
+        Sides fewer = s;
+        fewer[k][along] = cells / all;
+        if (!suffices(fewer, work, less)) return false;
+        s = fewer, now = cells, work = less;
+        return true;
+      };
+      // First a side on which nothing depends.
+      if (now > 2 && !with(2))
+        while (now > 3 && with(std::floor(0.85 * now))) {
+        }
+      if (s != before) found.push_back(s);
+    }
+  return found;
 }
 
 std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
@@ -218,13 +248,22 @@ bool Adviser::holds(Choice& c) {
   c.half_step = error_of(half);
   if (!accepts(*c.half_step, uncertainty_)) return false;
   c.half = half.answer;
-  if (!from_files() &&
-      pilots_.affords(8 * c.work, "a check on twice the cells", 0.5)) {
-    finer = *without_all(on_grid({2 * c.sides.u, 2 * c.sides.v}), c.removed);
+  for (const auto& [more, by] :
+       {std::pair(std::sqrt(2), " and 1.4 times the cells"),
+        std::pair(2., " and twice the cells")}) {
+    const double work = std::pow(more, 3) * c.work;
+    if (from_files() ||
+        !pilots_.affords(work, "a check on twice the cells", 0.5))
+      break;
+    Sides sides = c.sides;
+    for (auto& sheet : sides)
+      for (double& side : sheet) side *= more;
+    finer = *without_all(on_grid(sides), c.removed);
     finer.method = c.model.method, finer.t_end = c.model.t_end;
-    finer.step = {.dt = c.model.step.dt / 2};
-    c.finer_grid = error_of(run(finer, 8 * c.work, " and twice the cells"));
-    if (!accepts(*c.finer_grid, uncertainty_)) return false;
+    finer.step = {.dt = c.model.step.dt / more};
+    const double error = error_of(run(finer, work, by));
+    if (!accepts(error, uncertainty_)) return false;
+    if (more == 2) c.finer_grid = error;
   }
   c.scatter = perturb(c);
   c.uncertainty += scatter_share * c.scatter;

@@ -11,15 +11,16 @@
 
 namespace lab {
 
-Model refined(const Model& m, double u, double v) {
+Model refined(const Model& m, const Sides& sides) {
   Model fine = m;
   double before = 0, after = 0;
-  for (Sheet& s : fine.sheets) {
-    before += double(s.nodes[0]) * s.nodes[1];
-    for (auto [n, factor] :
-         {std::pair(&s.nodes[0], u), std::pair(&s.nodes[1], v)})
-      *n = 1 + unsigned(std::max(2.0, std::round((*n - 1) * factor)));
-    after += double(s.nodes[0]) * s.nodes[1];
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    auto& n = fine.sheets[k].nodes;
+    before += double(n[0]) * n[1];
+    for (unsigned along : {0, 1})
+      n[along] = 1 + unsigned(std::max(
+                         2.0, std::round((n[along] - 1) * sides[k][along])));
+    after += double(n[0]) * n[1];
   }
   fine.damping *= before / after;
   // On a grid with nodes nearer than the thickness it goes down with the grid.

@@ -2,6 +2,7 @@
 /** @file Variation.hpp
  * Scenes with one part less, and on other grids. Their answers show which parts
  * and which grid a question needs. */
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,14 +17,16 @@ struct Variation {
   Model model;
 };
 
-/** @a m on a grid of @a u and @a v times as many cells along the sides u and v
- * of each sheet, at least 2. It is the same cloth: the drag of all nodes
- * together stays, and a thickness of self-collision that two nodes would
- * violate at the start is reduced to less than their distance.  @pre m has
- * sheets */
-Model refined(const Model& m, double u, double v);
+/** Cells along the sides u and v of each sheet, over those of a scene. */
+using Sides = std::vector<std::array<double, 2>>;
+
+/** @a m on a grid of so many times the cells, at least 2 along each side. It is
+ * the same cloth: the drag of all nodes together stays, and a thickness of
+ * self-collision that two nodes would violate at the start is reduced to less
+ * than their distance.  @pre m has sheets, as many as @a sides */
+Model refined(const Model& m, const Sides& sides);
 inline Model refined(const Model& m, double factor) {
-  return refined(m, factor, factor);
+  return refined(m, Sides(m.sheets.size(), {factor, factor}));
 }
 
 /** For each part that @a m names, @a m without that part. */

@@ -111,7 +111,8 @@ class Made(trials.Scene):
 
     def __init__(self):
         super(trials.Scene, self).__init__("taut")
-        self.sides, self.t_end, self.points = [(1, 1)], 8, 1
+        self.sides, self.cells = [(1, 1)], [(9, 9)]
+        self.t_end, self.points = 8, 1
 
     def start(self, cells):
         return [9.], 0, 1 / max(cells[0])

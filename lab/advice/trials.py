@@ -177,10 +177,10 @@ class Scene(questions.Scene):
         return distance(trial[0], right, self.points) if trial else math.inf
 
     def scaled(self, along):
-        """Square cells of all sheets, so many along the longest side."""
-        longest = max(side for sides in self.sides for side in sides)
-        return tuple(tuple(max(2, round(side * along / longest))
-                           for side in sides) for sides in self.sides)
+        """The scene's own grids with so many cells along the longest side."""
+        longest = max(n for sheet in self.cells for n in sheet)
+        return tuple(tuple(max(2, round(n * along / longest))
+                           for n in sheet) for sheet in self.cells)
 
     def truth(self, tolerance):
         """(the right answer, how far it may be off), None if unknown; with more
