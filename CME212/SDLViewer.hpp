@@ -41,7 +41,9 @@ namespace CME212 {
 class SDLViewer : public SceneBuilder {
  public:
   struct Options {
-    int width = 1024, height = 768;  ///< of the window and of snapshots
+    /** Of the window and of snapshots; 0: a window of three quarters of the
+     * screen, snapshots of 1024 x 768. */
+    int width = 0, height = 0;
     std::string title = "mass_spring";
     bool offscreen = false;  ///< draw without a display, never show a window
     /** The program handles the keys r and s: take_restart(), strain_colors().
@@ -51,7 +53,7 @@ class SDLViewer : public SceneBuilder {
 
   /** Make a window; it appears with event_loop() or launch(). One viewer at a
    * time.
-   * @pre width and height > 0
+   * @pre width and height > 0, or both are 0
    * Throws NoDisplay if there is no display, unless @a o.offscreen, or no
    * OpenGL 3.3. */
   explicit SDLViewer(const Options& o);

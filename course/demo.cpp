@@ -31,10 +31,11 @@ int main() try {
 
   CME212::SDLViewer viewer(
       {.width = width, .height = height, .offscreen = true});
+  viewer.set_look({.wires = false});
   viewer.add_faces(g, quads);
   viewer.add_sphere(Ball().center, Ball().radius);
   viewer.add_plane(PlaneConstraint().height());
-  viewer.set_view(Point(0.75, -1, 0.4),
+  viewer.set_view(Point(1, -0.8, 0.4),
                   CME212::BoundingBox(Point(0, -0.4, -0.75), Point(1, 0.6, 0)));
 
   std::filesystem::create_directories("demo");

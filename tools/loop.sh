@@ -15,7 +15,7 @@ trap 'rm -f "$part"' EXIT
 ffmpeg -v error -y -i "$1" -vf "
   trim=end_frame=$last, setpts=PTS-STARTPTS, fps=$rate/2,
   tpad=stop_mode=clone:stop_duration=1, scale=480:-2:flags=lanczos, split[a][b];
-  [a]palettegen=max_colors=96[p]; [b][p]paletteuse=dither=bayer:bayer_scale=4
+  [a]palettegen=max_colors=192[p]; [b][p]paletteuse=dither=bayer:bayer_scale=4
   " "$part" </dev/null
 size=$(stat -c %s "$part")
 [ "$size" -le "$most" ] ||

@@ -88,23 +88,28 @@ class GLScene {
     if (faces || !spheres_.empty()) make_shadow(camera, faces);
     glViewport(0, 0, width, height);
     glDisable(GL_BLEND);
-    glClearColor(ground.r, ground.g, ground.b, 1);
-    glClear(GL_DEPTH_BUFFER_BIT | GL_COLOR_BUFFER_BIT);
+    glDisable(GL_DEPTH_TEST);
+    glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_PROGRAM_POINT_SIZE);
 
-    glEnable(GL_DEPTH_TEST);
     const double aspect = double(width) / height;
     auto use = [&](const GLProgram& p) {
       p.use();
       p.set("view", camera.view());
       p.set("projection", camera.projection(aspect));
+      p.set("above", above);
+      p.set("below", below);
+      p.set("height", float(height));
       shadow_.use(p);
     };
-    use(sphere_program_);
     sphere_.bind();
+    use(backdrop_program_);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glEnable(GL_DEPTH_TEST);
+    use(sphere_program_);
+    sphere_program_.set("paint", orange);
     for (const auto& s : spheres_) {
       place(sphere_program_, s);
-      sphere_program_.set("paint", s.color);
       sphere_.draw(GL_TRIANGLES);
     }
 
@@ -171,8 +176,9 @@ class GLScene {
   }
 
  private:
-  static constexpr Color ground{0.10f, 0.12f, 0.16f};
-  static constexpr Color fog{0.12f, 0.145f, 0.19f};
+  // The backdrop is lighter below, where a floor is.
+  static constexpr Color above{0.12f, 0.14f, 0.18f}, below{0.27f, 0.29f, 0.33f};
+  static constexpr Color fog{0.2f, 0.22f, 0.26f}, orange{0.80f, 0.33f, 0.0f};
   static constexpr Color linen{1.0f, 0.93f, 0.82f}, denim{0.62f, 0.76f, 0.95f};
 
   /** A node as it is uploaded. */
@@ -189,9 +195,12 @@ class GLScene {
     }
   };
 
-  /** With the lamp in front of the text of a shader. */
+  /** With the lamp, or the backdrop, in front of the text of a shader. */
   static std::string under_light(const char* shader) {
     return std::string(gl_detail::light_source) + shader;
+  }
+  static std::string on_backdrop(const char* shader) {
+    return std::string(gl_detail::backdrop) + shader;
   }
 
   GLProgram node_program_{gl_detail::cloth_vertex, gl_detail::node_fragment};
@@ -200,7 +209,11 @@ class GLScene {
                           gl_detail::face_fragment};
   GLProgram sphere_program_{under_light(gl_detail::sphere_vertex).c_str(),
                             gl_detail::sphere_fragment};
-  GLProgram plane_program_{gl_detail::plane_vertex, gl_detail::plane_fragment};
+  GLProgram backdrop_program_{
+      gl_detail::backdrop_vertex,
+      on_backdrop(gl_detail::backdrop_fragment).c_str()};
+  GLProgram plane_program_{gl_detail::plane_vertex,
+                           on_backdrop(gl_detail::plane_fragment).c_str()};
   GLProgram dark_program_{under_light(gl_detail::dark_vertex).c_str(),
                           gl_detail::dark_fragment};
   GLProgram mark_program_{gl_detail::mark_vertex, gl_detail::mark_fragment};
@@ -255,7 +268,7 @@ class GLScene {
   }
 
   /** Draw the planes as seen from above, and the shadows on them. They are
-   * opaque, which is faster; at its rim a plane has the color of the ground. */
+   * opaque, which is faster; at its rim a plane has the backdrop's color. */
   template <typename Use>
   void draw_planes(const GLCamera& camera, bool faces, Use use) const {
     glEnable(GL_CULL_FACE);
@@ -265,7 +278,6 @@ class GLScene {
       plane_program_.set("center", p.center);
       plane_program_.set("radius", float(p.half));
       plane_program_.set("paint", p.color);
-      plane_program_.set("ground", ground);
       plane_program_.set("lines", 10.0f);
       plane_.draw(GL_TRIANGLES);
     }

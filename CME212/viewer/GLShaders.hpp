@@ -20,9 +20,9 @@ constexpr const char* face_vertex = R"(
   void main() {
     vec3 n = normal.xyz;
     float d = dot(n, to_light);
-    float lamp = 0.55 * abs(d) * lit(at + 0.004 * sign(d) * n);
-    float through = 0.16 * abs(d);
-    float around = 0.34 + 0.22 * abs(dot(n, to_eye));
+    float lamp = 0.4 * abs(d) * lit(at + 0.004 * sign(d) * n);
+    float through = 0.2 * abs(d);
+    float around = 0.5 + 0.2 * abs(dot(n, to_eye));
     float sky = 0.08 * n.z;
     front = color * front_dye * (around + sky + (d > 0 ? lamp : through));
     back = color * back_dye * (around - sky + (d < 0 ? lamp : through));
@@ -85,7 +85,7 @@ constexpr const char* sphere_vertex = R"(
   void main() {
     vec3 place = center + radius * at;
     float d = dot(at, to_light);
-    light = 0.36 + 0.08 * at.z + (d > 0 ? 0.52 * d * lit(place) : 0.0);
+    light = 0.54 + 0.08 * at.z + (d > 0 ? 0.52 * d * lit(place) : 0.0);
     normal = mat3(view) * at;
     gl_Position = projection * (view * vec4(place, 1));
   })";
@@ -99,7 +99,23 @@ constexpr const char* sphere_fragment = R"(
     color = vec4(paint * (light + 0.22 * front) + 0.08 * pow(1 - front, 3), 1);
   })";
 
-/** The unit disc, placed in the world; at its rim it has the ground's color. */
+/** In front of a fragment shader: the color behind all, by its height. */
+constexpr const char* backdrop = R"(
+  uniform vec3 above, below;
+  uniform float height;  // of the picture [pixels]
+  out vec4 color;
+  vec3 backdrop() { return mix(below, above, gl_FragCoord.y / height); }
+)";
+/** The whole picture. */
+constexpr const char* backdrop_vertex = R"(
+  void main() {
+    vec2 corner = vec2(gl_VertexID % 2, gl_VertexID / 2);
+    gl_Position = vec4(2 * corner - 1, 0, 1);
+  })";
+constexpr const char* backdrop_fragment = R"(
+  void main() { color = vec4(backdrop(), 1); })";
+
+/** The unit disc, placed in the world; at its rim it fades to the backdrop. */
 constexpr const char* plane_vertex = R"(
   layout(location = 0) in vec3 at;
   uniform mat4 view, projection;
@@ -112,15 +128,14 @@ constexpr const char* plane_vertex = R"(
   })";
 constexpr const char* plane_fragment = R"(
   in vec2 local;
-  uniform vec3 paint, ground;
+  uniform vec3 paint;
   uniform float lines;
-  out vec4 color;
   void main() {
     vec2 p = local * lines, width = fwidth(p);
     vec2 line = 1 - clamp(abs(fract(p + 0.5) - 0.5) / width, 0, 1);
     float rim = max(1 - dot(local, local), 0);
     float light = 0.68 + 0.12 * max(line.x, line.y);
-    color = vec4(mix(ground, paint * light, 0.9 * sqrt(rim)), 1);
+    color = vec4(mix(backdrop(), paint * light, 0.9 * sqrt(rim)), 1);
   })";
 
 /** The shadow on a plane, a net of cells seen from the lamp: strips of two

@@ -112,10 +112,12 @@ void SDLViewer::Display::launch() {
 Image SDLViewer::Display::snapshot() {
   canvas_->window.make_current();
   auto& frame = canvas_->frame;
-  if (!frame) frame.emplace(options_.width, options_.height);
+  const auto [width, height] = options_.width > 0
+                                   ? std::array{options_.width, options_.height}
+                                   : SDLWindow::usual_size;
+  if (!frame) frame.emplace(width, height);
   frame->bind();
-  draw(options_.width, options_.height, std::max(0.75, options_.height / 768.0),
-       false);
+  draw(width, height, std::max(0.75, height / 768.0), false);
   return frame->read();
 }
 
@@ -227,7 +229,7 @@ void SDLViewer::Display::show_frame() {
   unit_ = double(height) / high;
   // Text and panels are larger in a large window, and fit into a small one.
   const double fit = std::min(wide / 1024.0, high / 768.0);
-  scale_ = unit_ * text_scale * std::clamp(fit, 0.75, 2.0);
+  scale_ = unit_ * text_scale * std::max(fit, 0.75);
   draw(width, height, scale_, true);
   canvas_->window.swap();
   const auto now = clock::now();

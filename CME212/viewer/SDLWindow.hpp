@@ -54,8 +54,11 @@ class SDLVideo {
 /** A window with an OpenGL 3.3 core context, hidden at first. Main thread. */
 class SDLWindow {
  public:
-  /** @param width,height In the units of the desktop; a window that is seen
-   * has no more than fits
+  static constexpr std::array<int, 2> usual_size{1024, 768};
+
+  /** @param width,height In the units of the desktop; 0: three quarters of the
+   * screen, but at least usual_size. A window that is seen has no more than
+   * fits.
    * Throws NoDisplay with SDL's reason. */
   SDLWindow(const std::string& title, int width, int height, bool offscreen)
       : video_(offscreen) {
@@ -64,8 +67,13 @@ class SDLWindow {
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 3);
     SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
-    SDL_Rect room;
-    if (!offscreen && SDL_GetDisplayUsableBounds(0, &room) == 0)
+    SDL_Rect room{};
+    if (!offscreen) SDL_GetDisplayUsableBounds(0, &room);
+    if (width == 0) {
+      width = std::max(usual_size[0], room.w * 3 / 4);
+      height = std::max(usual_size[1], room.h * 3 / 4);
+    }
+    if (room.w > 0)
       width = std::min(width, room.w), height = std::min(height, room.h);
     for (int samples : {4, 0}) {
       SDL_GL_SetAttribute(SDL_GL_MULTISAMPLEBUFFERS, samples > 0);

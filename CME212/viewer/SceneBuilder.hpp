@@ -54,7 +54,6 @@ struct SceneData {
   struct Sphere {
     Point center;
     double radius;
-    Color color;
   };
   /** A square of side 2 * half in a horizontal plane. */
   struct Plane {
@@ -259,15 +258,14 @@ class SceneBuilder {
   }
 
   /** Add a ball that stays until clear_shapes().  @pre radius > 0 [m] */
-  void add_sphere(const Point& center, double radius,
-                  Color color = Color(0.80f, 0.33f, 0.0f)) {
-    change_shapes([&] { shown_.spheres.push_back({center, radius, color}); });
+  void add_sphere(const Point& center, double radius) {
+    change_shapes([&] { shown_.spheres.push_back({center, radius}); });
   }
   /** Add the plane z = @a z [m] until clear_shapes(). It is drawn as a mesh of
    * lines around @a center that fades at distance @a half [m], with 10 lines
    * on that distance.  @pre half > 0 */
   void add_plane(double z, double half = 1.5, Point center = Point(0.5, 0.5, 0),
-                 Color color = Color(0.45f, 0.53f, 0.65f)) {
+                 Color color = Color(0.44f, 0.45f, 0.48f)) {
     center.z = z;
     change_shapes([&] { shown_.planes.push_back({center, half, color}); });
   }

@@ -36,12 +36,12 @@ namespace CME212 {
 class Film {
  public:
   Film() : viewer_(options()) {
-    viewer_.set_view(Point(0.75, -1, 0.4),
-                     {Point(0, -0.4, order.low), Point(1, 0.6, 0)});
+    viewer_.set_view(Point(1, -0.8, 0.4),
+                     {Point(0, -0.4, order.low), Point(1, 0.8, 0)});
   }
 
   void add_sphere(const Point& center, double radius) {
-    viewer_.add_sphere(center, radius, Color(0.80f, 0.33f, 0.0f));
+    viewer_.add_sphere(center, radius);
   }
   void add_plane(double z) { viewer_.add_plane(z); }
   template <typename G>

@@ -34,7 +34,8 @@ std::string tick_text(double value, double step) {
     std::snprintf(text, sizeof text, "%.3g", value);
   } else {
     const double digits = std::ceil(-std::log10(step) - 1e-9);
-    std::snprintf(text, sizeof text, "%.*f", int(std::max(digits, 0.0)), value);
+    std::snprintf(text, sizeof text, "%.*f", int(std::max(digits, 0.0)),
+                  value + 0.0);  // never -0
   }
   return text;
 }

@@ -126,7 +126,7 @@ class SDLScreen : public Screen {
   }
 
  private:
-  static constexpr Point eye{0.75, -1, 0.4};  // its direction
+  static constexpr Point eye{1, -0.8, 0.4};  // its direction
 
   Kind kind_;
   CME212::SDLViewer viewer_;
@@ -373,10 +373,7 @@ class SDLScreen : public Screen {
       if (o.kind == Obstacle::Kind::floor)
         viewer_.add_plane(at.z);
       else
-        viewer_.add_sphere(at, o.radius,
-                           o.kind == Obstacle::Kind::tearing_ball
-                               ? CME212::Color(0.80f, 0.33f, 0.0f)
-                               : CME212::Color(0.0f, 0.45f, 0.70f));
+        viewer_.add_sphere(at, o.radius);
     }
   }
 };
@@ -391,8 +388,7 @@ std::unique_ptr<Screen> Screen::open(Kind kind, std::array<int, 2> pixels) {
   if (available_addresses() <
       550e6 + 75e6 * std::thread::hardware_concurrency())
     throw std::bad_alloc();
-  if (pixels[0] == 0)
-    pixels = kind == Kind::film ? std::array{800, 600} : std::array{1024, 768};
+  if (pixels[0] == 0 && kind == Kind::film) pixels = {800, 600};
   return std::make_unique<SDLScreen>(kind, pixels);
 }
 
