@@ -91,7 +91,7 @@ TEST(MouseTool, MeansTheNearestNodeThatIsSeen) {
   EXPECT_EQ(at({0.26, 0, 0}), 1u);
   EXPECT_EQ(at({0.01, 0, 0}), 0u);
   EXPECT_EQ(at({0, 30, -6}), 3u);  // far away, but nothing else is there
-  s.spheres.push_back({Point(0, -0.5, 0), 0.2, Color(1)});
+  s.spheres.push_back({Point(0, -0.5, 0), 0.2});
   hand.look(s, false);
   EXPECT_FALSE(at({0, 0, 0}));
   EXPECT_EQ(at({0.5, 0, 0}), 1u);
@@ -385,6 +385,7 @@ TEST(Plot, TicksAreRoundAndFewEnough) {
   EXPECT_LE(axis_ticks(1e-16, 1, 4, true).size(), 5u);
   EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
   EXPECT_EQ(tick_text(4, 2), "4");
+  EXPECT_EQ(tick_text(-0.0, 5), "0");
   EXPECT_EQ(tick_text(0, 1e-7), "0.0000000");
   EXPECT_EQ(tick_text(2e-7, 1e-7), "2e-07");
 }
@@ -433,7 +434,7 @@ struct LiveWindow {
   static std::array<int, 2> at(const Point& p) {
     Picture picture{{}, 1024, 768};
     picture.camera.set_hidden_left(300 / 1024.0);
-    picture.camera.look_from(Point(0.75, -1, 0.4));
+    picture.camera.look_from(Point(1, -0.8, 0.4));
     picture.camera.fit(
         (BoundingBox() |= Point(-0.2, 0, -0.2)) |= Point(1.2, 0, 1.2),
         picture.aspect());
@@ -493,7 +494,8 @@ struct LiveWindow {
         if (screen->serve(live)) show();
         if (screen->take_restart()) live.apply("restart"), show();
         if (!screen->wait_while_paused(show)) continue;
-        if (live.step()) show();
+        if (live.done()) continue;
+        live.step(), show();
       }
     });
     std::thread thread([&] {
@@ -520,6 +522,19 @@ TEST(LiveThreads, AWarningMovesNoControl) {
       return s.now.dt > 2 * s.now.safe_limit;
     }));
     EXPECT_EQ(w.find("K [N/m]")[1], before);
+  });
+}
+
+TEST(LiveThreads, TheCureOfAFailureIsOneClick) {
+  LiveWindow w(false);
+  w.run([&] {
+    w.slide("dt / limit", true);
+    EXPECT_TRUE(w.sees(
+        [](const LiveWindow::Seen& s) { return !s.now.failure.empty(); }));
+    w.click("apply the cure");
+    EXPECT_TRUE(w.sees([](const LiveWindow::Seen& s) {
+      return s.now.failure.empty() && s.now.dt < s.now.safe_limit;
+    }));
   });
 }
 

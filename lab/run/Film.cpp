@@ -31,7 +31,27 @@ bool is_near(const Obstacle& o, const Cloth& g, double t) {
   return false;
 }
 
+/** The diagonal of the cloth's bounding box [m]. */
+double extent(const Scene& scene) {
+  CME212::BoundingBox box;
+  for (Node n : scene.cloth().nodes()) box |= n.position();
+  return box.diagonal();
+}
+
 }  // namespace
+
+void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
+                 const std::function<bool(int)>& shown) {
+  const int frames = frames_in(Film::failure_seconds);
+  const double end = scene.beyond_failure(extent(scene) / 3)->time();
+  const int steps =
+      int(std::clamp((end - scene.time()) / scene.dt(), 1.0, double(frames)));
+  auto now = scene.beyond_failure(0);
+  for (int k = 0; k < steps; ++k, now = now->beyond_failure(0)) {
+    screen.show(*now, rival);
+    if (!shown(frames * (k + 1) / steps - frames * k / steps)) return;
+  }
+}
 
 Film::Film(const Scene& scene, Run& run, const Options& o)
     : scene_(scene),
@@ -70,8 +90,15 @@ void Film::draw() {
   screen_->show(scene_);
   if (picture) save_picture();
   if (!frame) return;
+  if (failed) {
+    show_beyond(scene_, nullptr, *screen_, [this](int frames) {
+      screen_->add_to_film(frames);
+      return !interrupted();
+    });
+    screen_->show(scene_);
+  }
   // A failure stays: there is a reason to read.
-  int times = scene_.failure().empty() ? 0 : frames_in(failure_seconds);
+  int times = failed ? frames_in(failure_seconds) : 0;
   for (const double time = frame_time(); now >= next_; next_ += time) ++times;
   frames_ += times;
   // At least some, as a film has pictures.
@@ -107,9 +134,7 @@ void Film::save_picture() {
   shot_ = true;
   screen_->show_card({});
   if (scene_.failure().empty()) return screen_->save_picture(o_.screenshot);
-  CME212::BoundingBox box;
-  for (Node n : scene_.cloth().nodes()) box |= n.position();
-  screen_->show(*scene_.beyond_failure(box.diagonal() / 10));
+  screen_->show(*scene_.beyond_failure(extent(scene_) / 10));
   screen_->save_picture(o_.screenshot);
   screen_->show(scene_);
 }

@@ -1,6 +1,7 @@
 #pragma once
 /** @file Film.hpp
  * Film: when a run without a window is drawn, into a film and a picture. */
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,15 @@ namespace lab {
 class Run;
 class Scene;
 
+/** Show on @a screen the motion beyond the failure of @a scene, until a node
+ * has moved by a third of the cloth's extent; at most 60 steps. As slow motion
+ * it takes Film::failure_seconds: shown(k) is called after each picture, which
+ * stays for k frames of the film; false ends it.
+ * @pre !scene.failure().empty(), and it was shown; @a shown may then change it
+ * only if it returns false */
+void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
+                 const std::function<bool(int)>& shown);
+
 /** The picture and the film of one run.
  *
  * A film has 30 frames for each second of simulated time. Each shows the state
@@ -21,8 +31,9 @@ class Scene;
  * and while the cloth tears. The first frames have a card with the title,
  * unless the run continues from a checkpoint; the end has one with the result,
  * for at most a ninth of the film. The film of a failed run ends with the
- * reason. The picture of a failure shows the cloth some steps later, when a
- * node has moved by a tenth of the cloth's extent. */
+ * motion beyond the failure and with the reason. The picture of a failure shows
+ * the cloth some steps later, when a node has moved by a tenth of the cloth's
+ * extent. */
 class Film {
  public:
   static constexpr double title_seconds = 1.5, failure_seconds = 2;

@@ -105,7 +105,17 @@ struct LiveRun {
     const bool failed = !live.scene().failure().empty();
     if (failed && !told)
       std::cerr << "cloth: " << live.scene().explanation() << '\n';
-    told = failed;
+    screen.show(live);
+    if (failed && !std::exchange(told, failed)) show_explosion();
+    told = !live.scene().failure().empty();
+  }
+  /** The motion beyond the failure, until the user asks for something. */
+  void show_explosion() {
+    show_beyond(live.scene(), live.rival(), screen, [this](int frames) {
+      CME212::sleep(frames / Screen::frames_per_second);
+      if (screen.take_restart()) return restart(), false;
+      return !serve() && !screen.closed();
+    });
     screen.show(live);
   }
   bool done() const { return interrupted() || live.done(); }

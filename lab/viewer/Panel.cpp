@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "lab/Interrupt.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/StoredScenes.hpp"
@@ -68,7 +69,14 @@ void Panel::tell(Live& live) {
   const bool sharp = !begun_ || sharp_clock_.seconds() > 0.25;
   if (sharp) sharp_clock_.start();
   Readings r = live.readings(sharp);
+  const Scene& scene = live.scene();
+  std::vector<std::string> cure;
+  if (!r.failure.empty() && !interrupted())
+    if (const auto& c = scene.diagnosis().cure)
+      cure = {request("method", c->method.info.name),
+              request("step", c->dt / dt_unit(scene, c->method))};
   std::lock_guard lock(mutex_);
+  told_.cure = std::move(cure);
   if (!begun_) told_.first = live.model();
   if (!begun_ || r.time < rate_from_ || rate_clock_.seconds() > 0.5) {
     const double moved = r.time - rate_from_;
@@ -231,10 +239,17 @@ void Panel::draw_player() {
   if (button("restart", third)) ask("restart");
   ImGui::Text("t = %.3f s", r.time);
   ImGui::SameLine();
-  if (!r.failure.empty())
+  if (!r.failure.empty()) {
     ImGui::TextColored(red, "it blew up");
-  else
+    ImGui::SameLine();
+    ImGui::BeginDisabled(shown_.cure.empty());
+    if (ImGui::SmallButton("apply the cure"))  // no higher than the text
+      for (const std::string& r : shown_.cure) ask(r);
+    ImGui::EndDisabled();
+    mark("apply the cure");
+  } else {
     ImGui::TextColored(dim, "%s", paused ? "paused" : "");
+  }
   if (!shown_.refusal.empty()) write_red(shown_.refusal);
 }
 
@@ -320,7 +335,7 @@ void Panel::draw_plots() {
   const float lines = 4 * ImGui::GetTextLineHeightWithSpacing() +
                       2 * ImGui::GetFrameHeightWithSpacing() + 16 * unit_;
   const float height = std::clamp(
-      (ImGui::GetContentRegionAvail().y - lines) / 2, 75 * unit_, 160 * unit_);
+      (ImGui::GetContentRegionAvail().y - lines) / 2, 60 * unit_, 160 * unit_);
   const Curve energies[] = {curve("kinetic", orange), curve("elastic", sky),
                             curve("gravitational", green),
                             curve("total", white)};

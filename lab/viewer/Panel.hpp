@@ -50,7 +50,8 @@ class Panel {
   /** The readings that tell() passes to draw(). */
   struct State {
     Readings now;
-    Model model, first;  // the present one, and that of the start
+    Model model, first;             // the present one, and that of the start
+    std::vector<std::string> cure;  // requests that mend a failure, if known
     std::string refusal;
     double real_time = 0;  // simulated seconds a second
     // Of the last frames, what is plotted, by its name.
