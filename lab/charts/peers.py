@@ -58,8 +58,8 @@ def peers(csv, out):
         out, 800, 656, "At no error is a library cheaper than our methods by "
         f"more than {100 * max(most)[0]:.0f} %",
         "The cloth grid1 without drag, from rest to 0.25 s. Down is cheaper, "
-        "right is more accurate. Black: the cheapest of\n"
-        f"{', '.join(OURS)}; color: the methods of a library.",
+        "right is more accurate. Thick: the cheapest of\n"
+        f"{', '.join(OURS)}; thin: the methods of a library.",
         table.footer())
     picture.say(decades(x.hi, x.lo))
     for row, (what, cost) in enumerate(costs):

@@ -68,7 +68,8 @@ def strip(picture, panel, segments, colors):
 
 
 def message(segments):
-    """Who is cheapest where, in words: of two methods, the widest segments."""
+    """Who is cheapest, in words: at coarse errors, and at most of the finer
+    ones."""
     wide = []
     for method, start, end in segments:
         if wide and wide[-1][0] == method:
@@ -77,18 +78,18 @@ def message(segments):
             wide.append([method, start, end])
     if not wide:
         return "No run is stable and above the reference's own error"
-    if len(wide) == 1:
-        return f"{wide[0][0]} is the cheapest at every error"
-    most = sorted(wide, key=lambda s: s[2] / s[1])
-    other = next(s for s in most if s[0] != most[0][0])
-    words = []
-    for segment in sorted((most[0], other), key=lambda s: -s[1]):
-        method, start, end = segment
-        words.append(f"{method} above {digits(end)} m" if segment == wide[0]
-                     else f"{method} below {digits(start)} m"
-                     if segment == wide[-1]
-                     else f"{method} from {digits(start)} to {digits(end)} m")
-    return f"Cheapest: {', '.join(words)}"
+    (first, _, bound), *finer = wide
+    if not finer:
+        return f"{first} is the fastest at every error"
+    decades_of = {}
+    for method, start, end in finer:
+        decades_of[method] = (decades_of.get(method, 0) +
+                              math.log10(start / end))
+    most = max(decades_of, key=decades_of.get)
+    if most == first:
+        return f"{first} is the fastest at most errors"
+    return (f"Fastest: {first} above {digits(bound)} m, below it "
+            f"{'mostly ' if len(decades_of) > 1 else ''}{most}")
 
 
 def work_precision(csv, out, scene):
