@@ -211,7 +211,7 @@ function makeControls() {
   $('dismiss').onclick = () => $('failure').hidden = true;
   $('cure').onclick = applyCure;
   $('link').onclick = () => page.worker.postMessage(['link']);
-  for (const button of document.querySelectorAll('[data-tool]'))
+  for (const button of document.querySelectorAll('button[data-tool]'))
     button.onclick = () => setTool(button.dataset.tool);
   setTool('grab');
   addEventListener('keydown', e => {
@@ -225,7 +225,7 @@ function makeControls() {
 
 function setTool(tool) {
   page.hand.tool = tool, $('canvas').dataset.tool = tool;
-  for (const button of document.querySelectorAll('[data-tool]'))
+  for (const button of document.querySelectorAll('button[data-tool]'))
     button.setAttribute('aria-pressed', String(button.dataset.tool === tool));
 }
 
