@@ -23,12 +23,12 @@ class Skipped(Exception):
 
 class Firefox(Browser):
     """One page. Use it in a with statement; lengths in CSS pixels."""
+    programs = "firefox-esr", "xvfb-run", "xdotool"
 
-    @staticmethod
-    def missing():
+    @classmethod
+    def missing(cls):
         """The programs that it needs and that are not here."""
-        return [name for name in ("firefox-esr", "xvfb-run", "xdotool")
-                if not shutil.which(name)]
+        return [name for name in cls.programs if not shutil.which(name)]
 
     def __init__(self, width=1280, height=800):
         self.folder = tempfile.mkdtemp(prefix="page.")

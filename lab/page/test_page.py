@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""What the web page does, in a headless Chromium and in Firefox, where that is
-installed: test_page.py BUILD [TEST]..., where BUILD/page/index.html and
-BUILD/page_positions are. It is opened as a file. The pictures that Chromium
-writes, BUILD/page-*.png, are to be looked at.
+"""What the web page does, in a headless Chromium, and in Firefox and WebKit,
+where they are installed: test_page.py BUILD [TEST]..., where
+BUILD/page/index.html and BUILD/page_positions are. It is opened as a file. The
+pictures that Chromium writes, BUILD/page-*.png, are to be looked at.
 test_page.py BUILD --frames measures frames a second: make page-frames."""
 import pathlib
 import struct
@@ -13,6 +13,7 @@ import traceback
 
 from browser import Browser
 from firefox import Firefox, Skipped
+from webkit import WebKit
 
 build = pathlib.Path(sys.argv[1])
 address = "file://" + str((build / "page/index.html").resolve())
@@ -417,6 +418,7 @@ def everything_has_a_name(b):
       .map(e => e.id || e.outerHTML)""")
     assert not nameless, nameless
     assert b.value("$('canvas').getAttribute('role')") == "application"
+    assert not b.value("$('canvas').hasAttribute('aria-pressed')")
     label = b.value("$('energy').ariaLabel")
     assert "verlet" in label and "J" in label, label
 
@@ -691,10 +693,12 @@ def main():
     print(f"  {size} bytes")
     only = sys.argv[2:]
     passed = failed = 0
-    engines = [Browser, Firefox]
-    for name in Firefox.missing():
-        print(f"skipped: the page in Firefox: {name} is missing")
-        engines = [Browser]
+    engines = [Browser]
+    for engine in (Firefox, WebKit):
+        if missing := engine.missing():
+            print(f"skipped: the page in {engine.__name__}: missing:", *missing)
+        else:
+            engines.append(engine)
     for engine in engines:
         b = None
         for run in tests:
