@@ -21,6 +21,7 @@ const markup = `<div class="picture">
     <div class="strain">strain 2 % <i></i> 45 %</div>
   </div>
   <p class="fault" role="alert" hidden></p>
+  <p class="says" role="status" hidden></p>
   <div class="tools" role="toolbar" aria-label="Run and tools">
     <span class="switch" role="group" aria-label="Which code runs"></span>
     <button class="main play">Play</button>
@@ -92,7 +93,8 @@ class Cloth {
 class Figure {
   constructor(element, options) {
     Object.assign(this, {stage: 'problem1', grid: 25, chain: 0, dt: 0.001,
-      speed: 1, end: Infinity, wasm: [], beside: false, whole: false}, options);
+      speed: 1, end: Infinity, wasm: [], beside: false, whole: false,
+      times: [], says: []}, options);
     this.names ??= this.wasm;
     this.element = element, this.clock = 0, this.sides = [], this.panes = [];
     this.playing = false, this.dirty = true;
@@ -186,6 +188,11 @@ class Figure {
     [...this.find('.switch').children].forEach(
       (button, i) => button.setAttribute('aria-pressed', i === k));
     this.find('.picture').classList.toggle('two', this.panes.length > 1);
+    const words = this.says[k] ?? '', {end} = this;
+    [this.speed, this.end] = this.times[k] ?? [this.speed, end];
+    setText(this.find('.says'), words), this.find('.says').hidden = !words;
+    if (this.view && this.end !== end)
+      this.start(), this.play(this.playing || !isStill());
     this.arrange();
   }
   play(on) {
@@ -196,7 +203,9 @@ class Figure {
   oneStep() { this.play(false), this.stepping = this.wanted = true; }
 
   start() {
-    const {stage, grid: side, dt, chain} = this, {low, ball} = stages[stage];
+    const {stage, grid: side, dt, chain, end} = this, {ball} = stages[stage];
+    // What falls for a short time is seen from nearer: g t^2/2.
+    const low = Math.max(stages[stage].low, -0.3 - 5 * end * end);
     this.hand?.release();
     this.clock = 0, this.ended = 0, this.touched = false;
     for (const c of this.cloths)
@@ -268,13 +277,16 @@ class Figure {
       if (label.hidden) return;
       setText(label.children[0], this.names[this.panes[pane]]);
       setText(label.children[1], gain < 0 ? ''
-        : `diverged at ${Number(gain.toFixed(4))} s`);
+        : `diverged at ${Number(gain.toFixed(4))} s: energy from nothing`);
     });
     const shown = cloths.at(-1), fault = this.find('.fault');
     const words = shown.failure || shown.note;
     fault.hidden = !words || !this.whole && shown.readings?.gainAt >= 0;
     setText(fault, words);
-    setText(this.find('.busy'), `t = ${shown.time.toFixed(3)} s`);
+    const slower = shortNumber(Number((1 / this.speed).toPrecision(2)));
+    const time = Math.max(...cloths.map(c => c.time));
+    setText(this.find('.busy'), `t = ${time.toFixed(3)} s` +
+      (this.speed < 1 && !this.whole ? `, ${slower} times slower` : ''));
   }
 
   loop() {

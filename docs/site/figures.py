@@ -18,6 +18,32 @@ import web  # noqa: E402
 RIGHT = ("", "damped")  # what draw.py calls correct
 LOOP = 4  # [s], how long a figure takes until it starts again
 LINES = 9  # of code beside a figure
+# What a mistake does: the words below its picture.
+SAYS = {
+    "sign": "A stretched spring pushes its ends apart: near the corners nodes "
+            "fly off.",
+    "one loop": "A spring pulls one end before the other end has moved: it "
+                "looks right, and then it bursts.",
+    "old positions": "The force comes a step too late: neighbours swing "
+                     "farther in each step.",
+    "first length": "A diagonal as short as a side pulls from the start: the "
+                    "cloth crumples.",
+    "no length": "Every spring pulls its ends together: the cloth shrinks to "
+                 "a rope.",
+    "one diagonal": "Nothing holds the other diagonal: the cloth twists.",
+    "no mass": "A node of 1/625 kg gets the weight of 1 kg: it falls with "
+               "625 g, and the corners are torn out.",
+    "+ c v": "The force pushes wherever the node goes: each swing is higher.",
+    "c = 1": "The drag is 625 times too large: the cloth sinks as in honey.",
+    "pin by place": "After one step no node is at the corner's place any more: "
+                    "nothing holds the cloth.",
+    "ball keeps v": "Nodes on the ball keep falling into it: they gain speed "
+                    "in each step, until they fly off.",
+    "floor keeps v": "Nodes on the floor gain speed downwards in each step: "
+                     "they stick to it.",
+    "ball only": "The pins and the floor are not applied: the cloth falls over "
+                 "the ball and through the floor.",
+}
 # Of explode.md: the code of 3.2 with its step [s] and speed, and the highest
 # frequency [1/s] that the springs can have.
 EXPLOSIONS = {
@@ -30,20 +56,25 @@ for scene in EXPLOSIONS.values():
 
 def scenes():
     """Each figure: its name, the page that it stands on, its cloths (the names
-    of draw.py, the correct one first), its stage, its speed and its end [s]."""
+    of draw.py, the correct one first), its stage, and of each cloth its speed
+    and its end [s]. What fails before the others have moved has its own."""
     found = {"docs/pictures/page.png": {
         "name": "drag", "page": "README.md", "cloths": ["damped"],
-        "stage": "forces", "speed": 1, "end": 8}}
+        "stage": "forces", "times": [[1, 8]]}}
     for name, panels in draw.PICTURES.items():
         page = "course/" + name.split("-")[0] + ".md"
         cloths = list(dict.fromkeys(mistake for mistake, *_ in panels))
         right = [c for c in cloths if c in RIGHT] or [""]
         wrong = [c for c in cloths if c not in RIGHT]
-        end = 1.3 * max(time for _, _, times, _ in panels for time in times)
+        drawn = {cloth: times[-1] for cloth, _, times, _ in panels}
+        last = max(0.8, 1.3 * max(drawn.values()))
+        ends = [last for _ in right] + [
+            2.5 * drawn[c] if 5 * drawn[c] < last else last for c in wrong]
         found[f"course/pictures/{name}.png"] = {
             "name": name, "page": page, "cloths": right + wrong,
-            "stage": panels[0][1], "end": round(max(end, 0.8), 2),
-            "speed": min(1, round(max(end, 0.8) / LOOP, 3))}
+            "stage": panels[0][1],
+            "times": [[float(f"{min(1, end / LOOP):.2g}"), round(end, 4)]
+                      for end in ends]}
     return found
 
 
@@ -130,7 +161,8 @@ def write(built, out):
     options = {scene["name"]: {
         "wasm": [web.slug(c) for c in scene["cloths"]],
         "names": [title(c, scene) for c in scene["cloths"]],
-        "stage": scene["stage"], "speed": scene["speed"], "end": scene["end"],
+        "says": [SAYS.get(c, "") for c in scene["cloths"]],
+        "stage": scene["stage"], "times": scene["times"],
         "beside": True} for scene in SCENES.values()} | EXPLOSIONS
     (out / "scenes.js").write_text(
         "self.scenes = " + json.dumps(options, indent=1) + ";\n")
