@@ -87,6 +87,9 @@ class Page:
         body = re.sub(r"<annotation.*?</annotation>|</?semantics>"
                       r"| xmlns=\"[^\"]*\"", "", body, flags=re.S)
         body = re.sub(r"<!--.*?-->\n*", "", body, flags=re.S)
+        body = body.replace("<th></th>", "<td></td>")
+        body = re.sub(r'<math display="inline">.*?</math>', level, body,
+                      flags=re.S)
         body = re.sub(r' class="(header|odd|even|uri)"|</t[dhr]>|</?tbody>'
                       r'|</thead>|</li>| form="(prefix|postfix)"', "", body)
         body = body.replace("<table>", '<div class="wide"><table>').replace(
@@ -153,6 +156,12 @@ def displayed(match):
     if re.search(r"\\\\$", formula, re.M):
         formula = rf"\begin{{gathered}}{formula}\end{{gathered}}"
     return f"{match[1]}$${formula}$$"
+
+
+def level(match):
+    """A formula in the text: its parentheses grow around fractions alone."""
+    return match[0] if "<mfrac" in match[0] else match[0].replace(
+        'stretchy="true"', 'stretchy="false"')
 
 
 def words_of(markup):

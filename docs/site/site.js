@@ -17,6 +17,14 @@ for (const image of document.querySelectorAll('[data-gz]')) {
   });
 }
 
+// What is wider than the page is scrolled by keys, too.
+const scroll = () => {
+  for (const e of document.querySelectorAll('.wide, pre, main p, main li'))
+    if (e.scrollWidth > e.clientWidth) e.tabIndex = 0;
+    else e.removeAttribute('tabindex');
+};
+addEventListener('resize', scroll), scroll();
+
 // How another page shows the same figure.
 function embedding(name) {
   const address = new URL('embed.html', document.currentScript.src);

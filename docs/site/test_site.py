@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Test the site in a headless Chromium: test_site.py SITE. The last line
-counts the tests. Exit status: 0 all right, else 1."""
+"""Test the site in a headless Chromium, and one figure in Firefox and WebKit,
+where they are installed: test_site.py SITE. The last line counts the tests.
+Exit status: 0 all right, else 1."""
 import html
 import pathlib
 import re
@@ -10,6 +11,8 @@ ROOM = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOM.parents[1] / "lab/page"), str(ROOM)]
 import make_site  # noqa: E402
 from browser import Browser  # noqa: E402
+from firefox import Firefox  # noqa: E402
+from webkit import WebKit  # noqa: E402
 
 LARGEST = 2_000_000  # bytes
 SITE = pathlib.Path(sys.argv[1]).resolve()
@@ -90,16 +93,26 @@ def broken_links_are_reported():
 
 
 def pages_fit_and_say_nothing():
-    """Pages of 360 pixels do not scroll sideways, have a title and a language,
-    and every picture has words and is there."""
+    """Pages of 320 pixels do not scroll sideways, what is wider than they are
+    is scrolled by keys, too, and hides no sign of a list; they have a title and
+    a language, and every picture has words and is there."""
     with Recorder(360, 740) as browser:
         for file in HTML:
             browser.open(file.as_uri())
             browser.wait("[...document.images].every(i => !i.src || "
                          "i.loading === 'lazy' && !i.complete || "
                          "i.naturalWidth > 0)", 120)
+            hidden = browser.value("""[...document.querySelectorAll('main *')]
+              .filter(e => getComputedStyle(e).overflowX === 'auto' && (
+                e.scrollWidth > e.clientWidth && e.tabIndex < 0 ||
+                e.matches('li') && getComputedStyle(e).listStylePosition !==
+                  'inside')).map(e => e.outerHTML.slice(0, 80))""")
+            expect(not hidden, f"{file}: scrolls without keys, or hides the "
+                   f"sign of a list: {hidden}")
+            browser.resize(320, 740)
             wide = browser.value("document.documentElement.scrollWidth")
-            expect(wide <= 360, f"{file}: {wide} pixels wide at 360")
+            expect(wide <= 320, f"{file}: {wide} pixels wide at 320")
+            browser.resize(360, 740)
             expect(browser.value("document.title && document.documentElement"
                                  ".lang === 'en'"), f"{file}: title, lang")
             bare = browser.value("[...document.images].filter("
@@ -135,6 +148,21 @@ def figures_move():
     expect(count > 10, f"only {count} figures")
 
 
+def a_mistake_that_fails_at_once_is_seen():
+    """The steps before it fails, and the words that say why."""
+    with Recorder(1280, 800) as browser:
+        browser.open((SITE / "course/5.1.html").as_uri())
+        browser.value("all = document.querySelector('.live'),"
+                      "all.scrollIntoView(), of = name =>"
+                      " all.querySelector(name).textContent, 0")
+        browser.wait("/t = (?!0.000)/.test(of('.busy'))", 120)
+        browser.value("[...all.querySelectorAll('.switch button')].find("
+                      "e => e.textContent === 'no mass').click()")
+        browser.wait("/t = 0.00[1-6] s, [0-9]+ times slower/.test(of('.busy'))")
+        browser.wait("of('.name ~ .name').includes('diverged at 0.007 s')")
+        expect("625 g" in browser.value("of('.says')"), "no words say why")
+
+
 def beyond_the_limit_it_explodes():
     """And below it does not: the mass, the chain, the cloth."""
     with Recorder(1280, 800) as browser:
@@ -168,9 +196,30 @@ def figures_can_be_framed():
         expect(not browser.faults, str(browser.faults))
 
 
+def other_engines_run_a_figure():
+    """It moves, its switch shows the right code, and nothing complains."""
+    for engine in (Firefox, WebKit):
+        if missing := engine.missing():
+            print(f"skipped: a figure in {engine.__name__}: missing:", *missing)
+            continue
+        with engine(1000, 800) as browser:
+            browser.open((SITE / "course/3.2.html").as_uri())
+            browser.value("all = document.querySelectorAll('.live')[1],"
+                          "all.scrollIntoView({block: 'center'})")
+            browser.wait("/t = (?!0.000)/.test(all.querySelector('.busy')"
+                         ".textContent)", 120)
+            browser.value("all.querySelector('.switch button').click()")
+            shown = browser.value(
+                "[all.querySelector('.name').textContent,"
+                " [...document.querySelectorAll('.edit')].every(e => e.hidden)]")
+            expect(shown == ["right", True], f"{engine.__name__}: {shown}")
+            expect(not browser.faults, f"{engine.__name__}: {browser.faults}")
+
+
 TESTS = (size_is_small, nothing_comes_from_elsewhere, links_resolve,
          broken_links_are_reported, pages_fit_and_say_nothing, figures_move,
-         beyond_the_limit_it_explodes, figures_can_be_framed)
+         a_mistake_that_fails_at_once_is_seen, beyond_the_limit_it_explodes,
+         figures_can_be_framed, other_engines_run_a_figure)
 bad = 0
 for test in TESTS:
     faults = []
