@@ -90,7 +90,7 @@ class Page:
         body = body.replace("<th></th>", "<td></td>")
         body = re.sub(r'<math display="inline">.*?</math>', level, body,
                       flags=re.S)
-        body = re.sub(r' class="(header|odd|even|uri)"|</t[dhr]>|</?tbody>'
+        body = re.sub(r' class="(header|odd|even|uri)"|</t[dhr]>|</tbody>'
                       r'|</thead>|</li>| form="(prefix|postfix)"', "", body)
         body = body.replace("<table>", '<div class="wide"><table>').replace(
             "</table>", "</table></div>")

@@ -210,8 +210,8 @@ def other_engines_run_a_figure():
                          ".textContent)", 120)
             browser.value("all.querySelector('.switch button').click()")
             shown = browser.value(
-                "[all.querySelector('.name').textContent,"
-                " [...document.querySelectorAll('.edit')].every(e => e.hidden)]")
+                "[all.querySelector('.name').textContent, [...document."
+                "querySelectorAll('.edit')].every(e => e.hidden)]")
             expect(shown == ["right", True], f"{engine.__name__}: {shown}")
             expect(not browser.faults, f"{engine.__name__}: {browser.faults}")
 
