@@ -190,6 +190,8 @@ def figures_can_be_framed():
                      ".textContent)", 120)
         expect(browser.value("document.querySelector('.tools').offsetHeight")
                == 0, "controls=none shows controls")
+        expect(browser.value("document.documentElement.scrollHeight") == 400,
+               "a figure is higher than its frame")
         browser.open(f"{address}?scene=nothing")
         expect("there are drag" in browser.value("document.body.innerText"),
                "an unknown scene is not named")
