@@ -24,11 +24,10 @@ def recording(verdict, seconds):
     dt = min(.001 * max(1, verdict.evaluations), most)
     lines = (ROOT / "data/scenes/constraints.toml").read_text("utf-8")
     keep = [line for line in lines.splitlines() if not line.startswith(
-        ("#", "dt", "method", "t-end", "view"))]
+        ("#", "dt", "method", "t-end"))]
     scene = [f'nodes = "{ROOT}/data/grid1.nodes"',
              f'tets = "{ROOT}/data/grid1.tets"', *keep, f"dt = {dt!r}",
-             "t-end = 5", 'method = "yours"',
-             'view = "from 0 -0.4 -0.75 to 2.3 0.6 0.2"']
+             "t-end = 5", 'method = "yours"']
     return "\n".join(["mass_spring input 1", f'0 scene 0 0 "{verdict.step}"',
                       *(f"| {line}" for line in scene),
                       "0 compare verlet 1 equal-work",

@@ -160,9 +160,6 @@ class SDLScreen : public Screen {
   void show(const Scene& scene, const Scene* rival, const Live* live) {
     const Cloth& g = scene.cloth();
     show_failure(scene);
-    if (!shown_) set_view(scene);
-    if (kind_ == Kind::film) follow(g);
-    if (!shown_ || moving_) add_obstacles(scene);
     const bool strain = colored_ = viewer_.strain_colors();
     if (strain) set_scale(g);
     auto color_of = [&](CME212::Color plain) {
@@ -173,10 +170,14 @@ class SDLScreen : public Screen {
                       : plain;
       };
     };
-    viewer_.set_label(label(scene));
+    viewer_.set_label(label(scene, rival));
     Point beside;
     if (rival && (!panel_ || panel_->side_by_side()))
       beside = norm(beside_) > 0 ? beside_ : place_beside(g);
+    const bool moves = norm(beside - beside_) > 0;
+    if (!shown_ || moving_ || moves) add_obstacles(scene, beside);
+    if (!shown_ || moves) set_view(scene, beside);
+    if (kind_ == Kind::film) follow(g);
     const auto moved = [&](Node n) { return n.position() + beside; };
     const bool same = shown_ && version_ == g.version() &&
                       rival_shown_ == (rival != nullptr) &&
@@ -195,8 +196,6 @@ class SDLScreen : public Screen {
     add(g, CME212::Color(1), CME212::DefaultPosition(), nodes_);
     if (!same) own_nodes_ = ids_.size();
     if (rival) add(rival->cloth(), rival_color, moved, rival_nodes_);
-    if (norm(beside) > 0 && norm(beside_) == 0) viewer_.center_view();
-    if (norm(beside) == 0 && norm(beside_) > 0) set_view(scene);
     beside_ = beside;
     if (same) return;
     const auto join = [&](const Scene& s, std::map<Node, unsigned>& nodes) {
@@ -238,11 +237,13 @@ class SDLScreen : public Screen {
     return {};
   }
 
-  /** From a cloth to the one beside it: its width, and some more. */
+  /** From a cloth to the one beside it, as seen at first: its width, and some
+   * more. */
   static Point place_beside(const Cloth& g) {
-    CME212::BoundingBox box;
-    for (Node n : g.nodes()) box |= n.position();
-    return Point(1.25 * (box.max().x - box.min().x), 0, 0);
+    const Point right = Point(-eye.y, eye.x, 0) / std::hypot(eye.x, eye.y);
+    CME212::BoundingBox widths;
+    for (Node n : g.nodes()) widths |= Point(dot(n.position(), right), 0, 0);
+    return 1.1 * widths.diagonal() * right;
   }
 
   void show_failure(const Scene& scene) {
@@ -310,13 +311,16 @@ class SDLScreen : public Screen {
     return 10 * unit;
   }
 
-  /** Time and size; the step rate only in a window, since pictures of the
-   * same state shall be the same. */
-  std::string label(const Scene& scene) {
+  /** Time, size and whose cloth is in which color; the step rate only in a
+   * window, since pictures of the same state shall be the same. */
+  std::string label(const Scene& scene, const Scene* rival) {
     char time[32];
     std::snprintf(time, sizeof time, "t = %.3f s", scene.time());
     std::string text =
         time + ("   " + std::to_string(scene.cloth().num_nodes())) + " nodes";
+    if (rival)
+      text += std::string("   white: ") + scene.method().name +
+              ", orange: " + rival->method().name;
     if (kind_ != Kind::window) return text;
     if (scene.steps() < steps_ || clock_.seconds() > 0.5) {
       rate_ = double(std::max(0LL, scene.steps() - steps_)) / clock_.seconds();
@@ -327,8 +331,9 @@ class SDLScreen : public Screen {
   }
 
   /** Look at the room that the scene names; else at the cloth as it is now, at
-   * what it may fall on and, at the start, at the space below it. */
-  void set_view(const Scene& scene) {
+   * what it may fall on and, at the start, at the space below it; and at the
+   * same @a beside that. */
+  void set_view(const Scene& scene, const Point& beside) {
     CME212::BoundingBox room;
     for (const Point& p : scene.recipe().room) room |= p;
     if (room.empty()) {
@@ -341,6 +346,10 @@ class SDLScreen : public Screen {
       }
       if (scene.time() == 0 && !room.empty())
         room |= room.min() - Point(0, 0, room.diagonal() / 2);
+    }
+    if (!room.empty()) {
+      const Point low = room.min() + beside, high = room.max() + beside;
+      (room |= low) |= high;
     }
     room_ = room;
     const Point reach(room.diagonal() / 2, room.diagonal() / 2,
@@ -364,16 +373,20 @@ class SDLScreen : public Screen {
     viewer_.set_view(eye, room_);
   }
 
-  /** Show what the cloth falls on where it is now, and nothing else. */
-  void add_obstacles(const Scene& scene) {
+  /** Show what the cloth falls on where it is now, and nothing else; what the
+   * rival falls on is @a beside it. */
+  void add_obstacles(const Scene& scene, const Point& beside) {
     viewer_.clear_shapes();
     for (const Obstacle& o : scene.recipe().obstacles) {
       const Point at = o.at + o.motion.way(scene.time());
       moving_ = moving_ || o.motion.velocity != Point();
       if (o.kind == Obstacle::Kind::floor)
-        viewer_.add_plane(at.z);
+        viewer_.add_plane(at.z, 1.5 + norm(beside) / 2,
+                          Point(0.5, 0.5, 0) + beside / 2);
       else
         viewer_.add_sphere(at, o.radius);
+      if (o.kind != Obstacle::Kind::floor && norm(beside) > 0)
+        viewer_.add_sphere(at + beside, o.radius);
     }
   }
 };
