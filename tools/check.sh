@@ -217,10 +217,12 @@ single() {
     build/check/float/cloth data/grid1.nodes data/grid1.tets --headless \
       --dt auto &&
     float_and_double &&
-    build/check/float/work_precision --ends --scenes chain \
+    build/check/work_precision --ends --scenes chain \
       --out build/check/ends.txt &&
-    build/check/work_precision --floor build/check/ends.txt \
-      --out build/check/float_floor.csv &&
+    build/check/float/work_precision --ends --scenes chain \
+      --out build/check/float/ends.txt &&
+    lab/charts/float_floor.py build/check/ends.txt build/check/float/ends.txt \
+      >build/check/float_floor.csv &&
     awk -F, '$1 == "chain" {++n; if ($5 < 1e-8 || $5 > 1e-4) bad = 1}
       END {exit n != 6 || bad}' build/check/float_floor.csv
 }
