@@ -161,7 +161,7 @@ rounds-chart: bench_rounds
 peers := lab/bench/peers
 $(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
   -lsundials_cvode -lsundials_arkode -lsundials_nvecserial \
-  -lsundials_sunlinsolspgmr -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
+  -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
 $(eval $(call program,$(B)/graph_peers,$(B),$(peers)/graph_peers.cpp,$(speed), \
   -lbenchmark))
 

@@ -17,7 +17,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
@@ -80,22 +79,6 @@ class Problem {
   void derivative(const double* y, double* dy) {
     std::copy(y + size(), y + 2 * size(), dy);
     acceleration(y, dy + size());
-  }
-  /** The diagonal of -dF/dq / m at @a q [1/s^2]. */
-  State stiffness_diagonal(const double* q) {
-    set_positions(q);
-    std::vector<Point> sum(g.node_slots());
-    for (Edge e : g.edges()) {
-      Point u = e.node2().position() - e.node1().position();
-      double l = norm(u), across = std::max(0.0, 1 - e.value().L / l);
-      Point d = Point(across) + (1 - across) * (u / l) * (u / l);
-      sum[e.node1().id()] += e.value().K * d;
-      sum[e.node2().id()] += e.value().K * d;
-    }
-    State result;
-    for (std::size_t i = 0; i < per_mass_.size(); ++i)
-      for (double k : sum[i]) result.push_back(k * per_mass_[i]);
-    return result;
   }
 
  private:
@@ -204,63 +187,21 @@ struct Sundials {
   }
 };
 
-/** @param set_up(s, mem) makes a solver, and returns what frees it */
-template <typename SetUp>
-State run_cvode(int family, double tolerance, SetUp set_up) {
+State run_cvode_adams(double tolerance) {
   Sundials s;
-  void* mem = CVodeCreate(family, s.context);
+  void* mem = CVodeCreate(CV_ADAMS, s.context);
   CVodeInit(mem, sundials_rhs, 0, s.vector);
   CVodeSStolerances(mem, tolerance, tolerance);
   CVodeSetMaxNumSteps(mem, 10000000);
   CVodeSetStopTime(mem, problem->t_end);
-  const auto free_solver = set_up(s, mem);
+  auto solver = SUNNonlinSol_FixedPoint(s.vector, 0, s.context);
+  CVodeSetNonlinearSolver(mem, solver);
   realtype t;
   int flag = CVode(mem, problem->t_end, s.vector, &t, CV_NORMAL);
-  free_solver();
+  SUNNonlinSolFree(solver);
   CVodeFree(&mem);
   require(flag >= 0, "CVODE failed");
   return first_half(s.y.data());
-}
-
-State run_cvode_adams(double tolerance) {
-  return run_cvode(CV_ADAMS, tolerance, [](Sundials& s, void* mem) {
-    auto solver = SUNNonlinSol_FixedPoint(s.vector, 0, s.context);
-    CVodeSetNonlinearSolver(mem, solver);
-    return [solver] { SUNNonlinSolFree(solver); };
-  });
-}
-
-State diagonal;  // of the preconditioner below
-
-int setup(realtype, N_Vector y, N_Vector, booleantype, booleantype* current,
-          realtype, void*) {
-  diagonal = problem->stiffness_diagonal(N_VGetArrayPointer(y));
-  *current = SUNTRUE;
-  return 0;
-}
-/** Solve (I - gamma J) z = r, J = [0 I; -D 0]: exact if the stiffness were
- * its own diagonal D. */
-int precondition(realtype, N_Vector, N_Vector, N_Vector r, N_Vector z,
-                 realtype gamma, realtype, int, void*) {
-  const double* in = N_VGetArrayPointer(r);
-  double* out = N_VGetArrayPointer(z);
-  const std::size_t n = problem->size();
-  for (std::size_t k = 0; k < n; ++k) {
-    out[n + k] = (in[n + k] - gamma * diagonal[k] * in[k]) /
-                 (1 + gamma * gamma * diagonal[k]);
-    out[k] = in[k] + gamma * out[n + k];
-  }
-  return 0;
-}
-
-State run_cvode_bdf(double tolerance, int max_order) {
-  return run_cvode(CV_BDF, tolerance, [=](Sundials& s, void* mem) {
-    CVodeSetMaxOrd(mem, max_order);
-    auto solver = SUNLinSol_SPGMR(s.vector, SUN_PREC_LEFT, 10, s.context);
-    CVodeSetLinearSolver(mem, solver, nullptr);
-    CVodeSetPreconditioner(mem, setup, precondition);
-    return [solver] { SUNLinSolFree(solver); };
-  });
 }
 
 State run_arkode_dopri(double tolerance) {
@@ -342,10 +283,6 @@ std::vector<Candidate> candidates() {
         [](double t) { return run_gsl(gsl_odeiv2_step_rk8pd, t); });
     add("gsl-msadams",
         [](double t) { return run_gsl(gsl_odeiv2_step_msadams, t); });
-    if (tol > 1e-9) {
-      add("cvode-bdf", [](double t) { return run_cvode_bdf(t, 5); });
-      add("cvode-bdf2", [](double t) { return run_cvode_bdf(t, 2); });
-    }
   }
   return all;
 }
