@@ -210,8 +210,8 @@ std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
       if (info.multirate && !rules_.keeps_method && !(limit > costs.verlet()))
         continue;
       const bool bounded = limit != no_limit;
-      double dt = bounded ? 0.9 * limit : m->t_end / 2;
-      for (int n = 0; n < (bounded ? 7 : 10); ++n) {
+      double dt = bounded ? 0.9 * limit : m->t_end;
+      for (int n = 0; n < (bounded ? 7 : 11); ++n) {
         m->step = {.dt = std::min(dt, m->t_end)};
         if (rules_.keeps_step) m->step = scene_.step;
         m->step.dt = step_of(*m);
