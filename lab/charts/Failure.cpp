@@ -61,7 +61,7 @@ Problem three_modes() {
 }
 
 constexpr std::array table = [] {
-  using enum Quantity;
+  using enum Plotted;
   using Run = FailureRun;
   return std::array{
       Failure("a smaller step only takes longer to blow up",
@@ -186,10 +186,10 @@ std::unique_ptr<Method> make(const FailureRun& r) {
   return method;
 }
 
-/** @pre q is not Quantity::error */
-double look(Quantity q, const Start& s) {
-  if (q == Quantity::energy) return s.energy();
-  if (q == Quantity::height) return center_of_mass(s.cloth).z;
+/** @pre q is not Plotted::error */
+double look(Plotted q, const Start& s) {
+  if (q == Plotted::energy) return s.energy();
+  if (q == Plotted::height) return center_of_mass(s.cloth).z;
   double largest = 0;
   for (Edge e : s.cloth.edges())
     largest = std::max(largest, e.length() / e.value().L - 1);
@@ -244,12 +244,12 @@ Trace trace(const Failure& f, const FailureRun& r) {
   DivergenceGuard guard(s.cloth, p.gravity, r.dt);
   auto method = make(r);
   const Start& seen = method ? s : truth.start();
-  const bool energy = f.quantity == Quantity::energy;
+  const bool energy = f.quantity == Plotted::energy;
   const double at_start = energy ? look(f.quantity, s) : 0;
   Trace out;
   auto add = [&](double t) {
     Trace::Sample a = {t, 0, at_start};
-    if (f.quantity == Quantity::error) {
+    if (f.quantity == Plotted::error) {
       a.value = truth.distance_of(seen, t);
     } else {
       a.value = look(f.quantity, seen);

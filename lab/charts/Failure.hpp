@@ -14,7 +14,7 @@
 namespace lab {
 
 /** The quantity that is plotted against time. */
-enum class Quantity {
+enum class Plotted {
   energy,   ///< kinetic, elastic and gravitational [J]
   height,   ///< of the center of mass [m]
   stretch,  ///< the largest l/L - 1 of a spring
@@ -48,7 +48,7 @@ struct Failure {
   const char* caption;  ///< the scene
   Problem (*scene)();
   double t_end;  ///< [s]
-  Quantity quantity;
+  Plotted quantity;
   double fails;  ///< runs[0] has a larger deviation
   double cured;  ///< the last run has a smaller deviation
   struct Axis {
@@ -59,7 +59,7 @@ struct Failure {
 
   template <typename... Runs>
   constexpr Failure(const char* title, const char* caption, Problem (*scene)(),
-                    double t_end, Quantity quantity, double fails, double cured,
+                    double t_end, Plotted quantity, double fails, double cured,
                     Axis axis, const Runs&... runs)
       : title(title),
         caption(caption),

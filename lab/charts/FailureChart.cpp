@@ -18,15 +18,15 @@ namespace {
 
 using report::cell;
 
-const char* axis_of(Quantity q) {
+const char* axis_of(Plotted q) {
   constexpr std::array names = {
       "total energy [J]", "center of mass over its start [m]",
       "largest stretch, l/L - 1", "distance from the true motion [m]"};
   return names[static_cast<std::size_t>(q)];
 }
 
-const char* unit_of(Quantity q) {
-  return q == Quantity::energy ? " J" : q == Quantity::stretch ? "" : " m";
+const char* unit_of(Plotted q) {
+  return q == Plotted::energy ? " J" : q == Plotted::stretch ? "" : " m";
 }
 
 /** The role of run @a k in the picture. */
