@@ -279,6 +279,34 @@ TEST(Advise, CoarsensEachSheetOnItsOwn) {
   EXPECT_GT(a.model.sheets[0].nodes[1], 5u);
 }
 
+// Pilots by Verlet tell nothing of a method or a step that was asked for.
+TEST(Advise, KeepsAMethodAndAStepOrRefuses) {
+  Model m = hanging(1e-2);
+  AdviceRules rules;
+  rules.keeps_method = true;
+  m.method = find_method("rkn64");
+  const Advice a = advise(m, rules);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_EQ(a.model.method->info.name, std::string("rkn64"));
+  EXPECT_EQ(a.of_stable, 0);  // it has no limit
+  m.method = find_method("implicit-euler");
+  m.step = {.dt = 0.2};
+  rules.keeps_step = true;
+  EXPECT_EQ(advise(m, rules).refusal,
+            "no step of implicit-euler that was tried meets the tolerance");
+}
+
+// The drag of its own grid stays.
+TEST(Assess, OfAClothWithDampingIsANumber) {
+  Model m = hanging(1e-2);
+  m.damping = 1;
+  m.step = {.dt = 1e-3};
+  const Advice a = assess(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_EQ(a.model.damping, 1);
+  EXPECT_LE(a.error, 1e-2);
+}
+
 TEST(Advise, SaysWhereTheShapeOfTheCellsDecides) {
   for (auto [nodes, depends] : {std::pair("17 9", true), {"9 9", false}}) {
     Model m = hanging(1e-3);

@@ -195,6 +195,8 @@ TEST_F(ClothProgram, FilmsMoveAndShowContactSlower) {
   EXPECT_NEAR(frames(" --slow-motion 4"), 7 + 1 + 3 * 30 * 0.08, 2);
   // Two seconds of the explosion, and two of the reason.
   EXPECT_GE(frames(" --pin 'x 0 y 0' --dt 0.04"), 60 + 60);
+  // One that fails so fast that only the check before a picture finds it.
+  EXPECT_GE(frames(" --pin 'x 0' --stiffness 1e6 --dt 0.01"), 60 + 60);
   EXPECT_EQ(frames(" --size 320x200"), 7 + 1);
   EXPECT_EQ(CME212::output_of("ffprobe -v error -show_entries "
                               "stream=width,height -of csv=p=0 " +

@@ -61,6 +61,7 @@ Advice Adviser::find() {
   check();
   const CME212::Clock clock;
   choose_pilots();
+  const bool kept = rules_.keeps_method || rules_.keeps_step;
   bool calm = true;
   while (add_grid()) {
     const auto& grids = advice_.grids;
@@ -84,14 +85,15 @@ Advice Adviser::find() {
       find_rest();
     }
     choose();
-    if (found_ ? !may_go_on() : from_files() && is_certain()) break;
+    if (found_ ? !may_go_on() : (from_files() || kept) && is_certain()) break;
   }
   calm = calm && advice_.tolerance > 0;
   if (!found_ && calm && !pilots_.left_out().empty()) foresee();
   if (!found_ && advice_.refusal.empty())
-    refuse(
-        "no method meets the tolerance with the steps that were tried: the "
-        "smallest was 1/8 of the largest stable one");
+    refuse(kept ? std::string("no step of ") + scene_.method->info.name +
+                      " that was tried meets the tolerance"
+                : "no method meets the tolerance with the steps that were "
+                  "tried: the smallest was 1/8 of the largest stable one");
   // Chaos may be why nothing was found.
   if (calm && !seen_.empty() &&
       (from_files() || look_for_chaos(found_ ? found_->scatter : 0)) &&
@@ -447,6 +449,8 @@ void Adviser::try_squares() {
     const double ratio = norm(sheet.u) / (sheet.nodes[0] - 1.) /
                          (norm(sheet.v) / (sheet.nodes[1] - 1.));
     s[k] = {f * std::sqrt(ratio), f / std::sqrt(ratio)};
+    for (unsigned along : {0, 1})  // a grid has at least 2 cells
+      if ((sheet.nodes[along] - 1) * s[k][along] < 1.5) return;
     longest = std::max({longest, ratio, 1 / ratio});
   }
   if (!(longest > 1.2) ||

@@ -50,7 +50,7 @@ Advice Adviser::assess() {
   rules_.keeps_method = true, rules_.keeps_step = false;
   reductions_ = {{}}, rest_time_ = scene_.t_end;
   if (from_files() || !run.ok() || accepts(own.grid, uncertainty_))
-    for (Choice& c : choices({}))
+    for (Choice& c : choices(all_sides(1, 1)))
       if (pilots_.affords(c.work, "smaller steps", 0.33) && holds(c)) {
         take(c);
         break;

@@ -300,7 +300,8 @@ void Adviser::choose() {
       double& before = errors.try_emplace({c.removed.size(), method}, infinite)
                            .first->second;
       // From files all error is by the step; implicit steps begin very long.
-      const bool bounded = c.model.method->info.limit != no_limit;
+      const double limit = c.model.method->info.limit;
+      const bool bounded = limit > 0 && limit != no_limit;
       if (!from_files() && (accepts(c.error, uncertainty_) ||
                             (bounded && c.error > 0.9 * before)))
         fail.insert(c.removed.size());
@@ -322,6 +323,10 @@ void Adviser::choose() {
 void Adviser::foresee() {
   const Refinement& grids = advice_.grids;
   if (grids.size() < fewest() || too_uncertain()) return;
+  // Pilots tell nothing of another method or of a step that was asked for.
+  if (rules_.keeps_step ||
+      (rules_.keeps_method && scene_.method != method_->method))
+    return;
   for (int level = levels_.front(); level < level_ + 12; ++level) {
     Model m = on_level(level);
     if (!from_files() && double(nodes_of(m)) > rules_.most_nodes) return;

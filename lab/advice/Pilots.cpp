@@ -55,6 +55,7 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
 
 double StepCosts::limit(const MethodInfo& method) const {
   return method.multirate           ? multirate_
+         : !(method.limit > 0)      ? no_limit  // none is stable, or known
          : method.limit == no_limit ? no_limit
                                     : verlet_ * method.limit / 2;
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # make speed: what a step costs on this machine, in double and in single
 # precision. Writes lab/bench/results/MACHINE/: the tables bench.txt and
-# bench-float.txt, the same as JSON, lines of this commit in history.csv, and a
-# picture of that.
+# bench-float.txt, the same as JSON, lines of this commit in history.csv; and
+# speed.svg.
 #   lab/bench/speed.sh [BENCH BENCH_FLOAT]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.

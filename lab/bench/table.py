@@ -7,6 +7,7 @@ Figures are measured in turn, in random order, so that a machine that slows
 down slows all."""
 import argparse
 import json
+import pathlib
 import statistics
 import subprocess
 import tempfile
@@ -86,9 +87,9 @@ def write_json(context, found, path):
         if "ratio" not in row:
             row.pop("beside", None)
         lines.append(json.dumps(row))
-    path.write(f'{{"about": {json.dumps(about)},\n "real": '
-               f'"{context["real"]}",\n "figures": [\n  ')
-    path.write(",\n  ".join(lines) + "\n ]}\n")
+    path.write_text(f'{{"about": {json.dumps(about)},\n "real": '
+                    f'"{context["real"]}",\n "figures": [\n  ' +
+                    ",\n  ".join(lines) + "\n ]}\n")
 
 
 def main():
@@ -100,7 +101,7 @@ def main():
     parser.add_argument("--sides", nargs="+", default=[], metavar="N",
                         help="cloths of N x N nodes; usually 25, 100, 1000")
     parser.add_argument("--repetitions", default="9")
-    parser.add_argument("--json", type=argparse.FileType("w"), metavar="FILE")
+    parser.add_argument("--json", type=pathlib.Path, metavar="FILE")
     asked = parser.parse_args()
     options = [f"--benchmark_repetitions={asked.repetitions}"]
     if asked.filter:

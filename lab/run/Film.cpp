@@ -79,7 +79,7 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
 }
 
 void Film::draw() {
-  const bool failed = !scene_.failure().empty();
+  bool failed = !scene_.failure().empty();
   // Half a step early is as good as half a step late.
   const double now = scene_.time() + scene_.dt() / 2;
   const bool frame = !o_.video.empty() && (failed || now >= next_);
@@ -87,6 +87,7 @@ void Film::draw() {
       !shot_ && (failed || run_.done() || (o_.at >= 0 && now >= o_.at));
   if (!frame && !picture) return;
   run_.check();
+  failed = !scene_.failure().empty();
   screen_->show(scene_);
   if (picture) save_picture();
   if (!frame) return;

@@ -112,9 +112,12 @@ struct LiveRun {
   /** The motion beyond the failure, until the user asks for something. */
   void show_explosion() {
     show_beyond(live.scene(), live.rival(), screen, [this](int frames) {
-      CME212::sleep(frames / Screen::frames_per_second);
-      if (screen.take_restart()) return restart(), false;
-      return !serve() && !screen.closed();
+      for (; frames > 0; --frames) {
+        CME212::sleep(1 / Screen::frames_per_second);
+        if (screen.take_restart()) return restart(), false;
+        if (serve() || screen.closed()) return false;
+      }
+      return true;
     });
     screen.show(live);
   }

@@ -28,6 +28,7 @@ std::vector<double> axis_ticks(double low, double high, int most, bool log) {
 }
 
 std::string tick_text(double value, double step) {
+  if (value == 0 && step < 1e-4) return "0";
   char text[32];
   const double size = std::max(std::abs(value), step);
   if (value != 0 && (size >= 1e5 || step < 1e-4)) {
