@@ -300,8 +300,7 @@ void Adviser::choose() {
       double& before = errors.try_emplace({c.removed.size(), method}, infinite)
                            .first->second;
       // From files all error is by the step; implicit steps begin very long.
-      const double limit = c.model.method->info.limit;
-      const bool bounded = limit > 0 && limit != no_limit;
+      const bool bounded = std::isnormal(c.model.method->info.limit);
       if (!from_files() && (accepts(c.error, uncertainty_) ||
                             (bounded && c.error > 0.9 * before)))
         fail.insert(c.removed.size());

@@ -54,10 +54,9 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
 }
 
 double StepCosts::limit(const MethodInfo& method) const {
-  return method.multirate           ? multirate_
-         : !(method.limit > 0)      ? no_limit  // none is stable, or known
-         : method.limit == no_limit ? no_limit
-                                    : verlet_ * method.limit / 2;
+  return method.multirate               ? multirate_
+         : !std::isnormal(method.limit) ? no_limit  // 0: no step is stable
+                                        : verlet_ * method.limit / 2;
 }
 
 double StepCosts::step(const Model& m) const {

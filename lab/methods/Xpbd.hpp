@@ -29,7 +29,7 @@ namespace lab {
 class Xpbd : public Method {
  public:
   // In addition to the force evaluation: one of the springs, to subtract them,
-  // and n rounds, each as expensive as 2 evaluations.
+  // and n rounds, each as expensive as 3.5 to 4 evaluations.
   static constexpr MethodInfo info = {
       "xpbd",
       1,
