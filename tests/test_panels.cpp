@@ -386,7 +386,7 @@ TEST(Plot, TicksAreRoundAndFewEnough) {
   EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
   EXPECT_EQ(tick_text(4, 2), "4");
   EXPECT_EQ(tick_text(-0.0, 5), "0");
-  EXPECT_EQ(tick_text(0, 1e-7), "0.0000000");
+  EXPECT_EQ(tick_text(0, 1e-7), "0");
   EXPECT_EQ(tick_text(2e-7, 1e-7), "2e-07");
 }
 
