@@ -134,6 +134,8 @@ def report(rows):
               f"{words}")
     for factor in (1, 1.5, 2, 3):
         n, within, over = limits(rows, factor)
+        if not n:
+            break
         print(f"factor {factor}, of {n} limits without an order: {within:.3g} "
               f"% within the uncertainty, which is {over:.2g} times the error")
     return f
