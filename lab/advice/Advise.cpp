@@ -441,7 +441,7 @@ void Adviser::try_floats(const Choice& c) {
 }
 
 void Adviser::try_squares() {
-  const double f = from_files() ? 1 : factor(levels_.back());
+  const double f = factor(levels_.back());
   Sides s = all_sides(f, f);
   double longest = 1;
   for (std::size_t k = 0; k < s.size(); ++k) {

@@ -174,7 +174,7 @@ std::vector<Sides> Adviser::thinned(Sides s, double work) {
     for (unsigned along : {0, 1}) {
       const Sides before = s;
       const double all = scene_.sheets[k].nodes[along] - 1.;
-      double now = std::max(2., std::round(all * s[k][along]));
+      double now = on_grid(s).sheets[k].nodes[along] - 1.;
       auto with = [&](double cells) {
         Sides fewer = s;
         fewer[k][along] = cells / all;
