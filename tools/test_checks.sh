@@ -13,8 +13,8 @@ export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_NOSYSTEM=1
 export GIT_AUTHOR_NAME=T GIT_AUTHOR_EMAIL=t@example.org
 export GIT_COMMITTER_NAME=T GIT_COMMITTER_EMAIL=t@example.org
 
-# tree/ is the whole tree; small/ a few of its files, which no check blames
-# whatever else goes on in the tree.
+# tree/ is the whole tree; small/ and few/ some of its files, which no check
+# blames whatever else goes on in the tree: all headers of small/ are compiled.
 copy() {  # FOLDER PATTERN...
   mkdir "$tmp/$1"
   git ls-files -co --exclude-standard -- "${@:2}" | sort -u |
@@ -25,6 +25,8 @@ copy() {  # FOLDER PATTERN...
 }
 copy tree .
 copy small 'tools/*.sh' CME212/Point.hpp CME212/Util.hpp CME212/SlotMap.hpp .clang-format .gitignore
+copy few 'tools/*.sh' Makefile Graph.hpp mass_spring.hpp CME212/SlotMap.hpp \
+  course/kit/tasks.py .clang-format .gitignore
 
 ok() {
   if [ -z "$why" ]; then
@@ -39,8 +41,8 @@ check() {  # in FOLDER, run the check; sets out, status
   out=$("${@:2}" 2>&1) || status=$?
   git reset -q --hard; git clean -fdqx
 }
-clean() {  # NAME CHECK...: passes on small/
-  check small "${@:2}"; why=""
+clean() {  # NAME FOLDER CHECK...: passes there
+  check "${@:2}"; why=""
   [ "$status" = 0 ] && [ -z "$out" ] || why=" status is $status;"
   ok "$1"
 }
@@ -51,15 +53,15 @@ caught() {  # NAME MESSAGE FOLDER CHECK...: the fault that was just made
   ! grep -qF -- "$2" "$tmp/before" || why+=" says so without the fault, too;"
   ok "$1"
 }
-# What a check says of the whole tree without any fault of ours.
-before() { check tree "$@"; echo "$out" >"$tmp/before"; cd "$tmp/tree"; }
+# What a check says of FOLDER without any fault of ours.
+before() { check "$@"; echo "$out" >"$tmp/before"; }
 comment_lines() { printf '//%.0s\n' $(seq "$1"); }
 again() { cd "$tmp/${1:-tree}"; }
 
 # ---- Include arrows
 inc=tools/check_includes.sh
-clean "includes: nothing to blame" $inc
-before $inc
+clean "includes: nothing to blame" small $inc
+before tree $inc
 arrow() {  # FILE TARGET: as first line of FILE, which is made if need be
   again; mkdir -p "$(dirname "$1")"; touch "$1"
   { echo "#include \"$2\""; cat "$1"; } >x && mv x "$1"
@@ -118,10 +120,11 @@ caught "includes: a room that the table does not know" \
 # ---- Headers alone: in small/, since each compilation takes a second
 head=tools/check_headers.sh
 : >"$tmp/before"
-clean "headers: nothing to blame" $head
-header() {  # NAME COMPILER: the header Bad.hpp is read from standard input
-  again small; cat >"${3:-.}/Bad.hpp"
-  caught "headers: $1" "Bad.hpp:1: does not compile alone by $2" small $head
+clean "headers: nothing to blame" small $head
+header() {  # NAME COMPILER [FOLDER]: Bad.hpp is read from standard input
+  again small; cat >"${3:-.}/Bad.hpp"  # in FOLDER all headers are compiled
+  caught "headers: $1" "Bad.hpp:1: does not compile alone by $2" small $head \
+    $([ $# = 3 ] || echo Bad.hpp)
 }
 header "uses what it does not include" g++ <<<'#pragma once
 inline std::string s;'
@@ -149,76 +152,76 @@ header "only without the viewer" g++ <<<'#pragma once
 
 # ---- The tree. The words are put together here, not to be found here.
 tree=tools/check_tree.sh
-clean "tree: nothing to blame" $tree
-before $tree
-again; echo 'int not_main() { return 0; }' >stray.cpp
-caught "tree: a .cpp without a program" "stray.cpp:1: is no program" tree $tree
-again; echo 'int helper() { return 0; }' >test_stray.cpp
+clean "tree: nothing to blame" few $tree
+before few $tree
+again few; echo 'int not_main() { return 0; }' >stray.cpp
+caught "tree: a .cpp without a program" "stray.cpp:1: is no program" few $tree
+again few; echo 'int helper() { return 0; }' >test_stray.cpp
 caught "tree: a test_*.cpp without a test" "test_stray.cpp:1: is no program" \
-  tree $tree
+  few $tree
 for word in TO+DO FIX+ME X+XX; do
-  word=${word/+/}; again; echo "// $word: later" >>Graph.hpp
+  word=${word/+/}; again few; echo "// $word: later" >>Graph.hpp
   caught "tree: $word" "Graph.hpp:$(wc -l <Graph.hpp): is left unfinished" \
-    tree $tree
+    few $tree
 done
-again; echo "# $word" >>Makefile
+again few; echo "# $word" >>Makefile
 caught "tree: an unfinished Makefile" \
-  "Makefile:$(wc -l <Makefile): is left unfinished" tree $tree
-again; printf '#if %s\n#endif\n' 0 >>mass_spring.hpp
+  "Makefile:$(wc -l <Makefile): is left unfinished" few $tree
+again few; printf '#if %s\n#endif\n' 0 >>mass_spring.hpp
 caught "tree: a branch that is never compiled" \
-  "mass_spring.hpp:$(($(wc -l <mass_spring.hpp) - 1)): is never compiled" tree $tree
-again; printf '//%79s\n' x >>mass_spring.hpp
+  "mass_spring.hpp:$(($(wc -l <mass_spring.hpp) - 1)): is never compiled" few $tree
+again few; printf '//%79s\n' x >>mass_spring.hpp
 caught "tree: 81 columns" \
-  "mass_spring.hpp:$(wc -l <mass_spring.hpp): is longer than 80 columns" tree $tree
-again small; printf '//%78s\n' x >>CME212/SlotMap.hpp
-clean "tree: 80 columns are none too many" $tree
-again; comment_lines 761 >Graph.hpp
+  "mass_spring.hpp:$(wc -l <mass_spring.hpp): is longer than 80 columns" few $tree
+again few; printf '//%78s\n' x >>CME212/SlotMap.hpp
+clean "tree: 80 columns are none too many" few $tree
+again few; comment_lines 761 >Graph.hpp
 caught "tree: 761 lines of Graph.hpp" \
-  "Graph.hpp:760: goes on to line 761; the limit is 760" tree $tree
-again; comment_lines 501 >mass_spring.hpp
+  "Graph.hpp:760: goes on to line 761; the limit is 760" few $tree
+again few; comment_lines 501 >mass_spring.hpp
 caught "tree: 501 lines of another" \
-  "mass_spring.hpp:500: goes on to line 501; the limit is 500" tree $tree
-again; printf '#%80s\n' x >>course/kit/tasks.py
+  "mass_spring.hpp:500: goes on to line 501; the limit is 500" few $tree
+again few; printf '#%80s\n' x >>course/kit/tasks.py
 caught "tree: 81 columns of Python" \
-  "course/kit/tasks.py:$(wc -l <course/kit/tasks.py): is longer than 80" tree $tree
-again small; comment_lines 500 >CME212/SlotMap.hpp; cp CME212/SlotMap.hpp Graph.hpp
+  "course/kit/tasks.py:$(wc -l <course/kit/tasks.py): is longer than 80" few $tree
+again few; comment_lines 500 >CME212/SlotMap.hpp; cp CME212/SlotMap.hpp Graph.hpp
 comment_lines 260 >>Graph.hpp
-clean "tree: 500 and 760 lines are none too many" $tree
-again; sed -i '1i int   i;' mass_spring.hpp
-caught "tree: not laid out" "mass_spring.hpp:1: is not laid out" tree $tree
-again; printf '// \303\251\n' >>mass_spring.hpp
+clean "tree: 500 and 760 lines are none too many" few $tree
+again few; sed -i '1i int   i;' mass_spring.hpp
+caught "tree: not laid out" "mass_spring.hpp:1: is not laid out" few $tree
+again few; printf '// \303\251\n' >>mass_spring.hpp
 caught "tree: a letter that is not ASCII" \
-  "mass_spring.hpp:$(wc -l <mass_spring.hpp): has a character" tree $tree
-again; echo '# words ' >>Makefile
+  "mass_spring.hpp:$(wc -l <mass_spring.hpp): has a character" few $tree
+again few; echo '# words ' >>Makefile
 caught "tree: white space at the end of a line" \
-  "Makefile:$(wc -l <Makefile): ends in white space" tree $tree
-again; printf '// DOS\r\n' >>mass_spring.hpp
+  "Makefile:$(wc -l <Makefile): ends in white space" few $tree
+again few; printf '// DOS\r\n' >>mass_spring.hpp
 caught "tree: DOS line ends" \
-  "mass_spring.hpp:$(wc -l <mass_spring.hpp): ends in white space" tree $tree
-again; echo '*.cpp' >>.git/info/exclude; echo 'int x() {}' >stray.cpp
-check tree $tree; why=""; ! grep -q stray <<<"$out" || why=" blames it;"
-sed -i '$d' "$tmp/tree/.git/info/exclude"
+  "mass_spring.hpp:$(wc -l <mass_spring.hpp): ends in white space" few $tree
+again few; echo '*.cpp' >>.git/info/exclude; echo 'int x() {}' >stray.cpp
+check few $tree; why=""; ! grep -q stray <<<"$out" || why=" blames it;"
+sed -i '$d' "$tmp/few/.git/info/exclude"
 ok "tree: an ignored file is not held"
 # The head of a PNG, all that the check reads: 800 is 3 * 256 + 040.
 png() { printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0%b' "$1"; }
-again; mkdir -p lab/x/results; png '\03\040' >lab/x/results/x.png
+again few; mkdir -p lab/x/results; png '\03\040' >lab/x/results/x.png
 caught "tree: a chart that is no SVG" "lab/x/results/x.png:1: is a chart, but no SVG" \
-  tree $tree
-again; png '\03\041' >docs/x.png
-caught "tree: a picture of 801 pixels" "docs/x.png:1: is wider than 800 pixels" \
-  tree $tree
-again; head -c 150001 /dev/zero >docs/x.svg
-caught "tree: a chart of 150,001 bytes" "docs/x.svg:1: has 150001 bytes" tree $tree
-again small; png '\03\040' >x.png
-clean "tree: 800 pixels are none too many" $tree
-again; rm mass_spring.hpp
-check tree $tree; why=""
+  few $tree
+again few; png '\03\041' >x.png
+caught "tree: a picture of 801 pixels" "x.png:1: is wider than 800 pixels" \
+  few $tree
+again few; head -c 150001 /dev/zero >x.svg
+caught "tree: a chart of 150,001 bytes" "x.svg:1: has 150001 bytes" few $tree
+again few; png '\03\040' >x.png
+clean "tree: 800 pixels are none too many" few $tree
+again few; rm mass_spring.hpp
+check few $tree; why=""
 ! grep -q 'No such file' <<<"$out" || why=" looks for it;"
 ok "tree: a deleted file is not looked for"
 
 # ---- Names of the text; '' keeps them out of the code that is searched
 names=tools/check_names.sh
-before $names
+before tree $names
 quoted() {  # WHAT NAME TEXT: of a page
   again; printf '\nSee `%s`.\n' "$3" >>lab/fast/README.md
   caught "names: $1" "$(wc -l <lab/fast/README.md): $2 is nowhere" tree $names
@@ -234,7 +237,7 @@ caught "names: a comment" "Nearest.hpp:1: is_g""one is nowhere" tree $names
 
 # ---- Numbers of the text
 figures='python3 lab/charts/figures.py'
-before $figures
+before tree $figures
 again; sed -i 's/is 46 times/is 47 times/' README.md
 caught "figures: a number that is not the CSV's" \
   "README.md:$(grep -n 'is 47 times' README.md | cut -d: -f1): 47, expected 46" \
