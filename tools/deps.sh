@@ -15,7 +15,8 @@ packages() {
                 "libimgui-dev libpng-dev ffmpeg gnuplot-nox python3 fonts-dejavu-core" ;;
     check) echo "clang clang-format libclang-rt-dev libomp-dev libgtest-dev" \
                 "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind" ;;
-    peers) echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" ;;
+    peers) echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" \
+                "python3-scipy" ;;
     grade) echo "g++ git make python3 libseccomp-dev" ;;
     page)  echo "clang-19 lld-19 wasi-libc libc++-19-dev-wasm32" \
                 "libclang-rt-19-dev-wasm32 libeigen3-dev python3 ffmpeg" \

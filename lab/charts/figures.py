@@ -12,8 +12,9 @@ import statistics
 import sys
 
 import decision
-from results import (ROOT, Table, by_method, cheapest, contenders, ns_a_node,
-                     runs, tied)
+import peers
+from results import (ROOT, Table, by_method, cheapest, contenders, cost_at,
+                     ns_a_node, runs, tied)
 
 sys.path.append(str(ROOT / "lab/advice"))
 import suite
@@ -32,8 +33,9 @@ def table(path):
 # ---- What an expression may use
 
 def of(scene, method=None):
-    """Runs of work_precision.csv; of peers.csv if scene is 'peers'."""
-    rows = (table("bench/results/peers.csv").rows if scene == "peers" else
+    """Runs of work_precision.csv; of peers.csv if scene is 'peers NAME'."""
+    rows = (table("bench/results/peers.csv").where(problem=scene.split()[1])
+            if scene.startswith("peers ") else
             table("charts/results/work_precision.csv").where(scene=scene))
     return [r for r in runs(rows) if method in (None, r.method)]
 
@@ -67,12 +69,6 @@ def cells_of(method=None, shared=False):
                     method in tied(wanted, some, decision.work) if shared
                     else method in (None, run.method))
     return count
-
-
-def first(scene, error, method):
-    """The run of fewest force evaluations whose error is at most that."""
-    return min((r for r in of(scene, method) if r.ok and r.error <= error),
-               key=lambda r: r.evaluations)
 
 
 def coarsest(scene, method):
@@ -156,7 +152,20 @@ def stretched():
 def call(method):
     """The median time of a force evaluation of peers.csv, all told [us]."""
     return statistics.median(1e6 * r.seconds / r.evaluations
-                             for r in of("peers", method) if r.ok)
+                             for r in of("peers grid1", method))
+
+
+def cost_of(problem, error, method):
+    """Force evaluations at an error, as the chart of peers has them."""
+    return cost_at(error, of(f"peers {problem}", method),
+                   lambda r: r.evaluations)
+
+
+def lead(cost):
+    """By how much a library costs less than ours at most [%]."""
+    return 100 * max(peers.advantage(of(f"peers {problem}"),
+                                     lambda r: getattr(r, cost))[0]
+                     for problem in ("grid1", "curtain"))
 
 
 def bench(nodes, name, beside):

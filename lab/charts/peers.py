@@ -2,89 +2,124 @@
 import math
 
 from panels import DARK, LETTER, Axis, Curve, Panel, Picture, quoted
-from precision import decades, merged, points_of
+from precision import decades
 from results import COARSE, TRUSTED, Table, by_method, cost_at, runs
 
-LIBRARIES = (("odeint", "Boost.odeint"), ("gsl", "GSL"),
-             ("cvode arkode", "SUNDIALS"))
-OURS = ("symplectic-euler", "verlet", "pefrl", "srkn11b")
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+# The first word of a method's name: the library, and its color.
+LIBRARIES = {"odeint": ("Boost.odeint", "#0072B2"), "gsl": ("GSL", "#D55E00"),
+             "cvode": ("SUNDIALS", "#009E73"),
+             "arkode": ("SUNDIALS", "#009E73"), "scipy": ("scipy", "#CC79A7")}
+FINE = 1e-6  # the error of which the title speaks [m]
+COSTS = (("force evaluations", lambda r: r.evaluations,
+          lambda cost: f"{cost:,.0f}"),
+         ("times", lambda r: r.seconds, lambda cost: f"{1e3 * cost:.1f} ms"))
 
 
-def advantage(some, libraries, cost):
-    """(share, error, library's method): by which share of its own cost the
-    best of ours is dearer than the best of theirs, on lines between runs, at
-    the error where that is largest."""
-    of = by_method(some)
-    most, error = (0, 0, ""), COARSE
-    last = TRUSTED * max(r.floor for r in some)
-    while error > last:
-        costs = {m: cost_at(error, runs_, cost) for m, runs_ in of.items()}
-        ours, theirs = (min(((c, m) for m, c in costs.items()
-                             if c and (m in libraries) == is_library),
-                            default=(math.inf, "")) for is_library in (0, 1))
-        if theirs[1]:
-            most = max(most, (1 - theirs[0] / ours[0], error, theirs[1]))
-        error /= 10 ** 0.02
-    return most
+def library_of(method):
+    """The library's name; '' for ours."""
+    return LIBRARIES.get(method.split("-")[0], ("",))[0]
 
 
-def best_of(of, methods, cost, x):
-    """(error, cost) of the cheapest of some methods, along an axis."""
-    found, error = [], x.lo
-    while error > x.hi:
-        costs = [cost_at(error, of[m], cost) for m in methods]
-        found += [(error, min(filter(None, costs)))] if any(costs) else []
-        error /= 10 ** 0.05
+def best(error, some, cost):
+    """{library: (cost, method)} of the cheapest at an error, on lines between
+    runs; '' is ours. A run without a cost does not count."""
+    found = {}
+    for method, of in by_method([r for r in some if cost(r)]).items():
+        c = cost_at(error, of, cost)
+        if c:
+            who = library_of(method)
+            found[who] = min(found.get(who, (math.inf, "")), (c, method))
     return found
 
 
+def ladder(some):
+    """Errors from COARSE down to where the reference ends, 20 a decade."""
+    error, last = COARSE, TRUSTED * max(r.floor for r in some)
+    while error > last:
+        yield error
+        error /= 10 ** 0.05
+
+
+def advantage(some, cost):
+    """(share, error, method): by which share of its own cost the best of ours
+    is dearer than the best of the libraries, at the error where that is
+    largest."""
+    most = (0, 0, "")
+    for error in ladder(some):
+        costs = best(error, some, cost)
+        ours = costs.pop("", (math.inf, ""))
+        if costs:
+            theirs = min(costs.values())
+            most = max(most, (1 - theirs[0] / ours[0], error, theirs[1]))
+    return most
+
+
+def factors(error, some, cost):
+    """{library: its cost over ours} at an error, of those that reach it."""
+    costs = best(error, some, cost)
+    ours = costs.pop("", None)
+    return {who: c / ours[0] for who, (c, _) in costs.items() if ours}
+
+
+def message(problems):
+    """The sentence above the chart, by force evaluations."""
+    cost = COSTS[0][1]
+    share = 100 * max(advantage(some, cost)[0] for some in problems)
+    found = [f for some in problems for f in factors(FINE, some, cost).values()]
+    less = "fewer" if share < 0.5 else f"over {math.ceil(share)} % fewer"
+    return (f"No library needs {less} force evaluations; at "
+            f"{FINE:.0e} m they need ".replace("e-0", "e-") +
+            f"{min(found):.1f} to {max(found):.1f} times as many")
+
+
 def peers(csv, out):
-    """The best of our methods beside those of other libraries, a panel for a
-    library: force evaluations against error above, time below."""
+    """Each library's cost over ours against error: force evaluations above,
+    time below, a column for a problem."""
     table = Table(csv)
-    of, _ = merged(by_method(runs(table.rows)))
-    some = [r for own in of.values() for r in own]
-    x = Axis(0.03, TRUSTED * max(r.floor for r in some))
-    libraries = [m for m in of if "-" in m and m != "symplectic-euler"]
-    look = {}
-    for names, title in LIBRARIES:
-        theirs = [m for m in libraries if m.split("-")[0] in names.split()]
-        look |= {m: (c, title) for m, c in zip(theirs, COLORS, strict=False)}
-    costs = (("force evaluations", lambda r: r.evaluations),
-             ("time of a run [s]", lambda r: r.seconds))
-    most = [advantage(some, libraries, cost) for _, cost in costs]
+    names = list(dict.fromkeys(row["problem"] for row in table.rows))
+    problems = [runs(table.where(problem=name)) for name in names]
+    ours = dict.fromkeys(row["method"] for row in table.rows
+                         if not library_of(row["method"]))
     picture = Picture(
-        out, 800, 656, "At no error is a library cheaper than our methods by "
-        f"more than {100 * max(most)[0]:.0f} %",
-        "The cloth grid1 without drag, from rest to 0.25 s. Down is cheaper, "
-        "right is more accurate. Thick: the cheapest of\n"
-        f"{', '.join(OURS)}; thin: the methods of a library.",
-        table.footer())
-    picture.say(decades(x.hi, x.lo))
-    for row, (what, cost) in enumerate(costs):
-        points = {m: points_of(of[m], cost, x.lo) for m in look}
-        ours = best_of(of, OURS, cost, x)
-        ends = [c for own in (ours, *points.values()) for _, c in own]
-        y = Axis(min(ends) / 2.5, max(ends) * 1.6)
-        for k, (_, title) in enumerate(LIBRARIES):
+        out, 800, 640, message(problems),
+        "A curve: what a library's cheapest method costs, divided by what the "
+        "cheapest of ours costs at the same error. By the thick\nline: which "
+        f"of ours ({', '.join(ours)}), and its cost. "
+        "scipy's time, that of Python, is left out.", table.footer())
+    for row, (what, cost, shown) in enumerate(COSTS):
+        points = []
+        for some in problems:
+            found = {}
+            for error in ladder(some):
+                for who, factor in factors(error, some, cost).items():
+                    found.setdefault(who, []).append((error, factor))
+            points.append(found)
+        ends = [f for found in points for own in found.values() for _, f in own]
+        top = 1.4 * max(ends)
+        y = Axis(min(0.9 * min(ends), top ** -0.3), top)
+        for k, (name, some, found) in enumerate(zip(names, problems, points)):
+            x = Axis(COARSE, TRUSTED * some[0].floor)
             panel = Panel(
-                72 + 240 * k, 348 - 256 * row, 302 + 240 * k, 566 - 256 * row,
-                x, y, title if row == 0 else "",
-                [Curve("ours", ours, DARK, label="ours", width=3)] +
-                [Curve(m, points[m], color, label=m)
-                 for m, (color, library) in look.items() if library == title])
-            share, error, method = most[row]
-            if (share, title) == (max(most)[0], look[method][1]):
-                at = panel.pixel((error, cost_at(error, of[method], cost)))
-                words = f"{100 * share:.0f} % cheaper"
-                picture.line(at[0], panel.bottom + 18, at[0], at[1] - 4, DARK)
-                picture.text(at[0], panel.bottom + 10, words, color=DARK,
-                             at="right")
-                panel.keep_free.append((at[0] - LETTER * len(words),
-                                        panel.bottom, *at))
-            picture.draw(panel, *(
-                ["set format y '1e%T'", f"set ylabel '{what}' offset 1, 0"]
+                72 + 365 * k, 338 - 256 * row, 415 + 365 * k, 538 - 256 * row,
+                x, y, f"{name}: {table.note('scene ' + name)}"
+                if row == 0 else "",
+                [Curve("ours", [(x.lo, 1), (x.hi, 1)], DARK, label="ours",
+                       width=3)] +
+                [Curve(who, found[who], color, label=who) for who, color in
+                 dict(LIBRARIES.values()).items() if who in found])
+            for error in (1e-3, 1e-6, 1e-9):
+                least, method = best(error, some, cost)[""]
+                at, line = panel.pixel((error, 1))
+                picture.line(at, line - 5, at, line + 5, DARK, 3)
+                middle = max(at, panel.left + 4 + LETTER * len(method) / 2)
+                for down, text in ((13, method), (27, shown(least))):
+                    picture.text(middle, line - down, text, color=DARK,
+                                 at="center", more="noenhanced")
+                panel.keep_free.append((at - 50, line - 34, at + 50, line))
+            picture.draw(panel, decades(x.hi, x.lo),
+                         "set ytics (0.5, 1, 2, 5, 10, 20, 50, 100)", *(
+                ["set format y '%g'",
+                 f"set ylabel 'ratio of {what}'"]
                 if k == 0 else ["set format y ''", "unset ylabel"]),
                 "set xlabel " + quoted("RMS error of the positions [m]"
                                        if row else ""))

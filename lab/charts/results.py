@@ -95,7 +95,7 @@ class Run:
     """A run of a method on a problem; what is not known is 0."""
     method: str
     dt: float         # [s]
-    tolerance: float  # [m], of a method with error control
+    tolerance: float  # [m], of a method with error control; or its step, too
     share: float      # dt/(largest stable step)
     evaluations: float
     seconds: float    # least of the repeats: noise only adds
@@ -121,10 +121,11 @@ def runs(rows):
     """The runs in rows of work_precision.csv or of peers.csv."""
     def number(row, name):
         return float(row.get(name) or 0)
-    return [Run(row["method"], number(row, "dt"), number(row, "tolerance"),
+    return [Run(row["method"], number(row, "dt"),
+                number(row, "tolerance") or number(row, "parameter"),
                 number(row, "dt/limit"), number(row, "sweeps"),
                 number(row, "seconds_min"), number(row, "error"),
-                number(row, "floor"), row["status"] == "ok",
+                number(row, "floor"), row.get("status", "ok") == "ok",
                 number(row, "seconds_median"),
                 tuple(number(row, n) for n in ("systems", "products",
                                                "factors"))) for row in rows]

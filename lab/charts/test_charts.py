@@ -187,17 +187,37 @@ class Libraries(unittest.TestCase):
     OURS = [run("a", 1e-3, 1), run("a", 1e-5, 10)]
 
     def test_where_a_library_leads_most(self):
-        theirs = [run("lib-b", 1e-3, 1.2), run("lib-b", 1e-5, 5)]
-        share, error, method = peers.advantage(
-            self.OURS + theirs, ["lib-b"], seconds)
-        self.assertEqual(method, "lib-b")
-        self.assertLess(abs(math.log10(error / 1e-5)), 0.02)
+        theirs = [run("gsl-b", 1e-3, 1.2), run("gsl-b", 1e-5, 5)]
+        share, error, method = peers.advantage(self.OURS + theirs, seconds)
+        self.assertEqual(method, "gsl-b")
+        self.assertLess(abs(math.log10(error / 1e-5)), 0.06)
         self.assertAlmostEqual(share, 0.5, delta=0.01)
 
     def test_a_library_that_never_leads(self):
-        theirs = [run("lib-b", 1e-3, 1.01), run("lib-b", 1e-5, 10.1)]
-        self.assertEqual(peers.advantage(
-            self.OURS + theirs, ["lib-b"], seconds)[0], 0)
+        theirs = [run("gsl-b", 1e-3, 1.01), run("gsl-b", 1e-5, 10.1)]
+        self.assertEqual(peers.advantage(self.OURS + theirs, seconds)[0], 0)
+
+    def test_a_library_is_its_best_method_where_it_reaches_the_error(self):
+        theirs = [run("cvode-b", 1e-3, 4), run("arkode-c", 1e-3, 2),
+                  run("arkode-c", 1e-5, 30), run("scipy-d", 1e-3, 3)]
+        for error, wanted in ((1e-3, {"SUNDIALS": 2, "scipy": 3}),
+                              (1e-5, {"SUNDIALS": 3})):
+            found = peers.factors(error, self.OURS + theirs, seconds)
+            self.assertEqual(found.keys(), wanted.keys())
+            for who, factor in wanted.items():
+                self.assertAlmostEqual(found[who], factor, places=6)
+
+    def test_a_run_without_a_time_has_no_curve_of_time(self):
+        theirs = [run("scipy-b", error, 0, 9) for error in (1e-3, 1e-5)]
+        self.assertEqual(peers.factors(1e-4, self.OURS + theirs, seconds), {})
+
+    def test_the_title_tells_of_a_lead(self):
+        for cost, words in ((101, "needs fewer force"),
+                            (50, "needs over 49 % fewer force")):
+            title = peers.message([self.OURS + [run("a", 9e-8, 100),
+                                                run("gsl-b", 9e-8, cost)]])
+            self.assertIn(words, title)
+        self.assertIn("1e-6 m they need 1.6 to 1.6 times", title)
 
 
 class Floor(unittest.TestCase):

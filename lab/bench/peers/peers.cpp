@@ -1,12 +1,10 @@
 /** @file peers.cpp
- * Compares our methods with those of Boost.odeint, SUNDIALS and GSL, with the
- * same problem, force kernel and clock: grid1 with diagonals, pinned at the
- * corners, from rest to t = 0.25 s. Writes CSV to the standard output:
+ * Compares our methods with those of Boost.odeint, SUNDIALS and GSL, on the
+ * same problems, with the same force kernel and clock. Writes CSV to the
+ * standard output:
  *   make peers-deps peers-chart
- *
- * Each library is used as its manual suggests for such a problem. All runs take
- * turns, REPEATS times. A library calls our kernel with a copy of the
- * positions, which takes 15 % of the time. */
+ * All are used as their manuals suggest. All runs take turns, five times. A
+ * library calls our kernel with a copy of the positions: 15 % of the time. */
 #if !__has_include(<boost/numeric/odeint.hpp>) || \
     !__has_include(<cvode/cvode.h>) || !__has_include(<gsl/gsl_odeiv2.h>)
 #error "Boost, SUNDIALS or GSL is missing: make peers-deps"
@@ -23,13 +21,15 @@
 #include <boost/numeric/odeint.hpp>
 #include <boost/numeric/odeint/stepper/symplectic_rkn_sb3a_m4_mclachlan.hpp>
 #include <boost/numeric/odeint/stepper/velocity_verlet.hpp>
-#include <cstdio>
 #include <functional>
 #include <iostream>
+#include <string>
 #include <vector>
 
+#include "lab/charts/Problem.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/stability/Spectrum.hpp"
 
 using namespace lab;
 
@@ -37,86 +37,60 @@ namespace {
 
 using State = std::vector<double>;
 
-/** The cloth as an ordinary differential equation in flat arrays: positions
- * and velocities of all nodes. The pinned ones have no acceleration. */
-class Problem {
+/** A problem as an ordinary differential equation in flat arrays: positions
+ * and velocities of all nodes. Held nodes have no acceleration. */
+class Equation {
  public:
-  Cloth g;
-  ForcePlan force = make_combined_force(GravityForce(), MassSpringForce());
+  const Problem& problem;
+  const double t_end = problem.t_end;  // [s]
+  const Reference right = reference(problem);
+  Start at_start{problem};
   long calls = 0;
-  const double t_end = 0.25;  // [s]
 
-  Problem() {
-    build_cloth(g, grid_points(25), grid_quads(25), MeshSprings::diagonals);
-    for (unsigned i = 0; i < g.node_slots(); ++i)
-      per_mass_.push_back(
-          is_corner(g.positions()[i]) ? 0 : 1 / g.node_values()[i].mass);
-    start_ = positions();
-    flow_.begin(g, force, true);
+  explicit Equation(const Problem& p) : problem(p) {
+    at_start.constraint.each_held(at_start.cloth,
+                                  [this](Node n) { held_[n.id()] = true; });
+    flow_.begin(at_start.cloth, at_start.force, true);
   }
   /** Number of coordinates. */
-  std::size_t size() const { return 3 * g.node_slots(); }
-  const State& start() const { return start_; }
-
-  void set_positions(const double* q) {
-    std::copy(q, q + size(), &g.positions()[0].x);
-  }
-  State positions() const {
-    const double* x = &g.positions()[0].x;
-    return {x, x + size()};
+  std::size_t size() const { return 3 * held_.size(); }
+  /** Positions and velocities at t = 0. */
+  State start() const {
+    const double* x = &at_start.cloth.positions()[0].x;
+    State y(x, x + size());
+    y.resize(2 * size());
+    return y;
   }
   /** a = F(q)/m [m/s^2] */
   void acceleration(const double* q, double* a) {
     ++calls;
-    const unsigned n = g.node_slots();
-    for (unsigned i = 0; i < n; ++i, q += 3)
+    for (unsigned i = 0; i < held_.size(); ++i, q += 3)
       flow_.cloth().set_position(i, Point(q[0], q[1], q[2]));
     flow_.run({.t = 0, .kick = 0, .keep = true});
-    for (unsigned i = 0; i < n; ++i)
-      for (double c : flow_.acceleration(i)) *a++ = per_mass_[i] > 0 ? c : 0;
+    for (unsigned i = 0; i < held_.size(); ++i)
+      for (double c : flow_.acceleration(i)) *a++ = held_[i] ? 0 : c;
   }
   /** (q, v)' for y = (q, v) */
   void derivative(const double* y, double* dy) {
     std::copy(y + size(), y + 2 * size(), dy);
     acceleration(y, dy + size());
   }
+  /** RMS distance of the nodes from the right answer [m]. */
+  double error(const double* q) const {
+    End end;
+    for (const double* last = q + size(); q != last; q += 3)
+      end.positions.emplace_back(q[0], q[1], q[2]);
+    return distance(problem, end, right.end);
+  }
 
  private:
-  std::vector<double> per_mass_;  // 1/m [1/kg] of each node, 0 if pinned
   FlatFlow flow_;
-  State start_;
+  std::vector<bool> held_ = std::vector<bool>(at_start.cloth.node_slots());
 };
 
-Problem* problem;  // for the C callbacks
+Equation* equation;  // for the C callbacks
 
-/** RMS distance of the nodes [m]. */
-double distance(const State& a, const State& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return std::sqrt(3 * sum / double(a.size()));
-}
-
-// ----------------------------------------------------------------------- Ours
-
-State run_ours(const MethodEntry& entry, int steps) {
-  struct Count : SweptForce {  // a force of nothing, called once a sweep
-    void add_to(const Part& part, double, std::span<Point>) const override {
-      if (part.first == 0) ++problem->calls;
-    }
-    std::optional<int> spring_multiplicity() const override { return 0; }
-  };
-  const ForcePlan force =
-      make_combined_force(GravityForce(), MassSpringForce(), Count());
-  Cloth& g = problem->g;
-  problem->set_positions(problem->start().data());
-  for (Node n : g.nodes()) n.value().vel = Point();
-  const ConstraintPlan pin = PinConstraint(g);
-  auto method = entry.make();
-  const double dt = problem->t_end / steps;
-  for (int n = 0; n < steps; ++n) method->step(g, n * dt, dt, force, pin);
-  return problem->positions();
-}
+int steps_of(double dt) { return int(std::lround(equation->t_end / dt)); }
 
 // --------------------------------------------------------------- Boost.odeint
 
@@ -124,7 +98,7 @@ namespace odeint = boost::numeric::odeint;
 
 struct Acceleration {
   void operator()(const State& x, State& a) const {
-    problem->acceleration(x.data(), a.data());
+    equation->acceleration(x.data(), a.data());
   }
   void operator()(const State& x, const State&, State& a, double) const {
     (*this)(x, a);
@@ -132,34 +106,26 @@ struct Acceleration {
 };
 
 template <typename Stepper>
-State run_odeint(int steps) {
+State run_odeint(double dt) {
   Stepper stepper;
-  State q = problem->start(), v(q.size(), 0.0);
-  const double dt = problem->t_end / steps;
-  for (int n = 0; n < steps; ++n)
+  State q = equation->start(), v(equation->size());
+  q.resize(v.size());
+  for (int n = 0; n < steps_of(dt); ++n)
     stepper.do_step(Acceleration(), std::pair(std::ref(q), std::ref(v)), n * dt,
                     dt);
   return q;
 }
 
-/** (start, 0): all of the first state. */
-State full_start() {
-  State y = problem->start();
-  y.resize(2 * y.size(), 0.0);
-  return y;
-}
-State first_half(const double* y) { return {y, y + problem->size()}; }
-
 State run_odeint_dopri5(double tolerance) {
-  State y = full_start();
+  State y = equation->start();
   auto f = [](const State& x, State& dx, double) {
-    problem->derivative(x.data(), dx.data());
+    equation->derivative(x.data(), dx.data());
   };
   odeint::integrate_adaptive(
       odeint::make_controlled(tolerance, tolerance,
                               odeint::runge_kutta_dopri5<State>()),
-      f, y, 0.0, problem->t_end, 1e-4);
-  return first_half(y.data());
+      f, y, 0.0, equation->t_end, 1e-4);
+  return y;
 }
 
 // ------------------------------------------------------------------- SUNDIALS
@@ -168,14 +134,14 @@ void require(bool ok, const char* what) {
   if (!ok) throw std::runtime_error(what);
 }
 int sundials_rhs(realtype, N_Vector y, N_Vector dy, void*) {
-  problem->derivative(N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
+  equation->derivative(N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
   return 0;
 }
 
 /** Context and vector of one run; freed with it. */
 struct Sundials {
   SUNContext context = nullptr;
-  State y = full_start();
+  State y = equation->start();
   N_Vector vector;
   Sundials() {
     SUNContext_Create(nullptr, &context);
@@ -193,15 +159,15 @@ State run_cvode_adams(double tolerance) {
   CVodeInit(mem, sundials_rhs, 0, s.vector);
   CVodeSStolerances(mem, tolerance, tolerance);
   CVodeSetMaxNumSteps(mem, 10000000);
-  CVodeSetStopTime(mem, problem->t_end);
+  CVodeSetStopTime(mem, equation->t_end);
   auto solver = SUNNonlinSol_FixedPoint(s.vector, 0, s.context);
   CVodeSetNonlinearSolver(mem, solver);
   realtype t;
-  int flag = CVode(mem, problem->t_end, s.vector, &t, CV_NORMAL);
+  int flag = CVode(mem, equation->t_end, s.vector, &t, CV_NORMAL);
   SUNNonlinSolFree(solver);
   CVodeFree(&mem);
   require(flag >= 0, "CVODE failed");
-  return first_half(s.y.data());
+  return s.y;
 }
 
 State run_arkode_dopri(double tolerance) {
@@ -210,132 +176,166 @@ State run_arkode_dopri(double tolerance) {
   ERKStepSStolerances(mem, tolerance, tolerance);
   ERKStepSetTableNum(mem, ARKODE_DORMAND_PRINCE_7_4_5);
   ERKStepSetMaxNumSteps(mem, 10000000);
-  ERKStepSetStopTime(mem, problem->t_end);
+  ERKStepSetStopTime(mem, equation->t_end);
   realtype t;
-  int flag = ERKStepEvolve(mem, problem->t_end, s.vector, &t, ARK_NORMAL);
+  int flag = ERKStepEvolve(mem, equation->t_end, s.vector, &t, ARK_NORMAL);
   ERKStepFree(&mem);
   require(flag >= 0, "ARKODE failed");
-  return first_half(s.y.data());
+  return s.y;
 }
 
 // ------------------------------------------------------------------------ GSL
 
-State run_gsl(const gsl_odeiv2_step_type* type, double tolerance) {
+template <const gsl_odeiv2_step_type*& type>
+State run_gsl(double tolerance) {
   gsl_odeiv2_system system = {[](double, const double* y, double* dy, void*) {
-                                problem->derivative(y, dy);
+                                equation->derivative(y, dy);
                                 return int(GSL_SUCCESS);
                               },
-                              nullptr, 2 * problem->size(), nullptr};
+                              nullptr, 2 * equation->size(), nullptr};
   gsl_odeiv2_driver* driver =
       gsl_odeiv2_driver_alloc_y_new(&system, type, 1e-4, tolerance, tolerance);
-  State y = full_start();
+  State y = equation->start();
   double t = 0;
-  int flag = gsl_odeiv2_driver_apply(driver, &t, problem->t_end, y.data());
+  int flag = gsl_odeiv2_driver_apply(driver, &t, equation->t_end, y.data());
   gsl_odeiv2_driver_free(driver);
   require(flag == GSL_SUCCESS, "GSL failed");
-  return first_half(y.data());
+  return y;
 }
 
 // ------------------------------------------------------------------- Measuring
 
+/** What a run took, and how far its end is off [m]. */
+struct Result {
+  double seconds = 0, error = 0;
+  long calls = 0;
+};
+/** A method with a step [s] or a tolerance. */
+using Runner = std::function<Result(double parameter)>;
+
+Runner ours(const MethodEntry& entry) {
+  return [&entry](double parameter) {
+    const Problem& p = equation->problem;
+    Start s(p);
+    const ConstraintPlan pins = p.constraint(s.cloth);
+    auto method = entry.make();
+    method->set_tolerance(parameter);
+    const double dt = entry.info.adaptive ? p.t_end : parameter;
+    CME212::Clock clock;
+    method->steps(s.cloth, {0, dt}, steps_of(dt), s.force, pins);
+    return Result{clock.seconds(), distance(p, end_of(s), equation->right.end),
+                  long(s.force.evaluations())};
+  };
+}
+Runner theirs(State (*run)(double)) {
+  return [run](double parameter) {
+    equation->calls = 0;
+    CME212::Clock clock;
+    const State end = run(parameter);
+    const double seconds = clock.seconds();
+    return Result{seconds, equation->error(end.data()), equation->calls};
+  };
+}
+
 struct Candidate {
   const char* method;
-  double parameter;  // step [s], or tolerance
-  std::function<State()> run;
-  std::vector<double> seconds = {};
-  double error = 0;
-  long calls = 0;
-  std::string status = "ok";
+  double parameter;
+  Runner run;
+  Result first;
+  std::vector<double> seconds = {};  // of the repeats
 };
+
+/** Add runs of a method, each to warm up: up to the first one that the
+ * reference cannot judge, or that takes too long. Tolerances become smaller by
+ * half, steps by a sixth. A run that fails is reported and left out.
+ * @param steps the least number; 0 if the parameter is a tolerance */
+void add(std::vector<Candidate>& all, const char* name, double steps,
+         const Runner& run) {
+  for (double t = 1e-2; t > 1e-14; t /= 2, steps *= 1.2) {
+    const double parameter = steps > 0 ? equation->t_end / std::ceil(steps) : t;
+    try {
+      const Result r = run(parameter);
+      require(r.error < 1, "diverged");
+      all.push_back({name, parameter, run, r});
+      if (r.error <= 10 * equation->right.floor || r.calls > 20000) return;
+    } catch (const std::exception& e) {
+      std::cerr << name << ' ' << parameter << ": " << e.what() << '\n';
+    }
+  }
+}
 
 std::vector<Candidate> candidates() {
   std::vector<Candidate> all;
-  for (const MethodEntry& m : methods) {
-    if (m.info.limit == 0 || m.info.limit == no_limit) continue;
-    // h_safe omega_max = limit with omega_max^2 = 12 K N (docs: Stability).
-    double largest = m.info.limit / std::sqrt(12.0 * 100 * 625);
-    int least = int(std::ceil(problem->t_end / largest));
-    for (double factor = 1; factor < 3000; factor *= 1.2) {
-      int steps = int(std::ceil(least * factor));
-      if (double(steps) * m.info.sweeps > 20000) break;
-      all.push_back({m.info.name, problem->t_end / steps,
-                     [&m, steps] { return run_ours(m, steps); }});
-    }
+  const Start& s = equation->at_start;
+  const double turns =  // of the fastest oscillation [rad]
+      equation->t_end * omega_safe(s.cloth, s.force, s.constraint);
+  for (const char* name :
+       {"symplectic-euler", "verlet", "pefrl", "srkn11b", "rkn64"}) {
+    const MethodEntry& m = *find_method(name);
+    add(all, name, m.info.adaptive ? 0 : turns / m.info.limit, ours(m));
   }
-  for (int steps = 70; steps < 10000; steps = steps * 6 / 5) {
-    auto add = [&](const char* name, State (*run)(int)) {
-      all.push_back(
-          {name, problem->t_end / steps, [run, steps] { return run(steps); }});
-    };
-    add("odeint-m4",
-        run_odeint<odeint::symplectic_rkn_sb3a_m4_mclachlan<State>>);
-    // Calls itself order 1, and is of order 2.
-    add("odeint-verlet", run_odeint<odeint::velocity_verlet<State>>);
-  }
-  for (double tol = 1e-2; tol > 1e-13; tol /= 4) {
-    auto add = [&](const char* name, auto run) {
-      all.push_back({name, tol, [run, tol] { return run(tol); }});
-    };
-    add("odeint-dopri5", run_odeint_dopri5);
-    add("cvode-adams", run_cvode_adams);
-    add("arkode-dopri", run_arkode_dopri);
-    add("gsl-rk8pd",
-        [](double t) { return run_gsl(gsl_odeiv2_step_rk8pd, t); });
-    add("gsl-msadams",
-        [](double t) { return run_gsl(gsl_odeiv2_step_msadams, t); });
-  }
+  add(all, "odeint-m4", turns / 3,
+      theirs(run_odeint<odeint::symplectic_rkn_sb3a_m4_mclachlan<State>>));
+  // Calls itself order 1, and is of order 2.
+  add(all, "odeint-verlet", turns / 2,
+      theirs(run_odeint<odeint::velocity_verlet<State>>));
+  add(all, "odeint-dopri5", 0, theirs(run_odeint_dopri5));
+  add(all, "cvode-adams", 0, theirs(run_cvode_adams));
+  add(all, "arkode-dopri", 0, theirs(run_arkode_dopri));
+  add(all, "gsl-rk8pd", 0, theirs(run_gsl<gsl_odeiv2_step_rk8pd>));
+  add(all, "gsl-msadams", 0, theirs(run_gsl<gsl_odeiv2_step_msadams>));
   return all;
 }
 
-double median(std::vector<double> a) {
-  std::ranges::sort(a);
-  return a[a.size() / 2];
+void compare() {
+  const Problem& p = equation->problem;
+  std::cout << "# scene " << p.name << ": " << p.about << '\n';
+  std::vector<Candidate> all = candidates();
+  for (int repeat = 0; repeat < 5; ++repeat)
+    for (Candidate& c : all) c.seconds.push_back(c.run(c.parameter).seconds);
+  for (Candidate& c : all) {
+    std::ranges::sort(c.seconds);
+    std::cout << p.name << ',' << c.method << ',' << c.parameter << ','
+              << c.first.calls << ',' << c.seconds[0] << ',' << c.seconds[2]
+              << ',' << c.first.error << ',' << equation->right.floor << '\n';
+  }
+}
+
+/** Forces for a program in another language. Writes number of coordinates, end
+ * time [s] and floor [m] as text; then doubles: the positions at the start, the
+ * right ones at the end, and accelerations for positions that it reads. */
+void serve() {
+  State q(equation->size()), a(q);
+  const auto bytes = std::streamsize(q.size() * sizeof(double));
+  auto put = [bytes](const double* a) {
+    std::cout.write(reinterpret_cast<const char*>(a), bytes).flush();
+  };
+  std::cout << q.size() << ' ' << equation->t_end << ' '
+            << equation->right.floor << '\n';
+  put(equation->start().data());
+  put(&equation->right.end.positions[0].x);
+  while (std::cin.read(reinterpret_cast<char*>(q.data()), bytes)) {
+    equation->acceleration(q.data(), a.data());
+    put(a.data());
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::string served = argc > 1 ? argv[1] : "";
   Sweep::set_threads(1);  // as the peers have
-  const int repeats = argc > 1 ? std::atoi(argv[1]) : 7;
-  if (repeats < 1) {
-    std::cerr << "usage: peers [REPEATS], 1 or more; 7 if left out\n";
-    return 2;
-  }
   gsl_set_error_handler_off();
-  Problem grid1;
-  problem = &grid1;
-  // Two methods of different order and step; how far they agree is the floor.
-  State reference = run_ours(*find_method("srkn11b"), 3000);
-  double floor = distance(reference, run_ours(*find_method("srkn6b"), 12000));
-
-  auto all = candidates();
-  for (int r = 0; r <= repeats; ++r)  // the first is a warm-up
-    for (Candidate& c : all) {
-      if (c.status != "ok") continue;
-      problem->calls = 0;
-      CME212::Clock clock;
-      try {
-        State end = c.run();
-        double seconds = clock.seconds();
-        if (r > 0) c.seconds.push_back(seconds);
-        c.error = distance(end, reference);
-        c.calls = problem->calls;
-        if (!(c.error < 1)) c.status = "diverged";
-        if (seconds > 0.5) c.status = "left out: over 0.5 s";
-      } catch (const std::exception& e) {
-        c.status = e.what();
-      }
-    }
-  std::cout << "method,parameter,sweeps,seconds_min,seconds_median,error,floor,"
-               "status\n";
-  for (const Candidate& c : all) {
-    std::cout << c.method << ',' << c.parameter << ',';
-    if (c.status == "ok") {
-      std::cout << c.calls << ',' << std::ranges::min(c.seconds) << ','
-                << median(c.seconds) << ',' << c.error << ',';
-    } else {
-      std::cout << ",,,,";
-    }
-    std::cout << floor << ',' << c.status << '\n';
+  if (served.empty())
+    std::cout << "problem,method,parameter,sweeps,seconds_min,seconds_median,"
+                 "error,floor\n";
+  Problem grid1 = grid_problem("grid1", "25 x 25 cloth, to 0.25 s", 0.25, 25);
+  grid1.gamma = 0;  // the methods for x'' = F(x) need that
+  for (const Problem& p :
+       {grid1, curtain_problem("curtain", "16 x 16 curtain, to 1 s", 1)}) {
+    Equation one(p);
+    equation = &one;
+    if (served.empty()) compare();
+    if (served == p.name) serve();
   }
 }
