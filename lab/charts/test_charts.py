@@ -212,12 +212,14 @@ class Libraries(unittest.TestCase):
         self.assertEqual(peers.factors(1e-4, self.OURS + theirs, seconds), {})
 
     def test_the_title_tells_of_a_lead(self):
-        for cost, words in ((101, "needs fewer force"),
-                            (50, "needs over 49 % fewer force")):
-            title = peers.message([self.OURS + [run("a", 9e-8, 100),
-                                                run("gsl-b", 9e-8, cost)]])
-            self.assertIn(words, title)
-        self.assertIn("1e-6 m they need 1.6 to 1.6 times", title)
+        ours = [*self.OURS, run("a", 1e-7, 100)]
+        for factor, words in (
+                (1.51, "needs fewer force evaluations; at 1e-6 m they need "
+                       "1.5 to 1.5 times as many"),
+                (0.505, "needs over 50 % fewer force evaluations")):
+            theirs = [replace(r, method="gsl-b", evaluations=factor *
+                              r.evaluations) for r in ours]
+            self.assertIn(words, peers.message([ours + theirs]))
 
 
 class Floor(unittest.TestCase):
