@@ -203,9 +203,9 @@ def programs(check):
     folder = once.KIT
     own = {name: value for name, value in os.environ.items()
            if name not in ("EVERY", "FIRST")}
-    for name in ("test_child.py", "test_markers.py", "pages.py",
-                 "test_report.py", "test_grader.py", "test_grading.py",
-                 "test_class.py", "test_grade_tests.py", "test_seeds.py"):
+    for name in ("pages.py", "test_report.py", "test_grader.py",
+                 "test_grading.py", "test_class.py", "test_grade_tests.py",
+                 "test_seeds.py"):
         if not (folder / name).exists():
             continue
         started = time.monotonic()
