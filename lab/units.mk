@@ -46,9 +46,13 @@ $(eval $(call unity,$(B),$(speed)))
 $(eval $(call unity,$(B)/asan,$(debug) $(sanitizer)))
 
 # All tests, and their names: those that take longest to build and to run first,
-# so that two jobs end together.
-.PHONY: units list-units
+# so that two jobs end together. And what tests and programs are linked of,
+# beside the library.
+.PHONY: units list-units objects
 units: $(TEST_UNITS) $(tests_alone)
 list-units:
 	@echo $(TEST_UNITS) $(tests_alone)
+objects: $(TEST_UNITS:%=$(tested)/unity/%.o) \
+  $(tests_alone:%=$(tested)/tests/%.o) \
+  $(patsubst %.cpp,$(B)/%.o,$(lab_main) $(lab_others))
 endif

@@ -156,6 +156,13 @@ drawn() {
       { echo "$file:1: is no chart that draw.py draws"; return 1; }
   done
 }
+of_charts() {
+  step chart_rule  python3 lab/charts/test_charts.py
+  step drawn       drawn
+  step judging     python3 lab/advice/test_suite.py
+  step graphs      in_folder . graphs
+}
+of_readme() { step readme tools/check_readme.sh; }
 build_tests() { in_folder . units work_precision; }
 
 # ---- check-full
@@ -187,21 +194,24 @@ peers() {
     fi
   done
 }
-# All compiles by clang++; and tests under its ThreadSanitizer, whose OpenMP
-# tells what waits for what. Mesa's own threads are not ours to check.
+# Programs and tests have no warning of clang++, which compiles what threads()
+# runs, and only reads the rest.
 clang() {
-  in_folder clang all cloth units test_sweep test_flat_flow \
-    test_graph_nodes test_graph_edges work_precision stability_map \
-    bench bench_rounds examples \
-    CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
-    build/check/clang/test_nodes && build/check/clang/test_edges &&
-    build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges
+  in_folder read objects UNITS=2 CXX=clang++ SANITIZE= \
+    CXXFLAGS="-Werror -fsyntax-only"
 }
+# Tests under the ThreadSanitizer of clang++, whose OpenMP tells what waits for
+# what. Mesa's own threads are not ours to check.
 threads() {
   local suppress="suppressions=tools/tsan.supp halt_on_error=1"
   local three=(env OMP_NUM_THREADS=3
     TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1")
-  TSAN_OPTIONS=$suppress build/check/clang/test_viewer \
+  in_folder clang mass_spring test_nodes test_edges test_viewer test_panels \
+    test_sweep test_flat_flow test_graph_nodes test_graph_edges \
+    CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
+    build/check/clang/test_nodes && build/check/clang/test_edges &&
+    build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges &&
+    TSAN_OPTIONS=$suppress build/check/clang/test_viewer \
     --gtest_filter='*Thread*:*Simulation*' &&
     TSAN_OPTIONS=$suppress build/check/clang/test_panels \
       --gtest_filter='*Thread*' &&
@@ -240,14 +250,8 @@ float_and_double() {
         print "floats change the center of mass by " d " m"
         exit !(d > 1e-12 && d < 2.8e-5)}'
 }
-# Without window and OpenMP it is built, and not run.
-plain() {
-  in_folder plain cloth build/check/plain/mass_spring VIEWER=0 OPENMP=0 \
-    SPEED=-O0
-}
 programs() {
-  in_folder . all cloth work_precision stability_map \
-    bench bench_rounds examples
+  in_folder . cloth work_precision stability_map bench bench_rounds examples
 }
 # Frames of a cloth that tears, read by VTK.
 vtk() {
@@ -320,10 +324,14 @@ turn() {  # NAME LIMIT COMMAND...
 }
 # All that needs nothing of each other; the longest first.
 turns() {
-  turn checks    "$long"  tools/test_checks.sh
-  turn headers   "$limit" env CXX=clang++ tools/check_headers.sh
+  turn kit       "$long"  make --no-print-directory kit-check EVERY=40 \
+    FIRST=$((turn_of % 40))
+  turn threads   "$long"  threads
+  turn clang     "$long"  clang
   turn recipes   "$long"  tools/test_recipes.sh
-  turn plain     "$limit" plain
+  turn checks    "$long"  tools/test_checks.sh
+  turn headers   "$limit" env CXX=clang++ EVERY=8 FIRST=$((turn_of % 8)) \
+    tools/check_headers.sh
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web
@@ -336,7 +344,6 @@ turns() {
     python3 lab/try/test_try.py build/check/try
   turn mistakes  "$limit" python3 course/pictures/test_mistakes.py
   turn window    "$limit" tools/test_window.sh
-  turn threads   "$limit" threads
   turn charts    "$limit" in_folder . -s charts QUICK=1
   turn stability "$limit" in_folder . -s stability QUICK=1
   turn lanes     "$limit" tools/check_lanes.sh
@@ -361,16 +368,9 @@ case $tier in
   check)
     limit=$long step build build_tests
     beside one_worker other_worker
-    step chart_rule  python3 lab/charts/test_charts.py
-    step judging     python3 lab/advice/test_suite.py
-    step drawn       drawn
-    step graphs      in_folder . graphs
-    step readme      tools/check_readme.sh ;;
+    beside of_charts of_readme ;;
   check-full)
     limit=$long step programs programs
-    limit=$long step clang clang
-    limit=$long step kit make --no-print-directory kit-check EVERY=20 \
-      FIRST=$((turn_of % 20))
     beside one_half other_half ;;
   quick) ;;
   *) echo "usage: tools/check.sh quick | check | check-full" >&2; exit 2 ;;
