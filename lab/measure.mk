@@ -77,7 +77,7 @@ contest:
 # ---- Charts: lab/charts/README.md
 
 charts: work_precision
-	@$(sub) work_precision B=$(B)/float REAL=float VIEWER=0
+	@$(if $(QUICK),,$(sub) work_precision B=$(B)/float REAL=float VIEWER=0)
 	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
 charts-quick:

@@ -156,11 +156,13 @@ drawn() {
       { echo "$file:1: is no chart that draw.py draws"; return 1; }
   done
 }
+# Which cases are taken where not all are: by the commit.
+turn_of=$((0x$(git rev-parse --short=6 HEAD 2>/dev/null || echo 0)))
 of_charts() {
   step chart_rule  python3 lab/charts/test_charts.py
   step drawn       drawn
   step judging     python3 lab/advice/test_suite.py
-  step graphs      in_folder . graphs
+  step graphs      in_folder . graphs EVERY=4 FIRST=$((turn_of % 4))
 }
 of_readme() { step readme tools/check_readme.sh; }
 build_tests() { in_folder . units work_precision; }
@@ -315,8 +317,6 @@ arm() {
   done
   tools/check_arm.sh
 }
-# Which cases are taken where not all are: by the commit.
-turn_of=$((0x$(git rev-parse --short=6 HEAD 2>/dev/null || echo 0)))
 # A step, unless the other worker has taken it.
 turn() {  # NAME LIMIT COMMAND...
   mkdir "$logs/taken/$1" 2>/dev/null || return 0
