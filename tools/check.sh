@@ -209,10 +209,9 @@ threads() {
   local three=(env OMP_NUM_THREADS=3
     TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1")
   in_folder clang mass_spring test_nodes test_edges test_viewer test_panels \
-    test_sweep test_flat_flow test_graph_nodes test_graph_edges \
+    test_sweep test_flat_flow \
     CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
     build/check/clang/test_nodes && build/check/clang/test_edges &&
-    build/check/clang/test_graph_nodes && build/check/clang/test_graph_edges &&
     TSAN_OPTIONS=$suppress build/check/clang/test_viewer \
     --gtest_filter='*Thread*:*Simulation*' &&
     TSAN_OPTIONS=$suppress build/check/clang/test_panels \
@@ -340,7 +339,7 @@ turns() {
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
   turn pages     "$long"  tools/check_pages.sh
-  turn try       "$limit" env EVERY=8 FIRST=$((turn_of % 8)) \
+  turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
     python3 lab/try/test_try.py build/check/try
   turn mistakes  "$limit" python3 course/pictures/test_mistakes.py
   turn window    "$limit" tools/test_window.sh
