@@ -323,8 +323,8 @@ turn() {  # NAME LIMIT COMMAND...
 }
 # All that needs nothing of each other; the longest first.
 turns() {
-  turn kit       "$long"  make --no-print-directory kit-check EVERY=40 \
-    FIRST=$((turn_of % 40))
+  turn kit       "$long"  make --no-print-directory kit-check EVERY=32 \
+    FIRST=$((turn_of % 32))
   turn threads   "$long"  threads
   turn clang     "$long"  clang
   turn recipes   "$long"  tools/test_recipes.sh
