@@ -328,32 +328,32 @@ turns() {
   turn threads   "$long"  threads
   turn clang     "$long"  clang
   turn recipes   "$long"  tools/test_recipes.sh
-  turn checks    "$long"  tools/test_checks.sh
-  turn headers   "$limit" env CXX=clang++ EVERY=8 FIRST=$((turn_of % 8)) \
-    tools/check_headers.sh
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web
   turn single    "$limit" single
+  turn pages     "$long"  tools/check_pages.sh
+  turn contest   "$limit" python3 lab/try/test_contest.py build/check/try
   turn advice    "$limit" advice
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
-  turn pages     "$long"  tools/check_pages.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
     python3 lab/try/test_try.py build/check/try
-  turn mistakes  "$limit" python3 course/pictures/test_mistakes.py
+  turn checks    "$long"  tools/test_checks.sh
   turn window    "$limit" tools/test_window.sh
+  turn mistakes  "$limit" python3 course/pictures/test_mistakes.py
   turn charts    "$limit" in_folder . -s charts QUICK=1
+  turn headers   "$limit" env CXX=clang++ EVERY=8 FIRST=$((turn_of % 8)) \
+    tools/check_headers.sh
   turn stability "$limit" in_folder . -s stability QUICK=1
   turn lanes     "$limit" tools/check_lanes.sh
+  turn peers     "$limit" peers
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
   turn submit    "$limit" tools/test_submit.sh
-  turn contest   "$limit" python3 lab/try/test_contest.py build/check/try
   turn sweep     "$limit" tools/test_sweep.sh
   turn deps      "$limit" tools/test_deps.sh
   turn vtk       "$limit" vtk
   turn grids     "$limit" same_grids
-  turn peers     "$limit" peers
 }
 one_half() { turns; }
 other_half() { turns; }
