@@ -96,8 +96,9 @@ struct Names {
     return name;
   }
 };
-using All = ::testing::Types<ForwardEuler, SymplecticEuler, Verlet, Respa,
-                             Yoshida4, Pefrl, Srkn6b, Srkn11b, Rk4>;
+using All =
+    ::testing::Types<ForwardEuler, SymplecticEuler, Verlet, MollifiedImpulse,
+                     Yoshida4, Pefrl, Srkn6b, Srkn11b, Rk4>;
 TYPED_TEST_SUITE(Explicit, All, Names);
 
 // T = 1 with w = 2: no multiple of the half period pi/2, where first order
@@ -312,8 +313,8 @@ TEST(Methods, AreFoundByTheirNames) {
 
 template <typename M>
 class Symmetric : public ::testing::Test {};
-using SymmetricOnes =
-    ::testing::Types<Verlet, Respa, Yoshida4, Pefrl, Srkn6b, Srkn11b>;
+using SymmetricOnes = ::testing::Types<Verlet, MollifiedImpulse, Yoshida4,
+                                       Pefrl, Srkn6b, Srkn11b>;
 TYPED_TEST_SUITE(Symmetric, SymmetricOnes, Names);
 
 /** A grid in motion, without pins. */
@@ -494,8 +495,8 @@ TEST(Drag, OfTheSquareLowersSplittings) {
       (*method)(g, double(n) / steps, 1. / steps, drag);
     return std::abs(a.position().x - std::log(1 + 0.7 * 2) / 0.7);
   };
-  for (const char* name :
-       {"verlet", "respa", "yoshida4", "pefrl", "srkn6b", "srkn11b"}) {
+  for (const char* name : {"verlet", "mollified-impulse", "yoshida4", "pefrl",
+                           "srkn6b", "srkn11b"}) {
     const MethodEntry& m = *find_method(name);
     EXPECT_NEAR(std::log2(error(m, 400) / error(m, 800)), 1, 0.1) << name;
   }

@@ -53,7 +53,7 @@ const std::map<std::string, std::array<double, 5>> first_steps = {
     {"forward-euler", {0.1, 0.1, 0.4, 0.1, 0.2}},
     {"symplectic-euler", {0.5, 0.5, 1, 0.5, 1}},
     {"verlet", {0.5, 0.5, 0.5, 0.5, 0.5}},
-    {"respa", {0.5, 0.5, 0.5, 0.5, 0.5}},
+    {"mollified-impulse", {0.5, 0.5, 0.5, 0.5, 0.5}},
     {"yoshida4", {0.6, 0.6, 0.6, 0.6, 0.5}},
     {"pefrl", {1.2, 1.2, 1.2, 1.2, 1.2}},
     {"srkn6b", {0.6, 0.6, 1.1, 0.6, 0.7}},

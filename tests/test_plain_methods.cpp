@@ -118,7 +118,9 @@ const std::vector<Scene>& scenes() {
   static const std::vector<Scene> all = [] {
     std::vector<Scene> made;
     for (const Problem& p : make_problems())
-      made.emplace_back(p, p.norm == Norm::functionals ? 0.26 : 0.9 * p.t_end);
+      if (p.name != "slide")  // is_near() waits for a ball
+        made.emplace_back(p,
+                          p.norm == Norm::functionals ? 0.26 : 0.9 * p.t_end);
     made.emplace_back(pulled_chain(0.3), 0.2);
     made.emplace_back(moving_edge(0.4), 0.3);
     return made;

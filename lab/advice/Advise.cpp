@@ -169,7 +169,7 @@ void Adviser::choose_pilots() {
     double least = costs.of_run(pilot(on, some));
     if (!(least > rules_.stiff)) return;
     least /= 2;
-    for (const char* name : {"respa", "tr-bdf2"}) {
+    for (const char* name : {"mollified-impulse", "tr-bdf2"}) {
       const std::optional<Model> before = method_;
       method_->method = find_method(name);
       if (method_->method->info.limit == no_limit)

@@ -192,8 +192,8 @@ std::vector<Sides> Adviser::thinned(Sides s, double work) {
 }
 
 std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
-  std::vector<const char*> methods = {
-      "verlet", "symplectic-euler", "pefrl", "srkn6b", "respa", "tr-bdf2"};
+  std::vector<const char*> methods = {"verlet", "symplectic-euler",  "pefrl",
+                                      "srkn6b", "mollified-impulse", "tr-bdf2"};
   if (rules_.keeps_method) methods = {scene_.method->info.name};
   std::vector<Choice> all;
   for (std::size_t k = reductions_.size(); k-- > 0;) {
@@ -206,7 +206,7 @@ std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
       m->method = find_method(name);
       const MethodInfo& info = m->method->info;
       const double limit = costs.limit(info);
-      // A multirate method without stiff springs is Verlet.
+      // Without stiff springs it is Verlet.
       if (info.multirate && !rules_.keeps_method && !(limit > costs.verlet()))
         continue;
       const bool bounded = limit != no_limit;

@@ -26,7 +26,7 @@ StepCosts::StepCosts(const Model& m) {
   springs_ = double(scene.cloth().num_edges());
   factor_ = of_factor * std::sqrt(double(scene.cloth().num_nodes()));
   verlet_ = scene.safe_limit(*find_method("verlet"));
-  multirate_ = scene.safe_limit(*find_method("respa"));
+  multirate_ = scene.safe_limit(*find_method("mollified-impulse"));
   const CombinedConstraints constraint = constraint_of(m, scene.cloth());
   const StiffSplit split = split_springs(scene.cloth(), 1, constraint);
   stiff_ = double(split.springs.size());
@@ -38,7 +38,8 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
   const MethodInfo& info = method.info;
   const double springs = springs_ * finer * finer;
   if (info.multirate)
-    return springs + stiff_ * finer * finer * std::ceil(dt * finer / inner_);
+    return springs + stiff_ * finer * finer *
+                         (cost_of_filter + std::ceil(dt * finer / inner_));
   const auto cost =
       std::ranges::find(method_costs, info.name, &MethodCost::method);
   const bool solves = info.limit == no_limit || info.adaptive;

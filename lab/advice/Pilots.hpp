@@ -21,9 +21,8 @@ class StepCosts {
   explicit StepCosts(const Model& m);
 
   double springs() const { return springs_; }
-  /** The largest stable steps [s] of Verlet and of the multirate method. */
+  /** The largest stable steps [s] of Verlet. */
   double verlet() const { return verlet_; }
-  double multirate() const { return multirate_; }
   /** The largest stable step [s] of a method; no_limit if it has none. */
   double limit(const MethodInfo& method) const;
   /** Work of a step of @a dt [s] by @a method, on a grid of @a finer times the

@@ -7,6 +7,8 @@
  *   build/bench_rounds SIDE K METHOD ROUNDS   # measured(), for callgrind
  *
  * Verlet makes ROUNDS steps. ROUNDS 0: the first step, which makes a factor.
+ * mollified-impulse makes ROUNDS inner steps. K may be mixed, the problem of
+ * the charts.
  */
 #include <cmath>
 #include <cstdio>
@@ -65,8 +67,9 @@ std::unique_ptr<Method> make(const std::string& name, int rounds) {
   throw std::runtime_error("there is no method " + name);
 }
 
-[[gnu::noinline]] void measured(Method& method, Start& s, int steps = 1) {
-  method.steps(s.cloth, {0.2, frame}, steps, s.force, s.constraint);
+[[gnu::noinline]] void measured(Method& method, Start& s, double dt = frame,
+                                int steps = 1) {
+  method.steps(s.cloth, {0.2, dt}, steps, s.force, s.constraint);
 }
 
 void compare(const Problem& p, double K) {
@@ -107,19 +110,25 @@ void compare(const Problem& p, double K) {
 int main(int argc, char** argv) try {
   Sweep::set_threads(1);
   const int side = argc > 2 ? std::atoi(argv[1]) : 0;
-  const double K = argc > 2 ? std::atof(argv[2]) : 0;
+  const bool mixed = argc == 5 && std::string("mixed") == argv[2];
+  const double K = argc > 2 && !mixed ? std::atof(argv[2]) : 1;
   const int rounds = argc > 4 ? std::atoi(argv[4]) : 1;
   if ((argc != 3 && argc != 5) || side < 2 || !(K > 0) || rounds < 0)
     throw std::runtime_error("usage: bench_rounds SIDE K [METHOD ROUNDS]");
-  const Problem p = grid_problem("", "", 1, unsigned(side), K);
+  const Problem p =
+      mixed ? mixed_problem() : grid_problem("", "", 1, unsigned(side), K);
   if (argc == 3) return compare(p, K), 0;
   Start s(p);
   const auto method = make(argv[3], rounds);
+  const bool by_steps = std::string("verlet") == argv[3];
+  const double dt =
+      mixed ? 0.999 * split_springs(s.cloth, 1, s.constraint).inner_step() *
+                  (by_steps ? 1 : rounds)
+            : frame;
   // The first step allocates, and leaves its force and its factor to the next.
-  if (rounds > 0)
-    method->step(s.cloth, 0.2 - frame, frame, s.force, s.constraint);
+  if (rounds > 0) method->step(s.cloth, 0.2 - dt, dt, s.force, s.constraint);
   const long long before = method->work().products;
-  measured(*method, s, std::string("verlet") == argv[3] ? rounds : 1);
+  measured(*method, s, dt, by_steps ? rounds : 1);
   std::printf("%lld\n", method->work().products - before);
   return 0;
 } catch (const std::exception& e) {

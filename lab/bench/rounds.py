@@ -59,6 +59,9 @@ def main():
                  for side in STIFFNESS}
         steps = {m: later(25, AT_LIMIT, m, 10) for m in STEPS}
         first = later(25, AT_LIMIT, STEPS[0], 0)
+        parts = [later(25, "mixed", m, n) for m, n in (
+            ("verlet", 1), ("verlet", 33), ("mollified-impulse", 1),
+            ("mollified-impulse", 101))]
         cost = {(side, m): [later(side, "1e4", m, 1), later(side, "1e4", m, 2),
                             later(side, "1e2", m, 1)]
                 for side in STIFFNESS for m in METHODS}
@@ -71,6 +74,11 @@ def main():
               f"{job.result()[0] / unit[25]:.3g}")
     more = first.result()[0] - steps[STEPS[0]].result()[0]
     print(f"# the factor of {STEPS[0]}: {more / unit[25]:.3g}")
+    least, most, one, more = (job.result()[0] for job in parts)
+    inner, force = (more - one) / 100, (most - least) / 32
+    step = one - inner - (least - force)  # without what a call takes
+    print(f"# mollified-impulse on mixed: {step / force:.3g} a step, "
+          f"{inner / force:.3g} an inner step")
     for (side, m), jobs in cost.items():
         cost[side, m] = [c / unit[side]
                          for c in model(*(job.result() for job in jobs))]

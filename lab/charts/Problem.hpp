@@ -160,6 +160,9 @@ Problem cloth_problem(std::string name, std::string about, double t_end,
 /** The same on a square grid of side x side nodes. */
 Problem grid_problem(std::string name, std::string about, double t_end,
                      unsigned side, double K = 100);
+/** A grid of 25 x 25 nodes, held at the side y = 0, with K = 1e6 N/m where x <
+ * 0.09 m. */
+Problem mixed_problem();
 /** Pinned at its corners, above the assignment's plane and sphere. */
 CombinedConstraints on_a_ball(const Cloth& g);
 

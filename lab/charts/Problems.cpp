@@ -141,6 +141,65 @@ Problem grid_problem(std::string name, std::string about, double t_end,
                        grid_points(side), grid_quads(side), K);
 }
 
+Problem mixed_problem() {
+  Problem p = grid_problem(
+      "mixed", "25 x 25 cloth, a band of K = 1e6 N/m, held at a side, to 0.1 s",
+      0.1, 25);
+  p.constraint = held_at_a_side;
+  p.build = [build = p.build](Cloth& g) {
+    build(g);
+    for (Edge e : g.edges())
+      if (std::max(e.node1().position().x, e.node2().position().x) < 0.09)
+        e.value().K *= 1e4;
+  };
+  return p;
+}
+
+namespace {
+
+/** Columns that become narrower from right to left, down to a sixteenth; masses
+ * by area, K of a spring by 1/length. */
+Problem graded_problem() {
+  constexpr unsigned side = 25;
+  std::vector<Point> points = grid_points(side);
+  const double ratio = std::pow(16, 1. / (side - 2));
+  const auto place = [=](double u) {  // of 0, 1/24 ... 1
+    return (std::pow(ratio, u * (side - 1)) - 1) /
+           (std::pow(ratio, side - 1) - 1);
+  };
+  for (Point& p : points) p.x = place(p.x);
+  Problem p = cloth_problem(
+      "graded", "25 x 25 cloth, columns of width 1 to 1/16, to 0.25 s", 0.25,
+      points, grid_quads(side));
+  p.gamma = 0;
+  p.build = [=, build = p.build](Cloth& g) {
+    build(g);
+    for (Node n : g.nodes()) n.value().mass = 0;
+    for (const Quad& q : grid_quads(side)) {
+      const double area =
+          norm(points[q[0]] - points[q[1]]) * norm(points[q[1]] - points[q[2]]);
+      for (unsigned i : q) g.node(i).value().mass += Real(area / 4);
+    }
+    for (Edge e : g.edges()) e.value().K = Real(100. / 24 / e.value().L);
+  };
+  return p;
+}
+
+/** A floor with Coulomb's friction: the tangential velocity loses a half of
+ * what the normal one loses. */
+void rub(Cloth& g, double) {
+  for (Node n : g.nodes()) {
+    Point &x = n.position(), &v = n.value().vel;
+    if (!(x.z < 0)) continue;
+    const Point along(v.x, v.y, 0);
+    const double speed = norm(along), loss = std::max(0., -v.z) / 2;
+    x.z = 0;
+    v = speed > loss ? (1 - loss / speed) * along : Point();
+  }
+}
+
+}  // namespace
+
 std::vector<Problem> make_problems() {
   std::vector<Problem> all;
   all.push_back(chain_problem(
@@ -154,20 +213,26 @@ std::vector<Problem> make_problems() {
                              "25 x 25 cloth with drag, to 0.25 s", 0.25, 25));
   all.push_back(grid_problem("stiff", "25 x 25 cloth, K = 10000 N/m, to 0.25 s",
                              0.25, 25, 1e4));
-  all.push_back(grid_problem(
-      "mixed", "25 x 25 cloth, a band of K = 1e6 N/m, held at a side, to 0.1 s",
-      0.1, 25));
-  all.back().constraint = held_at_a_side;
-  all.back().build = [build = all.back().build](Cloth& g) {
-    build(g);
-    for (unsigned e = 0; e < g.num_edges(); ++e)
-      if (Edge edge = g.edge(e);
-          std::max(edge.node1().position().x, edge.node2().position().x) < 0.09)
-        edge.value().K *= 1e4;
-  };
+  all.push_back(mixed_problem());
+  all.push_back(graded_problem());
   all.push_back(grid_problem(
       "drape", "25 x 25 cloth falling on a ball, to 0.4 s", 0.4, 25));
   all.back().constraint = on_a_ball;
+  all.back().norm = Norm::functionals;
+  all.push_back(grid_problem(
+      "slide", "25 x 25 cloth thrown on a floor, rubs and stops, to 0.5 s", 0.5,
+      25));
+  all.back().gamma = 0;
+  all.back().constraint = [](const Cloth&) {
+    return make_combined_constraints(rub);
+  };
+  all.back().build = [build = all.back().build](Cloth& g) {
+    build(g);
+    for (Node n : g.nodes()) {
+      n.position().z = 0.05;
+      n.value().vel = Point(1, 0, 0);
+    }
+  };
   all.back().norm = Norm::functionals;
   all.push_back(grid_problem(
       "tear", "25 x 25, drag, pins, floor and tearing ball (7.2), to 0.4 s",

@@ -13,8 +13,8 @@ import sys
 
 import decision
 import peers
-from results import (ROOT, Table, by_method, cheapest, contenders, cost_at,
-                     ns_a_node, runs, tied)
+from results import (ROOT, Table, by_method, cheapest, cost_at, ns_a_node,
+                     runs, tied)
 
 sys.path.append(str(ROOT / "lab/advice"))
 import suite
@@ -62,7 +62,7 @@ def cells_of(method=None, shared=False):
     count = 0
     for scenes in dict(decision.KINDS).values():
         for scene in scenes:
-            some = contenders(of(scene))
+            some = of(scene)
             for wanted, run in zip(decision.WANTED,
                                    decision.answers_of(some)):
                 count += bool(run) and (

@@ -4,7 +4,7 @@ import math
 
 from panels import BEHIND, LETTER, Axis, Curve, Panel, Picture, styles
 from results import (COARSE, TRUSTED, Table, believed, by_method,
-                     contenders, runs, winners)
+                     runs, winners)
 
 FAMILIES = (("splitting", "splitting methods"),
             ("runge-kutta", "Runge-Kutta(-Nystroem)"),
@@ -27,21 +27,6 @@ def decades(low, high):
     tics = range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)
     return "set xtics (" + ", ".join(
         f"'1e{k}' 1e{k}" for k in tics if k % 2 == 0) + ")"
-
-
-def merged(of):
-    """{method: runs} without methods that are another's double, and {method:
-    label} that names them: with one step for all springs respa is verlet."""
-    kept, labels = {}, {}
-    for method, some in of.items():
-        errors = {r.evaluations: r.error for r in some if r.ok}
-        twin = next((m for m in kept if method == "respa" and 1 < sum(
-            errors.get(r.evaluations) == r.error for r in kept[m])), None)
-        if twin:
-            labels[twin] += " = " + method
-        else:
-            kept[method], labels[method] = some, method
-    return kept, labels
 
 
 def points_of(some, cost, coarsest):
@@ -96,12 +81,12 @@ def work_precision(csv, out, scene):
     """Time against error for one scene; some of its runs are believed."""
     table, look = Table(csv), styles()
     some = runs(table.where(scene=scene))
-    of, labels = merged(by_method(some))
+    of = by_method(some)
     floor, norm = some[0].floor, table.where(scene=scene)[0]["norm"]
 
     def seconds(run):
         return run.seconds
-    segments = winners(contenders(some), seconds)
+    segments = winners(some, seconds)
     colors = {m: look[m][0] for m, start, end in segments
               if start / end >= 10 ** NARROW}
     x = Axis(10 * COARSE, TRUSTED * floor)
@@ -118,7 +103,7 @@ def work_precision(csv, out, scene):
         "at the bottom says; in gray: all others.", table.footer())
     picture.text(20, 485, f"{scene}: {about}", more="noenhanced")
     panel = Panel(72, 82, 785, 466, x, y, "", [
-        Curve(m, own, colors.get(m, BEHIND), 7, labels[m],
+        Curve(m, own, colors.get(m, BEHIND), 7, m,
               width=2.1 if m in colors else 1.2)
         for m, own in sorted(points.items(), key=lambda p: p[0] in colors)
         if own])
@@ -156,10 +141,6 @@ def energy(csv, out):
             c.label = m + " diverges"
     for c in curves.values():
         c.points.append((c.end, c.points[-1][1]))
-    if {"respa", "verlet"} <= curves.keys() and (
-            curves["respa"].points == curves["verlet"].points):
-        del curves["respa"]
-        curves["verlet"].label = "verlet = respa"
     about, _, rest = table.note("scene").partition("; ")
     words = []
     for who, pick, how, chosen in (

@@ -71,8 +71,9 @@ def solver_costs():
     """What methods spend on more than forces, in force evaluations, by the
     instructions that `make rounds-chart` counts: {method: (force evaluations
     of a step, cost of the whole step)}, the cost of the factor that such a
-    method makes once, and those of a linear system, of a product with its
-    matrix and of its factor, for Newton's methods."""
+    method makes once, those of a linear system, of a product with its matrix
+    and of its factor, for Newton's methods, and those of a step and an inner
+    step of mollified-impulse."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
     each = {line.split(",")[0]: int(line.split(",")[3]) for line in lines
             if not line.startswith("#")}
@@ -84,10 +85,14 @@ def solver_costs():
         map(float, re.search(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
                              "(.*) a product", text).groups())
         for by in ("gradients", "factor"))
-    return steps, once, (system - 1, product, by_factor - system)
+    multirate = map(float, re.search(
+        "# mollified-impulse on mixed: (.*) a step, (.*) an inner step",
+        text).groups())
+    return (steps, once, (system - 1, product, by_factor - system),
+            tuple(multirate))
 
 
-SOLVERS, ONCE, NEWTON = solver_costs()
+SOLVERS, ONCE, NEWTON, MULTIRATE = solver_costs()
 
 
 @dataclass(frozen=True)
@@ -104,6 +109,7 @@ class Run:
     ok: bool
     median: float = 0  # of the seconds of the repeats
     solves: tuple = (0, 0, 0)  # linear systems, products, factors
+    inner: float = 0           # steps
 
     @property
     def work(self):
@@ -113,6 +119,8 @@ class Run:
             evaluations, whole = SOLVERS[self.method]
             once = 0 if self.method == "xpbd" else ONCE
             return self.evaluations / evaluations * whole + once
+        if self.method == "mollified-impulse":
+            return self.evaluations * MULTIRATE[0] + self.inner * MULTIRATE[1]
         return self.evaluations + sum(
             n * cost for n, cost in zip(self.solves, NEWTON))
 
@@ -128,7 +136,8 @@ def runs(rows):
                 number(row, "floor"), row.get("status", "ok") == "ok",
                 number(row, "seconds_median"),
                 tuple(number(row, n) for n in ("systems", "products",
-                                               "factors"))) for row in rows]
+                                               "factors")),
+                number(row, "inner")) for row in rows]
 
 
 def believed(some):
@@ -191,11 +200,6 @@ def tied(error, some, cost):
                     default=math.inf) for m, of in by_method(some).items()}
     return sorted(m for m, c in least.items() if best and m != best.method and
                   TIE * c <= min(least.values()))
-
-
-def contenders(some):
-    """Without respa: with one step for all springs it is verlet."""
-    return [run for run in some if run.method != "respa"]
 
 
 def winners(some, cost):

@@ -13,7 +13,7 @@ import decision
 import float_floor
 import peers
 import precision
-from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest, contenders,
+from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest,
                      runs, tied, winners)
 
 FLOOR = 1e-12
@@ -110,7 +110,7 @@ class Measured(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         table = Table("lab/charts/results/work_precision.csv")
-        cls.scenes = {scene: contenders(runs(table.where(scene=scene)))
+        cls.scenes = {scene: runs(table.where(scene=scene))
                       for scene in dict.fromkeys(r["scene"]
                                                  for r in table.rows)}
 

@@ -144,11 +144,12 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
       << (by_tolerance ? cell(c.tolerance) : "") << ','
       << (c.of_limit > 0 ? cell(c.of_limit) : "") << ','
       << (by_tolerance ? c.first.steps : c.steps) << ',' << std::llround(sweeps)
-      << ',' << c.first.work.newton << ',' << c.first.work.products << ','
-      << c.first.work.factors << ',' << cell(least) << ',' << cell(median)
-      << ',' << (ok ? cell(c.error) : "") << ',' << cell(r.floor) << ','
-      << name_of(p.norm) << ',' << statuses[static_cast<int>(c.first.status)]
-      << ',' << cell(c.first.reason) << '\n';
+      << ',' << c.first.work.inner << ',' << c.first.work.newton << ','
+      << c.first.work.products << ',' << c.first.work.factors << ','
+      << cell(least) << ',' << cell(median) << ',' << (ok ? cell(c.error) : "")
+      << ',' << cell(r.floor) << ',' << name_of(p.norm) << ','
+      << statuses[static_cast<int>(c.first.status)] << ','
+      << cell(c.first.reason) << '\n';
 }
 
 void work_precision(const std::vector<Problem>& problems,
@@ -158,7 +159,8 @@ void work_precision(const std::vector<Problem>& problems,
   for (const Problem& p : problems)
     out << "# scene " << p.name << ": " << p.about
         << "; error: " << name_of(p.norm) << '\n';
-  out << "scene,method,dt [s],tolerance [m],dt/limit,steps,sweeps,systems,"
+  out << "scene,method,dt [s],tolerance "
+         "[m],dt/limit,steps,sweeps,inner,systems,"
          "products,factors,seconds_min [s],seconds_median [s],error [m],floor "
          "[m],norm,status,"
          "reason\n";
@@ -168,13 +170,20 @@ void work_precision(const std::vector<Problem>& problems,
     const Reference r = reference(p, o.quick ? 8 : 16);
     write_reference(out, p, r);
     Start start(p);
-    const double omega = omega_safe(start.cloth, start.force, start.constraint);
+    const auto omega_of = [&start](const ForcePlan& force) {
+      return omega_safe(start.cloth, force, start.constraint);
+    };
+    const double omega = omega_of(start.force);
+    const double soft =
+        omega_of(soft_stiffness(start.cloth, start.force, start.constraint));
     std::vector<Case> cases;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const bool multirate = chosen[k]->info.multirate;
+      if (multirate && soft == omega) continue;  // it is verlet here
       progress.show(p.name + ": first runs",
                     (part + .2 * double(k) / double(chosen.size())) / parts);
-      for (Case& c : ladder(p, r, *chosen[k], omega, start.cloth.num_edges(),
-                            o.quick ? rough : full))
+      for (Case& c : ladder(p, r, *chosen[k], multirate ? soft : omega,
+                            start.cloth.num_edges(), o.quick ? rough : full))
         cases.push_back(std::move(c));
     }
     // The first runs were the warm-up. Runs are interleaved, so that a machine
@@ -245,6 +254,7 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
          "evaluations of a step; the others omega dt = 10\n"
       << "method,t [s],energy [J],status\n";
   for (const MethodEntry* entry : chosen) {
+    if (entry->info.multirate) continue;  // it is verlet here
     Start s(p);
     const double omega = omega_safe(s.cloth, s.force, s.constraint);
     auto method = entry->make();

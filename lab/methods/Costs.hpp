@@ -18,7 +18,7 @@ inline constexpr auto method_costs = std::to_array<MethodCost>({
     {"forward-euler", 1.34, 0},        //
     {"symplectic-euler", 0.967, 0},    //
     {"verlet", 1, 0},                  //
-    {"respa", 0.996, 0},               //
+    {"mollified-impulse", 0.996, 0},   //
     {"yoshida4", 2.35, 0},             //
     {"pefrl", 3.07, 0},                //
     {"srkn6b", 4.4, 0},                //

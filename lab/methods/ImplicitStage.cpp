@@ -351,6 +351,21 @@ bool ImplicitStage::factor() {
   return factor_.factorize();
 }
 
+void ImplicitStage::factorize(const Cloth& g, double s,
+                              const ForcePlan& force) {
+  assemble(g, s, force);
+  if (!factor())
+    throw StepError(std::string(goal_.method) + ": no factor of " +
+                    std::to_string(blocks_.size()) + " stiff springs; dt = " +
+                    CME212::short_text(goal_.dt) + " s");
+}
+
+void ImplicitStage::solve(std::vector<Point>& b) {
+  for (unsigned i = 0; i < b.size(); ++i)
+    if (fixed_[i]) b[i] = Point();
+  factor_.solve(b);
+}
+
 /** @a to = the inverse of the preconditioner times @a from. */
 void ImplicitStage::apply(const std::vector<Point>& from,
                           std::vector<Point>& to) {

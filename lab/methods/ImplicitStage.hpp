@@ -109,6 +109,13 @@ class ImplicitStage {
   void solve_newton(Cloth& g, double t, double s, const ForcePlan& force,
                     const LocalError& error = {});
 
+  /** Factor A at the positions of @a g, without negative stiffness.
+   * @pre begin()   Throws StepError. */
+  void factorize(const Cloth& g, double s, const ForcePlan& force);
+  /** Replace @a b by the z of A z = b, by node id, with z = 0 at fixed nodes.
+   * @pre factorize() */
+  void solve(std::vector<Point>& b);
+
   /** Set the positions to p + s w. */
   void move(Cloth& g, double s) const;
   /** s (F - c w) - M (w - q) [kg m/s] by node id, at the positions p + s w of

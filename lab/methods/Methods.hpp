@@ -10,8 +10,8 @@
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/MollifiedImpulse.hpp"
 #include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Respa.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Rkn64.hpp"
 #include "lab/methods/Srkn.hpp"
@@ -26,7 +26,7 @@ namespace lab {
 inline constexpr std::array methods = {entry_of<ForwardEuler>(),
                                        entry_of<SymplecticEuler>(),
                                        entry_of<Verlet>(),
-                                       entry_of<Respa>(),
+                                       entry_of<MollifiedImpulse>(),
                                        entry_of<Yoshida4>(),
                                        entry_of<Pefrl>(),
                                        entry_of<Srkn6b>(),

@@ -19,10 +19,6 @@ std::vector<double> inverse_masses(const Cloth& g,
   return w;
 }
 
-/** In units of a spring in a sweep, where several are evaluated at once: the
- * cost of a spring in an inner step, and that of a sweep without springs. */
-constexpr double cost_inside = 2, cost_of_sweep = 64;
-
 /** Springs of omega_e^2 in [2^k, 2^(k + 1)). */
 struct Octave {
   double count = 0, top = 0;  // top: the largest omega_e [1/s]
@@ -32,16 +28,19 @@ int octave_of(double omega2) {
   return std::clamp(std::ilogb(omega2) - lowest, 0, octaves - 1);
 }
 
+/** As cost_of_filter: what a step and an inner step cost in addition. */
+constexpr double cost_of_step = 360, cost_of_inner_step = 50;
+
 /** The first octave that is stiff; `octaves` if there is none. */
 int first_stiff(const std::array<Octave, octaves>& of, double edges) {
-  const double all = edges + cost_of_sweep;
   double top = 0;
   for (const Octave& o : of) top = std::max(top, o.top);
-  double least = top * all / 2, stiff = edges, soft_top = 0;
+  double least = top * edges / 2, stiff = edges, soft_top = 0;
   int best = octaves;
   for (int k = 0; k < octaves; ++k) {
     const double cost =
-        soft_top * all + top * inner_steps_at_limit * cost_inside * stiff;
+        soft_top * (edges + cost_of_step + cost_of_filter * stiff) +
+        top * inner_steps_at_limit * (stiff + cost_of_inner_step);
     if (stiff < edges && stiff > 0 && cost <= least) best = k, least = cost;
     stiff -= of[std::size_t(k)].count;
     soft_top = std::max(soft_top, of[std::size_t(k)].top);
@@ -82,30 +81,15 @@ StiffSplit split_springs(const Cloth& g, int multiplicity,
   std::ranges::sort(split.nodes);
   split.nodes.erase(std::unique(split.nodes.begin(), split.nodes.end()),
                     split.nodes.end());
+  for (auto& [e, i, j] : split.springs)
+    i = split.find(ends[e][0]), j = split.find(ends[e][1]);
   std::vector<double> sum(split.nodes.size());  // of K/m [1/s^2]
-  std::vector<int> springs(split.nodes.size());
-  for (auto& [e, i, j] : split.springs) {
-    const auto place = [&](unsigned id) {
-      return unsigned(std::ranges::lower_bound(split.nodes, id) -
-                      split.nodes.begin());
-    };
-    i = place(ends[e][0]), j = place(ends[e][1]);
+  for (const auto& [e, i, j] : split.springs) {
     const double K = multiplicity * double(values[e].K);
     sum[i] += K * w[ends[e][0]], sum[j] += K * w[ends[e][1]];
-    ++springs[i], ++springs[j];
   }
-  const auto shared = [&](unsigned i) { return sum[i] > 0 && springs[i] > 1; };
-  for (const auto& [e, i, j] : split.springs) {
-    const double bound = std::sqrt(sum[i] + sum[j]);
-    split.omega = std::max(split.omega, bound);
-    if (shared(i) || shared(j))
-      split.connected = std::max(split.connected, bound);
-    else
-      split.alone.push_back(bound);
-  }
-  std::ranges::sort(split.alone);
-  split.alone.erase(std::unique(split.alone.begin(), split.alone.end()),
-                    split.alone.end());
+  for (const auto& [e, i, j] : split.springs)
+    split.omega = std::max(split.omega, std::sqrt(sum[i] + sum[j]));
   return split;
 }
 

@@ -58,10 +58,6 @@ void announce(const Scene& scene, const Options& o, long long first_step) {
   } else {
     out << ": no step is stable with " << method << " and no drag";
   }
-  const auto resonances = scene.resonances();
-  if (resonances)
-    out << "; steps from " << resonances->first()
-        << " s on may resonate with the stiff springs";
   if (scene.control())
     out << "; afterwards adapted to the energy balance: gain of at most "
         << percent(o.model.step.gain) << " of the energy of motion";
@@ -72,10 +68,6 @@ void announce(const Scene& scene, const Options& o, long long first_step) {
   if (built && first_step == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o.model, built->mesh, scene.cloth(), dt))
       std::cerr << warning << w << '\n';
-  if (dt <= limit && resonances && resonances->at(dt))
-    std::cerr << warning << "the step may resonate with the stiff springs: "
-              << resonances->text(dt) << "; use --dt "
-              << CME212::short_text(resonances->below(dt)) << " or --dt auto\n";
   if (dt <= limit || sharp) return;
   out.str("");
   if (limit > 0)

@@ -24,11 +24,6 @@ FailedRun failed_run(const Scene& s) {
   run.safe = s.safe_limit();
   run.safe_without_drag = s.limits().safe_without_drag(method);
   run.verlet = s.safe_limit(*find_method("verlet"));
-  // Between two resonances, large motion may still reach one of them.
-  if (const auto r = s.resonances(); r && run.dt > r->first()) {
-    run.resonance = r->text(run.dt);
-    run.clear = r->below(r->at(run.dt) ? run.dt : r->first());
-  }
   return run;
 }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
+
+#include "lab/methods/StiffSplit.hpp"
 
 namespace lab {
 
@@ -23,22 +24,7 @@ double StepLimits::chosen(const MethodEntry& method, StepRule rule) const {
         name +
         (dt > 0 ? " has no stability limit here" : " has no stable step") +
         ", so no step can be chosen: give --dt a number");
-  return without_resonance(method, dt);
-}
-
-double StepLimits::without_resonance(const MethodEntry& method,
-                                     double dt) const {
-  const auto r = resonances(method);
-  return r ? r->below(dt) : dt;
-}
-
-std::optional<Resonances> StepLimits::resonances(
-    const MethodEntry& method) const {
-  if (!method.info.multirate) return std::nullopt;
-  auto split = split_springs(cloth_, force_->springs(), constraint_);
-  if (split.empty()) return std::nullopt;
-  const double soft = omega_safe(cloth_, bounding(method), constraint_);
-  return Resonances(std::move(split), with_hand(soft));
+  return dt;
 }
 
 double StepLimits::safe(const MethodEntry& method) const {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "lab/methods/Resonance.hpp"
+#include "lab/methods/Method.hpp"
 #include "lab/scenes/HandForce.hpp"
 #include "lab/scenes/Model.hpp"
 #include "lab/stability/StepLimit.hpp"
@@ -34,11 +34,6 @@ class StepLimits {
    * @a drag: mild_step(). */
   double mild(const MethodEntry& method, const Drag& drag, double dt,
               double share) const;
-  /** The steps that resonate; nullopt unless @a method is multirate and splits
-   * off stiff springs.  Complexity: as omega_safe() */
-  std::optional<Resonances> resonances(const MethodEntry& method) const;
-  /** The step @a dt, or a shorter one if that resonates. */
-  double without_resonance(const MethodEntry& method, double dt) const;
   /** The first step by @a rule, which is not StepRule::fixed.
    * Throws std::invalid_argument if nothing bounds it. */
   double chosen(const MethodEntry& method, StepRule rule) const;

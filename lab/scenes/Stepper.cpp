@@ -122,8 +122,7 @@ bool Stepper::run_to(double t_end, const std::function<void()>& after) {
 
 bool Stepper::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
-  if (control_ && control_->lengthen(flow()))
-    clock_.set_dt(limits_.without_resonance(entry_, control_->dt()));
+  if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
   most = steps_to_check(most);
   if (!advance(most)) return not_good(clock_.steps + most);
   const bool now = cloth_.version() != version_ || done(t_end);
@@ -268,7 +267,7 @@ bool Stepper::take_back() {
                     flow.drag - energy().total();
   control_->take_back(before_.control, steps);
   clock_ = before_.clock;
-  clock_.set_dt(limits_.without_resonance(entry_, control_->dt()));
+  clock_.set_dt(control_->dt());
   go_on(clock_, flow);
   guard_->keep(cloth_);
   looked_ = time();

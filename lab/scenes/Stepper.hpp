@@ -140,9 +140,6 @@ class Stepper {
   double sharp_limit(int products = 15) const {
     return limits_.sharp(entry_, products);
   }
-  std::optional<Resonances> resonances() const {
-    return limits_.resonances(entry_);
-  }
 
   /** Save or load all that steps change. After saving and after loading the run
    * continues with the same bits.

@@ -66,7 +66,7 @@ Cause cause_of(const FailedRun& run) {
     return Cause::drag;
   // Sharp limits come from below, by up to 2 %.
   if (run.dt > 0.97 * run.sharp || run.dt > run.safe) return Cause::step;
-  return run.resonance.empty() ? Cause::nonlinear : Cause::resonance;
+  return Cause::nonlinear;
 }
 
 std::string in_words(Cause cause, const FailedRun& run) {
@@ -100,9 +100,6 @@ std::string in_words(Cause cause, const FailedRun& run) {
     case Cause::no_step:
       out << info.name << " has no stable step: it fails with "
           << info.fails_when;
-      break;
-    case Cause::resonance:
-      out << "the step resonates with the stiff springs: " << run.resonance;
       break;
     case Cause::nonlinear:
       if (std::isfinite(run.safe))
@@ -162,10 +159,6 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
       shorter(safe_share * run.safe);
       break;
     case Cause::no_step:
-      by_verlet(safe_share);
-      break;
-    case Cause::resonance:
-      add(run.method, run.clear);
       by_verlet(safe_share);
       break;
     case Cause::nonlinear:

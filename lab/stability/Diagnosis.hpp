@@ -27,7 +27,6 @@ enum class Cause {
   step,       ///< dt is longer than the stability limit
   drag,       ///< dt is too long for drag that is treated as a force
   no_step,    ///< the method has no stable step
-  resonance,  ///< dt is below the limit; it resonates with stiff springs
   nonlinear,  ///< dt is below the limit, but motion is large
   method,     ///< a method without a limit fails in another way
   solver,     ///< the method or a constraint could not make the step
@@ -45,8 +44,6 @@ struct FailedRun {
   double safe = 0;      ///< the limit in every configuration [s]
   double safe_without_drag = 0;  ///< [s]
   double verlet = 0;             ///< Verlet's safe limit [s]
-  std::string resonance = {};    ///< how dt resonates; empty: not
-  double clear = 0;              ///< a shorter step without resonance [s]
 };
 
 /** Another way to compute the same scene. */
