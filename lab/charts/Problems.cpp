@@ -192,7 +192,7 @@ void rub(Cloth& g, double) {
     Point &x = n.position(), &v = n.value().vel;
     if (!(x.z < 0)) continue;
     const Point along(v.x, v.y, 0);
-    const double speed = norm(along), loss = std::max(0., -v.z) / 2;
+    const double speed = norm(along), loss = std::max(0., -double(v.z)) / 2;
     x.z = 0;
     v = speed > loss ? (1 - loss / speed) * along : Point();
   }
