@@ -50,11 +50,12 @@ class MollifiedImpulse : public BatchMethod {
       2,
       "Garcia-Archilla et al. 1998",
       "some stiff springs in a soft cloth: dt by the soft ones",
-      "more than a third of all springs are stiff",
+      "fast motion near its limit, without drag",
       false,
       true};
 
   MollifiedImpulse();
+  MollifiedImpulse(const MollifiedImpulse&) = delete;  // places_ has split_
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;
   void restart() override {
