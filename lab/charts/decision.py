@@ -16,6 +16,8 @@ ROUGH = 1e-3  # the smallest of the errors that a title calls rough [m]
 LEFT, CELL, ROW = 156, 80, 62  # [pixels]
 SHORT = {"symplectic-euler": "symp. euler",
          "augmented-verlet": "augm. verlet",
+         "mollified-impulse": "moll. impulse",
+         "implicit-euler": "impl. euler",
          "fast-mass-spring": "fast spring"}
 
 
