@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "CME212/Util.hpp"
 
@@ -13,7 +14,7 @@ namespace lab {
  * way between their places at its start and its end. */
 class StiffPlaces final : public NodewiseConstraint {
  public:
-  explicit StiffPlaces(const StiffSplit& split) : split_(split) {}
+  explicit StiffPlaces(StiffSplit split) : split_(std::move(split)) {}
   /** Take the places of a step of @a dt from @a t [s]. */
   void take(const Cloth& g, double t, double dt,
             const ConstraintPlan& constraint) {
@@ -46,7 +47,7 @@ class StiffPlaces final : public NodewiseConstraint {
     unsigned node;
     Point from, to;
   };
-  const StiffSplit& split_;
+  StiffSplit split_;
   std::vector<Way> ways_;
   double t_ = 0, dt_ = 1;
 };

@@ -55,7 +55,6 @@ class MollifiedImpulse : public BatchMethod {
       true};
 
   MollifiedImpulse();
-  MollifiedImpulse(const MollifiedImpulse&) = delete;  // places_ has split_
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;
   void restart() override {
