@@ -37,9 +37,12 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
                           double finer) const {
   const MethodInfo& info = method.info;
   const double springs = springs_ * finer * finer;
-  if (info.multirate)
-    return springs + stiff_ * finer * finer *
-                         (cost_of_filter + std::ceil(dt * finer / inner_));
+  if (info.multirate) {
+    if (stiff_ == 0) return springs;
+    const double stiff = stiff_ * finer * finer;
+    return springs + cost_of_filter(stiff) +
+           std::ceil(dt * finer / inner_) * cost_of_inner_step(stiff);
+  }
   const auto cost =
       std::ranges::find(method_costs, info.name, &MethodCost::method);
   const bool solves = info.limit == no_limit || info.adaptive;

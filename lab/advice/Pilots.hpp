@@ -21,7 +21,7 @@ class StepCosts {
   explicit StepCosts(const Model& m);
 
   double springs() const { return springs_; }
-  /** The largest stable steps [s] of Verlet. */
+  /** The largest stable step [s] of Verlet. */
   double verlet() const { return verlet_; }
   /** The largest stable step [s] of a method; no_limit if it has none. */
   double limit(const MethodInfo& method) const;

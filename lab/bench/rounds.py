@@ -12,7 +12,7 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
-STIFFNESS = {25: ("1e2", "1e4", "1e6"), 81: ("1e2", "1e4", "1e6")}  # [N/m]
+STIFFNESS = dict.fromkeys((25, 81), ("1e2", "1e4", "1e6", "1e8"))  # [N/m]
 METHODS = ("fast-mass-spring", "local-global", "xpbd", "newton-gradients",
            "newton-factor")
 # Whole steps, of 1/60 s = Verlet's limit on 25 x 25 nodes of this K [N/m].

@@ -38,8 +38,8 @@ def message(table, nodes):
     parts = []
     for name in dict.fromkeys(n for n, _ in words):
         at = [K for n, K in words if n == name]
-        parts.append(f"{name} at K = {', '.join(at)}")
-    return (f"Cheapest to {100 * WITHIN:.0f} % of implicit Euler: "
+        parts.append(f"{name} at {'K = ' * (not parts)}{', '.join(at)}")
+    return (f"To {100 * WITHIN:.0f} % of implicit Euler: "
             f"{'; '.join(parts)}")
 
 
@@ -87,7 +87,7 @@ def rounds(csv, out, nodes):
             picture.line(panel.left, at, panel.right, at, GRAY, 1, 3)
             picture.text(panel.right - 4, at + 8,
                          f"{100 * WITHIN:.0f} %" if k == 0 else "", at="right")
-            settings = ["set xtics (10, 100, 1000, 1e4)", "unset ylabel",
+            settings = ["set xtics (10, 100, 1000)", "unset ylabel",
                         "set format x '%g'", "set format y ''"]
             settings.append("set xlabel 'work [steps of verlet]'"
                             if row else "unset xlabel")

@@ -152,7 +152,7 @@ class Measured(unittest.TestCase):
                                          (False, True, None)):
             chosen = [r.method for s, row in answers.items()
                       for wanted, r in zip(decision.WANTED, row)
-                      if r and (s in ("drape", "tear")) == contact
+                      if r and (s in dict(decision.KINDS)["contact"]) == contact
                       and fine in (None, wanted < 0.99e-3)]
             self.assertEqual(max(map(chosen.count, chosen)),
                              chosen.count(method))

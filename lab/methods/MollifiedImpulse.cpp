@@ -60,14 +60,15 @@ int MollifiedImpulse::steps(Cloth& g, const StepTimes& times, int count,
   const auto version = g.version();
   const bool same = kept_for_ == &g && kept_version_ == version &&
                     multiplicity_ == force.springs() && drag_ == force.drag();
+  const bool loaded = loaded_ && kept_version_ == version;
   if (!same) find_split(g, force, constraint);
   if (split_.empty()) return verlet_.steps(g, times, count, force, constraint);
   // The same time and step, however the caller rounds them.
   const double rounding = 1e-6 * times.dt;
-  bool kept = (same || loaded_) &&
-              std::abs(times(0) - kept_time_) <= rounding &&
+  bool kept = (same || loaded) && std::abs(times(0) - kept_time_) <= rounding &&
               std::abs(times.dt - kept_dt_) <= rounding;
   loaded_ = false;
+  kept_time_ = HUGE_VAL;  // if anything throws
   flow_.begin(g, force, true);
   int k = 0;
   do {
@@ -83,9 +84,15 @@ int MollifiedImpulse::steps(Cloth& g, const StepTimes& times, int count,
 void MollifiedImpulse::one_step(Cloth& g, double t, double dt, bool kept,
                                 const ForcePlan& force,
                                 const ConstraintPlan& constraint) {
+  const double inner = std::ceil(dt / split_.inner_step());
+  if (!(inner < 1e6))
+    throw StepError(std::string(info.name) +
+                    ": the stiff springs need more than a million inner steps "
+                    "a step; dt = " +
+                    CME212::short_text(dt) + " s");
   places_->take(g, t, dt, constraint);
   if (!kept) find_soft(t, dt);
-  move_stiff(t, dt);
+  move_stiff(t, dt, int(inner));
   flow_.run(
       {.t = t + dt, .first_kick = dt / 2, .drift = dt, .held = &constraint});
   FlatCloth& flat = flow_.cloth();
@@ -102,29 +109,23 @@ void MollifiedImpulse::one_step(Cloth& g, double t, double dt, bool kept,
   flow_.run({.t = t + dt, .first_kick = dt / 2, .last = &constraint});
 }
 
-/** Half a kick and the inner steps of the nodes of stiff_. */
-void MollifiedImpulse::move_stiff(double t, double dt) {
+/** Half a kick and @a count inner steps of the nodes of stiff_. */
+void MollifiedImpulse::move_stiff(double t, double dt, int count) {
   const FlatCloth& flat = flow_.cloth();
   for (Node n : stiff_.nodes()) {
     const unsigned id = split_.nodes[n.id()];
     n.position() = flat.position(id);
     n.value().vel = flat.velocity(id) + dt / 2 * flat.acceleration(id);
   }
-  const double count = std::ceil(dt / split_.inner_step());
-  if (!(count < 1e6))
-    throw StepError(std::string(info.name) +
-                    ": the stiff springs need more than a million inner steps "
-                    "a step; dt = " +
-                    CME212::short_text(dt) + " s");
   inner_.restart();
   constexpr int at_once = 256;
   StepTimes times = {t, dt / count};
-  for (int left = int(count); left > 0;) {
+  for (int left = count; left > 0;) {
     const int some = std::min(left, at_once);
     inner_.steps(stiff_, times, some, stiff_force_, held_);
     times.done += some, left -= some;
   }
-  inner_done_ += (long long)count;
+  inner_done_ += count;
 }
 
 /** Keep the accelerations by the soft forces at the averaged positions,
@@ -179,7 +180,8 @@ void MollifiedImpulse::archive(Archive& a, const Cloth& g) {
   verlet_.archive(a, g);
   bool has = !split_.empty() && kept_for_ == &g && kept_version_ == g.version();
   a(has);
-  if (a.loads()) kept_for_ = nullptr, loaded_ = has;
+  if (a.loads())
+    kept_for_ = nullptr, loaded_ = has, kept_version_ = g.version();
   if (!has) return;
   auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
   a(accelerations)(kept_time_)(kept_dt_);

@@ -29,14 +29,14 @@ class StiffPlaces;
  * and divides one of frequency omega by 1 + (dt omega/2)^2. It takes one sparse
  * factor a step.
  *
- * split_springs() chooses the stiff springs from K/m; the inner step is half of
- * Verlet's limit for them. If none is stiff, the method is Verlet, bit by bit.
- * A change of a mass or of K takes effect after restart().
+ * split_springs() chooses the stiff springs from K/m; an inner step is at most
+ * half of Verlet's limit for them. If none is stiff, the method is Verlet, bit
+ * by bit. A change of a mass or of K takes effect after restart().
  *
- * Symmetric, drag exact. Conserves linear momentum. Angular momentum and, near
- * rest, symplecticity are kept only as far as H does not change with x. dt is
- * bounded by the soft part: dt omega < 2 for its frequencies, see
- * soft_stiffness().
+ * Symmetric, drag exact. Conserves linear momentum. Symplectic, and exact in
+ * angular momentum, only where H is constant. dt is bounded by the soft part:
+ * dt omega < 2 for its frequencies, see soft_stiffness(). Narrow windows of
+ * resonance remain, which drag or large motion close: README.md.
  * Source: B. Garcia-Archilla, J. M. Sanz-Serna, R. D. Skeel, SIAM J. Sci.
  * Comput. 20 (1998) 930, doi:10.1137/S1064827596313851; the impulse method: M.
  * Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992) 1990,
@@ -50,7 +50,7 @@ class MollifiedImpulse : public BatchMethod {
       2,
       "Garcia-Archilla et al. 1998",
       "some stiff springs in a soft cloth: dt by the soft ones",
-      "fast motion near its limit, without drag",
+      "fast motion near its limit; resonance in narrow windows",
       false,
       true};
 
@@ -90,7 +90,7 @@ class MollifiedImpulse : public BatchMethod {
                   const ConstraintPlan& constraint);
   void one_step(Cloth& g, double t, double dt, bool kept,
                 const ForcePlan& force, const ConstraintPlan& constraint);
-  void move_stiff(double t, double dt);
+  void move_stiff(double t, double dt, int count);
   void find_soft(double t, double dt);
   void find_stiff();
 };

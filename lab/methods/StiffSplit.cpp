@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace lab {
 
@@ -28,9 +27,6 @@ int octave_of(double omega2) {
   return std::clamp(std::ilogb(omega2) - lowest, 0, octaves - 1);
 }
 
-/** As cost_of_filter: what a step and an inner step cost in addition. */
-constexpr double cost_of_step = 360, cost_of_inner_step = 50;
-
 /** The first octave that is stiff; `octaves` if there is none. */
 int first_stiff(const std::array<Octave, octaves>& of, double edges) {
   double top = 0;
@@ -38,9 +34,8 @@ int first_stiff(const std::array<Octave, octaves>& of, double edges) {
   double least = top * edges / 2, stiff = edges, soft_top = 0;
   int best = octaves;
   for (int k = 0; k < octaves; ++k) {
-    const double cost =
-        soft_top * (edges + cost_of_step + cost_of_filter * stiff) +
-        top * inner_steps_at_limit * (stiff + cost_of_inner_step);
+    const double cost = soft_top * (edges + cost_of_filter(stiff)) +
+                        top * inner_steps_at_limit * cost_of_inner_step(stiff);
     if (stiff < edges && stiff > 0 && cost <= least) best = k, least = cost;
     stiff -= of[std::size_t(k)].count;
     soft_top = std::max(soft_top, of[std::size_t(k)].top);

@@ -13,10 +13,11 @@ namespace lab {
 /** Inner steps of a multirate method during one step of Verlet at its limit. */
 inline constexpr int inner_steps_at_limit = 2;
 
-/** What the filter of a step costs for each stiff spring, in springs of a force
- * evaluation. By instructions, on sheets with 121 to 1,034 stiff springs: 26 to
- * 36. A stiff spring in an inner step costs 0.7 to 1.2. */
-inline constexpr double cost_of_filter = 27;
+/** What so many stiff springs cost in addition, in springs of a force
+ * evaluation: the filter of a step, and an inner step. By instructions, on
+ * sheets with 1 to 1,034 stiff springs, within a third. */
+constexpr double cost_of_filter(double stiff) { return 360 + 27 * stiff; }
+constexpr double cost_of_inner_step(double stiff) { return 50 + stiff; }
 
 /** The stiff springs of a cloth: so few and so fast that it is cheaper to
  * evaluate them often and the others seldom. Empty if there are none. */
@@ -46,8 +47,8 @@ struct StiffSplit {
  * times. A spring is stiff if omega_e^2 = K (1/m_i + 1/m_j) is above a bound,
  * with 1/m = 0 for held nodes. Of all bounds 2^k the one with the least work
  * per time is taken,
- *     (highest soft omega_e) (all springs + cost_of_filter (stiff springs))
- *     + (highest omega_e) inner_steps_at_limit (stiff springs),
+ *     (highest soft omega_e) (all springs + cost_of_filter(stiff springs))
+ *   + (highest omega_e) inner_steps_at_limit cost_of_inner_step(stiff springs),
  * if that is at most half of Verlet's work. Otherwise no spring is stiff.
  * @post omega^2 = the largest S_i/m_i + S_j/m_j of a stiff spring, S the sum of
  *       K of the stiff ones at a node: Gershgorin's bound of their matrix
