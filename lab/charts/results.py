@@ -69,30 +69,28 @@ class Table:
 
 def solver_costs():
     """What methods spend on more than forces, in force evaluations, by the
-    instructions that `make rounds-chart` counts: {method: (force evaluations
-    of a step, cost of the whole step)}, the cost of the factor that such a
-    method makes once, those of a linear system, of a product with its matrix
-    and of its factor, for Newton's methods, and those of a step and an inner
-    step of mollified-impulse."""
+    instructions that `make rounds-chart` counts: {method: (cost of a step over
+    its force evaluations, of an inner step, once)}; and for Newton's methods
+    that of a linear system, of a product with its matrix and of its factor."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
     each = {line.split(",")[0]: int(line.split(",")[3]) for line in lines
             if not line.startswith("#")}
     text = (ROOT / RATIOS).read_text()
-    steps = {m: (each[m], float(cost)) for m, cost in re.findall(
-        r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
-    once = float(re.search("# the factor of .*: (.*)", text)[1])
+    factor = float(re.search("# the factor of .*: (.*)", text)[1])
+    costs = {m: (float(cost) / each[m], 0, 0 if m == "xpbd" else factor)
+             for m, cost in re.findall(
+                 r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
+    name, step, inner = re.search(
+        r"# ([\w-]+) on mixed: (.*) a step, (.*) an inner step", text).groups()
+    costs[name] = (float(step), float(inner), 0)
     (system, product), (by_factor, _) = (
         map(float, re.search(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
                              "(.*) a product", text).groups())
         for by in ("gradients", "factor"))
-    multirate = map(float, re.search(
-        "# mollified-impulse on mixed: (.*) a step, (.*) an inner step",
-        text).groups())
-    return (steps, once, (system - 1, product, by_factor - system),
-            tuple(multirate))
+    return costs, (system - 1, product, by_factor - system)
 
 
-SOLVERS, ONCE, NEWTON, MULTIRATE = solver_costs()
+SOLVERS, NEWTON = solver_costs()
 
 
 @dataclass(frozen=True)
@@ -116,11 +114,8 @@ class Run:
         """Counted, in force evaluations. What a run does besides counts
         by its instructions."""
         if self.method in SOLVERS:
-            evaluations, whole = SOLVERS[self.method]
-            once = 0 if self.method == "xpbd" else ONCE
-            return self.evaluations / evaluations * whole + once
-        if self.method == "mollified-impulse":
-            return self.evaluations * MULTIRATE[0] + self.inner * MULTIRATE[1]
+            each, inner, once = SOLVERS[self.method]
+            return self.evaluations * each + self.inner * inner + once
         return self.evaluations + sum(
             n * cost for n, cost in zip(self.solves, NEWTON))
 
