@@ -2,12 +2,8 @@
 /** @file Mesh.hpp
  * The mesh of a cloth: points and quads, read from files or generated. Format
  * of the files: data/README.md. */
-#include <fcntl.h>
 #include <locale.h>
-#include <poll.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #ifdef __APPLE__
 #include <xlocale.h>
@@ -20,6 +16,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -153,38 +151,24 @@ void read_rows(std::string_view text, const std::string& file, const char* kind,
     throw InputError(file, lines, "nothing in the file, expected " + expected);
 }
 
-/** The content of a file.
- * @param waiting called at least each 0.1 s; it may throw to end the reading of
- *        a pipe that gives nothing, or has no end
- * Throws InputError, and what @a waiting throws. */
-inline std::string read_file(
-    const std::string& file, const char* expected, void (*waiting)() = [] {}) {
+/** The content of a file, or of a pipe up to its end.  Throws InputError. */
+inline std::string read_file(const std::string& file, const char* expected) {
   auto fail = [&](const std::string& what) {
     throw InputError(file, 0, what + ", expected " + expected);
   };
-  struct stat status {};
-  const bool known = stat(file.c_str(), &status) == 0;
-  if (known && S_ISDIR(status.st_mode)) fail("a directory");
+  std::error_code none;
+  if (std::filesystem::is_directory(file, none)) fail("a directory");
   const auto fail_to = [&](const char* what) {
     fail(std::string("can't be ") + what + " (" + std::strerror(errno) + ')');
   };
-  struct Input : pollfd {
-    ~Input() { close(fd); }
-  };
-  // Not blocking, so a pipe opens before it has a writer.
-  constexpr int how = O_RDONLY | O_NONBLOCK | O_CLOEXEC;
-  Input in{{open(file.c_str(), how), POLLIN, 0}};
-  if (in.fd < 0) fail_to("opened");
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail_to("opened");
   std::string text;
-  if (known) text.reserve(std::size_t(status.st_size));  // of a pipe, 0
-  std::vector<char> part(1 << 16);
-  for (ssize_t got = 1; got != 0;) {
-    waiting();
-    if (poll(&in, 1, 100) <= 0) continue;  // nothing in 0.1 s, or a signal
-    got = read(in.fd, part.data(), part.size());
-    if (got > 0) text.append(part.data(), std::size_t(got));
-    if (got < 0 && errno != EAGAIN && errno != EINTR) fail_to("read");
-  }
+  std::array<char, 1 << 16> part;
+  while (in.read(part.data(), part.size()), in.gcount() > 0)
+    text.append(part.data(), std::size_t(in.gcount()));
+  if (in.bad()) fail_to("read");
   return text;
 }
 

@@ -24,7 +24,7 @@ using CME212::contents;
 using CME212::error_of;
 using CME212::OutputFile;
 
-class Output : public ::testing::TestWithParam<OutputFile::Scratch> {
+class Output : public ::testing::Test {
  protected:
   const CME212::TestFolder folder;
 
@@ -33,12 +33,12 @@ class Output : public ::testing::TestWithParam<OutputFile::Scratch> {
     return folder / name;
   }
   void write(const std::string& name, const std::string& text) {
-    OutputFile out(name, GetParam());
+    OutputFile out(name);
     out.stream() << text;
     out.commit();
   }
   std::string error(const std::string& name) {
-    return error_of([&] { OutputFile out(name, GetParam()); });
+    return error_of([&] { OutputFile out(name); });
   }
   std::vector<std::string> files() {
     std::vector<std::string> names;
@@ -55,14 +55,10 @@ class Output : public ::testing::TestWithParam<OutputFile::Scratch> {
 };
 using Names = std::vector<std::string>;
 
-INSTANTIATE_TEST_SUITE_P(Scratch, Output,
-                         ::testing::Values(OutputFile::Scratch::unnamed,
-                                           OutputFile::Scratch::named));
-
-TEST_P(Output, OfTwoWritersAtOnceTheLastHasTheFileWhole) {
+TEST_F(Output, OfTwoWritersAtOnceTheLastHasTheFileWhole) {
   const std::string name = folder / "f";
   const std::string a(100000, 'a'), b(70000, 'b');
-  OutputFile first(name, GetParam()), second(name, GetParam());
+  OutputFile first(name), second(name);
   for (std::size_t at = 0; at < a.size(); at += 1000) {
     first.stream() << a.substr(at, 1000) << std::flush;
     if (at < b.size()) second.stream() << b.substr(at, 1000) << std::flush;
@@ -75,7 +71,7 @@ TEST_P(Output, OfTwoWritersAtOnceTheLastHasTheFileWhole) {
   EXPECT_EQ(files(), Names{"f"});
 }
 
-TEST_P(Output, SoDoTwoProcesses) {
+TEST_F(Output, SoDoTwoProcesses) {
   const std::string name = folder / "f";
   std::list<CME212::Child> children;
   for (char c : {'a', 'b', 'c', 'd'})
@@ -88,18 +84,18 @@ TEST_P(Output, SoDoTwoProcesses) {
   EXPECT_EQ(files(), Names{"f"});
 }
 
-TEST_P(Output, LeavesFilesThatAreNotItsOwnAlone) {
+TEST_F(Output, LeavesFilesThatAreNotItsOwnAlone) {
   const std::string part = file("f.part", "mine");
   write(folder / "f", "new");
-  { OutputFile never_committed(folder / "g", GetParam()); }
+  { OutputFile never_committed(folder / "g"); }
   EXPECT_EQ(contents(part), "mine");
   EXPECT_EQ(files(), (Names{"f", "f.part"}));
 }
 
-TEST_P(Output, LeavesTheOldFileUnlessItIsCommitted) {
+TEST_F(Output, LeavesTheOldFileUnlessItIsCommitted) {
   const std::string name = file("f", "old");
   {
-    OutputFile out(name, GetParam());
+    OutputFile out(name);
     out.stream() << "new" << std::flush;
     EXPECT_EQ(contents(name), "old");
   }
@@ -107,18 +103,7 @@ TEST_P(Output, LeavesTheOldFileUnlessItIsCommitted) {
   EXPECT_EQ(files(), Names{"f"});
 }
 
-TEST(OutputFile, LeavesNothingWhenItsProgramIsKilled) {
-  const CME212::TestFolder folder;
-  CME212::Child child("a writer", [&] {
-    OutputFile out(folder / "f");
-    out.stream() << "half" << std::flush;
-    raise(SIGKILL);
-  });
-  EXPECT_EQ(child.wait(), SIGKILL);
-  EXPECT_TRUE(fs::is_empty(folder.path()));
-}
-
-TEST_P(Output, KeepsPermissionsAndGivesNewFilesThoseOfTheUmask) {
+TEST_F(Output, KeepsPermissionsAndGivesNewFilesThoseOfTheUmask) {
   for (unsigned bits : {0600u, 0644u, 0755u, 0222u}) {
     const std::string name = file("old", "old");
     ASSERT_EQ(chmod(name.c_str(), bits), 0);
@@ -135,7 +120,7 @@ TEST_P(Output, KeepsPermissionsAndGivesNewFilesThoseOfTheUmask) {
   }
 }
 
-TEST_P(Output, ReplacesWhatALinkPointsTo) {
+TEST_F(Output, ReplacesWhatALinkPointsTo) {
   fs::create_directory(folder / "d");
   const std::string name = file("d/f", "old");
   fs::create_symlink("d/f", folder / "one");
@@ -155,7 +140,7 @@ TEST_P(Output, ReplacesWhatALinkPointsTo) {
             CME212::output_target(folder / "d/none"));
 }
 
-TEST_P(Output, LeavesOtherHardLinksTheOldContent) {
+TEST_F(Output, LeavesOtherHardLinksTheOldContent) {
   const std::string name = file("f", "old");
   fs::create_hard_link(name, folder / "same");
   write(name, "new");
@@ -163,7 +148,7 @@ TEST_P(Output, LeavesOtherHardLinksTheOldContent) {
   EXPECT_EQ(contents(folder / "same"), "old");
 }
 
-TEST_P(Output, RefusesWhatCantBeWritten) {
+TEST_F(Output, RefusesWhatCantBeWritten) {
   const std::string read_only = file("read_only", "kept");
   chmod(read_only.c_str(), 0444);
   auto why = [](const std::string& name, const char* reason) {
@@ -192,8 +177,8 @@ TEST_P(Output, RefusesWhatCantBeWritten) {
   EXPECT_EQ(said, why(own, "the standard output goes there"));
 }
 
-TEST_P(Output, SaysWhenTheDiskIsFull) {
-  OutputFile full("/dev/full", GetParam());
+TEST_F(Output, SaysWhenTheDiskIsFull) {
+  OutputFile full("/dev/full");
   full.stream() << "text";
   EXPECT_EQ(error_of([&] { full.commit(); }),
             "/dev/full: can't be written (No space left on device)");
@@ -211,9 +196,9 @@ TEST_P(Output, SaysWhenTheDiskIsFull) {
   EXPECT_EQ(files(), Names{"f"});
 }
 
-TEST_P(Output, GivesOutACopyOfWhatIsThereSoFar) {
+TEST_F(Output, GivesOutACopyOfWhatIsThereSoFar) {
   const std::string name = folder / "f";
-  OutputFile out(name, GetParam());
+  OutputFile out(name);
   out.commit_copy();
   EXPECT_FALSE(fs::exists(name));
   out.stream() << "one\n";

@@ -123,8 +123,6 @@ void Video::start_ffmpeg(double rate) {
   posix_spawn_file_actions_adddup2(&actions, ends[1], 0);
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, said[1], 2);
-  if (const auto film = file_->descriptor())  // so that it is inherited
-    posix_spawn_file_actions_adddup2(&actions, *film, *film);
   // Ctrl-C at a terminal must only reach this program, which ends the film.
   posix_spawnattr_t own_group;
   posix_spawnattr_init(&own_group);

@@ -7,7 +7,6 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/live/Line.hpp"
 #include "lab/scenes/KeyValues.hpp"
 #include "lab/scenes/SceneFile.hpp"
@@ -78,8 +77,7 @@ void write_recording(const Live& live, const std::string& file) {
 }
 
 Replay::Replay(const std::string& file) : file_(file) {
-  const std::string text =
-      mesh_detail::read_file(file, "a recording", end_if_interrupted);
+  const std::string text = mesh_detail::read_file(file, "a recording");
   if (text.substr(0, text.find_first_of("\r\n")) != recording_begin)
     throw InputError(file, 1,
                      std::string("expected \"") + recording_begin +

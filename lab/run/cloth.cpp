@@ -23,6 +23,9 @@
 #include <thread>
 #include <utility>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
@@ -407,9 +410,18 @@ int after_output(int status) {
   return status == 0 ? 2 : status;
 }
 
+/** Open /dev/null on those of the standard descriptors that are closed; else
+ * the next file opened would get what is printed. It is opened for reading, so
+ * writing to it remains an error. */
+void hold_standard_descriptors() {
+  for (int d : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(d, F_GETFD) < 0) open("/dev/null", O_RDONLY);  // the lowest free
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  hold_standard_descriptors();
   Options o;
   try {
     int status = parse(argc, argv, o);

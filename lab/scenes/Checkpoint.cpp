@@ -9,7 +9,6 @@
 
 #include "CME212/Mesh.hpp"
 #include "CME212/OutputFile.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stability/Guard.hpp"
@@ -96,8 +95,7 @@ Archive read_checkpoint(const std::string& file) {
   auto fail = [&file](const std::string& why) {
     throw std::runtime_error(file + ": " + why);
   };
-  const std::string all =
-      mesh_detail::read_file(file, "a checkpoint", end_if_interrupted);
+  const std::string all = mesh_detail::read_file(file, "a checkpoint");
   if (all.empty()) fail("nothing in the file, expected a checkpoint");
   if (!all.starts_with(magic)) fail("is not a checkpoint");
   const std::string line = all.substr(0, all.find('\n') + 1),

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 
 namespace lab {
 
@@ -51,7 +50,7 @@ PointsAndQuads parse_nodes(std::string_view text, const std::string& file) {
 
 PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets) {
   const auto read = [](const std::string& file, const char* expected) {
-    return mesh_detail::read_file(file, expected, end_if_interrupted);
+    return mesh_detail::read_file(file, expected);
   };
   PointsAndQuads mesh = parse_nodes(read(nodes, "a file of points"), nodes);
   mesh.quads =

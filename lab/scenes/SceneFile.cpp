@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "CME212/Mesh.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/Nearest.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/MeshFile.hpp"
@@ -62,7 +61,7 @@ std::string Origins::of(const std::string& message,
 
 std::string scene_text(const std::string& file) {
   try {
-    return mesh_detail::read_file(file, "a scene file", end_if_interrupted);
+    return mesh_detail::read_file(file, "a scene file");
   } catch (const InputError& e) {
     throw SceneFileError(e.what());
   }
