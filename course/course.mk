@@ -47,7 +47,6 @@ graphs:
 override DUE      := $(value DUE)
 override TASK     := $(value TASK)
 override FEEDBACK := $(value FEEDBACK)
-override LIST     := $(value LIST)
 
 grade autograder: export FEEDBACK := $(FEEDBACK)
 grade class: export SEED := $(SEED)
@@ -57,7 +56,6 @@ class: export OUT      := $(OUT)
 class: export DUE      := $(DUE)
 class: export TASK     := $(TASK)
 class: export FEEDBACK := $(FEEDBACK)
-class: export LIST     := $(LIST)
 class: override HW := $(if $(filter HW=%,$(MAKEOVERRIDES)),$(HW))
 class:
 	@tools/deps.sh grade && python3 course/kit/whole_class.py

@@ -6,7 +6,7 @@
 # Everything is built in build/check; each step writes build/check/STEP.log; the
 # last line counts the tests.
 set -uo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/.." || exit
 
 tier=${1:-check}
 jobs=${JOBS:-$(nproc)}
@@ -159,6 +159,7 @@ drawn() {
 # Which cases are taken where not all are: by the commit.
 turn_of=$((0x$(git rev-parse --short=6 HEAD 2>/dev/null || echo 0)))
 of_charts() {
+  step lint        tools/lint.sh
   step chart_rule  python3 lab/charts/test_charts.py
   step drawn       drawn
   step judging     python3 lab/advice/test_suite.py
@@ -197,10 +198,11 @@ peers() {
   done
 }
 # Programs and tests have no warning of clang++, which compiles what threads()
-# runs, and only reads the rest.
+# runs, and only reads the rest; nor without window and OpenMP.
 clang() {
-  in_folder read objects UNITS=2 CXX=clang++ SANITIZE= \
-    CXXFLAGS="-Werror -fsyntax-only"
+  local read=(objects UNITS=2 CXX=clang++ SANITIZE=
+    CXXFLAGS="-Werror -fsyntax-only")
+  in_folder read "${read[@]}" && in_folder bare "${read[@]}" VIEWER=0 OPENMP=0
 }
 # Tests under the ThreadSanitizer of clang++, whose OpenMP tells what waits for
 # what. Mesa's own threads are not ours to check.
@@ -327,7 +329,6 @@ turns() {
     FIRST=$((turn_of % 32))
   turn threads   "$long"  threads
   turn clang     "$long"  clang
-  turn recipes   "$long"  tools/test_recipes.sh
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web

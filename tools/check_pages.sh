@@ -2,7 +2,7 @@
 # Run the commands of the laboratory's pages, and of the teaching kit's: those
 # of course/0.md in a starter, on the program that the page shows.
 set -uo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/.." || exit
 
 status=0
 for page in lab/README.md lab/stability/README.md lab/scenes/README.md \

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Hold what can be seen without compiling, in all files that git tracks or
-# would add: programs, sizes, layout, pictures, and nothing left unfinished.
+# Check what can be seen without compiling, in all files that git tracks or
+# would add: programs, sizes, layout, words, pictures, and unfinished work.
+#   tools/check_tree.sh lines   prints the lines that each room has now
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -49,6 +50,28 @@ for file in "${sources[@]}" ${scripts[@]+"${scripts[@]}"}; do
   [ "$count" -le "$limit" ] ||
     echo "$file:$limit: goes on to line $count; the limit is $limit"
 done >>"$faults"
+
+# The table of lab/README.md has a budget for each room: | `FOLDER...` | lines,
+# on the day of the table | budget |. `rest` is all that no other row names.
+room_lines() {  # FOLDER...
+  local folder
+  for folder; do files ":(glob)${folder%/}" ":(glob)${folder%/}/**"; done |
+    grep -E '\.(cpp|hpp|py|js|md|toml|sh|mk|html|css)$|(^|/)Makefile$' |
+    tr '\n' '\0' | xargs -0r cat | wc -l || true
+}
+row='^\| `([^`]+)` \| [0-9,]+ \| ([0-9,]+) \|$'
+left=$(room_lines '**')
+while IFS= read -r line; do
+  [[ $line =~ $row ]] || continue
+  room=${BASH_REMATCH[1]} budget=${BASH_REMATCH[2]//,/}
+  count=$left
+  # shellcheck disable=SC2086  # a list of folders
+  [ "$room" = rest ] || count=$(set -f; room_lines $room)
+  left=$((left - count))
+  [ "${1:-}" != lines ] || echo "$room: $count of $budget" >&2
+  [ "$count" -le "$budget" ] ||
+    echo "lab/README.md:1: $room has $count lines; its budget is $budget"
+done <lab/README.md >>"$faults"
 
 # [O] and the like: so that this file does not find itself.
 lines "is left unfinished" -wE 'TOD[O]|FIXM[E]|XX[X]' "${code[@]}"

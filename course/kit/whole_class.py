@@ -1,15 +1,14 @@
 """Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
 
     DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TASK=ID] [FEEDBACK=names] [SEED=N]
-      [LIST=1] [SAFE=0] [JOBS=N] python3 course/kit/whole_class.py [STUDENT]
+      [SAFE=0] [JOBS=N] python3 course/kit/whole_class.py
 
 DIR holds a folder for each student, as grade.py takes one; dates.py says what
 DUE is. OUT gets class.csv, class.html, reports/STUDENT.txt (for the student, as
 FEEDBACK says) and .json (all), and jplag/. It keeps what each test said of each
 content in kept/: equal submissions are graded once, and a class that was ended
 goes on where it was. Tests that have changed since are made anew, with TASK
-those of this task alone. LIST=1 prints what is left to grade as one command a
-line: each grades what STUDENT handed in, on any machine with these folders.
+those of this task alone.
 Exit status: 0 it was graded; 2 it can't be, or some who could not have a reason
 that is no fault of theirs.
 """
@@ -21,7 +20,6 @@ import hashlib
 import json
 import os
 import pathlib
-import shlex
 import signal
 import sys
 from dataclasses import dataclass, field
@@ -240,25 +238,9 @@ def ends_with_us():
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def commands(whole, rows):
-    """One command for each content that is left."""
-    for group in whole.left(rows).values():
-        words = [f"{name}={os.environ[name]}" for name in (
-            "DIR", "OUT", "HW", "TASK", "SEED", "SAFE") if os.environ.get(name)]
-        yield shlex.join(["env", *words, "python3", "course/kit/whole_class.py",
-                          group[0].student])
-
-
-def run(student):
+def run():
     global THE_CLASS
     THE_CLASS = whole = Class(os.environ.get)
-    if student:
-        whole.prepare()
-        row = whole.read(student)
-        reason = row.reason or whole.grade(student, row.content)
-        if reason:
-            raise submission.BadInput(reason)
-        return 0
     with open(whole.kept / "lock", "w", encoding="ascii") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -269,9 +251,6 @@ def run(student):
         with concurrent.futures.ProcessPoolExecutor(
                 whole.jobs, initializer=ends_with_us) as pool:
             rows = whole.rows(pool)
-            if os.environ.get("LIST"):
-                print("\n".join(commands(whole, rows)))
-                return 0
             fine = whole.grade_all(rows, pool)
             class_output.write(whole, rows)
             jplag.lay_out(whole, rows, lambda jobs: list(pool.map(work, jobs)))
@@ -283,7 +262,7 @@ def run(student):
 
 def main():
     try:
-        return run(sys.argv[1] if len(sys.argv) > 1 else "")
+        return run()
     except (submission.BadInput, once.KitError, tasks.TasksError) as error:
         print(f"class: {error}", file=sys.stderr)
     except OSError as error:

@@ -7,7 +7,7 @@
  *   build/stability_map --cell NAME --out DIR/NAME.csv
  *   build/stability_map --map limits          # the head of a map
  *
- * `make stability` runs and joins all, tools/sweep.sbatch runs them with Slurm.
+ * `make stability` runs and joins all.
  * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
  * input that can't be used, or an output that can't be written. */
 #include <algorithm>
