@@ -14,7 +14,8 @@ packages() {
     draw)  echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri" \
                 "libimgui-dev libpng-dev ffmpeg gnuplot-nox python3 fonts-dejavu-core" ;;
     check) echo "clang clang-format libclang-rt-dev libomp-dev libgtest-dev" \
-                "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind" ;;
+                "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind" \
+                "shellcheck pyflakes3 mypy" ;;
     peers) echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" \
                 "python3-scipy" ;;
     grade) echo "g++ git make python3 libseccomp-dev" ;;
@@ -48,6 +49,8 @@ libbenchmark-dev google-benchmark google-benchmark-devel
 xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
 xdotool - xdotool                 libseccomp-dev - libseccomp-devel
 valgrind - valgrind               pandoc pandoc pandoc
+shellcheck shellcheck ShellCheck  pyflakes3 pyflakes python3-pyflakes
+mypy mypy python3-mypy
 "
 renamed() {  # COLUMN: all that is wanted, in the names of another system
   local group debian found

@@ -9,7 +9,8 @@ passed=0 failed=0
 everything="g++ make pkgconf git libcli11-dev libeigen3-dev libspectra-dev
   libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libpng-dev
   ffmpeg gnuplot-nox python3 fonts-dejavu-core clang clang-format libclang-rt-dev libomp-dev
-  libgtest-dev librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind"
+  libgtest-dev librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind
+  shellcheck pyflakes3 mypy"
 
 stub() { cat >"$tmp/bin/$1"; chmod +x "$tmp/bin/$1"; }
 
