@@ -3,7 +3,7 @@
 
 .PHONY: adviser-suite cells charts charts-quick figures fuzz grids \
         long-runs method-costs orders peers-bench peers-chart peers-deps pictures \
-        rounds-chart speed stability stability-soak try try-deps contest
+        rounds-chart speed stability stability-soak try contest
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -11,9 +11,8 @@ help-lab:
 	@echo 'make quick | check | check-full   what a commit must pass, in 2 and 6'
 	@echo '                        minutes; all else'
 	@echo 'make compdb             compile_commands.json, which clangd reads'
-	@echo 'make try FILE=mine.hpp  what a step of your own is worth, a force, a'
-	@echo '                        constraint; STEP=my_step; GRAPH=Graph.hpp, which'
-	@echo '                        needs make try-deps: lab/try/README.md'
+	@echo 'make try FILE=mine.hpp  what a step of your own is worth; STEP=my_step:'
+	@echo '                        lab/try/README.md'
 	@echo 'make charts             work and precision, failures: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
@@ -45,15 +44,11 @@ figures:
 # no shell.
 override FILE := $(value FILE)
 override STEP := $(value STEP)
-override GRAPH := $(value GRAPH)
 try: export FILE := $(FILE)
 try: export STEP := $(STEP)
 try: export WINDOW := $(WINDOW)
 override RECORD := $(value RECORD)
 try: export RECORD := $(RECORD)
-try: export GRAPH := $(GRAPH)
-try-deps:
-	@tools/deps.sh try
 try:
 	@tools/deps.sh grade draw && python3 lab/try/try.py
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Install what is missing:  tools/deps.sh [build] [draw] [check] [peers] [grade]
-# [page] [try]
+# [page]
 # Without arguments: build draw check. When all is there it says nothing and
 # asks no network. DEPS=skip does nothing: for systems without apt;
 # with Homebrew or Fedora it prints the command that installs all.
@@ -22,8 +22,7 @@ packages() {
     page)  echo "clang-19 lld-19 wasi-libc libc++-19-dev-wasm32" \
                 "libclang-rt-19-dev-wasm32 libeigen3-dev python3 ffmpeg" \
                 "pandoc git chromium python3-websocket" ;;
-    try)   echo "valgrind" ;;
-    *) echo "deps: no group '$1'; there are: build draw check peers grade page try" >&2
+    *) echo "deps: no group '$1'; there are: build draw check peers grade page" >&2
        exit 2 ;;
   esac
 }
@@ -72,7 +71,6 @@ title() {
     peers) echo "to compare with other libraries" ;;
     grade) echo "to grade submissions" ;;
     page)  echo "to build the web page and the site, and to test them" ;;
-    try)   echo "to count what a graph costs" ;;
   esac
 }
 

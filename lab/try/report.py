@@ -248,74 +248,6 @@ def long_run(verdict, out):
     picture.finish()
 
 
-def one_spring(verdict, out):
-    rows = verdict.data["length"]
-    own = [(length, row[0] - rows[-2][1][0]) for length, row in rows]
-    right = [(length, 4 * (length - .7)) for length, _ in rows]
-    most = max(2.9, *(abs(f) for _, f in own)) * 1.15
-    picture = Picture(out, 1000, 330, "The force of one spring against its "
-                      "length", "K = 4 N/m, L = 0.7 m; the pull on one end. "
-                      "Of length 0 it has no direction: no force.", "")
-    panel = Panel(90, 70, 560, 250, Axis(0, 1, False),
-                  Axis(-most, most, False), "", [
-                      Curve("right", right, INSIDE, 0, "K (l - L)"),
-                      Curve("yours", own, OWN, 7, verdict.step)])
-    picture.draw(panel, "set format '%g'", "set xtics .2", "set ytics auto",
-                 "set xlabel 'length [m]'", "set ylabel 'pull [N]'")
-    picture.finish()
-
-
-def one_call(verdict, out):
-    """Where a constraint moves nodes, from two sides."""
-    picture = Picture(out, 1000, 430, "Where nodes are moved, from two sides",
-                      "Red: a node after a call; gray: its way from where it "
-                      "was. Cloths in seven positions.", "")
-    moves = verdict.data["call"]
-    zs = [p[2] for move in moves for p in move]
-    for k, axis in enumerate((0, 1)):
-        xs = [p[axis] for move in moves for p in move]
-        flat = [[(p[axis], p[2]) for p in move] for move in moves]
-        picture.draw(
-            Panel(90 + 475 * k, 80, 500 + 475 * k, 350,
-                  Axis(min(xs) - .05, max(xs) + .05, False),
-                  Axis(min(zs) - .05, max(zs) + .05, False),
-                  f"along {'yx'[k]}",
-                  [Curve(f"a{j}", [to], OWN, 7)
-                   for j, (_, to) in enumerate(flat)],
-                  [Curve(f"b{j}", way, GRAY) for j, way in enumerate(flat)]),
-            "set format '%g'", "set xtics auto", "set ytics auto",
-            f"set xlabel '{'xy'[k]} [m]'", "set ylabel 'z [m]'")
-    picture.finish()
-
-
-def costs(verdict, out):
-    picture = Picture(out, 1000, 380, "Instructions for a node, as the graph "
-                      "grows", "Counted by callgrind: a level line is a cost "
-                      "that does not depend on the size of the graph.", "")
-    about = verdict.data["costs"]
-    sizes = sorted(n * n for n in about["yours"])
-    most = max(c for of in about.values() for row in of.values()
-               for c in row.values())
-    look = {"yours": OWN, "course": INSIDE, "flat arrays": "#888888"}
-    for k, (part, title) in enumerate((
-            ("building", "building"), ("forces", "forces of the springs"),
-            ("removal", "removal of a node"))):
-        curves = [Curve(name.split()[0], [
-            (n * n, row[part]) for n, row in sorted(of.items())
-            if row[part] > 10], look[name], 5 if name == "yours" else 0, name)
-            for name, of in about.items()]
-        curves = [c for c in curves if c.points]
-        picture.draw(
-            Panel(80 + 315 * k, 80, 340 + 315 * k, 300,
-                  Axis(sizes[0] * .8, sizes[-1] * 1.3),
-                  Axis(10, most * 2), title, curves),
-            "set xtics (" + ", ".join(f"'{n}' {n}" for n in sizes) + ")",
-            "set xlabel 'nodes'",
-            *(["set format y '10^{%T}'", "set ylabel 'instructions'"]
-              if k == 0 else ["set format y ''", "unset ylabel"]))
-    picture.finish()
-
-
 # ---- The page
 
 STYLE = """body{font:16px/1.45 'DejaVu Sans',Arial,sans-serif;color:#222;
@@ -351,8 +283,7 @@ def coefficients(t):
 CHARTS = ((among_methods, "chart.chain", "Among the laboratory's methods"),
           (convergence, "raw", "Order"), (region, "map", "Where it fails"),
           (failure, "grid1", "On the assignment's cloth"),
-          (long_run, "energy", "Energy"), (costs, "costs", "Costs"),
-          (one_spring, "length", "A spring"), (one_call, "call", "A call"))
+          (long_run, "energy", "Energy"))
 
 
 def write(verdict, folder, source):

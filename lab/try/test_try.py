@@ -12,13 +12,10 @@ import os
 import pathlib
 import random
 import re
-import shutil
 import sys
 import tempfile
 import tomllib
 
-import functor
-import graphs
 import measure
 import teacher
 from workshop import ROOT, BadInput
@@ -26,7 +23,6 @@ from workshop import ROOT, BadInput
 sys.path.append(str(ROOT / "lab/charts"))
 from results import Table, believed, runs  # noqa: E402
 
-FUNCTOR = ("functor",)
 QUICK = ("trace", "same", "order")
 FORM = """#include <stdexcept>
 #include <vector>
@@ -70,12 +66,6 @@ constraint(g, end);
 def text_of(case):
     if "file" in case:
         return case["file"]
-    if "thing" in case:
-        call = ("Point operator()(Node n, double t) const"
-                if case["thing"] == "force" else
-                "void operator()(GraphType& g, double t) const")
-        return (f"{case.get('before', '')}struct Mine {{\n  {call} {{\n"
-                f"    (void)t;\n{case['body']}\n  }}\n}};\n")
     if "rk" in case:
         rows, b, tau = case["rk"][:4], *case["rk"][4:]
         return FORM % ("", RUNGE_KUTTA % (*rows, b, tau))
@@ -89,9 +79,7 @@ def said_of(text, parts=QUICK, step=""):
     path.write_text(text, encoding="utf-8")
     folder.chmod(0o755)
     try:
-        chosen = functor.choose(path, step) if parts == FUNCTOR else None
-        verdict = (functor.measure(path, *chosen) if chosen else
-                   measure.measure(path, step, parts))
+        verdict = measure.measure(path, step, parts)
         return 0, "\n".join(teacher.first_lines(verdict)), verdict
     except BadInput as error:
         return 2, str(error), None
@@ -102,10 +90,7 @@ def said_of(text, parts=QUICK, step=""):
 
 def mistake(case):
     """Faults of what is said of one."""
-    parts = case.get("parts", QUICK)
-    if "thing" in case or parts == "functor":
-        parts = FUNCTOR
-    status, said, _ = said_of(text_of(case), parts)
+    status, said, _ = said_of(text_of(case), case.get("parts", QUICK))
     found = [] if status == case.get("status", 0) else [f"status {status}"]
     found += [f"does not say '{words}'" for words in case["says"]
               if not re.search(words, said)]
@@ -127,44 +112,6 @@ double my_step(G& g, double t, double dt, F force) {
     if status or v.name != "symplectic Euler" or v.faults or v.order != 1:
         return [said]
     return [] if abs(v.limit - 2) < .02 else [f"limit {v.limit}"]
-
-
-# ---- Graphs
-
-def graph(case):
-    """A graph of course/graphs, or the course's, with a change."""
-    name, old, new, words = case
-    path = pathlib.Path(tempfile.mkdtemp(dir=FOLDER, prefix="graph-"))
-    path.chmod(0o755)
-    file = path / "Graph.hpp"
-    text = (ROOT / name).read_text(encoding="utf-8")
-    if old and not re.search(old, text):
-        return [f"{name} has no {old}"]
-    file.write_text(re.sub(old, new, text, count=1) if old else text,
-                    encoding="utf-8")
-    try:
-        v = graphs.measure(file)
-        said = "\n".join([*teacher.first_lines(v), *map(" ".join, v.facts)])
-    except BadInput as error:
-        said = str(error)
-    finally:
-        shutil.rmtree(path)
-    return [] if re.search(words, said) else [f"does not say '{words}'", said]
-
-
-REMOVE = r"(size_type remove_node\(const Node& n\) \{)"
-GRAPHS = [
-    ("Graph.hpp", "", "", "forces.* 1 times the course's graph.* grow"),
-    ("course/graphs/map/Graph.hpp", "", "", r"building.* as N\^(0.9|1.0)"),
-    ("course/graphs/vectors/Graph.hpp", REMOVE,
-     r"\1 return 0 * n.index();", "after the removal it has 2304 nodes"),
-    ("course/graphs/vectors/Graph.hpp", REMOVE,
-     r"\1 for (volatile int go = 1; go;) {}", "loops for ever"),
-    ("course/graphs/vectors/Graph.hpp", REMOVE,
-     r"\1 return n.nothing();", r"Graph.hpp:1\d\d: .*nothing"),
-    ("course/graphs/vectors/Graph.hpp", REMOVE,
-     r"\1 throw 3;", "throws int"),
-]
 
 
 # ---- A method that nobody has
@@ -296,10 +243,6 @@ def main():
     cases = [(case["name"], mistake, case)
              for case in tomllib.loads(toml)["mistake"][sample]]
     cases += [("without constraint", without_constraint, None)]
-    if shutil.which("valgrind"):
-        cases += [(f"graph: {row[3]}", graph, row) for row in GRAPHS[sample]]
-    else:
-        print("skipped: graphs: valgrind is missing: make try-deps")
     cases += [(f"own method {seed}", own_method, seed) for seed in (1, 2)]
     if (ROOT / "methods.hpp").exists():
         cases += [(row[0], declared, row) for row in DECLARED[sample]]

@@ -1,57 +1,31 @@
-"""Measure a step, a force, a constraint or a graph that you have written:
+"""Measure a step that you have written:
 
     make try FILE=mine.hpp [STEP=my_step]      lab/try/README.md
-    make try GRAPH=Graph.hpp
 
 Writes try/report.html and says the same here. Exit status: 0 there is a report
-(whatever it says); 2 the file has nothing that can be measured."""
+(whatever it says); 2 the file has no step that can be measured."""
 import os
 import pathlib
 import sys
 import time
 
-import functor
-import graphs
 import measure
 import report
 import teacher
-from workshop import BadInput, progress, steps_in
-
-
-def measured(path, wanted):
-    """The Verdict on the step in a file or, if that is none, on the force or
-    constraint."""
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-        steps = steps_in(text)
-        if wanted not in steps if wanted else not steps:
-            if chosen := functor.choose(path, wanted):
-                return functor.measure(path, *chosen)
-            if not steps and (names := functor.functors_in(text)):
-                raise BadInput(f"{path}:1: has no {wanted}; it has "
-                               + ", ".join(names))
-    except OSError:
-        pass        # measure() says why
-    return measure.measure(path, wanted, say=progress)
+from workshop import BadInput, progress
 
 
 def main():
-    graph = os.environ.get("GRAPH", "")
-    path, wanted = os.environ.get("FILE") or graph, os.environ.get("STEP", "")
+    path, wanted = os.environ.get("FILE", ""), os.environ.get("STEP", "")
     if not path:
-        raise BadInput("make try: no file, expected FILE=mine.hpp or "
-                       "GRAPH=Graph.hpp")
+        raise BadInput("make try: no file, expected FILE=mine.hpp")
     started = time.monotonic()
     try:
-        verdict = (graphs.measure(pathlib.Path(path), progress)
-                   if path == graph else measured(pathlib.Path(path), wanted))
+        verdict = measure.measure(pathlib.Path(path), wanted, say=progress)
         progress("drawing ...")
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)
         if os.environ.get("WINDOW") or os.environ.get("RECORD"):
-            if "raw" not in verdict.data:
-                raise BadInput(f"{path}: {verdict.step} is no step: WINDOW= "
-                               "and RECORD= show steps alone")
             progress("building the window ...")
             import window
             progress("")

@@ -87,6 +87,10 @@ def steps_in(text):
     return named or found
 
 
+MEASURES = ("make try measures steps: make test and make grade judge forces "
+            "and constraints")
+
+
 def choose(path, wanted):
     """(name, number of arguments) of the step in a file."""
     try:
@@ -96,14 +100,11 @@ def choose(path, wanted):
     form = ("template <typename G, typename F, typename C> double NAME(G& g, "
             "double t, double dt, F&& force, C&& constraint)")
     if not found:
-        raise BadInput(f"{path}:1: has no step, expected {form}; nor a force "
-                       "or constraint: a function Point NAME(Node, double) or "
-                       "void NAME(GraphType&, double), or a struct with such "
-                       "an operator()")
+        raise BadInput(f"{path}:1: has no step, expected {form}; {MEASURES}")
     if wanted:
         if wanted not in found:
             raise BadInput(f"{path}:1: has no step {wanted}; it has "
-                           + ", ".join(found))
+                           + ", ".join(found) + f"; {MEASURES}")
         return wanted, found[wanted]
     if len(found) > 1:
         raise BadInput(f"{path}:1: has {len(found)} steps: choose one by STEP="
