@@ -46,19 +46,18 @@ override FILE := $(value FILE)
 override STEP := $(value STEP)
 try: export FILE := $(FILE)
 try: export STEP := $(STEP)
-try: export WINDOW := $(WINDOW)
 override RECORD := $(value RECORD)
 try: export RECORD := $(RECORD)
 try:
 	@tools/deps.sh grade draw && python3 lab/try/try.py
 
-# ./cloth with a step of one's own: lab/try/window.py gives what TRY_ names.
-.PHONY: try_window
-try_window: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
+# ./cloth with a step of one's own: lab/try/film.py gives what TRY_ names.
+.PHONY: try_film
+try_film: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
 	@$(CXX) $(lab_flags) $(speed) -w \
 	  -DTRY_FILE="\"$$TRY_FILE\"" -DTRY_STEP=$$TRY_STEP \
 	  -DTRY_ORDER=$$TRY_ORDER -DTRY_SWEEPS=$$TRY_SWEEPS \
-	  -DTRY_LIMIT=$$TRY_LIMIT -o $$TRY_OUT lab/try/window.cpp \
+	  -DTRY_LIMIT=$$TRY_LIMIT -o $$TRY_OUT lab/try/film.cpp \
 	  $(filter-out %/libviewer.a,$^) $(draw_libs) $(LDLIBS)
 
 # A class's steps in order: DIR and OUT are given as they are, too.

@@ -25,12 +25,12 @@ def main():
         progress("drawing ...")
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)
-        if os.environ.get("WINDOW") or os.environ.get("RECORD"):
-            progress("building the window ...")
-            import window
+        if os.environ.get("RECORD"):
+            progress("building the program of the film ...")
+            import film
             progress("")
-            return window.show(verdict, pathlib.Path(path),
-                               os.environ.get("RECORD", ""))
+            return film.record(verdict, pathlib.Path(path),
+                               os.environ["RECORD"])
     finally:
         progress("")
     print(teacher.words(verdict))

@@ -1,10 +1,10 @@
-"""See a step of your own beside Verlet, in a window or as a film:
+"""A film of a step of your own beside Verlet:
 
-    make try FILE=mine.hpp WINDOW=1     make try FILE=mine.hpp RECORD=film.mp4
+    make try FILE=mine.hpp RECORD=film.mp4
 
-It becomes the method "yours" of a ./cloth of its own. Both fall onto the
-ball of the assignment, with equal work. Here the file runs outside of the jail:
-it has been measured before, and is yours."""
+The step becomes the method "yours" of a ./cloth of its own. Both cloths fall
+onto the ball of the assignment, with equal work. Here the file runs outside of
+the jail: it has been measured before, and it is yours."""
 
 import math
 import os
@@ -15,11 +15,12 @@ import tempfile
 from workshop import BUILT, ROOT, BadInput, choose
 
 OMEGA = math.sqrt(12 * 100 * 625)   # of grid1, at most [1/s]
+SECONDS = 2                         # of the scene
 
 
-def recording(verdict, seconds):
-    """The scene of section 6.2 on grid1, by both methods from the start on; and
-    so many seconds of it."""
+def recording(verdict):
+    """The requests for a run of the scene of section 6.2 on grid1 by both
+    methods."""
     most = .8 * verdict.limit / OMEGA if verdict.limit else .001
     dt = min(.001 * max(1, verdict.evaluations), most)
     lines = (ROOT / "data/scenes/constraints.toml").read_text("utf-8")
@@ -31,11 +32,11 @@ def recording(verdict, seconds):
     return "\n".join(["mass_spring input 1", f'0 scene 0 0 "{verdict.step}"',
                       *(f"| {line}" for line in scene),
                       "0 compare verlet 1 equal-work",
-                      f"{int(seconds / dt)} end", ""])
+                      f"{int(SECONDS / dt)} end", ""])
 
 
-def show(verdict, path, record=""):
-    """Build ./cloth with the step, and show it; its exit status."""
+def record(verdict, path, out):
+    """Build ./cloth with the step, and write its film; its exit status."""
     if choose(path, getattr(verdict, "step", ""))[1] != 5:
         raise BadInput(f"{path}:1: {verdict.step} takes no constraint, "
                        "expected one: the scene has pins and a ball")
@@ -44,7 +45,7 @@ def show(verdict, path, record=""):
     with tempfile.TemporaryDirectory(dir=BUILT) as name:
         folder = pathlib.Path(name)
         built = subprocess.run(
-            ["make", "-s", "try_window"], cwd=ROOT, check=False,
+            ["make", "-s", "try_film"], cwd=ROOT, check=False,
             stdin=subprocess.DEVNULL, timeout=1800,
             env={**os.environ, "TRY_FILE": str(path.resolve()),
                  "TRY_STEP": verdict.step, "TRY_LIMIT": str(limit),
@@ -54,11 +55,9 @@ def show(verdict, path, record=""):
         if built.returncode:
             raise BadInput(f"{path}:1: {verdict.step} does not compile as a "
                            "method of the laboratory")
-        (folder / "both.txt").write_text(
-            recording(verdict, 2 if record else 0), "utf-8")
+        (folder / "both.txt").write_text(recording(verdict), "utf-8")
         print(f"white: {verdict.step}; orange: Verlet, with equal work",
               flush=True)
         return subprocess.run(
-            [folder / "cloth", "--replay", folder / "both.txt",
-             *(["--record", record] if record else ["--window"])],
-            check=False).returncode
+            [folder / "cloth", "--replay", folder / "both.txt", "--record",
+             out], check=False).returncode

@@ -1,6 +1,6 @@
-/** @file window.cpp
+/** @file film.cpp
  * A step that somebody has written as a method of ./cloth, called "yours".
- * window.py builds it, with what make try has measured, and links it with
+ * film.py builds it, with what make try has measured, and links it with
  * cloth.cpp:
  *   -DTRY_FILE='"mine.hpp"' -DTRY_STEP=my_step -DTRY_ORDER=2 -DTRY_SWEEPS=1
  *   -DTRY_LIMIT=2.0 */
