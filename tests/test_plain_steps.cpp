@@ -1,7 +1,7 @@
 // What methods.hpp says of each plain step: order, limit and forces a step,
 // neither worse nor better. On the graph of a student, which has nothing but
 // what the assignment asks for.
-#include "course/wrong/simple/Graph.hpp"
+#include "course/starter/open/Graph.hpp"
 
 #include <gtest/gtest.h>
 

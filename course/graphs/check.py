@@ -1,10 +1,10 @@
 """Run the cloth with graphs that others could have written:  make graphs
 
 Each folder here has a Graph.hpp with the interface of the assignment and no
-more: another way to store a graph. These and that of course/wrong/simple must
+more: another way to store a graph. These and the graph of the level open must
 run all five stages of mass_spring.cpp, with the energies and the nodes left of
 the solution's graph. The motion of grid0 is not chaotic until 2 s; so energies
-differ by round-off alone.  ONLY=NAME takes one of them.
+differ by round-off alone.  ONLY=NAME runs one of them.
 """
 import concurrent.futures
 import os
@@ -79,7 +79,7 @@ def compare(stages, expected):
 
 def main():
     graphs = [*sorted(HERE.glob("*/Graph.hpp")),
-              ROOT / "course/wrong/simple/Graph.hpp"][
+              ROOT / "course/starter/open/Graph.hpp"][
                   int(os.environ.get("FIRST") or 0)::
                   int(os.environ.get("EVERY") or 1)]
     if only := os.environ.get("ONLY"):

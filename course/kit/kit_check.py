@@ -28,8 +28,7 @@ import submission
 import tasks
 
 WRONG = once.ROOT / "course/wrong"
-BASES = {"solution": "", "simple": WRONG / "simple",
-         "forms": WRONG / "forms"}
+BASES = ("solution", "simple", "forms")     # submissions that are right
 KEYS = {"name", "file", "loses", "replace", "append", "prepend", "content",
         "base"}
 ESCAPED = [pathlib.Path(folder) / "kit-cheat"
@@ -52,8 +51,8 @@ class Cases:
     all that its file serves; []: none, as it is right), and edits of a `file`,
     by default Graph.hpp: `replace` ([[old, new], ...], each old text occurring
     once), `prepend`, `append`, or its whole `content`. It starts from the
-    solution, or from `base` = "simple". One whose base is the starter gets no
-    point that the starter does not get.
+    solution, or from `base` = "simple": the graph of the level open, solved.
+    One whose base is the starter gets no point that the starter does not get.
     """
 
     def __init__(self):
@@ -73,7 +72,7 @@ class Cases:
     def all(self):
         yield Case("solution", self.solution, self.loses(set()))
         yield Case("starter", self.base("starter"), self.starter)
-        for name in ("simple", "forms"):
+        for name in BASES[1:]:
             yield Case(name, self.base(name), self.loses(set()))
         yield from itertools.islice(self.many(), *self.sample)
 
@@ -87,12 +86,15 @@ class Cases:
 
     def base(self, name):
         """The sources of a correct submission; what it lacks is ours."""
-        files = dict(self.solution)
         if name == "starter":
             return {name: markers.starter(text, self.course, name)
                     for name, text in self.texts.items()}
-        if BASES[name]:
-            for path in BASES[name].iterdir():
+        files = dict(self.solution)
+        if name == "simple":
+            files["Graph.hpp"] = markers.solution(
+                markers.open_graph(self.course), markers.OPEN_GRAPH)
+        if name == "forms":
+            for path in (WRONG / "forms").iterdir():
                 files[path.name] = path.read_text(encoding="utf-8")
         return files
 

@@ -36,10 +36,8 @@ COPIED = [
      "course/web/web.*", "web", "positions.cpp"),
 ]
 TESTS = "course/tests"
-# At the level open: what stays out, and what stands in its place.
+# Left out at the level open.
 GUIDED = ("CME212/SlotMap.hpp", "CME212/NeighborPool.hpp", "docs/graph.md")
-OPEN = "course/starter/open"
-TO_WRITE = re.compile(r"^( *)// YOUR CODE (\S+)$", re.MULTILINE)
 WORKFLOW = "course/starter/tests.yml"
 
 
@@ -78,25 +76,13 @@ def tree(kind, level="guided", root=tasks.ROOT):
     if level == "open":
         for path in GUIDED:
             del files[path]
-        for path in sorted((root / OPEN).iterdir()):
-            add(path.name, to_write(path.read_text(encoding="utf-8"), course))
+        add("Graph.hpp", markers.starter(markers.open_graph(course, root),
+                                         course))
     for path, (content, _) in files.items():
         if path.endswith(".md"):
             content = pages.of_level(content.decode(), level).encode()
             add(path, without_dead_links(content.decode(), path, files))
     return files
-
-
-def to_write(text, course):
-    """`text` whose comments YOUR CODE say points and page."""
-    def full(found):
-        id = found[2]
-        if id in course.dropped:
-            raise StarterError(f"{id} was dropped, so its solution is given: "
-                               "LEVEL=guided")
-        return found[1] + markers.comment(id, course.tasks[id], False)
-
-    return TO_WRITE.sub(full, text)
 
 
 def without_dead_links(text, path, files):

@@ -6,7 +6,7 @@
 
 #include "CME212/Point.hpp"
 
-template <typename V, typename E = int>
+template <typename V, typename E = double>
 class Graph {
   struct NodeData;
   struct EdgeData;
@@ -26,7 +26,7 @@ class Graph {
   std::list<EdgeData> edges_;
 
  public:
-  using size_type = unsigned;
+  using size_type = std::size_t;
   using node_value_type = V;
   using edge_value_type = E;
 

@@ -6,7 +6,7 @@
 
 #include "CME212/Point.hpp"
 
-template <typename V, typename E = int>
+template <typename V, typename E = char>
 class Graph {
   using Ends = std::pair<unsigned, unsigned>;  // the smaller one first
   struct Data {
@@ -154,10 +154,10 @@ class Graph {
     remove_edge(e);
     return it;
   }
-  size_type remove_node(const Node& n) {
-    if (!has_node(n)) return 0;
+  bool remove_node(Node n) {
+    if (!has_node(n)) return false;
     while (n.degree() > 0) remove_edge(*n.edge_begin());
-    return nodes_.erase(n.key_);
+    return nodes_.erase(n.key_) == 1;
   }
   node_iterator remove_node(node_iterator it) {
     const Node n = *it;

@@ -144,7 +144,11 @@ class Graph {
     drop(nodes_, n.d);
     return 1;
   }
-  node_iterator remove_node(node_iterator it) { return remove_node(*it), it; }
+  /** Returns the first node: the loop starts anew. */
+  node_iterator remove_node(node_iterator it) {
+    remove_node(*it);
+    return node_begin();
+  }
   void clear() {
     for (NodeData* n : nodes_) delete n;
     for (EdgeData* e : edges_) delete e;

@@ -102,13 +102,13 @@ class Graph {
     size_type k_;
     Iterator(const Graph* g, size_type k) : graph_(g), k_(k) {}
   };
-  class IncidentIterator : private equality_comparable<IncidentIterator> {
+  class IncidentIterator {
    public:
     Edge operator*() const {
       return node_.graph_->seen_from(node_.uid_, node_.fetch().edges[k_]);
     }
     IncidentIterator& operator++() { return ++k_, *this; }
-    bool operator==(const IncidentIterator& o) const { return k_ == o.k_; }
+    bool operator==(const IncidentIterator& o) const = default;
 
    private:
     friend class Graph;

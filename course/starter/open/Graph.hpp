@@ -31,14 +31,16 @@ class Graph {
    public:
     Node() {}
     const Point& position() const { return graph_->nodes_[index_].position; }
-    // YOUR CODE 3.1.position
-    Point& position() {
-      // A copy, one of some that an expression may need together: what is
-      // written to it does not reach the graph.
-      thread_local Point copies[8];
-      thread_local unsigned count = 0;
-      return copies[count++ % 8] = graph_->nodes_[index_].position;
-    }
+    // BEGIN SOLUTION 3.1.position 4pt
+    Point& position() { return graph_->nodes_[index_].position; }
+    // STUB Point& position() {
+    // STUB   // A copy, one of some that an expression may need together:
+    // STUB   // what is written to it does not reach the graph.
+    // STUB   thread_local Point copies[8];
+    // STUB   thread_local unsigned count = 0;
+    // STUB   return copies[count++ % 8] = graph_->nodes_[index_].position;
+    // STUB }
+    // END SOLUTION
     size_type index() const { return index_; }
     node_value_type& value() { return graph_->nodes_[index_].value; }
     const node_value_type& value() const {
@@ -75,10 +77,15 @@ class Graph {
       const EdgeData& e = graph_->edges_[index_];
       return Node(graph_, e.a == from_ ? e.b : e.a);
     }
-    // YOUR CODE 4.1.edge_value
-    edge_value_type& value() { return no_edges_; }
-    const edge_value_type& value() const { return no_edges_; }
-    static inline edge_value_type no_edges_{};  // belongs to no edge
+    // BEGIN SOLUTION 4.1.edge_value 6pt
+    edge_value_type& value() { return graph_->edges_[index_].value; }
+    const edge_value_type& value() const {
+      return graph_->edges_[index_].value;
+    }
+    // STUB edge_value_type& value() { return no_edges_; }
+    // STUB const edge_value_type& value() const { return no_edges_; }
+    // STUB static inline edge_value_type no_edges_{};  // belongs to no edge
+    // END SOLUTION
     double length() const {
       return norm(node1().position() - node2().position());
     }
@@ -133,16 +140,53 @@ class Graph {
     return Edge(this, i, a.index_);
   }
 
-  // YOUR CODE 7.1.remove_edge
-  size_type remove_edge(const Node& /*a*/, const Node& /*b*/) { return 0; }
-  size_type remove_edge(const Edge& /*e*/) { return 0; }
-  // YOUR CODE 7.1.remove_edge_iterator
-  edge_iterator remove_edge(edge_iterator /*it*/) { return edge_end(); }
+  // BEGIN SOLUTION 7.1.remove_edge 6pt
+  size_type remove_edge(const Node& a, const Node& b) {
+    size_type i = find_edge(a.index_, b.index_);
+    if (i == num_edges()) return 0;
+    erase_edge(i);
+    return 1;
+  }
+  size_type remove_edge(const Edge& e) {
+    return remove_edge(e.node1(), e.node2());
+  }
+  // STUB size_type remove_edge(const Node&, const Node&) { return 0; }
+  // STUB size_type remove_edge(const Edge&) { return 0; }
+  // END SOLUTION
+  // BEGIN SOLUTION 7.1.remove_edge_iterator 3pt
+  edge_iterator remove_edge(edge_iterator it) {
+    remove_edge(*it);
+    return it;  // the last edge has come to this place
+  }
+  // STUB edge_iterator remove_edge(edge_iterator) { return edge_end(); }
+  // END SOLUTION
 
-  // YOUR CODE 7.1.remove_node
-  size_type remove_node(const Node& /*n*/) { return 0; }
-  // YOUR CODE 7.1.remove_node_iterator
-  node_iterator remove_node(node_iterator /*it*/) { return node_end(); }
+  // BEGIN SOLUTION 7.1.remove_node 8pt
+  size_type remove_node(const Node& n) {
+    if (!has_node(n)) return 0;
+    size_type i = n.index_;
+    while (!nodes_[i].edges.empty()) erase_edge(nodes_[i].edges.back());
+    size_type last = num_nodes() - 1;
+    if (i != last) {
+      nodes_[i] = nodes_[last];
+      for (size_type j : nodes_[i].edges) {
+        EdgeData& e = edges_[j];
+        if (e.a == last) e.a = i;
+        if (e.b == last) e.b = i;
+      }
+    }
+    nodes_.pop_back();
+    return 1;
+  }
+  // STUB size_type remove_node(const Node&) { return 0; }
+  // END SOLUTION
+  // BEGIN SOLUTION 7.1.remove_node_iterator 3pt
+  node_iterator remove_node(node_iterator it) {
+    remove_node(*it);
+    return it;  // the last node has come to this place
+  }
+  // STUB node_iterator remove_node(node_iterator) { return node_end(); }
+  // END SOLUTION
 
   void clear() {
     nodes_.clear();
@@ -222,6 +266,9 @@ class Graph {
   };
   struct EdgeData {
     size_type a, b;  // indices of the ends
+    // BEGIN SOLUTION 4.1.edge_value
+    E value{};
+    // END SOLUTION
   };
   std::vector<NodeData> nodes_;
   std::vector<EdgeData> edges_;
@@ -232,4 +279,31 @@ class Graph {
       if (edges_[i].a == b || edges_[i].b == b) return i;
     return num_edges();
   }
+  // BEGIN SOLUTION 7.1.remove_edge
+  /** In the list of node @a n, put @a now for @a old. */
+  void replace_in_list(size_type n, size_type old, size_type now) {
+    for (size_type& i : nodes_[n].edges)
+      if (i == old) i = now;
+  }
+  void drop_from_list(size_type n, size_type edge) {
+    std::vector<size_type>& list = nodes_[n].edges;
+    for (size_type k = 0; k < list.size(); ++k) {
+      if (list[k] != edge) continue;
+      list[k] = list.back();
+      list.pop_back();
+      return;
+    }
+  }
+  void erase_edge(size_type i) {
+    drop_from_list(edges_[i].a, i);
+    drop_from_list(edges_[i].b, i);
+    size_type last = num_edges() - 1;
+    if (i != last) {
+      edges_[i] = edges_[last];
+      replace_in_list(edges_[i].a, last, i);
+      replace_in_list(edges_[i].b, last, i);
+    }
+    edges_.pop_back();
+  }
+  // END SOLUTION
 };
