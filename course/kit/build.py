@@ -31,6 +31,11 @@ SPACE = r"(?:[ \t]|/\*(?:[^*]|\*(?!/)){0,60}+\*/){0,20}+"
 MACRO = re.compile(rf"(?:#|%:|\?\?=){SPACE}define{SPACE}([A-Za-z_]\w*)")
 DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
+STANDARD = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*<([\w./+-]+)>",
+                      re.MULTILINE)
+# What the compiler's output has of assembler that was written in the source.
+ASSEMBLER = re.compile(rb"^#APP\n.*?^#NO_APP\n", re.MULTILINE | re.DOTALL)
+BORDER = re.compile(rb"^#(?:NO_)?APP\b", re.MULTILINE)
 
 
 @dataclass
@@ -119,11 +124,9 @@ class Room:
         unit.write_text("".join(f'#include "{header}"\n' for header in headers),
                         encoding="utf-8")
         assembly, program = self.built / f"{name}.s", self.built / name
-        prelude = self.kit.preludes / way.kind / "prelude.hpp"
-        command = [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-H",
+        command = [*self.compiler(way), "-H",
                    "-fmax-errors=200", "-fdiagnostics-plain-output",
                    "-ftemplate-depth=400",
-                   "-include", prelude,
                    "-I", TESTS / "headless", "-I", self.kit.include,
                    # A header of the system is no file of the submission's.
                    "-iquote", ".", "-idirafter", ".",
@@ -151,7 +154,8 @@ class Room:
                               "output": "it fills the compiler's output"}.get(
                                   done.stopped, "it takes too much to compile")
         elif done.code == 0 and link:
-            if reads_files(assembly):
+            if reads_files(assembly) or self.writes_assembler(
+                    way, assembly, paths):
                 result.refused = result.doubtful = "it writes assembler"
                 return result
             done = self.run([once.CXX, *once.LINK[way.kind], assembly,
@@ -161,6 +165,34 @@ class Room:
                 result.program = program
         assembly.unlink(missing_ok=True)
         return result
+
+    def compiler(self, way):
+        return [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-include",
+                self.kit.preludes / way.kind / "prelude.hpp"]
+
+    def writes_assembler(self, way, assembly, paths):
+        """Does a unit hold assembler that the standard headers it includes do
+        not make by themselves? <iostream> of libstdc++ 13 makes some."""
+        found = assembler(assembly)
+        if not found[1]:
+            return False
+        names = {name.decode() for text in self.files.values()
+                 for name in STANDARD.findall(text)}
+        names = tuple(sorted(name for name in names if any(
+            path.startswith(SYSTEM) and path.endswith(f"/{name}")
+            for path in paths)))
+        known = self.kit.assembler
+        if (way.kind, names) not in known:
+            number = next(self.numbers)
+            source = self.built / f"headers{number}.cpp"
+            made = self.built / f"headers{number}.s"
+            source.write_text("".join(f"#include <{name}>\n" for name in names),
+                              encoding="utf-8")
+            done = self.run([*self.compiler(way), "-S", "-o", made, source])
+            if done.code != 0 or done.stopped:
+                return True
+            known[way.kind, names] = assembler(made)
+        return found != known[way.kind, names]
 
     def run(self, command):
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
@@ -208,13 +240,16 @@ def flags(option, values):
     return [word for value in values for word in (option, str(value))]
 
 
+def assembler(assembly):
+    """The parts that were assembler in the source, and how many borders parts
+    have: text that holds a border of its own makes that number another."""
+    text = assembly.read_bytes()
+    return sorted(ASSEMBLER.findall(text)), len(BORDER.findall(text))
+
+
 def reads_files(assembly):
-    """Does the compiler's output hold assembler that it did not write?"""
-    with open(assembly, "rb") as file:
-        text = file.read()
-    if b"\n#APP\n" in text:
-        return True
+    """Does the compiler's output take in files?"""
     return any(
         not line.lstrip().startswith((b".string", b".ascii"))
-        for line in re.findall(rb"[^\n]*\.inc(?:bin|lude)\b[^\n]*", text))
-
+        for line in re.findall(rb"[^\n]*\.inc(?:bin|lude)\b[^\n]*",
+                               assembly.read_bytes()))

@@ -406,10 +406,13 @@ def prepare(kit, tests, jobs):
         for test, result in sorted(results.items()):
             if not result.passed:
                 raise once.KitError(
-                    f"the solution itself does not pass {test} here, so "
-                    f"nothing is graded: {result.status}: "
+                    f"nothing is graded: {once.this_system()}, and the kit is "
+                    f"checked with g++ {once.CHECKED}. Here the kit's own "
+                    f"program ends otherwise in {test}, {result.status}: "
                     f"{result.text or f'expected {result.expected}'}"
-                    + (f", got {result.got}" if result.got else ""))
+                    + (f", got {result.got}" if result.got else "")
+                    + "\nThat is no mistake of a student or of the solution: "
+                    "grade on a system as above")
         text = json.dumps({"secret": kit.secret.hex(), "answers": {
             test: result.answers for test, result in results.items()}})
         with open(os.open(folder / "answers.json", os.O_WRONLY | os.O_CREAT,

@@ -7,6 +7,7 @@ import fcntl
 import hashlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -20,6 +21,7 @@ TESTS = ROOT / "course/tests"
 BUILT = ROOT / "build/kit"
 # The version that the kit is checked with, if it is there.
 CXX = shutil.which("g++-12", path="/usr/bin") or "/usr/bin/g++"
+CHECKED = "12, 13 and 14"
 COMMON = ["-std=c++20", "-w", "-pthread",
           "--param", "ggc-min-heapsize=4000000"]    # in kB: faster
 # By kind of build. The checks left out cost a third of the time to compile;
@@ -58,6 +60,15 @@ def ended(command):
         raise KitError(f"{command[0]} takes more than {PATIENCE} s") from None
 
 
+def this_system():
+    """What may differ from where the kit was checked, in words."""
+    release = pathlib.Path("/etc/os-release")
+    name = re.search(r'^PRETTY_NAME="?([^"\n]*)', release.read_text(
+        "utf-8", "replace") if release.exists() else "", re.MULTILINE)
+    return (f"this system is {name[1] if name else 'unknown'} with "
+            + ended([CXX, "--version"]).stdout.partition("\n")[0])
+
+
 class Kit:
     """The parts, built if they are not there; `jail` starts a command."""
 
@@ -82,6 +93,7 @@ class Kit:
             "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
         # Of the solution, which judge.prepare() grades before all others.
         self.secret, self.answers, self.data = b"", None, None
+        self.assembler = {}     # of standard headers: build.Room
         self.seed = seed    # of the tests' numbers; "": the public ones
         self.linked = sorted(linked.glob("*.o"))
         if unsafe:
@@ -139,7 +151,11 @@ class Kit:
         for kind, flags in FLAGS.items():
             (folder / kind).mkdir()
             header = folder / kind / "prelude.hpp"
-            shutil.copy(TESTS / "prelude.hpp", header)
+            # The variable ends what the headers have of assembler: the compiler
+            # marks that end before a variable, but not before a constant.
+            header.write_text((TESTS / "prelude.hpp").read_text("utf-8")
+                              + "[[gnu::used]] static const char kit_after = 0;"
+                              "\n", "utf-8")
             self.run([*flags, "-I", self.include, "-x", "c++-header", header,
                       "-o", f"{header}.gch"], "prelude.hpp can't be built",
                      jail)
