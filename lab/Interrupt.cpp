@@ -1,6 +1,7 @@
 #include "lab/Interrupt.hpp"
 
 #include <atomic>
+#include <initializer_list>
 
 #include <signal.h>
 

@@ -9,10 +9,11 @@ PAGE_CXX ?= $(or $(patsubst %/lib/clang,%/bin/clang++,$(shell ls -d \
   sed 's|/[^/]*/lib/wasi$$||')),clang++)
 page    := $(B)/page
 page_o  := $(B)/page.o
-# Of the laboratory: all of these rooms, but what reads and writes files.
+# Of the laboratory: all of these rooms, but what reads and writes files
+# or measures processor time.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Checkpoint \
-  Memory MeshFile Warnings) lab/live/Recording.cpp, \
+  Memory MeshFile Warnings) lab/live/Recording.cpp lab/methods/FastestCpu.cpp, \
   $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes live page))) \
   course/web/thrown.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
