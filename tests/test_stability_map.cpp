@@ -1,12 +1,17 @@
-// Growth.hpp: what is measured on a sheet and on an oscillator is what theory
-// says. The program on top of it: tools/test_sweep.sh.
+// Growth.hpp: what is measured on a sheet, and amplification() of an
+// oscillator, are what theory says. The program on top of it:
+// tools/test_sweep.sh.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "lab/charts/Growth.hpp"
-#include "lab/charts/Limits.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -23,6 +28,65 @@ double omega_of_sheet(unsigned side, double stretch) {
   const double edge =
       std::sin(std::numbers::pi * (side - 2) / (2. * (side - 1)));
   return 2 * edge * std::sqrt(100. * side * side * (2 - 1 / stretch));
+}
+
+using Matrix = std::array<double, 4>;  // by rows, on (x, v/omega)
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3],
+          a[2] * b[0] + a[3] * b[2], a[2] * b[1] + a[3] * b[3]};
+}
+double spectral_radius(const Matrix& m) {
+  return lab::spectral_radius(m[0], m[1], m[2], m[3]);
+}
+
+/** The product of the stages of a splitting: A is x' = v, v' = -gamma v; B is a
+ * kick of -omega^2 x. */
+template <typename Scheme>
+Matrix matrix_of(double y, double d) {
+  Matrix all = {1, 0, 0, 1};
+  bool kick = Scheme::kicks_first;
+  for (double part : Scheme::steps) {
+    const double way = d > 0 ? -std::expm1(-d * part) / d : part;
+    all = product(kick ? Matrix{1, 0, -part * y, 1}
+                       : Matrix{1, y * way, 0, std::exp(-d * part)},
+                  all);
+    kick = !kick;
+  }
+  return all;
+}
+
+/** The factor per step by which @a method amplifies the oscillator
+ * x'' + gamma x' + omega^2 x = 0, by a formula: a check of amplification().
+ * Runge-Kutta: the larger |R(z)| of the roots z of z^2 + d z + y^2 = 0, R the
+ * Taylor polynomial of exp of the method's order. Others: the spectral radius
+ * of the product of their stages.
+ * @param y dt omega > 0   @param d dt gamma >= 0
+ * Throws std::invalid_argument for methods without a formula here. */
+double amplification_by_theory(std::string_view method, double y, double d) {
+  if (method == "forward-euler" || method == "rk4") {
+    const std::complex<double> root =
+        std::sqrt(std::complex(d * d / 4 - y * y));
+    const int order = method == "rk4" ? 4 : 1;
+    auto R = [order](std::complex<double> z) {
+      std::complex<double> sum = 1;
+      for (int k = order; k > 0; --k) sum = 1.0 + z / double(k) * sum;
+      return std::abs(sum);
+    };
+    return std::max(R(-d / 2 + root), R(-d / 2 - root));
+  }
+  if (method == "symplectic-euler")
+    return spectral_radius({1, y, -y, 1 - d - y * y});
+  if (method == "implicit-euler") {
+    const double q = 1 / (1 + d + y * y);
+    return spectral_radius({1 - q * y * y, q * y, -q * y, q});
+  }
+  if (method == "verlet") return spectral_radius(matrix_of<VerletScheme>(y, d));
+  if (method == "yoshida4")
+    return spectral_radius(matrix_of<Yoshida4Scheme>(y, d));
+  if (method == "pefrl") return spectral_radius(matrix_of<PefrlScheme>(y, d));
+  if (method == "srkn6b") return spectral_radius(matrix_of<Srkn6bScheme>(y, d));
+  throw std::invalid_argument("no formula for " + std::string(method));
 }
 
 TEST(AmplificationByTheory, IsWhatAStepDoes) {

@@ -2,7 +2,7 @@
 # What a commit must pass:  tools/check.sh quick | check | check-full
 #   quick       in seconds after an edit: the course's door
 #   check       quick, every test under the sanitizers, the README's commands
-#   check-full  all else: clang++, threads, single precision, charts, windows ...
+#   check-full  all else: clang++, threads, charts, windows ...
 # Everything is built in build/check; each step writes build/check/STEP.log; the
 # last line counts the tests.
 set -uo pipefail
@@ -222,37 +222,6 @@ threads() {
       --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*' &&
     "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'
 }
-# Single precision: the sweeps, a run, and how far it ends from double.
-single() {
-  in_folder float test_sweep build/check/float/cloth work_precision REAL=float \
-    VIEWER=0 FAST=1 &&
-    build/check/float/test_sweep &&
-    build/check/float/cloth data/grid1.nodes data/grid1.tets --headless \
-      --dt auto &&
-    float_and_double &&
-    build/check/work_precision --ends --scenes chain \
-      --out build/check/ends.txt &&
-    build/check/float/work_precision --ends --scenes chain \
-      --out build/check/float/ends.txt &&
-    lab/charts/float_floor.py build/check/ends.txt build/check/float/ends.txt \
-      >build/check/float_floor.csv &&
-    awk -F, '$1 == "chain" {++n; if ($5 < 1e-8 || $5 > 1e-4) bad = 1}
-      END {exit n != 6 || bad}' build/check/float_floor.csv
-}
-# The center of mass in both precisions: apart, by less than a hundredth of the
-# tolerance of the scene, as advice foretells.
-float_and_double() {
-  local build
-  for build in check check/float; do
-    build/$build/cloth --config data/scenes/curtain.toml --headless \
-      --csv build/$build/ends.csv || return
-  done
-  tail -qn1 build/check/ends.csv build/check/float/ends.csv |
-    awk -F, '{x[NR] = $6; y[NR] = $7; z[NR] = $8}
-      END {d = sqrt((x[1] - x[2])^2 + (y[1] - y[2])^2 + (z[1] - z[2])^2)
-        print "floats change the center of mass by " d " m"
-        exit !(d > 1e-12 && d < 2.8e-5)}'
-}
 programs() {
   in_folder . cloth work_precision stability_map bench bench_rounds examples
 }
@@ -332,7 +301,6 @@ turns() {
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web
-  turn single    "$limit" single
   turn pages     "$long"  tools/check_pages.sh
   turn contest   "$limit" python3 lab/try/test_contest.py build/check/try
   turn advice    "$limit" advice

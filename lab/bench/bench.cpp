@@ -6,8 +6,6 @@
  *   taskset -c 0 lab/bench/table.py build/bench
  *   lab/bench/table.py build/bench --sides 316 --filter solve
  *   lab/bench/counts.sh           instructions in place of nanoseconds
- *   make bench REAL=float B=build/float   single precision, compared with the
- *                                         same loop over doubles
  *
  * table.py runs bench [SIDE...] [--benchmark_...], which writes times as JSON.
  * bench --calls N FIGURE KERNELS only calls a figure, of 100 x 100 nodes:
@@ -395,7 +393,6 @@ int main(int argc, char** argv) {
   report::write_head(head, "bench");
   benchmark::AddCustomContext("about", head.str());
   benchmark::AddCustomContext("machine", report::machine());
-  benchmark::AddCustomContext("real", sizeof(Real) == 8 ? "double" : "float");
   benchmark::AddCustomContext("kernels", lanes::name_of(lanes::cpu));
   add_triad("in the cache", 1 << 19, 1);
   add_triad("in memory", std::size_t(192) << 20, 1);

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# make speed: what a step costs on this machine, in double and in single
-# precision. Writes lab/bench/results/MACHINE/: the tables bench.txt and
-# bench-float.txt, the same as JSON, lines of this commit in history.csv; and
-# speed.svg.
-#   lab/bench/speed.sh [BENCH BENCH_FLOAT]
+# make speed: what a step costs on this machine. Writes
+# lab/bench/results/MACHINE/: the table bench.txt, the same as JSON, lines of
+# this commit in history.csv; and speed.svg.
+#   lab/bench/speed.sh [BENCH]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.
 set -euo pipefail
@@ -19,20 +18,15 @@ folder=lab/bench/results/${machine:-unknown}
 mkdir -p "$folder"
 lab/bench/table.py "${1:-build/native/bench}" --json "$folder/bench.json" |
   tee "$folder/bench.txt"
-lab/bench/table.py "${2:-build/native-float/bench}" --filter 'step: ' \
-  --json "$folder/bench-float.json" | tee "$folder/bench-float.txt"
 
 # A commit that was measured before gets its lines anew.
 history=$folder/history.csv
-[ -e "$history" ] || echo 'date,commit,real,nodes,step,ratio' >"$history"
-for file in "$folder/bench.json" "$folder/bench-float.json"; do
-  commit=$(sed -n 's/.*# commit: \([^;]*\);.*/\1/p' "$file")
-  real=$(sed -n 's/^ "real": "\(.*\)",$/\1/p' "$file")
-  sed -i "/^[^,]*,$commit,$real,/d" "$history"
-  sed -n 's/.*"group": "\(10*\) nodes[^"]*", "name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)",.*"ratio": \([0-9.e-]*\).*/\1,\2,\3/p' \
-    "$file" | sed 's/, mixed/ mixed/' | while read -r row; do
-    echo "$(date +%F),$commit,$real,$row"
-  done >>"$history"
-done
+[ -e "$history" ] || echo 'date,commit,nodes,step,ratio' >"$history"
+commit=$(sed -n 's/.*# commit: \([^;]*\);.*/\1/p' "$folder/bench.json")
+sed -i "/^[^,]*,$commit,/d" "$history"
+sed -n 's/.*"group": "\(10*\) nodes[^"]*", "name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)",.*"ratio": \([0-9.e-]*\).*/\1,\2,\3/p' \
+  "$folder/bench.json" | sed 's/, mixed/ mixed/' | while read -r row; do
+  echo "$(date +%F),$commit,$row"
+done >>"$history"
 
 python3 lab/charts/draw.py speed --folder lab/bench/results

@@ -59,8 +59,7 @@ def print_table(context, found):
         triad = found.get((TRIADS, name))
         return 24e-9 * triad["items"] / triad["median_s"] if triad else 0
 
-    print(f"{context['machine']}; {context['real']}; kernels "
-          f"{context['kernels']}; triad in memory "
+    print(f"{context['machine']}; kernels {context['kernels']}; triad in memory "
           f"{bandwidth('in memory'):.1f} GB/s, by all threads "
           f"{bandwidth('in memory, all threads'):.1f} GB/s")
     last = None
@@ -87,8 +86,7 @@ def write_json(context, found, path):
         if "ratio" not in row:
             row.pop("beside", None)
         lines.append(json.dumps(row))
-    path.write_text(f'{{"about": {json.dumps(about)},\n "real": '
-                    f'"{context["real"]}",\n "figures": [\n  ' +
+    path.write_text(f'{{"about": {json.dumps(about)},\n "figures": [\n  ' +
                     ",\n  ".join(lines) + "\n ]}\n")
 
 

@@ -1,21 +1,10 @@
 #pragma once
 /** @file Growth.hpp
- * The growth of a small perturbation: measured on a sheet at rest, whose
- * frequencies do not change, and by theory for an oscillator. */
-#include <string_view>
-
+ * The growth of a small perturbation, measured on a sheet at rest, whose
+ * frequencies do not change. */
 #include "lab/charts/Problem.hpp"
 
 namespace lab {
-
-/** The factor per step by which @a method amplifies the oscillator
- * x'' + gamma x' + omega^2 x = 0, by a formula: a check of amplification().
- * Runge-Kutta: the larger |R(z)| of the roots z of z^2 + d z + y^2 = 0, R the
- * Taylor polynomial of exp of the method's order. Others: the spectral radius
- * of the product of their stages.
- * @param y dt omega > 0   @param d dt gamma >= 0
- * Throws std::invalid_argument for methods without a formula here. */
-double amplification_by_theory(std::string_view method, double y, double d);
 
 /** A square of side x side nodes of 1 kg together, K = 100 N/m, stretched
  * evenly to @a stretch times its size and held along its boundary, without

@@ -42,13 +42,11 @@ void write_head(std::ostream& out, const char* what) {
   const char* compiler = "g++ " __VERSION__;
 #endif
   out << "# " << what << "\n# machine: " << machine()
-      << "\n# compiler: " << compiler
-      << "\n# commit: "
-      // results are written, not measured
+      << "\n# compiler: " << compiler << "\n# commit: "
       << first_line_of(
              "c=$(git describe --always 2>/dev/null) && "
              "if git diff --quiet HEAD -- . ':!*/results/*'; then echo \"$c\"; "
-             "else echo \"$c-dirty\"; fi")
+             "else echo \"after $c\"; fi")
       << '\n';
 }
 

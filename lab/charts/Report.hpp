@@ -15,7 +15,8 @@ namespace lab::report {
 std::string machine();
 
 /** Write the head of a CSV file, lines that begin with #: @a what it holds,
- * machine, compiler, and commit, "-dirty" if the sources differ from it. */
+ * machine, compiler, and commit; "after COMMIT" if files other than results
+ * differ from that commit. */
 void write_head(std::ostream& out, const char* what);
 
 /** @a text as a cell, without commas, quotes and ends of lines. */

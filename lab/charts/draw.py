@@ -7,7 +7,6 @@ is and its pictures go, in place of the results of its room; --to: where the
 pictures go. Exit status: 0 done; 2 a chart can't be drawn, and why."""
 import argparse
 import pathlib
-import re
 import sys
 
 import decision
@@ -27,13 +26,12 @@ CHARTS = {
     "work_precision": ("charts", "work_precision.csv",
                        precision.work_precision),
     "decision": ("charts", "work_precision.csv", decision.decision),
-    "failures": ("charts", "failures.csv", "charts/failures.gp"),
     "energy": ("charts", "energy.csv", precision.energy),
     "grid_refinement": ("charts", "grid_refinement.csv",
                         "charts/grid_refinement.gp"),
     **{f"stability_{m}": ("charts", f"stability_{m}.csv",
                           f"charts/stability_{m}.gp")
-       for m in ("limits", "table", "growth", "oscillator")},
+       for m in ("limits", "growth")},
     "adviser": ("advice", "adviser.csv", "advice/adviser.gp"),
     "rounds": ("bench", "rounds.csv", rounds.rounds),
     "peers": ("bench", "peers.csv", peers.peers),
@@ -46,15 +44,12 @@ def pictures(name, csv):
     scene where all runs failed."""
     if name == "work_precision":
         table = Table(csv)
-        scenes = dict.fromkeys(row["scene"] for row in table.rows)
+        scenes = [s for s in dict.fromkeys(r["scene"] for r in table.rows)
+                  if s in precision.DRAWN]
         return [(scene, scene) for scene in scenes
                 if believed(runs(table.where(scene=scene)))]
-    if name == "failures":
-        notes = re.findall("^# title ([^:]*):", csv.read_text(), re.M)
-        return [(method, "failure-" + method) for method in notes]
     if name == "rounds":
-        sizes = dict.fromkeys(row["nodes"] for row in Table(csv).rows)
-        return [(nodes, "rounds-" + nodes) for nodes in sizes]
+        return [("625", "rounds-625")]
     return [("", name)]
 
 

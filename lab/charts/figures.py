@@ -80,30 +80,6 @@ def floor(scene):
     return of(scene)[0].floor
 
 
-def single(scene):
-    """What single precision is off by at least [m]."""
-    return float(table("charts/results/float_floor.csv").note(
-        f"single precision floor {scene}").split()[0])
-
-
-def spread(pick=max):
-    """The farthest end in single precision over the nearest, by scene."""
-    rows = table("charts/results/float_floor.csv").rows
-    ends = {}
-    for row in rows:
-        ends.setdefault(row["scene"], []).append(float(row["distance"]))
-    return pick(max(d) / min(d) for d in ends.values())
-
-
-def measured(method, k, what):
-    """Of the k-th run of a failure: 'off', 'evaluations' or 'time'."""
-    notes = [n for n in table("charts/results/failures.csv").notes
-             if n.startswith(f"measured {method}: ")]
-    words = {"off": r"off by ([-\d.e]+)", "time": r"at t = ([-\d.e]+)",
-             "evaluations": r"(\d+) force evaluations"}
-    return float(re.search(words[what], notes[k])[1])
-
-
 def long_run(method, column):
     """A number of the table of long runs."""
     return float(table("charts/results/long_runs.csv").where(
@@ -116,31 +92,11 @@ def last_energy(method):
     return float(row["energy"]), float(row["t"])
 
 
-def predicted(side, mesh, method):
-    """Predicted over measured limit of the falling cloth."""
-    return float(table("charts/results/stability_table.csv").where(
-        side=str(side), mesh=mesh, method=method)[0]["predicted/measured"])
-
-
-def worst(method):
-    """How far the predicted limit is off at most [%]."""
-    return max(abs(100 * float(row["predicted/measured"]) - 100) for row in
-               table("charts/results/stability_table.csv").where(
-                   method=method))
-
-
 def stability(name, column, pick, scale="1", **where):
     """The largest or least value of a column over one of another."""
     return pick(float(row[column]) / float(row.get(scale, 1))
                 for row in table(f"charts/results/stability_{name}.csv").where(
                     **where) if row[column])
-
-
-def cells(name, **where):
-    """How many measured cells a map has."""
-    return len([r for r in table(
-        f"charts/results/stability_{name}.csv").where(**where)
-        if r.get("measured") != ""])
 
 
 def stretched():

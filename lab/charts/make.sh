@@ -16,25 +16,13 @@ mkdir -p "$to"
 
 draw() { python3 lab/charts/draw.py "$@" --folder "$to"; }
 
-# A quick run draws no floor of single precision.
-if [ -z "$QUICK" ]; then
-  for precision in . float; do
-    "$build/$precision/work_precision" --ends --out "$build/$precision/ends.txt" \
-      ${SCENE:+--scenes "$SCENE"}
-  done
-  lab/charts/float_floor.py "$build/ends.txt" "$build/float/ends.txt" \
-    >"$build/float_floor.csv"
-  mv "$build/float_floor.csv" "$to"
-fi
 csv=$to/work_precision.csv
 "$build/work_precision" ${options[@]+"${options[@]}"} --out "$csv" \
   ${SCENE:+--scenes "$SCENE"}
 draw work_precision decision
 [ -z "$SCENE" ] || exit 0
-"$build/work_precision" ${options[@]+"${options[@]}"} --failures \
-  --out "$to/failures.csv"
 "$build/work_precision" ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
-draw failures energy
+draw energy
 [ -z "$METHODS" ] || exit 0
 "$build/work_precision" ${options[@]+"${options[@]}"} --grid-refinement \
   --out "$to/grid_refinement.csv"

@@ -12,6 +12,8 @@ FAMILIES = (("splitting", "splitting methods"),
 NORMS = {"rms position": "RMS error of the positions [m]",
          "center of mass and energy/(M g)":
          "error of center of mass and energy/(M g) [m]"}
+# Scenes with a chart of their own; the decision chart has all.
+DRAWN = ("chain", "curtain", "grid0", "grid1", "mixed")
 STRIP = 20  # height of the bar of winners [pixels]
 NARROW = 0.1  # what a title passes over [decades]
 
@@ -111,14 +113,6 @@ def work_precision(csv, out, scene):
     never = [m for m, own in of.items() if not any(r.ok for r in own)]
     if never:
         picture.text(20, 14, f"{', '.join(never)}: no step succeeded.")
-    single = Table(csv.parent / "float_floor.csv").note(
-        f"single precision floor {scene}") if (
-            csv.parent / "float_floor.csv").exists() else ""
-    if single and float(single.split()[0]) > x.hi:
-        at = panel.pixel((float(single.split()[0]), y.lo))[0]
-        picture.line(at, panel.bottom + STRIP, at, panel.top, BEHIND, 1, 3)
-        picture.text(at + 4, panel.bottom + STRIP + 8, "floats end here")
-        panel.keep_free.append((at, panel.bottom, at + 110, panel.bottom + 36))
     picture.draw(panel, decades(x.hi, x.lo), "set format y '1e%T'",
                  "set ylabel 'time of a run [s]' offset 1, 0",
                  f"set xlabel '{NORMS[norm]}' offset 0, 0.2")

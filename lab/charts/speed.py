@@ -10,8 +10,7 @@ BLUE, BLACK, ORANGE = "#0072B2", "#777777", "#D55E00"
 STEPS = (("step: symp_euler_step(), forces", "the assignment's step", BLACK),
          ("step: flat arrays", "scalar loop over arrays", BLACK),
          ("step: SymplecticEuler", "the laboratory's step", BLUE),
-         ("step: SymplecticEuler, threads", "by two threads", BLUE),
-         ("float", "in single precision", BLUE))
+         ("step: SymplecticEuler, threads", "by two threads", BLUE))
 LAYERS = (("springs: virtual call a node", "a virtual call a node", BLACK),
           ("springs: Node and Edge", "loop over Node and Edge", BLACK),
           ("springs: flat arrays", "loop over arrays", BLACK),
@@ -61,11 +60,9 @@ class Bars:
 
 
 def speed(path, out):
-    """Bars from bench.json, bench-float.json beside it, and the peers."""
-    single = ns_a_node(path.with_name("bench-float.json"))
+    """Bars from bench.json, and the peers."""
     of = {name: times for (nodes, name), times in ns_a_node(path).items()
           if nodes == 10000}
-    of["float"] = single[10000, "step: SymplecticEuler"]
     about = json.loads(path.read_text())["about"]
     machine, compiler, commit = (
         re.search(f"# {what}: ([^#]*);", about)[1].replace(";", ",")

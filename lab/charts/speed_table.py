@@ -1,12 +1,9 @@
 #!/usr/bin/env python3
-"""The tables of lab/fast/README.md, from bench.json and bench-float.json:
+"""Print the table of lab/fast/README.md from bench.json: the medians, and
+their share of the loop over flat arrays:
 
-    speed_table.py FOLDER     of one machine: medians, and their share of the
-                              loop over flat arrays
-    speed_table.py machines   of all machines side by side"""
-import json
+    speed_table.py FOLDER"""
 import pathlib
-import re
 import sys
 
 from results import ROOT, ns_a_node
@@ -45,45 +42,14 @@ def cell(all_of, nodes, name, beside):
     return f"{text} = {ns / other[1]:.2f}" if other else text
 
 
-def one_machine(folder):
-    double, single = (ns_a_node(folder / name)
-                      for name in ("bench.json", "bench-float.json"))
+def table(folder):
+    all_of = ns_a_node(folder / "bench.json")
     yield ("| ns a node = share of the loop over flat arrays | 625 | 10,000 "
-           "| 1,000,000 | float: 10,000 | 1,000,000 |")
-    yield "|---|---|---|---|---|---|"
+           "| 1,000,000 |")
+    yield "|---|---|---|---|"
     for name, beside in ROWS:
-        cells = [cell(double, n, name, beside) for n in (625, 10000, 1000000)]
-        cells += [cell(single, n, name, beside) for n in (10000, 1000000)]
+        cells = [cell(all_of, n, name, beside) for n in (625, 10000, 1000000)]
         yield f"| {name} | {' | '.join(cells)} |"
 
 
-EULER = "step: SymplecticEuler"
-SIDE_BY_SIDE = tuple(
-    [(nodes, name, STEP) for nodes in (10000, 1000000) for name in
-     (EULER, EULER + ", plain", EULER + ", AVX2", EULER + ", AVX-512",
-      EULER + ", mixed", "step: Verlet")] +
-    [(10000, "step: scene of the assignment", EULER)] +
-    [(nodes, name, EULER) for nodes in (10000, 1000000) for name in
-     (EULER + ", one at a time", EULER + ", threads")])
-
-
-def machines():
-    files = sorted(ROOT.glob("lab/bench/results/*/bench.json"))
-    all_of = [ns_a_node(file) for file in files]
-    about = [re.search("# commit: ([^;]*);", json.loads(
-        file.read_text())["about"])[1] for file in files]
-    yield "| nodes | time of | over that of | " + " | ".join(
-        f"{f.parent.name} ({a})" for f, a in zip(files, about)) + " |"
-    yield "|---|---|---|" + "---|" * len(files)
-    for nodes, name, beside in SIDE_BY_SIDE:
-        cells = []
-        for of in all_of:
-            other = beside + (", mixed" if name.endswith(", mixed") else "")
-            cells.append(f"{of[nodes, name][1] / of[nodes, other][1]:.2f}"
-                         if (nodes, name) in of else "")
-        yield (f"| {nodes:,} | {name.removeprefix('step: ')} | "
-               f"{beside.removeprefix('step: ')} | {' | '.join(cells)} |")
-
-
-print("\n".join(machines() if sys.argv[1] == "machines"
-                else one_machine(pathlib.Path(sys.argv[1]))))
+print("\n".join(table(pathlib.Path(sys.argv[1]))))

@@ -71,7 +71,7 @@ if [ $# -gt 2 ]; then
   exit
 fi
 mkdir -p "$to"
-maps=(limits table growth oscillator)
+maps=(limits growth)
 for map in "${maps[@]}"; do
   join "$map" >"$to/stability_$map.csv.part"
   mv "$to/stability_$map.csv.part" "$to/stability_$map.csv"

@@ -22,7 +22,6 @@
 
 #include "CME212/OutputFile.hpp"
 #include "lab/charts/Growth.hpp"
-#include "lab/charts/Limits.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
@@ -63,25 +62,16 @@ constexpr std::array maps = {
         "the largest stable step on a sheet stretched to 1.5 times its size "
         "and held at its rim; drag 1 1/s",
         "side,mesh,method,predicted [s],measured [s],safe [s]"},
-    Map{"table",
-        "the largest stable step on the assignment's falling cloth: predicted "
-        "from the frequencies on its way, and measured",
-        "side,mesh,method,t_end [s],predicted [s],measured [s],safe [s],"
-        "predicted/measured"},
     Map{"growth",
         "ln of the growth per step of a tiny disturbance of a stretched sheet, "
         "plain mesh, no drag",
-        "method,stretch,dt/safe,predicted limit/safe,growth"},
-    Map{"oscillator",
-        "growth per step of an oscillator with drag gamma, measured and by "
-        "theory",
-        "method,dt omega,dt gamma,measured,theory"}};
+        "method,stretch,dt/safe,predicted limit/safe,growth"}};
 
 constexpr const char* name_of(MeshSprings::Kind mesh) {
   return mesh == MeshSprings::plain ? "plain" : "diagonals";
 }
-const std::vector<const char*> explicit_methods = {
-    "symplectic-euler", "verlet", "yoshida4", "pefrl", "rk4", "srkn6b"};
+const std::vector<const char*> explicit_methods = {"symplectic-euler", "verlet",
+                                                   "yoshida4", "pefrl", "rk4"};
 
 /** omega_safe() and a good SharpOmega of @a p at its start [1/s]. */
 std::pair<double, double> frequencies(const Problem& p) {
@@ -123,43 +113,11 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
       }
 }
 
-/** Predicted and measured on the assignment's cloth. All methods are in one
- * cell, because the prediction needs the Path of the cloth, which is costly. */
-void add_table(std::vector<Cell>& cells, Effort effort) {
-  using Sides = std::vector<unsigned>;
-  const double precision = by(effort, 0.002, 0.01, 0.05);
-  for (unsigned side : by<Sides>(effort, {5, 25, 50, 100}, {5, 25}, {5}))
-    for (MeshSprings::Kind mesh :
-         {MeshSprings::plain, MeshSprings::diagonals}) {
-      const double t_end =
-          by(effort, side < 20 ? 5.0 : 2.0, side < 20 ? 5.0 : 1.0, 0.2);
-      auto run = [=](std::ostream& out) {
-        const Problem p = cloth_for_limits(side, mesh, t_end);
-        const Path path = find_path(p);
-        for (const char* name : explicit_methods) {
-          const MethodEntry& m = *find_method(name);
-          const double safe = step_limit(m, path.safe, path.gamma);
-          const double predicted = predicted_limit(m, path);
-          const double measured =
-              measured_limit(p, m, 0.9 * safe, 1.8 * safe, precision);
-          out << side << ',' << name_of(mesh) << ',' << name << ','
-              << cell(t_end) << ',' << cell(predicted) << ',' << cell(measured)
-              << ',' << cell(safe) << ',' << cell(predicted / measured) << '\n';
-        }
-      };
-      cells.push_back(
-          {"table-" + std::to_string(side) + '-' + name_of(mesh),
-           3e-5 * t_end * std::pow(side, 3),
-           "t_end=" + short_text(t_end) + " precision=" + short_text(precision),
-           run});
-    }
-}
-
 /** Growth against stretch and step: a cell is a column of the map, one method
  * at one stretch. */
 void add_growth(std::vector<Cell>& cells, Effort effort) {
   constexpr unsigned side = 15;
-  const int columns = by(effort, 40, 16, 2), rows = by(effort, 60, 24, 3);
+  const int columns = by(effort, 20, 16, 2), rows = by(effort, 30, 24, 3);
   const int steps = by(effort, 600, 200, 20);
   constexpr double low = 0.9, high = 2.5;  // stretch
   constexpr double least = 0.5, most = 2;  // dt/safe
@@ -190,65 +148,11 @@ void add_growth(std::vector<Cell>& cells, Effort effort) {
     }
 }
 
-/** Write where the growth by theory crosses 1, along lines of equal dt omega
- * and of equal dt gamma; the column of the measured growth is empty.
- * @param right, top largest dt omega and dt gamma   @param lines of each */
-void write_boundary(std::ostream& out, const char* name, double right,
-                    double top, int lines) {
-  auto unstable = [name](double y, double d) {
-    return amplification_by_theory(name, y, d) > 1 + 1e-9;
-  };
-  auto write = [&](double y, double d) {
-    out << name << ',' << cell(y) << ',' << cell(d) << ",,1\n";
-  };
-  const int places = 5 * lines;  // points on a line
-  for (int k = 0; k < lines; ++k) {
-    const double y = right * (k + 0.5) / lines, d = top * (k + 0.5) / lines;
-    for (int j = 1; j < places; ++j) {
-      const double y0 = right * j / places, y1 = right * (j + 1) / places;
-      const double d0 = top * j / places, d1 = top * (j + 1) / places;
-      if (unstable(y0, d) != unstable(y1, d)) write((y0 + y1) / 2, d);
-      if (unstable(y, d0) != unstable(y, d1)) write(y, (d0 + d1) / 2);
-    }
-  }
-}
-
-/** Growth of an oscillator against dt omega and dt gamma. */
-void add_oscillator(std::vector<Cell>& cells, Effort effort) {
-  const int columns = by(effort, 50, 25, 3), rows = by(effort, 40, 20, 3);
-  auto names = explicit_methods;
-  names.insert(names.begin(), "forward-euler");
-  names.push_back("implicit-euler");
-  for (const char* name : names) {
-    const MethodEntry& m = *find_method(name);
-    auto run = [=, &m](std::ostream& out) {
-      constexpr double top = 4;
-      const double right =
-          m.info.limit > 0 && m.info.limit != no_limit ? 1.4 * m.info.limit : 3;
-      auto method = m.make();
-      for (int i = 0; i < columns; ++i)
-        for (int j = 0; j < rows; ++j) {
-          const double y = right * (i + 0.5) / columns,
-                       d = top * (j + 0.5) / rows;
-          out << name << ',' << cell(y) << ',' << cell(d) << ','
-              << cell(amplification(*method, 1, y, d)) << ','
-              << cell(amplification_by_theory(name, y, d)) << '\n';
-        }
-      write_boundary(out, name, right, top, 3 * rows);
-    };
-    cells.push_back({std::string("oscillator-") + name, 2e-5 * columns * rows,
-                     std::to_string(columns) + "x" + std::to_string(rows),
-                     run});
-  }
-}
-
 /** All cells, in the order in which they are joined. */
 std::vector<Cell> make_cells(Effort effort) {
   std::vector<Cell> cells;
   add_limits(cells, effort);
-  add_table(cells, effort);
   add_growth(cells, effort);
-  add_oscillator(cells, effort);
   return cells;
 }
 
@@ -274,8 +178,7 @@ void run(const Options& o) {
                                 : o.tiny ? Effort::tiny
                                          : Effort::full);
   auto map_of = [](const std::string& name) {
-    return find(maps, name, "--map",
-                "there are: limits table growth oscillator");
+    return find(maps, name, "--map", "there are: limits growth");
   };
   std::optional<CME212::OutputFile> file;
   if (!o.out.empty()) file.emplace(o.out);  // fail before the run, not after

@@ -10,7 +10,6 @@ from dataclasses import replace
 from itertools import chain
 
 import decision
-import float_floor
 import peers
 import precision
 from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest,
@@ -222,28 +221,6 @@ class Libraries(unittest.TestCase):
             self.assertIn(words, peers.message([ours + theirs]))
 
 
-class Floor(unittest.TestCase):
-    """Where runs end: end, steps, energy, center, and positions or none."""
-    TEXT = ("# what\n# machine: m\na verlet .5 9 1 0 0 0 1 2 3 4 5 6\n"
-            "b verlet .5 9 1 0 0 0\nb verlet .5 18 1 0 0 0\n")
-
-    def test_the_distance_is_the_rms_over_the_nodes_or_of_functionals(self):
-        other = (self.TEXT.replace("5 6\n", "5 6.002\n").replace(
-            "9 1 0 0 0\n", "9 10.81 0 0 1\n").replace("8 1 0", "8 1 3"))
-        rows = list(float_floor.table(self.TEXT, other))
-        self.assertEqual(rows[1:4], [
-            "# machine: m", "# single precision floor a: 0.001 m",
-            "# single precision floor b: 1 m"])
-        self.assertEqual([row.split(",")[:5] for row in rows[5:]], [
-            ["a", "verlet", "0.0555556", "9", "0.00141421"],
-            ["b", "verlet", "0.0555556", "9", "1.41421"],
-            ["b", "verlet", "0.0277778", "18", "3"]])
-
-    def test_other_runs_are_refused(self):
-        with self.assertRaises(SystemExit):
-            list(float_floor.table(self.TEXT, self.TEXT.replace("18", "19")))
-
-
 class Words(unittest.TestCase):
     def test_two_digits(self):
         for value, text in ((1.34e-5, "1.3e-5"), (2e-3, "2e-3"),
@@ -274,7 +251,7 @@ class Pictures(unittest.TestCase):
     def test_texts_have_11_pixels_where_a_picture_has_800(self):
         pictures = list(chain(ROOT.glob("lab/*/results/**/*.svg"),
                               ROOT.glob("course/pictures/*.svg")))
-        self.assertGreater(len(pictures), 30)
+        self.assertGreater(len(pictures), 12)
         small = []
         for picture in pictures:
             svg = picture.read_text()

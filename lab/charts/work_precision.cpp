@@ -4,8 +4,7 @@
  *
  *   build/work_precision --out FILE.csv
  *   build/work_precision --quick --scenes grid0,chain --methods verlet,pefrl
- *   build/work_precision --grid-refinement     # or --energy, --failures,
- * --ends
+ *   build/work_precision --grid-refinement     # or --energy
  *
  * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
  * input that can't be used, or an output that can't be written. */
@@ -24,7 +23,6 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/Progress.hpp"
-#include "lab/charts/Failure.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
@@ -44,7 +42,7 @@ struct Options {
   std::vector<std::string> scenes, methods;
   std::string out;
   int repeats = 7;
-  bool grid_refinement = false, energy = false, failures = false, ends = false;
+  bool grid_refinement = false, energy = false;
   bool quick = false, quiet = false;
 };
 
@@ -283,31 +281,6 @@ void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
   }
 }
 
-/** The final states of runs, a line each: "scene method end steps", the end
- * [s], energy [J], center of mass [m], and the positions [m] if the norm uses
- * them. By Verlet and srkn11b, at 1/2, 1/8 and 1/32 of their largest stable
- * steps. float_floor.py compares those of two precisions. */
-void write_ends(const std::vector<Problem>& problems, std::ostream& out) {
-  write_head(out, "where runs end");
-  out.precision(std::numeric_limits<double>::max_digits10);
-  for (const Problem& p : problems) {
-    Start start(p);
-    const double omega = omega_safe(start.cloth, start.force, start.constraint);
-    for (const auto& method : {entry_of<Verlet>(), entry_of<Srkn11b>()})
-      for (double finer : {2, 8, 32}) {
-        const auto steps = static_cast<long long>(
-            std::ceil(p.t_end * omega / method.info.limit * finer));
-        const Outcome r = run(p, *method.make(), steps);
-        if (!r.ok()) throw std::runtime_error(p.name + ": " + r.reason);
-        out << p.name << ' ' << method.info.name << ' ' << p.t_end << ' '
-            << steps << ' ' << r.end.energy << ' ' << r.end.center;
-        if (p.norm == Norm::positions)
-          for (const Point& x : r.end.positions) out << ' ' << x;
-        out << '\n';
-      }
-  }
-}
-
 // -------------------------------------------------------------------- Options
 
 /** Read the command line.  @return the exit status to end with, or -1 */
@@ -325,17 +298,8 @@ int parse(int argc, char** argv, Options& o) {
       ->type_name("FILE");
   auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
                             "refine the grid, the step, or both instead");
-  auto* energies =
-      app.add_flag("--energy", o.energy, "energy against time instead")
-          ->excludes(grid);
-  auto* failures =
-      app.add_flag("--failures", o.failures, "how each method fails instead")
-          ->excludes(grid)
-          ->excludes(energies);
-  app.add_flag("--ends", o.ends, "where runs end instead")
-      ->excludes(grid)
-      ->excludes(energies)
-      ->excludes(failures);
+  app.add_flag("--energy", o.energy, "energy against time instead")
+      ->excludes(grid);
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   try {
     app.parse(argc, argv);
@@ -365,10 +329,6 @@ void run(Options o) {
     grid_refinement(o, out, progress);
   else if (o.energy)
     energy(chosen, out);
-  else if (o.failures)
-    write_failures(chosen, file && !o.quiet ? &std::cout : nullptr, out);
-  else if (o.ends)
-    write_ends(problems, out);
   else
     work_precision(problems, chosen, o, out, progress);
   if (file) file->commit();
