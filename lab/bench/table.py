@@ -59,8 +59,8 @@ def print_table(context, found):
         triad = found.get((TRIADS, name))
         return 24e-9 * triad["items"] / triad["median_s"] if triad else 0
 
-    print(f"{context['machine']}; kernels {context['kernels']}; triad in memory "
-          f"{bandwidth('in memory'):.1f} GB/s, by all threads "
+    print(f"{context['machine']}; kernels {context['kernels']}; triad in "
+          f"memory {bandwidth('in memory'):.1f} GB/s, by all threads "
           f"{bandwidth('in memory, all threads'):.1f} GB/s")
     last = None
     for (group, name), f in found.items():
