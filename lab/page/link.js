@@ -28,7 +28,7 @@ const Link = {
       read.start.scene = all.get('scene');
     const side = Math.round(Number(all.get('side')));
     if (side >= 2 && side <= 100) read.start.side = side;
-    const lines = (all.get('run') || Link.old(all, about)).split('~')
+    const lines = (all.get('run') || '0_step_0.5~0_end').split('~')
       .map(line => line.split('_'))
       .map(([at, ...words]) => [Number(at), words]);
     const [end, last] = lines.pop();
@@ -47,27 +47,5 @@ const Link = {
     const speed = Number(all.get('speed'));
     if (speed > 0 && speed <= 4) read.speed = speed;
     return read;
-  },
-
-  // The lines of a link that has no `run`: links had other names once, numbers
-  // for methods, and what was asked at the start as parameters of their own.
-  old(all, about) {
-    const names = {K: 'stiffness', share: 'step', pin: 'toggle', cut: 'stroke'};
-    const lines = [['0', 'step', all.get('share') || '0.5']];
-    for (const key of ['K', 'drag', 'gravity', 'method'])
-      if (all.has(key)) lines.unshift(['0', names[key] || key, all.get(key)]);
-    if (all.has('rival'))
-      lines.push(['0', 'compare', all.get('rival'),
-        all.get('rivalShare') || '0.5', 'equal-time']);
-    for (const event of (all.get('log') || '').split('~').filter(Boolean)) {
-      const [at, name, ...values] = event.split('_');
-      const method = (about.methods[values[0]] || {}).name;
-      lines.push([at, ...name === 'method' ? [name, method]
-        : name !== 'compare' ? [names[name] || name, ...values]
-          : values[0] < 0 ? ['alone']
-            : [name, method, values[1], 'equal-time']]);
-    }
-    lines.push([all.get('steps') || '0', 'end']);
-    return lines.map(words => words.join('_')).join('~');
   },
 };

@@ -461,7 +461,8 @@ def it_fits_small_screens(b):
 
 @test
 def a_step_that_can_not_be_made_is_told_and_the_page_goes_on(b):
-    opened(b, "#scene=forces&side=5&method=tr-bdf2&K=100000&share=1000")
+    opened(b, "#scene=forces&side=5&run=0_method_tr-bdf2~"
+           "0_stiffness_100000~0_step_1000~0_end")
     b.wait("page.failed && page.why", 120)
     words = b.value("$('failure').innerText")
     assert "It failed" in words and "Newton's method is at a residual" in words
@@ -525,11 +526,11 @@ def a_link_shows_the_same_picture_twice(b):
 @test
 def a_link_of_nonsense_is_a_page_all_the_same(b):
     for hash in ("#%E0%A4%A", "#scene=x&side=y&method=%%&share=-5&steps=1e9x",
-                 "#log=2_method_77~3_method_0.5~3_method_-1&steps=20",
-                 "#log=3_compare_99_0.5~4_compare_-2_1~5_compare&steps=20",
-                 "#log=3_share_-1~3_share_0~4_K_0~5_gravity_1e300&steps=20",
-                 "#log=1_cut_1_2_3~2_pin_-1~3_pin_9999999~4_nothing&steps=20",
-                 "#log=3_grab_999999_1_1_1~4_grab~5_move_1&steps=20",
+                 "#run=2_method_77~3_method_0.5~3_method_-1~20_end",
+                 "#run=3_compare_99_0.5~4_compare_-2_1~5_compare~20_end",
+                 "#run=3_step_-1~3_step_0~4_stiffness_0~5_gravity_1e300~20_end",
+                 "#run=1_cut_1_2_3~2_pin_-1~3_pin_9999999~4_nothing~20_end",
+                 "#run=3_grab_999999_1_1_1~4_grab~5_move_1~20_end",
                  "#run=0_gravitas_3~1e300_restart~1_gravity_1e300~x~20_end",
                  "#run=0_break~1_scene_0~2_move_1_2", "#run=0_scene_0~9_end",
                  "#side=3.7&camera=1e9_1_1", "#camera=0_99_-5"):
@@ -542,35 +543,12 @@ def a_link_of_nonsense_is_a_page_all_the_same(b):
 
 
 @test
-def a_link_of_former_names_shows_its_run(b):
-    """Methods by number, rays of a stroke, pins that are toggled."""
-    methods = [m["name"] for m in opened(b).value("page.about.methods")]
-    opened(b, "#scene=diagonals&side=9&method=pefrl&share=0.4&K=60&drag=0.01"
-              "&gravity=5&rival=rk4&rivalShare=0.2&log=2_share_0.3~3_K_70~"
-              f"4_method_{methods.index('verlet')}~5_pin_40~6_pin_41~7_pin_40~"
-              "8_cut_0.1_-1_9_0.1_-1_-9_0.1_2_9_0.1_2_-9~9_compare_-1_0.2~"
-              "10_drag_0.02~11_gravity_6~12_grab_50_1_1_1~13_move_1_1_2~"
-              "14_release&steps=20")
-    b.wait("page.calls === 20")
-    assert b.value("$('failure').hidden")
-    b.click("#link")
-    b.wait("location.hash.includes('run=')")
-    lines = b.value("new URLSearchParams(location.hash.slice(1)).get('run')")
-    assert lines.startswith(
-        "0_method_pefrl~0_gravity_5~0_drag_0.01~0_stiffness_60~0_step_0.4~"
-        "0_compare_rk4_0.2_equal-time~2_step_0.3~3_stiffness_70~"
-        "4_method_verlet~5_pin_40~6_pin_41~7_unpin_40~8_cut_"), lines
-    assert lines.endswith("~9_alone~10_drag_0.02~11_gravity_6~12_grab_50_1_1_1"
-                          "~13_move_1_1_2~14_release~20_end"), lines
-
-
-@test
 def a_link_of_a_request_beyond_its_steps_says_so(b):
-    opened(b, "#log=1e300_release&steps=20")
+    opened(b, "#run=0_step_0.5~1e300_release~20_end")
     b.wait("page.calls >= 20")
     assert b.value("$('failure').querySelector('h2').textContent") == \
         "Another run"
-    opened(b, "#log=3_release&steps=20")
+    opened(b, "#run=0_step_0.5~3_release~20_end")
     b.wait("page.calls >= 20")
     assert b.value("$('failure').hidden")
 
@@ -578,7 +556,8 @@ def a_link_of_a_request_beyond_its_steps_says_so(b):
 @test
 def a_link_of_a_long_run_can_be_left(b):
     """Hours of steps: on the way, another run is made at once."""
-    b.open(address + "#steps=1000000&side=100&method=implicit-euler")
+    b.open(address + "#side=100&run=0_method_implicit-euler~"
+           "0_step_0.5~1000000_end")
     b.wait("$('busy').textContent.startsWith('repeating the link')")
     b.click("#restart")
     b.wait("page.readings && page.frames > 0 && page.playing")
@@ -588,7 +567,7 @@ def a_link_of_a_long_run_can_be_left(b):
 @test
 def large_systems_are_factored(b):
     """By Eigen's order, which takes 32 bytes a row of the stack."""
-    opened(b, "#side=50&method=implicit-euler&share=20")
+    opened(b, "#side=50&run=0_method_implicit-euler~0_step_20~0_end")
     b.wait("page.readings.main.steps > 3", 120)
     assert b.value("page.failed") is False
 
