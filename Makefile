@@ -6,7 +6,6 @@
 STAGE  ?= tear
 STAGES  = problem1 diagonals forces constraints tear
 VIEWER ?= 1
-REAL   ?= double
 HW     ?= hw2
 # Programs are built as $(O)NAME, all else in $(B).
 O       =
@@ -23,8 +22,7 @@ OTHERS   := $(filter-out $(DRIVERS),$(PROGRAMS))
 
 # mass_spring is built for speed; any other program for the debugger, with all
 # assertions, and with the sanitizers if it uses GoogleTest. FAST=1: for speed.
-common    = -std=c++20 -g -Wall -Wextra -pthread -I. \
-            $(if $(filter-out double,$(REAL)),-DREAL=$(REAL))
+common    = -std=c++20 -g -Wall -Wextra -pthread -I.
 speed     = $(or $(SPEED),-O3) -DNDEBUG -g1
 debug     = -Og -fno-omit-frame-pointer
 SANITIZE  = address,undefined

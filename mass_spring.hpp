@@ -20,13 +20,13 @@ using CME212::edges, CME212::nodes;  // for range-for, of any graph
 
 /** The value of a node: a point mass. */
 struct NodeData {
-  Point vel;      ///< velocity [m/s]
-  Real mass = 1;  ///< [kg], > 0
+  Point vel;        ///< velocity [m/s]
+  double mass = 1;  ///< [kg], > 0
 };
 /** The value of an edge: a linear spring. */
 struct EdgeData {
-  Real K = 100;  ///< spring constant [N/m], >= 0
-  Real L = 0;    ///< rest length [m], >= 0
+  double K = 100;  ///< spring constant [N/m], >= 0
+  double L = 0;    ///< rest length [m], >= 0
 };
 using Cloth = Graph<NodeData, EdgeData>;
 using GraphType = Cloth;
@@ -52,12 +52,12 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
   const MeshSprings springs(quads, kind);
   CME212::reserve(g, points.size(), springs.expected(points.size()));
   for (const Point& p : points)
-    g.add_node(p, {Point(), Real(1.0 / double(points.size()))});
+    g.add_node(p, {Point(), 1.0 / double(points.size())});
   for (unsigned s = 0; s < springs.size(); ++s) {
     const auto [i, j] = springs[s];
     // BEGIN SOLUTION 4.2.build_cloth 4pt
-    const Real L = Real(norm(points[i] - points[j]));
-    g.add_edge(g.node(i), g.node(j)).value() = {Real(K), L};
+    const double L = norm(points[i] - points[j]);
+    g.add_edge(g.node(i), g.node(j)).value() = {K, L};
     // STUB (void)K;
     // STUB g.add_edge(g.node(i), g.node(j));
     // END SOLUTION
@@ -119,7 +119,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
  * K (|u| - L) u/|u|; zero if u = 0, which has no direction. */
 inline Point spring_force(const Point& u, const EdgeData& s) {
   // BEGIN SOLUTION 3.2.Problem1Force 7pt
-  const Real l = Real(norm(u));
+  const double l = norm(u);
   return l > 0 ? s.K * (l - s.L) / l * u : Point();
   // STUB (void)u, (void)s;
   // STUB return Point();
@@ -132,7 +132,7 @@ class Problem1Force {
   /** Each spring has its own K and L (4.2). */
   Problem1Force() = default;
   /** All springs have the same K [N/m] and rest length L [m] (3.2). */
-  Problem1Force(double K, double L) : same_{{Real(K), Real(L)}} {}
+  Problem1Force(double K, double L) : same_{{K, L}} {}
 
   template <typename NODE>
   Point operator()(NODE n, double /*t*/) const {
@@ -351,7 +351,7 @@ class PlaneConstraint : public ZeroConstraint {
   double height() const { return z_; }
   void project(Node n) const {
     // BEGIN SOLUTION 6.1.PlaneConstraint 4pt
-    if (n.position().z < z_) n.position().z = Real(z_), n.value().vel.z = 0;
+    if (n.position().z < z_) n.position().z = z_, n.value().vel.z = 0;
     // STUB (void)n;
     // END SOLUTION
   }

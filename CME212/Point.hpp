@@ -5,53 +5,43 @@
 
 #include "CME212/Util.hpp"  // includes the other standard headers
 
-/** The type of coordinates, velocities, masses and springs: `make REAL=float`
- * makes them single precision, which halves their memory. Single numbers, as
- * times and energies, are always doubles. */
-#ifndef REAL
-#define REAL double
-#endif
-using Real = REAL;
-
-/** A point or a vector in R^3. Plain data: three Reals, trivially copyable.
+/** A point or a vector in R^3. Plain data: three doubles, trivially copyable.
  * p + s adds the scalar s to each coordinate; p * q and p / q act coordinate by
- * coordinate (the scalar product is dot()). Scalars are doubles; they are
- * rounded to Real before they are used. */
+ * coordinate (the scalar product is dot()). */
 struct Point {
-  using value_type = Real;
-  using reference = Real&;
-  using const_reference = const Real&;
-  using iterator = Real*;
-  using const_iterator = const Real*;
+  using value_type = double;
+  using reference = double&;
+  using const_reference = const double&;
+  using iterator = double*;
+  using const_iterator = const double*;
   using size_type = std::size_t;
   using difference_type = std::ptrdiff_t;
 
   /** The coordinates by name, and the same ones as an array. */
   union {
     struct {
-      Real x, y, z;
+      double x, y, z;
     };
-    Real elem[3];
+    double elem[3];
   };
 
   constexpr Point() : Point(0) {}
   /** The point (b, b, b). */
   constexpr explicit Point(double b) : Point(b, b, b) {}
-  constexpr Point(double x_, double y_, double z_)
-      : x(Real(x_)), y(Real(y_)), z(Real(z_)) {}
+  constexpr Point(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
 
   /** Coordinate @a i.  @pre i < 3 */
-  constexpr Real& operator[](size_type i) {
+  constexpr double& operator[](size_type i) {
     assert(i < 3);
     return i == 0 ? x : i == 1 ? y : z;
   }
-  constexpr const Real& operator[](size_type i) const {
+  constexpr const double& operator[](size_type i) const {
     assert(i < 3);
     return i == 0 ? x : i == 1 ? y : z;
   }
   /** The three coordinates as an array. */
-  Real* data() { return &x; }
-  const Real* data() const { return &x; }
+  double* data() { return &x; }
+  const double* data() const { return &x; }
   iterator begin() { return &x; }
   iterator end() { return &x + 3; }
   const_iterator begin() const { return &x; }
@@ -59,10 +49,10 @@ struct Point {
   const_iterator cbegin() const { return begin(); }
   const_iterator cend() const { return end(); }
   /** x, and z. */
-  constexpr Real& front() { return x; }
-  constexpr const Real& front() const { return x; }
-  constexpr Real& back() { return z; }
-  constexpr const Real& back() const { return z; }
+  constexpr double& front() { return x; }
+  constexpr const double& front() const { return x; }
+  constexpr double& back() { return z; }
+  constexpr const double& back() const { return z; }
   static constexpr size_type size() { return 3; }
   static constexpr bool empty() { return false; }
 
@@ -88,7 +78,7 @@ struct Point {
   constexpr Point& operator*=(double b) { return *this *= Point(b); }
   constexpr Point& operator/=(double b) { return *this /= Point(b); }
 };
-static_assert(sizeof(Point) == 3 * sizeof(Real));  // begin() counts on it
+static_assert(sizeof(Point) == 3 * sizeof(double));  // begin() counts on it
 
 constexpr Point operator+(const Point& a) { return a; }
 constexpr Point operator-(const Point& a) { return {-a.x, -a.y, -a.z}; }
@@ -108,9 +98,9 @@ constexpr Point operator/(Point a, double b) { return a /= b; }
 constexpr Point cross(const Point& a, const Point& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/** The scalar product a . b, in double: sums over a cloth need that. */
+/** The scalar product a . b. */
 constexpr double dot(const Point& a, const Point& b) {
-  return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 constexpr double inner_prod(const Point& a, const Point& b) {
   return dot(a, b);

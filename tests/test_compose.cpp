@@ -203,7 +203,7 @@ TEST(Compose, StrainOfOneGridIsStrainOfAnother) {
     m.material.modulus = 10;
     Cloth g;
     build(g, m);
-    for (Node n : g.nodes()) n.position().x *= Real(1.01);
+    for (Node n : g.nodes()) n.position().x *= 1.01;
     double energy = 10 * 0.01 * 0.01 / 2 * (2 * 0.7);
     EXPECT_NEAR(elastic_energy(g), energy, 1e-12) << nodes;
   }

@@ -209,7 +209,7 @@ class Ceiling : public ZeroConstraint {
   explicit Ceiling(double z) : z_(1, z) {}
   void operator()(Cloth& g, double) const override {
     for (Node n : g.nodes())
-      if (n.position().z > z_[0]) n.position().z = Real(z_[0]);
+      if (n.position().z > z_[0]) n.position().z = z_[0];
   }
 
  private:

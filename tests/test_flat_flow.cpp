@@ -36,18 +36,14 @@ class Dice {
   unsigned below(unsigned n) {
     return std::uniform_int_distribution<unsigned>(0, n - 1)(engine_);
   }
-  Point point(double a) {
-    return {Real(real(-a, a)), Real(real(-a, a)), Real(real(-a, a))};
-  }
+  Point point(double a) { return {real(-a, a), real(-a, a), real(-a, a)}; }
 
  private:
   std::mt19937 engine_;
 };
 
-NodeData heavy(Dice& dice) { return {dice.point(1), Real(dice.real(0.5, 2))}; }
-EdgeData spring(Dice& dice) {
-  return {Real(dice.real(1, 100)), Real(dice.real(0, 1))};
-}
+NodeData heavy(Dice& dice) { return {dice.point(1), dice.real(0.5, 2)}; }
+EdgeData spring(Dice& dice) { return {dice.real(1, 100), dice.real(0, 1)}; }
 
 void add_random(Cloth& g, Dice& dice, unsigned nodes, unsigned edges) {
   for (unsigned i = 0; i < nodes; ++i) g.add_node(dice.point(1), heavy(dice));
@@ -178,7 +174,7 @@ class FlatFlowTest : public ::testing::Test {
       }
       ASSERT_TRUE(same_bits(batches, singles)) << seed << ", round " << round;
       ASSERT_LT(difference(batches, by_node),
-                500 * std::numeric_limits<Real>::epsilon())
+                500 * std::numeric_limits<double>::epsilon())
           << seed << ", round " << round;
     }
   }
@@ -217,9 +213,8 @@ TYPED_TEST(FlatFlowTest, ThatHoldsForForcesAndConstraintsByCall) {
                                          }),
                      make_combined_constraints([](Cloth& g, double t) {
                        for (Node n : g.nodes())
-                         if (n.position().x < 0)
-                           n.value().vel.x += Real(t) * 0.1;
-                       for (Edge e : g.edges()) e.value().K *= Real(1.001);
+                         if (n.position().x < 0) n.value().vel.x += t * 0.1;
+                       for (Edge e : g.edges()) e.value().K *= 1.001;
                      }));
 }
 
@@ -365,7 +360,7 @@ TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
     }
     EXPECT_TRUE(same_bits(batch, single)) << seed;
     EXPECT_LT(difference(batch, by_node),
-              500 * std::numeric_limits<Real>::epsilon())
+              500 * std::numeric_limits<double>::epsilon())
         << seed;
   }
 }
@@ -386,9 +381,9 @@ TEST(FlatFlow, DragDecaysAsItIsSolved) {
     const Point x =
         before.node(n.index()).position() + (1 - left) * old.mass / c * old.vel;
     EXPECT_LT(norm(n.value().vel - left * old.vel),
-              100 * std::numeric_limits<Real>::epsilon());
+              100 * std::numeric_limits<double>::epsilon());
     EXPECT_LT(norm(n.position() - x),
-              100 * std::numeric_limits<Real>::epsilon());
+              100 * std::numeric_limits<double>::epsilon());
   }
 }
 
@@ -445,15 +440,15 @@ TEST(FlatClothNodes, AreTakenAndWritten) {
         EXPECT_EQ(flat.velocity(i), node.vel);
         EXPECT_EQ(flat.nodes()[FlatCloth::PerMass][i],
                   g.node_in_use(i) ? 1 / node.mass : 0);
-        flat.set_position(i, Point(Real(i), 1, 2));
-        flat.set_velocity(i, Point(3, Real(i), 4));
+        flat.set_position(i, Point(i, 1, 2));
+        flat.set_velocity(i, Point(3, i, 4));
       }
       flat.write(g, 5, 60);
       for (unsigned i = 0; i < 61; ++i) {
         const bool written = 5 <= i && i < 60 && g.node_in_use(i);
         const NodeData& node = g.node_values()[i];
-        EXPECT_EQ(g.positions()[i] == Point(Real(i), 1, 2), written) << i;
-        EXPECT_EQ(node.vel == Point(3, Real(i), 4), written) << i;
+        EXPECT_EQ(g.positions()[i] == Point(i, 1, 2), written) << i;
+        EXPECT_EQ(node.vel == Point(3, i, 4), written) << i;
         if (g.node_in_use(i)) {
           EXPECT_EQ(1 / node.mass, flat.nodes()[FlatCloth::PerMass][i]);
         } else {

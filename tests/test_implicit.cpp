@@ -34,13 +34,13 @@ struct Oscillator {
 
   /** @param w [1/s]   @param c [kg/s]   @param m [kg] */
   explicit Oscillator(double w_, double c_ = 0, double m_ = 0.5)
-      : a(g.add_node(Point(1 + y0, 0, 0), {Point(), Real(m_)})),
+      : a(g.add_node(Point(1 + y0, 0, 0), {Point(), m_})),
         m(m_),
         c(c_),
         w(w_),
         force(make_combined_force(MassSpringForce(), DampingForce(c_))),
         pin(g) {
-    g.add_edge(wall, a, {Real(m * w * w), 1});
+    g.add_edge(wall, a, {m * w * w, 1});
   }
   double y() const { return a.position().x - 1; }
   double v() const { return a.value().vel.x; }
@@ -583,7 +583,7 @@ TEST(NewtonMethod, FindsItsWayWhereRoundOffHidesTheObjective) {
       for (unsigned sheet : {0u, 16u})
         for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}})
           g.add_edge(g.node(q[a] + sheet), g.node(q[b] + sheet),
-                     {100, Real(norm(points[q[a]] - points[q[b]]))});
+                     {100, norm(points[q[a]] - points[q[b]])});
     auto force = make_combined_force(GravityForce(), MassSpringForce());
     TrBdf2 method(1e-9, 20);
     for (int n = 0; n < 20; ++n)

@@ -44,7 +44,7 @@ struct Oscillator {
         pin(std::vector<Node>{wall}),
         w(w_),
         c(c_) {
-    g.add_edge(wall, mass, {Real(w * w), 1});
+    g.add_edge(wall, mass, {w * w, 1});
   }
   double y() const { return mass.position().x - 1; }
   double v() const { return mass.value().vel.x; }
@@ -728,8 +728,8 @@ TEST(Problem, FermiPastaUlamKeepsTheStiffSpringsEnergy) {
   Cloth g;
   std::vector<Node> node;
   for (int i = 0; i < 6; ++i) node.push_back(g.add_node(Point(), {Point(), 1}));
-  auto q = [&](int i) -> Real& { return node[i].position().x; };
-  auto p = [&](int i) -> Real& { return node[i].value().vel.x; };
+  auto q = [&](int i) -> double& { return node[i].position().x; };
+  auto p = [&](int i) -> double& { return node[i].value().vel.x; };
   // Slow x_1 = 1, y_1 = 1; fast x_4 = 1/omega, y_4 = 1.
   q(0) = (1 - 1 / omega) / root2, q(1) = (1 + 1 / omega) / root2;
   p(0) = 0, p(1) = 2 / root2;

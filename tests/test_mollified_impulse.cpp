@@ -197,13 +197,13 @@ struct StiffOscillator {
     const std::vector<Node> ends = {g.add_node(Point(-1, 0, 0)),
                                     g.add_node(Point(1, 0, 0))};
     mass = g.add_node(Point());
-    g.add_edge(ends[0], mass, {Real(f * f), 1});
-    g.add_edge(ends[1], mass, {Real(s * s), 1});
+    g.add_edge(ends[0], mass, {f * f, 1});
+    g.add_edge(ends[1], mass, {s * s, 1});
     walls.emplace(ends);
     Node last = g.add_node(Point(0, 1, 0));
     for (int k = 1; k < 300; ++k) {
       const Node next = g.add_node(Point(k, 1, 0));
-      g.add_edge(last, next, {Real(s * s / 2), 1});
+      g.add_edge(last, next, {s * s / 2, 1});
       last = next;
     }
   }
@@ -256,24 +256,24 @@ Problem drawn(const std::string& kind, unsigned seed) {
     const double K = std::pow(10, 5 + draw(random));
     const double spread = draw(random) / 2, speed = draw(random);
     for (Node n : g.nodes()) {
-      n.value().mass *= Real(1 + spread * (2 * draw(random) - 1));
+      n.value().mass *= 1 + spread * (2 * draw(random) - 1);
       for (int k : {0, 1, 2}) n.value().vel[k] = speed * (draw(random) - 0.5);
     }
     if (kind == "a band")
       for (Edge e : g.edges())
         if (e.node1().position().x + e.node2().position().x < 0.01)
-          e.value().K = Real(K);
+          e.value().K = K;
     Edge any = g.edge(random() % g.num_edges());
-    if (kind != "a band") any.value().K = Real(K);
+    if (kind != "a band") any.value().K = K;
     for (Edge e : any.node1().edges())
       if (kind == "a triangle" && g.has_edge(e.node2(), any.node2())) {
-        e.value().K = Real(K);
+        e.value().K = K;
         for (Edge f : any.node2().edges())
-          if (f.node2() == e.node2()) f.value().K = Real(K);
+          if (f.node2() == e.node2()) f.value().K = K;
         break;
       }
     for (int k = 0; k < 2 && kind == "three edges"; ++k)
-      g.edge(random() % g.num_edges()).value().K = Real(K);
+      g.edge(random() % g.num_edges()).value().K = K;
   };
   return p;
 }

@@ -55,12 +55,12 @@ Shape shuffled(unsigned side) {
 void build_simply(Cloth& g, const Shape& s, MeshSprings::Kind mesh) {
   std::vector<Node> n;
   for (Point p : s.points)
-    n.push_back(g.add_node(p, {Point(), Real(1. / double(s.points.size()))}));
+    n.push_back(g.add_node(p, {Point(), 1. / double(s.points.size())}));
   for (auto [a, b] : {std::pair(0, 1), {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}})
     for (const Quad& q : s.quads)
       if (mesh == MeshSprings::diagonals || a + b != 3)
         g.add_edge(n[q[a]], n[q[b]],
-                   {100, Real(norm(s.points[q[a]] - s.points[q[b]]))});
+                   {100, norm(s.points[q[a]] - s.points[q[b]])});
 }
 
 /** Whether the two look the same to whoever asks by index. */

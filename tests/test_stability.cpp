@@ -73,12 +73,12 @@ struct RandomCloth {
     const unsigned n = 3 + random_() % 40;
     for (unsigned i = 0; i < n; ++i)
       g.add_node(Point(uniform(), uniform(), uniform()),
-                 {Point(), Real(std::pow(10, 2 * uniform()))});
+                 {Point(), std::pow(10, 2 * uniform())});
     for (unsigned k = random_() % (3 * n); k > 0; --k) {
       Node a = g.node(random_() % n), b = g.node(random_() % n);
       if (a == b) continue;
-      g.add_edge(a, b).value() = {Real(std::pow(10, 1 + 2 * uniform())),
-                                  Real(2 * uniform())};
+      g.add_edge(a, b).value() = {std::pow(10, 1 + 2 * uniform()),
+                                  2 * uniform()};
     }
     for (unsigned k = random_() % 4; k > 0; --k)
       held.push_back(g.node(random_() % n));

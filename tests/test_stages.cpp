@@ -89,7 +89,7 @@ TEST_P(Stages, AreTheScenesOfTheSameName) {
   Course course(stage, grid);
   Scene scene(scene_of(stage, grid));
   ASSERT_EQ(scene.cloth().num_edges(), course.g.num_edges());
-  const double bound = 500 * std::numeric_limits<Real>::epsilon();  // 1e-13 m
+  const double bound = 500 * std::numeric_limits<double>::epsilon();  // 1e-13 m
   double lowest = 0;
   EXPECT_TRUE(scene.run_to(until, [&] {
     course.step();

@@ -47,9 +47,7 @@ class SweepTest : public ::testing::Test {
 };
 
 double random(double a, double b) { return CME212::random(a, b); }
-Point random_point() {
-  return {Real(random(-1, 1)), Real(random(-1, 1)), Real(random(-1, 1))};
-}
+Point random_point() { return {random(-1, 1), random(-1, 1), random(-1, 1)}; }
 unsigned random_below(unsigned n) {
   return std::min(unsigned(random(0, n)), n - 1);
 }
@@ -57,12 +55,11 @@ unsigned random_below(unsigned n) {
 /** @a nodes anywhere, with @a edges springs between any two. */
 void make_random(Cloth& g, unsigned nodes, unsigned edges) {
   for (unsigned i = 0; i < nodes; ++i)
-    g.add_node(random_point(), {random_point(), Real(random(0.5, 2))});
+    g.add_node(random_point(), {random_point(), random(0.5, 2)});
   for (unsigned e = 0; e < edges && nodes > 1; ++e) {
     const unsigned i = random_below(nodes), j = random_below(nodes);
     if (i != j)
-      g.add_edge(g.node(i), g.node(j),
-                 {Real(random(1, 100)), Real(random(0, 1))});
+      g.add_edge(g.node(i), g.node(j), {random(1, 100), random(0, 1)});
   }
 }
 /** A grid with diagonals, its nodes up to a third of its mesh away. */
@@ -71,9 +68,9 @@ void make_grid(Cloth& g, unsigned side) {
   for (Node n : g.nodes()) {
     n.position() += (0.3 / side) * random_point();
     n.value().vel = random_point();
-    n.value().mass *= Real(random(0.5, 2));
+    n.value().mass *= random(0.5, 2);
   }
-  for (Edge e : g.edges()) e.value().K *= Real(random(0.5, 2));
+  for (Edge e : g.edges()) e.value().K *= random(0.5, 2);
 }
 void remove_some(Cloth& g, unsigned nodes, unsigned edges) {
   for (unsigned k = 0; k < edges && g.num_edges() > 0; ++k)
@@ -102,7 +99,7 @@ double worst(Cloth& g, FlatFlow& sweep) {
   return most;
 }
 
-constexpr double round_off = 20 * std::numeric_limits<Real>::epsilon();
+constexpr double round_off = 20 * std::numeric_limits<double>::epsilon();
 
 // ----------------------------------------------------------------- the forces
 
@@ -415,30 +412,6 @@ TEST_F(SweepTest, DriftAndKicksAreTheirFormulas) {
       }
     }
   }
-}
-
-// ------------------------------------------------------------------- precision
-
-TEST(Precision, IsThatOfRealInAllThatAClothHolds) {
-  EXPECT_EQ(sizeof(Point), 3 * sizeof(Real));
-  EXPECT_EQ(sizeof(NodeData), 4 * sizeof(Real));
-  EXPECT_EQ(sizeof(EdgeData), 2 * sizeof(Real));
-  EXPECT_EQ(lanes::width * sizeof(Real), 64u);
-  EXPECT_EQ(Point(0.1).x, Real(0.1));
-  EXPECT_EQ((0.1 * Point(1)).z, Real(0.1));
-}
-
-// 0.1 added up a hundred thousand times in float is off by a thousandth.
-TEST(Precision, SumsOverNodesAreInDouble) {
-  constexpr unsigned n = 100000;
-  const double tenth = Real(0.1);
-  Cloth g;
-  for (unsigned i = 0; i < n; ++i)
-    g.add_node(Point(0, 0, 3), {Point(1, 0, 0), Real(0.1)});
-  EXPECT_NEAR(total_mass(g), n * tenth, 1e-6);
-  EXPECT_NEAR(kinetic_energy(g), n * tenth / 2, 1e-6);
-  EXPECT_NEAR(gravitational_energy(g, 2), n * tenth * 6, 1e-5);
-  EXPECT_NEAR(center_of_mass(g).z, 3, 1e-6);
 }
 
 // ----------------------------------------------------------------- the stencil

@@ -167,7 +167,7 @@ TEST(PointTest, ElementsByOtherNames) {
   EXPECT_EQ(&a.elem[0], &a.x);
   EXPECT_EQ(&a.elem[2l], &a.z);
   EXPECT_EQ(readable.elem + 1, &a.y);
-  for (Real& x : a.elem) x += 1;
+  for (double& x : a.elem) x += 1;
   EXPECT_EQ(a, Point(2, 8, 4));
   EXPECT_EQ(a.data(), &a.x);
   EXPECT_EQ(readable.data()[1], 8);
@@ -181,7 +181,7 @@ TEST(PointTest, ElementsByOtherNames) {
   std::vector<Point> points(4, a);
   points[2].elem[0] = 0;
   EXPECT_EQ(points[1].x + points[2].x + points[3].x, 10);
-  static_assert(sizeof(Point) == 3 * sizeof(Real));
+  static_assert(sizeof(Point) == 3 * sizeof(double));
   static_assert(std::is_trivially_copyable_v<Point>);
 }
 
@@ -189,7 +189,7 @@ TEST(PointTest, WorksInConstantExpressions) {
   constexpr Point a(1, 2, 3);
   constexpr Point b = 2 * a + cross(a, Point(1));
   static_assert(b == Point(1, 6, 5) && b != a && b[1] == 6 && b.back() == 5);
-  Real Point::*along = &Point::y;
+  double Point::*along = &Point::y;
   EXPECT_EQ(a.*along, 2);
 }
 

@@ -43,7 +43,7 @@ MISTAKES = {
         (CLOTH, "* force(n, t);", "* f[n.index()];")],
     "first length": [(CLOTH, "norm(points[i] - points[j])",
                       "norm(points[0] - points[1])")],
-    "no length": [(CLOTH, "{Real(K), L}", "{Real(K), 0 * L}")],
+    "no length": [(CLOTH, "{K, L}", "{K, 0 * L}")],
     "one diagonal": [(CLOTH, "const auto [i, j] = springs[s];",
                       """if (s / (springs.size() / 6) == 3) continue;
     const auto [i, j] = springs[s];""")],

@@ -253,7 +253,7 @@ class Run {
    * one that has moved since, by the nearest place. A Node may be an index. */
   void follow() {
     if (num_nodes() == slots_.size()) return;
-    std::multimap<std::array<Real, 3>, unsigned> left;
+    std::multimap<std::array<double, 3>, unsigned> left;
     const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
     for (unsigned i = 0; i < slots_.size(); ++i)
       left.emplace(key(places_[i]), slots_[i]);
@@ -332,7 +332,7 @@ int page_cut(unsigned slot, unsigned other) { return run->cut(slot, other); }
 unsigned page_nodes() { return unsigned(run->places().size()); }
 unsigned page_slots(unsigned) { return run ? run->slots() : 0; }
 const float* page_points(unsigned) { return run->drawn().data(); }
-const Real* page_positions(unsigned) { return &run->places().data()->x; }
+const double* page_positions(unsigned) { return &run->places().data()->x; }
 double page_version(unsigned) { return run->version(); }
 const unsigned* page_mesh(unsigned) { return run->mesh().data(); }
 }

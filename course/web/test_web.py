@@ -183,9 +183,9 @@ def the_page_says_what_is_wrong_with_the_code(b):
          ("return n.value().mass * Point(0, 0, -gravity_);",
           "assert(gravity_ < 0 && \"my assertion\");\n"
           "return n.value().mass * Point(0, 0, -gravity_);"),
-         ("    if (n.position().z < z_) n.position().z = Real(z_),",
+         ("    if (n.position().z < z_) n.position().z = z_,",
           "    if (std::vector<int>()[3] > 0) return;\n"
-          "    if (n.position().z < z_) n.position().z = Real(z_),"))
+          "    if (n.position().z < z_) n.position().z = z_,"))
     run("make", "--no-print-directory", "web", folder=folder)
     open_page(b, folder)
     fault = "page.find('.fault').textContent"

@@ -276,11 +276,6 @@ std::string in_words(const Advice& a) {
             " that should agree (start moved by 1e-6 m, or a slightly shorter "
             "step) differ by up to " +
             with_unit(a.scatter, a.measure) + '\n';
-  if (a.floats && 10 * *a.floats <= a.tolerance / 10)
-    text += "single precision would do: it changes the answer by " +
-            with_unit(*a.floats, a.measure) +
-            "; make cloth REAL=float halves the memory and, at 10000 nodes, "
-            "the time\n";
   if (a.refusal.empty()) {
     if (const std::string acts = by_default(a.model); !acts.empty())
       text += "active by default: " + acts + '\n';

@@ -73,8 +73,6 @@ struct Advice : AdvisedRun {
   std::string oblong;   ///< what square cells would change; or empty
   std::vector<std::string> left_out;  ///< runs that the budget did not allow
   double t_end = 0;  ///< [s] of the question; model may end earlier, at rest
-  /** Change of the answer if positions and velocities are rounded to floats. */
-  std::optional<double> floats;
   double evaluations = 0;  ///< force evaluations of the advised run
   double of_stable = 0;    ///< its step / the largest stable one; 0: no limit
   double spent = 0;        ///< time of all pilots [s]

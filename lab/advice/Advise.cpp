@@ -98,7 +98,6 @@ Advice Adviser::find() {
   if (calm && !seen_.empty() &&
       (from_files() || look_for_chaos(found_ ? found_->scatter : 0)) &&
       found_) {
-    try_floats(*found_);
     try_squares();
     take(*found_);
   }
@@ -425,19 +424,6 @@ double Adviser::perturb(const Choice& c) {
   expected.add(1 - way, c.answer).add(way, c.half);
   look(other, {}, expected.by);
   return most;
-}
-
-void Adviser::try_floats(const Choice& c) {
-  if (std::is_same_v<Real, float> || !c.checked ||
-      !pilots_.affords(c.work, "single precision"))
-    return;
-  auto round = [](Point& p) { p = Point(float(p.x), float(p.y), float(p.z)); };
-  const Trial t = pilots_.run(c.model, "in single precision", c.work, {},
-                              nullptr, [&](Scene& scene) {
-                                for (Node n : scene.cloth().nodes())
-                                  round(n.position()), round(n.value().vel);
-                              });
-  if (t.ok()) advice_.floats = size_of(Effect(t.answer, c.answer));
 }
 
 void Adviser::try_squares() {

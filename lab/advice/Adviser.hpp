@@ -159,8 +159,6 @@ class Adviser {
   double perturb(const Choice& c);
   /** Say if the answer on the finest grid depends on the shape of its cells. */
   void try_squares();
-  /** Run @a c with positions and velocities rounded to floats. */
-  void try_floats(const Choice& c);
 
   // ------------------------------------------------------------------- Parts
 

@@ -82,7 +82,7 @@ inline Cloth& cloth(unsigned side, Kind kind) {
   if (is_new) {
     build(it->second, side, kind);
     std::mt19937 random(2);
-    std::uniform_real_distribution<Real> off(-0.1 / side, 0.1 / side);
+    std::uniform_real_distribution<double> off(-0.1 / side, 0.1 / side);
     for (Node n : it->second.nodes())
       n.position() += Point(off(random), off(random), off(random));
   }

@@ -123,7 +123,7 @@ std::vector<Figure> figures() {
          true, 0, kind});
     add({"step: SymplecticEuler" + of, "step: flat arrays" + of,
          stepping<SymplecticEuler>(kind), true,
-         sizeof(Real) * (6 + 6 + 1 + (kind == Kind::grid ? 8 : 16.0)) +
+         sizeof(double) * (6 + 6 + 1 + (kind == Kind::grid ? 8 : 16.0)) +
              (kind == Kind::grid ? 0 : 32),
          kind, 1, Scene::guard_interval});
   }
@@ -150,8 +150,7 @@ std::vector<Figure> figures() {
        [](unsigned n) -> Make {
          return [&g = cloth(n, Kind::grid)] {
            symp_euler_step(g, 0, dt, [](Node node, double) {
-             return springs_of(node) +
-                    Point(0, 0, -node.value().mass * Real(grav));
+             return springs_of(node) + Point(0, 0, -node.value().mass * grav);
            });
          };
        }});

@@ -29,11 +29,9 @@ Problem chain_problem(std::string name, std::string about, double t_end,
                       Chain chain) {
   auto build = [chain](Cloth& g) {
     const unsigned n = chain.n;
-    for (const Point& p : chain.exact(0))
-      g.add_node(p, {Point(), Real(1.0 / n)});
+    for (const Point& p : chain.exact(0)) g.add_node(p, {Point(), 1.0 / n});
     for (unsigned j = 0; j <= n; ++j)
-      g.add_edge(g.node(j), g.node(j + 1),
-                 {Real(chain.K), Real(chain.rest / (n + 1))});
+      g.add_edge(g.node(j), g.node(j + 1), {chain.K, chain.rest / (n + 1)});
   };
   auto pins = [n = chain.n](const Cloth& g) {
     const std::array ends = {g.node(0), g.node(n + 1)};
@@ -178,9 +176,9 @@ Problem graded_problem() {
     for (const Quad& q : grid_quads(side)) {
       const double area =
           norm(points[q[0]] - points[q[1]]) * norm(points[q[1]] - points[q[2]]);
-      for (unsigned i : q) g.node(i).value().mass += Real(area / 4);
+      for (unsigned i : q) g.node(i).value().mass += area / 4;
     }
-    for (Edge e : g.edges()) e.value().K = Real(100. / 24 / e.value().L);
+    for (Edge e : g.edges()) e.value().K = 100. / 24 / e.value().L;
   };
   return p;
 }

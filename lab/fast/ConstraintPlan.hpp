@@ -48,21 +48,18 @@ struct Exchange {
   }
 };
 
-/** Where a constraint lets no node be: inside a ball, or behind a plane. In
- * single precision it is larger by 10 um, more than the rounding errors within
- * 30 m of @a at; in double precision the test is that of project(). */
+/** Where a constraint lets no node be: inside a ball, or behind a plane. The
+ * test is that of project(). */
 struct Zone {
-  static constexpr double margin = sizeof(Real) < sizeof(double) ? 1e-5 : 0;
-  Point at;        ///< the center, or a point of the plane [m]
-  Point normal;    ///< of the plane, of length 1, pointing out
-  Real limit = 0;  ///< of |p - at|^2 [m^2], or of (p - at) . normal [m]
+  Point at;          ///< the center, or a point of the plane [m]
+  Point normal;      ///< of the plane, of length 1, pointing out
+  double limit = 0;  ///< of |p - at|^2 [m^2], or of (p - at) . normal [m]
   bool is_ball = false;
   static Zone inside(const Ball& b) {
-    const double r = b.radius + margin;
-    return {b.center, Point(), Real(r * r), true};
+    return {b.center, Point(), b.radius * b.radius, true};
   }
   static Zone behind(const Point& at, const Point& normal) {
-    return {at, normal, Real(margin), false};
+    return {at, normal, 0, false};
   }
 };
 

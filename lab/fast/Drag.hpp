@@ -70,7 +70,7 @@ struct DragFlow {
         decay(std::exp(-gamma * h)) {}
   /** Most nodes have the same c/m, but for round-off. */
   static bool is_same(double gamma, double other) {
-    constexpr double rounding = 4 * std::numeric_limits<Real>::epsilon();
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     return !(std::abs(gamma - other) > rounding * other);
   }
 };

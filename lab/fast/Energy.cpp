@@ -7,8 +7,7 @@ namespace lab {
 
 namespace {
 
-/** Add @a f(id) over all nodes in use, in the order of memory, in double: a sum
- * of a million floats would lose three digits. */
+/** Add @a f(id) over all nodes in use, in the order of memory. */
 template <typename F>
 double sum_over_nodes(const Cloth& g, F f) {
   double sum = 0;
@@ -52,7 +51,7 @@ double total_mass(const Cloth& g) {
 Point center_of_mass(const Cloth& g) {
   auto x = g.positions();
   auto node = g.node_values();
-  auto moment = [&](Real Point::*along) {
+  auto moment = [&](double Point::*along) {
     return sum_over_nodes(
         g, [=](unsigned i) { return double(node[i].mass) * x[i].*along; });
   };

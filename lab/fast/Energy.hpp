@@ -1,8 +1,7 @@
 #pragma once
 /** @file Energy.hpp
  * Energies of a cloth, its mass, its center, and the stiffness of its springs.
- * Sums run over the graph's arrays, in the order of memory, in double: a sum of
- * a million floats would lose three digits. */
+ * Sums run over the graph's arrays, in the order of memory. */
 #include "mass_spring.hpp"
 
 namespace lab {

@@ -9,18 +9,18 @@ void FlatCloth::take(const Cloth& g, int multiplicity, const Drag& c) {
   if (version_ != g.version()) lay_out(g);
   read_nodes(g, 0, slots_);
   if (!c.none())
-    for (unsigned i = 0; i < slots_; ++i) nodes_[DragC][i] = Real(c[i]);
+    for (unsigned i = 0; i < slots_; ++i) nodes_[DragC][i] = c[i];
   lanes::run<kernels::ReadSprings>(std::span<const Run>(runs_),
-                                   g.edge_values().data(), Real(multiplicity),
+                                   g.edge_values().data(), multiplicity,
                                    springs_[0], springs_[1]);
   if (!rest_) return;
   const EdgeData* edge = g.edge_values().data();
-  Real *K = springs_[0] + rest_first_, *L = springs_[1] + rest_first_;
+  double *K = springs_[0] + rest_first_, *L = springs_[1] + rest_first_;
   const unsigned* id = rest_->edges(0);
   const std::size_t count = rest_->num_rows() * lanes::width;
   for (std::size_t k = 0; k < count; ++k) {
     if (id[k] == Rest::none) continue;  // K = 0
-    K[k] = Real(multiplicity) * edge[id[k]].K, L[k] = edge[id[k]].L;
+    K[k] = multiplicity * edge[id[k]].K, L[k] = edge[id[k]].L;
   }
 }
 
@@ -60,14 +60,14 @@ bool FlatCloth::any_inside(const Zone& zone, unsigned first,
   return found;
 }
 
-void FlatCloth::save(std::vector<Real>& copy) const {
+void FlatCloth::save(std::vector<double>& copy) const {
   copy.resize(state.size() * slots_);
-  Real* to = copy.data();
+  double* to = copy.data();
   for (const Column c : state) to = std::copy_n(nodes_[c], slots_, to);
 }
 
-void FlatCloth::restore(const std::vector<Real>& copy) {
-  const Real* from = copy.data();
+void FlatCloth::restore(const std::vector<double>& copy) {
+  const double* from = copy.data();
   for (const Column c : state) {
     std::copy_n(from, slots_, nodes_[c]);
     from += slots_;
@@ -81,7 +81,7 @@ void FlatCloth::lay_out(const Cloth& g) {
   find_rows(g, is_row);
   const std::size_t whole = (slots_ + tile - 1) / tile * tile;
   // Rows begin at different places of a page, as columns do.
-  const std::size_t stride = whole + 9 * 64 / sizeof(Real);
+  const std::size_t stride = whole + 9 * 64 / sizeof(double);
   std::vector<std::size_t> first(is_row.size());
   for (std::size_t r = 0; r < rows_.size(); ++r)
     first[rows_[r].offset] = rows_[r].first = r * stride;

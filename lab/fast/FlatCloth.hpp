@@ -23,12 +23,12 @@ class Columns {
  public:
   /** @a count arrays of zeros of at least @a length numbers.  O(all) */
   void resize(std::size_t count, std::size_t length) {
-    constexpr std::size_t page = 4096 / sizeof(Real), skew = page / 64 * 9;
+    constexpr std::size_t page = 4096 / sizeof(double), skew = page / 64 * 9;
     stride_ = (length + page - 1) / page * page + skew;
     all_.assign(count * stride_, 0);
   }
-  Real* operator[](std::size_t column) { return &all_[column * stride_]; }
-  const Real* operator[](std::size_t column) const {
+  double* operator[](std::size_t column) { return &all_[column * stride_]; }
+  const double* operator[](std::size_t column) const {
     return &all_[column * stride_];
   }
   /** The distance of the starts of consecutive arrays. */
@@ -48,7 +48,7 @@ class Columns {
     void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
     bool operator==(const Aligned&) const = default;
   };
-  std::vector<Real, Aligned<Real>> all_;
+  std::vector<double, Aligned<double>> all_;
   std::size_t stride_ = 0;
 };
 
@@ -98,8 +98,8 @@ class FlatCloth {
   void write(Cloth& g) const { write(g, 0, slots_); }
 
   /** Copy positions, velocities and accelerations, and restore them. */
-  void save(std::vector<Real>& copy) const;
-  void restore(const std::vector<Real>& copy);
+  void save(std::vector<double>& copy) const;
+  void restore(const std::vector<double>& copy);
 
   /** True if any node with an id in [first, last) may be inside @a zone.
    * Removed nodes have position 0. */
@@ -111,8 +111,8 @@ class FlatCloth {
   Columns& nodes() { return nodes_; }
   const Columns& nodes() const { return nodes_; }
   const std::vector<Row>& rows() const { return rows_; }
-  const Real* K() const { return springs_[0]; }
-  const Real* L() const { return springs_[1]; }
+  const double* K() const { return springs_[0]; }
+  const double* L() const { return springs_[1]; }
   /** The springs in no row; null if there are none. In K() and L() they follow
    * the rows: row r of the stencil starts at rest_first() + r lanes::width. */
   const Rest* rest() const { return rest_ ? &*rest_ : nullptr; }
@@ -122,12 +122,12 @@ class FlatCloth {
 
   /** The Point in columns @a x, x + 1 and x + 2. */
   Point point(unsigned x, unsigned id) const {
-    const Real* at = nodes_[x] + id;
+    const double* at = nodes_[x] + id;
     const std::size_t s = nodes_.stride();
     return {at[0], at[s], at[2 * s]};
   }
   void set(unsigned x, unsigned id, const Point& p) {
-    Real* at = nodes_[x] + id;
+    double* at = nodes_[x] + id;
     const std::size_t s = nodes_.stride();
     at[0] = p.x, at[s] = p.y, at[2 * s] = p.z;
   }

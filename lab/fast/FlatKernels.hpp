@@ -17,12 +17,12 @@ using lanes::Points;
 /** Force per length of a spring, K (l - L)/l [N/m]: the force on node i is that
  * times x_j - x_i. Finite at l = 0, where no direction is defined: no force.
  * @param lengthSq l^2 [m^2]   @param K [N/m]   @param L rest length [m]
- * @tparam T Real, or Lanes of many springs */
+ * @tparam T double, or Lanes of many springs */
 template <typename T>
 [[gnu::always_inline]] inline T spring_pull(const T& lengthSq, const T& K,
                                             const T& L) {
   using lanes::sqrt, std::sqrt;
-  const T l = sqrt(lengthSq + std::numeric_limits<Real>::min());
+  const T l = sqrt(lengthSq + std::numeric_limits<double>::min());
   return K * (l - L) / l;
 }
 
@@ -32,11 +32,11 @@ template <typename T>
 struct RowRing {
   unsigned offset, size;  // size: without the tile behind it
   unsigned at;            // where the next tile goes
-  const Real *K, *L;      // of node 0
-  Real* kept;             // x; y and z at the next multiples of stride, which
+  const double *K, *L;    // of node 0
+  double* kept;           // x; y and z at the next multiples of stride, which
   std::size_t stride;     // is the same for all rows, at least size + tile
   /** The forces of the springs whose far ends are the next tile. */
-  const Real* far() const {
+  const double* far() const {
     return kept + (at >= offset ? at - offset : at + size - offset);
   }
   void advance() {
@@ -51,8 +51,8 @@ struct KickTask {
   std::size_t num_rings;
   const Point* others;  ///< other forces on node first and on, for whole tiles
   bool drag;            ///< whether drag acts
-  Real* kept;           ///< x of node 0 where a is stored; or null
-  Real gravity, h;      ///< [m/s^2], [s]
+  double* kept;         ///< x of node 0 where a is stored; or null
+  double gravity, h;    ///< [m/s^2], [s]
 };
 
 /** a = (springs + others - c v)/m - gravity, v += h a, for the tiles of nodes
@@ -74,7 +74,7 @@ struct KickTiles {
       // As far as there are nodes: a small cloth has less than a tile.
       const unsigned left = (last - begin + w - 1) / w * w;
       const unsigned end = left < tile ? left : tile;
-      Real* const xs = nodes[FlatCloth::X] + begin;
+      double* const xs = nodes[FlatCloth::X] + begin;
       for (std::size_t r = 0; r < num_rings; ++r) {
         row[r] = Row(task.rings[r], xs, begin);
         if (!row[r].wide)
@@ -83,13 +83,13 @@ struct KickTiles {
       }
       for (unsigned k = 0; k < end; k += w) {
         const unsigned i = begin + k;
-        const Real* at = xs + k;
+        const double* at = xs + k;
         const Points<V> x = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
         Points<V> f;
         for (std::size_t r = 0; r < num_rings; ++r) {
           const Row& to = row[r];
-          Real* const near = to.near + k;
-          const Real* const far = to.far + k;
+          double* const near = to.near + k;
+          const double* const far = to.far + k;
           Points<V> g;
           if (to.wide) {
             g = Near::template pull<V>(x, to.x + k, s, to.K + k, to.L + k);
@@ -108,7 +108,7 @@ struct KickTiles {
           const Points<V> other = load_points<V>(task.others + (i - first));
           f.x += other.x, f.y += other.y, f.z += other.z;
         }
-        Real* v = nodes[FlatCloth::VX] + i;
+        double* v = nodes[FlatCloth::VX] + i;
         V vx = load<V>(v), vy = load<V>(v + s), vz = load<V>(v + 2 * s);
         if (task.drag) {
           const V c = load<V>(nodes[FlatCloth::DragC] + i);
@@ -118,7 +118,7 @@ struct KickTiles {
         f.x *= per_mass, f.y *= per_mass;
         f.z = f.z * per_mass - gravity;
         if (task.kept) {
-          Real* a = task.kept + i;
+          double* a = task.kept + i;
           store(a, f.x), store(a + s, f.y), store(a + 2 * s, f.z);
         }
         store(v, vx + h * f.x), store(v + s, vy + h * f.y);
@@ -130,12 +130,12 @@ struct KickTiles {
 
   /** The numbers of a row at the first node of a tile. */
   struct Row {
-    const Real *x, *K, *L;  ///< x: of the far end
-    Real* near;             ///< the forces of its springs, x
-    const Real* far;        ///< those of the springs that end at the tile
-    bool wide;              ///< far ends in later tiles
+    const double *x, *K, *L;  ///< x: of the far end
+    double* near;             ///< the forces of its springs, x
+    const double* far;        ///< those of the springs that end at the tile
+    bool wide;                ///< far ends in later tiles
     Row() {}
-    Row(const RowRing& ring, const Real* xs, unsigned begin)
+    Row(const RowRing& ring, const double* xs, unsigned begin)
         : x(xs + ring.offset),
           K(ring.K + begin),
           L(ring.L + begin),
@@ -148,10 +148,10 @@ struct KickTiles {
   struct Near {
     template <typename V>
     [[gnu::always_inline]] static inline Points<V> pull(const Points<V>& x,
-                                                        const Real* far,
+                                                        const double* far,
                                                         std::size_t s,
-                                                        const Real* K,
-                                                        const Real* L) {
+                                                        const double* K,
+                                                        const double* L) {
       using namespace lanes;
       const V ux = load<V>(far) - x.x, uy = load<V>(far + s) - x.y,
               uz = load<V>(far + 2 * s) - x.z;
@@ -160,7 +160,7 @@ struct KickTiles {
       return {p * ux, p * uy, p * uz};
     }
     template <typename V>
-    [[gnu::always_inline]] static inline void apply(const Real* x,
+    [[gnu::always_inline]] static inline void apply(const double* x,
                                                     std::size_t s,
                                                     const RowRing& ring,
                                                     unsigned begin,
@@ -168,12 +168,12 @@ struct KickTiles {
       using namespace lanes;
       const std::size_t next = ring.stride;
       for (unsigned k = 0; k < end; k += count_of<V>) {
-        const Real* at = x + begin + k;
+        const double* at = x + begin + k;
         const Points<V> here = {load<V>(at), load<V>(at + s),
                                 load<V>(at + 2 * s)};
         const Points<V> g = pull<V>(here, at + ring.offset, s,
                                     ring.K + begin + k, ring.L + begin + k);
-        Real* kept = ring.kept + ring.at + k;
+        double* kept = ring.kept + ring.at + k;
         store(kept, g.x), store(kept + next, g.y);
         store(kept + 2 * next, g.z);
       }
@@ -184,8 +184,8 @@ struct KickTiles {
   [[gnu::always_inline]] static inline void repeat_first_tile(
       const RowRing& ring) {
     for (int c = 0; c < 3; ++c) {
-      Real* from = ring.kept + c * ring.stride;
-      std::memcpy(from + ring.size, from, FlatCloth::tile * sizeof(Real));
+      double* from = ring.kept + c * ring.stride;
+      std::memcpy(from + ring.size, from, FlatCloth::tile * sizeof(double));
     }
   }
   [[gnu::always_inline]] static inline void finish(RowRing& ring) {
@@ -201,12 +201,12 @@ struct KickTiles {
     using namespace lanes;
     const unsigned block = i / width, k = i % width;
     const std::size_t s = cloth.nodes().stride();
-    const Real* all = cloth.nodes()[FlatCloth::X];
+    const double* all = cloth.nodes()[FlatCloth::X];
     const std::size_t end = rest.row_begin(block + 1);
     for (std::size_t row = rest.row_begin(block); row < end; ++row) {
       Points<V> y;
       if (const int offset = rest.offset(row)) {
-        const Real* at = all + i + offset;
+        const double* at = all + i + offset;
         y = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
       } else {
         const unsigned* id = rest.neighbors(row) + k;
@@ -243,14 +243,14 @@ struct DriftNodes {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(FlatCloth* cloth,
                                                   unsigned first, unsigned last,
-                                                  Real kick, Real way,
-                                                  Real decay) {
+                                                  double kick, double way,
+                                                  double decay) {
     using namespace lanes;
     Columns& nodes = cloth->nodes();
     constexpr unsigned w = count_of<V>;
     for (int c = 0; c < 3; ++c) {
-      Real *x = nodes[FlatCloth::X + c], *v = nodes[FlatCloth::VX + c];
-      const Real* a = nodes[FlatCloth::AX + c];
+      double *x = nodes[FlatCloth::X + c], *v = nodes[FlatCloth::VX + c];
+      const double* a = nodes[FlatCloth::AX + c];
       unsigned i = first;
       for (; i + w <= last; i += w) {
         V velocity = load<V>(v + i);
@@ -286,8 +286,8 @@ struct AnyInside {
                                                   bool* found) {
     using namespace lanes;
     constexpr unsigned w = count_of<V>;
-    const Real *x = (*nodes)[FlatCloth::X], *y = (*nodes)[FlatCloth::Y],
-               *z = (*nodes)[FlatCloth::Z];
+    const double *x = (*nodes)[FlatCloth::X], *y = (*nodes)[FlatCloth::Y],
+                 *z = (*nodes)[FlatCloth::Z];
     std::size_t i = first;
     auto inside = V{} < V{};  // none
     for (; i + w <= last; i += w)
@@ -313,10 +313,10 @@ struct ReadNodes {
     const std::size_t s = to->stride();
     unsigned i = first;
     for (; i + w <= last; i += w) {
-      Real *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
+      double *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
       const Points<V> p = load_points<V>(x + i);
       store(at, p.x), store(at + s, p.y), store(at + 2 * s, p.z);
-      const Real* row = &node[i].vel.x;
+      const double* row = &node[i].vel.x;
       const Pairs<V> a = load_pairs<V>(row), b = load_pairs<V>(row + 2 * w);
       const Pairs<V> xz = unzip(a.first, b.first);
       const Pairs<V> ym = unzip(a.second, b.second);
@@ -324,7 +324,7 @@ struct ReadNodes {
       store((*to)[FlatCloth::PerMass] + i, 1 / ym.second);
     }
     for (; i < last; ++i) {
-      Real *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
+      double *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
       at[0] = x[i].x, at[s] = x[i].y, at[2 * s] = x[i].z;
       const Point& u = node[i].vel;
       v[0] = u.x, v[s] = u.y, v[2 * s] = u.z;
@@ -345,10 +345,10 @@ struct WriteNodes {
     const std::size_t s = from->stride();
     unsigned i = first;
     for (; i + w <= last; i += w) {
-      const Real *at = (*from)[FlatCloth::X] + i,
-                 *v = (*from)[FlatCloth::VX] + i;
+      const double *at = (*from)[FlatCloth::X] + i,
+                   *v = (*from)[FlatCloth::VX] + i;
       const Points<V> p = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
-      Real *to = &x[i].x, *row = &node[i].vel.x;
+      double *to = &x[i].x, *row = &node[i].vel.x;
       store(to, merged<0>(p)), store(to + w, merged<1>(p));
       store(to + 2 * w, merged<2>(p));
       const V a = load_pairs<V>(row).second,
@@ -361,8 +361,8 @@ struct WriteNodes {
       store(row + 2 * w, high.first), store(row + 3 * w, high.second);
     }
     for (; i < last; ++i) {
-      const Real *at = (*from)[FlatCloth::X] + i,
-                 *v = (*from)[FlatCloth::VX] + i;
+      const double *at = (*from)[FlatCloth::X] + i,
+                   *v = (*from)[FlatCloth::VX] + i;
       x[i] = Point(at[0], at[s], at[2 * s]);
       node[i].vel = Point(v[0], v[s], v[2 * s]);
     }
@@ -373,13 +373,13 @@ struct WriteNodes {
 struct ReadSprings {
   template <typename V>
   [[gnu::always_inline]] static inline void apply(
-      std::span<const FlatCloth::Run> runs, const EdgeData* edge, Real times,
-      Real* K, Real* L) {
+      std::span<const FlatCloth::Run> runs, const EdgeData* edge, double times,
+      double* K, double* L) {
     using namespace lanes;
     constexpr unsigned w = count_of<V>;
     for (const FlatCloth::Run& run : runs) {
       const EdgeData* from = edge + run.edge;
-      Real *k = K + run.number, *l = L + run.number;
+      double *k = K + run.number, *l = L + run.number;
       unsigned i = 0;
       for (; i + w <= run.count; i += w) {
         const Pairs<V> p = load_pairs<V>(&from[i].K);
@@ -394,14 +394,14 @@ struct ReadSprings {
 struct StageSum {
   static constexpr std::size_t most = 12;
   struct Term {
-    unsigned column;  ///< x of the accelerations
-    Real to_x, to_v;  ///< [s^2], [s]
+    unsigned column;    ///< x of the accelerations
+    double to_x, to_v;  ///< [s^2], [s]
   };
   unsigned start;  ///< column of x; y, z and the velocities behind it
-  Real way;        ///< [s]
+  double way;      ///< [s]
   Term term[most];
-  unsigned count;  ///< of terms
-  Real decay = 1;  ///< of v
+  unsigned count;    ///< of terms
+  double decay = 1;  ///< of v
 };
 
 /** x = x_0 + (way v_0 + sum of to_x a); v = decay (v_0 + sum of to_v a): for
@@ -417,7 +417,7 @@ struct SumTiles {
     constexpr unsigned w = count_of<V>;
     const unsigned end = first + (last - first + w - 1) / w * w;
     for (unsigned c = 0; c < 3; ++c) {
-      const Real *x0 = nodes[sum->start + c], *v0 = nodes[sum->start + 3 + c];
+      const double *x0 = nodes[sum->start + c], *v0 = nodes[sum->start + 3 + c];
       for (unsigned i = first; i < end; i += w) {
         const V v = load<V>(v0 + i);
         V dx = sum->way * v, dv = {};

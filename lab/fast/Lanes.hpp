@@ -24,15 +24,15 @@ namespace lab {
 
 namespace lanes {
 
-/** Nodes a block: as many as the longest register has numbers, 8 doubles or 16
- * floats. With shorter registers a block takes several. */
-inline constexpr int width = 64 / sizeof(Real);
+/** Nodes a block: as many as the longest register has doubles. With shorter
+ * registers a block takes several. */
+inline constexpr int width = 64 / sizeof(double);
 
 namespace detail {
 template <int count>
 struct Vector {
-  static constexpr int bytes = count * sizeof(Real);
-  typedef Real type __attribute__((vector_size(bytes), aligned(bytes)));
+  static constexpr int bytes = count * sizeof(double);
+  typedef double type __attribute__((vector_size(bytes), aligned(bytes)));
 };
 }  // namespace detail
 
@@ -44,7 +44,7 @@ using Lanes = typename detail::Vector<count>::type;
 
 /** The number of numbers in a vector. */
 template <typename V>
-inline constexpr int count_of = int(sizeof(V) / sizeof(Real));
+inline constexpr int count_of = int(sizeof(V) / sizeof(double));
 
 // ------------------------------------------------------------------ Processor
 
@@ -108,13 +108,13 @@ template <typename V>
 // ------------------------------------------------------------ Loads and moves
 
 template <typename V>
-[[gnu::always_inline]] inline V load(const Real* from) {
+[[gnu::always_inline]] inline V load(const double* from) {
   V a;
   std::memcpy(&a, from, sizeof a);
   return a;
 }
 template <typename V>
-[[gnu::always_inline]] inline void store(Real* to, const V& a) {
+[[gnu::always_inline]] inline void store(double* to, const V& a) {
   std::memcpy(to, &a, sizeof a);
 }
 
@@ -132,12 +132,12 @@ template <typename V, typename Pick>
 
 /** from[at[0]], from[at[1]], ... */
 template <typename V, std::size_t... k>
-[[gnu::always_inline]] inline V gather(const Real* from, const unsigned* at,
+[[gnu::always_inline]] inline V gather(const double* from, const unsigned* at,
                                        std::index_sequence<k...>) {
   return V{from[at[k]]...};
 }
 template <typename V>
-[[gnu::always_inline]] inline V gather(const Real* from, const unsigned* at) {
+[[gnu::always_inline]] inline V gather(const double* from, const unsigned* at) {
   return gather<V>(from, at, std::make_index_sequence<count_of<V>>());
 }
 
@@ -165,7 +165,7 @@ template <int coordinate, typename V>
 template <typename V>
 [[gnu::always_inline]] inline Points<V> load_points(const Point* from) {
   constexpr int w = count_of<V>;
-  const Real* first = &from->x;
+  const double* first = &from->x;
   const V a = load<V>(first), b = load<V>(first + w),
           c = load<V>(first + 2 * w);
   return {split<0>(a, b, c), split<1>(a, b, c), split<2>(a, b, c)};
@@ -204,7 +204,7 @@ template <typename V>
           shuffle(a, b, [](int k) { return (w + k) / 2 + k % 2 * w; })};
 }
 template <typename V>
-[[gnu::always_inline]] inline Pairs<V> load_pairs(const Real* from) {
+[[gnu::always_inline]] inline Pairs<V> load_pairs(const double* from) {
   return unzip(load<V>(from), load<V>(from + count_of<V>));
 }
 }  // namespace lanes

@@ -122,7 +122,7 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
   assert(g.size() == 0);
   const MeshSprings springs(quads, mesh);
   g.reserve(unsigned(points.size()), unsigned(springs.expected(points.size())));
-  const NodeData at_rest = {Point(), Real(1.0 / double(points.size()))};
+  const NodeData at_rest = {Point(), 1.0 / double(points.size())};
   const MeshOrder order = cuthill_mckee(points.size(), quads);
   std::vector<unsigned> node_id(points.size());
   for (unsigned i : order.points)
@@ -137,8 +137,8 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
     for (unsigned s : sorted_springs(local, points.size(), number)) {
       const auto [i, j] = local[s];
       const Node a = g.node(i), b = g.node(j);
-      const Real L = Real(norm(a.position() - b.position()));
-      edge_id[number(s)] = g.add_edge(a, b, {Real(K), L}).id();
+      const double L = norm(a.position() - b.position());
+      edge_id[number(s)] = g.add_edge(a, b, {K, L}).id();
     }
   }
   std::erase(edge_id, none);

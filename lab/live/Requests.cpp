@@ -30,7 +30,7 @@ void read(Line& in, unsigned& node) {
   node = in.number<unsigned>("the id of a node");
 }
 void read(Line& in, Point& p) {
-  for (int k = 0; k < 3; ++k) p[k] = Real(in.number("three coordinates [m]"));
+  for (int k = 0; k < 3; ++k) p[k] = in.number("three coordinates [m]");
 }
 void read(Line& in, Ends& edge) { read(in, edge[0]), read(in, edge[1]); }
 void read(Line& in, Ray& r) { read(in, r.near), read(in, r.far); }

@@ -45,7 +45,7 @@ void FlatFlow::prepare() {
     const std::size_t stride =
         rows.empty() ? 0 : (rows.back().offset + 3 * tile - 1) / tile * tile;
     r.numbers.resize(3 * rows.size() * stride);
-    Real* at = r.numbers.data();
+    double* at = r.numbers.data();
     for (const auto& row : rows) {
       const unsigned size = (row.offset + 2 * tile - 1) / tile * tile;
       r.rings.push_back({row.offset, size, 0, cloth_.K() + row.first,
@@ -75,7 +75,7 @@ const FlatFlow::Drift& FlatFlow::drift_by(double time) {
   made.time = time, made.of_run.clear();
   for (const DragRun& run : drag_) {
     const DragFlow flow(run.gamma, time);
-    made.of_run.push_back({Real(flow.way), Real(flow.decay)});
+    made.of_run.push_back({flow.way, flow.decay});
   }
   return made;
 }
@@ -243,9 +243,9 @@ void FlatFlow::run_group(std::span<Level> levels, Rings* rings,
 bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
                     bool project) {
   const FlatStage& stage = level.stage;
-  const auto drift = [&](unsigned from, unsigned to, Real way, Real decay) {
-    lanes::run<kernels::DriftNodes>(&cloth_, from, to, Real(stage.first_kick),
-                                    way, decay);
+  const auto drift = [&](unsigned from, unsigned to, double way, double decay) {
+    lanes::run<kernels::DriftNodes>(&cloth_, from, to, stage.first_kick, way,
+                                    decay);
   };
   if (stage.sum) {
     lanes::run<kernels::SumTiles>(&cloth_, stage.sum, first, last);
@@ -258,7 +258,7 @@ bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
       i = end;
     }
   } else if (stage.drift || stage.first_kick != 0) {
-    drift(first, last, Real(stage.drift.value_or(0)), Real(1));
+    drift(first, last, stage.drift.value_or(0), 1);
   }
   for_part(level.held, first, last, [this](const Held& h) {
     cloth_.set_position(h.id, h.value);
@@ -290,8 +290,8 @@ void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
         by_graph_ ? mine.others.data() : nullptr,
         !exact_ && !force_->drag().none(),
         stage.keep ? cloth_.nodes()[stage.keep_in] : nullptr,
-        Real(force_->gravity()),
-        Real(*stage.kick)};
+        force_->gravity(),
+        *stage.kick};
     lanes::run<kernels::KickTiles>(task, first, last);
   }
   set_velocities(level, first, last);
@@ -311,8 +311,8 @@ void FlatFlow::find_rings(Rings& r, unsigned first) {
   for (auto& ring : r.rings) {
     ring.at = 0;
     for (int c = 0; c < 3; ++c) {  // no node has an id below 0
-      Real* end = ring.kept + c * ring.stride + ring.size;
-      std::fill(end - ring.offset, end, Real(0));
+      double* end = ring.kept + c * ring.stride + ring.size;
+      std::fill(end - ring.offset, end, 0);
     }
     const unsigned before = (ring.offset + tile - 1) / tile * tile;
     lanes::run<kernels::NearTiles>(&cloth_, &ring,

@@ -106,7 +106,7 @@ class FlatFlow {
   struct Drift {
     double time;
     struct Factors {
-      Real way, decay;
+      double way, decay;
     };
     std::vector<Factors> of_run;
   };
@@ -125,7 +125,7 @@ class FlatFlow {
   /** Ring buffers of the springs of rows, up to node next. */
   struct Rings {
     std::vector<kernels::RowRing> rings;
-    std::vector<Real> numbers;
+    std::vector<double> numbers;
     std::vector<Point> others;  // other forces on a part
     unsigned next = 0;
   };
@@ -143,7 +143,7 @@ class FlatFlow {
   std::vector<std::atomic<int>> done_;  // parts, by group
   static constexpr int longest_wait = 64;
   int waiting_ = 0, wait_ = 1;  // batches without overlap: now, next time
-  std::vector<Real> before_;
+  std::vector<double> before_;
 
   void prepare();
   void find_drag();

@@ -287,7 +287,7 @@ void ImplicitStage::precondition(const std::vector<Point>& from,
 /** The round-off in D^-1 r/s [m/s^2], RMS over the nodes: that of w through the
  * inertia, that of x through the springs' part of D. */
 double ImplicitStage::round_off(const Cloth& g, double s) const {
-  constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   auto x = g.positions();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i) {

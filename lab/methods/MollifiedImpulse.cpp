@@ -201,7 +201,7 @@ void MollifiedImpulse::find_split(const Cloth& g, const ForcePlan& force,
   }
   for (const auto& s : split_.springs) {
     EdgeData value = g.edge_values()[s.edge];
-    value.K *= Real(multiplicity_);
+    value.K *= multiplicity_;
     stiff_.add_edge(stiff_.node(s.i), stiff_.node(s.j), value);
   }
   stiff_force_ = make_combined_force(MassSpringForce(), NodeDrag(c));

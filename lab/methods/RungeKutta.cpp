@@ -148,7 +148,7 @@ void RungeKutta<Tableau>::weigh(std::size_t stage, double h) {
   const std::size_t row = nystroem && last ? stages - 1 : stage;
   const double* weights =
       last && !nystroem ? Tableau::b.data() : &Tableau::a[row * (row - 1) / 2];
-  sum_ = {start, Real(c * h), {}, 0, Real(1 - drag_ * c * h)};
+  sum_ = {start, c * h, {}, 0, 1 - drag_ * c * h};
   for (std::size_t k = 0; k < stage; ++k) {
     double to_x, to_v;
     if constexpr (nystroem) {
@@ -158,8 +158,7 @@ void RungeKutta<Tableau>::weigh(std::size_t stage, double h) {
       to_x = of_accelerations(weights, stage, k), to_v = weights[k];
     }
     if (to_x != 0 || to_v != 0)
-      sum_.term[sum_.count++] = {acceleration(k), Real(h * h * to_x),
-                                 Real(h * to_v)};
+      sum_.term[sum_.count++] = {acceleration(k), h * h * to_x, h * to_v};
   }
 }
 
@@ -201,7 +200,7 @@ double RungeKutta<Tableau>::error_rate(const Cloth& g, double h) {
     for (unsigned c = 0; c < 3; ++c) {
       double dx[tile] = {}, dv[tile] = {};
       for (std::size_t k = 0; k < stages; ++k) {
-        const Real* a = nodes[acceleration(k) + c] + begin;
+        const double* a = nodes[acceleration(k) + c] + begin;
         for (unsigned i = 0; i < tile; ++i)
           dx[i] += to_x[k] * a[i], dv[i] += w[k] * a[i];
       }

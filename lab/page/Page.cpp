@@ -100,7 +100,7 @@ void page_load(unsigned scene, unsigned side) {
 const char* page_setting() {
   const Recipe& recipe = state().live->scene().recipe();
   const auto point = [](const Point& p) {
-    return list(std::array{p.x, p.y, p.z}, [](Real a) { return a; });
+    return list(std::array{p.x, p.y, p.z}, [](double a) { return a; });
   };
   const auto obstacle = [&](const Obstacle& o) {
     const char* const kind = o.kind == Obstacle::Kind::floor  ? "floor"
@@ -186,8 +186,8 @@ unsigned page_slots(unsigned side) {
   const Scene* s = state().scene(side);
   return s ? s->cloth().node_slots() : 0;
 }
-const Real* page_positions(unsigned side) {
-  static_assert(sizeof(Point) == 3 * sizeof(Real));
+const double* page_positions(unsigned side) {
+  static_assert(sizeof(Point) == 3 * sizeof(double));
   return &state().scene(side)->cloth().positions()[0].x;
 }
 const float* page_points(unsigned side) {

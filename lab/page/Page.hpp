@@ -50,7 +50,7 @@ const char* page_readings(int sharp);
 /** Slots of nodes of a side; 0: there is no such side. */
 unsigned page_slots(unsigned side);
 /** Positions [m], three numbers a slot; doubles where the page is built. */
-const Real* page_positions(unsigned side);
+const double* page_positions(unsigned side);
 /** x y z [m] and the largest strain of a spring there, four numbers a slot. */
 const float* page_points(unsigned side);
 /** Counts up when page_mesh() would return another mesh. */

@@ -86,7 +86,7 @@ void append(std::string& bytes, T a) {
   bytes.append(raw, sizeof raw);
 }
 void append3(std::string& bytes, const Point& p) {
-  for (Real a : {p.x, p.y, p.z}) append(bytes, float(a));
+  for (double a : {p.x, p.y, p.z}) append(bytes, float(a));
 }
 constexpr bool little = std::endian::native == std::endian::little;
 

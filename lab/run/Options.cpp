@@ -436,11 +436,10 @@ int parse(int argc, char** argv, Options& o) {
   app.set_version_flag(
       "--version",
       [] {
-        return std::string("cloth ") + version + ", " +
-               (sizeof(Real) == 8 ? "double" : "single") +
-               " precision, kernels " + lanes::name_of(fastest_cpu());
+        return std::string("cloth ") + version + ", kernels " +
+               lanes::name_of(fastest_cpu());
       },
-      "print the version, precision and the fastest kernels here and exit");
+      "print the version and the fastest kernels here and exit");
   app.set_help_flag("-h,--help", "print this help and exit");
   try {
     app.parse(argc, argv);

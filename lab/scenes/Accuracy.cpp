@@ -20,7 +20,7 @@ using CME212::two_digits;
 /** The tolerance of a run divided by that of its second run. */
 constexpr double finer = 10;
 /** The smallest useful tolerance [m], some hundred times round-off. */
-constexpr double least = 450 * std::numeric_limits<Real>::epsilon();
+constexpr double least = 450 * std::numeric_limits<double>::epsilon();
 constexpr int most_pairs = 6;
 
 struct Pilot {

@@ -27,7 +27,7 @@ void write_checkpoint(const std::string& file, const Archive& saved);
 
 /** The archive in @a file, ready to load from.
  * Throws std::runtime_error "FILE: why" if it can't be read, is no checkpoint,
- * is of another version or precision, too short, or damaged. */
+ * is of another version, too short, or damaged. */
 Archive read_checkpoint(const std::string& file);
 
 /** What archive_scene() saves first. */

@@ -87,7 +87,7 @@ void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
   auto add = [&](unsigned i, unsigned j, double area_of_width) {
     Edge e = g.add_edge(g.node(i), g.node(j));  // there already
     const double l = e.value().L;
-    if (l > 0) e.value().K += Real(modulus * area_of_width / (l * l));
+    if (l > 0) e.value().K += modulus * area_of_width / (l * l);
   };
   for (const Quad& q : mesh.quads) {
     const double a = area(mesh, q);
@@ -118,7 +118,7 @@ void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
     if (!(share[i] > 0))
       throw SceneError("density", "gives no mass to node " + std::to_string(i) +
                                       ", which lies in no quad");
-    g.node(i).value().mass = Real(density * share[i]);
+    g.node(i).value().mass = density * share[i];
   }
 }
 
@@ -129,12 +129,12 @@ void change_region(Cloth& g, const Region& r) {
   };
   unsigned nodes = 0, edges = 0;
   for (Node n : g.nodes())
-    if (r.box.holds(n.position())) ++nodes, n.value().mass *= Real(r.mass);
+    if (r.box.holds(n.position())) ++nodes, n.value().mass *= r.mass;
   if (nodes == 0) fail("node");
   if (r.stiffness == 1) return;
   for (Edge e : g.edges())
     if (r.box.holds(e.node1().position()) && r.box.holds(e.node2().position()))
-      ++edges, e.value().K *= Real(r.stiffness);
+      ++edges, e.value().K *= r.stiffness;
   if (edges == 0) fail("edge");
 }
 
@@ -197,7 +197,7 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
     each_bend(mesh.quads,
               [&](unsigned p, unsigned q, std::size_t, std::size_t) {
                 const double l = norm(mesh.points[p] - mesh.points[q]);
-                g.add_edge(g.node(p), g.node(q), {Real(m.stiffness), Real(l)});
+                g.add_edge(g.node(p), g.node(q), {m.stiffness, l});
               });
   if (m.material.modulus) set_stiffness(g, mesh, m.edges, *m.material.modulus);
   if (m.material.density) set_masses(g, mesh, *m.material.density);

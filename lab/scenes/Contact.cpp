@@ -21,7 +21,7 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
   const double in = dot(change, out);
   n.position() += depth * out;
   n.value().vel += change;
-  if (in > std::numeric_limits<Real>::min())
+  if (in > std::numeric_limits<double>::min())
     n.position() += depth * ((change - in * out) / in);
   return n.value().mass * dot(change, velocity);
 }

@@ -264,7 +264,7 @@ class Finder {
   void below_round_off() {
     double size = 0;
     for (Node n : g_.nodes()) size = std::max(size, norm(n.position()));
-    const double least = size * std::numeric_limits<Real>::epsilon();
+    const double least = size * std::numeric_limits<double>::epsilon();
     if (m_.step.tolerance == 0 || m_.step.tolerance >= least) return;
     add(std::string(m_.method->info.name) + ": an inner step may err by " +
         short_text(m_.step.tolerance) +

@@ -133,7 +133,7 @@ void each_number(const Word& w, Use use) {
   if (auto* a = std::get_if<std::optional<double>*>(&w.member))
     use((*a)->has_value() ? ***a : (*a)->emplace());
   if (auto* p = std::get_if<Point*>(&w.member))
-    for (Real& a : **p) use(a);
+    for (double& a : **p) use(a);
   if (auto* n = std::get_if<std::array<unsigned, 2>*>(&w.member))
     for (unsigned& a : **n) use(a);
 }

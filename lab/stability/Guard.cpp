@@ -16,8 +16,7 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
   height_ = e.gravitational + flow.removed;
   available_ = e.internal();
   const double fall = gravity * dt;  // [m/s]
-  const double strain =
-      std::max(1e-6, std::sqrt(double(std::numeric_limits<Real>::epsilon())));
+  constexpr double strain = 1e-6;
   for (Edge e : g.edges())
     round_off_ += spring_energy((1 + strain) * e.value().L, e.value());
   floor_ = total_mass(g) * fall * fall + round_off_;
