@@ -92,7 +92,8 @@ deps:
 	@tools/deps.sh
 
 # In a window; without a display a picture and a film of the same run.
-demo: deps
+demo:
+	@tools/deps.sh build window film
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
 	  $(MAKE) --no-print-directory $(O)mass_spring && \
 	  ./$(O)mass_spring data/grid2.nodes data/grid2.tets; \

@@ -245,16 +245,15 @@ advice() {
 }
 # Is anything missing that a page needs, to be built and to be tested?
 skips_page() {
-  local name
-  for name in chromium ffmpeg; do
-    command -v $name >/dev/null ||
-      { echo "skipped: the page: $name is missing: make page-deps"; return; }
-  done
+  command -v ffmpeg >/dev/null ||
+    { echo "skipped: the page: ffmpeg is missing: make page-deps"; return; }
+  command -v chromium >/dev/null || {
+    echo "skipped: the page: chromium is missing: tools/deps.sh browser"; return; }
   compgen -G '/usr/lib/llvm-*/lib/clang/*/lib/wasi' >/dev/null ||
     { echo "skipped: the page: clang for wasm32: make page-deps"; return; }
   ! /usr/bin/python3 -c 'import websocket' 2>/dev/null ||
     return 1
-  echo "skipped: the page: websocket is missing: make page-deps"
+  echo "skipped: the page: websocket is missing: tools/deps.sh browser"
 }
 # The cloth of a starter and a solution as a page, and figures of mistakes.
 web() {

@@ -6,11 +6,11 @@ script=${DEPS_SCRIPT:-$(cd "$(dirname "$0")" && pwd)/deps.sh}
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 passed=0 failed=0
-everything="g++ make pkgconf git libcli11-dev libeigen3-dev libspectra-dev
-  libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libpng-dev
-  ffmpeg gnuplot-nox python3 fonts-dejavu-core clang clang-format libclang-rt-dev libomp-dev
-  libgtest-dev librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind
-  shellcheck pyflakes3 mypy"
+everything="g++ make pkgconf git libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri
+  libpng-dev ffmpeg libcli11-dev libeigen3-dev gnuplot-nox python3
+  fonts-dejavu-core libgtest-dev gdb clang clang-format libclang-rt-dev
+  libomp-dev libspectra-dev librapidcheck-dev libbenchmark-dev xvfb xauth
+  xdotool valgrind"
 
 stub() { cat >"$tmp/bin/$1"; chmod +x "$tmp/bin/$1"; }
 
@@ -20,7 +20,7 @@ system() {
   rm -rf "${tmp:?}"/*
   mkdir "$tmp/bin"
   local tool
-  for tool in bash cat env grep mktemp rm sed sleep tail tr; do
+  for tool in bash cat env grep mktemp rm sed sleep sort tail tr; do
     ln -s "$(command -v "$tool")" "$tmp/bin/$tool"
   done
   : >"$tmp/calls"
@@ -39,6 +39,19 @@ test ! -e '$tmp/broken' || { echo 'E: Unable to locate package x'; exit 100; }
 test ! -e '$tmp/offline' || { cat '$tmp/offline'; exit 100; }
 test ! -e '$tmp/flaky' ||
   { rm '$tmp/flaky'; echo 'E: Failed to fetch http://x'; exit 100; }"
+}
+# Packages that apt-get could install: one a line in $tmp/names.
+apt_cache() { stub apt-cache <<<"#!/bin/sh
+cat '$tmp/names'"; }
+no_apt() { rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"; }
+# Homebrew or Fedora, with these packages.
+other() {  # brew|dnf PACKAGES
+  no_apt
+  printf '%s\n' $2 >"$tmp/there"
+  stub "$1" <<<"#!/bin/sh
+case \$1 in list) cat '$tmp/there';; *) echo \"$1 \$*\" >>'$tmp/calls';; esac"
+  [ "$1" = brew ] || stub rpm <<<"#!/bin/sh
+cat '$tmp/there'"
 }
 with_sudo() { stub sudo <<<"#!/bin/sh
 echo sudo >>'$tmp/calls'; exec \"\$@\""; }
@@ -100,19 +113,36 @@ expect_status 0; silent; calls apt-get 0
 ok "only the groups that are asked for"
 
 system 0 "$everything"; run peers
-expect_status 0; says 'installing libsundials-dev libboost-dev liblemon-dev'
+expect_status 0; says 'installing libboost-dev .*libsundials-dev'
 ok "group peers"
 
 system 0 "$everything"; run grade
-expect_status 0; says 'installing libseccomp-dev'
-ok "group grade"
+expect_status 0; says 'installing libseccomp-dev python3-tomli'
+ok "group grade, with a Python that has no tomllib"
 
-system 0 "$everything"; run page
-expect_status 0; says 'installing clang-19 lld-19 wasi-libc' 'chromium'
-ok "group page"
+system 0 "$everything"; stub python3 <<<"#!/bin/sh"; run grade
+expect_status 0; says 'installing libseccomp-dev *$'
+ok "group grade, with a Python that has it"
+
+for group in web page; do
+  system 0 "$everything"; apt_cache
+  printf 'libclang-rt-%s-dev-wasm32\n' 9 19 21 14 >"$tmp/names"; run $group
+  expect_status 0; calls 'install .*clang-21 .*libclang-rt-21-dev-wasm32' 1
+  not_say 'clang-N|clang-19|chromium'
+  ok "group $group: the newest clang for WebAssembly"
+done
+
+system 0 "$everything clang-19 lld-19 wasi-libc libc++-19-dev-wasm32
+  libclang-rt-19-dev-wasm32"; run web
+expect_status 0; silent; calls apt-get 0
+ok "group web: the clang that is there"
+
+system 0 "$everything"; run browser
+expect_status 0; says 'installing chromium python3-websocket'
+ok "group browser"
 
 system 0 "$everything"; run build toys
-expect_status 2; says "no group 'toys'.*build draw check peers grade page"; calls apt 0
+expect_status 2; says "no group 'toys'.*build window film lab draw test check peers grade web"; calls apt 0
 ok "a group that there is not"
 
 system 1000 "${everything/xvfb/}"; with_sudo; run
@@ -121,43 +151,45 @@ calls 'apt-get noninteractive .* install .*xvfb' 1
 ok "not root, with sudo"
 
 system 1000 "$(echo "$everything" | sed 's/xvfb//; s/make//')"; run
-expect_status 1; says 'you must be root'; says 'needed to build:'
-says '^    make *$'; says 'to test and check:'; says '^    xvfb *$'
-not_say 'to draw'; not_say ffmpeg; calls apt-get 0
-says 'apt-get install --no-install-recommends make xvfb'
+expect_status 1; says 'you must be root'
+says '^  build +make *$'; says '^  check +xvfb *$'
+not_say '  draw'; not_say ffmpeg; calls apt-get 0
+says 'As root: tools/deps.sh build window film lab draw test check'
 ok "not root, without sudo: lists what is missing, by group"
 
 system 1000 "$everything"; run
 expect_status 0; silent
 ok "not root, without sudo, all there"
 
-system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"; run
-expect_status 1; says 'no apt-get'; says 'needed to build:'; says 'g\+\+ make'
-says 'to draw, record and chart:'; says 'libsdl2-dev'
-says 'to test and check:'; says 'DEPS=skip'; not_say libsundials
+system 0 ""; no_apt; run
+expect_status 1; says 'no apt-get'; says '^  build +g\+\+ make pkgconf git'
+says '^  window .*libsdl2-dev'; says '^  check .*clang'; says 'DEPS=skip'
+not_say libsundials
 ok "no apt-get: lists all, by group"
 
-for other in brew dnf; do
-  system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"
-  stub $other <<<"#!/bin/sh"; run
-  expect_status 1; says "$other install"; says 'DEPS=skip'
-  not_say '[a-z]-dev( |$)| - '
-  case $other in
-    brew) says ' sdl2-compat imgui '; not_say 'g\+\+|rapidcheck|valgrind' ;;
-    dnf) says ' gcc-c\+\+ .* SDL2-devel'; not_say imgui-devel ;;
-  esac
-  says 'is left out'
-  ok "no apt-get, but $other: the command, in its names"
-done
+system 1000 ""; other brew "make git libpng"; run build window test
+expect_status 0; calls 'brew install googletest pkgconf sdl2-compat$' 1
+calls sudo 0
+ok "Homebrew: what is missing, in its names, without sudo"
 
-system 0 ""; rm "$tmp/bin/apt-get" "$tmp/bin/dpkg-query"
+system 1000 ""; other brew "make git pkgconf"; run build
+expect_status 0; silent
+ok "Homebrew: all there"
+
+system 1000 ""; other dnf "make git pkgconf-pkg-config"; with_sudo
+run build window
+expect_status 0; calls 'dnf install -y .*SDL2-devel gcc-c++ .*mesa-libGL-devel' 1
+not_say 'libsdl2|pkgconf'; calls sudo 1
+ok "Fedora: what is missing, in its names, by sudo"
+
+system 0 ""; no_apt
 DEPS=skip run
 expect_status 0; silent
 ok "no apt-get, DEPS=skip"
 
 system 0 "${everything/clang /}"; touch "$tmp/broken"; run
 expect_status 1; says 'E: Unable to locate package'; says 'could not install'
-says '^    clang *$'; calls ' install ' 1; not_say 'once more'
+says '^  check +clang *$'; calls ' install ' 1; not_say 'once more'
 ok "install fails: the reason, no second try"
 
 system 0 "${everything/clang /}"; touch "$tmp/flaky"; run

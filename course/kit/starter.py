@@ -31,7 +31,7 @@ COPIED = [
     ("course/pictures/*.png course/pictures/*.svg", "pages/pictures", ""),
     ("course/starter/Makefile course/starter/README.md", ".", ""),
     ("course/starter/tests.mk", "tests", ""),
-    ("tools/submit.sh", "tools", ""),
+    ("tools/submit.sh tools/deps.sh", "tools", ""),
     ("course/web/*.?pp course/web/*.js course/web/*.css course/web/*.html "
      "course/web/web.*", "web", "positions.cpp"),
 ]

@@ -1,8 +1,17 @@
 """Read and check course/tasks.toml: the tasks of the assignment as data."""
 import pathlib
 import re
-import tomllib
+import sys
 from dataclasses import dataclass
+
+try:
+    import tomllib
+except ImportError:     # Python 3.10
+    try:
+        import tomli as tomllib
+    except ImportError:
+        sys.exit("Python before 3.11 needs tomli: apt-get install "
+                 "python3-tomli, or pip install tomli")
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILE = "course/tasks.toml"

@@ -1,5 +1,5 @@
 """A headless Chromium, driven by its own protocol over a web socket: needs
-chromium and python3-websocket (make page-deps)."""
+chromium and python3-websocket (tools/deps.sh browser)."""
 import base64
 import json
 import pathlib
