@@ -44,7 +44,7 @@ std::string text(Ends e) {
   return std::to_string(e.first) + "-" + std::to_string(e.second);
 }
 
-/** What the graph must contain: the value of each edge, by its ends. */
+/** The expected content: the value of each edge, by its ends. */
 using Model = std::map<Ends, double>;
 
 /** The edges at the node of value @a v. */

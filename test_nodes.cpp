@@ -31,7 +31,7 @@ using GraphType = Graph<int, double>;
 using NodeType = GraphType::node_type;
 using size_type = GraphType::size_type;
 
-/** What the graph must contain: the position of each node, by its value. */
+/** The expected content: the position of each node, by its value. */
 using Model = std::map<int, Point>;
 
 /** The first position of the node of value @a v. */

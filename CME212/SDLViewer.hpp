@@ -41,7 +41,7 @@ namespace CME212 {
 class SDLViewer : public SceneBuilder {
  public:
   struct Options {
-    /** Of the window and of snapshots; 0: a window of three quarters of the
+    /** Of window and snapshots [pixels]; 0: a window of three quarters of the
      * screen, snapshots of 1024 x 768. */
     int width = 0, height = 0;
     std::string title = "mass_spring";

@@ -18,7 +18,7 @@ concept Archived = requires {
   &T::archive;
 };
 
-/** What is saved as the bytes it consists of. */
+/** A type whose values are saved byte by byte. */
 template <typename T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
                 !Archived<T> && !requires {

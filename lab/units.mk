@@ -21,7 +21,7 @@ tests_alone := test_graph test_graph_hubs test_graph_memory test_viewer \
 
 dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
-# What is linked with the window if a program uses it, and not otherwise.
+# These are linked only if a program uses them: they need the window.
 drawing    := $(filter $(lab_panels) $(patsubst %,lab/%.cpp, \
                 viewer/Screen run/Film run/RunReplay),$(lab_lib))
 united     := $(filter-out $(drawing),$(lab_lib))

@@ -38,7 +38,7 @@ class ClothProgram : public ::testing::Test {
                          ' ' + arguments + " >" + folder / "out" + " 2>" +
                          folder / "err");
   }
-  /** Of a program that ended with @a status, as waitpid() gives it. */
+  /** The result of a program that ended with @a status of waitpid(). */
   Result result_of(int status) {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
             contents(dir / "out"), contents(dir / "err")};
@@ -88,7 +88,7 @@ class ClothProgram : public ::testing::Test {
     child.signal(SIGKILL);
     return result_of(child.wait());
   }
-  /** What the system says of a process behind @a key, "SigCgt:"; a blank if it
+  /** The system's entry @a key of a process, such as "SigCgt:"; a blank if it
    * has ended. */
   static std::string state(const CME212::Child& process,
                            const std::string& key) {

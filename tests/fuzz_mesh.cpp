@@ -18,7 +18,7 @@ void require(bool ok) {
   if (!ok) std::abort();
 }
 
-/** What was accepted is in range and, written and read again, the same. */
+/** Accepted numbers are in range and survive writing and reading. */
 void check_points(std::string_view text) {
   auto points = parse_points(text, "f");
   require(!points.empty());

@@ -154,7 +154,7 @@ TEST(Accuracy, IsNotMadeUpWhereARunFails) {
 
 // ---------------------------------------------------------------- Energy
 
-/** What the energy watch says of a run. */
+/** The energy watch's verdict on a run. */
 EnergyWatch watched(Model m, const char* method, double dt) {
   m.method = find_method(method), m.step = {.dt = dt};
   Scene scene(m);

@@ -31,8 +31,8 @@ Model hanging(double tolerance) {
   return m;
 }
 
-/** What the answer tends to on grids of up to so many times the cells, by small
- * steps of a fine method: another one than the adviser's pilots use. */
+/** The limit of the answer on grids of up to so many times the cells, by small
+ * steps of a method that the adviser's pilots do not use. */
 Answer truth(const Model& m, double factor) {
   Refinement grids(m.measure);
   for (double coarser : {4, 2, 1}) {
@@ -523,8 +523,8 @@ TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
   EXPECT_TRUE(advise(hanging(1e-2)).left_out.empty());
 }
 
-// What was found is found with more work, too; what is named to go on with is
-// more than what there was.
+// More work finds at least what less work found; the work that a refusal names
+// is more than the work that was allowed.
 TEST(Budget, MoreOfItLosesNothing) {
   Model swing = hanging(2e-3), late = hanging(0.02);
   late.sheets = {read_sheet("nodes 11 11")};
@@ -551,7 +551,7 @@ TEST(Budget, MoreOfItLosesNothing) {
   }
 }
 
-// What is not run is foreseen, and said to be.
+// Advice that was not run is predicted, and says so.
 TEST(Budget, EndsWithTheBestThatIsKnown) {
   const Answer right = truth(hanging(1), 4);
   int foreseen = 0;

@@ -372,7 +372,7 @@ TEST(Checkpoint, IsOfOneScene) {
   EXPECT_EQ(
       error_of(other).find("--restart belongs to another scene: it has tear"),
       0u);
-  // What is damaged and has a good checksum is no crash either.
+  // A damaged file with a right checksum causes no crash either.
   for (const Model& model : scenes()) {
     Scene s(model);
     s.run_to(0.1);

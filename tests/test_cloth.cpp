@@ -62,7 +62,7 @@ TEST(LoadCloth, ReadsTheCommittedGrids) {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-// Of the sanitizer, whose header g++ does not install everywhere.
+// The sanitizer's; g++ does not install its header everywhere.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(
     void (*)(const volatile void*, std::size_t),
     void (*)(const volatile void*));

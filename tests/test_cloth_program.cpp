@@ -148,7 +148,7 @@ TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
   EXPECT_EQ(table.size(), 14u);
   for (const auto& row : table)
     for (double a : row) EXPECT_TRUE(std::isfinite(a));
-  // What it advises works.
+  // The advice works.
   const std::string dt = std::to_string(
       number(r.err, "every step; --dt ", " works: a trial to t = "));
   EXPECT_EQ(run(grid3 + "--headless --t-end 0.2 --dt " + dt).status, 0);

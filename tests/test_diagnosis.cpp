@@ -22,7 +22,7 @@ using namespace lab;
 
 namespace {
 
-/** What a command line asks for. Words in '' are one. */
+/** The model of a command line. Words in '' are one. */
 Model parsed(const std::string& options) {
   std::vector<std::string> words = {"cloth", "--headless"};
   std::istringstream in(options);
@@ -312,7 +312,7 @@ TEST(Diagnosis, OfAStartThatIsAtFaultTriesNothing) {
       "the initial state fails with every method and step; check its values");
 }
 
-// What a step cannot cure is not said to be cured by one.
+// No step is named as the cure of a failure that no step cures.
 TEST(Diagnosis, OfTwoHeldNodesThatMeetKnowsNoCure) {
   const Model m = parsed(
       "--sheet 'nodes 3 3' --sheet 'at 0 0 0.5 nodes 3 3' --pin 'z 0' --pin "

@@ -58,7 +58,7 @@ class Driver : public ::testing::Test {
   }
 };
 
-/** What a run without a window says while it runs. */
+/** The output of a run without a window. */
 struct Lines {
   std::string size, display;  // the first two
   struct Line {

@@ -73,7 +73,7 @@ void make(Cloth& g, Dice& dice) {
   for (Node n : g.nodes()) n.value() = heavy(dice);
 }
 
-/** What a caller may do with a cloth between two calls of a method. */
+/** Changes that a caller may make to a cloth between two calls. */
 void change(Cloth& g, Dice& dice) {
   const auto some_node = [&] { return g.node(dice.below(g.num_nodes())); };
   switch (dice.below(8)) {
@@ -342,7 +342,7 @@ TYPED_TEST(FlatFlowTest, StopsAfterTheStepThatTears) {
   EXPECT_EQ(g.num_nodes(), 24u);
 }
 
-// What is kept of a stage is its accelerations alone.
+// A stage keeps its accelerations and nothing else.
 TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
   const auto force =
       make_combined_force(GravityForce(), MassSpringForce(), DampingForce(0.3),

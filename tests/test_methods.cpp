@@ -226,7 +226,7 @@ TEST_P(EveryMethod, AllocatesNothingAfterItsFirstStep) {
   EXPECT_EQ(allocations - before, 0);
 }
 
-// What a student writes: one virtual, the call. Nobody knows more about it.
+// A student's force: one virtual function, the call, and no more.
 struct OwnGravity : ZeroForce {
   Point operator()(Node n, double) const override {
     return n.value().mass * Point(0, 0, -grav);

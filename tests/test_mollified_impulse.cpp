@@ -125,7 +125,7 @@ TEST(MollifiedImpulse, IsVerletWhereSpringsAreAlike) {
   EXPECT_EQ(end_of(a).positions, end_of(b).positions);
 }
 
-// What the method is for. Verlet needs its least stable number of steps
+// The purpose of the method. Verlet needs its least stable number of steps
 // whatever the tolerance is.
 TEST(MollifiedImpulse, SavesForceEvaluationsOnASoftClothWithAStiffEdge) {
   const Problem p = stiff_edge(15, 0.3);
@@ -373,7 +373,7 @@ TEST(MollifiedImpulse, GivesTheSameBitsInBatchesAndAfterLoading) {
   loaded.steps(b.cloth, {0, 0.003, 3}, 3, b.force, b.constraint);
   EXPECT_EQ(loaded.split().springs.size(), 1u);
   EXPECT_EQ(end_of(a).positions, end_of(b).positions);
-  // What was saved is of another cloth once an edge is removed.
+  // Once an edge is removed, the saved state belongs to another cloth.
   Archive again(out.bytes());
   MollifiedImpulse torn;
   torn.archive(again, b.cloth);

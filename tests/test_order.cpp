@@ -209,7 +209,7 @@ TEST(BuildOrderedCloth, OrdersAShuffledMeshInMemory) {
     last = std::min(i, j);
   }
   EXPECT_LT(turns, 16u) << "the edges follow the nodes, a few times through";
-  // What a sweep in vectors wants: neighbors at the distances of those before.
+  // A vectorised sweep is fast if neighbors keep the distances of those before.
   auto distances = [&g](unsigned id) {
     std::multiset<long> all;
     for (Edge e : g.node_with_id(id).edges())

@@ -184,7 +184,7 @@ TEST_P(Order, IsWhatTheMethodDeclares) {
   all_measured[{name, course}] = m;
 }
 
-/** Of a run over a wall that stops half way. */
+/** The error of a run over a wall that stops half way. */
 double error_over_a_kink(const MethodEntry& method, long long steps) {
   const Problem p = pulled_chain(0.4, 0.2);
   const Outcome out = run(p, *make(method), steps);

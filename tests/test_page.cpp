@@ -1,6 +1,6 @@
 /** @file test_page.cpp
- * What the web page calls, without a browser: lab/page. test_page.py has the
- * rest. */
+ * Tests of the functions that the web page calls, without a browser: lab/page.
+ * test_page.py has the rest. */
 #include <gtest/gtest.h>
 
 #include <algorithm>

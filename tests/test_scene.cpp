@@ -158,8 +158,8 @@ TEST(Scene, StopsAtTheLastGoodStateWhenItDiverges) {
   EXPECT_TRUE(std::isfinite(kinetic_energy(scene.cloth())));
 }
 
-// What a picture of a failure shows: the first state in which a node has gone
-// that far; the scene itself stays where it is.
+// A picture of a failure shows the first state in which a node has gone that
+// far; the scene itself stays where it is.
 TEST(Scene, IsSeenBeyondItsFailure) {
   Scene scene(stage_scene("tear", 100));
   while (scene.step()) ASSERT_LT(scene.steps(), 100);

@@ -41,7 +41,7 @@ struct Example {
   }
 };
 
-/** What the words are said to be wrong with. */
+/** The error that the words cause. */
 std::string complaint(const std::string& text) {
   Example e;
   try {
@@ -330,7 +330,7 @@ class SceneFile : public ::testing::Test {
     std::ofstream(name) << text;
     return load_model(name);
   }
-  /** What is wrong with a file, without its name. */
+  /** The error of a file, without its name. */
   std::string complaint(const std::string& text) {
     try {
       load(text);

@@ -123,7 +123,7 @@ TEST(Omega, SafeHoldsInEveryShapeAndAfterRemovals) {
   }
 }
 
-// Of a chain and of large grids it is known; Spectra finds it, too.
+// It is known for chains and for large grids; Spectra finds it, too.
 TEST(Omega, IsThatOfChainsAndGrids) {
   Cloth chain;
   for (int i = 0; i < 22; ++i) chain.add_node(Point(i, 0, 0), {Point(), 0.05});

@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(c.param.stage) + "_" + (c.param.grid + 5);
     });
 
-// What is left is one number on grid0, whose motion is not chaotic. On grid1
+// On grid0, whose motion is not chaotic, one number of nodes is left. On grid1
 // the ball takes 42 nodes until 0.4 s; whether the cloth meets it again
 // depends on round-off.
 TEST(StageTear, LeavesAsManyNodes) {

@@ -25,7 +25,7 @@ double setting(const char* name, double otherwise) {
   return text ? std::atof(text) : otherwise;
 }
 
-/** What a run did to its energy, by sums of its own. */
+/** The energy balance of a run, by sums of its own. */
 struct Watched {
   std::string failure;
   long long steps = 0;
@@ -229,8 +229,8 @@ TEST(SteeredStep, IsTheSameForAClothThatFlies) {
   }
 }
 
-// What is written down while it runs changes nothing, and a second run is the
-// same, also where steps are taken back.
+// Output during a run changes nothing, and a second run is the same, also where
+// steps are taken back.
 TEST(SteeredStep, IsTheSameWhoeverLooks) {
   const RandomScene r(4);
   Scene s(r.recipe, {.rule = StepRule::safe}, *r.method);
@@ -299,7 +299,7 @@ TEST(StepControl, LengthensWithDragOnly) {
   }
 }
 
-/** Of a cloth that hangs, taut. */
+/** The energies of a taut cloth that hangs. */
 Energies moving(double kinetic) {
   return {.kinetic = kinetic,
           .elastic = 50,
@@ -308,7 +308,7 @@ Energies moving(double kinetic) {
 }
 
 // A gain of 1 J of 150 J is none; when drag has left 1 J it is one.
-// What was gained long ago drag has taken, too.
+// Drag has taken what was gained long ago, too.
 TEST(StepControl, MeasuresAGainByWhatDragLeft) {
   using Verdict = StepControl::Verdict;
   StepControl c(1, moving(100), {});

@@ -287,7 +287,7 @@ TEST_F(WorkPrecision, WritesATableWithoutHolesThatAreNotExplained) {
                                          "verlet ok", "rkn64 ok"}));
 }
 
-// What the columns say, found once more here.
+// The columns, computed once more here.
 TEST_F(WorkPrecision, WritesWhatIsTrue) {
   ASSERT_EQ(run_program("--quick --repeats 3 --scenes chain --methods "
                         "forward-euler,verlet,rkn64 --out " +

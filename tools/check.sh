@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a commit must pass:  tools/check.sh quick | check | check-full
+# The checks that a commit must pass:  tools/check.sh quick | check | check-full
 #   quick       in seconds after an edit: the course's door
 #   check       quick, every test under the sanitizers, the README's commands
 #   check-full  all else: clang++, threads, charts, windows ...

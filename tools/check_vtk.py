@@ -63,7 +63,7 @@ for entry in frames:
     for name, array in arrays.items():
         assert array and array.GetNumberOfTuples() == n, name
     mass = [arrays["mass"].GetValue(i) for i in range(n)]
-    # What the frame says about energy and center of mass, by VTK's numbers.
+    # Energy and center of mass of the frame, from VTK's numbers.
     kinetic = sum(m * sum(v * v for v in arrays["velocity"].GetTuple(i)) / 2
                   for i, m in enumerate(mass))
     near(kinetic, float(row["kinetic"]), 1)

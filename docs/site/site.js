@@ -17,7 +17,7 @@ for (const image of document.querySelectorAll('[data-gz]')) {
   });
 }
 
-// What is wider than the page is scrolled by keys, too.
+// Keys scroll elements that are wider than the page.
 const scroll = () => {
   for (const e of document.querySelectorAll('.wide, pre, main p, main li'))
     if (e.scrollWidth > e.clientWidth) e.tabIndex = 0;

@@ -175,7 +175,7 @@ class Tear final : public Round<Removing> {
   }
 };
 
-/** Of which nothing is known. */
+/** A constraint of an unknown class: it is called. */
 class Called final : public Removing {
  public:
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}

@@ -37,8 +37,8 @@ struct Place {
 };
 using PlaceVisitor = std::function<void(Node, const Place&)>;
 
-/** What a constraint added to a cloth and removed from it, summed over all
- * calls since the constraint was made. */
+/** Energy that a constraint added to a cloth and removed from it, summed over
+ * all calls since the constraint was made. */
 struct Exchange {
   double work = 0;    ///< by moving obstacles: impulse times velocity [J]
   double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]

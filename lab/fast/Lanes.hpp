@@ -190,8 +190,8 @@ template <typename V>
 struct Pairs {
   V first, second;
 };
-/** Of the pairs that a and b hold one after the other; and back: the first
- * half of the pairs, and the second one. */
+/** Split the pairs in a and b into first and second members; and back: the
+ * first half of the pairs, and the second one. */
 template <typename V>
 [[gnu::always_inline]] inline Pairs<V> unzip(const V& a, const V& b) {
   return {shuffle(a, b, [](int k) { return 2 * k; }),
