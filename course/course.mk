@@ -47,6 +47,7 @@ graphs:
 override DUE      := $(value DUE)
 override TASK     := $(value TASK)
 override FEEDBACK := $(value FEEDBACK)
+override SEED     := $(value SEED)
 
 grade autograder: export FEEDBACK := $(FEEDBACK)
 grade class: export SEED := $(SEED)

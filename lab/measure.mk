@@ -3,7 +3,7 @@
 
 .PHONY: adviser-suite cells charts charts-quick figures fuzz grids \
         long-runs method-costs orders peers-bench peers-chart peers-deps pictures \
-        rounds-chart speed stability stability-soak try contest
+        rounds-chart speed stability stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -59,14 +59,6 @@ try_film: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
 	  -DTRY_ORDER=$$TRY_ORDER -DTRY_SWEEPS=$$TRY_SWEEPS \
 	  -DTRY_LIMIT=$$TRY_LIMIT -o $$TRY_OUT lab/try/film.cpp \
 	  $(filter-out %/libviewer.a,$^) $(draw_libs) $(LDLIBS)
-
-# A class's steps in order: DIR and OUT are given as they are, too.
-override SEED := $(value SEED)
-contest: export DIR  := $(DIR)
-contest: export OUT  := $(OUT)
-contest: export SEED := $(SEED)
-contest:
-	@tools/deps.sh grade draw && python3 lab/try/contest.py
 
 # ---- Charts: lab/charts/README.md
 

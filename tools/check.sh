@@ -301,7 +301,6 @@ turns() {
   turn site      "$long"  site
   turn web       "$long"  web
   turn pages     "$long"  tools/check_pages.sh
-  turn contest   "$limit" python3 lab/try/test_contest.py build/check/try
   turn advice    "$limit" advice
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh

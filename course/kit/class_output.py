@@ -8,6 +8,7 @@ import statistics
 import grade
 import judge
 import jplag
+import ranking
 import report
 import submission
 from class_page import page
@@ -21,7 +22,8 @@ def made(whole, row):
     kept = whole.known(row.content)
     results = {test: judge.Result(**{
         key: value for key, value in kept[test].items()
-        if key not in ("kit", "seed")}) for test in whole.tests}
+        if key not in ("kit", "seed", "step")}) for test in whole.tests}
+    row.step = kept.get(ranking.TASK, {}).get("step")
     taken = submission.Submission({}, [*row.notes, *seeds(
         {test: kept[test].get("seed", "") for test in whole.tests})], row.flags)
     return report.combine(whole.course, submission.shown(row.student), taken,
@@ -61,7 +63,9 @@ def table(whole, rows):
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\n")
     ids = list(whole.course.tasks)
-    lines.writerow([*COLUMNS, *ids, "note"])
+    ranked = ranking.COLUMNS if ranking.TASK in ids else ()
+    ranks = ranking.ranks({row.student: row.step for row in rows if row.step})
+    lines.writerow([*COLUMNS, *ids, *ranked, "note"])
     zone = whole.due.tzinfo if whole.due else datetime.timezone.utc
     for row in rows:
         made = row.made
@@ -80,7 +84,8 @@ def table(whole, rows):
         lines.writerow([
             submission.shown(row.student), made.commit,
             whole.tag if made.commit else "", made.kind, *dates, row.late,
-            *points, "; ".join(notes)])
+            *points, *ranks.get(row.student, [""] * len(ranked)),
+            "; ".join(notes)])
     return text.getvalue()
 
 

@@ -1,12 +1,13 @@
 """A class as one page: points, and which sentences of the specification do not
-hold. It has no name of a student but of those who can't be graded, and asks
-nothing of a network.
+hold. It names only the students whose step of page 8 has a rank, and those who
+can't be graded, and asks nothing of a network.
 """
 
 import collections
 import html
 import statistics
 
+import ranking
 import report
 import submission
 
@@ -86,6 +87,19 @@ def of_task(graded):
         yield from listed(failures(failed)[:SHOWN])
 
 
+def of_steps(steps):
+    """Who has which rank by the step of page 8."""
+    yield "<h2>A better step: ranks</h2>"
+    yield ("<p>The error of <code>my_step</code> on two nets drawn at random, "
+           "divided by that of symplectic Euler with 1,600 forces on each node."
+           "</p><table><tr><th>rank</th><th>student</th><th>error</th>"
+           "<th>forces on each node</th></tr>")
+    for student, (rank, error, forces) in ranking.ranks(steps).items():
+        yield (f"<tr><td>{rank}</td><td>{text(submission.shown(student))}</td>"
+               f"<td>{error:.3g}</td><td>{forces}</td></tr>")
+    yield "</table>"
+
+
 def page(whole, rows):
     graded = [row.report for row in rows if row.report]
     refused = [row for row in rows if row.reason]
@@ -117,6 +131,8 @@ def page(whole, rows):
         lines.append("<h2>Sentences of the specification</h2>")
         for same in zip(*(one.graded for one in graded)):
             lines += of_task(same)
+    if steps := {row.student: row.step for row in rows if row.step}:
+        lines += of_steps(steps)
     if refused:
         lines += ["<h2>Not graded</h2>", "<ul>",
                   *(f"<li>{text(submission.shown(row.student))}: "

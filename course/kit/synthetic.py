@@ -13,6 +13,7 @@ import kit_check
 
 DUE = "2026-03-08 01:30 America/Los_Angeles"    # clocks change 30 minutes later
 WRONG = "remove_node(it) is written anew and forgets the edges"
+STEP = "a step: half a kick, a drift, half a kick"  # right, with more forces
 TOUCH = "/tmp/kit-cheat"
 CHEAT = ("#include <cstdlib>\n"
          f'static const int x = std::system("touch {TOUCH}");\n')
@@ -22,12 +23,13 @@ def contents():
     """{what: files} of those that differ."""
     cases = kit_check.Cases()
     wrong = {case.name: case.files for case in
-             cases.wrong(kit_check.WRONG / "graph.toml")}
+             (*cases.wrong(kit_check.WRONG / "graph.toml"),
+              *cases.wrong(kit_check.WRONG / "step.toml"))}
     graph = {"Graph.hpp": cases.solution["Graph.hpp"]}
     return {"right": cases.solution, "starter": {
                 "Graph.hpp": cases.base("starter")["Graph.hpp"]},
             "wrong": {"Graph.hpp": wrong[f"graph: {WRONG}"]["Graph.hpp"]},
-            "half": graph,
+            "half": graph | {"mine.hpp": wrong[f"step: {STEP}"]["mine.hpp"]},
             "broken": {"Graph.hpp": graph["Graph.hpp"] + "}\n"},
             "cheat": {"Graph.hpp": graph["Graph.hpp"] + CHEAT},
             "empty": {"notes.txt": "nothing yet\n"}}

@@ -19,6 +19,7 @@ import unittest
 import child
 import dates
 import once
+import ranking
 import submission
 import synthetic
 
@@ -79,6 +80,20 @@ class Dates(unittest.TestCase):
         for odd in ("", "committer A <a> 99999999999999 +0000", "committer <>",
                     "committer A <a> 5 +9999", "author A <a> 5 +0000"):
             self.assertIsNone(date(odd))
+
+
+class Ranks(unittest.TestCase):
+    def test_ranks_by_the_share_of_symplectic_eulers_error(self):
+        expected = {"first": (0.5, [1.0, 2.0]), "second": (0.05, [3.0])}
+        for forces, shown in ((1599.96, 1600), (float("nan"), 0)):
+            self.assertEqual(ranking.measured(
+                {"first": (0, [1.0, 1.9]), "second": (0, [3.02]),
+                 "forces": (0, [forces])}, expected), (0.2, shown))
+        self.assertEqual(
+            list(ranking.ranks({"d": (0.2, 3), "a": (0.1, 4), "c": (0.3, 5),
+                                "b": (0.2, 6)}).items()),
+            [("a", (1, 0.1, 4)), ("b", (2, 0.2, 6)), ("d", (2, 0.2, 3)),
+             ("c", (4, 0.3, 5))])
 
 
 class Whole(unittest.TestCase):
@@ -151,11 +166,20 @@ class Whole(unittest.TestCase):
         self.assertIn("its tag is older than its commit", rows[9]["note"])
         self.assertIn("lines to look at by hand", rows[6]["note"])
 
+        self.assertEqual([row["8.my_step rank"] for row in rows], [
+            "1", "", "1", "", "1", "", "", "", "6", "", "1", "", "1", ""])
+        self.assertEqual(rows[8]["8.my_step forces"], "1600")
+        self.assertLess(3 * float(rows[0]["8.my_step error"]),
+                        float(rows[8]["8.my_step error"]))
+
     def hold_page(self, page):
         self.assertNotRegex(page, r"https?:|src=|@import|url\(|<script")
         self.assertIn("14 submissions: 11 graded, 3 that can't be", page)
         self.assertIn("student003: holds no Graph.hpp", page)
-        self.assertNotIn("student000", page)
+        before, ranks = page.split("<h2>A better step: ranks</h2>")
+        self.assertNotIn("student000", before)
+        self.assertRegex(ranks, r"<td>6</td><td>student008</td><td>0\.\d+</td>"
+                         "<td>1600</td></tr>\n</table>")
 
     def move_a_tag(self):
         clone = self.top / "clones/student000"

@@ -31,6 +31,7 @@ import grade
 import jplag
 import judge
 import once
+import ranking
 import submission
 import tasks
 
@@ -47,6 +48,7 @@ class Row:
     flags: list = field(default_factory=list)
     reason: str = ""           # why it can't be graded
     report: object = None
+    step: list | None = None   # of page 8: ranking.measured()
     late: int | None = None    # days
 
 
@@ -167,7 +169,9 @@ class Class:
         for test, result in judge.judge(self.kit, taken.files, left,
                                         1).items():
             kept = dataclasses.asdict(result)
-            del kept["answers"]
+            answers = kept.pop("answers")
+            if test == ranking.TASK and result.passed:
+                kept["step"] = ranking.measured(answers, self.kit.answers[test])
             known[test] = kept | {"kit": self.version, "seed": self.seed}
         grade.write(self.place(content), json.dumps(known, indent=0,
                                                     sort_keys=True))

@@ -74,14 +74,14 @@ struct Trial {
     return sum;
   }
 
-  /** The bodies at the end of an exact run: to 1 % of what matters. */
-  Bodies exact() const {
+  /** The bodies at the end of a run by Yoshida's method of order 4. With 400
+   * steps its error is at most 1 % of what the tests allow. */
+  Bodies exact(int steps = 400) const {
     Bodies b = start;
-    const int steps = 400;
     const double dt = seconds / steps, forth = 1 / (2 - std::cbrt(2.0));
     for (int step = 0; step < steps; ++step) {
       double t = begin + step * dt;
-      for (double share : {forth, 1 - 2 * forth, forth}) {  // Yoshida
+      for (double share : {forth, 1 - 2 * forth, forth}) {
         advance(b, t, share * dt, 0.5);
         t += share * dt;
       }

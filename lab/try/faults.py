@@ -4,9 +4,10 @@ Each fault is (its sentence, what to do about it). The first one is what a
 teacher would say first: a later one may follow from it.
 """
 
-import table as tables
-from table import near
-from workshop import BadInput
+from table import Event, Runs, Table, near
+from workshop import BadInput, Lines
+
+Faults = list[tuple[str, str]]
 
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh",
            "eighth", "ninth", "tenth", "eleventh", "twelfth")
@@ -14,18 +15,18 @@ FULL, HALF = .25, .125      # the steps of the trace
 FRACTIONS = {(p / q): f"{p}/{q}" for q in (8, 6, 4, 3, 2) for p in range(1, q)}
 
 
-def ordinal(k):
+def ordinal(k: int) -> str:
     return NUMBERS[k] if k < len(NUMBERS) else f"{k + 1}th"
 
 
-def digits(x):
+def digits(x: float) -> str:
     for value, text in FRACTIONS.items():
         if near(abs(x), value):
             return ("-" if x < 0 else "") + text
     return f"{x:.6g}"
 
 
-def bad_input(where, runs, lines):
+def bad_input(where: str, runs: Runs, lines: Lines) -> None:
     """BadInput if the step can't be measured at all."""
     for what, numbers in lines:
         if what == "nodes" and numbers[0] != 3:
@@ -43,7 +44,7 @@ def bad_input(where, runs, lines):
                                "with finite forces")
 
 
-def loops(events):
+def loops(events: list[Event]) -> Faults:
     """Are all masses at one stage when a force is asked for?"""
     for e in events:
         if e.what == "call" and any(
@@ -56,7 +57,7 @@ def loops(events):
     return []
 
 
-def counts(events):
+def counts(events: list[Event]) -> Faults:
     asked = [sum(e.what == "call" and e.node == i for e in events)
              for i in range(3)]
     if len(set(asked)) > 1:
@@ -70,7 +71,7 @@ def counts(events):
     return []
 
 
-def masses(one, two):
+def masses(one: Table, two: Table) -> Faults:
     """Tables of mass 1 and of mass 2, each times its mass."""
     pairs = [("the velocity", one.b, two.b), ("the position", one.B, two.B)]
     for what, b1, b2 in pairs:
@@ -99,7 +100,7 @@ def masses(one, two):
     return []
 
 
-def steps(full, half):
+def steps(full: Table, half: Table) -> Faults:
     """Tables of steps 1/4 and 1/8: all coefficients should be the same."""
     def ratio(x, y):
         return x / y if abs(y) > 1e-9 else 1
@@ -122,7 +123,7 @@ def steps(full, half):
     return []
 
 
-def own_force(lines):
+def own_force(lines: Lines) -> Faults:
     """From the velocities along y and z after a step."""
     for h, impulse, y, z in (row for what, row in lines if what == "along"):
         if impulse < 0 and max(abs(y), abs(z)) > 1e-12:
@@ -136,7 +137,7 @@ def own_force(lines):
     return []
 
 
-def own_drag(t):
+def own_drag(t: Table) -> Faults:
     if near(t.V, 1):
         return []
     if abs(t.V) > 1:
@@ -154,7 +155,7 @@ def own_drag(t):
              "should do nothing that the forces do not say.")]
 
 
-def times(t, order_one):
+def times(t: Table, order_one: bool) -> tuple[Faults, list[str]]:
     """(faults, notes) of the times at which forces are asked for."""
     for s, (tau, c) in enumerate(zip(t.tau, t.c)):
         if near(tau, c):
@@ -172,14 +173,14 @@ def times(t, order_one):
     return [], []
 
 
-def constraint(runs, h=FULL):
+def constraint(runs: Runs, h: float = FULL) -> tuple[Faults, list[str]]:
     """(faults, notes) of where the constraint is applied."""
     events = runs[h, -1]
     holds = [e for e in events if e.what == "hold"]
     if not holds:
         return [("the constraint is never called", "Call constraint(g, t + "
                  "dt) when all positions have moved.")], []
-    start, end = events[0], events[-1]
+    start = events[0]
     impulses = [run for (step, j), run in runs.items() if step == h]
 
     def at_end(k):
@@ -188,7 +189,7 @@ def constraint(runs, h=FULL):
             near(p, q) for x, y in zip(run[k].x, run[-1].x)
             for p, q in zip(x, y)) for run in impulses)
     last = max(k for k, e in enumerate(events) if e.what == "hold")
-    notes = []
+    notes: list[str] = []
     if not at_end(last):
         first = all(near(e.x[0][0], start.x[0][0]) for e in holds)
         return [("the constraint is applied before the positions move"
@@ -215,7 +216,7 @@ def constraint(runs, h=FULL):
     return [], notes
 
 
-def returned(runs):
+def returned(runs: Runs) -> Faults:
     found = []
     for h in (FULL,):
         end = runs[h, -1][-1].time
@@ -225,10 +226,11 @@ def returned(runs):
     return found
 
 
-def differences(t, other):
+def differences(t: Table, other: Table) -> tuple[list, list]:
     """What differs, as (words, ours, the other's): a list of what a reader
     finds in the code, and a list of what follows from it."""
-    read, follows = [], []
+    read: list[tuple] = []
+    follows: list[tuple] = []
     found = read
 
     def compare(words, x, y):
@@ -255,7 +257,8 @@ def differences(t, other):
     return read, follows
 
 
-def nearest(ours, methods):
+def nearest(ours: tuple[Table, Table],
+            methods: dict[str, Table]) -> tuple | None:
     """(is a difference large, how many there are, name, those that a reader
     finds first, forces) of the known method that has most in common with one
     of the tables; or None."""
@@ -274,7 +277,7 @@ def nearest(ours, methods):
     return best
 
 
-def small(close):
+def small(close: tuple | None) -> Faults:
     """A known method, but for a small difference?"""
     if not close or close[0] or not close[3]:
         return []
@@ -284,7 +287,7 @@ def small(close):
              f"Copy the coefficients of {name} again, with all digits.")]
 
 
-def few(close):
+def few(close: tuple | None) -> Faults:
     """A known method, but for few differences?"""
     if not close or not 0 < len(close[3]) <= .75 * close[4]:
         return []
@@ -294,7 +297,7 @@ def few(close):
              f"Compare your step with {name}, stage by stage.")]
 
 
-def velocities(t, methods):
+def velocities(t: Table, methods: dict[str, Table]) -> Faults:
     """Do the positions move as in a known method, and the velocities not?"""
     for name, other in methods.items():
         if other.stages == t.stages > 1 and all(map(near, [
@@ -307,7 +310,7 @@ def velocities(t, methods):
     return []
 
 
-def sums(t):
+def sums(t: Table) -> Faults:
     total = sum(t.b)
     if near(t.C, 0):
         return [("the positions do not move with the velocities",
@@ -329,7 +332,7 @@ def sums(t):
     return []
 
 
-def position(t):
+def position(t: Table) -> Faults:
     B = sum(t.B)
     if t.stages > 1 and not near(B, .5):
         return [(f"the forces move the positions by {digits(B)} dt^2 F/m, "
@@ -338,7 +341,7 @@ def position(t):
     return []
 
 
-def at_start(t):
+def at_start(t: Table) -> Faults:
     """Are all forces computed at the start?"""
     if t.stages > 1 and all(near(c, 0) for c in t.c) and all(
             near(x, 0) for x in sum(t.a, [])):
@@ -347,14 +350,14 @@ def at_start(t):
     return []
 
 
-def coefficients(raw, t, methods):
+def coefficients(raw: Table, t: Table, methods: dict[str, Table]) -> Faults:
     """What is wrong with the coefficients of a step that no one has."""
     close = nearest((raw, t), methods)
     return (at_start(t) or small(close) or sums(t)
             or velocities(t, methods) or few(close) or position(t))
 
 
-def second_order(t):
+def second_order(t: Table) -> bool:
     """As far as forces on one mass that depend on positions can tell."""
     return (near(sum(t.b), 1) and near(sum(t.B), .5) and
             near(sum(b * c for b, c in zip(t.b, t.c)), .5))

@@ -12,13 +12,14 @@ import pathlib
 import subprocess
 import tempfile
 
+import judge
 from workshop import BUILT, ROOT, BadInput, choose
 
 OMEGA = math.sqrt(12 * 100 * 625)   # of grid1, at most [1/s]
 SECONDS = 2                         # of the scene
 
 
-def recording(verdict):
+def recording(verdict: judge.Verdict) -> str:
     """The requests for a run of the scene of section 6.2 on grid1 by both
     methods."""
     most = .8 * verdict.limit / OMEGA if verdict.limit else .001
@@ -35,9 +36,9 @@ def recording(verdict):
                       f"{int(SECONDS / dt)} end", ""])
 
 
-def record(verdict, path, out):
+def record(verdict: judge.Verdict, path: pathlib.Path, out: str) -> int:
     """Build ./cloth with the step, and write its film; its exit status."""
-    if choose(path, getattr(verdict, "step", ""))[1] != 5:
+    if choose(path, verdict.step)[1] != 5:
         raise BadInput(f"{path}:1: {verdict.step} takes no constraint, "
                        "expected one: the scene has pins and a ball")
     limit = verdict.limit if math.isfinite(verdict.limit) else "no_limit"

@@ -3,16 +3,17 @@
 import cmath
 import math
 import struct
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import faults
 import orders
 import table as tables
-from workshop import BadInput
+from orders import Order, Vector
+from workshop import BadInput, Lines
 
+Numbers = dict[str, list[Vector]]
 ROUNDOFF = 1e-11
-WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight",
-         "nine", "ten", "eleven", "twelve")
 
 
 @dataclass
@@ -25,10 +26,10 @@ class Verdict:
     notes: list = field(default_factory=list)
     facts: list = field(default_factory=list)      # (what, words)
     advice: str = ""
-    table: object = None        # of an explicit step
+    table: tables.Table | None = None   # of an explicit step
     evaluations: int = 0        # a step; a force kept counts once
-    orders: dict = field(default_factory=dict)     # problem: Order
-    order: object = None        # int, or None
+    orders: dict[str, Order] = field(default_factory=dict)
+    order: int | None = None
     one_by_one: bool = False    # a force sees some nodes moved, others not
     calls: int = 0              # of the force for a node, in a step
     symmetric: bool = False
@@ -39,19 +40,14 @@ class Verdict:
     data: dict = field(default_factory=dict)       # what the charts draw
 
 
-def by_name(lines):
-    found = {}
+def by_name(lines: Lines) -> Numbers:
+    found: Numbers = {}
     for name, numbers in lines:
         found.setdefault(name, []).append(numbers)
     return found
 
 
-def plural(n, what):
-    word = WORDS[n] if n < len(WORDS) else str(n)
-    return f"{word} {what}{'s' * (n != 1)}"
-
-
-def size(x):
+def size(x: float) -> str:
     return f"{x:.2g}".replace("e-0", "e-").replace("e+0", "e")
 
 
@@ -60,7 +56,7 @@ def size(x):
 SPRINGS = [(i, j) for i in range(4) for j in range(i)]
 
 
-def tangle_force(x, v, t, i):
+def tangle_force(x: list[Vector], v: list[Vector], t: float, i: int) -> Vector:
     """That of same() in probe.cpp."""
     f = [math.cos(5 * t), math.sin(3 * t), t]
     for k, (a, b) in enumerate(SPRINGS):
@@ -74,14 +70,15 @@ def tangle_force(x, v, t, i):
     return [c - .3 * d for c, d in zip(f, v[i])]
 
 
-def simulate(t, state, h=.0625, start=.25, steps=3):
+def simulate(t: tables.Table, state: Vector, h: float = .0625,
+             start: float = .25, steps: int = 3) -> Vector:
     """The state of the tangle after some steps by a table."""
     n = len(state) // 6
     x = [state[6 * i:6 * i + 3] for i in range(n)]
     v = [state[6 * i + 3:6 * i + 6] for i in range(n)]
     mass = [.5 + .25 * i for i in range(n)]
     for k in range(steps):
-        acc = []
+        acc: list[list[Vector]] = []
 
         def moved(c, a, vel, i):
             return [x[i][d] * vel + (v[i][d] * c * h if vel else v[i][d] * c)
@@ -98,19 +95,21 @@ def simulate(t, state, h=.0625, start=.25, steps=3):
     return [c for p, q in zip(x, v) for c in p + q]
 
 
-def distance(one, other):
+def distance(one: Vector, other: Vector) -> float:
     far = max(abs(a - b) for a, b in zip(one, other))
-    return far / max(1, *map(abs, one)) if math.isfinite(far) else math.inf
+    scale = max(1.0, *(abs(x) for x in one))
+    return far / scale if math.isfinite(far) else math.inf
 
 
-def events(where, lines):
+def events(where: str, lines: Lines) -> tables.Runs:
     runs = tables.events([(name, numbers) for name, numbers in lines
                           if name in ("begin", "call", "hold", "end")])
     faults.bad_input(where, runs, lines)
     return runs
 
 
-def trace(verdict, where, lines, constrained):
+def trace(verdict: Verdict, where: str, lines: Lines,
+          constrained: bool) -> None:
     """Read the table; everything that it shows at once."""
     runs = events(where, lines)
     base = runs[faults.FULL, -1]
@@ -118,13 +117,10 @@ def trace(verdict, where, lines, constrained):
     loop = [] if found else faults.loops(base)
     found += loop
     verdict.one_by_one = bool(loop)
-    one, two, half = (None,) * 3
-    if not found or loop:
-        one = tables.read(runs, faults.FULL, 0)
-        two = tables.read(runs, faults.FULL, 1)
-        half = tables.read(runs, faults.HALF, 0)
-    usable = one and two and half and one.stages == half.stages
-    if usable and not loop:
+    one, two, half = (tables.read(runs, h, node) if not found or loop else None
+                      for h, node in ((faults.FULL, 0), (faults.FULL, 1),
+                                      (faults.HALF, 0)))
+    if one and two and half and one.stages == half.stages and not loop:
         found += faults.own_force(lines) or faults.own_drag(one)
         found += faults.masses(one, two)
         if not found:
@@ -140,7 +136,7 @@ def trace(verdict, where, lines, constrained):
     verdict.calls = sum(e.what == "call" and e.node == 0 for e in base)
 
 
-def keeps_state(where, same):
+def keeps_state(where: str, same: Numbers) -> None:
     ends = same["tangle.end"]
     if any(x != x for end in ends for x in end):
         raise BadInput(f"{where}: writes NaN on four masses and springs")
@@ -150,12 +146,12 @@ def keeps_state(where, same):
                        "elsewhere after another one")
 
 
-def single_precision(numbers):
+def single_precision(numbers: Iterable[float]) -> bool:
     return all(struct.unpack("f", struct.pack("f", x))[0] == x
                for x in numbers)
 
 
-def unchanged(verdict, same):
+def unchanged(verdict: Verdict, same: Numbers) -> None:
     """What a step has to leave as it is."""
     before, *after = same["data"]
     if any(data != before for data in after):
@@ -171,16 +167,15 @@ def unchanged(verdict, same):
                 "1e-7 of their size are lost", "Use double, not float."))
 
 
-def identify(verdict, same):
+def identify(verdict: Verdict, same: Numbers) -> None:
     """Compare with the known methods, by table and by a run."""
     unchanged(verdict, same)
     t = verdict.table
     off = distance(same["tangle.end"][0], simulate(
         verdict.data["raw"], same["tangle.begin"][0])) if t else math.inf
-    explicit = off < 1e-9
     raw = verdict.data["raw"]
     verdict.evaluations = verdict.calls
-    if not explicit:
+    if t is None or off >= 1e-9:
         if not verdict.faults and off < 1e-5:
             verdict.faults.append((
                 "it computes in single precision, with errors of about 1e-7",
@@ -217,7 +212,7 @@ def identify(verdict, same):
 
 # ---- Order
 
-def order(verdict, numbers):
+def order(verdict: Verdict, numbers: Numbers) -> None:
     for name in orders.END:
         rows = numbers.get(name, [])
         verdict.orders[name] = orders.measured(rows, name)
@@ -252,7 +247,7 @@ def order(verdict, numbers):
 
 # ---- What it keeps
 
-def physics(verdict, numbers):
+def physics(verdict: Verdict, numbers: Numbers) -> None:
     there = numbers["there"][0]
     back = distance(there, numbers["back"][0])
     turned = distance(there, numbers["reversed"][0])
@@ -278,18 +273,18 @@ def physics(verdict, numbers):
         verdict.data["energy"] = rows
 
 
-def yes(is_it):
+def yes(is_it: bool) -> str:
     return "yes" if is_it else "no"
 
 
-def kept(off):
+def kept(off: float) -> str:
     if off != off:
         return "lost: the run diverges"
     return (f"kept to {size(off)} in 20,000 steps" if off < 1e-9
             else f"changes by {size(off)} of its size in 20,000 steps")
 
 
-def drift(rows, columns):
+def drift(rows: list[Vector], columns: slice) -> float:
     first = rows[0][columns]
     if not all(math.isfinite(x) for r in rows for x in r[columns]):
         return math.nan
@@ -297,7 +292,7 @@ def drift(rows, columns):
     return max(math.dist(first, r[columns]) for r in rows) / scale
 
 
-def energy(rows):
+def energy(rows: list[Vector]) -> tuple[float, str]:
     """(gained share a step, words)"""
     e = [r[1] for r in rows]
     first = e[0]
@@ -319,7 +314,7 @@ def energy(rows):
                "steps at a quarter of Verlet's limit")
 
 
-def symplectic(columns):
+def symplectic(columns: list[Vector]) -> float:
     """|J^T S J - S| with S of the masses of the tangle."""
     n = len(columns)
     mass = [.5 + .25 * (i // 6) for i in range(n)]
@@ -338,7 +333,7 @@ def symplectic(columns):
 
 # ---- Limits
 
-def radius(m):
+def radius(m: Vector) -> float:
     """The largest |eigenvalue| of a step; m: its matrix by columns."""
     a, c, b, d = m
     if not all(abs(x) < 1e100 for x in m):      # nor NaN
@@ -348,10 +343,11 @@ def radius(m):
     return max(abs(half + root), abs(half - root))
 
 
-def limits(verdict, numbers):
+def limits(verdict: Verdict, numbers: Numbers) -> None:
     line = [(row[0], radius(row[2:])) for row in numbers["line"]]
     stable = [(z, r <= 1 + 1e-6) for z, r in line]
-    limit, weak, k = math.inf, (), 0
+    weak: tuple = ()
+    limit, k = math.inf, 0
     while k < len(line):
         if stable[k][1]:
             k += 1
@@ -381,15 +377,15 @@ def limits(verdict, numbers):
     verdict.facts.append(("limit on an oscillator", words))
     verdict.data["map"] = [(r[0], r[1], radius(r[2:])) for r in numbers["map"]]
     if 0 < limit < math.inf:
-        words = []
+        limits_with_drag = []
         for drag in (.5, 1, 2):
             z = next((r[0] for r in numbers["drag"] if r[1] == drag
                       and radius(r[2:]) > 1 + 1e-6), 6.01)
-            z = ("6 or more" if z > 6 else f"{z - .01:.2f}" if z > .015
-                 else "0: at no step")
-            words.append(f"{z} where dt c/m = {drag:g}")
+            least = ("6 or more" if z > 6 else f"{z - .01:.2f}" if z > .015
+                     else "0: at no step")
+            limits_with_drag.append(f"{least} where dt c/m = {drag:g}")
         verdict.facts.append(("limit with drag as a force", "dt omega < "
-                              + ", ".join(words)))
+                              + ", ".join(limits_with_drag)))
     for gamma, low, high, first in numbers.get("grid1", []):
         what = "grid1" + (f", drag {gamma:g} 1/s" if gamma else "")
         if low == 0:
@@ -408,8 +404,8 @@ def limits(verdict, numbers):
 
 # ---- Contact, tearing, pins
 
-def tearing(verdict, numbers):
-    runs = {}
+def tearing(verdict: Verdict, numbers: Numbers) -> None:
+    runs: dict[float, dict[float, Vector]] = {}
     for removing, mass, *state in numbers["torn"]:
         runs.setdefault(removing, {})[mass] = state
     whole = runs.pop(0)
@@ -430,7 +426,7 @@ def tearing(verdict, numbers):
     verdict.facts.append(("removal of nodes", words))
 
 
-def contact(verdict, numbers):
+def contact(verdict: Verdict, numbers: Numbers) -> None:
     if "torn" not in numbers:
         return
     deep, off = numbers["deepest"][0]
@@ -460,7 +456,7 @@ def contact(verdict, numbers):
 CHARTED = {"chain": orders.chart_chain(), "curtain": orders.chart_curtain()}
 
 
-def chart(verdict, numbers):
+def chart(verdict: Verdict, numbers: Numbers) -> None:
     # A force that is kept from step to step is computed once at the start.
     first = bool(verdict.table and verdict.table.reuses())
     for scene, solution in CHARTED.items():

@@ -1,25 +1,28 @@
 """Measure a step: build the probe, run its parts, judge the numbers."""
 
 import concurrent.futures
+import pathlib
+from collections.abc import Callable, Sequence
 
 import judge
 import orders
 import teacher
-from workshop import PARTS, SECONDS, BadInput, Workshop, choose
+from workshop import PARTS, SECONDS, BadInput, Lines, Workshop, choose
 
 NEEDED = ("trace", "same", "order")     # without these there is no report
 
 
-def silent(_):
+def silent(_: str) -> None:
     pass
 
 
-def probe(shop, parts, say):
+def probe(shop: Workshop, parts: Sequence[str],
+          say: Callable[[str], None]) -> dict[str, Lines]:
     """{part: its lines}; BadInput tells what went wrong in the first part
     that did not end."""
     say("compiling ...")
     shop.compile()
-    found = {}
+    found: dict[str, Lines] = {}
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         waiting = {part: pool.submit(shop.run, part) for part in parts}
         try:
@@ -42,7 +45,7 @@ def probe(shop, parts, say):
     return found
 
 
-def verdict_of(shop, found):
+def verdict_of(shop: Workshop, found: dict[str, Lines]) -> judge.Verdict:
     verdict = judge.Verdict(shop.step)
     judge.trace(verdict, shop.where, found["trace"], shop.arguments == 5)
     numbers = {part: judge.by_name(lines) for part, lines in found.items()}
@@ -58,7 +61,8 @@ def verdict_of(shop, found):
     return verdict
 
 
-def dots(path, step, counts):
+def dots(path: pathlib.Path, step: str,
+         counts: list[int]) -> dict[int, dict[str, float]]:
     """{number of steps: {scene: the error [m]}} of a step in the charts."""
     shop = Workshop(path, *choose(path, step))
     try:
@@ -77,7 +81,8 @@ def dots(path, step, counts):
         shop.close()
 
 
-def measure(path, wanted="", parts=PARTS, say=silent):
+def measure(path: pathlib.Path, wanted: str = "", parts: Sequence[str] = PARTS,
+            say: Callable[[str], None] = silent) -> judge.Verdict:
     """The Verdict on a step in a file, or BadInput."""
     shop = Workshop(path, *choose(path, wanted))
     try:

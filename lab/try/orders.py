@@ -2,8 +2,11 @@
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
+Vector = list[float]
+Point = tuple[int, float, float]    # steps, calls a step, error
 FLOOR = 2e-13       # relative; round-off adds up with the steps
 COARSE = 0.1        # relative: above that an error says nothing
 STRAIGHT = 0.15     # slopes that differ by less belong to one range
@@ -12,7 +15,7 @@ STRAIGHT = 0.15     # slopes that differ by less belong to one range
 @dataclass
 class Order:
     """What the errors of some runs say."""
-    points: list            # (steps, calls a step, error)
+    points: list[Point]
     order: float = math.nan     # the slope at the finest steps
     first: int = 0          # its range, in points
     last: int = 0
@@ -20,16 +23,16 @@ class Order:
     ends: float = 0         # the error at which that one ends
 
     @property
-    def whole(self):
+    def whole(self) -> int | None:
         """The order as a whole number, or None."""
         near = round(self.order) if self.order == self.order else None
         return near if near is not None and abs(self.order - near) < 0.3 \
             else None
 
 
-def fit(points, scale=1.0):
-    """points: (steps, calls a step, error). The slope of the finest range
-    above round-off in which it is straight."""
+def fit(points: list[Point], scale: float = 1.0) -> Order:
+    """The slope of the finest range above round-off in which it is
+    straight."""
     found = Order([p for p in points if math.isfinite(p[2])])
     good = [k for k, (n, _, e) in enumerate(found.points)
             if FLOOR * scale * (1 + math.sqrt(n) / 30) < e < COARSE * scale]
@@ -61,7 +64,7 @@ def fit(points, scale=1.0):
 
 # ---- Exact solutions of the problems of probe.cpp
 
-def chain(t):
+def chain(t: float) -> Vector:
     """Eight masses of 0.25 kg, K = 1 N/m, between two walls."""
     x = []
     for j in range(10):
@@ -74,7 +77,7 @@ def chain(t):
     return x
 
 
-def kepler(t, e=0.3):
+def kepler(t: float, e: float = 0.3) -> Vector:
     """From the nearest point on, with period 2 pi."""
     E = t
     for _ in range(60):
@@ -82,7 +85,8 @@ def kepler(t, e=0.3):
     return [math.cos(E) - e, math.sqrt(1 - e * e) * math.sin(E), 0]
 
 
-def driven(t, t0=.4, x0=.5, v0=.6, omega=2, a=1.5, rate=3):
+def driven(t: float, t0: float = .4, x0: float = .5, v0: float = .6,
+           omega: float = 2, a: float = 1.5, rate: float = 3) -> Vector:
     """x'' = -omega^2 x + a cos(rate t)"""
     def forced(s):
         return a / (omega ** 2 - rate ** 2) * math.cos(rate * s)
@@ -94,7 +98,8 @@ def driven(t, t0=.4, x0=.5, v0=.6, omega=2, a=1.5, rate=3):
             + v / omega * math.sin(omega * s), 0, 0]
 
 
-def drag(t, x0=.5, v0=.6, omega=2, gamma=.7):
+def drag(t: float, x0: float = .5, v0: float = .6, omega: float = 2,
+         gamma: float = .7) -> Vector:
     root = cmath.sqrt(gamma ** 2 / 4 - omega ** 2)
     r, s = -gamma / 2 + root, -gamma / 2 - root
     A = (v0 - s * x0) / (r - s)
@@ -102,8 +107,10 @@ def drag(t, x0=.5, v0=.6, omega=2, gamma=.7):
                       + (x0 - A) * cmath.exp(s * t)).real, 0, 0]
 
 
-END = {"chain": (chain, 2.3, 0), "kepler": (kepler, 3, 0),
-       "driven": (driven, 2.4, .4), "drag": (drag, 2, 0)}
+# Solution, and its time [s] at the end of a run.
+END: dict[str, tuple[Callable[[float], Vector], float]] = {
+    "chain": (chain, 2.3), "kepler": (kepler, 3), "driven": (driven, 2.4),
+    "drag": (drag, 2)}
 SMOOTH = ("chain", "kepler", "driven")
 ABOUT = {"chain": "eight masses between two walls",
          "kepler": "a planet, eccentricity 0.3",
@@ -111,20 +118,20 @@ ABOUT = {"chain": "eight masses between two walls",
          "drag": "an oscillator with drag in the force"}
 
 
-def rms(x, y):
+def rms(x: Vector, y: Vector) -> float:
     """RMS distance of points, as lists of coordinates."""
     total = sum((a - b) * (a - b) for a, b in zip(x, y))
     return math.sqrt(total / (len(x) / 3)) if math.isfinite(total) else math.inf
 
 
-def measured(rows, name):
+def measured(rows: list[Vector], name: str) -> Order:
     """The Order of a problem; rows: steps, calls, positions."""
-    solution, end, _ = END[name]
+    solution, end = END[name]
     exact = solution(end)
     return fit([(int(n), calls / n, rms(x, exact)) for n, calls, *x in rows])
 
 
-def by_differences(rows):
+def by_differences(rows: list[Vector]) -> Order:
     """The same without a solution: a run's error is taken as its distance
     from the next one, which has half the step."""
     return fit([(int(n), calls / n, rms(x, y)) for (n, calls, *x), (_, _, *y)
@@ -133,7 +140,7 @@ def by_differences(rows):
 
 # ---- The charts' problems with an exact solution: lab/charts/Problems.cpp
 
-def chart_chain(t=.8, n=20, K=100):
+def chart_chain(t: float = .8, n: int = 20, K: float = 100) -> Vector:
     x = []
     for j in range(n + 2):
         p = j / (n + 1)
@@ -147,7 +154,7 @@ def chart_chain(t=.8, n=20, K=100):
     return x
 
 
-def chart_curtain(t=1, n=16, K=100):
+def chart_curtain(t: float = 1, n: int = 16, K: float = 100) -> Vector:
     m, width = 1 / n ** 2, 1 / (n - 1)
     hangs = [0.0]
     for j in range(1, n):

@@ -7,7 +7,7 @@ import report
 from workshop import ROOT
 
 
-def main():
+def main() -> None:
     verdict = measure.measure(ROOT / "mass_spring.hpp", "symp_euler_step",
                               (*measure.NEEDED, "chart"))
     report.among_methods(verdict, ROOT / "course/pictures/8.svg")

@@ -8,6 +8,7 @@ import re
 import sys
 import tempfile
 
+import judge
 import orders
 import table as tables
 import teacher
@@ -26,7 +27,7 @@ EVALUATIONS = "force evaluations"
 
 # ---- Its dot among the laboratory's methods
 
-def among_methods(verdict, out):
+def among_methods(verdict: judge.Verdict, out: pathlib.Path) -> None:
     table = Table("lab/charts/results/work_precision.csv")
     picture = Picture(out, 800, 450, "Error against force evaluations: yours "
                       "in red", "Down is cheaper, right is more accurate. "
@@ -63,7 +64,7 @@ def among_methods(verdict, out):
 
 # ---- Order
 
-def convergence(verdict, out):
+def convergence(verdict: judge.Verdict, out: pathlib.Path) -> None:
     look = (("chain", OWN), ("kepler", "#0072B2"), ("driven", "#009E73"),
             ("drag", "#888888"))
     curves, notes = [], []
@@ -91,7 +92,7 @@ def convergence(verdict, out):
 
 # ---- Where it fails
 
-def around(verdict):
+def around(verdict: judge.Verdict) -> list[tuple]:
     """[(words, dt omega, matrix, color)] just inside and just outside."""
     line, limit = verdict.data["line"], verdict.limit
 
@@ -105,7 +106,7 @@ def around(verdict):
             ("just outside", 1.02 * limit, at(1.02 * limit)[2:], OUTSIDE)]
 
 
-def motion(m, steps):
+def motion(m: orders.Vector, steps: int) -> list[tuple[int, float]]:
     a, c, b, d = m
     x, v, found = 1.0, 0.0, [(0, 1.0)]
     for k in range(steps):
@@ -114,7 +115,7 @@ def motion(m, steps):
     return found
 
 
-def cause(verdict):
+def cause(verdict: judge.Verdict) -> str:
     """Why it grows just outside, in words."""
     words, z, m, color = around(verdict)[-1]
     if color == INSIDE:
@@ -140,14 +141,14 @@ def cause(verdict):
             "position, as if a spring had the wrong sign.")
 
 
-def region(verdict, out):
+def region(verdict: judge.Verdict, out: pathlib.Path) -> None:
     picture = Picture(out, 1000, 430, "Where an oscillator is stable",
                       cause(verdict)[:cause(verdict).find(":")
                                      if ":" in cause(verdict) else None], "")
     end = 12 if 5 < verdict.limit < math.inf else 6
     x, y = Axis(0, end, False), Axis(0, 6, False)
     panel = Panel(80, 100, 460, 350, x, y, "frequency and drag", [])
-    rows = {}
+    rows: dict[float, list] = {}
     for z, drag, r in verdict.data["map"]:
         if z <= end:
             rows.setdefault(drag, []).append((z, r))
@@ -188,7 +189,7 @@ def region(verdict, out):
     picture.finish()
 
 
-def failure(verdict, out):
+def failure(verdict: judge.Verdict, out: pathlib.Path) -> None:
     low, high, safe = verdict.data["grid1"]
     inside, outside = (verdict.data[k] for k in ("inside", "outside"))
     curves = []
@@ -230,7 +231,7 @@ def failure(verdict, out):
     picture.finish()
 
 
-def long_run(verdict, out):
+def long_run(verdict: judge.Verdict, out: pathlib.Path) -> None:
     rows = verdict.data["energy"]
     first = rows[0][1]
     points = [(t, e / first) for t, e, *_ in rows
@@ -259,7 +260,7 @@ th{font-weight:normal;color:#666}.is{font-size:1.1em}.fault{color:#a00}
 .next{background:#eef5fb;padding:.7em 1em}code{color:#666}"""
 
 
-def inline(text, number):
+def inline(text: str, number: int) -> str:
     """An SVG for a page with others: its names are its own."""
     text = text[text.index("<svg"):]
     text = re.sub(r"\bid=(['\"])", rf"id=\1c{number}-", text)
@@ -267,7 +268,7 @@ def inline(text, number):
     return text
 
 
-def coefficients(t):
+def coefficients(t: tables.Table) -> str:
     rows = ["<tr><th>force</th><th>at, in dt v</th><th>time, in dt</th>"
             "<th>share in the new velocity</th><th>in the new position</th>"
             "</tr>"]
@@ -286,7 +287,8 @@ CHARTS = ((among_methods, "chart.chain", "Among the laboratory's methods"),
           (long_run, "energy", "Energy"))
 
 
-def write(verdict, folder, source):
+def write(verdict: judge.Verdict, folder: pathlib.Path,
+          source: str) -> pathlib.Path:
     """Write folder/report.html, whole; its name."""
     said = html.escape
     head = [f"<p class=is>{said(teacher.first_lines(verdict)[0])}</p>"]

@@ -8,43 +8,47 @@ force j and what it makes of it:
 and tau_s, the time of call s, in steps.
 """
 
+import re
 from dataclasses import dataclass, field
 
+from workshop import ROOT, Lines
+
+Vector = list[float]
 EXACT = 1e-11       # round-off of a coefficient
 FORCES = (1, 3, 7)  # on the three masses [N]
 
 
 @dataclass
 class Table:
-    tau: list = field(default_factory=list)
-    c: list = field(default_factory=list)
-    a: list = field(default_factory=list)      # rows
-    w: list = field(default_factory=list)
-    b: list = field(default_factory=list)
-    B: list = field(default_factory=list)
+    tau: Vector = field(default_factory=list)
+    c: Vector = field(default_factory=list)
+    a: list[Vector] = field(default_factory=list)      # rows
+    w: list[Vector] = field(default_factory=list)
+    b: Vector = field(default_factory=list)
+    B: Vector = field(default_factory=list)
     C: float = 1
     V: float = 1
 
     @property
-    def stages(self):
+    def stages(self) -> int:
         return len(self.c)
 
-    def numbers(self):
+    def numbers(self) -> Vector:
         """All but the times."""
         return [*self.c, *sum(self.a, []), *self.b, *self.B, self.C, self.V]
 
-    def reuses(self):
+    def reuses(self) -> bool:
         """Is the last force of a step the first of the next one?"""
         return (self.stages > 1 and near(self.c[0], 0) and near(self.c[-1], 1)
                 and all(near(x, 0) for x in self.a[0])
                 and all(near(x, y) for x, y in zip(self.a[-1], self.B)))
 
 
-def near(x, y, tolerance=EXACT):
+def near(x: float, y: float, tolerance: float = EXACT) -> bool:
     return abs(x - y) <= tolerance * max(1, abs(x), abs(y))
 
 
-def same(one, other, tolerance=EXACT):
+def same(one: Table, other: Table, tolerance: float = EXACT) -> bool:
     """Equal, but for the times of the calls?"""
     return one.stages == other.stages and all(
         near(x, y, tolerance)
@@ -53,7 +57,7 @@ def same(one, other, tolerance=EXACT):
 
 # ---- Known methods
 
-def splitting(parts):
+def splitting(parts: list[tuple[str, float]]) -> Table:
     """[("drift" or "kick", coefficient)]"""
     t, kicks = Table(), [k for kind, k in parts if kind == "kick"]
     n = len(kicks)
@@ -72,7 +76,7 @@ def splitting(parts):
     return t
 
 
-def runge_kutta(A, b):
+def runge_kutta(A: list[Vector], b: Vector) -> Table:
     n = len(b)
     A = [[*row, *[0.0] * (n - len(row))] for row in A]
     c = [sum(row) for row in A]
@@ -82,32 +86,37 @@ def runge_kutta(A, b):
                  [sum(b[i] * A[i][j] for i in range(n)) for j in range(n)])
 
 
-def nystroem(c, a, b, B):
+def nystroem(c: Vector, a: list[Vector], b: Vector, B: Vector) -> Table:
     n = len(c)
     full = [[*row, *[0.0] * (n - len(row))] for row in a]
     return Table(list(c), list(c), full, full, list(b), list(B))
 
 
-def alternate(first, coefficients):
+def alternate(first: str, coefficients: Vector) -> Table:
     kinds = ("drift", "kick") if first == "drift" else ("kick", "drift")
     return splitting([(kinds[k % 2], x) for k, x in enumerate(coefficients)])
 
 
-def mirrored(half):
+def mirrored(half: Vector) -> Vector:
     return [*half, *half[-2::-1]]
 
 
-def known():
+def coefficients(method: str) -> Vector:
+    """The long decimals in the code of a method of methods.hpp: their home."""
+    code = re.search(rf"\b{method}_(parts|step)\b.*?\n}}",
+                     (ROOT / "methods.hpp").read_text("utf-8"), re.S)
+    return [float(x) for x in re.findall(r"-?\d*\.\d{9,}",
+                                         code[0] if code else "")]
+
+
+def known() -> dict[str, Table]:
     """{name: table}"""
     theta = 1 / (2 - 2 ** (1 / 3))
-    xi, lam, chi = 0.1786178958448091, -0.2123418310626054, \
-        -0.06626458266981849
+    xi, lam, chi = coefficients("pefrl")
+    parts = coefficients("srkn11b")
+    b11, a11 = parts[:5], parts[5:]
     b6 = [.0829844064174052, .396309801498368, -.0390563049223486]
     a6 = [.245298957184271, .604872665711080]
-    b11 = [.0414649985182624, .198128671918067, -.0400061921041533,
-           .0752539843015807, -.0115113874206879]
-    a11 = [.123229775946271, .290553797799558, -.127049212625417,
-           -.246331761062075, .357208872795928]
     b11.append(.5 - sum(b11))
     a11.append(1 - 2 * sum(a11))
     a6.append(.5 - sum(a6))
@@ -117,9 +126,10 @@ def known():
     yoshida = [theta, 1 - 2 * theta, theta]
     y = [theta / 2, theta, (1 - theta) / 2, 1 - 2 * theta]
     third = [7 / 24, 2 / 3, 3 / 4, -2 / 3, -1 / 24, 1]
-    dp = [[], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9],
-          [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
-          [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]]
+    dp: list[Vector] = [
+        [], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]]
     return {
         "forward Euler": runge_kutta([[]], [1.0]),
         "symplectic Euler": alternate("drift", [1.0, 1.0]),
@@ -155,7 +165,7 @@ def known():
     }
 
 
-def repeated():
+def repeated() -> dict[str, Table]:
     """The same of steps that are several shorter ones of a method."""
     steps = {}
     for k in (2, 3, 4):
@@ -168,9 +178,9 @@ def repeated():
     return steps
 
 
-def merged(table):
+def merged(table: Table) -> Table:
     """Calls at the same place and time, which one call would do, made one."""
-    groups = []
+    groups: list[list[int]] = []
     for s in range(table.stages):
         twin = next((g for g in groups if near(table.c[g[0]], table.c[s])
                      and all(near(x, y) for x, y in zip(
@@ -190,7 +200,7 @@ def merged(table):
                  folded(table.b), folded(table.B), table.C, table.V)
 
 
-def pruned(table):
+def pruned(table: Table) -> Table:
     """Without forces that nothing depends on."""
     keep = [j for j in range(table.stages) if not (
         near(table.b[j], 0) and near(table.B[j], 0)
@@ -214,9 +224,12 @@ class Event:
     v: list
 
 
-def events(trace):
+Runs = dict[tuple[float, int], list[Event]]     # by step and impulse
+
+
+def events(trace: Lines) -> Runs:
     """{(h, impulse): events in their order}; from lines in their order."""
-    found = {}
+    found: Runs = {}
     for what, numbers in trace:
         h, impulse, node, time, *rest = numbers
         x = [(rest[4 * i], rest[4 * i + 1]) for i in range(len(rest) // 4)]
@@ -226,7 +239,7 @@ def events(trace):
     return found
 
 
-def read(runs, h, node):
+def read(runs: Runs, h: float, node: int) -> Table | None:
     """The table of one of the masses, at a step h."""
     mass = 2.0 ** (node - 1) / FORCES[node]
     base = runs[h, -1]

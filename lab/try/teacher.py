@@ -4,6 +4,7 @@ import math
 import textwrap
 
 import orders
+from judge import Verdict
 
 ADVICE = {
     "forward Euler": "Your kick uses the old positions: this is forward Euler; "
@@ -31,7 +32,7 @@ ADVICE = {
 }
 
 
-def conclude(v):
+def conclude(v: Verdict) -> None:
     """What it is, and what to do next."""
     if not v.is_a:
         if v.order is None:
@@ -74,13 +75,13 @@ def conclude(v):
                     "below them.")
 
 
-def first_lines(v):
+def first_lines(v: Verdict) -> list[str]:
     """Sentences: what it is, and each fault."""
     return [f"{v.step}: {v.is_a}.",
             *(f"{v.step}: {what}." for what, _ in v.faults)]
 
 
-def words(v):
+def words(v: Verdict) -> str:
     lines = [*first_lines(v), f"Next: {v.advice}", ""]
     wide = max((len(what) for what, _ in v.facts), default=0)
     for what, text in v.facts:

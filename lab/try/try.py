@@ -15,7 +15,7 @@ import teacher
 from workshop import BadInput, progress
 
 
-def main():
+def main() -> int:
     path, wanted = os.environ.get("FILE", ""), os.environ.get("STEP", "")
     if not path:
         raise BadInput("make try: no file, expected FILE=mine.hpp")
@@ -35,6 +35,7 @@ def main():
         progress("")
     print(teacher.words(verdict))
     print(f"{out}: the same with pictures ({time.monotonic() - started:.0f} s)")
+    return 0
 
 
 if __name__ == "__main__":

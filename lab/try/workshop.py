@@ -4,7 +4,6 @@ The file is a stranger's: it is compiled and run in the grader's jail
 (course/kit/jail.cpp), with limits on time, memory and output.
 """
 
-import fcntl
 import os
 import pathlib
 import re
@@ -37,24 +36,27 @@ PRELUDE = "".join(f"#include {name}\n" for name in (
 COMMON = ["-std=c++20", "-w", "-pthread", "-I", str(ROOT)]
 
 
+Lines = list[tuple[str, list[float]]]   # of the probe: name, numbers
+
+
 class BadInput(Exception):
     """What is wrong with the file, in a line."""
 
 
-def progress(text):
+def progress(text: str) -> None:
     if sys.stderr.isatty():
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 
 # ---- The step's name
 
-def without_comments(text):
+def without_comments(text: str) -> str:
     """The same length and lines, with blanks for comments and strings."""
     pattern = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", re.S)
     return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
 
 
-def arguments(text, at):
+def arguments(text: str, at: int) -> tuple[list[str], int] | None:
     """Those from the bracket at `at` on, and where it closes; or None."""
     depth, start, found = 0, at + 1, []
     for k in range(at, len(text)):
@@ -70,10 +72,11 @@ def arguments(text, at):
     return None
 
 
-def steps_in(text):
+def steps_in(text: str) -> dict[str, int]:
     """{name: number of arguments} of functions of the step's form; of two
     with one name the one with a constraint."""
-    text, found = without_comments(text), {}
+    text = without_comments(text)
+    found: dict[str, int] = {}
     for match in re.finditer(r"\bdouble\s+(\w+)\s*(\()", text):
         read = arguments(text, match.start(2))
         if not read or not re.match(r"\s*(noexcept\s*)?\{", text[read[1] + 1:]):
@@ -91,7 +94,7 @@ MEASURES = ("make try measures steps: make test and make grade judge forces "
             "and constraints")
 
 
-def choose(path, wanted):
+def choose(path: pathlib.Path, wanted: str) -> tuple[str, int]:
     """(name, number of arguments) of the step in a file."""
     try:
         found = steps_in(path.read_text(encoding="utf-8", errors="replace"))
@@ -115,17 +118,11 @@ def choose(path, wanted):
 # ---- Building and running
 
 class Workshop:
-    """A folder in which the probe of one step is built, or another `source`
-    with its own `defines`."""
-    given = b""     # what it reads once it has begun, less than 1 MB
+    """A folder in which the probe of one step is built."""
 
-    def __init__(self, path, step, arguments_, source="probe.cpp",
-                 defines=None):
+    def __init__(self, path: pathlib.Path, step: str, arguments_: int) -> None:
         self.path, self.step = path.resolve(), step
         self.arguments = arguments_
-        self.source = ROOT / "lab/try" / source
-        self.defines = defines or [f"-DTRY_STEP={step}",
-                                   f"-DTRY_ARGUMENTS={arguments_}"]
         BUILT.mkdir(parents=True, exist_ok=True)
         once.BUILT.mkdir(parents=True, exist_ok=True)
         try:
@@ -141,10 +138,10 @@ class Workshop:
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="room-"))
         self.folder.chmod(0o755)
         self.where = f"{self.path}:1: {step}"
-        self.programs = {}
-        self.slow = []      # parts that took too long
+        self.programs: dict[str, pathlib.Path] = {}
+        self.slow: list[str] = []   # parts that took too long
 
-    def make_prelude(self, folder):
+    def make_prelude(self, folder: pathlib.Path) -> None:
         """In the jail, where addresses are not by chance: it is used there."""
         jail = [*self.jail, "--compiler", "--cpu", "300", "--size",
                 str(1 << 30), "--"]
@@ -155,13 +152,13 @@ class Workshop:
                           f"{header}.gch"], "the course's classes can't be "
                          "built", jail)
 
-    def of_the_course(self):
+    def of_the_course(self) -> bool:
         """Are Graph.hpp and mass_spring.hpp those of the course?"""
         return self.path.parent == ROOT or not any(
             (self.path.parent / name).exists()
             for name in ("Graph.hpp", "mass_spring.hpp", "CME212"))
 
-    def compile(self, kind="fast"):
+    def compile(self, kind: str = "fast") -> pathlib.Path:
         """The probe; BadInput names the first error of the file."""
         if kind in self.programs:
             return self.programs[kind]
@@ -170,14 +167,15 @@ class Workshop:
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
                    "-iquote", self.path.parent,
                    *(["-include", self.prelude / f"{kind}.hpp"]
-                     if self.prelude and self.of_the_course() else []),
-                   f'-DTRY_FILE="{self.path}"', *self.defines, self.source,
-                   "-o", program]
+                     if self.of_the_course() else []),
+                   f'-DTRY_FILE="{self.path}"', f"-DTRY_STEP={self.step}",
+                   f"-DTRY_ARGUMENTS={self.arguments}",
+                   ROOT / "lab/try/probe.cpp", "-o", program]
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
                 "/etc/ld.so.cache", "/proc/self", ROOT / "CME212",
                 ROOT / "lab/try", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
                 ROOT / "methods.hpp", self.path.parent,
-                *([self.prelude] if self.prelude else [])]
+                self.prelude]
         words = [*self.jail]
         for name in read:
             words += ["--read", str(name)]
@@ -192,7 +190,7 @@ class Workshop:
         self.programs[kind] = program
         return program
 
-    def first_error(self, output):
+    def first_error(self, output: str) -> str:
         """In the stranger's own file, if one is there."""
         errors = diagnosis.compile_errors(output)
         own = [e for e in errors if os.path.realpath(e.file) == str(self.path)]
@@ -204,42 +202,34 @@ class Workshop:
         return (f"{self.path}:{place[1] if place else 1}: "
                 + diagnosis.short(text))
 
-    def run(self, part, kind="fast", *more):
+    def run(self, part: str, kind: str = "fast",
+            *more: object) -> tuple[Lines, sandbox.Outcome]:
         """(its lines, name and numbers; outcome) of a part of the probe."""
         program = self.programs[kind]
         seconds = SECONDS.get(part, 8) * (1 if kind == "fast" else 8)
         limits = sandbox.Limits(cpu=seconds, wall=4 * seconds)
         from_read, from_write = os.pipe()
-        to_read, to_write = os.pipe()
-        fcntl.fcntl(to_write, fcntl.F_SETPIPE_SZ, 1 << 20)
         written = sandbox.Output(limits.output)
         spoken = sandbox.Output(limits.output, limits.output)
-        waiting = [to_write]
-
-        def heard(data):
-            if waiting:
-                with open(waiting.pop(), "wb") as pipe:
-                    pipe.write(self.given)
-            return spoken.add(data)
         command = [*self.jail, "--cpu", str(limits.cpu)]
-        for name in (self.folder, "/usr/lib", "/lib", "/lib64",
+        for path in (self.folder, "/usr/lib", "/lib", "/lib64",
                      "/etc/ld.so.cache", "/proc/self"):
-            command += ["--read", str(name)]
+            command += ["--read", str(path)]
         process = subprocess.Popen(
             [*command, "--", str(program), part, str(from_write),
              *map(str, more)], cwd="/",
             env=sandbox.clean_environment("/nowhere"), pass_fds=[from_write],
-            stdin=to_read, stdout=subprocess.DEVNULL,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, start_new_session=True)
         os.close(from_write)
+        assert process.stderr
         try:
             with process.stderr as pipe:
                 stopped = sandbox.watch(process, limits, {
-                    pipe.fileno(): written.add, from_read: heard})
+                    pipe.fileno(): written.add, from_read: spoken.add})
         finally:
-            for pipe in (from_read, to_read, *waiting):
-                os.close(pipe)
-        found = []
+            os.close(from_read)
+        found: Lines = []
         for line in spoken.first.decode("ascii", "replace").splitlines():
             name, *numbers = line.split(" ")
             try:
@@ -249,10 +239,10 @@ class Workshop:
         return found, sandbox.Outcome(stopped, process.returncode,
                                       written.text(), bool(found))
 
-    def close(self):
+    def close(self) -> None:
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def why(self, part, outcome):
+    def why(self, part: str, outcome: sandbox.Outcome) -> str:
         """Why a part of the probe did not end, in words."""
         name = self.where
         if outcome.stopped == "time":
@@ -260,7 +250,7 @@ class Workshop:
                     f"stopped after {SECONDS.get(part, 8)} s")
         if outcome.stopped:
             return f"{name}: uses too much {outcome.stopped}"
-        # What the sanitizers say has the line.
+        # The sanitizers name the line.
         self.compile("checked")
         _, checked = self.run(part, "checked")
         said = checked if checked.code and not checked.stopped else outcome
