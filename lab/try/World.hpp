@@ -17,7 +17,7 @@ inline std::FILE* out;
 inline bool constrained = true;  // does the step take a constraint?
 using Numbers = std::vector<double>;
 
-/** A cloth, and what acts on it. */
+/** A cloth and the forces on it. */
 struct World {
   GraphType g;
   double gravity = 0;           // [m/s^2]
@@ -70,7 +70,7 @@ inline Numbers positions(World& w) {
     for (unsigned d = 0; d < 3; ++d) x.push_back(w.g.node(i).position()[d]);
   return x;
 }
-/** What no step changes: masses, K and L. */
+/** Masses, K and L, which no step may change. */
 inline Numbers data(World& w) {
   Numbers is;
   for (Node n : nodes(w.g)) is.push_back(n.value().mass);

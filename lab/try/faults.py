@@ -124,7 +124,7 @@ def steps(full: Table, half: Table) -> Faults:
 
 
 def own_force(lines: Lines) -> Faults:
-    """From the velocities along y and z after a step."""
+    """Is there a force of the step's own, or one along y alone?"""
     for h, impulse, y, z in (row for what, row in lines if what == "along"):
         if impulse < 0 and max(abs(y), abs(z)) > 1e-12:
             return [(f"without any force a step accelerates nodes by "
@@ -156,7 +156,7 @@ def own_drag(t: Table) -> Faults:
 
 
 def times(t: Table, order_one: bool) -> tuple[Faults, list[str]]:
-    """(faults, notes) of the times at which forces are asked for."""
+    """(faults, notes) on the times at which forces are asked for."""
     for s, (tau, c) in enumerate(zip(t.tau, t.c)):
         if near(tau, c):
             continue
@@ -174,7 +174,7 @@ def times(t: Table, order_one: bool) -> tuple[Faults, list[str]]:
 
 
 def constraint(runs: Runs, h: float = FULL) -> tuple[Faults, list[str]]:
-    """(faults, notes) of where the constraint is applied."""
+    """(faults, notes) on where the constraint is applied."""
     events = runs[h, -1]
     holds = [e for e in events if e.what == "hold"]
     if not holds:
@@ -227,8 +227,8 @@ def returned(runs: Runs) -> Faults:
 
 
 def differences(t: Table, other: Table) -> tuple[list, list]:
-    """What differs, as (words, ours, the other's): a list of what a reader
-    finds in the code, and a list of what follows from it."""
+    """Two lists of (words, ours, the other's): coefficients that stand in the
+    code, and those that follow from them."""
     read: list[tuple] = []
     follows: list[tuple] = []
     found = read
@@ -259,9 +259,8 @@ def differences(t: Table, other: Table) -> tuple[list, list]:
 
 def nearest(ours: tuple[Table, Table],
             methods: dict[str, Table]) -> tuple | None:
-    """(is a difference large, how many there are, name, those that a reader
-    finds first, forces) of the known method that has most in common with one
-    of the tables; or None."""
+    """The known method closest to one of the tables, or None: (is a difference
+    large, number of differences, name, differences, stages)."""
     best = None
     for t in ours:
         for name, other in methods.items():
@@ -269,7 +268,7 @@ def nearest(ours: tuple[Table, Table],
                 read, follows = differences(t, other)
                 found = read or follows
                 far = max((abs(x - y) for _, x, y in found), default=0)
-                # What follows counts half.
+                # One that follows from others counts half.
                 key = (far > .02, (len(read) + len(follows) / 2) / t.stages,
                        name, found, t.stages)
                 if best is None or key[:2] < best[:2]:
@@ -278,7 +277,7 @@ def nearest(ours: tuple[Table, Table],
 
 
 def small(close: tuple | None) -> Faults:
-    """A known method, but for a small difference?"""
+    """A known method with one slightly wrong coefficient?"""
     if not close or close[0] or not close[3]:
         return []
     _, _, name, ((what, own, right), *_), _ = close
@@ -288,7 +287,7 @@ def small(close: tuple | None) -> Faults:
 
 
 def few(close: tuple | None) -> Faults:
-    """A known method, but for few differences?"""
+    """A known method with a few other coefficients?"""
     if not close or not 0 < len(close[3]) <= .75 * close[4]:
         return []
     _, _, name, ((what, own, right), *_), _ = close
@@ -351,13 +350,15 @@ def at_start(t: Table) -> Faults:
 
 
 def coefficients(raw: Table, t: Table, methods: dict[str, Table]) -> Faults:
-    """What is wrong with the coefficients of a step that no one has."""
+    """What is wrong with the coefficients of a step that equals no known
+    method."""
     close = nearest((raw, t), methods)
     return (at_start(t) or small(close) or sums(t)
             or velocities(t, methods) or few(close) or position(t))
 
 
 def second_order(t: Table) -> bool:
-    """As far as forces on one mass that depend on positions can tell."""
+    """Does it meet the conditions of order 2 for one mass and forces that
+    depend on positions?"""
     return (near(sum(t.b), 1) and near(sum(t.B), .5) and
             near(sum(b * c for b, c in zip(t.b, t.c)), .5))

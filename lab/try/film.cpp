@@ -1,5 +1,5 @@
 /** @file film.cpp
- * A step that somebody has written as a method of ./cloth, called "yours".
+ * Makes a stranger's step the method "yours" of ./cloth.
  * film.py builds it, with what make try has measured, and links it with
  * cloth.cpp:
  *   -DTRY_FILE='"mine.hpp"' -DTRY_STEP=my_step -DTRY_ORDER=2 -DTRY_SWEEPS=1
@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "lab/methods/Methods.hpp"
-// The step, after all that it may use.
+// The step comes last: it may use all headers above.
 #include "mass_spring.hpp"
 #include TRY_FILE
 

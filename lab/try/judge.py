@@ -1,4 +1,4 @@
-"""What the probe's numbers say about a step: a Verdict, in words."""
+"""Turn the probe's numbers into a Verdict on a step, in words."""
 
 import cmath
 import math
@@ -22,7 +22,7 @@ class Verdict:
     is_a: str = ""              # what it is, in a sentence
     name: str = ""              # of a known method that it equals
     faults: list = field(default_factory=list)     # (sentence, advice)
-    later: list = field(default_factory=list)      # those said last
+    later: list = field(default_factory=list)      # reported after the others
     notes: list = field(default_factory=list)
     facts: list = field(default_factory=list)      # (what, words)
     advice: str = ""
@@ -57,7 +57,7 @@ SPRINGS = [(i, j) for i in range(4) for j in range(i)]
 
 
 def tangle_force(x: list[Vector], v: list[Vector], t: float, i: int) -> Vector:
-    """That of same() in probe.cpp."""
+    """The force of same() in probe.cpp."""
     f = [math.cos(5 * t), math.sin(3 * t), t]
     for k, (a, b) in enumerate(SPRINGS):
         if i not in (a, b):
@@ -110,7 +110,7 @@ def events(where: str, lines: Lines) -> tables.Runs:
 
 def trace(verdict: Verdict, where: str, lines: Lines,
           constrained: bool) -> None:
-    """Read the table; everything that it shows at once."""
+    """Read the table of a step, and the faults that it shows."""
     runs = events(where, lines)
     base = runs[faults.FULL, -1]
     found = faults.counts(base)
@@ -152,7 +152,7 @@ def single_precision(numbers: Iterable[float]) -> bool:
 
 
 def unchanged(verdict: Verdict, same: Numbers) -> None:
-    """What a step has to leave as it is."""
+    """Faults of a step that changes masses or springs, or rounds to float."""
     before, *after = same["data"]
     if any(data != before for data in after):
         verdict.faults.append((

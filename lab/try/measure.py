@@ -30,12 +30,12 @@ def probe(shop: Workshop, parts: Sequence[str],
                 say(f"measuring: {part} ({len(found) + 1} of {len(parts)}) ...")
                 lines, outcome = future.result()
                 if not any(name == "done" for name, _ in lines):
-                    # A later part may be slow: then the others count.
+                    # The report leaves out a later part that is too slow.
                     if part in NEEDED or outcome.stopped != "time":
                         raise BadInput(shop.why(part, outcome))
                     shop.slow.append(part)
                 found[part] = lines
-                if part == "trace":     # the others follow from it
+                if part == "trace":     # the other parts depend on it
                     judge.events(shop.where, lines)
                 elif part == "same":
                     judge.keeps_state(shop.where, judge.by_name(lines))

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 Vector = list[float]
 Point = tuple[int, float, float]    # steps, calls a step, error
 FLOOR = 2e-13       # relative; round-off adds up with the steps
-COARSE = 0.1        # relative: above that an error says nothing
+COARSE = 0.1        # relative: larger errors are ignored
 STRAIGHT = 0.15     # slopes that differ by less belong to one range
 
 
 @dataclass
 class Order:
-    """What the errors of some runs say."""
+    """An order of convergence, fitted to the errors of runs."""
     points: list[Point]
     order: float = math.nan     # the slope at the finest steps
     first: int = 0          # its range, in points
@@ -78,7 +78,7 @@ def chain(t: float) -> Vector:
 
 
 def kepler(t: float, e: float = 0.3) -> Vector:
-    """From the nearest point on, with period 2 pi."""
+    """An orbit of period 2 pi, from its nearest point on."""
     E = t
     for _ in range(60):
         E -= (E - e * math.sin(E) - t) / (1 - e * math.cos(E))
@@ -132,7 +132,7 @@ def measured(rows: list[Vector], name: str) -> Order:
 
 
 def by_differences(rows: list[Vector]) -> Order:
-    """The same without a solution: a run's error is taken as its distance
+    """The Order without an exact solution: the error of a run is its distance
     from the next one, which has half the step."""
     return fit([(int(n), calls / n, rms(x, y)) for (n, calls, *x), (_, _, *y)
                 in zip(rows, rows[1:])])

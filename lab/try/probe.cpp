@@ -18,12 +18,12 @@
 #include <vector>
 
 #include "lab/try/World.hpp"
-// The step, after all that it may use.
+// The step comes last: it may use all headers above.
 #include TRY_FILE
 
 namespace probe {
 
-long long asked = 0;  // steps; 0: several
+long long asked = 0;  // steps of each run; 0: of several runs
 
 // ---- Steps
 
@@ -44,7 +44,7 @@ struct ActingApart {
   }
 };
 
-/** One step of the stranger's. */
+/** One step by TRY_STEP. */
 void advance(World& w, double t, double h) {
   auto hold = [&w](auto&, double at) { w.constrain(at); };
   auto by = [&](auto force) {
@@ -70,11 +70,11 @@ void refine(const std::string& name, double t0, double t1, long long first,
     Numbers row = positions(w);
     row.insert(row.begin(), {double(steps), double(w.calls) / w.g.num_nodes()});
     put(name, row);
-    if (w.calls > 6'000'000) break;  // a dear step: fewer refinements
+    if (w.calls > 6'000'000) break;  // an expensive step
   }
 }
 
-// ---- trace: who asks for which force when, and what comes of it
+// ---- trace: when the step calls the force, and how it uses the result
 
 /** Three free masses of 1/2, 1 and 2 kg. The force on all is 0; or, in turn,
  * 1, 3 and 7 N along y and z at one of the calls for each node: the step as a
@@ -188,7 +188,7 @@ void order() {
   });
 }
 
-// ---- physics: what the step keeps
+// ---- physics: what the step conserves
 
 void physics() {
   constexpr double h = .125;
@@ -238,7 +238,7 @@ void matrix(const char* name, double omega, double gamma) {
   put(name, row);
 }
 
-/** Does the cloth, which begins with 0 J, gain no energy in 0.25 s? */
+/** Does the cloth stay below 0.5 J for 0.25 s? It starts with 0 J. */
 bool holds(double h, double gamma) {
   World w = grid1();
   w.gamma = gamma;

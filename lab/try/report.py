@@ -261,7 +261,7 @@ th{font-weight:normal;color:#666}.is{font-size:1.1em}.fault{color:#a00}
 
 
 def inline(text: str, number: int) -> str:
-    """An SVG for a page with others: its names are its own."""
+    """An SVG whose ids no other picture of the page has."""
     text = text[text.index("<svg"):]
     text = re.sub(r"\bid=(['\"])", rf"id=\1c{number}-", text)
     text = re.sub(r"(href=['\"]#|url\(['\"]?#)", rf"\1c{number}-", text)
@@ -289,7 +289,7 @@ CHARTS = ((among_methods, "chart.chain", "Among the laboratory's methods"),
 
 def write(verdict: judge.Verdict, folder: pathlib.Path,
           source: str) -> pathlib.Path:
-    """Write folder/report.html, whole; its name."""
+    """Write folder/report.html; its path."""
     said = html.escape
     head = [f"<p class=is>{said(teacher.first_lines(verdict)[0])}</p>"]
     head += [f"<p class=fault>{said(line)}</p>"

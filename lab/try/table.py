@@ -1,8 +1,8 @@
 """A step as a table of coefficients, read from what it does with known forces.
 
 Three free masses with velocity 1 along x; the force is 0, or FORCES along y
-and z at one of the calls. So an explicit step shows where it asks for each
-force j and what it makes of it:
+and z at one of the calls. So an explicit step shows where it evaluates
+each force j and how it uses it:
     X_s = x + c_s h v + h^2 sum a_sj f_j/m      V_s = v + h sum w_sj f_j/m
     x_1 = x + C h v + h^2 sum B_j f_j/m         v_1 = V v + h sum b_j f_j/m
 and tau_s, the time of call s, in steps.
@@ -34,7 +34,7 @@ class Table:
         return len(self.c)
 
     def numbers(self) -> Vector:
-        """All but the times."""
+        """All coefficients but the times."""
         return [*self.c, *sum(self.a, []), *self.b, *self.B, self.C, self.V]
 
     def reuses(self) -> bool:
@@ -102,7 +102,7 @@ def mirrored(half: Vector) -> Vector:
 
 
 def coefficients(method: str) -> Vector:
-    """The long decimals in the code of a method of methods.hpp: their home."""
+    """The decimal coefficients of a method, as they stand in methods.hpp."""
     code = re.search(rf"\b{method}_(parts|step)\b.*?\n}}",
                      (ROOT / "methods.hpp").read_text("utf-8"), re.S)
     return [float(x) for x in re.findall(r"-?\d*\.\d{9,}",
@@ -166,7 +166,7 @@ def known() -> dict[str, Table]:
 
 
 def repeated() -> dict[str, Table]:
-    """The same of steps that are several shorter ones of a method."""
+    """{name: table} of steps that consist of shorter steps of a method."""
     steps = {}
     for k in (2, 3, 4):
         each = f", {k} steps of dt/{k}"
@@ -179,7 +179,7 @@ def repeated() -> dict[str, Table]:
 
 
 def merged(table: Table) -> Table:
-    """Calls at the same place and time, which one call would do, made one."""
+    """The table with calls at the same place and time merged into one."""
     groups: list[list[int]] = []
     for s in range(table.stages):
         twin = next((g for g in groups if near(table.c[g[0]], table.c[s])
@@ -201,7 +201,7 @@ def merged(table: Table) -> Table:
 
 
 def pruned(table: Table) -> Table:
-    """Without forces that nothing depends on."""
+    """The table without forces that nothing depends on."""
     keep = [j for j in range(table.stages) if not (
         near(table.b[j], 0) and near(table.B[j], 0)
         and all(near(row[j], 0) for row in table.a))]

@@ -33,7 +33,7 @@ ADVICE = {
 
 
 def conclude(v: Verdict) -> None:
-    """What it is, and what to do next."""
+    """Say what the step is and what to do next."""
     if not v.is_a:
         if v.order is None:
             all_orders = [v.orders[name].order for name in orders.SMOOTH

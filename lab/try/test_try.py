@@ -1,5 +1,5 @@
-"""make try says the right thing of steps with planted mistakes
-(mistakes.toml), of a method that nobody has, and of methods.hpp.
+"""Tests of make try: steps with planted mistakes (mistakes.toml), methods that
+nobody has, and those of methods.hpp.
 
     python3 lab/try/test_try.py [FOLDER]       by default build/try
 
@@ -89,7 +89,7 @@ def said_of(text, parts=QUICK, step=""):
 
 
 def mistake(case):
-    """Faults of what is said of one."""
+    """Faults of the report on one mistake."""
     status, said, _ = said_of(text_of(case), case.get("parts", QUICK))
     found = [] if status == case.get("status", 0) else [f"status {status}"]
     found += [f"does not say '{words}'" for words in case["says"]
@@ -149,7 +149,7 @@ def own_method(seed):
 
 
 def half_trace(drifts, kicks, z):
-    """Of the matrix of a step for x'' = -z^2 x, dt = 1."""
+    """Half the trace of the matrix of a step for x'' = -z^2 x, dt = 1."""
     columns = []
     for x, v in ((1.0, 0.0), (0.0, 1.0)):
         for k, a in enumerate(drifts):

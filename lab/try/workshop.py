@@ -29,7 +29,7 @@ FLAGS = {"fast": ["-O2", "-g1"],
                      "-fno-sanitize-recover=all", "-D_GLIBCXX_ASSERTIONS"]}
 
 
-# What every probe includes, compiled once for each kind of build.
+# Headers of every probe, precompiled once for each kind of build.
 PRELUDE = "".join(f"#include {name}\n" for name in (
     "<algorithm>", "<cmath>", "<functional>", "<map>", "<string>",
     "<vector>", '"mass_spring.hpp"'))
@@ -40,7 +40,7 @@ Lines = list[tuple[str, list[float]]]   # of the probe: name, numbers
 
 
 class BadInput(Exception):
-    """What is wrong with the file, in a line."""
+    """Why a file can't be measured: one line."""
 
 
 def progress(text: str) -> None:
@@ -51,13 +51,13 @@ def progress(text: str) -> None:
 # ---- The step's name
 
 def without_comments(text: str) -> str:
-    """The same length and lines, with blanks for comments and strings."""
+    """The text with blanks for comments and strings, of the same length."""
     pattern = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", re.S)
     return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
 
 
 def arguments(text: str, at: int) -> tuple[list[str], int] | None:
-    """Those from the bracket at `at` on, and where it closes; or None."""
+    """The arguments in the bracket at `at`, and where it closes; or None."""
     depth, start, found = 0, at + 1, []
     for k in range(at, len(text)):
         if text[k] in "([{<":
@@ -73,8 +73,8 @@ def arguments(text: str, at: int) -> tuple[list[str], int] | None:
 
 
 def steps_in(text: str) -> dict[str, int]:
-    """{name: number of arguments} of functions of the step's form; of two
-    with one name the one with a constraint."""
+    """{name: number of arguments} of functions of the step's form. If two have
+    one name, the one with a constraint counts."""
     text = without_comments(text)
     found: dict[str, int] = {}
     for match in re.finditer(r"\bdouble\s+(\w+)\s*(\()", text):
@@ -142,7 +142,8 @@ class Workshop:
         self.slow: list[str] = []   # parts that took too long
 
     def make_prelude(self, folder: pathlib.Path) -> None:
-        """In the jail, where addresses are not by chance: it is used there."""
+        """Precompile in the jail: addresses are not random there, nor where the
+        header is used."""
         jail = [*self.jail, "--compiler", "--cpu", "300", "--size",
                 str(1 << 30), "--"]
         for kind, flags in FLAGS.items():
@@ -191,7 +192,7 @@ class Workshop:
         return program
 
     def first_error(self, output: str) -> str:
-        """In the stranger's own file, if one is there."""
+        """The first error in the stranger's own file, else the first of all."""
         errors = diagnosis.compile_errors(output)
         own = [e for e in errors if os.path.realpath(e.file) == str(self.path)]
         if own:
