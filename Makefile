@@ -55,13 +55,17 @@ help:
 	@echo 'make help-lab           the laboratory: ./cloth, charts, checks'
 	@echo 'programs: $(PROGRAMS)'
 
+gtest_libs = $(shell pkg-config --libs gtest_main 2>/dev/null || \
+               echo -lgtest_main -lgtest)
+
 # How to build a program, and $(B)/NAME.uses: what it includes, and so what it
 # is linked with. NAME.uses is as new as a source dated in the future, or make
 # would never end.
 define build
 @mkdir -p $(@D) && echo '$(CXX) $@'
-@$(CXX) $(flags) $(draw_flags) $(if $(test),$(if $(FAST),,$(sanitizer))) \
-  -o $@ $< $(draw_libs) $(if $(test),-lgtest_main -lgtest) $(LDLIBS)
+@$(CXX) $(flags) $(draw_flags) $(if $(test),$(call system,gtest) \
+  $(if $(FAST),,$(sanitizer))) \
+  -o $@ $< $(draw_libs) $(if $(test),$(gtest_libs)) $(LDLIBS)
 endef
 define find_uses
 @$(CXX) $(flags) -M -MG -MP -MT '$(O)$* $@' $< >$@

@@ -3,7 +3,10 @@
 # All of lab/ but its programs is one library, built once for speed in $(B), and
 # once with assertions and sanitizers, for tests, in $(B)/asan.
 
-OPENMP ?= 1
+# Not every compiler has OpenMP: then sweeps have one thread.
+OPENMP ?= $(shell $(CXX) -fopenmp -include omp.h -fsyntax-only -x c++ \
+            /dev/null 2>/dev/null && echo 1 || echo 0)
+OPENMP := $(OPENMP)
 
 # The programs: NAME is built as $(B)/NAME from the file.
 lab_main   := lab/run/cloth.cpp \
@@ -20,8 +23,9 @@ LAB_PROGRAMS := $(call names,$(lab_main))
 LAB_TESTS    := $(call names,$(lab_tests))
 
 # No product and sum in one rounding: the same bits on every processor.
+lab_system := $(foreach p,eigen3 CLI11 gtest,$(call system,$(p)))
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
-            $(if $(filter 1,$(OPENMP)),-fopenmp) $(call system,eigen3)
+            $(if $(filter 1,$(OPENMP)),-fopenmp) $(lab_system)
 # What names SDL, or asks whether there is a viewer.
 lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% $(lab_panels) \
             tests/test_viewer.% tests/test_panels.% CME212/%,$<), \
@@ -29,7 +33,7 @@ lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% $(lab_p
 # FAST=1 asks for tests of what is built for speed.
 tested     = $(if $(FAST),$(B),$(B)/asan)
 test_flags = $(if $(FAST),$(speed),$(debug) $(sanitizer))
-test_libs  = -lgtest_main -lgtest -lrapidcheck
+test_libs  = $(gtest_libs) -lrapidcheck
 
 lab_objects := $(lab_lib:.cpp=.o)
 
@@ -101,16 +105,21 @@ format:
 # How each source is compiled, for clangd and the like. A loop sets what a rule
 # would: $* the program, $< the source.
 .PHONY: compdb
-comma := ,
-entry = {"directory": "$(CURDIR)", "file": "$(1)", "command": \
-"$(subst ",\",$(subst \,\\,$(strip $(CXX) $(2) -c $(1))))"}
+define newline
+
+
+endef
+entry = @echo '{"directory": "$(CURDIR)", "file": "$(1)", "command": \
+"$(subst ",\",$(subst \,\\,$(strip $(CXX) $(2) -c $(1))))"}' >>$(B)/compdb
+
 compdb: course_draw = $(if $(filter 1,$(VIEWER)),$(call system,$(draw_pkg)))
 compdb:
-	$(file >compile_commands.json,[$(subst } {,}$(comma){,$(strip \
-	  $(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))) \
-	  $(foreach <,$(filter-out lab/page/wasi.cpp $(wildcard lab/try/*.cpp),$(wildcard CME212/viewer/*.cpp \
+	@mkdir -p $(B) && : >$(B)/compdb
+	$(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))$(newline))
+	$(foreach <,$(filter-out lab/page/wasi.cpp $(wildcard lab/try/*.cpp),$(wildcard CME212/viewer/*.cpp \
 	  lab/*.cpp lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
-	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS)))))])
+	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS))$(newline))
+	@{ echo '['; sed '$$!s/$$/,/' $(B)/compdb; echo ']'; } >compile_commands.json
 	@echo 'compile_commands.json'
 
 include lab/measure.mk lab/page/page.mk docs/site/site.mk

@@ -51,7 +51,7 @@ TEST_F(ClothProgram, RunsEveryStage) {
               0u);
     EXPECT_NE(r.out.find(name + ": 5000 steps"), std::string::npos);
   }
-  EXPECT_TRUE(run("--version").out.starts_with("cloth 1.0.0, kernels "));
+  EXPECT_TRUE(run("--version").out.starts_with("cloth 2.0.0, kernels "));
 }
 
 TEST_F(ClothProgram, WritesEnergiesThatAddUp) {

@@ -1,15 +1,37 @@
 #!/usr/bin/env bash
-# What students build, on other laptops: all tests of the course by clang with
-# libc++, as on a Mac; all of them and the five stages by an emulated ARM
-# processor, whose energies are those of this one. A part whose tools are
-# missing is skipped.
+# What students build, on other laptops: nothing that bash 3.2, make 3.81 or the
+# tools of a Mac lack; all tests of the course by clang with libc++, as on a Mac;
+# all of them and the five stages by an emulated ARM processor, whose energies
+# are those of this one. A part whose tools are missing is skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+# What students and teachers run, and what is newer there or not of POSIX.
+scripts="tools/deps.sh tools/submit.sh tools/stored_scenes.sh"
+makefiles="Makefile CME212/viewer.mk lab/lab.mk lab/page/page.mk course/course.mk
+  course/web/web.mk course/starter/Makefile course/starter/tests.mk"
+newer='\b(mapfile|readarray|coproc|nproc|timeout|flock|realpath) |declare -A'
+newer+='|\|&|&>>|\$\{[a-zA-Z_]+(\^|,)|wait -n|readlink -f|sed -i|stat -c'
+newer+='|grep -[a-zA-Z]*P|\$\(file |\bONESHELL|\bundefine |^private |[^:]::= |^[a-zA-Z_]+ *!= '
+# shellcheck disable=SC2086  # lists of words
+if grep -nE "$newer" $scripts $makefiles; then
+  echo "FAILED: bash 3.2, make 3.81 or a Mac does not have this"
+  exit 1
+fi
+# A compiler without OpenMP: the laboratory is built without it.
+folder=$(mktemp -d)
+printf '#!/bin/sh\ncase "$*" in *-fopenmp*) exit 1 ;; esac\nexec g++ "$@"\n' \
+  >"$folder/c++"
+chmod +x "$folder/c++"
+make -pn CXX="$folder/c++" VIEWER=0 help 2>/dev/null | grep '^OPENMP := 0' >/dev/null ||
+  { echo "FAILED: OPENMP is not 0 where -fopenmp is refused"; exit 1; }
+rm -r "$folder"
+
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 OUT=$folder/solution python3 course/kit/starter.py solution
 cd "$folder/solution"
-passed=0 failed=0
+passed=2 failed=0
 count() {  # LOG: of make test, or of its programs
   passed=$((passed + $(grep -c ': passed' "$1" || true)))
   failed=$((failed + $(grep -cE ': FAILED|Error' "$1" || true)))

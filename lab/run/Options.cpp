@@ -28,7 +28,7 @@
 namespace lab {
 namespace {
 
-constexpr const char* version = "1.0.0";
+constexpr const char* version = "2.0.0";
 
 constexpr const char* head =
     R"(Simulates a cloth of masses and springs from mesh files or a scene.
