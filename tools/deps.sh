@@ -14,7 +14,7 @@ packages() {
     window) echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri libpng-dev" ;;
     film)   echo "ffmpeg" ;;
     lab)    echo "libcli11-dev libeigen3-dev" ;;
-    draw)   echo "gnuplot-nox python3 fonts-dejavu-core" ;;
+    draw)   echo "python3-matplotlib python3 fonts-dejavu-core" ;;
     test)   echo "libgtest-dev gdb" ;;
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
                  "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind" ;;
@@ -43,7 +43,7 @@ libcli11-dev cli11 cli11-devel    libeigen3-dev eigen eigen3-devel
 libspectra-dev spectra spectra-devel        libsdl2-dev sdl2-compat SDL2-devel
 libgl-dev - mesa-libGL-devel      libegl1 - mesa-libEGL
 libgl1-mesa-dri - mesa-dri-drivers          libpng-dev libpng libpng-devel
-ffmpeg ffmpeg ffmpeg-free         gnuplot-nox gnuplot gnuplot
+ffmpeg ffmpeg ffmpeg-free         python3-matplotlib python-matplotlib python3-matplotlib
 python3 python python3            gdb - gdb
 fonts-dejavu-core - dejavu-sans-fonts
 clang - clang                     clang-format clang-format clang-tools-extra
@@ -66,7 +66,7 @@ else
   system=none
 fi
 
-# All that is installed, and what it provides: " g++ gnuplot-qt gnuplot ... "
+# All that is installed, and what it provides: " g++ libgl-dev libgl1-mesa-dev ... "
 installed() {
   local format
   # shellcheck disable=SC2016  # for dpkg-query to expand

@@ -4,76 +4,63 @@
 
 NAME: a line of CHARTS below, all of them if none. --folder: where NAME's CSV
 is and its pictures go, in place of the results of its room; --to: where the
-pictures go. Exit status: 0 done; 2 a chart can't be drawn, and why."""
+pictures go. Needs matplotlib; if this Python has none, /usr/bin/python3 is
+tried. Exit status: 0 done; 2 a chart can't be drawn, and why."""
+from __future__ import annotations
+
 import argparse
 import pathlib
 import sys
+from typing import Iterator
 
 import decision
 import peers
 import precision
 import rounds
 import speed
-from panels import gnuplot, quoted
+import surveys
+from panels import find_matplotlib
 from results import ROOT, ChartError, Table, believed, runs
 
-# In dark mode light and dark change places, and hues stay.
-DARK_MODE = ("<style>@media (prefers-color-scheme: dark) {#gnuplot_canvas "
-             "{filter: invert(0.92) hue-rotate(180deg)}}</style>\n")
-
-# name: room, CSV, what draws it (a function, or a script of gnuplot).
+# name: room, CSV, the function that draws it.
 CHARTS = {
     "work_precision": ("charts", "work_precision.csv",
                        precision.work_precision),
     "decision": ("charts", "work_precision.csv", decision.decision),
     "energy": ("charts", "energy.csv", precision.energy),
     "grid_refinement": ("charts", "grid_refinement.csv",
-                        "charts/grid_refinement.gp"),
-    **{f"stability_{m}": ("charts", f"stability_{m}.csv",
-                          f"charts/stability_{m}.gp")
-       for m in ("limits", "growth")},
-    "adviser": ("advice", "adviser.csv", "advice/adviser.gp"),
+                        surveys.grid_refinement),
+    "stability_limits": ("charts", "stability_limits.csv", surveys.limits),
+    "stability_growth": ("charts", "stability_growth.csv", surveys.growth),
+    "adviser": ("advice", "adviser.csv", surveys.adviser),
     "rounds": ("bench", "rounds.csv", rounds.rounds),
     "peers": ("bench", "peers.csv", peers.peers),
     "speed": ("bench", "*/bench.json", speed.speed),
 }
 
 
-def pictures(name, csv):
-    """(scene, name of the picture) of each picture of a chart; none of a
-    scene where all runs failed."""
+def pictures(name: str, csv: pathlib.Path) -> list[tuple[str, ...]]:
+    """(name of the picture, scene if there is more than one) of each picture
+    of a chart; none of a scene where all runs failed."""
     if name == "work_precision":
         table = Table(csv)
-        scenes = [s for s in dict.fromkeys(r["scene"] for r in table.rows)
-                  if s in precision.DRAWN]
-        return [(scene, scene) for scene in scenes
+        return [(scene, scene) for scene in precision.DRAWN
                 if believed(runs(table.where(scene=scene)))]
-    if name == "rounds":
-        return [("625", "rounds-625")]
-    return [("", name)]
+    return [(name,)]
 
 
-def draw(name, csv, to):
+def draw(name: str, csv: pathlib.Path,
+         to: pathlib.Path) -> Iterator[pathlib.Path]:
     """Draw the pictures of a chart; yields the files."""
-    how = CHARTS[name][2]
-    for scene, picture in pictures(name, csv):
+    for picture, *scene in pictures(name, csv):
         out = to / (picture + ".svg")
         part = out.with_suffix(".part")
-        if callable(how):
-            how(csv, part, *([scene] if scene else []))
-        else:
-            gnuplot([f"csv = {quoted(str(csv))}", f"scene = {quoted(scene)}",
-                     f"out = {quoted(str(part))}", f"load 'lab/{how}'"], part)
-        # Cells of a map stay cells when they are magnified.
-        part.write_text(part.read_text().replace(
-            "<image ", "<image style='image-rendering:pixelated' ").replace(
-                "<g id=\"gnuplot_canvas\">", DARK_MODE +
-                "<g id=\"gnuplot_canvas\">", 1))
+        CHARTS[name][2](csv, part, *scene)
         part.replace(out)
         yield out
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME",
                         help=" ".join(CHARTS))
@@ -84,6 +71,8 @@ def main():
         if name not in CHARTS:
             raise ChartError(f"draw.py: no chart {name}, expected one of "
                              f"{' '.join(CHARTS)}")
+    find_matplotlib()
+    for name in options.names or CHARTS:
         room, pattern, _ = CHARTS[name]
         folder = options.folder or ROOT / "lab" / room / "results"
         found = sorted(folder.resolve().glob(pattern))
@@ -101,5 +90,6 @@ if __name__ == "__main__":
     try:
         main()
     except (ChartError, OSError, ValueError, KeyError) as error:
-        sys.exit(f"{error}" if isinstance(error, (ChartError, OSError))
-                 else f"draw.py: {error!r}")
+        print(error if isinstance(error, (ChartError, OSError))
+              else f"draw.py: {error!r}", file=sys.stderr)
+        sys.exit(2)

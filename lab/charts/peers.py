@@ -1,8 +1,7 @@
 """The chart of other libraries' methods beside ours."""
 import math
 
-from panels import DARK, LETTER, Axis, Curve, Panel, Picture, quoted
-from precision import decades
+from panels import DARK, LETTER, Axis, Curve, Panel, Picture
 from results import COARSE, TRUSTED, Table, by_method, cost_at, runs
 
 # The first word of a method's name: the library, and its color.
@@ -114,13 +113,11 @@ def peers(csv, out):
                 middle = max(at, panel.left + 4 + LETTER * len(method) / 2)
                 for down, text in ((13, method), (27, shown(least))):
                     picture.text(middle, line - down, text, color=DARK,
-                                 at="center", more="noenhanced")
+                                 at="center")
                 panel.keep_free.append((at - 50, line - 34, at + 50, line))
-            picture.draw(panel, decades(x.hi, x.lo),
-                         "set ytics (0.5, 1, 2, 5, 10, 20, 50, 100)", *(
-                ["set format y '%g'",
-                 f"set ylabel 'ratio of {what}'"]
-                if k == 0 else ["set format y ''", "unset ylabel"]),
-                "set xlabel " + quoted("RMS error of the positions [m]"
-                                       if row else ""))
+            picture.draw(
+                panel, yticks=[v for v in (0.5, 1, 2, 5, 10, 20, 50, 100)
+                               if y.lo <= v <= y.hi],
+                ynames=k == 0, ylabel="" if k else f"ratio of {what}",
+                xlabel="RMS error of the positions [m]" if row else "")
     picture.finish()

@@ -2,7 +2,8 @@
 color and a bar along the lower edge that says where; energy against time."""
 import math
 
-from panels import BEHIND, LETTER, Axis, Curve, Panel, Picture, styles
+from panels import (BEHIND, DASHES, LETTER, Axis, Curve, Panel, Picture,
+                    styles)
 from results import (COARSE, TRUSTED, Table, believed, by_method,
                      runs, winners)
 
@@ -24,13 +25,6 @@ def digits(value):
         f"{value:.1e}".replace(".0e", "e").replace("e-0", "e-"))
 
 
-def decades(low, high):
-    """Tics at every other power of ten, and no others."""
-    tics = range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)
-    return "set xtics (" + ", ".join(
-        f"'1e{k}' 1e{k}" for k in tics if k % 2 == 0) + ")"
-
-
 def points_of(some, cost, coarsest):
     """(error, cost) of a method's runs, from its largest stable step on, to
     the first one whose error is less than the axis shows."""
@@ -47,10 +41,10 @@ def strip(picture, panel, segments, colors):
         x0, x1 = (panel.pixel((error, panel.y.lo))[0]
                   for error in (start, end))
         picture.box(x0 + 0.5, y + 2, max(x1 - 0.5, x0 + 1), y + STRIP - 2,
-                    colors.get(method, BEHIND), "front")
+                    colors.get(method, BEHIND))
         if method in colors and len(method) * LETTER < x1 - x0:
             picture.text((x0 + x1) / 2, y + STRIP / 2, method, 11, "white",
-                         "center", "noenhanced")
+                         "center")
     panel.keep_free.append((panel.left, y, panel.right, y + STRIP))
 
 
@@ -103,19 +97,17 @@ def work_precision(csv, out, scene):
         "and smaller steps, from its largest stable one on.\n"
         "In color: the methods that are the fastest at some error, as the bar "
         "at the bottom says; in gray: all others.", table.footer())
-    picture.text(20, 485, f"{scene}: {about}", more="noenhanced")
+    picture.text(20, 485, f"{scene}: {about}")
     panel = Panel(72, 82, 785, 466, x, y, "", [
-        Curve(m, own, colors.get(m, BEHIND), 7, m,
-              width=2.1 if m in colors else 1.2)
+        Curve(m, own, colors.get(m, BEHIND), 1, m,
+              width=2.1 if m in colors else 1.2, dash=DASHES[look[m][1]])
         for m, own in sorted(points.items(), key=lambda p: p[0] in colors)
         if own])
     strip(picture, panel, segments, colors)
     never = [m for m, own in of.items() if not any(r.ok for r in own)]
     if never:
         picture.text(20, 14, f"{', '.join(never)}: no step succeeded.")
-    picture.draw(panel, decades(x.hi, x.lo), "set format y '1e%T'",
-                 "set ylabel 'time of a run [s]' offset 1, 0",
-                 f"set xlabel '{NORMS[norm]}' offset 0, 0.2")
+    picture.draw(panel, ylabel="time of a run [s]", xlabel=NORMS[norm])
     picture.finish()
 
 
@@ -127,7 +119,8 @@ def energy(csv, out):
     curves, worst = {}, {}
     for row in table.rows:
         m, t, off = row["method"], float(row["t"]), abs(float(row["energy"]))
-        c = curves.setdefault(m, Curve(m, [], look[m][0], 0, m))
+        c = curves.setdefault(m, Curve(m, [], look[m][0], 0, m,
+                                       dash=DASHES[look[m][1]]))
         if off > 0 and (not c.points or off > 1.05 * c.points[-1][1]):
             c.points.append((t, min(off, 20)))
         c.end, worst[m] = t, max(worst.get(m, 0), off)
@@ -151,14 +144,12 @@ def energy(csv, out):
                       "largest distance from it up to that time.\n" +
                       rest[:1].upper() + rest[1:] + ".", table.footer())
     x, y = Axis(0, 6.8, False), Axis(1e-6, 300)  # names stand behind the end
-    picture.say("set xtics 0, 1, 5")
     for k, (family, title) in enumerate(FAMILIES):
         own = [c for m, c in curves.items() if look[m][1] == family]
         panel = Panel(72 + 240 * k, 82, 302 + 240 * k, 362, x, y, title, own,
                       [c for c in curves.values() if c not in own],
                       at_end=True)
-        picture.draw(panel, "set xlabel 'time [s]'", *(
-            ["set format y '1e%T'", "set ylabel "
-             "'largest error of the energy so far [J]'"]
-            if k == 0 else ["set format y ''", "unset ylabel"]))
+        picture.draw(
+            panel, xlabel="time [s]", xticks=range(6), ynames=k == 0,
+            ylabel="" if k else "largest error of the energy so far [J]")
     picture.finish()

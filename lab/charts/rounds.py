@@ -5,12 +5,12 @@ import math
 from panels import GRAY, Axis, Curve, Panel, Picture, styles
 from results import Table
 
-# In the CSV, in the chart, and color; None: as in methods.csv.
-CURVES = (("fast-mass-spring", "fast-mass-spring", None),
-          ("local-global", "the same, not accelerated", "#888888"),
-          ("xpbd", "xpbd (substeps)", None),
-          ("newton-gradients", "Newton, conjugate gradients", "#0072B2"),
-          ("newton-factor", "Newton, Cholesky factor", "#000000"))
+# In the CSV, in the chart, whose color, and dash.
+CURVES = (("fast-mass-spring", "fast-mass-spring", "fast-mass-spring", "-"),
+          ("local-global", "dotted: not accelerated", "fast-mass-spring", ":"),
+          ("xpbd", "xpbd (substeps)", "xpbd", "-"),
+          ("newton-factor", "Newton, Cholesky factor", "implicit-euler", "-"),
+          ("newton-gradients", "dotted: by gradients", "implicit-euler", ":"))
 TARGETS = (("from step", "off implicit Euler"),
            ("from motion", "off the true motion"))
 WITHIN = 0.01  # of the distance moved: what the title asks for
@@ -49,7 +49,7 @@ def verlet(nodes, K):
     return math.sqrt(12 * float(K) * int(nodes)) / 2 / 60
 
 
-def rounds(csv, out, nodes):
+def rounds(csv, out, nodes="625"):
     """A row of panels for each target, a column for each stiffness."""
     table, look = Table(csv), styles()
     some = table.where(nodes=nodes)
@@ -61,8 +61,8 @@ def rounds(csv, out, nodes):
         "10, 20 rounds. Dashed: the work of verlet's steps in that time, which "
         "make the true motion.", "")
     x = 20
-    for name, label, color in CURVES:
-        picture.text(x, 485, label, 11, color or look[name][0])
+    for _, label, like, _ in CURVES:
+        picture.text(x, 485, label, 11, look[like][0])
         x += 6.3 * len(label) + 14
     work = [float(r["work"]) for r in some] + [
         verlet(nodes, K) for K in stiffness]
@@ -75,24 +75,19 @@ def rounds(csv, out, nodes):
                           max(float(r[column]) / float(r["moved"]), LEAST))
                          for r in of if r["method"] == m]
                      for m, *_ in CURVES}
-            curves = [Curve(m, share[m], color or look[m][0], 7)
-                      for m, _, color in CURVES]
+            curves = [Curve(m, share[m], look[like][0], 1, dash=dash)
+                      for m, _, like, dash in CURVES]
             left = 76 + width * k
             panel = Panel(left, 266 - 204 * row, left + width - 10,
                           444 - 204 * row, ax, Axis(LEAST / 2, 0.5),
                           f"K = {K} N/m" if row == 0 else "", curves)
             at = panel.pixel((verlet(nodes, K), 1))[0]
-            picture.line(at, panel.bottom, at, panel.top, GRAY, 1, 2)
+            picture.line(at, panel.bottom, at, panel.top, GRAY, 1, "--")
             at = panel.pixel((1, WITHIN))[1]
-            picture.line(panel.left, at, panel.right, at, GRAY, 1, 3)
+            picture.line(panel.left, at, panel.right, at, GRAY, 1, ":")
             picture.text(panel.right - 4, at + 8,
                          f"{100 * WITHIN:.0f} %" if k == 0 else "", at="right")
-            settings = ["set xtics (10, 100, 1000)", "unset ylabel",
-                        "set format x '%g'", "set format y ''"]
-            settings.append("set xlabel 'work [steps of verlet]'"
-                            if row else "unset xlabel")
-            if k == 0:
-                settings += ["set format y '1e%T'",
-                             f"set ylabel '{what}' offset 1, 0"]
-            picture.draw(panel, *settings)
+            picture.draw(panel, xticks=(10, 100, 1000), ynames=k == 0,
+                         xlabel="work [steps of verlet]" if row else "",
+                         ylabel="" if k else what)
     picture.finish()

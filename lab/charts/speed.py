@@ -46,13 +46,13 @@ class Bars:
 
     def title(self, text):
         self.y -= 36
-        self.picture.text(self.x - self.indent, self.y, f"{{/:Bold {text}}}",
-                          color=DARK)
+        self.picture.text(self.x - self.indent, self.y, text, color=DARK,
+                          bold=True)
 
     def bar(self, name, low, middle, high, color, text):
         self.y -= ROW
         p, y, end = self.picture, self.y, self.x + self.scale * middle
-        p.text(self.x - 6, y, name, 11, DARK, "right", "noenhanced")
+        p.text(self.x - 6, y, name, 11, DARK, "right")
         p.box(self.x, y - 7, end, y + 7, color)
         p.line(self.x + self.scale * low, y, self.x + self.scale * high, y,
                "#222222")
@@ -103,6 +103,4 @@ def speed(path, out):
         picture.line(ours, right.y - 10, ours, right.y + ROW * len(
             tasks[task]) - 10, BLUE, 1.5)
         picture.text(ours + 5, right.y - 15, "ours", 11, BLUE)
-    picture.say("unset border", "unset tics", "set xrange [0:1]",
-                "set yrange [0:1]", "plot NaN")
     picture.finish()

@@ -7,9 +7,10 @@ import re
 import sys
 import unittest
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, combinations
 
 import decision
+import panels
 import peers
 import precision
 from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest,
@@ -248,18 +249,84 @@ class Words(unittest.TestCase):
 
 
 class Pictures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        found = chain(ROOT.glob("lab/*/results/**/*.svg"),
+                      ROOT.glob("course/pictures/*.svg"))
+        cls.pictures = {path.name: path.read_text() for path in found}
+
     def test_texts_have_11_pixels_where_a_picture_has_800(self):
-        pictures = list(chain(ROOT.glob("lab/*/results/**/*.svg"),
-                              ROOT.glob("course/pictures/*.svg")))
-        self.assertGreater(len(pictures), 12)
+        self.assertGreater(len(self.pictures), 12)
         small = []
-        for picture in pictures:
-            svg = picture.read_text()
+        for name, svg in self.pictures.items():
             width = float(re.search('viewBox="0 0 ([0-9.]+)', svg)[1])
-            least = min(map(float, re.findall('font-size="([0-9.]+)', svg)))
+            least = min(map(float, re.findall(
+                r'font: (?:bold |700 )?([0-9.]+)px', svg)))
             if least * 800 < 11 * width:
-                small.append((picture.name, least * 800 / width))
+                small.append((name, least * 800 / width))
         self.assertEqual(small, [])
+
+    def test_no_picture_is_large_or_dated_or_without_a_dark_mode(self):
+        for name, svg in self.pictures.items():
+            self.assertLessEqual(len(svg), 150_000, name)
+            self.assertNotIn("dc:date", svg, name)
+            self.assertIn("prefers-color-scheme: dark", svg, name)
+
+
+def luminance(color):
+    """[red, green, blue], linear."""
+    parts = (int(color[k:k + 2], 16) / 255 for k in (1, 3, 5))
+    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+            for c in parts]
+
+
+# How who lacks a kind of cones sees linear red, green and blue: Machado,
+# Oliveira, Fernandes 2009, https://doi.org/10.1109/TVCG.2009.113.
+SIGHT = {"normal": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+         "protan": ((0.152286, 1.052583, -0.204868),
+                    (0.114503, 0.786281, 0.099216),
+                    (-0.003882, -0.048116, 1.051998)),
+         "deutan": ((0.367322, 0.860646, -0.227968),
+                    (0.280085, 0.672501, 0.047413),
+                    (-0.01182, 0.04294, 0.968881))}
+
+
+def seen(color, sight):
+    """CIE L*a*b* of a color."""
+    r, g, b = (min(1, max(0, sum(map(math.prod, zip(row, luminance(color))))))
+               for row in SIGHT[sight])
+    x, y, z = (t ** (1 / 3) if t > 0.008856 else 7.787 * t + 4 / 29 for t in (
+        (0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.95047,
+        0.2126 * r + 0.7152 * g + 0.0722 * b,
+        (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883))
+    return 116 * y - 16, 500 * (x - y), 200 * (y - z)
+
+
+class Colors(unittest.TestCase):
+    """Of methods.csv: distances in L*a*b*; 2 is just seen."""
+    LOOK = panels.styles()
+
+    def apart(self, one, other, sight):
+        return math.dist(*(seen(self.LOOK[m][0], sight)
+                           for m in (one, other)))
+
+    def test_all_differ(self):
+        for pair in combinations(self.LOOK, 2):
+            self.assertGreater(self.apart(*pair, "normal"), 20, pair)
+
+    def test_those_of_a_dash_differ_for_the_color_blind(self):
+        for one, other in combinations(self.LOOK, 2):
+            if self.LOOK[one][1] == self.LOOK[other][1]:
+                for sight in SIGHT:
+                    self.assertGreater(self.apart(one, other, sight), 15,
+                                       (one, other, sight))
+
+    def test_all_can_be_read_on_white(self):
+        for method, (color, family) in self.LOOK.items():
+            r, g, b = luminance(color)
+            light = 0.2126 * r + 0.7152 * g + 0.0722 * b
+            self.assertGreater(1.05 / (light + 0.05), 3, method)
+            self.assertIn(family, panels.DASHES)
 
 
 if __name__ == "__main__":

@@ -4,10 +4,12 @@
 
 import measure
 import report
+from panels import find_matplotlib
 from workshop import ROOT
 
 
 def main() -> None:
+    find_matplotlib()
     verdict = measure.measure(ROOT / "mass_spring.hpp", "symp_euler_step",
                               (*measure.NEEDED, "chart"))
     report.among_methods(verdict, ROOT / "course/pictures/8.svg")

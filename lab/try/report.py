@@ -52,13 +52,8 @@ def among_methods(verdict: judge.Verdict, out: pathlib.Path) -> None:
         about = table.note("scene " + scene).split("; ")[0]
         panel = Panel(72 + 370 * k, 82, 415 + 370 * k, 365, x, y,
                       f"{scene}: {about}", curves, behind)
-        picture.draw(panel, "set xtics (" + ", ".join(
-            f"'1e{k}' 1e{k}" for k in range(-11, 0, 2)) + ")",
-                     "set xlabel 'RMS error of the positions [m]'",
-                     *(["set format y '1e%T'",
-                        f"set ylabel '{EVALUATIONS}' offset 1, 0"]
-                       if k == 0 else
-                       ["set format y ''", "unset ylabel"]))
+        picture.draw(panel, xlabel="RMS error of the positions [m]",
+                     ylabel="" if k else EVALUATIONS, ynames=k == 0)
     picture.finish()
 
 
@@ -84,9 +79,7 @@ def convergence(verdict: judge.Verdict, out: pathlib.Path) -> None:
     panel = Panel(90, 95, 930, 355, Axis(min(steps, default=1) * .8,
                                          max(steps, default=2) * 1.6),
                   Axis(1e-15, 10), "", curves, at_end=True)
-    picture.draw(panel, "set format x '%g'", "set format y '10^{%T}'",
-                 "set xtics auto", "set xlabel 'steps'",
-                 "set ytics 1000", "set ylabel 'error [m]'")
+    picture.draw(panel, xlabel="steps", ylabel="error [m]")
     picture.finish()
 
 
@@ -170,12 +163,10 @@ def region(verdict: judge.Verdict, out: pathlib.Path) -> None:
         left = (80, 160, 310)[k]
         picture.box(left, 20, left + 14, 32, color)
         picture.text(left + 18, 26, words, 10, DARK)
-    picture.line(*panel.pixel((2, 0)), *panel.pixel((2, 6)), GRAY, 1, 2)
+    picture.line(*panel.pixel((2, 0)), *panel.pixel((2, 6)), GRAY, 1, "--")
     picture.text(panel.pixel((2.08, 0))[0], panel.top - 10, "Verlet's limit",
                  10, GRAY)
-    picture.draw(panel, "set format x '%g'", "set format y '%g'",
-                 "set xtics 1", "set ytics 1", "set xlabel 'dt omega'",
-                 "set ylabel 'dt c/m'")
+    picture.draw(panel, xlabel="dt omega", ylabel="dt c/m")
     curves = []
     for words, z, m, color in around(verdict):
         points = [(n, max(-4, min(4, u))) for n, u in motion(m, 60)
@@ -184,8 +175,7 @@ def region(verdict: judge.Verdict, out: pathlib.Path) -> None:
                             f"{words}: dt omega = {z:.2f}"))
     picture.draw(Panel(560, 100, 970, 350, Axis(0, 60, False),
                        Axis(-4, 4, False), "without drag", curves),
-                 "set xtics 10", "set ytics 2", "set xlabel 'steps'",
-                 "set ylabel 'position / position at the start'")
+                 xlabel="steps", ylabel="position / position at the start")
     picture.finish()
 
 
@@ -207,8 +197,7 @@ def failure(verdict: judge.Verdict, out: pathlib.Path) -> None:
                       "that comes from the step.", "")
     panel = Panel(90, 70, 480, 350, Axis(0, .25, False),
                   Axis(min(-.05, *finite, 0), .6, False), "energy", curves)
-    picture.draw(panel, "set format '%g'", "set xtics .05", "set ytics .1",
-                 "set xlabel 'time [s]'", "set ylabel 'energy [J]'")
+    picture.draw(panel, xlabel="time [s]", ylabel="energy [J]")
     if verdict.data["shape.outside"]:
         p = verdict.data["shape.outside"][0]
         n = math.isqrt(len(p) // 3)
@@ -226,8 +215,7 @@ def failure(verdict: judge.Verdict, out: pathlib.Path) -> None:
                            Axis(min(xs) - .05, max(xs) + .05, False),
                            Axis(min(zs) - .05, max(zs) + .05, False),
                            "just outside, at the end, from the side",
-                           [], lines), "set xtics auto", "set ytics auto",
-                     "set xlabel 'x [m]'", "set ylabel 'z [m]'")
+                           [], lines), xlabel="x [m]", ylabel="z [m]")
     picture.finish()
 
 
@@ -244,8 +232,7 @@ def long_run(verdict: judge.Verdict, out: pathlib.Path) -> None:
     panel = Panel(90, 70, 960, 250, Axis(0, points[-1][0] or 1, False),
                   Axis(min(1, lo) - margin, max(1, hi) + margin, False), "",
                   [Curve("e", points, OWN)])
-    picture.draw(panel, "set format '%g'", "set xtics auto", "set ytics auto",
-                 "set xlabel 'time [s]'", "set ylabel 'energy / at first'")
+    picture.draw(panel, xlabel="time [s]", ylabel="energy / at first")
     picture.finish()
 
 

@@ -12,6 +12,8 @@ import time
 import measure
 import report
 import teacher
+from panels import find_matplotlib
+from results import ChartError
 from workshop import BadInput, progress
 
 
@@ -19,6 +21,7 @@ def main() -> int:
     path, wanted = os.environ.get("FILE", ""), os.environ.get("STEP", "")
     if not path:
         raise BadInput("make try: no file, expected FILE=mine.hpp")
+    find_matplotlib()
     started = time.monotonic()
     try:
         verdict = measure.measure(pathlib.Path(path), wanted, say=progress)
@@ -41,6 +44,6 @@ def main() -> int:
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except BadInput as error:
+    except (BadInput, ChartError) as error:
         print(error, file=sys.stderr)
         sys.exit(2)
