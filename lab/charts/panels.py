@@ -32,9 +32,10 @@ def find_matplotlib() -> None:
     if importlib.util.find_spec("matplotlib"):
         return
     if os.environ.get("HAS_MATPLOTLIB") or not os.path.exists(debian):
-        raise ChartError("matplotlib is missing, expected "
-                         "python3-matplotlib of Debian")
-    os.execve(debian, [debian, *sys.argv], {**os.environ, "HAS_MATPLOTLIB": "no"})
+        raise ChartError("matplotlib is missing, expected python3-matplotlib "
+                         "of Debian")
+    os.environ["HAS_MATPLOTLIB"] = "no"
+    os.execv(debian, [debian, *sys.argv])
 
 
 def styles() -> dict[str, tuple[str, str]]:

@@ -61,7 +61,8 @@ def growth(csv: pathlib.Path, out: pathlib.Path) -> None:
     table = Table(csv)
     names = list(dict.fromkeys(row["method"] for row in table.rows))
     picture = Picture(
-        out, 800, 330, "The predicted limit is where disturbances begin to grow",
+        out, 800, 330,
+        "The predicted limit is where disturbances begin to grow",
         "A tiny disturbance of a stretched sheet. Line: the predicted limit; "
         "dashed: the safe one. Left of 1 the sheet buckles.", table.footer())
     width = (800 - 68 - 100) // len(names)
@@ -130,8 +131,8 @@ def grid_refinement(csv: pathlib.Path, out: pathlib.Path) -> None:
         picture.text(x + 8, y - 9, f"{row['side']} x {row['side']}")
         panel.keep_free.append((x + 6, y - 17, x + 60, y))
     picture.draw(panel, xticks=(0.05, 0.02, 0.01, 0.005, 0.002),
-                 xlabel="error of the height of the center of mass [m], smaller "
-                 "to the right", ylabel="time of a run [s]")
+                 xlabel="error of the height of the center of mass [m], "
+                 "smaller to the right", ylabel="time of a run [s]")
     picture.finish()
 
 
@@ -149,8 +150,8 @@ def adviser(csv: pathlib.Path, out: pathlib.Path) -> None:
     picture = Picture(
         out, 800, 470, f"Advice: {met} of {len(rows)} scenes within their "
         f"tolerance, {cheap} near the least work",
-        "A dot is a random scene that got advice. The best choice: the cheapest "
-        "robust one of all grids, methods and steps.", table.footer())
+        "A dot is a random scene that got advice. The best choice: the "
+        "cheapest robust one of all grids, methods and steps.", table.footer())
     panel = Panel(76, 90, 384, 400, Axis(1e-3, 3), Axis(1e-3, 30))
     ax = picture.draw(panel, xlabel="predicted error/tolerance",
                       ylabel="real error/tolerance")
