@@ -4,6 +4,8 @@ import csv
 import datetime
 import io
 import statistics
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import grade
 import judge
@@ -13,11 +15,14 @@ import report
 import submission
 from class_page import page
 
+if TYPE_CHECKING:
+    from whole_class import Class, Row
+
 COLUMNS = ("student", "commit", "tag", "kind of tag", "tagged", "committed",
            "time", "days late", "points", "of")
 
 
-def made(whole, row):
+def made(whole: "Class", row: "Row") -> report.Report:
     """The report on a row, from what is kept of its content."""
     kept = whole.known(row.content)
     results = {test: judge.Result(**{
@@ -30,7 +35,7 @@ def made(whole, row):
                           results)
 
 
-def seeds(of):
+def seeds(of: dict[str, str]) -> Iterator[str]:
     """What a report says of the seeds, {test: seed}: of one task another."""
     for seed in sorted(set(of.values())):
         tests = [test for test in of if of[test] == seed]
@@ -39,7 +44,7 @@ def seeds(of):
                           else "")
 
 
-def write(whole, rows):
+def write(whole: "Class", rows: list) -> None:
     folder = whole.out / "reports"
     folder.mkdir(exist_ok=True)
     texts = {}
@@ -58,7 +63,7 @@ def write(whole, rows):
     grade.write(whole.out / "class.html", page(whole, rows))
 
 
-def table(whole, rows):
+def table(whole: "Class", rows: list) -> str:
     """A line for each student: CSV."""
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\n")
@@ -89,7 +94,7 @@ def table(whole, rows):
     return text.getvalue()
 
 
-def summary(whole, rows):
+def summary(whole: "Class", rows: list) -> str:
     """What make class says at last."""
     graded = [row.report.points for row in rows if row.report]
     lines = [f"{len(rows)} submissions: {len(graded)} graded, "

@@ -6,10 +6,15 @@ can't be graded, and asks nothing of a network.
 import collections
 import html
 import statistics
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import ranking
 import report
 import submission
+
+if TYPE_CHECKING:
+    from whole_class import Class
 
 STYLE = """
 :root { color-scheme: light dark; --ink: #1c1c1c; --paper: #fff; --line: #ccc;
@@ -34,16 +39,16 @@ SHOWN = 3       # failures of a task, and three times as many of all
 LONGEST = 300   # characters of a failure
 
 
-def text(words):
+def text(words: object) -> str:
     return html.escape(str(words))
 
 
-def bar(share):
+def bar(share: float) -> str:
     return ('<div class="track"><div style="width:'
             f'{100 * share:.1f}%"></div></div>')
 
 
-def distribution(points, of):
+def distribution(points: list[int], of: int) -> Iterator[str]:
     """How many got how much, in tenths; all points apart."""
     bins = collections.Counter(
         min(10 * one // of, 9) if one < of else 10 for one in points)
@@ -58,7 +63,7 @@ def distribution(points, of):
     yield "</table>"
 
 
-def failures(graded):
+def failures(graded: Iterable[report.Graded]) -> list[tuple[int, str]]:
     """[(how often, what was said)] of tasks that failed."""
     said = collections.Counter(
         report.outcome(one.result).split("\n")[0][:LONGEST] for one in graded)
@@ -66,14 +71,14 @@ def failures(graded):
                   key=lambda pair: (-pair[0], pair[1]))
 
 
-def listed(found):
+def listed(found: list[tuple[int, str]]) -> Iterator[str]:
     yield "<ul>"
     for number, words in found:
         yield f"<li>{number} \u00d7 {text(words)}</li>"
     yield "</ul>"
 
 
-def of_task(graded):
+def of_task(graded: Sequence[report.Graded]) -> Iterator[str]:
     """One sentence of the specification."""
     task = graded[0].task
     failed = [one for one in graded if not one.passed]
@@ -87,7 +92,7 @@ def of_task(graded):
         yield from listed(failures(failed)[:SHOWN])
 
 
-def of_steps(steps):
+def of_steps(steps: dict[str, tuple[float, int]]) -> Iterator[str]:
     """Who has which rank by the step of page 8."""
     yield "<h2>A better step: ranks</h2>"
     yield ("<p>The error of <code>my_step</code> on two nets drawn at random, "
@@ -100,7 +105,7 @@ def of_steps(steps):
     yield "</table>"
 
 
-def page(whole, rows):
+def page(whole: "Class", rows: list) -> str:
     graded = [row.report for row in rows if row.report]
     refused = [row for row in rows if row.reason]
     title = f"{whole.course.title}: the class"

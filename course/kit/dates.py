@@ -9,7 +9,9 @@ are what the student's clock said.
 import datetime
 import re
 import zoneinfo
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NoReturn
 
 from submission import BadInput, git, shown
 
@@ -20,16 +22,16 @@ PERSON = re.compile(rb"^(?:committer|tagger) .*> (-?\d+) ([+-]\d{4})$",
 DAY = datetime.timedelta(days=1)
 
 
-def offset(text):
+def offset(text: str) -> datetime.timezone:
     """The zone that '-0800' names."""
     minutes = int(text[1:3]) * 60 + int(text[3:])
     return datetime.timezone(datetime.timedelta(
         minutes=-minutes if text[0] == "-" else minutes))
 
 
-def deadline(text):
+def deadline(text: str) -> datetime.datetime:
     """The moment that `text` says, in its zone."""
-    def refuse(why):
+    def refuse(why: str) -> NoReturn:
         raise BadInput(f"DUE is '{shown(text)}', {why}")
 
     parts = DEADLINE.fullmatch(text)
@@ -53,7 +55,7 @@ def deadline(text):
     return due
 
 
-def days_late(moment, due):
+def days_late(moment: datetime.datetime, due: datetime.datetime) -> int:
     """Days that have begun since the deadline: it comes again each day at the
     same time of its own clock, also where that is not 24 hours later."""
     days = max(0, (moment - due) // DAY - 1)
@@ -67,14 +69,14 @@ class Made:
     """A submission by a tag. Dates are None where there are none."""
     commit: str = ""
     kind: str = ""           # of the tag: annotated or lightweight
-    tagged: object = None
-    committed: object = None
+    tagged: datetime.datetime | None = None
+    committed: datetime.datetime | None = None
 
     @property
-    def time(self):
+    def time(self) -> datetime.datetime | None:
         return max(filter(None, (self.tagged, self.committed)), default=None)
 
-    def doubts(self):
+    def doubts(self) -> Iterator[str]:
         if self.commit and not self.committed:
             yield "its commit has no date that can be read"
         if self.kind == "annotated" and not self.tagged:
@@ -83,20 +85,22 @@ class Made:
             yield "its tag is older than its commit"
 
 
-def date_of(thing):
+def date_of(thing: bytes) -> datetime.datetime | None:
     """The date that a commit or a tag says, in the student's zone."""
     person = PERSON.search(thing.partition(b"\n\n")[0])
+    if not person:
+        return None
     try:
         seconds = int(person[1])
         if seconds >= 1 << 36:      # years after 4000: days are counted
             return None
         return datetime.datetime.fromtimestamp(
             seconds, offset(person[2].decode()))
-    except (TypeError, ValueError, OverflowError, OSError):
+    except (ValueError, OverflowError, OSError):
         return None
 
 
-def made(folder, tag):
+def made(folder: str, tag: str) -> Made:
     """What a tag of a clone says. It names a commit, as submission.take()
     found."""
     name = f"refs/tags/{tag}"

@@ -5,11 +5,17 @@ Its option --mode RUN writes the result and opens no browser.
 
 import shlex
 import shutil
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import markers
 
+if TYPE_CHECKING:
+    from whole_class import Class
 
-def lay_out(whole, rows, do_all):
+
+def lay_out(whole: "Class", rows: list,
+            do_all: Callable[[list], object]) -> None:
     """Write jplag/ anew: submissions/STUDENT/ and base/."""
     folder = whole.out / "jplag"
     shutil.rmtree(folder, ignore_errors=True)
@@ -24,7 +30,7 @@ def lay_out(whole, rows, do_all):
             for row in rows if not row.reason])
 
 
-def command(whole):
+def command(whole: "Class") -> str:
     return shlex.join([
         "java", "-jar", "jplag.jar", "--language", "cpp",
         "--mode", "RUN", "--overwrite",

@@ -8,6 +8,10 @@ import json
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
+import judge
+import submission
+import tasks
+
 VERSION = 1     # of the JSON
 # How much of a report students see: FEEDBACK.
 FEEDBACK = ("all", "names", "none")
@@ -19,36 +23,37 @@ WHERE = {"graph": "Graph.hpp", "cloth": "mass_spring.hpp",
 @dataclass
 class Graded:
     """A task and how its first failed test ended, or its last one."""
-    task: object     # of tasks.py
-    result: object   # of judge.py
+    task: tasks.Task
+    result: judge.Result
 
     @property
-    def passed(self):
+    def passed(self) -> bool:
         return self.result.passed
 
     @property
-    def points(self):
+    def points(self) -> int:
         return self.task.points if self.passed else 0
 
 
 @dataclass
 class Report:
-    course: object
+    course: tasks.Course
     name: str        # of the submission
-    graded: list
+    graded: list[Graded]
     notes: list
     flags: list      # (file, line, what)
 
     @property
-    def points(self):
+    def points(self) -> int:
         return sum(g.points for g in self.graded if not g.task.extra)
 
     @property
-    def of(self):
+    def of(self) -> int:
         return self.course.points
 
 
-def combine(course, name, taken, results):
+def combine(course: tasks.Course, name: str, taken: submission.Submission,
+            results: dict[str, judge.Result]) -> Report:
     """A task passes if all of its tests do."""
     graded, flags = [], list(taken.flags)
     for task in course.tasks.values():
@@ -61,7 +66,7 @@ def combine(course, name, taken, results):
     return Report(course, name, graded, taken.notes, flags)
 
 
-def outcome(result):
+def outcome(result: judge.Result) -> str:
     """What was expected and what came: one or two lines."""
     if result.status == "failed":
         if result.got:
@@ -76,7 +81,7 @@ def outcome(result):
     return f"Crashed: {result.text}."
 
 
-def failure(graded):
+def failure(graded: Graded) -> list[str]:
     """The text of a task that failed."""
     task, result = graded.task, graded.result
     lines = [f"{heading(task)} {score(graded)}.",
@@ -88,10 +93,10 @@ def failure(graded):
     return lines
 
 
-def alike(graded):
+def alike(graded: list[Graded]) -> list[tuple[Graded, list[Graded]]]:
     """Those that failed, each with the others that never ran for the same
     reason: a text that is said once."""
-    together = {}
+    together: dict[str, list[Graded]] = {}
     for one in graded:
         if not one.passed:
             reason = (outcome(one.result) if one.result.status in
@@ -100,18 +105,18 @@ def alike(graded):
     return [(first, others) for first, *others in together.values()]
 
 
-def heading(task):
+def heading(task: tasks.Task) -> str:
     return f"{task.section.id} {task.title}"
 
 
-def score(graded):
+def score(graded: Graded) -> str:
     if graded.task.points == 0:
         return "passed" if graded.passed else "failed"
     extra = " extra" if graded.task.extra else ""
     return f"{graded.points}/{graded.task.points}{extra}"
 
 
-def as_text(report, feedback="all"):
+def as_text(report: Report, feedback: str = "all") -> str:
     """What students see: all, no more than the points of each task, or none."""
     lines = [f"{report.course.title}: {report.name}", ""]
     if feedback == "none":
@@ -146,9 +151,9 @@ def as_text(report, feedback="all"):
     return "\n".join(lines) + "\n"
 
 
-def as_json(report):
+def as_json(report: Report) -> str:
     """Our own format: course/README.md says what the keys mean."""
-    tasks = []
+    found = []
     for graded in report.graded:
         task, result = graded.task, graded.result
         one = {"id": task.id, "section": task.section.id, "title": task.title,
@@ -159,19 +164,19 @@ def as_json(report):
                        expected=result.expected, got=result.got,
                        message=outcome(result), hint=task.hint,
                        test=result.name)
-        tasks.append(one)
+        found.append(one)
     return dump({"version": VERSION, "course": report.course.title,
                  "submission": report.name, "points": report.points,
-                 "of": report.of, "tasks": tasks, "notes": report.notes,
+                 "of": report.of, "tasks": found, "notes": report.notes,
                  "flags": [{"file": file, "line": line, "what": what}
                            for file, line, what in report.flags]})
 
 
-def dump(data):
+def dump(data: object) -> str:
     return json.dumps(data, indent=1) + "\n"
 
 
-def as_junit(report):
+def as_junit(report: Report) -> str:
     suites = []
     for section in report.course.sections:
         cases = [g for g in report.graded if g.task.section == section]
@@ -200,7 +205,7 @@ def as_junit(report):
         *suites, "</testsuites>", ""])
 
 
-def as_gradescope(report, feedback="all"):
+def as_gradescope(report: Report, feedback: str = "all") -> str:
     """results.json of a Gradescope autograder. A task that does not count is
     shown as one of no points; its status says how it went, and the name of an
     extra one its points."""
@@ -230,12 +235,12 @@ def as_gradescope(report, feedback="all"):
                       f"{report.points} of {report.of} points\n{notes}", tests)
 
 
-def gradescope(points, output, tests):
+def gradescope(points: int, output: str, tests: list[dict]) -> str:
     return dump({"score": float(points), "output": output,
                  "output_format": "text", "visibility": "visible",
                  "stdout_visibility": "hidden", "tests": tests})
 
 
-def refused(reason):
+def refused(reason: str) -> str:
     """results.json of what can't be graded."""
     return gradescope(0, f"This can't be graded: {reason}", [])

@@ -19,7 +19,7 @@ CHEAT = ("#include <cstdlib>\n"
          f'static const int x = std::system("touch {TOUCH}");\n')
 
 
-def contents():
+def contents() -> dict[str, dict[str, str]]:
     """{what: files} of those that differ."""
     cases = kit_check.Cases()
     wrong = {case.name: case.files for case in
@@ -53,7 +53,8 @@ KINDS = [
 ]
 
 
-def stream(what, files, committed, tagged, zone, tag):
+def stream(what: str, files: dict[str, str], committed: int,
+           tagged: int | str | None, zone: str, tag: str) -> str:
     """The repository as git fast-import reads it."""
     def data(text):
         return f"data {len(text.encode())}\n{text}\n"
@@ -75,7 +76,7 @@ def stream(what, files, committed, tagged, zone, tag):
     return "".join(parts)
 
 
-def make(folder, number, tag="hw2"):
+def make(folder: str | pathlib.Path, number: int, tag: str = "hw2") -> None:
     folder, due = pathlib.Path(folder), int(dates.deadline(DUE).timestamp())
     files = contents()
     for student in range(number):

@@ -23,6 +23,7 @@ import pathlib
 import signal
 import sys
 from dataclasses import dataclass, field
+from typing import Any
 
 import child
 import class_output
@@ -43,11 +44,11 @@ class Row:
     """A student, and what became of the submission."""
     student: str               # the folder in DIR
     content: str = ""          # of its sources: a digest
-    made: object = field(default_factory=dates.Made)
+    made: dates.Made = field(default_factory=dates.Made)
     notes: list = field(default_factory=list)
     flags: list = field(default_factory=list)
     reason: str = ""           # why it can't be graded
-    report: object = None
+    report: Any = None         # report.Report
     step: list | None = None   # of page 8: ranking.measured()
     late: int | None = None    # days
 
@@ -99,16 +100,17 @@ class Class:
                 "grades: OUT is a folder that is new")
         self.kept.mkdir(parents=True, exist_ok=True)
 
-    def prepare(self):
+    def prepare(self) -> None:
         """The solution, graded once: workers begin with what it answered."""
         self.kit = once.Kit(self.unsafe, seed=self.seed)
         self.lacks = list(grade.less_safe(self.kit, self.unsafe))
         judge.prepare(self.kit, self.tests, self.jobs)
+        assert self.kit.data
         self.version = self.kit.data.parent.name    # of all that judges
 
     # ------------------------------------------------------- By one worker
 
-    def take(self, student):
+    def take(self, student: str) -> tuple[submission.Submission, str]:
         """The submission and its digest."""
         signal.signal(signal.SIGALRM, grade.too_long)
         signal.alarm(grade.READING)
@@ -122,7 +124,7 @@ class Class:
             digest.update(f"{name}\0{len(text)}\0".encode() + text)
         return taken, digest.hexdigest()[:32]
 
-    def read(self, student):
+    def read(self, student: str) -> Row:
         row, folder = Row(student), os.path.join(self.folder, student)
         try:
             if self.tag and self.tag in submission.tags(folder, self.tag):
@@ -136,17 +138,17 @@ class Class:
             row.reason = f"reading it fails: {type(error).__name__}"
         return row
 
-    def lay_out(self, student, place):
+    def lay_out(self, student: str, place: str) -> None:
         """Its sources, as they were graded, in a folder of another program."""
         for name, text in self.take(student)[0].files.items():
             path = pathlib.Path(place, student, name)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(text)
 
-    def place(self, content):
+    def place(self, content: str) -> pathlib.Path:
         return self.kept / f"{content}.json"
 
-    def known(self, content):
+    def known(self, content: str) -> dict[str, dict]:
         """{test: what is kept of it}, of those that need not be made anew."""
         try:
             found = json.loads(self.place(content).read_text("ascii"))
@@ -155,7 +157,7 @@ class Class:
         return {test: result for test, result in found.items()
                 if result["kit"] == self.version or test not in self.anew}
 
-    def grade(self, student, content):
+    def grade(self, student: str, content: str) -> str:
         """Grade what is left of a content. @return why that fails, or ''"""
         known = self.known(content)
         left = {test: needs for test, needs in self.tests.items()
@@ -166,6 +168,7 @@ class Class:
         if now != content:
             return "it changed while the class was graded"
         judge.prepare(self.kit, self.tests, 1)      # it is in use
+        assert self.kit.answers
         for test, result in judge.judge(self.kit, taken.files, left,
                                         1).items():
             kept = dataclasses.asdict(result)
@@ -179,7 +182,7 @@ class Class:
 
     # --------------------------------------------------------- The whole class
 
-    def rows(self, pool):
+    def rows(self, pool: concurrent.futures.Executor) -> list[Row]:
         rows = list(pool.map(work, [("read", name) for name in self.students],
                              chunksize=4))
         self.watch_tags(rows)
@@ -189,7 +192,7 @@ class Class:
             row.notes = [*row.notes, *row.made.doubts(), *self.lacks]
         return rows
 
-    def watch_tags(self, rows):
+    def watch_tags(self, rows: list[Row]) -> None:
         """Say of a tag where it was when it was seen first."""
         path = self.kept / "tags.json"
         seen = json.loads(path.read_text("ascii")) if path.exists() else {}
@@ -202,16 +205,17 @@ class Class:
                                      "seen first")
         grade.write(path, json.dumps(seen, indent=0, sort_keys=True))
 
-    def left(self, rows):
+    def left(self, rows: list[Row]) -> dict[str, list[Row]]:
         """{content: those who handed it in}, of what has to be graded."""
-        groups = {}
+        groups: dict[str, list[Row]] = {}
         for row in rows:
             if row.content and not row.reason:
                 groups.setdefault(row.content, []).append(row)
         return {content: group for content, group in groups.items()
                 if self.tests.keys() - self.known(content).keys()}
 
-    def grade_all(self, rows, pool):
+    def grade_all(self, rows: list[Row],
+                  pool: concurrent.futures.Executor) -> bool:
         groups = self.left(rows)
         waiting = {pool.submit(work, ("grade", group[0].student, content)):
                    group for content, group in groups.items()}
@@ -231,18 +235,22 @@ class Class:
                   flush=True)
         return all("the grader fails" not in row.reason for row in rows)
 
-def work(job):
+
+THE_CLASS: Class    # of run(), in each worker, too
+
+
+def work(job: tuple) -> Any:
     """What a worker does: a process of its own, which a signal may end."""
     name, *arguments = job
     return getattr(THE_CLASS, name)(*arguments)
 
 
-def ends_with_us():
+def ends_with_us() -> None:
     child.LIBC.prctl(child.PR_SET_PDEATHSIG, signal.SIGKILL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def run():
+def run() -> int:
     global THE_CLASS
     THE_CLASS = whole = Class(os.environ.get)
     with open(whole.kept / "lock", "w", encoding="ascii") as lock:
@@ -264,7 +272,7 @@ def run():
     return 0 if fine else 2
 
 
-def main():
+def main() -> int:
     try:
         return run()
     except (submission.BadInput, once.KitError, tasks.TasksError) as error:
