@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 #include <utility>
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -18,14 +19,14 @@ double AugmentedVerlet::step(Cloth& g, double t, double dt,
   // The same time, however the caller rounds it.
   if (!same || kept_for_ != &g || std::abs(kept_time_ - t) > 1e-6 * dt)
     accelerate(t);
-  const std::size_t version = g.version();
+  const std::size_t version = arrays(g).version();
   flow_.run({.t = t + dt,
              .first_kick = dt / 2,
              .drift = dt,
              .held = &constraint,
              .project = &constraint,
              .last = &constraint});
-  if (g.version() != version) {
+  if (arrays(g).version() != version) {
     flow_.end();  // a stiffness may depend on positions
     factor_.find(info.name, g, scales, force, constraint);
   }
