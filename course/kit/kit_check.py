@@ -156,7 +156,7 @@ class Check:
         started = time.monotonic()
         graded = self.grade(case.files).graded
         faults = case.faults({g.task.id for g in graded if not g.passed})
-        # What the grader said about those that should not be lost.
+        # The report on tasks that should not be lost.
         for g in graded:
             if not g.passed and any(g.task.id in fault for fault in faults):
                 faults += ["  " + line for line in report.failure(g)]

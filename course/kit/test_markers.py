@@ -346,7 +346,7 @@ class Repository(unittest.TestCase):
         for name in files:
             self.assertNotRegex(name, r"^lab|scenes|grid4|pages/README|"
                                 r"(?<!web)\.py$")
-        # Of a starter that is handed in, this is looked at.
+        # The grader reads these files of a starter that is handed in.
         taken = submission.take(self.folder / "s")
         self.assertEqual(set(taken.files), {
             *markers.SOURCES, "test_nodes.cpp", "test_edges.cpp"})
