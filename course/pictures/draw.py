@@ -4,7 +4,7 @@
     course/pictures/draw.py [NAME...]      make course-pictures
 
 draws NAME.png, or all. Each is a row of panels, and each panel is the
-assignment's program as it is, or a copy with a mistake (course/kit/mistakes.py).
+assignment's program as it is, or a copy with a mistake of course/wrong.
 Needs what the window needs (make deps) and ffmpeg; no display.
 """
 import os

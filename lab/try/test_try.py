@@ -66,12 +66,25 @@ constraint(g, end);
 """
 
 
+STEP = re.compile(r"template <typename G, typename F(?:, typename C)?>\n"
+                  r"double symp_euler_step\(.*?\n}\n", re.DOTALL)
+
+
 def of_the_course():
-    """The mistakes of course/wrong that make try finds, as cases."""
-    solution = markers.solution(markers.path_of("mine.hpp").read_text())
-    return [{"name": found.name, "file": found.edited(solution),
-             "says": found.finds, "status": found.status}
-            for found in mistakes.read("step") if found.finds]
+    """The mistakes of course/wrong that make try finds, as cases: each a file
+    mine.hpp, or the step of mass_spring.hpp that it changes."""
+    found = [one for table in ("cloth", "step")
+             for one in mistakes.read(table) if one.finds]
+    for one in found:
+        right = markers.solution(markers.path_of(one.file).read_text())
+        text = one.edited(right)
+        if one.file == "mass_spring.hpp":
+            step = next(own for own, solved in zip(
+                STEP.findall(text), STEP.findall(right)) if own != solved)
+            text = ('#include "mass_spring.hpp"\n'
+                    + step.replace("symp_euler_step", "my_step"))
+        yield {"name": one.name, "file": text, "says": one.finds,
+               "status": one.status}
 
 
 def text_of(case):
