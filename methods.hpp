@@ -17,6 +17,7 @@
  * step computes the forces on all nodes. x, v and m are a node's position,
  * velocity and mass. */
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -118,24 +119,37 @@ double yoshida4_step(G& g, double t, double dt, F&& force, C&& constraint) {
   return verlet_step(g, t, forth * dt, force, constraint);
 }
 
+/** Drifts and kicks in turn over @a parts of dt, the first one a kick if
+ * @a kicks.
+ * @return t + dt if the parts of the drifts add up to 1 */
+template <typename G, typename F, typename C, std::size_t n>
+double alternate(G& g, double t, double dt, const std::array<double, n>& parts,
+                 bool kicks, F& force, C& constraint) {
+  for (const double part : parts) {
+    if (kicks)
+      kick(g, t, part * dt, force);
+    else
+      t = drift(g, t, part * dt, force, constraint);
+    kicks = !kicks;
+  }
+  return t;
+}
+
 /** Drifts and kicks in a symmetric order: one kick more than order 4 needs, so
  * that xi, lambda and chi could be chosen for the least error. Order 4,
  * limit 2.989, 4 forces a step.
  * Source: I. P. Omelyan, I. M. Mryglod, R. Folk, Comput. Phys. Commun. 146
  * (2002) 188. */
+inline constexpr std::array pefrl_parts = [] {
+  const double xi = 0.1786178958448091, lambda = -0.2123418310626054,
+               chi = -0.06626458266981849;
+  return std::array{xi,  0.5 - lambda, chi, lambda, 1 - 2 * (chi + xi), lambda,
+                    chi, 0.5 - lambda, xi};
+}();
+
 template <typename G, typename F, typename C>
 double pefrl_step(G& g, double t, double dt, F&& force, C&& constraint) {
-  constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054,
-                   chi = -0.06626458266981849;
-  t = drift(g, t, xi * dt, force, constraint);
-  kick(g, t, (0.5 - lambda) * dt, force);
-  t = drift(g, t, chi * dt, force, constraint);
-  kick(g, t, lambda * dt, force);
-  t = drift(g, t, (1 - 2 * (chi + xi)) * dt, force, constraint);
-  kick(g, t, lambda * dt, force);
-  t = drift(g, t, chi * dt, force, constraint);
-  kick(g, t, (0.5 - lambda) * dt, force);
-  return drift(g, t, xi * dt, force, constraint);
+  return alternate(g, t, dt, pefrl_parts, false, force, constraint);
 }
 
 /** A Runge-Kutta-Nystroem method: 12 kicks and 11 drifts in a symmetric order,
@@ -143,20 +157,20 @@ double pefrl_step(G& g, double t, double dt, F&& force, C&& constraint) {
  * for all forces are more. Order 6, limit 9.074, but an oscillation of dt omega
  * near pi or 2 pi grows slowly; 11 forces a step if the last one is kept.
  * Source: S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313. */
+inline constexpr std::array srkn11b_parts = [] {
+  const double b1 = .0414649985182624, b2 = .198128671918067,
+               b3 = -.0400061921041533, b4 = .0752539843015807,
+               b5 = -.0115113874206879, b6 = 0.5 - (b1 + b2 + b3 + b4 + b5);
+  const double a1 = .123229775946271, a2 = .290553797799558,
+               a3 = -.127049212625417, a4 = -.246331761062075,
+               a5 = .357208872795928, a6 = 1 - 2 * (a1 + a2 + a3 + a4 + a5);
+  return std::array{b1, a1, b2, a2, b3, a3, b4, a4, b5, a5, b6, a6,
+                    b6, a5, b5, a4, b4, a3, b3, a2, b2, a1, b1};
+}();
+
 template <typename G, typename F, typename C>
 double srkn11b_step(G& g, double t, double dt, F&& force, C&& constraint) {
-  // Kicks b and drifts a up to the middle, where the sum of all becomes 1.
-  double b[] = {.0414649985182624, .198128671918067,   -.0400061921041533,
-                .0752539843015807, -.0115113874206879, .5};
-  double a[] = {.123229775946271,  .290553797799558, -.127049212625417,
-                -.246331761062075, .357208872795928, 1};
-  for (int k = 0; k < 5; ++k) b[5] -= b[k], a[5] -= 2 * a[k];
-  for (int k = 0; k < 11; ++k) {
-    kick(g, t, b[k < 6 ? k : 11 - k] * dt, force);
-    t = drift(g, t, a[k < 6 ? k : 10 - k] * dt, force, constraint);
-  }
-  kick(g, t, b[0] * dt, force);
-  return t;
+  return alternate(g, t, dt, srkn11b_parts, true, force, constraint);
 }
 
 // -------------------------------------------------------------- Runge-Kutta

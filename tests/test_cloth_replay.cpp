@@ -83,7 +83,7 @@ TEST_F(ClothReplay, OfEachOfTheGalleryFails) {
 TEST_F(ClothReplay, TakesNoMoreThanSomeStepsInARound) {
   for (double share : {1e-300, 1e300})
     for (const char* at : {"equal-time", "equal-work"}) {
-      live.apply(request("compare", "augmented-verlet", share, at));
+      live.apply(request("compare", "xpbd", share, at));
       const Readings r = live.readings(false);
       const double ratio = r.comparison->rival.dt / r.dt;
       if (at == std::string("equal-time")) {
@@ -92,8 +92,7 @@ TEST_F(ClothReplay, TakesNoMoreThanSomeStepsInARound) {
       EXPECT_GE(r.comparison->reference_dt, std::min(ratio, 1.) * r.dt / 1e4);
     }
   std::string text = live.recording();
-  text.insert(text.rfind("0 end"),
-              "0 compare augmented-verlet 1e300 equal-time\n");
+  text.insert(text.rfind("0 end"), "0 compare xpbd 1e300 equal-time\n");
   text.replace(text.rfind("0 end"), 5, "1 end");
   const Result r =
       folder.run("timeout 60 " + CME212::program("cloth", "build/") +

@@ -1,7 +1,6 @@
 // Fast mass-spring against the step of implicit Euler, by Newton's method.
 #include <gtest/gtest.h>
 
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "tests/PinnedSheet.hpp"
 
@@ -18,8 +17,8 @@ class NewtonEuler : public Method {
     stage_.begin("newton", t, dt, g, constraint);
     stage_.hold(g, t + dt, constraint);
     stage_.solve_newton(g, t + dt, dt, force);
-    for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-      arrays(g).node_values()[i].vel = stage_.w[i];
+    for (unsigned i = 0; i < g.node_slots(); ++i)
+      g.node_values()[i].vel = stage_.w[i];
     return implicit_detail::finish(g, t + dt, constraint);
   }
 
@@ -108,20 +107,50 @@ TEST(FastMassSpring, KeepsLinearMomentumAfterAnyRounds) {
   }
 }
 
-// Drag is in the matrix; a tear changes it.
 TEST(FastMassSpring, FactorsAnewOnlyWhenItMust) {
   PinnedSheet s(6);
   FastMassSpring method;
-  auto step = [&](double dt, const ForcePlan& force) {
-    method.step(s.g, 0, dt, force, s.pin);
+  int expected = 1;
+  double t = 0;
+  auto step = [&](double dt, const ForcePlan& force, const ConstraintPlan& c) {
+    t = method(s.g, t, dt, force, c);
     return method.factorizations();
   };
+  for (int n = 0; n < 10; ++n)
+    EXPECT_EQ(step(0.01, s.force, s.pin), expected) << n;
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);             // dt
+  EXPECT_EQ(step(0.02, s.force, ZeroConstraint()), ++expected);  // pins
+  EXPECT_EQ(step(0.02, s.force, ZeroConstraint()), expected);
+  EXPECT_EQ(step(0.02, GravityForce(), ZeroConstraint()), ++expected);
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
   const auto drag = make_combined_force(MassSpringForce(), DampingForce(0.1));
-  for (int n = 0; n < 10; ++n) EXPECT_EQ(step(0.01, s.force), 1);
-  EXPECT_EQ(step(0.02, s.force), 2);
-  EXPECT_EQ(step(0.02, drag), 3);
-  EXPECT_EQ(step(0.02, drag), 3);
+  EXPECT_EQ(step(0.02, drag, s.pin), ++expected);
+  EXPECT_EQ(step(0.02, drag, s.pin), expected);
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.edge(3).value().K *= 2;
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.node(3).value().mass *= 2;
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
   s.g.remove_edge(s.g.edge(0));
-  EXPECT_EQ(step(0.02, drag), 4);
-  EXPECT_EQ(step(0.02, drag), 4);
+  EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
+  s.g.reindex();  // no other matrix
+  EXPECT_EQ(step(0.02, s.force, s.pin), expected);
+}
+
+// The same numbers, but other nodes at the ends of the springs, or held.
+TEST(FastMassSpring, SeesOtherEndsAndOtherPins) {
+  PinnedSheet s(6);
+  FastMassSpring method;
+  auto step = [&](const ConstraintPlan& c) {
+    method.step(s.g, 0, 0.01, s.force, c);
+    return method.factorizations();
+  };
+  EXPECT_EQ(step(s.pin), 1);
+  const EdgeData spring = s.g.edge(0).value();
+  s.g.remove_edge(s.g.edge(0));
+  s.g.add_edge(s.g.node(0), s.g.node(35)).value() = spring;
+  EXPECT_EQ(step(s.pin), 2);
+  const std::array<Node, 2> others = {s.g.node(1), s.g.node(30)};
+  EXPECT_EQ(step(PinConstraint(others)), 3);
+  EXPECT_EQ(step(PinConstraint(others)), 3);
 }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "methods.hpp"
@@ -41,7 +40,6 @@ constexpr double tight = 1e-14;  // of linear equations
 const Twin twins[] = {{"forward-euler", TWIN(forward_euler_step), 0.1, true},
                       {"symplectic-euler", TWIN(symp_euler_step), 1, true},
                       {"verlet", TWIN(verlet_step), 1, true},
-                      {"yoshida4", TWIN(yoshida4_step), 0.8},
                       {"pefrl", TWIN(pefrl_step), 1.5},
                       {"srkn11b", TWIN(srkn11b_step), 2.5},
                       {"rk4", TWIN(rk4_step), 1.5},
@@ -91,24 +89,21 @@ struct Scene {
     const double dt = 0.02 / omega;
     for (; !is_near(); from += dt)
       method.step(at->cloth, from, dt, at->force, at->constraint);
-    EXPECT_EQ(at->cloth.num_nodes(), arrays(at->cloth).node_slots());
+    EXPECT_EQ(at->cloth.num_nodes(), at->cloth.node_slots());
   }
   bool has_contact() const { return problem.norm == Norm::functionals; }
   bool is_near() const {
-    return std::ranges::any_of(
-        arrays(at->cloth).positions(), [](const Point& p) {
-          return Ball{.radius = Ball().radius + 1e-4}.holds(p);
-        });
+    return std::ranges::any_of(at->cloth.positions(), [](const Point& p) {
+      return Ball{.radius = Ball().radius + 1e-4}.holds(p);
+    });
   }
 
   /** The same state, with @a constraint as it was made at time 0. */
   void set(Cloth& g, CombinedConstraints& constraint) const {
     problem.build(g);
     constraint = problem.constraint(g);
-    std::ranges::copy(arrays(at->cloth).positions(),
-                      arrays(g).positions().begin());
-    std::ranges::copy(arrays(at->cloth).node_values(),
-                      arrays(g).node_values().begin());
+    std::ranges::copy(at->cloth.positions(), g.positions().begin());
+    std::ranges::copy(at->cloth.node_values(), g.node_values().begin());
   }
   CombinedForces force() const {
     const GravityForce gravity(problem.gravity);
@@ -145,17 +140,16 @@ INSTANTIATE_TEST_SUITE_P(Table, PlainMethod, ::testing::ValuesIn(twins),
  */
 double distance(const Cloth& a, const Cloth& b, double dt,
                 const ConstraintPlan& constraint) {
-  std::vector<char> held(arrays(a).node_slots());
+  std::vector<char> held(a.node_slots());
   constraint.each_held(b, [&held](Node n) { held[n.id()] = true; });
   double most = 0;
-  for (unsigned i = 0; i < arrays(a).node_slots(); ++i) {
-    if (arrays(a).node_in_use(i) != arrays(b).node_in_use(i)) return HUGE_VAL;
-    if (!arrays(a).node_in_use(i)) continue;
-    most = std::max(most,
-                    norm(arrays(a).positions()[i] - arrays(b).positions()[i]));
+  for (unsigned i = 0; i < a.node_slots(); ++i) {
+    if (a.node_in_use(i) != b.node_in_use(i)) return HUGE_VAL;
+    if (!a.node_in_use(i)) continue;
+    most = std::max(most, norm(a.positions()[i] - b.positions()[i]));
     if (!held[i])
-      most = std::max(most, dt * norm(arrays(a).node_values()[i].vel -
-                                      arrays(b).node_values()[i].vel));
+      most = std::max(
+          most, dt * norm(a.node_values()[i].vel - b.node_values()[i].vel));
   }
   return most;
 }

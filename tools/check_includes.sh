@@ -15,7 +15,7 @@ methods       : CME212
 course        : mass_spring
 lab           : CME212
 lab/fast      : mass_spring lab
-lab/methods   : lab/fast
+lab/methods   : lab/fast methods
 lab/stability : lab/methods
 lab/scenes    : lab/stability
 lab/advice    : lab/scenes

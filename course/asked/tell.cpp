@@ -1,5 +1,5 @@
 /** @file tell.cpp
- * The content of a graph, as answers. Compiled once, without a submission. */
+ * What a graph holds, as answers. Compiled once, without a submission. */
 #include "asked.hpp"
 
 namespace kit {

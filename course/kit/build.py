@@ -33,7 +33,7 @@ DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
 STANDARD = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*<([\w./+-]+)>",
                       re.MULTILINE)
-# Assembler written in the source, as it appears in the compiler's output.
+# What the compiler's output has of assembler that was written in the source.
 ASSEMBLER = re.compile(rb"^#APP\n.*?^#NO_APP\n", re.MULTILINE | re.DOTALL)
 BORDER = re.compile(rb"^#(?:NO_)?APP\b", re.MULTILINE)
 

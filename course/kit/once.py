@@ -91,7 +91,7 @@ class Kit:
                        *course], self.make_linked)
         self.preludes = self.locked_part(
             "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
-        # The solution sets these: judge.prepare() grades it first.
+        # Of the solution, which judge.prepare() grades before all others.
         self.secret, self.answers, self.data = b"", None, None
         self.assembler = {}     # of standard headers: build.Room
         self.seed = seed    # of the tests' numbers; "": the public ones

@@ -23,7 +23,8 @@ def contents() -> dict[str, dict[str, str]]:
     """{what: files} of those that differ."""
     cases = kit_check.Cases()
     wrong = {case.name: case.files for case in
-             (*cases.wrong("graph"), *cases.wrong("step"))}
+             (*cases.wrong(kit_check.WRONG / "graph.toml"),
+              *cases.wrong(kit_check.WRONG / "step.toml"))}
     graph = {"Graph.hpp": cases.solution["Graph.hpp"]}
     return {"right": cases.solution, "starter": {
                 "Graph.hpp": cases.base("starter")["Graph.hpp"]},

@@ -82,7 +82,7 @@ class Course:
         return [t for t in self.tasks.values() if t.section == section]
 
 
-# The keys of a table: key -> (type, is it required?)
+# What a table may hold: key -> (type, must it be there?)
 COURSE_KEYS = {"title": (str, True), "tag": (str, True)}
 SECTION_KEYS = {"id": (str, True), "title": (str, True), "page": (str, False),
                 "dropped": (bool, False)}

@@ -21,7 +21,7 @@ static volatile double counted = 0;
 
 #ifndef KIT_UNCOUNTED
 extern "C" {
-// The compiler inserts a call of this into every basic block.
+// What the compiler calls in every basic block.
 KIT_NOT_COUNTED void __sanitizer_cov_trace_pc() {
   if (kit::counting) kit::counted = kit::counted + 1;
 }
@@ -131,7 +131,7 @@ static const char* name(Call call) {
   return names[call];
 }
 
-// Another task tests what a removal returns.
+// What a removal returns is of another task.
 template <typename G, typename... What>
 static void take_out_node(G& g, What... what) {
   if constexpr (must_compile || requires { g.remove_node(what...); })

@@ -1,5 +1,5 @@
 /** @file film.hpp
- * Records what a program gives to the viewer of the tests, headless/CME212. */
+ * What a program gives to the viewer of the tests, headless/CME212. */
 #ifndef KIT_FILM_HPP
 #define KIT_FILM_HPP
 #include <condition_variable>
@@ -9,7 +9,7 @@
 
 namespace kit {
 
-/** All frames that a program gave to the viewer. */
+/** What a program gave to the viewer. */
 struct Film {
   struct Body {
     Point x, v;

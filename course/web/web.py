@@ -129,20 +129,20 @@ def write_page(out, stage):
 # ------------------------------------------------------------------- Figures
 
 def slug(mistake):
-    """The name of the module with a picture's mistake, or with none."""
+    """The name of the module with a mistake of draw.py, or with none."""
     return mistake.replace(" ", "-").replace("+-", "plus-").replace(
         "=-", "") or "right"
 
 
 def write_figures(out, names):
     root = ROOM.parents[1]
-    sys.path[:0] = [str(root / "course/kit")]
+    sys.path[:0] = [str(root / "course/pictures"), str(root / "course/kit")]
+    import draw
     import markers
-    import mistakes
-    known = {slug(name): name for name in ["", *mistakes.pictured()]}
-    if unknown := set(names) - set(known):
+    mistakes = {slug(name): name for name in ["", *draw.MISTAKES]}
+    if unknown := set(names) - set(mistakes):
         sys.exit(f"there is no {', '.join(sorted(unknown))}; there are "
-                 + ", ".join(known))
+                 + ", ".join(mistakes))
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
     (out / "figure.js").write_text(script())
@@ -151,11 +151,12 @@ def write_figures(out, names):
          root / "CME212/viewer/Faces.hpp", ROOM / "web.py"])) + compiler()
 
     def write(name):
-        texts = {file: mistakes.with_picture(
+        mistake = mistakes[name]
+        texts = {file: draw.with_mistake(
             markers.solution(markers.path_of(file).read_text(), file), file,
-            known[name]) for file in markers.SOURCES}
-        texts["cloth.cpp"] = mistakes.with_picture(
-            (ROOM / "cloth.cpp").read_text(), "mass_spring.cpp", known[name])
+            mistake) for file in markers.SOURCES}
+        texts["cloth.cpp"] = draw.with_mistake(
+            (ROOM / "cloth.cpp").read_text(), draw.PROGRAM, mistake)
         mark = "// " + hashlib.sha256(
             (common + "".join(texts.values())).encode()).hexdigest() + "\n"
         file = out / f"{name}.js"
@@ -173,7 +174,7 @@ def write_figures(out, names):
         return True
 
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        return not all(pool.map(write, names or known))
+        return not all(pool.map(write, names or mistakes))
 
 
 def main(arguments):

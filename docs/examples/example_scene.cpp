@@ -6,7 +6,7 @@
 #include "lab/scenes/SceneFile.hpp"
 int main() {
   lab::Model model = lab::load_model("data/scenes/drape.toml");
-  model.method = lab::find_method("pefrl");
+  model.method = &lab::table_entry<lab::Pefrl>;
   lab::Scene scene(model);
   if (!scene.run_to(model.t_end)) {
     std::cerr << scene.explanation() << '\n';

@@ -15,7 +15,7 @@
 namespace lab {
 
 Model as_pilot(Model m) {
-  m.method = find_method("verlet");
+  m.method = &table_entry<Verlet>;
   m.step = {.rule = StepRule::safe};
   return m;
 }
@@ -168,9 +168,10 @@ void Adviser::choose_pilots() {
     double least = costs.of_run(pilot(on, some));
     if (!(least > rules_.stiff)) return;
     least /= 2;
-    for (const char* name : {"mollified-impulse", "tr-bdf2"}) {
+    for (const MethodEntry* method :
+         {&table_entry<MollifiedImpulse>, &table_entry<TrBdf2>}) {
       const std::optional<Model> before = method_;
-      method_->method = find_method(name);
+      method_->method = method;
       if (method_->method->info.limit == no_limit)
         method_->step = {.dt = scene_.t_end / 50 * some};  // over the cells
       if (const double work = costs.of_run(pilot(on, some)); work < least)

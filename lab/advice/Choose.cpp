@@ -192,9 +192,10 @@ std::vector<Sides> Adviser::thinned(Sides s, double work) {
 }
 
 std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
-  std::vector<const char*> methods = {"verlet", "symplectic-euler",  "pefrl",
-                                      "srkn6b", "mollified-impulse", "tr-bdf2"};
-  if (rules_.keeps_method) methods = {scene_.method->info.name};
+  std::vector<const MethodEntry*> methods = {
+      &table_entry<Verlet>, &table_entry<SymplecticEuler>, &table_entry<Pefrl>,
+      &table_entry<MollifiedImpulse>, &table_entry<TrBdf2>};
+  if (rules_.keeps_method) methods = {scene_.method};
   std::vector<Choice> all;
   for (std::size_t k = reductions_.size(); k-- > 0;) {
     const auto& removed = reductions_[k].removed;
@@ -202,8 +203,8 @@ std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
     if (!m) continue;
     m->t_end = dissipates(*m) ? rest_time_ : scene_.t_end;
     const StepCosts costs(*m);
-    for (const char* name : methods) {
-      m->method = find_method(name);
+    for (const MethodEntry* method : methods) {
+      m->method = method;
       const MethodInfo& info = m->method->info;
       const double limit = costs.limit(info);
       // Without stiff springs it is Verlet.

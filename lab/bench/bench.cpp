@@ -23,7 +23,7 @@
 #include "lab/bench/Cloths.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/AugmentedVerlet.hpp"
+#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Rk4.hpp"
@@ -274,7 +274,7 @@ std::vector<Figure> figures() {
   constraint("floor", [](Cloth&) { return PlaneConstraint(); });
   constraint("ball", [](Cloth&) { return SphereConstraint(); });
   constraint("ball that tears", [](Cloth&) { return TearConstraint(); });
-  // What a scene does after every 32nd step.
+  // The check of a scene after every 32nd step.
   add({"part: guard", "step: Verlet",
        [](unsigned n) -> Make {
          Cloth& g = cloth(n, Kind::grid);
@@ -284,18 +284,18 @@ std::vector<Figure> figures() {
              };
        },
        false});
-  // A step that solves a linear system: its factor is kept.
+  // A step of ten solves with a factor that is kept.
   add({"solve: sweep", "",
        [](unsigned n) { return staging(n, {.t = 0, .kick = 0, .keep = true}); },
        false});
-  add({"solve: AugmentedVerlet", "solve: sweep",
+  add({"solve: FastMassSpring", "solve: sweep",
        [](unsigned n) -> Make {  // a cloth of its own, as it moves
          struct Falling {
            Cloth g;
            ForcePlan force =
                make_combined_force(GravityForce(), MassSpringForce());
            ConstraintPlan pin;
-           AugmentedVerlet method;
+           FastMassSpring method;
            StepTimes times = {0, 1e-3};
          };
          auto f = std::make_shared<Falling>();

@@ -56,10 +56,8 @@ int main() {
       if (methods[k].info.limit == no_limit)
         ten = std::min(ten, seconds_a_step(p, methods[k], 10 * limit));
     }
-  const auto verlet =
-      std::ranges::find(methods, find_method("verlet")->info.name,
-                        [](const MethodEntry& m) { return m.info.name; });
-  const double unit = costs[std::size_t(verlet - methods.begin())].at_limit;
+  const double unit =
+      costs[std::size_t(&table_entry<Verlet> - methods.data())].at_limit;
   for (std::size_t k = 0; k < methods.size(); ++k) {
     const auto& [one, ten] = costs[k];
     std::printf("    {\"%s\", %.3g, %.3g},  //\n", methods[k].info.name,

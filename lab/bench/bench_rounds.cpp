@@ -18,7 +18,6 @@
 #include <string>
 
 #include "lab/charts/Problem.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -84,10 +83,10 @@ void compare(const Problem& p, double K) {
     return end_of(s);
   };
   const End start = move(0, 0.2);
-  const auto node = arrays(s.cloth).node_values();
+  const auto node = s.cloth.node_values();
   const std::vector<NodeData> values(node.begin(), node.end());
   auto end_by = [&](Method& method) {
-    std::ranges::copy(start.positions, arrays(s.cloth).positions().begin());
+    std::ranges::copy(start.positions, s.cloth.positions().begin());
     std::ranges::copy(values, node.begin());
     measured(method, s);
     return end_of(s);
@@ -120,7 +119,9 @@ int main(int argc, char** argv) try {
       mixed ? mixed_problem() : grid_problem("", "", 1, unsigned(side), K);
   if (argc == 3) return compare(p, K), 0;
   Start s(p);
-  const auto method = make(argv[3], rounds);
+  // 0: the first step of the method as it is, with its factor.
+  const auto method =
+      rounds > 0 ? make(argv[3], rounds) : find_method(argv[3])->make();
   const bool by_steps = std::string("verlet") == argv[3];
   const double dt =
       mixed ? 0.999 * split_springs(s.cloth, 1, s.constraint).inner_step() *

@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Srkn.hpp"
+#include "lab/methods/Srkn11b.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -38,7 +37,7 @@ double Start::energy() const {
 }
 
 End end_of(const Start& s) {
-  auto x = arrays(s.cloth).positions();
+  auto x = s.cloth.positions();
   return {{x.begin(), x.end()}, center_of_mass(s.cloth), s.energy()};
 }
 
@@ -103,7 +102,7 @@ Reference reference(const Problem& p, double fineness) {
   if (p.exact) {
     auto x = p.exact(p.t_end);
     r.end.energy = end_of(start).energy;
-    std::copy(x.begin(), x.end(), arrays(start.cloth).positions().begin());
+    std::copy(x.begin(), x.end(), start.cloth.positions().begin());
     r.end.center = center_of_mass(start.cloth);
     r.end.positions = std::move(x);
     r.made = "exact";
@@ -113,7 +112,7 @@ Reference reference(const Problem& p, double fineness) {
     other = by(Pefrl(), Pefrl::info, 16 * fineness);
   } else {
     r.end = by(Srkn11b(), Srkn11b::info, fineness);
-    other = by(Srkn6b(), Srkn6b::info, 5 * fineness);
+    other = by(Pefrl(), Pefrl::info, 5 * fineness);
   }
   r.floor = std::max(distance(p, r.end, other), 1e-16);
   return r;

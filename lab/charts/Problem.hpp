@@ -114,7 +114,7 @@ struct Reference {
 };
 
 /** Two independent answers: the exact solution and srkn11b; or srkn11b and
- * srkn6b; or, with contact, where every method has at most order 2, Verlet and
+ * pefrl; or, with contact, where every method has at most order 2, Verlet and
  * pefrl. So the two differ in order, in step, and in the point of a step at
  * which the constraint is applied.
  * @param fineness the stable step over the step; more for the lower orders and

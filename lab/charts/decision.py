@@ -15,7 +15,6 @@ WANTED = [10.0 ** -k for k in range(2, 10)]  # [m]
 ROUGH = 1e-3  # the smallest of the errors that a title calls rough [m]
 LEFT, CELL, ROW = 156, 80, 62  # [pixels]
 SHORT = {"symplectic-euler": "symp. euler",
-         "augmented-verlet": "augm. verlet",
          "mollified-impulse": "impulse",
          "implicit-euler": "impl. euler",
          "fast-mass-spring": "fast spring"}

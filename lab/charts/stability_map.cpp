@@ -71,7 +71,7 @@ constexpr const char* name_of(MeshSprings::Kind mesh) {
   return mesh == MeshSprings::plain ? "plain" : "diagonals";
 }
 const std::vector<const char*> explicit_methods = {"symplectic-euler", "verlet",
-                                                   "yoshida4", "pefrl", "rk4"};
+                                                   "pefrl", "rk4"};
 
 /** omega_safe() and a good SharpOmega of @a p at its start [1/s]. */
 std::pair<double, double> frequencies(const Problem& p) {

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Costs.hpp
- * What a step of each method costs, as measured. Written by make method-costs;
- * what is measured: lab/bench/bench_methods.cpp. */
+ * The measured cost of a step of each method, written by make method-costs.
+ * lab/bench/bench_methods.cpp says how it is measured. */
 #include <array>
 #include <string_view>
 
@@ -19,16 +19,13 @@ inline constexpr auto method_costs = std::to_array<MethodCost>({
     {"symplectic-euler", 0.967, 0},    //
     {"verlet", 1, 0},                  //
     {"mollified-impulse", 0.996, 0},   //
-    {"yoshida4", 2.35, 0},             //
     {"pefrl", 3.07, 0},                //
-    {"srkn6b", 4.4, 0},                //
     {"srkn11b", 7.85, 0},              //
     {"rk4", 3.78, 0},                  //
     {"rkn64", 6.23, 0},                //
     {"implicit-euler", 43, 223},       //
     {"implicit-midpoint", 79.1, 231},  //
     {"tr-bdf2", 71.8, 134},            //
-    {"augmented-verlet", 4.57, 4.42},  //
     {"fast-mass-spring", 42.8, 42.8},  //
     {"xpbd", 50.5, 50.9},              //
 });

@@ -31,8 +31,7 @@ namespace lab {
  * one of the energy. */
 class FastMassSpring : public Method {
  public:
-  // In addition to the force evaluations: one solve each, with 20 to 60
-  // nonzeros a node; see AugmentedVerlet.
+  // Each force evaluation is followed by a solve with 20 to 60 nonzeros a node.
   static constexpr MethodInfo info = {
       "fast-mass-spring",
       1,

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "CME212/Util.hpp"
-#include "lab/fast/GraphArrays.hpp"
 
 namespace lab::implicit_detail {
 
@@ -40,7 +39,7 @@ double trace(const Matrix3& a) {
   return a.column[0][0] + a.column[1][1] + a.column[2][2];
 }
 
-double product(const std::vector<Point>& a, const std::vector<Point>& b) {
+double dot_product(const std::vector<Point>& a, const std::vector<Point>& b) {
   double sum = 0;
   for (unsigned i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
   return sum;
@@ -65,9 +64,8 @@ void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
 
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed) {
-  fixed.assign(arrays(g).node_slots(), false);
-  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-    fixed[i] = !arrays(g).node_in_use(i);
+  fixed.assign(g.node_slots(), false);
+  for (unsigned i = 0; i < g.node_slots(); ++i) fixed[i] = !g.node_in_use(i);
   constraint.each_held(g, [&fixed](Node n) { fixed[n.id()] = true; });
 }
 
@@ -93,10 +91,10 @@ void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
   tight_ = false;
   find_fixed(g, constraint, fixed_);
   constraint.place_held_at_rest(g, t);
-  const unsigned n = arrays(g).node_slots();
-  p.assign(arrays(g).positions().begin(), arrays(g).positions().end());
+  const unsigned n = g.node_slots();
+  p.assign(g.positions().begin(), g.positions().end());
   q.resize(n);
-  for (unsigned i = 0; i < n; ++i) q[i] = arrays(g).node_values()[i].vel;
+  for (unsigned i = 0; i < n; ++i) q[i] = g.node_values()[i].vel;
   guess = w = q;
   for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
     a->resize(n);
@@ -167,7 +165,7 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
 /** RMS(D^-1 M from)/s [m/s^2], for @a from in [m/s]. */
 double ImplicitStage::filtered(const Cloth& g, double s,
                                const std::vector<Point>& from) {
-  auto node = arrays(g).node_values();
+  auto node = g.node_values();
   for (unsigned i = 0; i < from.size(); ++i)
     rest_[i] = fixed_[i] ? Point() : node[i].mass * from[i];
   precondition(rest_, z_);
@@ -194,9 +192,9 @@ void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
   Point sum;
   double mass = 0;
   const Drag& c = force.drag();
-  auto node = arrays(g).node_values();
+  auto node = g.node_values();
   for (unsigned i = 0; i < w.size(); ++i) {
-    if (!arrays(g).node_in_use(i)) continue;
+    if (!g.node_in_use(i)) continue;
     if (fixed_[i]) return;
     sum += residual_[i];
     mass += node[i].mass + s * c[i];
@@ -210,11 +208,11 @@ void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
 /** The w @a now of the present positions x = p + s w. */
 void ImplicitStage::find_w(const Cloth& g, double s,
                            std::vector<Point>& now) const {
-  auto x = arrays(g).positions();
+  auto x = g.positions();
   for (unsigned i = 0; i < w.size(); ++i) now[i] = (x[i] - p[i]) / s;
 }
 void ImplicitStage::move(Cloth& g, double s) const {
-  auto x = arrays(g).positions();
+  auto x = g.positions();
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i]) x[i] = p[i] + s * w[i];
 }
@@ -227,7 +225,7 @@ std::vector<Point>& ImplicitStage::find_residual(Cloth& g, double t, double s,
                                                  const ForcePlan& force) {
   flow_.accelerate(g, t, force, true);
   const Drag& c = force.drag();
-  auto node = arrays(g).node_values();
+  auto node = g.node_values();
   for (unsigned i = 0; i < w.size(); ++i)
     residual_[i] =
         fixed_[i] ? Point()
@@ -239,7 +237,7 @@ std::vector<Point>& ImplicitStage::find_residual(Cloth& g, double t, double s,
 /** The springs' blocks of A, and the inverses of its diagonal ones. */
 void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
   const Drag& c = force.drag();
-  auto node = arrays(g).node_values();
+  auto node = g.node_values();
   diagonal_.resize(w.size());
   for (unsigned i = 0; i < w.size(); ++i) {
     diagonal_[i] = node[i].mass + s * c[i];
@@ -290,7 +288,7 @@ void ImplicitStage::precondition(const std::vector<Point>& from,
  * inertia, that of x through the springs' part of D. */
 double ImplicitStage::round_off(const Cloth& g, double s) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  auto x = arrays(g).positions();
+  auto x = g.positions();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i) {
     if (fixed_[i]) continue;
@@ -389,7 +387,7 @@ bool ImplicitStage::solve(double relative, bool clamp) {
   rest_ = residual_;
   apply(rest_, z_);
   direction_ = z_;
-  double size = product(rest_, z_);
+  double size = dot_product(rest_, z_);
   const double start = size, enough = relative * relative * start;
   const int most = 1000 + 3 * int(w.size());
   for (int k = 0; !(size <= enough); ++k) {
@@ -408,7 +406,7 @@ bool ImplicitStage::solve(double relative, bool clamp) {
     }
     multiply(direction_, product_, clamp);
     ++work_.products;
-    const double curvature = product(direction_, product_);
+    const double curvature = dot_product(direction_, product_);
     if (!clamp && curvature <= 0) return k > 0;
     const double a = size / curvature;
     for (unsigned i = 0; i < w.size(); ++i) {
@@ -416,7 +414,7 @@ bool ImplicitStage::solve(double relative, bool clamp) {
       rest_[i] -= a * product_[i];
     }
     apply(rest_, z_);
-    const double next = product(rest_, z_);
+    const double next = dot_product(rest_, z_);
     for (unsigned i = 0; i < w.size(); ++i)
       direction_[i] = z_[i] + (next / size) * direction_[i];
     size = next;
@@ -426,7 +424,7 @@ bool ImplicitStage::solve(double relative, bool clamp) {
 
 ImplicitStage::Objective ImplicitStage::objective(
     const Cloth& g, double s, const ForcePlan& force) const {
-  auto node = arrays(g).node_values();
+  auto node = g.node_values();
   const Drag& c = force.drag();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i)
@@ -459,7 +457,7 @@ ImplicitStage::Objective ImplicitStage::choose_start(Cloth& g, double s,
  * round-off */
 bool ImplicitStage::search(Cloth& g, double t, double s, const ForcePlan& force,
                            Objective& here, bool close) {
-  const double predicted = product(residual_, step_);
+  const double predicted = dot_product(residual_, step_);
   advance(1);
   if (!line_search_) return true;
   if (predicted <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
@@ -470,7 +468,7 @@ bool ImplicitStage::search(Cloth& g, double t, double s, const ForcePlan& force,
     bool good = there.value() <= here.value() - 1e-4 * a * predicted;
     if (!good && close && a == 1) {
       find_residual(g, t, s, force);
-      good = std::abs(product(residual_, step_)) <= 0.1 * predicted;
+      good = std::abs(dot_product(residual_, step_)) <= 0.1 * predicted;
     }
     if (good) {
       here = there;

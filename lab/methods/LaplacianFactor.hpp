@@ -28,19 +28,15 @@ class LaplacianFactor {
   };
 
   /** Make the factor that of @a g.  @param method its name, for errors
-   * @return true if it was already
    * Throws StepError if the matrix can't be factored, std::invalid_argument if
    * @a force does not know its stiffness.
    * Complexity: O(N + springs) if nothing changed; else that of a factor. */
-  bool find(const char* method, const Cloth& g, Scales scales,
+  void find(const char* method, const Cloth& g, Scales scales,
             const ForcePlan& force, const ConstraintPlan& constraint);
   /** Replace @a f, by node id, by the solution; 0 at held nodes.  @pre find()
    * Complexity: O(entries of the factor) */
   void solve(std::span<Point> f);
-  /** m + a c by node id [kg]. */
-  std::span<const double> diagonal() const { return key_.diagonal; }
-  /** Compare everything at the next find(). */
-  void restart() { source_.cloth = nullptr; }
+  /** How often the matrix was factored since this object was made. */
   int factorizations() const { return factorizations_; }
 
  private:

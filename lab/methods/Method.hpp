@@ -11,11 +11,10 @@
 #include "lab/Archive.hpp"
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
-#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
-/** What a method declares about itself; the tests measure it. */
+/** The properties that a method declares; the tests measure them. */
 struct MethodInfo {
   const char* name;
   int order;     ///< error ~ dt^order
@@ -79,10 +78,10 @@ class Method {
    * Throws as step(). */
   virtual int steps(Cloth& g, const StepTimes& times, int count,
                     const ForcePlan& force, const ConstraintPlan& constraint) {
-    const auto version = arrays(g).version();
+    const auto version = g.version();
     int k = 0;
     do step(g, times(k), times.dt, force, constraint);
-    while (++k < count && arrays(g).version() == version);
+    while (++k < count && g.version() == version);
     return k;
   }
   /** Forget what was kept from the last step. */

@@ -1,6 +1,6 @@
 #pragma once
 /** @file Splitting.hpp
- * Splitting methods: Verlet, Yoshida4, Pefrl, Srkn are their schemes. A new
+ * Splitting methods: Verlet, Pefrl and Srkn11b are their schemes. A new
  * scheme needs a line at the end of Splitting.cpp. */
 #include <cstdint>
 #include <vector>
@@ -15,7 +15,7 @@ namespace lab {
  * A. Symmetric and, without drag, symplectic: so the error of the energy stays
  * bounded, and a run can be reversed.
  *
- * @tparam Scheme has the fractions, `constexpr std::array steps`, kicks_first
+ * @tparam Scheme has the fractions, a static std::array `steps`, kicks_first
  *         (whether they begin and end with B) and info. A scheme that begins
  *         with B saves one force evaluation: the last kick and the first kick
  *         of the next step use the same force. */

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "lab/Json.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/page/PageScenes.hpp"
@@ -185,16 +184,16 @@ const char* page_readings(int sharp) {
 
 unsigned page_slots(unsigned side) {
   const Scene* s = state().scene(side);
-  return s ? arrays(s->cloth()).node_slots() : 0;
+  return s ? s->cloth().node_slots() : 0;
 }
 const double* page_positions(unsigned side) {
   static_assert(sizeof(Point) == 3 * sizeof(double));
-  return &arrays(state().scene(side)->cloth()).positions()[0].x;
+  return &state().scene(side)->cloth().positions()[0].x;
 }
 const float* page_points(unsigned side) {
   State& s = state();
   const Cloth& g = s.shown(side).cloth();
-  s.points.assign(std::size_t(4) * arrays(g).node_slots(), 0);
+  s.points.assign(std::size_t(4) * g.node_slots(), 0);
   for (Node n : g.nodes()) {
     float* to = &s.points[std::size_t(4) * n.id()];
     for (int k = 0; k < 3; ++k) to[k] = float(std::as_const(n).position()[k]);
@@ -212,7 +211,7 @@ const float* page_points(unsigned side) {
 double page_version(unsigned side) {
   State& s = state();
   Drawn& d = s.drawn[side];
-  const std::uint64_t now = arrays(s.shown(side).cloth()).version();
+  const std::uint64_t now = s.shown(side).cloth().version();
   if (std::exchange(d.version, now) != now) ++d.changes;
   return d.changes;
 }
@@ -227,8 +226,7 @@ const unsigned* page_mesh(unsigned side) {
         triangles.push_back(built->ids[q[unsigned(k)]]);
   for (const HeldNodes& held : scene.held())
     for (const auto& h : held.nodes)
-      if (h.id < arrays(g).node_slots() && arrays(g).node_in_use(h.id))
-        pins.push_back(h.id);
+      if (h.id < g.node_slots() && g.node_in_use(h.id)) pins.push_back(h.id);
   s.mesh = {g.num_edges(), unsigned(triangles.size() / 3),
             unsigned(pins.size())};
   for (Edge e : g.edges())

@@ -32,9 +32,7 @@ bool Pin::holds(const Point& p) const {
 }
 
 const MethodEntry* default_method() {
-  static const MethodEntry* const method =
-      find_method(SymplecticEuler::info.name);
-  return method;
+  return &table_entry<SymplecticEuler>;
 }
 
 bool Model::conserves_energy() const {

@@ -23,7 +23,7 @@ FailedRun failed_run(const Scene& s) {
   run.sharp = s.sharp_limit(40);
   run.safe = s.safe_limit();
   run.safe_without_drag = s.limits().safe_without_drag(method);
-  run.verlet = s.safe_limit(*find_method("verlet"));
+  run.verlet = s.safe_limit(entry_of<Verlet>());
   return run;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -30,12 +29,11 @@ void Track::look(const Scene& scene) {
   if (next_ == due_.size() || now < due_[next_]) return;
   while (next_ < due_.size() && due_[next_] <= now) ++next_;
   const Cloth& g = scene.cloth();
-  const auto x = arrays(g).positions();
+  const auto x = g.positions();
   State& s = states_.emplace_back(State{scene.time(), {}});
   s.x.assign(x.begin(), x.end());
   for (unsigned id = 0; id < s.x.size(); ++id)
-    if (!arrays(g).node_in_use(id))
-      s.x[id] = Point(infinite, infinite, infinite);
+    if (!g.node_in_use(id)) s.x[id] = Point(infinite, infinite, infinite);
 }
 
 Separation::Separation(const Track& a, const Track& b) {

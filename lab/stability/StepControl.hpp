@@ -36,7 +36,7 @@ class StepControl {
   static constexpr int look_interval = 16;  ///< steps between two looks
   static constexpr int round = 8;           ///< looks
 
-  /** What the control has measured: energies in J, times in s. */
+  /** The measurements of the control: energies in J, times in s. */
   struct State {
     double dt = 0, ceiling = 0;  ///< the step, and its upper bound for now
     double scale = 0;            ///< the tolerance is a share of it

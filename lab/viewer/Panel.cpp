@@ -61,7 +61,7 @@ Panel::Panel(RequestQueue& requests, CME212::SDLViewer& viewer, double speed)
       viewer_(viewer),
       speed_(speed),
       side_by_side_(own_method != nullptr),
-      rival_(find_method("verlet")) {}
+      rival_(&table_entry<Verlet>) {}
 
 // ------------------------------------------------- On the thread that steps
 

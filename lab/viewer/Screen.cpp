@@ -18,7 +18,6 @@
 
 #include "CME212/SDLViewer.hpp"
 #include "CME212/viewer/Image.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Scene.hpp"
@@ -180,10 +179,9 @@ class SDLScreen : public Screen {
     if (!shown_ || moves) set_view(scene, beside);
     if (kind_ == Kind::film) follow(g);
     const auto moved = [&](Node n) { return n.position() + beside; };
-    const bool same =
-        shown_ && version_ == arrays(g).version() &&
-        rival_shown_ == (rival != nullptr) &&
-        (!rival || rival_version_ == arrays(rival->cloth()).version());
+    const bool same = shown_ && version_ == g.version() &&
+                      rival_shown_ == (rival != nullptr) &&
+                      (!rival || rival_version_ == rival->cloth().version());
     if (!same) {
       viewer_.clear();
       nodes_.clear(), rival_nodes_.clear(), ids_.clear();
@@ -208,8 +206,8 @@ class SDLScreen : public Screen {
     };
     join(scene, nodes_);
     if (rival) join(*rival, rival_nodes_);
-    version_ = arrays(g).version();
-    rival_version_ = rival ? arrays(rival->cloth()).version() : 0;
+    version_ = g.version();
+    rival_version_ = rival ? rival->cloth().version() : 0;
     rival_shown_ = rival;
     shown_ = true;
   }
@@ -298,9 +296,7 @@ class SDLScreen : public Screen {
     const auto& built = scene.recipe().built;
     if (!built) return faces;
     const Cloth& g = scene.cloth();
-    auto node = [&](unsigned i) {
-      return arrays(g).node_with_id(built->ids[i]);
-    };
+    auto node = [&](unsigned i) { return g.node_with_id(built->ids[i]); };
     for (const Quad& q : quads_left(g, *built))
       faces.push_back({node(q[0]), node(q[1]), node(q[2]), node(q[3])});
     return faces;

@@ -23,8 +23,8 @@ std::size_t bytes_in_use() {
   return m.uordblks + m.hblkhd;
 }
 
-/** What a graph takes for a node and for an edge, without the handles that the
- * user keeps aside. */
+/** The memory of a graph per node and per edge, without the handles that its
+ * user keeps. */
 template <typename C>
 std::array<double, 2> bytes_per_node_and_edge() {
   auto bytes_of = [](const std::vector<Pair>& edges) {

@@ -27,7 +27,6 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -57,7 +56,7 @@ class Equation {
   std::size_t size() const { return 3 * held_.size(); }
   /** Positions and velocities at t = 0. */
   State start() const {
-    const double* x = &arrays(at_start.cloth).positions()[0].x;
+    const double* x = &at_start.cloth.positions()[0].x;
     State y(x, x + size());
     y.resize(2 * size());
     return y;
@@ -86,8 +85,7 @@ class Equation {
 
  private:
   FlatFlow flow_;
-  std::vector<bool> held_ =
-      std::vector<bool>(arrays(at_start.cloth).node_slots());
+  std::vector<bool> held_ = std::vector<bool>(at_start.cloth.node_slots());
 };
 
 Equation* equation;  // for the C callbacks
@@ -207,7 +205,7 @@ State run_gsl(double tolerance) {
 
 // ------------------------------------------------------------------- Measuring
 
-/** What a run took, and how far its end is off [m]. */
+/** The cost of a run, and the error of its end [m]. */
 struct Result {
   double seconds = 0, error = 0;
   long calls = 0;
