@@ -37,15 +37,27 @@ test_libs  = $(gtest_libs) -lrapidcheck
 
 lab_objects := $(lab_lib:.cpp=.o)
 
+# Half of the time of a unit goes into mass_spring.hpp and the standard headers
+# that it includes. g++ compiles them once for all of lab/, as $(B)/common.hpp;
+# not for ccache, which would then keep no object, nor for unity builds.
+common_hpp := $(if $(UNITY)$(findstring clang,$(CXX))$(findstring ccache,$(CXX) \
+                $(realpath $(shell command -v $(firstword $(CXX))))),,common.hpp.gch)
+
 # $(call variant,FOLDER,FLAGS): objects and the library in FOLDER.
 define compile
 	@mkdir -p $$(dir $$@) && echo '$(CXX) $$@'
 	@$$(CXX) $$(lab_flags) $(2) $$(lab_draw) $$(CPPFLAGS) $$(CXXFLAGS) \
-	  -MMD -MP -c -o $$@ $$<
+	  $$(if $$(common_hpp),$$(if $$(filter lab/%,$$<),-include $(1)/common.hpp)) \
+	  $$(unit_flags) -MMD -MP -c -o $$@ $$<
 endef
 define variant
-$(1)/%.o: %.cpp $(1)/lab.flags
+$(1)/%.o: %.cpp $(1)/lab.flags $(common_hpp:%=$(1)/%)
 $(compile)
+$(1)/common.hpp.gch: $(1)/lab.flags
+	@mkdir -p $$(@D) && echo '#include "mass_spring.hpp"' >$(1)/common.hpp
+	@echo '$(CXX) $$@'
+	@$$(CXX) $$(lab_flags) $(2) $$(CPPFLAGS) $$(CXXFLAGS) -MMD -MP \
+	  -MF $(1)/common.d -MT $$@ -x c++-header -o $$@ $(1)/common.hpp
 $(1)/liblab.a: $(lab_objects:%=$(1)/%)
 	@rm -f $$@ && ar rcs $$@ $$^
 $(1)/lab.flags: FORCE
@@ -67,6 +79,8 @@ $(B)/stored_scenes.cpp: FORCE
 
 $(eval $(call variant,$(B),$(speed)))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
+# It reads the command line once; the parser's templates take -O3 seconds.
+$(B)/lab/run/Options.o $(B)/asan/lab/run/Options.o: unit_flags = -O0
 
 # $(call program,PROGRAM,FOLDER,SOURCE,FLAGS,LIBRARIES)
 define program
