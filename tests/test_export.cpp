@@ -7,7 +7,6 @@
 #include <map>
 #include <sstream>
 
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
@@ -279,7 +278,7 @@ TEST(Export, WritesFramesWithTheirTimes) {
   };
   look();
   EXPECT_TRUE(scene.run_to(0.2, look));
-  EXPECT_EQ(frames.finish(),
+  EXPECT_EQ(frames.finish(scene),
             (std::vector<std::string>{"7 frames .vtp in " + folder / "vtp",
                                       "7 frames .ply in " + folder / "ply"}));
   std::vector<double> times;
@@ -298,18 +297,38 @@ TEST(Export, WritesFramesWithTheirTimes) {
     EXPECT_NEAR(times[k], expected[k], 1e-12);
 }
 
-TEST(Export, TakesBackFramesOfATimeThatComesAgain) {
+TEST(Pending, WritesWhatIsSettledAndDropsWhatComesAgain) {
+  Pending<int> numbers;
+  std::vector<int> written;
+  const auto settle = [&](long long now, long long settled) {
+    numbers.settle(now, settled, [&](int n) { written.push_back(n); });
+    return numbers.last();
+  };
+  EXPECT_EQ(numbers.last(), -1);
+  for (int step : {0, 2, 5, 7}) numbers.add(step, 10 * step);
+  EXPECT_EQ(settle(7, 3), 7);
+  EXPECT_EQ(written, (std::vector<int>{0, 20}));
+  EXPECT_EQ(settle(6, 3), 5);  // steps 4 to 6 come again
+  EXPECT_EQ(*numbers.back(), 50);
+  EXPECT_EQ(settle(3, 3), 2);
+  EXPECT_EQ(numbers.back(), nullptr);
+  numbers.add(4, 41);
+  EXPECT_EQ(settle(4, 4), 4);
+  EXPECT_EQ(written, (std::vector<int>{0, 20, 41}));
+}
+
+TEST(Export, BeginsAnewWithTheRun) {
   const CME212::TestFolder folder;
   const Model m = small_model();
   Scene scene(m);
   Export frames({{FrameFormat::ply, folder / "ply"}}, 30);
   frames.add(scene, m);
   for (int k = 0; k < 3; ++k) scene.step(), frames.add(scene, m);
-  EXPECT_EQ(frames.finish()[0].substr(0, 2), "4 ");
+  EXPECT_EQ(frames.finish(scene)[0].substr(0, 2), "4 ");
   scene.restart();
-  frames.take_back(scene);
+  frames.restart();
   frames.add(scene, m);
-  EXPECT_EQ(frames.finish()[0].substr(0, 2), "1 ");
+  EXPECT_EQ(frames.finish(scene)[0].substr(0, 2), "1 ");
   EXPECT_FALSE(std::filesystem::exists(folder / "ply/frame_000001.ply"));
 }
 
@@ -340,7 +359,9 @@ TEST(Export, DoesNotMixItsFramesWithThoseOfAnotherRun) {
   Export one({{FrameFormat::ply, name}}, 30);
   Export other({{FrameFormat::ply, name}}, 30);  // empty still
   one.add(scene, m);
-  EXPECT_EQ(error_of([&] { other.add(scene, m); }),
+  one.settle(scene);
+  other.add(scene, m);
+  EXPECT_EQ(error_of([&] { other.settle(scene); }),
             name + "/frame_000000.ply: another run writes frames there");
 }
 
@@ -366,7 +387,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   ASSERT_EQ(again.quads.size(), 5u);
   // In the order of the mesh, whatever indices the nodes have now.
   for (unsigned i = 0; i < 11; ++i) {
-    const Node n = arrays(g).node_with_id(scene.recipe().built->ids[i + 1]);
+    const Node n = g.node_with_id(scene.recipe().built->ids[i + 1]);
     EXPECT_EQ(again.points[i], n.position());
     EXPECT_EQ(again.velocities[i], n.value().vel);
   }

@@ -15,7 +15,6 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Faces.hpp"
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -34,10 +33,10 @@ Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
   f.there.resize(n), f.velocities.resize(n), f.forces.resize(n);
   f.masses.resize(n), f.strains.resize(n), f.pinned.resize(n);
   f.places = before ? before->places : built.mesh.points;
-  std::vector<unsigned> point_of(arrays(g).node_slots());
+  std::vector<unsigned> point_of(g.node_slots());
   for (unsigned i = 0; i < n; ++i) {
-    if (!arrays(g).node_in_use(built.ids[i])) continue;
-    const Node node = arrays(g).node_with_id(built.ids[i]);
+    if (!g.node_in_use(built.ids[i])) continue;
+    const Node node = g.node_with_id(built.ids[i]);
     point_of[node.id()] = i;
     f.there[i] = 1;
     f.places[i] = node.position();
@@ -164,7 +163,7 @@ class Vtp {
              name + "\" NumberOfComponents=\"" + std::to_string(components) +
              "\" format=\"binary\">" + base64(size + bytes) + "</DataArray>\n";
   }
-  /** Of the points that are left. */
+  /** Add the values of @a all at the points that are left. */
   template <typename T, typename V>
   void of_points(const char* name, const std::vector<V>& all) {
     if constexpr (std::is_same_v<V, Point>) {
@@ -178,7 +177,7 @@ class Vtp {
       array<T>(name, 1, values);
     }
   }
-  /** Of the springs; then of the quads, the mean of their sides. */
+  /** The strains of the springs, then of the quads: the mean of their sides. */
   std::vector<double> cell_strains() const {
     std::vector<double> all = f_.spring_strains;
     std::vector<std::pair<std::array<unsigned, 2>, double>> by_ends;
@@ -280,8 +279,8 @@ std::string FrameFolder::name(std::size_t frame) const {
   return (std::filesystem::path(folder_) / file).string();
 }
 
-void FrameFolder::take_back(double t) {
-  for (; !times_.empty() && times_.back() > t; times_.pop_back())
+void FrameFolder::clear() {
+  for (; !times_.empty(); times_.pop_back())
     std::filesystem::remove(name(times_.size() - 1));
 }
 
@@ -324,24 +323,37 @@ bool Export::due(const Scene& scene) const {
   // The frame of number k is due at k/rate.
   auto number = [this](double t) { return std::floor(t * rate_ + 1e-9); };
   const double half = scene.dt() / 2;
-  return !any_ || number(scene.time() + half) > number(last_.time + half);
-}
-
-void Export::take_back(const Scene& scene) {
-  if (empty() || !any_ || last_.time <= scene.time()) return;
-  for (auto& folder : folders_) folder->take_back(scene.time());
-  any_ = folders_.front()->last_time() >= 0;
-  last_.time = folders_.front()->last_time();
+  return frames_.last() < 0 ||
+         number(scene.time() + half) > number(last_.time + half);
 }
 
 void Export::add(const Scene& scene, const Model& m) {
-  if (empty() || (any_ && last_.time == scene.time())) return;
-  last_ = frame_of(scene, m, any_ ? &last_ : nullptr);
-  any_ = true;
-  for (auto& folder : folders_) folder->add(last_);
+  if (empty() || frames_.last() == scene.steps()) return;
+  Frame f = frame_of(scene, m, frames_.last() < 0 ? nullptr : &last_);
+  last_.time = f.time, last_.places = f.places;
+  frames_.add(scene.steps(), std::move(f));
 }
 
-std::vector<std::string> Export::finish() const {
+void Export::settle(const Scene& scene) {
+  write(scene.steps(), scene.settled_steps());
+}
+
+void Export::write(long long now, long long settled) {
+  frames_.settle(now, settled, [this](const Frame& f) {
+    for (auto& folder : folders_) folder->add(f);
+    written_ = f.time;
+  });
+  const Frame* waits = frames_.back();
+  last_.time = waits ? waits->time : written_;
+}
+
+void Export::restart() {
+  for (auto& folder : folders_) folder->clear();
+  frames_ = {};
+}
+
+std::vector<std::string> Export::finish(const Scene& scene) {
+  write(scene.steps(), scene.steps());
   std::vector<std::string> all;
   for (const auto& folder : folders_) {
     folder->finish();

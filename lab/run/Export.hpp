@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/run/Pending.hpp"
 #include "lab/scenes/Compose.hpp"
 
 namespace lab {
@@ -61,12 +62,10 @@ class FrameFolder {
   /** Write @a frame.  @pre it is later than all others
    * Throws std::runtime_error "FILE: why". */
   void add(const Frame& frame);
-  /** Remove the frames that are later than @a t [s]. */
-  void take_back(double t);
+  /** Remove all frames: the run begins anew. */
+  void clear();
   /** Write the list of times, for vtp.  Throws std::runtime_error. */
   void finish() const;
-  /** The time of the last frame [s]; negative: there is none. */
-  double last_time() const { return times_.empty() ? -1 : times_.back(); }
   /** Frames and folder, as a sentence. */
   std::string wrote() const;
 
@@ -94,21 +93,27 @@ class Export {
   /** True if the next frame is due at the time of @a scene: half a step early
    * is as good as half a step late. */
   bool due(const Scene& scene) const;
-  /** Remove the frames that are later than @a scene is now: of steps that were
-   * taken back, or before a restart. */
-  void take_back(const Scene& scene);
-  /** Write the present state of @a scene, unless it is written already.
-   * @pre nothing is to be taken back; the state is good, and @a scene was made
-   * from @a m */
+  /** Add the present state of @a scene, unless it is there already. It is
+   * written once its step is settled.
+   * @pre settle(); the state is good, and @a scene was made from @a m */
   void add(const Scene& scene, const Model& m);
-  /** Complete the folders.  @return what is in them, a sentence each */
-  std::vector<std::string> finish() const;
+  /** Write the frames of settled steps; forget those of steps that the run will
+   * make again.  Throws std::runtime_error "FILE: why". */
+  void settle(const Scene& scene);
+  /** Remove all frames: the run begins anew. */
+  void restart();
+  /** Write all frames of a run that is at its end at @a scene, and complete the
+   * folders.  @return what is in them, a sentence each */
+  std::vector<std::string> finish(const Scene& scene);
 
  private:
   double rate_;
   std::vector<std::unique_ptr<FrameFolder>> folders_;
-  Frame last_;
-  bool any_ = false;
+  Pending<Frame> frames_;
+  Frame last_;  // the last one, waiting or written: its time and its places
+  double written_ = 0;  // time of the last one in the folders [s]
+
+  void write(long long now, long long settled);
 };
 
 }  // namespace lab

@@ -130,7 +130,7 @@ void Film::finish() {
   if (!o_.screenshot.empty()) tell("picture", o_.screenshot);
 }
 
-/** What is shown; of a failure, what came of it. */
+/** A picture of the present state; after a failure, of the failed one. */
 void Film::save_picture() {
   shot_ = true;
   screen_->show_card({});

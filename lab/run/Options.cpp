@@ -226,8 +226,7 @@ void list_methods() {
  * unless the scene names a method or a step without error control.
  * @param given(NAME) true if the option NAME is given, in a file or here */
 void control_error(Model& m, const std::function<bool(const char*)>& given) {
-  if (!given("method") && !given("dt"))
-    m.method = find_method(Rkn64::info.name);
+  if (!given("method") && !given("dt")) m.method = &table_entry<Rkn64>;
   if (!m.method->info.adaptive) return;
   // Steps end where rows and frames are looked at, not where errors do.
   if (!given("dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);
@@ -455,7 +454,7 @@ int parse(int argc, char** argv, Options& o) {
     return app.count(std::string("--") + name) > 0 ||
            (!file.empty() && in_file.count(name) > 0);
   };
-  // What the command line sets does not stand in the file any more.
+  // An option of the command line replaces that of the file.
   for (const CLI::Option* option : app.get_options())
     if (option->count() > 0)
       o.origins.line_of.erase(option->get_name().substr(2));

@@ -134,9 +134,8 @@ void Run::start() {
   progress_ = Progress(o_.quiet);
   observer_ = Observer(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
-  rows_ = 0, last_row_ = settled_row_ = -1;
-  recent_.clear();
-  frames_.take_back(scene_);
+  rows_ = {}, written_ = 0;
+  frames_.restart();
   frames_.add(scene_, o_.model);
   if (!o_.csv.empty()) begin_csv();
   add_row();
@@ -180,11 +179,11 @@ void Run::to_end(const std::function<void()>& after) {
   check();
 }
 
-/** After a step, which may have taken others back. */
+/** After a step, or after the run went back to an earlier one. */
 void Run::look() {
-  settle_rows(scene_.settled_steps());
+  write_rows(scene_.settled_steps());
+  frames_.settle(scene_);
   if (o_.model.measure.over_time()) observer_.look(o_.model, scene_);
-  frames_.take_back(scene_);
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
@@ -224,11 +223,12 @@ int Run::finish() {
       save();
       wrote("checkpoint " + o_.checkpoint);
     });
-  settle_rows(scene_.steps());
+  write_rows(scene_.steps());
   if (csv_)
     write([this] {
       csv_->commit();
-      wrote(o_.csv + " (" + CME212::count_of(std::size_t(rows_), "row") + ')');
+      wrote(o_.csv + " (" + CME212::count_of(std::size_t(written_), "row") +
+            ')');
     });
   if (out_)
     write([this] {
@@ -237,7 +237,7 @@ int Run::finish() {
     });
   write([this] {
     add_frame();  // of a run that is cut short
-    for (const std::string& what : frames_.finish()) {
+    for (const std::string& what : frames_.finish(scene_)) {
       if (!o_.quiet) std::cout << what << '\n';
       wrote(what);
     }
@@ -273,7 +273,6 @@ void Run::write_csv(const std::string& text) {
 
 /** The state of the run besides that of the scene. */
 void Run::archive(Archive& a) {
-  std::uint64_t rows = recent_.size();
   std::string asked = name_of(o_.model.measure);
   a(asked)(observer_);
   if (asked != name_of(o_.model.measure) &&
@@ -282,13 +281,8 @@ void Run::archive(Archive& a) {
                                     ", but the run until "
                                     "the checkpoint was asked for " +
                                     asked);
-  a(rows_)(last_row_)(settled_row_)(warned_)(rows);
-  a.require(rows_ >= 0 && last_row_ >= -1 && settled_row_ >= -1);
-  if (a.loads()) recent_.clear();
-  for (std::uint64_t k = 0; k < rows; ++k) {
-    if (a.loads()) recent_.emplace_back();
-    a(recent_[k].step)(recent_[k].text);
-  }
+  a(written_)(warned_).require(written_ >= 0);
+  rows_.archive(a);
 }
 
 /** Write a checkpoint; before it the rows so far, so that these are there for
@@ -327,11 +321,11 @@ void Run::load() {
   first_step_ = scene_.steps();
   next_checkpoint_ = o_.every_seconds;
   frames_.add(scene_, o_.model);
-  if (o_.csv.empty()) return recent_.clear();
+  if (o_.csv.empty()) return void(rows_ = {});
   if (std::filesystem::is_regular_file(o_.csv))
     go_on_with_csv(length, sum);
   else
-    begin_csv(), rows_ = 0;
+    begin_csv(), written_ = 0;
 }
 
 /** Take over the first @a length bytes of the CSV file that is there, if they
@@ -354,13 +348,12 @@ void Run::go_on_with_csv(std::uint64_t length, std::uint64_t sum) {
 void Run::add_frame() {
   if (frames_.empty()) return;
   check();
-  frames_.take_back(scene_);
+  frames_.settle(scene_);
   frames_.add(scene_, o_.model);
 }
 
 void Run::add_row() {
-  if (!csv_ || scene_.steps() == last_row_) return;
-  last_row_ = scene_.steps();
+  if (!csv_ || scene_.steps() == rows_.last()) return;
   const Cloth& g = scene_.cloth();
   const Energies e = energies(g, o_.model.gravity);
   const Point c = center_of_mass(g);
@@ -376,22 +369,14 @@ void Run::add_row() {
   if (!columns_of(o_.model.measure).empty())
     for (double a : lab::answer(o_.model, scene_, o_.model.measure))
       row += ',' + CME212::to_text(a);
-  recent_.push_back({last_row_, row + '\n'});
+  rows_.add(scene_.steps(), row + '\n');
 }
 
-/** Forget the rows of steps that were taken back; write those of the first
- * @a settled steps, which can't be taken back any more. */
-void Run::settle_rows(long long settled) {
-  if (last_row_ > scene_.steps()) {
-    std::erase_if(recent_,
-                  [this](const Row& r) { return r.step > scene_.steps(); });
-    last_row_ = recent_.empty() ? settled_row_ : recent_.back().step;
-  }
-  std::erase_if(recent_, [&](const Row& r) {
-    if (r.step > settled) return false;
-    write_csv(r.text);
-    ++rows_, settled_row_ = r.step;
-    return true;
+/** Write the rows of the first @a settled steps. */
+void Run::write_rows(long long settled) {
+  rows_.settle(scene_.steps(), settled, [this](const std::string& row) {
+    write_csv(row);
+    ++written_;
   });
 }
 
@@ -415,7 +400,7 @@ void Run::warn_of_missed() {
             << '\n';
 }
 
-/** What the run has cost, in numbers that are the same on every machine. */
+/** Print the cost of the run in numbers that are the same on every machine. */
 void Run::tell_work() const {
   using CME212::count_of;
   std::string text =

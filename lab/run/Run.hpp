@@ -12,6 +12,7 @@
 #include "lab/Progress.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/run/Options.hpp"
+#include "lab/run/Pending.hpp"
 #include "lab/scenes/Measure.hpp"
 
 namespace lab {
@@ -100,15 +101,10 @@ class Run {
   std::optional<CME212::OutputFile> csv_;
   std::optional<MeshOutput> out_;
   Export frames_;
-  struct Row {
-    long long step;
-    std::string text;
-  };
-  std::vector<Row> recent_;  // of steps that may be taken back
-  long long rows_ = 0;       // written
-  long long last_row_ = -1, settled_row_ = -1;  // steps: of all, of those
-  std::uint64_t csv_sum_ = 0;                   // checksum of what csv_ has
-  long long first_step_ = 0;                    // where a checkpoint was
+  Pending<std::string> rows_;
+  long long written_ = 0;       // rows
+  std::uint64_t csv_sum_ = 0;   // checksum of what csv_ has
+  long long first_step_ = 0;    // where a checkpoint was
   Archive scene_as_made_;       // with which every checkpoint begins
   double next_checkpoint_ = 0;  // [s] of progress_
   std::string kept_;            // in words
@@ -119,7 +115,7 @@ class Run {
   void start();
   void look();
   void add_row();
-  void settle_rows(long long settled);
+  void write_rows(long long settled);
   void show_progress();
   void tell_failure();
   void warn_of_missed();
