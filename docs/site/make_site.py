@@ -110,6 +110,9 @@ class Page:
             return match[0]
         name, _, anchor = url.partition("#")
         path = self.path_of(name) if name else self.source
+        if path.startswith("../../"):   # of the repository's host
+            return (f'<a href="{REPOSITORY}/{path[6:]}"' if REPOSITORY
+                    else "<a")
         if not (ROOT / path).exists():
             self.faults.append(self.at(url, f"{url} is not there"))
         if (ROOT / path).is_dir() and f"{path}/README.md" in SOURCES:
