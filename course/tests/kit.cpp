@@ -119,6 +119,7 @@ std::string name(Ends e) { return name(e.a) + '-' + name(e.b); }
 
 Model::Model() = default;
 Model::Model(const Model& m) = default;
+Model& Model::operator=(const Model& m) = default;
 Model::~Model() = default;
 bool Model::has(int v) const {
   return std::find(nodes.begin(), nodes.end(), v) != nodes.end();

@@ -33,6 +33,7 @@ struct Model {
 
   Model();
   Model(const Model& m);
+  Model& operator=(const Model& m);
   ~Model();
   bool has(int v) const;
   bool has(Ends e) const;
