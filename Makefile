@@ -97,7 +97,7 @@ deps:
 
 # In a window; without a display a picture and a film of the same run.
 demo:
-	@tools/deps.sh build window film
+	@tools/deps.sh build window $$([ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || echo film)
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
 	  $(MAKE) --no-print-directory $(O)mass_spring && \
 	  ./$(O)mass_spring data/grid2.nodes data/grid2.tets; \
