@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a new user types, on bare systems:  tools/check_systems.sh [SYSTEM...]
+# Type a new user's commands on bare systems: tools/check_systems.sh [SYSTEM...]
 # Makes a root of each by debootstrap in $ROOTS, by default build/roots, and
 # runs there as a new user with sudo. Prints a table of commands and seconds;
 # the logs are $ROOTS/SYSTEM.N.log. Needs root, network and 15 minutes; what it
@@ -26,7 +26,7 @@ commands=(
   "tools/deps.sh lab && make cloth"
   "./cloth --config data/scenes/curtain.toml --headless --t-end 0.1"
 )
-# What the log has to say beside status 0.
+# The log's words, beside status 0.
 expected() {
   case $1 in
     *grade*) grep -q '100/100' ;;

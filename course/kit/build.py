@@ -13,6 +13,7 @@ import itertools
 import os
 import pathlib
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import once
@@ -33,7 +34,7 @@ DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
 STANDARD = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*<([\w./+-]+)>",
                       re.MULTILINE)
-# What the compiler's output has of assembler that was written in the source.
+# Assembler from the source, in the compiler's output.
 ASSEMBLER = re.compile(rb"^#APP\n.*?^#NO_APP\n", re.MULTILINE | re.DOTALL)
 BORDER = re.compile(rb"^#(?:NO_)?APP\b", re.MULTILINE)
 
@@ -58,7 +59,7 @@ class Way:
     defines: tuple
 
 
-def way_of(test, needs):
+def way_of(test: str, needs: str) -> Way:
     text = (TESTS / f"{test}.cpp").read_text(encoding="utf-8")
     wishes = WISH.findall(text)
     kind = [value for key, value in wishes if key == "Build"] or ["checked"]
@@ -70,20 +71,20 @@ def way_of(test, needs):
         value for key, value in wishes if key == "Define"))
 
 
-def all_stages(way):
+def all_stages(way: Way) -> bool:
     """Is main() compiled in all of its stages?"""
     return {"KIT_STAGES", "KIT_PROGRAM"} <= set(way.defines)
 
 
 @functools.cache
-def words_of_tests():
+def words_of_tests() -> set[str]:
     """Each word that the kit's own code is written with."""
     sources = [*TESTS.glob("*.[hc]pp"), *ASKED.glob("*.[hc]pp")]
     return {word for path in sources
             for word in WORD.findall(path.read_text(encoding="utf-8"))}
 
 
-def macros(files):
+def macros(files: dict[str, bytes]) -> list[str]:
     """The macros of a submission that would change the kit's code."""
     names = set()
     for text in files.values():
@@ -95,7 +96,8 @@ def macros(files):
 class Room:
     """A folder with a submission's sources, in which tests are built."""
 
-    def __init__(self, kit, folder, files):
+    def __init__(self, kit: once.Kit, folder: pathlib.Path,
+                 files: dict[str, bytes]):
         self.kit, self.files = kit, files
         self.names = set(files)     # of those that the student wrote
         self.folder, self.tests = folder, (TESTS, ASKED)
@@ -113,7 +115,8 @@ class Room:
             + "#include <cassert>\n", encoding="utf-8")
         self.numbers = itertools.count(1)
 
-    def compile(self, way, tests, link=True):
+    def compile(self, way: Way, tests: Iterable[str],
+                link: bool = True) -> Unit:
         """The unit of some tests; without tests just the bridge."""
         name = f"unit{next(self.numbers)}"
         unit = self.built / f"{name}.cpp"
@@ -166,19 +169,20 @@ class Room:
         assembly.unlink(missing_ok=True)
         return result
 
-    def compiler(self, way):
+    def compiler(self, way: Way) -> list:
         return [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-include",
                 self.kit.preludes / way.kind / "prelude.hpp"]
 
-    def writes_assembler(self, way, assembly, paths):
+    def writes_assembler(self, way: Way, assembly: pathlib.Path,
+                         paths: list[str]) -> bool:
         """Does a unit hold assembler that the standard headers it includes do
         not make by themselves? <iostream> of libstdc++ 13 makes some."""
         found = assembler(assembly)
         if not found[1]:
             return False
-        names = {name.decode() for text in self.files.values()
+        named = {name.decode() for text in self.files.values()
                  for name in STANDARD.findall(text)}
-        names = tuple(sorted(name for name in names if any(
+        names = tuple(sorted(name for name in named if any(
             path.startswith(SYSTEM) and path.endswith(f"/{name}")
             for path in paths)))
         known = self.kit.assembler
@@ -194,7 +198,7 @@ class Room:
             known[way.kind, names] = assembler(made)
         return found != known[way.kind, names]
 
-    def run(self, command):
+    def run(self, command: list) -> sandbox.Outcome:
         read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
                 "/etc/ld.so.cache", "/proc/self", self.kit.preludes,
                 self.kit.include, TESTS, ASKED, ROOT / "CME212", self.folder,
@@ -206,13 +210,13 @@ class Room:
         return done
 
     @staticmethod
-    def split(output):
+    def split(output: str) -> tuple[list[str], str]:
         """The files that were read, and what else the compiler said."""
         paths = INCLUDED.findall(output)
         text = INCLUDED.sub("", output)
         return paths, text.partition("Multiple include guards")[0]
 
-    def sort(self, paths):
+    def sort(self, paths: list[str]) -> tuple[str, frozenset[str]]:
         """The first path from outside, and names in the submission."""
         inside, source = set(), os.path.realpath(self.source) + "/"
         kit = tuple(os.path.realpath(path) + "/" for path in (
@@ -225,7 +229,7 @@ class Room:
                 return path, frozenset()
         return "", frozenset(inside)
 
-    def plain(self, text):
+    def plain(self, text: str) -> str:
         """Without the names of this machine's folders."""
         for path, name in ((f"{self.source}/", ""), (f"{self.built}/", ""),
                            (f"{TESTS}/", "course/tests/"),
@@ -236,18 +240,18 @@ class Room:
         return re.sub(r"(?m)(^|(?<=from ))\./", "", text)
 
 
-def flags(option, values):
+def flags(option: str, values: Iterable) -> list[str]:
     return [word for value in values for word in (option, str(value))]
 
 
-def assembler(assembly):
+def assembler(assembly: pathlib.Path) -> tuple[list[bytes], int]:
     """The parts that were assembler in the source, and how many borders parts
     have: text that holds a border of its own makes that number another."""
     text = assembly.read_bytes()
     return sorted(ASSEMBLER.findall(text)), len(BORDER.findall(text))
 
 
-def reads_files(assembly):
+def reads_files(assembly: pathlib.Path) -> bool:
     """Does the compiler's output take in files?"""
     return any(
         not line.lstrip().startswith((b".string", b".ascii"))

@@ -211,14 +211,14 @@ class Judge:
         for room, way in self.attempts(way, tests):
             left = [test for test in tests
                     if test not in results or not results[test].passed]
-            # What is no program gets none.
+            # A file without main() gets no score.
             if room in self.rooms["program"] and way.needs != "step":
                 left = [test for test in left if results[test].mended
                         or results[test].status != "not compiled"]
             for test, result in self.judged(room, way, left).items():
                 best = results.setdefault(test, result)
-                # What is said of the kit's graph is no help if the same is
-                # wrong with the student's own.
+                # A message about the kit's graph does not help if the same
+                # is wrong with the student's own.
                 better = (RANK.index(result.status) - RANK.index(best.status)
                           or result.status in ("not compiled", "crashed"))
                 if better > 0:

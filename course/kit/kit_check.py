@@ -63,7 +63,8 @@ class Cases:
                       in enumerate(self.course.sections)}
         self.sample = (int(os.environ.get("FIRST") or 0), None,
                        int(os.environ.get("EVERY") or 1))
-        self.regions = {}     # task: names of the files with its regions
+        # task: names of the files with its regions
+        self.regions: dict[str, set[str]] = {}
         for name, text in self.texts.items():
             for region in markers.regions(text, name):
                 if region.task in self.course.tasks:
@@ -178,7 +179,7 @@ class Check:
         started = time.monotonic()
         graded = self.grade(case.files).graded
         faults = case.faults({g.task.id for g in graded if not g.passed})
-        # What the grader said about those that should not be lost.
+        # The grader's words about tasks that should not be lost.
         for g in graded:
             if not g.passed and any(g.task.id in fault for fault in faults):
                 faults += ["  " + line for line in report.failure(g)]

@@ -12,6 +12,8 @@ import shutil
 import subprocess
 import tempfile
 import time
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import tasks
 
@@ -34,7 +36,7 @@ FLAGS = {
                 "--param", "asan-instrumentation-with-call-threshold=0"],
     "counted": ["-O1", "-g0", "-fsanitize-coverage=trace-pc"],
 }
-LINK = {
+LINK: dict[str, list[str]] = {
     "checked": ["-fsanitize=address,undefined"],
     "counted": [],
 }
@@ -49,7 +51,7 @@ class KitError(Exception):
     """The kit itself can't be built or used here."""
 
 
-def ended(command):
+def ended(command: list) -> subprocess.CompletedProcess:
     """The command, which runs nothing of a submission, after it has ended."""
     try:
         return subprocess.run(command, capture_output=True, text=True,
@@ -60,7 +62,7 @@ def ended(command):
         raise KitError(f"{command[0]} takes more than {PATIENCE} s") from None
 
 
-def this_system():
+def this_system() -> str:
     """What may differ from where the kit was checked, in words."""
     release = pathlib.Path("/etc/os-release")
     name = re.search(r'^PRETTY_NAME="?([^"\n]*)', release.read_text(
@@ -72,7 +74,8 @@ def this_system():
 class Kit:
     """The parts, built if they are not there; `jail` starts a command."""
 
-    def __init__(self, unsafe=False, probe=True, seed=""):
+    def __init__(self, unsafe: bool = False, probe: bool = True,
+                 seed: str = ""):
         # CME212/ apart from the root, whose Graph.hpp is no submission's.
         os.umask(0o022)     # another user may run what is built here
         self.include = BUILT / "include"
@@ -91,9 +94,11 @@ class Kit:
                        *course], self.make_linked)
         self.preludes = self.locked_part(
             "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
-        # Of the solution, which judge.prepare() grades before all others.
-        self.secret, self.answers, self.data = b"", None, None
-        self.assembler = {}     # of standard headers: build.Room
+        # The solution's, which judge.prepare() grades before all others.
+        self.secret = b""
+        self.answers: Any = None
+        self.data: Any = None       # a folder
+        self.assembler: dict = {}   # of standard headers: build.Room
         self.seed = seed    # of the tests' numbers; "": the public ones
         self.linked = sorted(linked.glob("*.o"))
         if unsafe:
@@ -102,14 +107,16 @@ class Kit:
             self.probe()
 
     @classmethod
-    def locked_part(cls, *part):
+    def locked_part(cls, *part) -> pathlib.Path:
         """The same part for all graders that run at a time."""
         with open(BUILT / "lock", "w", encoding="ascii") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             return cls.part(*part)
 
     @staticmethod
-    def part(name, sources, make, more=()):
+    def part(name: str, sources: Iterable[pathlib.Path],
+             make: Callable[[pathlib.Path], None],
+             more: tuple = ()) -> pathlib.Path:
         """The folder of a part, which is made if its sources are new."""
         version = ended([CXX, "--version"])
         if version.returncode:
@@ -134,17 +141,17 @@ class Kit:
         os.utime(folder)
         return folder
 
-    def make_jail(self, folder):
+    def make_jail(self, folder: pathlib.Path) -> None:
         self.run(["-O1", KIT / "jail.cpp", "-o", folder / "jail", "-lseccomp"],
                  "jail.cpp can't be built: is libseccomp-dev there? make deps")
 
-    def make_linked(self, folder):
+    def make_linked(self, folder: pathlib.Path) -> None:
         for source in LINKED:
             self.run(["-O1", "-I", self.include, "-I", TESTS, "-c", source,
                       "-o", folder / f"{source.stem}.o"],
                      f"{source.name} can't be built")
 
-    def make_preludes(self, folder):
+    def make_preludes(self, folder: pathlib.Path) -> None:
         # In the jail, where addresses are not by chance: it is used there.
         jail = [*self.jail, "--compiler", "--cpu", "300", "--size",
                 str(1 << 30), "--"]
@@ -161,17 +168,17 @@ class Kit:
                      jail)
 
     @staticmethod
-    def run(words, complaint, before=()):
+    def run(words: list, complaint: str, before: Iterable = ()) -> None:
         command = [str(word) for word in (*before, CXX, *COMMON, *words)]
         done = ended(command)
         if done.returncode:
             raise KitError(f"{complaint}\n{done.stderr[:2000]}")
 
-    def has(self):
+    def has(self) -> list[str]:
         """What the kernel has for the jail beside the filter of calls."""
         return ended([*self.jail, "--has"]).stdout.split()
 
-    def probe(self):
+    def probe(self) -> None:
         """Without a filter of system calls there is no grading."""
         done = ended([*self.jail, "--", "/bin/true"])
         if done.returncode:

@@ -2,13 +2,14 @@
 import pathlib
 import re
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 try:
     import tomllib
 except ImportError:     # Python 3.10
     try:
-        import tomli as tomllib
+        import tomli as tomllib  # type: ignore[no-redef]
     except ImportError:
         sys.exit("Python before 3.11 needs tomli: apt-get install "
                  "python3-tomli, or pip install tomli")
@@ -58,11 +59,11 @@ class Task:
     line: int
 
     @property
-    def counted(self):
+    def counted(self) -> int:
         return 0 if self.extra else self.points
 
     @property
-    def worth(self):
+    def worth(self) -> str:
         return f"{self.points} point" + ("" if self.points == 1 else "s")
 
 
@@ -75,10 +76,10 @@ class Course:
     dropped: frozenset  # ids of tasks that are not asked for
 
     @property
-    def points(self):
+    def points(self) -> int:
         return sum(task.counted for task in self.tasks.values())
 
-    def tasks_of(self, section):
+    def tasks_of(self, section: Section) -> list[Task]:
         return [t for t in self.tasks.values() if t.section == section]
 
 
@@ -97,23 +98,24 @@ TYPES = {str: "a text", int: "a whole number", bool: "true or false",
 class Reader:
     """Collects faults, so that one look shows them all."""
 
-    def __init__(self, text, name):
+    def __init__(self, text: str, name: str):
         self.name = name
-        self.faults = []
-        self.lines = {}  # header -> the lines it stands on
+        self.faults: list[str] = []
+        # header -> the lines it stands on
+        self.lines: dict[str, list[int]] = {}
         for number, line in enumerate(text.splitlines(), 1):
             header = line.split("#")[0].strip()
             if header in ("[course]", "[[section]]", "[[task]]"):
                 self.lines.setdefault(header.strip("[]"), []).append(number)
 
-    def fault(self, line, what):
+    def fault(self, line: int, what: str) -> None:
         self.faults.append(f"{self.name}:{line}: {what}")
 
-    def line_of(self, kind, index=0):
+    def line_of(self, kind: str, index: int = 0) -> int:
         lines = self.lines.get(kind, [])
         return lines[index] if index < len(lines) else 1
 
-    def keys(self, table, keys, line):
+    def keys(self, table: dict, keys: dict, line: int) -> bool:
         """True if all that must be there is there, and of its type."""
         before = len(self.faults)
         for key in table:
@@ -130,7 +132,7 @@ class Reader:
                 self.fault(line, f"'{key}' is not a text of one line")
         return len(self.faults) == before
 
-    def tables(self, data, kind):
+    def tables(self, data: dict, kind: str) -> Iterator[tuple[int, dict]]:
         """Each table of the list `kind` with its line."""
         found = data.get(kind, [])
         if not isinstance(found, list) or not found or not all(
@@ -141,7 +143,7 @@ class Reader:
             yield self.line_of(kind, index), table
 
 
-def parse(text, name=FILE):
+def parse(text: str, name: str = FILE) -> Course:
     """The Course that `text` says.  Throws TasksError."""
     try:
         data = tomllib.loads(text)
@@ -161,16 +163,18 @@ def parse(text, name=FILE):
         read.keys(head, COURSE_KEYS, read.line_of("course"))
     sections, unasked = sections_of(data, read)
     tasks, dropped = tasks_of(data, read, sections, unasked)
-    if read.faults:
+    if read.faults or not isinstance(head, dict):
         raise TasksError(read.faults)
     return Course(head["title"], head["tag"],
                   tuple(s for s in sections.values() if s.id not in unasked),
                   tasks, frozenset(dropped))
 
 
-def sections_of(data, read):
+def sections_of(data: dict, read: Reader) -> tuple[
+        dict[str, Section], set[str]]:
     """The sections by id, and the ids of those dropped."""
-    sections, dropped = {}, set()
+    sections: dict[str, Section] = {}
+    dropped: set[str] = set()
     for line, table in read.tables(data, "section"):
         if not read.keys(table, SECTION_KEYS, line):
             continue
@@ -187,9 +191,12 @@ def sections_of(data, read):
     return sections, dropped
 
 
-def tasks_of(data, read, sections, unasked):
+def tasks_of(data: dict, read: Reader, sections: dict[str, Section],
+             unasked: set[str]) -> tuple[dict[str, Task], set[str]]:
     """The tasks by id, without those dropped; and the ids of these."""
-    tasks, dropped, lines = {}, set(), {}
+    tasks: dict[str, Task] = {}
+    dropped: set[str] = set()
+    lines: dict[str, int] = {}
     for line, table in read.tables(data, "task"):
         if not read.keys(table, TASK_KEYS, line):
             continue
@@ -221,7 +228,7 @@ def tasks_of(data, read, sections, unasked):
     return tasks, dropped
 
 
-def load(path=None):
+def load(path: pathlib.Path | None = None) -> Course:
     """The Course of a file, by default this repository's."""
     path = pathlib.Path(path) if path else ROOT / FILE
     name = FILE if path == ROOT / FILE else str(path)

@@ -9,8 +9,8 @@ PAGE_CXX ?= $(or $(patsubst %/lib/clang,%/bin/clang++,$(shell ls -d \
   sed 's|/[^/]*/lib/wasi$$||')),clang++)
 page    := $(B)/page
 page_o  := $(B)/page.o
-# Of the laboratory: all of these rooms, but what reads and writes files
-# or measures processor time.
+# All of these rooms of the laboratory, except what reads or writes files or
+# measures processor time.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Checkpoint \
   Memory MeshFile Warnings) lab/live/Recording.cpp lab/methods/FastestCpu.cpp, \
@@ -42,7 +42,7 @@ $(page)/index.html: $(page_o)/cloth.wasm $(wildcard $(patsubst \
   %,lab/page/*.%,js py html css) course/web/*.js course/web/*.css)
 	@mkdir -p $(@D)
 	@python3 lab/page/assemble.py $< $@
-# What a browser shows that can't run it: half as large, 8 frames a second.
+# Shown by a browser that can't run the page: half as large, 8 frames a second.
 $(page)/loop.webp: docs/pictures/tear.gif
 	@mkdir -p $(@D)
 	@ffmpeg -loglevel error -y -i $< -vf fps=8,scale=320:-1:flags=lanczos \
