@@ -39,7 +39,7 @@ def among_methods(verdict: judge.Verdict, out: pathlib.Path) -> None:
         x, y = Axis(1e-1, 1e-12), Axis(10, 1e6)
         own = [(e, n) for _, n, e in verdict.data[f"chart.{scene}"]
                if x.hi < e < x.lo and y.lo < n < y.hi]
-        curves, behind = [Curve("yours", own, OWN, 7, verdict.step)], []
+        curves, behind = [], []
         for method, some in by_method(believed(runs(
                 table.where(scene=scene)))).items():
             points = [(r.error, r.evaluations) for r in some
@@ -49,6 +49,7 @@ def among_methods(verdict: judge.Verdict, out: pathlib.Path) -> None:
                                     method))
             else:
                 behind.append(Curve(method, points, GRAY))
+        curves.append(Curve("yours", own, OWN, 7, verdict.step))
         about = table.note("scene " + scene).split("; ")[0]
         panel = Panel(72 + 370 * k, 82, 415 + 370 * k, 365, x, y,
                       f"{scene}: {about}", curves, behind)
