@@ -13,7 +13,7 @@ packages() {
     build)  echo "g++ make pkgconf|pkg-config git" ;;
     window) echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri libpng-dev" ;;
     film)   echo "ffmpeg" ;;
-    lab)    echo "libcli11-dev libeigen3-dev" ;;
+    lab)    echo "libcli11-dev libeigen3-dev libtomlplusplus-dev" ;;
     draw)   echo "python3-matplotlib python3 fonts-dejavu-core" ;;
     test)   echo "libgtest-dev gdb" ;;
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
@@ -24,7 +24,8 @@ packages() {
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;
     web)    echo "clang-N lld-N wasi-libc libc++-N-dev-wasm32" \
                  "libclang-rt-N-dev-wasm32 python3" ;;
-    page)   packages web; echo "libeigen3-dev ffmpeg pandoc git" ;;
+    page)   packages web
+            echo "libeigen3-dev libtomlplusplus-dev ffmpeg pandoc git" ;;
     browser) echo "chromium python3-websocket" ;;
     try)    echo "valgrind" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
@@ -40,7 +41,9 @@ names="
 g++ - gcc-c++                     make make make
 pkgconf pkgconf pkgconf-pkg-config          git git git
 libcli11-dev cli11 cli11-devel    libeigen3-dev eigen eigen3-devel
-libspectra-dev spectra spectra-devel        libsdl2-dev sdl2-compat SDL2-devel
+libspectra-dev spectra spectra-devel
+libtomlplusplus-dev tomlplusplus tomlplusplus-devel
+libsdl2-dev sdl2-compat SDL2-devel
 libgl-dev - mesa-libGL-devel      libegl1 - mesa-libEGL
 libgl1-mesa-dri - mesa-dri-drivers          libpng-dev libpng libpng-devel
 ffmpeg ffmpeg ffmpeg-free         python3-matplotlib python-matplotlib python3-matplotlib

@@ -7,7 +7,8 @@ tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 passed=0 failed=0
 everything="g++ make pkgconf git libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri
-  libpng-dev ffmpeg libcli11-dev libeigen3-dev python3-matplotlib python3
+  libpng-dev ffmpeg libcli11-dev libeigen3-dev libtomlplusplus-dev
+  python3-matplotlib python3
   fonts-dejavu-core libgtest-dev gdb clang clang-format libclang-rt-dev
   libomp-dev libspectra-dev librapidcheck-dev libbenchmark-dev xvfb xauth
   xdotool valgrind"

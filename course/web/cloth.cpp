@@ -1,8 +1,7 @@
 /** @file cloth.cpp
- * The cloth of the Graph.hpp and the mass_spring.hpp that are found first, for
- * a web page: the stages of mass_spring.cpp, on a grid. These are C functions,
- * as WebAssembly has no others; a pointer that one returns is valid until the
- * next call. A call that throws ends there: thrown.cpp.
+ * The cloth of a Graph.hpp and a mass_spring.hpp for a web page: the stages of
+ * mass_spring.cpp, on a grid. WebAssembly has C functions alone; a pointer that
+ * one returns is valid until the next call. A throw ends its call: thrown.cpp.
  *
  * A slot is a node's index at the start, which it keeps. */
 #include <array>
@@ -249,8 +248,8 @@ class Run {
     places_.clear();
     for (Node n : nodes(g)) places_.push_back(n.position());
   }
-  /** After a removal: which node is which, by its place as it was before; of
-   * one that has moved since, by the nearest place. A Node may be an index. */
+  /** After a removal: find the slot of each node by its place before. A node
+   * that has moved since gets the nearest place. A Node may be an index. */
   void follow() {
     if (num_nodes() == slots_.size()) return;
     std::multimap<std::array<double, 3>, unsigned> left;

@@ -71,7 +71,7 @@ class Cloth {
   frame({failure, readings, points, mesh}) {
     this.waiting = 0, this.failure = failure;
     this.readings = readings || this.readings;
-    // What explodes is drawn while it is near.
+    // A cloth that explodes is drawn while it is near.
     const near = failure || this.readings.gainAt >= 0 ? 2.5 : 20;  // [m]
     const drawn = points && points.every((a, k) => k % 4 === 3 || a < near &&
       a > -near);
@@ -180,7 +180,7 @@ class Figure {
     this.hand.tool = this.canvas.dataset.tool = tool;
     this.find('.cut').setAttribute('aria-pressed', tool === 'cut');
   }
-  // Show a cloth; beside the first one, if both are to be seen.
+  // Show a cloth; with `beside`, next to the first one.
   show(k) {
     this.choice = k;
     this.panes = this.beside && k > 0 ? [0, k] : [k];
@@ -204,7 +204,7 @@ class Figure {
 
   start() {
     const {stage, grid: side, dt, chain, end} = this, {ball} = stages[stage];
-    // What falls for a short time is seen from nearer: g t^2/2.
+    // A short fall is seen from nearer: g t^2/2.
     const low = Math.max(stages[stage].low, -0.3 - 5 * end * end);
     this.hand?.release();
     this.clock = 0, this.ended = 0, this.touched = false;
@@ -260,7 +260,7 @@ class Figure {
     this.arrange(), this.changed();
     this.onframe?.(cloth);
   }
-  // What is in the panes.
+  // Put the chosen cloths into the panes.
   arrange() {
     const cloths = this.panes.map(k => this.cloths[k]);
     if (!this.view || cloths.some(c => !c.side?.points)) return;
@@ -360,7 +360,7 @@ async function moduleOf(name) {
     .arrayBuffer();
 }
 
-// The figure in an element, which gets what README.md says.
+// Make a figure in an element; README.md lists the options.
 function figure(element, options) {
   if (!document.getElementById('look')) {
     const style = document.createElement('style');

@@ -1,5 +1,5 @@
 'use strict';
-// Mouse, fingers and keys over the picture: what grabs, cuts, pins, turns.
+// Mouse, fingers and keys over the picture: they grab, cut, pin and turn.
 
 class Hand {
   // @param page has view, sides, ask(...words), changed()
@@ -212,5 +212,5 @@ class Hand {
   }
 }
 
-// What a link holds of a length [m].
+// A length [m], rounded as a link stores it.
 const rounded = a => Number(a.toFixed(4));

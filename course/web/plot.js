@@ -43,7 +43,7 @@ class Plot {
     g.scale(ratio, ratio);
     g.font = '11px system-ui, "DejaVu Sans", sans-serif';
     const value = a => log ? (a > 1e-12 ? Math.log10(a) : NaN) : a;
-    // What explodes leaves the picture: the rest stays to be seen.
+    // Values after a failure may leave the picture; the rest stays visible.
     let low = Infinity, high = -Infinity;
     rows.forEach((row, k) => {
       if (k > 0 && times[k] > this.good) return;
@@ -85,7 +85,7 @@ class Plot {
   }
 }
 
-// How curves are told apart without colors: as text, and on the canvas.
+// Dashes distinguish curves without colors: as text, and on the canvas.
 const dashes = [['\u2014', []], ['- -', [6, 4]], ['\u00b7\u00b7\u00b7', [2, 3]],
   ['-\u00b7-', [8, 3, 2, 3]]];
 

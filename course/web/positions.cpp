@@ -1,7 +1,7 @@
 /** @file positions.cpp
- * What a page is compared with, bit by bit: the assignment's program, which
- * writes at its end the positions of all nodes by index, as doubles, to the
- * file POSITIONS of its environment. */
+ * The native positions, which a page must have to the bit: the assignment's
+ * program, which at its end writes the positions of all nodes by index, as
+ * doubles, to the file that the environment variable POSITIONS names. */
 #include <cstdlib>
 #include <fstream>
 

@@ -1,7 +1,7 @@
 /** @file thrown.cpp
- * What ends a call in WebAssembly: a throw, an assertion that fails. clang++
- * leaves out what a catch does; so the call ends by a trap, and the page asks
- * what it was. No source needs another word for it. */
+ * A throw or a failed assertion ends a call in WebAssembly, which has no catch:
+ * the call traps, and page_thrown() tells the page why. The other sources need
+ * no change for that. */
 #include <__verbose_abort>
 #include <cstdarg>
 #include <cstdio>
@@ -44,7 +44,8 @@ bool is_exception(const std::type_info* type) {
 
 extern "C" {
 
-/** What ended the last call; "" if it was another fault. */
+/** The message of the throw that ended the last call; "" if it was another
+ * fault. */
 const char* page_thrown() { return thrown; }
 
 void* __cxa_allocate_exception(std::size_t size) { return std::malloc(size); }
@@ -68,7 +69,7 @@ void __cxa_free_exception(void*) {}
 }
 }
 
-/** What libc++ says, of an index beyond the end of a vector and the like. */
+/** The checks of libc++: an index beyond the end of a vector and the like. */
 void std::__libcpp_verbose_abort(const char* format, ...) {
   std::va_list values;
   va_start(values, format);

@@ -2,15 +2,15 @@
 // Draws cloths by WebGL 2 and looks at them from a camera that turns about a
 // point. Lengths in meters, z up; matrices by columns.
 
-// Of what is as it was, nothing is laid out and painted anew.
+// Skip layout and paint for elements that did not change.
 const setText = (element, text) => {
   if (element.textContent !== text) element.textContent = text;
 };
 // Does the person want nothing to move by itself?
 const isStill = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-// The colors that look.css gives to an element: of what View draws, and of
-// curves. Its legend of the strain gets them.
+// The colors that look.css gives to an element: those of View and those of
+// curves. The legend of the strain in the element gets them, too.
 function looksOf(element) {
   const css = getComputedStyle(element);
   const textOf = name => css.getPropertyValue(name).trim();
@@ -76,7 +76,7 @@ class Camera {
     const eye = Vec.add(this.center, back, distance);
     return {eye, back, right, up, slope, distance, aspect};
   }
-  // How far away all that is to be seen fits, from any side all around.
+  // The distance at which all points fit into the picture, from any side.
   fit(slope, aspect) {
     let most = 0.1;
     for (const p of this.points) {
@@ -205,7 +205,7 @@ function findNormals(points, triangles, n) {
   }
 }
 
-// One set of points on the graphics card, with what is drawn of it.
+// A set of points on the graphics card, with its triangles and lines.
 class Shape {
   constructor(gl) {
     this.gl = gl, this.array = gl.createVertexArray();
@@ -251,9 +251,9 @@ class Shape {
   drawLines() { this.draw(this.gl.LINES, this.lines, this.lineCount); }
 }
 
-// How sharp to draw, so that frames keep up with the screen: pixels of the
-// picture by those of the screen. Where the processor draws, a frame takes as
-// long as it has pixels.
+// Chooses a resolution at which frames keep up with the screen: pixels of the
+// picture per pixel of the screen. Without a graphics card the time of a frame
+// is proportional to its pixels.
 class Pace {
   constructor() {
     this.level = 0, this.patience = 4000;  // [ms] before it is sharper again
@@ -263,8 +263,8 @@ class Pace {
   get sharpness() { return this.moving ? Pace.levels[this.level] : 1; }
   begin(now) { this.from = now, this.count = 0; }
 
-  // A frame at a time [ms].  moving: what stands still is drawn sharp.
-  // @return whether the picture is to be drawn anew
+  // A frame at a time [ms]; one that does not move is drawn sharp.
+  // @return whether the picture must be drawn again
   frame(now, moving) {
     const turned = moving !== this.moving;
     if (turned || now - this.last > 500) this.begin(now);
@@ -272,7 +272,7 @@ class Pace {
     if (turned || !moving) return turned && this.level > 0;
     const passed = now - this.from, mean = passed / ++this.count;
     if (passed > 700 && mean > 19 && this.level + 1 < Pace.levels.length) {
-      if (this.sharper) this.patience *= 4;  // it was so for too short a time
+      if (this.sharper) this.patience *= 4;  // it was sharp too briefly
       ++this.level, this.sharper = false, this.begin(now);
     } else if (passed > this.patience) {
       this.sharper = this.level > 0 && mean < 17.5;
@@ -325,7 +325,7 @@ class View {
       gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
   }
 
-  // What is drawn of a side; its mesh, too, if that is another one.
+  // Set the points of a side, and its mesh if that is new.
   setSide(k, {points, triangles, lines}, isNew = true) {
     if (isNew) this.cloths[k].setMesh(triangles, lines);
     this.cloths[k].setPoints(points);

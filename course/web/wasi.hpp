@@ -1,9 +1,10 @@
 #pragma once
 /** @file wasi.hpp
- * The parts of the C++ library that wasm32-wasi lacks: threads. Included before
- * each source that is compiled for a page, and by nothing else. A page has
- * one thread, so it does nothing. */
+ * The parts of the C++ library that wasm32-wasi lacks: threads and files.
+ * Included before each source that is compiled for a page, and by nothing
+ * else. A page has one thread and no files, so these do nothing. */
 #include <chrono>
+#include <istream>
 #include <mutex>
 
 namespace std {
@@ -16,6 +17,14 @@ void sleep_for(const chrono::duration<Rep, Period>&) {}
 struct mutex {
   void lock() {}
   void unlock() {}
+};
+
+template <>
+class basic_ifstream<char> : public basic_istream<char> {
+ public:
+  basic_ifstream() : basic_istream<char>(nullptr) {}
+  void open(const string&, openmode) {}
+  bool is_open() const { return false; }
 };
 
 }  // namespace std

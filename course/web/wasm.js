@@ -1,6 +1,6 @@
 'use strict';
-// Of the thread that computes: the module of WebAssembly, calls of its page_
-// functions, and what there is to draw of it.
+// Part of the thread that computes: the module of WebAssembly, calls of its
+// page_ functions, and the points and meshes to draw.
 
 let wasm, module;              // exports; compiled
 let broken = '', fault;        // what ended a call, until the next start
@@ -31,8 +31,8 @@ async function instantiate() {
   wasm._initialize();
 }
 
-// Call of a page_ function. What throws traps: then the instance is used only
-// to draw what it has, until the next start makes another one.
+// Call a page_ function. A throw traps; after that the instance is used only
+// to draw its last state, until the next start makes another one.
 function call(name, ...values) {
   const stack = wasm.__stack_pointer.value;
   try {
@@ -44,7 +44,7 @@ function call(name, ...values) {
   }
 }
 
-// What is drawn of a side; its mesh if that is another one than the last.
+// Points of a side, and its mesh if that has changed since the last call.
 function drawn(side) {
   const points = copy(Float32Array, wasm.page_points(side),
     4 * wasm.page_slots(side));

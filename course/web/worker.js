@@ -1,6 +1,5 @@
-// The thread that computes one cloth: cloth.cpp says what each call does. The
-// page asks for a frame and waits for it, so that it notices a step that never
-// ends.
+// The thread that computes one cloth; cloth.cpp documents each call. The page
+// asks for a frame and waits for it, so that it notices a step that never ends.
 
 let run = 0;                   // how many were started
 let failure = '';              // why it does not go on

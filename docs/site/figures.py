@@ -18,7 +18,7 @@ import web  # noqa: E402
 RIGHT = ("", "damped")  # what draw.py calls correct
 LOOP = 4  # [s], how long a figure takes until it starts again
 LINES = 9  # of code beside a figure
-# What a mistake does: the words below its picture.
+# The words below the picture of a mistake.
 SAYS = {
     "sign": "A stretched spring pushes its ends apart: near the corners nodes "
             "fly off.",

@@ -24,7 +24,7 @@ class Line {
   /** @pre @a text outlives this */
   explicit Line(std::string_view text) : text_(text) { skip_blanks(); }
 
-  /** What is wrong with the words read so far; "" if nothing. */
+  /** The error in the words read so far; "" if there is none. */
   const std::string& error() const { return error_; }
   void fail(const std::string& what) {
     if (error_.empty()) error_ = what;

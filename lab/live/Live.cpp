@@ -15,7 +15,7 @@ namespace lab {
 
 namespace {
 
-/** Of what is compared, the reference: order 6, or 2 where there is contact. */
+/** The reference of a comparison: order 6, or 2 where there is contact. */
 constexpr MethodEntry reference_method = entry_of<Srkn11b>();
 constexpr double reference_share = 1 / 3.;  // of its limit
 constexpr double most_in_round = 1e4;       // steps of a scene

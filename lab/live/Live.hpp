@@ -129,7 +129,7 @@ class Live {
    * was asked for can't be made, or the method can't choose its step here. Then
    * nothing has changed. */
   void apply(const std::string& request);
-  /** What is wrong with the text of a request; "" if nothing. */
+  /** The error in the text of a request; "" if there is none. */
   static std::string error_in(std::string_view request);
   /** Does this request replace the last one, if that has the same name? True of
    * what a slider or the hand sends as it moves. */

@@ -33,7 +33,8 @@ bool is_scene(const std::string& request) {
 
 std::string scene_request(const Model& m, std::uint64_t cloth) {
   std::string all = "scene " + std::to_string(cloth) +
-                    request_word(m.step.tolerance) + ' ' + in_quotes(m.name);
+                    request_word(m.step.tolerance) + ' ' +
+                    in_quotes(is_utf8(m.name) ? m.name : "scene");
   std::istringstream in(to_scene_file(m));
   for (std::string line; std::getline(in, line);)
     if (!line.starts_with('#')) all += "\n| " + line;

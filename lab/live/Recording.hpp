@@ -16,7 +16,7 @@ namespace lab {
 /** The first line of a recording. */
 inline constexpr const char* recording_begin = "mass_spring input 1";
 
-/** What a request for a scene says. */
+/** The content of a request for a scene. */
 struct SceneRequest {
   Model model;
   std::uint64_t cloth = 0;  ///< checksum_of() the cloth as made; 0: not known

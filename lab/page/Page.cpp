@@ -55,7 +55,7 @@ struct State {
     if (!live) return nullptr;
     return side == 0 ? &live->scene() : live->rival();
   }
-  /** What is drawn of a side. */
+  /** The scene that is drawn for a side. */
   const Scene& shown(unsigned side) const {
     const auto& beyond = drawn[side].beyond;
     return beyond ? *beyond : *scene(side);

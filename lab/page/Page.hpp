@@ -1,7 +1,7 @@
 #pragma once
 /** @file Page.hpp
- * What the web page calls: one Live scene, and what there is to draw of it.
- * These are C functions, since WebAssembly has no others. A pointer that one
+ * The functions that the web page calls: one Live scene and its drawing. They
+ * are C functions, since WebAssembly has no others. A pointer that one
  * returns is valid until the next call. page.mk exports all of them.
  *
  * Scenes are numbered as page_about() lists them, nodes by id. Side 0 is the
@@ -23,7 +23,7 @@ void page_load(unsigned scene, unsigned side);
 const char* page_setting();
 /** A buffer of @a size bytes, into which the caller writes a text. */
 char* page_room(unsigned size);
-/** Live::apply().  @return what is wrong with the text; "" if nothing */
+/** Live::apply().  @return the error in the text; "" if there is none */
 const char* page_request(const char* text);
 /** Live::recording(), but without the scene. */
 const char* page_recording();
@@ -34,7 +34,7 @@ double page_step();
 /** Check the state before it is drawn: Live::check().
  * @return 1 if it failed */
 int page_check();
-/** What happened to a side that failed; empty: it runs. */
+/** How a side failed; empty: it runs. */
 const char* page_failure(unsigned side);
 /** Draw a side that failed as it is so many steps after its last good state.
  * O(steps) since the last call.  @return its time then [s], which stays the

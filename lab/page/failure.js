@@ -1,6 +1,6 @@
 'use strict';
-// What the page does when a run fails: it shows the motion beyond the failure,
-// the reason and the cure, and goes on from the last good state.
+// When a run fails, the page shows the motion beyond the failure, the reason
+// and the cure, and goes on from the last good state.
 
 const playback = 2000;  // [ms], of the motion beyond a failure
 
@@ -33,8 +33,8 @@ function applyCure() {
   showControls();
 }
 
-// What is drawn at a time [ms]: of a failure, the motion beyond it. Between two
-// steps it is straight.
+// The sides to draw at a time [ms]. After a failure that is the motion beyond
+// it, interpolated linearly between two steps.
 function sidesAt(now) {
   const {beyond} = page;
   if (!beyond) return page.sides;
@@ -72,7 +72,7 @@ function showFailure(words) {
   $('failure').hidden = !text;
   $('failure').querySelector('h2').textContent =
     text.startsWith('diverged') ? 'It diverged'
-      : text.startsWith('Of the link') ? 'Another run' : 'It failed';
+      : text.startsWith('Ignored') ? 'Another run' : 'It failed';
   // Where it happened; and behind the last good state, why and what works.
   const at = text.indexOf(' s; ', text.indexOf('the last good state'));
   const parts = at < 0 ? [text]

@@ -18,9 +18,9 @@ const Link = {
 
   most: 1e6,  // steps, and the largest number of a request
 
-  // What write() wrote; what is missing or makes no sense is left out.
+  // Reads what write() wrote; ignores parts that are missing or not valid.
   // @return {start, lines, end, camera, speed, leftOut}: start has scene and
-  // side, if known; end: number of steps; leftOut: a line made no sense
+  // side, if known; end: number of steps; leftOut: a line was not valid
   read(hash, about) {
     const all = new URLSearchParams(hash.replace(/^#/, ''));
     const read = {start: {}, lines: [], end: 0, leftOut: false};

@@ -81,8 +81,8 @@ function showControls() {
   page.changed();
 }
 
-// The settings are those of the run, once nothing that was asked is on its way.
-// K and drag change the limit, but dt stays; so dt / limit changes.
+// Once no request is on its way, the settings are those of the run. K and drag
+// change the limit, but dt stays; so dt / limit changes.
 function followRun({asked, readings}) {
   if (asked !== page.asked || !readings) return;
   const {main, rival} = readings, s = page.settings, before = {...s};
@@ -122,7 +122,7 @@ function requestOf(name) {
     : name === 'rival' || name === 'rivalShare'
       ? ['compare', s.rival, s.rivalShare, 'equal-time'] : [name, s[name]];
 }
-// What a scene is asked at its start, so that it is as the controls show. Its
+// The requests at the start of a scene that make it match the controls. Its
 // parameters are in the settings once they are known.
 function startLines() {
   const s = page.settings, names = Object.keys(sliders).filter(
@@ -163,8 +163,7 @@ function loadScene(name) {
   start(), setPlaying(!isStill());
 }
 
-// A change of what runs. One that failed goes on from its last good state,
-// unless nothing of it can go on.
+// Change a setting. A failed run goes on from its last good state, if it can.
 function change(name, value) {
   page.settings[name] = value;
   if (page.broken) {
@@ -283,8 +282,8 @@ function showNumbers() {
   });
 }
 
-const tellLeftOut = () => showFailure('Of the link, what makes no sense was ' +
-  'left out: its run may be another one.');
+const tellLeftOut = () => showFailure('Ignored the parts of this link that ' +
+  'are not valid; the run may differ.');
 
 const replies = {
   about(data) {
@@ -305,7 +304,7 @@ const replies = {
   },
   frame(data) {
     page.waiting = false, page.calls = data.calls, ++page.frames;
-    // One that failed may run by what is on its way.
+    // A request on its way may make a failed run go on.
     if (data.failed && data.asked !== page.asked) page.wanted = true;
     if (page.beyond) page.beyond.drawn = undefined;
     else setText($('busy'), '');
@@ -362,7 +361,7 @@ const replies = {
   error({text}) { page.errors.push(text), console.error(text); },
 };
 
-// Look at what the scene says is its room; else at the cloth, and below it.
+// Look at the room that the scene names; else at the cloth, and below it.
 function frameScene() {
   if (page.framed || !page.sides.length) return;
   page.framed = true;
@@ -405,7 +404,7 @@ function tick(now) {
   if (!page.dirty || !page.sides.length) return;
   page.dirty = false;
   page.view.draw(sidesAt(now), page.theme, page.hand.grabbed);
-  // Of a run that goes on, numbers and curves four times a second.
+  // While a run goes on, numbers and curves change four times a second.
   if (!moving || now - (page.numbersAt || 0) > 250)
     page.numbersAt = now, showNumbers(), showLimits();
 }
@@ -429,11 +428,11 @@ async function begin() {
   matchMedia('(prefers-color-scheme: dark)').onchange = colors;
   new ResizeObserver(() => page.changed()).observe($('stage'));
   $('canvas').addEventListener('webglcontextlost', () => location.reload());
-  // From a blob, as a page that is opened as a file may start no other one.
+  // From a blob: a page opened as a file must not load another file.
   const source = new Blob([$('worker').textContent], {type: 'text/javascript'});
   page.worker = new Worker(URL.createObjectURL(source));
   page.worker.onmessage = ({data}) => {
-    // What was on its way of the run before comes too late.
+    // A message of the previous run comes too late.
     if ((data.run ?? page.run) === page.run) replies[data.kind](data);
   };
   page.worker.onerror = e => page.errors.push(e.message);

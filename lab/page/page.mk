@@ -28,6 +28,13 @@ page: $(page)/index.html $(page)/loop.webp
 $(page_o)/%.o: %.cpp $(page_o)/flags
 	@mkdir -p $(@D) && echo '$(PAGE_CXX) $@'
 	@$(PAGE_CXX) $(page_flags) -include course/web/wasi.hpp -MMD -MP -c -o $@ $<
+# This header alone: others beside it, as of /usr/include, are not for
+# WebAssembly.
+$(page_o)/lab/scenes/KeyValues.o: page_flags += -isystem $(page_o)/include
+$(page_o)/lab/scenes/KeyValues.o: | $(page_o)/include/toml++
+$(page_o)/include/toml++:
+	@mkdir -p $(@D) && ln -sfn "$$(pkg-config --variable=includedir \
+	  tomlplusplus)/toml++" $@
 $(page_o)/flags: FORCE
 	@mkdir -p $(@D); echo '$(PAGE_CXX) $(page_flags)' | cmp -s - $@ \
 	  || echo '$(PAGE_CXX) $(page_flags)' > $@

@@ -1,5 +1,5 @@
 /** @file page_positions.cpp
- * What the page is compared with, bit by bit:
+ * The native positions, which the page must have to the bit:
  *   page_positions SCENE.toml GRID STEPS [METHOD DT]...
  * For each method the positions of all nodes of the grid after so many steps of
  * DT [s], as doubles, by id. */

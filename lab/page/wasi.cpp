@@ -1,5 +1,5 @@
 /** @file wasi.cpp
- * What a page lacks: files. Compiled for the page only. */
+ * Stubs for files, which a page lacks. Compiled for the page only. */
 #include <cstddef>
 #include <cstdint>
 #include <limits>

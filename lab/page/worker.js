@@ -6,10 +6,10 @@ let about;                     // page_about()
 let calls;                     // steps of this run
 let run = 0, asked = 0;        // how many were started; requests taken
 let sharpAt = 0, readings = null;
-let rivalIsShown = false;      // that it failed
+let rivalIsShown = false;      // the failure of the second scene
 let newest = 0;                // number of the last run that the page asked for
 
-// @return what is wrong with the request; '' if nothing
+// @return the error in the request; '' if there is none
 function request(line) {
   const bytes = new TextEncoder().encode(line + '\0');
   const at = call('room', bytes.length);
@@ -34,7 +34,7 @@ function advance(time, budget) {
 
 // Run a scene through its requests `lines`, [steps before it, text], and to
 // `end` steps, until the page asks for another run than `mine`.
-// @return whether all lines made sense, and 150 readings at most
+// @return whether a line was not valid, and 150 readings at most
 async function repeat({scene, side, lines, end}, mine) {
   ++run, calls = 0, broken = '';
   call('load', scene, side);
@@ -65,7 +65,7 @@ async function repeat({scene, side, lines, end}, mine) {
   return {history, leftOut};
 }
 
-// ------------------------------------------------------------------ To be seen
+// --------------------------------------------------------------------- Frames
 
 function failureOf(side) {
   if (side === 0 && broken) return broken;
@@ -95,7 +95,7 @@ function frame() {
 // The steps after a side's last good state, without the guard that stops it,
 // until a node is far from there: as many as fit in a second. From then on the
 // side is drawn as it is while its nodes are still near.
-// @return what is drawn of each step
+// @return points and mesh of each step
 function beyond(side) {
   const far = 3, near = 0.2;  // [m]
   const frames = [], until = performance.now() + 1000;
@@ -112,7 +112,7 @@ function beyond(side) {
   versions[side] = -1;
   return frames;
 }
-// Of nodes that are in both [m].
+// The largest distance of a node between both [m], if both have it.
 function largestMove(from, to) {
   let most = 0;
   for (let i = 0; i < to.length; i += 4) {
@@ -159,12 +159,12 @@ const handlers = {
     if (!failureOf(0) || broken) return;
     postMessage({kind: 'beyond', run, asked, frames: beyond(0)}), frame();
   },
-  // Why it failed and what works: it is found by trying, which takes a while.
+  // Why it failed and what works: found by trial, which takes a while.
   explain() {
     const short = failureOf(0);
     if (!short) return;
     const at = broken ? undefined : call('explain');
-    // A trial of what might work may throw: then nothing works that is known.
+    // A trial may throw: then no cure is known.
     const {text: why, cure} = at === undefined ? {text: short, cure: null}
       : JSON.parse(text(at));
     postMessage({kind: 'why', run, asked, why, cure, broken: !!broken});

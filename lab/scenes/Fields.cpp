@@ -128,6 +128,8 @@ void read(const Field& f, const std::string& text, T& a) {
   } else if constexpr (std::is_same_v<T, std::string>) {
     a = text;
     if (a.empty()) throw SceneError(f.name, "is empty, expected a file name");
+    if (!is_utf8(a))
+      refuse(f.name, printable(a), "a name in UTF-8, as scene files are");
   } else if constexpr (std::is_same_v<T, TimeStep>) {
     a = read_time_step(text);
   } else if constexpr (std::is_same_v<T, Measure>) {

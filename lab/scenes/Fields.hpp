@@ -11,7 +11,7 @@
 
 namespace lab {
 
-/** What a field describes. */
+/** The kinds of fields. */
 enum class Role {
   mesh,     ///< a file of the mesh
   cloth,    ///< a part that makes up the cloth

@@ -1,127 +1,122 @@
 #include "lab/scenes/KeyValues.hpp"
 
+#include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <stdexcept>
+#include <cstdint>
 
 #include "CME212/Mesh.hpp"
+#include "CME212/Util.hpp"
+
+#define TOML_EXCEPTIONS 0  // WebAssembly has none
+#define TOML_ENABLE_FORMATTERS 0
+#include <toml++/toml.h>
 
 namespace lab {
 namespace {
 
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-constexpr std::string_view blanks = " \t\r";
-constexpr const char* not_closed = "has a value that is not closed on its line";
-
-/** Append the code point @a c in UTF-8. */
-void append_utf8(std::string& text, unsigned c) {
-  if (c < 0x80) {
-    text += char(c);
-    return;
-  }
-  const int more = c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
-  text += char((0xFF00 >> (more + 1) & 0xFF) | c >> 6 * more);
-  for (int k = more - 1; k >= 0; --k) text += char(0x80 | (c >> 6 * k & 0x3F));
-}
-
-/** Reads the values of one line from its front. what() of its errors continues
- * a sentence that begins with the key. */
+/** Reads the text of one file. */
 class Reader {
  public:
-  explicit Reader(std::string_view rest) : rest_(rest) {}
+  Reader(std::string_view text, const std::string& file)
+      : text_(text), file_(file) {}
 
-  std::vector<std::string> values() {
-    std::vector<std::string> all;
-    if (at_end()) fail("has no value");
-    if (!take('[')) {
-      all.push_back(value("#"));
-    } else {
-      while (!take(']')) {
-        if (at_end()) fail(not_closed);
-        all.push_back(value(",]#"));
-        if (!take(',') && !ahead(']')) fail(not_closed);
-      }
+  void read(const std::function<void(const KeyValue&, std::size_t)>& use) {
+    check_depth();
+    const auto result = toml::parse(text_);
+    if (!result) fail(result.error());
+    std::vector<decltype(result.begin())> keys;
+    for (auto it = result.begin(); it != result.end(); ++it) keys.push_back(it);
+    std::ranges::sort(keys, {}, [](auto it) {
+      const auto& at = it->first.source().begin;
+      return std::pair(at.line, at.column);
+    });
+    for (auto it : keys) {
+      KeyValue found{std::string(it->first.str()), {}};
+      line_ = it->first.source().begin.line;
+      name_ = printable(found.key);
+      if (const auto* list = it->second.as_array())
+        for (const auto& value : *list) found.values.push_back(text_of(value));
+      else
+        found.values.push_back(text_of(it->second));
+      use(found, line_);
     }
-    if (ahead('"') || ahead(']') || ahead('[')) fail(not_closed);
-    if (!at_end()) fail("has text after its value");
-    return all;
   }
 
  private:
-  std::string_view rest_;
+  std::string_view text_;
+  const std::string& file_;
+  std::string name_;  // of the key that is read
+  std::size_t line_ = 0;
 
-  [[noreturn]] static void fail(const std::string& what) {
-    throw std::runtime_error(what);
-  }
-  void skip_blanks() {
-    rest_.remove_prefix(
-        std::min(rest_.find_first_not_of(blanks), rest_.size()));
-  }
-  bool ahead(char c) {
-    skip_blanks();
-    return rest_.starts_with(c);
-  }
-  bool at_end() { return ahead('#') || rest_.empty(); }
-  bool take(char c) {
-    if (!ahead(c)) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-  /** The next @a n characters. */
-  std::string_view next(std::size_t n) {
-    if (rest_.size() < n) fail(not_closed);
-    const auto taken = rest_.substr(0, n);
-    rest_.remove_prefix(n);
-    return taken;
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(file_, line_, what);
   }
 
-  /** One value; if it has no quotes, up to one of the characters @a stops. */
-  std::string value(const char* stops) {
-    if (take('"')) return escaped();
-    if (take('\'')) {
-      const auto end = rest_.find('\'');
-      if (end == std::string_view::npos) fail(not_closed);
-      const std::string text(next(end));
-      next(1);
-      return text;
+  std::string text_of(const toml::node& value) const {
+    if (const auto* text = value.as_string()) {
+      if (text->get().find('\0') != std::string::npos)
+        fail(name_ + " has the character 0, expected another text");
+      return text->get();
     }
-    const auto bare = next(std::min(rest_.find_first_of(stops), rest_.size()));
-    if (bare.find_first_of("\"[]") != std::string_view::npos) fail(not_closed);
-    const auto last = bare.find_last_not_of(blanks);
-    if (last == std::string_view::npos) fail("has an empty item in its list");
-    return std::string(bare.substr(0, last + 1));
+    if (const auto* whole = value.as_integer())
+      return std::to_string(whole->get());
+    if (const auto* number = value.as_floating_point())
+      return CME212::exact_text(number->get());
+    if (const auto* flag = value.as_boolean())
+      return flag->get() ? "true" : "false";
+    fail(name_ +
+         (value.is_table()   ? " is a table"
+          : value.is_array() ? " has a list in its list"
+                             : " is a date or a time") +
+         ", expected text, a number or a list of them");
   }
 
-  std::string escaped() {
-    std::string text;
-    while (true) {
-      const char c = next(1)[0];
-      if (c == '"') return text;
-      if (c != '\\') {
-        text += c;
-        continue;
+  /** Throws InputError: the text may have so many tables in tables that their
+   * destructor would need too much stack. Each takes a dot or a brace. */
+  void check_depth() {
+    int left = 1000;
+    line_ = 1;
+    for (std::size_t i = 0; i < text_.size(); ++i) {
+      const char c = text_[i];
+      if (c == '"' || c == '\'') {
+        const std::string_view three = c == '"' ? "\"\"\"" : "'''";
+        const auto end =
+            text_.substr(i).starts_with(three) ? three : three.substr(2);
+        i += end.size();
+        while (i < text_.size() && !text_.substr(i).starts_with(end))
+          i += c == '"' && text_[i] == '\\' ? 2 : 1;
+        i += end.size() - 1;
+      } else if (c == '#') {
+        i = std::min(text_.find('\n', i), text_.size()) - 1;
+      } else if ((c == '.' || c == '{') && --left < 0) {
+        line_ = std::size_t(std::ranges::count(text_.substr(0, i), '\n')) + 1;
+        fail("has too many tables, expected KEY = VALUE");
       }
-      const char code = next(1)[0];
-      constexpr std::string_view codes = "\"\\btnfr", meant = "\"\\\b\t\n\f\r";
-      if (const auto k = codes.find(code); k != std::string_view::npos) {
-        text += meant[k];
-        continue;
-      }
-      unsigned point = 0;
-      if (code == 'u' || code == 'U') {
-        const auto hex = next(code == 'u' ? 4 : 8);
-        const auto [end, error] =
-            std::from_chars(hex.data(), hex.data() + hex.size(), point, 16);
-        if (error == std::errc() && end == hex.data() + hex.size() &&
-            point < 0x110000 && (point < 0xD800 || point > 0xDFFF) &&
-            point != 0) {
-          append_utf8(text, point);
-          continue;
-        }
-      }
-      fail("has \\" + printable({&code, 1}) +
-           " in its text, which is not a valid escape: write \\ as \\\\");
     }
+  }
+
+  [[noreturn]] void fail(const toml::parse_error& error) {
+    std::string what(error.description());
+    line_ = std::max(error.source().begin.line, toml::source_index(1));
+    std::size_t from = 0;  // of its line
+    for (auto k = line_; k > 1 && from < text_.size(); --k)
+      from = std::min(text_.find('\n', from), text_.size() - 1) + 1;
+    if (what.find("cannot redefine") != std::string::npos) {
+      auto key = text_.substr(from, text_.find('=', from) - from);
+      constexpr auto around = " \t\"'";
+      key.remove_suffix(key.size() - (key.find_last_not_of(around) + 1));
+      key.remove_prefix(std::min(key.find_first_not_of(around), key.size()));
+      const auto before = toml::parse(text_.substr(0, from));
+      const auto first = before ? before.table().find(key) : before.end();
+      if (before && first != before.end())
+        fail(printable(key) + " is set a second time, first on line " +
+             std::to_string(first->first.source().begin.line));
+    }
+    const std::string_view begin = "Error while parsing ";
+    if (what.starts_with(begin)) what.erase(0, begin.size());
+    const auto line = text_.substr(from, text_.find('\n', from) - from);
+    fail('"' + printable(line) + "\" is not TOML (" + printable(what) +
+         "), expected KEY = VALUE, text in quotes");
   }
 };
 
@@ -130,29 +125,7 @@ class Reader {
 void each_key_value(
     std::string_view text, const std::string& file,
     const std::function<void(const KeyValue&, std::size_t line)>& use) {
-  if (text.starts_with(byte_order_mark))
-    text.remove_prefix(byte_order_mark.size());
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const auto end = std::min(text.find('\n'), text.size());
-    const auto line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    const auto first = line.find_first_not_of(blanks);
-    if (first == std::string_view::npos || line[first] == '#') continue;
-    const auto equals = line.find('=');
-    if (equals == std::string_view::npos || equals == first) {
-      const auto whole = line.substr(0, line.find_last_not_of('\r') + 1);
-      throw InputError(file, number,
-                       '"' + printable(whole) + "\", expected KEY = VALUE");
-    }
-    const auto last = line.find_last_not_of(blanks, equals - 1);
-    KeyValue found{std::string(line.substr(first, last - first + 1)), {}};
-    try {
-      found.values = Reader(line.substr(equals + 1)).values();
-    } catch (const std::runtime_error& e) {
-      throw InputError(file, number, printable(found.key) + ' ' + e.what());
-    }
-    use(found, number);
-  }
+  Reader(text, file).read(use);
 }
 
 std::string printable(std::string_view text) {
@@ -174,6 +147,10 @@ std::string in_quotes(std::string_view text) {
       quoted += std::string("\\u00") + hex[c >> 4] + hex[c & 15];
   }
   return quoted + '"';
+}
+
+bool is_utf8(std::string_view text) {
+  return bool(toml::parse("k = " + in_quotes(text)));
 }
 
 }  // namespace lab

@@ -1,6 +1,6 @@
 #pragma once
 /** @file KeyValues.hpp
- * Reads lines KEY = VALUE, the grammar of a scene file. See README.md. */
+ * Reads the text of a scene file, which is TOML. See README.md. */
 #include <functional>
 #include <string>
 #include <string_view>
@@ -8,18 +8,17 @@
 
 namespace lab {
 
-/** The content of one line. */
+/** A key and its values. */
 struct KeyValue {
   std::string key;
   std::vector<std::string> values;  ///< one, unless it is a list
 };
 
-/** Call @a use(KeyValue, line number) for each line of @a text that is neither
- * blank nor a comment (#). A value is text in double quotes, with the escapes
- * of TOML; text in single quotes, as it stands; a list of values in brackets,
- * on one line; or anything else, up to a comment. A byte order mark is skipped.
+/** Call @a use(KeyValue, line of the key) for each key of @a text, in order. A
+ * value is a text, a number, true or false, or a list of these; numbers are
+ * passed as text that std::strtod() reads back.
  * @param file its name, for messages
- * Throws InputError: any other line. */
+ * Throws InputError: no TOML; tables, dates, lists in lists, a text with \0. */
 void each_key_value(
     std::string_view text, const std::string& file,
     const std::function<void(const KeyValue&, std::size_t line)>& use);
@@ -28,7 +27,10 @@ void each_key_value(
 std::string printable(std::string_view text);
 
 /** @a text in double quotes, on one line, with escapes: each_key_value() reads
- * the same bytes. */
+ * the same text.  @pre is_utf8(@a text) */
 std::string in_quotes(std::string_view text);
+
+/** Can @a text be the value of a key? */
+bool is_utf8(std::string_view text);
 
 }  // namespace lab

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Measure.hpp
- * What is asked of a scene at its end, as numbers that can be compared between
- * grids; and try_out(), a run that answers. */
+ * The answer to the question about a scene, as numbers that can be compared
+ * between grids; and try_out(), a run that answers. */
 #include <array>
 #include <functional>
 #include <string>

@@ -14,7 +14,7 @@ namespace lab {
 struct PointsAndQuads {
   std::vector<Point> points;  ///< [m]
   std::vector<Quad> quads;
-  /** Of the points at t = 0 [m/s]; empty: at rest. */
+  /** Velocities of the points at t = 0 [m/s]; empty: at rest. */
   std::vector<Point> velocities = {};
 };
 

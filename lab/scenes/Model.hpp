@@ -133,8 +133,8 @@ struct Distance {
   double friction = 0;
 };
 
-/** What is asked of a scene: a quantity at its end, or its largest or smallest
- * value over time. Measure.hpp has the table of quantities. */
+/** The question about a scene: a quantity at its end, or its largest or
+ * smallest value over time. Measure.hpp has the table of quantities. */
 struct Measure {
   enum Quantity {
     com,
@@ -187,7 +187,7 @@ struct Model {
   TimeStep step;
   const MethodEntry* method = default_method();  ///< never null
   double t_end = 5;                              ///< [s], >= 0
-  // What is asked
+  // The question
   Measure measure = Measure::com;
   double tolerance = 0.01;  ///< in the unit of the measure
   bool percent = false;     ///< tolerance is in percent: Advice::asked
