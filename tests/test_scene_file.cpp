@@ -325,9 +325,11 @@ TEST(KeyValues, SayWhatIsWrong) {
             "f:1: k has the character 0, expected another text");
   const std::string expected = ", expected text, a number or a list of them";
   EXPECT_EQ(error("k = [[1]]"), "f:1: k has a list in its list" + expected);
-  EXPECT_EQ(error("[k]\na = 1"), "f:1: k is a table" + expected);
+  EXPECT_EQ(error("[k]\na = 1"), "f:1: has a table, expected KEY = VALUE");
+  EXPECT_EQ(error("k = [\n'['\n]\n [[[a"),
+            "f:4: has a table, expected KEY = VALUE");
+  EXPECT_EQ(error("k = {a = 1}"), "f:1: has a table, expected KEY = VALUE");
   EXPECT_EQ(error("k.a = 1"), "f:1: k is a table" + expected);
-  EXPECT_EQ(error("k = {a = 1}"), "f:1: k is a table" + expected);
   EXPECT_EQ(error("k = 1979-05-27"), "f:1: k is a date or a time" + expected);
   const std::string control =
       "f:1: \"?[2J" + std::string(56, 'a') + "...\" is not TOML (";
@@ -540,7 +542,7 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
   EXPECT_EQ(complaint(sheet + "colour = 3\n"), "2: unknown key colour");
   EXPECT_EQ(complaint(sheet + "config = \"x\"\n"), "2: unknown key config");
   EXPECT_EQ(complaint(sheet + "\n[part]\n"),
-            "3: part is a table, expected text, a number or a list of them");
+            "3: has a table, expected KEY = VALUE");
   for (const char* none : {"t-end", "t-end =", "t-end = # 3"})
     EXPECT_TRUE(complaint(sheet + none + std::string("\n"))
                     .starts_with(std::string("2: \"") + none +

@@ -4,6 +4,7 @@
  * Included before each source that is compiled for a page, and by nothing
  * else. A page has one thread and no files, so these do nothing. */
 #include <chrono>
+#include <filesystem>
 #include <istream>
 #include <mutex>
 
@@ -22,9 +23,13 @@ struct mutex {
 template <>
 class basic_ifstream<char> : public basic_istream<char> {
  public:
-  basic_ifstream() : basic_istream<char>(nullptr) {}
+  explicit basic_ifstream(const string& = {}, openmode = in)
+      : basic_istream<char>(nullptr) {}  // which is bad
   void open(const string&, openmode) {}
   bool is_open() const { return false; }
 };
+namespace filesystem {
+inline bool is_directory(const string&, error_code&) { return false; }
+}  // namespace filesystem
 
 }  // namespace std

@@ -21,7 +21,7 @@ class Reader {
       : text_(text), file_(file) {}
 
   void read(const std::function<void(const KeyValue&, std::size_t)>& use) {
-    check_depth();
+    check_has_no_table();
     const auto result = toml::parse(text_);
     if (!result) fail(result.error());
     std::vector<decltype(result.begin())> keys;
@@ -71,11 +71,15 @@ class Reader {
          ", expected text, a number or a list of them");
   }
 
-  /** Throws InputError: the text may have so many tables in tables that their
-   * destructor would need too much stack. Each takes a dot or a brace. */
-  void check_depth() {
-    int left = 1000;
-    line_ = 1;
+  /** Throws InputError: the text has a table, which no scene has. Tables in
+   * tables would need too much stack, and "[[[" ends toml++ 3.3. */
+  void check_has_no_table() {
+    int dots = 0, lists = 0;
+    bool begins = true;  // a line
+    const auto fail_at = [&](std::size_t i) {
+      line_ = std::size_t(std::ranges::count(text_.substr(0, i), '\n')) + 1;
+      fail("has a table, expected KEY = VALUE");
+    };
     for (std::size_t i = 0; i < text_.size(); ++i) {
       const char c = text_[i];
       if (c == '"' || c == '\'') {
@@ -88,10 +92,12 @@ class Reader {
         i += end.size() - 1;
       } else if (c == '#') {
         i = std::min(text_.find('\n', i), text_.size()) - 1;
-      } else if ((c == '.' || c == '{') && --left < 0) {
-        line_ = std::size_t(std::ranges::count(text_.substr(0, i), '\n')) + 1;
-        fail("has too many tables, expected KEY = VALUE");
+      } else if (c == '{' || (c == '[' && begins && lists == 0) ||
+                 (c == '.' && ++dots > 1000)) {
+        fail_at(i);
       }
+      lists += c == '[' ? 1 : c == ']' ? -1 : 0;
+      begins = c == '\n' || (begins && (c == ' ' || c == '\t'));
     }
   }
 
