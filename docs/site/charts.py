@@ -2,6 +2,7 @@
 into their page, where site.js unpacks them."""
 import base64
 import gzip
+import pathlib
 import re
 import subprocess
 import xml.etree.ElementTree as ET
@@ -16,7 +17,7 @@ INHERITED = {"fill": "black", "stroke": "none", "stroke-width": "1",
              "text-anchor": "start"}
 
 
-def write(source, target):
+def write(source: pathlib.Path, target: pathlib.Path) -> None:
     """A picture, or one frame of a film."""
     target.parent.mkdir(parents=True, exist_ok=True)
     middle = ["-ss", "1.4"] if source.suffix == ".gif" else []
@@ -26,7 +27,7 @@ def write(source, target):
         check=True, timeout=300, stdin=subprocess.DEVNULL)
 
 
-def element(source, attributes):
+def element(source: pathlib.Path, attributes: str) -> str:
     """The element of a chart: an SVG file."""
     tree = ET.parse(source).getroot()
     slim(tree, INHERITED)
@@ -36,14 +37,15 @@ def element(source, attributes):
         for child in list(part):
             if child.get("id") not in used:
                 part.remove(child)
-    text = ET.tostring(tree, encoding="unicode").encode()
-    _, _, width, height = tree.get("viewBox").split()
-    packed = base64.b64encode(gzip.compress(text, 9, mtime=0)).decode()
+    text = ET.tostring(tree, encoding="unicode")
+    _, _, width, height = tree.attrib["viewBox"].split()
+    packed = base64.b64encode(
+        gzip.compress(text.encode(), 9, mtime=0)).decode()
     return (f'<img class="chart" width="{width}" height="{height}" '
             f'{attributes} data-gz="{packed}">')
 
 
-def slim(element, around):
+def slim(element: ET.Element, around: dict[str, str]) -> None:
     """Write it in fewer characters: nothing that it inherits anyway, lengths
     in tenths of a pixel, paths by what each point adds to the one before."""
     if element.tag.endswith(("}defs", "}style")):
@@ -71,11 +73,11 @@ def slim(element, around):
             element.remove(child)
 
 
-def path(text):
+def path(text: str) -> str:
     """The same path, with relative lines."""
     if set(re.findall("[A-Za-z]", text)) - set("MLz"):
         return text
-    out, at, start, command, last = "", (0, 0), (0, 0), "", ""
+    out, at, start, command, last = "", (0.0, 0.0), (0.0, 0.0), "", ""
     words = iter(re.findall(r"[A-Za-z]|-?[\d.]+", text))
     for word in words:
         if word.isalpha():
@@ -100,6 +102,6 @@ def path(text):
     return out
 
 
-def short(number):
+def short(number: float) -> str:
     text = f"{number:.1f}".removesuffix(".0")
     return "0" if text == "-0" else re.sub(r"^(-?)0\.", r"\1.", text)

@@ -1,7 +1,7 @@
 """What is on the site, in order: groups of pages. A page is the path of its
 Markdown, or a file of the site and its title."""
 
-CONTENTS = [
+CONTENTS: list[tuple[str, list[str | tuple[str, str]]]] = [
     ("Start", ["README.md",
                ("page/index.html", "The laboratory in the browser"),
                "docs/site/explode.md"]),

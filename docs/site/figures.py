@@ -7,6 +7,7 @@ import re
 import shutil
 import sys
 import textwrap
+from typing import Any
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "course" / room)
@@ -54,7 +55,7 @@ for scene in EXPLOSIONS.values():
     scene |= {"wasm": ["right"], "stage": "problem1"}
 
 
-def scenes():
+def scenes() -> dict[str, dict[str, Any]]:
     """Each figure: its name, the page that it stands on, its cloths (the names
     of draw.py, the correct one first), its stage, and of each cloth its speed
     and its end [s]. What fails before the others have moved has its own."""
@@ -81,32 +82,32 @@ def scenes():
 SCENES = scenes()
 
 
-def scene_of(picture):
+def scene_of(picture: str) -> dict[str, Any] | None:
     return SCENES.get(picture)
 
 
-def title(cloth, scene):
+def title(cloth: str, scene: dict[str, Any]) -> str:
     """What the switch calls a cloth."""
     if all(c in RIGHT for c in scene["cloths"]):
         return cloth or "undamped"
     return "right" if cloth == scene["cloths"][0] else cloth
 
 
-def diff(old, new):
+def diff(old: str, new: str) -> list[str]:
     """The lines that differ in the sources with two mistakes, with their
     neighbours if these are few."""
     out = []
     for file in markers.SOURCES:
         text = markers.solution(markers.path_of(file).read_text(), file)
-        lines = difflib.unified_diff(
-            *(draw.with_mistake(text, file, mistake).splitlines()
-              for mistake in (old, new)), n=1, lineterm="")
+        before, after = (draw.with_mistake(text, file, mistake).splitlines()
+                         for mistake in (old, new))
+        lines = difflib.unified_diff(before, after, n=1, lineterm="")
         out += [line for line in list(lines)[2:]
                 if line[1:].strip() and not line.startswith("@@")]
     return out
 
 
-def changed(cloth):
+def changed(cloth: str) -> str:
     """What has to change in the code of a mistake to make it right, some of
     which is compared with drag: as lines of a diff."""
     lines = min((diff(cloth, right) for right in RIGHT[::-1]), key=len)
@@ -116,11 +117,11 @@ def changed(cloth):
     return "\n".join(f"{line[0]} {text}" for line, text in zip(lines, body))
 
 
-def with_code(source, text):
+def with_code(source: str, text: str) -> str:
     """The Markdown of a page, and after each picture of mistakes their
     code."""
     def add(match):
-        scene = scene_of("course/" + match[1])
+        scene = SCENES["course/" + match[1]]
         if source != scene["page"]:
             return match[0]
         out = match[0]
@@ -134,14 +135,14 @@ def with_code(source, text):
     return re.sub(r"!\[[^]]*\]\((pictures/[\w.-]*-mistakes\.png)\)", add, text)
 
 
-def palette():
+def palette() -> str:
     """The colors of the figures, which are those of the site."""
     look = (ROOT / "course/web/look.css").read_text()
-    rules = re.match(r".*?\n}\n.*?\n}\n", look, re.S)[0]
+    rules = re.findall(r".*?\n}\n.*?\n}\n", look, re.S)[0]
     return rules.replace(".look {", ":root {")
 
 
-def write(built, out):
+def write(built: pathlib.Path, out: pathlib.Path) -> None:
     """The figures that are shown, from the folder where all are built, and
     scenes.js, which says what each shows. Code with a mistake is written as
     what it changes: in a tenth of the bytes."""

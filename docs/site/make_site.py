@@ -31,9 +31,11 @@ PICTURES = (".png", ".gif")
 # The pages in order: those of Markdown or code, and those of the site alone.
 PAGES = [page for _, group in CONTENTS for page in group]
 SOURCES = [page for page in PAGES if isinstance(page, str)]
+Entry = str | tuple[str, str]
+Pages = dict[str, "Page"]
 
 
-def file_of(page):
+def file_of(page: Entry) -> str:
     """The file of the site for a page."""
     if not isinstance(page, str):
         return page[0]
@@ -42,7 +44,7 @@ def file_of(page):
     return page + ".html"
 
 
-def relative(target, page):
+def relative(target: str, page: Entry) -> str:
     """The link from a page to a file of the site."""
     return posixpath.relpath(target, posixpath.dirname(file_of(page)) or ".")
 
@@ -51,17 +53,18 @@ class Page:
     """One page of the site. After read(): its title, its first words, the HTML
     of its body, and in faults what it names that is not there."""
 
-    def __init__(self, source):
-        self.source, self.faults = source, []
-        self.anchors, self.pictures = [], []
+    def __init__(self, source: str) -> None:
+        self.source, self.faults = source, list[str]()
+        self.anchors: list[tuple[str, str, str]] = []
+        self.pictures: list[str] = []
         self.text = (ROOT / source).read_text()
 
-    def at(self, url, words):
+    def at(self, url: str, words: str) -> str:
         """Words on what stands at a link or a picture: FILE:LINE: words."""
         line = self.text.count("\n", 0, max(self.text.find(url), 0)) + 1
         return f"{self.source}:{line}: {words}"
 
-    def read(self):
+    def read(self) -> "Page":
         text = self.text
         if not self.source.endswith(".md"):
             text = f"# {self.source}\n\n```\n{text.rstrip()}\n```\n"
@@ -74,12 +77,13 @@ class Page:
             check=True, timeout=300, stdout=subprocess.PIPE).stdout
         self.body = self.rewritten(body)
         self.ids = set(re.findall(r'\bid="([^"]+)"', self.body))
-        self.title = words_of(re.search(r"<h1[^>]*>(.*?)</h1>", body, re.S)[1])
+        self.title = words_of(
+            re.findall(r"<h1[^>]*>(.*?)</h1>", body, re.S)[0])
         first = re.search(r"</h1>.*?<p>([^<].*?)</p>", body, re.S)
         self.about = words_of(first[1] if first else self.title)
         return self
 
-    def rewritten(self, body):
+    def rewritten(self, body: str) -> str:
         # Each line of code had an id and an anchor; each formula its TeX.
         body = re.sub(r'<span id="cb[^"]*"><a [^>]*></a>(.*?)</span>$', r"\1",
                       body, flags=re.M)
@@ -100,11 +104,11 @@ class Page:
                       "</p>", r'<div class="live" data-scene="\2">\1</div>',
                       body, flags=re.S)
 
-    def path_of(self, url):
+    def path_of(self, url: str) -> str:
         return posixpath.normpath(posixpath.join(
             posixpath.dirname(self.source), url))
 
-    def link(self, match):
+    def link(self, match: re.Match[str]) -> str:
         url = html.unescape(match[1])
         if re.match(r"https?:", url):
             return match[0]
@@ -129,7 +133,7 @@ class Page:
         return (f'<a href="{REPOSITORY}/{kind}/main/{path}"' if REPOSITORY
                 else "<a")
 
-    def image(self, match):
+    def image(self, match: re.Match[str]) -> str:
         url, rest = html.unescape(match[1]), match[2].replace("/", "").strip()
         path = self.path_of(url)
         if not (ROOT / path).is_file():
@@ -146,14 +150,14 @@ class Page:
         return (f'<img src="{relative(shown(path), self.source)}" '
                 f'loading="lazy" {rest}>')
 
-    def place(self):
+    def place(self) -> tuple[Entry | None, Entry | None]:
         """Where it stands: what comes before and after it."""
         at = PAGES.index(self.source)
         return (PAGES[at - 1] if at else None,
                 PAGES[at + 1] if at + 1 < len(PAGES) else None)
 
 
-def displayed(match):
+def displayed(match: re.Match[str]) -> str:
     """A formula as pandoc reads it, whose parentheses grow by themselves."""
     formula = re.sub(r"\\[bB]ig[lr]", "", match[2])
     if re.search(r"\\\\$", formula, re.M):
@@ -161,22 +165,22 @@ def displayed(match):
     return f"{match[1]}$${formula}$$"
 
 
-def level(match):
+def level(match: re.Match[str]) -> str:
     """A formula in the text: its parentheses grow around fractions alone."""
     return match[0] if "<mfrac" in match[0] else match[0].replace(
         'stretchy="true"', 'stretchy="false"')
 
 
-def words_of(markup):
+def words_of(markup: str) -> str:
     return html.unescape(" ".join(re.sub(r"<[^>]*>", "", markup).split()))
 
 
-def shown(path):
+def shown(path: str) -> str:
     """The file of the site for a picture."""
     return re.sub(r"\.(png|gif)$", ".webp", path)
 
 
-def contents(pages, current):
+def contents(pages: Pages, current: Page) -> str:
     """The list of contents, and below the current page its sections. Of other
     groups than its own a page lists the names; the first page lists all."""
     out = []
@@ -200,12 +204,12 @@ def contents(pages, current):
     return "\n".join(out)
 
 
-def title_of(pages, entry):
+def title_of(pages: Pages, entry: Entry) -> str:
     return html.escape(pages[entry].title if isinstance(entry, str)
                        else entry[1], quote=False)
 
 
-def beside(pages, page):
+def beside(pages: Pages, page: Page) -> str:
     """The links to the page before and the page after."""
     out = ""
     for entry, kind, sign in zip(page.place(), ("prev", "next"),
@@ -217,12 +221,12 @@ def beside(pages, page):
     return out
 
 
-def og(name, value):
+def og(name: str, value: str) -> str:
     """What another program shows of a link to a page."""
     return f'<meta property="og:{name}" content="{html.escape(value)}">\n'
 
 
-def home(body):
+def home(body: str) -> str:
     """The body of the first page: the cloth is what one sees first."""
     lead, entries = ((ROOM / name).read_text()
                      for name in ("home.html", "entries.html"))
@@ -231,7 +235,7 @@ def home(body):
                   count=1, flags=re.S)
 
 
-def filled(template, pages, page):
+def filled(template: str, pages: Pages, page: Page) -> str:
     top = relative(".", page.source)
     explodes = 'class="explode"' in page.body
     scripts = ["figures/figure.js", "figures/scenes.js"] * (
@@ -253,7 +257,7 @@ def filled(template, pages, page):
                                   for name in [*scripts, "site.js"]))
 
 
-def link_home(file):
+def link_home(file: pathlib.Path) -> None:
     """On the laboratory's page: links to the course and the repository, and
     what another program shows of the page."""
     links = '<p><a href="../index.html">The course and the laboratory</a>'
@@ -267,7 +271,7 @@ def link_home(file):
     file.write_text(text)
 
 
-def faults_of(pages):
+def faults_of(pages: Pages) -> list[str]:
     faults = [words for page in pages.values() for words in page.faults]
     faults += [page.at(url, f"{path} has no section #{anchor}")
                for page in pages.values() for url, path, anchor in page.anchors
@@ -278,12 +282,12 @@ def faults_of(pages):
                      for path in tracked if path not in SOURCES + LEFT_OUT]
 
 
-def main(out, app, built):
+def main(out_name: str, app: str, figures_name: str) -> None:
     for tool in ("pandoc", "ffmpeg"):
         if not shutil.which(tool):
             sys.exit(f"make site: {tool} is missing; this installs it: "
                      "make page-deps")
-    out, built = pathlib.Path(out), pathlib.Path(built)
+    out, built = pathlib.Path(out_name), pathlib.Path(figures_name)
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         pages = dict(zip(SOURCES, pool.map(lambda s: Page(s).read(), SOURCES)))
         if faults := faults_of(pages):

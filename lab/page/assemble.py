@@ -12,7 +12,7 @@ import sys
 room = pathlib.Path(__file__).parent
 
 
-def script(match):
+def script(match: re.Match[str]) -> str:
     attributes, name = match.groups()
     if name == "cloth.wasm.gz":
         wasm = pathlib.Path(sys.argv[1]).read_bytes()

@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import websocket
 
@@ -14,7 +16,8 @@ import websocket
 class Browser:
     """One page. Use it in a with statement; lengths in CSS pixels."""
 
-    def __init__(self, width=1280, height=800, flags=()):
+    def __init__(self, width: int = 1280, height: int = 800,
+                 flags: Iterable[str] = ()) -> None:
         self.folder = tempfile.mkdtemp(prefix="page.")
         self.process = subprocess.Popen(
             ["chromium", "--headless=new", "--no-sandbox", "--no-first-run",
@@ -29,7 +32,8 @@ class Browser:
         number, path = port.read_text().split("\n")[:2]
         self.socket = websocket.create_connection(
             f"ws://127.0.0.1:{number}{path}", timeout=300)
-        self.count, self.session, self.faults = 0, None, []
+        self.count, self.session = 0, None
+        self.faults: list[str] = []
         target = self.send("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.send("Target.attachToTarget", targetId=target,
                                  flatten=True)["sessionId"]
@@ -44,13 +48,13 @@ class Browser:
     def __exit__(self, *_):
         self.close()
 
-    def close(self):
+    def close(self) -> None:
         self.socket.close()
         self.process.terminate()
         self.process.wait(60)
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def as_new(self):
+    def as_new(self) -> None:
         """For the next test, as it was at first."""
         self.faults = []
         self.resize(*self.size)
@@ -64,7 +68,7 @@ class Browser:
                 raise TimeoutError(what)
             time.sleep(0.05)
 
-    def send(self, method, **values):
+    def send(self, method: str, /, **values: Any) -> Any:
         """The answer to a command. What the page complains of meanwhile goes
         to self.faults."""
         self.count += 1
@@ -93,12 +97,13 @@ class Browser:
             if values["entry"]["level"] == "error":
                 self.faults.append(values["entry"]["text"])
 
-    def resize(self, width, height, touch=False):
+    def resize(self, width: int, height: int, touch: bool = False) -> None:
         self.send("Emulation.setDeviceMetricsOverride", width=width,
                   height=height, deviceScaleFactor=1, mobile=touch)
         self.send("Emulation.setTouchEmulationEnabled", enabled=touch)
 
-    def prefer(self, dark=False, still=False, forced=False):
+    def prefer(self, dark: bool = False, still: bool = False,
+               forced: bool = False) -> None:
         """What the person prefers: colors, no motion, colors of their own."""
         chosen = {"prefers-color-scheme": "dark" if dark else "light",
                   "prefers-reduced-motion": "reduce" if still else "",
@@ -106,13 +111,13 @@ class Browser:
         self.send("Emulation.setEmulatedMedia", features=[
             {"name": name, "value": value} for name, value in chosen.items()])
 
-    def open(self, address):
+    def open(self, address: str) -> None:
         """Another page, also if only what is behind # is another."""
         self.send("Page.navigate", url="about:blank")
         self.send("Page.navigate", url=address)
         self.wait("document.readyState === 'complete'")
 
-    def value(self, expression):
+    def value(self, expression: str) -> Any:
         """What an expression of JavaScript is; it is waited for."""
         answer = self.send("Runtime.evaluate", expression=expression,
                            returnByValue=True, awaitPromise=True)
@@ -120,34 +125,34 @@ class Browser:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def bytes_of(self, array):
+    def bytes_of(self, array: str) -> bytes:
         """The bytes of an array of numbers, given as an expression."""
         return base64.b64decode(self.value(
             "(bytes => { let s = ''; for (const c of bytes) s +="
             " String.fromCharCode(c); return btoa(s); })"
             f"(new Uint8Array(({array}).buffer))"))
 
-    def wait(self, expression, seconds=60):
+    def wait(self, expression: str, seconds: float = 60) -> None:
         self._until(lambda: self.value(expression), seconds,
                     f"never: {expression}")
 
-    def screenshot(self, file):
+    def screenshot(self, file: str | pathlib.Path) -> None:
         data = self.send("Page.captureScreenshot", format="png")["data"]
         pathlib.Path(file).write_bytes(base64.b64decode(data))
 
-    def key(self, key, code="", text=""):
+    def key(self, key: str, code: str = "", text: str = "") -> None:
         for kind in ("keyDown", "keyUp"):
             values = {"text": text} if text and kind == "keyDown" else {}
             self.send("Input.dispatchKeyEvent", type=kind, key=key,
                       code=code or key, **values)
 
-    def mouse(self, kind, x, y):
+    def mouse(self, kind: str, x: float, y: float) -> None:
         """kind: mousePressed, mouseMoved, mouseReleased"""
         self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y,
                   button="left", buttons=int(kind != "mouseReleased"),
                   clickCount=1)
 
-    def click(self, selector):
+    def click(self, selector: str) -> None:
         x, y = self.value(
             "(box => [box.x + box.width / 2, box.y + box.height / 2])("
             f"(e => (e.scrollIntoView({{block: 'nearest'}}), e))"
@@ -155,7 +160,7 @@ class Browser:
         self.mouse("mousePressed", x, y)
         self.mouse("mouseReleased", x, y)
 
-    def stroke(self, start, end):
+    def stroke(self, start: Sequence[float], end: Sequence[float]) -> None:
         """Press, draw a straight line in ten moves, release."""
         (x0, y0), (x1, y1) = start, end
         self.mouse("mousePressed", x0, y0)
@@ -164,11 +169,11 @@ class Browser:
                        y0 + (y1 - y0) * k / 10)
         self.mouse("mouseReleased", x1, y1)
 
-    def wheel(self, x, y, down):
+    def wheel(self, x: float, y: float, down: float) -> None:
         self.send("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y,
                   deltaX=0, deltaY=down)
 
-    def touch(self, kind, *points):
+    def touch(self, kind: str, *points: Sequence[float]) -> None:
         """kind: touchStart, touchMove, touchEnd; points: (x, y)"""
         self.send("Input.dispatchTouchEvent", type=kind, touchPoints=[
             {"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)])

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+from typing import Any
 
 import websocket
 
@@ -23,14 +24,14 @@ class Skipped(Exception):
 
 class Firefox(Browser):
     """One page. Use it in a with statement; lengths in CSS pixels."""
-    programs = "firefox-esr", "xvfb-run", "xdotool"
+    programs: tuple[str, ...] = "firefox-esr", "xvfb-run", "xdotool"
 
     @classmethod
-    def missing(cls):
+    def missing(cls) -> list[str]:
         """The programs that it needs and that are not here."""
         return [name for name in cls.programs if not shutil.which(name)]
 
-    def __init__(self, width=1280, height=800):
+    def __init__(self, width: int = 1280, height: int = 800) -> None:
         self.folder = tempfile.mkdtemp(prefix="page.")
         pathlib.Path(self.folder, "user.js").write_text(
             'user_pref("webgl.force-enabled", true);\n'
@@ -46,7 +47,7 @@ class Firefox(Browser):
         self._until(lambda: re.search(found, said.read_text()), 300,
                     "the browser does not start")
         self.socket = websocket.create_connection(
-            re.search(found, said.read_text())[1] + "/session", timeout=900,
+            re.findall(found, said.read_text())[0] + "/session", timeout=900,
             suppress_origin=True)
         self.count, self.session, self.faults = 0, None, []
         self.send("session.new", capabilities={})
@@ -66,7 +67,7 @@ class Firefox(Browser):
                        timeout=300)
         return self.value("document.hasFocus()")
 
-    def close(self):
+    def close(self) -> None:
         try:
             self.send("browser.close")
             self.socket.close()
@@ -76,11 +77,11 @@ class Firefox(Browser):
             self.process.kill()
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def as_new(self):
+    def as_new(self) -> None:
         self.faults = []
         self.resize(*self.size)
 
-    def wait(self, expression, seconds=60):
+    def wait(self, expression: str, seconds: float = 60) -> None:
         # A processor that draws by itself is slower here than in Chromium.
         super().wait(expression, 5 * seconds)
 
@@ -92,21 +93,22 @@ class Firefox(Browser):
         if event.get("type") == "error":
             event["error"] = event["error"] + ": " + event["message"]
 
-    def resize(self, width, height, touch=False):
+    def resize(self, width: int, height: int, touch: bool = False) -> None:
         if touch:
             raise Skipped("a screen that is touched")
         self.send("browsingContext.setViewport", context=self.context,
                   viewport={"width": width, "height": height})
 
-    def prefer(self, dark=False, still=False, forced=False):
+    def prefer(self, dark: bool = False, still: bool = False,
+               forced: bool = False) -> None:
         raise Skipped("what the person prefers")
 
-    def open(self, address):
+    def open(self, address: str) -> None:
         for url in ("about:blank", address):
             self.send("browsingContext.navigate", context=self.context,
                       url=url, wait="complete")
 
-    def value(self, expression):
+    def value(self, expression: str) -> Any:
         answer = self.send(
             "script.evaluate", target={"context": self.context},
             awaitPromise=True, expression="(async () => JSON.stringify("
@@ -116,7 +118,7 @@ class Firefox(Browser):
         text = answer["result"].get("value")
         return None if text is None else json.loads(text)
 
-    def screenshot(self, file):
+    def screenshot(self, file: str | pathlib.Path) -> None:
         data = self.send("browsingContext.captureScreenshot",
                          context=self.context)["data"]
         file = pathlib.Path(file)
@@ -127,18 +129,18 @@ class Firefox(Browser):
         self.send("input.performActions", context=self.context, actions=[
             {"type": kind, "id": name, "actions": list(actions), **more}])
 
-    def key(self, key, code="", text=""):
+    def key(self, key: str, code: str = "", text: str = "") -> None:
         value = KEYS.get(key, key)
         self._act("key", "keys", {"type": "keyDown", "value": value},
                   {"type": "keyUp", "value": value})
 
-    def mouse(self, kind, x, y):
+    def mouse(self, kind: str, x: float, y: float) -> None:
         actions = [{"type": "pointerMove", "x": round(x), "y": round(y)}]
         if kind != "mouseMoved":
             press = "pointerDown" if kind == "mousePressed" else "pointerUp"
             actions.append({"type": press, "button": 0})
         self._act("pointer", "mouse", *actions)
 
-    def wheel(self, x, y, down):
+    def wheel(self, x: float, y: float, down: float) -> None:
         self._act("wheel", "wheel", {"type": "scroll", "x": x, "y": y,
                                      "deltaX": 0, "deltaY": down})

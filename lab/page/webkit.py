@@ -2,10 +2,12 @@
 webkit2gtk-driver, and Xvfb for its window. https://www.w3.org/TR/webdriver2"""
 import json
 import os
+import pathlib
 import signal
 import socket
 import subprocess
 import urllib.request
+from typing import Any
 
 from firefox import Firefox, Skipped
 
@@ -24,7 +26,7 @@ class WebKit(Firefox):
     """One page. Use it in a with statement; lengths in CSS pixels."""
     programs = "WebKitWebDriver", "xvfb-run"
 
-    def __init__(self, width=1280, height=800):
+    def __init__(self, width: int = 1280, height: int = 800) -> None:
         with socket.create_server(("127.0.0.1", 0)) as free:
             port = free.getsockname()[1]
         self.root, self.faults = f"http://127.0.0.1:{port}/session", []
@@ -44,17 +46,17 @@ class WebKit(Firefox):
         except OSError:
             return False
 
-    def send(self, path, **values):
+    def send(self, path: str, /, **values: Any) -> Any:
         path = path.replace("input.performActions", "/actions")
         with urllib.request.urlopen(
                 self.root + path, json.dumps(values).encode(), 900) as answer:
             return json.load(answer)["value"]
 
-    def close(self):
+    def close(self) -> None:
         os.killpg(self.process.pid, signal.SIGTERM)
         self.process.wait(60)
 
-    def resize(self, width, height, touch=False):
+    def resize(self, width: int, height: int, touch: bool = False) -> None:
         if touch:
             raise Skipped("a screen that is touched")
         # A window is larger than its page.
@@ -63,14 +65,14 @@ class WebKit(Firefox):
         self.send("/window/rect", width=width + left, height=height + above)
         self.wait(f"innerWidth === {width} && innerHeight === {height}")
 
-    def wheel(self, x, y, down):
+    def wheel(self, x: float, y: float, down: float) -> None:
         raise Skipped("a wheel")
 
-    def open(self, address):
+    def open(self, address: str) -> None:
         for url in ("about:blank", address):
             self.send("/url", url=url)
 
-    def value(self, expression):
+    def value(self, expression: str) -> Any:
         text, error, said = self.send("/execute/async", args=[],
                                       script=SCRIPT % expression)
         self.faults += said
@@ -78,5 +80,5 @@ class WebKit(Firefox):
             raise RuntimeError(f"{expression}: {error}")
         return None if text is None else json.loads(text)
 
-    def screenshot(self, file):
+    def screenshot(self, file: str | pathlib.Path) -> None:
         """Pictures are of the others."""
