@@ -23,8 +23,8 @@ LAB_PROGRAMS := $(call names,$(lab_main))
 LAB_TESTS    := $(call names,$(lab_tests))
 
 # No product and sum in one rounding: the same bits on every processor.
-lab_system := $(filter-out -D%,$(foreach p,eigen3 CLI11 tomlplusplus gtest, \
-              $(call system,$(p))))
+lab_system := $(strip $(foreach p,eigen3 CLI11 gtest,$(call system,$(p))) \
+              $(filter-out -D%,$(call system,tomlplusplus)))  # its header alone
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(lab_system)
 # What names SDL, or asks whether there is a viewer.

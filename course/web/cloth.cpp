@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "CME212/PageData.hpp"
 #include "CME212/viewer/Faces.hpp"
 #include "mass_spring.hpp"
 
@@ -115,18 +116,10 @@ class Run {
   }
   /** x y z [m] and the largest strain of a spring there, for each slot. */
   const std::vector<float>& drawn() {
-    drawn_.assign(4 * points_.size(), 0);
-    for (Node n : nodes(g))
-      for (unsigned k = 0; k < 3; ++k)
-        drawn_[4 * slots_[n.index()] + k] = float(n.position()[k]);
-    for (Edge e : edges(g)) {
-      const double L = length_ > 0 ? length_ : e.value().L;
-      const auto strain = float(L > 0 ? std::abs(length_of(e) / L - 1) : 0);
-      for (Node n : {e.node1(), e.node2()}) {
-        float& most = drawn_[4 * slots_[n.index()] + 3];
-        most = std::max(most, strain);
-      }
-    }
+    CME212::set_page_points(
+        drawn_, points_.size(), nodes(g), edges(g),
+        [this](const Node& n) { return slots_[n.index()]; },
+        [this](Edge e) { return length_ > 0 ? length_ : e.value().L; });
     return drawn_;
   }
   /** Counts up when mesh() would be another one. */
@@ -143,16 +136,11 @@ class Run {
           std::minmax({slots_[e.node1().index()], slots_[e.node2().index()]});
       ends.push_back({low, high});
     }
-    std::vector<unsigned> triangles, pins;
-    for (const Quad& q : CME212::faces_left(quads_, ends, points_.size()))
-      for (unsigned k : {0, 1, 2, 1, 3, 2}) triangles.push_back(q[k]);
+    std::vector<unsigned> pins;
     for (unsigned slot : slots_)
       if (is_corner(points_[slot])) pins.push_back(slot);
-    mesh_ = {unsigned(ends.size()), unsigned(triangles.size() / 3),
-             unsigned(pins.size())};
-    for (const auto& e : ends) mesh_.insert(mesh_.end(), e.begin(), e.end());
-    for (const auto* list : {&triangles, &pins})
-      mesh_.insert(mesh_.end(), list->begin(), list->end());
+    mesh_ = CME212::page_mesh(
+        ends, CME212::faces_left(quads_, ends, points_.size()), pins);
     return mesh_;
   }
 
@@ -218,9 +206,8 @@ class Run {
   Point pull(Node n) const {
     double K = 0;
     for (Edge e : edges(n)) K += length_ > 0 ? 100 : e.value().K;
-    const Point f = K / 8 * (target_ - n.position());
     const double most = 2 * grav;  // the cloth has 1 kg
-    return norm(f) > most ? most / norm(f) * f : f;
+    return CME212::hand_pull(K / 8, target_ - n.position(), most);
   }
 
   /** Kinetic and potential energy [J], and that of springs if @a springs. */

@@ -45,12 +45,8 @@ class Cloth {
       this.worker.postMessage(['start', {...setting, bytes, number}]);
   }
   open() {
-    const source = new Blob([workerSource], {type: 'text/javascript'});
-    this.worker = new Worker(URL.createObjectURL(source));
-    this.worker.onmessage = ({data}) => {
-      if ((data.run ?? this.run) === this.run) this[data.kind](data);
-    };
-    this.worker.onerror = e => this.error({text: e.message});
+    this.worker = startThread(workerSource, this, this,
+      text => this.error({text}));
   }
   close() {
     this.worker?.terminate(), this.worker = null, ++this.run;
@@ -90,14 +86,15 @@ class Cloth {
   }
 }
 
-class Figure {
+class Figure extends Picture {
   constructor(element, options) {
+    super();
     Object.assign(this, {stage: 'problem1', grid: 25, chain: 0, dt: 0.001,
       speed: 1, end: Infinity, wasm: [], beside: false, whole: false,
       times: [], says: []}, options);
     this.names ??= this.wasm;
-    this.element = element, this.clock = 0, this.sides = [], this.panes = [];
-    this.playing = false, this.dirty = true;
+    this.element = element, this.clock = 0, this.panes = [];
+    this.playing = false;
     const still = document.createElement('div');
     still.className = 'still', still.append(...element.childNodes);
     element.innerHTML = markup, element.append(still);
@@ -121,23 +118,13 @@ class Figure {
   }
   begin() {
     try {
-      this.view = new View(this.canvas);
-      if (!self.WebAssembly || !self.DecompressionStream)
-        throw new Error('no WebAssembly');
+      this.open(this.canvas, this.element);
     } catch {
       this.element.classList.add('cannot');
       return;
     }
     this.view.camera.set(-0.93, 0.32, 1);  // as the stills
-    this.hand = new Hand(this, this.canvas);
     if (!this.whole) this.letScroll();
-    const color = () => {
-      Object.assign(this, looksOf(this.element)), this.changed();
-    };
-    color();
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change',
-      color);
-    new ResizeObserver(() => this.changed()).observe(this.canvas);
     this.canvas.addEventListener('webglcontextlost', e => e.preventDefault());
     this.canvas.addEventListener('webglcontextrestored', () => {
       const {camera, obstacles} = this.view;
@@ -225,7 +212,6 @@ class Figure {
   }
 
   // ---------------------------------------------------------- What Hand needs
-  changed() { this.dirty = true; }
   ask(name, ...values) {
     if (name === 'toggle') return;
     this.touched = true;
@@ -302,15 +288,10 @@ class Figure {
     const runs = this.cloths.filter(c => !c.failure);
     if (!this.cloths.some(c => c.waiting)) this.advance(now, runs);
     this.wanted ||= this.hand.moved;
-    const moving = this.playing && runs.length > 0;
-    this.dirty = this.view.pace.frame(now, moving) || this.dirty;
-    if (!this.dirty || !this.sides.length) return;
-    this.dirty = false;
-    this.view.draw(this.sides, this.theme, this.hand.grabbed);
+    this.paint(now, this.playing && runs.length > 0);
   }
   advance(now, runs) {
-    const passed = Math.min(0.05, (now - (this.last ?? now)) / 1e3);
-    this.last = now;
+    const passed = this.passed(now);
     if (this.playing && (!runs.length || this.clock >= this.end))
       return this.atEnd(now);
     if (!this.playing && !this.wanted) return;
@@ -338,8 +319,6 @@ class Figure {
 const folder = (document.currentScript?.src || '').replace(/[^/]*$/, '');
 const packed = {}, asked = {};
 
-const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
-
 async function moduleOf(name) {
   asked[name] ??= packed[name] ? Promise.resolve() : new Promise(
     (done, fail) => {
@@ -350,8 +329,7 @@ async function moduleOf(name) {
     });
   await asked[name];
   const {text, base} = packed[name];
-  const bytes = await new Response(new Blob([bytesOf(text)]).stream()
-    .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  const bytes = await unpacked(text);
   if (!base) return bytes;
   // web.py: the parts that it has from its base, by place, and its own.
   const from = await moduleOf(base);
@@ -369,6 +347,7 @@ function figure(element, options) {
   }
   return new Figure(element, options);
 }
-Object.assign(figure, {Plot, shortNumber, setText, stages,
+Object.assign(figure, {Plot, shortNumber, stages, byPower, showSlider,
+  makeSlider, onKeys, fillTable, drawEnergy,
   add(name, text, base) { packed[name] = {text, base}; }});
 self.figure = figure;

@@ -88,8 +88,8 @@ def open_figures(b, *figures):
 
 
 def native(mistake, stage):
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
         program = draw.compiled(folder, mistake, stage,
                                 ROOT / "course/web/positions.cpp",
                                 "-ffp-contract=off")

@@ -59,3 +59,11 @@ function drawn(side) {
     pins: all.slice(2 * lines + 3 * triangles)}};
 }
 
+// Messages [name, value] call handlers[name](value, number of starts), one at a
+// time, also while a handler waits.
+let newest = 0, last = Promise.resolve();
+onmessage = ({data: [name, value]}) => {
+  const number = name === 'start' ? ++newest : newest;
+  last = last.then(() => handlers[name](value, number)).catch(
+    error => postMessage({kind: 'error', text: String(error.stack || error)}));
+};

@@ -23,6 +23,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable
 
 ROOM = pathlib.Path(__file__).resolve().parent
 SOURCES = ("cloth.cpp", "thrown.cpp")
@@ -39,7 +40,7 @@ FROM_5_ON = ("GravityForce MassSpringForce make_combined_force PinConstraint "
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
-def compiler():
+def compiler() -> str:
     """The newest clang++ that has what WebAssembly needs at run time."""
     if os.environ.get("WASM_CXX"):
         return os.environ["WASM_CXX"]
@@ -53,7 +54,8 @@ def compiler():
     return str(found[-1].parents[3].with_name("bin") / "clang++")
 
 
-def compiled(folders, shim, *more):
+def compiled(folders: Iterable[str | pathlib.Path], shim: pathlib.Path,
+             *more: str) -> bytes | None:
     """The module made of the sources in the folders: its bytes; None if they
     do not compile, which the compiler has said then."""
     names = set(re.findall(r"\bpage_\w+", "".join(
@@ -67,22 +69,23 @@ def compiled(folders, shim, *more):
         return None if done.returncode else out.read_bytes()
 
 
-def packed(wasm):
+def packed(wasm: bytes) -> str:
     return base64.b64encode(gzip.compress(wasm, 9, mtime=0)).decode()
 
 
-def module_of(text):
+def module_of(text: str) -> bytes:
     """What a file of write_figures() holds."""
-    return gzip.decompress(base64.b64decode(re.search(r"', '(.*)'", text)[1]))
+    return gzip.decompress(base64.b64decode(
+        re.findall(r"', '(.*)'", text)[0]))
 
 
-def changed(wasm, base):
+def changed(wasm: bytes, base: bytes) -> bytes:
     """A module as JSON: parts that it has from its base, as [start, end], and
     parts of its own, in base64. A part ends where WebAssembly has its `end`."""
     old, new = (re.findall(rb"[^\x0b]*\x0b|[^\x0b]+$", code)
                 for code in (base, wasm))
     starts = [0, *itertools.accumulate(map(len, old))]
-    parts = []
+    parts: list[list[int] | str] = []
     for kind, i, j, k, l in difflib.SequenceMatcher(
             None, old, new, autojunk=False).get_opcodes():
         if kind == "equal":
@@ -92,7 +95,7 @@ def changed(wasm, base):
     return json.dumps(parts, separators=(",", ":")).encode()
 
 
-def script():
+def script() -> str:
     """figure.js: all of a figure but its modules."""
     def text(*names):
         return "\n".join((ROOM / name).read_text() for name in names)
@@ -100,11 +103,11 @@ def script():
     return ("(() => {\n"
             f"const look = {json.dumps(text('look.css'))};\n"
             f"const workerSource = {json.dumps(text('wasm.js', 'worker.js'))};"
-            "\n" + text("view.js", "plot.js", "hand.js", "figure.js")
-            + "\n})();\n")
+            "\n" + text("view.js", "plot.js", "hand.js", "picture.js",
+                        "figure.js") + "\n})();\n")
 
 
-def write_page(out, stage):
+def write_page(out: str, stage: str) -> int:
     here = pathlib.Path.cwd()
     words = set(re.findall(r"\w+", "".join(
         COMMENT.sub(" ", path.read_text(errors="replace"))
@@ -128,13 +131,13 @@ def write_page(out, stage):
 
 # ------------------------------------------------------------------- Figures
 
-def slug(mistake):
+def slug(mistake: str) -> str:
     """The name of the module with a mistake of draw.py, or with none."""
     return mistake.replace(" ", "-").replace("+-", "plus-").replace(
         "=-", "") or "right"
 
 
-def write_figures(out, names):
+def write_figures(folder_name: str, names: list[str]) -> bool:
     root = ROOM.parents[1]
     sys.path[:0] = [str(root / "course/pictures"), str(root / "course/kit")]
     import draw
@@ -143,7 +146,7 @@ def write_figures(out, names):
     if unknown := set(names) - set(mistakes):
         sys.exit(f"there is no {', '.join(sorted(unknown))}; there are "
                  + ", ".join(mistakes))
-    out = pathlib.Path(out)
+    out = pathlib.Path(folder_name)
     out.mkdir(parents=True, exist_ok=True)
     (out / "figure.js").write_text(script())
     common = "".join(path.read_text() for path in sorted(
@@ -177,7 +180,7 @@ def write_figures(out, names):
         return not all(pool.map(write, names or mistakes))
 
 
-def main(arguments):
+def main(arguments: list[str]) -> int:
     if arguments[:1] == ["page"] and len(arguments) == 3:
         return write_page(*arguments[1:])
     if arguments[:1] == ["figures"] and len(arguments) > 1:

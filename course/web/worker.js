@@ -102,9 +102,3 @@ const handlers = {
     postMessage({kind: 'positions', all, failure}, [all.buffer]);
   },
 };
-// One message at a time, also while a handler waits.
-let last = Promise.resolve();
-onmessage = ({data: [name, value]}) => {
-  last = last.then(() => handlers[name](value)).catch(
-    error => postMessage({kind: 'error', text: String(error.stack || error)}));
-};

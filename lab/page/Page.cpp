@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "CME212/PageData.hpp"
 #include "lab/Json.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
@@ -193,19 +194,9 @@ const double* page_positions(unsigned side) {
 const float* page_points(unsigned side) {
   State& s = state();
   const Cloth& g = s.shown(side).cloth();
-  s.points.assign(std::size_t(4) * g.node_slots(), 0);
-  for (Node n : g.nodes()) {
-    float* to = &s.points[std::size_t(4) * n.id()];
-    for (int k = 0; k < 3; ++k) to[k] = float(std::as_const(n).position()[k]);
-  }
-  for (Edge e : g.edges()) {
-    const double L = e.value().L;
-    const auto strain = float(L > 0 ? std::abs(e.length() / L - 1) : 0);
-    for (Node n : {e.node1(), e.node2()}) {
-      float& most = s.points[std::size_t(4) * n.id() + 3];
-      most = std::max(most, strain);
-    }
-  }
+  CME212::set_page_points(
+      s.points, g.node_slots(), g.nodes(), g.edges(),
+      [](Node n) { return n.id(); }, [](Edge e) { return e.value().L; });
   return s.points.data();
 }
 double page_version(unsigned side) {
@@ -219,20 +210,19 @@ const unsigned* page_mesh(unsigned side) {
   State& s = state();
   const Scene& scene = s.shown(side);
   const Cloth& g = scene.cloth();
-  std::vector<unsigned> triangles, pins;
-  if (const auto& built = scene.recipe().built)
-    for (const Quad& q : quads_left(g, *built))
-      for (int k : {0, 1, 2, 1, 3, 2})  // the sides are 01, 02, 13 and 23
-        triangles.push_back(built->ids[q[unsigned(k)]]);
+  std::vector<std::array<unsigned, 2>> ends;
+  for (Edge e : g.edges()) ends.push_back({e.node1().id(), e.node2().id()});
+  std::vector<Quad> faces;
+  if (const auto& built = scene.recipe().built) {
+    faces = quads_left(g, *built);
+    for (Quad& q : faces)
+      for (unsigned& corner : q) corner = built->ids[corner];
+  }
+  std::vector<unsigned> pins;
   for (const HeldNodes& held : scene.held())
     for (const auto& h : held.nodes)
       if (h.id < g.node_slots() && g.node_in_use(h.id)) pins.push_back(h.id);
-  s.mesh = {g.num_edges(), unsigned(triangles.size() / 3),
-            unsigned(pins.size())};
-  for (Edge e : g.edges())
-    for (Node n : {e.node1(), e.node2()}) s.mesh.push_back(n.id());
-  for (const auto* list : {&triangles, &pins})
-    s.mesh.insert(s.mesh.end(), list->begin(), list->end());
+  s.mesh = CME212::page_mesh(ends, faces, pins);
   return s.mesh.data();
 }
 int page_failed_node(unsigned side) {

@@ -3,13 +3,12 @@
 
 const $ = id => document.getElementById(id);
 
-const page = {
+const page = Object.assign(new Picture(), {
   about: null,           // scenes and methods
   settings: {scene: 'forces', side: 25, method: 'verlet', share: 0.5, rival: '',
     rivalShare: 0.5, drag: 0.003},  // and the other parameters of the scene
   speed: 1,              // simulated seconds a second, at most
-  playing: false, waiting: false, wanted: true, dirty: true,
-  sides: [],             // what is drawn
+  playing: false, waiting: false, wanted: true,
   readings: null, failed: false, calls: 0, why: '', cure: null,
   beyond: null,          // the motion after a failure: its frames, since when
   frames: 0, errors: [],
@@ -20,17 +19,12 @@ const page = {
     this.worker.postMessage(['ask', words.join(' ')]);
     ++this.asked, this.wanted = true;
   },
-  changed() { this.dirty = true; },
-};
+  sidesAt,
+});
 
 // -------------------------------------------------------------------- Controls
 
-// A slider, by the name of its request: its values from places 0 to 1 and back,
-// and how they are shown.
-const byPower = (low, high) => ({
-  value: s => Number((low * (high / low) ** s).toPrecision(3)),
-  place: a => Math.log(a / low) / Math.log(high / low),
-});
+// Sliders by the names of their requests.
 const fromZero = (high, power) => ({
   value: s => Number((high * s ** power).toPrecision(3)),
   place: a => (a / high) ** (1 / power),
@@ -46,19 +40,6 @@ const sliders = {
   gravity: {...fromZero(30, 1), show: a => `${shortNumber(a)} m/s\u00b2`},
   speed: {...byPower(0.01, 1), show: a => `${shortNumber(a)} s/s`},
 };
-const outputOf = input => input.parentElement.querySelector('output');
-
-function valueOf(name) {
-  return name === 'speed' ? page.speed : page.settings[name];
-}
-function showSlider(name) {
-  const value = valueOf(name), input = $(name);
-  if (value === undefined) return;  // until the first frame
-  input.value = Math.round(1000 * sliders[name].place(value));
-  outputOf(input).textContent = sliders[name].show(value);
-  input.setAttribute('aria-valuetext', outputOf(input).textContent);
-}
-
 const scene = () => named(page.about.scenes, page.settings.scene);
 
 function showControls() {
@@ -67,7 +48,10 @@ function showControls() {
     $('side').append(new Option(`${s.side} x ${s.side}`, s.side));
   for (const name of ['scene', 'side', 'method', 'rival'])
     $(name).value = s[name];
-  for (const name of Object.keys(sliders)) showSlider(name);
+  for (const [name, slider] of Object.entries(sliders)) {
+    const value = name === 'speed' ? page.speed : s[name];
+    if (value !== undefined) showSlider($(name), slider, value);
+  }  // undefined until the first frame
   const m = named(page.about.methods, s.method);
   $('about').textContent = `Order ${m.order}, ${m.sweeps} force evaluation` +
     `${m.sweeps === 1 ? '' : 's'} a step. Good for: ${m.goodFor}. Fails: ` +
@@ -136,14 +120,14 @@ function start(lines = startLines(), end = 0) {
   forget();
   page.hand.release();
   const {scene, side} = page.settings;
-  page.worker.postMessage(['run', {side, lines, end,
+  page.worker.postMessage(['start', {side, lines, end,
     scene: page.about.scenes.findIndex(a => a.name === scene)}]);
   ++page.run, page.waiting = true;
   showControls();
 }
 
 function setPlaying(on) {
-  page.playing = on, page.lastTime = undefined;
+  page.playing = on, page.last = undefined;
   $('play').textContent = on ? 'Pause' : 'Play';
 }
 // Play after a failure shows it again.
@@ -195,15 +179,11 @@ function makeControls() {
   };
   for (const name of ['method', 'rival'])
     $(name).onchange = e => change(name, e.target.value);
-  for (const [name, slider] of Object.entries(sliders)) {
-    Object.assign($(name), {min: 0, max: 1000, step: 5});
-    $(name).oninput = e => {
-      const value = slider.value(Number(e.target.value) / 1000);
+  for (const [name, slider] of Object.entries(sliders))
+    makeSlider($(name), slider, value => {
       if (name === 'speed') page.speed = value;
       else change(name, value);
-      showSlider(name);
-    };
-  }
+    }, 5);
   $('play').onclick = play;
   $('step').onclick = () => { setPlaying(false), page.stepping = true; };
   $('restart').onclick = () => { start(), setPlaying(true); };
@@ -215,11 +195,9 @@ function makeControls() {
   setTool('grab');
   addEventListener('keydown', e => {
     if (e.key === 'Escape') $('failure').hidden = true;
-    if (e.target.matches('select, input') || e.ctrlKey || e.metaKey) return;
-    const action = {' ': 'play', n: 'step', r: 'restart'}[e.key.toLowerCase()];
-    if (!action || (e.key === ' ' && e.target.matches('button'))) return;
-    e.preventDefault(), $(action).click();
   });
+  const click = id => () => $(id).click();
+  onKeys({' ': click('play'), n: click('step'), r: click('restart')});
 }
 
 function setTool(tool) {
@@ -230,11 +208,6 @@ function setTool(tool) {
 
 // ---------------------------------------------------------------------- Frames
 
-function colors() {
-  Object.assign(page, looksOf(document.documentElement));
-  page.changed();
-}
-
 const plots = {
   energy: new Plot($('energy'), $('energy-title')),
   distance: new Plot($('distance'), $('distance-title')),
@@ -243,7 +216,7 @@ const plots = {
 function showNumbers() {
   const r = page.readings;
   if (!r) return;
-  const [blue, orange, green, dark] = page.style.series;
+  const [blue, orange, , dark] = page.style.series;
   const {main, rival} = r;
   if (rival) {
     plots.energy.draw('Energy drift [J]',
@@ -252,8 +225,7 @@ function showNumbers() {
       [`${main.method} to exact`, blue], [`${rival.method} to exact`, orange]],
     true, page.style);
   } else {
-    plots.energy.draw('Energy [J]', [['kinetic', blue], ['elastic', orange],
-      ['height', green], ['total', dark]], false, page.style);
+    drawEnergy(plots.energy, page.style);
   }
   const rows = [['time', `${main.time.toFixed(3)} s`],
     ['steps', main.steps], ['nodes, springs', `${r.nodes}, ${r.edges}`],
@@ -266,13 +238,7 @@ function showNumbers() {
   if (rival)
     rows.push(['force evaluations beside', rival.evaluations],
       ['distance of the two', `${shortNumber(r.apart)} m`]);
-  const table = $('numbers');
-  while (table.rows.length > rows.length) table.deleteRow(-1);
-  rows.forEach((row, k) => {
-    const line = table.rows[k] || table.insertRow();
-    row.forEach((text, c) =>
-      setText(line.cells[c] || line.insertCell(), String(text)));
-  });
+  fillTable($('numbers'), rows);
   const dt = run => `dt = ${shortNumber(1e3 * run.dt)} ms${
     run.failure ? ', diverged' : ''}`;
   [main, rival].forEach((run, k) => {
@@ -387,8 +353,7 @@ function remember() {
 function tick(now) {
   requestAnimationFrame(tick);
   if (!page.waiting && page.about) {
-    const passed = Math.min(0.05, (now - (page.lastTime ?? now)) / 1e3);
-    page.lastTime = now;
+    const passed = page.passed(now);
     const runs = page.playing && !page.failed;
     if (runs || page.wanted || page.stepping) {
       page.hand.tell();
@@ -400,10 +365,7 @@ function tick(now) {
   }
   const moving = page.playing && !page.failed ||
     page.beyond?.drawn !== undefined;
-  page.dirty = page.view.pace.frame(now, moving) || page.dirty;
-  if (!page.dirty || !page.sides.length) return;
-  page.dirty = false;
-  page.view.draw(sidesAt(now), page.theme, page.hand.grabbed);
+  if (!page.paint(now, moving)) return;
   // While a run goes on, numbers and curves change four times a second.
   if (!moving || now - (page.numbersAt || 0) > 250)
     page.numbersAt = now, showNumbers(), showLimits();
@@ -411,35 +373,20 @@ function tick(now) {
 
 async function begin() {
   try {
-    page.view = new View($('canvas'));
-    if (!self.WebAssembly || !self.DecompressionStream)
-      throw new Error('no WebAssembly');
-  } catch (error) {
+    page.open($('canvas'), document.documentElement);
+  } catch {
     for (const id of ['stage', 'panel']) $(id).hidden = true;
     $('fallback').hidden = false;
     $('loop').src = 'loop.webp';
     return;
   }
-  page.hand = new Hand(page, $('canvas'));
   // In a frame of another page: index.html?controls=none#scene=drape
   if (new URLSearchParams(location.search).get('controls') === 'none')
     document.body.className = 'bare';
-  colors();
-  matchMedia('(prefers-color-scheme: dark)').onchange = colors;
-  new ResizeObserver(() => page.changed()).observe($('stage'));
   $('canvas').addEventListener('webglcontextlost', () => location.reload());
-  // From a blob: a page opened as a file must not load another file.
-  const source = new Blob([$('worker').textContent], {type: 'text/javascript'});
-  page.worker = new Worker(URL.createObjectURL(source));
-  page.worker.onmessage = ({data}) => {
-    // A message of the previous run comes too late.
-    if ((data.run ?? page.run) === page.run) replies[data.kind](data);
-  };
-  page.worker.onerror = e => page.errors.push(e.message);
-  const packed = Uint8Array.from(atob($('wasm').textContent),
-    c => c.charCodeAt(0));
-  const bytes = await new Response(new Blob([packed]).stream().pipeThrough(
-    new DecompressionStream('gzip'))).arrayBuffer();
+  page.worker = startThread($('worker').textContent, page, replies,
+    text => page.errors.push(text));
+  const bytes = await unpacked($('wasm').textContent);
   page.worker.postMessage(['module', bytes], [bytes]);
   requestAnimationFrame(tick);
 }

@@ -515,7 +515,8 @@ def a_link_shows_the_same_picture_twice(b):
         opened(b, hash)
         b.wait(f"page.calls === {calls} && !page.waiting && !page.dirty", 120)
         after = b.value("[...page.sides[0].points]")
-        assert after == before, max(map(abs, map(float.__sub__, after, before)))
+        assert after == before, max(
+            abs(p - q) for p, q in zip(after, before))
         pictures.append(b.value("(page.view.draw(page.sides, page.theme, null),"
                                 " $('canvas').toDataURL())"))
     assert pictures[0] == pictures[1]
@@ -672,14 +673,14 @@ def main():
     print(f"  {size} bytes")
     only = sys.argv[2:]
     passed = failed = 0
-    engines = [Browser]
-    for engine in (Firefox, WebKit):
-        if missing := engine.missing():
-            print(f"skipped: the page in {engine.__name__}: missing:", *missing)
+    engines: list[type[Browser]] = [Browser]
+    for other in (Firefox, WebKit):
+        if missing := other.missing():
+            print(f"skipped: the page in {other.__name__}: missing:", *missing)
         else:
-            engines.append(engine)
+            engines.append(other)
     for engine in engines:
-        b = None
+        b: Browser | None = None
         for run in tests:
             if only and run.__name__ not in only:
                 continue
@@ -694,13 +695,16 @@ def main():
                 passed += 1
                 print(f"ok {name} {time.monotonic() - start:.0f} s", flush=True)
             except Skipped as what:
-                print(f"left out {name}: {what}")
+                print(f"skipped {name}: {what}")
             except Exception:
                 failed += 1
                 print("FAIL", name)
                 traceback.print_exc(file=sys.stdout)
-                b = b and b.close()
-        b = b and b.close()
+                if b:
+                    b.close()
+                b = None
+        if b:
+            b.close()
     if not only:
         without_webgl()
         passed += 1

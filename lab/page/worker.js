@@ -7,7 +7,6 @@ let calls;                     // steps of this run
 let run = 0, asked = 0;        // how many were started; requests taken
 let sharpAt = 0, readings = null;
 let rivalIsShown = false;      // the failure of the second scene
-let newest = 0;                // number of the last run that the page asked for
 
 // @return the error in the request; '' if there is none
 function request(line) {
@@ -136,7 +135,7 @@ const handlers = {
     about = JSON.parse(text(call('about')));
     postMessage({kind: 'about', about});
   },
-  async run(what, mine) {
+  async start(what, mine) {
     if (broken) await instantiate();
     postMessage({kind: 'history', ...await repeat(what, mine), run});
     setting();
@@ -178,11 +177,4 @@ const handlers = {
     const {dt} = JSON.parse(text(call('readings', 0))).main;
     postMessage({kind: 'positions', all, dt, broken}, [all.buffer]);
   },
-};
-// One message at a time, also while a handler waits.
-let last = Promise.resolve();
-onmessage = ({data: [name, value]}) => {
-  const number = name === 'run' ? ++newest : newest;
-  last = last.then(() => handlers[name](value, number)).catch(
-    error => postMessage({kind: 'error', text: String(error.stack || error)}));
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <span>
 
+#include "CME212/PageData.hpp"
 #include "lab/fast/ForcePlan.hpp"
 
 namespace lab {
@@ -28,9 +29,7 @@ class HandForce : public SweptForce {
 
   /** The force [N] at @a x [m]. */
   Point pull(const Point& x) const {
-    const Point f = k_ * (target_ - x);
-    const double size = norm(f);
-    return size > most_ ? (most_ / size) * f : f;
+    return CME212::hand_pull(k_, target_ - x, most_);
   }
   Point operator()(Node n, double /*t*/) const override {
     return n.id() == node_ ? pull(n.position()) : Point();

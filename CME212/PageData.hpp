@@ -1,0 +1,63 @@
+#pragma once
+/** @file PageData.hpp
+ * What the web pages draw of a cloth, and the force of their hand, for any
+ * graph. A slot is a number of a node that stays the same while others go. */
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "CME212/Mesh.hpp"
+#include "CME212/Point.hpp"
+
+namespace CME212 {
+
+/** For each slot x y z [m] of its node, and the largest strain of an edge
+ * there.
+ * @param slot slot(Node)   @param rest rest(Edge), its rest length [m] */
+template <typename Nodes, typename Edges, typename Slot, typename Rest>
+void set_page_points(std::vector<float>& points, std::size_t slots,
+                     Nodes&& nodes, Edges&& edges, Slot slot, Rest rest) {
+  points.assign(4 * slots, 0);
+  for (auto n : nodes) {
+    float* to = &points[4 * std::size_t(slot(n))];
+    for (unsigned k = 0; k < 3; ++k)
+      to[k] = float(std::as_const(n).position()[k]);
+  }
+  for (auto e : edges) {
+    const auto a = e.node1(), b = e.node2();
+    const double L = rest(e), length = norm(a.position() - b.position());
+    const auto strain = float(L > 0 ? std::abs(length / L - 1) : 0);
+    for (const auto& n : {a, b}) {
+      float& most = points[4 * std::size_t(slot(n)) + 3];
+      most = std::max(most, strain);
+    }
+  }
+}
+
+/** Numbers of edges, triangles and pinned nodes; then the slots of each. */
+inline std::vector<unsigned> page_mesh(
+    const std::vector<std::array<unsigned, 2>>& edges,
+    const std::vector<Quad>& faces, const std::vector<unsigned>& pins) {
+  std::vector<unsigned> mesh = {unsigned(edges.size()),
+                                unsigned(2 * faces.size()),
+                                unsigned(pins.size())};
+  for (const auto& ends : edges)
+    mesh.insert(mesh.end(), ends.begin(), ends.end());
+  for (const Quad& q : faces)
+    for (unsigned k : {0, 1, 2, 1, 3, 2}) mesh.push_back(q[k]);
+  mesh.insert(mesh.end(), pins.begin(), pins.end());
+  return mesh;
+}
+
+/** The pull [N] of a hand at @a way [m] from a node: K @a way, cut off at
+ * @a most [N]. */
+inline Point hand_pull(double K, const Point& way, double most) {
+  const Point f = K * way;
+  const double size = norm(f);
+  return size > most ? most / size * f : f;
+}
+
+}  // namespace CME212
