@@ -62,14 +62,14 @@ gtest_libs = $(shell pkg-config --libs gtest_main 2>/dev/null || \
 # is linked with. NAME.uses is as new as a source dated in the future, or make
 # would never end.
 define build
-@mkdir -p $(@D) && echo '$(CXX) $@'
+@mkdir -p $(@D) && echo '$(CXX) $@$(no_window)'
 @$(CXX) $(flags) $(draw_flags) $(if $(test),$(call system,gtest) \
   $(if $(FAST),,$(sanitizer))) \
   -o $@ $< $(draw_libs) $(if $(test),$(gtest_libs)) $(LDLIBS)
 endef
 define find_uses
 @$(CXX) $(flags) -M -MG -MP -MT '$(O)$* $@' $< >$@
-@! grep -q CME212/SDLViewer.hpp $@ || echo '$(O)$*: $(B)/libviewer.a' >>$@
+@! grep -q CME212/SDLViewer.hpp $@ || echo '$(O)$*: $(viewer_lib)' >>$@
 @! grep -q gtest/gtest.h $@ || echo '$(O)$*: test = 1' >>$@
 @for f in $^; do [ ! "$$f" -nt $@ ] || touch -r "$$f" $@; done
 endef

@@ -115,7 +115,7 @@ int main(int argc, char** argv) try {
 
   std::optional<Viewer> viewer;
   try {
-    viewer.emplace();
+    viewer.emplace(Viewer::Options{.picture = "build/mass_spring.png"});
     viewer->add_faces(g, quads);
     if (stage >= Stage::constraints) {
       // BEGIN GUIDED
@@ -141,12 +141,13 @@ int main(int argc, char** argv) try {
   CME212::Clock clock;
   // Returns false if the run has diverged, or the window was closed.
   const auto draw = [&](double t) {
+    const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
     if (!(energy(g, false) <= most)) {  // also if it is NaN
       failure = "diverged: at t = " + CME212::short_text(t) +
                 " s it gains energy from nothing; './cloth " + argv[1] + ' ' +
                 argv[2] + " --dt auto' finds a stable step";
       std::cerr << failure << std::endl;
-      if (viewer) viewer->set_message({failure});
+      if (viewer) show(), viewer->set_message({failure});
       return false;
     }
     if (t > next_line - dt / 2) {
@@ -155,8 +156,8 @@ int main(int argc, char** argv) try {
       next_line += t_end / 10;
     }
     if (!viewer) return true;
-    const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
     if (viewer->wants_frame() || t > t_end - dt / 2) show();
+    if (!viewer->in_window()) return true;
     CME212::sleep(dt - clock.seconds());  // at most as fast as real time
     clock.start();
     return viewer->wait_while_paused(show);
@@ -167,7 +168,8 @@ int main(int argc, char** argv) try {
     for (auto left = steps; draw(t) && left > 0; --left) t = step(t);
   });
   if (viewer) viewer->event_loop();
-  simulation.get();  // throws what the simulation threw
+  simulation.get();                     // throws what the simulation threw
+  if (viewer) viewer->write_picture();  // where there is no window
   return failure.empty() ? 0 : 3;
 } catch (const std::exception& e) {
   std::cerr << e.what() << '\n';

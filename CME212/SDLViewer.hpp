@@ -13,18 +13,26 @@
 #include "CME212/Point.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "CME212/viewer/Look.hpp"
-#include "CME212/viewer/MouseTool.hpp"
 #include "CME212/viewer/NoDisplay.hpp"
 #include "CME212/viewer/SceneBuilder.hpp"
+#ifndef MASS_SPRING_VIEWER
+#include "CME212/viewer/NoViewer.hpp"
+#endif
 
 namespace CME212 {
+
+#ifndef MASS_SPRING_VIEWER  // built with VIEWER=0
+
+using SDLViewer = NoViewer;
+
+#else
 
 /** Shows the nodes and edges of a graph. SceneBuilder collects them, and
  * ensures that no half built scene is drawn.
  *
- * Threads: the constructor, the destructor, event_loop(), launch(), snapshot(),
- * has_display(), set_panels() and set_touch() are for the main thread. Any
- * thread may call all others, also while the window is open.
+ * Threads: the constructor, the destructor, event_loop(), launch(), snapshot()
+ * and has_display() are for the main thread. Any thread may call all others,
+ * also while the window is open.
  *
  * A program simulates in a thread of its own and ends its main thread with
  * event_loop(); or, as in 2016, it calls launch() and simulates in its main
@@ -32,11 +40,9 @@ namespace CME212 {
  *
  * Mouse: left button turns, right button moves, wheel zooms. Keys: space
  * pauses, n makes one step, r restarts, s colors by strain, c centers, q or
- * Esc quits, + and - size the text, ? shows the keys; f, w and d change the
- * Look: faces, wires, nodes. Pause, step, restart and coloring need the
- * simulation's help: wait_while_paused(), take_restart(), strain_colors(). Tab
- * hides panels: set_panels(). If the program handles touches, the left button
- * grabs the cloth, Ctrl and drag cuts, p pins: set_touch().
+ * Esc quits, ? hides the list of keys; f, w and d change the Look: faces,
+ * wires, nodes. Pause, step, restart and coloring need the simulation's help:
+ * wait_while_paused(), take_restart(), strain_colors().
  */
 class SDLViewer : public SceneBuilder {
  public:
@@ -49,13 +55,17 @@ class SDLViewer : public SceneBuilder {
     /** The program handles the keys r and s: take_restart(), strain_colors().
      * Otherwise they do nothing, and the help does not name them. */
     bool restarts = false, colors = false;
+    /** If no window can be shown, draw without a display, for this file:
+     * write_picture(). */
+    std::string picture = {};
   };
 
   /** Make a window; it appears with event_loop() or launch(). One viewer at a
    * time.
    * @pre width and height > 0, or both are 0
-   * Throws NoDisplay if there is no display, unless @a o.offscreen, or no
-   * OpenGL 3.3. */
+   * Throws NoDisplay if there is no display, unless @a o.offscreen or
+   * @a o.picture, or no OpenGL 3.3. A program that does not catch it prints the
+   * reason and ends with status 4. */
   explicit SDLViewer(const Options& o);
   SDLViewer() : SDLViewer(Options()) {}
   /** After launch() it waits until the window is closed.
@@ -74,7 +84,8 @@ class SDLViewer : public SceneBuilder {
    * view is the same in all pictures.  @pre norm(eye_direction) > 0 */
   void set_view(const Point& eye_direction, const BoundingBox& box);
 
-  /** Write @a label at the top of the picture: a text, or a number. */
+  /** Write @a label into the title bar of the window, and at the top of
+   * snapshots: a text, or a number. */
   void set_label(const std::string& label);
   template <typename T>
   requires std::is_arithmetic_v<T>
@@ -84,11 +95,11 @@ class SDLViewer : public SceneBuilder {
     set_label(s.str());
   }
 
-  /** Show a message in a panel: why the run stopped. Empty: no panel. */
+  /** Show paragraphs over the picture: why the run stopped. Empty: none. */
   void set_message(std::vector<std::string> paragraphs);
 
   /** Write lines at the bottom left of the picture, the first one large: the
-   * title of a film, or its end. Empty: nothing is written. */
+   * title of a film, or the outcome of a run. Empty: nothing is written. */
   void set_card(std::vector<std::string> lines);
 
   /** Label the color scale, drawn while strain_colors(). */
@@ -105,23 +116,17 @@ class SDLViewer : public SceneBuilder {
   /** Close the window, as the user can: event_loop() and all waits return. */
   void close();
 
-  /** As the keys do: pause or resume (space), make one step (n), restart (r).
-   */
+  /** Pause or resume, as the space key does. */
   void set_paused(bool on);
-  void step_once();
-  void ask_restart();
-  bool paused() const;
   /** Wait while paused.
    * @return true if the program may make one step: not paused, or the user
-   *         pressed n; false, without waiting, if closed(), the user asked to
-   *         restart, or wake() was called.
+   *         pressed n; false, without waiting, if closed() or the user asked to
+   *         restart.
    * If a program never calls it, the help does not name the pause. */
   bool wait_while_paused();
   /** As above. Calls @a show() on this thread before it waits, and when
    * strain_colors() changes: so a paused window shows the latest scene. */
   bool wait_while_paused(const std::function<void()>& show);
-  /** Let wait_while_paused() return false, now or at its next call. */
-  void wake();
   /** True if the user asked to restart since the last call. */
   bool take_restart();
 
@@ -129,28 +134,21 @@ class SDLViewer : public SceneBuilder {
   bool strain_colors() const;
   void set_strain_colors(bool on);
 
-  // -------------------------------------------------------- Panels and mouse
-
-  /** Let @a draw make the program's panels with Dear ImGui, over the picture.
-   * It is called in every frame, on the thread that draws, with a frame of Dear
-   * ImGui open, and returns the width that panels take at the left [pixels].
-   * The scene is centered in the rest. A snapshot has no panels.
-   * Text is 14 pixels high, times ImGui::GetFontSize() / 14 of that frame.
-   * @pre neither launch() nor event_loop() was called */
-  void set_panels(std::function<double()> draw);
-
-  /** Call @a serve when the user does something to nodes or edges with the
-   * mouse outside of panels. It runs on the thread that draws, so it must be
-   * fast.
-   * @pre as set_panels() */
-  void set_touch(std::function<void(const Touch&)> serve);
-
   // ----------------------------------------------------- On the main thread
 
-  /** Show the window and handle its events until it is closed.
+  /** Show the window and handle its events until it is closed. If it draws for
+   * Options::picture, return at once.
    * @pre launch() was not called: one thread handles the events
-   * @post closed() */
+   * @post closed(), unless it draws for a picture */
   void event_loop();
+
+  /** True if it was made for a window, not to draw without a display. */
+  bool in_window() const;
+
+  /** If it draws for Options::picture, write this file, and say so: a PNG of
+   * the scene as it is now.  @pre as snapshot()
+   * Throws std::runtime_error "FILE: why" */
+  void write_picture();
 
   /** Show the window and return; a thread of the viewer handles its events
    * until it is closed, see closed(). The destructor waits for that. That
@@ -175,5 +173,7 @@ class SDLViewer : public SceneBuilder {
   class Display;
   std::unique_ptr<Display> display_;
 };
+
+#endif
 
 }  // namespace CME212

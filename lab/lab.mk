@@ -14,8 +14,7 @@ lab_main   := lab/run/cloth.cpp \
               lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := $(wildcard docs/examples/*.cpp)
-lab_panels := lab/viewer/Panel.cpp lab/viewer/Plot.cpp  # with a viewer
-lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(wildcard lab/try/*.cpp) $(if $(filter 1,$(VIEWER)),,$(lab_panels)), \
+lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(wildcard lab/try/*.cpp), \
               $(wildcard lab/*.cpp lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
@@ -28,8 +27,8 @@ lab_system := $(strip $(foreach p,eigen3 CLI11 gtest,$(call system,$(p))) \
 lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(lab_system)
 # What names SDL, or asks whether there is a viewer.
-lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% $(lab_panels) \
-            tests/test_viewer.% tests/test_panels.% CME212/%,$<), \
+lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
+            tests/test_viewer.% CME212/%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 # FAST=1 asks for tests of what is built for speed.
 tested     = $(if $(FAST),$(B),$(B)/asan)
@@ -96,7 +95,7 @@ $(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/
 $(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)) $(TEST_UNITS:%=$(B)/%): | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
-$(patsubst %,$(B)/test_%,viewer panels faces image screen): $(B)/asan/libviewer.a
+$(patsubst %,$(B)/test_%,viewer faces image screen): $(B)/asan/libviewer.a
 endif
 $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 	@rm -f $@ && ar rcs $@ $^

@@ -12,18 +12,18 @@ endif
 ifneq ($(UNITY),)
 UNITS ?= 6
 
-# Programs of their own: three specialize templates of other namespaces, five
+# Programs of their own: three specialize templates of other namespaces, four
 # are linked with the window, one hooks malloc, one renames realloc, one holds
 # the course's headers to what they bring, one has another Graph.hpp.
 tests_alone := test_graph test_graph_hubs test_graph_memory test_viewer \
-               test_panels test_faces test_image test_screen test_slot_map \
+               test_faces test_image test_screen test_slot_map \
                test_cloth test_course_interface test_plain_steps
 
 dealt      := $(shell ls -S $(filter-out $(tests_alone:%=tests/%.cpp),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
 # These are linked only if a program uses them: they need the window.
-drawing    := $(filter $(lab_panels) $(patsubst %,lab/%.cpp, \
-                viewer/Screen run/Film run/RunReplay),$(lab_lib))
+drawing    := $(filter $(patsubst %,lab/%.cpp, viewer/Screen run/Film \
+                run/RunReplay run/Window),$(lab_lib))
 united     := $(filter-out $(drawing),$(lab_lib))
 rooms      := $(sort $(dir $(united)))
 

@@ -37,10 +37,8 @@ class ClothReplay : public ClothProgram {
 
 TEST_F(ClothReplay, EndsWithTheSameBits) {
   play();
-  write_recording(live, path("input.txt"));
-  const Result r =
-      run("--replay " + path("input.txt") + " --out " + path("end.nodes") +
-          " --record-input " + path("again.txt"));
+  const Result r = run("--replay " + file("input.txt", live.recording()) +
+                       " --out " + path("end.nodes"));
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_NE(r.out.find("7 requests, 200 steps to t = "), std::string::npos)
       << r.out;
@@ -50,7 +48,6 @@ TEST_F(ClothReplay, EndsWithTheSameBits) {
   write_nodes(nodes,
               mesh_left(live.scene().cloth(), *live.scene().recipe().built));
   EXPECT_EQ(contents(path("end.nodes")), nodes.str());
-  EXPECT_EQ(contents(path("again.txt")), contents(path("input.txt")));
 }
 
 // Long before their 5 s; a failure is found at the next look of the guard, so
@@ -101,8 +98,8 @@ TEST_F(ClothReplay, TakesNoMoreThanSomeStepsInARound) {
 }
 
 TEST_F(ClothReplay, RefusesWhatItCanNotDo) {
-  write_recording(live, path("input.txt"));
-  const std::string replay = "--replay " + path("input.txt") + ' ';
+  const std::string replay =
+      "--replay " + file("input.txt", live.recording()) + ' ';
   for (const auto& [arguments, message] :
        {std::pair("--sheet 'nodes 3 3'",
                   "cloth: --replay cannot be combined with --sheet: a "
@@ -110,15 +107,11 @@ TEST_F(ClothReplay, RefusesWhatItCanNotDo) {
         std::pair(
             "--csv x",
             "cloth: --replay cannot be combined with --csv, only with --out, "
-            "--record, --record-input, --screenshot of the end and "
-            "--window\n")}) {
+            "--record, --screenshot of the end and --window\n")}) {
     const Result r = run(replay + arguments);
     EXPECT_EQ(r.status, 2);
     EXPECT_EQ(r.err, message);
   }
-  EXPECT_EQ(run(grid0 + "--headless --record-input " + path("x")).err,
-            "cloth: --record-input needs a window, in which the scene can be "
-            "changed\n");
   EXPECT_EQ(run("--replay " + path("none")).err,
             path("none") +
                 ": can't be opened (No such file or directory), "

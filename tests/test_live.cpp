@@ -7,7 +7,6 @@
 #include <fstream>
 #include <numbers>
 #include <random>
-#include <thread>
 
 #include "lab/fast/Energy.hpp"
 #include "lab/live/Recording.hpp"
@@ -807,34 +806,6 @@ TEST_F(Recordings, AreRefusedWithTheLine) {
   EXPECT_EQ(
       whole("mass_spring input 1\n| nodes = 3\n"),
       ":2: begins with | but does not follow a scene, expected a request");
-}
-
-// ----------------------------------------------------------------------- Queue
-
-TEST(Queue, KeepsTheOrderAndTheLastOfASlider) {
-  RequestQueue queue;
-  for (double g : {1, 2, 3}) queue.push(request("gravity", g));
-  queue.push("restart");
-  queue.push("gravity 4");
-  queue.push("pin 1");
-  queue.push("pin 2");
-  const auto all = queue.take();
-  ASSERT_EQ(all.size(), 5u);
-  EXPECT_EQ(all[0], "gravity 3");
-  EXPECT_EQ(all[4], "pin 2");
-  EXPECT_TRUE(queue.take().empty());
-}
-
-TEST(Queue, TakesFromOneThreadForAnother) {
-  RequestQueue queue;
-  std::thread user([&] {
-    for (unsigned k = 0; k < 1000; ++k) queue.push(request("pin", k));
-  });
-  unsigned next = 0;
-  while (next < 1000)
-    for (const std::string& r : queue.take())
-      ASSERT_EQ(r, request("pin", next++));
-  user.join();
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 /** @file test_viewer.cpp
- * Tests of SDLViewer and SceneBuilder. They need no display; the last one
- * makes its own. */
+ * Tests of SDLViewer, SceneBuilder and Layer. They need no display; the last
+ * ones make their own. */
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -10,7 +10,10 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <set>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <unordered_map>
 #include <vector>
@@ -19,9 +22,11 @@
 #include "CME212/SFML_Viewer.hpp"
 #include "CME212/viewer/GLCamera.hpp"
 #include "CME212/viewer/Image.hpp"
+#include "CME212/viewer/Layer.hpp"
 #include "CME212/viewer/SDLWindow.hpp"  // SDL, to press its keys
 #include "CME212/viewer/SceneBuilder.hpp"
 #include "Graph.hpp"
+#include "tests/ReadPng.hpp"
 #include "tests/TestFolder.hpp"
 
 namespace {
@@ -263,6 +268,62 @@ TEST(SceneBuilder, WantsFrameUntilOneWaits) {
   EXPECT_TRUE(b.wants_frame());
 }
 
+// --------------------------------------------------------------------- Layer
+
+TEST(Letters, AreAllDifferentAndInTheirPlace) {
+  std::set<std::string_view> seen;
+  for (char c = ' '; c <= '~'; ++c) {
+    EXPECT_TRUE(seen.insert(letters::strokes_of(c)).second) << c;
+    EXPECT_EQ(letters::pieces(c).empty(), c == ' ');
+    for (const auto& p : letters::pieces(c))
+      for (const auto& [x, y] : {std::pair(p.x0, p.y0), {p.x1, p.y1}}) {
+        EXPECT_TRUE(letters::bearing <= x &&
+                    x <= letters::advance(c) - letters::bearing)
+            << c << x;
+        EXPECT_TRUE(-3 <= y && y <= 11) << c << y;
+      }
+  }
+  // A number that counts does not move what stands behind it.
+  for (char c = '0'; c <= '9'; ++c)
+    EXPECT_EQ(letters::advance(c), letters::advance('0')) << c;
+  EXPECT_EQ(letters::strokes_of('\xe9'), letters::strokes_of('?'));
+}
+
+TEST(Layer, WritesALineWhereItIsTold) {
+  Layer layer;
+  layer.start(200, 40);
+  layer.write(10, 5, 20, {Color(1, 0, 0), 1}, "mass 1");
+  const double right = 10 + Layer::width("mass 1", 20);
+  EXPECT_EQ(Layer::width("mass 1", 20),
+            Layer::width("mass", 20) + Layer::width(" 1", 20));
+  int red = 0, dark = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const auto p = layer.rgba()[std::size_t(200 * y + x)];
+      if (p[3] == 0) continue;
+      EXPECT_TRUE(8 <= x && x < right && 5 <= y && y < 32) << x << ' ' << y;
+      (p[0] > 200 ? red : dark) += 1;
+      EXPECT_LE(p[1], 10);
+    }
+  EXPECT_GT(red, 100);   // strokes
+  EXPECT_GT(dark, red);  // and a rim around them
+}
+
+TEST(Layer, BoxesCoverTheirPixelsAndHaveRoundCorners) {
+  Layer layer;
+  layer.start(40, 30);
+  layer.box(5, 5, 35, 25, {Color(1), 0.5}, 8);
+  const auto alpha = [&](int x, int y) {
+    return int(layer.rgba()[std::size_t(40 * y + x)][3]);
+  };
+  EXPECT_NEAR(alpha(20, 15), 128, 1);
+  EXPECT_NEAR(alpha(5, 15), 128, 1);
+  EXPECT_EQ(alpha(4, 15), 0);
+  EXPECT_EQ(alpha(5, 5), 0);                     // a corner
+  layer.box(-10, -10, 100, 100, {Color(0), 1});  // of it what is inside
+  EXPECT_EQ(alpha(0, 0), 255);
+}
+
 // ----------------------------------------------------------------- SDLViewer
 
 SDLViewer::Options small() {
@@ -393,7 +454,7 @@ TEST(SDLViewer, WritesLabelAndScale) {
   EXPECT_EQ(difference(below, scaled, 0, 1, 0, 0.4), 0);
 }
 
-TEST(SDLViewer, WritesAMessageInAPanelAtTheBottom) {
+TEST(SDLViewer, WritesAMessageAtTheBottom) {
   SDLViewer viewer(small());
   Image plain = viewer.snapshot();
   viewer.set_message({"diverged"});
@@ -406,7 +467,7 @@ TEST(SDLViewer, WritesAMessageInAPanelAtTheBottom) {
   EXPECT_NEAR(bar[0], 255 * mark.r, 1);
   EXPECT_NEAR(bar[1], 255 * mark.g, 1);
   EXPECT_NEAR(bar[2], 255 * mark.b, 1);
-  // What is too long for a line goes on in the next; nothing leaves the panel.
+  // What is too long for a line goes on in the next; nothing leaves the box.
   std::string words;
   for (int k = 0; k < 40; ++k) words += "word ";
   viewer.set_message({words, "--dt auto works"});
@@ -479,6 +540,43 @@ TEST(SDLViewer, SaysThatThereIsNoDisplay) {
     EXPECT_THROW(SDLViewer(), NoDisplay);
     EXPECT_EQ(error_of([] { SDLViewer v; }).find("no display: "), 0u);
   }
+}
+
+// Programs of students catch nothing.
+TEST(SDLViewer, WithoutADisplayAProgramEndsWithStatus4) {
+  Environment no_driver("SDL_VIDEODRIVER", nullptr);
+  Environment no_wayland("WAYLAND_DISPLAY", nullptr);
+  Environment no_x("DISPLAY", nullptr);
+  const auto program = []() noexcept { SDLViewer viewer; };
+  EXPECT_EXIT(program(), testing::ExitedWithCode(4),
+              "^no display: neither DISPLAY nor WAYLAND_DISPLAY is set\n$");
+  // Any other error ends it as before.
+  const auto other = []() noexcept {
+    SDLViewer viewer(small());
+    throw std::runtime_error("other");
+  };
+  EXPECT_EXIT(other(), testing::KilledBySignal(SIGABRT), "other");
+}
+
+TEST(SDLViewer, WithoutADisplayItDrawsAPicture) {
+  Environment no_driver("SDL_VIDEODRIVER", nullptr);
+  Environment no_wayland("WAYLAND_DISPLAY", nullptr);
+  Environment no_x("DISPLAY", nullptr);
+  const TestFolder folder;
+  TestGraph g;
+  make_net(g, 4);
+  SDLViewer viewer(
+      {.width = 400, .height = 300, .picture = folder / "a/b.png"});
+  EXPECT_FALSE(viewer.in_window());
+  viewer.event_loop();  // returns at once
+  EXPECT_TRUE(viewer.wait_while_paused());
+  viewer.draw_graph(g);
+  testing::internal::CaptureStdout();
+  viewer.write_picture();
+  EXPECT_EQ(
+      testing::internal::GetCapturedStdout(),
+      "no display; a picture of the last state: " + folder / "a/b.png" + "\n");
+  EXPECT_EQ(read_png(folder / "a/b.png"), viewer.snapshot());
 }
 
 void press(SDL_Keycode key, bool repeat = false) {

@@ -135,7 +135,7 @@ worker() {
   for test in $(make -s list-units); do
     mkdir "$logs/taken/$test" 2>/dev/null || continue
     case $test in
-      test_viewer | test_panels | test_faces | test_image | test_screen)
+      test_viewer | test_faces | test_image | test_screen)
         step "$test" env ASAN_OPTIONS=detect_leaks=0 "build/check/$test" ;;
       # 100,000 operations in random histories; by itself it makes more.
       test_graph)
@@ -210,14 +210,12 @@ threads() {
   local suppress="suppressions=tools/tsan.supp halt_on_error=1"
   local three=(env OMP_NUM_THREADS=3
     TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1")
-  in_folder clang mass_spring test_nodes test_edges test_viewer test_panels \
-    test_sweep test_flat_flow \
+  in_folder clang mass_spring test_nodes test_edges test_viewer test_sweep \
+    test_flat_flow \
     CXX=clang++ SANITIZE=thread CXXFLAGS="-Werror -O0 -g1" &&
     build/check/clang/test_nodes && build/check/clang/test_edges &&
     TSAN_OPTIONS=$suppress build/check/clang/test_viewer \
     --gtest_filter='*Thread*:*Simulation*' &&
-    TSAN_OPTIONS=$suppress build/check/clang/test_panels \
-      --gtest_filter='*Thread*' &&
     "${three[@]}" build/check/clang/test_sweep \
       --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*' &&
     "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'

@@ -15,8 +15,8 @@ fi
 # Headers that name SDL or OpenGL, and the packages whose flags these need; all
 # others compile without. A header that draws only under MASS_SPRING_VIEWER is
 # compiled with it and without it.
-drawing='^CME212/viewer/(GL|SDL(Window|Input|Settings))'
-packages="sdl2 gl imgui libpng"
+drawing='^CME212/viewer/(GL|SDL(Window|Settings))'
+packages="sdl2 gl libpng"
 
 compile() {  # COMPILER HEADER; one report, even when others write too
   local flags="" out ways=plain way

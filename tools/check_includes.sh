@@ -23,17 +23,17 @@ lab/charts    : lab/stability
 lab/try       : mass_spring lab/methods
 lab/bench     : lab/fast
 lab/live      : lab/scenes
-lab/viewer    : lab/live
-lab/run       : lab/viewer
+lab/viewer    : lab/scenes
+lab/run       : lab/viewer lab/live
 lab/page      : lab/live
 '
 # A program in the root may draw, and a test; of all else only these:
 drawing='CME212/viewer/* CME212/SDLViewer.hpp CME212/SFML_Viewer.hpp
          CME212/Color.hpp'
 drawers='CME212/* lab/viewer/* lab/run/* tests/* course/*'
-# And only these name SDL, OpenGL and Dear ImGui:
-gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/|imgui'
-gl_users='CME212/viewer/GL* CME212/viewer/SDL* lab/viewer/*'
+# And only these name SDL and OpenGL:
+gl_headers='^(SDL2/)?SDL[A-Za-z0-9_]*\.h$|^(GL|GLES[23]?|EGL|KHR|OpenGL)/'
+gl_users='CME212/viewer/GL* CME212/viewer/SDL*'
 
 mapfile -t files < <(git ls-files -co --exclude-standard -- '*.hpp' '*.cpp' |
   sort -u | while IFS= read -r file; do [ ! -f "$file" ] || echo "$file"; done)

@@ -46,13 +46,6 @@ class GLCamera {
                    : std::atan2(direction.y, direction.x);
   }
 
-  /** Center and fit the scene in the right part of the picture, as something
-   * hides the left @a share of its width.  @pre 0 <= share < 1 */
-  void set_hidden_left(double share) {
-    assert(0 <= share && share < 1);
-    hidden_ = share;
-  }
-
   /** Turn the scene by angles [rad]: to the right about the z axis, and up, at
    * most until the camera looks straight down. */
   void rotate(double right, double up) {
@@ -89,9 +82,9 @@ class GLCamera {
               corner & 2 ? box.min().y : box.max().y,
               corner & 4 ? box.min().z : box.max().z);
       p -= center_;
-      double across = std::max(
-          std::abs(dot(p, right())) / (high(aspect) * aspect * (1 - hidden_)),
-          std::abs(dot(p, up())) / high(aspect));
+      double across =
+          std::max(std::abs(dot(p, right())) / (half_height(aspect) * aspect),
+                   std::abs(dot(p, up())) / half_height(aspect));
       distance_ = std::max(distance_, dot(p, backward()) + margin * across);
     }
     if (box.diagonal() == 0) distance_ = 2 * extent_;
@@ -131,34 +124,15 @@ class GLCamera {
     assert(aspect > 0);
     const double n = near(), f = far();
     Matrix m{};
-    m[0] = float(1 / (high(aspect) * aspect));
-    m[5] = float(1 / high(aspect));
-    m[8] = float(-hidden_);
+    m[0] = float(1 / (half_height(aspect) * aspect));
+    m[5] = float(1 / half_height(aspect));
     m[10] = float((n + f) / (n - f));
     m[14] = float(2 * n * f / (n - f));
     m[11] = -1;
     return m;
   }
 
-  /** Where @a p is in the picture: x right and y up, in [-1, 1] if it is in
-   * the picture; z is its distance from the eye's plane. */
-  Point project(const Point& p, double aspect) const {
-    Point d = p - eye();
-    double depth = -dot(d, backward());
-    return {dot(d, right()) / (depth * high(aspect) * aspect) + hidden_,
-            dot(d, up()) / (depth * high(aspect)), depth};
-  }
-  /** The point that project() takes to @a q. */
-  Point unproject(const Point& q, double aspect) const {
-    return eye() + q.z * ((q.x - hidden_) * high(aspect) * aspect * right() +
-                          q.y * high(aspect) * up() - backward());
-  }
-  /** Half of the picture's height at distance 1 from the eye; half_height()
-   * where nothing is hidden. */
-  double high(double aspect) const {
-    return half_height(aspect * (1 - hidden_));
-  }
-
+  /** Half of the picture's height at distance 1 from the eye. */
   static double half_height(double aspect) {
     return half_size() / std::min(aspect, 1.0);
   }
@@ -169,7 +143,6 @@ class GLCamera {
   double azimuth_ = 0;    // of the eye, from +x towards +y [rad]
   double elevation_ = 0;  // of the eye, above the xy plane [rad]
   double extent_ = 1;
-  double hidden_ = 0;
 
   static double half_size() { return std::tan(field_of_view / 2); }
   double near() const { return distance_ / 50; }

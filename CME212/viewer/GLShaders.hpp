@@ -190,6 +190,16 @@ constexpr const char* mark_fragment = R"(
     color = vec4(paint * clamp(0.5 - off, 0, 1), clamp(rim + 0.5 - off, 0, 1));
   })";
 
+/** A picture over the whole one, its rows from the top. */
+constexpr const char* overlay_fragment = R"(
+  uniform sampler2D layer;
+  uniform float height;
+  out vec4 color;
+  void main() {
+    color = texelFetch(layer, ivec2(gl_FragCoord.x, height - gl_FragCoord.y),
+                       0);
+  })";
+
 }  // namespace gl_detail
 
 }  // namespace CME212

@@ -28,6 +28,18 @@ namespace {
 }
 std::string reason(int error) { return std::system_category().message(error); }
 
+// On macOS it is an option of the socket.
+#ifdef MSG_NOSIGNAL
+constexpr int no_signal = MSG_NOSIGNAL;
+void ignore_signal(int /*socket*/) {}
+#else
+constexpr int no_signal = 0;
+void ignore_signal(int socket) {
+  const int on = 1;
+  setsockopt(socket, SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
+}
+#endif
+
 }  // namespace
 
 void write_png(const std::string& path, const Image& image) {
@@ -115,9 +127,11 @@ void Video::start_ffmpeg(double rate) {
   // write() would raise a signal. Its messages go through a pipe, not a file,
   // as the disk may be full; what does not fit into the pipe is lost.
   int ends[2], said[2];
-  if (pipe2(said, O_CLOEXEC | O_NONBLOCK) ||
-      socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
+  if (pipe(said) || socketpair(AF_UNIX, SOCK_STREAM, 0, ends))
     fail(path_, reason(errno));
+  for (int end : {ends[0], ends[1], said[0], said[1]})
+    fcntl(end, F_SETFD, FD_CLOEXEC);
+  for (int end : said) fcntl(end, F_SETFL, O_NONBLOCK);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], 0);
@@ -133,6 +147,7 @@ void Video::start_ffmpeg(double rate) {
   posix_spawnattr_destroy(&own_group);
   close(ends[1]), close(said[1]);
   input_ = ends[0], said_ = said[0];
+  ignore_signal(input_);
   if (error == 0) return;
   close_input(), close(said_);  // as there is no destructor of this
   fail(path_, error == ENOENT ? "no film without ffmpeg, which `make deps` "
@@ -142,8 +157,7 @@ void Video::start_ffmpeg(double rate) {
 
 void Video::send_all(const std::vector<std::uint8_t>& bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
-    ssize_t n =
-        send(input_, bytes.data() + at, bytes.size() - at, MSG_NOSIGNAL);
+    ssize_t n = send(input_, bytes.data() + at, bytes.size() - at, no_signal);
     if (n >= 0) {
       at += std::size_t(n);
     } else if (errno != EINTR) {

@@ -24,6 +24,7 @@ struct ColorScale {
   double limit = 1;  ///< its ends are +limit (taut) and -limit (slack)
   std::string unit = {};
   bool above = false, below = false;  ///< some values are beyond that end
+  bool operator==(const ColorScale&) const = default;
 };
 
 }  // namespace CME212

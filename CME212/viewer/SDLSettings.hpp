@@ -24,13 +24,10 @@ struct SDLSettings {
   int steps = 0;         // to be made while paused
   bool pauses = false;   // the program calls wait_while_paused()
   bool restart = false;  // not yet taken
-  bool woken = false;    // wait_while_paused() must return
-  double text_scale = 1;
-  std::optional<bool> help;  // shown; if not set: where there are no panels
+  bool help = true;      // shown
   // Written under the lock only, read without:
   std::atomic<bool> paused = false, closed = false, strain_colors = false;
   std::atomic<bool> redraw = true;
-  std::atomic<bool> panels_shown = true;
 
   /** Change something that is drawn or waited for. */
   template <typename F>

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <future>
+#include <iostream>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -17,7 +19,6 @@
 #include "CME212/viewer/GLOverlay.hpp"
 #include "CME212/viewer/GLScene.hpp"
 #include "CME212/viewer/GLTools.hpp"
-#include "CME212/viewer/MouseTool.hpp"
 #include "CME212/viewer/SDLSettings.hpp"
 #include "CME212/viewer/SDLWindow.hpp"
 
@@ -34,9 +35,7 @@ class SDLViewer::Display : public SDLSettings {
 
   /** True if a thread of the viewer has the window. */
   bool launched() const { return thread_.joinable(); }
-  // Set before the window's events are handled:
-  std::function<double()> panels;
-  std::function<void(const Touch&)> touch;
+  const Options& options() const { return options_; }
   void launch();
   /** Show the window and handle its events until it is closed. */
   void serve();
@@ -65,28 +64,16 @@ class SDLViewer::Display : public SDLSettings {
   // For the main thread only, or for that of launch():
   std::optional<Canvas> canvas_;
   clock::time_point last_frame_;
-  double frame_period_ = 0;  // [s]
-  MouseTool mouse_tool_;
-  Picture picture_;                // drawn last
-  std::array<double, 2> mouse_{};  // in it
-  double unit_ = 1;                // pixels to a unit of the mouse
-  double scale_ = 1;               // pixels to a unit of length
-  int unsettled_ = 0;              // frames until panels show the user's input
 
   bool needs_frame() const {
-    return (redraw || builder_.has_new() || unsettled_ > 0 ||
-            canvas_->overlay.input.waits()) &&
-           !canvas_->window.minimized();
+    return (redraw || builder_.has_new()) && !canvas_->window.minimized();
   }
-  void draw(int width, int height, double scale, bool interactive);
-  double interact();
-  void add_state(OverlayText& shown) const;
+  void draw(int width, int height, double scale, bool in_window);
+  std::vector<std::string> keys() const;
   void show_frame();
   void handle(const SDL_Event& e);
-  void on_picture(const SDL_Event& e);
-  void point_at(const SDL_Event& e);
+  void turn(const SDL_MouseMotionEvent& e);
   void press(SDL_Keycode key);
-  void type(char key);
 };
 
 // -------------------------------------------------------------------- Drawing
@@ -147,20 +134,15 @@ void SDLViewer::Display::serve() {
 /** Draw into the current frame buffer.
  * @param scale Pixels to a unit of length of the desktop */
 void SDLViewer::Display::draw(int width, int height, double scale,
-                              bool interactive) {
-  GLOverlay& overlay = canvas_->overlay;
-  overlay.start(width, height, scale);
-  const double left = interactive ? interact() : 0;
+                              bool in_window) {
   builder_.take([&](const SceneData& s, bool edges_changed) {
     canvas_->scene.upload(s, edges_changed);
-    if (touch) mouse_tool_.look(s, edges_changed);
   });
   OverlayText shown;
   GLCamera eye;
   Look what;
   {
     std::lock_guard lock(mutex);
-    camera.set_hidden_left(left / width);
     if (look_at)
       camera.fit(look_at->empty() ? canvas_->scene.box() : *look_at,
                  double(width) / height);
@@ -170,75 +152,41 @@ void SDLViewer::Display::draw(int width, int height, double scale,
     what = look;
     shown = text;
     shown.has_scale = strain_colors;
-    if (interactive) add_state(shown);
-  }
-  picture_ = {eye, double(width), double(height)};
-  if (interactive) {
-    shown.ring = mouse_tool_.ring(picture_);
-    shown.line = mouse_tool_.stroke();
-    if (shown.ring && mouse_tool_.holds())
-      shown.line = {*shown.ring, {float(mouse_[0]), float(mouse_[1])}};
+    if (in_window) {
+      std::string title = options_.title;
+      for (const auto& part :
+           {shown.label, std::string(paused ? "paused" : "")})
+        if (!part.empty()) title += "   " + part;
+      canvas_->window.set_title(title);
+      shown.label.clear();
+      shown.help = keys();
+    }
   }
   canvas_->scene.draw(eye, width, height, scale, what, shown.has_scale);
-  overlay.finish(shown, left);
+  canvas_->overlay.draw(shown, width, height, scale);
 }
 
-/** Handle input in the frame that is open.
- * @return the width that panels take at the left [pixels] */
-double SDLViewer::Display::interact() {
-  GLOverlay& overlay = canvas_->overlay;
-  const auto events = overlay.open(unit_);
-  unsettled_ = events.empty() ? std::max(unsettled_ - 1, 0) : 2;
-  for (const SDL_Event& e : events) {
-    point_at(e);
-    const bool held = mouse_tool_.holds() || mouse_tool_.cuts();
-    if (held || !overlay.panels_want_mouse()) on_picture(e);
-    if (overlay.panels_want_mouse() && !held) mouse_tool_.leave();
-  }
-  return panels && panels_shown ? panels() : 0;
-}
-
-void SDLViewer::Display::add_state(OverlayText& shown) const {
-  const double rate = frame_period_ > 0 ? 1 / frame_period_ : 0;
-  shown.state = pauses && paused
-                    ? "paused"
-                    : std::to_string(std::lround(rate)) + " frames/s";
-  if (!shown.message.empty())
-    shown.state =
-        options_.restarts ? "stopped: r restarts, q quits" : "stopped: q quits";
-  if (!help.value_or(!panels)) {
-    shown.help = {"? keys"};
-    return;
-  }
-  std::string keys;
-  if (pauses) keys += "space pause   n step   ";
-  if (options_.restarts) keys += "r restart   ";
-  if (options_.colors) keys += "s strain   ";
-  shown.help = {keys + "c center"};
-  if (canvas_->scene.has_faces())
-    shown.help.push_back("f faces   w wires   d nodes");
-  if (touch)
-    shown.help.push_back("drag the cloth   Ctrl-drag cut   p pin or unpin");
-  if (panels) shown.help.push_back("Tab panels   + - size   ? keys");
-  shown.help.push_back("drag turn   right drag move   wheel zoom   q quit");
+/** The lines that name the keys. */
+std::vector<std::string> SDLViewer::Display::keys() const {
+  if (!help) return {};
+  std::string control;
+  if (pauses) control += "space pause   n step   ";
+  if (options_.restarts) control += "r restart   ";
+  if (options_.colors) control += "s strain   ";
+  std::string parts = "c center   ";
+  if (canvas_->scene.has_faces()) parts += "f faces   w wires   d nodes   ";
+  return {control + parts + "q quit",
+          "drag to turn, right drag to move, wheel to zoom   ? hides this"};
 }
 
 void SDLViewer::Display::show_frame() {
   const auto [width, height] = canvas_->window.pixels();
   const auto [wide, high] = canvas_->window.size();
-  unit_ = double(height) / high;
-  // Text and panels are larger in a large window, and fit into a small one.
+  // Text is larger in a large window, and fits into a small one.
   const double fit = std::min(wide / 1024.0, high / 768.0);
-  scale_ = unit_ * text_scale * std::max(fit, 0.75);
-  draw(width, height, scale_, true);
+  draw(width, height, double(height) / high * std::max(fit, 0.75), true);
   canvas_->window.swap();
-  const auto now = clock::now();
-  const double period =
-      std::chrono::duration<double>(now - last_frame_).count();
-  last_frame_ = now;
-  // Smoothed over some 20 frames; a pause does not count.
-  if (period < 0.5)
-    frame_period_ += (period - frame_period_) / (frame_period_ > 0 ? 20 : 1);
+  last_frame_ = clock::now();
 }
 
 // --------------------------------------------------------------------- Events
@@ -249,67 +197,29 @@ void SDLViewer::Display::handle(const SDL_Event& e) {
       return close();
     case SDL_WINDOWEVENT:
       if (e.window.event == SDL_WINDOWEVENT_CLOSE) return close();
-      change([] {});
-      break;
-    case SDL_KEYDOWN:
-      if (!e.key.repeat && !canvas_->overlay.panels_want_keys())
-        press(e.key.keysym.sym);
-      break;
-    case SDL_TEXTINPUT:
-      if (!canvas_->overlay.panels_want_keys()) type(e.text.text[0]);
-      break;
-  }
-  if (panels || touch)
-    canvas_->overlay.input.add(e);
-  else
-    on_picture(e);
-}
-
-/** Keep the position of the mouse. */
-void SDLViewer::Display::point_at(const SDL_Event& e) {
-  if (e.type == SDL_MOUSEMOTION)
-    mouse_ = {e.motion.x * unit_, e.motion.y * unit_};
-  if (e.type == SDL_MOUSEBUTTONDOWN || e.type == SDL_MOUSEBUTTONUP)
-    mouse_ = {e.button.x * unit_, e.button.y * unit_};
-}
-
-/** The mouse outside of panels. */
-void SDLViewer::Display::on_picture(const SDL_Event& e) {
-  const auto [width, height] = canvas_->window.size();
-  const double unit = 1.0 / std::min(width, height);
-  const auto [x, y] = mouse_;
-  const double near = 12 * scale_;  // [pixels]
-  const bool left = e.button.button == SDL_BUTTON_LEFT;
-  switch (e.type) {
-    case SDL_MOUSEBUTTONDOWN:
-      if (!touch || !left) return;
-      if (ImGui::GetIO().KeyCtrl) return mouse_tool_.start_cut(x, y);
-      if (const auto t = mouse_tool_.grab(picture_, x, y, near)) touch(*t);
-      return;
-    case SDL_MOUSEBUTTONUP:
-      if (!left) return;
-      if (mouse_tool_.holds()) touch(mouse_tool_.release());
-      return mouse_tool_.end_cut();
-    case SDL_MOUSEMOTION: {
-      if (mouse_tool_.holds()) return touch(mouse_tool_.move(picture_, x, y));
-      if (mouse_tool_.cuts()) return touch(mouse_tool_.cut(picture_, x, y));
-      const double right = e.motion.xrel * unit, up = -e.motion.yrel * unit;
-      if (e.motion.state & SDL_BUTTON_LMASK)
-        change([&] { camera.rotate(3 * right, 3 * up); });
-      else if (e.motion.state & SDL_BUTTON_RMASK)
-        change([&] { camera.pan(right, up); });
-      else if (touch)
-        mouse_tool_.hover(picture_, x, y, near);
-      return;
-    }
+      return change([] {});
+    case SDL_MOUSEMOTION:
+      return turn(e.motion);
     case SDL_MOUSEWHEEL:
       return change([&] { camera.zoom(std::pow(1.1, e.wheel.preciseY)); });
     case SDL_KEYDOWN:
-      if (!touch || e.key.keysym.sym != SDLK_p || e.key.repeat) return;
-      if (const auto node = mouse_tool_.node_at(picture_, x, y, near))
-        touch({Touch::Kind::pin, *node});
+      if (!e.key.repeat) press(e.key.keysym.sym);
+      return;
+    case SDL_TEXTINPUT:  // the place of ? depends on the keyboard
+      if (e.text.text[0] == '?') change([&] { help = !help; });
       return;
   }
+}
+
+/** Move the camera as the mouse moves with a button pressed. */
+void SDLViewer::Display::turn(const SDL_MouseMotionEvent& e) {
+  const auto [width, height] = canvas_->window.size();
+  const double unit = 1.0 / std::min(width, height);
+  const double right = e.xrel * unit, up = -e.yrel * unit;
+  if (e.state & SDL_BUTTON_LMASK)
+    change([&] { camera.rotate(3 * right, 3 * up); });
+  else if (e.state & SDL_BUTTON_RMASK)
+    change([&] { camera.pan(right, up); });
 }
 
 void SDLViewer::Display::press(SDL_Keycode key) {
@@ -332,27 +242,20 @@ void SDLViewer::Display::press(SDL_Keycode key) {
       return change([&] { look.nodes = next(look.nodes); });
     case SDLK_c:
       return change([&] { look_at = BoundingBox(); });
-    case SDLK_TAB:
-      return change([&] { panels_shown = !panels_shown; });
     case SDLK_q:
     case SDLK_ESCAPE:
       return close();
   }
 }
 
-/** Keys whose place depends on the keyboard: by the text that they give. */
-void SDLViewer::Display::type(char key) {
-  change([&] {
-    if (key == '?') help = !help.value_or(!panels);
-    if (key == '+') text_scale = std::min(text_scale * 1.1, 4.0);
-    if (key == '-') text_scale = std::max(text_scale / 1.1, 0.5);
-  });
-}
-
 // ------------------------------------------------------ What the program calls
 
-SDLViewer::SDLViewer(const Options& o)
-    : display_(std::make_unique<Display>(*this, o)) {}
+SDLViewer::SDLViewer(const Options& o) {
+  end_by_no_display();
+  Options options = o;
+  if (!o.picture.empty() && !has_display()) options.offscreen = true;
+  display_ = std::make_unique<Display>(*this, options);
+}
 SDLViewer::~SDLViewer() = default;  // Display is complete here
 
 bool SDLViewer::has_display() {
@@ -404,20 +307,6 @@ bool SDLViewer::closed() const { return display_->closed; }
 void SDLViewer::close() { display_->close(); }
 void SDLViewer::set_paused(bool on) { display_->set_paused(on); }
 
-bool SDLViewer::paused() const { return display_->paused; }
-void SDLViewer::step_once() { display_->step_once(); }
-void SDLViewer::ask_restart() { display_->ask_restart(); }
-void SDLViewer::wake() {
-  display_->change([&] { display_->woken = true; });
-}
-
-void SDLViewer::set_panels(std::function<double()> draw) {
-  display_->panels = std::move(draw);
-}
-void SDLViewer::set_touch(std::function<void(const Touch&)> serve) {
-  display_->touch = std::move(serve);
-}
-
 bool SDLViewer::wait_while_paused() {
   return wait_while_paused([] {});
 }
@@ -426,7 +315,7 @@ bool SDLViewer::wait_while_paused(const std::function<void()>& show) {
   std::unique_lock lock(d.mutex);
   std::optional<bool> shown_colors;
   d.pauses = true;
-  while (!d.closed && !d.restart && !d.woken && d.paused && d.steps == 0) {
+  while (!d.closed && !d.restart && d.paused && d.steps == 0) {
     if (shown_colors == d.strain_colors) {
       d.control.wait(lock);
       continue;
@@ -436,7 +325,7 @@ bool SDLViewer::wait_while_paused(const std::function<void()>& show) {
     show();
     lock.lock();
   }
-  if (std::exchange(d.woken, false) || d.closed || d.restart) return false;
+  if (d.closed || d.restart) return false;
   if (d.paused) --d.steps;
   return true;
 }
@@ -454,7 +343,18 @@ void SDLViewer::set_strain_colors(bool on) {
 
 void SDLViewer::event_loop() {
   assert(!display_->launched() && "launch() has a thread that does this");
-  display_->serve();
+  if (in_window() || display_->options().picture.empty()) display_->serve();
+}
+
+bool SDLViewer::in_window() const { return !display_->options().offscreen; }
+
+void SDLViewer::write_picture() {
+  const std::string& file = display_->options().picture;
+  if (in_window() || file.empty()) return;
+  std::filesystem::create_directories(
+      std::filesystem::absolute(file).parent_path());
+  write_png(file, snapshot());
+  std::cout << "no display; a picture of the last state: " << file << '\n';
 }
 
 void SDLViewer::launch() {

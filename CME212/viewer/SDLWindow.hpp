@@ -24,8 +24,10 @@ class SDLVideo {
   explicit SDLVideo(bool offscreen) {
     // By name: otherwise, if a display can't be opened, SDL silently takes a
     // driver that shows nothing.
+    const bool mac = SDL_GetPlatform() == std::string("Mac OS X");
     const char* driver = "offscreen";
     if (!offscreen) driver = std::getenv("SDL_VIDEODRIVER");
+    if (mac) driver = "cocoa";  // always there; it draws hidden windows, too
     if (!driver && std::getenv("WAYLAND_DISPLAY")) driver = "x11,wayland";
     if (!driver && std::getenv("DISPLAY")) driver = "x11";
     if (!driver) throw NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set");
@@ -91,6 +93,9 @@ class SDLWindow {
     SDL_GL_SetSwapInterval(1);
   }
 
+  void set_title(const std::string& title) const {
+    SDL_SetWindowTitle(window_.get(), title.c_str());
+  }
   void show() const { SDL_ShowWindow(window_.get()); }
   void hide() const { SDL_HideWindow(window_.get()); }
   /** OpenGL calls go to this window from now on. */

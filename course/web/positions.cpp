@@ -12,7 +12,7 @@ namespace CME212 {
 
 /** A viewer of the program that writes its last frame. */
 struct Positions : NoViewer {
-  Positions() : NoViewer(Films()) {}
+  explicit Positions(const Options&) : NoViewer(Films()) {}
   template <typename G>
   void draw_graph(const G& g) {
     std::ofstream out(std::getenv("POSITIONS"), std::ios::binary);

@@ -289,16 +289,4 @@ std::string Live::recording() const {
   return recording_ + std::to_string(calls_) + " end\n";
 }
 
-void RequestQueue::push(std::string request) {
-  const auto name = [](const std::string& r) {
-    return r.substr(0, r.find(' '));
-  };
-  const std::lock_guard lock(mutex_);
-  if (!waiting_.empty() && name(waiting_.back()) == name(request) &&
-      Live::overrides(request))
-    waiting_.back() = std::move(request);
-  else
-    waiting_.push_back(std::move(request));
-}
-
 }  // namespace lab

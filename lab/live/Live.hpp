@@ -2,14 +2,13 @@
 /** @file Live.hpp
  * Live: a scene that a user changes while it runs. A change is a request, one
  * line of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The same
- * text is what the panel and the page send, and what a recording and a link
- * hold. Requests.cpp lists all requests.
+ * text is what the page sends, and what a recording and a link hold.
+ * Requests.cpp lists all requests.
  *
  * A node is named by its id, Node::id(), which stays the same when others are
  * removed. */
 #include <array>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -111,8 +110,7 @@ double dt_unit(const Scene& s, const MethodEntry& m);
  * model and on the requests, with the number of step() calls before each; what
  * is read or shown meanwhile does not change a bit.
  *
- * One thread at a time. A window's thread leaves requests in a RequestQueue.
- */
+ * One thread at a time. */
 class Live {
  public:
   /** At t = 0.
@@ -212,23 +210,6 @@ class Live {
   void compare();
   void tune();
   void alone() { rival_.reset(), reference_.reset(); }
-};
-
-/** Requests on their way to the thread that steps. */
-class RequestQueue {
- public:
-  /** Any thread. A request replaces the last one that waits if
-   * Live::overrides() says so. */
-  void push(std::string request);
-  /** All requests since the last call, in order. */
-  std::vector<std::string> take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(waiting_, {});
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::string> waiting_;
 };
 
 }  // namespace lab

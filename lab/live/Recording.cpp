@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/live/Line.hpp"
 #include "lab/scenes/KeyValues.hpp"
@@ -69,12 +68,6 @@ SceneRequest read_scene(const std::string& request, const std::string& file,
   }
   scene.model.step.tolerance = tolerance;
   return scene;
-}
-
-void write_recording(const Live& live, const std::string& file) {
-  CME212::OutputFile out(file);
-  out.stream() << live.recording();
-  out.commit();
 }
 
 Replay::Replay(const std::string& file) : file_(file) {

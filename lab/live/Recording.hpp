@@ -28,10 +28,6 @@ SceneRequest read_scene(const std::string& request,
                         const std::string& file = "scene",
                         std::size_t line = 1);
 
-/** Write Live::recording() to @a file.
- * Throws std::runtime_error "FILE: why" */
-void write_recording(const Live& live, const std::string& file);
-
 /** Runs a recording again: to the same bits on the same kind of machine. */
 class Replay {
  public:

@@ -53,6 +53,16 @@ void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
   }
 }
 
+std::vector<std::string> outcome(const Scene& scene, unsigned nodes) {
+  const unsigned left = scene.cloth().num_nodes();
+  std::vector<std::string> lines{"t = " + short_text(scene.time()) + " s",
+                                 std::to_string(scene.steps()) + " steps"};
+  if (left < nodes)
+    lines.push_back(std::to_string(nodes - left) + " of " +
+                    std::to_string(nodes) + " nodes removed");
+  return lines;
+}
+
 Film::Film(const Scene& scene, Run& run, const Options& o)
     : scene_(scene),
       run_(run),
@@ -119,7 +129,7 @@ void Film::finish() {
   };
   if (!o_.video.empty()) {
     if (scene_.failure().empty()) {
-      screen_->show_card(end());
+      screen_->show_card(outcome(scene_, first_nodes_));
       screen_->add_to_film(
           std::clamp(frames_ / 8, 1, frames_in(title_seconds)));
       screen_->show_card({});
@@ -169,16 +179,6 @@ std::vector<std::string> Film::title() const {
   if (o_.slow_motion > 1)
     lines.push_back("contact and tearing " + short_text(o_.slow_motion) +
                     " times slower");
-  return lines;
-}
-
-std::vector<std::string> Film::end() const {
-  const Cloth& g = scene_.cloth();
-  std::vector<std::string> lines{"t = " + short_text(scene_.time()) + " s",
-                                 std::to_string(scene_.steps()) + " steps"};
-  if (g.num_nodes() < first_nodes_)
-    lines.push_back(std::to_string(first_nodes_ - g.num_nodes()) + " of " +
-                    std::to_string(first_nodes_) + " nodes removed");
   return lines;
 }
 

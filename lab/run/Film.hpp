@@ -23,6 +23,10 @@ class Scene;
 void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
                  const std::function<bool(int)>& shown);
 
+/** What came of @a scene, in lines for Screen::show_card().
+ * @param nodes How many it had at first */
+std::vector<std::string> outcome(const Scene& scene, unsigned nodes);
+
 /** The picture and the film of one run.
  *
  * A film has 30 frames for each second of simulated time. Each shows the state
@@ -65,7 +69,6 @@ class Film {
   double frame_time();
   bool event();
   std::vector<std::string> title() const;
-  std::vector<std::string> end() const;
 };
 
 }  // namespace lab

@@ -160,16 +160,8 @@ void check(Options& o) {
       if (given)
         throw SceneError("replay",
                          std::string("cannot be combined with --") + option +
-                             ", only with --out, --record, --record-input, "
-                             "--screenshot of the end and --window");
-  if (!o.record_input.empty() && o.replay.empty() &&
-      (o.headless || o.pictures()))
-    throw SceneError("record-input",
-                     "needs a window, in which the scene can be changed");
-  if (!o.record_input.empty() && o.replay.empty() && o.is_fixed())
-    throw SceneError("record-input",
-                     "cannot be combined with --csv, --vtp, --ply, "
-                     "--checkpoint or --restart: such a run cannot be changed");
+                             ", only with --out, --record, --screenshot of "
+                             "the end and --window");
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
         "window",
@@ -318,12 +310,11 @@ void add_run_options(CLI::App& app, Options& o) {
            "interruption; the scene may be omitted; --csv continues the file "
            "of that run");
   app.option_defaults()->group("Changes while it runs");
-  add_file(app, "--record-input", o.record_input,
-           "in a window: write the scene and every change, for --replay");
-  add_file(app, "--replay", o.replay,
-           "repeat a run of --record-input without a window, to the same bits; "
-           "can be combined with --out, --record and --screenshot of the end; "
-           "with --window it goes on in a window");
+  add_file(
+      app, "--replay", o.replay,
+      "repeat a recording: a scene and changes of it after given steps, to "
+      "the same bits; can be combined with --out, --record, --screenshot "
+      "of the end and --window");
   app.add_option("--threads", o.threads,
                  "threads for a large cloth, which change no result; 0: one "
                  "per processor")

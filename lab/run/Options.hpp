@@ -31,16 +31,11 @@ struct Options {
   std::string json;             ///< file for the advice
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
-  std::string record_input, replay;
+  std::string replay;         ///< file of a recording
 
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || assess; }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }
-  /** True if an output describes the run from start to end. Then the user can't
-   * change the scene in a window. */
-  bool is_fixed() const {
-    return !(csv + vtp + ply + checkpoint + restart).empty();
-  }
 };
 
 /** Read the scene file, if there is one, and then the command line, which

@@ -25,79 +25,6 @@ constexpr const char* warning = "cloth: warning: ";
 
 }  // namespace
 
-void announce(const Scene& scene, const Options& o, long long first_step) {
-  if (o.quiet) return;
-  using CME212::percent;
-  for (const std::string& line :
-       what_acts(o.model, scene.cloth(), scene.recipe().built->mesh))
-    std::cout << line << '\n';
-  const std::string method = scene.method().name;
-  const double dt = scene.dt(), limit = scene.safe_limit();
-  const bool sharp = scene.step_rule() == StepRule::sharp;
-  std::ostringstream out;
-  out.precision(3);
-  out << "dt = " << dt << " s";
-  if (sharp) {
-    out << " at first; auto:sharp takes " << percent(sharp_share)
-        << " of the stability limit in the present configuration, at most "
-        << limit << " s, the limit in any (" << method << ')';
-  } else if (scene.method().adaptive) {
-    out << ": " << method << " chooses its inner steps by their error";
-    if (const double t = o.model.step.tolerance; t > 0)
-      out << ", below " << t << " m per inner step, for " << o.model.tolerance
-          << " m at the end";
-  } else if (limit == no_limit) {
-    const double verlet = scene.safe_limit(entry_of<Verlet>());
-    out << ": " << method << " has no stability limit";
-    if (std::isfinite(verlet))
-      out << "; this is " << percent(dt / verlet)
-          << " of the stability limit of verlet (" << verlet << " s)";
-  } else if (limit > 0) {
-    out << ": " << percent(dt / limit) << " of the stability limit (" << limit
-        << " s, " << method << ')';
-  } else {
-    out << ": no step is stable with " << method << " and no drag";
-  }
-  if (scene.control())
-    out << "; afterwards adapted to the energy balance: gain of at most "
-        << percent(o.model.step.gain) << " of the energy of motion";
-  if (first_step > 0)
-    std::cout << o.restart << ": continues at t = " << scene.time() << " s\n";
-  std::cout << out.str() << std::endl;  // at once, also into a pipe
-  const auto& built = scene.recipe().built;
-  if (built && first_step == 0)  // they are about the cloth as it was made
-    for (const auto& w : warnings(o.model, built->mesh, scene.cloth(), dt))
-      std::cerr << warning << w << '\n';
-  if (dt <= limit || sharp) return;
-  out.str("");
-  if (limit > 0)
-    out << "dt exceeds the stability limit: expect divergence; use --dt "
-        << safe_share * limit << " or --dt auto";
-  else
-    out << "expect divergence; use --method verlet --dt auto";
-  std::cerr << warning << out.str() << '\n';
-}
-
-void tell_interrupt(const Scene& scene, const Model& m,
-                    const std::string& kept) {
-  using CME212::short_text;
-  std::cerr << "cloth: " << name_of_interrupt()
-            << " ended the run at t = " << short_text(scene.time()) << " s of "
-            << short_text(m.t_end) << " s; kept: "
-            << (kept.empty() ? "nothing, as no output was requested" : kept)
-            << '\n';
-}
-
-void print_summary(const Scene& scene, const Model& m, double seconds) {
-  const Energies e = energies(scene.cloth(), m.gravity);
-  std::cout << scene.recipe().name << ": " << scene.steps()
-            << " steps to t = " << scene.time() << " s in " << seconds
-            << " s; energy " << e.total() << " J = " << e.kinetic
-            << " kinetic + " << e.elastic << " elastic + " << e.gravitational
-            << " gravitational; " << scene.cloth().num_nodes() << " nodes and "
-            << scene.cloth().num_edges() << " edges left\n";
-}
-
 MeshOutput::MeshOutput(const std::string& file) : nodes_(file) {
   const std::string quads = quads_beside(file);
   if (!quads.empty()) quads_.emplace(quads);
@@ -206,7 +133,58 @@ void Run::show_progress() {
                  t / t_end);
 }
 
-void Run::announce() const { lab::announce(scene_, o_, first_step_); }
+void Run::announce() const {
+  if (o_.quiet) return;
+  using CME212::percent;
+  for (const std::string& line :
+       what_acts(o_.model, scene_.cloth(), scene_.recipe().built->mesh))
+    std::cout << line << '\n';
+  const std::string method = scene_.method().name;
+  const double dt = scene_.dt(), limit = scene_.safe_limit();
+  const bool sharp = scene_.step_rule() == StepRule::sharp;
+  std::ostringstream out;
+  out.precision(3);
+  out << "dt = " << dt << " s";
+  if (sharp) {
+    out << " at first; auto:sharp takes " << percent(sharp_share)
+        << " of the stability limit in the present configuration, at most "
+        << limit << " s, the limit in any (" << method << ')';
+  } else if (scene_.method().adaptive) {
+    out << ": " << method << " chooses its inner steps by their error";
+    if (const double t = o_.model.step.tolerance; t > 0)
+      out << ", below " << t << " m per inner step, for " << o_.model.tolerance
+          << " m at the end";
+  } else if (limit == no_limit) {
+    const double verlet = scene_.safe_limit(entry_of<Verlet>());
+    out << ": " << method << " has no stability limit";
+    if (std::isfinite(verlet))
+      out << "; this is " << percent(dt / verlet)
+          << " of the stability limit of verlet (" << verlet << " s)";
+  } else if (limit > 0) {
+    out << ": " << percent(dt / limit) << " of the stability limit (" << limit
+        << " s, " << method << ')';
+  } else {
+    out << ": no step is stable with " << method << " and no drag";
+  }
+  if (scene_.control())
+    out << "; afterwards adapted to the energy balance: gain of at most "
+        << percent(o_.model.step.gain) << " of the energy of motion";
+  if (first_step_ > 0)
+    std::cout << o_.restart << ": continues at t = " << scene_.time() << " s\n";
+  std::cout << out.str() << std::endl;  // at once, also into a pipe
+  const auto& built = scene_.recipe().built;
+  if (built && first_step_ == 0)  // they are about the cloth as it was made
+    for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
+      std::cerr << warning << w << '\n';
+  if (dt <= limit || sharp) return;
+  out.str("");
+  if (limit > 0)
+    out << "dt exceeds the stability limit: expect divergence; use --dt "
+        << safe_share * limit << " or --dt auto";
+  else
+    out << "expect divergence; use --method verlet --dt auto";
+  std::cerr << warning << out.str() << '\n';
+}
 
 int Run::finish() {
   progress_.end();
@@ -243,9 +221,9 @@ int Run::finish() {
     }
   });
   if (error) std::rethrow_exception(error);
-  if (cut_short()) tell_interrupt(scene_, o_.model, kept_);
+  if (cut_short()) tell_interrupt();
   if (!o_.quiet) {
-    print_summary(scene_, o_.model, seconds_);
+    print_summary();
     tell_work();
   }
   if (scene_.control()) tell_steps(*scene_.control());
@@ -398,6 +376,25 @@ void Run::warn_of_missed() {
             << scene_.dt() *
                    std::min(0.5, scene_.watched().thinnest() / missed.length)
             << '\n';
+}
+
+void Run::tell_interrupt() const {
+  using CME212::short_text;
+  std::cerr << "cloth: " << name_of_interrupt()
+            << " ended the run at t = " << short_text(scene_.time()) << " s of "
+            << short_text(o_.model.t_end) << " s; kept: "
+            << (kept_.empty() ? "nothing, as no output was requested" : kept_)
+            << '\n';
+}
+
+void Run::print_summary() const {
+  const Energies e = energies(scene_.cloth(), o_.model.gravity);
+  std::cout << scene_.recipe().name << ": " << scene_.steps()
+            << " steps to t = " << scene_.time() << " s in " << seconds_
+            << " s; energy " << e.total() << " J = " << e.kinetic
+            << " kinetic + " << e.elastic << " elastic + " << e.gravitational
+            << " gravitational; " << scene_.cloth().num_nodes() << " nodes and "
+            << scene_.cloth().num_edges() << " edges left\n";
 }
 
 /** Print the cost of the run in numbers that are the same on every machine. */

@@ -20,18 +20,8 @@ namespace lab {
 class Scene;
 class StepControl;
 
-/** Say how long the step of @a scene is and how long it may be.
- * @param first_step Steps done before a checkpoint */
-void announce(const Scene& scene, const Options& o, long long first_step = 0);
-/** Print a line with the result of @a scene of @a m after @a seconds. */
-void print_summary(const Scene& scene, const Model& m, double seconds);
-/** Say that a signal ended the run of @a scene, and what was @a kept. */
-void tell_interrupt(const Scene& scene, const Model& m,
-                    const std::string& kept);
-
-/** ./cloth --replay FILE: run the recording o.replay again, without a window,
- * and write what @a o asks for: the cloth and a picture of it at the end, a
- * film, the recording.
+/** ./cloth --replay FILE: run the recording o.replay again, and write what
+ * @a o asks for: the cloth and a picture of it at the end, a film.
  * @return the exit status: 0, 3 if it ends with a failure, 128 + a signal
  * Throws InputError, SceneFileError; std::runtime_error "FILE: why" */
 int run_replay(const Options& o);
@@ -80,7 +70,7 @@ class Run {
   /** Step until done(). Call @a after(), if there is one, after each step. */
   void to_end(const std::function<void()>& after = {});
 
-  /** lab::announce() of this run. */
+  /** Print what acts, how long the step is, and how long it may be. */
   void announce() const;
 
   /** A file was written by others: @a what in words, as "film x.mp4". */
@@ -118,6 +108,8 @@ class Run {
   void write_rows(long long settled);
   void show_progress();
   void tell_failure();
+  void tell_interrupt() const;
+  void print_summary() const;
   void warn_of_missed();
   void add_frame();
   void begin_csv();

@@ -1,7 +1,6 @@
 /** @file RunReplay.cpp
  * ./cloth --replay FILE */
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,6 +9,8 @@
 #include "lab/live/Recording.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Run.hpp"
+#include "lab/run/Window.hpp"
+#include "lab/scenes/Scene.hpp"
 #include "lab/viewer/Screen.hpp"
 
 namespace lab {
@@ -41,24 +42,48 @@ class ReplayFilm {
   double last_ = 0, due_ = 0;  // [s]
 };
 
+/** The replay in a window. */
+class ReplayRun : public WindowRun {
+ public:
+  ReplayRun(const std::string& file, std::optional<Replay>& replay)
+      : file_(file), replay_(replay) {}
+  void restart() override { replay_.emplace(file_), ended_ = false; }
+  void advance() override { ended_ = !replay_->step(); }
+  void check() override { replay_->live().check(); }
+  bool done() const override { return ended_ || interrupted(); }
+  const Scene& scene() const override { return replay_->live().scene(); }
+  const Scene* rival() const override { return replay_->live().rival(); }
+
+ private:
+  const std::string& file_;
+  std::optional<Replay>& replay_;
+  bool ended_ = false;
+};
+
 }  // namespace
 
 int run_replay(const Options& o) {
-  Replay replay(o.replay);
-  Live& live = replay.live();
+  std::optional<Replay> replay(o.replay);
   const auto screen =
-      !o.pictures() ? nullptr
-                    : Screen::open(o.video.empty() ? Screen::Kind::pictures
-                                                   : Screen::Kind::film,
-                                   o.pixels);
+      o.window        ? Screen::open(Screen::Kind::window)
+      : !o.pictures() ? nullptr
+                      : Screen::open(o.video.empty() ? Screen::Kind::pictures
+                                                     : Screen::Kind::film,
+                                     o.pixels);
   if (screen) screen->show_strain(o.strain);
   std::optional<ReplayFilm> film;
   if (!o.video.empty()) film.emplace(*screen, o.video);
-  while (!interrupted() && replay.step()) {
-    if (!film) continue;
-    live.check();
-    film->add(live);
+  if (o.window) {
+    screen->set_paused(o.paused);
+    ReplayRun run(o.replay, replay);
+    show_in_window(run, *screen, o.speed);
   }
+  while (!o.window && !interrupted() && replay->step()) {
+    if (!film) continue;
+    replay->live().check();
+    film->add(replay->live());
+  }
+  Live& live = replay->live();
   live.check();
   const auto wrote = [&o](const std::string& what, const std::string& file) {
     if (!o.quiet) std::cout << what << ": " << file << '\n';
@@ -70,11 +95,10 @@ int run_replay(const Options& o) {
     wrote("picture", o.screenshot);
   }
   if (!o.out.empty()) MeshOutput(o.out).write(live.scene());
-  if (!o.record_input.empty()) write_recording(live, o.record_input);
   const Readings r = live.readings(false);
   using CME212::short_text;
   if (!o.quiet)
-    std::cout << CME212::count_of(replay.requests(), "request") << ", "
+    std::cout << CME212::count_of(replay->requests(), "request") << ", "
               << CME212::count_of(std::size_t(live.calls()), "step")
               << " to t = " << short_text(r.time) << " s; energy "
               << short_text(r.energy.total()) << " J; " << r.nodes

@@ -4,8 +4,8 @@
  *
  * Exit status: 0 done; 2 an input or an option that can't be used, or an
  * output that can't be written; 3 the run failed: it diverged, or it could not
- * keep what it was asked to keep; 4 no display; 128 + N
- * signal N ended it: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP. */
+ * keep what it was asked to keep; 4 no display; 128 + N signal N ended it: 130
+ * Ctrl-C, 143 SIGTERM, 129 SIGHUP. */
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -20,7 +20,6 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -32,13 +31,12 @@
 #include "lab/Progress.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/live/Live.hpp"
-#include "lab/live/Recording.hpp"
 #include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Run.hpp"
+#include "lab/run/Window.hpp"
 #include "lab/scenes/Accuracy.hpp"
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Scene.hpp"
@@ -73,136 +71,6 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
     run.to_end();
   }
   return run.finish();
-}
-
-/** A run in a window that writes files, so that the user can't change it. */
-struct PlainRun {
-  Scene& scene;
-  Run& run;
-  Screen& screen;
-  double limit;  // of the speed
-
-  bool serve() { return false; }
-  void restart() { run.restart(); }
-  void advance() { run.advance(); }
-  void show() {
-    run.check();
-    screen.show(scene);
-  }
-  bool done() const { return run.done(); }
-  double time() const { return scene.time(); }
-  double speed() const { return limit; }
-};
-
-/** A run in a window that the user changes. */
-struct LiveRun {
-  Live& live;
-  Screen& screen;
-  bool told = false;  // that it failed
-
-  bool serve() { return screen.serve(live); }
-  void restart() { live.apply("restart"); }
-  void advance() { live.step(); }
-  void show() {
-    live.check();
-    const bool failed = !live.scene().failure().empty();
-    if (failed && !told)
-      std::cerr << "cloth: " << live.scene().explanation() << '\n';
-    screen.show(live);
-    if (failed && !std::exchange(told, failed)) show_explosion();
-    told = !live.scene().failure().empty();
-  }
-  /** The motion beyond the failure, until the user asks for something. */
-  void show_explosion() {
-    show_beyond(live.scene(), live.rival(), screen, [this](int frames) {
-      for (; frames > 0; --frames) {
-        CME212::sleep(1 / Screen::frames_per_second);
-        if (screen.take_restart()) return restart(), false;
-        if (serve() || screen.closed()) return false;
-      }
-      return true;
-    });
-    screen.show(live);
-  }
-  bool done() const { return interrupted() || live.done(); }
-  double time() const { return live.scene().time(); }
-  double speed() const { return screen.speed(); }
-};
-
-/** Step @a s in a thread of its own, at most s.speed() times as fast as the
- * clock, until the window is closed. A run that failed stays on the screen
- * until then or until it is restarted. */
-template <typename S>
-void step_in_window(S& s, Screen& screen) {
-  std::exception_ptr error;
-  std::thread simulation([&] {
-    try {
-      CME212::Clock clock;
-      double ahead = 0;  // simulated before the clock started [s]
-      s.show();
-      while (!screen.closed()) {
-        bool changed = s.serve();
-        if (screen.take_restart()) s.restart(), changed = true;
-        if (changed || (s.done() && screen.coloring_changed())) s.show();
-        if (s.done()) {
-          CME212::sleep(0.01);
-          continue;
-        }
-        if (!screen.wait_while_paused([&s] { s.show(); })) continue;
-        s.advance();
-        if (screen.wants_frame() || s.done()) s.show();
-        if (const double speed = s.speed(); speed > 0) {
-          double early = (s.time() - ahead) / speed - clock.seconds();
-          if (early > 0 && early < 1)
-            CME212::sleep(early);
-          else if (early != 0)  // late, paused or restarted: count anew
-            clock.start(), ahead = s.time();
-        }
-      }
-    } catch (...) {
-      error = std::current_exception();
-      screen.close();
-    }
-  });
-  // A paused simulation waits for the screen only.
-  std::thread watch([&screen] {
-    for (; !screen.closed(); CME212::sleep(0.02))
-      if (interrupted()) screen.close();
-  });
-  screen.event_loop();
-  simulation.join();
-  watch.join();
-  if (error) std::rethrow_exception(error);
-}
-
-/** Run in a window in which the user may change everything.
- * @return exit status */
-int run_live(Live& live, const Options& o) {
-  const auto window = Screen::open(Screen::Kind::window);
-  Screen& screen = *window;
-  if (!o.quiet) {
-    std::cout << live.scene().cloth().num_nodes() << " nodes, "
-              << live.scene().cloth().num_edges() << " edges\n";
-    if (o.replay.empty()) announce(live.scene(), o);
-  }
-  screen.show_strain(o.strain);
-  screen.set_paused(o.paused);
-  screen.open_panels(o.speed);
-  LiveRun run{live, screen};
-  CME212::Clock clock;
-  step_in_window(run, screen);
-  live.check();
-  std::string kept;
-  const auto wrote = [&kept](const std::string& file) {
-    kept += (kept.empty() ? "" : ", ") + file;
-  };
-  if (!o.record_input.empty())
-    write_recording(live, o.record_input), wrote(o.record_input);
-  if (!o.out.empty()) MeshOutput(o.out).write(live.scene()), wrote(o.out);
-  if (interrupted()) tell_interrupt(live.scene(), live.model(), kept);
-  if (!o.quiet) print_summary(live.scene(), live.model(), clock.seconds());
-  if (!live.scene().failure().empty()) return 3;
-  return interrupted() ? 128 + interrupted() : 0;
 }
 
 void write_text(const std::string& text, const std::string& file) {
@@ -267,8 +135,8 @@ int tell_accuracy(const Accuracy& a, int status, bool quiet) {
 
 /** Before a run starts: check that all outputs can be written, that no two go
  * to one file, and that none replaces a file that the run reads. But --out may
- * replace the mesh, --write-config the scene, --checkpoint the file of
- * --restart, and --record-input that of --replay.
+ * replace the mesh, --write-config the scene, and --checkpoint the file of
+ * --restart.
  * Throws std::runtime_error, SceneError */
 void check_outputs(const Options& o) {
   using Pair = std::pair<std::string, std::string>;
@@ -281,8 +149,7 @@ void check_outputs(const Options& o) {
   const std::set<Pair> follow = {{"out", "nodes"},
                                  {"out", "tets"},
                                  {"write-config", "config"},
-                                 {"checkpoint", "restart"},
-                                 {"record-input", "replay"}};
+                                 {"checkpoint", "restart"}};
   auto add = [&](const char* option, const std::string& file) {
     const std::string target = CME212::output_target(file);
     const auto input = input_of.find(target);
@@ -315,8 +182,7 @@ void check_outputs(const Options& o) {
         std::pair("out", quads_beside(o.out)),
         std::pair("screenshot", o.screenshot), std::pair("record", o.video),
         std::pair("write-config", o.advised), std::pair("json", o.json),
-        std::pair("checkpoint", o.checkpoint),
-        std::pair("record-input", o.record_input)}) {
+        std::pair("checkpoint", o.checkpoint)}) {
     // Opening a pipe waits for its reader; and many may write to a device.
     if (file.empty() || std::filesystem::is_other(file)) continue;
     with_place(option, [&to = file] { CME212::OutputFile try_it(to); });
@@ -330,11 +196,6 @@ int run(Options o) {
   check_outputs(o);
   lanes::cpu = fastest_cpu();
   Sweep::set_threads(o.threads);
-  if (!o.replay.empty() && o.window) {
-    Replay replay(o.replay);
-    while (!interrupted() && replay.step()) continue;
-    return run_live(replay.live(), o);
-  }
   if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
@@ -344,12 +205,7 @@ int run(Options o) {
   }
   const Model& m = o.model;
   const bool shows = !o.headless && !o.pictures();
-  const bool in_window =
-      shows && (o.window || !o.record_input.empty() || Screen::has_display());
-  if (in_window && !o.is_fixed()) {
-    Live live(m);
-    return run_live(live, o);
-  }
+  const bool in_window = shows && (o.window || Screen::has_display());
   std::optional<Accuracy> accuracy;
   if (m.step.tolerance > 0 && o.restart.empty()) accuracy = measure_accuracy(o);
   Recipe recipe = recipe_of(m);
@@ -377,8 +233,7 @@ int run(Options o) {
   if (window) {
     window->show_strain(o.strain);
     window->set_paused(o.paused);
-    PlainRun plain{scene, run, *window, o.speed};
-    step_in_window(plain, *window);
+    show_in_window(scene, run, *window, o.speed);
     run.check();
     status = run.finish();
   } else {

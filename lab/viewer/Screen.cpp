@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <mutex>
 #include <new>
 #include <optional>
 #include <thread>
@@ -18,10 +17,8 @@
 
 #include "CME212/SDLViewer.hpp"
 #include "CME212/viewer/Image.hpp"
-#include "lab/live/Live.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Scene.hpp"
-#include "lab/viewer/Panel.hpp"
 
 namespace lab {
 namespace {
@@ -35,7 +32,7 @@ double strain_at(const Node& n) {
   return n.degree() > 0 ? strain / n.degree() : 0;
 }
 
-const CME212::Color rival_color(1.0f, 0.72f, 0.3f), pinned(0.9f, 0.3f, 0.55f);
+const CME212::Color rival_color(1.0f, 0.72f, 0.3f);
 
 class SDLScreen : public Screen {
  public:
@@ -53,7 +50,52 @@ class SDLScreen : public Screen {
   void show_strain(bool on) override { viewer_.set_strain_colors(on); }
 
   void show(const Scene& scene, const Scene* rival) override {
-    show(scene, rival, nullptr);
+    const Cloth& g = scene.cloth();
+    if (scene.recipe().name != name_) {  // a recording may load another one
+      name_ = scene.recipe().name;
+      shown_ = moving_ = false, scale_ = 0.01;
+    }
+    show_failure(scene);
+    const bool strain = colored_ = viewer_.strain_colors();
+    if (strain) set_scale(g);
+    auto color_of = [&](CME212::Color plain) {
+      return [this, plain, strain](Node n) {
+        return strain ? CME212::Color::make_strain(
+                            float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
+                      : plain;
+      };
+    };
+    viewer_.set_label(label(scene, rival));
+    Point beside;
+    if (rival) beside = norm(beside_) > 0 ? beside_ : place_beside(g);
+    const bool moves = norm(beside - beside_) > 0;
+    if (!shown_ || moving_ || moves) add_obstacles(scene, beside);
+    if (!shown_ || moves) set_view(scene, beside);
+    if (kind_ == Kind::film) follow(g);
+    const auto moved = [&](Node n) { return n.position() + beside; };
+    const bool same = shown_ && version_ == g.version() &&
+                      rival_shown_ == (rival != nullptr) &&
+                      (!rival || rival_version_ == rival->cloth().version());
+    if (!same) viewer_.clear(), nodes_.clear(), rival_nodes_.clear();
+    viewer_.add_nodes(g.node_begin(), g.node_end(), color_of(CME212::Color(1)),
+                      nodes_);
+    if (rival)
+      viewer_.add_nodes(rival->cloth().node_begin(), rival->cloth().node_end(),
+                        color_of(rival_color), moved, rival_nodes_);
+    beside_ = beside;
+    if (same) return;
+    const auto join = [&](const Scene& s, std::map<Node, unsigned>& nodes) {
+      const Cloth& c = s.cloth();
+      const auto faces = faces_of(s);
+      viewer_.add_faces(faces.begin(), faces.end(), nodes);
+      viewer_.add_edges(c.edge_begin(), c.edge_end(), nodes);
+    };
+    join(scene, nodes_);
+    if (rival) join(*rival, rival_nodes_);
+    version_ = g.version();
+    rival_version_ = rival ? rival->cloth().version() : 0;
+    rival_shown_ = rival;
+    shown_ = true;
   }
 
   void show_card(const std::vector<std::string>& lines) override {
@@ -85,46 +127,6 @@ class SDLScreen : public Screen {
     return viewer_.wait_while_paused(show);
   }
 
-  void open_panels(double speed) override {
-    panel_.emplace(requests_, viewer_, speed);
-    viewer_.set_panels([this] { return panel_->draw(); });
-    viewer_.set_touch([this](const CME212::Touch& t) {
-      {
-        std::lock_guard lock(touches_mutex_);
-        touches_.push_back(t);
-      }
-      viewer_.wake();
-    });
-  }
-
-  bool serve(Live& live) override {
-    std::vector<CME212::Touch> touches;
-    {
-      std::lock_guard lock(touches_mutex_);
-      touches.swap(touches_);
-    }
-    std::vector<std::string> requests = requests_.take();
-    for (const CME212::Touch& t : touches)
-      if (auto r = request_of(t); !r.empty()) requests.push_back(std::move(r));
-    for (const std::string& r : requests) try {
-        live.apply(r);
-        if (r.starts_with("scene ") || r.starts_with("break "))
-          shown_ = moving_ = false, scale_ = 0.01;
-      } catch (const std::exception& e) {
-        panel_->refuse(e.what());
-      }
-    return !requests.empty();
-  }
-
-  void show(Live& live) override {
-    panel_->tell(live);
-    show(live.scene(), live.rival(), &live);
-  }
-  double speed() const override { return panel_->speed(); }
-  std::array<double, 2> place_of(const std::string& control) const override {
-    return panel_ ? panel_->place_of(control) : std::array{0.0, 0.0};
-  }
-
  private:
   static constexpr Point eye{1, -0.8, 0.4};  // its direction
 
@@ -134,6 +136,7 @@ class SDLScreen : public Screen {
   std::optional<CME212::Video> film_;
   CME212::BoundingBox room_;  // looked at, and as much as it may become
   CME212::BoundingBox widest_;
+  std::string name_;  // of the scene that is shown
   bool shown_ = false, colored_ = false;
   bool moving_ = false;      // whether an obstacle is
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
@@ -143,99 +146,10 @@ class SDLScreen : public Screen {
   long long steps_ = 0;  // when clock_ was started
   double rate_ = 0;      // [steps/s]
 
-  // A scene that the user changes:
-  RequestQueue requests_;
-  std::optional<Panel> panel_;
-  std::mutex touches_mutex_;
-  std::vector<CME212::Touch> touches_;
-  std::vector<unsigned> ids_;  // of the nodes shown, in their order; and those
-  std::size_t own_nodes_ = 0;  // of the first cloth are so many
   std::map<Node, unsigned> rival_nodes_;
   std::size_t rival_version_ = 0;
   bool rival_shown_ = false;
-  Point beside_, grabbed_beside_;  // by which the rival is moved [m]
-
-  /** @param rival A second cloth, drawn in another color, or null
-   * @param live  Whose pins are colored, or null */
-  void show(const Scene& scene, const Scene* rival, const Live* live) {
-    const Cloth& g = scene.cloth();
-    show_failure(scene);
-    const bool strain = colored_ = viewer_.strain_colors();
-    if (strain) set_scale(g);
-    auto color_of = [&](CME212::Color plain) {
-      return [this, plain, strain, live](Node n) {
-        if (live && live->scene().is_pinned(n.id())) return pinned;
-        return strain ? CME212::Color::make_strain(
-                            float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
-                      : plain;
-      };
-    };
-    viewer_.set_label(label(scene, rival));
-    Point beside;
-    if (rival && (!panel_ || panel_->side_by_side()))
-      beside = norm(beside_) > 0 ? beside_ : place_beside(g);
-    const bool moves = norm(beside - beside_) > 0;
-    if (!shown_ || moving_ || moves) add_obstacles(scene, beside);
-    if (!shown_ || moves) set_view(scene, beside);
-    if (kind_ == Kind::film) follow(g);
-    const auto moved = [&](Node n) { return n.position() + beside; };
-    const bool same = shown_ && version_ == g.version() &&
-                      rival_shown_ == (rival != nullptr) &&
-                      (!rival || rival_version_ == rival->cloth().version());
-    if (!same) {
-      viewer_.clear();
-      nodes_.clear(), rival_nodes_.clear(), ids_.clear();
-    }
-    const auto add = [&](const Cloth& c, CME212::Color plain, auto place,
-                         std::map<Node, unsigned>& nodes) {
-      viewer_.add_nodes(c.node_begin(), c.node_end(), color_of(plain), place,
-                        nodes);
-      if (!same)
-        for (Node n : c.nodes()) ids_.push_back(n.id());
-    };
-    add(g, CME212::Color(1), CME212::DefaultPosition(), nodes_);
-    if (!same) own_nodes_ = ids_.size();
-    if (rival) add(rival->cloth(), rival_color, moved, rival_nodes_);
-    beside_ = beside;
-    if (same) return;
-    const auto join = [&](const Scene& s, std::map<Node, unsigned>& nodes) {
-      const Cloth& c = s.cloth();
-      const auto faces = faces_of(s);
-      viewer_.add_faces(faces.begin(), faces.end(), nodes);
-      viewer_.add_edges(c.edge_begin(), c.edge_end(), nodes);
-    };
-    join(scene, nodes_);
-    if (rival) join(*rival, rival_nodes_);
-    version_ = g.version();
-    rival_version_ = rival ? rival->cloth().version() : 0;
-    rival_shown_ = rival;
-    shown_ = true;
-  }
-
-  /** What @a t asks for; "" if its node was removed. */
-  std::string request_of(const CME212::Touch& t) {
-    using Kind = CME212::Touch::Kind;
-    const bool on_node = t.kind == Kind::grab || t.kind == Kind::pin;
-    if (on_node && t.node >= ids_.size()) return {};
-    // Rays begin a little off the eye, where they are all one point.
-    const auto begin = [&t](const Point& far) {
-      return t.at + 0.01 * (far - t.at);
-    };
-    switch (t.kind) {
-      case Kind::grab:
-        grabbed_beside_ = t.node < own_nodes_ ? Point() : beside_;
-        return request("grab", ids_[t.node], t.at - grabbed_beside_);
-      case Kind::move:
-        return request("move", t.at - grabbed_beside_);
-      case Kind::release:
-        return "release";
-      case Kind::pin:
-        return request("toggle", ids_[t.node]);
-      case Kind::cut:
-        return request("stroke", begin(t.from), t.from, begin(t.to), t.to);
-    }
-    return {};
-  }
+  Point beside_;  // by which the rival is moved [m]
 
   /** From a cloth to the one beside it, as seen at first: its width, and some
    * more. */

@@ -11,7 +11,6 @@
 
 namespace lab {
 
-class Live;
 class Scene;
 
 using CME212::NoDisplay;
@@ -71,23 +70,9 @@ class Screen {
   virtual bool coloring_changed() const = 0;
   /** Wait while paused, with a call of @a show() before and whenever the
    * coloring changes.
-   * @return true if one step may be made now; false also if the user asked for
-   * something: see serve() */
+   * @return true if one step may be made now; false if the user closed the
+   * window or asked to restart */
   virtual bool wait_while_paused(const std::function<void()>& show) = 0;
-
-  // A scene that the user changes, in a window.
-  /** Let the user change it by panels and by the mouse, at most @a speed times
-   * as fast as the clock; 0: without bound. Main thread, before event_loop() */
-  virtual void open_panels(double speed) = 0;
-  /** Do what the user asked for since the last call.
-   * @return true if there was anything  @pre open_panels() */
-  virtual bool serve(Live& live) = 0;
-  /** Show it, and its rival if there is one, with readings in the panels. */
-  virtual void show(Live& live) = 0;
-  /** At most so many times as fast as the clock; 0: without bound. */
-  virtual double speed() const = 0;
-  /** Panel::place_of(); {0, 0} without panels. Any thread. */
-  virtual std::array<double, 2> place_of(const std::string& control) const = 0;
 };
 
 }  // namespace lab

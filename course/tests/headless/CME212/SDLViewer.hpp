@@ -22,6 +22,7 @@ class SDLViewer : public NoViewer {
     int width = 1024, height = 768;
     std::string title;
     bool offscreen = false, restarts = false, colors = false;
+    std::string picture;
   };
   SDLViewer() : NoViewer(Films()) {}
   explicit SDLViewer(const Options&) : SDLViewer() {}

@@ -1,0 +1,126 @@
+#include "lab/run/Window.hpp"
+
+#include <exception>
+#include <thread>
+
+#include "CME212/Util.hpp"
+#include "lab/Interrupt.hpp"
+#include "lab/run/Film.hpp"
+#include "lab/run/Run.hpp"
+#include "lab/scenes/Scene.hpp"
+#include "lab/viewer/Screen.hpp"
+
+namespace lab {
+
+namespace {
+
+/** What the thread that steps does. */
+class Player {
+ public:
+  Player(WindowRun& run, Screen& screen, double speed)
+      : run_(run),
+        screen_(screen),
+        speed_(speed),
+        nodes_(run.scene().cloth().num_nodes()) {}
+
+  void play() {
+    show();
+    while (!screen_.closed()) {
+      if (screen_.take_restart()) restart();
+      if (run_.done()) {
+        if (screen_.coloring_changed()) show();
+        CME212::sleep(0.01);
+        continue;
+      }
+      if (!screen_.wait_while_paused([this] { show(); })) continue;
+      run_.advance();
+      if (screen_.wants_frame() || run_.done()) show();
+      keep_time();
+    }
+  }
+
+ private:
+  WindowRun& run_;
+  Screen& screen_;
+  const double speed_;
+  const unsigned nodes_;  // at first
+  CME212::Clock clock_;
+  double ahead_ = 0;       // simulated before the clock started [s]
+  bool exploded_ = false;  // the motion beyond the failure was shown
+
+  double time() const { return run_.scene().time(); }
+  void restart() {
+    run_.restart();
+    exploded_ = false;
+    show();
+  }
+  void show() {
+    run_.check();
+    const Scene& scene = run_.scene();
+    const bool failed = !scene.failure().empty();
+    screen_.show_card(run_.done() && !failed ? outcome(scene, nodes_)
+                                             : std::vector<std::string>());
+    screen_.show(scene, run_.rival());
+    if (!failed || exploded_ || interrupted()) return;
+    exploded_ = true;
+    bool again = false;
+    show_beyond(scene, run_.rival(), screen_, [&](int frames) {
+      for (; frames > 0 && !again && !screen_.closed(); --frames) {
+        CME212::sleep(1 / Screen::frames_per_second);
+        again = screen_.take_restart();
+      }
+      return !again && !screen_.closed();
+    });
+    again ? restart() : screen_.show(scene, run_.rival());
+  }
+  void keep_time() {
+    if (speed_ <= 0) return;
+    const double early = (time() - ahead_) / speed_ - clock_.seconds();
+    if (early > 0 && early < 1)
+      CME212::sleep(early);
+    else if (early != 0)  // late, paused or restarted: count anew
+      clock_.start(), ahead_ = time();
+  }
+};
+
+struct FileRun : WindowRun {
+  Scene& s;
+  Run& run;
+
+  FileRun(Scene& scene, Run& r) : s(scene), run(r) {}
+  void restart() override { run.restart(); }
+  void advance() override { run.advance(); }
+  void check() override { run.check(); }
+  bool done() const override { return run.done(); }
+  const Scene& scene() const override { return s; }
+};
+
+}  // namespace
+
+void show_in_window(WindowRun& run, Screen& screen, double speed) {
+  std::exception_ptr error;
+  std::thread simulation([&] {
+    try {
+      Player(run, screen, speed).play();
+    } catch (...) {
+      error = std::current_exception();
+      screen.close();
+    }
+  });
+  // A paused simulation waits for the screen only.
+  std::thread watch([&screen] {
+    for (; !screen.closed(); CME212::sleep(0.02))
+      if (interrupted()) screen.close();
+  });
+  screen.event_loop();
+  simulation.join();
+  watch.join();
+  if (error) std::rethrow_exception(error);
+}
+
+void show_in_window(Scene& scene, Run& run, Screen& screen, double speed) {
+  FileRun in_window(scene, run);
+  show_in_window(in_window, screen, speed);
+}
+
+}  // namespace lab
