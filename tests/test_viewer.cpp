@@ -467,7 +467,7 @@ TEST(SDLViewer, WritesAMessageAtTheBottom) {
   EXPECT_NEAR(bar[0], 255 * mark.r, 1);
   EXPECT_NEAR(bar[1], 255 * mark.g, 1);
   EXPECT_NEAR(bar[2], 255 * mark.b, 1);
-  // What is too long for a line goes on in the next; nothing leaves the box.
+  // A long paragraph is broken into lines; nothing leaves the box.
   std::string words;
   for (int k = 0; k < 40; ++k) words += "word ";
   viewer.set_message({words, "--dt auto works"});
@@ -629,7 +629,7 @@ struct Simulation {
   }
 };
 
-/** What a user does, given a way to press keys; checks what comes of it. */
+/** Press keys as a user does, by @a key, and check their effects. */
 void use(Simulation& s, const std::function<void(SDL_Keycode)>& key) {
   ASSERT_TRUE(eventually([&] { return s.steps > 3; }));
   key(SDLK_SPACE);

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Faces.hpp
- * What a viewer needs of a cloth's faces, its quads: which ones are complete,
- * and their normals. */
+ * The faces of a cloth for a viewer: which of its quads are complete, and
+ * their normals. */
 #include <algorithm>
 #include <array>
 #include <cmath>

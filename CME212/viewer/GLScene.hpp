@@ -75,7 +75,7 @@ class GLScene {
   /** True if the scene has faces, whether or not they are drawn. */
   bool has_faces() const { return num_triangles_ > 0; }
 
-  /** Of the scene. */
+  /** The box of all nodes and spheres. */
   const BoundingBox& box() const { return box_; }
 
   /** Draw all over the present content.

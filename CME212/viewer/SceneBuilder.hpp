@@ -37,7 +37,7 @@ struct DefaultPosition {
   }
 };
 
-/** What the viewer draws. */
+/** A scene to draw. */
 struct SceneData {
   /** A node as a vertex buffer holds it: 16 bytes. */
   struct Vertex {

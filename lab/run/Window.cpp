@@ -14,7 +14,7 @@ namespace lab {
 
 namespace {
 
-/** What the thread that steps does. */
+/** Steps and shows a run; all in the thread of play(). */
 class Player {
  public:
   Player(WindowRun& run, Screen& screen, double speed)

@@ -11,7 +11,7 @@ class Scene;
 class Screen;
 class Live;
 
-/** What a window needs of a run. */
+/** A run that a window shows. */
 class WindowRun {
  public:
   virtual ~WindowRun() = default;
