@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -52,10 +53,20 @@ TEST(Color, StrainScaleDarkensFromRestToBothEnds) {
   EXPECT_EQ(luminance(Color(0)), 0);
 }
 
+/** The place of @a p in the picture: x right and y up, in [-1, 1] if it is in
+ * the picture; z is its distance from the eye's plane. */
+Point project(const GLCamera& c, const Point& p, double aspect) {
+  const Point d = p - c.eye();
+  const double depth = -dot(d, c.backward());
+  const double high = GLCamera::half_height(aspect);
+  return {dot(d, c.right()) / (depth * high * aspect),
+          dot(d, c.up()) / (depth * high), depth};
+}
+
 TEST(GLCamera, ShowsTheClothUpright) {
   GLCamera c;
   auto x = [&](double px, double py, double pz) {
-    return c.project(Point(px, py, pz), 1);
+    return project(c, Point(px, py, pz), 1);
   };
   EXPECT_GT(x(0.5, 0.5, 0).y, x(0.5, 0.5, -1).y);  // z is up
   EXPECT_GT(x(1, 0, 0).x, x(0, 0, 0).x);           // x is to the right
@@ -78,8 +89,8 @@ TEST(GLCamera, FitTouchesTheMarginForEveryDirectionAndShape) {
       c.fit(box, aspect);
       double most = 0;
       for (int i = 0; i < 8; ++i) {
-        Point p = c.project(
-            Point(i & 1 ? -1 : 4, i & 2 ? 2 : 2.5, i & 4 ? 3 : 3.1), aspect);
+        Point p = project(
+            c, Point(i & 1 ? -1 : 4, i & 2 ? 2 : 2.5, i & 4 ? 3 : 3.1), aspect);
         most = std::max({most, std::abs(p.x), std::abs(p.y)});
       }
       EXPECT_NEAR(most, 1 / 1.1, 1e-9);
@@ -88,8 +99,8 @@ TEST(GLCamera, FitTouchesTheMarginForEveryDirectionAndShape) {
   c.fit(BoundingBox(), 1);  // an empty box changes nothing
   EXPECT_EQ(c.eye(), old.eye());
   c.fit(BoundingBox() |= Point(7, 8, 9), 1);  // one point is in the middle
-  EXPECT_NEAR(norm(c.project(Point(7, 8, 9), 1) - Point(0, 0, c.distance())), 0,
-              1e-9);
+  EXPECT_NEAR(norm(project(c, Point(7, 8, 9), 1) - Point(0, 0, c.distance())),
+              0, 1e-9);
 }
 
 TEST(GLCamera, MatricesAgreeWithProject) {
@@ -103,7 +114,7 @@ TEST(GLCamera, MatricesAgreeWithProject) {
     return r;
   };
   auto clip = times(c.projection(1.5), times(c.view(), {p.x, p.y, p.z, 1}));
-  Point q = c.project(p, 1.5);
+  Point q = project(c, p, 1.5);
   EXPECT_NEAR(clip[0] / clip[3], q.x, 1e-5);
   EXPECT_NEAR(clip[1] / clip[3], q.y, 1e-5);
   EXPECT_NEAR(clip[3], q.z, 1e-5);
@@ -120,14 +131,14 @@ TEST(GLCamera, Moves) {
   c = old;
   c.rotate(0.3, 0);  // what is in front moves to the right
   Point front = old.center() + 0.1 * old.backward();
-  EXPECT_GT(c.project(front, 1).x, old.project(front, 1).x);
+  EXPECT_GT(project(c, front, 1).x, project(old, front, 1).x);
   EXPECT_DOUBLE_EQ(c.distance(), old.distance());
   c.rotate(0, -9);  // stops above
   EXPECT_NEAR(norm(c.backward() - Point(0, 0, 1)), 0, 1e-12);
   EXPECT_NEAR(norm(c.up()), 1, 1e-12);
   c = old;
   c.pan(0.25, 0);  // by a quarter of the picture, that is 0.5 of [-1, 1]
-  EXPECT_NEAR(c.project(old.center(), 1).x, 0.5, 1e-9);
+  EXPECT_NEAR(project(c, old.center(), 1).x, 0.5, 1e-9);
 }
 
 // ----------------------------------------------------------- Image and Video
@@ -146,6 +157,15 @@ TEST(Image, SurvivesPng) {
     write_png(folder / "a.png", image);
     EXPECT_EQ(read_png(folder / "a.png"), image);
   }
+  // Rows of few colors are long matches, those of many have none.
+  std::minstd_rand random(1);
+  for (unsigned colors : {1, 2, 40, 256})
+    for (int k = 0; k < 20; ++k) {
+      Image image(1 + int(random() % 300), 1 + int(random() % 90));
+      for (auto& c : image.rgb) c = std::uint8_t(random() % colors);
+      write_png(folder / "a.png", image);
+      EXPECT_EQ(read_png(folder / "a.png"), image) << colors << ' ' << k;
+    }
   EXPECT_EQ(files_in(folder), 1u);  // nothing else is left
 }
 

@@ -11,13 +11,14 @@ groups=${*:-build window film lab draw test check}
 packages() {
   case $1 in
     build)  echo "g++ make pkgconf|pkg-config git" ;;
-    window) echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri libpng-dev" ;;
+    window) echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri" ;;
     film)   echo "ffmpeg" ;;
     lab)    echo "libcli11-dev libeigen3-dev libtomlplusplus-dev" ;;
     draw)   echo "python3-matplotlib python3 fonts-dejavu-core" ;;
     test)   echo "libgtest-dev gdb" ;;
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
-                 "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool valgrind" ;;
+                 "librapidcheck-dev libbenchmark-dev libpng-dev xvfb xauth" \
+                 "xdotool valgrind" ;;
     peers)  echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" \
                  "python3-scipy" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"

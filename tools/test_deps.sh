@@ -168,7 +168,7 @@ says '^  window .*libsdl2-dev'; says '^  check .*clang'; says 'DEPS=skip'
 not_say libsundials
 ok "no apt-get: lists all, by group"
 
-system 1000 ""; other brew "make git libpng"; run build window test
+system 1000 ""; other brew "make git"; run build window test
 expect_status 0; calls 'brew install googletest pkgconf sdl2-compat$' 1
 calls sudo 0
 ok "Homebrew: what is missing, in its names, without sudo"
