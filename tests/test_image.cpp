@@ -278,11 +278,13 @@ TEST(Video, KeepsTheOldFilmIfFfmpegOnlySaysThatItFailed) {
   Environment path("PATH", folder.path().c_str());
   const std::string file = folder / "v.mp4";
   std::ofstream(file) << "a good film";
-  Video video(file, 64, 48);
-  for (int i = 0; i < 5; ++i) video.add(test_image(64, 48, i));
-  EXPECT_EQ(error_of([&] { video.finish(); }),
-            file + ": ffmpeg failed: No space left");
-  EXPECT_EQ(contents(file), "a good film");
+  {
+    Video video(file, 64, 48);
+    for (int i = 0; i < 5; ++i) video.add(test_image(64, 48, i));
+    EXPECT_EQ(error_of([&] { video.finish(); }),
+              file + ": ffmpeg failed: No space left");
+    EXPECT_EQ(contents(file), "a good film");
+  }
   EXPECT_EQ(files_in(folder), 2u);
 }
 
