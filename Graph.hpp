@@ -5,23 +5,20 @@
  * by value, that read and write the graph's arrays.
  *
  * How it is stored, and why: docs/graph.md. */
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <compare>
-#include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <iterator>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "CME212/AnyGraph.hpp"
-#include "CME212/NeighborPool.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/SlotMap.hpp"
 #include "CME212/Util.hpp"
@@ -33,17 +30,15 @@
  * Nodes have the indices 0, ..., num_nodes() - 1, edges 0, ...,
  * num_edges() - 1. A removal changes indices, but not what a handle refers to:
  * a Node or Edge refers to the same element until that is removed. Then the
- * handle is dead for ever: has_node() or has_edge() is false, even when new
- * elements are added.
+ * handle is dead: has_node() or has_edge() is false, also when new elements are
+ * added (up to the bound of SlotMap).
  *
  * Complexity: O(1) unless stated; "degree" is a node's number of edges. The
- * first removal makes lists of indices: O(num_nodes() + num_edges()), which
- * is O(1) for each element added before. The first removal after clear() or
- * reindex() may do so, too.
- * Memory: 36 + sizeof(V) bytes a node and 24 + sizeof(E) an edge of a grid; up
- * to an eighth more, as arrays grow ahead; 12 a node and an edge from the first
- * removal on; 8 an edge after many removals at nodes of large degree. New
- * elements reuse the slots of removed ones; only the destructor frees slots.
+ * first removal, and that after clear(), also makes lists of all indices: O(1)
+ * for each element added before.
+ * Memory: 52 + sizeof(V) bytes a node, 28 + sizeof(E) an edge, 8 of each more
+ * from the first removal on; and what the vectors hold ready. New elements
+ * reuse the slots of removed ones; only the destructor frees memory.
  *
  * If a member throws, std::bad_alloc or what a value throws, then no node, edge
  * or value has changed; what it lists under Invalidates may be invalid.
@@ -61,7 +56,14 @@ class Graph {
   using Array = graph_detail::Array<T>;
   template <typename Proxy, bool of_one_node>
   class ProxyIterator;
-  using Generation = std::uint32_t;
+  using Generation = graph_detail::SlotMap::Generation;
+  /** An edge seen from one end: the ids of the other end and of the edge. */
+  struct Neighbor {
+    unsigned node, edge;
+  };
+  using Neighbors = std::vector<Neighbor>;
+  template <typename G>
+  friend class GraphArrays;  // for loops over arrays, without proxies
 
  public:
   class Node;
@@ -120,18 +122,15 @@ class Graph {
 
     /** A number in [0, num_nodes()); removals of others may change it. */
     size_type index() const { return graph().nodes_.index_of(id_); }
-    /** The node's element in Graph::positions() and Graph::node_values(). It
-     * stays the same until the node is removed. */
+    /** A number that stays the same until the node is removed. */
     size_type id() const { return graph(), id_; }
 
     /** Number of edges at this node. */
-    size_type degree() const { return list().size; }
+    size_type degree() const { return size_type(list().size()); }
     /** The edges at this node: each has it as node1().
      * Order: as added, until an edge at this node is removed. */
-    incident_iterator edge_begin() const { return {graph_, list().begin, id_}; }
-    incident_iterator edge_end() const {
-      return {graph_, std::size_t(list().begin) + list().size, id_};
-    }
+    incident_iterator edge_begin() const { return {&graph(), 0, id_}; }
+    incident_iterator edge_end() const { return {graph_, degree(), id_}; }
     CME212::Range<incident_iterator> edges() const {
       return {edge_begin(), edge_end()};
     }
@@ -147,8 +146,6 @@ class Graph {
         return std::less<const Graph*>()(graph_, n.graph_);
       return id_ != n.id_ ? id_ < n.id_ : generation_ < n.generation_;
     }
-    /** For std::hash: equal nodes have equal numbers, which never change. */
-    std::size_t hash() const { return std::size_t(generation_) << 32 | id_; }
 
    private:
     friend class Graph;
@@ -160,7 +157,7 @@ class Graph {
         : graph_(const_cast<Graph*>(g)),
           id_(id),
           generation_(g->nodes_.generation(id)) {}
-    const auto& list() const { return graph().neighbors_of_[id_]; }
+    const Neighbors& list() const { return graph().neighbors_of_[id_]; }
   };
 
   // ------------------------------------------------------------------- Edge
@@ -195,8 +192,7 @@ class Graph {
     }
     /** A number in [0, num_edges()); removals of others may change it. */
     size_type index() const { return graph().edges_.index_of(id_); }
-    /** The edge's element in Graph::edge_ends() and Graph::edge_values(). It
-     * stays the same until the edge is removed. */
+    /** A number that stays the same until the edge is removed. */
     size_type id() const { return id_; }
 
     /** Same edge of the same graph, seen from either end. */
@@ -209,8 +205,6 @@ class Graph {
         return std::less<const Graph*>()(graph_, e.graph_);
       return id_ != e.id_ ? id_ < e.id_ : generation_ < e.generation_;
     }
-    /** As of a Node. */
-    std::size_t hash() const { return std::size_t(generation_) << 32 | id_; }
 
    private:
     friend class Graph;
@@ -241,20 +235,20 @@ class Graph {
 
   /** Add a node at @a position.
    * @return the new node; its index is old num_nodes().
-   * Invalidates: references and spans to positions and node values.
+   * Invalidates: references to positions and node values.
    * Keeps: every Node, Edge and iterator; an old node_end() is now at the new
    *       node.
    * Complexity: O(1) amortized.
    * Throws std::length_error beyond 2^31 nodes. */
   Node add_node(const Point& position, const V& value = V()) {
     V copy = value;  // first: it may refer into the array that grows
-    Point p = position;
-    size_type id = nodes_.reserve_one();
-    graph_detail::grow_to_hold(position_, id + 1);  // one more: positions()
+    const Point p = position;
+    const size_type id = nodes_.next_id();
+    graph_detail::grow_to_hold(position_, id);
     graph_detail::grow_to_hold(node_value_, id);
     graph_detail::grow_to_hold(neighbors_of_, id);
-    node_value_[id] = std::move(copy);  // the last line that may throw
-    nodes_.acquire();
+    node_value_[id] = std::move(copy);
+    nodes_.acquire();  // the last line that may throw
     position_[id] = p;
     ++version_;
     return Node(this, id);
@@ -279,20 +273,19 @@ class Graph {
    *       highest index took @a n's index; all others kept their own.
    * Invalidates: @a n, its copies and its edges; all edge and incident
    *       iterators; node iterators at @a n and at the highest index.
-   * Keeps: every other Node and Edge; references and spans.
-   * Complexity: O(n.degree()) amortized, also if a neighbor's degree is large.
-   *       The first removal takes longer: see Graph. */
+   * Keeps: every other Node and Edge; references.
+   * Complexity: O(sum of degree() over @a n's neighbors), whatever num_nodes()
+   */
   size_type remove_node(const Node& n) {
     // BEGIN SOLUTION 7.1.remove_node 8pt
     if (!has_node(n)) return 0;
-    size_type id = n.id_;  // a copy: n may refer into what changes below
-    nodes_.make_lists();
-    if (n.degree() > 0) prepare_drop();
-    for (Neighbor b : pool_.items(neighbors_of_[id])) {
-      pool_.remove(neighbors_of_[b.node], b.node, {id, b.edge});
+    const size_type id = n.id_;  // a copy: n may refer into what changes below
+    nodes_.make_lists(), edges_.make_lists();  // all that may throw
+    for (Neighbor b : neighbors_of_[id]) {
+      erase(neighbors_of_[b.node], b.edge);
       drop_edge(b.edge);
     }
-    pool_.free(neighbors_of_[id]);
+    neighbors_of_[id].clear();
     position_[id] = Point();
     graph_detail::reset(node_value_[id]);
     nodes_.release(id);
@@ -327,28 +320,27 @@ class Graph {
    * @pre has_node(a) && has_node(b) && a != b
    * @post has_edge(a, b). If the edge is new, num_edges() grew by one and the
    *       edge's index is old num_edges(); else its value is unchanged.
-   * Invalidates: incident iterators of @a a and @a b; references and spans to
-   *       edge values and ends.
-   * Keeps: every Node, Edge and other iterator.
-   * Complexity: O(min(a.degree(), b.degree())), amortized.
-   * Throws std::length_error beyond 2^31 edges. */
+   * Invalidates: incident iterators of @a a and @a b; references to edge
+   * values. Keeps: every Node, Edge and other iterator. Complexity:
+   * O(min(a.degree(), b.degree())), amortized. Throws std::length_error beyond
+   * 2^31 edges. */
   Edge add_edge(const Node& a, const Node& b, const E& value = E()) {
     assert(has_node(a) && has_node(b) && !(a == b));
-    size_type i = a.id_, j = b.id_;
+    const size_type i = a.id_, j = b.id_;
     if (size_type id = find(a, b); id != none) return Edge(this, id, i, j);
     E copy = value;
-    size_type id = edges_.reserve_one();
+    const size_type id = edges_.next_id();
     graph_detail::grow_to_hold(ends_, id);
     graph_detail::grow_to_hold(edge_value_, id);
-    pool_.reserve_edge(neighbors_of_[i], neighbors_of_[j], id);
+    make_room(neighbors_of_[i]), make_room(neighbors_of_[j]);
     // BEGIN SOLUTION 4.1.edge_value
-    edge_value_[id] = std::move(copy);  // the last line that may throw
+    edge_value_[id] = std::move(copy);
     // STUB (void)copy;
     // END SOLUTION
-    edges_.acquire();
+    edges_.acquire();  // the last line that may throw
     ends_[id] = {i, j};
-    pool_.add(neighbors_of_[i], i, {j, id});
-    pool_.add(neighbors_of_[j], j, {i, id});
+    neighbors_of_[i].push_back({j, id});
+    neighbors_of_[j].push_back({i, id});
     ++version_;
     return Edge(this, id);
   }
@@ -376,9 +368,8 @@ class Graph {
    *       kept their own.
    * Invalidates: the edge and its copies; edge iterators at it and at the
    *       highest index; incident iterators of @a a and @a b.
-   * Keeps: every Node and every other Edge; references and spans.
-   * Complexity: O(min(a.degree(), b.degree())) amortized; the first removal
-   *       takes longer. */
+   * Keeps: every Node and every other Edge; references.
+   * Complexity: O(a.degree() + b.degree()) */
   size_type remove_edge(const Node& a, const Node& b) {
     // BEGIN SOLUTION 7.1.remove_edge 6pt
     size_type id = find(a, b);
@@ -387,15 +378,13 @@ class Graph {
     // STUB return 0;
     // END SOLUTION
   }
-  /** Remove @a e, as above. Returns 0 if !has_edge(e). O(1) amortized. */
+  /** Remove @a e, as above. Returns 0 if !has_edge(e). */
   size_type remove_edge(const Edge& e) {
     // BEGIN SOLUTION 7.1.remove_edge
     if (!has_edge(e)) return 0;
-    size_type id = e.id_;
-    prepare_drop();
-    const auto [i, j] = ends_[id];
-    pool_.remove(neighbors_of_[i], i, {j, id});
-    pool_.remove(neighbors_of_[j], j, {i, id});
+    edges_.make_lists();  // all that may throw
+    const size_type id = e.id_;
+    for (size_type end : ends_[id]) erase(neighbors_of_[end], id);
     drop_edge(id);
     ++version_;
     return 1;
@@ -418,7 +407,7 @@ class Graph {
   // ------------------------------------------------------------------ Whole
 
   /** Remove all nodes and edges.
-   * Invalidates: every Node, Edge, iterator, reference and span.
+   * Invalidates: every Node, Edge, iterator and reference.
    * Complexity: O(num_nodes() + num_edges()), even if there were many more
    *       before. Frees no memory. */
   void clear() {
@@ -427,66 +416,20 @@ class Graph {
     for (Node n : nodes()) {
       position_[n.id_] = Point();
       graph_detail::reset(node_value_[n.id_]);
-      neighbors_of_[n.id_] = {};
+      neighbors_of_[n.id_].clear();
     }
     nodes_.clear();
     edges_.clear();
-    pool_.clear();
-    ++version_;
-  }
-
-  /** Number nodes and edges in the order in which they lie in memory, and close
-   * the gaps between lists of neighbors. After many removals this makes
-   * iteration nearly as fast as before them.
-   * Invalidates: all iterators; spans of neighbors().
-   * Keeps: every Node and Edge (with another index); references, other spans.
-   * Complexity: O(node_slots() + edge_slots()) */
-  void reindex() {
-    pool_.compact(neighbors_of_);
-    nodes_.reindex();
-    edges_.reindex();
-    ++version_;
-  }
-  /** Give the node of id @a ids[i] the index i. So nodes can be numbered in one
-   * order, and lie in memory in another that makes loops faster.
-   * @pre @a ids holds the id of each node once
-   * Invalidates and keeps: as reindex(), of the nodes.
-   * Complexity: O(node_slots()); memory as after a removal. */
-  void reindex_nodes(std::span<const size_type> ids) {
-    nodes_.reindex(ids);
-    ++version_;
-  }
-  /** The same for the edges. */
-  void reindex_edges(std::span<const size_type> ids) {
-    edges_.reindex(ids);
-    ++version_;
-  }
-  /** Put the edges at @a n in the order of @a ids.
-   * @pre @a ids holds the id of each edge at @a n once
-   * Invalidates: incident iterators of @a n.   Keeps: all else.
-   * Complexity: O(degree squared) */
-  void reorder_edges(const Node& n, std::span<const size_type> ids) {
-    const auto list = neighbors_of_[n.id()];
-    assert(ids.size() == list.size);
-    for (size_type k = list.begin; k < list.begin + list.size; ++k) {
-      size_type at = k;
-      while (pool_[at].edge != ids[k - list.begin]) ++at;
-      std::swap(pool_[k], pool_[at]);
-    }
-    pool_.note_places(list, n.id_);
     ++version_;
   }
 
   /** Allocate memory for a total of @a nodes and @a edges, so that adding them
-   * moves no data. (Lists of neighbors may move if degrees differ a lot.)
-   * Invalidates: references and spans.   Keeps: all else. */
+   * moves no data.   Invalidates: references.   Keeps: all else. */
   void reserve(size_type nodes, size_type edges) {
-    position_.reserve(nodes + 1);
-    node_value_.reserve(nodes);
-    neighbors_of_.reserve(nodes);
-    ends_.reserve(edges);
-    edge_value_.reserve(edges);
-    pool_.reserve(nodes, 2 * std::size_t(edges));
+    nodes_.reserve(nodes), edges_.reserve(edges);
+    reserve_in(position_, nodes), reserve_in(node_value_, nodes);
+    reserve_in(neighbors_of_, nodes);
+    reserve_in(ends_, edges), reserve_in(edge_value_, edges);
   }
 
   node_iterator node_begin() const { return {self(), 0}; }
@@ -501,155 +444,93 @@ class Graph {
     return {edge_begin(), edge_end()};
   }
 
-  // ---------------------------------------------------------- Arrays, by id
-  // The graph's arrays without proxies, for loops over the whole graph. The
-  // index into them is Node::id() or Edge::id(). A slot whose element was
-  // removed holds Point(), V(), E() (unless these throw) and the ends {0, 0};
-  // node_in_use() and edge_in_use() tell it apart.
-
-  /** All ids lie below this.  >= num_nodes() */
-  size_type node_slots() const { return nodes_.slots(); }
-  size_type edge_slots() const { return edges_.slots(); }
-  /** True if the slot holds a node.  @pre id < node_slots() */
-  bool node_in_use(size_type id) const { return nodes_.in_use(id); }
-  bool edge_in_use(size_type id) const { return edges_.in_use(id); }
-  /** The node in a slot.  @pre node_in_use(id) */
-  Node node_with_id(size_type id) const {
-    assert(id < node_slots() && node_in_use(id));
-    return Node(this, id);
-  }
-  Edge edge_with_id(size_type id) const {
-    assert(id < edge_slots() && edge_in_use(id));
-    return Edge(this, id);
-  }
-
-  /** One padding Point follows the last, so a 4-wide load stays inside. */
-  std::span<Point> positions() { return {position_.data(), node_slots()}; }
-  std::span<const Point> positions() const {
-    return {position_.data(), node_slots()};
-  }
-  std::span<V> node_values() { return {node_value_.data(), node_slots()}; }
-  std::span<const V> node_values() const {
-    return {node_value_.data(), node_slots()};
-  }
-  /** The ids of both ends of each edge. */
-  std::span<const std::array<size_type, 2>> edge_ends() const {
-    return {ends_.data(), edge_slots()};
-  }
-  std::span<E> edge_values() { return {edge_value_.data(), edge_slots()}; }
-  std::span<const E> edge_values() const {
-    return {edge_value_.data(), edge_slots()};
-  }
-
-  /** An edge seen from one end: the ids of the other end and of the edge. */
-  struct Neighbor {
-    size_type node, edge;
-  };
-  /** The edges at a node, in the order of Node::edges(); none at a slot that
-   * is not in use. */
-  std::span<const Neighbor> neighbors(size_type id) const {
-    return pool_.items(neighbors_of_[id]);
-  }
-
-  /** A number that changes whenever a node or an edge is added or removed, or
-   * an index changes. No two graphs of a program ever have the same. */
-  std::uint64_t version() const { return version_.number; }
-
   /** For tests.  Throws std::logic_error, with what is wrong, unless the
    * representation invariant holds: see the arrays, below.
-   * Complexity: O(N log N + sum of squared degrees) */
+   * Complexity: O(N + sum of squared degrees) */
   void check_invariants() const {
     auto require = [](bool ok, const char* what) {
       if (!ok) throw std::logic_error(std::string("Graph: ") + what);
     };
     nodes_.check_invariants(), edges_.check_invariants();
-    require(position_.size() >= node_slots() + (node_slots() > 0) &&
-                node_value_.size() >= node_slots() &&
-                neighbors_of_.size() >= node_slots() &&
-                ends_.size() >= edge_slots() &&
-                edge_value_.size() >= edge_slots(),
+    const size_type nodes = nodes_.slots(), edges = edges_.slots();
+    require(position_.size() >= nodes && node_value_.size() >= nodes &&
+                neighbors_of_.size() >= nodes && ends_.size() >= edges &&
+                edge_value_.size() >= edges,
             "an array is shorter than its slots");
-    for (const auto& list : neighbors_of_)
-      require(list.size <= list.capacity &&
-                  (list.capacity == 0 || std::has_single_bit(list.capacity)),
-              "a neighbor list exceeds its block");
-    require(pool_.is_filled_by(neighbors_of_),
-            "a block of the pool is lost or used twice");
     std::size_t neighbors = 0;
-    for (size_type i = 0; i < node_slots(); ++i) {
-      const auto& list = neighbors_of_[i];
-      neighbors += list.size;
-      require(node_in_use(i) || list.capacity == 0,
+    for (size_type i = 0; i < neighbors_of_.size(); ++i) {
+      const Neighbors& list = neighbors_of_[i];
+      neighbors += list.size();
+      require(list.empty() || (i < nodes && nodes_.in_use(i)),
               "a removed node has neighbors");
-      for (auto [j, e] : pool_.items(list)) {
-        require(e < edge_slots() && edge_in_use(e),
+      for (auto [j, e] : list) {
+        require(e < edges && edges_.in_use(e),
                 "a neighbor list holds a removed edge");
         require(j != i, "a loop");
         require(ends_[e] == std::array{i, j} || ends_[e] == std::array{j, i},
                 "a neighbor list and the ends of an edge disagree");
         size_type seen = 0;
-        for (Neighbor other : pool_.items(list)) seen += other.node == j;
+        for (Neighbor other : list) seen += other.node == j;
         require(seen == 1, "parallel edges");
       }
-      require(pool_.has_right_places(list, i),
-              "an edge has another place in a list than is noted");
     }
     require(neighbors == 2 * std::size_t(num_edges()),
             "an edge is not in the lists of both its ends");
-    for (size_type e = 0; e < edge_slots(); ++e)
-      require(edge_in_use(e) || ends_[e] == std::array<size_type, 2>{},
+    for (size_type e = 0; e < edges; ++e)
+      require(edges_.in_use(e) || ends_[e] == std::array<size_type, 2>{},
               "a removed edge has ends");
   }
 
  private:
   static constexpr size_type none = graph_detail::none;
+
   // Representation. A slot is a place in the arrays; the id of an element is
   // the number of its slot.
   //
   // Invariant:
-  // - nodes_ and edges_ know which slots are in use: those of odd generation,
-  //   whose indices are 0, ..., size() - 1, each once. Every other slot is
-  //   free or worn out.
-  // - Every array reaches to the last slot; position_ has one Point more.
-  // - neighbors_of_[i] is a list in pool_, inside its block. Each block of the
-  //   pool belongs to one list or is free.
+  // - nodes_ and edges_ know which slots are in use, and their indices.
+  // - Every array reaches to the last slot.
   // - For each edge e in use, with ends_[e] = {i, j}: i != j, both in use; the
   //   list of i has the entry {j, e}, that of j the entry {i, e}. There are no
-  //   other entries, and no list names a node twice. If the pool notes places
-  //   of entries, they are right.
-  // - Slots not in use: a node has no list, an edge has the ends {0, 0}.
+  //   other entries, and no list names a node twice.
+  // - Slots not in use: a node has no entries, an edge has the ends {0, 0}.
   // check_invariants() checks all of it; docs/graph.md explains it.
-  graph_detail::SlotMap<Generation> nodes_, edges_;
-  graph_detail::NeighborPool<Neighbor> pool_;
+  graph_detail::SlotMap nodes_, edges_;
   graph_detail::Version version_;
   // By node id:
   Array<Point> position_;
   Array<V> node_value_;
-  Array<typename graph_detail::NeighborPool<Neighbor>::List> neighbors_of_;
+  Array<Neighbors> neighbors_of_;
   // By edge id:
   Array<std::array<size_type, 2>> ends_;  // in the order of add_edge()
   Array<E> edge_value_;
+
   Graph* self() const { return const_cast<Graph*>(this); }
+  template <typename A>
+  static void reserve_in(A& array, std::size_t n) {
+    if constexpr (requires { array.reserve(n); }) array.reserve(n);
+  }
 
   /** The id of the edge between @a a and @a b, or none. */
   size_type find(const Node& a, const Node& b) const {
     if (!has_node(a) || !has_node(b)) return none;
-    bool from_a = a.degree() <= b.degree();
-    const Node& from = from_a ? a : b;
-    size_type to = from_a ? b.id_ : a.id_;
-    size_type found = none;
-    // No branch on what is found: lists are short, so a branch that is
-    // predicted wrong costs more than reading on to the end.
-    for (Neighbor n : pool_.items(neighbors_of_[from.id_]))
-      found &= n.edge | (0u - size_type(n.node != to));
-    return found;
+    const bool from_a = a.degree() <= b.degree();
+    for (Neighbor n : neighbors_of_[from_a ? a.id_ : b.id_])
+      if (n.node == (from_a ? b.id_ : a.id_)) return n.edge;
+    return none;
   }
-
-  /** Do all that may throw when edges are removed. */
-  void prepare_drop() {
-    edges_.make_lists();
-    pool_.reserve_removal({neighbors_of_.data(), node_slots()}, num_edges(),
-                          edge_slots());
+  /** Make room for one more entry: then push_back() does not throw. */
+  static void make_room(Neighbors& list) {
+    if (list.size() == list.capacity())
+      list.reserve(std::max<std::size_t>(4, 2 * list.size()));
+  }
+  /** Remove the entry of edge @a e from @a list; the last one takes its place.
+   */
+  static void erase(Neighbors& list, size_type e) {
+    const auto at = std::find_if(list.begin(), list.end(),
+                                 [e](Neighbor n) { return n.edge == e; });
+    *at = list.back();
+    list.pop_back();
   }
   /** Release the slot of edge @a e; its entries in the lists stay. */
   void drop_edge(size_type e) {
@@ -662,7 +543,7 @@ class Graph {
   }
 
   /** Makes a proxy when it is dereferenced. Iterates over all nodes or all
-   * edges by index, and over the edges of one node by place in the pool. */
+   * edges by index, and over the edges of one node by place in its list. */
   template <typename Proxy, bool of_one_node>
   class ProxyIterator {
    public:
@@ -684,11 +565,10 @@ class Graph {
     Proxy operator*() const {
       assert(graph_ && "an iterator of no graph is dereferenced");
       if constexpr (of_one_node) {
-        [[maybe_unused]] const auto& list = graph_->neighbors_of_[node_];
-        assert(at_ - list.begin < list.size &&
+        const Neighbors& list = graph_->neighbors_of_[node_];
+        assert(at_ < list.size() &&
                "Node::edge_end() is dereferenced, or an iterator gone stale");
-        const Neighbor& to = graph_->pool_[at_];
-        return Proxy(graph_, to.edge, node_, to.node);
+        return Proxy(graph_, list[at_].edge, node_, list[at_].node);
       } else if constexpr (std::is_same_v<Proxy, Node>) {
         assert(at_ <= graph_->num_nodes() && "beyond node_end()");
         if (at_ == graph_->num_nodes()) return Node();
@@ -730,7 +610,7 @@ class Graph {
    private:
     friend class Graph;
     Graph* graph_ = nullptr;
-    // Index, or place in the pool; of 64 bits, which makes loops faster.
+    // Index, or place in the list; of 64 bits, which makes loops faster.
     std::size_t at_ = 0;
     size_type node_ = 0;  // of_one_node: its id
     ProxyIterator(Graph* g, std::size_t at, size_type node = 0)
@@ -738,12 +618,4 @@ class Graph {
   };
 
   static_assert(sizeof(Node) <= 16 && sizeof(Edge) <= 24);
-};
-
-/** Nodes and edges can be the keys of a std::unordered_map. */
-template <typename T>
-requires std::same_as<T, typename T::graph_type::node_type> ||
-    std::same_as<T, typename T::graph_type::edge_type>
-struct std::hash<T> {
-  std::size_t operator()(const T& handle) const { return handle.hash(); }
 };

@@ -3,6 +3,7 @@
  * Forces as methods evaluate them, for tests. */
 #include <vector>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FlatFlow.hpp"
 
 namespace lab {
@@ -12,7 +13,7 @@ namespace lab {
 inline std::vector<Point> swept_forces(Cloth& g, const ForcePlan& force,
                                        FlatFlow& flow) {
   flow.accelerate(g, 0, force, false);
-  std::vector<Point> f(g.node_slots());
+  std::vector<Point> f(arrays(g).node_slots());
   for (Node n : g.nodes())
     f[n.id()] = n.value().mass * flow.acceleration(n.id());
   return f;

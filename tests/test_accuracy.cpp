@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Accuracy.hpp"
 #include "lab/scenes/Scene.hpp"
@@ -88,7 +89,8 @@ double error_of(Model m, const Accuracy& found) {
   EXPECT_TRUE(exact.run_to(m.t_end));
   double sum = 0;
   for (Node n : run.cloth().nodes())
-    sum += normSq(n.position() - exact.cloth().node_with_id(n.id()).position());
+    sum += normSq(n.position() -
+                  arrays(exact.cloth()).node_with_id(n.id()).position());
   return std::sqrt(sum / run.cloth().num_nodes());
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "tests/ScatteredCloth.hpp"
 
 // Some constraints here hide the virtual call on purpose: clang++ warns.
@@ -159,7 +160,7 @@ TEST(PinConstraint, HoldsTheRightNodesWhenIndicesHaveMoved) {
   Node first = g.node(0), second = g.node(20);
   for (unsigned i : {1u, 2u, 3u, 5u, 8u}) g.remove_node(g.node(i));
   g.remove_edge(g.edge(0));
-  g.reindex();
+  arrays(g).reindex();
   ASSERT_NE(second.index(), 20u);
   for (Node n : g.nodes()) n.position() += Point(0, 0, -1);
   pin(g, 0);

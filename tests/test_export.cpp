@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
@@ -387,7 +388,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   ASSERT_EQ(again.quads.size(), 5u);
   // In the order of the mesh, whatever indices the nodes have now.
   for (unsigned i = 0; i < 11; ++i) {
-    const Node n = g.node_with_id(scene.recipe().built->ids[i + 1]);
+    const Node n = arrays(g).node_with_id(scene.recipe().built->ids[i + 1]);
     EXPECT_EQ(again.points[i], n.position());
     EXPECT_EQ(again.velocities[i], n.value().vel);
   }

@@ -1,6 +1,7 @@
 // Fast mass-spring against the step of implicit Euler, by Newton's method.
 #include <gtest/gtest.h>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "tests/PinnedSheet.hpp"
 
@@ -17,8 +18,8 @@ class NewtonEuler : public Method {
     stage_.begin("newton", t, dt, g, constraint);
     stage_.hold(g, t + dt, constraint);
     stage_.solve_newton(g, t + dt, dt, force);
-    for (unsigned i = 0; i < g.node_slots(); ++i)
-      g.node_values()[i].vel = stage_.w[i];
+    for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+      arrays(g).node_values()[i].vel = stage_.w[i];
     return implicit_detail::finish(g, t + dt, constraint);
   }
 
@@ -133,7 +134,7 @@ TEST(FastMassSpring, FactorsAnewOnlyWhenItMust) {
   EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
   s.g.remove_edge(s.g.edge(0));
   EXPECT_EQ(step(0.02, s.force, s.pin), ++expected);
-  s.g.reindex();  // no other matrix
+  arrays(s.g).reindex();  // no other matrix
   EXPECT_EQ(step(0.02, s.force, s.pin), expected);
 }
 

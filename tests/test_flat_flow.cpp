@@ -1,5 +1,6 @@
 // FlatCloth and FlatFlow: many steps on the state by component, against single
 // steps and against the loops over nodes.
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FlatFlow.hpp"
 
 #include <gtest/gtest.h>
@@ -435,24 +436,24 @@ TEST(FlatClothNodes, AreTakenAndWritten) {
         K_flat += flat.K()[flat.rest_first() + k];
       EXPECT_NEAR(K_flat, 2 * 3 * K, 1e-3 * K);  // from both ends
       for (unsigned i = 0; i < 61; ++i) {
-        const NodeData& node = g.node_values()[i];
-        EXPECT_EQ(flat.position(i), g.positions()[i]);
+        const NodeData& node = arrays(g).node_values()[i];
+        EXPECT_EQ(flat.position(i), arrays(g).positions()[i]);
         EXPECT_EQ(flat.velocity(i), node.vel);
         EXPECT_EQ(flat.nodes()[FlatCloth::PerMass][i],
-                  g.node_in_use(i) ? 1 / node.mass : 0);
+                  arrays(g).node_in_use(i) ? 1 / node.mass : 0);
         flat.set_position(i, Point(i, 1, 2));
         flat.set_velocity(i, Point(3, i, 4));
       }
       flat.write(g, 5, 60);
       for (unsigned i = 0; i < 61; ++i) {
-        const bool written = 5 <= i && i < 60 && g.node_in_use(i);
-        const NodeData& node = g.node_values()[i];
-        EXPECT_EQ(g.positions()[i] == Point(i, 1, 2), written) << i;
+        const bool written = 5 <= i && i < 60 && arrays(g).node_in_use(i);
+        const NodeData& node = arrays(g).node_values()[i];
+        EXPECT_EQ(arrays(g).positions()[i] == Point(i, 1, 2), written) << i;
         EXPECT_EQ(node.vel == Point(3, i, 4), written) << i;
-        if (g.node_in_use(i)) {
+        if (arrays(g).node_in_use(i)) {
           EXPECT_EQ(1 / node.mass, flat.nodes()[FlatCloth::PerMass][i]);
         } else {
-          EXPECT_EQ(g.positions()[i], Point());
+          EXPECT_EQ(arrays(g).positions()[i], Point());
           EXPECT_EQ(node.mass, NodeData().mass);
         }
       }

@@ -1,6 +1,7 @@
 // ForcePlan: the sweep against the call node by node, energy and stiffness
 // against the force, and which classes it recognises.
 #include "lab/fast/ForcePlan.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 #include <gtest/gtest.h>
 
@@ -75,7 +76,7 @@ TEST_F(ForcePlanTest, DampingIsLinearDrag) {
 }
 
 TEST_F(ForcePlanTest, DragMayBeEachNodesOwn) {
-  std::vector<double> c(g.node_slots());
+  std::vector<double> c(arrays(g).node_slots());
   for (Node n : g.nodes()) c[n.id()] = 0.1 * (n.id() % 7);
   const NodeDrag drag(c);
   auto by_hand = [&](Node n) { return -0.1 * (n.id() % 7) * n.value().vel; };
@@ -83,7 +84,8 @@ TEST_F(ForcePlanTest, DragMayBeEachNodesOwn) {
   const ForcePlan both = make_combined_force(drag, DampingForce(2), drag);
   EXPECT_EQ(both.drag()[0], 2);
   EXPECT_EQ(both.drag()[5], 3);
-  EXPECT_EQ(both.drag()[g.node_slots()], 2);  // a node that is added later
+  EXPECT_EQ(both.drag()[arrays(g).node_slots()],
+            2);  // a node that is added later
   EXPECT_FALSE(both.drag().none());
   EXPECT_TRUE(ForcePlan(GravityForce()).drag().none());
   double power = 0;
@@ -156,7 +158,7 @@ TEST_F(ForcePlanTest, StiffnessIsTheDerivativeOfTheForce) {
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blocks->size(), g.num_edges());
   const double h = 1e-6;
-  const unsigned n = g.node_slots();
+  const unsigned n = arrays(g).node_slots();
   FlatFlow flow;
   for (Node moved : g.nodes())
     for (unsigned k = 0; k < 3; ++k) {
@@ -186,7 +188,7 @@ TEST_F(ForcePlanTest, StiffnessIsSymmetricAndNoMoreThanK) {
     Point a = random_vector(1), b = random_vector(1);
     EXPECT_NEAR(dot(a, B * b), dot(B * a, b), 1e-12);
     EXPECT_NEAR(norm(B.direction), 1, 1e-15);
-    EXPECT_EQ((g.node_in_use(i) && g.node_in_use(j)), true);
+    EXPECT_EQ((arrays(g).node_in_use(i) && arrays(g).node_in_use(j)), true);
     EXPECT_LE(B.across, B.along);
     (B.across < 0 ? compressed : stretched) = true;
   }

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <ranges>
 #include <set>
 #include <string>
 #include <type_traits>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "Graph.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace {
 
@@ -108,7 +110,7 @@ TEST_F(Edges, AddEdgeGivesTheNextIndexAndKeepsTheOthers) {
 }
 
 TEST_F(Edges, AddingAnEdgeAgainGivesTheOldOneAsAskedFor) {
-  auto version = g.version();
+  auto version = arrays(g).version();
   Edge same = g.add_edge(n[0], n[2], -1);
   EXPECT_EQ(same, e[1]);
   EXPECT_EQ(same.node1(), n[0]);
@@ -120,7 +122,7 @@ TEST_F(Edges, AddingAnEdgeAgainGivesTheOldOneAsAskedFor) {
   EXPECT_EQ(turned.value(), 2) << "the value of an old edge is kept";
   EXPECT_EQ(turned.index(), 1u);
   EXPECT_EQ(g.num_edges(), 5u);
-  EXPECT_EQ(g.version(), version);
+  EXPECT_EQ(arrays(g).version(), version);
   // Whichever end has the shorter list:
   for (auto [a, b] : ends) {
     EXPECT_EQ(g.add_edge(n[a], n[b]).node1(), n[a]);
@@ -207,8 +209,8 @@ TEST_F(EdgesDeathTest, AnInvalidOrDeadEdgeIsNotUsed) {
   EXPECT_DEATH(*g.edge_end(), "num_edges");
   EXPECT_DEATH(g.remove_edge(g.edge_end()), "num_edges");
   g.remove_edge(g.edge(0));
-  EXPECT_DEATH(g.edge_with_id(0), "edge_in_use");
-  EXPECT_DEATH(g.edge_with_id(99), "edge_slots");
+  EXPECT_DEATH(arrays(g).edge_with_id(0), "edge_in_use");
+  EXPECT_DEATH(arrays(g).edge_with_id(99), "edge_slots");
 }
 
 // ------------------------------------------------------------- removing edges
@@ -233,14 +235,14 @@ TEST_F(Edges, RemoveEdgeByHandleFromEitherEnd) {
 
 TEST_F(Edges, RemoveEdgeOfNoEdgeHereChangesNothing) {
   G other(g);
-  auto version = g.version();
+  auto version = arrays(g).version();
   EXPECT_EQ(g.remove_edge(n[1], n[4]), 0u);
   EXPECT_EQ(g.remove_edge(n[1], n[1]), 0u);
   EXPECT_EQ(g.remove_edge(n[1], Node()), 0u);
   EXPECT_EQ(g.remove_edge(other.node(0), other.node(1)), 0u);
   EXPECT_EQ(g.remove_edge(other.edge(0)), 0u);
   EXPECT_EQ(g.remove_edge(Edge()), 0u);
-  EXPECT_EQ(g.version(), version);
+  EXPECT_EQ(arrays(g).version(), version);
   EXPECT_EQ(values_by_index(), (Values{1, 2, 3, 12, 34}));
 }
 
@@ -371,15 +373,15 @@ TEST_F(Edges, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
   g.remove_edge(e[0]);
   g.remove_edge(e[2]);
   EXPECT_EQ(values_by_index(), (Values{34, 2, 12}));
-  g.reindex();
+  arrays(g).reindex();
   EXPECT_EQ(values_by_index(), (Values{2, 12, 34}));
   for (int k : {1, 3, 4}) expect_intact(k);
 }
 
 TEST_F(Edges, ReindexEdgesGivesTheIndicesThatItIsTold) {
-  const auto version = g.version();
-  g.reindex_edges(std::vector<unsigned>{4, 0, 3, 1, 2});
-  EXPECT_NE(g.version(), version);
+  const auto version = arrays(g).version();
+  arrays(g).reindex_edges(std::vector<unsigned>{4, 0, 3, 1, 2});
+  EXPECT_NE(arrays(g).version(), version);
   EXPECT_EQ(values_by_index(), (Values{34, 1, 12, 2, 3}));
   for (unsigned k = 0; k < 5; ++k) {
     expect_intact(int(k));
@@ -389,32 +391,32 @@ TEST_F(Edges, ReindexEdgesGivesTheIndicesThatItIsTold) {
   EXPECT_EQ(neighbors(n[0]), (Ints{1, 2, 3}));
   g.check_invariants();
   g.remove_node(n[3]);
-  g.reindex_edges(std::vector<unsigned>{1, 3, 0});
+  arrays(g).reindex_edges(std::vector<unsigned>{1, 3, 0});
   EXPECT_EQ(values_by_index(), (Values{2, 12, 1}));
   EXPECT_EQ(g.add_edge(n[1], n[4]).index(), 3u);
 }
 
 TEST_F(Edges, ReorderEdgesGivesThoseOfANodeAnotherOrder) {
-  const auto version = g.version();
-  g.reorder_edges(n[0], std::vector<unsigned>{2, 0, 1});
+  const auto version = arrays(g).version();
+  arrays(g).reorder_edges(n[0], std::vector<unsigned>{2, 0, 1});
   EXPECT_EQ(neighbors(n[0]), (std::vector<int>{3, 1, 2}));
-  EXPECT_NE(g.version(), version);
+  EXPECT_NE(arrays(g).version(), version);
   g.check_invariants();
   // It takes back what removals make of the order.
   g.remove_edge(e[2]);
   EXPECT_EQ(neighbors(n[0]), (std::vector<int>{2, 1}));
-  g.reorder_edges(n[0], std::vector<unsigned>{0, 1});
+  arrays(g).reorder_edges(n[0], std::vector<unsigned>{0, 1});
   EXPECT_EQ(neighbors(n[0]), (std::vector<int>{1, 2}));
   EXPECT_EQ(neighbors(n[1]), (std::vector<int>{0, 2}));
   EXPECT_EQ(values_by_index(), (Values{1, 2, 34, 12}));
-  g.reorder_edges(n[4], std::vector<unsigned>{4});
+  arrays(g).reorder_edges(n[4], std::vector<unsigned>{4});
   g.check_invariants();
 }
 
 TEST_F(Edges, TheIdOfAnEdgeStaysAndIsOneForBothViews) {
   unsigned id = e[4].id();
   g.remove_edge(e[0]);
-  g.reindex();
+  arrays(g).reindex();
   EXPECT_EQ(e[4].id(), id);
   EXPECT_EQ(g.add_edge(n[4], n[3]).id(), id);
 }
@@ -428,7 +430,7 @@ TEST_F(Edges, ADeadHandleStaysDead) {
     ASSERT_NE(f, e[1]);
     g.remove_edge(f);
   }
-  EXPECT_EQ(g.edge_slots(), 5u);
+  EXPECT_EQ(arrays(g).edge_slots(), 5u);
   g.clear();
   std::vector<Node> m;
   for (int i = 0; i < 5; ++i) m.push_back(g.add_node(Point()));
@@ -489,7 +491,7 @@ TEST_F(Edges, TheOrderNeverChanges) {
   std::vector<Edge> all(e);
   std::sort(all.begin(), all.end());
   g.remove_edge(all[0]);
-  g.reindex();
+  arrays(g).reindex();
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
   g.clear();
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
@@ -583,16 +585,16 @@ TEST_F(Edges, RemoveEdgeKeepsWhatItSaysItKeeps) {
 TEST_F(Edges, SpansAndProxiesAreTheSameStorage) {
   g.remove_node(n[1]);
   const G& readable = g;
-  ASSERT_EQ(g.edge_ends().size(), g.edge_slots());
-  ASSERT_EQ(g.edge_values().size(), g.edge_slots());
+  ASSERT_EQ(arrays(g).edge_ends().size(), arrays(g).edge_slots());
+  ASSERT_EQ(arrays(g).edge_values().size(), arrays(g).edge_slots());
   for (auto f : g.edges()) {
-    EXPECT_EQ(&g.edge_values()[f.id()], &f.value());
-    EXPECT_EQ(&readable.edge_values()[f.id()], &f.value());
-    EXPECT_EQ(g.edge_ends()[f.id()][0], f.node1().id());
-    EXPECT_EQ(g.edge_ends()[f.id()][1], f.node2().id());
-    EXPECT_TRUE(g.edge_in_use(f.id()));
-    EXPECT_EQ(g.edge_with_id(f.id()), f);
-    EXPECT_EQ(g.edge_with_id(f.id()).node1(), f.node1());
+    EXPECT_EQ(&arrays(g).edge_values()[f.id()], &f.value());
+    EXPECT_EQ(&arrays(readable).edge_values()[f.id()], &f.value());
+    EXPECT_EQ(arrays(g).edge_ends()[f.id()][0], f.node1().id());
+    EXPECT_EQ(arrays(g).edge_ends()[f.id()][1], f.node2().id());
+    EXPECT_TRUE(arrays(g).edge_in_use(f.id()));
+    EXPECT_EQ(arrays(g).edge_with_id(f.id()), f);
+    EXPECT_EQ(arrays(g).edge_with_id(f.id()).node1(), f.node1());
   }
 }
 
@@ -600,11 +602,11 @@ TEST_F(Edges, ADeadSlotHoldsDefaults) {
   g.remove_edge(e[4]);
   g.remove_node(n[0]);
   unsigned in_use = 0;
-  for (unsigned i = 0; i < g.edge_slots(); ++i) {
-    in_use += g.edge_in_use(i);
-    if (g.edge_in_use(i)) continue;
-    EXPECT_EQ(g.edge_values()[i], 0);
-    EXPECT_EQ(g.edge_ends()[i], (std::array<unsigned, 2>{0, 0}));
+  for (unsigned i = 0; i < arrays(g).edge_slots(); ++i) {
+    in_use += arrays(g).edge_in_use(i);
+    if (arrays(g).edge_in_use(i)) continue;
+    EXPECT_EQ(arrays(g).edge_values()[i], 0);
+    EXPECT_EQ(arrays(g).edge_ends()[i], (std::array<unsigned, 2>{0, 0}));
   }
   EXPECT_EQ(in_use, 1u);
 }
@@ -624,13 +626,13 @@ TEST_F(Edges, ARemovedValueIsGivenUpAtOnce) {
 }
 
 TEST_F(Edges, VersionChangesWithTheEdgesOnly) {
-  auto version = g.version();
+  auto version = arrays(g).version();
   auto changed = [&] {
-    auto old = std::exchange(version, g.version());
+    auto old = std::exchange(version, arrays(g).version());
     return version != old;
   };
   e[0].value() = 1;
-  g.edge_values()[0] = 2;
+  arrays(g).edge_values()[0] = 2;
   (void)g.has_edge(n[0], n[1]);
   g.add_edge(n[0], n[1]);
   g.remove_edge(Edge());
@@ -646,6 +648,73 @@ TEST_F(Edges, VersionChangesWithTheEdgesOnly) {
   EXPECT_FALSE(changed());
   g.remove_edge(g.edge_begin());
   EXPECT_TRUE(changed());
+}
+
+// ------------------------------------------------------- ranges and their ends
+
+/** A ring of ten nodes, and one node apart. */
+class Ring : public ::testing::Test {
+ protected:
+  Graph<int> g;
+  Ring() {
+    for (int i = 0; i < 10; ++i) g.add_node(Point(i, 0, 0));
+    for (int i = 0; i < 10; ++i) g.add_edge(g.node(i), g.node((i + 1) % 10));
+    g.add_node(Point(100, 0, 0));
+  }
+};
+
+TEST_F(Ring, DeathAtTheEndOfARange) {
+  auto n = g.node(3);
+  EXPECT_DEATH((*g.node_end()).value(), "in no graph: .* \\*node_end");
+  EXPECT_DEATH(*(g.node_end() + 1), "beyond node_end");
+  EXPECT_DEATH(*g.edge_end(), "edge_end\\(\\) is dereferenced");
+  EXPECT_DEATH(*n.edge_end(), "Node::edge_end\\(\\) is dereferenced");
+  EXPECT_DEATH(n.edge_end()->node2(), "Node::edge_end");
+  EXPECT_DEATH(n.edge_begin()[2], "Node::edge_end");
+  EXPECT_DEATH(*(n.edge_begin() - 1), "Node::edge_end");
+  EXPECT_DEATH(*g.node(10).edge_begin(), "Node::edge_end");  // it has none
+  EXPECT_DEATH(*Graph<int>::node_iterator(), "no graph");
+  EXPECT_DEATH(*Graph<int>::incident_iterator(), "no graph");
+  auto second = n.edge_begin() + 1;
+  g.remove_edge(*second);  // the list got shorter
+  EXPECT_DEATH(*second, "iterator gone stale");
+  auto first = n.edge_begin();
+  g.remove_node(n);
+  EXPECT_DEATH(*first, "iterator gone stale");
+}
+
+// An end that is taken by its node, and never read.
+TEST_F(Ring, TheNodeAtTheEndIsPassedOn) {
+  auto count = [](const auto& first, const auto& last, auto it) {
+    int nodes = 0;
+    for (auto n = first; !(n == last); n = *++it) ++nodes;
+    return nodes;
+  };
+  EXPECT_EQ(count(*g.node_begin(), *g.node_end(), g.node_begin()), 11);
+  Graph<int> empty;
+  EXPECT_EQ(count(*empty.node_begin(), *empty.node_end(), empty.node_end()), 0);
+}
+
+TEST_F(Ring, RangesAreThoseOfTheStandard) {
+  using G = Graph<int, char>;
+  static_assert(std::random_access_iterator<G::node_iterator>);
+  static_assert(std::random_access_iterator<G::edge_iterator>);
+  static_assert(std::random_access_iterator<G::incident_iterator>);
+  using Nodes = decltype(std::declval<const G&>().nodes());
+  using Edges = decltype(std::declval<G::node_type>().edges());
+  static_assert(std::ranges::random_access_range<Nodes>);
+  static_assert(std::ranges::sized_range<Nodes>);
+  static_assert(std::ranges::view<Nodes> && std::ranges::view<Edges>);
+  static_assert(std::ranges::borrowed_range<Edges>);
+  for (auto n : g.nodes()) n.value() = int(10 - n.index());
+  using N = Graph<int>::node_type;
+  const auto least = std::ranges::min_element(
+      g.nodes(), {}, [](const N& n) { return n.value(); });
+  EXPECT_EQ(*least, g.node(10));
+  EXPECT_EQ(std::ranges::count_if(
+                g.nodes(), [](const N& n) { return n.value() % 2 == 0; }),
+            6);
+  EXPECT_EQ(std::ranges::distance(g.node(3).edges()), 2);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include <tuple>
 #include <vector>
 
+#include "Graph.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "tests/Allocations.hpp"
 
 namespace {
@@ -18,17 +20,6 @@ int left_to_fail = -1;  // so many may still succeed; negative: all
 /** One more step that may fail. */
 bool fails() { return left_to_fail >= 0 && left_to_fail-- == 0; }
 }  // namespace
-
-// GrowingArray takes its memory from here: the sanitizers have their own
-// realloc(), so it can't be replaced, but renamed.
-namespace std {
-void* failing_realloc(void* p, size_t size) {
-  return fails() ? nullptr : realloc(p, size);
-}
-}  // namespace std
-#define realloc failing_realloc
-#include "Graph.hpp"
-#undef realloc
 
 namespace {
 
@@ -61,7 +52,7 @@ struct Seen {
   std::vector<std::vector<unsigned>> lists;
   std::uint64_t version;
 
-  explicit Seen(const G& g) : version(g.version()) {
+  explicit Seen(const G& g) : version(arrays(g).version()) {
     g.check_invariants();
     for (auto n : g.nodes()) {
       nodes.push_back({n, n.position(), number_of(n.value()), n.id()});
@@ -174,20 +165,20 @@ TYPED_TEST(GraphMemory, Reserve) {
   this->test([](auto& g) { g.reserve(1000, 4000); });
 }
 TYPED_TEST(GraphMemory, Reindex) {
-  this->test([](auto& g) { g.reindex(); });
+  this->test([](auto& g) { arrays(g).reindex(); });
   this->test([](auto& g) {
     std::vector<unsigned> ids;
     left_to_fail += left_to_fail >= 0;  // not of the graph
     ids.resize(g.size());
     for (auto n : g.nodes()) ids[g.size() - 1 - n.index()] = n.id();
-    g.reindex_nodes(ids);
+    arrays(g).reindex_nodes(ids);
   });
   this->test([](auto& g) {
     std::vector<unsigned> ids;
     left_to_fail += left_to_fail >= 0;
     ids.resize(g.num_edges());
     for (auto e : g.edges()) ids[g.num_edges() - 1 - e.index()] = e.id();
-    g.reindex_edges(ids);
+    arrays(g).reindex_edges(ids);
   });
 }
 TYPED_TEST(GraphMemory, Copy) {
@@ -216,7 +207,7 @@ TYPED_TEST(GraphMemory, ClearAndReorderNeverFail) {
     std::array<unsigned, 100> ids;
     unsigned k = n.degree();
     for (auto e : n.edges()) ids[--k] = e.id();
-    g.reorder_edges(n, {ids.data(), n.degree()});
+    arrays(g).reorder_edges(n, {ids.data(), n.degree()});
   });
 }
 

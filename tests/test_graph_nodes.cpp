@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "Graph.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace {
 
@@ -76,10 +77,10 @@ TEST(EmptyGraph, HasNoNodes) {
   EXPECT_EQ(g.size(), 0u);
   EXPECT_EQ(g.num_nodes(), 0u);
   EXPECT_TRUE(g.node_begin() == g.node_end());
-  EXPECT_EQ(g.node_slots(), 0u);
-  EXPECT_TRUE(g.positions().empty());
+  EXPECT_EQ(arrays(g).node_slots(), 0u);
+  EXPECT_TRUE(arrays(g).positions().empty());
   g.clear();
-  g.reindex();
+  arrays(g).reindex();
   g.check_invariants();
 }
 
@@ -144,10 +145,10 @@ TEST_F(Nodes, RemoveNodeReturnsOneOnce) {
 TEST_F(Nodes, RemoveNodeOfNoNodeHereChangesNothing) {
   G other;
   Node foreign = other.add_node(Point());
-  auto version = g.version();
+  auto version = arrays(g).version();
   EXPECT_EQ(g.remove_node(foreign), 0u);
   EXPECT_EQ(g.remove_node(Node()), 0u);
-  EXPECT_EQ(g.version(), version);
+  EXPECT_EQ(arrays(g).version(), version);
   EXPECT_EQ(values_by_index(), (Values{0, 10, 20, 30, 40}));
   EXPECT_TRUE(other.has_node(foreign));
 }
@@ -221,9 +222,9 @@ TEST_F(Nodes, ClearBeginsAnewAndKeepsNothingOfTheDead) {
   for (int round = 0; round < 3; ++round) {
     g.clear();
     g.check_invariants();
-    EXPECT_EQ(g.node_slots(), 0u);
-    EXPECT_EQ(g.edge_slots(), 0u);
-    EXPECT_TRUE(g.positions().empty());
+    EXPECT_EQ(arrays(g).node_slots(), 0u);
+    EXPECT_EQ(arrays(g).edge_slots(), 0u);
+    EXPECT_TRUE(arrays(g).positions().empty());
     const Node a = g.add_node(Point(7)), b = g.add_node(Point());
     EXPECT_EQ(a.id(), 0u);
     EXPECT_EQ(a.value() + b.value() + int(b.degree()), 0);
@@ -275,7 +276,7 @@ TEST_F(Nodes, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
   g.remove_node(n[0]);
   g.remove_node(n[2]);
   EXPECT_EQ(values_by_index(), (Values{40, 10, 30}));
-  g.reindex();
+  arrays(g).reindex();
   EXPECT_EQ(values_by_index(), (Values{10, 30, 40}));
   for (int i : {1, 3, 4}) expect_intact(i);
   EXPECT_FALSE(g.has_node(n[0]));
@@ -284,46 +285,46 @@ TEST_F(Nodes, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
 }
 
 TEST_F(Nodes, ReindexNodesGivesTheIndicesThatItIsTold) {
-  const auto version = g.version();
-  g.reindex_nodes(std::vector<unsigned>{3, 1, 4, 0, 2});
-  EXPECT_NE(g.version(), version);
+  const auto version = arrays(g).version();
+  arrays(g).reindex_nodes(std::vector<unsigned>{3, 1, 4, 0, 2});
+  EXPECT_NE(arrays(g).version(), version);
   EXPECT_EQ(values_by_index(), (Values{30, 10, 40, 0, 20}));
   for (unsigned i = 0; i < 5; ++i) {
     expect_intact(int(i));
     EXPECT_EQ(n[i].id(), i);
-    EXPECT_EQ(g.positions()[i], Point(i, 0, 0));
+    EXPECT_EQ(arrays(g).positions()[i], Point(i, 0, 0));
   }
   EXPECT_EQ(n[4].index(), 2u);
   g.check_invariants();
   g.remove_node(n[1]);  // the node of highest index takes the hole
   EXPECT_EQ(values_by_index(), (Values{30, 20, 40, 0}));
   EXPECT_EQ(g.add_node(Point(), 50).index(), 4u);  // in the slot of n[1]
-  g.reindex_nodes(std::vector<unsigned>{4, 3, 2, 1, 0});
+  arrays(g).reindex_nodes(std::vector<unsigned>{4, 3, 2, 1, 0});
   EXPECT_EQ(values_by_index(), (Values{40, 30, 20, 50, 0}));
   g.remove_node(n[0]);
-  g.reindex_nodes(std::vector<unsigned>{4, 2, 1, 3});
+  arrays(g).reindex_nodes(std::vector<unsigned>{4, 2, 1, 3});
   EXPECT_EQ(values_by_index(), (Values{40, 20, 50, 30}));
   EXPECT_EQ(G(g).node(2).value(), 50);
-  g.reindex_nodes(std::vector<unsigned>{1, 2, 3, 4});
+  arrays(g).reindex_nodes(std::vector<unsigned>{1, 2, 3, 4});
   EXPECT_EQ(values_by_index(), (Values{50, 20, 30, 40}));
 }
 
 TEST_F(Nodes, ReserveKeepsThePlacesOfWhatComesLater) {
   g.reserve(1000, 500);
   for (int i : {0, 1, 2, 3, 4}) expect_intact(i);
-  const auto version = g.version();
-  const Point* positions = g.positions().data();
-  const int* values = g.node_values().data();
+  const auto version = arrays(g).version();
+  const Point* positions = arrays(g).positions().data();
+  const int* values = arrays(g).node_values().data();
   g.add_edge(n[0], n[1]);
-  const double* edges = g.edge_values().data();
+  const double* edges = arrays(g).edge_values().data();
   for (int i = 5; i < 1000; ++i)
     n.push_back(g.add_node(Point(i, 0, 0), 10 * i));
   for (int i = 1; i < 500; ++i) g.add_edge(n[i], n[i + 1]);
   EXPECT_EQ(g.num_edges(), 500u);
-  EXPECT_EQ(g.positions().data(), positions);
-  EXPECT_EQ(g.node_values().data(), values);
-  EXPECT_EQ(g.edge_values().data(), edges);
-  EXPECT_NE(g.version(), version);
+  EXPECT_EQ(arrays(g).positions().data(), positions);
+  EXPECT_EQ(arrays(g).node_values().data(), values);
+  EXPECT_EQ(arrays(g).edge_values().data(), edges);
+  EXPECT_NE(arrays(g).version(), version);
   g.reserve(1, 1);  // never less than there is
   for (int i = 0; i < 1000; ++i) expect_intact(i);
 }
@@ -332,7 +333,7 @@ TEST_F(Nodes, ReindexAfterTheHolesWereFilledStillCounts) {
   g.remove_node(n[1]);
   Node m = g.add_node(Point(), 11);  // in the slot of n[1]
   EXPECT_EQ(values_by_index(), (Values{0, 40, 20, 30, 11}));
-  g.reindex();
+  arrays(g).reindex();
   g.check_invariants();
   EXPECT_EQ(values_by_index(), (Values{0, 11, 20, 30, 40}));
   EXPECT_EQ(m.index(), 1u);
@@ -345,7 +346,7 @@ TEST_F(Nodes, TheIdOfANodeStays) {
   std::vector<unsigned> ids;
   for (Node m : n) ids.push_back(m.id());
   g.remove_node(n[0]);
-  g.reindex();
+  arrays(g).reindex();
   g.add_node(Point());
   for (int i = 1; i < 5; ++i) EXPECT_EQ(n[i].id(), ids[i]);
 }
@@ -431,7 +432,7 @@ TEST_F(Nodes, TheOrderNeverChanges) {
   std::sort(all.begin(), all.end());
   g.remove_node(all[0]);
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
-  g.reindex();
+  arrays(g).reindex();
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
   g.clear();
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
@@ -482,18 +483,18 @@ TEST_F(NodesDeathTest, AnInvalidOrDeadNodeIsNotUsed) {
   EXPECT_DEATH(*(g.node_end() + 1), "num_nodes");
   EXPECT_DEATH(g.remove_node(g.node_end()), "num_nodes");
   g.remove_node(g.node(0));
-  EXPECT_DEATH(g.node_with_id(0), "node_in_use");
-  EXPECT_DEATH(g.node_with_id(99), "node_slots");
+  EXPECT_DEATH(arrays(g).node_with_id(0), "node_in_use");
+  EXPECT_DEATH(arrays(g).node_with_id(99), "node_slots");
 }
 
 TEST_F(NodesDeathTest, ReindexNodesWantsEachNodeOnce) {
   g.remove_node(n[4]);
   using Ids = std::vector<unsigned>;
-  EXPECT_DEATH(g.reindex_nodes(Ids{1, 2, 3}), "size_");
-  EXPECT_DEATH(g.reindex_nodes(Ids{3, 2, 1, 2}), "index_of");
-  EXPECT_DEATH(g.reindex_nodes(Ids{0, 0, 1, 2}), "index_of");
-  EXPECT_DEATH(g.reindex_nodes(Ids{3, 2, 1, 4}), "in_use");
-  EXPECT_DEATH(g.reindex_nodes(Ids{3, 2, 1, 5}), "slots_");
+  EXPECT_DEATH(arrays(g).reindex_nodes(Ids{1, 2, 3}), "size_");
+  EXPECT_DEATH(arrays(g).reindex_nodes(Ids{3, 2, 1, 2}), "index_of");
+  EXPECT_DEATH(arrays(g).reindex_nodes(Ids{0, 0, 1, 2}), "index_of");
+  EXPECT_DEATH(arrays(g).reindex_nodes(Ids{3, 2, 1, 4}), "in_use");
+  EXPECT_DEATH(arrays(g).reindex_nodes(Ids{3, 2, 1, 5}), "slots_");
 }
 
 // ------------------------------------------------------------------ iterating
@@ -565,7 +566,7 @@ TEST_F(Nodes, AddNodeKeepsIterators) {
 TEST_F(Nodes, RemoveNodeKeepsIteratorsReferencesAndSpansOfOthers) {
   Point& p = n[3].position();
   int& v = n[3].value();
-  auto positions = g.positions();
+  auto positions = arrays(g).positions();
   auto second = g.node_begin() + 2;
   g.remove_node(n[1]);
   EXPECT_EQ(&n[3].position(), &p);
@@ -579,26 +580,27 @@ TEST_F(Nodes, RemoveNodeKeepsIteratorsReferencesAndSpansOfOthers) {
 TEST_F(Nodes, SpansAndProxiesAreTheSameStorage) {
   g.remove_node(n[1]);
   const G& readable = g;
-  ASSERT_EQ(g.positions().size(), g.node_slots());
-  ASSERT_EQ(g.node_values().size(), g.node_slots());
+  ASSERT_EQ(arrays(g).positions().size(), arrays(g).node_slots());
+  ASSERT_EQ(arrays(g).node_values().size(), arrays(g).node_slots());
   for (auto m : g.nodes()) {
-    EXPECT_EQ(&g.positions()[m.id()], &m.position());
-    EXPECT_EQ(&g.node_values()[m.id()], &m.value());
-    EXPECT_EQ(&readable.positions()[m.id()], &m.position());
-    EXPECT_EQ(&readable.node_values()[m.id()], &m.value());
-    EXPECT_TRUE(g.node_in_use(m.id()));
-    EXPECT_EQ(g.node_with_id(m.id()), m);
+    EXPECT_EQ(&arrays(g).positions()[m.id()], &m.position());
+    EXPECT_EQ(&arrays(g).node_values()[m.id()], &m.value());
+    EXPECT_EQ(&arrays(readable).positions()[m.id()], &m.position());
+    EXPECT_EQ(&arrays(readable).node_values()[m.id()], &m.value());
+    EXPECT_TRUE(arrays(g).node_in_use(m.id()));
+    EXPECT_EQ(arrays(g).node_with_id(m.id()), m);
   }
 }
 
 TEST_F(Nodes, ADeadSlotHoldsDefaults) {
   unsigned id = n[2].id();
   g.remove_node(n[2]);
-  EXPECT_FALSE(g.node_in_use(id));
-  EXPECT_EQ(g.positions()[id], Point());
-  EXPECT_EQ(g.node_values()[id], 0);
+  EXPECT_FALSE(arrays(g).node_in_use(id));
+  EXPECT_EQ(arrays(g).positions()[id], Point());
+  EXPECT_EQ(arrays(g).node_values()[id], 0);
   unsigned in_use = 0;
-  for (unsigned i = 0; i < g.node_slots(); ++i) in_use += g.node_in_use(i);
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+    in_use += arrays(g).node_in_use(i);
   EXPECT_EQ(in_use, g.num_nodes());
 }
 
@@ -619,18 +621,18 @@ TEST_F(Nodes, SlotsOfRemovedNodesAreUsedAgain) {
     g.remove_node(g.node(unsigned(round) % 5));
     g.add_node(Point(), round);
   }
-  EXPECT_EQ(g.node_slots(), 5u);
+  EXPECT_EQ(arrays(g).node_slots(), 5u);
 }
 
 TEST_F(Nodes, VersionChangesWithTheNodesOrTheirIndicesOnly) {
-  auto version = g.version();
+  auto version = arrays(g).version();
   auto changed = [&] {
-    auto old = std::exchange(version, g.version());
+    auto old = std::exchange(version, arrays(g).version());
     return version != old;
   };
   n[0].value() = 1;
   n[0].position() = Point(1);
-  g.positions()[0] = Point(2);
+  arrays(g).positions()[0] = Point(2);
   (void)g.has_node(n[0]);
   g.remove_node(Node());
   EXPECT_FALSE(changed());
@@ -642,7 +644,7 @@ TEST_F(Nodes, VersionChangesWithTheNodesOrTheirIndicesOnly) {
   EXPECT_FALSE(changed());
   g.remove_node(g.node_begin());
   EXPECT_TRUE(changed());
-  g.reindex();
+  arrays(g).reindex();
   EXPECT_TRUE(changed());
   g.clear();
   EXPECT_TRUE(changed());

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Checkpoint.hpp"
@@ -39,7 +40,7 @@ void run(Live& live, int steps) {
   for (int k = 0; k < steps; ++k) ASSERT_TRUE(live.step());
 }
 std::vector<Point> positions(const Cloth& g) {
-  return {g.positions().begin(), g.positions().end()};
+  return {arrays(g).positions().begin(), arrays(g).positions().end()};
 }
 Point velocity(const Cloth& g) {  // of the center of mass
   Point p;
@@ -120,8 +121,8 @@ TEST(Live, StiffnessIsThatOfASceneMadeWithIt) {
   m.stiffness = 250;
   Scene made(m);
   for (Edge e : live.scene().cloth().edges()) {
-    EXPECT_EQ(e.value().K, made.cloth().edge_values()[e.id()].K);
-    EXPECT_EQ(e.value().L, made.cloth().edge_values()[e.id()].L);
+    EXPECT_EQ(e.value().K, arrays(made.cloth()).edge_values()[e.id()].K);
+    EXPECT_EQ(e.value().L, arrays(made.cloth()).edge_values()[e.id()].L);
   }
   run(live, 200);
 }
@@ -296,7 +297,7 @@ TEST(Live, EveryMethodTakesTheHand) {
     Live live(model);
     live.apply(request("grab", id(live, 24), Point(1, 1, 0.6)));
     run(live, 300);
-    EXPECT_GT(live.scene().cloth().positions()[id(live, 24)].z, 0.05)
+    EXPECT_GT(arrays(live.scene().cloth()).positions()[id(live, 24)].z, 0.05)
         << m.info.name;
     EXPECT_TRUE(live.scene().failure().empty()) << m.info.name;
   }
@@ -333,7 +334,7 @@ TEST(Cuts, AreOfTheEdgesThatTheStrokeCrosses) {
   // its diagonals cross x = 0.5 at y = 0.5.
   EXPECT_EQ(edges.size(), 3u + 4u);
   for (const auto& [i, j] : edges) {
-    const Point a = g.positions()[i], b = g.positions()[j];
+    const Point a = arrays(g).positions()[i], b = arrays(g).positions()[j];
     EXPECT_LT((a.x - 0.5) * (b.x - 0.5), 0);
     EXPECT_LT((a.y + b.y) / 2, 0.49);
   }
@@ -344,7 +345,8 @@ TEST(Cuts, AreOfTheEdgesThatTheStrokeCrosses) {
   EXPECT_EQ(r.torn_edges, 7u);
   EXPECT_EQ(r.nodes, 36u);
   for (const auto& [i, j] : edges)
-    EXPECT_FALSE(g.has_edge(g.node_with_id(i), g.node_with_id(j)));
+    EXPECT_FALSE(
+        g.has_edge(arrays(g).node_with_id(i), arrays(g).node_with_id(j)));
   EXPECT_NO_THROW(g.check_invariants());
   EXPECT_TRUE(crossed_edges(g, std::span(stroke).first(1)).empty());
   EXPECT_TRUE(crossed_edges(g, {}).empty());
@@ -389,16 +391,16 @@ TEST(Pins, HoldANodeWhereItIs) {
   Live live(hung(6));
   run(live, 150);
   const unsigned n = id(live, 28);
-  const Point place = live.scene().cloth().positions()[n];
+  const Point place = arrays(live.scene().cloth()).positions()[n];
   EXPECT_LT(place.z, -0.01);
   live.apply(request("pin", n));
   EXPECT_TRUE(live.scene().is_pinned(n));
   run(live, 200);
-  EXPECT_EQ(live.scene().cloth().positions()[n], place);
+  EXPECT_EQ(arrays(live.scene().cloth()).positions()[n], place);
   live.apply(request("unpin", n));
   EXPECT_FALSE(live.scene().is_pinned(n));
   run(live, 20);
-  EXPECT_NE(live.scene().cloth().positions()[n], place);
+  EXPECT_NE(arrays(live.scene().cloth()).positions()[n], place);
   EXPECT_TRUE(live.scene().is_pinned(id(live, 0)));
 }
 
@@ -424,7 +426,7 @@ TEST(Pins, ThatMoveGoOnMoving) {
   run(live, 100);
   live.apply(request("unpin", id(live, 0)));
   run(live, 100);
-  const Point p = live.scene().cloth().positions()[id(live, 30)];
+  const Point p = arrays(live.scene().cloth()).positions()[id(live, 30)];
   EXPECT_NEAR(norm(p - Point(1, 0, 0.1)), 0, 1e-12);
 }
 

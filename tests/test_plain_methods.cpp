@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "methods.hpp"
@@ -89,21 +90,24 @@ struct Scene {
     const double dt = 0.02 / omega;
     for (; !is_near(); from += dt)
       method.step(at->cloth, from, dt, at->force, at->constraint);
-    EXPECT_EQ(at->cloth.num_nodes(), at->cloth.node_slots());
+    EXPECT_EQ(at->cloth.num_nodes(), arrays(at->cloth).node_slots());
   }
   bool has_contact() const { return problem.norm == Norm::functionals; }
   bool is_near() const {
-    return std::ranges::any_of(at->cloth.positions(), [](const Point& p) {
-      return Ball{.radius = Ball().radius + 1e-4}.holds(p);
-    });
+    return std::ranges::any_of(
+        arrays(at->cloth).positions(), [](const Point& p) {
+          return Ball{.radius = Ball().radius + 1e-4}.holds(p);
+        });
   }
 
   /** The same state, with @a constraint as it was made at time 0. */
   void set(Cloth& g, CombinedConstraints& constraint) const {
     problem.build(g);
     constraint = problem.constraint(g);
-    std::ranges::copy(at->cloth.positions(), g.positions().begin());
-    std::ranges::copy(at->cloth.node_values(), g.node_values().begin());
+    std::ranges::copy(arrays(at->cloth).positions(),
+                      arrays(g).positions().begin());
+    std::ranges::copy(arrays(at->cloth).node_values(),
+                      arrays(g).node_values().begin());
   }
   CombinedForces force() const {
     const GravityForce gravity(problem.gravity);
@@ -140,16 +144,17 @@ INSTANTIATE_TEST_SUITE_P(Table, PlainMethod, ::testing::ValuesIn(twins),
  */
 double distance(const Cloth& a, const Cloth& b, double dt,
                 const ConstraintPlan& constraint) {
-  std::vector<char> held(a.node_slots());
+  std::vector<char> held(arrays(a).node_slots());
   constraint.each_held(b, [&held](Node n) { held[n.id()] = true; });
   double most = 0;
-  for (unsigned i = 0; i < a.node_slots(); ++i) {
-    if (a.node_in_use(i) != b.node_in_use(i)) return HUGE_VAL;
-    if (!a.node_in_use(i)) continue;
-    most = std::max(most, norm(a.positions()[i] - b.positions()[i]));
+  for (unsigned i = 0; i < arrays(a).node_slots(); ++i) {
+    if (arrays(a).node_in_use(i) != arrays(b).node_in_use(i)) return HUGE_VAL;
+    if (!arrays(a).node_in_use(i)) continue;
+    most = std::max(most,
+                    norm(arrays(a).positions()[i] - arrays(b).positions()[i]));
     if (!held[i])
-      most = std::max(
-          most, dt * norm(a.node_values()[i].vel - b.node_values()[i].vel));
+      most = std::max(most, dt * norm(arrays(a).node_values()[i].vel -
+                                      arrays(b).node_values()[i].vel));
   }
   return most;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
@@ -388,7 +389,7 @@ TEST_F(SelfCollisionRun, HoldsWhileNodesAndEdgesAreRemoved) {
     if (k % 50 == 49) {
       g.remove_node(g.node(unsigned(k) % g.num_nodes()));
       g.remove_edge(g.edge(unsigned(k) % g.num_edges()));
-      g.reindex();
+      arrays(g).reindex();
     }
     g.check_invariants();
   });

@@ -12,6 +12,7 @@
 #include <Eigen/Dense>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
@@ -35,11 +36,11 @@ const ZeroConstraint free_cloth;
  * now, or K in all directions for every spring. */
 Eigen::MatrixXd full_matrix(const Cloth& g, const ConstraintPlan& constraint,
                             bool any_shape) {
-  std::vector<double> scale(g.node_slots(), 0);
+  std::vector<double> scale(arrays(g).node_slots(), 0);
   for (Node n : g.nodes()) scale[n.id()] = 1 / std::sqrt(n.value().mass);
   constraint.each_held(g, [&](Node n) { scale[n.id()] = 0; });
-  Eigen::MatrixXd A =
-      Eigen::MatrixXd::Zero(3 * g.node_slots(), 3 * g.node_slots());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * arrays(g).node_slots(),
+                                            3 * arrays(g).node_slots());
   for (Edge e : g.edges()) {
     const unsigned i = 3 * e.node1().id(), j = 3 * e.node2().id();
     const Point u = e.node2().position() - e.node1().position();

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <random>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/stability/StepLimit.hpp"
@@ -118,7 +119,7 @@ struct RandomScene {
     const double c = gamma;
     const double gravity = recipe.gravity;
     recipe.force = [c, gravity](const Cloth& g) {
-      std::vector<double> drag(g.node_slots());
+      std::vector<double> drag(arrays(g).node_slots());
       for (Node n : g.nodes()) drag[n.id()] = c * n.value().mass;
       CombinedForces::List all = {std::make_shared<GravityForce>(gravity),
                                   std::make_shared<MassSpringForce>()};
@@ -248,7 +249,7 @@ TEST(SteeredStep, IsTheSameWhoeverLooks) {
     EXPECT_EQ(s.time(), 30);
     EXPECT_EQ(back, s.control()->report().taken_back);
     EXPECT_GT(back, 0);
-    const auto x = s.cloth().positions();
+    const auto x = arrays(s.cloth()).positions();
     end.assign(x.begin(), x.end());
   }
   EXPECT_EQ(ends[0], ends[1]);

@@ -1,4 +1,5 @@
 // Sweep and Stencil: the fast way over all nodes against the slow one.
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 
 #include <gtest/gtest.h>
@@ -94,8 +95,9 @@ double worst(Cloth& g, FlatFlow& sweep) {
           norm(spring_force(e.node2().position() - n.position(), e.value()));
     most = std::max(most, norm(f[n.id()] - by_node(n, 0)) / size);
   }
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    EXPECT_TRUE(g.node_in_use(i) || f[i] == Point()) << "removed node " << i;
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+    EXPECT_TRUE(arrays(g).node_in_use(i) || f[i] == Point())
+        << "removed node " << i;
   return most;
 }
 
@@ -118,7 +120,7 @@ TEST_F(SweepTest, EqualsTheForcesNodeByNodeOnRandomGraphs) {
         }
         make_random(g, 1 + nodes / 4, nodes);  // into the slots of the removed
         EXPECT_LT(worst(g, sweep), round_off) << "refilled";
-        g.reindex();
+        arrays(g).reindex();
         EXPECT_LT(worst(g, sweep), round_off) << "reindexed";
         g.clear();
         EXPECT_EQ(worst(g, sweep), 0) << "cleared";
@@ -167,7 +169,7 @@ TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
   Cloth g;
   make_grid(g, 10);
   Cloth copy = g;
-  EXPECT_NE(copy.version(), g.version());
+  EXPECT_NE(arrays(copy).version(), arrays(g).version());
   FlatFlow sweep;
   worst(g, sweep);
   remove_some(g, 3, 0);
@@ -445,8 +447,8 @@ TEST(Stencil, NamesEachEdgeFromBothEnds) {
       expected.insert({e.node1().id(), e.node2().id(), e.id()});
       expected.insert({e.node2().id(), e.node1().id(), e.id()});
     }
-    EXPECT_EQ(springs_of(Stencil<8>(g), g.node_slots()), expected);
-    EXPECT_EQ(springs_of(Stencil<4>(g), g.node_slots()), expected);
+    EXPECT_EQ(springs_of(Stencil<8>(g), arrays(g).node_slots()), expected);
+    EXPECT_EQ(springs_of(Stencil<4>(g), arrays(g).node_slots()), expected);
   }
 }
 

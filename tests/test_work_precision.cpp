@@ -13,6 +13,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -52,17 +53,17 @@ TEST(Problem, ExactSolutionsStartAsTheClothAndObeyItsForces) {
   for (const char* name : {"chain", "curtain"}) {
     Problem p = problem(name);
     Start s(p);
-    ASSERT_EQ(p.exact(0).size(), s.cloth.node_slots());
-    EXPECT_LT(distance(p.exact(0), s.cloth.positions()), 1e-15) << name;
+    ASSERT_EQ(p.exact(0).size(), arrays(s.cloth).node_slots());
+    EXPECT_LT(distance(p.exact(0), arrays(s.cloth).positions()), 1e-15) << name;
     // Its second difference in time is the acceleration, also on the way.
     constexpr double t = 0.3, h = 1e-5;
     auto before = p.exact(t - h), now = p.exact(t), after = p.exact(t + h);
-    std::copy(now.begin(), now.end(), s.cloth.positions().begin());
+    std::copy(now.begin(), now.end(), arrays(s.cloth).positions().begin());
     auto f = swept_forces(s.cloth, s.force);
     s.constraint.each_held(s.cloth, [&f](Node n) { f[n.id()] = Point(); });
     for (unsigned i = 0; i < now.size(); ++i) {
       Point a = (after[i] - 2 * now[i] + before[i]) / (h * h);
-      EXPECT_LT(norm(a - f[i] / s.cloth.node_values()[i].mass), 1e-3)
+      EXPECT_LT(norm(a - f[i] / arrays(s.cloth).node_values()[i].mass), 1e-3)
           << name << " node " << i;
     }
   }
@@ -154,7 +155,8 @@ TEST(Problem, VerletGrowsBeyondItsLimitAsTheoryHasIt) {
   std::vector<double> off;  // between 1e-4 and 1e-2 m
   for (int n = 0; n < 100 && (off.empty() || off.back() < 1e-2); ++n) {
     verlet.step(s.cloth, n * dt, dt, s.force, s.constraint);
-    const double now = distance(p.exact((n + 1) * dt), s.cloth.positions());
+    const double now =
+        distance(p.exact((n + 1) * dt), arrays(s.cloth).positions());
     if (now > 1e-4) off.push_back(now);
   }
   ASSERT_GT(off.size(), 4u);

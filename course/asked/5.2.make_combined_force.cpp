@@ -16,7 +16,7 @@ static void ask_for_sums(const Bodies& b, const char* what) {
   ask_for_sum(sum_of(P::first(), P::second()), b, what);
   ask_for_sum(sum_of(P::first(), P::second(), P::third()), b, what);
 }
-/** Of the parts that its test takes; the solution answers for both. */
+/** With the same parts as its test; the solution answers for both. */
 template <typename Gravity, typename Springs>
 static void ask_for_sums_like() {
   const Bodies b = drawn_bodies(4, 100);

@@ -12,7 +12,7 @@ static void ask_for_all(All all, const Bodies& b, const char* what) {
     for (int i = 0; i < b.size; ++i) answer(what, place(g, i));
   }
 }
-/** Of the parts that its test takes; the solution answers for both. */
+/** With the same parts as its test; the solution answers for both. */
 template <typename Plane, typename Sphere>
 static void ask_for_constraints() {
   const Bodies b = drawn_bodies(4, 100);

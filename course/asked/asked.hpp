@@ -1,7 +1,7 @@
 /** @file asked.hpp
- * What the grader asks of a submission beside its tests. A test runs in one
- * process with the submission, which could change its verdict. So each task is
- * asked for numbers, too:
+ * Questions that the grader asks a submission beside its tests. A test runs in
+ * one process with the submission, which could change its verdict. So each task
+ * is also asked for numbers:
  *
  *   ASKED("3.1.position", position_asked) {
  *     ...drawn(-1, 1)...              an input, from the grader's seed

@@ -1,5 +1,5 @@
 /** @file tell.cpp
- * What a graph holds, as answers. Compiled once, without a submission. */
+ * The content of a graph, as answers. Compiled once, without a submission. */
 #include "asked.hpp"
 
 namespace kit {

@@ -18,7 +18,7 @@ GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
          "tools/deps.sh", "course/tasks.toml", "course/mine.hpp",
          "course/kit/*.py", "course/kit/*.cpp", "course/tests/**/*",
          "course/asked/*"]
-LEFT_OUT = {"kit_check.py", "test_markers.py", "test_class.py",
+LEFT_OUT = {"kit_check.py", "mistakes.py", "test_markers.py", "test_class.py",
             "test_grade_tests.py", "grade_tests.py", "starter.py",
             "autograder.py", "synthetic.py", "seeds.py", "test_seeds.py"}
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]

@@ -34,7 +34,7 @@ DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
 INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
 STANDARD = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*<([\w./+-]+)>",
                       re.MULTILINE)
-# Assembler from the source, in the compiler's output.
+# Assembler written in the source, as it appears in the compiler's output.
 ASSEMBLER = re.compile(rb"^#APP\n.*?^#NO_APP\n", re.MULTILINE | re.DOTALL)
 BORDER = re.compile(rb"^#(?:NO_)?APP\b", re.MULTILINE)
 

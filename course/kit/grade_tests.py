@@ -89,7 +89,7 @@ def cases(tests):
             name: markers.stub(text, [task], all_cases.course, name)
             for name, text in all_cases.texts.items()}, None))
     for name in FILES:
-        for case in all_cases.wrong(kit_check.WRONG / f"{name}.toml"):
+        for case in all_cases.wrong(name):
             if not case.lost:
                 right.append(case)
             elif case.lost & tests.tasks:

@@ -217,8 +217,8 @@ class Judge:
                         or results[test].status != "not compiled"]
             for test, result in self.judged(room, way, left).items():
                 best = results.setdefault(test, result)
-                # A message about the kit's graph does not help if the same
-                # is wrong with the student's own.
+                # A message about the kit's graph does not help if the task
+                # also fails with the student's own graph.
                 better = (RANK.index(result.status) - RANK.index(best.status)
                           or result.status in ("not compiled", "crashed"))
                 if better > 0:

@@ -2,10 +2,10 @@
 
 The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
-an earlier one; each submission of course/wrong/*.toml loses what it says and
-nothing else. ONLY takes the cases whose names hold WORD; EVERY one in N of the
-regions and wrong submissions, beginning with number FIRST, 0 if it is not
-given: all FIRST < N together take each of them once.
+an earlier one; each mistake of course/wrong (mistakes.py) loses what it says
+and nothing else. ONLY takes the cases whose names hold WORD; EVERY takes one in
+N of the regions and mistakes, beginning with number FIRST, by default 0: all
+FIRST < N together take each of them once.
 """
 
 import concurrent.futures
@@ -21,16 +21,14 @@ import child
 import grade
 import judge
 import markers
+import mistakes
 import once
 import report
 import submission
 import tasks
 from tasks import tomllib
 
-WRONG = once.ROOT / "course/wrong"
 BASES = ("solution", "simple", "forms")     # submissions that are right
-KEYS = {"name", "file", "loses", "replace", "append", "prepend", "content",
-        "base"}
 ESCAPED = [pathlib.Path(folder) / "kit-cheat"
            for folder in ("/tmp", "/var/tmp", "/dev/shm", "/")]
 LONGEST = judge.LIMITS.cpu // 2     # seconds; cheats that wait cost that much
@@ -45,15 +43,7 @@ class Case:
 
 
 class Cases:
-    """All submissions that are made of the repository's own sources.
-
-    A [[wrong]] of course/wrong has a `name`, the tasks that it `loses` (["*"]:
-    all that its file serves; []: none, as it is right), and edits of a `file`,
-    by default Graph.hpp: `replace` ([[old, new], ...], each old text occurring
-    once), `prepend`, `append`, or its whole `content`. It starts from the
-    solution, or from `base` = "simple": the graph of the level open, solved.
-    One whose base is the starter gets no point that the starter does not get.
-    """
+    """All submissions that are made of the repository's own sources."""
 
     def __init__(self):
         self.texts, self.course = markers.load()
@@ -82,8 +72,8 @@ class Cases:
             yield Case(f"without {task}", {
                 name: markers.stub(text, [task], self.course, name)
                 for name, text in self.texts.items()}, self.without(task))
-        for path in sorted(WRONG.glob("*.toml")):
-            yield from self.wrong(path)
+        for table in mistakes.tables():
+            yield from self.wrong(table)
 
     def base(self, name):
         """The sources of a correct submission; what it lacks is ours."""
@@ -95,44 +85,32 @@ class Cases:
             files["Graph.hpp"] = markers.solution(
                 markers.open_graph(self.course), markers.OPEN_GRAPH)
         if name == "forms":
-            for path in (WRONG / "forms").iterdir():
+            for path in (mistakes.FOLDER / "forms").iterdir():
                 files[path.name] = path.read_text(encoding="utf-8")
         return files
 
-    def wrong(self, path):
-        at = path.relative_to(once.ROOT)
-        entries = tomllib.loads(path.read_text("utf-8"))["wrong"]
-        for entry in entries:
-            where = f"{at}: {entry.get('name', 'an entry without a name')}"
-            if unknown := entry.keys() - KEYS:
-                raise SystemExit(f"{where}: unknown keys {sorted(unknown)}")
-            files = self.base(entry.get("base", "solution"))
-            file = entry.get("file", "Graph.hpp")
-            text = entry.get("content", files.get(file, ""))
-            for old, new in entry.get("replace", []):
-                if text.count(old) != 1:
-                    raise SystemExit(f"{where}: '{old}' occurs "
-                                     f"{text.count(old)} times, expected once")
-                text = text.replace(old, new)
-            files[file] = (entry.get("prepend", "") + text
-                           + entry.get("append", "") + "\n")
-            if entry.get("base") == "starter":
-                yield Case(f"{path.stem}: {entry['name']}", files, self.starter)
+    def wrong(self, table):
+        for mistake in mistakes.read(table):
+            files = self.base(mistake.base)
+            files[mistake.file] = mistake.edited(files.get(mistake.file, ""))
+            name = f"{table}: {mistake.name}"
+            if mistake.base == "starter":
+                yield Case(name, files, self.starter)
                 continue
-            loses = self.ids(entry["loses"], file, where)
-            if loses or not entry["loses"]:     # else its tasks are dropped
-                yield Case(f"{path.stem}: {entry['name']}", files,
-                           self.loses(loses), frozenset(loses))
+            loses = self.ids(mistake)
+            if loses or not mistake.loses:      # else its tasks are dropped
+                yield Case(name, files, self.loses(loses), frozenset(loses))
 
-    def ids(self, loses, file, where):
-        if loses == ["*"]:
-            needs = {"Graph.hpp": "graph", "mine.hpp": "step"}.get(file,
-                                                                  "cloth")
+    def ids(self, mistake):
+        if mistake.loses == ["*"]:
+            needs = {"Graph.hpp": "graph", "mine.hpp": "step"}.get(
+                mistake.file, "cloth")
             return {task.id for task in self.course.tasks.values()
                     if task.needs == needs}
-        asked = set(loses) - self.course.dropped
+        asked = set(mistake.loses) - self.course.dropped
         if unknown := asked - self.course.tasks.keys():
-            raise SystemExit(f"{where}: no tasks: {sorted(unknown)}")
+            raise mistakes.MistakeError(
+                f"{mistake.where}: no tasks: {sorted(unknown)}")
         return asked
 
     def loses(self, expected):
@@ -179,7 +157,7 @@ class Check:
         started = time.monotonic()
         graded = self.grade(case.files).graded
         faults = case.faults({g.task.id for g in graded if not g.passed})
-        # The grader's words about tasks that should not be lost.
+        # The report on tasks that should not be lost.
         for g in graded:
             if not g.passed and any(g.task.id in fault for fault in faults):
                 faults += ["  " + line for line in report.failure(g)]
@@ -231,7 +209,8 @@ def main():
     judge.LIMITS.cpu, judge.LIMITS.wall = LONGEST, 10
     try:
         check = Check(Cases())
-    except (markers.MarkerError, tasks.TasksError, once.KitError) as error:
+    except (markers.MarkerError, tasks.TasksError, once.KitError,
+            mistakes.MistakeError) as error:
         sys.exit(f"kit-check: {error}")
     if not only:
         programs(check)

@@ -28,9 +28,9 @@ CALL = re.compile(rf"\boperator{GAP}\({GAP}\){GAP}\(")
 REMOVAL = re.compile(rf"\bremove_node{GAP}\(")
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
 INCLUDED = re.compile(r'#\s*include\s*["<]mass_spring\.hpp[">]')
-# Of the starter's main(), the last one first: a grader asks it for numbers.
+# The stages of main(), the last one first: the grader asks it for numbers.
 STAGES = ("tear", "problem1", "diagonals", "forces", "constraints")
-# What cloth.hpp looks for in any case.
+# Names that cloth.hpp always looks for.
 USUAL = {"ZeroForce", "Force", "ZeroConstraint", "Constraint",
          "TearConstraint"}
 

@@ -94,7 +94,7 @@ class Kit:
                        *course], self.make_linked)
         self.preludes = self.locked_part(
             "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
-        # The solution's, which judge.prepare() grades before all others.
+        # The solution sets these: judge.prepare() grades it first.
         self.secret = b""
         self.answers: Any = None
         self.data: Any = None       # a folder

@@ -37,7 +37,7 @@ COPIED = [
 ]
 TESTS = "course/tests"
 # Left out at the level open.
-GUIDED = ("CME212/SlotMap.hpp", "CME212/NeighborPool.hpp", "docs/graph.md")
+GUIDED = ("CME212/SlotMap.hpp", "docs/graph.md")
 WORKFLOW = "course/starter/tests.yml"
 
 

@@ -23,12 +23,12 @@ GIT_MEMORY = 1 << 30       # bytes of address space
 GIT_OUTPUT = 16 << 20      # bytes of an answer
 PLAIN = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_+. -]*")   # a name
 TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
-# What a starter holds beside the sources: the kit has its own.
+# Folders of a starter that are not read: the kit has its own.
 NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools",
                    "web"}
 
-# What may be an attempt to be graded by other means than by good work. It is
-# shown, and never decides: most of it has honest uses.
+# Words that may show an attempt to cheat. The report lists them for a person to
+# read; they cost no points, as most of them have honest uses.
 SUSPECT = [
     (r"\basm\b|\b__asm", "writes assembler"),
     (r"\bsyscall\b|\bptrace\b|\bprctl\b|\bseccomp|\bmprotect\b",
@@ -45,11 +45,11 @@ SUSPECT = [
      r"|constructor|destructor|section|init_priority)\s*\(\s*\"?",
      "has attributes that change how a program is linked or checked"),
     (r"\bkit_missing\b|\bextern\s*\"C",
-     "adds to what is not its own"),
-    (r"##|%:%:|\b_Pragma\b|\bpush_macro\b", "makes words of parts"),
+     "declares names of the kit or of C"),
+    (r"##|%:%:|\b_Pragma\b|\bpush_macro\b", "pastes tokens"),
     (r"#\s*define\s+(private|protected|public|class|struct|return|if|while"
      r"|for|static|const|int|main|assert|static_cast)\b",
-     "defines a keyword anew"),
+     "redefines a keyword"),
 ]
 
 
@@ -85,7 +85,7 @@ def in_folder(folder):
             fd = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
             with open(fd, "rb") as file:
                 if not stat.S_ISREG(os.fstat(fd).st_mode):
-                    raise OSError("it is no file any more")
+                    raise OSError("it is not a regular file any more")
                 return file.read(LARGEST + 1)
         return do
 
@@ -111,7 +111,8 @@ def in_folder(folder):
                 continue
             status = entry.stat(follow_symlinks=False)
             problem = "" if stat.S_ISREG(status.st_mode) else (
-                "is a symbolic link" if entry.is_symlink() else "is no file")
+                "is a symbolic link" if entry.is_symlink() else
+                "is not a regular file")
             entries.append(Entry(path, problem, status.st_size,
                                  read(entry.path)))
     return entries
@@ -150,7 +151,7 @@ def git(folder, *words):
     if process.returncode:
         said = errors.decode("utf-8", "replace").strip().split("\n")[0]
         raise BadInput(f"{shown(folder)}: git says: "
-                       + (shown(said) or "nothing within its limits"))
+                       + (shown(said) or "nothing, within its limits"))
     return output
 
 
@@ -165,7 +166,7 @@ def limit_git():
 def tags(folder, tag):
     """The tags of a clone, in which `tag` is looked for."""
     if not TAG.fullmatch(tag):
-        raise BadInput(f"HW={shown(tag)}: no name of a tag")
+        raise BadInput(f"HW={shown(tag)} is not the name of a tag")
     if not os.path.isdir(folder):
         raise BadInput(f"{shown(folder)}: no such folder")
     return git(folder, "for-each-ref", "--format=%(refname:strip=2)",
@@ -209,7 +210,7 @@ def room_of(entries, tag, folder):
             return room
     if rooms:
         raise BadInput(
-            f"{shown(folder)}: Graph.hpp stands in several folders; name one "
+            f"{shown(folder)}: Graph.hpp is in several folders; name one "
             "of them: " + ", ".join(map(shown, rooms[:10])))
     raise BadInput(f"{shown(folder)}: holds no Graph.hpp")
 
@@ -220,7 +221,7 @@ def take(folder, tag=""):
     room = room_of(entries, tag or "hw2", folder)
     taken = Submission({})
     if room:
-        taken.notes.append(f"graded is the folder {shown(room)}")
+        taken.notes.append(f"the graded folder is {shown(room)}")
     total = 0
     for entry in sorted(entries, key=lambda entry: (entry.path.count("/"),
                                                     entry.path)):
@@ -230,13 +231,13 @@ def take(folder, tag=""):
             continue
         problem, text = entry.problem, b""
         if not all(map(PLAIN.fullmatch, name.split("/"))):
-            problem = problem or "has a name that is not taken"
+            problem = problem or "has an unusual name"
         elif not problem and entry.size > LARGEST:
             problem = f"is larger than {LARGEST >> 20} MB"
         elif not problem and total + entry.size > LARGEST_ALL:
-            problem = f"is beyond the {LARGEST_ALL >> 20} MB of all files"
+            problem = f"comes after the first {LARGEST_ALL >> 20} MB of files"
         elif not problem and len(taken.files) == MOST_FILES:
-            problem = f"is beyond the {MOST_FILES} files that are taken"
+            problem = f"comes after the first {MOST_FILES} files"
         if not problem:
             try:
                 text = entry.read()

@@ -23,8 +23,7 @@ def contents() -> dict[str, dict[str, str]]:
     """{what: files} of those that differ."""
     cases = kit_check.Cases()
     wrong = {case.name: case.files for case in
-             (*cases.wrong(kit_check.WRONG / "graph.toml"),
-              *cases.wrong(kit_check.WRONG / "step.toml"))}
+             (*cases.wrong("graph"), *cases.wrong("step"))}
     graph = {"Graph.hpp": cases.solution["Graph.hpp"]}
     return {"right": cases.solution, "starter": {
                 "Graph.hpp": cases.base("starter")["Graph.hpp"]},

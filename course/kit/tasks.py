@@ -83,7 +83,7 @@ class Course:
         return [t for t in self.tasks.values() if t.section == section]
 
 
-# What a table may hold: key -> (type, must it be there?)
+# The keys of a table: key -> (type, is it required?)
 COURSE_KEYS = {"title": (str, True), "tag": (str, True)}
 SECTION_KEYS = {"id": (str, True), "title": (str, True), "page": (str, False),
                 "dropped": (bool, False)}

@@ -137,7 +137,7 @@ class Take(Folder):
         self.put("hw2/Graph.hpp", "2")
         taken = submission.take(str(self.folder))
         self.assertEqual(taken.files, {"Graph.hpp": b"2"})
-        self.assertEqual(taken.notes, ["graded is the folder hw2/"])
+        self.assertEqual(taken.notes, ["the graded folder is hw2/"])
 
     def refused_several(self):
         taken = submission.take(str(self.folder))
@@ -164,9 +164,9 @@ class Take(Folder):
         taken = submission.take(str(self.folder))
         self.assertEqual(list(taken.files), ["Graph.hpp"])
         self.assertEqual(sorted(taken.notes), [
-            "\\x0a$(x).hpp has a name that is not taken: left out",
+            "\\x0a$(x).hpp has an unusual name: left out",
             "large.hpp is larger than 1 MB: left out",
-            "pipe.hpp is no file: left out",
+            "pipe.hpp is not a regular file: left out",
             "shadow.hpp is a symbolic link: left out"])
         (self.folder / "Graph.hpp").unlink()
         (self.folder / "Graph.hpp").symlink_to("shadow.hpp")
@@ -190,7 +190,7 @@ class Take(Folder):
         self.assertEqual(taken.files, {"Graph.hpp": b"tagged"})
         self.assertEqual(taken.notes, ["link.hpp is a symbolic link: left out"])
         self.refused("has no tag hw3; tags: hw2", "hw3")
-        self.refused("no name of a tag", "--upload-pack=x")
+        self.refused("is not the name of a tag", "--upload-pack=x")
         self.folder = self.put("inside/Graph.hpp").parent
         self.refused("git says: fatal: not a git repository", "hw2")
         self.assertFalse(bad.exists())

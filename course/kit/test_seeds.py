@@ -42,7 +42,7 @@ class Seeds(unittest.TestCase):
                 **seeds.kits_of(self.kit, FEW, self.top)}
         kits[PUBLIC].data = once.TESTS / "data"
         kits[PUBLIC].secret = bytes(32)
-        wrong = list(self.cases.wrong(kit_check.WRONG / "tables.toml"))
+        wrong = list(self.cases.wrong("tables"))
         self.assertEqual(len(wrong), 2)
         tests = {test: needs for test, needs in self.tests.items()
                  if test in wrong[0].lost | wrong[1].lost}

@@ -4,7 +4,7 @@
     course/pictures/draw.py [NAME...]      make course-pictures
 
 draws NAME.png, or all. Each is a row of panels, and each panel is the
-assignment's program as it is, or with one of MISTAKES put into a copy of it.
+assignment's program as it is, or a copy with a mistake of course/wrong.
 Needs what the window needs (make deps) and ffmpeg; no display.
 """
 import os
@@ -18,55 +18,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path.insert(0, str(HERE.parent / "kit"))
 import markers  # noqa: E402
+import mistakes  # noqa: E402
 
 HEIGHTS = {2: 416, 3: 330, 4: 300}  # [pixels], by the number of panels
 
-CLOTH, PROGRAM = "mass_spring.hpp", "mass_spring.cpp"
-MOVE = """    if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
-"""
-NEXT_LOOP = """  for (auto n : nodes(g))
-"""
-TWO_FORCES = "make_combined_force(GravityForce(), MassSpringForce()"
-SLIDE = "n.value().vel -= dot(n.value().vel, normal) * normal;"
+PROGRAM = "mass_spring.cpp"
 
-# What a student may write by mistake: in FILE, what stands there (the first
-# time), and what stands there then.
-MISTAKES = {
-    "sign": [(CLOTH, "s.K * (l - s.L)", "s.K * (s.L - l)")],
-    "one loop": [(CLOTH, MOVE + NEXT_LOOP, MOVE),
-                 (CLOTH, "(auto n : nodes(g))", "(auto n : nodes(g)) {"),
-                 (CLOTH, "* force(n, t);", "* force(n, t);\n  }")],
-    "old positions": [
-        (CLOTH, NEXT_LOOP, """  std::vector<Point> f;
-  for (auto n : nodes(g)) f.push_back(force(n, t));
-""" + NEXT_LOOP),
-        (CLOTH, "* force(n, t);", "* f[n.index()];")],
-    "first length": [(CLOTH, "norm(points[i] - points[j])",
-                      "norm(points[0] - points[1])")],
-    "no length": [(CLOTH, "{K, L}", "{K, 0 * L}")],
-    "one diagonal": [(CLOTH, "const auto [i, j] = springs[s];",
-                      """if (s / (springs.size() / 6) == 3) continue;
-    const auto [i, j] = springs[s];""")],
-    "no mass": [(CLOTH, "n.value().mass * Point(0, 0, -gravity_)",
-                 "Point(0, 0, -gravity_)")],
-    "gravity twice": [
-        (PROGRAM, TWO_FORCES, TWO_FORCES + ", GravityForce()")],
-    "damped": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(g)")],
-    "+ c v": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(g)"),
-              (CLOTH, "return -c_ *", "return c_ *")],
-    "c = 1": [(PROGRAM, TWO_FORCES, TWO_FORCES + ", DampingForce(1)")],
-    "pin by place": [
-        (CLOTH, "for (auto [n, place] : pins_)", "for (Node n : g.nodes())"),
-        (CLOTH, "if (g.has_node(n)) n.position() = place, n",
-         "if (is_corner(n.position())) n")],
-    "floor keeps v": [(CLOTH, ", n.value().vel.z = 0;", ";")],
-    "ball keeps v": [(CLOTH, SLIDE, "")],
-    "ball only": [(CLOTH, "for (const auto& c : constraints_) (*c)(g, t);",
-                   "(*constraints_.back())(g, t);")],
-}
-
-# A picture is a row of panels: a mistake or none, the stage, times [s], and
-# down to which z it looks [m]. Beside mistakes that look right stands what is.
+# A picture is a row of panels: a mistake or none, the stage, times [s], and the
+# lowest z in view [m]. Beside mistakes that look right is the correct cloth.
 PICTURES = {
     "3.2": [("", "problem1", [0.3, 0.6], -1.25)],
     "3.2-mistakes": [("sign", "problem1", [0.04], -0.45),
@@ -92,22 +51,13 @@ PICTURES = {
 }
 
 
-def with_mistake(text, file, mistake):
-    """The text of a file with the edits of a mistake."""
-    for name, old, new in MISTAKES.get(mistake, []):
-        if name == file:
-            if old not in text:
-                sys.exit(f"{mistake}: {file} does not say {old!r}")
-            text = text.replace(old, new, 1)
-    return text
-
-
 def compiled(folder, mistake, stage, source, *more):
     """A program from the sources with a mistake, in the folder: @a source, one
     of these or another file, with more flags. Returns the program's path."""
     for file in markers.SOURCES:
         text = markers.solution(markers.path_of(file).read_text(), file)
-        (folder / file).write_text(with_mistake(text, file, mistake))
+        (folder / file).write_text(
+            mistakes.with_picture(text, file, mistake))
     program = folder / "program"
     subprocess.run(
         [os.environ.get("CXX", "g++"), "-std=c++20", "-O1", "-pthread",

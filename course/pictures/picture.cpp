@@ -49,7 +49,7 @@ class Film {
     viewer_.add_faces(g, quads);
   }
 
-  // Of the thread that steps.
+  // Called by the thread that steps.
   bool wants_frame() const { return true; }
   template <typename G>
   void draw_graph(const G& g) {
@@ -74,7 +74,7 @@ class Film {
     return false;
   }
 
-  /** Of the main thread. */
+  /** Called by the main thread. */
   void event_loop() {
     std::unique_lock lock(mutex_);
     for (int number = 0;; ++number) {

@@ -66,7 +66,7 @@ static void compare_sum(Sum sum, int how_many) {
     }
 }
 
-/** What the submission makes of these; or a failure. */
+/** The submission's sum of these forces; or a failure. */
 template <typename... Fs>
 static auto sum_of(Fs&&... fs) {
   if constexpr (must_compile ||

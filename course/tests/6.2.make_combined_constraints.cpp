@@ -4,7 +4,7 @@
 
 namespace kit {
 
-/** What the submission makes of these, by either name; or Missing. */
+/** The submission's combination of these, by either name; or Missing. */
 template <typename... Cs>
 static auto constraints_of(Cs&&... cs) {
   if constexpr (must_compile || requires {

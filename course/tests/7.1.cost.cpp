@@ -21,7 +21,7 @@ static volatile double counted = 0;
 
 #ifndef KIT_UNCOUNTED
 extern "C" {
-// What the compiler calls in every basic block.
+// The compiler inserts a call of this into every basic block.
 KIT_NOT_COUNTED void __sanitizer_cov_trace_pc() {
   if (kit::counting) kit::counted = kit::counted + 1;
 }
@@ -131,7 +131,7 @@ static const char* name(Call call) {
   return names[call];
 }
 
-// What a removal returns is of another task.
+// Another task tests what a removal returns.
 template <typename G, typename... What>
 static void take_out_node(G& g, What... what) {
   if constexpr (must_compile || requires { g.remove_node(what...); })

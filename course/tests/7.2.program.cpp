@@ -20,7 +20,7 @@ struct Stage {
   double until = 1.2;  // [s]
 };
 
-/** What is looked at in all frames of a run. */
+/** Measures all frames of a run. */
 struct Watch {
   static constexpr double ball = 0.15, floor = -0.75;  // [m]
   static inline const Point center = Point(0.5, 0.5, -0.5);

@@ -16,7 +16,7 @@ static Trial a_trial() {
                   key++);
   });
 }
-/** What a wrong order or a large error often comes from. */
+/** A common cause of a wrong order or a large error. */
 static const char* seen_in(const TrialRun& run) {
   return run.late ? "; at some calls of the force the pins were not where they "
                     "are at its time: does the constraint get the time that "

@@ -1,5 +1,5 @@
 /** @file check.hpp
- * What a test of the kit is written with:
+ * The words of a test:
  *
  *   TASK("7.1.remove_node", name) { ... }    a test of the task of this id
  *   DID("ring of ", n, ", removed n3");      what was done; the latest is shown
@@ -22,7 +22,7 @@ namespace kit {
 struct Registered {
   Registered(const char* id, const char* name, void (*test)());
 };
-/** What a failed check throws. Without a `got` the text is "Expected: ...",
+/** Thrown by a failed check. Without a `got` the text is "Expected: ...",
  * with it "Expected ..., got ...". */
 struct Failure {
   std::string did, expected, got;

@@ -3,7 +3,7 @@
  * course. It brings the submission and check.hpp; a test of the cloth includes
  * this file and nothing else.
  *
- * What the assignment leaves open is accepted here: calls that are const or
+ * Accepts all that the assignment leaves open: calls that are const or
  * not, templates or not, that take a node by value or by reference; classes
  * that are made from nothing, from numbers, from points or from a graph; the
  * names in the values of nodes and edges; a base class of the forces or none;

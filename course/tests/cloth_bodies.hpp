@@ -10,7 +10,7 @@ struct Spring {
   int a, b;
   double K, L;  ///< [N/m], [m]
 };
-/** What a graph is filled with, and what it is compared with. (Plain arrays,
+/** The bodies that a graph is filled with and compared with. (Plain arrays,
  * as every class template that a test uses costs time to compile.) */
 struct Bodies {
   static constexpr int most = 32;

@@ -13,7 +13,7 @@ class Life {
   Life(const Life&) {}
   Life& operator=(const Life&) { return *this; }
   ~Life() { alive_ = 0; }
-  // What is gone is to be told in words: AddressSanitizer need not look.
+  // AddressSanitizer must not stop here, as fail() says it in words.
   __attribute__((no_sanitize("address"))) void look() const {
     if (alive_ != here)
       fail("what was combined to be kept as a copy",
@@ -25,7 +25,7 @@ class Life {
   volatile unsigned alive_ = here;
 };
 
-/** What a test's force or constraint does: a reference to a function object,
+/** The law of a test's force or constraint: a reference to a function object,
  * which has to outlive it. */
 struct ForceLaw {
   const void* f = nullptr;

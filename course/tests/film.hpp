@@ -1,5 +1,5 @@
 /** @file film.hpp
- * What a program gives to the viewer of the tests, headless/CME212. */
+ * Records what a program gives to the viewer of the tests, headless/CME212. */
 #ifndef KIT_FILM_HPP
 #define KIT_FILM_HPP
 #include <condition_variable>
@@ -9,7 +9,7 @@
 
 namespace kit {
 
-/** What a program gave to the viewer. */
+/** All frames that a program gave to the viewer. */
 struct Film {
   struct Body {
     Point x, v;

@@ -3,7 +3,7 @@
  * submission's graph and check.hpp; a test of the graph includes this file and
  * nothing else.
  *
- * What the assignment leaves open is accepted here: Graph<V, E> or Graph<V>;
+ * Accepts all that the assignment leaves open: Graph<V, E> or Graph<V>;
  * any size_type; members const or not; add_edge() with a value or without;
  * iterators with == or with != alone. So a test calls these functions, not the
  * members of the graph, where they differ.
@@ -78,7 +78,7 @@ Point position_of(N n) {
     return n.position();
 }
 
-/** Of a Node or an Edge of TestGraph: it has value(). */
+/** A Node or an Edge of TestGraph has value(). */
 template <typename T>
 concept HasValue = requires(T x) {
   { x.value() } -> std::convertible_to<double>;
@@ -170,7 +170,7 @@ bool remove_edge(G& g, E e) {
   return false;
 }
 
-/** What a removal returned: how many went. */
+/** Check what a removal returned: the number removed. */
 inline void check_result(bool removed, int expected) {
   check_equal(int(removed), expected, "the result");
 }
@@ -283,7 +283,7 @@ struct Subject : Beside {
     return edge_seen_from(v, w);
   }
 
-  // What a test does to the graph, it does to the model, too.
+  // Each change is made to the graph and to the model.
   void add_node(int v) {
     auto n = kit::add_node(g, place(v), value_of_node(v));
     CHECK_EQUAL(n.index(), m.nodes.size());

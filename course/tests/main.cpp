@@ -6,8 +6,8 @@
  *   ./tests 3.1.position    this task, in this process: for a debugger
  *   SEED=7 ./tests          with other numbers in the tests of the cloth
  *
- * What a failure prints: the task, the sentence of the specification that does
- * not hold, what was done, what was expected, and what to try. */
+ * A failure prints the task, the sentence of the specification that does not
+ * hold, what was done, what was expected, and what to try. */
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -46,11 +46,11 @@ std::vector<Test>& tests() {
   return all;
 }
 
-// What a child ends with, and no sanitizer and no exit() by accident.
+// Exit codes of a child; no sanitizer and no exit() by accident has them.
 const int has_passed = 90, has_failed = 91;
 const unsigned seconds = 20;  // for a task; all of ours take less than 1
 
-/** What was done last: where a parent sees what a crashed child wrote. */
+/** The last DID(), in memory that the parent can read after a crash. */
 const std::size_t longest_did = 400;
 char* last_did() {
   static char* text =

@@ -1,6 +1,6 @@
 /** @file model.hpp
- * What a graph should hold, as plain data beside it; the shapes that tests
- * start from; and how a difference is put into words. Defined in kit.cpp. */
+ * The model of a graph: the data that it should hold; the shapes that tests
+ * start from; and the words for a difference. Defined in kit.cpp. */
 #ifndef KIT_MODEL_HPP
 #define KIT_MODEL_HPP
 #include "check.hpp"

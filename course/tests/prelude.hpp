@@ -1,5 +1,5 @@
 /** @file prelude.hpp
- * What a submission may take for granted: the standard headers and those that
+ * Headers that a submission need not include: the standard ones and those that
  * the course hands out. Its own headers need not include what they use. A
  * grader compiles this file once and puts it before everything (-include). */
 #ifndef KIT_PRELUDE_HPP

@@ -1,5 +1,5 @@
 /** @file values.hpp
- * What the values of nodes and edges hold, by the names that programs give it:
+ * The members of the values of nodes and edges, by the names in programs:
  * mass and velocity of a node, K and L of a spring. A function gives the
  * address of the number in a value, or an absent one (a null void*). */
 #ifndef KIT_VALUES_HPP

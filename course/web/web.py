@@ -132,20 +132,20 @@ def write_page(out: str, stage: str) -> int:
 # ------------------------------------------------------------------- Figures
 
 def slug(mistake: str) -> str:
-    """The name of the module with a mistake of draw.py, or with none."""
+    """The name of the module with a picture's mistake, or with none."""
     return mistake.replace(" ", "-").replace("+-", "plus-").replace(
         "=-", "") or "right"
 
 
 def write_figures(folder_name: str, names: list[str]) -> bool:
     root = ROOM.parents[1]
-    sys.path[:0] = [str(root / "course/pictures"), str(root / "course/kit")]
-    import draw
+    sys.path[:0] = [str(root / "course/kit")]
     import markers
-    mistakes = {slug(name): name for name in ["", *draw.MISTAKES]}
-    if unknown := set(names) - set(mistakes):
+    import mistakes
+    known = {slug(name): name for name in ["", *mistakes.pictured()]}
+    if unknown := set(names) - set(known):
         sys.exit(f"there is no {', '.join(sorted(unknown))}; there are "
-                 + ", ".join(mistakes))
+                 + ", ".join(known))
     out = pathlib.Path(folder_name)
     out.mkdir(parents=True, exist_ok=True)
     (out / "figure.js").write_text(script())
@@ -154,12 +154,11 @@ def write_figures(folder_name: str, names: list[str]) -> bool:
          root / "CME212/viewer/Faces.hpp", ROOM / "web.py"])) + compiler()
 
     def write(name):
-        mistake = mistakes[name]
-        texts = {file: draw.with_mistake(
+        texts = {file: mistakes.with_picture(
             markers.solution(markers.path_of(file).read_text(), file), file,
-            mistake) for file in markers.SOURCES}
-        texts["cloth.cpp"] = draw.with_mistake(
-            (ROOM / "cloth.cpp").read_text(), draw.PROGRAM, mistake)
+            known[name]) for file in markers.SOURCES}
+        texts["cloth.cpp"] = mistakes.with_picture(
+            (ROOM / "cloth.cpp").read_text(), "mass_spring.cpp", known[name])
         mark = "// " + hashlib.sha256(
             (common + "".join(texts.values())).encode()).hexdigest() + "\n"
         file = out / f"{name}.js"
@@ -177,7 +176,7 @@ def write_figures(folder_name: str, names: list[str]) -> bool:
         return True
 
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        return not all(pool.map(write, names or mistakes))
+        return not all(pool.map(write, names or known))
 
 
 def main(arguments: list[str]) -> int:

@@ -14,38 +14,13 @@ sys.path[:0] = [str(ROOT / "course" / room)
                 for room in ("pictures", "kit", "web")]
 import draw  # noqa: E402
 import markers  # noqa: E402
+import mistakes  # noqa: E402
 import web  # noqa: E402
 
 RIGHT = ("", "damped")  # what draw.py calls correct
 LOOP = 4  # [s], how long a figure takes until it starts again
 LINES = 9  # of code beside a figure
-# The words below the picture of a mistake.
-SAYS = {
-    "sign": "A stretched spring pushes its ends apart: near the corners nodes "
-            "fly off.",
-    "one loop": "A spring pulls one end before the other end has moved: it "
-                "looks right, and then it bursts.",
-    "old positions": "The force comes a step too late: neighbours swing "
-                     "farther in each step.",
-    "first length": "A diagonal as short as a side pulls from the start: the "
-                    "cloth crumples.",
-    "no length": "Every spring pulls its ends together: the cloth shrinks to "
-                 "a rope.",
-    "one diagonal": "Nothing holds the other diagonal: the cloth twists.",
-    "no mass": "A node of 1/625 kg gets the weight of 1 kg: it falls with "
-               "625 g, and the corners are torn out.",
-    "+ c v": "The force pushes wherever the node goes: each swing is higher.",
-    "c = 1": "The drag is 625 times too large: the cloth sinks as in honey.",
-    "pin by place": "After one step no node is at the corner's place any more: "
-                    "nothing holds the cloth.",
-    "ball keeps v": "Nodes on the ball keep falling into it: they gain speed "
-                    "in each step, until they fly off.",
-    "floor keeps v": "Nodes on the floor gain speed downwards in each step: "
-                     "they stick to it.",
-    "ball only": "The pins and the floor are not applied: the cloth falls over "
-                 "the ball and through the floor.",
-}
-# Of explode.md: the code of 3.2 with its step [s] and speed, and the highest
+# explode.md: the code of 3.2 with its step [s] and speed, and the highest
 # frequency [1/s] that the springs can have.
 EXPLOSIONS = {
     "mass": {"chain": 2, "dt": 0.1, "highest": 200 ** 0.5},
@@ -99,7 +74,7 @@ def diff(old: str, new: str) -> list[str]:
     out = []
     for file in markers.SOURCES:
         text = markers.solution(markers.path_of(file).read_text(), file)
-        before, after = (draw.with_mistake(text, file, mistake).splitlines()
+        before, after = (mistakes.with_picture(text, file, mistake).splitlines()
                          for mistake in (old, new))
         lines = difflib.unified_diff(before, after, n=1, lineterm="")
         out += [line for line in list(lines)[2:]
@@ -162,7 +137,7 @@ def write(built: pathlib.Path, out: pathlib.Path) -> None:
     options = {scene["name"]: {
         "wasm": [web.slug(c) for c in scene["cloths"]],
         "names": [title(c, scene) for c in scene["cloths"]],
-        "says": [SAYS.get(c, "") for c in scene["cloths"]],
+        "says": [mistakes.shows(c) for c in scene["cloths"]],
         "stage": scene["stage"], "times": scene["times"],
         "beside": True} for scene in SCENES.values()} | EXPLOSIONS
     (out / "scenes.js").write_text(

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 
 namespace lab::bench {
@@ -72,7 +73,7 @@ inline void build(Cloth& g, unsigned side, Kind kind) {
   std::vector<Node> nodes(g.node_begin(), g.node_end());
   std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));
   for (std::size_t k = 0; k < nodes.size() / 2; ++k) g.remove_node(nodes[k]);
-  if (kind == Kind::reindexed) g.reindex();
+  if (kind == Kind::reindexed) arrays(g).reindex();
 }
 
 /** One cloth of each kind for all figures, its nodes moved at random. */
@@ -102,13 +103,13 @@ struct Flat {
   std::vector<unsigned> row = {0}, neighbor;
 
   explicit Flat(const Cloth& g) {
-    std::vector<unsigned> place(g.node_slots());
+    std::vector<unsigned> place(arrays(g).node_slots());
     unsigned count = 0;
-    for (unsigned id = 0; id < g.node_slots(); ++id)
-      if (g.node_in_use(id)) place[id] = count++;
-    for (unsigned id = 0; id < g.node_slots(); ++id) {
-      if (!g.node_in_use(id)) continue;
-      const Node n = g.node_with_id(id);
+    for (unsigned id = 0; id < arrays(g).node_slots(); ++id)
+      if (arrays(g).node_in_use(id)) place[id] = count++;
+    for (unsigned id = 0; id < arrays(g).node_slots(); ++id) {
+      if (!arrays(g).node_in_use(id)) continue;
+      const Node n = arrays(g).node_with_id(id);
       x.push_back({n.position().x, n.position().y, n.position().z});
       mass.push_back(n.value().mass);
       for (Edge e : n.edges()) {

@@ -18,6 +18,7 @@
 #include <string>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -83,10 +84,10 @@ void compare(const Problem& p, double K) {
     return end_of(s);
   };
   const End start = move(0, 0.2);
-  const auto node = s.cloth.node_values();
+  const auto node = arrays(s.cloth).node_values();
   const std::vector<NodeData> values(node.begin(), node.end());
   auto end_by = [&](Method& method) {
-    std::ranges::copy(start.positions, s.cloth.positions().begin());
+    std::ranges::copy(start.positions, arrays(s.cloth).positions().begin());
     std::ranges::copy(values, node.begin());
     measured(method, s);
     return end_of(s);

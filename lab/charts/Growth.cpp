@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lab/charts/Limits.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 namespace lab {
@@ -30,7 +31,7 @@ Problem stretched_sheet(unsigned side, MeshSprings::Kind mesh, double stretch,
           .build =
               [=](Cloth& g) {
                 build_cloth(g, grid_points(side), grid_quads(side), mesh);
-                for (Point& x : g.positions()) x *= stretch;
+                for (Point& x : arrays(g).positions()) x *= stretch;
               },
           .constraint = rim};
 }
@@ -38,16 +39,16 @@ Problem stretched_sheet(unsigned side, MeshSprings::Kind mesh, double stretch,
 Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
               int every, double enough) {
   Start s(p);
-  const std::vector<Point> rest(s.cloth.positions().begin(),
-                                s.cloth.positions().end());
+  const std::vector<Point> rest(arrays(s.cloth).positions().begin(),
+                                arrays(s.cloth).positions().end());
   std::vector<double> scale;
   std::vector<spectrum_detail::Spring> springs;
   spectrum_detail::find_scales(s.cloth, s.constraint, scale);
   spectrum_detail::find_springs(s.cloth, s.force, springs);
   // Negative stiffness of compressed springs is left out of the size.
   for (auto& spring : springs) spring.B.across = std::max(0.0, spring.B.across);
-  auto x = s.cloth.positions();
-  auto node = s.cloth.node_values();
+  auto x = arrays(s.cloth).positions();
+  auto node = arrays(s.cloth).node_values();
   auto size = [&] {
     double sum = 2 * kinetic_energy(s.cloth);
     for (const auto& spring : springs) {

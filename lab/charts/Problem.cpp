@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Pefrl.hpp"
 #include "lab/methods/Srkn11b.hpp"
 #include "lab/methods/Verlet.hpp"
@@ -37,7 +38,7 @@ double Start::energy() const {
 }
 
 End end_of(const Start& s) {
-  auto x = s.cloth.positions();
+  auto x = arrays(s.cloth).positions();
   return {{x.begin(), x.end()}, center_of_mass(s.cloth), s.energy()};
 }
 
@@ -102,7 +103,7 @@ Reference reference(const Problem& p, double fineness) {
   if (p.exact) {
     auto x = p.exact(p.t_end);
     r.end.energy = end_of(start).energy;
-    std::copy(x.begin(), x.end(), start.cloth.positions().begin());
+    std::copy(x.begin(), x.end(), arrays(start.cloth).positions().begin());
     r.end.center = center_of_mass(start.cloth);
     r.end.positions = std::move(x);
     r.made = "exact";

@@ -5,6 +5,7 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/FlatCloth.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 
 namespace lab {
@@ -32,9 +33,9 @@ template <typename Use>
 void PinnedNodes::each_of_part(const Cloth& g, unsigned first, unsigned last,
                                Use use) const {
   // Nodes of a graph are ordered by id; removed ones can't tell theirs.
-  while (first < last && !g.node_in_use(first)) ++first;
+  while (first < last && !arrays(g).node_in_use(first)) ++first;
   if (first == last) return;
-  auto pin = std::ranges::lower_bound(pins_, g.node_with_id(first), {},
+  auto pin = std::ranges::lower_bound(pins_, arrays(g).node_with_id(first), {},
                                       &PinConstraint::Pin::node);
   for (; pin != pins_.end(); ++pin) {
     if (!g.has_node(pin->node)) continue;
@@ -164,7 +165,8 @@ class Tear final : public Round<Removing> {
   explicit Tear(const TearConstraint& c) : Round(c.ball()) {}
   void operator()(Cloth& g, double /*t*/) const override {
     for_each_violating(
-        g, 0, g.node_slots(), [this](const Point& p) { return ball_.holds(p); },
+        g, 0, arrays(g).node_slots(),
+        [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
           moment_ += n.value().mass * n.position().z;
           g.remove_node(n);
@@ -180,10 +182,10 @@ class Called final : public Removing {
  public:
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
-    const auto version = g.version();
+    const auto version = arrays(g).version();
     const double before = moment_of(g);
     (*c_)(g, t);
-    if (g.version() != version) moment_ += before - moment_of(g);
+    if (arrays(g).version() != version) moment_ += before - moment_of(g);
   }
   bool is_at_rest(double /*t*/) const override { return true; }
 
@@ -222,9 +224,9 @@ void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
 }
 
 void ConstraintPlan::operator()(Cloth& g, double t) const {
-  const auto version = g.version();
+  const auto version = arrays(g).version();
   for (const auto& term : terms_) (*term)(g, t);
-  if (g.version() != version) restore_order(g);
+  if (arrays(g).version() != version) restore_order(g);
 }
 
 bool ConstraintPlan::nodewise() const {
@@ -243,15 +245,15 @@ void ConstraintPlan::project_flat(FlatCloth& c, Cloth& g, double t,
 }
 
 void ConstraintPlan::apply_flat(FlatCloth& c, Cloth& g, double t) const {
-  const auto version = g.version();
+  const auto version = arrays(g).version();
   for (const auto& term : terms_)
     if (term->nodewise())
       term->project_flat(c, g, t, 0, c.slots());
     else
       term->apply_flat(c, g, t);
-  if (g.version() == version) return;
+  if (arrays(g).version() == version) return;
   restore_order(g);
-  if (c.version() != g.version()) c.write(g), c.take(g);
+  if (c.version() != arrays(g).version()) c.write(g), c.take(g);
 }
 
 bool ConstraintPlan::project_alone(FlatCloth& c, Cloth& g, double t,

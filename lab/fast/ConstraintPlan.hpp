@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "lab/Archive.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Recognise.hpp"
 #include "mass_spring.hpp"
 
@@ -134,7 +135,7 @@ class SweptConstraint : public ZeroConstraint {
 class NodewiseConstraint : public SweptConstraint {
  public:
   void operator()(Cloth& g, double t) const final {
-    project(g, t, 0, g.node_slots());
+    project(g, t, 0, arrays(g).node_slots());
   }
   bool nodewise() const override { return true; }
   void project(Cloth& g, double t, unsigned first,
@@ -148,7 +149,8 @@ template <typename Violates, typename Use>
 void for_each_violating(Cloth& g, unsigned first, unsigned last,
                         Violates violates, Use use) {
   for (unsigned i = first; i < last; ++i)
-    if (violates(g.positions()[i]) && g.node_in_use(i)) use(g.node_with_id(i));
+    if (violates(arrays(g).positions()[i]) && arrays(g).node_in_use(i))
+      use(arrays(g).node_with_id(i));
 }
 
 /** The first hit of @a ball: as SweptConstraint::first_hit(). */
@@ -335,7 +337,7 @@ class WatchedConstraint final : public ForwardingConstraint {
   mutable Stopped first_ = {};
 
   void remember(const Cloth& g) const {
-    const auto x = g.positions();
+    const auto x = arrays(g).positions();
     before_.assign(x.begin(), x.end());
   }
 };

@@ -1,20 +1,21 @@
 #include "lab/fast/FlatCloth.hpp"
 
 #include "lab/fast/FlatKernels.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
 void FlatCloth::take(const Cloth& g, int multiplicity, const Drag& c) {
   multiplicity_ = multiplicity, drag_ = &c;
-  if (version_ != g.version()) lay_out(g);
+  if (version_ != arrays(g).version()) lay_out(g);
   read_nodes(g, 0, slots_);
   if (!c.none())
     for (unsigned i = 0; i < slots_; ++i) nodes_[DragC][i] = c[i];
   lanes::run<kernels::ReadSprings>(std::span<const Run>(runs_),
-                                   g.edge_values().data(), multiplicity,
+                                   arrays(g).edge_values().data(), multiplicity,
                                    springs_[0], springs_[1]);
   if (!rest_) return;
-  const EdgeData* edge = g.edge_values().data();
+  const EdgeData* edge = arrays(g).edge_values().data();
   double *K = springs_[0] + rest_first_, *L = springs_[1] + rest_first_;
   const unsigned* id = rest_->edges(0);
   const std::size_t count = rest_->num_rows() * lanes::width;
@@ -25,24 +26,24 @@ void FlatCloth::take(const Cloth& g, int multiplicity, const Drag& c) {
 }
 
 void FlatCloth::read_nodes(const Cloth& g, unsigned first, unsigned last) {
-  lanes::run<kernels::ReadNodes>(&nodes_, g.positions().data(),
-                                 g.node_values().data(), first, last);
+  lanes::run<kernels::ReadNodes>(&nodes_, arrays(g).positions().data(),
+                                 arrays(g).node_values().data(), first, last);
   if (slots_ == g.num_nodes()) return;
   for (unsigned i = first; i < last; ++i)
-    if (!g.node_in_use(i)) nodes_[PerMass][i] = 0;
+    if (!arrays(g).node_in_use(i)) nodes_[PerMass][i] = 0;
 }
 
 void FlatCloth::write(Cloth& g, unsigned first, unsigned last) const {
   const bool all = slots_ == g.num_nodes();
   const auto write_nodes = [&](unsigned from, unsigned to) {
-    lanes::run<kernels::WriteNodes>(&nodes_, g.positions().data(),
-                                    g.node_values().data(), from, to);
+    lanes::run<kernels::WriteNodes>(&nodes_, arrays(g).positions().data(),
+                                    arrays(g).node_values().data(), from, to);
   };
   if (all) return write_nodes(first, last);
   // The nodes between two that were removed, at once.
   for (unsigned i = first; i < last; ++i) {
     const unsigned from = i;
-    while (i < last && g.node_in_use(i)) ++i;
+    while (i < last && arrays(g).node_in_use(i)) ++i;
     if (from < i) write_nodes(from, i);
   }
 }
@@ -75,7 +76,7 @@ void FlatCloth::restore(const std::vector<double>& copy) {
 }
 
 void FlatCloth::lay_out(const Cloth& g) {
-  slots_ = g.node_slots(), reach_ = 0;
+  slots_ = arrays(g).node_slots(), reach_ = 0;
   rows_.clear(), runs_.clear(), rest_.reset();
   std::vector<char> is_row;
   find_rows(g, is_row);
@@ -87,9 +88,9 @@ void FlatCloth::lay_out(const Cloth& g) {
     first[rows_[r].offset] = rows_[r].first = r * stride;
   rest_first_ = rows_.size() * stride;
   std::size_t left = 0;
-  const auto ends = g.edge_ends();
-  for (unsigned e = 0; e < g.edge_slots(); ++e) {
-    if (!g.edge_in_use(e)) continue;
+  const auto ends = arrays(g).edge_ends();
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
+    if (!arrays(g).edge_in_use(e)) continue;
     const auto [i, j] = std::minmax(ends[e][0], ends[e][1]);
     reach_ = std::max(reach_, j - i);
     if (j - i < is_row.size() && is_row[j - i])
@@ -106,16 +107,16 @@ void FlatCloth::lay_out(const Cloth& g) {
                                        std::size_t(lanes::width));
   // A row's springs reach beyond the last node where they do nothing.
   nodes_.resize(columns_, whole + (rows_.empty() ? 0 : rows_.back().offset));
-  version_ = g.version();
+  version_ = arrays(g).version();
 }
 
 /** The rows: offsets that a third of the nodes has a spring at. Evaluated once
  * for each node, these take less time than gathered from both ends. */
 void FlatCloth::find_rows(const Cloth& g, std::vector<char>& is_row) {
   std::vector<unsigned> count(std::min(slots_, longest_row + 1));
-  const auto ends = g.edge_ends();
-  for (unsigned e = 0; e < g.edge_slots(); ++e) {
-    if (!g.edge_in_use(e)) continue;
+  const auto ends = arrays(g).edge_ends();
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
+    if (!arrays(g).edge_in_use(e)) continue;
     const auto [i, j] = std::minmax(ends[e][0], ends[e][1]);
     if (j - i < count.size()) ++count[j - i];
   }

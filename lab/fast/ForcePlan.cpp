@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 #include <utility>
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -14,17 +15,17 @@ void add_calls(const Part& part, const ZeroForce& force, double t,
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   for (unsigned i = part.first; i < part.last; ++i)
-    if (part.g.node_in_use(i))
-      f[i - part.first] += force(part.g.node_with_id(i), t);
+    if (arrays(part.g).node_in_use(i))
+      f[i - part.first] += force(arrays(part.g).node_with_id(i), t);
 }
 
 /** One call an edge, in the order of their ids. */
 void add_spring_stiffness(const Cloth& g, const StiffnessVisitor& use) {
-  const auto x = g.positions();
-  for (unsigned e = 0; e < g.edge_slots(); ++e) {
-    if (!g.edge_in_use(e)) continue;
-    const auto [i, j] = g.edge_ends()[e];
-    use(i, j, spring_stiffness(x[j] - x[i], g.edge_values()[e]));
+  const auto x = arrays(g).positions();
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
+    if (!arrays(g).edge_in_use(e)) continue;
+    const auto [i, j] = arrays(g).edge_ends()[e];
+    use(i, j, spring_stiffness(x[j] - x[i], arrays(g).edge_values()[e]));
   }
 }
 

@@ -14,6 +14,7 @@
 
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Recognise.hpp"
 
 namespace lab {
@@ -38,8 +39,8 @@ class SweptForce : public ZeroForce {
    * Complexity: O(nodes + edges at them) */
   virtual void add_to(const Part& part, double t, std::span<Point> f) const {
     for (unsigned i = part.first; i < part.last; ++i)
-      if (part.g.node_in_use(i))
-        f[i - part.first] += (*this)(part.g.node_with_id(i), t);
+      if (arrays(part.g).node_in_use(i))
+        f[i - part.first] += (*this)(arrays(part.g).node_with_id(i), t);
   }
   /** False if it is no force on any node: then add_to() need not be called. */
   virtual bool acts() const { return true; }

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <numeric>
 #include <utility>
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -142,16 +143,17 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
     }
   }
   std::erase(edge_id, none);
-  g.reindex_nodes(node_id);
-  g.reindex_edges(edge_id);
+  arrays(g).reindex_nodes(node_id);
+  arrays(g).reindex_edges(edge_id);
 }
 
 void restore_order(Cloth& g) {
-  if (g.node_slots() < 4096 || g.num_nodes() == g.node_slots()) return;
+  if (arrays(g).node_slots() < 4096 || g.num_nodes() == arrays(g).node_slots())
+    return;
   unsigned descents = 0;  // indices with a smaller id than the index before
   for (unsigned i = 1; i < g.num_nodes(); ++i)
     descents += g.node(i) < g.node(i - 1);
-  if (descents > g.node_slots() / 256) g.reindex();
+  if (descents > arrays(g).node_slots() / 256) arrays(g).reindex();
 }
 
 }  // namespace lab

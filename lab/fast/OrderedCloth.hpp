@@ -18,10 +18,10 @@ void build_ordered_cloth(Cloth& g, std::span<const Point> points,
                          std::span<const Quad> quads, MeshSprings::Kind mesh,
                          double K = 100);
 
-/** At the end of a step: Graph::reindex() if removals put so many nodes of a
- * large cloth out of the order of memory that loops over nodes() become slow.
- * Complexity: O(1) before the first removal, then O(num_nodes()); in all at
- *       most 256 times reindex() until no node is left */
+/** At the end of a step: GraphArrays::reindex() if removals put so many nodes
+ * of a large cloth out of the order of memory that loops over nodes() become
+ * slow. Complexity: O(1) before the first removal, then O(num_nodes()); in all
+ * at most 256 times reindex() until no node is left */
 void restore_order(Cloth& g);
 
 // ---- How the order is found

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Graph.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -30,9 +31,10 @@ class Stencil {
   /** The stencil of @a g, without the edges between nodes of ids i and j of
    * which @a skip(i, j) is true.  O(node_slots() + edges) */
   template <typename G, typename Skip>
-  Stencil(const G& g, Skip skip) : slots_(g.node_slots()) {
+  Stencil(const G& g, Skip skip) : slots_(arrays(g).node_slots()) {
     row_begin_.reserve(num_blocks() + 1);
-    std::array<std::vector<typename G::Neighbor>, W> left;  // without a row yet
+    std::array<std::vector<typename GraphArrays<const G>::Neighbor>, W>
+        left;  // without a row yet
     for (size_type b = 0; b < num_blocks(); ++b) {
       row_begin_.push_back(num_rows());
       add_block(g, b * W, skip, left);
@@ -66,13 +68,15 @@ class Stencil {
   std::vector<size_type> neighbor_, edge_;  // W for each row
 
   template <typename G, typename Skip>
-  void add_block(const G& g, size_type first, Skip skip,
-                 std::array<std::vector<typename G::Neighbor>, W>& left) {
+  void add_block(
+      const G& g, size_type first, Skip skip,
+      std::array<std::vector<typename GraphArrays<const G>::Neighbor>, W>&
+          left) {
     std::size_t most = 0;
     for (size_type k = 0; k < W; ++k) {
       left[k].clear();
       if (first + k >= slots_) continue;
-      for (const auto& h : g.neighbors(first + k))
+      for (const auto& h : arrays(g).neighbors(first + k))
         if (!skip(h.node, first + k)) left[k].push_back(h);
     }
     for (std::size_t m = 0; m < left[0].size();)
@@ -81,9 +85,9 @@ class Stencil {
     for (std::size_t m = 0; m < most; ++m) {
       offset_.push_back(0);
       for (size_type k = 0; k < W; ++k)
-        add(m < left[k].size()
-                ? left[k][m]
-                : typename G::Neighbor{std::min(first + k, slots_ - 1), none});
+        add(m < left[k].size() ? left[k][m]
+                               : typename GraphArrays<const G>::Neighbor{
+                                     std::min(first + k, slots_ - 1), none});
     }
   }
 

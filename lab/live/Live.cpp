@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "lab/Interrupt.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
@@ -58,8 +59,8 @@ Distances distances(const Cloth& a, const Cloth& b) {
   double most = 0, sum = 0;
   unsigned count = 0;
   for (Node n : a.nodes()) {
-    if (!b.node_in_use(n.id())) continue;
-    const double square = normSq(n.position() - b.positions()[n.id()]);
+    if (!arrays(b).node_in_use(n.id())) continue;
+    const double square = normSq(n.position() - arrays(b).positions()[n.id()]);
     most = std::max(most, square), sum += square, ++count;
   }
   return {std::sqrt(most), count > 0 ? std::sqrt(sum / count) : 0};
@@ -272,7 +273,7 @@ Readings Live::readings(bool sharp) {
   r.nodes = g.num_nodes(), r.edges = g.num_edges();
   r.torn_nodes = start_nodes_ - r.nodes, r.torn_edges = start_edges_ - r.edges;
   r.touching = count_touching(model_, g, r.time);
-  r.grabbed = scene().hand() && g.node_in_use(scene().hand()->node());
+  r.grabbed = scene().hand() && arrays(g).node_in_use(scene().hand()->node());
   if (!rival_) return r;
   const Cloth &other = rival()->cloth(), &right = reference()->cloth();
   r.comparison = {.rival = rival_->readings(sharp),

@@ -1,5 +1,7 @@
 #include "lab/methods/FastMassSpring.hpp"
 
+#include "lab/fast/GraphArrays.hpp"
+
 namespace lab {
 
 double FastMassSpring::step(Cloth& g, double t, double dt,
@@ -18,8 +20,9 @@ double FastMassSpring::step(Cloth& g, double t, double dt,
     for (unsigned i = 0; i < f.size(); ++i) stage_.w[i] += change_[i];
     stage_.move(g, dt);
   }
-  auto node = g.node_values();
-  for (unsigned i = 0; i < g.node_slots(); ++i) node[i].vel = stage_.w[i];
+  auto node = arrays(g).node_values();
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+    node[i].vel = stage_.w[i];
   return implicit_detail::finish(g, t + dt, constraint);
 }
 

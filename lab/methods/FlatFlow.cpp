@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 
 namespace lab {
@@ -57,7 +58,7 @@ void FlatFlow::prepare() {
 }
 
 void FlatFlow::find_drag() {
-  const NodeData* node = g_->node_values().data();
+  const NodeData* node = arrays(*g_).node_values().data();
   const Drag& c = force_->drag();
   for (unsigned i = 0; i < cloth_.slots(); ++i) {
     const double gamma = c[i] / node[i].mass;
@@ -103,7 +104,7 @@ void FlatFlow::prepare(Level& level, const FlatStage& stage) {
 }
 
 std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
-  const auto version = g_->version();
+  const auto version = arrays(*g_).version();
   if (may_overlap(stages)) {
     if (levels_.size() < stages.size()) levels_.resize(stages.size());
     for (std::size_t k = 0; k < stages.size(); ++k)
@@ -118,7 +119,7 @@ std::size_t FlatFlow::run(std::span<const FlatStage> stages) {
   for (std::size_t k = 0; k < stages.size(); ++k) {
     prepare(levels_[0], stages[k]);
     run_alone(levels_[0]);
-    if (stages[k].last && g_->version() != version) return k + 1;
+    if (stages[k].last && arrays(*g_).version() != version) return k + 1;
   }
   return stages.size();
 }

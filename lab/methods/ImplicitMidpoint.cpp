@@ -1,5 +1,7 @@
 #include "lab/methods/ImplicitMidpoint.hpp"
 
+#include "lab/fast/GraphArrays.hpp"
+
 namespace lab {
 
 double ImplicitMidpoint::step(Cloth& g, double t, double dt,
@@ -8,9 +10,9 @@ double ImplicitMidpoint::step(Cloth& g, double t, double dt,
   stage_.begin(info.name, t, dt, g, constraint);
   stage_.hold(g, t + dt / 2, constraint);
   stage_.solve_newton(g, t + dt / 2, dt / 2, force);
-  auto x = g.positions();
-  auto node = g.node_values();
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
+  auto x = arrays(g).positions();
+  auto node = arrays(g).node_values();
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i) {
     if (stage_.fixed(i)) continue;
     x[i] = stage_.p[i] + dt * stage_.w[i];
     node[i].vel = 2 * stage_.w[i] - stage_.q[i];

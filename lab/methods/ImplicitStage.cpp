@@ -7,6 +7,7 @@
 #include <string>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab::implicit_detail {
 
@@ -64,8 +65,9 @@ void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
 
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed) {
-  fixed.assign(g.node_slots(), false);
-  for (unsigned i = 0; i < g.node_slots(); ++i) fixed[i] = !g.node_in_use(i);
+  fixed.assign(arrays(g).node_slots(), false);
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+    fixed[i] = !arrays(g).node_in_use(i);
   constraint.each_held(g, [&fixed](Node n) { fixed[n.id()] = true; });
 }
 
@@ -91,10 +93,10 @@ void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
   tight_ = false;
   find_fixed(g, constraint, fixed_);
   constraint.place_held_at_rest(g, t);
-  const unsigned n = g.node_slots();
-  p.assign(g.positions().begin(), g.positions().end());
+  const unsigned n = arrays(g).node_slots();
+  p.assign(arrays(g).positions().begin(), arrays(g).positions().end());
   q.resize(n);
-  for (unsigned i = 0; i < n; ++i) q[i] = g.node_values()[i].vel;
+  for (unsigned i = 0; i < n; ++i) q[i] = arrays(g).node_values()[i].vel;
   guess = w = q;
   for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
     a->resize(n);
@@ -165,7 +167,7 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
 /** RMS(D^-1 M from)/s [m/s^2], for @a from in [m/s]. */
 double ImplicitStage::filtered(const Cloth& g, double s,
                                const std::vector<Point>& from) {
-  auto node = g.node_values();
+  auto node = arrays(g).node_values();
   for (unsigned i = 0; i < from.size(); ++i)
     rest_[i] = fixed_[i] ? Point() : node[i].mass * from[i];
   precondition(rest_, z_);
@@ -192,9 +194,9 @@ void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
   Point sum;
   double mass = 0;
   const Drag& c = force.drag();
-  auto node = g.node_values();
+  auto node = arrays(g).node_values();
   for (unsigned i = 0; i < w.size(); ++i) {
-    if (!g.node_in_use(i)) continue;
+    if (!arrays(g).node_in_use(i)) continue;
     if (fixed_[i]) return;
     sum += residual_[i];
     mass += node[i].mass + s * c[i];
@@ -208,11 +210,11 @@ void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
 /** The w @a now of the present positions x = p + s w. */
 void ImplicitStage::find_w(const Cloth& g, double s,
                            std::vector<Point>& now) const {
-  auto x = g.positions();
+  auto x = arrays(g).positions();
   for (unsigned i = 0; i < w.size(); ++i) now[i] = (x[i] - p[i]) / s;
 }
 void ImplicitStage::move(Cloth& g, double s) const {
-  auto x = g.positions();
+  auto x = arrays(g).positions();
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i]) x[i] = p[i] + s * w[i];
 }
@@ -225,7 +227,7 @@ std::vector<Point>& ImplicitStage::find_residual(Cloth& g, double t, double s,
                                                  const ForcePlan& force) {
   flow_.accelerate(g, t, force, true);
   const Drag& c = force.drag();
-  auto node = g.node_values();
+  auto node = arrays(g).node_values();
   for (unsigned i = 0; i < w.size(); ++i)
     residual_[i] =
         fixed_[i] ? Point()
@@ -237,7 +239,7 @@ std::vector<Point>& ImplicitStage::find_residual(Cloth& g, double t, double s,
 /** The springs' blocks of A, and the inverses of its diagonal ones. */
 void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
   const Drag& c = force.drag();
-  auto node = g.node_values();
+  auto node = arrays(g).node_values();
   diagonal_.resize(w.size());
   for (unsigned i = 0; i < w.size(); ++i) {
     diagonal_[i] = node[i].mass + s * c[i];
@@ -288,7 +290,7 @@ void ImplicitStage::precondition(const std::vector<Point>& from,
  * inertia, that of x through the springs' part of D. */
 double ImplicitStage::round_off(const Cloth& g, double s) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  auto x = g.positions();
+  auto x = arrays(g).positions();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i) {
     if (fixed_[i]) continue;
@@ -424,7 +426,7 @@ bool ImplicitStage::solve(double relative, bool clamp) {
 
 ImplicitStage::Objective ImplicitStage::objective(
     const Cloth& g, double s, const ForcePlan& force) const {
-  auto node = g.node_values();
+  auto node = arrays(g).node_values();
   const Drag& c = force.drag();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i)

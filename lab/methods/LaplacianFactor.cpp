@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/ImplicitStage.hpp"
 
 namespace lab {
@@ -17,11 +18,11 @@ bool LaplacianFactor::unchanged(const Cloth& g, Scales scales,
   constraint.each_held(g, [this](Node n) { held_.push_back(n.id()); });
   if (scales != key_.scales || !source_.springs ||
       force.spring_multiplicity() != source_.springs || &g != source_.cloth ||
-      g.version() != source_.version || held_ != source_.held)
+      arrays(g).version() != source_.version || held_ != source_.held)
     return false;
   const Drag& c = force.drag();
-  auto node = g.node_values();
-  auto spring = g.edge_values();
+  auto node = arrays(g).node_values();
+  auto spring = arrays(g).edge_values();
   bool same = true;
   for (unsigned i = 0; i < node.size(); ++i)
     same &= node[i].mass + scales.drag * c[i] == key_.diagonal[i];
@@ -34,14 +35,16 @@ void LaplacianFactor::find(const char* method, const Cloth& g, Scales scales,
                            const ForcePlan& force,
                            const ConstraintPlan& constraint) {
   if (unchanged(g, scales, force, constraint)) return;
-  source_ = {force.spring_multiplicity(), &g, g.version(), held_, {}};
-  for (const EdgeData& spring : g.edge_values()) source_.K.push_back(spring.K);
+  source_ = {force.spring_multiplicity(), &g, arrays(g).version(), held_, {}};
+  for (const EdgeData& spring : arrays(g).edge_values())
+    source_.K.push_back(spring.K);
   next_.scales = scales;
   implicit_detail::find_fixed(g, constraint, next_.fixed);
   next_.diagonal.clear();
   const Drag& c = force.drag();
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    next_.diagonal.push_back(g.node_values()[i].mass + scales.drag * c[i]);
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+    next_.diagonal.push_back(arrays(g).node_values()[i].mass +
+                             scales.drag * c[i]);
   next_.springs.clear();
   implicit_detail::add_stiffness(
       method, force, g, [this](unsigned i, unsigned j, const Stiffness& B) {

@@ -11,6 +11,7 @@
 #include "lab/Archive.hpp"
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -78,10 +79,10 @@ class Method {
    * Throws as step(). */
   virtual int steps(Cloth& g, const StepTimes& times, int count,
                     const ForcePlan& force, const ConstraintPlan& constraint) {
-    const auto version = g.version();
+    const auto version = arrays(g).version();
     int k = 0;
     do step(g, times(k), times.dt, force, constraint);
-    while (++k < count && g.version() == version);
+    while (++k < count && arrays(g).version() == version);
     return k;
   }
   /** Forget what was kept from the last step. */

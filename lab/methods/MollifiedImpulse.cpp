@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -57,7 +58,7 @@ MollifiedImpulse::MollifiedImpulse() : stage_(1, 1) {}
 int MollifiedImpulse::steps(Cloth& g, const StepTimes& times, int count,
                             const ForcePlan& force,
                             const ConstraintPlan& constraint) {
-  const auto version = g.version();
+  const auto version = arrays(g).version();
   const bool same = kept_for_ == &g && kept_version_ == version &&
                     multiplicity_ == force.springs() && drag_ == force.drag();
   const bool loaded = loaded_ && kept_version_ == version;
@@ -74,7 +75,7 @@ int MollifiedImpulse::steps(Cloth& g, const StepTimes& times, int count,
   do {
     one_step(g, times(k), times.dt, kept, force, constraint);
     kept = true;
-  } while (++k < count && g.version() == version);
+  } while (++k < count && arrays(g).version() == version);
   flow_.end();
   kept_time_ = times(k - 1) + times.dt, kept_dt_ = times.dt;
   return k;
@@ -101,7 +102,7 @@ void MollifiedImpulse::one_step(Cloth& g, double t, double dt, bool kept,
     flat.set_velocity(split_.nodes[n.id()], n.value().vel);
   }
   flow_.run({.t = t + dt, .project = &constraint});
-  if (g.version() != kept_version_) {
+  if (arrays(g).version() != kept_version_) {
     find_split(g, force, constraint);
     places_->take(g, t + dt, dt, constraint);
   }
@@ -134,7 +135,7 @@ void MollifiedImpulse::find_soft(double t, double dt) {
   if (split_.empty()) return flow_.run({.t = t, .kick = 0, .keep = true});
   FlatCloth& flat = flow_.cloth();
   const double ss = dt * dt / 4;
-  const auto x = stiff_.positions();
+  const auto x = arrays(stiff_).positions();
   for (unsigned k = 0; k < x.size(); ++k) x[k] = flat.position(split_.nodes[k]);
   at_.assign(x.begin(), x.end());
   stage_.begin(info.name, t, dt, stiff_, held_);
@@ -149,7 +150,7 @@ void MollifiedImpulse::find_soft(double t, double dt) {
   flow_.run({.t = t, .kick = 0, .keep = true});
   find_stiff();
   for (unsigned k = 0; k < x.size(); ++k)
-    f_[k] = double(stiff_.node_values()[k].mass) *
+    f_[k] = double(arrays(stiff_).node_values()[k].mass) *
                 flat.acceleration(split_.nodes[k]) -
             f_[k];
   stage_.solve(f_);
@@ -161,7 +162,7 @@ void MollifiedImpulse::find_soft(double t, double dt) {
 
 /** f_ = the forces of the stiff springs. */
 void MollifiedImpulse::find_stiff() {
-  const auto x = stiff_.positions();
+  const auto x = arrays(stiff_).positions();
   f_.assign(x.size(), Point());
   for (Edge e : stiff_.edges()) {
     const unsigned i = e.node1().id(), j = e.node2().id();
@@ -178,10 +179,11 @@ Work MollifiedImpulse::work() const {
 
 void MollifiedImpulse::archive(Archive& a, const Cloth& g) {
   verlet_.archive(a, g);
-  bool has = !split_.empty() && kept_for_ == &g && kept_version_ == g.version();
+  bool has = !split_.empty() && kept_for_ == &g &&
+             kept_version_ == arrays(g).version();
   a(has);
   if (a.loads())
-    kept_for_ = nullptr, loaded_ = has, kept_version_ = g.version();
+    kept_for_ = nullptr, loaded_ = has, kept_version_ = arrays(g).version();
   if (!has) return;
   auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
   a(accelerations)(kept_time_)(kept_dt_);
@@ -192,15 +194,15 @@ void MollifiedImpulse::find_split(const Cloth& g, const ForcePlan& force,
                                   const ConstraintPlan& constraint) {
   multiplicity_ = force.springs(), drag_ = force.drag();
   split_ = split_springs(g, multiplicity_, constraint);
-  kept_for_ = &g, kept_version_ = g.version();
+  kept_for_ = &g, kept_version_ = arrays(g).version();
   stiff_.clear();
   std::vector<double> c;
   for (unsigned id : split_.nodes) {
-    stiff_.add_node(g.positions()[id], g.node_values()[id]);
+    stiff_.add_node(arrays(g).positions()[id], arrays(g).node_values()[id]);
     c.push_back(drag_[id]);
   }
   for (const auto& s : split_.springs) {
-    EdgeData value = g.edge_values()[s.edge];
+    EdgeData value = arrays(g).edge_values()[s.edge];
     value.K *= multiplicity_;
     stiff_.add_edge(stiff_.node(s.i), stiff_.node(s.j), value);
   }

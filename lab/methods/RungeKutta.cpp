@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Rkn64.hpp"
@@ -39,12 +40,12 @@ template <typename Tableau>
 int RungeKutta<Tableau>::steps(Cloth& g, const StepTimes& times, int count,
                                const ForcePlan& force,
                                const ConstraintPlan& constraint) {
-  const auto version = g.version();
+  const auto version = arrays(g).version();
   flow_.begin(g, force, nystroem);
   if constexpr (nystroem) drag_ = common_drag(g, force.drag(), info.name);
   int k = 0;
   do one_step(g, times(k), times.dt, constraint);
-  while (++k < count && g.version() == version);
+  while (++k < count && arrays(g).version() == version);
   flow_.end();
   return k;
 }
@@ -195,7 +196,7 @@ double RungeKutta<Tableau>::error_rate(const Cloth& g, double h) {
   const Columns& nodes = flow_.cloth().nodes();
   constexpr unsigned tile = FlatCloth::tile;
   double x = 0, v = 0;
-  for (unsigned begin = 0; begin < g.node_slots(); begin += tile) {
+  for (unsigned begin = 0; begin < arrays(g).node_slots(); begin += tile) {
     double x2[tile] = {}, v2[tile] = {};
     for (unsigned c = 0; c < 3; ++c) {
       double dx[tile] = {}, dv[tile] = {};
@@ -207,20 +208,20 @@ double RungeKutta<Tableau>::error_rate(const Cloth& g, double h) {
       for (unsigned i = 0; i < tile; ++i)
         x2[i] += dx[i] * dx[i], v2[i] += dv[i] * dv[i];
     }
-    const unsigned count = std::min(tile, g.node_slots() - begin);
+    const unsigned count = std::min(tile, arrays(g).node_slots() - begin);
     for (unsigned i = 0; i < count; ++i)
-      if (g.node_in_use(begin + i)) x += x2[i], v += v2[i];
+      if (arrays(g).node_in_use(begin + i)) x += x2[i], v += v2[i];
   }
   return std::sqrt(std::max(x, v) / std::max(1u, g.num_nodes()));
 }
 
 template <typename Tableau>
 void RungeKutta<Tableau>::archive(Archive& a, const Cloth& g) {
-  bool has = has_end_ && end_version_ == g.version();
+  bool has = has_end_ && end_version_ == arrays(g).version();
   a(inner_)(has).require(inner_ >= 0 && std::isfinite(inner_));
   has_end_ = has;
   if (!has) return;
-  end_version_ = g.version();
+  end_version_ = arrays(g).version();
   const unsigned last = acceleration(stages - 1);
   for (unsigned column : {end, end + 3, last}) {
     auto points = a.loads() ? std::vector<Point>() : flow_.kept(column);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Pefrl.hpp"
 #include "lab/methods/Srkn11b.hpp"
 #include "lab/methods/Verlet.hpp"
@@ -28,7 +29,7 @@ int Splitting<Scheme>::steps(Cloth& g, const StepTimes& times, int count,
   const auto done = (flow_.run(stages_) - before) / stages_a_step;
   flow_.end();
   if (Scheme::kicks_first)
-    kept_for_ = &g, kept_version_ = g.version(),
+    kept_for_ = &g, kept_version_ = arrays(g).version(),
     kept_time_ = times(int(done) - 1) + times.dt;
   return int(done);
 }
@@ -63,19 +64,19 @@ void Splitting<Scheme>::add_step(double t, double dt, bool kept,
 template <typename Scheme>
 bool Splitting<Scheme>::kept(const Cloth& g, double t, double dt) const {
   // Equal up to round-off: a caller may add up its times or multiply them.
-  return kept_for_ == &g && kept_version_ == g.version() &&
+  return kept_for_ == &g && kept_version_ == arrays(g).version() &&
          std::abs(t - kept_time_) < 1e-6 * dt;
 }
 
 template <typename Scheme>
 void Splitting<Scheme>::archive(Archive& a, const Cloth& g) {
-  bool has = kept_for_ == &g && kept_version_ == g.version();
+  bool has = kept_for_ == &g && kept_version_ == arrays(g).version();
   a(has);
   if (!has) return restart();
   auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
   a(accelerations)(kept_time_);
   if (a.loads()) flow_.set_kept(g, accelerations);
-  kept_for_ = &g, kept_version_ = g.version();
+  kept_for_ = &g, kept_version_ = arrays(g).version();
 }
 
 template class Splitting<VerletScheme>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -11,9 +12,10 @@ namespace {
 /** 1/m [1/kg] by node id; 0 for held nodes. */
 std::vector<double> inverse_masses(const Cloth& g,
                                    const ConstraintPlan& constraint) {
-  std::vector<double> w(g.node_slots());
+  std::vector<double> w(arrays(g).node_slots());
   for (unsigned i = 0; i < w.size(); ++i)
-    if (g.node_in_use(i)) w[i] = 1 / double(g.node_values()[i].mass);
+    if (arrays(g).node_in_use(i))
+      w[i] = 1 / double(arrays(g).node_values()[i].mass);
   constraint.each_held(g, [&w](Node n) { w[n.id()] = 0; });
   return w;
 }
@@ -50,16 +52,16 @@ StiffSplit split_springs(const Cloth& g, int multiplicity,
   StiffSplit split;
   if (multiplicity == 0) return split;
   const std::vector<double> w = inverse_masses(g, constraint);
-  const auto ends = g.edge_ends();
-  const auto values = g.edge_values();
+  const auto ends = arrays(g).edge_ends();
+  const auto values = arrays(g).edge_values();
   const auto omega2 = [&](unsigned e) {
-    if (!g.edge_in_use(e)) return 0.;
+    if (!arrays(g).edge_in_use(e)) return 0.;
     const auto [i, j] = ends[e];
     return multiplicity * double(values[e].K) * (w[i] + w[j]);
   };
   std::array<Octave, octaves> of = {};
   double edges = 0;
-  for (unsigned e = 0; e < g.edge_slots(); ++e) {
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
     const double a = omega2(e);
     if (!(a > 0)) continue;
     Octave& o = of[std::size_t(octave_of(a))];
@@ -68,7 +70,7 @@ StiffSplit split_springs(const Cloth& g, int multiplicity,
   }
   const int first = first_stiff(of, edges);
   if (first == octaves) return split;
-  for (unsigned e = 0; e < g.edge_slots(); ++e)
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e)
     if (const double a = omega2(e); a > 0 && octave_of(a) >= first) {
       split.springs.push_back({e, 0, 0});
       split.nodes.insert(split.nodes.end(), ends[e].begin(), ends[e].end());
@@ -96,7 +98,7 @@ class SoftStiffness final : public SweptForce {
                 const ConstraintPlan& constraint)
       : force_(force) {
     for (const auto& s : split_springs(g, force.springs(), constraint).springs)
-      stiff_.push_back(g.edge_ends()[s.edge]);
+      stiff_.push_back(arrays(g).edge_ends()[s.edge]);
     std::ranges::sort(stiff_);
   }
   void add_to(const Part&, double, std::span<Point>) const override {}

@@ -1,5 +1,7 @@
 #include "lab/methods/TrBdf2.hpp"
 
+#include "lab/fast/GraphArrays.hpp"
+
 namespace lab {
 
 double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
@@ -8,9 +10,9 @@ double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
   constexpr double gamma = 2 - root, beyond = (root - 1) / 2;
   const double s = gamma / 2 * dt;  // the same in both stages
   stage_.begin(info.name, t, dt, g, constraint);
-  auto x = g.positions();
-  auto node = g.node_values();
-  const unsigned n = g.node_slots();
+  auto x = arrays(g).positions();
+  auto node = arrays(g).node_values();
+  const unsigned n = arrays(g).node_slots();
   x0_.assign(x.begin(), x.end());
   flow_.accelerate(g, t, force, false);
   a0_.resize(n);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/ImplicitStage.hpp"
 
 namespace lab {
@@ -22,13 +23,13 @@ bool check_springs(const Cloth& g, const ForcePlan& force) {
   implicit_detail::add_stiffness(
       Xpbd::info.name, force, g,
       [&look](unsigned i, unsigned j, const Stiffness& B) {
-        while (look.edge < look.g.edge_slots() &&
-               !look.g.edge_in_use(look.edge))
+        while (look.edge < arrays(look.g).edge_slots() &&
+               !arrays(look.g).edge_in_use(look.edge))
           ++look.edge;
         ++look.seen;
-        if (look.edge == look.g.edge_slots() ||
-            look.g.edge_ends()[look.edge] != std::array{i, j} ||
-            look.g.edge_values()[look.edge].K != B.along)
+        if (look.edge == arrays(look.g).edge_slots() ||
+            arrays(look.g).edge_ends()[look.edge] != std::array{i, j} ||
+            arrays(look.g).edge_values()[look.edge].K != B.along)
           look.other = true;
         else
           ++look.edge;
@@ -53,9 +54,9 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   const double h = dt / substeps_;
   rounds_ += substeps_;
   const Drag& c = force.drag();
-  auto x = g.positions();
-  auto node = g.node_values();
-  const unsigned n = g.node_slots();
+  auto x = arrays(g).positions();
+  auto node = arrays(g).node_values();
+  const unsigned n = arrays(g).node_slots();
   for (int k = 0; k < substeps_; ++k) {
     constraint.place_held_at_rest(g, t + (k + 1) * h);
     for (unsigned i = 0; i < n; ++i) {
@@ -78,7 +79,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
 /** Find the accelerations by all forces but the springs and drag. */
 void Xpbd::accelerate(Cloth& g, double t, const ForcePlan& force,
                       bool springs) {
-  const unsigned n = g.node_slots();
+  const unsigned n = arrays(g).node_slots();
   flow_.accelerate(g, t, force, true);
   acceleration_.resize(n);
   for (unsigned i = 0; i < n; ++i) acceleration_[i] = flow_.acceleration(i);
@@ -89,12 +90,12 @@ void Xpbd::accelerate(Cloth& g, double t, const ForcePlan& force,
 
 /** One round over the springs. */
 void Xpbd::pull_together(Cloth& g, double h) const {
-  auto x = g.positions();
-  auto node = g.node_values();
-  for (unsigned e = 0; e < g.edge_slots(); ++e) {
-    if (!g.edge_in_use(e)) continue;
-    const EdgeData& spring = g.edge_values()[e];
-    auto [i, j] = g.edge_ends()[e];
+  auto x = arrays(g).positions();
+  auto node = arrays(g).node_values();
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
+    if (!arrays(g).edge_in_use(e)) continue;
+    const EdgeData& spring = arrays(g).edge_values()[e];
+    auto [i, j] = arrays(g).edge_ends()[e];
     const double wi = fixed_[i] ? 0 : 1 / node[i].mass;
     const double wj = fixed_[j] ? 0 : 1 / node[j].mass;
     const Point u = x[j] - x[i];

@@ -11,6 +11,7 @@
 
 #include "CME212/PageData.hpp"
 #include "lab/Json.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/page/PageScenes.hpp"
@@ -185,24 +186,24 @@ const char* page_readings(int sharp) {
 
 unsigned page_slots(unsigned side) {
   const Scene* s = state().scene(side);
-  return s ? s->cloth().node_slots() : 0;
+  return s ? arrays(s->cloth()).node_slots() : 0;
 }
 const double* page_positions(unsigned side) {
   static_assert(sizeof(Point) == 3 * sizeof(double));
-  return &state().scene(side)->cloth().positions()[0].x;
+  return &arrays(state().scene(side)->cloth()).positions()[0].x;
 }
 const float* page_points(unsigned side) {
   State& s = state();
   const Cloth& g = s.shown(side).cloth();
   CME212::set_page_points(
-      s.points, g.node_slots(), g.nodes(), g.edges(),
+      s.points, arrays(g).node_slots(), g.nodes(), g.edges(),
       [](Node n) { return n.id(); }, [](Edge e) { return e.value().L; });
   return s.points.data();
 }
 double page_version(unsigned side) {
   State& s = state();
   Drawn& d = s.drawn[side];
-  const std::uint64_t now = s.shown(side).cloth().version();
+  const std::uint64_t now = arrays(s.shown(side).cloth()).version();
   if (std::exchange(d.version, now) != now) ++d.changes;
   return d.changes;
 }
@@ -221,7 +222,8 @@ const unsigned* page_mesh(unsigned side) {
   std::vector<unsigned> pins;
   for (const HeldNodes& held : scene.held())
     for (const auto& h : held.nodes)
-      if (h.id < g.node_slots() && g.node_in_use(h.id)) pins.push_back(h.id);
+      if (h.id < arrays(g).node_slots() && arrays(g).node_in_use(h.id))
+        pins.push_back(h.id);
   s.mesh = CME212::page_mesh(ends, faces, pins);
   return s.mesh.data();
 }

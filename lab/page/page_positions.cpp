@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
@@ -26,7 +27,7 @@ int main(int argc, char** argv) {
     m.step.dt = std::atof(argv[k + 1]);
     lab::Scene scene(m);
     for (int left = std::atoi(argv[3]); left > 0; --left) scene.step();
-    const auto all = std::as_const(scene).cloth().positions();
+    const auto all = arrays(std::as_const(scene).cloth()).positions();
     std::cout.write(reinterpret_cast<const char*>(all.data()),
                     std::streamsize(all.size_bytes()));
   }

@@ -15,6 +15,7 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Faces.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -33,10 +34,10 @@ Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
   f.there.resize(n), f.velocities.resize(n), f.forces.resize(n);
   f.masses.resize(n), f.strains.resize(n), f.pinned.resize(n);
   f.places = before ? before->places : built.mesh.points;
-  std::vector<unsigned> point_of(g.node_slots());
+  std::vector<unsigned> point_of(arrays(g).node_slots());
   for (unsigned i = 0; i < n; ++i) {
-    if (!g.node_in_use(built.ids[i])) continue;
-    const Node node = g.node_with_id(built.ids[i]);
+    if (!arrays(g).node_in_use(built.ids[i])) continue;
+    const Node node = arrays(g).node_with_id(built.ids[i]);
     point_of[node.id()] = i;
     f.there[i] = 1;
     f.places[i] = node.position();

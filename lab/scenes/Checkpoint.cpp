@@ -9,6 +9,7 @@
 
 #include "CME212/Mesh.hpp"
 #include "CME212/OutputFile.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stability/Guard.hpp"
@@ -74,8 +75,8 @@ std::uint64_t crc64(std::string_view bytes, std::uint64_t before) {
 std::uint64_t checksum_of(const Cloth& g) {
   std::uint64_t sum = 0;
   for (std::string_view part :
-       {bytes_of(g.positions()), bytes_of(g.node_values()),
-        bytes_of(g.edge_ends()), bytes_of(g.edge_values())})
+       {bytes_of(arrays(g).positions()), bytes_of(arrays(g).node_values()),
+        bytes_of(arrays(g).edge_ends()), bytes_of(arrays(g).edge_values())})
     sum = crc64(part, sum);
   return sum;
 }
@@ -153,23 +154,24 @@ void archive_cloth(Archive& a, Cloth& g) {
   std::vector<char> nodes, edges;  // by id: whether it is in use
   std::vector<unsigned> node_ids, edge_ids, lists;  // by index; at all nodes
   auto each_edge_at = [&g](unsigned id, auto use) {
-    for (const auto& to : g.neighbors(id)) use(to.edge);
+    for (const auto& to : arrays(g).neighbors(id)) use(to.edge);
   };
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
-    nodes.push_back(g.node_in_use(i));
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i) {
+    nodes.push_back(arrays(g).node_in_use(i));
     each_edge_at(i, [&](unsigned e) { lists.push_back(e); });
   }
-  for (unsigned e = 0; e < g.edge_slots(); ++e)
-    edges.push_back(g.edge_in_use(e));
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e)
+    edges.push_back(arrays(g).edge_in_use(e));
   for (Node n : g.nodes()) node_ids.push_back(n.id());
   for (Edge e : g.edges()) edge_ids.push_back(e.id());
   a(nodes)(edges)(node_ids)(edge_ids)(lists);
   if (a.loads()) {
-    require(nodes.size() == g.node_slots() && edges.size() == g.edge_slots());
+    require(nodes.size() == arrays(g).node_slots() &&
+            edges.size() == arrays(g).edge_slots());
     for (unsigned e = 0; e < edges.size(); ++e)
-      if (!edges[e]) g.remove_edge(g.edge_with_id(e));
+      if (!edges[e]) g.remove_edge(arrays(g).edge_with_id(e));
     for (unsigned i = 0; i < nodes.size(); ++i)
-      if (!nodes[i]) g.remove_node(g.node_with_id(i));
+      if (!nodes[i]) g.remove_node(arrays(g).node_with_id(i));
     auto require_each_once = [&require](const auto& ids, std::size_t size,
                                         std::size_t slots, auto there) {
       require(ids.size() == size);
@@ -180,9 +182,9 @@ void archive_cloth(Archive& a, Cloth& g) {
       }
     };
     require_each_once(node_ids, g.num_nodes(), nodes.size(),
-                      [&g](unsigned id) { return g.node_in_use(id); });
+                      [&g](unsigned id) { return arrays(g).node_in_use(id); });
     require_each_once(edge_ids, g.num_edges(), edges.size(),
-                      [&g](unsigned id) { return g.edge_in_use(id); });
+                      [&g](unsigned id) { return arrays(g).edge_in_use(id); });
     std::size_t at = 0;
     for (unsigned i = 0; i < nodes.size(); ++i) {
       std::vector<unsigned> now;
@@ -192,13 +194,15 @@ void archive_cloth(Archive& a, Cloth& g) {
       at += now.size();
       if (std::ranges::equal(ids, now)) continue;
       require(std::ranges::is_permutation(ids, now));
-      g.reorder_edges(g.node_with_id(i), ids);
+      arrays(g).reorder_edges(arrays(g).node_with_id(i), ids);
     }
-    if (g.num_nodes() < g.node_slots()) g.reindex_nodes(node_ids);
-    if (g.num_edges() < g.edge_slots()) g.reindex_edges(edge_ids);
+    if (g.num_nodes() < arrays(g).node_slots())
+      arrays(g).reindex_nodes(node_ids);
+    if (g.num_edges() < arrays(g).edge_slots())
+      arrays(g).reindex_edges(edge_ids);
   }
-  a(g.positions())(g.node_values());
-  a.require(are_nodes(g.positions(), g.node_values()));
+  a(arrays(g).positions())(arrays(g).node_values());
+  a.require(are_nodes(arrays(g).positions(), arrays(g).node_values()));
 }
 
 }  // namespace lab

@@ -9,6 +9,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/Drag.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Memory.hpp"
@@ -208,8 +209,12 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
 
 std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {
   auto is_left = [&](const Quad& q) {
-    auto there = [&](unsigned i) { return g.node_in_use(built.ids[i]); };
-    auto node = [&](unsigned i) { return g.node_with_id(built.ids[i]); };
+    auto there = [&](unsigned i) {
+      return arrays(g).node_in_use(built.ids[i]);
+    };
+    auto node = [&](unsigned i) {
+      return arrays(g).node_with_id(built.ids[i]);
+    };
     return std::ranges::all_of(q, there) &&
            std::ranges::all_of(quad_sides, [&](const auto& side) {
              return g.has_edge(node(q[side[0]]), node(q[side[1]]));
@@ -224,8 +229,8 @@ PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built) {
   PointsAndQuads left;
   std::vector<unsigned> number(built.ids.size());
   for (unsigned i = 0; i < number.size(); ++i) {
-    if (!g.node_in_use(built.ids[i])) continue;
-    const Node n = g.node_with_id(built.ids[i]);
+    if (!arrays(g).node_in_use(built.ids[i])) continue;
+    const Node n = arrays(g).node_with_id(built.ids[i]);
     number[i] = unsigned(left.points.size());
     left.points.push_back(n.position());
     left.velocities.push_back(n.value().vel);
@@ -243,7 +248,7 @@ CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
     forces.push_back(std::make_shared<GravityForce>(m.gravity));
   forces.push_back(std::make_shared<MassSpringForce>());
   if (const auto drag = m.material.drag; drag && *drag > 0) {
-    std::vector<double> c(g.node_slots());
+    std::vector<double> c(arrays(g).node_slots());
     const std::vector<double> share = areas(mesh);
     for (unsigned i = 0; i < share.size(); ++i)
       c[g.node(i).id()] = *drag * share[i];
@@ -296,7 +301,8 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
   for (const HeldNodes& h : held) {
     std::vector<PinConstraint::Pin> pins;
     for (const auto& [id, place] : h.nodes)
-      if (g.node_in_use(id)) pins.push_back({g.node_with_id(id), place});
+      if (arrays(g).node_in_use(id))
+        pins.push_back({arrays(g).node_with_id(id), place});
     // A pin at rest has no time at which it stops.
     add(MovingPinConstraint(
         pins, h.motion.velocity == Point() ? Motion() : h.motion));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -101,13 +102,13 @@ double BallConstraint::thinnest() const {
 // --------------------------------------------------------------------- Strain
 
 void StrainConstraint::operator()(Cloth& g, double /*t*/) const {
-  const auto x = g.positions();
-  for (unsigned e = 0; e < g.edge_slots(); ++e) {
-    const auto [i, j] = g.edge_ends()[e];
-    const double longest = most_ * g.edge_values()[e].L;
+  const auto x = arrays(g).positions();
+  for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
+    const auto [i, j] = arrays(g).edge_ends()[e];
+    const double longest = most_ * arrays(g).edge_values()[e].L;
     // A slot that is not in use has the length 0.
     if (normSq(x[j] - x[i]) > longest * longest)
-      g.remove_edge(g.edge_with_id(e));
+      g.remove_edge(arrays(g).edge_with_id(e));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "CME212/PageData.hpp"
 #include "lab/fast/ForcePlan.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -36,13 +37,14 @@ class HandForce : public SweptForce {
   }
   void add_to(const Part& part, double /*t*/,
               std::span<Point> f) const override {
-    if (part.first <= node_ && node_ < part.last && part.g.node_in_use(node_))
-      f[node_ - part.first] += pull(part.g.positions()[node_]);
+    if (part.first <= node_ && node_ < part.last &&
+        arrays(part.g).node_in_use(node_))
+      f[node_ - part.first] += pull(arrays(part.g).positions()[node_]);
   }
   /** k d^2/2 up to the cut-off, linear in d beyond it [J]. */
   double energy(const Cloth& g) const override {
-    if (!g.node_in_use(node_)) return 0;
-    const double d = norm(target_ - g.positions()[node_]);
+    if (!arrays(g).node_in_use(node_)) return 0;
+    const double d = norm(target_ - arrays(g).positions()[node_]);
     const double reach = k_ > 0 ? std::min(d, most_ / k_) : 0;
     return k_ * reach * (d - reach / 2);
   }

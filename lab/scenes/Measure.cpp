@@ -11,6 +11,7 @@
 #include "CME212/Util.hpp"
 #include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -166,9 +167,9 @@ Answer pin_force(const Model&, const Cloth& g, const Scene* scene,
     for (const auto& [id, place] : h.nodes) {
       if (!what.pin.holds(place)) continue;
       some = true;
-      if (g.node_in_use(id))
-        sum +=
-            (*scene->recipe().built->force)(g.node_with_id(id), scene->time());
+      if (arrays(g).node_in_use(id))
+        sum += (*scene->recipe().built->force)(arrays(g).node_with_id(id),
+                                               scene->time());
     }
   if (!some)
     throw SceneError("measure",
@@ -178,8 +179,8 @@ Answer pin_force(const Model&, const Cloth& g, const Scene* scene,
 
 Answer tear_time(const Model&, const Cloth& g, const Scene* scene,
                  const Measure&) {
-  const bool torn =
-      g.num_nodes() < g.node_slots() || g.num_edges() < g.edge_slots();
+  const bool torn = g.num_nodes() < arrays(g).node_slots() ||
+                    g.num_edges() < arrays(g).edge_slots();
   return {torn ? scene->time() : std::numeric_limits<double>::infinity()};
 }
 

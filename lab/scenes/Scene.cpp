@@ -5,6 +5,7 @@
 
 #include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -69,7 +70,8 @@ void Scene::change_forces(const Recipe& recipe) {
   edit([&] {
     recipe_ = recipe, gravity_ = recipe.gravity;
     acting_ = std::move(acting);
-    for (Edge e : cloth_.edges()) e.value().K = fresh.edge_values()[e.id()].K;
+    for (Edge e : cloth_.edges())
+      e.value().K = arrays(fresh).edge_values()[e.id()].K;
     forget_limits();
     make_method();
   });
@@ -77,7 +79,7 @@ void Scene::change_forces(const Recipe& recipe) {
 
 namespace {
 bool is_there(const Cloth& g, unsigned node) {
-  return node < g.node_slots() && g.node_in_use(node);
+  return node < arrays(g).node_slots() && arrays(g).node_in_use(node);
 }
 }  // namespace
 
@@ -90,13 +92,13 @@ bool Scene::is_pinned(unsigned node) const {
 bool Scene::pin(unsigned node) {
   if (!is_there(cloth_, node) || is_pinned(node)) return false;
   edit([&] {
-    cloth_.node_values()[node].vel = Point();
+    arrays(cloth_).node_values()[node].vel = Point();
     if (held_.empty() || held_.back().motion.velocity != Point())
       held_.emplace_back();
     auto& nodes = held_.back().nodes;
     nodes.insert(
         std::ranges::lower_bound(nodes, node, {}, &HeldNodes::Held::id),
-        {node, cloth_.positions()[node]});
+        {node, arrays(cloth_).positions()[node]});
     watched_.emplace(recipe_.holding(cloth_, held_));
   });
   return true;
@@ -119,7 +121,7 @@ unsigned Scene::cut(std::span<const std::array<unsigned, 2>> edges) {
   unsigned count = 0;
   edit([&] {
     const auto node = [this](unsigned id) {
-      return is_there(cloth_, id) ? cloth_.node_with_id(id) : Node();
+      return is_there(cloth_, id) ? arrays(cloth_).node_with_id(id) : Node();
     };
     for (const auto& [i, j] : edges)
       count += cloth_.remove_edge(node(i), node(j));
@@ -131,7 +133,7 @@ bool Scene::grab(unsigned node, const Point& target) {
   constexpr double share = 1 / 8., weights = 2;
   if (!is_there(cloth_, node)) return false;
   double sum = 0;  // of K [N/m]
-  for (Edge e : cloth_.node_with_id(node).edges()) sum += e.value().K;
+  for (Edge e : arrays(cloth_).node_with_id(node).edges()) sum += e.value().K;
   pull(HandForce(node, target, share * sum,
                  weights * total_mass(cloth_) * grav));
   return true;
@@ -180,9 +182,9 @@ std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   };
   auto ahead = copy();
   const auto is_far = [&] {
-    const auto now = std::as_const(ahead->cloth_).positions();
+    const auto now = arrays(std::as_const(ahead->cloth_)).positions();
     for (Node n : cloth_.nodes())
-      if (ahead->cloth_.node_in_use(n.id()) &&
+      if (arrays(ahead->cloth_).node_in_use(n.id()) &&
           norm(now[n.id()] - n.position()) > distance)
         return true;
     return false;

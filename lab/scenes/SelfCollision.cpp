@@ -7,20 +7,21 @@
 #include <string>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Contact.hpp"
 
 namespace lab {
 
 void CellTable::fill(const Cloth& g, double side) {
   assert(side > 0);
-  const auto x = g.positions();
-  const unsigned bits = std::bit_width(2 * g.node_slots() + 1);
+  const auto x = arrays(g).positions();
+  const unsigned bits = std::bit_width(2 * arrays(g).node_slots() + 1);
   shift_ = 64 - bits;
   placed_.clear();
-  placed_.reserve(g.node_slots());
+  placed_.reserve(arrays(g).node_slots());
   start_.assign((std::size_t(1) << bits) + 1, 0);
-  for (unsigned i = 0; i < g.node_slots(); ++i) {
-    if (!g.node_in_use(i)) continue;
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i) {
+    if (!arrays(g).node_in_use(i)) continue;
     const double cell[3] = {std::floor(x[i].x / side),
                             std::floor(x[i].y / side),
                             std::floor(x[i].z / side)};
@@ -41,9 +42,10 @@ void CellTable::fill(const Cloth& g, double side) {
 namespace {
 
 bool connected(const Cloth& g, unsigned i, unsigned j) {
-  const auto all = g.neighbors(i);
-  return std::any_of(all.begin(), all.end(),
-                     [j](const Cloth::Neighbor& n) { return n.node == j; });
+  const auto all = arrays(g).neighbors(i);
+  return std::any_of(
+      all.begin(), all.end(),
+      [j](const GraphArrays<Cloth>::Neighbor& n) { return n.node == j; });
 }
 
 // Pairs are pushed by this share farther than needed. Otherwise distances in a
@@ -59,7 +61,7 @@ constexpr int rounds_per_gathering = 8;
 double nearest_unconnected(const Cloth& g, double up_to) {
   CellTable cells;
   cells.fill(g, up_to);
-  const auto x = g.positions();
+  const auto x = arrays(g).positions();
   double least = std::numeric_limits<double>::infinity();
   cells.each_near_pair([&](unsigned i, unsigned j) {
     const double distance = norm(x[i] - x[j]);
@@ -82,12 +84,12 @@ void SelfCollision::operator()(Cloth& g, double t) const {
 }
 
 void SelfCollision::gather_near_pairs(const Cloth& g) const {
-  held_.assign(g.node_slots(), false);
+  held_.assign(arrays(g).node_slots(), false);
   inner_.each_held(g, [this](Node n) { held_[n.id()] = true; });
   near_.clear();
   const double most = reach * thickness_;
   cells_.fill(g, most);
-  const auto x = g.positions();
+  const auto x = arrays(g).positions();
   cells_.each_near_pair([&](unsigned i, unsigned j) {
     if (normSq(x[i] - x[j]) < most * most && !connected(g, i, j))
       near_.push_back({i, j});
@@ -97,11 +99,11 @@ void SelfCollision::gather_near_pairs(const Cloth& g) const {
 /** Push apart all gathered pairs that are too near.
  * @return false if none was  Throws StepError after max_rounds. */
 bool SelfCollision::project_pairs(Cloth& g) const {
-  const auto x = g.positions();
+  const auto x = arrays(g).positions();
   bool pushed = false;
   for (const auto& [i, j] : near_)
-    if (normSq(x[i] - x[j]) < thickness_ * thickness_ && g.node_in_use(i) &&
-        g.node_in_use(j)) {
+    if (normSq(x[i] - x[j]) < thickness_ * thickness_ &&
+        arrays(g).node_in_use(i) && arrays(g).node_in_use(j)) {
       push_apart(g, i, j);
       pushed = true;
     }
@@ -113,14 +115,15 @@ bool SelfCollision::project_pairs(Cloth& g) const {
 }
 
 void SelfCollision::push_apart(Cloth& g, unsigned i, unsigned j) const {
-  const auto x = g.positions();
-  const auto node = g.node_values();
+  const auto x = arrays(g).positions();
+  const auto node = arrays(g).node_values();
   const double wi = held_[i] ? 0 : 1 / double(node[i].mass);
   const double wj = held_[j] ? 0 : 1 / double(node[j].mass);
   if (wi + wj == 0)
     throw StepError("self-collision: nodes " +
-                    std::to_string(g.node_with_id(i).index()) + " and " +
-                    std::to_string(g.node_with_id(j).index()) +
+                    std::to_string(arrays(g).node_with_id(i).index()) +
+                    " and " +
+                    std::to_string(arrays(g).node_with_id(j).index()) +
                     " are held closer than the thickness, " +
                     CME212::short_text(thickness_) + " m");
   const Point apart = x[i] - x[j];

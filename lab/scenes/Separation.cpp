@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Scene.hpp"
 
 namespace lab {
@@ -29,11 +30,12 @@ void Track::look(const Scene& scene) {
   if (next_ == due_.size() || now < due_[next_]) return;
   while (next_ < due_.size() && due_[next_] <= now) ++next_;
   const Cloth& g = scene.cloth();
-  const auto x = g.positions();
+  const auto x = arrays(g).positions();
   State& s = states_.emplace_back(State{scene.time(), {}});
   s.x.assign(x.begin(), x.end());
   for (unsigned id = 0; id < s.x.size(); ++id)
-    if (!g.node_in_use(id)) s.x[id] = Point(infinite, infinite, infinite);
+    if (!arrays(g).node_in_use(id))
+      s.x[id] = Point(infinite, infinite, infinite);
 }
 
 Separation::Separation(const Track& a, const Track& b) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/StiffSplit.hpp"
 
 namespace lab {
@@ -61,8 +62,8 @@ double StepLimits::safe_omega() const {
 
 /** A bound of omega [1/s] with the hand, where @a omega is one without. */
 double StepLimits::with_hand(double omega) const {
-  if (!hand_ || !cloth_.node_in_use(hand_->node())) return omega;
-  const double m = cloth_.node_values()[hand_->node()].mass;
+  if (!hand_ || !arrays(cloth_).node_in_use(hand_->node())) return omega;
+  const double m = arrays(cloth_).node_values()[hand_->node()].mass;
   return std::sqrt(omega * omega + hand_->stiffness() / m);
 }
 

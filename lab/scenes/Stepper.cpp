@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Checkpoint.hpp"
 
 namespace lab {
@@ -66,8 +67,9 @@ void Stepper::plan() {
 void Stepper::hand_changed() {
   plan();
   method_->restart();
-  if (hand_ && cloth_.node_in_use(hand_->node()))
-    balance_->watch(cloth_.node_with_id(hand_->node()), &*hand_, time());
+  if (hand_ && arrays(cloth_).node_in_use(hand_->node()))
+    balance_->watch(arrays(cloth_).node_with_id(hand_->node()), &*hand_,
+                    time());
   else
     balance_->watch({}, nullptr, time());
 }
@@ -125,7 +127,7 @@ bool Stepper::steps_at_once(int most, double t_end) {
   if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
   most = steps_to_check(most);
   if (!advance(most)) return not_good(clock_.steps + most);
-  const bool now = cloth_.version() != version_ || done(t_end);
+  const bool now = arrays(cloth_).version() != version_ || done(t_end);
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
@@ -219,7 +221,7 @@ bool Stepper::judge(const Energies& e) {
   using Verdict = StepControl::Verdict;
   const Verdict verdict = control_->look(e, flow(), h, time() / t_end_);
   if (verdict == Verdict::take_back) return false;
-  if (cloth_.version() != version_) {
+  if (arrays(cloth_).version() != version_) {
     keep_both();  // removed nodes and edges do not come back
   } else if (verdict == Verdict::keep) {
     std::swap(before_, latest_);
@@ -236,7 +238,7 @@ void Stepper::keep_both() {
 void Stepper::keep(Snapshot& s) const {
   s.nodes.keep(cloth_);
   s.clock = clock_, s.flow = flow(), s.control = control_->state();
-  s.version = cloth_.version();
+  s.version = arrays(cloth_).version();
 }
 
 /** The guard's verdict on the present state, of energy @a e. */
@@ -262,7 +264,7 @@ bool Stepper::take_back() {
   const long long steps = clock_.steps - before_.clock.steps;
   before_.nodes.restore(cloth_);
   EnergyFlow flow = before_.flow;
-  if (cloth_.version() != before_.version)  // torn meanwhile
+  if (arrays(cloth_).version() != before_.version)  // torn meanwhile
     flow.removed += before_.control.last + flow.work - flow.removed -
                     flow.drag - energy().total();
   control_->take_back(before_.control, steps);
@@ -316,7 +318,7 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
 void Stepper::keep_checked() {
   checked_ = clock_;
   flow_ = flow();
-  version_ = cloth_.version();
+  version_ = arrays(cloth_).version();
   const double thin = watched_->thinnest();
   if (!std::isfinite(thin)) return;
   const double gain = std::abs(gravity_) * guard_interval * clock_.dt;
@@ -342,7 +344,7 @@ void Stepper::archive(Archive& a) {
   balance_->archive(a);
   guard_->archive(a);
   method_->archive(a, cloth_);
-  if (a.loads()) version_ = cloth_.version();
+  if (a.loads()) version_ = arrays(cloth_).version();
   long long evaluated = evaluations();
   Work worked = work();
   a(evaluated)(worked)(sampled_)(drag_power_);
@@ -359,10 +361,12 @@ void Stepper::archive(Archive& a) {
   a.require(clock_.dt <= control_->dt() && looked_ <= time() &&
             std::isfinite(looked_));
   for (Snapshot* s : {&before_, &latest_}) {
-    bool whole = s->version == cloth_.version();  // nothing removed since
+    bool whole =
+        s->version == arrays(cloth_).version();  // nothing removed since
     a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
     a.require(not_after(s->clock));
-    if (a.loads()) s->version = whole ? cloth_.version() : ~cloth_.version();
+    if (a.loads())
+      s->version = whole ? arrays(cloth_).version() : ~arrays(cloth_).version();
   }
 }
 

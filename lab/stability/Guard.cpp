@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -53,8 +54,8 @@ void NodeStates::archive(Archive& a) {
 }
 
 void NodeStates::keep(const Cloth& g) {
-  auto x = g.positions();
-  auto v = g.node_values();
+  auto x = arrays(g).positions();
+  auto v = arrays(g).node_values();
   position_.assign(x.begin(), x.end());
   value_.assign(v.begin(), v.end());
 }

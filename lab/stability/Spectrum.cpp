@@ -5,6 +5,7 @@
 #include <random>
 
 #include <Eigen/Eigenvalues>
+#include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
 
@@ -40,10 +41,10 @@ void find_springs(const Cloth& g, const ForcePlan& force,
 
 void find_scales(const Cloth& g, const ConstraintPlan& constraint,
                  std::vector<double>& scale) {
-  scale.assign(g.node_slots(), 0);
-  auto node = g.node_values();
-  for (unsigned i = 0; i < g.node_slots(); ++i)
-    if (g.node_in_use(i)) scale[i] = 1 / std::sqrt(node[i].mass);
+  scale.assign(arrays(g).node_slots(), 0);
+  auto node = arrays(g).node_values();
+  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
+    if (arrays(g).node_in_use(i)) scale[i] = 1 / std::sqrt(node[i].mass);
   constraint.each_held(g, [&](Node n) { scale[n.id()] = 0; });
 }
 
@@ -165,7 +166,8 @@ double omega_gershgorin(const Cloth& g, const ForcePlan& force,
   std::vector<double> scale;
   find_springs(g, force, springs);
   find_scales(g, constraint, scale);
-  std::vector<Eigen::Matrix3d> sum(g.node_slots(), Eigen::Matrix3d::Zero());
+  std::vector<Eigen::Matrix3d> sum(arrays(g).node_slots(),
+                                   Eigen::Matrix3d::Zero());
   for (const Spring& s : springs) {
     const double along = std::max(0.0, s.B.along);
     const double across = std::max(0.0, s.B.across);

@@ -1,5 +1,5 @@
-"""Tests of make try: steps with planted mistakes (mistakes.toml), methods that
-nobody has, and those of methods.hpp.
+"""Tests of make try: steps with planted mistakes (mistakes.toml, and those of
+course/wrong with `finds`), methods that nobody has, and those of methods.hpp.
 
     python3 lab/try/test_try.py [FOLDER]       by default build/try
 
@@ -21,7 +21,9 @@ from workshop import ROOT, BadInput  # it knows the way to course/kit
 
 from tasks import tomllib
 
-sys.path.append(str(ROOT / "lab/charts"))
+sys.path += [str(ROOT / "course/kit"), str(ROOT / "lab/charts")]
+import markers  # noqa: E402
+import mistakes  # noqa: E402
 from results import Table, believed, runs  # noqa: E402
 
 QUICK = ("trace", "same", "order")
@@ -62,6 +64,27 @@ for (int i = 0; i < 5; ++i) {
 }
 constraint(g, end);
 """
+
+
+STEP = re.compile(r"template <typename G, typename F(?:, typename C)?>\n"
+                  r"double symp_euler_step\(.*?\n}\n", re.DOTALL)
+
+
+def of_the_course():
+    """The mistakes of course/wrong that make try finds, as cases: each a file
+    mine.hpp, or the step of mass_spring.hpp that it changes."""
+    found = [one for table in ("cloth", "step")
+             for one in mistakes.read(table) if one.finds]
+    for one in found:
+        right = markers.solution(markers.path_of(one.file).read_text())
+        text = one.edited(right)
+        if one.file == "mass_spring.hpp":
+            step = next(own for own, solved in zip(
+                STEP.findall(text), STEP.findall(right)) if own != solved)
+            text = ('#include "mass_spring.hpp"\n'
+                    + step.replace("symp_euler_step", "my_step"))
+        yield {"name": one.name, "file": text, "says": one.finds,
+               "status": one.status}
 
 
 def text_of(case):
@@ -240,8 +263,8 @@ def main():
     sample = slice(int(os.environ.get("FIRST") or 0), None,
                    int(os.environ.get("EVERY") or 1))
     toml = (ROOT / "lab/try/mistakes.toml").read_text(encoding="utf-8")
-    cases = [(case["name"], mistake, case)
-             for case in tomllib.loads(toml)["mistake"][sample]]
+    cases = [(case["name"], mistake, case) for case in
+             [*of_the_course(), *tomllib.loads(toml)["mistake"]][sample]]
     cases += [("without constraint", without_constraint, None)]
     cases += [(f"own method {seed}", own_method, seed) for seed in (1, 2)]
     cases += [(row[0], declared, row) for row in DECLARED[sample]]

@@ -17,6 +17,7 @@
 
 #include "CME212/SDLViewer.hpp"
 #include "CME212/viewer/Image.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/Scene.hpp"
 
@@ -73,9 +74,10 @@ class SDLScreen : public Screen {
     if (!shown_ || moves) set_view(scene, beside);
     if (kind_ == Kind::film) follow(g);
     const auto moved = [&](Node n) { return n.position() + beside; };
-    const bool same = shown_ && version_ == g.version() &&
-                      rival_shown_ == (rival != nullptr) &&
-                      (!rival || rival_version_ == rival->cloth().version());
+    const bool same =
+        shown_ && version_ == arrays(g).version() &&
+        rival_shown_ == (rival != nullptr) &&
+        (!rival || rival_version_ == arrays(rival->cloth()).version());
     if (!same) viewer_.clear(), nodes_.clear(), rival_nodes_.clear();
     viewer_.add_nodes(g.node_begin(), g.node_end(), color_of(CME212::Color(1)),
                       nodes_);
@@ -92,8 +94,8 @@ class SDLScreen : public Screen {
     };
     join(scene, nodes_);
     if (rival) join(*rival, rival_nodes_);
-    version_ = g.version();
-    rival_version_ = rival ? rival->cloth().version() : 0;
+    version_ = arrays(g).version();
+    rival_version_ = rival ? arrays(rival->cloth()).version() : 0;
     rival_shown_ = rival;
     shown_ = true;
   }
@@ -210,7 +212,9 @@ class SDLScreen : public Screen {
     const auto& built = scene.recipe().built;
     if (!built) return faces;
     const Cloth& g = scene.cloth();
-    auto node = [&](unsigned i) { return g.node_with_id(built->ids[i]); };
+    auto node = [&](unsigned i) {
+      return arrays(g).node_with_id(built->ids[i]);
+    };
     for (const Quad& q : quads_left(g, *built))
       faces.push_back({node(q[0]), node(q[1]), node(q[2]), node(q[3])});
     return faces;

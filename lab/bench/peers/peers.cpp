@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -56,7 +57,7 @@ class Equation {
   std::size_t size() const { return 3 * held_.size(); }
   /** Positions and velocities at t = 0. */
   State start() const {
-    const double* x = &at_start.cloth.positions()[0].x;
+    const double* x = &arrays(at_start.cloth).positions()[0].x;
     State y(x, x + size());
     y.resize(2 * size());
     return y;
@@ -85,7 +86,8 @@ class Equation {
 
  private:
   FlatFlow flow_;
-  std::vector<bool> held_ = std::vector<bool>(at_start.cloth.node_slots());
+  std::vector<bool> held_ =
+      std::vector<bool>(arrays(at_start.cloth).node_slots());
 };
 
 Equation* equation;  // for the C callbacks
