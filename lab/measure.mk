@@ -155,7 +155,6 @@ peers-deps:
 	@tools/deps.sh peers
 peers-chart: $(B)/peers
 	@{ echo "# $(measured_on)" && $(B)/peers; } > $(B)/peers.csv
-	@/usr/bin/python3 $(peers)/dop853.py $(B)/peers $(B)/peers.csv
 	@mv $(B)/peers.csv lab/bench/results/peers.csv
 	@$(draw) peers
 peers-bench:

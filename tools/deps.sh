@@ -19,8 +19,7 @@ packages() {
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
                  "librapidcheck-dev libbenchmark-dev libpng-dev xvfb xauth" \
                  "xdotool valgrind" ;;
-    peers)  echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" \
-                 "python3-scipy" ;;
+    peers)  echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;
     web)    echo "clang-N lld-N wasi-libc libc++-N-dev-wasm32" \

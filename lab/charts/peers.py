@@ -7,7 +7,7 @@ from results import COARSE, TRUSTED, Table, by_method, cost_at, runs
 # The first word of a method's name: the library, and its color.
 LIBRARIES = {"odeint": ("Boost.odeint", "#0072B2"), "gsl": ("GSL", "#D55E00"),
              "cvode": ("SUNDIALS", "#009E73"),
-             "arkode": ("SUNDIALS", "#009E73"), "scipy": ("scipy", "#CC79A7")}
+             "arkode": ("SUNDIALS", "#009E73")}
 FINE = 1e-6  # the error of which the title speaks [m]
 COSTS = (("force evaluations", lambda r: r.evaluations,
           lambda cost: f"{cost:,.0f}"),
@@ -83,8 +83,7 @@ def peers(csv, out):
         out, 800, 640, message(problems),
         "A curve: what a library's cheapest method costs, divided by what the "
         "cheapest of ours costs at the same error. By the thick\nline: which "
-        f"of ours ({', '.join(ours)}), and its cost. "
-        "scipy's time, that of Python, is left out.", table.footer())
+        f"of ours ({', '.join(ours)}), and its cost.", table.footer())
     for row, (what, cost, shown) in enumerate(COSTS):
         points = []
         for some in problems:

@@ -199,8 +199,8 @@ class Libraries(unittest.TestCase):
 
     def test_a_library_is_its_best_method_where_it_reaches_the_error(self):
         theirs = [run("cvode-b", 1e-3, 4), run("arkode-c", 1e-3, 2),
-                  run("arkode-c", 1e-5, 30), run("scipy-d", 1e-3, 3)]
-        for error, wanted in ((1e-3, {"SUNDIALS": 2, "scipy": 3}),
+                  run("arkode-c", 1e-5, 30), run("gsl-d", 1e-3, 3)]
+        for error, wanted in ((1e-3, {"SUNDIALS": 2, "GSL": 3}),
                               (1e-5, {"SUNDIALS": 3})):
             found = peers.factors(error, self.OURS + theirs, seconds)
             self.assertEqual(found.keys(), wanted.keys())
@@ -208,7 +208,7 @@ class Libraries(unittest.TestCase):
                 self.assertAlmostEqual(found[who], factor, places=6)
 
     def test_a_run_without_a_time_has_no_curve_of_time(self):
-        theirs = [run("scipy-b", error, 0, 9) for error in (1e-3, 1e-5)]
+        theirs = [run("gsl-b", error, 0, 9) for error in (1e-3, 1e-5)]
         self.assertEqual(peers.factors(1e-4, self.OURS + theirs, seconds), {})
 
     def test_the_title_tells_of_a_lead(self):

@@ -6,11 +6,10 @@
  * Each library is used as its manual suggests, with the values of a cloth at
  * all nodes and edges and with the same formula for springs. */
 #if !__has_include(<boost/graph/adjacency_list.hpp>) || \
-    !__has_include(<lemon/list_graph.h>)
+    !__has_include(<lemon/smart_graph.h>)
 #error "Boost or LEMON is missing: make peers-deps"
 #endif
 
-#include <lemon/list_graph.h>
 #include <lemon/smart_graph.h>
 
 #include <algorithm>
@@ -19,7 +18,6 @@
 #include <optional>
 #include <random>
 #include <set>
-#include <type_traits>
 #include <vector>
 
 #include "lab/fast/Energy.hpp"
@@ -111,19 +109,17 @@ struct Ours {
   }
 };
 
-/** @tparam G SmartGraph, which can only grow, or ListGraph */
-template <typename G>
+/** A graph of LEMON's that can only grow. */
 struct Lemon {
-  static constexpr const char* name = std::is_same_v<G, lemon::SmartGraph>
-                                          ? "LEMON SmartGraph"
-                                          : "LEMON ListGraph";
+  static constexpr const char* name = "LEMON SmartGraph";
+  using G = lemon::SmartGraph;
   template <typename Key, typename Value>
   using Map = lemon::VectorMap<G, Key, Value>;
   G g;
   // Made when the graph is complete: so they are allocated just once.
-  std::optional<Map<typename G::Node, Point>> position;
-  std::optional<Map<typename G::Node, NodeData>> node_value;
-  std::optional<Map<typename G::Edge, EdgeData>> edge_value;
+  std::optional<Map<G::Node, Point>> position;
+  std::optional<Map<G::Node, NodeData>> node_value;
+  std::optional<Map<G::Edge, EdgeData>> edge_value;
 
   void make_room() {
     g.reserveNode(int(square.points.size()));
@@ -139,18 +135,18 @@ struct Lemon {
     position.emplace(g);
     node_value.emplace(g);
     edge_value.emplace(g);
-    for (typename G::NodeIt n(g); n != lemon::INVALID; ++n) {
+    for (G::NodeIt n(g); n != lemon::INVALID; ++n) {
       (*position)[n] = square.points[std::size_t(g.id(n))];
       (*node_value)[n] = square.node_value();
     }
-    for (typename G::EdgeIt e(g); e != lemon::INVALID; ++e)
+    for (G::EdgeIt e(g); e != lemon::INVALID; ++e)
       (*edge_value)[e] =
           square.spring({unsigned(g.id(g.u(e))), unsigned(g.id(g.v(e)))});
   }
   void forces(std::vector<Point>& force) {
-    for (typename G::NodeIt n(g); n != lemon::INVALID; ++n) {
+    for (G::NodeIt n(g); n != lemon::INVALID; ++n) {
       Point f;
-      for (typename G::OutArcIt a(g, n); a != lemon::INVALID; ++a)
+      for (G::OutArcIt a(g, n); a != lemon::INVALID; ++a)
         f += spring_force((*position)[g.target(a)] - (*position)[n],
                           (*edge_value)[a]);
       force[std::size_t(g.id(n))] = f;
@@ -158,7 +154,7 @@ struct Lemon {
   }
   double energy() {
     double sum = 0;
-    for (typename G::EdgeIt e(g); e != lemon::INVALID; ++e) {
+    for (G::EdgeIt e(g); e != lemon::INVALID; ++e) {
       Point u = (*position)[g.u(e)] - (*position)[g.v(e)];
       sum += spring_energy(norm(u), (*edge_value)[e]);
     }
@@ -171,10 +167,6 @@ struct Lemon {
              lemon::INVALID;
     return yes;
   }
-  void remove(const std::vector<unsigned>& nodes) requires(
-      !std::is_same_v<G, lemon::SmartGraph>) {
-    for (unsigned i : nodes) g.erase(g.nodeFromId(int(i)));
-  }
 };
 
 struct BoostNode {
@@ -182,16 +174,13 @@ struct BoostNode {
   NodeData value;
 };
 
-/** @tparam List vecS or setS, which refuses parallel edges by itself.
- * With Nodes = vecS a removal renumbers all nodes; with listS handles stay. */
-template <typename List, typename Nodes>
+/** A graph of Boost's in arrays: a removal renumbers all nodes. */
 struct Boost {
-  static constexpr bool is_set = std::is_same_v<List, boost::setS>;
-  static constexpr const char* name = is_set ? "Boost setS" : "Boost vecS";
-  using G = boost::adjacency_list<List, Nodes, boost::undirectedS, BoostNode,
-                                  EdgeData>;
+  static constexpr const char* name = "Boost vecS";
+  using G = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
+                                  BoostNode, EdgeData>;
   G g;
-  std::vector<typename G::vertex_descriptor> node;
+  std::vector<G::vertex_descriptor> node;
 
   void build(const std::vector<Pair>& edges, bool may_repeat) {
     node.reserve(square.points.size());
@@ -199,7 +188,7 @@ struct Boost {
       node.push_back(add_vertex(BoostNode{p, square.node_value()}, g));
     for (Pair p : edges) {
       auto a = node[p[0]], b = node[p[1]];
-      if (is_set || !may_repeat || !edge(a, b, g).second)
+      if (!may_repeat || !edge(a, b, g).second)
         add_edge(a, b, square.spring(p), g);
     }
   }
@@ -226,7 +215,7 @@ struct Boost {
     return yes;
   }
   void remove(std::vector<unsigned> nodes) {
-    if (!is_set) std::sort(nodes.rbegin(), nodes.rend());  // so numbers stay
+    std::sort(nodes.rbegin(), nodes.rend());  // so numbers stay
     for (unsigned i : nodes) {
       clear_vertex(node[i], g);
       remove_vertex(node[i], g);

@@ -114,10 +114,8 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   add_all<Ours>();
-  add_all<Boost<boost::vecS, boost::vecS>>();
-  add_all<Boost<boost::setS, boost::listS>>();
-  add_all<Lemon<lemon::SmartGraph>>();
-  add_all<Lemon<lemon::ListGraph>>();
+  add_all<Boost>();
+  add_all<Lemon>();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
 }
