@@ -214,12 +214,8 @@ class DampingForce : public ZeroForce {
   explicit DampingForce(const Cloth& g) : DampingForce(1.0 / g.num_nodes()) {
     assert(g.num_nodes() > 0);
   }
-  /** The same for the graph of the first call. */
-  DampingForce() = default;
-  /** c; or -1 if it was made without an argument and not yet called. */
   double coefficient() const { return c_; }
   Point operator()(Node n, double /*t*/) const override {
-    if (c_ < 0) c_ = 1.0 / double(CME212::num_nodes_with(n));
     // BEGIN SOLUTION 5.1.DampingForce 3pt
     return -c_ * n.value().vel;
     // STUB (void)n;
@@ -228,7 +224,7 @@ class DampingForce : public ZeroForce {
   }
 
  private:
-  mutable double c_ = -1;
+  double c_;
 };
 
 /** A function Point(Node, double) as a ZeroForce. */
@@ -241,30 +237,12 @@ struct FunctionForce : ZeroForce {
   Point operator()(Node n, double t) const override { return function(n, t); }
 };
 
-/** A call of what @a p points to. */
-template <typename P>
-struct Pointer {
-  P p;
-  template <typename X>
-  auto operator()(X& x, double t) const -> decltype((*p)(x, t)) {
-    return (*p)(x, t);
-  }
-};
-
 /** 5.2: the sum of several forces, which copies of it share. */
 class CombinedForces : public ZeroForce {
  public:
   using List = std::vector<std::shared_ptr<const ZeroForce>>;
   /** @pre no pointer is null */
   explicit CombinedForces(List forces) : forces_(std::move(forces)) {}
-  /** The same from shared or unique pointers, or from plain pointers to forces
-   * that outlive it. */
-  template <typename P>
-  explicit CombinedForces(std::vector<P> forces) {
-    for (P& p : forces)
-      forces_.push_back(std::make_shared<FunctionForce<Pointer<P>>>(
-          Pointer<P>{std::move(p)}));
-  }
   const List& parts() const { return forces_; }
   Point operator()(Node n, double t) const override {
     // BEGIN SOLUTION 5.2.make_combined_force 5pt
@@ -322,15 +300,8 @@ class PinConstraint : public ZeroConstraint {
   explicit PinConstraint(std::span<const Node> nodes) {
     for (Node n : nodes) pins_.push_back({n, n.position()});
   }
-  /** Pin the two corners of the graph of the first call. That call finds them
-   * by their position, in O(N); so they must not have moved before. */
-  PinConstraint() : has_pins_(false) {}
-  /** False if made without a graph and not yet called. */
-  bool has_pins() const { return has_pins_; }
-  /** @pre has_pins() */
-  const std::vector<Pin>& pins() const { return assert(has_pins_), pins_; }
+  const std::vector<Pin>& pins() const { return pins_; }
   void operator()(Cloth& g, double /*t*/) const override {
-    if (!has_pins_) pins_ = PinConstraint(g).pins_, has_pins_ = true;
     // BEGIN SOLUTION 6.1.PinConstraint
     for (auto [n, place] : pins_)
       if (g.has_node(n)) n.position() = place, n.value().vel = Point();
@@ -339,8 +310,7 @@ class PinConstraint : public ZeroConstraint {
   }
 
  private:
-  mutable std::vector<Pin> pins_;
-  mutable bool has_pins_ = true;
+  std::vector<Pin> pins_;
 };
 
 /** A floor at height z. @post No node is below; one that was has v_z = 0. */
@@ -439,13 +409,6 @@ class CombinedConstraints : public ZeroConstraint {
   /** @pre no pointer is null */
   explicit CombinedConstraints(List constraints)
       : constraints_(std::move(constraints)) {}
-  /** The same from other pointers: as CombinedForces. */
-  template <typename P>
-  explicit CombinedConstraints(std::vector<P> constraints) {
-    for (P& p : constraints)
-      constraints_.push_back(std::make_shared<FunctionConstraint<Pointer<P>>>(
-          Pointer<P>{std::move(p)}));
-  }
   const List& parts() const { return constraints_; }
   void operator()(Cloth& g, double t) const override {
     // BEGIN SOLUTION 6.2.make_combined_constraints 4pt
@@ -467,10 +430,5 @@ CombinedConstraints make_combined_constraints(Cs... cs) {
   // STUB ((void)cs, ...);
   // STUB return CombinedConstraints(CombinedConstraints::List());
   // END SOLUTION
-}
-/** The same under its name in other years of the course. */
-template <typename... Cs>
-CombinedConstraints make_combined_constraint(Cs... cs) {
-  return make_combined_constraints(std::move(cs)...);
 }
 // END GUIDED

@@ -5,8 +5,6 @@
  * used where a graph has it. */
 #include <cstddef>
 #include <ranges>
-#include <set>
-#include <vector>
 
 namespace CME212 {
 
@@ -34,24 +32,6 @@ template <typename G>
 void reserve(G& g, std::size_t nodes, std::size_t edges) {
   if constexpr (requires { g.reserve(unsigned(nodes), unsigned(edges)); })
     g.reserve(unsigned(nodes), unsigned(edges));
-}
-
-/** The number of nodes in the graph of @a n. If a node can't tell its graph,
- * those that edges connect with @a n are counted, in O(E log E). */
-template <typename N>
-std::size_t num_nodes_with(const N& n) {
-  if constexpr (requires { n.graph().num_nodes(); }) {
-    return n.graph().num_nodes();
-  } else {
-    std::set<N> met = {n};
-    for (std::vector<N> left = {n}; !left.empty();) {
-      const N from = left.back();
-      left.pop_back();
-      for (auto e : edges(from))
-        if (met.insert(e.node2()).second) left.push_back(e.node2());
-    }
-    return met.size();
-  }
 }
 
 }  // namespace CME212

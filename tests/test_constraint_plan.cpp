@@ -105,20 +105,6 @@ TEST(ConstraintPlanPins, StopsOnlyTheHeldNodes) {
   EXPECT_EQ(b.value().vel, Point(1));
 }
 
-TEST(ConstraintPlanPins, FindTheCornersWhenTheyAreCalled) {
-  Cloth g;
-  Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(2, 0, 0));
-  const PinConstraint pins;
-  const ConstraintPlan plan(pins);
-  EXPECT_FALSE(plan.nodewise());
-  plan(g, 0);
-  a.position() = b.position() = Point(7);
-  plan(g, 0);
-  EXPECT_EQ(a.position(), Point());
-  EXPECT_EQ(b.position(), Point(7));
-  EXPECT_TRUE(ConstraintPlan(pins).nodewise()) << "now it knows them";
-}
-
 // ------------------------------------------------------------ Exact types
 
 /** Children of the course's constraints, each with another call. */

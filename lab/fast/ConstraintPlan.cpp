@@ -201,13 +201,11 @@ ConstraintPlan::ConstraintPlan(const ZeroConstraint& c) {
   add(std::shared_ptr<const ZeroConstraint>(std::shared_ptr<void>(), &c));
 }
 
-/** Pins that do not know their nodes yet are called, and find them. */
 void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
   const ZeroConstraint& c = *constraint;
   if (auto all = exactly<CombinedConstraints, FunctionConstraint>(c)) {
     for (const auto& part : all->parts()) add(part);
-  } else if (auto pins = exactly<PinConstraint, FunctionConstraint>(c);
-             pins && pins->has_pins()) {
+  } else if (auto pins = exactly<PinConstraint, FunctionConstraint>(c)) {
     terms_.push_back(std::make_shared<PinnedNodes>(pins->pins()));
   } else if (auto floor = exactly<PlaneConstraint, FunctionConstraint>(c)) {
     terms_.push_back(std::make_shared<Plane>(*floor));

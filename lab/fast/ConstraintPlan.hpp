@@ -218,7 +218,7 @@ class ConstraintPlan {
   requires(std::derived_from<std::remove_const_t<C>, ZeroConstraint> &&
            !Overrides<std::remove_const_t<C>, ZeroConstraint>)  //
       ConstraintPlan(C& c) {
-    add(std::make_shared<FunctionConstraint<Pointer<C*>>>(Pointer<C*>{&c}));
+    add(std::make_shared<FunctionConstraint<Pointer<C>>>(Pointer<C>{&c}));
   }
 
   /** Apply it to @a g at time @a t [s]; then restore_order(), if nodes

@@ -43,8 +43,7 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
     gravity_ += weight->gravity();
   } else if (exactly<MassSpringForce, FunctionForce>(f)) {
     ++springs_;
-  } else if (auto drag = exactly<DampingForce, FunctionForce>(f);
-             drag && drag->coefficient() >= 0) {
+  } else if (auto drag = exactly<DampingForce, FunctionForce>(f)) {
     drag_.add(drag->coefficient());
   } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
     drag_.add(*drags);

@@ -92,7 +92,7 @@ class ForcePlan {
   requires(std::derived_from<std::remove_const_t<F>, ZeroForce> &&
            !Overrides<std::remove_const_t<F>, ZeroForce>)  //
       ForcePlan(F& force) {
-    add(std::make_shared<FunctionForce<Pointer<F*>>>(Pointer<F*>{&force}));
+    add(std::make_shared<FunctionForce<Pointer<F>>>(Pointer<F>{&force}));
   }
 
   /** Add its swept forces and calls to @a f, as SweptForce::add_to(); and tell

@@ -26,6 +26,16 @@ std::shared_ptr<const Base> shared_as(T x) {
     return std::make_shared<Adapter<T>>(std::move(x));
 }
 
+/** A call of the object that it points to. */
+template <typename T>
+struct Pointer {
+  T* p;
+  template <typename X>
+  auto operator()(X& x, double t) const -> decltype((*p)(x, t)) {
+    return (*p)(x, t);
+  }
+};
+
 /** @a x, if it is a T but none of T's children, which may have another call; or
  * the T in an Adapter; else null. */
 template <typename T, template <typename> class Adapter, typename Base>
