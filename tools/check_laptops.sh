@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 scripts="tools/deps.sh tools/submit.sh tools/stored_scenes.sh"
 makefiles="Makefile CME212/viewer.mk lab/lab.mk lab/page/page.mk course/course.mk
   course/web/web.mk course/starter/Makefile course/starter/tests.mk"
-newer='\b(mapfile|readarray|coproc|nproc|timeout|flock|realpath) |declare -A'
+newer='(^|[^(a-z])(mapfile|readarray|coproc|nproc|timeout|flock|realpath) |declare -A'
 newer+='|\|&|&>>|\$\{[a-zA-Z_]+(\^|,)|wait -n|readlink -f|sed -i|stat -c'
 newer+='|grep -[a-zA-Z]*P|\$\(file |\bONESHELL|\bundefine |^private |[^:]::= |^[a-zA-Z_]+ *!= '
 # shellcheck disable=SC2086  # lists of words
