@@ -275,8 +275,8 @@ def a_change_goes_on_from_the_last_good_state(b):
 @test
 def an_explosion_is_seen(b):
     fail_by_stiffness(opened(b))
-    b.wait("page.beyond?.drawn !== undefined", 120)
-    assert "times slower" in b.value("$('busy').textContent")
+    b.wait("page.beyond?.drawn !== undefined && "
+           "$('busy').textContent.includes('times slower')", 120)
     moved = """(frames => frames.map(f => Math.max(...f.points.map((a, i) =>
       i % 4 < 3 ? Math.abs(a - frames[0].points[i]) : 0))))
       (page.beyond.frames)"""
