@@ -32,7 +32,7 @@ class Fault(Exception):
     pass
 
 
-def run(graph):
+def run(graph: pathlib.Path) -> list[list[tuple[str, float, int]]]:
     """For each stage the lines that it prints: (time, energy, nodes)."""
     folder = BUILD / graph.parent.name
     shutil.rmtree(folder, ignore_errors=True)
@@ -51,7 +51,7 @@ def run(graph):
             lines = [line for line in done.stderr.splitlines()
                      if "error:" in line] or done.stderr.splitlines() or [""]
             raise Fault(f"expected {what}, got: {lines[0]}")
-    stages = []
+    stages: list[list[tuple[str, float, int]]] = []
     for line in done.stdout.splitlines():
         if " steps of " in line:
             stages.append([])
@@ -60,10 +60,11 @@ def run(graph):
     return stages
 
 
-def compare(stages, expected):
+def compare(stages: list[list[tuple[str, float, int]]],
+            expected: list[list[tuple[str, float, int]]]) -> float:
     """Throw a Fault at the first line that differs.  The largest difference of
     the energies [J]."""
-    largest = 0
+    largest = 0.0
     for name, ours, theirs in zip(STAGES, expected, stages, strict=True):
         for (t, energy, nodes), other in zip(ours, theirs, strict=True):
             if other[2] != nodes:
@@ -77,7 +78,7 @@ def compare(stages, expected):
     return largest
 
 
-def main():
+def main() -> int:
     graphs = [*sorted(HERE.glob("*/Graph.hpp")),
               ROOT / "course/starter/open/Graph.hpp"][
                   int(os.environ.get("FIRST") or 0)::
@@ -100,7 +101,7 @@ def main():
                 failed += 1
                 print(f"FAIL  {name}: {fault}", flush=True)
     print(f"{len(graphs) - failed} passed, {failed} failed")
-    return failed != 0 or not graphs
+    return int(failed != 0 or not graphs)
 
 
 if __name__ == "__main__":

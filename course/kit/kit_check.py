@@ -26,7 +26,6 @@ import once
 import report
 import submission
 import tasks
-from tasks import tomllib
 
 BASES = ("solution", "simple", "forms")     # submissions that are right
 ESCAPED = [pathlib.Path(folder) / "kit-cheat"

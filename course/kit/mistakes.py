@@ -20,10 +20,10 @@ Each [[wrong]] is a submission with one mistake, or a right one that looks odd.
 [default] holds values for all entries of a file.
 """
 import functools
-import tomllib
 from dataclasses import dataclass, field
 
 import tasks
+from tasks import tomllib
 
 FOLDER = tasks.ROOT / "course/wrong"
 
@@ -52,10 +52,10 @@ class Mistake:
     shows: str = ""
 
     @property
-    def where(self):
+    def where(self) -> str:
         return f"course/wrong/{self.table}.toml: {self.name}"
 
-    def edited(self, text):
+    def edited(self, text: str) -> str:
         """`text`, which is that of its file, with the mistake."""
         if self.content is not None:
             text = self.content
@@ -71,7 +71,7 @@ class Mistake:
                 + "\n" * bool(self.append or self.content))
 
 
-def read(table):
+def read(table: str) -> list[Mistake]:
     """The mistakes of a file.  Throws MistakeError."""
     content = tomllib.loads((FOLDER / f"{table}.toml").read_text("utf-8"))
     try:
@@ -82,18 +82,18 @@ def read(table):
                            f"{str(error).partition(' ')[2]}") from None
 
 
-def tables():
+def tables() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
 @functools.cache
-def pictured():
+def pictured() -> dict[str, Mistake]:
     """{picture: Mistake} of those with a picture."""
     return {mistake.picture: mistake for table in tables()
             for mistake in read(table) if mistake.picture}
 
 
-def with_picture(text, file, picture):
+def with_picture(text: str, file: str, picture: str) -> str:
     """`text`, which is that of `file`, with the mistake of a picture, and with
     that of the picture on top of which this one is; as it is for ""."""
     if not picture:
@@ -103,6 +103,6 @@ def with_picture(text, file, picture):
     return mistake.edited(text) if mistake.file == file else text
 
 
-def shows(picture):
+def shows(picture: str) -> str:
     """The words below the figure of a picture."""
     return pictured()[picture].shows if picture else ""

@@ -51,7 +51,9 @@ PICTURES = {
 }
 
 
-def compiled(folder, mistake, stage, source, *more):
+def compiled(folder: pathlib.Path, mistake: str, stage: str,
+             source: str | pathlib.Path,
+             *more: str | pathlib.Path) -> pathlib.Path:
     """A program from the sources with a mistake, in the folder: @a source, one
     of these or another file, with more flags. Returns the program's path."""
     for file in markers.SOURCES:
@@ -66,7 +68,7 @@ def compiled(folder, mistake, stage, source, *more):
     return program
 
 
-def build(folder, mistake, stage):
+def build(folder: pathlib.Path, mistake: str, stage: str) -> pathlib.Path:
     """The program that draws the panels of a mistake."""
     viewer = os.environ.get("B", "build") + "/libviewer.a"
     subprocess.run(["make", "-s", viewer], cwd=ROOT, check=True)
@@ -78,7 +80,7 @@ def build(folder, mistake, stage):
                     *shlex.split(libraries))
 
 
-def draw(name, folder):
+def draw(name: str, folder: pathlib.Path) -> None:
     """Run the programs of a picture, and put their panels into a row."""
     count = sum(len(times) for _, _, times, _ in PICTURES[name])
     size = [str(1026 // count), str(HEIGHTS[count])]
@@ -104,7 +106,7 @@ def draw(name, folder):
           flush=True)
 
 
-def main():
+def main() -> None:
     names = sys.argv[1:] or list(PICTURES)
     for name in names:
         if name not in PICTURES:
