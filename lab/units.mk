@@ -15,7 +15,7 @@ UNITS ?= 6
 # Programs of their own: three specialize templates of other namespaces, four
 # are linked with the window, one hooks malloc, one renames realloc, one holds
 # the course's headers to what they bring, one has another Graph.hpp.
-tests_alone := test_graph test_graph_hubs test_graph_memory test_viewer \
+tests_alone := test_graph test_graph_memory test_viewer \
                test_faces test_image test_screen test_slot_map \
                test_cloth test_course_interface test_plain_steps
 

@@ -112,8 +112,8 @@ class GraphMemory : public ::testing::Test {
         g.add_edge(g.node(i), g.node(i - k), int(100 * i + k));
     }
   }
-  /** Of each kind: new, full to the brim in some array or block, with free
-   * slots and blocks, with hubs whose lists were searched long enough. */
+  /** Graphs that are new, full to the brim in some vector, with free slots,
+   * or dense. */
   static std::vector<std::function<void(G&)>> graphs() {
     std::vector<std::function<void(G&)>> all;
     for (unsigned n : {4u, 5u, 8u, 9u, 16u})

@@ -22,7 +22,7 @@ namespace lab::bench {
  *   64: neighbors are as near in memory, but not at a constant distance
  * - shuffled: read in random order, and reordered by build_ordered_cloth()
  * - torn: the grid, after a random half of its nodes was removed
- * - reindexed: torn, and then Graph::reindex() */
+ * - reindexed: torn, and then GraphArrays::reindex() */
 enum class Kind { grid, mixed, shuffled, torn, reindexed };
 
 /** 0, ..., count - 1 in random order within windows of 64. */
