@@ -26,7 +26,7 @@ PROGRAM = "mass_spring.cpp"
 
 # A picture is a row of panels: a mistake or none, the stage, times [s], and the
 # lowest z in view [m]. Beside mistakes that look right is the correct cloth.
-PICTURES = {
+PICTURES: dict[str, list[tuple[str, str, list[float], float]]] = {
     "3.2": [("", "problem1", [0.3, 0.6], -1.25)],
     "3.2-mistakes": [("sign", "problem1", [0.04], -0.45),
                      ("one loop", "problem1", [0.46], -0.75),
