@@ -13,7 +13,8 @@ starter solution:
 # ---- What make demo leaves without a display: no more than it needs is built.
 $(B)/demo: course/demo.cpp $(B)/libviewer.a
 	@mkdir -p $(dir $@) && echo '$(CXX) $@'
-	@$(CXX) $(common) -O1 -DNDEBUG $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -MT $@ \
+	@$(CXX) $(common) -O1 -DNDEBUG -DMASS_SPRING_VIEWER $(draw_flags) \
+	  $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -MT $@ \
 	  -MF $@.d -o $@ $< $(draw_libs)
 
 # ---- The grader
