@@ -62,7 +62,7 @@ try_film: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
 
 # ---- Charts: lab/charts/README.md
 
-charts: work_precision cloth
+charts: work_precision
 	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
 charts-quick:

@@ -6,6 +6,8 @@
 PROGRAM is bench_rounds. Instructions are counted by callgrind (valgrind, which
 has no AVX-512) in one step of each method with one and with two rounds: a
 constant, a multiple of the rounds and one of the products with the matrix."""
+from __future__ import annotations
+
 import re
 import subprocess
 import sys
@@ -20,23 +22,25 @@ STEPS = ("fast-mass-spring", "xpbd")
 AT_LIMIT = "1.92"
 
 
-def run(*command):
+def run(*command: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, check=True, text=True, capture_output=True,
                           timeout=3600)
 
 
-def counted(program, side, K, method, rounds):
+def counted(program: str, side: int, K: str, method: str,
+            rounds: int) -> tuple[int, int]:
     """(instructions, products) of a step, after a first one."""
     with tempfile.TemporaryDirectory() as folder:
         done = run("valgrind", "--tool=callgrind", "--collect-atstart=no",
                    "--toggle-collect=*measured*",
                    f"--callgrind-out-file={folder}/out", program, str(side), K,
                    method, str(rounds))
-    return (int(re.search(r"Collected : (\d+)", done.stderr)[1]),
+    return (int(re.findall(r"Collected : (\d+)", done.stderr)[0]),
             int(done.stdout))
 
 
-def model(one, two, soft):
+def model(one: tuple[int, int], two: tuple[int, int],
+          soft: tuple[int, int]) -> tuple[float, float, float]:
     """(once a step, for a round, for a product) [instructions], from steps of
     one and of two rounds, and of one round with other products."""
     product = ((one[0] - soft[0]) / (one[1] - soft[1])
@@ -45,7 +49,7 @@ def model(one, two, soft):
     return one[0] - each - one[1] * product, each, product
 
 
-def main():
+def main() -> None:
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     program = sys.argv[1]

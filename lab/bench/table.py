@@ -5,17 +5,20 @@
 
 Figures are measured in turn, in random order, so that a machine that slows
 down slows all."""
+from __future__ import annotations
+
 import argparse
 import json
 import pathlib
 import statistics
 import subprocess
 import tempfile
+from typing import Any
 
 TRIADS = "triad, three arrays of doubles"
 
 
-def measured(program, *options):
+def measured(program: str, *options: str) -> tuple[Any, Any]:
     """What a program of Google Benchmark writes: (context, {name: runs}), the
     names in its order, the runs by repetition."""
     with tempfile.NamedTemporaryFile() as file:
@@ -26,7 +29,7 @@ def measured(program, *options):
                         f"--benchmark_out={file.name}"],
                        check=True, stdout=subprocess.DEVNULL)
         found = json.load(file)
-    runs = {}
+    runs: dict[str, list[dict[str, Any]]] = {}
     of_repetitions = (r for r in found["benchmarks"]
                       if r["run_type"] == "iteration")
     for run in sorted(of_repetitions, key=lambda r: (r["family_index"],
@@ -35,7 +38,7 @@ def measured(program, *options):
     return found["context"], runs
 
 
-def figures(runs):
+def figures(runs: dict[str, list[dict[str, Any]]]) -> dict[Any, Any]:
     """The figures, each with its place in bench.json."""
     found = {}
     for name, some in runs.items():
@@ -54,7 +57,7 @@ def figures(runs):
     return found
 
 
-def print_table(context, found):
+def print_table(context: dict[str, str], found: dict[Any, Any]) -> None:
     def bandwidth(name):  # [GB/s]
         triad = found.get((TRIADS, name))
         return 24e-9 * triad["items"] / triad["median_s"] if triad else 0
@@ -78,7 +81,8 @@ def print_table(context, found):
         print(line)
 
 
-def write_json(context, found, path):
+def write_json(context: dict[str, str], found: dict[Any, Any],
+               path: pathlib.Path) -> None:
     about = ";".join(context["about"].replace(";", ",").splitlines()) + ";"
     lines = []
     for f in found.values():
@@ -90,7 +94,7 @@ def write_json(context, found, path):
                     ",\n  ".join(lines) + "\n ]}\n")
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter)

@@ -1,11 +1,15 @@
 """The chart to look at first: a scene and the error that is wanted say which
 method, and what it costs. Counted work decides, so no noise does."""
+from __future__ import annotations
+
 import re
 import textwrap
 from collections import Counter
+import pathlib
+from typing import Any
 
 from panels import DARK, GRAY, Picture, styles
-from results import TRUSTED, Table, cheapest, runs, tied
+from results import TRUSTED, Run, Table, cheapest, runs, tied
 
 KINDS = (("linear", ("chain", "curtain")),
          ("cloth in free motion", ("grid1-short", "grid1", "grid0")),
@@ -20,7 +24,7 @@ SHORT = {"symplectic-euler": "symp. euler",
          "fast-mass-spring": "fast spring"}
 
 
-def times(run):
+def times(run: Run) -> str:
     """The least and the median time of a run, as 1.2-1.5 ms or 380-490 us."""
     scale, unit = (1e3, "ms") if run.median >= 1e-3 else (1e6, "us")
     low, high = (f"{float(f'{scale * t:.2g}'):g}"
@@ -28,22 +32,22 @@ def times(run):
     return f"{low}{'-' + high if high != low else ''} {unit}"
 
 
-def plain(value):
+def plain(value: float) -> str:
     """1e-5, not 1e-05."""
     return f"{value:.0e}".replace("e-0", "e-")
 
 
-def lighter(color, share=0.7):
+def lighter(color: str, share: float = 0.7) -> str:
     """A color mixed with so much white."""
     parts = [int(color[k:k + 2], 16) for k in (1, 3, 5)]
     return "#" + "".join(f"{round(c + (255 - c) * share):02x}" for c in parts)
 
 
-def work(run):
+def work(run: Run) -> float:
     return run.work
 
 
-def decision(csv, out):
+def decision(csv: pathlib.Path, out: pathlib.Path) -> None:
     """A row for a scene, a column for an error; neighbors with one answer
     share a cell."""
     table, look = Table(csv), styles()
@@ -88,7 +92,7 @@ def decision(csv, out):
     picture.finish()
 
 
-def answers_of(some):
+def answers_of(some: list[Run]) -> list[Any]:
     """The run of least work for each wanted error; None below the
     reference's."""
     return [cheapest(wanted, some, work)
@@ -96,7 +100,7 @@ def answers_of(some):
             for wanted in WANTED]
 
 
-def message(answers):
+def message(answers: dict[str, list[Any]]) -> str:
     """What to take, for three questions: the method that answers most."""
     words = []
     for what, contact, fits in (
@@ -112,7 +116,8 @@ def message(answers):
     return " ".join(words)
 
 
-def cells(picture, y, some, answers, look):
+def cells(picture: Picture, y: float, some: list[Run],
+          answers: list[Any], look: dict[str, tuple[str, str]]) -> None:
     """A row of the table."""
     ties = [tied(wanted, some, work) if run else None
             for wanted, run in zip(WANTED, answers)]

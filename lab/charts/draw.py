@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import pathlib
 import sys
-from typing import Iterator
+from typing import Callable, Iterator
 
 import decision
 import peers
@@ -23,7 +23,7 @@ from panels import find_matplotlib
 from results import ROOT, ChartError, Table, believed, runs
 
 # name: room, CSV, the function that draws it.
-CHARTS = {
+CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
     "work_precision": ("charts", "work_precision.csv",
                        precision.work_precision),
     "decision": ("charts", "work_precision.csv", decision.decision),

@@ -6,24 +6,27 @@ figures.txt has the rules: a page, and below it pieces of its text in which
 {expression:format} stands for a number. An expression uses the functions
 below. Each number that is another one is reported as FILE:LINE, or written.
 Exit status: 0 all are right, or were written; 1 some are not."""
+from __future__ import annotations
+
 import argparse
 import re
 import statistics
 import sys
+from typing import Any, Callable
 
 import decision
 import peers
-from results import (ROOT, Table, by_method, cheapest, cost_at, ns_a_node,
+from results import (ROOT, Run, Table, by_method, cheapest, cost_at, ns_a_node,
                      runs, tied)
 
 sys.path.append(str(ROOT / "lab/advice"))
 import suite
 
 NUMBER = r"(?<![\d.])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
-tables = {}
+tables: dict[str, Table] = {}
 
 
-def table(path):
+def table(path: str) -> Table:
     """A table, read once; @a path from lab/."""
     if path not in tables:
         tables[path] = Table("lab/" + path)
@@ -32,7 +35,7 @@ def table(path):
 
 # ---- What an expression may use
 
-def of(scene, method=None):
+def of(scene: str, method: str | None = None) -> list[Run]:
     """Runs of work_precision.csv; of peers.csv if scene is 'peers NAME'."""
     rows = (table("bench/results/peers.csv").where(problem=scene.split()[1])
             if scene.startswith("peers ") else
@@ -40,23 +43,24 @@ def of(scene, method=None):
     return [r for r in runs(rows) if method in (None, r.method)]
 
 
-def at(scene, method, share=1):
+def at(scene: str, method: str, share: float = 1) -> Any:
     """The run whose step is nearest to a share of the largest stable one."""
     return min((r for r in of(scene, method) if r.ok and 0 < r.share < 1.01),
                key=lambda r: abs(r.share / share - 1))
 
 
-def ratio(scene, worse, better, share=1):
+def ratio(scene: str, worse: str, better: str, share: float = 1) -> float:
     """How many times as large one's error is, at their shares of the step."""
     return at(scene, worse, share).error / at(scene, better, share).error
 
 
-def best(scene, error, method=None, cost="seconds"):
+def best(scene: str, error: float, method: str | None = None,
+         cost: str = "seconds") -> Any:
     """The cheapest run that keeps an error."""
     return cheapest(error, of(scene, method), lambda r: getattr(r, cost))
 
 
-def cells_of(method=None, shared=False):
+def cells_of(method: str | None = None, shared: bool = False) -> int:
     """How many cells of the decision chart a method wins; or, being named
     second, shares; of all cells if no method is given."""
     count = 0
@@ -71,71 +75,73 @@ def cells_of(method=None, shared=False):
     return count
 
 
-def coarsest(scene, method):
+def coarsest(scene: str, method: str) -> Any:
     """The cheapest run that reached the end."""
     return next(r for r in by_method(of(scene))[method] if r.ok)
 
 
-def floor(scene):
+def floor(scene: str) -> float:
     return of(scene)[0].floor
 
 
-def long_run(method, column):
+def long_run(method: str, column: str) -> float:
     """A number of the table of long runs."""
     return float(table("charts/results/long_runs.csv").where(
         method=method)[0][column])
 
 
-def last_energy(method):
+def last_energy(method: str) -> tuple[float, float]:
     """[J], and [s] of that."""
     row = table("charts/results/energy.csv").where(method=method)[-1]
     return float(row["energy"]), float(row["t"])
 
 
-def stability(name, column, pick, scale="1", **where):
+def stability(name: str, column: str, pick: Callable[..., float],
+              scale: str = "1", **where: str) -> float:
     """The largest or least value of a column over one of another."""
     return pick(float(row[column]) / float(row.get(scale, 1))
                 for row in table(f"charts/results/stability_{name}.csv").where(
                     **where) if row[column])
 
 
-def stretched():
+def stretched() -> int:
     """How many cells of the growth map are of a stretched sheet."""
     return sum(float(row["stretch"]) > 1 for row in
                table("charts/results/stability_growth.csv").rows)
 
 
-def call(method):
+def call(method: str) -> float:
     """The median time of a force evaluation of peers.csv, all told [us]."""
     return statistics.median(1e6 * r.seconds / r.evaluations
                              for r in of("peers grid1", method))
 
 
-def cost_of(problem, error, method):
+def cost_of(problem: str, error: float, method: str) -> float | None:
     """Force evaluations at an error, as the chart of peers has them."""
     return cost_at(error, of(f"peers {problem}", method),
                    lambda r: r.evaluations)
 
 
-def lead(cost):
+def lead(cost: str) -> float:
     """By how much a library costs less than ours at most [%]."""
     return 100 * max(peers.advantage(of(f"peers {problem}"),
                                      lambda r: getattr(r, cost))[0]
                      for problem in ("grid1", "curtain"))
 
 
-def bench(nodes, name, beside):
+def bench(nodes: str, name: str, beside: str) -> float:
     """The median of a figure of bench.json over another one's."""
     of = ns_a_node(ROOT / "lab/bench/results/amd-epyc-26-avx512/bench.json")
     return of[int(nodes), name][1] / of[int(nodes), beside][1]
 
 
-def advice(which):
+def advice(which: str) -> float:
     """A figure of the suite of questions: lab/advice/suite.py."""
     return suite.rates(table("advice/results/adviser.csv").rows)[which]
 
 
-def round_of(nodes, K, method, rounds, what="work"):
+def round_of(nodes: str, K: str, method: str, rounds: int,
+             what: str = "work") -> float:
     """A row of rounds.csv: work [force evaluations], or a distance over the
     way that the cloth moves in the step [%]."""
     row = table("bench/results/rounds.csv").where(
@@ -144,7 +150,7 @@ def round_of(nodes, K, method, rounds, what="work"):
             100 * float(row[what]) / float(row["moved"]))
 
 
-def refined(what, column, k=-1):
+def refined(what: str, column: str, k: int = -1) -> float:
     """A row of grid_refinement.csv."""
     return float(table("charts/results/grid_refinement.csv").where(
         refined=what)[k][column])
@@ -152,12 +158,12 @@ def refined(what, column, k=-1):
 
 # ---- Text
 
-def shown(value, form):
+def shown(value: float, form: str) -> str:
     """A number as the text has it: 1e-6, not 1e-06."""
     return re.sub(r"e(-?)\+?0*(\d)", r"e\1\2", format(value, form))
 
 
-def compiled(piece, where):
+def compiled(piece: str, where: str) -> tuple[re.Pattern[str], list[str]]:
     """(regular expression, what its groups should be) of a rule."""
     parts, wanted = [], []
     for text in re.split(r"(?<!\^)(\{[^{}]*\})", piece):
@@ -175,7 +181,8 @@ def compiled(piece, where):
     return re.compile("".join(parts)), wanted
 
 
-def corrected(page, text, rules, faults):
+def corrected(page: str, text: str, rules: list[tuple[int, str]],
+              faults: list[str]) -> str:
     """The text with the numbers of its rules; faults get those that differ."""
     for line, piece in rules:
         where = f"lab/charts/figures.txt:{line}"
@@ -194,11 +201,12 @@ def corrected(page, text, rules, faults):
     return text
 
 
-def main():
+def main() -> bool:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--write", action="store_true")
     write = parser.parse_args().write
-    pages, page = {}, None
+    pages: dict[str, list[tuple[int, str]]] = {}
+    page: Any = None
     lines = (ROOT / "lab/charts/figures.txt").read_text().splitlines()
     for number, line in enumerate(lines, 1):
         if line.startswith("#") or not line.strip():
@@ -209,14 +217,14 @@ def main():
             page[-1] = page[-1][0], page[-1][1] + " " + line.strip()
         else:
             page.append((number, line.strip()))
-    faults = []
+    faults: list[str] = []
     for page, rules in pages.items():
         text = (ROOT / page).read_text()
         right = corrected(page, text, rules, faults)
         if write and right != text:
             (ROOT / page).write_text(right)
     print("\n".join(faults) or
-          f"{sum(map(len, pages.values()))} passages are right")
+          f"{sum(len(rules) for rules in pages.values())} passages are right")
     return bool([f for f in faults
                  if not write or f.startswith("lab/charts/figures.txt")])
 

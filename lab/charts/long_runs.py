@@ -7,12 +7,15 @@ CLOTH: the program. Positions are predictable for some seconds only. Columns:
 for each quantity the mean over 10 to 60 s, its uncertainty (the standard error
 of the means of ten blocks of 5 s) and the spread (the standard deviation in
 time); the error of the energy at the end, all in J and m."""
+from __future__ import annotations
+
 import csv
 import math
 import statistics
 import subprocess
 import sys
 import tempfile
+from typing import Iterator
 
 OMEGA = 305  # the highest frequency of this cloth [1/s]
 EXPLICIT = {"symplectic-euler": 2, "verlet": 2, "pefrl": 2.99,
@@ -24,7 +27,7 @@ START, BLOCK = 10, 5  # [s]
 QUANTITIES = {"kinetic": "kinetic", "elastic": "elastic", "height": "com_z"}
 
 
-def steps():
+def steps() -> Iterator[tuple[str, list[str]]]:
     """(method, options) of each run: half of the limit; 1e-6 m; 1/60 s."""
     for method, limit in EXPLICIT.items():
         yield method, ["--dt", f"{limit / OMEGA / 2:.6g}"]
@@ -33,20 +36,21 @@ def steps():
         yield method, ["--dt", f"{1 / 60:.6g}"]
 
 
-def averages(times, values):
+def averages(times: list[float],
+             values: list[float]) -> tuple[float, float, float]:
     """(mean, its uncertainty, spread) from START on."""
-    blocks = {}
+    found: dict[int, list[float]] = {}
     for t, value in zip(times, values):
         if t >= START:
-            blocks.setdefault(int((t - START) / BLOCK), []).append(value)
-    blocks = [some for some in blocks.values() if len(some) > 5]
+            found.setdefault(int((t - START) / BLOCK), []).append(value)
+    blocks = [some for some in found.values() if len(some) > 5]
     means = [statistics.fmean(some) for some in blocks]
     return (statistics.fmean(means),
             statistics.stdev(means) / math.sqrt(len(means)),
             statistics.pstdev([v for some in blocks for v in some]))
 
 
-def main():
+def main() -> None:
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     print("method,dt [s],evaluations," + ",".join(
@@ -61,7 +65,7 @@ def main():
             rows = list(csv.DictReader(open(file.name)))
         times = [float(row["t"]) for row in rows]
         dt = options[options.index("--dt") + 1]
-        cells = []
+        cells: list = []
         for column in QUANTITIES.values():
             cells += averages(times, [float(row[column]) for row in rows]
                               ) if done.returncode == 0 else [""] * 3

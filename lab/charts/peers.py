@@ -1,8 +1,13 @@
 """The chart of other libraries' methods beside ours."""
+from __future__ import annotations
+
 import math
+import pathlib
+from typing import Iterator
 
 from panels import DARK, LETTER, Axis, Curve, Panel, Picture
-from results import COARSE, TRUSTED, Table, by_method, cost_at, runs
+from results import (COARSE, TRUSTED, Cost, Run, Table, by_method, cost_at,
+                     runs)
 
 # The first word of a method's name: the library, and its color.
 LIBRARIES = {"odeint": ("Boost.odeint", "#0072B2"), "gsl": ("GSL", "#D55E00"),
@@ -14,15 +19,16 @@ COSTS = (("force evaluations", lambda r: r.evaluations,
          ("times", lambda r: r.seconds, lambda cost: f"{1e3 * cost:.1f} ms"))
 
 
-def library_of(method):
+def library_of(method: str) -> str:
     """The library's name; '' for ours."""
     return LIBRARIES.get(method.split("-")[0], ("",))[0]
 
 
-def best(error, some, cost):
+def best(error: float, some: list[Run],
+         cost: Cost) -> dict[str, tuple[float, str]]:
     """{library: (cost, method)} of the cheapest at an error, on lines between
     runs; '' is ours. A run without a cost does not count."""
-    found = {}
+    found: dict[str, tuple[float, str]] = {}
     for method, of in by_method([r for r in some if cost(r)]).items():
         c = cost_at(error, of, cost)
         if c:
@@ -31,7 +37,7 @@ def best(error, some, cost):
     return found
 
 
-def ladder(some):
+def ladder(some: list[Run]) -> Iterator[float]:
     """Errors from COARSE down to where the reference ends, 20 a decade."""
     error, last = COARSE, TRUSTED * max(r.floor for r in some)
     while error > last:
@@ -39,11 +45,11 @@ def ladder(some):
         error /= 10 ** 0.05
 
 
-def advantage(some, cost):
+def advantage(some: list[Run], cost: Cost) -> tuple[float, float, str]:
     """(share, error, method): by which share of its own cost the best of ours
     is dearer than the best of the libraries, at the error where that is
     largest."""
-    most = (0, 0, "")
+    most = (0., 0., "")
     for error in ladder(some):
         costs = best(error, some, cost)
         ours = costs.pop("", (math.inf, ""))
@@ -53,14 +59,14 @@ def advantage(some, cost):
     return most
 
 
-def factors(error, some, cost):
+def factors(error: float, some: list[Run], cost: Cost) -> dict[str, float]:
     """{library: its cost over ours} at an error, of those that reach it."""
     costs = best(error, some, cost)
     ours = costs.pop("", None)
     return {who: c / ours[0] for who, (c, _) in costs.items() if ours}
 
 
-def message(problems):
+def message(problems: list[list[Run]]) -> str:
     """The sentence above the chart, by force evaluations."""
     cost = COSTS[0][1]
     share = 100 * max(advantage(some, cost)[0] for some in problems)
@@ -71,7 +77,7 @@ def message(problems):
             f"{min(found):.1f} to {max(found):.1f} times as many")
 
 
-def peers(csv, out):
+def peers(csv: pathlib.Path, out: pathlib.Path) -> None:
     """Each library's cost over ours against error: force evaluations above,
     time below, a column for a problem."""
     table = Table(csv)
@@ -87,7 +93,7 @@ def peers(csv, out):
     for row, (what, cost, shown) in enumerate(COSTS):
         points = []
         for some in problems:
-            found = {}
+            found: dict[str, list[tuple[float, float]]] = {}
             for error in ladder(some):
                 for who, factor in factors(error, some, cost).items():
                     found.setdefault(who, []).append((error, factor))

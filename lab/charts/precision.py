@@ -1,11 +1,15 @@
 """Time against error, with the methods that are the cheapest at some error in
 color and a bar along the lower edge that says where; energy against time."""
+from __future__ import annotations
+
 import math
+import pathlib
+from typing import Any
 
 from panels import (BEHIND, DASHES, LETTER, Axis, Curve, Panel, Picture,
                     styles)
-from results import (COARSE, TRUSTED, Table, believed, by_method,
-                     runs, winners)
+from results import (COARSE, TRUSTED, Cost, Run, Segment, Table, believed,
+                     by_method, runs, winners)
 
 FAMILIES = (("splitting", "splitting methods"),
             ("runge-kutta", "Runge-Kutta(-Nystroem)"),
@@ -19,13 +23,14 @@ STRIP = 20  # height of the bar of winners [pixels]
 NARROW = 0.1  # what a title passes over [decades]
 
 
-def digits(value):
+def digits(value: float) -> str:
     """1.34e-5 as 1.3e-5, 2e-3 as 2e-3."""
     return f"{float(f'{value:.1e}'):g}" if value >= 1 else (
         f"{value:.1e}".replace(".0e", "e").replace("e-0", "e-"))
 
 
-def points_of(some, cost, coarsest):
+def points_of(some: list[Run], cost: Cost,
+              coarsest: float) -> list[tuple[float, float]]:
     """(error, cost) of a method's runs, from its largest stable step on, to
     the first one whose error is less than the axis shows."""
     good = [r for r in some if r.ok and r.share <= 1 and r.error < coarsest]
@@ -33,7 +38,8 @@ def points_of(some, cost, coarsest):
     return [(max(r.error, TRUSTED * r.floor), cost(r)) for r in good[:shown]]
 
 
-def strip(picture, panel, segments, colors):
+def strip(picture: Picture, panel: Panel, segments: list[Segment],
+          colors: dict[str, str]) -> None:
     """The winners along the lower edge of a panel, (method, from, to), each
     with its name if there is room for it."""
     y = panel.bottom
@@ -48,10 +54,10 @@ def strip(picture, panel, segments, colors):
     panel.keep_free.append((panel.left, y, panel.right, y + STRIP))
 
 
-def message(segments):
+def message(segments: list[Segment]) -> str:
     """Who is cheapest, in words: at coarse errors, and at most of the finer
     ones."""
-    wide = []
+    wide: list[Any] = []
     for method, start, end in segments:
         if wide and wide[-1][0] == method:
             wide[-1][2] = end
@@ -62,18 +68,18 @@ def message(segments):
     (first, _, bound), *finer = wide
     if not finer:
         return f"{first} is the fastest at every error"
-    decades_of = {}
+    decades_of: dict[str, float] = {}
     for method, start, end in finer:
         decades_of[method] = (decades_of.get(method, 0) +
                               math.log10(start / end))
-    most = max(decades_of, key=decades_of.get)
+    most = max(decades_of, key=lambda m: decades_of[m])
     if most == first:
         return f"{first} is the fastest at most errors"
     return (f"Fastest: {first} above {digits(bound)} m, below it "
             f"{'mostly ' if len(decades_of) > 1 else ''}{most}")
 
 
-def work_precision(csv, out, scene):
+def work_precision(csv: pathlib.Path, out: pathlib.Path, scene: str) -> None:
     """Time against error for one scene; some of its runs are believed."""
     table, look = Table(csv), styles()
     some = runs(table.where(scene=scene))
@@ -111,12 +117,13 @@ def work_precision(csv, out, scene):
     picture.finish()
 
 
-def energy(csv, out):
+def energy(csv: pathlib.Path, out: pathlib.Path) -> None:
     """How far the energy has been off so far against time, a panel for a
     family."""
     table = Table(csv)
     look = styles()
-    curves, worst = {}, {}
+    curves: dict[str, Any] = {}
+    worst: dict[str, float] = {}
     for row in table.rows:
         m, t, off = row["method"], float(row["t"]), abs(float(row["energy"]))
         c = curves.setdefault(m, Curve(m, [], look[m][0], 0, m,
@@ -136,9 +143,9 @@ def energy(csv, out):
             ("rk4", max, "", lambda m: m == "rk4"),
             ("implicit", min, " or more",
              lambda m: look[m][1] == "implicit")):
-        off = [worst[m] for m in worst if chosen(m)]
-        if off:
-            words.append(f"{who} {pick(off):.2g} J{how}")
+        all_of = [worst[m] for m in worst if chosen(m)]
+        if all_of:
+            words.append(f"{who} {pick(all_of):.2g} J{how}")
     picture = Picture(out, 800, 456, "Energy error: " + ", ".join(words),
                       f"{about}: the true energy stays at 0 J. A curve: the "
                       "largest distance from it up to that time.\n" +

@@ -1,10 +1,13 @@
 """Read the CSV files of lab/*/results, and answer what is asked of them."""
+from __future__ import annotations
+
 import csv
 import json
 import math
 import pathlib
 import re
 from dataclasses import dataclass
+from typing import Any, Callable
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COARSE = 0.01  # the largest error that is wanted, of a cloth of 1 m [m]
@@ -13,11 +16,24 @@ RATIOS = "lab/bench/results/rounds.csv"  # instructions of a step
 TRUSTED = 10  # an error below so many floors says nothing
 
 
+Cost = Callable[["Run"], float]
+Segment = tuple[str, float, float]  # method, from, to
+Costs = tuple[dict[str, tuple[float, float, float]], tuple[float, ...]]
+
+
 class ChartError(Exception):
     """A chart that can't be drawn, and why, in one line."""
 
 
-def ns_a_node(path):
+def match(pattern: str, text: str, flags: int = 0) -> re.Match[str]:
+    """re.search() of what has to be there."""
+    found = re.search(pattern, text, flags)
+    if not found:
+        raise ChartError(f"there is no '{pattern}'")
+    return found
+
+
+def ns_a_node(path: pathlib.Path) -> dict[tuple[int, str], Any]:
     """{(nodes, figure): (lowest, median, highest)} of a JSON of bench."""
     found = {}
     for f in json.loads(path.read_text())["figures"]:
@@ -36,7 +52,8 @@ class Table:
         self.path = ROOT / path
         lines = self.path.read_text().splitlines()
         self.notes = [line[2:] for line in lines if line.startswith("#")]
-        head, self.rows = [], []
+        head: list[str] = []
+        self.rows: list[dict[str, str]] = []
         for number, line in enumerate(lines, 1):
             if line.startswith("#"):
                 continue
@@ -49,25 +66,25 @@ class Table:
             else:
                 self.rows.append(dict(zip(head, row)))
 
-    def note(self, what):
+    def note(self, what: str) -> str:
         """What stands behind `# what: `; '' if nothing does."""
         return next((note[len(what) + 2:] for note in self.notes
                      if note.startswith(what + ": ")), "")
 
-    def footer(self):
+    def footer(self) -> str:
         """Machine, compiler and commit, for the corner of a chart."""
         if not self.note("commit"):
             return self.notes[0]
         return (f"{self.note('machine')}; {self.note('compiler')}; "
                 f"commit {self.note('commit')}")
 
-    def where(self, **wanted):
+    def where(self, **wanted: str) -> list[dict[str, str]]:
         """The rows that have these values."""
         return [row for row in self.rows
                 if all(row[k] == v for k, v in wanted.items())]
 
 
-def solver_costs():
+def solver_costs() -> Costs:
     """What methods spend on more than forces, in force evaluations, by the
     instructions that `make rounds-chart` counts: {method: (cost of a step over
     its force evaluations, of an inner step, once)}; and for Newton's methods
@@ -76,15 +93,15 @@ def solver_costs():
     each = {line.split(",")[0]: int(line.split(",")[3]) for line in lines
             if not line.startswith("#")}
     text = (ROOT / RATIOS).read_text()
-    factor = float(re.search("# the factor of .*: (.*)", text)[1])
-    costs = {m: (float(cost) / each[m], 0, 0 if m == "xpbd" else factor)
+    factor = float(match("# the factor of .*: (.*)", text)[1])
+    costs = {m: (float(cost) / each[m], 0., 0. if m == "xpbd" else factor)
              for m, cost in re.findall(
                  r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
-    name, step, inner = re.search(
+    name, step, inner = match(
         r"# ([\w-]+) on mixed: (.*) a step, (.*) an inner step", text).groups()
     costs[name] = (float(step), float(inner), 0)
     (system, product), (by_factor, _) = (
-        map(float, re.search(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
+        map(float, match(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
                              "(.*) a product", text).groups())
         for by in ("gradients", "factor"))
     return costs, (system - 1, product, by_factor - system)
@@ -110,7 +127,7 @@ class Run:
     inner: float = 0           # steps
 
     @property
-    def work(self):
+    def work(self) -> float:
         """Counted, in force evaluations. What a run does besides counts
         by its instructions."""
         if self.method in SOLVERS:
@@ -120,7 +137,7 @@ class Run:
             n * cost for n, cost in zip(self.solves, NEWTON))
 
 
-def runs(rows):
+def runs(rows: list[dict[str, str]]) -> list[Run]:
     """The runs in rows of work_precision.csv or of peers.csv."""
     def number(row, name):
         return float(row.get(name) or 0)
@@ -135,32 +152,32 @@ def runs(rows):
                 number(row, "inner")) for row in rows]
 
 
-def believed(some):
+def believed(some: list[Run]) -> list[Run]:
     """The runs whose error is their own, not the reference's."""
     return [r for r in some if r.ok and r.error >= TRUSTED * r.floor]
 
 
-def by_method(some):
+def by_method(some: list[Run]) -> dict[str, list[Run]]:
     """{method: its runs, the coarsest first}."""
-    found = {}
+    found: dict[str, list[Run]] = {}
     for run in some:
         found.setdefault(run.method, []).append(run)
     return {m: sorted(of, key=lambda r: (-r.tolerance, r.evaluations))
             for m, of in found.items()}
 
 
-def reliable(of):
+def reliable(of: list[Run]) -> list[tuple[float, Run]]:
     """(error, run) for runs of one method: the error that this run and all
     that cost more keep, or TRUSTED floors if that is more. Largest first. A
     run beyond the stability limit may end well by luck: none of these."""
-    kept, worst = [], 0
+    kept, worst = [], 0.
     for run in reversed([run for run in of if run.ok and run.share <= 1]):
         worst = max(worst, run.error, TRUSTED * run.floor)
         kept.append((worst, run))
     return kept[::-1]
 
 
-def cost_at(error, of, cost):
+def cost_at(error: float, of: list[Run], cost: Cost) -> float | None:
     """What runs of one method cost at an error, on the line between the two
     next to it in a log-log chart; None if none is as exact. Down to TRUSTED
     floors only. @a cost: a function of a run."""
@@ -175,7 +192,7 @@ def cost_at(error, of, cost):
     return cost(after[1]) if after else None
 
 
-def cheapest(error, some, cost):
+def cheapest(error: float, some: list[Run], cost: Cost) -> Any:
     """The run that costs least of those that keep an error, as do all finer
     ones of its method; of those that TIE with it the most exact one. None if
     there is none."""
@@ -187,7 +204,7 @@ def cheapest(error, some, cost):
                key=lambda f: f[0])[1]
 
 
-def tied(error, some, cost):
+def tied(error: float, some: list[Run], cost: Cost) -> list[str]:
     """The other methods that keep an error for at most 1/TIE of the least
     cost, by name."""
     best = cheapest(error, some, cost)
@@ -197,12 +214,13 @@ def tied(error, some, cost):
                   TIE * c <= min(least.values()))
 
 
-def winners(some, cost):
+def winners(some: list[Run], cost: Cost) -> list[Segment]:
     """(method, from, to), from COARSE or less down: whose run is the
     cheapest() at the errors from @a from, which is not one of them, to @a to,
     which is; at the first from it is too."""
     kept = {k for of in by_method(some).values() for k, _ in reliable(of)}
-    found, start = [], min(max(kept, default=0), COARSE)
+    found: list[Any] = []
+    start = min(max(kept, default=0), COARSE)
     # Between two errors that runs keep the choice is the same.
     for error in sorted((k for k in kept if k <= COARSE), reverse=True):
         method = cheapest(error, some, cost).method
@@ -211,4 +229,4 @@ def winners(some, cost):
         else:
             found.append([method, start, error])
         start = error
-    return [tuple(segment) for segment in found]
+    return [(method, a, b) for method, a, b in found]

@@ -1,6 +1,9 @@
 """How near the rounds of an implicit step come to the converged step, and to
 the true motion, for how much work a frame."""
+from __future__ import annotations
+
 import math
+import pathlib
 
 from panels import GRAY, Axis, Curve, Panel, Picture, styles
 from results import Table
@@ -17,7 +20,8 @@ WITHIN = 0.01  # of the distance moved: what the title asks for
 LEAST = 1e-4  # what is closer is drawn here
 
 
-def cheapest_within(rows, share=WITHIN):
+def cheapest_within(rows: list[dict[str, str]],
+                    share: float = WITHIN) -> tuple[str, float] | None:
     """(method, work) of the least work that keeps a share of the motion, of
     the converged step; None if no row does."""
     good = [(float(r["work"]), r["method"]) for r in rows
@@ -25,7 +29,7 @@ def cheapest_within(rows, share=WITHIN):
     return min(good)[::-1] if good else None
 
 
-def message(table, nodes):
+def message(table: Table, nodes: str) -> str:
     """Which method comes within WITHIN of the converged step for least work,
     by stiffness."""
     names = {name: name for name, *_ in CURVES} | {
@@ -35,7 +39,7 @@ def message(table, nodes):
     for K in dict.fromkeys(r["K"] for r in table.rows):
         best = cheapest_within(table.where(nodes=nodes, K=K))
         words.append((names[best[0]] if best else "none", K))
-    parts = []
+    parts: list[str] = []
     for name in dict.fromkeys(n for n, _ in words):
         at = [K for n, K in words if n == name]
         parts.append(f"{name} at {'K = ' * (not parts)}{', '.join(at)}")
@@ -43,13 +47,13 @@ def message(table, nodes):
             f"{'; '.join(parts)}")
 
 
-def verlet(nodes, K):
+def verlet(nodes: str, K: str) -> float:
     """The force evaluations of a frame by Verlet at its limit, on a sheet
     with diagonals."""
     return math.sqrt(12 * float(K) * int(nodes)) / 2 / 60
 
 
-def rounds(csv, out, nodes="625"):
+def rounds(csv: pathlib.Path, out: pathlib.Path, nodes: str = "625") -> None:
     """A row of panels for each target, a column for each stiffness."""
     table, look = Table(csv), styles()
     some = table.where(nodes=nodes)
@@ -60,7 +64,7 @@ def rounds(csv, out, nodes="625"):
         "is nearer, as a share of the way that it falls.\nPoints: 1, 2, 5, "
         "10, 20 rounds. Dashed: the work of verlet's steps in that time, which "
         "make the true motion.", "")
-    x = 20
+    x = 20.
     for _, label, like, _ in CURVES:
         picture.text(x, 485, label, 11, look[like][0])
         x += 6.3 * len(label) + 14

@@ -1,9 +1,13 @@
 """What each layer costs, as bars, and other libraries beside ours."""
+from __future__ import annotations
+
 import json
 import re
+import pathlib
+from typing import Any
 
 from panels import DARK, Picture
-from results import ROOT, ns_a_node
+from results import ROOT, match, ns_a_node
 
 BLUE, BLACK, ORANGE = "#0072B2", "#777777", "#D55E00"
 # Of bench.json: (what it says there, what the chart says, color).
@@ -18,7 +22,7 @@ LAYERS = (("springs: virtual call a node", "a virtual call a node", BLACK),
 ROW = 21  # [pixels]
 
 
-def beside_ours():
+def beside_ours() -> list[Any]:
     """(task, [(library, lowest, ratio, highest)]) of the tables in
     lab/bench/peers/README.md: times ours."""
     head, found = [], []
@@ -44,12 +48,13 @@ class Bars:
         self.picture, self.x, self.y = picture, x, y
         self.scale, self.indent = scale, indent
 
-    def title(self, text):
+    def title(self, text: str) -> None:
         self.y -= 36
         self.picture.text(self.x - self.indent, self.y, text, color=DARK,
                           bold=True)
 
-    def bar(self, name, low, middle, high, color, text):
+    def bar(self, name: str, low: float, middle: float, high: float, color: str,
+            text: str) -> None:
         self.y -= ROW
         p, y, end = self.picture, self.y, self.x + self.scale * middle
         p.text(self.x - 6, y, name, 11, DARK, "right")
@@ -59,19 +64,19 @@ class Bars:
         p.text(max(end, self.x + self.scale * high) + 5, y, text)
 
 
-def speed(path, out):
+def speed(path: pathlib.Path, out: pathlib.Path) -> None:
     """Bars from bench.json, and the peers."""
     of = {name: times for (nodes, name), times in ns_a_node(path).items()
           if nodes == 10000}
     about = json.loads(path.read_text())["about"]
     machine, compiler, commit = (
-        re.search(f"# {what}: ([^#]*);", about)[1].replace(";", ",")
+        match(f"# {what}: ([^#]*);", about)[1].replace(";", ",")
         for what in ("machine", "compiler", "commit"))
     ratio = (of["step: symp_euler_step(), forces"][1] /
              of["step: SymplecticEuler"][1])
     proxies = of["springs: Node and Edge"][1] / of["springs: flat arrays"][1]
     text = (ROOT / "lab/bench/peers/README.md").read_text()
-    where, when = re.search(r"^([^\n]*\(family \d+, model \d+\)), .*?"
+    where, when = match(r"^([^\n]*\(family \d+, model \d+\)), .*?"
                             r"(commit \w+)", text, re.M | re.S).groups()
     picture = Picture(
         out, 800, 486, f"The laboratory's step is {ratio:.1f} times as fast "

@@ -3,8 +3,11 @@
 their share of the loop over flat arrays:
 
     speed_table.py FOLDER"""
+from __future__ import annotations
+
 import pathlib
 import sys
+from typing import Iterator
 
 from results import ROOT, ns_a_node
 
@@ -30,7 +33,8 @@ ROWS = ((STEP, ""), ("step: SymplecticEuler", STEP),
         ("loading: build_cloth(), shuffled", ""), ("new layout", ""))
 
 
-def cell(all_of, nodes, name, beside):
+def cell(all_of: dict[tuple[int, str], tuple[float, ...]], nodes: int,
+         name: str, beside: str) -> str:
     if (nodes, name) not in all_of:
         return ""
     ns = all_of[nodes, name][1]
@@ -42,7 +46,7 @@ def cell(all_of, nodes, name, beside):
     return f"{text} = {ns / other[1]:.2f}" if other else text
 
 
-def table(folder):
+def table(folder: pathlib.Path) -> Iterator[str]:
     all_of = ns_a_node(folder / "bench.json")
     yield ("| ns a node = share of the loop over flat arrays | 625 | 10,000 "
            "| 1,000,000 |")

@@ -106,6 +106,7 @@ class Rule(unittest.TestCase):
 
 class Measured(unittest.TestCase):
     """What the charts say of work_precision.csv."""
+    scenes: dict = {}
 
     @classmethod
     def setUpClass(cls):
@@ -229,6 +230,7 @@ class Words(unittest.TestCase):
             self.assertEqual(precision.digits(value), text)
 
     def test_titles(self):
+        segments: list
         for segments, title in (
                 ([], "No run is stable and above the reference's own error"),
                 ([("a", 1e-2, 1e-9)], "a is the fastest at every error"),
@@ -249,6 +251,8 @@ class Words(unittest.TestCase):
 
 
 class Pictures(unittest.TestCase):
+    pictures: dict[str, str] = {}
+
     @classmethod
     def setUpClass(cls):
         found = chain(ROOT.glob("lab/*/results/**/*.svg"),
@@ -259,7 +263,7 @@ class Pictures(unittest.TestCase):
         self.assertGreater(len(self.pictures), 12)
         small = []
         for name, svg in self.pictures.items():
-            width = float(re.search('viewBox="0 0 ([0-9.]+)', svg)[1])
+            width = float(re.findall('viewBox="0 0 ([0-9.]+)', svg)[0])
             least = min(map(float, re.findall(
                 r'font: (?:bold |700 )?([0-9.]+)px', svg)))
             if least * 800 < 11 * width:

@@ -3,6 +3,8 @@
 
 Our column has our median; the others have the ratio of the medians, and in
 parentheses the lowest and the highest ratio of a repetition."""
+from __future__ import annotations
+
 import pathlib
 import statistics
 import sys
@@ -11,7 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from table import measured  # noqa: E402
 
 
-def cell(ours, theirs):
+def cell(ours: list[float], theirs: list[float] | None) -> str:
     if not theirs:
         return ""
     ratios = [b / a for a, b in zip(ours, theirs)]
@@ -19,7 +21,7 @@ def cell(ours, theirs):
     return f"{middle:.2f} ({min(ratios):.2f}-{max(ratios):.2f})"
 
 
-def main():
+def main() -> None:
     _, runs = measured(*sys.argv[1:], "--benchmark_repetitions=15")
     names = list(dict.fromkeys(key.split("/")[1] for key in runs))
     times = {key: [1e-3 * run["cpu_time"] for run in some]  # [us]
