@@ -3,7 +3,7 @@
 # so -O1 is enough. Without SDL2 and OpenGL programs are built without a window.
 system     = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(1) 2>/dev/null))
 mac       := $(filter Darwin,$(shell uname))
-draw_pkg  := sdl2 $(if $(mac),,gl)
+draw_pkg  := sdl2 libpng $(if $(mac),,gl)
 ifeq ($(VIEWER),1)
 override VIEWER := $(shell pkg-config --exists $(draw_pkg) && echo 1 || echo 0)
 no_window := $(if $(filter 0,$(VIEWER)), (no window: pkg-config does not \

@@ -33,7 +33,7 @@ lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
 # FAST=1 asks for tests of what is built for speed.
 tested     = $(if $(FAST),$(B),$(B)/asan)
 test_flags = $(if $(FAST),$(speed),$(debug) $(sanitizer))
-test_libs  = $(gtest_libs) -lrapidcheck -lpng
+test_libs  = $(gtest_libs) -lrapidcheck
 
 lab_objects := $(lab_lib:.cpp=.o)
 

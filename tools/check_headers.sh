@@ -16,7 +16,7 @@ fi
 # others compile without. A header that draws only under MASS_SPRING_VIEWER is
 # compiled with it and without it.
 drawing='^CME212/viewer/(GL|SDL(Window|Settings))'
-packages="sdl2 gl"
+packages="sdl2 libpng gl"
 
 compile() {  # COMPILER HEADER; one report, even when others write too
   local flags="" out ways=plain way

@@ -11,14 +11,14 @@ groups=${*:-build window film lab draw test check}
 packages() {
   case $1 in
     build)  echo "g++ make pkgconf|pkg-config git" ;;
-    window) echo "libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri" ;;
+    window) echo "libsdl2-dev libpng-dev libgl-dev libegl1 libgl1-mesa-dri" ;;
     film)   echo "ffmpeg" ;;
     lab)    echo "libcli11-dev libeigen3-dev libtomlplusplus-dev" ;;
     draw)   echo "python3-matplotlib python3 fonts-dejavu-core" ;;
     test)   echo "libgtest-dev gdb" ;;
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
-                 "librapidcheck-dev libbenchmark-dev libpng-dev xvfb xauth" \
-                 "xdotool valgrind" ;;
+                 "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" \
+                 "valgrind shellcheck pyflakes3 mypy" ;;
     peers)  echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;
@@ -27,9 +27,8 @@ packages() {
     page)   packages web
             echo "libeigen3-dev libtomlplusplus-dev ffmpeg pandoc git" ;;
     browser) echo "chromium python3-websocket" ;;
-    try)    echo "valgrind" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
-            "check peers grade web page browser try" >&2
+            "check peers grade web page browser" >&2
        exit 2 ;;
   esac
 }
@@ -57,6 +56,8 @@ libbenchmark-dev google-benchmark google-benchmark-devel
 xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
 xdotool - xdotool                 libseccomp-dev - libseccomp-devel
 valgrind - valgrind               pandoc pandoc pandoc
+shellcheck shellcheck ShellCheck  pyflakes3 pyflakes python3-pyflakes
+mypy mypy python3-mypy
 "
 there() { command -v "$1" >/dev/null; }
 if there apt-get && there dpkg-query; then

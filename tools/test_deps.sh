@@ -11,7 +11,7 @@ everything="g++ make pkgconf git libsdl2-dev libgl-dev libegl1 libgl1-mesa-dri
   python3-matplotlib python3
   fonts-dejavu-core libgtest-dev gdb clang clang-format libclang-rt-dev
   libomp-dev libspectra-dev librapidcheck-dev libbenchmark-dev xvfb xauth
-  xdotool valgrind"
+  xdotool valgrind shellcheck pyflakes3 mypy"
 
 stub() { cat >"$tmp/bin/$1"; chmod +x "$tmp/bin/$1"; }
 
@@ -169,7 +169,7 @@ not_say libsundials
 ok "no apt-get: lists all, by group"
 
 system 1000 ""; other brew "make git"; run build window test
-expect_status 0; calls 'brew install googletest pkgconf sdl2-compat$' 1
+expect_status 0; calls 'brew install googletest libpng pkgconf sdl2-compat$' 1
 calls sudo 0
 ok "Homebrew: what is missing, in its names, without sudo"
 

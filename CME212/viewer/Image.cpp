@@ -1,8 +1,9 @@
 /** @file Image.cpp
- * Films, by the program ffmpeg. */
+ * PNG files by libpng; films by the program ffmpeg. */
 #include "CME212/viewer/Image.hpp"
 
 #include <fcntl.h>
+#include <png.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/socket.h>
@@ -40,6 +41,24 @@ void ignore_signal(int socket) {
 #endif
 
 }  // namespace
+
+void write_png(const std::string& path, const Image& image) {
+  OutputFile file(path);
+  png_image png = {};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = png_uint_32(image.width);
+  png.height = png_uint_32(image.height);
+  png.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::vector<char> bytes(size);
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(),
+                                 0, nullptr))
+    fail(path, png.message);
+  file.stream().write(bytes.data(), std::streamsize(size));
+  file.commit();
+}
+
+// ---------------------------------------------------------------------- Video
 
 Video::Video(const std::string& path, int width, int height, double rate)
     : path_(path),

@@ -73,7 +73,7 @@ def build(folder: pathlib.Path, mistake: str, stage: str) -> pathlib.Path:
     viewer = os.environ.get("B", "build") + "/libviewer.a"
     subprocess.run(["make", "-s", viewer], cwd=ROOT, check=True)
     libraries = subprocess.run(
-        ["pkg-config", "--libs", "sdl2", "gl"],
+        ["pkg-config", "--libs", "sdl2", "gl", "libpng"],
         check=True, stdout=subprocess.PIPE, text=True).stdout
     return compiled(folder, mistake, stage, HERE / "picture.cpp",
                     "-DMASS_SPRING_VIEWER", ROOT / viewer,
