@@ -1,7 +1,7 @@
 #pragma once
 /** @file PageData.hpp
- * What the web pages draw of a cloth, and the force of their hand, for any
- * graph. A slot is a number of a node that stays the same while others go. */
+ * The parts of a cloth that the web pages draw, and the force of their hand,
+ * for any graph. A slot numbers a node and stays when others are removed. */
 #include <algorithm>
 #include <array>
 #include <cmath>

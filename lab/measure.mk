@@ -104,7 +104,7 @@ stability-soak:
 orders: test_orders
 	@$(B)/test_orders | grep -e '^|' -e FAILED
 
-# What a step costs, in steps of Verlet: for --list-methods.
+# Cost of a step, in steps of Verlet: for --list-methods.
 costs := lab/methods/Costs.hpp
 method-costs: bench_methods
 	@$(B)/bench_methods > $(B)/costs

@@ -56,7 +56,7 @@ TEST(Matrix3, IsAnArrayOfNumbers) {
   }
 }
 
-/** What the solver is for: a matrix of springs, here dense as well. */
+/** A matrix of springs, the usual input of the solver, here dense as well. */
 template <typename Entry>
 class Cholesky : public ::testing::Test {
  protected:

@@ -53,7 +53,7 @@ make_root() {  # SYSTEM ROOT
       in_root "$roots/trixie" apt-get install -qq ubuntu-keyring
       keys=("$roots/trixie/${keys[0]}")
     }
-    keys=(--components=main,universe --keyring="${keys[0]}")
+    keys=("--components=main,universe" --keyring="${keys[0]}")
   fi
   debootstrap --variant=minbase "${keys[@]}" "$1" "$2" "$mirror" $script &&
     in_root "$2" sh -ec 'useradd -m -s /bin/bash student

@@ -77,6 +77,10 @@ done <lab/README.md >>"$faults"
 lines "is left unfinished" -wE 'TOD[O]|FIXM[E]|XX[X]' "${code[@]}"
 lines "is never compiled" -E '^[[:space:]]*#[[:space:]]*if +(0|false)\b' \
   "${sources[@]}"
+# A sentence is subject, verb, object; many a riddle begins so.
+lines "begins a sentence with Of, Who or What" -E \
+  '(//|\*|#) ?(O[f]|Wh[o]|Wha[t]) (the|a|what|which|it|is|was|those|no) ' \
+  "${code[@]}"
 lines "is longer than 80 columns" -E '^.{81}' "${sources[@]}" \
   ${scripts[@]+"${scripts[@]}"}
 lines "has a character that is not ASCII" -P '[^\x00-\x7F]' "${code[@]}"

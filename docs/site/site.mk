@@ -7,7 +7,7 @@ release := $(B)/release
 site: page web-figures
 	@python3 docs/site/make_site.py $(site) $(page) $(B)/figures
 
-# What a release has attached: .github/workflows/release.yml
+# The files attached to a release: .github/workflows/release.yml
 release: site
 	@rm -rf $(release) && mkdir -p $(release)
 	@python3 course/kit/autograder.py

@@ -54,7 +54,7 @@ struct AdvisedRun {
   std::optional<double> half_step = {}, finer_grid = {};
 };
 
-/** What is advised is the cheapest run that was found. */
+/** The advised run is the cheapest one found. */
 struct Advice : AdvisedRun {
   Measure measure = Measure::com;
   double tolerance = 0;           ///< in the unit of the measure
@@ -82,7 +82,7 @@ struct Advice : AdvisedRun {
 /** @a x to two digits with the unit of @a measure, if it has one. */
 std::string with_unit(double x, const Measure& measure);
 
-/** What was asked: "(asked: 0.01 m)". */
+/** The tolerance in words: "(asked: 0.01 m)". */
 std::string asked(const Advice& a);
 
 /** The options with which ./cloth runs @a m. */

@@ -77,7 +77,7 @@ Advice Adviser::find() {
            !(grids[base].error <= 2 * advice_.tolerance))
       ++base;
     if (base_ != base) {
-      // Of a mesh all runs are long: its parts and steps come afterwards.
+      // All runs of a mesh are long, so its parts and steps come afterwards.
       if (from_files() && base_ == no_base) calm = look_for_chaos(0);
       if (!calm) break;
       base_ = base;

@@ -44,7 +44,7 @@ class Adviser {
     double scatter = 0;
     Answer half = {};  // by half the step
   };
-  /** What a run on a grid told besides its answer. */
+  /** All results of a run on a grid. */
   struct Seen {
     std::vector<Answer> all;  // for every Measure
     Track track;

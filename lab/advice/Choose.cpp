@@ -272,7 +272,7 @@ bool Adviser::holds(Choice& c) {
 }
 
 void Adviser::choose() {
-  // What was found before still holds if finer grids do not contradict it.
+  // The choice found before holds if finer grids do not contradict it.
   if (found_) {
     found_->error = size_of(Effect(found_->answer, limit_));
     found_->uncertainty = uncertainty_ + scatter_share * found_->scatter;

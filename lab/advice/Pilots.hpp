@@ -16,7 +16,7 @@ namespace lab {
  * is from method_costs, so that comparisons do not depend on a clock. */
 class StepCosts {
  public:
-  /** Of the cloth of @a m.
+  /** Measure the cloth of @a m.
    * Throws InputError, SceneError   Complexity: as omega_safe(), twice */
   explicit StepCosts(const Model& m);
 

@@ -9,7 +9,7 @@ import pathlib
 import sys
 from typing import Iterator
 
-from results import ROOT, ns_a_node
+from results import ns_a_node
 
 STEP, SPRINGS = "step: flat arrays", "springs: flat arrays"
 ROWS = ((STEP, ""), ("step: SymplecticEuler", STEP),

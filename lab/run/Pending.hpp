@@ -9,8 +9,8 @@
 
 namespace lab {
 
-/** What a run writes about its states, in the order of the steps. A step is
- * settled once the run can no longer continue from before it; until then its
+/** Holds what a run writes about its states, in the order of the steps. A step
+ * is settled once the run can no longer continue from before it; until then its
  * output waits here. So files only ever grow. */
 template <typename T>
 class Pending {
