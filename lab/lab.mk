@@ -28,7 +28,7 @@ lab_flags = $(common) -fno-math-errno -ffp-contract=off \
             $(if $(filter 1,$(OPENMP)),-fopenmp) $(lab_system)
 # What names SDL, or asks whether there is a viewer.
 lab_draw  = $(if $(filter 1,$(VIEWER)),$(if $(filter lab/viewer/Screen.% \
-            tests/test_viewer.% CME212/%,$<), \
+            tests/test_viewer.% tests/test_faces.% CME212/%,$<), \
             -DMASS_SPRING_VIEWER $(call system,$(draw_pkg))))
 # FAST=1 asks for tests of what is built for speed.
 tested     = $(if $(FAST),$(B),$(B)/asan)

@@ -264,8 +264,8 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
                                 "checkpoint");
   EXPECT_EQ(error_with("0 0 0\n"), file + ": is not a checkpoint");
   std::string newer = good;
-  newer.replace(good.find(" 6 "), 3, " 7 ");
-  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 7"),
+  newer.replace(good.find(" 7\n"), 3, " 8\n");
+  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 8"),
             0u);
   EXPECT_EQ(error_with(good.substr(0, good.size() - 3)),
             file + ": ends too early: it has " +

@@ -14,6 +14,7 @@
 #include "CME212/viewer/GLCamera.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "Graph.hpp"
+#include "tests/InPicture.hpp"
 
 namespace {
 
@@ -74,7 +75,7 @@ struct ClothPicture {
    * one. */
   std::array<int, 3> color(const Point& p, bool draw = true) {
     if (draw) image = viewer.snapshot();
-    const Point at = camera.project(p, 4.0 / 3);
+    const Point at = project(camera, p, 4.0 / 3);
     const auto* c = image.pixel(int(200 * (1 + at.x)), int(150 * (1 - at.y)));
     return {c[0], c[1], c[2]};
   }

@@ -17,6 +17,7 @@
 #include "CME212/Color.hpp"
 #include "CME212/viewer/GLCamera.hpp"
 #include "CME212/viewer/Image.hpp"
+#include "tests/InPicture.hpp"
 #include "tests/ReadPng.hpp"
 #include "tests/TestFolder.hpp"
 
@@ -51,16 +52,6 @@ TEST(Color, StrainScaleDarkensFromRestToBothEnds) {
   }
   EXPECT_NEAR(luminance(Color(1)), 1, 1e-6);
   EXPECT_EQ(luminance(Color(0)), 0);
-}
-
-/** The place of @a p in the picture: x right and y up, in [-1, 1] if it is in
- * the picture; z is its distance from the eye's plane. */
-Point project(const GLCamera& c, const Point& p, double aspect) {
-  const Point d = p - c.eye();
-  const double depth = -dot(d, c.backward());
-  const double high = GLCamera::half_height(aspect);
-  return {dot(d, c.right()) / (depth * high * aspect),
-          dot(d, c.up()) / (depth * high), depth};
 }
 
 TEST(GLCamera, ShowsTheClothUpright) {

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # One source of several:  tools/unity.sh FILE... >UNIT.cpp
-# What they include is read once, which halves the time to compile them. Each
+# Headers and macros are read once, which halves the time to compile. Each
 # test stands in a namespace of its own, so that their helpers may share names.
 set -euo pipefail
 
 echo "// Made by tools/unity.sh"
-sed -n '/^#include/p' "$@" | awk '!seen[$0]++'
+sed -nE '/^#(include|define [A-Z_]+ .*[^\\]$)/p' "$@" | awk '!seen[$0]++'
 for file in "$@"; do
   name=${file##*/}
   case $file in
