@@ -7,9 +7,10 @@ one. Format: data/README.md.
     data/make_grid.py 1000 data/grid4     1,000,000 nodes, 998,001 quads"""
 import os
 import sys
+from collections.abc import Iterable
 
 
-def write(name, lines):
+def write(name: str, lines: Iterable[str]) -> None:
     """A file that appears when it is complete."""
     part = f"{name}.{os.getpid()}.part"
     try:
@@ -21,7 +22,7 @@ def write(name, lines):
             os.remove(part)
 
 
-def main():
+def main() -> None:
     text = sys.argv[1] if len(sys.argv) == 3 else ""
     side = int(text) if text.isascii() and text.isdigit() else 0
     if not 2 <= side <= 30000:

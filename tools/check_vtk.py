@@ -16,16 +16,16 @@ except ImportError:
     print("skipped: python3-vtk9 is not installed")
     sys.exit(0)
 
-options = argparse.ArgumentParser(description=__doc__)
-options.add_argument("folder")
-options.add_argument("table")
-options.add_argument("--ply", metavar="FOLDER")
-options.add_argument("--picture", metavar="FILE.png")
-options = options.parse_args()
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("folder")
+parser.add_argument("table")
+parser.add_argument("--ply", metavar="FOLDER")
+parser.add_argument("--picture", metavar="FILE.png")
+options = parser.parse_args()
 rows = {float(row["t"]): row for row in csv.DictReader(open(options.table))}
 
 
-def read(name, reader=None):
+def read(name: str, reader: vtk.vtkAlgorithm | None = None) -> vtk.vtkPolyData:
     """The frame of a file; an error of the reader is an exception."""
     errors = []
     reader = reader or vtk.vtkXMLPolyDataReader()
@@ -36,7 +36,7 @@ def read(name, reader=None):
     return reader.GetOutput()
 
 
-def near(a, b, scale):
+def near(a: float, b: float, scale: float) -> None:
     assert math.isclose(a, b, rel_tol=1e-5, abs_tol=1e-6 * scale), (a, b)
 
 
@@ -44,12 +44,12 @@ frames = list(xml.parse(f"{options.folder}/frames.pvd").iter("DataSet"))
 assert frames, "frames.pvd names no file"
 previous = -1.0
 for entry in frames:
-    t = float(entry.get("timestep"))
+    t = float(entry.attrib["timestep"])
     assert t > previous, (t, previous)
     previous = t
     row = rows[min(rows, key=lambda time: abs(time - t))]
     near(float(row["t"]), t, 1e-6)
-    data = read(f"{options.folder}/{entry.get('file')}")
+    data = read(f"{options.folder}/{entry.attrib['file']}")
     near(data.GetFieldData().GetArray("TimeValue").GetValue(0), t, 1e-6)
     n, points = data.GetNumberOfPoints(), data.GetPointData()
     assert n == int(row["nodes"]), (n, row["nodes"])
@@ -76,7 +76,7 @@ for entry in frames:
     # Frames for Blender: all points of the start, those of this frame where
     # this frame has them, and its quads.
     if options.ply:
-        name = entry.get("file").replace(".vtp", ".ply")
+        name = entry.attrib["file"].replace(".vtp", ".ply")
         mesh = read(os.path.join(options.ply, name), vtk.vtkPLYReader())
         points_of_start = mesh.GetNumberOfPoints()
         assert points_of_start == int(rows[min(rows)]["nodes"]), points_of_start

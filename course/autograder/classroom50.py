@@ -12,17 +12,18 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from typing import Any
 
 HERE = pathlib.Path(__file__).resolve().parent
 SECONDS = 1800
 
 
-def run(*command, **more):
+def run(*command: object, **more: Any) -> subprocess.CompletedProcess:
     return subprocess.run([str(word) for word in command], timeout=SECONDS,
                           check=True, **more)
 
 
-def result(report, feedback, committed):
+def result(report: dict, feedback: str, committed: int) -> dict:
     """The result of a report: a task is a test. What students do not see is
     not in it, as they can read it."""
     get = os.environ.get
@@ -49,23 +50,23 @@ def result(report, feedback, committed):
         "max-score": sum(test["max-score"] for test in tests), "tests": tests}
 
 
-def read(file):
+def read(file: pathlib.Path) -> dict:
     return json.loads(file.read_text("utf-8"))
 
 
-def refusal(file):
+def refusal(file: pathlib.Path) -> dict:
     """A report on what can't be graded: one task, which failed."""
     return {"tasks": [{"id": "0", "title": "the submission can be graded",
                        "of": 1, "extra": False, "status": "failed",
                        "message": read(file)["output"], "specification": ""}]}
 
 
-def main():
+def main() -> int:
     checkout = pathlib.Path.cwd()
     seconds = run("git", "show", "-s", "--no-show-signature", "--format=%ct",
                   "HEAD", capture_output=True, text=True).stdout
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
         with zipfile.ZipFile(HERE / "autograder.zip") as archive:
             archive.extractall(folder / "source")
             for name in ("setup.sh", "tools/deps.sh"):

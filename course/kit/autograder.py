@@ -24,7 +24,7 @@ LEFT_OUT = {"kit_check.py", "mistakes.py", "test_markers.py", "test_class.py",
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
 
-def content(root=ROOT):
+def content(root: pathlib.Path = ROOT) -> dict[str, pathlib.Path]:
     """{name in the zip: path}"""
     files = {path.rpartition("/")[2]: root / path for path in AT_THE_TOP}
     for glob in GLOBS:
@@ -34,7 +34,8 @@ def content(root=ROOT):
     return files
 
 
-def write(out, feedback="all", root=ROOT):
+def write(out: str | pathlib.Path, feedback: str = "all",
+          root: pathlib.Path = ROOT) -> None:
     out = pathlib.Path(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     beside = out.with_name(f".{out.name}.{os.getpid()}")
@@ -54,7 +55,7 @@ def write(out, feedback="all", root=ROOT):
         beside.unlink(missing_ok=True)
 
 
-def main():
+def main() -> None:
     out = os.environ.get("OUT") or "build/autograder.zip"
     try:
         write(out, grade.feedback())

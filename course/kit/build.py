@@ -100,7 +100,8 @@ class Room:
                  files: dict[str, bytes]):
         self.kit, self.files = kit, files
         self.names = set(files)     # of those that the student wrote
-        self.folder, self.tests = folder, (TESTS, ASKED)
+        self.folder = folder
+        self.tests: tuple[pathlib.Path, ...] = (TESTS, ASKED)
         self.source = folder / "source"
         self.built = folder / "built"
         for path in (self.source, self.built):

@@ -5,12 +5,16 @@ import os
 import shlex
 import signal
 import subprocess
+from collections.abc import Iterable
+from typing import Any
 
 LIBC = ctypes.CDLL(None)
 PR_SET_PDEATHSIG = 1
 
 
-def run(command, limit=120, check=False, capture_output=False, **options):
+def run(command: Iterable[object], limit: float = 120, check: bool = False,
+        capture_output: bool = False,
+        **options: Any) -> subprocess.CompletedProcess:
     """As subprocess.run(). After `limit` seconds all that it started is killed:
     TimeoutError."""
     text = options.pop("input", None)
@@ -18,20 +22,20 @@ def run(command, limit=120, check=False, capture_output=False, **options):
         options["stdin"] = subprocess.PIPE
     if capture_output:
         options |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    command = [str(word) for word in command]
+    words = [str(word) for word in command]
     with subprocess.Popen(
-            command, start_new_session=True, preexec_fn=lambda:
+            words, start_new_session=True, preexec_fn=lambda:
             LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL), **options) as child:
         try:
             output, errors = child.communicate(text, limit)
         except subprocess.TimeoutExpired:
-            raise TimeoutError(f"{shlex.join(command)}: ended after {limit} s, "
+            raise TimeoutError(f"{shlex.join(words)}: ended after {limit} s, "
                                "the time limit of a test") from None
         finally:
             if child.poll() is None:
                 os.killpg(child.pid, signal.SIGKILL)
-    done = subprocess.CompletedProcess(command, child.returncode, output,
-                                       errors)
+    done: subprocess.CompletedProcess = subprocess.CompletedProcess(
+        words, child.returncode, output, errors)
     if check:
         done.check_returncode()
     return done

@@ -3,9 +3,11 @@
 import pathlib
 import re
 import signal
+from collections.abc import Container
 from dataclasses import dataclass
 
 import once
+import sandbox
 
 PLACE = re.compile(r"(?P<file>[^\s:][^:\n]*):(?P<line>\d+)(?::\d+)?: +"
                    r"(?P<text>.*)")
@@ -19,7 +21,7 @@ UNCLOSED = re.compile(r"error: expected '\}' at end of input\n"
 LONGEST = 300
 
 
-def short(text):
+def short(text: str) -> str:
     """One line without addresses."""
     text = " ".join(ADDRESS.sub("0x...", text).split())
     text = text.encode("ascii", "replace").decode()
@@ -31,19 +33,20 @@ class Error:
     file: str
     line: int
     text: str
-    tests: frozenset    # names of the tests that led to it
-    needed_by: str      # "FILE:LINE" in a test, or ""
+    tests: frozenset[str]   # names of the tests that led to it
+    needed_by: str          # "FILE:LINE" in a test, or ""
 
 
-def compile_errors(output):
+def compile_errors(output: str) -> list[Error]:
     """The errors of g++, each with the tests whose code led to it.
 
     A second error in one instantiation has no lines of its own that say so:
     it belongs to what the first one belongs to.
     """
     errors = []
-    tests, needed_by = set(), ""
-    of_last_error = (set(), "")
+    tests: set[str] = set()
+    needed_by = ""
+    of_last_error: tuple[set[str], str] = (set(), "")
     for line in output.split("\n"):
         if HEADING.fullmatch(line):
             tests, needed_by = set(), ""
@@ -69,12 +72,12 @@ def compile_errors(output):
     return errors
 
 
-def named(file):
+def named(file: str) -> set[str]:
     test = TEST.fullmatch(file)
     return {test[1]} if test else set()
 
 
-def helpful(output, names, test=""):
+def helpful(output: str, names: Container[str], test: str = "") -> Error | None:
     """The first error that a student can do something about, or None."""
     errors = compile_errors(output)
     if test:
@@ -82,10 +85,11 @@ def helpful(output, names, test=""):
     for error in errors:
         if error.file in names or TEST.fullmatch(error.file):
             return error
-    return next((e for e in errors if e.needed_by), (errors or [None])[0])
+    return next((e for e in errors if e.needed_by),
+                errors[0] if errors else None)
 
 
-def first_error(output, names, test):
+def first_error(output: str, names: Container[str], test: str) -> str:
     """The same in a line; its place, if that is the student's."""
     error = helpful(output, names, test)
     if not error:
@@ -94,7 +98,7 @@ def first_error(output, names, test):
     return place + short(error.text)
 
 
-def compile_message(output, names, test=""):
+def compile_message(output: str, names: Container[str], test: str = "") -> str:
     """The same, and what led to it."""
     for unclosed in UNCLOSED.finditer(output):  # what follows makes no sense
         if unclosed["file"] in names:
@@ -110,7 +114,7 @@ def compile_message(output, names, test=""):
     return text
 
 
-def link_message(output):
+def link_message(output: str) -> str:
     for pattern in (r"undefined reference to .*", r"multiple definition of .*",
                     r"error: .*"):
         if found := re.search(pattern, output):
@@ -118,7 +122,7 @@ def link_message(output):
     return "the compiler gives no reason"
 
 
-def first_frame(output, names):
+def first_frame(output: str, names: Container[str]) -> str:
     """The first line of a trace that is in the submission: " at FILE:LINE". Or
     what the test did with what it was given, such as a null reference."""
     test = ""
@@ -132,7 +136,7 @@ def first_frame(output, names):
     return test
 
 
-def line_of_test(path, number):
+def line_of_test(path: pathlib.Path, number: int) -> str:
     """What stands there; a submission may have named any file."""
     if path.parent != once.TESTS or ".." in path.parts or not path.is_file():
         return ""
@@ -141,7 +145,7 @@ def line_of_test(path, number):
             if 0 < number <= len(lines) else "")
 
 
-def crash(outcome, names):
+def crash(outcome: sandbox.Outcome, names: Container[str]) -> str:
     """Why a program ended before it said how its test went."""
     output = outcome.output
     found = re.search(r"ERROR: (AddressSanitizer: .*)", output)

@@ -19,6 +19,8 @@ import pathlib
 import signal
 import sys
 import tempfile
+from collections.abc import Iterator
+from typing import NoReturn
 
 import judge
 import once
@@ -27,9 +29,9 @@ import submission
 import tasks
 
 
-def tests_of(course):
+def tests_of(course: tasks.Course) -> dict[str, str]:
     """{test: what it needs}, each once."""
-    tests = {}
+    tests: dict[str, str] = {}
     for task in course.tasks.values():
         for test in task.tests:
             if not (once.TESTS / f"{test}.cpp").is_file():
@@ -45,11 +47,11 @@ def tests_of(course):
 READING = 120   # seconds, at most, to read a submission
 
 
-def too_long(*_):
+def too_long(*_: object) -> NoReturn:
     raise submission.BadInput("the submission takes too long to read")
 
 
-def number_of_jobs(text):
+def number_of_jobs(text: str | None) -> int:
     if not text:
         return len(os.sched_getaffinity(0))
     if text.isascii() and text.isdecimal() and 0 < int(text) <= 1000:
@@ -58,7 +60,7 @@ def number_of_jobs(text):
                               "a number from 1 to 1000")
 
 
-def seed_of_tests(text):
+def seed_of_tests(text: str | None) -> str:
     """The same number in one form, or ""."""
     if not text:
         return ""
@@ -69,12 +71,12 @@ def seed_of_tests(text):
                               "a whole number below 2^63")
 
 
-def named(seed):
+def named(seed: str) -> list[str]:
     """What a report says of the seed."""
     return [f"tests with the numbers of SEED={seed}"] if seed else []
 
 
-def less_safe(kit, unsafe):
+def less_safe(kit: once.Kit, unsafe: bool) -> Iterator[str]:
     """What the jail has not, on this machine."""
     if unsafe:
         yield "it ran without a jail (SAFE=0)"
@@ -83,14 +85,15 @@ def less_safe(kit, unsafe):
                "of this machine that the grader's user can read")
 
 
-def grade(course, kit, taken, name, jobs):
+def grade(course: tasks.Course, kit: once.Kit, taken: submission.Submission,
+          name: str, jobs: int) -> report.Report:
     tests = tests_of(course)
     judge.prepare(kit, tests, jobs)
     results = judge.judge(kit, taken.files, tests, jobs)
     return report.combine(course, name, taken, results)
 
 
-def write(path, text):
+def write(path: str | pathlib.Path, text: str) -> None:
     """The whole text, or nothing."""
     path = pathlib.Path(path)
     with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=".new-",
@@ -100,7 +103,7 @@ def write(path, text):
     os.replace(file.name, path)
 
 
-def feedback():
+def feedback() -> str:
     """How much students see."""
     asked = os.environ.get("FEEDBACK") or "all"
     if asked not in report.FEEDBACK:
@@ -110,14 +113,15 @@ def feedback():
     return asked
 
 
-def refuse(why):
+def refuse(why: object) -> int:
     print(f"grade: {why}", file=sys.stderr)
     return 2
 
 
-def main():
+def main() -> int:
     get = os.environ.get
     folder, tag = get("DIR", ""), get("HW", "")
+    seen: str       # set before a report is made
     outputs = {get("JSON"): report.as_json, get("JUNIT"): report.as_junit,
                get("RESULTS"): lambda made: report.as_gradescope(made, seen)}
     try:
@@ -145,8 +149,8 @@ def main():
         name = submission.shown(os.path.basename(os.path.realpath(folder)))
         graded = grade(course, kit, taken, name, jobs)
     except submission.BadInput as error:
-        if get("RESULTS"):
-            write(get("RESULTS"), report.refused(str(error)))
+        if results := get("RESULTS"):
+            write(results, report.refused(str(error)))
         return refuse(error)
     except (once.KitError, tasks.TasksError) as error:
         return refuse(error)
@@ -157,9 +161,9 @@ def main():
         return refuse("there is not enough memory")
     print(report.as_text(graded, seen), end="")
     try:
-        for path, form in outputs.items():
-            if path:
-                write(path, form(graded))
+        for file, form in outputs.items():
+            if file:
+                write(file, form(graded))
     except OSError as error:
         return refuse(f"{submission.shown(error.filename)}: {error.strerror}")
     return 0

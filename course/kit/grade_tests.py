@@ -17,6 +17,7 @@ import shutil
 import sys
 import tempfile
 from dataclasses import dataclass
+from typing import NoReturn
 
 import build
 import diagnosis
@@ -40,12 +41,12 @@ OWN = "own"     # the name of FILE where it is built
 class Tests:
     text: str
     needs: str
-    names: list      # of the tests
-    tasks: set       # that they are of
+    names: list[str]     # of the tests
+    tasks: set[str]      # that they are of
 
 
-def read(path, course):
-    def refuse(why):
+def read(path: str, course: tasks.Course) -> Tests:
+    def refuse(why: str) -> NoReturn:
         raise submission.BadInput(f"{submission.shown(path)}: {why}")
 
     if not path:
@@ -78,7 +79,7 @@ def read(path, course):
     return Tests(text, needs, names, {id for id, _ in found})
 
 
-def cases(tests):
+def cases(tests: Tests) -> tuple[list[kit_check.Case], list[kit_check.Case]]:
     """(right, wrong): cases of kit_check."""
     all_cases = kit_check.Cases()
     right, wrong = [], []
@@ -97,7 +98,8 @@ def cases(tests):
     return right, wrong
 
 
-def run(kit, case, tests):
+def run(kit: once.Kit, case: kit_check.Case,
+        tests: Tests) -> judge.Results | None:
     """{test: Result}, or None if the case does not compile by itself."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-grade-"))
     try:
@@ -123,14 +125,14 @@ def run(kit, case, tests):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def said(result):
+def said(result: judge.Result) -> str:
     if result.status == "failed":
         return f"expected {result.expected}" + (
             f", got {result.got}" if result.got else "")
     return f"{result.status}: {result.text}".strip()
 
 
-def table(rows, names):
+def table(rows: dict[str, dict[str, bool]], names: list[str]) -> list[str]:
     """Who was found by which test."""
     wide = max(len(row) for row in rows)
     lines = [f"{'':{wide}}  {name}" if not at else
@@ -141,7 +143,8 @@ def table(rows, names):
     return lines
 
 
-def grade_tests(kit, tests, jobs):
+def grade_tests(kit: once.Kit, tests: Tests,
+                jobs: int) -> list[dict[str, judge.Results]]:
     """{right: {test: Result}}, {wrong: {test: Result}}"""
     groups = cases(tests)
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
@@ -150,7 +153,7 @@ def grade_tests(kit, tests, jobs):
             if results is not None} for group in groups]
 
 
-def main():
+def main() -> int:
     get = os.environ.get
     try:
         course = tasks.load()
@@ -163,7 +166,7 @@ def main():
             markers.MarkerError) as error:
         print(f"grade-tests: {error}", file=sys.stderr)
         return 2
-    bad = {}    # {test: why it does not count}
+    bad: dict[str, str] = {}    # {test: why it does not count}
     for case, results in right.items():
         for name, result in results.items():
             if not result.passed:
@@ -180,8 +183,8 @@ def main():
                  f"{len(tests.names) - len(bad)} of {len(tests.names)} tests, "
                  f"which {len(right)} right ones pass")
     print("\n".join(lines))
-    if get("JSON"):
-        grade.write(get("JSON"), json.dumps({
+    if file := get("JSON"):
+        grade.write(file, json.dumps({
             "found": number, "of": len(found), "right": len(right),
             "not counted": bad, "matrix": found}, indent=1) + "\n")
     return 0

@@ -22,6 +22,7 @@ import shutil
 import signal
 import tempfile
 import threading
+from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
 
 import build
@@ -55,23 +56,27 @@ class Result:
     got: str = ""
     did: str = ""
     name: str = ""         # of the function in the test
-    answers: dict = field(default_factory=dict)
+    answers: sandbox.Answers = field(default_factory=dict)
     doubtful: str = ""      # what a person should look at
     mended: bool = False    # "not compiled" is a function, not the submission
 
     @property
-    def passed(self):
+    def passed(self) -> bool:
         return self.status == "passed"
 
 
-def result_of(outcome, names, expected):
+Results = dict[str, Result]     # by test
+
+
+def result_of(outcome: sandbox.Outcome, names: Container[str],
+              expected: sandbox.Answers | None) -> Result:
     """A test passed if it says so, ends in peace, and has answered what is
     expected: {name: (tolerance, numbers)}, or None if nobody knows that."""
     did, name = outcome.did, outcome.name
     verdict = outcome.verdict
     if verdict[:1] == ["failed"] and len(verdict) == 3:
-        return Result("failed", "", *map(diagnosis.short, verdict[1:]),
-                      diagnosis.short(did), name)
+        return Result("failed", "", diagnosis.short(verdict[1]),
+                      diagnosis.short(verdict[2]), diagnosis.short(did), name)
     if outcome.stopped:
         return Result("stopped", STOPPED[outcome.stopped],
                       did=diagnosis.short(did), name=name)
@@ -90,7 +95,7 @@ def result_of(outcome, names, expected):
                   did=diagnosis.short(did), name=name)
 
 
-def right(answers, expected):
+def right(answers: sandbox.Answers, expected: sandbox.Answers) -> bool:
     """Are all answers there that are needed, and none wrong? asked.hpp says
     what the last sign of a name means."""
     some_of, found = set(), set()
@@ -110,12 +115,12 @@ def right(answers, expected):
     return some_of <= found
 
 
-def refused(unit):
-    """Of what was not even compiled."""
+def refused(unit: build.Unit) -> Result:
+    """The result of a unit that was not even compiled."""
     return Result("not compiled", unit.refused, doubtful=unit.doubtful)
 
 
-def mended(result):
+def mended(result: Result) -> Result:
     """A crash in a function that does not compile tells the reason."""
     said = mend.said(result.text) if result.status == "crashed" else None
     if not said:
@@ -124,7 +129,7 @@ def mended(result):
                                mended=True)
 
 
-def solution():
+def solution() -> dict[str, bytes]:
     """{name: bytes} of the solution."""
     return {name: markers.solution(text, name).encode()
             for name, text in markers.read_sources().items()}
@@ -135,16 +140,20 @@ class Memory:
     grade many that differ little. Given to Judge, it saves most of the work."""
 
     def __init__(self):
-        self.kept = {}
+        self.kept: dict[tuple[build.Way, tuple[str, ...]], list[
+            tuple[set[str], dict[str, bytes], Results]]] = {}
 
-    def recall(self, way, tests, files):
-        for names, read, results in self.kept.get((way, tests), []):
-            if names == files.keys() and all(
+    def recall(self, way: build.Way, tests: tuple[str, ...],
+               files: dict[str, bytes]) -> Results | None:
+        for there, read, results in self.kept.get((way, tests), []):
+            if there == files.keys() and all(
                     files[name] == text for name, text in read.items()):
                 return dict(results)
         return None
 
-    def keep(self, way, tests, files, included, results):
+    def keep(self, way: build.Way, tests: tuple[str, ...],
+             files: dict[str, bytes], included: set[str],
+             results: Results) -> None:
         self.kept.setdefault((way, tests), []).append(
             (set(files), {name: files[name] for name in included}, results))
 
@@ -152,7 +161,9 @@ class Memory:
 class Judge:
     """Grades one submission in a folder of its own."""
 
-    def __init__(self, kit, folder, files, jobs, memory=None):
+    def __init__(self, kit: once.Kit, folder: pathlib.Path,
+                 files: dict[str, bytes], jobs: int,
+                 memory: Memory | None = None):
         self.kit, self.memory = kit, memory
         self.jobs = threading.Semaphore(jobs)
         self.folder, self.files = folder, files
@@ -163,8 +174,8 @@ class Judge:
         if kit.answers is None:     # it answers all questions
             self.names += ("KIT_SOLUTION",)
         own = build.Room(kit, folder / "own", files)
-        self.rooms = {"graph": [own], "cloth": [own], "step": [own],
-                      "program": []}
+        self.rooms: dict[str, list[build.Room]] = {
+            "graph": [own], "cloth": [own], "step": [own], "program": []}
         ours = {name: text for name, text in solution().items()
                 if name in ("Graph.hpp", "mass_spring.hpp")}
 
@@ -176,7 +187,7 @@ class Judge:
         if files["Graph.hpp"] != ours["Graph.hpp"]:
             self.rooms["cloth"].insert(0, with_ours("given", "Graph.hpp"))
         # A main() and a step are judged by what they do with right forces, too.
-        self.beside = None
+        self.beside: build.Room | None = None
         if any(files.get(name) != text for name, text in ours.items()):
             self.beside = with_ours("beside", *ours)
             self.rooms["step"].insert(0, self.beside)
@@ -184,9 +195,9 @@ class Judge:
                     and files["mass_spring.hpp"] != ours["mass_spring.hpp"]):
                 self.rooms["program"].append(self.beside)
 
-    def run(self, tests):
+    def run(self, tests: dict[str, str]) -> Results:
         """{test: Result} of {test: what it needs}."""
-        groups = {}
+        groups: dict[build.Way, list[str]] = {}
         for test, needs in tests.items():
             way = build.way_of(test, needs)
             if needs != "graph":
@@ -200,8 +211,8 @@ class Judge:
             return {test: result for part in found
                     for test, result in part.items()}
 
-    def group(self, way, tests):
-        results = {}
+    def group(self, way: build.Way, tests: list[str]) -> Results:
+        results: Results = {}
         if way.needs == "cloth" and not PROGRAM & self.files.keys():
             return {test: Result("missing", "there is no mass_spring.hpp and "
                                  "no mass_spring.cpp") for test in tests}
@@ -225,7 +236,8 @@ class Judge:
                     results[test] = result
         return results
 
-    def attempts(self, way, tests):
+    def attempts(self, way: build.Way,
+                 tests: list[str]) -> Iterator[tuple[build.Room, build.Way]]:
         """In what tests are built: each passes if it does in any of them."""
         own = build.way_of(tests[0], way.needs)
         main = "KIT_PROGRAM" in own.defines
@@ -234,7 +246,8 @@ class Judge:
                          dataclasses.replace(way, defines=own.defines
                                              + names.defines(room.files)))
 
-    def judged(self, room, way, tests):
+    def judged(self, room: build.Room, way: build.Way,
+               tests: list[str]) -> Results:
         """All stages of a main() in one unit, or else in one each: a header
         that may be included once is no part of the others."""
         results = self.remembered(room, way, tests)
@@ -253,17 +266,19 @@ class Judge:
                 again = [test for test in again if results[test].passed]
         return results
 
-    def remembered(self, room, way, tests):
+    def remembered(self, room: build.Room, way: build.Way,
+                   tests: list[str]) -> Results:
         if not self.memory:
             return self.attempt(room, way, tests, set())
         known = self.memory.recall(way, tuple(tests), room.files)
         if known is None:
-            read = set()
+            read: set[str] = set()
             known = self.attempt(room, way, tests, read)
             self.memory.keep(way, tuple(tests), room.files, read, known)
         return known
 
-    def attempt(self, room, way, tests, read):
+    def attempt(self, room: build.Room, way: build.Way, tests: list[str],
+                read: set[str]) -> Results:
         """Each test of a room, in as few units as compile. What they read of
         the submission is added to `read`."""
         if not tests:
@@ -275,14 +290,15 @@ class Judge:
         if unit.refused:
             return {test: refused(unit) for test in tests}
         errors = diagnosis.compile_errors(unit.output)
-        blamed = set().union(*(error.tests for error in errors))
+        blamed: set[str] = set().union(*(error.tests for error in errors))
         if not all(error.tests for error in errors):
             bridge = self.compile(room, way, [], read, link=False)
             if bridge.refused:
                 return {test: refused(bridge) for test in tests}
             if diagnosis.compile_errors(bridge.output):
                 return self.mended(room, way, tests, bridge, read)
-        results, alone = {}, [test for test in tests if test in blamed]
+        results: Results = {}
+        alone = [test for test in tests if test in blamed]
         others = [test for test in tests if test not in blamed]
         if alone and others:
             unit = self.compile(room, way, others, read)
@@ -297,18 +313,20 @@ class Judge:
                 lambda test: self.alone(room, way, test, read), alone)))
         return self.explained(room, way, results, read)
 
-    def mended(self, room, way, tests, bridge, read):
+    def mended(self, room: build.Room, way: build.Way, tests: list[str],
+               bridge: build.Unit, read: set[str]) -> Results:
         """The same without the functions that do not compile."""
         told = Result("not compiled", diagnosis.compile_message(
             bridge.output, room.names))
         whole, files = room, room.files
         # All stages: what is wrong may be that they share a unit.
         for _ in range(0 if build.all_stages(way) else mend.ROUNDS):
-            files = mend.without_broken(files, [
+            left = mend.without_broken(files, [
                 error for error in diagnosis.compile_errors(bridge.output)
                 if error.file in whole.names])
-            if not files:
+            if not left:
                 break
+            files = left
             room = build.Room(
                 self.kit, self.folder / f"mended{next(self.numbers)}", files)
             room.names = whole.names
@@ -320,7 +338,8 @@ class Judge:
                 return {test: mended(results[test]) for test in tests}
         return {test: told for test in tests}
 
-    def explained(self, room, way, results, read):
+    def explained(self, room: build.Room, way: build.Way, results: Results,
+                  read: set[str]) -> Results:
         """With the compiler's own words for calls that do not compile, and with
         the place of a crash in what was built without sanitizers."""
         crashed = [test for test, result in results.items()
@@ -344,7 +363,8 @@ class Judge:
                         result, got=f"an error: {error}")
         return results
 
-    def alone(self, room, way, test, read):
+    def alone(self, room: build.Room, way: build.Way, test: str,
+              read: set[str]) -> Result:
         unit = self.compile(room, way, [test], read)
         if unit.program:
             return self.run_all(unit, room.names)[test]
@@ -353,15 +373,17 @@ class Judge:
         return Result("not compiled", diagnosis.compile_message(
             unit.output, room.names, test))
 
-    def compile(self, room, way, tests, read, link=True):
+    def compile(self, room: build.Room, way: build.Way, tests: list[str],
+                read: set[str], link: bool = True) -> build.Unit:
         with self.jobs:
             unit = room.compile(way, tests, link)
         read |= unit.included
         return unit
 
-    def run_all(self, unit, names):
+    def run_all(self, unit: build.Unit, names: set[str]) -> Results:
         """Each test of a program in a process of its own. Messages name places
         in these files first."""
+        assert unit.program
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
             results = dict(zip(unit.tests, pool.map(
                 lambda test: self.run_one(unit, names, test, self.kit,
@@ -369,7 +391,9 @@ class Judge:
         unit.program.unlink()
         return results
 
-    def run_one(self, unit, names, test, kit, data):
+    def run_one(self, unit: build.Unit, names: set[str], test: str,
+                kit: once.Kit, data: pathlib.Path) -> Result:
+        assert unit.program
         jail = [*kit.jail, *build.flags("--read", [
             "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
             "/dev/null", "/dev/zero", "/dev/urandom", unit.program, data])]
@@ -395,7 +419,7 @@ class Judge:
                 return result
 
 
-def prepare(kit, tests, jobs):
+def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
     """Grade the solution, once for each kit: it has to get all points. Its
     answers are what is expected of a submission."""
     def make(folder):
@@ -434,7 +458,7 @@ def prepare(kit, tests, jobs):
 CORNERS = ("0 0 0", "1 0 0")
 
 
-def draw_cloth(folder, kit):
+def draw_cloth(folder: pathlib.Path, kit: once.Kit) -> None:
     """The kit's small cloth, each node but the corners moved a little; with a
     seed in another order, too, in which a corner is the last node again."""
     shutil.copytree(once.TESTS / "data", folder)
@@ -458,7 +482,8 @@ def draw_cloth(folder, kit):
     nodes.write_text("\n".join(lines) + "\n", "ascii")
 
 
-def judge(kit, files, tests, jobs, memory=None):
+def judge(kit: once.Kit, files: dict[str, bytes], tests: dict[str, str],
+          jobs: int, memory: Memory | None = None) -> Results:
     """{test: Result} of a submission and {test: what it needs}."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-grade-"))
     try:

@@ -15,6 +15,7 @@ import pathlib
 import re
 import sys
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import child
@@ -32,13 +33,15 @@ ESCAPED = [pathlib.Path(folder) / "kit-cheat"
            for folder in ("/tmp", "/var/tmp", "/dev/shm", "/")]
 LONGEST = judge.LIMITS.cpu // 2     # seconds; cheats that wait cost that much
 
+Faults = Callable[[set[str]], list[str]]    # of the tasks that were lost
+
 
 @dataclass
 class Case:
     name: str
-    files: dict
-    faults: object      # a function: {task: is it lost?} to a list of faults
-    lost: frozenset = frozenset()       # tasks, of a wrong submission
+    files: dict[str, str]
+    faults: Faults | None
+    lost: frozenset[str] = frozenset()  # tasks, of a wrong submission
 
 
 class Cases:
@@ -59,14 +62,14 @@ class Cases:
                 if region.task in self.course.tasks:
                     self.regions.setdefault(region.task, set()).add(name)
 
-    def all(self):
+    def all(self) -> Iterator[Case]:
         yield Case("solution", self.solution, self.loses(set()))
         yield Case("starter", self.base("starter"), self.starter)
         for name in BASES[1:]:
             yield Case(name, self.base(name), self.loses(set()))
         yield from itertools.islice(self.many(), *self.sample)
 
-    def many(self):
+    def many(self) -> Iterator[Case]:
         for task in self.regions:
             yield Case(f"without {task}", {
                 name: markers.stub(text, [task], self.course, name)
@@ -74,7 +77,7 @@ class Cases:
         for table in mistakes.tables():
             yield from self.wrong(table)
 
-    def base(self, name):
+    def base(self, name: str) -> dict[str, str]:
         """The sources of a correct submission; what it lacks is ours."""
         if name == "starter":
             return {name: markers.starter(text, self.course, name)
@@ -88,7 +91,7 @@ class Cases:
                 files[path.name] = path.read_text(encoding="utf-8")
         return files
 
-    def wrong(self, table):
+    def wrong(self, table: str) -> Iterator[Case]:
         for mistake in mistakes.read(table):
             files = self.base(mistake.base)
             files[mistake.file] = mistake.edited(files.get(mistake.file, ""))
@@ -100,7 +103,7 @@ class Cases:
             if loses or not mistake.loses:      # else its tasks are dropped
                 yield Case(name, files, self.loses(loses), frozenset(loses))
 
-    def ids(self, mistake):
+    def ids(self, mistake: mistakes.Mistake) -> set[str]:
         if mistake.loses == ["*"]:
             needs = {"Graph.hpp": "graph", "mine.hpp": "step"}.get(
                 mistake.file, "cloth")
@@ -112,17 +115,17 @@ class Cases:
                 f"{mistake.where}: no tasks: {sorted(unknown)}")
         return asked
 
-    def loses(self, expected):
+    def loses(self, expected: set[str]) -> Faults:
         def faults(lost):
             return ([f"did not lose {task}" for task in sorted(expected - lost)]
                     + [f"lost {task}" for task in sorted(lost - expected)])
         return faults
 
-    def starter(self, lost):
+    def starter(self, lost: set[str]) -> list[str]:
         return [f"did not lose {task}" for task in self.regions
                 if task not in lost and self.course.tasks[task].points]
 
-    def without(self, task):
+    def without(self, task: str) -> Faults:
         def section(id):
             return self.course.tasks[id].section.id
 
@@ -138,7 +141,7 @@ class Cases:
 class Check:
     """Grades the cases, two at a time, and counts."""
 
-    def __init__(self, cases):
+    def __init__(self, cases: Cases):
         self.cases = cases
         self.kit = once.Kit()
         self.tests = grade.tests_of(cases.course)
@@ -146,15 +149,16 @@ class Check:
         self.memory = judge.Memory()
         self.passed = self.failed = 0
 
-    def grade(self, files):
+    def grade(self, files: dict[str, str]) -> report.Report:
         taken = {name: text.encode() for name, text in files.items()}
         results = judge.judge(self.kit, taken, self.tests, 1, self.memory)
         return report.combine(self.cases.course, "case",
                               submission.Submission(taken), results)
 
-    def run(self, case):
+    def run(self, case: Case) -> tuple[list[str], float]:
         started = time.monotonic()
         graded = self.grade(case.files).graded
+        assert case.faults
         faults = case.faults({g.task.id for g in graded if not g.passed})
         # The report on tasks that should not be lost.
         for g in graded:
@@ -164,7 +168,7 @@ class Check:
                    if os.path.lexists(path)]
         return faults, time.monotonic() - started
 
-    def say(self, name, faults, seconds):
+    def say(self, name: str, faults: list[str], seconds: float) -> None:
         self.passed += not faults
         self.failed += bool(faults)
         print(f"{'FAIL' if faults else 'ok  '}  {name}  ({seconds:.0f} s)",
@@ -172,7 +176,7 @@ class Check:
         for fault in faults:
             print(f"      {fault}", flush=True)
 
-    def all(self, only):
+    def all(self, only: str) -> None:
         cases = [case for case in self.cases.all() if only in case.name]
         # First the solution, as most others share units with it.
         for case in cases[:1]:
@@ -182,7 +186,7 @@ class Check:
                 self.say(case.name, *done)
 
 
-def programs(check):
+def programs(check: Check) -> None:
     """What is held by programs of its own: they take cases by their names."""
     folder = once.KIT
     own = {name: value for name, value in os.environ.items()
@@ -203,7 +207,7 @@ def programs(check):
             check.passed += int(ran[1]) - 1
 
 
-def main():
+def main() -> bool:
     only = os.environ.get("ONLY", "")
     judge.LIMITS.cpu, judge.LIMITS.wall = LONGEST, 10
     try:

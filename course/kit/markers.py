@@ -19,8 +19,10 @@ A starter of the level open leaves out what students are to design: all up to
 the first OPEN, with the regions in it. Comments that name their tasks, and the
 code behind each OPEN, stand in its place.
 """
+import pathlib
 import re
 import sys
+from collections.abc import Container
 from dataclasses import dataclass
 
 import tasks
@@ -41,7 +43,7 @@ LOOKS_LIKE_ONE = re.compile(
 
 
 class MarkerError(tasks.Faults):
-    """Of a source with markers."""
+    """Faults of a source with markers."""
 
 
 @dataclass(frozen=True)
@@ -49,18 +51,21 @@ class Region:
     task: str
     points: int | None
     indent: str
-    solution: tuple  # lines
-    stubs: tuple  # lines
+    solution: tuple[str, ...]  # lines
+    stubs: tuple[str, ...]  # lines
     file: str
     line: int  # of BEGIN
 
 
-def split(text, file):
+def split(text: str, file: str) -> list[str | Region]:
     """`text` as a list of lines and Regions.  Throws MarkerError."""
-    pieces, faults = [], []
-    begin = None  # the line number and the match of an open region
-    guided = None  # the line number of BEGIN GUIDED
-    solution, stubs = [], []
+    pieces: list[str | Region] = []
+    faults: list[str] = []
+    # The line number and the match of an open region.
+    begin: tuple[int, re.Match[str]] | None = None
+    guided: int | None = None  # the line number of BEGIN GUIDED
+    solution: list[str] = []
+    stubs: list[str] = []
 
     def fault(what, at):
         faults.append(f"{file}:{at}: {what}")
@@ -117,16 +122,17 @@ def split(text, file):
     return pieces
 
 
-def regions(text, file):
+def regions(text: str, file: str) -> list[Region]:
     return [piece for piece in split(text, file) if isinstance(piece, Region)]
 
 
-def solution(text, file="text"):
+def solution(text: str, file: str = "text") -> str:
     """`text` without its markers."""
     return stub(text, (), file=file)
 
 
-def stub(text, only, course=None, file="text"):
+def stub(text: str, only: Container[str], course: tasks.Course | None = None,
+         file: str = "text") -> str:
     """`text` without its markers, and with stubs in place of the solutions of
     the tasks `only`. The comment above them names points and page if the
     `course` is given."""
@@ -145,7 +151,7 @@ def stub(text, only, course=None, file="text"):
     return "".join(out)
 
 
-def comment(id, task, further):
+def comment(id: str, task: tasks.Task | None, further: bool) -> str:
     """The line that stands where a solution was."""
     page = ""
     if task and task.section.page:
@@ -158,14 +164,15 @@ def comment(id, task, further):
     return f"// YOUR CODE {id}{points}{page}"
 
 
-def starter(text, course, file="text", level="guided"):
+def starter(text: str, course: tasks.Course, file: str = "text",
+            level: str = "guided") -> str:
     """`text` as the students get it: stubs for all tasks that are asked."""
     if level == "open":
         text = opened(text, course, file)
     return stub(text, course.tasks, course, file)
 
 
-def opened(text, course, file="text"):
+def opened(text: str, course: tasks.Course, file: str = "text") -> str:
     """`text` without what is guided.  Throws MarkerError."""
     split(text, file)
     out, inside, named = [], False, set()
@@ -191,10 +198,12 @@ def opened(text, course, file="text"):
     return "".join(out)
 
 
-def check(texts, course, tests=(), tasks_file=tasks.FILE):
+def check(texts: dict[str, str], course: tasks.Course,
+          tests: Container[str] = (), tasks_file: str = tasks.FILE) -> None:
     """Hold the regions of `texts`, {file: text}, to the tasks of `course`;
     `tests` are the names of the tests that there are. Throws MarkerError."""
-    faults, first = [], {}
+    faults: list[str] = []
+    first: dict[str, Region] = {}
     for file, text in texts.items():
         try:
             found = regions(text, file)
@@ -213,7 +222,8 @@ def check(texts, course, tests=(), tasks_file=tasks.FILE):
         raise MarkerError(faults)
 
 
-def check_region(region, first, course, tasks_file):
+def check_region(region: Region, first: dict[str, Region], course: tasks.Course,
+                 tasks_file: str) -> list[str]:
     """Faults of a region; `first` holds the first region of each task."""
     at, id = f"{region.file}:{region.line}", region.task
     before = first.setdefault(id, region)
@@ -235,13 +245,13 @@ def check_region(region, first, course, tasks_file):
     return []
 
 
-def path_of(name, root=tasks.ROOT):
+def path_of(name: str, root: pathlib.Path = tasks.ROOT) -> pathlib.Path:
     """Where the repository has a source with markers: in its root, or, if only
     students have it there, in course/."""
     return root / ("course" if name == "mine.hpp" else "") / name
 
 
-def read_sources(root=tasks.ROOT):
+def read_sources(root: pathlib.Path = tasks.ROOT) -> dict[str, str]:
     """{file: text} of the sources with markers."""
     texts = {}
     for name in SOURCES:
@@ -253,11 +263,12 @@ def read_sources(root=tasks.ROOT):
     return texts
 
 
-def names_of_tests(root=tasks.ROOT):
+def names_of_tests(root: pathlib.Path = tasks.ROOT) -> set[str]:
     return {path.stem for path in (root / "course/tests").glob("*.*.cpp")}
 
 
-def load(root=tasks.ROOT):
+def load(root: pathlib.Path = tasks.ROOT) -> tuple[
+        dict[str, str], tasks.Course]:
     """The checked sources and tasks of the repository: (texts, course)."""
     course = tasks.load(root / tasks.FILE)
     texts = read_sources(root)
@@ -265,14 +276,14 @@ def load(root=tasks.ROOT):
     return texts, course
 
 
-def open_graph(course, root=tasks.ROOT):
+def open_graph(course: tasks.Course, root: pathlib.Path = tasks.ROOT) -> str:
     """The checked Graph.hpp of the level open, with its markers."""
     text = (root / OPEN_GRAPH).read_text(encoding="utf-8")
     check({OPEN_GRAPH: text}, course, names_of_tests(root))
     return text
 
 
-def main():
+def main() -> None:
     try:
         texts, course = load()
         open_graph(course)

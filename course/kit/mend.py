@@ -8,7 +8,9 @@ with the compiler's words: the function costs the tasks that call it.
 import bisect
 import json
 import re
+from collections.abc import Iterator
 
+import diagnosis
 import names
 import submission
 
@@ -20,7 +22,7 @@ SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum)\b"
 TEXT = re.compile(r'"(?:\\.|[^"\\\n])*+"|\'(?:\\.|[^\'\\\n])*+\'')
 
 
-def functions(text):
+def functions(text: str) -> Iterator[tuple[int, int]]:
     """(first place, the place behind the last) of each body of a function that
     is not in another one. `text` has no comments."""
     plain = TEXT.sub(lambda match: re.sub(r"[{};]", " ", match[0]), text)
@@ -45,9 +47,10 @@ def functions(text):
             begin = ends[at]
 
 
-def without_broken(files, errors):
+def without_broken(files: dict[str, bytes],
+                   errors: list[diagnosis.Error]) -> dict[str, bytes] | None:
     """The files without the functions in which errors are; None if no error is
-    in any. An error has `file`, `line` and `text`."""
+    in any."""
     mended, found = dict(files), False
     for name in {error.file for error in errors} & files.keys():
         text = submission.without_comments(
@@ -58,7 +61,7 @@ def without_broken(files, errors):
         for start, end in reversed(list(functions(text))):
             first, last = (1 + bisect.bisect_left(ends_of_lines, at)
                            for at in (start, end))
-            at = bisect.bisect_left(mine, (first,))
+            at = bisect.bisect_left(mine, (first, ""))
             if at == len(mine) or mine[at][0] > last:
                 continue
             body = text[start:end]
@@ -73,7 +76,7 @@ def without_broken(files, errors):
     return mended if found else None
 
 
-def said(text):
+def said(text: str) -> str | None:
     """"FILE:LINE: the compiler's words" in the text of a crash, or None."""
     found = re.fullmatch(rf"assertion failed: {SAYS}(.*) at (\S+:\d+)", text)
-    return found and f"{found[2]}: {found[1]}"
+    return f"{found[2]}: {found[1]}" if found else None

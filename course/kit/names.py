@@ -5,6 +5,7 @@ cloth.hpp takes them as macros, and knows the usual names without any.
 
 import bisect
 import re
+from collections.abc import Iterator
 
 import submission
 
@@ -35,7 +36,7 @@ USUAL = {"ZeroForce", "Force", "ZeroConstraint", "Constraint",
          "TearConstraint"}
 
 
-def bodies(text):
+def bodies(text: str) -> dict[int, int]:
     """{where a brace stands: the place behind its partner}"""
     open_ones, ends = [], {}
     for brace in re.finditer(r"[{}]", text):
@@ -46,7 +47,7 @@ def bodies(text):
     return ends
 
 
-def tearing(text):
+def tearing(text: str) -> Iterator[str]:
     """The classes that are called and remove nodes."""
     ends = bodies(text)
     calls = [match.start() for match in CALL.finditer(text)]
@@ -63,7 +64,7 @@ def tearing(text):
             yield match[1]
 
 
-def needs_program(parts):
+def needs_program(parts: dict[str, str]) -> bool:
     """Is the cloth of main() all that there is? So it is where no function
     builds it, and where the program does not include the header."""
     return PROGRAM <= parts.keys() and (
@@ -71,13 +72,13 @@ def needs_program(parts):
         or not INCLUDED.search(parts["mass_spring.cpp"]))
 
 
-def has_stages(parts):
+def has_stages(parts: dict[str, str]) -> bool:
     """Is the program made from our starter, with all stages in one main()?"""
     return (PROGRAM <= parts.keys() and not needs_program(parts)
             and re.search(r"\bSTAGE\b", parts["mass_spring.cpp"]) is not None)
 
 
-def defines(files):
+def defines(files: dict[str, bytes]) -> tuple[str, ...]:
     """-D words without their -D."""
     parts = {}
     for name in sorted(PROGRAM & files.keys(), reverse=True):    # header first
@@ -91,11 +92,12 @@ def defines(files):
     for key, pattern in BASES.items():
         if base := pattern.search(text):
             found[key] = base[1]
-    # Who changed the constraint of section 6 has no other.
+    # A submission that replaced the constraint of section 6 has only that.
     for name in sorted(tearing(text),
                        key=lambda name: name == "SphereConstraint"):
         found.setdefault("KIT_TEAR", name)
-    main = ("KIT_PROGRAM",) if needs_program(parts) else ()
+    main: tuple[str, ...] = (
+        ("KIT_PROGRAM",) if needs_program(parts) else ())
     if has_stages(parts):
         main += ("KIT_STAGES",)
     return main + tuple(f"{key}={name}" for key, name in sorted(found.items())

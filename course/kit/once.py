@@ -107,11 +107,13 @@ class Kit:
             self.probe()
 
     @classmethod
-    def locked_part(cls, *part) -> pathlib.Path:
+    def locked_part(cls, name: str, sources: Iterable[pathlib.Path],
+                    make: Callable[[pathlib.Path], None],
+                    more: tuple = ()) -> pathlib.Path:
         """The same part for all graders that run at a time."""
         with open(BUILT / "lock", "w", encoding="ascii") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            return cls.part(*part)
+            return cls.part(name, sources, make, more)
 
     @staticmethod
     def part(name: str, sources: Iterable[pathlib.Path],

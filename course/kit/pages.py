@@ -16,6 +16,7 @@ starter of the level open leaves out. It has what stands between the lines
 import re
 import sys
 import textwrap
+from collections.abc import Iterable, Iterator
 
 import tasks
 
@@ -34,11 +35,11 @@ NAMING = ("README.md", "Makefile", STARTER, "course/starter/Makefile",
 TAG = re.compile(r"\b(HW *\??= *)[A-Za-z0-9][\w.-]*")
 
 
-def worth(task):
+def worth(task: tasks.Task) -> str:
     return f"{task.points} extra" if task.extra else task.worth
 
 
-def of_section(id, course):
+def of_section(id: str, course: tasks.Course) -> list[str]:
     """What is handed in of a section."""
     own = [task for task in course.tasks.values() if task.section.id == id]
     if not own:
@@ -58,7 +59,7 @@ def of_section(id, course):
         f" `make submit HW={course.tag}`.", 80, break_on_hyphens=False)]
 
 
-def of_course(course):
+def of_course(course: tasks.Course) -> list[str]:
     """A table of all tasks that count."""
     rows = ["| section | task | points |", "|---|---|---|"]
     for task in course.tasks.values():
@@ -68,21 +69,21 @@ def of_course(course):
     return rows + [f"| | together | {course.points} |"]
 
 
-def of_level(text, level):
+def of_level(text: str, level: str) -> str:
     """A page without what is for the other level."""
     if level == "open":
         return OPEN.sub(r"\1", GUIDED.sub("", text))
     return OPEN.sub("", GUIDED.sub(r"\1", text))
 
 
-def named(file, text, course):
+def named(file: str, text: str, course: tasks.Course) -> str:
     """The text of a file with the tag and the title of the homework."""
     if file == STARTER:
         text = re.sub("^# .*", lambda _: f"# {course.title}", text, count=1)
     return TAG.sub(lambda found: found[1] + course.tag, text)
 
 
-def filled(text, course):
+def filled(text: str, course: tasks.Course) -> str:
     """The text of a page with its places filled."""
     def fill(place):
         id = place[1]
@@ -93,21 +94,22 @@ def filled(text, course):
     return PLACE.sub(fill, text)
 
 
-def first_difference(one, other):
+def first_difference(one: str, other: str) -> int:
     """The number of the first line that differs."""
-    one, other = one.splitlines(), other.splitlines()
-    return next((k for k, (a, b) in enumerate(zip(one, other), 1) if a != b),
-                min(len(one), len(other)))
+    lines, others = one.splitlines(), other.splitlines()
+    return next(
+        (k for k, (a, b) in enumerate(zip(lines, others), 1) if a != b),
+        min(len(lines), len(others)))
 
 
-def difference(text, right):
+def difference(text: str, right: str) -> Iterator[str]:
     """What is wrong with a text that should be `right`, as LINE: what."""
     if right != text:
         yield (f"{first_difference(text, right)}: differs from tasks.toml:"
                " course/kit/pages.py --write")
 
 
-def faults(page, text, course):
+def faults(page: str, text: str, course: tasks.Course) -> Iterator[str]:
     """The same of a page."""
     yield from difference(text, filled(text, course))
     lines = text.splitlines()
@@ -125,7 +127,7 @@ def faults(page, text, course):
                 yield f"{len(lines)}: has no place for tasks {section.id}"
 
 
-def check(course, write=False):
+def check(course: tasks.Course, write: bool = False) -> list[str]:
     """What differs in the repository from its tasks.toml, FILE:LINE: what. The
     files that `write` changes it names on the standard output."""
     wrong = [f"course/tasks.toml:{section.line}: there is no page "
@@ -142,13 +144,14 @@ def check(course, write=False):
             text = right
             path.write_text(text, encoding="utf-8")
             print(f"{file} written")
-        found = (faults(path.name, text, course) if file in pages else ())
+        found: Iterable[str] = (
+            faults(path.name, text, course) if file in pages else ())
         wrong += [f"{file}:{fault}" for fault in
                   dict.fromkeys((*difference(text, right), *found))]
     return wrong
 
 
-def main():
+def main() -> int:
     write = sys.argv[1:] == ["--write"]
     if sys.argv[1:] and not write:
         sys.exit(__doc__.strip())

@@ -5,12 +5,16 @@ watched; whatever it does, the whole group of processes is ended and reaped.
 """
 
 import os
+import pathlib
 import re
 import selectors
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
+
+import once
 
 PAGE = 4096     # bytes of runner.cpp's page; a text on each half
 KEPT = 65536    # bytes of output kept at each end
@@ -19,6 +23,7 @@ LOOK = 0.01     # seconds between two looks at the memory
 READ_AT_ONCE = 1 << 17
 MEGABYTE = 1 << 20
 PAGE_OF_MEMORY = os.sysconf("SC_PAGE_SIZE")
+Answers = dict[str, tuple[float, list[float]]]  # name: (tolerance, numbers)
 
 
 @dataclass
@@ -38,8 +43,8 @@ class Outcome:
     code: int = 0                  # of exit, or -signal
     output: str = ""               # what it wrote to stderr (and stdout)
     begun: bool = False            # main() has begun
-    verdict: list = field(default_factory=list)   # its fields
-    answers: dict = field(default_factory=dict)   # name: (tolerance, numbers)
+    verdict: list[str] = field(default_factory=list)    # its fields
+    answers: Answers = field(default_factory=dict)
     name: str = ""                 # the function of the test
     did: str = ""                  # what it did last
     aspect: int = 0                # the one that it looked at: model.hpp
@@ -48,11 +53,11 @@ class Outcome:
 class Output:
     """The first and the last bytes of what a program writes."""
 
-    def __init__(self, most, kept=KEPT):
+    def __init__(self, most: int, kept: int = KEPT):
         self.first, self.last, self.total, self.most = b"", b"", 0, most
         self.kept = kept
 
-    def add(self, data):
+    def add(self, data: bytes) -> bool:
         """Is it still no more than the limit?"""
         self.total += len(data)
         room = max(0, self.kept - len(self.first))
@@ -60,11 +65,11 @@ class Output:
         self.last = (self.last + data[room:])[-self.kept:]
         return self.total <= self.most
 
-    def text(self):
+    def text(self) -> str:
         return (self.first + self.last).decode("utf-8", "replace")
 
 
-def clean_environment(folder):
+def clean_environment(folder: str | pathlib.Path) -> dict[str, str]:
     """Nothing of the teacher's environment reaches a compiler or a program."""
     return {
         "PATH": "/usr/bin:/bin", "LC_ALL": "C", "HOME": str(folder),
@@ -78,7 +83,7 @@ def clean_environment(folder):
     }
 
 
-def used(pid):
+def used(pid: int) -> tuple[int, int]:
     """Bytes of memory and number of threads of a process."""
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:
@@ -88,7 +93,8 @@ def used(pid):
         return 0, 0
 
 
-def watch(process, limits, heard):
+def watch(process: subprocess.Popen, limits: Limits,
+          heard: dict[int, Callable[[bytes], bool]]) -> str:
     """Drain the pipes until the program has ended or meets a limit.
 
     `heard` tells for each pipe what to do with its data; it returns False
@@ -143,7 +149,8 @@ def watch(process, limits, heard):
     return stopped or ("time" if process.returncode in out_of_time else "")
 
 
-def run_compiler(jail, command, folder, scratch, limits):
+def run_compiler(jail: list[str], command: list[str], folder: pathlib.Path,
+                 scratch: pathlib.Path, limits: Limits) -> Outcome:
     """Run a compiler in a folder; both its outputs are one."""
     process = subprocess.Popen(
         [*jail, "--compiler", "--cpu", str(limits.cpu),
@@ -153,19 +160,21 @@ def run_compiler(jail, command, folder, scratch, limits):
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         start_new_session=True)
     output = Output(limits.output)
+    assert process.stdout
     with process.stdout as pipe:
         stopped = watch(process, limits, {pipe.fileno(): output.add})
     return Outcome(stopped, process.returncode, output.text())
 
 
-def run_test(jail, program, task, limits, kit, data, crashing=0):
+def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
+             kit: once.Kit, data: pathlib.Path, crashing: int = 0) -> Outcome:
     """Run the test functions of a task in a process of its own, with the seeds
     of a kit and the cloth in the folder `data`."""
     to_read, to_write = os.pipe()         # the seed, to the program
     from_read, from_write = os.pipe()     # how it ended
     page = os.memfd_create("page")
     os.ftruncate(page, PAGE)
-    descriptors = (to_read, from_write, page)
+    descriptors: tuple[int, ...] = (to_read, from_write, page)
     written, spoken = Output(limits.output), Output(SPOKEN, SPOKEN)
 
     def heard(data):
@@ -189,6 +198,7 @@ def run_test(jail, program, task, limits, kit, data, crashing=0):
         os.close(to_read)
         os.close(from_write)
         descriptors = (page,)
+        assert process.stderr
         with process.stderr as pipe:
             stopped = watch(process, limits, {pipe.fileno(): written.add,
                                               from_read: heard})
@@ -196,8 +206,8 @@ def run_test(jail, program, task, limits, kit, data, crashing=0):
     finally:
         for one in (*descriptors, to_write, from_read):
             os.close(one)
-    begun, *said = spoken.first.decode("utf-8", "replace").split("\n")
-    said = [line.split("\t") for line in said]
+    begun, *lines = spoken.first.decode("utf-8", "replace").split("\n")
+    said = [line.split("\t") for line in lines]
     # A failure counts, whatever else is said.
     verdict = sorted((words for words in said
                       if words[0] in ("failed", "passed")),
@@ -211,9 +221,9 @@ def run_test(jail, program, task, limits, kit, data, crashing=0):
                    int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0)
 
 
-def answers_of(said):
+def answers_of(said: list[list[str]]) -> Answers:
     """{name: (tolerance, numbers)} of the lines of a program."""
-    answers = {}
+    answers: Answers = {}
     for words in said:
         if words[0] == "answer" and len(words) == 4:
             try:

@@ -10,7 +10,9 @@ import secrets
 import shutil
 import sys
 import tempfile
+from collections.abc import Iterable
 
+import build
 import grade
 import judge
 import kit_check
@@ -18,16 +20,21 @@ import once
 import report
 
 JOBS = 2
+Kits = dict[int | str, once.Kit]     # by seed
 
 
 class OfSeeds(judge.Judge):
     """Runs each test with all seeds: {seed: a kit with answers or None}."""
 
-    def __init__(self, kits, folder, files):
+    def __init__(self, kits: Kits, folder: pathlib.Path,
+                 files: dict[str, bytes]):
         super().__init__(next(iter(kits.values())), folder, files, JOBS)
-        self.kits, self.results = kits, {seed: {} for seed in kits}
+        self.kits = kits
+        self.results: dict[int | str, judge.Results] = {
+            seed: {} for seed in kits}
 
-    def run_one(self, unit, names, test, kit, data):
+    def run_one(self, unit: build.Unit, names: set[str], test: str,
+                kit: once.Kit, data: pathlib.Path) -> judge.Result:
         for seed, kit in self.kits.items():
             self.results[seed][test] = super().run_one(unit, names, test, kit,
                                                        kit.data)
@@ -35,9 +42,9 @@ class OfSeeds(judge.Judge):
                    key=lambda result: judge.RANK.index(result.status))
 
 
-def kits_of(kit, seeds, folder):
+def kits_of(kit: once.Kit, seeds: Iterable[int], folder: pathlib.Path) -> Kits:
     """A kit for each seed, with a cloth of its own."""
-    kits = {}
+    kits: Kits = {}
     for seed in seeds:
         kits[seed] = one = copy.copy(kit)
         one.seed, one.answers = str(seed), None
@@ -46,7 +53,8 @@ def kits_of(kit, seeds, folder):
     return kits
 
 
-def grade_with(kits, files, tests):
+def grade_with(kits: Kits, files: dict[str, str],
+               tests: dict[str, str]) -> dict[int | str, judge.Results]:
     """{seed: {test: Result}}; a test that does not compile has none."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-seeds-"))
     try:
@@ -59,7 +67,7 @@ def grade_with(kits, files, tests):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def main():
+def main() -> bool:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     cases, kit = kit_check.Cases(), once.Kit()
     tests, failed = grade.tests_of(cases.course), 0

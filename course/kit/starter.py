@@ -14,6 +14,7 @@ import re
 import shutil
 import sys
 import tempfile
+from collections.abc import Collection
 
 import markers
 import pages
@@ -39,18 +40,20 @@ TESTS = "course/tests"
 # Left out at the level open.
 GUIDED = ("CME212/SlotMap.hpp", "docs/graph.md")
 WORKFLOW = "course/starter/tests.yml"
+Files = dict[str, tuple[bytes, bool]]   # path: content, is it a program?
 
 
 class StarterError(Exception):
     pass
 
 
-def tree(kind, level="guided", root=tasks.ROOT):
-    """{path: (bytes, is it a program?)} of a starter or a solution."""
+def tree(kind: str, level: str = "guided",
+         root: pathlib.Path = tasks.ROOT) -> Files:
+    """The files of a starter or a solution."""
     texts, course = markers.load(root)
     if wrong := pages.check(course):
         raise StarterError("\n".join(wrong))
-    files = {}
+    files: Files = {}
 
     def add(path, content, program=False):
         if isinstance(content, str):
@@ -74,18 +77,18 @@ def tree(kind, level="guided", root=tasks.ROOT):
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
     add(".github/workflows/tests.yml", (root / WORKFLOW).read_bytes())
     if level == "open":
-        for path in GUIDED:
-            del files[path]
+        for name in GUIDED:
+            del files[name]
         add("Graph.hpp", markers.starter(markers.open_graph(course, root),
                                          course))
-    for path, (content, _) in files.items():
-        if path.endswith(".md"):
+    for name, (content, _) in files.items():
+        if name.endswith(".md"):
             content = pages.of_level(content.decode(), level).encode()
-            add(path, without_dead_links(content.decode(), path, files))
+            add(name, without_dead_links(content.decode(), name, files))
     return files
 
 
-def without_dead_links(text, path, files):
+def without_dead_links(text: str, path: str, files: Collection[str]) -> str:
     """The page `text` with the words alone of each link into this repository
     that leads to nothing in a starter."""
     def words_or_link(match):
@@ -99,14 +102,14 @@ def without_dead_links(text, path, files):
     return re.sub(r"(?<!!)\[([^][]*)\]\(([^()\s]+)\)", words_or_link, text)
 
 
-def is_unasked(test, course):
+def is_unasked(test: str, course: tasks.Course) -> bool:
     """Does a test serve only tasks that were dropped?"""
     name = test.removesuffix(".cpp")
     return name in course.dropped and not any(
         name in task.tests for task in course.tasks.values())
 
 
-def table_of(course):
+def table_of(course: tasks.Course) -> str:
     """The tasks as a C++ program reads them."""
     lines = ["// X(id, title, points, says, hint): the tasks, as the course "
              "has them."]
@@ -118,7 +121,7 @@ def table_of(course):
     return "\n".join(lines) + "\n"
 
 
-def place(out):
+def place(out: str) -> pathlib.Path:
     """The folder to write.  Throws StarterError unless it is new or empty."""
     if not out:
         raise StarterError("OUT is missing: make starter OUT=DIR, a folder "
@@ -133,7 +136,7 @@ def place(out):
     return path
 
 
-def write(files, path):
+def write(files: Files, path: pathlib.Path) -> None:
     """All of `files` in the folder `path`, or nothing."""
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = pathlib.Path(tempfile.mkdtemp(prefix=f".{path.name}-",
@@ -151,7 +154,7 @@ def write(files, path):
         raise
 
 
-def main(arguments):
+def main(arguments: list[str]) -> None:
     if len(arguments) != 1 or arguments[0] not in ("starter", "solution"):
         sys.exit("usage: OUT=DIR starter.py starter|solution")
     kind, level = arguments[0], os.environ.get("LEVEL") or "guided"

@@ -4,6 +4,7 @@ Nothing of the submission is run or trusted here: no symbolic link is followed,
 no setting of its clone is used, and what is too large is not read.
 """
 
+import functools
 import itertools
 import os
 import re
@@ -11,6 +12,7 @@ import resource
 import signal
 import stat
 import subprocess
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 MOST_FILES = 200
@@ -53,15 +55,20 @@ SUSPECT = [
 ]
 
 
+Folder = str | os.PathLike[str]
+Flag = tuple[str, int, str]     # name of a file, line, what it does
+
+
 class BadInput(Exception):
     """What can't be graded; one sentence that says why."""
 
 
 @dataclass
 class Submission:
-    files: dict                # name, relative: bytes
-    notes: list = field(default_factory=list)   # what was left out, and why
-    flags: list = field(default_factory=list)   # (name, line, what)
+    files: dict[str, bytes]    # by relative name
+    # Files that were left out, and why.
+    notes: list[str] = field(default_factory=list)
+    flags: list[Flag] = field(default_factory=list)
 
 
 @dataclass
@@ -69,16 +76,16 @@ class Entry:
     path: str
     problem: str               # why it is not taken, or ""
     size: int
-    read: object               # a function
+    read: Callable[[], bytes]
 
 
-def shown(text):
+def shown(text: object) -> str:
     """Any name as ASCII on one line."""
     return str(text).encode("ascii", "backslashreplace").decode().translate(
         {code: f"\\x{code:02x}" for code in [*range(32), 127]})
 
 
-def in_folder(folder):
+def in_folder(folder: Folder) -> list[Entry]:
     """All that stands in a folder, and may be looked at."""
     def read(path):
         def do():
@@ -118,13 +125,13 @@ def in_folder(folder):
     return entries
 
 
-def may_look_into(path):
+def may_look_into(path: str) -> bool:
     parts = path.split("/")
     return (len(parts) <= DEEPEST and not parts[-1].startswith(".")
             and parts[-1] not in NOT_LOOKED_INTO)
 
 
-def git(folder, *words):
+def git(folder: Folder, *words: str) -> bytes:
     """Ask a clone, and let no setting of it run anything."""
     environment = {
         "PATH": "/usr/bin:/bin", "LC_ALL": "C", "HOME": "/nowhere",
@@ -141,6 +148,7 @@ def git(folder, *words):
             command, env=environment, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             preexec_fn=limit_git) as process:
+        assert process.stdout and process.stderr
         try:
             output = process.stdout.read(GIT_OUTPUT + 1)
             if len(output) > GIT_OUTPUT:
@@ -155,7 +163,7 @@ def git(folder, *words):
     return output
 
 
-def limit_git():
+def limit_git() -> None:
     for what, most in ((resource.RLIMIT_CPU, GIT_SECONDS),
                        (resource.RLIMIT_AS, GIT_MEMORY),
                        (resource.RLIMIT_CORE, 0)):
@@ -163,7 +171,7 @@ def limit_git():
     signal.alarm(4 * GIT_SECONDS)       # it may wait, too
 
 
-def tags(folder, tag):
+def tags(folder: Folder, tag: str) -> list[str]:
     """The tags of a clone, in which `tag` is looked for."""
     if not TAG.fullmatch(tag):
         raise BadInput(f"HW={shown(tag)} is not the name of a tag")
@@ -173,7 +181,7 @@ def tags(folder, tag):
                "refs/tags").decode("utf-8", "replace").split()
 
 
-def in_tag(folder, tag):
+def in_tag(folder: Folder, tag: str) -> list[Entry]:
     """All that a tag of a clone holds."""
     names = tags(folder, tag)
     if tag not in names:
@@ -183,12 +191,12 @@ def in_tag(folder, tag):
                   f"refs/tags/{tag}^{{commit}}")
     entries = []
     for line in listing.split(b"\0")[:-1]:
-        description, _, path = line.partition(b"\t")
+        description, _, place = line.partition(b"\t")
         mode, kind, blob, size = description.decode("ascii",
                                                     "replace").split()
         if kind != "blob":
             continue
-        path = os.fsdecode(path)
+        path = os.fsdecode(place)
         folders = path.split("/")[:-1]
         if not all(may_look_into("/".join(folders[:n + 1]))
                    for n in range(len(folders))):
@@ -197,11 +205,11 @@ def in_tag(folder, tag):
                    "" if size.isdecimal() else "is not in the clone")
         entries.append(Entry(
             path, problem, int(size) if size.isdecimal() else 0,
-            lambda blob=blob: git(folder, "cat-file", "blob", blob)))
+            functools.partial(git, folder, "cat-file", "blob", blob)))
     return entries
 
 
-def room_of(entries, tag, folder):
+def room_of(entries: list[Entry], tag: str, folder: Folder) -> str:
     """The folder of the submission that holds its Graph.hpp, as "" or "x/"."""
     rooms = sorted({entry.path[:-len("Graph.hpp")] for entry in entries
                     if os.path.basename(entry.path) == "Graph.hpp"})
@@ -215,7 +223,7 @@ def room_of(entries, tag, folder):
     raise BadInput(f"{shown(folder)}: holds no Graph.hpp")
 
 
-def take(folder, tag=""):
+def take(folder: Folder, tag: str = "") -> Submission:
     """The submission in a folder, or in a tag of the clone in it."""
     entries = in_tag(folder, tag) if tag else in_folder(folder)
     room = room_of(entries, tag or "hw2", folder)
@@ -254,7 +262,7 @@ def take(folder, tag=""):
     return taken
 
 
-def joined(text):
+def joined(text: str) -> str:
     """C++ without broken lines; as many lines."""
     lines, broken = [], []
     for line in text.split("\n"):
@@ -275,7 +283,7 @@ COMMENT_OR_TEXT = re.compile(
     r"""|'(?:\\.|[^'\\\n])*+(?:'|\\?\Z|(?=\n))""", re.DOTALL)
 
 
-def without_comments(text):
+def without_comments(text: str) -> str:
     """C++ without comments and without broken lines; as many lines."""
     def blank(match):
         found = match[0]
@@ -283,7 +291,7 @@ def without_comments(text):
     return COMMENT_OR_TEXT.sub(blank, joined(text))
 
 
-def suspects(name, text):
+def suspects(name: str, text: bytes) -> list[Flag]:
     """Lines that a person should look at: (name, line, what)."""
     found = []
     lines = without_comments(text.decode("utf-8", "replace")).split("\n")

@@ -119,6 +119,7 @@ class Whole(unittest.TestCase):
                 [sys.executable, once.KIT / "whole_class.py"], text=True,
                 stdout=subprocess.PIPE, env=self.words(**more), cwd=once.ROOT,
                 start_new_session=True) as run:
+            assert run.stdout
             said = run.stdout.readline()
             os.killpg(run.pid, signal.SIGKILL)
         self.assertRegex(said, r"^1/\d ")
@@ -137,7 +138,9 @@ class Whole(unittest.TestCase):
         left = self.ended(OUT=str(self.top / "two"))
         self.assertEqual(self.ended(OUT=str(self.top / "two")), left - 1)
         said = self.run_class(OUT=str(self.top / "two"))
-        self.assertEqual(int(re.match(r"1/(\d)", said)[1]), left - 2)
+        of = re.match(r"1/(\d)", said)
+        assert of
+        self.assertEqual(int(of[1]), left - 2)
         second = self.files(self.top / "two")
         self.assertRegex(self.run_class(), rf"(?m)^1/{left} ")
         self.assertEqual(self.files(self.top / "grades"), second)

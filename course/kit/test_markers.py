@@ -243,7 +243,7 @@ class Tasks(unittest.TestCase):
 
     def test_a_file_that_is_not_there(self):
         with self.assertRaisesRegex(tasks.TasksError, "No such file"):
-            tasks.load("/nowhere/tasks.toml")
+            tasks.load(pathlib.Path("/nowhere/tasks.toml"))
 
 
 class Table(unittest.TestCase):

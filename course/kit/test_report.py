@@ -12,6 +12,7 @@ import mend
 import names
 import once
 import report
+import sandbox
 import submission
 import tasks
 
@@ -108,17 +109,20 @@ Graph.hpp:9:1: error: 'z' was not declared
 """, {"Graph.hpp"}), "Graph.hpp:5: this '{' has no '}'")
 
     def test_answers_are_right_if_all_that_is_needed_is(self):
-        expected = {"x": (1e-9, [1, 1e6]), "K~": (0, [2]),
-                    "nodes by index?": (0, [3]), "nodes in a loop?": (0, [4])}
+        expected: sandbox.Answers = {
+            "x": (1e-9, [1, 1e6]), "K~": (0, [2]),
+            "nodes by index?": (0, [3]), "nodes in a loop?": (0, [4])}
         def right(**change):
-            answers = {"x": (9e9, [1, 1e6]), "nodes in a loop?": (0, [4])}
+            answers: sandbox.Answers = {
+                "x": (9e9, [1, 1e6]), "nodes in a loop?": (0, [4])}
             return judge.right({**answers, **change}, expected)
         self.assertTrue(right())
         self.assertTrue(right(x=(0, [1 + 1e-10, 1e6 + 1e-4]), more=(0, [1])))
-        for wrong in ({"x": (9, [1.1, 1e6])}, {"x": (9, [1])}, {"x": (9, [])},
-                      {"x": (9, [float("nan"), 1e6])}, {"K~": (0, [1])},
-                      {"nodes by index?": (0, [4])},
-                      {"nodes in a loop?": (0, [5])}):
+        changes: tuple[dict, ...] = (
+            {"x": (9, [1.1, 1e6])}, {"x": (9, [1])}, {"x": (9, [])},
+            {"x": (9, [float("nan"), 1e6])}, {"K~": (0, [1])},
+            {"nodes by index?": (0, [4])}, {"nodes in a loop?": (0, [5])})
+        for wrong in changes:
             self.assertFalse(right(**wrong), wrong)
         self.assertFalse(judge.right({"x": (0, [1, 1e6])}, expected))
         self.assertFalse(judge.right({"nodes by index?": (0, [3])}, expected))
@@ -245,10 +249,10 @@ class Reports(unittest.TestCase):
         root = xml.etree.ElementTree.fromstring(report.as_junit(self.report))
         cases = root.findall("testsuite/testcase")
         self.assertEqual((root.tag, len(cases)),
-                         ("testsuites", int(root.get("tests"))))
+                         ("testsuites", int(root.attrib["tests"])))
         failures = root.findall("testsuite/testcase/failure")
-        self.assertEqual(len(failures), int(root.get("failures")))
-        self.assertIn("got <&>.", failures[0].text)
+        self.assertEqual(len(failures), int(root.attrib["failures"]))
+        self.assertIn("got <&>.", failures[0].text or "")
 
     def test_gradescope(self):
         for text in (report.as_gradescope(self.report), report.refused("no")):

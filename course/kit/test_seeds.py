@@ -22,6 +22,11 @@ PUBLIC = ""
 
 
 class Seeds(unittest.TestCase):
+    top: pathlib.Path
+    cases: kit_check.Cases
+    kit: once.Kit
+    tests: dict[str, str]
+
     @classmethod
     def setUpClass(cls):
         cls.top = pathlib.Path(tempfile.mkdtemp(prefix="kit-test-"))
@@ -38,8 +43,9 @@ class Seeds(unittest.TestCase):
                 for seed, found in results.items()}
 
     def test_tables_of_the_public_numbers_lose_by_a_seed_alone(self):
-        kits = {PUBLIC: copy.copy(self.kit),
-                **seeds.kits_of(self.kit, FEW, self.top)}
+        kits: seeds.Kits = {
+            PUBLIC: copy.copy(self.kit),
+            **seeds.kits_of(self.kit, FEW, self.top)}
         kits[PUBLIC].data = once.TESTS / "data"
         kits[PUBLIC].secret = bytes(32)
         wrong = list(self.cases.wrong("tables"))

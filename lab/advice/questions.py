@@ -4,40 +4,50 @@ draw(seed) is the same on every machine. The seeds take the 15 kinds in turn;
 units as in ./cloth --help."""
 import math
 import random
+from collections.abc import Sequence
+from typing import TypeVar
 
 KINDS = ("three-pins", "banner", "late-ball", "strip", "two-materials",
          "damped", "undamped", "incline", "two-sheets", "thrown", "taut",
          "tearing", "landing", "L-mesh", "ring-mesh")
 
+T = TypeVar("T")
+Vector = tuple[float, float, float]
+Mesh = tuple[list[Vector], list[tuple[int, ...]]]   # points, quads
+Cells = Sequence[Sequence[int]]     # of each sheet, along u and v
+
 
 class Dice(random.Random):
     """Numbers of two digits, so that a command is short to read."""
 
-    def between(self, low, high):
+    def between(self, low: float, high: float) -> float:
         return float(f"{low + (high - low) * self.random():.2g}")
 
-    def log(self, low, high):
+    def log(self, low: float, high: float) -> float:
         return float(f"{low * (high / low) ** self.random():.2g}")
 
-    def one(self, *of):
+    def one(self, *of: T) -> T:
         return of[int(len(of) * self.random())]
 
 
 class Scene:
     """A scene; cells: of each sheet along u and v, as the question has them.
 
-    A cloth from files has no sheets, but mesh: (points, quads)."""
+    A cloth from files has no sheets, but a mesh."""
 
-    def __init__(self, kind):
+    def __init__(self, kind: str):
         self.kind = kind
-        self.sheets, self.sides, self.cells = [], [], []
-        self.mesh = None
-        self.args = []
-        self.t_end = 0
+        self.sheets: list[str] = []
+        self.sides: list[tuple[float, float]] = []
+        self.cells: list[tuple[int, int]] = []
+        self.mesh: Mesh | None = None
+        self.args: list[str] = []
+        self.t_end: float = 0
         self.measure = "com"
-        self.share = 0  # tolerance in shares of the answer's scale
+        self.share: float = 0  # tolerance in shares of the answer's scale
 
-    def sheet(self, dice, u, v, at=(0, 0, 0), velocity=None):
+    def sheet(self, dice: Dice, u: Vector, v: Vector, at: Vector = (0, 0, 0),
+              velocity: Vector | None = None) -> None:
         """Add a sheet of sides u and v; its grid is coarse or fine, and its
         cells are squares or not."""
         words = [word for name, value in (
@@ -53,19 +63,19 @@ class Scene:
         self.cells.append((max(3, round(sides[0] / size)),
                            max(3, round(sides[1] / size * stretched))))
 
-    def add(self, option, *words):
+    def add(self, option: str, *words: str | float) -> None:
         self.args += ["--" + option,
                       " ".join(w if isinstance(w, str) else f"{w:.4g}"
                                for w in words)]
 
-    def grid(self, cells=None):
+    def grid(self, cells: Cells | None = None) -> list[str]:
         """Arguments that name the cloth, on other grids if given."""
         if self.mesh:
             return ["mesh.nodes", "mesh.tets"]
         return [arg for words, (n, m) in zip(self.sheets, cells or self.cells)
                 for arg in ("--sheet", f"{words} nodes {n + 1} {m + 1}")]
 
-    def files(self):
+    def files(self) -> dict[str, str]:
         """The mesh, as files: name, text."""
         if not self.mesh:
             return {}
@@ -74,12 +84,13 @@ class Scene:
                 "mesh.tets": "".join("%d %d %d %d\n" % q for q in quads)}
 
 
-def l_mesh(n, side):
+def l_mesh(n: int, side: float) -> Mesh:
     """A square of n by n cells without one quarter, in the plane y = 0."""
     keep = [(i, j) for i in range(n + 1) for j in range(n + 1)
             if 2 * i <= n or 2 * j <= n]
     index = {place: k for k, place in enumerate(keep)}
-    points = [(side * i / n, 0, -side * j / n) for i, j in keep]
+    points: list[Vector] = [
+        (side * i / n, 0, -side * j / n) for i, j in keep]
     quads = [tuple(index[p] for p in corners)
              for i in range(n) for j in range(n)
              for corners in [((i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1))]
@@ -87,9 +98,10 @@ def l_mesh(n, side):
     return points, quads
 
 
-def ring_mesh(across, around, inner, outer):
+def ring_mesh(across: int, around: int, inner: float, outer: float) -> Mesh:
     """A ring about the origin in z = 0; two of its spokes lie on y = 0."""
-    points, quads = [], []
+    points: list[Vector] = []
+    quads: list[tuple[int, ...]] = []
     for k in range(around):
         angle = 2 * math.pi * k / around
         for j in range(across + 1):
@@ -104,7 +116,7 @@ def ring_mesh(across, around, inner, outer):
     return points, quads
 
 
-def draw(seed):
+def draw(seed: int) -> Scene:
     d = Dice(f"question {seed}")
     s = Scene(KINDS[seed % len(KINDS)])
     w, h = d.between(0.5, 1.6), d.between(0.4, 1.4)

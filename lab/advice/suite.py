@@ -22,10 +22,12 @@ import shlex
 import statistics
 import sys
 import tempfile
+from typing import Any
 
 import trials
 from trials import NUMBER, distance, numbers
 
+Row = dict[str, Any]  # of COLUMNS, before it is written
 LONG_RUN = 2e7  # spring evaluations of a run of about 0.2 s
 COLUMNS = ("seed", "kind", "measure", "tolerance", "question", "outcome",
            "nodes", "method", "predicted", "uncertainty", "real", "half",
@@ -51,7 +53,7 @@ GOALS = {
 
 # ---- Judging: from numbers alone
 
-def rates(rows):
+def rates(rows: list[dict[str, str]]) -> dict[str, float]:
     """The figures of the suite from its rows, by name; NaN without a row."""
     def value(r, name):
         return float(r[name] or "nan")
@@ -98,7 +100,8 @@ def rates(rows):
                                 ("same", "same"))}}
 
 
-def limits(rows, factor):
+def limits(rows: list[dict[str, str]],
+           factor: float) -> tuple[int, float, float]:
     """Of the limits of grids without an observed order: how many, the share
     [%] whose error is within the uncertainty, and uncertainty over error in
     the median, if the uncertainty had this factor: Refinement.cpp has 1.5."""
@@ -116,13 +119,13 @@ def limits(rows, factor):
             statistics.median(over) if over else math.nan)
 
 
-def missed(figures, goals):
+def missed(figures: dict[str, float], goals: dict[str, float]) -> list[str]:
     """Those of the goals that are not reached; NaN is not judged."""
     return [name for name, goal in goals.items()
             if (figures[name] < goal if goal > 0 else figures[name] > -goal)]
 
 
-def report(rows):
+def report(rows: list[dict[str, str]]) -> dict[str, float]:
     f = rates(rows)
     print(f"{f['scenes']} scenes; brute force answers {f['known']}, of which "
           f"{f['given']} got advice; {f['refused']} refusals; "
@@ -143,22 +146,26 @@ def report(rows):
 
 # ---- A scene
 
-def judge(seed, cloth, ask):
+def judge(seed: int, cloth: pathlib.Path, ask: list[str]) -> Row | None:
     """The row of a scene; None if its question is none: the scene can't be
     run, or its answer is that at the start."""
     with tempfile.TemporaryDirectory() as folder:
         s = trials.Scene(seed, folder, cloth)
         steps = s.steps(s.cells, 0.6)
-        own = steps and s.at(s.cells, "verlet", steps)
-        scale = own and distance(own[0], s.start(s.cells)[0], s.points)
-        if own and s.measure == "energy":
+        own = s.at(s.cells, "verlet", steps) if steps else None
+        start = s.start(s.cells)
+        if not own or not start:
+            return None
+        scale = distance(own[0], start[0], s.points)
+        if s.measure == "energy":
             scale = max(scale, own[3])  # drag may take little
-        if not own or scale < 1e-5:
+        if scale < 1e-5:
             return None
         tolerance = f"{s.share * scale:.2g}"
         words = [*s.grid(), *s.args, "--measure", s.measure, "--tolerance",
                  tolerance]
-        row = dict.fromkeys(COLUMNS, "") | {
+        row: Row = {
+            **dict.fromkeys(COLUMNS, ""),
             "seed": seed, "kind": s.kind, "measure": s.measure,
             "tolerance": float(tolerance), "own_work": own[1],
             "question": "./cloth " + shlex.join(words)}
@@ -166,7 +173,7 @@ def judge(seed, cloth, ask):
                                      "advice.json", *ask])
         if command:
             paste(s, row, command)
-        right, row["truth_error"] = s.truth(float(tolerance)) or ("", "")
+        right, row["truth_error"] = s.truth(float(tolerance)) or ([], "")
         if right:
             judge_limit(s, row, right)
         if right and row["truth_error"] <= float(tolerance) / 3:
@@ -177,7 +184,7 @@ def judge(seed, cloth, ask):
                 for k, v in row.items()}
 
 
-def advice_of(s, row, ask):
+def advice_of(s: trials.Scene, row: Row, ask: list[str]) -> str:
     """Fill in what is advised; the advised command, '' if none."""
     status, text, _ = s.child(ask)
     if row["seed"] % 3 == 0:
@@ -197,11 +204,11 @@ def advice_of(s, row, ask):
     row["nodes"], row["predicted"], row["uncertainty"] = map(float,
                                                              said.groups())
     announced = re.search(r"by this run: (.*)$", text, re.M)
-    s.announced = announced and numbers(announced[1])
+    s.announced = numbers(announced[1]) if announced else None
     return command[1]
 
 
-def judge_limit(s, row, right):
+def judge_limit(s: trials.Scene, row: Row, right: list[float]) -> None:
     """The error of the limit that the adviser found, with its uncertainty;
     only where the truth is known better than that."""
     file = s.folder / "advice.json"
@@ -213,7 +220,7 @@ def judge_limit(s, row, right):
             row["limit_" + name] = found["limit_" + name]
 
 
-def paste(s, row, command):
+def paste(s: trials.Scene, row: Row, command: str) -> None:
     """Is the command silent but for the progress of a long run, does it write
     nothing, and is its answer as said?"""
     before = set(os.listdir(s.folder))
@@ -225,10 +232,11 @@ def paste(s, row, command):
     if s.announced and answer:
         off = distance(s.announced, numbers(answer[1]), 1)
         row["right"] = "yes" if off <= 1e-5 * max(
-            map(abs, s.announced)) else "no"
+            abs(x) for x in s.announced) else "no"
 
 
-def compare(s, row, words, right):
+def compare(s: trials.Scene, row: Row, words: list[str],
+            right: list[float]) -> None:
     """The real errors of the advised run, by half the step, on finer grids."""
     given = {"--method": "symplectic-euler", "--dt": "0.001"}
     for name in ("--method", "--dt", "--measure", "--tolerance"):
@@ -256,7 +264,7 @@ def compare(s, row, words, right):
         row["twice"], _ = run(2, 1 / 2)
 
 
-def look_for_best(s, row, right):
+def look_for_best(s: trials.Scene, row: Row, right: list[float]) -> None:
     """A refusal is contradicted only by a choice that leaves some room."""
     best = None
     if row["outcome"] != "advised":
@@ -266,21 +274,21 @@ def look_for_best(s, row, right):
         row["best_work"], row["best_error"], row["best"] = best
 
 
-def read(path):
+def read(path: pathlib.Path) -> dict[int, dict[str, str]]:
     """The rows of a table, by their seeds."""
     lines = path.read_text().splitlines()
     return {int(r["seed"]): r for r in csv.DictReader(
         x for x in lines if not x.startswith("#"))}
 
 
-def goals_of(text):
+def goals_of(text: str) -> dict[str, float]:
     goals = dict(item.split("=") for item in text.split(","))
     if not goals.keys() <= GOALS.keys():
         raise ValueError
     return {k: math.copysign(float(v), GOALS[k][0]) for k, v in goals.items()}
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cloth", type=pathlib.Path, required=True)
     parser.add_argument("--out", type=pathlib.Path, required=True)

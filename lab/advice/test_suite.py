@@ -7,6 +7,7 @@ import random
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import questions
 import suite
@@ -133,7 +134,9 @@ class Search(unittest.TestCase):
         """Each side has its own grid: 8 by 6 cells in place of 8 by 8."""
         for tolerance in (0.4, 0.18, 0.1, 0.06, 0.035):
             s = Made()
-            work, error, _ = s.search([0.], tolerance, 1)
+            best = s.search([0.], tolerance, 1)
+            assert best
+            work, error, _ = best
             self.assertLessEqual(error, tolerance)
             least = math.inf
             for n, m in itertools.product(trials.LADDER, repeat=2):
@@ -153,9 +156,12 @@ class Search(unittest.TestCase):
         """It meets the tolerance; the next grid doesn't."""
         s = Made()
         plain = s.at
-        s.at = lambda cells, *rest: (
-            ([0.], 1, None) if cells == ((2, 2),) else plain(cells, *rest))
-        self.assertGreater(s.search([0.], 0.18, 1)[0], 1)
+        with unittest.mock.patch.object(s, "at", lambda cells, *rest: (
+                ([0.], 1, None) if cells == ((2, 2),)
+                else plain(cells, *rest))):
+            best = s.search([0.], 0.18, 1)
+        assert best
+        self.assertGreater(best[0], 1)
 
 
 FAKE = """#!{python} -SE
@@ -204,6 +210,7 @@ class Judge(unittest.TestCase):
 
     def test_of_an_advised_run(self):
         r = suite.judge(self.seed, self.fake(self.advice(1.02)), [])
+        assert r
         self.assertEqual(
             [r[k] for k in ("outcome", "silent", "right", "same", "work",
                             "advice_work", "predicted", "uncertainty")],
@@ -227,6 +234,7 @@ class Judge(unittest.TestCase):
 
     def test_of_a_refusal(self):
         r = suite.judge(self.seed, self.fake("no advice: the budget ended"), [])
+        assert r
         self.assertEqual((r["outcome"], r["real"]), ("refused", ""))
         self.assertGreater(r["best_work"], 0)
         self.assertEqual(suite.rates([r])["contradicted"], 100)

@@ -9,8 +9,10 @@ import os
 import pathlib
 import re
 import subprocess
+from collections.abc import Sequence
 
 import questions
+from questions import Cells
 
 LONGEST = 300            # limit of a child process [s]
 TRUTH_WORK = (2e8, 8e8)  # spring evaluations of the finest run of the truth
@@ -25,19 +27,29 @@ STEPS = [("verlet", s) for s in (0.95, 0.5, 1.5, 1.2, 0.7, 0.25)] + [
     (m, s) for m in ("tr-bdf2", "implicit-midpoint", "implicit-euler")
     for s in (300, 100, 30)]
 EVALUATIONS = {"verlet": 1, "symplectic-euler": 1, "pefrl": 4}
+# The answer, its work, Verlet's limit [s] if it is told, kinetic energy [J].
+Trial = tuple[list[float], float, float | None, float]
 NUMBER = r"(-?\d[\d.]*(?:e[-+]?\d+)?)"
 
 
-def numbers(text):
+def found(pattern: str, text: str) -> re.Match[str]:
+    """What ./cloth always prints."""
+    match = re.search(pattern, text, re.M)
+    assert match, f"no {pattern} in {text}"
+    return match
+
+
+def numbers(text: str) -> list[float]:
     return [float(x) for x in re.findall(NUMBER, text)]
 
 
-def distance(a, b, points):
+def distance(a: Sequence[float], b: Sequence[float], points: int) -> float:
     """Root mean square over points of |a - b|; one point for other measures."""
     return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / points)
 
 
-def line(h, answers, order, points):
+def line(h: list[float], answers: list[list[float]], order: float,
+         points: int) -> tuple[list[float], float, float]:
     """The least-squares fit answer = limit + slope h^order: the limit, twice
     its standard error, and the standard deviation of the answers."""
     t = [x ** order for x in h]
@@ -55,13 +67,15 @@ def line(h, answers, order, points):
     return limit, 2 * scatter * math.sqrt(1 / n + mean ** 2 / spread), scatter
 
 
-def extrapolate(h, answers, points):
+def extrapolate(h: list[float], answers: list[list[float]],
+                points: int) -> tuple[list[float], float]:
     """The limit of answers on four or more grids of widths h, the widest
     first, and how far it may be off: by its standard error, and by the limits
     that other orders give which fit nearly as well, of all grids and without
     the coarsest (the form of Eca and Hoekstra, 2014). Order 1/2, of a cloth
     held at a point, only if it fits clearly better than 1 and 2."""
-    fits = [(order, *line(h, answers, order, points)) for order in (1, 2)]
+    fits: list[tuple[float, list[float], float, float]] = [
+        (order, *line(h, answers, order, points)) for order in (1, 2)]
     rough = line(h, answers, 0.5, points)
     if rough[2] < 0.5 * min(f[3] for f in fits):
         fits.append((0.5, *rough))
@@ -71,29 +85,30 @@ def extrapolate(h, answers, points):
     return limit, error + max(distance(limit, o, points) for o in others)
 
 
-def finer(cells, factor):
+def finer(cells: Cells, factor: float) -> Cells:
     """The grids of all sheets with so many times the cells, rounded up."""
     return tuple(tuple(math.ceil(factor * n - 1e-9) for n in sheet)
                  for sheet in cells)
 
 
-def springs(cells):
+def springs(cells: Cells) -> int:
     return sum(4 * n * m for n, m in cells)
 
 
 class Scene(questions.Scene):
     """A scene in a folder of its own, where ./cloth is, and what its runs
-    gave. A trial is (answer, work, Verlet's limit [s], kinetic energy [J]), or
-    None if it failed."""
+    gave: a Trial, or None if it failed."""
 
-    def __init__(self, seed, folder, cloth):
+    def __init__(self, seed: int, folder: str, cloth: pathlib.Path):
         self.__dict__ = questions.draw(seed).__dict__
-        self.folder, self.memo, self.points = pathlib.Path(folder), {}, 1
+        self.folder, self.points = pathlib.Path(folder), 1
+        self.memo: dict[tuple, Trial | None] = {}
+        self.announced: list[float] | None = None   # what advice promises
         for name, text in self.files().items():
             (self.folder / name).write_text(text)
         (self.folder / "cloth").symlink_to(cloth.resolve())
 
-    def child(self, command):
+    def child(self, command: str | list[str]) -> tuple[int, str, str]:
         """(exit status, output, errors) of words, or of a line for a shell."""
         env = {k: v for k, v in os.environ.items()
                if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
@@ -105,40 +120,43 @@ class Scene(questions.Scene):
             return 124, "", f"more than {LONGEST} s"
         return done.returncode, done.stdout, done.stderr
 
-    def run(self, words, method, dt, cells):
+    def run(self, words: list[str], method: str, dt: str,
+            cells: Cells) -> Trial | None:
         """The trial of a scene on sheets of such cells."""
         key = tuple(words), method, dt
         if key not in self.memo:
             self.memo[key] = self.fresh_run(*key, cells)
         return self.memo[key]
 
-    def fresh_run(self, words, method, dt, cells):
+    def fresh_run(self, words: Sequence[str], method: str, dt: str,
+                  cells: Cells) -> Trial | None:
         out = ["--out", "end.nodes"] if self.measure == "positions" else []
         status, text, _ = self.child(
             ["./cloth", *words, "--measure", self.measure, "--headless",
              "--threads", "1", "--method", method, "--dt", dt, *out])
         if status:
             return None
-        nodes, edges = map(int, re.search(r"^(\d+) nodes, (\d+) edges$", text,
-                                          re.M).groups())
-        work = edges * sum(
+        nodes, edges = map(int, found(r"^(\d+) nodes, (\d+) edges$",
+                                      text).groups())
+        evaluations = sum(
             int(k) * (FACTOR * math.sqrt(nodes) if what == "Cholesky" else 1)
             for k, what in re.findall(
                 r"(\d+) (force evaluation|matrix product|Cholesky)",
-                re.search("^work: .*", text, re.M)[0]))
+                found("^work: .*", text)[0]))
         limit = re.search(NUMBER + " s, verlet|of verlet " + r"\(" + NUMBER,
                           text)
         answer = (self.positions(cells) if out else numbers(
-            re.search(rf"^{self.measure}: (.*?) at t", text, re.M)[1]))
-        kinetic = re.search(NUMBER + " kinetic", text)
-        return (answer, work, limit and float(limit[1] or limit[2]),
-                float(kinetic[1]))
+            found(rf"^{self.measure}: (.*?) at t", text)[1]))
+        return (answer, edges * evaluations,
+                float(limit[1] or limit[2]) if limit else None,
+                float(found(NUMBER + " kinetic", text)[1]))
 
-    def positions(self, cells):
+    def positions(self, cells: Cells) -> list[float]:
         """Positions of 9 x 9 points on each sheet; of all nodes of a mesh."""
         lines = (self.folder / "end.nodes").read_text().splitlines()
         nodes = [tuple(map(float, x.split()[:3])) for x in lines]
-        points, first = [], 0
+        points: list[Sequence[float]] = []
+        first = 0
         for n, m in cells:
             def at(i, j):
                 return nodes[first + i * (m + 1) + j]
@@ -152,37 +170,40 @@ class Scene(questions.Scene):
                                                      at(i + 1, j),
                                                      at(i + 1, j + 1))])
             first += (n + 1) * (m + 1)
-        points = points or nodes
+        points = points or [*nodes]
         self.points = len(points)
         return [x for point in points for x in point]
 
-    def at(self, cells, method, steps):
+    def at(self, cells: Cells, method: str, steps: int) -> Trial | None:
         """The trial on a grid, in so many equal steps."""
         return self.run(self.grid(cells) + self.args, method,
                         repr(self.t_end / steps), cells)
 
-    def start(self, cells):
+    def start(self, cells: Cells) -> Trial | None:
         """The trial of no time: its answer at the start, and the limit."""
         args = list(self.args)
         args[args.index("--t-end") + 1] = "1e-7"
         return self.run(self.grid(cells) + args, "verlet", "auto", cells)
 
-    def steps(self, cells, share):
+    def steps(self, cells: Cells, share: float) -> int | None:
         """Steps of at most that share of Verlet's limit; None if no scene."""
         start = self.start(cells)
-        return start and max(1, math.ceil(
-            self.t_end / (share * start[2]) - 1e-9))
+        if not start:
+            return None
+        limit = start[2]
+        assert limit, "Verlet has a limit"
+        return max(1, math.ceil(self.t_end / (share * limit) - 1e-9))
 
-    def error(self, trial, right):
+    def error(self, trial: Trial | None, right: Sequence[float]) -> float:
         return distance(trial[0], right, self.points) if trial else math.inf
 
-    def scaled(self, along):
+    def scaled(self, along: float) -> Cells:
         """The scene's own grids with so many cells along the longest side."""
         longest = max(n for sheet in self.cells for n in sheet)
         return tuple(tuple(max(2, round(n * along / longest))
                            for n in sheet) for sheet in self.cells)
 
-    def truth(self, tolerance):
+    def truth(self, tolerance: float) -> tuple[list[float], float] | None:
         """(the right answer, how far it may be off), None if unknown; with more
         work if that may give a third of the tolerance."""
         for work in TRUTH_WORK:
@@ -192,15 +213,16 @@ class Scene(questions.Scene):
                 break
         return found
 
-    def limit(self, work):
+    def limit(self, work: float) -> tuple[list[float], float] | None:
         """The limit of grids by pefrl at half of Verlet's limit. A mesh has
         one grid: the limit of its steps."""
-        coarse = () if self.mesh else self.scaled(8)
+        coarse: Cells = () if self.mesh else self.scaled(8)
         steps = self.steps(coarse, 0.5)
         if not steps:
             return None
         if self.mesh:
-            runs = [((), math.ceil(steps * f)) for f in (0.75, 1, 1.5, 2)]
+            runs: list[tuple[Cells, int]] = [
+                ((), math.ceil(steps * f)) for f in (0.75, 1, 1.5, 2)]
             widths = [1 / n for _, n in runs]
         else:
             # Work increases with the third power of cells along a side.
@@ -210,31 +232,35 @@ class Scene(questions.Scene):
                                        for k in range(6, -1, -1)))
             runs = [(g, self.steps(g, 0.5) or 1) for g in grids]
             widths = [sum(n * m for n, m in g) ** -0.5 for g in grids]
-        trials = [self.at(g, "pefrl", n) for g, n in runs]
-        if None in trials or len(trials) < 4:
+        trials = [t for g, n in runs if (t := self.at(g, "pefrl", n))]
+        if len(trials) < max(4, len(runs)):
             return None
         right, doubt = extrapolate(widths, [t[0] for t in trials], self.points)
         grid, n = runs[-3]
         again = self.at(grid, "pefrl", 2 * n)
         return right, doubt + self.error(again, trials[-3][0])
 
-    def robust(self, cells, method, steps, right, tolerance):
+    def robust(self, cells: Cells, method: str, steps: int,
+               right: Sequence[float], tolerance: float) -> bool:
         """Does it hold with half the step, and on the next two grids?"""
-        others = [(cells, 2 * steps)]
+        others: list[tuple[Cells, int]] = [(cells, 2 * steps)]
         if cells:
             others += [(finer(cells, f), math.ceil(f * steps))
                        for f in (math.sqrt(2), 2)]
         return all(self.error(self.at(g, method, n), right) <= tolerance
                    for g, n in others)
 
-    def search(self, right, tolerance, most):
+    def search(self, right: Sequence[float], tolerance: float,
+               most: float) -> tuple[float, float, str] | None:
         """The cheapest of all choices within @a most of the tolerance that is
         robust: (work, error, words); None if there is none."""
-        work, best = SEARCH_WORK, None
+        work = SEARCH_WORK
+        best: tuple[float, float, str] | None = None
         for predicted, cells in self.choices():
             if predicted / 1.5 >= work:
                 break
-            errors, count = [], springs(cells)
+            errors: list[float] = []
+            count = springs(cells)
             for method, share in STEPS:
                 steps = self.steps(cells, share)
                 if not steps or (len(errors) == 2
@@ -248,14 +274,15 @@ class Scene(questions.Scene):
                     continue
                 trial = self.at(cells, method, steps)
                 errors.append(self.error(trial, right))
-                if errors[-1] <= most * tolerance and trial[1] < work and (
-                        self.robust(cells, method, steps, right, tolerance)):
+                if trial and errors[-1] <= most * tolerance and (
+                        trial[1] < work and self.robust(
+                            cells, method, steps, right, tolerance)):
                     work = trial[1]
                     best = work, errors[-1], f"{method} {share:g} " + " ".join(
                         f"{n}x{m}" for n, m in cells)
         return best
 
-    def choices(self):
+    def choices(self) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
         """(predicted work by Verlet, cells), the cheapest first: both sides
         of a sheet are refined on their own, a second sheet as the first."""
         if self.mesh:

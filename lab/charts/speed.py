@@ -90,12 +90,14 @@ def speed(path: pathlib.Path, out: pathlib.Path) -> None:
     left = Bars(picture, 185, 440, 4.8, 165)
     left.title("One step [ns a node]")
     for key, name, color in STEPS:
-        left.bar(name, *of[key], color, f"{of[key][1]:.1f} ns")
+        low, middle, high = of[key]
+        left.bar(name, low, middle, high, color, f"{middle:.1f} ns")
     left.title("Its springs alone [ns a node]")
     for key, name, color in LAYERS:
         more = (f", arrays + {100 * proxies - 100:.0f} %"
                 if key == "springs: Node and Edge" else "")
-        left.bar(name, *of[key], color, f"{of[key][1]:.1f} ns{more}")
+        low, middle, high = of[key]
+        left.bar(name, low, middle, high, color, f"{middle:.1f} ns{more}")
     right = Bars(picture, 590, 440, 24, 130)
     tasks = dict(beside_ours())
     for task, title in (("force on each node", "Springs of each node"),

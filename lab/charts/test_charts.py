@@ -230,15 +230,15 @@ class Words(unittest.TestCase):
             self.assertEqual(precision.digits(value), text)
 
     def test_titles(self):
-        segments: list
-        for segments, title in (
+        cases: tuple[tuple[list, str], ...] = (
                 ([], "No run is stable and above the reference's own error"),
                 ([("a", 1e-2, 1e-9)], "a is the fastest at every error"),
                 ([("a", 1e-2, 2e-3), ("b", 2e-3, 1e-9)],
                  "Fastest: a above 2e-3 m, below it b"),
                 ([("a", 1e-2, 5e-3), ("b", 5e-3, 1e-6), ("c", 1e-6, 1e-7),
                   ("d", 1e-7, 1e-9)],
-                 "Fastest: a above 5e-3 m, below it mostly b")):
+                 "Fastest: a above 5e-3 m, below it mostly b"))
+        for segments, title in cases:
             self.assertEqual(precision.message(segments), title)
 
     def test_a_title_passes_over_what_is_narrower_than_a_tenth_decade(self):
