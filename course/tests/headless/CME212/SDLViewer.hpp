@@ -28,6 +28,7 @@ class SDLViewer : public NoViewer {
   explicit SDLViewer(const Options&) : SDLViewer() {}
   SDLViewer(const SDLViewer&) = delete;
   static bool has_display() { return false; }
+  bool in_window() const { return true; }  // it may be closed, as a window
 
   template <typename G>
   std::map<typename G::node_type, unsigned> empty_node_map(const G&) const {
