@@ -585,7 +585,8 @@ def a_keyboard_is_enough(b):
     b.key("+", text="+")
     assert b.value("page.view.camera.zoom") > zoom
     b.key("g", text="g")
-    b.wait("page.hand.grabbed && page.readings.grabbed")
+    b.wait("page.readings.grabbed && "
+           "Number.isFinite(page.hand.grabbed?.target?.[2])")
     z = b.value("page.hand.grabbed.target[2]")
     b.key("ArrowUp")
     assert b.value("page.hand.grabbed.target[2]") > z
