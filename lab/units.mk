@@ -13,16 +13,15 @@ ifneq ($(UNITY),)
 UNITS ?= 6
 
 # Programs of their own: three specialize templates of other namespaces, four
-# are linked with the window, one hooks malloc, one renames realloc, one holds
-# the course's headers to what they bring, one has another Graph.hpp.
-tests_drawn := $(if $(filter 1,$(VIEWER)),test_viewer test_faces test_image \
-                 test_screen)
-tests_alone := test_graph test_graph_memory $(tests_drawn) test_slot_map \
+# are linked with the window, one hooks malloc, one holds the course's headers
+# to what they bring, one has another Graph.hpp.
+tests_drawn := test_viewer test_faces test_image test_screen
+tests_alone := test_graph test_graph_memory \
+               $(if $(filter 1,$(VIEWER)),$(tests_drawn)) test_slot_map \
                test_cloth test_course_interface test_plain_steps
 
-dealt      := $(shell ls -S $(filter-out \
-                $(patsubst %,tests/%.cpp,$(tests_alone) test_viewer test_faces \
-                test_image test_screen),$(lab_tests)))
+dealt      := $(shell ls -S $(filter-out $(patsubst %,tests/%.cpp, \
+                $(tests_alone) $(tests_drawn)),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
 # These are linked only if a program uses them: they need the window.
 drawing    := $(filter $(patsubst %,lab/%.cpp, viewer/Screen run/Film \
