@@ -15,7 +15,7 @@ import pathlib
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass
 
 import child
@@ -63,10 +63,10 @@ class Cases:
                     self.regions.setdefault(region.task, set()).add(name)
 
     def all(self) -> Iterator[Case]:
-        yield Case("solution", self.solution, self.loses(set()))
+        yield Case("solution", self.solution, self.loses())
         yield Case("starter", self.base("starter"), self.starter)
         for name in BASES[1:]:
-            yield Case(name, self.base(name), self.loses(set()))
+            yield Case(name, self.base(name), self.loses())
         yield from itertools.islice(self.many(), *self.sample)
 
     def many(self) -> Iterator[Case]:
@@ -101,21 +101,22 @@ class Cases:
                 continue
             loses = self.ids(mistake)
             if loses or not mistake.loses:      # else its tasks are dropped
-                yield Case(name, files, self.loses(loses), frozenset(loses))
+                yield Case(name, files, self.loses(loses), loses)
 
-    def ids(self, mistake: mistakes.Mistake) -> set[str]:
-        if mistake.loses == ["*"]:
+    def ids(self, mistake: mistakes.Mistake) -> frozenset[str]:
+        if "*" in mistake.loses:
             needs = {"Graph.hpp": "graph", "mine.hpp": "step"}.get(
                 mistake.file, "cloth")
-            return {task.id for task in self.course.tasks.values()
-                    if task.needs == needs}
-        asked = set(mistake.loses) - self.course.dropped
+            return frozenset(
+                task.id for task in self.course.tasks.values()
+                if task.needs == needs)
+        asked = mistake.loses - self.course.dropped
         if unknown := asked - self.course.tasks.keys():
             raise mistakes.MistakeError(
                 f"{mistake.where}: no tasks: {sorted(unknown)}")
         return asked
 
-    def loses(self, expected: set[str]) -> Faults:
+    def loses(self, expected: Set[str] = frozenset()) -> Faults:
         def faults(lost):
             return ([f"did not lose {task}" for task in sorted(expected - lost)]
                     + [f"lost {task}" for task in sorted(lost - expected)])

@@ -1,14 +1,14 @@
 """Read the table of mistakes: course/wrong/*.toml.
 
-Each [[wrong]] is a submission with one mistake, or a right one that looks odd.
+The name of a table in a file is the tasks that each of its entries must lose,
+and it loses no others: "7.1.remove_node 7.1.cost"; "*": all tasks that the
+changed file serves; "nothing": right submissions that look odd. An entry is
+NAME = [old, new, old, new ...], where each old text occurs once; or a table:
 
-    name      what is wrong
-    loses     the tasks that it must lose, and no others; ["*"]: all tasks that
-              its file serves; []: none, as it is right
+    edit      the same
     base      "solution"; "simple", the graph of the level open, solved; or
               "starter": then it must get no points that a starter does not get
     file      which file changes, by default Graph.hpp
-    replace   [[old, new], ...]: each old text occurs once in the file
     body      a text in place of the file's default `place`
     prepend, append, content      text before or behind the file, or all of it
     finds     what `make try` must say about a step in mine.hpp: regular
@@ -20,7 +20,7 @@ Each [[wrong]] is a submission with one mistake, or a right one that looks odd.
 [default] holds values for all entries of a file.
 """
 import functools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import tasks
 from tasks import tomllib
@@ -36,10 +36,10 @@ class MistakeError(Exception):
 class Mistake:
     table: str          # the name of its file, without .toml
     name: str
-    loses: tuple = ()
+    loses: frozenset[str] = frozenset()
+    edit: tuple = ()
     base: str = "solution"
     file: str = "Graph.hpp"
-    replace: list = field(default_factory=list)
     place: str = ""
     body: str | None = None
     prepend: str = ""
@@ -59,7 +59,7 @@ class Mistake:
         """`text`, which is that of its file, with the mistake."""
         if self.content is not None:
             text = self.content
-        edits = [*self.replace]
+        edits = [*zip(self.edit[::2], self.edit[1::2], strict=True)]
         if self.body is not None:
             edits.append((self.place, self.body))
         for old, new in edits:
@@ -73,13 +73,18 @@ class Mistake:
 
 def read(table: str) -> list[Mistake]:
     """The mistakes of a file.  Throws MistakeError."""
-    content = tomllib.loads((FOLDER / f"{table}.toml").read_text("utf-8"))
-    try:
-        return [Mistake(table, **(content.get("default", {}) | entry))
-                for entry in content["wrong"]]
-    except TypeError as error:      # a key that no Mistake has, or no name
-        raise MistakeError(f"course/wrong/{table}.toml: "
-                           f"{str(error).partition(' ')[2]}") from None
+    tables = tomllib.loads((FOLDER / f"{table}.toml").read_text("utf-8"))
+    default, found = tables.pop("default", {}), []
+    for tasks_lost, entries in tables.items():
+        loses = frozenset(tasks_lost.split()) - {"nothing"}
+        for name, entry in entries.items():
+            keys = entry if isinstance(entry, dict) else {"edit": entry}
+            try:
+                found.append(Mistake(table, name, loses, **(default | keys)))
+            except TypeError as error:      # a key that no Mistake has
+                raise MistakeError(f"course/wrong/{table}.toml: {name}: "
+                                   f"{str(error).partition(' ')[2]}") from None
+    return found
 
 
 def tables() -> list[str]:

@@ -60,7 +60,7 @@ class OwnTests(unittest.TestCase):
             self.assertEqual(found[name], {
                 "weight": True, "empty": False, "idle": False,
                 "always_fails": False})
-        self.assertFalse(any(found["program: a force that is no ZeroForce"]
+        self.assertFalse(any(found["cloth: a force that is no ZeroForce"]
                              .values()))
 
     def test_bad_input(self):
