@@ -15,7 +15,7 @@ lab_main   := lab/run/cloth.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := $(wildcard docs/examples/*.cpp)
 lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(wildcard lab/try/*.cpp), \
-              $(wildcard lab/*.cpp lab/*/*.cpp))
+              $(wildcard lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
 LAB_PROGRAMS := $(call names,$(lab_main))
@@ -131,7 +131,7 @@ compdb:
 	@mkdir -p $(B) && : >$(B)/compdb
 	$(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))$(newline))
 	$(foreach <,$(filter-out lab/page/wasi.cpp $(wildcard lab/try/*.cpp),$(wildcard CME212/viewer/*.cpp \
-	  lab/*.cpp lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
+	  lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
 	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS))$(newline))
 	@{ echo '['; sed '$$!s/$$/,/' $(B)/compdb; echo ']'; } >compile_commands.json
 	@echo 'compile_commands.json'

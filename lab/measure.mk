@@ -196,7 +196,7 @@ pictures: test_screen $(B)/cloth
 # ---- Fuzzing. The inputs that it starts from: tools/corpus.
 
 RUNS ?= 200000
-$(B)/fuzz_mesh: tests/fuzz_mesh.cpp lab/scenes/MeshFile.cpp lab/Interrupt.cpp \
+$(B)/fuzz_mesh: tests/fuzz_mesh.cpp lab/scenes/MeshFile.cpp lab/scenes/Interrupt.cpp \
                 lab/scenes/MeshFile.hpp CME212/Mesh.hpp CME212/Util.hpp \
                 CME212/Point.hpp
 	@mkdir -p $(B)

@@ -3,8 +3,8 @@
  * Forces as methods evaluate them, for tests. */
 #include <vector>
 
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/FlatFlow.hpp"
 
 namespace lab {
 

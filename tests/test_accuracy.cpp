@@ -7,10 +7,10 @@
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Accuracy.hpp"
-#include "lab/scenes/Scene.hpp"
-#include "lab/scenes/Separation.hpp"
 #include "lab/stability/EnergyWatch.hpp"
+#include "lab/stepping/Accuracy.hpp"
+#include "lab/stepping/Scene.hpp"
+#include "lab/stepping/Separation.hpp"
 
 using namespace lab;
 

@@ -9,9 +9,9 @@
 #include "lab/advice/Refusals.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 

@@ -6,9 +6,9 @@
 
 #include "lab/advice/Advise.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
 
 using namespace lab;

@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "lab/Archive.hpp"
+#include "lab/fast/Archive.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Run.hpp"
-#include "lab/scenes/Checkpoint.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Checkpoint.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

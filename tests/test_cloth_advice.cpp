@@ -11,8 +11,8 @@
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Compose.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/ClothProgram.hpp"
 #include "tests/ReadParts.hpp"
 

@@ -6,8 +6,8 @@
 #include "lab/fast/ForcePlan.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
 
 using namespace lab;

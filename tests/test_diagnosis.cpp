@@ -13,10 +13,10 @@
 #include <sstream>
 
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Options.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
 
 using namespace lab;
 

@@ -9,7 +9,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 
 using namespace lab;
 

@@ -9,8 +9,8 @@
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/run/Export.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 

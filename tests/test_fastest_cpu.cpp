@@ -1,4 +1,4 @@
-#include "lab/methods/FastestCpu.hpp"
+#include "lab/fast/FastestCpu.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // FlatCloth and FlatFlow: many steps on the state by component, against single
 // steps and against the loops over nodes.
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/FlatFlow.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "methods.hpp"
 #include "tests/Stages.hpp"
 

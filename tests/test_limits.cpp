@@ -13,10 +13,10 @@
 
 #include "lab/charts/Limits.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "lab/stability/StepLimit.hpp"
+#include "lab/stepping/Scene.hpp"
 
 using namespace lab;
 

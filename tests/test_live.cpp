@@ -12,7 +12,7 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Checkpoint.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;

@@ -10,9 +10,9 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Run.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 

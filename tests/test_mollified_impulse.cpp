@@ -13,8 +13,8 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Contact.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/stability/Spectrum.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/Allocations.hpp"
 
 using namespace lab;

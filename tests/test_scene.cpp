@@ -3,7 +3,7 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "tests/Stages.hpp"
 
 using namespace lab;

@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "CME212/viewer/Image.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "lab/viewer/Screen.hpp"
 #include "tests/ReadPng.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "lab/methods/Method.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "tests/Stages.hpp"
 
 using namespace lab;

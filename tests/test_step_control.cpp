@@ -14,8 +14,8 @@
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/stability/StepLimit.hpp"
+#include "lab/stepping/Scene.hpp"
 
 using namespace lab;
 

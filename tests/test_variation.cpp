@@ -23,10 +23,10 @@
 #include "lab/fast/ForcePlan.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 

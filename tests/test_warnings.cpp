@@ -6,9 +6,9 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 

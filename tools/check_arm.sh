@@ -12,7 +12,7 @@ make --no-print-directory -j"${JOBS:-2}" B=build/check UNITY=1 \
   build/check/page_positions
 make --no-print-directory -j"${JOBS:-2}" B=$build UNITY=1 VIEWER=0 \
   CXX=aarch64-linux-gnu-g++ CPPFLAGS='-idirafter /usr/include' LDLIBS=-static \
-  lab_lib="$(echo lab/*.cpp lab/{fast,methods,stability,scenes}/*.cpp)" \
+  lab_lib="$(echo lab/{fast,methods,stability,scenes,stepping}/*.cpp)" \
   $build/page_positions
 
 passed=0 failed=0

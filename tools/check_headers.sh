@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 
 shopt -s nullglob
 if [ $# = 0 ]; then
-  all=(*.hpp CME212/*.hpp CME212/*/*.hpp lab/*.hpp lab/*/*.hpp)
+  all=(*.hpp CME212/*.hpp CME212/*/*.hpp lab/*/*.hpp)
   for ((k = ${FIRST:-0}; k < ${#all[@]}; k += ${EVERY:-1})); do
     set -- "$@" "${all[k]}"
   done

@@ -13,17 +13,17 @@ Graph         : CME212
 mass_spring   : Graph CME212/viewer
 methods       : CME212
 course        : mass_spring
-lab           : CME212
-lab/fast      : mass_spring lab
+lab/fast      : mass_spring
 lab/methods   : lab/fast methods
 lab/stability : lab/methods
-lab/scenes    : lab/stability
-lab/advice    : lab/scenes
+lab/scenes    : lab/methods
+lab/stepping  : lab/scenes lab/stability
+lab/advice    : lab/stepping
 lab/charts    : lab/stability
 lab/try       : mass_spring lab/methods
 lab/bench     : lab/fast
-lab/live      : lab/scenes
-lab/viewer    : lab/scenes
+lab/live      : lab/stepping
+lab/viewer    : lab/stepping
 lab/run       : lab/viewer lab/live
 lab/page      : lab/live
 '

@@ -62,9 +62,9 @@ arrow Graph.hpp mass_spring.hpp 'is not below it'
 arrow mass_spring.hpp lab/fast/Lanes.hpp 'is not below it'
 arrow another.cpp lab/fast/Sweep.hpp 'is not below it'
 arrow lab/fast/Energy.hpp lab/methods/Verlet.hpp 'is not below it'
-arrow lab/charts/Problem.hpp lab/scenes/Scene.hpp 'is not below it'
+arrow lab/charts/Problem.hpp lab/stepping/Scene.hpp 'is not below it'
 arrow mass_spring.cpp SDL2/SDL.h 'only'
-arrow lab/scenes/Scene.hpp CME212/Color.hpp 'draws'
+arrow lab/stepping/Scene.hpp CME212/Color.hpp 'draws'
 mkdir lab/attic; echo '#include "Graph.hpp"' >lab/attic/Stranger.hpp
 caught "lab/attic/Stranger.hpp:1: its room has no line in the table" $inc
 sed -i 's#^lab/page .*#& lab/advice#' $inc

@@ -2,8 +2,8 @@
 #include <iostream>
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Trial.hpp"
 int main() {
   lab::Model model = lab::load_model("data/scenes/drape.toml");
   model.method = &lab::table_entry<lab::Pefrl>;

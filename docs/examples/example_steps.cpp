@@ -1,8 +1,8 @@
 // A sweep over steps: drift of the energy against dt, as CSV.
 #include <iostream>
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Scene.hpp"
 int main() {
   lab::Model model = lab::load_open_model("data/scenes/diagonals.toml");
   model.nodes = "data/grid1.nodes", model.tets = "data/grid1.tets";

@@ -6,10 +6,10 @@
 #include <cstdlib>
 
 #include "CME212/Util.hpp"
-#include "lab/Json.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/scenes/Fields.hpp"
+#include "lab/scenes/Json.hpp"
 
 namespace lab {
 

@@ -10,7 +10,7 @@
 #include "lab/advice/Adviser.hpp"
 #include "lab/advice/Refusals.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 

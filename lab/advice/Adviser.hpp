@@ -12,7 +12,7 @@
 #include "lab/advice/Advise.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/scenes/Compose.hpp"
-#include "lab/scenes/Separation.hpp"
+#include "lab/stepping/Separation.hpp"
 
 namespace lab::adviser_detail {
 

@@ -12,7 +12,7 @@
 #include "CME212/Util.hpp"
 #include "lab/advice/Adviser.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab::adviser_detail {
 

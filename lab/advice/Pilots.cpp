@@ -6,8 +6,8 @@
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/StiffSplit.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lab/methods/Method.hpp"
-#include "lab/scenes/Measure.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 

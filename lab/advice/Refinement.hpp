@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lab/scenes/Measure.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 

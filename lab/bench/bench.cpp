@@ -22,16 +22,16 @@
 
 #include "lab/bench/Cloths.hpp"
 #include "lab/charts/Report.hpp"
+#include "lab/fast/FastestCpu.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/FastMassSpring.hpp"
-#include "lab/methods/FastestCpu.hpp"
-#include "lab/methods/FlatFlow.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Verlet.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/stability/Guard.hpp"
+#include "lab/stepping/Scene.hpp"
 
 using namespace lab;
 using bench::Flat, bench::Kind, bench::cloth, bench::flat, bench::shuffle;

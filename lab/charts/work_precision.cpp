@@ -22,11 +22,11 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
-#include "lab/Progress.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/run/Progress.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"
 

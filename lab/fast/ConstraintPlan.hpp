@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "lab/Archive.hpp"
+#include "lab/fast/Archive.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Recognise.hpp"
 #include "mass_spring.hpp"

@@ -12,7 +12,7 @@
 
 #include "CME212/Mesh.hpp"
 #include "CME212/Util.hpp"
-#include "lab/Nearest.hpp"
+#include "lab/scenes/Nearest.hpp"
 
 namespace lab {
 

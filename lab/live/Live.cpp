@@ -5,12 +5,12 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "lab/Interrupt.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Checkpoint.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
 

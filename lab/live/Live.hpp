@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "CME212/Util.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/StoredScenes.hpp"
+#include "lab/stepping/Scene.hpp"
 
 namespace lab {
 

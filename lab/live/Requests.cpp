@@ -14,7 +14,7 @@
 #include "lab/live/Live.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Checkpoint.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
 

@@ -4,7 +4,7 @@
  * Newton's method and conjugate gradients. */
 #include <vector>
 
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/methods/SparseCholesky.hpp"
 

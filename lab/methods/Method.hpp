@@ -8,7 +8,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "lab/Archive.hpp"
+#include "lab/fast/Archive.hpp"
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
 #include "lab/fast/GraphArrays.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/methods/ImplicitStage.hpp"
 #include "lab/methods/StiffSplit.hpp"
 #include "lab/methods/Verlet.hpp"

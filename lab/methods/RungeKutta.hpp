@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {

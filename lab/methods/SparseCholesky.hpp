@@ -8,7 +8,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "lab/methods/Matrix3.hpp"
+#include "lab/fast/Matrix3.hpp"
 
 namespace lab {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {

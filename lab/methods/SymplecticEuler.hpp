@@ -1,7 +1,7 @@
 #pragma once
 /** @file SymplecticEuler.hpp
  * The assignment's step as a method. */
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/methods/Method.hpp"
 
 namespace lab {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "CME212/PageData.hpp"
-#include "lab/Json.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/page/PageScenes.hpp"
+#include "lab/scenes/Json.hpp"
 #include "lab/scenes/Measure.hpp"
 
 namespace lab {

@@ -12,9 +12,9 @@ page_o  := $(B)/page.o
 # All of these rooms of the laboratory, except what reads or writes files or
 # measures processor time.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
-  %,lab/scenes/%.cpp, Checkpoint \
-  Memory MeshFile Warnings) lab/live/Recording.cpp lab/methods/FastestCpu.cpp, \
-  $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes live page))) \
+  %,lab/scenes/%.cpp, Interrupt Memory MeshFile Warnings) \
+  lab/stepping/Checkpoint.cpp lab/live/Recording.cpp lab/fast/FastestCpu.cpp, \
+  $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes stepping live page))) \
   course/web/thrown.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
 page_flags = --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -Wall -Wextra \

@@ -10,8 +10,8 @@
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Scene.hpp"
 
 int main(int argc, char** argv) {
   if (argc < 4 || argc % 2 != 0) {

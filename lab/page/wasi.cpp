@@ -5,11 +5,11 @@
 #include <limits>
 #include <string>
 
-#include "lab/Interrupt.hpp"
 #include "lab/live/Recording.hpp"
-#include "lab/scenes/Checkpoint.hpp"
+#include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/MeshFile.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 
 // A page makes its meshes, and its link holds what was asked of it. It knows no
 // signals.

@@ -16,7 +16,7 @@
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Faces.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 
 namespace lab {
 

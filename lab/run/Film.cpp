@@ -6,9 +6,9 @@
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/run/Run.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
 
 namespace lab {
 

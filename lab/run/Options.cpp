@@ -17,13 +17,13 @@
 
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
-#include "lab/Nearest.hpp"
+#include "lab/fast/FastestCpu.hpp"
 #include "lab/methods/Costs.hpp"
-#include "lab/methods/FastestCpu.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Checkpoint.hpp"
 #include "lab/scenes/Fields.hpp"
+#include "lab/scenes/Nearest.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
 namespace {

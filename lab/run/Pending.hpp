@@ -5,7 +5,7 @@
 #include <deque>
 #include <utility>
 
-#include "lab/Archive.hpp"
+#include "lab/fast/Archive.hpp"
 
 namespace lab {
 

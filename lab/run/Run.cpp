@@ -9,14 +9,14 @@
 #include <iostream>
 #include <sstream>
 
-#include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Acting.hpp"
-#include "lab/scenes/Checkpoint.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/Warnings.hpp"
 #include "lab/stability/StepLimit.hpp"
+#include "lab/stepping/Checkpoint.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 namespace {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "CME212/OutputFile.hpp"
-#include "lab/Archive.hpp"
-#include "lab/Progress.hpp"
+#include "lab/fast/Archive.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Pending.hpp"
-#include "lab/scenes/Measure.hpp"
+#include "lab/run/Progress.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/live/Recording.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Run.hpp"
 #include "lab/run/Window.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "lab/viewer/Screen.hpp"
 
 namespace lab {

@@ -4,10 +4,10 @@
 #include <thread>
 
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Run.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
 #include "lab/viewer/Screen.hpp"
 
 namespace lab {

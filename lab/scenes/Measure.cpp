@@ -5,14 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <random>
 #include <span>
 
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/scenes/Scene.hpp"
 
 namespace lab {
 
@@ -54,7 +51,9 @@ unsigned first_index(const Model& m, std::size_t k) {
   return first;
 }
 
-Answer positions(const Model& m, const Cloth& g, const Scene*, const Measure&) {
+Answer positions(const Measured& now, const Measure&) {
+  const Model& m = now.model;
+  const Cloth& g = now.cloth;
   Answer all;
   auto add = [&](const Point& p) {
     all.insert(all.end(), {double(p.x), double(p.y), double(p.z)});
@@ -127,8 +126,9 @@ double lowest_height(const Cloth& g, const Sheet& sheet, unsigned first) {
 
 /** The lowest height of @a g [m]; 0 if it has no nodes. Of a mesh from files,
  * and of a cloth that may have torn, the height of the lowest node. */
-Answer lowest_height(const Model& m, const Cloth& g, const Scene*,
-                     const Measure&) {
+Answer lowest_height(const Measured& now, const Measure&) {
+  const Model& m = now.model;
+  const Cloth& g = now.cloth;
   if (g.num_nodes() == 0) return {0};
   double lowest = std::numeric_limits<double>::infinity();
   const std::size_t sheets = m.sheets.size();
@@ -149,9 +149,9 @@ Answer components(const Point& p, const Measure& what) {
   return all;
 }
 
-Answer stretch(const Model&, const Cloth& g, const Scene*, const Measure&) {
+Answer stretch(const Measured& now, const Measure&) {
   double most = 0;
-  for (Edge e : g.edges())
+  for (Edge e : now.cloth.edges())
     if (e.value().L > 0)
       most = std::max(most, double(e.length() / e.value().L) - 1);
   return {most};
@@ -159,17 +159,16 @@ Answer stretch(const Model&, const Cloth& g, const Scene*, const Measure&) {
 
 /** The sum of all forces on the held nodes that @a what names [N]: what the
  * pins carry, as held nodes do not accelerate.  O(springs at them) */
-Answer pin_force(const Model&, const Cloth& g, const Scene* scene,
-                 const Measure& what) {
+Answer pin_force(const Measured& now, const Measure& what) {
+  const Cloth& g = now.cloth;
   Point sum;
   bool some = false;
-  for (const HeldNodes& h : scene->held())
+  for (const HeldNodes& h : *now.held)
     for (const auto& [id, place] : h.nodes) {
       if (!what.pin.holds(place)) continue;
       some = true;
       if (arrays(g).node_in_use(id))
-        sum += (*scene->recipe().built->force)(arrays(g).node_with_id(id),
-                                               scene->time());
+        sum += (*now.force)(arrays(g).node_with_id(id), now.time);
     }
   if (!some)
     throw SceneError("measure",
@@ -177,31 +176,33 @@ Answer pin_force(const Model&, const Cloth& g, const Scene* scene,
   return {norm(sum)};
 }
 
-Answer tear_time(const Model&, const Cloth& g, const Scene* scene,
-                 const Measure&) {
+Answer tear_time(const Measured& now, const Measure&) {
+  const Cloth& g = now.cloth;
   const bool torn = g.num_nodes() < arrays(g).node_slots() ||
                     g.num_edges() < arrays(g).edge_slots();
-  return {torn ? scene->time() : std::numeric_limits<double>::infinity()};
+  return {torn ? now.time : std::numeric_limits<double>::infinity()};
 }
 
-Answer point(const Model& m, const Cloth& g, const Scene*,
-             const Measure& what) {
+Answer point(const Measured& now, const Measure& what) {
+  const Model& m = now.model;
   const auto k = std::size_t(what.sheet) - 1;
   return components(
-      position_on(g, m.sheets[k], first_index(m, k), what.u, what.v), what);
+      position_on(now.cloth, m.sheets[k], first_index(m, k), what.u, what.v),
+      what);
 }
 
 }  // namespace
 
 const std::array<Quantity, 8> quantities = {{
     {"com", "m",
-     [](auto&, const Cloth& g, auto*, const Measure& what) {
-       return components(center_of_mass(g), what);
+     [](const Measured& now, const Measure& what) {
+       return components(center_of_mass(now.cloth), what);
      }},
     {"energy", "J",
-     [](const Model& m, const Cloth& g, auto*, auto&) {
+     [](const Measured& now, const Measure&) {
+       const Cloth& g = now.cloth;
        return Answer{kinetic_energy(g) + elastic_energy(g) +
-                     gravitational_energy(g, m.gravity)};
+                     gravitational_energy(g, now.model.gravity)};
      }},
     {"positions", "m", positions},
     {"max-stretch", "", stretch},
@@ -226,10 +227,7 @@ const char* unit_of(const Measure& m) { return quantities[m.quantity].unit; }
 
 Answer answer(const Model& m, const Cloth& g, const Measure& what) {
   assert(what.quantity < Measure::pin_force);
-  return quantities[what.quantity].read(m, g, nullptr, what);
-}
-Answer answer(const Model& m, const Scene& scene, const Measure& what) {
-  return quantities[what.quantity].read(m, scene.cloth(), &scene, what);
+  return quantities[what.quantity].read({m, g}, what);
 }
 
 namespace {
@@ -255,86 +253,6 @@ void check_question(const Model& m) {
   if (const std::string why = lacks(m, m.measure); !why.empty())
     throw SceneError("measure", "is " + name_of(m.measure) + ", which " + why +
                                     ": expected another measure");
-}
-
-double Observer::better(const Measure& what, double a, double b) {
-  return what.over == Measure::largest ? std::max(a, b) : std::min(a, b);
-}
-
-Observer::Observer(const Model& m, const Scene& scene)
-    : best_(std::numeric_limits<double>::infinity()) {
-  if (m.measure.over == Measure::largest) best_ = -best_;
-  if (m.measure.quantity == Measure::positions) return;
-  check_question(m);
-  look(m, scene);
-}
-
-void Observer::look(const Model& m, const Scene& scene) {
-  const Answer now = lab::answer(m, scene, m.measure);
-  if (!m.measure.over_time()) return;
-  std::erase_if(recent_, [&](const Look& l) {
-    if (l.step <= scene.settled_steps())
-      best_ = better(m.measure, best_, l.value);
-    return l.step <= scene.settled_steps() || l.step > scene.steps();
-  });
-  recent_.push_back({scene.steps(), now[0]});
-}
-
-Answer Observer::answer(const Model& m, const Scene& scene) const {
-  if (!m.measure.over_time()) return lab::answer(m, scene, m.measure);
-  double best = best_;
-  for (const Look& l : recent_)
-    if (l.step <= scene.steps()) best = better(m.measure, best, l.value);
-  return std::isfinite(best) ? Answer{best} : Answer{};
-}
-
-void Observer::archive(Archive& a) {
-  a(best_)(recent_);
-  a.require(best_ == best_);  // no NaN
-  for (const Look& l : recent_) a.require(l.value == l.value);
-}
-
-double step_of(const Model& m) {
-  const double dt = m.step.fixed() ? m.step.dt : Scene(m).dt();
-  return m.t_end > 0 ? m.t_end / std::ceil(m.t_end / dt * (1 - 1e-12)) : dt;
-}
-
-Trial try_out(const Model& m, const Shake& shake,
-              const std::function<void(const Cloth&)>& look,
-              const std::function<void(Scene&)>& after) {
-  const CME212::Clock clock;
-  Trial result;
-  result.dt = step_of(m);
-  Scene scene(recipe_of(m), {.dt = result.dt}, *m.method);
-  std::mt19937 random(shake.seed);
-  std::uniform_real_distribution<double> off(-shake.size, shake.size);
-  if (shake.size > 0) {
-    for (Node n : scene.cloth().nodes())
-      for (unsigned k = 0; k < 3; ++k)
-        if (const double by = off(random); shake.along[k])
-          n.position()[k] += by;
-    // The guard starts anew: it would take these strains for a divergence.
-    scene.change_method(*m.method, {.dt = result.dt});
-  }
-  Observer observer(m, scene);
-  const bool ok = scene.run_to(m.t_end, [&] {
-    end_if_interrupted();
-    after(scene);
-    if (m.measure.over_time()) observer.look(m, scene);
-    if (scene.failure().empty())
-      result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
-  });
-  result.failure = scene.failure();
-  if (ok) {
-    result.answer = observer.answer(m, scene);
-    if (result.answer.empty())
-      result.failure =
-          "nothing tears until t = " + CME212::short_text(m.t_end) + " s";
-    look(scene.cloth());
-  }
-  result.steps = scene.steps();
-  result.seconds = clock.seconds();
-  return result;
 }
 
 }  // namespace lab

@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "CME212/Mesh.hpp"
-#include "lab/Nearest.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/MeshFile.hpp"
+#include "lab/scenes/Nearest.hpp"
 #include "lab/scenes/StoredScenes.hpp"
 
 namespace lab {

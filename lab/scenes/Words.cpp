@@ -11,9 +11,9 @@
 #include <type_traits>
 
 #include "CME212/Util.hpp"
-#include "lab/Nearest.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
+#include "lab/scenes/Nearest.hpp"
 
 namespace lab {
 

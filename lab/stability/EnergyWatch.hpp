@@ -1,7 +1,7 @@
 #pragma once
 /** @file EnergyWatch.hpp
  * EnergyWatch: the error of an energy that should be conserved. */
-#include "lab/Archive.hpp"
+#include "lab/fast/Archive.hpp"
 #include "lab/stability/Guard.hpp"
 
 namespace lab {

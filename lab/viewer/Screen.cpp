@@ -19,7 +19,7 @@
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Memory.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 
 namespace lab {
 namespace {

@@ -1,4 +1,4 @@
-#include "lab/Progress.hpp"
+#include "lab/run/Progress.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "lab/Interrupt.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
 
 namespace lab {
 

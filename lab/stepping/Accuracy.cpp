@@ -1,4 +1,4 @@
-#include "lab/scenes/Accuracy.hpp"
+#include "lab/stepping/Accuracy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
-#include "lab/Interrupt.hpp"
-#include "lab/scenes/Scene.hpp"
-#include "lab/scenes/Separation.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
+#include "lab/stepping/Separation.hpp"
 
 namespace lab {
 

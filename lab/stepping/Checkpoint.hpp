@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "lab/Archive.hpp"
+#include "lab/fast/Archive.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {

@@ -1,6 +1,6 @@
 /** @file Stepper.cpp
  * In the order of the calls: the start of a run, a step, the checks. */
-#include "lab/scenes/Stepper.hpp"
+#include "lab/stepping/Stepper.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/scenes/Checkpoint.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
 

@@ -1,4 +1,4 @@
-#include "lab/scenes/Checkpoint.hpp"
+#include "lab/stepping/Checkpoint.hpp"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 
 namespace lab {
 
-class Scene;  // lab/scenes/Scene.hpp
+class Scene;  // lab/stepping/Scene.hpp
 
 /** The positions of a run at some times. */
 class Track {

@@ -1,11 +1,11 @@
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "lab/Interrupt.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/scenes/Interrupt.hpp"
 
 namespace lab {
 

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "lab/scenes/StepLimits.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/EnergyWatch.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/StepControl.hpp"
+#include "lab/stepping/StepLimits.hpp"
 
 namespace lab {
 

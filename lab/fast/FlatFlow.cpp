@@ -1,4 +1,4 @@
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "lab/scenes/Separation.hpp"
+#include "lab/stepping/Separation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/scenes/Scene.hpp"
+#include "lab/stepping/Scene.hpp"
 
 namespace lab {
 

@@ -1,4 +1,4 @@
-#include "lab/methods/FastestCpu.hpp"
+#include "lab/fast/FastestCpu.hpp"
 
 #include <time.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "CME212/Mesh.hpp"
-#include "lab/methods/FlatFlow.hpp"
+#include "lab/fast/FlatFlow.hpp"
 
 namespace lab {
 

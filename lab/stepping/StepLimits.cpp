@@ -1,4 +1,4 @@
-#include "lab/scenes/StepLimits.hpp"
+#include "lab/stepping/StepLimits.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lab/scenes/Compose.hpp"
-#include "lab/scenes/Stepper.hpp"
+#include "lab/stepping/Stepper.hpp"
 
 namespace lab {
 

@@ -1,4 +1,4 @@
-#include "lab/Interrupt.hpp"
+#include "lab/scenes/Interrupt.hpp"
 
 #include <atomic>
 #include <initializer_list>

@@ -1,0 +1,77 @@
+#pragma once
+/** @file Trial.hpp
+ * The answer of a run: try_out() makes one and returns it. */
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lab/scenes/Measure.hpp"
+#include "lab/stepping/Scene.hpp"
+
+namespace lab {
+
+/** The value of any quantity in the present state of @a scene; the time of a
+ * tear is infinite while nothing has torn.
+ * Throws SceneError: pin-force where no pin holds a node */
+Answer answer(const Model& m, const Scene& scene, const Measure& what);
+
+/** Answers the question of a scene that runs: looks at each state, if the
+ * answer depends on all of them. Steps that are taken back are forgotten. */
+class Observer {
+ public:
+  /** Looks at the present state of @a scene, a scene of @a m.  Throws as
+   * answer() */
+  Observer(const Model& m, const Scene& scene);
+  /** Call it after each step if m.measure.over_time().  As long as answer() */
+  void look(const Model& m, const Scene& scene);
+  /** The answer so far; empty if nothing has torn, whose time is asked. */
+  Answer answer(const Model& m, const Scene& scene) const;
+  void archive(Archive& a);
+
+ private:
+  struct Look {
+    long long step;
+    double value;
+  };
+  double best_;               // of the steps that can't be taken back any more
+  std::vector<Look> recent_;  // the others
+
+  static double better(const Measure& what, double a, double b);
+};
+
+/** The result of a run. */
+struct Trial {
+  Answer answer;        ///< empty if the run failed
+  std::string failure;  ///< why it failed; else empty
+  double work = 0;      ///< spring evaluations: springs times force
+                        ///< evaluations, summed over the steps
+  double seconds = 0;   ///< duration on this machine
+  double dt = 0;        ///< the first step [s]
+  long long steps = 0;
+  bool ok() const { return failure.empty(); }
+};
+
+/** The step [s] of @a m: its dt, or the first step that is chosen, shortened so
+ * that t-end is a multiple of it.  Throws as try_out(). */
+double step_of(const Model& m);
+
+/** A random change of each initial coordinate, by at most size [m]. If it
+ * changes an answer much, the motion is chaotic: there is no better answer. */
+struct Shake {
+  double size = 0;
+  unsigned seed = 1;
+  std::array<bool, 3> along = {true, true, true};  ///< x, y, z
+};
+
+/** Run @a m to its end, with steps of step_of(m).
+ * @param look called with the cloth at the end, unless the run failed
+ * @param after called with the scene after each step; it may change the cloth
+ * Throws InputError, SceneError; std::invalid_argument as Scene does;
+ * Interrupted. */
+Trial try_out(
+    const Model& m, const Shake& shake = {},
+    const std::function<void(const Cloth&)>& look = [](const Cloth&) {},
+    const std::function<void(Scene&)>& after = [](Scene&) {});
+
+}  // namespace lab
