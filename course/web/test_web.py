@@ -15,7 +15,7 @@ import traceback
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in (
-    "lab/page", "course/kit", "course/pictures")]
+    "tools/browsers", "course/kit", "course/pictures")]
 import child  # noqa: E402
 import draw  # noqa: E402
 from browser import Browser  # noqa: E402

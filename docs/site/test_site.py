@@ -8,7 +8,7 @@ import re
 import sys
 
 ROOM = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(ROOM.parents[1] / "lab/page"), str(ROOM)]
+sys.path[:0] = [str(ROOM.parents[1] / "tools/browsers"), str(ROOM)]
 import make_site  # noqa: E402
 from browser import Browser  # noqa: E402
 from firefox import Firefox  # noqa: E402

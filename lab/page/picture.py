@@ -3,7 +3,9 @@
 import pathlib
 import sys
 
-from browser import Browser
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/browsers"))
+from browser import Browser  # noqa: E402
 
 run = ("#scene=forces&side=25&camera=-1.1_0.25_0.85&run=0_method_verlet~"
        "0_step_0.5~0_compare_implicit-euler_8_equal-time~38_end")

@@ -11,9 +11,11 @@ import sys
 import time
 import traceback
 
-from browser import Browser
-from firefox import Firefox, Skipped
-from webkit import WebKit
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/browsers"))
+from browser import Browser  # noqa: E402
+from firefox import Firefox, Skipped  # noqa: E402
+from webkit import WebKit  # noqa: E402
 
 build = pathlib.Path(sys.argv[1])
 address = "file://" + str((build / "page/index.html").resolve())
