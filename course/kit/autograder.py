@@ -24,18 +24,17 @@ LEFT_OUT = {"kit_check.py", "mistakes.py", "test_markers.py", "test_class.py",
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
 
-def content(root: pathlib.Path = ROOT) -> dict[str, pathlib.Path]:
+def content() -> dict[str, pathlib.Path]:
     """{name in the zip: path}"""
-    files = {path.rpartition("/")[2]: root / path for path in AT_THE_TOP}
+    files = {path.rpartition("/")[2]: ROOT / path for path in AT_THE_TOP}
     for glob in GLOBS:
-        for path in root.glob(glob):
+        for path in ROOT.glob(glob):
             if path.is_file() and path.name not in LEFT_OUT:
-                files[path.relative_to(root).as_posix()] = path
+                files[path.relative_to(ROOT).as_posix()] = path
     return files
 
 
-def write(out: str | pathlib.Path, feedback: str = "all",
-          root: pathlib.Path = ROOT) -> None:
+def write(out: str | pathlib.Path, feedback: str = "all") -> None:
     out = pathlib.Path(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     beside = out.with_name(f".{out.name}.{os.getpid()}")
@@ -43,7 +42,7 @@ def write(out: str | pathlib.Path, feedback: str = "all",
         with zipfile.ZipFile(beside, "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr(zipfile.ZipInfo("feedback", (1980, 1, 1, 0, 0, 0)),
                              feedback + "\n")
-            for name, path in sorted(content(root).items()):
+            for name, path in sorted(content().items()):
                 info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
                 info.compress_type = zipfile.ZIP_DEFLATED
                 info.create_system = 3      # modes are those of Unix

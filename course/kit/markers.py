@@ -245,41 +245,40 @@ def check_region(region: Region, first: dict[str, Region], course: tasks.Course,
     return []
 
 
-def path_of(name: str, root: pathlib.Path = tasks.ROOT) -> pathlib.Path:
+def path_of(name: str) -> pathlib.Path:
     """Where the repository has a source with markers: in its root, or, if only
     students have it there, in course/."""
-    return root / ("course" if name == "mine.hpp" else "") / name
+    return tasks.ROOT / ("course" if name == "mine.hpp" else "") / name
 
 
-def read_sources(root: pathlib.Path = tasks.ROOT) -> dict[str, str]:
+def read_sources() -> dict[str, str]:
     """{file: text} of the sources with markers."""
     texts = {}
     for name in SOURCES:
         try:
-            texts[name] = path_of(name, root).read_text(encoding="utf-8")
+            texts[name] = path_of(name).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or "it is not UTF-8"
             raise MarkerError([f"{name}: can't be read ({reason})"]) from None
     return texts
 
 
-def names_of_tests(root: pathlib.Path = tasks.ROOT) -> set[str]:
-    return {path.stem for path in (root / "course/tests").glob("*.*.cpp")}
+def names_of_tests() -> set[str]:
+    return {path.stem for path in (tasks.ROOT / "course/tests").glob("*.*.cpp")}
 
 
-def load(root: pathlib.Path = tasks.ROOT) -> tuple[
-        dict[str, str], tasks.Course]:
+def load() -> tuple[dict[str, str], tasks.Course]:
     """The checked sources and tasks of the repository: (texts, course)."""
-    course = tasks.load(root / tasks.FILE)
-    texts = read_sources(root)
-    check(texts, course, names_of_tests(root))
+    course = tasks.load()
+    texts = read_sources()
+    check(texts, course, names_of_tests())
     return texts, course
 
 
-def open_graph(course: tasks.Course, root: pathlib.Path = tasks.ROOT) -> str:
+def open_graph(course: tasks.Course) -> str:
     """The checked Graph.hpp of the level open, with its markers."""
-    text = (root / OPEN_GRAPH).read_text(encoding="utf-8")
-    check({OPEN_GRAPH: text}, course, names_of_tests(root))
+    text = (tasks.ROOT / OPEN_GRAPH).read_text(encoding="utf-8")
+    check({OPEN_GRAPH: text}, course, names_of_tests())
     return text
 
 

@@ -47,10 +47,10 @@ class StarterError(Exception):
     pass
 
 
-def tree(kind: str, level: str = "guided",
-         root: pathlib.Path = tasks.ROOT) -> Files:
+def tree(kind: str, level: str = "guided") -> Files:
     """The files of a starter or a solution."""
-    texts, course = markers.load(root)
+    root = tasks.ROOT
+    texts, course = markers.load()
     if wrong := pages.check(course):
         raise StarterError("\n".join(wrong))
     files: Files = {}
@@ -79,8 +79,7 @@ def tree(kind: str, level: str = "guided",
     if level == "open":
         for name in GUIDED:
             del files[name]
-        add("Graph.hpp", markers.starter(markers.open_graph(course, root),
-                                         course))
+        add("Graph.hpp", markers.starter(markers.open_graph(course), course))
     for name, (content, _) in files.items():
         if name.endswith(".md"):
             content = pages.of_level(content.decode(), level).encode()
