@@ -83,19 +83,21 @@ def build(folder: pathlib.Path, mistake: str, stage: str) -> pathlib.Path:
 def draw(name: str, folder: pathlib.Path) -> None:
     """Run the programs of a picture, and put their panels into a row."""
     count = sum(len(times) for _, _, times, _ in PICTURES[name])
-    size = [str(1026 // count), str(HEIGHTS[count])]
     files = []
-    for number, (mistake, stage, times, low) in enumerate(PICTURES[name]):
-        out = folder / f"panel{number}"
+    for mistake, stage, times, low in PICTURES[name]:
         right = mistake in ("", "damped") and "mistakes" in name
-        title = "correct" if right else mistake or stage
-        subprocess.run(
-            [build(folder, mistake, stage), out, title, *size,
-             str(low), "data/grid1.nodes", "data/grid1.tets", "0.001",
-             *map(str, times)], cwd=ROOT, stdout=subprocess.DEVNULL,
-            check=True)
-        for k in range(len(times)):
-            files += ["-i", f"{out}-{k}.png"]
+        program = build(folder, mistake, stage)
+        for time in times:
+            out = folder / f"{len(files)}.png"
+            files += ["-i", out]
+            subprocess.run(
+                [program, "data/grid1.nodes", "data/grid1.tets", "0.001",
+                 str(time)], cwd=ROOT, stdout=subprocess.DEVNULL, check=True,
+                env=os.environ | {
+                    "OUT": str(out), "LOW": str(low),
+                    "TITLE": "correct" if right else mistake or stage,
+                    "WIDTH": str(1026 // count),
+                    "HEIGHT": str(HEIGHTS[count])})
     picture = HERE / f"{name}.png"
     subprocess.run(
         ["ffmpeg", "-v", "error", "-y", *files, "-filter_complex",
