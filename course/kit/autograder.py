@@ -18,9 +18,8 @@ GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
          "tools/deps.sh", "course/tasks.toml", "course/mine.hpp",
          "course/kit/*.py", "course/kit/*.cpp", "course/tests/**/*",
          "course/asked/*"]
-LEFT_OUT = {"kit_check.py", "mistakes.py", "test_markers.py", "test_class.py",
-            "test_grade_tests.py", "grade_tests.py", "starter.py",
-            "autograder.py", "synthetic.py", "seeds.py", "test_seeds.py"}
+LEFT_OUT = {"kit_check.py", "mistakes.py", "grade_tests.py", "starter.py",
+            "autograder.py", "synthetic.py"}    # and tests
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
 
@@ -29,7 +28,8 @@ def content() -> dict[str, pathlib.Path]:
     files = {path.rpartition("/")[2]: ROOT / path for path in AT_THE_TOP}
     for glob in GLOBS:
         for path in ROOT.glob(glob):
-            if path.is_file() and path.name not in LEFT_OUT:
+            if path.is_file() and path.name not in LEFT_OUT and (
+                    not path.name.startswith("test_")):
                 files[path.relative_to(ROOT).as_posix()] = path
     return files
 

@@ -1,24 +1,78 @@
 """Tests of SEED: the tests' numbers with one, and what it is good for.
 
-A minute of processor time: it compiles.
+SEEDS=100 python3 course/kit/test_seeds.py grades all right submissions of the
+kit with the seeds 1 to 100; else the solution alone, with three. Each is
+compiled once. A minute of processor time.
 """
 
 import copy
+import os
 import pathlib
+import secrets
 import shutil
 import tempfile
 import unittest
+from collections.abc import Iterable
 
+import build
 import class_output
 import grade
 import judge
 import kit_check
 import once
-import seeds
+import report
 import submission
 
+JOBS = 2
 FEW = (1, 2, 1 << 62)
 PUBLIC = ""
+Kits = dict[int | str, once.Kit]     # by seed
+
+
+class OfSeeds(judge.Judge):
+    """Runs each test with all seeds: {seed: a kit with answers or None}."""
+
+    def __init__(self, kits: Kits, folder: pathlib.Path,
+                 files: dict[str, bytes]):
+        super().__init__(next(iter(kits.values())), folder, files, JOBS)
+        self.kits = kits
+        self.results: dict[int | str, judge.Results] = {
+            seed: {} for seed in kits}
+
+    def run_one(self, unit: build.Unit, names: set[str], test: str,
+                kit: once.Kit, data: pathlib.Path) -> judge.Result:
+        for seed, kit in self.kits.items():
+            self.results[seed][test] = super().run_one(unit, names, test, kit,
+                                                       kit.data)
+        return min((self.results[seed][test] for seed in self.kits),
+                   key=lambda result: judge.RANK.index(result.status))
+
+
+def kits_of(kit: once.Kit, seeds: Iterable[int], top: pathlib.Path) -> Kits:
+    """A kit for each seed, with a cloth of its own."""
+    kits: Kits = {}
+    folder = pathlib.Path(tempfile.mkdtemp(dir=top))
+    folder.chmod(0o755)
+    for seed in seeds:
+        kits[seed] = one = copy.copy(kit)
+        one.seed, one.answers = str(seed), None
+        one.secret, one.data = secrets.token_bytes(32), folder / f"data{seed}"
+        judge.draw_cloth(one.data, one)
+    return kits
+
+
+def grade_with(kits: Kits, files: dict[str, str],
+               tests: dict[str, str]) -> dict[int | str, judge.Results]:
+    """{seed: {test: Result}}; a test that does not compile has none."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-seeds-"))
+    try:
+        folder.chmod(0o755)
+        of_seeds = OfSeeds(kits, folder, {
+            name: text.encode() for name, text in files.items()})
+        of_seeds.run(tests)
+        return of_seeds.results
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 class Seeds(unittest.TestCase):
@@ -38,14 +92,13 @@ class Seeds(unittest.TestCase):
     def lost(self, kits, files, tests):
         """{seed: the tests that fail}, of their own: no question is compared.
         """
-        results = seeds.grade_with(kits, files, tests)
+        results = grade_with(kits, files, tests)
         return {seed: {test for test in tests if not found[test].passed}
                 for seed, found in results.items()}
 
     def test_tables_of_the_public_numbers_lose_by_a_seed_alone(self):
-        kits: seeds.Kits = {
-            PUBLIC: copy.copy(self.kit),
-            **seeds.kits_of(self.kit, FEW, self.top)}
+        kits: Kits = {PUBLIC: copy.copy(self.kit),
+                      **kits_of(self.kit, FEW, self.top)}
         kits[PUBLIC].data = once.TESTS / "data"
         kits[PUBLIC].secret = bytes(32)
         wrong = list(self.cases.wrong("tables"))
@@ -55,8 +108,21 @@ class Seeds(unittest.TestCase):
         for case in wrong:
             self.assertEqual(self.lost(kits, case.files, tests), {
                 PUBLIC: set(), **{seed: set(case.lost) for seed in FEW}})
-        self.assertEqual(self.lost(kits, self.cases.solution, self.tests),
-                         {seed: set() for seed in kits})
+
+    def test_right_submissions_lose_nothing(self):
+        count = int(os.environ.get("SEEDS") or 0)
+        kits = kits_of(self.kit, range(1, count + 1) if count else FEW,
+                       self.top)
+        for name in kit_check.BASES if count else ("solution",):
+            results = grade_with(kits, self.cases.base(name), self.tests)
+            self.assertEqual([], [
+                f"{name}: SEED={seed}, {test}: {result.did}: "
+                f"{report.outcome(result)}" for seed, found in results.items()
+                for test, result in found.items() if not result.passed])
+            if name == "solution":      # what the others are asked for
+                for seed, one in kits.items():
+                    one.answers = {test: result.answers for test, result
+                                   in results[seed].items()}
 
     def test_a_seed_draws_the_same_cloth_again(self):
         def drawn(seed, name):
