@@ -7,7 +7,7 @@ ASKED("5.1.GravityForce", gravity_asked) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
-    auto gravity = gravity_force<F>();
-    for (int i = 0; i < b.size; ++i) answer("force", force_on(gravity, g, i));
+    const Owned<F> gravity(made_force<F>("GravityForce", g, 9.81));
+    for (int i = 0; i < b.size; ++i) answer("force", force_on(*gravity, g, i));
   });
 }

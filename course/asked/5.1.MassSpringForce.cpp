@@ -8,7 +8,7 @@ static void ask_for_springs(const Bodies& b, double K, const char* what) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(MassSpringForce)>("MassSpringForce", [&]<typename F>() {
-    const Owned<F> springs(mass_spring_force<F>(g));
+    const Owned<F> springs(made_force<F>("MassSpringForce", g, 100.));
     for (int i = 0; i < b.size; ++i)
       answer(what, 1 / K * force_on(*springs, g, i));
   });

@@ -20,7 +20,8 @@ static void ask_for_sums(const Bodies& b, const char* what) {
 template <typename Gravity, typename Springs>
 static void ask_for_sums_like() {
   const Bodies b = drawn_bodies(4, 100);
-  constexpr bool own = base_is_unknown<Gravity>() && Complete<Springs>;
+  constexpr bool own =
+      base_is_unknown<Gravity, FreeForce>() && Complete<Springs>;
   if constexpr (!own) ask_for_sums<Parts>(b, "sum of the test's?");
   if constexpr (own || answers_all)
     ask_for_sums<OwnParts<Gravity, Springs>>(b, "sum of its own?");

@@ -19,7 +19,8 @@ static void ask_for_constraints() {
   Bodies low = b;
   for (int i = 0; i < low.size; ++i) low.x[i].z -= 1;
   low.x[1] = Point(0.5, 0.5, -0.5) + drawn_point(0.08);
-  constexpr bool own = base_is_not_known<Plane>() && Complete<Sphere>;
+  constexpr bool own =
+      base_is_unknown<Plane, FreeConstraint>() && Complete<Sphere>;
   if constexpr (!own) {
     using C = TestConstraint;
     ask_for_all(constraints_of(part<C, 1>(), part<C, 2>()), b,

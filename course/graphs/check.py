@@ -42,7 +42,8 @@ def run(graph: pathlib.Path) -> list[list[tuple[str, float, int]]]:
         shutil.copy(file, folder)
     command = [*shlex.split(os.environ.get("CXX", "g++")), "-std=c++20", "-O0",
                "-Wall", "-Wextra", "-Werror", "-D_GLIBCXX_ASSERTIONS",
-               f"-I{ROOT}", "-o", folder / "stages", folder / "stages.cpp"]
+               f"-I{folder}", f"-I{ROOT}", "-o", folder / "stages",
+               folder / "stages.cpp"]
     for what, words in (("to compile", command),
                         ("to run", [folder / "stages", *GRID])):
         done = child.run(words, LIMIT, cwd=ROOT, capture_output=True,

@@ -13,36 +13,12 @@
 #include "mass_spring.hpp"
 
 #define main run
-#define STAGE problem1
-namespace problem1 {
-#include "mass_spring.cpp"
-}
-#undef STAGE
-#define STAGE diagonals
-namespace diagonals {
-#include "mass_spring.cpp"
-}
-#undef STAGE
-#define STAGE forces
-namespace forces {
-#include "mass_spring.cpp"
-}
-#undef STAGE
-#define STAGE constraints
-namespace constraints {
-#include "mass_spring.cpp"
-}
-#undef STAGE
-#define STAGE tear
-namespace tear {
-#include "mass_spring.cpp"
-}
-#undef STAGE
+#include "course/tests/stages.hpp"
 #undef main
 
 int main(int argc, char** argv) {
   std::cout.precision(12);
-  return problem1::run(argc, argv) + diagonals::run(argc, argv) +
-         forces::run(argc, argv) + constraints::run(argc, argv) +
-         tear::run(argc, argv);
+  return kit_problem1::run(argc, argv) + kit_diagonals::run(argc, argv) +
+         kit_forces::run(argc, argv) + kit_constraints::run(argc, argv) +
+         kit_tear::run(argc, argv);
 }

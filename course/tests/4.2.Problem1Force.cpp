@@ -5,18 +5,6 @@
 
 namespace kit {
 
-template <typename P>
-static P* own_springs_force(Cloth& g) {
-  if constexpr (std::is_default_constructible_v<P>)
-    return new P();
-  else if constexpr (std::is_constructible_v<P, Cloth&>)
-    return new P(g);
-  else if constexpr (std::is_constructible_v<P, double, double>)
-    return new P(100., 0.5);
-  else
-    fail("Problem1Force to be made from nothing", "another constructor");
-}
-
 /** A node with three springs of its own K and L each. */
 static Bodies three_springs() {
   Bodies b;
@@ -34,7 +22,7 @@ static Point change_of_force(const Bodies& b, int i, int s, double K,
                              double L) {
   Cloth g;
   fill(g, b);
-  const Owned<P> force(own_springs_force<P>(g));
+  const Owned<P> force(made_force<P>("Problem1Force", g, 100., 0.5));
   const Point before = force_on(*force, g, i);
   Bodies changed = b;
   changed.springs[s].K = K;

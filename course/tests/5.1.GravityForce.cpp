@@ -2,18 +2,6 @@
  * The weight of nodes of different masses, which move and have springs. */
 #include "cloth.hpp"
 
-namespace kit {
-
-template <typename F>
-static F gravity_force() {
-  if constexpr (std::is_default_constructible_v<F>)
-    return F();
-  else
-    return F(9.81);
-}
-
-}  // namespace kit
-
 TASK("5.1.GravityForce", gravity_is_the_weight) {
   Bodies b;
   b.add(Point(0.5, 0.25, 0.5), 1);
@@ -26,11 +14,11 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   fill(g, b);
   with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
     check_is_force<F>("GravityForce");
-    auto gravity = gravity_force<F>();
+    const Owned<F> gravity(made_force<F>("GravityForce", g, 9.81));
     for (int i = 0; i < b.size; ++i) {
       DID("a node of mass ", b.m[i], " kg at ", b.x[i], " with velocity ",
           b.v[i]);
-      const Point force = force_on(gravity, g, i);
+      const Point force = force_on(*gravity, g, i);
       CHECK_NEAR(force, Point(0, 0, -b.m[i] * 9.81), 1e-9);
     }
   });

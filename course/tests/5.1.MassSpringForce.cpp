@@ -4,24 +4,12 @@
 
 namespace kit {
 
-template <typename F>
-static F* mass_spring_force(Cloth& g) {
-  if constexpr (std::is_default_constructible_v<F>)
-    return new F();
-  else if constexpr (std::is_constructible_v<F, Cloth&>)
-    return new F(g);
-  else if constexpr (std::is_constructible_v<F, double>)
-    return new F(100.);
-  else
-    fail("MassSpringForce to be made from nothing", "another constructor");
-}
-
 static void compare_springs(const Bodies& b) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(MassSpringForce)>("MassSpringForce", [&]<typename F>() {
     check_is_force<F>("MassSpringForce");
-    const Owned<F> springs(mass_spring_force<F>(g));
+    const Owned<F> springs(made_force<F>("MassSpringForce", g, 100.));
     for (int i = 0; i < b.size; ++i) {
       const Point force = force_on(*springs, g, i);
       CHECK_NEAR(force, b.pull(i), 1e-9);

@@ -112,16 +112,9 @@ static void combine_forces() {
 
 /** Forces of the test's own can't be combined if the submission's have a base
  * class that is not known here. */
-template <typename F>
-static constexpr bool base_is_unknown() {
-  if constexpr (Complete<F>)
-    return std::is_polymorphic_v<F> && std::is_same_v<TestForce, FreeForce>;
-  else
-    return false;
-}
 template <typename Gravity, typename Springs>
 static void combine_forces_like() {
-  if constexpr (base_is_unknown<Gravity>() && Complete<Springs>)
+  if constexpr (base_is_unknown<Gravity, FreeForce>() && Complete<Springs>)
     combine_forces<OwnParts<Gravity, Springs>>();
   else
     combine_forces<Parts>();

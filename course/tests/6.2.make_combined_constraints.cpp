@@ -128,17 +128,9 @@ static void combine_own() {
   }
 }
 
-template <typename Plane>
-static constexpr bool base_is_not_known() {
-  if constexpr (Complete<Plane>)
-    return std::is_polymorphic_v<Plane> &&
-           std::is_same_v<TestConstraint, FreeConstraint>;
-  else
-    return false;
-}
 template <typename Plane, typename Sphere>
 static void combine_constraints_like() {
-  if constexpr (base_is_not_known<Plane>() && Complete<Sphere>)
+  if constexpr (base_is_unknown<Plane, FreeConstraint>() && Complete<Sphere>)
     combine_own<Plane, Sphere>();
   else
     combine_constraints<TestConstraint>();

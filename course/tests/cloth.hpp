@@ -40,30 +40,7 @@
 #define main inline __attribute__((no_sanitize("undefined"))) submitted_main
 #ifdef KIT_STAGES
 #include "mass_spring.hpp"
-namespace kit_problem1 {
-#define STAGE problem1
-#include "mass_spring.cpp"
-#undef STAGE
-}  // namespace kit_problem1
-namespace kit_diagonals {
-#define STAGE diagonals
-#include "mass_spring.cpp"
-#undef STAGE
-}  // namespace kit_diagonals
-namespace kit_forces {
-#define STAGE forces
-#include "mass_spring.cpp"
-#undef STAGE
-}  // namespace kit_forces
-namespace kit_constraints {
-#define STAGE constraints
-#include "mass_spring.cpp"
-#undef STAGE
-}  // namespace kit_constraints
-namespace kit_tear {  // in one of its own, too: else a call would find both
-#define STAGE tear
-#include "mass_spring.cpp"
-}  // namespace kit_tear
+#include "stages.hpp"
 #define KIT_MAIN ::kit_tear::submitted_main
 #else
 #define STAGE KIT_STAGE

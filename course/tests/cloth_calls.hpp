@@ -49,6 +49,19 @@ struct Owned {
   T& operator*() const { return *made; }
 };
 
+/** A force made from nothing, from a graph or from these numbers. */
+template <typename F, typename... Numbers>
+F* made_force(const char* name, Cloth& g, Numbers... numbers) {
+  if constexpr (std::is_default_constructible_v<F>)
+    return new F();
+  else if constexpr (std::is_constructible_v<F, Cloth&>)
+    return new F(g);
+  else if constexpr (std::is_constructible_v<F, Numbers...>)
+    return new F(numbers...);
+  else
+    fail(words(name, " to be made from nothing"), "another constructor");
+}
+
 /** The pin of the corners: made from a graph, from nothing, from points or from
  * nodes, all at once or one by one. @a g has its corners in place. */
 template <typename Pin>

@@ -27,64 +27,51 @@ class Life {
 
 /** The law of a test's force or constraint: a reference to a function object,
  * which has to outlive it. */
-struct ForceLaw {
+template <typename R, typename A>
+struct Law {
   const void* f = nullptr;
-  Point (*call)(const void*, ClothNode, double) = [](const void*, ClothNode,
-                                                     double) -> Point {
-    fail("the force that was combined", "one made from nothing");
+  R(*call)
+  (const void*, A, double) = [](const void*, A, double) -> R {
+    fail("what was combined", "what was made from nothing");
   };
-  ForceLaw() = default;
+  Law() = default;
   template <typename F>
-  ForceLaw(const F& function)
-      : f(&function), call([](const void* p, ClothNode n, double t) {
-          return Point((*static_cast<const F*>(p))(n, t));
+  Law(const F& function)
+      : f(&function), call([](const void* p, A a, double t) {
+          return R((*static_cast<const F*>(p))(a, t));
         }) {}
   template <typename F>
-  ForceLaw(const F&&) = delete;  // a temporary
-};
-struct ConstraintLaw {
-  const void* f = nullptr;
-  void (*call)(const void*, Cloth&, double) = [](const void*, Cloth&, double) {
-    fail("the constraint that was combined", "one made from nothing");
-  };
-  ConstraintLaw() = default;
-  template <typename F>
-  ConstraintLaw(const F& function)
-      : f(&function), call([](const void* p, Cloth& g, double t) {
-          (*static_cast<const F*>(p))(g, t);
-        }) {}
-  template <typename F>
-  ConstraintLaw(const F&&) = delete;
+  Law(const F&&) = delete;  // a temporary
 };
 
 /** A force or a constraint of the test's: for templates, no base needed. */
-class FreeForce {
+template <typename R, typename A>
+class OfLaw {
  public:
-  using Law = ForceLaw;
-  using Called = FreeForce;
-  FreeForce() = default;  // some assign what they combine
-  explicit FreeForce(Law law) : law_(law) {}
-  template <typename N>
-  Point operator()(N n, double t) const {
-    return call(n, t);
-  }
+  OfLaw() = default;  // some assign what they combine
+  explicit OfLaw(Law<R, A> law) : law_(law) {}
 
  protected:
-  Point call(ClothNode n, double t) const {
+  R call(A a, double t) const {
     life_.look();
-    return law_.call(law_.f, n, t);
+    return law_.call(law_.f, a, t);
   }
 
  private:
   Life life_;
-  Law law_;
+  Law<R, A> law_;
 };
-class FreeConstraint {
- public:
-  using Law = ConstraintLaw;
+struct FreeForce : OfLaw<Point, ClothNode> {
+  using Called = FreeForce;
+  using OfLaw::OfLaw;
+  template <typename N>
+  Point operator()(N n, double t) const {
+    return call(n, t);
+  }
+};
+struct FreeConstraint : OfLaw<void, Cloth&> {
   using Called = FreeConstraint;
-  FreeConstraint() = default;
-  explicit FreeConstraint(Law law) : law_(law) {}
+  using OfLaw::OfLaw;
   template <typename G>
   void operator()(G& g, double t) const {
     call(g, t);
@@ -92,15 +79,8 @@ class FreeConstraint {
   void operator()(Cloth* g, double t) const { call(g, t); }
 
  protected:
-  void call(Cloth& g, double t) const {
-    life_.look();
-    law_.call(law_.f, g, t);
-  }
+  using OfLaw::call;
   void call(Cloth* g, double t) const { call(*g, t); }
-
- private:
-  Life life_;
-  Law law_;
 };
 
 /** The same as a child of Base, whose virtual call has the type Call. */
@@ -110,16 +90,14 @@ template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
 struct Child<Base, Free, R (C::*)(A, B)> : Base, private Free {
   using Called = Base;
-  Child() = default;
-  explicit Child(typename Free::Law law) : Free(law) {}
+  using Free::Free;
   R operator()(A a, B b) override { return Free::call(a, b); }
 };
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
 struct Child<Base, Free, R (C::*)(A, B) const> : Base, private Free {
   using Called = Base;
-  Child() = default;
-  explicit Child(typename Free::Law law) : Free(law) {}
+  using Free::Free;
   R operator()(A a, B b) const override { return Free::call(a, b); }
 };
 
@@ -154,6 +132,16 @@ constexpr bool inherits_from() {
   else
     return false;
 }
+/** Is @a F a class with virtual calls, and Free all that a test can make? */
+template <typename F, typename Free>
+constexpr bool base_is_unknown() {
+  if constexpr (Complete<F>)
+    return std::is_polymorphic_v<F> && (std::is_same_v<TestForce, Free> ||
+                                        std::is_same_v<TestConstraint, Free>);
+  else
+    return false;
+}
+
 /** A force of the submission is a child of one of its base classes, if there
  * is any with a virtual call; so is a constraint. */
 template <typename C, typename... Bases>
