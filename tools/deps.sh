@@ -140,7 +140,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 apt() {
   $as_root DEBIAN_FRONTEND=noninteractive apt-get -q -y \
-    -o DPkg::Lock::Timeout=120 "$@" >"$log" 2>&1 </dev/null
+    -o DPkg::Lock::Timeout=120 -o Acquire::Retries=3 "$@" >"$log" 2>&1 </dev/null
 }
 install() {
   if [ $system = apt ]; then  # it may fail for a source that is not needed
@@ -159,13 +159,8 @@ install() {
   esac
 }
 
-if ! install; then
-  if grep -qiE 'failed to fetch|unable to fetch|could not resolve' "$log"; then
-    echo "deps: a download failed; trying once more"
-    sleep "${DEPS_WAIT:-3}"
-    install && exit 0
-  fi
+install || {
   grep -E '^E:' "$log" >&2 || tail -n 20 "$log" >&2
   by_hand "could not install (the reason is above):" \
     "As root: tools/deps.sh $groups"
-fi
+}

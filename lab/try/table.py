@@ -112,19 +112,13 @@ def coefficients(method: str) -> Vector:
 def known() -> dict[str, Table]:
     """{name: table}"""
     theta = 1 / (2 - 2 ** (1 / 3))
+    yoshida = mirrored([theta / 2, theta, (1 - theta) / 2, 1 - 2 * theta])
     xi, lam, chi = coefficients("pefrl")
     parts = coefficients("srkn11b")
     b11, a11 = parts[:5], parts[5:]
-    b6 = [.0829844064174052, .396309801498368, -.0390563049223486]
-    a6 = [.245298957184271, .604872665711080]
     b11.append(.5 - sum(b11))
     a11.append(1 - 2 * sum(a11))
-    a6.append(.5 - sum(a6))
-    b6.append(1 - 2 * sum(b6))
-    six = [x for pair in zip(b6, a6) for x in pair] + [b6[3]]
     eleven = [x for pair in zip(b11, a11) for x in pair]
-    yoshida = [theta, 1 - 2 * theta, theta]
-    y = [theta / 2, theta, (1 - theta) / 2, 1 - 2 * theta]
     third = [7 / 24, 2 / 3, 3 / 4, -2 / 3, -1 / 24, 1]
     dp: list[Vector] = [
         [], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9],
@@ -154,13 +148,10 @@ def known() -> dict[str, Table]:
         "Dormand-Prince": runge_kutta(
             dp, [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]),
         "Ruth's method of order 3": alternate("kick", third),
-        "Yoshida 4": alternate("kick", [y[0], y[1], y[2], y[3], y[2], y[1],
-                                        y[0]]),
-        "Yoshida 4, positions first": alternate(
-            "drift", [y[0], yoshida[0], y[2], y[3], y[2], yoshida[2], y[0]]),
+        "Yoshida 4": alternate("kick", yoshida),
+        "Yoshida 4, positions first": alternate("drift", yoshida),
         "PEFRL": alternate("drift", mirrored(
             [xi, .5 - lam, chi, lam, 1 - 2 * (chi + xi)])),
-        "srkn6b": alternate("kick", mirrored(six)),
         "srkn11b": alternate("kick", mirrored(eleven)),
     }
 
