@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Hold the include arrows: who may include whom. This table is their one home; a
-# new room or a new arrow is a change of the design, made there first.
+# Hold the arrows between rooms: who may include whom. These tables are their one
+# home; a new room or a new arrow is a change of the design, made there first.
 #   ROOM : A B   may include itself, A, B and all that these may include, and
 #                does include a header of A and one of B
 set -euo pipefail
@@ -27,6 +27,18 @@ lab/viewer    : lab/stepping
 lab/run       : lab/viewer lab/live
 lab/page      : lab/live
 '
+# Python, JavaScript, CSS and HTML reach another room by the name of its folder
+# or of a file in it: so these may name, and do.
+scripts='
+tools      :
+course     : tools
+lab/advice :
+lab/bench  :
+lab/charts : lab/advice
+lab/try    : course lab/charts
+lab/page   : course tools
+docs/site  : course tools
+'
 # A program in the root may draw, and a test; of all else only these:
 drawing='CME212/viewer/* CME212/SDLViewer.hpp CME212/SFML_Viewer.hpp
          CME212/Color.hpp'
@@ -42,11 +54,16 @@ faults=0
 fault() { echo "$1"; faults=$((faults + 1)); }
 
 declare -A may drawn used there
-while read -r room _ below; do
-  [ -n "$room" ] || continue
-  may[$room]=" $room $below" drawn[$room]=$below
-  for b in $below; do may[$room]+=" ${may[$b]}"; done
-done <<<"$arrows"
+table() {  # PREFIX ROWS: of the names of rooms
+  local room below b
+  while read -r room _ below; do
+    [ -n "$room" ] || continue
+    may[$1$room]=" $room $below" drawn[$1$room]=$below
+    for b in $below; do may[$1$room]+=" ${may[$1$b]}"; done
+  done <<<"$2"
+}
+table "" "$arrows"
+table "script " "$scripts"
 
 one_of() {  # is $1 one of the words (or patterns) that follow?
   local word
@@ -62,8 +79,9 @@ set_room() {  # of FILE, in $room: that of a program in the root is .
     Graph.hpp | methods.hpp) room=${1%.hpp} ;;
     CME212/*Viewer.hpp) room=CME212/viewer ;;
     mass_spring.hpp | mass_spring.cpp) room=mass_spring ;;
-    lab/bench/*) room=lab/bench ;;
-    course/*) room=course ;;
+    course/* | course) room=course ;;
+    tools/* | tools) room=tools ;;
+    lab/*/*) room=${1#lab/} room=lab/${room%%/*} ;;
     */*) room=${1%/*} ;;
     *) room=. ;;
   esac
@@ -73,6 +91,16 @@ set_header() {  # the file of this tree that FILE includes as TARGET; or none
   [[ $header != *./* ]] || header=$(realpath -m --relative-to=. "$header")
   [ -f "$header" ] || header=${1%/*}/$2
   [ -f "$header" ] || header=""
+}
+
+arrow() {  # PREFIX WHAT: what $file does in $line is an arrow, $room to $of
+  used[$1$room:$of]=1 there[$1$room]=1
+  if [ -z "${may[$1$room]+there}" ]; then
+    fault "$file:1: its room has no line in the table of $0"
+  else
+    # shellcheck disable=SC2086
+    one_of "$of" ${may[$1$room]} || fault "$file:$line: $2, which is not below it"
+  fi
 }
 
 include='^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]([^>"]+)[>"]'
@@ -99,18 +127,28 @@ while IFS=: read -r file line text; do
   esac
   set_room "$header"; of=$room
   set_room "$file"
-  used[$room:$of]=1 there[$room]=1
   if [ "$room" = . ]; then  # a program of the course
     [[ $header != lab/* && $header != course/* ]] ||
       fault "$file:$line: includes $header, which is not below it"
-  elif [ -z "${may[$room]+there}" ]; then
-    fault "$file:1: its room has no line in the table of $0"
   else
-    # shellcheck disable=SC2086
-    one_of "$of" ${may[$room]} ||
-      fault "$file:$line: includes $header, which is not below it"
+    arrow "" "includes $header"
   fi
 done < <(grep -nE "$include" /dev/null "${files[@]}")
+
+# Names of rooms and of what is in them, no pages, pictures and results; comments
+# do not count.
+named='^\s*(?:#|//|\*).*(*SKIP)(*F)|(?<=["\'"\'"'])(?:course|tools)(?=["\'"\'"'])
+  |(?<![\w.-])(?:\.\./)*(?:course|tools|docs/site|lab/[a-z]+)/[\w./*{}-]*
+  |(?<=["\'"\'"'])(?:\.\./)*lab/[a-z]+(?=["\'"\'"'])'
+while IFS=: read -r file line target; do
+  target=${target##*../} target=${target%.}
+  case $target in *.md | *.svg | */results/*) continue ;; esac
+  set_room "$target/"; of=$room
+  [ -d "$of" ] || continue
+  set_room "$file"
+  arrow "script " "names $target"
+done < <(git ls-files -co --exclude-standard -- '*.py' '*.js' '*.css' '*.html' |
+  xargs grep -noP "${named//$'\n  '/}" /dev/null)
 
 for room in "${!there[@]}"; do
   for b in ${drawn[$room]-}; do

@@ -12,7 +12,7 @@ done
 mapfile -t python < <(git ls-files '*.py')
 mapfile -t shell < <(git ls-files '*.sh' .ci/run)
 status=0
-shellcheck -S warning "${shell[@]}" || status=1
+shellcheck -x -S warning "${shell[@]}" || status=1
 pyflakes3 "${python[@]}" || status=1
 while read -r folder; do
   mypy --no-error-summary --cache-dir build/mypy --ignore-missing-imports \

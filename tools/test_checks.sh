@@ -44,11 +44,17 @@ arrow lab/fast/Energy.hpp lab/methods/Verlet.hpp 'is not below it'
 arrow mass_spring.cpp SDL2/SDL.h 'only'
 arrow lab/stepping/Scene.hpp CME212/Color.hpp 'draws'
 mkdir lab/attic; echo '#include "Graph.hpp"' >lab/attic/Stranger.hpp
-sed -i 's#^lab/page .*#& lab/advice#' tools/check_includes.sh
-caught tools/check_includes.sh < <(cat "$tmp/messages" - <<'END_'
+echo 'sys.path += [str(ROOT / "lab/page")]' >course/kit/reach.py
+echo 'import {run} from "../../lab/page/page.js";' >course/web/reach.js
+sed -i 's#^lab/page  *: lab/live#& lab/advice#; s#^lab/bench  *:$#& course#' \
+  tools/check_includes.sh
+caught tools/check_includes.sh < <(cat "$tmp/messages" - <<'END'
 lab/attic/Stranger.hpp:1: its room has no line in the table
 the arrow from lab/page to lab/advice is not used
-END_
+course/kit/reach.py:1: names lab/page, which is not below it
+course/web/reach.js:1: names lab/page/page.js, which is not below it
+the arrow from script lab/bench to course is not used
+END
 )
 
 # ---- Names and numbers of the text; '' keeps them out of what is searched
@@ -56,16 +62,16 @@ for quoted in 'is_g''one(x)' 'fast/G''one.hpp' 'make g''one-chart' \
   './cloth --g''one-option'; do
   printf '\nSee `%s`.\n' "$quoted" >>lab/fast/README.md
 done
-caught tools/check_names.sh <<END_
+caught tools/check_names.sh <<END
 $(end lab/fast/README.md): --g${x-}one-option is nowhere
 is_g${x-}one is nowhere
 fast/G${x-}one.hpp is nowhere
 make g${x-}one-chart is nowhere
-END_
+END
 sed -i 's/is 46 times/is 47 times/' README.md
-caught python3 lab/charts/figures.py <<END_
+caught python3 lab/charts/figures.py <<END
 README.md:$(sed -n '/is 47 times/=' README.md): 47, expected 46
-END_
+END
 
 # ---- How the Makefile builds a program that somebody adds to the root
 build_says() {  # NAME WORD NOT-WORD MAKE-ARGUMENT...
@@ -99,7 +105,7 @@ mkdir -p lab/fast lab/x/results; printf '%.0s\n' {1..5001} >lab/fast/long.toml
 # The head of a PNG, all that the check reads: 801 is 3 * 256 + 041.
 printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\03\041' | tee x.png >lab/x/results/x.png
 head -c 150001 /dev/zero >x.svg
-caught tools/check_tree.sh <<END_
+caught tools/check_tree.sh <<END
 test_stray.cpp:1: is no program
 Graph.hpp:$(($(end Graph.hpp) - 1)): is left unfinished
 Graph.hpp:$(end Graph.hpp): begins a sentence with
@@ -113,15 +119,15 @@ lab/fast has 5001 lines; its budget is
 lab/x/results/x.png:1: is a chart, but no SVG
 x.png:1: is wider than 800 pixels
 x.svg:1: has 150001 bytes
-END_
+END
 
 # ---- Headers that do not compile alone
 printf '#pragma once\ninline std::string s;\n' >Bad.hpp
 printf 'struct Bad {};\n' >Twice.hpp
-caught tools/check_headers.sh Bad.hpp Twice.hpp <<'END_'
+caught tools/check_headers.sh Bad.hpp Twice.hpp <<'END'
 Bad.hpp:1: does not compile alone by g++
 Twice.hpp:1: does not compile alone by clang++
-END_
+END
 
 # ---- Steps that do not end
 steps() {  # LIMIT COMMAND: the only step of check.sh quick
