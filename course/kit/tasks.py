@@ -2,7 +2,7 @@
 import pathlib
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 
 try:
@@ -22,6 +22,7 @@ SECTION_ID = re.compile(r"[A-Za-z0-9]+(\.[A-Za-z0-9]+)*")
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 TEST = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 NO_CONTROLS = re.compile(r"[^\x00-\x1f\x7f]+")
+HEADER = re.compile(r'\[(section|task)\."(.*)"\]')
 
 
 class Faults(Exception):
@@ -40,6 +41,8 @@ class TasksError(Faults):
 class Section:
     id: str
     title: str
+    needs: str  # "graph": Graph.hpp alone; "cloth": mass_spring.*, too;
+    #             "step": mine.hpp, too
     page: str | None  # a file in course/
     line: int
 
@@ -49,14 +52,16 @@ class Task:
     id: str
     title: str
     points: int
-    needs: str  # "graph": Graph.hpp alone; "cloth": mass_spring.*, too;
-    #             "step": mine.hpp, too
     says: str
     hint: str
     tests: tuple  # names in course/tests, without .cpp: all must pass
     extra: bool  # shown, never counted
     section: Section
     line: int
+
+    @property
+    def needs(self) -> str:
+        return self.section.needs
 
     @property
     def counted(self) -> int:
@@ -79,68 +84,35 @@ class Course:
     def points(self) -> int:
         return sum(task.counted for task in self.tasks.values())
 
-    def tasks_of(self, section: Section) -> list[Task]:
-        return [t for t in self.tasks.values() if t.section == section]
 
-
-# The keys of a table: key -> (type, is it required?)
-COURSE_KEYS = {"title": (str, True), "tag": (str, True)}
-SECTION_KEYS = {"id": (str, True), "title": (str, True), "page": (str, False),
-                "dropped": (bool, False)}
-TASK_KEYS = {"id": (str, True), "title": (str, True), "points": (int, True),
-             "needs": (str, True), "says": (str, True), "hint": (str, True),
-             "tests": (list, False), "extra": (bool, False),
-             "dropped": (bool, False)}
+# The keys of a table, by its kind: those that it must have, and others.
+REQUIRED: dict[str, dict[str, type]] = {
+    "": {"title": str, "tag": str, "section": dict, "task": dict},
+    "section": {"title": str, "needs": str},
+    "task": {"title": str, "points": int, "says": str, "hint": str}}
+OPTIONAL: dict[str, dict[str, type]] = {
+    "": {}, "section": {"page": str, "dropped": bool},
+    "task": {"tests": list, "extra": bool, "dropped": bool}}
 TYPES = {str: "a text", int: "a whole number", bool: "true or false",
-         list: "a list"}
+         list: "a list", dict: "a table"}
 
 
-class Reader:
-    """Collects faults, so that one look shows them all."""
-
-    def __init__(self, text: str, name: str):
-        self.name = name
-        self.faults: list[str] = []
-        # header -> the lines it stands on
-        self.lines: dict[str, list[int]] = {}
-        for number, line in enumerate(text.splitlines(), 1):
-            header = line.split("#")[0].strip()
-            if header in ("[course]", "[[section]]", "[[task]]"):
-                self.lines.setdefault(header.strip("[]"), []).append(number)
-
-    def fault(self, line: int, what: str) -> None:
-        self.faults.append(f"{self.name}:{line}: {what}")
-
-    def line_of(self, kind: str, index: int = 0) -> int:
-        lines = self.lines.get(kind, [])
-        return lines[index] if index < len(lines) else 1
-
-    def keys(self, table: dict, keys: dict, line: int) -> bool:
-        """True if all that must be there is there, and of its type."""
-        before = len(self.faults)
-        for key in table:
-            if key not in keys:
-                self.fault(line, f"unknown key '{key}', expected one of: "
-                           + " ".join(keys))
-        for key, (kind, needed) in keys.items():
-            if key not in table:
-                if needed:
-                    self.fault(line, f"'{key}' is missing")
-            elif type(table[key]) is not kind:
-                self.fault(line, f"'{key}' is not {TYPES[kind]}")
-            elif kind is str and not NO_CONTROLS.fullmatch(table[key]):
-                self.fault(line, f"'{key}' is not a text of one line")
-        return len(self.faults) == before
-
-    def tables(self, data: dict, kind: str) -> Iterator[tuple[int, dict]]:
-        """Each table of the list `kind` with its line."""
-        found = data.get(kind, [])
-        if not isinstance(found, list) or not found or not all(
-                isinstance(table, dict) for table in found):
-            self.fault(1, f"expected [[{kind}]]")
-            return
-        for index, table in enumerate(found):
-            yield self.line_of(kind, index), table
+def wrong_keys(kind: str, table: object) -> Iterator[str]:
+    """What is wrong with the keys of a table and their types."""
+    if type(table) is not dict:
+        yield "expected a table"
+        return
+    keys = REQUIRED[kind] | OPTIONAL[kind]
+    for key, value in table.items():
+        if key not in keys:
+            yield f"unknown key '{key}', expected one of: {' '.join(keys)}"
+        elif type(value) is not keys[key]:
+            yield f"'{key}' is not {TYPES[keys[key]]}"
+        elif type(value) is str and not NO_CONTROLS.fullmatch(value):
+            yield f"'{key}' is not a text of one line"
+    for key in REQUIRED[kind]:
+        if key not in table:
+            yield f"'{key}' is missing"
 
 
 def parse(text: str, name: str = FILE) -> Course:
@@ -151,90 +123,70 @@ def parse(text: str, name: str = FILE) -> Course:
         line = re.search(r"at line (\d+)", str(error))
         raise TasksError([f"{name}:{line[1] if line else 1}: {error}"]) \
             from None
-    read = Reader(text, name)
-    for key in data:
-        if key not in ("course", "section", "task"):
-            read.fault(1, f"unknown table '{key}', expected: "
-                       "[course] [[section]] [[task]]")
-    head = data.get("course")
-    if not isinstance(head, dict):
-        read.fault(1, "expected [course]")
-    else:
-        read.keys(head, COURSE_KEYS, read.line_of("course"))
-    sections, unasked = sections_of(data, read)
-    tasks, dropped = tasks_of(data, read, sections, unasked)
-    if read.faults or not isinstance(head, dict):
-        raise TasksError(read.faults)
-    return Course(head["title"], head["tag"],
-                  tuple(s for s in sections.values() if s.id not in unasked),
-                  tasks, frozenset(dropped))
+    if wrong := [f"{name}:1: {fault}" for fault in wrong_keys("", data)]:
+        raise TasksError(wrong)
+    lines = {header.groups(): number
+             for number, line in enumerate(text.splitlines(), 1)
+             if (header := HEADER.match(line))}
+    faults: list[str] = []
+
+    def tables(kind, find_faults):
+        """Those without a fault, as (id, table, line)."""
+        for id, table in data[kind].items():
+            line = lines.get((kind, id), 1)
+            found = [*wrong_keys(kind, table)] or [*find_faults(id, table)]
+            faults.extend(f"{name}:{line}: {fault}" for fault in found)
+            if not found:
+                yield id, table, line
+
+    all_sections = {id: Section(id, table["title"], table["needs"],
+                                table.get("page"), line)
+                    for id, table, line in tables("section", wrong_section)}
+    tasks = {id: Task(id, table["title"], table["points"], table["says"],
+                      table["hint"], tuple(table.get("tests", [id])),
+                      table.get("extra", False),
+                      all_sections[id.rpartition(".")[0]], line)
+             for id, table, line in tables("task", lambda id, table:
+                                           wrong_task(id, table, all_sections))}
+    if faults:
+        raise TasksError(faults)
+    sections = [section for section in all_sections.values()
+                if not data["section"][section.id].get("dropped")]
+    dropped = {task.id for task in tasks.values() if task.section not in
+               sections or data["task"][task.id].get("dropped")}
+    return Course(data["title"], data["tag"], tuple(sections),
+                  {id: task for id, task in tasks.items() if id not in dropped},
+                  frozenset(dropped))
 
 
-def sections_of(data: dict, read: Reader) -> tuple[
-        dict[str, Section], set[str]]:
-    """The sections by id, and the ids of those dropped."""
-    sections: dict[str, Section] = {}
-    dropped: set[str] = set()
-    for line, table in read.tables(data, "section"):
-        if not read.keys(table, SECTION_KEYS, line):
-            continue
-        section = Section(table["id"], table["title"], table.get("page"), line)
-        if not SECTION_ID.fullmatch(section.id):
-            read.fault(line, f"'{section.id}' is no id of a section, "
-                       "expected one as 7.1")
-        if section.id in sections:
-            read.fault(line, f"section {section.id} was there before: line "
-                       f"{sections[section.id].line}")
-        sections[section.id] = section
-        if table.get("dropped"):
-            dropped.add(section.id)
-    return sections, dropped
+def wrong_section(id: str, table: dict) -> Iterator[str]:
+    if not SECTION_ID.fullmatch(id):
+        yield f"'{id}' is no id of a section, expected one as 7.1"
+    if table["needs"] not in NEEDS:
+        yield (f"{id}: needs '{table['needs']}', expected graph, cloth or "
+               "step")
 
 
-def tasks_of(data: dict, read: Reader, sections: dict[str, Section],
-             unasked: set[str]) -> tuple[dict[str, Task], set[str]]:
-    """The tasks by id, without those dropped; and the ids of these."""
-    tasks: dict[str, Task] = {}
-    dropped: set[str] = set()
-    lines: dict[str, int] = {}
-    for line, table in read.tables(data, "task"):
-        if not read.keys(table, TASK_KEYS, line):
-            continue
-        id = table["id"]
-        section, _, task_name = id.rpartition(".")
-        if section not in sections or not NAME.fullmatch(task_name):
-            read.fault(line, f"'{id}' is no id of a task, expected "
-                       "SECTION.NAME of a section that stands above")
-            continue
-        if id in lines:
-            read.fault(line, f"task {id} was there before: line {lines[id]}")
-        lines[id] = line
-        if table["points"] < 0:
-            read.fault(line, f"{id}: points are negative")
-        if table["needs"] not in NEEDS:
-            read.fault(line, f"{id}: needs '{table['needs']}', expected "
-                       "graph, cloth or step")
-        tests = table.get("tests", [id])
-        if not tests or not all(
-                isinstance(t, str) and TEST.fullmatch(t) for t in tests):
-            read.fault(line, f"{id}: tests are names of files in course/tests,"
-                       " without .cpp")
-        if table.get("dropped") or section in unasked:
-            dropped.add(id)
-            continue
-        tasks[id] = Task(id, table["title"], table["points"], table["needs"],
-                         table["says"], table["hint"], tuple(tests),
-                         table.get("extra", False), sections[section], line)
-    return tasks, dropped
+def wrong_task(id: str, table: dict,
+               sections: Container[str]) -> Iterator[str]:
+    section, _, task = id.rpartition(".")
+    if section not in sections or not NAME.fullmatch(task):
+        yield (f"'{id}' is no id of a task, expected SECTION.NAME of a section "
+               "in this file")
+    if table["points"] < 0:
+        yield f"{id}: points are negative"
+    tests = table.get("tests", [id])
+    if not tests or not all(
+            isinstance(t, str) and TEST.fullmatch(t) for t in tests):
+        yield (f"{id}: tests are names of files in course/tests, without "
+               ".cpp")
 
 
-def load(path: pathlib.Path | None = None) -> Course:
-    """The Course of a file, by default this repository's."""
-    path = pathlib.Path(path) if path else ROOT / FILE
-    name = FILE if path == ROOT / FILE else str(path)
+def load(path: pathlib.Path = ROOT / FILE) -> Course:
+    """The Course of this repository."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8"
-        raise TasksError([f"{name}: can't be read ({reason})"]) from None
-    return parse(text, name)
+        raise TasksError([f"{FILE}: can't be read ({reason})"]) from None
+    return parse(text)
