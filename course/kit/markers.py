@@ -55,15 +55,18 @@ class Region:
     stubs: tuple[str, ...]  # lines
     file: str
     line: int  # of BEGIN
+    is_open: bool  # a guided one, at the level open
 
 
-def split(text: str, file: str) -> list[str | Region]:
-    """`text` as a list of lines and Regions.  Throws MarkerError."""
+def split(text: str, file: str, level: str = "guided") -> list[str | Region]:
+    """`text` as a list of lines and Regions; of what is guided, the level open
+    has the code behind each OPEN, and of regions where they were.  Throws
+    MarkerError."""
     pieces: list[str | Region] = []
     faults: list[str] = []
     # The line number and the match of an open region.
     begin: tuple[int, re.Match[str]] | None = None
-    guided: int | None = None  # the line number of BEGIN GUIDED
+    guided: tuple[int, str] | None = None  # likewise, and its indentation
     solution: list[str] = []
     stubs: list[str] = []
 
@@ -85,20 +88,24 @@ def split(text: str, file: str) -> list[str | Region]:
             if not "".join(solution).strip():
                 fault("the region holds no solution", at)
             points = None if head[3] is None else int(head[3])
-            pieces.append(Region(head[2], points, head[1], tuple(solution),
-                                 tuple(stubs), file, at))
+            is_open = bool(guided) and level == "open"
+            pieces.append(Region(
+                head[2], points, guided[1] if guided and is_open else head[1],
+                tuple(solution), tuple(stubs), file, at, is_open))
             begin = None
-        elif BEGIN_GUIDED.fullmatch(bare):
+        elif match := BEGIN_GUIDED.fullmatch(bare):
             if begin or guided:
                 fault("BEGIN GUIDED in a region", number)
-            guided = number
+            guided = number, match[1]
         elif END_GUIDED.fullmatch(bare):
             if begin or not guided:
                 fault("END GUIDED without a BEGIN GUIDED", number)
             guided = None
-        elif OPEN.fullmatch(bare):
+        elif match := OPEN.fullmatch(bare):
             if begin or not guided:
                 fault("OPEN outside of BEGIN GUIDED", number)
+            elif level == "open":
+                pieces.append(match[1] + match[2] + "\n")
         elif match := STUB.fullmatch(bare):
             if not begin:
                 fault("STUB outside of a region", number)
@@ -108,7 +115,7 @@ def split(text: str, file: str) -> list[str | Region]:
                   "[POINTSpt]', '// STUB code' or '// END SOLUTION' on a line "
                   "of its own", number)
         elif not begin:
-            pieces.append(line)
+            pieces += [line] * (not guided or level == "guided")
         elif stubs:
             fault("code behind a STUB: stubs stand last in a region", number)
         else:
@@ -116,7 +123,7 @@ def split(text: str, file: str) -> list[str | Region]:
     if begin:
         fault("BEGIN SOLUTION without an END SOLUTION", begin[0])
     if guided:
-        fault("BEGIN GUIDED without an END GUIDED", guided)
+        fault("BEGIN GUIDED without an END GUIDED", guided[0])
     if faults:
         raise MarkerError(faults)
     return pieces
@@ -132,22 +139,28 @@ def solution(text: str, file: str = "text") -> str:
 
 
 def stub(text: str, only: Container[str], course: tasks.Course | None = None,
-         file: str = "text") -> str:
+         file: str = "text", level: str = "guided") -> str:
     """`text` without its markers, and with stubs in place of the solutions of
     the tasks `only`. The comment above them names points and page if the
-    `course` is given."""
-    out, seen = [], set()
-    for piece in split(text, file):
+    `course` is given.  Throws MarkerError."""
+    out, left_open = [], set()
+    for piece in split(text, file, level):
         if not isinstance(piece, Region):
             out.append(piece)
         elif piece.task not in only:
+            if piece.is_open:
+                raise MarkerError([
+                    f"{file}:{piece.line}: {piece.task} was dropped, so its "
+                    "solution is given: LEVEL=guided"])
             out += piece.solution
-        else:
+        elif piece.task not in left_open:
             task = course.tasks.get(piece.task) if course else None
-            out.append(piece.indent + comment(piece.task, task,
-                                              piece.points is None) + "\n")
-            out += piece.stubs
-            seen.add(piece.task)
+            further = piece.points is None and not piece.is_open
+            out.append(piece.indent + comment(piece.task, task, further) + "\n")
+            if piece.is_open:
+                left_open.add(piece.task)
+            else:
+                out += piece.stubs
     return "".join(out)
 
 
@@ -167,35 +180,7 @@ def comment(id: str, task: tasks.Task | None, further: bool) -> str:
 def starter(text: str, course: tasks.Course, file: str = "text",
             level: str = "guided") -> str:
     """`text` as the students get it: stubs for all tasks that are asked."""
-    if level == "open":
-        text = opened(text, course, file)
-    return stub(text, course.tasks, course, file)
-
-
-def opened(text: str, course: tasks.Course, file: str = "text") -> str:
-    """`text` without what is guided.  Throws MarkerError."""
-    split(text, file)
-    out, inside, named = [], False, set()
-    for number, line in enumerate(text.splitlines(keepends=True), 1):
-        bare = line.rstrip("\r\n")
-        if match := BEGIN_GUIDED.fullmatch(bare):
-            inside, indent = True, match[1]
-        elif END_GUIDED.fullmatch(bare):
-            inside = False
-        elif not inside:
-            out.append(line)
-        elif match := OPEN.fullmatch(bare):
-            out.append(match[1] + match[2] + "\n")
-        elif match := BEGIN.fullmatch(bare):
-            id = match[2]
-            if id in course.dropped:
-                raise MarkerError([f"{file}:{number}: {id} was dropped, so its"
-                                   " solution is given: LEVEL=guided"])
-            if id not in named:
-                out.append(indent + comment(id, course.tasks.get(id), False)
-                           + "\n")
-            named.add(id)
-    return "".join(out)
+    return stub(text, course.tasks, course, file, level)
 
 
 def check(texts: dict[str, str], course: tasks.Course,
