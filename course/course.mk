@@ -42,10 +42,23 @@ kit-check: override HW :=
 kit-check:
 	@tools/deps.sh grade && python3 course/kit/kit_check.py
 
-# ---- Graphs that others could have written
-.PHONY: graphs
-graphs:
-	@BUILD='$(B)' python3 course/graphs/check.py
+# ---- Graphs that others could have written: all stages run as with ours. The
+# motion of grid0 is not chaotic until 2 s, so round-off changes no digit shown.
+other_graphs := $(patsubst course/%/Graph.hpp,$(B)/%,$(wildcard course/*/*/Graph.hpp))
+define run_stages
+  @rm -rf $@ && mkdir -p $@
+  @cp $1 mass_spring.hpp mass_spring.cpp course/graphs/stages.cpp $@
+  @$(CXX) -std=c++20 -O0 -Wall -Wextra -Werror -D_GLIBCXX_ASSERTIONS -I$@ -I. \
+    -o $@/stages $@/stages.cpp
+  @timeout 300 $@/stages data/grid0.nodes data/grid0.tets 0.001 2 >$@/said
+endef
+.PHONY: graphs $(other_graphs) $(B)/graphs/ours
+graphs: $(other_graphs)
+$(B)/graphs/ours:
+	$(call run_stages,Graph.hpp)
+$(other_graphs): $(B)/%: $(B)/graphs/ours
+	$(call run_stages,course/$*/Graph.hpp)
+	@diff $</said $@/said && echo 'ok    $*'
 
 # ---- A whole class
 override DUE      := $(value DUE)

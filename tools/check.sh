@@ -162,7 +162,7 @@ of_charts() {
   step chart_rule  python3 lab/charts/test_charts.py
   step drawn       drawn
   step judging     python3 lab/advice/test_suite.py
-  step graphs      in_folder . graphs EVERY=2 FIRST=$((turn_of % 2))
+  step graphs      in_folder . graphs
 }
 of_readme() { step readme tools/check_readme.sh; }
 build_tests() { in_folder . units work_precision; }

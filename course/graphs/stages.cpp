@@ -17,7 +17,6 @@
 #undef main
 
 int main(int argc, char** argv) {
-  std::cout.precision(12);
   return kit_problem1::run(argc, argv) + kit_diagonals::run(argc, argv) +
          kit_forces::run(argc, argv) + kit_constraints::run(argc, argv) +
          kit_tear::run(argc, argv);
