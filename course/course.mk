@@ -1,12 +1,12 @@
 # The teaching kit: course/README.md
 
-# As it was given, whatever it holds: never expanded, and read by no shell.
-override OUT   := $(value OUT)
-override LEVEL := $(value LEVEL)
+# What is given to a target goes to its program by the environment, whatever it
+# holds: never expanded, and read by no shell.
+$(foreach name,DIR DUE FEEDBACK FILE JSON JUNIT LEVEL OUT RESULTS SEED TASK,\
+  $(if $(filter command environment,$(firstword $(origin $(name)))),\
+    $(eval override $(name) := $$(value $(name)))$(eval export $(name))))
 
 .PHONY: starter solution
-starter solution: export OUT := $(OUT)
-starter solution: export LEVEL := $(LEVEL)
 starter solution:
 	@python3 course/kit/starter.py $@
 
@@ -21,21 +21,15 @@ no_picture:
 	@echo 'a picture needs $(draw_pkg), which pkg-config does not find' >&2; exit 2
 
 # ---- The grader
-override DIR     := $(value DIR)
-override JSON    := $(value JSON)
-override JUNIT   := $(value JUNIT)
-override RESULTS := $(value RESULTS)
-
-.PHONY: grade autograder kit-check
-grade: export DIR     := $(DIR)
-grade: export JSON    := $(JSON)
-grade: export JUNIT   := $(JUNIT)
-grade: export RESULTS := $(RESULTS)
+.PHONY: grade autograder kit-check class grade-tests
 # HW has a default, for who submits: here it counts if it is given.
-grade: override HW := $(if $(filter HW=%,$(MAKEOVERRIDES)),$(HW))
+grade class: override HW := $(if $(filter HW=%,$(MAKEOVERRIDES)),$(HW))
 grade:
 	@tools/deps.sh grade && python3 course/kit/grade.py
-autograder: export OUT := $(OUT)
+class:
+	@tools/deps.sh grade && python3 course/kit/whole_class.py
+grade-tests:
+	@tools/deps.sh grade && python3 course/kit/grade_tests.py
 autograder:
 	@python3 course/kit/autograder.py
 kit-check: override HW :=
@@ -59,32 +53,6 @@ $(B)/graphs/ours:
 $(other_graphs): $(B)/%: $(B)/graphs/ours
 	$(call run_stages,course/$*/Graph.hpp)
 	@diff $</said $@/said && echo 'ok    $*'
-
-# ---- A whole class
-override DUE      := $(value DUE)
-override TASK     := $(value TASK)
-override FEEDBACK := $(value FEEDBACK)
-override SEED     := $(value SEED)
-
-grade autograder: export FEEDBACK := $(FEEDBACK)
-grade class: export SEED := $(SEED)
-.PHONY: class
-class: export DIR      := $(DIR)
-class: export OUT      := $(OUT)
-class: export DUE      := $(DUE)
-class: export TASK     := $(TASK)
-class: export FEEDBACK := $(FEEDBACK)
-class: override HW := $(if $(filter HW=%,$(MAKEOVERRIDES)),$(HW))
-class:
-	@tools/deps.sh grade && python3 course/kit/whole_class.py
-
-# ---- Tests that students write
-override FILE := $(value FILE)
-.PHONY: grade-tests
-grade-tests: export FILE := $(FILE)
-grade-tests: export JSON := $(JSON)
-grade-tests:
-	@tools/deps.sh grade && python3 course/kit/grade_tests.py
 
 # ---- The pages
 .PHONY: course-pictures
