@@ -1,6 +1,6 @@
 # The teaching kit: course/README.md
 
-# What is given to a target goes to its program by the environment, whatever it
+# A value given to a target reaches its program by the environment, whatever it
 # holds: never expanded, and read by no shell.
 $(foreach name,DIR DUE FEEDBACK FILE JSON JUNIT LEVEL OUT RESULTS SEED TASK,\
   $(if $(filter command environment,$(firstword $(origin $(name)))),\

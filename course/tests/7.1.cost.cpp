@@ -61,8 +61,6 @@ extern "C" {
 void* kit_memmove(void*, const void*, std::size_t) KIT_SYMBOL("memmove");
 void* kit_memcpy(void*, const void*, std::size_t) KIT_SYMBOL("memcpy");
 void* kit_memset(void*, int, std::size_t) KIT_SYMBOL("memset");
-void* kit_memchr(const void*, int, std::size_t) KIT_SYMBOL("memchr");
-int kit_memcmp(const void*, const void*, std::size_t) KIT_SYMBOL("memcmp");
 
 KIT_NOT_COUNTED void* kit_memmove(void* to, const void* from, std::size_t n) {
   return kit::copy(to, from, n);
@@ -79,22 +77,6 @@ KIT_NOT_COUNTED void* kit_memset(void* to, int what, std::size_t n) {
     *(kit::Eight*)(t + i) = byte * std::uint64_t(0x0101010101010101u);
   for (; i < n; ++i) t[i] = byte;
   return to;
-}
-KIT_NOT_COUNTED void* kit_memchr(const void* in, int what, std::size_t n) {
-  kit::count_bytes(n);
-  auto* const bytes = static_cast<const kit::Byte*>(in);
-  for (std::size_t i = 0; i < n; ++i)
-    if (bytes[i] == static_cast<unsigned char>(what))
-      return const_cast<unsigned char*>(bytes + i);
-  return nullptr;
-}
-KIT_NOT_COUNTED int kit_memcmp(const void* a, const void* b, std::size_t n) {
-  kit::count_bytes(n);
-  auto* const x = static_cast<const kit::Byte*>(a);
-  auto* const y = static_cast<const kit::Byte*>(b);
-  for (std::size_t i = 0; i < n; ++i)
-    if (x[i] != y[i]) return x[i] < y[i] ? -1 : 1;
-  return 0;
 }
 }
 #endif

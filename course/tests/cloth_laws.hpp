@@ -29,9 +29,9 @@ class Life {
  * which has to outlive it. */
 template <typename R, typename A>
 struct Law {
+  using Call = R (*)(const void*, A, double);
   const void* f = nullptr;
-  R(*call)
-  (const void*, A, double) = [](const void*, A, double) -> R {
+  Call call = [](const void*, A, double) -> R {
     fail("what was combined", "what was made from nothing");
   };
   Law() = default;

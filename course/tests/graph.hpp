@@ -150,23 +150,17 @@ void remove_node(G& g, N n) {
   need<there>("g.remove_node(node)");
   if constexpr (there) g.remove_node(n);
 }
-// A number or a bool, as a bool: was anything removed?
-template <typename G, typename N>
-bool remove_edge(G& g, N a, N b) {
+/** Remove an edge, or that between two nodes.
+ * @return a number or a bool, as a bool: was anything removed? */
+template <typename G, typename... What>
+bool remove_edge(G& g, What... what) {
   constexpr bool there = must_compile || requires {
-    static_cast<bool>(g.remove_edge(a, b));
+    static_cast<bool>(g.remove_edge(what...));
   };
-  need<there>("g.remove_edge(node, node), with a number as its result,");
-  if constexpr (there) return static_cast<bool>(g.remove_edge(a, b));
-  return false;
-}
-template <typename G, typename E>
-bool remove_edge(G& g, E e) {
-  constexpr bool there = must_compile || requires {
-    static_cast<bool>(g.remove_edge(e));
-  };
-  need<there>("g.remove_edge(edge), with a number as its result,");
-  if constexpr (there) return static_cast<bool>(g.remove_edge(e));
+  need<there>(sizeof...(What) == 1
+                  ? "g.remove_edge(edge), with a number as its result,"
+                  : "g.remove_edge(node, node), with a number as its result,");
+  if constexpr (there) return static_cast<bool>(g.remove_edge(what...));
   return false;
 }
 
