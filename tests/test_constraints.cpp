@@ -11,9 +11,6 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "tests/ScatteredCloth.hpp"
 
-// Some constraints here hide the virtual call on purpose: clang++ warns.
-#pragma GCC diagnostic ignored "-Woverloaded-virtual"
-
 namespace {
 
 class Scattered : public ScatteredCloth {

@@ -14,9 +14,6 @@
 #include "tests/ShakenCloth.hpp"
 #include "tests/TestFolder.hpp"
 
-// Some forces here hide the virtual call on purpose: clang++ warns of them.
-#pragma GCC diagnostic ignored "-Woverloaded-virtual"
-
 namespace {
 
 TEST_F(ShakenCloth, GravityIsWeight) {

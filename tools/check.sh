@@ -8,6 +8,11 @@
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit
 
+# What git tracks are the project's files; an unpacked archive has no such list.
+git rev-parse --is-inside-work-tree >/dev/null 2>&1 || {
+  echo "check: no git checkout: expected a clone, or git init && git add -A" >&2
+  exit 2
+}
 tier=${1:-check}
 jobs=${JOBS:-$(nproc)}
 logs=build/check

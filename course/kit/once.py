@@ -23,7 +23,7 @@ TESTS = ROOT / "course/tests"
 BUILT = ROOT / "build/kit"
 # The version that the kit is checked with, if it is there.
 CXX = shutil.which("g++-12", path="/usr/bin") or "/usr/bin/g++"
-CHECKED = "12 and 14"
+CHECKED = "12, 13 and 14"
 COMMON = ["-std=c++20", "-w", "-pthread",
           "--param", "ggc-min-heapsize=4000000"]    # in kB: faster
 # By kind of build. The checks left out cost a third of the time to compile;

@@ -3,6 +3,9 @@
  * The parts of the C++ library that wasm32-wasi lacks: threads and files.
  * Included before each source that is compiled for a page, and by nothing
  * else. A page has one thread and no files, so these do nothing. */
+
+// Newer versions of libc++ refuse <thread> here: its guard leaves it out.
+#define _LIBCPP_THREAD
 #include <chrono>
 #include <filesystem>
 #include <istream>
@@ -19,6 +22,12 @@ struct mutex {
   void lock() {}
   void unlock() {}
 };
+#if _LIBCPP_VERSION >= 16000  // earlier ones have it without threads, too
+template <typename Mutex>
+struct lock_guard {
+  explicit lock_guard(Mutex&) {}
+};
+#endif
 
 template <>
 class basic_ifstream<char> : public basic_istream<char> {
