@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Hold the pages, and all that names the homework, to tasks.toml.
+"""Fill the pages of the course from tasks.toml:
 
-    course/kit/pages.py            names what differs, FILE:LINE; status 1
-    course/kit/pages.py --write    writes tasks, points, tag and title
+    course/kit/pages.py    names what is wrong with a page, FILE:LINE; status 1
 
-A page has a place for its tasks: all between the lines <!-- tasks 3.2 --> and
-<!-- end --> is made from the tasks of section 3.2; <!-- tasks --> is for a
-table of all that count. The tag is what stands behind HW= or HW ?=; the title
-is the first line of the starter's README.
+In a starter and on the site the line <!-- tasks 3.2 --> of a page becomes the
+tasks of section 3.2, and <!-- tasks --> a table of all that count. In a starter
+the tag of the homework stands behind each HW= and HW ?=, and its title is the
+first line of the README.
 
 What a page says between the lines <!-- guided --> and <!-- end guided -->, a
 starter of the level open leaves out. It has what stands between the lines
@@ -16,22 +15,17 @@ starter of the level open leaves out. It has what stands between the lines
 import re
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import tasks
 
 COURSE = tasks.ROOT / "course"
-PLACE = re.compile(r"^<!-- tasks *(\S*) -->\n(.*?)^<!-- end -->\n",
-                   re.MULTILINE | re.DOTALL)
+PLACE = re.compile(r"^<!-- tasks *(\S*) -->$", re.MULTILINE)
 LONGEST = 80  # lines of a section's page
 LEVELS = ("guided", "open")
 GUIDED = re.compile(r"^<!-- guided -->\n(.*?)^<!-- end guided -->\n",
                     re.MULTILINE | re.DOTALL)
 OPEN = re.compile(r"^<!-- open\n(.*?)^-->\n", re.MULTILINE | re.DOTALL)
-# What names the homework, beside the pages.
-STARTER = "course/starter/README.md"
-NAMING = ("README.md", "Makefile", STARTER, "course/starter/Makefile",
-          "tools/submit.sh", "tools/README.md")
 TAG = re.compile(r"\b(HW *\??= *)[A-Za-z0-9][\w.-]*")
 
 
@@ -76,87 +70,49 @@ def of_level(text: str, level: str) -> str:
     return OPEN.sub("", GUIDED.sub(r"\1", text))
 
 
-def named(file: str, text: str, course: tasks.Course) -> str:
-    """The text of a file with the tag and the title of the homework."""
-    if file == STARTER:
-        text = re.sub("^# .*", lambda _: f"# {course.title}", text, count=1)
+def named(text: str, course: tasks.Course) -> str:
+    """A text with the tag of the homework."""
     return TAG.sub(lambda found: found[1] + course.tag, text)
 
 
 def filled(text: str, course: tasks.Course) -> str:
     """The text of a page with its places filled."""
-    def fill(place):
-        id = place[1]
-        head = f"<!-- tasks {id} -->" if id else "<!-- tasks -->"
-        lines = of_section(id, course) if id else of_course(course)
-        return "\n".join([head, *lines, "<!-- end -->"]) + "\n"
-
-    return PLACE.sub(fill, text)
+    return PLACE.sub(lambda place: "\n".join(
+        of_section(place[1], course) if place[1] else of_course(course)), text)
 
 
-def first_difference(one: str, other: str) -> int:
-    """The number of the first line that differs."""
-    lines, others = one.splitlines(), other.splitlines()
-    return next(
-        (k for k, (a, b) in enumerate(zip(lines, others), 1) if a != b),
-        min(len(lines), len(others)))
+def faults(text: str, section: tasks.Section,
+           course: tasks.Course) -> Iterator[str]:
+    """What is wrong with the page of a section, as LINE: what."""
+    longest = max(len(of_level(filled(text, course), level).splitlines())
+                  for level in LEVELS)
+    if longest > LONGEST:
+        yield (f"{LONGEST}: goes on to line {longest}, expected at most"
+               f" {LONGEST}")
+    if re.search("^<!-- (end )?guided|^<!-- open|^-->", of_level(text, "open"),
+                 re.MULTILINE):
+        yield "1: <!-- guided --> or <!-- open has no end"
+    if section.id not in PLACE.findall(text):
+        yield f"1: has no place for tasks: <!-- tasks {section.id} -->"
 
 
-def difference(text: str, right: str) -> Iterator[str]:
-    """What is wrong with a text that should be `right`, as LINE: what."""
-    if right != text:
-        yield (f"{first_difference(text, right)}: differs from tasks.toml:"
-               " course/kit/pages.py --write")
-
-
-def faults(page: str, text: str, course: tasks.Course) -> Iterator[str]:
-    """The same of a page."""
-    yield from difference(text, filled(text, course))
-    lines = text.splitlines()
+def check(course: tasks.Course) -> list[str]:
+    """What is wrong with the pages of the repository, as FILE:LINE: what."""
+    wrong = []
     for section in course.sections:
-        if section.page == page:
-            longest = max(len(of_level(text, level).splitlines())
-                          for level in LEVELS)
-            if longest > LONGEST:
-                yield (f"{LONGEST}: goes on to line {longest}, expected at"
-                       f" most {LONGEST}")
-            if re.search("^<!-- (end )?guided|^<!-- open|^-->",
-                         of_level(text, "open"), re.MULTILINE):
-                yield "1: <!-- guided --> or <!-- open has no end"
-            if f"<!-- tasks {section.id} -->" not in lines:
-                yield f"{len(lines)}: has no place for tasks {section.id}"
-
-
-def check(course: tasks.Course, write: bool = False) -> list[str]:
-    """What differs in the repository from its tasks.toml, FILE:LINE: what. The
-    files that `write` changes it names on the standard output."""
-    wrong = [f"course/tasks.toml:{section.line}: there is no page "
-             f"{section.page}" for section in course.sections
-             if section.page and not (COURSE / section.page).is_file()]
-    pages = [f"course/{page.name}" for page in sorted(COURSE.glob("*.md"))]
-    for file in (*pages, *NAMING):
-        path = tasks.ROOT / file
-        text = path.read_text(encoding="utf-8")
-        right = named(file, text, course)
-        if file in pages:
-            right = filled(right, course)
-        if write and right != text:
-            text = right
-            path.write_text(text, encoding="utf-8")
-            print(f"{file} written")
-        found: Iterable[str] = (
-            faults(path.name, text, course) if file in pages else ())
-        wrong += [f"{file}:{fault}" for fault in
-                  dict.fromkeys((*difference(text, right), *found))]
+        page = COURSE / (section.page or "")
+        if section.page and not page.is_file():
+            wrong.append(f"{tasks.FILE}:{section.line}: there is no page "
+                         f"{section.page}")
+        elif section.page:
+            wrong += [f"course/{section.page}:{fault}" for fault in faults(
+                page.read_text(encoding="utf-8"), section, course)]
     return wrong
 
 
 def main() -> int:
-    write = sys.argv[1:] == ["--write"]
-    if sys.argv[1:] and not write:
-        sys.exit(__doc__.strip())
     try:
-        wrong = check(tasks.load(), write)
+        wrong = check(tasks.load())
     except tasks.TasksError as error:
         sys.exit(str(error))
     for fault in wrong:

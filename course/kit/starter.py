@@ -80,10 +80,15 @@ def tree(kind: str, level: str = "guided") -> Files:
         for name in GUIDED:
             del files[name]
         add("Graph.hpp", markers.starter(markers.open_graph(course), course))
-    for name, (content, _) in files.items():
-        if name.endswith(".md"):
-            content = pages.of_level(content.decode(), level).encode()
-            add(name, without_dead_links(content.decode(), name, files))
+    for name, (content, program) in files.items():
+        if name.endswith((".md", ".sh", "Makefile")):
+            text = pages.named(content.decode(), course)
+            if name.endswith(".md"):
+                text = pages.filled(pages.of_level(text, level), course)
+                text = without_dead_links(text, name, files)
+            if name == "README.md":
+                text = re.sub("^# .*", lambda _: f"# {course.title}", text)
+            add(name, text, program)
     return files
 
 

@@ -21,6 +21,8 @@ import sys
 
 import charts
 import figures
+import pages as course_pages
+import tasks
 from contents import CONTENTS, LEFT_OUT
 
 ROOM = pathlib.Path(__file__).resolve().parent
@@ -28,6 +30,7 @@ ROOT = ROOM.parents[1]
 REPOSITORY = os.environ.get("REPOSITORY", "").rstrip("/")
 ADDRESS = os.environ.get("ADDRESS", "").rstrip("/")
 PICTURES = (".png", ".gif")
+COURSE = tasks.load()
 # The pages in order: those of Markdown or code, and those of the site alone.
 PAGES = [page for _, group in CONTENTS for page in group]
 SOURCES = [page for page in PAGES if isinstance(page, str)]
@@ -70,7 +73,7 @@ class Page:
             text = f"# {self.source}\n\n```\n{text.rstrip()}\n```\n"
         text = re.sub(r"^( *)```math\n(.*?)\n *```$", displayed, text,
                       flags=re.M | re.S)
-        text = figures.with_code(self.source, text)
+        text = course_pages.filled(figures.with_code(self.source, text), COURSE)
         body = subprocess.run(
             ["pandoc", "-f", "gfm+tex_math_dollars", "-t", "html", "--mathml",
              "--wrap=preserve", "--fail-if-warnings"], input=text, text=True,
