@@ -4,7 +4,7 @@
  *
  *   make bench CXXFLAGS=-march=native
  *   taskset -c 0 lab/bench/table.py build/bench
- *   lab/bench/table.py build/bench --sides 316 --filter solve
+ *   lab/bench/table.py build/bench --sides 316 --filter step
  *   lab/bench/counts.sh           instructions in place of nanoseconds
  *
  * table.py runs bench [SIDE...] [--benchmark_...], which writes times as JSON.
@@ -25,7 +25,6 @@
 #include "lab/fast/FastestCpu.hpp"
 #include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/Rk4.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
@@ -127,18 +126,6 @@ std::vector<Figure> figures() {
              (kind == Kind::grid ? 0 : 32),
          kind, 1, Scene::guard_interval});
   }
-  for (int k = 0; k <= int(lanes::best_cpu()); ++k)
-    add({std::string("step: SymplecticEuler, ") + lanes::name_of(lanes::Cpu(k)),
-         "step: flat arrays",
-         [k](unsigned n) -> Make {
-           return [k, step = stepping<SymplecticEuler>(Kind::grid)(n)] {
-             const lanes::Cpu before = lanes::cpu;
-             lanes::cpu = lanes::Cpu(k);
-             step();
-             lanes::cpu = before;
-           };
-         },
-         true, 0, Kind::grid, 1, Scene::guard_interval});
   add({"step: SymplecticEuler, shuffled", "step: SymplecticEuler",
        stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled, 1,
        Scene::guard_interval});
@@ -282,29 +269,6 @@ std::vector<Figure> figures() {
              [&g, guard = std::make_shared<DivergenceGuard>(g, grav, 0.001)] {
                benchmark::DoNotOptimize(guard->accept(g));
              };
-       },
-       false});
-  // A step of ten solves with a factor that is kept.
-  add({"solve: sweep", "",
-       [](unsigned n) { return staging(n, {.t = 0, .kick = 0, .keep = true}); },
-       false});
-  add({"solve: FastMassSpring", "solve: sweep",
-       [](unsigned n) -> Make {  // a cloth of its own, as it moves
-         struct Falling {
-           Cloth g;
-           ForcePlan force =
-               make_combined_force(GravityForce(), MassSpringForce());
-           ConstraintPlan pin;
-           FastMassSpring method;
-           StepTimes times = {0, 1e-3};
-         };
-         auto f = std::make_shared<Falling>();
-         bench::build(f->g, n, Kind::grid);
-         f->pin = PinConstraint(f->g);
-         return [f] {
-           f->times.done +=
-               f->method.steps(f->g, f->times, 1, f->force, f->pin);
-         };
        },
        false});
   // From the text of two files to a cloth.

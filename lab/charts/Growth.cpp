@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "lab/charts/Limits.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/stability/Spectrum.hpp"
 
@@ -104,11 +103,12 @@ double measured_sheet_limit(const Problem& p, const MethodEntry& method,
                             double low, double high, int steps,
                             double precision) {
   const double most = std::log(10.0);
-  return largest_that(
-      [&](double dt) {
-        return growth(p, method, dt, steps, 5, most).total < most;
-      },
-      low, high, precision);
+  while (high - low > precision * low) {
+    const double middle = (low + high) / 2;
+    (growth(p, method, middle, steps, 5, most).total < most ? low : high) =
+        middle;
+  }
+  return low;
 }
 
 }  // namespace lab

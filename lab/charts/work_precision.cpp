@@ -33,7 +33,6 @@
 using namespace lab;
 
 using report::cell;
-using report::pick;
 using report::write_head;
 
 namespace {
@@ -288,12 +287,17 @@ int parse(int argc, char** argv, Options& o) {
   CLI::App app("Measures what methods cost and how wrong they are; writes CSV.",
                "work_precision");
   app.option_defaults()->always_capture_default();
-  app.add_option("--scenes", o.scenes, "problems to run, a,b,...; all if none")
-      ->delimiter(',');
-  app.add_option("--methods", o.methods, "methods to run, a,b,...; all if none")
-      ->delimiter(',');
+  for (const Problem& p : make_problems()) o.scenes.push_back(p.name);
+  for (const MethodEntry& m : methods) o.methods.push_back(m.info.name);
+  app.add_option("--scenes", o.scenes, "problems to run, a,b,...")
+      ->delimiter(',')
+      ->check(CLI::IsMember(o.scenes));
+  app.add_option("--methods", o.methods, "methods to run, a,b,...")
+      ->delimiter(',')
+      ->check(CLI::IsMember(o.methods));
   app.add_flag("--quick", o.quick, "rough: few steps, one repeat");
-  app.add_option("--repeats", o.repeats, "timed runs of each case, 1 up");
+  app.add_option("--repeats", o.repeats, "timed runs of each case")
+      ->check(CLI::PositiveNumber);
   app.add_option("--out", o.out, "file to write; the terminal if none")
       ->type_name("FILE");
   auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
@@ -307,20 +311,19 @@ int parse(int argc, char** argv, Options& o) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   if (o.quick && app.count("--repeats") == 0) o.repeats = 1;
-  if (o.repeats < 1)
-    throw std::runtime_error("--repeats is " + std::to_string(o.repeats) +
-                             ", expected 1 or more");
   return -1;
 }
 
 void run(Options o) {
-  const auto problems = pick(o.scenes, make_problems(), "--scenes",
-                             [](const Problem& p) { return p.name; });
+  const auto is_in = [](const auto& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  std::vector<Problem> problems = make_problems();
+  std::erase_if(problems,
+                [&](const Problem& p) { return !is_in(o.scenes, p.name); });
   std::vector<const MethodEntry*> chosen;
-  for (const MethodEntry& m :
-       pick(o.methods, methods, "--methods",
-            [](const MethodEntry& m) { return std::string(m.info.name); }))
-    chosen.push_back(find_method(m.info.name));
+  for (const MethodEntry& m : methods)
+    if (is_in(o.methods, m.info.name)) chosen.push_back(&m);
   std::optional<CME212::OutputFile> file;
   if (!o.out.empty()) file.emplace(o.out);
   std::ostream& out = file ? file->stream() : std::cout;
