@@ -118,26 +118,6 @@ quick check check-full:
 format:
 	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
 
-# How each source is compiled, for clangd and the like. A loop sets what a rule
-# would: $* the program, $< the source.
-.PHONY: compdb
-define newline
-
-
-endef
-entry = @echo '{"directory": "$(CURDIR)", "file": "$(1)", "command": \
-"$(subst ",\",$(subst \,\\,$(strip $(CXX) $(2) -c $(1))))"}' >>$(B)/compdb
-
-compdb: course_draw = $(if $(filter 1,$(VIEWER)),$(call system,$(draw_pkg)))
-compdb:
-	@mkdir -p $(B) && : >$(B)/compdb
-	$(foreach *,$(PROGRAMS),$(call entry,$*.cpp,$(flags) $(course_draw))$(newline))
-	$(foreach <,$(filter-out lab/page/wasi.cpp $(wildcard lab/try/*.cpp),$(wildcard CME212/viewer/*.cpp \
-	  lab/*/*.cpp tests/*.cpp)) $(lab_others) course/demo.cpp, \
-	  $(call entry,$<,$(lab_flags) $(debug) $(lab_draw) $(CPPFLAGS) $(CXXFLAGS))$(newline))
-	@{ echo '['; sed '$$!s/$$/,/' $(B)/compdb; echo ']'; } >compile_commands.json
-	@echo 'compile_commands.json'
-
 include lab/measure.mk lab/page/page.mk docs/site/site.mk
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -10,7 +10,6 @@ help-lab:
 	@echo 'make test_NAME          a test of tests/, as build/test_NAME'
 	@echo 'make quick | check | check-full   what a commit must pass, in 2 and 6'
 	@echo '                        minutes; all else'
-	@echo 'make compdb             compile_commands.json, which clangd reads'
 	@echo 'make try FILE=mine.hpp  what a step of your own is worth; STEP=my_step:'
 	@echo '                        lab/try/README.md'
 	@echo 'make charts             work and precision, energy: lab/charts/README.md;'

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Read frames that ./cloth --vtp FOLDER wrote with VTK, a reader of others, and
-check them against the table of the same run, a row a step; those of
---ply of that run, too; and draw the last frame.
+check them and those of --ply against the table of the same run, a row a step.
 Without python3-vtk9 it says so: "skipped: ..." """
 import argparse
 import csv
@@ -20,7 +19,6 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("folder")
 parser.add_argument("table")
 parser.add_argument("--ply", metavar="FOLDER")
-parser.add_argument("--picture", metavar="FILE.png")
 options = parser.parse_args()
 rows = {float(row["t"]): row for row in csv.DictReader(open(options.table))}
 
@@ -88,31 +86,3 @@ for entry in frames:
 print(f"{len(frames)} frames, {data.GetNumberOfPoints()} points, "
       f"{data.GetNumberOfLines()} lines, {data.GetNumberOfPolys()} quads at "
       f"the end")
-
-if options.picture:
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputData(data)
-    mapper.SetScalarModeToUseCellData()
-    data.GetCellData().SetActiveScalars("strain")
-    low, high = data.GetCellData().GetArray("strain").GetRange()
-    mapper.SetScalarRange(low, high)
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetLineWidth(2)
-    renderer = vtk.vtkRenderer()
-    renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor)
-    renderer.GetActiveCamera().SetPosition(1.2, -2, 0.8)
-    renderer.GetActiveCamera().SetViewUp(0, 0, 1)
-    renderer.ResetCamera()
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetSize(640, 480)
-    window.AddRenderer(renderer)
-    window.Render()
-    picture = vtk.vtkWindowToImageFilter()
-    picture.SetInput(window)
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(options.picture)
-    writer.SetInputConnection(picture.GetOutputPort())
-    writer.Write()

@@ -21,10 +21,10 @@ cells() {  # JOBS DIR, which has the list of cells
 mkdir "$tmp/whole" "$tmp/half"
 stability_map --tiny --list | tee "$tmp/whole/list" >"$tmp/half/list"
 mapfile -t all < <(cut -d' ' -f1 "$tmp/whole/list")
-attempt cells 1 "$tmp/whole"; says "${#all[@]}/${#all[@]} cells"; ok "one job"
+attempt cells 1 "$tmp/whole"; says "${#all[@]}/${#all[@]} cells"
 attempt join "$tmp/whole"; expect 0
 for map in $maps; do says "# map $map: "; done
-ok "its maps"
+ok "one job"
 whole=$out
 
 # Half of the cells are there, and a part of a file.
@@ -39,12 +39,8 @@ same "cells run anew" \
   $((${#all[@]} - ${#half[@]}))
 ok "interrupted, and continued by two jobs"
 
-refuses() {  # MESSAGE ARGUMENT...
-  attempt stability_map "${@:2}"; expect 2; says "$1"; ok "refused: ${*:2}"
-}
-refuses "there is no 'limits-6-plain'; --list prints all" --cell limits-6-plain
-refuses "can't be written (a directory)" --tiny --cell "$last" --out "$tmp"
-refuses "--list"  # it asks for nothing
+attempt stability_map --cell limits-6-plain; expect 2
+says "there is no 'limits-6-plain'; --list prints all"; ok "no such cell"
 echo 'method,growth' >"$tmp/half/$last.csv"
 attempt join "$tmp/half"; expect 2
 says "$last.csv:1: is no whole cell, expected '"; ok "a bad cell"

@@ -33,8 +33,8 @@ Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
               int every = 1, double enough = no_limit);
 
 /** The largest step [s] with which a perturbation of @a p grows at most tenfold
- * in @a steps: by bisection between @a low, with which it does, and @a high, with
- * which it does not, to a relative @a precision. */
+ * in @a steps: by bisection between @a low, with which it does, and @a high,
+ * with which it does not, to a relative @a precision. */
 double measured_sheet_limit(const Problem& p, const MethodEntry& method,
                             double low, double high, int steps,
                             double precision = 0.01);

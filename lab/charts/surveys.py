@@ -80,7 +80,7 @@ def growth(csv: pathlib.Path, out: pathlib.Path) -> None:
         x = Axis(stretch[0] - cell[0], stretch[-1] + cell[0], False)
         y = Axis(steps[0] - cell[1], steps[-1] + cell[1], False)
         left = 68 + width * k
-        panel = Panel(left, 85, left + width - 14, 255, x, y, name)
+        panel = Panel(left, 62, left + width - 14, 255, x, y, name)
         ax = picture.axes(
             panel, xticks=(1, 1.5, 2), yticks=(0.5, 1, 1.5, 2), ynames=k == 0,
             xlabel="length/rest length", ylabel="" if k else "dt/(safe dt)")
@@ -100,7 +100,7 @@ def growth(csv: pathlib.Path, out: pathlib.Path) -> None:
             picture.text(*panel.pixel(at), words, color=color, at="center")
     bar = picture.figure.colorbar(
         ScalarMappable(norm, colors), extend="min", cax=picture.figure.add_axes(
-            (0.92, 85 / 330, 0.018, 150 / 330)), ticks=[math.log(v) for v in (
+            (0.92, 62 / 330, 0.018, 173 / 330)), ticks=[math.log(v) for v in (
                 1.01, 1.1, 1.5, 3, 10)])
     bar.minorticks_off()
     bar.ax.set_yticklabels(["1.01", "1.1", "1.5", "3", "10"])

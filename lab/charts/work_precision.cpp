@@ -297,7 +297,7 @@ int parse(int argc, char** argv, Options& o) {
       ->check(CLI::IsMember(o.methods));
   app.add_flag("--quick", o.quick, "rough: few steps, one repeat");
   app.add_option("--repeats", o.repeats, "timed runs of each case")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000));
   app.add_option("--out", o.out, "file to write; the terminal if none")
       ->type_name("FILE");
   auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
