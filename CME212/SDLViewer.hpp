@@ -95,7 +95,8 @@ class SDLViewer : public SceneBuilder {
     set_label(s.str());
   }
 
-  /** Show paragraphs over the picture: why the run stopped. Empty: none. */
+  /** Show paragraphs over the picture: why the run stopped, the first two in
+   * bright letters. Empty: none. */
   void set_message(std::vector<std::string> paragraphs);
 
   /** Write lines at the bottom left of the picture, the first one large: the

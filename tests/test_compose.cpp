@@ -298,7 +298,7 @@ TEST(Compose, ALooseSheetFallsAsAPointWithDragDoes) {
     m.method = find_method("pefrl");
     m.step.dt = t / 64;
     Scene scene(m);
-    ASSERT_TRUE(scene.run_to(t)) << scene.failure();
+    ASSERT_TRUE(scene.run_to(t)) << text_of(scene.failure());
     EXPECT_NEAR(center_of_mass(scene.cloth()).z, z, 1e-7) << nodes;
     for (Node n : scene.cloth().nodes())
       ASSERT_NEAR(n.position().z, z, 1e-7) << nodes;
@@ -314,7 +314,7 @@ TEST(Compose, ALooseSheetFallsAsAPointByEachMethod) {
   for (const MethodEntry& entry : methods) {
     m.method = &entry;
     Scene scene(m);
-    ASSERT_TRUE(scene.run_to(0.1)) << scene.failure();
+    ASSERT_TRUE(scene.run_to(0.1)) << text_of(scene.failure());
     Cloth point;
     point.add_node(Point(), {Point(), 0.2});
     const auto method = entry.make();

@@ -504,7 +504,7 @@ TEST(FlatFlowScene, StepsAtOnceAreStepsOneByOne) {
     m.step = step;
     Scene at_once(m), one_by_one(m), mixed(m);
     constexpr double end = 0.71;
-    EXPECT_TRUE(at_once.run_to(end)) << at_once.failure();
+    EXPECT_TRUE(at_once.run_to(end)) << text_of(at_once.failure());
     EXPECT_TRUE(one_by_one.run_to(end, [] {}));
     while (!mixed.done(end))
       mixed.steps_at_once(1 + int(mixed.steps() % 7), end);

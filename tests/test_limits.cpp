@@ -268,14 +268,13 @@ std::string failure_of(const MethodEntry& method, unsigned side, double dt,
   }
   scene.check();
   EXPECT_TRUE(std::isfinite(kinetic_energy(scene.cloth())));
-  EXPECT_EQ(scene.failure().empty(), !scene.failed_at());
-  return scene.failure().empty() ? "" : scene.explanation();
+  return scene.failure() ? scene.explanation().text() : "";
 }
 
 TEST(WithoutLimit, ImplicitMidpointBlowsUpOnBucklingCloth) {
   const std::string why =
       failure_of(entry_of<ImplicitMidpoint>(), 15, 1 / 30., 100);
-  EXPECT_EQ(why.find("diverged in step "), 0u) << why;
+  EXPECT_EQ(why.find("diverged: "), 0u) << why;
   EXPECT_NE(why.find("implicit-midpoint fails with: buckling cloth"),
             std::string::npos)
       << why;
@@ -294,7 +293,7 @@ TEST(WithoutLimit, XpbdInjectsEnergyWithOneRound) {
   };
   const std::string why =
       failure_of(rounds(std::integral_constant<int, 1>()), 40, 1 / 60., 100);
-  EXPECT_EQ(why.find("diverged in step "), 0u) << why;
+  EXPECT_EQ(why.find("diverged: "), 0u) << why;
   EXPECT_NE(why.find("one round is no solution"), std::string::npos) << why;
   EXPECT_EQ(
       failure_of(rounds(std::integral_constant<int, 20>()), 40, 1 / 60., 100),
@@ -312,11 +311,11 @@ TEST(WithoutLimit, NewtonDoesNotConvergeWithoutItsLineSearch) {
                      "residual of "),
             0u)
       << why;
-  EXPECT_NE(why.find("in step 1 with dt = 0.1 s"), std::string::npos) << why;
+  EXPECT_NE(why.find("; step 1 with dt = 0.1 s"), std::string::npos) << why;
   // With it all steps are made; the guard may stop them for their energy.
   const std::string with =
       failure_of(entry_of<ImplicitMidpoint>(), 10, 0.1, 1e4);
-  EXPECT_TRUE(with.empty() || with.starts_with("diverged in step ")) << with;
+  EXPECT_TRUE(with.empty() || with.starts_with("diverged: ")) << with;
 }
 
 }  // namespace

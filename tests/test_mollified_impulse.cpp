@@ -102,7 +102,7 @@ TEST(MollifiedImpulse, GetsTheStepOfTheSoftSprings) {
   const Problem stiff = stiff_edge(9, 1), soft = grid_problem("", "", 1, 9);
   const auto step_of = [](const Problem& p, const char* method) {
     Scene scene(recipe_of(p), {.rule = StepRule::safe}, *find_method(method));
-    EXPECT_TRUE(scene.run_to(0.5)) << scene.failure();
+    EXPECT_TRUE(scene.run_to(0.5)) << text_of(scene.failure());
     return scene.dt();
   };
   const double verlet = step_of(soft, "verlet");

@@ -157,7 +157,7 @@ TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
   page_request("step 0.9");
   for (int k = 0; k < 300; ++k) page_step();
   EXPECT_EQ(page_check(), 0);
-  EXPECT_STREQ(page_failure(0), "");
+  EXPECT_STREQ(page_failure(0), "null");
   EXPECT_EQ(page_failed_node(0), -1);
   page_load(number_of("forces"), 5);
   page_request("step 2");
@@ -190,7 +190,7 @@ TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
       << why;
   // A change continues from the last good state.
   page_request("step 0.5");
-  EXPECT_STREQ(page_failure(0), "");
+  EXPECT_STREQ(page_failure(0), "null");
   EXPECT_LT(beyond(), 1e-6);
   EXPECT_GT(page_step(), time);
 }

@@ -63,7 +63,7 @@ Watched watch(Scene& s, double t_end, int every = 8) {
   });
   while (sums.size() > 1 && sums.back().step > s.steps()) sums.pop_back();
   Watched w;
-  w.failure = s.failure();
+  w.failure = text_of(s.failure());
   w.steps = s.steps();
   for (const Sum& a : sums) {
     w.scale = std::max(w.scale, a.moving);
@@ -220,7 +220,7 @@ TEST(SteeredStep, IsTheSameForAClothThatFlies) {
     Scene s(thrown_sheet(speed), {.rule = StepRule::sharp},
             *find_method("verlet"));
     const double before = internal_energy(s.cloth());
-    EXPECT_TRUE(s.run_to(30)) << s.failure();
+    EXPECT_TRUE(s.run_to(30)) << text_of(s.failure());
     const double after = internal_energy(s.cloth());
     EXPECT_LT(after, 1.25 * before) << speed;
     Scene longer(thrown_sheet(speed), {.dt = 1.1 * s.safe_limit()},
@@ -421,7 +421,7 @@ Settled settle(const Model& m) {
            energies(s.cloth(), m.gravity, {.loose = m.pins.empty()}).relative});
   }
   s.check();
-  Settled all = {.failure = s.failure(), .steps = s.steps()};
+  Settled all = {.failure = text_of(s.failure()), .steps = s.steps()};
   for (const auto& [t, e] : samples) all.kinetic += e / double(samples.size());
   if (s.control()) all.steps += s.control()->report().taken_back;
   return all;

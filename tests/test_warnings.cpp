@@ -201,7 +201,7 @@ TEST(Warnings, ABallFitsThroughWhereTheySaySo) {
     m.method = find_method("verlet");
     m.step.rule = StepRule::safe;
     Scene scene(m);
-    EXPECT_TRUE(scene.run_to(0.5)) << scene.failure();  // falls 1.2 m
+    EXPECT_TRUE(scene.run_to(0.5)) << text_of(scene.failure());  // falls 1.2 m
     return elastic_energy(scene.cloth()) > 1e-12;
   };
   EXPECT_FALSE(touched(0.176));

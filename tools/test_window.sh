@@ -94,9 +94,9 @@ press r; ever titled "t = 0.050 s"; press q
 ends "the window stays at the end, r runs it again" 0 ": 50 steps to t = 0.05 s"
 # On grid0 every step beyond 0.0123 s diverges.
 cloth --dt 0.05
-for k in 1 2; do ever said 'diverged in step' $k; press r; done
-ever said 'diverged in step' 3; press q
-ends "a run that diverges says so and stays; r runs it again" 3 "diverged in step"
+for k in 1 2; do ever said 'diverged: ' $k; press r; done
+ever said 'diverged: ' 3; press q
+ends "a run that diverges says so and stays; r runs it again" 3 "diverged: "
 cloth --paused --csv "$tmp/w.csv"; kill -TERM "$run"
 ends "SIGTERM ends a paused window" 143 "SIGTERM ended the run at t = 0 s of 5 s; kept: $tmp/w.csv (1 row)"
 

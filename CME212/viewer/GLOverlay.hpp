@@ -127,8 +127,7 @@ class GLOverlay {
     const double right = layer_.width() - margin;
     std::vector<std::pair<std::string, Ink>> lines;
     for (const auto& p : text_.message) {
-      const bool matters =
-          &p == &text_.message.front() || &p == &text_.message.back();
+      const bool matters = &p - &text_.message.front() < 2;
       for (auto& line : wrapped(p, medium, right - margin - bar - 2 * pad))
         lines.emplace_back(std::move(line), matters ? bright : dim);
     }

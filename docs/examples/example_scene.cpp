@@ -9,7 +9,7 @@ int main() {
   model.method = &lab::table_entry<lab::Pefrl>;
   lab::Scene scene(model);
   if (!scene.run_to(model.t_end)) {
-    std::cerr << scene.explanation() << '\n';
+    std::cerr << scene.explanation().text() << '\n';
     return 3;
   }
   const auto height =

@@ -76,8 +76,7 @@ struct RunReadings {
    * the work of drag, of moving obstacles and pins, of the hand and of the
    * user's changes, and the energy of torn nodes. */
   double drift = 0;
-  /** Scene::failure(); empty: it runs. */
-  std::string failure;
+  std::optional<Failure> failure;  ///< nullopt: it runs
 };
 
 /** Distances between two states, over the nodes that both have [m]. */
@@ -144,7 +143,7 @@ class Live {
   /** Scene::check() of all that runs, needed before it is shown. */
   bool check();
   /** It failed. The t-end of the model does not end a run that is played. */
-  bool done() const { return !scene().failure().empty(); }
+  bool done() const { return scene().failure().has_value(); }
   /** The number of step() calls so far that found it not done(). */
   long long calls() const { return calls_; }
 
@@ -178,7 +177,7 @@ class Live {
 
     Side(std::unique_ptr<Scene> s, const MethodEntry& m);
     void mark();
-    bool runs() const { return scene->failure().empty(); }
+    bool runs() const { return !scene->failure(); }
     RunReadings readings(bool sharp);
   };
 

@@ -29,7 +29,7 @@ Json json_of(const RunReadings& r) {
                 r.time, "evaluations", r.evaluations, "kinetic",
                 r.energy.kinetic, "elastic", r.energy.elastic, "height",
                 r.energy.gravitational, "total", r.energy.total(), "drift",
-                r.drift, "failure", r.failure);
+                r.drift, "failed", r.failure.has_value());
 }
 
 // ---------------------------------------------------------------- What is run
@@ -125,7 +125,7 @@ const char* page_request(const char* text) {
   for (unsigned side : {0u, 1u}) {
     Drawn& d = s.drawn[side];
     const Scene* const scene = s.scene(side);
-    if (!scene || scene->failure().empty()) d.go_back();
+    if (!scene || !scene->failure()) d.go_back();
     if (!Live::overrides(text)) ++d.changes;  // as pins and edges may be
   }
   return "";
@@ -140,11 +140,14 @@ double page_step() {
 int page_check() {
   State& s = state();
   s.live->check();
-  return !s.live->scene().failure().empty();
+  return s.live->scene().failure().has_value();
 }
 const char* page_failure(unsigned side) {
   const Scene* s = state().scene(side);
-  return say({s ? s->failure() : ""});
+  if (!s || !s->failure()) return say({"null"});
+  const Failure& f = *s->failure();
+  return say(object("diverged", f.kind == Failure::Kind::diverged, "cause",
+                    f.what(), "place", f.where()));
 }
 double page_beyond(unsigned side, unsigned steps) {
   State& s = state();
@@ -155,8 +158,9 @@ double page_beyond(unsigned side, unsigned steps) {
 }
 const char* page_explain() {
   const Scene& scene = state().live->scene();
+  const Explanation why = scene.explanation();
   const auto& cure = scene.diagnosis().cure;
-  return say(object("text", scene.explanation(), "cure",
+  return say(object("cause", why.cause, "remedy", why.remedy, "cure",
                     cure ? object("method", cure->method.info.name, "share",
                                   cure->dt / dt_unit(scene, cure->method))
                          : Json{"null"}));
@@ -229,7 +233,7 @@ const unsigned* page_mesh(unsigned side) {
 }
 int page_failed_node(unsigned side) {
   const Scene* s = state().scene(side);
-  if (!s || !s->failed_at()) return -1;
-  const Node n = s->failed_at()->node;
+  if (!s || !s->failure()) return -1;
+  const Node n = s->failure()->place.node;
   return s->cloth().has_node(n) ? int(n.id()) : -1;
 }

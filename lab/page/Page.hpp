@@ -34,14 +34,16 @@ double page_step();
 /** Check the state before it is drawn: Live::check().
  * @return 1 if it failed */
 int page_check();
-/** How a side failed; empty: it runs. */
+/** How a side failed, a JSON text: whether it diverged, cause and place, two
+ * sentences. null: it runs. */
 const char* page_failure(unsigned side);
 /** Draw a side that failed as it is so many steps after its last good state.
  * O(steps) since the last call.  @return its time then [s], which stays the
- * same if there are no more steps  @pre page_failure(side) is not empty */
+ * same if there are no more steps  @pre page_failure(side) is not null */
 double page_beyond(unsigned side, unsigned steps);
-/** Why side 0 failed, and a cure, its method and share of dt_unit(), or null: a
- * JSON text. Takes up to some seconds.  @pre page_failure(0) is not empty */
+/** Why side 0 failed: cause and remedy, two sentences, and a cure, its method
+ * and share of dt_unit(), or null: a JSON text. Takes up to some seconds.
+ * @pre page_failure(0) is not null */
 const char* page_explain();
 /** Live::readings() as a JSON text, and the present value of the scene's
  * measure, if that is a number or three. */

@@ -7,7 +7,7 @@ const playback = 2000;  // [ms], of the motion beyond a failure
 function forget() {
   page.failed = page.broken = false, page.why = '', page.cure = null;
   if (page.beyond) setText($('busy'), '');
-  page.beyond = null, clearTimeout(page.lookingBeyond), showFailure('');
+  page.beyond = null, clearTimeout(page.lookingBeyond), showFailure(null);
 }
 // From the last good state.
 function goOn() {
@@ -19,7 +19,7 @@ function fail({broken, readings}) {
   page.failed = true, page.broken = broken, setPlaying(false);
   for (const plot of Object.values(plots))
     plot.good = readings ? readings.main.time : Infinity;
-  showFailure(page.sides[0].failure + ' s; looking for the cause ...');
+  showFailure({...page.sides[0].failure, remedy: 'looking for the cause ...'});
   // A slider that moves on may end it; meanwhile the thread has no time.
   page.lookingBeyond = setTimeout(() => {
     if (!broken) page.worker.postMessage(['beyond']);
@@ -60,23 +60,20 @@ function sidesAt(now) {
   return [side, ...page.sides.slice(1)];
 }
 
-// The words of ./cloth, whose options are sliders here.
-function showFailure(words) {
+// Cause, remedy and place in the words of ./cloth, whose options are sliders
+// here; null hides them.
+function showFailure(failure) {
   const {cure} = page, share = cure && shortNumber(cure.share);
-  const text = words.replace(/--dt (\S+)/g, 'dt = $1 s')
-    .replace(/--method (\S+)/g, 'method $1');
   $('cure').hidden = !cure;
   setText($('cure'), cure && cure.method !== page.settings.method
     ? `Apply the cure: ${cure.method}, dt / limit ${share}`
     : `Apply the cure: dt / limit ${share}`);
-  $('failure').hidden = !text;
+  $('failure').hidden = !failure;
+  const {title, diverged, cause = '', remedy = '', place = ''} = failure ?? {};
   $('failure').querySelector('h2').textContent =
-    text.startsWith('diverged') ? 'It diverged'
-      : text.startsWith('Ignored') ? 'Another run' : 'It failed';
-  // Where it happened; and behind the last good state, why and what works.
-  const at = text.indexOf(' s; ', text.indexOf('the last good state'));
-  const parts = at < 0 ? [text]
-    : [text.slice(0, at + 2), text.slice(at + 4)];
-  setText($('words'), parts[1] ?? parts[0]);
-  setText($('place'), parts[1] ? parts[0] : '');
+    title ?? (diverged ? 'It diverged' : 'It failed');
+  setText($('words'), [cause, remedy].filter(Boolean).join('; ')
+    .replace(/--dt (\S+)/g, 'dt = $1 s')
+    .replace(/--method (\S+)/g, 'method $1'));
+  setText($('place'), place);
 }

@@ -240,7 +240,7 @@ function showNumbers() {
       ['distance of the two', `${shortNumber(r.apart)} m`]);
   fillTable($('numbers'), rows);
   const dt = run => `dt = ${shortNumber(1e3 * run.dt)} ms${
-    run.failure ? ', diverged' : ''}`;
+    run.failed ? ', diverged' : ''}`;
   [main, rival].forEach((run, k) => {
     const [name, step] = $(`name${k}`).children;
     $(`name${k}`).hidden = !rival;
@@ -248,8 +248,8 @@ function showNumbers() {
   });
 }
 
-const tellLeftOut = () => showFailure('Ignored the parts of this link that ' +
-  'are not valid; the run may differ.');
+const tellLeftOut = () => showFailure({title: 'Another run', cause:
+  'Ignored the parts of this link that are not valid; the run may differ.'});
 
 const replies = {
   about(data) {

@@ -67,8 +67,9 @@ async function repeat({scene, side, lines, end}, mine) {
 // --------------------------------------------------------------------- Frames
 
 function failureOf(side) {
-  if (side === 0 && broken) return broken;
-  return wasm.page_slots(side) ? text(wasm.page_failure(side)) : '';
+  if (side === 0 && broken) return {cause: broken};
+  return wasm.page_slots(side) ? JSON.parse(text(wasm.page_failure(side)))
+    : null;
 }
 
 function frame() {
@@ -160,12 +161,12 @@ const handlers = {
   },
   // Why it failed and what works: found by trial, which takes a while.
   explain() {
-    const short = failureOf(0);
-    if (!short) return;
+    const failure = failureOf(0);
+    if (!failure) return;
     const at = broken ? undefined : call('explain');
     // A trial may throw: then no cure is known.
-    const {text: why, cure} = at === undefined ? {text: short, cure: null}
-      : JSON.parse(text(at));
+    const {cure, ...why} = {...failure, cure: null,
+      ...at === undefined ? {} : JSON.parse(text(at))};
     postMessage({kind: 'why', run, asked, why, cure, broken: !!broken});
   },
   link: () => postMessage({kind: 'link', recording: text(call('recording'))}),

@@ -89,7 +89,7 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
 }
 
 void Film::draw() {
-  bool failed = !scene_.failure().empty();
+  bool failed = scene_.failure().has_value();
   // Half a step early is as good as half a step late.
   const double now = scene_.time() + scene_.dt() / 2;
   const bool frame = !o_.video.empty() && (failed || now >= next_);
@@ -97,7 +97,7 @@ void Film::draw() {
       !shot_ && (failed || run_.done() || (o_.at >= 0 && now >= o_.at));
   if (!frame && !picture) return;
   run_.check();
-  failed = !scene_.failure().empty();
+  failed = scene_.failure().has_value();
   screen_->show(scene_);
   if (picture) save_picture();
   if (!frame) return;
@@ -128,7 +128,7 @@ void Film::finish() {
     run_.wrote(what + ' ' + file);
   };
   if (!o_.video.empty()) {
-    if (scene_.failure().empty()) {
+    if (!scene_.failure()) {
       screen_->show_card(outcome(scene_, first_nodes_));
       screen_->add_to_film(
           std::clamp(frames_ / 8, 1, frames_in(title_seconds)));
@@ -144,7 +144,7 @@ void Film::finish() {
 void Film::save_picture() {
   shot_ = true;
   screen_->show_card({});
-  if (scene_.failure().empty()) return screen_->save_picture(o_.screenshot);
+  if (!scene_.failure()) return screen_->save_picture(o_.screenshot);
   screen_->show(*scene_.beyond_failure(extent(scene_) / 10));
   screen_->save_picture(o_.screenshot);
   screen_->show(scene_);

@@ -18,7 +18,7 @@ class Scene;
  * has moved by a third of the cloth's extent; at most 60 steps. As slow motion
  * it takes Film::failure_seconds: shown(k) is called after each picture, which
  * stays for k frames of the film; false ends it.
- * @pre !scene.failure().empty(), and it was shown; @a shown may then change it
+ * @pre scene.failure(), and it was shown; @a shown may then change it
  * only if it returns false */
 void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
                  const std::function<bool(int)>& shown);

@@ -196,7 +196,7 @@ int Run::finish() {
       if (!error) error = std::current_exception();
     }
   };
-  if (!o_.checkpoint.empty() && scene_.failure().empty())
+  if (!o_.checkpoint.empty() && !scene_.failure())
     write([this] {
       save();
       wrote("checkpoint " + o_.checkpoint);
@@ -227,7 +227,7 @@ int Run::finish() {
     tell_work();
   }
   if (scene_.control()) tell_steps(*scene_.control());
-  if (!scene_.failure().empty() || !energy_is_kept()) return 3;
+  if (scene_.failure() || !energy_is_kept()) return 3;
   return cut_short() ? 128 + interrupted() : 0;
 }
 
@@ -359,10 +359,10 @@ void Run::write_rows(long long settled) {
 }
 
 void Run::tell_failure() {
-  if (told_ || scene_.failure().empty()) return;
+  if (told_ || !scene_.failure()) return;
   told_ = true;
   progress_.end();
-  std::cerr << "cloth: " << scene_.explanation() << '\n';
+  std::cerr << "cloth: " << scene_.explanation().text() << '\n';
 }
 
 void Run::warn_of_missed() {

@@ -103,13 +103,13 @@ int run_replay(const Options& o) {
               << " to t = " << short_text(r.time) << " s; energy "
               << short_text(r.energy.total()) << " J; " << r.nodes
               << " nodes and " << r.edges << " edges left\n";
-  if (!r.failure.empty()) std::cerr << "cloth: " << r.failure << '\n';
-  if (interrupted() && r.failure.empty()) {
+  if (r.failure) std::cerr << "cloth: " << r.failure->text() << '\n';
+  if (interrupted() && !r.failure) {
     std::cerr << "cloth: " << name_of_interrupt()
               << " ended the replay at t = " << short_text(r.time) << " s\n";
     return 128 + interrupted();
   }
-  return r.failure.empty() ? 0 : 3;
+  return r.failure ? 3 : 0;
 }
 
 }  // namespace lab

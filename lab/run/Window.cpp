@@ -57,7 +57,7 @@ class Player {
   void show() {
     run_.check();
     const Scene& scene = run_.scene();
-    const bool failed = !scene.failure().empty();
+    const bool failed = scene.failure().has_value();
     screen_.show_card(run_.done() && !failed ? outcome(scene, nodes_)
                                              : std::vector<std::string>());
     screen_.show(scene, run_.rival());

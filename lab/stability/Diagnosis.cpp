@@ -23,26 +23,56 @@ WorstPlace::WorstPlace(const Cloth& g) {
   double longest = -1;
   for (Edge e : node.edges())
     if (double l = e.length(); !(l <= longest)) longest = l, spring = e;
-  if (g.has_edge(spring)) length = std::isfinite(longest) ? longest : no_limit;
+  index = node.index();
+  if (!g.has_edge(spring)) return;
+  length = std::isfinite(longest) ? longest : no_limit;
+  rest = spring.value().L, other = spring.node2().index();
 }
 
-std::string WorstPlace::text(const Cloth& g) const {
-  if (!g.has_node(node)) return "no node is left";
+std::string WorstPlace::text() const {
+  if (index < 0) return "no node is left";
   std::ostringstream out;
-  out << "node " << node.index();
+  out.precision(3);
+  out << "node " << index;
   if (std::isfinite(speed))
     out << " moves at " << speed << " m/s";
   else
     out << " has a position or a velocity that is not finite";
-  if (!g.has_edge(spring)) return out.str();
-  out << ", its spring to node " << spring.node2().index() << " is ";
+  if (other < 0) return out.str();
+  out << ", its spring to node " << other << " is ";
   if (!std::isfinite(length))
     out << "too long to be represented";
-  else if (double L = spring.value().L; L > 0)
-    out << length / L << " times its rest length of " << L << " m";
+  else if (rest > 0)
+    out << length / rest << " times its rest length of " << rest << " m";
   else
     out << length << " m long";
   return out.str();
+}
+
+std::string Failure::what() const {
+  switch (kind) {
+    case Kind::start:
+      return "the energy at the start is not finite";
+    case Kind::diverged:
+      return "diverged";
+    case Kind::refused:
+      break;
+  }
+  return "failed (" + reason + ')';
+}
+
+std::string Failure::where() const {
+  if (kind == Kind::start) return place.text();
+  std::ostringstream out;
+  out.precision(3);
+  out << "step " << step << " with dt = " << dt << " s, method " << method
+      << ": " << place.text() << "; the last good state is that of t = " << time
+      << " s";
+  return out.str();
+}
+
+std::string Failure::text() const {
+  return what() + (kind == Kind::start ? ": " : " in ") + where();
 }
 
 std::string Cure::options(const MethodEntry& before) const {
@@ -69,7 +99,9 @@ Cause cause_of(const FailedRun& run) {
   return Cause::nonlinear;
 }
 
-std::string in_words(Cause cause, const FailedRun& run) {
+}  // namespace
+
+std::string Diagnosis::cause_text() const {
   const MethodInfo& info = run.method.info;
   std::ostringstream out;
   out.precision(3);
@@ -123,6 +155,30 @@ std::string in_words(Cause cause, const FailedRun& run) {
   }
   return out.str();
 }
+
+std::string Diagnosis::remedy_text() const {
+  std::ostringstream out;
+  out.precision(3);
+  if (cure) {
+    out << cure->options(run.method);
+    if (trial.time >= run.time)
+      out << " works: a trial to t = " << trial.time
+          << " s passed, and half of that step gives the same energy";
+    else
+      out << " may work: a trial was stopped at t = " << trial.time
+          << " s, before it could fail";
+  } else if (failed.empty()) {
+    out << "check its values";
+  } else {
+    out << "no remedy was found: trials of ";
+    for (const Cure& c : failed)
+      out << (&c == &failed[0] ? "" : ", ") << c.options(run.method);
+    out << " failed, too";
+  }
+  return out.str();
+}
+
+namespace {
 
 /** @a dt rounded down to three digits: the step that is tried is printed. */
 double in_three_digits(double dt) {
@@ -205,40 +261,30 @@ bool same(const Cure& a, const Cure& b) {
 
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
   constexpr std::size_t most = 10;
-  Diagnosis d = {cause_of(run), "", std::nullopt, {}};
-  d.text = in_words(d.cause, run) + "; ";
-  std::vector<Cure> failed;
-  std::string failed_text;
+  Diagnosis d = {run, cause_of(run)};
   for (const Cure& cure : candidates(d.cause, run)) {
     auto tried = [&](const Cure& other) { return same(cure, other); };
-    if (failed.size() == most) break;
-    if (std::ranges::any_of(failed, tried) || tried({run.method, run.dt}) ||
+    if (d.failed.size() == most) break;
+    if (std::ranges::any_of(d.failed, tried) || tried({run.method, run.dt}) ||
         (d.cure && tried(*d.cure)))
       continue;
     const Attempt trial = try_out(cure);
-    if (!trial.passed) {
-      failed.push_back(cure);
-      failed_text +=
-          (failed_text.empty() ? "" : ", ") + cure.options(run.method);
-    } else if (!d.cure || trial.time > d.trial.time) {
+    if (!trial.passed)
+      d.failed.push_back(cure);
+    else if (!d.cure || trial.time > d.trial.time)
       d.cure = cure, d.trial = trial;
-    }
     if (d.cure && d.trial.time >= run.time) break;
   }
-  if (d.cure) {
-    const std::string time = CME212::short_text(d.trial.time) + " s";
-    d.text += d.cure->options(run.method) +
-              (d.trial.time >= run.time
-                   ? " works: a trial to t = " + time +
-                         " passed, and half of that step gives the same energy"
-                   : " may work: a trial was stopped at t = " + time +
-                         ", before it could fail");
-  } else if (!failed_text.empty()) {
-    d.text += "no remedy was found: trials of " + failed_text + " failed, too";
-  } else {
-    d.text += "check its values";
-  }
   return d;
+}
+
+Explanation::Explanation(const Failure& failure, const Diagnosis* diagnosis)
+    : cause(failure.what()),
+      remedy("a signal ended the search for a remedy"),
+      place(failure.where()) {
+  if (!diagnosis) return;
+  cause += ": " + diagnosis->cause_text();
+  remedy = diagnosis->remedy_text();
 }
 
 }  // namespace lab

@@ -1,26 +1,56 @@
 #pragma once
 /** @file Diagnosis.hpp
- * Where a run failed, why, and a remedy that works. */
+ * How and where a run failed, why, and a remedy that works. */
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lab/stability/StepLimit.hpp"
 
 namespace lab {
 
 /** The first node whose state is not finite, or else the fastest node, and its
- * longest spring. */
+ * longest spring. The numbers stay those of the state that it was found in. */
 struct WorstPlace {
   Node node;          ///< invalid if the cloth has none
   Edge spring;        ///< invalid if the node has none
   double speed = 0;   ///< of the node [m/s]; infinite if not finite
   double length = 0;  ///< of the spring [m]; infinite if not finite
+  double rest = 0;    ///< its rest length [m]
+  /** Indices of the node and of the spring's other end; -1: there is none. */
+  long long index = -1, other = -1;
 
+  /** @pre @a g has all its nodes */
   explicit WorstPlace(const Cloth& g);
-  /** A description for the user. */
-  std::string text(const Cloth& g) const;
+  /** In words. */
+  std::string text() const;
 };
+
+/** How a run failed, and where: known immediately. */
+struct Failure {
+  enum class Kind {
+    start,     ///< the energy at the start is not finite
+    diverged,  ///< the guard found energy that came from nothing
+    refused,   ///< the method or a constraint could not make the step
+  };
+  Kind kind;
+  WorstPlace place;         ///< in the bad state
+  std::string method;       ///< its name
+  double time = 0;          ///< of the last good state [s]
+  double dt = 0;            ///< of the step that failed [s]
+  long long step = 0;       ///< its number, from 1; 0: Kind::start
+  std::string reason = {};  ///< Kind::refused: of StepError
+
+  /** The kind, with the reason; the place with step and time; and both. */
+  std::string what() const;
+  std::string where() const;
+  std::string text() const;
+};
+/** The text of a failure; "" if there is none. */
+inline std::string text_of(const std::optional<Failure>& f) {
+  return f ? f->text() : "";
+}
 
 /** Why a run fails. */
 enum class Cause {
@@ -63,15 +93,29 @@ using TryOut = std::function<Attempt(const Cure&)>;
 
 /** Why a run failed, and a cure that works. */
 struct Diagnosis {
+  FailedRun run;
   Cause cause;
-  std::string text;          ///< the cause and the cure in words
-  std::optional<Cure> cure;  ///< one that passed a trial
-  Attempt trial = {};        ///< of the cure
+  std::optional<Cure> cure = {};  ///< one that passed a trial
+  Attempt trial = {};             ///< of the cure
+  std::vector<Cure> failed = {};  ///< cures that did not pass
+
+  std::string cause_text() const;
+  std::string remedy_text() const;
 };
 
 /** Find out why @a run failed, and a cure. Tries shorter steps and other
  * methods, the most promising first, until a trial passes the time of the
  * failure or 10 trials have failed. Every cure that it returns has passed. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
+
+/** A message about a failure: its sentences in their order. */
+struct Explanation {
+  std::string cause, remedy, place;
+
+  /** @param diagnosis null if a signal ended it */
+  Explanation(const Failure& failure, const Diagnosis* diagnosis);
+  /** One line. */
+  std::string text() const { return cause + "; " + remedy + "; " + place; }
+};
 
 }  // namespace lab

@@ -43,7 +43,7 @@ Pilot run_pilot(const Model& m, const Track* other, const std::string& doing,
     p.track.look(scene);
   });
   p.evaluations = scene.evaluations();
-  p.failure = scene.failure();
+  p.failure = text_of(scene.failure());
   return p;
 }
 

@@ -157,11 +157,11 @@ void Scene::pull(std::optional<HandForce> hand) {
 
 // ------------------------------------------------------------------- Failure
 
-std::string Scene::explanation() const {
+Explanation Scene::explanation() const {
   try {
-    return failure_ + "; " + diagnosis().text;
+    return {*failure_, &diagnosis()};
   } catch (const Interrupted&) {
-    return failure_ + "; a signal ended the search for its cause";
+    return {*failure_, nullptr};
   }
 }
 

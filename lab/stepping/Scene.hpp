@@ -73,13 +73,13 @@ class Scene : public Stepper {
   /** The cause and a cure, found in the first call: the scene is run with other
    * methods and steps, each to t_end() or for trial_work. Trials that do not
    * fail are repeated with half the step.
-   * @pre !failure().empty()
+   * @pre failure()
    * Throws what the recipe throws; Interrupted. */
   const Diagnosis& diagnosis() const;
-  /** Failure and diagnosis in one line; only the failure if a signal interrupts
+  /** Failure and diagnosis in words; only the failure if a signal interrupts
    * the diagnosis.
    * @pre and throws as diagnosis(), but not Interrupted */
-  std::string explanation() const;
+  Explanation explanation() const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** The scene with the method and step of @a cure: from its start, or from the
@@ -87,7 +87,7 @@ class Scene : public Stepper {
   std::unique_ptr<Scene> anew(const Cure& cure) const;
   /** For pictures: a copy of the failed run, continued without the guard until
    * a node is @a distance [m] away from its last good position, or for 1000
-   * steps.  @pre !failure().empty(), recipe().holding
+   * steps.  @pre failure(), recipe().holding
    * @return a scene in that state, finite, with the same failure() */
   std::unique_ptr<Scene> beyond_failure(double distance) const;
 

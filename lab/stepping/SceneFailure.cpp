@@ -17,9 +17,9 @@ namespace {
 FailedRun failed_run(const Scene& s) {
   const MethodEntry& method = s.method_entry();
   FailedRun run = {.method = method, .dt = s.dt(), .time = no_limit};
-  if (!s.is_finite()) return run;
+  if (s.failure()->kind == Failure::Kind::start) return run;
   run.time = std::min(s.time() + s.dt(), s.t_end());
-  run.solver = s.step_was_refused();
+  run.solver = s.failure()->kind == Failure::Kind::refused;
   run.sharp = s.sharp_limit(40);
   run.safe = s.safe_limit();
   run.safe_without_drag = s.limits().safe_without_drag(method);
@@ -52,8 +52,7 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
       samples.emplace_back(trial->time(), balance(e, trial->flow()));
     }
     const double end = trial->time();
-    bool passed =
-        trial->failure().empty() && (trial->done(t_end) || trial->settle());
+    bool passed = !trial->failure() && (trial->done(t_end) || trial->settle());
     if (watches)
       passed = passed &&
                std::abs(trial->energy_watch()->share()) <= energy_tolerance;

@@ -43,15 +43,14 @@ void Stepper::make_method() {
 
 void Stepper::start(const EnergyFlow& flow) {
   plan();
-  failure_.clear(), error_.clear(), worst_.reset();
+  failure_.reset();
   balance_.emplace(cloth_, time(), acting_, constraint_, gravity_);
   go_on(clock_, flow);
   hand_changed();
   guard_.emplace(cloth_, gravity_, clock_.dt, this->flow());
-  if (!is_finite()) {
-    worst_.emplace(cloth_);
-    failure_ = "the energy at the start is not finite: " + worst_->text(cloth_);
-  }
+  if (!is_finite())
+    failure_ = {Failure::Kind::start, WorstPlace(cloth_), entry_.info.name,
+                time(), dt()};
   start_control();
 }
 
@@ -77,7 +76,7 @@ void Stepper::hand_changed() {
 /** Start to choose steps, unless they are fixed. */
 void Stepper::start_control() {
   control_.reset();
-  if (!failure_.empty()) return;
+  if (failure_) return;
   if (!step_.fixed() || follows_drag_) start_drag();
   if (step_.fixed()) return;
   const double longest = limits_.mild(entry_, drag_, clock_.dt, step_.gain);
@@ -249,7 +248,7 @@ bool Stepper::guard(const Energies& e) {
 }
 
 bool Stepper::check() {
-  if (!failure_.empty()) return false;
+  if (failure_) return false;
   return is_finite() || replay(clock_.steps);
 }
 bool Stepper::is_finite() const { return std::isfinite(energy().total()); }
@@ -283,24 +282,19 @@ bool Stepper::replay(long long last) {
   guard_->restore(cloth_);
   go_on(checked_, flow_);
   while (clock_.steps < last && time() < t_end_) {
-    if (!advance()) return fail("failed (" + error_ + ")");
-    if (!guard_->accept(cloth_, flow())) return fail("diverged");
+    if (!advance()) return fail(Failure::Kind::refused);
+    if (!guard_->accept(cloth_, flow())) return fail(Failure::Kind::diverged);
     keep_checked();
   }
   return true;  // a node that failed and was then removed can't fail again
 }
 
 /** Set failure(), and go back to the state before the step.  @return false */
-bool Stepper::fail(const std::string& what) {
-  using CME212::short_text;
-  worst_.emplace(cloth_);
-  const std::string where = worst_->text(cloth_);
+bool Stepper::fail(Failure::Kind kind) {
+  const WorstPlace place(cloth_);
   guard_->restore(cloth_);
   go_on(checked_, flow_);
-  failure_ = what + " in step " + std::to_string(clock_.steps + 1) +
-             " with dt = " + short_text(clock_.dt) + " s, method " +
-             entry_.info.name + ": " + where + "; the last good state is " +
-             "that of t = " + short_text(time()) + " s";
+  failure_ = {kind, place, entry_.info.name, time(), dt(), steps() + 1, error_};
   return false;
 }
 

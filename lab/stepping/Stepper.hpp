@@ -57,7 +57,7 @@ class Stepper {
    * of equal length; a rest of less than 1e-9 dt() is skipped.
    * @return false if the run failed: then failure() says where and why, and the
    * cloth and the clock are those of the last good state.
-   * @pre failure().empty(), time() < t_end
+   * @pre !failure(), time() < t_end
    * Throws std::invalid_argument if the method can't use this force. */
   bool step(double t_end = no_limit) { return steps_at_once(1, t_end); }
   /** One to @a most steps, up to the next check. The same bits as by step(), in
@@ -68,14 +68,14 @@ class Stepper {
    * @return as step()   Throws as step(), and what @a after throws. */
   bool run_to(double t_end, const std::function<void()>& after = {});
   /** True at the end of a run to @a t_end [s], and if the run failed. */
-  bool done(double t_end) const { return !failure_.empty() || time() >= t_end; }
+  bool done(double t_end) const { return failure_ || time() >= t_end; }
 
   /** Check that all numbers of the present state are finite, before it is shown
    * or written.  @return as step()   O(N + springs) */
   bool check();
   /** Let the guard check the present state; later failures go back no further.
    * @return as step()   O(N + springs) */
-  bool settle() { return failure_.empty() && guard(energy()); }
+  bool settle() { return !failure_ && guard(energy()); }
 
   /** The cloth; between two steps it may be changed in any way. */
   Cloth& cloth() { return cloth_; }
@@ -123,11 +123,8 @@ class Stepper {
   long long evaluations() const { return evaluations_ + force_->evaluations(); }
   /** The other work of the method since the start. */
   Work work() const;
-  /** What happened when step() returned false, and where; empty before. */
-  const std::string& failure() const { return failure_; }
-  const std::optional<WorstPlace>& failed_at() const { return worst_; }
-  /** True if the run failed because the method could not make the step. */
-  bool step_was_refused() const { return !error_.empty(); }
+  /** What happened when step() returned false; nullopt before. */
+  const std::optional<Failure>& failure() const { return failure_; }
   /** Counts the nodes that it stopped from tunnelling through obstacles. */
   const WatchedConstraint& watched() const { return *watched_; }
 
@@ -143,7 +140,7 @@ class Stepper {
 
   /** Save or load all that steps change. After saving and after loading the run
    * continues with the same bits.
-   * @pre failure().empty(); of loading: the same scene, at t = 0
+   * @pre !failure(); of loading: the same scene, at t = 0
    * Throws std::runtime_error if another scene is loaded.  O(N) */
   void archive(Archive& a);
 
@@ -157,7 +154,7 @@ class Stepper {
   MethodEntry entry_;
   StepClock clock_;
   bool follows_drag_ = false;
-  std::string failure_;
+  std::optional<Failure> failure_;
 
   /** Before begin() only protected functions may be called.  @param g copied */
   Stepper(const TimeStep& step, const MethodEntry& method, const Cloth& g);
@@ -211,7 +208,6 @@ class Stepper {
   Work work_;                  // of earlier methods
   double start_energy_ = 0;    // [J]
   std::string error_;          // of the method
-  std::optional<WorstPlace> worst_;
 
   void plan();
   void start_control();
@@ -226,7 +222,7 @@ class Stepper {
   bool not_good(long long last);
   bool take_back();
   bool replay(long long last);
-  bool fail(const std::string& what);
+  bool fail(Failure::Kind kind);
   void go_on(const StepClock& clock, const EnergyFlow& flow);
   void keep_checked();
 };

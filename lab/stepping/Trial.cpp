@@ -82,10 +82,10 @@ Trial try_out(const Model& m, const Shake& shake,
     end_if_interrupted();
     after(scene);
     if (m.measure.over_time()) observer.look(m, scene);
-    if (scene.failure().empty())
+    if (!scene.failure())
       result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
   });
-  result.failure = scene.failure();
+  result.failure = text_of(scene.failure());
   if (ok) {
     result.answer = observer.answer(m, scene);
     if (result.answer.empty())

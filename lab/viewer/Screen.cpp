@@ -143,7 +143,7 @@ class SDLScreen : public Screen {
   bool moving_ = false;      // whether an obstacle is
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
   double scale_ = 0.01;      // the strain of the brightest color
-  std::string failure_;      // that is shown
+  std::string failure_;      // that is shown, in words
   CME212::Clock clock_;
   long long steps_ = 0;  // when clock_ was started
   double rate_ = 0;      // [steps/s]
@@ -163,24 +163,23 @@ class SDLScreen : public Screen {
   }
 
   void show_failure(const Scene& scene) {
-    if (scene.failure() == failure_) return;
-    failure_ = scene.failure();
+    const auto& failure = scene.failure();
+    const std::string text = text_of(failure);
+    if (text == failure_) return;
+    failure_ = text;
     std::vector<CME212::SceneData::Mark> marks;
-    if (const auto& at = scene.failed_at()) {
+    std::vector<std::string> paragraphs;
+    if (failure) {
       const Cloth& g = scene.cloth();
-      if (g.has_node(at->node))
-        marks.push_back({at->node.position(), at->node.position()});
-      if (g.has_edge(at->spring))
-        marks.push_back(
-            {at->spring.node1().position(), at->spring.node2().position()});
+      const auto& [node, spring] =
+          std::pair(failure->place.node, failure->place.spring);
+      if (g.has_node(node)) marks.push_back({node.position(), node.position()});
+      if (g.has_edge(spring))
+        marks.push_back({spring.node1().position(), spring.node2().position()});
+      const Explanation why = scene.explanation();
+      paragraphs = {why.cause, why.remedy, why.place};
     }
     viewer_.set_marks(std::move(marks));
-    std::vector<std::string> paragraphs;
-    const std::string text = failure_.empty() ? "" : scene.explanation();
-    for (std::size_t from = 0, to; from < text.size(); from = to + 2) {
-      to = std::min(text.find("; ", from), text.size());
-      paragraphs.push_back(text.substr(from, to - from));
-    }
     viewer_.set_message(std::move(paragraphs));
   }
 
