@@ -117,7 +117,7 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
  * at one stretch. */
 void add_growth(std::vector<Cell>& cells, Effort effort) {
   constexpr unsigned side = 15;
-  const int columns = by(effort, 20, 16, 2), rows = by(effort, 30, 24, 3);
+  const int columns = by(effort, 40, 16, 2), rows = by(effort, 60, 24, 3);
   const int steps = by(effort, 600, 200, 20);
   constexpr double low = 0.9, high = 2.5;  // stretch
   constexpr double least = 0.5, most = 2;  // dt/safe
