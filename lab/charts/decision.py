@@ -8,7 +8,7 @@ from collections import Counter
 import pathlib
 from typing import Any
 
-from panels import DARK, GRAY, Picture, styles
+from panels import DARK, GRAY, Picture, digits, styles
 from results import TRUSTED, Run, Table, cheapest, runs, tied
 
 KINDS = (("linear", ("chain", "curtain")),
@@ -30,11 +30,6 @@ def times(run: Run) -> str:
     low, high = (f"{float(f'{scale * t:.2g}'):g}"
                  for t in (run.seconds, run.median))
     return f"{low}{'-' + high if high != low else ''} {unit}"
-
-
-def plain(value: float) -> str:
-    """1e-5, not 1e-05."""
-    return f"{value:.0e}".replace("e-0", "e-")
 
 
 def lighter(color: str, share: float = 0.7) -> str:
@@ -69,7 +64,7 @@ def decision(csv: pathlib.Path, out: pathlib.Path) -> None:
     y = height - 92
     picture.text(LEFT - 10, y + 8, "wanted error [m]:", 12, DARK, "right")
     for k, wanted in enumerate(WANTED):
-        picture.text(LEFT + CELL * (k + 0.5), y + 8, plain(wanted), 12, DARK,
+        picture.text(LEFT + CELL * (k + 0.5), y + 8, digits(wanted), 12, DARK,
                      "center")
     for kind, scenes in kinds:
         y -= 22

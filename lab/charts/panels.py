@@ -159,6 +159,11 @@ def power(value: float) -> str:
     return f"1e{round(math.log10(value))}"
 
 
+def digits(value: float) -> str:
+    """A number below 1 in two digits: 1.34e-5 as 1.3e-5, 2e-3 as 2e-3."""
+    return f"{value:.1e}".replace(".0e", "e").replace("e-0", "e-")
+
+
 class Picture:
     """A picture that is written piece by piece; @a about is of one or more
     lines. Texts have 11 pixels or more at the width of 800 at which pages show

@@ -5,7 +5,7 @@ import math
 import pathlib
 from typing import Iterator
 
-from panels import DARK, LETTER, Axis, Curve, Panel, Picture
+from panels import DARK, LETTER, Axis, Curve, Panel, Picture, digits
 from results import (COARSE, TRUSTED, Cost, Run, Table, by_method, cost_at,
                      runs)
 
@@ -73,8 +73,8 @@ def message(problems: list[list[Run]]) -> str:
     found = [f for some in problems for f in factors(FINE, some, cost).values()]
     less = "fewer" if share < 0.5 else f"over {math.ceil(share)} % fewer"
     return (f"No library needs {less} force evaluations; at "
-            f"{FINE:.0e} m they need ".replace("e-0", "e-") +
-            f"{min(found):.1f} to {max(found):.1f} times as many")
+            f"{digits(FINE)} m they need {min(found):.1f} to "
+            f"{max(found):.1f} times as many")
 
 
 def peers(csv: pathlib.Path, out: pathlib.Path) -> None:

@@ -7,7 +7,7 @@ import pathlib
 from typing import Any
 
 from panels import (BEHIND, DASHES, LETTER, Axis, Curve, Panel, Picture,
-                    styles)
+                    digits, styles)
 from results import (COARSE, TRUSTED, Cost, Run, Segment, Table, believed,
                      by_method, runs, winners)
 
@@ -21,12 +21,6 @@ NORMS = {"rms position": "RMS error of the positions [m]",
 DRAWN = ("chain", "curtain", "grid0", "grid1", "mixed")
 STRIP = 20  # height of the bar of winners [pixels]
 NARROW = 0.1  # what a title passes over [decades]
-
-
-def digits(value: float) -> str:
-    """1.34e-5 as 1.3e-5, 2e-3 as 2e-3."""
-    return f"{float(f'{value:.1e}'):g}" if value >= 1 else (
-        f"{value:.1e}".replace(".0e", "e").replace("e-0", "e-"))
 
 
 def points_of(some: list[Run], cost: Cost,

@@ -227,7 +227,7 @@ class Words(unittest.TestCase):
     def test_two_digits(self):
         for value, text in ((1.34e-5, "1.3e-5"), (2e-3, "2e-3"),
                             (9.96e-11, "1e-10"), (0.05, "5e-2")):
-            self.assertEqual(precision.digits(value), text)
+            self.assertEqual(panels.digits(value), text)
 
     def test_titles(self):
         cases: tuple[tuple[list, str], ...] = (
