@@ -25,7 +25,7 @@ dealt      := $(shell ls -S $(filter-out $(patsubst %,tests/%.cpp, \
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
 # These are linked only if a program uses them: they need the window.
 drawing    := $(filter $(patsubst %,lab/%.cpp, viewer/Screen run/Film \
-                run/RunReplay run/Window),$(lab_lib))
+                run/Window),$(lab_lib))
 united     := $(filter-out $(drawing),$(lab_lib))
 rooms      := $(sort $(dir $(united)))
 

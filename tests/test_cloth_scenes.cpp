@@ -40,6 +40,17 @@ TEST_F(ClothProgram, RunsEveryShippedScene) {
   EXPECT_GE(count, 9 + 5);
 }
 
+TEST_F(ClothProgram, EveryShippedFailureFails) {
+  for (const auto& entry : fs::directory_iterator("data/scenes/failures")) {
+    const Result r = run("--headless --config " + entry.path().string());
+    const bool tunnels = entry.path().stem() == "tunnel";
+    EXPECT_EQ(r.status, tunnels ? 0 : 3) << entry.path();
+    EXPECT_NE(r.err.find(tunnels ? "would have tunnelled" : "diverged: "),
+              r.err.npos)
+        << entry.path() << r.err;
+  }
+}
+
 TEST_F(ClothProgram, MakesASceneOfWhatIsNamedAndNothingElse) {
   // Without a pin it falls, and nothing is below.
   Result r =

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/live/Recording.hpp"
-#include "lab/methods/Costs.hpp"
+#include "lab/live/Line.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
-#include "lab/stepping/Checkpoint.hpp"
+#include "lab/scenes/KeyValues.hpp"
 
 namespace lab {
 
@@ -20,17 +18,6 @@ namespace {
 constexpr MethodEntry reference_method = entry_of<Srkn11b>();
 constexpr double reference_share = 1 / 3.;  // of its limit
 constexpr double most_in_round = 1e4;       // steps of a scene
-
-/** Does a step cost its force evaluations, and nothing else? */
-bool only_evaluates(const MethodEntry& m) {
-  return m.info.limit != no_limit && !m.info.adaptive && !m.info.multirate;
-}
-/** The time of a step of @a m, as it was measured, in steps of Verlet. */
-double cost_of(const MethodEntry& m) {
-  const auto cost = std::ranges::find(
-      method_costs, std::string_view(m.info.name), &MethodCost::method);
-  return cost != method_costs.end() ? cost->at_limit : m.info.sweeps;
-}
 
 /** The fewest steps after which two runs meet: of the main one and of the
  * rival. */
@@ -46,43 +33,17 @@ struct Round {
     } while (std::abs(many / (few * up) - 1) > 0.02);
     return ratio >= 1 ? Round{many, few} : Round{few, many};
   }
-  /** At the same work. */
-  static Round of_work(const MethodEntry& main, const MethodEntry& rival) {
-    if (!only_evaluates(main) || !only_evaluates(rival))
-      return of_steps(cost_of(rival) / cost_of(main));
-    const int a = main.info.sweeps, b = rival.info.sweeps, c = std::gcd(a, b);
-    return {b / c, a / c};
-  }
 };
 
-Distances distances(const Cloth& a, const Cloth& b) {
-  double most = 0, sum = 0;
+/** The RMS distance of the nodes that both have [m]. */
+double distance(const Cloth& a, const Cloth& b) {
+  double sum = 0;
   unsigned count = 0;
   for (Node n : a.nodes()) {
     if (!arrays(b).node_in_use(n.id())) continue;
-    const double square = normSq(n.position() - arrays(b).positions()[n.id()]);
-    most = std::max(most, square), sum += square, ++count;
+    sum += normSq(n.position() - arrays(b).positions()[n.id()]), ++count;
   }
-  return {std::sqrt(most), count > 0 ? std::sqrt(sum / count) : 0};
-}
-
-/** How many nodes lie on a plane or a ball of @a m at time @a t. */
-unsigned count_touching(const Model& m, const Cloth& g, double t) {
-  constexpr double near = 1e-6;  // [m]
-  unsigned count = 0;
-  for (Node n : g.nodes()) {
-    const Point p = n.position();
-    count += std::ranges::any_of(m.planes,
-                                 [&](const Wall& w) {
-                                   return dot(p - w.at - w.motion.way(t),
-                                              w.out()) < near;
-                                 }) ||
-             std::ranges::any_of(m.spheres, [&](const Solid& s) {
-               return norm(p - s.ball.center - s.motion.way(t)) <
-                      s.ball.radius + near;
-             });
-  }
-  return count;
+  return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
 /** Does the segment from @a p to @a q meet the surface between the rays @a a
@@ -142,7 +103,6 @@ Live::Side::Side(std::unique_ptr<Scene> s, const MethodEntry& m)
   sharp_limit = safe_limit;
 }
 void Live::Side::mark() {
-  from = scene->time(), evaluations = scene->evaluations();
   safe_limit = scene->safe_limit();
   dt_unit = lab::dt_unit(*scene, method);
 }
@@ -175,42 +135,26 @@ void Live::change_forces() {
   if (rival_) tune();
 }
 
-void Live::load(Model m, std::uint64_t cloth) {
-  PointsAndQuads points = mesh_of(m);
-  auto scene = std::make_unique<Scene>(recipe_of(m, points), m.step, *m.method);
-  if (cloth != 0 && checksum_of(scene->cloth()) != cloth)
-    throw std::invalid_argument(
-        "belongs to another cloth: the mesh files or the program changed");
-  alone();
-  model_ = std::move(m), mesh_ = std::move(points);
-  start_nodes_ = scene->cloth().num_nodes();
-  start_edges_ = scene->cloth().num_edges();
-  main_.emplace(std::move(scene), *model_.method);
-}
-
-/** Run a copy of the present state beside it. */
-void Live::compare() {
+/** Run a copy of the present state beside it, by steps of @a share. */
+void Live::compare(const MethodEntry& method, double share) {
   if (!main_->runs()) return;
   const double dt = main_->scene->dt();
   if (!model_.step.fixed())
     set_step(main_->method, {.dt = dt, .tolerance = model_.step.tolerance});
-  const auto copy = [&](const MethodEntry& method) {
-    return Side(
-        std::make_unique<Scene>(*main_->scene, TimeStep{.dt = dt}, method),
-        method);
+  const auto copy = [&](const MethodEntry& m) {
+    return Side(std::make_unique<Scene>(*main_->scene, TimeStep{.dt = dt}, m),
+                m);
   };
-  rival_.emplace(copy(*rival_method_));
+  rival_.emplace(copy(method));
   reference_.emplace(copy(reference_method));
-  rival_step_ = rival_share_ * rival_->dt_unit;
+  rival_step_ = share * rival_->dt_unit;
   tune();
 }
 
 /** Give the rival and the reference the steps by which all three meet. */
 void Live::tune() {
   const double dt = main_->scene->dt();
-  const Round round = equal_work_
-                          ? Round::of_work(main_->method, rival_->method)
-                          : Round::of_steps(rival_step_ / dt);
+  const Round round = Round::of_steps(rival_step_ / dt);
   round_ = round.main;
   const double whole = round_ * dt;
   const auto set = [](Side& side, double step) {
@@ -224,33 +168,61 @@ void Live::tune() {
 
 RunReadings Live::Side::readings(bool sharp) {
   RunReadings r;
-  r.method = method.info.name, r.order = method.info.order;
+  r.method = method.info.name;
   r.dt = scene->dt(), r.dt_unit = dt_unit;
   if (sharp) sharp_limit = scene->sharp_limit();
   r.safe_limit = safe_limit, r.sharp_limit = sharp_limit;
   r.steps = scene->steps(), r.time = scene->time();
   r.evaluations = scene->evaluations();
-  r.evaluations_rate =
-      r.time > from ? double(r.evaluations - evaluations) / (r.time - from)
-                    : method.info.sweeps / r.dt;
   r.energy = energies(scene->cloth(), scene->recipe().gravity, scene->flow());
   r.drift = scene->drift(r.energy);
   r.failure = scene->failure();
   return r;
 }
 
-Live::Live(Model m, std::uint64_t cloth)
-    : recording_(std::string(recording_begin) + '\n') {
-  load(std::move(m), cloth);
-  record(scene_request(model_, checksum_of(scene().cloth())));
+std::vector<Change> read_changes(const std::vector<std::string>& lines) {
+  std::vector<Change> all;
+  for (const std::string& line : lines) {
+    Line in(line);
+    const auto calls = in.number<long long>("a number of steps", 0);
+    if (!all.empty() && calls < all.back().calls)
+      in.fail("comes after " + std::to_string(all.back().calls) + " steps");
+    all.push_back({calls, std::string(in.rest())});
+    std::string error = in.error();
+    if (error.empty()) error = Live::error_in(all.back().request);
+    if (!error.empty())
+      throw SceneError("change", in_quotes(line) + ": " + error);
+  }
+  return all;
+}
+
+Live::Live(Model m, std::vector<Change> changes)
+    : model_(std::move(m)),
+      mesh_(mesh_of(model_)),
+      changes_(std::move(changes)) {
+  main_.emplace(std::make_unique<Scene>(recipe_of(model_, mesh_), model_.step,
+                                        *model_.method),
+                *model_.method);
+  start_nodes_ = scene().cloth().num_nodes();
+  start_edges_ = scene().cloth().num_edges();
+}
+
+void Live::restart(const Model& m) {
+  rival_.reset(), reference_.reset();
+  model_ = m, next_ = 0, calls_ = 0, recording_.clear();
+  main_->scene->restart();
+  change_forces();
+  set_step(*m.method, m.step);
 }
 
 bool Live::step() {
+  for (; changes_left() > 0 && changes_[next_].calls <= calls_; ++next_)
+    apply(changes_[next_].request);
   if (done()) return false;
   ++calls_;
   const int count = rival_ ? round_ : 1;
   for (int k = 0; k < count && !done() && !interrupted(); ++k)
-    main_->scene->step();
+    main_->scene->step(model_.t_end);
   const double time = main_->scene->time();
   for (auto* side : {&rival_, &reference_}) {
     if (!*side || !(*side)->runs()) continue;
@@ -272,17 +244,13 @@ Readings Live::readings(bool sharp) {
   const Cloth& g = scene().cloth();
   r.nodes = g.num_nodes(), r.edges = g.num_edges();
   r.torn_nodes = start_nodes_ - r.nodes, r.torn_edges = start_edges_ - r.edges;
-  r.touching = count_touching(model_, g, r.time);
   r.grabbed = scene().hand() && arrays(g).node_in_use(scene().hand()->node());
   if (!rival_) return r;
   const Cloth &other = rival()->cloth(), &right = reference()->cloth();
   r.comparison = {.rival = rival_->readings(sharp),
-                  .equal_work = equal_work_,
-                  .apart = distances(g, other),
-                  .error = distances(g, right),
-                  .rival_error = distances(other, right),
-                  .reference = reference_method.info.name,
-                  .reference_dt = reference()->dt()};
+                  .apart = distance(g, other),
+                  .error = distance(g, right),
+                  .rival_error = distance(other, right)};
   return r;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 /** @file Live.hpp
- * Live: a scene that a user changes while it runs. A change is a request, one
- * line of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The same
- * text is what the page sends, and what a recording and a link hold.
- * Requests.cpp lists all requests.
+ * Live: a scene that is changed while it runs. A change is a request, one line
+ * of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The page sends
+ * such lines; its links and `./cloth --change` have them with the number of
+ * steps before each: "120 gravity 3". Requests.cpp lists all requests.
  *
  * A node is named by its id, Node::id(), which stays the same when others are
  * removed. */
@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "CME212/Util.hpp"
-#include "lab/scenes/StoredScenes.hpp"
 #include "lab/stepping/Scene.hpp"
 
 namespace lab {
@@ -32,8 +31,8 @@ inline std::string request_word(std::string_view a) {
 inline std::string request_word(const Point& p) {
   return request_word(p.x) + request_word(p.y) + request_word(p.z);
 }
-/** The text of a request. Numbers are written with all digits, so that a
- * recording replays to the same bits. */
+/** The text of a request. Numbers are written with all digits, so that a run
+ * is repeated to the same bits. */
 template <typename... Values>
 std::string request(const char* name, const Values&... values) {
   return (std::string(name) + ... + request_word(values));
@@ -55,7 +54,6 @@ std::vector<std::array<unsigned, 2>> crossed_edges(const Cloth& g,
 /** A run and what it cost. */
 struct RunReadings {
   const char* method = "";
-  int order = 0;
   double dt = 0;  ///< [s]
   /** The stability limit [s] in any configuration: no_limit if there is none,
    * 0 if no step is stable. */
@@ -68,9 +66,7 @@ struct RunReadings {
   long long steps = 0;
   double time = 0;            ///< simulated [s]
   long long evaluations = 0;  ///< of all forces, since the start
-  /** Force evaluations a simulated second: of the present dt, as counted. */
-  double evaluations_rate = 0;
-  Energies energy;  ///< [J]
+  Energies energy;            ///< [J]
   /** The change of energy since the start that no force explains [J]: the
    * method's error, and the loss in contact, which is inelastic. Left out are
    * the work of drag, of moving obstacles and pins, of the hand and of the
@@ -79,23 +75,15 @@ struct RunReadings {
   std::optional<Failure> failure;  ///< nullopt: it runs
 };
 
-/** Distances between two states, over the nodes that both have [m]. */
-struct Distances {
-  double largest = 0, rms = 0;
-};
-
 struct Readings : RunReadings {
   unsigned nodes = 0, edges = 0;
   unsigned torn_nodes = 0, torn_edges = 0;  ///< removed since the start
-  unsigned touching = 0;                    ///< nodes on an obstacle
   bool grabbed = false;  ///< the hand pulls a node that is still there
+  /** Distances are the RMS over the nodes that both states have [m]. */
   struct Comparison {
     RunReadings rival;
-    bool equal_work;
-    Distances apart;               ///< of the two
-    Distances error, rival_error;  ///< of each to the reference
-    const char* reference;         ///< its method
-    double reference_dt;           ///< [s]
+    double apart;               ///< of the two
+    double error, rival_error;  ///< of each to the reference
   };
   std::optional<Comparison> comparison;
 };
@@ -105,26 +93,39 @@ double dt_unit(const Scene& s, const MethodEntry& m);
 
 // ---- The scene
 
-/** A scene that a user changes while it runs. Its states depend only on the
- * model and on the requests, with the number of step() calls before each; what
- * is read or shown meanwhile does not change a bit.
+/** A request that is made after so many step() calls. */
+struct Change {
+  long long calls;
+  std::string request;
+};
+/** The changes in @a lines such as "120 gravity 3", in their order.
+ * Throws SceneError: a line that makes no sense, or is earlier than the one
+ * before it */
+std::vector<Change> read_changes(const std::vector<std::string>& lines);
+
+/** A scene that is changed while it runs. Its states depend only on the model
+ * and on the requests, with the number of step() calls before each; what is
+ * read or shown meanwhile does not change a bit.
  *
  * One thread at a time. */
 class Live {
  public:
   /** At t = 0.
-   * @param cloth checksum_of() the cloth that it must have; 0: any
-   * Throws as Scene(model), and std::invalid_argument: another cloth. */
-  explicit Live(Model m, std::uint64_t cloth = 0);
+   * @param changes made by step() when they are due
+   * Throws as Scene(model). */
+  explicit Live(Model m, std::vector<Change> changes = {});
+
+  /** Back to t = 0, with the parameters of @a m and all changes to come.
+   * @pre it was made from @a m */
+  void restart(const Model& m);
 
   /** Change the scene between two steps, as @a request says. It continues from
    * its present state: positions, velocities, what is torn, time. A scene that
    * failed continues from its last good state; but grab, cut and pins do
    * nothing then. They also do nothing if the node or the edge was removed. A
    * change of forces applies to the rival and to the reference, too.
-   * Throws std::invalid_argument error_in(request); as Live(m) if a scene that
-   * was asked for can't be made, or the method can't choose its step here. Then
-   * nothing has changed. */
+   * Throws std::invalid_argument: error_in(request), or the method can't choose
+   * its step here. Then nothing has changed. */
   void apply(const std::string& request);
   /** The error in the text of a request; "" if there is none. */
   static std::string error_in(std::string_view request);
@@ -134,22 +135,26 @@ class Live {
   /** The parameters of @a m that requests set: each one's name and value. */
   static std::vector<std::pair<std::string_view, double>> parameters(Model m);
 
-  /** One step; while comparing, one round: the fewest steps after which both
-   * runs are at the same time. For that the rival's step is the one asked for
-   * to 2 %; no scene takes more than 10^4 steps in a round. A signal cuts a
-   * round short.
-   * @return false if done() */
+  /** Make the changes that are due, then one step; while comparing, one round:
+   * the fewest steps after which both runs are at the same time. For that the
+   * rival's step is the one asked for to 2 %; no scene takes more than 10^4
+   * steps in a round. A signal cuts a round short.
+   * @return false if done()   Throws as apply() */
   bool step();
   /** Scene::check() of all that runs, needed before it is shown. */
   bool check();
-  /** It failed. The t-end of the model does not end a run that is played. */
-  bool done() const { return scene().failure().has_value(); }
+  /** It failed, or is at the end of its model. */
+  bool done() const { return scene().done(model_.t_end); }
   /** The number of step() calls so far that found it not done(). */
   long long calls() const { return calls_; }
+  /** The number of changes that are still to be made. */
+  std::size_t changes_left() const { return changes_.size() - next_; }
 
   /** The model with all changes by requests: what sliders show. */
   const Model& model() const { return model_; }
   const Scene& scene() const { return *main_->scene; }
+  /** To be changed by requests alone. The same object until the destructor. */
+  Scene& scene() { return *main_->scene; }
   /** Null unless comparing. */
   const Scene* rival() const { return rival_ ? rival_->scene.get() : nullptr; }
   const Scene* reference() const {
@@ -161,8 +166,8 @@ class Live {
    */
   Readings readings(bool sharp = true);
 
-  /** All requests so far, with calls() before each: a file for Replay. O(its
-   * length) */
+  /** All requests so far as lines of changes, then the line "N end" with
+   * calls().  O(its length) */
   std::string recording() const;
 
  private:
@@ -172,8 +177,6 @@ class Live {
     std::unique_ptr<Scene> scene;
     MethodEntry method;
     double dt_unit, safe_limit, sharp_limit;  // [s]; sharp: when last asked for
-    double from = 0;                          // since the last change [s]
-    long long evaluations = 0;                // at that time
 
     Side(std::unique_ptr<Scene> s, const MethodEntry& m);
     void mark();
@@ -184,11 +187,11 @@ class Live {
   Model model_;
   PointsAndQuads mesh_;
   std::optional<Side> main_, rival_, reference_;
-  const MethodEntry* rival_method_ = nullptr;  // as asked for, and its
-  double rival_share_ = 0, rival_step_ = 0;    // share of its dt_unit; [s]
-  bool equal_work_ = false;
-  int round_ = 1;  // steps of the main scene in one
+  double rival_step_ = 0;  // as asked for [s]
+  int round_ = 1;          // steps of the main scene in one
   unsigned start_nodes_ = 0, start_edges_ = 0;
+  std::vector<Change> changes_;
+  std::size_t next_ = 0;  // of changes_
   long long calls_ = 0;
   std::string recording_;
 
@@ -199,16 +202,11 @@ class Live {
     for (auto* side : {&main_, &rival_, &reference_})
       if (*side && (*side)->runs()) use(*(*side)->scene);
   }
-  void record(const std::string& text) {
-    recording_ += std::to_string(calls_) + ' ' + text + '\n';
-  }
-  void load(Model m, std::uint64_t cloth = 0);
   void set_step(const MethodEntry& method, const TimeStep& step);
   void set_method(const MethodEntry& method);
   void change_forces();
-  void compare();
+  void compare(const MethodEntry& method, double share);
   void tune();
-  void alone() { rival_.reset(), reference_.reset(); }
 };
 
 }  // namespace lab

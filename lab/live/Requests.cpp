@@ -12,9 +12,7 @@
 
 #include "lab/live/Line.hpp"
 #include "lab/live/Live.hpp"
-#include "lab/live/Recording.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
 
@@ -50,15 +48,6 @@ void read(Line& in, const MethodEntry*& method) {
   const auto* const found = in.one_of("a method", all, name_of);
   method = found ? *found : nullptr;
 }
-void read(Line& in, const StoredScene*& failure) {
-  failure = in.one_of("a failure", failing_scenes(), &StoredScene::name);
-}
-void read(Line& in, bool& equal_work) {
-  static constexpr const char* ways[] = {"equal-time", "equal-work"};
-  equal_work =
-      in.one_of("equal-time or equal-work", ways, std::identity()) == &ways[1];
-}
-void read(Line& in, std::string& rest) { rest = in.rest(); }
 
 }  // namespace
 
@@ -137,20 +126,6 @@ Live::Table::Table() {
   // g [m/s^2]
   sets("gravity", "a number", -no_limit,
        [](Model& m) -> double& { return m.gravity; });
-  // Load the scene that scene_request() wrote.
-  on("scene", expand, [](Live& live, std::string rest) {
-    SceneRequest r = read_scene("scene " + rest);
-    live.load(std::move(r.model), r.cloth);
-    live.record(scene_request(live.model_, checksum_of(live.scene().cloth())));
-  });
-  on("break", plain,
-     [](Live& live, const StoredScene* b) { live.load(b->model()); });
-  // Back to t = 0, with the parameters as they are.
-  on("restart", plain, [](Live& live) {
-    live.main_->scene->restart();
-    live.main_->mark();
-    if (live.rival_) live.compare();
-  });
   // Pull a node towards a point; move that point; let the node go.
   on("grab", plain, [](Live& live, unsigned node, Point target) {
     live.each_running([&](Scene& s) { s.grab(node, target); });
@@ -189,17 +164,11 @@ Live::Table::Table() {
     const bool held = live.main_->scene->is_pinned(node);
     live.apply(request(held ? "unpin" : "pin", node));
   });
-  // Run a copy of the present state beside it by another method: at equal
-  // time by this share of its dt_unit; at equal work by the step at which
-  // a simulated second costs both the same.
-  on("compare", plain,
-     [](Live& live, const MethodEntry* m, Share share, bool work) {
-       if (!live.main_->runs()) return;
-       live.rival_method_ = m, live.rival_share_ = share.of_unit,
-       live.equal_work_ = work;
-       live.compare();
-     });
-  on("alone", plain, [](Live& live) { live.alone(); });
+  // Run a copy of the present state beside it by another method, with steps of
+  // this share of its RunReadings::dt_unit.
+  on("compare", plain, [](Live& live, const MethodEntry* m, Share share) {
+    live.compare(*m, share.of_unit);
+  });
 }
 
 void Live::apply(const std::string& text) {
@@ -211,7 +180,8 @@ void Live::apply(const std::string& text) {
   if (request.kind != Table::expand)
     each_running([](Scene& scene) { scene.settle(); });
   request.run(in, this);
-  if (request.kind != Table::expand) record(text);
+  if (request.kind != Table::expand)
+    recording_ += std::to_string(calls_) + ' ' + text + '\n';
 }
 
 std::string Live::error_in(std::string_view request) {

@@ -176,9 +176,8 @@ const char* page_readings(int sharp) {
       json_of(r), "nodes", r.nodes, "edges", r.edges, "tornNodes", r.torn_nodes,
       "tornEdges", r.torn_edges, "grabbed", r.grabbed);
   if (const auto& c = r.comparison)
-    all +=
-        ',' + members("rival", json_of(c->rival), "apart", c->apart.rms,
-                      "error", c->error.rms, "rivalError", c->rival_error.rms);
+    all += ',' + members("rival", json_of(c->rival), "apart", c->apart, "error",
+                         c->error, "rivalError", c->rival_error);
   const Model& m = state().live->model();
   if (const Measure& what = m.measure;
       what.quantity < Measure::pin_force && what.quantity != Measure::positions)

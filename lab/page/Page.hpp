@@ -25,7 +25,7 @@ const char* page_setting();
 char* page_room(unsigned size);
 /** Live::apply().  @return the error in the text; "" if there is none */
 const char* page_request(const char* text);
-/** Live::recording(), but without the scene. */
+/** Live::recording() */
 const char* page_recording();
 
 /** A step of side 0, and side 1 up to the same time; the first one after a

@@ -1,17 +1,17 @@
 'use strict';
 // A run of the page as the part of its address behind #: scene, size, camera,
-// and the lines of its recording (lab/live/Recording.hpp), with _ for a blank
-// and ~ for the end of a line. Opened again, it is the same run, bit by bit.
+// and the changes of it (lab/live/Live.hpp), with _ for a blank and ~ for the
+// end of a line. Opened again, it is the same run, bit by bit.
 
 const Link = {
-  // @param recording of the worker: two lines of the scene, then the requests
+  // @param recording Live::recording()
   write(recording, settings, camera, speed) {
     const all = new URLSearchParams();
     for (const name of ['scene', 'side']) all.set(name, settings[name]);
     all.set('speed', speed);
     all.set('camera', [camera.yaw, camera.pitch, camera.zoom].map(
       a => Number(a.toFixed(3))).join('_'));
-    all.set('run', recording.trim().split('\n').slice(2).join('~')
+    all.set('run', recording.trim().replaceAll('\n', '~')
       .replaceAll(' ', '_'));
     return '#' + all;
   },
@@ -36,7 +36,7 @@ const Link = {
       read.end = Math.floor(end);
     else read.leftOut = true;
     for (const [at, words] of lines) {
-      if (at >= 0 && at <= read.end && words[0] !== 'scene' && words.every(
+      if (at >= 0 && at <= read.end && words.every(
         word => !(Math.abs(word) > Link.most)))
         read.lines.push([at, words.join(' ')]);
       else read.leftOut = true;

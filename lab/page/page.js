@@ -104,7 +104,7 @@ function requestOf(name) {
   const s = page.settings;
   return name === 'share' ? ['step', s.share]
     : name === 'rival' || name === 'rivalShare'
-      ? ['compare', s.rival, s.rivalShare, 'equal-time'] : [name, s[name]];
+      ? ['compare', s.rival, s.rivalShare] : [name, s[name]];
 }
 // The requests at the start of a scene that make it match the controls. Its
 // parameters are in the settings once they are known.

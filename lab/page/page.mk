@@ -13,7 +13,7 @@ page_o  := $(B)/page.o
 # measures processor time.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Interrupt Memory MeshFile Warnings) \
-  lab/stepping/Checkpoint.cpp lab/live/Recording.cpp lab/fast/FastestCpu.cpp, \
+  lab/stepping/Checkpoint.cpp lab/fast/FastestCpu.cpp, \
   $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes stepping live page))) \
   course/web/thrown.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o

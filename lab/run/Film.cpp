@@ -98,15 +98,15 @@ void Film::draw() {
   if (!frame && !picture) return;
   run_.check();
   failed = scene_.failure().has_value();
-  screen_->show(scene_);
+  screen_->show(scene_, run_.rival());
   if (picture) save_picture();
   if (!frame) return;
   if (failed) {
-    show_beyond(scene_, nullptr, *screen_, [this](int frames) {
+    show_beyond(scene_, run_.rival(), *screen_, [this](int frames) {
       screen_->add_to_film(frames);
       return !interrupted();
     });
-    screen_->show(scene_);
+    screen_->show(scene_, run_.rival());
   }
   // A failure stays: there is a reason to read.
   int times = failed ? frames_in(failure_seconds) : 0;
@@ -145,9 +145,9 @@ void Film::save_picture() {
   shot_ = true;
   screen_->show_card({});
   if (!scene_.failure()) return screen_->save_picture(o_.screenshot);
-  screen_->show(*scene_.beyond_failure(extent(scene_) / 10));
+  screen_->show(*scene_.beyond_failure(extent(scene_) / 10), run_.rival());
   screen_->save_picture(o_.screenshot);
-  screen_->show(scene_);
+  screen_->show(scene_, run_.rival());
 }
 
 /** Simulated time until the frame after the next one [s]. */

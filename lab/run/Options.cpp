@@ -18,6 +18,7 @@
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/FastestCpu.hpp"
+#include "lab/live/Live.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Fields.hpp"
@@ -149,19 +150,15 @@ void check(Options& o) {
                      "the scene of a checkpoint is fixed");
   if (!o.json.empty() && !o.asks_advice())
     throw SceneError("json", "needs --advise, --assess or --auto");
-  if (!o.replay.empty())
+  if (!read_changes(o.changes).empty())
     for (const auto& [option, given] :
-         {std::pair("config", !o.config.empty()),
-          std::pair("restart", !o.restart.empty()),
+         {std::pair("restart", !o.restart.empty()),
           std::pair("checkpoint", !o.checkpoint.empty()),
-          std::pair("csv", !o.csv.empty()), std::pair("vtp", !o.vtp.empty()),
-          std::pair("ply", !o.ply.empty()), std::pair("at", o.at >= 0),
-          std::pair("advise", o.asks_advice())})
+          std::pair("advise", o.asks_advice()),
+          std::pair("tolerance", o.model.step.tolerance > 0)})
       if (given)
-        throw SceneError("replay",
-                         std::string("cannot be combined with --") + option +
-                             ", only with --out, --record, --screenshot of "
-                             "the end and --window");
+        throw SceneError("change",
+                         std::string("cannot be combined with --") + option);
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
         "window",
@@ -310,11 +307,10 @@ void add_run_options(CLI::App& app, Options& o) {
            "interruption; the scene may be omitted; --csv continues the file "
            "of that run");
   app.option_defaults()->group("Changes while it runs");
-  add_file(
-      app, "--replay", o.replay,
-      "repeat a recording: a scene and changes of it after given steps, to "
-      "the same bits; can be combined with --out, --record, --screenshot "
-      "of the end and --window");
+  app.add_option("--change", o.changes,
+                 "change the scene after so many steps, as '120 gravity 3', "
+                 "'150 cut 40 41' or '0 compare rk4 1': see lab/README.md")
+      ->allow_extra_args(false);
   app.add_option("--threads", o.threads,
                  "threads for a large cloth, which change no result; 0: one "
                  "per processor")
@@ -436,11 +432,6 @@ int parse(int argc, char** argv, Options& o) {
   } catch (const CLI::ParseError& e) {
     return report(app, e);
   }
-  if (!o.replay.empty())
-    for (const std::string& key : scene_keys())
-      if (app.count("--" + key) > 0)
-        throw SceneError("replay", "cannot be combined with --" + key +
-                                       ": a recording has its own scene");
   const auto given = [&, in_file = o.origins.line_of](const char* name) {
     return app.count(std::string("--") + name) > 0 ||
            (!file.empty() && in_file.count(name) > 0);
@@ -470,7 +461,7 @@ int parse(int argc, char** argv, Options& o) {
                    "--method, or use --method rkn64\n";
   }
   check(o);
-  if (o.replay.empty()) check_has_cloth(o.model);
+  check_has_cloth(o.model);
   if (!dump) return -1;
   std::cout << to_scene_file(o.model);
   return 0;

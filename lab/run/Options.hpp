@@ -3,6 +3,7 @@
  * Options: the command line of ./cloth. */
 #include <array>
 #include <string>
+#include <vector>
 
 #include "lab/scenes/SceneFile.hpp"
 
@@ -31,7 +32,7 @@ struct Options {
   std::string json;             ///< file for the advice
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
-  std::string replay;         ///< file of a recording
+  std::vector<std::string> changes;  ///< see read_changes()
 
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || assess; }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "lab/fast/Energy.hpp"
+#include "lab/live/Live.hpp"
 #include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Interrupt.hpp"
@@ -38,16 +39,17 @@ void MeshOutput::write(const Scene& scene) {
   if (quads_) quads_->commit();
 }
 
-Run::Run(Scene& scene, const Options& o)
+Run::Run(Scene& scene, const Options& o, Live* live)
     : scene_(scene),
       o_(o),
+      live_(live),
       progress_(o.quiet),
       observer_(o.model, scene),
       frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
               o.frame_rate) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.follow_drag();
-  if (o.model.conserves_energy()) scene_.watch_energy(o.model.t_end);
+  if (!live_ && o.model.conserves_energy()) scene_.watch_energy(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (!o.checkpoint.empty())
     archive_scene(scene_as_made_, o.model, scene.cloth());
@@ -69,10 +71,12 @@ void Run::start() {
 }
 
 void Run::restart() {
-  scene_.restart();
+  live_ ? live_->restart(o_.model) : scene_.restart();
   told_ = false;
   start();
 }
+
+const Scene* Run::rival() const { return live_ ? live_->rival() : nullptr; }
 
 bool Run::done() const { return interrupted() || scene_.done(o_.model.t_end); }
 bool Run::cut_short() const {
@@ -80,12 +84,12 @@ bool Run::cut_short() const {
 }
 
 void Run::check() {
-  scene_.check();
+  live_ ? live_->check() : scene_.check();
   tell_failure();
 }
 
 void Run::advance(int most) {
-  scene_.steps_at_once(most, o_.model.t_end);
+  live_ ? live_->step() : scene_.steps_at_once(most, o_.model.t_end);
   look();
 }
 
@@ -225,6 +229,9 @@ int Run::finish() {
   if (!o_.quiet) {
     print_summary();
     tell_work();
+    if (live_ && live_->changes_left() > 0)
+      std::cerr << warning << CME212::count_of(live_->changes_left(), "change")
+                << " would come after the end\n";
   }
   if (scene_.control()) tell_steps(*scene_.control());
   if (scene_.failure() || !energy_is_kept()) return 3;

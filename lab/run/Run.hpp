@@ -17,14 +17,9 @@
 
 namespace lab {
 
+class Live;
 class Scene;
 class StepControl;
-
-/** ./cloth --replay FILE: run the recording o.replay again, and write what
- * @a o asks for: the cloth and a picture of it at the end, a film.
- * @return the exit status: 0, 3 if it ends with a failure, 128 + a signal
- * Throws InputError, SceneFileError; std::runtime_error "FILE: why" */
-int run_replay(const Options& o);
 
 /** What --out writes: the nodes of the mesh that are left and, beside them, its
  * quads, so that they can be read again. */
@@ -44,14 +39,19 @@ class MeshOutput {
 class Run {
  public:
   /** Output files are opened now, so that a wrong path ends the run before it
-   * starts; a checkpoint is loaded into the scene. Keeps references to both.
+   * starts; a checkpoint is loaded into the scene. Keeps references.
+   * @param live if its scene is to be changed on the way; else null
    * @pre @a scene is at t = 0
    * Throws std::runtime_error; SceneError: the checkpoint is of another scene.
    */
-  Run(Scene& scene, const Options& o);
+  Run(Scene& scene, const Options& o, Live* live = nullptr);
 
   /** Back to t = 0. */
   void restart();
+
+  const Scene& scene() const { return scene_; }
+  /** A second scene that a change has put beside it, or null. */
+  const Scene* rival() const;
 
   /** True at the end, if the run failed, or if a signal ends it. */
   bool done() const;
@@ -86,6 +86,7 @@ class Run {
  private:
   Scene& scene_;
   const Options& o_;
+  Live* const live_;
   Progress progress_;
   Observer observer_;
   std::optional<CME212::OutputFile> csv_;

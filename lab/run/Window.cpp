@@ -17,7 +17,7 @@ namespace {
 /** Steps and shows a run; all in the thread of play(). */
 class Player {
  public:
-  Player(WindowRun& run, Screen& screen, double speed)
+  Player(Run& run, Screen& screen, double speed)
       : run_(run),
         screen_(screen),
         speed_(speed),
@@ -40,7 +40,7 @@ class Player {
   }
 
  private:
-  WindowRun& run_;
+  Run& run_;
   Screen& screen_;
   const double speed_;
   const unsigned nodes_;  // at first
@@ -83,21 +83,9 @@ class Player {
   }
 };
 
-struct FileRun : WindowRun {
-  Scene& s;
-  Run& run;
-
-  FileRun(Scene& scene, Run& r) : s(scene), run(r) {}
-  void restart() override { run.restart(); }
-  void advance() override { run.advance(); }
-  void check() override { run.check(); }
-  bool done() const override { return run.done(); }
-  const Scene& scene() const override { return s; }
-};
-
 }  // namespace
 
-void show_in_window(WindowRun& run, Screen& screen, double speed) {
+void show_in_window(Run& run, Screen& screen, double speed) {
   std::exception_ptr error;
   std::thread simulation([&] {
     try {
@@ -116,11 +104,6 @@ void show_in_window(WindowRun& run, Screen& screen, double speed) {
   simulation.join();
   watch.join();
   if (error) std::rethrow_exception(error);
-}
-
-void show_in_window(Scene& scene, Run& run, Screen& screen, double speed) {
-  FileRun in_window(scene, run);
-  show_in_window(in_window, screen, speed);
 }
 
 }  // namespace lab

@@ -30,6 +30,7 @@
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/FastestCpu.hpp"
 #include "lab/fast/Sweep.hpp"
+#include "lab/live/Live.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
@@ -143,8 +144,7 @@ void check_outputs(const Options& o) {
   std::map<std::string, const char*> option_of, input_of;
   for (const auto& [option, file] :
        {std::pair("nodes", o.model.nodes), std::pair("tets", o.model.tets),
-        std::pair("config", o.config), std::pair("restart", o.restart),
-        std::pair("replay", o.replay)})
+        std::pair("config", o.config), std::pair("restart", o.restart)})
     if (!file.empty()) input_of.emplace(CME212::output_target(file), option);
   const std::set<Pair> follow = {{"out", "nodes"},
                                  {"out", "tets"},
@@ -196,7 +196,6 @@ int run(Options o) {
   check_outputs(o);
   lanes::cpu = fastest_cpu();
   Sweep::set_threads(o.threads);
-  if (!o.replay.empty()) return run_replay(o);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   if (!o.asks_advice() && !o.advised.empty()) {
@@ -208,23 +207,26 @@ int run(Options o) {
   const bool in_window = shows && (o.window || Screen::has_display());
   std::optional<Accuracy> accuracy;
   if (m.step.tolerance > 0 && o.restart.empty()) accuracy = measure_accuracy(o);
-  Recipe recipe = recipe_of(m);
+  std::unique_ptr<Live> live;
+  if (const auto changes = read_changes(o.changes); !changes.empty())
+    live = std::make_unique<Live>(m, changes);
+  const auto alone = live ? nullptr : std::make_unique<Scene>(m);
+  Scene& scene = live ? live->scene() : *alone;
   std::unique_ptr<Screen> window;
   if (shows) {
     if (in_window) {
       window = Screen::open(Screen::Kind::window);
     } else if (Screen::can_draw()) {
       std::filesystem::create_directories("demo");
-      o.screenshot = "demo/" + recipe.name + ".png";
-      o.video = "demo/" + recipe.name + ".mp4";
+      o.screenshot = "demo/" + m.name + ".png";
+      o.video = "demo/" + m.name + ".mp4";
       if (!o.quiet)
         std::cout << "no display: running without a window; a picture and a "
                      "film go to the folder demo\n";
       check_outputs(o);
     }
   }
-  Scene scene(std::move(recipe), m.step, *m.method);
-  Run run(scene, o);
+  Run run(scene, o, live.get());
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";
@@ -233,7 +235,7 @@ int run(Options o) {
   if (window) {
     window->show_strain(o.strain);
     window->set_paused(o.paused);
-    show_in_window(scene, run, *window, o.speed);
+    show_in_window(run, *window, o.speed);
     run.check();
     status = run.finish();
   } else {

@@ -19,9 +19,8 @@ OMEGA = math.sqrt(12 * 100 * 625)   # of grid1, at most [1/s]
 SECONDS = 2                         # of the scene
 
 
-def recording(verdict: judge.Verdict) -> str:
-    """The requests for a run of the scene of section 6.2 on grid1 by both
-    methods."""
+def scene_of(verdict: judge.Verdict) -> str:
+    """The scene of section 6.2 on grid1, run by both methods."""
     most = .8 * verdict.limit / OMEGA if verdict.limit else .001
     dt = min(.001 * max(1, verdict.evaluations), most)
     lines = (ROOT / "data/scenes/constraints.toml").read_text("utf-8")
@@ -29,11 +28,9 @@ def recording(verdict: judge.Verdict) -> str:
         ("#", "dt", "method", "t-end"))]
     scene = [f'nodes = "{ROOT}/data/grid1.nodes"',
              f'tets = "{ROOT}/data/grid1.tets"', *keep, f"dt = {dt!r}",
-             "t-end = 5", 'method = "yours"']
-    return "\n".join(["mass_spring input 1", f'0 scene 0 0 "{verdict.step}"',
-                      *(f"| {line}" for line in scene),
-                      "0 compare verlet 1 equal-work",
-                      f"{int(SECONDS / dt)} end", ""])
+             f"t-end = {SECONDS}", 'method = "yours"']
+    share = dt / max(1, verdict.evaluations) * OMEGA / 2
+    return "\n".join([*scene, f'change = "0 compare verlet {share!r}"', ""])
 
 
 def record(verdict: judge.Verdict, path: pathlib.Path, out: str) -> int:
@@ -56,9 +53,10 @@ def record(verdict: judge.Verdict, path: pathlib.Path, out: str) -> int:
         if built.returncode:
             raise BadInput(f"{path}:1: {verdict.step} does not compile as a "
                            "method of the laboratory")
-        (folder / "both.txt").write_text(recording(verdict), "utf-8")
+        scene = folder / f"{verdict.step}.toml"
+        scene.write_text(scene_of(verdict), "utf-8")
         print(f"white: {verdict.step}; orange: Verlet, with equal work",
               flush=True)
         return subprocess.run(
-            [folder / "cloth", "--replay", folder / "both.txt", "--record",
-             out], check=False).returncode
+            [folder / "cloth", "--config", scene, "--record", out],
+            check=False).returncode

@@ -52,10 +52,6 @@ class SDLScreen : public Screen {
 
   void show(const Scene& scene, const Scene* rival) override {
     const Cloth& g = scene.cloth();
-    if (scene.recipe().name != name_) {  // a recording may load another one
-      name_ = scene.recipe().name;
-      shown_ = moving_ = false, scale_ = 0.01;
-    }
     show_failure(scene);
     const bool strain = colored_ = viewer_.strain_colors();
     if (strain) set_scale(g);
@@ -138,7 +134,6 @@ class SDLScreen : public Screen {
   std::optional<CME212::Video> film_;
   CME212::BoundingBox room_;  // looked at, and as much as it may become
   CME212::BoundingBox widest_;
-  std::string name_;  // of the scene that is shown
   bool shown_ = false, colored_ = false;
   bool moving_ = false;      // whether an obstacle is
   std::size_t version_ = 0;  // of the cloth, when its edges were shown
