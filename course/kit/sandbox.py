@@ -101,34 +101,23 @@ def watch(process: subprocess.Popen, limits: Limits,
     when that is too much. Returns the limit that was met, or "".
     """
     selector = selectors.DefaultSelector()
-    try:
-        exited = os.pidfd_open(process.pid)
-    except OSError:             # an old kernel, or a container that forbids it
-        exited = -1
     last = time.monotonic() + limits.wall
     stopped, ended = "", False
     try:
-        if exited >= 0:
-            selector.register(exited, selectors.EVENT_READ)
         for pipe in heard:
             os.set_blocking(pipe, False)
             selector.register(pipe, selectors.EVENT_READ)
         while not stopped:
+            ended = ended or process.poll() is not None
             ready = [key.fd for key, _ in selector.select(0 if ended else LOOK)]
-            if exited in ready:
-                ended = True
-                selector.unregister(exited)
-            elif exited < 0 and process.poll() is not None and not ended:
-                ended = True
-            elif ended and not ready:
+            if ended and not ready:
                 break           # drained; who else holds a pipe is ended below
             for pipe in ready:
-                if pipe != exited:
-                    data = os.read(pipe, READ_AT_ONCE)
-                    if not data:
-                        selector.unregister(pipe)
-                    elif not heard[pipe](data):
-                        stopped = "output"
+                data = os.read(pipe, READ_AT_ONCE)
+                if not data:
+                    selector.unregister(pipe)
+                elif not heard[pipe](data):
+                    stopped = "output"
             memory, threads = used(process.pid)
             if memory > limits.memory:
                 stopped = "memory"
@@ -138,8 +127,6 @@ def watch(process: subprocess.Popen, limits: Limits,
                 stopped = "time"
     finally:
         selector.close()
-        if exited >= 0:
-            os.close(exited)
         try:
             os.killpg(process.pid, signal.SIGKILL)
         except OSError:

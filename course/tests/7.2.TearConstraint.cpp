@@ -5,22 +5,10 @@
 
 namespace kit {
 
-/** The class that tears, by one of its names; or Missing. */
-template <typename First, typename... Others>
-static auto tearing_class() {
-  if constexpr (Complete<First>)
-    return std::type_identity<First>();
-  else if constexpr (sizeof...(Others) > 0)
-    return tearing_class<Others...>();
-  else
-    return std::type_identity<Missing>();
-}
-using Tear =
-    decltype(tearing_class<KIT_CONSTRAINT(KIT_TEAR), ::TearConstraint,
-                           ::TearingConstraint, ::SphereTearConstraint,
-                           ::TearSphereConstraint, ::SphereRemoveConstraint,
-                           ::RemoveSphereConstraint, ::RemoveConstraint,
-                           ::SphereConstraint2>())::type;
+/** The class that tears, or Missing. */
+template <typename C>
+using ClassOrMissing = std::conditional_t<Complete<C>, C, Missing>;
+using Tear = ClassOrMissing<KIT_CONSTRAINT(KIT_TEAR)>;
 
 static bool in_ball(const Point& p) {
   const Point u = p - Point(0.5, 0.5, -0.5);

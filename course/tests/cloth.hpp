@@ -92,13 +92,6 @@ struct PinConstraint;
 struct PlaneConstraint;
 struct SphereConstraint;
 struct TearConstraint;
-struct TearingConstraint;
-struct SphereTearConstraint;
-struct TearSphereConstraint;
-struct SphereRemoveConstraint;
-struct RemoveSphereConstraint;
-struct RemoveConstraint;
-struct SphereConstraint2;
 struct Missing {};
 inline constexpr Missing K, L, C, c;
 template <typename... T>

@@ -63,13 +63,12 @@ class Sum : public Force {
  public:
   Sum(A a, B b) : a_(a), b_(b) {}
 };
-template <typename A, typename B>
-Sum<A, B> make_combined_force(A a, B b) {
-  return Sum<A, B>(a, b);
-}
-template <typename A, typename B, typename C>
-Sum<Sum<A, B>, C> make_combined_force(A a, B b, C c) {
-  return Sum<Sum<A, B>, C>(Sum<A, B>(a, b), c);
+template <typename A, typename B, typename... More>
+auto make_combined_force(A a, B b, More... more) {
+  if constexpr (sizeof...(More) == 0)
+    return Sum<A, B>(a, b);
+  else
+    return make_combined_force(Sum<A, B>(a, b), more...);
 }
 
 struct Constraint {
@@ -138,13 +137,12 @@ class Both : public Constraint {
  public:
   Both(A a, B b) : a_(a), b_(b) {}
 };
-template <typename A, typename B>
-Both<A, B> make_combined_constraint(A a, B b) {
-  return Both<A, B>(a, b);
-}
-template <typename A, typename B, typename C>
-Both<Both<A, B>, C> make_combined_constraint(A a, B b, C c) {
-  return Both<Both<A, B>, C>(Both<A, B>(a, b), c);
+template <typename A, typename B, typename... More>
+auto make_combined_constraint(A a, B b, More... more) {
+  if constexpr (sizeof...(More) == 0)
+    return Both<A, B>(a, b);
+  else
+    return make_combined_constraint(Both<A, B>(a, b), more...);
 }
 
 template <typename G, typename F>

@@ -34,16 +34,9 @@ class SDLViewer : public NoViewer {
   std::map<typename G::node_type, unsigned> empty_node_map(const G&) const {
     return {};
   }
-  template <typename It, typename Map>
-  void add_nodes(It first, It last, Map&) {
-    kit::film_nodes(first, last);
-  }
-  template <typename It, typename Color, typename Map>
-  void add_nodes(It first, It last, Color, Map&) {
-    kit::film_nodes(first, last);
-  }
-  template <typename It, typename Color, typename Position, typename Map>
-  void add_nodes(It first, It last, Color, Position, Map&) {
+  /** Colors, positions and a map of nodes may follow. */
+  template <typename It, typename... More>
+  void add_nodes(It first, It last, More&&...) {
     kit::film_nodes(first, last);
   }
   template <typename It, typename Map>
