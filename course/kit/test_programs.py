@@ -1,10 +1,13 @@
-"""Tests of make class: a class of clones, graded, ended and graded on.
+"""Tests of the grader's programs, run as make runs them: whole gradings, the
+same bytes twice and as Gradescope does it; tests that students write; a class
+of clones, graded, ended and graded on.
 
-Two minutes of processor time: it compiles.
+Four minutes of processor time: they compile.
 """
 
 import csv
 import datetime
+import hashlib
 import json
 import os
 import pathlib
@@ -15,15 +18,188 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
+import zipfile
 
+import autograder
 import child
 import dates
+import judge
+import markers
 import once
 import ranking
 import submission
 import synthetic
 
-GRADES = 600    # seconds
+LIMIT = 600     # seconds: they compile
+# A graph that crashes in some ways whose texts hold addresses or lines.
+FAULTS = [
+    ("    remove_edge(*it);\n    return it;",
+     "    struct Down {\n"
+     "      static int go(volatile int* p) { return *p + go(p) + *p; }\n"
+     "    };\n"
+     "    volatile int zero = 0;\n"
+     "    return Down::go(&zero) ? it : edge_end();"),
+    ("    remove_node(*it);\n    return it;",
+     "    int* gone = new int(1);\n"
+     "    delete gone;\n"
+     "    return *gone ? it : node_end();"),
+]
+
+
+TESTS = """#include "cloth.hpp"
+TASK("5.1.GravityForce", weight) {
+  kit::Bodies b;
+  b.add(Point(0.5, 0.5, 0.5), 2);
+  kit::Cloth g;
+  kit::fill(g, b);
+  kit::with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
+    F gravity;
+    CHECK_NEAR(kit::force_on(gravity, g, 0), Point(0, 0, -19.62), 1e-9);
+  });
+}
+TASK("5.1.GravityForce", empty) {}
+TASK("5.1.DampingForce", idle) { CHECK(true, "nothing"); }
+TASK("5.1.GravityForce", always_fails) { CHECK(false, "pigs to fly"); }
+"""
+
+
+class Programs(unittest.TestCase):
+    def setUp(self):
+        self.top = pathlib.Path(tempfile.mkdtemp(prefix="kit-test-"))
+        self.addCleanup(shutil.rmtree, self.top)
+
+    def run_kit(self, program, where=once.ROOT, status=0, **variables):
+        """What a program of the kit says and complains of."""
+        done = child.run(
+            [sys.executable, once.KIT / program], LIMIT, cwd=where, text=True,
+            capture_output=True, env={"PATH": os.environ["PATH"], **{
+                key: str(value) for key, value in variables.items()}})
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done.stdout, done.stderr
+
+
+class Grading(Programs):
+    def setUp(self):
+        super().setUp()
+        text = markers.solution((once.ROOT / "Graph.hpp").read_text("utf-8"))
+        for old, new in FAULTS:
+            self.assertEqual(text.count(old), 1)
+            text = text.replace(old, new)
+        self.submission = self.top / "submission"
+        self.submission.mkdir()
+        (self.submission / "Graph.hpp").write_text(text, encoding="utf-8")
+
+    def grade(self, folder, where):
+        """The text and the three files."""
+        files = [self.top / name for name in ("json", "junit", "results")]
+        said, complaint = self.run_kit(
+            "grade.py", where, DIR=folder,
+            **{file.name.upper(): file for file in files})
+        self.assertEqual(complaint, "")
+        return [said, *(file.read_text("utf-8") for file in files)]
+
+    def test_same_bytes_here_and_in_the_autograder(self):
+        first = self.grade(self.submission, "/")
+        second = self.grade("submission", self.top)
+        self.assertEqual(first, second)
+        self.hold(first)
+        self.assertEqual(first[3], self.at_gradescope())
+
+    def test_nothing_is_graded_where_the_solution_fails(self):
+        def judged(*_):
+            return {"a": judge.Result("passed"),
+                    "b": judge.Result("failed", "", "1", "2")}
+        kit = once.Kit()
+        with unittest.mock.patch("judge.judge", judged):
+            for _ in range(2):      # and it is not kept
+                with self.assertRaisesRegex(once.KitError, (
+                        r"^nothing is graded: this system is .*g\+\+.* "
+                        r"otherwise in b, failed: expected 1, got 2\n")):
+                    judge.prepare(kit, {"a": "graph", "b": "graph"}, 1)
+
+    def hold(self, texts):
+        text, data = texts[0], json.loads(texts[1])
+        self.assertRegex(text, "7.1 remove_node\\(iterator\\) 0/3\\.\n(.*\n)+?"
+                         "  Crashed: AddressSanitizer: heap-use-after-free, "
+                         r"READ of size 4 at Graph\.hpp:\d+\.")
+        self.assertRegex(text, "7.1 remove_edge\\(iterator\\) 0/3\\.\n(.*\n)+?"
+                         "  Crashed: AddressSanitizer: stack-overflow at "
+                         r"Graph\.hpp:\d+\.")
+        self.assertIn("there is no mass_spring.hpp", text)
+        of_graph = {task["id"]: task["status"] for task in data["tasks"]
+                    if task["status"] != "missing"}
+        self.assertEqual([id for id, how in of_graph.items()
+                          if how != "passed"],
+                         ["7.1.remove_node_iterator",
+                          "7.1.remove_edge_iterator"])
+        for word in ("0x", "/tmp", "unit1", "kit-grade"):
+            self.assertNotIn(word, "".join(texts))
+
+    def at_gradescope(self):
+        """results.json of the zip, unpacked as Gradescope does."""
+        root = self.top / "autograder"
+        archive = self.top / "autograder.zip"
+        digests = set()
+        for _ in range(2):
+            autograder.write(archive)
+            digests.add(hashlib.sha256(archive.read_bytes()).hexdigest())
+        self.assertEqual(len(digests), 1)
+        with zipfile.ZipFile(archive) as content:
+            content.extractall(root / "source")
+            for info in content.infolist():
+                os.chmod(root / "source" / info.filename,
+                         info.external_attr >> 16 & 0o777)
+        shutil.copytree(self.submission, root / "submission")
+        (root / "results").mkdir()
+        # Files that only their owner may read, below a folder that only he may
+        # enter; and a build/ that was copied from elsewhere.
+        self.top.chmod(0o700)
+        shutil.copy(root / "source/run_autograder", root)
+        old = root / "source/build/kit/include/CME212"
+        old.parent.mkdir(parents=True)
+        old.symlink_to("/nowhere/CME212")
+        for command in ([root / "source/setup.sh", root],
+                        [root / "run_autograder", root]):
+            done = child.run(command, LIMIT, capture_output=True, text=True,
+                             umask=0o077)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+        hidden = root / "source/course/tests/3.1.position.cpp"
+        self.assertEqual(hidden.stat().st_mode & 0o077, 0)
+        return (root / "results/results.json").read_text("utf-8")
+
+
+class OwnTests(Programs):
+    def grade(self, text, status=0):
+        file, result = self.top / "own.cpp", self.top / "result.json"
+        if text is not None:
+            file.write_text(text, encoding="utf-8")
+        _, complaint = self.run_kit("grade_tests.py", status=status,
+                                    FILE=file, JSON=result)
+        return complaint if status else json.loads(result.read_text())
+
+    def test_what_is_found(self):
+        result = self.grade(TESTS)
+        self.assertEqual(set(result["not counted"]), {"empty", "always_fails"})
+        self.assertIn("pigs to fly", result["not counted"]["always_fails"])
+        found = result["matrix"]
+        self.assertEqual((result["found"], result["of"]), (2, len(found)))
+        self.assertGreaterEqual(result["right"], 3)
+        for name in ("without 5.1.GravityForce",
+                     "cloth: acceleration in place of weight"):
+            self.assertEqual(found[name], {
+                "weight": True, "empty": False, "idle": False,
+                "always_fails": False})
+        self.assertFalse(any(found["cloth: a force that is no ZeroForce"]
+                             .values()))
+
+    def test_bad_input(self):
+        for text, why in ((None, "No such file"), ("", "has no test"),
+                          ('// TASK("5.1.GravityForce", a) {}', "has no test"),
+                          ('TASK("9.f", a) {}', "there is no task 9.f"),
+                          ('TASK("7.1.cost", a) {} TASK("7.1.cost", a) {}',
+                           "two tests have the same name")):
+            self.assertIn(why, self.grade(text, 2))
 
 
 def at(text):
@@ -96,29 +272,22 @@ class Ranks(unittest.TestCase):
              ("c", (4, 0.3, 5))])
 
 
-class Whole(unittest.TestCase):
-    def setUp(self):
-        self.top = pathlib.Path(tempfile.mkdtemp(prefix="kit-test-"))
-        self.addCleanup(shutil.rmtree, self.top)
-
+class Whole(Programs):
     def words(self, **more):
-        return {"PATH": os.environ["PATH"], "DIR": str(self.top / "clones"),
-                "OUT": str(self.top / "grades"), "HW": "hw2",
-                "DUE": synthetic.DUE, **more}
+        return {"DIR": str(self.top / "clones"),
+                "OUT": str(self.top / "grades"),
+                "HW": "hw2", "DUE": synthetic.DUE, **more}
 
     def run_class(self, status=0, **more):
-        done = child.run(
-            [sys.executable, once.KIT / "whole_class.py"], GRADES, text=True,
-            capture_output=True, env=self.words(**more), cwd=once.ROOT)
-        self.assertEqual(done.returncode, status, done.stderr)
-        return done.stdout + done.stderr
+        return "".join(self.run_kit("whole_class.py", status=status,
+                                    **self.words(**more)))
 
     def ended(self, **more):
         """A run that is killed when it has graded one content."""
         with subprocess.Popen(
                 [sys.executable, once.KIT / "whole_class.py"], text=True,
-                stdout=subprocess.PIPE, env=self.words(**more), cwd=once.ROOT,
-                start_new_session=True) as run:
+                stdout=subprocess.PIPE, cwd=once.ROOT, start_new_session=True,
+                env={"PATH": os.environ["PATH"], **self.words(**more)}) as run:
             assert run.stdout
             said = run.stdout.readline()
             os.killpg(run.pid, signal.SIGKILL)
