@@ -173,19 +173,14 @@ class Take(Folder):
         self.refused("Graph.hpp is a symbolic link")
 
     def test_takes_a_tag_and_no_setting_of_the_clone(self):
-        def git(*words):
-            child.run(["git", "-C", self.folder, "-c", "user.name=a", "-c",
-                       "user.email=b", *words], check=True,
-                      capture_output=True)
-        git("init", "-q")
         self.put("Graph.hpp", "tagged")
         (self.folder / "link.hpp").symlink_to("/etc/passwd")
-        git("add", "."), git("commit", "-qm", "x"), git("tag", "hw2")
+        self.commit()
         self.put("Graph.hpp", "later")
         bad = self.top / "bad"
         for name in ("core.fsmonitor", "core.sshCommand", "core.pager",
                      "filter.x.smudge", "core.alternateRefsCommand"):
-            git("config", name, f"touch {bad}")
+            self.git("config", name, f"touch {bad}")
         taken = submission.take(str(self.folder), "hw2")
         self.assertEqual(taken.files, {"Graph.hpp": b"tagged"})
         self.assertEqual(taken.notes, ["link.hpp is a symbolic link: left out"])
@@ -200,6 +195,11 @@ class Take(Folder):
                           "user.email=b", *words], check=True, text=True,
                          capture_output=True, **options).stdout.strip()
 
+    def commit(self):
+        """All that is in the folder, tagged."""
+        self.git("init", "-q"), self.git("add", ".")
+        self.git("commit", "-qm", "x"), self.git("tag", "hw2")
+
     def test_a_tree_that_holds_itself_many_times_is_refused(self):
         self.git("init", "-q")
         blob = self.git("hash-object", "-w", "--stdin", input="")
@@ -212,10 +212,8 @@ class Take(Folder):
         self.refused("holds too many files", "hw2")
 
     def test_a_blob_that_is_missing_is_left_out(self):
-        self.git("init", "-q")
         self.put("Graph.hpp", "1"), self.put("more.hpp", "2")
-        self.git("add", "."), self.git("commit", "-qm", "x")
-        self.git("tag", "hw2")
+        self.commit()
         for name in ("more.hpp", "Graph.hpp"):
             blob = self.git("rev-parse", f"hw2:{name}")
             (self.folder / ".git/objects" / blob[:2] / blob[2:]).unlink()
@@ -247,7 +245,9 @@ class Take(Folder):
 LONG = [
     "x" * 500000, "struct a{" * 30000, "/*" * 200000, '"\\' * 200000,
     'R"a(' * 100000, "typedef Graph <" + " " * 400000, "#/*" * 100000,
-    "typedef Graph <" * 30000, "GravityForce:" * 30000, "\\\n" * 200000]
+    "typedef Graph <" * 30000, "GravityForce:" * 30000, "\\\n" * 200000,
+    "class " * 150000 + "(", "void f() {}\n" * 80000, '"{' * 300000,
+    "f() : a{}" + ", a{}" * 150000]
 
 
 class Read(unittest.TestCase):
@@ -256,10 +256,11 @@ class Read(unittest.TestCase):
     def test_all_that_reads_sources(self):
         child.run([sys.executable, "-c", """
 import json, sys
-import build, names, submission
+import build, mend, names, submission
 for text in json.load(sys.stdin):
     files = {"mass_spring.hpp": text.encode()}
     submission.suspects("a.hpp", files["mass_spring.hpp"])
+    list(mend.functions(text))
     names.defines(files)
     build.macros(files)
 """], 100, cwd=once.KIT, input=json.dumps(LONG), text=True, check=True)
