@@ -170,7 +170,7 @@ RunReadings Live::Side::readings(bool sharp) {
   RunReadings r;
   r.method = method.info.name;
   r.dt = scene->dt(), r.dt_unit = dt_unit;
-  if (sharp) sharp_limit = scene->sharp_limit();
+  if (sharp) sharp_limit = scene->stepper().sharp_limit();
   r.safe_limit = safe_limit, r.sharp_limit = sharp_limit;
   r.steps = scene->steps(), r.time = scene->time();
   r.evaluations = scene->evaluations();

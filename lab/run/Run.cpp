@@ -145,7 +145,7 @@ void Run::announce() const {
     std::cout << line << '\n';
   const std::string method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
-  const bool sharp = scene_.step_rule() == StepRule::sharp;
+  const bool sharp = scene_.stepper().step_rule() == StepRule::sharp;
   std::ostringstream out;
   out.precision(3);
   out << "dt = " << dt << " s";
@@ -348,7 +348,7 @@ void Run::add_row() {
     row += CME212::to_text(a) + ',';
   row += std::to_string(g.num_nodes()) + ',' + std::to_string(g.num_edges());
   const EnergyFlow& flow = scene_.flow();
-  for (double a : {flow.work, scene_.drag_loss(), scene_.drift(e)})
+  for (double a : {flow.work, scene_.stepper().drag_loss(), scene_.drift(e)})
     row += ',' + CME212::to_text(a);
   row += ',' + std::to_string(scene_.evaluations());
   if (!columns_of(o_.model.measure).empty())
@@ -409,7 +409,7 @@ void Run::tell_work() const {
   using CME212::count_of;
   std::string text =
       count_of(std::size_t(scene_.evaluations()), "force evaluation");
-  const Work w = scene_.work();
+  const Work w = scene_.stepper().work();
   for (const auto& [count, what] :
        {std::pair(w.inner, "inner step"), std::pair(w.newton, "linear system"),
         std::pair(w.products, "matrix product"),

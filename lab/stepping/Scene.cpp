@@ -10,57 +10,54 @@
 namespace lab {
 
 Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
-    : Stepper(step, method, Cloth()), recipe_(std::move(recipe)) {
-  restart();
-}
+    : recipe_(std::move(recipe)), stepper_(build(), step, method) {}
 Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
-    : Stepper(step, method, other.cloth_),
-      recipe_(other.recipe_),
+    : recipe_(other.recipe_),
+      system_(other.system_),
       held_(other.held_),
-      changed_(true) {
-  gravity_ = recipe_.gravity, acting_ = other.acting_, hand_ = other.hand_;
-  follows_drag_ = other.follows_drag_;
-  watched_.emplace(recipe_.holding(cloth_, held_));
-  begin(other.time());
+      changed_(true),
+      stepper_(hold(), step, method, other.time()) {
+  if (other.stepper_.follows_drag()) follow_drag();
+}
+
+/** Build the system as it starts. */
+System& Scene::build() {
+  Cloth& g = system_.cloth;
+  g.clear();
+  recipe_.build(g);
+  system_.acting = recipe_.force(g), system_.gravity = recipe_.gravity;
+  system_.hand.reset();
+  held_ = recipe_.held ? recipe_.held(g) : std::vector<HeldNodes>();
+  system_.watched.emplace(recipe_.constraint(g));
+  return system_;
+}
+
+/** Make the constraint anew, with the pins held_. */
+System& Scene::hold() {
+  system_.watched.emplace(recipe_.holding(system_.cloth, held_));
+  return system_;
 }
 
 void Scene::restart() {
-  cloth_.clear();
-  recipe_.build(cloth_);
-  acting_ = recipe_.force(cloth_), gravity_ = recipe_.gravity;
-  hand_.reset(), held_.clear(), changed_ = false, diagnosis_.reset();
-  if (recipe_.held) held_ = recipe_.held(cloth_);
-  watched_.emplace(recipe_.constraint(cloth_));
-  forget_limits();
-  begin(0);
+  changed_ = false, diagnosis_.reset();
+  build();
+  stepper_.restart();
 }
 
 // ------------------------------------------------------------------- Changes
 
-/** Make sure that the present state is good, or go back to the last good one.
- * Then apply @a change and continue. */
 template <typename Change>
 void Scene::edit(Change change) {
-  settle();
-  const double before = energy().total();
-  change();
-  EnergyFlow flow = this->flow();
-  flow.work += energy().total() - before;
-  start(flow);
+  stepper_.edit(change);
   changed_ = true, diagnosis_.reset();
 }
 
 void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
-  settle();
-  const double dt = step.fixed() ? step.dt : limits().chosen(method, step.rule);
-  edit([&] {
-    entry_ = method, step_ = step;
-    clock_.set_dt(dt);
-    make_method();
-  });
+  stepper_.change_method(method, step);
+  changed_ = true, diagnosis_.reset();
 }
 
 void Scene::change_forces(const Recipe& recipe) {
@@ -68,12 +65,12 @@ void Scene::change_forces(const Recipe& recipe) {
   recipe.build(fresh);
   CombinedForces acting = recipe.force(fresh);
   edit([&] {
-    recipe_ = recipe, gravity_ = recipe.gravity;
-    acting_ = std::move(acting);
-    for (Edge e : cloth_.edges())
+    recipe_ = recipe, system_.gravity = recipe.gravity;
+    system_.acting = std::move(acting);
+    for (Edge e : cloth().edges())
       e.value().K = arrays(fresh).edge_values()[e.id()].K;
-    forget_limits();
-    make_method();
+    stepper_.forget_limits();
+    stepper_.make_method();
   });
 }
 
@@ -90,16 +87,16 @@ bool Scene::is_pinned(unsigned node) const {
 }
 
 bool Scene::pin(unsigned node) {
-  if (!is_there(cloth_, node) || is_pinned(node)) return false;
+  if (!is_there(cloth(), node) || is_pinned(node)) return false;
   edit([&] {
-    arrays(cloth_).node_values()[node].vel = Point();
+    arrays(cloth()).node_values()[node].vel = Point();
     if (held_.empty() || held_.back().motion.velocity != Point())
       held_.emplace_back();
     auto& nodes = held_.back().nodes;
     nodes.insert(
         std::ranges::lower_bound(nodes, node, {}, &HeldNodes::Held::id),
-        {node, arrays(cloth_).positions()[node]});
-    watched_.emplace(recipe_.holding(cloth_, held_));
+        {node, arrays(cloth()).positions()[node]});
+    hold();
   });
   return true;
 }
@@ -111,8 +108,8 @@ bool Scene::unpin(unsigned node) {
       std::erase_if(h.nodes,
                     [node](const auto& held) { return held.id == node; });
     std::erase_if(held_, [](const HeldNodes& h) { return h.nodes.empty(); });
-    watched_.emplace(recipe_.holding(cloth_, held_));
-    forget_limits();
+    hold();
+    stepper_.forget_limits();
   });
   return true;
 }
@@ -121,26 +118,26 @@ unsigned Scene::cut(std::span<const std::array<unsigned, 2>> edges) {
   unsigned count = 0;
   edit([&] {
     const auto node = [this](unsigned id) {
-      return is_there(cloth_, id) ? arrays(cloth_).node_with_id(id) : Node();
+      return is_there(cloth(), id) ? arrays(cloth()).node_with_id(id) : Node();
     };
     for (const auto& [i, j] : edges)
-      count += cloth_.remove_edge(node(i), node(j));
+      count += cloth().remove_edge(node(i), node(j));
   });
   return count;
 }
 
 bool Scene::grab(unsigned node, const Point& target) {
   constexpr double share = 1 / 8., weights = 2;
-  if (!is_there(cloth_, node)) return false;
+  if (!is_there(cloth(), node)) return false;
   double sum = 0;  // of K [N/m]
-  for (Edge e : arrays(cloth_).node_with_id(node).edges()) sum += e.value().K;
+  for (Edge e : arrays(cloth()).node_with_id(node).edges()) sum += e.value().K;
   pull(HandForce(node, target, share * sum,
-                 weights * total_mass(cloth_) * grav));
+                 weights * total_mass(cloth()) * grav));
   return true;
 }
 
 void Scene::move_hand(const Point& target) {
-  HandForce hand = *hand_;
+  HandForce hand = *system_.hand;
   hand.move(target);
   pull(hand);
 }
@@ -149,9 +146,7 @@ void Scene::release() { pull(std::nullopt); }
 
 /** Continue with @a hand, or with none. */
 void Scene::pull(std::optional<HandForce> hand) {
-  settle();
-  hand_ = std::move(hand);
-  hand_changed();
+  stepper_.set_hand(std::move(hand));
   changed_ = true;
 }
 
@@ -159,16 +154,16 @@ void Scene::pull(std::optional<HandForce> hand) {
 
 Explanation Scene::explanation() const {
   try {
-    return {*failure_, &diagnosis()};
+    return {*failure(), &diagnosis()};
   } catch (const Interrupted&) {
-    return {*failure_, nullptr};
+    return {*failure(), nullptr};
   }
 }
 
 std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
   const TimeStep step = {
       .dt = cure.dt,
-      .tolerance = cure.method.info.adaptive ? step_.tolerance : 0};
+      .tolerance = cure.method.info.adaptive ? stepper_.step_tolerance() : 0};
   return changed_ ? std::make_unique<Scene>(*this, step, cure.method)
                   : std::make_unique<Scene>(recipe_, step, cure.method);
 }
@@ -176,22 +171,24 @@ std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   const auto copy = [this] {
     auto scene = std::make_unique<Scene>(
-        *this, TimeStep{.dt = clock_.dt, .tolerance = step_.tolerance}, entry_);
-    scene->failure_ = failure_;
+        *this, TimeStep{.dt = dt(), .tolerance = stepper_.step_tolerance()},
+        stepper_.method_entry());
+    scene->stepper_.set_failure(failure());
     return scene;
   };
   auto ahead = copy();
   const auto is_far = [&] {
-    const auto now = arrays(std::as_const(ahead->cloth_)).positions();
-    for (Node n : cloth_.nodes())
-      if (arrays(ahead->cloth_).node_in_use(n.id()) &&
+    const auto now = arrays(std::as_const(ahead->cloth())).positions();
+    for (Node n : cloth().nodes())
+      if (arrays(ahead->cloth()).node_in_use(n.id()) &&
           norm(now[n.id()] - n.position()) > distance)
         return true;
     return false;
   };
-  for (int left = 1000; left > 0 && !is_far() && ahead->advance(); --left)
+  for (int left = 1000; left > 0 && !is_far() && ahead->stepper_.advance();
+       --left)
     if (interrupted()) break;
-  return ahead->is_finite() ? std::move(ahead) : copy();
+  return ahead->stepper_.is_finite() ? std::move(ahead) : copy();
 }
 
 }  // namespace lab

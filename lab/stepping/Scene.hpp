@@ -14,8 +14,8 @@
 
 namespace lab {
 
-/** A scene, ready to run. Its steps and what it reports are in Stepper.hpp. */
-class Scene : public Stepper {
+/** A scene, ready to run. */
+class Scene {
  public:
   /** At t = 0, as the recipe builds it.
    * @pre step.dt > 0
@@ -34,6 +34,48 @@ class Scene : public Stepper {
   void restart();
 
   const Recipe& recipe() const { return recipe_; }
+  /** The cloth; between two steps it may be changed in any way. */
+  Cloth& cloth() { return system_.cloth; }
+  const Cloth& cloth() const { return system_.cloth; }
+  /** Counts the nodes that it stopped from tunnelling through obstacles. */
+  const WatchedConstraint& watched() const { return *system_.watched; }
+
+  // As in Stepper.hpp:
+  static constexpr int guard_interval = Stepper::guard_interval;
+  const Stepper& stepper() const { return stepper_; }
+  bool step(double t_end = no_limit) { return stepper_.step(t_end); }
+  bool steps_at_once(int most, double t_end = no_limit) {
+    return stepper_.steps_at_once(most, t_end);
+  }
+  bool run_to(double t_end, const std::function<void()>& after = {}) {
+    return stepper_.run_to(t_end, after);
+  }
+  bool done(double t_end) const { return stepper_.done(t_end); }
+  bool check() { return stepper_.check(); }
+  bool settle() { return stepper_.settle(); }
+  const MethodInfo& method() const { return stepper_.method(); }
+  double dt() const { return stepper_.dt(); }
+  long long steps() const { return stepper_.steps(); }
+  double time() const { return stepper_.time(); }
+  long long settled_steps() const { return stepper_.settled_steps(); }
+  const std::optional<StepControl>& control() const {
+    return stepper_.control();
+  }
+  Energies energy() const { return stepper_.energy(); }
+  const EnergyFlow& flow() const { return stepper_.flow(); }
+  void follow_drag() { stepper_.follow_drag(); }
+  double drift(const Energies& now) const { return stepper_.drift(now); }
+  void watch_energy(double t_end) { stepper_.watch_energy(t_end); }
+  const std::optional<EnergyWatch>& energy_watch() const {
+    return stepper_.energy_watch();
+  }
+  long long evaluations() const { return stepper_.evaluations(); }
+  const std::optional<Failure>& failure() const { return stepper_.failure(); }
+  double safe_limit(const MethodEntry& m) const {
+    return stepper_.safe_limit(m);
+  }
+  double safe_limit() const { return stepper_.safe_limit(); }
+  void archive(Archive& a) { stepper_.archive(a); }
 
   // Changes between two steps: of the present state or, after a failure, of the
   // last good one. The energy that a change adds counts as work in flow(). All
@@ -66,7 +108,7 @@ class Scene : public Stepper {
   void move_hand(const Point& target);
   void release();
   /** nullopt if there is no hand. Its node may have been removed. */
-  const std::optional<HandForce>& hand() const { return hand_; }
+  const std::optional<HandForce>& hand() const { return system_.hand; }
 
   // After a failure:
 
@@ -93,10 +135,14 @@ class Scene : public Stepper {
 
  private:
   Recipe recipe_;
+  System system_;
   std::vector<HeldNodes> held_;
   bool changed_ = false;                        // since the start
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
+  Stepper stepper_;
 
+  System& build();
+  System& hold();
   template <typename Change>
   void edit(Change change);
   void pull(std::optional<HandForce> hand);

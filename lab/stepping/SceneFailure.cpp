@@ -15,14 +15,15 @@ namespace lab {
 namespace {
 
 FailedRun failed_run(const Scene& s) {
-  const MethodEntry& method = s.method_entry();
+  const Stepper& stepper = s.stepper();
+  const MethodEntry& method = stepper.method_entry();
   FailedRun run = {.method = method, .dt = s.dt(), .time = no_limit};
   if (s.failure()->kind == Failure::Kind::start) return run;
-  run.time = std::min(s.time() + s.dt(), s.t_end());
+  run.time = std::min(s.time() + s.dt(), stepper.t_end());
   run.solver = s.failure()->kind == Failure::Kind::refused;
-  run.sharp = s.sharp_limit(40);
+  run.sharp = stepper.sharp_limit(40);
   run.safe = s.safe_limit();
-  run.safe_without_drag = s.limits().safe_without_drag(method);
+  run.safe_without_drag = stepper.limits().safe_without_drag(method);
   run.verlet = s.safe_limit(entry_of<Verlet>());
   return run;
 }
@@ -57,7 +58,8 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
       passed = passed &&
                std::abs(trial->energy_watch()->share()) <= energy_tolerance;
     const auto finer = failed.anew({cure.method, cure.dt / 2});
-    const double apart = energy_tolerance * largest + failed.round_off();
+    const double apart =
+        energy_tolerance * largest + failed.stepper().round_off();
     for (const auto& [time, b] : samples)
       passed = passed && finer->run_to(time, end_if_interrupted) &&
                std::abs(balance(finer->energy(), finer->flow()) - b) <= apart;
@@ -72,7 +74,8 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
 const Diagnosis& Scene::diagnosis() const {
   if (diagnosis_) return *diagnosis_;
   const FailedRun run = failed_run(*this);
-  const double end = std::isfinite(t_end()) ? t_end() : 2 * run.time;
+  const double t_end = stepper_.t_end();
+  const double end = std::isfinite(t_end) ? t_end : 2 * run.time;
   return diagnosis_.emplace(diagnose(
       run, [&](const Cure& cure) { return attempt(*this, cure, end); }));
 }

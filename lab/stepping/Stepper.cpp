@@ -19,16 +19,19 @@ static_assert(TimeStep{}.gain == energy_tolerance);
 
 // --------------------------------------------------------------------- A run
 
-Stepper::Stepper(const TimeStep& step, const MethodEntry& method,
-                 const Cloth& g)
-    : cloth_(g), step_(step), entry_(method) {}
+Stepper::Stepper(System& system, const TimeStep& step,
+                 const MethodEntry& method, double t)
+    : system_(system), step_(step), entry_(method) {
+  restart(t);
+}
 
-void Stepper::begin(double t) {
+void Stepper::restart(double t) {
+  limits_.forget();
   clock_ = {.dt = step_.dt, .from = t};
   make_method();
   plan();
   evaluations_ = 0, work_ = {};
-  start_energy_ = energies(cloth_, gravity_).total();
+  start_energy_ = energies(system_.cloth, system_.gravity).total();
   if (!step_.fixed() && std::isfinite(start_energy_))
     clock_.set_dt(limits_.chosen(entry_, step_.rule));
   start({});
@@ -41,33 +44,54 @@ void Stepper::make_method() {
   if (step_.tolerance > 0) method_->set_tolerance(step_.tolerance);
 }
 
+/** Continue from the present state, in which anything may have changed, with
+ * the energy @a flow until now. */
 void Stepper::start(const EnergyFlow& flow) {
   plan();
   failure_.reset();
-  balance_.emplace(cloth_, time(), acting_, constraint_, gravity_);
+  balance_.emplace(system_.cloth, time(), system_.acting, constraint_,
+                   system_.gravity);
   go_on(clock_, flow);
   hand_changed();
-  guard_.emplace(cloth_, gravity_, clock_.dt, this->flow());
+  guard_.emplace(system_.cloth, system_.gravity, clock_.dt, this->flow());
   if (!is_finite())
-    failure_ = {Failure::Kind::start, WorstPlace(cloth_), entry_.info.name,
-                time(), dt()};
+    failure_ = {Failure::Kind::start, WorstPlace(system_.cloth),
+                entry_.info.name, time(), dt()};
   start_control();
 }
 
 /** Make the plans of all forces, with the hand, and of the constraint. */
 void Stepper::plan() {
-  CombinedForces::List all = acting_.parts();
-  if (hand_) all.push_back({std::shared_ptr<void>(), &*hand_});  // it moves
+  CombinedForces::List all = system_.acting.parts();
+  if (system_.hand)
+    all.push_back({std::shared_ptr<void>(), &*system_.hand});  // it moves
   if (force_) evaluations_ += force_->evaluations();
   force_.emplace(CombinedForces(std::move(all)));
-  constraint_ = *watched_;
+  constraint_ = *system_.watched;
+}
+
+void Stepper::change_method(const MethodEntry& method, const TimeStep& step) {
+  settle();
+  const double dt = step.fixed() ? step.dt : limits_.chosen(method, step.rule);
+  edit([&] {
+    entry_ = method, step_ = step;
+    clock_.set_dt(dt);
+    make_method();
+  });
+}
+
+void Stepper::set_hand(std::optional<HandForce> hand) {
+  settle();
+  system_.hand = std::move(hand);
+  hand_changed();
 }
 
 void Stepper::hand_changed() {
   plan();
   method_->restart();
-  if (hand_ && arrays(cloth_).node_in_use(hand_->node()))
-    balance_->watch(arrays(cloth_).node_with_id(hand_->node()), &*hand_,
+  if (const auto& hand = system_.hand;
+      hand && arrays(system_.cloth).node_in_use(hand->node()))
+    balance_->watch(arrays(system_.cloth).node_with_id(hand->node()), &*hand,
                     time());
   else
     balance_->watch({}, nullptr, time());
@@ -95,8 +119,8 @@ void Stepper::start_control() {
 }
 
 void Stepper::start_drag() {
-  drag_ = force_->drag(), largest_gamma_ = largest_gamma(cloth_, drag_);
-  drag_power_ = drag_.power(cloth_), sampled_ = time();
+  drag_ = force_->drag(), largest_gamma_ = largest_gamma(system_.cloth, drag_);
+  drag_power_ = drag_.power(system_.cloth), sampled_ = time();
 }
 
 void Stepper::follow_drag() {
@@ -126,7 +150,7 @@ bool Stepper::steps_at_once(int most, double t_end) {
   if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
   most = steps_to_check(most);
   if (!advance(most)) return not_good(clock_.steps + most);
-  const bool now = arrays(cloth_).version() != version_ || done(t_end);
+  const bool now = arrays(system_.cloth).version() != version_ || done(t_end);
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
@@ -144,7 +168,7 @@ bool Stepper::steps_at_once(int most, double t_end) {
  * held nodes to their places at the start of a step, so after a pin has stopped
  * they move once more. */
 int Stepper::steps_to_check(int most) const {
-  if (hand_ || !constraint_.is_at_rest(time() - clock_.dt)) return 1;
+  if (system_.hand || !constraint_.is_at_rest(time() - clock_.dt)) return 1;
   const auto up_to_multiple = [&](int interval) {
     most = std::min(most, interval - int(clock_.steps % interval));
   };
@@ -170,16 +194,16 @@ bool Stepper::advance(int most) {
   error_.clear();
   try {
     if (h == dt && count > 1)
-      count = method_->steps(cloth_, times, count, *force_, constraint_);
+      count = method_->steps(system_.cloth, times, count, *force_, constraint_);
     else
-      method_->step(cloth_, time(), h, *force_, constraint_), count = 1;
+      method_->step(system_.cloth, time(), h, *force_, constraint_), count = 1;
   } catch (const StepError& e) {
     error_ = e.what();
     return false;
   }
   clock_.steps += count;
   if (last || h != dt) clock_.set_time(then);
-  balance_->follow(cloth_, time(), constraint_);
+  balance_->follow(system_.cloth, time(), constraint_);
   return true;
 }
 
@@ -197,11 +221,11 @@ void Stepper::sample_drag(bool now) {
       clock_.steps % StepControl::look_interval != 0)
     return;
   balance_->add_drag(drag_loss() - flow().drag);
-  drag_power_ = drag_.power(cloth_), sampled_ = time();
+  drag_power_ = drag_.power(system_.cloth), sampled_ = time();
 }
 
 double Stepper::drag_loss() const {
-  const double power = drag_.power(cloth_);
+  const double power = drag_.power(system_.cloth);
   return flow().drag + 0.5 * (drag_power_ + power) * (time() - sampled_);
 }
 
@@ -220,7 +244,7 @@ bool Stepper::judge(const Energies& e) {
   using Verdict = StepControl::Verdict;
   const Verdict verdict = control_->look(e, flow(), h, time() / t_end_);
   if (verdict == Verdict::take_back) return false;
-  if (arrays(cloth_).version() != version_) {
+  if (arrays(system_.cloth).version() != version_) {
     keep_both();  // removed nodes and edges do not come back
   } else if (verdict == Verdict::keep) {
     std::swap(before_, latest_);
@@ -235,14 +259,14 @@ void Stepper::keep_both() {
   before_ = latest_;
 }
 void Stepper::keep(Snapshot& s) const {
-  s.nodes.keep(cloth_);
+  s.nodes.keep(system_.cloth);
   s.clock = clock_, s.flow = flow(), s.control = control_->state();
-  s.version = arrays(cloth_).version();
+  s.version = arrays(system_.cloth).version();
 }
 
 /** The guard's verdict on the present state, of energy @a e. */
 bool Stepper::guard(const Energies& e) {
-  if (!guard_->accept(cloth_, e, flow())) return not_good(clock_.steps);
+  if (!guard_->accept(system_.cloth, e, flow())) return not_good(clock_.steps);
   keep_checked();
   return true;
 }
@@ -261,16 +285,16 @@ bool Stepper::not_good(long long last) {
 /** Continue from an earlier state with a shorter step.  @return true */
 bool Stepper::take_back() {
   const long long steps = clock_.steps - before_.clock.steps;
-  before_.nodes.restore(cloth_);
+  before_.nodes.restore(system_.cloth);
   EnergyFlow flow = before_.flow;
-  if (arrays(cloth_).version() != before_.version)  // torn meanwhile
+  if (arrays(system_.cloth).version() != before_.version)  // torn meanwhile
     flow.removed += before_.control.last + flow.work - flow.removed -
                     flow.drag - energy().total();
   control_->take_back(before_.control, steps);
   clock_ = before_.clock;
   clock_.set_dt(control_->dt());
   go_on(clock_, flow);
-  guard_->keep(cloth_);
+  guard_->keep(system_.cloth);
   looked_ = time();
   keep_both();
   return true;
@@ -279,11 +303,12 @@ bool Stepper::take_back() {
 /** Repeat the steps since the last good state until one fails.
  * @param last the step that is known to fail  @return false if one did */
 bool Stepper::replay(long long last) {
-  guard_->restore(cloth_);
+  guard_->restore(system_.cloth);
   go_on(checked_, flow_);
   while (clock_.steps < last && time() < t_end_) {
     if (!advance()) return fail(Failure::Kind::refused);
-    if (!guard_->accept(cloth_, flow())) return fail(Failure::Kind::diverged);
+    if (!guard_->accept(system_.cloth, flow()))
+      return fail(Failure::Kind::diverged);
     keep_checked();
   }
   return true;  // a node that failed and was then removed can't fail again
@@ -291,8 +316,8 @@ bool Stepper::replay(long long last) {
 
 /** Set failure(), and go back to the state before the step.  @return false */
 bool Stepper::fail(Failure::Kind kind) {
-  const WorstPlace place(cloth_);
-  guard_->restore(cloth_);
+  const WorstPlace place(system_.cloth);
+  guard_->restore(system_.cloth);
   go_on(checked_, flow_);
   failure_ = {kind, place, entry_.info.name, time(), dt(), steps() + 1, error_};
   return false;
@@ -301,9 +326,9 @@ bool Stepper::fail(Failure::Kind kind) {
 /** Continue from the present state, to which @a clock and @a flow belong. */
 void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   clock_ = clock;
-  balance_->resume(cloth_, time(), constraint_, flow);
+  balance_->resume(system_.cloth, time(), constraint_, flow);
   method_->restart();
-  sampled_ = time(), drag_power_ = drag_.power(cloth_);
+  sampled_ = time(), drag_power_ = drag_.power(system_.cloth);
   keep_checked();
 }
 
@@ -312,11 +337,12 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
 void Stepper::keep_checked() {
   checked_ = clock_;
   flow_ = flow();
-  version_ = arrays(cloth_).version();
-  const double thin = watched_->thinnest();
+  version_ = arrays(system_.cloth).version();
+  const double thin = system_.watched->thinnest();
   if (!std::isfinite(thin)) return;
-  const double gain = std::abs(gravity_) * guard_interval * clock_.dt;
-  watched_->watch(cloth_, (max_speed(cloth_) + gain) * clock_.dt > thin / 8);
+  const double gain = std::abs(system_.gravity) * guard_interval * clock_.dt;
+  system_.watched->watch(
+      system_.cloth, (max_speed(system_.cloth) + gain) * clock_.dt > thin / 8);
 }
 
 // ---------------------------------------------------------------- Checkpoints
@@ -327,18 +353,18 @@ Work Stepper::work() const {
 }
 
 void Stepper::archive(Archive& a) {
-  archive_cloth(a, cloth_);
+  archive_cloth(a, system_.cloth);
   a(clock_)(checked_)(flow_)(limits_);
   const auto not_after = [&](const StepClock& c) {
     return c.steps <= clock_.steps && c.time() <= clock_.time();
   };
   a.require(not_after(checked_) &&
             clock_.steps - checked_.steps <= guard_interval);
-  watched_->archive(a);
+  system_.watched->archive(a);
   balance_->archive(a);
   guard_->archive(a);
-  method_->archive(a, cloth_);
-  if (a.loads()) version_ = arrays(cloth_).version();
+  method_->archive(a, system_.cloth);
+  if (a.loads()) version_ = arrays(system_.cloth).version();
   long long evaluated = evaluations();
   Work worked = work();
   a(evaluated)(worked)(sampled_)(drag_power_);
@@ -356,11 +382,12 @@ void Stepper::archive(Archive& a) {
             std::isfinite(looked_));
   for (Snapshot* s : {&before_, &latest_}) {
     bool whole =
-        s->version == arrays(cloth_).version();  // nothing removed since
+        s->version == arrays(system_.cloth).version();  // nothing removed since
     a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
     a.require(not_after(s->clock));
     if (a.loads())
-      s->version = whole ? arrays(cloth_).version() : ~arrays(cloth_).version();
+      s->version = whole ? arrays(system_.cloth).version()
+                         : ~arrays(system_.cloth).version();
   }
 }
 

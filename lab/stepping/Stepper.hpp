@@ -37,7 +37,17 @@ struct StepClock {
   }
 };
 
-/** A cloth with what acts on it, a method and a clock.
+/** A cloth with what acts on it. Its address must not change: pins hold handles
+ * into the cloth. */
+struct System {
+  Cloth cloth;
+  double gravity = grav;                          ///< [m/s^2]
+  CombinedForces acting{CombinedForces::List()};  ///< without the hand
+  std::optional<HandForce> hand;
+  std::optional<WatchedConstraint> watched;  ///< nullopt only until it is built
+};
+
+/** Moves a System by a method, with a clock.
  *
  * The guard checks every 32nd state, each state after a change of the graph,
  * and the last one. It checks no others, so looking at a run does not change
@@ -50,7 +60,11 @@ class Stepper {
   /** Steps between two checks of the guard. */
   static constexpr int guard_interval = 32;
 
-  Stepper(const Stepper&) = delete;  // pins hold handles into the cloth
+  /** Begin a run of @a system, which must live longer, at time @a t [s].
+   * Throws as StepLimits::chosen() */
+  Stepper(System& system, const TimeStep& step, const MethodEntry& method,
+          double t = 0);
+  Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
   /** One step of dt(). Before @a t_end [s] the last two steps may be shorter,
@@ -77,9 +91,6 @@ class Stepper {
    * @return as step()   O(N + springs) */
   bool settle() { return !failure_ && guard(energy()); }
 
-  /** The cloth; between two steps it may be changed in any way. */
-  Cloth& cloth() { return cloth_; }
-  const Cloth& cloth() const { return cloth_; }
   const MethodInfo& method() const { return entry_.info; }
   const MethodEntry& method_entry() const { return entry_; }
   StepRule step_rule() const { return step_.rule; }
@@ -98,13 +109,16 @@ class Stepper {
   }
   /** nullopt if the step is fixed. */
   const std::optional<StepControl>& control() const { return control_; }
-  Energies energy() const { return energies(cloth_, gravity_, flow()); }
+  Energies energy() const {
+    return energies(system_.cloth, system_.gravity, flow());
+  }
   bool is_finite() const;
   /** The energy that entered and left the cloth since the start. */
   const EnergyFlow& flow() const { return balance_->flow(); }
   /** From now on flow() includes the loss by linear drag, even with fixed
    * steps.  Complexity: up to a tenth of a force evaluation a step */
   void follow_drag();
+  bool follows_drag() const { return follows_drag_; }
   /** The energy that linear drag took since the start [J].  @pre as drift() */
   double drag_loss() const;
   /** The energy gained by errors of the method since the start [J]; contact and
@@ -125,8 +139,6 @@ class Stepper {
   Work work() const;
   /** What happened when step() returned false; nullopt before. */
   const std::optional<Failure>& failure() const { return failure_; }
-  /** Counts the nodes that it stopped from tunnelling through obstacles. */
-  const WatchedConstraint& watched() const { return *watched_; }
 
   const StepLimits& limits() const { return limits_; }
   /** As in StepLimits [s], for @a method or for the present method. */
@@ -144,36 +156,38 @@ class Stepper {
    * Throws std::runtime_error if another scene is loaded.  O(N) */
   void archive(Archive& a);
 
- protected:
-  Cloth cloth_;
-  double gravity_ = grav;                          // [m/s^2]
-  CombinedForces acting_{CombinedForces::List()};  // without the hand
-  std::optional<HandForce> hand_;
-  std::optional<WatchedConstraint> watched_;
-  TimeStep step_;
-  MethodEntry entry_;
-  StepClock clock_;
-  bool follows_drag_ = false;
-  std::optional<Failure> failure_;
+  // Changes of the system between two steps: of its present state or, after a
+  // failure, of the last good one. O(N + springs) each.
 
-  /** Before begin() only protected functions may be called.  @param g copied */
-  Stepper(const TimeStep& step, const MethodEntry& method, const Cloth& g);
-  /** Begin a run from the present state at time @a t [s], with all counts and
-   * flow() at 0.
-   * @pre cloth_, gravity_, acting_, hand_ and watched_ are set
-   * Throws as StepLimits::chosen() */
-  void begin(double t);
-  /** Continue from the present state, in which anything may have changed, with
-   * the energy @a flow until now. */
-  void start(const EnergyFlow& flow);
-  /** To call after the hand has changed. The guard is kept: if every move of
-   * the hand restarted it, slow divergence would go unnoticed. */
-  void hand_changed();
-  void make_method();
+  /** Begin anew, from the present state and at time @a t [s], with all counts
+   * and flow() at 0.  Throws as the constructor */
+  void restart(double t = 0);
+  /** Let @a change do anything to the system. The energy that it adds counts as
+   * work in flow(). The guard starts anew. */
+  template <typename Change>
+  void edit(Change change) {
+    settle();
+    const double before = energy().total();
+    change();
+    EnergyFlow flow = this->flow();
+    flow.work += energy().total() - before;
+    start(flow);
+  }
+  /** Another method and step.  Throws as the constructor; then nothing has
+   * changed. */
+  void change_method(const MethodEntry& method, const TimeStep& step);
+  /** Another hand. The guard is kept: if every move of the hand restarted it,
+   * slow divergence would go unnoticed. */
+  void set_hand(std::optional<HandForce> hand);
+  /** To call in an edit() of masses, stiffnesses or held nodes. */
   void forget_limits() { limits_.forget(); }
+  /** To call in an edit() of stiffnesses: methods keep matrices. */
+  void make_method();
   /** One step, or up to @a most steps of dt, without any check. Only the last
    * one may change the graph.  @return false if a step can't be made */
   bool advance(int most = 1);
+  /** A copy of a failed run has failed, too. */
+  void set_failure(const std::optional<Failure>& f) { failure_ = f; }
 
  private:
   /** A state of the cloth to go back to. */
@@ -185,9 +199,15 @@ class Stepper {
     std::size_t version = 0;
   };
 
+  System& system_;
+  TimeStep step_;
+  MethodEntry entry_;
+  StepClock clock_;
+  bool follows_drag_ = false;
+  std::optional<Failure> failure_;
   std::optional<ForcePlan> force_;
   ConstraintPlan constraint_;
-  StepLimits limits_{cloth_, force_, constraint_, hand_};
+  StepLimits limits_{system_.cloth, force_, constraint_, system_.hand};
   std::unique_ptr<Method> method_;
   std::optional<EnergyBalance> balance_;
   std::optional<DivergenceGuard> guard_;
@@ -209,6 +229,8 @@ class Stepper {
   double start_energy_ = 0;    // [J]
   std::string error_;          // of the method
 
+  void start(const EnergyFlow& flow);
+  void hand_changed();
   void plan();
   void start_control();
   void start_drag();
