@@ -2,9 +2,8 @@
 // answer needs: for each file in data/scenes/ all that it names, and nothing
 // more.
 //
-// The table of lab/scenes/README.md is held to what is measured here, and
-// written by
-//   WRITE_TABLE=build/need.md build/test_variation --gtest_filter='*Need*'
+// lab/scenes/needs.csv is compared with what is measured here, and written by
+//   WRITE_TABLE=build/needs.csv build/test_variation --gtest_filter='*Need*'
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -516,7 +515,7 @@ TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
   const Trial base = try_out(m);
   ASSERT_TRUE(base.ok()) << base.failure;
 
-  const std::string page = CME212::contents("lab/scenes/README.md");
+  const std::string needs = CME212::contents("lab/scenes/needs.csv");
   const char* table = std::getenv("WRITE_TABLE");
   std::ofstream out;
   if (table) out.open(table, std::ios::app);
@@ -533,19 +532,17 @@ TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
     else
       EXPECT_LT(change, m.tolerance / room) << "is needed: " << v.part;
 
-    const std::string key = "| " + GetParam() + " | " +
-                            (is_dropped ? "without " : "with ") + v.part +
-                            " | ";
-    out << key << std::setprecision(2) << change << " | " << m.tolerance
-        << (*unit_of(what) ? " " : "") << unit_of(what) << " |\n";
-    const auto at = page.find(key);
-    EXPECT_NE(at, std::string::npos)
-        << "lab/scenes/README.md has no row " << key;
+    const std::string key =
+        GetParam() + (is_dropped ? ",without " : ",with ") + v.part + ',';
+    out << key << std::setprecision(2) << change << ',' << m.tolerance << ','
+        << unit_of(what) << '\n';
+    const auto at = needs.find('\n' + key);
+    EXPECT_NE(at, std::string::npos) << "needs.csv has no row " << key;
     if (at == std::string::npos) continue;
     char* end = nullptr;
-    const double said = std::strtod(page.c_str() + at + key.size(), &end);
+    const double said = std::strtod(needs.c_str() + at + 1 + key.size(), &end);
     EXPECT_NEAR(said, change, 0.05 * change + 1e-6) << key;
-    EXPECT_EQ(std::strtod(end + 3, nullptr), m.tolerance) << key;
+    EXPECT_EQ(std::strtod(end + 1, nullptr), m.tolerance) << key;
   }
 }
 

@@ -24,10 +24,8 @@ struct MethodInfo {
   const char* source;
   const char* good_for;
   const char* fails_when;
-  bool adaptive = false;  ///< makes inner steps, so dt may be of any length
-  /** Stiff springs are taken in inner steps. limit holds for the others, see
-   * soft_stiffness(). */
-  bool multirate = false;
+  bool adaptive = false;   ///< makes inner steps, so dt may be of any length
+  bool multirate = false;  ///< limit is that of soft_stiffness()
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -139,10 +137,15 @@ class BatchMethod : public Method {
 struct MethodEntry {
   MethodInfo info;
   std::unique_ptr<Method> (*make)();
+  /** The part of a force whose stiffness bounds the step; null: all of it. */
+  ForcePlan (*bounding)(const Cloth& g, const ForcePlan& force,
+                        const ConstraintPlan& constraint) = nullptr;
 };
 template <typename M>
 constexpr MethodEntry entry_of() {
-  return {M::info, [] { return std::unique_ptr<Method>(new M()); }};
+  MethodEntry e = {M::info, [] { return std::unique_ptr<Method>(new M()); }};
+  if constexpr (M::info.multirate) e.bounding = M::bounding;
+  return e;
 }
 
 }  // namespace lab

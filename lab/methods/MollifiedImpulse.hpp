@@ -53,6 +53,7 @@ class MollifiedImpulse : public BatchMethod {
       "fast motion near its limit; resonance in narrow windows",
       false,
       true};
+  static constexpr auto* bounding = soft_stiffness;
 
   MollifiedImpulse();
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,

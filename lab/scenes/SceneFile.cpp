@@ -20,11 +20,7 @@ Origins set_fields(Model& m, const std::string& file, const std::string& text,
   Origins origins{file, {}};
   auto use = [&](const KeyValue& found, std::size_t line) {
     const std::string& key = found.key;
-    const auto [first, is_new] = origins.line_of.emplace(key, line);
-    if (!is_new)
-      throw InputError(file, line,
-                       key + " is set a second time, first on line " +
-                           std::to_string(first->second));
+    origins.line_of.emplace(key, line);
     if (!set_field(m, key, found.values) && !(other && other(found)))
       throw InputError(
           file, line,

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/StiffSplit.hpp"
 
 namespace lab {
 
@@ -29,16 +28,12 @@ double StepLimits::chosen(const MethodEntry& method, StepRule rule) const {
 }
 
 double StepLimits::safe(const MethodEntry& method) const {
-  const double omega = method.info.multirate
-                           ? omega_safe(cloth_, bounding(method), constraint_)
-                           : safe_omega();
-  return step_limit(method, with_hand(omega),
+  return step_limit(method, with_hand(safe_omega(method)),
                     largest_gamma(cloth_, force_->drag()));
 }
 
 double StepLimits::safe_without_drag(const MethodEntry& method) const {
-  return method.info.multirate ? safe(method)
-                               : step_limit(method, safe_omega());
+  return step_limit(method, safe_omega(method));
 }
 
 double StepLimits::sharp(const MethodEntry& method, int products) const {
@@ -50,12 +45,13 @@ double StepLimits::sharp(const MethodEntry& method, int products) const {
 
 double StepLimits::mild(const MethodEntry& method, const Drag& drag, double dt,
                         double share) const {
-  if (drag.none() || method.info.multirate) return no_limit;
-  return mild_step(method, dt, with_hand(safe_omega()),
+  if (drag.none() || method.bounding) return no_limit;
+  return mild_step(method, dt, with_hand(safe_omega(method)),
                    largest_gamma(cloth_, drag), share);
 }
 
-double StepLimits::safe_omega() const {
+double StepLimits::safe_omega(const MethodEntry& method) const {
+  if (method.bounding) return omega_safe(cloth_, bounding(method), constraint_);
   if (safe_omega_ < 0) safe_omega_ = omega_safe(cloth_, *force_, constraint_);
   return safe_omega_;
 }
@@ -69,8 +65,8 @@ double StepLimits::with_hand(double omega) const {
 
 /** The force whose stiffness bounds the step of @a method. */
 ForcePlan StepLimits::bounding(const MethodEntry& method) const {
-  return method.info.multirate ? soft_stiffness(cloth_, *force_, constraint_)
-                               : *force_;
+  return method.bounding ? method.bounding(cloth_, *force_, constraint_)
+                         : *force_;
 }
 
 }  // namespace lab

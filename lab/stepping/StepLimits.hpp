@@ -52,7 +52,7 @@ class StepLimits {
   mutable double safe_omega_ = -1;  // [1/s]; negative: not known yet
   mutable SharpOmega sharp_;
 
-  double safe_omega() const;
+  double safe_omega(const MethodEntry& method) const;
   double with_hand(double omega) const;
   ForcePlan bounding(const MethodEntry& method) const;
 };
