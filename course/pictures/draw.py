@@ -83,7 +83,7 @@ def build(folder: pathlib.Path, mistake: str, stage: str) -> pathlib.Path:
 def draw(name: str, folder: pathlib.Path) -> None:
     """Run the programs of a picture, and put their panels into a row."""
     count = sum(len(times) for _, _, times, _ in PICTURES[name])
-    files = []
+    files: list[str | pathlib.Path] = []
     for mistake, stage, times, low in PICTURES[name]:
         right = mistake in ("", "damped") and "mistakes" in name
         program = build(folder, mistake, stage)
