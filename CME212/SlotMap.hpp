@@ -22,10 +22,14 @@ using size_type = unsigned;
 /** No id. */
 inline constexpr size_type none = std::numeric_limits<size_type>::max();
 
-/** Make @a a long enough to hold an element @a i. */
+/** Make @a a long enough to hold an element @a i. Its memory grows by half
+ * where std::vector would double it: still O(1) amortized. */
 template <typename A>
 void grow_to_hold(A& a, std::size_t i) {
-  if (a.size() <= i) a.resize(i + 1);
+  if (a.size() > i) return;
+  if constexpr (requires { a.reserve(i); })
+    if (i >= a.capacity()) a.reserve(i + i / 2 + 4);
+  a.resize(i + 1);
 }
 
 /** Ids and indices of elements that are added and removed. The id of an element

@@ -97,7 +97,7 @@ $(foreach f,$(lab_tests) $(TEST_UNITS:%=unity/%.cpp),$(eval $(call program,$(B)/
 $(filter $(B)/test_cloth_%,$(LAB_TESTS:%=$(B)/%)) $(TEST_UNITS:%=$(B)/%): | $(B)/cloth
 ifeq ($(VIEWER),1)
 $(B)/cloth: $(B)/libviewer.a
-$(patsubst %,$(B)/test_%,viewer faces image screen): $(B)/asan/libviewer.a
+$(patsubst %,$(B)/test_%,viewer faces image screen): $(tested)/libviewer.a
 endif
 $(B)/asan/libviewer.a: $(viewer:$(B)/%=$(B)/asan/%)
 	@rm -f $@ && ar rcs $@ $^
