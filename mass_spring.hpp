@@ -164,8 +164,7 @@ class Problem1Force {
 
 // BEGIN GUIDED
 /** 5.1: the base class of all forces; by itself no force. */
-class ZeroForce {
- public:
+struct ZeroForce {
   virtual ~ZeroForce() = default;
   /** The force [N] on @a n at time @a t [s]. It may depend on all positions,
    * and on the velocity of @a n. */
@@ -173,26 +172,20 @@ class ZeroForce {
 };
 
 /** Weight: f = -m g along z. */
-class GravityForce : public ZeroForce {
- public:
-  /** @param gravity acceleration of free fall [m/s^2] */
-  explicit GravityForce(double gravity = grav) : gravity_(gravity) {}
-  double gravity() const { return gravity_; }
+struct GravityForce : ZeroForce {
+  double gravity;  ///< acceleration of free fall [m/s^2]
+  explicit GravityForce(double g = grav) : gravity(g) {}
   Point operator()(Node n, double /*t*/) const override {
     // BEGIN SOLUTION 5.1.GravityForce 3pt
-    return n.value().mass * Point(0, 0, -gravity_);
+    return n.value().mass * Point(0, 0, -gravity);
     // STUB (void)n;
     // STUB return Point();
     // END SOLUTION
   }
-
- private:
-  double gravity_;
 };
 
 /** The springs at a node, each with its own K and L. */
-class MassSpringForce : public ZeroForce {
- public:
+struct MassSpringForce : ZeroForce {
   Point operator()(Node n, double /*t*/) const override {
     // BEGIN SOLUTION 5.1.MassSpringForce 3pt
     Point f;
@@ -206,25 +199,16 @@ class MassSpringForce : public ZeroForce {
 };
 
 /** Linear drag: f = -c v. It dissipates the power c |v|^2 [W]. */
-class DampingForce : public ZeroForce {
- public:
-  /** @param c drag coefficient [kg/s].  @pre c >= 0 */
-  explicit DampingForce(double c) : c_(c) { assert(c >= 0); }
-  /** With the assignment's c = 1/N [kg/s], where N = g.num_nodes() > 0. */
-  explicit DampingForce(const Cloth& g) : DampingForce(1.0 / g.num_nodes()) {
-    assert(g.num_nodes() > 0);
-  }
-  double coefficient() const { return c_; }
+struct DampingForce : ZeroForce {
+  double c;  ///< [kg/s], >= 0; in the assignment 1/N for N nodes
+  explicit DampingForce(double drag) : c(drag) { assert(c >= 0); }
   Point operator()(Node n, double /*t*/) const override {
     // BEGIN SOLUTION 5.1.DampingForce 3pt
-    return -c_ * n.value().vel;
+    return -c * n.value().vel;
     // STUB (void)n;
     // STUB return Point();
     // END SOLUTION
   }
-
- private:
-  double c_;
 };
 
 /** A function Point(Node, double) as a ZeroForce. */
@@ -238,24 +222,19 @@ struct FunctionForce : ZeroForce {
 };
 
 /** 5.2: the sum of several forces, which copies of it share. */
-class CombinedForces : public ZeroForce {
- public:
+struct CombinedForces : ZeroForce {
   using List = std::vector<std::shared_ptr<const ZeroForce>>;
-  /** @pre no pointer is null */
-  explicit CombinedForces(List forces) : forces_(std::move(forces)) {}
-  const List& parts() const { return forces_; }
+  List parts;  ///< none is null
+  explicit CombinedForces(List forces) : parts(std::move(forces)) {}
   Point operator()(Node n, double t) const override {
     // BEGIN SOLUTION 5.2.make_combined_force 5pt
     Point f;
-    for (const auto& force : forces_) f += (*force)(n, t);
+    for (const auto& force : parts) f += (*force)(n, t);
     return f;
     // STUB (void)n, (void)t;
     // STUB return Point();
     // END SOLUTION
   }
-
- private:
-  List forces_;
 };
 
 /** The sum of any number of forces. It copies them: they may be temporaries. */
@@ -272,8 +251,7 @@ CombinedForces make_combined_force(Fs... fs) {
 // ------------------------------------------------------------ The constraints
 
 /** 6.1: the base class of all constraints; by itself no constraint. */
-class ZeroConstraint {
- public:
+struct ZeroConstraint {
   virtual ~ZeroConstraint() = default;
   /** Reset the nodes of @a g that violate it at time @a t [s]. */
   virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
@@ -281,56 +259,46 @@ class ZeroConstraint {
 
 /** Keeps nodes at rest, at the positions that they had when it was made. Pinned
  * nodes may be removed.  Complexity: O(pins) a call */
-class PinConstraint : public ZeroConstraint {
- public:
+struct PinConstraint : ZeroConstraint {
   struct Pin {
     Node node;
     Point place;  ///< [m]
   };
-  /** Pin each node with holds(position); by default, the two corners. */
-  template <typename Pred = bool (*)(const Point&)>
-  explicit PinConstraint(const Cloth& g, Pred holds = is_corner) {
+  std::vector<Pin> pins;
+  /** Pin the two corners. */
+  explicit PinConstraint(const Cloth& g) {
     // BEGIN SOLUTION 6.1.PinConstraint 4pt
     for (Node n : nodes(g))
-      if (holds(n.position())) pins_.push_back({n, n.position()});
-    // STUB (void)g, (void)holds;
+      if (is_corner(n.position())) pins.push_back({n, n.position()});
+    // STUB (void)g;
     // END SOLUTION
   }
   /** Pin @a nodes.  @pre all in one graph */
   explicit PinConstraint(std::span<const Node> nodes) {
-    for (Node n : nodes) pins_.push_back({n, n.position()});
+    for (Node n : nodes) pins.push_back({n, n.position()});
   }
-  const std::vector<Pin>& pins() const { return pins_; }
   void operator()(Cloth& g, double /*t*/) const override {
     // BEGIN SOLUTION 6.1.PinConstraint
-    for (auto [n, place] : pins_)
+    for (auto [n, place] : pins)
       if (g.has_node(n)) n.position() = place, n.value().vel = Point();
     // STUB (void)g;
     // END SOLUTION
   }
-
- private:
-  std::vector<Pin> pins_;
 };
 
 /** A floor at height z. @post No node is below; one that was has v_z = 0. */
-class PlaneConstraint : public ZeroConstraint {
- public:
-  /** @param z height of the floor [m] */
-  explicit PlaneConstraint(double z = -0.75) : z_(z) {}
-  double height() const { return z_; }
+struct PlaneConstraint : ZeroConstraint {
+  double z;  ///< [m]
+  explicit PlaneConstraint(double height = -0.75) : z(height) {}
   void project(Node n) const {
     // BEGIN SOLUTION 6.1.PlaneConstraint 4pt
-    if (n.position().z < z_) n.position().z = z_, n.value().vel.z = 0;
+    if (n.position().z < z) n.position().z = z, n.value().vel.z = 0;
     // STUB (void)n;
     // END SOLUTION
   }
   void operator()(Cloth& g, double /*t*/) const override {
     for (Node n : nodes(g)) project(n);
   }
-
- private:
-  double z_;
 };
 
 struct Ball {
@@ -345,18 +313,15 @@ struct Ball {
 /** A solid ball. @post No node is inside by more than round-off. One that was
  * is at the nearest point of the surface (at the top, if it was at the center)
  * and has no velocity normal to it. */
-class SphereConstraint : public ZeroConstraint {
- public:
-  explicit SphereConstraint(const Ball& ball = {}) : ball_(ball) {}
-  SphereConstraint(const Point& center, double radius)
-      : ball_{center, radius} {}
-  const Ball& ball() const { return ball_; }
+struct SphereConstraint : ZeroConstraint {
+  Ball ball;
+  explicit SphereConstraint(const Ball& b = {}) : ball(b) {}
   void project(Node n) const {
     // BEGIN SOLUTION 6.1.SphereConstraint 4pt
-    if (!ball_.holds(n.position())) return;
-    const Point r = n.position() - ball_.center;
+    if (!ball.holds(n.position())) return;
+    const Point r = n.position() - ball.center;
     const Point normal = norm(r) > 0 ? r / norm(r) : Point(0, 0, 1);
-    n.position() = ball_.center + ball_.radius * normal;
+    n.position() = ball.center + ball.radius * normal;
     n.value().vel -= dot(n.value().vel, normal) * normal;
     // STUB (void)n;
     // END SOLUTION
@@ -364,30 +329,23 @@ class SphereConstraint : public ZeroConstraint {
   void operator()(Cloth& g, double /*t*/) const override {
     for (Node n : nodes(g)) project(n);
   }
-
- private:
-  Ball ball_;
 };
 
 /** 7.2: a ball that removes every node that enters it.
  * Invalidates: as Graph::remove_node(), for each node removed. */
-class TearConstraint : public ZeroConstraint {
- public:
-  explicit TearConstraint(const Ball& ball = {}) : ball_(ball) {}
-  const Ball& ball() const { return ball_; }
+struct TearConstraint : ZeroConstraint {
+  Ball ball;
+  explicit TearConstraint(const Ball& b = {}) : ball(b) {}
   void operator()(Cloth& g, double /*t*/) const override {
     // BEGIN SOLUTION 7.2.TearConstraint 4pt
     for (auto it = g.node_begin(); it != g.node_end();)
-      if (ball_.holds((*it).position()))
+      if (ball.holds((*it).position()))
         it = g.remove_node(it);  // now at the node that took its index
       else
         ++it;
     // STUB (void)g;
     // END SOLUTION
   }
-
- private:
-  Ball ball_;
 };
 
 /** A function void(Cloth&, double) as a ZeroConstraint. */
@@ -403,22 +361,17 @@ struct FunctionConstraint : ZeroConstraint {
 
 /** 6.2: several constraints, applied in their order: if two disagree about a
  * node, the last one wins. Copies of it share them. */
-class CombinedConstraints : public ZeroConstraint {
- public:
+struct CombinedConstraints : ZeroConstraint {
   using List = std::vector<std::shared_ptr<const ZeroConstraint>>;
-  /** @pre no pointer is null */
+  List parts;  ///< none is null
   explicit CombinedConstraints(List constraints)
-      : constraints_(std::move(constraints)) {}
-  const List& parts() const { return constraints_; }
+      : parts(std::move(constraints)) {}
   void operator()(Cloth& g, double t) const override {
     // BEGIN SOLUTION 6.2.make_combined_constraints 4pt
-    for (const auto& c : constraints_) (*c)(g, t);
+    for (const auto& c : parts) (*c)(g, t);
     // STUB (void)g, (void)t;
     // END SOLUTION
   }
-
- private:
-  List constraints_;
 };
 
 /** Any number of constraints, applied in this order. It copies them. */

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <ranges>
 
+#include "CME212/Point.hpp"
+
 namespace CME212 {
 
 /** A first and a last iterator, for range-for. */
@@ -25,6 +27,15 @@ auto nodes(G&& g) -> Range<decltype(g.node_begin())> {
 template <typename X>
 auto edges(X&& x) -> Range<decltype(x.edge_begin())> {
   return {x.edge_begin(), x.edge_end()};
+}
+
+/** The present distance of an edge's ends. */
+template <typename E>
+double length(E e) {
+  if constexpr (requires { e.length(); })
+    return e.length();
+  else
+    return norm(e.node1().position() - e.node2().position());
 }
 
 /** Allocate memory for so many nodes and edges, if @a g can. */

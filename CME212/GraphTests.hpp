@@ -15,7 +15,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "CME212/Point.hpp"
+#include "CME212/AnyGraph.hpp"
+#include "CME212/Util.hpp"
 
 namespace CME212 {
 
@@ -105,15 +106,6 @@ auto edge_at(G& g, typename G::size_type i) {
     while (i-- > 0) ++it;
     return *it;
   }
-}
-
-/** The length of an edge. */
-template <typename E>
-double length(E e) {
-  if constexpr (requires { e.length(); })
-    return e.length();
-  else
-    return norm(e.node1().position() - e.node2().position());
 }
 
 /** The result of @a remove() if it is a number, as 0 or 1. Some removals return

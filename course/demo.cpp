@@ -34,7 +34,7 @@ int main() try {
   viewer.set_look({.wires = false});
   viewer.add_faces(g, quads);
   viewer.add_sphere(Ball().center, Ball().radius);
-  viewer.add_plane(PlaneConstraint().height());
+  viewer.add_plane(PlaneConstraint().z);
   viewer.set_view(Point(1, -0.8, 0.4),
                   CME212::BoundingBox(Point(0, -0.4, -0.75), Point(1, 0.6, 0)));
 

@@ -58,7 +58,10 @@ inline Problem moving_edge(double t_end) {
   p.driven = true;
   p.constraint = [](const Cloth& g) {
     const auto at = [&g](double x) {
-      return PinConstraint(g, [x](const Point& a) { return a.x == x; });
+      std::vector<Node> held;
+      for (Node n : g.nodes())
+        if (n.position().x == x) held.push_back(n);
+      return PinConstraint(held);
     };
     return make_combined_constraints(
         at(0), MovingPinConstraint(at(1), {Point(0.1, 0.15, 0.25)}));

@@ -257,15 +257,15 @@ TEST(Compose, WhatIsNotNamedCostsNothing) {
   for (Node n : g.nodes()) n.position().z = -100;
   constraint_of(m, g)(g, 0);
   for (Node n : g.nodes()) EXPECT_EQ(n.position().z, -100);
-  EXPECT_EQ(constraint_of(m, g).parts().size(), 0u);
-  EXPECT_EQ(force_of(m, mesh_of(m), g).parts().size(), 2u);  // and springs
+  EXPECT_EQ(constraint_of(m, g).parts.size(), 0u);
+  EXPECT_EQ(force_of(m, mesh_of(m), g).parts.size(), 2u);  // and springs
   m.gravity = 0;
-  EXPECT_EQ(force_of(m, mesh_of(m), g).parts().size(), 1u);
+  EXPECT_EQ(force_of(m, mesh_of(m), g).parts.size(), 1u);
   m.damping = 0.1;
-  EXPECT_EQ(force_of(m, mesh_of(m), g).parts().size(), 2u);
+  EXPECT_EQ(force_of(m, mesh_of(m), g).parts.size(), 2u);
   m.pins = {read_pin("x 0")};
   m.planes = {Wall()};
-  EXPECT_EQ(constraint_of(m, g).parts().size(), 2u);
+  EXPECT_EQ(constraint_of(m, g).parts.size(), 2u);
 }
 
 TEST(Compose, DragPerAreaIsSharedByTheNodesAsTheirMassIs) {

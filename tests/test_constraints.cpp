@@ -97,7 +97,7 @@ TEST(SphereConstraint, SendsANodeAtItsCenterToTheTop) {
 
 TEST_F(Scattered, SphereTakesItsCenterAndRadius) {
   Cloth other = g;
-  SphereConstraint(Point(0.4, 0.5, -0.6), 0.2)(g, 0);
+  SphereConstraint({Point(0.4, 0.5, -0.6), 0.2})(g, 0);
   Ball moved;
   moved.center = Point(0.4, 0.5, -0.6);
   moved.radius = 0.2;

@@ -197,7 +197,7 @@ TYPED_TEST(FlatFlowTest, ThatHoldsForContact) {
     this->interleave(
         seed, make_combined_force(MassSpringForce(), GravityForce(3)),
         make_combined_constraints(PlaneConstraint(0.1),
-                                  SphereConstraint(Point(0.5, 0.5, 0.2), 0.3)));
+                                  SphereConstraint({Point(0.5, 0.5, 0.2), 0.3})));
 }
 
 // They see the graph as it is at their place in a step, and may change it.
@@ -280,7 +280,7 @@ TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
                                      Motion{.velocity = Point(0, 1, 2)});
     const auto constraint = make_combined_constraints(
         PinConstraint(std::span(&corner, 1)), moving, PlaneConstraint(-0.002),
-        SphereConstraint(Point(0.5, 0.5, -0.15), 0.2));
+        SphereConstraint({Point(0.5, 0.5, -0.15), 0.2}));
     Cloth singles = g;
     TypeParam one_by_one;
     for (int k = 0; k < 11; ++k)

@@ -350,9 +350,8 @@ TEST_F(SelfCollisionRun, AFoldedSheetDoesNotPassThroughItself) {
   ASSERT_GT(nearest_of_all(g), thickness);
   const SelfCollision c(
       thickness, 0.3,
-      make_combined_constraints(
-          PlaneConstraint(0),
-          PinConstraint(g, [](const Point& p) { return p == Point(); })));
+      make_combined_constraints(PlaneConstraint(0),
+                                PinConstraint(std::vector<Node>{g.node(0)})));
   run(500, thickness, c);
   EXPECT_GT(touched, 100);
   EXPECT_LT(most_rounds, 40);

@@ -236,7 +236,7 @@ TEST_F(SweepTest, ProjectingOnTheWayDoesNotChangeABit) {
   Verlet verlet;
   Pefrl pefrl;
   const auto by_node = make_combined_constraints(
-      RisingFloor(), SphereConstraint(Point(0.5, 0.5, -0.1), 0.1));
+      RisingFloor(), SphereConstraint({Point(0.5, 0.5, -0.1), 0.1}));
   const auto in_turn =
       make_combined_constraints([&](Cloth& g, double t) { by_node(g, t); });
   ASSERT_TRUE(ConstraintPlan(by_node).nodewise() &&

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "CME212/viewer/NoViewer.hpp"
+#include "CME212/SDLViewer.hpp"
 #include "mass_spring.hpp"
 
 #define main run

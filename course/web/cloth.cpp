@@ -24,10 +24,6 @@ namespace web {  // a student's names do not meet these
 
 enum Stage { problem1, diagonals, forces, constraints, tear };
 
-double length_of(Edge e) {
-  return norm(e.node1().position() - e.node2().position());
-}
-
 /** Half a metre down from a corner that is held. */
 std::vector<Point> line_points(unsigned count) {
   std::vector<Point> points;
@@ -54,7 +50,7 @@ class Run {
         stage == problem1 ? MeshSprings::plain : MeshSprings::diagonals);
     for (unsigned i = 1; i < chain; ++i) g.add_edge(g.node(i - 1), g.node(i));
     for (unsigned i = 0; i < num_nodes(); ++i) slots_.push_back(i);
-    if (g.num_edges() > 0) length_ = length_of(*g.edge_begin());
+    if (g.num_edges() > 0) length_ = CME212::length(*g.edge_begin());
     if (stage != problem1) length_ = 0;  // each has its own
     make_step(stage);
     // As in mass_spring.cpp; five seconds are its time.
@@ -222,7 +218,7 @@ class Run {
       for (Edge e : edges(g)) {
         const double K = length_ > 0 ? 100 : e.value().K;
         const double L = length_ > 0 ? length_ : e.value().L;
-        elastic += K * std::pow(length_of(e) - L, 2) / 2;
+        elastic += K * std::pow(CME212::length(e) - L, 2) / 2;
       }
     return kinetic + elastic + height;
   }

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "CME212/viewer/NoViewer.hpp"
+#include "CME212/SDLViewer.hpp"
 #include "mass_spring.hpp"
 
 namespace CME212 {
@@ -26,5 +26,5 @@ struct Positions : NoViewer {
 }  // namespace CME212
 
 // The program as it is, but for this name.
-#define NoViewer Positions
+#define SDLViewer Positions
 #include "mass_spring.cpp"

@@ -180,12 +180,12 @@ def the_page_says_what_is_wrong_with_the_code(b):
     edit(file, ("if (is_corner(n.position())) return Point();", """
     if (same_) throw std::runtime_error("my words");
     for (volatile int k = 0;; k = k + 1) {}"""),
-         ("return n.value().mass * Point(0, 0, -gravity_);",
-          "assert(gravity_ < 0 && \"my assertion\");\n"
-          "return n.value().mass * Point(0, 0, -gravity_);"),
-         ("    if (n.position().z < z_) n.position().z = z_,",
+         ("return n.value().mass * Point(0, 0, -gravity);",
+          "assert(gravity < 0 && \"my assertion\");\n"
+          "return n.value().mass * Point(0, 0, -gravity);"),
+         ("    if (n.position().z < z) n.position().z = z,",
           "    if (std::vector<int>()[3] > 0) return;\n"
-          "    if (n.position().z < z_) n.position().z = z_,"))
+          "    if (n.position().z < z) n.position().z = z,"))
     run("make", "--no-print-directory", "web", folder=folder)
     open_page(b, folder)
     fault = "page.find('.fault').textContent"

@@ -100,14 +100,14 @@ class Plane final : public NodewiseConstraint {
   explicit Plane(const PlaneConstraint& c) : plane_(c) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
-    const double z = plane_.height();
+    const double z = plane_.z;
     for_each_violating(
         g, first, last, [z](const Point& p) { return p.z < z; },
         [this](Node n) { plane_.project(n); });
   }
   bool is_at_rest(double /*t*/) const override { return true; }
   std::optional<Zone> zone(double /*t*/) const override {
-    return Zone::behind({0, 0, plane_.height()}, {0, 0, 1});
+    return Zone::behind({0, 0, plane_.z}, {0, 0, 1});
   }
 
  private:
@@ -136,7 +136,7 @@ class Round : public Base {
 class Sphere final : public Round<NodewiseConstraint> {
  public:
   explicit Sphere(const SphereConstraint& c)
-      : Round(c.ball()), sphere_(c.ball()) {}
+      : Round(c.ball), sphere_(c.ball) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     for_each_violating(
@@ -162,7 +162,7 @@ class Removing : public SweptConstraint {
 
 class Tear final : public Round<Removing> {
  public:
-  explicit Tear(const TearConstraint& c) : Round(c.ball()) {}
+  explicit Tear(const TearConstraint& c) : Round(c.ball) {}
   void operator()(Cloth& g, double /*t*/) const override {
     for_each_violating(
         g, 0, arrays(g).node_slots(),
@@ -204,9 +204,9 @@ ConstraintPlan::ConstraintPlan(const ZeroConstraint& c) {
 void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
   const ZeroConstraint& c = *constraint;
   if (auto all = exactly<CombinedConstraints, FunctionConstraint>(c)) {
-    for (const auto& part : all->parts()) add(part);
+    for (const auto& part : all->parts) add(part);
   } else if (auto pins = exactly<PinConstraint, FunctionConstraint>(c)) {
-    terms_.push_back(std::make_shared<PinnedNodes>(pins->pins()));
+    terms_.push_back(std::make_shared<PinnedNodes>(pins->pins));
   } else if (auto floor = exactly<PlaneConstraint, FunctionConstraint>(c)) {
     terms_.push_back(std::make_shared<Plane>(*floor));
   } else if (auto ball = exactly<SphereConstraint, FunctionConstraint>(c)) {

@@ -38,13 +38,13 @@ ForcePlan::ForcePlan(const ZeroForce& force) {
 void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   const ZeroForce& f = *force;
   if (auto sum = exactly<CombinedForces, FunctionForce>(f)) {
-    for (const auto& part : sum->parts()) add(part);
+    for (const auto& part : sum->parts) add(part);
   } else if (auto weight = exactly<GravityForce, FunctionForce>(f)) {
-    gravity_ += weight->gravity();
+    gravity_ += weight->gravity;
   } else if (exactly<MassSpringForce, FunctionForce>(f)) {
     ++springs_;
   } else if (auto drag = exactly<DampingForce, FunctionForce>(f)) {
-    drag_.add(drag->coefficient());
+    drag_.add(drag->c);
   } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
     drag_.add(*drags);
   } else if (!exactly<ZeroForce, FunctionForce>(f)) {

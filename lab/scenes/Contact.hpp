@@ -48,7 +48,7 @@ class MovingPinConstraint : public PinnedNodes {
  public:
   /** The nodes of @a pins move.  @pre all in one graph */
   MovingPinConstraint(const PinConstraint& pins, const Motion& motion)
-      : MovingPinConstraint(pins.pins(), motion) {}
+      : MovingPinConstraint(pins.pins, motion) {}
   /** The same for nodes with their places at t = 0. */
   MovingPinConstraint(const std::vector<PinConstraint::Pin>& pins,
                       const Motion& motion)

@@ -62,7 +62,7 @@ void Stepper::start(const EnergyFlow& flow) {
 
 /** Make the plans of all forces, with the hand, and of the constraint. */
 void Stepper::plan() {
-  CombinedForces::List all = system_.acting.parts();
+  CombinedForces::List all = system_.acting.parts;
   if (system_.hand)
     all.push_back({std::shared_ptr<void>(), &*system_.hand});  // it moves
   if (force_) evaluations_ += force_->evaluations();
