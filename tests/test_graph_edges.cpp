@@ -7,10 +7,8 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <ranges>
-#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -54,22 +52,6 @@ class Edges : public ::testing::Test {
   }
   void TearDown() override { g.check_invariants(); }
 
-  /** Edge k of the start is alive and is what it was. */
-  void expect_intact(int k) {
-    auto [a, b] = ends[k];
-    EXPECT_TRUE(g.has_edge(e[k]));
-    EXPECT_TRUE(g.has_edge(n[a], n[b]) && g.has_edge(n[b], n[a]));
-    EXPECT_EQ(e[k].node1(), n[a]);
-    EXPECT_EQ(e[k].node2(), n[b]);
-    EXPECT_EQ(e[k].value(), 10 * a + b);
-    EXPECT_EQ(g.edge(e[k].index()), e[k]);
-  }
-  std::vector<double> values_by_index() const {
-    std::vector<double> v;
-    for (auto it = g.edge_begin(); it != g.edge_end(); ++it)
-      v.push_back((*it).value());
-    return v;
-  }
   /** The values of the nodes next to @a m, in the order of m.edges(). */
   static std::vector<int> neighbors(Node m) {
     std::vector<int> v;
@@ -80,59 +62,10 @@ class Edges : public ::testing::Test {
     EXPECT_EQ(v.size(), m.degree());
     return v;
   }
-  bool only_has(std::set<std::pair<int, int>> wanted) const {
-    bool same = g.num_edges() == wanted.size();
-    for (int a = 0; a < 5; ++a)
-      for (int b = 0; b < 5; ++b)
-        same &= g.has_edge(n[a], n[b]) ==
-                (wanted.count({a, b}) || wanted.count({b, a}));
-    return same;
-  }
 };
-using Values = std::vector<double>;
 using Ints = std::vector<int>;
 
 // ------------------------------------------------------------- adding, asking
-
-TEST_F(Edges, AddEdgeGivesTheNextIndexAndKeepsTheOthers) {
-  Edge f = g.add_edge(n[4], n[1], 41);
-  EXPECT_EQ(g.num_edges(), 6u);
-  EXPECT_EQ(f.index(), 5u);
-  EXPECT_EQ(f.node1(), n[4]);
-  EXPECT_EQ(f.node2(), n[1]);
-  EXPECT_EQ(f.value(), 41);
-  EXPECT_EQ(n[4].degree(), 2u);
-  EXPECT_EQ(n[1].degree(), 3u);
-  for (int k = 0; k < 5; ++k) {
-    expect_intact(k);
-    EXPECT_EQ(e[k].index(), unsigned(k));
-  }
-}
-
-TEST_F(Edges, AddingAnEdgeAgainGivesTheOldOneAsAskedFor) {
-  auto version = arrays(g).version();
-  Edge same = g.add_edge(n[0], n[2], -1);
-  EXPECT_EQ(same, e[1]);
-  EXPECT_EQ(same.node1(), n[0]);
-  EXPECT_EQ(same.node2(), n[2]);
-  Edge turned = g.add_edge(n[2], n[0], -1);
-  EXPECT_EQ(turned, e[1]);
-  EXPECT_EQ(turned.node1(), n[2]);
-  EXPECT_EQ(turned.node2(), n[0]);
-  EXPECT_EQ(turned.value(), 2) << "the value of an old edge is kept";
-  EXPECT_EQ(turned.index(), 1u);
-  EXPECT_EQ(g.num_edges(), 5u);
-  EXPECT_EQ(arrays(g).version(), version);
-  // Whichever end has the shorter list:
-  for (auto [a, b] : ends) {
-    EXPECT_EQ(g.add_edge(n[a], n[b]).node1(), n[a]);
-    EXPECT_EQ(g.add_edge(n[b], n[a]).node1(), n[b]);
-  }
-}
-
-TEST_F(Edges, AValueNotGivenIsTheDefault) {
-  EXPECT_EQ(g.add_edge(n[1], n[4]).value(), 0);
-}
 
 TEST_F(Edges, AddEdgeTakesItsValueFromTheArrayThatGrows) {
   Graph<int, std::string> s;
@@ -145,8 +78,7 @@ TEST_F(Edges, AddEdgeTakesItsValueFromTheArrayThatGrows) {
                 std::string(50, 'x'));
 }
 
-TEST_F(Edges, HasEdgeIsSymmetricAndFalseForStrangers) {
-  EXPECT_TRUE(only_has({{0, 1}, {0, 2}, {0, 3}, {1, 2}, {3, 4}}));
+TEST_F(Edges, HasEdgeIsFalseForStrangers) {
   EXPECT_FALSE(g.has_edge(n[0], n[0]));
   EXPECT_FALSE(g.has_edge(n[0], Node()));
   EXPECT_FALSE(g.has_edge(Node(), Node()));
@@ -159,25 +91,6 @@ TEST_F(Edges, HasEdgeIsSymmetricAndFalseForStrangers) {
   g.add_edge(g.add_node(Point()), n[0]);  // in the slot of n[1]
   EXPECT_FALSE(g.has_edge(n[0], n[1]));
   EXPECT_FALSE(g.has_edge(n[1], n[0]));
-}
-
-TEST_F(Edges, EdgeOfIndexIsSeenFromTheFirstNodeOfItsAddEdge) {
-  for (unsigned i = 0; i < g.num_edges(); ++i) {
-    EXPECT_EQ(g.edge(i).index(), i);
-    EXPECT_EQ(g.edge(i).node1(), n[ends[i].first]);
-    EXPECT_EQ(g.edge(i).node2(), n[ends[i].second]);
-    EXPECT_EQ(g.edge_begin()[i].node1(), n[ends[i].first]);
-  }
-}
-
-TEST_F(Edges, BothViewsShareOneValue) {
-  Edge turned = g.add_edge(n[1], n[0]);
-  turned.value() = 7;
-  EXPECT_EQ(e[0].value(), 7);
-  EXPECT_EQ((*n[0].edge_begin()).value(), 7);
-  n[1].edge_begin()->value() = 8;
-  EXPECT_EQ(g.edge(0).value(), 8);
-  EXPECT_EQ(&turned.value(), &e[0].value());
 }
 
 using EdgesDeathTest = Edges;
@@ -213,80 +126,7 @@ TEST_F(EdgesDeathTest, AnInvalidOrDeadEdgeIsNotUsed) {
   EXPECT_DEATH(arrays(g).edge_with_id(99), "edge_slots");
 }
 
-// ------------------------------------------------------------- removing edges
-
-TEST_F(Edges, RemoveEdgeByItsEndsReturnsOneOnce) {
-  EXPECT_EQ(g.remove_edge(n[0], n[2]), 1u);
-  EXPECT_TRUE(only_has({{0, 1}, {0, 3}, {1, 2}, {3, 4}}));
-  EXPECT_EQ(g.remove_edge(n[0], n[2]), 0u);
-  EXPECT_EQ(g.remove_edge(n[4], n[3]), 1u) << "from either end";
-  EXPECT_TRUE(only_has({{0, 1}, {0, 3}, {1, 2}}));
-  EXPECT_EQ(n[4].degree(), 0u);
-  EXPECT_EQ(g.num_nodes(), 5u);
-}
-
-TEST_F(Edges, RemoveEdgeByHandleFromEitherEnd) {
-  EXPECT_EQ(g.remove_edge(g.add_edge(n[2], n[0])), 1u);
-  EXPECT_FALSE(g.has_edge(e[1]));
-  EXPECT_EQ(g.remove_edge(e[1]), 0u);
-  EXPECT_EQ(g.remove_edge(*n[3].edge_begin()), 1u);
-  EXPECT_TRUE(only_has({{0, 1}, {1, 2}, {3, 4}}));
-}
-
-TEST_F(Edges, RemoveEdgeOfNoEdgeHereChangesNothing) {
-  G other(g);
-  auto version = arrays(g).version();
-  EXPECT_EQ(g.remove_edge(n[1], n[4]), 0u);
-  EXPECT_EQ(g.remove_edge(n[1], n[1]), 0u);
-  EXPECT_EQ(g.remove_edge(n[1], Node()), 0u);
-  EXPECT_EQ(g.remove_edge(other.node(0), other.node(1)), 0u);
-  EXPECT_EQ(g.remove_edge(other.edge(0)), 0u);
-  EXPECT_EQ(g.remove_edge(Edge()), 0u);
-  EXPECT_EQ(arrays(g).version(), version);
-  EXPECT_EQ(values_by_index(), (Values{1, 2, 3, 12, 34}));
-}
-
-TEST_F(Edges, TheHighestIndexMovesIntoTheHoleAndNoOther) {
-  g.remove_edge(e[1]);
-  EXPECT_EQ(values_by_index(), (Values{1, 34, 3, 12}));
-  g.remove_edge(n[0], n[1]);
-  EXPECT_EQ(values_by_index(), (Values{12, 34, 3}));
-  g.remove_edge(e[2]);  // has the highest index itself
-  EXPECT_EQ(values_by_index(), (Values{12, 34}));
-  EXPECT_EQ(g.add_edge(n[4], n[0], 40).index(), 2u);
-  for (int k : {3, 4}) expect_intact(k);
-}
-
-TEST_F(Edges, RemovingAtAnIteratorVisitsEachEdgeOnce) {
-  for (int keep = 0; keep < 32; ++keep) {  // every subset of five
-    G h(g);
-    auto kept = [&](double v) {
-      int k = 0;
-      while (e[k].value() != v) ++k;
-      return keep >> k & 1;
-    };
-    std::multiset<double> visited, left;
-    for (auto it = h.edge_begin(); it != h.edge_end();) {
-      visited.insert((*it).value());
-      if (kept((*it).value()))
-        ++it;
-      else
-        it = h.remove_edge(it);
-      h.check_invariants();
-    }
-    for (auto f : h.edges()) left.insert(f.value());
-    EXPECT_EQ(visited, (std::multiset<double>{1, 2, 3, 12, 34}));
-    for (double v : visited) EXPECT_EQ(left.count(v), std::size_t(kept(v)));
-  }
-}
-
-TEST_F(Edges, RemovingAtAnIteratorGivesTheEdgeInTheHoleOrTheEnd) {
-  auto it = g.remove_edge(g.edge_begin() + 1);
-  EXPECT_EQ(it, g.edge_begin() + 1);
-  EXPECT_EQ(*it, e[4]);
-  it = g.remove_edge(g.edge_begin() + 3);  // the highest index
-  EXPECT_EQ(it, g.edge_end());
-}
+// ------------------------------------------------------------------- removing
 
 TEST_F(Edges, AnEdgeRemovedComesAsNewWithItsDefault) {
   g.remove_edge(e[0]);
@@ -297,176 +137,29 @@ TEST_F(Edges, AnEdgeRemovedComesAsNewWithItsDefault) {
   EXPECT_EQ(g.edge(4).node1(), n[1]);
 }
 
-// ------------------------------------------------------------- removing nodes
-
-TEST_F(Edges, RemoveNodeTakesItsEdgesAndNoOther) {
-  EXPECT_EQ(g.remove_node(n[0]), 1u);
-  EXPECT_EQ(g.num_edges(), 2u);
-  EXPECT_TRUE(only_has({{1, 2}, {3, 4}}));
-  for (int k : {0, 1, 2}) EXPECT_FALSE(g.has_edge(e[k]));
-  for (int k : {3, 4}) expect_intact(k);
-  EXPECT_EQ(neighbors(n[1]), Ints{2});
-  EXPECT_EQ(neighbors(n[3]), Ints{4});
-  std::set<unsigned> indices;
-  for (auto f : g.edges()) indices.insert(f.index());
-  EXPECT_EQ(indices, (std::set<unsigned>{0, 1}));
-}
-
 TEST_F(Edges, RemoveNodeMayBeGivenAnEndOfItsEdge) {
   EXPECT_EQ(g.remove_node(e[0].node1()), 1u);
   EXPECT_EQ(g.remove_node(g.edge(0).node2()), 1u);
   EXPECT_EQ(g.num_nodes(), 3u);
 }
 
-TEST_F(Edges, TearingNodesWhileIteratingKeepsTheRest) {
-  for (auto it = g.node_begin(); it != g.node_end();) {
-    if ((*it).value() % 3 == 0)
-      it = g.remove_node(it);
-    else
-      ++it;
-    g.check_invariants();
-  }
-  EXPECT_TRUE(only_has({{1, 2}}));
-  expect_intact(3);
-}
-
-TEST_F(Edges, AHubComesAndGoes) {
-  for (int round = 0; round < 3; ++round) {
-    Node hub = g.add_node(Point(), 100);
-    for (int i = 0; i < 500; ++i)
-      g.add_edge(hub, g.add_node(Point(), 1000 + i), i);
-    EXPECT_EQ(hub.degree(), 500u);
-    g.check_invariants();
-    Ints around = neighbors(hub);
-    for (int i = 0; i < 500; ++i) EXPECT_EQ(around[i], 1000 + i);
-    EXPECT_EQ(g.remove_node(hub), 1u);
-    EXPECT_EQ(g.num_edges(), 5u);
-    g.check_invariants();
-    for (int k = 0; k < 5; ++k) expect_intact(k);
-  }
-}
-
-TEST_F(Edges, ClearRemovesAll) {
-  g.remove_edge(e[2]);
-  g.clear();
-  g.check_invariants();
-  EXPECT_EQ(g.num_edges(), 0u);
-  EXPECT_TRUE(g.edge_begin() == g.edge_end());
-  for (Edge f : e) EXPECT_FALSE(g.has_edge(f));
-  Node a = g.add_node(Point()), b = g.add_node(Point());
-  EXPECT_EQ(g.add_edge(a, b).index(), 0u);
-  EXPECT_EQ(g.num_edges(), 1u);
-}
-
-// ----------------------------------------------------- handles live, stay dead
-
-TEST_F(Edges, HandlesSurviveTheRemovalOfOthers) {
-  g.remove_edge(e[0]);
-  g.remove_node(n[3]);
-  for (int i = 0; i < 50; ++i) g.add_edge(n[1], g.add_node(Point()), -i);
-  for (int k : {1, 3}) expect_intact(k);
-  e[3].value() = 99;
-  EXPECT_EQ(g.edge(e[3].index()).value(), 99);
-}
-
-TEST_F(Edges, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
-  g.remove_edge(e[0]);
-  g.remove_edge(e[2]);
-  EXPECT_EQ(values_by_index(), (Values{34, 2, 12}));
-  arrays(g).reindex();
-  EXPECT_EQ(values_by_index(), (Values{2, 12, 34}));
-  for (int k : {1, 3, 4}) expect_intact(k);
-}
-
-TEST_F(Edges, ReindexEdgesGivesTheIndicesThatItIsTold) {
-  const auto version = arrays(g).version();
-  arrays(g).reindex_edges(std::vector<unsigned>{4, 0, 3, 1, 2});
-  EXPECT_NE(arrays(g).version(), version);
-  EXPECT_EQ(values_by_index(), (Values{34, 1, 12, 2, 3}));
-  for (unsigned k = 0; k < 5; ++k) {
-    expect_intact(int(k));
-    EXPECT_EQ(e[k].id(), k);
-    EXPECT_EQ(n[k].index(), k);
-  }
-  EXPECT_EQ(neighbors(n[0]), (Ints{1, 2, 3}));
-  g.check_invariants();
-  g.remove_node(n[3]);
-  arrays(g).reindex_edges(std::vector<unsigned>{1, 3, 0});
-  EXPECT_EQ(values_by_index(), (Values{2, 12, 1}));
-  EXPECT_EQ(g.add_edge(n[1], n[4]).index(), 3u);
-}
-
 TEST_F(Edges, ReorderEdgesGivesThoseOfANodeAnotherOrder) {
   const auto version = arrays(g).version();
   arrays(g).reorder_edges(n[0], std::vector<unsigned>{2, 0, 1});
-  EXPECT_EQ(neighbors(n[0]), (std::vector<int>{3, 1, 2}));
+  EXPECT_EQ(neighbors(n[0]), (Ints{3, 1, 2}));
   EXPECT_NE(arrays(g).version(), version);
   g.check_invariants();
   // It takes back what removals make of the order.
   g.remove_edge(e[2]);
-  EXPECT_EQ(neighbors(n[0]), (std::vector<int>{2, 1}));
+  EXPECT_EQ(neighbors(n[0]), (Ints{2, 1}));
   arrays(g).reorder_edges(n[0], std::vector<unsigned>{0, 1});
-  EXPECT_EQ(neighbors(n[0]), (std::vector<int>{1, 2}));
-  EXPECT_EQ(neighbors(n[1]), (std::vector<int>{0, 2}));
-  EXPECT_EQ(values_by_index(), (Values{1, 2, 34, 12}));
+  EXPECT_EQ(neighbors(n[0]), (Ints{1, 2}));
+  EXPECT_EQ(neighbors(n[1]), (Ints{0, 2}));
   arrays(g).reorder_edges(n[4], std::vector<unsigned>{4});
   g.check_invariants();
 }
 
-TEST_F(Edges, TheIdOfAnEdgeStaysAndIsOneForBothViews) {
-  unsigned id = e[4].id();
-  g.remove_edge(e[0]);
-  arrays(g).reindex();
-  EXPECT_EQ(e[4].id(), id);
-  EXPECT_EQ(g.add_edge(n[4], n[3]).id(), id);
-}
-
-TEST_F(Edges, ADeadHandleStaysDead) {
-  Edge turned = g.add_edge(n[2], n[0]);
-  g.remove_edge(e[1]);
-  for (int round = 0; round < 1000; ++round) {
-    Edge f = g.add_edge(n[0], n[2]);  // the same ends, in the same slot
-    ASSERT_FALSE(g.has_edge(e[1]) || g.has_edge(turned));
-    ASSERT_NE(f, e[1]);
-    g.remove_edge(f);
-  }
-  EXPECT_EQ(arrays(g).edge_slots(), 5u);
-  g.clear();
-  std::vector<Node> m;
-  for (int i = 0; i < 5; ++i) m.push_back(g.add_node(Point()));
-  for (auto [a, b] : ends) g.add_edge(m[a], m[b]);
-  G copy(g);
-  for (Edge f : e) EXPECT_FALSE(g.has_edge(f) || copy.has_edge(f));
-}
-
-TEST_F(Edges, ACopiedGraphIsEqualAndItsOwn) {
-  g.remove_node(n[1]);
-  G copy(g);
-  copy.check_invariants();
-  ASSERT_EQ(copy.num_edges(), g.num_edges());
-  for (unsigned i = 0; i < g.num_edges(); ++i) {
-    EXPECT_EQ(copy.edge(i).value(), g.edge(i).value());
-    EXPECT_EQ(copy.edge(i).id(), g.edge(i).id());
-    EXPECT_EQ(copy.edge(i).node1().index(), g.edge(i).node1().index());
-    EXPECT_EQ(copy.edge(i).node2().index(), g.edge(i).node2().index());
-    EXPECT_TRUE(copy.has_node(copy.edge(i).node2()));
-    EXPECT_FALSE(copy.has_edge(g.edge(i)));
-    EXPECT_NE(copy.edge(i), g.edge(i));
-  }
-  copy.remove_edge(copy.edge(0));
-  copy.add_edge(copy.node(0), copy.node(1), 5);
-  for (int k : {1, 2, 4}) expect_intact(k);
-}
-
 // ------------------------------------------------------------------ comparing
-
-TEST_F(Edges, AnEdgeIsTheSameFromBothEnds) {
-  Edge turned = g.add_edge(n[1], n[0]);
-  EXPECT_TRUE(turned == e[0]);
-  EXPECT_FALSE(turned != e[0]);
-  EXPECT_FALSE(turned < e[0] || e[0] < turned);
-  EXPECT_EQ(std::set<Edge>({turned, e[0]}).size(), 1u);
-}
 
 TEST_F(Edges, TheOrderIsTotalOverGraphsDeadAndInvalidEdges) {
   G other(g);
@@ -487,24 +180,6 @@ TEST_F(Edges, TheOrderIsTotalOverGraphsDeadAndInvalidEdges) {
     }
 }
 
-TEST_F(Edges, TheOrderNeverChanges) {
-  std::vector<Edge> all(e);
-  std::sort(all.begin(), all.end());
-  g.remove_edge(all[0]);
-  arrays(g).reindex();
-  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
-  g.clear();
-  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
-}
-
-TEST_F(Edges, AnEdgeIsAKey) {
-  std::map<Edge, double> value;
-  for (Edge f : e) value[f] = f.value();
-  g.remove_edge(e[0]);
-  for (auto m : g.nodes())
-    for (auto f : m.edges()) EXPECT_EQ(value.at(f), f.value());
-}
-
 TEST_F(Edges, InvalidEdgesAreEqualAndCanBeAssigned) {
   Edge a, b;
   EXPECT_TRUE(a == b);
@@ -514,19 +189,6 @@ TEST_F(Edges, InvalidEdgesAreEqualAndCanBeAssigned) {
 }
 
 // ------------------------------------------------------------------ iterating
-
-TEST_F(Edges, TheEdgesOfANodeHaveItAsNode1InTheOrderAdded) {
-  EXPECT_EQ(neighbors(n[0]), (Ints{1, 2, 3}));
-  EXPECT_EQ(neighbors(n[1]), (Ints{0, 2}));
-  EXPECT_EQ(neighbors(n[2]), (Ints{0, 1}));
-  EXPECT_EQ(neighbors(n[3]), (Ints{0, 4}));
-  EXPECT_EQ(neighbors(n[4]), (Ints{3}));
-  EXPECT_EQ(neighbors(g.add_node(Point())), Ints{});
-  for (int i = 0; i < 40; ++i) g.add_edge(g.add_node(Point(), 50 + i), n[4]);
-  Ints around = neighbors(n[4]);
-  EXPECT_EQ(around[0], 3);
-  for (int i = 0; i < 40; ++i) EXPECT_EQ(around[i + 1], 50 + i);
-}
 
 TEST_F(Edges, IncidentIteratorsAreRandomAccess) {
   auto b = n[0].edge_begin(), end = n[0].edge_end();
@@ -596,19 +258,6 @@ TEST_F(Edges, SpansAndProxiesAreTheSameStorage) {
     EXPECT_EQ(arrays(g).edge_with_id(f.id()), f);
     EXPECT_EQ(arrays(g).edge_with_id(f.id()).node1(), f.node1());
   }
-}
-
-TEST_F(Edges, ADeadSlotHoldsDefaults) {
-  g.remove_edge(e[4]);
-  g.remove_node(n[0]);
-  unsigned in_use = 0;
-  for (unsigned i = 0; i < arrays(g).edge_slots(); ++i) {
-    in_use += arrays(g).edge_in_use(i);
-    if (arrays(g).edge_in_use(i)) continue;
-    EXPECT_EQ(arrays(g).edge_values()[i], 0);
-    EXPECT_EQ(arrays(g).edge_ends()[i], (std::array<unsigned, 2>{0, 0}));
-  }
-  EXPECT_EQ(in_use, 1u);
 }
 
 TEST_F(Edges, ARemovedValueIsGivenUpAtOnce) {

@@ -1,17 +1,14 @@
 /** @file test_graph_nodes.cpp
  * What Graph.hpp promises of nodes beyond the assignment, which test_nodes.cpp
- * tests: handles that survive, the order of the indices, random access, ids,
- * spans, assertions. Edges: test_graph_edges.cpp; work and long random
- * histories: test_graph.cpp. */
+ * tests: random access, what is kept and what is given up, spans, assertions.
+ * Edges: test_graph_edges.cpp. Handles that survive, dead ones, ids and the
+ * order of the indices: the long random histories of test_graph.cpp. */
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <iterator>
-#include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -61,14 +58,7 @@ class Nodes : public ::testing::Test {
     EXPECT_EQ(n[i].value(), 10 * i);
     EXPECT_EQ(g.node(n[i].index()), n[i]);
   }
-  std::vector<int> values_by_index() const {
-    std::vector<int> v;
-    for (auto it = g.node_begin(); it != g.node_end(); ++it)
-      v.push_back((*it).value());
-    return v;
-  }
 };
-using Values = std::vector<int>;
 
 // ------------------------------------------------------------- adding, asking
 
@@ -82,20 +72,6 @@ TEST(EmptyGraph, HasNoNodes) {
   g.clear();
   arrays(g).reindex();
   g.check_invariants();
-}
-
-TEST_F(Nodes, AddNodeGivesTheNextIndexAndKeepsTheOthers) {
-  Node m = g.add_node(Point(1, 2, 3), 99);
-  EXPECT_EQ(g.num_nodes(), 6u);
-  EXPECT_EQ(g.size(), 6u);
-  EXPECT_EQ(m.index(), 5u);
-  EXPECT_EQ(m.position(), Point(1, 2, 3));
-  EXPECT_EQ(m.value(), 99);
-  EXPECT_EQ(m.degree(), 0u);
-  for (int i = 0; i < 5; ++i) {
-    expect_intact(i);
-    EXPECT_EQ(n[i].index(), unsigned(i));
-  }
 }
 
 TEST_F(Nodes, PositionAndValueAreTheOnesInTheGraph) {
@@ -122,97 +98,12 @@ TEST_F(Nodes, AddNodeTakesItsArgumentsFromTheArraysThatGrow) {
   (void)first;  // long since somewhere else
 }
 
-TEST_F(Nodes, HasNodeKnowsItsOwnOnly) {
-  G other;
-  Node foreign = other.add_node(Point(0, 0, 0), 0);
-  EXPECT_EQ(foreign.index(), n[0].index());
-  EXPECT_TRUE(g.has_node(n[0]));
-  EXPECT_FALSE(g.has_node(foreign));
-  EXPECT_FALSE(other.has_node(n[0]));
-  EXPECT_FALSE(g.has_node(Node()));
-}
-
 // ------------------------------------------------------------------- removing
-
-TEST_F(Nodes, RemoveNodeReturnsOneOnce) {
-  EXPECT_EQ(g.remove_node(n[2]), 1u);
-  EXPECT_EQ(g.num_nodes(), 4u);
-  EXPECT_FALSE(g.has_node(n[2]));
-  EXPECT_EQ(g.remove_node(n[2]), 0u);
-  EXPECT_EQ(g.num_nodes(), 4u);
-}
-
-TEST_F(Nodes, RemoveNodeOfNoNodeHereChangesNothing) {
-  G other;
-  Node foreign = other.add_node(Point());
-  auto version = arrays(g).version();
-  EXPECT_EQ(g.remove_node(foreign), 0u);
-  EXPECT_EQ(g.remove_node(Node()), 0u);
-  EXPECT_EQ(arrays(g).version(), version);
-  EXPECT_EQ(values_by_index(), (Values{0, 10, 20, 30, 40}));
-  EXPECT_TRUE(other.has_node(foreign));
-}
-
-TEST_F(Nodes, TheHighestIndexMovesIntoTheHoleAndNoOther) {
-  g.remove_node(n[1]);
-  EXPECT_EQ(values_by_index(), (Values{0, 40, 20, 30}));
-  g.remove_node(n[0]);
-  EXPECT_EQ(values_by_index(), (Values{30, 40, 20}));
-  g.remove_node(n[2]);  // has the highest index itself
-  EXPECT_EQ(values_by_index(), (Values{30, 40}));
-  g.add_node(Point(), 7);
-  EXPECT_EQ(values_by_index(), (Values{30, 40, 7}));
-  for (int i : {3, 4}) expect_intact(i);
-}
 
 TEST_F(Nodes, RemoveNodeMayBeGivenAReferenceIntoItsOwnCopies) {
   std::vector<Node> all(g.node_begin(), g.node_end());
   for (const Node& m : all) EXPECT_EQ(g.remove_node(m), 1u);
   EXPECT_EQ(g.num_nodes(), 0u);
-}
-
-TEST_F(Nodes, RemovingAtAnIteratorVisitsEachNodeOnce) {
-  for (int keep = 0; keep < 32; ++keep) {  // every subset of five
-    G h;
-    for (int i = 0; i < 5; ++i) h.add_node(Point(i), i);
-    std::multiset<int> visited, left;
-    for (auto it = h.node_begin(); it != h.node_end();) {
-      visited.insert((*it).value());
-      auto at = it - h.node_begin();
-      if (keep >> (*it).value() & 1)
-        ++it;
-      else
-        it = h.remove_node(it);
-      h.check_invariants();
-      ASSERT_LE(it - h.node_begin() - at, 1);
-    }
-    for (auto m : h.nodes()) left.insert(m.value());
-    EXPECT_EQ(visited, (std::multiset<int>{0, 1, 2, 3, 4}));
-    EXPECT_EQ(left.size(), std::size_t(std::popcount(unsigned(keep))));
-    for (int v : left) EXPECT_TRUE(keep >> v & 1);
-  }
-}
-
-TEST_F(Nodes, RemovingAtAnIteratorGivesTheNodeInTheHoleOrTheEnd) {
-  auto it = g.remove_node(g.node_begin() + 1);
-  EXPECT_EQ(it, g.node_begin() + 1);
-  EXPECT_EQ(*it, n[4]);
-  it = g.remove_node(g.node_begin() + 3);  // the highest index
-  EXPECT_EQ(it, g.node_end());
-}
-
-TEST_F(Nodes, ClearRemovesAll) {
-  g.add_edge(n[0], n[1]);
-  g.remove_node(n[3]);
-  g.clear();
-  g.check_invariants();
-  EXPECT_EQ(g.num_nodes(), 0u);
-  EXPECT_EQ(g.num_edges(), 0u);
-  EXPECT_TRUE(g.node_begin() == g.node_end());
-  for (Node m : n) EXPECT_FALSE(g.has_node(m));
-  Node m = g.add_node(Point(1), 1);
-  EXPECT_EQ(m.index(), 0u);
-  EXPECT_EQ(m.degree(), 0u);
 }
 
 TEST_F(Nodes, ClearBeginsAnewAndKeepsNothingOfTheDead) {
@@ -261,54 +152,6 @@ TEST(Clear, CostsWhatIsThereNow) {
   }
 }
 
-// ----------------------------------------------------- handles live, stay dead
-
-TEST_F(Nodes, HandlesSurviveTheRemovalOfOthers) {
-  g.remove_node(n[0]);
-  g.remove_node(n[3]);
-  for (int i = 0; i < 100; ++i) g.add_node(Point(i), -i);
-  for (int i : {1, 2, 4}) expect_intact(i);
-  n[4].value() = 41;
-  EXPECT_EQ(g.node(n[4].index()).value(), 41);
-}
-
-TEST_F(Nodes, HandlesSurviveReindexWhichOrdersByPlaceInMemory) {
-  g.remove_node(n[0]);
-  g.remove_node(n[2]);
-  EXPECT_EQ(values_by_index(), (Values{40, 10, 30}));
-  arrays(g).reindex();
-  EXPECT_EQ(values_by_index(), (Values{10, 30, 40}));
-  for (int i : {1, 3, 4}) expect_intact(i);
-  EXPECT_FALSE(g.has_node(n[0]));
-  for (unsigned i = 1; i < g.num_nodes(); ++i)
-    EXPECT_LT(g.node(i - 1).id(), g.node(i).id());
-}
-
-TEST_F(Nodes, ReindexNodesGivesTheIndicesThatItIsTold) {
-  const auto version = arrays(g).version();
-  arrays(g).reindex_nodes(std::vector<unsigned>{3, 1, 4, 0, 2});
-  EXPECT_NE(arrays(g).version(), version);
-  EXPECT_EQ(values_by_index(), (Values{30, 10, 40, 0, 20}));
-  for (unsigned i = 0; i < 5; ++i) {
-    expect_intact(int(i));
-    EXPECT_EQ(n[i].id(), i);
-    EXPECT_EQ(arrays(g).positions()[i], Point(i, 0, 0));
-  }
-  EXPECT_EQ(n[4].index(), 2u);
-  g.check_invariants();
-  g.remove_node(n[1]);  // the node of highest index takes the hole
-  EXPECT_EQ(values_by_index(), (Values{30, 20, 40, 0}));
-  EXPECT_EQ(g.add_node(Point(), 50).index(), 4u);  // in the slot of n[1]
-  arrays(g).reindex_nodes(std::vector<unsigned>{4, 3, 2, 1, 0});
-  EXPECT_EQ(values_by_index(), (Values{40, 30, 20, 50, 0}));
-  g.remove_node(n[0]);
-  arrays(g).reindex_nodes(std::vector<unsigned>{4, 2, 1, 3});
-  EXPECT_EQ(values_by_index(), (Values{40, 20, 50, 30}));
-  EXPECT_EQ(G(g).node(2).value(), 50);
-  arrays(g).reindex_nodes(std::vector<unsigned>{1, 2, 3, 4});
-  EXPECT_EQ(values_by_index(), (Values{50, 20, 30, 40}));
-}
-
 TEST_F(Nodes, ReserveKeepsThePlacesOfWhatComesLater) {
   g.reserve(1000, 500);
   for (int i : {0, 1, 2, 3, 4}) expect_intact(i);
@@ -329,85 +172,7 @@ TEST_F(Nodes, ReserveKeepsThePlacesOfWhatComesLater) {
   for (int i = 0; i < 1000; ++i) expect_intact(i);
 }
 
-TEST_F(Nodes, ReindexAfterTheHolesWereFilledStillCounts) {
-  g.remove_node(n[1]);
-  Node m = g.add_node(Point(), 11);  // in the slot of n[1]
-  EXPECT_EQ(values_by_index(), (Values{0, 40, 20, 30, 11}));
-  arrays(g).reindex();
-  g.check_invariants();
-  EXPECT_EQ(values_by_index(), (Values{0, 11, 20, 30, 40}));
-  EXPECT_EQ(m.index(), 1u);
-  EXPECT_EQ(g.add_node(Point()).index(), 5u);
-  EXPECT_EQ(g.remove_node(m), 1u);
-  EXPECT_EQ(values_by_index(), (Values{0, 0, 20, 30, 40}));
-}
-
-TEST_F(Nodes, TheIdOfANodeStays) {
-  std::vector<unsigned> ids;
-  for (Node m : n) ids.push_back(m.id());
-  g.remove_node(n[0]);
-  arrays(g).reindex();
-  g.add_node(Point());
-  for (int i = 1; i < 5; ++i) EXPECT_EQ(n[i].id(), ids[i]);
-}
-
-TEST_F(Nodes, ADeadHandleStaysDead) {
-  g.remove_node(n[2]);
-  for (int round = 0; round < 1000; ++round) {
-    Node m = g.add_node(Point(), 1);
-    ASSERT_FALSE(g.has_node(n[2]));
-    ASSERT_NE(m, n[2]);
-    if (round % 2) g.remove_node(m);
-  }
-  g.clear();
-  for (Node m : n) EXPECT_FALSE(g.has_node(m));
-  for (int i = 0; i < 10; ++i) g.add_node(Point());
-  for (Node m : n) EXPECT_FALSE(g.has_node(m));
-  G copy(g);
-  for (Node m : n) EXPECT_FALSE(copy.has_node(m));
-}
-
-TEST_F(Nodes, ADeadHandleIsNotTheNewNodeInItsSlot) {
-  g.remove_node(n[2]);
-  Node m = g.add_node(Point());
-  ASSERT_EQ(m.id(), 2u) << "the slot was to be used again";
-  EXPECT_NE(m, n[2]);
-  EXPECT_NE(m < n[2], n[2] < m);
-}
-
-TEST_F(Nodes, ACopiedGraphIsEqualAndItsOwn) {
-  g.add_edge(n[0], n[2], 1.5);
-  g.remove_node(n[1]);
-  G copy(g);
-  copy.check_invariants();
-  ASSERT_EQ(copy.num_nodes(), g.num_nodes());
-  for (unsigned i = 0; i < g.num_nodes(); ++i) {
-    EXPECT_EQ(copy.node(i).value(), g.node(i).value());
-    EXPECT_EQ(copy.node(i).position(), g.node(i).position());
-    EXPECT_EQ(copy.node(i).id(), g.node(i).id());
-    EXPECT_NE(copy.node(i), g.node(i));
-    EXPECT_FALSE(copy.has_node(g.node(i)));
-    EXPECT_FALSE(g.has_node(copy.node(i)));
-  }
-  copy.node(0).value() = -1;
-  copy.remove_node(copy.node(1));
-  EXPECT_EQ(g.num_nodes(), 4u);
-  expect_intact(0);
-}
-
 // ------------------------------------------------------------------ comparing
-
-TEST_F(Nodes, EqualIndicesInTwoGraphsAreDifferentNodes) {
-  G other(g);
-  Node m = other.node(0);
-  EXPECT_FALSE(n[0] == m);
-  EXPECT_TRUE(n[0] != m);
-  EXPECT_TRUE((n[0] < m) != (m < n[0]));
-  EXPECT_TRUE(n[0] == g.node(0));
-  EXPECT_FALSE(n[0] != g.node(0));
-  EXPECT_FALSE(n[0] < g.node(0));
-  EXPECT_TRUE(n[0] <= g.node(0) && n[0] >= g.node(0));
-}
 
 TEST_F(Nodes, TheOrderIsTotalOverGraphsDeadAndInvalidNodes) {
   G other(g);
@@ -427,34 +192,11 @@ TEST_F(Nodes, TheOrderIsTotalOverGraphsDeadAndInvalidNodes) {
     }
 }
 
-TEST_F(Nodes, TheOrderNeverChanges) {
-  std::vector<Node> all(n);
-  std::sort(all.begin(), all.end());
-  g.remove_node(all[0]);
-  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
-  arrays(g).reindex();
-  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
-  g.clear();
-  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
-}
-
-TEST_F(Nodes, ANodeIsAKey) {
-  std::map<Node, int> value;
-  for (Node m : n) value[m] = m.value();
-  g.remove_node(n[0]);
-  n.push_back(g.add_node(Point(), 50));
-  value[n[5]] = 50;
-  EXPECT_EQ(value.size(), 6u);
-  for (auto m : g.nodes()) EXPECT_EQ(value.at(m), m.value());
-  std::set<Node> nodes(g.node_begin(), g.node_end());
-  EXPECT_EQ(nodes.count(n[0]), 0u);
-  EXPECT_EQ(nodes.count(n[4]), 1u);
-}
-
 TEST_F(Nodes, InvalidNodesAreEqualAndCanBeAssigned) {
   Node a, b;
   EXPECT_TRUE(a == b);
   EXPECT_FALSE(a < b || b < a);
+  EXPECT_FALSE(g.has_node(a));
   EXPECT_NE(a, n[0]);
   a = n[0];
   EXPECT_EQ(a, n[0]);
@@ -522,38 +264,6 @@ TEST_F(Nodes, NodeIteratorsAreRandomAccess) {
   EXPECT_EQ(n[1].value(), 11);
 }
 
-TEST_F(Nodes, AlgorithmsOfTheStandardLibraryRead) {
-  auto far = std::max_element(g.node_begin(), g.node_end(), [](Node a, Node b) {
-    return a.position().x < b.position().x;
-  });
-  EXPECT_EQ(*far, n[4]);
-  auto near = std::min_element(
-      g.node_begin(), g.node_end(), [](const Node& a, const Node& b) {
-        return norm(a.position() - Point(2)) < norm(b.position() - Point(2));
-      });
-  EXPECT_EQ(*near, n[2]);
-  auto at = std::partition_point(g.node_begin(), g.node_end(),
-                                 [](Node m) { return m.value() < 25; });
-  EXPECT_EQ(*at, n[3]);
-  std::vector<Node> sorted(g.node_begin(), g.node_end());
-  std::sort(sorted.begin(), sorted.end(),
-            [](Node a, Node b) { return a.value() > b.value(); });
-  EXPECT_EQ(sorted.front(), n[4]);
-  std::vector<Node> back(std::make_reverse_iterator(g.node_end()),
-                         std::make_reverse_iterator(g.node_begin()));
-  EXPECT_EQ(back, std::vector<Node>(n.rbegin(), n.rend()));
-}
-
-TEST_F(Nodes, NodesIsTheRangeOfAll) {
-  std::vector<Node> all;
-  for (auto m : g.nodes()) all.push_back(m);
-  EXPECT_EQ(all, n);
-  const G& readable = g;
-  all.clear();
-  for (const auto& m : readable.nodes()) all.push_back(m);
-  EXPECT_EQ(all, n);
-}
-
 TEST_F(Nodes, AddNodeKeepsIterators) {
   auto first = g.node_begin(), third = first + 2;
   auto end = g.node_end();
@@ -592,18 +302,6 @@ TEST_F(Nodes, SpansAndProxiesAreTheSameStorage) {
   }
 }
 
-TEST_F(Nodes, ADeadSlotHoldsDefaults) {
-  unsigned id = n[2].id();
-  g.remove_node(n[2]);
-  EXPECT_FALSE(arrays(g).node_in_use(id));
-  EXPECT_EQ(arrays(g).positions()[id], Point());
-  EXPECT_EQ(arrays(g).node_values()[id], 0);
-  unsigned in_use = 0;
-  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-    in_use += arrays(g).node_in_use(i);
-  EXPECT_EQ(in_use, g.num_nodes());
-}
-
 TEST_F(Nodes, ARemovedValueIsGivenUpAtOnce) {
   Graph<std::shared_ptr<int>> h;
   auto shared = std::make_shared<int>(1);
@@ -614,14 +312,6 @@ TEST_F(Nodes, ARemovedValueIsGivenUpAtOnce) {
   EXPECT_EQ(shared.use_count(), 2);
   h.clear();
   EXPECT_EQ(shared.use_count(), 1);
-}
-
-TEST_F(Nodes, SlotsOfRemovedNodesAreUsedAgain) {
-  for (int round = 0; round < 1000; ++round) {
-    g.remove_node(g.node(unsigned(round) % 5));
-    g.add_node(Point(), round);
-  }
-  EXPECT_EQ(arrays(g).node_slots(), 5u);
 }
 
 TEST_F(Nodes, VersionChangesWithTheNodesOrTheirIndicesOnly) {
