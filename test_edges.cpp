@@ -351,16 +351,6 @@ TEST(Section71, RemoveEdgeByEdge) {
   }
 }
 
-TEST(Section71, RemoveEdgeAtAnIterator) {
-  GraphType g;
-  NodeType a = g.add_node(Point(0, 0, 0), 0), b = g.add_node(Point(), 1);
-  g.add_edge(a, b);
-  auto end = CME212::remove_edge_at(g, g.edge_begin());
-  EXPECT_EQ(g.num_edges(), 0u) << "remove_edge(it): num_edges() falls by 1";
-  EXPECT_TRUE(same(end, g.edge_end()))
-      << "remove_edge(it) of the only edge returns edge_end()";
-}
-
 /** The loop of the assignment: remove the edges of which @a wanted is true. */
 template <typename Wanted>
 void remove_in_a_loop(Wanted wanted) {

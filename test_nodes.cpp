@@ -6,8 +6,7 @@
  *   Homework 0    add_node, node, num_nodes, has_node, index, ==, <, clear
  *   Homework 1    values, iterators
  *   Section 3.1   positions that can be modified
- *   Section 7.1   remove_node: by node, at an iterator, with its edges
- *   All together  a long random history, compared with a model
+ *   Section 7.1   remove_node: by node, at an iterator
  *
  * A removal may change indices and invalidate handles; which ones depends on
  * the graph. So these tests identify a node by its value, which no other node
@@ -15,7 +14,6 @@
  * its own, unless there are arguments: in a debugger give one test,
  * --gtest_filter=Homework0.AddNode. Edges: test_edges.cpp. */
 #include <map>
-#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -264,15 +262,6 @@ TEST(Section71, RemoveNodeThatIsNotThere) {
   check(other, others);
 }
 
-TEST(Section71, RemoveNodeAtAnIterator) {
-  GraphType g;
-  g.add_node(place(0), 0);
-  auto end = CME212::remove_node_at(g, g.node_begin());
-  EXPECT_EQ(g.num_nodes(), 0u) << "remove_node(it): num_nodes() falls by 1";
-  EXPECT_TRUE(same(end, g.node_end()))
-      << "remove_node(it) of the only node returns node_end()";
-}
-
 /** The loop of the assignment: remove the nodes of which @a wanted is true. */
 template <typename Wanted>
 void remove_in_a_loop(int size, Wanted wanted) {
@@ -310,62 +299,6 @@ TEST(Section71, RemoveNodesInALoop) {
       remove_in_a_loop(size, wanted);
       if (HasFailure()) return;
     }
-}
-
-TEST(Section71, RemoveNodeRemovesItsEdges) {
-  GraphType g;
-  Model model = add_nodes(g, 5);
-  for (int v = 1; v < 5; ++v) {  // a wheel: 0 is the hub
-    g.add_edge(find_node(g, 0), find_node(g, v));
-    g.add_edge(find_node(g, v), find_node(g, v % 4 + 1));
-  }
-  ASSERT_EQ(g.num_edges(), 8u) << "add_edge: num_edges() grows by 1";
-  CME212::remove_node(g, find_node(g, 2));
-  EXPECT_EQ(g.num_edges(), 5u)
-      << "remove_node(n): num_edges() falls by n.degree()";
-  model.erase(2);
-  check(g, model);
-  for (int v : {0, 3, 1})
-    EXPECT_EQ(find_node(g, v).degree(), v == 0 ? 3u : 2u)
-        << "remove_node(n): degree() of every neighbor of n falls by 1";
-  EXPECT_EQ(find_node(g, 4).degree(), 3u)
-      << "remove_node(n): other nodes keep their edges";
-  CME212::remove_node(g, find_node(g, 0));
-  EXPECT_EQ(g.num_edges(), 2u)
-      << "remove_node(n): num_edges() falls by n.degree()";
-}
-
-// -------------------------------------------------------------- All together
-
-TEST(AllTogether, ARandomHistoryDoesWhatTheModelDoes) {
-  std::mt19937 random(212);  // the same numbers in every run
-  GraphType g;
-  Model model;
-  for (int step = 0; step < 1000; ++step) {
-    auto what = random() % 10;
-    SCOPED_TRACE("step " + std::to_string(step));
-    if (model.empty() || what < 5) {
-      g.add_node(place(step), step);
-      model[step] = place(step);
-    } else {
-      NodeType n = g.node(size_type(random() % g.num_nodes()));
-      int v = n.value();
-      if (what < 7) {
-        n.position() = model[v] = Point(step, 0, 1);
-      } else if (what < 9) {
-        EXPECT_EQ(CME212::remove_node(g, n), 1)
-            << "remove_node(n) returns 1 if n was removed";
-        model.erase(v);
-      } else {
-        auto it = g.node_begin();
-        while ((*it).value() != v) ++it;
-        CME212::remove_node_at(g, it);
-        model.erase(v);
-      }
-    }
-    check(g, model);
-    if (HasFailure()) return;
-  }
 }
 
 }  // namespace

@@ -71,6 +71,8 @@ struct Color {
    * is between cloth and ground, so draw it with a dark rim for the
    * colour-blind. */
   static constexpr Color make_mark() { return {1.0f, 0.25f, 0.7f}; }
+
+  bool operator==(const Color&) const = default;
 };
 
 }  // namespace CME212

@@ -18,6 +18,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -236,6 +237,19 @@ inline constexpr std::array<std::array<unsigned, 2>, 4> quad_sides = {
     {{0, 1}, {0, 2}, {1, 3}, {2, 3}}};
 inline constexpr std::array<std::array<unsigned, 2>, 2> quad_diagonals = {
     {{0, 3}, {1, 2}}};
+
+/** Those of @a quads whose four sides all have has_side(i, j): where a cloth
+ * lost a node or a side, it has a hole. */
+template <typename F>
+std::vector<Quad> quads_with_sides(std::span<const Quad> quads, F has_side) {
+  std::vector<Quad> left;
+  std::ranges::copy_if(quads, std::back_inserter(left), [&](const Quad& q) {
+    return std::ranges::all_of(quad_sides, [&](auto side) {
+      return has_side(q[side[0]], q[side[1]]);
+    });
+  });
+  return left;
+}
 
 /** The springs of a mesh, numbered: the first spring of each quad, then the
  * second spring of each, and so on; so on a grid consecutive springs have

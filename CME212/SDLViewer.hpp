@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "CME212/BoundingBox.hpp"
+#include "CME212/Color.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "CME212/viewer/Look.hpp"
@@ -27,8 +28,7 @@ using SDLViewer = NoViewer;
 
 #else
 
-/** Shows the nodes and edges of a graph. SceneBuilder collects them, and
- * ensures that no half built scene is drawn.
+/** Shows the nodes and edges of a graph, which SceneBuilder collects.
  *
  * Threads: the constructor, the destructor, event_loop(), launch(), snapshot()
  * and has_display() are for the main thread. Any thread may call all others,
@@ -95,19 +95,19 @@ class SDLViewer : public SceneBuilder {
     set_label(s.str());
   }
 
-  /** Show paragraphs over the picture: why the run stopped, the first two in
-   * bright letters. Empty: none. */
-  void set_message(std::vector<std::string> paragraphs);
+  /** Show paragraphs over the picture, the first two in bright letters, beside
+   * a bar of color @a bar: why the run stopped, its outcome, the title of a
+   * film. Empty: none. */
+  void set_message(std::vector<std::string> paragraphs,
+                   const Color& bar = Color::make_mark());
 
-  /** Write lines at the bottom left of the picture, the first one large: the
-   * title of a film, or the outcome of a run. Empty: nothing is written. */
-  void set_card(std::vector<std::string> lines);
+  /** Mark these places only. The marks do not move with nodes. */
+  void set_marks(std::vector<Mark> marks);
 
   /** Label the color scale, drawn while strain_colors(). */
-  void set_scale(ColorScale scale);
+  void set_scale(const StrainScale& scale);
 
   /** Which parts of the cloth are drawn. The user may change that, too. */
-  Look look() const;
   void set_look(const Look& look);
 
   // ----------------------------------------------------------------- Control
@@ -161,9 +161,9 @@ class SDLViewer : public SceneBuilder {
   void launch();
 
   /** Draw the scene into a picture of the size in the options. It needs no
-   * event_loop(). The picture has the label and the scale, but no help and no
-   * frame rate, so the same scene gives the same picture. If a scene is under
-   * construction, it is completed if this thread builds it, else not drawn.
+   * event_loop(). The picture has the label and the scale, but no help, so the
+   * same scene gives the same picture. Edges that were not added yet are
+   * missing.
    * @pre launch() was not called: its thread has the window
    * Throws std::runtime_error if the driver has no memory for it. */
   Image snapshot();

@@ -46,16 +46,17 @@ int main() try {
     viewer.set_label("t = " + CME212::short_text(t) + " s");
     film.add(picture = viewer.snapshot());
   };
-  viewer.set_card(
+  viewer.set_message(
       {"A ball tears a cloth", std::to_string(g.num_nodes()) + " nodes, " +
-                                   std::to_string(g.num_edges()) + " springs"});
+                                   std::to_string(g.num_edges()) + " springs"},
+      CME212::Color(0.7f));
 
   double next = 0, slow_until = 0;  // [s]
   auto nodes = g.num_nodes();
   for (double t = 0; t < t_end;) {
     if (t > next - dt / 2) {
       show(t);
-      if (t > title) viewer.set_card({});
+      if (t > title) viewer.set_message({});
       if (g.num_nodes() < nodes) slow_until = t + slow_seconds;
       nodes = g.num_nodes();
       next += 1 / (t < slow_until ? slow * rate : rate);

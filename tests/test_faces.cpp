@@ -14,7 +14,6 @@
 #include "CME212/viewer/GLCamera.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "Graph.hpp"
-#include "tests/InPicture.hpp"
 
 namespace {
 
@@ -75,8 +74,8 @@ struct ClothPicture {
    * one. */
   std::array<int, 3> color(const Point& p, bool draw = true) {
     if (draw) image = viewer.snapshot();
-    const Point at = project(camera, p, 4.0 / 3);
-    const auto* c = image.pixel(int(200 * (1 + at.x)), int(150 * (1 - at.y)));
+    const auto [x, y] = camera.pixel(p, 400, 300);
+    const auto* c = image.pixel(int(x), int(y));
     return {c[0], c[1], c[2]};
   }
 };

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -23,8 +22,7 @@ using Ends = std::array<std::uint32_t, 2>;
  * its front, that is counterclockwise. */
 inline constexpr std::array<unsigned, 4> around_quad = {0, 2, 3, 1};
 
-/** Those of @a faces that have all four sides among @a edges. Where a cloth
- * lost a node or a side, it has a hole.
+/** quads_with_sides() of @a faces, those of @a edges.
  * @pre all indices are below @a num_nodes
  * Complexity: O(num_nodes + edges + faces), if no node has very many edges */
 inline std::vector<Quad> faces_left(std::span<const Quad> faces,
@@ -35,18 +33,11 @@ inline std::vector<Quad> faces_left(std::span<const Quad> faces,
   for (const auto& [low, high] : edges) ++begin[low + 2];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   for (const auto& [low, high] : edges) ends[begin[low + 1]++] = high;
-  auto has_edge = [&](std::uint32_t a, std::uint32_t b) {
+  return quads_with_sides(faces, [&](std::uint32_t a, std::uint32_t b) {
     const auto [low, high] = std::minmax(a, b);
     const auto last = ends.begin() + begin[low + 1];
     return std::find(ends.begin() + begin[low], last, high) != last;
-  };
-  std::vector<Quad> left;
-  std::ranges::copy_if(faces, std::back_inserter(left), [&](const Quad& f) {
-    return std::ranges::all_of(quad_sides, [&](const auto& side) {
-      return has_edge(f[side[0]], f[side[1]]);
-    });
   });
-  return left;
 }
 
 /** Normals of a smooth surface: at each node the sum of the normals of its

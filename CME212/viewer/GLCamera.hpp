@@ -132,6 +132,17 @@ class GLCamera {
     return m;
   }
 
+  /** Where @a p is in a picture: x from the left and y from the top [pixels].
+   * Not finite if it is behind the eye, or in no place. */
+  std::array<double, 2> pixel(const Point& p, int width, int height) const {
+    const Point q = p - eye();
+    const double depth = -dot(q, backward());
+    const double unit = height / (2 * half_height(double(width) / height)) /
+                        (depth > 0 ? depth : 0.0);
+    return {width / 2.0 + unit * dot(q, right()),
+            height / 2.0 - unit * dot(q, up())};
+  }
+
   /** Half of the picture's height at distance 1 from the eye. */
   static double half_height(double aspect) {
     return half_size() / std::min(aspect, 1.0);

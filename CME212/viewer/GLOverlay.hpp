@@ -5,12 +5,15 @@
 #include <SDL_opengl.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "CME212/Color.hpp"
+#include "CME212/Util.hpp"
 #include "CME212/viewer/GLShaders.hpp"
 #include "CME212/viewer/GLTools.hpp"
 #include "CME212/viewer/Layer.hpp"
@@ -24,9 +27,10 @@ struct OverlayText {
   std::vector<std::string> help;  // lines, bottom left
   // Paragraphs on a veil above; the first and the last matter most.
   std::vector<std::string> message;
-  std::vector<std::string> card;  // lines above, the first one large
-  bool has_scale = false;         // draw scale at the right
-  ColorScale scale;
+  Color bar;  // at the left of the message
+  std::vector<std::array<std::array<double, 2>, 2>> marks;  // ends [pixels]
+  bool has_scale = false;  // draw scale at the right
+  StrainScale scale;
   bool operator==(const OverlayText&) const = default;
 };
 
@@ -110,19 +114,42 @@ class GLOverlay {
 
   void lay_out() {
     const double margin = 16 * unit_, gap = 8 * unit_;
+    for (const auto& [from, to] : text_.marks) draw_mark(from, to);
     write(margin, margin, large, bright, text_.label);
     double y = layer_.height() - margin;
     for (auto line = text_.help.rbegin(); line != text_.help.rend(); ++line)
       y -= row(small), write(margin, y, small, dim, *line);
     if (!text_.help.empty()) y -= gap;
-    if (!text_.message.empty()) y = draw_message(margin, y) - gap;
-    if (!text_.card.empty()) draw_card(margin, y);
+    if (!text_.message.empty()) draw_message(margin, y);
     if (text_.has_scale) draw_scale(layer_.width() - margin, margin);
   }
 
-  /** The message over the full width, and up from @a bottom.
-   * @return its top */
-  double draw_message(double margin, double bottom) {
+  /** A thick line between two places, or a ring around one, with a dark rim. */
+  void draw_mark(const std::array<double, 2>& from,
+                 const std::array<double, 2>& to) {
+    for (double a : {from[0], from[1], to[0], to[1]})
+      if (!(std::abs(a) < 1e5)) return;  // far outside, or behind the eye
+    std::vector<letters::Piece> pieces{{from[0], from[1], to[0], to[1]}};
+    if (from == to) {
+      pieces.clear();
+      constexpr int sides = 32;
+      const auto x = [&](int k) {
+        return from[0] +
+               17 * unit_ * std::cos(2 * std::numbers::pi * k / sides);
+      };
+      const auto y = [&](int k) {
+        return from[1] +
+               17 * unit_ * std::sin(2 * std::numbers::pi * k / sides);
+      };
+      for (int k = 0; k < sides; ++k)
+        pieces.push_back({x(k), y(k), x(k + 1), y(k + 1)});
+    }
+    layer_.strokes(pieces, 3.25 * unit_, {Color(), 1});
+    layer_.strokes(pieces, 1.75 * unit_, {Color::make_mark(), 1});
+  }
+
+  /** The message over the full width, and up from @a bottom. */
+  void draw_message(double margin, double bottom) {
     const double pad = 10 * unit_, bar = 5 * unit_;
     const double right = layer_.width() - margin;
     std::vector<std::pair<std::string, Ink>> lines;
@@ -133,51 +160,29 @@ class GLOverlay {
     }
     const double top = bottom - 2 * pad - double(lines.size()) * row(medium);
     layer_.box(margin, top, right, bottom, veil);
-    layer_.box(margin, top, margin + bar, bottom, {Color::make_mark(), 1});
+    layer_.box(margin, top, margin + bar, bottom, {text_.bar, 1});
     double y = top + pad;
     for (const auto& [line, ink] : lines)
       y += write(margin + bar + pad, y, medium, ink, line);
-    return top;
-  }
-
-  /** The card, right of @a left and up from @a bottom. */
-  void draw_card(double left, double bottom) {
-    const auto size = [&](const std::string& s) {
-      return &s == &text_.card.front() ? large : medium;
-    };
-    const double pad = 12 * unit_;
-    double wide = 0, high = 0;
-    for (const auto& s : text_.card) {
-      wide = std::max(wide, width_of(s, size(s)));
-      high += row(size(s));
-    }
-    double y = bottom - high - pad;
-    layer_.box(left, y - pad, left + wide + 2 * pad, bottom, veil, 8 * unit_);
-    for (const auto& s : text_.card)
-      y += write(left + pad, y, size(s), size(s) == large ? bright : dim, s);
   }
 
   /** The scale, with its top right corner at (right, top). */
   void draw_scale(double right, double top) {
-    const ColorScale& scale = text_.scale;
     const auto write_left_of = [&](double x, double y, const std::string& s,
                                    double size) {
       write(x - width_of(s, size), y, size, bright, s);
     };
-    write_left_of(right, top, scale.title, medium);
+    write_left_of(right, top, "strain l/L - 1", medium);
     top = std::round(top + 32 * unit_);
     const double left = right - 16 * unit_;
     const int rows = int(160 * unit_);
     for (int i = 0; i < rows; ++i)
       layer_.box(left, top + i, right, top + i + 1,
                  {Color::make_strain(1 - (2 * i + 1) / float(rows)), 1});
-    char number[40];
-    std::snprintf(number, sizeof number, "%.3g", scale.limit);
-    const std::string limit =
-        number + (scale.unit.empty() ? "" : " " + scale.unit);
+    const std::string limit = short_text(text_.scale.limit) + " %";
     const std::string labels[] = {
-        "taut  " + ((scale.above ? "> " : "") + limit), "at rest  0",
-        "slack  " + ((scale.below ? "< -" : "-") + limit)};
+        "taut  " + ((text_.scale.above ? "> " : "") + limit), "at rest  0",
+        "slack  " + ((text_.scale.below ? "< -" : "-") + limit)};
     for (int i = 0; i <= 2; ++i) {
       const double y = top + rows * i / 2.0;
       layer_.box(left - 4 * unit_, y - 0.5, left, y + 0.5, dim);

@@ -65,10 +65,8 @@ class GLScene {
     num_nodes_ = GLsizei(scene.nodes.size());
     spheres_ = scene.spheres;
     planes_ = scene.planes;
-    marks_ = scene.marks;
     // A node is a fifth as wide as the distance of evenly spread nodes.
     box_ = scene.box();
-    set_shades(vertices);
     const double size = box_.diagonal() > 0 ? box_.diagonal() : 1;
     node_size_ = 0.2 * size / std::sqrt(num_nodes_ + 1.0);
   }
@@ -85,7 +83,8 @@ class GLScene {
   void draw(const GLCamera& camera, int width, int height, double scale,
             const Look& look, bool plain) {
     const bool faces = look.faces && has_faces();
-    if (faces || !spheres_.empty()) make_shadow(camera, faces);
+    const bool shaded = faces || !spheres_.empty();
+    if (shaded) make_shadow(camera, faces);
     glViewport(0, 0, width, height);
     glDisable(GL_BLEND);
     glDisable(GL_DEPTH_TEST);
@@ -141,7 +140,7 @@ class GLScene {
       use_cloth(edge_program_, 0.75f, faces ? 0.995f : 0.99f);
       // On faces, wires are dark lines. They fade out where they are so close
       // together that they would only darken the cloth.
-      const double apart = spacing_ * pixels / camera.distance() / scale;
+      const double apart = 5 * node_size_ * pixels / camera.distance() / scale;
       if (faces) edge_program_.set("ink", float(std::min(apart / 40, 0.4)));
       glEnable(GL_BLEND);
       if (!faces || apart > 8)
@@ -152,26 +151,12 @@ class GLScene {
     }
     glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     use_cloth(node_program_, 1, 0.985f);  // in front of the edges
-    node_program_.set("show", float(look.nodes) - 1);
+    node_program_.set("show", look.nodes ? 1.0f : 0.0f);
     glDrawArrays(GL_POINTS, 0, num_nodes_);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 
-    draw_planes(camera, faces, use);
+    draw_planes(shaded, use);
     glDisable(GL_DEPTH_TEST);
-    use(mark_program_);
-    mark_program_.set("half_size", float(width) / 2, float(height) / 2);
-    mark_program_.set("paint", Color::make_mark());
-    for (const auto& m : marks_) {
-      const float ring = m.from == m.to ? float(17 * scale) : 0;
-      const float thick = float(3.5 * scale), rim = float(1.5 * scale);
-      mark_program_.set("from", m.from);
-      mark_program_.set("to", m.to);
-      mark_program_.set("ring", ring);
-      mark_program_.set("width", thick);
-      mark_program_.set("rim", rim);
-      mark_program_.set("reach", ring + thick / 2 + rim + 1);
-      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    }
     glBindVertexArray(0);
   }
 
@@ -212,22 +197,18 @@ class GLScene {
   GLProgram backdrop_program_{
       gl_detail::backdrop_vertex,
       on_backdrop(gl_detail::backdrop_fragment).c_str()};
-  GLProgram plane_program_{gl_detail::plane_vertex,
-                           on_backdrop(gl_detail::plane_fragment).c_str()};
-  GLProgram dark_program_{under_light(gl_detail::dark_vertex).c_str(),
-                          gl_detail::dark_fragment};
-  GLProgram mark_program_{gl_detail::mark_vertex, gl_detail::mark_fragment};
+  GLProgram plane_program_{
+      gl_detail::plane_vertex,
+      on_backdrop(under_light(gl_detail::plane_fragment).c_str()).c_str()};
   GLShadow shadow_;
   GLMesh nodes_, sphere_, plane_;
   GLsizei num_nodes_ = 0;
   // Indices, in this order: edges with an end in no face, other edges, faces.
   GLsizei num_loose_ = 0, num_lines_ = 0, num_triangles_ = 0;
-  double spacing_ = 0;  // mean length of an edge
   std::vector<SceneData::Sphere> spheres_;
   std::vector<SceneData::Plane> planes_;
-  std::vector<SceneData::Mark> marks_;
   double node_size_ = 0;
-  BoundingBox box_, sphere_shade_, face_shade_;
+  BoundingBox box_;
 
   /** The ends of edges, then the corners of two triangles a face. */
   void set_indices(const SceneData& scene) {
@@ -242,7 +223,6 @@ class GLScene {
           indices.insert(indices.end(), {a, b});
       if (loose) num_loose_ = GLsizei(indices.size());
     }
-    spacing_ = scene.mean_edge();
     num_lines_ = GLsizei(indices.size());
     const auto [a, b, c, d] = around_quad;
     for (const Quad& f : scene.faces)
@@ -251,77 +231,20 @@ class GLScene {
     nodes_.set_indices(indices);
   }
 
-  /** Find (across, along) of all that casts a shadow, and a little around. */
-  void set_shades(const std::vector<Vertex>& vertices) {
-    auto add = [](BoundingBox& box, const Point& p, double r) {
-      const double x = dot(p, GLShadow::across()),
-                   y = dot(p, GLShadow::along());
-      box |= Point(x - r, y - r, 0);
-      box |= Point(x + r, y + r, 0);
-    };
-    sphere_shade_ = face_shade_ = BoundingBox();
-    const double rim = 0.02 * box_.diagonal();
-    for (const Vertex& v : vertices)
-      if (v.normal[3])
-        add(face_shade_, Point(v.node.x, v.node.y, v.node.z), rim);
-    for (const auto& s : spheres_) add(sphere_shade_, s.center, s.radius + rim);
-  }
-
-  /** Draw the planes as seen from above, and the shadows on them. They are
-   * opaque, which is faster; at its rim a plane has the backdrop's color. */
+  /** Draw the planes as seen from above, with the shadows on them if @a shaded.
+   * They are opaque; at its rim a plane has the backdrop's color. */
   template <typename Use>
-  void draw_planes(const GLCamera& camera, bool faces, Use use) const {
+  void draw_planes(bool shaded, Use use) const {
     glEnable(GL_CULL_FACE);
     use(plane_program_);
+    plane_program_.set("dark", shaded ? 0.55f : 0.0f);
     plane_.bind();
     for (const auto& p : planes_) {
       plane_program_.set("center", p.center);
       plane_program_.set("radius", float(p.half));
-      plane_program_.set("paint", p.color);
-      plane_program_.set("lines", 10.0f);
       plane_.draw(GL_TRIANGLES);
     }
     glDisable(GL_CULL_FACE);
-    glEnable(GL_BLEND);
-    glDepthFunc(GL_LEQUAL);
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(-1, -4);
-    if (faces || !spheres_.empty()) {
-      use(dark_program_);
-      for (const auto& p : planes_)
-        if (camera.eye().z > p.center.z) darken(p, camera, faces);
-    }
-    glDisable(GL_POLYGON_OFFSET_FILL);
-    glDepthFunc(GL_LESS);
-  }
-
-  /** Draw the shadow on @a plane, where there may be one. */
-  void darken(const SceneData::Plane& plane, const GLCamera& camera,
-              bool faces) const {
-    const double cell = camera.extent() / 80;
-    // The borders of cells are fixed in the world, so no rim flickers.
-    std::array<double, 2> low, high;
-    BoundingBox b = sphere_shade_;
-    if (faces) b |= face_shade_;
-    const std::array<Point, 2> axes{GLShadow::across(), GLShadow::along()};
-    for (unsigned k : {0, 1}) {
-      const double middle = dot(camera.center(), axes[k]);
-      auto border = [&](double a) {
-        return std::clamp(a, middle - camera.extent(),
-                          middle + camera.extent()) /
-               cell;
-      };
-      low[k] = std::floor(border(b.min()[k]));
-      high[k] = std::ceil(border(b.max()[k]));
-    }
-    dark_program_.set("origin", cell * (low[0] * axes[0] + low[1] * axes[1]));
-    dark_program_.set("across", cell * axes[0]);
-    dark_program_.set("along", cell * axes[1]);
-    dark_program_.set("center", plane.center);
-    dark_program_.set("radius", float(plane.half));
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0,
-                          2 * GLsizei(high[0] - low[0] + 1),
-                          GLsizei(high[1] - low[1]));
   }
 
   /** A ball is drawn a little smaller, so that a flat face between nodes on its

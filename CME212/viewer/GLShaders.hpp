@@ -56,7 +56,7 @@ constexpr const char* cloth_vertex = R"(
     if (normal_in.w > 0 && ink > 0) shade = vec4(0.3 * color_in, ink);
     eye.xyz *= nearer;
     gl_Position = projection * eye;
-    if (show < 1 && normal_in.w > 0 || show < 0)
+    if (show < 1 && normal_in.w > 0)
       gl_Position = vec4(2, 2, 2, 1);  // out of the picture
     gl_PointSize = clamp(size.x / -eye.z, size.y, size.z) + 1;  // soft rim
     radius = gl_PointSize / 2;
@@ -122,72 +122,25 @@ constexpr const char* plane_vertex = R"(
   uniform vec3 center;
   uniform float radius;
   out vec2 local;
+  out vec3 place;
   void main() {
     local = at.xy;
-    gl_Position = projection * (view * vec4(center + radius * at, 1));
+    place = center + radius * at;
+    gl_Position = projection * (view * vec4(place, 1));
   })";
 constexpr const char* plane_fragment = R"(
   in vec2 local;
-  uniform vec3 paint;
-  uniform float lines;
+  in vec3 place;
+  uniform float dark;  // how dark a shadow is; 0: there is none
   void main() {
-    vec2 p = local * lines, width = fwidth(p);
+    const vec3 paint = vec3(0.44, 0.45, 0.48);
+    vec2 p = local * 10, width = fwidth(p);  // lines from center to rim
     vec2 line = 1 - clamp(abs(fract(p + 0.5) - 0.5) / width, 0, 1);
     float rim = max(1 - dot(local, local), 0);
     float light = 0.68 + 0.12 * max(line.x, line.y);
+    float shade = dark > 0 ? dark * sqrt(rim) * (1 - lit(place)) : 0.0;
     color = vec4(mix(backdrop(), paint * light, 0.9 * sqrt(rim)), 1);
-  })";
-
-/** The shadow on a plane, a net of cells seen from the lamp: strips of two
- * triangles a cell, one for each instance. */
-constexpr const char* dark_vertex = R"(
-  uniform mat4 view, projection;
-  uniform vec3 origin, across, along;  // of the net: its cells, in the world
-  uniform vec3 center;                 // of the plane, which is horizontal
-  uniform float radius;
-  out float dark;
-  void main() {
-    vec3 place = origin + gl_VertexID / 2 * across +
-                 (gl_VertexID % 2 + gl_InstanceID) * along;
-    place -= (place.z - center.z) / to_light.z * to_light;
-    vec2 p = (place - center).xy / radius;
-    dark = 0.55 * sqrt(max(1 - dot(p, p), 0)) * (1 - lit(place));
-    gl_Position = projection * (view * vec4(place, 1));
-  })";
-constexpr const char* dark_fragment = R"(
-  in float dark;
-  out vec4 color;
-  void main() { color = vec4(0, 0, 0, dark); })";
-
-/** A thick line between two places, or a ring around one, in pixels. */
-constexpr const char* mark_vertex = R"(
-  uniform mat4 view, projection;
-  uniform vec3 from, to;
-  uniform vec2 half_size;  // of the picture
-  uniform float reach;     // to the outer rim
-  flat out vec2 a, b;
-  void main() {
-    vec4 p = projection * (view * vec4(from, 1));
-    vec4 q = projection * (view * vec4(to, 1));
-    a = (p.xy / p.w + 1) * half_size;
-    b = (q.xy / q.w + 1) * half_size;
-    vec2 along = reach * (a == b ? vec2(1, 0) : normalize(b - a));
-    vec2 across = vec2(-along.y, along.x);
-    vec2 corner = gl_VertexID < 2 ? a - along : b + along;
-    corner += gl_VertexID % 2 == 0 ? across : -across;
-    gl_Position = vec4(corner / half_size - 1, 0, 1);
-    if (p.w <= 0 || q.w <= 0) gl_Position = vec4(2, 2, 2, 1);  // behind us
-  })";
-constexpr const char* mark_fragment = R"(
-  flat in vec2 a, b;
-  out vec4 color;
-  uniform vec3 paint;
-  uniform float ring, width, rim;  // ring: its radius, 0 for a line
-  void main() {
-    vec2 p = gl_FragCoord.xy - a, line = b - a;
-    float at = clamp(dot(p, line) / max(dot(line, line), 1e-6), 0, 1);
-    float off = abs(length(p - at * line) - ring) - width / 2;
-    color = vec4(paint * clamp(0.5 - off, 0, 1), clamp(rim + 0.5 - off, 0, 1));
+    color.rgb *= 1 - shade;
   })";
 
 /** A picture over the whole one, its rows from the top. */

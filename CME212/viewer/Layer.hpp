@@ -33,15 +33,9 @@ class Layer {
   /** Rows from the top; red, green, blue, each times alpha, and alpha. */
   const std::vector<std::array<std::uint8_t, 4>>& rgba() const { return rgba_; }
 
-  /** A box with round corners. */
-  void box(double x0, double y0, double x1, double y1, Ink ink,
-           double radius = 0) {
-    const double x = (x0 + x1) / 2, y = (y0 + y1) / 2;
-    const double w = (x1 - x0) / 2 - radius, h = (y1 - y0) / 2 - radius;
-    cover(x0, y0, x1, y1, ink, [=](double px, double py) {
-      const double dx = std::abs(px - x) - w, dy = std::abs(py - y) - h;
-      return radius - std::hypot(std::max(dx, 0.), std::max(dy, 0.)) -
-             std::min(std::max(dx, dy), 0.);
+  void box(double x0, double y0, double x1, double y1, Ink ink) {
+    cover(x0, y0, x1, y1, ink, [=](double x, double y) {
+      return std::min({x - x0, x1 - x, y - y0, y1 - y});
     });
   }
 

@@ -1,30 +1,27 @@
 #pragma once
 /** @file Look.hpp
  * How a viewer shows a cloth. */
-#include <string>
+#include "CME212/Point.hpp"
 
 namespace CME212 {
 
 /** Which parts of a cloth are drawn. */
 struct Look {
-  enum class Nodes { none, lone, all };  ///< lone: those in no face
   bool faces = true, wires = true;
-  Nodes nodes = Nodes::lone;
+  bool nodes = false;  ///< also those in a face; all others always are
   bool operator==(const Look&) const = default;
 };
 
-/** The next choice after @a n, in a circle. */
-constexpr Look::Nodes next(Look::Nodes n) {
-  return n == Look::Nodes::all ? Look::Nodes::none : Look::Nodes(int(n) + 1);
-}
+/** A line [m] drawn on top of everything else; a ring if both ends coincide. */
+struct Mark {
+  Point from, to;
+};
 
-/** The scale of the colors of Color::make_strain. */
-struct ColorScale {
-  std::string title = {};
-  double limit = 1;  ///< its ends are +limit (taut) and -limit (slack)
-  std::string unit = {};
+/** The scale of strain, which colors by Color::make_strain. */
+struct StrainScale {
+  double limit = 1;  ///< [%]; its ends are +limit (taut) and -limit (slack)
   bool above = false, below = false;  ///< some values are beyond that end
-  bool operator==(const ColorScale&) const = default;
+  bool operator==(const StrainScale&) const = default;
 };
 
 }  // namespace CME212

@@ -43,15 +43,9 @@ class NoViewer {
   void add_plane(const T&...) {}
   template <typename... T>
   void set_view(const T&...) {}
-  template <typename... T>
-  void set_scale(const T&...) {}
   template <typename T>
   void set_label(const T&) {}
   void set_message(const std::vector<std::string>&) {}
-  void set_paused(bool) {}
-  void set_strain_colors(bool) {}
-  bool strain_colors() const { return false; }
-  bool take_restart() { return false; }
   void clear() {}
   void clear_shapes() {}
   void center_view() {}

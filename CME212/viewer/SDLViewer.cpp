@@ -3,9 +3,11 @@
 #include "CME212/SDLViewer.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <exception>
 #include <filesystem>
 #include <future>
@@ -19,14 +21,44 @@
 #include "CME212/viewer/GLOverlay.hpp"
 #include "CME212/viewer/GLScene.hpp"
 #include "CME212/viewer/GLTools.hpp"
-#include "CME212/viewer/SDLSettings.hpp"
 #include "CME212/viewer/SDLWindow.hpp"
 
 namespace CME212 {
 
-/** The settings, and the window. */
-class SDLViewer::Display : public SDLSettings {
+/** What the program and the user have set, and the window. */
+class SDLViewer::Display {
  public:
+  // Settings, which any thread may change.
+  std::mutex mutex;  // of all of them
+  std::condition_variable control;
+  OverlayText text;
+  GLCamera camera;
+  std::optional<BoundingBox> look_at = GLCamera::usual_box();  // empty: all
+  Look look;
+  std::vector<Mark> marks;
+  int steps = 0;         // to be made while paused
+  bool pauses = false;   // the program calls wait_while_paused()
+  bool restart = false;  // not yet taken
+  bool help = true;      // shown
+  // Written under the lock only, read without:
+  std::atomic<bool> paused = false, closed = false, strain_colors = false;
+  std::atomic<bool> redraw = true;
+
+  /** Change something that is drawn or waited for. */
+  template <typename F>
+  void change(F f) {
+    std::lock_guard lock(mutex);
+    f();
+    redraw = true;
+    control.notify_all();
+  }
+  void close() {
+    change([this] { closed = true; });
+  }
+  void set_paused(bool on) {
+    change([this, on] { paused = on, steps = 0; });
+  }
+
   Display(SceneBuilder& builder, const Options& o)
       : builder_(builder), options_(o), canvas_(std::in_place, o) {}
   ~Display() {
@@ -122,7 +154,6 @@ void SDLViewer::Display::serve() {
     // second connection, an error if the window is destroyed before it arrives.
     std::this_thread::sleep_for(wait);
     for (SDL_Event e; SDL_PollEvent(&e);) handle(e);
-    builder_.complete_if_quiet();
     const auto start = clock::now();
     if (closed || start < next || !needs_frame()) continue;
     show_frame();
@@ -152,6 +183,9 @@ void SDLViewer::Display::draw(int width, int height, double scale,
     what = look;
     shown = text;
     shown.has_scale = strain_colors;
+    for (const Mark& m : marks)
+      shown.marks.push_back({camera.pixel(m.from, width, height),
+                             camera.pixel(m.to, width, height)});
     if (in_window) {
       std::string title = options_.title;
       for (const auto& part :
@@ -226,11 +260,11 @@ void SDLViewer::Display::press(SDL_Keycode key) {
   switch (key) {
     case SDLK_SPACE:
       return set_paused(!paused);
-    case SDLK_n:  // pauses, too
-      return step_once();
+    case SDLK_n:
+      return change([&] { paused = true, ++steps; });
     case SDLK_r:
-      if (options_.restarts) ask_restart();
-      return;
+      if (!options_.restarts) return;
+      return change([&] { restart = true, steps = 0; });
     case SDLK_s:
       if (!options_.colors) return;
       return change([&] { strain_colors = !strain_colors; });
@@ -239,7 +273,7 @@ void SDLViewer::Display::press(SDL_Keycode key) {
     case SDLK_w:
       return change([&] { look.wires = !look.wires; });
     case SDLK_d:
-      return change([&] { look.nodes = next(look.nodes); });
+      return change([&] { look.nodes = !look.nodes; });
     case SDLK_c:
       return change([&] { look_at = BoundingBox(); });
     case SDLK_q:
@@ -267,7 +301,6 @@ bool SDLViewer::has_display() {
 }
 
 void SDLViewer::center_view() {
-  complete_without_edges();
   display_->change([&] { display_->look_at = BoundingBox(); });
 }
 
@@ -279,26 +312,25 @@ void SDLViewer::set_view(const Point& eye_direction, const BoundingBox& box) {
 }
 
 void SDLViewer::set_label(const std::string& label) {
-  complete_without_edges();
   display_->change([&] { display_->text.label = label; });
 }
 
-void SDLViewer::set_message(std::vector<std::string> paragraphs) {
-  display_->change([&] { display_->text.message = std::move(paragraphs); });
+void SDLViewer::set_message(std::vector<std::string> paragraphs,
+                            const Color& bar) {
+  display_->change([&] {
+    display_->text.message = std::move(paragraphs);
+    display_->text.bar = bar;
+  });
 }
 
-void SDLViewer::set_card(std::vector<std::string> lines) {
-  display_->change([&] { display_->text.card = std::move(lines); });
+void SDLViewer::set_marks(std::vector<Mark> marks) {
+  display_->change([&] { display_->marks = std::move(marks); });
 }
 
-void SDLViewer::set_scale(ColorScale scale) {
-  display_->change([&] { display_->text.scale = std::move(scale); });
+void SDLViewer::set_scale(const StrainScale& scale) {
+  display_->change([&] { display_->text.scale = scale; });
 }
 
-Look SDLViewer::look() const {
-  std::lock_guard lock(display_->mutex);
-  return display_->look;
-}
 void SDLViewer::set_look(const Look& look) {
   display_->change([&] { display_->look = look; });
 }
@@ -364,7 +396,7 @@ void SDLViewer::launch() {
 
 Image SDLViewer::snapshot() {
   assert(!display_->launched() && "a thread of launch() draws");
-  complete_own();
+  complete();
   return display_->snapshot();
 }
 

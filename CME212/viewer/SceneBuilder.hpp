@@ -6,13 +6,11 @@
 #include <any>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <map>
 #include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -55,16 +53,10 @@ struct SceneData {
     Point center;
     double radius;
   };
-  /** A square of side 2 * half in a horizontal plane. */
+  /** The part of a horizontal plane within @a half of its center. */
   struct Plane {
     Point center;
     double half;
-    Color color;
-  };
-
-  /** A line drawn on top of everything else; a ring if both ends coincide. */
-  struct Mark {
-    Point from, to;
   };
 
   std::vector<Vertex> nodes;
@@ -72,18 +64,7 @@ struct SceneData {
   std::vector<Quad> faces;  // of indices into nodes
   std::vector<Sphere> spheres;
   std::vector<Plane> planes;
-  std::vector<Mark> marks;
 
-  /** The mean length of the edges that are finite; 0 if there are none. */
-  double mean_edge() const {
-    double sum = 0, count = 0;
-    for (const auto& [i, j] : edges) {
-      const Vertex &a = nodes[i], &b = nodes[j];
-      const double l = std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
-      if (std::isfinite(l)) sum += l, ++count;
-    }
-    return count > 0 ? sum / count : 0;
-  }
   /** The box of all nodes and spheres. */
   BoundingBox box() const {
     BoundingBox b;
@@ -94,14 +75,9 @@ struct SceneData {
   }
 };
 
-/** Collects a scene from the nodes and edges of a graph. Only complete scenes
- * are shown. A scene under construction is complete
- *  - when add_edges() returns;
- *  - in a program that draws no edges: at the next clear() or
- *    complete_without_edges(), or when nothing was added for 50 ms.
- * Until then the viewer shows the previous one. If no scene is under
- * construction, an add_nodes() that only changes known nodes takes effect when
- * it returns.
+/** Collects a scene from the nodes and edges of a graph. After clear() the
+ * viewer shows the previous scene until nodes were added; in a program that
+ * draws edges, until edges were added. So no half built scene is shown.
  *
  * Threads: all members may be called by any thread at any time. The functors
  * run on the thread that calls, and must not call the builder. */
@@ -132,7 +108,6 @@ class SceneBuilder {
   void add_nodes(It first, It last, ColorFn color, PositionFn position,
                  Map& node_map) {
     std::lock_guard lock(build_mutex_);
-    touch();
     auto& nodes = building_.nodes;
     auto hint = node_map.end();
     for (; first != last; ++first) {
@@ -144,7 +119,7 @@ class SceneBuilder {
       } else {  // new, or the map was not cleared when the scene was
         at->second = unsigned(nodes.size());
         nodes.push_back(v);
-        incomplete_ = true;
+        incomplete_ = has_edges_;
       }
       hint = std::next(at);
     }
@@ -168,7 +143,6 @@ class SceneBuilder {
   template <typename It, typename Map>
   void add_edges(It first, It last, const Map& node_map) {
     std::lock_guard lock(build_mutex_);
-    touch();
     auto& edges = building_.edges;
     const bool merge = !edges.empty();
     auto one = node_map.end();
@@ -217,11 +191,11 @@ class SceneBuilder {
   /** Replace the scene by @a g: its nodes in white, its edges, and the faces of
    * add_faces(). Spheres and planes stay. Uses num_nodes() and node(i); for the
    * edges iterators or, with a graph of homework 0, num_edges() and edge(i).
-   * @post The scene is complete and shown, unless another thread adds to it.
+   * @post The scene is shown.
    * Complexity: O((nodes + edges + faces) log nodes). */
   template <typename G>
   void draw_graph(const G& g) {
-    auto node_map = start_with_nodes_of(g);
+    auto node_map = start_with_nodes_of(g, true);
     {
       std::lock_guard lock(build_mutex_);
       if (const auto* faces = std::any_cast<FacesOf<G>>(&faces_))
@@ -239,22 +213,17 @@ class SceneBuilder {
   /** As draw_graph(), but without edges.  O(nodes log nodes) */
   template <typename G>
   void draw_graph_nodes(const G& g) {
-    start_with_nodes_of(g);
-    complete_own();
+    start_with_nodes_of(g, false);
   }
 
   /** Begin a new scene without nodes and edges. Spheres and planes stay. */
   void clear() {
     std::lock_guard lock(build_mutex_);
-    touch();
     if (incomplete_ && !building_.nodes.empty()) {
       has_edges_ = false;  // none were added
       publish();
     }
-    building_.nodes.clear();
-    building_.edges.clear();
-    building_.faces.clear();
-    incomplete_ = edges_changed_ = true;
+    start(has_edges_);
   }
 
   /** Add a ball that stays until clear_shapes().  @pre radius > 0 [m] */
@@ -264,43 +233,24 @@ class SceneBuilder {
   /** Add the plane z = @a z [m] until clear_shapes(). It is drawn as a mesh of
    * lines around @a center that fades at distance @a half [m], with 10 lines
    * on that distance.  @pre half > 0 */
-  void add_plane(double z, double half = 1.5, Point center = Point(0.5, 0.5, 0),
-                 Color color = Color(0.44f, 0.45f, 0.48f)) {
+  void add_plane(double z, double half = 1.5,
+                 Point center = Point(0.5, 0.5, 0)) {
     center.z = z;
-    change_shapes([&] { shown_.planes.push_back({center, half, color}); });
+    change_shapes([&] { shown_.planes.push_back({center, half}); });
   }
   /** Remove all spheres and planes. */
   void clear_shapes() {
     change_shapes([&] { shown_.spheres.clear(), shown_.planes.clear(); });
   }
 
-  /** Mark these positions [m] only. The marks do not move with nodes. */
-  void set_marks(std::vector<SceneData::Mark> marks) {
-    change_shapes([&] { shown_.marks = std::move(marks); });
-  }
-
   /** True if the latest complete scene was taken by take(). If a simulation
    * builds a scene only then, each scene is drawn. Costs one atomic read. */
   bool wants_frame() const { return wants_frame_; }
 
-  /** Complete the scene under construction if the program draws no edges. */
-  void complete_without_edges() {
+  /** Show the scene as it is, although no edges were added since clear(). */
+  void complete() {
     std::lock_guard lock(build_mutex_);
-    if (incomplete_ && !has_edges_ && !building_.nodes.empty()) publish();
-  }
-  /** Complete it if the calling thread was the last one that added to it. */
-  void complete_own() {
-    std::lock_guard lock(build_mutex_);
-    if (incomplete_ && builder_ == std::this_thread::get_id()) publish();
-  }
-  /** Complete it if nothing was added for 50 ms (1 s if the program draws
-   * edges). Never blocks. */
-  void complete_if_quiet() {
-    std::unique_lock lock(build_mutex_, std::try_to_lock);
-    if (!lock || !incomplete_) return;
-    // Edges may come late: the simulation may have to wait for a processor.
-    auto quiet = std::chrono::milliseconds(has_edges_ ? 1000 : 50);
-    if (clock::now() - last_change_ > quiet) publish();
+    if (incomplete_ || edges_changed_) publish();
   }
 
   /** If the complete scene changed since the last call, call
@@ -322,7 +272,6 @@ class SceneBuilder {
   bool has_new() const { return has_new_; }
 
  private:
-  using clock = std::chrono::steady_clock;
   /** Nodes, not indices, which change by removals. */
   template <typename G>
   using FacesOf = std::vector<std::array<typename G::node_type, 4>>;
@@ -330,11 +279,9 @@ class SceneBuilder {
   std::mutex build_mutex_;      // locked before shown_mutex_
   SceneData building_;          // its nodes, edges and faces
   std::any faces_;              // of draw_graph(): a FacesOf<G>
-  bool incomplete_ = false;     // a scene is under construction
+  bool incomplete_ = false;     // edges are still to come
   bool edges_changed_ = false;  // building_ has other edges than shown_
-  bool has_edges_ = false;      // the program calls add_edges()
-  std::thread::id builder_;     // who changed building_ last, and when
-  clock::time_point last_change_;
+  bool has_edges_ = false;      // the program draws edges
 
   std::mutex shown_mutex_;
   SceneData shown_;
@@ -342,13 +289,15 @@ class SceneBuilder {
   std::atomic<bool> has_new_ = false, wants_frame_ = true;
 
   // With build_mutex_ locked:
-  void touch() {
-    builder_ = std::this_thread::get_id();
-    last_change_ = clock::now();
+  void start(bool edges_follow) {
+    building_.nodes.clear();
+    building_.edges.clear();
+    building_.faces.clear();
+    has_edges_ = incomplete_ = edges_follow;
+    edges_changed_ = true;
   }
   template <typename It, typename Map>
   void place_faces(It first, It last, const Map& node_map) {
-    touch();
     for (; first != last; ++first) {
       Quad face;
       unsigned found = 0;
@@ -359,7 +308,8 @@ class SceneBuilder {
       }
       if (found == 4) building_.faces.push_back(face);
     }
-    incomplete_ = edges_changed_ = true;
+    edges_changed_ = true;
+    incomplete_ = incomplete_ || has_edges_;
   }
   void publish() {
     std::vector<Quad> left;
@@ -380,8 +330,11 @@ class SceneBuilder {
 
   /** Clear, and add the nodes of @a g.  @return where they are */
   template <typename G>
-  auto start_with_nodes_of(const G& g) {
-    clear();
+  auto start_with_nodes_of(const G& g, bool edges_follow) {
+    {
+      std::lock_guard lock(build_mutex_);
+      start(edges_follow);
+    }
     auto node_map = empty_node_map(g);
     std::vector<typename G::node_type> nodes;
     for (decltype(g.num_nodes()) i = 0; i < g.num_nodes(); ++i)

@@ -208,21 +208,12 @@ void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
 }
 
 std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {
-  auto is_left = [&](const Quad& q) {
-    auto there = [&](unsigned i) {
-      return arrays(g).node_in_use(built.ids[i]);
-    };
-    auto node = [&](unsigned i) {
-      return arrays(g).node_with_id(built.ids[i]);
-    };
-    return std::ranges::all_of(q, there) &&
-           std::ranges::all_of(quad_sides, [&](const auto& side) {
-             return g.has_edge(node(q[side[0]]), node(q[side[1]]));
-           });
-  };
-  std::vector<Quad> all;
-  std::ranges::copy_if(built.mesh.quads, std::back_inserter(all), is_left);
-  return all;
+  const auto a = arrays(g);
+  return quads_with_sides(built.mesh.quads, [&](unsigned i, unsigned j) {
+    const unsigned p = built.ids[i], q = built.ids[j];
+    return a.node_in_use(p) && a.node_in_use(q) &&
+           g.has_edge(a.node_with_id(p), a.node_with_id(q));
+  });
 }
 
 PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built) {

@@ -97,7 +97,8 @@ class SDLScreen : public Screen {
   }
 
   void show_card(const std::vector<std::string>& lines) override {
-    viewer_.set_card(lines);
+    card_ = lines;
+    if (failure_.empty()) viewer_.set_message(card_, CME212::Color(0.7f));
   }
   void save_picture(const std::string& file) override {
     CME212::write_png(file, viewer_.snapshot());
@@ -135,10 +136,11 @@ class SDLScreen : public Screen {
   CME212::BoundingBox room_;  // looked at, and as much as it may become
   CME212::BoundingBox widest_;
   bool shown_ = false, colored_ = false;
-  bool moving_ = false;      // whether an obstacle is
-  std::size_t version_ = 0;  // of the cloth, when its edges were shown
-  double scale_ = 0.01;      // the strain of the brightest color
-  std::string failure_;      // that is shown, in words
+  bool moving_ = false;            // whether an obstacle is
+  std::size_t version_ = 0;        // of the cloth, when its edges were shown
+  double scale_ = 0.01;            // the strain of the brightest color
+  std::string failure_;            // that is shown, in words
+  std::vector<std::string> card_;  // that is shown if nothing has failed
   CME212::Clock clock_;
   long long steps_ = 0;  // when clock_ was started
   double rate_ = 0;      // [steps/s]
@@ -162,7 +164,7 @@ class SDLScreen : public Screen {
     const std::string text = text_of(failure);
     if (text == failure_) return;
     failure_ = text;
-    std::vector<CME212::SceneData::Mark> marks;
+    std::vector<CME212::Mark> marks;
     std::vector<std::string> paragraphs;
     if (failure) {
       const Cloth& g = scene.cloth();
@@ -175,6 +177,7 @@ class SDLScreen : public Screen {
       paragraphs = {why.cause, why.remedy, why.place};
     }
     viewer_.set_marks(std::move(marks));
+    if (failure_.empty()) return show_card(card_);
     viewer_.set_message(std::move(paragraphs));
   }
 
@@ -193,9 +196,7 @@ class SDLScreen : public Screen {
     std::nth_element(sizes.begin(), at, sizes.end());
     scale_ = std::max(scale_, round_up(*at));
     const auto [low, high] = std::ranges::minmax(strains);
-    viewer_.set_scale({.title = "strain l/L - 1",
-                       .limit = 100 * scale_,
-                       .unit = "%",
+    viewer_.set_scale({.limit = 100 * scale_,
                        .above = high > scale_,
                        .below = low < -scale_});
   }
