@@ -194,10 +194,11 @@ TYPED_TEST(FlatFlowTest, BatchesAreSingleStepsAndLoopsOverNodes) {
 
 TYPED_TEST(FlatFlowTest, ThatHoldsForContact) {
   for (unsigned seed = 0; seed < seeds; ++seed)
-    this->interleave(
-        seed, make_combined_force(MassSpringForce(), GravityForce(3)),
-        make_combined_constraints(PlaneConstraint(0.1),
-                                  SphereConstraint({Point(0.5, 0.5, 0.2), 0.3})));
+    this->interleave(seed,
+                     make_combined_force(MassSpringForce(), GravityForce(3)),
+                     make_combined_constraints(
+                         PlaneConstraint(0.1),
+                         SphereConstraint({Point(0.5, 0.5, 0.2), 0.3})));
 }
 
 // They see the graph as it is at their place in a step, and may change it.

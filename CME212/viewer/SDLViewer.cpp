@@ -25,7 +25,7 @@
 
 namespace CME212 {
 
-/** What the program and the user have set, and the window. */
+/** The settings of the program and of its user, and the window. */
 class SDLViewer::Display {
  public:
   // Settings, which any thread may change.

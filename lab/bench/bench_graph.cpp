@@ -1,5 +1,5 @@
 /** @file bench_graph.cpp
- * What a Graph costs: nanoseconds and bytes a node of a grid with diagonals, of
+ * Costs of a Graph: nanoseconds and bytes a node of a grid with diagonals, of
  * SIDE x SIDE nodes. It needs no more than mass_spring.hpp, so that
  * graph_costs.sh can compile it with another version of that and of Graph.hpp:
  *   bench_graph SIDE */

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a Graph costs beside that of another COMMIT, by default the last one
+# The costs of a Graph beside that of another COMMIT, by default the last one
 # before the Graph became plain: the table of docs/graph.md. Both are measured
 # in turn, RUNS times; the ratio is that of the least values, and behind it are
 # the least and the largest ratio of a turn.

@@ -135,8 +135,7 @@ class Round : public Base {
 
 class Sphere final : public Round<NodewiseConstraint> {
  public:
-  explicit Sphere(const SphereConstraint& c)
-      : Round(c.ball), sphere_(c.ball) {}
+  explicit Sphere(const SphereConstraint& c) : Round(c.ball), sphere_(c.ball) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     for_each_violating(
