@@ -257,7 +257,7 @@ struct SofterForce : MassSpringForce {
 struct QuadraticDrag : DampingForce {
   QuadraticDrag() : DampingForce(0.2) {}
   Point operator()(Node n, double) const override {
-    return -coefficient() * norm(n.value().vel) * n.value().vel;
+    return -c * norm(n.value().vel) * n.value().vel;
   }
 };
 struct HalfOfAll : CombinedForces {
