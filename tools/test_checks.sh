@@ -74,24 +74,17 @@ README.md:$(sed -n '/is 47 times/=' README.md): 47, expected 46
 END
 
 # ---- How the Makefile builds a program that somebody adds to the root
-build_says() {  # NAME WORD NOT-WORD MAKE-ARGUMENT...
-  printf '%s\n' "$program" >own.cpp
-  attempt env -u SPEED timeout 60 make -n own B="$tmp/own" "${@:4}"
-  expect 0; says "$2"; not_say "$3"
-  ok "make: $1"; rm -rf "$tmp/own"
-}
-program='int main() {}'
-build_says "its own program has assertions" -Og NDEBUG
-program=$'#include "CME212/SFML_Viewer.hpp"\nint main() {}'
-build_says "it is linked with the viewer that it includes" libviewer.a gtest
-program='#include <gtest/gtest.h>'
-build_says "and with GoogleTest, under the sanitizers" \
-  -fsanitize=address,undefined libviewer
-program=$'#include "own.hpp"\nint main() {}'
-touch -d 'now + 2 days' own.hpp
-build_says "it ends, though a header is dated in the future" -Og NDEBUG
-cp course/starter/Makefile .; touch tests/tests.mk
-build_says "that of the starter, too" -g NDEBUG
+own() { attempt env -u SPEED timeout 60 make -n own B="$tmp/own"; expect 0; }
+printf '#include "CME212/SFML_Viewer.hpp"\n#include <gtest/gtest.h>\n' >own.cpp
+own; says libviewer.a; says -fsanitize=address,undefined
+ok "make: a program is linked with what it includes"
+printf '#include "own.hpp"\nint main() {}\n' >own.cpp
+for makefile in Makefile course/starter/Makefile; do
+  [ $makefile = Makefile ] || { cp $makefile .; touch tests/tests.mk; }
+  rm -rf "$tmp/own"; touch -d 'now + 2 days' own.hpp
+  own; says ' -g'; not_say NDEBUG; not_say libviewer
+  ok "make: $makefile has assertions, and ends though a header is of the future"
+done
 
 # ---- The tree. The words are put together here, not to be found here.
 cd "$tmp/few"
@@ -140,16 +133,15 @@ ended() { ! grep -q '^State:.[^Z]' "/proc/$(cat "$tmp/pid")/status"; } 2>/dev/nu
 steps 1 'sleep 1000'
 caught tools/check.sh quick <<<"slow: ended after 1 s, its time limit"
 steps 100 "sleep 1000 & echo \$! >$tmp/pid"
-attempt tools/check.sh quick; expect 0
-ended || why+=" it is there;"
-ok "check: a step leaves nothing running"
+attempt tools/check.sh quick
+expect 0; same "what it left" "$(ended || echo there)" ""; ok "check: nothing is left"
 steps 100 "sleep 1000 & echo \$! >$tmp/pid; wait"
 env --default-signal tools/check.sh quick >"$tmp/said" 2>&1 &
 until [ -s "$tmp/pid" ] || ! kill -0 $! 2>/dev/null; do sleep 0.1; done
 kill -TERM $!
-status=0; wait $! || status=$?
-expect 143; ended || why+=" a step is left;"
-out=$(cat "$tmp/said"); ok "check: SIGTERM ends all steps"
+wait $! && status=0 || status=$?
+out=$(<"$tmp/said")
+expect 143; same "what it left" "$(ended || echo there)" ""; ok "check: SIGTERM"
 git reset -q --hard
 
 # ---- Pages whose commands are run

@@ -41,8 +41,7 @@ accepted() {  # NAME HW [FORCE [TESTS]]: origin and work/ have the tag, on HEAD
   same "the tag on origin" "$(on_origin "refs/tags/$2^{commit}")" "$head"
   same "the tag here" "$(id "refs/tags/$2")" "$(on_origin "refs/tags/$2")"
   same "its kind" "$(git cat-file -t "refs/tags/$2" 2>&1)" tag
-  says "branch main  $head"
-  says "tag    $2  $head"
+  says "branch main  $head"$'\n'"  tag    $2  $head"
   says "Both are this commit: $(git log -1 --format='%h %s')"
   ok "$1"
 }
@@ -76,10 +75,6 @@ for name in HEAD Main "" "hw 2" -f hw..2 hw/2 $'hw2\nx'; do
 done
 scene; git push -q origin main:hw2
 refused "a branch of the tag's name" "'hw2' is the name of a branch" hw2
-scene; git switch -qc feature; git push -q origin main
-submit hw2; expect 0
-same feature "$(on_origin refs/heads/feature)" "$(git rev-parse HEAD)"
-ok "another branch than main"
 scene; git config remote.origin.push 'refs/heads/*:refs/heads/elsewhere/*'
 git config push.followTags true; git tag -a -m own own
 accepted "the branch goes to its own name, whatever is configured" hw2
@@ -101,7 +96,6 @@ for change in "git commit -q --allow-empty -m meanwhile" \
   same "the tag here" "$(id refs/tags/hw2)" none
   ok "while the tests run: $change"
 done
-scene; accepted "a file that the tests leave is no change" hw2 "" "touch leftover"
 scene; refused "a failing test" "the tests fail" hw2 "" "echo 2 failed; false"
 git switch -q --detach; refused "HEAD is detached" "git switch -c NAME" hw2
 git switch -q main; git remote set-url origin "$tmp/nowhere.git"
@@ -137,13 +131,8 @@ scene; mkdir tools
 printf '#!/bin/sh\nprintf "<%%s> <%%s>" "$HW" "$FORCE"\n' >tools/submit.sh
 chmod +x tools/submit.sh
 for name in "${names[@]}"; do
-  for by in make env; do
-    given=(make -sI "$root" -f "$root/Makefile" submit HW="$name" FORCE="$name")
-    [ $by = make ] || given=(env "${given[@]:6}" "${given[@]:0:6}")
-    attempt "${given[@]}"
-    expect 0; same "what arrives" "$out" "<$name> <$name>"
-    same "what was made" "$(ls)" $'notes.txt\ntools'
-    ok "make submit, by $by: $name"
-  done
+  attempt make -sI "$root" -f "$root/Makefile" submit HW="$name" FORCE="$name"
+  expect 0; same "what arrives" "$out" "<$name> <$name>"
+  same "what was made" "$(ls)" $'notes.txt\ntools'; ok "make submit: $name"
 done
 all_passed

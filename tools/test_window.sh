@@ -59,11 +59,15 @@ picture() {  # of the screen in hexadecimal, one pixel a line
 title() { xdotool getwindowname "$window"; }
 label() { title | grep -o 't = [0-9.]* s'; }  # in the title bar
 titled() { [[ $(title) == *$1* ]]; }
-differs() { [ "$("$1" | md5sum)" != "$2" ]; }
-changes() { ever differs "$1" "$("$1" | md5sum)"; }
-steps() { local k; for ((k = 0; k < $1; ++k)); do  # by n, each seen
-  local before; before=$(label | md5sum); press n; ever differs label "$before"
-done; }
+differs() { [ "$("$1" | md5sum)" != "$2" ]; }  # COMMAND SUM
+steps() {  # NUMBER: presses of n, each seen
+  local before
+  for _ in $(seq "$1"); do
+    before=$(label | md5sum)
+    press n
+    ever differs label "$before"
+  done
+}
 # The message of a failure has a bar in the color of marks.
 message() { [ "$(picture | grep -c "$mark")" -ge 100 ]; }
 ends() {  # NAME STATUS WORDS, that it said
@@ -75,7 +79,6 @@ ends() {  # NAME STATUS WORDS, that it said
 # The assignment's program: a line every 2 s of its 20 s.
 driver 0 0.001 20
 is "the driver steps" more_lines
-is "and draws meanwhile" changes picture
 press space; is "space pauses" ever titled paused
 press space; is "space goes on" more_lines
 is "there is no message" eval '! message'
