@@ -212,5 +212,5 @@ class Hand {
   }
 }
 
-// A length [m], rounded as a link stores it.
-const rounded = a => Number(a.toFixed(4));
+// A length [m], rounded as a link stores it; 0 in place of -0.
+const rounded = a => Number(a.toFixed(4)) + 0;

@@ -123,7 +123,10 @@ class Browser:
                            returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
-        return answer["result"].get("value")
+        result = answer["result"]
+        if "unserializableValue" in result:  # NaN, Infinity, -0
+            return float(result["unserializableValue"])
+        return result.get("value")
 
     def bytes_of(self, array: str) -> bytes:
         """The bytes of an array of numbers, given as an expression."""
