@@ -22,7 +22,7 @@ struct mutex {
   void lock() {}
   void unlock() {}
 };
-#if _LIBCPP_VERSION >= 16000  // earlier ones have it without threads, too
+#if _LIBCPP_VERSION >= 160000 && _LIBCPP_VERSION < 190000  // others have it
 template <typename Mutex>
 struct lock_guard {
   explicit lock_guard(Mutex&) {}
