@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "CME212/SDLViewer.hpp"
+#include "CME212/viewer/NoViewer.hpp"
 #include "mass_spring.hpp"
 
 namespace CME212 {
