@@ -323,7 +323,7 @@ def symplectic(columns: list[Vector]) -> float:
         return sum(mass[i] * (a[i] * b[i + 3] - a[i + 3] * b[i])
                    for i in range(n) if i % 6 < 3)
     units = [[float(i == k) for i in range(n)] for k in range(n)]
-    worst = 0
+    worst: float = 0
     for k in range(n):
         for j in range(k):
             off = abs(form(columns[j], columns[k]) - form(units[j], units[k]))
