@@ -81,7 +81,12 @@ $(B)/stored_scenes.cpp: FORCE
 
 $(eval $(call variant,$(B),$(speed)))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
-# It reads the command line once; the parser's templates take -O3 seconds.
+# What takes no part in a step: -O1 saves a fifth of the time to compile.
+# Options.cpp reads the command line once, by a parser that takes -O3 seconds.
+rarely := $(patsubst %,lab/%,advice/% live/% page/% run/% viewer/% \
+            $(patsubst %,scenes/%,Acting Fields KeyValues MeshFile SceneFile \
+              Warnings Words))
+$(rarely:%=$(B)/%.o): unit_flags = -O1
 $(B)/lab/run/Options.o $(B)/asan/lab/run/Options.o: unit_flags = -O0
 
 # $(call program,PROGRAM,FOLDER,SOURCE,FLAGS,LIBRARIES)

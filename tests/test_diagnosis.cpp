@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Diagnosis, AFailedRun, ::testing::ValuesIn(failing),
 
 /** A run by Verlet at 0.7 of its limit of 0.01 s that fails at t = 2 s. */
 FailedRun within_the_limit() {
-  FailedRun run = {.method = entry_of<Verlet>(), .dt = 0.007, .time = 2};
+  FailedRun run = {.method = table::verlet, .dt = 0.007, .time = 2};
   run.sharp = run.safe = run.safe_without_drag = run.verlet = 0.01;
   return run;
 }
@@ -266,7 +266,7 @@ TEST(Diagnosis, ClaimsNothingIfAllTrialsFail) {
 
 TEST(Diagnosis, TellsDragFromWaves) {
   FailedRun run = within_the_limit();
-  run.method = entry_of<SymplecticEuler>();
+  run.method = table::symplectic_euler;
   run.sharp = run.safe = 0.005;
   const auto fails = [](const Cure&) { return Attempt{false, 0}; };
   EXPECT_EQ(diagnose(run, fails).cause, Cause::drag);

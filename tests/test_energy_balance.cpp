@@ -9,6 +9,8 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Xpbd.hpp"
 #include "lab/stepping/Scene.hpp"
 
 using namespace lab;

@@ -12,6 +12,9 @@
 
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/MollifiedImpulse.hpp"
+#include "lab/methods/StiffSplit.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "lab/stepping/Trial.hpp"

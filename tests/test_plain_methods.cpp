@@ -10,7 +10,9 @@
 
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "methods.hpp"
 #include "tests/MovingEnds.hpp"

@@ -6,7 +6,7 @@
 #include "lab/stepping/Trial.hpp"
 int main() {
   lab::Model model = lab::load_model("data/scenes/drape.toml");
-  model.method = &lab::table_entry<lab::Pefrl>;
+  model.method = &lab::table::pefrl;
   lab::Scene scene(model);
   if (!scene.run_to(model.t_end)) {
     std::cerr << scene.explanation().text() << '\n';

@@ -15,7 +15,7 @@
 namespace lab {
 
 Model as_pilot(Model m) {
-  m.method = &table_entry<Verlet>;
+  m.method = &table::verlet;
   m.step = {.rule = StepRule::safe};
   return m;
 }
@@ -169,7 +169,7 @@ void Adviser::choose_pilots() {
     if (!(least > rules_.stiff)) return;
     least /= 2;
     for (const MethodEntry* method :
-         {&table_entry<MollifiedImpulse>, &table_entry<TrBdf2>}) {
+         {&table::mollified_impulse, &table::tr_bdf2}) {
       const std::optional<Model> before = method_;
       method_->method = method;
       if (method_->method->info.limit == no_limit)

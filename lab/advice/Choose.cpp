@@ -193,8 +193,8 @@ std::vector<Sides> Adviser::thinned(Sides s, double work) {
 
 std::vector<Adviser::Choice> Adviser::choices(const Sides& s) const {
   std::vector<const MethodEntry*> methods = {
-      &table_entry<Verlet>, &table_entry<SymplecticEuler>, &table_entry<Pefrl>,
-      &table_entry<MollifiedImpulse>, &table_entry<TrBdf2>};
+      &table::verlet, &table::symplectic_euler, &table::pefrl,
+      &table::mollified_impulse, &table::tr_bdf2};
   if (rules_.keeps_method) methods = {scene_.method};
   std::vector<Choice> all;
   for (std::size_t k = reductions_.size(); k-- > 0;) {

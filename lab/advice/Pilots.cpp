@@ -25,8 +25,8 @@ StepCosts::StepCosts(const Model& m) {
   const Scene scene(first);
   springs_ = double(scene.cloth().num_edges());
   factor_ = of_factor * std::sqrt(double(scene.cloth().num_nodes()));
-  verlet_ = scene.safe_limit(entry_of<Verlet>());
-  multirate_ = scene.safe_limit(entry_of<MollifiedImpulse>());
+  verlet_ = scene.safe_limit(table::verlet);
+  multirate_ = scene.safe_limit(table::mollified_impulse);
   const CombinedConstraints constraint = constraint_of(m, scene.cloth());
   const StiffSplit split = split_springs(scene.cloth(), 1, constraint);
   stiff_ = double(split.springs.size());

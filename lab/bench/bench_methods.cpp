@@ -12,6 +12,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 using namespace lab;
@@ -57,7 +58,7 @@ int main() {
         ten = std::min(ten, seconds_a_step(p, methods[k], 10 * limit));
     }
   const double unit =
-      costs[std::size_t(&table_entry<Verlet> - methods.data())].at_limit;
+      costs[std::size_t(&table::verlet - methods.data())].at_limit;
   for (std::size_t k = 0; k < methods.size(); ++k) {
     const auto& [one, ten] = costs[k];
     std::printf("    {\"%s\", %.3g, %.3g},  //\n", methods[k].info.name,

@@ -20,7 +20,11 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
+#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/StiffSplit.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Xpbd.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 using namespace lab;

@@ -26,6 +26,8 @@
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/StiffSplit.hpp"
+#include "lab/methods/Verlet.hpp"
 #include "lab/run/Progress.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"

@@ -15,7 +15,7 @@ namespace lab {
 namespace {
 
 /** The reference of a comparison: order 6, or 2 where there is contact. */
-constexpr MethodEntry reference_method = entry_of<Srkn11b>();
+const MethodEntry& reference_method = table::srkn11b;
 constexpr double reference_share = 1 / 3.;  // of its limit
 constexpr double most_in_round = 1e4;       // steps of a scene
 
@@ -73,7 +73,7 @@ bool meets(const Point& p, const Point& q, const Ray& a, const Ray& b) {
 }  // namespace
 
 double dt_unit(const Scene& s, const MethodEntry& m) {
-  for (const MethodEntry& like : {m, entry_of<Verlet>()})
+  for (const MethodEntry& like : {m, table::verlet})
     if (const double limit = s.safe_limit(like);
         limit > 0 && std::isfinite(limit))
       return limit;

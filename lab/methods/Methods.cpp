@@ -1,6 +1,55 @@
 #include "lab/methods/Methods.hpp"
 
+#include <algorithm>
+#include <array>
+
+#include "lab/methods/FastMassSpring.hpp"
+#include "lab/methods/ForwardEuler.hpp"
+#include "lab/methods/ImplicitEuler.hpp"
+#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/MollifiedImpulse.hpp"
+#include "lab/methods/Pefrl.hpp"
+#include "lab/methods/Rk4.hpp"
+#include "lab/methods/Rkn64.hpp"
+#include "lab/methods/Srkn11b.hpp"
+#include "lab/methods/SymplecticEuler.hpp"
+#include "lab/methods/TrBdf2.hpp"
+#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Xpbd.hpp"
+
 namespace lab {
+
+namespace {
+
+constexpr std::array lines = {
+    entry_of<ForwardEuler>(),  entry_of<SymplecticEuler>(),
+    entry_of<Verlet>(),        entry_of<MollifiedImpulse>(),
+    entry_of<Pefrl>(),         entry_of<Srkn11b>(),
+    entry_of<Rk4>(),           entry_of<Rkn64>(),
+    entry_of<ImplicitEuler>(), entry_of<ImplicitMidpoint>(),
+    entry_of<TrBdf2>(),        entry_of<FastMassSpring>(),
+    entry_of<Xpbd>()};
+
+/** The line of @a M. It does not compile if there is none. */
+template <typename M>
+constexpr const MethodEntry& line =
+    *std::ranges::find(lines, std::string_view(M::info.name),
+                       [](const MethodEntry& m) { return m.info.name; });
+
+}  // namespace
+
+// Constants, so that they can be used before main() begins.
+constinit const std::span<const MethodEntry> methods = lines;
+
+namespace table {
+constinit const MethodEntry& symplectic_euler = line<SymplecticEuler>;
+constinit const MethodEntry& verlet = line<Verlet>;
+constinit const MethodEntry& mollified_impulse = line<MollifiedImpulse>;
+constinit const MethodEntry& pefrl = line<Pefrl>;
+constinit const MethodEntry& srkn11b = line<Srkn11b>;
+constinit const MethodEntry& rkn64 = line<Rkn64>;
+constinit const MethodEntry& tr_bdf2 = line<TrBdf2>;
+}  // namespace table
 
 const MethodEntry* find_method(std::string_view name) {
   for (const MethodEntry& m : methods)

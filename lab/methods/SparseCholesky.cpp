@@ -109,10 +109,15 @@ bool SparseCholesky<Entry>::analyze(unsigned rows, std::span<const Pair> pairs,
   row_.assign(l.innerIndexPtr(), l.innerIndexPtr() + begin_[rows]);
   into_.resize(row_.size());
   std::iota(into_.begin(), into_.end(), 0);
-  left_ = Eigen::Map<const Eigen::SparseMatrix<int>>(
-              int(rows), int(rows), begin_[rows], begin_.data(), row_.data(),
-              into_.data())
-              .transpose();
+  const Eigen::SparseMatrix<int> left =
+      Eigen::Map<const Eigen::SparseMatrix<int>>(int(rows), int(rows),
+                                                 begin_[rows], begin_.data(),
+                                                 row_.data(), into_.data())
+          .transpose();
+  left_begin_.assign(left.outerIndexPtr(), left.outerIndexPtr() + rows + 1);
+  left_column_.assign(left.innerIndexPtr(),
+                      left.innerIndexPtr() + begin_[rows]);
+  left_at_.assign(left.valuePtr(), left.valuePtr() + begin_[rows]);
   updates_ = 0;
   for (unsigned j = 0; j < rows; ++j) {
     const double below = begin_[j + 1] - begin_[j] - 1;
@@ -149,8 +154,8 @@ template <typename Entry>
 bool SparseCholesky<Entry>::factorize() {
   bool good = true;
   lanes::run<Factorize>(int(rows()), begin_.data(), row_.data(), entry_.data(),
-                        left_.outerIndexPtr(), left_.innerIndexPtr(),
-                        left_.valuePtr(), into_.data(), &good);
+                        left_begin_.data(), left_column_.data(),
+                        left_at_.data(), into_.data(), &good);
   return good;
 }
 

@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/SparseCore>
-
 #include "lab/fast/Matrix3.hpp"
 
 namespace lab {
@@ -80,9 +78,10 @@ class SparseCholesky {
   // are the entries of A; afterwards the diagonal entries are inverted.
   std::vector<int> begin_, row_;
   std::vector<Entry> entry_;
-  Eigen::SparseMatrix<int> left_;  // L by rows: column, and index in entry_
-  std::vector<int> at_;            // in entry_, by pair
-  std::vector<int> into_;          // in entry_, by row of the present column
+  // L by rows: the column of each entry, and its index in entry_.
+  std::vector<int> left_begin_, left_column_, left_at_;
+  std::vector<int> at_;    // in entry_, by pair
+  std::vector<int> into_;  // in entry_, by row of the present column
   std::vector<Row> x_;
 };
 

@@ -29,7 +29,7 @@ Model page_model(const StoredScene& s, unsigned side) {
   if (always_fails(s)) return m;
   if (m.sheets.empty()) m.sheets = {Sheet()};  // a stage leaves its mesh open
   m.sheets[0].nodes = {side, side};
-  m.method = &table_entry<Verlet>;
+  m.method = &table::verlet;
   m.step = {};
   return m;
 }

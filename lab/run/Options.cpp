@@ -21,6 +21,7 @@
 #include "lab/live/Live.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/RungeKutta.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Nearest.hpp"
 #include "lab/scenes/SceneFile.hpp"
@@ -215,7 +216,7 @@ void list_methods() {
  * unless the scene names a method or a step without error control.
  * @param given(NAME) true if the option NAME is given, in a file or here */
 void control_error(Model& m, const std::function<bool(const char*)>& given) {
-  if (!given("method") && !given("dt")) m.method = &table_entry<Rkn64>;
+  if (!given("method") && !given("dt")) m.method = &table::rkn64;
   if (!m.method->info.adaptive) return;
   // Steps end where rows and frames are looked at, not where errors do.
   if (!given("dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);

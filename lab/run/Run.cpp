@@ -11,7 +11,7 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/live/Live.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/Warnings.hpp"
@@ -159,7 +159,7 @@ void Run::announce() const {
       out << ", below " << t << " m per inner step, for " << o_.model.tolerance
           << " m at the end";
   } else if (limit == no_limit) {
-    const double verlet = scene_.safe_limit(entry_of<Verlet>());
+    const double verlet = scene_.safe_limit(table::verlet);
     out << ": " << method << " has no stability limit";
     if (std::isfinite(verlet))
       out << "; this is " << percent(dt / verlet)

@@ -31,7 +31,7 @@ bool Pin::holds(const Point& p) const {
   return is(x, p.x) && is(y, p.y) && is(z, p.z);
 }
 
-const MethodEntry* default_method() { return &table_entry<SymplecticEuler>; }
+const MethodEntry* default_method() { return &table::symplectic_euler; }
 
 bool Model::conserves_energy() const {
   const bool moves = std::ranges::any_of(

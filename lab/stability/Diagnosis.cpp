@@ -198,8 +198,7 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
     if (std::isfinite(dt))
       add(run.method, in_three_digits(std::min(dt, run.dt)));
   };
-  const MethodEntry &verlet = table_entry<Verlet>,
-                    &tr_bdf2 = table_entry<TrBdf2>;
+  const MethodEntry &verlet = table::verlet, &tr_bdf2 = table::tr_bdf2;
   auto by_verlet = [&](double share) {
     if (std::isfinite(run.verlet))
       add(verlet, in_three_digits(std::min(share * run.verlet, run.dt)));

@@ -24,7 +24,7 @@ FailedRun failed_run(const Scene& s) {
   run.sharp = stepper.sharp_limit(40);
   run.safe = s.safe_limit();
   run.safe_without_drag = stepper.limits().safe_without_drag(method);
-  run.verlet = s.safe_limit(entry_of<Verlet>());
+  run.verlet = s.safe_limit(table::verlet);
   return run;
 }
 

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
+#include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
