@@ -70,7 +70,9 @@ void __cxa_free_exception(void*) {}
 }
 
 /** The checks of libc++: an index beyond the end of a vector and the like. */
-void std::__libcpp_verbose_abort(const char* format, ...) {
+// Newer versions declare it noexcept.
+void std::__libcpp_verbose_abort(const char* format, ...) noexcept(
+    noexcept(std::__libcpp_verbose_abort(format))) {
   std::va_list values;
   va_start(values, format);
   end_with(format, values);
