@@ -18,9 +18,10 @@ std::string with_unit(double x, const Measure& measure) {
          unit_of(measure);
 }
 
-std::string asked(const Advice& a) {
-  return "(asked: " + (a.share.empty() ? "" : a.share + ", ") +
-         with_unit(a.tolerance, a.measure) + ')';
+std::string asked(double tolerance, const std::string& share,
+                  const Measure& measure) {
+  return "(asked: " + (share.empty() ? "" : share + ", ") +
+         with_unit(tolerance, measure) + ')';
 }
 
 namespace {

@@ -82,8 +82,13 @@ struct Advice : AdvisedRun {
 /** @a x to two digits with the unit of @a measure, if it has one. */
 std::string with_unit(double x, const Measure& measure);
 
-/** The tolerance in words: "(asked: 0.01 m)". */
-std::string asked(const Advice& a);
+/** The tolerance in words: "(asked: 0.01 m)".
+ * @param share what it is a share of, in words; or empty */
+std::string asked(double tolerance, const std::string& share,
+                  const Measure& measure);
+inline std::string asked(const Advice& a) {
+  return asked(a.tolerance, a.share, a.measure);
+}
 
 /** The options with which ./cloth runs @a m. */
 std::string as_options(const Model& m);

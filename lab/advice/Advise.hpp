@@ -19,10 +19,10 @@ struct AdviceRules {
   double patience = 2e6;
   double stiff = 2e6;  ///< work on 8 cells from which pilots are implicit
   /** The work of all pilots, in spring evaluations, so that advice is the same
-   * on every machine; 0: the larger of usual and one run of the scene; eight
-   * runs, if its own grid is run: of a mesh from files, and by assess(). */
+   * on every machine; 0: the larger of Pilots::usual and one run of the scene;
+   * eight runs, if its own grid is run: of a mesh from files, and by assess().
+   */
   double budget = 0;
-  static constexpr double usual = 4e8;
   /** Advise the method or the step of the scene. */
   bool keeps_method = false, keeps_step = false;
   /** Called often, with the current run and the results so far. */
@@ -38,10 +38,6 @@ struct AdviceRules {
    * this share of the tolerance. */
   double most_uncertain = 0.6;
 };
-
-/** @a m by Verlet with the step that is safe in every configuration: how pilots
- * run unless the scene is stiff. */
-Model as_pilot(Model m);
 
 /** Find the cheapest model that answers the question of @a m. Runs @a m many
  * times: on coarser grids first, without each part, by several methods.

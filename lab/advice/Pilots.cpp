@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
+#include "lab/advice/Variation.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/StiffSplit.hpp"
-#include "lab/scenes/SceneFile.hpp"
-#include "lab/stepping/Trial.hpp"
+#include "lab/scenes/Compose.hpp"
+#include "lab/stepping/StepLimits.hpp"
 
 namespace lab {
 
@@ -20,15 +23,19 @@ constexpr double more_iterations = 0.6, of_factor = 10;
 }  // namespace
 
 StepCosts::StepCosts(const Model& m) {
-  Model first = m;
-  first.step = {.dt = 1};
-  const Scene scene(first);
-  springs_ = double(scene.cloth().num_edges());
-  factor_ = of_factor * std::sqrt(double(scene.cloth().num_nodes()));
-  verlet_ = scene.safe_limit(table::verlet);
-  multirate_ = scene.safe_limit(table::mollified_impulse);
-  const CombinedConstraints constraint = constraint_of(m, scene.cloth());
-  const StiffSplit split = split_springs(scene.cloth(), 1, constraint);
+  const PointsAndQuads mesh = mesh_of(m);
+  Cloth g;
+  build_model(g, m, mesh);
+  const CombinedConstraints constraints = constraint_of(m, g);
+  const ConstraintPlan constraint = constraints;
+  const std::optional<ForcePlan> force = force_of(m, mesh, g);
+  const std::optional<HandForce> no_hand;
+  const StepLimits limits(g, force, constraint, no_hand);
+  springs_ = double(g.num_edges());
+  factor_ = of_factor * std::sqrt(double(g.num_nodes()));
+  verlet_ = limits.safe(table::verlet);
+  multirate_ = limits.safe(table::mollified_impulse);
+  const StiffSplit split = split_springs(g, 1, constraint);
   stiff_ = double(split.springs.size());
   if (!split.empty()) inner_ = split.inner_step();
 }
@@ -87,19 +94,28 @@ bool Pilots::affords(double work, const std::string& what, double share) {
 }
 
 Trial Pilots::run(const Model& m, const std::string& doing, double work,
-                  const Shake& shake,
+                  const std::vector<std::string>& removed, const Shake& shake,
                   const std::function<void(const Cloth&)>& look,
                   const std::function<void(Scene&)>& after) {
-  const std::string key =
-      shake.size > 0 || (after && !look) ? "" : to_scene_file(m);
-  if (const auto known = done_.find(key); !look && known != done_.end())
-    return known->second;
+  Key key{{},
+          {},
+          m.method,
+          {m.step.rule, m.step.dt, m.step.gain, m.step.tolerance},
+          m.t_end};
+  for (const Sheet& s : m.sheets) key.grid.push_back(s.nodes);
+  for (const std::string& part : removed)
+    if (!goes_with_another(part, removed)) key.removed.push_back(part);
+  std::ranges::sort(key.removed);
+  const bool keeps = shake.size == 0 && (look || !after);
+  const auto known = std::ranges::find(done_, key, &Done::first);
+  if (keeps && !look && known != done_.end()) return known->second;
   const double before = spent_;
   spent_ += work;
   const std::string text = known_.empty() ? doing : doing + "; " + known_;
   int steps = 0;
+  Trial t;
   try {
-    const Trial t = try_out(
+    t = try_out(
         m, shake, look ? look : [](const Cloth&) {},
         [&](Scene& scene) {
           if (after) after(scene);
@@ -107,13 +123,15 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
             tell_(text, std::min(1.0, (before + work * scene.time() / m.t_end) /
                                           budget_));
         });
-    if (!key.empty()) done_.emplace(key, t);
-    return t;
-  } catch (const std::exception& e) {
-    Trial failed;
-    failed.failure = e.what();
-    return failed;
+  } catch (const SceneError& e) {
+    t.failure = e.what();
+  } catch (const StepError& e) {
+    t.failure = e.what();
+  } catch (const std::invalid_argument& e) {  // the method, for these forces
+    t.failure = e.what();
   }
+  if (keeps) done_.emplace_back(key, t);
+  return t;
 }
 
 }  // namespace lab

@@ -2,9 +2,11 @@
 /** @file Pilots.hpp
  * Pilots: trial runs within a budget. StepCosts: predicts the work of a run. */
 #include <algorithm>
+#include <array>
 #include <functional>
-#include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "lab/methods/Method.hpp"
@@ -32,6 +34,10 @@ class StepCosts {
    * if no step is given and none is stable. */
   double step(const Model& m) const;
   double of_run(const Model& m) const;
+  /** Force evaluations that take @a work. */
+  double evaluations(double work) const {
+    return work / std::max(1., springs_);
+  }
 
  private:
   double springs_ = 0, factor_ = 0, verlet_ = no_limit, multirate_ = no_limit;
@@ -42,18 +48,24 @@ class StepCosts {
  * Throws as StepCosts */
 double work_of_run(const Model& m);
 
-/** Makes trial runs and adds up their work. */
+/** Makes trial runs of one scene within a budget, and adds up their work. */
 class Pilots {
  public:
   /** @param done spent share of the budget, up to 1 */
   using Tell = std::function<void(const std::string& doing, double done)>;
 
-  /** @param budget in spring evaluations */
-  Pilots(double budget, Tell tell) : budget_(budget), tell_(std::move(tell)) {}
+  /** @param budget in spring evaluations; 0: usual, or what is allowed */
+  Pilots(double budget, Tell tell)
+      : fixed_(budget > 0),
+        budget_(fixed_ ? budget : usual),
+        tell_(std::move(tell)) {}
+  static constexpr double usual = 4e8;
 
   double budget() const { return budget_; }
-  /** Let the budget be at least @a work. */
-  void allow(double work) { budget_ = std::max(budget_, work); }
+  /** Let the budget be at least @a work, unless it was given. */
+  void allow(double work) {
+    if (!fixed_) budget_ = std::max(budget_, work);
+  }
   double spent() const { return spent_; }
   double left() const { return budget_ - spent_; }
   /** Is a run of @a work within @a share of the remaining budget? If not, @a
@@ -64,22 +76,37 @@ class Pilots {
   /** Results so far: reported with each run. */
   void knows(const std::string& so_far) { known_ = so_far; }
 
-  /** Run @a m, or return its earlier result. An invalid scene counts as failed,
-   * like a run that diverges.
+  /** Run @a m, or return its earlier result. A scene that is not valid, a
+   * method that can't use its forces and a step that can't be made count as
+   * failed, like a run that diverges.
    * @param doing description for progress   @param work added to spent()
+   * @param removed parts that @a m lacks
    * @param look, after as for try_out(): with them earlier results are not
    *        used; with a look, later runs use this one
-   * Throws Interrupted */
+   * Throws Interrupted, and all other exceptions of try_out() */
   Trial run(const Model& m, const std::string& doing, double work,
+            const std::vector<std::string>& removed = {},
             const Shake& shake = {},
             const std::function<void(const Cloth&)>& look = nullptr,
             const std::function<void(Scene&)>& after = nullptr);
 
  private:
+  /** Two runs of a scene differ in this, or in nothing. */
+  struct Key {
+    std::vector<std::array<unsigned, 2>> grid;  // nodes of each sheet
+    std::vector<std::string> removed;           // sorted
+    const MethodEntry* method;
+    std::tuple<StepRule, double, double, double> step;  // all of a TimeStep
+    double t_end;
+    bool operator==(const Key&) const = default;
+  };
+  using Done = std::pair<Key, Trial>;
+
+  bool fixed_;
   double budget_, spent_ = 0;
   std::vector<std::string> left_out_;
   std::string known_;
-  std::map<std::string, Trial> done_;  // by scene file
+  std::vector<Done> done_;
   Tell tell_;
 };
 

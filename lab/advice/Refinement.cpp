@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace lab {
 
@@ -27,11 +26,7 @@ constexpr double of_error = 0.2, not_believed = 1.5, of_three_grids = 3;
 void Refinement::add(const GridReport& next) {
   grids_.push_back(next);
   if (size() == 1) fit_.limit = next.trial.answer;
-  if (size() < 3) {
-    for (GridReport& g : grids_)
-      g.error = size() == 1 ? 0 : std::numeric_limits<double>::infinity();
-    return;
-  }
+  if (size() < 3) return;
   std::size_t from = size() - std::min(size(), fewest);
   while (from > 0 && back().factor <= widest * grids_[from - 1].factor) --from;
   const auto used = std::span<const GridReport>(grids_).subspan(from);

@@ -2,6 +2,7 @@
 /** @file Refinement.hpp
  * Refinement: estimates the error of each of several grids of one scene. */
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct Effect {
 struct GridReport {
   double factor = 1;  ///< cells along each side / those of the scene
   std::size_t nodes = 0;
-  double error = 0;        ///< of the answer, estimated; infinite: unknown
+  /** The estimated error of the answer; infinite: unknown. */
+  double error = std::numeric_limits<double>::infinity();
   Trial trial;             ///< with all parts
   double evaluations = 0;  ///< of the forces; solves are counted by their cost
 };
@@ -47,8 +49,8 @@ class Refinement {
  public:
   explicit Refinement(Measure measure = Measure::com) : measure_(measure) {}
 
-  /** Add a run and update all errors.  @pre next.factor > back().factor
-   * The error of a single grid is 0: that of a mesh from files is unknown. */
+  /** Add a run and update all errors: from three grids on they are known.
+   * @pre next.factor > back().factor */
   void add(const GridReport& next);
   void clear() { grids_.clear(); }
   std::size_t size() const { return grids_.size(); }

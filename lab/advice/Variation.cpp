@@ -12,6 +12,7 @@
 namespace lab {
 
 Model refined(const Model& m, const Sides& sides) {
+  if (sides.empty()) return m;
   Model fine = m;
   double before = 0, after = 0;
   for (std::size_t k = 0; k < sides.size(); ++k) {

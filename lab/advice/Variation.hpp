@@ -23,7 +23,8 @@ using Sides = std::vector<std::array<double, 2>>;
 /** @a m on a grid of so many times the cells, at least 2 along each side. It is
  * the same cloth: the drag of all nodes together stays, and a thickness of
  * self-collision that two nodes would violate at the start is reduced to less
- * than their distance.  @pre m has sheets, as many as @a sides */
+ * than their distance. A mesh from files has no sheets: it stays.
+ * @pre m has as many sheets as @a sides */
 Model refined(const Model& m, const Sides& sides);
 inline Model refined(const Model& m, double factor) {
   return refined(m, Sides(m.sheets.size(), {factor, factor}));

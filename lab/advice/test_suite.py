@@ -41,10 +41,6 @@ class Limits(unittest.TestCase):
             self.assertGreater(within, 270)
             self.assertLess(sorted(ratios)[150], 10)
 
-    def test_root_mean_square_over_points(self):
-        self.assertAlmostEqual(
-            trials.distance([3, 4, 0, 0, 0, 0], [0] * 6, 2), 5 / math.sqrt(2))
-
 
 def row(**changes):
     """A scene that is answered as well as can be."""
@@ -64,10 +60,8 @@ class Figures(unittest.TestCase):
     def figures(self, *rows):
         return suite.rates([*rows] + [row()] * (100 - len(rows)))
 
-    def test_all_goals_are_reached(self):
+    def test_each_goal_is_reached_and_can_be_missed(self):
         self.assertEqual(missed(self.figures()), [])
-
-    def test_each_goal_can_be_missed(self):
         bad = {
             "met": row(real=1.01), "robust": row(twice=1.01),
             "cheap": row(work=151), "fair": row(work=301),
@@ -80,24 +74,6 @@ class Figures(unittest.TestCase):
         for goal, one in bad.items():
             with self.subTest(goal):
                 self.assertIn(goal, missed(self.figures(*[one] * 60)))
-
-    def test_shares_and_medians(self):
-        f = self.figures(*[row(real=2)] * 4, row(work=200), *[row(
-            outcome="refused", work="", real="", best_error=0.7)] * 5)
-        self.assertEqual(f["given"], 95)
-        self.assertEqual(f["refused"], 5)
-        self.assertAlmostEqual(f["met"], 100 * 91 / 95)
-        self.assertAlmostEqual(f["cheap"], 100 * 94 / 95)
-        self.assertEqual(f["contradicted"], 0)  # only within 0.7
-        self.assertEqual(f["dearest"], 2)
-        self.assertAlmostEqual(f["price"], 0.5)
-
-    def test_scenes_without_an_answer_count_only_as_refusals(self):
-        f = self.figures(*[row(outcome="refused", best_work="", best_error="",
-                               real="", work="")] * 50)
-        self.assertEqual((f["known"], f["refused"]), (50, 50))
-        self.assertEqual(f["advised"], 100)
-        self.assertEqual(f["contradicted"], 0)
 
     def test_a_run_that_fails_is_not_robust(self):
         f = self.figures(row(half="inf"), row(next=""))
@@ -148,9 +124,6 @@ class Search(unittest.TestCase):
                             s.robust(*choice, [0.], tolerance)):
                         least = min(least, t[1])
             self.assertEqual(work, least)
-
-    def test_finds_none_where_there_is_none(self):
-        self.assertIsNone(Made().search([0.], 1e-9, 1))
 
     def test_a_choice_by_accident_is_not_robust(self):
         """It meets the tolerance; the next grid doesn't."""
@@ -256,10 +229,6 @@ class Questions(unittest.TestCase):
         points, quads = questions.ring_mesh(2, 24, 1, 2)
         self.assertEqual((len(points), len(quads)), (72, 48))
         self.assertEqual(sum(p[1] == 0 for p in points), 6)  # that are pinned
-        for q in quads:
-            a, b, c, d = (points[k] for k in q)  # sides a-b a-c b-d c-d
-            self.assertLess(math.dist(a, b), math.dist(a, d))
-            self.assertLess(math.dist(c, d), math.dist(b, c))
 
 
 if __name__ == "__main__":

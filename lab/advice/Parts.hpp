@@ -1,0 +1,54 @@
+#pragma once
+/** @file Parts.hpp
+ * PartStudy: which parts of a scene its answer does not need, and whether it
+ * needs the scene's whole time. */
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lab/advice/Grids.hpp"
+
+namespace lab {
+
+/** Parts left out together. */
+struct Reduction {
+  std::vector<std::string> removed;
+  Effect effect;
+};
+
+class PartStudy {
+ public:
+  /** As long as no part was tried, all are kept. */
+  PartStudy(Question& q, const GridStudy& grids)
+      : q_(q), grids_(grids), rest_time_(q.scene.t_end) {}
+
+  /** Leave out each part alone on grid @a k; then one more each time, as long
+   * as together they change little: first the parts that save springs or steps;
+   * within each group, those that change least. Then find rest_time(). */
+  void study(std::size_t k);
+
+  /** The level of that grid. */
+  std::optional<int> level() const { return level_; }
+  /** Of more parts each time. */
+  const std::vector<Reduction>& reductions() const { return reductions_; }
+  /** The time [s] after which the answer stays within a tenth of the tolerance;
+   * t-end if it does not. */
+  double rest_time() const { return rest_time_; }
+  /** Run to the scene's end: other grids come to rest later. */
+  void forget_rest() { rest_time_ = q_.scene.t_end; }
+  /** Only drag and friction bring a cloth to rest. */
+  static bool dissipates(const Model& m);
+
+ private:
+  Question& q_;
+  const GridStudy& grids_;
+  std::optional<int> level_;
+  std::vector<Reduction> reductions_ = {{}};
+  double rest_time_;
+
+  void try_each(const GridStudy::Run& run, const Answer& whole);
+  void combine(const GridStudy::Run& run, const Answer& whole);
+  void find_rest(const GridStudy::Run& run);
+};
+
+}  // namespace lab
