@@ -41,7 +41,7 @@ std::string for_shell(const std::string& words) {
 using Row = std::vector<std::string>;
 /** Rows of cells, the titles first, in columns as wide as their cells; all but
  * the first are right-aligned. */
-std::string table(const std::vector<Row>& rows) {
+std::string in_columns(const std::vector<Row>& rows) {
   std::string text = "\n";
   for (const Row& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) {
@@ -171,17 +171,17 @@ std::string assessment(const Advice& a) {
     text += "  " + a.refusal + '\n';
   const Model& m = own.model;
   return text + extrapolated(a) +
-         table({{"part of this run", "error", ""},
-                {"grid of " + std::to_string(own.nodes) + " nodes",
-                 size(own.grid), ""},
-                {"step of " + CME212::short_text(m.step.dt) + " s by " +
-                     m.method->info.name,
-                 size(own.step),
-                 own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
-                                         " of the largest stable step"
-                                   : ""},
-                {"both", size(a.from_files ? no_limit : own.total),
-                 "+- " + size(a.from_files ? no_limit : u)}});
+         in_columns({{"part of this run", "error", ""},
+                     {"grid of " + std::to_string(own.nodes) + " nodes",
+                      size(own.grid), ""},
+                     {"step of " + CME212::short_text(m.step.dt) + " s by " +
+                          m.method->info.name,
+                      size(own.step),
+                      own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
+                                              " of the largest stable step"
+                                        : ""},
+                     {"both", size(a.from_files ? no_limit : own.total),
+                      "+- " + size(a.from_files ? no_limit : u)}});
 }
 
 /** Words of a part that is all default, as nobody would type ''. */
@@ -242,7 +242,7 @@ std::string in_words(const Advice& a) {
                     !a.refusal.empty() ? ""
                     : p.needed         ? "kept"
                                        : "dropped"});
-  if (!a.parts.empty()) text += table(rows);
+  if (!a.parts.empty()) text += in_columns(rows);
   rows = {{a.from_files ? "step [s]" : "grid of nodes",
            "estimated error" + unit, "force evaluations", "time [s]", ""}};
   auto row = [&](const std::string& name, const std::string& error, double work,
@@ -260,7 +260,7 @@ std::string in_words(const Advice& a) {
     row(a.from_files ? number(a.model.step.dt)
                      : std::to_string(mesh_of(a.model).points.size()),
         number(a.error), a.evaluations, a.seconds, "advised");
-  if (!a.grids.empty()) text += table(rows);
+  if (!a.grids.empty()) text += in_columns(rows);
   rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
            "spring evaluations"}};
   const std::size_t most = 12;  // the last ones
@@ -270,7 +270,7 @@ std::string in_words(const Advice& a) {
     rows.push_back({std::to_string(c.nodes), c.method, number(c.dt),
                     number(c.error), CME212::two_digits(c.work)});
   }
-  if (!a.choices.empty()) text += table(rows);
+  if (!a.choices.empty()) text += in_columns(rows);
   if (a.perturbed > 0)
     text += "\n" + std::to_string(a.perturbed) +
             (a.perturbed > 1 ? " runs" : " run") +
