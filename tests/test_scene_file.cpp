@@ -615,8 +615,9 @@ TEST(StoredScenes, AreTheFilesOfThisRepository) {
       EXPECT_EQ(to_scene_file(m), to_scene_file(read));
       EXPECT_EQ(m.name, read.name);
       EXPECT_TRUE(m.names_parts()) << file;
-      if (m.sheets.empty() && m.nodes.empty())
+      if (m.sheets.empty() && m.nodes.empty()) {
         EXPECT_THROW(load_model(file), SceneFileError);
+      }
     }
   }
   EXPECT_EQ(stored_scene("tear").model().tears.size(), 1u);
