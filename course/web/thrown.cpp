@@ -72,7 +72,7 @@ void __cxa_free_exception(void*) {}
 /** The checks of libc++: an index beyond the end of a vector and the like. */
 // Newer versions declare it noexcept.
 void std::__libcpp_verbose_abort(const char* format, ...) noexcept(
-    noexcept(std::__libcpp_verbose_abort(format))) {
+    noexcept(std::__libcpp_verbose_abort("%s", ""))) {
   std::va_list values;
   va_start(values, format);
   end_with(format, values);

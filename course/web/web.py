@@ -27,7 +27,8 @@ from collections.abc import Iterable
 
 ROOM = pathlib.Path(__file__).resolve().parent
 SOURCES = ("cloth.cpp", "thrown.cpp")
-FLAGS = """--target=wasm32-wasi -std=c++20 -O2 -g0 -Wall -Wextra
+# Newer versions of clang want another name of the target, older ones this one.
+FLAGS = """--target=wasm32-wasi -Wno-deprecated -std=c++20 -O2 -g0 -Wall -Wextra
   -ffp-contract=off -fno-math-errno -fno-finite-loops
   -D_LIBCPP_HARDENING_MODE=_LIBCPP_HARDENING_MODE_DEBUG
   -mexec-model=reactor -Wl,--no-entry -Wl,--stack-first
