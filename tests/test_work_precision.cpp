@@ -415,6 +415,7 @@ TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   refused("--scenes nowhere", "--scenes: nowhere not in {chain,curtain,grid0");
   refused("--methods verlet,magic", "--methods: magic not in {");
   refused("--repeats 0", "--repeats: Value 0 not in range");
+  EXPECT_NE(err().find("1000"), std::string::npos) << err();  // the bound
   refused("--energy --grid-refinement", "--grid-refinement");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }
