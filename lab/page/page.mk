@@ -17,7 +17,8 @@ page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes stepping live page))) \
   course/web/thrown.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
-page_flags = --target=wasm32-wasi -Wno-deprecated -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
+page_target = --target=wasm32-wasi -Wno-deprecated
+page_flags = $(page_target) -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
   -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off
 page_names = $(sort $(shell grep -oE '\bpage_[a-z_]+' lab/page/Page.hpp))
 
@@ -40,7 +41,7 @@ $(page_o)/flags: FORCE
 	  || echo '$(PAGE_CXX) $(page_flags)' > $@
 $(page_o)/cloth.wasm: $(page_objects) lab/page/Page.hpp
 	@echo 'link $@'
-	@$(PAGE_CXX) --target=wasm32-wasi -Wno-deprecated -O2 -mexec-model=reactor -Wl,--no-entry \
+	@$(PAGE_CXX) $(page_target) -O2 -mexec-model=reactor -Wl,--no-entry \
 	  -Wl,--stack-first -Wl,-z,stack-size=1048576 -Wl,--strip-all \
 	  -Wl,--export=__stack_pointer -Wl,--export=page_thrown \
 	  $(page_names:%=-Wl,--export=%) -o $@ $(page_objects)
