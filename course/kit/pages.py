@@ -12,6 +12,7 @@ What a page says between the lines <!-- guided --> and <!-- end guided -->, a
 starter of the level open leaves out. It has what stands between the lines
 <!-- open and --> in its place.
 """
+import html
 import re
 import sys
 import textwrap
@@ -33,7 +34,16 @@ def worth(task: tasks.Task) -> str:
     return f"{task.points} extra" if task.extra else task.worth
 
 
-def of_section(id: str, course: tasks.Course) -> list[str]:
+def opened(hints: tuple[str, ...]) -> str:
+    """The hints of a task as HTML: each is inside of the one before it."""
+    inner = ""
+    for number, hint in reversed([*enumerate(hints, 1)]):
+        inner = (f"<details><summary>Hint {number}</summary>"
+                 f"{html.escape(hint)}{inner}</details>")
+    return inner
+
+
+def of_section(id: str, course: tasks.Course, hints: bool) -> list[str]:
     """What is handed in of a section."""
     own = [task for task in course.tasks.values() if task.section.id == id]
     if not own:
@@ -44,12 +54,14 @@ def of_section(id: str, course: tasks.Course) -> list[str]:
             f"- **{task.title}**, {worth(task)}: {task.says}", 80,
             subsequent_indent="  ", break_long_words=False,
             break_on_hyphens=False)
+        lines += ["  " + opened(task.hints)] * hints
     total = sum(task.counted for task in own)
     together = "" if all(task.extra for task in own) else (
         f"Together {total} points. ")
     return [*lines, "", *textwrap.wrap(
         f"{together}`make test SECTION={id}` shows which tests"
-        " pass. Commit your work, then hand it in:"
+        f" pass; `make hint TASK={own[0].id}` opens a hint, and each time the"
+        " next one. Commit your work, then hand it in:"
         f" `make submit HW={course.tag}`.", 80, break_on_hyphens=False)]
 
 
@@ -75,10 +87,11 @@ def named(text: str, course: tasks.Course) -> str:
     return TAG.sub(lambda found: found[1] + course.tag, text)
 
 
-def filled(text: str, course: tasks.Course) -> str:
-    """The text of a page with its places filled."""
+def filled(text: str, course: tasks.Course, hints: bool = False) -> str:
+    """The text of a page with its places filled, and with the hints or not."""
     return PLACE.sub(lambda place: "\n".join(
-        of_section(place[1], course) if place[1] else of_course(course)), text)
+        of_section(place[1], course, hints) if place[1]
+        else of_course(course)), text)
 
 
 def faults(text: str, section: tasks.Section,

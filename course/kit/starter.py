@@ -74,6 +74,8 @@ def tree(kind: str, level: str = "guided") -> Files:
         if path.is_file() and not is_unasked(name, course):
             add(f"tests/{name}", path.read_bytes())
     add("tests/tasks.inc", table_of(course))
+    add("tests/hints", "".join(f"{task.id}\t{hint}\n" for task in
+                               course.tasks.values() for hint in task.hints))
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
     add(".github/workflows/tests.yml", (root / WORKFLOW).read_bytes())
     if level == "open":

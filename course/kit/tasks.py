@@ -54,6 +54,7 @@ class Task:
     points: int
     says: str
     hint: str
+    hints: tuple  # opened one by one; `hint` is the last
     tests: tuple  # names in course/tests, without .cpp: all must pass
     extra: bool  # shown, never counted
     section: Section
@@ -92,7 +93,7 @@ REQUIRED: dict[str, dict[str, type]] = {
     "task": {"title": str, "points": int, "says": str, "hint": str}}
 OPTIONAL: dict[str, dict[str, type]] = {
     "": {}, "section": {"page": str, "dropped": bool},
-    "task": {"tests": list, "extra": bool, "dropped": bool}}
+    "task": {"tests": list, "hints": list, "extra": bool, "dropped": bool}}
 TYPES = {str: "a text", int: "a whole number", bool: "true or false",
          list: "a list", dict: "a table"}
 
@@ -143,7 +144,9 @@ def parse(text: str, name: str = FILE) -> Course:
                                 table.get("page"), line)
                     for id, table, line in tables("section", wrong_section)}
     tasks = {id: Task(id, table["title"], table["points"], table["says"],
-                      table["hint"], tuple(table.get("tests", [id])),
+                      table["hint"],
+                      (*table.get("hints", []), table["hint"]),
+                      tuple(table.get("tests", [id])),
                       table.get("extra", False),
                       all_sections[id.rpartition(".")[0]], line)
              for id, table, line in tables("task", lambda id, table:
@@ -180,6 +183,9 @@ def wrong_task(id: str, table: dict,
             isinstance(t, str) and TEST.fullmatch(t) for t in tests):
         yield (f"{id}: tests are names of files in course/tests, without "
                ".cpp")
+    if not all(isinstance(hint, str) and NO_CONTROLS.fullmatch(hint)
+               for hint in table.get("hints", [])):
+        yield f"{id}: a hint is not a text of one line"
 
 
 def load(path: pathlib.Path = ROOT / FILE) -> Course:

@@ -37,6 +37,7 @@ title = "g"
 points = 1
 says = "g(x) is \\"x\\"."
 hint = "A backslash: \\\\."
+hints = ["Is a < b?"]
 tests = ["7.1.g", "7.1.g_more"]
 """
 SOURCE = """struct S {
@@ -86,8 +87,9 @@ PAGE = "# 3.1\n<!-- tasks 3.1 -->\nend\n"
 FILLED = """# 3.1
 - **f**, 4 points: f() is 1.
 
-Together 4 points. `make test SECTION=3.1` shows which tests pass. Commit your
-work, then hand it in: `make submit HW=hw9`.
+Together 4 points. `make test SECTION=3.1` shows which tests pass; `make hint
+TASK=3.1.f` opens a hint, and each time the next one. Commit your work, then
+hand it in: `make submit HW=hw9`.
 end
 """
 COURSE = tasks.parse(TASKS)
@@ -216,6 +218,8 @@ class Tasks(unittest.TestCase):
                 ("points = 4", "points = -4", 10, "negative"),
                 ('says = "f() is 1."', 'says = ""', 10, "one line"),
                 ('hint = "Return 1."', 'hint = "a\\nb"', 10, "one line"),
+                ('hint = "Return', 'hints = ["a", 1]\nhint = "Return', 10,
+                 "a hint is not a text of one line"),
                 ('hint = "Return', 'note = 1\nhint = "Return', 10,
                  "unknown key 'note'"),
                 ("3.1.f", "3.2.f", 10, "'3.2.f' is no id of a task"),
@@ -252,6 +256,12 @@ class Pages(unittest.TestCase):
         self.assertRegex(pages.filled(place, EXTRA), "^- \\*\\*g\\*\\*, 1 extra"
                          ": g\\(x\\) is \"x\".\n\n`make test SECTION=7.1` ")
         self.assertIn("Nothing: this section", pages.filled(place, WITHOUT_7))
+
+    def test_hints_open_one_by_one(self):
+        self.assertIn(
+            '\n  <details><summary>Hint 1</summary>Is a &lt; b?<details>'
+            "<summary>Hint 2</summary>A backslash: \\.</details></details>\n",
+            pages.filled("<!-- tasks 7.1 -->\n", COURSE, hints=True))
 
     def test_the_table_of_all_has_their_sum(self):
         table = pages.filled("<!-- tasks -->\nx\n", COURSE)
@@ -351,6 +361,21 @@ class Repository(unittest.TestCase):
         taken = submission.take(self.folder / "s")
         self.assertEqual(set(taken.files), set(markers.SOURCES))
         self.assertEqual(taken.flags, [])
+
+    def test_make_hint_opens_one_more_each_time(self):
+        starter.write(starter.tree("starter"), self.folder / "s")
+        hints = tasks.load().tasks["3.1.position"].hints
+        for opened in (1, 2, 3, 3):
+            done = child.run(["make", "-s", "hint", "TASK=3.1.position"],
+                             cwd=self.folder / "s", capture_output=True,
+                             text=True)
+            said = " ".join(done.stdout.split())
+            for number, hint in enumerate(hints, 1):
+                self.assertEqual(f"Hint {number}: {hint}" in said,
+                                 number <= opened, said)
+        done = child.run(["make", "-s", "hint", "TASK=1"],
+                         cwd=self.folder / "s", capture_output=True, text=True)
+        self.assertIn("TASK is '1', expected one of: 1.nodes", done.stdout)
 
     def test_the_open_level_gives_no_design_away(self):
         self.assertIn("'none', expected guided or open", self.make(

@@ -37,6 +37,18 @@ test: $(addprefix $(B)/tests/,$(if $(TASK), \
 	@bad=0; for t in $^; do $$t $(TASK) || bad=1; done; exit $$bad
 endif
 
+# The tasks whose hints were opened are lines of $(B)/hints.
+.PHONY: hint
+hint:
+	@cut -f 1 tests/hints | grep -qxF '$(TASK)' || \
+	  { echo "TASK is '$(TASK)', expected one of:" \
+	    $$(cut -f 1 tests/hints | uniq); exit 2; }
+	@mkdir -p $(B) && echo '$(TASK)' >>$(B)/hints
+	@awk -F '\t' -v task='$(TASK)' 'NR == FNR { n += $$0 == task; next } \
+	  $$1 == task && ++all <= n { print "Hint " all ": " $$2 } \
+	  END { if (n < all) print all - n " left" }' \
+	  $(B)/hints tests/hints | fold -sw 80
+
 .SECONDEXPANSION:
 $(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame)
 	@echo '$(CXX) $@'

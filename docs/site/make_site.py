@@ -73,7 +73,8 @@ class Page:
             text = f"# {self.source}\n\n```\n{text.rstrip()}\n```\n"
         text = re.sub(r"^( *)```math\n(.*?)\n *```$", displayed, text,
                       flags=re.M | re.S)
-        text = course_pages.filled(figures.with_code(self.source, text), COURSE)
+        text = course_pages.filled(figures.with_code(self.source, text), COURSE,
+                                   hints=True)
         body = subprocess.run(
             ["pandoc", "-f", "gfm+tex_math_dollars", "-t", "html", "--mathml",
              "--wrap=preserve", "--fail-if-warnings"], input=text, text=True,
