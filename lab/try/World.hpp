@@ -153,6 +153,14 @@ inline World tangle() {
   }
   return w;
 }
+/** The tangle with forces that depend on time and velocity. */
+inline World forced() {
+  World w = tangle();
+  w.extra = [](Node n, double t) {
+    return Point(std::cos(5 * t), std::sin(3 * t), t) - .3 * n.value().vel;
+  };
+  return w;
+}
 /** Nodes @a pins stay: by the constraint and, if the step has none or they are
  * @a walls, as no force acts on them. */
 inline World& pin(World& w, const std::vector<unsigned>& pins, bool walls) {

@@ -4,6 +4,8 @@ Each fault is (its sentence, what to do about it). The first one is what a
 teacher would say first: a later one may follow from it.
 """
 
+import math
+
 from table import Event, Runs, Table, near
 from workshop import BadInput, Lines
 
@@ -12,6 +14,8 @@ Faults = list[tuple[str, str]]
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh",
            "eighth", "ninth", "tenth", "eleventh", "twelfth")
 FULL, HALF = .25, .125      # the steps of the trace
+NEVER_ASKS = ("it never asks for the force", "Call force(n, t) for each node "
+              "and add dt/m times it to the velocity.")
 FRACTIONS = {(p / q): f"{p}/{q}" for q in (8, 6, 4, 3, 2) for p in range(1, q)}
 
 
@@ -65,10 +69,40 @@ def counts(events: list[Event]) -> Faults:
                  + " and ".join(f"{n} force{'s' * (n != 1)} on node {i}"
                                 for i, n in enumerate(asked)),
                  "Each loop has to run over all nodes.")]
-    if asked[0] == 0:
-        return [("it never asks for the force", "Call force(n, t) for each "
-                 "node and add dt/m times it to the velocity.")]
-    return []
+    return [] if asked[0] else [NEVER_ASKS]
+
+
+def springs(rows: list[list[float]]) -> tuple[str, Faults, list[str]] | None:
+    """(what it is, faults, notes) of a step that moves the ends of springs
+    itself, whether in one go or so that a larger K moves them by less than
+    in proportion; else None. rows: those of same() in probe.cpp."""
+    soft, stiff, short, shortest = rows
+    if max(abs(soft[2]), abs(soft[3])) < 1e-12 or (
+            abs(stiff[2] - 4 * soft[2]) < 1e-3 * abs(stiff[2])):
+        return None
+    found, notes = [], []
+    words = ("it looks at the springs itself, beside the forces: an implicit "
+             "or position-based step")
+    if abs(shortest[2]) > .1 * abs(stiff[2]):
+        words = ("it is position-based: it moves the ends of each spring to "
+                 "its rest length itself")
+        if near(short[2], shortest[2]):
+            words += ", whatever K is"
+        notes.append(
+            "it asks for the force, which has the springs, too: they act "
+            "twice, unless the step subtracts them" if soft[5] else
+            "it never asks for the force: gravity and drag of the scene do "
+            "not act" + ("" if soft[4] == 0 else
+                         ", it has a gravity of its own: a step of "
+                         f"{soft[0]} s moves a node at rest by "
+                         f"{soft[4]:.3g} m"))
+    if near(soft[2], -soft[3]):
+        found.append((
+            "masses are ignored: both ends of a spring move by the same "
+            "length, whatever their masses",
+            "Move the ends by w1/(w1 + w2) and w2/(w1 + w2) of the way, w = "
+            "1/m: so the momentum is kept."))
+    return words, found, notes
 
 
 def masses(one: Table, two: Table) -> Faults:
@@ -137,7 +171,9 @@ def own_force(lines: Lines) -> Faults:
     return []
 
 
-def own_drag(t: Table) -> Faults:
+def own_drag(t: Table, half: Table) -> Faults:
+    """Does the step change the velocity without any force? Tables of steps 1/4
+    and 1/8."""
     if near(t.V, 1):
         return []
     if abs(t.V) > 1:
@@ -149,8 +185,19 @@ def own_drag(t: Table) -> Faults:
     if near(t.V, 0):
         return [("it forgets the velocity: without any force v becomes 0",
                  "v += dt F/m, not v = dt F/m.")]
+    if near(t.V, half.V):
+        return [(f"each step multiplies the velocity by {t.V:.4g}, however "
+                 "long it is: it has a drag of its own by a factor per step, "
+                 "so twice as many steps brake twice as much",
+                 "Leave drag to the force; or make it a factor per second: "
+                 "v *= exp(-dt c/m).")]
+    words = ""
+    if near(t.V, half.V ** 2):
+        words = f", a factor per second: exp({math.log(t.V) / FULL:.4g} dt)"
+    elif near(1 - t.V, 2 - 2 * half.V):
+        words = f", a factor per second: 1 - {(1 - t.V) / FULL:.4g} dt"
     return [(f"without any force a step of {FULL} s multiplies the velocity "
-             f"by {t.V:.4g}: the step has a drag of its own",
+             f"by {t.V:.4g}: the step has a drag of its own{words}",
              "Leave drag to the force, or to a function of its own: a step "
              "should do nothing that the forces do not say.")]
 

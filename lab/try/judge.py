@@ -21,6 +21,7 @@ class Verdict:
     step: str
     is_a: str = ""              # what it is, in a sentence
     name: str = ""              # of a known method that it equals
+    differs: str = ""           # from it, or from its table, when ...
     faults: list = field(default_factory=list)     # (sentence, advice)
     later: list = field(default_factory=list)      # reported after the others
     notes: list = field(default_factory=list)
@@ -53,48 +54,6 @@ def size(x: float) -> str:
 
 # ---- What it is
 
-SPRINGS = [(i, j) for i in range(4) for j in range(i)]
-
-
-def tangle_force(x: list[Vector], v: list[Vector], t: float, i: int) -> Vector:
-    """The force of same() in probe.cpp."""
-    f = [math.cos(5 * t), math.sin(3 * t), t]
-    for k, (a, b) in enumerate(SPRINGS):
-        if i not in (a, b):
-            continue
-        other = b if i == a else a
-        u = [q - p for p, q in zip(x[i], x[other])]
-        length = math.sqrt(sum(c * c for c in u))
-        pull = (4 + k) * (length - .7 - .1 * k) / length
-        f = [c + pull * d for c, d in zip(f, u)]
-    return [c - .3 * d for c, d in zip(f, v[i])]
-
-
-def simulate(t: tables.Table, state: Vector, h: float = .0625,
-             start: float = .25, steps: int = 3) -> Vector:
-    """The state of the tangle after some steps by a table."""
-    n = len(state) // 6
-    x = [state[6 * i:6 * i + 3] for i in range(n)]
-    v = [state[6 * i + 3:6 * i + 6] for i in range(n)]
-    mass = [.5 + .25 * i for i in range(n)]
-    for k in range(steps):
-        acc: list[list[Vector]] = []
-
-        def moved(c, a, vel, i):
-            return [x[i][d] * vel + (v[i][d] * c * h if vel else v[i][d] * c)
-                    + h ** (1 + vel) * sum(
-                        w * f[i][d] for w, f in zip(a, acc))
-                    for d in range(3)]
-        for s in range(t.stages):
-            xs = [moved(t.c[s], t.a[s], 1, i) for i in range(n)]
-            vs = [moved(1, t.w[s], 0, i) for i in range(n)]
-            acc.append([[c / mass[i] for c in tangle_force(
-                xs, vs, start + (k + t.tau[s]) * h, i)] for i in range(n)])
-        x, v = ([moved(t.C, t.B, 1, i) for i in range(n)],
-                [moved(t.V, t.b, 0, i) for i in range(n)])
-    return [c for p, q in zip(x, v) for c in p + q]
-
-
 def distance(one: Vector, other: Vector) -> float:
     far = max(abs(a - b) for a, b in zip(one, other))
     scale = max(1.0, *(abs(x) for x in one))
@@ -121,7 +80,7 @@ def trace(verdict: Verdict, where: str, lines: Lines,
                       for h, node in ((faults.FULL, 0), (faults.FULL, 1),
                                       (faults.HALF, 0)))
     if one and two and half and one.stages == half.stages and not loop:
-        found += faults.own_force(lines) or faults.own_drag(one)
+        found += faults.own_force(lines) or faults.own_drag(one, half)
         found += faults.masses(one, two)
         if not found:
             found += faults.steps(one, half)
@@ -136,11 +95,16 @@ def trace(verdict: Verdict, where: str, lines: Lines,
     verdict.calls = sum(e.what == "call" and e.node == 0 for e in base)
 
 
-def keeps_state(where: str, same: Numbers) -> None:
+def keeps_state(where: str, same: Numbers, random: str) -> None:
+    """@param random  place and name of a random number in the file, or ''"""
     ends = same["tangle.end"]
     if any(x != x for end in ends for x in end):
         raise BadInput(f"{where}: writes NaN on four masses and springs")
-    if any(distance(ends[0], end) > 0 for end in ends[1:]):
+    equal = all(distance(ends[0], end) == 0 for end in ends[1:])
+    if random and not equal:
+        raise BadInput(f"{random} draws random numbers: two equal runs end "
+                       "differently, so nothing can be measured")
+    if not equal:
         raise BadInput(f"{where}: keeps something from one run to the next, "
                        "in a global or static variable: the same run ends "
                        "elsewhere after another one")
@@ -167,14 +131,58 @@ def unchanged(verdict: Verdict, same: Numbers) -> None:
                 "1e-7 of their size are lost", "Use double, not float."))
 
 
-def identify(verdict: Verdict, same: Numbers) -> None:
-    """Compare with the known methods, by table and by a run."""
+# Where a step differs from its table (sweep in Agree.hpp), by the first that
+# is found: words for a value above the usual one.
+DIFFERS = {
+    "x": "x > {} m", "-x": "x < {} m", "y": "y > {} m", "-y": "y < {} m",
+    "z": "z > {} m", "-z": "z < {} m", "nodes": "there are {} nodes",
+    "speed": "a node is faster than {} m/s", "force": "more than {} N act",
+    "length": "nodes on a spring are more than {} L apart",
+    "K": "K is more than {} N/m", "mass": "a mass is more than {} kg",
+    "t": "t is more than {} s", "place": "a node is near ({}, {}, {})",
+    "dt": "dt is more than {} s", "grid1": "grid1 moves by steps of {} s",
+    "far": "four masses have moved for {} s"}
+BELOW = (("faster", "slower"), ("more", "less"))
+
+
+def differs(agree: Numbers) -> str:
+    """When a step is not what its table says, or ''."""
+    for name, words in DIFFERS.items():
+        if name not in agree:
+            continue
+        values, *others = agree[name]
+        scale = {"length": 1 / .3}.get(name, 1)
+        if name.strip("-") in ("x", "y", "z"):
+            values = [.3 - values[0] if name[0] == "-" else values[0] - .3]
+        elif name not in ("place", "grid1", "far") and not values[1]:
+            for above, below in BELOW:
+                words = words.replace(above, below)
+        elif name == "speed" and others and abs(
+                others[-1][0] / values[0] - values[2] / others[-1][2]) < .01:
+            words = "a node moves more than {} m in a step"
+            scale = values[2]
+        return words.format(*(
+            f"{scale * x:{'.0f' if scale * x > 99 else '.2g'}}"
+            for x in values))
+    return ""
+
+
+def identify(verdict: Verdict, same: Numbers, agree: Numbers) -> None:
+    """Compare with the known methods, by table and by runs."""
     unchanged(verdict, same)
     t = verdict.table
-    off = distance(same["tangle.end"][0], simulate(
-        verdict.data["raw"], same["tangle.begin"][0])) if t else math.inf
+    off = distance(*agree["slow"]) if t else math.inf
     raw = verdict.data["raw"]
     verdict.evaluations = verdict.calls
+    springs = faults.springs(same["spring"])
+    if springs:
+        verdict.is_a, found, notes = springs
+        verdict.faults = found + [fault for fault in verdict.faults
+                                  if fault != faults.NEVER_ASKS]
+        verdict.notes += notes
+        verdict.name = verdict.is_a.split(":")[0]
+        verdict.table = None
+        return
     if t is None or off >= 1e-9:
         if not verdict.faults and off < 1e-5:
             verdict.faults.append((
@@ -200,8 +208,10 @@ def identify(verdict: Verdict, same: Numbers) -> None:
         if tables.same(t, other, ROUNDOFF)), "")
     if verdict.faults:
         return
+    verdict.differs = differs(agree)
     if verdict.name:
-        verdict.is_a = f"it is equal to {verdict.name} to round-off"
+        verdict.is_a = f"it is equal to {verdict.name} " + (
+            "in slow, free motion" if verdict.differs else "to round-off")
     else:
         verdict.faults += faults.coefficients(raw, t, methods)
     if not verdict.faults:

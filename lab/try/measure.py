@@ -38,7 +38,8 @@ def probe(shop: Workshop, parts: Sequence[str],
                 if part == "trace":     # the other parts depend on it
                     judge.events(shop.where, lines)
                 elif part == "same":
-                    judge.keeps_state(shop.where, judge.by_name(lines))
+                    judge.keeps_state(shop.where, judge.by_name(lines),
+                                      shop.random())
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
@@ -49,7 +50,14 @@ def verdict_of(shop: Workshop, found: dict[str, Lines]) -> judge.Verdict:
     verdict = judge.Verdict(shop.step)
     judge.trace(verdict, shop.where, found["trace"], shop.arguments == 5)
     numbers = {part: judge.by_name(lines) for part, lines in found.items()}
-    judge.identify(verdict, numbers["same"])
+    agree: judge.Numbers = {}
+    if verdict.table:
+        row = verdict.data["raw"].row()
+        lines, outcome = shop.run("agree", "fast", *row)
+        agree = judge.by_name(lines)
+        if "done" not in agree and outcome.stopped != "time":
+            raise BadInput(shop.why("agree", outcome, *row))
+    judge.identify(verdict, numbers["same"], agree)
     for part in ("order", "physics", "limits", "contact", "chart"):
         if part in shop.slow:
             verdict.notes.append(f"{part} is not measured: it takes more than "

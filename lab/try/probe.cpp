@@ -3,8 +3,9 @@
  * they mean. try.py compiles it, against the course's classes alone, with
  *   -DTRY_FILE='"mine.hpp"' -DTRY_STEP=my_step -DTRY_ARGUMENTS=5
  * (4: the step takes no constraint).
- *   probe PART DESCRIPTOR [STEPS]    PART: one of those in main(); STEPS of
- *                                    the only run of each problem of chart
+ *   probe PART DESCRIPTOR [NUMBER...]    PART: one of those in main(). NUMBER:
+ *     the table of the step, for agree; steps of the only run of each problem,
+ *     for chart
  * A line is a name and numbers. */
 #include <unistd.h>
 
@@ -17,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/try/World.hpp"
+#include "lab/try/Agree.hpp"
 // The step comes last: it may use all headers above.
 #include TRY_FILE
 
@@ -78,21 +79,22 @@ void refine(const std::string& name, double t0, double t1, long long first,
 
 /** Three free masses of 1/2, 1 and 2 kg. The force on all is 0; or, in turn,
  * 1, 3 and 7 N along y and z at one of the calls for each node: the step as a
- * table of coefficients. */
+ * table of coefficients. All of it by an eighth, and written eightfold: a step
+ * may do something else above a speed. */
 void trace() {
   unsigned calls = 0;  // for a node
   for (const double h : {.125, .25})
     for (int impulse = -1; impulse < int(std::min(calls, 48u)); ++impulse) {
       World w;
       for (unsigned i = 0; i < 3; ++i)
-        w.add(Point(2 + i, 0, 0), Point(1, 0, 0), .5 * (1 << i));
+        w.add(Point(2 + i, 0, 0), Point(.125, 0, 0), .5 * (1 << i));
       int rows = 0;
       auto row = [&](const char* what, double n, double t) {
         if (++rows > 20000) return;  // it loops for ever
         Numbers numbers = {h, double(impulse), n, t};
         for (unsigned i = 0; i < 3 && i < w.g.num_nodes(); ++i) {
-          const Point x = w.g.node(i).position() - Point(2 + i, 0, 0);
-          const Point v = w.g.node(i).value().vel;
+          const Point x = 8 * (w.g.node(i).position() - Point(2 + i, 0, 0));
+          const Point v = 8 * w.g.node(i).value().vel;
           numbers.insert(numbers.end(), {x.x, x.y, v.x, v.y});
         }
         put(what, numbers);
@@ -101,7 +103,8 @@ void trace() {
       w.extra = [&](Node n, double t) {
         const auto i = unsigned(std::log2(2 * n.value().mass));
         row("call", i, t);
-        const double f = int(called[i]++) == impulse ? 2 * (1 << i) - 1 : 0;
+        const double f =
+            int(called[i]++) == impulse ? (2 * (1 << i) - 1) / 8. : 0;
         return Point(0, f, f);
       };
       w.hold = [&](GraphType&, double t) { row("hold", -1, t); };
@@ -123,13 +126,6 @@ void trace() {
 // ---- same: the same run twice, and among others
 
 void same() {
-  auto forced = [] {
-    World w = tangle();
-    w.extra = [](Node n, double t) {
-      return Point(std::cos(5 * t), std::sin(3 * t), t) - .3 * n.value().vel;
-    };
-    return w;
-  };
   World start = forced();
   put("tangle.begin", state(start));
   put("data", data(start));
@@ -144,6 +140,17 @@ void same() {
     run(other, 7, .125, time + 1);
     if (time == 1) run(w, 7, .125, 1);
   }
+  // A stretched spring between nodes on which no force acts: who moves it?
+  for (const double h : {.125, 1. / 1024})
+    for (const double K : {4., 16.}) {
+      World w;
+      w.add(Point(2, 0, 0), Point(), 1), w.add(Point(3, 0, 0), Point(), 3);
+      w.spring(0, 1, K, .7);
+      w.walls = {0, 1};
+      advance(w, 0, h);
+      const Numbers x = positions(w);
+      put("spring", {h, K, x[0] - 2, x[3] - 3, x[2], double(w.calls)});
+    }
 }
 
 // ---- order: problems with exact solutions, those of orders.py
@@ -377,13 +384,14 @@ void chart() {
 
 int main(int count, char** words) {
   const std::map<std::string, void (*)()> parts = {
-      {"trace", probe::trace},   {"same", probe::same},
-      {"order", probe::order},   {"physics", probe::physics},
-      {"limits", probe::limits}, {"contact", probe::contact},
-      {"chart", probe::chart}};
+      {"trace", probe::trace},     {"same", probe::same},
+      {"agree", probe::agree},     {"order", probe::order},
+      {"physics", probe::physics}, {"limits", probe::limits},
+      {"contact", probe::contact}, {"chart", probe::chart}};
   const auto part = parts.find(count > 2 ? words[1] : "");
   if (part == parts.end()) return 2;
   if (count > 3) probe::asked = std::atoll(words[3]);
+  for (int k = 3; k < count; ++k) probe::table.push_back(std::atof(words[k]));
   probe::constrained = TRY_ARGUMENTS == 5;
   probe::out = fdopen(std::atoi(words[2]), "w");
   probe::put("begun", {});

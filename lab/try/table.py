@@ -37,6 +37,11 @@ class Table:
         """All coefficients but the times."""
         return [*self.c, *sum(self.a, []), *self.b, *self.B, self.C, self.V]
 
+    def row(self) -> Vector:
+        """All numbers, as Agree.hpp reads them."""
+        return [self.stages, *self.tau, *self.c, *self.b, *self.B,
+                *sum(self.a, []), *sum(self.w, []), self.C, self.V]
+
     def reuses(self) -> bool:
         """Is the last force of a step the first of the next one?"""
         return (self.stages > 1 and near(self.c[0], 0) and near(self.c[-1], 1)

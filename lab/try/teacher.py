@@ -21,6 +21,8 @@ ADVICE = {
     "a Taylor step, x + h v + h^2 a/2 and v + h a": "The positions are exact "
     "to order 2, the velocities are not: use the mean of the old and the new "
     "force for them, which is Verlet.",
+    "it is position-based": "How stiff it is follows from dt and the number of "
+    "iterations: XPBD adds the compliance 1/(K dt^2), so that K counts.",
     "RK4": "It loses energy in long runs: for a cloth without drag PEFRL has "
     "the same order for the same work and keeps the energy.",
     "Yoshida 4": "Its long step back costs accuracy and stability: PEFRL takes "
@@ -53,8 +55,14 @@ def conclude(v: Verdict) -> None:
                 v.is_a += ", and none of the methods known here"
     elif v.order is not None:
         v.is_a += f", of order {v.order}"
+    if v.differs:
+        v.is_a += f"; it differs when {v.differs}"
     if v.faults:
         v.advice = v.faults[0][1]
+    elif v.differs:
+        v.advice = ("Do the same in every step: leave obstacles to the "
+                    "constraint, and the choice of dt to who calls the step; "
+                    "the numbers below mix two methods.")
     elif v.name in ADVICE:
         v.advice = ADVICE[v.name]
     elif v.limit == 0:

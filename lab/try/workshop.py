@@ -243,7 +243,20 @@ class Workshop:
     def close(self) -> None:
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def why(self, part: str, outcome: sandbox.Outcome) -> str:
+    def random(self) -> str:
+        """FILE:LINE: STEP: NAME of the first random number in the file's
+        text, or ''."""
+        text = without_comments(self.path.read_text("utf-8", "replace"))
+        found = re.search(r"\b(rand|rand_r|random|[ed]rand48|random_device|"
+                          r"mt19937\w*|minstd_rand0?|default_random_engine)\b"
+                          r"(?=\s*[\w({;])", text)
+        if not found:
+            return ""
+        line = text.count("\n", 0, found.start()) + 1
+        return f"{self.path}:{line}: {self.step}: {found[1]}"
+
+    def why(self, part: str, outcome: sandbox.Outcome,
+            *more: object) -> str:
         """Why a part of the probe did not end, in words."""
         name = self.where
         if outcome.stopped == "time":
@@ -253,7 +266,7 @@ class Workshop:
             return f"{name}: uses too much {outcome.stopped}"
         # The sanitizers name the line.
         self.compile("checked")
-        _, checked = self.run(part, "checked")
+        _, checked = self.run(part, "checked", *more)
         said = checked if checked.code and not checked.stopped else outcome
         thrown = re.search(r"terminate called after throwing an instance of "
                            r"'(.*)'(?:\n *what\(\): +(.*))?", said.output)
