@@ -239,13 +239,14 @@ inline constexpr std::array<std::array<unsigned, 2>, 2> quad_diagonals = {
     {{0, 3}, {1, 2}}};
 
 /** Those of @a quads whose four sides all have has_side(i, j): where a cloth
- * lost a node or a side, it has a hole. */
+ * lost a node or a side, it has a hole. A quad with equal corners, 1 and 3, is
+ * a triangle. */
 template <typename F>
 std::vector<Quad> quads_with_sides(std::span<const Quad> quads, F has_side) {
   std::vector<Quad> left;
   std::ranges::copy_if(quads, std::back_inserter(left), [&](const Quad& q) {
     return std::ranges::all_of(quad_sides, [&](auto side) {
-      return has_side(q[side[0]], q[side[1]]);
+      return q[side[0]] == q[side[1]] || has_side(q[side[0]], q[side[1]]);
     });
   });
   return left;
@@ -286,14 +287,14 @@ class MeshSprings {
 
 // ---------------------------------------------------------------------- Grids
 
-/** n x m points [m] of the unit square at z = 0, with y in the inner loop.
- * @pre n, m >= 2 */
+/** n x m points [m] of the unit square at z = 0, with y in the inner loop; of
+ * one row, its points at x = 0 or y = 0.  @pre n, m >= 1 */
 inline std::vector<Point> grid_points(unsigned n, unsigned m) {
   std::vector<Point> points;
   points.reserve(std::size_t(n) * m);
   for (unsigned i = 0; i < n; ++i)
     for (unsigned j = 0; j < m; ++j)
-      points.push_back({i / double(n - 1), j / double(m - 1), 0});
+      points.push_back({i / std::max(1., n - 1.), j / std::max(1., m - 1.), 0});
   return points;
 }
 inline std::vector<Point> grid_points(unsigned side) {
@@ -301,7 +302,7 @@ inline std::vector<Point> grid_points(unsigned side) {
 }
 
 /** Its (n - 1) (m - 1) quads. The corners of each: the first, its neighbors
- * along y and along x, and the opposite one.  @pre n, m >= 2 */
+ * along y and along x, and the opposite one.  @pre n, m >= 1 */
 inline std::vector<Quad> grid_quads(unsigned n, unsigned m) {
   std::vector<Quad> quads;
   quads.reserve(std::size_t(n - 1) * (m - 1));

@@ -95,7 +95,9 @@ TEST_F(ClothProgram, SaysWhereASceneIsWrongAlsoWhenItIsFoundOutLate) {
   const std::string run_it = "--config " + scene + " --headless --t-end 0 ";
   Result r = run(run_it);
   EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err, scene + ":3: --pin \"x 0.3\" holds no node\n");
+  EXPECT_EQ(r.err, scene +
+                       ":3: --pin \"x 0.3\" holds no node: the nearest is node "
+                       "18 at 0.25 0 0\n");
   EXPECT_EQ(run(run_it + "--pin 'x 0'").status, 0);
   file("s.toml", "sheet = \"nodes 9 9\"\nself-collision = \"thickness 0.3\"\n");
   EXPECT_EQ(run(run_it).err.find(scene + ":2: --self-collision has"), 0u);

@@ -146,7 +146,8 @@ TEST_F(ClothProgram, RefusesScenesThatCantBe) {
   EXPECT_EQ(complaint(grid0),
             "cloth: --sheet cannot be combined with NODES and TETS\n");
   EXPECT_EQ(complaint("--pin 'x 0' --pin 'x 0.3'"),
-            "cloth: --pin \"x 0.3\" holds no node\n");
+            "cloth: --pin \"x 0.3\" holds no node: the nearest is node 18 at "
+            "0.25 0 0\n");
   EXPECT_NE(complaint("--modulus 1 --stiffness 1"), "");
   EXPECT_NE(complaint("--drag 1 --damping 1"), "");
   EXPECT_NE(complaint("--sheet"), "");

@@ -87,6 +87,153 @@ TEST(Compose, SheetsLieBesideEachOther) {
     EXPECT_EQ(e.node1().index() < 9, e.node2().index() < 9);
 }
 
+// ---------------------------------------------------------------------- A net
+
+TEST(Compose, ASheetOfOneRowIsARope) {
+  for (const char* nodes : {"nodes 75 1", "nodes 1 75"}) {
+    Cloth g;
+    build(g, with_sheet(nodes));
+    EXPECT_EQ(g.num_nodes(), 75u);
+    ASSERT_EQ(g.num_edges(), 74u);
+    EXPECT_NEAR(spring(g, 73, 74).L, 1 / 74., 1e-15);
+  }
+  Cloth mass;
+  build(mass, with_sheet("nodes 1 1"));
+  EXPECT_EQ(mass.num_nodes(), 1u);
+}
+
+/** Two triangles of the unit square, 0-1-2 and 1-3-2, as of a file. */
+Net two_triangles() {
+  return {grid_points(2), {face_around(0, 1, 2), face_around(1, 3, 2)}};
+}
+
+TEST(Compose, ATriangleHasItsThreeEdgesAndAThirdOfItsMassAtEachNode) {
+  Model m;
+  m.material.density = 0.6;
+  Cloth g;
+  build_model(g, m, two_triangles());
+  EXPECT_EQ(g.num_edges(), 5u);
+  EXPECT_NEAR(spring(g, 1, 2).L, std::sqrt(2), 1e-15);
+  EXPECT_NEAR(g.node(0).value().mass, 0.1, 1e-15);
+  EXPECT_NEAR(g.node(1).value().mass, 0.2, 1e-15);
+  EXPECT_NEAR(total_mass(g), 0.6, 1e-15);
+  m.edges.bend = true;
+  Cloth stiff;
+  build_model(stiff, m, two_triangles());
+  EXPECT_EQ(stiff.num_edges(), 6u);
+  EXPECT_EQ(spring(stiff, 0, 3).L, std::sqrt(2));
+}
+
+// A lattice of equilateral triangles with equal K has Young's modulus
+// 2 K/sqrt(3) (Van Gelder 1998).
+TEST(Compose, ModulusOfTrianglesIsThatOfTheirLattice) {
+  const double h = std::sqrt(3) / 2;
+  Net net{{{0, 0, 0}, {1, 0, 0}, {0.5, h, 0}, {1.5, h, 0}},
+          {face_around(0, 1, 2), face_around(1, 3, 2)}};
+  Model m;
+  m.material.modulus = 2 / std::sqrt(3);
+  Cloth g;
+  build_model(g, m, net);
+  EXPECT_NEAR(spring(g, 1, 2).K, 1, 1e-15);
+  EXPECT_NEAR(spring(g, 0, 1).K, 0.5, 1e-15);  // at the rim
+}
+
+TEST(Compose, ANetListsItsSpringsMassesAndHeldNodes) {
+  Net net{{{0, 0, 0}, {0, 0, -1}, {0, 0, -3}}, {}};
+  net.springs = {{0, 1, 10, 0.5}, {1, 2}, {0, 1, 30, 0.9}};
+  net.masses = {1, 2, 3};
+  net.velocities = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  net.held = {0};
+  Model m;
+  m.stiffness = 7;
+  const Recipe r = recipe_of(m, net);
+  Cloth g;
+  r.build(g);
+  ASSERT_EQ(g.num_edges(), 2u);
+  EXPECT_NEAR(spring(g, 0, 1).K, 40, 1e-13);
+  EXPECT_NEAR(spring(g, 0, 1).L, 0.8, 1e-15);  // (10 * 0.5 + 30 * 0.9)/40
+  EXPECT_EQ(spring(g, 1, 2).K, 7);
+  EXPECT_EQ(spring(g, 1, 2).L, 2);
+  EXPECT_EQ(total_mass(g), 6);
+  EXPECT_EQ(g.node(0).value().vel, Point());
+  EXPECT_EQ(g.node(2).value().vel, Point(1, 0, 0));
+  r.constraint(g)(g, 0);
+  ASSERT_EQ(r.held(g).size(), 1u);
+  EXPECT_EQ(r.held(g)[0].nodes[0].id, g.node(0).id());
+  // One in the place of a face's spring replaces it.
+  Net faces = two_triangles();
+  faces.springs = {{2, 1, 3, 0}};
+  Cloth sewn;
+  build_model(sewn, m, faces);
+  EXPECT_EQ(sewn.num_edges(), 5u);
+  EXPECT_EQ(spring(sewn, 1, 2).L, 0);
+  faces.bare_faces = true;
+  Cloth bare;
+  build_model(bare, m, faces);
+  EXPECT_EQ(bare.num_edges(), 1u);
+  m.material.modulus = 1;
+  net.springs.push_back({0, 2});
+  Cloth none;
+  EXPECT_THROW(build_model(none, m, net), SceneError);
+}
+
+TEST(Compose, ANetIsChecked) {
+  const auto error = [](auto change) -> std::string {
+    Net net = two_triangles();
+    change(net);
+    try {
+      check(net);
+      return "";
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+  };
+  EXPECT_EQ(error([](Net&) {}), "");
+  EXPECT_EQ(error([](Net& n) {
+              n.springs = {{0, 1}, {2, 2}};
+            }),
+            "springs[1]: joins node 2 to itself");
+  EXPECT_EQ(error([](Net& n) {
+              n.springs = {{0, 4}};
+            }),
+            "springs[0]: there is no node 4");
+  EXPECT_EQ(error([](Net& n) {
+              n.springs = {{0, 1, 1, NAN}};
+            }),
+            "springs[0]: L is nan, expected 0 or more");
+  EXPECT_EQ(error([](Net& n) {
+              n.masses = {1, 1, 0, 1};
+            }),
+            "masses[2]: is not more than 0");
+  EXPECT_EQ(error([](Net& n) { n.velocities = {Point()}; }),
+            "velocities: has 1 values, expected one for each of 4 nodes");
+  EXPECT_EQ(error([](Net& n) { n.points[3].y = INFINITY; }),
+            "points[3]: is not finite");
+  EXPECT_EQ(error([](Net& n) { n.held = {9}; }), "held[0]: there is no node 9");
+  EXPECT_EQ(error([](Net& n) {
+              n.quads[1] = {0, 0, 1, 2};
+            }),
+            "quads[1]: node 0 comes twice");
+}
+
+// A pin holds the nodes at its numbers; if these were rounded, the nearest.
+TEST(Compose, APinHoldsNodesByPlaceOrIndex) {
+  const auto held = [](const std::string& pin, double size) {
+    Model m = with_sheet("u " + std::to_string(size) + " 0 0 nodes 4 2");
+    m.pins = {read_pin(pin)};
+    return points_held(m, mesh_of(m))[0];
+  };
+  using All = std::vector<unsigned>;
+  EXPECT_EQ(held("x 0", 1), (All{0, 1}));
+  EXPECT_EQ(held("x 0.333333", 1), (All{2, 3}));
+  EXPECT_EQ(held("x 0.333333 y 1", 1), All{3});
+  EXPECT_EQ(held("x 0.3333", 1), All{});
+  EXPECT_EQ(held("x 33.3333", 100), (All{2, 3}));
+  EXPECT_EQ(held("node 5", 1), All{5});
+  EXPECT_EQ(held("node 5 x 0", 1), All{});
+  EXPECT_EQ(held("node 8", 1), All{});
+}
+
 // ---------------------------------------------------------------- The material
 
 TEST(Compose, MassIsDensityTimesArea) {
@@ -213,7 +360,7 @@ TEST(Compose, ANodeWithoutAQuadHasNoMassByArea) {
   Cloth g;
   Model m;
   m.material.density = 1;
-  PointsAndQuads mesh{grid_points(2), grid_quads(2)};
+  Net mesh{grid_points(2), grid_quads(2)};
   mesh.points.push_back(Point(9, 9, 9));
   EXPECT_THROW(build_model(g, m, mesh), SceneError);
 }
@@ -255,9 +402,9 @@ TEST(Compose, WhatIsNotNamedCostsNothing) {
   build(g, m);
   // Without a constraint no node is looked at: a cloth below any floor stays.
   for (Node n : g.nodes()) n.position().z = -100;
-  constraint_of(m, g)(g, 0);
+  constraint_of(m, mesh_of(m), g)(g, 0);
   for (Node n : g.nodes()) EXPECT_EQ(n.position().z, -100);
-  EXPECT_EQ(constraint_of(m, g).parts.size(), 0u);
+  EXPECT_EQ(constraint_of(m, mesh_of(m), g).parts.size(), 0u);
   EXPECT_EQ(force_of(m, mesh_of(m), g).parts.size(), 2u);  // and springs
   m.gravity = 0;
   EXPECT_EQ(force_of(m, mesh_of(m), g).parts.size(), 1u);
@@ -265,7 +412,7 @@ TEST(Compose, WhatIsNotNamedCostsNothing) {
   EXPECT_EQ(force_of(m, mesh_of(m), g).parts.size(), 2u);
   m.pins = {read_pin("x 0")};
   m.planes = {Wall()};
-  EXPECT_EQ(constraint_of(m, g).parts.size(), 2u);
+  EXPECT_EQ(constraint_of(m, mesh_of(m), g).parts.size(), 2u);
 }
 
 TEST(Compose, DragPerAreaIsSharedByTheNodesAsTheirMassIs) {
@@ -335,10 +482,13 @@ TEST(Compose, PinsMustHoldANode) {
   build(g, m);
   m.pins = {read_pin("x 0.5"), read_pin("x 0.4")};
   try {
-    constraint_of(m, g);
+    constraint_of(m, mesh_of(m), g);
     ADD_FAILURE();
   } catch (const SceneError& e) {
-    EXPECT_STREQ(e.what(), "--pin \"x 0.4\" holds no node");
+    EXPECT_STREQ(
+        e.what(),
+        "--pin \"x 0.4\" holds no node: the nearest is node 3 at 0.5 0 "
+        "0");
   }
 }
 
@@ -360,9 +510,9 @@ TEST(Compose, SelfCollisionMustFitTheStart) {
   Cloth g;
   build(g, m);
   m.self_collision = {.thickness = 0.51};
-  EXPECT_THROW(constraint_of(m, g), SceneError);
+  EXPECT_THROW(constraint_of(m, mesh_of(m), g), SceneError);
   m.self_collision = {.thickness = 0.49};
-  EXPECT_NO_THROW(constraint_of(m, g));
+  EXPECT_NO_THROW(constraint_of(m, mesh_of(m), g));
 }
 
 }  // namespace

@@ -374,7 +374,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   Cloth& g = scene.cloth();
   ASSERT_TRUE(scene.run_to(0.1));
   g.remove_node(g.node(0));
-  const PointsAndQuads left = mesh_left(g, *scene.recipe().built);
+  const Net left = mesh_left(g, *scene.recipe().built);
   std::ofstream nodes(folder / "end.nodes"), tets(folder / "end.tets");
   write_nodes(nodes, left), write_quads(tets, left);
   nodes.close(), tets.close();
@@ -397,7 +397,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   EXPECT_EQ(cloth.cloth().num_nodes(), g.num_nodes());
   // But for the diagonal of the quad that is gone.
   EXPECT_EQ(cloth.cloth().num_edges(), g.num_edges() - 1);
-  const PointsAndQuads same = mesh_left(cloth.cloth(), *cloth.recipe().built);
+  const Net same = mesh_left(cloth.cloth(), *cloth.recipe().built);
   EXPECT_EQ(same.points, left.points);
   EXPECT_EQ(same.velocities, left.velocities);
   EXPECT_EQ(same.quads, left.quads);

@@ -117,10 +117,10 @@ TEST(Parts, AreWhatTheirWordsSay) {
   EXPECT_FALSE(r.box.holds(Point(0.5, 0.5, 2 + 1.1e-9)));
 
   const Pin p = read_pin("x 0.5 z 1 velocity 0 1 0 until 2");
-  EXPECT_TRUE(p.holds(Point(0.5, 77, 1)));
-  EXPECT_TRUE(p.holds(Point(0.5 + 0.9e-9, 77, 1)));
-  EXPECT_FALSE(p.holds(Point(0.5 + 1.1e-9, 77, 1)));
-  EXPECT_FALSE(p.holds(Point(0.5, 77, 1.1)));
+  EXPECT_TRUE(p.distance(0, Point(0.5, 77, 1)) < Pin::near);
+  EXPECT_TRUE(p.distance(0, Point(0.5 + 0.9e-9, 77, 1)) < Pin::near);
+  EXPECT_FALSE(p.distance(0, Point(0.5 + 1.1e-9, 77, 1)) < Pin::near);
+  EXPECT_FALSE(p.distance(0, Point(0.5, 77, 1.1)) < Pin::near);
   EXPECT_EQ(p.motion.velocity, Point(0, 1, 0));
   EXPECT_EQ(p.motion.until, 2);
 
@@ -201,8 +201,9 @@ TEST(Parts, RefuseWhatMakesNoSense) {
     return std::string();
   };
   EXPECT_EQ(wrong(read_sheet, "nodes 5 2.5"),
-            " has nodes 2.5, expected 2 to 10000");
-  EXPECT_EQ(wrong(read_pin, "until 2 velocity 1 0 0"), " has none of x, y, z");
+            " has nodes 2.5, expected 1 to 10000");
+  EXPECT_EQ(wrong(read_pin, "until 2 velocity 1 0 0"),
+            " has none of x, y, z, node");
   EXPECT_EQ(wrong(read_pin, "x 1 until 2"), " has no velocity");
   EXPECT_EQ(wrong(read_region, "from 0 0 0 to 1 1 1"),
             " has none of mass-factor, stiffness-factor");
@@ -549,7 +550,8 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
   EXPECT_EQ(complaint(sheet + "t-end = [1, 2]\n"),
             "2: --t-end has 2 values, expected one");
   EXPECT_EQ(complaint("pin = [\"q 3\"]\n" + sheet),
-            "1: --pin \"q 3\" has \"q\", expected one of x, y, z, velocity, "
+            "1: --pin \"q 3\" has \"q\", expected one of x, y, z, node, "
+            "velocity, "
             "until");
   EXPECT_EQ(complaint(sheet + "tear = \"radius 1\"\ntear-strain = -1\n"),
             "3: --tear-strain is -1, expected a strain above 0");

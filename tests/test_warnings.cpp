@@ -99,7 +99,7 @@ TEST(Warnings, NodesInNoQuad) {
 
 TEST(Warnings, SpringsOfLengthZero) {
   Model m = sheet();
-  PointsAndQuads mesh = mesh_of(m);
+  Net mesh = mesh_of(m);
   mesh.points[7] = mesh.points[12];  // one side
   Cloth g;
   build_model(g, m, mesh);
@@ -144,7 +144,7 @@ TEST(Warnings, ASolidBallThatStartsAroundNodes) {
   // The energy is what the projection gives.
   Cloth g;
   build_model(g, m, mesh_of(m));
-  constraint_of(m, g)(g, 0);
+  constraint_of(m, mesh_of(m), g)(g, 0);
   EXPECT_GT(elastic_energy(g), 1);
   EXPECT_NEAR(std::stod(w.substr(w.find("gives ") + 6)), elastic_energy(g),
               1e-5 * elastic_energy(g));

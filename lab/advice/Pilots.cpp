@@ -23,10 +23,10 @@ constexpr double more_iterations = 0.6, of_factor = 10;
 }  // namespace
 
 StepCosts::StepCosts(const Model& m) {
-  const PointsAndQuads mesh = mesh_of(m);
+  const Net mesh = mesh_of(m);
   Cloth g;
   build_model(g, m, mesh);
-  const CombinedConstraints constraints = constraint_of(m, g);
+  const CombinedConstraints constraints = constraint_of(m, mesh, g);
   const ConstraintPlan constraint = constraints;
   const std::optional<ForcePlan> force = force_of(m, mesh, g);
   const std::optional<HandForce> no_hand;

@@ -12,10 +12,8 @@ namespace lab {
 
 namespace {
 bool has_point_pin(const Model& m) {
-  Cloth g;
-  build_model(g, m, mesh_of(m));
-  return std::ranges::any_of(
-      held_of(m, g), [](const HeldNodes& h) { return h.nodes.size() == 1; });
+  return std::ranges::any_of(points_held(m, mesh_of(m)),
+                             [](const auto& held) { return held.size() == 1; });
 }
 }  // namespace
 

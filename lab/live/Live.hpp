@@ -185,7 +185,7 @@ class Live {
   };
 
   Model model_;
-  PointsAndQuads mesh_;
+  Net mesh_;
   std::optional<Side> main_, rival_, reference_;
   double rival_step_ = 0;  // as asked for [s]
   int round_ = 1;          // steps of the main scene in one

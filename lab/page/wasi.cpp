@@ -11,7 +11,7 @@
 
 namespace lab {
 
-PointsAndQuads load_mesh(const std::string& nodes, const std::string&) {
+Net load_mesh(const std::string& nodes, const std::string&) {
   throw InputError(nodes, 0, "a page has no files");
 }
 double needed_memory(double, double) { return 0; }

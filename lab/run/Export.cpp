@@ -32,7 +32,8 @@ Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
   Frame f;
   f.time = scene.time();
   f.there.resize(n), f.velocities.resize(n), f.forces.resize(n);
-  f.masses.resize(n), f.strains.resize(n), f.pinned.resize(n);
+  f.masses.resize(n), f.strains.resize(n);
+  f.pinned = is_held(m, built.mesh);
   f.places = before ? before->places : built.mesh.points;
   std::vector<unsigned> point_of(arrays(g).node_slots());
   for (unsigned i = 0; i < n; ++i) {
@@ -44,7 +45,6 @@ Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
     f.velocities[i] = node.value().vel;
     f.forces[i] = force(node, f.time);
     f.masses[i] = node.value().mass;
-    f.pinned[i] = is_held(m, built.mesh.points[i]);
   }
   std::vector<unsigned> degree(n);
   for (Edge e : g.edges()) {

@@ -32,7 +32,7 @@ MeshOutput::MeshOutput(const std::string& file) : nodes_(file) {
 }
 
 void MeshOutput::write(const Scene& scene) {
-  const PointsAndQuads left = mesh_left(scene.cloth(), *scene.recipe().built);
+  const Net left = mesh_left(scene.cloth(), *scene.recipe().built);
   write_nodes(nodes_.stream(), left);
   if (quads_) write_quads(quads_->stream(), left);
   nodes_.commit();

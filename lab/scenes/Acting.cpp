@@ -32,25 +32,22 @@ std::string of_method(const MethodInfo& info) {
   return text;
 }
 
-std::string of_cloth(const Model& m, const Cloth& g,
-                     const PointsAndQuads& mesh) {
+std::string of_cloth(const Model& m, const Cloth& g, const Net& mesh) {
   std::string from;
   for (const Sheet& s : m.sheets)
     from += (from.empty() ? "" : " and ") + std::to_string(s.nodes[0]) + " x " +
             std::to_string(s.nodes[1]) + " nodes";
   if (m.sheets.empty()) from = m.nodes + " and " + m.tets;
   return "cloth of " + from + ", " + short_text(total_mass(g)) + " kg: " +
-         count_of(
-             std::size_t(std::ranges::count_if(
-                 mesh.points, [&m](const Point& p) { return !is_held(m, p); })),
-             "node") +
+         count_of(std::size_t(std::ranges::count(is_held(m, mesh), 0)),
+                  "node") +
          " moved";
 }
 
 }  // namespace
 
 std::vector<std::string> what_acts(const Model& m, const Cloth& g,
-                                   const PointsAndQuads& mesh) {
+                                   const Net& mesh) {
   std::vector<std::string> all = {of_method(m.method->info)};
   auto add = [&](const std::string& what, const std::string& work) {
     all.push_back("  " + what + ": " + work);
@@ -89,11 +86,10 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
                 ? work + ", each compared with the nodes within that distance"
                 : work);
   }
-  for (const Pin& pin : m.pins) {
-    const auto held = std::ranges::count_if(
-        mesh.points, [&](const Point& p) { return pin.holds(p); });
-    add("pin " + to_words(pin), count_of(std::size_t(held), "node"));
-  }
+  const auto held = points_held(m, mesh);
+  for (std::size_t k = 0; k < held.size(); ++k)
+    add(k < m.pins.size() ? "pin " + to_words(m.pins[k]) : "held by the net",
+        count_of(held[k].size(), "node"));
   return all;
 }
 

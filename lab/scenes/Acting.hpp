@@ -15,6 +15,6 @@ namespace lab {
  * @param g the cloth of @a m   @param mesh what it was built from
  * Complexity: O(nodes + springs) */
 std::vector<std::string> what_acts(const Model& m, const Cloth& g,
-                                   const PointsAndQuads& mesh);
+                                   const Net& mesh);
 
 }  // namespace lab

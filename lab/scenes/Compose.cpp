@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/GraphArrays.hpp"
@@ -20,7 +22,7 @@ namespace lab {
 
 namespace {
 
-void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
+void add_sheet(Net& mesh, const Sheet& s) {
   const auto [n, m] = s.nodes;
   const auto first = unsigned(mesh.points.size());
   for (const Point& p : grid_points(n, m))
@@ -29,20 +31,23 @@ void add_sheet(PointsAndQuads& mesh, const Sheet& s) {
     for (unsigned& i : q) i += first;
     mesh.quads.push_back(q);
   }
+  if (n == 1 || m == 1)  // a rope
+    for (unsigned i = first + 1; i < mesh.points.size(); ++i)
+      mesh.springs.push_back({i - 1, i});
   if (s.velocity == Point() && mesh.velocities.empty()) return;
   mesh.velocities.resize(first);
   mesh.velocities.resize(mesh.points.size(), s.velocity);
 }
 
-/** A side of a quad: its two points, the quad, and the quad's other two points
- * in the order of their neighbors. */
+/** A side of a face: its two points, the face, and the quad's other two points
+ * in the order of their neighbors; or the triangle's third one, twice. */
 struct Side {
   std::array<unsigned, 2> ends;  // the smaller one first
   std::size_t quad;
   std::array<unsigned, 2> beyond;  // the ends of the opposite side
 };
 
-/** All sides of all quads; sides with the same ends are adjacent. */
+/** All sides of all faces; sides with the same ends are adjacent. */
 std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
   std::vector<Side> all;
   for (std::size_t k = 0; k < quads.size(); ++k)
@@ -50,7 +55,9 @@ std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
       // Corner c of a quad has the neighbors c ^ 1 and c ^ 2 along its sides.
       const unsigned across = (a ^ b) == 1 ? 2 : 1;
       const Quad& q = quads[k];
+      if (q[a] == q[b]) continue;  // of a triangle
       Side s = {{q[a], q[b]}, k, {q[a ^ across], q[b ^ across]}};
+      if (is_triangle(q)) s.beyond[1] = s.beyond[0];
       if (s.ends[0] > s.ends[1]) {
         std::swap(s.ends[0], s.ends[1]);
         std::swap(s.beyond[0], s.beyond[1]);
@@ -63,26 +70,40 @@ std::vector<Side> sorted_sides(const std::vector<Quad>& quads) {
 }
 
 /** Call @a use(p, q, i, j) for each pair of points p and q that lie two sides
- * apart, across a side that quads i and j share: twice inside a grid. */
+ * apart, across a side that quads i and j share: twice inside a grid; or that
+ * are the third points of two triangles i and j with a common side. */
 template <typename Use>
 void each_bend(const std::vector<Quad>& quads, Use use) {
   const auto all = sorted_sides(quads);
   for (std::size_t k = 1; k < all.size(); ++k) {
     const Side &s = all[k - 1], &t = all[k];
-    if (s.ends != t.ends) continue;
-    for (int end : {0, 1})
+    const bool third = is_triangle(quads[s.quad]);
+    if (s.ends != t.ends || third != is_triangle(quads[t.quad])) continue;
+    for (int end = 0; end < (third ? 1 : 2); ++end)
       if (s.beyond[end] != t.beyond[end])
         use(s.beyond[end], t.beyond[end], s.quad, t.quad);
   }
 }
 
-double area(const PointsAndQuads& mesh, const Quad& q) {
+double area(const Net& mesh, const Quad& q) {
   const auto& p = mesh.points;
   return norm(cross(p[q[3]] - p[q[0]], p[q[2]] - p[q[1]])) / 2;
 }
 
-/** Set K of all springs by the modulus Y [N/m], as build_model() says. */
-void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
+/** Call @a use(i, j, share) for the springs of @a q: those along its sides,
+ * then its diagonals. Share: of the area of @a q, the strip that the spring
+ * stands for; in a triangle, A. Van Gelder, J. Graphics Tools 3 (1998) 21. */
+template <typename Use>
+void each_spring(const Quad& q, bool diagonals, Use use) {
+  for (auto [i, j] : quad_sides)
+    if (q[i] != q[j]) use(q[i], q[j], is_triangle(q) ? 1. : 0.5);
+  if (diagonals && !is_triangle(q))
+    for (auto [i, j] : quad_diagonals) use(q[i], q[j], 2.);
+}
+
+/** Set K of the springs of all faces by the modulus Y [N/m], as build_model()
+ * says. */
+void set_stiffness(Cloth& g, const Net& mesh, const Edges& edges,
                    double modulus) {
   for (Edge e : g.edges()) e.value().K = 0;
   auto add = [&](unsigned i, unsigned j, double area_of_width) {
@@ -90,12 +111,11 @@ void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
     const double l = e.value().L;
     if (l > 0) e.value().K += modulus * area_of_width / (l * l);
   };
-  for (const Quad& q : mesh.quads) {
-    const double a = area(mesh, q);
-    for (auto [i, j] : quad_sides) add(q[i], q[j], a / 2);
-    if (edges.diagonals)
-      for (auto [i, j] : quad_diagonals) add(q[i], q[j], 2 * a);
-  }
+  for (const Quad& q : mesh.quads)
+    each_spring(q, edges.diagonals,
+                [&, a = area(mesh, q)](unsigned i, unsigned j, double share) {
+                  add(i, j, share * a);
+                });
   if (edges.bend)
     each_bend(
         mesh.quads, [&](unsigned p, unsigned q, std::size_t i, std::size_t j) {
@@ -103,22 +123,47 @@ void set_stiffness(Cloth& g, const PointsAndQuads& mesh, const Edges& edges,
         });
 }
 
-/** The area of each point [m^2]: a quarter of the quads at it. */
-std::vector<double> areas(const PointsAndQuads& mesh) {
+/** Add the springs that @a net lists to those of its faces. */
+void add_listed(Cloth& g, const Net& net, const Model& m) {
+  std::vector<char> listed(g.num_edges());  // by index of the edge
+  for (auto [i, j, K, L] : net.springs) {
+    Edge e = g.add_edge(g.node(i), g.node(j));
+    const bool is_new = e.index() == listed.size();
+    if (is_new) listed.push_back(0);
+    if (L < 0) L = norm(net.points[i] - net.points[j]);
+    if (K < 0 && m.material.modulus && is_new)
+      throw SceneError("modulus", "gives no K to the spring of nodes " +
+                                      std::to_string(i) + " and " +
+                                      std::to_string(j) +
+                                      ", which lies in no face");
+    if (K < 0) K = m.material.modulus ? e.value().K : m.stiffness;
+    EdgeData& all = e.value();
+    const double sum = all.K + K;
+    if (!std::exchange(listed[e.index()], 1) || sum == 0)
+      all = {K, L};
+    else  // the sum of both forces
+      all = {sum, (all.K * all.L + K * L) / sum};
+  }
+}
+
+/** The area of each point [m^2]: a quarter of the quads at it, a third of the
+ * triangles. */
+std::vector<double> areas(const Net& mesh) {
   std::vector<double> share(mesh.points.size());
   for (const Quad& q : mesh.quads)
-    for (unsigned i : q) share[i] += area(mesh, q) / 4;
+    for (unsigned k : {0, 1, 2, 3})  // corners 1 and 3 of a triangle are one
+      share[q[k]] += area(mesh, q) / (!is_triangle(q) ? 4 : k % 2 ? 6 : 3);
   return share;
 }
 
 /** The masses by the density [kg/m^2] and areas().
  * Throws SceneError: a node in no quad */
-void set_masses(Cloth& g, const PointsAndQuads& mesh, double density) {
+void set_masses(Cloth& g, const Net& mesh, double density) {
   const std::vector<double> share = areas(mesh);
   for (unsigned i = 0; i < share.size(); ++i) {
     if (!(share[i] > 0))
       throw SceneError("density", "gives no mass to node " + std::to_string(i) +
-                                      ", which lies in no quad");
+                                      ", which lies in no face");
     g.node(i).value().mass = density * share[i];
   }
 }
@@ -140,9 +185,11 @@ void change_region(Cloth& g, const Region& r) {
 }
 
 /** Throws SceneError if there is no memory for the cloth of @a m. */
-void check_memory(const Model& m, double nodes, double quads) {
+void check_memory(const Model& m, double nodes, double quads,
+                  double listed = 0) {
   const Edges& e = m.edges;
-  const double springs = nodes + quads * (1 + 2 * e.diagonals + 2 * e.bend);
+  const double springs =
+      nodes + quads * (1 + 2 * e.diagonals + 2 * e.bend) + listed;
   const double needed = needed_memory(nodes, springs),
                available = available_memory();
   auto gb = [](double bytes) {
@@ -156,13 +203,31 @@ void check_memory(const Model& m, double nodes, double quads) {
                          " of memory; " + gb(available) + " are available");
 }
 
+double size_of(const Net& net) {
+  CME212::BoundingBox box;
+  for (const Point& p : net.points) box |= p;
+  return box.diagonal();
+}
+
+/** The node of @a net that is closest to @a pin, the first one if several are,
+ * and its distance [m].  @pre @a net has nodes */
+std::pair<unsigned, double> nearest(const Pin& pin, const Net& net) {
+  std::pair<unsigned, double> best = {0,
+                                      std::numeric_limits<double>::infinity()};
+  for (unsigned i = 0; i < net.points.size(); ++i)
+    if (const double d = pin.distance(i, net.points[i]); d < best.second)
+      best = {i, d};
+  return best;
+}
+
 }  // namespace
 
-PointsAndQuads mesh_of(const Model& m) {
-  PointsAndQuads mesh;
+Net mesh_of(const Model& m) {
+  Net mesh;
   if (m.sheets.empty()) {
     mesh = load_mesh(m.nodes, m.tets);
-    check_memory(m, double(mesh.points.size()), double(mesh.quads.size()));
+    check_memory(m, double(mesh.points.size()), double(mesh.quads.size()),
+                 double(mesh.springs.size()));
   }
   double nodes = 0, quads = 0;
   for (const Sheet& s : m.sheets) {
@@ -174,37 +239,73 @@ PointsAndQuads mesh_of(const Model& m) {
   return mesh;
 }
 
-bool is_held(const Model& m, const Point& start) {
-  return std::ranges::any_of(m.pins,
-                             [&](const Pin& pin) { return pin.holds(start); });
+std::vector<std::vector<unsigned>> points_held(const Model& m, const Net& net) {
+  std::vector<std::vector<unsigned>> all;
+  for (const Pin& pin : m.pins) {
+    auto& held = all.emplace_back();
+    const auto take = [&](double within) {
+      for (unsigned i = 0; i < net.points.size(); ++i)
+        if (pin.distance(i, net.points[i]) < within) held.push_back(i);
+    };
+    take(Pin::near);
+    if (!held.empty()) continue;
+    const double least = nearest(pin, net).second;
+    if (least < 1e-6 * size_of(net)) take(least + Pin::near);
+  }
+  if (!net.held.empty()) all.push_back(net.held);
+  return all;
+}
+
+std::vector<char> is_held(const Model& m, const Net& net) {
+  std::vector<char> all(net.points.size());
+  for (const auto& held : points_held(m, net))
+    for (unsigned i : held) all[i] = 1;
+  return all;
 }
 
 double shortest_side(const Model& m) {
   double least = std::numeric_limits<double>::infinity();
-  const PointsAndQuads mesh = mesh_of(m);
+  const Net mesh = mesh_of(m);
   for (const Quad& q : mesh.quads)
-    for (auto [i, j] : quad_sides)
-      least =
-          std::min<double>(least, norm(mesh.points[q[i]] - mesh.points[q[j]]));
+    each_spring(q, false, [&](unsigned i, unsigned j, double) {
+      least = std::min<double>(least, norm(mesh.points[i] - mesh.points[j]));
+    });
   return least;
 }
 
-void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh) {
+void build_model(Cloth& g, const Model& m, const Net& mesh) {
+  std::vector<Quad> quads, others;  // of more than three corners; triangles
+  const bool all_quads = std::ranges::none_of(mesh.quads, is_triangle);
+  if (!all_quads && !mesh.bare_faces)
+    std::ranges::partition_copy(mesh.quads, std::back_inserter(others),
+                                std::back_inserter(quads), is_triangle);
+  g.reserve(unsigned(mesh.points.size()),
+            unsigned(mesh.springs.size() + 3 * others.size() / 2));
   build_ordered_cloth(
-      g, mesh.points, mesh.quads,
+      g, mesh.points, all_quads && !mesh.bare_faces ? mesh.quads : quads,
       m.edges.diagonals ? MeshSprings::diagonals : MeshSprings::plain,
       m.stiffness);
-  if (m.edges.bend)
-    each_bend(mesh.quads,
-              [&](unsigned p, unsigned q, std::size_t, std::size_t) {
-                const double l = norm(mesh.points[p] - mesh.points[q]);
-                g.add_edge(g.node(p), g.node(q), {m.stiffness, l});
-              });
-  if (m.material.modulus) set_stiffness(g, mesh, m.edges, *m.material.modulus);
+  const auto add = [&](unsigned i, unsigned j) {
+    g.add_edge(g.node(i), g.node(j),
+               {m.stiffness, norm(mesh.points[i] - mesh.points[j])});
+  };
+  for (const Quad& q : others)
+    each_spring(q, false, [&](unsigned i, unsigned j, double) { add(i, j); });
+  if (!mesh.bare_faces) {
+    if (m.edges.bend)
+      each_bend(mesh.quads, [&](unsigned p, unsigned q, std::size_t,
+                                std::size_t) { add(p, q); });
+    if (m.material.modulus)
+      set_stiffness(g, mesh, m.edges, *m.material.modulus);
+  }
+  add_listed(g, mesh, m);
+  for (unsigned i = 0; i < mesh.masses.size(); ++i)
+    g.node(i).value().mass = mesh.masses[i];
   if (m.material.density) set_masses(g, mesh, *m.material.density);
   for (const Region& r : m.regions) change_region(g, r);
+  const auto held = is_held(m, mesh);
   for (unsigned i = 0; i < mesh.velocities.size(); ++i)
-    if (!is_held(m, mesh.points[i])) g.node(i).value().vel = mesh.velocities[i];
+    if (!held[i]) g.node(i).value().vel = mesh.velocities[i];
 }
 
 std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {
@@ -216,8 +317,8 @@ std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {
   });
 }
 
-PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built) {
-  PointsAndQuads left;
+Net mesh_left(const Cloth& g, const BuiltMesh& built) {
+  Net left;
   std::vector<unsigned> number(built.ids.size());
   for (unsigned i = 0; i < number.size(); ++i) {
     if (!arrays(g).node_in_use(built.ids[i])) continue;
@@ -232,8 +333,7 @@ PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built) {
   return left;
 }
 
-CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
-                        const Cloth& g) {
+CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   CombinedForces::List forces;
   if (m.gravity != 0)
     forces.push_back(std::make_shared<GravityForce>(m.gravity));
@@ -250,22 +350,33 @@ CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
   return CombinedForces(std::move(forces));
 }
 
-std::vector<HeldNodes> held_of(const Model& m, const Cloth& g) {
+std::vector<HeldNodes> held_of(const Model& m, const Net& net, const Cloth& g) {
   std::vector<HeldNodes> all;
-  for (const Pin& pin : m.pins) {
+  for (const auto& points : points_held(m, net)) {
+    const std::size_t k = all.size();
     HeldNodes& held = all.emplace_back();
-    held.motion = pin.motion;
-    for (Node n : g.nodes())
-      if (pin.holds(n.position())) held.nodes.push_back({n.id(), n.position()});
+    for (unsigned i : points)
+      held.nodes.push_back({g.node(i).id(), net.points[i]});
     std::ranges::sort(held.nodes, {}, &HeldNodes::Held::id);
-    if (held.nodes.empty() && !m.is_assignment())
-      throw SceneError("pin", '"' + to_words(pin) + "\" holds no node");
+    if (k == m.pins.size()) break;  // those that the net holds
+    held.motion = m.pins[k].motion;
+    if (held.nodes.empty() && !m.is_assignment()) {
+      const auto [i, distance] = nearest(m.pins[k], net);
+      throw SceneError("pin",
+                       '"' + to_words(m.pins[k]) + "\" holds no node: " +
+                           (std::isfinite(distance)
+                                ? "the nearest is node " + std::to_string(i) +
+                                      " at " + short_text(net.points[i])
+                                : "nodes are 0 to " +
+                                      std::to_string(net.points.size() - 1)));
+    }
   }
   return all;
 }
 
-CombinedConstraints constraint_of(const Model& m, const Cloth& g) {
-  CombinedConstraints all = constraint_of(m, g, held_of(m, g));
+CombinedConstraints constraint_of(const Model& m, const Net& net,
+                                  const Cloth& g) {
+  CombinedConstraints all = constraint_of(m, g, held_of(m, net, g));
   if (!m.self_collision) return all;
   const double thickness = m.self_collision->thickness;
   if (const double least = nearest_unconnected(g, thickness); least < thickness)
@@ -306,7 +417,7 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
 
 Recipe recipe_of(const Model& m) { return recipe_of(m, mesh_of(m)); }
 
-Recipe recipe_of(const Model& m, PointsAndQuads mesh) {
+Recipe recipe_of(const Model& m, Net mesh) {
   auto built = std::make_shared<BuiltMesh>(BuiltMesh{std::move(mesh), {}, {}});
   Recipe r;
   r.name = m.name;
@@ -321,8 +432,10 @@ Recipe recipe_of(const Model& m, PointsAndQuads mesh) {
     built->force = force_of(m, built->mesh, g);
     return *built->force;
   };
-  r.constraint = [m](const Cloth& g) { return constraint_of(m, g); };
-  r.held = [m](const Cloth& g) { return held_of(m, g); };
+  r.constraint = [m, built](const Cloth& g) {
+    return constraint_of(m, built->mesh, g);
+  };
+  r.held = [m, built](const Cloth& g) { return held_of(m, built->mesh, g); };
   r.holding = [m](const Cloth& g, const std::vector<HeldNodes>& held) {
     return constraint_of(m, g, held);
   };

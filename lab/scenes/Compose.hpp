@@ -23,7 +23,7 @@ struct Obstacle {
 /** The mesh that a cloth was built from, the ids of the nodes of its points,
  * and the forces on the cloth. */
 struct BuiltMesh {
-  PointsAndQuads mesh;
+  Net mesh;
   std::vector<unsigned> ids;
   std::optional<CombinedForces> force;
 };
@@ -35,7 +35,7 @@ std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built);
 /** The mesh that is left: points and velocities of the nodes that @a g still
  * has, in the order of the mesh, and quads_left(). A cloth built from it has
  * all springs of these quads, at their rest lengths.  O(points + quads) */
-PointsAndQuads mesh_left(const Cloth& g, const BuiltMesh& built);
+Net mesh_left(const Cloth& g, const BuiltMesh& built);
 
 /** The nodes that one pin holds or moves, by their ids. */
 struct HeldNodes {
@@ -70,42 +70,50 @@ struct Recipe {
 /** The mesh of @a m: from its files, or of its sheets in their order. On a
  * sheet the index of the points grows along v first, as in grid_points().
  * Throws InputError */
-PointsAndQuads mesh_of(const Model& m);
+Net mesh_of(const Model& m);
 
-/** True if a pin of @a m holds or moves the node that starts at @a start. */
-bool is_held(const Model& m, const Point& start);
+/** The nodes of @a net that each pin of @a m holds or moves, by index, then
+ * those that the net holds itself. If no node is where a pin says, it holds the
+ * nearest ones within 1e-6 of the size of the net: its numbers were rounded.
+ * O(points pins) */
+std::vector<std::vector<unsigned>> points_held(const Model& m, const Net& net);
+/** For each node of @a net, whether points_held() has it. */
+std::vector<char> is_held(const Model& m, const Net& net);
 
-/** The shortest side of a quad in the initial cloth of @a m [m]. */
+/** The shortest side of a face in the initial cloth of @a m [m]. */
 double shortest_side(const Model& m);
 
 /** Build the cloth of @a m in @a g.  @param mesh mesh_of(m)
- * With a density, a node has a quarter of the mass of each quad at it. With a
- * modulus Y, a spring stands for the strip of cloth beside it: in a grid of
- * squares K = Y, and Y/2 in the sides along its boundary. The factors of the
- * regions are applied last. Nodes have the velocities of the mesh, but held
- * nodes are at rest.
- * @pre g.size() == 0
- * Throws SceneError: a node without mass, a region that changes nothing
- * Complexity: O(points + quads log quads) */
-void build_model(Cloth& g, const Model& m, const PointsAndQuads& mesh);
+ * With a density, a node has a quarter of the mass of each quad at it, a third
+ * of each triangle. With a modulus Y, a spring stands for the strip of cloth
+ * beside it: in a grid of squares K = Y, and Y/2 in the sides along its
+ * boundary. The factors of the regions are applied last. Nodes have the
+ * velocities of the mesh, but held nodes are at rest.
+ * @pre g.size() == 0; check(mesh)
+ * Throws SceneError: a node without mass, a spring without K, a region that
+ * changes nothing
+ * Complexity: O(points + quads log quads + springs) */
+void build_model(Cloth& g, const Model& m, const Net& mesh);
 
 /** The forces of @a m on @a g: springs, and gravity and drag unless they are 0.
  * Drag by area is distributed over the nodes like mass by density: a quarter of
  * that of each quad at the node. So with both, c/m is the same at all nodes.
  * @pre @a g was just built from @a mesh  O(points + quads) */
-CombinedForces force_of(const Model& m, const PointsAndQuads& mesh,
-                        const Cloth& g);
+CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g);
 
-/** The constraints of @a m on @a g, in this order: tearing, obstacles, pins. At
- * a node the last one wins. Self-collision repeats all until none is violated.
+/** The constraints of @a m on the cloth @a g of @a net, in this order: tearing,
+ * obstacles, pins. At a node the last one wins. Self-collision repeats all
+ * until none is violated.
  * @pre @a g was just built
  * Throws SceneError: a pin that holds no node, except the assignment's; a
  * thickness above the initial distance of two unconnected nodes. */
-CombinedConstraints constraint_of(const Model& m, const Cloth& g);
+CombinedConstraints constraint_of(const Model& m, const Net& net,
+                                  const Cloth& g);
 
-/** The nodes of @a g that the pins of @a m hold.  @pre @a g is as it was built
+/** The nodes of points_held(), by the pins of @a m, then those of the net.
+ * @pre @a g was just built
  * Throws SceneError: a pin that holds no node */
-std::vector<HeldNodes> held_of(const Model& m, const Cloth& g);
+std::vector<HeldNodes> held_of(const Model& m, const Net& net, const Cloth& g);
 /** constraint_of() with @a held instead of the pins of @a m. Removed nodes are
  * skipped. No positions of @a g are used, so it may be called at any time. */
 CombinedConstraints constraint_of(const Model& m, const Cloth& g,
@@ -113,7 +121,8 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
 
 /** The recipe of @a m.  Throws InputError, SceneError; so do its functions. */
 Recipe recipe_of(const Model& m);
-/** The same from @a mesh, which is mesh_of(m). */
-Recipe recipe_of(const Model& m, PointsAndQuads mesh);
+/** The same from @a mesh: mesh_of(m), or any other net, for example one in
+ * memory. Then @a m may have no sheets and no files.  @pre check(mesh) */
+Recipe recipe_of(const Model& m, Net mesh);
 
 }  // namespace lab

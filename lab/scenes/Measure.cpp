@@ -37,7 +37,8 @@ Point position_on(const Cloth& g, const Sheet& sheet, unsigned first, double s,
                  j = std::min(unsigned(b), m - 2);
   const double p = a - i, q = b - j;
   auto at = [&](unsigned di, unsigned dj) {
-    return g.node(first + (i + di) * m + j + dj).position();
+    return g.node(first + (i + (n > 1 ? di : 0)) * m + j + (m > 1 ? dj : 0))
+        .position();
   };
   return (1 - p) * ((1 - q) * at(0, 0) + q * at(0, 1)) +
          p * ((1 - q) * at(1, 0) + q * at(1, 1));
@@ -165,7 +166,7 @@ Answer pin_force(const Measured& now, const Measure& what) {
   bool some = false;
   for (const HeldNodes& h : *now.held)
     for (const auto& [id, place] : h.nodes) {
-      if (!what.pin.holds(place)) continue;
+      if (what.pin.distance(0, place) >= Pin::near) continue;
       some = true;
       if (arrays(g).node_in_use(id))
         sum += (*now.force)(arrays(g).node_with_id(id), now.time);

@@ -10,11 +10,11 @@
 
 namespace lab {
 
-PointsAndQuads parse_nodes(std::string_view text, const std::string& file) {
+Net parse_nodes(std::string_view text, const std::string& file) {
   const std::string three = "three finite coordinates 'x y z' [m]";
   const std::string six =
       "six finite numbers 'x y z vx vy vz' [m, m/s], as in the first line";
-  PointsAndQuads mesh;
+  Net mesh;
   std::size_t columns = 0;  // of all lines; 0: not known yet
   auto expected = [&] {
     return columns == 0   ? three + ", and three of a velocity [m/s] or none"
@@ -48,17 +48,17 @@ PointsAndQuads parse_nodes(std::string_view text, const std::string& file) {
   return mesh;
 }
 
-PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets) {
+Net load_mesh(const std::string& nodes, const std::string& tets) {
   const auto read = [](const std::string& file, const char* expected) {
     return mesh_detail::read_file(file, expected);
   };
-  PointsAndQuads mesh = parse_nodes(read(nodes, "a file of points"), nodes);
+  Net mesh = parse_nodes(read(nodes, "a file of points"), nodes);
   mesh.quads =
       parse_quads(read(tets, "a file of quads"), tets, mesh.points.size());
   return mesh;
 }
 
-void write_nodes(std::ostream& out, const PointsAndQuads& mesh) {
+void write_nodes(std::ostream& out, const Net& mesh) {
   auto write = [&out](const Point& p) {
     out << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y) << ' '
         << CME212::to_text(p.z);
@@ -70,7 +70,7 @@ void write_nodes(std::ostream& out, const PointsAndQuads& mesh) {
   }
 }
 
-void write_quads(std::ostream& out, const PointsAndQuads& mesh) {
+void write_quads(std::ostream& out, const Net& mesh) {
   for (const Quad& q : mesh.quads)
     out << q[0] << ' ' << q[1] << ' ' << q[2] << ' ' << q[3] << '\n';
 }

@@ -6,33 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "CME212/Mesh.hpp"
+#include "lab/scenes/Net.hpp"
 
 namespace lab {
-
-/** Points and quads: what a cloth is built from. */
-struct PointsAndQuads {
-  std::vector<Point> points;  ///< [m]
-  std::vector<Quad> quads;
-  /** Velocities of the points at t = 0 [m/s]; empty: at rest. */
-  std::vector<Point> velocities = {};
-};
 
 /** The points of a .nodes file, and their velocities if it has them: "x y z"
  * [m] in each line, or "x y z vx vy vz" [m, m/s] in each.
  * @param text the whole file   @param file its name, for messages
  * @return a mesh without quads
  * Throws InputError: any other line, lines of both kinds, or no line. */
-PointsAndQuads parse_nodes(std::string_view text, const std::string& file);
+Net parse_nodes(std::string_view text, const std::string& file);
 
 /** The mesh in the files @a nodes and @a tets.
  * Throws InputError, also if one can't be read. */
-PointsAndQuads load_mesh(const std::string& nodes, const std::string& tets);
+Net load_mesh(const std::string& nodes, const std::string& tets);
 
 /** Write the lines of a .nodes file, with velocities if @a mesh has them, and
  * of a .tets file. Reading them gives the same numbers. */
-void write_nodes(std::ostream& out, const PointsAndQuads& mesh);
-void write_quads(std::ostream& out, const PointsAndQuads& mesh);
+void write_nodes(std::ostream& out, const Net& mesh);
+void write_quads(std::ostream& out, const Net& mesh);
 
 /** The .tets file that belongs to the file of points @a nodes: A.tets to
  * A.nodes, else A.tets to A; "" to a pipe or a device. */

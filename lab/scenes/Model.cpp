@@ -12,23 +12,20 @@ Point Motion::velocity_at(double t) const {
   return t < until ? velocity : Point();
 }
 
-namespace {
-constexpr double near = 1e-9;  // [m]
-}
-
 bool Box::holds(const Point& p) const {
   auto within = [](double a, double b, double x) {
-    return std::min(a, b) - near < x && x < std::max(a, b) + near;
+    return std::min(a, b) - Pin::near < x && x < std::max(a, b) + Pin::near;
   };
   return within(from.x, to.x, p.x) && within(from.y, to.y, p.y) &&
          within(from.z, to.z, p.z);
 }
 
-bool Pin::holds(const Point& p) const {
-  auto is = [](const std::optional<double>& wanted, double a) {
-    return !wanted || std::abs(*wanted - a) < near;
-  };
-  return is(x, p.x) && is(y, p.y) && is(z, p.z);
+double Pin::distance(unsigned i, const Point& p) const {
+  double d = node && *node != i ? no_limit : 0;
+  const std::optional<double> wanted[] = {x, y, z};
+  for (int k : {0, 1, 2})
+    if (wanted[k]) d = std::max(d, std::abs(*wanted[k] - p[k]));
+  return d;
 }
 
 const MethodEntry* default_method() { return &table::symplectic_euler; }

@@ -76,7 +76,7 @@ struct Motion {
 struct Sheet {
   Point at = Point();                            ///< a corner [m]
   Point u = Point(1, 0, 0), v = Point(0, 1, 0);  ///< two sides [m]
-  std::array<unsigned, 2> nodes = {20, 20};      ///< along u and v, >= 2
+  std::array<unsigned, 2> nodes = {20, 20};      ///< along u and v, >= 1
   Point velocity = Point();  ///< of all nodes, at t = 0 [m/s]
   bool operator==(const Sheet&) const = default;
 };
@@ -100,12 +100,14 @@ struct Region {
 };
 
 /** Holds or moves the nodes whose initial positions have the given coordinates
- * [m]; at least one is given. */
+ * [m], or one node by its index; at least one of these is given. */
 struct Pin {
-  std::optional<double> x, y, z;
+  std::optional<double> x, y, z, node;
   Motion motion;
-  /** True if it holds a node that starts at @a p, to 1e-9 m. */
-  bool holds(const Point& p) const;
+  static constexpr double near = 1e-9;  ///< [m]
+  /** How far the start @a p of node @a i is from what it holds: the largest
+   * difference of a given coordinate [m]; infinity for another index. */
+  double distance(unsigned i, const Point& p) const;
   bool operator==(const Pin&) const = default;
 };
 

@@ -15,21 +15,20 @@ namespace lab {
 namespace {
 
 using CME212::count_of;
-using CME212::short_text;
+using CME212::short_text, lab::short_text;
 using Triangle = std::array<Point, 3>;
 
 const char* it_or_them(std::size_t n) { return n == 1 ? "it" : "them"; }
 
 /** The option that makes @a b, with its default values. */
 std::string name_of(const std::string& option, const Ball& b) {
-  const Point& at = b.center;
-  return "--" + option + " \"at " + short_text(at.x) + ' ' + short_text(at.y) +
-         ' ' + short_text(at.z) + " radius " + short_text(b.radius) + '"';
+  return "--" + option + " \"at " + short_text(b.center) + " radius " +
+         short_text(b.radius) + '"';
 }
 
 /** @a q as two triangles, divided by its shorter diagonal. Corner c has the
  * neighbors c ^ 1 and c ^ 2. */
-std::array<Triangle, 2> halves(const PointsAndQuads& mesh, const Quad& q) {
+std::array<Triangle, 2> halves(const Net& mesh, const Quad& q) {
   const auto p = [&](unsigned c) { return mesh.points[q[c]]; };
   if (norm(p(3) - p(0)) <= norm(p(2) - p(1)))
     return {{{p(0), p(3), p(1)}, {p(0), p(3), p(2)}}};
@@ -72,7 +71,7 @@ double distance(const Point& p, const Triangle& t) {
 
 class Finder {
  public:
-  Finder(const Model& m, const PointsAndQuads& mesh, const Cloth& g, double dt)
+  Finder(const Model& m, const Net& mesh, const Cloth& g, double dt)
       : m_(m), mesh_(mesh), g_(g), dt_(dt) {
     for (const Quad& q : mesh.quads) openings_.push_back(opening(mesh, q));
   }
@@ -99,7 +98,7 @@ class Finder {
 
  private:
   const Model& m_;
-  const PointsAndQuads& mesh_;
+  const Net& mesh_;
   const Cloth& g_;
   double dt_;
   std::vector<double> openings_;  // by quad [m]
@@ -152,9 +151,9 @@ class Finder {
 
   void nothing_held() {
     if (!m_.is_assignment()) return;
+    const auto held = points_held(m_, mesh_);
     for (const Pin& pin : m_.pins)
-      if (std::ranges::none_of(mesh_.points,
-                               [&](const Point& p) { return pin.holds(p); }))
+      if (held[std::size_t(&pin - &m_.pins[0])].empty())
         add("no node lies at " + to_words(pin) +
             ", which the assignment's scene pins; pin this cloth, for example "
             "by --pin \"x 0\"");
@@ -175,8 +174,7 @@ class Finder {
         (n == 1 ? " starts" : " start") + " below --plane \"" + to_words(w) +
         "\", up to " + short_text(deepest) + " m: the first step moves " +
         it_or_them(n) + " onto it; to avoid that, put the plane at " +
-        short_text(lower.at.x) + ' ' + short_text(lower.at.y) + ' ' +
-        short_text(lower.at.z));
+        short_text(lower.at));
   }
 
   /** Where the first step puts @a p. */
@@ -285,12 +283,12 @@ class Finder {
 
 }  // namespace
 
-double opening(const PointsAndQuads& mesh, const Quad& q) {
+double opening(const Net& mesh, const Quad& q) {
   const auto [s, t] = halves(mesh, q);
   return std::max(opening(s), opening(t));
 }
 
-std::vector<std::string> warnings(const Model& m, const PointsAndQuads& mesh,
+std::vector<std::string> warnings(const Model& m, const Net& mesh,
                                   const Cloth& g, double dt) {
   return Finder(m, mesh, g, dt).all();
 }

@@ -11,7 +11,7 @@ namespace lab {
 /** The radius [m] of the opening between the nodes of a quad: of the largest
  * ball around a point of the quad that contains none of them. The quad is
  * folded along its shorter diagonal. A square of side L has L/sqrt(2). */
-double opening(const PointsAndQuads& mesh, const Quad& q);
+double opening(const Net& mesh, const Quad& q);
 
 /** The faults of a scene: a sentence each, with numbers and a remedy.
  *  - nodes in no quad; springs of length 0
@@ -24,7 +24,7 @@ double opening(const PointsAndQuads& mesh, const Quad& q);
  * @param mesh that of mesh_of(m)   @param g the cloth of @a m at t = 0
  * @param dt the first step [s]
  * Complexity: O((points + quads + springs) parts) */
-std::vector<std::string> warnings(const Model& m, const PointsAndQuads& mesh,
+std::vector<std::string> warnings(const Model& m, const Net& mesh,
                                   const Cloth& g, double dt);
 
 }  // namespace lab

@@ -61,6 +61,7 @@ Words words_of(Pin& p) {
           {{"x", &p.x, any, some},
            {"y", &p.y, any, some},
            {"z", &p.z, any, some},
+           {"node", &p.node, not_negative, some},
            velocity(p.motion),
            until(p.motion)}};
 }
@@ -141,7 +142,7 @@ void each_number(const Word& w, Use use) {
 /** The condition that the number @a a of a word violates; or null. */
 const char* unmet(const Word& w, double a) {
   if (std::holds_alternative<std::array<unsigned, 2>*>(w.member))
-    return a >= 2 && a <= 10000 && a == std::floor(a) ? nullptr : "2 to 10000";
+    return a >= 1 && a <= 10000 && a == std::floor(a) ? nullptr : "1 to 10000";
   if (w.range == positive && !(a > 0)) return "more than 0";
   return w.range == not_negative && !(a >= 0) ? "at least 0" : nullptr;
 }
@@ -322,6 +323,10 @@ std::string name_of(const Measure& m) {
   const char* over[] = {"", "max ", "min "};
   return over[m.over] + (m.over ? over_time(q) : q.name) +
          (words.empty() ? "" : ' ' + words);
+}
+
+std::string short_text(const Point& p) {
+  return short_text(p.x) + ' ' + short_text(p.y) + ' ' + short_text(p.z);
 }
 
 std::string to_words(const TimeStep& s) {

@@ -78,6 +78,9 @@ std::string to_words(Part part) {
   return written(words_of(part), words_of(usual));
 }
 
+/** The coordinates of @a p, three digits each. */
+std::string short_text(const Point& p);
+
 /** "[max|min] NAME [words]", NAME as in Measure.hpp.
  * Throws SceneError: anything else; no such method. */
 Measure read_measure(const std::string& text);
