@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Run the commands of the laboratory's pages, and of the teaching kit's: those
-# of course/0.md in a starter, on the program that the page shows.
+# of the course's pages in a starter (page 0) or a solution, on the programs that
+# the pages show.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit
 
@@ -13,15 +14,21 @@ done
 
 starter=$(mktemp -d)
 trap 'rm -rf "$starter"' EXIT
-in_starter() {
-  make -s starter OUT="$starter/it" && cd "$starter/it" &&
-    cp "$OLDPWD/tools/check_commands.sh" tools &&
-    sed -n '/^```cpp$/,/^```$/p' pages/0.md | grep -v '^```' >lost.cpp &&
-    env -u CXXFLAGS tools/check_commands.sh pages/0.md  # -g1 hides variables
+in_copy() {  # starter|solution PAGE, whose program begins with its name
+  local name
+  name=$(sed -n 's|^// \([a-z]*\.cpp\).*|\1|p' "course/$2.md")
+  [ -d "$starter/$1" ] || make -s "$1" OUT="$starter/$1" || return
+  cd "$starter/$1" && cp "$OLDPWD/tools/check_commands.sh" tools &&
+    sed -n '/^```cpp$/,/^```$/p' "pages/$2.md" | grep -v '^```' >"$name" &&
+    env -u CXXFLAGS tools/check_commands.sh "pages/$2.md"  # -g1 hides variables
 }
+for page in 3.2 5.1 6.2; do
+  echo "course/$page.md"
+  (in_copy solution "$page") || status=1
+done
 echo course/0.md
 if command -v gdb >/dev/null; then
-  (in_starter) || status=1
+  (in_copy starter 0) || status=1
 else
   echo "skipped: course/0.md: gdb is missing"
 fi

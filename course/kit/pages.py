@@ -22,7 +22,7 @@ import tasks
 
 COURSE = tasks.ROOT / "course"
 PLACE = re.compile(r"^<!-- tasks *(\S*) -->$", re.MULTILINE)
-LONGEST = 80  # lines of a section's page
+LONGEST = 108  # lines of a section's page
 LEVELS = ("guided", "open")
 GUIDED = re.compile(r"^<!-- guided -->\n(.*?)^<!-- end guided -->\n",
                     re.MULTILINE | re.DOTALL)

@@ -287,8 +287,8 @@ class Pages(unittest.TestCase):
                 (PAGE + self.LEVELS.replace("<!-- end guided -->\n", ""),
                  [no_end]),
                 (PAGE + self.LEVELS.replace("-->\nd\n", ""), [no_end]),
-                ("line\n" * 81, [
-                    "80: goes on to line 81, expected at most 80",
+                ("line\n" * 109, [
+                    "108: goes on to line 109, expected at most 108",
                     "1: has no place for tasks: <!-- tasks 3.1 -->"])):
             self.assertEqual(
                 list(pages.faults(text, COURSE.sections[0], COURSE)), faults)
