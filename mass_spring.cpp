@@ -9,27 +9,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "CME212/Energy.hpp"
 #include "CME212/SDLViewer.hpp"
 #include "mass_spring.hpp"
 
 /** The stages, at the end of sections 3.2, 4.2, 5.2, 6.2 and 7.2. */
 enum class Stage { problem1, diagonals, forces, constraints, tear };
 constexpr Stage stage = Stage::STAGE;  // a misspelt stage does not compile
-
-/** Kinetic and gravitational energy [J], and that of springs if @a springs. A
- * corner does not move, even if its velocity is not 0: it does not count. */
-double energy(const Cloth& g, bool springs = true) {
-  double sum = 0;
-  for (Node n : nodes(g)) {
-    sum += n.value().mass * grav * n.position().z;
-    if (!is_corner(n.position()))
-      sum += n.value().mass * normSq(n.value().vel) / 2;
-  }
-  if (springs)
-    for (Edge e : edges(g))
-      sum += e.value().K * std::pow(CME212::length(e) - e.value().L, 2) / 2;
-  return sum;
-}
 
 /** The time [s] > 0 that the argument called @a name holds as @a text. */
 double time_of(const char* text, const std::string& name) {
@@ -103,20 +89,19 @@ int main(int argc, char** argv) try {
     std::cout << e.what() << "; running without a window\n";
   }
 
-  // Springs hold no energy at first, so all other energy does not grow. If it
-  // does, by 100 times weight times size, that is divergence. (In a free fall
-  // the velocity is one step ahead of the position, hence the last term.)
-  double most = energy(g);  // [J]
-  for (Node n : nodes(g))
-    most += 100 * n.value().mass * grav *
-            (norm(n.position() - g.node(0).position()) + grav * dt * t_end);
+  // A corner does not move; nor does its kinetic energy count.
+  const auto energy = [&] {
+    return CME212::motion_energy(g, grav, is_corner).total();
+  };
+  const double most =
+      CME212::divergence_energy(g, energy(), grav, dt, t_end);  // [J]
   std::string failure;
   double next_line = 0;  // [s]
   CME212::Clock clock;
   // Returns false if the run has diverged, or the window was closed.
   const auto draw = [&](double t) {
     const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
-    if (!(energy(g, false) <= most)) {  // also if it is NaN
+    if (!(energy() <= most)) {  // also if it is NaN
       failure = "diverged: at t = " + CME212::short_text(t) +
                 " s it gains energy from nothing; './cloth " + argv[1] + ' ' +
                 argv[2] + " --dt auto' finds a stable step";
@@ -125,7 +110,9 @@ int main(int argc, char** argv) try {
       return false;
     }
     if (t > next_line - dt / 2) {
-      std::cout << "t = " << t << " s, energy " << energy(g) << " J, "
+      const double elastic =
+          CME212::elastic_energy(g, [](Edge e) { return e.value(); });
+      std::cout << "t = " << t << " s, energy " << energy() + elastic << " J, "
                 << g.num_nodes() << " nodes" << std::endl;
       next_line += t_end / 10;
     }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "CME212/Energy.hpp"
 #include "CME212/PageData.hpp"
 #include "CME212/viewer/Faces.hpp"
 #include "mass_spring.hpp"
@@ -54,10 +55,7 @@ class Run {
     if (stage != problem1) length_ = 0;  // each has its own
     make_step(stage);
     // As in mass_spring.cpp; five seconds are its time.
-    bound_ = energy(false);
-    for (Node n : nodes(g))
-      bound_ += 100 * n.value().mass * grav *
-                (norm(n.position() - g.node(0).position()) + grav * dt * 5);
+    bound_ = CME212::divergence_energy(g, energies().total(), grav, dt, 5);
   }
   Run(const Run&) = delete;
 
@@ -67,7 +65,7 @@ class Run {
     t_ = step_(t_);
     follow();
     ++steps_;
-    if (gain_at_ < 0 && !(energy(false) <= bound_)) gain_at_ = t_;
+    if (gain_at_ < 0 && !(energies().total() <= bound_)) gain_at_ = t_;
     for (Node n : nodes(g))
       if (!(norm_inf(n.position()) < far)) failed_ = int(slots_[n.index()]);
     return t_;
@@ -76,10 +74,9 @@ class Run {
    * the time [s] at which it gained energy from nothing or -1, the node that
    * is too far away or -1. */
   std::array<double, 9> readings() {
-    energy(true);
-    const auto& [kinetic, elastic, height] = energies_;
+    const auto [kinetic, none, height] = energies();
     return {kinetic,
-            elastic,
+            CME212::elastic_energy(g, [this](Edge e) { return spring(e); }),
             height,
             double(num_nodes()),
             double(num_edges()),
@@ -95,13 +92,17 @@ class Run {
   }
   void move_hand(const Point& target) { target_ = target; }
   void release() { hand_ = -1; }
-  /** @return whether the student's remove_edge() removed it */
-  bool cut(unsigned slot, unsigned other) {
+  /** Remove the edges between two rays.
+   * @return how many of them the student's remove_edge() left */
+  unsigned cut(const CME212::Ray& from, const CME212::Ray& to) {
+    std::vector<CME212::Ends> crossed;
+    for (Edge e : edges(g))
+      if (CME212::meets(e.node1().position(), e.node2().position(), from, to))
+        crossed.push_back(
+            {unsigned(e.node1().index()), unsigned(e.node2().index())});
     const unsigned before = num_edges();
-    const int i = index_of(slot), j = index_of(other);
-    if (i < 0 || j < 0) return false;
-    cut_edge(g, g.node(unsigned(i)), g.node(unsigned(j)));
-    return num_edges() < before;
+    for (const auto [i, j] : crossed) cut_edge(g, g.node(i), g.node(j));
+    return unsigned(crossed.size()) - (before - num_edges());
   }
 
   unsigned slots() const { return unsigned(points_.size()); }
@@ -115,7 +116,7 @@ class Run {
     CME212::set_page_points(
         drawn_, points_.size(), nodes(g), edges(g),
         [this](const Node& n) { return slots_[n.index()]; },
-        [this](Edge e) { return length_ > 0 ? length_ : e.value().L; });
+        [this](Edge e) { return spring(e).L; });
     return drawn_;
   }
   /** Counts up when mesh() would be another one. */
@@ -201,26 +202,21 @@ class Run {
   /** An eighth of the springs' K, at most twice the weight of the cloth. */
   Point pull(Node n) const {
     double K = 0;
-    for (Edge e : edges(n)) K += length_ > 0 ? 100 : e.value().K;
+    for (Edge e : edges(n)) K += spring(e).K;
     const double most = 2 * grav;  // the cloth has 1 kg
     return CME212::hand_pull(K / 8, target_ - n.position(), most);
   }
 
-  /** Kinetic and potential energy [J], and that of springs if @a springs. */
-  double energy(bool springs) {
-    auto& [kinetic, elastic, height] = energies_ = {};
-    for (Node n : nodes(g)) {
-      height += n.value().mass * grav * n.position().z;
-      if (!is_corner(n.position()))
-        kinetic += n.value().mass * normSq(n.value().vel) / 2;
-    }
-    if (springs)
-      for (Edge e : edges(g)) {
-        const double K = length_ > 0 ? 100 : e.value().K;
-        const double L = length_ > 0 ? length_ : e.value().L;
-        elastic += K * std::pow(CME212::length(e) - L, 2) / 2;
-      }
-    return kinetic + elastic + height;
+  struct Spring {
+    double K, L;
+  };
+  Spring spring(Edge e) const {
+    if (length_ > 0) return {100, length_};
+    return {double(e.value().K), double(e.value().L)};
+  }
+  /** Without that of springs. */
+  CME212::Energies energies() const {
+    return CME212::motion_energy(g, grav, is_corner);
   }
 
   int index_of(unsigned slot) const {
@@ -277,7 +273,6 @@ class Run {
   std::vector<Quad> quads_;
   std::vector<unsigned> slots_, mesh_;  // slots_ by index
   std::vector<float> drawn_;
-  std::array<double, 3> energies_ = {};
   std::array<unsigned, 2> counts_ = {};
   double version_ = 0;
   std::function<double(double)> step_;
@@ -309,7 +304,13 @@ void page_grab(unsigned slot, double x, double y, double z) {
 }
 void page_move(double x, double y, double z) { run->move_hand(Point(x, y, z)); }
 void page_release() { run->release(); }
-int page_cut(unsigned slot, unsigned other) { return run->cut(slot, other); }
+/** @param a, b the near and far end of a ray; c, d of another one */
+unsigned page_stroke(double ax, double ay, double az, double bx, double by,
+                     double bz, double cx, double cy, double cz, double dx,
+                     double dy, double dz) {
+  return run->cut({Point(ax, ay, az), Point(bx, by, bz)},
+                  {Point(cx, cy, cz), Point(dx, dy, dz)});
+}
 
 unsigned page_nodes() { return unsigned(run->places().size()); }
 unsigned page_slots(unsigned) { return run ? run->slots() : 0; }

@@ -2,10 +2,10 @@
 // Mouse, fingers and keys over the picture: they grab, cut, pin and turn.
 
 class Hand {
-  // @param page has view, sides, ask(...words), changed()
+  // @param page a Picture
   constructor(page, canvas) {
     this.page = page, this.canvas = canvas;
-    this.tool = 'grab', this.pointers = new Map();
+    this.pointers = new Map();
     this.grabbed = null;   // {node, at, target}: at as it was grabbed
     this.moved = false;    // the target, since it was last told
     this.cross = [0, 0];   // of the keyboard, in pane 0, each -1 to 1
@@ -101,7 +101,7 @@ class Hand {
       return;
     }
     const tool = e.button === 2 || e.shiftKey ? 'cut'
-      : e.ctrlKey || e.metaKey ? 'pin' : this.tool;
+      : e.ctrlKey || e.metaKey ? 'pin' : this.page.tool;
     const reach = e.pointerType === 'touch' ? 34 : 22;
     const node = this.nodeAt(place, reach);
     if (tool === 'cut') {

@@ -2,8 +2,8 @@
 // make web: the controls of a page with one cloth.
 
 const $ = id => document.getElementById(id);
-const {Plot, shortNumber, stages, byPower, showSlider, makeSlider, onKeys,
-  fillTable, drawEnergy} = figure;
+const {Plot, shortNumber, stages, byPower, showSlider, makeSlider, fillTable,
+  drawEnergy} = figure;
 const {stage} = document.body.dataset;
 const page = figure($('stage'), {wasm: ['cloth'], whole: true,
   stage: stages[stage] ? stage : 'problem1'});
@@ -13,35 +13,30 @@ for (const [id, slider, use] of [
   ['dt', {...byPower(1e-4, 1e-2, 2), show: a => `${shortNumber(1e3 * a)} ms`},
     dt => page.setStep(dt)],
   ['speed', {...byPower(0.01, 1, 2), show: a => `${shortNumber(a)} s/s`},
-    speed => { page.speed = speed; }]]) {
-  makeSlider($(id), slider, use);
-  showSlider($(id), slider, page[id]);
-}
+    speed => { page.speed = speed; }]])
+  showSlider(makeSlider(id, slider, use), slider, page[id]);
 
-function restart() { plot.clear(), page.restart(); }
 $('stages').append(...Object.entries(stages).map(
   ([name, {title}]) => new Option(title, name)));
 $('stages').value = page.stage;
-$('stages').onchange = e => { page.stage = e.target.value, restart(); };
-$('grid').onchange = e => { page.grid = Number(e.target.value), restart(); };
-page.on('.restart', restart);
-onKeys({' ': () => page.find('.play').click(), r: restart,
-  n: () => page.oneStep()});
+$('stages').onchange = e => { page.stage = e.target.value, page.restart(); };
+$('grid').onchange = e => {
+  page.grid = Number(e.target.value), page.restart();
+};
 
-let drawnAt = 0;
-page.onframe = cloth => {
-  const r = cloth.readings;
+page.onstart = () => plot.clear();
+page.onframe = ({stages: count, readings: r}) => {
   // Code of section 5 and later that is not there yet.
-  if (cloth.stages)
+  if (count)
     [...$('stages').options].forEach((option, k) => {
-      option.disabled = k >= cloth.stages;
+      option.disabled = k >= count;
     });
-  if (!r || !page.style) return;
-  plot.add(r.time, [r.kinetic, r.elastic, r.height,
+  if (r) plot.add(r.time, [r.kinetic, r.elastic, r.height,
     r.kinetic + r.elastic + r.height]);
-  const now = performance.now();
-  if (page.playing && !cloth.failure && now - drawnAt < 250) return;
-  drawnAt = now;
+};
+page.showNumbers = () => {
+  const r = page.cloths[0].readings;
+  if (!r) return;
   drawEnergy(plot, page.style);
   fillTable($('numbers'), [['time', `${r.time.toFixed(3)} s`],
     ['steps', r.steps], ['nodes, springs', `${r.nodes}, ${r.edges}`],

@@ -103,11 +103,11 @@ function ticks(low, high, least) {
   return all;
 }
 
-// At most four digits.
-function shortNumber(a) {
+// Three digits are enough for a reader.
+function shortNumber(a, digits = 3) {
   if (a === null || a === undefined || Number.isNaN(a)) return 'none';
   if (a === 0) return '0';
   const size = Math.abs(a);
-  if (size >= 1e5 || size < 1e-3) return a.toExponential(2);
-  return String(Number(a.toPrecision(4)));
+  if (size >= 1e5 || size < 1e-3) return a.toExponential(digits - 1);
+  return String(Number(a.toPrecision(digits)));
 }

@@ -105,9 +105,9 @@ def same_bits_as_the_native_program(b):
     for name, mistake, stage in BITS:
         open_figures(b, f"{{wasm: ['{name}'], stage: '{stage}'}}")
         b.wait("all[0].cloths[0].ready")
-        b.value("all[0].play(false), all[0].start()")
+        b.value("all[0].setPlaying(false), all[0].start()")
         b.wait("all[0].cloths[0].readings?.steps === 0 &&"
-               "!all[0].cloths[0].waiting")
+               "!all[0].isWaiting")
         b.value("all[0].cloths[0].post('positions', 500)")
         b.wait("all[0].cloths[0].all")
         ours = b.bytes_of("all[0].cloths[0].all.all")
@@ -146,7 +146,7 @@ def the_hand_pulls_and_cuts(b):
     open_page(b, tree("solution", "solution"))
     choose_stage(b, "forces", 0.01)
     b.click(".play")
-    b.wait("!page.cloths[0].waiting")
+    b.wait("!page.isWaiting")
 
     def place(node):
         return b.value(f"""(() => {{
@@ -160,14 +160,14 @@ def the_hand_pulls_and_cuts(b):
     b.mouse("mousePressed", x, y)
     b.wait("page.hand.grabbed")
     before = b.value(height)
-    b.value("page.play(true)")
+    b.value("page.setPlaying(true)")
     b.mouse("mouseMoved", x, y - 150)
     b.wait(f"{height} > {before} + 0.1")
     b.mouse("mouseReleased", x, y - 150)
-    b.value("page.play(false)")
-    b.wait("!page.cloths[0].waiting")
+    b.value("page.setPlaying(false)")
+    b.wait("!page.isWaiting")
     edges = b.value("page.cloths[0].readings.edges")
-    b.click(".cut")
+    b.click("[data-tool=cut]")
     b.stroke(place(300), place(324))
     b.wait(f"page.cloths[0].readings.edges < {edges} - 20")
     assert b.value("page.cloths[0].readings.nodes") == 625
@@ -211,7 +211,7 @@ def figures_run_on_one_clock_and_only_where_they_are_seen(b):
     two = "{wasm: ['right', 'sign'], speed: 0.1, end: 0.3}"
     b.prefer(still=True)
     open_figures(b, two)
-    b.wait("all[0].sides.length && !all[0].cloths.some(c => c.waiting)")
+    b.wait("all[0].sides.length && !all[0].isWaiting")
     assert not b.value("all[0].playing || all[0].clock")
     b.prefer()
     open_figures(b, two, "{wasm: ['right'], stage: 'tear'}",

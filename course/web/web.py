@@ -23,7 +23,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 ROOM = pathlib.Path(__file__).resolve().parent
 SOURCES = ("cloth.cpp", "thrown.cpp")
@@ -108,6 +108,20 @@ def script() -> str:
                         "figure.js") + "\n})();\n")
 
 
+def inlined(page: pathlib.Path, made: Mapping[str, str]) -> str:
+    """A page with the text of each style and script that it names by href or
+    src (of scripts, several): of `made`, else of its folder. So it needs no
+    server: a browser lets a page that is opened as a file load no other."""
+    def text(names):
+        return "\n".join(made.get(name) or (page.parent / name).read_text()
+                         for name in names.split())
+    html = re.sub(r'<link rel="stylesheet" href="([^"]+)">',
+                  lambda found: f"<style>\n{text(found[1])}</style>",
+                  page.read_text())
+    return re.sub(r'<script([^>]*?)\s+src="([^"]+)"></script>', lambda found:
+                  f"<script{found[1]}>{text(found[2])}</script>", html)
+
+
 def write_page(out: str, stage: str) -> int:
     here = pathlib.Path.cwd()
     words = set(re.findall(r"\w+", "".join(
@@ -117,14 +131,10 @@ def write_page(out: str, stage: str) -> int:
     wasm = compiled(["."], ROOM / "cloth.cpp", f"-DWEB_STAGES={stages}")
     if wasm is None:
         return 1
-    html = (ROOM / "page.html").read_text().replace("STAGE", stage)
-    for place, content in (
-            ("look.css", f"<style>{(ROOM / 'look.css').read_text()}</style>"),
-            ("figure.js", f"<script>{script()}</script>"),
-            ("cloth.js", f"<script>figure.add('cloth', '{packed(wasm)}')"
-                         "</script>"),
-            ("page.js", f"<script>{(ROOM / 'page.js').read_text()}</script>")):
-        html = html.replace(f"<!-- {place} -->", content)
+    html = inlined(ROOM / "page.html", {
+        "figure.js": script(), "cloth.js":
+        f"figure.add('cloth', '{packed(wasm)}')"}).replace(
+        'data-stage="STAGE"', f'data-stage="{stage}"', 1)
     pathlib.Path(out).write_text(html)
     print(f"{out}: {len(html)} bytes; open it in a browser, or send it")
     return 0

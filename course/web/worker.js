@@ -82,15 +82,12 @@ const handlers = {
   },
   // One frame: until this time [s].
   frame(time) { advance(time, 12), frame(); },
-  // 'grab 17 0.1 0.2 0.3', 'cut 3 4 17 18', 'step 0.001' ...
+  // 'grab 17 0.1 0.2 0.3', 'set_step 0.001', 'stroke ...'
   ask(line) {
     const [name, ...values] = line.split(' ');
-    const numbers = values.map(Number);
     if (failure) return;
-    if (name !== 'cut') call(name, ...numbers);
-    for (let k = 0; name === 'cut' && k < numbers.length; k += 2)
-      if (call('cut', numbers[k], numbers[k + 1]) === 0)
-        postMessage({kind: 'uncut', run});
+    if (call(name, ...values.map(Number)) > 0)
+      postMessage({kind: 'uncut', run});
     if (broken) fail();
   },
   // For the test: after so many steps, all positions by index.

@@ -46,30 +46,6 @@ double distance(const Cloth& a, const Cloth& b) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/** Does the segment from @a p to @a q meet the surface between the rays @a a
- * and @a b, two triangles? A segment through a side that two triangles share
- * meets exactly one of them, as turns() gets each side in one direction. */
-bool meets(const Point& p, const Point& q, const Ray& a, const Ray& b) {
-  const auto volume = [](const Point& o, const Point& x, const Point& y,
-                         const Point& z) {
-    return dot(x - o, cross(y - o, z - o));
-  };
-  // Are p and q on both sides of a triangle?
-  const auto parts = [&](const Point& x, const Point& y, const Point& z) {
-    return (volume(p, x, y, z) > 0) != (volume(q, x, y, z) > 0);
-  };
-  // How the line through p and q turns about a side.
-  const auto turns = [&](const Point& x, const Point& y) {
-    return volume(p, q, x, y) > 0;
-  };
-  const bool first = turns(a.near, a.far), last = turns(b.near, b.far),
-             across = turns(a.near, b.far);
-  return (first != across && first == turns(a.far, b.far) &&
-          parts(a.near, a.far, b.far)) ||
-         (last != across && last == turns(a.near, b.near) &&
-          parts(a.near, b.far, b.near));
-}
-
 }  // namespace
 
 double dt_unit(const Scene& s, const MethodEntry& m) {

@@ -38,11 +38,7 @@ std::string request(const char* name, const Values&... values) {
   return (std::string(name) + ... + request_word(values));
 }
 
-/** The line behind a point of the screen, from the near plane to the far one
- * [m]. */
-struct Ray {
-  Point near, far;
-};
+using CME212::Ray;
 /** The edges of @a g that a stroke across the screen crosses. A ray that moves
  * from each of @a stroke to the next one sweeps a surface; these edges meet it.
  * O(edges * rays) */

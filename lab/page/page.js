@@ -1,26 +1,73 @@
 'use strict';
-// The page: its controls, its frames, and the thread that computes.
+// The page: its run, its controls, and the thread that computes.
 
 const $ = id => document.getElementById(id);
+const plots = {
+  energy: new Plot($('energy'), $('energy-title')),
+  distance: new Plot($('distance'), $('distance-title')),
+};
 
-const page = Object.assign(new Picture(), {
-  about: null,           // scenes and methods
-  settings: {scene: 'forces', side: 25, method: 'verlet', share: 0.5, rival: '',
-    rivalShare: 0.5, drag: 0.003},  // and the other parameters of the scene
-  speed: 1,              // simulated seconds a second, at most
-  playing: false, waiting: false, wanted: true,
-  readings: null, failed: false, calls: 0, why: '', cure: null,
-  beyond: null,          // the motion after a failure: its frames, since when
-  frames: 0, errors: [],
-  run: 0, asked: 0,      // runs and requests; the worker counts them, too
-
+class Laboratory extends FailurePicture {
+  constructor() {
+    super($('stage'), Object.keys(buttons), true);
+    Object.assign(this, {
+      about: null,           // scenes and methods
+      settings: {scene: 'forces', side: 25, method: 'verlet', share: 0.5,
+        rival: '', rivalShare: 0.5, drag: 0.003},  // and others of the scene
+      speed: 1,              // simulated seconds a second, at most
+      isWaiting: true, readings: null, calls: 0, frames: 0, errors: [],
+      run: 0, asked: 0,      // runs and requests; the worker counts them, too
+    });
+    this.find('.busy').setAttribute('role', 'status');
+    this.say('.busy', 'loading');
+    this.canvas.setAttribute('aria-describedby', 'keys');
+    this.use('grab');
+    // In a frame of another page: index.html?controls=none#scene=drape
+    if (new URLSearchParams(location.search).get('controls') === 'none')
+      document.body.className = 'bare';
+  }
+  async ready() {
+    this.worker = startThread($('worker').textContent, this, replies,
+      text => this.errors.push(text));
+    const bytes = await unpacked($('wasm').textContent);
+    this.worker.postMessage(['module', bytes], [bytes]);
+  }
   // A request of lab/live/Requests.cpp.
   ask(...words) {
     this.worker.postMessage(['ask', words.join(' ')]);
     ++this.asked, this.wanted = true;
-  },
-  sidesAt,
-});
+  }
+  start(lines = startLines(), end = 0) {
+    for (const plot of Object.values(plots)) plot.clear();
+    this.forget();
+    this.hand.release();
+    const {scene, side} = this.settings;
+    this.worker.postMessage(['start', {side, lines, end,
+      scene: this.about.scenes.findIndex(a => a.name === scene)}]);
+    ++this.run, this.isWaiting = true;
+    showControls();
+  }
+  get isRunning() { return this.playing && !this.failed; }
+  askFrames(passed) {
+    this.worker.postMessage(['frame', this.stepping ? -1
+      : this.isRunning ? Math.max(passed * this.speed, 1e-9) : 0]);
+    this.isWaiting = true;
+  }
+  showNumbers() { showNumbers(), showLimits(); }
+  // Look at the room that the scene names; else at the cloth, and below it.
+  frameScene() {
+    if (this.framed || !this.sides.length) return;
+    this.framed = true;
+    const all = [...this.room];
+    if (!all.length)
+      for (const i of this.sides[0].lines) {
+        const p = [...this.sides[0].points.subarray(4 * i, 4 * i + 3)];
+        all.push(p, Vec.add(p, [0, 0, -0.35]));
+      }
+    this.view.camera.lookAt(all);
+  }
+}
+const page = new Laboratory();
 
 // -------------------------------------------------------------------- Controls
 
@@ -57,10 +104,8 @@ function showControls() {
     `${m.sweeps === 1 ? '' : 's'} a step. Good for: ${m.goodFor}. Fails: ` +
     `${m.failsWhen}.`;
   $('side').disabled = scene().fails;
-  $('row-rivalShare').hidden = !s.rival;
+  $('rivalShare').parentElement.hidden = !s.rival;
   $('distance-figure').hidden = !s.rival;
-  $('stage').classList.toggle('two', !!s.rival);
-  $('play').textContent = page.playing ? 'Pause' : 'Play';
   showLimits();
   page.changed();
 }
@@ -86,17 +131,16 @@ function showLimits() {
     ['rivalShare', r && r.rival]]) {
     const share = page.settings[name];
     const beyond = !!run && run.safe !== null && share * run.unit > run.safe;
-    $(`row-${name}`).classList.toggle('beyond', beyond);
+    $(name).parentElement.classList.toggle('beyond', beyond);
   }
   if (!r) return;
   const {dt, safe, sharp, unit} = r.main;
-  const ms = a => `${shortNumber(1e3 * a)} ms`;
   setText($('limits'), safe === null
-    ? `dt = ${ms(dt)}. Without a limit: 1 is that of Verlet, ${ms(unit)}.`
+    ? `dt = ${inMs(dt)}. Without a limit: 1 is that of Verlet, ${inMs(unit)}.`
     : safe === 0
-      ? `dt = ${ms(dt)}. No step is stable: 1 is Verlet's limit, ${ms(unit)}.`
-      : `dt = ${ms(dt)}. Stable in any shape up to ${ms(safe)}` +
-        (sharp ? `, in this one up to ${ms(sharp)}.` : '.'));
+      ? `dt = ${inMs(dt)}. No step is stable: 1 is Verlet's limit, ${inMs(unit)}.`
+      : `dt = ${inMs(dt)}. Stable in any shape up to ${inMs(safe)}` +
+        (sharp ? `, in this one up to ${inMs(sharp)}.` : '.'));
 }
 
 // The request by which the run gets what a control shows.
@@ -115,27 +159,6 @@ function startLines() {
   return ['method', ...names, 'share', ...s.rival ? ['rival'] : []].map(
     name => [0, requestOf(name).join(' ')]);
 }
-function start(lines = startLines(), end = 0) {
-  for (const plot of Object.values(plots)) plot.clear();
-  forget();
-  page.hand.release();
-  const {scene, side} = page.settings;
-  page.worker.postMessage(['start', {side, lines, end,
-    scene: page.about.scenes.findIndex(a => a.name === scene)}]);
-  ++page.run, page.waiting = true;
-  showControls();
-}
-
-function setPlaying(on) {
-  page.playing = on, page.last = undefined;
-  $('play').textContent = on ? 'Pause' : 'Play';
-}
-// Play after a failure shows it again.
-function play() {
-  if (page.beyond) page.beyond.from = undefined, page.changed();
-  else if (page.failed) start(), setPlaying(true);
-  else setPlaying(!page.playing);
-}
 
 function loadScene(name) {
   const s = page.settings, failed = scene().fails;
@@ -144,18 +167,18 @@ function loadScene(name) {
     delete s[key];
   if (scene().fails) s.rival = '';
   else if (failed) s.method = 'verlet', s.share = 0.5;
-  start(), setPlaying(!isStill());
+  page.start(), page.setPlaying(!isStill());
 }
 
 // Change a setting. A failed run goes on from its last good state, if it can.
 function change(name, value) {
   page.settings[name] = value;
   if (page.broken) {
-    start(), setPlaying(true);
+    page.restart();
   } else if (name === 'rival' || name === 'rivalShare' && page.calls === 0) {
-    start();  // both from the same start
+    page.start();  // both from the same start
   } else {
-    goOn(), page.ask(...requestOf(name));
+    page.goOn(), page.ask(...requestOf(name));
     if (name === 'method') page.ask(...requestOf('share'));
   }
   showControls();
@@ -175,43 +198,19 @@ function makeControls() {
     $(name).append(...methods.map(m => new Option(m.name)));
   $('scene').onchange = e => loadScene(e.target.value);
   $('side').onchange = e => {
-    page.settings.side = Number(e.target.value), start();
+    page.settings.side = Number(e.target.value), page.start();
   };
   for (const name of ['method', 'rival'])
     $(name).onchange = e => change(name, e.target.value);
   for (const [name, slider] of Object.entries(sliders))
-    makeSlider($(name), slider, value => {
+    makeSlider(name, slider, value => {
       if (name === 'speed') page.speed = value;
       else change(name, value);
     }, 5);
-  $('play').onclick = play;
-  $('step').onclick = () => { setPlaying(false), page.stepping = true; };
-  $('restart').onclick = () => { start(), setPlaying(true); };
-  $('dismiss').onclick = () => $('failure').hidden = true;
-  $('cure').onclick = applyCure;
   $('link').onclick = () => page.worker.postMessage(['link']);
-  for (const button of document.querySelectorAll('button[data-tool]'))
-    button.onclick = () => setTool(button.dataset.tool);
-  setTool('grab');
-  addEventListener('keydown', e => {
-    if (e.key === 'Escape') $('failure').hidden = true;
-  });
-  const click = id => () => $(id).click();
-  onKeys({' ': click('play'), n: click('step'), r: click('restart')});
-}
-
-function setTool(tool) {
-  page.hand.tool = tool, $('canvas').dataset.tool = tool;
-  for (const button of document.querySelectorAll('button[data-tool]'))
-    button.setAttribute('aria-pressed', String(button.dataset.tool === tool));
 }
 
 // ---------------------------------------------------------------------- Frames
-
-const plots = {
-  energy: new Plot($('energy'), $('energy-title')),
-  distance: new Plot($('distance'), $('distance-title')),
-};
 
 function showNumbers() {
   const r = page.readings;
@@ -232,24 +231,17 @@ function showNumbers() {
     ['energy drift', `${shortNumber(main.drift)} J`],
     ['force evaluations', main.evaluations]];
   if (r.measure)
-    rows.push([r.measure, `${r.answer.map(shortNumber).join(' ')} ${r.unit}`]);
+    rows.push([r.measure, `${r.answer.map(a => shortNumber(a)).join(' ')} ${r.unit}`]);
   if (r.tornNodes || r.tornEdges)
     rows.push(['torn nodes, springs', `${r.tornNodes}, ${r.tornEdges}`]);
   if (rival)
     rows.push(['force evaluations beside', rival.evaluations],
       ['distance of the two', `${shortNumber(r.apart)} m`]);
   fillTable($('numbers'), rows);
-  const dt = run => `dt = ${shortNumber(1e3 * run.dt)} ms${
-    run.failed ? ', diverged' : ''}`;
-  [main, rival].forEach((run, k) => {
-    const [name, step] = $(`name${k}`).children;
-    $(`name${k}`).hidden = !rival;
-    if (rival) setText(name, run.method), setText(step, dt(run));
-  });
 }
 
-const tellLeftOut = () => showFailure({title: 'Another run', cause:
-  'Ignored the parts of this link that are not valid; the run may differ.'});
+const tellLeftOut = () => page.say('.says',
+  'Ignored the parts of this link that are not valid; the run may differ.');
 
 const replies = {
   about(data) {
@@ -260,8 +252,8 @@ const replies = {
     if (read.speed) page.speed = read.speed;
     if (read.camera)
       page.view.camera.set(...read.camera);
-    setPlaying(!read.end && !isStill());
-    start(location.hash ? read.lines : startLines(), read.end);
+    page.setPlaying(!read.end && !isStill());
+    page.start(location.hash ? read.lines : startLines(), read.end);
     if (read.leftOut) tellLeftOut();
   },
   setting({setting}) {
@@ -269,36 +261,29 @@ const replies = {
     page.room = setting.room, page.framed = false;
   },
   frame(data) {
-    page.waiting = false, page.calls = data.calls, ++page.frames;
+    page.isWaiting = false, page.calls = data.calls, ++page.frames;
     // A request on its way may make a failed run go on.
     if (data.failed && data.asked !== page.asked) page.wanted = true;
     if (page.beyond) page.beyond.drawn = undefined;
-    else setText($('busy'), '');
-    const before = page.sides;
-    page.sides = data.sides.map(({mesh, ...side}, k) => {
-      const {lines, triangles, pins} = mesh || before[k];
-      const all = {...side, lines, triangles, pins};
-      page.view.setSide(k, all, !!mesh);
-      return all;
-    });
+    else page.say('.busy', '');
     page.readings = data.readings;
+    const {main, rival} = data.readings ?? {};
+    page.show(data.sides.map(({mesh, ...side}, k) => {
+      const run = rival && [main, rival][k];
+      return {...page.sides[k], ...side, ...mesh, isNew: !!mesh,
+        name: run?.method, words: run && `dt = ${inMs(run.dt)}${
+          side.failure?.diverged ? ', diverged'
+            : side.failure ? ', refused' : ''}`};
+    }));
     if (!data.broken) followRun(data);
-    frameScene(), remember();
-    if (data.failed && !page.failed && !page.wanted) fail(data);
-    page.changed();
+    page.frameScene(), remember();
+    if (data.failed && !page.failed && !page.wanted) page.fail(data);
   },
   beyond({frames, asked}) {
-    if (!page.failed || asked !== page.asked || frames.length < 2) return;
-    let mesh = page.sides[0];
-    for (const frame of frames) {
-      frame.newMesh = !!frame.mesh;
-      const {lines, triangles, pins} = frame.mesh || mesh;
-      mesh = frame.mesh = {lines, triangles, pins};
-    }
-    page.beyond = {frames}, page.changed();
+    if (asked === page.asked) page.showBeyond(frames);
   },
   repeating({part}) {
-    setText($('busy'),
+    page.say('.busy',
       `repeating the link: ${Math.floor(100 * part)} %; Restart ends that`);
   },
   history({history, leftOut}) {
@@ -308,7 +293,7 @@ const replies = {
   why({why, cure, broken, asked}) {
     if (!page.failed || asked !== page.asked) return;
     page.why = why, page.cure = cure, page.broken = broken;
-    showFailure(why), page.changed();
+    page.showFailure(why);
   },
   link({recording}) {
     const hash = Link.write(recording, page.settings, page.view.camera,
@@ -327,19 +312,6 @@ const replies = {
   error({text}) { page.errors.push(text), console.error(text); },
 };
 
-// Look at the room that the scene names; else at the cloth, and below it.
-function frameScene() {
-  if (page.framed || !page.sides.length) return;
-  page.framed = true;
-  const all = [...page.room];
-  if (!all.length)
-    for (const i of page.sides[0].lines) {
-      const p = [...page.sides[0].points.subarray(4 * i, 4 * i + 3)];
-      all.push(p, Vec.add(p, [0, 0, -0.35]));
-    }
-  page.view.camera.lookAt(all);
-}
-
 function remember() {
   const r = page.readings;
   if (!r) return;
@@ -349,45 +321,3 @@ function remember() {
   if (rival)
     plots.distance.add(main.time, [r.apart, r.error, r.rivalError]);
 }
-
-function tick(now) {
-  requestAnimationFrame(tick);
-  if (!page.waiting && page.about) {
-    const passed = page.passed(now);
-    const runs = page.playing && !page.failed;
-    if (runs || page.wanted || page.stepping) {
-      page.hand.tell();
-      page.worker.postMessage(['frame',
-        page.stepping ? -1 : runs ? Math.max(passed * page.speed, 1e-9) : 0]);
-      page.waiting = true, page.wanted = page.stepping = false;
-    }
-    page.wanted ||= page.hand.moved;
-  }
-  const moving = page.playing && !page.failed ||
-    page.beyond?.drawn !== undefined;
-  if (!page.paint(now, moving)) return;
-  // While a run goes on, numbers and curves change four times a second.
-  if (!moving || now - (page.numbersAt || 0) > 250)
-    page.numbersAt = now, showNumbers(), showLimits();
-}
-
-async function begin() {
-  try {
-    page.open($('canvas'), document.documentElement);
-  } catch {
-    for (const id of ['stage', 'panel']) $(id).hidden = true;
-    $('fallback').hidden = false;
-    $('loop').src = 'loop.webp';
-    return;
-  }
-  // In a frame of another page: index.html?controls=none#scene=drape
-  if (new URLSearchParams(location.search).get('controls') === 'none')
-    document.body.className = 'bare';
-  $('canvas').addEventListener('webglcontextlost', () => location.reload());
-  page.worker = startThread($('worker').textContent, page, replies,
-    text => page.errors.push(text));
-  const bytes = await unpacked($('wasm').textContent);
-  page.worker.postMessage(['module', bytes], [bytes]);
-  requestAnimationFrame(tick);
-}
-begin();

@@ -47,7 +47,7 @@ $(page_o)/cloth.wasm: $(page_objects) lab/page/Page.hpp
 	  $(page_names:%=-Wl,--export=%) -o $@ $(page_objects)
 
 $(page)/index.html: $(page_o)/cloth.wasm $(wildcard $(patsubst \
-  %,lab/page/*.%,js py html css) course/web/*.js course/web/*.css)
+  %,lab/page/*.%,js py html css) $(patsubst %,course/web/*.%,js css py))
 	@mkdir -p $(@D)
 	@python3 lab/page/assemble.py $< $@
 # Shown by a browser that can't run the page: half as large, 8 frames a second.
