@@ -225,9 +225,9 @@ TEST(Diagnosis, NamesTheFirstCureThatOutlivesTheFailure) {
   EXPECT_EQ(d.cure->dt, 0.00175);
   EXPECT_EQ(d.cause, Cause::nonlinear);
   EXPECT_EQ(d.cause_text(),
-            "dt is 70 % of the stability limit (0.01 s, verlet), which holds "
-            "for small oscillations only: the motion is large or fast, or "
-            "nodes are held or moved");
+            "the motion is large or fast, or nodes are held or moved: dt is "
+            "70 % of the stability limit (0.01 s, verlet), which holds for "
+            "small oscillations only");
   EXPECT_EQ(d.remedy_text(),
             "--dt 0.00175 works: a trial to t = 5 s passed, and half of that "
             "step gives the same energy");

@@ -153,7 +153,7 @@ class Figure extends Picture {
           : `diverged at ${shortNumber(gain)} s: energy from nothing`};
     }));
     const shown = cloths.at(-1);
-    this.say('.fault p', this.whole || !(shown.readings?.gainAt >= 0)
+    this.say('.fault b', this.whole || !(shown.readings?.gainAt >= 0)
       ? shown.failure || shown.note : '');
     const slower = shortNumber(1 / this.speed, 2);
     const time = Math.max(...cloths.map(c => c.time));

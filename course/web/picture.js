@@ -18,10 +18,11 @@ const markup = `<div class="picture">
     <div class="name" hidden><span></span><small></small></div>
     <div class="name" hidden><span></span><small></small></div>
     <div class="busy"></div>
-    <div class="strain">strain 2 % <i></i> 45 %</div>
+    <div class="strain"><span>strain 2 %</span> <i></i>
+      <span>45 %</span></div>
   </div>
   <section class="fault" aria-label="What happened" hidden>
-    <p role="alert"></p></section>
+    <p role="alert"><b></b> <span></span></p></section>
   <p class="says" role="status" hidden></p>
   <div class="tools" role="toolbar" aria-label="Run and tools">
     <span class="switch" role="group" aria-label="Which code runs"></span>
@@ -142,7 +143,7 @@ class Picture {
       setText(label.children[1], sides[k]?.words ?? '');
     });
   }
-  // Words in a place that is hidden without any: '.fault p', '.says', '.busy'.
+  // Words in a place that is hidden without any: '.fault b', '.says', '.busy'.
   say(place, words) {
     setText(this.find(place), words);
     (this.find(place).closest('.fault') ?? this.find(place)).hidden = !words;

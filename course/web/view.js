@@ -54,6 +54,26 @@ class Camera {
     this.center = Vec.add(low, Vec.sub(high, low), 0.5);
     this.radius = 0.5 * Math.hypot(...Vec.sub(high, low));
   }
+  // Look obliquely at what faces along `normal`, from near the side where it is
+  // now, and as near as the points that it looks at fit into the picture.
+  lookObliquely(points, normal, aspect) {
+    this.lookAt(points), this.zoom = 1;
+    const {yaw} = this, size = Math.hypot(...normal) || 1;
+    let least = Infinity, best;
+    for (let turn = -1.2; turn <= 1.2; turn += 0.3)
+      for (let pitch = 0.15; pitch <= 1; pitch += 0.15) {
+        this.yaw = yaw + turn, this.pitch = pitch;
+        const facing = Vec.dot(this.frame(1).back, normal) / size;
+        const cost = Math.abs(Math.abs(facing) - 0.75) +
+          0.1 * Math.abs(turn) + 0.05 * pitch;
+        if (cost < least) least = cost, best = [this.yaw, pitch];
+      }
+    [this.yaw, this.pitch] = best;
+    const frame = this.frame(aspect);
+    const most = Math.max(...points.map(p =>
+      Math.max(...this.place(frame, p).slice(0, 2).map(Math.abs))));
+    this.zoom = 0.85 / most, this.zoomBy(1);
+  }
   turn(right, down) {
     this.yaw -= right;
     this.pitch = Math.max(-1.5, Math.min(1.5, this.pitch + down));
@@ -312,6 +332,7 @@ class View {
     this.floor.setPoints(new Float32Array(
       [-1, -1, 0, 0, 1, -1, 0, 0, -1, 1, 0, 0, 1, 1, 0, 0]));
     this.cloths = [new Shape(gl), new Shape(gl)];
+    this.ghost = new Shape(gl);  // drawn through what it has been since
     this.marks = new Shape(gl);
     this.marks.setMesh(new Uint32Array(), new Uint32Array());
     this.obstacles = [];
@@ -363,7 +384,7 @@ class View {
     gl.drawArrays(gl.POINTS, 0, points.length);
   }
 
-  // Draw all sides. A side: {points, mesh, ring}; its colors: theme.
+  // Draw all sides, in the colors of a theme.
   draw(sides, theme, hand) {
     const {gl, camera} = this;
     const panes = this.panes(sides.length);
@@ -395,6 +416,12 @@ class View {
       const [r, g, b, opacity] = bare ? theme.pin
         : theme.wire;  // a line is a pixel wide
       this.set([r, g, b, opacity * this.pace.sharpness], 0), cloth.drawLines();
+      if (side.hasGhost) {
+        gl.depthMask(false);
+        this.set([...theme.pin.slice(0, 3), 0.1], 0), this.ghost.drawFaces();
+        this.set([...theme.pin.slice(0, 3), 0.2], 0), this.ghost.drawLines();
+        gl.depthMask(true);
+      }
       const at = i => [...side.points.subarray(4 * i, 4 * i + 3)];
       const marked = bare ? [...side.points.keys()].slice(0,
         side.points.length / 4) : [...side.pins];

@@ -170,11 +170,12 @@ const char* page_readings(int sharp) {
   const auto parameter = [](const auto& p) {
     return Json{members(p.first, p.second)};
   };
-  std::string all = members(
-      "parameters",
-      list(Live::parameters(state().live->model()), parameter, "{}"), "main",
-      json_of(r), "nodes", r.nodes, "edges", r.edges, "tornNodes", r.torn_nodes,
-      "tornEdges", r.torn_edges, "grabbed", r.grabbed);
+  std::string all =
+      members("parameters",
+              list(Live::parameters(state().live->model()), parameter, "{}"),
+              "main", json_of(r), "nodes", r.nodes, "edges", r.edges,
+              "tornNodes", r.torn_nodes, "tornEdges", r.torn_edges, "grabbed",
+              r.grabbed, "missed", state().live->scene().missed_text());
   if (const auto& c = r.comparison)
     all += ',' + members("rival", json_of(c->rival), "apart", c->apart, "error",
                          c->error, "rivalError", c->rival_error);

@@ -2,21 +2,23 @@
 // When a run fails, the page shows the motion beyond the failure, the reason
 // and the cure, and goes on from the last good state.
 
-const playback = 2000;  // [ms], of the motion beyond a failure
+const playback = 3000;  // [ms], of the motion beyond a failure, and
+const pause = 800;      // [ms] until it is shown again
 const inMs = seconds => `${shortNumber(1e3 * seconds)} ms`;
 // The words of ./cloth, whose options are sliders here.
 const inPage = words => words.replace(/^diverged: /, '')
   .replace(/--method (\S+) --dt (\S+)/g,
     (_, method, dt) => `${method} with a step of ${inMs(dt)}`)
   .replace(/--dt (\S+)/g, (_, dt) => `a step of ${inMs(dt)}`)
-  .replace(/^[a-z]/, letter => letter.toUpperCase());
+  .replace(/ in the step to t = \S+ s/, " in one step");
 
 class FailurePicture extends Picture {
   constructor(...all) {
     super(...all);
     Object.assign(this, {failed: false, why: '', cure: null,
       broken: false,         // no request can make it go on
-      beyond: null});        // the motion after a failure: frames, since when
+      beyond: null,          // the motion after a failure: frames, since when
+      camera: null});        // as it was before a failure
     this.find('.fault').insertAdjacentHTML('beforeend', `<p class="place"></p>
       <button class="cure" hidden></button>
       <button class="dismiss" aria-label="Close">&times;</button>`);
@@ -25,12 +27,11 @@ class FailurePicture extends Picture {
     this.find('.cure').onclick = () => this.applyCure();
     addEventListener('keydown', e => { if (e.key === 'Escape') close(); });
   }
-  get isMoving() {
-    return this.isRunning || this.beyond?.drawn !== undefined;
-  }
+  get isMoving() { return this.isRunning || !!this.beyond?.moves; }
   // After a failure: show it again.
   play() {
-    if (this.beyond) this.beyond.from = undefined, this.changed();
+    if (this.beyond)
+      Object.assign(this.beyond, {from: undefined, moves: true}), this.changed();
     else if (this.failed) this.restart();
     else super.play();
   }
@@ -43,6 +44,9 @@ class FailurePicture extends Picture {
     this.failed = this.broken = false, this.why = '', this.cure = null;
     this.say('.busy', ''), this.say('.says', '');
     this.beyond = null, clearTimeout(this.lookingBeyond);
+    this.setLegend('strain 2 %', '45 %');
+    if (this.camera) Object.assign(this.view.camera, this.camera);
+    this.camera = null;
     this.showFailure(null), this.setPlaying(this.playing);
   }
   // From the last good state.
@@ -70,40 +74,91 @@ class FailurePicture extends Picture {
     showControls();
   }
 
+  setLegend(...ends) {
+    this.element.querySelectorAll('.strain span').forEach(
+      (end, k) => setText(end, ends[k]));
+  }
+
   // The motion beyond a failure: its steps, whose mesh is null if it stays.
+  // Those in which nothing is seen to move are left out. Colors tell which way
+  // a node moves: like the one that moves most, or the other way.
   showBeyond(frames) {
     if (!this.failed || frames.length < 2) return;
     let side = this.sides[0];
     for (const frame of frames) {
       frame.isNew = !!frame.mesh;
-      side = frame.side = {...side, ...frame.mesh, points: frame.points,
-        failedNode: -1};
+      side = frame.side = {...side, ...frame.mesh, hasGhost: true};
     }
-    this.beyond = {frames}, this.setPlaying(false), this.changed();
+    const start = frames[0].points;
+    const last = frames.at(-1).points, way = last.map((a, i) => a - start[i]);
+    const at = i => [...way.subarray(i, i + 3)];
+    let most = 0, along = [0, 0, 1];
+    for (let i = 0; i < way.length; i += 4) {
+      const size = last[i + 3] > 0 ? Math.hypot(...at(i)) : 0;
+      if (size > most) most = size, along = at(i).map(a => a / size);
+    }
+    for (const {points} of frames) {
+      const moves = points.filter((_, i) => i % 4 === 3).map((_, n) => Vec.dot(
+        along, [0, 1, 2].map(k => points[4 * n + k] - start[4 * n + k])));
+      const largest = moves.reduce((a, b) => Math.max(a, Math.abs(b)), 1e-12);
+      moves.forEach((a, n) => points[4 * n + 3] = 0.235 * (1 + Math.sign(a) *
+        Math.sqrt(Math.abs(a) / largest)));
+      points.largest = largest;
+    }
+    const first = frames.findIndex(f => f.points.largest > 0.002);
+    frames.splice(1, Math.max(0, Math.min(first - 2, frames.length - 2)));
+    this.beyond = {frames, moves: !isStill(), isNew: true};
+    this.setPlaying(false), this.fitCamera(), this.changed();
+    this.setLegend('moves one way', 'the other way');
+  }
+  // Look obliquely at the last good state: at what moves then, and around it.
+  fitCamera() {
+    const {view, beyond} = this, {camera} = view;
+    this.camera ??= {...camera};
+    const {points, side} = beyond.frames[0], last = beyond.frames.at(-1).points;
+    const at = i => [...points.subarray(4 * i, 4 * i + 3)];
+    const ends = [...new Set(side.lines)], size = i => last[4 * i + 3] > 0
+      ? Math.hypot(...[0, 1, 2].map(k => last[4 * i + k] - points[4 * i + k]))
+      : 0;
+    const worst = ends.reduce((a, b) => size(b) > size(a) ? b : a);
+    // At least half of the cloth, which is about 1 m wide.
+    const all = ends.filter(i => size(i) > 0.2 * size(worst) ||
+      Math.hypot(...Vec.sub(at(i), at(worst))) < 0.35).map(at);
+    const normal = [0, 0, 0], t = side.triangles;
+    for (let k = 0; k < t.length; k += 3) {
+      const [a, b, c] = [at(t[k]), at(t[k + 1]), at(t[k + 2])];
+      Vec.cross(Vec.sub(b, a), Vec.sub(c, a)).forEach(
+        (n, i) => normal[i] += n);
+    }
+    const {clientWidth, clientHeight} = this.canvas;
+    camera.lookObliquely(all, normal,
+      clientWidth / this.sides.length / clientHeight);
   }
   // The sides to draw at a time [ms]. After a failure that is the motion beyond
-  // it, interpolated linearly between two steps.
+  // it, interpolated linearly between two steps, over and over, in front of the
+  // last good state. If nothing is to move by itself, its middle.
   sidesAt(now) {
     const {beyond, sides} = this;
     if (!beyond) return sides;
-    beyond.from ??= isStill() && !beyond.seen ? now - playback : now;
-    beyond.seen = true;
-    const {frames} = beyond, last = frames.length - 1;
-    const at = Math.min(1, (now - beyond.from) / playback) * last;
-    const k = Math.min(Math.floor(at), last - 1);
-    if (at >= last) {
-      this.say('.busy', '');
-      if (beyond.drawn !== undefined) this.view.setSide(0, sides[0]);
-      beyond.drawn = undefined;
-      return sides;
+    beyond.from ??= now;
+    let passed = beyond.moves ? now - beyond.from : playback / 2;
+    if (passed > playback + pause) {
+      passed = 0, beyond.from = now, beyond.moves = !isStill();
     }
-    this.say('.busy', `beyond the failure, ${shortNumber(playback / 1e3 /
-      (frames[last].time - frames[0].time), 2)} times slower`);
-    const {side} = frames[k], next = frames[k + 1];
-    const shown = {...side, points: next.isNew ? side.points : side.points.map(
+    const {frames} = beyond, last = frames.length - 1;
+    const at = Math.min(1, passed / playback) * last;
+    const k = Math.min(Math.floor(at), last - 1);
+    const {side, points} = frames[k], next = frames[k + 1];
+    const shown = {...side, points: next.isNew ? points : points.map(
       (a, i) => a + (at - k) * (next.points[i] - a))};
     this.view.setSide(0, shown, beyond.drawn !== k), beyond.drawn = k;
-    this.changed();
+    if (beyond.isNew) {
+      this.view.ghost.setMesh(frames[0].side.triangles, frames[0].side.lines);
+      this.view.ghost.setPoints(frames[0].points), beyond.isNew = false;
+    }
+    const slower = playback / 1e3 / (frames[last].time - frames[0].time);
+    this.say('.busy', `beyond the failure, ${shortNumber(slower, 2)} times slower`);
+    if (beyond.moves) this.changed();
     return [shown, ...sides.slice(1)];
   }
 
@@ -115,7 +170,9 @@ class FailurePicture extends Picture {
       ? `Apply the cure: ${cure.method}, dt / limit ${share}`
       : `Apply the cure: dt / limit ${share}`);
     const {cause = '', remedy = '', place = ''} = failure ?? {};
-    this.say('.fault p', inPage([cause, remedy].filter(Boolean).join('; ')));
+    this.say('.fault b', inPage(cause));
+    setText(this.find('.fault span'), inPage(remedy).replace(/^[a-z]/,
+      letter => letter.toUpperCase()));
     setText(this.find('.place'), place);
   }
 }

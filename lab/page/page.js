@@ -276,6 +276,8 @@ const replies = {
             : side.failure ? ', refused' : ''}`};
     }));
     if (!data.broken) followRun(data);
+    if (!data.failed && data.readings?.missed && !page.find('.says').innerText)
+      page.say('.says', `Warning: ${inPage(data.readings.missed)}.`);
     page.frameScene(), remember();
     if (data.failed && !page.failed && !page.wanted) page.fail(data);
   },
@@ -296,8 +298,8 @@ const replies = {
     page.showFailure(why);
   },
   link({recording}) {
-    const hash = Link.write(recording, page.settings, page.view.camera,
-      page.speed);
+    const hash = Link.write(recording, page.settings,
+      page.camera ?? page.view.camera, page.speed);
     history.replaceState(null, '', hash);
     const done = text => {
       $('link').textContent = text;

@@ -93,12 +93,12 @@ function frame() {
 // ----------------------------------------------------------------- A failure
 
 // The steps after a side's last good state, without the guard that stops it,
-// until a node is far from there: as many as fit in a second. From then on the
+// until a node is far from there: as many as fit in three seconds. From then on the
 // side is drawn as it is while its nodes are still near.
 // @return points and mesh of each step
 function beyond(side) {
-  const far = 3, near = 0.2;  // [m]
-  const frames = [], until = performance.now() + 1000;
+  const far = 0.6, near = 0.2;  // [m]
+  const frames = [], until = performance.now() + 3000;
   let shown = 0, moved = 0, time = -1;
   versions[side] = -1;
   for (let k = 0; moved < far && performance.now() < until; ++k) {

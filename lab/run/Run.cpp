@@ -375,14 +375,7 @@ void Run::tell_failure() {
 void Run::warn_of_missed() {
   warned_ = true;
   if (o_.quiet) return;
-  const auto& missed = scene_.watched().first();
-  std::cerr << warning << "node " << missed.node << " moved " << missed.length
-            << " m in the step to t = " << scene_.time()
-            << " s and would have tunnelled through an obstacle; it was put "
-               "on the surface. Use --dt "
-            << scene_.dt() *
-                   std::min(0.5, scene_.watched().thinnest() / missed.length)
-            << '\n';
+  std::cerr << warning << scene_.missed_text() << '\n';
 }
 
 void Run::tell_interrupt() const {

@@ -124,9 +124,10 @@ std::string Diagnosis::cause_text() const {
           << "step";
       break;
     case Cause::drag:
+      out << "drag makes the stability limit shorter: ";
       limit(run.safe);
-      out << ", " << info.name << "), which is " << run.safe_without_drag
-          << " s without drag: " << info.name
+      out << ", " << info.name << "; without drag " << run.safe_without_drag
+          << " s), as " << info.name
           << " treats drag as a force, and a step removes too much velocity";
       break;
     case Cause::no_step:
@@ -134,13 +135,13 @@ std::string Diagnosis::cause_text() const {
           << info.fails_when;
       break;
     case Cause::nonlinear:
+      out << "the motion is large or fast, or nodes are held or moved: ";
       if (std::isfinite(run.safe))
         out << "dt is " << CME212::percent(run.dt / run.safe)
             << " of the stability limit (" << run.safe << " s, " << info.name
             << "), which holds for small oscillations only";
       else
         out << "there is no stability limit";
-      out << ": the motion is large or fast, or nodes are held or moved";
       break;
     case Cause::method:
       out << info.name << " fails with: " << info.fails_when;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Interrupt.hpp"
@@ -151,6 +152,19 @@ void Scene::pull(std::optional<HandForce> hand) {
 }
 
 // ------------------------------------------------------------------- Failure
+
+std::string Scene::missed_text() const {
+  if (watched().count() == 0) return "";
+  using CME212::short_text;
+  const auto& missed = watched().first();
+  const double share = std::min(0.5, watched().thinnest() / missed.length);
+  return "node " + std::to_string(missed.node) + " moved " +
+         short_text(missed.length) +
+         " m in the step to t = " + short_text(time()) +
+         " s and would have tunnelled through an obstacle; it was put on the "
+         "surface. Use --dt " +
+         short_text(share * dt());
+}
 
 Explanation Scene::explanation() const {
   try {

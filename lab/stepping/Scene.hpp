@@ -39,6 +39,8 @@ class Scene {
   const Cloth& cloth() const { return system_.cloth; }
   /** Counts the nodes that it stopped from tunnelling through obstacles. */
   const WatchedConstraint& watched() const { return *system_.watched; }
+  /** A warning about the first of them, right after its step; else "". */
+  std::string missed_text() const;
 
   // As in Stepper.hpp:
   static constexpr int guard_interval = Stepper::guard_interval;
