@@ -172,8 +172,8 @@ class Picture {
     this.paint(now, this.isMoving);
   }
   get isMoving() { return this.isRunning; }
-  // What is drawn at a time [ms], if something has changed. While it moves,
-  // numbers and curves change four times a second.
+  // Draw at a time [ms], if something has changed. While it moves, numbers and
+  // curves change four times a second.
   paint(now, moving) {
     this.dirty = this.view.pace.frame(now, moving) || this.dirty;
     if (!this.dirty || !this.sides.length) return;

@@ -30,10 +30,9 @@ class FailurePicture extends Picture {
   get isMoving() { return this.isRunning || !!this.beyond?.moves; }
   // After a failure: show it again.
   play() {
-    if (this.beyond)
-      Object.assign(this.beyond, {from: undefined, moves: true}), this.changed();
-    else if (this.failed) this.restart();
-    else super.play();
+    if (this.failed && !this.beyond) return this.restart();
+    if (!this.failed) return super.play();
+    this.beyond.from = undefined, this.beyond.moves = true, this.changed();
   }
   setPlaying(on) {
     super.setPlaying(on);
@@ -157,7 +156,8 @@ class FailurePicture extends Picture {
       this.view.ghost.setPoints(frames[0].points), beyond.isNew = false;
     }
     const slower = playback / 1e3 / (frames[last].time - frames[0].time);
-    this.say('.busy', `beyond the failure, ${shortNumber(slower, 2)} times slower`);
+    this.say('.busy',
+      `beyond the failure, ${shortNumber(slower, 2)} times slower`);
     if (beyond.moves) this.changed();
     return [shown, ...sides.slice(1)];
   }

@@ -135,12 +135,11 @@ function showLimits() {
   }
   if (!r) return;
   const {dt, safe, sharp, unit} = r.main;
-  setText($('limits'), safe === null
-    ? `dt = ${inMs(dt)}. Without a limit: 1 is that of Verlet, ${inMs(unit)}.`
-    : safe === 0
-      ? `dt = ${inMs(dt)}. No step is stable: 1 is Verlet's limit, ${inMs(unit)}.`
-      : `dt = ${inMs(dt)}. Stable in any shape up to ${inMs(safe)}` +
-        (sharp ? `, in this one up to ${inMs(sharp)}.` : '.'));
+  setText($('limits'), `dt = ${inMs(dt)}. ` + (safe === null
+    ? `Without a limit: 1 is that of Verlet, ${inMs(unit)}.`
+    : safe === 0 ? `No step is stable: 1 is Verlet's limit, ${inMs(unit)}.`
+      : `Stable in any shape up to ${inMs(safe)}` +
+        (sharp ? `, in this one up to ${inMs(sharp)}.` : '.')));
 }
 
 // The request by which the run gets what a control shows.
@@ -231,7 +230,8 @@ function showNumbers() {
     ['energy drift', `${shortNumber(main.drift)} J`],
     ['force evaluations', main.evaluations]];
   if (r.measure)
-    rows.push([r.measure, `${r.answer.map(a => shortNumber(a)).join(' ')} ${r.unit}`]);
+    rows.push([r.measure,
+      [...r.answer.map(a => shortNumber(a)), r.unit].join(' ')]);
   if (r.tornNodes || r.tornEdges)
     rows.push(['torn nodes, springs', `${r.tornNodes}, ${r.tornEdges}`]);
   if (rival)

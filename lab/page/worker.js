@@ -93,8 +93,8 @@ function frame() {
 // ----------------------------------------------------------------- A failure
 
 // The steps after a side's last good state, without the guard that stops it,
-// until a node is far from there: as many as fit in three seconds. From then on the
-// side is drawn as it is while its nodes are still near.
+// until a node is far from there: as many as fit in three seconds. From then on
+// the side is drawn as it is while its nodes are still near.
 // @return points and mesh of each step
 function beyond(side) {
   const far = 0.6, near = 0.2;  // [m]
