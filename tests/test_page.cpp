@@ -51,23 +51,6 @@ TEST(PageScenes, HaveTheNodesAskedForAndNoEnd) {
   }
 }
 
-TEST(PageCalls, StepsGoBesideEachOtherToOneTime) {
-  page_load(number_of("forces"), 5);
-  EXPECT_EQ(page_slots(0), 25u);
-  EXPECT_EQ(page_slots(1), 0u);
-  page_request("step 0.5");
-  page_request("compare symplectic-euler 0.25");
-  ASSERT_EQ(page_slots(1), 25u);
-  double time = 0;
-  for (int k = 0; k < 40; ++k) time = page_step();
-  EXPECT_NEAR(reading("time"), time, 1e-12);
-  EXPECT_EQ(reading("steps"), 40);
-  EXPECT_NE(std::string(page_readings(1)).find("\"apart\":"),
-            std::string::npos);
-  page_load(number_of("forces"), 5);
-  EXPECT_EQ(page_slots(1), 0u);
-}
-
 TEST(PageCalls, ReadTheMeasureOfTheScene) {
   page_load(number_of("membrane"), 9);
   for (int k = 0; k < 40; ++k) page_step();
@@ -125,18 +108,6 @@ TEST(PageCalls, ARequestThatMakesNoSenseIsNotMade) {
   const std::string all = page_recording();
   EXPECT_EQ(all.substr(all.rfind("0 gravity")), "0 gravity 3\n0 end\n");
   EXPECT_EQ(reading("gravity"), 3);
-}
-
-TEST(PageCalls, AHandPullsANode) {
-  page_load(number_of("forces"), 5);
-  page_request("gravity 0");
-  page_request("grab 24 1 1 0");
-  page_request("move 1 1 0.5");
-  for (int k = 0; k < 200; ++k) page_step();
-  EXPECT_GT(page_positions(0)[3 * 24 + 2], 0.1);
-  page_request("release");
-  EXPECT_NE(std::string(page_readings(0)).find("\"grabbed\":false"),
-            std::string::npos);
 }
 
 /** The largest difference between what is drawn and the scene's own state,
