@@ -41,7 +41,7 @@ inline Problem pulled_chain(double t_end, double until = HUGE_VAL) {
       return PinConstraint(std::vector{g.node(i)});
     };
     return make_combined_constraints(
-        pin(0), MovingPinConstraint(pin(chain.n + 1), {velocity, until}));
+        pin(0), PinnedNodes(pin(chain.n + 1), {velocity, until}));
   };
   p.exact = [=](double t) {
     std::vector<Point> x = chain.exact(t);
@@ -64,7 +64,7 @@ inline Problem moving_edge(double t_end) {
       return PinConstraint(held);
     };
     return make_combined_constraints(
-        at(0), MovingPinConstraint(at(1), {Point(0.1, 0.15, 0.25)}));
+        at(0), PinnedNodes(at(1), {Point(0.1, 0.15, 0.25)}));
   };
   return p;
 }

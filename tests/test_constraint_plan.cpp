@@ -25,7 +25,7 @@ TEST_F(ScatteredCloth, NodewiseByPartsIsTheCall) {
   const PinConstraint pins(some);
   const PlaneConstraint plane(-0.6);
   const SphereConstraint sphere;
-  const MovingPinConstraint moving(
+  const PinnedNodes moving(
       PinConstraint(std::vector<Node>{some[1], some[4]}), motion);
   const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), {}, 0.5);
   const BallConstraint rough_ball(ball, {}, 0.5);
@@ -72,9 +72,9 @@ TEST_F(ScatteredCloth, WhatRemovesOrIsNotKnownIsNotNodewise) {
   EXPECT_FALSE(
       nodewise(make_combined_constraints(PlaneConstraint(), TearConstraint())));
   WatchedConstraint watched(make_combined_constraints(PlaneConstraint(-0.6)));
-  EXPECT_TRUE(watched.nodewise());
+  EXPECT_TRUE(nodewise(watched));
   watched.watch(g, true);
-  EXPECT_FALSE(watched.nodewise());
+  EXPECT_FALSE(nodewise(watched));
 }
 
 TEST(ConstraintPlanPins, GoOnWithoutAPinnedNodeThatWasRemoved) {

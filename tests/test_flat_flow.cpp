@@ -277,7 +277,7 @@ TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
     const auto force = make_combined_force(GravityForce(), MassSpringForce(),
                                            DampingForce(0.3));
     const Node corner = g.node(0), inner = g.node(3000);
-    const MovingPinConstraint moving(PinConstraint(std::span(&inner, 1)),
+    const PinnedNodes moving(PinConstraint(std::span(&inner, 1)),
                                      Motion{.velocity = Point(0, 1, 2)});
     const auto constraint = make_combined_constraints(
         PinConstraint(std::span(&corner, 1)), moving, PlaneConstraint(-0.002),

@@ -347,7 +347,7 @@ TEST(MollifiedImpulse, KeepsItsOrderAtAMovingPin) {
   p.constraint = [](const Cloth& g) {
     const Node n = middle_edge(g).node1();
     return make_combined_constraints(
-        PinConstraint(g), MovingPinConstraint(PinConstraint(std::vector{n}),
+        PinConstraint(g), PinnedNodes(PinConstraint(std::vector{n}),
                                               {Point(0, 0, 0.005)}));
   };
   const Reference right = reference(p, 4);

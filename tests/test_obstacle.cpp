@@ -185,7 +185,7 @@ TEST(Wall, LeavesANodeThatLiesOnIt) {
   EXPECT_EQ(n.value().vel, Point());
 }
 TEST(Wall, IsNeverMissed) {
-  const WallConstraint wall(Point(), Point(0, 0, 1));
+  const ConstraintPlan wall = WallConstraint(Point(), Point(0, 0, 1));
   EXPECT_FALSE(wall.first_hit(Point(0, 0, 1), Point(0, 0, -1)));
   EXPECT_EQ(wall.thinnest(), infinity);
 }
@@ -205,11 +205,11 @@ TEST(Ball, IsWatchedWhileItIsAtRest) {
   const Ball ball = {Point(), 0.5};
   const BallConstraint rests(ball), moves(ball, {Point(0, 3, 4), 0.1});
   const Point from(-1, 0, 0), to(1, 0, 0);
-  EXPECT_EQ(rests.thinnest(), 0.5);
-  EXPECT_EQ(rests.first_hit(from, to), lab::first_hit(ball, from, to));
+  EXPECT_EQ(ConstraintPlan(rests).thinnest(), 0.5);
+  EXPECT_EQ(ConstraintPlan(rests).first_hit(from, to), lab::first_hit(ball, from, to));
   EXPECT_EQ(rests.speed(), 0);
-  EXPECT_EQ(moves.thinnest(), infinity);
-  EXPECT_EQ(moves.first_hit(from, to), std::nullopt);
+  EXPECT_EQ(ConstraintPlan(moves).thinnest(), infinity);
+  EXPECT_EQ(ConstraintPlan(moves).first_hit(from, to), std::nullopt);
   EXPECT_EQ(moves.speed(), 5);
 }
 
@@ -355,7 +355,7 @@ TEST(MovingPin, TakesItsNodesAlong) {
   build_cloth(g, grid_points(4), grid_quads(4), MeshSprings::plain);
   const std::vector<Node> held = {g.node(2), g.node(9)};
   const Point starts[] = {held[0].position(), held[1].position()};
-  const MovingPinConstraint pin(PinConstraint(held), {Point(0, 1, 2), 0.5});
+  const PinnedNodes pin(PinConstraint(held), {Point(0, 1, 2), 0.5});
   g.remove_node(g.node(0));  // indices change
   for (Node n : g.nodes()) n.value().vel = Point(1, 0, 0);
   Cloth before = g;
@@ -380,7 +380,7 @@ TEST(MovingPin, IsPlacedAtAStage) {
   Cloth g;
   const std::vector<Node> held = {g.add_node(Point(1, 0, 0))};
   const Node free = g.add_node(Point(2, 0, 0), {Point(0, 0, 3), 1});
-  const MovingPinConstraint pin(PinConstraint(held), {Point(0, 4, 0), 0.5});
+  const PinnedNodes pin(PinConstraint(held), {Point(0, 4, 0), 0.5});
   // Through all that wraps a constraint.
   const WatchedConstraint watched(SelfCollision(0.1, 0, pin));
   const ConstraintPlan plan(watched);
@@ -407,7 +407,7 @@ TEST(MovingPin, IsPlacedAtAStage) {
 TEST(MovingPin, GoesOnWithoutANodeThatWasRemoved) {
   Cloth g;
   const std::vector<Node> held = {g.add_node(Point(1)), g.add_node(Point(2))};
-  const MovingPinConstraint pin(PinConstraint(held), {Point(1, 0, 0)});
+  const PinnedNodes pin(PinConstraint(held), {Point(1, 0, 0)});
   g.remove_node(held[0]);
   Node other = g.add_node(Point(9));  // may take its slot
   pin(g, 1);
@@ -421,7 +421,7 @@ TEST(MovingPin, DrawsWhatHangsOnIt) {
   Cloth g;
   Node top = g.add_node(Point()), mass = g.add_node(Point(0, 0, -1.0981));
   g.add_edge(top, mass, {100, 1});
-  const MovingPinConstraint pin(PinConstraint(std::vector{top}),
+  const PinnedNodes pin(PinConstraint(std::vector{top}),
                                 {Point(0, 0, 0.01)});
   for (auto method : {entry_of<SymplecticEuler>(), entry_of<Verlet>()}) {
     auto m = method.make();
@@ -499,7 +499,7 @@ TEST(Obstacles, TakeAnEmptyCloth) {
   WallConstraint(Point(), Point(1))(g, 0);
   BallConstraint(Ball{})(g, 0);
   StrainConstraint(0)(g, 0);
-  MovingPinConstraint(PinConstraint(g), {})(g, 0);
+  PinnedNodes(PinConstraint(g), {})(g, 0);
   EXPECT_EQ(g.num_nodes(), 0u);
 }
 

@@ -246,8 +246,8 @@ TEST(SelfCollision, MovesNoHeldNodes) {
 }
 TEST(SelfCollision, TellsOfObstaclesWhatTheOthersTell) {
   const Ball ball = {Point(), 0.5};
-  const SelfCollision c(0.1, 0,
-                        make_combined_constraints(SphereConstraint(ball)));
+  const ConstraintPlan c =
+      SelfCollision(0.1, 0, make_combined_constraints(SphereConstraint(ball)));
   EXPECT_EQ(c.thinnest(), 0.5);
   const Point from(-1, 0, 0), to(1, 0, 0);
   EXPECT_EQ(c.first_hit(from, to), lab::first_hit(ball, from, to));
@@ -366,7 +366,7 @@ TEST_F(SelfCollisionRun, HoldsWhileNodesAndEdgesAreRemoved) {
       0.12, 0.2,
       make_combined_constraints(
           PinConstraint(std::vector<Node>{g.node(0), g.node(7)}),
-          MovingPinConstraint(PinConstraint(std::vector{g.node(56)}),
+          PinnedNodes(PinConstraint(std::vector{g.node(56)}),
                               {Point(0.5, 0.5, 0.2), 0.6}),
           PlaneConstraint(-0.3), TearConstraint({Point(0.5, 0.5, -0.2), 0.1}),
           StrainConstraint(0.8)));

@@ -16,7 +16,8 @@ namespace lab {
  * error control makes. */
 class CountingConstraint : public ForwardingConstraint {
  public:
-  using ForwardingConstraint::ForwardingConstraint;
+  explicit CountingConstraint(const ConstraintPlan& inner)
+      : ForwardingConstraint(inner, {.nodewise = inner.nodewise()}) {}
   void operator()(Cloth& g, double t) const override { ++calls_, inner_(g, t); }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override {

@@ -15,6 +15,7 @@
 
 #include "lab/fast/Archive.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/Motion.hpp"
 #include "lab/fast/Recognise.hpp"
 #include "mass_spring.hpp"
 
@@ -28,6 +29,7 @@ struct StepError : std::runtime_error {
 };
 
 class FlatCloth;
+class ForwardingConstraint;
 
 using NodeVisitor = std::function<void(Node)>;
 
@@ -64,82 +66,77 @@ struct Zone {
   }
 };
 
-/** A constraint with functions that methods and the guard use besides its call.
- * Only the laboratory uses it; the defaults are right for every constraint. */
+/** What a constraint tells of its call. The defaults are right for every
+ * constraint whose moving parts do no work on nodes. */
+struct Traits {
+  /** Each node is projected independently and none is removed: then project()
+   * may replace the call, part by part. While a constraint adds up its work, it
+   * must not be nodewise, so that only one thread does. */
+  bool nodewise = false;
+  /** The call puts nodes to the places of each_place(), and does no more. */
+  bool holds = false;
+  /** The call changes no node outside of it. Its place is that at t = 0;
+   * nullopt: no zone is known. */
+  std::optional<Zone> zone = {};
+  /** A ball at rest, through which a node can tunnel: see first_hit(). Nothing
+   * can tunnel through a floor. */
+  std::optional<Ball> obstacle = {};
+  Motion motion = {};  ///< of the zone and of all held nodes
+};
+
+/** A constraint with more than its call, for methods and the guard. Only the
+ * laboratory uses it. */
 class SweptConstraint : public ZeroConstraint {
  public:
-  /** True if each node is projected independently and none is removed. Then
-   * project() may replace the call, part by part. */
-  virtual bool nodewise() const { return false; }
+  explicit SweptConstraint(const Traits& traits = {}) : traits_(traits) {}
+
+  const Traits& traits() const { return traits_; }
+  /** What its calls since it was made have exchanged, without the work on held
+   * nodes, which EnergyBalance adds up. */
+  const Exchange& exchange() const { return exchange_; }
+  void archive(Archive& a) const;
+
   /** Project the nodes of @a g with ids in [first, last) that are in use. The
    * others need not have moved yet. Threads may project several parts at once.
-   * @pre nodewise() */
+   * @pre nodewise */
   virtual void project(Cloth& /*g*/, double /*t*/, unsigned /*first*/,
                        unsigned /*last*/) const {}
-  /** project() for a cloth by component, whose graph is @a g; the positions and
-   * velocities in @a g may be out of date.  @pre as project()
-   * The default calls project() for each tile that is not idle(). */
-  virtual void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
-                            unsigned last) const;
-  /** The call at time @a t [s] changes no node outside of it; nullopt if no
-   * zone is known. */
-  virtual std::optional<Zone> zone(double /*t*/) const { return std::nullopt; }
-  /** True only if the call changes no node with an id in [first, last). */
-  bool idle(const FlatCloth& c, double t, unsigned first, unsigned last) const;
-  /** The call for a cloth by component. The default applies it to @a g. */
-  virtual void apply_flat(FlatCloth& c, Cloth& g, double t) const;
-  /** Do what the call does to the nodes with ids in [first, last), if that does
-   * not depend on other nodes: project_flat() if nodewise(), nothing if idle().
-   * @return false if it depends on them; then @a c is undefined
-   * Threads may call it for several parts at once. */
-  virtual bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
-                             unsigned last) const {
-    if (!nodewise()) return idle(c, t, first, last);
-    project_flat(c, g, t, first, last);
-    return true;
+  /** Call @a use(node, place) for each held node of @a g with an id in [first,
+   * last): a node whose place depends only on the time. The place is that at
+   * time @a t [s]; stages may use times up to a step before the start. */
+  virtual void each_place(const Cloth& /*g*/, double /*t*/, unsigned /*first*/,
+                          unsigned /*last*/, const PlaceVisitor& /*use*/) const {
   }
-  /** Call @a use(node, place) for each held node of @a g: a node whose place
-   * depends only on the time. The place is that at time @a t [s]; stages may
-   * use times up to a step before the start. */
-  virtual void each_place(const Cloth& /*g*/, double /*t*/,
-                          const PlaceVisitor& /*use*/) const {}
-  /** The first time [s] after @a t, by more than round-off, at which a place
-   * changes its velocity; infinity if none does. */
-  virtual double next_velocity_jump(double /*t*/) const {
-    return std::numeric_limits<double>::infinity();
-  }
-  /** The first point, to round-off, of the line @a from one place @a to another
-   * that is inside an obstacle, if the obstacle contains neither end: a node on
-   * that line would tunnel through it. nullopt if there is none. Nothing can
-   * tunnel through a floor. */
-  virtual std::optional<Point> first_hit(const Point& /*from*/,
-                                         const Point& /*to*/) const {
-    return std::nullopt;
-  }
-  /** True only if nothing in it moves from time @a t [s] on, so that it does no
-   * work: exchange() changes only in calls that remove nodes. */
-  virtual bool is_at_rest(double /*t*/) const { return false; }
-  /** The size [m] of the smallest obstacle through which a node can tunnel. */
-  virtual double thinnest() const {
-    return std::numeric_limits<double>::infinity();
-  }
-  /** Without the work on held nodes, which EnergyBalance adds up. */
-  virtual Exchange exchange() const { return {}; }
-  /** Save or load the sums of exchange(). */
-  virtual void archive(Archive& /*a*/) const {}
+
+ protected:
+  mutable Exchange exchange_;
+
+ private:
+  Traits traits_;
 };
 
 /** A constraint that projects each node independently: derived classes define
- * project(). While one adds up its work, it must not be nodewise(), so that
- * only one thread does. */
+ * project(). */
 class NodewiseConstraint : public SweptConstraint {
  public:
+  explicit NodewiseConstraint(const Traits& traits = {.nodewise = true})
+      : SweptConstraint(traits) {}
   void operator()(Cloth& g, double t) const final {
     project(g, t, 0, arrays(g).node_slots());
   }
-  bool nodewise() const override { return true; }
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override = 0;
+};
+
+/** A constraint that only holds nodes: derived classes define each_place(). */
+class HoldingConstraint : public NodewiseConstraint {
+ public:
+  explicit HoldingConstraint(const Motion& motion = {})
+      : NodewiseConstraint(
+            {.nodewise = true, .holds = true, .motion = motion}) {}
+  void project(Cloth& g, double t, unsigned first, unsigned last) const final;
+  void each_place(const Cloth& g, double t, unsigned first, unsigned last,
+                  const PlaceVisitor& use) const override = 0;
 };
 
 /** Call @a use(node) for each node with an id in [first, last) whose position
@@ -153,37 +150,29 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
       use(arrays(g).node_with_id(i));
 }
 
-/** The first hit of @a ball: as SweptConstraint::first_hit(). */
+/** The first point, to round-off, of the line @a from one place @a to another
+ * that is inside @a ball, if that contains neither end: a node on that line
+ * would tunnel through it. nullopt if there is none. */
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 
-/** Holds nodes at their places, or moves all of them along. They are sorted by
- * id, so that those of a part are found. Nodes may be removed. */
-class PinnedNodes : public NodewiseConstraint {
+/** Moves nodes along a line: at time t they are at their initial places +
+ * way(t), with the velocity of that. They are sorted by id, so that those of a
+ * part are found. Nodes may be removed; the others are still moved. */
+class PinnedNodes final : public HoldingConstraint {
  public:
-  /** @pre all were in one graph  O(pins log pins) */
-  explicit PinnedNodes(const std::vector<PinConstraint::Pin>& pins);
+  /** @param pins with the places at t = 0
+   * @pre all were in one graph  O(pins log pins) */
+  explicit PinnedNodes(const std::vector<PinConstraint::Pin>& pins,
+                       const Motion& motion = {});
+  explicit PinnedNodes(const PinConstraint& pins, const Motion& motion = {})
+      : PinnedNodes(pins.pins, motion) {}
   /** O(log(pins) + those of the part) */
-  void project(Cloth& g, double t, unsigned first,
-               unsigned last) const override;
-  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
-                    unsigned last) const override;
-  /** O(pins) */
-  void each_place(const Cloth& g, double t,
+  void each_place(const Cloth& g, double t, unsigned first, unsigned last,
                   const PlaceVisitor& use) const override;
-  bool is_at_rest(double /*t*/) const override { return true; }
-
- protected:
-  /** How far all have moved from their places at time @a t, and how fast they
-   * move then. */
-  virtual Place moved(double /*t*/) const { return {}; }
 
  private:
   std::vector<PinConstraint::Pin> pins_;  // in the order of the nodes
-
-  template <typename Use>
-  void each_of_part(const Cloth& g, unsigned first, unsigned last,
-                    Use use) const;
 };
 
 /** The course's function for constraints of which one is swept: such a
@@ -224,18 +213,30 @@ class ConstraintPlan {
   /** Apply it to @a g at time @a t [s]; then restore_order(), if nodes
    * were removed.  O(N) unless a term takes longer */
   void operator()(Cloth& g, double t) const;
-  // As in SweptConstraint, for all terms together:
+  /** All terms are. */
   bool nodewise() const;
+  /** As SweptConstraint::project(). */
   void project(Cloth& g, double t, unsigned first, unsigned last) const;
-  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
-                    unsigned last) const;
-  void apply_flat(FlatCloth& c, Cloth& g, double t) const;
-  bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
+  /** The call for a cloth by component, whose graph is @a g. Positions and
+   * velocities in @a g may be out of date, before and after it. */
+  void apply(FlatCloth& c, Cloth& g, double t) const;
+  /** Do what the call does to the nodes with ids in [first, last), if that does
+   * not depend on other nodes: if each term is nodewise or changes none of
+   * them. Threads may call it for several parts at once.
+   * @return false if it depends on them; then @a c is undefined */
+  bool apply_to_part(FlatCloth& c, Cloth& g, double t, unsigned first,
                      unsigned last) const;
+  /** As SweptConstraint::each_place(), for all of @a g. */
   void each_place(const Cloth& g, double t, const PlaceVisitor& use) const;
+  /** The first time [s] after @a t, by more than round-off, at which a place
+   * changes its velocity; infinity if none does. */
   double next_velocity_jump(double t) const;
+  /** The first of all obstacles' first_hit(). */
   std::optional<Point> first_hit(const Point& from, const Point& to) const;
+  /** The size [m] of the smallest obstacle; infinity if there is none. */
   double thinnest() const;
+  /** True only if nothing in it moves from time @a t [s] on, so that it does no
+   * work: exchange() changes only in calls that remove nodes. */
   bool is_at_rest(double t) const;
   Exchange exchange() const;
   void archive(Archive& a) const;
@@ -251,37 +252,29 @@ class ConstraintPlan {
   void set_held_velocities(Cloth& g, double t) const;
 
  private:
-  std::vector<std::shared_ptr<const SweptConstraint>> terms_;
+  struct Term {
+    std::shared_ptr<const SweptConstraint> constraint;
+    const ForwardingConstraint* forwards;  // the same; or null
+    const ConstraintPlan* instead() const;
+  };
+  std::vector<Term> terms_;
+  /** The terms, and those of inner plans instead of what forwards to them. */
+  std::vector<std::shared_ptr<const SweptConstraint>> leaves_;
 
   void add(std::shared_ptr<const ZeroConstraint> constraint);
+  static bool apply_to_part(const Term& term, FlatCloth& c, Cloth& g, double t,
+                            unsigned first, unsigned last);
 };
 
-/** A constraint that forwards all functions to another one. Derived classes
- * define the call, and nodewise() or project() if these differ. */
+/** A constraint that calls others. A ConstraintPlan asks those for all but the
+ * call: held nodes, obstacles, what they exchange. */
 class ForwardingConstraint : public SweptConstraint {
  public:
-  explicit ForwardingConstraint(ConstraintPlan inner)
-      : inner_(std::move(inner)) {}
-  bool nodewise() const override { return inner_.nodewise(); }
-  void project(Cloth& g, double t, unsigned first,
-               unsigned last) const override {
-    inner_.project(g, t, first, last);
-  }
-  void each_place(const Cloth& g, double t,
-                  const PlaceVisitor& use) const override {
-    inner_.each_place(g, t, use);
-  }
-  double next_velocity_jump(double t) const override {
-    return inner_.next_velocity_jump(t);
-  }
-  std::optional<Point> first_hit(const Point& from,
-                                 const Point& to) const override {
-    return inner_.first_hit(from, to);
-  }
-  double thinnest() const override { return inner_.thinnest(); }
-  bool is_at_rest(double t) const override { return inner_.is_at_rest(t); }
-  Exchange exchange() const override { return inner_.exchange(); }
-  void archive(Archive& a) const override { inner_.archive(a); }
+  explicit ForwardingConstraint(ConstraintPlan inner, const Traits& traits = {})
+      : SweptConstraint(traits), inner_(std::move(inner)) {}
+  const ConstraintPlan& inner() const { return inner_; }
+  /** True if at present the call is that of inner(). */
+  virtual bool is_inner() const { return false; }
 
  protected:
   ConstraintPlan inner_;
@@ -297,7 +290,8 @@ class WatchedConstraint final : public ForwardingConstraint {
     double length;  ///< of its path since the last call [m]
   };
 
-  using ForwardingConstraint::ForwardingConstraint;
+  explicit WatchedConstraint(ConstraintPlan inner)
+      : ForwardingConstraint(std::move(inner)) {}
 
   /** Start watching from the state of @a g, or stop. While on, this and each
    * call take O(N). */
@@ -310,23 +304,9 @@ class WatchedConstraint final : public ForwardingConstraint {
   const Stopped& first() const { return first_; }
 
   void operator()(Cloth& g, double t) const override;
-  bool nodewise() const override {
-    return before_.empty() && inner_.nodewise();
-  }
-  // While it is off, the graph is not needed:
-  void project_flat(FlatCloth& c, Cloth& g, double t, unsigned first,
-                    unsigned last) const override {
-    inner_.project_flat(c, g, t, first, last);
-  }
-  void apply_flat(FlatCloth& c, Cloth& g, double t) const override {
-    if (before_.empty()) return inner_.apply_flat(c, g, t);
-    SweptConstraint::apply_flat(c, g, t);
-  }
-  bool project_alone(FlatCloth& c, Cloth& g, double t, unsigned first,
-                     unsigned last) const override {
-    return before_.empty() && inner_.project_alone(c, g, t, first, last);
-  }
-  void archive(Archive& a) const override {
+  bool is_inner() const override { return before_.empty(); }
+  /** With that of inner(). */
+  void archive(Archive& a) const {
     inner_.archive(a);
     a(before_)(count_)(first_.node)(first_.length).require(count_ >= 0);
   }

@@ -149,7 +149,7 @@ void FlatFlow::run_alone(Level& level) {
   };
   if (!by_part) {
     go(0, std::ref(move_part), nothing);
-    stage.project->apply_flat(cloth_, *g_, stage.t);
+    stage.project->apply(cloth_, *g_, stage.t);
     if (version_ != cloth_.version()) {
       prepare();
       prepare(level, FlatStage(stage));
@@ -268,7 +268,7 @@ bool FlatFlow::move(const Level& level, unsigned first, unsigned last,
   if (stage.held_move) set_velocities(level, first, last);
   const bool good =
       !project || !stage.project ||
-      stage.project->project_alone(cloth_, *g_, stage.t, first, last);
+      stage.project->apply_to_part(cloth_, *g_, stage.t, first, last);
   if (by_graph_) cloth_.write(*g_, first, last);
   return good;
 }

@@ -13,7 +13,7 @@ namespace lab {
 
 /** Where the held nodes of the stiff springs are during a step: on a straight
  * way between their places at its start and its end. */
-class StiffPlaces final : public NodewiseConstraint {
+class StiffPlaces final : public HoldingConstraint {
  public:
   explicit StiffPlaces(StiffSplit split) : split_(std::move(split)) {}
   /** Take the places of a step of @a dt from @a t [s]. */
@@ -33,15 +33,13 @@ class StiffPlaces final : public NodewiseConstraint {
     constraint.each_place(g, t, std::ref(start));  // nothing on the heap
     constraint.each_place(g, t + dt, std::ref(end));
   }
-  void each_place(const Cloth& stiff, double t,
+  void each_place(const Cloth& stiff, double t, unsigned first, unsigned last,
                   const PlaceVisitor& use) const override {
     for (const Way& w : ways_)
-      use(stiff.node(w.node),
-          {w.from + (t - t_) / dt_ * (w.to - w.from), (w.to - w.from) / dt_});
+      if (first <= w.node && w.node < last)
+        use(stiff.node(w.node),
+            {w.from + (t - t_) / dt_ * (w.to - w.from), (w.to - w.from) / dt_});
   }
-  void project(Cloth&, double, unsigned, unsigned) const override {}
-  void project_flat(FlatCloth&, Cloth&, double, unsigned,
-                    unsigned) const override {}
 
  private:
   struct Way {

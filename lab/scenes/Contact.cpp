@@ -29,53 +29,49 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 
 }  // namespace contact
 
-// ----------------------------------------------------------------------- Pins
-
-double MovingPinConstraint::next_velocity_jump(double t) const {
-  return t < motion_.until * (1 - 1e-12)
-             ? motion_.until
-             : SweptConstraint::next_velocity_jump(t);
-}
-
 // ------------------------------------------------------------------ Touchable
 
 void Touchable::touch(Node n, double depth, const Point& out,
                       const Point& velocity) const {
   const double work = contact::touch(n, depth, out, velocity, friction_);
-  if (!nodewise()) work_ += work;  // else several threads may be here
+  if (!traits().nodewise) exchange_.work += work;  // else several threads may be here
 }
 
 // ----------------------------------------------------------------------- Wall
 
 WallConstraint::WallConstraint(const Point& at, const Point& normal,
                                const Motion& motion, double friction)
-    : Touchable(motion, friction), at_(at), normal_(normal / norm(normal)) {
+    : Touchable(Zone::behind(at, normal / norm(normal)), {}, motion, friction),
+      at_(at),
+      normal_(normal / norm(normal)) {
   assert(norm(normal) > 0);
 }
 
 void WallConstraint::project(Cloth& g, double t, unsigned first,
                              unsigned last) const {
-  const Point at = at_ + motion_.way(t), velocity = motion_.velocity_at(t);
+  const Motion& motion = traits().motion;
+  const Point at = at_ + motion.way(t), velocity = motion.velocity_at(t);
   auto height = [&](const Point& p) { return dot(p - at, normal_); };
   for_each_violating(
       g, first, last, [&](const Point& p) { return height(p) < 0; },
       [&](Node n) { touch(n, -height(n.position()), normal_, velocity); });
 }
 
-std::optional<Zone> WallConstraint::zone(double t) const {
-  return Zone::behind(at_ + motion_.way(t), normal_);
-}
-
 // ----------------------------------------------------------------------- Ball
 
 BallConstraint::BallConstraint(const Ball& ball, const Motion& motion,
                                double friction)
-    : Touchable(motion, friction), ball_(ball) {}
+    : Touchable(
+          Zone::inside(ball),
+          motion.velocity == Point() ? std::optional(ball) : std::nullopt,
+          motion, friction),
+      ball_(ball) {}
 
 void BallConstraint::project(Cloth& g, double t, unsigned first,
                              unsigned last) const {
-  const Ball ball = {ball_.center + motion_.way(t), ball_.radius};
-  const Point velocity = motion_.velocity_at(t);
+  const Motion& motion = traits().motion;
+  const Ball ball = {ball_.center + motion.way(t), ball_.radius};
+  const Point velocity = motion.velocity_at(t);
   for_each_violating(
       g, first, last, [&](const Point& p) { return ball.holds(p); },
       [&](Node n) {
@@ -85,18 +81,6 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
             distance > 0 ? from_center / distance : Point(0, 0, 1);
         touch(n, ball.radius - distance, out, velocity);
       });
-}
-
-std::optional<Zone> BallConstraint::zone(double t) const {
-  return Zone::inside({ball_.center + motion_.way(t), ball_.radius});
-}
-
-std::optional<Point> BallConstraint::first_hit(const Point& from,
-                                               const Point& to) const {
-  return speed() > 0 ? std::nullopt : lab::first_hit(ball_, from, to);
-}
-double BallConstraint::thinnest() const {
-  return speed() > 0 ? SweptConstraint::thinnest() : ball_.radius;
 }
 
 // --------------------------------------------------------------------- Strain

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Contact.hpp
  * The constraints of scenes beyond those of the assignment: walls and balls
- * with friction that may move, moving pins, and edges that break.
+ * with friction that may move, and edges that break.
  *
  * The assignment's plane and sphere remove all of a node's normal velocity;
  * walls and balls remove only the inward part, relative to the obstacle. */
@@ -40,60 +40,27 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 
 }  // namespace contact
 
-/** Moves nodes along a line: at time t they are at their initial places +
- * way(t), with the velocity of that. Methods ask for the places at each of
- * their stages. Pinned nodes may be removed; the others are still moved.
- * Complexity of a call: O(pins). */
-class MovingPinConstraint : public PinnedNodes {
- public:
-  /** The nodes of @a pins move.  @pre all in one graph */
-  MovingPinConstraint(const PinConstraint& pins, const Motion& motion)
-      : MovingPinConstraint(pins.pins, motion) {}
-  /** The same for nodes with their places at t = 0. */
-  MovingPinConstraint(const std::vector<PinConstraint::Pin>& pins,
-                      const Motion& motion)
-      : PinnedNodes(pins), motion_(motion) {}
-  double next_velocity_jump(double t) const override;
-  bool is_at_rest(double t) const override {
-    return motion_.velocity_at(t) == Point() &&
-           next_velocity_jump(t) == HUGE_VAL;
-  }
-
- protected:
-  Place moved(double t) const override {
-    return {motion_.way(t), motion_.velocity_at(t)};
-  }
-
- private:
-  Motion motion_;
-};
-
 /** The common part of wall and ball: an obstacle with friction that may move.
  * While it moves it adds up its work, node by node in a fixed order. */
 class Touchable : public NodewiseConstraint {
- public:
-  bool nodewise() const override { return motion_.velocity == Point(); }
-  bool is_at_rest(double /*t*/) const override { return nodewise(); }
-  Exchange exchange() const override { return {work_, 0}; }
-  void archive(Archive& a) const override {
-    a(work_).require(std::isfinite(work_));
-  }
-
  protected:
-  /** @param friction coefficient, >= 0 */
-  Touchable(const Motion& motion, double friction)
-      : motion_(motion), friction_(friction) {
+  /** @param zone at t = 0   @param obstacle if it is at rest
+   * @param friction coefficient, >= 0 */
+  Touchable(const Zone& zone, const std::optional<Ball>& obstacle,
+            const Motion& motion, double friction)
+      : NodewiseConstraint({.nodewise = motion.velocity == Point(),
+                            .zone = zone,
+                            .obstacle = obstacle,
+                            .motion = motion}),
+        friction_(friction) {
     assert(friction >= 0);
   }
   /** contact::touch(), and count the work. */
   void touch(Node n, double depth, const Point& out,
              const Point& velocity) const;
 
-  Motion motion_;
-
  private:
   double friction_;
-  mutable double work_ = 0;  // [J]
 };
 
 /** A half space bounded by a plane, which no node enters.
@@ -108,7 +75,6 @@ class WallConstraint : public Touchable {
                  const Motion& motion = {}, double friction = 0);
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  std::optional<Zone> zone(double t) const override;
 
  private:
   Point at_, normal_;
@@ -118,8 +84,7 @@ class WallConstraint : public Touchable {
  * round-off; without friction, a node that did is at the nearest point of the
  * surface (the top, if it was at the center). Velocities: contact::touch().
  *
- * first_hit() finds a node that tunnels through the ball only if the ball is at
- * rest. If it moves, choose steps so short that the speeds of ball and nodes,
+ * Nodes that tunnel through the ball are found only if the ball is at rest. If it moves, choose steps so short that the speeds of ball and nodes,
  * times dt, stay well below the radius. */
 class BallConstraint : public Touchable {
  public:
@@ -127,14 +92,10 @@ class BallConstraint : public Touchable {
   explicit BallConstraint(const Ball& ball, const Motion& motion = {},
                           double friction = 0);
   /** The speed of the ball while it moves [m/s]. */
-  double speed() const { return norm(motion_.velocity); }
+  double speed() const { return norm(traits().motion.velocity); }
 
   void project(Cloth& g, double t, unsigned first,
                unsigned last) const override;
-  std::optional<Zone> zone(double t) const override;
-  std::optional<Point> first_hit(const Point& from,
-                                 const Point& to) const override;
-  double thinnest() const override;
 
  private:
   Ball ball_;
@@ -151,7 +112,6 @@ class StrainConstraint : public SweptConstraint {
     assert(limit >= 0);
   }
   void operator()(Cloth& g, double t) const override;
-  bool is_at_rest(double /*t*/) const override { return true; }
 
  private:
   double most_;

@@ -7,11 +7,6 @@
 
 namespace lab {
 
-Point Motion::way(double t) const { return std::min(t, until) * velocity; }
-Point Motion::velocity_at(double t) const {
-  return t < until ? velocity : Point();
-}
-
 bool Box::holds(const Point& p) const {
   auto within = [](double a, double b, double x) {
     return std::min(a, b) - Pin::near < x && x < std::max(a, b) + Pin::near;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/fast/Motion.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -56,20 +57,6 @@ struct Material {
   std::optional<double> density;  ///< [kg/m^2], > 0
   std::optional<double> modulus;  ///< force per width and strain [N/m], >= 0
   std::optional<double> drag;     ///< [kg/(s m^2)], >= 0
-};
-
-/** Motion at constant velocity until a time. */
-struct Motion {
-  Point velocity;  ///< [m/s], from t = 0 on
-  /** The time at which it stops [s], >= 0. */
-  double until = std::numeric_limits<double>::infinity();
-
-  /** Displacement [m] at time @a t [s]. Also for @a t < 0, where the first step
-   * of some methods evaluates it. */
-  Point way(double t) const;
-  /** [m/s]; 0 after it has stopped */
-  Point velocity_at(double t) const;
-  bool operator==(const Motion&) const = default;
 };
 
 /** A grid over a parallelogram. */

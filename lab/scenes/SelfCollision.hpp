@@ -133,8 +133,6 @@ class SelfCollision : public ForwardingConstraint {
   /** The rounds of the last call; 1 if no pair was too near. */
   int rounds() const { return rounds_; }
 
-  bool nodewise() const override { return false; }
-
  private:
   struct Pair {
     unsigned i, j;

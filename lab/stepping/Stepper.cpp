@@ -338,7 +338,7 @@ void Stepper::keep_checked() {
   checked_ = clock_;
   flow_ = flow();
   version_ = arrays(system_.cloth).version();
-  const double thin = system_.watched->thinnest();
+  const double thin = constraint_.thinnest();
   if (!std::isfinite(thin)) return;
   const double gain = std::abs(system_.gravity) * guard_interval * clock_.dt;
   system_.watched->watch(
