@@ -20,7 +20,7 @@ Model sheet(unsigned n, double t_end) {
   Model m;
   m.sheets.resize(1), m.sheets[0].nodes = {n, n};
   m.t_end = t_end;
-  m.method = find_method("rkn64");
+  m.method = &table::rkn64;
   m.step = {.dt = std::min(1 / 30., t_end)};
   return m;
 }
@@ -47,7 +47,7 @@ Track track_of(const Model& m, const Point& off = Point(), double from = 0) {
 TEST(Separation, IsTheDistanceOfTheNodesAtEachTimeThatBothHaveKept) {
   Model m = sheet(3, 0.5);
   m.gravity = 0, m.stiffness = 0;
-  m.method = find_method("verlet"), m.step.dt = 0.01;
+  m.method = &table::verlet, m.step.dt = 0.01;
   const Track still = track_of(m);
   const Separation same(still, track_of(m));
   EXPECT_EQ(same.most().rms, 0);
@@ -62,13 +62,13 @@ TEST(Separation, IsTheDistanceOfTheNodesAtEachTimeThatBothHaveKept) {
 
 TEST(Separation, KeepsNoMoreStatesThanFitIntoMemory) {
   Model m = sheet(3, 1);
-  m.method = find_method("verlet"), m.step.dt = 0.001;
+  m.method = &table::verlet, m.step.dt = 0.001;
   EXPECT_EQ(Separation(track_of(m), track_of(m)).all().size(), 64u);
 }
 
 TEST(Separation, IsInfiniteOnceOtherNodesAreTornOff) {
   Model m = sheet(4, 0.2);
-  m.method = find_method("verlet"), m.step.dt = 0.01;
+  m.method = &table::verlet, m.step.dt = 0.01;
   Model torn = m;
   torn.tears = {Ball{Point(0, 0, -0.05), 0.02}};
   const Separation apart(track_of(m), track_of(torn));
@@ -83,7 +83,7 @@ double error_of(Model m, const Accuracy& found) {
   m.step = found.step;
   Scene run(m);
   EXPECT_TRUE(run.run_to(m.t_end));
-  m.method = find_method("rkn64");
+  m.method = &table::rkn64;
   m.step.tolerance = found.step.tolerance / 1e4;
   Scene exact(m);
   EXPECT_TRUE(exact.run_to(m.t_end));

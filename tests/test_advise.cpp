@@ -37,7 +37,7 @@ Answer truth(const Model& m, double factor) {
   Refinement grids(m.measure);
   for (double coarser : {4, 2, 1}) {
     Model fine = refined(m, factor / coarser);
-    fine.method = find_method("pefrl");
+    fine.method = &table::pefrl;
     fine.step = {.rule = StepRule::safe};
     GridReport g;
     g.factor = factor / coarser;
@@ -274,12 +274,12 @@ TEST(Advise, KeepsAMethodAndAStepOrRefuses) {
   Model m = hanging(1e-2);
   AdviceRules rules;
   rules.keeps_method = true;
-  m.method = find_method("rkn64");
+  m.method = &table::rkn64;
   const Advice a = advise(m, rules);
   ASSERT_EQ(a.refusal, "");
-  EXPECT_EQ(a.model.method->info.name, std::string("rkn64"));
+  EXPECT_EQ(a.model.method->info.name, "rkn64");
   EXPECT_EQ(a.of_stable, 0);  // it has no limit
-  m.method = find_method("implicit-euler");
+  m.method = &table::implicit_euler;
   m.step = {.dt = 0.2};
   rules.keeps_step = true;
   EXPECT_EQ(advise(m, rules).refusal,
@@ -323,7 +323,7 @@ TEST(Advise, AMeshFromFilesTakesAFewRuns) {
   m.nodes = "data/grid1.nodes", m.tets = "data/grid1.tets";
   m.material = {.density = 0.3, .modulus = 200, .drag = 3};
   m.pins = {read_pin("x 0"), read_pin("x 1")};
-  m.method = find_method("verlet"), m.step = {.rule = StepRule::safe};
+  m.method = &table::verlet, m.step = {.rule = StepRule::safe};
   m.t_end = 0.5, m.tolerance = 1e-3;
   AdviceRules rules;
   for (double runs : {5, 8}) {
@@ -407,13 +407,13 @@ TEST(Advise, ItsSceneCanBeWrittenAndRun) {
 
 TEST(Budget, ForeseesWhatARunCosts) {
   Model m = hanging(1);
-  m.method = find_method("verlet");
+  m.method = &table::verlet;
   m.step = {.dt = 0.002};
   EXPECT_EQ(work_of_run(m), try_out(m).work);
   m.step = {.rule = StepRule::safe};
   EXPECT_NEAR(work_of_run(m), try_out(m).work, 1e-12 * work_of_run(m));
   const double verlet = work_of_run(m);
-  m.method = find_method("tr-bdf2");
+  m.method = &table::tr_bdf2;
   EXPECT_GT(work_of_run(m), 20 * verlet);  // by the same step, with solves
 }
 
@@ -421,7 +421,7 @@ TEST(Budget, ForeseesWhatARunCosts) {
 // matrix; on small grids both are less.
 TEST(Budget, ForeseesWhatSolversTake) {
   const StepCosts costs(hanging(1));
-  const MethodEntry& method = *find_method("tr-bdf2");
+  const MethodEntry& method = table::tr_bdf2;
   const double limit = costs.verlet(), all = costs.springs();
   const double one = costs.of_step(method, limit) / all,
                ten = costs.of_step(method, 10 * limit) / all;
@@ -434,10 +434,10 @@ TEST(Budget, ForeseesWhatSolversTake) {
   const double fine = costs.of_step(method, limit, 8) / (64 * all);
   EXPECT_GT(fine, one);
   EXPECT_LT(fine, costs.of_step(method, 100 * limit, 8) / (64 * all) / 2);
-  const MethodEntry& verlet = *find_method("verlet");
+  const MethodEntry& verlet = table::verlet;
   EXPECT_EQ(costs.of_step(verlet, limit, 2), 4 * all);
   // xpbd iterates as often by any step.
-  const MethodEntry& xpbd = *find_method("xpbd");
+  const MethodEntry& xpbd = table::xpbd;
   EXPECT_NEAR(costs.of_step(xpbd, 100 * limit, 8),
               costs.of_step(xpbd, limit, 8), 0.05 * 64 * 65 * all);
 }

@@ -206,7 +206,7 @@ TEST(SavedScene, GoesOnToTheSameBitsByEveryMethod) {
 TEST(SavedScene, GoesOnWithChosenStepsAndFailsAlike) {
   for (const char* dt : {"auto:0.02", "auto:sharp", "0.05"}) {
     for (Model m : scenes()) {
-      m.method = find_method("verlet");
+      m.method = &table::verlet;
       m.step = read_time_step(dt);
       Scene whole(m), first(m), second(m);
       whole.run_to(2);

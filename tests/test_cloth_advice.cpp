@@ -52,10 +52,10 @@ class AdviceOfKind : public ClothProgram {
   static Answer finer_run(const Model& m, const Advice& a) {
     const double factor = m.sheets.empty() ? 1 : 2 * a.grids.back().factor;
     Model fine = m.sheets.empty() ? m : refined(m, factor);
-    fine.method = find_method("pefrl");
+    fine.method = &table::pefrl;
     fine.step = {.rule = StepRule::safe};
     if (m.material.modulus > 1e6)
-      fine.method = find_method("tr-bdf2"), fine.step = {.dt = m.t_end / 256};
+      fine.method = &table::tr_bdf2, fine.step = {.dt = m.t_end / 256};
     return try_out(fine).answer;
   }
 

@@ -184,7 +184,7 @@ TEST_F(ClothProgram, WarnsAboveTheLimitAndGoesOn) {
 
 TEST_F(ClothProgram, ChoosesItsStep) {
   for (const MethodEntry& m : methods) {
-    const std::string method = std::string(" --method ") + m.info.name;
+    const std::string method = std::string(" --method ").append(m.info.name);
     Result safe = run(grid0 + "--headless --dt auto --damping 0.04" + method);
     Result sharp =
         run(grid0 + "--headless --dt auto:sharp --damping 0.04" + method);
@@ -192,10 +192,10 @@ TEST_F(ClothProgram, ChoosesItsStep) {
       EXPECT_EQ(safe.status, 2) << m.info.name;
       EXPECT_EQ(safe.err,
                 m.info.adaptive
-                    ? std::string("cloth: ") + m.info.name +
+                    ? std::string("cloth: ").append(m.info.name) +
                           " chooses its inner steps by their error: omit --dt "
                           "and give --tolerance\n"
-                    : std::string("cloth: ") + m.info.name +
+                    : std::string("cloth: ").append(m.info.name) +
                           " has no stability limit here, so no step can be "
                           "chosen: give --dt a number\n");
       EXPECT_EQ(sharp.status, 2) << m.info.name;
@@ -294,7 +294,7 @@ TEST_F(ClothProgram, RunsEveryMethodAndListsIt) {
             std::string::npos);
   for (const MethodEntry& m : methods) {
     EXPECT_NE(list.out.find(m.info.name), std::string::npos);
-    std::string method = std::string(" --method ") + m.info.name;
+    std::string method = std::string(" --method ").append(m.info.name);
     for (const char* name : {"problem1", "tear"}) {
       Result r = run(stage(name) + grid0 +
                      "--headless --t-end 0.1 --damping 0.04" + method);

@@ -41,7 +41,7 @@ TEST_F(ClothProgram, GoesOnToTheSameBitsWhereverItIsKilled) {
   for (int k = 0; k < runs; ++k) {
     const auto& m = *(methods.begin() + k % int(methods.size()));
     const std::string run_of = scenes[k / int(methods.size()) % 2] +
-                               "--method " + m.info.name +
+                               "--method " + std::string(m.info.name) +
                                " --dt 0.003 --t-end 0.2 --headless ";
     const Result whole = run(run_of + "--every 3 --csv " + path("a.csv") +
                              " --out " + path("a.nodes"));

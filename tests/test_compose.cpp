@@ -369,7 +369,7 @@ TEST(Compose, ANodeWithoutAQuadHasNoMassByArea) {
  * cells: the order in which it converges. */
 double order_of(Model m, Measure what, unsigned cells) {
   m.measure = what;
-  m.method = find_method("verlet");
+  m.method = &table::verlet;
   m.step = {.rule = StepRule::safe};
   Answer at[3];
   for (int k : {0, 1, 2}) {
@@ -442,7 +442,7 @@ TEST(Compose, ALooseSheetFallsAsAPointWithDragDoes) {
     m.material.density = 0.2;
     m.material.drag = gamma * 0.2;
     m.stiffness = 1;
-    m.method = find_method("pefrl");
+    m.method = &table::pefrl;
     m.step.dt = t / 64;
     Scene scene(m);
     ASSERT_TRUE(scene.run_to(t)) << text_of(scene.failure());
@@ -497,7 +497,7 @@ TEST(Compose, PinsMoveAlongTheirLine) {
   m.pins = {read_pin("x 0"), read_pin("x 1 velocity 0 0 0.5 until 0.2")};
   m.t_end = 0.4;
   m.gravity = 0;
-  m.method = find_method("verlet");
+  m.method = &table::verlet;
   Scene scene(m);
   ASSERT_TRUE(scene.run_to(m.t_end));
   EXPECT_EQ(scene.cloth().node(0).position(), Point(0, 0, 0));

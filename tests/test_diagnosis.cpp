@@ -164,8 +164,7 @@ const std::vector<Failing> failing = {
 std::string dt_of(const Failing& f) {
   const Scene about(parsed(f.scene + " --dt 1 --method " + f.method));
   double limit = about.safe_limit();
-  if (!(limit > 0 && limit < no_limit))
-    limit = about.safe_limit(*find_method("verlet"));
+  if (!(limit > 0 && limit < no_limit)) limit = about.safe_limit(table::verlet);
   return CME212::two_digits(f.share * limit);
 }
 

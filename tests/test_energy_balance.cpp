@@ -18,7 +18,7 @@ using namespace lab;
 namespace {
 
 /** A sheet of side x side nodes over the unit square, without gravity. */
-Model sheet(unsigned side, const char* method, double dt) {
+Model sheet(unsigned side, std::string_view method, double dt) {
   Model m;
   m.sheets = {{.nodes = {side, side}}};
   m.gravity = 0;
@@ -297,8 +297,7 @@ TEST(End, KeepsTheOrderThroughShorterSteps) {
   recipe.constraint = p.constraint;
   for (const MethodEntry& method : methods) {
     if (method.info.order > 4 || method.info.adaptive) continue;
-    if (method.info.limit == 0 || method.info.name == std::string_view("xpbd"))
-      continue;
+    if (method.info.limit == 0 || method.info.name == "xpbd") continue;
     const double n = method.info.order == 1          ? 2000
                      : method.info.limit == no_limit ? 300
                                                      : 160;

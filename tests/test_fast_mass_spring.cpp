@@ -15,11 +15,10 @@ class NewtonEuler : public Method {
  public:
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override {
-    stage_.begin("newton", t, dt, g, constraint);
-    stage_.hold(g, t + dt, constraint);
-    stage_.solve_newton(g, t + dt, dt, force);
+    auto& stage = stage_.begin("newton", t, dt, g, force, constraint);
+    stage.solve_newton(t + dt, dt);
     for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-      arrays(g).node_values()[i].vel = stage_.w[i];
+      arrays(g).node_values()[i].vel = stage.w[i];
     return implicit_detail::finish(g, t + dt, constraint);
   }
 

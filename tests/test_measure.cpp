@@ -23,7 +23,7 @@ namespace {
 Model scene_of(const std::string& sheet, double t_end, double dt) {
   Model m;
   m.sheets = {read_sheet(sheet)};
-  m.method = find_method("verlet");
+  m.method = &table::verlet;
   m.t_end = t_end, m.step.dt = dt;
   return m;
 }

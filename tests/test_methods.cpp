@@ -99,7 +99,7 @@ class Explicit : public ::testing::Test {};
 struct Names {
   template <typename M>
   static std::string GetName(int) {
-    std::string name = M::info.name;
+    std::string name(M::info.name);
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
   }
@@ -193,7 +193,7 @@ TYPED_TEST(Explicit, MovesNothingThatIsHeld) {
 class EveryMethod : public ::testing::TestWithParam<MethodEntry> {};
 INSTANTIATE_TEST_SUITE_P(Table, EveryMethod, ::testing::ValuesIn(methods),
                          [](const auto& m) {
-                           std::string name = m.param.info.name;
+                           std::string name(m.param.info.name);
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
@@ -505,7 +505,7 @@ TEST(Drag, OfTheSquareLowersSplittings) {
     const MethodEntry& m = *find_method(name);
     EXPECT_NEAR(std::log2(error(m, 400) / error(m, 800)), 1, 0.1) << name;
   }
-  const MethodEntry &rk4 = *find_method("rk4"), &rkn = *find_method("rkn64");
+  const MethodEntry &rk4 = table::rk4, &rkn = table::rkn64;
   EXPECT_GT(std::log2(error(rk4, 20) / error(rk4, 40)), 3.6);
   EXPECT_GT(std::log2(error(rkn, 400) / error(rkn, 800)), 0.9);
 }

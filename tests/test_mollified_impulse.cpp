@@ -134,10 +134,10 @@ TEST(MollifiedImpulse, SavesForceEvaluationsOnASoftClothWithAStiffEdge) {
   const Problem p = stiff_edge(15, 0.3);
   const Reference right = reference(p, 4);
   const long long verlet = least_of_verlet(p);
-  std::printf("floor %.1e m; verlet at its limit, %lld evaluations: %.2e m\n",
-              right.floor, verlet,
-              distance(p, run(p, *find_method("verlet")->make(), verlet).end,
-                       right.end));
+  std::printf(
+      "floor %.1e m; verlet at its limit, %lld evaluations: %.2e m\n",
+      right.floor, verlet,
+      distance(p, run(p, *table::verlet.make(), verlet).end, right.end));
   const auto error = [&](long long steps) {
     MollifiedImpulse impulse;
     const Outcome out = run(p, impulse, steps);
@@ -347,8 +347,8 @@ TEST(MollifiedImpulse, KeepsItsOrderAtAMovingPin) {
   p.constraint = [](const Cloth& g) {
     const Node n = middle_edge(g).node1();
     return make_combined_constraints(
-        PinConstraint(g), PinnedNodes(PinConstraint(std::vector{n}),
-                                              {Point(0, 0, 0.005)}));
+        PinConstraint(g),
+        PinnedNodes(PinConstraint(std::vector{n}), {Point(0, 0, 0.005)}));
   };
   const Reference right = reference(p, 4);
   const auto error = [&](long long steps) {

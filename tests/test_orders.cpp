@@ -68,7 +68,7 @@ const std::map<std::string, std::array<double, 5>> first_steps = {
 /** A method that makes exactly the steps that it is asked for, and solves its
  * linear systems so well that only the error of the step is seen. */
 std::unique_ptr<Method> make(const MethodEntry& m) {
-  const std::string name = m.info.name;
+  const std::string_view name = m.info.name;
   if (name == ImplicitEuler::info.name)
     return std::make_unique<ImplicitEuler>(1e-12);
   auto method = m.make();
@@ -133,9 +133,10 @@ class Order
       std::printf(" %s |", c.problem.name.c_str());
     std::puts("\n|---|---|---|---|---|---|---|");
     for (const MethodEntry& m : methods) {
-      std::printf("| %s | %d |", m.info.name, m.info.order);
+      std::printf("| %s | %d |", m.info.name.data(), m.info.order);
       for (const Course& c : courses())
-        if (auto it = all_measured.find({m.info.name, c.problem.name});
+        if (auto it =
+                all_measured.find({std::string(m.info.name), c.problem.name});
             it != all_measured.end())
           std::printf(" %.2f (%.1f) |", it->second.slope, it->second.decades);
         else
@@ -194,7 +195,7 @@ double error_over_a_kink(const MethodEntry& method, long long steps) {
 // ends there keeps the order of the method.
 TEST(Kink, CostsNoOrderIfAStepEndsThere) {
   for (const MethodEntry& m : methods) {
-    const std::string name = m.info.name;
+    const std::string_view name = m.info.name;
     SCOPED_TRACE(name);
     const long long steps = m.info.order == 1 ? 1000 : 110;
     const double coarse = error_over_a_kink(m, steps);
@@ -208,7 +209,7 @@ TEST(Kink, CostsNoOrderIfAStepEndsThere) {
 
 std::vector<std::string> names_of_methods() {
   std::vector<std::string> names;
-  for (const MethodEntry& m : methods) names.push_back(m.info.name);
+  for (const MethodEntry& m : methods) names.emplace_back(m.info.name);
   return names;
 }
 std::vector<std::string> names_of_courses() {

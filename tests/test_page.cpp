@@ -42,7 +42,7 @@ TEST(PageScenes, HaveTheNodesAskedForAndNoEnd) {
     }
     ASSERT_EQ(page.sheets.size(), 1u) << s->name;
     EXPECT_EQ(page.sheets[0].nodes, (std::array{25u, 25u}));
-    EXPECT_EQ(page.method, find_method("verlet"));
+    EXPECT_EQ(page.method, &table::verlet);
     EXPECT_TRUE(page.step.fixed());
     // All else is the file's.
     page.sheets = file.sheets, page.method = file.method;

@@ -57,7 +57,7 @@ const Twin twins[] = {{"forward-euler", TWIN(forward_euler_step), 0.1, true},
 #undef TWIN
 
 std::unique_ptr<Method> made(const Twin& twin) {
-  if (twin.name == std::string(ImplicitEuler::info.name))
+  if (twin.name == ImplicitEuler::info.name)
     return std::make_unique<ImplicitEuler>(tight);
   return find_method(twin.name)->make();
 }

@@ -315,7 +315,7 @@ TEST(StepLimit, WithDrag) {
     if (m.info.limit != no_limit && !m.info.adaptive) continue;
     EXPECT_EQ(step_limit(m, w, gamma), no_limit) << m.info.name;
   }
-  EXPECT_EQ(step_limit(*find_method("verlet"), 0), no_limit);
+  EXPECT_EQ(step_limit(table::verlet, 0), no_limit);
 }
 
 TEST(StepLimit, TakesTheLightestNodesDrag) {

@@ -155,7 +155,7 @@ TEST(Growth, IsThatOfTheFastestWaveBeyondTheLimitAndNoneBelow) {
 // Compressed, no step is small enough: its energy itself falls when it moves.
 TEST(Growth, OfACompressedSheetIsThatOfBuckling) {
   const Problem p = stretched_sheet(9, MeshSprings::plain, 0.9, 0);
-  const MethodEntry& verlet = *find_method("verlet");
+  const MethodEntry& verlet = table::verlet;
   const double edge = std::sin(std::numbers::pi * 7 / 16.);
   // Out of the plane K (1/s - 1) pushes from all four sides.
   const double rate = 2 * edge * std::sqrt(2 * 100. * 81 * (1 / 0.9 - 1));
@@ -166,8 +166,8 @@ TEST(Growth, OfACompressedSheetIsThatOfBuckling) {
 
 TEST(Growth, IsInfiniteWhereNothingIsFinite) {
   const Problem p = stretched_sheet(5, MeshSprings::diagonals, 1.5, 1);
-  EXPECT_EQ(growth(p, *find_method("rk4"), 1e200, 4).total, no_limit);
-  EXPECT_EQ(growth(p, *find_method("verlet"), 1, 100, 5, 2).total, no_limit);
+  EXPECT_EQ(growth(p, table::rk4, 1e200, 4).total, no_limit);
+  EXPECT_EQ(growth(p, table::verlet, 1, 100, 5, 2).total, no_limit);
 }
 
 TEST(Growth, GivesTheLimitOfASheetToItsPrecision) {

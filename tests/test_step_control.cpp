@@ -217,14 +217,13 @@ double internal_energy(const Cloth& g) {
 // However fast the cloth as a whole flies: its energy hides no gain.
 TEST(SteeredStep, IsTheSameForAClothThatFlies) {
   for (double speed : {0.0, 100.0, 1000.0}) {
-    Scene s(thrown_sheet(speed), {.rule = StepRule::sharp},
-            *find_method("verlet"));
+    Scene s(thrown_sheet(speed), {.rule = StepRule::sharp}, table::verlet);
     const double before = internal_energy(s.cloth());
     EXPECT_TRUE(s.run_to(30)) << text_of(s.failure());
     const double after = internal_energy(s.cloth());
     EXPECT_LT(after, 1.25 * before) << speed;
     Scene longer(thrown_sheet(speed), {.dt = 1.1 * s.safe_limit()},
-                 *find_method("verlet"));
+                 table::verlet);
     EXPECT_FALSE(longer.run_to(30)) << speed;
     EXPECT_LT(internal_energy(longer.cloth()), 5 * before) << speed;
   }
@@ -344,7 +343,7 @@ TEST(StepControl, HasNothingToDoAtRest) {
 
 // rk4 takes (dt omega)^6/72 of the energy in a step, a splitting nothing.
 TEST(StepControl, KeepsWhatAMethodDampsBelowTheDrag) {
-  const MethodEntry& rk4 = *find_method("rk4");
+  const MethodEntry& rk4 = table::rk4;
   const double omega = 2000, gamma = 0.3;
   const double longest = std::pow(72 * 0.1 * gamma / std::pow(omega, 6), 0.2);
   const double mild = mild_step(rk4, 1.7 / omega, omega, gamma, 0.1);
@@ -429,7 +428,7 @@ Settled settle(const Model& m) {
 
 /** Energies by steps of this share of Verlet's limit. */
 double settled_by(Model m, double share) {
-  m.method = find_method("verlet");
+  m.method = &table::verlet;
   m.step = {.rule = StepRule::safe};
   m.step = {.dt = share * Scene(m).safe_limit()};
   return settle(m).kinetic;
@@ -526,7 +525,7 @@ TEST(SteeredStep, KeepsItsToleranceInRandomScenes) {
         << "seed " << seed << ": gains " << w.share();
     EXPECT_EQ(w.failure, "") << seed;
     double ratio = 0;
-    const bool lossy = r.method->info.name == std::string("rk4");
+    const bool lossy = r.method->info.name == "rk4";
     if (talk && r.gamma > 0.2 && w.scale > 0 && !lossy) {
       // The longest fixed step that keeps the tolerance, too.
       double low = start / 16, high = 4 * start;

@@ -198,7 +198,7 @@ TEST(Warnings, ABallFitsThroughWhereTheySaySo) {
   auto touched = [](double r) {
     Model m = with_sphere("at 0.625 0.625 -0.5 radius " + std::to_string(r));
     m.stiffness = 1e4;
-    m.method = find_method("verlet");
+    m.method = &table::verlet;
     m.step.rule = StepRule::safe;
     Scene scene(m);
     EXPECT_TRUE(scene.run_to(0.5)) << text_of(scene.failure());  // falls 1.2 m

@@ -45,7 +45,7 @@ double distance(std::span<const Point> a, std::span<const Point> b) {
 // friction of a half of the weight.
 TEST(Problem, ASlidingClothStopsWhereFrictionHasIt) {
   const Problem p = problem("slide");
-  const Outcome out = run(p, *find_method("verlet")->make(), 8000);
+  const Outcome out = run(p, *table::verlet.make(), 8000);
   ASSERT_TRUE(out.ok()) << out.reason;
   const double fall = std::sqrt(2 * 0.05 / grav), v = 1 - grav * fall / 2;
   EXPECT_NEAR(out.end.center.x, 0.5 + fall + v * v / grav, 2e-4);
@@ -194,7 +194,7 @@ TEST(Problem, CountsTheSweepsThatMethodsDeclare) {
   Problem p = problem("grid0");
   p.t_end = 0.02;
   for (const MethodEntry& m : methods) {
-    const std::string name = m.info.name;
+    const std::string name(m.info.name);
     constexpr long long steps = 10;
     auto method = m.make();
     method->set_tolerance(no_limit);

@@ -15,7 +15,7 @@ int main() {
     if (entry.info.limit == lab::no_limit || entry.info.adaptive) continue;
     const int steps = entry.info.order < 6 ? 800 : 50;  // above round-off
     const double coarse = error(entry, steps), fine = error(entry, 2 * steps);
-    std::printf("%-16s order %d, measured %.2f\n", entry.info.name,
+    std::printf("%-16s order %d, measured %.2f\n", entry.info.name.data(),
                 entry.info.order, std::log2(coarse / fine));
   }
 }

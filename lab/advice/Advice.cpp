@@ -113,8 +113,8 @@ std::string recommendation(const Advice& a) {
     if (!p.needed) removed += (removed.empty() ? "" : "; ") + p.part;
   std::string text =
       "advice: " + std::to_string(mesh_of(a.model).points.size()) + " nodes, " +
-      a.model.method->info.name + ", dt " + short_text(a.model.step.dt) +
-      " s: error of " + name_of(a.measure) + ' ' +
+      std::string(a.model.method->info.name) + ", dt " +
+      short_text(a.model.step.dt) + " s: error of " + name_of(a.measure) + ' ' +
       with_unit(a.error, a.measure) + " +- " +
       with_unit(a.uncertainty, a.measure) + " " + asked(a) +
       (a.error + a.uncertainty > a.tolerance ? "; it may be more" : "") +
@@ -175,7 +175,7 @@ std::string assessment(const Advice& a) {
                      {"grid of " + std::to_string(own.nodes) + " nodes",
                       size(own.grid), ""},
                      {"step of " + CME212::short_text(m.step.dt) + " s by " +
-                          m.method->info.name,
+                          std::string(m.method->info.name),
                       size(own.step),
                       own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
                                               " of the largest stable step"

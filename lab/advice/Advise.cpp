@@ -95,7 +95,7 @@ Advice advise(const Model& m, const AdviceRules& rules) {
   if (!found && refusal.empty())
     refusal =
         rules.keeps_method || rules.keeps_step
-            ? std::string("no step of ") + m.method->info.name +
+            ? "no step of " + std::string(m.method->info.name) +
                   " that was tried meets the tolerance"
             : "no method meets the tolerance with the steps that were tried: "
               "the smallest was 1/8 of the largest stable one";

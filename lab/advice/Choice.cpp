@@ -50,9 +50,10 @@ std::vector<Choice> ChoiceSearch::choices(const Sides& s) const {
 
 Trial ChoiceSearch::run(const Choice& c, const Model& m, double work,
                         const std::string& by, const Shake& shake) {
-  return q_.pilots.run(
-      m, std::to_string(nodes_of(m)) + " nodes by " + m.method->info.name + by,
-      work, c.removed, shake);
+  return q_.pilots.run(m,
+                       std::to_string(nodes_of(m)) + " nodes by " +
+                           std::string(m.method->info.name) + by,
+                       work, c.removed, shake);
 }
 
 bool ChoiceSearch::holds(Choice& c) {
@@ -60,7 +61,8 @@ bool ChoiceSearch::holds(Choice& c) {
   c.error = grids_.error_of(t);
   c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
   c.uncertainty = grids_.grids().uncertainty();
-  q_.advice.choices.push_back({nodes_of(c.model), c.model.method->info.name,
+  q_.advice.choices.push_back({nodes_of(c.model),
+                               std::string(c.model.method->info.name),
                                c.model.step.dt, c.error, c.work});
   if (!grids_.accepts(c.error)) return false;
   Model smaller = c.model;
@@ -129,7 +131,7 @@ void ChoiceSearch::try_all(const Sides& s, std::optional<Choice>& best) {
   for (Choice& c : choices(s)) {
     if (best && !(c.work < best->work)) break;
     if (fail.contains(c.removed.size())) continue;
-    const std::string method = c.model.method->info.name;
+    const std::string method(c.model.method->info.name);
     const auto fails = too_long_.find(method);
     if (fails != too_long_.end() && c.step > 0.99 * fails->second) continue;
     if (!q_.pilots.affords(c.work, "more expensive choices", 0.33)) break;

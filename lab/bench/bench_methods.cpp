@@ -61,7 +61,7 @@ int main() {
       costs[std::size_t(&table::verlet - methods.data())].at_limit;
   for (std::size_t k = 0; k < methods.size(); ++k) {
     const auto& [one, ten] = costs[k];
-    std::printf("    {\"%s\", %.3g, %.3g},  //\n", methods[k].info.name,
+    std::printf("    {\"%s\", %.3g, %.3g},  //\n", methods[k].info.name.data(),
                 one / unit, ten == no_limit ? 0 : ten / unit);
   }
 }

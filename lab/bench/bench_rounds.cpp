@@ -44,11 +44,9 @@ class Newton : public Method {
   }
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override {
-    stage_.begin("newton", t, dt, g, constraint);
-    stage_.hold(g, t + dt, constraint);
-    if (rounds_ == 0) stage_.solve_newton(g, t + dt, dt, force);
-    for (int k = 0; k < rounds_; ++k)
-      stage_.solve_linearized(g, t + dt, dt, force);
+    auto& stage = stage_.begin("newton", t, dt, g, force, constraint);
+    if (rounds_ == 0) stage.solve_newton(t + dt, dt);
+    for (int k = 0; k < rounds_; ++k) stage.solve_linearized(t + dt, dt);
     return implicit_detail::finish(g, t + dt, constraint);
   }
   Work work() const override { return stage_.work(); }

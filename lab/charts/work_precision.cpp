@@ -16,6 +16,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -290,7 +291,7 @@ int parse(int argc, char** argv, Options& o) {
                "work_precision");
   app.option_defaults()->always_capture_default();
   for (const Problem& p : make_problems()) o.scenes.push_back(p.name);
-  for (const MethodEntry& m : methods) o.methods.push_back(m.info.name);
+  for (const MethodEntry& m : methods) o.methods.emplace_back(m.info.name);
   app.add_option("--scenes", o.scenes, "problems to run, a,b,...")
       ->delimiter(',')
       ->check(CLI::IsMember(o.scenes));
@@ -317,7 +318,7 @@ int parse(int argc, char** argv, Options& o) {
 }
 
 void run(Options o) {
-  const auto is_in = [](const auto& names, const std::string& name) {
+  const auto is_in = [](const auto& names, std::string_view name) {
     return std::ranges::find(names, name) != names.end();
   };
   std::vector<Problem> problems = make_problems();

@@ -65,8 +65,7 @@ class Plane final : public NodewiseConstraint {
  public:
   explicit Plane(const PlaneConstraint& c)
       : NodewiseConstraint(
-            {.nodewise = true,
-             .zone = Zone::behind({0, 0, c.z}, {0, 0, 1})}),
+            {.nodewise = true, .zone = Zone::behind({0, 0, c.z}, {0, 0, 1})}),
         plane_(c) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
@@ -213,11 +212,11 @@ bool ConstraintPlan::apply_to_part(const Term& term, FlatCloth& c, Cloth& g,
   const Traits& traits = term.constraint->traits();
   if (!traits.nodewise) return is_idle(traits, c, t, first, last);
   if (traits.holds) {
-    term.constraint->each_place(
-        g, t, first, last, [&c](Node n, const Place& place) {
-          c.set_position(n.id(), place.at);
-          c.set_velocity(n.id(), place.velocity);
-        });
+    term.constraint->each_place(g, t, first, last,
+                                [&c](Node n, const Place& place) {
+                                  c.set_position(n.id(), place.at);
+                                  c.set_velocity(n.id(), place.velocity);
+                                });
     return true;
   }
   for (; first < last; first += FlatCloth::tile) {

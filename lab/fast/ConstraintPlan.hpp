@@ -105,8 +105,8 @@ class SweptConstraint : public ZeroConstraint {
    * last): a node whose place depends only on the time. The place is that at
    * time @a t [s]; stages may use times up to a step before the start. */
   virtual void each_place(const Cloth& /*g*/, double /*t*/, unsigned /*first*/,
-                          unsigned /*last*/, const PlaceVisitor& /*use*/) const {
-  }
+                          unsigned /*last*/,
+                          const PlaceVisitor& /*use*/) const {}
 
  protected:
   mutable Exchange exchange_;

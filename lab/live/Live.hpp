@@ -49,7 +49,7 @@ std::vector<std::array<unsigned, 2>> crossed_edges(const Cloth& g,
 
 /** A run and what it cost. */
 struct RunReadings {
-  const char* method = "";
+  std::string_view method;
   double dt = 0;  ///< [s]
   /** The stability limit [s] in any configuration: no_limit if there is none,
    * 0 if no step is stable. */

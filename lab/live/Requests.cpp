@@ -41,11 +41,8 @@ void read(Line& in, Share& s) {
   s.of_unit = in.number("a positive multiple of the stability limit", least);
 }
 void read(Line& in, const MethodEntry*& method) {
-  std::vector<const MethodEntry*> all;
-  for (const MethodEntry& m : methods) all.push_back(&m);
-  if (own_method) all.push_back(own_method);
   const auto name_of = [](const MethodEntry* m) { return m->info.name; };
-  const auto* const found = in.one_of("a method", all, name_of);
+  const auto* const found = in.one_of("a method", all_methods(), name_of);
   method = found ? *found : nullptr;
 }
 

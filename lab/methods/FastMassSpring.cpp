@@ -7,28 +7,27 @@ namespace lab {
 double FastMassSpring::step(Cloth& g, double t, double dt,
                             const ForcePlan& force,
                             const ConstraintPlan& constraint) {
-  stage_.begin(info.name, t, dt, g, constraint);
-  stage_.hold(g, t + dt, constraint);
+  auto& stage = stage_.begin(info.name, t, dt, g, force, constraint);
   factor_.find(info.name, g, {dt, dt * dt}, force, constraint);
-  stage_.move(g, dt);
   for (int k = 0; k < rounds_; ++k, ++solves_) {
-    auto& f = stage_.find_residual(g, t + dt, dt, force);
+    auto& f = stage.residual(t + dt, dt);
     factor_.solve(f);
     change_ = f;
-    if (accelerated_ && k > 0) accelerate(f);
-    last_f_ = f, last_w_ = stage_.w;
-    for (unsigned i = 0; i < f.size(); ++i) stage_.w[i] += change_[i];
-    stage_.move(g, dt);
+    if (accelerated_ && k > 0) accelerate(f, stage.w);
+    last_f_ = f, last_w_ = stage.w;
+    for (unsigned i = 0; i < f.size(); ++i) stage.w[i] += change_[i];
   }
+  stage.move(dt);
   auto node = arrays(g).node_values();
   for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-    node[i].vel = stage_.w[i];
+    node[i].vel = stage.w[i];
   return implicit_detail::finish(g, t + dt, constraint);
 }
 
 /** With a that minimizes |f - a (f - last f)|: change = f - a ((f - last f) +
  * (w - last w)). Nothing if |f| has grown to twice the last one. */
-void FastMassSpring::accelerate(const std::vector<Point>& f) {
+void FastMassSpring::accelerate(const std::vector<Point>& f,
+                                const std::vector<Point>& w) {
   double ff = 0, of_last = 0, along = 0, whole = 0;
   for (unsigned i = 0; i < f.size(); ++i) {
     const Point d = f[i] - last_f_[i];
@@ -38,7 +37,7 @@ void FastMassSpring::accelerate(const std::vector<Point>& f) {
   if (whole == 0 || ff > 4 * of_last) return;
   const double a = along / whole;
   for (unsigned i = 0; i < f.size(); ++i)
-    change_[i] -= a * (f[i] - last_f_[i] + stage_.w[i] - last_w_[i]);
+    change_[i] -= a * (f[i] - last_f_[i] + w[i] - last_w_[i]);
 }
 
 }  // namespace lab

@@ -61,7 +61,7 @@ class FastMassSpring : public Method {
   LaplacianFactor factor_;
   std::vector<Point> last_f_, last_w_, change_;
 
-  void accelerate(const std::vector<Point>& f);
+  void accelerate(const std::vector<Point>& f, const std::vector<Point>& w);
 };
 
 }  // namespace lab

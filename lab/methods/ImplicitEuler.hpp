@@ -24,7 +24,7 @@ class ImplicitEuler : public Method {
       "accurate motion: it damps as a drag of dt omega^2 would"};
 
   /** @param tolerance > 0, of the linear system: see
-   *        ImplicitStage::solve_linearized() */
+   *        ImplicitStep::solve_linearized() */
   explicit ImplicitEuler(double tolerance = 1e-8) : stage_(tolerance, 0) {}
 
   Work work() const override { return stage_.work(); }

@@ -54,8 +54,8 @@ double rms(const Cloth& g, const Points& a) {
 
 }  // namespace
 
-void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
-                   const StiffnessVisitor& use) {
+void add_stiffness(std::string_view method, const ForcePlan& force,
+                   const Cloth& g, const StiffnessVisitor& use) {
   if (!force.add_stiffness(g, use))
     throw std::invalid_argument(
         std::string(method) +
@@ -81,63 +81,61 @@ void Goal::fail(const char* what, int iterations, double residual,
                   " s");
 }
 
-ImplicitStage::ImplicitStage(double tolerance, int max_iterations,
-                             bool line_search, double share)
-    : goal_{tolerance, max_iterations},
-      line_search_(line_search),
-      share_(share) {}
-
-void ImplicitStage::begin(const char* method, double t, double dt, Cloth& g,
-                          const ConstraintPlan& constraint) {
-  goal_.method = method, goal_.dt = dt;
-  tight_ = false;
-  find_fixed(g, constraint, fixed_);
+ImplicitStep& ImplicitStage::begin(std::string_view method, double t, double dt,
+                                   Cloth& g, const ForcePlan& force,
+                                   const ConstraintPlan& constraint) {
+  ImplicitStep& s = step_;
+  s.goal_.method = method, s.goal_.dt = dt;
+  s.g_ = &g, s.force_ = &force, s.constraint_ = &constraint;
+  s.tight_ = false;
+  find_fixed(g, constraint, s.fixed_);
   constraint.place_held_at_rest(g, t);
   const unsigned n = arrays(g).node_slots();
-  p.assign(arrays(g).positions().begin(), arrays(g).positions().end());
-  q.resize(n);
-  for (unsigned i = 0; i < n; ++i) q[i] = arrays(g).node_values()[i].vel;
-  guess = w = q;
-  for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
+  s.p.assign(arrays(g).positions().begin(), arrays(g).positions().end());
+  s.q.resize(n);
+  for (unsigned i = 0; i < n; ++i) s.q[i] = arrays(g).node_values()[i].vel;
+  s.guess = s.w = s.q;
+  for (auto* a :
+       {&s.residual_, &s.step_, &s.rest_, &s.z_, &s.direction_, &s.product_})
     a->resize(n);
-  diagonal_blocks_.resize(n);
+  s.diagonal_blocks_.resize(n);
+  return s;
 }
 
-void ImplicitStage::hold(Cloth& g, double t, const ConstraintPlan& constraint) {
-  constraint.each_place(g, t, [&](Node n, const Place& place) {
+void ImplicitStep::hold(double t) {
+  constraint_->each_place(*g_, t, [&](Node n, const Place& place) {
     n.position() = p[n.id()] = place.at;
     q[n.id()] = w[n.id()] = guess[n.id()] = Point();
   });
 }
 
-void ImplicitStage::solve_linearized(Cloth& g, double t, double s,
-                                     const ForcePlan& force) {
-  find_w(g, s, w);
-  find_residual(g, t, s, force);
-  assemble(g, s, force);
+void ImplicitStep::solve_linearized(double t, double s) {
+  hold(t);
+  find_w(s, w);
+  find_residual(t, s);
+  assemble(s);
   for (unsigned i = 0; i < w.size(); ++i) direction_[i] = q[i] - w[i];
   multiply(direction_, product_, true);
   for (unsigned i = 0; i < w.size(); ++i) residual_[i] -= product_[i];
   w = q;
   solve(goal_.tolerance, true);
   advance(1);
-  move(g, s);
+  move(s);
 }
 
-void ImplicitStage::solve_newton(Cloth& g, double t, double s,
-                                 const ForcePlan& force,
-                                 const LocalError& error) {
-  Objective here = choose_start(g, s, force);
+void ImplicitStep::solve_newton(double t, double s, const LocalError& error) {
+  hold(t);
+  Objective here = choose_start(s);
   double first = 0, before = 0;
   bool clamp = false;
   for (int iteration = 0;; ++iteration) {
-    move(g, s);
-    find_residual(g, t, s, force);
-    if (iteration == 0) assemble(g, s, force);
+    move(s);
+    find_residual(t, s);
+    if (iteration == 0) assemble(s);
     precondition(residual_, z_);
-    const double left = rms(g, z_) / s;
-    const double goal = allowed(g, s, error);
-    if (left <= goal || left <= round_off(g, s)) return balance(g, s, force);
+    const double left = rms(*g_, z_) / s;
+    const double goal = allowed(s, error);
+    if (left <= goal || left <= round_off(s)) return balance(s);
     if (iteration == goal_.max_iterations || !std::isfinite(left))
       goal_.fail("Newton's method", iteration, left, " m/s^2");
     // The faster Newton converges, the more accurate is the linear solve, but
@@ -147,9 +145,9 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
     if (iteration == 0) {
       // An upper bound of the residual at w = q.
       for (unsigned i = 0; i < w.size(); ++i) direction_[i] = w[i] - q[i];
-      first = left + filtered(g, s, direction_);
+      first = left + filtered(s, direction_);
     } else {
-      assemble(g, s, force);
+      assemble(s);
       const double fallen = left / before;
       enough = std::max(0.1 * fallen * std::sqrt(fallen), 0.3 * goal / left);
       enough = std::clamp(enough, 1e-12, 0.03);
@@ -157,7 +155,7 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
     before = left;
     ++work_.newton;
     if (clamp || !solve(enough, false)) solve(enough, true);
-    const bool found = search(g, t, s, force, here, left < 0.01 * first);
+    const bool found = search(t, s, here, left < 0.01 * first);
     if (!found && clamp)
       goal_.fail("Newton's line search", iteration, left, " m/s^2");
     clamp = !found;  // A was nearly singular, so step_ was far too long
@@ -165,24 +163,22 @@ void ImplicitStage::solve_newton(Cloth& g, double t, double s,
 }
 
 /** RMS(D^-1 M from)/s [m/s^2], for @a from in [m/s]. */
-double ImplicitStage::filtered(const Cloth& g, double s,
-                               const std::vector<Point>& from) {
-  auto node = arrays(g).node_values();
+double ImplicitStep::filtered(double s, const std::vector<Point>& from) {
+  auto node = arrays(*g_).node_values();
   for (unsigned i = 0; i < from.size(); ++i)
     rest_[i] = fixed_[i] ? Point() : node[i].mass * from[i];
   precondition(rest_, z_);
-  return rms(g, z_) / s;
+  return rms(*g_, z_) / s;
 }
 
 /** The residual [m/s^2] to stop at, see solve_newton(). */
-double ImplicitStage::allowed(const Cloth& g, double s,
-                              const LocalError& error) {
+double ImplicitStep::allowed(double s, const LocalError& error) {
   if (error.scale == 0 || share_ == 0) return goal_.tolerance;
   for (unsigned i = 0; i < w.size(); ++i) direction_[i] = w[i] - guess[i];
-  double d = filtered(g, s, direction_);
+  double d = filtered(s, direction_);
   if (error.first) {
     for (unsigned i = 0; i < w.size(); ++i) direction_[i] = guess[i] - q[i];
-    const double whole = filtered(g, s, direction_);
+    const double whole = filtered(s, direction_);
     if (d < whole) d *= d / whole;
   }
   return std::max(goal_.tolerance, share_ * error.scale * d);
@@ -190,13 +186,13 @@ double ImplicitStage::allowed(const Cloth& g, double s,
 
 /** Without fixed nodes: shift w so that the sum of the residual is 0. That does
  * not change any spring. */
-void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
+void ImplicitStep::balance(double s) {
   Point sum;
   double mass = 0;
-  const Drag& c = force.drag();
-  auto node = arrays(g).node_values();
+  const Drag& c = force_->drag();
+  auto node = arrays(*g_).node_values();
   for (unsigned i = 0; i < w.size(); ++i) {
-    if (!arrays(g).node_in_use(i)) continue;
+    if (!arrays(*g_).node_in_use(i)) continue;
     if (fixed_[i]) return;
     sum += residual_[i];
     mass += node[i].mass + s * c[i];
@@ -204,42 +200,45 @@ void ImplicitStage::balance(Cloth& g, double s, const ForcePlan& force) {
   if (mass == 0) return;
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i]) w[i] += sum / mass;
-  move(g, s);
+  move(s);
 }
 
 /** The w @a now of the present positions x = p + s w. */
-void ImplicitStage::find_w(const Cloth& g, double s,
-                           std::vector<Point>& now) const {
-  auto x = arrays(g).positions();
+void ImplicitStep::find_w(double s, std::vector<Point>& now) const {
+  auto x = arrays(*g_).positions();
   for (unsigned i = 0; i < w.size(); ++i) now[i] = (x[i] - p[i]) / s;
 }
-void ImplicitStage::move(Cloth& g, double s) const {
-  auto x = arrays(g).positions();
+void ImplicitStep::move(double s) {
+  auto x = arrays(*g_).positions();
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i]) x[i] = p[i] + s * w[i];
 }
 /** w += a times the solution of the linear system. */
-void ImplicitStage::advance(double a) {
+void ImplicitStep::advance(double a) {
   for (unsigned i = 0; i < w.size(); ++i) w[i] += a * step_[i];
 }
 
-std::vector<Point>& ImplicitStage::find_residual(Cloth& g, double t, double s,
-                                                 const ForcePlan& force) {
-  flow_.accelerate(g, t, force, true);
-  const Drag& c = force.drag();
-  auto node = arrays(g).node_values();
+std::vector<Point>& ImplicitStep::residual(double t, double s) {
+  hold(t);
+  move(s);
+  find_residual(t, s);
+  return residual_;
+}
+void ImplicitStep::find_residual(double t, double s) {
+  flow_.accelerate(*g_, t, *force_, true);
+  const Drag& c = force_->drag();
+  auto node = arrays(*g_).node_values();
   for (unsigned i = 0; i < w.size(); ++i)
     residual_[i] =
         fixed_[i] ? Point()
                   : node[i].mass * (s * flow_.acceleration(i) - (w[i] - q[i])) -
                         s * c[i] * w[i];
-  return residual_;
 }
 
 /** The springs' blocks of A, and the inverses of its diagonal ones. */
-void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
-  const Drag& c = force.drag();
-  auto node = arrays(g).node_values();
+void ImplicitStep::assemble(double s) {
+  const Drag& c = force_->drag();
+  auto node = arrays(*g_).node_values();
   diagonal_.resize(w.size());
   for (unsigned i = 0; i < w.size(); ++i) {
     diagonal_[i] = node[i].mass + s * c[i];
@@ -250,7 +249,7 @@ void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
   factored_ = false;
   const double ss = s * s;
   add_stiffness(
-      goal_.method, force, g,
+      goal_.method, *force_, *g_,
       [this, ss](unsigned i, unsigned j, const Stiffness& B) {
         const Stiffness b = {B.direction, ss * B.along, ss * B.across};
         blocks_.push_back({i, j, b});
@@ -268,8 +267,8 @@ void ImplicitStage::assemble(const Cloth& g, double s, const ForcePlan& force) {
 
 /** @a to = A @a from, without negative stiffness if @a clamp.  @pre @a from
  * is 0 at fixed nodes */
-void ImplicitStage::multiply(const std::vector<Point>& from,
-                             std::vector<Point>& to, bool clamp) const {
+void ImplicitStep::multiply(const std::vector<Point>& from,
+                            std::vector<Point>& to, bool clamp) const {
   for (unsigned i = 0; i < from.size(); ++i) to[i] = diagonal_[i] * from[i];
   for (const Block& b : blocks_) {
     const Stiffness B = clamp ? clamped(b.B) : b.B;
@@ -281,16 +280,16 @@ void ImplicitStage::multiply(const std::vector<Point>& from,
     if (fixed_[i]) to[i] = Point();
 }
 /** @a to = D^-1 @a from. */
-void ImplicitStage::precondition(const std::vector<Point>& from,
-                                 std::vector<Point>& to) const {
+void ImplicitStep::precondition(const std::vector<Point>& from,
+                                std::vector<Point>& to) const {
   for (unsigned i = 0; i < from.size(); ++i)
     to[i] = point(times(diagonal_blocks_[i], four(from[i])));
 }
 /** The round-off in D^-1 r/s [m/s^2], RMS over the nodes: that of w through the
  * inertia, that of x through the springs' part of D. */
-double ImplicitStage::round_off(const Cloth& g, double s) const {
+double ImplicitStep::round_off(double s) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  auto x = arrays(g).positions();
+  auto x = arrays(*g_).positions();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i) {
     if (fixed_[i]) continue;
@@ -298,14 +297,14 @@ double ImplicitStage::round_off(const Cloth& g, double s) const {
         std::clamp(3 - diagonal_[i] * trace(diagonal_blocks_[i]), 0., 3.);
     sum += normSq(w[i]) + share * share / (s * s) * normSq(x[i]);
   }
-  return epsilon / s * std::sqrt(sum / std::max(1u, g.num_nodes()));
+  return epsilon / s * std::sqrt(sum / std::max(1u, g_->num_nodes()));
 }
 
 /** The work of a factor of A, in products with A; infinite if it is too large.
  * Counted, with measured weights: a product of two blocks takes 0.7 times as
  * long as a spring in a product with A, a block in each of two solves 2 times.
  */
-double ImplicitStage::factor_work() {
+double ImplicitStep::factor_work() {
   constexpr std::size_t most = 10'000'000;  // blocks, of 100 bytes
   pairs_.clear();
   for (const Block& b : blocks_)
@@ -320,7 +319,7 @@ double ImplicitStage::factor_work() {
  * twice the width of a sheet in nodes. If that is far more than the work of a
  * factor, the factor is made at once; else after as much work as its own, so
  * that both together take at most twice the lesser. */
-double ImplicitStage::patience(double relative) {
+double ImplicitStep::patience(double relative) {
   if (factored_ || solver_ == LinearSolver::gradients) return HUGE_VAL;
   if (tight_ || solver_ == LinearSolver::cholesky) return 0;
   const double expected =
@@ -331,7 +330,7 @@ double ImplicitStage::patience(double relative) {
 
 /** Factor A, without negative stiffness.
  * @return false if it can't be factored */
-bool ImplicitStage::factor() {
+bool ImplicitStep::factor() {
   if (factor_work() == HUGE_VAL) return false;
   factor_.clear();
   Matrix3 full;
@@ -353,24 +352,24 @@ bool ImplicitStage::factor() {
   return factor_.factorize();
 }
 
-void ImplicitStage::factorize(const Cloth& g, double s,
-                              const ForcePlan& force) {
-  assemble(g, s, force);
+ImplicitStep::Factor ImplicitStep::factorize(double s) {
+  assemble(s);
   if (!factor())
     throw StepError(std::string(goal_.method) + ": no factor of " +
                     std::to_string(blocks_.size()) + " stiff springs; dt = " +
                     CME212::short_text(goal_.dt) + " s");
+  return Factor(*this);
 }
 
-void ImplicitStage::solve(std::vector<Point>& b) {
+void ImplicitStep::Factor::solve(std::vector<Point>& b) const {
   for (unsigned i = 0; i < b.size(); ++i)
-    if (fixed_[i]) b[i] = Point();
-  factor_.solve(b);
+    if (of_.fixed_[i]) b[i] = Point();
+  of_.factor_.solve(b);
 }
 
 /** @a to = the inverse of the preconditioner times @a from. */
-void ImplicitStage::apply(const std::vector<Point>& from,
-                          std::vector<Point>& to) {
+void ImplicitStep::apply(const std::vector<Point>& from,
+                         std::vector<Point>& to) {
   if (!factored_) return precondition(from, to);
   to = from;
   factor_.solve(to);
@@ -383,7 +382,7 @@ void ImplicitStage::apply(const std::vector<Point>& from,
  * is still a descent direction.
  * @return false if there is no iterate; never with @a clamp  Throws StepError.
  */
-bool ImplicitStage::solve(double relative, bool clamp) {
+bool ImplicitStep::solve(double relative, bool clamp) {
   double tries = patience(relative);
   std::fill(step_.begin(), step_.end(), Point());
   rest_ = residual_;
@@ -424,27 +423,25 @@ bool ImplicitStage::solve(double relative, bool clamp) {
   return true;
 }
 
-ImplicitStage::Objective ImplicitStage::objective(
-    const Cloth& g, double s, const ForcePlan& force) const {
-  auto node = arrays(g).node_values();
-  const Drag& c = force.drag();
+ImplicitStep::Objective ImplicitStep::objective(double s) const {
+  auto node = arrays(*g_).node_values();
+  const Drag& c = force_->drag();
   double sum = 0;
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i])
       sum += node[i].mass * normSq(w[i] - q[i]) + s * c[i] * normSq(w[i]);
-  return {0.5 * sum, force.energy(g)};
+  return {0.5 * sum, force_->energy(*g_)};
 }
 
 /** Keep w, or take that of the present positions, whichever has the lower
  * objective.  @return that objective */
-ImplicitStage::Objective ImplicitStage::choose_start(Cloth& g, double s,
-                                                     const ForcePlan& force) {
-  find_w(g, s, rest_);
+ImplicitStep::Objective ImplicitStep::choose_start(double s) {
+  find_w(s, rest_);
   std::swap(w, rest_);
-  const Objective now = objective(g, s, force);
+  const Objective now = objective(s);
   std::swap(w, rest_);
-  move(g, s);
-  const Objective moved = objective(g, s, force);
+  move(s);
+  const Objective moved = objective(s);
   if (moved.value() < now.value()) return moved;
   std::swap(w, rest_);
   return now;
@@ -457,19 +454,18 @@ ImplicitStage::Objective ImplicitStage::choose_start(Cloth& g, double s,
  * or less.
  * @return false if the objective does not fall; then w is as before, to
  * round-off */
-bool ImplicitStage::search(Cloth& g, double t, double s, const ForcePlan& force,
-                           Objective& here, bool close) {
+bool ImplicitStep::search(double t, double s, Objective& here, bool close) {
   const double predicted = dot_product(residual_, step_);
   advance(1);
   if (!line_search_) return true;
   if (predicted <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
   double a = 1;
   for (; a > 1e-9; a /= 2) {
-    move(g, s);
-    const Objective there = objective(g, s, force);
+    move(s);
+    const Objective there = objective(s);
     bool good = there.value() <= here.value() - 1e-4 * a * predicted;
     if (!good && close && a == 1) {
-      find_residual(g, t, s, force);
+      find_residual(t, s);
       good = std::abs(dot_product(residual_, step_)) <= 0.1 * predicted;
     }
     if (good) {

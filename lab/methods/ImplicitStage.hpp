@@ -1,7 +1,8 @@
 #pragma once
 /** @file ImplicitStage.hpp
- * ImplicitStage: the equation of one stage of an implicit method, solved by
- * Newton's method and conjugate gradients. */
+ * ImplicitStage and ImplicitStep: the equation of one stage of an implicit
+ * method, solved by Newton's method and conjugate gradients. */
+#include <string_view>
 #include <vector>
 
 #include "lab/fast/FlatFlow.hpp"
@@ -14,19 +15,19 @@ namespace implicit_detail {
 
 /** Call force.add_stiffness(). Throws std::invalid_argument with the name of
  * @a method if the force does not know its stiffness. */
-void add_stiffness(const char* method, const ForcePlan& force, const Cloth& g,
-                   const StiffnessVisitor& use);
+void add_stiffness(std::string_view method, const ForcePlan& force,
+                   const Cloth& g, const StiffnessVisitor& use);
 
 /** Mark, by node id, the nodes that forces do not move: held and removed. */
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);
 
 /** The preconditioner of the conjugate gradient method: the diagonal blocks of
- * A, its Cholesky factor, or (automatic) what is less work: see ImplicitStage.
+ * A, its Cholesky factor, or (automatic) what is less work: see ImplicitStep.
  */
 enum class LinearSolver { automatic, gradients, cholesky };
 
-/** How a stage estimates its error: see ImplicitStage::solve_newton(). */
+/** How a stage estimates its error: see ImplicitStep::solve_newton(). */
 struct LocalError {
   double scale = 0;    ///< the error over the deviation from guess
   bool first = false;  ///< true if guess is of order 0, else 1
@@ -36,7 +37,7 @@ struct LocalError {
 struct Goal {
   double tolerance;  ///< of the iteration that failed
   int max_iterations;
-  const char* method = "";
+  std::string_view method = {};
   double dt = 0;  ///< of the whole step [s]
   [[noreturn]] void fail(const char* what, int iterations, double residual,
                          const char* unit) const;
@@ -57,40 +58,27 @@ struct Goal {
  * Compressed springs can make A indefinite: then CG stops early, or negative
  * stiffness is taken as 0 (J. Teran et al., SCA 2005, 181), as it always is in
  * the factor. The residual is not affected.
- * Fixed nodes have p = x and q = w = 0; hold() moves them to another x. */
-class ImplicitStage {
+ *
+ * Fixed nodes have q = w = 0, and p = x: held ones are at their places at the
+ * time of the stage. ImplicitStage::begin() makes one for each step. */
+class ImplicitStep {
  public:
-  std::vector<Point> p, q, w;  // by node id
+  std::vector<Point> p, q, w;  ///< by node id; at first x, v, v
   /** w extrapolated from past accelerations; by node id. */
   std::vector<Point> guess;
 
-  /** @param tolerance > 0   @param max_iterations   see the solvers
-   * @param line_search whether Newton's method has one
-   * @param share Newton's method may leave this share of the local error */
-  ImplicitStage(double tolerance, int max_iterations, bool line_search = true,
-                double share = 0);
-
-  /** Begin a step of @a g from @a t by @a dt [s]: find the fixed nodes, and set
-   * p = x, q = w = v.  @param method its name, for errors */
-  void begin(const char* method, double t, double dt, Cloth& g,
-             const ConstraintPlan& constraint);
-  /** Put held nodes to their places at @a t, the time of the next solve.
-   * @pre p, q, w and guess are set */
-  void hold(Cloth& g, double t, const ConstraintPlan& constraint);
   bool fixed(unsigned i) const { return fixed_[i]; }
-  const Work& work() const { return work_; }
-  void use(LinearSolver solver) { solver_ = solver; }
 
-  /** One Newton step from the positions of @a g. The linear system, without
-   * negative stiffness, is solved until its residual has fallen by the factor
-   * tolerance from that of w = q. So the error is that of accelerations wrong
-   * by a share of tolerance, however small the step.
-   * @post g's positions are p + s w */
-  void solve_linearized(Cloth& g, double t, double s, const ForcePlan& force);
+  /** One Newton step from the positions of the cloth, for the stage at @a t.
+   * The linear system, without negative stiffness, is solved until its residual
+   * has fallen by the factor tolerance from that of w = q. So the error is that
+   * of accelerations wrong by a share of tolerance, however small the step.
+   * @post the positions are p + s w */
+  void solve_linearized(double t, double s);
 
-  /** Newton's method with a line search, started from @a w or from the
-   * positions of @a g, whichever has the lower objective.
-   * @post g's positions are p + s w, and the RMS over the nodes of D^-1 r/s, r
+  /** Newton's method with a line search, for the stage at @a t, started from
+   * @a w or from the positions of the cloth, whichever has the lower objective.
+   * @post the positions are p + s w, and the RMS over the nodes of D^-1 r/s, r
    * the residual and D the diagonal blocks of A, is at most tolerance [m/s^2],
    * share times the local error, or round_off(). Such a residual acts like an
    * error of the acceleration: while s omega is small, it moves the cloth by at
@@ -106,24 +94,31 @@ class ImplicitStage {
    * square (Hardy, Littlewood, Polya, Inequalities, chapter 7), so
    *   error.scale d min(1, d/RMS(D^-1 M a))
    * exceeds the error by at most a small factor. */
-  void solve_newton(Cloth& g, double t, double s, const ForcePlan& force,
-                    const LocalError& error = {});
+  void solve_newton(double t, double s, const LocalError& error = {});
 
-  /** Factor A at the positions of @a g, without negative stiffness.
-   * @pre begin()   Throws StepError. */
-  void factorize(const Cloth& g, double s, const ForcePlan& force);
-  /** Replace @a b by the z of A z = b, by node id, with z = 0 at fixed nodes.
-   * @pre factorize() */
-  void solve(std::vector<Point>& b);
-
+  /** s (F - c w) - M (w - q) [kg m/s] by node id, for the stage at @a t; the
+   * caller may overwrite it.  @post the positions are p + s w */
+  std::vector<Point>& residual(double t, double s);
   /** Set the positions to p + s w. */
-  void move(Cloth& g, double s) const;
-  /** s (F - c w) - M (w - q) [kg m/s] by node id, at the positions p + s w of
-   * @a g; the caller may overwrite it. */
-  std::vector<Point>& find_residual(Cloth& g, double t, double s,
-                                    const ForcePlan& force);
+  void move(double s);
+
+  /** Solves A z = b. */
+  class Factor {
+   public:
+    /** Replace @a b by z, by node id, with z = 0 at fixed nodes. */
+    void solve(std::vector<Point>& b) const;
+
+   private:
+    friend ImplicitStep;
+    explicit Factor(ImplicitStep& of) : of_(of) {}
+    ImplicitStep& of_;
+  };
+  /** Factor A at the present positions, without negative stiffness. Valid until
+   * the next call.  Throws StepError. */
+  Factor factorize(double s);
 
  private:
+  friend class ImplicitStage;
   struct Block {  // of s^2 H, between nodes i and j
     unsigned i, j;
     Stiffness B;
@@ -144,32 +139,60 @@ class ImplicitStage {
   bool line_search_;
   double share_;
   Work work_;
+  Cloth* g_ = nullptr;
+  const ForcePlan* force_ = nullptr;
+  const ConstraintPlan* constraint_ = nullptr;
 
   struct Objective {
     double inertia, energy;  // [J]
     double value() const { return inertia + energy; }
   };
 
-  void find_w(const Cloth& g, double s, std::vector<Point>& now) const;
+  ImplicitStep(const Goal& goal, bool line_search, double share)
+      : goal_(goal), line_search_(line_search), share_(share) {}
+  void hold(double t);
+  void find_w(double s, std::vector<Point>& now) const;
   void advance(double a);
-  void assemble(const Cloth& g, double s, const ForcePlan& force);
+  void find_residual(double t, double s);
+  void assemble(double s);
   void multiply(const std::vector<Point>& from, std::vector<Point>& to,
                 bool clamp) const;
   void precondition(const std::vector<Point>& from,
                     std::vector<Point>& to) const;
-  double round_off(const Cloth& g, double s) const;
-  double filtered(const Cloth& g, double s, const std::vector<Point>& from);
-  double allowed(const Cloth& g, double s, const LocalError& error);
-  void balance(Cloth& g, double s, const ForcePlan& force);
+  double round_off(double s) const;
+  double filtered(double s, const std::vector<Point>& from);
+  double allowed(double s, const LocalError& error);
+  void balance(double s);
   double factor_work();
   double patience(double relative);
   bool factor();
   void apply(const std::vector<Point>& from, std::vector<Point>& to);
   bool solve(double relative, bool clamp);
-  Objective objective(const Cloth& g, double s, const ForcePlan& force) const;
-  Objective choose_start(Cloth& g, double s, const ForcePlan& force);
-  bool search(Cloth& g, double t, double s, const ForcePlan& force,
-              Objective& here, bool close);
+  Objective objective(double s) const;
+  Objective choose_start(double s);
+  bool search(double t, double s, Objective& here, bool close);
+};
+
+/** What the steps of an implicit method share: settings, work, memory. */
+class ImplicitStage {
+ public:
+  /** @param tolerance > 0   @param max_iterations   see the solvers
+   * @param line_search whether Newton's method has one
+   * @param share Newton's method may leave this share of the local error */
+  ImplicitStage(double tolerance, int max_iterations, bool line_search = true,
+                double share = 0)
+      : step_({tolerance, max_iterations}, line_search, share) {}
+  /** Begin a step of @a g from @a t by @a dt [s]: find the fixed nodes, put
+   * held ones to their places, set p = x, q = w = guess = v. Valid until the
+   * next begin(), while the arguments are.  @param method its name, for errors
+   */
+  ImplicitStep& begin(std::string_view method, double t, double dt, Cloth& g,
+                      const ForcePlan& force, const ConstraintPlan& constraint);
+  const Work& work() const { return step_.work_; }
+  void use(LinearSolver solver) { step_.solver_ = solver; }
+
+ private:
+  ImplicitStep step_;
 };
 
 /** End a step: apply the constraint, set held velocities.  @return @a end */

@@ -31,8 +31,8 @@ bool LaplacianFactor::unchanged(const Cloth& g, Scales scales,
   return same;
 }
 
-void LaplacianFactor::find(const char* method, const Cloth& g, Scales scales,
-                           const ForcePlan& force,
+void LaplacianFactor::find(std::string_view method, const Cloth& g,
+                           Scales scales, const ForcePlan& force,
                            const ConstraintPlan& constraint) {
   if (unchanged(g, scales, force, constraint)) return;
   source_ = {force.spring_multiplicity(), &g, arrays(g).version(), held_, {}};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
@@ -31,7 +32,7 @@ class LaplacianFactor {
    * Throws StepError if the matrix can't be factored, std::invalid_argument if
    * @a force does not know its stiffness.
    * Complexity: O(N + springs) if nothing changed; else that of a factor. */
-  void find(const char* method, const Cloth& g, Scales scales,
+  void find(std::string_view method, const Cloth& g, Scales scales,
             const ForcePlan& force, const ConstraintPlan& constraint);
   /** Replace @a f, by node id, by the solution; 0 at held nodes.  @pre find()
    * Complexity: O(entries of the factor) */

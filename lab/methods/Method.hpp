@@ -6,6 +6,7 @@
 #include <concepts>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <type_traits>
 
 #include "lab/fast/Archive.hpp"
@@ -17,7 +18,7 @@ namespace lab {
 
 /** The properties that a method declares; the tests measure them. */
 struct MethodInfo {
-  const char* name;
+  std::string_view name;
   int order;     ///< error ~ dt^order
   int sweeps;    ///< force evaluations a step, without linear solves
   double limit;  ///< stable while dt omega < limit, without drag

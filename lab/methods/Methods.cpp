@@ -32,9 +32,18 @@ constexpr std::array lines = {
 
 /** The line of @a M. It does not compile if there is none. */
 template <typename M>
-constexpr const MethodEntry& line =
-    *std::ranges::find(lines, std::string_view(M::info.name),
-                       [](const MethodEntry& m) { return m.info.name; });
+constexpr const MethodEntry& line = *std::ranges::find(
+    lines, M::info.name, [](const MethodEntry& m) { return m.info.name; });
+
+/** What all_methods() returns. */
+std::vector<const MethodEntry*>& all() {
+  static std::vector<const MethodEntry*> list = [] {
+    std::vector<const MethodEntry*> made;
+    for (const MethodEntry& m : lines) made.push_back(&m);
+    return made;
+  }();
+  return list;
+}
 
 }  // namespace
 
@@ -42,19 +51,26 @@ constexpr const MethodEntry& line =
 constinit const std::span<const MethodEntry> methods = lines;
 
 namespace table {
+constinit const MethodEntry& forward_euler = line<ForwardEuler>;
 constinit const MethodEntry& symplectic_euler = line<SymplecticEuler>;
 constinit const MethodEntry& verlet = line<Verlet>;
 constinit const MethodEntry& mollified_impulse = line<MollifiedImpulse>;
 constinit const MethodEntry& pefrl = line<Pefrl>;
 constinit const MethodEntry& srkn11b = line<Srkn11b>;
+constinit const MethodEntry& rk4 = line<Rk4>;
 constinit const MethodEntry& rkn64 = line<Rkn64>;
+constinit const MethodEntry& implicit_euler = line<ImplicitEuler>;
 constinit const MethodEntry& tr_bdf2 = line<TrBdf2>;
+constinit const MethodEntry& xpbd = line<Xpbd>;
 }  // namespace table
 
+void add_method(const MethodEntry& own) { all().push_back(&own); }
+const std::vector<const MethodEntry*>& all_methods() { return all(); }
+
 const MethodEntry* find_method(std::string_view name) {
-  for (const MethodEntry& m : methods)
-    if (m.info.name == name) return &m;
-  return own_method && name == own_method->info.name ? own_method : nullptr;
+  for (const MethodEntry* m : all())
+    if (m->info.name == name) return m;
+  return nullptr;
 }
 
 }  // namespace lab

@@ -4,23 +4,27 @@
  * A program that names a class of methods includes that class's header. */
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "lab/methods/Method.hpp"
 
 namespace lab {
 
-/** One line a method; Methods.cpp lists them. */
+/** One line a method of the laboratory; Methods.cpp lists them. */
 extern const std::span<const MethodEntry> methods;
 
 /** The lines that programs name. */
 namespace table {
-extern const MethodEntry &symplectic_euler, &verlet, &mollified_impulse, &pefrl,
-    &srkn11b, &rkn64, &tr_bdf2;
+extern const MethodEntry &forward_euler, &symplectic_euler, &verlet,
+    &mollified_impulse, &pefrl, &srkn11b, &rk4, &rkn64, &implicit_euler,
+    &tr_bdf2, &xpbd;
 }  // namespace table
 
-/** A method that a program adds to the table, or nullptr. */
-inline const MethodEntry* own_method = nullptr;
-
+/** Add a method of a program, which must stay, for find_method(). It may be
+ * called before main() begins, but by one thread. */
+void add_method(const MethodEntry& own);
+/** Those of the table, then the added ones. */
+const std::vector<const MethodEntry*>& all_methods();
 /** The method called @a name, or nullptr. */
 const MethodEntry* find_method(std::string_view name);
 

@@ -136,11 +136,11 @@ void MollifiedImpulse::find_soft(double t, double dt) {
   const auto x = arrays(stiff_).positions();
   for (unsigned k = 0; k < x.size(); ++k) x[k] = flat.position(split_.nodes[k]);
   at_.assign(x.begin(), x.end());
-  stage_.begin(info.name, t, dt, stiff_, held_);
-  stage_.factorize(stiff_, dt / 2, springs_);
+  const auto factor =
+      stage_.begin(info.name, t, dt, stiff_, springs_, held_).factorize(dt / 2);
   find_stiff();
   for (Point& f : f_) f *= ss;
-  stage_.solve(f_);
+  factor.solve(f_);
   for (unsigned k = 0; k < x.size(); ++k) {
     x[k] += f_[k];
     flat.set_position(split_.nodes[k], x[k]);
@@ -151,7 +151,7 @@ void MollifiedImpulse::find_soft(double t, double dt) {
     f_[k] = double(arrays(stiff_).node_values()[k].mass) *
                 flat.acceleration(split_.nodes[k]) -
             f_[k];
-  stage_.solve(f_);
+  factor.solve(f_);
   for (unsigned k = 0; k < x.size(); ++k) {
     flat.set_position(split_.nodes[k], at_[k]);
     flat.set_acceleration(split_.nodes[k], f_[k]);

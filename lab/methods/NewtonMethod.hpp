@@ -16,7 +16,7 @@ namespace lab {
 class NewtonMethod : public Method {
  public:
   /** @param tolerance [m/s^2] > 0, of each stage: the residual acts like an
-   *        acceleration of that size, see ImplicitStage::solve_newton()
+   *        acceleration of that size, see ImplicitStep::solve_newton()
    * @param max_iterations of Newton's method in a stage; then StepError
    * @param line_search false to measure its effect */
   explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100,

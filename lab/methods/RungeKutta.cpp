@@ -19,7 +19,7 @@ namespace {
 /** c/m of all nodes [1/s].
  * Throws std::invalid_argument, for @a method, if it differs from node to node.
  * O(N) */
-double common_drag(const Cloth& g, const Drag& c, const char* method) {
+double common_drag(const Cloth& g, const Drag& c, std::string_view method) {
   double r = 0;
   if (c.none()) return r;
   for (Node n : g.nodes()) {

@@ -191,7 +191,7 @@ void list_methods() {
       "%-18s %5s %9s %10s  %s\n",
       "method", "order", "cost", "dt omega <", "good for");
   for (const MethodEntry& m : methods) {
-    std::printf("%-18s %5d %9s ", m.info.name, m.info.order,
+    std::printf("%-18s %5d %9s ", m.info.name.data(), m.info.order,
                 cost_of(m.info.name).c_str());
     if (m.info.limit == no_limit)
       std::printf("%10s", "any");

@@ -22,7 +22,7 @@ std::string range(double low, double high) {
 }
 
 std::string of_method(const MethodInfo& info) {
-  std::string text = std::string("a step of ") + info.name + ", order " +
+  std::string text = "a step of " + std::string(info.name) + ", order " +
                      std::to_string(info.order) + ": " +
                      count_of(std::size_t(info.sweeps), "force evaluation");
   if (info.adaptive)

@@ -34,7 +34,8 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 void Touchable::touch(Node n, double depth, const Point& out,
                       const Point& velocity) const {
   const double work = contact::touch(n, depth, out, velocity, friction_);
-  if (!traits().nodewise) exchange_.work += work;  // else several threads may be here
+  if (!traits().nodewise)
+    exchange_.work += work;  // else several threads may be here
 }
 
 // ----------------------------------------------------------------------- Wall
@@ -61,10 +62,9 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
 
 BallConstraint::BallConstraint(const Ball& ball, const Motion& motion,
                                double friction)
-    : Touchable(
-          Zone::inside(ball),
-          motion.velocity == Point() ? std::optional(ball) : std::nullopt,
-          motion, friction),
+    : Touchable(Zone::inside(ball),
+                motion.velocity == Point() ? std::optional(ball) : std::nullopt,
+                motion, friction),
       ball_(ball) {}
 
 void BallConstraint::project(Cloth& g, double t, unsigned first,

@@ -84,8 +84,9 @@ class WallConstraint : public Touchable {
  * round-off; without friction, a node that did is at the nearest point of the
  * surface (the top, if it was at the center). Velocities: contact::touch().
  *
- * Nodes that tunnel through the ball are found only if the ball is at rest. If it moves, choose steps so short that the speeds of ball and nodes,
- * times dt, stay well below the radius. */
+ * Nodes that tunnel through the ball are found only if the ball is at rest. If
+ * it moves, choose steps so short that the speeds of ball and nodes, times dt,
+ * stay well below the radius. */
 class BallConstraint : public Touchable {
  public:
   /** @param ball at t = 0   @param friction coefficient, >= 0 */

@@ -154,7 +154,7 @@ void write(const T& a, std::vector<std::string>& values) {
   } else if constexpr (std::is_same_v<T, Measure>) {
     values.push_back(name_of(a));
   } else if constexpr (std::is_same_v<T, const MethodEntry*>) {
-    values.push_back(a->info.name);
+    values.emplace_back(a->info.name);
   } else {
     values.push_back(to_words(a));
   }

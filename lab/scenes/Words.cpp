@@ -271,7 +271,7 @@ TimeStep read_time_step(const std::string& text) {
 const MethodEntry* read_method(const std::string& text) {
   if (const MethodEntry* method = find_method(text)) return method;
   std::vector<std::string> names;
-  for (const MethodEntry& m : methods) names.push_back(m.info.name);
+  for (const MethodEntry& m : methods) names.emplace_back(m.info.name);
   throw SceneError("method", "is " + text +
                                  ", expected a name of --list-methods" +
                                  did_you_mean(text, names));

@@ -77,7 +77,7 @@ std::string Failure::text() const {
 
 std::string Cure::options(const MethodEntry& before) const {
   const std::string step = "--dt " + CME212::short_text(dt);
-  const bool same = std::string_view(method.info.name) == before.info.name;
+  const bool same = method.info.name == before.info.name;
   // --dt alone would replace an adaptive method that --tolerance chose.
   return same && !before.info.adaptive
              ? step
@@ -253,8 +253,7 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
 }
 
 bool same(const Cure& a, const Cure& b) {
-  return a.dt == b.dt && std::string_view(a.method.info.name) ==
-                             std::string_view(b.method.info.name);
+  return a.dt == b.dt && a.method.info.name == b.method.info.name;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace lab {
 
 double StepLimits::chosen(const MethodEntry& method, StepRule rule) const {
-  const std::string name = method.info.name;
+  const std::string name(method.info.name);
   if (method.info.adaptive)
     throw std::invalid_argument(name +
                                 " chooses its inner steps by their error: omit "

@@ -56,7 +56,7 @@ void Stepper::start(const EnergyFlow& flow) {
   guard_.emplace(system_.cloth, system_.gravity, clock_.dt, this->flow());
   if (!is_finite())
     failure_ = {Failure::Kind::start, WorstPlace(system_.cloth),
-                entry_.info.name, time(), dt()};
+                std::string(entry_.info.name), time(), dt()};
   start_control();
 }
 
@@ -319,7 +319,8 @@ bool Stepper::fail(Failure::Kind kind) {
   const WorstPlace place(system_.cloth);
   guard_->restore(system_.cloth);
   go_on(checked_, flow_);
-  failure_ = {kind, place, entry_.info.name, time(), dt(), steps() + 1, error_};
+  failure_ = {kind,        place, std::string(entry_.info.name), time(), dt(),
+              steps() + 1, error_};
   return false;
 }
 

@@ -37,7 +37,7 @@ class PlainMethod : public Method {
 };
 
 constexpr MethodEntry entry = entry_of<PlainMethod>();
-[[maybe_unused]] const bool known = (own_method = &entry, true);
+[[maybe_unused]] const bool known = (add_method(entry), true);
 
 }  // namespace
 }  // namespace lab
