@@ -8,7 +8,7 @@
 
 #include "lab/charts/Problem.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/methods/Rkn64.hpp"
+#include "lab/methods/RungeKutta.hpp"
 #include "tests/ClothProgram.hpp"
 
 using namespace lab;

@@ -25,8 +25,8 @@ TEST_F(ScatteredCloth, NodewiseByPartsIsTheCall) {
   const PinConstraint pins(some);
   const PlaneConstraint plane(-0.6);
   const SphereConstraint sphere;
-  const PinnedNodes moving(
-      PinConstraint(std::vector<Node>{some[1], some[4]}), motion);
+  const PinnedNodes moving(PinConstraint(std::vector<Node>{some[1], some[4]}),
+                           motion);
   const WallConstraint wall(Point(0, 0, -0.6), Point(1, 0, 5), {}, 0.5);
   const BallConstraint rough_ball(ball, {}, 0.5);
   const auto all = make_combined_constraints(pins, wall, moving, sphere);

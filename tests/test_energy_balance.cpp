@@ -9,7 +9,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stepping/Scene.hpp"
 

@@ -14,10 +14,9 @@
 
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Rk4.hpp"
+#include "lab/methods/RungeKutta.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "methods.hpp"
@@ -278,7 +277,7 @@ TYPED_TEST(FlatFlowTest, PartsStepsAheadOfOthersChangeNoBit) {
                                            DampingForce(0.3));
     const Node corner = g.node(0), inner = g.node(3000);
     const PinnedNodes moving(PinConstraint(std::span(&inner, 1)),
-                                     Motion{.velocity = Point(0, 1, 2)});
+                             Motion{.velocity = Point(0, 1, 2)});
     const auto constraint = make_combined_constraints(
         PinConstraint(std::span(&corner, 1)), moving, PlaneConstraint(-0.002),
         SphereConstraint({Point(0.5, 0.5, -0.15), 0.2}));

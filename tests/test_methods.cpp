@@ -8,15 +8,11 @@
 #include <map>
 #include <numbers>
 
-#include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/MollifiedImpulse.hpp"
-#include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Rk4.hpp"
-#include "lab/methods/Rkn64.hpp"
-#include "lab/methods/Srkn11b.hpp"
+#include "lab/methods/RungeKutta.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "tests/Allocations.hpp"
 #include "tests/SweptForces.hpp"
 

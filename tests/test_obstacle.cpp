@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 
@@ -206,7 +206,8 @@ TEST(Ball, IsWatchedWhileItIsAtRest) {
   const BallConstraint rests(ball), moves(ball, {Point(0, 3, 4), 0.1});
   const Point from(-1, 0, 0), to(1, 0, 0);
   EXPECT_EQ(ConstraintPlan(rests).thinnest(), 0.5);
-  EXPECT_EQ(ConstraintPlan(rests).first_hit(from, to), lab::first_hit(ball, from, to));
+  EXPECT_EQ(ConstraintPlan(rests).first_hit(from, to),
+            lab::first_hit(ball, from, to));
   EXPECT_EQ(rests.speed(), 0);
   EXPECT_EQ(ConstraintPlan(moves).thinnest(), infinity);
   EXPECT_EQ(ConstraintPlan(moves).first_hit(from, to), std::nullopt);
@@ -421,8 +422,7 @@ TEST(MovingPin, DrawsWhatHangsOnIt) {
   Cloth g;
   Node top = g.add_node(Point()), mass = g.add_node(Point(0, 0, -1.0981));
   g.add_edge(top, mass, {100, 1});
-  const PinnedNodes pin(PinConstraint(std::vector{top}),
-                                {Point(0, 0, 0.01)});
+  const PinnedNodes pin(PinConstraint(std::vector{top}), {Point(0, 0, 0.01)});
   for (auto method : {entry_of<SymplecticEuler>(), entry_of<Verlet>()}) {
     auto m = method.make();
     for (int k = 0; k < 1000; ++k)

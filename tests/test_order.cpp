@@ -13,7 +13,6 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/methods/Splitting.hpp"
-#include "lab/methods/Verlet.hpp"
 
 using namespace lab;
 

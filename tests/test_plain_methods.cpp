@@ -12,7 +12,7 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "methods.hpp"
 #include "tests/MovingEnds.hpp"

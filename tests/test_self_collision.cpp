@@ -9,7 +9,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 #include "tests/Allocations.hpp"
@@ -367,7 +367,7 @@ TEST_F(SelfCollisionRun, HoldsWhileNodesAndEdgesAreRemoved) {
       make_combined_constraints(
           PinConstraint(std::vector<Node>{g.node(0), g.node(7)}),
           PinnedNodes(PinConstraint(std::vector{g.node(56)}),
-                              {Point(0.5, 0.5, 0.2), 0.6}),
+                      {Point(0.5, 0.5, 0.2), 0.6}),
           PlaneConstraint(-0.3), TearConstraint({Point(0.5, 0.5, -0.2), 0.1}),
           StrainConstraint(0.8)));
   const unsigned nodes = g.num_nodes(), edges = g.num_edges();

@@ -13,13 +13,12 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/ImplicitMidpoint.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/methods/Rk4.hpp"
+#include "lab/methods/RungeKutta.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
 

@@ -18,9 +18,8 @@
 #include <omp.h>
 #endif
 
-#include "lab/methods/Pefrl.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "tests/SweptForces.hpp"
 

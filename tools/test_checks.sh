@@ -40,7 +40,7 @@ arrow CME212/Point.hpp Graph.hpp 'is not below it'
 arrow Graph.hpp mass_spring.hpp 'is not below it'
 arrow mass_spring.hpp lab/fast/Lanes.hpp 'is not below it'
 arrow another.cpp lab/fast/Sweep.hpp 'is not below it'
-arrow lab/fast/Energy.hpp lab/methods/Verlet.hpp 'is not below it'
+arrow lab/fast/Energy.hpp lab/methods/Splitting.hpp 'is not below it'
 arrow mass_spring.cpp SDL2/SDL.h 'only'
 arrow lab/stepping/Scene.hpp CME212/Color.hpp 'draws'
 mkdir lab/attic; echo '#include "Graph.hpp"' >lab/attic/Stranger.hpp

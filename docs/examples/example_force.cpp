@@ -1,6 +1,6 @@
 // A force of your own, by a method of the laboratory.
 #include <iostream>
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 /** Wind: drag relative to air that moves at velocity w: f = -c (v - w) [N]. */
 struct WindForce {
   double c;  // [kg/s]

@@ -25,10 +25,9 @@
 #include "lab/fast/FastestCpu.hpp"
 #include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/Rk4.hpp"
+#include "lab/methods/RungeKutta.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stepping/Scene.hpp"
 

@@ -12,7 +12,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 using namespace lab;

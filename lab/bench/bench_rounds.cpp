@@ -22,8 +22,8 @@
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/StiffSplit.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stability/Spectrum.hpp"
 

@@ -7,9 +7,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Srkn11b.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"
 

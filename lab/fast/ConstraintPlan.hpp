@@ -66,7 +66,7 @@ struct Zone {
   }
 };
 
-/** What a constraint tells of its call. The defaults are right for every
+/** Properties of a constraint's call. The defaults are right for every
  * constraint whose moving parts do no work on nodes. */
 struct Traits {
   /** Each node is projected independently and none is removed: then project()

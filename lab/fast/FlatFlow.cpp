@@ -323,20 +323,18 @@ void FlatFlow::find_rings(Rings& r, unsigned first) {
 
 void FlatFlow::end() { cloth_.write(*g_); }
 
-std::vector<Point> FlatFlow::kept(unsigned x) const {
-  std::vector<Point> a(cloth_.slots());
-  for (unsigned i = 0; i < a.size(); ++i) a[i] = cloth_.point(x, i);
-  return a;
-}
-
-void FlatFlow::set_kept(const Cloth& g, const std::vector<Point>& a,
-                        unsigned x) {
+void FlatFlow::archive_kept(Archive& a, const Cloth& g, unsigned x) {
+  std::vector<Point> all;
+  for (unsigned i = 0; !a.loads() && i < cloth_.slots(); ++i)
+    all.push_back(cloth_.point(x, i));
+  a(all);
+  if (!a.loads()) return;
   const Drag none;
   cloth_.take(g, 0, none);
-  if (a.size() != cloth_.slots() ||
-      !std::ranges::all_of(a, [](auto& p) { return std::isfinite(norm(p)); }))
+  if (all.size() != cloth_.slots() ||
+      !std::ranges::all_of(all, [](auto& p) { return std::isfinite(norm(p)); }))
     throw std::runtime_error("holds no accelerations of this cloth");
-  for (unsigned i = 0; i < a.size(); ++i) cloth_.set(x, i, a[i]);
+  for (unsigned i = 0; i < all.size(); ++i) cloth_.set(x, i, all[i]);
 }
 
 }  // namespace lab

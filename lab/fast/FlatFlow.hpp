@@ -90,11 +90,10 @@ class FlatFlow {
   /** Write positions and velocities to the graph. */
   void end();
 
-  /** The kept accelerations, by node id [m/s^2]; or other columns. */
-  std::vector<Point> kept(unsigned x = FlatCloth::AX) const;
-  /** Throws std::runtime_error if @a a is of another cloth or not finite. */
-  void set_kept(const Cloth& g, const std::vector<Point>& a,
-                unsigned x = FlatCloth::AX);
+  /** Save or load the kept accelerations by node id [m/s^2], or other columns,
+   * of @a g. Throws std::runtime_error if those loaded are of another cloth or
+   * not finite. */
+  void archive_kept(Archive& a, const Cloth& g, unsigned x = FlatCloth::AX);
 
  private:
   /** Nodes of consecutive ids with the same c/m, up to round-off. */

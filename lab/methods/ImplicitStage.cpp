@@ -457,7 +457,6 @@ ImplicitStep::Objective ImplicitStep::choose_start(double s) {
 bool ImplicitStep::search(double t, double s, Objective& here, bool close) {
   const double predicted = dot_product(residual_, step_);
   advance(1);
-  if (!line_search_) return true;
   if (predicted <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
   double a = 1;
   for (; a > 1e-9; a /= 2) {

@@ -136,7 +136,6 @@ class ImplicitStep {
   bool tight_ = false;     // whether an earlier A of this step was factored
   double contrast_ = 0;    // of D and M: about 1 + (s omega)^2
   Goal goal_;
-  bool line_search_;
   double share_;
   Work work_;
   Cloth* g_ = nullptr;
@@ -148,8 +147,7 @@ class ImplicitStep {
     double value() const { return inertia + energy; }
   };
 
-  ImplicitStep(const Goal& goal, bool line_search, double share)
-      : goal_(goal), line_search_(line_search), share_(share) {}
+  ImplicitStep(const Goal& goal, double share) : goal_(goal), share_(share) {}
   void hold(double t);
   void find_w(double s, std::vector<Point>& now) const;
   void advance(double a);
@@ -173,15 +171,13 @@ class ImplicitStep {
   bool search(double t, double s, Objective& here, bool close);
 };
 
-/** What the steps of an implicit method share: settings, work, memory. */
+/** Settings, work and memory, shared by the steps of an implicit method. */
 class ImplicitStage {
  public:
   /** @param tolerance > 0   @param max_iterations   see the solvers
-   * @param line_search whether Newton's method has one
    * @param share Newton's method may leave this share of the local error */
-  ImplicitStage(double tolerance, int max_iterations, bool line_search = true,
-                double share = 0)
-      : step_({tolerance, max_iterations}, line_search, share) {}
+  ImplicitStage(double tolerance, int max_iterations, double share = 0)
+      : step_({tolerance, max_iterations}, share) {}
   /** Begin a step of @a g from @a t by @a dt [s]: find the fixed nodes, put
    * held ones to their places, set p = x, q = w = guess = v. Valid until the
    * next begin(), while the arguments are.  @param method its name, for errors

@@ -4,17 +4,13 @@
 #include <array>
 
 #include "lab/methods/FastMassSpring.hpp"
-#include "lab/methods/ForwardEuler.hpp"
 #include "lab/methods/ImplicitEuler.hpp"
 #include "lab/methods/ImplicitMidpoint.hpp"
 #include "lab/methods/MollifiedImpulse.hpp"
-#include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Rk4.hpp"
-#include "lab/methods/Rkn64.hpp"
-#include "lab/methods/Srkn11b.hpp"
+#include "lab/methods/RungeKutta.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/TrBdf2.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "lab/methods/Xpbd.hpp"
 
 namespace lab {

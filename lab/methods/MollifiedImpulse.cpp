@@ -183,9 +183,8 @@ void MollifiedImpulse::archive(Archive& a, const Cloth& g) {
   if (a.loads())
     kept_for_ = nullptr, loaded_ = has, kept_version_ = arrays(g).version();
   if (!has) return;
-  auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
-  a(accelerations)(kept_time_)(kept_dt_);
-  if (a.loads()) flow_.set_kept(g, accelerations);
+  flow_.archive_kept(a, g);
+  a(kept_time_)(kept_dt_);
 }
 
 void MollifiedImpulse::find_split(const Cloth& g, const ForcePlan& force,

@@ -7,8 +7,8 @@
 
 #include "lab/fast/FlatFlow.hpp"
 #include "lab/methods/ImplicitStage.hpp"
+#include "lab/methods/Splitting.hpp"
 #include "lab/methods/StiffSplit.hpp"
-#include "lab/methods/Verlet.hpp"
 
 namespace lab {
 

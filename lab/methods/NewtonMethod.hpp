@@ -17,11 +17,9 @@ class NewtonMethod : public Method {
  public:
   /** @param tolerance [m/s^2] > 0, of each stage: the residual acts like an
    *        acceleration of that size, see ImplicitStep::solve_newton()
-   * @param max_iterations of Newton's method in a stage; then StepError
-   * @param line_search false to measure its effect */
-  explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100,
-                        bool line_search = true)
-      : stage_(tolerance, max_iterations, line_search) {}
+   * @param max_iterations of Newton's method in a stage; then StepError */
+  explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100)
+      : stage_(tolerance, max_iterations) {}
 
   Work work() const override { return stage_.work(); }
   void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
@@ -32,7 +30,7 @@ class NewtonMethod : public Method {
   struct Share {
     double share;
   };
-  explicit NewtonMethod(Share s) : stage_(1e-9, 100, true, s.share) {}
+  explicit NewtonMethod(Share s) : stage_(1e-9, 100, s.share) {}
 
   implicit_detail::ImplicitStage stage_;
 };

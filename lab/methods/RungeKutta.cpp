@@ -8,9 +8,6 @@
 #include <vector>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/ForwardEuler.hpp"
-#include "lab/methods/Rk4.hpp"
-#include "lab/methods/Rkn64.hpp"
 
 namespace lab {
 
@@ -223,11 +220,7 @@ void RungeKutta<Tableau>::archive(Archive& a, const Cloth& g) {
   if (!has) return;
   end_version_ = arrays(g).version();
   const unsigned last = acceleration(stages - 1);
-  for (unsigned column : {end, end + 3, last}) {
-    auto points = a.loads() ? std::vector<Point>() : flow_.kept(column);
-    a(points);
-    if (a.loads()) flow_.set_kept(g, points, column);
-  }
+  for (unsigned column : {end, end + 3, last}) flow_.archive_kept(a, g, column);
   a(end_t_);
 }
 

@@ -5,9 +5,6 @@
 #include <vector>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/Pefrl.hpp"
-#include "lab/methods/Srkn11b.hpp"
-#include "lab/methods/Verlet.hpp"
 #include "methods.hpp"
 
 namespace lab {
@@ -73,9 +70,8 @@ void Splitting<Scheme>::archive(Archive& a, const Cloth& g) {
   bool has = kept_for_ == &g && kept_version_ == arrays(g).version();
   a(has);
   if (!has) return restart();
-  auto accelerations = a.loads() ? std::vector<Point>() : flow_.kept();
-  a(accelerations)(kept_time_);
-  if (a.loads()) flow_.set_kept(g, accelerations);
+  flow_.archive_kept(a, g);
+  a(kept_time_);
   kept_for_ = &g, kept_version_ = arrays(g).version();
 }
 

@@ -6,7 +6,7 @@
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
-#include "lab/methods/Verlet.hpp"
+#include "lab/methods/Splitting.hpp"
 
 namespace lab {
 

@@ -406,8 +406,7 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
       if (arrays(g).node_in_use(id))
         pins.push_back({arrays(g).node_with_id(id), place});
     // A pin at rest has no time at which it stops.
-    add(PinnedNodes(
-        pins, h.motion.velocity == Point() ? Motion() : h.motion));
+    add(PinnedNodes(pins, h.motion.velocity == Point() ? Motion() : h.motion));
   }
   if (!m.self_collision) return CombinedConstraints(std::move(all));
   const auto [thickness, friction] = *m.self_collision;
