@@ -1,6 +1,5 @@
 // The implicit methods, fast mass-spring and XPBD against exact solutions of
-// the difference equations, against an explicit method of order 6, and where
-// others fail.
+// the difference equations, and where others fail.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -22,24 +21,22 @@ using namespace lab::sheets;
 
 namespace {
 
-/** One mass on a spring along x: y'' + (c/m) y' + w^2 y = 0, y = x - 1. */
+/** One mass on a spring along x: y'' + w^2 y = 0, y = x - 1. */
 struct Oscillator {
   Cloth g;
   Node wall = g.add_node(Point()), a;
-  double m, c, w;
+  double w;
   CombinedForces force;
   PinConstraint pin;
   static constexpr double y0 = 0.1;  // [m], at rest
 
-  /** @param w [1/s]   @param c [kg/s]   @param m [kg] */
-  explicit Oscillator(double w_, double c_ = 0, double m_ = 0.5)
-      : a(g.add_node(Point(1 + y0, 0, 0), {Point(), m_})),
-        m(m_),
-        c(c_),
+  /** @param w [1/s] */
+  explicit Oscillator(double w_)
+      : a(g.add_node(Point(1 + y0, 0, 0), {Point(), 0.5})),
         w(w_),
-        force(make_combined_force(MassSpringForce(), DampingForce(c_))),
+        force(make_combined_force(MassSpringForce())),
         pin(g) {
-    g.add_edge(wall, a, {m * w * w, 1});
+    g.add_edge(wall, a, {0.5 * w * w, 1});
   }
   double y() const { return a.position().x - 1; }
   double v() const { return a.value().vel.x; }
@@ -49,14 +46,6 @@ struct Oscillator {
   template <typename M>
   void run(M& method, double h, int steps) {
     for (int n = 0; n < steps; ++n) method(g, n * h, h, force, pin);
-  }
-  /** Distance to the exact solution at @a t: in y [m] and v times 1 s. */
-  double error(double t) const {
-    const double gamma = c / m, f = std::sqrt(w * w - gamma * gamma / 4);
-    const double decay = y0 * std::exp(-gamma / 2 * t);
-    double y1 = decay * (std::cos(f * t) + gamma / 2 / f * std::sin(f * t));
-    double v1 = -decay * w * w / f * std::sin(f * t);
-    return std::hypot(y() - y1, v() - v1);
   }
 };
 
@@ -73,16 +62,6 @@ struct SweptSprings : SweptForce {
   }
 };
 
-/** Springs that count their sweeps. */
-struct Counted : SweptSprings {
-  int& sweeps;
-  explicit Counted(int& n) : sweeps(n) {}
-  void add_to(const Part& part, double t, std::span<Point> f) const override {
-    if (part.first == 0) ++sweeps;
-    SweptForce::add_to(part, t, f);
-  }
-};
-
 // ------------------------------------------------------------- Every method
 
 template <typename M>
@@ -92,55 +71,10 @@ using All = ::testing::Types<ImplicitEuler, ImplicitMidpoint, TrBdf2,
 struct Names {
   template <typename M>
   static std::string GetName(int) {
-    return M::info.name;
+    return std::string(M::info.name);
   }
 };
 TYPED_TEST_SUITE(Implicit, All, Names);
-
-// Errors down to 1e-10 m: no less than the order, and no more.
-TYPED_TEST(Implicit, DeliversTheOrderItDeclares) {
-  auto error = [](int steps) {
-    Oscillator o(3, 0.4);
-    TypeParam method;
-    o.run(method, 1.0 / steps, steps);
-    return o.error(1);
-  };
-  for (int steps : {100, 1000, 5000})
-    EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)),
-                TypeParam::info.order, 0.1)
-        << steps << " steps";
-}
-
-// The sheet folds and stretches by a tenth meanwhile.
-TYPED_TEST(Implicit, DeliversItsOrderOnNonlinearCloth) {
-  const double T = 0.2;
-  auto start = [] {
-    auto sheet = std::make_unique<PinnedSheet>(4, 10, 0.05);
-    sheet->stir();
-    return sheet;
-  };
-  auto exact = start();
-  Srkn11b reference;
-  exact->run(reference, T / 400, 400);
-  auto error = [&](int steps) {
-    auto sheet = start();
-    TypeParam method;
-    sheet->run(method, T / steps, steps);
-    return distance(sheet->g, exact->g);
-  };
-  EXPECT_NEAR(std::log2(error(200) / error(400)), TypeParam::info.order, 0.1);
-}
-
-TYPED_TEST(Implicit, SweepsTheForcesAsOftenAsItDeclares) {
-  int sweeps = 0;
-  Oscillator o(3);
-  o.force = make_combined_force(Counted(sweeps));
-  TypeParam method;
-  o.run(method, 0.01, 1);  // the first one may take one more
-  sweeps = 0;
-  for (int n = 1; n < 10; ++n) method(o.g, n * 0.01, 0.01, o.force, o.pin);
-  EXPECT_EQ(sweeps, 9 * TypeParam::info.sweeps);
-}
 
 TYPED_TEST(Implicit, KeepsMomentumWithoutPinsAndGravity) {
   PinnedSheet s(5);
@@ -151,18 +85,6 @@ TYPED_TEST(Implicit, KeepsMomentumWithoutPinsAndGravity) {
     method(s.g, n * 0.005, 0.005, MassSpringForce());
   EXPECT_LT(norm(momentum(s.g) - before), 5e-8);  // implicit Euler's 1e-8
   EXPECT_GT(elastic_energy(s.g), 1e-4);           // it did move
-}
-
-TYPED_TEST(Implicit, HoldsPinsExactlyAndStopsThem) {
-  PinnedSheet s(6);
-  s.stir();
-  TypeParam method;
-  s.run(method, 0.01, 50);
-  for (unsigned i : {0u, 30u}) {
-    EXPECT_TRUE(is_corner(s.g.node(i).position())) << s.g.node(i).position();
-    EXPECT_EQ(norm(s.g.node(i).value().vel), 0);
-  }
-  EXPECT_GT(norm(s.g.node(1).value().vel), 0);
 }
 
 // A node vanishes in each step, and another one between two steps.
@@ -188,25 +110,6 @@ TYPED_TEST(Implicit, GoesOnWhenNodesAreRemoved) {
     }
 }
 
-TYPED_TEST(Implicit, TearsTheClothAndTheRestIsRight) {
-  PinnedSheet s(8, 100, 0.02);
-  auto constraint = make_combined_constraints(
-      PinConstraint(s.g), PlaneConstraint(), TearConstraint());
-  TypeParam method;
-  DivergenceGuard guard(s.g, grav, 0.01);
-  for (int n = 0; n < 150; ++n) {
-    method(s.g, n * 0.01, 0.01, s.force, constraint);
-    s.g.check_invariants();
-    ASSERT_TRUE(guard.accept(s.g)) << "step " << n;
-    for (Node node : s.g.nodes()) {
-      ASSERT_FALSE(Ball().holds(node.position()));
-      ASSERT_GE(node.position().z, -0.75);
-    }
-  }
-  EXPECT_LT(s.g.num_nodes(), 64u);
-  EXPECT_GT(s.g.num_nodes(), 30u);
-}
-
 // The constraint sees the end of the step, once.
 TYPED_TEST(Implicit, CallsTheConstraintOnceAtTheEnd) {
   Oscillator o(3);
@@ -219,21 +122,6 @@ TYPED_TEST(Implicit, CallsTheConstraintOnceAtTheEnd) {
   });
   EXPECT_EQ(calls, 1);
   EXPECT_EQ(t, 2.5);
-}
-
-TYPED_TEST(Implicit, RefusesAForceOfUnknownStiffness) {
-  PinnedSheet s(3);
-  TypeParam method;
-  auto wind = [](Node, double) { return Point(1, 0, 0); };
-  try {
-    method(s.g, 0, 0.01, make_combined_force(MassSpringForce(), wind));
-    FAIL() << "took it";
-  } catch (const std::invalid_argument& e) {
-    std::string what = e.what();
-    EXPECT_EQ(what.find(TypeParam::info.name), 0u) << what;
-    EXPECT_NE(what.find("does not know its stiffness"), std::string::npos);
-  }
-  EXPECT_THROW(method(s.g, 0, 0.01, Problem1Force()), std::invalid_argument);
 }
 
 TYPED_TEST(Implicit, FallsFreelyWithoutSprings) {
@@ -284,11 +172,10 @@ void expect_l_stable() {
 TEST(ImplicitEuler, IsLStable) { expect_l_stable<ImplicitEuler>(); }
 TEST(TrBdf2, IsLStable) { expect_l_stable<TrBdf2>(); }
 
-template <typename M>
-void expect_monotone_loss() {
+TEST(TrBdf2, OnlyLosesEnergy) {
   for (double hw : {0.1, 1.0, 20.0}) {
     Oscillator o(50);
-    M method;
+    TrBdf2 method;
     // Below 1e-18 Newton's tolerance shows.
     for (int n = 0; n < 100 && o.energy() > 1e-18; ++n) {
       double before = o.energy();
@@ -297,8 +184,6 @@ void expect_monotone_loss() {
     }
   }
 }
-TEST(ImplicitEuler, OnlyLosesEnergy) { expect_monotone_loss<ImplicitEuler>(); }
-TEST(TrBdf2, OnlyLosesEnergy) { expect_monotone_loss<TrBdf2>(); }
 
 // ------------------------------------------------------- One method, exactly
 

@@ -204,19 +204,6 @@ std::vector<Point> run(Method& method, int threads,
   return end;
 }
 
-TEST_F(SweepTest, ThreadsDoNotChangeABit) {
-  SymplecticEuler euler;
-  Verlet verlet;
-  for (Method* method :
-       {static_cast<Method*>(&euler), static_cast<Method*>(&verlet)}) {
-    const auto one = run(*method, 1);
-    for (int threads : {2, 3, 4, 7}) {
-      method->restart();
-      EXPECT_TRUE(run(*method, threads) == one) << threads << " threads";
-    }
-  }
-}
-
 /** A floor that rises at 0.2 m/s. */
 class RisingFloor final : public NodewiseConstraint {
  public:
