@@ -366,28 +366,6 @@ TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
   }
 }
 
-// Drag, solved exactly: v = v0 e^(-c t/m), by nodes of any mass.
-TEST(FlatFlow, DragDecaysAsItIsSolved) {
-  Dice dice(1);
-  Cloth g;
-  add_random(g, dice, 300, 0);
-  for (unsigned i = 100; i < 200; ++i) g.node(i).value().mass = 1;
-  const Cloth before = g;
-  const double c = 0.7;
-  Verlet verlet;
-  verlet.steps(g, {0, 0.01}, 50, DampingForce(c), ZeroConstraint());
-  for (Node n : g.nodes()) {
-    const NodeData old = before.node(n.index()).value();
-    const double left = std::exp(-c / old.mass * 0.5);
-    const Point x =
-        before.node(n.index()).position() + (1 - left) * old.mass / c * old.vel;
-    EXPECT_LT(norm(n.value().vel - left * old.vel),
-              100 * std::numeric_limits<double>::epsilon());
-    EXPECT_LT(norm(n.position() - x),
-              100 * std::numeric_limits<double>::epsilon());
-  }
-}
-
 // ------------------------------------------------------------------ FlatCloth
 
 TEST(FlatClothRows, AreTheOffsetsOfAGrid) {

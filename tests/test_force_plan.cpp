@@ -105,14 +105,6 @@ TEST_F(ForcePlanTest, SpringsAloneConserveMomentum) {
   EXPECT_LT(norm(torque), 1e-14 * size);
 }
 
-TEST(ForcePlanSprings, AreZeroNotNanAtLengthZero) {
-  Cloth g;
-  Node a = g.add_node(Point(1)), b = g.add_node(Point(1));
-  g.add_edge(a, b, {100, 1});
-  const auto f = swept_forces(g, MassSpringForce());
-  for (Point p : {f[0], f[1]}) EXPECT_EQ(p, Point());
-}
-
 TEST_F(ForcePlanTest, CombinedForcesAddUpAnyNumber) {
   auto at = [](double c) { return [c](Node, double) { return Point(c); }; };
   auto combined = make_combined_force(GravityForce(), at(1), at(2), at(3),

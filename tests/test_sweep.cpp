@@ -299,17 +299,6 @@ TEST_F(SweepTest, TheHaloReachesAsFarAsTheSpringsOfAPart) {
       std::numeric_limits<int>::max());
 }
 
-TEST_F(SweepTest, ProcessorsDoNotChangeABit) {
-  Verlet verlet;
-  lanes::cpu = Cpu::plain;
-  const auto plain = run(verlet, 1);
-  for (Cpu cpu : all_cpus()) {
-    lanes::cpu = cpu;
-    verlet.restart();
-    EXPECT_TRUE(run(verlet, 1) == plain) << int(cpu);
-  }
-}
-
 TEST_F(SweepTest, FunctionsNeedNotBeFitForThreads) {
   Cloth g;
   make_random(g, 5000, 0);
