@@ -264,8 +264,8 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
                                 "checkpoint");
   EXPECT_EQ(error_with("0 0 0\n"), file + ": is not a checkpoint");
   std::string newer = good;
-  newer.replace(good.find(" 7\n"), 3, " 8\n");
-  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 8"),
+  newer.replace(good.find(" 8\n"), 3, " 9\n");
+  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 9"),
             0u);
   EXPECT_EQ(error_with(good.substr(0, good.size() - 3)),
             file + ": ends too early: it has " +

@@ -166,7 +166,7 @@ TEST(SafeStep, NeverDivergesInRandomScenes) {
   for (const MethodEntry& m : methods)
     if (m.info.limit > 0 && m.info.limit != no_limit && !m.info.adaptive)
       limited.push_back(&m);
-  std::map<std::string, long> diverged;
+  std::map<std::string_view, long> diverged;
   long torn = 0, steps = 0;
   for (unsigned seed = 0; seed < scenes; ++seed) {
     RandomScene s(seed);

@@ -488,7 +488,7 @@ TEST(Comparison, ErrorsAreOfTheOrderOfTheMethod) {
   const auto c = *live.readings().comparison;
   EXPECT_NEAR(c.error / c.rival_error, 4, 0.4);
   EXPECT_NEAR(c.rival.dt, live.scene().dt() / 2, 1e-12);
-  EXPECT_STREQ(live.reference()->method().name, "srkn11b");
+  EXPECT_EQ(live.reference()->method().name, "srkn11b");
   EXPECT_LT(live.reference()->dt(), live.scene().dt() * 11 / 2);
 }
 

@@ -402,7 +402,8 @@ TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
         << line << ": its color is another's";
   }
   for (const MethodEntry& m : methods)
-    EXPECT_EQ(evaluations[m.info.name], m.info.sweeps) << m.info.name;
+    EXPECT_EQ(evaluations[std::string(m.info.name)], m.info.sweeps)
+        << m.info.name;
 }
 
 TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {

@@ -143,7 +143,7 @@ void Run::announce() const {
   for (const std::string& line :
        what_acts(o_.model, scene_.cloth(), scene_.recipe().built->mesh))
     std::cout << line << '\n';
-  const std::string method = scene_.method().name;
+  const std::string_view method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
   const bool sharp = scene_.stepper().step_rule() == StepRule::sharp;
   std::ostringstream out;

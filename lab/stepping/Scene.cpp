@@ -157,7 +157,8 @@ std::string Scene::missed_text() const {
   if (watched().count() == 0) return "";
   using CME212::short_text;
   const auto& missed = watched().first();
-  const double share = std::min(0.5, watched().thinnest() / missed.length);
+  const double share =
+      std::min(0.5, watched().inner().thinnest() / missed.length);
   return "node " + std::to_string(missed.node) + " moved " +
          short_text(missed.length) +
          " m in the step to t = " + short_text(time()) +

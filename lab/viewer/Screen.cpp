@@ -232,8 +232,10 @@ class SDLScreen : public Screen {
     std::string text =
         time + ("   " + std::to_string(scene.cloth().num_nodes())) + " nodes";
     if (rival)
-      text += std::string("   white: ") + scene.method().name +
-              ", orange: " + rival->method().name;
+      text.append("   white: ")
+          .append(scene.method().name)
+          .append(", orange: ")
+          .append(rival->method().name);
     if (kind_ != Kind::window) return text;
     if (scene.steps() < steps_ || clock_.seconds() > 0.5) {
       rate_ = double(std::max(0LL, scene.steps() - steps_)) / clock_.seconds();
