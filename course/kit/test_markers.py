@@ -346,8 +346,8 @@ class Repository(unittest.TestCase):
                      "data/grid1.nodes", "tools/submit.sh"):
             self.assertIn(name, files)
         for name in files:
-            self.assertNotRegex(name, r"^lab|^test_|scenes|grid4|pages/README|"
-                                r"(?<!web)\.py$")
+            self.assertNotRegex(name, r"^lab|^test_|scenes|grid4|(?<!web)\.py$|"
+                                r"pages/(README|teach)")
         sources = b"".join(files[name][0] for name in markers.SOURCES)
         marked = "".join(markers.read_sources().values())
         for task in tasks.load().tasks.values():

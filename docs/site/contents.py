@@ -18,9 +18,9 @@ CONTENTS: list[tuple[str, list[str | tuple[str, str]]]] = [
         "course/web/README.md",
         "docs/examples/README.md"]),
     ("To teach and to contribute", [
-        "course/README.md", "course/rubric.md", "data/README.md",
-        "docs/CONTRIBUTING.md", "docs/site/README.md", "tools/README.md",
-        "docs/CHANGELOG.md"]),
+        "course/README.md", "course/teaching.md", "course/rubric.md",
+        "data/README.md", "docs/CONTRIBUTING.md", "docs/site/README.md",
+        "tools/README.md", "docs/CHANGELOG.md"]),
 ]
 # Markdown that lies elsewhere once it is used, or is of this site alone.
 LEFT_OUT = ["course/starter/README.md"]

@@ -118,6 +118,9 @@ class Page:
             return match[0]
         name, _, anchor = url.partition("#")
         path = self.path_of(name) if name else self.source
+        if anchor.startswith("scene="):  # a run of the laboratory's page
+            return (f'<a href="{relative("page/index.html", self.source)}'
+                    f'#{html.escape(anchor)}"')
         if path.startswith("../../"):   # of the repository's host
             return (f'<a href="{REPOSITORY}/{path[6:]}"' if REPOSITORY
                     else "<a")
