@@ -24,12 +24,15 @@ import zipfile
 import autograder
 import child
 import dates
+import grade_tests
 import judge
 import markers
 import once
 import ranking
+import starter
 import submission
 import synthetic
+import tasks
 
 LIMIT = 600     # seconds: they compile
 # A graph that crashes in some ways whose texts hold addresses or lines.
@@ -59,7 +62,11 @@ TASK("5.1.GravityForce", weight) {
   });
 }
 TASK("5.1.GravityForce", empty) {}
-TASK("5.1.DampingForce", idle) { CHECK(true, "nothing"); }
+TASK("5.1.DampingForce", idle) {
+  Cloth g;
+  PinConstraint pin(g);  // as on the pages; a right submission has another form
+  CHECK(true, "nothing");
+}
 TASK("5.1.GravityForce", always_fails) { CHECK(false, "pigs to fly"); }
 """
 
@@ -169,6 +176,26 @@ class Grading(Programs):
         return (root / "results/results.json").read_text("utf-8")
 
 
+class Runner(Programs):
+    def test_looks_away_as_the_grader_does(self):
+        """make test, of a graph that may not be asked for a removed edge."""
+        starter.write(starter.tree("solution"), self.top / "mine")
+        text = markers.solution(markers.open_graph(tasks.load()))
+        for old, new in (
+                ("edge(const Edge& e) {",
+                 "edge(const Edge& e) { assert(e.index_ < num_edges());"),
+                ("    remove_node(*it);\n", "    assert(!remove_node(*it));"
+                 "\n")):
+            self.assertEqual(text.count(old), 1)
+            text = text.replace(old, new)
+        (self.top / "mine/Graph.hpp").write_text(text, encoding="utf-8")
+        done = child.run(["make", "test", "SECTION=7.1", "VIEWER=0"], LIMIT,
+                         cwd=self.top / "mine", capture_output=True, text=True)
+        self.assertRegex(done.stdout, r"remove_edge\(edge\): passed  6/6\n")
+        self.assertRegex(done.stdout, r"remove_node\(iterator\): FAILED  0/3"
+                         r"(\n  .*)*\n  It crashed at Graph\.hpp:\d+; ")
+
+
 class OwnTests(Programs):
     def grade(self, text, status=0):
         file, result = self.top / "own.cpp", self.top / "result.json"
@@ -192,6 +219,13 @@ class OwnTests(Programs):
                 "always_fails": False})
         self.assertFalse(any(found["cloth: a force that is no ZeroForce"]
                              .values()))
+
+    def test_a_test_may_hold_a_page_to_its_words(self):
+        right, _ = grade_tests.cases(grade_tests.Tests("", "cloth", [], set()))
+        names = [case.name for case in right]
+        self.assertIn("graph: remove_node looks at every edge of the graph, "
+                      "which is allowed", names)
+        self.assertFalse([name for name in names if ": allowed: " in name])
 
     def test_bad_input(self):
         for text, why in ((None, "No such file"), ("", "has no test"),

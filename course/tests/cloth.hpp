@@ -132,6 +132,10 @@ using kit_missing::Missing;
 using Cloth = ::KIT_GRAPH;
 using ClothNode = typename Cloth::node_type;
 using ClothEdge = typename Cloth::edge_type;
+// In a test a plain name is the submission's.
+using ::DampingForce, ::GravityForce, ::MassSpringForce, ::Problem1Force;
+using ::make_combined_constraints, ::make_combined_force, ::build_cloth;
+using ::PinConstraint, ::PlaneConstraint, ::SphereConstraint, ::TearConstraint;
 
 template <typename T>
 concept Complete = requires {
