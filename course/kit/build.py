@@ -10,10 +10,9 @@ for them; and its macros end where the kit's own code begins.
 
 import functools
 import itertools
-import os
 import pathlib
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 
 import once
@@ -31,7 +30,6 @@ WORD = re.compile(r"[A-Za-z_]\w*")
 SPACE = r"(?:[ \t]|/\*(?:[^*]|\*(?!/)){0,60}+\*/){0,20}+"
 MACRO = re.compile(rf"(?:#|%:|\?\?=){SPACE}define{SPACE}([A-Za-z_]\w*)")
 DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
-INCLUDED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)
 STANDARD = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*<([\w./+-]+)>",
                       re.MULTILINE)
 # Assembler written in the source, as it appears in the compiler's output.
@@ -47,6 +45,9 @@ class Unit:
     included: frozenset = frozenset()     # names in the submission's folder
     refused: str = ""                # why it was not even compiled
     doubtful: str = ""               # what a person should look at
+    right: bool = False              # it compiles
+    seconds: float = 0               # of processor time
+    paths: list = field(default_factory=list)   # that the compiler read
     tests: list = field(default_factory=list)
     stage: str = ""                  # the only one of main(); "": all
 
@@ -77,31 +78,33 @@ def all_stages(way: Way) -> bool:
 
 
 @functools.cache
-def words_of_tests() -> set[str]:
-    """Each word that the kit's own code is written with."""
-    sources = [*TESTS.glob("*.[hc]pp"), *ASKED.glob("*.[hc]pp")]
-    return {word for path in sources
-            for word in WORD.findall(path.read_text(encoding="utf-8"))}
+def words_of(*folders: pathlib.Path) -> frozenset[str]:
+    """Each word that the C++ in our folders is written with."""
+    return frozenset(
+        word for folder in folders for path in folder.glob("*.[hc]pp")
+        for word in WORD.findall(path.read_text(encoding="utf-8")))
 
 
-def macros(files: dict[str, bytes]) -> list[str]:
-    """The macros of a submission that would change the kit's code."""
+def macros(files: dict[str, bytes], words: Collection[str]) -> list[str]:
+    """The macros of a submission that would change code of these words."""
     names = set()
     for text in files.values():
         names |= set(MACRO.findall(
             submission.joined(text.decode("utf-8", "replace"))))
-    return sorted(names & words_of_tests())
+    return sorted(names & set(words))
 
 
-class Room:
-    """A folder with a submission's sources, in which tests are built."""
+class Sources:
+    """A folder with a stranger's sources, where they are compiled in the jail.
 
-    def __init__(self, kit: once.Kit, folder: pathlib.Path,
-                 files: dict[str, bytes]):
-        self.kit, self.files = kit, files
-        self.names = set(files)     # of those that the student wrote
-        self.folder = folder
-        self.tests: tuple[pathlib.Path, ...] = (TESTS, ASKED)
+    `own` are the files and folders of ours that they may include; macros that
+    would change these words end by the file undefined.hpp."""
+
+    def __init__(self, jail: list[str], folder: pathlib.Path,
+                 files: dict[str, bytes], own: Iterable[pathlib.Path],
+                 words: Collection[str]):
+        self.jail, self.folder, self.files = jail, folder, files
+        self.own = [*own]
         self.source = folder / "source"
         self.built = folder / "built"
         for path in (self.source, self.built):
@@ -111,9 +114,61 @@ class Room:
             path = self.source / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(text)
-        (self.built / "undefined.hpp").write_text("".join(
-            f"#undef {name}\n" for name in macros(files))
+        self.undefined = self.built / "undefined.hpp"
+        self.undefined.write_text("".join(
+            f"#undef {name}\n" for name in macros(files, words))
             + "#include <cassert>\n", encoding="utf-8")
+
+    def compiled(self, command: list,
+                 limits: sandbox.Limits = COMPILING) -> Unit:
+        """The unit, without a program, that a compiler makes of them."""
+        done = self.run([*command, "-H"], limits)
+        paths, text = submission.listed(done.output)
+        outside, inside = submission.from_where(
+            paths, self.source, [*self.own, self.built, *SYSTEM])
+        if denied := DENIED.search(text):
+            outside = denied[1]
+        result = Unit(None, self.plain(text), inside, paths=paths,
+                      seconds=done.seconds, right=done.code == 0 and not done.stopped)
+        if outside:
+            result.refused = (f"#include of {self.plain(outside)}: it is not "
+                              "yours")
+            result.doubtful = "includes a file that is not its own"
+            result.output, result.right = "", False
+            result.included = frozenset(self.files)     # or any other
+        elif done.stopped:
+            result.refused = {"time": "it takes too long to compile",
+                              "output": "it fills the compiler's output"}.get(
+                                  done.stopped, "it takes too much to compile")
+        return result
+
+    def run(self, command: list,
+            limits: sandbox.Limits = COMPILING) -> sandbox.Outcome:
+        jail = [*self.jail, *flags("--read", [
+            "/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
+            "/etc/ld.so.cache", "/proc/self", *self.own, self.folder]),
+            *flags("--write", [self.built, "/dev/null"])]
+        return sandbox.run_compiler(jail, [str(word) for word in command],
+                                    self.source, self.built, limits)
+
+    def plain(self, text: str) -> str:
+        """Without the names of this machine's folders."""
+        for path in (self.source, self.built, ROOT):
+            text = text.replace(f"{path}/", "")
+        return re.sub(r"(?m)(^|(?<=from ))\./", "", text)
+
+
+class Room(Sources):
+    """A submission's sources, with which tests are built."""
+
+    def __init__(self, kit: once.Kit, folder: pathlib.Path,
+                 files: dict[str, bytes]):
+        super().__init__(kit.jail, folder, files, [
+            TESTS, ASKED, ROOT / "CME212", kit.preludes, kit.include,
+            *kit.linked], words_of(TESTS, ASKED))
+        self.kit = kit
+        self.names = set(files)     # of those that the student wrote
+        self.tests: tuple[pathlib.Path, ...] = (TESTS, ASKED)
         self.numbers = itertools.count(1)
 
     def compile(self, way: Way, tests: Iterable[str],
@@ -128,43 +183,30 @@ class Room:
         unit.write_text("".join(f'#include "{header}"\n' for header in headers),
                         encoding="utf-8")
         assembly, program = self.built / f"{name}.s", self.built / name
-        command = [*self.compiler(way), "-H",
+        command = [*self.compiler(way),
                    "-fmax-errors=200", "-fdiagnostics-plain-output",
                    "-ftemplate-depth=400",
                    "-I", TESTS / "headless", "-I", self.kit.include,
                    # A header of the system is no file of the submission's.
                    "-iquote", ".", "-idirafter", ".",
-                   f'-DKIT_UNDEFINED="{self.built}/undefined.hpp"',
+                   f'-DKIT_UNDEFINED="{self.undefined}"',
                    *(f"-D{name}" for name in way.defines),
                    f"-fdebug-prefix-map={self.source}=.",
                    *(["-S", "-o", assembly] if link else ["-fsyntax-only"]),
                    unit]
-        done = self.run(command)
-        paths, text = self.split(done.output)
-        outside, inside = self.sort(paths)
-        if denied := DENIED.search(text):
-            outside = denied[1]
-        result = Unit(None, self.plain(text), inside, tests=list(tests))
+        result = self.compiled(command)
+        result.tests = list(tests)
         result.stage = next((name.partition("=")[2] for name in way.defines
                              if name.startswith("KIT_STAGE=")), "")
-        if outside:
-            result.refused = (f"#include of {self.plain(outside)}: it is not "
-                              "yours")
-            result.doubtful = "includes a file that is not its own"
-            result.output = ""
-            result.included = frozenset(self.files)     # or any other
-        elif done.stopped:
-            result.refused = {"time": "it takes too long to compile",
-                              "output": "it fills the compiler's output"}.get(
-                                  done.stopped, "it takes too much to compile")
-        elif done.code == 0 and link:
+        if result.right and link:
             if reads_files(assembly) or self.writes_assembler(
-                    way, assembly, paths):
+                    way, assembly, result.paths):
                 result.refused = result.doubtful = "it writes assembler"
                 return result
             done = self.run([once.CXX, *once.LINK[way.kind], assembly,
                              *self.kit.linked, "-pthread", "-o", program])
             result.output += self.plain(done.output)
+            result.seconds += done.seconds
             if done.code == 0 and not done.stopped:
                 result.program = program
         assembly.unlink(missing_ok=True)
@@ -199,46 +241,11 @@ class Room:
             known[way.kind, names] = assembler(made)
         return found != known[way.kind, names]
 
-    def run(self, command: list) -> sandbox.Outcome:
-        read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
-                "/etc/ld.so.cache", "/proc/self", self.kit.preludes,
-                self.kit.include, TESTS, ASKED, ROOT / "CME212", self.folder,
-                *self.kit.linked]
-        jail = [*self.kit.jail, *flags("--read", read),
-                *flags("--write", [self.built, "/dev/null"])]
-        done = sandbox.run_compiler(jail, [str(word) for word in command],
-                                    self.source, self.built, COMPILING)
-        return done
-
-    @staticmethod
-    def split(output: str) -> tuple[list[str], str]:
-        """The files that were read, and what else the compiler said."""
-        paths = INCLUDED.findall(output)
-        text = INCLUDED.sub("", output)
-        return paths, text.partition("Multiple include guards")[0]
-
-    def sort(self, paths: list[str]) -> tuple[str, frozenset[str]]:
-        """The first path from outside, and names in the submission."""
-        inside, source = set(), os.path.realpath(self.source) + "/"
-        kit = tuple(os.path.realpath(path) + "/" for path in (
-            TESTS, ASKED, ROOT / "CME212", self.kit.preludes, self.built))
-        for path in paths:
-            real = os.path.realpath(os.path.join(self.source, path))
-            if real.startswith(source):
-                inside.add(real[len(source):])
-            elif not real.startswith((*kit, *(s + "/" for s in SYSTEM))):
-                return path, frozenset()
-        return "", frozenset(inside)
-
     def plain(self, text: str) -> str:
-        """Without the names of this machine's folders."""
-        for path, name in ((f"{self.source}/", ""), (f"{self.built}/", ""),
-                           (f"{TESTS}/", "course/tests/"),
-                           (f"{ASKED}/", "course/tests/"),
-                           (f"{self.kit.include}/", ""),
-                           (f"{ROOT}/", "")):
-            text = text.replace(path, name)
-        return re.sub(r"(?m)(^|(?<=from ))\./", "", text)
+        for path, name in ((TESTS, "course/tests/"), (ASKED, "course/tests/"),
+                           (self.kit.include, "")):
+            text = text.replace(f"{path}/", name)
+        return super().plain(text)
 
 
 def flags(option: str, values: Iterable) -> list[str]:

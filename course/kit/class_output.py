@@ -13,7 +13,7 @@ import jplag
 import ranking
 import report
 import submission
-from class_page import page
+from class_page import equal, page
 
 if TYPE_CHECKING:
     from whole_class import Class, Row
@@ -71,6 +71,7 @@ def table(whole: "Class", rows: list) -> str:
     ranked = ranking.COLUMNS if ranking.TASK in ids else ()
     ranks = ranking.ranks({row.student: row.step for row in rows if row.step})
     lines.writerow([*COLUMNS, *ids, *ranked, "note"])
+    same = {name: group for group in equal(rows) for name in group}
     zone = whole.due.tzinfo if whole.due else datetime.timezone.utc
     for row in rows:
         made = row.made
@@ -86,8 +87,13 @@ def table(whole: "Class", rows: list) -> str:
             if row.report.flags:
                 notes.append(f"{len(row.report.flags)} lines to look at by "
                              "hand: the report")
+        name = submission.shown(row.student)
+        others = [other for other in same.get(name, []) if other != name]
+        if others:
+            notes.append("the same files as " + " ".join(others))
         lines.writerow([
-            submission.shown(row.student), made.commit,
+            # Not a formula, where a spreadsheet opens the table.
+            "'" * name.startswith(tuple("=+-@")) + name, made.commit,
             whole.tag if made.commit else "", made.kind, *dates, row.late,
             *points, *ranks.get(row.student, [""] * len(ranked)),
             "; ".join(notes)])

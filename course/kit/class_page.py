@@ -1,6 +1,6 @@
 """A class as one page: points, and which sentences of the specification do not
-hold. It names only the students whose step of page 8 has a rank, and those who
-can't be graded, and asks nothing of a network.
+hold. It names only the students whose step of page 8 has a rank, those whose
+files are equal, and those who can't be graded, and asks nothing of a network.
 """
 
 import collections
@@ -105,6 +105,16 @@ def of_steps(steps: dict[str, tuple[float, int]]) -> Iterator[str]:
     yield "</table>"
 
 
+def equal(rows: Iterable) -> list[list[str]]:
+    """Students with the same files, by their names as they are shown."""
+    groups: dict[str, list[str]] = {}
+    for row in rows:
+        if not row.reason:
+            groups.setdefault(row.content, []).append(
+                submission.shown(row.student))
+    return [group for group in groups.values() if len(group) > 1]
+
+
 def page(whole: "Class", rows: list) -> str:
     graded = [row.report for row in rows if row.report]
     refused = [row for row in rows if row.reason]
@@ -120,7 +130,9 @@ def page(whole: "Class", rows: list) -> str:
         late = "".join(f", {number} by {day} day{'s' * (day != 1)}"
                        for day, number in sorted(days.items()))
         lines.append(f"<p>{sum(days.values())} after the deadline, "
-                     f"{text(whole.due.isoformat(' '))}{late}.</p>")
+                     f"{text(whole.due.isoformat(' '))}{late}. Dates are what "
+                     "the student's clock said: a tag or a commit that is set "
+                     "back counts as in time.</p>")
     if graded:
         points = [one.points for one in graded]
         lines += ["<h2>Points</h2>",
@@ -138,6 +150,10 @@ def page(whole: "Class", rows: list) -> str:
             lines += of_task(same)
     if steps := {row.student: row.step for row in rows if row.step}:
         lines += of_steps(steps)
+    if same_files := equal(rows):
+        lines += ["<h2>Equal files</h2>", "<ul>", *(
+            f"<li>{text(', '.join(group))}</li>" for group in same_files),
+            "</ul>"]
     if refused:
         lines += ["<h2>Not graded</h2>", "<ul>",
                   *(f"<li>{text(submission.shown(row.student))}: "

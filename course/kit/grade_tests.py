@@ -44,6 +44,7 @@ class Tests:
     needs: str
     names: list[str]     # of the tests
     tasks: set[str]      # that they are of
+    flags: list[submission.Flag]
 
 
 def read(path: str, course: tasks.Course) -> Tests:
@@ -53,14 +54,12 @@ def read(path: str, course: tasks.Course) -> Tests:
     if not path:
         raise submission.BadInput(
             "FILE is missing: make grade-tests FILE=mine.cpp")
+    taken = submission.take_file(path)
     try:
-        with open(path, "rb") as file:
-            text = file.read(submission.LARGEST + 1).decode("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        refuse(getattr(error, "strerror", None) or "it is not UTF-8")
-    if len(text) > submission.LARGEST:
-        refuse("is larger than 1 MB")
-    text = submission.without_comments(text)
+        text = submission.without_comments(
+            taken.files[os.path.basename(path)].decode("utf-8"))
+    except UnicodeDecodeError:
+        refuse("it is not UTF-8")
     found = TEST.findall(text)
     if not found:
         refuse('has no test, expected TASK("ID", name) { ... }')
@@ -77,7 +76,7 @@ def read(path: str, course: tasks.Course) -> Tests:
     text = INCLUDE.sub(
         lambda line: f"{line[1]}{once.TESTS}/{line[2]}"
         if (once.TESTS / line[2][:-1]).exists() else line[0], text)
-    return Tests(text, needs, names, {id for id, _ in found})
+    return Tests(text, needs, names, {id for id, _ in found}, taken.flags)
 
 
 def cases(tests: Tests) -> tuple[list[kit_check.Case], list[kit_check.Case]]:
@@ -190,6 +189,9 @@ def main() -> int:
     lines.append(f"{number} of {len(found)} wrong submissions found by "
                  f"{len(tests.names) - len(bad)} of {len(tests.names)} tests, "
                  f"which {len(right)} right ones pass")
+    lines += [f"look at {file}:{line} by hand: it {what}"
+              for file, line, what in tests.flags
+              if what != submission.OF_THE_GRADER]   # a test has to
     print("\n".join(lines))
     if file := get("JSON"):
         grade.write(file, json.dumps({

@@ -37,6 +37,8 @@ PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
 STEP = "mine.hpp"
 LAST_STAGE, *STAGES_BEFORE = names.STAGES
 LIMITS = sandbox.Limits()
+BUDGET = 300        # seconds of processor time for a submission
+OVER = f"grading it takes more than {BUDGET // 60} minutes of processor time"
 STOPPED = {
     "time": f"it takes more than {LIMITS.cpu} s of processor time, or waits",
     "memory": f"it takes more than {LIMITS.memory >> 20} MB of memory",
@@ -117,7 +119,8 @@ def right(answers: sandbox.Answers, expected: sandbox.Answers) -> bool:
 
 def refused(unit: build.Unit) -> Result:
     """The result of a unit that was not even compiled."""
-    return Result("not compiled", unit.refused, doubtful=unit.doubtful)
+    return Result("stopped" if unit.refused == OVER else "not compiled",
+                  unit.refused, doubtful=unit.doubtful)
 
 
 def mended(result: Result) -> Result:
@@ -167,6 +170,7 @@ class Judge:
         self.kit, self.memory = kit, memory
         self.jobs = threading.Semaphore(jobs)
         self.folder, self.files = folder, files
+        self.seconds = 0.0      # of processor time so far
         self.numbers = itertools.count(1)
         self.data = folder / "data"
         shutil.copytree(kit.data, self.data)
@@ -376,7 +380,10 @@ class Judge:
     def compile(self, room: build.Room, way: build.Way, tests: list[str],
                 read: set[str], link: bool = True) -> build.Unit:
         with self.jobs:
+            if self.seconds > BUDGET:
+                return build.Unit(None, refused=OVER)
             unit = room.compile(way, tests, link)
+            self.seconds += unit.seconds
         read |= unit.included
         return unit
 
@@ -404,8 +411,11 @@ class Judge:
         crashing, tries = 0, 3
         while True:
             with self.jobs:
+                if self.seconds > BUDGET:
+                    return Result("stopped", OVER)
                 outcome = sandbox.run_test(
                     jail, unit.program, test, LIMITS, kit, data, crashing)
+                self.seconds += outcome.seconds
             result = result_of(outcome, names, expected)
             # What earlier homework left crashes: without it once more.
             if (outcome.aspect & ~crashing

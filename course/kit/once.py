@@ -86,8 +86,7 @@ class Kit:
         if not link.is_symlink() or os.readlink(link) != str(ROOT / "CME212"):
             link.unlink(missing_ok=True)
             link.symlink_to(ROOT / "CME212")
-        self.jail = [str(self.locked_part(
-            "jail", [KIT / "jail.cpp"], self.make_jail) / "jail")]
+        self.jail = self.only_jail()
         tests = sorted(TESTS.glob("*.hpp"))
         linked = self.locked_part(
             "linked", [*LINKED, KIT.parent / "asked/asked.hpp", *tests,
@@ -105,6 +104,13 @@ class Kit:
             self.jail.append("--unsafe")
         elif probe:
             self.probe()
+
+    @classmethod
+    def only_jail(cls) -> list[str]:
+        """The jail, for who needs nothing else of a kit."""
+        BUILT.mkdir(parents=True, exist_ok=True)
+        return [str(cls.locked_part("jail", [KIT / "jail.cpp"],
+                                    cls.make_jail) / "jail")]
 
     @classmethod
     def locked_part(cls, name: str, sources: Iterable[pathlib.Path],
@@ -143,8 +149,9 @@ class Kit:
         os.utime(folder)
         return folder
 
-    def make_jail(self, folder: pathlib.Path) -> None:
-        self.run(["-O1", KIT / "jail.cpp", "-o", folder / "jail", "-lseccomp"],
+    @classmethod
+    def make_jail(cls, folder: pathlib.Path) -> None:
+        cls.run(["-O1", KIT / "jail.cpp", "-o", folder / "jail", "-lseccomp"],
                  "jail.cpp can't be built: is libseccomp-dev there? make deps")
 
     def make_linked(self, folder: pathlib.Path) -> None:

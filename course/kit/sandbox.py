@@ -22,6 +22,7 @@ SPOKEN = 1 << 18    # bytes of a verdict and its answers
 LOOK = 0.01     # seconds between two looks at the memory
 READ_AT_ONCE = 1 << 17
 MEGABYTE = 1 << 20
+TICKS = os.sysconf("SC_CLK_TCK")        # a second
 PAGE_OF_MEMORY = os.sysconf("SC_PAGE_SIZE")
 Answers = dict[str, tuple[float, list[float]]]  # name: (tolerance, numbers)
 
@@ -48,6 +49,7 @@ class Outcome:
     name: str = ""                 # the function of the test
     did: str = ""                  # what it did last
     aspect: int = 0                # the one that it looked at: model.hpp
+    seconds: float = 0             # of processor time, of all its processes
 
 
 class Output:
@@ -83,22 +85,23 @@ def clean_environment(folder: str | pathlib.Path) -> dict[str, str]:
     }
 
 
-def used(pid: int) -> tuple[int, int]:
-    """Bytes of memory and number of threads of a process."""
+def words_of(pid: int) -> list[int]:
+    """/proc/PID/stat from the process's state on, which is 0 here; or []."""
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:
-            words = file.read().rpartition(b")")[2].split()
-        return int(words[21]) * PAGE_OF_MEMORY, int(words[17])
-    except (OSError, IndexError, ValueError):
-        return 0, 0
+            _, *words = file.read().rpartition(b")")[2].split()
+        return [0, *map(int, words)]
+    except (OSError, ValueError):
+        return []
 
 
 def watch(process: subprocess.Popen, limits: Limits,
-          heard: dict[int, Callable[[bytes], bool]]) -> str:
+          heard: dict[int, Callable[[bytes], bool]]) -> tuple[str, float]:
     """Drain the pipes until the program has ended or meets a limit.
 
     `heard` tells for each pipe what to do with its data; it returns False
-    when that is too much. Returns the limit that was met, or "".
+    when that is too much. Returns the limit that was met, or "", and seconds of
+    processor time.
     """
     selector = selectors.DefaultSelector()
     last = time.monotonic() + limits.wall
@@ -108,7 +111,9 @@ def watch(process: subprocess.Popen, limits: Limits,
             os.set_blocking(pipe, False)
             selector.register(pipe, selectors.EVENT_READ)
         while not stopped:
-            ended = ended or process.poll() is not None
+            # Ended, and not reaped: its times can be read.
+            ended = ended or os.waitid(os.P_PID, process.pid, os.WEXITED
+                                       | os.WNOHANG | os.WNOWAIT) is not None
             ready = [key.fd for key, _ in selector.select(0 if ended else LOOK)]
             if ended and not ready:
                 break           # drained; who else holds a pipe is ended below
@@ -118,10 +123,10 @@ def watch(process: subprocess.Popen, limits: Limits,
                     selector.unregister(pipe)
                 elif not heard[pipe](data):
                     stopped = "output"
-            memory, threads = used(process.pid)
-            if memory > limits.memory:
+            words = words_of(process.pid)
+            if words and words[21] * PAGE_OF_MEMORY > limits.memory:
                 stopped = "memory"
-            elif threads > limits.threads:
+            elif words and words[17] > limits.threads:
                 stopped = "threads"
             elif time.monotonic() > last:
                 stopped = "time"
@@ -131,9 +136,12 @@ def watch(process: subprocess.Popen, limits: Limits,
             os.killpg(process.pid, signal.SIGKILL)
         except OSError:
             pass
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+        seconds = sum(words_of(process.pid)[11:15], 0) / TICKS
         process.wait()
     out_of_time = (-signal.SIGXCPU, -signal.SIGKILL)
-    return stopped or ("time" if process.returncode in out_of_time else "")
+    return (stopped or ("time" if process.returncode in out_of_time else ""),
+            seconds)
 
 
 def run_compiler(jail: list[str], command: list[str], folder: pathlib.Path,
@@ -149,8 +157,8 @@ def run_compiler(jail: list[str], command: list[str], folder: pathlib.Path,
     output = Output(limits.output)
     assert process.stdout
     with process.stdout as pipe:
-        stopped = watch(process, limits, {pipe.fileno(): output.add})
-    return Outcome(stopped, process.returncode, output.text())
+        stopped, seconds = watch(process, limits, {pipe.fileno(): output.add})
+    return Outcome(stopped, process.returncode, output.text(), seconds=seconds)
 
 
 def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
@@ -187,8 +195,8 @@ def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
         descriptors = (page,)
         assert process.stderr
         with process.stderr as pipe:
-            stopped = watch(process, limits, {pipe.fileno(): written.add,
-                                              from_read: heard})
+            stopped, seconds = watch(process, limits, {
+                pipe.fileno(): written.add, from_read: heard})
         texts = os.pread(page, PAGE, 0)
     finally:
         for one in (*descriptors, to_write, from_read):
@@ -205,7 +213,8 @@ def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
     return Outcome(stopped, process.returncode, written.text(),
                    begun == "begun", verdict[0] if verdict else [],
                    answers_of(said), name, did,
-                   int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0)
+                   int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0,
+                   seconds)
 
 
 def answers_of(said: list[list[str]]) -> Answers:

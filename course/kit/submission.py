@@ -1,7 +1,9 @@
-"""Take a submission's sources from a folder, or from a tag of a git clone.
+"""Take a stranger's sources from a folder, from a tag of a git clone, or a file
+and what it includes: all that is graded, measured or shown comes in by here.
 
-Nothing of the submission is run or trusted here: no symbolic link is followed,
-no setting of its clone is used, and what is too large is not read.
+Nothing of it is run or trusted: no symbolic link is followed, no setting of a
+clone is used, a repository takes nothing from another, and what is too large is
+not read.
 """
 
 import functools
@@ -12,8 +14,9 @@ import resource
 import signal
 import stat
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 MOST_FILES = 200
 MOST_ENTRIES = 20000
@@ -24,13 +27,17 @@ GIT_SECONDS = 30
 GIT_MEMORY = 1 << 30       # bytes of address space
 GIT_OUTPUT = 16 << 20      # bytes of an answer
 PLAIN = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_+. -]*")   # a name
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^"\n]+)"', re.MULTILINE)
 TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
+LISTED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)    # by -H of a compiler
+EMBED = re.compile(r"^\s{0,99}(?:#|%:|\?\?=)\s{0,99}embed\b", re.MULTILINE)
 # Folders of a starter that are not read: the kit has its own.
 NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools",
                    "web"}
 
 # Words that may show an attempt to cheat. The report lists them for a person to
 # read; they cost no points, as most of them have honest uses.
+OF_THE_GRADER = "names a part of the grader"
 SUSPECT = [
     (r"\basm\b|\b__asm", "writes assembler"),
     (r"\bsyscall\b|\bptrace\b|\bprctl\b|\bseccomp|\bmprotect\b",
@@ -42,7 +49,7 @@ SUSPECT = [
      r"|system|dlopen|dlsym|mmap|dup2?|pipe|socket|environ|getenv|setrlimit)"
      r"\s*\(", "calls the system"),
     (r"\bkit\b|check\.hpp|runner\.cpp|\bKIT_\w+|\bTASK\s*\("
-     r"|__(a|ub)san_|__sanitizer", "names a part of the grader"),
+     r"|__(a|ub)san_|__sanitizer", OF_THE_GRADER),
     (r"\bno_sanitize|redefine_extname|pragma\s+weak|\b(alias|ifunc"
      r"|constructor|destructor|section|init_priority)\s*\(\s*\"?",
      "has attributes that change how a program is linked or checked"),
@@ -50,8 +57,12 @@ SUSPECT = [
      "declares names of the kit or of C"),
     (r"##|%:%:|\b_Pragma\b|\bpush_macro\b", "pastes tokens"),
     (r"#\s*define\s+(private|protected|public|class|struct|return|if|while"
-     r"|for|static|const|int|main|assert|static_cast)\b",
+     r"|for|static|const|int|main|assert|static_cast|double|float|bool|auto"
+     r"|void|operator|template|typename)\b",
      "redefines a keyword"),
+    (r"\b(reinterpret|bit)_cast\b|\bstart_lifetime_as"
+     r"|\((const |unsigned )*(char|void|long|int|double|(std::)?byte)\s*\*+"
+     r"\s*\)[&\w(]", "reads memory as another type"),
 ]
 
 
@@ -69,6 +80,35 @@ class Submission:
     # Files that were left out, and why.
     notes: list[str] = field(default_factory=list)
     flags: list[Flag] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)  # name: why
+
+    def add(self, name: str, entry: "Entry") -> None:
+        """Take a file, or note why not."""
+        problem, text = entry.problem, b""
+        if not all(map(PLAIN.fullmatch, name.split("/"))):
+            problem = problem or "has an unusual name"
+        elif not problem and entry.size > LARGEST:
+            problem = f"is larger than {LARGEST >> 20} MB"
+        elif not problem and entry.size > LARGEST_ALL - sum(
+                map(len, self.files.values())):
+            problem = f"comes after the first {LARGEST_ALL >> 20} MB of files"
+        elif not problem and len(self.files) == MOST_FILES:
+            problem = f"comes after the first {MOST_FILES} files"
+        if not problem:
+            try:
+                text = entry.read()
+            except OSError as error:
+                problem = f"can't be read ({error.strerror or error})"
+        if not problem and EMBED.search(
+                without_comments(text.decode("utf-8", "replace"))):
+            problem = "has an #embed, which reads any file"
+        if problem:
+            self.left_out[name] = problem
+            if len(self.left_out) <= 20:
+                self.notes.append(f"{shown(name)} {problem}: left out")
+        else:
+            self.files[name] = text
+            self.flags += suspects(name, text)
 
 
 @dataclass
@@ -79,23 +119,34 @@ class Entry:
     read: Callable[[], bytes]
 
 
+def reader(path: Folder) -> Callable[[], bytes]:
+    """Reads a regular file, and no more of it than may be taken."""
+    def read():
+        fd = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        with open(fd, "rb") as file:
+            if not stat.S_ISREG(os.fstat(fd).st_mode):
+                raise OSError("it is not a regular file any more")
+            return file.read(LARGEST + 1)
+    return read
+
+
 def shown(text: object) -> str:
     """Any name as ASCII on one line."""
     return str(text).encode("ascii", "backslashreplace").decode().translate(
         {code: f"\\x{code:02x}" for code in [*range(32), 127]})
 
 
+def at(place: str, name: str) -> Entry:
+    """What stands at a place, under a name. OSError if nothing does."""
+    status = os.lstat(place)
+    problem = "" if stat.S_ISREG(status.st_mode) else (
+        "is a symbolic link" if stat.S_ISLNK(status.st_mode) else
+        "is not a regular file")
+    return Entry(name, problem, status.st_size, reader(place))
+
+
 def in_folder(folder: Folder) -> list[Entry]:
     """All that stands in a folder, and may be looked at."""
-    def read(path):
-        def do():
-            fd = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-            with open(fd, "rb") as file:
-                if not stat.S_ISREG(os.fstat(fd).st_mode):
-                    raise OSError("it is not a regular file any more")
-                return file.read(LARGEST + 1)
-        return do
-
     entries, waiting, seen = [], [""], 0
     while waiting:
         inside = waiting.pop()
@@ -116,12 +167,7 @@ def in_folder(folder: Folder) -> list[Entry]:
                 if may_look_into(path):
                     waiting.append(path)
                 continue
-            status = entry.stat(follow_symlinks=False)
-            problem = "" if stat.S_ISREG(status.st_mode) else (
-                "is a symbolic link" if entry.is_symlink() else
-                "is not a regular file")
-            entries.append(Entry(path, problem, status.st_size,
-                                 read(entry.path)))
+            entries.append(at(entry.path, path))
     return entries
 
 
@@ -131,6 +177,31 @@ def may_look_into(path: str) -> bool:
             and parts[-1] not in NOT_LOOKED_INTO)
 
 
+def repository(folder: Folder) -> str:
+    """The repository of a clone, which may lie elsewhere: in_its_own()."""
+    inside = os.path.join(os.path.abspath(folder), ".git")
+    return inside if os.path.lexists(inside) else os.path.abspath(folder)
+
+
+def in_its_own(folder: Folder) -> None:
+    """Throws BadInput unless all of a clone's repository lies in it."""
+    def refuse(what: str) -> NoReturn:
+        raise BadInput(f"{shown(folder)}: its repository {what}: clone it")
+
+    place, whole = repository(folder), os.path.realpath(folder) + os.sep
+    if os.path.islink(place) or not os.path.isdir(place):
+        refuse("lies elsewhere")
+    for name in ("commondir", "objects/info/alternates"):
+        if os.path.lexists(os.path.join(place, name)):
+            refuse(f"takes from another one, by its file {name}")
+    for inside, folders, files in os.walk(place):
+        for name in (*folders, *files):
+            path = os.path.join(inside, name)
+            if os.path.islink(path) and not os.path.realpath(path).startswith(
+                    whole):
+                refuse(f"has a link that leads out of it, {shown(name)}")
+
+
 def git(folder: Folder, *words: str) -> bytes:
     """Ask a clone, and let no setting of it run anything."""
     environment = {
@@ -138,12 +209,11 @@ def git(folder: Folder, *words: str) -> bytes:
         "GIT_CONFIG_NOSYSTEM": "1", "GIT_CONFIG_GLOBAL": "/dev/null",
         "GIT_TERMINAL_PROMPT": "0", "GIT_NO_LAZY_FETCH": "1",
         "GIT_NO_REPLACE_OBJECTS": "1", "GIT_ALLOW_PROTOCOL": "none",
-        "GIT_OPTIONAL_LOCKS": "0",
-        # Not the clone in which the folder happens to stand.
-        "GIT_CEILING_DIRECTORIES": os.path.dirname(os.path.realpath(folder))}
+        "GIT_OPTIONAL_LOCKS": "0"}
     command = ["git", "-c", "safe.directory=*", "-c", "core.fsmonitor=false",
                "-c", "core.hooksPath=/dev/null", "-c", "protocol.allow=never",
-               "-C", folder, *words]
+               # Not the clone in which the folder happens to stand.
+               f"--git-dir={repository(folder)}", *words]
     with subprocess.Popen(
             command, env=environment, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -177,6 +247,7 @@ def tags(folder: Folder, tag: str) -> list[str]:
         raise BadInput(f"HW={shown(tag)} is not the name of a tag")
     if not os.path.isdir(folder):
         raise BadInput(f"{shown(folder)}: no such folder")
+    in_its_own(folder)
     return git(folder, "for-each-ref", "--format=%(refname:strip=2)",
                "refs/tags").decode("utf-8", "replace").split()
 
@@ -230,46 +301,76 @@ def take(folder: Folder, tag: str = "") -> Submission:
     taken = Submission({})
     if room:
         taken.notes.append(f"the graded folder is {shown(room)}")
-    total = 0
     for entry in sorted(entries, key=lambda entry: (entry.path.count("/"),
                                                     entry.path)):
         name = entry.path[len(room):]
-        if (not entry.path.startswith(room)
-                or not name.endswith((".hpp", ".h", ".cpp"))):
-            continue
-        problem, text = entry.problem, b""
-        if not all(map(PLAIN.fullmatch, name.split("/"))):
-            problem = problem or "has an unusual name"
-        elif not problem and entry.size > LARGEST:
-            problem = f"is larger than {LARGEST >> 20} MB"
-        elif not problem and total + entry.size > LARGEST_ALL:
-            problem = f"comes after the first {LARGEST_ALL >> 20} MB of files"
-        elif not problem and len(taken.files) == MOST_FILES:
-            problem = f"comes after the first {MOST_FILES} files"
-        if not problem:
-            try:
-                text = entry.read()
-            except OSError as error:
-                problem = f"can't be read ({error.strerror or error})"
-        if not problem:
-            taken.files[name] = text
-            total += len(text)
-            taken.flags += suspects(name, text)
-        elif name == "Graph.hpp":
-            raise BadInput(f"{shown(folder)}: Graph.hpp {problem}")
-        elif len(taken.notes) < 20:
-            taken.notes.append(f"{shown(name)} {problem}: left out")
+        if (entry.path.startswith(room)
+                and name.endswith((".hpp", ".h", ".cpp"))):
+            taken.add(name, entry)
+    if problem := taken.left_out.get("Graph.hpp"):
+        raise BadInput(f"{shown(folder)}: Graph.hpp {problem}")
     return taken
+
+
+def take_file(path: Folder, *more: str) -> Submission:
+    """A file, `more` of its folder, and what these include of it; the
+    submission's names are those in the folder."""
+    folder, first = os.path.split(os.path.abspath(path))
+    taken, waiting = Submission({}), [first, *more]
+    while waiting:
+        name = waiting.pop(0)
+        if name in taken.files or name in taken.left_out:
+            continue
+        there = os.path.join(folder, name)
+        try:
+            entry = at(there, name)
+        except OSError as error:
+            if name == first:
+                raise BadInput(f"{shown(path)}: {error.strerror}") from None
+            continue            # the compiler's, or it says that it is missing
+        if os.path.realpath(there) != f"{os.path.realpath(folder)}/{name}":
+            entry.problem = entry.problem or "lies behind a symbolic link"
+        taken.add(name, entry)
+        if problem := taken.left_out.get(name):
+            raise BadInput(f"{shown(there)} {problem}")
+        for included in INCLUDE.findall(joined(
+                taken.files[name].decode("utf-8", "replace"))):
+            for base in (os.path.dirname(name), ""):
+                found = os.path.normpath(os.path.join(base, included))
+                if not found.startswith((".", "/", "CME212/")):
+                    waiting.append(found)
+    return taken
+
+
+def listed(output: str) -> tuple[list[str], str]:
+    """The files that a compiler with -H has read, and what else it said."""
+    return (LISTED.findall(output),
+            LISTED.sub("", output).partition("Multiple include guards")[0])
+
+
+def from_where(paths: list[str], source: Folder,
+               own: Iterable[Folder]) -> tuple[str, frozenset[str]]:
+    """The first of the paths that is neither in the folder `source`, nor one of
+    `own` or below it; and the names in `source`."""
+    inside, there = set(), os.path.realpath(source) + "/"
+    allowed = tuple(os.path.realpath(path) + "/" for path in own)
+    for path in paths:
+        real = os.path.realpath(os.path.join(source, path))
+        if real.startswith(there):
+            inside.add(real[len(there):])
+        elif not (real + "/").startswith(allowed):
+            return path, frozenset()
+    return "", frozenset(inside)
 
 
 def joined(text: str) -> str:
     """C++ without broken lines; as many lines."""
     lines, broken = [], []
     for line in text.split("\n"):
-        if line.endswith("\\"):
-            broken.append(line[:-1])
+        if line.rstrip().endswith("\\"):
+            broken.append(line.rstrip()[:-1])
         else:
-            lines.append(" ".join([*broken, line]))
+            lines.append("".join([*broken, line]))
             lines += [""] * len(broken)
             broken = []
     return "\n".join([*lines, *broken])

@@ -262,7 +262,7 @@ for text in json.load(sys.stdin):
     submission.suspects("a.hpp", files["mass_spring.hpp"])
     list(mend.functions(text))
     names.defines(files)
-    build.macros(files)
+    build.macros(files, build.words_of(build.TESTS))
 """], 100, cwd=once.KIT, input=json.dumps(LONG), text=True, check=True)
 
     def test_comments_end_and_strings_stay(self):
@@ -273,7 +273,8 @@ for text in json.load(sys.stdin):
     def test_macros_for_words_of_the_tests_end(self):
         self.assertEqual(build.macros({
             "a.hpp": b"#define check_near(...)\n#  define N_OF_MINE 5\n",
-            "b.hpp": b"#/**/define \\\nstatic_cast x\n%:define hold(a)"}),
+            "b.hpp": b"#/**/define \\\nstatic_cast x\n%:define hold(a)"},
+            build.words_of(build.TESTS)),
             ["check_near", "hold", "static_cast"])
 
 

@@ -20,6 +20,7 @@ import hashlib
 import json
 import os
 import pathlib
+import resource
 import signal
 import sys
 from dataclasses import dataclass, field
@@ -127,6 +128,8 @@ class Class:
     def read(self, student: str) -> Row:
         row, folder = Row(student), os.path.join(self.folder, student)
         try:
+            if os.path.islink(folder):
+                raise submission.BadInput("is a symbolic link")
             if self.tag and self.tag in submission.tags(folder, self.tag):
                 row.made = dates.made(folder, self.tag)
             taken, row.content = self.take(student)
@@ -157,16 +160,18 @@ class Class:
         return {test: result for test, result in found.items()
                 if result["kit"] == self.version or test not in self.anew}
 
-    def grade(self, student: str, content: str) -> str:
-        """Grade what is left of a content. @return why that fails, or ''"""
+    def grade(self, student: str, content: str) -> tuple[str, float]:
+        """Grade what is left of a content. @return why that fails, or '', and
+        seconds of processor time"""
         known = self.known(content)
         left = {test: needs for test, needs in self.tests.items()
                 if test not in known}
         if not left:
-            return ""
+            return "", 0
+        before = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
         taken, now = self.take(student)
         if now != content:
-            return "it changed while the class was graded"
+            return "it changed while the class was graded", 0
         judge.prepare(self.kit, self.tests, 1)      # it is in use
         assert self.kit.answers
         for test, result in judge.judge(self.kit, taken.files, left,
@@ -178,7 +183,8 @@ class Class:
             known[test] = kept | {"kit": self.version, "seed": self.seed}
         grade.write(self.place(content), json.dumps(known, indent=0,
                                                     sort_keys=True))
-        return ""
+        return "", sum(resource.getrusage(
+            resource.RUSAGE_CHILDREN)[:2]) - before
 
     # --------------------------------------------------------- The whole class
 
@@ -222,8 +228,9 @@ class Class:
         done = concurrent.futures.as_completed(waiting)
         for number, one in enumerate(done, 1):
             first, *others = waiting[one]
+            seconds = 0.0
             try:
-                reason = one.result()
+                reason, seconds = one.result()
             except Exception as error:  # of one submission, whatever it is
                 reason = ("the grader fails, which is no fault of the "
                           f"student's: {type(error).__name__}: {error}")
@@ -231,7 +238,9 @@ class Class:
                 row.reason = submission.shown(reason)
             print(f"{number}/{len(groups)} {submission.shown(first.student)}"
                   + (f" and {len(others)} with the same files" if others
-                     else "") + (f": {row.reason}" if reason else ""),
+                     else "") + (f": {row.reason}" if reason else "")
+                  + (f": slow, {seconds:.0f} s of processor time"
+                     if seconds > judge.BUDGET / 2 else ""),
                   flush=True)
         return all("the grader fails" not in row.reason for row in rows)
 

@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """The cloth as a web page.
 
-    web.py page OUT.html STAGE   make web: of the Graph.hpp and mass_spring.hpp
-                                 of the folder in which it runs; it shows this
-                                 stage first
+    web.py page OUT.html STAGE   make web [DIR=DIR]: of the Graph.hpp and
+                                 mass_spring.hpp of DIR, or the folder in which
+                                 it runs; it shows this stage first
     web.py figures OUT [NAME...] make web-figures: figure.js, and NAME.js for
                                  the solution (right) and each mistake of
                                  course/pictures/draw.py
 
-Needs clang++ and a C++ library for WebAssembly: make web-deps. Exit status: 0
-done, 1 the code does not compile, 2 something is missing."""
+A folder may be a stranger's: its files are compiled in the grader's jail, and
+include nothing but each other and what the course hands out. Needs clang++ and
+a C++ library for WebAssembly: make web-deps. Exit status: 0 done, 1 the code
+does not compile, 2 something is missing or refused."""
 import base64
 import concurrent.futures
 import difflib
@@ -20,12 +22,18 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Mapping
 
 ROOM = pathlib.Path(__file__).resolve().parent
+KIT = ROOM.parents[1] / "course/kit"    # a starter has none, and no jail
+sys.path.append(str(KIT))
+import submission  # noqa: E402: of KIT, or beside this file
+
+HEADERS = (KIT.parents[1] if KIT.is_dir() else ROOM.parent) / "CME212"
 SOURCES = ("cloth.cpp", "thrown.cpp")
 # Newer versions of clang want another name of the target, older ones this one.
 FLAGS = """--target=wasm32-wasi -Wno-deprecated -std=c++20 -O2 -g0 -Wall -Wextra
@@ -38,7 +46,6 @@ FLAGS = """--target=wasm32-wasi -Wno-deprecated -std=c++20 -O2 -g0 -Wall -Wextra
 FROM_5_ON = ("GravityForce MassSpringForce make_combined_force PinConstraint "
              "PlaneConstraint SphereConstraint TearConstraint "
              "make_combined_constraints").split()
-COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
 def compiler() -> str:
@@ -55,19 +62,56 @@ def compiler() -> str:
     return str(found[-1].parents[3].with_name("bin") / "clang++")
 
 
-def compiled(folders: Iterable[str | pathlib.Path], shim: pathlib.Path,
-             *more: str) -> bytes | None:
-    """The module made of the sources in the folders: its bytes; None if they
-    do not compile, which the compiler has said then."""
+def command(out: pathlib.Path, folders: Iterable[str | pathlib.Path],
+            shim: pathlib.Path, *more: str) -> list:
+    """Compiles the sources in the folders into the module `out`."""
     names = set(re.findall(r"\bpage_\w+", "".join(
         (ROOM / name).read_text() for name in SOURCES)))
-    with tempfile.TemporaryDirectory() as folder:
-        out = pathlib.Path(folder, "cloth.wasm")
-        done = subprocess.run(
-            [compiler(), *FLAGS, *more, *(f"-I{f}" for f in folders),
-             *(f"-Wl,--export={name}" for name in sorted(names)), "-include",
-             ROOM / "wasi.hpp", "-o", out, shim, ROOM / "thrown.cpp"])
-        return None if done.returncode else out.read_bytes()
+    return [compiler(), *FLAGS, *more, *(f"-I{f}" for f in folders),
+            *(f"-Wl,--export={name}" for name in sorted(names)), "-include",
+            ROOM / "wasi.hpp", "-o", out, shim, ROOM / "thrown.cpp"]
+
+
+def compiled(files: dict[str, bytes], *more: str) -> bytes | None:
+    """The module of a stranger's files: its bytes; None if they do not compile,
+    which the compiler has said then.  Throws BadInput."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        source, made = folder / "room/source", folder / "room/built"
+        out, include = made / "cloth.wasm", folder / "include"
+        include.mkdir()
+        (include / "CME212").symlink_to(HEADERS)
+        words = command(out, [source, include], ROOM / "cloth.cpp", *more)
+        if KIT.is_dir():
+            import build
+            import once
+            home = pathlib.Path(
+                os.path.realpath(shutil.which(words[0]) or "/usr/bin/")).parent
+            try:
+                jail = once.Kit.only_jail()
+            except once.KitError as error:
+                raise submission.BadInput(str(error)) from None
+            unit = build.Sources(  # type: ignore[attr-defined]
+                jail, folder / "room", files,
+                [ROOM, HEADERS, include, home], ()).compiled(words)
+            said, right, refused = unit.output, unit.right, unit.refused
+        else:
+            made.mkdir(parents=True)
+            for name, text in files.items():
+                (source / name).parent.mkdir(parents=True, exist_ok=True)
+                (source / name).write_bytes(text)
+            done = subprocess.run([*words, "-H"], cwd=source, text=True,
+                                  stderr=subprocess.PIPE)
+            paths, said = submission.listed(done.stderr)
+            outside, _ = submission.from_where(
+                paths, source, [ROOM, HEADERS, "/usr"])
+            right = done.returncode == 0
+            refused = f"#include of {outside}: it is not yours" * bool(outside)
+            said = said.replace(f"{source}/", "")
+        if refused:
+            raise submission.BadInput(refused)
+        print(said, end="", file=sys.stderr)
+        return out.read_bytes() if right else None
 
 
 def packed(wasm: bytes) -> str:
@@ -123,12 +167,13 @@ def inlined(page: pathlib.Path, made: Mapping[str, str]) -> str:
 
 
 def write_page(out: str, stage: str) -> int:
-    here = pathlib.Path.cwd()
+    here = pathlib.Path(os.environ.get("DIR") or ".")
+    taken = submission.take_file(here / "mass_spring.hpp", "Graph.hpp")
     words = set(re.findall(r"\w+", "".join(
-        COMMENT.sub(" ", path.read_text(errors="replace"))
-        for path in here.glob("*.hpp"))))
+        submission.without_comments(text.decode("utf-8", "replace"))
+        for text in taken.files.values())))
     stages = 5 if words.issuperset(FROM_5_ON) else 2
-    wasm = compiled(["."], ROOM / "cloth.cpp", f"-DWEB_STAGES={stages}")
+    wasm = compiled(taken.files, f"-DWEB_STAGES={stages}")
     if wasm is None:
         return 1
     html = inlined(ROOM / "page.html", {
@@ -137,6 +182,8 @@ def write_page(out: str, stage: str) -> int:
         'data-stage="STAGE"', f'data-stage="{stage}"', 1)
     pathlib.Path(out).write_text(html)
     print(f"{out}: {len(html)} bytes; open it in a browser, or send it")
+    for file, line, what in taken.flags:
+        print(f"look at {file}:{line} by hand: it {what}")
     return 0
 
 
@@ -150,7 +197,6 @@ def slug(mistake: str) -> str:
 
 def write_figures(folder_name: str, names: list[str]) -> bool:
     root = ROOM.parents[1]
-    sys.path[:0] = [str(root / "course/kit")]
     import markers
     import mistakes
     known = {slug(name): name for name in ["", *mistakes.pictured()]}
@@ -178,11 +224,13 @@ def write_figures(folder_name: str, names: list[str]) -> bool:
         with tempfile.TemporaryDirectory() as folder:
             for path, text in texts.items():
                 pathlib.Path(folder, path).write_text(text)
-            wasm = compiled([folder, root], pathlib.Path(folder, "cloth.cpp"),
-                            "-Wl,--strip-all")
-        if wasm is None:
-            return False
-        file.write_text(f"{mark}figure.add('{name}', '{packed(wasm)}');\n")
+            wasm = pathlib.Path(folder, "cloth.wasm")
+            if subprocess.run(command(
+                    wasm, [folder, root], pathlib.Path(folder, "cloth.cpp"),
+                    "-Wl,--strip-all")).returncode:
+                return False
+            content = packed(wasm.read_bytes())
+        file.write_text(f"{mark}figure.add('{name}', '{content}');\n")
         print(f"{file}: {file.stat().st_size} bytes", flush=True)
         return True
 
@@ -192,7 +240,11 @@ def write_figures(folder_name: str, names: list[str]) -> bool:
 
 def main(arguments: list[str]) -> int:
     if arguments[:1] == ["page"] and len(arguments) == 3:
-        return write_page(*arguments[1:])
+        try:
+            return write_page(*arguments[1:])
+        except submission.BadInput as error:
+            print(f"make web: {error}", file=sys.stderr)
+            return 2
     if arguments[:1] == ["figures"] and len(arguments) > 1:
         return write_figures(arguments[1], arguments[2:])
     sys.exit("usage: web.py page OUT.html STAGE | figures OUT [NAME...]")

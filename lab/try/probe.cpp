@@ -21,6 +21,9 @@
 #include "lab/try/Agree.hpp"
 // The step comes last: it may use all headers above.
 #include TRY_FILE
+#ifdef TRY_UNDEFINED  // ends macros that would change what follows
+#include TRY_UNDEFINED
+#endif
 
 namespace probe {
 

@@ -15,9 +15,12 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "course/kit"))
 
-import diagnosis  # noqa: E402  (from course/kit)
-import once       # noqa: E402
-import sandbox    # noqa: E402
+import build       # noqa: E402  (from course/kit)
+import diagnosis   # noqa: E402
+import once        # noqa: E402
+import sandbox     # noqa: E402
+import submission  # noqa: E402
+from submission import BadInput  # noqa: E402, F401: why a file can't be measured
 
 BUILT = ROOT / "build/try"
 PARTS = ("trace", "same", "order", "physics", "limits", "contact", "chart")
@@ -37,10 +40,6 @@ COMMON = ["-std=c++20", "-w", "-pthread", "-I", str(ROOT)]
 
 
 Lines = list[tuple[str, list[float]]]   # of the probe: name, numbers
-
-
-class BadInput(Exception):
-    """Why a file can't be measured: one line."""
 
 
 def progress(text: str) -> None:
@@ -96,10 +95,8 @@ MEASURES = ("make try measures steps: make test and make grade judge forces "
 
 def choose(path: pathlib.Path, wanted: str) -> tuple[str, int]:
     """(name, number of arguments) of the step in a file."""
-    try:
-        found = steps_in(path.read_text(encoding="utf-8", errors="replace"))
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}") from None
+    taken = submission.take_file(path)
+    found = steps_in(taken.files[path.name].decode("utf-8", "replace"))
     form = ("template <typename G, typename F, typename C> double NAME(G& g, "
             "double t, double dt, F&& force, C&& constraint)")
     if not found:
@@ -121,14 +118,17 @@ class Workshop:
     """A folder in which the probe of one step is built."""
 
     def __init__(self, path: pathlib.Path, step: str, arguments_: int) -> None:
-        self.path, self.step = path.resolve(), step
+        self.path, self.step = path.absolute(), step
         self.arguments = arguments_
+        self.taken = submission.take_file(path, "Graph.hpp", "mass_spring.hpp")
+        files = self.taken.files
+        # Those of the course are no files of the stranger's.
+        for name in ("Graph.hpp", "mass_spring.hpp", "methods.hpp"):
+            if files.get(name) == (ROOT / name).read_bytes():
+                del files[name]
         BUILT.mkdir(parents=True, exist_ok=True)
-        once.BUILT.mkdir(parents=True, exist_ok=True)
         try:
-            self.jail = [str(once.Kit.locked_part(
-                "jail", [once.KIT / "jail.cpp"],
-                lambda folder: once.Kit.make_jail(once.Kit, folder)) / "jail")]
+            self.jail = once.Kit.only_jail()
             self.prelude = once.Kit.locked_part(
                 "try", [ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
                         *(ROOT / "CME212").glob("*.hpp")], self.make_prelude,
@@ -137,6 +137,12 @@ class Workshop:
             raise BadInput(str(error)) from None
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="room-"))
         self.folder.chmod(0o755)
+        self.sources = build.Sources(  # type: ignore[attr-defined]
+            self.jail, self.folder, files, [
+                ROOT / "CME212", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
+                ROOT / "methods.hpp", ROOT / "lab/try", self.prelude],
+            build.words_of(  # type: ignore[attr-defined]
+                ROOT / "lab/try"))
         self.where = f"{self.path}:1: {step}"
         self.programs: dict[str, pathlib.Path] = {}
         self.slow: list[str] = []   # parts that took too long
@@ -155,50 +161,41 @@ class Workshop:
 
     def of_the_course(self) -> bool:
         """Are Graph.hpp and mass_spring.hpp those of the course?"""
-        return self.path.parent == ROOT or not any(
-            (self.path.parent / name).exists()
-            for name in ("Graph.hpp", "mass_spring.hpp", "CME212"))
+        return not {"Graph.hpp", "mass_spring.hpp"} & self.taken.files.keys()
 
     def compile(self, kind: str = "fast") -> pathlib.Path:
         """The probe; BadInput names the first error of the file."""
         if kind in self.programs:
             return self.programs[kind]
-        program = self.folder / kind
+        program = self.sources.built / kind
         command = [once.CXX, *COMMON, *FLAGS[kind],
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
-                   "-iquote", self.path.parent,
+                   "-iquote", self.sources.source,
+                   f"-fdebug-prefix-map={self.sources.source}={self.path.parent}",
                    *(["-include", self.prelude / f"{kind}.hpp"]
                      if self.of_the_course() else []),
-                   f'-DTRY_FILE="{self.path}"', f"-DTRY_STEP={self.step}",
+                   f'-DTRY_FILE="{self.sources.source}/{self.path.name}"',
+                   f'-DTRY_UNDEFINED="{self.sources.undefined}"',
+                   f"-DTRY_STEP={self.step}",
                    f"-DTRY_ARGUMENTS={self.arguments}",
                    ROOT / "lab/try/probe.cpp", "-o", program]
-        read = ["/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
-                "/etc/ld.so.cache", "/proc/self", ROOT / "CME212",
-                ROOT / "lab/try", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
-                ROOT / "methods.hpp", self.path.parent,
-                self.prelude]
-        words = [*self.jail]
-        for name in read:
-            words += ["--read", str(name)]
-        for name in (self.folder, "/dev/null"):
-            words += ["--write", str(name)]
-        done = sandbox.run_compiler(words, [str(word) for word in command],
-                                    ROOT, self.folder, COMPILING)
-        if done.stopped:
-            raise BadInput(f"{self.path}:1: takes too long to compile")
-        if done.code:
-            raise BadInput(self.first_error(done.output))
+        unit = self.sources.compiled(command, COMPILING)
+        if unit.refused:
+            raise BadInput(f"{self.path}:1: {unit.refused}")
+        if not unit.right:
+            raise BadInput(self.first_error(unit.output))
         self.programs[kind] = program
         return program
 
     def first_error(self, output: str) -> str:
         """The first error in the stranger's own file, else the first of all."""
         errors = diagnosis.compile_errors(output)
-        own = [e for e in errors if os.path.realpath(e.file) == str(self.path)]
+        own = [e for e in errors if e.file == self.path.name]
         if own:
             return f"{self.path}:{own[0].line}: {diagnosis.short(own[0].text)}"
         # An error in a class of the course; the file's line led to it.
-        place = re.search(re.escape(str(self.path)) + r":(\d+)", output)
+        place = re.search(r"(?m)(?:^|from )" + re.escape(self.path.name)
+                          + r":(\d+)", output)
         text = errors[0].text if errors else diagnosis.link_message(output)
         return (f"{self.path}:{place[1] if place else 1}: "
                 + diagnosis.short(text))
@@ -226,7 +223,7 @@ class Workshop:
         assert process.stderr
         try:
             with process.stderr as pipe:
-                stopped = sandbox.watch(process, limits, {
+                stopped, _ = sandbox.watch(process, limits, {
                     pipe.fileno(): written.add, from_read: spoken.add})
         finally:
             os.close(from_read)
