@@ -400,7 +400,8 @@ class Whole(Programs):
         row = next(csv.DictReader(
             (self.top / "grades/class.csv").read_text().splitlines()))
         self.assertRegex(row["note"],
-                         "^its tag was on [0-9a-f]{10} when it was seen first$")
+                         "^its tag was on [0-9a-f]{10} when it was seen first; "
+                         "the same files as student002")
         self.assertEqual(row["days late"], "268")
         text = (self.top / "grades/reports/student001.txt").read_text()
         self.assertRegex(text, r"remove_node\(iterator\) +0/3\n")
