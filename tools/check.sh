@@ -308,6 +308,7 @@ turns() {
   turn laptops   "$long"  tools/check_laptops.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
     python3 lab/try/test_try.py build/check/try
+  turn door      "$limit" python3 tests/test_door.py
   turn checks    "$long"  tools/test_checks.sh
   turn window    "$limit" tools/test_window.sh
   turn mistakes  "$limit" python3 course/pictures/test_mistakes.py

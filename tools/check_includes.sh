@@ -37,6 +37,7 @@ lab/bench  :
 lab/charts : lab/advice
 lab/try    : course lab/charts
 lab/page   : course tools
+tests      : course lab/try
 docs/site  : course tools
 '
 # A program in the root may draw, and a test; of all else only these:

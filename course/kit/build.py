@@ -129,7 +129,8 @@ class Sources:
         if denied := DENIED.search(text):
             outside = denied[1]
         result = Unit(None, self.plain(text), inside, paths=paths,
-                      seconds=done.seconds, right=done.code == 0 and not done.stopped)
+                      seconds=done.seconds,
+                      right=done.code == 0 and not done.stopped)
         if outside:
             result.refused = (f"#include of {self.plain(outside)}: it is not "
                               "yours")

@@ -189,9 +189,9 @@ def main() -> int:
     lines.append(f"{number} of {len(found)} wrong submissions found by "
                  f"{len(tests.names) - len(bad)} of {len(tests.names)} tests, "
                  f"which {len(right)} right ones pass")
-    lines += [f"look at {file}:{line} by hand: it {what}"
-              for file, line, what in tests.flags
-              if what != submission.OF_THE_GRADER]   # a test has to
+    lines += submission.to_look_at([
+        flag for flag in tests.flags
+        if flag[2] != submission.OF_THE_GRADER])     # which a test has to
     print("\n".join(lines))
     if file := get("JSON"):
         grade.write(file, json.dumps({

@@ -38,14 +38,14 @@ STEP = "mine.hpp"
 LAST_STAGE, *STAGES_BEFORE = names.STAGES
 LIMITS = sandbox.Limits()
 BUDGET = 300        # seconds of processor time for a submission
-OVER = f"grading it takes more than {BUDGET // 60} minutes of processor time"
+OVER = "grading it takes more than 5 minutes of processor time"
 STOPPED = {
     "time": f"it takes more than {LIMITS.cpu} s of processor time, or waits",
     "memory": f"it takes more than {LIMITS.memory >> 20} MB of memory",
     "output": f"it writes more than {LIMITS.output >> 20} MB",
     "threads": f"it has more than {LIMITS.threads} threads",
 }
-# From the worst to the best: what is shown if no graph makes a test pass.
+# From the worst to the best.
 RANK = ["missing", "not compiled", "stopped", "crashed", "failed", "passed"]
 
 
@@ -221,8 +221,8 @@ class Judge:
             return {test: Result("missing", "there is no mass_spring.hpp and "
                                  "no mass_spring.cpp") for test in tests}
         if way.needs == "step" and STEP not in self.files:
-            return {test: Result("missing", f"there is no {STEP}")
-                    for test in tests}
+            return dict.fromkeys(
+                tests, Result("missing", f"there is no {STEP}"))
         for room, way in self.attempts(way, tests):
             left = [test for test in tests
                     if test not in results or not results[test].passed]
@@ -372,17 +372,15 @@ class Judge:
         unit = self.compile(room, way, [test], read)
         if unit.program:
             return self.run_all(unit, room.names)[test]
-        if unit.refused:
-            return refused(unit)
-        return Result("not compiled", diagnosis.compile_message(
-            unit.output, room.names, test))
+        return refused(unit) if unit.refused else Result(
+            "not compiled", diagnosis.compile_message(unit.output, room.names,
+                                                      test))
 
     def compile(self, room: build.Room, way: build.Way, tests: list[str],
                 read: set[str], link: bool = True) -> build.Unit:
         with self.jobs:
-            if self.seconds > BUDGET:
-                return build.Unit(None, refused=OVER)
-            unit = room.compile(way, tests, link)
+            unit = (build.Unit(None, refused=OVER) if self.seconds > BUDGET
+                    else room.compile(way, tests, link))
             self.seconds += unit.seconds
         read |= unit.included
         return unit
@@ -430,8 +428,7 @@ class Judge:
 
 
 def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
-    """Grade the solution, once for each kit: it has to get all points. Its
-    answers are what is expected of a submission."""
+    """Grade the solution, once for each kit: its answers are expected."""
     def make(folder):
         kit.secret = secrets.token_bytes(32)
         kit.data = folder / "data"

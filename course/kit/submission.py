@@ -392,6 +392,11 @@ def without_comments(text: str) -> str:
     return COMMENT_OR_TEXT.sub(blank, joined(text))
 
 
+def to_look_at(flags: list[Flag]) -> list[str]:
+    return [f"look at {file}:{line} by hand: it {what}"
+            for file, line, what in flags]
+
+
 def suspects(name: str, text: bytes) -> list[Flag]:
     """Lines that a person should look at: (name, line, what)."""
     found = []

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 import judge
 import orders
 import teacher
-from workshop import PARTS, SECONDS, BadInput, Lines, Workshop, choose
+from workshop import (PARTS, SECONDS, BadInput, Lines, Workshop, choose,
+                      submission)
 
 NEEDED = ("trace", "same", "order")     # without these there is no report
 
@@ -64,6 +65,7 @@ def verdict_of(shop: Workshop, found: dict[str, Lines]) -> judge.Verdict:
                                  f"{SECONDS.get(part, 8)} s")
         elif part in numbers:
             getattr(judge, part)(verdict, numbers[part])
+    verdict.notes += submission.to_look_at(shop.taken.flags)
     verdict.faults += verdict.later
     teacher.conclude(verdict)
     return verdict

@@ -20,7 +20,7 @@ import diagnosis   # noqa: E402
 import once        # noqa: E402
 import sandbox     # noqa: E402
 import submission  # noqa: E402
-from submission import BadInput  # noqa: E402, F401: why a file can't be measured
+from submission import BadInput  # noqa: E402: why a file can't be measured
 
 BUILT = ROOT / "build/try"
 PARTS = ("trace", "same", "order", "physics", "limits", "contact", "chart")
@@ -37,7 +37,6 @@ PRELUDE = "".join(f"#include {name}\n" for name in (
     "<algorithm>", "<cmath>", "<functional>", "<map>", "<string>",
     "<vector>", '"mass_spring.hpp"'))
 COMMON = ["-std=c++20", "-w", "-pthread", "-I", str(ROOT)]
-
 
 Lines = list[tuple[str, list[float]]]   # of the probe: name, numbers
 
@@ -141,8 +140,7 @@ class Workshop:
             self.jail, self.folder, files, [
                 ROOT / "CME212", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
                 ROOT / "methods.hpp", ROOT / "lab/try", self.prelude],
-            build.words_of(  # type: ignore[attr-defined]
-                ROOT / "lab/try"))
+            build.words_of(ROOT / "lab/try"))  # type: ignore[attr-defined]
         self.where = f"{self.path}:1: {step}"
         self.programs: dict[str, pathlib.Path] = {}
         self.slow: list[str] = []   # parts that took too long
@@ -171,7 +169,8 @@ class Workshop:
         command = [once.CXX, *COMMON, *FLAGS[kind],
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
                    "-iquote", self.sources.source,
-                   f"-fdebug-prefix-map={self.sources.source}={self.path.parent}",
+                   f"-ffile-prefix-map={self.sources.source}="
+                   + str(self.path.parent),
                    *(["-include", self.prelude / f"{kind}.hpp"]
                      if self.of_the_course() else []),
                    f'-DTRY_FILE="{self.sources.source}/{self.path.name}"',
