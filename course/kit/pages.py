@@ -23,6 +23,8 @@ import tasks
 COURSE = tasks.ROOT / "course"
 PLACE = re.compile(r"^<!-- tasks *(\S*) -->$", re.MULTILINE)
 LONGEST = 108  # lines of a section's page
+# What each of these pages has, for the student.
+PARTS = ("**Goal", "**Predict", "**Check", "## Usual mistakes", "## Go further")
 LEVELS = ("guided", "open")
 GUIDED = re.compile(r"^<!-- guided -->\n(.*?)^<!-- end guided -->\n",
                     re.MULTILINE | re.DOTALL)
@@ -107,6 +109,9 @@ def faults(text: str, section: tasks.Section,
         yield "1: <!-- guided --> or <!-- open has no end"
     if section.id not in PLACE.findall(text):
         yield f"1: has no place for tasks: <!-- tasks {section.id} -->"
+    for part in PARTS:
+        if part not in text:
+            yield f"1: has no {part}"
 
 
 def check(course: tasks.Course) -> list[str]:

@@ -282,12 +282,14 @@ class Pages(unittest.TestCase):
 
     def test_faults(self):
         no_end = "1: <!-- guided --> or <!-- open has no end"
+        page = PAGE + "\n".join([*pages.PARTS, ""])
         for text, faults in (
-                (PAGE, []), (PAGE + self.LEVELS, []),
-                (PAGE + self.LEVELS.replace("<!-- end guided -->\n", ""),
+                (page, []), (page + self.LEVELS, []),
+                (page + self.LEVELS.replace("<!-- end guided -->\n", ""),
                  [no_end]),
-                (PAGE + self.LEVELS.replace("-->\nd\n", ""), [no_end]),
-                ("line\n" * 109, [
+                (page + self.LEVELS.replace("-->\nd\n", ""), [no_end]),
+                (page.replace("**Goal", ""), ["1: has no **Goal"]),
+                (page.replace("<!-- tasks 3.1 -->\n", "") + "line\n" * 102, [
                     "108: goes on to line 109, expected at most 108",
                     "1: has no place for tasks: <!-- tasks 3.1 -->"])):
             self.assertEqual(
