@@ -10,6 +10,7 @@
 #include <string>
 
 #include "CME212/Energy.hpp"
+#include "CME212/MeshFaults.hpp"
 #include "CME212/SDLViewer.hpp"
 #include "mass_spring.hpp"
 
@@ -41,6 +42,8 @@ int main(int argc, char** argv) try {
   Cloth g;
   const auto points = load_points(argv[1]);
   const auto quads = load_quads(argv[2], points.size());
+  for (const auto& fault : mesh_faults(points, quads))
+    std::cerr << "warning: " << fault << '\n';
   // BEGIN SOLUTION 4.2.build_cloth
   const auto springs =
       stage == Stage::problem1 ? MeshSprings::plain : MeshSprings::diagonals;

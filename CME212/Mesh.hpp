@@ -195,30 +195,39 @@ inline std::vector<Point> parse_points(std::string_view text,
   return points;
 }
 
-/** The quads of a .tets file: four different indices below @a num_points in
- * each line.  Throws InputError: a line is anything else; there is no line. */
-inline std::vector<Quad> parse_quads(std::string_view text,
-                                     const std::string& file,
-                                     std::size_t num_points) {
-  std::vector<Quad> quads;
-  mesh_detail::read_rows<long long, 4>(
+/** The cells of a file, such as quads: N different indices below @a num_points
+ * in each line.  Throws InputError: a line is anything else; there is no line.
+ */
+template <std::size_t N>
+std::vector<std::array<unsigned, N>> parse_cells(std::string_view text,
+                                                 const std::string& file,
+                                                 std::size_t num_points) {
+  constexpr const char* count[] = {"no", "one", "two", "three", "four"};
+  std::vector<std::array<unsigned, N>> cells;
+  mesh_detail::read_rows<long long, N>(
       text, file, "a whole number",
-      "four different node indices from 0 to " + std::to_string(num_points - 1),
-      [&quads, num_points](auto& row) {
-        Quad quad;
-        for (int k = 0; k < 4; ++k) {
+      std::string(count[N]) + " different node indices from 0 to " +
+          std::to_string(num_points - 1),
+      [&cells, num_points](auto& row) {
+        std::array<unsigned, N> cell;
+        for (std::size_t k = 0; k < N; ++k) {
           if (row[k] < 0 || row[k] >= static_cast<long long>(num_points))
             throw std::runtime_error("there is no node " +
                                      std::to_string(row[k]));
-          for (int other = 0; other < k; ++other)
+          for (std::size_t other = 0; other < k; ++other)
             if (row[other] == row[k])
               throw std::runtime_error("node " + std::to_string(row[k]) +
                                        " comes twice");
-          quad[k] = static_cast<unsigned>(row[k]);
+          cell[k] = static_cast<unsigned>(row[k]);
         }
-        quads.push_back(quad);
+        cells.push_back(cell);
       });
-  return quads;
+  return cells;
+}
+inline std::vector<Quad> parse_quads(std::string_view text,
+                                     const std::string& file,
+                                     std::size_t num_points) {
+  return parse_cells<4>(text, file, num_points);
 }
 
 /** parse_points() and parse_quads() of a file.  Throw InputError, also if it

@@ -84,7 +84,7 @@ $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 # What takes no part in a step: -O1 saves a fifth of the time to compile.
 # Options.cpp reads the command line once, by a parser that takes -O3 seconds.
 rarely := $(patsubst %,lab/%,advice/% live/% page/% run/% viewer/% \
-            $(patsubst %,scenes/%,Acting Fields KeyValues MeshFile SceneFile \
+            $(patsubst %,scenes/%,Acting Fields KeyValues MeshFile NetBinary NetFile SceneFile \
               Warnings Words))
 $(rarely:%=$(B)/%.o): unit_flags = -O1
 $(B)/lab/run/Options.o $(B)/asan/lab/run/Options.o: unit_flags = -O0

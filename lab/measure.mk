@@ -193,8 +193,8 @@ pictures: test_screen $(B)/cloth
 # ---- Fuzzing. The inputs that it starts from: tools/corpus.
 
 RUNS ?= 200000
-$(B)/fuzz_mesh: tests/fuzz_mesh.cpp lab/scenes/MeshFile.cpp lab/scenes/Interrupt.cpp \
-                lab/scenes/MeshFile.hpp CME212/Mesh.hpp CME212/Util.hpp \
+$(B)/fuzz_mesh: tests/fuzz_mesh.cpp $(patsubst %,lab/scenes/%.cpp,MeshFile NetBinary NetFile \
+                Net Interrupt) lab/scenes/MeshFile.hpp lab/scenes/NetFile.hpp CME212/Mesh.hpp CME212/Util.hpp \
                 CME212/Point.hpp
 	@mkdir -p $(B)
 	clang++ -std=c++20 -g -O1 -Wall -Wextra -I. -o $@ $(filter %.cpp,$^) \

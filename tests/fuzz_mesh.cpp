@@ -1,5 +1,6 @@
-// Feeds the parsers of Mesh.hpp and MeshFile.hpp with whatever libFuzzer thinks
-// of. The first byte of an input chooses the parser, the rest is the file.
+// Feeds the parsers of Mesh.hpp, MeshFile.hpp and NetFile.hpp with whatever
+// libFuzzer thinks of. The first byte of an input chooses the parser, the rest
+// is the file.
 //   make fuzz RUNS=1000000      starts from the inputs in tools/corpus
 #include <cmath>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "CME212/Mesh.hpp"
 #include "CME212/Util.hpp"
 #include "lab/scenes/MeshFile.hpp"
+#include "lab/scenes/NetFile.hpp"
 
 namespace {
 
@@ -58,6 +60,21 @@ void check_quads(std::string_view text) {
   require(parse_quads(again, "f", num_points) == quads);
 }
 
+/** Accepted nets can be built, and survive writing and reading; messages name
+ * the file. */
+void check_net(std::string_view text, const std::string& file) try {
+  const lab::Net net = lab::parse_net(text, file);
+  check(net);
+  std::ostringstream once, twice;
+  lab::write_net(once, net);
+  lab::write_net(twice, lab::parse_net(once.str(), "f.net"));
+  require(once.str() == twice.str());
+} catch (const InputError& e) {
+  const std::string_view what = e.what();
+  require(what.starts_with(file + ':') && what.size() < 400);
+  for (char c : what) require(' ' <= c && c <= '~');
+}
+
 /** A message is "f:LINE: words" in one printable line; of an empty file it has
  * no line to name. */
 void check_message(std::string_view what) {
@@ -77,7 +94,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   if (size == 0) return 0;
   std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   try {
-    data[0] % 4 == 2   ? check_nodes(text)
+    const char* const nets[] = {"f.net", "f.obj", "f.off",
+                                "f.ply", "f.stl", "f.vtp"};
+    data[0] >= 250     ? check_net(text, nets[data[0] - 250])
+    : data[0] % 4 == 2 ? check_nodes(text)
     : data[0] % 2 == 0 ? check_points(text)
                        : check_quads(text);
   } catch (const InputError& e) {

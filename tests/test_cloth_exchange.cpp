@@ -47,6 +47,64 @@ TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
             std::string::npos);
 }
 
+// A torn cloth, as a net, goes on as it was; frames are read, too.
+TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
+  const Result whole = run(torn + "--out " + path("end.net") + " --vtp " +
+                           path("vtp") + " --ply " + path("ply"));
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  const auto at = whole.out.find("nodes and ");
+  const std::string edges = whole.out.substr(at + 10, 4);
+  const std::string end = " --plane 'at 0 0 -9' --t-end 0 --headless --out ";
+  Result r = run(path("end.net") + end + path("same.net"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.err, "");
+  EXPECT_NE(r.out.find(" nodes, " + edges), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("held by the net: 9 nodes"), std::string::npos) << r.out;
+  EXPECT_EQ(contents(path("same.net")), contents(path("end.net")));
+  r = run("--net " + path("vtp/frame_000015.vtp") + end + path("vtp.net"));
+  EXPECT_EQ(r.err, "");
+  EXPECT_NE(r.out.find(" nodes, " + edges), std::string::npos) << r.out;
+  r = run(path("ply/frame_000000.ply") + end + path("ply.net"));
+  EXPECT_EQ(r.err, "");
+  EXPECT_NE(r.out.find("81 nodes, 272 edges"), std::string::npos) << r.out;
+  r = run(path("end.net") + " --out " + path("end.nodes"));
+  EXPECT_EQ(r.status, 2);
+  EXPECT_EQ(r.err, "cloth: --out is " + path("end.nodes") +
+                       ", expected a name that ends in .net: other files hold "
+                       "quads alone\n");
+}
+
+TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
+  file("a.nodes", "0 0 0\n0 1 0\n1 0 0\n1 1 0\n");
+  file("a.tris", "0 2 1\n1 2 3\n");
+  file("a.tets", "0 1 3 2\n3 1 0 2\n");
+  file("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n");
+  file("a.toml", "net = 'a.obj'\npin = 'node 0'\n");
+  const std::string short_run = " --headless --t-end 0.01";
+  struct {
+    std::string options;
+    const char *out, *err;
+  } const cases[] = {
+      {path("a.nodes") + ' ' + path("a.tris"), "4 nodes, 5 edges", ""},
+      {path("a.obj") + " --pin 'x 0'", "4 nodes, 6 edges", ""},
+      {"--net " + path("a.obj") + " --density 3 --pin 'node 3'",
+       ", 3 kg: 3 nodes moved", ""},
+      {"--config " + path("a.toml"), "pin node 0: 1 node", ""},
+      {path("a.nodes") + ' ' + path("a.tets") + " --density 3 --pin 'x 0'",
+       ", 3 kg: 2 nodes moved", "their corners around, as a b d c: taken as"},
+      {path("a.nodes") + ' ' + path("a.tets"), "4 nodes, 6 edges",
+       "1 face is listed twice: each counts once"},
+      {path("a.obj") + " --density 3", "", "nothing holds the cloth, and"},
+      {"--sheet 'nodes 75 1' --pin 'x 0'", "75 nodes, 74 edges", ""}};
+  for (const auto& c : cases) {
+    const Result r = run(c.options + short_run);
+    EXPECT_EQ(r.status, 0) << c.options << r.err;
+    EXPECT_NE(r.out.find(c.out), std::string::npos) << c.options << r.out;
+    EXPECT_NE(r.err.find(c.err), std::string::npos) << c.options << r.err;
+    if (!*c.err) EXPECT_EQ(r.err, "") << c.options;
+  }
+}
+
 TEST_F(ClothProgram, WritesATornClothThatCanBeReadAgain) {
   Result r = run(torn + "--out " + path("end.nodes"));
   EXPECT_EQ(r.status, 0) << r.err;

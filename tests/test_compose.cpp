@@ -216,6 +216,21 @@ TEST(Compose, ANetIsChecked) {
             "quads[1]: node 0 comes twice");
 }
 
+TEST(Compose, EachKindOfSpringMayHaveItsOwnStiffness) {
+  Model m = with_sheet("nodes 3 3");
+  m.edges = read_edges("sides 40 diagonals bend 2");
+  m.rest_length = 0.5;
+  Cloth g;
+  build(g, m);
+  EXPECT_EQ(spring(g, 0, 1).K, 40);
+  EXPECT_EQ(spring(g, 0, 4).K, 100);
+  EXPECT_EQ(spring(g, 0, 2).K, 2);
+  EXPECT_EQ(spring(g, 0, 1).L, 0.25);
+  EXPECT_EQ(to_words(m.edges), "sides 40 diagonals bend 2");
+  EXPECT_THROW(read_edges("sides -1"), SceneError);
+  EXPECT_THROW(read_edges("sides 1 2"), SceneError);
+}
+
 // A pin holds the nodes at its numbers; if these were rounded, the nearest.
 TEST(Compose, APinHoldsNodesByPlaceOrIndex) {
   const auto held = [](const std::string& pin, double size) {

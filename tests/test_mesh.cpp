@@ -8,11 +8,15 @@
 #include <cstdint>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "CME212/Mesh.hpp"
+#include "CME212/MeshFaults.hpp"
 #include "lab/scenes/MeshFile.hpp"
+#include "lab/scenes/NetFile.hpp"
+#include "tests/TestFolder.hpp"
 
 namespace {
 
@@ -158,6 +162,208 @@ TEST(ParseQuads, RefusesEachWrongLineWithItsNumber) {
   EXPECT_EQ(quad_error("0 1 2 4294967296"),
             "f.tets:1: there is no node 4294967296" + four);
   EXPECT_EQ(quad_error(""), "f.tets: nothing in the file" + four);
+}
+
+// --------------------------------------------------- Files of other programs
+
+/** "NODES FACES SPRINGS: ", and the corners of the faces around each. */
+std::string shape(const lab::Net& net) {
+  std::string text = std::to_string(net.points.size()) + ' ' +
+                     std::to_string(net.quads.size()) + ' ' +
+                     std::to_string(net.springs.size()) + ':';
+  for (const Quad& q : net.quads) {
+    text += ' ' + std::to_string(q[0]) + '-' + std::to_string(q[2]) + '-' +
+            std::to_string(q[3]);
+    if (!lab::is_triangle(q)) text += '-' + std::to_string(q[1]);
+  }
+  return text;
+}
+
+template <typename T>
+std::string bytes(std::initializer_list<T> all) {
+  std::string text;
+  for (T a : all) text.append(reinterpret_cast<const char*>(&a), sizeof a);
+  return text;
+}
+
+TEST(ParseNet, TakesTheFilesOfOtherPrograms) {
+  const std::string v4 = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const std::string off = "0 0 0\n1 0 0\n1 1 0 # c\n0 1 0\n";
+  const std::string facets =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+      "vertex 1 1 0\nendloop\nendfacet\nfacet\nouter loop\nvertex -0 0 0\n"
+      "vertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+  const std::string ply_head =
+      "element vertex 3\nproperty float x\nproperty double y\nproperty float "
+      "z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty uchar "
+      "red\nelement edge 1\nproperty int vertex1\nproperty int vertex2\n"
+      "end_header\n";
+  std::string ply;
+  for (double k : {0, 1, 2})
+    ply += bytes({float(k)}) + bytes({k / 3}) + bytes({0.f});
+  ply += bytes<std::uint8_t>({3}) + bytes({0, 1, 2}) +
+         bytes<std::uint8_t>({9}) + bytes({0, 2});
+  std::string stl = std::string(80, 's') + bytes<std::uint32_t>({1}) +
+                    bytes<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0}) + "  ";
+  const char* const little = std::endian::native == std::endian::little
+                                 ? "binary_little_endian"
+                                 : "binary_big_endian";
+  struct {
+    const char* file;
+    std::string text, shape;
+  } const cases[] = {
+      {"a.obj", "# x\nmtllib m\no c\n" + v4 + "vt 0 0\nf 1 2 3 4\n",
+       "4 1 0: 0-1-2-3"},
+      {"a.OBJ", v4 + "vn 0 0 1\r\nf 1/1/1 2/2/1 3/3/1\r\nf 1//1 3//1 4//1\r\n",
+       "4 2 0: 0-1-2 0-2-3"},
+      {"a.obj", v4 + "f -4 -3 -2\nl 1 2 3\nv 9 9 9\nf -5 -2 -1\n",
+       "5 2 2: 0-1-2 0-3-4"},
+      // The seam of two quads, split by an export; the last face has no area.
+      {"a.obj",
+       v4 + "v 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nf 1 2 3 4\n"
+            "f 5 6 7 8\nf 2 5 1\n",
+       "6 2 0: 0-1-2-3 1-4-5-2"},
+      {"a.off", "OFF\n4 2 0\n" + off + "3 0 1 2\n3 0 2 3 255 0 0\n",
+       "4 2 0: 0-1-2 0-2-3"},
+      {"a.off", "OFF 4 2 0\n" + off + "4 0 1 2 3\n2 0 2\n", "4 1 1: 0-1-2-3"},
+      {"a.stl", facets, "4 2 0: 0-1-2 0-2-3"},
+      {"a.stl", stl, "3 1 0: 0-1-2"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\ncomment c\n" + ply_head +
+           "0 0 0\n1 .1 0\n2 .4 0\n3 0 1 2 9\n0 2\n",
+       "3 1 1: 0-1-2"},
+      {"a.ply",
+       std::string("ply\nformat ") + little + " 1.0\n" + ply_head + ply,
+       "3 1 1: 0-1-2"},
+      {"a.vtp",
+       "<?xml version='1.0'?><VTKFile type=\"PolyData\">\n<PolyData><Piece>"
+       "<Points><DataArray type=\"Float32\" format=\"ascii\">0 0 0 1 0 0\n1 1 0"
+       "</DataArray></Points><Polys>"
+       "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">"
+       "0 1 2</DataArray><DataArray type=\"Int64\" Name=\"offsets\" "
+       "format=\"ascii\">3</DataArray></Polys></Piece></PolyData></VTKFile>",
+       "3 1 0: 0-1-2"}};
+  for (const auto& c : cases)
+    EXPECT_EQ(shape(lab::parse_net(c.text, c.file)), c.shape) << c.text;
+  EXPECT_EQ(lab::parse_net(cases[9].text, "a.ply").points[2],
+            Point(2, 2 / 3., 0));
+  EXPECT_EQ(lab::parse_net(cases[3].text, "a.obj").notes.size(), 1u);
+}
+
+TEST(ParseNet, TakesWhatASpringSystemIs) {
+  const std::string text =
+      "# a weight below a held node, and a thread\n"
+      "node 0 0 0 held\nnode 0 0 -0.5 mass 2 velocity 0 0 1\nnode 1 0 0\n"
+      "node 1 1 0\nspring 0 1 50 0.4\nspring 1 2 8\nspring 0 2\n"
+      "face 0 1 2\nface 0 2 3 1\nbare-faces\n";
+  const lab::Net net = lab::parse_net(text, "a.net");
+  EXPECT_EQ(shape(net), "4 2 3: 0-1-2 0-2-3-1");
+  EXPECT_EQ(net.held, std::vector<unsigned>{0});
+  EXPECT_EQ(net.masses, (std::vector<double>{0.25, 2, 0.25, 0.25}));
+  EXPECT_EQ(net.velocities[1], Point(0, 0, 1));
+  EXPECT_EQ(net.springs[0].L, 0.4);
+  EXPECT_LT(net.springs[1].L, 0);
+  EXPECT_LT(net.springs[2].K, 0);
+  EXPECT_TRUE(net.bare_faces);
+  std::ostringstream again;
+  lab::write_net(again, net);
+  std::ostringstream twice;
+  lab::write_net(twice, lab::parse_net(again.str(), "b.net"));
+  EXPECT_EQ(again.str(), twice.str());
+}
+
+TEST(ParseNet, RefusesEachWrongLine) {
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\n",
+                    node = "node 0 0 0\nnode 1 0 0\n";
+  struct {
+    const char* file;
+    std::string text, error;
+  } const cases[] = {
+      {"a.obj", v + "f 1 2 3 4 5\n", "a.obj:6: a face of 5 corners, expected "},
+      {"a.obj", v + "f 1 2 6\n", "a.obj:6: there is no node 5, expected "},
+      {"a.obj", v + "f 1 2 0\n", "a.obj:6: there is no node 0, expected "},
+      {"a.obj", v + "f 1 2 2\n", "a.obj:6: node 1 comes twice, expected "},
+      {"a.obj", "v 0 0\n", "a.obj:1: 2 coordinates, expected 'v x y z'"},
+      {"a.obj", "# no node\n", "a.obj: has no node, expected "},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n", "a.off: ends early, expected 'OFF'"},
+      {"a.stl", "nothing\n", "a.stl:1: 'nothing' begins the file, expected "},
+      {"a.ply", "plot\n", "a.ply: has no header, expected "},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+       "end_header\n1\n",
+       "a.ply: 'vertex' 1: the file ends early, expected "},
+      {"a.vtp", "<VTKFile type=\"ImageData\">", "a.vtp: no arrays that can "},
+      {"a.net", "node 0 0\n", "a.net:1: 2 coordinates, expected 'node x y z'"},
+      {"a.net", "node 0 0 0 fixed\n",
+       "a.net:1: 'fixed' in the line, expected "},
+      {"a.net", "node 0 0 0 mass 0\n", "a.net:1: a mass that is not above 0"},
+      {"a.net", node + "spring 0 2\n",
+       "a.net:3: there is no node 2, expected "},
+      {"a.net", node + "spring 1 1\n", "a.net:3: joins node 1 to itself"},
+      {"a.net", node + "spring 0 1 -4\n",
+       "a.net:3: '-4' is below 0, expected "},
+      {"a.net", node + "spring 0 1 nan\n", "a.net:3: a number is not finite"},
+      {"a.net", node + "rope 0 1\n", "a.net:3: 'rope' begins the line, "},
+      {"a.xyz", "", "a.xyz: expected a name that ends in one of .net, .obj"}};
+  for (const auto& c : cases)
+    EXPECT_EQ(error_of([&] {
+                lab::parse_net(c.text, c.file);
+              }).substr(0, c.error.size()),
+              c.error);
+}
+
+TEST(LoadMesh, MendsWhatItCanAndSaysSo) {
+  const CME212::TestFolder folder;
+  const auto load = [&](const char* cells, const std::string& text) {
+    std::ofstream(folder / "a.nodes") << "0 0 0\n0 1 0\n1 0 0\n1 1 0\n";
+    std::ofstream(folder / cells) << text;
+    lab::Net net = lab::load_mesh(folder / "a.nodes", folder / cells);
+    return shape(net) + (net.notes.empty() ? "" : " !");
+  };
+  EXPECT_EQ(load("a.tets", "0 1 2 3\n"), "4 1 0: 0-2-3-1");
+  EXPECT_EQ(load("a.tets", "0 1 3 2\n"), "4 1 0: 0-1-3-2 !");  // around
+  EXPECT_EQ(load("a.tets", "1 2 3 4\n"), "4 1 0: 0-2-3-1 !");  // from 1
+  EXPECT_EQ(load("a.tets", "0 1 2 3\n3 2 1 0\n"), "4 1 0: 0-2-3-1 !");
+  EXPECT_EQ(load("a.tris", "0 2 1\n1 2 3\n"), "4 2 0: 0-2-1 1-2-3");
+  EXPECT_EQ(load("a.edges", "0 2\n2 3\n"), "4 0 2:");
+  EXPECT_THROW(load("a.edges", "0 4\n"), InputError);
+  EXPECT_THROW(load("a.tris", "1 2 5\n"), InputError);
+}
+
+TEST(MeshFaults, AreNamedWithTheirNumber) {
+  const auto points = grid_points(3);
+  auto quads = grid_quads(3);
+  EXPECT_EQ(mesh_faults(points, quads).size(), 0u);
+  const auto fault = [](const auto& mesh, const auto& cells) {
+    const auto all = mesh_faults(mesh, cells);
+    EXPECT_EQ(all.size(), 1u);
+    return all.empty() ? "" : all[0].substr(0, all[0].find(':'));
+  };
+  auto around = quads;
+  for (Quad& q : around) std::swap(q[2], q[3]);
+  EXPECT_EQ(fault(points, around),
+            "4 of 4 quads list the corners around, as a b d c");
+  auto twice = quads;
+  twice.push_back({quads[2][3], quads[2][1], quads[2][2], quads[2][0]});
+  EXPECT_EQ(fault(points, twice), "1 face is listed twice, number 4");
+  // Each quad with its own corners, one of them off by rounding.
+  std::vector<Point> split;
+  std::vector<Quad> own;
+  for (const Quad& q : quads) {
+    const auto k = unsigned(split.size());
+    own.push_back({k, k + 1, k + 2, k + 3});
+    for (unsigned i : q) split.push_back(points[i]);
+  }
+  split[1].x += 1e-8;
+  EXPECT_EQ(fault(split, own),
+            "7 pairs of nodes lie at the same point, nodes 1 and 4 first, and "
+            "no spring joins them (an export that splits seams)");
+  auto loose = points;
+  loose.insert(loose.begin(), Point(5, 5, 5));
+  for (Quad& q : quads)
+    for (unsigned& i : q) ++i;
+  EXPECT_EQ(fault(loose, quads), "1 of 10 nodes lies in no quad, node 0");
 }
 
 TEST(Load, SaysWhyAFileCantBeRead) {

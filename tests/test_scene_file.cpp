@@ -591,7 +591,8 @@ TEST_F(SceneFile, RefusesValuesOutOfRange) {
               "")
         << line;
   EXPECT_EQ(complaint("t-end = 1\n"),
-            " --nodes is missing: expected files NODES and TETS, or --sheet");
+            " --nodes is missing: expected files NODES and TETS, --net or "
+            "--sheet");
 }
 
 TEST(SceneFiles, ThatAreNoneAreToldApart) {

@@ -12,7 +12,7 @@ page_o  := $(B)/page.o
 # All of these rooms of the laboratory, except what reads or writes files or
 # measures processor time.
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
-  %,lab/scenes/%.cpp, Interrupt Memory MeshFile Warnings) \
+  %,lab/scenes/%.cpp, Interrupt Memory MeshFile NetBinary NetFile Warnings) \
   lab/stepping/Checkpoint.cpp lab/fast/FastestCpu.cpp, \
   $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes stepping live page))) \
   course/web/thrown.cpp

@@ -23,6 +23,7 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/scenes/Fields.hpp"
+#include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/Nearest.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Checkpoint.hpp"
@@ -39,7 +40,7 @@ constexpr const char* head =
   ./cloth --config data/scenes/drape.toml --strain --csv energies.csv
   ./cloth --config data/scenes/drape.toml --advise --tolerance 0.02
 
-Usage: cloth [OPTIONS] [NODES TETS])";
+Usage: cloth [OPTIONS] [NODES TETS | NET])";
 
 /** The groups of the help, in its order. */
 constexpr std::array groups = {"Scene",
@@ -137,6 +138,15 @@ void check(Options& o) {
     throw SceneError("out", "is " + o.out +
                                 ", expected a file of points, such as "
                                 "FILE.nodes: the quads go into FILE.tets");
+  const Model& m = o.model;
+  if (!o.out.empty() && CME212::ending_of(o.out) != ".net" &&
+      (needs_net(m.net + m.nodes, m.tets) ||
+       std::ranges::any_of(m.sheets, [](const Sheet& s) {
+         return s.nodes[0] == 1 || s.nodes[1] == 1;
+       })))
+    throw SceneError("out", "is " + o.out +
+                                ", expected a name that ends in .net: other "
+                                "files hold quads alone");
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
   require(o.advise_work >= 0 && std::isfinite(o.advise_work), "advise-work",
@@ -243,9 +253,11 @@ CLI::Option* add_file(CLI::App& app, const char* name, std::string& file,
  * are those of @a m. */
 void add_fields(CLI::App& app, Model& m) {
   for (const Field& f : fields_of(m)) {
-    const bool is_file = f.role == Role::mesh;  // may come without its name
+    const bool is_file = f.role == Role::mesh;
     std::string name = std::string("--") + f.name;
-    if (is_file) name += f.name == std::string("nodes") ? ",NODES" : ",TETS";
+    for (const char* file : {"nodes,NODES", "tets,TETS"})
+      if (std::string(file).starts_with(f.name + std::string(",")))
+        name = std::string("--") + file;  // may come without its name
     CLI::Option* option = app.add_option(
         name, [](const CLI::results_t&) { return true; }, f.help);
     option->type_name(f.type())->group(f.group);
@@ -286,7 +298,7 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_option("--every", o.every, "steps between two rows of --csv");
   add_file(app, "--out", o.out,
            "write the final points and velocities as NODES, and the remaining "
-           "quads as TETS beside it");
+           "quads as TETS beside it; or FILE.net, with all springs and masses");
   add_file(app, "--vtp", o.vtp,
            "write frames for ParaView with all data of nodes, springs and "
            "quads, and frames.pvd with their times")

@@ -14,6 +14,7 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Interrupt.hpp"
+#include "lab/scenes/NetFile.hpp"
 #include "lab/scenes/Warnings.hpp"
 #include "lab/stability/StepLimit.hpp"
 #include "lab/stepping/Checkpoint.hpp"
@@ -26,13 +27,17 @@ constexpr const char* warning = "cloth: warning: ";
 
 }  // namespace
 
-MeshOutput::MeshOutput(const std::string& file) : nodes_(file) {
+MeshOutput::MeshOutput(const std::string& file)
+    : nodes_(file), is_net_(file.ends_with(".net")) {
   const std::string quads = quads_beside(file);
   if (!quads.empty()) quads_.emplace(quads);
 }
 
 void MeshOutput::write(const Scene& scene) {
-  const Net left = mesh_left(scene.cloth(), *scene.recipe().built);
+  const BuiltMesh& built = *scene.recipe().built;
+  if (is_net_)
+    write_net(nodes_.stream(), net_left(scene.cloth(), built, scene.held()));
+  const Net left = is_net_ ? Net() : mesh_left(scene.cloth(), built);
   write_nodes(nodes_.stream(), left);
   if (quads_) write_quads(quads_->stream(), left);
   nodes_.commit();

@@ -22,7 +22,7 @@ class Scene;
 class StepControl;
 
 /** What --out writes: the nodes of the mesh that are left and, beside them, its
- * quads, so that they can be read again. */
+ * quads, so that they can be read again; or FILE.net, net_left(). */
 class MeshOutput {
  public:
   /** Open the files.  Throws std::runtime_error "FILE: why" */
@@ -32,6 +32,7 @@ class MeshOutput {
 
  private:
   CME212::OutputFile nodes_;
+  bool is_net_;
   std::optional<CME212::OutputFile> quads_;
 };
 

@@ -144,10 +144,12 @@ void check_outputs(const Options& o) {
   std::map<std::string, const char*> option_of, input_of;
   for (const auto& [option, file] :
        {std::pair("nodes", o.model.nodes), std::pair("tets", o.model.tets),
-        std::pair("config", o.config), std::pair("restart", o.restart)})
+        std::pair("net", o.model.net), std::pair("config", o.config),
+        std::pair("restart", o.restart)})
     if (!file.empty()) input_of.emplace(CME212::output_target(file), option);
   const std::set<Pair> follow = {{"out", "nodes"},
                                  {"out", "tets"},
+                                 {"out", "net"},
                                  {"write-config", "config"},
                                  {"checkpoint", "restart"}};
   auto add = [&](const char* option, const std::string& file) {
@@ -251,7 +253,8 @@ int run(Options o) {
  * it, as "FILE:LINE: ". Else "".  @param what the error */
 std::string place_of(const Options& o, const std::string& what) {
   for (const auto& [option, file] :
-       {std::pair("--nodes", o.model.nodes), std::pair("--tets", o.model.tets)})
+       {std::pair("--nodes", o.model.nodes), std::pair("--tets", o.model.tets),
+        std::pair("--net", o.model.net)})
     if (what.starts_with(file + ": ")) return o.origins.of(option, "");
   return "";
 }

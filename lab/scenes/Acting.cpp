@@ -37,7 +37,8 @@ std::string of_cloth(const Model& m, const Cloth& g, const Net& mesh) {
   for (const Sheet& s : m.sheets)
     from += (from.empty() ? "" : " and ") + std::to_string(s.nodes[0]) + " x " +
             std::to_string(s.nodes[1]) + " nodes";
-  if (m.sheets.empty()) from = m.nodes + " and " + m.tets;
+  if (m.sheets.empty())
+    from = m.net.empty() ? m.nodes + " and " + m.tets : m.net;
   return "cloth of " + from + ", " + short_text(total_mass(g)) + " kg: " +
          count_of(std::size_t(std::ranges::count(is_held(m, mesh), 0)),
                   "node") +

@@ -123,6 +123,22 @@ void set_stiffness(Cloth& g, const Net& mesh, const Edges& edges,
         });
 }
 
+/** Set K of the kinds of springs that have their own. */
+void set_kinds(Cloth& g, const Net& net, const Edges& edges) {
+  const auto set = [&g](const SpringKind& kind, unsigned i, unsigned j) {
+    if (kind.K) g.add_edge(g.node(i), g.node(j)).value().K = *kind.K;
+  };
+  if (edges.bend.K)
+    each_bend(net.quads, [&](unsigned i, unsigned j, std::size_t, std::size_t) {
+      set(edges.bend, i, j);
+    });
+  if (!edges.sides.K && !edges.diagonals.K) return;
+  for (const Quad& q : net.quads)
+    each_spring(q, edges.diagonals, [&](unsigned i, unsigned j, double share) {
+      set(share == 2 ? edges.diagonals : edges.sides, i, j);
+    });
+}
+
 /** Add the springs that @a net lists to those of its faces. */
 void add_listed(Cloth& g, const Net& net, const Model& m) {
   std::vector<char> listed(g.num_edges());  // by index of the edge
@@ -196,7 +212,9 @@ void check_memory(const Model& m, double nodes, double quads,
     return CME212::two_digits(bytes / 1e9) + " GB";
   };
   if (needed > available)
-    throw SceneError(m.sheets.empty() ? "nodes" : "sheet",
+    throw SceneError(!m.sheets.empty() ? "sheet"
+                     : m.net.empty()   ? "nodes"
+                                       : "net",
                      "gives " + CME212::short_text(nodes) + " nodes and " +
                          CME212::short_text(springs) +
                          " springs, which need at least " + gb(needed) +
@@ -225,7 +243,7 @@ std::pair<unsigned, double> nearest(const Pin& pin, const Net& net) {
 Net mesh_of(const Model& m) {
   Net mesh;
   if (m.sheets.empty()) {
-    mesh = load_mesh(m.nodes, m.tets);
+    mesh = load_mesh(m.net.empty() ? m.nodes : m.net, m.tets);
     check_memory(m, double(mesh.points.size()), double(mesh.quads.size()),
                  double(mesh.springs.size()));
   }
@@ -297,8 +315,11 @@ void build_model(Cloth& g, const Model& m, const Net& mesh) {
                                 std::size_t) { add(p, q); });
     if (m.material.modulus)
       set_stiffness(g, mesh, m.edges, *m.material.modulus);
+    set_kinds(g, mesh, m.edges);
   }
   add_listed(g, mesh, m);
+  if (m.rest_length != 1)
+    for (Edge e : g.edges()) e.value().L *= m.rest_length;
   for (unsigned i = 0; i < mesh.masses.size(); ++i)
     g.node(i).value().mass = mesh.masses[i];
   if (m.material.density) set_masses(g, mesh, *m.material.density);
@@ -330,6 +351,25 @@ Net mesh_left(const Cloth& g, const BuiltMesh& built) {
   left.quads = quads_left(g, built);
   for (Quad& q : left.quads)
     for (unsigned& i : q) i = number[i];
+  return left;
+}
+
+Net net_left(const Cloth& g, const BuiltMesh& built,
+             const std::vector<HeldNodes>& held) {
+  Net left = mesh_left(g, built);
+  left.bare_faces = !left.quads.empty();
+  std::vector<unsigned> index(arrays(g).node_slots());  // by id
+  for (unsigned id : built.ids)
+    if (arrays(g).node_in_use(id)) {
+      index[id] = unsigned(left.masses.size());
+      left.masses.push_back(arrays(g).node_with_id(id).value().mass);
+    }
+  for (Edge e : g.edges())
+    left.springs.push_back({index[e.node1().id()], index[e.node2().id()],
+                            e.value().K, e.value().L});
+  for (const HeldNodes& h : held)
+    for (const auto& node : h.nodes)
+      if (arrays(g).node_in_use(node.id)) left.held.push_back(index[node.id]);
   return left;
 }
 

@@ -47,6 +47,11 @@ struct HeldNodes {
   Motion motion = {};
 };
 
+/** mesh_left() with the masses, all springs, each with its K and L, and the
+ * nodes of @a held: a cloth built from it is @a g.  O(points + springs) */
+Net net_left(const Cloth& g, const BuiltMesh& built,
+             const std::vector<HeldNodes>& held);
+
 /** How a scene is built, at its start and at each restart. */
 struct Recipe {
   std::string name;

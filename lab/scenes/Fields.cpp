@@ -21,18 +21,28 @@ std::vector<Field> fields_of(Model& m) {
   return {
       {"nodes", mesh, scene, &m.nodes,
        "file of points 'x y z' [m], or 'x y z vx vy vz' [m/s]"},
-      {"tets", mesh, scene, &m.tets, "file of quads, four node indices each"},
+      {"tets", mesh, scene, &m.tets,
+       "file of quads, four node indices each; .tris: triangles, .edges: "
+       "springs"},
+      {"net", mesh, scene, &m.net,
+       "one file instead: .net (nodes, springs, faces: data/README.md), .obj, "
+       ".off, .ply, .stl or .vtp; --net may be omitted"},
       {"sheet", cloth, scene, &m.sheets,
        "a grid of nodes instead of files; may be repeated: at X Y Z u X Y Z v "
        "X Y Z [m] nodes N M velocity X Y Z [m/s] (corner, two sides, numbers "
        "of nodes along them, initial velocity)"},
       {"edges", cloth, scene, &m.edges,
-       "kinds of springs: sides, diagonals, bend"},
+       "kinds of springs: sides, diagonals, bend; after each, if wanted, its "
+       "own K [N/m]"},
       {"stiffness", number, material, &m.stiffness, "K of every edge [N/m]",
        "a spring constant [N/m], 0 or more", not_negative},
       {"modulus", cloth, material, &m.material.modulus,
        "instead of stiffness: force per width and strain [N/m]",
        "a force per width [N/m], 0 or more", not_negative, "stiffness"},
+      {"rest-length", number, material, &m.rest_length,
+       "of every spring, as a factor of its length at the start, or of that in "
+       "the net",
+       "a factor, 0 or more", not_negative},
       {"density", cloth, material, &m.material.density,
        "mass per area [kg/m^2], instead of a total of 1 kg",
        "a mass per area [kg/m^2], more than 0", positive},
@@ -211,8 +221,14 @@ Model checked(Model m) {
   if (fixed && !(m.t_end / dt < 1e15))
     refuse("t-end", CME212::short_text(m.t_end),
            "fewer than 1e15 steps of --dt");
-  if (!m.sheets.empty() && !(m.nodes.empty() && m.tets.empty()))
-    throw SceneError("sheet", "cannot be combined with NODES and TETS");
+  if (m.tets.empty() && m.net.empty() && !m.nodes.ends_with(".nodes"))
+    m.net = std::exchange(m.nodes, "");
+  if (const bool files = !m.nodes.empty() || !m.tets.empty();
+      !m.sheets.empty() && (files || !m.net.empty()))
+    throw SceneError("sheet", files ? "cannot be combined with NODES and TETS"
+                                    : "cannot be combined with --net");
+  else if (files && !m.net.empty())
+    throw SceneError("net", "cannot be combined with NODES and TETS");
   return or_assignment(m);
 }
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <system_error>
 
+#include "CME212/MeshFaults.hpp"
 #include "CME212/Util.hpp"
+#include "lab/scenes/NetFile.hpp"
 
 namespace lab {
 
@@ -48,14 +51,75 @@ Net parse_nodes(std::string_view text, const std::string& file) {
   return mesh;
 }
 
-Net load_mesh(const std::string& nodes, const std::string& tets) {
-  const auto read = [](const std::string& file, const char* expected) {
-    return mesh_detail::read_file(file, expected);
-  };
-  Net mesh = parse_nodes(read(nodes, "a file of points"), nodes);
-  mesh.quads =
-      parse_quads(read(tets, "a file of quads"), tets, mesh.points.size());
-  return mesh;
+namespace {
+
+/** The cells in @a file. Indices from 1 to the number of points start at 1. */
+template <std::size_t N>
+std::vector<std::array<unsigned, N>> load_cells(const std::string& file,
+                                                Net& net) {
+  const auto text =
+      mesh_detail::read_file(file, N == 4   ? "a file of quads"
+                                   : N == 3 ? "a file of triangles"
+                                            : "a file of edges");
+  const std::size_t n = net.points.size();
+  try {
+    return parse_cells<N>(text, file, n);
+  } catch (const InputError&) {
+    std::vector<std::array<unsigned, N>> cells;
+    try {
+      cells = parse_cells<N>(text, file, n + 1);
+    } catch (const InputError&) {
+    }
+    bool from_1 = !cells.empty();
+    for (auto& cell : cells)
+      for (unsigned& i : cell) from_1 &= i-- > 0;
+    if (!from_1) throw;
+    net.notes.push_back("the indices in " + file +
+                        " start at 1, expected 0: "
+                        "1 is subtracted from all");
+    return cells;
+  }
+}
+
+std::string ending(const std::string& file) {
+  return std::filesystem::path(file).extension();
+}
+
+}  // namespace
+
+Net load_mesh(const std::string& nodes, const std::string& cells) {
+  Net net;
+  if (cells.empty())
+    net = parse_net(mesh_detail::read_file(nodes, "a mesh or a net"), nodes);
+  else
+    net = parse_nodes(mesh_detail::read_file(nodes, "a file of points"), nodes);
+  if (ending(cells) == ".edges") {
+    for (auto [i, j] : load_cells<2>(cells, net)) net.springs.push_back({i, j});
+  } else if (ending(cells) == ".tris") {
+    for (auto [a, b, c] : load_cells<3>(cells, net))
+      net.quads.push_back(face_around(a, b, c));
+  } else if (!cells.empty()) {
+    net.quads = load_cells<4>(cells, net);
+    if (num_around(net.points, net.quads) > net.quads.size() / 2) {
+      for (Quad& q : net.quads) q = face_around(q[0], q[1], q[2], q[3]);
+      net.notes.push_back("the quads in " + cells +
+                          " list their corners around, as a b d c: taken as "
+                          "a b c d, with the sides ab, ac, bd and cd");
+    }
+  }
+  if (auto again = repeated(net.quads); !again.empty()) {
+    std::ranges::sort(again, std::greater());
+    for (unsigned k : again) net.quads.erase(net.quads.begin() + k);
+    net.notes.push_back(CME212::count_of(again.size(), "face") +
+                        (again.size() == 1 ? " is" : " are") +
+                        " listed twice: each counts once");
+  }
+  return net;
+}
+
+bool needs_net(const std::string& nodes, const std::string& cells) {
+  return (cells.empty() && !nodes.empty()) || ending(cells) == ".tris" ||
+         ending(cells) == ".edges";
 }
 
 void write_nodes(std::ostream& out, const Net& mesh) {
@@ -79,7 +143,8 @@ std::string quads_beside(const std::string& nodes) {
   namespace fs = std::filesystem;
   fs::path file(nodes);
   std::error_code none;
-  if (nodes.empty() || fs::is_other(file, none)) return "";
+  if (nodes.empty() || fs::is_other(file, none) || ending(nodes) == ".net")
+    return "";
   if (file.extension() == ".nodes") return file.replace_extension(".tets");
   return nodes + ".tets";
 }

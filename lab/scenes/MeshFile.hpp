@@ -17,9 +17,15 @@ namespace lab {
  * Throws InputError: any other line, lines of both kinds, or no line. */
 Net parse_nodes(std::string_view text, const std::string& file);
 
-/** The mesh in the files @a nodes and @a tets.
+/** The mesh in the files @a nodes and @a cells: quads; by the ending .tris,
+ * triangles; .edges, springs. Without @a cells, parse_net() of one file. Quads
+ * listed around get the order of Quad, faces listed twice count once, indices
+ * that start at 1 are made to start at 0: Net::notes.
  * Throws InputError, also if one can't be read. */
-Net load_mesh(const std::string& nodes, const std::string& tets);
+Net load_mesh(const std::string& nodes, const std::string& cells);
+/** True if the springs of a cloth from @a nodes and @a cells are not those of
+ * quads, so that write_quads() can't hold them. */
+bool needs_net(const std::string& nodes, const std::string& cells);
 
 /** Write the lines of a .nodes file, with velocities if @a mesh has them, and
  * of a .tets file. Reading them gives the same numbers. */
@@ -27,7 +33,7 @@ void write_nodes(std::ostream& out, const Net& mesh);
 void write_quads(std::ostream& out, const Net& mesh);
 
 /** The .tets file that belongs to the file of points @a nodes: A.tets to
- * A.nodes, else A.tets to A; "" to a pipe or a device. */
+ * A.nodes, else A.tets to A; "" to A.net, a pipe or a device. */
 std::string quads_beside(const std::string& nodes);
 
 /** The absolute path of @a file. */

@@ -42,7 +42,7 @@ Model assignment_scene() {
 }
 
 Model or_assignment(Model m) {
-  if (m.names_parts()) return m;
+  if (m.names_parts() || !m.net.empty()) return m;
   const Model scene = assignment_scene();
   if (m.name == Model().name) m.name = scene.name;
   m.pins = scene.pins, m.planes = scene.planes, m.tears = scene.tears;

@@ -44,10 +44,19 @@ struct TimeStep {
   bool fixed() const { return rule == StepRule::fixed; }
 };
 
-/** Which springs a cloth has besides the sides of its quads. */
+/** The springs of one kind: there or not, and their K. */
+struct SpringKind {
+  bool there = true;
+  std::optional<double> K = {};  ///< [N/m]; none: as Model gives it
+  SpringKind(bool is_there) : there(is_there) {}  // NOLINT: as a bool
+  operator bool() const { return there; }         // NOLINT
+  bool operator==(const SpringKind&) const = default;
+};
+
+/** Which springs a cloth has: the sides of its faces, and others. */
 struct Edges {
-  bool diagonals = true;
-  bool bend = false;  ///< between nodes two sides apart in a line
+  SpringKind sides = true, diagonals = true;
+  SpringKind bend = false;  ///< between nodes two sides apart in a line
   bool operator==(const Edges&) const = default;
 };
 
@@ -157,10 +166,12 @@ const MethodEntry* default_method();
 struct Model {
   std::string name = "scene";  ///< of its output files
   // The cloth
-  std::string nodes, tets;  ///< files, or else sheets
+  std::string nodes, tets;  ///< files, or else net or sheets
+  std::string net;          ///< one file
   std::vector<Sheet> sheets;
   Edges edges;
   double stiffness = 100;  ///< K of every spring [N/m], >= 0
+  double rest_length = 1;  ///< factor of the rest length of every spring, >= 0
   Material material;
   std::vector<Region> regions;
   // What acts on it
@@ -198,7 +209,8 @@ struct Model {
  * floor, and a ball that tears. It has no mesh. */
 Model assignment_scene();
 
-/** @a m; or, if it names no part, @a m with those of assignment_scene(). */
+/** @a m; or, if it names no part and no net, @a m with the parts of
+ * assignment_scene(). */
 Model or_assignment(Model m);
 
 }  // namespace lab

@@ -13,7 +13,7 @@ std::string no_node(unsigned i, std::size_t num_points) {
   return i < num_points ? "" : "there is no node " + std::to_string(i);
 }
 std::string not_finite(const Point& p) {
-  return std::isfinite(normSq(p)) ? "" : "is not finite";
+  return is_finite(p) ? "" : "is not finite";
 }
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
 /** @file Net.hpp
  * Net: what a cloth is built from, as plain data: nodes, faces and springs. */
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ constexpr Quad face_around(unsigned a, unsigned b, unsigned c) {
   return face_around(a, b, c, c);
 }
 constexpr bool is_triangle(const Quad& face) { return face[1] == face[3]; }
+
+inline bool is_finite(const Point& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 /** A spring between two nodes. */
 struct Spring {

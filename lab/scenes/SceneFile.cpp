@@ -27,6 +27,7 @@ Origins set_fields(Model& m, const std::string& file, const std::string& text,
           "unknown key " + printable(key) + did_you_mean(key, scene_keys()));
     if (key == "nodes") m.nodes = beside(file, m.nodes);
     if (key == "tets") m.tets = beside(file, m.tets);
+    if (key == "net") m.net = beside(file, m.net);
   };
   try {
     each_key_value(text, file, use);
@@ -73,9 +74,10 @@ std::string beside(const std::string& scene, const std::string& name) {
 }
 
 void check_has_cloth(const Model& m) {
-  if (m.sheets.empty() && (m.nodes.empty() || m.tets.empty()))
+  if (m.sheets.empty() && m.net.empty() && (m.nodes.empty() || m.tets.empty()))
     throw SceneError(m.nodes.empty() ? "nodes" : "tets",
-                     "is missing: expected files NODES and TETS, or --sheet");
+                     "is missing: expected files NODES and TETS, --net or "
+                     "--sheet");
 }
 
 namespace {

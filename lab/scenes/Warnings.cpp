@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
+#include "CME212/BoundingBox.hpp"
+#include "CME212/MeshFaults.hpp"
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Method.hpp"
@@ -77,7 +80,8 @@ class Finder {
   }
 
   std::vector<std::string> all() {
-    loose_nodes();
+    found_ = mesh_.notes;
+    if (m_.sheets.size() != 1) faults_of_the_mesh();
     springs_of_no_length();
     nothing_held();
     for (const Wall& w : m_.planes) below(w);
@@ -122,25 +126,26 @@ class Finder {
            count_of(mesh_.quads.size(), "quad");
   }
 
-  void loose_nodes() {
-    std::vector<char> used(mesh_.points.size());
-    for (const Quad& q : mesh_.quads)
-      for (unsigned i : q) used[i] = 1;
-    const auto n = std::size_t(std::ranges::count(used, 0));
-    if (n == 0) return;
-    const auto first = std::ranges::find(used, 0) - used.begin();
-    add(std::to_string(n) + " of " + count_of(used.size(), "node") +
-        (n == 1 ? " lies" : " lie") + " in no quad, node " +
-        std::to_string(first) + (n == 1 ? "" : " first") +
-        ": no spring holds " + it_or_them(n) +
-        "; use nodes and quads of the same mesh");
+  void faults_of_the_mesh() {
+    std::vector<std::array<unsigned, 2>> springs;
+    for (const Spring& spring : mesh_.springs)
+      springs.push_back({spring.i, spring.j});
+    std::ranges::move(mesh_faults(mesh_.points, mesh_.quads, springs),
+                      std::back_inserter(found_));
+    CME212::BoundingBox box;
+    for (const Point& p : mesh_.points) box |= p;
+    const double size = box.diagonal();
+    if (m_.sheets.empty() && size > 50)
+      add("the cloth is " + short_text(size) +
+          " m large: if its file is in mm or cm, divide the coordinates by "
+          "1000 or 100");
   }
 
   void springs_of_no_length() {
     std::size_t n = 0;
     Edge first;
     for (Edge e : g_.edges())
-      if (e.value().L == 0 && n++ == 0) first = e;
+      if (e.value().L == 0 && e.length() == 0 && n++ == 0) first = e;
     if (n == 0) return;
     add(count_of(n, "spring") + (n == 1 ? " has" : " have") +
         " length 0: nodes " + std::to_string(first.node1().index()) + " and " +
@@ -150,11 +155,16 @@ class Finder {
   }
 
   void nothing_held() {
-    if (!m_.is_assignment()) return;
     const auto held = points_held(m_, mesh_);
-    for (const Pin& pin : m_.pins)
-      if (held[std::size_t(&pin - &m_.pins[0])].empty())
-        add("no node lies at " + to_words(pin) +
+    const auto none = [](const auto& nodes) { return nodes.empty(); };
+    if (m_.sheets.empty() && m_.gravity != 0 && m_.planes.empty() &&
+        m_.spheres.empty() && std::ranges::all_of(held, none))
+      add("nothing holds the cloth, and nothing is below it: it falls; pin it, "
+          "for example by --pin \"node 0\"");
+    if (!m_.is_assignment()) return;
+    for (std::size_t k = 0; k < m_.pins.size(); ++k)
+      if (held[k].empty())
+        add("no node lies at " + to_words(m_.pins[k]) +
             ", which the assignment's scene pins; pin this cloth, for example "
             "by --pin \"x 0\"");
   }

@@ -14,7 +14,8 @@ namespace lab {
 double opening(const Net& mesh, const Quad& q);
 
 /** The faults of a scene: a sentence each, with numbers and a remedy.
- *  - nodes in no quad; springs of length 0
+ *  - what a reader changed in the mesh, mesh_faults(), a size as in mm; springs
+ *    of length 0; nothing held
  *  - nodes below a plane, inside a solid or a tearing ball; a ball that cuts
  *    quads but contains no node; and what the first step does then
  *  - openings of the mesh through which a solid ball fits, now or when springs

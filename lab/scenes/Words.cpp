@@ -29,15 +29,14 @@ Word velocity(Motion& m) {
   const bool ends = m.until != Motion().until;
   return {"velocity", &m.velocity, any, ends ? word : none};
 }
-constexpr bool* no_member = nullptr;
 Word until(Motion& m) { return {"until", &m.until, not_negative}; }
 }  // namespace
 
 Words words_of(Edges& e) {
   return {"edges",
-          {{"sides", no_member, any, word},
-           {"diagonals", &e.diagonals},
-           {"bend", &e.bend}}};
+          {{"sides", &e.sides, not_negative, word},
+           {"diagonals", &e.diagonals, not_negative},
+           {"bend", &e.bend, not_negative}}};
 }
 Words words_of(Sheet& s) {
   const bool has_area = norm(cross(s.u, s.v)) > 0;
@@ -121,9 +120,9 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/** How many numbers follow the word. */
+/** How many numbers follow the word, at most. */
 std::size_t numbers_after(const Word& w) {
-  constexpr std::size_t counts[] = {0, 1, 1, 3, 2};  // of each kind of member
+  constexpr std::size_t counts[] = {0, 1, 1, 3, 2, 1};  // of each kind
   return counts[w.member.index()];
 }
 
@@ -133,6 +132,8 @@ void each_number(const Word& w, Use use) {
   if (auto* a = std::get_if<double*>(&w.member)) use(**a);
   if (auto* a = std::get_if<std::optional<double>*>(&w.member))
     use((*a)->has_value() ? ***a : (*a)->emplace());
+  if (auto* a = std::get_if<SpringKind*>(&w.member))
+    if ((*a)->K) use(*(*a)->K);
   if (auto* p = std::get_if<Point*>(&w.member))
     for (double& a : **p) use(a);
   if (auto* n = std::get_if<std::array<unsigned, 2>*>(&w.member))
@@ -179,12 +180,15 @@ void read_words(const std::string& text, const std::function<Words()>& words) {
   bool has_some = some_names.empty();
   for (const Word& w : allowed) {
     const auto it = found.find(w.name);
-    if (auto* there = std::get_if<bool*>(&w.member); there && *there)
+    if (auto* there = std::get_if<bool*>(&w.member))
       **there = it != found.end();
+    auto* kind = std::get_if<SpringKind*>(&w.member);
+    if (kind) **kind = it != found.end();
     if (it == found.end()) continue;
     const std::string name = std::string(" ") + w.name;
     const std::size_t n = it->second.size();
-    if (n != numbers_after(w))
+    if (kind && n > 0) (*kind)->K = 0;
+    if (n != numbers_after(w) && !(kind && n == 0))
       fail("has " + std::to_string(n) + (n == 1 ? " number" : " numbers") +
            " after" + name + ", expected " + std::to_string(numbers_after(w)));
     for (double a : it->second)
@@ -283,7 +287,8 @@ namespace {
 
 /** A word and its numbers; "" if it is not there. */
 std::string text_of(const Word& w) {
-  if (auto* there = std::get_if<bool*>(&w.member); there && *there && !**there)
+  if (auto* there = std::get_if<bool*>(&w.member); there && !**there) return "";
+  if (auto* kind = std::get_if<SpringKind*>(&w.member); kind && !**kind)
     return "";
   if (auto* a = std::get_if<std::optional<double>*>(&w.member); a && !**a)
     return "";
@@ -307,6 +312,7 @@ std::string written(const Words& words, const Words& usual) {
     if (text.empty()) continue;
     if (w.need == some) last = ' ' + text;
     if (w.need != word && !std::holds_alternative<bool*>(w.member) &&
+        !std::holds_alternative<SpringKind*>(w.member) &&
         text == text_of(usual.all[k]))
       continue;
     all += ' ' + text;

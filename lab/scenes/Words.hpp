@@ -23,9 +23,10 @@ struct Word {
     some,  ///< at least one of these words must be there
   };
   const char* name;
-  /** What its numbers set; a bool, unless null, says if the word is there. */
+  /** What its numbers set; a bool, unless null, says if the word is there. A
+   * SpringKind has one number or none. */
   std::variant<bool*, double*, std::optional<double>*, Point*,
-               std::array<unsigned, 2>*>
+               std::array<unsigned, 2>*, SpringKind*>
       member;
   Range range = Range::any;
   Need need = Need::none;

@@ -1,0 +1,351 @@
+/** @file NetBinary.cpp
+ * Readers of nets in formats that may be binary: STL, PLY, VTK PolyData. */
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "lab/scenes/NetParsing.hpp"
+
+namespace lab::net_parsing {
+
+namespace {
+
+// ------------------------------------------------------------------ Raw bytes
+
+template <typename T>
+T raw(const char* bytes, bool swap = false) {
+  char copy[sizeof(T)];
+  std::memcpy(copy, bytes, sizeof copy);
+  if (swap) std::reverse(copy, copy + sizeof copy);
+  return std::bit_cast<T>(copy);
+}
+constexpr bool big = std::endian::native == std::endian::big;
+
+/** A kind of number in a binary file. */
+struct Kind {
+  const char* names[3];  // in .ply, its other name there, in .vtp
+  std::size_t size;
+  double (*read)(const char*, bool);
+};
+template <typename T>
+double as_double(const char* bytes, bool swap) {
+  return double(raw<T>(bytes, swap));
+}
+constexpr Kind kinds[] = {
+    {{"char", "int8", "Int8"}, 1, as_double<std::int8_t>},
+    {{"uchar", "uint8", "UInt8"}, 1, as_double<std::uint8_t>},
+    {{"short", "int16", "Int16"}, 2, as_double<std::int16_t>},
+    {{"ushort", "uint16", "UInt16"}, 2, as_double<std::uint16_t>},
+    {{"int", "int32", "Int32"}, 4, as_double<std::int32_t>},
+    {{"uint", "uint32", "UInt32"}, 4, as_double<std::uint32_t>},
+    {{"float", "float32", "Float32"}, 4, as_double<float>},
+    {{"double", "float64", "Float64"}, 8, as_double<double>},
+    {{"-", "-", "Int64"}, 8, as_double<std::int64_t>},
+    {{"-", "-", "UInt64"}, 8, as_double<std::uint64_t>}};
+const Kind& kind_of(std::string_view name) {
+  for (const Kind& k : kinds)
+    if (std::ranges::count(k.names, name)) return k;
+  fail("there is no type " + quoted(name));
+}
+
+// ------------------------------------------------------------------------ stl
+
+}  // namespace
+
+Net parse_stl(std::string_view text, const std::string& file) {
+  Builder b;
+  std::map<std::array<double, 3>, unsigned> at;
+  std::vector<long long> nodes;
+  const auto corner = [&](const Point& p) {
+    const auto [it, is_new] =
+        at.try_emplace({p.x, p.y, p.z}, unsigned(b.net.points.size()));
+    if (is_new) b.net.points.push_back(p);
+    nodes.push_back(it->second);
+    if (nodes.size() < 3) return;
+    // What has no area is no face.
+    if (nodes[0] != nodes[1] && nodes[0] != nodes[2] && nodes[1] != nodes[2])
+      b.face(nodes);
+    nodes.clear();
+  };
+  constexpr std::size_t head = 84, facet = 50;
+  const std::size_t n =
+      text.size() < head ? 0 : raw<std::uint32_t>(text.data() + 80, big);
+  if (n > 0 && text.size() == head + n * facet) {
+    for (std::size_t k = 0; k < 3 * n; ++k) {
+      const char* from = text.data() + head + k / 3 * facet + 12 * (k % 3 + 1);
+      Point p;
+      for (int c : {0, 1, 2}) p[c] = raw<float>(from + 4 * c, big);
+      if (!is_finite(p))
+        throw InputError(file, 0,
+                         "facet " + std::to_string(k / 3) +
+                             " is not finite, expected numbers");
+      corner(p);
+    }
+    return std::move(b.net);
+  }
+  bool is_stl = false;
+  const auto use = [&](Words w) {
+    if (!std::exchange(is_stl, true) && w[0] != "solid")
+      fail(quoted(w[0]) + " begins the file");
+    if (w[0] == "vertex") corner(point(w, 1));
+    if (w[0] == "endloop" && !nodes.empty()) fail("a facet of another number");
+  };
+  each_line(text, file, use, [] {
+    return std::string(
+        "an STL file of triangles: 'solid', then 'vertex x y z' "
+        "three times a facet; or a binary one");
+  });
+  return std::move(b.net);
+}
+
+// ------------------------------------------------------------------------ ply
+
+namespace {
+
+class Ply {
+ public:
+  Ply(std::string_view text, const std::string& file) : file_(file) {
+    header(text);
+    for (const Element& e : elements_)
+      for (std::size_t k = 0; k < e.count; ++k) try {
+          row(e);
+        } catch (const std::runtime_error& error) {
+          throw InputError(
+              file_, 0,
+              quoted(e.name) + ' ' + std::to_string(k) + ": " + error.what() +
+                  ", expected numbers as in the header, and " + corners);
+        }
+  }
+  Net net() && { return std::move(b_.net); }
+
+ private:
+  struct Property {
+    std::string_view name;
+    const Kind *kind, *count;  // count: null unless a list
+  };
+  struct Element {
+    std::string_view name;
+    std::size_t count;
+    std::vector<Property> properties;
+  };
+  std::string file_;
+  std::vector<Element> elements_;
+  bool ascii_ = false, swap_ = false;
+  std::string_view rest_;
+  Builder b_;
+
+  void header(std::string_view text) {
+    const auto end = text.find("end_header");
+    const auto next = text.find('\n', end);
+    if (!text.starts_with("ply") || end == text.npos || next == text.npos)
+      throw InputError(file_, 0,
+                       "has no header, expected 'ply' to "
+                       "'end_header'");
+    rest_ = text.substr(next + 1);
+    each_line(
+        text.substr(0, end), file_,
+        [this](Words w) {
+          if (w[0] == "format" && w.size() > 1) {
+            ascii_ = w[1] == "ascii";
+            swap_ = (w[1] == "binary_big_endian") != big;
+          } else if (w[0] == "element" && w.size() == 3) {
+            elements_.push_back(
+                {w[1], std::size_t(std::max(0LL, whole(w[2]))), {}});
+          } else if (w[0] == "property" && !elements_.empty() &&
+                     (w.size() == 3 || (w.size() == 5 && w[1] == "list"))) {
+            elements_.back().properties.push_back(
+                {w.back(), &kind_of(w[w.size() - 2]),
+                 w.size() == 5 ? &kind_of(w[2]) : nullptr});
+          } else if (w[0] != "ply" && w[0] != "comment" && w[0] != "obj_info") {
+            fail(quoted(w[0]) + " begins the line");
+          }
+        },
+        [] { return std::string("a header of a PLY file"); });
+  }
+
+  double next(const Kind& kind) {
+    if (ascii_) {
+      rest_.remove_prefix(
+          std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size()));
+      const auto word = rest_.substr(
+          0, std::min(rest_.find_first_of(" \t\r\n"), rest_.size()));
+      if (word.empty()) fail("the file ends early");
+      rest_.remove_prefix(word.size());
+      return number(word);
+    }
+    if (rest_.size() < kind.size) fail("the file ends early");
+    const double a = kind.read(rest_.data(), swap_);
+    rest_.remove_prefix(kind.size);
+    return a;
+  }
+
+  void row(const Element& e) {
+    if (e.properties.empty()) fail("no property");
+    Point place, velocity;
+    bool moves = false;
+    long long ends[2] = {};
+    for (const Property& p : e.properties) {
+      if (p.count) {
+        std::vector<long long> nodes;
+        for (double left = next(*p.count); left > 0; --left)
+          nodes.push_back(index_of(next(*p.kind)));
+        if (e.name == "face" && p.name.starts_with("vertex_ind"))
+          b_.face(nodes);
+        continue;
+      }
+      const double a = next(*p.kind);
+      const char* const axes = "xyz";
+      for (int k : {0, 1, 2}) {
+        if (p.name == std::string_view(axes + k, 1)) place[k] = a;
+        if (p.name == std::string("v") + axes[k]) velocity[k] = a, moves = true;
+      }
+      if (p.name == "vertex1") ends[0] = index_of(a);
+      if (p.name == "vertex2") ends[1] = index_of(a);
+    }
+    if (e.name == "edge") b_.spring(ends[0], ends[1]);
+    if (e.name != "vertex") return;
+    b_.net.points.push_back(finite(place));
+    if (moves) b_.net.velocities.push_back(finite(velocity));
+  }
+};
+
+}  // namespace
+
+Net parse_ply(std::string_view text, const std::string& file) {
+  return Ply(text, file).net();
+}
+
+// ------------------------------------------------------------------------ vtp
+
+namespace {
+
+/** The bytes of @a text in base64, in one piece or several. */
+std::string bytes_of(std::string_view text) {
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::array<int, 256> value;
+  value.fill(-1);
+  for (int k = 0; k < 64; ++k) value[std::uint8_t(digits[k])] = k;
+  std::string bytes;
+  unsigned bits = 0, have = 0;
+  for (char c : text) {
+    if (c == '=') have = 0;  // the end of a piece
+    const int digit = value[std::uint8_t(c)];
+    if (digit < 0) continue;
+    bits = bits << 6 | unsigned(digit), have += 6;
+    if (have >= 8) bytes += char(bits >> (have -= 8));
+  }
+  return bytes;
+}
+
+/** The value of the attribute @a name in a @a tag; or "". */
+std::string_view attribute(std::string_view tag, const std::string& name) {
+  const auto at = tag.find(' ' + name + "=\"");
+  if (at == tag.npos) return {};
+  tag.remove_prefix(at + name.size() + 3);
+  return tag.substr(0, tag.find('"'));
+}
+
+/** The numbers of all arrays, by "SECTION/NAME". */
+std::map<std::string, std::vector<double>> vtk_arrays(std::string_view text) {
+  std::map<std::string, std::vector<double>> arrays;
+  std::string section;
+  std::size_t head = 4;  // bytes before the numbers
+  bool swap = false;
+  for (auto at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
+    const auto close = std::min(text.find('>', at), text.size() - 1);
+    const auto tag = text.substr(at + 1, close - at - 1);
+    const auto name = tag.substr(0, tag.find_first_of(" /\n"));
+    if (name == "VTKFile") {
+      if (attribute(tag, "type") != "PolyData" ||
+          !attribute(tag, "compressor").empty())
+        break;
+      swap = (attribute(tag, "byte_order") == "BigEndian") != big;
+      if (attribute(tag, "header_type") == "UInt64") head = 8;
+    }
+    if (name != "DataArray" && !name.empty()) section = name;
+    if (name != "DataArray" || tag.ends_with('/')) continue;
+    auto& values = arrays[section + '/' + std::string(attribute(tag, "Name"))];
+    const auto body = text.substr(close + 1, text.find('<', close) - close - 1);
+    const auto format = attribute(tag, "format");
+    if (format == "binary") {
+      const Kind& kind = kind_of(attribute(tag, "type"));
+      const std::string bytes = bytes_of(body);
+      for (auto k = head; k + kind.size <= bytes.size(); k += kind.size)
+        values.push_back(kind.read(bytes.data() + k, swap));
+    } else if (format == "ascii") {
+      mesh_detail::for_each_line(body, [&](auto& words, std::size_t) {
+        for (auto word : words) values.push_back(number(word));
+      });
+    } else {
+      fail("arrays in format " + quoted(format));
+    }
+  }
+  if (arrays.empty()) fail("no arrays that can be read");
+  return arrays;
+}
+
+}  // namespace
+
+Net parse_vtp(std::string_view text, const std::string& file) try {
+  auto arrays = vtk_arrays(text);
+  const auto points = [](const std::vector<double>& a) {
+    std::vector<Point> all;
+    for (std::size_t k = 0; k + 2 < a.size(); k += 3)
+      all.push_back(finite({a[k], a[k + 1], a[k + 2]}));
+    return all;
+  };
+  Builder b;
+  Net& net = b.net;
+  for (const auto& [name, values] : arrays)
+    if (name.starts_with("Points/")) net.points = points(values);
+  const auto n = net.points.size();
+  if (auto v = points(arrays["PointData/velocity"]); v.size() == n)
+    net.velocities = std::move(v);
+  if (const auto& m = arrays["PointData/mass"];
+      m.size() == n && std::ranges::all_of(m, [](double a) { return a > 0; }))
+    net.masses = m;
+  const auto& pinned = arrays["PointData/pinned"];
+  for (unsigned i = 0; i < n && pinned.size() == n; ++i)
+    if (pinned[i] != 0) net.held.push_back(i);
+  const auto cells = [&](const std::string& section, auto use) {
+    const auto &nodes = arrays[section + "/connectivity"],
+               &ends = arrays[section + "/offsets"];
+    std::vector<long long> cell;
+    for (std::size_t k = 0, end = 0; k < nodes.size() && end < ends.size();) {
+      cell.push_back(index_of(nodes[k++]));
+      if (double(k) < ends[end]) continue;
+      use(cell), cell.clear(), ++end;
+    }
+  };
+  cells("Polys", [&](const auto& nodes) { b.face(nodes); });
+  // The strain of a line, l/L - 1, has its rest length; lines come first.
+  const auto& strains = arrays["CellData/strain"];
+  cells("Lines", [&](const auto& nodes) {
+    for (std::size_t k = 1; k < nodes.size(); ++k) {
+      const auto line = net.springs.size();
+      const unsigned i = b.index(nodes[k - 1]), j = b.index(nodes[k]);
+      const double l = norm(net.points[i] - net.points[j]);
+      const bool known = line < strains.size() && strains[line] > -1;
+      b.spring(i, j, -1, known ? l / (1 + strains[line]) : l);
+    }
+  });
+  net.bare_faces = !net.springs.empty();
+  return std::move(net);
+} catch (const InputError&) {
+  throw;
+} catch (const std::runtime_error& e) {
+  throw InputError(file, 0,
+                   e.what() +
+                       std::string(", expected VTK PolyData, arrays in "
+                                   "format ascii or binary, and ") +
+                       corners);
+}
+
+}  // namespace lab::net_parsing
