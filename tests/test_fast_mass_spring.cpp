@@ -17,9 +17,7 @@ class NewtonEuler : public Method {
               const ConstraintPlan& constraint) override {
     auto& stage = stage_.begin("newton", t, dt, g, force, constraint);
     stage.solve_newton(t + dt, dt);
-    for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-      arrays(g).node_values()[i].vel = stage.w[i];
-    return implicit_detail::finish(g, t + dt, constraint);
+    return stage.finish();
   }
 
  private:

@@ -6,11 +6,9 @@
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FastMassSpring.hpp"
-#include "lab/methods/ImplicitEuler.hpp"
-#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/TrBdf2.hpp"
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/StepLimit.hpp"

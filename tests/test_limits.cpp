@@ -12,7 +12,7 @@
 #include <random>
 
 #include "lab/charts/Problem.hpp"
-#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/methods/Splitting.hpp"

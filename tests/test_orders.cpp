@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
-#include "lab/methods/ImplicitEuler.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "tests/MovingEnds.hpp"

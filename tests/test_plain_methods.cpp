@@ -10,7 +10,7 @@
 
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/ImplicitEuler.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/stability/Spectrum.hpp"

@@ -13,8 +13,7 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/ImplicitEuler.hpp"
-#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/methods/Splitting.hpp"

@@ -47,7 +47,7 @@ class Newton : public Method {
     auto& stage = stage_.begin("newton", t, dt, g, force, constraint);
     if (rounds_ == 0) stage.solve_newton(t + dt, dt);
     for (int k = 0; k < rounds_; ++k) stage.solve_linearized(t + dt, dt);
-    return implicit_detail::finish(g, t + dt, constraint);
+    return stage.finish();
   }
   Work work() const override { return stage_.work(); }
 

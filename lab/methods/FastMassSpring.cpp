@@ -1,7 +1,5 @@
 #include "lab/methods/FastMassSpring.hpp"
 
-#include "lab/fast/GraphArrays.hpp"
-
 namespace lab {
 
 double FastMassSpring::step(Cloth& g, double t, double dt,
@@ -18,10 +16,7 @@ double FastMassSpring::step(Cloth& g, double t, double dt,
     for (unsigned i = 0; i < f.size(); ++i) stage.w[i] += change_[i];
   }
   stage.move(dt);
-  auto node = arrays(g).node_values();
-  for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-    node[i].vel = stage.w[i];
-  return implicit_detail::finish(g, t + dt, constraint);
+  return stage.finish();
 }
 
 /** With a that minimizes |f - a (f - last f)|: change = f - a ((f - last f) +

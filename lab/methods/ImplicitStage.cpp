@@ -85,7 +85,7 @@ ImplicitStep& ImplicitStage::begin(std::string_view method, double t, double dt,
                                    Cloth& g, const ForcePlan& force,
                                    const ConstraintPlan& constraint) {
   ImplicitStep& s = step_;
-  s.goal_.method = method, s.goal_.dt = dt;
+  s.goal_.method = method, s.goal_.dt = dt, s.end_ = t + dt;
   s.g_ = &g, s.force_ = &force, s.constraint_ = &constraint;
   s.tight_ = false;
   find_fixed(g, constraint, s.fixed_);
@@ -475,6 +475,12 @@ bool ImplicitStep::search(double t, double s, Objective& here, bool close) {
   }
   advance(-a);
   return false;
+}
+
+double ImplicitStep::finish() {
+  const auto node = arrays(*g_).node_values();
+  for (unsigned i = 0; i < w.size(); ++i) node[i].vel = w[i];
+  return implicit_detail::finish(*g_, end_, *constraint_);
 }
 
 double finish(Cloth& g, double end, const ConstraintPlan& constraint) {

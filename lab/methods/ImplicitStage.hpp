@@ -101,6 +101,9 @@ class ImplicitStep {
   std::vector<Point>& residual(double t, double s);
   /** Set the positions to p + s w. */
   void move(double s);
+  /** End the step: set the velocities to w, apply the constraint.
+   * @return the time at its end */
+  double finish();
 
   /** Solves A z = b. */
   class Factor {
@@ -138,6 +141,7 @@ class ImplicitStep {
   Goal goal_;
   double share_;
   Work work_;
+  double end_ = 0;  // [s]
   Cloth* g_ = nullptr;
   const ForcePlan* force_ = nullptr;
   const ConstraintPlan* constraint_ = nullptr;

@@ -4,13 +4,11 @@
 #include <array>
 
 #include "lab/methods/FastMassSpring.hpp"
-#include "lab/methods/ImplicitEuler.hpp"
-#include "lab/methods/ImplicitMidpoint.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/MollifiedImpulse.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
-#include "lab/methods/TrBdf2.hpp"
 #include "lab/methods/Xpbd.hpp"
 
 namespace lab {

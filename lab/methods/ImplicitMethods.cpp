@@ -1,8 +1,27 @@
-#include "lab/methods/TrBdf2.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 
 #include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
+
+double ImplicitEuler::step(Cloth& g, double t, double dt,
+                           const ForcePlan& force,
+                           const ConstraintPlan& constraint) {
+  auto& stage = stage_.begin(info.name, t, dt, g, force, constraint);
+  stage.solve_linearized(t + dt, dt);
+  return stage.finish();
+}
+
+double ImplicitMidpoint::step(Cloth& g, double t, double dt,
+                              const ForcePlan& force,
+                              const ConstraintPlan& constraint) {
+  auto& stage = stage_.begin(info.name, t, dt, g, force, constraint);
+  stage.solve_newton(t + dt / 2, dt / 2);
+  stage.move(dt);
+  for (unsigned i = 0; i < stage.w.size(); ++i)
+    if (!stage.fixed(i)) stage.w[i] = 2 * stage.w[i] - stage.q[i];
+  return stage.finish();
+}
 
 double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
                     const ConstraintPlan& constraint) {
@@ -33,8 +52,7 @@ double TrBdf2::step(Cloth& g, double t, double dt, const ForcePlan& force,
     stage.w[i] = stage.guess[i];
   }
   stage.solve_newton(t + dt, s, {2 * k / (1 - gamma)});
-  for (unsigned i = 0; i < n; ++i) node[i].vel = stage.w[i];
-  return implicit_detail::finish(g, t + dt, constraint);
+  return stage.finish();
 }
 
 }  // namespace lab
