@@ -27,7 +27,7 @@ Model sheet(unsigned n, double t_end) {
 /** Hangs by two corners, without drag: it buckles. */
 Model hanging(unsigned n, double t_end) {
   Model m = sheet(n, t_end);
-  m.pins = {Pin{0, 0, {}, {}}, Pin{1, 0, {}, {}}};
+  m.pins = {Pin{0, 0, {}, {}, {}}, Pin{1, 0, {}, {}, {}}};
   return m;
 }
 
@@ -101,7 +101,7 @@ Accuracy accuracy(Model m, double asked) {
 
 TEST(Accuracy, OfASmoothMotionIsThatOfTheFirstTolerance) {
   Model m = sheet(5, 1);
-  m.pins = {Pin{{}, 0, {}, {}}};
+  m.pins = {Pin{{}, 0, {}, {}, {}}};
   for (double asked : {1e-3, 1e-6, 1e-9}) {
     const Accuracy a = accuracy(m, asked);
     EXPECT_TRUE(a.kept()) << a.text();

@@ -17,7 +17,7 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
       "150 compare rk4 0.5", "170 pin 20",          "170 release"};
   Model m;
   m.sheets = {{.nodes = {8, 8}}};
-  m.pins = {{0, {}, {}, {}}};
+  m.pins = {{0, {}, {}, {}, {}}};
   m.t_end = 0.2;
   Live live(m, read_changes(changes));
   while (live.step()) {

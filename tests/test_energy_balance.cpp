@@ -26,9 +26,7 @@ Model sheet(unsigned side, std::string_view method, double dt) {
   m.step = {.dt = dt};
   return m;
 }
-Pin pin_at_x(double x, Motion motion = {}) {
-  return {x, std::nullopt, std::nullopt, motion};
-}
+Pin pin_at_x(double x, Motion motion = {}) { return {x, {}, {}, {}, motion}; }
 Model pulled_sheet(unsigned side, const char* method, double dt) {
   Model m = sheet(side, method, dt);
   m.gravity = grav;
@@ -199,7 +197,7 @@ TEST(Guard, StopsXpbdThatGainsEnergy) {
   for (double K : {1e4, 1e6, 1e8}) {
     Model m = sheet(25, "xpbd", 0.0333);
     m.gravity = grav;
-    m.pins = {{0, 0, {}, {}}, {1, 0, {}, {}}};
+    m.pins = {{0, 0, {}, {}, {}}, {1, 0, {}, {}, {}}};
     m.stiffness = K;
     EXPECT_EQ(failure_of(m).find("diverged in step "), 0u) << K;
   }
@@ -209,7 +207,7 @@ TEST(Guard, StopsXpbdThatGainsEnergy) {
 TEST(Guard, JudgesTheSameWhoeverLooks) {
   Model slow = sheet(8, "implicit-euler", 0.5);
   slow.gravity = grav;
-  slow.pins = {{0, 0, {}, {}}, {1, 0, {}, {}}};
+  slow.pins = {{0, 0, {}, {}, {}}, {1, 0, {}, {}, {}}};
   slow.t_end = 10;
   Model fails = sheet(8, "symplectic-euler", 0.012);
   fails.gravity = grav;

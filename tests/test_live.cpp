@@ -32,7 +32,7 @@ Model loose(unsigned side, double gravity = 0, double dt = 0.001) {
 /** The same, held at two corners. */
 Model hung(unsigned side, double gravity = grav, double dt = 0.001) {
   Model m = loose(side, gravity, dt);
-  for (double x : {0, 1}) m.pins.push_back({x, 0, 0, {}});
+  for (double x : {0, 1}) m.pins.push_back({x, 0, 0, {}, {}});
   return m;
 }
 void run(Live& live, int steps) {
@@ -67,7 +67,7 @@ TEST(Live, ChangesNothingButWhatIsAsked) {
     EXPECT_EQ(live.scene().time(), t);
     EXPECT_EQ(live.readings(false).edges, 110u);
   }
-  EXPECT_STREQ(live.readings().method, "pefrl");
+  EXPECT_EQ(live.readings().method, "pefrl");
   EXPECT_EQ(live.model().stiffness, 50);
   run(live, 10);
 }

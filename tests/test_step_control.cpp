@@ -381,14 +381,14 @@ Model settling(unsigned seed) {
   m.gravity = random() % 4 == 0 ? 0 : random() % 3 == 0 ? 30 * u() : grav;
   switch (random() % 4) {
     case 0:
-      m.pins = {{.x = 0, .y = 0, .z = {}, .motion = {}},
-                {.x = sheet.u.x, .y = 0, .z = {}, .motion = {}}};
+      m.pins = {{.x = 0, .y = 0, .z = {}, .node = {}, .motion = {}},
+                {.x = sheet.u.x, .y = 0, .z = {}, .node = {}, .motion = {}}};
       break;
     case 1:
-      m.pins = {{.x = {}, .y = 0, .z = {}, .motion = {}}};
+      m.pins = {{.x = {}, .y = 0, .z = {}, .node = {}, .motion = {}}};
       break;
     case 2:
-      m.pins = {{.x = 0, .y = 0, .z = {}, .motion = {}}};
+      m.pins = {{.x = 0, .y = 0, .z = {}, .node = {}, .motion = {}}};
       break;
     default:
       if (random() % 2) m.gravity = 0;
