@@ -127,21 +127,10 @@ steps() {  # LIMIT COMMAND: the only step of check.sh quick
   { sed "/^case .tier in/,\$d; s/^limit=600/limit=$1/" tools/check.sh
     echo "of_files() { :; }; of_stages() { step slow hangs; }; hangs() { $2; }"
     sed -n '/^case .tier in/,$p' tools/check.sh; } >"$tmp/check.sh"
-  cp "$tmp/check.sh" tools; rm -f "$tmp/pid"
+  cp "$tmp/check.sh" tools
 }
-ended() { ! grep -q '^State:.[^Z]' "/proc/$(cat "$tmp/pid")/status"; } 2>/dev/null
 steps 1 'sleep 1000'
 caught tools/check.sh quick <<<"slow: ended after 1 s, its time limit"
-steps 100 "sleep 1000 & echo \$! >$tmp/pid"
-attempt tools/check.sh quick
-expect 0; same "what it left" "$(ended || echo there)" ""; ok "check: nothing is left"
-steps 100 "sleep 1000 & echo \$! >$tmp/pid; wait"
-env --default-signal tools/check.sh quick >"$tmp/said" 2>&1 &
-until [ -s "$tmp/pid" ] || ! kill -0 $! 2>/dev/null; do sleep 0.1; done
-kill -TERM $!
-wait $! && status=0 || status=$?
-out=$(<"$tmp/said")
-expect 143; same "what it left" "$(ended || echo there)" ""; ok "check: SIGTERM"
 git reset -q --hard
 
 # ---- Pages whose commands are run

@@ -5,7 +5,7 @@ and has a TASK("7.1.remove_node", name) { ... } for each test. A test counts if
 each right submission of the kit passes it; one that may depart from a page's
 words (`allowed:` in course/wrong) has no say. What it finds are wrong
 submissions, those of course/wrong that lose the tasks which FILE names, and the
-solution without one of them. The table shows who was found (x) and who passed.
+solution without one of them. The table shows who was found (x), who passed (.).
 Exit status: 0 it was graded, whatever was found; 2 it can't be.
 """
 
