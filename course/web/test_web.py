@@ -10,15 +10,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
-import traceback
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in (
     "tools/browsers", "course/kit", "course/pictures")]
 import child  # noqa: E402
 import draw  # noqa: E402
-from browser import Browser  # noqa: E402
+from browser import run_tests  # noqa: E402
 
 build = pathlib.Path(sys.argv[1]).resolve() / "web"
 STAGES = ("problem1", "diagonals", "forces", "constraints", "tear")
@@ -148,15 +146,8 @@ def the_hand_pulls_and_cuts(b):
     b.click(".play")
     b.wait("!page.isWaiting")
 
-    def place(node):
-        return b.value(f"""(() => {{
-          const box = page.canvas.getBoundingClientRect(), c = page.view.camera;
-          const [x, y] = c.place(c.frame(box.width / box.height),
-            page.sides[0].points.subarray({4 * node}, {4 * node + 3}));
-          return [box.left + (x + 1) / 2 * box.width,
-                  box.top + (1 - y) / 2 * box.height]; }})()""")
     height = "page.sides[0].points[4 * page.hand.grabbed.node + 2]"
-    x, y = place(624)
+    x, y = b.place_of(624)
     b.mouse("mousePressed", x, y)
     b.wait("page.hand.grabbed")
     before = b.value(height)
@@ -168,7 +159,7 @@ def the_hand_pulls_and_cuts(b):
     b.wait("!page.isWaiting")
     edges = b.value("page.cloths[0].readings.edges")
     b.click("[data-tool=cut]")
-    b.stroke(place(300), place(324))
+    b.stroke(b.place_of(300), b.place_of(324))
     b.wait(f"page.cloths[0].readings.edges < {edges} - 20")
     assert b.value("page.cloths[0].readings.nodes") == 625
 
@@ -244,24 +235,7 @@ def main():
     build.mkdir(parents=True, exist_ok=True)
     print(run("python3", "course/web/web.py", "figures", build / "figures",
               *dict.fromkeys([name for name, *_ in BITS] + ["sign"])), end="")
-    passed = failed = 0
-    for each in tests:
-        if sys.argv[2:] and each.__name__ not in sys.argv[2:]:
-            continue
-        start = time.monotonic()
-        try:
-            with Browser() as b:
-                each(b)
-                assert not b.faults, b.faults
-            passed += 1
-            print(f"ok {each.__name__} {time.monotonic() - start:.0f} s",
-                  flush=True)
-        except Exception:
-            failed += 1
-            print("FAIL", each.__name__)
-            traceback.print_exc(file=sys.stdout)
-    print(f"{passed} passed, {failed} failed")
-    return failed != 0
+    return run_tests(tests, sys.argv[2:]) != 0
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ class Laboratory extends FailurePicture {
   }
   start(lines = startLines(), end = 0) {
     for (const plot of Object.values(plots)) plot.clear();
-    this.forget();
+    this.forget(), this.tasks.cancel();
     this.hand.release();
     const {scene, side} = this.settings;
     this.worker.postMessage(['start', {side, lines, end,
@@ -159,11 +159,15 @@ function startLines() {
     name => [0, requestOf(name).join(' ')]);
 }
 
+// The next scene has its own.
+function forgetParameters() {
+  for (const key of Object.keys(page.readings?.parameters || {}))
+    delete page.settings[key];
+}
 function loadScene(name) {
   const s = page.settings, failed = scene().fails;
   s.scene = name;
-  for (const key of Object.keys(page.readings?.parameters || {}))
-    delete s[key];
+  forgetParameters();
   if (scene().fails) s.rival = '';
   else if (failed) s.method = 'verlet', s.share = 0.5;
   page.start(), page.setPlaying(!isStill());
@@ -245,7 +249,7 @@ const tellLeftOut = () => page.say('.says',
 
 const replies = {
   about(data) {
-    page.about = data.about;
+    page.about = data.about, page.tasks = new Tasks();
     makeControls();
     const read = Link.read(location.hash, page.about);
     Object.assign(page.settings, read.start);
@@ -280,6 +284,7 @@ const replies = {
       page.say('.says', `Warning: ${inPage(data.readings.missed)}.`);
     page.frameScene(), remember();
     if (data.failed && !page.failed && !page.wanted) page.fail(data);
+    page.tasks.look(main?.time, page.failed);
   },
   beyond({frames, asked}) {
     if (asked === page.asked) page.showBeyond(frames);

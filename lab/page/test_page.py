@@ -9,12 +9,11 @@ import struct
 import subprocess
 import sys
 import time
-import traceback
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/browsers"))
-from browser import Browser  # noqa: E402
-from firefox import Firefox, Skipped  # noqa: E402
+from browser import Browser, run_tests  # noqa: E402
+from firefox import Firefox  # noqa: E402
 from webkit import WebKit  # noqa: E402
 
 build = pathlib.Path(sys.argv[1])
@@ -45,18 +44,6 @@ def choose(b, name, value):
 def slide(b, name, value):
     b.value(f"$('{name}').value = 1000 * sliders.{name}.place({value}), "
             f"$('{name}').dispatchEvent(new Event('input'))")
-
-
-def place_of(b, node, side=0):
-    """Where a node is on the screen [CSS pixels]."""
-    return b.value(f"""(() => {{
-      const box = page.canvas.getBoundingClientRect();
-      const width = box.width / page.sides.length;
-      const {{camera}} = page.view;
-      const [x, y] = camera.place(camera.frame(width / box.height),
-        page.sides[{side}].points.subarray({4 * node}, {4 * node + 3}));
-      return [box.left + {side} * width + (x + 1) / 2 * width,
-              box.top + (1 - y) / 2 * box.height]; }})()""")
 
 
 def point_of(b, node, side=0):
@@ -120,7 +107,7 @@ def a_node_that_is_dragged_follows(b):
     opened(b)
     pause(b)
     node = 624  # the corner opposite to that of node 0
-    x, y = place_of(b, node)
+    x, y = b.place_of(node)
     b.mouse("mousePressed", x, y)
     b.wait("page.hand.grabbed")
     held = b.value("page.hand.grabbed.node")
@@ -146,7 +133,7 @@ def a_stroke_cuts_and_a_click_pins(b):
     pause(b)
     before = b.value("page.readings.edges")
     b.click("[data-tool=cut]")
-    (x0, y0), (x1, y1) = place_of(b, 300), place_of(b, 324)
+    (x0, y0), (x1, y1) = b.place_of(300), b.place_of(324)
     assert abs(x0 - x1) + abs(y0 - y1) > 60
     b.stroke((x0, y0), (x1, y1))
     b.wait(f"page.readings.edges < {before} - 20")
@@ -154,7 +141,7 @@ def a_stroke_cuts_and_a_click_pins(b):
     b.click("[data-tool=pin]")
     pins = b.value("page.sides[0].pins.length")
     assert pins == 2
-    x, y = place_of(b, 624)
+    x, y = b.place_of(624)
     b.mouse("mousePressed", x, y), b.mouse("mouseReleased", x, y)
     b.wait("page.sides[0].pins.length === 3")
     b.mouse("mousePressed", x, y), b.mouse("mouseReleased", x, y)
@@ -241,11 +228,11 @@ def a_failure_is_seen_explained_and_cured(b):
     # What moves is in the picture, seen obliquely: 15 % of it, and its ring.
     b.screenshot(build / "page-failure.png")
     node = b.value("page.sides[0].failedNode")
-    x, y = place_of(b, node)
+    x, y = b.place_of(node)
     box = b.value("(b => [b.left, b.top, b.right, b.bottom])"
                   "(page.canvas.getBoundingClientRect())")
     assert box[0] < x < box[2] and box[1] < y < box[3]
-    (x0, y0), (x1, y1), (x2, y2) = (place_of(b, n) for n in (0, 24, 600))
+    (x0, y0), (x1, y1), (x2, y2) = (b.place_of(n) for n in (0, 24, 600))
     area = abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
     assert area > 0.15 * (box[2] - box[0]) * (box[3] - box[1])
     # The words are beside the cloth.
@@ -304,6 +291,25 @@ def ways_to_break_it_fail_as_their_files_say(b):
     b.wait("!page.failed && page.readings.main.method === 'verlet'")
     assert b.value("page.find('.says').hidden")
     assert b.value("page.settings.share") == 0.5
+
+
+@test
+def guesses_are_answered_by_the_run(b):
+    b.resize(360, 330)  # quickly drawn
+    opened(b)
+    for k, found in enumerate(("explodes", "holds", "explodes", "holds",
+                               "explodes")):
+        b.wait(f"/{k + 1} of 5/.test($('task').innerText)")
+        b.click("#holds")
+        b.wait("!$('next').hidden && page.tasks.guess === null", 300)
+        words = b.value("$('task').innerText")
+        assert ("Right" if found == "holds" else "No") + f": it {found}." in \
+            words, words
+        b.click("#next")
+    # Another scene in the middle of a guess.
+    b.click("#holds")
+    choose(b, "scene", "drape")
+    b.wait("/Drag the cloth/.test($('task').innerText)")
 
 
 @test
@@ -406,7 +412,7 @@ def a_frame_around_what_has_the_focus_is_for_keys(b):
     opened(b)
     b.key("Tab")
     assert b.value("document.activeElement.matches(':focus-visible')")
-    x, y = place_of(b, 624)
+    x, y = b.place_of(624)
     for at in (".step", "canvas"):
         if at == "canvas":
             b.mouse("mousePressed", x, y), b.mouse("mouseReleased", x, y)
@@ -478,7 +484,7 @@ def a_link_shows_the_same_picture_twice(b):
     choose(b, "rival", "symplectic-euler")
     b.wait("page.readings.main.time > 0.15 && page.sides.length === 2", 120)
     pause(b)
-    x, y = place_of(b, 624)
+    x, y = b.place_of(624)
     b.mouse("mousePressed", x, y)
     b.mouse("mouseMoved", x + 40, y - 60), b.mouse("mouseReleased", x + 40, y)
     b.click(".step")
@@ -592,7 +598,7 @@ def it_works_on_a_phone(b):
       .map(e => e.id || e.dataset.tool)""")
     assert not small, small
     pause(b)
-    x, y = place_of(b, 624)
+    x, y = b.place_of(624)
     b.touch("touchStart", (x, y))
     b.touch("touchMove", (x - 10, y - 30))
     b.wait("page.readings.grabbed")
@@ -644,46 +650,15 @@ def main():
     size = sum(f.stat().st_size for f in (build / "page").iterdir())
     assert size <= 1_000_000, f"{size} bytes"
     print(f"  {size} bytes")
-    only = sys.argv[2:]
-    passed = failed = 0
     engines: list[type[Browser]] = [Browser]
     for other in (Firefox, WebKit):
         if missing := other.missing():
             print(f"skipped: the page in {other.__name__}: missing:", *missing)
         else:
             engines.append(other)
-    for engine in engines:
-        b: Browser | None = None
-        for run in tests:
-            if only and run.__name__ not in only:
-                continue
-            name = f"{run.__name__} {engine.__name__}"
-            start = time.monotonic()
-            try:
-                b = b or engine()
-                b.as_new()
-                run(b)
-                faults = b.faults + b.value("page.errors")
-                assert not faults, faults
-                passed += 1
-                print(f"ok {name} {time.monotonic() - start:.0f} s", flush=True)
-            except Skipped as what:
-                print(f"skipped {name}: {what}")
-            except Exception:
-                failed += 1
-                print("FAIL", name)
-                traceback.print_exc(file=sys.stdout)
-                if b:
-                    b.close()
-                b = None
-        if b:
-            b.close()
-    if not only:
+    if not sys.argv[2:]:
         without_webgl()
-        passed += 1
-        print("ok without_webgl")
-    print(f"{passed} passed, {failed} failed")
-    return failed != 0
+    return run_tests(tests, sys.argv[2:], engines) != 0
 
 
 if __name__ == "__main__":

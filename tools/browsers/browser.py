@@ -5,12 +5,18 @@ import json
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
-from collections.abc import Iterable, Sequence
+import traceback
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import websocket
+
+
+class Skipped(Exception):
+    """A browser has no way to do this."""
 
 
 class Browser:
@@ -180,3 +186,51 @@ class Browser:
         """kind: touchStart, touchMove, touchEnd; points: (x, y)"""
         self.send("Input.dispatchTouchEvent", type=kind, touchPoints=[
             {"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)])
+
+    def place_of(self, node: int, side: int = 0) -> list[float]:
+        """Where a node of the cloth of `page`, a Picture, is on the screen."""
+        return self.value(f"""(() => {{
+          const box = page.canvas.getBoundingClientRect();
+          const width = box.width / page.sides.length, {{camera}} = page.view;
+          const [x, y] = camera.place(camera.frame(width / box.height),
+            page.sides[{side}].points.subarray({4 * node}, {4 * node + 3}));
+          return [box.left + {side} * width + (x + 1) / 2 * width,
+                  box.top + (1 - y) / 2 * box.height]; }})()""")
+
+
+def run_tests(tests: Iterable[Callable[[Browser], object]],
+              names: Sequence[str],
+              engines: Iterable[type[Browser]] = (Browser,)) -> int:
+    """Run tests, or those of these names, in each engine, with a line for
+    each. What a page complains of is a fault.  Returns how many failed."""
+    count = failed = 0
+    for engine in engines:
+        b: Browser | None = None
+        for run in tests:
+            if names and run.__name__ not in names:
+                continue
+            name = f"{run.__name__} {engine.__name__}"
+            start = time.monotonic()
+            try:
+                b = b or engine()
+                b.as_new()
+                run(b)
+                faults = b.faults + b.value(
+                    "typeof page === 'object' && page.errors || []")
+                assert not faults, faults
+                print(f"ok {name} {time.monotonic() - start:.0f} s", flush=True)
+            except Skipped as what:
+                print(f"skipped {name}: {what}")
+                continue
+            except Exception:
+                failed += 1
+                print("FAIL", name)
+                traceback.print_exc(file=sys.stdout)
+                if b:
+                    b.close()
+                b = None
+            count += 1
+        if b:
+            b.close()
+    print(f"{count - failed} passed, {failed} failed")
+    return failed

@@ -12,14 +12,10 @@ from typing import Any
 
 import websocket
 
-from browser import Browser
+from browser import Browser, Skipped
 
 KEYS = {"Tab": "\ue004", "ArrowLeft": "\ue012", "ArrowUp": "\ue013",
         "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Escape": "\ue00c"}
-
-
-class Skipped(Exception):
-    """Firefox has no way to do this."""
 
 
 class Firefox(Browser):
