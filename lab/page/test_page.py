@@ -295,7 +295,7 @@ def ways_to_break_it_fail_as_their_files_say(b):
 
 @test
 def guesses_are_answered_by_the_run(b):
-    b.resize(360, 330)  # quickly drawn
+    b.resize(360, 560)  # quickly drawn
     opened(b)
     for k, found in enumerate(("explodes", "holds", "explodes", "holds",
                                "explodes")):
