@@ -26,6 +26,7 @@ COMPILING = sandbox.Limits(cpu=60, wall=900, memory=3 << 30, output=64 << 20,
                            size=512 << 20)
 SYSTEM = ("/usr/include", "/usr/lib", "/usr/local/include", "/usr/local/lib")
 ASKED = ROOT / "course/asked"
+YEARS = ROOT / "course/years"   # what other years hand out, by its names
 WORD = re.compile(r"[A-Za-z_]\w*")
 SPACE = r"(?:[ \t]|/\*(?:[^*]|\*(?!/)){0,60}+\*/){0,20}+"
 MACRO = re.compile(rf"(?:#|%:|\?\?=){SPACE}define{SPACE}([A-Za-z_]\w*)")
@@ -165,7 +166,7 @@ class Room(Sources):
     def __init__(self, kit: once.Kit, folder: pathlib.Path,
                  files: dict[str, bytes]):
         super().__init__(kit.jail, folder, files, [
-            TESTS, ASKED, ROOT / "CME212", kit.preludes, kit.include,
+            TESTS, ASKED, YEARS, ROOT / "CME212", kit.preludes, kit.include,
             *kit.linked], words_of(TESTS, ASKED))
         self.kit = kit
         self.names = set(files)     # of those that the student wrote
@@ -188,6 +189,7 @@ class Room(Sources):
                    "-fmax-errors=200", "-fdiagnostics-plain-output",
                    "-ftemplate-depth=400",
                    "-I", TESTS / "headless", "-I", self.kit.include,
+                   "-I", YEARS,
                    # A header of the system is no file of the submission's.
                    "-iquote", ".", "-idirafter", ".",
                    f'-DKIT_UNDEFINED="{self.undefined}"',

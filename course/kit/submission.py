@@ -32,8 +32,11 @@ TAG = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 LISTED = re.compile(r"^[.!x]+ (.+)\n", re.MULTILINE)    # by -H of a compiler
 EMBED = re.compile(r"^\s{0,99}(?:#|%:|\?\?=)\s{0,99}embed\b", re.MULTILINE)
 # Folders of a starter that are not read: the kit has its own.
-NOT_LOOKED_INTO = {"CME212", "build", "data", "pages", "tests", "tools",
-                   "web"}
+NOT_LOOKED_INTO = {"CME212", "CS207", "build", "data", "pages", "tests",
+                   "tools", "web"}
+
+# What other years hand out in the root; the kit has its own, too.
+HANDED_OUT = {"Point.hpp", "BoundingBox.hpp"}
 
 # Words that may show an attempt to cheat. The report lists them for a person to
 # read; they cost no points, as most of them have honest uses.
@@ -304,7 +307,7 @@ def take(folder: Folder, tag: str = "") -> Submission:
     for entry in sorted(entries, key=lambda entry: (entry.path.count("/"),
                                                     entry.path)):
         name = entry.path[len(room):]
-        if (entry.path.startswith(room)
+        if (entry.path.startswith(room) and name not in HANDED_OUT
                 and name.endswith((".hpp", ".h", ".cpp"))):
             taken.add(name, entry)
     if problem := taken.left_out.get("Graph.hpp"):

@@ -114,7 +114,8 @@ class Folder(unittest.TestCase):
 class Take(Folder):
     def test_takes_sources_of_the_folder_and_nothing_else(self):
         for name in ("Graph.hpp", "mass_spring.cpp", "more/own.h", "notes.txt",
-                     "CME212/Point.hpp", "tests/check.hpp", "Makefile"):
+                     "CME212/Point.hpp", "tests/check.hpp", "Makefile",
+                     "CS207/Util.hpp", "Point.hpp"):
             self.put(name, name)
         taken = submission.take(str(self.folder))
         self.assertEqual(taken.files, {
