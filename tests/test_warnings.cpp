@@ -90,11 +90,37 @@ TEST(Warnings, NodesInNoQuad) {
   const CME212::TestFolder folder;
   Model m;
   m.nodes = "data/grid1.nodes", m.tets = "data/grid0.tets";
+  m.pins = {read_pin("x 0")};
   EXPECT_EQ(warning_of(m),
             "600 of 625 nodes lie in no quad, node 25 first: no spring holds "
             "them; use nodes and quads of the same mesh");
   m.tets = "data/grid1.tets";
   EXPECT_EQ(warning_of(m), "");
+}
+
+TEST(Warnings, OfAMeshFromFiles) {
+  const auto of = [](const Net& net, const char* pin) {
+    Model m;
+    if (*pin) m.pins = {read_pin(pin)};
+    Cloth g;
+    build_model(g, m, net);
+    const auto all = warnings(m, net, g, 0.001);
+    return all.empty() ? "" : all[0].substr(0, all[0].find(':'));
+  };
+  Net net = {grid_points(3), grid_quads(3)};
+  EXPECT_EQ(of(net, "x 0"), "");
+  EXPECT_EQ(of(net, ""), "nothing holds the cloth, and nothing is below it");
+  net.held = {0};
+  EXPECT_EQ(of(net, ""), "");
+  net.notes = {"mended"};
+  EXPECT_EQ(of(net, ""), "mended");
+  net.notes.clear();
+  for (Point& p : net.points) p *= 1000;
+  EXPECT_EQ(of(net, ""), "the cloth is 1414.21 m large");
+  // Sewing: ends apart that are to meet.
+  Net sewn = {{{0, 0, 0}, {1, 0, 0}}, {}};
+  sewn.springs = {{0, 1, 10, 0}};
+  EXPECT_EQ(of(sewn, "x 0"), "");
 }
 
 TEST(Warnings, SpringsOfLengthZero) {
