@@ -9,6 +9,7 @@ inline constexpr auto read_edges = read_part<Edges>;
 inline constexpr auto read_sheet = read_part<Sheet>;
 inline constexpr auto read_region = read_part<Region>;
 inline constexpr auto read_pin = read_part<Pin>;
+inline constexpr auto read_wind = read_part<Wind>;
 inline constexpr auto read_plane = read_part<Wall>;
 inline constexpr auto read_sphere = read_part<Solid>;
 inline constexpr auto read_tear = read_part<Ball>;

@@ -7,7 +7,7 @@
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/stability/EnergyWatch.hpp"
+#include "lab/stability/EnergyBalance.hpp"
 #include "lab/stepping/Accuracy.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "lab/stepping/Separation.hpp"
@@ -178,6 +178,32 @@ TEST(EnergyWatch, TellsWhatTheMethodMadeOrLost) {
   const EnergyWatch sick = watched(m, "xpbd", 0.0333);
   EXPECT_GT(std::abs(sick.share()), 0.1);
   EXPECT_GT(sick.gain(), sick.tolerance());
+}
+
+// Whatever is named that does not act: a floor far below, air so thin, a pin
+// that hardly moves.
+TEST(EnergyWatch, JudgesTheSameWhateverElseIsNamed) {
+  for (int part : {0, 1, 2, 3}) {
+    Model m = sheet(9, 2);
+    m.sheets[0].velocity = Point(0, 0, 4);
+    m.pins = {Pin{0, 0, {}, {}}};
+    if (part == 1) m.planes = {{.at = Point(0, 0, -50), .motion = {}}};
+    if (part == 2) m.damping = 1e-7;
+    if (part == 3) m.pins[0].motion = {Point(1e-5, 0, 0), 1};
+    const EnergyWatch gains = watched(m, "implicit-euler", 0.05);
+    EXPECT_TRUE(gains.gains()) << part;
+    EXPECT_NEAR(gains.gain(), 5.2, 0.1) << part;
+    EXPECT_TRUE(gains.loses()) << part;
+    EXPECT_FALSE(gains.took());
+    const EnergyWatch good = watched(m, "verlet", 0.001);
+    EXPECT_FALSE(good.gains() || good.loses()) << part;
+  }
+  Model m = sheet(9, 1);  // it falls onto a floor, which takes its energy
+  m.planes = {{.at = Point(0, 0, -0.3), .motion = {}}};
+  const EnergyWatch falls = watched(m, "verlet", 0.001);
+  EXPECT_TRUE(falls.took());
+  EXPECT_LT(falls.off(), -2);
+  EXPECT_FALSE(falls.gains() || falls.loses());
 }
 
 TEST(EnergyWatch, HasNoShareWhereNothingIsStretched) {

@@ -1,4 +1,4 @@
-// ./cloth --change: changes of a scene while it runs.
+// ./cloth --at: changes of a scene while it runs.
 #include <gtest/gtest.h>
 
 #include "lab/live/Live.hpp"
@@ -13,8 +13,8 @@ const std::string net = "--sheet 'nodes 8 8' --pin 'x 0' --headless ";
 
 TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
   const std::vector<std::string> changes = {
-      "100 grab 63 1 1 0.5", "100 cut 27 28 35 36", "150 gravity 3",
-      "150 compare rk4 0.5", "170 pin 20",          "170 release"};
+      "0.1 grab 63 1 1 0.5",  "0.1 cut 27 28 35 36", "0.15 gravity 0 0 -3",
+      "0.15 compare rk4 0.5", "0.17 pin 20",         "0.17 release"};
   Model m;
   m.sheets = {{.nodes = {8, 8}}};
   m.pins = {{0, {}, {}, {}, {}}};
@@ -30,27 +30,27 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
     list += (list.empty() ? "'" : ", '") + change + "'";
   Result r = run(net + "--t-end 0.2 --csv " + path("e.csv") + " --out " +
                  path("end.nodes") + " --config " +
-                 file("s.toml", "change = [" + list + "]\n"));
+                 file("s.toml", "at = [" + list + "]\n"));
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_NE(r.out.find("64 nodes and 208 edges left"), std::string::npos)
       << r.out;
   EXPECT_EQ(contents(path("end.nodes")), nodes.str());
   EXPECT_EQ(rows(dir / "e.csv").back()[9], 208);
-  r = run(net + "--t-end 0.002 --change '1 gravity 3' --change '2 pin 5'");
+  r = run(net + "--t-end 0.002 --at '0.001 gravity 3' --at '0.0021 pin 5'");
   EXPECT_EQ(r.status, 0);
   EXPECT_EQ(r.err, "cloth: warning: 1 change would come after the end\n");
 }
 
 TEST_F(ClothProgram, RefusesChangesThatCantBe) {
   EXPECT_EQ(run("--config " +
-                file("s.toml", "sheet = 'nodes 3 3'\nchange = '3 gravitas'\n"))
+                file("s.toml", "sheet = 'nodes 3 3'\nat = '3 gravitas'\n"))
                 .err,
             path("s.toml") +
-                ":2: --change \"3 gravitas\": 'gravitas' is not a request: did "
+                ":2: --at \"3 gravitas\": 'gravitas' is not a request: did "
                 "you mean gravity?\n");
-  EXPECT_EQ(run(net + "--change '1 gravity 3' --checkpoint " + path("c")).err,
-            "cloth: --change cannot be combined with --checkpoint\n");
-  EXPECT_EQ(run(net + "--change '1 gravity 3' --tolerance 1e-6").status, 2);
+  EXPECT_EQ(run(net + "--at '1 gravity 3' --checkpoint " + path("c")).err,
+            "cloth: --at cannot be combined with --checkpoint\n");
+  EXPECT_EQ(run(net + "--at '1 gravity 3' --tolerance 1e-6").status, 2);
   EXPECT_EQ(files(), std::vector<std::string>{"s.toml"});
 }
 

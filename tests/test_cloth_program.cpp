@@ -269,9 +269,9 @@ TEST_F(ClothProgram, RefusesBadInputWithFileAndLineAndWritesNothing) {
 TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
   for (const char* options :
        {"--dt x", "--t-end inf", "--damping -1", "--gravity nan", "--every 0",
-        "--at 6 --screenshot p.png", "--no-such-option", "--dt 1e-300",
-        "--dt 0.2 --t-end 0.1", "--method none", "--window --headless", "--csv",
-        "--speed -1"}) {
+        "--screenshot-at 6 --screenshot p.png", "--wind 'velocity 1 0 0'",
+        "--no-such-option", "--dt 1e-300", "--dt 0.2 --t-end 0.1",
+        "--method none", "--window --headless", "--csv", "--speed -1"}) {
     Result r = run(grid0 + "--headless --out " + path("o") + " " + options);
     EXPECT_EQ(r.status, 2) << options;
     EXPECT_NE(r.err, "") << options;
@@ -400,6 +400,42 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
             "cloth: --measure is conm, expected one of com, energy, positions, "
             "max-stretch, drape-height, pin-force, tear-time, point, or one "
             "after max or min: did you mean com?\n");
+}
+
+// A remedy is one that was tried.
+TEST_F(ClothProgram, TellsARemedyThatWorksWhereTheEnergyIsWrong) {
+  const std::string net =
+      "--sheet 'nodes 9 9 velocity 0 0 4' --pin 'x 0 y 0' "
+      "--t-end 2 --headless ";
+  for (const char* more : {"--plane 'at 0 0 -50' ", "--damping 1e-7 "}) {
+    const Result r = run(net + more + "--method implicit-euler --dt 0.05");
+    EXPECT_EQ(r.status, 3) << r.err;
+    EXPECT_NE(r.err.find("an error of the method has added 5.2 J"), r.err.npos);
+    const std::size_t end = r.err.find(" works: a trial");
+    ASSERT_NE(end, r.err.npos) << r.err;
+    const std::size_t begin = r.err.rfind("; ", end) + 2;
+    const Result cured = run(net + more + r.err.substr(begin, end - begin));
+    EXPECT_EQ(cured.status, 0) << cured.err;
+    EXPECT_EQ(cured.err, "");
+  }
+}
+
+TEST_F(ClothProgram, SaysNothingOfAnEnergyThatIsRoundOff) {
+  const Result r =
+      run("--sheet 'nodes 3 3' --stiffness 0 --headless --t-end 1");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.err, "");
+  EXPECT_EQ(r.out.find('%'), r.out.rfind('%')) << r.out;  // that of the step
+}
+
+TEST_F(ClothProgram, SaysIfMollifiedImpulseFindsNoStiffSprings) {
+  const std::string net =
+      "--sheet 'nodes 9 9' --t-end 0.01 --method mollified-impulse --headless ";
+  const std::string words = "finds no stiff springs here";
+  EXPECT_NE(run(net).err.find(words), std::string::npos);
+  EXPECT_EQ(run(net + "--region 'from 0 0 0 to 0.01 1 0 stiffness-factor 1e4'")
+                .err.find(words),
+            std::string::npos);
 }
 
 }  // namespace

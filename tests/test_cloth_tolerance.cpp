@@ -124,9 +124,20 @@ TEST_F(Tolerance, OfChosenStepsIsNotBrokenByTheFirstOnes) {
         << t;
 }
 
+// The first touch is no end of what can be predicted.
+TEST_F(Tolerance, OfContactIsKeptByVerlet) {
+  const Result r = run(
+      "--sheet 'nodes 11 11' --pin 'x 0' --plane 'at 0 0 -0.2 friction 0.4' "
+      "--t-end 0.5 --tolerance 1e-3 --headless");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.out.find("a step of verlet"), r.out.npos) << r.out;
+  EXPECT_NE(r.out.find("positions to 0.001 m: kept; "), r.out.npos) << r.out;
+}
+
 TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
   const std::string sheet =
-      "--sheet 'at 0 0 0 nodes 6 6' --t-end 0.1 --headless --tolerance 1e-3 ";
+      "--sheet 'at 0 0 0 nodes 6 6' --t-end 0.1 --headless --tolerance 1e-3 "
+      "--method rkn64 ";
   for (const char* part : {"--plane 'at 0 0 -1'", "--tear-strain 3",
                            "--sphere 'at 0.5 0.5 -3 radius 0.5'"})
     EXPECT_NE(
@@ -136,7 +147,9 @@ TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
         std::string::npos)
         << part;
   EXPECT_EQ(
-      run(sheet + "--plane 'at 0 0 -1' --method verlet --dt 0.001").err,
+      run("--sheet 'nodes 6 6' --t-end 0.1 --headless --tolerance 1e-3 "
+          "--method verlet --dt 0.001")
+          .err,
       "cloth: warning: --tolerance has no effect on verlet, which does not "
       "control its error: omit --dt and --method, or use --method rkn64\n");
 }

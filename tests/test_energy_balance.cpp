@@ -58,6 +58,56 @@ TEST(Work, OfAMovingPinIsTheEnergyOfTheCloth) {
     }
 }
 
+// Nodes inside an obstacle at t = 0 are moved out: that is its work, the same
+// for every step, and no divergence.
+TEST(Work, OfAnObstacleOnNodesThatStartInIt) {
+  for (const char* method : {"symplectic-euler", "verlet", "rk4"})
+    for (double dt : {1e-5, 1e-3}) {
+      Model m = sheet(9, method, dt);
+      m.gravity = grav;
+      m.pins = {pin_at_x(0)};
+      m.spheres = {Solid{Ball{Point(0.5, 0.5, 0.05), 0.3}, 0, {}}};
+      Scene s(m);
+      EXPECT_NEAR(s.flow().work, 34.402, 1e-3);
+      EXPECT_NEAR(gain(s), 0, 1e-9);
+      s.watch_energy(0.1);
+      EXPECT_TRUE(s.run_to(0.1)) << text_of(s.failure());
+      EXPECT_FALSE(s.energy_watch()->gains()) << method << dt;
+    }
+}
+
+// Drag brings a loose sheet to the velocity of the air; what the air gives and
+// takes is counted.
+TEST(Work, OfTheWind) {
+  for (const char* method : {"verlet", "rk4", "implicit-euler"}) {
+    Model m = sheet(5, method, 0.001);
+    m.damping = 2 / 25.;  // gamma = 2/s
+    m.wind = Wind{Point(3, 0, 1)};
+    Scene s(m);
+    s.follow_drag();
+    ASSERT_TRUE(s.run_to(1));
+    const Point v = -std::expm1(-2.) * m.wind->velocity;
+    EXPECT_LT(norm(s.cloth().node(7).value().vel - v), 0.01) << method;
+    EXPECT_NEAR(s.energy().total(), 0.5 * normSq(v), 0.03);
+    EXPECT_NEAR(s.flow().drag, -s.energy().total(), 0.005);
+  }
+}
+
+// A pin that turns does work; the cloth has it, to the order of the method.
+TEST(Work, OfAPinThatTurns) {
+  double error[2];
+  for (int k : {0, 1}) {
+    Model m = sheet(6, "verlet", 0.002 / (1 + k));
+    m.pins = {pin_at_x(0, {{}, 0.3, Point(0, 5, 0), Point(0.1, 0, 0)})};
+    Scene s(m);
+    ASSERT_TRUE(s.run_to(0.2));
+    EXPECT_GT(s.flow().work, 0.03);
+    error[k] = std::abs(gain(s)) / s.flow().work;
+  }
+  EXPECT_LT(error[0], 0.02);
+  EXPECT_LT(error[1], 0.5 * error[0]);
+}
+
 // It hits all nodes at once, and they stay on it: 1 kg gets a speed of V, and
 // the work is m V^2, twice the energy, as the impact is inelastic.
 TEST(Work, OfAWallThatHitsASheetIsTwiceItsEnergy) {

@@ -38,6 +38,20 @@ TEST(Motion, GoesOnForEverOrNotAtAll) {
   EXPECT_EQ(Motion().way(1e6), Point());
   EXPECT_EQ(Motion().velocity_at(1e6), Point());
 }
+TEST(Motion, TurnsAboutAnAxis) {
+  const double half_pi = std::acos(0);
+  const Motion m = {Point(0, 0, 2), 1, Point(0, 0, half_pi), Point(1, 0, 0)};
+  const Point start(3, 0, 5);
+  EXPECT_EQ(m.place_of(start, 0), start);
+  EXPECT_LT(norm(m.place_of(start, 1) - Point(1, 2, 7)), 1e-15);
+  EXPECT_EQ(m.place_of(start, 4), m.place_of(start, 1));
+  EXPECT_EQ(m.velocity_of(start, 1), Point());
+  const double t = 0.3, h = 1e-5;
+  EXPECT_LT(
+      norm((m.place_of(start, t + h) - m.place_of(start, t - h)) / (2 * h) -
+           m.velocity_of(start, t)),
+      1e-9);
+}
 
 // -------------------------------------------------------------------- Contact
 

@@ -147,6 +147,28 @@ TEST(Parts, AreWhatTheirWordsSay) {
   EXPECT_EQ(read_time_step("2e-3").dt, 0.002);
   EXPECT_TRUE(read_time_step("2e-3").fixed());
   EXPECT_EQ(read_method("tr-bdf2"), &table::tr_bdf2);
+  EXPECT_EQ(read_wind("velocity 3 0 1").velocity, Point(3, 0, 1));
+  const Pin turned = read_pin("x 0 turn 0 2 0 about 0 1 0 until 1");
+  EXPECT_EQ(turned.motion.turn, Point(0, 2, 0));
+  EXPECT_EQ(turned.motion.about, Point(0, 1, 0));
+}
+
+TEST(Parts, KnowTheOtherNamesOfAMethod) {
+  for (const auto& [name, method] :
+       {std::pair("explicit-euler", "forward-euler"),
+        std::pair("semi-implicit-euler", "symplectic-euler"),
+        std::pair("backward-euler", "implicit-euler"),
+        std::pair("velocity-verlet", "verlet"),
+        std::pair("leapfrog", "verlet")})
+    EXPECT_EQ(read_method(name)->info.name, method);
+  for (const auto& [name, meant] :
+       {std::pair("newmark", "implicit-midpoint"),
+        std::pair("trapezoidal", "implicit-midpoint"), std::pair("pbd", "xpbd"),
+        std::pair("leapfrogg", "leapfrog")})
+    EXPECT_EQ(CME212::error_of([&] { read_method(name); }),
+              std::string("--method is ") + name +
+                  ", expected a name of --list-methods: did you mean " + meant +
+                  "?");
 }
 
 // In the documented order, without what is the default, with all digits; and
@@ -208,7 +230,7 @@ TEST(Parts, RefuseWhatMakesNoSense) {
   EXPECT_EQ(wrong(read_region, "from 0 0 0 to 1 1 1"),
             " has none of mass-factor, stiffness-factor");
   EXPECT_EQ(wrong(read_edges, "bend"), " has no sides");
-  EXPECT_THROW(read_sheet("nodes 1 5"), SceneError);
+  EXPECT_THROW(read_sheet("nodes 0 5"), SceneError);
   EXPECT_THROW(read_sheet("nodes 5 10001"), SceneError);
   EXPECT_NO_THROW(read_sheet("nodes 2 10000"));
   EXPECT_THROW(read_sheet("u 1 0 0 v 2 0 0"), SceneError);
@@ -551,8 +573,7 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
             "2: --t-end has 2 values, expected one");
   EXPECT_EQ(complaint("pin = [\"q 3\"]\n" + sheet),
             "1: --pin \"q 3\" has \"q\", expected one of x, y, z, node, "
-            "velocity, "
-            "until");
+            "velocity, turn, about, until");
   EXPECT_EQ(complaint(sheet + "tear = \"radius 1\"\ntear-strain = -1\n"),
             "3: --tear-strain is -1, expected a strain above 0");
   EXPECT_EQ(complaint(sheet + "modulus = 1\nstiffness = 1\n"),

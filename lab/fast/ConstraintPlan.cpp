@@ -35,13 +35,13 @@ void PinnedNodes::each_place(const Cloth& g, double t, unsigned first,
   while (first < last && !arrays(g).node_in_use(first)) ++first;
   if (first == last) return;
   const Motion& motion = traits().motion;
-  const Point way = motion.way(t), velocity = motion.velocity_at(t);
   auto pin = std::ranges::lower_bound(pins_, arrays(g).node_with_id(first), {},
                                       &PinConstraint::Pin::node);
   for (; pin != pins_.end(); ++pin) {
     if (!g.has_node(pin->node)) continue;
     if (pin->node.id() >= last) return;
-    use(pin->node, {pin->place + way, velocity});
+    use(pin->node,
+        {motion.place_of(pin->place, t), motion.velocity_of(pin->place, t)});
   }
 }
 
@@ -66,7 +66,9 @@ class Plane final : public NodewiseConstraint {
   explicit Plane(const PlaneConstraint& c)
       : NodewiseConstraint(
             {.nodewise = true, .zone = Zone::behind({0, 0, c.z}, {0, 0, 1})}),
-        plane_(c) {}
+        plane_(c) {
+    exchange_.took = true;
+  }
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     const double z = plane_.z;
@@ -85,7 +87,9 @@ class Sphere final : public NodewiseConstraint {
       : NodewiseConstraint({.nodewise = true,
                             .zone = Zone::inside(c.ball),
                             .obstacle = c.ball}),
-        sphere_(c.ball) {}
+        sphere_(c.ball) {
+    exchange_.took = true;
+  }
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     for_each_violating(
@@ -109,6 +113,7 @@ class Tear final : public SweptConstraint {
         [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
           exchange_.moment += n.value().mass * n.position().z;
+          exchange_.took = true;
           g.remove_node(n);
         });
   }
@@ -120,7 +125,9 @@ class Tear final : public SweptConstraint {
 /** A constraint of an unknown class: it is called. */
 class Called final : public SweptConstraint {
  public:
-  explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
+  explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {
+    exchange_.took = true;
+  }
   void operator()(Cloth& g, double t) const override {
     const auto version = arrays(g).version();
     const double before = moment_of(g);
@@ -261,9 +268,9 @@ void ConstraintPlan::each_place(const Cloth& g, double t,
 double ConstraintPlan::next_velocity_jump(double t) const {
   double first = std::numeric_limits<double>::infinity();
   for (const auto& leaf : leaves_) {
-    const auto& [velocity, until] = leaf->traits().motion;
-    if (leaf->traits().holds && velocity != Point() && t < until * (1 - 1e-12))
-      first = std::min(first, until);
+    const Motion& m = leaf->traits().motion;
+    if (leaf->traits().holds && m.moves() && t < m.until * (1 - 1e-12))
+      first = std::min(first, m.until);
   }
   return first;
 }
@@ -290,13 +297,17 @@ double ConstraintPlan::thinnest() const {
 
 bool ConstraintPlan::is_at_rest(double t) const {
   return std::ranges::all_of(leaves_, [t](const auto& leaf) {
-    return leaf->traits().motion.velocity_at(t) == Point();
+    const Motion& m = leaf->traits().motion;
+    return !m.moves() || !(t < m.until);
   });
 }
 
 Exchange ConstraintPlan::exchange() const {
   Exchange all;
-  for (const auto& leaf : leaves_) all += leaf->exchange();
+  for (const Term& term : terms_) {
+    all += term.constraint->exchange();
+    if (term.forwards) all += term.forwards->inner().exchange();
+  }
   return all;
 }
 

@@ -45,8 +45,9 @@ using PlaceVisitor = std::function<void(Node, const Place&)>;
 struct Exchange {
   double work = 0;    ///< by moving obstacles: impulse times velocity [J]
   double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
+  bool took = false;  ///< contact or tearing may have taken energy
   Exchange& operator+=(const Exchange& b) {
-    work += b.work, moment += b.moment;
+    work += b.work, moment += b.moment, took |= b.took;
     return *this;
   }
 };
@@ -156,9 +157,9 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 
-/** Moves nodes along a line: at time t they are at their initial places +
- * way(t), with the velocity of that. They are sorted by id, so that those of a
- * part are found. Nodes may be removed; the others are still moved. */
+/** Moves and turns nodes: at time t they are where Motion::place_of() says,
+ * with the velocity of that. They are sorted by id, so that those of a part are
+ * found. Nodes may be removed; the others are still moved. */
 class PinnedNodes final : public HoldingConstraint {
  public:
   /** @param pins with the places at t = 0

@@ -48,10 +48,14 @@ class Drag {
   bool none() const { return same_ == 0 && by_id_.empty(); }
   bool operator==(const Drag&) const = default;
 
-  /** The power that it takes from @a g, the sum of c |v|^2 [W].  O(N) */
-  double power(const Cloth& g) const {
+  /** The power that it takes from @a g in air of velocity @a wind [m/s], the
+   * sum of c (v - wind) . v [W].  O(N) */
+  double power(const Cloth& g, const Point& wind = Point()) const {
     double sum = 0;
-    for (Node n : g.nodes()) sum += (*this)[n.id()] * normSq(n.value().vel);
+    for (Node n : g.nodes()) {
+      const Point& v = n.value().vel;
+      sum += (*this)[n.id()] * dot(v - wind, v);
+    }
     return sum;
   }
 

@@ -160,14 +160,13 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines) {
   std::vector<Change> all;
   for (const std::string& line : lines) {
     Line in(line);
-    const auto calls = in.number<long long>("a number of steps", 0);
-    if (!all.empty() && calls < all.back().calls)
-      in.fail("comes after " + std::to_string(all.back().calls) + " steps");
-    all.push_back({calls, std::string(in.rest())});
+    const double time = in.number("a time [s]", 0.);
+    if (!all.empty() && time < all.back().time)
+      in.fail("comes after " + CME212::short_text(all.back().time) + " s");
+    all.push_back({time, std::string(in.rest())});
     std::string error = in.error();
     if (error.empty()) error = Live::error_in(all.back().request);
-    if (!error.empty())
-      throw SceneError("change", in_quotes(line) + ": " + error);
+    if (!error.empty()) throw SceneError("at", in_quotes(line) + ": " + error);
   }
   return all;
 }
@@ -192,7 +191,11 @@ void Live::restart(const Model& m) {
 }
 
 bool Live::step() {
-  for (; changes_left() > 0 && changes_[next_].calls <= calls_; ++next_)
+  constexpr double round_off = 1e-9;  // of a step
+  const auto is_due = [this](const Change& c) {
+    return c.time <= scene().time() + round_off * scene().dt();
+  };
+  for (; changes_left() > 0 && is_due(changes_[next_]); ++next_)
     apply(changes_[next_].request);
   if (done()) return false;
   ++calls_;

@@ -2,8 +2,10 @@
 /** @file Live.hpp
  * Live: a scene that is changed while it runs. A change is a request, one line
  * of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The page sends
- * such lines; its links and `./cloth --change` have them with the number of
- * steps before each: "120 gravity 3". Requests.cpp lists all requests.
+ * such lines; `./cloth --at` and scene files have them with a time [s] before
+ * each, "0.5 gravity 3". A recording, as in the page's links, has the number of
+ * steps instead: it repeats all bits, and steps that --dt auto takes back are
+ * made again at other times. Requests.cpp lists all requests.
  *
  * A node is named by its id, Node::id(), which stays the same when others are
  * removed. */
@@ -89,12 +91,12 @@ double dt_unit(const Scene& s, const MethodEntry& m);
 
 // ---- The scene
 
-/** A request that is made after so many step() calls. */
+/** A request that is made at some time. */
 struct Change {
-  long long calls;
+  double time;  ///< [s]
   std::string request;
 };
-/** The changes in @a lines such as "120 gravity 3", in their order.
+/** The changes in @a lines such as "0.5 gravity 3", in their order.
  * Throws SceneError: a line that makes no sense, or is earlier than the one
  * before it */
 std::vector<Change> read_changes(const std::vector<std::string>& lines);
@@ -107,7 +109,7 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines);
 class Live {
  public:
   /** At t = 0.
-   * @param changes made by step() when they are due
+   * @param changes made by the first step() from their times on
    * Throws as Scene(model). */
   explicit Live(Model m, std::vector<Change> changes = {});
 

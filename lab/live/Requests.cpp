@@ -13,6 +13,7 @@
 #include "lab/live/Line.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/Words.hpp"
 
 namespace lab {
 
@@ -41,9 +42,10 @@ void read(Line& in, Share& s) {
   s.of_unit = in.number("a positive multiple of the stability limit", least);
 }
 void read(Line& in, const MethodEntry*& method) {
-  const auto name_of = [](const MethodEntry* m) { return m->info.name; };
-  const auto* const found = in.one_of("a method", all_methods(), name_of);
-  method = found ? *found : nullptr;
+  std::string hint;
+  const std::string_view name = in.word("a method");
+  method = method_named(name, hint);
+  if (!method) in.fail(mesh_detail::quoted(name) + " is not a method" + hint);
 }
 
 }  // namespace
@@ -93,7 +95,13 @@ struct Live::Table {
   void sets(std::string_view name, const char* expected, double least,
             double& (*parameter)(Model&)) {
     const auto run = [=](Line& in, Live* live) {
-      const double a = in.number(expected, least);
+      double a = in.number(expected, least);
+      if (name == "gravity" && !in.at_end()) {  // as a vector
+        const double x = a, y = in.number(expected);
+        a = -in.number(expected);
+        if (x != 0 || y != 0)
+          in.fail("acts along z: expected 0 0 and a number");
+      }
       in.end();
       if (live) parameter(live->model_) = a, live->change_forces();
     };
@@ -120,7 +128,7 @@ Live::Table::Table() {
   sets("drag", "0 or more", 0, [](Model& m) -> double& {
     return m.material.drag ? *m.material.drag : m.damping;
   });
-  // g [m/s^2]
+  // g, or 0 0 -g [m/s^2]
   sets("gravity", "a number", -no_limit,
        [](Model& m) -> double& { return m.gravity; });
   // Pull a node towards a point; move that point; let the node go.

@@ -153,7 +153,7 @@ void check(Options& o) {
           o.advise_work, "spring evaluations, 0 or more");
   require(o.every_seconds >= 0, "every-seconds", o.every_seconds, "0 or more");
   require(o.every > 0, "every", double(o.every), "at least 1 step");
-  require(o.at < 0 || o.at <= o.model.t_end, "at", o.at,
+  require(o.at < 0 || o.at <= o.model.t_end, "screenshot-at", o.at,
           "a time up to --t-end");
   if (!o.restart.empty() && o.asks_advice())
     throw SceneError("restart",
@@ -166,9 +166,9 @@ void check(Options& o) {
          {std::pair("restart", !o.restart.empty()),
           std::pair("checkpoint", !o.checkpoint.empty()),
           std::pair("advise", o.asks_advice()),
-          std::pair("tolerance", o.model.step.tolerance > 0)})
+          std::pair("tolerance", o.bounds_error)})
       if (given)
-        throw SceneError("change",
+        throw SceneError("at",
                          std::string("cannot be combined with --") + option);
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
@@ -222,11 +222,15 @@ void list_methods() {
       "stiff, xpbd on\nnearly rigid cloth");
 }
 
-/** A run has a tolerance: set the method and the inner steps that keep it,
- * unless the scene names a method or a step without error control.
+/** A run has a tolerance: set the method and the first steps by which to keep
+ * it, unless the scene names a method or a step without error control.
  * @param given(NAME) true if the option NAME is given, in a file or here */
-void control_error(Model& m, const std::function<bool(const char*)>& given) {
-  if (!given("method") && !given("dt")) m.method = &table::rkn64;
+void control_error(Options& o, const std::function<bool(const char*)>& given) {
+  Model& m = o.model;
+  const bool free = !given("method") && !given("dt");
+  // Where nodes touch, a method of high order costs more for the same error.
+  if (free) m.method = m.has_contact() ? &table::verlet : &table::rkn64;
+  o.bounds_error = free || m.method->info.adaptive;
   if (!m.method->info.adaptive) return;
   // Steps end where rows and frames are looked at, not where errors do.
   if (!given("dt") && m.t_end > 0) m.step.dt = std::min(1 / 30., m.t_end);
@@ -286,7 +290,8 @@ void add_run_options(CLI::App& app, Options& o) {
                "color the nodes by the mean strain of their springs");
   add_file(app, "--screenshot", o.screenshot,
            "draw a picture FILE.png without a window");
-  app.add_option("--at", o.at, "time of the screenshot [s]; negative: the end");
+  app.add_option("--screenshot-at", o.at,
+                 "time of the screenshot [s]; negative: the end");
   add_file(app, "--record", o.video,
            "draw a film of 30 frames per second without a window; the ending "
            "of FILE sets the format: .mp4, .mkv, .webm or .gif");
@@ -320,9 +325,9 @@ void add_run_options(CLI::App& app, Options& o) {
            "interruption; the scene may be omitted; --csv continues the file "
            "of that run");
   app.option_defaults()->group("Changes while it runs");
-  app.add_option("--change", o.changes,
-                 "change the scene after so many steps, as '120 gravity 3', "
-                 "'150 cut 40 41' or '0 compare rk4 1': see lab/README.md")
+  app.add_option("--at", o.changes,
+                 "change the scene at a time [s], as '0.2 unpin 0', "
+                 "'1 stiffness 400' or '0.5 cut 40 41': see lab/README.md")
       ->allow_extra_args(false);
   app.add_option("--threads", o.threads,
                  "threads for a large cloth, which change no result; 0: one "
@@ -466,8 +471,8 @@ int parse(int argc, char** argv, Options& o) {
                        "is " + CME212::short_text(o.model.tolerance) +
                            "%, which needs --advise, --assess or --auto: "
                            "expected an error of the positions [m]");
-    control_error(o.model, given);
-    if (app.count("--tolerance") > 0 && o.model.step.tolerance == 0 && !o.quiet)
+    control_error(o, given);
+    if (app.count("--tolerance") > 0 && !o.bounds_error && !o.quiet)
       std::cerr << "cloth: warning: --tolerance has no effect on "
                 << o.model.method->info.name
                 << ", which does not control its error: omit --dt and "

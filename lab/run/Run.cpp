@@ -54,7 +54,7 @@ Run::Run(Scene& scene, const Options& o, Live* live)
               o.frame_rate) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.follow_drag();
-  if (!live_ && o.model.conserves_energy()) scene_.watch_energy(o.model.t_end);
+  scene_.watch_energy(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (!o.checkpoint.empty())
     archive_scene(scene_as_made_, o.model, scene.cloth());
@@ -185,6 +185,15 @@ void Run::announce() const {
   if (built && first_step_ == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
       std::cerr << warning << w << '\n';
+  if (const double work = scene_.flow().work; first_step_ == 0 && work != 0)
+    std::cerr << warning << "at t = 0 the obstacles give "
+              << CME212::short_text(work)
+              << " J to the cloth, which counts as their work\n";
+  if (scene_.method().multirate && limit <= scene_.safe_limit(table::verlet))
+    std::cerr
+        << warning << method
+        << " finds no stiff springs here: use --method verlet, which does "
+           "the same\n";
   if (dt <= limit || sharp) return;
   out.str("");
   if (limit > 0)
@@ -353,7 +362,7 @@ void Run::add_row() {
     row += CME212::to_text(a) + ',';
   row += std::to_string(g.num_nodes()) + ',' + std::to_string(g.num_edges());
   const EnergyFlow& flow = scene_.flow();
-  for (double a : {flow.work, scene_.stepper().drag_loss(), scene_.drift(e)})
+  for (double a : {flow.work, flow.drag, scene_.drift(e)})
     row += ',' + CME212::to_text(a);
   row += ',' + std::to_string(scene_.evaluations());
   if (!columns_of(o_.model.measure).empty())
@@ -416,43 +425,41 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** Say how far the energy is off where nothing changes it.
+/** Say how far the energy is off.
  * @return false: the method has made more of it than is tolerated */
 bool Run::energy_is_kept() const {
-  const auto& watch = scene_.energy_watch();
-  if (!watch) return true;
-  using CME212::short_text;
+  const EnergyWatch& watch = *scene_.energy_watch();
+  using CME212::two_digits;
   std::ostringstream out;
   out.precision(3);
-  out << "energy off by " << watch->off() << " J";
-  if (const double share = watch->share(); share != 0)
+  out << "energy off by " << watch.off() << " J";
+  if (const double share = watch.share(); share != 0)
     out << " (" << CME212::percent(share) << " of the largest internal energy)";
-  const bool kept = scene_.control() || watch->gain() <= watch->tolerance();
-  if (!o_.quiet) std::cout << out.str() << '\n';
+  if (!o_.quiet && !watch.took()) std::cout << out.str() << '\n';
+  const bool kept = scene_.control() || !watch.gains();
   if (!kept)
     std::cerr << "cloth: an error of the method has added "
-              << CME212::two_digits(watch->gain())
-              << " J of energy, more than the "
-              << CME212::two_digits(watch->tolerance())
+              << two_digits(watch.gain()) << " J of energy, more than the "
+              << two_digits(watch.tolerance())
               << " J that --dt auto tolerates: this is not the motion of the "
-                 "scene; use half of the step, or --method verlet --dt auto\n";
-  else if (std::abs(watch->share()) > energy_tolerance && !o_.quiet)
-    std::cerr << warning << out.str()
-              << ", which is an error of the method: use half of the step\n";
+                 "scene; "
+              << scene_.remedy() << '\n';
+  else if (watch.loses() && !o_.quiet)
+    std::cerr << warning << out.str() << ", which is an error of the method; "
+              << scene_.remedy() << '\n';
   return kept;
 }
 
 /** What steps were chosen, and what they did to the energy. */
 void Run::tell_steps(const StepControl& c) const {
+  if (o_.quiet) return;
   const auto& r = c.report();
   const double gain = c.state().gain, most = c.tolerance();
   std::ostringstream out;
   out.precision(3);
   out << "energy gain " << gain << " J, at most " << most << " J tolerated";
-  if (gain > most && !o_.quiet)
-    std::cerr << warning << out.str() << ": use drag, or a --dt below "
-              << r.shortest << '\n';
-  if (o_.quiet) return;
+  if (gain > most)
+    std::cerr << warning << out.str() << "; " << scene_.remedy() << '\n';
   std::cout << "dt from " << r.shortest << " to " << r.longest
             << " s: shortened " << r.shortened << " times, lengthened "
             << r.lengthened << " times, " << r.taken_back

@@ -208,7 +208,7 @@ int run(Options o) {
   const bool shows = !o.headless && !o.pictures();
   const bool in_window = shows && (o.window || Screen::has_display());
   std::optional<Accuracy> accuracy;
-  if (m.step.tolerance > 0 && o.restart.empty()) accuracy = measure_accuracy(o);
+  if (o.bounds_error && o.restart.empty()) accuracy = measure_accuracy(o);
   std::unique_ptr<Live> live;
   if (const auto changes = read_changes(o.changes); !changes.empty())
     live = std::make_unique<Live>(m, changes);
@@ -288,9 +288,9 @@ int main(int argc, char** argv) {
     return after_output(status >= 0 ? status : run(o));
   } catch (const Interrupted&) {
     std::cerr << "cloth: " << name_of_interrupt() << " ended the "
-              << (o.asks_advice()              ? "advice"
-                  : o.model.step.tolerance > 0 ? "measurement of the error"
-                                               : "reading")
+              << (o.asks_advice()  ? "advice"
+                  : o.bounds_error ? "measurement of the error"
+                                   : "reading")
               << "; nothing was kept\n";
     return 128 + interrupted();
   } catch (const NoDisplay& e) {

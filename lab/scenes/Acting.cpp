@@ -74,6 +74,7 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
     add("drag " + short_text(*drag) + " kg/(s m^2)", times + each_node);
   else if (!drag && m.damping > 0)
     add("drag " + short_text(m.damping) + " kg/s a node", times + each_node);
+  if (m.wind) add("wind " + to_words(*m.wind), times + each_node);
   // Constraints
   Model copy = m;
   for (const Field& f : fields_of(copy)) {

@@ -16,6 +16,7 @@
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/SelfCollision.hpp"
+#include "lab/scenes/WindForce.hpp"
 #include "lab/scenes/Words.hpp"
 
 namespace lab {
@@ -378,15 +379,17 @@ CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   if (m.gravity != 0)
     forces.push_back(std::make_shared<GravityForce>(m.gravity));
   forces.push_back(std::make_shared<MassSpringForce>());
+  std::vector<double> c(arrays(g).node_slots(), m.damping);
   if (const auto drag = m.material.drag; drag && *drag > 0) {
-    std::vector<double> c(arrays(g).node_slots());
     const std::vector<double> share = areas(mesh);
     for (unsigned i = 0; i < share.size(); ++i)
       c[g.node(i).id()] = *drag * share[i];
-    forces.push_back(std::make_shared<NodeDrag>(std::move(c)));
+    forces.push_back(std::make_shared<NodeDrag>(c));
   } else if (!drag && m.damping > 0) {
     forces.push_back(std::make_shared<DampingForce>(m.damping));
   }
+  if (m.wind)
+    forces.push_back(std::make_shared<WindForce>(c, m.wind->velocity));
   return CombinedForces(std::move(forces));
 }
 
@@ -446,7 +449,7 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
       if (arrays(g).node_in_use(id))
         pins.push_back({arrays(g).node_with_id(id), place});
     // A pin at rest has no time at which it stops.
-    add(PinnedNodes(pins, h.motion.velocity == Point() ? Motion() : h.motion));
+    add(PinnedNodes(pins, h.motion.moves() ? h.motion : Motion()));
   }
   if (!m.self_collision) return CombinedConstraints(std::move(all));
   const auto [thickness, friction] = *m.self_collision;
@@ -461,6 +464,7 @@ Recipe recipe_of(const Model& m, Net mesh) {
   Recipe r;
   r.name = m.name;
   r.gravity = m.gravity;
+  if (m.wind) r.wind = m.wind->velocity;
   r.build = [m, built](Cloth& g) {
     build_model(g, m, built->mesh);
     built->ids.clear();
@@ -478,6 +482,7 @@ Recipe recipe_of(const Model& m, Net mesh) {
   r.holding = [m](const Cloth& g, const std::vector<HeldNodes>& held) {
     return constraint_of(m, g, held);
   };
+  r.inside = [m](const Point& p) { return m.starts_inside(p); };
   using Kind = Obstacle::Kind;
   for (const Wall& w : m.planes)
     // An inclined plane would hide what lies on it.

@@ -56,6 +56,7 @@ Net net_left(const Cloth& g, const BuiltMesh& built,
 struct Recipe {
   std::string name;
   double gravity = grav;  ///< of the force [m/s^2]
+  Point wind = Point();   ///< velocity of the air that drags [m/s]
   /** Builds the cloth in an empty one. */
   std::function<void(Cloth&)> build;
   /** The mesh and forces of the last build() and force(); null: no mesh. */
@@ -68,6 +69,8 @@ struct Recipe {
   std::function<CombinedConstraints(const Cloth&,
                                     const std::vector<HeldNodes>&)>
       holding;
+  /** Model::starts_inside(). Null: no obstacle holds any point. */
+  std::function<bool(const Point&)> inside;
   std::vector<Obstacle> obstacles;
   std::vector<Point> room;  ///< corners of the box to show; empty: the cloth
 };
@@ -100,7 +103,8 @@ double shortest_side(const Model& m);
  * Complexity: O(points + quads log quads + springs) */
 void build_model(Cloth& g, const Model& m, const Net& mesh);
 
-/** The forces of @a m on @a g: springs, and gravity and drag unless they are 0.
+/** The forces of @a m on @a g: springs, gravity and drag unless they are 0, and
+ * wind.
  * Drag by area is distributed over the nodes like mass by density: a quarter of
  * that of each quad at the node. So with both, c/m is the same at all nodes.
  * @pre @a g was just built from @a mesh  O(points + quads) */

@@ -52,6 +52,8 @@ std::vector<Field> fields_of(Model& m) {
       {"drag", cloth, material, &m.material.drag,
        "instead of damping: drag per area [kg/(s m^2)]",
        "a drag per area [kg/(s m^2)], 0 or more", not_negative, "damping"},
+      {"wind", acts, scene, &m.wind,
+       "the air by which drag acts moves: velocity X Y Z [m/s]"},
       {"region", acts, material, &m.regions,
        "another material in a box: from X Y Z to X Y Z [m] mass-factor F "
        "stiffness-factor F, for the mass of nodes and K of edges in it"},
@@ -59,7 +61,8 @@ std::vector<Field> fields_of(Model& m) {
        "acceleration of free fall [m/s^2]", "an acceleration [m/s^2]"},
       {"pin", acts, scene, &m.pins,
        "hold the nodes that start at x X y Y z Z [m] (at least one of these), "
-       "or move them: velocity X Y Z [m/s] until T [s]"},
+       "or move them: velocity X Y Z [m/s] turn X Y Z [rad/s] about X Y Z [m] "
+       "until T [s]"},
       {"plane", contact, scene, &m.planes,
        "a floor or wall: at X Y Z [m] normal X Y Z friction F velocity X Y Z "
        "[m/s] until T [s]"},
@@ -229,6 +232,8 @@ Model checked(Model m) {
                                     : "cannot be combined with --net");
   else if (files && !m.net.empty())
     throw SceneError("net", "cannot be combined with NODES and TETS");
+  if (m.wind && m.material.drag.value_or(m.damping) == 0)
+    throw SceneError("wind", "acts by drag: expected --drag or --damping, too");
   return or_assignment(m);
 }
 

@@ -25,9 +25,15 @@ double Pin::distance(unsigned i, const Point& p) const {
 
 const MethodEntry* default_method() { return &table::symplectic_euler; }
 
+bool Model::starts_inside(const Point& p) const {
+  const auto holds = [&p](const auto& part) { return part.depth(p) > 1e-9; };
+  return std::ranges::any_of(planes, holds) ||
+         std::ranges::any_of(spheres, holds);
+}
+
 bool Model::conserves_energy() const {
   const bool moves = std::ranges::any_of(
-      pins, [](const Pin& pin) { return pin.motion.velocity != Point(); });
+      pins, [](const Pin& pin) { return pin.motion.moves(); });
   return !has_contact() && !moves && material.drag.value_or(damping) == 0;
 }
 

@@ -99,12 +99,17 @@ struct Region {
  * [m], or one node by its index; at least one of these is given. */
 struct Pin {
   std::optional<double> x, y, z, node;
-  Motion motion;
+  Motion motion = {};
   static constexpr double near = 1e-9;  ///< [m]
   /** How far the start @a p of node @a i is from what it holds: the largest
    * difference of a given coordinate [m]; infinity for another index. */
   double distance(unsigned i, const Point& p) const;
   bool operator==(const Pin&) const = default;
+};
+
+/** Air that moves. Drag acts by the velocity relative to it. */
+struct Wind {
+  Point velocity;  ///< [m/s]
 };
 
 /** The half space below a plane, which no node enters. */
@@ -115,6 +120,8 @@ struct Wall {
   Motion motion;
   /** The normal, of length 1. */
   Point out() const { return normal / norm(normal); }
+  /** How far below it @a p lies at t = 0 [m]; negative above it. */
+  double depth(const Point& p) const { return dot(at - p, out()); }
   bool operator==(const Wall&) const = default;
 };
 
@@ -123,6 +130,10 @@ struct Solid {
   Ball ball;
   double friction = 0;
   Motion motion;
+  /** How far from its surface @a p lies inside at t = 0 [m]; else negative. */
+  double depth(const Point& p) const {
+    return ball.radius - norm(p - ball.center);
+  }
 };
 
 /** Nodes without a common edge keep this distance. */
@@ -177,6 +188,7 @@ struct Model {
   // What acts on it
   double gravity = grav;  ///< acceleration of free fall [m/s^2]
   double damping = 0;     ///< drag coefficient c of a node [kg/s], >= 0
+  std::optional<Wind> wind;
   std::vector<Pin> pins;
   std::vector<Wall> planes;
   std::vector<Solid> spheres;
@@ -196,6 +208,8 @@ struct Model {
 
   /** True if nodes may touch something or edges break: not smooth motion. */
   bool has_contact() const;
+  /** Does an obstacle hold @a p at t = 0, by more than 1e-9 m? */
+  bool starts_inside(const Point& p) const;
   /** True if nothing changes its energy: no drag, no contact, no moving pin. */
   bool conserves_energy() const;
   /** True if it has the pins and the floor of assignment_scene(). These pins

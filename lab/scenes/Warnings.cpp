@@ -21,7 +21,7 @@ using CME212::count_of;
 using CME212::short_text, lab::short_text;
 using Triangle = std::array<Point, 3>;
 
-const char* it_or_them(std::size_t n) { return n == 1 ? "it" : "them"; }
+std::string it_or_them(std::size_t n) { return n == 1 ? "it" : "them"; }
 
 /** The option that makes @a b, with its default values. */
 std::string name_of(const std::string& option, const Ball& b) {
@@ -172,25 +172,19 @@ class Finder {
   void below(const Wall& w) {
     std::size_t n = 0;
     double deepest = 0;
-    for (Node node : g_.nodes()) {
-      const double depth = dot(w.at - node.position(), w.out());
+    for (const Point& p : mesh_.points) {
+      const double depth = w.depth(p);
       if (depth > 1e-9) ++n;
       deepest = std::max(deepest, depth);
     }
     if (n == 0) return;
     Wall lower = w;
     lower.at -= deepest * w.out();
-    add(std::to_string(n) + " of " + count_of(g_.num_nodes(), "node") +
+    add(std::to_string(n) + " of " + count_of(mesh_.points.size(), "node") +
         (n == 1 ? " starts" : " start") + " below --plane \"" + to_words(w) +
-        "\", up to " + short_text(deepest) + " m: the first step moves " +
-        it_or_them(n) + " onto it; to avoid that, put the plane at " +
+        "\", up to " + short_text(deepest) + " m: the plane moves " +
+        it_or_them(n) + " up at t = 0; to avoid that, put it at " +
         short_text(lower.at));
-  }
-
-  /** Where the first step puts @a p. */
-  static Point surface(const Ball& b, const Point& p) {
-    const Point r = p - b.center;
-    return b.center + b.radius * (norm(r) > 0 ? r / norm(r) : Point(0, 0, 1));
   }
 
   void inside(const Ball& b, const std::string& name, bool solid) {
@@ -198,25 +192,14 @@ class Finder {
     const auto is_inside = [&](const Point& p) {
       return norm(p - b.center) < b.radius * (1 - 1e-6);
     };
-    for (Node node : g_.nodes()) n += is_inside(node.position());
+    for (const Point& p : mesh_.points) n += is_inside(p);
     if (n == 0) return across(b, name, solid);
-    std::string what = std::to_string(n) + " of " +
-                       count_of(g_.num_nodes(), "node") +
-                       (n == 1 ? " starts" : " start") + " inside " + name +
-                       ": the first step ";
-    if (!solid)
-      return add(what + "removes " + it_or_them(n) + "; move the ball");
-    double energy = 0;
-    for (Edge e : g_.edges()) {
-      Point p = e.node1().position(), q = e.node2().position();
-      if (!is_inside(p) && !is_inside(q)) continue;
-      energy -= spring_energy(norm(p - q), e.value());
-      if (is_inside(p)) p = surface(b, p);
-      if (is_inside(q)) q = surface(b, q);
-      energy += spring_energy(norm(p - q), e.value());
-    }
-    add(what + "moves " + it_or_them(n) + " onto its surface, which gives " +
-        short_text(energy) + " J to the springs; move the ball");
+    add(std::to_string(n) + " of " + count_of(mesh_.points.size(), "node") +
+        (n == 1 ? " starts" : " start") + " inside " + name + ": " +
+        (solid
+             ? "the ball moves " + it_or_them(n) +
+                   " to its surface at t = 0; move the ball"
+             : "the first step removes " + it_or_them(n) + "; move the ball"));
   }
 
   /** A ball that contains no node, but quads cut its inner half: the cloth is

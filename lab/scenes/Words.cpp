@@ -26,7 +26,7 @@ using enum Word::Need;
 
 namespace {
 Word velocity(Motion& m) {
-  const bool ends = m.until != Motion().until;
+  const bool ends = m.until != Motion().until && m.turn == Point();
   return {"velocity", &m.velocity, any, ends ? word : none};
 }
 Word until(Motion& m) { return {"until", &m.until, not_negative}; }
@@ -62,7 +62,12 @@ Words words_of(Pin& p) {
            {"z", &p.z, any, some},
            {"node", &p.node, not_negative, some},
            velocity(p.motion),
+           {"turn", &p.motion.turn},
+           {"about", &p.motion.about},
            until(p.motion)}};
+}
+Words words_of(Wind& w) {
+  return {"wind", {{"velocity", &w.velocity, any, word}}};
 }
 Words words_of(Wall& w) {
   return {"plane",
@@ -272,13 +277,55 @@ TimeStep read_time_step(const std::string& text) {
                   "in (0, 1], the energy gain tolerated, as auto:0.02");
   return step;
 }
+
+namespace {
+/** Other names in use: of the same method, or of one to take instead. */
+constexpr struct {
+  const char *name, *method;
+  bool same;
+} other_names[] = {{"explicit-euler", "forward-euler", true},
+                   {"semi-implicit-euler", "symplectic-euler", true},
+                   {"euler-cromer", "symplectic-euler", true},
+                   {"velocity-verlet", "verlet", true},
+                   {"stormer-verlet", "verlet", true},
+                   {"leapfrog", "verlet", true},
+                   {"runge-kutta", "rk4", true},
+                   {"backward-euler", "implicit-euler", true},
+                   {"euler", "symplectic-euler", false},
+                   {"yoshida4", "pefrl", false},
+                   {"forest-ruth", "pefrl", false},
+                   {"heun", "rk4", false},
+                   {"rk2", "rk4", false},
+                   {"rk45", "rkn64", false},
+                   {"dopri5", "rkn64", false},
+                   {"midpoint", "implicit-midpoint", false},
+                   {"newmark", "implicit-midpoint", false},
+                   {"trapezoidal", "implicit-midpoint", false},
+                   {"crank-nicolson", "implicit-midpoint", false},
+                   {"bdf2", "tr-bdf2", false},
+                   {"generalized-alpha", "tr-bdf2", false},
+                   {"projective-dynamics", "fast-mass-spring", false},
+                   {"pbd", "xpbd", false}};
+}  // namespace
+
+const MethodEntry* method_named(std::string_view name, std::string& hint) {
+  std::vector<std::string_view> names;
+  for (const auto& other : other_names) {
+    if (name == other.name && other.same) return find_method(other.method);
+    if (name == other.name)
+      hint = std::string(": did you mean ") + other.method + '?';
+    names.push_back(other.same ? other.name : other.method);
+  }
+  const MethodEntry* method = find_method(name);
+  for (const MethodEntry* m : all_methods()) names.push_back(m->info.name);
+  if (!method && hint.empty()) hint = did_you_mean(name, names);
+  return method;
+}
 const MethodEntry* read_method(const std::string& text) {
-  if (const MethodEntry* method = find_method(text)) return method;
-  std::vector<std::string> names;
-  for (const MethodEntry& m : methods) names.emplace_back(m.info.name);
-  throw SceneError("method", "is " + text +
-                                 ", expected a name of --list-methods" +
-                                 did_you_mean(text, names));
+  std::string hint;
+  if (const MethodEntry* method = method_named(text, hint)) return method;
+  throw SceneError("method",
+                   "is " + text + ", expected a name of --list-methods" + hint);
 }
 
 // -------------------------------------------------------------------- Writing

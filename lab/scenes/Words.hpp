@@ -43,6 +43,7 @@ Words words_of(Edges&);
 Words words_of(Sheet&);
 Words words_of(Region&);
 Words words_of(Pin&);
+Words words_of(Wind&);
 Words words_of(Wall&);
 Words words_of(Solid&);
 Words words_of(Ball&);
@@ -55,8 +56,9 @@ using Member =
     std::variant<double*, std::string*, TimeStep*, const MethodEntry**,
                  Measure*, Edges*, std::optional<double>*,
                  std::optional<Distance>*, std::optional<Box>*,
-                 std::vector<Sheet>*, std::vector<Region>*, std::vector<Pin>*,
-                 std::vector<Wall>*, std::vector<Solid>*, std::vector<Ball>*>;
+                 std::optional<Wind>*, std::vector<Sheet>*,
+                 std::vector<Region>*, std::vector<Pin>*, std::vector<Wall>*,
+                 std::vector<Solid>*, std::vector<Ball>*>;
 
 /** Set the members of @a words() from @a text.
  * Throws SceneError: an unknown, repeated or missing word; too many or too few
@@ -86,6 +88,9 @@ std::string short_text(const Point& p);
  * Throws SceneError: anything else; no such method. */
 Measure read_measure(const std::string& text);
 const MethodEntry* read_method(const std::string& text);
+/** The method called @a name, also by another name in use, as "leapfrog". Else
+ * null, and @a hint is ": did you mean NAME?" or "". */
+const MethodEntry* method_named(std::string_view name, std::string& hint);
 /** A number [s]; or auto[:sharp][:GAIN], as "auto:0.02"
  * Throws SceneError: anything else */
 TimeStep read_time_step(const std::string& text);

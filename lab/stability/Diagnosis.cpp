@@ -278,9 +278,7 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
 }
 
 Explanation::Explanation(const Failure& failure, const Diagnosis* diagnosis)
-    : cause(failure.what()),
-      remedy("a signal ended the search for a remedy"),
-      place(failure.where()) {
+    : cause(failure.what()), remedy(interrupted), place(failure.where()) {
   if (!diagnosis) return;
   cause += ": " + diagnosis->cause_text();
   remedy = diagnosis->remedy_text();

@@ -110,6 +110,8 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 
 /** A message about a failure: its sentences in their order. */
 struct Explanation {
+  static constexpr const char* interrupted =
+      "a signal ended the search for a remedy";
   std::string cause, remedy, place;
 
   /** @param diagnosis null if a signal ended it */

@@ -48,6 +48,7 @@ void EnergyBalance::follow(const Cloth& g, double t,
   const Exchange now = constraint.exchange();
   flow_.work += now.work - seen_.work;
   flow_.removed += gravity_ * (now.moment - seen_.moment);
+  flow_.took |= now.took;
   seen_ = now;
   for (Held& h : held_) {
     if (!g.has_node(h.node)) continue;
@@ -94,6 +95,50 @@ void EnergyBalance::find_carrier(const Cloth& g, double t,
       g, t, [&](Node, const Place& place) { sum += place.velocity, ++count; });
   flow_.loose = count == 0;
   flow_.carried = count > 0 ? sum / count : Point();
+}
+
+// ---------------------------------------------------------------------- Watch
+
+EnergyWatch::EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
+                         double gamma, double floor, double round_off)
+    : dt_(dt),
+      start_(balance(e, flow)),
+      sums_(0.02 + gamma * dt * gamma * dt / 4),
+      floor_(floor),
+      round_off_(round_off),
+      largest_(e.internal()),
+      fall_(2 * e.fall_power * dt) {}
+
+void EnergyWatch::look(const Energies& e, const EnergyFlow& flow) {
+  off_ = balance(e, flow) - start_;
+  took_ = flow.took;
+  largest_ = std::max(largest_, e.internal());
+  fall_ = std::max(fall_, 2 * e.fall_power * dt_);
+  passed_ = std::max(passed_, std::abs(flow.work) + std::abs(flow.drag));
+  round_off_ = std::max(round_off_, e.round_off());
+  sum_ += off_;
+  gain_ = std::max(gain_, off_ - least_);
+  if (++looks_ % round != 0) return;
+  least_ = std::min(least_, sum_ / round);
+  sum_ = 0;
+}
+
+double EnergyWatch::share() const {
+  const bool counts =
+      largest_ > passed_ && std::abs(off_) > fall_ + floor_ + round_off_;
+  return counts ? off_ / largest_ : 0;
+}
+
+double EnergyWatch::tolerance() const {
+  return energy_tolerance * largest_ + sums_ * passed_ + fall_ + floor_ +
+         round_off_;
+}
+
+void EnergyWatch::archive(Archive& a) {
+  a(round_off_)(largest_)(fall_)(off_)(sum_)(least_)(gain_)(passed_)(looks_);
+  a(took_).require(std::isfinite(round_off_ + largest_ + fall_ + off_ + sum_ +
+                                 least_ + gain_ + passed_) &&
+                   looks_ >= 0);
 }
 
 }  // namespace lab

@@ -17,6 +17,10 @@ struct Energies {
   double total() const { return kinetic + elastic + gravitational; }
   /** Equal in all frames of reference. Gains are compared with it. */
   double internal() const { return relative + elastic; }
+  /** What rounding errors can make of such energies [J]. */
+  double round_off() const {
+    return 1e-10 * (kinetic + elastic + std::abs(gravitational));
+  }
 };
 
 /** The energy that entered and left a cloth since the start [J], and its
@@ -28,9 +32,11 @@ struct EnergyFlow {
   Point carried = Point();  ///< mean velocity of the held nodes [m/s]
   /** No node is held. */
   bool loose = false;
+  /** Contact or tearing may have taken energy, how much is not measured. */
+  bool took = false;
 
   void archive(Archive& a) {
-    a(work)(removed)(drag)(carried)(loose);
+    a(work)(removed)(drag)(carried)(loose)(took);
     a.require(std::isfinite(work + removed + drag + norm(carried)));
   }
 };
@@ -53,9 +59,10 @@ inline double balance(const Energies& e, const EnergyFlow& flow) {
  * Contact, friction and tearing only lower kinetic and elastic energy. So the
  * exact motion never raises the balance
  *   b = energies().total() - work + removed + drag:
- * any rise is the method's error. Work of a moving obstacle: the impulse on a
- * node times the obstacle's velocity. Work of a moving pin: the gain of the
- * node's kinetic energy - F . dx, F the mean force before and after a step. */
+ * any rise is the method's error. Work
+ * of a moving obstacle: the impulse on a node times the obstacle's velocity.
+ * Work of a moving pin: the gain of the node's kinetic energy - F . dx, F the
+ * mean force before and after a step. */
 class EnergyBalance {
  public:
   /** @param g at the start, time @a t   @param gravity [m/s^2]
@@ -85,7 +92,7 @@ class EnergyBalance {
       a.require(
           std::isfinite(norm(h.place) + norm(h.velocity) + norm(h.force)));
     }
-    a(seen_)(flow_);
+    a(seen_.work)(seen_.moment)(seen_.took)(flow_);
     a.require(std::isfinite(seen_.work + seen_.moment));
   }
 
@@ -103,6 +110,54 @@ class EnergyBalance {
   EnergyFlow flow_;
 
   void find_carrier(const Cloth& g, double t, const ConstraintPlan& constraint);
+};
+
+/** Follows the balance of a run: its error is the method's. A gain never has
+ * another cause; a loss may be that of contact and tearing: EnergyFlow::took.
+ *
+ * With a symplectic method the energy of an oscillation swings by a share of
+ * O((dt omega)^2). So gains are measured, as in StepControl, from the least of
+ * the initial balance and of the means of all rounds of 8 looks. */
+class EnergyWatch {
+ public:
+  static constexpr int round = 8;  ///< calls of look()
+
+  /** @param e, flow at the start   @param dt the step [s]
+   * @param gamma largest of drag [1/s]
+   * @param floor, round_off of the DivergenceGuard [J] */
+  EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
+              double gamma, double floor, double round_off);
+
+  /** Take the state after some steps into account. */
+  void look(const Energies& e, const EnergyFlow& flow);
+
+  /** The error of the energy now [J]; positive if gained. */
+  double off() const { return off_; }
+  /** off() as a share of the largest internal energy; 0 if that is negligible,
+   * as in a free fall, or beside work and drag. */
+  double share() const;
+  /** The largest gain so far [J]. */
+  double gain() const { return gain_; }
+  /** The gain or loss that StepControl would tolerate [J]; and, as work and
+   * drag are sums over steps by the trapezoidal rule, 2 % of them and (gamma
+   * dt)^2/4: in a steady fall that rule errs by (gamma dt)^2/6. */
+  double tolerance() const;
+  /** The method has added more energy than is tolerated. */
+  bool gains() const { return gain_ > tolerance(); }
+  /** The method has lost more than that, and nothing else can have. */
+  bool loses() const { return !took_ && -off_ > tolerance(); }
+  /** True if contact or tearing may have taken energy. */
+  bool took() const { return took_; }
+
+  void archive(Archive& a);
+
+ private:
+  double dt_, start_, sums_, floor_, round_off_;  // sums_: their error [1]
+  double largest_, fall_ = 0;  // internal energy; see StepControl::State [J]
+  double off_ = 0, sum_ = 0;   // sum_: off_ over this round
+  double least_ = 0, gain_ = 0, passed_ = 0;
+  int looks_ = 0;
+  bool took_ = false;
 };
 
 }  // namespace lab

@@ -11,6 +11,7 @@ constexpr double shorter = 0.7, longer = 1.15;
 constexpr double noise = 0.05;    // of the tolerance: no reason to shorten
 constexpr double seen = 0.8;      // of it: the rest is for steps between looks
 constexpr int most_failures = 6;  // that count
+constexpr double at_rest = 1e-6;  // of the largest energy of motion: none
 }  // namespace
 
 StepControl::StepControl(double dt, const Energies& start, const Limits& limits,
@@ -42,9 +43,11 @@ void StepControl::State::archive(Archive& a) {
 void StepControl::archive(Archive& a) {
   auto& [shortest, longest, shortened, lengthened, taken_back] = report_;
   a(now_)(shortest)(longest)(shortened)(lengthened)(taken_back)(failures_);
+  a(limits_.rest);
   a.require(shortest_ <= now_.dt && 0 < shortest && shortest <= longest &&
             std::isfinite(longest) && 0 <= shortened && 0 <= lengthened &&
-            0 <= taken_back && 0 <= failures_ && failures_ <= most_failures);
+            0 <= taken_back && 0 <= failures_ && failures_ <= most_failures &&
+            std::isfinite(limits_.rest));
 }
 
 StepControl::Verdict StepControl::look(const Energies& e,
@@ -59,8 +62,9 @@ StepControl::Verdict StepControl::look(const Energies& e,
   const double least_noise = noise * most;
   const double left = most - (s.base - s.least);
   const bool bursts = s.low - s.base > std::max(0.5 * left, least_noise);
-  const bool creeps = s.low - s.least > (0.3 + 0.4 * part) * most &&
-                      s.low - s.mark > least_noise;
+  const bool creeps =
+      s.low - s.least > s.fall + (0.3 + 0.4 * part) * (most - s.fall) &&
+      s.low - s.mark > least_noise;
   const bool beyond =
       s.last - s.least > seen * most && s.last - s.mark > least_noise;
   const bool good = std::isfinite(s.last) && !bursts && !creeps && !beyond;
@@ -86,13 +90,14 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
     s.fall = std::max(s.fall, 2 * e.fall_power * s.dt);
     return;
   }
+  limits_.rest = std::max(limits_.rest, at_rest * e.internal());
   // Drag takes 2 gamma of kinetic energy, half of that of an oscillation.
   const double left = std::exp(-lost / twice_mean);
   s.scale =
       std::max({left * s.scale, std::min(s.scale, limits_.rest), e.relative});
   s.fall = limits_.early ? left * s.fall + more_fall : 0;
   // In each step contact lifts a resting cloth back to the surface.
-  if (flow.loose) s.fall = std::max(s.fall, limits_.floor);
+  if (flow.loose) s.fall = std::max(s.fall, 4 * limits_.floor);
   s.gain *= left;
   s.least += (1 - left) * std::max(0.0, s.base - s.least);
 }

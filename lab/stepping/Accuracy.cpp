@@ -52,8 +52,14 @@ Pilot run_pilot(const Model& m, const Track* other, const std::string& doing,
 Accuracy find_accuracy(
     const Model& m, double asked,
     const std::function<void(const std::string&, double)>& tell) {
-  Accuracy best = {asked, m.step, m.t_end, -1, 0, 0, {}};
   Model coarse = m;
+  const bool adaptive = m.method->info.adaptive;
+  double TimeStep::*const knob =
+      adaptive ? &TimeStep::tolerance : &TimeStep::dt;  // errors fall with it
+  if (!adaptive)
+    coarse.step = {.dt = std::min(safe_share * Scene(m).safe_limit(), m.t_end)};
+  const double smallest = adaptive ? least * finer : coarse.step.dt / 1024;
+  Accuracy best = {asked, coarse.step, m.t_end, -1, 0, 0, m.has_contact(), {}};
   std::optional<Pilot> a;
   int runs = 0;
   const auto run = [&](const Model& pilot, const Track* other) {
@@ -64,7 +70,7 @@ Accuracy find_accuracy(
   for (int pair = 1; pair <= most_pairs; ++pair) {
     if (!a) a = run(coarse, nullptr);
     Model fine = coarse;
-    fine.step.tolerance = coarse.step.tolerance / finer;
+    fine.step.tolerance /= finer;
     fine.step.dt /= 2;
     Pilot b = a->failure.empty() ? run(fine, &a->track) : *a;
     if (!b.failure.empty()) {
@@ -73,7 +79,7 @@ Accuracy find_accuracy(
     }
     // If the first run has the error e, the second one has e/ratio. At contacts
     // the error is of first order in the step.
-    const double ratio = m.has_contact()
+    const double ratio = m.has_contact() || !adaptive
                              ? double(b.evaluations) / double(a->evaluations)
                              : finer;
     const double factor = 1 / (1 - 1 / std::max(ratio, 1.1));
@@ -84,25 +90,27 @@ Accuracy find_accuracy(
                           apart.horizon(asked / factor),
                           factor * apart.most().rms,
                           factor * apart.most().largest,
+                          m.has_contact(),
                           {}};
     if (now.horizon <= best.horizon) break;  // round-off decides
-    const double before = best.horizon, step_before = best.step.tolerance;
+    const double before = best.horizon, step_before = best.step.*knob;
     best = now;
     if (now.kept()) break;
     // Small errors are proportional to the tolerance. If they have saturated,
     // the horizon grows with the logarithm of the tolerance.
+    const double last = coarse.step.*knob;
     double share = std::max(1e-4, asked / (3 * now.rms));
     if (before >= 0)
-      share = std::min(
-          share, std::max(1e-3, std::pow(coarse.step.tolerance / step_before,
-                                         (m.t_end - now.horizon) /
-                                             (now.horizon - before))));
-    const double next = std::max(share * coarse.step.tolerance, least * finer);
-    if (next > coarse.step.tolerance / 2) break;
-    if (next >= fine.step.tolerance / 2) {
+      share =
+          std::min(share, std::max(1e-3, std::pow(last / step_before,
+                                                  (m.t_end - now.horizon) /
+                                                      (now.horizon - before))));
+    const double next = std::max(share * last, smallest);
+    if (next > last / 2) break;
+    if (next >= fine.step.*knob / 2) {
       a = std::move(b), coarse = fine;
     } else {
-      a.reset(), coarse.step.tolerance = next;
+      a.reset(), coarse.step.*knob = next;
     }
   }
   best.horizon = std::max(best.horizon, 0.);
@@ -116,7 +124,8 @@ std::string Accuracy::text() const {
   const std::string size = two_digits(rms) + " m (RMS over the nodes), " +
                            two_digits(largest) + " m at the worst node";
   if (kept()) return "positions " + to + ": kept; measured error " + size;
-  return "positions " + to + ": predictable to " + short_text(horizon) +
+  return "positions " + to + (contact ? ": kept to " : ": predictable to ") +
+         short_text(horizon) +
          " s; after that two runs of different accuracy differ by " +
          (std::isfinite(rms) ? size : "the nodes that are removed");
 }

@@ -18,7 +18,8 @@ struct Accuracy {
   /** The largest error at any time [m]: RMS over the nodes, and of one node;
    * infinite if the runs remove different nodes. */
   double rms = 0, largest = 0;
-  std::string unknown;  ///< why no error could be measured; else empty
+  bool contact = false;  ///< errors are those of contact, maybe not of chaos
+  std::string unknown;   ///< why no error could be measured; else empty
 
   bool kept() const { return unknown.empty() && horizon >= t_end; }
   /** The verdict in one sentence. */
@@ -36,7 +37,11 @@ struct Accuracy {
  * tolerance, down to about 1000 times round-off. If that is not enough either,
  * the motion is chaotic, and positions are predictable only up to the horizon.
  *
- * @pre m.method is adaptive, m.step.fixed(), m.step.tolerance > 0
+ * A method with fixed steps begins with safe_share of its limit; its steps are
+ * shortened as tolerances are, to a thousandth at most.
+ *
+ * @pre m.method is adaptive, m.step.fixed(), m.step.tolerance > 0; or it has a
+ * stability limit here
  * @param tell called with a text and the finished share of the present run
  * Throws InputError, SceneError, Interrupted.
  * Complexity: 2.4 times the run for a smooth motion by rkn64, up to 20 times

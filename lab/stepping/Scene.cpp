@@ -30,14 +30,19 @@ System& Scene::build() {
   g.clear();
   recipe_.build(g);
   system_.acting = recipe_.force(g), system_.gravity = recipe_.gravity;
+  system_.wind = recipe_.wind;
   system_.hand.reset();
   held_ = recipe_.held ? recipe_.held(g) : std::vector<HeldNodes>();
   system_.watched.emplace(recipe_.constraint(g));
+  system_.overlaps = false;
+  if (recipe_.inside)
+    for (Node n : g.nodes()) system_.overlaps |= recipe_.inside(n.position());
   return system_;
 }
 
 /** Make the constraint anew, with the pins held_. */
 System& Scene::hold() {
+  system_.overlaps = false;
   system_.watched.emplace(recipe_.holding(system_.cloth, held_));
   return system_;
 }
@@ -67,6 +72,7 @@ void Scene::change_forces(const Recipe& recipe) {
   CombinedForces acting = recipe.force(fresh);
   edit([&] {
     recipe_ = recipe, system_.gravity = recipe.gravity;
+    system_.wind = recipe.wind;
     system_.acting = std::move(acting);
     for (Edge e : cloth().edges())
       e.value().K = arrays(fresh).edge_values()[e.id()].K;
@@ -91,8 +97,7 @@ bool Scene::pin(unsigned node) {
   if (!is_there(cloth(), node) || is_pinned(node)) return false;
   edit([&] {
     arrays(cloth()).node_values()[node].vel = Point();
-    if (held_.empty() || held_.back().motion.velocity != Point())
-      held_.emplace_back();
+    if (held_.empty() || held_.back().motion.moves()) held_.emplace_back();
     auto& nodes = held_.back().nodes;
     nodes.insert(
         std::ranges::lower_bound(nodes, node, {}, &HeldNodes::Held::id),
@@ -172,6 +177,14 @@ Explanation Scene::explanation() const {
     return {*failure(), &diagnosis()};
   } catch (const Interrupted&) {
     return {*failure(), nullptr};
+  }
+}
+
+std::string Scene::remedy() const {
+  try {
+    return diagnosis().remedy_text();
+  } catch (const Interrupted&) {
+    return Explanation::interrupted;
   }
 }
 

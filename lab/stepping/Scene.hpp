@@ -17,7 +17,8 @@ namespace lab {
 /** A scene, ready to run. */
 class Scene {
  public:
-  /** At t = 0, as the recipe builds it.
+  /** At t = 0, as the recipe builds it. If nodes lie inside obstacles, all
+   * constraints act once: their work is in flow().
    * @pre step.dt > 0
    * Throws std::invalid_argument if the step is to be chosen and nothing
    * bounds it; and what the recipe throws. */
@@ -117,13 +118,15 @@ class Scene {
   /** The cause and a cure, found in the first call: the scene is run with other
    * methods and steps, each to t_end() or for trial_work. Trials that do not
    * fail are repeated with half the step.
-   * @pre failure()
+   * @pre failure(), or energy_watch() has found that the run is wrong
    * Throws what the recipe throws; Interrupted. */
   const Diagnosis& diagnosis() const;
   /** Failure and diagnosis in words; only the failure if a signal interrupts
    * the diagnosis.
    * @pre and throws as diagnosis(), but not Interrupted */
   Explanation explanation() const;
+  /** The remedy in words.  @pre and throws as explanation() */
+  std::string remedy() const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** The scene with the method and step of @a cure: from its start, or from the

@@ -34,8 +34,23 @@ void Stepper::restart(double t) {
   start_energy_ = energies(system_.cloth, system_.gravity).total();
   if (!step_.fixed() && std::isfinite(start_energy_))
     clock_.set_dt(limits_.chosen(entry_, step_.rule));
-  start({});
-  if (watch_) watch_.emplace(energy(), clock_.dt, *guard_);
+  EnergyFlow flow;
+  if (system_.overlaps) flow.work = remove_overlaps();
+  start(flow);
+  if (watch_) start_watch();
+}
+
+/** Let the constraints act on the initial state.
+ * @return their work [J]; 0 if they can't: then the first step fails. */
+double Stepper::remove_overlaps() {
+  NodeStates before;
+  before.keep(system_.cloth);
+  try {
+    constraint_(system_.cloth, time());
+  } catch (const StepError&) {
+    before.restore(system_.cloth);
+  }
+  return energies(system_.cloth, system_.gravity).total() - start_energy_;
 }
 
 void Stepper::make_method() {
@@ -101,7 +116,7 @@ void Stepper::hand_changed() {
 void Stepper::start_control() {
   control_.reset();
   if (failure_) return;
-  if (!step_.fixed() || follows_drag_) start_drag();
+  if (!step_.fixed() || follows_drag_ || watch_) start_drag();
   if (step_.fixed()) return;
   const double longest = limits_.mild(entry_, drag_, clock_.dt, step_.gain);
   if (longest < clock_.dt) clock_.set_dt(longest);
@@ -120,7 +135,7 @@ void Stepper::start_control() {
 
 void Stepper::start_drag() {
   drag_ = force_->drag(), largest_gamma_ = largest_gamma(system_.cloth, drag_);
-  drag_power_ = drag_.power(system_.cloth), sampled_ = time();
+  drag_power_ = drag_.power(system_.cloth, system_.wind), sampled_ = time();
 }
 
 void Stepper::follow_drag() {
@@ -132,7 +147,13 @@ void Stepper::watch_energy(double t_end) {
   constexpr double looks = 64;
   watch_interval_ =
       int(std::clamp(t_end / clock_.dt / looks, 1., double(guard_interval)));
-  watch_.emplace(energy(), clock_.dt, *guard_);
+  start_watch();
+  if (!control_) start_drag();
+}
+void Stepper::start_watch() {
+  watch_.emplace(energy(), flow(), clock_.dt,
+                 largest_gamma(system_.cloth, force_->drag()), guard_->floor(),
+                 guard_->round_off());
 }
 
 bool Stepper::run_to(double t_end, const std::function<void()>& after) {
@@ -145,30 +166,37 @@ bool Stepper::run_to(double t_end, const std::function<void()>& after) {
 
 // -------------------------------------------------------------------- A step
 
+/** True if pins, obstacles or the hand do work, which is added up step by step.
+ * Symplectic Euler puts held nodes to their places at the start of a step, so
+ * after a pin has stopped they move once more. */
+static bool works(const System& s, const StepClock& c) {
+  return s.hand || !s.watched->inner().is_at_rest(c.time() - c.dt);
+}
+
 bool Stepper::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
   if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
   most = steps_to_check(most);
+  const bool moves = works(system_, clock_);
   if (!advance(most)) return not_good(clock_.steps + most);
   const bool now = arrays(system_.cloth).version() != version_ || done(t_end);
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
   const bool watched = watch_ && (now || clock_.steps % watch_interval_ == 0);
-  if (!drag_.none()) sample_drag(now || (guarded && !control_));
+  if (!drag_.none())
+    sample_drag(now || watched || moves || (guarded && !control_));
   if (!judged && !guarded && !watched) return true;
   const Energies e = energy();
-  if (watched) watch_->look(e);
   if (judged && !judge(e)) return take_back();
-  return !guarded || guard(e);
+  if (guarded && !guard(e)) return false;
+  if (watched) watch_->look(e, flow());
+  return true;
 }
 
-/** The number of steps, up to @a most, until the next check; 1 if moving pins
- * or obstacles do work, which is added up step by step. Symplectic Euler puts
- * held nodes to their places at the start of a step, so after a pin has stopped
- * they move once more. */
+/** The number of steps, up to @a most, until the next check. */
 int Stepper::steps_to_check(int most) const {
-  if (system_.hand || !constraint_.is_at_rest(time() - clock_.dt)) return 1;
+  if (works(system_, clock_)) return 1;
   const auto up_to_multiple = [&](int interval) {
     most = std::min(most, interval - int(clock_.steps % interval));
   };
@@ -209,7 +237,8 @@ bool Stepper::advance(int most) {
 
 /** Steps between two samples of drag. */
 int Stepper::drag_interval() const {
-  constexpr double most = 0.005;  // of a velocity
+  if (follows_drag_ && !control_) return 1;  // control_ has its own bits
+  constexpr double most = 0.005;             // of a velocity
   return int(std::clamp(most / (largest_gamma_ * clock_.dt), 1.,
                         double(StepControl::look_interval)));
 }
@@ -221,11 +250,11 @@ void Stepper::sample_drag(bool now) {
       clock_.steps % StepControl::look_interval != 0)
     return;
   balance_->add_drag(drag_loss() - flow().drag);
-  drag_power_ = drag_.power(system_.cloth), sampled_ = time();
+  drag_power_ = drag_.power(system_.cloth, system_.wind), sampled_ = time();
 }
 
 double Stepper::drag_loss() const {
-  const double power = drag_.power(system_.cloth);
+  const double power = drag_.power(system_.cloth, system_.wind);
   return flow().drag + 0.5 * (drag_power_ + power) * (time() - sampled_);
 }
 
@@ -329,7 +358,7 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   clock_ = clock;
   balance_->resume(system_.cloth, time(), constraint_, flow);
   method_->restart();
-  sampled_ = time(), drag_power_ = drag_.power(system_.cloth);
+  sampled_ = time(), drag_power_ = drag_.power(system_.cloth, system_.wind);
   keep_checked();
 }
 

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "lab/stability/Diagnosis.hpp"
-#include "lab/stability/EnergyWatch.hpp"
 #include "lab/stability/Guard.hpp"
 #include "lab/stability/StepControl.hpp"
 #include "lab/stepping/StepLimits.hpp"
@@ -42,9 +41,11 @@ struct StepClock {
 struct System {
   Cloth cloth;
   double gravity = grav;                          ///< [m/s^2]
+  Point wind = Point();                           ///< [m/s]
   CombinedForces acting{CombinedForces::List()};  ///< without the hand
   std::optional<HandForce> hand;
   std::optional<WatchedConstraint> watched;  ///< nullopt only until it is built
+  bool overlaps = false;                     ///< nodes start inside an obstacle
 };
 
 /** Moves a System by a method, with a clock.
@@ -116,7 +117,8 @@ class Stepper {
   /** The energy that entered and left the cloth since the start. */
   const EnergyFlow& flow() const { return balance_->flow(); }
   /** From now on flow() includes the loss by linear drag, even with fixed
-   * steps.  Complexity: up to a tenth of a force evaluation a step */
+   * steps, summed over all steps.  Complexity: a tenth of a force evaluation a
+   * step */
   void follow_drag();
   bool follows_drag() const { return follows_drag_; }
   /** The energy that linear drag took since the start [J].  @pre as drift() */
@@ -126,9 +128,10 @@ class Stepper {
    * @param now energy() */
   double drift(const Energies& now) const;
   /** From now on energy_watch() follows the error of the energy.
-   * @pre no step is done, and energy is conserved: see EnergyWatch
+   * @pre no step is done
    * @param t_end end of the run [s]: it looks 64 times until then, but at least
-   * every guard_interval steps.  Complexity: 0.7 of a force evaluation each */
+   * every guard_interval steps.  Complexity: 0.7 of a force evaluation each;
+   * drag is summed every few steps, unless follow_drag() */
   void watch_energy(double t_end);
   const std::optional<EnergyWatch>& energy_watch() const { return watch_; }
   /** The energy of springs strained by round-off [J]. */
@@ -203,7 +206,7 @@ class Stepper {
   TimeStep step_;
   MethodEntry entry_;
   StepClock clock_;
-  bool follows_drag_ = false;
+  bool follows_drag_ = false;  // in every step
   std::optional<Failure> failure_;
   std::optional<ForcePlan> force_;
   ConstraintPlan constraint_;
@@ -229,11 +232,13 @@ class Stepper {
   double start_energy_ = 0;    // [J]
   std::string error_;          // of the method
 
+  double remove_overlaps();
   void start(const EnergyFlow& flow);
   void hand_changed();
   void plan();
   void start_control();
   void start_drag();
+  void start_watch();
   int steps_to_check(int most) const;
   int drag_interval() const;
   void sample_drag(bool now);
