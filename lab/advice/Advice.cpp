@@ -215,6 +215,10 @@ std::string as_options(const Model& m) {
 }
 
 std::string in_words(const Advice& a) {
+  if (!a.trivial.empty() && a.grids.empty())
+    return "advice: no run is needed: " + name_of(a.measure) + " is" +
+           numbers(a.answer, a.measure) + "\n  ./cloth " + as_options(a.model) +
+           " --headless\n  trivial: " + a.trivial + '\n';
   const std::string unit =
       *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
   std::string text = a.own ? assessment(a)

@@ -27,10 +27,11 @@ void take(Advice& a, const Choice& c) {
   a.evaluations = costs.evaluations(c.work);
   if (const double limit = costs.limit(c.model.method->info); limit != no_limit)
     a.of_stable = c.model.step.dt / limit;
-  auto removed = c.removed;  // two equal parts are counted one by one
+  auto removed = c.parts.removed;  // two equal parts are counted one by one
   for (PartReport& p : a.parts) {
     const auto it = std::ranges::find(removed, p.part);
-    p.needed = it == removed.end() && !goes_with_another(p.part, c.removed);
+    p.needed =
+        it == removed.end() && !goes_with_another(p.part, c.parts.removed);
     if (it != removed.end()) removed.erase(it);
   }
 }
@@ -84,6 +85,12 @@ Advice advise(const Model& m, const AdviceRules& rules) {
   const CME212::Clock clock;
   Question q(m, rules);
   const auto grids = study_grids(q);
+  if (!grids->trivial().empty()) {  // on any grid, before a run
+    Advice a = finish(q, *grids, clock);
+    a.answer = answer(m, Scene(m), m.measure);
+    a.model = m, a.error = 0, a.work = q.own_work;
+    return a;
+  }
   PartStudy parts(q, *grids);
   ChoiceSearch choice(q, *grids, parts);
   bool calm = true;

@@ -82,7 +82,7 @@ void GridStudy::find_buckling(const Run& run, const Answer& plane) {
 
 void GridStudy::try_squares() {
   const double f = factor(runs_.back().level);
-  Sides s = all_sides(f, f);
+  Sides s = sides_of(runs_.back().level);
   double longest = 1;
   for (std::size_t k = 0; k < s.size(); ++k) {
     const Sheet& sheet = q_.scene.sheets[k];

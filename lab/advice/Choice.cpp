@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "lab/methods/Methods.hpp"
@@ -10,42 +12,73 @@
 
 namespace lab {
 
-std::vector<Choice> ChoiceSearch::choices(const Sides& s) const {
-  std::vector<const MethodEntry*> methods = {
-      &table::verlet, &table::symplectic_euler, &table::pefrl,
-      &table::mollified_impulse, &table::tr_bdf2};
-  if (q_.rules.keeps_method) methods = {q_.scene.method};
+// Where the work varies, it is at least this share of the prediction.
+constexpr double least_of_prediction = 0.4;
+
+std::vector<Choice> ChoiceSearch::choices(
+    const std::vector<GridStudy::Grid>& grids) const {
+  std::vector<const MethodEntry*> tried;
+  for (const MethodEntry& m : methods)
+    if (m.info.limit > 0 || m.info.adaptive) tried.push_back(&m);
+  if (q_.rules.keeps_method) tried = {q_.scene.method};
   std::vector<Choice> all;
-  for (std::size_t k = parts_.reductions().size(); k-- > 0;) {
-    const auto& removed = parts_.reductions()[k].removed;
-    std::optional<Model> m = without_all(grids_.on_grid(s), removed);
-    if (!m) continue;
-    m->t_end = PartStudy::dissipates(*m) ? parts_.rest_time() : q_.scene.t_end;
-    const StepCosts costs(*m);
-    for (const MethodEntry* method : methods) {
-      m->method = method;
-      const MethodInfo& info = method->info;
-      const double limit = costs.limit(info);
-      // Without stiff springs it is Verlet.
-      if (info.multirate && !q_.rules.keeps_method && !(limit > costs.verlet()))
-        continue;
-      const bool bounded = limit != no_limit;
-      double dt = bounded ? 0.9 * limit : m->t_end;
-      for (int n = 0; n < (bounded ? 7 : 11); ++n) {
-        m->step = {.dt = std::min(dt, m->t_end)};
-        if (q_.rules.keeps_step) m->step = q_.scene.step;
-        m->step.dt = step_of(*m);
-        all.push_back({{.model = *m, .work = costs.of_run(*m)},
-                       removed,
-                       s,
-                       bounded ? m->step.dt / limit : dt});
-        dt /= bounded ? std::sqrt(2) : 2;
-        if (q_.rules.keeps_step) break;
-      }
+  for (const GridStudy::Grid& grid : grids)
+    for (const Reduction& parts : parts_.reductions()) {
+      std::optional<Model> m =
+          without_all(grids_.on_grid(grid.sides), parts.removed);
+      if (!m) continue;
+      // Long implicit steps may need all of the time to come to rest.
+      std::set ends = {q_.scene.t_end};
+      if (PartStudy::dissipates(*m)) ends.insert(parts_.rest_time());
+      const StepCosts costs(*m);
+      for (const double t_end : ends)
+        for (const MethodEntry* method : tried) {
+          m->method = method, m->t_end = t_end;
+          const MethodInfo& info = method->info;
+          const double limit = costs.limit(info);
+          // Without stiff springs it is Verlet.
+          if (info.multirate && !q_.rules.keeps_method &&
+              !(limit > costs.verlet()))
+            continue;
+          const bool bounded = limit != no_limit;
+          double dt = bounded ? 0.9 * limit : m->t_end;
+          for (int n = 0; n < (bounded ? 7 : 11); ++n) {
+            m->step = {.dt = std::min(dt, m->t_end)};
+            if (q_.rules.keeps_step) m->step = q_.scene.step;
+            m->step.dt = step_of(*m);
+            all.push_back({{.model = *m, .work = costs.of_run(*m)},
+                           parts,
+                           grid,
+                           bounded ? m->step.dt / limit : dt});
+            dt /= bounded ? std::sqrt(2) : 2;
+            if (q_.rules.keeps_step) break;
+          }
+        }
     }
-  }
-  std::ranges::stable_sort(all, {}, &AdvisedRun::work);
+  std::ranges::stable_sort(all, {}, [](const Choice& c) {
+    return std::tuple(c.work, -double(c.parts.removed.size()),
+                      -c.model.method->info.order);
+  });
   return all;
+}
+
+bool ChoiceSearch::may_hold(const Choice& c) const {
+  return std::ranges::none_of(step_errors_, [&](const StepError& e) {
+    if (e.method != c.model.method || e.t_end != c.model.t_end) return false;
+    if (!e.error) return c.step > 0.99 * e.step;
+    const double error = grids_.size_of(Effect(c.grid.off).add(1, e.error->by));
+    return c.model.step.dt > 0.99 * e.dt &&
+           (e.removed == c.parts.removed ? !grids_.accepts(0.8 * error)
+                                         : error > 2 * grids_.tolerance());
+  });
+}
+
+void ChoiceSearch::learn(const Choice& c, const Trial& t, double share) {
+  StepError e{c.model.method, c.parts.removed,         c.model.t_end,
+              share * c.step, share * c.model.step.dt, {}};
+  if (t.ok())
+    e.error = Effect(t.answer, grids_.grids().limit()).add(-1, c.grid.off.by);
+  step_errors_.push_back(e);
 }
 
 Trial ChoiceSearch::run(const Choice& c, const Model& m, double work,
@@ -53,21 +86,25 @@ Trial ChoiceSearch::run(const Choice& c, const Model& m, double work,
   return q_.pilots.run(m,
                        std::to_string(nodes_of(m)) + " nodes by " +
                            std::string(m.method->info.name) + by,
-                       work, c.removed, shake);
+                       work, c.parts.removed, shake);
 }
 
-bool ChoiceSearch::holds(Choice& c) {
+bool ChoiceSearch::holds(Choice& c, double most) {
   const Trial t = run(c, c.model, c.work, "");
+  learn(c, t, 1);
+  // Of Newton's iterations and of inner steps the number is known only now.
+  if (t.ok() && StepCosts::varies(c.model.method->info)) c.work = t.work;
   c.error = grids_.error_of(t);
   c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
   c.uncertainty = grids_.grids().uncertainty();
   q_.advice.choices.push_back({nodes_of(c.model),
                                std::string(c.model.method->info.name),
                                c.model.step.dt, c.error, c.work});
-  if (!grids_.accepts(c.error)) return false;
+  if (!grids_.accepts(c.error) || !(c.work < most)) return false;
   Model smaller = c.model;
   smaller.step.dt /= 2;
   const Trial half = run(c, smaller, 2 * c.work, " and half the step");
+  learn(c, half, 0.5);
   c.half_step = grids_.error_of(half);
   if (!grids_.accepts(*c.half_step)) return false;
   c.half = half.answer;
@@ -79,17 +116,16 @@ bool ChoiceSearch::holds(Choice& c) {
 }
 
 bool ChoiceSearch::holds_on_finer_grids(Choice& c) {
-  for (const auto& [more, by] :
-       {std::pair(std::sqrt(2), " and 1.4 times the cells"),
-        std::pair(2., " and twice the cells")}) {
+  for (const auto& [more, by] : {std::pair(1.5, " and 1.5 times the cells"),
+                                 std::pair(2., " and twice the cells")}) {
     const double work = std::pow(more, 3) * c.work;
-    if (c.sides.empty() ||
+    if (c.grid.sides.empty() ||
         !q_.pilots.affords(work, "a check on twice the cells", 0.5))
       break;
-    Sides sides = c.sides;
+    Sides sides = c.grid.sides;
     for (auto& sheet : sides)
       for (double& side : sheet) side *= more;
-    Model finer = *without_all(grids_.on_grid(sides), c.removed);
+    Model finer = *without_all(grids_.on_grid(sides), c.parts.removed);
     finer.method = c.model.method, finer.t_end = c.model.t_end;
     finer.step = {.dt = c.model.step.dt / more};
     const double error = grids_.error_of(run(c, finer, work, by));
@@ -123,30 +159,35 @@ double ChoiceSearch::perturb(const Choice& c) {
   return most;
 }
 
-void ChoiceSearch::try_all(const Sides& s, std::optional<Choice>& best) {
-  // Parts left out for which smaller steps are no remedy, and the last error
-  // of each method with them.
-  std::set<std::size_t> fail;
-  std::map<std::pair<std::size_t, std::string>, double> errors;
-  for (Choice& c : choices(s)) {
-    if (best && !(c.work < best->work)) break;
-    if (fail.contains(c.removed.size())) continue;
-    const std::string method(c.model.method->info.name);
-    const auto fails = too_long_.find(method);
-    if (fails != too_long_.end() && c.step > 0.99 * fails->second) continue;
+void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
+                           std::optional<Choice>& best) {
+  // Grids, parts and, if it is to blame, the method for which smaller steps are
+  // no remedy; and the last error of each method with them.
+  using Key =
+      std::tuple<Sides, std::vector<std::string>, double, const MethodEntry*>;
+  std::set<Key> fail;
+  std::map<Key, double> errors;
+  for (Choice& c : choices(grids)) {
+    const MethodEntry* method = c.model.method;
+    if (best && !(c.work * least_of_prediction < best->work)) break;
+    if (best && !(c.work < best->work) && !StepCosts::varies(method->info))
+      continue;
+    const Key any{c.grid.sides, c.parts.removed, c.model.t_end, nullptr},
+        own{c.grid.sides, c.parts.removed, c.model.t_end, method};
+    if (fail.contains(any) || fail.contains(own) || !may_hold(c)) continue;
     if (!q_.pilots.affords(c.work, "more expensive choices", 0.33)) break;
-    if (holds(c)) {
+    const double most = best ? best->work : infinite;
+    if (holds(c, most)) {
       best = c;
-      break;
+      continue;
     }
-    if (!(c.error <= 1.5 * grids_.tolerance())) too_long_[method] = c.step;
-    double& before =
-        errors.try_emplace({c.removed.size(), method}, infinite).first->second;
+    double& before = errors.try_emplace(own, infinite).first->second;
     // From files all error is by the step; implicit steps begin very long.
-    const bool bounded = std::isnormal(c.model.method->info.limit);
-    if (!s.empty() &&
-        (grids_.accepts(c.error) || (bounded && c.error > 0.9 * before)))
-      fail.insert(c.removed.size());
+    const bool bounded = std::isnormal(method->info.limit);
+    const bool by_accident = c.half_step && grids_.accepts(*c.half_step);
+    if (!c.grid.sides.empty() &&
+        (by_accident || (bounded && c.error > 0.9 * before)))
+      fail.insert(bounded ? any : own);
     before = c.error;
   }
 }
@@ -159,23 +200,22 @@ void ChoiceSearch::search() {
         grids_.grids().uncertainty() + scatter_share * found_->scatter;
     if (!(found_->error <= grids_.tolerance())) found_.reset();
   }
-  q_.advice.choices.clear(), too_long_.clear();
+  q_.advice.choices.clear();
   std::optional<Choice> best;
-  for (int start : grids_.starts()) {
-    if (best) break;
-    for (const Sides& s : grids_.frontier(start)) try_all(s, best);
-  }
-  if (best) {
-    found_ = best;
-  } else if (!found_ && parts_.rest_time() < q_.scene.t_end) {
-    parts_.forget_rest();
-    search();
-  }
+  for (const GridStudy::Grid& start : grids_.starts())
+    if (!best || std::ranges::any_of(choices({start}), [&](const Choice& c) {
+          return c.work < best->work && may_hold(c);
+        }))
+      try_all(grids_.frontier(start), best);
+  if (best) found_ = best;
 }
 
 void ChoiceSearch::search_steps() {
-  for (Choice& c : choices(grids_.all_sides(1, 1)))
-    if (q_.pilots.affords(c.work, "smaller steps", 0.33) && holds(c)) {
+  const GridStudy::Grid own{Sides(q_.scene.sheets.size(), {1, 1}),
+                            Effect(grids_.grids().limit().size())};
+  for (Choice& c : choices({own}))
+    if (q_.pilots.affords(c.work, "smaller steps", 0.33) &&
+        holds(c, infinite)) {
       found_ = c;
       return;
     }

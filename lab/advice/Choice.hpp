@@ -2,7 +2,6 @@
 /** @file Choice.hpp
  * ChoiceSearch: the cheapest grid, parts, method and step that meet the
  * tolerance. */
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,9 +11,9 @@
 namespace lab {
 
 struct Choice : AdvisedRun {
-  std::vector<std::string> removed = {};
-  Sides sides = {};  // none of a mesh from files
-  double step = 1;   // over the largest stable one; if there is none, [s]
+  Reduction parts = {};
+  GridStudy::Grid grid = {};  // without sides: of a mesh from files
+  double step = 1;  // over the largest stable one; if there is none, [s]
   double scatter = 0;
   Answer half = {};  // by half the step
 };
@@ -35,24 +34,38 @@ class ChoiceSearch {
   const std::optional<Choice>& found() const { return found_; }
 
  private:
+  /** What the step of a choice that was run has added to the error by the pilot
+   * on its grid; nothing: the run failed. */
+  struct StepError {
+    const MethodEntry* method;
+    std::vector<std::string> removed;
+    double t_end, step, dt;  // [s]; Choice::step; [s]
+    std::optional<Effect> error;
+  };
+
   Question& q_;
   GridStudy& grids_;
   PartStudy& parts_;
   std::optional<Choice> found_;
-  std::map<std::string, double> too_long_;  // by method: Choice::step
+  std::vector<StepError> step_errors_;
 
-  /** All methods and steps with these parts on this grid, the cheapest first.
-   */
-  std::vector<Choice> choices(const Sides& s) const;
-  /** Replace @a best by the first of these choices that holds, if one is
-   * cheaper. */
-  void try_all(const Sides& s, std::optional<Choice>& best);
+  /** All parts, methods and steps on these grids, the cheapest first by
+   * prediction. */
+  std::vector<Choice> choices(const std::vector<GridStudy::Grid>& grids) const;
+  /** False if a step that is not longer than that of @a c was too long for an
+   * error as that by the pilot. */
+  bool may_hold(const Choice& c) const;
+  /** Replace @a best by the cheapest choice that holds, if one is cheaper. */
+  void try_all(const std::vector<GridStudy::Grid>& grids,
+               std::optional<Choice>& best);
   /** Run @a c, which meets the tolerance if its error and a share of the
-   * uncertainty do; then its refinements and, last, from perturbed starts. */
-  bool holds(Choice& c);
+   * uncertainty do; then its refinements and, last, from perturbed starts.
+   * @param most the work from which @a c is not wanted */
+  bool holds(Choice& c, double most);
   bool holds_on_finer_grids(Choice& c);
   Trial run(const Choice& c, const Model& m, double work, const std::string& by,
             const Shake& shake = {});
+  void learn(const Choice& c, const Trial& t, double share);
   /** Run @a c from perturbed starts, and by a step between its own and half of
    * it; the answers by these two steps predict that by the third.
    * @return the largest difference from what was expected */

@@ -36,17 +36,14 @@ Question::Question(const Model& m, const AdviceRules& rules)
   advice.t_end = m.t_end, advice.from_files = m.sheets.empty();
 }
 
-GridStudy::GridStudy(Question& q, const Kind& kind, int first, int some)
+GridStudy::GridStudy(Question& q, const Kind& kind)
     : q_(q),
       most_nodes_(q.rules.most_nodes > 0
                       ? q.rules.most_nodes
                       : std::max(Pilots::usual, q.pilots.budget()) / 1e4),
-      level_(first),
-      kind_(kind) {
-  choose_pilots(some);
-}
+      kind_(kind) {}
 
-double GridStudy::factor(int level) {
+double GridStudy::power(int level) {
   const int two = int(std::floor(level / 2.));
   return std::pow(2, two) * (level - 2 * two == 1 ? 1.5 : 1);
 }
@@ -58,13 +55,13 @@ Model GridStudy::pilot(Model m, double factor) const {
   return m;
 }
 
-void GridStudy::choose_pilots(int some) {
+bool GridStudy::choose_pilots(int some) {
   pilot_ = {&table::verlet, {.rule = StepRule::safe}};
   try {
     const Model on = on_level(some);
     const StepCosts costs(on);
     double least = costs.of_run(pilot(on, factor(some)));
-    if (!(least > q_.rules.stiff)) return;
+    if (!(least > q_.rules.stiff)) return true;
     least /= 2;
     for (const MethodEntry* method :
          {&table::mollified_impulse, &table::tr_bdf2}) {
@@ -78,7 +75,9 @@ void GridStudy::choose_pilots(int some) {
       else
         pilot_ = before;
     }
-  } catch (const SceneError&) {  // that grid misses a pin
+    return true;
+  } catch (const SceneError&) {
+    return false;
   }
 }
 
@@ -114,7 +113,8 @@ std::string GridStudy::add() {
       invalid_ = 0;
     } catch (const SceneError& e) {
       // Between the cells of the scene a pin may hold no node.
-      if (++invalid_ > 3 && level_ > 0) return "on " + on + ": " + e.what();
+      if (++invalid_ > 3 && factor(level_) > 1)
+        return "on " + on + ": " + e.what();
       continue;
     }
     if (report.trial.ok()) {
@@ -123,7 +123,7 @@ std::string GridStudy::add() {
       ++level_;
       break;
     }
-    if (level_ >= 0) return "on " + on + ": " + report.trial.failure;
+    if (factor(level_) >= 1) return "on " + on + ": " + report.trial.failure;
     q_.advice.grids.clear(),
         runs_.clear();  // it is too coarse to carry the load
   }
@@ -210,18 +210,22 @@ std::string GridStudy::trivial() const {
          "is an answer";
 }
 
-double GridStudy::error_on(const Sides& s, double most_work, double& work) {
+std::optional<GridStudy::Grid> GridStudy::that_meets(const Sides& s,
+                                                     double most_work,
+                                                     double& work) {
   try {
     double finest = 1e-9;
     for (const auto& sheet : s) finest = std::max({finest, sheet[0], sheet[1]});
     const Model m = pilot(on_grid(s), finest);
     work = work_of_run(m);
     if (!(work < most_work) || !q_.pilots.affords(work, "coarser grids", 0.3))
-      return infinite;
-    return error_of(
-        q_.pilots.run(m, std::to_string(nodes_of(m)) + " nodes", work));
+      return {};
+    const Trial t =
+        q_.pilots.run(m, std::to_string(nodes_of(m)) + " nodes", work);
+    if (!accepts(error_of(t))) return {};
+    return Grid{s, Effect(t.answer, grids().limit())};
   } catch (const SceneError&) {  // its nodes miss a pin
-    return infinite;
+    return {};
   }
 }
 

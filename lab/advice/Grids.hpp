@@ -47,6 +47,12 @@ class GridStudy {
     std::vector<Answer> all = {};  // for every Measure
     Track track;
   };
+  /** A grid that may be chosen. */
+  struct Grid {
+    Sides sides;
+    Effect off;  // the error by its pilot
+    int level = 0;
+  };
   /** The differences between sheets and a mesh from files. */
   struct Kind {
     std::size_t fewest;  ///< grids that tell an error
@@ -113,16 +119,14 @@ class GridStudy {
 
   // Grids that may be chosen:
 
-  /** Cells over those of the scene: 1, 1.5, 2, 3, 4, 6 ..., and down from 1. */
-  static double factor(int level);
-  /** The same factor along all sides. */
-  Sides all_sides(double u, double v) const {
-    return Sides(q_.scene.sheets.size(), {u, v});
-  }
+  /** Of a level, 1, 1.5, 2, 3, 4, 6 ..., and down from 1: steps over those of
+   * the first level; sheets take cells from it. */
+  static double power(int level);
+  /** The cells of a level, over those of the scene. */
+  virtual Sides sides_of(int /*level*/) const { return {}; }
+  virtual double factor(int level) const { return power(level); }
   Model on_grid(const Sides& s) const { return refined(q_.scene, s); }
-  Model on_level(int level) const {
-    return on_grid(all_sides(factor(level), factor(level)));
-  }
+  Model on_level(int level) const { return on_grid(sides_of(level)); }
   /** @a m as pilots run it: by Verlet; or, where its limit makes a grid of few
    * cells cost more than rules.stiff, by a multirate or an implicit method if
    * that takes less than half of the work. Steps shrink with the cells. */
@@ -131,11 +135,11 @@ class GridStudy {
    * from files, the first step over that of @a m. */
   virtual double factor_of(const Model& m) const = 0;
   /** The levels that meet the tolerance by pilots, and on twice the cells. */
-  virtual std::vector<int> starts() const = 0;
-  /** Up to three grids that meet the tolerance by pilots, the cheapest first:
-   * that of level @a start, and those of fewer cells along one side.
+  virtual std::vector<Grid> starts() const = 0;
+  /** Grids that meet the tolerance by pilots and cost at most as much as that
+   * of @a start, itself one of them: of fewer cells along one side.
    * Cost: about a run for each level and side */
-  virtual std::vector<Sides> frontier(int start) = 0;
+  virtual std::vector<Grid> frontier(const Grid& start) = 0;
 
   // Chaos.cpp
 
@@ -152,20 +156,23 @@ class GridStudy {
   void try_squares();
 
  protected:
-  /** Choose the pilots' method. @a some: level of a grid of some 8 cells along
-   * the shortest side, or of the only mesh. */
-  GridStudy(Question& q, const Kind& kind, int first, int some);
+  GridStudy(Question& q, const Kind& kind);
+  /** @param some level of a grid of some 8 cells along the shortest side, or of
+   *        the only mesh
+   * @return false if a pin misses that grid */
+  bool choose_pilots(int some);
 
   Question& q_;
   double most_nodes_;
-  int level_;  // of the next grid
+  int level_ = 0;  // of the next grid
   struct {
     const MethodEntry* method;
     TimeStep step;  // on level 0
   } pilot_;
-  /** The error on this grid by its pilot; infinite if that fails, or takes more
-   * than @a most_work.  @param work is set if the grid is valid */
-  double error_on(const Sides& s, double most_work, double& work);
+  /** This grid with the error by its pilot, if that meets the tolerance and
+   * takes less than @a most_work.  @param work is set if the grid is valid */
+  std::optional<Grid> that_meets(const Sides& s, double most_work,
+                                 double& work);
   /** Where the last error is, in words. */
   virtual std::string finest() const = 0;
 
@@ -175,7 +182,6 @@ class GridStudy {
   std::vector<Run> runs_;
   Shake shake_ = {1e-6};
 
-  void choose_pilots(int some);
   bool know_tolerance();
   Answer answer_at_start() const;
   void find_plane(const Cloth& g);

@@ -34,8 +34,6 @@ class PartStudy {
   /** The time [s] after which the answer stays within a tenth of the tolerance;
    * t-end if it does not. */
   double rest_time() const { return rest_time_; }
-  /** Run to the scene's end: other grids come to rest later. */
-  void forget_rest() { rest_time_ = q_.scene.t_end; }
   /** Only drag and friction bring a cloth to rest. */
   static bool dissipates(const Model& m);
 

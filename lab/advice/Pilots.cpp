@@ -20,6 +20,13 @@ namespace {
 // is at most so many force evaluations for each node along a side, with which
 // Newton's iterations by sparse factorizations are cheaper.
 constexpr double more_iterations = 0.6, of_factor = 10;
+
+/** Null of a method without measured costs. */
+const MethodCost* cost_of(const MethodInfo& info) {
+  const auto cost =
+      std::ranges::find(method_costs, info.name, &MethodCost::method);
+  return cost == method_costs.end() ? nullptr : &*cost;
+}
 }  // namespace
 
 StepCosts::StepCosts(const Model& m) {
@@ -50,18 +57,23 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
     return springs + cost_of_filter(stiff) +
            std::ceil(dt * finer / inner_) * cost_of_inner_step(stiff);
   }
-  const auto cost =
-      std::ranges::find(method_costs, info.name, &MethodCost::method);
+  const MethodCost* cost = cost_of(info);
   const bool solves = info.limit == no_limit || info.adaptive;
-  if (!solves || cost == method_costs.end()) return springs * info.sweeps;
-  if (!(cost->at_ten > 0)) return springs * cost->at_limit;
+  if (!solves || !cost) return springs * info.sweeps;
   const double limits = std::max(1.0, dt * finer / verlet_);
+  // Inner steps are about as long as Verlet's limit.
+  if (info.adaptive) return springs * cost->at_limit * std::ceil(limits);
   const double grows = cost->at_ten / cost->at_limit;
   double by_step = cost->at_limit * std::pow(grows, std::log10(limits));
   if (limits > 10)
     by_step = cost->at_ten *
-              (grows > 1.1 ? std::pow(limits / 10, more_iterations) : 1);
+              (varies(info) ? std::pow(limits / 10, more_iterations) : 1);
   return springs * std::min(by_step, factor_ * finer);
+}
+
+bool StepCosts::varies(const MethodInfo& method) {
+  const MethodCost* cost = cost_of(method);
+  return cost && (method.adaptive || cost->at_ten > 1.1 * cost->at_limit);
 }
 
 double StepCosts::limit(const MethodInfo& method) const {

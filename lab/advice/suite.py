@@ -13,7 +13,6 @@ import argparse
 import concurrent.futures
 import csv
 import hashlib
-import json
 import math
 import os
 import pathlib
@@ -32,8 +31,7 @@ LONG_RUN = 2e7  # spring evaluations of a run of about 0.2 s
 COLUMNS = ("seed", "kind", "measure", "tolerance", "question", "outcome",
            "nodes", "method", "predicted", "uncertainty", "real", "half",
            "next", "twice", "truth_error", "work", "best_work", "best_error",
-           "best", "own_work", "advice_work", "silent", "right", "same",
-           "order", "limit_error", "limit_uncertainty", "limit_change")
+           "best", "own_work", "advice_work", "silent", "right", "same")
 # name: goal (at least; at most if negative), in words.
 GOALS = {
     "advised": (90, "% of the scenes that brute force answers are advised"),
@@ -100,25 +98,6 @@ def rates(rows: list[dict[str, str]]) -> dict[str, float]:
                                 ("same", "same"))}}
 
 
-def limits(rows: list[dict[str, str]],
-           factor: float) -> tuple[int, float, float]:
-    """Of the limits of grids without an observed order: how many, the share
-    [%] whose error is within the uncertainty, and uncertainty over error in
-    the median, if the uncertainty had this factor: Refinement.cpp has 1.5."""
-    known = []
-    for r in rows:
-        if r.get("limit_error") and not r["order"]:
-            error, all_of_it, change = (
-                float(r["limit_" + x])
-                for x in ("error", "uncertainty", "change"))
-            known.append((error, float(r["truth_error"]), change + (
-                all_of_it - change) * factor / 1.5))
-    inside = [error <= u + truth for error, truth, u in known]
-    over = [u / error for error, _, u in known if error > 0]
-    return (len(known), 100 * sum(inside) / len(known) if known else math.nan,
-            statistics.median(over) if over else math.nan)
-
-
 def missed(figures: dict[str, float], goals: dict[str, float]) -> list[str]:
     """Those of the goals that are not reached; NaN is not judged."""
     return [name for name, goal in goals.items()
@@ -135,12 +114,6 @@ def report(rows: list[dict[str, str]]) -> dict[str, float]:
         print(f"{name:12} {f[name]:6.3g} {'>=' if goal > 0 else '<='}"
               f"{abs(goal):4} {'MISSED' if missed(f, {name: goal}) else '':6} "
               f"{words}")
-    for factor in (1, 1.5, 2, 3):
-        n, within, over = limits(rows, factor)
-        if not n:
-            break
-        print(f"factor {factor}, of {n} limits without an order: {within:.3g} "
-              f"% within the uncertainty, which is {over:.2g} times the error")
     return f
 
 
@@ -169,13 +142,10 @@ def judge(seed: int, cloth: pathlib.Path, ask: list[str]) -> Row | None:
             "seed": seed, "kind": s.kind, "measure": s.measure,
             "tolerance": float(tolerance), "own_work": own[1],
             "question": "./cloth " + shlex.join(words)}
-        command = advice_of(s, row, ["./cloth", *words, "--advise", "--json",
-                                     "advice.json", *ask])
+        command = advice_of(s, row, ["./cloth", *words, "--advise", *ask])
         if command:
             paste(s, row, command)
         right, row["truth_error"] = s.truth(float(tolerance)) or ([], "")
-        if right:
-            judge_limit(s, row, right)
         if right and row["truth_error"] <= float(tolerance) / 3:
             if command:
                 compare(s, row, shlex.split(command)[1:], right)
@@ -206,18 +176,6 @@ def advice_of(s: trials.Scene, row: Row, ask: list[str]) -> str:
     announced = re.search(r"by this run: (.*)$", text, re.M)
     s.announced = numbers(announced[1]) if announced else None
     return command[1]
-
-
-def judge_limit(s: trials.Scene, row: Row, right: list[float]) -> None:
-    """The error of the limit that the adviser found, with its uncertainty;
-    only where the truth is known better than that."""
-    file = s.folder / "advice.json"
-    found = json.loads(file.read_text()) if file.exists() else {}
-    if row["truth_error"] < found.get("limit_uncertainty", 0) / 3:
-        row["limit_error"] = distance(found["limit"], right, s.points)
-        row["order"] = found["observed_order"] or ""
-        for name in ("uncertainty", "change"):
-            row["limit_" + name] = found["limit_" + name]
 
 
 def paste(s: trials.Scene, row: Row, command: str) -> None:

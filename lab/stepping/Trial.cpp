@@ -78,12 +78,12 @@ Trial try_out(const Model& m, const Shake& shake,
     scene.change_method(*m.method, {.dt = result.dt});
   }
   Observer observer(m, scene);
+  const double springs = double(scene.cloth().num_edges()),
+               factor = 10 * std::sqrt(double(scene.cloth().num_nodes()));
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
     after(scene);
     if (m.measure.over_time()) observer.look(m, scene);
-    if (!scene.failure())
-      result.work += double(scene.cloth().num_edges()) * m.method->info.sweeps;
   });
   result.failure = text_of(scene.failure());
   if (ok) {
@@ -94,6 +94,9 @@ Trial try_out(const Model& m, const Shake& shake,
     look(scene.cloth());
   }
   result.steps = scene.steps();
+  const Work w = scene.stepper().work();
+  result.work = springs * (double(scene.evaluations() + w.products) +
+                           factor * double(w.factors));
   result.seconds = clock.seconds();
   return result;
 }
