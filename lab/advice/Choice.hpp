@@ -34,8 +34,8 @@ class ChoiceSearch {
   const std::optional<Choice>& found() const { return found_; }
 
  private:
-  /** What the step of a choice that was run has added to the error by the pilot
-   * on its grid; nothing: the run failed. */
+  /** A choice that was run: its step added this to the error by the pilot on
+   * its grid; nothing: the run failed. */
   struct StepError {
     const MethodEntry* method;
     std::vector<std::string> removed;

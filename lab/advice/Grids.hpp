@@ -119,7 +119,7 @@ class GridStudy {
 
   // Grids that may be chosen:
 
-  /** Of a level, 1, 1.5, 2, 3, 4, 6 ..., and down from 1: steps over those of
+  /** 1, 1.5, 2, 3, 4, 6 ..., and down from 1: steps over those of
    * the first level; sheets take cells from it. */
   static double power(int level);
   /** The cells of a level, over those of the scene. */

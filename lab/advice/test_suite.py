@@ -3,7 +3,6 @@ runs with a known answer: python3 lab/advice/test_suite.py"""
 import itertools
 import math
 import pathlib
-import random
 import sys
 import tempfile
 import unittest
@@ -24,22 +23,6 @@ class Limits(unittest.TestCase):
             self.assertAlmostEqual(right[0], 3)
             self.assertAlmostEqual(right[1], 0)
             self.assertLess(doubt, 1e-9)
-
-    def test_scatter_is_in_the_doubt_and_not_much_more(self):
-        """The error is within the doubt in nine of ten, for both orders, and
-        the doubt is at most ten times the error in the median."""
-        dice = random.Random(7)
-        for order in (1, 2):
-            within, ratios = 0, []
-            for _ in range(300):
-                size = 10 ** dice.uniform(-3, 1)
-                answers = [[5 + h ** order + dice.gauss(0, 1e-2 * size * h)]
-                           for h in WIDTHS]
-                right, doubt = trials.extrapolate(WIDTHS, answers, 1)
-                within += abs(right[0] - 5) <= doubt
-                ratios.append(doubt / abs(right[0] - 5))
-            self.assertGreater(within, 270)
-            self.assertLess(sorted(ratios)[150], 10)
 
 
 def row(**changes):
@@ -152,7 +135,6 @@ print(f'dt = 1 s: 60 % of the stability limit ({{0.2 / n}} s, verlet)')
 print('energy 1 J = 0.5 kinetic + 0.5 elastic')
 print('work:', math.ceil(t_end / dt - 1e-9), 'force evaluations')
 print('com:', x, '0 0 m at t = 1 s')
-{also}
 """
 
 
@@ -167,10 +149,9 @@ class Judge(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def fake(self, advice, also=""):
+    def fake(self, advice):
         fake = self.folder / "fake"
-        fake.write_text(FAKE.format(python=sys.executable, also=also,
-                                    advice=advice))
+        fake.write_text(FAKE.format(python=sys.executable, advice=advice))
         fake.chmod(0o755)
         return fake
 
@@ -194,17 +175,6 @@ class Judge(unittest.TestCase):
         self.assertLess(r["best_work"], r["work"])
         self.assertLessEqual(float(r["best_error"]), float(r["tolerance"]))
 
-    def test_of_a_command_that_says_or_answers_something_else(self):
-        for also in ("print('warning', file=sys.stderr)",
-                     "if '--headless' not in words: open('film', 'w')"):
-            r = {"seed": 1}
-            with tempfile.TemporaryDirectory() as folder:
-                s = trials.Scene(self.seed, folder,
-                                 self.fake(self.advice(1.03), also))
-                suite.paste(s, r, suite.advice_of(
-                    s, r, ["./cloth", *s.grid(), *s.args, "--advise"]))
-            self.assertEqual((r["silent"], r["right"]), ("no", "no"))
-
     def test_of_a_refusal(self):
         r = suite.judge(self.seed, self.fake("no advice: the budget ended"), [])
         assert r
@@ -222,13 +192,6 @@ class Questions(unittest.TestCase):
         self.assertEqual({words(k)[0] for k in range(15)},
                          set(questions.KINDS))
         self.assertNotEqual(words(0)[1:], words(15)[1:])
-
-    def test_meshes(self):
-        points, quads = questions.l_mesh(4, 1)
-        self.assertEqual((len(points), len(quads)), (21, 12))
-        points, quads = questions.ring_mesh(2, 24, 1, 2)
-        self.assertEqual((len(points), len(quads)), (72, 48))
-        self.assertEqual(sum(p[1] == 0 for p in points), 6)  # that are pinned
 
 
 if __name__ == "__main__":
