@@ -284,6 +284,17 @@ TEST(Advise, NoMethodAloneIsCheaper) {
   }
 }
 
+TEST(Advise, RefinesARope) {
+  Model m = hanging(1e-3);
+  m.sheets = {read_sheet("u 1 0 0 nodes 13 1")};
+  m.material = {};
+  m.pins = {read_pin("x 0"), read_pin("x 1")};
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_EQ(a.grids[0].nodes, 3u);  // two springs
+  EXPECT_EQ(a.model.sheets[0].nodes[1], 1u);
+}
+
 TEST(Advise, AConservedEnergyNeedsNoRun) {
   Model m = hanging(4);
   m.measure = Measure::energy, m.percent = true;

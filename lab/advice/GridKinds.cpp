@@ -15,7 +15,8 @@ class SheetGrids : public GridStudy {
       : GridStudy(q, {5, 3, 0, false, "grid", "a finer grid", "on finer grids",
                       "a grid of "}) {
     for (const Sheet& s : q.scene.sheets)
-      shortest_ = std::min(shortest_, std::min(s.nodes[0], s.nodes[1]) - 1.);
+      for (unsigned n : s.nodes)
+        if (n > 1) shortest_ = std::min(shortest_, n - 1.);
     make_levels(2);
     auto some = [this] { return std::min(3, int(levels_.size()) - 1); };
     if (choose_pilots(some())) return;
@@ -40,13 +41,18 @@ class SheetGrids : public GridStudy {
   }
 
   double factor_of(const Model& m) const override {
-    auto count = [](const Model& m) {
+    bool ropes = true;
+    auto count = [&ropes](const Model& m) {
       double all = 0;
-      for (const Sheet& s : m.sheets)
-        all += double(s.nodes[0] - 1) * (s.nodes[1] - 1);
+      for (const Sheet& s : m.sheets) {
+        const auto [u, v] = s.nodes;
+        all += std::max(1., u - 1.) * std::max(1., v - 1.);
+        ropes = ropes && (u == 1 || v == 1);
+      }
       return all;
     };
-    return std::sqrt(count(m) / count(q_.scene));
+    const double more = count(m) / count(q_.scene);
+    return ropes ? more : std::sqrt(more);
   }
 
   std::vector<Grid> starts() const override {
@@ -77,7 +83,7 @@ class SheetGrids : public GridStudy {
   /** The finest level with two cells along the side u (0) or v (1) of each
    * sheet. */
   int lowest(unsigned side) const {
-    auto thin = [side](const Sheet& s) { return s.nodes[side] == 3; };
+    auto thin = [side](const Sheet& s) { return s.nodes[side] <= 3; };
     int level = 0;
     while (!std::ranges::all_of(on_level(level).sheets, thin)) --level;
     return level;
@@ -110,19 +116,23 @@ void SheetGrids::make_levels(double cells) {
     for (std::size_t k = 0; k < before.size(); ++k) {
       const std::array<double, 2> n = {q_.scene.sheets[k].nodes[0] - 1.,
                                        q_.scene.sheets[k].nodes[1] - 1.};
-      const unsigned small = n[1] < n[0];
+      const bool rope = n[0] == 0 || n[1] == 0;
+      const unsigned small = rope ? n[0] == 0 : n[1] < n[0];
       const double wanted = n[small] / shortest_ * cells * power(level);
       double best = infinite;
       std::array<double, 2> side = {1, 1};
       for (double a = std::max(before[k] + 1, std::ceil(wanted / near));
            a <= near * wanted; ++a) {
         const double b = std::round(n[1 - small] * a / n[small]),
-                     oblong = std::abs(b * n[small] / (n[1 - small] * a) - 1),
+                     oblong =
+                         rope ? 0
+                              : std::abs(b * n[small] / (n[1 - small] * a) - 1),
                      cost = oblong + odd * (std::fmod(a, 2) + std::fmod(b, 2) +
                                             std::abs(std::log(a / wanted)));
         if (cost >= best) continue;
         best = cost, now[k] = a;
-        side[small] = a / n[small], side[1 - small] = b / n[1 - small];
+        side[small] = a / n[small];
+        if (!rope) side[1 - small] = b / n[1 - small];
       }
       // With 3 cells along both sides, only odd numbers are near.
       keeps = keeps && now[k] > before[k] && (now[k] != 3 || best < 2 * odd);

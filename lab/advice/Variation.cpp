@@ -19,8 +19,9 @@ Model refined(const Model& m, const Sides& sides) {
     auto& n = fine.sheets[k].nodes;
     before += double(n[0]) * n[1];
     for (unsigned along : {0, 1})
-      n[along] = 1 + unsigned(std::max(
-                         2.0, std::round((n[along] - 1) * sides[k][along])));
+      if (n[along] > 1)  // else a rope
+        n[along] = 1 + unsigned(std::max(
+                           2.0, std::round((n[along] - 1) * sides[k][along])));
     after += double(n[0]) * n[1];
   }
   fine.damping *= before / after;
