@@ -3,17 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "lab/advice/Advise.hpp"
 #include "lab/advice/Refusals.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
-#include "tests/TestFolder.hpp"
 
 using namespace lab;
 
@@ -445,23 +442,6 @@ TEST(Advise, CountsTheScatterWhenItAccepts) {
   rules.counted_share = 30 * m.tolerance / a.uncertainty;
   rules.most_nodes = 100;
   EXPECT_NE(advise(m, rules).refusal, "");
-}
-
-TEST(Advise, ItsSceneCanBeWrittenAndRun) {
-  const Advice a = advise(hanging(1e-3));
-  ASSERT_EQ(a.refusal, "");
-  const CME212::TestFolder folder;
-  std::ofstream(folder / "advised.toml") << to_scene_file(a.model);
-  const Model again = load_model(folder / "advised.toml");
-  EXPECT_EQ(again.step.dt, a.model.step.dt);  // dt in words is dt in numbers
-  EXPECT_EQ(to_scene_file(again), to_scene_file(a.model));
-  // As ./cloth runs it: to the first step at or after t-end.
-  Scene scene(again);
-  ASSERT_TRUE(scene.run_to(again.t_end));
-  EXPECT_NEAR(scene.time(), again.t_end, 1e-12);
-  EXPECT_EQ(answer(again, scene, again.measure), try_out(again).answer);
-  EXPECT_NE(to_scene_file(a.model).find("method = "), std::string::npos);
-  EXPECT_NE(in_words(a).find("advice: "), std::string::npos);
 }
 
 // ---------------------------------------------------------------------- Budget
