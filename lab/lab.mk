@@ -14,7 +14,8 @@ lab_main   := lab/run/cloth.cpp \
               lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := $(wildcard docs/examples/*.cpp)
-lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp $(wildcard lab/try/*.cpp), \
+lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp \
+                $(wildcard lab/try/*.cpp lab/python/*.cpp), \
               $(wildcard lab/*/*.cpp))
 lab_tests  := $(wildcard tests/test_*.cpp)
 names       = $(basename $(notdir $(1)))
@@ -79,7 +80,8 @@ $(B)/stored_scenes.cpp: FORCE
 	@mkdir -p $(@D) && tools/stored_scenes.sh | cmp -s - $@ \
 	  || tools/stored_scenes.sh > $@
 
-$(eval $(call variant,$(B),$(speed)))
+# Position-independent, for the module of Python; hidden, so as fast as not.
+$(eval $(call variant,$(B),$(speed) -fPIC -fvisibility=hidden))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 # What takes no part in a step: -O1 saves a fifth of the time to compile.
 # Options.cpp reads the command line once, by a parser that takes -O3 seconds.
@@ -123,6 +125,6 @@ quick check check-full:
 format:
 	clang-format -i $(shell git ls-files '*.hpp' '*.cpp')
 
-include lab/measure.mk lab/page/page.mk docs/site/site.mk
+include lab/measure.mk lab/page/page.mk lab/python/python.mk docs/site/site.mk
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

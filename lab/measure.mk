@@ -26,6 +26,7 @@ help-lab:
 	@echo 'make peers-deps peers-chart peers-bench   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
 	@echo 'make page | page-serve | page-deps   the web page: lab/page/README.md'
+	@echo 'make python-deps python   the module for Python: docs/python.md'
 	@echo 'make site               the course and the laboratory as a web site'
 	@echo 'make grids | data/grid4.nodes   the grids; one of a million nodes'
 	@echo 'make fuzz               the parsers of meshes; RUNS=200000, needs clang'

@@ -268,6 +268,16 @@ page() {
   ! skips_page || return 0
   one_builds page page_positions && lab/page/test_page.py build/check
 }
+# The module for Python, and the examples of its page.
+python_module() {
+  local python
+  python=$(make -s --no-print-directory python-is)
+  "$python" -c 'import numpy, scipy, matplotlib, pytest' 2>/dev/null &&
+    [ -f /usr/include/pybind11/pybind11.h ] ||
+    { echo "skipped: the module for Python: make python-deps"; return 0; }
+  in_folder . python &&
+    PYTHONPATH=build/check/python "$python" -m pytest -q -p no:cacheprovider lab/python
+}
 # The site: its size, links, width on a phone, figures that move.
 site() {
   ! skips_page || return 0
@@ -302,6 +312,7 @@ turns() {
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web
+  turn python    "$limit" python_module
   turn pages     "$long"  tools/check_pages.sh
   turn advice    "$limit" advice
   turn arm       "$long"  arm

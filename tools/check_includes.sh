@@ -25,6 +25,7 @@ lab/bench     : lab/fast
 lab/live      : lab/stepping
 lab/viewer    : lab/stepping
 lab/run       : lab/viewer lab/live
+lab/python    : lab/advice
 lab/page      : lab/live
 '
 # Python, JavaScript, CSS and HTML reach another room by the name of its folder

@@ -19,6 +19,8 @@ packages() {
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
                  "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" \
                  "valgrind shellcheck pyflakes3 mypy" ;;
+    python) echo "python3-numpy python3-dev pybind11-dev python3-pytest" \
+                 "python3-scipy python3-setuptools python3-matplotlib" ;;
     peers)  echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;
@@ -28,7 +30,7 @@ packages() {
             echo "libeigen3-dev libtomlplusplus-dev ffmpeg pandoc git" ;;
     browser) echo "chromium python3-websocket" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
-            "check peers grade web page browser" >&2
+            "check python peers grade web page browser" >&2
        exit 2 ;;
   esac
 }

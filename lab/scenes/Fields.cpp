@@ -214,7 +214,7 @@ bool set_field(Model& m, std::string_view name,
   return true;
 }
 
-Model checked(Model m) {
+void check_step(Model& m) {
   // A default that is too long is no error of the user.
   double& dt = m.step.dt;
   const bool fixed = m.step.fixed();
@@ -224,6 +224,10 @@ Model checked(Model m) {
   if (fixed && !(m.t_end / dt < 1e15))
     refuse("t-end", CME212::short_text(m.t_end),
            "fewer than 1e15 steps of --dt");
+}
+
+Model checked(Model m) {
+  check_step(m);
   if (m.tets.empty() && m.net.empty() && !m.nodes.ends_with(".nodes"))
     m.net = std::exchange(m.nodes, "");
   if (const bool files = !m.nodes.empty() || !m.tets.empty();

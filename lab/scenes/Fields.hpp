@@ -55,5 +55,7 @@ bool set_field(Model& m, std::string_view name,
  * assignment_scene(); a default step longer than t-end becomes t-end.
  * Throws SceneError: fields that contradict each other */
 Model checked(Model m);
+/** The part of it that is about the step and t-end.  Throws SceneError */
+void check_step(Model& m);
 
 }  // namespace lab

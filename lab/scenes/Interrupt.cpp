@@ -35,6 +35,7 @@ void catch_interrupts() {
 }
 
 int interrupted() { return number; }
+void forget_interrupts() { number = 0; }
 
 const char* name_of_interrupt() {
   switch (number) {

@@ -12,6 +12,8 @@ void catch_interrupts();
 /** The number of the signal that came last, SIGINT, SIGTERM or SIGHUP; 0 if
  * none came. Any thread may ask. */
 int interrupted();
+/** As if none had come: for a program that goes on. */
+void forget_interrupts();
 /** Its name; "" if none came. */
 const char* name_of_interrupt();
 

@@ -1,0 +1,73 @@
+#pragma once
+/** @file Arrays.hpp
+ * NumPy arrays to vectors, and vectors to arrays. */
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/numpy.h>
+
+#include "CME212/Point.hpp"
+#include "CME212/Util.hpp"
+
+namespace lab {
+
+namespace py = pybind11;
+
+template <typename T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+/** @a values as an array of @a shape that owns them: nothing is copied. */
+template <typename T>
+py::array as_array(std::vector<T> values, std::vector<py::ssize_t> shape) {
+  auto* kept = new std::vector<T>(std::move(values));
+  py::capsule owner(kept,
+                    [](void* p) { delete static_cast<std::vector<T>*>(p); });
+  return py::array_t<double>(
+      std::move(shape), reinterpret_cast<const double*>(kept->data()), owner);
+}
+
+/** Throws a ValueError: "NAME is ..., expected ...". */
+[[noreturn]] inline void refuse(const std::string& what) {
+  throw py::value_error(what);
+}
+
+inline std::string shape_of(const py::array& a) {
+  return py::str(py::tuple(a.attr("shape")));
+}
+
+/** The rows of @a a, an array of shape (n, 3) of finite numbers. */
+inline std::vector<Point> points_of(const Array<double>& a, const char* name,
+                                    py::ssize_t n = -1) {
+  if (a.ndim() != 2 || a.shape(1) != 3 || (n >= 0 && a.shape(0) != n))
+    refuse(std::string(name) + " has shape " + shape_of(a) + ", expected (" +
+           (n < 0 ? "n" : std::to_string(n)) + ", 3)");
+  const auto* first = reinterpret_cast<const Point*>(a.data());
+  std::vector<Point> points(first, first + a.shape(0));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!std::isfinite(norm_1(points[i])))
+      refuse(std::string(name) + '[' + std::to_string(i) +
+             "] is not finite, expected three numbers");
+  return points;
+}
+
+/** One number for all of @a n, or an array of n; each at least @a least. */
+inline std::vector<double> numbers_of(const Array<double>& a, const char* name,
+                                      std::size_t n, bool positive) {
+  if (a.ndim() != 0 && (a.ndim() != 1 || std::size_t(a.shape(0)) != n))
+    refuse(std::string(name) + " has shape " + shape_of(a) +
+           ", expected a number or (" + std::to_string(n) + ",)");
+  std::vector<double> all(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    all[i] = a.data()[a.ndim() == 0 ? 0 : i];
+    if (!std::isfinite(all[i]) || all[i] < 0 || (positive && all[i] == 0))
+      refuse(std::string(name) +
+             (a.ndim() == 0 ? "" : '[' + std::to_string(i) + ']') + " is " +
+             CME212::short_text(all[i]) + ", expected a number " +
+             (positive ? "above 0" : "of at least 0"));
+  }
+  return all;
+}
+
+}  // namespace lab

@@ -1,0 +1,486 @@
+/** @file module.cpp
+ * The module mass_spring for Python: nets from arrays, scenes from files, runs
+ * with their states as arrays, and advice. mass_spring.pyi has its contract,
+ * docs/python.md its examples. */
+#include <cmath>
+#include <csignal>
+#include <optional>
+#include <regex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "CME212/Util.hpp"
+#include "lab/advice/Advise.hpp"
+#include "lab/fast/FastestCpu.hpp"
+#include "lab/methods/Methods.hpp"
+#include "lab/python/Arrays.hpp"
+#include "lab/scenes/Fields.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Scene.hpp"
+
+namespace lab {
+namespace {
+
+/** @a message as Python shows it: options without their dashes. */
+std::string without_dashes(const std::string& message) {
+  static const std::regex option("--([a-z])");
+  return std::regex_replace(message, option, "$1");
+}
+
+/** While it lives, Ctrl-C and SIGTERM only end the computation of C++. */
+class CatchSignals {
+ public:
+  CatchSignals() {
+    for (auto& [signal, action] : before_) sigaction(signal, nullptr, &action);
+    catch_interrupts();
+  }
+  ~CatchSignals() {
+    forget_interrupts();
+    for (auto& [signal, action] : before_) sigaction(signal, &action, nullptr);
+  }
+  CatchSignals(const CatchSignals&) = delete;
+  CatchSignals& operator=(const CatchSignals&) = delete;
+
+ private:
+  std::pair<int, struct sigaction> before_[3] = {
+      {SIGINT, {}}, {SIGTERM, {}}, {SIGHUP, {}}};
+};
+
+/** Call @a compute without the GIL. A signal that came meanwhile is raised
+ * again, for Python to handle; if Python goes on, this is a KeyboardInterrupt.
+ */
+template <typename F>
+auto without_gil(F compute) {
+  std::optional<decltype(compute())> result;
+  int signal = 0;
+  {
+    py::gil_scoped_release released;
+    CatchSignals caught;
+    try {
+      result = compute();
+    } catch (const Interrupted&) {
+      signal = interrupted();
+    }
+  }
+  if (result) return std::move(*result);
+  raise(signal);
+  if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);
+  throw py::error_already_set();
+}
+
+const MethodEntry& method_called(const std::string& name) {
+  Model m;
+  set_field(m, "method", {name});
+  return *m.method;
+}
+
+/** Why a run failed. Values; the text is made of them at the end. */
+struct Why {
+  Failure failure;
+  Explanation text;
+  std::optional<Cure> cure;
+};
+
+/** The states of a run, one every so many seconds. */
+struct Result {
+  std::size_t nodes = 0;
+  std::vector<double> t, energy;
+  std::vector<Point> x, v;
+  long long steps = 0, evaluations = 0;
+  std::optional<Why> why;
+
+  /** Record the state of @a scene. The rows are the nodes of its start; a node
+   * that was removed has no position: NaN. */
+  void add(const Scene& scene) {
+    const auto a = arrays(scene.cloth());
+    const auto& ids = scene.recipe().built->ids;
+    nodes = ids.size();
+    t.push_back(scene.time());
+    energy.push_back(scene.energy().total());
+    const Point none(std::numeric_limits<double>::quiet_NaN());
+    for (unsigned id : ids) {
+      const bool there = a.node_in_use(id);
+      x.push_back(there ? a.positions()[id] : none);
+      v.push_back(there ? a.node_values()[id].vel : none);
+    }
+  }
+  /** Forget the states that the scene has taken back. */
+  void take_back(double now) {
+    while (t.size() > 1 && t.back() > now) {
+      t.pop_back(), energy.pop_back();
+      x.resize(t.size() * nodes), v.resize(t.size() * nodes);
+    }
+  }
+};
+
+/** A scene, or a net: what a run starts from. */
+class Simulation {
+ public:
+  explicit Simulation(Model m) : model_(std::move(m)), mesh_(mesh_of(model_)) {}
+  Simulation(Model m, Net mesh)
+      : model_(std::move(m)), mesh_(std::move(mesh)) {}
+
+  const Model& model() const { return model_; }
+  const Net& mesh() const { return mesh_; }
+
+  double limit(const std::string& method) const {
+    return start(TimeStep(), method_called(method)).safe_limit();
+  }
+
+  Result run(const std::string& method, std::optional<double> t_end,
+             const std::string& dt, std::optional<double> every,
+             std::optional<double> atol) const {
+    Model m = model_;
+    if (!method.empty()) set_field(m, "method", {method});
+    if (t_end) set_field(m, "t-end", {CME212::exact_text(*t_end)});
+    const double between = every.value_or(m.t_end);
+    if (!(between > 0) && m.t_end > 0)
+      throw SceneError("every", "is " + CME212::short_text(between) +
+                                    ", expected a time [s] above 0");
+    if (dt == "auto" && m.method->info.adaptive)
+      m.step = {.dt = std::min(between, m.t_end)};
+    else if (!dt.empty())
+      set_field(m, "dt", {dt});
+    if (atol) m.step.tolerance = *atol;
+    check_step(m);
+    Scene scene = start(m.step, *m.method);
+    Result r;
+    r.add(scene);
+    // Signals are looked for at least every 1e7 springs' forces.
+    const double at_once = 1e7 / (double(scene.cloth().num_edges()) + 1);
+    for (double next = between; !scene.done(m.t_end);) {
+      end_if_interrupted();
+      const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
+      scene.steps_at_once(int(std::clamp(std::min(left, at_once), 1.,
+                                         double(Scene::guard_interval))),
+                          m.t_end);
+      r.take_back(scene.time());
+      const bool due = scene.time() >= next - 1e-6 * scene.dt();
+      if ((due || scene.done(m.t_end)) && scene.check()) r.add(scene);
+      if (due) next = between * (std::floor(scene.time() / between + 1e-6) + 1);
+    }
+    r.steps = scene.steps(), r.evaluations = scene.evaluations();
+    if (scene.failure())
+      r.why =
+          Why{*scene.failure(), scene.explanation(), scene.diagnosis().cure};
+    return r;
+  }
+
+  /** The force on each node [N] in positions @a x [m] with velocities @a v. */
+  std::vector<Point> force(std::span<const Point> x, std::span<const Point> v,
+                           double t) {
+    if (!at_hand_)
+      at_hand_ = std::make_shared<Scene>(recipe_of(model_, mesh_), TimeStep(),
+                                         *model_.method);
+    Cloth& g = at_hand_->cloth();
+    std::vector<Point> f(x.size());
+    for (Node n : g.nodes())
+      n.position() = x[n.index()], n.value().vel = v[n.index()];
+    for (Node n : g.nodes())
+      f[n.index()] = (*at_hand_->recipe().built->force)(n, t);
+    return f;
+  }
+
+ private:
+  Model model_;
+  Net mesh_;
+  std::shared_ptr<Scene> at_hand_;  // of force()
+
+  Scene start(const TimeStep& step, const MethodEntry& method) const {
+    return Scene(recipe_of(model_, mesh_), step, method);
+  }
+};
+
+/** The net that arrays describe: mass_spring.pyi has their shapes.
+ * Throws py::value_error "ARRAY[INDEX] is ..., expected ..." */
+Simulation make_net(const Array<double>& x, const Array<long long>& edges,
+                    const Array<double>& k, std::optional<Array<double>> L,
+                    std::optional<Array<double>> mass,
+                    const Array<long long>& fixed,
+                    std::optional<Array<double>> v, double drag,
+                    double gravity) {
+  Net net;
+  net.points = points_of(x, "x");
+  const auto n = net.points.size();
+  if (v) net.velocities = points_of(*v, "v", py::ssize_t(n));
+  if (edges.ndim() != 2 || edges.shape(1) != 2)
+    refuse("edges has shape " + shape_of(edges) + ", expected (e, 2)");
+  const auto e = std::size_t(edges.shape(0));
+  const auto stiffness = numbers_of(k, "k", e, false);
+  std::vector<double> length;
+  if (L) length = numbers_of(*L, "L", e, false);
+  net.springs.reserve(e);
+  for (std::size_t s = 0; s < e; ++s) {
+    const long long i = edges.data()[2 * s], j = edges.data()[2 * s + 1];
+    if (std::min(i, j) < 0 || std::max(i, j) >= (long long)(n) || i == j)
+      refuse("edges[" + std::to_string(s) + "] is (" + std::to_string(i) +
+             ", " + std::to_string(j) +
+             "), expected two different nodes, 0 to " + std::to_string(n - 1));
+    net.springs.push_back(
+        {unsigned(i), unsigned(j), stiffness[s], L ? length[s] : -1});
+  }
+  net.masses = mass ? numbers_of(*mass, "mass", n, true)
+                    : std::vector<double>(n, 1. / double(n));
+  for (py::ssize_t f = 0; f < fixed.size(); ++f) {
+    const long long i = fixed.data()[f];
+    if (i < 0 || i >= (long long)(n))
+      refuse("fixed[" + std::to_string(f) + "] is " + std::to_string(i) +
+             ", expected a node, 0 to " + std::to_string(n - 1));
+    net.held.push_back(unsigned(i));
+  }
+  Model m;
+  m.name = "net";
+  m.damping = numbers_of(Array<double>(py::cast(drag)), "drag", 1, false)[0];
+  if (!std::isfinite(gravity)) refuse("gravity is not finite");
+  m.gravity = gravity;
+  return {std::move(m), std::move(net)};
+}
+
+/** @a dt as a scene file has it: "" keeps the scene's own. */
+std::string step_text(const py::object& dt) {
+  if (dt.is_none()) return "";
+  if (py::isinstance<py::str>(dt)) return dt.cast<std::string>();
+  return CME212::exact_text(dt.cast<double>());
+}
+
+Advice advise_on(const Simulation& s, std::optional<double> tolerance,
+                 const std::string& method) {
+  Model m = s.model();
+  AdviceRules rules;
+  if (tolerance) set_field(m, "tolerance", {CME212::exact_text(*tolerance)});
+  if ((rules.keeps_method = !method.empty())) set_field(m, "method", {method});
+  return without_gil([&] { return advise(m, rules); });
+}
+
+/** What run() returns. */
+struct Run {
+  py::array t, x, v, energy;
+  long long work = 0, steps = 0;
+  std::optional<Why> why;
+
+  explicit Run(Result r) : work(r.evaluations), steps(r.steps), why(r.why) {
+    const auto states = py::ssize_t(r.t.size()), n = py::ssize_t(r.nodes);
+    t = as_array(std::move(r.t), {states});
+    energy = as_array(std::move(r.energy), {states});
+    x = as_array(std::move(r.x), {states, n, 3});
+    v = as_array(std::move(r.v), {states, n, 3});
+  }
+};
+
+// ------------------------------------------------------------------ The module
+
+/** Errors of the laboratory are ValueErrors with its sentence. */
+void translate_errors() {
+  py::register_exception_translator([](std::exception_ptr p) {
+    try {
+      std::rethrow_exception(std::move(p));
+    } catch (const SceneError& e) {
+      PyErr_SetString(PyExc_ValueError, without_dashes(e.what()).c_str());
+    } catch (const SceneFileError& e) {
+      PyErr_SetString(PyExc_ValueError, e.what());
+    } catch (const InputError& e) {
+      PyErr_SetString(PyExc_ValueError, e.what());
+    }
+  });
+}
+
+void define_values(py::module_& module) {
+  using M = MethodEntry;
+  py::class_<M>(module, "Method", "A method: what it declares of itself.")
+      .def_property_readonly("name", [](const M& m) { return m.info.name; })
+      .def_property_readonly(
+          "order", [](const M& m) { return m.info.order; },
+          "The error of a run goes as dt**order.")
+      .def_property_readonly(
+          "forces", [](const M& m) { return m.info.sweeps; },
+          "Force evaluations a step, without those in linear solves.")
+      .def_property_readonly(
+          "limit", [](const M& m) { return m.info.limit; },
+          "Stable while dt * omega < limit; inf: with any step.")
+      .def_property_readonly("good_for",
+                             [](const M& m) { return m.info.good_for; })
+      .def_property_readonly("fails_when",
+                             [](const M& m) { return m.info.fails_when; })
+      .def_property_readonly("source", [](const M& m) { return m.info.source; })
+      .def("__repr__", [](const M& m) {
+        return "<Method " + std::string(m.info.name) + '>';
+      });
+
+  py::class_<Why>(module, "Failure", "How and why a run failed.")
+      .def_property_readonly(
+          "kind",
+          [](const Why& w) {
+            constexpr const char* names[] = {"start", "diverged", "refused"};
+            return names[int(w.failure.kind)];
+          },
+          "'start', 'diverged' or 'refused'.")
+      .def_property_readonly(
+          "step", [](const Why& w) { return w.failure.step; },
+          "The number of the step that failed, from 1.")
+      .def_property_readonly(
+          "time", [](const Why& w) { return w.failure.time; },
+          "The time of the last good state [s].")
+      .def_property_readonly(
+          "dt", [](const Why& w) { return w.failure.dt; },
+          "The step that failed [s].")
+      .def_property_readonly(
+          "node",
+          [](const Why& w) {
+            const long long i = w.failure.place.index;
+            return i < 0 ? std::nullopt : std::optional(i);
+          },
+          "The worst node of the bad state, or None.")
+      .def_property_readonly(
+          "cause", [](const Why& w) { return w.text.cause; },
+          "The cause, in words.")
+      .def_property_readonly(
+          "cure",
+          [](const Why& w) {
+            return w.cure
+                       ? std::optional(std::pair(
+                             std::string(w.cure->method.info.name), w.cure->dt))
+                       : std::nullopt;
+          },
+          "A method and a step [s] with which a trial did not fail, or None.")
+      .def("__str__",
+           [](const Why& w) { return without_dashes(w.text.text()); });
+
+  py::class_<Run>(module, "Result", "The states of a run: k of n nodes.")
+      .def_readonly("t", &Run::t, "Times [s], shape (k,).")
+      .def_readonly(
+          "x", &Run::x,
+          "Positions [m], shape (k, n, 3); nan: the node was removed.")
+      .def_readonly("v", &Run::v, "Velocities [m/s], shape (k, n, 3).")
+      .def_readonly("energy", &Run::energy,
+                    "Kinetic, elastic and gravitational energy [J], together, "
+                    "shape (k,).")
+      .def_readonly("work", &Run::work, "Force evaluations.")
+      .def_readonly("steps", &Run::steps, "Steps done.")
+      .def_readonly("why", &Run::why, "A Failure, or None.")
+      .def_property_readonly(
+          "status", [](const Run& r) { return r.why ? 3 : 0; },
+          "0: done; 3: the run failed, and why says how.");
+
+  py::class_<Advice>(module, "Advice",
+                     "The cheapest run found that answers a scene's question. "
+                     "str() has the whole report.")
+      .def_readonly("refusal", &Advice::refusal,
+                    "Why nothing is advised; empty: it is.")
+      .def_property_readonly(
+          "method", [](const Advice& a) { return a.model.method->info.name; })
+      .def_property_readonly(
+          "dt", [](const Advice& a) { return a.model.step.dt; }, "[s]")
+      .def_readonly("error", &Advice::error,
+                    "The expected error, in the unit of the measure.")
+      .def_readonly("tolerance", &Advice::tolerance)
+      .def_readonly("work", &Advice::work, "Spring evaluations of that run.")
+      .def_property_readonly(
+          "scene", [](const Advice& a) { return Simulation(a.model); },
+          "The advised Scene.")
+      .def("__str__", [](const Advice& a) { return in_words(a); });
+}
+
+struct FromArrays : Simulation {
+  explicit FromArrays(Simulation s) : Simulation(std::move(s)) {}
+};
+
+void define_simulations(py::module_& module) {
+  const auto array = [](std::vector<Point> points) {
+    const auto n = py::ssize_t(points.size());
+    return as_array(std::move(points), {n, 3});
+  };
+  py::class_<Simulation>(module, "Scene", "A scene; or a Net.")
+      .def_property_readonly(
+          "x", [=](const Simulation& s) { return array(s.mesh().points); },
+          "Positions at the start [m], shape (n, 3); a copy.")
+      .def("limit", &Simulation::limit, py::arg("method"),
+           "The largest step [s] with which a method is stable; inf: any is, "
+           "0: none is.")
+      .def(
+          "run",
+          [](const Simulation& s, const std::string& method,
+             std::optional<double> t_end, const py::object& dt,
+             std::optional<double> every, std::optional<double> atol) {
+            const std::string step = step_text(dt);
+            return Run(without_gil(
+                [&] { return s.run(method, t_end, step, every, atol); }));
+          },
+          py::arg("method") = "", py::arg("t_end") = py::none(),
+          py::arg("dt") = py::none(), py::kw_only(),
+          py::arg("every") = py::none(), py::arg("atol") = py::none(),
+          "Run from the start to t_end [s] and return a Result.\n\n"
+          "method: a name, see methods(). dt: the step [s]; 'auto': chosen by "
+          "the stability limit and the energy; each by default as the scene "
+          "says. every: record a state every so many seconds, at the first "
+          "step there; None: the first and the last state. atol: tolerated "
+          "error of an inner step of rkn64 [m].\n\n"
+          "A run that fails returns: see Result.why. Raises ValueError for an "
+          "argument that can't be used, KeyboardInterrupt by Ctrl-C. Releases "
+          "the GIL.")
+      .def(
+          "force",
+          [=](Simulation& s, const Array<double>& x, const Array<double>& v,
+              double t) {
+            const auto n = py::ssize_t(s.mesh().points.size());
+            return array(
+                s.force(points_of(x, "x", n), points_of(v, "v", n), t));
+          },
+          py::arg("x"), py::arg("v"), py::arg("t") = 0.,
+          "The force on each node [N], shape (n, 3), in positions x [m] with "
+          "velocities v [m/s], both (n, 3). Held nodes are not excepted.")
+      .def("advise", &advise_on, py::arg("tolerance") = py::none(),
+           py::arg("method") = "",
+           "Find the cheapest model that answers the scene's question to "
+           "tolerance, in the unit of its measure; with this method only. "
+           "Raises ValueError if the scene can't answer it.");
+  py::class_<FromArrays, Simulation>(
+      module, "Net",
+      "A net of point masses and springs.\n\n"
+      "x: positions [m], (n, 3). edges: pairs of nodes, (e, 2). k: stiffness "
+      "[N/m], a number or (e,). L: rest lengths [m], a number or (e,); None: "
+      "as long as in x. mass [kg]: a number or (n,); None: 1 kg in all. "
+      "fixed: nodes that are held. v: velocities [m/s], (n, 3); None: at rest. "
+      "drag: c of each node [kg/s], force -c v. gravity [m/s^2], along -z.\n\n"
+      "Raises ValueError \"ARRAY[INDEX] is ..., expected ...\".")
+      .def(py::init([](const Array<double>& x, const Array<long long>& edges,
+                       const Array<double>& k, std::optional<Array<double>> L,
+                       std::optional<Array<double>> mass,
+                       const Array<long long>& fixed,
+                       std::optional<Array<double>> v, double drag,
+                       double gravity) {
+             return FromArrays(
+                 make_net(x, edges, k, L, mass, fixed, v, drag, gravity));
+           }),
+           py::arg("x"), py::arg("edges"), py::kw_only(), py::arg("k") = 100.,
+           py::arg("L") = py::none(), py::arg("mass") = py::none(),
+           py::arg("fixed") = std::vector<long long>(),
+           py::arg("v") = py::none(), py::arg("drag") = 0.,
+           py::arg("gravity") = grav);
+}
+
+}  // namespace
+}  // namespace lab
+
+PYBIND11_MODULE(mass_spring, module) {
+  using namespace lab;
+  module.doc() = "Mass-spring cloth: nets, scenes, methods, advice.";
+  lanes::cpu = fastest_cpu();
+  translate_errors();
+  define_values(module);
+  define_simulations(module);
+  module.def(
+      "scene",
+      [](const std::string& file) {
+        return without_gil([&] { return Simulation(load_model(file)); });
+      },
+      py::arg("file"), "The Scene in a scene file: see lab/scenes/README.md.");
+  module.def(
+      "methods",
+      [] { return std::vector<MethodEntry>(methods.begin(), methods.end()); },
+      "All methods that run() takes.");
+}

@@ -1,0 +1,131 @@
+"""Tests of the module mass_spring: python3 -m pytest lab/python
+
+They find it by PYTHONPATH, else in build/python."""
+import os
+import pathlib
+import re
+import signal
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+root = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, os.environ.get("PYTHONPATH") or str(root / "build/python"))
+import mass_spring  # noqa: E402
+
+PAIR = [[0.0, 0, 0], [1, 0, 0]]
+
+
+def oscillator(**changes):
+    """A mass of 1 kg on a spring of L = 0: x = (1 + v0 ...) cos(3 t)."""
+    return mass_spring.Net(PAIR, [[0, 1]], **{
+        "k": 9.0, "L": 0.0, "mass": 1.0, "fixed": [0], "gravity": 0.0,
+        **changes})
+
+
+def test_positions_are_those_of_an_oscillator():
+    r = oscillator().run("pefrl", 2.0, 0.001, every=0.5)
+    assert r.t == pytest.approx([0, 0.5, 1, 1.5, 2])
+    assert r.x[:, 1, 0] == pytest.approx(np.cos(3 * r.t), abs=1e-9)
+    assert r.v[:, 1, 0] == pytest.approx(-3 * np.sin(3 * r.t), abs=1e-8)
+    assert r.energy == pytest.approx(4.5, abs=1e-9)
+    assert (r.status, r.why) == (0, None)
+
+
+def test_limit_and_failure():
+    net = oscillator()
+    assert net.limit("verlet") == pytest.approx(2 / 3)
+    assert net.limit("implicit-euler") == np.inf
+    assert net.run("verlet", 50.0, 0.66).status == 0
+    r = net.run("verlet", 50.0, 0.68)
+    assert r.status == 3 and r.why.kind == "diverged" and r.why.node == 1
+    assert 0 < r.why.time < 50 and r.why.dt == 0.68
+    method, dt = r.why.cure
+    assert net.run(method, 50.0, dt).status == 0
+    assert np.isfinite(r.x).all() and "stability limit" in r.why.cause
+
+
+def test_drag_and_velocity():
+    net = mass_spring.Net([[0.0, 0, 0]], np.empty((0, 2), int), mass=2.0,
+                          v=[[1.0, 0, 0]], drag=0.5, gravity=0.0)
+    assert net.run("rk4", 4.0, 0.01).v[-1, 0, 0] == pytest.approx(np.exp(-1))
+
+
+def test_one_method_for_each_name():
+    all_methods = {m.name: m for m in mass_spring.methods()}
+    assert all_methods["rk4"].order == 4 and all_methods["rk4"].forces == 4
+    assert all_methods["verlet"].limit == 2.0
+    assert all(m.fails_when for m in all_methods.values())
+
+
+def test_force_is_that_of_the_springs():
+    net = oscillator(gravity=2.0)
+    f = net.force([[0.0, 0, 0], [0, 0, 2]], np.zeros((2, 3)))
+    assert f == pytest.approx(np.array([[0, 0, 18 - 2], [0, 0, -18 - 2]]))
+
+
+def test_scene_runs_as_the_program_does():
+    s = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
+    r = s.run(t_end=0.2)
+    assert r.status == 0 and r.x.shape == (2,) + s.x.shape
+
+
+def test_advice():
+    s = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
+    a = s.advise(tolerance=0.05)
+    assert not a.refusal and a.error < 0.05 and a.tolerance == 0.05
+    assert a.scene.run().status == 0
+    assert a.method in str(a)
+
+
+@pytest.mark.parametrize("changes, message", [
+    ({"x": [[0.0, 0], [1, 0]]}, r"x has shape (2, 2), expected (n, 3)"),
+    ({"x": [[0.0, 0, 0], [np.nan, 0, 0]]}, "x[1] is not finite"),
+    ({"edges": [[0, 2]]}, "edges[0] is (0, 2), expected two different nodes"),
+    ({"edges": [[1, 1]]}, "edges[0] is (1, 1)"),
+    ({"k": [-1.0]}, "k[0] is -1, expected a number of at least 0"),
+    ({"k": [1.0, 2.0]}, "k has shape (2,), expected a number or (1,)"),
+    ({"mass": [1.0, 0.0]}, "mass[1] is 0, expected a number above 0"),
+    ({"fixed": [2]}, "fixed[0] is 2, expected a node, 0 to 1"),
+    ({"v": [[0.0, 0, 0]]}, "v has shape (1, 3), expected (2, 3)"),
+])
+def test_a_wrong_array_is_named(changes, message):
+    arguments = {"x": PAIR, "edges": [[0, 1]], **changes}
+    with pytest.raises(ValueError, match=re.escape(message)):
+        mass_spring.Net(**arguments)
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (("verlt", 1.0), "verlet"),
+    (("verlet", -1.0), "t-end is -1"),
+    (("verlet", 1.0, "soon"), "dt is soon"),
+    (("verlet", 1.0, 2.0), "dt is 2, expected at most t-end"),
+])
+def test_a_wrong_argument_of_a_run_is_named(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        oscillator().run(*arguments)
+    with pytest.raises(ValueError, match="no/scene.toml"):
+        mass_spring.scene("no/scene.toml")
+
+
+def test_control_c_ends_a_run_that_lets_other_threads_work():
+    net = oscillator()
+    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        net.run("verlet", 1e9, 1e-3)
+    assert net.run("verlet", 1.0, 1e-3).status == 0  # and the next one runs
+
+
+def test_examples_of_the_page(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = (root / "docs/python.md").read_text()
+    names: dict = {}
+    for code in re.findall(r"```python\n(.*?)```", page, re.S):
+        exec(code, names)
+    said = capsys.readouterr().out
+    assert "stability limit" in said
+    assert (tmp_path / "work_precision.png").stat().st_size
+    forces = dict(re.findall(r"(\S+) +(\d+) forces, error", said))
+    assert int(forces["rkn64"]) < int(forces["RK45"])
