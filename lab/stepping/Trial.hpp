@@ -44,8 +44,8 @@ class Observer {
 struct Trial {
   Answer answer;        ///< empty if the run failed
   std::string failure;  ///< why it failed; else empty
-  double work = 0;      ///< spring evaluations: springs times force
-                        ///< evaluations, summed over the steps
+  double work = 0;      ///< springs times force evaluations and products with
+                        ///< a matrix; a factor of it: 10 per node of a side
   double seconds = 0;   ///< duration on this machine
   double dt = 0;        ///< the first step [s]
   long long steps = 0;
