@@ -17,7 +17,7 @@ pyflakes3 "${python[@]}" || status=1
 while read -r folder; do
   mypy --no-error-summary --cache-dir build/mypy --ignore-missing-imports \
     --check-untyped-defs --disallow-incomplete-defs "$folder"/*.py || status=1
-done < <(printf '%s\n' "${python[@]%/*}" | sort -u)
+done < <(printf './%s\n' "${python[@]}" | sed 's|/[^/]*$||' | sort -u)
 
 python3 - "${python[@]}" <<'END' || status=1
 import ast

@@ -221,7 +221,8 @@ class OwnTests(Programs):
                              .values()))
 
     def test_a_test_may_hold_a_page_to_its_words(self):
-        right, _ = grade_tests.cases(grade_tests.Tests("", "cloth", [], set()))
+        right, _ = grade_tests.cases(
+            grade_tests.Tests("", "cloth", [], set(), []))
         names = [case.name for case in right]
         self.assertIn("graph: remove_node looks at every edge of the graph, "
                       "which is allowed", names)

@@ -7,6 +7,7 @@ import re
 import signal
 import sys
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,14 +16,14 @@ root = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("PYTHONPATH") or str(root / "build/python"))
 import mass_spring  # noqa: E402
 
-PAIR = [[0.0, 0, 0], [1, 0, 0]]
+PAIR: list[list[float]] = [[0, 0, 0], [1, 0, 0]]
 
 
 def oscillator(**changes):
-    """A mass of 1 kg on a spring of L = 0: x = (1 + v0 ...) cos(3 t)."""
-    return mass_spring.Net(PAIR, [[0, 1]], **{
-        "k": 9.0, "L": 0.0, "mass": 1.0, "fixed": [0], "gravity": 0.0,
-        **changes})
+    """A mass of 1 kg on a spring of rest length 0: x = cos(3 t)."""
+    given: dict[str, Any] = {"k": 9.0, "L": 0.0, "mass": 1.0, "fixed": [0],
+                             "gravity": 0.0, **changes}
+    return mass_spring.Net(PAIR, [[0, 1]], **given)
 
 
 def test_positions_are_those_of_an_oscillator():
@@ -92,7 +93,7 @@ def test_advice():
     ({"v": [[0.0, 0, 0]]}, "v has shape (1, 3), expected (2, 3)"),
 ])
 def test_a_wrong_array_is_named(changes, message):
-    arguments = {"x": PAIR, "edges": [[0, 1]], **changes}
+    arguments: dict[str, Any] = {"x": PAIR, "edges": [[0, 1]], **changes}
     with pytest.raises(ValueError, match=re.escape(message)):
         mass_spring.Net(**arguments)
 
@@ -121,7 +122,7 @@ def test_control_c_ends_a_run_that_lets_other_threads_work():
 def test_examples_of_the_page(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     page = (root / "docs/python.md").read_text()
-    names: dict = {}
+    names: dict[str, Any] = {}
     for code in re.findall(r"```python\n(.*?)```", page, re.S):
         exec(code, names)
     said = capsys.readouterr().out
