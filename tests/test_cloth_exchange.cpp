@@ -101,7 +101,7 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
     EXPECT_EQ(r.status, 0) << c.options << r.err;
     EXPECT_NE(r.out.find(c.out), std::string::npos) << c.options << r.out;
     EXPECT_NE(r.err.find(c.err), std::string::npos) << c.options << r.err;
-    if (!*c.err) EXPECT_EQ(r.err, "") << c.options;
+    EXPECT_EQ(r.err.empty(), !*c.err) << c.options << r.err;
   }
 }
 

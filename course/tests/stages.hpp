@@ -5,6 +5,10 @@
 #ifndef KIT_STAGES_HPP
 #define KIT_STAGES_HPP
 
+// What our main() includes must not come first inside of a stage's namespace.
+#include <CME212/Energy.hpp>
+#include <CME212/MeshFaults.hpp>
+
 namespace kit_problem1 {
 #define STAGE problem1
 #include "mass_spring.cpp"
