@@ -12,7 +12,8 @@ namespace lab {
 struct AdviceRules {
   double for_parts = 0.7;  ///< share of the tolerance for parts left out
   /** Limit of a grid that is run or advised; 0: 40,000, or one per 1e4 of a
-   * larger budget, as a run takes so many spring evaluations per node. */
+   * larger budget, as a run takes so many spring evaluations per node, up to
+   * 1e6. */
   double most_nodes = 0;
   /** Once a choice is found, a finer grid is run to find a cheaper one if that
    * takes at most so many spring evaluations, or 0.3 of the scene's own run. */

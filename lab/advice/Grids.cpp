@@ -38,9 +38,11 @@ Question::Question(const Model& m, const AdviceRules& rules)
 
 GridStudy::GridStudy(Question& q, const Kind& kind)
     : q_(q),
-      most_nodes_(q.rules.most_nodes > 0
-                      ? q.rules.most_nodes
-                      : std::max(Pilots::usual, q.pilots.budget()) / 1e4),
+      most_nodes_(
+          q.rules.most_nodes > 0
+              ? q.rules.most_nodes
+              : std::min(1e6,
+                         std::max(Pilots::usual, q.pilots.budget()) / 1e4)),
       kind_(kind) {}
 
 double GridStudy::power(int level) {
