@@ -165,7 +165,7 @@ TEST(Parts, KnowTheOtherNamesOfAMethod) {
        {std::pair("newmark", "implicit-midpoint"),
         std::pair("trapezoidal", "implicit-midpoint"), std::pair("pbd", "xpbd"),
         std::pair("leapfrogg", "leapfrog")})
-    EXPECT_EQ(CME212::error_of([&] { read_method(name); }),
+    EXPECT_EQ(CME212::error_of([&, name = name] { read_method(name); }),
               std::string("--method is ") + name +
                   ", expected a name of --list-methods: did you mean " + meant +
                   "?");
