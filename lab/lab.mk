@@ -70,6 +70,8 @@ $(1)/lab/viewer/Screen.o: $(1)/viewer.flags
 $(1)/viewer.flags: FORCE
 	@mkdir -p $$(dir $$@); echo '$(VIEWER)' | cmp -s - $$@ || echo '$(VIEWER)' > $$@
 endef
+# Position-independent, for the module of Python; hidden, so as fast as not.
+movable = $(speed) -fPIC -fvisibility=hidden
 ifneq ($(O)$(UNITY),)
 include lab/units.mk
 endif
@@ -80,8 +82,7 @@ $(B)/stored_scenes.cpp: FORCE
 	@mkdir -p $(@D) && tools/stored_scenes.sh | cmp -s - $@ \
 	  || tools/stored_scenes.sh > $@
 
-# Position-independent, for the module of Python; hidden, so as fast as not.
-$(eval $(call variant,$(B),$(speed) -fPIC -fvisibility=hidden))
+$(eval $(call variant,$(B),$(movable)))
 $(eval $(call variant,$(B)/asan,$(debug) $(sanitizer)))
 # What takes no part in a step: -O1 saves a fifth of the time to compile.
 # Options.cpp reads the command line once, by a parser that takes -O3 seconds.

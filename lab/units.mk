@@ -44,7 +44,7 @@ $(1)/unity/%.cpp: FORCE
 	@mkdir -p $$(@D) && tools/unity.sh $$(in_$$*) | cmp -s - $$@ \
 	  || tools/unity.sh $$(in_$$*) > $$@
 endef
-$(eval $(call unity,$(B),$(speed)))
+$(eval $(call unity,$(B),$(movable)))
 $(eval $(call unity,$(B)/asan,$(debug) $(sanitizer)))
 
 # All tests, and their names: those that take longest to build and to run first,

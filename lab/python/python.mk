@@ -10,7 +10,7 @@ module     = $(B)/python/mass_spring$(call python_has,get_config_var("EXT_SUFFIX
 python-is:
 	@echo $(PYTHON)
 python:
-	@$(sub) $(module) $(B)/python/mass_spring.pyi
+	@+$(sub) $(module) $(B)/python/mass_spring.pyi
 $(B)/python/mass_spring.pyi: lab/python/mass_spring.pyi
 	@mkdir -p $(@D) && cp $< $@
 $(B)/python/mass_spring%: $(B)/lab/python/module.o $(B)/liblab.a
