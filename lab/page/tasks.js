@@ -8,7 +8,7 @@ const tasks = [
   {method: 'verlet', share: 1.05, asks: 'only 1.05 times its limit',
     why: 'The limit counts for every shape. This cloth, in its own, may go a ' +
       'little beyond: the second number below the slider.'},
-  {method: 'forward-euler', share: 0.1, asks: 'a tenth of Verlet\u2019s limit',
+  {method: 'forward-euler', share: 0.5, asks: 'half of Verlet\u2019s limit',
     why: 'Forward Euler makes every swing larger, however short its step is; ' +
       'only strong drag stops that.'},
   {method: 'implicit-euler', share: 20, asks: '20 times Verlet\u2019s limit',
