@@ -130,8 +130,8 @@ double EnergyWatch::share() const {
 }
 
 double EnergyWatch::tolerance() const {
-  return energy_tolerance * largest_ + sums_ * passed_ + fall_ + floor_ +
-         round_off_;
+  const double share = energy_tolerance + 1. / std::max(looks_, 1);
+  return share * largest_ + sums_ * passed_ + fall_ + floor_ + round_off_;
 }
 
 void EnergyWatch::archive(Archive& a) {

@@ -140,7 +140,10 @@ class EnergyWatch {
   double gain() const { return gain_; }
   /** The gain or loss that StepControl would tolerate [J]; and, as work and
    * drag are sums over steps by the trapezoidal rule, 2 % of them and (gamma
-   * dt)^2/4: in a steady fall that rule errs by (gamma dt)^2/6. */
+   * dt)^2/4: in a steady fall that rule errs by (gamma dt)^2/6. And, as
+   * velocities may be one step ahead of positions, one of n of the largest
+   * internal energy after n looks: n steps after the start from rest, the
+   * kinetic energy of symplectic Euler is by that share too large. */
   double tolerance() const;
   /** The method has added more energy than is tolerated. */
   bool gains() const { return gain_ > tolerance(); }
