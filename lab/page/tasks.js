@@ -8,9 +8,6 @@ const tasks = [
   {method: 'verlet', share: 1.05, asks: 'only 1.05 times its limit',
     why: 'The limit counts for every shape. This cloth, in its own, may go a ' +
       'little beyond: the second number below the slider.'},
-  {method: 'forward-euler', share: 0.5, asks: 'half of Verlet\u2019s limit',
-    why: 'Forward Euler makes every swing larger, however short its step is; ' +
-      'only strong drag stops that.'},
   {method: 'implicit-euler', share: 20, asks: '20 times Verlet\u2019s limit',
     why: 'Implicit Euler has no limit. It pays by damping: this cloth falls ' +
       'too softly.'},
