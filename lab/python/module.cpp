@@ -153,8 +153,10 @@ class Simulation {
     r.add(scene);
     // Signals are looked for at least every 1e7 springs' forces.
     const double at_once = 1e7 / (double(scene.cloth().num_edges()) + 1);
-    for (double next = between; !scene.done(m.t_end);) {
+    while (!scene.done(m.t_end)) {
       end_if_interrupted();
+      const double next =
+          between * (std::floor(r.t.back() / between + 1e-6) + 1);
       const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
       scene.steps_at_once(int(std::clamp(std::min(left, at_once), 1.,
                                          double(Scene::guard_interval))),
@@ -162,7 +164,6 @@ class Simulation {
       r.take_back(scene.time());
       const bool due = scene.time() >= next - 1e-6 * scene.dt();
       if ((due || scene.done(m.t_end)) && scene.check()) r.add(scene);
-      if (due) next = between * (std::floor(scene.time() / between + 1e-6) + 1);
     }
     r.steps = scene.steps(), r.evaluations = scene.evaluations();
     if (scene.failure())
