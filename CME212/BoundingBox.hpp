@@ -1,6 +1,8 @@
 #pragma once
 /** @file BoundingBox.hpp
  * BoundingBox: the smallest box along the axes that holds some points. */
+#include <span>
+
 #include "CME212/Point.hpp"
 
 namespace CME212 {
@@ -14,6 +16,10 @@ class BoundingBox {
    * finite are ignored. */
   explicit BoundingBox(const Point& p) { *this |= p; }
   BoundingBox(const Point& p, const Point& q) { (*this |= p) |= q; }
+  /** The box of all @a points.  O(points) */
+  explicit BoundingBox(std::span<const Point> points) {
+    for (const Point& p : points) *this |= p;
+  }
 
   /** True if it has no finite point. */
   bool empty() const { return min_.x > max_.x; }

@@ -44,8 +44,7 @@ inline std::vector<unsigned> repeated(std::span<const Quad> quads) {
  * several there, each with the next one. */
 inline std::vector<std::array<unsigned, 2>> coincident(
     std::span<const Point> points) {
-  CME212::BoundingBox box;
-  for (const Point& p : points) box |= p;
+  const CME212::BoundingBox box(points);
   const double unit = 1e-6 * box.diagonal();
   std::vector<std::pair<std::array<double, 3>, unsigned>> cells;
   cells.reserve(points.size());

@@ -222,12 +222,6 @@ void check_memory(const Model& m, double nodes, double quads,
                          " of memory; " + gb(available) + " are available");
 }
 
-double size_of(const Net& net) {
-  CME212::BoundingBox box;
-  for (const Point& p : net.points) box |= p;
-  return box.diagonal();
-}
-
 /** The node of @a net that is closest to @a pin, the first one if several are,
  * and its distance [m].  @pre @a net has nodes */
 std::pair<unsigned, double> nearest(const Pin& pin, const Net& net) {
@@ -269,7 +263,8 @@ std::vector<std::vector<unsigned>> points_held(const Model& m, const Net& net) {
     take(Pin::near);
     if (!held.empty()) continue;
     const double least = nearest(pin, net).second;
-    if (least < 1e-6 * size_of(net)) take(least + Pin::near);
+    if (least < 1e-6 * CME212::BoundingBox(net.points).diagonal())
+      take(least + Pin::near);
   }
   if (!net.held.empty()) all.push_back(net.held);
   return all;

@@ -132,9 +132,7 @@ class Finder {
       springs.push_back({spring.i, spring.j});
     std::ranges::move(mesh_faults(mesh_.points, mesh_.quads, springs),
                       std::back_inserter(found_));
-    CME212::BoundingBox box;
-    for (const Point& p : mesh_.points) box |= p;
-    const double size = box.diagonal();
+    const double size = CME212::BoundingBox(mesh_.points).diagonal();
     if (m_.sheets.empty() && size > 50)
       add("the cloth is " + short_text(size) +
           " m large: if its file is in mm or cm, divide the coordinates by "
