@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -150,6 +151,15 @@ std::istream& getline_parsed(std::istream& s, T& value) {
   std::istringstream is(line);
   if (!(is >> value)) s.setstate(std::ios::failbit);
   return s;
+}
+
+/** The ending of the file @a path from its last point on, in small letters. */
+inline std::string ending_of(std::string_view path) {
+  const auto point = path.find_last_of("./");
+  if (point == path.npos || path[point] == '/') return "";
+  std::string ending(path.substr(point));
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
 }
 
 }  // namespace CME212

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "CME212/OutputFile.hpp"
+#include "CME212/Util.hpp"
 
 extern char** environ;
 

@@ -6,7 +6,6 @@
  * std::runtime_error "FILE: reason". */
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -46,15 +45,6 @@ struct Image {
 /** The formats of films, by the ending of a name. */
 inline constexpr std::array<std::string_view, 4> film_endings = {
     ".mp4", ".mkv", ".webm", ".gif"};
-
-/** The ending of the file @a path from its last point on, in small letters. */
-inline std::string ending_of(std::string_view path) {
-  const auto point = path.find_last_of("./");
-  if (point == path.npos || path[point] == '/') return "";
-  std::string ending(path.substr(point));
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
 
 /** Write @a image to the file @a path as PNG.
  * Throws std::runtime_error "path: reason"; then @a path is as it was. */

@@ -28,7 +28,7 @@ constexpr const char* warning = "cloth: warning: ";
 }  // namespace
 
 MeshOutput::MeshOutput(const std::string& file)
-    : nodes_(file), is_net_(file.ends_with(".net")) {
+    : nodes_(file), is_net_(CME212::ending_of(file) == ".net") {
   const std::string quads = quads_beside(file);
   if (!quads.empty()) quads_.emplace(quads);
 }

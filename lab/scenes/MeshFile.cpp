@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "CME212/MeshFaults.hpp"
 #include "CME212/Util.hpp"
@@ -81,10 +81,6 @@ std::vector<std::array<unsigned, N>> load_cells(const std::string& file,
   }
 }
 
-std::string ending(const std::string& file) {
-  return std::filesystem::path(file).extension();
-}
-
 }  // namespace
 
 Net load_mesh(const std::string& nodes, const std::string& cells) {
@@ -93,9 +89,9 @@ Net load_mesh(const std::string& nodes, const std::string& cells) {
     net = parse_net(mesh_detail::read_file(nodes, "a mesh or a net"), nodes);
   else
     net = parse_nodes(mesh_detail::read_file(nodes, "a file of points"), nodes);
-  if (ending(cells) == ".edges") {
+  if (CME212::ending_of(cells) == ".edges") {
     for (auto [i, j] : load_cells<2>(cells, net)) net.springs.push_back({i, j});
-  } else if (ending(cells) == ".tris") {
+  } else if (CME212::ending_of(cells) == ".tris") {
     for (auto [a, b, c] : load_cells<3>(cells, net))
       net.quads.push_back(face_around(a, b, c));
   } else if (!cells.empty()) {
@@ -107,9 +103,13 @@ Net load_mesh(const std::string& nodes, const std::string& cells) {
                           "a b c d, with the sides ab, ac, bd and cd");
     }
   }
-  if (auto again = repeated(net.quads); !again.empty()) {
-    std::ranges::sort(again, std::greater());
-    for (unsigned k : again) net.quads.erase(net.quads.begin() + k);
+  if (const auto again = repeated(net.quads); !again.empty()) {
+    std::vector<char> is_again(net.quads.size());
+    for (unsigned k : again) is_again[k] = 1;
+    std::vector<Quad> once;
+    for (std::size_t k = 0; k < net.quads.size(); ++k)
+      if (!is_again[k]) once.push_back(net.quads[k]);
+    net.quads = std::move(once);
     net.notes.push_back(CME212::count_of(again.size(), "face") +
                         (again.size() == 1 ? " is" : " are") +
                         " listed twice: each counts once");
@@ -118,8 +118,9 @@ Net load_mesh(const std::string& nodes, const std::string& cells) {
 }
 
 bool needs_net(const std::string& nodes, const std::string& cells) {
-  return (cells.empty() && !nodes.empty()) || ending(cells) == ".tris" ||
-         ending(cells) == ".edges";
+  return (cells.empty() && !nodes.empty()) ||
+         CME212::ending_of(cells) == ".tris" ||
+         CME212::ending_of(cells) == ".edges";
 }
 
 void write_nodes(std::ostream& out, const Net& mesh) {
@@ -143,7 +144,8 @@ std::string quads_beside(const std::string& nodes) {
   namespace fs = std::filesystem;
   fs::path file(nodes);
   std::error_code none;
-  if (nodes.empty() || fs::is_other(file, none) || ending(nodes) == ".net")
+  if (nodes.empty() || fs::is_other(file, none) ||
+      CME212::ending_of(nodes) == ".net")
     return "";
   if (file.extension() == ".nodes") return file.replace_extension(".tets");
   return nodes + ".tets";

@@ -60,18 +60,12 @@ const Kind& kind_of(std::string_view name) {
 
 Net parse_stl(std::string_view text, const std::string& file) {
   Builder b;
-  std::map<std::array<double, 3>, unsigned> at;
   std::vector<long long> nodes;
   const auto corner = [&](const Point& p) {
-    const auto [it, is_new] =
-        at.try_emplace({p.x, p.y, p.z}, unsigned(b.net.points.size()));
-    if (is_new) b.net.points.push_back(p);
-    nodes.push_back(it->second);
+    nodes.push_back((long long)b.net.points.size());
+    b.net.points.push_back(p);
     if (nodes.size() < 3) return;
-    // What has no area is no face.
-    if (nodes[0] != nodes[1] && nodes[0] != nodes[2] && nodes[1] != nodes[2])
-      b.face(nodes);
-    nodes.clear();
+    b.face(nodes), nodes.clear();
   };
   constexpr std::size_t head = 84, facet = 50;
   const std::size_t n =

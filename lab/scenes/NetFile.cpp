@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
 #include <map>
 #include <utility>
 #include <vector>
@@ -153,9 +151,10 @@ Net parse_off(std::string_view text, const std::string& file) {
 
 // ------------------------------------------------------------------- Formats
 
-/** Make nodes at the same place one node, as where an export split seams, and
- * drop faces that then have no area. */
-void weld(Net& net) {
+/** Make nodes at the same place one node, and drop faces that then have no
+ * area.
+ * @return how many nodes are gone */
+std::size_t weld(Net& net) {
   std::map<std::array<double, 3>, unsigned> at;
   std::vector<unsigned> now;
   std::vector<Point> points, velocities;
@@ -168,7 +167,7 @@ void weld(Net& net) {
     if (!net.velocities.empty())
       velocities.push_back(net.velocities[now.size() - 1]);
   }
-  if (points.size() == now.size()) return;
+  if (points.size() == now.size()) return 0;
   std::vector<Quad> quads;
   for (const Quad& q : net.quads) {
     std::vector<unsigned> around;
@@ -181,14 +180,9 @@ void weld(Net& net) {
   }
   for (Spring& s : net.springs) s.i = now[s.i], s.j = now[s.j];
   std::erase_if(net.springs, [](const Spring& s) { return s.i == s.j; });
-  net.notes.push_back(
-      std::to_string(now.size() - points.size()) + " of " +
-      CME212::count_of(now.size(), "node") +
-      " lie at the same point as another one, as where an export splits seams: "
-      "they are one node now, and indices are those of " +
-      CME212::count_of(points.size(), "node"));
   net.points = std::move(points), net.velocities = std::move(velocities);
   net.quads = std::move(quads);
+  return now.size() - net.points.size();
 }
 
 }  // namespace
@@ -199,22 +193,30 @@ Net parse_net(std::string_view text, const std::string& file) {
   struct Format {
     const char* ending;
     Net (*parse)(std::string_view, const std::string&);
-    bool may_have_seams;
+    enum { as_it_is, seams, triangles } nodes;  // of which it repeats some
   };
-  constexpr Format formats[] = {
-      {".net", parse_net_lines, false}, {".obj", parse_obj, true},
-      {".off", parse_off, true},        {".ply", parse_ply, true},
-      {".stl", parse_stl, false},       {".vtp", parse_vtp, false}};
-  std::string ending = std::filesystem::path(file).extension(), known;
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return char(std::tolower(c)); });
+  constexpr Format formats[] = {{".net", parse_net_lines, Format::as_it_is},
+                                {".obj", parse_obj, Format::seams},
+                                {".off", parse_off, Format::seams},
+                                {".ply", parse_ply, Format::seams},
+                                {".stl", parse_stl, Format::triangles},
+                                {".vtp", parse_vtp, Format::as_it_is}};
+  const std::string ending = CME212::ending_of(file);
+  std::string known;
   for (const Format& f : formats) {
     known += (known.empty() ? "" : ", ") + std::string(f.ending);
     if (ending != f.ending) continue;
     Net net = f.parse(text, file);
     if (net.points.empty())
       throw InputError(file, 0, "has no node, expected a mesh or a net");
-    if (f.may_have_seams) weld(net);
+    if (f.nodes == Format::as_it_is) return net;
+    const std::size_t before = net.points.size(), gone = weld(net);
+    if (f.nodes == Format::seams && gone > 0)
+      net.notes.push_back(
+          std::to_string(gone) + " of " + CME212::count_of(before, "node") +
+          " lie at the same point as another one, as where an export splits "
+          "seams: they are one node now, and indices are those of " +
+          CME212::count_of(net.points.size(), "node"));
     return net;
   }
   throw InputError(file, 0, "expected a name that ends in one of " + known);

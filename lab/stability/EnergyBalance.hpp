@@ -59,10 +59,9 @@ inline double balance(const Energies& e, const EnergyFlow& flow) {
  * Contact, friction and tearing only lower kinetic and elastic energy. So the
  * exact motion never raises the balance
  *   b = energies().total() - work + removed + drag:
- * any rise is the method's error. Work
- * of a moving obstacle: the impulse on a node times the obstacle's velocity.
- * Work of a moving pin: the gain of the node's kinetic energy - F . dx, F the
- * mean force before and after a step. */
+ * any rise is the method's error. Work of a moving obstacle: the impulse on a
+ * node times the obstacle's velocity. Work of a moving pin: the gain of the
+ * node's kinetic energy - F . dx, F the mean force before and after a step. */
 class EnergyBalance {
  public:
   /** @param g at the start, time @a t   @param gravity [m/s^2]
