@@ -17,7 +17,7 @@ UNITS ?= 6
 # to what they bring, one has another Graph.hpp.
 tests_drawn := test_viewer test_faces test_image test_screen
 tests_alone := test_graph test_graph_memory \
-               $(if $(filter 1,$(VIEWER)),$(tests_drawn)) test_slot_map \
+               $(if $(filter 1,$(VIEWER)),$(tests_drawn)) \
                test_cloth test_course_interface test_plain_steps
 
 dealt      := $(shell ls -S $(filter-out $(patsubst %,tests/%.cpp, \

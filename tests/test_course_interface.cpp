@@ -2,7 +2,7 @@
  * Programs as they are written against the course's interface of homework 0 to
  * 3, in small: what students' programs and test suites use has to compile and
  * to run. The idioms are the point here; the contract itself is tested in
- * tests/test_graph_nodes.cpp and tests/test_graph_edges.cpp.
+ * tests/test_graph_contract.cpp.
  *
  * The programs come first, and nothing before them but the course's headers:
  * such a program gets standard headers from those, and would not compile if one
