@@ -106,7 +106,7 @@ class Graph {
 
     /** The node's position; assign to it to move the node. */
     Point& position() {
-      // BEGIN SOLUTION 3.1.position 4pt
+      // BEGIN SOLUTION 3.1.position
       return graph().position_[id_];
       // STUB // A copy, one of some that an expression may need together: what
       // STUB // is written to it does not reach the graph.
@@ -178,7 +178,7 @@ class Graph {
     Node node2() const { return Node(&graph(), far_); }
 
     /** The value of the edge: the same from both ends. */
-    // BEGIN SOLUTION 4.1.edge_value 6pt
+    // BEGIN SOLUTION 4.1.edge_value
     edge_value_type& value() { return graph().edge_value_[id_]; }
     const edge_value_type& value() const { return graph().edge_value_[id_]; }
     // STUB edge_value_type& value() { return no_edges_; }
@@ -277,7 +277,7 @@ class Graph {
    * Complexity: O(sum of degree() over @a n's neighbors), whatever num_nodes()
    */
   size_type remove_node(const Node& n) {
-    // BEGIN SOLUTION 7.1.remove_node 8pt
+    // BEGIN SOLUTION 7.1.remove_node
     if (!has_node(n)) return 0;
     const size_type id = n.id_;  // a copy: n may refer into what changes below
     nodes_.make_lists(), edges_.make_lists();  // all that may throw
@@ -301,7 +301,7 @@ class Graph {
    *         instead of ++it where it removes.
    * @pre @a it != node_end() */
   node_iterator remove_node(node_iterator it) {
-    // BEGIN SOLUTION 7.1.remove_node_iterator 3pt
+    // BEGIN SOLUTION 7.1.remove_node_iterator
     assert(it.at_ < num_nodes());
     remove_node(*it);
     return it;
@@ -371,7 +371,7 @@ class Graph {
    * Keeps: every Node and every other Edge; references.
    * Complexity: O(a.degree() + b.degree()) */
   size_type remove_edge(const Node& a, const Node& b) {
-    // BEGIN SOLUTION 7.1.remove_edge 6pt
+    // BEGIN SOLUTION 7.1.remove_edge
     size_type id = find(a, b);
     return id == none ? 0 : remove_edge(Edge(this, id));
     // STUB (void)a, (void)b;
@@ -396,7 +396,7 @@ class Graph {
    * @return an iterator at the edge that took the index, or edge_end().
    * @pre @a it != edge_end() */
   edge_iterator remove_edge(edge_iterator it) {
-    // BEGIN SOLUTION 7.1.remove_edge_iterator 3pt
+    // BEGIN SOLUTION 7.1.remove_edge_iterator
     remove_edge(*it);
     return it;
     // STUB (void)it;

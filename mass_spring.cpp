@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
   const auto force = make_combined_force(GravityForce(), MassSpringForce());
   const auto on_ball = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), SphereConstraint());
-  // BEGIN SOLUTION 7.2.program 2pt
+  // BEGIN SOLUTION 7.2.program
   const auto torn = make_combined_constraints(
       PinConstraint(g), PlaneConstraint(), TearConstraint());
   // STUB const auto& torn = on_ball;  // as the stage before

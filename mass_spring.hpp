@@ -55,7 +55,7 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
     g.add_node(p, {Point(), 1.0 / double(points.size())});
   for (unsigned s = 0; s < springs.size(); ++s) {
     const auto [i, j] = springs[s];
-    // BEGIN SOLUTION 4.2.build_cloth 4pt
+    // BEGIN SOLUTION 4.2.build_cloth
     const double L = norm(points[i] - points[j]);
     g.add_edge(g.node(i), g.node(j)).value() = {K, L};
     // STUB (void)K;
@@ -69,7 +69,7 @@ inline void build_cloth(Cloth& g, std::span<const Point> points,
 /** Does the step without constraints skip a node at @a p? From 5.2 on it skips
  * the corners: the forces of section 5 act on them, too. */
 inline bool is_skipped(const Point& p) {
-  // BEGIN SOLUTION 5.2.skip_corners 2pt
+  // BEGIN SOLUTION 5.2.skip_corners
   return is_corner(p);
   // STUB (void)p;
   // STUB return false;
@@ -86,7 +86,7 @@ inline bool is_skipped(const Point& p) {
  */
 template <typename G, typename F>
 double symp_euler_step(G& g, double t, double dt, F&& force) {
-  // BEGIN SOLUTION 3.2.symp_euler_step 7pt
+  // BEGIN SOLUTION 3.2.symp_euler_step
   for (auto n : nodes(g))
     if (!is_skipped(n.position())) n.position() += dt * n.value().vel;
   for (auto n : nodes(g))
@@ -103,7 +103,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force) {
  * @param constraint  void(G&, double), called once; may remove nodes */
 template <typename G, typename F, typename C>
 double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
-  // BEGIN SOLUTION 6.2.symp_euler_step 6pt
+  // BEGIN SOLUTION 6.2.symp_euler_step
   for (auto n : nodes(g)) n.position() += dt * n.value().vel;
   constraint(g, t);
   for (auto n : nodes(g)) n.value().vel += (dt / n.value().mass) * force(n, t);
@@ -118,7 +118,7 @@ double symp_euler_step(G& g, double t, double dt, F&& force, C&& constraint) {
 /** Force [N] of spring @a s on one end, where @a u [m] points to the other end:
  * K (|u| - L) u/|u|; zero if u = 0, which has no direction. */
 inline Point spring_force(const Point& u, const EdgeData& s) {
-  // BEGIN SOLUTION 3.2.Problem1Force 7pt
+  // BEGIN SOLUTION 3.2.Problem1Force
   const double l = norm(u);
   return l > 0 ? s.K * (l - s.L) / l * u : Point();
   // STUB (void)u, (void)s;
@@ -154,7 +154,7 @@ class Problem1Force {
   template <typename EDGE>
   EdgeData spring_of(EDGE e) const {
     if (same_) return *same_;
-    // BEGIN SOLUTION 4.2.Problem1Force 6pt
+    // BEGIN SOLUTION 4.2.Problem1Force
     return e.value();
     // STUB (void)e;
     // STUB return {.K = 0, .L = 0};
@@ -176,7 +176,7 @@ struct GravityForce : ZeroForce {
   double gravity;  ///< acceleration of free fall [m/s^2]
   explicit GravityForce(double g = grav) : gravity(g) {}
   Point operator()(Node n, double /*t*/) const override {
-    // BEGIN SOLUTION 5.1.GravityForce 3pt
+    // BEGIN SOLUTION 5.1.GravityForce
     return n.value().mass * Point(0, 0, -gravity);
     // STUB (void)n;
     // STUB return Point();
@@ -187,7 +187,7 @@ struct GravityForce : ZeroForce {
 /** The springs at a node, each with its own K and L. */
 struct MassSpringForce : ZeroForce {
   Point operator()(Node n, double /*t*/) const override {
-    // BEGIN SOLUTION 5.1.MassSpringForce 3pt
+    // BEGIN SOLUTION 5.1.MassSpringForce
     Point f;
     for (Edge e : edges(n))
       f += spring_force(e.node2().position() - n.position(), e.value());
@@ -203,7 +203,7 @@ struct DampingForce : ZeroForce {
   double c;  ///< [kg/s], >= 0; in the assignment 1/N for N nodes
   explicit DampingForce(double drag) : c(drag) { assert(c >= 0); }
   Point operator()(Node n, double /*t*/) const override {
-    // BEGIN SOLUTION 5.1.DampingForce 3pt
+    // BEGIN SOLUTION 5.1.DampingForce
     return -c * n.value().vel;
     // STUB (void)n;
     // STUB return Point();
@@ -227,7 +227,7 @@ struct CombinedForces : ZeroForce {
   List parts;  ///< none is null
   explicit CombinedForces(List forces) : parts(std::move(forces)) {}
   Point operator()(Node n, double t) const override {
-    // BEGIN SOLUTION 5.2.make_combined_force 5pt
+    // BEGIN SOLUTION 5.2.make_combined_force
     Point f;
     for (const auto& force : parts) f += (*force)(n, t);
     return f;
@@ -267,7 +267,7 @@ struct PinConstraint : ZeroConstraint {
   std::vector<Pin> pins;
   /** Pin the two corners. */
   explicit PinConstraint(const Cloth& g) {
-    // BEGIN SOLUTION 6.1.PinConstraint 4pt
+    // BEGIN SOLUTION 6.1.PinConstraint
     for (Node n : nodes(g))
       if (is_corner(n.position())) pins.push_back({n, n.position()});
     // STUB (void)g;
@@ -291,7 +291,7 @@ struct PlaneConstraint : ZeroConstraint {
   double z;  ///< [m]
   explicit PlaneConstraint(double height = -0.75) : z(height) {}
   void project(Node n) const {
-    // BEGIN SOLUTION 6.1.PlaneConstraint 4pt
+    // BEGIN SOLUTION 6.1.PlaneConstraint
     if (n.position().z < z) n.position().z = z, n.value().vel.z = 0;
     // STUB (void)n;
     // END SOLUTION
@@ -317,7 +317,7 @@ struct SphereConstraint : ZeroConstraint {
   Ball ball;
   explicit SphereConstraint(const Ball& b = {}) : ball(b) {}
   void project(Node n) const {
-    // BEGIN SOLUTION 6.1.SphereConstraint 4pt
+    // BEGIN SOLUTION 6.1.SphereConstraint
     if (!ball.holds(n.position())) return;
     const Point r = n.position() - ball.center;
     const Point normal = norm(r) > 0 ? r / norm(r) : Point(0, 0, 1);
@@ -337,7 +337,7 @@ struct TearConstraint : ZeroConstraint {
   Ball ball;
   explicit TearConstraint(const Ball& b = {}) : ball(b) {}
   void operator()(Cloth& g, double /*t*/) const override {
-    // BEGIN SOLUTION 7.2.TearConstraint 4pt
+    // BEGIN SOLUTION 7.2.TearConstraint
     for (auto it = g.node_begin(); it != g.node_end();)
       if (ball.holds((*it).position()))
         it = g.remove_node(it);  // now at the node that took its index
@@ -367,7 +367,7 @@ struct CombinedConstraints : ZeroConstraint {
   explicit CombinedConstraints(List constraints)
       : parts(std::move(constraints)) {}
   void operator()(Cloth& g, double t) const override {
-    // BEGIN SOLUTION 6.2.make_combined_constraints 4pt
+    // BEGIN SOLUTION 6.2.make_combined_constraints
     for (const auto& c : parts) (*c)(g, t);
     // STUB (void)g, (void)t;
     // END SOLUTION

@@ -11,7 +11,7 @@
  * @return @a t + @a dt */
 template <typename G, typename F, typename C>
 double my_step(G& g, double t, double dt, F&& force, C&& constraint) {
-  // BEGIN SOLUTION 8.my_step 5pt
+  // BEGIN SOLUTION 8.my_step
   // Half a drift, a kick, half a drift: x += dt/2 v;  v += dt F(x, t + dt/2)/m;
   // x += dt/2 v. The same backwards, so it has no error of order 1.
   const auto half_drift = [&](double reached) {

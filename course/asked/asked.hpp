@@ -30,8 +30,37 @@ inline constexpr bool answers_all = true;
 inline constexpr bool answers_all = false;
 #endif
 
-/** A number in [least, most). Runs of one task draw the same. */
+/** Numbers that a secret and the id of a task determine, by splitmix64. */
+struct Draw {
+  std::uint64_t state = 0;
+
+  static constexpr std::size_t secret = 32;  // bytes
+  Draw(const unsigned char* word, std::string_view id) {
+    const auto add = [this](unsigned char byte) {
+      state = (state ^ byte) * 0x100000001b3u;
+    };
+    std::for_each(word, word + secret, add);
+    std::for_each(id.begin(), id.end(), add);
+  }
+  /** In [least, most). */
+  double operator()(double least, double most) {
+    std::uint64_t x = state += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    x ^= x >> 31;
+    return least + (most - least) * double(x >> 11) / 9007199254740992.;
+  }
+};
+/** The next number in [least, most). Runs of one task draw the same. */
 double drawn(double least, double most);
+/** What law.cpp says of a net: the task 8.my_step asks it. */
+struct Question {
+  enum What { body, start, pin, force } what;  // body: (mass, begin, 0)
+  int net, node;
+  double t;
+  Point x[12];
+};
+Point told(const Question& question);
 /** The next of the numbers called @a what, right if within @a tolerance. */
 void answer(const std::string& what, double number, double tolerance = 1e-9);
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import grade
 import judge
-import jplag
 import ranking
 import report
 import submission
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from whole_class import Class, Row
 
 COLUMNS = ("student", "commit", "tag", "kind of tag", "tagged", "committed",
-           "time", "days late", "points", "of")
+           "pushed", "time", "days late", "points", "of")
 
 
 def made(whole: "Class", row: "Row") -> report.Report:
@@ -76,7 +75,7 @@ def table(whole: "Class", rows: list) -> str:
     for row in rows:
         made = row.made
         dates = [time and time.isoformat(" ") for time in (
-            made.tagged, made.committed, made.time
+            made.tagged, made.committed, made.pushed, made.time
             and made.time.astimezone(zone))]
         points = [""] * (2 + len(ids))
         notes = [row.reason] if row.reason else list(row.notes)
@@ -111,6 +110,5 @@ def summary(whole: "Class", rows: list) -> str:
     if graded:
         lines.append(f"median {statistics.median(graded):g} of "
                      f"{whole.course.points} points")
-    lines += [f"written: {whole.out}/class.csv class.html reports/ jplag/",
-              f"similar submissions: {jplag.command(whole)}"]
+    lines += [f"written: {whole.out}/class.csv class.html reports/"]
     return "\n".join(lines) + "\n"

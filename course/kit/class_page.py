@@ -130,9 +130,11 @@ def page(whole: "Class", rows: list) -> str:
         late = "".join(f", {number} by {day} day{'s' * (day != 1)}"
                        for day, number in sorted(days.items()))
         lines.append(f"<p>{sum(days.values())} after the deadline, "
-                     f"{text(whole.due.isoformat(' '))}{late}. Dates are what "
-                     "the student's clock said: a tag or a commit that is set "
-                     "back counts as in time.</p>")
+                     f"{text(whole.due.isoformat(' '))}{late}. Dates are "
+                     + ("the host's where it has one (TIMES).</p>"
+                        if whole.times else
+                        "what the student's clock said: a tag or a commit that "
+                        "is set back counts as in time.</p>"))
     if graded:
         points = [one.points for one in graded]
         lines += ["<h2>Points</h2>",

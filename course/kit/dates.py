@@ -3,10 +3,11 @@
 A deadline is '2026-02-14 16:30 -0800' or '2026-02-14 16:30 Europe/Berlin', with
 or without seconds. A submission counts from the later of two dates: of its
 commit, and of its tag if that is annotated. A lightweight tag has none. Both
-are what the student's clock said.
+are what the student's clock said. A time of the host, TIMES, comes before both.
 """
 
 import datetime
+import pathlib
 import re
 import zoneinfo
 from collections.abc import Iterator
@@ -55,6 +56,29 @@ def deadline(text: str) -> datetime.datetime:
     return due
 
 
+def times(file: str | None) -> dict[str, datetime.datetime]:
+    """{commit: when it was pushed first} of a file with a line for each:
+    a commit's 40 digits and a time with its zone, as ISO 8601 has them."""
+    found: dict[str, datetime.datetime] = {}
+    try:
+        text = pathlib.Path(file).read_text("utf-8") if file else ""
+    except (OSError, ValueError):
+        raise BadInput(f"TIMES is '{shown(file)}', which can't be read") \
+            from None
+    for number, line in enumerate(text.splitlines(), 1):
+        try:
+            commit, word = line.split()
+            time = datetime.datetime.fromisoformat(word)
+            if not time.tzinfo or not re.fullmatch("[0-9a-f]{40}", commit):
+                raise ValueError
+        except ValueError:
+            raise BadInput(f"{shown(file)}:{number}: expected a commit and a "
+                           "time with its zone, as 2026-03-08T08:12:00Z") \
+                from None
+        found[commit] = min(time, found.get(commit, time))
+    return found
+
+
 def days_late(moment: datetime.datetime, due: datetime.datetime) -> int:
     """Days that have begun since the deadline: it comes again each day at the
     same time of its own clock, also where that is not 24 hours later."""
@@ -71,10 +95,12 @@ class Made:
     kind: str = ""           # of the tag: annotated or lightweight
     tagged: datetime.datetime | None = None
     committed: datetime.datetime | None = None
+    pushed: datetime.datetime | None = None     # as the host says
 
     @property
     def time(self) -> datetime.datetime | None:
-        return max(filter(None, (self.tagged, self.committed)), default=None)
+        return self.pushed or max(filter(None, (self.tagged, self.committed)),
+                                  default=None)
 
     def doubts(self) -> Iterator[str]:
         if self.commit and not self.committed:

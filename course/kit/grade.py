@@ -1,11 +1,11 @@
 """Grade a submission:  make grade DIR=submission [HW=hw2]
 
-    DIR=DIR [HW=TAG] [JSON=FILE] [JUNIT=FILE] [RESULTS=FILE] [FEEDBACK=names]
+    DIR=DIR [HW=TAG] [JSON=FILE] [RESULTS=FILE] [FEEDBACK=names]
       [SEED=N] [SAFE=0] [JOBS=N] python3 course/kit/grade.py
 
 DIR holds Graph.hpp and mass_spring.hpp or mass_spring.cpp. With HW, DIR is a
 clone, and graded is what its tag HW holds. The table goes to the standard
-output; FILEs get it as JSON, as JUnit XML and as Gradescope's results.json.
+output; FILEs get it as JSON and as Gradescope's results.json.
 FEEDBACK says what students see of the table and of results.json: all, the names
 of the tasks with their points, or none. SEED, a whole number, varies the cloths
 and the numbers of the tests. SAFE=0 runs the submission even where
@@ -122,7 +122,7 @@ def main() -> int:
     get = os.environ.get
     folder, tag = get("DIR", ""), get("HW", "")
     seen: str       # set before a report is made
-    outputs = {get("JSON"): report.as_json, get("JUNIT"): report.as_junit,
+    outputs = {get("JSON"): report.as_json,
                get("RESULTS"): lambda made: report.as_gradescope(made, seen)}
     try:
         if not folder:

@@ -1,14 +1,14 @@
 """Split a source with markers into solution and starter.
 
-    // BEGIN SOLUTION 7.1.remove_node 8pt
+    // BEGIN SOLUTION 7.1.remove_node
     ...
     // STUB (void)n;
     // STUB return 0;
     // END SOLUTION
 
 The solution stands between BEGIN and the first STUB, if there is one. In a
-starter a comment and the stubs stand in its place. The points stand at the
-first region of a task. Run as a program it checks the repository's sources.
+starter a comment and the stubs stand in its place. Run as a program it checks
+the repository's sources.
 
     // BEGIN GUIDED
     ...
@@ -31,7 +31,7 @@ import tasks
 SOURCES = ("Graph.hpp", "mass_spring.hpp", "mass_spring.cpp", "mine.hpp")
 OPEN_GRAPH = "course/starter/open/Graph.hpp"  # another one, for the level open
 
-BEGIN = re.compile(r"( *)// BEGIN SOLUTION (\S+)(?: (\d+)pt)?")
+BEGIN = re.compile(r"( *)// BEGIN SOLUTION (\S+)")
 STUB = re.compile(r"( *)// STUB (\S.*| +\S.*)")
 END = re.compile(r" *// END SOLUTION")
 BEGIN_GUIDED = re.compile(r"( *)// BEGIN GUIDED")
@@ -49,7 +49,6 @@ class MarkerError(tasks.Faults):
 @dataclass(frozen=True)
 class Region:
     task: str
-    points: int | None
     indent: str
     solution: tuple[str, ...]  # lines
     stubs: tuple[str, ...]  # lines
@@ -87,10 +86,9 @@ def split(text: str, file: str, level: str = "guided") -> list[str | Region]:
             at, head = begin
             if not "".join(solution).strip():
                 fault("the region holds no solution", at)
-            points = None if head[3] is None else int(head[3])
             is_open = bool(guided) and level == "open"
             pieces.append(Region(
-                head[2], points, guided[1] if guided and is_open else head[1],
+                head[2], guided[1] if guided and is_open else head[1],
                 tuple(solution), tuple(stubs), file, at, is_open))
             begin = None
         elif match := BEGIN_GUIDED.fullmatch(bare):
@@ -111,9 +109,9 @@ def split(text: str, file: str, level: str = "guided") -> list[str | Region]:
                 fault("STUB outside of a region", number)
             stubs.append(match[1] + match[2] + "\n")
         elif LOOKS_LIKE_ONE.search(bare):
-            fault("this marker is malformed, expected '// BEGIN SOLUTION TASK "
-                  "[POINTSpt]', '// STUB code' or '// END SOLUTION' on a line "
-                  "of its own", number)
+            fault("this marker is malformed, expected '// BEGIN SOLUTION "
+                  "TASK', '// STUB code' or '// END SOLUTION' on a line of its "
+                  "own", number)
         elif not begin:
             pieces += [line] * (not guided or level == "guided")
         elif stubs:
@@ -141,7 +139,7 @@ def solution(text: str, file: str = "text") -> str:
 def stub(text: str, only: Container[str], course: tasks.Course | None = None,
          file: str = "text", level: str = "guided") -> str:
     """`text` without its markers, and with stubs in place of the solutions of
-    the tasks `only`. The comment above them names points and page if the
+    the tasks `only`. The comment above them names the page if the
     `course` is given.  Throws MarkerError."""
     out, left_open = [], set()
     for piece in split(text, file, level):
@@ -155,26 +153,14 @@ def stub(text: str, only: Container[str], course: tasks.Course | None = None,
             out += piece.solution
         elif piece.task not in left_open:
             task = course.tasks.get(piece.task) if course else None
-            further = piece.points is None and not piece.is_open
-            out.append(piece.indent + comment(piece.task, task, further) + "\n")
+            page = (f": course page {task.section.id}"
+                    if task and task.section.page else "")
+            out.append(f"{piece.indent}// YOUR CODE {piece.task}{page}\n")
             if piece.is_open:
                 left_open.add(piece.task)
             else:
                 out += piece.stubs
     return "".join(out)
-
-
-def comment(id: str, task: tasks.Task | None, further: bool) -> str:
-    """The line that stands where a solution was."""
-    page = ""
-    if task and task.section.page:
-        page = f": course page {task.section.id}"
-    if further:
-        return f"// YOUR CODE {id}, too{page}"
-    points = ""
-    if task and task.points:
-        points = f" ({task.worth}{', extra' if task.extra else ''})"
-    return f"// YOUR CODE {id}{points}{page}"
 
 
 def starter(text: str, course: tasks.Course, file: str = "text",
@@ -188,7 +174,7 @@ def check(texts: dict[str, str], course: tasks.Course,
     """Hold the regions of `texts`, {file: text}, to the tasks of `course`;
     `tests` are the names of the tests that there are. Throws MarkerError."""
     faults: list[str] = []
-    first: dict[str, Region] = {}
+    there: set[str] = set()
     for file, text in texts.items():
         try:
             found = regions(text, file)
@@ -196,38 +182,18 @@ def check(texts: dict[str, str], course: tasks.Course,
             faults += error.faults
             continue
         for region in found:
-            faults += check_region(region, first, course, tasks_file)
+            there.add(region.task)
+            if region.task not in course.tasks.keys() | course.dropped:
+                faults.append(f"{file}:{region.line}: there is no task "
+                              f"'{region.task}' in {tasks_file}")
     if not faults:
         for id, task in course.tasks.items():
-            if task.points and id not in first and not any(
+            if task.points and id not in there and not any(
                     test in tests for test in task.tests):
                 faults.append(f"{tasks_file}:{task.line}: task {id} has "
                               "points, but neither a region nor a test")
     if faults:
         raise MarkerError(faults)
-
-
-def check_region(region: Region, first: dict[str, Region], course: tasks.Course,
-                 tasks_file: str) -> list[str]:
-    """Faults of a region; `first` holds the first region of each task."""
-    at, id = f"{region.file}:{region.line}", region.task
-    before = first.setdefault(id, region)
-    if id in course.dropped:
-        return []  # its points do not matter
-    if id not in course.tasks:
-        return [f"{at}: there is no task '{id}' in {tasks_file}"]
-    points = course.tasks[id].points
-    if before is not region:
-        if region.points is not None:
-            return [f"{at}: the points of {id} stand at its first region, "
-                    f"{before.file}:{before.line}, and nowhere else"]
-    elif region.points is None and points:
-        return [f"{at}: the first region of {id} gives no points, expected "
-                f"{points}pt as in {tasks_file}"]
-    elif region.points is not None and region.points != points:
-        return [f"{at}: {id} has {region.points} points here and {points} in "
-                f"{tasks_file}:{course.tasks[id].line}"]
-    return []
 
 
 def path_of(name: str) -> pathlib.Path:

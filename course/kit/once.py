@@ -43,6 +43,7 @@ LINK: dict[str, list[str]] = {
 # What each test program is linked with, of the kit's own.
 LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp",
           ROOT / "course/asked/tell.cpp"]
+LAW = ROOT / "course/asked/law.cpp"
 PATIENCE = 600      # seconds for a step of the kit's own
 UNUSED = 3600       # seconds after which a part that is not used is removed
 
@@ -89,8 +90,9 @@ class Kit:
         self.jail = self.only_jail()
         tests = sorted(TESTS.glob("*.hpp"))
         linked = self.locked_part(
-            "linked", [*LINKED, KIT.parent / "asked/asked.hpp", *tests,
+            "linked", [*LINKED, LAW, KIT.parent / "asked/asked.hpp", *tests,
                        *course], self.make_linked)
+        self.law = linked / "law"
         self.preludes = self.locked_part(
             "prelude", [TESTS / "prelude.hpp", *course], self.make_preludes)
         # The solution sets these: judge.prepare() grades it first.
@@ -159,6 +161,9 @@ class Kit:
             self.run(["-O1", "-I", self.include, "-I", TESTS, "-c", source,
                       "-o", folder / f"{source.stem}.o"],
                      f"{source.name} can't be built")
+        self.run(["-O1", "-I", self.include, "-I", TESTS, LAW,
+                  folder / "kit.o", "-o", folder / "law"],
+                 f"{LAW.name} can't be built")
 
     def make_preludes(self, folder: pathlib.Path) -> None:
         # In the jail, where addresses are not by chance: it is used there.

@@ -1,4 +1,4 @@
-"""The report on a submission: as text, JSON, JUnit XML and for Gradescope.
+"""The report on a submission: as text, as JSON and for Gradescope.
 
 The same submission gives the same bytes: no time, no address, no process, no
 name of a temporary folder stands in a report.
@@ -6,7 +6,6 @@ name of a temporary folder stands in a report.
 
 import json
 from dataclasses import dataclass
-from xml.sax.saxutils import escape, quoteattr
 
 import judge
 import submission
@@ -174,35 +173,6 @@ def as_json(report: Report) -> str:
 
 def dump(data: object) -> str:
     return json.dumps(data, indent=1) + "\n"
-
-
-def as_junit(report: Report) -> str:
-    suites = []
-    for section in report.course.sections:
-        cases = [g for g in report.graded if g.task.section == section]
-        failed = sum(not g.passed for g in cases)
-        lines = [f"  <testsuite name={quoteattr(section.id)} "
-                 f'tests="{len(cases)}" failures="{failed}" errors="0">']
-        for g in cases:
-            name = quoteattr(f"{g.task.title} ({score(g)})")
-            start = (f"    <testcase classname={quoteattr(section.id)} "
-                     f"name={name}")
-            if g.passed:
-                lines.append(start + "/>")
-            else:
-                message = quoteattr(outcome(g.result).replace("\n", " "))
-                text = escape("\n".join(failure(g)))
-                lines += [start + ">",
-                          f"      <failure type={quoteattr(g.result.status)} "
-                          f"message={message}>{text}</failure>",
-                          "    </testcase>"]
-        suites.append("\n".join([*lines, "  </testsuite>"]))
-    failed = sum(not g.passed for g in report.graded)
-    return "\n".join([
-        '<?xml version="1.0" encoding="UTF-8"?>',
-        f"<testsuites name={quoteattr(report.course.title)} "
-        f'tests="{len(report.graded)}" failures="{failed}" errors="0">',
-        *suites, "</testsuites>", ""])
 
 
 def as_gradescope(report: Report, feedback: str = "all") -> str:

@@ -1,13 +1,14 @@
 /** @file runner.cpp
  * main() of a test program for the grader:  PROGRAM TASK IN OUT PAGE CRASHING
- * SEED Runs the functions of TASK that are linked in, and writes to the
- * descriptor OUT how they ended. Then it runs those that ask for numbers
- * (asked.hpp), and writes what they answer; whether that is right is known to
- * the grader alone. What is asked is drawn from a seed that the grader sends by
- * IN once main() has begun. PAGE is memory shared with the grader; it keeps
- * what was done last, also when the program crashes or is ended. CRASHING are
- * aspects that no test is to look at: see probes() in check.hpp. With a SEED
- * the tests take other numbers.
+ * SEED QUESTIONS REPLIES  Runs the functions of TASK that are linked in, and
+ * writes to the descriptor OUT how they ended. Then it runs those that ask for
+ * numbers (asked.hpp), and writes what they answer; whether that is right is
+ * known to the grader alone. What is asked is drawn from a seed that the grader
+ * sends by IN once main() has begun. PAGE is memory shared with the grader; it
+ * keeps what was done last, also when the program crashes or is ended. CRASHING
+ * are aspects that no test is to look at: see probes() in check.hpp. With a
+ * SEED the tests take other numbers. QUESTIONS and REPLIES lead to law.cpp, or
+ * are -1.
  *
  * Compiled apart from the submission: its macros reach nothing here. */
 #include <sys/mman.h>
@@ -41,8 +42,8 @@ constexpr std::size_t page_size = 4096;
 constexpr std::size_t longest = 2000;  // characters of a text
 
 char* page = nullptr;  // "name aspect\0did\0"
-int out = -1;
-std::uint64_t seed = 0;
+int out = -1, questions = -1, replies = -1;
+kit::Draw* draw = nullptr;
 std::map<std::string, std::string> answers;  // "tolerance\tnumber number ..."
 unsigned long checks = 0;
 unsigned crashing = 0;  // aspects that probes() has nobody look at
@@ -120,13 +121,13 @@ void fail(std::string expected, std::string got) {
   throw Failure{"", expected, got};
 }
 
-// As splitmix64 makes it.
-double drawn(double least, double most) {
-  std::uint64_t x = seed += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  x ^= x >> 31;
-  return least + (most - least) * double(x >> 11) / 9007199254740992.;
+double drawn(double least, double most) { return (*draw)(least, most); }
+Point told(const Question& question) {
+  Point reply;
+  if (write(questions, &question, sizeof question) != sizeof question ||
+      read(replies, &reply, sizeof reply) != sizeof reply)
+    _exit(3);
+  return reply;
 }
 void answer(const std::string& what, double number, double tolerance) {
   char text[40];
@@ -140,7 +141,7 @@ void answer(const std::string& what, double number, double tolerance) {
 }  // namespace kit
 
 int main(int count, char** arg) {
-  if (count != 7) return 2;
+  if (count != 9) return 2;
   const std::string id = arg[1];
   crashing = unsigned(std::atoi(arg[5]));
   if (*arg[6]) kit::vary(std::strtoull(arg[6], nullptr, 10));
@@ -151,14 +152,14 @@ int main(int count, char** arg) {
   page = static_cast<char*>(map);
   if (write(out, "begun\n", 6) != 6) return 2;
   const int in = std::atoi(arg[2]);
-  unsigned char word[32];
+  unsigned char word[kit::Draw::secret];
+  questions = std::atoi(arg[7]), replies = std::atoi(arg[8]);
   if (read(in, word, sizeof word) != sizeof word) return 2;
   close(in);
 
   const std::size_t ran = run_all(id);
-  for (unsigned char byte : word) seed = (seed ^ byte) * 0x100000001b3u;
-  for (char letter : id)
-    seed = (seed ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
+  kit::Draw of_task(word, id);
+  draw = &of_task;
   run_all('?' + id);
   for (const auto& [what, numbers] : answers)
     send("answer\t" + plain(what) + '\t' + numbers);

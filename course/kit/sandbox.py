@@ -4,6 +4,7 @@ The program runs in jail.cpp. Here its time, memory, threads and output are
 watched; whatever it does, the whole group of processes is ended and reaped.
 """
 
+import contextlib
 import os
 import pathlib
 import re
@@ -162,9 +163,11 @@ def run_compiler(jail: list[str], command: list[str], folder: pathlib.Path,
 
 
 def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
-             kit: once.Kit, data: pathlib.Path, crashing: int = 0) -> Outcome:
+             kit: once.Kit, data: pathlib.Path, crashing: int = 0,
+             asks: bool = False) -> Outcome:
     """Run the test functions of a task in a process of its own, with the seeds
-    of a kit and the cloth in the folder `data`."""
+    of a kit and the cloth in the folder `data`. One that `asks` gets no seed,
+    but forces, of another process: law.cpp."""
     to_read, to_write = os.pipe()         # the seed, to the program
     from_read, from_write = os.pipe()     # how it ended
     page = os.memfd_create("page")
@@ -175,28 +178,41 @@ def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
     def heard(data):
         if not spoken.total and data.startswith(b"begun\n"):
             try:
-                os.write(to_write, kit.secret)
+                os.write(to_write, bytes(32) if asks else kit.secret)
             except BrokenPipeError:
                 pass
         return spoken.add(data)
 
     try:
-        process = subprocess.Popen(
-            [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
-             "--", str(program), task, *map(str, descriptors),
-             str(crashing), kit.seed],
-            cwd="/", env={**clean_environment("/nowhere"),
-                          "KIT_DATA": str(data)},
-            pass_fds=descriptors,
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE, start_new_session=True)
-        os.close(to_read)
-        os.close(from_write)
-        descriptors = (page,)
-        assert process.stderr
-        with process.stderr as pipe:
-            stopped, seconds = watch(process, limits, {
-                pipe.fileno(): written.add, from_read: heard})
+        law = subprocess.Popen(
+            [kit.law], bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE) if asks else None
+        with law or contextlib.nullcontext():
+            far: tuple[int, ...] = ()
+            if law:
+                assert law.stdin and law.stdout and law.stderr
+                law.stdin.write(kit.secret)
+                far = law.stdin.fileno(), law.stdout.fileno()
+            process = subprocess.Popen(
+                [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
+                 "--", str(program), task, *map(str, descriptors),
+                 str(crashing), kit.seed, *map(str, far or (-1, -1))],
+                cwd="/", env={**clean_environment("/nowhere"),
+                              "KIT_DATA": str(data)},
+                pass_fds=(*descriptors, *far),
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE, start_new_session=True)
+            os.close(to_read)
+            os.close(from_write)
+            descriptors = (page,)
+            if law and law.stdin and law.stdout:
+                law.stdin.close()
+                law.stdout.close()
+            assert process.stderr
+            with process.stderr as pipe:
+                stopped, seconds = watch(process, limits, {
+                    pipe.fileno(): written.add, from_read: heard})
+            forces = law.stderr.read() if law and law.stderr else b""
         texts = os.pread(page, PAGE, 0)
     finally:
         for one in (*descriptors, to_write, from_read):
@@ -210,9 +226,12 @@ def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
     name, did = (texts[at:at + PAGE // 2].partition(b"\0")[0]
                  .decode("ascii", "replace") for at in (0, PAGE // 2))
     name, _, aspect = name.partition(" ")
+    answers = answers_of(said)
+    if forces:
+        answers["forces"] = 0, [float(forces)]
     return Outcome(stopped, process.returncode, written.text(),
                    begun == "begun", verdict[0] if verdict else [],
-                   answers_of(said), name, did,
+                   answers, name, did,
                    int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0,
                    seconds)
 

@@ -98,8 +98,8 @@ class Grading(Programs):
         (self.submission / "Graph.hpp").write_text(text, encoding="utf-8")
 
     def grade(self, folder, where):
-        """The text and the three files."""
-        files = [self.top / name for name in ("json", "junit", "results")]
+        """The text and the two files."""
+        files = [self.top / name for name in ("json", "results")]
         said, complaint = self.run_kit(
             "grade.py", where, DIR=folder,
             **{file.name.upper(): file for file in files})
@@ -111,7 +111,7 @@ class Grading(Programs):
         second = self.grade("submission", self.top)
         self.assertEqual(first, second)
         self.hold(first)
-        self.assertEqual(first[3], self.at_gradescope())
+        self.assertEqual(first[2], self.at_gradescope())
 
     def test_nothing_is_graded_where_the_solution_fails(self):
         def judged(*_):
@@ -280,6 +280,22 @@ class Dates(unittest.TestCase):
             with self.assertRaisesRegex(submission.BadInput, why):
                 dates.deadline(text)
 
+    def test_times_of_a_host(self):
+        file, commit = self.enterContext(tempfile.NamedTemporaryFile("w")), "a1"
+        for text, why in (("x", ":1: expected a commit"), (
+                f"{commit * 20} 2026-03-08T08:12:00", ":1: expected a commit")):
+            pathlib.Path(file.name).write_text(text)
+            with self.assertRaisesRegex(submission.BadInput, why):
+                dates.times(file.name)
+        pathlib.Path(file.name).write_text(
+            f"{commit * 20} 2026-03-08T08:12:00Z\n"
+            f"{commit * 20} 2026-03-08T08:10:00+00:00\n")
+        pushed = dates.times(file.name)[commit * 20]
+        self.assertEqual(pushed, at("2026-03-08T08:10:00Z"))
+        self.assertEqual(dates.Made(tagged=at("2026-01-01T00:00:00Z"),
+                                    pushed=pushed).time, pushed)
+        self.assertEqual(dates.times(""), {})
+
     def test_dates_that_git_may_hold(self):
         def date(person):
             return dates.date_of(f"tree 1\n{person}\n\ncommitter x <> 5 +0000"
@@ -332,7 +348,7 @@ class Whole(Programs):
     def files(self, out):
         """What a class leaves, by name."""
         shown = [out / "class.csv", out / "class.html",
-                 *(out / "reports").iterdir(), *(out / "jplag").rglob("*.hpp")]
+                 *(out / "reports").iterdir()]
         self.assertEqual(list(out.rglob(".new-*")), [])
         return {path.relative_to(out): path.read_text("utf-8")
                 for path in shown}

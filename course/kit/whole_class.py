@@ -1,11 +1,12 @@
 """Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
 
-    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TASK=ID] [FEEDBACK=names] [SEED=N]
-      [SAFE=0] [JOBS=N] python3 course/kit/whole_class.py
+    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TIMES=FILE] [TASK=ID]
+      [FEEDBACK=names] [SEED=N] [SAFE=0] [JOBS=N]
+      python3 course/kit/whole_class.py
 
 DIR holds a folder for each student, as grade.py takes one; dates.py says what
-DUE is. OUT gets class.csv, class.html, reports/STUDENT.txt (for the student, as
-FEEDBACK says) and .json (all), and jplag/. It keeps what each test said of each
+DUE and TIMES are. OUT gets class.csv, class.html, reports/STUDENT.txt (for the
+student, as FEEDBACK says) and .json (all). It keeps what each test said of each
 content in kept/: equal submissions are graded once, and a class that was ended
 goes on where it was. Tests that have changed since are made anew, with TASK
 those of this task alone.
@@ -30,7 +31,6 @@ import child
 import class_output
 import dates
 import grade
-import jplag
 import judge
 import once
 import ranking
@@ -80,6 +80,7 @@ class Class:
         if get("DUE") and not self.tag:
             raise submission.BadInput("DUE needs HW: a folder has no date")
         self.due = dates.deadline(get("DUE")) if get("DUE") else None
+        self.times = dates.times(get("TIMES"))
         self.feedback = grade.feedback()
         self.jobs = grade.number_of_jobs(get("JOBS"))
         self.unsafe = get("SAFE") == "0"
@@ -132,6 +133,7 @@ class Class:
                 raise submission.BadInput("is a symbolic link")
             if self.tag and self.tag in submission.tags(folder, self.tag):
                 row.made = dates.made(folder, self.tag)
+                row.made.pushed = self.times.get(row.made.commit)
             taken, row.content = self.take(student)
             row.notes, row.flags = taken.notes, taken.flags
         except submission.BadInput as error:
@@ -140,13 +142,6 @@ class Class:
         except (OSError, MemoryError, RecursionError, ValueError) as error:
             row.reason = f"reading it fails: {type(error).__name__}"
         return row
-
-    def lay_out(self, student: str, place: str) -> None:
-        """Its sources, as they were graded, in a folder of another program."""
-        for name, text in self.take(student)[0].files.items():
-            path = pathlib.Path(place, student, name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(text)
 
     def place(self, content: str) -> pathlib.Path:
         return self.kept / f"{content}.json"
@@ -274,7 +269,6 @@ def run() -> int:
             rows = whole.rows(pool)
             fine = whole.grade_all(rows, pool)
             class_output.write(whole, rows)
-            jplag.lay_out(whole, rows, lambda jobs: list(pool.map(work, jobs)))
         for path in whole.out.rglob(".new-*"):      # of runs that were ended
             path.unlink()
         print(class_output.summary(whole, rows), end="")

@@ -1,93 +1,11 @@
 /** @file cloth_bodies.hpp
- * Part of cloth.hpp: a cloth in plain arrays, which a graph is filled with and
- * compared with. */
+ * Part of cloth.hpp: a graph that is filled with bodies and compared with
+ * them. */
 #ifndef KIT_CLOTH_BODIES_HPP
 #define KIT_CLOTH_BODIES_HPP
+#include "bodies.hpp"
 
 namespace kit {
-
-struct Spring {
-  int a, b;
-  double K, L;  ///< [N/m], [m]
-};
-/** The bodies that a graph is filled with and compared with. (Plain arrays,
- * as every class template that a test uses costs time to compile.) */
-struct Bodies {
-  static constexpr int most = 32;
-  Point x[most], v[most];
-  double m[most] = {};
-  Spring springs[2 * most] = {};
-  int size = 0, num_springs = 0;
-
-  /** @return the number of the new one */
-  int add(const Point& place, double mass = 1, const Point& velocity = {}) {
-    assert(size < most);
-    x[size] = place, v[size] = velocity, m[size] = mass;
-    return size++;
-  }
-  void join(int a, int b, double K, double L) {
-    assert(num_springs < 2 * most);
-    springs[num_springs++] = {a, b, K, L};
-  }
-
-  /** With a seed: other places, within @a by [m], velocities that are not 0,
-   * and masses. Corners stay. */
-  void move(double by) {
-    for (int i = 0; i < size; ++i) {
-      if (!is_corner(x[i])) x[i] = varied(x[i], by, i);
-      v[i] *= varied(Point(1, 1, 1), 0.4, i);
-      m[i] = varied(m[i], 0.4 * m[i], i);
-    }
-  }
-  /** Also other L. */
-  void vary(double by) {
-    move(by);
-    for (int k = 0; k < num_springs; ++k)
-      springs[k].L = varied(springs[k].L, 0.1 * springs[k].L, k);
-  }
-  /** The same bodies with other numbers: in the order of their ranks. */
-  void reorder(const double* rank) {
-    const Bodies old = *this;
-    int number_of[most] = {};
-    for (int i = 0; i < size; ++i) {
-      for (int j = 0; j < size; ++j) number_of[i] += rank[j] < rank[i];
-      const int at = number_of[i];
-      x[at] = old.x[i], v[at] = old.v[i], m[at] = old.m[i];
-    }
-    for (int k = 0; k < num_springs; ++k) {
-      springs[k].a = number_of[old.springs[k].a];
-      springs[k].b = number_of[old.springs[k].b];
-    }
-  }
-  /** With a seed: any order. */
-  void shuffle() {
-    double rank[most];
-    for (int i = 0; i < most; ++i) rank[i] = varied(i, 1e3);
-    reorder(rank);
-  }
-  /** The number of the body at @a p, which has one. */
-  int at(const Point& p) const {
-    int i = 0;
-    while (!(x[i] == p)) ++i;
-    return i;
-  }
-  static bool is_corner(const Point& p) {
-    return p == Point(0, 0, 0) || p == Point(1, 0, 0);
-  }
-
-  /** The springs' force on body @a i, by Hooke's law. */
-  Point pull(int i) const {
-    Point sum(0, 0, 0);
-    for (int k = 0; k < num_springs; ++k) {
-      const Spring& s = springs[k];
-      if (s.a != i && s.b != i) continue;
-      const Point u = x[s.a == i ? s.b : s.a] - x[i];
-      const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
-      sum += s.K * (length - s.L) / length * u;
-    }
-    return sum;
-  }
-};
 
 inline ClothNode node_of(Cloth& g, int i) {
   return g.node(static_cast<decltype(g.num_nodes())>(i));

@@ -31,7 +31,7 @@ class Graph {
    public:
     Node() {}
     const Point& position() const { return graph_->nodes_[index_].position; }
-    // BEGIN SOLUTION 3.1.position 4pt
+    // BEGIN SOLUTION 3.1.position
     Point& position() { return graph_->nodes_[index_].position; }
     // STUB Point& position() {
     // STUB   // A copy, one of some that an expression may need together:
@@ -77,7 +77,7 @@ class Graph {
       const EdgeData& e = graph_->edges_[index_];
       return Node(graph_, e.a == from_ ? e.b : e.a);
     }
-    // BEGIN SOLUTION 4.1.edge_value 6pt
+    // BEGIN SOLUTION 4.1.edge_value
     edge_value_type& value() { return graph_->edges_[index_].value; }
     const edge_value_type& value() const {
       return graph_->edges_[index_].value;
@@ -140,7 +140,7 @@ class Graph {
     return Edge(this, i, a.index_);
   }
 
-  // BEGIN SOLUTION 7.1.remove_edge 6pt
+  // BEGIN SOLUTION 7.1.remove_edge
   size_type remove_edge(const Node& a, const Node& b) {
     size_type i = find_edge(a.index_, b.index_);
     if (i == num_edges()) return 0;
@@ -153,7 +153,7 @@ class Graph {
   // STUB size_type remove_edge(const Node&, const Node&) { return 0; }
   // STUB size_type remove_edge(const Edge&) { return 0; }
   // END SOLUTION
-  // BEGIN SOLUTION 7.1.remove_edge_iterator 3pt
+  // BEGIN SOLUTION 7.1.remove_edge_iterator
   edge_iterator remove_edge(edge_iterator it) {
     remove_edge(*it);
     return it;  // the last edge has come to this place
@@ -161,7 +161,7 @@ class Graph {
   // STUB edge_iterator remove_edge(edge_iterator) { return edge_end(); }
   // END SOLUTION
 
-  // BEGIN SOLUTION 7.1.remove_node 8pt
+  // BEGIN SOLUTION 7.1.remove_node
   size_type remove_node(const Node& n) {
     if (!has_node(n)) return 0;
     size_type i = n.index_;
@@ -180,7 +180,7 @@ class Graph {
   }
   // STUB size_type remove_node(const Node&) { return 0; }
   // END SOLUTION
-  // BEGIN SOLUTION 7.1.remove_node_iterator 3pt
+  // BEGIN SOLUTION 7.1.remove_node_iterator
   node_iterator remove_node(node_iterator it) {
     remove_node(*it);
     return it;  // the last node has come to this place
