@@ -6,9 +6,8 @@ ifneq ($(O),)
 $(DRIVERS) $(OTHERS) cloth: %: $(O)%
 endif
 
-# UNITY=1: several sources are compiled as one unit. What they include is read
-# once, which takes half of the time. Each room of the laboratory is a unit;
-# tests are dealt out by size to the programs tests_0, tests_1 ...
+# UNITY=1: each room of the laboratory is one unit for tests, too, and tests are
+# dealt out by size to the programs tests_0, tests_1 ...
 ifneq ($(UNITY),)
 UNITS ?= 6
 
@@ -23,29 +22,8 @@ tests_alone := test_graph test_graph_memory \
 dealt      := $(shell ls -S $(filter-out $(patsubst %,tests/%.cpp, \
                 $(tests_alone) $(tests_drawn)),$(lab_tests)))
 TEST_UNITS := $(patsubst %,tests_%,$(shell seq 0 $$(($(UNITS) - 1))))
-# These are linked only if a program uses them: they need the window.
-drawing    := $(filter $(patsubst %,lab/%.cpp, viewer/Screen run/Film \
-                run/Window),$(lab_lib))
-united     := $(filter-out $(drawing),$(lab_lib))
-rooms      := $(sort $(dir $(united)))
-
-# $(in_NAME): the sources of unit NAME; lab/fast/ is the unit lab_fast_.
-$(foreach r,$(rooms),$(eval in_$(subst /,_,$(r)) := \
-  $(foreach f,$(united),$(if $(filter $(r),$(dir $(f))),$(f)))))
 $(foreach u,$(TEST_UNITS),$(eval in_$(u) := $(shell printf '%s\n' $(dealt) \
   | awk 'NR % $(UNITS) == $(u:tests_%=%)')))
-lab_objects := $(patsubst %,unity/%.o,$(subst /,_,$(rooms))) $(drawing:.cpp=.o)
-
-define unity
-$(1)/unity/%.o: $(1)/unity/%.cpp $(1)/lab.flags
-$(compile)
-.PRECIOUS: $(1)/unity/%.cpp
-$(1)/unity/%.cpp: FORCE
-	@mkdir -p $$(@D) && tools/unity.sh $$(in_$$*) | cmp -s - $$@ \
-	  || tools/unity.sh $$(in_$$*) > $$@
-endef
-$(eval $(call unity,$(B),$(movable)))
-$(eval $(call unity,$(B)/asan,$(debug) $(sanitizer)))
 
 # All tests, and their names: those that take longest to build and to run first,
 # so that two jobs end together. And what tests and programs are linked of,
