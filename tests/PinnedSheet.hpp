@@ -5,6 +5,7 @@
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
+#include "tests/Momentum.hpp"
 
 namespace lab::sheets {
 
@@ -38,18 +39,6 @@ inline double distance(const Cloth& a, const Cloth& b) {
     sum += normSq(a.node(i).position() - b.node(i).position()) +
            normSq(a.node(i).value().vel - b.node(i).value().vel);
   return std::sqrt(sum);
-}
-
-inline Point momentum(const Cloth& g) {
-  Point sum;
-  for (Node n : g.nodes()) sum += n.value().mass * n.value().vel;
-  return sum;
-}
-inline Point angular_momentum(const Cloth& g) {
-  Point sum;
-  for (Node n : g.nodes())
-    sum += n.value().mass * cross(n.position(), n.value().vel);
-  return sum;
 }
 
 }  // namespace lab::sheets

@@ -23,4 +23,17 @@ inline std::vector<Point> swept_forces(Cloth& g, const ForcePlan& force) {
   return swept_forces(g, force, flow);
 }
 
+/** MassSpringForce as a force of the laboratory, to derive from. */
+struct SweptSprings : SweptForce {
+  ForcePlan springs = MassSpringForce();
+  Point operator()(Node n, double t) const override {
+    return MassSpringForce()(n, t);
+  }
+  double energy(const Cloth& g) const override { return springs.energy(g); }
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    return springs.add_stiffness(g, use);
+  }
+};
+
 }  // namespace lab

@@ -27,35 +27,6 @@ Matrix3 matrix(const Eigen::Matrix3d& m) {
   return all;
 }
 
-TEST(Matrix3, IsAnArrayOfNumbers) {
-  CME212::default_generator.seed(7);
-  for (int turn = 0; turn < 20; ++turn) {
-    Eigen::Matrix3d dense;
-    for (int k = 0; k < 9; ++k) dense(k / 3, k % 3) = random(-1, 1);
-    Matrix3 a = matrix(dense);
-    const Point x(random(-1, 1), random(-1, 1), random(-1, 1));
-    const Eigen::Vector3d v(x.x, x.y, x.z), of_rows = dense * v,
-                                            of_columns = dense.transpose() * v;
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(times(a, four(x))[k], of_rows[k], 1e-15);
-      EXPECT_NEAR(transposed_times(a, four(x))[k], of_columns[k], 1e-15);
-    }
-    // From left to right, to the last bit.
-    EXPECT_EQ(point(times(a, four(x))).y,
-              dense(1, 0) * x.x + dense(1, 1) * x.y + dense(1, 2) * x.z);
-    EXPECT_EQ(times(a, four(x))[3], 0);
-    const Eigen::Matrix3d square = dense * dense.transpose();
-    const Eigen::Matrix3d l = square.llt().matrixL();
-    a = matrix(square);
-    ASSERT_TRUE(invert_factor(a, Matrix3()));
-    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(),
-                          inverse = l.triangularView<Eigen::Lower>().solve(one);
-    for (int k = 0; k < 9; ++k)
-      EXPECT_NEAR(a.column[k % 3][k / 3], inverse(k / 3, k % 3),
-                  1e-9 * inverse.norm());
-  }
-}
-
 /** A matrix of springs, the usual input of the solver, here dense as well. */
 template <typename Entry>
 class Cholesky : public ::testing::Test {

@@ -4,6 +4,7 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "tests/PinnedSheet.hpp"
+#include "tests/SweptForces.hpp"
 
 using namespace lab;
 using namespace lab::sheets;
@@ -152,3 +153,45 @@ TEST(FastMassSpring, SeesOtherEndsAndOtherPins) {
   EXPECT_EQ(step(PinConstraint(others)), 3);
   EXPECT_EQ(step(PinConstraint(others)), 3);
 }
+
+namespace {
+
+/** Springs that are stiffer than their edges say. */
+struct Stiffer : SweptSprings {
+  double factor = 2;
+  bool add_stiffness(const Cloth& g,
+                     const StiffnessVisitor& use) const override {
+    return SweptSprings::add_stiffness(
+        g, [&](unsigned i, unsigned j, Stiffness B) {
+          B.along *= factor;
+          use(i, j, B);
+        });
+  }
+};
+
+// Where a force may be stiffer than the edges, each step asks it anew.
+TEST(FastMassSpring, AsksAForceThatIsNotTheEdges) {
+  PinnedSheet s(6);
+  FastMassSpring method;
+  Stiffer stiffer;
+  double t = 0;
+  int expected = 0;
+  auto step = [&](const ForcePlan& force) {
+    t = method(s.g, t, 0.01, force, s.pin);
+    return method.factorizations();
+  };
+  EXPECT_EQ(step(s.force), ++expected);
+  EXPECT_EQ(step(MassSpringForce()), expected);
+  EXPECT_EQ(step(stiffer), ++expected);
+  EXPECT_EQ(step(stiffer), expected);
+  stiffer.factor = 3;
+  EXPECT_EQ(step(stiffer), ++expected);
+  EXPECT_EQ(step(make_combined_force(GravityForce(), stiffer)), expected);
+  EXPECT_EQ(step(s.force), ++expected);
+  auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
+  EXPECT_EQ(step(twice), ++expected);
+  EXPECT_EQ(step(twice), expected);
+  EXPECT_EQ(step(s.force), ++expected);
+}
+
+}  // namespace

@@ -2,17 +2,13 @@
 // the difference equations, and where others fail.
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Splitting.hpp"
-#include "lab/methods/SymplecticEuler.hpp"
 #include "lab/methods/Xpbd.hpp"
-#include "lab/stability/Guard.hpp"
-#include "lab/stability/StepLimit.hpp"
 #include "tests/PinnedSheet.hpp"
+#include "tests/SweptForces.hpp"
 
 using namespace lab;
 using namespace lab::sheets;
@@ -44,19 +40,6 @@ struct Oscillator {
   template <typename M>
   void run(M& method, double h, int steps) {
     for (int n = 0; n < steps; ++n) method(g, n * h, h, force, pin);
-  }
-};
-
-/** MassSpringForce as a force of the laboratory, to derive from. */
-struct SweptSprings : SweptForce {
-  ForcePlan springs = MassSpringForce();
-  Point operator()(Node n, double t) const override {
-    return MassSpringForce()(n, t);
-  }
-  double energy(const Cloth& g) const override { return springs.energy(g); }
-  bool add_stiffness(const Cloth& g,
-                     const StiffnessVisitor& use) const override {
-    return springs.add_stiffness(g, use);
   }
 };
 
@@ -134,27 +117,6 @@ TYPED_TEST(Implicit, FallsFreelyWithoutSprings) {
   method(g, 0, 0.1, GravityForce());  // nothing there
 }
 
-// ---------------------------------------------------------- Large time steps
-
-/** Steps of 10 times the explicit limit that are good, of @a steps. */
-template <typename M>
-int good_steps(double drag, int steps) {
-  PinnedSheet s(30, 100, drag);
-  const double h = 10 * 0.0577 / 30;
-  DivergenceGuard guard(s.g, grav, h);
-  M method;
-  for (int n = 0; n < steps; ++n) {
-    method(s.g, n * h, h, s.force, s.pin);
-    if (!guard.accept(s.g)) return n;
-  }
-  return steps;
-}
-TEST(TenTimesTheExplicitLimit, StaysBounded) {
-  EXPECT_LT(good_steps<Verlet>(1.0 / 900, 50), 50);
-  EXPECT_EQ(good_steps<ImplicitEuler>(0, 50), 50);
-  EXPECT_EQ(good_steps<TrBdf2>(0, 50), 50);
-}
-
 // At dt w = 1e6 an L-stable method leaves nothing of the oscillation.
 template <typename M>
 void expect_l_stable() {
@@ -185,21 +147,6 @@ TEST(TrBdf2, OnlyLosesEnergy) {
 
 // ------------------------------------------------------- One method, exactly
 
-// Each step takes the amplitude by (1 + (h w)^2)^-1/2.
-TEST(ImplicitEuler, DampsByTheExactFactor) {
-  for (double hw : {0.01, 0.5, 30.0}) {
-    Oscillator o(20);
-    ImplicitEuler method;
-    double expected = o.energy();
-    // Below 1e-10 the round-off of x shows.
-    for (int n = 0; n < 20 && expected > 1e-10; ++n) {
-      o.run(method, hw / o.w, 1);
-      expected /= 1 + hw * hw;
-      EXPECT_NEAR(o.energy() / expected, 1, 1e-6);
-    }
-  }
-}
-
 // y_n = y_0 cos(2 n atan(h w/2)): also far beyond the explicit limit.
 TEST(ImplicitMidpoint, SwingsAtItsNumericalFrequency) {
   for (double hw : {0.1, 1.0, 10.0}) {
@@ -228,44 +175,6 @@ TEST(ImplicitMidpoint, KeepsAngularMomentumAsOthersDoNot) {
   EXPECT_GT(turn(ImplicitEuler()), 1e-4);
   EXPECT_GT(turn(TrBdf2()), 1e-7);
   EXPECT_GT(turn(Xpbd()), 1e-6);
-}
-
-/** Springs that are stiffer than their edges say. */
-struct Stiffer : SweptSprings {
-  double factor = 2;
-  bool add_stiffness(const Cloth& g,
-                     const StiffnessVisitor& use) const override {
-    return SweptSprings::add_stiffness(
-        g, [&](unsigned i, unsigned j, Stiffness B) {
-          B.along *= factor;
-          use(i, j, B);
-        });
-  }
-};
-
-// Where a force may be stiffer than the edges, each step asks it anew.
-TEST(FastMassSpring, AsksAForceThatIsNotTheEdges) {
-  PinnedSheet s(6);
-  FastMassSpring method;
-  Stiffer stiffer;
-  double t = 0;
-  int expected = 0;
-  auto step = [&](const ForcePlan& force) {
-    t = method(s.g, t, 0.01, force, s.pin);
-    return method.factorizations();
-  };
-  EXPECT_EQ(step(s.force), ++expected);
-  EXPECT_EQ(step(MassSpringForce()), expected);
-  EXPECT_EQ(step(stiffer), ++expected);
-  EXPECT_EQ(step(stiffer), expected);
-  stiffer.factor = 3;
-  EXPECT_EQ(step(stiffer), ++expected);
-  EXPECT_EQ(step(make_combined_force(GravityForce(), stiffer)), expected);
-  EXPECT_EQ(step(s.force), ++expected);
-  auto twice = make_combined_force(MassSpringForce(), MassSpringForce());
-  EXPECT_EQ(step(twice), ++expected);
-  EXPECT_EQ(step(twice), expected);
-  EXPECT_EQ(step(s.force), ++expected);
 }
 
 TEST(NewtonMethod, SaysWhyAStepCantBeMade) {
@@ -486,27 +395,6 @@ TEST(ImplicitEuler, SaysThatItsSystemCantBeSolved) {
   EXPECT_THROW(method(s.g, 0, 0.02, s.force, s.pin), StepError);
 }
 
-// Newton's line search at work: a mass flies through the wall's spring, over
-// and over, at steps in which it passes several times its length.
-TEST(NewtonMethod, ConvergesThroughFlippingSprings) {
-  Oscillator o(100);
-  o.a.value().vel = Point(80, 3, 1);
-  TrBdf2 method;
-  EXPECT_NO_THROW(o.run(method, 0.1, 50));
-  EXPECT_TRUE(std::isfinite(o.energy()));
-}
-
-// Compressed springs give A negative curvature: the sheet crumples.
-TEST(NewtonMethod, ConvergesOnCrumplingCloth) {
-  PinnedSheet s(12);
-  for (Node n : s.g.nodes()) n.position() *= 0.6;
-  s.stir();
-  TrBdf2 method;
-  const double h = 10 * 0.0577 / 12;
-  for (int n = 0; n < 10; ++n)
-    ASSERT_NO_THROW(method(s.g, n * h, h, s.force)) << "step " << n;
-}
-
 // At 100 times the explicit limit full steps only go from one fold to another,
 // as if there was no line search: then none of these steps can be made.
 template <typename M>
@@ -533,19 +421,6 @@ TEST(Xpbd, IsImplicitEulerOnOneSpring) {
     ASSERT_NEAR(a.y(), b.y(), 1e-10);
     ASSERT_NEAR(a.v(), b.v(), 1e-8);
   }
-}
-
-TEST(Xpbd, TendsToSymplecticEuler) {
-  auto apart = [](int steps) {
-    Oscillator a(3), b(3);
-    Xpbd xpbd(1);
-    SymplecticEuler euler;
-    a.run(xpbd, 1.0 / steps, steps);
-    b.run(euler, 1.0 / steps, steps);
-    return std::hypot(a.y() - b.y(), a.v() - b.v());
-  };
-  EXPECT_LT(apart(10000), 1e-3 * Oscillator::y0 * 3);
-  EXPECT_NEAR(apart(5000) / apart(10000), 2, 0.1);
 }
 
 // Substeps are steps as far as the springs go.

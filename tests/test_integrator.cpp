@@ -1,5 +1,5 @@
 // symp_euler_step() and the method symplectic-euler: against exact solutions of
-// the difference equations, and against each other.
+// the difference equations. Against each other: test_stages.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
 #include "mass_spring.hpp"
+#include "tests/Momentum.hpp"
 
 using namespace lab;
 
@@ -119,20 +120,11 @@ TEST_P(SymplecticEulerStep, ConservesMomentumAndAngularMomentum) {
   using CME212::random;
   for (Node n : g.nodes())
     n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
-  auto momenta = [this] {
-    Point linear, angular;
-    for (Node n : g.nodes()) {
-      Point p = n.value().mass * n.value().vel;
-      linear += p;
-      angular += cross(n.position(), p);
-    }
-    return std::pair(linear, angular);
-  };
-  auto [linear, angular] = momenta();
+  const Point linear = momentum(g), angular = angular_momentum(g);
   for (int n = 0; n < 1000; ++n)
     step(0, 0.002, MassSpringForce(), ZeroConstraint());
-  EXPECT_LT(norm(momenta().first - linear), 1e-13);
-  EXPECT_LT(norm(momenta().second - angular), 1e-13);
+  EXPECT_LT(norm(momentum(g) - linear), 1e-13);
+  EXPECT_LT(norm(angular_momentum(g) - angular), 1e-13);
   EXPECT_GT(elastic_energy(g), 0.01);  // it did move
 }
 
@@ -198,54 +190,6 @@ TEST_P(SymplecticEulerStep, LeavesNoVelocityInPinnedNodes) {
   }
   EXPECT_EQ(g.node(0).value().vel, Point());
   EXPECT_NE(g.node(1).value().vel, Point());
-}
-
-/** The largest distance of two nodes of the same index [m]. */
-double distance(const Cloth& a, const Cloth& b) {
-  double worst = a.num_nodes() == b.num_nodes() ? 0 : HUGE_VAL;
-  for (unsigned i = 0; i < std::min(a.num_nodes(), b.num_nodes()); ++i)
-    worst = std::max(worst, norm(a.node(i).position() - b.node(i).position()));
-  return worst;
-}
-
-// grid0 is not chaotic: round-off stays round-off for all 5 s.
-TEST(SymplecticEuler, EqualsTheStepNodeByNode) {
-  Cloth a, b;
-  for (Cloth* g : {&a, &b})
-    build_cloth(*g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
-  auto force = make_combined_force(GravityForce(), MassSpringForce(),
-                                   DampingForce(1.0 / 25));
-  auto constraints = [](Cloth& g) {
-    return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                     TearConstraint());
-  };
-  auto on_a = constraints(a), on_b = constraints(b);
-  SymplecticEuler euler;
-  for (int n = 0; n < 5000; ++n) {
-    euler(a, 0, 0.001, force, on_a);
-    symp_euler_step(b, 0, 0.001, force, on_b);
-    ASSERT_LT(distance(a, b), 1e-11) << "step " << n;
-  }
-  EXPECT_LT(a.num_nodes(), 25u);
-}
-
-// Stage `forces` is stage `diagonals` in other words.
-TEST(SymplecticEuler, CombinedForcesMoveAsProblem1ForceDoes) {
-  for (unsigned side : {5u, 25u}) {
-    Cloth a, b;
-    for (Cloth* g : {&a, &b})
-      build_cloth(*g, grid_points(side), grid_quads(side),
-                  MeshSprings::diagonals);
-    auto force = make_combined_force(GravityForce(), MassSpringForce());
-    // Later, buckling makes any round-off grow.
-    int steps = side == 5 ? 2000 : 400;
-    for (int n = 0; n < steps; ++n) {
-      symp_euler_step(a, 0, 0.001, Problem1Force());
-      symp_euler_step(b, 0, 0.001, force);
-    }
-    EXPECT_LT(distance(a, b), 1e-12);
-    EXPECT_LT(center_of_mass(a).z, -0.1);
-  }
 }
 
 TEST(SympEulerStep, TakesLambdasAndGraphsOfAnyKind) {

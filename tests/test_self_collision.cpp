@@ -13,6 +13,7 @@
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/SelfCollision.hpp"
 #include "tests/Allocations.hpp"
+#include "tests/Momentum.hpp"
 
 using namespace lab;
 
@@ -34,12 +35,6 @@ double nearest_of_all(const Cloth& g) {
       if (a.index() < b.index() && !g.has_edge(a, b))
         least = std::min(least, norm(a.position() - b.position()));
   return least;
-}
-
-Point momentum(const Cloth& g) {
-  Point sum;
-  for (Node n : g.nodes()) sum += n.value().mass * n.value().vel;
-  return sum;
 }
 
 /** @a count nodes at random in a cube, with velocities, masses, and few edges;

@@ -1,0 +1,18 @@
+#pragma once
+/** @file Momentum.hpp
+ * What a cloth keeps if only its springs act, for tests. */
+#include "mass_spring.hpp"
+
+/** [kg m/s] */
+inline Point momentum(const Cloth& g) {
+  Point sum;
+  for (Node n : g.nodes()) sum += n.value().mass * n.value().vel;
+  return sum;
+}
+/** About the origin [kg m^2/s]. */
+inline Point angular_momentum(const Cloth& g) {
+  Point sum;
+  for (Node n : g.nodes())
+    sum += n.value().mass * cross(n.position(), n.value().vel);
+  return sum;
+}
