@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
@@ -88,14 +87,6 @@ TEST(NearestUnconnected, LooksAtNoEdges) {
   EXPECT_EQ(nearest_unconnected(g, 1), infinity);
   g.remove_edge(a, b);
   EXPECT_EQ(nearest_unconnected(g, 1), 0.5);
-}
-TEST(NearestUnconnected, IsWhatAGridSays) {
-  Cloth plain, diagonals;
-  build_cloth(plain, grid_points(11), grid_quads(11), MeshSprings::plain);
-  build_cloth(diagonals, grid_points(11), grid_quads(11),
-              MeshSprings::diagonals);
-  EXPECT_NEAR(nearest_unconnected(plain, 1), 0.1 * std::sqrt(2), 1e-15);
-  EXPECT_NEAR(nearest_unconnected(diagonals, 1), 0.2, 1e-15);
 }
 TEST(NearestUnconnected, IsNotDisturbedByWhatIsFarOutOrNowhere) {
   Cloth g;
@@ -330,28 +321,6 @@ TEST_F(SelfCollisionRun, TwoSheetsFallOnEachOtherOnAFloor) {
   EXPECT_GT(upper, lower + 0.05);
 }
 
-// A sheet that hangs over itself: its upper half falls on the lower one.
-TEST_F(SelfCollisionRun, AFoldedSheetDoesNotPassThroughItself) {
-  add_sheet(g, 9, Point(), 20);
-  for (Node n : g.nodes()) {
-    const double x = n.position().x;
-    if (x <= 0.5) continue;
-    // The second half: round a half circle and back.
-    const double bend = std::min(x - 0.5, 0.25), r = 0.25 / std::numbers::pi;
-    n.position().x = 0.5 + r * std::sin(bend / r) - (x - 0.5 - bend);
-    n.position().z = r - r * std::cos(bend / r);
-  }
-  const double thickness = 0.1;
-  ASSERT_GT(nearest_of_all(g), thickness);
-  const SelfCollision c(
-      thickness, 0.3,
-      make_combined_constraints(PlaneConstraint(0),
-                                PinConstraint(std::vector<Node>{g.node(0)})));
-  run(500, thickness, c);
-  EXPECT_GT(touched, 100);
-  EXPECT_LT(most_rounds, 40);
-}
-
 // Sheets of pieces that tear at a ball and by strain, from pins, one of which
 // moves; and the test removes some more.
 TEST_F(SelfCollisionRun, HoldsWhileNodesAndEdgesAreRemoved) {
@@ -399,24 +368,6 @@ TEST_F(SelfCollisionRun, IsTheSameByAnyNumberOfThreads) {
   EXPECT_EQ(end[0], end[1]);
 }
 
-// ---------------------------------------------------------------------- Work
-
-// All pairs would be up to 12800 a node.
-TEST(SelfCollision, LooksAtAFixedNumberOfPairsANode) {
-  for (double thickness_by_side : {0.1, 0.5, 0.99, 1.99})
-    for (unsigned side : {20u, 40u, 80u, 160u}) {
-      Cloth g;
-      build_cloth(g, grid_points(side), grid_quads(side),
-                  MeshSprings::diagonals);
-      CellTable cells;
-      cells.fill(g, thickness_by_side / (side - 1));
-      long long calls = 0;
-      const long long told =
-          cells.each_near_pair([&](unsigned, unsigned) { ++calls; });
-      EXPECT_EQ(told, calls);
-      EXPECT_LT(double(calls) / g.num_nodes(), thickness_by_side < 1 ? 12 : 30);
-    }
-}
 TEST(SelfCollision, AllocatesInItsFirstCallOnly) {
   Cloth g;
   build_cloth(g, grid_points(20), grid_quads(20), MeshSprings::diagonals);

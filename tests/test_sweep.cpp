@@ -1,4 +1,5 @@
-// Sweep and Stencil: the fast way over all nodes against the slow one.
+// Sweep and Stencil: the fast way over all nodes against the slow one. Many
+// steps and changes between them: test_flat_flow.
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
 
@@ -8,15 +9,9 @@
 #include <atomic>
 #include <cstdlib>
 #include <limits>
-#include <set>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 #include <vector>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/SymplecticEuler.hpp"
@@ -154,16 +149,6 @@ TEST_F(SweepTest, NodesInOnePlaceFeelNoSpringAndNoNan) {
   }
 }
 
-TEST_F(SweepTest, SeesChangedSpringsAndPositionsAtOnce) {
-  Cloth g;
-  make_grid(g, 20);
-  FlatFlow sweep;
-  EXPECT_LT(worst(g, sweep), round_off);
-  for (Edge e : g.edges()) e.value().K *= 3, e.value().L *= 2;
-  for (Node n : g.nodes()) n.position() *= 2;
-  EXPECT_LT(worst(g, sweep), round_off);
-}
-
 TEST_F(SweepTest, ACopyOfAGraphIsAnotherGraph) {
   Cloth g;
   make_grid(g, 10);
@@ -286,19 +271,6 @@ TEST_F(SweepTest, MovesWhatIsReadBeforeItIsAndNoMoreThanThat) {
   for (int halo : {0, 1, 2, 3, 9, 10}) expect_moved_in_time(halo);
 }
 
-TEST_F(SweepTest, TheHaloReachesAsFarAsTheSpringsOfAPart) {
-  const auto near = make_combined_force(GravityForce(), MassSpringForce());
-  constexpr unsigned size = Sweep::part_size;
-  EXPECT_EQ(Sweep::halo_of(near, 0), 0);
-  EXPECT_EQ(Sweep::halo_of(near, 1), 1);
-  EXPECT_EQ(Sweep::halo_of(near, size), 1);
-  EXPECT_EQ(Sweep::halo_of(near, size + 1), 2);
-  EXPECT_EQ(
-      Sweep::halo_of(
-          make_combined_force(near, [](Node, double) { return Point(); }), 1),
-      std::numeric_limits<int>::max());
-}
-
 TEST_F(SweepTest, FunctionsNeedNotBeFitForThreads) {
   Cloth g;
   make_random(g, 5000, 0);
@@ -331,101 +303,7 @@ TEST_F(SweepTest, ThreadsLetExceptionsThrough) {
     EXPECT_THROW(Sweep::in_turn(5000, halo, move, nothing), std::range_error);
 }
 
-// A team costs more than a step of a small cloth, even if one thread is all.
-TEST_F(SweepTest, AClothOfOnePartIsSweptWithoutATeam) {
-#ifdef _OPENMP
-  Sweep::set_threads(2);
-  for (unsigned nodes : {Sweep::part_size, Sweep::part_size + 1}) {
-    std::atomic<int> parts = 0, level = 0;
-    Sweep::in_turn(
-        nodes, 0, [](unsigned, unsigned) {},
-        [&](unsigned, unsigned) { ++parts, level = omp_get_level(); });
-    EXPECT_EQ(parts, nodes == Sweep::part_size ? 1 : 2);
-    EXPECT_EQ(level, nodes == Sweep::part_size ? 0 : 1);
-  }
-#else
-  GTEST_SKIP() << "built without OpenMP";
-#endif
-}
-
-TEST_F(SweepTest, PartsMakeUpTheCloth) {
-  for (unsigned nodes : {0u, 1u, 1023u, 1024u, 1025u, 5000u}) {
-    std::vector<std::atomic<int>> seen(nodes);
-    Sweep::in_turn(
-        nodes, 0, [](unsigned, unsigned) {},
-        [&](unsigned first, unsigned last) {
-          EXPECT_EQ(first % FlatCloth::tile, 0u);
-          for (unsigned i = first; i < last; ++i) ++seen[i];
-        });
-    for (auto& times : seen) EXPECT_EQ(times, 1);
-  }
-}
-
-// ------------------------------------------------------------ drift and kick
-
-TEST_F(SweepTest, DriftAndKicksAreTheirFormulas) {
-  for (Cpu cpu : all_cpus()) {
-    lanes::cpu = cpu;
-    for (unsigned nodes : {1u, 7u, 8u, 16u, 19u, 64u, 1100u}) {
-      Cloth g;
-      make_random(g, nodes, 0);
-      const Cloth before = g;
-      const Point f(1, -2, 3);
-      const ForcePlan force = FunctionForce([f](Node, double) { return f; });
-      const double first = 0.11, h = 0.37, second = 0.23, third = 0.05;
-      FlatFlow flow;
-      flow.accelerate(g, 0, force, false);
-      flow.run({.t = h, .first_kick = first, .drift = h, .kick = second});
-      flow.run({.t = h, .first_kick = third});  // by what was kept at 0
-      flow.end();
-      for (unsigned i = 0; i < nodes; ++i) {
-        const NodeData old = before.node(i).value();
-        const Point a = f / old.mass, v = old.vel + first * a;
-        const Point x = before.node(i).position() + h * v;
-        EXPECT_LT(norm(g.node(i).position() - x), round_off);
-        EXPECT_LT(norm(g.node(i).value().vel - (v + (second + third) * a)),
-                  round_off);
-        EXPECT_EQ(g.node(i).value().mass, old.mass);
-      }
-    }
-  }
-}
-
 // ----------------------------------------------------------------- the stencil
-
-/** Every (node, neighbor, edge) that the rows name, springs of a node to itself
- * left out; and that they name none twice. */
-template <int W>
-std::set<std::tuple<unsigned, unsigned, unsigned>> springs_of(
-    const Stencil<W>& s, unsigned slots) {
-  std::set<std::tuple<unsigned, unsigned, unsigned>> all;
-  for (unsigned b = 0; b < s.num_blocks(); ++b)
-    for (auto row = s.row_begin(b); row < s.row_begin(b + 1); ++row)
-      for (unsigned k = 0; k < W; ++k) {
-        const unsigned id = std::min(b * W + k, slots - 1);
-        const unsigned j = s.neighbors(row)[k], e = s.edges(row)[k];
-        EXPECT_TRUE(s.offset(row) == 0 || j == id + unsigned(s.offset(row)));
-        EXPECT_EQ(j == id, e == s.none);
-        EXPECT_TRUE(j == id || all.insert({id, j, e}).second)
-            << id << " has " << j << " twice";
-      }
-  return all;
-}
-
-TEST(Stencil, NamesEachEdgeFromBothEnds) {
-  for (unsigned nodes : {1u, 5u, 8u, 30u, 64u}) {
-    Cloth g;
-    make_random(g, nodes, 4 * nodes);
-    remove_some(g, nodes / 4, nodes / 4);
-    std::set<std::tuple<unsigned, unsigned, unsigned>> expected;
-    for (Edge e : g.edges()) {
-      expected.insert({e.node1().id(), e.node2().id(), e.id()});
-      expected.insert({e.node2().id(), e.node1().id(), e.id()});
-    }
-    EXPECT_EQ(springs_of(Stencil<8>(g), arrays(g).node_slots()), expected);
-    EXPECT_EQ(springs_of(Stencil<4>(g), arrays(g).node_slots()), expected);
-  }
-}
 
 // Only blocks at the ends of a grid's lines have gathered rows: of a
 // line of n nodes at most two blocks of eight, and the first and last line.
@@ -446,21 +324,6 @@ TEST(Stencil, FindsTheConstantOffsetsOfAGrid) {
       EXPECT_GT(gathered, 0u);
     }
   }
-}
-
-// A line whose edges come in any order, so that no two nodes list their
-// neighbors alike; all but its two ends have both at a constant offset.
-TEST(Stencil, FindsConstantOffsetsInListsOfAnyOrder) {
-  Cloth g;
-  for (unsigned i = 0; i < 64; ++i) g.add_node(Point());
-  for (unsigned k = 0; k < 63; ++k)
-    g.add_edge(g.node(5 * k % 63), g.node(5 * k % 63 + 1));
-  const Stencil<8> s(g);
-  unsigned constant = 0;
-  for (std::size_t row = 0; row < s.num_rows(); ++row)
-    constant += s.offset(row) != 0;
-  EXPECT_EQ(constant, 14u);
-  EXPECT_EQ(s.num_rows(), 16u);
 }
 
 }  // namespace
