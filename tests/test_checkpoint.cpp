@@ -71,52 +71,6 @@ Model moving_cloth() {
   return m;
 }
 
-/** A cloth and what a method needs to move it. */
-struct Moved {
-  Cloth g;
-  CombinedForces all;
-  ForcePlan force;
-  ConstraintPlan constraint;
-  std::unique_ptr<Method> method;
-
-  Moved(const Recipe& r, const MethodEntry& entry)
-      : all((r.build(g), r.force(g))),
-        force(all),
-        constraint(r.constraint(g)),
-        method(entry.make()) {}
-  void step(int from, int to) {
-    for (int k = from; k < to; ++k)
-      method->step(g, 0.01 * k, 0.01, force, constraint);
-  }
-};
-
-// And to be saved does not change a run.
-TEST(EveryMethod, GoesOnWithTheSameBits) {
-  const Recipe recipe = recipe_of(moving_cloth());
-  for (const MethodEntry& m : methods) {
-    Moved whole(recipe, m), first(recipe, m), second(recipe, m);
-    whole.step(0, 40);
-    first.step(0, 17);
-    std::ranges::copy(arrays(first.g).positions(),
-                      arrays(second.g).positions().begin());
-    std::ranges::copy(arrays(first.g).node_values(),
-                      arrays(second.g).node_values().begin());
-    Archive out;
-    first.method->archive(out, first.g);
-    Archive in(out.bytes());
-    second.method->archive(in, second.g);
-    EXPECT_TRUE(in.at_end());
-    for (Moved* goes_on : {&first, &second}) {
-      goes_on->step(17, 40);
-      for (unsigned i = 0; i < whole.g.size(); ++i) {
-        const Node a = whole.g.node(i), b = goes_on->g.node(i);
-        ASSERT_EQ(a.position(), b.position()) << m.info.name << " node " << i;
-        ASSERT_EQ(a.value().vel, b.value().vel) << m.info.name << " node " << i;
-      }
-    }
-  }
-}
-
 // --------------------------------------------------------------------- Scene
 
 /** Scenes that keep something, or lose something. */

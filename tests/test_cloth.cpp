@@ -51,16 +51,6 @@ TEST(BuildCloth, StartsAtRestWithTheMassOfOneKilogram) {
   EXPECT_EQ(g.edge(0).value().L, 0.25);
 }
 
-TEST(LoadCloth, ReadsTheCommittedGrids) {
-  Cloth g;
-  load_cloth(g, "data/grid0.nodes", "data/grid0.tets", MeshSprings::plain);
-  EXPECT_EQ(g.num_nodes(), 25u);
-  EXPECT_EQ(g.num_edges(), 40u);
-  EXPECT_TRUE(is_corner(g.node(0).position()));
-  EXPECT_TRUE(is_corner(g.node(20).position()));
-  EXPECT_FALSE(is_corner(g.node(4).position()));
-}
-
 #ifdef __SANITIZE_ADDRESS__
 // The sanitizer's; g++ does not install its header everywhere.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(

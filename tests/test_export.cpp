@@ -298,26 +298,6 @@ TEST(Export, WritesFramesWithTheirTimes) {
     EXPECT_NEAR(times[k], expected[k], 1e-12);
 }
 
-TEST(Pending, WritesWhatIsSettledAndDropsWhatComesAgain) {
-  Pending<int> numbers;
-  std::vector<int> written;
-  const auto settle = [&](long long now, long long settled) {
-    numbers.settle(now, settled, [&](int n) { written.push_back(n); });
-    return numbers.last();
-  };
-  EXPECT_EQ(numbers.last(), -1);
-  for (int step : {0, 2, 5, 7}) numbers.add(step, 10 * step);
-  EXPECT_EQ(settle(7, 3), 7);
-  EXPECT_EQ(written, (std::vector<int>{0, 20}));
-  EXPECT_EQ(settle(6, 3), 5);  // steps 4 to 6 come again
-  EXPECT_EQ(*numbers.back(), 50);
-  EXPECT_EQ(settle(3, 3), 2);
-  EXPECT_EQ(numbers.back(), nullptr);
-  numbers.add(4, 41);
-  EXPECT_EQ(settle(4, 4), 4);
-  EXPECT_EQ(written, (std::vector<int>{0, 20, 41}));
-}
-
 TEST(Export, BeginsAnewWithTheRun) {
   const CME212::TestFolder folder;
   const Model m = small_model();

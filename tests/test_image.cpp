@@ -2,9 +2,6 @@
  * Tests of Color, GLCamera, Image and Video, which need no display. */
 #include <gtest/gtest.h>
 
-#include <signal.h>
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -175,21 +172,10 @@ TEST(Image, SaysWhatIsWrong) {
   EXPECT_EQ(files_in(folder), 1u);
 }
 
-TEST(Image, IsReadByFfmpeg) {
+TEST(Names, HaveAnEnding) {
   EXPECT_EQ(ending_of("a.b/c.D.PnG"), ".png");
   EXPECT_EQ(ending_of("a.b/c"), "");
   EXPECT_EQ(ending_of("c."), ".");
-  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
-  TestFolder folder;
-  for (int width : {4, 5, 6, 7}) {
-    const Image image = test_image(width, 3);
-    const std::string file = folder / "a.png";
-    write_png(file, image);
-    EXPECT_EQ(output_of("ffmpeg -v error -i " + file +
-                        " -f rawvideo -pix_fmt rgb24 -"),
-              std::string(image.rgb.begin(), image.rgb.end()))
-        << width;
-  }
 }
 
 TEST(Video, HasTheFormatOfItsEnding) {
@@ -277,52 +263,6 @@ TEST(Video, KeepsTheOldFilmIfFfmpegOnlySaysThatItFailed) {
     EXPECT_EQ(contents(file), "a good film");
   }
   EXPECT_EQ(files_in(folder), 2u);
-}
-
-/** Files can't grow beyond some bytes while this lives: as on a full disk. */
-class FileLimit {
- public:
-  explicit FileLimit(std::uintmax_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = signal(SIGXFSZ, SIG_IGN);
-};
-
-TEST(Video, KeepsTheOldFilmIfTheDiskIsFull) {
-  if (!has_program("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
-  TestFolder folder;
-  for (std::string_view ending : film_endings) {
-    const std::string file = folder / ("v" + std::string(ending));
-    const auto film = [&] {
-      Video video(file, 64, 48);
-      for (int i = 0; i < 5; ++i) video.add(test_image(64, 48, i));
-      video.finish();
-    };
-    film();
-    const std::string before = contents(file);
-    for (std::size_t size :
-         {std::size_t(0), before.size() / 2, before.size() - 1}) {
-      std::string error;
-      {
-        const FileLimit limit(size);
-        error = error_of(film);
-      }
-      EXPECT_EQ(error.find(file + ": ffmpeg failed: "), 0u) << error << size;
-      EXPECT_EQ(std::ranges::count(error, '\n'), 0) << error;
-      EXPECT_TRUE(contents(file) == before) << ending << size;
-    }
-  }
-  EXPECT_EQ(files_in(folder), film_endings.size());
 }
 
 TEST(Video, LeavesNothingIfNotFinished) {

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <list>
 #include <string>
 #include <vector>
 
@@ -68,19 +67,6 @@ TEST_F(Output, OfTwoWritersAtOnceTheLastHasTheFileWhole) {
   EXPECT_EQ(contents(name), b);
   first.commit();
   EXPECT_EQ(contents(name), a);
-  EXPECT_EQ(files(), Names{"f"});
-}
-
-TEST_F(Output, SoDoTwoProcesses) {
-  const std::string name = folder / "f";
-  std::list<CME212::Child> children;
-  for (char c : {'a', 'b', 'c', 'd'})
-    children.emplace_back("a writer", [&] {
-      for (int k = 0; k < 20; ++k) write(name, std::string(50000, c));
-    });
-  for (auto& child : children) EXPECT_EQ(child.wait(), 0);
-  const std::string text = contents(name);
-  EXPECT_EQ(text, std::string(50000, text.empty() ? ' ' : text[0]));
   EXPECT_EQ(files(), Names{"f"});
 }
 

@@ -1,6 +1,7 @@
 /** @file test_viewer.cpp
- * Tests of SDLViewer, SceneBuilder and Layer. They need no display; the last
- * ones make their own. */
+ * Tests of SDLViewer and SceneBuilder. They need no display; the last one makes
+ * its own. Whole pictures: test_screen; keys in a window: tools/test_window.sh.
+ */
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -227,31 +228,7 @@ TEST(SceneBuilder, DrawsAWholeGraphInPlaceOfTheSceneBefore) {
   EXPECT_TRUE(b.scene.nodes.empty());
 }
 
-TEST(SceneBuilder, GivesTheSceneAgainToAnotherWindow) {
-  TestGraph g;
-  make_net(g, 3);
-  Shown b;
-  b.draw_graph(g);
-  ASSERT_TRUE(b.look());
-  EXPECT_FALSE(b.look());
-  b.take_again();
-  EXPECT_TRUE(b.look() && b.edges_changed);
-  EXPECT_EQ(b.scene.edges.size(), g.num_edges());
-}
-
-TEST(SceneBuilder, WantsFrameUntilOneWaits) {
-  TestGraph g;
-  make_net(g, 2);
-  Shown b;
-  EXPECT_TRUE(b.wants_frame());
-  auto map = b.empty_node_map(g);
-  add_all(b, g, map);
-  EXPECT_FALSE(b.wants_frame());
-  b.look();
-  EXPECT_TRUE(b.wants_frame());
-}
-
-// --------------------------------------------------------------------- Layer
+// ------------------------------------------------------------------- Letters
 
 TEST(Letters, AreAllDifferentAndInTheirPlace) {
   std::set<std::string_view> seen;
@@ -270,40 +247,6 @@ TEST(Letters, AreAllDifferentAndInTheirPlace) {
   for (char c = '0'; c <= '9'; ++c)
     EXPECT_EQ(letters::advance(c), letters::advance('0')) << c;
   EXPECT_EQ(letters::strokes_of('\xe9'), letters::strokes_of('?'));
-}
-
-TEST(Layer, WritesALineWhereItIsTold) {
-  Layer layer;
-  layer.start(200, 40);
-  layer.write(10, 5, 20, {Color(1, 0, 0), 1}, "mass 1");
-  const double right = 10 + Layer::width("mass 1", 20);
-  EXPECT_EQ(Layer::width("mass 1", 20),
-            Layer::width("mass", 20) + Layer::width(" 1", 20));
-  int red = 0, dark = 0;
-  for (int y = 0; y < 40; ++y)
-    for (int x = 0; x < 200; ++x) {
-      const auto p = layer.rgba()[std::size_t(200 * y + x)];
-      if (p[3] == 0) continue;
-      EXPECT_TRUE(8 <= x && x < right + 2 && 5 <= y && y < 32) << x << ' ' << y;
-      (p[0] > 200 ? red : dark) += 1;
-      EXPECT_LE(p[1], 10);
-    }
-  EXPECT_GT(red, 100);   // strokes
-  EXPECT_GT(dark, red);  // and a rim around them
-}
-
-TEST(Layer, BoxesCoverTheirPixels) {
-  Layer layer;
-  layer.start(40, 30);
-  layer.box(5, 5, 35, 25, {Color(1), 0.5});
-  const auto alpha = [&](int x, int y) {
-    return int(layer.rgba()[std::size_t(40 * y + x)][3]);
-  };
-  EXPECT_NEAR(alpha(20, 15), 128, 1);
-  EXPECT_NEAR(alpha(5, 5), 128, 1);
-  EXPECT_EQ(alpha(4, 15), 0);
-  layer.box(-10, -10, 100, 100, {Color(0), 1});  // of it what is inside
-  EXPECT_EQ(alpha(0, 0), 255);
 }
 
 // ----------------------------------------------------------------- SDLViewer
@@ -354,60 +297,6 @@ TEST(SDLViewer, DrawsWhatTheCoursesProgramsDraw) {
   viewer.clear();
   node_map.clear();
   EXPECT_EQ(difference(viewer.snapshot(), empty), 0);
-}
-
-TEST(SDLViewer, SameSceneSamePicture) {
-  TestGraph g;
-  make_net(g, 12);
-  std::vector<Image> pictures;
-  for (int run = 0; run < 2; ++run) {
-    SDLViewer viewer(small());
-    auto map = viewer.empty_node_map(g);
-    viewer.add_sphere(Point(0.5, 0.5, -0.5), 0.15);
-    viewer.add_plane(-0.75);
-    viewer.set_strain_colors(true);
-    viewer.set_scale({.limit = 0.1});
-    add_all(viewer, g, map);
-    viewer.set_label(1.25);
-    for (int i = 0; i < 2; ++i) pictures.push_back(viewer.snapshot());
-  }
-  for (const Image& p : pictures) EXPECT_EQ(p, pictures[0]);
-}
-
-TEST(SDLViewer, ShowsThatANodeOrAnEdgeIsMissing) {
-  TestGraph g;
-  make_net(g, 4);
-  SDLViewer viewer(small());
-  auto draw = [&](unsigned nodes, unsigned edges) {
-    viewer.clear();
-    auto map = viewer.empty_node_map(g);
-    viewer.add_nodes(g.node_begin(), g.node_end(), map);
-    viewer.add_edges(g.edge_begin(), g.edge_begin() + edges, map);
-    if (nodes < 16) {  // all but the last, which keeps its edges
-      viewer.clear();
-      map.clear();
-      viewer.add_nodes(g.node_begin(), g.node_begin() + nodes, map);
-      viewer.add_edges(g.edge_begin(), g.edge_end(), map);
-    }
-    return viewer.snapshot();
-  };
-  Image all = draw(16, g.num_edges());
-  EXPECT_GT(difference(all, draw(16, g.num_edges() - 1)), 10);
-  EXPECT_GT(difference(all, draw(15, 0)), 10);
-  EXPECT_EQ(difference(all, draw(16, g.num_edges())), 0);
-}
-
-TEST(SDLViewer, DrawsUpright) {
-  TestGraph g;
-  g.add_node(Point(0.5, 0.5, -0.1));
-  g.add_node(Point(0.5, 0.5, -0.9));
-  SDLViewer viewer(small());
-  Image empty = viewer.snapshot();
-  auto map = viewer.empty_node_map(g);
-  viewer.add_nodes(g.node_begin(), g.node_begin() + 1, map);
-  Image top = viewer.snapshot();
-  EXPECT_GT(difference(empty, top, 0, 1, 0, 0.5), 5);
-  EXPECT_EQ(difference(empty, top, 0, 1, 0.5, 1), 0);
 }
 
 TEST(SDLViewer, WritesLabelAndScale) {
@@ -611,37 +500,35 @@ struct Simulation {
   }
 };
 
-/** Press keys as a user does, by @a key, and check their effects. */
-void use(Simulation& s, const std::function<void(SDL_Keycode)>& key) {
+/** Press keys as a user does, and check their effects. */
+void use(Simulation& s) {
   ASSERT_TRUE(eventually([&] { return s.steps > 3; }));
-  key(SDLK_SPACE);
+  press(SDLK_SPACE);
   ASSERT_TRUE(eventually([&] { return s.shows == 1; }));
   const int steps = s.steps;
-  key(SDLK_n);
+  press(SDLK_n);
   ASSERT_TRUE(eventually([&] { return s.shows == 2; }));
   EXPECT_EQ(s.steps, steps + 1);
-  key(SDLK_s);
+  press(SDLK_s);
   ASSERT_TRUE(eventually([&] { return s.shows == 3; }));
   EXPECT_TRUE(s.viewer.strain_colors());
   EXPECT_EQ(s.steps, steps + 1);
-  key(SDLK_r);
+  press(SDLK_r);
   ASSERT_TRUE(eventually([&] { return s.restarts == 1 && s.shows == 4; }));
   EXPECT_EQ(s.steps, steps + 1);
-  key(SDLK_SPACE);
+  press(SDLK_SPACE);
   ASSERT_TRUE(eventually([&] { return s.steps > steps + 3; }));
   EXPECT_EQ(s.restarts, 1);
   EXPECT_FALSE(s.viewer.closed());
 }
 
 /** Run the viewer on this thread, a simulation and a user on two others. */
-void run_with_user(SDLViewer& viewer,
-                   const std::function<void(SDL_Keycode)>& key,
-                   const std::function<void()>& leave) {
+void run_with_user(SDLViewer& viewer, SDL_Keycode quit) {
   Simulation s(viewer);
   std::thread simulation([&] { s.run(); });
   std::thread user([&] {
-    use(s, key);
-    leave();
+    use(s);
+    press(quit);
     if (!eventually([&] { return viewer.closed(); })) {
       ADD_FAILURE() << "does not close";
       viewer.close();
@@ -657,8 +544,7 @@ void run_with_user(SDLViewer& viewer,
 TEST(SDLViewerThreads, KeysReachTheSimulation) {
   for (SDL_Keycode quit : {SDLK_q, SDLK_ESCAPE}) {
     SDLViewer viewer(small());
-    run_with_user(
-        viewer, [](SDL_Keycode k) { press(k); }, [=] { press(quit); });
+    run_with_user(viewer, quit);
   }
 }
 
@@ -699,7 +585,7 @@ TEST(SDLViewerThreads, LaunchLeavesTheMainThreadToTheSimulation) {
     Simulation s(viewer);
     viewer.launch();
     user = std::thread([&] {
-      use(s, [](SDL_Keycode k) { press(k); });
+      use(s);
       viewer.close();
     });
     s.run();  // until it is closed
@@ -836,32 +722,6 @@ TEST(SDLViewerWindow, FitsOnASmallScreen) {
   Environment display("DISPLAY", server.display().c_str());
   const CME212::SDLWindow window("small", 1024, 768, false);
   EXPECT_EQ(window.size(), (std::array{800, 600}));
-}
-
-TEST(SDLViewerWindow, ObeysTheKeyboard) {
-  if (!has_program("Xvfb") || !has_program("xdotool"))
-    GTEST_SKIP() << "no Xvfb or no xdotool";
-  XServer server;
-  Environment display("DISPLAY", server.display().c_str());
-  Environment driver("SDL_VIDEODRIVER", nullptr);
-  ASSERT_TRUE(SDLViewer::has_display());
-  SDLViewer viewer({640, 480, "test_viewer_window", false, true, true});
-  const std::string window =
-      "xdotool search --sync --onlyvisible --name test_viewer_window ";
-  auto key = [&](SDL_Keycode k) {
-    std::string name = k == SDLK_SPACE ? "space" : std::string(1, char(k));
-    EXPECT_EQ(TestFolder().run(window + "windowfocus key " + name).status, 0);
-  };
-  run_with_user(viewer, key, [&] {
-    // Another size is no harm, and is seen: then the window is closed.
-    EXPECT_EQ(TestFolder().run(window + "windowsize 800 300").status, 0);
-    EXPECT_TRUE(eventually([&] {
-      return output_of(window + "getwindowgeometry").find("800x300") !=
-             std::string::npos;
-    }));
-    key(SDLK_q);
-  });
-  EXPECT_EQ(viewer.snapshot().width, 640);
 }
 
 }  // namespace
