@@ -97,8 +97,6 @@ TEST_F(AdviceOfKind, FlyingSheet) {
   EXPECT_LE(mesh_of(a.model).points.size(), 36u);
 }
 
-TEST_F(AdviceOfKind, Curtain) { holds(upright(0.2, 1e-2)); }
-
 TEST_F(AdviceOfKind, StretchAtAPointPinIsRefused) {
   Model m = upright(0.2, 0.05);
   m.pins = {read_pin("x 0 z 0")};

@@ -2,7 +2,6 @@
 // clothes that are written and read again, scenes from elsewhere.
 #include <gtest/gtest.h>
 
-#include "lab/scenes/MeshFile.hpp"
 #include "tests/ClothProgram.hpp"
 
 namespace {
@@ -103,26 +102,6 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
     EXPECT_NE(r.err.find(c.err), std::string::npos) << c.options << r.err;
     EXPECT_EQ(r.err.empty(), !*c.err) << c.options << r.err;
   }
-}
-
-TEST_F(ClothProgram, WritesATornClothThatCanBeReadAgain) {
-  Result r = run(torn + "--out " + path("end.nodes"));
-  EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"end.nodes", "end.tets"}));
-  const auto left = lab::load_mesh(path("end.nodes"), path("end.tets"));
-  EXPECT_LT(left.points.size(), 81u);
-  EXPECT_LT(left.quads.size(), 64u);
-  EXPECT_EQ(left.velocities.size(), left.points.size());
-  r = run(path("end.nodes") + " " + path("end.tets") +
-          " --pin 'x 0 y 0 z 0' --gravity 0 --stiffness 0 --headless "
-          "--t-end 0 --out " +
-          path("again"));
-  EXPECT_EQ(r.status, 0) << r.err;
-  for (const std::string kind : {"nodes", "tets"})
-    EXPECT_EQ(contents(path(kind == "tets" ? "again.tets" : "again")),
-              contents(path("end." + kind)));
-  EXPECT_EQ(run(torn + "--out /dev/null").status, 0);
-  EXPECT_FALSE(fs::exists("/dev/null.tets"));
 }
 
 TEST_F(ClothProgram, RefusesFoldersThatAreInUse) {

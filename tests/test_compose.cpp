@@ -507,19 +507,6 @@ TEST(Compose, PinsMustHoldANode) {
   }
 }
 
-TEST(Compose, PinsMoveAlongTheirLine) {
-  Model m = with_sheet("nodes 3 3");
-  m.pins = {read_pin("x 0"), read_pin("x 1 velocity 0 0 0.5 until 0.2")};
-  m.t_end = 0.4;
-  m.gravity = 0;
-  m.method = &table::verlet;
-  Scene scene(m);
-  ASSERT_TRUE(scene.run_to(m.t_end));
-  EXPECT_EQ(scene.cloth().node(0).position(), Point(0, 0, 0));
-  EXPECT_NEAR(norm(scene.cloth().node(8).position() - Point(1, 1, 0.1)), 0,
-              1e-12);
-}
-
 TEST(Compose, SelfCollisionMustFitTheStart) {
   Model m = with_sheet("nodes 5 5");  // two nodes two sides apart: 0.5 m
   Cloth g;

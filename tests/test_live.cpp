@@ -261,19 +261,6 @@ TEST(Live, HandPullsWithABoundedForce) {
   EXPECT_FALSE(live.readings().grabbed);
 }
 
-// All of it comes from the hand.
-TEST(Live, WorkOfTheHandIsTheEnergyOfTheCloth) {
-  Live live(loose(6));
-  live.apply("step 0.1");
-  live.apply(request("grab", id(live, 0), Point(0.05, 0, 0.2)));
-  run(live, 500);
-  const Readings r = live.readings();
-  EXPECT_GT(r.energy.total(), 0.01);
-  EXPECT_NEAR(live.scene().flow().work, r.energy.total(),
-              0.01 * r.energy.total());
-  EXPECT_NEAR(r.drift, r.energy.total() - live.scene().flow().work, 1e-12);
-}
-
 TEST(Live, LimitsCountTheHand) {
   Model m = loose(6);
   m.t_end = 100;
@@ -435,17 +422,6 @@ TEST(Pins, ThatMoveGoOnMoving) {
 }
 
 // -------------------------------------------------------------------- Readings
-
-TEST(Readings, CountForceEvaluations) {
-  Model m = hung(5);
-  m.method = method("rk4");
-  Live live(m);
-  run(live, 100);
-  const Readings r = live.readings();
-  EXPECT_EQ(r.evaluations, 400);
-  EXPECT_EQ(r.steps, 100);
-  EXPECT_NEAR(r.time, 0.1, 1e-12);
-}
 
 TEST(Readings, SharpLimitMovesWithTheConfiguration) {
   Live live(hung(6, 60));

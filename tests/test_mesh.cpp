@@ -40,13 +40,6 @@ std::string quad_error(std::string_view text, std::size_t num_points = 9) {
 const std::string three = ", expected three finite coordinates 'x y z' [m]";
 const std::string four = ", expected four different node indices from 0 to 8";
 
-TEST(ParsePoints, TakesNumbersAsOnePointALine) {
-  auto p = parse_points("0 1 2\n-0.5 1e-3 +4\n", "f");
-  ASSERT_EQ(p.size(), 2u);
-  EXPECT_EQ(p[0], Point(0, 1, 2));
-  EXPECT_EQ(p[1], Point(-0.5, 0.001, 4));
-}
-
 TEST(ParsePoints, SkipsBlankLinesCommentsAndAnyBlanks) {
   auto p = parse_points("# x y z\n\n \t \n\t1\t2  3 \n  # end\n4 5 6", "f");
   ASSERT_EQ(p.size(), 2u);

@@ -13,7 +13,6 @@
 #include "lab/scenes/Compose.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/KeyValues.hpp"
-#include "lab/scenes/Memory.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
@@ -313,29 +312,9 @@ TEST(KeyValues, SayWhatIsWrong) {
   EXPECT_EQ(error("k = x 0"),
             "f:1: \"k = x 0\" is not TOML (value: could not determine value "
             "type), expected KEY = VALUE, text in quotes");
-  for (const char* wrong : {"k = \"a",
-                            "k = 'a",
-                            "k = [1, 2",
-                            "k = [1",
-                            "k = \"a\\",
-                            "k = 1]",
-                            "k = a\"b\"",
-                            "k = \"a\"]",
-                            "k = \"\\u12\"",
-                            "k = \"a\" b",
-                            "k = [1, , 2]",
-                            "k = # 1",
-                            "k =",
-                            "k",
-                            "= 1",
-                            "k = \"\\q\"",
-                            "k = \"\\uD800\"",
-                            "k = \"\\U00110000\"",
-                            "k = 1e999",
-                            "k = .5",
-                            "k = \"\xFF\"",
-                            "k = \"\x01\"",
-                            "k = 99999999999999999999"}) {
+  for (const char* wrong : {"k = \"a", "k = [1, 2", "k = 1]", "k = a\"b\"",
+                            "k = \"a\" b", "k = # 1", "k", "= 1", "k = \"\\q\"",
+                            "k = \"\xFF\"", "k = 99999999999999999999"}) {
     const std::string what = error(wrong);
     EXPECT_TRUE(what.starts_with("f:1: \"")) << what;
     EXPECT_TRUE(what.ends_with("), expected KEY = VALUE, text in quotes"))
@@ -384,19 +363,6 @@ rc::Gen<std::string> any_text() {
         }
         return text;
       });
-}
-RC_GTEST_PROP(KeyValues, ReadBackWhateverTextTheyHold, ()) {
-  const auto text = *any_text(), other = *any_text();
-  RC_ASSERT(is_utf8(text));
-  RC_ASSERT(values_of("k = " + in_quotes(text)) == Values{text});
-  RC_ASSERT(values_of("k = [" + in_quotes(text) + ", " + in_quotes(other) +
-                      "] # c") == (Values{text, other}));
-}
-RC_GTEST_PROP(KeyValues, ReadBackEachNumber, ()) {
-  const auto a = *rc::gen::arbitrary<double>();
-  RC_PRE(std::isfinite(a));
-  const Values found = values_of("k = " + CME212::exact_text(a));
-  RC_ASSERT(std::strtod(found.at(0).c_str(), nullptr) == a);
 }
 
 // Whatever is read, it is a value or an error with its line. Made of what the
@@ -490,34 +456,11 @@ RC_GTEST_FIXTURE_PROP(SceneFile, IsReadBackWhateverItsNamesHold, ()) {
   const Model n = load(to_scene_file(m));
   RC_ASSERT(n.nodes == m.nodes && n.tets == m.tets && n.pins == m.pins);
 }
-TEST_F(SceneFile, MayBeAnyToml) {
-  const Model m = load(
-      "# a scene\r\n"
-      "sheet = [  # two\r\n"
-      "  'nodes 3 3',\r\n"
-      "  \"at 0 0 1 nodes 2 2\",\r\n"
-      "]\r\n"
-      "\"pin\" = 'x 0'\r\n"
-      "density=2\r\n"
-      "stiffness   =   1_000\r\n"
-      "t-end = +1e0\r\n");
-  EXPECT_EQ(m.sheets.size(), 2u);
-  EXPECT_EQ(m.pins.size(), 1u);
-  EXPECT_EQ(m.material.density, 2);
-  EXPECT_EQ(m.stiffness, 1000);
-  EXPECT_EQ(m.t_end, 1);
-}
 TEST(MeshName, IsInUtf8) {
   Model m;
   set_field(m, "nodes", {"\xC3\xA9"});
   EXPECT_EQ(m.nodes, "\xC3\xA9");
   EXPECT_THROW(set_field(m, "nodes", {"a\xFF"}), SceneError);
-}
-TEST_F(SceneFile, MayStartWithAByteOrderMark) {
-  EXPECT_EQ(load("\xEF\xBB\xBFsheet = \"\"\nt-end = 2\n").t_end, 2);
-  EXPECT_EQ(complaint("\xEF\xBB\xBF"
-                      "colour = 1\n"),
-            "1: unknown key colour");
 }
 TEST_F(SceneFile, NamesFilesRelativeToItself) {
   EXPECT_EQ(load("nodes = \"sub/a.nodes\"\ntets = \"../b.tets\"\n").nodes,
@@ -534,26 +477,6 @@ TEST(Origins, AreTheLinesOfAFile) {
   EXPECT_EQ(at.of("--tear-strain is 0", "-"), "s.toml:4: ");
   EXPECT_EQ(at.of("--tear is 0", "-"), "-");
   EXPECT_EQ(at.of("no memory", "-"), "-");
-}
-
-// 10^8 nodes are 7 GB of positions and velocities alone.
-TEST(Memory, IsAskedForBeforeItIsTaken) {
-  EXPECT_GT(available_memory(), 1e6);
-  EXPECT_GT(needed_memory(1e8, 4e8), 7e9);
-  Model m;
-  m.sheets.assign(200, read_sheet("nodes 10000 10000"));
-  try {
-    recipe_of(m);
-    ADD_FAILURE();
-  } catch (const SceneError& e) {
-    EXPECT_EQ(std::string(e.what()).find(
-                  "--sheet gives 2e+10 nodes and 7.9988e+10 springs, which "
-                  "need at least "),
-              0u)
-        << e.what();
-    EXPECT_NE(std::string(e.what()).find(" GB are available"),
-              std::string::npos);
-  }
 }
 
 TEST_F(SceneFile, SaysWhereItIsWrong) {
