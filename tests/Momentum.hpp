@@ -1,6 +1,6 @@
 #pragma once
 /** @file Momentum.hpp
- * What a cloth keeps if only its springs act, for tests. */
+ * Momentum and angular momentum of a cloth, for tests. */
 #include "mass_spring.hpp"
 
 /** [kg m/s] */

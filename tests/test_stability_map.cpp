@@ -13,6 +13,7 @@
 
 #include "lab/charts/Growth.hpp"
 #include "lab/fast/Sweep.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/stability/Spectrum.hpp"
@@ -102,6 +103,9 @@ TEST(AmplificationByTheory, IsWhatAStepDoes) {
       }
   }
   EXPECT_THROW(amplification_by_theory("xpbd", 1, 0), std::invalid_argument);
+  ImplicitMidpoint midpoint;
+  for (double y : {0.1, 1.3, 3.5})
+    EXPECT_NEAR(amplification(midpoint, y / 7, 7), 1, 1e-9) << y;
 }
 
 // Known boundaries: h^2 w^2 + 2 h gamma = 4; h gamma = h^2 w^2; for Verlet with
