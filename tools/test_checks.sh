@@ -39,7 +39,6 @@ arrow() {  # FILE TARGET WHAT: as first line of FILE, which is made if need be
 arrow CME212/Point.hpp Graph.hpp 'is not below it'
 arrow Graph.hpp mass_spring.hpp 'is not below it'
 arrow mass_spring.hpp lab/fast/Lanes.hpp 'is not below it'
-arrow another.cpp lab/fast/Sweep.hpp 'is not below it'
 arrow lab/fast/Energy.hpp lab/methods/Splitting.hpp 'is not below it'
 arrow mass_spring.cpp SDL2/SDL.h 'only'
 arrow lab/stepping/Scene.hpp CME212/Color.hpp 'draws'
@@ -121,17 +120,6 @@ caught tools/check_headers.sh Bad.hpp Twice.hpp <<'END'
 Bad.hpp:1: does not compile alone by g++
 Twice.hpp:1: does not compile alone by clang++
 END
-
-# ---- Steps that do not end
-steps() {  # LIMIT COMMAND: the only step of check.sh quick
-  { sed "/^case .tier in/,\$d; s/^limit=600/limit=$1/" tools/check.sh
-    echo "of_files() { :; }; of_stages() { step slow hangs; }; hangs() { $2; }"
-    sed -n '/^case .tier in/,$p' tools/check.sh; } >"$tmp/check.sh"
-  cp "$tmp/check.sh" tools
-}
-steps 1 'sleep 1000'
-caught tools/check.sh quick <<<"slow: ended after 1 s, its time limit"
-git reset -q --hard
 
 # ---- Pages whose commands are run
 page() { printf '%s\n' '```sh' "$@" >page.md; attempt tools/check_commands.sh page.md; }
