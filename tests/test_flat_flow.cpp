@@ -173,6 +173,10 @@ class FlatFlowTest : public ::testing::Test {
         times.done += made, left -= made;
       }
       ASSERT_TRUE(same_bits(batches, singles)) << seed << ", round " << round;
+      for (unsigned i = 0; i < arrays(batches).node_slots(); ++i)
+        ASSERT_TRUE(arrays(batches).node_in_use(i) ||
+                    arrays(batches).positions()[i] == Point())
+            << "removed node " << i;
       ASSERT_LT(difference(batches, by_node),
                 500 * std::numeric_limits<double>::epsilon())
           << seed << ", round " << round;

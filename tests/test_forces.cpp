@@ -189,27 +189,6 @@ TEST(OwnForces, AreCalledByTheirOwnCall) {
             Point(127));
 }
 
-/** Counts how many there are. */
-struct Alive : ZeroForce {
-  static inline int count = 0;
-  Alive() { ++count; }
-  Alive(const Alive&) { ++count; }
-  ~Alive() override { --count; }
-  Point operator()(Node, double t) const override { return Point(128 * t); }
-};
-
-TEST(CombinedForces, SharesItsParts) {
-  Cloth g;
-  const Node n = g.add_node(Point());
-  const auto own = std::make_shared<Alive>();
-  {
-    const CombinedForces sum({own, own, std::make_shared<Alive>()});
-    EXPECT_EQ(CombinedForces(sum)(n, 1), Point(384));
-    EXPECT_EQ(Alive::count, 2) << "shared, not copied";
-  }
-  EXPECT_EQ(Alive::count, 1);
-}
-
 // The compiler itself is asked: a static_assert can't be seen from inside.
 TEST(OwnForces, WhatCannotBeCalledDoesNotCompileAndSaysWhy) {
   CME212::TestFolder folder;

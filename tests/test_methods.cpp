@@ -13,6 +13,7 @@
 #include "lab/stability/StepLimit.hpp"
 #include "tests/Allocations.hpp"
 #include "tests/Momentum.hpp"
+#include "tests/SweptForces.hpp"
 
 using namespace lab;
 
@@ -28,6 +29,7 @@ struct Names {
     return name;
   }
 };
+
 // Below the limit, which test_stability holds from both sides, the method of
 // Blanes and Moan has gaps, which its `fails_when` names.
 TEST(Methods, HaveOnlyWeakGapsBelowTheirLimits) {
@@ -249,23 +251,28 @@ TYPED_TEST(Symmetric, SolvesTheDragOfEachNodeExactly) {
   }
 }
 
-// Energy swings, and does not drift, over 200,000 steps: of a mass on a spring,
-// y'' + y = 0 from (y, v) = (0.1, 0).
+/** A mass of 1 kg on a spring of K [N/m] to a held node, at rest at y = 0.1:
+ * y'' + K y = 0 while y > -1. */
+struct Pair {
+  Cloth g;
+  Node wall = g.add_node(Point()), mass = g.add_node(Point(1.1, 0, 0));
+  PinConstraint pin = PinConstraint(std::vector<Node>{wall});
+  ForcePlan force = MassSpringForce();
+  explicit Pair(double K) { g.add_edge(wall, mass, {K, 1}); }
+  double y() const { return mass.position().x - 1; }
+};
+
+// Energy swings, and does not drift, over 200,000 steps.
 template <typename M>
 void expect_no_drift(double h) {
-  Cloth g;
-  const Node wall = g.add_node(Point());
-  const Node mass = g.add_node(Point(1.1, 0, 0), {Point(), 1});
-  g.add_edge(wall, mass, {1, 1});
-  const PinConstraint pin(std::vector<Node>{wall});
-  const ForcePlan force = MassSpringForce();
+  Pair o(1);
   M method;
   auto largest = [&](int steps) {
     double worst = 0;
     for (int n = 0; n < steps; ++n) {
-      method.step(g, n * h, h, force, pin);
-      const double y = mass.position().x - 1, v = mass.value().vel.x;
-      worst = std::max(worst, std::abs((v * v + y * y) / 0.01 - 1));
+      method.step(o.g, n * h, h, o.force, o.pin);
+      const double v = o.mass.value().vel.x;
+      worst = std::max(worst, std::abs((v * v + o.y() * o.y()) / 0.01 - 1));
     }
     return worst;
   };
@@ -283,6 +290,36 @@ TEST(Energy, DoesNotDriftIn200000StepsOfASymplecticMethod) {
 }
 
 // ---------------------------------------------------------------------- Verlet
+
+TEST(Verlet, IsSymplecticEulerWithHalfAKickAtTheStart) {
+  Cloth a, b;
+  shake(a);
+  shake(b);
+  auto force = make_combined_force(GravityForce(), MassSpringForce());
+  const double dt = 0.004;
+  const auto f = swept_forces(b, force);
+  for (Node n : b.nodes())
+    n.value().vel += (dt / 2 / n.value().mass) * f[n.id()];
+  Verlet verlet;
+  SymplecticEuler euler;
+  for (int k = 0; k < 200; ++k) {
+    verlet(a, k * dt, dt, force);
+    euler(b, k * dt, dt, force);
+    for (unsigned i = 0; i < 25; ++i)
+      ASSERT_LT(norm(a.node(i).position() - b.node(i).position()), 1e-12);
+  }
+}
+
+// From (y, 0) it takes exactly y_n = y cos(n q), q = 2 asin(h w/2).
+TEST(Verlet, HasItsNumericalFrequency) {
+  const double h = 0.4;
+  Pair o(9);
+  Verlet method;
+  for (int n = 1; n <= 1000; ++n) {
+    method.step(o.g, (n - 1) * h, h, o.force, o.pin);
+    ASSERT_NEAR(o.y(), 0.1 * std::cos(n * 2 * std::asin(h * 3 / 2)), 1e-12);
+  }
+}
 
 TEST(Verlet, KeepsNoForceOfAnotherState) {
   Cloth g, h;

@@ -305,6 +305,42 @@ TEST(Refined, IsTheSameCloth) {
   EXPECT_EQ(own.sheets[1].nodes, (Nodes{3, 10}));
 }
 
+/** The answers on grids of 8, 16 and 32 cells along each side. */
+std::vector<Answer> on_three_grids(Model m, Measure measure) {
+  m.measure = measure;
+  std::vector<Answer> at;
+  for (unsigned nodes : {9, 17, 33}) {
+    m.sheets = {{.nodes = {nodes, nodes}}};
+    at.push_back(try_out(m).answer);
+  }
+  return at;
+}
+
+// test_compose has the smooth case, order 2. A membrane let go flat gets a kink
+// that runs in from the rim.
+TEST(Refining, ConvergesAtOrderOneWhereTheClothHasKinks) {
+  Model m = load_model("data/scenes/membrane.toml");
+  m.t_end = 0.1;
+  const auto at = on_three_grids(m, Measure::positions);
+  EXPECT_NEAR(std::log2(distance(at[0], at[1], Measure::positions) /
+                        distance(at[1], at[2], Measure::positions)),
+              1, 0.1);
+}
+
+// All of the weight hangs by one node, whatever the grid: the force stays, the
+// width that bears it halves.
+TEST(Refining, NeverGivesTheStretchAtAPinnedCorner) {
+  Model m = load_model("data/scenes/hanging-sheet.toml");
+  m.damping = 0;
+  m.material.density = 1;
+  m.material.modulus = 100;
+  m.material.drag = 1;
+  const auto at = on_three_grids(m, Measure::max_stretch);
+  EXPECT_NEAR(at[0][0], 0.28, 0.01);
+  EXPECT_NEAR(at[1][0], 0.46, 0.01);
+  EXPECT_NEAR(at[2][0], 0.80, 0.01);
+}
+
 TEST(Variation, KnowsTheShortestSide) {
   EXPECT_NEAR(shortest_side(with_sheet("u 3 0 0 nodes 4 6")), 0.2, 1e-15);
   EXPECT_NEAR(shortest_side(with_sheet("v 0 30 0 nodes 4 6")), 1 / 3., 1e-15);
