@@ -2,7 +2,7 @@
 # results of their room; a quick run draws in $(B)/charts.
 
 .PHONY: adviser-suite cells charts figures fuzz grids \
-        long-runs method-costs orders peers-bench peers-chart peers-deps pictures \
+        long-runs method-costs orders peers-chart peers-deps pictures \
         rounds-chart speed stability stability-soak try
 
 help-lab:
@@ -23,7 +23,7 @@ help-lab:
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
 	@echo 'make rounds-chart       rounds of implicit steps; needs valgrind'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
-	@echo 'make peers-deps peers-chart peers-bench   other libraries beside ours'
+	@echo 'make peers-deps peers-chart   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
 	@echo 'make page | page-serve | page-deps   the web page: lab/page/README.md'
 	@echo 'make python-deps python   the module for Python: docs/python.md'
@@ -139,15 +139,13 @@ rounds-chart: bench_rounds
 	@{ echo "# $(measured_on)" && lab/bench/rounds.py $(B)/bench_rounds; } \
 	  > $(B)/rounds.csv
 	@mv $(B)/rounds.csv lab/bench/results/rounds.csv
-	@$(draw) rounds decision
+	@$(draw) decision
 
 # Other libraries beside ours: lab/bench/peers/README.md
 peers := lab/bench/peers
 $(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
   -lsundials_cvode -lsundials_arkode -lsundials_nvecserial \
   -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
-$(eval $(call program,$(B)/graph_peers,$(B),$(peers)/graph_peers.cpp,$(speed), \
-  -lbenchmark))
 
 peers-deps:
 	@tools/deps.sh peers
@@ -155,11 +153,6 @@ peers-chart: $(B)/peers
 	@{ echo "# $(measured_on)" && $(B)/peers; } > $(B)/peers.csv
 	@mv $(B)/peers.csv lab/bench/results/peers.csv
 	@$(draw) peers
-peers-bench:
-	@$(sub) $(B)/native/graph_peers B=$(B)/native \
-	  CXXFLAGS='$(native) $(CXXFLAGS)'
-	@echo "$(measured_on)"
-	@taskset -c 0 $(peers)/graphs.py $(B)/native/graph_peers
 
 # ---- Grids and pictures
 

@@ -21,7 +21,7 @@ packages() {
                  "valgrind shellcheck pyflakes3 mypy" ;;
     python) echo "python3-numpy python3-dev pybind11-dev python3-pytest" \
                  "python3-scipy python3-setuptools python3-matplotlib" ;;
-    peers)  echo "libsundials-dev libboost-dev liblemon-dev libgsl-dev" ;;
+    peers)  echo "libsundials-dev libboost-dev libgsl-dev" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;
     web)    echo "clang-N lld-N wasi-libc libc++-N-dev-wasm32" \

@@ -5,12 +5,9 @@
  *   make bench CXXFLAGS=-march=native
  *   taskset -c 0 lab/bench/table.py build/bench
  *   lab/bench/table.py build/bench --sides 316 --filter step
- *   lab/bench/counts.sh           instructions in place of nanoseconds
  *
  * table.py runs bench [SIDE...] [--benchmark_...], which writes times as JSON.
- * bench --calls N FIGURE KERNELS only calls a figure, of 100 x 100 nodes:
- * kernels 0 plain, 1 AVX2, 2 AVX-512. One thread, unless the name has
- * "threads". */
+ * One thread, unless the name has "threads". */
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -342,14 +339,6 @@ void add_triad(const char* name, std::size_t bytes, int threads) {
 
 int main(int argc, char** argv) {
   lanes::cpu = fastest_cpu();
-  if (argc == 5 && std::string(argv[1]) == "--calls") {  // for counts.sh
-    lanes::cpu = lanes::Cpu(std::atoi(argv[4]));
-    Sweep::set_threads(1);
-    for (const Figure& f : figures())
-      if (auto call = f.name == argv[3] ? f.make(100) : nullptr)
-        for (int k = 0; k < std::atoi(argv[2]); ++k) call();
-    return 0;
-  }
   benchmark::Initialize(&argc, argv);
   std::ostringstream head;
   report::write_head(head, "bench");

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # make speed: what a step costs on this machine. Writes
 # lab/bench/results/MACHINE/: the table bench.txt, the same as JSON, lines of
-# this commit in history.csv; and speed.svg.
+# this commit in history.csv.
 #   lab/bench/speed.sh [BENCH]
 # On a machine that does nothing else: each figure is a ratio to a loop over
 # flat arrays measured at the same time, but memory is shared.
@@ -28,5 +28,3 @@ sed -n 's/.*"group": "\(10*\) nodes[^"]*", "name": "step: \(SymplecticEuler\|Sym
   "$folder/bench.json" | sed 's/, mixed/ mixed/' | while read -r row; do
   echo "$(date +%F),$commit,$row"
 done >>"$history"
-
-python3 lab/charts/draw.py speed --folder lab/bench/results

@@ -16,8 +16,6 @@ from typing import Callable, Iterator
 import decision
 import peers
 import precision
-import rounds
-import speed
 import surveys
 from panels import find_matplotlib
 from results import ROOT, ChartError, Table, believed, runs
@@ -33,9 +31,7 @@ CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
     "stability_limits": ("charts", "stability_limits.csv", surveys.limits),
     "stability_growth": ("charts", "stability_growth.csv", surveys.growth),
     "adviser": ("advice", "adviser.csv", surveys.adviser),
-    "rounds": ("bench", "rounds.csv", rounds.rounds),
     "peers": ("bench", "peers.csv", peers.peers),
-    "speed": ("bench", "*/bench.json", speed.speed),
 }
 
 
