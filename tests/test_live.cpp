@@ -447,12 +447,12 @@ TEST(Comparison, OfAMethodWithItselfIsZero) {
     if (k == 50) live.apply(request("cut", id(live, 1), id(live, 2)));
     if (k == 60) live.apply(request("pin", id(live, 9)));
     ASSERT_TRUE(live.step());
-    ASSERT_EQ(live.readings(false).comparison->apart, 0) << k;
+    const Readings now = live.readings(false);
+    ASSERT_EQ(now.rivals[0].error, now.error) << k;
   }
   const Readings r = live.readings();
-  EXPECT_EQ(r.comparison->error, r.comparison->rival_error);
-  EXPECT_GT(r.comparison->error, 0);
-  EXPECT_EQ(r.comparison->rival.time, r.time);
+  EXPECT_GT(r.error, 0);
+  EXPECT_EQ(r.rivals[0].readings.time, r.time);
 }
 
 // Half the step: a quarter of the error, as the reference tells it.
@@ -461,9 +461,9 @@ TEST(Comparison, ErrorsAreOfTheOrderOfTheMethod) {
   live.apply("step 0.2");
   live.apply("compare verlet 0.1");
   run(live, 60);
-  const auto c = *live.readings().comparison;
-  EXPECT_NEAR(c.error / c.rival_error, 4, 0.4);
-  EXPECT_NEAR(c.rival.dt, live.scene().dt() / 2, 1e-12);
+  const Readings r = live.readings();
+  EXPECT_NEAR(r.error / r.rivals[0].error, 4, 0.4);
+  EXPECT_NEAR(r.rivals[0].readings.dt, live.scene().dt() / 2, 1e-12);
   EXPECT_EQ(live.reference()->method().name, "srkn11b");
   EXPECT_LT(live.reference()->dt(), live.scene().dt() * 11 / 2);
 }
@@ -475,9 +475,28 @@ TEST(Comparison, MeetsAfterAFewStepsOfAnyRatio) {
     live.apply(request("compare", "implicit-euler", share));
     run(live, 2);
     const Readings r = live.readings();
-    EXPECT_NEAR(r.comparison->rival.dt / (share * r.dt_unit), 1, 0.02) << share;
-    EXPECT_EQ(r.comparison->rival.time, r.time);
+    const RunReadings& rival = r.rivals[0].readings;
+    EXPECT_NEAR(rival.dt / (share * r.dt_unit), 1, 0.02) << share;
+    EXPECT_EQ(rival.time, r.time);
   }
+}
+
+TEST(Comparison, RacesFourAtEqualWork) {
+  Live live(hung(8));
+  live.apply("step 0.3");
+  live.apply("race symplectic-euler rk4 xpbd");
+  EXPECT_EQ(live.recording().find("race"), std::string::npos);
+  while (live.scene().time() < 0.3) ASSERT_TRUE(live.step());
+  const Readings r = live.readings();
+  ASSERT_EQ(r.rivals.size(), 3u);
+  for (const auto& [rival, error] : r.rivals) {
+    EXPECT_NEAR(rival.work / r.work, 1, 0.1) << rival.method;
+    EXPECT_NEAR(rival.time, r.time, 1e-9);
+    EXPECT_GT(error, r.error) << rival.method;
+  }
+  EXPECT_NE(Live::error_in("race verlet verlet verlet verlet"), "");
+  live.apply("compare");
+  EXPECT_TRUE(live.readings().rivals.empty());
 }
 
 // In one step of a second method there is no end of those of the first one.
@@ -502,9 +521,9 @@ TEST(Comparison, OfOneThatFailsGoesOn) {
   live.apply("compare symplectic-euler 1.5");
   for (int k = 0; k < 400; ++k) ASSERT_TRUE(live.step());
   const Readings r = live.readings();
-  EXPECT_TRUE(r.comparison->rival.failure);
+  EXPECT_TRUE(r.rivals[0].readings.failure);
   EXPECT_FALSE(r.failure);
-  EXPECT_TRUE(std::isfinite(r.comparison->apart));
+  EXPECT_TRUE(std::isfinite(r.rivals[0].error));
 }
 
 // -------------------------------------------------------------------- Requests

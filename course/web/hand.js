@@ -30,14 +30,16 @@ class Hand {
   // frame, and the place in it, from -1 to 1.
   locate(x, y) {
     const box = this.canvas.getBoundingClientRect();
-    const count = Math.max(1, this.page.sides.length);
-    const width = box.width / count;
-    const pane = Math.max(0, Math.min(count - 1,
-      Math.floor((x - box.left) / width)));
-    return {pane, frame: this.page.view.camera.frame(width / box.height),
-      x: 2 * (x - box.left - pane * width) / width - 1,
-      y: 1 - 2 * (y - box.top) / box.height,
-      half: [width / 2, box.height / 2]};
+    const [columns, rows] = View.grid(this.page.sides.length);
+    const width = box.width / columns, height = box.height / rows;
+    const at = (a, count) => Math.max(0, Math.min(count - 1, Math.floor(a)));
+    const column = at((x - box.left) / width, columns);
+    const row = at((y - box.top) / height, rows);
+    return {pane: row * columns + column,
+      frame: this.page.view.camera.frame(width / height),
+      x: 2 * (x - box.left - column * width) / width - 1,
+      y: 1 - 2 * (y - box.top - row * height) / height,
+      half: [width / 2, height / 2]};
   }
   rayAt(place) {
     return this.page.view.camera.ray(place.frame, place.x, place.y).flat()
@@ -161,8 +163,9 @@ class Hand {
   // The place of the cross, which stays in the middle of pane 0.
   crossPlace() {
     const box = this.canvas.getBoundingClientRect();
-    const width = box.width / Math.max(1, this.page.sides.length);
-    return this.locate(box.left + width / 2, box.top + box.height / 2);
+    const [columns, rows] = View.grid(this.page.sides.length);
+    return this.locate(box.left + box.width / columns / 2,
+      box.top + box.height / rows / 2);
   }
   key(e) {
     if (e.ctrlKey || e.metaKey || e.altKey) return;

@@ -15,8 +15,7 @@ const markup = `<div class="picture">
       aria-label="The cloth: G grabs, X cuts, arrows turn and pull"></canvas>
     <svg class="stroke" aria-hidden="true"><polyline/></svg>
     <div class="cross" aria-hidden="true" hidden></div>
-    <div class="name" hidden><span></span><small></small></div>
-    <div class="name" hidden><span></span><small></small></div>
+    ${'<div class="name" hidden><span></span><small></small></div>'.repeat(4)}
     <div class="busy"></div>
     <div class="strain"><span>strain 2 %</span> <i></i>
       <span>45 %</span></div>
@@ -136,12 +135,24 @@ class Picture {
   show(sides) {
     this.sides = sides, this.changed();
     sides.forEach((side, k) => this.view.setSide(k, side, side.isNew));
-    this.find('.picture').classList.toggle('two', sides.length > 1);
+    const {classList} = this.find('.picture');
+    classList.toggle('two', sides.length > 1);
+    classList.toggle('four', sides.length > 2);
     this.element.querySelectorAll('.name').forEach((label, k) => {
       label.hidden = !sides[k]?.name;
       setText(label.children[0], sides[k]?.name ?? '');
       setText(label.children[1], sides[k]?.words ?? '');
     });
+  }
+  // Say that the cloth can be dragged, until a hand does anything.
+  hint() {
+    const hint = document.createElement('p');
+    hint.className = 'hint', hint.textContent = 'Drag me';
+    hint.ariaHidden = true;
+    this.find('.picture').append(hint);
+    const end = () => hint.remove();
+    for (const name of ['pointerdown', 'keydown'])
+      this.element.addEventListener(name, end, {once: true});
   }
   // Words in a place that is hidden without any: '.fault b', '.says', '.busy'.
   say(place, words) {

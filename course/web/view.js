@@ -18,7 +18,7 @@ function looksOf(element) {
     (a, k) => k < 3 ? Number(a) / 255 : Number(a));
   const hex = name => [...textOf(name).match(/[0-9a-f]{2}/gi).map(
     a => parseInt(a, 16) / 255), 1];
-  const theme = {cloth: [four('--cloth0'), four('--cloth1')],
+  const theme = {cloth: [0, 1, 2, 3].map(k => four(`--cloth${k}`)),
     stretched: four('--stretched'), wire: four('--wire'), pin: four('--pin'),
     hand: four('--hand'), ball: four('--ball'),
     floor: four('--floor'), bad: hex('--bad'), sky: hex('--sky')};
@@ -331,7 +331,7 @@ class View {
     this.floor.setMesh(new Uint32Array([0, 1, 2, 1, 3, 2]), new Uint32Array());
     this.floor.setPoints(new Float32Array(
       [-1, -1, 0, 0, 1, -1, 0, 0, -1, 1, 0, 0, 1, 1, 0, 0]));
-    this.cloths = [new Shape(gl), new Shape(gl)];
+    this.cloths = [0, 1, 2, 3].map(() => new Shape(gl));
     this.ghost = new Shape(gl);  // drawn through what it has been since
     this.marks = new Shape(gl);
     this.marks.setMesh(new Uint32Array(), new Uint32Array());
@@ -358,14 +358,19 @@ class View {
     const {canvas} = this;
     const ratio = this.pace.sharpness *
       Math.min(window.devicePixelRatio || 1, 2);
-    const w = Math.max(1, Math.round(canvas.clientWidth * ratio));
-    const h = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    const [w, h] = this.size ?? // of a canvas that is in no page
+      [canvas.clientWidth, canvas.clientHeight].map(
+      a => Math.max(1, Math.round(a * ratio)));
     if (canvas.width !== w || canvas.height !== h)
       canvas.width = w, canvas.height = h;
-    if (count === 1) return [[0, 0, w, h]];
-    const half = Math.floor(w / 2);
-    return [[0, 0, half, h], [half, 0, w - half, h]];
+    const [columns, rows] = View.grid(count);
+    return [...Array(count).keys()].map(k => [
+      Math.floor(w / columns) * (k % columns),
+      Math.floor(h / rows) * (rows - 1 - Math.floor(k / columns)),
+      Math.floor(w / columns), Math.floor(h / rows)]);
   }
+  // Two beside each other, four in two rows: [columns, rows]
+  static grid(count) { return [count > 1 ? 2 : 1, count > 2 ? 2 : 1]; }
 
   set(color, kind, stretched = color) {
     const {gl, at} = this;
@@ -393,7 +398,8 @@ class View {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST), gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    const ratio = this.canvas.width / Math.max(1, this.canvas.clientWidth);
+    const ratio = this.canvas.width / (this.canvas.clientWidth ||
+      this.canvas.width);
     sides.forEach((side, k) => {
       const pane = panes[k];
       gl.viewport(...pane);

@@ -4,7 +4,7 @@
 
 let wasm, module;              // exports; compiled
 let broken = '', fault;        // what ended a call, until the next start
-let versions = [-1, -1];       // of the meshes that were sent
+let versions = [-1, -1, -1, -1];  // of the meshes that were sent
 
 const text = at => {
   const bytes = new Uint8Array(wasm.memory.buffer, at);

@@ -49,12 +49,6 @@ for (const element of document.querySelectorAll('.live')) {
     button.addEventListener('click', () => choose(k)));
   choose(shown.choice);
 
-  if (name === 'drag') {
-    const hint = document.createElement('p');
-    hint.className = 'hint', hint.textContent = 'Drag me';
-    hint.setAttribute('aria-hidden', true);
-    element.querySelector('.picture').append(hint);
-    element.addEventListener('pointerdown', () => hint.remove(), {once: true});
-  }
+  if (name === 'drag') shown.hint();
   ([...edits].at(-1) ?? element).after(embedding(name));
 }

@@ -93,7 +93,7 @@ bool ChoiceSearch::holds(Choice& c, double most) {
   const Trial t = run(c, c.model, c.work, "");
   learn(c, t, 1);
   // Of Newton's iterations and of inner steps the number is known only now.
-  if (t.ok() && StepCosts::varies(c.model.method->info)) c.work = t.work;
+  if (t.ok() && work_varies(c.model.method->info)) c.work = t.work;
   c.error = grids_.error_of(t);
   c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
   c.uncertainty = grids_.grids().uncertainty();
@@ -170,8 +170,7 @@ void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
   for (Choice& c : choices(grids)) {
     const MethodEntry* method = c.model.method;
     if (best && !(c.work * least_of_prediction < best->work)) break;
-    if (best && !(c.work < best->work) && !StepCosts::varies(method->info))
-      continue;
+    if (best && !(c.work < best->work) && !work_varies(method->info)) continue;
     const Key any{c.grid.sides, c.parts.removed, c.model.t_end, nullptr},
         own{c.grid.sides, c.parts.removed, c.model.t_end, method};
     if (fail.contains(any) || fail.contains(own) || !may_hold(c)) continue;

@@ -6,28 +6,12 @@
 #include <stdexcept>
 
 #include "lab/advice/Variation.hpp"
-#include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/StiffSplit.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stepping/StepLimits.hpp"
 
 namespace lab {
-
-namespace {
-// Work of a step with linear solves, measured on cloths of 36 to 1681 nodes
-// with 1 to 3000 times Verlet's limit: it grows by this power of the step, and
-// is at most so many force evaluations for each node along a side, with which
-// Newton's iterations by sparse factorizations are cheaper.
-constexpr double more_iterations = 0.6, of_factor = 10;
-
-/** Null of a method without measured costs. */
-const MethodCost* cost_of(const MethodInfo& info) {
-  const auto cost =
-      std::ranges::find(method_costs, info.name, &MethodCost::method);
-  return cost == method_costs.end() ? nullptr : &*cost;
-}
-}  // namespace
 
 StepCosts::StepCosts(const Model& m) {
   const Net mesh = mesh_of(m);
@@ -39,7 +23,7 @@ StepCosts::StepCosts(const Model& m) {
   const std::optional<HandForce> no_hand;
   const StepLimits limits(g, force, constraint, no_hand);
   springs_ = double(g.num_edges());
-  factor_ = of_factor * std::sqrt(double(g.num_nodes()));
+  side_ = std::sqrt(double(g.num_nodes()));
   verlet_ = limits.safe(table::verlet);
   multirate_ = limits.safe(table::mollified_impulse);
   const StiffSplit split = split_springs(g, 1, constraint);
@@ -57,23 +41,7 @@ double StepCosts::of_step(const MethodEntry& method, double dt,
     return springs + cost_of_filter(stiff) +
            std::ceil(dt * finer / inner_) * cost_of_inner_step(stiff);
   }
-  const MethodCost* cost = cost_of(info);
-  const bool solves = info.limit == no_limit || info.adaptive;
-  if (!solves || !cost) return springs * info.sweeps;
-  const double limits = std::max(1.0, dt * finer / verlet_);
-  // Inner steps are about as long as Verlet's limit.
-  if (info.adaptive) return springs * cost->at_limit * std::ceil(limits);
-  const double grows = cost->at_ten / cost->at_limit;
-  double by_step = cost->at_limit * std::pow(grows, std::log10(limits));
-  if (limits > 10)
-    by_step = cost->at_ten *
-              (varies(info) ? std::pow(limits / 10, more_iterations) : 1);
-  return springs * std::min(by_step, factor_ * finer);
-}
-
-bool StepCosts::varies(const MethodInfo& method) {
-  const MethodCost* cost = cost_of(method);
-  return cost && (method.adaptive || cost->at_ten > 1.1 * cost->at_limit);
+  return springs * work_of_step(info, dt * finer / verlet_, side_ * finer);
 }
 
 double StepCosts::limit(const MethodInfo& method) const {

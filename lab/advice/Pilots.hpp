@@ -30,8 +30,6 @@ class StepCosts {
   /** Work of a step of @a dt [s] by @a method, on a grid of @a finer times the
    * cells along each side. */
   double of_step(const MethodEntry& method, double dt, double finer = 1) const;
-  /** True if the work of a step depends on the motion: only a run tells it. */
-  static bool varies(const MethodInfo& method);
   /** The step [s] of @a m on this grid, and the work of a whole run; no_limit
    * if no step is given and none is stable. */
   double step(const Model& m) const;
@@ -42,7 +40,7 @@ class StepCosts {
   }
 
  private:
-  double springs_ = 0, factor_ = 0, verlet_ = no_limit, multirate_ = no_limit;
+  double springs_ = 0, side_ = 0, verlet_ = no_limit, multirate_ = no_limit;
   double stiff_ = 0, inner_ = no_limit;  // stiff springs; inner step [s]
 };
 

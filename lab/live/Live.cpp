@@ -19,21 +19,31 @@ const MethodEntry& reference_method = table::srkn11b;
 constexpr double reference_share = 1 / 3.;  // of its limit
 constexpr double most_in_round = 1e4;       // steps of a scene
 
-/** The fewest steps after which two runs meet: of the main one and of the
- * rival. */
-struct Round {
-  int main, rival;
-
-  /** @param ratio rival's step / main's step, which it is to 2 %, up to 10^4 */
-  static Round of_steps(double ratio) {
-    const double up = std::min(std::max(ratio, 1 / ratio), most_in_round);
-    int few = 0, many = 0;
-    do {
-      many = int(std::lround(++few * up));
-    } while (std::abs(many / (few * up) - 1) > 0.02);
-    return ratio >= 1 ? Round{many, few} : Round{few, many};
-  }
-};
+/** The steps of a rival in @a main steps of the main run, at least one.
+ * @param ratio rival's step / main's step */
+double steps_of_rival(int main, double ratio) {
+  return std::clamp(std::round(main / ratio), 1., most_in_round);
+}
+/** Few steps of the main run in which each rival makes whole steps, of its
+ * ratio to 2 %, if that is from 10^-4 to 10^4. */
+int round_of(const std::vector<double>& ratios) {
+  const auto error = [&](int main) {
+    double most = 0;
+    for (double ratio : ratios) {
+      ratio = std::clamp(ratio, 1 / most_in_round, most_in_round);
+      const double is = main / steps_of_rival(main, ratio) / ratio;
+      most = std::max(most, std::max(is, 1 / is) - 1);
+    }
+    return most;
+  };
+  int best = 1;
+  while (best < most_in_round && error(best) > 0.02) ++best;
+  // One of a few more may be nearer.
+  const double last = std::min(1.05 * best, most_in_round);
+  for (int main = best; main <= last; ++main)
+    if (error(main) < error(best)) best = main;
+  return best;
+}
 
 /** The RMS distance of the nodes that both have [m]. */
 double distance(const Cloth& a, const Cloth& b) {
@@ -44,6 +54,12 @@ double distance(const Cloth& a, const Cloth& b) {
     sum += normSq(n.position() - arrays(b).positions()[n.id()]), ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+/** The work of a step of @a dt [s] of @a s, if it ran by @a m. */
+double work_of_step(const Scene& s, const MethodEntry& m, double dt) {
+  return work_of_step(m.info, dt / dt_unit(s, table::verlet),
+                      std::sqrt(double(s.cloth().num_nodes())));
 }
 
 }  // namespace
@@ -78,7 +94,13 @@ Live::Side::Side(std::unique_ptr<Scene> s, const MethodEntry& m)
   mark();
   sharp_limit = safe_limit;
 }
+void Live::Side::count() {
+  work += double(scene->steps() - counted) * of_step;
+  counted = scene->steps();
+}
 void Live::Side::mark() {
+  count();
+  of_step = work_of_step(*scene, method, scene->dt());
   safe_limit = scene->safe_limit();
   dt_unit = lab::dt_unit(*scene, method);
 }
@@ -87,7 +109,7 @@ void Live::set_step(const MethodEntry& method, const TimeStep& step) {
   main_->scene->change_method(method, step);
   main_->method = method, model_.step = step;
   main_->mark();
-  if (rival_) tune();
+  tune();
 }
 
 /** The step stays the same. */
@@ -106,38 +128,67 @@ void Live::set_method(const MethodEntry& method) {
 /** Use the forces of the model as it is now. */
 void Live::change_forces() {
   const Recipe recipe = recipe_of(model_, mesh_);
-  for (auto* side : {&main_, &rival_, &reference_})
-    if (*side) (*side)->scene->change_forces(recipe), (*side)->mark();
-  if (rival_) tune();
-}
-
-/** Run a copy of the present state beside it, by steps of @a share. */
-void Live::compare(const MethodEntry& method, double share) {
-  if (!main_->runs()) return;
-  const double dt = main_->scene->dt();
-  if (!model_.step.fixed())
-    set_step(main_->method, {.dt = dt, .tolerance = model_.step.tolerance});
-  const auto copy = [&](const MethodEntry& m) {
-    return Side(std::make_unique<Scene>(*main_->scene, TimeStep{.dt = dt}, m),
-                m);
-  };
-  rival_.emplace(copy(method));
-  reference_.emplace(copy(reference_method));
-  rival_step_ = share * rival_->dt_unit;
+  for (Side* side : sides()) side->scene->change_forces(recipe), side->mark();
   tune();
 }
 
-/** Give the rival and the reference the steps by which all three meet. */
+std::vector<Live::Side*> Live::sides() {
+  std::vector<Side*> all{&*main_};
+  for (Side& rival : rivals_) all.push_back(&rival);
+  if (reference_) all.push_back(&*reference_);
+  return all;
+}
+Live::Side Live::copy(const MethodEntry& method) const {
+  const TimeStep step{.dt = main_->scene->dt()};
+  return {std::make_unique<Scene>(*main_->scene, step, method), method};
+}
+
+/** Run copies of the present state beside it, in place of those that do. */
+void Live::compare(const std::vector<Lane>& rivals) {
+  if (!main_->runs()) return;
+  rivals_.clear(), reference_.reset(), round_ = 1;
+  if (rivals.empty()) return;
+  if (!model_.step.fixed())
+    set_step(main_->method,
+             {.dt = main_->scene->dt(), .tolerance = model_.step.tolerance});
+  for (const Lane& r : rivals) {
+    rivals_.push_back(copy(*r.method));
+    rivals_.back().asked = r.share * rivals_.back().dt_unit;
+  }
+  reference_.emplace(copy(reference_method));
+  tune();
+}
+
+/** Steps by which @a methods work as much a second as the main run does. */
+std::vector<Live::Lane> Live::at_equal_work(
+    const std::vector<const MethodEntry*>& methods) const {
+  const Scene& s = *main_->scene;
+  const double a_second = work_of_step(s, main_->method, s.dt()) / s.dt();
+  constexpr double longest = 1;  // [s]
+  std::vector<Lane> all;
+  for (const MethodEntry* method : methods) {
+    double step = s.dt();
+    for (int k = 0; k < 50; ++k)  // the work of a long implicit step is more
+      step = std::min(longest, work_of_step(s, *method, step) / a_second);
+    all.push_back({method, step / lab::dt_unit(s, *method)});
+  }
+  return all;
+}
+
+/** Give the rivals and the reference the steps by which all meet. */
 void Live::tune() {
+  if (rivals_.empty()) return;
   const double dt = main_->scene->dt();
-  const Round round = Round::of_steps(rival_step_ / dt);
-  round_ = round.main;
+  std::vector<double> ratios;
+  for (const Side& rival : rivals_) ratios.push_back(rival.asked / dt);
+  round_ = round_of(ratios);
   const double whole = round_ * dt;
   const auto set = [](Side& side, double step) {
     side.scene->change_method(side.method, {.dt = step});
     side.mark();
   };
-  set(*rival_, whole / round.rival);
+  for (Side& rival : rivals_)
+    set(rival, whole / steps_of_rival(round_, rival.asked / dt));
   const double steps = whole / (reference_share * reference_->dt_unit);
   set(*reference_, whole / std::min(std::ceil(steps), most_in_round));
 }
@@ -149,7 +200,7 @@ RunReadings Live::Side::readings(bool sharp) {
   if (sharp) sharp_limit = scene->stepper().sharp_limit();
   r.safe_limit = safe_limit, r.sharp_limit = sharp_limit;
   r.steps = scene->steps(), r.time = scene->time();
-  r.evaluations = scene->evaluations();
+  count(), r.work = work;
   r.energy = energies(scene->cloth(), scene->recipe().gravity, scene->flow());
   r.drift = scene->drift(r.energy);
   r.failure = scene->failure();
@@ -183,7 +234,7 @@ Live::Live(Model m, std::vector<Change> changes)
 }
 
 void Live::restart(const Model& m) {
-  rival_.reset(), reference_.reset();
+  rivals_.clear(), reference_.reset(), round_ = 1;
   model_ = m, next_ = 0, calls_ = 0, recording_.clear();
   main_->scene->restart();
   change_forces();
@@ -199,13 +250,12 @@ bool Live::step() {
     apply(changes_[next_].request);
   if (done()) return false;
   ++calls_;
-  const int count = rival_ ? round_ : 1;
-  for (int k = 0; k < count && !done() && !interrupted(); ++k)
+  for (int k = 0; k < round_ && !done() && !interrupted(); ++k)
     main_->scene->step(model_.t_end);
   const double time = main_->scene->time();
-  for (auto* side : {&rival_, &reference_}) {
-    if (!*side || !(*side)->runs()) continue;
-    Scene& s = *(*side)->scene;
+  for (Side* side : sides()) {
+    if (side == &*main_ || !side->runs()) continue;
+    Scene& s = *side->scene;
     while (!s.done(time) && !interrupted())
       s.steps_at_once(Scene::guard_interval, time);
     s.check();
@@ -224,12 +274,14 @@ Readings Live::readings(bool sharp) {
   r.nodes = g.num_nodes(), r.edges = g.num_edges();
   r.torn_nodes = start_nodes_ - r.nodes, r.torn_edges = start_edges_ - r.edges;
   r.grabbed = scene().hand() && arrays(g).node_in_use(scene().hand()->node());
-  if (!rival_) return r;
-  const Cloth &other = rival()->cloth(), &right = reference()->cloth();
-  r.comparison = {.rival = rival_->readings(sharp),
-                  .apart = distance(g, other),
-                  .error = distance(g, right),
-                  .rival_error = distance(other, right)};
+  if (!reference_) return r;
+  const Cloth& right = reference()->cloth();
+  r.error = distance(g, right);
+  for (Side& rival : rivals_) {
+    const Cloth& other = rival.scene->cloth();
+    r.rivals.push_back(
+        {.readings = rival.readings(sharp), .error = distance(other, right)});
+  }
   return r;
 }
 

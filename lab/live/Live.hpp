@@ -62,9 +62,10 @@ struct RunReadings {
    * one of verlet; if that is no_limit, too, 1 ms. Finite, > 0. */
   double dt_unit = 0.001;
   long long steps = 0;
-  double time = 0;            ///< simulated [s]
-  long long evaluations = 0;  ///< of all forces, since the start
-  Energies energy;            ///< [J]
+  double time = 0;  ///< simulated [s]
+  /** Since the start, in force evaluations: work_of_step(). */
+  double work = 0;
+  Energies energy;  ///< [J]
   /** The change of energy since the start that no force explains [J]: the
    * method's error, and the loss in contact, which is inelastic. Left out are
    * the work of drag, of moving obstacles and pins, of the hand and of the
@@ -78,12 +79,12 @@ struct Readings : RunReadings {
   unsigned torn_nodes = 0, torn_edges = 0;  ///< removed since the start
   bool grabbed = false;  ///< the hand pulls a node that is still there
   /** Distances are the RMS over the nodes that both states have [m]. */
-  struct Comparison {
-    RunReadings rival;
-    double apart;               ///< of the two
-    double error, rival_error;  ///< of each to the reference
+  struct Rival {
+    RunReadings readings;
+    double error;  ///< of it to the reference
   };
-  std::optional<Comparison> comparison;
+  std::vector<Rival> rivals;
+  double error = 0;  ///< of the main run to the reference, if there are rivals
 };
 
 /** RunReadings::dt_unit of @a s, if it ran by @a m. */
@@ -121,7 +122,7 @@ class Live {
    * its present state: positions, velocities, what is torn, time. A scene that
    * failed continues from its last good state; but grab, cut and pins do
    * nothing then. They also do nothing if the node or the edge was removed. A
-   * change of forces applies to the rival and to the reference, too.
+   * change of forces applies to the rivals and to the reference, too.
    * Throws std::invalid_argument: error_in(request), or the method can't choose
    * its step here. Then nothing has changed. */
   void apply(const std::string& request);
@@ -134,7 +135,7 @@ class Live {
   static std::vector<std::pair<std::string_view, double>> parameters(Model m);
 
   /** Make the changes that are due, then one step; while comparing, one round:
-   * the fewest steps after which both runs are at the same time. For that the
+   * the fewest steps after which all runs are at the same time. For that a
    * rival's step is the one asked for to 2 %; no scene takes more than 10^4
    * steps in a round. A signal cuts a round short.
    * @return false if done()   Throws as apply() */
@@ -153,8 +154,15 @@ class Live {
   const Scene& scene() const { return *main_->scene; }
   /** To be changed by requests alone. The same object until the destructor. */
   Scene& scene() { return *main_->scene; }
-  /** Null unless comparing. */
-  const Scene* rival() const { return rival_ ? rival_->scene.get() : nullptr; }
+  static constexpr std::size_t most_rivals = 3;
+  struct Lane {
+    const MethodEntry* method;
+    double share;  ///< its step, of its RunReadings::dt_unit
+  };
+  /** Number @a k of those that run beside it; null if there are fewer. */
+  const Scene* rival(std::size_t k = 0) const {
+    return k < rivals_.size() ? rivals_[k].scene.get() : nullptr;
+  }
   const Scene* reference() const {
     return reference_ ? reference_->scene.get() : nullptr;
   }
@@ -175,35 +183,44 @@ class Live {
     std::unique_ptr<Scene> scene;
     MethodEntry method;
     double dt_unit, safe_limit, sharp_limit;  // [s]; sharp: when last asked for
+    double asked = 0;              // the step of a rival that was asked for [s]
+    double work = 0, of_step = 0;  // until a step; of each one after it
+    long long counted = 0;         // that step
 
     Side(std::unique_ptr<Scene> s, const MethodEntry& m);
     void mark();
+    void count();
     bool runs() const { return !scene->failure(); }
     RunReadings readings(bool sharp);
   };
 
   Model model_;
   Net mesh_;
-  std::optional<Side> main_, rival_, reference_;
-  double rival_step_ = 0;  // as asked for [s]
-  int round_ = 1;          // steps of the main scene in one
+  std::optional<Side> main_, reference_;
+  std::vector<Side> rivals_;
+  int round_ = 1;  // steps of the main scene in one
   unsigned start_nodes_ = 0, start_edges_ = 0;
   std::vector<Change> changes_;
   std::size_t next_ = 0;  // of changes_
   long long calls_ = 0;
   std::string recording_;
 
-  /** Call use(scene) for all that runs; the rival and the reference of a scene
+  /** All that there are: the main one first, the reference last. */
+  std::vector<Side*> sides();
+  /** Call use(scene) for all that runs; the rivals and the reference of a scene
    * that failed wait for it. */
   void each_running(auto use) {
     if (!main_->runs()) return;
-    for (auto* side : {&main_, &rival_, &reference_})
-      if (*side && (*side)->runs()) use(*(*side)->scene);
+    for (Side* side : sides())
+      if (side->runs()) use(*side->scene);
   }
   void set_step(const MethodEntry& method, const TimeStep& step);
   void set_method(const MethodEntry& method);
   void change_forces();
-  void compare(const MethodEntry& method, double share);
+  void compare(const std::vector<Lane>& rivals);
+  std::vector<Lane> at_equal_work(
+      const std::vector<const MethodEntry*>& methods) const;
+  Side copy(const MethodEntry& method) const;
   void tune();
 };
 

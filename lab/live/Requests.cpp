@@ -22,6 +22,11 @@ namespace {
 struct Share {
   double of_unit;
 };
+/** Live::most_rivals of them. */
+template <typename T>
+struct AtMost {
+  std::vector<T> values;
+};
 using Ends = std::array<unsigned, 2>;
 
 // read(in, value): the next words as a value of a request.
@@ -33,10 +38,6 @@ void read(Line& in, Point& p) {
 }
 void read(Line& in, Ends& edge) { read(in, edge[0]), read(in, edge[1]); }
 void read(Line& in, Ray& r) { read(in, r.near), read(in, r.far); }
-template <typename T>
-void read(Line& in, std::vector<T>& all) {
-  while (!in.at_end()) read(in, all.emplace_back());
-}
 void read(Line& in, Share& s) {
   constexpr double least = std::numeric_limits<double>::denorm_min();
   s.of_unit = in.number("a positive multiple of the stability limit", least);
@@ -46,6 +47,22 @@ void read(Line& in, const MethodEntry*& method) {
   const std::string_view name = in.word("a method");
   method = method_named(name, hint);
   if (!method) in.fail(mesh_detail::quoted(name) + " is not a method" + hint);
+}
+void read(Line& in, Live::Lane& lane) {
+  Share share;
+  read(in, lane.method), read(in, share);
+  lane.share = share.of_unit;
+}
+template <typename T>
+void read(Line& in, std::vector<T>& all) {
+  while (!in.at_end()) read(in, all.emplace_back());
+}
+template <typename T>
+void read(Line& in, AtMost<T>& all) {
+  read(in, all.values);
+  if (all.values.size() > Live::most_rivals)
+    in.fail("names " + std::to_string(all.values.size()) +
+            " methods, expected at most 3");
 }
 
 }  // namespace
@@ -163,16 +180,25 @@ Live::Table::Table() {
   on("unpin", plain, [](Live& live, unsigned node) {
     live.each_running([&](Scene& s) { s.unpin(node); });
     live.main_->mark();
-    if (live.rival_) live.tune();
+    live.tune();
   });
   on("toggle", expand, [](Live& live, unsigned node) {
     const bool held = live.main_->scene->is_pinned(node);
     live.apply(request(held ? "unpin" : "pin", node));
   });
-  // Run a copy of the present state beside it by another method, with steps of
-  // this share of its RunReadings::dt_unit.
-  on("compare", plain, [](Live& live, const MethodEntry* m, Share share) {
-    live.compare(*m, share.of_unit);
+  // Run copies of the present state beside it, up to three, by other methods,
+  // each with steps of a share of its RunReadings::dt_unit; without any, end
+  // it.
+  on("compare", plain,
+     [](Live& live, AtMost<Lane> rivals) { live.compare(rivals.values); });
+  // The same, with the steps by which each works as much as the main run.
+  on("race", expand, [](Live& live, AtMost<const MethodEntry*> methods) {
+    if (!live.main_->runs()) return;
+    std::string compare = "compare";
+    for (const Lane& lane : live.at_equal_work(methods.values))
+      compare +=
+          request_word(lane.method->info.name) + request_word(lane.share);
+    live.apply(compare);
   });
 }
 

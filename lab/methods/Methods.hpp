@@ -28,4 +28,11 @@ const std::vector<const MethodEntry*>& all_methods();
 /** The method called @a name, or nullptr. */
 const MethodEntry* find_method(std::string_view name);
 
+/** The work of a step of @a limits times Verlet's stability limit, in force
+ * evaluations; that of linear solves is from Costs.hpp, so that it depends on
+ * no clock.  @param side nodes along a side of the cloth */
+double work_of_step(const MethodInfo& method, double limits, double side);
+/** True if the work of a step depends on the motion: only a run tells it. */
+bool work_varies(const MethodInfo& method);
+
 }  // namespace lab

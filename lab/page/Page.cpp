@@ -26,10 +26,10 @@ using json::Json, json::list, json::members, json::object;
 Json json_of(const RunReadings& r) {
   return object("method", r.method, "dt", r.dt, "unit", r.dt_unit, "safe",
                 r.safe_limit, "sharp", r.sharp_limit, "steps", r.steps, "time",
-                r.time, "evaluations", r.evaluations, "kinetic",
-                r.energy.kinetic, "elastic", r.energy.elastic, "height",
-                r.energy.gravitational, "total", r.energy.total(), "drift",
-                r.drift, "failed", r.failure.has_value());
+                r.time, "work", r.work, "kinetic", r.energy.kinetic, "elastic",
+                r.energy.elastic, "height", r.energy.gravitational, "total",
+                r.energy.total(), "drift", r.drift, "failed",
+                r.failure.has_value());
 }
 
 // ---------------------------------------------------------------- What is run
@@ -48,14 +48,14 @@ struct Drawn {
 /** The one scene of the page, and what was made of it to be drawn. */
 struct State {
   std::unique_ptr<Live> live;
-  Drawn drawn[2];
+  Drawn drawn[1 + Live::most_rivals];
   std::vector<float> points;
   std::vector<unsigned> mesh;
   std::string room, text;
 
   const Scene* scene(unsigned side) const {
     if (!live) return nullptr;
-    return side == 0 ? &live->scene() : live->rival();
+    return side == 0 ? &live->scene() : live->rival(side - 1);
   }
   /** The scene that is drawn for a side. */
   const Scene& shown(unsigned side) const {
@@ -122,7 +122,7 @@ const char* page_request(const char* text) {
   if (const auto error = Live::error_in(text); !error.empty())
     return say({error});
   s.live->apply(text);
-  for (unsigned side : {0u, 1u}) {
+  for (unsigned side = 0; side < std::size(s.drawn); ++side) {
     Drawn& d = s.drawn[side];
     const Scene* const scene = s.scene(side);
     if (!scene || !scene->failure()) d.go_back();
@@ -170,15 +170,18 @@ const char* page_readings(int sharp) {
   const auto parameter = [](const auto& p) {
     return Json{members(p.first, p.second)};
   };
+  const auto rival = [](const Readings::Rival& side) {
+    Json all = json_of(side.readings);
+    all.text.back() = ',';
+    return Json{all.text + members("error", side.error) + '}'};
+  };
   std::string all =
       members("parameters",
               list(Live::parameters(state().live->model()), parameter, "{}"),
               "main", json_of(r), "nodes", r.nodes, "edges", r.edges,
               "tornNodes", r.torn_nodes, "tornEdges", r.torn_edges, "grabbed",
-              r.grabbed, "missed", state().live->scene().missed_text());
-  if (const auto& c = r.comparison)
-    all += ',' + members("rival", json_of(c->rival), "apart", c->apart, "error",
-                         c->error, "rivalError", c->rival_error);
+              r.grabbed, "missed", state().live->scene().missed_text(),
+              "rivals", list(r.rivals, rival), "error", r.error);
   const Model& m = state().live->model();
   if (const Measure& what = m.measure;
       what.quantity < Measure::pin_force && what.quantity != Measure::positions)

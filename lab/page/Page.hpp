@@ -5,7 +5,7 @@
  * returns is valid until the next call. page.mk exports all of them.
  *
  * Scenes are numbered as page_about() lists them, nodes by id. Side 0 is the
- * scene; side 1 is the second scene that the request `compare` starts.
+ * scene; sides 1 to 3 are the scenes that the request `compare` starts.
  * A call that throws ends there: wasi.cpp. */
 
 #include "CME212/Point.hpp"
@@ -28,7 +28,7 @@ const char* page_request(const char* text);
 /** Live::recording() */
 const char* page_recording();
 
-/** A step of side 0, and side 1 up to the same time; the first one after a
+/** A step of side 0, and the others up to the same time; the first one after a
  * failure does nothing.  @return its time [s] */
 double page_step();
 /** Check the state before it is drawn: Live::check().

@@ -130,8 +130,9 @@ class FailurePicture extends Picture {
         (n, i) => normal[i] += n);
     }
     const {clientWidth, clientHeight} = this.canvas;
+    const [columns, rows] = View.grid(this.sides.length);
     camera.lookObliquely(all, normal,
-      clientWidth / this.sides.length / clientHeight);
+      clientWidth / columns / (clientHeight / rows));
   }
   // The sides to draw at a time [ms]. After a failure that is the motion beyond
   // it, interpolated linearly between two steps, over and over, in front of the

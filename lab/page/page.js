@@ -12,8 +12,7 @@ class Laboratory extends FailurePicture {
     super($('stage'), Object.keys(buttons), true);
     Object.assign(this, {
       about: null,           // scenes and methods
-      settings: {scene: 'forces', side: 25, method: 'verlet', share: 0.5,
-        rival: '', rivalShare: 0.5, drag: 0.003},  // and others of the scene
+      settings: {...usual, rivalShare: 0.5, drag: 0.003},  // and of the scene
       speed: 1,              // simulated seconds a second, at most
       isWaiting: true, readings: null, calls: 0, frames: 0, errors: [],
       run: 0, asked: 0,      // runs and requests; the worker counts them, too
@@ -21,6 +20,11 @@ class Laboratory extends FailurePicture {
     this.find('.busy').setAttribute('role', 'status');
     this.say('.busy', 'loading');
     this.canvas.setAttribute('aria-describedby', 'keys');
+    addEventListener('keydown', e => {
+      if (e.key.toLowerCase() === 'd' && !e.target.matches('select, input'))
+        describe();
+    });
+    addEventListener('hashchange', () => openAddress());
     this.use('grab');
     // In a frame of another page: index.html?controls=none#scene=drape
     if (new URLSearchParams(location.search).get('controls') === 'none')
@@ -30,6 +34,7 @@ class Laboratory extends FailurePicture {
     this.worker = startThread($('worker').textContent, this, replies,
       text => this.errors.push(text));
     const bytes = await unpacked($('wasm').textContent);
+    this.doors = new Doors(bytes.slice());
     this.worker.postMessage(['module', bytes], [bytes]);
   }
   // A request of lab/live/Requests.cpp.
@@ -58,14 +63,20 @@ class Laboratory extends FailurePicture {
   frameScene() {
     if (this.framed || !this.sides.length) return;
     this.framed = true;
-    const all = [...this.room];
-    if (!all.length)
-      for (const i of this.sides[0].lines) {
-        const p = [...this.sides[0].points.subarray(4 * i, 4 * i + 3)];
-        all.push(p, Vec.add(p, [0, 0, -0.35]));
-      }
-    this.view.camera.lookAt(all);
+    this.view.camera.lookAt(
+      this.room.length ? this.room : spaceOf(this.sides[0]));
   }
+  setPlaying(on) {
+    super.setPlaying(on);
+    if (!on && this.readings) describe();
+  }
+}
+// The points of a side, and how far they may fall.
+function spaceOf({points, lines}) {
+  return [...lines].flatMap(i => {
+    const p = [...points.subarray(4 * i, 4 * i + 3)];
+    return [p, Vec.add(p, [0, 0, -0.35])];
+  });
 }
 const page = new Laboratory();
 
@@ -85,16 +96,21 @@ const sliders = {
   drag: {...fromZero(20, 4), show: a =>
     `${shortNumber(a)} ${byArea() ? 'kg/(s m\u00b2)' : 'kg/s'}`},
   gravity: {...fromZero(30, 1), show: a => `${shortNumber(a)} m/s\u00b2`},
-  speed: {...byPower(0.01, 1), show: a => `${shortNumber(a)} s/s`},
+  speed: {...byPower(0.01, 4), show: a => `${shortNumber(a)} s/s`},
 };
-const scene = () => named(page.about.scenes, page.settings.scene);
+const scene = (s = page.settings) => named(page.about.scenes, s.scene);
+const rivalNames = ['rival0', 'rival1', 'rival2'];
 
 function showControls() {
   const s = page.settings;
   if (![...$('side').options].some(o => Number(o.value) === s.side))
     $('side').append(new Option(`${s.side} x ${s.side}`, s.side));
-  for (const name of ['scene', 'side', 'method', 'rival'])
-    $(name).value = s[name];
+  for (const name of ['scene', 'side', 'method']) $(name).value = s[name];
+  rivalNames.forEach((name, k) => {
+    $(name).value = s.rivals[k] ?? '';
+    $(name).parentElement.hidden = k > s.rivals.length;
+  });
+  $('equal').checked = s.isEqual;
   for (const [name, slider] of Object.entries(sliders)) {
     const value = name === 'speed' ? page.speed : s[name];
     if (value !== undefined) showSlider($(name), slider, value);
@@ -104,8 +120,10 @@ function showControls() {
     `${m.sweeps === 1 ? '' : 's'} a step. Good for: ${m.goodFor}. Fails: ` +
     `${m.failsWhen}.`;
   $('side').disabled = scene().fails;
-  $('rivalShare').parentElement.hidden = !s.rival;
-  $('distance-figure').hidden = !s.rival;
+  $('race').hidden = scene().fails;
+  $('rivalShare').parentElement.hidden = !s.rivals.length || s.isEqual;
+  $('equal').parentElement.hidden = !s.rivals.length;
+  $('distance-figure').hidden = !s.rivals.length;
   showLimits();
   page.changed();
 }
@@ -114,10 +132,11 @@ function showControls() {
 // change the limit, but dt stays; so dt / limit changes.
 function followRun({asked, readings}) {
   if (asked !== page.asked || !readings) return;
-  const {main, rival} = readings, s = page.settings, before = {...s};
-  Object.assign(s, readings.parameters, {method: main.method,
-    rival: rival ? rival.method : ''});
-  for (const [name, run] of [['share', main], ['rivalShare', rival]]) {
+  const {main, rivals} = readings, s = page.settings, before = {...s};
+  Object.assign(s, readings.parameters, {method: main.method});
+  const names = rivals.map(rival => rival.method);
+  if (names.join() !== s.rivals.join()) s.rivals = names;
+  for (const [name, run] of [['share', main], ['rivalShare', rivals[0]]]) {
     const share = run && Number((run.dt / run.unit).toPrecision(3));
     if (run && Math.abs(share / s[name] - 1) >= 0.01) s[name] = share;
   }
@@ -128,7 +147,7 @@ function followRun({asked, readings}) {
 function showLimits() {
   const r = page.readings;
   for (const [name, run] of [['share', r && r.main],
-    ['rivalShare', r && r.rival]]) {
+    ['rivalShare', r && r.rivals[0]]]) {
     const share = page.settings[name];
     const beyond = !!run && run.safe !== null && share * run.unit > run.safe;
     $(name).parentElement.classList.toggle('beyond', beyond);
@@ -143,20 +162,21 @@ function showLimits() {
 }
 
 // The request by which the run gets what a control shows.
-function requestOf(name) {
-  const s = page.settings;
+function requestOf(name, s = page.settings) {
   return name === 'share' ? ['step', s.share]
-    : name === 'rival' || name === 'rivalShare'
-      ? ['compare', s.rival, s.rivalShare] : [name, s[name]];
+    : name === 'rivals' && s.isEqual ? ['race', ...s.rivals]
+      : name === 'rivals' || name === 'rivalShare' ? ['compare',
+        ...s.rivals.flatMap(method => [method, s.rivalShare])]
+        : [name, s[name]];
 }
 // The requests at the start of a scene that make it match the controls. Its
 // parameters are in the settings once they are known.
-function startLines() {
-  const s = page.settings, names = Object.keys(sliders).filter(
+function startLines(s = page.settings) {
+  const names = Object.keys(sliders).filter(
     name => name in s && !name.endsWith('hare'));
-  if (scene().fails && !names.length) return [];  // as its file says
-  return ['method', ...names, 'share', ...s.rival ? ['rival'] : []].map(
-    name => [0, requestOf(name).join(' ')]);
+  if (scene(s).fails && !names.length) return [];  // as its file says
+  return ['method', ...names, 'share', ...s.rivals.length ? ['rivals'] : []]
+    .map(name => [0, requestOf(name, s).join(' ')]);
 }
 
 // The next scene has its own.
@@ -164,13 +184,42 @@ function forgetParameters() {
   for (const key of Object.keys(page.readings?.parameters || {}))
     delete page.settings[key];
 }
+// Another run, by what differs from `usual`.
+function begin(settings = {}) {
+  forgetParameters(), page.find('.hint')?.remove();
+  Object.assign(page.settings, usual, settings);
+  if (page.settings.scene === 'forces') page.settings.drag ??= 0.003;
+  page.start(), page.setPlaying(!isStill()), keepAddress(true);
+}
 function loadScene(name) {
-  const s = page.settings, failed = scene().fails;
-  s.scene = name;
-  forgetParameters();
-  if (scene().fails) s.rival = '';
-  else if (failed) s.method = 'verlet', s.share = 0.5;
-  page.start(), page.setPlaying(!isStill());
+  const {side, method, share, rivals} = page.settings, from = scene().fails;
+  const keeps = !from && !named(page.about.scenes, name).fails;
+  begin({scene: name, side, ...keeps ? {method, share, rivals} : {}});
+}
+// The address is the present start, for a reload. `isNew`: Back leads to the
+// one before.
+let keeping;
+function keepAddress(isNew) {
+  clearTimeout(keeping);
+  const keep = () => {
+    const lines = startLines().map(line => line.join(' ')).join('\n');
+    const hash = Link.write(`${lines}\n0 end`, page.settings,
+      page.camera ?? page.view.camera, page.speed);
+    history[isNew ? 'pushState' : 'replaceState'](null, '', hash);
+  };
+  if (isNew) keep();
+  else keeping = setTimeout(keep, 500);
+}
+// Run what the address says.
+function openAddress() {
+  const read = Link.read(location.hash, page.about);
+  forgetParameters(), Object.assign(page.settings, usual, read.start);
+  if (!location.hash) page.settings.drag = 0.003;
+  if (read.speed) page.speed = read.speed;
+  if (read.camera) page.view.camera.set(...read.camera);
+  page.setPlaying(!read.end && !isStill());
+  page.start(location.hash ? read.lines : startLines(), read.end);
+  if (read.leftOut) tellLeftOut();
 }
 
 // Change a setting. A failed run goes on from its last good state, if it can.
@@ -178,14 +227,27 @@ function change(name, value) {
   page.settings[name] = value;
   if (page.broken) {
     page.restart();
-  } else if (name === 'rival' || name === 'rivalShare' && page.calls === 0) {
-    page.start();  // both from the same start
+  } else if (name === 'rivals' || name === 'isEqual' ||
+      name === 'rivalShare' && page.calls === 0) {
+    page.start();  // all from the same start
   } else {
     page.goOn(), page.ask(...requestOf(name));
     if (name === 'method') page.ask(...requestOf('share'));
   }
-  showControls();
+  keepAddress(), showControls();
 }
+
+const groups = {
+  'Explicit: cheap steps, up to a limit': ['verlet', 'symplectic-euler',
+    'forward-euler', 'rk4', 'mollified-impulse'],
+  'Explicit of high order: accurate while nothing collides': ['pefrl',
+    'srkn11b'],
+  'Error control: it chooses its inner steps': ['rkn64'],
+  'Implicit: any step, each solves a system': ['implicit-euler',
+    'implicit-midpoint', 'tr-bdf2'],
+  'Position-based, of games: any step, looks right': ['xpbd',
+    'fast-mass-spring'],
+};
 
 function makeControls() {
   const {scenes, methods} = page.about;
@@ -196,15 +258,25 @@ function makeControls() {
       s => new Option(s.title, s.name)));
     $('scene').append(group);
   }
-  $('rival').append(new Option('nothing', ''));
-  for (const name of ['method', 'rival'])
-    $(name).append(...methods.map(m => new Option(m.name)));
+  for (const name of ['method', ...rivalNames]) {
+    if (name !== 'method') $(name).append(new Option('nothing', ''));
+    for (const [label, names] of Object.entries(groups)) {
+      const group = document.createElement('optgroup');
+      group.label = label;
+      group.append(...methods.filter(m => names.includes(m.name)).map(
+        m => new Option(m.name)));
+      $(name).append(group);
+    }
+  }
   $('scene').onchange = e => loadScene(e.target.value);
   $('side').onchange = e => {
-    page.settings.side = Number(e.target.value), page.start();
+    page.settings.side = Number(e.target.value), page.start(), keepAddress();
   };
-  for (const name of ['method', 'rival'])
-    $(name).onchange = e => change(name, e.target.value);
+  $('method').onchange = e => change('method', e.target.value);
+  for (const name of rivalNames)
+    $(name).onchange = () => change('rivals', rivalNames.map(
+      rival => $(rival).value).filter(Boolean));
+  $('equal').onchange = e => change('isEqual', e.target.checked);
   for (const [name, slider] of Object.entries(sliders))
     makeSlider(name, slider, value => {
       if (name === 'speed') page.speed = value;
@@ -218,30 +290,50 @@ function makeControls() {
 function showNumbers() {
   const r = page.readings;
   if (!r) return;
-  const [blue, orange, , dark] = page.style.series;
-  const {main, rival} = r;
-  if (rival) {
-    plots.energy.draw('Energy drift [J]',
-      [[main.method, blue], [rival.method, orange]], false, page.style);
-    plots.distance.draw('Distance\u00a0[m]', [['apart', dark],
-      [`${main.method} to exact`, blue], [`${rival.method} to exact`, orange]],
-    true, page.style);
+  const {main, rivals} = r;
+  if (rivals.length) {
+    const curves = [main, ...rivals].map(
+      ({method}, k) => [method, page.style.series[k]]);
+    plots.energy.draw('Energy drift [J]', curves, false, page.style);
+    plots.distance.draw('Distance to a fine run\u00a0[m]', curves, true,
+      page.style);
   } else {
     drawEnergy(plots.energy, page.style);
   }
   const rows = [['time', `${main.time.toFixed(3)} s`],
-    ['steps', main.steps], ['nodes, springs', `${r.nodes}, ${r.edges}`],
-    ['energy drift', `${shortNumber(main.drift)} J`],
-    ['force evaluations', main.evaluations]];
+    ['work', evaluations(main)]];
   if (r.measure)
     rows.push([r.measure,
       [...r.answer.map(a => shortNumber(a)), r.unit].join(' ')]);
   if (r.tornNodes || r.tornEdges)
     rows.push(['torn nodes, springs', `${r.tornNodes}, ${r.tornEdges}`]);
-  if (rival)
-    rows.push(['force evaluations beside', rival.evaluations],
-      ['distance of the two', `${shortNumber(r.apart)} m`]);
   fillTable($('numbers'), rows);
+  fillTable($('more'), [['steps', main.steps],
+    ['nodes, springs', `${r.nodes}, ${r.edges}`],
+    ['energy drift', `${shortNumber(main.drift)} J`]]);
+  if (scene().fails && $('side').selectedOptions[0]?.text !== `${r.nodes}`)
+    $('side').append(new Option(r.nodes, 0)), $('side').value = 0;
+}
+const evaluations = ({work}) => `${work < 1e5 ? Math.round(work)
+  : shortNumber(work)} force evaluations`;
+
+// The state in words, for who does not see it.
+function describe() {
+  const {readings: r, sides, settings} = page;
+  if (!r || !sides.length) return;
+  const {points, lines, failure} = sides[0];
+  let low = Infinity, strain = 0;
+  for (const i of lines) {
+    low = Math.min(low, points[4 * i + 2]);
+    strain = Math.max(strain, points[4 * i + 3]);
+  }
+  setText($('spoken'), `${scene().title}, ${settings.method}, at ${
+    r.main.time.toFixed(2)} seconds: ${failure ? `it failed: ${
+    inPage(failure.cause)}` : r.main.kinetic < 1e-3 ? 'it is at rest' :
+    `it moves, with ${shortNumber(r.main.kinetic, 2)} joules`}; its lowest ` +
+    `node is at a height of ${shortNumber(low, 2)} meters; the longest ` +
+    `spring is stretched by ${shortNumber(100 * strain, 2)} percent.${
+      r.tornEdges ? ` ${r.tornEdges} springs are torn.` : ''}`);
 }
 
 const tellLeftOut = () => page.say('.says',
@@ -250,15 +342,10 @@ const tellLeftOut = () => page.say('.says',
 const replies = {
   about(data) {
     page.about = data.about, page.tasks = new Tasks();
-    makeControls();
-    const read = Link.read(location.hash, page.about);
-    Object.assign(page.settings, read.start);
-    if (read.speed) page.speed = read.speed;
-    if (read.camera)
-      page.view.camera.set(...read.camera);
-    page.setPlaying(!read.end && !isStill());
-    page.start(location.hash ? read.lines : startLines(), read.end);
-    if (read.leftOut) tellLeftOut();
+    makeControls(), openAddress();
+    if (!location.hash) page.hint();
+    // Once the first cloth has its thread.
+    setTimeout(() => page.doors.draw(), 300);
   },
   setting({setting}) {
     page.view.obstacles = setting.obstacles;
@@ -271,20 +358,23 @@ const replies = {
     if (page.beyond) page.beyond.drawn = undefined;
     else page.say('.busy', '');
     page.readings = data.readings;
-    const {main, rival} = data.readings ?? {};
+    const {main, rivals = [], error} = data.readings ?? {};
     page.show(data.sides.map(({mesh, ...side}, k) => {
-      const run = rival && [main, rival][k];
+      const run = rivals.length ? [{...main, error}, ...rivals][k] : null;
       return {...page.sides[k], ...side, ...mesh, isNew: !!mesh,
-        name: run?.method, words: run && `dt = ${inMs(run.dt)}${
-          side.failure?.diverged ? ', diverged'
-            : side.failure ? ', refused' : ''}`};
+        name: run?.method, words: run && `dt = ${inMs(run.dt)}, ${
+          side.failure?.diverged ? 'diverged' : side.failure ? 'refused'
+            : `error ${shortNumber(1e3 * run.error, 2)} mm`}; ${
+          evaluations(run)}`};
     }));
     if (!data.broken) followRun(data);
     if (!data.failed && data.readings?.missed && !page.find('.says').innerText)
       page.say('.says', `Warning: ${inPage(data.readings.missed)}.`);
     page.frameScene(), remember();
     if (data.failed && !page.failed && !page.wanted) page.fail(data);
-    page.tasks.look(main?.time, page.failed);
+    if (data.readings && data.asked === page.asked)
+      page.tasks.look({r: data.readings, time: main.time, failed: page.failed,
+        share: main.dt / main.unit, method: main.method, side: page.sides[0]});
   },
   beyond({frames, asked}) {
     if (asked === page.asked) page.showBeyond(frames);
@@ -305,7 +395,7 @@ const replies = {
   link({recording}) {
     const hash = Link.write(recording, page.settings,
       page.camera ?? page.view.camera, page.speed);
-    history.replaceState(null, '', hash);
+    clearTimeout(keeping), history.replaceState(null, '', hash);
     const done = text => {
       $('link').textContent = text;
       setTimeout(() => $('link').textContent = 'Copy link', 1500);
@@ -322,9 +412,10 @@ const replies = {
 function remember() {
   const r = page.readings;
   if (!r) return;
-  const {main, rival} = r;
-  plots.energy.add(main.time, rival ? [main.drift, rival.drift]
+  const {main, rivals} = r;
+  plots.energy.add(main.time, rivals.length
+    ? [main, ...rivals].map(run => run.drift)
     : [main.kinetic, main.elastic, main.height, main.total]);
-  if (rival)
-    plots.distance.add(main.time, [r.apart, r.error, r.rivalError]);
+  if (rivals.length)
+    plots.distance.add(main.time, [r.error, ...rivals.map(run => run.error)]);
 }

@@ -6,7 +6,7 @@ let about;                     // page_about()
 let calls;                     // steps of this run
 let run = 0, asked = 0;        // how many were started; requests taken
 let sharpAt = 0, readings = null;
-let rivalIsShown = false;      // the failure of the second scene
+const shown = [];              // whether the failure of a side is
 
 // @return the error in the request; '' if there is none
 function request(line) {
@@ -75,11 +75,12 @@ function failureOf(side) {
 function frame() {
   if (!broken) call('check');
   const failed = !!failureOf(0), sides = [];
-  if (!failed && failureOf(1) && !rivalIsShown) beyond(1);
-  rivalIsShown = !!failureOf(1);
-  for (const side of [0, 1]) {
+  for (const side of [0, 1, 2, 3]) {
+    const failure = failureOf(side);
+    if (side && failure && !failed && !shown[side]) beyond(side);
+    shown[side] = !!failure;
     if (wasm.page_slots(side))
-      sides.push({...drawn(side), failure: failureOf(side),
+      sides.push({...drawn(side), failure,
         failedNode: wasm.page_failed_node(side)});
     else versions[side] = -1;
   }
@@ -124,8 +125,9 @@ function largestMove(from, to) {
 }
 
 function setting() {
-  versions = [-1, -1];
-  postMessage({kind: 'setting', setting: JSON.parse(text(call('setting')))});
+  versions = [-1, -1, -1, -1];
+  postMessage({kind: 'setting', run,
+    setting: JSON.parse(text(call('setting')))});
   frame();
 }
 
