@@ -1,6 +1,6 @@
 /** @file 8.my_step.cpp
- * Where two nets end, run in turn, whose springs only law.cpp knows. The
- * solution answers with a finer run, and with half the error of symplectic
+ * Steps of two nets in turn, whose springs only law.cpp knows: where they end.
+ * The solution answers with a finer run, and with half the error of symplectic
  * Euler as tolerance: course/kit/ranking.py ranks a class by the distance from
  * these answers. */
 #include "asked.hpp"

@@ -169,7 +169,7 @@ class Room(Sources):
             TESTS, ASKED, YEARS, ROOT / "CME212", kit.preludes, kit.include,
             *kit.linked], words_of(TESTS, ASKED))
         self.kit = kit
-        self.names = set(files)     # of those that the student wrote
+        self.names = dict(files)     # those that the student wrote
         self.tests: tuple[pathlib.Path, ...] = (TESTS, ASKED)
         self.numbers = itertools.count(1)
 

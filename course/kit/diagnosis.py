@@ -3,7 +3,7 @@
 import pathlib
 import re
 import signal
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 
 import once
@@ -18,6 +18,7 @@ ADDRESS = re.compile(r"0x[0-9a-f]+")
 UNCLOSED = re.compile(r"error: expected '\}' at end of input\n"
                       r"(?:(?:In file included| +) +from .*\n){0,20}"
                       r"(?P<file>[^\s:]+):(?P<line>\d+):\d+: note: to match")
+CONSTRUCTOR = re.compile(r"\b(\w+)<[^<>()]*>\(")
 LONGEST = 300
 
 
@@ -98,8 +99,9 @@ def first_error(output: str, names: Container[str], test: str) -> str:
     return place + short(error.text)
 
 
-def compile_message(output: str, names: Container[str], test: str = "") -> str:
-    """The same, and what led to it."""
+def compile_message(output: str, names: Mapping[str, bytes],
+                    test: str = "") -> str:
+    """The same, and what led to it, of files with these texts."""
     for unclosed in UNCLOSED.finditer(output):  # what follows makes no sense
         if unclosed["file"] in names:
             return (f"{unclosed['file']}:{unclosed['line']}: this '{{' has no "
@@ -109,6 +111,11 @@ def compile_message(output: str, names: Container[str], test: str = "") -> str:
         return link_message(output)
     owner = "the kit's " if error.file == "Graph.hpp" not in names else ""
     text = f"{owner}{error.file}:{error.line}: {short(error.text)}"
+    lines = names.get(error.file, b"").decode("utf-8", "replace").split("\n")
+    if "expected ')' before" in text and (found := CONSTRUCTOR.search(
+            "".join(lines[error.line - 1:error.line]))):
+        text += (f"; since C++20 a constructor is {found[1]}(...), "
+                 f"not {found[0]}...)")
     if error.needed_by:
         text += f"\nneeded by {error.needed_by}"
     return text

@@ -16,7 +16,7 @@ import itertools
 import json
 import os
 import pathlib
-import random
+import re
 import secrets
 import shutil
 import signal
@@ -71,7 +71,7 @@ class Result:
 Results = dict[str, Result]     # by test
 
 
-def result_of(outcome: sandbox.Outcome, names: Container[str],
+def result_of(test: str, outcome: sandbox.Outcome, names: Container[str],
               expected: sandbox.Answers | None) -> Result:
     """A test passed if it says so, ends in peace, and has answered what is
     expected: {name: (tolerance, numbers)}, or None if nobody knows that."""
@@ -86,10 +86,11 @@ def result_of(outcome: sandbox.Outcome, names: Container[str],
     if verdict[:1] == ["passed"] and len(verdict) == 3 and outcome.code == 0:
         if verdict[1] == "0":
             return Result("missing", "no such test is in the kit")
-        if expected is not None and not right(outcome.answers, expected):
+        if name := wrong(outcome.answers, expected or {}):
             return Result(
-                "failed", "", "what the solution computes from numbers drawn "
-                "at random", "something else, after its own tests had passed",
+                "failed", "", f"{name} as the solution computes it, from "
+                "numbers drawn at random", "something else, after the public "
+                "tests had passed", input_of(test),
                 doubtful="passed the tests of {task}, but can't compute what "
                 "they ask for")
         if verdict[2] != "0":
@@ -98,24 +99,29 @@ def result_of(outcome: sandbox.Outcome, names: Container[str],
                   did=diagnosis.short(did), name=name)
 
 
-def right(answers: sandbox.Answers, expected: sandbox.Answers) -> bool:
-    """Are all answers there that are needed, and none wrong? asked.hpp says
-    what the last sign of a name means."""
+def wrong(answers: sandbox.Answers, expected: sandbox.Answers) -> str:
+    """The name of an answer that is needed and not there, or wrong; or "".
+    asked.hpp says what the last sign of a name means."""
     some_of, found = set(), set()
     for name, (tolerance, numbers) in expected.items():
         if name[-1] == "?":
             some_of.add(name.split()[0])
-        if name not in answers:
-            if name[-1] not in "?~":
-                return False
+        given = answers.get(name, (0, []))[1]
+        if name not in answers and name[-1] in "?~":
             continue
         found.add(name.split()[0])
-        given = answers[name][1]
         if len(given) != len(numbers) or not all(
                 abs(a - b) <= tolerance * max(1, abs(b))    # false of NaN
                 for a, b in zip(given, numbers)):
-            return False
-    return some_of <= found
+            return name.rstrip("?~")
+    return min(some_of - found, default="")
+
+
+def input_of(test: str) -> str:
+    """What a task is asked with, from the first words of its file."""
+    text = (build.ASKED / f"{test}.cpp").read_text("utf-8")
+    found = re.search(r"@file .*\n \* ([^.:]*)", text)
+    return " ".join(found[1].replace("\n *", " ").split()) if found else ""
 
 
 def refused(unit: build.Unit) -> Result:
@@ -187,7 +193,8 @@ class Judge:
         def with_ours(folder_name, *names_of_ours):
             room = build.Room(kit, folder / folder_name, {
                 **files, **{name: ours[name] for name in names_of_ours}})
-            room.names -= set(names_of_ours)
+            for name in names_of_ours:
+                room.names.pop(name, None)
             return room
         if files["Graph.hpp"] != ours["Graph.hpp"]:
             self.rooms["cloth"].insert(0, with_ours("given", "Graph.hpp"))
@@ -384,7 +391,7 @@ class Judge:
         read |= unit.included
         return unit
 
-    def run_all(self, unit: build.Unit, names: set[str]) -> Results:
+    def run_all(self, unit: build.Unit, names: Container[str]) -> Results:
         """Each test of a program in a process of its own. Messages name places
         in these files first."""
         assert unit.program
@@ -395,7 +402,7 @@ class Judge:
         unit.program.unlink()
         return results
 
-    def run_one(self, unit: build.Unit, names: set[str], test: str,
+    def run_one(self, unit: build.Unit, names: Container[str], test: str,
                 kit: once.Kit, data: pathlib.Path) -> Result:
         assert unit.program
         jail = [*kit.jail, *build.flags("--read", [
@@ -414,7 +421,7 @@ class Judge:
                     jail, unit.program, test, LIMITS, kit, data, crashing,
                     expected is not None and test == ranking.TASK)
                 self.seconds += outcome.seconds
-            result = result_of(outcome, names, expected)
+            result = result_of(test, outcome, names, expected)
             # What earlier homework left crashes: without it once more.
             if (outcome.aspect & ~crashing
                     and result.status in ("crashed", "stopped")):
@@ -432,7 +439,7 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
     def make(folder):
         kit.secret = secrets.token_bytes(32)
         kit.data = folder / "data"
-        draw_cloth(kit.data, kit)
+        once.draw_cloth(kit.data, kit)
         results = judge(kit, files, tests, jobs)
         for test, result in sorted(results.items()):
             if not result.passed:
@@ -460,33 +467,6 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
     kept = json.loads((folder / "answers.json").read_text("ascii"))
     kit.data = folder / "data"
     kit.secret, kit.answers = bytes.fromhex(kept["secret"]), kept["answers"]
-
-
-CORNERS = ("0 0 0", "1 0 0")
-
-
-def draw_cloth(folder: pathlib.Path, kit: once.Kit) -> None:
-    """The kit's small cloth, each node but the corners moved a little; with a
-    seed in another order, too, in which a corner is the last node again."""
-    shutil.copytree(once.TESTS / "data", folder)
-    nodes, quads = (folder / f"cloth.{name}" for name in ("nodes", "tets"))
-    lines = nodes.read_text("ascii").splitlines()
-    dice = random.Random(f"seed {kit.seed}" if kit.seed else kit.secret)
-    for at, line in enumerate(lines):
-        if line not in CORNERS:
-            x, y, z = map(float, line.split())
-            lines[at] = (f"{x + dice.uniform(-0.02, 0.02):.6f} "
-                         f"{y + dice.uniform(-0.02, 0.02):.6f} {z:g}")
-    if kit.seed:
-        order = dice.sample(range(len(lines)), len(lines))
-        last = lines.index(dice.choice(CORNERS))
-        order.remove(last)
-        order.append(last)
-        lines = [lines[old] for old in order]
-        quads.write_text("".join(
-            " ".join(str(order.index(int(old))) for old in line.split()) + "\n"
-            for line in quads.read_text("ascii").splitlines()), "ascii")
-    nodes.write_text("\n".join(lines) + "\n", "ascii")
 
 
 def judge(kit: once.Kit, files: dict[str, bytes], tests: dict[str, str],

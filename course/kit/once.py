@@ -7,6 +7,7 @@ import fcntl
 import hashlib
 import os
 import pathlib
+import random
 import re
 import shutil
 import subprocess
@@ -200,6 +201,35 @@ class Kit:
                 f"{done.stderr.strip() or 'jail: does not run'}\nWithout it a "
                 "submission could do here what it wants. On a machine that may "
                 "be thrown away: make grade SAFE=0 DIR=...")
+
+
+CORNERS = ("0 0 0", "1 0 0")
+
+
+def draw_cloth(folder: pathlib.Path, kit: Kit) -> None:
+    """The kit's small cloth, each node but the corners moved a little, least
+    in z; with a seed in another order, too, in which a corner is the last node
+    again."""
+    shutil.copytree(TESTS / "data", folder)
+    nodes, quads = (folder / f"cloth.{name}" for name in ("nodes", "tets"))
+    lines = nodes.read_text("ascii").splitlines()
+    dice = random.Random(f"seed {kit.seed}" if kit.seed else kit.secret)
+    for at, line in enumerate(lines):
+        if line not in CORNERS:
+            x, y, z = map(float, line.split())
+            lines[at] = (f"{x + dice.uniform(-0.02, 0.02):.6f} "
+                         f"{y + dice.uniform(-0.02, 0.02):.6f} "
+                         f"{z + dice.uniform(-0.004, 0.004):.6f}")
+    if kit.seed:
+        order = dice.sample(range(len(lines)), len(lines))
+        last = lines.index(dice.choice(CORNERS))
+        order.remove(last)
+        order.append(last)
+        lines = [lines[old] for old in order]
+        quads.write_text("".join(
+            " ".join(str(order.index(int(old))) for old in line.split()) + "\n"
+            for line in quads.read_text("ascii").splitlines()), "ascii")
+    nodes.write_text("\n".join(lines) + "\n", "ascii")
 
 
 if __name__ == "__main__":

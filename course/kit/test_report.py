@@ -98,7 +98,11 @@ unit1.cpp:2:1: error: expected '}' at end of input
 In file included from course/tests/cloth.hpp:25:
 Graph.hpp:5:7: note: to match this '{'
 Graph.hpp:9:1: error: 'z' was not declared
-""", {"Graph.hpp"}), "Graph.hpp:5: this '{' has no '}'")
+""", {"Graph.hpp": b""}), "Graph.hpp:5: this '{' has no '}'")
+        self.assertRegex(diagnosis.compile_message(
+            "a.hpp:2:9: error: expected ')' before 'g'\n",
+            {"a.hpp": b"struct Sum {\n  Sum<F>(F g);"}),
+            r"since C\+\+20 a constructor is Sum\(...\), not Sum<F>\(...\)$")
 
     def test_answers_are_right_if_all_that_is_needed_is(self):
         expected: sandbox.Answers = {
@@ -107,17 +111,19 @@ Graph.hpp:9:1: error: 'z' was not declared
         def right(**change):
             answers: sandbox.Answers = {
                 "x": (9e9, [1, 1e6]), "nodes in a loop?": (0, [4])}
-            return judge.right({**answers, **change}, expected)
-        self.assertTrue(right())
-        self.assertTrue(right(x=(0, [1 + 1e-10, 1e6 + 1e-4]), more=(0, [1])))
+            return judge.wrong({**answers, **change}, expected)
+        self.assertEqual(right(), "")
+        self.assertEqual(right(x=(0, [1 + 1e-10, 1e6 + 1e-4]), more=(0, [1])),
+                         "")
         changes: tuple[dict, ...] = (
             {"x": (9, [1.1, 1e6])}, {"x": (9, [1])}, {"x": (9, [])},
             {"x": (9, [float("nan"), 1e6])}, {"K~": (0, [1])},
             {"nodes by index?": (0, [4])}, {"nodes in a loop?": (0, [5])})
         for wrong in changes:
-            self.assertFalse(right(**wrong), wrong)
-        self.assertFalse(judge.right({"x": (0, [1, 1e6])}, expected))
-        self.assertFalse(judge.right({"nodes by index?": (0, [3])}, expected))
+            self.assertEqual(right(**wrong), [*wrong][0].rstrip("?~"))
+        self.assertEqual(judge.wrong({"x": (0, [1, 1e6])}, expected), "nodes")
+        self.assertEqual(judge.wrong({"nodes by index?": (0, [3])}, expected),
+                         "x")
 
     def test_names_of_a_submission(self):
         found = names.defines({"mass_spring.cpp": b"""

@@ -33,6 +33,15 @@ TASK("5.1.MassSpringForce", springs_one) {
   }
 }
 
+TASK("5.1.MassSpringForce", springs_without_length) {
+  DID("a spring of length 0 and one of length 1");
+  Bodies b;
+  for (double x : {0.5, 0.5, 1.5}) b.add(Point(x, 0.25, 0.125));
+  b.join(0, 1, 100, 0.5);
+  b.join(0, 2, 100, 0.5);
+  compare_springs(b);
+}
+
 TASK("5.1.MassSpringForce", springs_several) {
   DID("four springs, each of its own length and L", has_K ? " and K" : "",
       ", and a node with none");

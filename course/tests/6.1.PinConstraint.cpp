@@ -25,9 +25,7 @@ static Bodies cloth_with_corners() {
 }
 
 template <typename Pin>
-static void check_pins() {
-  check_is_constraint<Pin>("PinConstraint");
-  const Bodies b = cloth_with_corners();
+static void check_pins(const char* which, Bodies b) {
   const Point v = varied(Point(1, 2, -4), 1);
   Cloth g;
   fill(g, b);
@@ -36,7 +34,7 @@ static void check_pins() {
   for (int time = 1; time <= 3; ++time) {
     const double far = time == 2 ? 1. / 1024 : 1;  // as in a step, or farther
     const Point moved = far * varied(Point(0.125, 0.25, -0.5), 0.1);
-    DID("a cloth whose nodes have all moved by ", moved, ", time ", time);
+    DID(which, " whose nodes have all moved by ", moved, ", time ", time);
     for (int i = 0; i < b.size; ++i) {
       auto n = node_of(g, i);
       n.position() = b.x[i] + moved;
@@ -59,6 +57,13 @@ static void check_pins() {
 }  // namespace kit
 
 TASK("6.1.PinConstraint", pin_puts_corners_back) {
-  with<KIT_CONSTRAINT(PinConstraint)>(
-      "PinConstraint", []<typename Pin>() { check_pins<Pin>(); });
+  with<KIT_CONSTRAINT(PinConstraint)>("PinConstraint", []<typename Pin>() {
+    check_is_constraint<Pin>("PinConstraint");
+    Bodies b = cloth_with_corners();
+    check_pins<Pin>("a cloth", b);
+    double rank[Bodies::most];
+    for (int i = 0; i < b.size; ++i) rank[i] = -i;
+    b.reorder(rank);
+    check_pins<Pin>("a second cloth, with a pin of its own,", b);
+  });
 }

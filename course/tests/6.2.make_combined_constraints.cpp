@@ -19,6 +19,10 @@ static auto constraints_of(Cs&&... cs) {
                          } -> Present;
                      })
     return ::make_combined_constraint(std::forward<Cs>(cs)...);
+  else if constexpr (requires {
+                       ::CombinedConstraints(std::forward<Cs>(cs)...);
+                     })
+    return ::CombinedConstraints(std::forward<Cs>(cs)...);
   else
     return Missing();
 }

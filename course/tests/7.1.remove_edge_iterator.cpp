@@ -1,6 +1,6 @@
 /** @file 7.1.remove_edge_iterator.cpp
- * remove_edge(it) in a loop: the loop ends and leaves none that it should
- * remove, whether it visits an edge once or more often. What is wrong after
+ * remove_edge(it) in a loop: the loop ends, visits none twice, and leaves none
+ * that it should remove. What is wrong after
  * remove_edge(a, b), too, is the fault of that task and not looked at here. */
 #include "graph.hpp"
 
@@ -13,6 +13,7 @@ static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
     if (wanted(e) && s.works == worked)
       s.works &= one_by_one.try_to_remove_edge(e.a, e.b);
   const std::size_t size = s.m.edges.size(), limit = 2 * size * size + size + 1;
+  Model met;
   auto& g = s.g;
   auto it = g.edge_begin();
   constexpr bool there = must_compile || requires { it = g.remove_edge(it); };
@@ -21,6 +22,8 @@ static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
     for (std::size_t steps = 0; !same(it, g.edge_end()); ++steps) {
       CHECK(steps < limit, "the loop ends");
       const Ends e = ends_of(*it);
+      CHECK(!met.has(e), words("the loop reaches ", name(e), " once"));
+      met.add(e);
       if (!wanted(e)) {
         ++it;
         continue;

@@ -1,6 +1,6 @@
 /** @file 7.1.remove_node_iterator.cpp
- * remove_node(it) in a loop: the loop ends and leaves none that it should
- * remove, whether it visits a node once or more often. What is wrong after
+ * remove_node(it) in a loop: the loop ends, visits none twice, and leaves none
+ * that it should remove. What is wrong after
  * remove_node(n), too, is the fault of that task and not looked at here. */
 #include "graph.hpp"
 
@@ -14,6 +14,7 @@ static void remove_nodes_in_a_loop(S& s, bool (*wanted)(int)) {
       s.works &= one_by_one.try_to_remove_node(v);
   if (s.works != worked && !s.m.edges.empty()) return;
   const std::size_t size = s.m.nodes.size(), limit = size * size + size + 1;
+  std::vector<bool> met(size);
   auto& g = s.g;
   auto it = g.node_begin();
   constexpr bool there = must_compile || requires { it = g.remove_node(it); };
@@ -22,6 +23,9 @@ static void remove_nodes_in_a_loop(S& s, bool (*wanted)(int)) {
     for (std::size_t steps = 0; !same(it, g.node_end()); ++steps) {
       CHECK(steps < limit, "the loop ends");
       const int v = name_of(*it);
+      CHECK(!met[std::size_t(std::max(v, 0))],
+            words("the loop reaches ", name(v), " once"));
+      if (v >= 0) met[std::size_t(v)] = true;
       if (!wanted(v)) {
         ++it;
         continue;

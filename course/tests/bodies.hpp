@@ -83,7 +83,7 @@ struct Bodies {
       if (s.a != i && s.b != i) continue;
       const Point u = x[s.a == i ? s.b : s.a] - x[i];
       const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
-      sum += s.K * (length - s.L) / length * u;
+      if (length > 0) sum += s.K * (length - s.L) / length * u;
     }
     return sum;
   }

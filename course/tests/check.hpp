@@ -78,6 +78,11 @@ Point varied_direction(const Point& a, int key = 0);
 bool near(double a, double b, double tolerance);
 bool near(const Point& a, const Point& b, double tolerance);
 
+/** The largest coordinate, or 1. */
+double size(double a);
+double size(const Point& a);
+inline constexpr char in_float[] = ", as near as a float: is there one?";
+
 void check(bool holds, const char* what);
 void check(bool holds, const std::string& what);
 /** Two values differ that should be equal, or near. */
@@ -125,7 +130,8 @@ template <typename A, typename B>
 void check_near(const A& a, const B& b, double tolerance, const Word& what) {
   checked();
   if (!near(a, b, tolerance))
-    differ(what, kit::word(b), tolerance, kit::word(a));
+    differ(what, kit::word(b), tolerance,
+           near(a, b, 1e-6 * size(b)) ? words(a, in_float) : kit::word(a));
 }
 
 }  // namespace kit

@@ -92,6 +92,7 @@ struct PinConstraint;
 struct PlaneConstraint;
 struct SphereConstraint;
 struct TearConstraint;
+struct CombinedConstraints;
 struct Missing {};
 inline constexpr Missing K, L, C, c;
 template <typename... T>

@@ -85,6 +85,11 @@ bool near(const Point& a, const Point& b, double tolerance) {
          near(a.z, b.z, tolerance);
 }
 
+double size(double a) { return std::max(1., std::abs(a)); }
+double size(const Point& a) {
+  return std::max({size(a.x), size(a.y), size(a.z)});
+}
+
 void check(bool holds, const char* what) {
   checked();
   if (!holds) fail(what, "");

@@ -1,7 +1,7 @@
 /** @file mass_spring.hpp
  * A right solution in other forms than ours: no include guard, as only the
  * program includes this file; a drag coefficient that main() sets; edges that
- * hold one number, by a name of their own; calls that are public in the base
+ * hold two numbers, by names of their own; calls that are public in the base
  * alone; constraints that take the address of a graph. */
 #include "CME212/Point.hpp"
 #include "Graph.hpp"
@@ -14,6 +14,7 @@ struct Body {
   double mass = 1;
 };
 struct Rest {
+  double stiffness = 100;
   double without_force = 1;
 };
 typedef Graph<Body, Rest> Fabric;
@@ -25,7 +26,9 @@ Point hooke(Node n) {
   for (auto it = n.edge_begin(); it != n.edge_end(); ++it) {
     Node m = (*it).node1() == n ? (*it).node2() : (*it).node1();
     const Point d = n.position() - m.position();
-    f -= 100 * (norm(d) - (*it).value().without_force) / norm(d) * d;
+    if (norm(d) == 0) continue;
+    f -= (*it).value().stiffness * (norm(d) - (*it).value().without_force) /
+         norm(d) * d;
   }
   return f;
 }
