@@ -60,12 +60,6 @@ TEST(Separation, IsTheDistanceOfTheNodesAtEachTimeThatBothHaveKept) {
   EXPECT_EQ(apart.all().size(), 50u);  // each step
 }
 
-TEST(Separation, KeepsNoMoreStatesThanFitIntoMemory) {
-  Model m = sheet(3, 1);
-  m.method = &table::verlet, m.step.dt = 0.001;
-  EXPECT_EQ(Separation(track_of(m), track_of(m)).all().size(), 64u);
-}
-
 TEST(Separation, IsInfiniteOnceOtherNodesAreTornOff) {
   Model m = sheet(4, 0.2);
   m.method = &table::verlet, m.step.dt = 0.01;

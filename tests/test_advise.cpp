@@ -250,6 +250,20 @@ TEST(Advise, KeepsTheShapeOfTheCells) {
     EXPECT_EQ(as_options(a.model), first);
     EXPECT_NEAR(a.grids.limit()[0], -0.1272, 0.0018);  // of 129 x 65 nodes
   }
+  // Of 21 x 26 cells, 5 x 6 have the shape, and 6 x 7 do not.
+  Model m = hanging(1e-4);
+  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 22 27")};
+  const Advice a = advise(m);
+  int seen = 0;
+  for (std::size_t k = 0; k < a.grids.size(); ++k) {
+    const double cells = 21 * 26 * std::pow(a.grids[k].factor, 2),
+                 sides = double(a.grids[k].nodes) - 1 - cells,
+                 side = (sides - std::sqrt(sides * sides - 4 * cells)) / 2;
+    if (side < 4.5) continue;
+    EXPECT_NEAR((sides - side) / side, 26 / 21., 0.05) << side;
+    ++seen;
+  }
+  EXPECT_GT(seen, 1);
 }
 
 // On the grid of the cheapest choice by Verlet, others meet the tolerance by

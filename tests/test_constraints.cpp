@@ -95,17 +95,6 @@ TEST(SphereConstraint, SendsANodeAtItsCenterToTheTop) {
   EXPECT_EQ(n.value().vel, Point(1, 2, 0));
 }
 
-TEST_F(Scattered, SphereTakesItsCenterAndRadius) {
-  Cloth other = g;
-  SphereConstraint({Point(0.4, 0.5, -0.6), 0.2})(g, 0);
-  Ball moved;
-  moved.center = Point(0.4, 0.5, -0.6);
-  moved.radius = 0.2;
-  SphereConstraint{moved}(other, 0);
-  for (Node n : g.nodes())
-    EXPECT_EQ(n.position(), other.node(n.index()).position());
-}
-
 TEST_F(Scattered, TearRemovesExactlyTheNodesInside) {
   std::vector<Node> inside, outside;
   for (Node n : g.nodes())

@@ -372,38 +372,6 @@ TEST(FlatFlowRungeKutta, BatchesAreSingleStepsAndKuttasFormula) {
 
 // ------------------------------------------------------------------ FlatCloth
 
-// One node alone inside, at each place of a register and behind the last whole
-// one: found if it is in the part, and not where it is just outside.
-TEST(FlatClothNodes, AreFoundInsideAZone) {
-  const Drag none;
-  const lanes::Cpu best = lanes::best_cpu();
-  const Point center(0.5, 0.25, -0.5), normal(0.6, 0, 0.8);
-  const Zone zones[] = {Zone::inside({center, 0.125}),
-                        Zone::behind(center, normal)};
-  for (int cpu = 0; cpu <= int(best); ++cpu) {
-    lanes::cpu = lanes::Cpu(cpu);
-    Cloth g;
-    for (unsigned i = 0; i < 61; ++i) g.add_node(center + 9 * normal);
-    FlatCloth flat;
-    flat.take(g, 1, none);
-    for (const Zone& zone : zones) {
-      const double surface = zone.is_ball ? 0.125 : 0;
-      for (unsigned i = 0; i < 61; ++i) {
-        const Point far = flat.position(i);
-        flat.set_position(i, center + (surface + 2e-5) * normal);
-        EXPECT_FALSE(flat.any_inside(zone, 0, 61)) << i;
-        flat.set_position(i, center + (surface - 2e-5) * normal);
-        EXPECT_TRUE(flat.any_inside(zone, 0, 61)) << i;
-        EXPECT_TRUE(flat.any_inside(zone, i, i + 1)) << i;
-        EXPECT_FALSE(flat.any_inside(zone, 0, i)) << i;
-        EXPECT_FALSE(flat.any_inside(zone, i + 1, 61)) << i;
-        flat.set_position(i, far);
-      }
-    }
-  }
-  lanes::cpu = best;
-}
-
 // ----------------------------------------------------------------------- Scene
 
 // Who looks at a run changes no bit of it, whether steps are chosen or not.

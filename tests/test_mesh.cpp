@@ -259,11 +259,19 @@ TEST(ParseNet, TakesWhatASpringSystemIs) {
   EXPECT_LT(net.springs[1].L, 0);
   EXPECT_LT(net.springs[2].K, 0);
   EXPECT_TRUE(net.bare_faces);
-  std::ostringstream again;
-  lab::write_net(again, net);
-  std::ostringstream twice;
-  lab::write_net(twice, lab::parse_net(again.str(), "b.net"));
-  EXPECT_EQ(again.str(), twice.str());
+  std::ostringstream text_again;
+  lab::write_net(text_again, net);
+  const lab::Net again = lab::parse_net(text_again.str(), "b.net");
+  EXPECT_EQ(shape(again), shape(net));
+  EXPECT_EQ(again.held, net.held);
+  EXPECT_EQ(again.masses, net.masses);
+  EXPECT_EQ(again.velocities, net.velocities);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(again.springs[k].K < 0, net.springs[k].K < 0);
+    EXPECT_EQ(again.springs[k].L < 0, net.springs[k].L < 0);
+  }
+  EXPECT_EQ(again.springs[0].L, 0.4);
+  EXPECT_TRUE(again.bare_faces);
 }
 
 TEST(ParseNet, RefusesEachWrongLine) {
@@ -337,6 +345,11 @@ TEST(MeshFaults, AreNamedWithTheirNumber) {
   for (Quad& q : around) std::swap(q[2], q[3]);
   EXPECT_EQ(fault(points, around),
             "4 of 4 quads list the corners around, as a b d c");
+  // Of a trapezoid the areas between the pairs of corners are 4 and 2.
+  const std::vector<Point> trapezoid = {
+      {0, 0, 0}, {3, 0, 0}, {1, 1, 0}, {2, 1, 0}};
+  EXPECT_EQ(num_around(trapezoid, std::vector{Quad{0, 1, 2, 3}}), 0u);
+  EXPECT_EQ(num_around(trapezoid, std::vector{Quad{0, 1, 3, 2}}), 1u);
   auto twice = quads;
   twice.push_back({quads[2][3], quads[2][1], quads[2][2], quads[2][0]});
   EXPECT_EQ(fault(points, twice), "1 face is listed twice, number 4");

@@ -61,16 +61,18 @@ def test_one_method_for_each_name():
     assert all(m.fails_when for m in all_methods.values())
 
 
-def test_force_is_that_of_the_springs():
-    net = oscillator(gravity=2.0)
-    f = net.force([[0.0, 0, 0], [0, 0, 2]], np.zeros((2, 3)))
-    assert f == pytest.approx(np.array([[0, 0, 18 - 2], [0, 0, -18 - 2]]))
+def test_force_is_that_of_springs_weight_and_drag():
+    net = oscillator(gravity=2.0, drag=0.5)
+    f = net.force([[0.0, 0, 0], [0, 0, 2]], [[0.0, 0, 0], [4, 0, 0]])
+    assert f == pytest.approx(np.array([[0, 0, 18 - 2], [-2, 0, -18 - 2]]))
 
 
 def test_scene_runs_as_the_program_does():
     s = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
     r = s.run(t_end=0.2)
     assert r.status == 0 and r.x.shape == (2,) + s.x.shape
+    assert r.t == pytest.approx([0, 0.2])
+    assert r.x[0] == pytest.approx(s.x) and r.x[1].min() < s.x.min() - 1e-4
 
 
 def test_advice():
