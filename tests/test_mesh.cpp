@@ -345,7 +345,7 @@ TEST(MeshFaults, AreNamedWithTheirNumber) {
   for (Quad& q : around) std::swap(q[2], q[3]);
   EXPECT_EQ(fault(points, around),
             "4 of 4 quads list the corners around, as a b d c");
-  // Of a trapezoid the areas between the pairs of corners are 4 and 2.
+  // A trapezoid: the areas between its pairs of corners are 4 and 2.
   const std::vector<Point> trapezoid = {
       {0, 0, 0}, {3, 0, 0}, {1, 1, 0}, {2, 1, 0}};
   EXPECT_EQ(num_around(trapezoid, std::vector{Quad{0, 1, 2, 3}}), 0u);
