@@ -61,7 +61,6 @@ const std::vector<Failing> failing = {
     {"step", "srkn11b", 1.3, 1, cloth + corners, Cause::step},
     // Beyond the limit once it hangs
     {"sharp", "symplectic-euler", 1.1, 3, net + corners, Cause::step},
-    {"sharp", "symplectic-euler", 1.2, 3, net + corners, Cause::step},
     {"sharp", "verlet", 1.1, 3, net + corners, Cause::step},
     {"sharp", "verlet", 1.05, 5, net + "--pin 'x 0 y 0'", Cause::step},
     {"sharp", "rk4", 1.6, 1, net + "--pin 'x 0'", Cause::step},
@@ -70,17 +69,13 @@ const std::vector<Failing> failing = {
      Cause::drag},
     {"drag", "symplectic-euler", 1.3, 1,
      cloth + corners + "--density 1 --drag 200", Cause::drag},
-    {"drag", "symplectic-euler", 1.3, 1, net + "--damping 30", Cause::drag},
     {"drag", "rk4", 1.3, 1, cloth + corners + "--damping 10", Cause::drag},
     // No stable step
     {"no step", "forward-euler", 0.1, 2, net + corners, Cause::no_step},
-    {"no step", "forward-euler", 0.3, 2, cloth + corners, Cause::no_step},
     {"no step", "forward-euler", 0.3, 1,
      cloth + "--plane 'at 0 0 -0.2 normal 0.3 0 1'", Cause::no_step},
     // Buckling that nothing damps
     {"midpoint", "implicit-midpoint", 10, 2, cloth + corners, Cause::method},
-    {"midpoint", "implicit-midpoint", 20, 2,
-     "--sheet 'nodes 7 7' --stiffness 1e3 " + corners, Cause::method},
     {"midpoint", "implicit-midpoint", 5, 1,
      "--sheet 'nodes 8 8 velocity 3 0 10' --pin 'x 0'", Cause::method},
     // Too few substeps
@@ -93,8 +88,6 @@ const std::vector<Failing> failing = {
      "--sheet 'nodes 7 9 velocity 5 0 10' --pin 'x 0'", Cause::nonlinear},
     {"large", "verlet", 0.95, 20, net + "--stiffness 10 " + corners,
      Cause::nonlinear},
-    {"large", "verlet", 0.9, 20, net + "--stiffness 10 " + corners,
-     Cause::nonlinear},
     {"large", "symplectic-euler", 0.95, 20, net + "--stiffness 10 " + corners,
      Cause::nonlinear},
     // What moves is too fast
@@ -103,9 +96,6 @@ const std::vector<Failing> failing = {
      Cause::nonlinear},
     {"moving", "verlet", 0.9, 1,
      cloth + "--pin 'x 0' --sphere 'at 0.5 0.5 -1 radius 0.3 velocity 0 0 30'",
-     Cause::nonlinear},
-    {"moving", "symplectic-euler", 0.8, 2,
-     cloth + "--pin 'x 0' --pin 'x 1 velocity -30 0 0 until 0.05'",
      Cause::nonlinear},
     {"moving", "srkn11b", 0.9, 2,
      cloth + "--pin 'x 0' --sphere 'at 0.5 0.5 -1 radius 0.3 velocity 0 0 10'",
@@ -122,25 +112,15 @@ const std::vector<Failing> failing = {
      cloth + corners +
          "--region 'from 0.2 0 0 to 0.8 1 0 stiffness-factor 1e4'",
      Cause::step},
-    {"masses", "rk4", 3, 0.1,
-     cloth + corners +
-         "--region 'from 0.2 0 0 to 0.8 1 0 stiffness-factor 1e4'",
-     Cause::step},
     // Equations that are not solved
     {"solver", "tr-bdf2", 1e4, 2,
      "--sheet 'nodes 5 5' --stiffness 1e6 " + corners, Cause::solver},
-    {"solver", "tr-bdf2", 3e3, 2,
-     "--sheet 'nodes 6 6' --stiffness 1e5 " + corners, Cause::solver},
     {"solver", "implicit-midpoint", 3e3, 2,
      "--sheet 'nodes 5 5' --stiffness 1e6 " + corners, Cause::solver},
     // Layers and friction
     {"layers", "verlet", 1.5, 0.5,
      "--sheet 'nodes 9 9' --sheet 'at 0.1 0.1 0.2 nodes 9 9' --plane 'at 0 0 0 "
      "friction 0.5' --self-collision 'thickness 0.1 friction 0.5'",
-     Cause::step},
-    {"layers", "verlet", 1.4, 1,
-     "--sheet 'nodes 6 6' --sheet 'at 0.1 0.1 0.2 nodes 6 6' --plane 'at 0 0 "
-     "-0.1 friction 0.3' --self-collision 'thickness 0.15 friction 0.5'",
      Cause::step},
     {"layers", "implicit-midpoint", 10, 1,
      "--sheet 'nodes 6 6' --sheet 'at 0.1 0.1 0.2 nodes 6 6' --sphere 'at 0.5 "
@@ -149,8 +129,6 @@ const std::vector<Failing> failing = {
      Cause::method},
     // Weight that stretches springs by many times their length
     {"gravity", "verlet", 0.95, 10, net + corners + "--gravity 100",
-     Cause::nonlinear},
-    {"gravity", "symplectic-euler", 0.95, 10, net + corners + "--gravity 1e3",
      Cause::nonlinear},
     {"gravity", "verlet", 0.95, 10, cloth + "--pin 'x 0' --gravity 1e3",
      Cause::nonlinear},
