@@ -49,6 +49,8 @@ try: export STEP := $(STEP)
 override RECORD := $(value RECORD)
 try: export RECORD := $(RECORD)
 try:
+	@echo "make try: compiles and measures the step in $${FILE:-no file}," \
+	  "within a minute" >&2
 	@tools/deps.sh grade draw && python3 lab/try/try.py
 
 # ./cloth with a step of one's own: lab/try/film.py gives what TRY_ names.

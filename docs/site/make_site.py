@@ -73,6 +73,9 @@ class Page:
             text = f"# {self.source}\n\n```\n{text.rstrip()}\n```\n"
         text = re.sub(r"^( *)```math\n(.*?)\n *```$", displayed, text,
                       flags=re.M | re.S)
+        # How the repository is built is of no use to who reads the site.
+        text = re.sub(r"<!-- repository -->.*?<!-- /repository -->", "", text,
+                      flags=re.S)
         text = course_pages.filled(figures.with_code(self.source, text), COURSE,
                                    hints=True)
         body = subprocess.run(

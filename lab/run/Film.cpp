@@ -102,6 +102,7 @@ void Film::draw() {
   if (picture) save_picture();
   if (!frame) return;
   if (failed) {
+    screen_->show_card({});  // the words of the failure need its place
     show_beyond(scene_, run_.rival(), *screen_, [this](int frames) {
       screen_->add_to_film(frames);
       return !interrupted();

@@ -304,6 +304,9 @@ int main(int argc, char** argv) {
     return 2;
   } catch (const SceneError& e) {
     std::cerr << o.origins.of(e.what(), "cloth: ") << e.what() << '\n';
+    if (argc == 1)
+      std::cerr << "begin with: ./cloth --sheet 'nodes 30 30' --pin 'x 0'; "
+                   "all options: ./cloth --help\n";
     return 2;
   } catch (const std::invalid_argument& e) {  // a method that can't do it
     std::cerr << o.origins.of("--method", o.origins.of("--dt", "cloth: "))

@@ -245,7 +245,11 @@ h2{font-size:1.15em;margin-top:2em}svg{width:100%;height:auto}
 table{border-collapse:collapse}td,th{padding:.25em .8em .25em 0;
 text-align:left;vertical-align:top;border-bottom:1px solid #eee}
 th{font-weight:normal;color:#666}.is{font-size:1.1em}.fault{color:#a00}
-.next{background:#eef5fb;padding:.7em 1em}code{color:#666}"""
+.next{background:#eef5fb;padding:.7em 1em}code{color:#666}
+:root{color-scheme:light dark}@media(prefers-color-scheme:dark){body{
+background:#161616;color:#e8e8e8}svg{filter:invert(.92) hue-rotate(180deg)}
+.next{background:#1d2b38}.fault{color:#ff8a7a}th,code{color:#a8a8a8}
+td,th{border-color:#444}}"""
 
 
 def inline(text: str, number: int) -> str:
@@ -301,8 +305,8 @@ def write(verdict: judge.Verdict, folder: pathlib.Path,
         body.append(coefficients(tables.pruned(verdict.data["raw"])))
     text = (f"<!doctype html><html lang=en><meta charset=utf-8><title>"
             f"{said(verdict.step)}</title><style>{STYLE}</style>"
-            f"<h1>{said(verdict.step)} <code>{said(source)}</code></h1>"
-            + "\n".join(head + body) + "</html>\n")
+            f"<main><h1>{said(verdict.step)} <code>{said(source)}</code></h1>"
+            + "\n".join(head + body) + "</main></html>\n")
     folder.mkdir(parents=True, exist_ok=True)
     out = folder / "report.html"
     part = folder / "report.part"

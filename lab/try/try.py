@@ -3,7 +3,7 @@
     make try FILE=mine.hpp [STEP=my_step]      lab/try/README.md
 
 Writes try/report.html and says the same here. Exit status: 0 there is a report
-(whatever it says); 2 the file has no step that can be measured."""
+(whatever it says); 2 the file has no step that can be measured; 130 Ctrl-C."""
 import os
 import pathlib
 import sys
@@ -47,3 +47,6 @@ if __name__ == "__main__":
     except (BadInput, ChartError) as error:
         print(error, file=sys.stderr)
         sys.exit(2)
+    except KeyboardInterrupt:
+        print("make try: interrupted; no report was written", file=sys.stderr)
+        sys.exit(130)
