@@ -63,6 +63,72 @@ TEST(Measure, OverTimeFindsTheAmplitudeOfAnOscillator) {
   }
 }
 
+TEST(Measure, OverTimeKnowsTheTimesAndMeansOfAnOscillator) {
+  for (double dt : {0.01, 0.001}) {
+    const double T = 2 * M_PI / omega;
+    // Verlet is too fast by (omega dt)^2/24; a straight line between two states
+    // misses a passage by as little.
+    const double off = 3 * T * (omega * dt) * (omega * dt) / 24 + 1e-9;
+    const Model m = oscillator(dt, 3.2);
+    auto level = [](double share) {  // of the center's way down
+      return std::to_string(-0.5 - share * amplitude);
+    };
+    EXPECT_NEAR(answer_of(m, "period com z"), T, off);
+    EXPECT_NEAR(answer_of(m, "period stretch"), T, off);
+    EXPECT_NEAR(answer_of(m, "first com z below " + level(0.5)), T / 4, off);
+    EXPECT_NEAR(answer_of(m, "first com z below " + level(0.75)), T / 3, off);
+    EXPECT_NEAR(answer_of(m, "last com z below " + level(0.75)), 2.667 * T,
+                3 * off + T / 3000);
+    EXPECT_EQ(answer_of(m, "first com z above -1"), 0);
+    EXPECT_EQ(answer_of(m, "last com z above 0"), 0) << "it never was";
+    const Model whole = oscillator(dt, 3);
+    EXPECT_NEAR(answer_of(whole, "mean com z"), -0.5 - amplitude / 2, off);
+    // From the middle of a period on the mean is the same, of a half it is not:
+    // the mean of cos over its second quarter is -2/pi.
+    EXPECT_NEAR(answer_of(whole, "mean com z from " + std::to_string(2 * T)),
+                -0.5 - amplitude / 2, 3 * off);
+    EXPECT_NEAR(answer_of(oscillator(dt, 0.5),
+                          "mean com z from " + std::to_string(T / 4)),
+                -0.5 - amplitude / 2 * (1 + 2 / M_PI), 3 * off);
+    const double v = amplitude * omega;
+    EXPECT_NEAR(answer_of(m, "max kinetic-energy"), 0.25 * v * v,
+                0.25 * v * v * (omega * dt) * (omega * dt));
+    EXPECT_NEAR(answer_of(m, "max elastic-energy"),
+                100 * 4 * amplitude * amplitude,
+                400 * amplitude * amplitude * (omega * dt) * (omega * dt));
+    for (const char* never : {"first com z below -1", "last com z below 0"}) {
+      Model none = m;
+      none.measure = read_measure(never);
+      EXPECT_EQ(try_out(none).failure.find(never), 0u) << try_out(none).failure;
+    }
+    Model one = oscillator(dt, 1.9);  // a start and one maximum
+    one.measure = read_measure("period com z");
+    EXPECT_FALSE(try_out(one).ok());
+  }
+}
+
+TEST(Measure, RipplesOnASwingAreNoMaxima) {
+  TimeSeries s;
+  const Measure period = read_measure("period com z");
+  for (double t = 0; t < 7; t += 0.003)
+    s.add(period, t, std::sin(M_PI * t) + 0.2 * std::sin(37 * t));
+  EXPECT_NEAR(s.answer(period).at(0), 2, 0.06);
+}
+
+TEST(Measure, AFloorCarriesTheWeightOfWhatRestsOnIt) {
+  Model m = scene_of("nodes 5 5", 1, 0.002);
+  m.planes = {read_plane("at 0 0 -0.1 friction 0.3")};
+  EXPECT_NEAR(answer_of(m, "contact-force"), grav, 1e-6);
+  EXPECT_EQ(answer_of(m, "min contact-force"), 0) << "before it lands";
+  EXPECT_NEAR(answer_of(m, "first contact-force above 0"),
+              std::sqrt(2 * 0.1 / grav), 0.004);
+  m.planes = {read_plane("at 0 0 -0.1 velocity 0 0 0.01")};
+  EXPECT_NEAR(answer_of(m, "contact-force"), grav, 1e-6);
+  m.planes.clear();
+  m.measure = Measure::contact_force;
+  EXPECT_THROW(check_question(m), SceneError);
+}
+
 TEST(Measure, PinsCarryTheWholeWeightAtRest) {
   // A chain, and a cloth of two densities with drag, each at rest.
   Model chain = scene_of("v 0 0 -1 nodes 2 9", 12, 0.002);
@@ -101,6 +167,15 @@ TEST(Measure, TearTimeIsThatOfTheStrainLimit) {
       EXPECT_GE(t, limit / 0.5 - 1e-9);
       EXPECT_LE(t, limit / 0.5 + dt + 1e-9);
     }
+  EXPECT_EQ(answer_of(pulled(0.2, 0.01), "torn-edges"), 2);
+  EXPECT_EQ(answer_of(pulled(0.2, 0.01), "torn-nodes"), 0);
+  Model apart = pulled(0.2, 0.01);
+  apart.tear_strain.reset();
+  EXPECT_NEAR(answer_of(apart, "stretch-at u 0.3 v 0"), 0.5, 1e-12);
+  EXPECT_NEAR(answer_of(apart, "distance u 0 v 0"), std::hypot(1.5, 1), 1e-12);
+  EXPECT_NEAR(answer_of(apart, "max distance u 0 v 0 to-u 0 to-v 1"), 1, 1e-12);
+  EXPECT_THROW(answer_of(apart, "torn-edges"), SceneError);
+  EXPECT_THROW(answer_of(apart, "distance to-sheet 2"), SceneError);
   Model whole = pulled(0.6, 0.01);
   whole.measure = Measure::tear_time;
   EXPECT_EQ(try_out(whole).failure, "nothing tears until t = 1 s");
@@ -129,22 +204,67 @@ TEST(Measure, PointOfAFreeFallIsWhereItFell) {
 }
 
 TEST(Measure, WordsAreReadAndWritten) {
-  for (const char* text :
-       {"com", "com x", "max com z", "energy", "min energy", "positions",
-        "max-stretch", "max stretch", "min stretch", "drape-height",
-        "max drape-height", "pin-force", "pin-force x 0 z 0.5",
-        "max pin-force y 1", "tear-time", "point", "point u 0.25 v 1",
-        "point u 0.25 sheet 2", "min point v 0 sheet 3 y"}) {
+  for (const char* text : {"com",
+                           "com x",
+                           "max com z",
+                           "energy",
+                           "min energy",
+                           "positions",
+                           "max-stretch",
+                           "max stretch",
+                           "min stretch",
+                           "drape-height",
+                           "max drape-height",
+                           "pin-force",
+                           "pin-force x 0 z 0.5",
+                           "max pin-force y 1",
+                           "tear-time",
+                           "point",
+                           "point u 0.25 v 1",
+                           "point u 0.25 sheet 2",
+                           "min point v 0 sheet 3 y",
+                           "mean com z from 2",
+                           "first stretch above 0.1",
+                           "last kinetic-energy below 1e-06",
+                           "period point u 1 z",
+                           "distance u 0 to-u 0.25 to-sheet 2",
+                           "stretch-at v 1",
+                           "contact-force",
+                           "torn-nodes"}) {
     EXPECT_EQ(name_of(read_measure(text)), text);
     EXPECT_EQ(read_measure(name_of(read_measure(text))), read_measure(text));
   }
   EXPECT_EQ(unit_of(read_measure("max pin-force")), std::string("N"));
   EXPECT_EQ(unit_of(read_measure("tear-time")), std::string("s"));
-  for (const char* text :
-       {"", "max", "max-com", "com w", "com x y", "max com", "min point",
-        "max positions", "max tear-time", "energy x", "max max stretch",
-        "point u 1.01", "point u -0.01", "point sheet 1.5", "point sheet 0",
-        "point u", "pin-force x"})
+  EXPECT_EQ(unit_of(read_measure("last energy above 1")), std::string("s"));
+  EXPECT_EQ(unit_of(read_measure("mean distance")), std::string("m"));
+  for (const char* text : {"",
+                           "max",
+                           "max-com",
+                           "com w",
+                           "com x y",
+                           "max com",
+                           "min point",
+                           "max positions",
+                           "max tear-time",
+                           "energy x",
+                           "max max stretch",
+                           "point u 1.01",
+                           "point u -0.01",
+                           "point sheet 1.5",
+                           "point sheet 0",
+                           "point u",
+                           "pin-force x",
+                           "first energy",
+                           "mean com",
+                           "period com",
+                           "first energy above 1 below 2",
+                           "energy above 1",
+                           "max energy from 1",
+                           "mean energy from -1",
+                           "distance to-u 2",
+                           "period positions",
+                           "first tear-time above 1"})
     EXPECT_THROW(read_measure(text), SceneError) << text;
   EXPECT_NO_THROW(read_measure("point u 1 v 0"));
 }
@@ -195,8 +315,8 @@ TEST(Measure, GoesOnFromACheckpointWithTheSameBits) {
   // The largest stretch is that of step 52, the tear that of step 134.
   for (const auto& [text, stop] :
        {std::pair("max stretch", 70), std::pair("max stretch", 54),
-        std::pair("max stretch", 20), std::pair("tear-time", 40),
-        std::pair("tear-time", 200)}) {
+        std::pair("max stretch", 20), std::pair("mean stretch", 54),
+        std::pair("tear-time", 40), std::pair("tear-time", 200)}) {
     const bool tears = text == std::string("tear-time");
     Options o;
     o.model = tears ? pulled(0.2, 0.003) : oscillator(0.003);

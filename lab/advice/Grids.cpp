@@ -26,6 +26,11 @@ std::vector<Answer> all_answers(const Model& m, const Cloth& g) {
 Question::Question(const Model& m, const AdviceRules& rules)
     : scene(m), rules(rules), pilots(rules.budget, rules.tell) {
   check_question(m);
+  if (m.measure.counts() && !m.sheets.empty())
+    throw SceneError("measure", "is " + name_of(m.measure) +
+                                    ", a number that depends on the grid: "
+                                    "expected another measure, or a mesh from "
+                                    "files");
   if (!(m.t_end > 0))
     throw SceneError("t-end", "is 0, expected a time to simulate");
   own_work = work_of_run(m);
@@ -185,9 +190,8 @@ Answer GridStudy::answer_at_start() const {
 bool GridStudy::know_tolerance() {
   const Model& m = q_.scene;
   if (!m.percent) return true;
-  const auto what = m.measure.quantity;
-  const bool itself = what == Measure::max_stretch ||
-                      what == Measure::pin_force || what == Measure::tear_time;
+  const std::string unit = unit_of(m.measure);
+  const bool itself = unit.empty() || unit == "N" || unit == "s";
   const Answer& limit = grids().limit();
   const double whole =
       distance_of(limit, itself ? Answer(limit.size()) : answer_at_start());

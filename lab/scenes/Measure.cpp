@@ -158,6 +158,36 @@ Answer stretch(const Measured& now, const Measure&) {
   return {most};
 }
 
+/** The stretch of a sheet at a place: of its two directions the larger, linear
+ * between the centers of cells. As a cell's is a central difference, the error
+ * is O(cell^2), also at the sides. */
+Answer stretch_at(const Measured& now, const Measure& what) {
+  const auto k = std::size_t(what.place.sheet) - 1;
+  const Sheet& sheet = now.model.sheets[k];
+  const unsigned first = first_index(now.model, k);
+  double most = -1;
+  for (std::size_t d : {0, 1}) {
+    const unsigned cells = sheet.nodes[d] - 1;
+    const double rest =
+        norm(d == 0 ? sheet.u : sheet.v) * now.model.rest_length / cells;
+    if (!(rest > 0) || cells == 0) continue;  // a rope has one direction
+    auto of_cell = [&](unsigned i) {
+      std::array a = {what.place.u, what.place.v}, b = a;
+      a[d] = double(i) / cells, b[d] = (i + 1.) / cells;
+      return norm(position_on(now.cloth, sheet, first, b[0], b[1]) -
+                  position_on(now.cloth, sheet, first, a[0], a[1])) /
+                 rest -
+             1;
+    };
+    const double at = (d == 0 ? what.place.u : what.place.v) * cells - 0.5;
+    const unsigned i = unsigned(std::clamp(at, 0., std::max(0., cells - 2.)));
+    most = std::max(most, cells == 1
+                              ? of_cell(0)
+                              : std::lerp(of_cell(i), of_cell(i + 1), at - i));
+  }
+  return {most};
+}
+
 /** The sum of all forces on the held nodes that @a what names [N]: what the
  * pins carry, as held nodes do not accelerate.  O(springs at them) */
 Answer pin_force(const Measured& now, const Measure& what) {
@@ -177,24 +207,48 @@ Answer pin_force(const Measured& now, const Measure& what) {
   return {norm(sum)};
 }
 
+/** The size of the sum of the forces by which nodes that touch an obstacle
+ * press on it, along its normal [N]: what it carries if they rest on it; the
+ * impulse of an impact is no part of it.  O(nodes * obstacles) */
+Answer contact_force(const Measured& now, const Measure&) {
+  Point sum;
+  auto press = [&](Node n, double depth, const Point& out) {
+    if (!(std::abs(depth) < 1e-9 * std::max(1., norm(n.position())))) return;
+    sum += std::min(0., dot((*now.force)(n, now.time), out)) * out;
+  };
+  for (Node n : now.cloth.nodes()) {
+    for (const Wall& w : now.model.planes)
+      press(n, w.depth(n.position() - w.motion.way(now.time)), w.out());
+    for (const Solid& s : now.model.spheres) {
+      const Point p = n.position() - s.motion.way(now.time),
+                  arm = p - s.ball.center;
+      press(n, s.depth(p), arm / std::max(norm(arm), 1e-300));
+    }
+  }
+  return {norm(sum)};
+}
+
+double torn_edges(const Cloth& g) {
+  return double(arrays(g).edge_slots() - g.num_edges());
+}
+double torn_nodes(const Cloth& g) {
+  return double(arrays(g).node_slots() - g.num_nodes());
+}
+
 Answer tear_time(const Measured& now, const Measure&) {
-  const Cloth& g = now.cloth;
-  const bool torn = g.num_nodes() < arrays(g).node_slots() ||
-                    g.num_edges() < arrays(g).edge_slots();
+  const bool torn = torn_nodes(now.cloth) + torn_edges(now.cloth) > 0;
   return {torn ? now.time : std::numeric_limits<double>::infinity()};
 }
 
-Answer point(const Measured& now, const Measure& what) {
-  const Model& m = now.model;
-  const auto k = std::size_t(what.sheet) - 1;
-  return components(
-      position_on(now.cloth, m.sheets[k], first_index(m, k), what.u, what.v),
-      what);
+Point position_of(const Measured& now, const SheetPlace& p) {
+  const auto k = std::size_t(p.sheet) - 1;
+  return position_on(now.cloth, now.model.sheets[k], first_index(now.model, k),
+                     p.u, p.v);
 }
 
 }  // namespace
 
-const std::array<Quantity, 8> quantities = {{
+const std::array<Quantity, 15> quantities = {{
     {"com", "m",
      [](const Measured& now, const Measure& what) {
        return components(center_of_mass(now.cloth), what);
@@ -208,13 +262,41 @@ const std::array<Quantity, 8> quantities = {{
     {"positions", "m", positions},
     {"max-stretch", "", stretch},
     {"drape-height", "m", lowest_height},
+    {"kinetic-energy", "J",
+     [](const Measured& now, const Measure&) {
+       return Answer{kinetic_energy(now.cloth)};
+     }},
+    {"elastic-energy", "J",
+     [](const Measured& now, const Measure&) {
+       return Answer{elastic_energy(now.cloth)};
+     }},
     {"pin-force", "N", pin_force},
+    {"contact-force", "N", contact_force},
+    {"torn-edges", "",
+     [](const Measured& now, const Measure&) {
+       return Answer{torn_edges(now.cloth)};
+     }},
+    {"torn-nodes", "",
+     [](const Measured& now, const Measure&) {
+       return Answer{torn_nodes(now.cloth)};
+     }},
     {"tear-time", "s", tear_time},
-    {"point", "m", point},
+    {"point", "m",
+     [](const Measured& now, const Measure& what) {
+       return components(position_of(now, what.place), what);
+     }},
+    {"distance", "m",
+     [](const Measured& now, const Measure& what) {
+       return Answer{
+           norm(position_of(now, what.place) - position_of(now, what.to))};
+     }},
+    {"stretch-at", "", stretch_at},
 }};
 
 std::string columns_of(const Measure& m) {
-  if (m.quantity <= Measure::positions || m.quantity == Measure::tear_time)
+  if (m.quantity <= Measure::positions || m.quantity == Measure::tear_time ||
+      m.quantity == Measure::kinetic_energy ||
+      m.quantity == Measure::elastic_energy)
     return "";
   std::string name = quantities[m.quantity].name, all;
   std::ranges::replace(name, '-', '_');
@@ -224,7 +306,9 @@ std::string columns_of(const Measure& m) {
   return all;
 }
 
-const char* unit_of(const Measure& m) { return quantities[m.quantity].unit; }
+const char* unit_of(const Measure& m) {
+  return m.is_time() ? "s" : quantities[m.quantity].unit;
+}
 
 Answer answer(const Model& m, const Cloth& g, const Measure& what) {
   assert(what.quantity < Measure::pin_force);
@@ -234,14 +318,19 @@ Answer answer(const Model& m, const Cloth& g, const Measure& what) {
 namespace {
 /** What @a m lacks for an answer; or empty. */
 std::string lacks(const Model& m, const Measure& what) {
-  const bool tears = !m.tears.empty() || m.tear_strain,
-             is_point = what.quantity == Measure::point;
-  if (is_point && double(m.sheets.size()) < what.sheet)
+  const bool tears = !m.tears.empty() || m.tear_strain;
+  const double sheets = what.quantity == Measure::distance
+                            ? std::max(what.place.sheet, what.to.sheet)
+                            : what.place.sheet;
+  if (what.has_place() && double(m.sheets.size()) < sheets)
     return "names a sheet that the scene does not have";
-  if (tears && (is_point || what.quantity == Measure::positions))
+  if (tears && (what.has_place() || what.quantity == Measure::positions))
     return "cannot be compared in a cloth that tears";
-  if (what.quantity == Measure::tear_time && !tears)
+  if ((what.quantity == Measure::tear_time || what.counts()) && !tears)
     return "needs --tear or --tear-strain";
+  if (what.quantity == Measure::contact_force && m.planes.empty() &&
+      m.spheres.empty())
+    return "needs --plane or --sphere";
   return "";
 }
 }  // namespace

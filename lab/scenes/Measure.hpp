@@ -36,9 +36,10 @@ struct Quantity {
   Answer (*read)(const Measured& now, const Measure& what);
 };
 /** In the order of Measure::Quantity. */
-extern const std::array<Quantity, 8> quantities;
+extern const std::array<Quantity, 15> quantities;
 
-/** As --measure takes it: "com", "max com z", "point u 0.5 v 1". */
+/** As --measure takes it: "com", "max com z", "point u 0.5 v 1",
+ * "first com z below -1". */
 std::string name_of(const Measure& m);
 const char* unit_of(const Measure& m);
 /** The columns of --csv for it: ",point_x,point_y,point_z"; none of what all
@@ -56,7 +57,7 @@ std::string columns_of(const Measure& m);
 Answer answer(const Model& m, const Cloth& g, const Measure& what);
 
 /** False for places on a cloth that may tear, and for what @a m does not have:
- * a tear, a pin, that sheet. */
+ * a tear, an obstacle, that sheet. */
 bool can_answer(const Model& m, const Measure& what);
 
 /** Throws SceneError if !can_answer(m, m.measure). */

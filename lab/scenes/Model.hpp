@@ -142,8 +142,15 @@ struct Distance {
   double friction = 0;
 };
 
-/** The question about a scene: a quantity at its end, or its largest or
- * smallest value over time. Measure.hpp has the table of quantities. */
+/** A place on a sheet: how far along both sides, 0 to 1; number of the sheet.
+ */
+struct SheetPlace {
+  double u = 0.5, v = 0.5, sheet = 1;
+  bool operator==(const SheetPlace&) const = default;
+};
+
+/** The question about a scene: a quantity at its end, or what it did over time.
+ * Measure.hpp has the table of quantities. */
 struct Measure {
   enum Quantity {
     com,
@@ -151,20 +158,38 @@ struct Measure {
     positions,
     max_stretch,
     drape_height,
+    kinetic_energy,
+    elastic_energy,
     pin_force,
+    contact_force,
+    torn_edges,
+    torn_nodes,
     tear_time,
-    point
+    point,
+    distance,
+    stretch_at
   };
-  enum Over { at_end, largest, smallest };
+  /** Over time: a value, or the time when it first or last passed a level, or
+   * the mean time between maxima. */
+  enum Over { at_end, largest, smallest, mean, first, last, period };
   Quantity quantity;
   Over over = at_end;
   std::array<bool, 3> only = {};  ///< of com, point: one component, x, y or z
   Pin pin = {};  ///< of pin-force: where its nodes start; empty: all pins
-  double u = 0.5, v = 0.5;  ///< of point: its place along both sides, 0 to 1
-  double sheet = 1;         ///< of point: the number of its sheet
+  SheetPlace place = {}, to = {.u = 1, .v = 1};  ///< to: of distance
+  double from = 0;                            ///< of mean: its first time [s]
+  std::optional<double> above, below;         ///< of first and last: the level
   Measure(Quantity q = com) : quantity(q) {}  // NOLINT: a quantity at the end
   /** True if it depends on all states of a run, not on the last one alone. */
   bool over_time() const { return over != at_end || quantity == tear_time; }
+  /** True if the answer is a time [s]. */
+  bool is_time() const { return over >= first || quantity == tear_time; }
+  /** True if it names a place on a sheet. */
+  bool has_place() const { return quantity >= point; }
+  /** True if it counts parts of the mesh, whose number depends on the grid. */
+  bool counts() const {
+    return quantity == torn_edges || quantity == torn_nodes;
+  }
   /** True if component k, 0 to 2, is asked for: by name, or as all are. */
   bool has(std::size_t k) const { return only[k] || only == Measure().only; }
   bool operator==(const Measure&) const = default;

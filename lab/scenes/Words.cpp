@@ -96,21 +96,32 @@ Words words_of(Distance& d) {
 }
 Words words_of(Measure& m) {
   Words all = {"measure", {}};
-  const bool place = m.quantity == Measure::point;
+  auto take = [&all](std::initializer_list<Word> words) {
+    all.all.insert(all.all.end(), words);
+  };
+  auto place = [&](SheetPlace& p, const char* u, const char* v,
+                   const char* sheet) {
+    take({{u, &p.u, not_negative},
+          {v, &p.v, not_negative},
+          {sheet, &p.sheet, positive}});
+    if (p.u > 1 || p.v > 1 || p.sheet != std::floor(p.sheet))
+      all.wrong = "has no place on a sheet, expected u and v from 0 to 1";
+  };
   if (m.quantity == Measure::pin_force)
-    all.all = {{"x", &m.pin.x}, {"y", &m.pin.y}, {"z", &m.pin.z}};
-  if (place)
-    all.all = {{"u", &m.u, not_negative},
-               {"v", &m.v, not_negative},
-               {"sheet", &m.sheet, positive}};
-  if (!place && m.quantity != Measure::com) return all;
-  for (std::size_t k = 0; k < 3; ++k)
-    all.all.push_back({&"x\0y\0z"[2 * k], &m.only[k]});
-  const auto components = std::ranges::count(m.only, true);
-  if (components > 1 || (components == 0 && m.over != Measure::at_end))
-    all.wrong = "has no single component, expected one of x, y, z";
-  if (m.u > 1 || m.v > 1 || m.sheet != std::floor(m.sheet))
-    all.wrong = "has no place on a sheet, expected u and v from 0 to 1";
+    take({{"x", &m.pin.x}, {"y", &m.pin.y}, {"z", &m.pin.z}});
+  if (m.has_place()) place(m.place, "u", "v", "sheet");
+  if (m.quantity == Measure::distance) place(m.to, "to-u", "to-v", "to-sheet");
+  if (m.quantity == Measure::point || m.quantity == Measure::com) {
+    for (std::size_t k = 0; k < 3; ++k) take({{&"x\0y\0z"[2 * k], &m.only[k]}});
+    const auto components = std::ranges::count(m.only, true);
+    if (components > 1 || (components == 0 && m.over != Measure::at_end))
+      all.wrong = "has no single component, expected one of x, y, z";
+  }
+  if (m.over == Measure::mean) take({{"from", &m.from, not_negative}});
+  if (m.over == Measure::first || m.over == Measure::last) {
+    take({{"above", &m.above, any, some}, {"below", &m.below, any, some}});
+    if (m.above && m.below) all.wrong = "has two levels, expected one";
+  }
   return all;
 }
 Words words_of(Box& v) {
@@ -213,7 +224,10 @@ void read_words(const std::string& text, const std::function<Words()>& words) {
 }
 
 namespace {
-/** The name of @a q after max or min: the largest stretch is "max stretch". */
+/** The words before a quantity, in the order of Measure::Over. */
+constexpr std::array<const char*, 7> overs = {"",      "max",  "min",   "mean",
+                                              "first", "last", "period"};
+/** The name of @a q after one of them: the largest stretch is "max stretch". */
 std::string over_time(const Quantity& q) {
   return q.name == std::string("max-stretch") ? "stretch" : q.name;
 }
@@ -224,9 +238,8 @@ Measure read_measure(const std::string& text) {
   Measure m;
   std::string first, name, words, names;
   in >> first;
-  m.over = first == "max"   ? Measure::largest
-           : first == "min" ? Measure::smallest
-                            : Measure::at_end;
+  const auto over = std::ranges::find(overs, first);
+  if (over != overs.end()) m.over = Measure::Over(over - overs.begin());
   if (m.over == Measure::at_end)
     name = first;
   else
@@ -239,7 +252,8 @@ Measure read_measure(const std::string& text) {
   const auto found = std::ranges::find(known, name);
   if (found == known.end())
     throw SceneError("measure", "is " + text + ", expected one of " + names +
-                                    ", or one after max or min" +
+                                    ", or one after max, min, mean, first, "
+                                    "last or period" +
                                     did_you_mean(name, known));
   m.quantity = Measure::Quantity(found - known.begin());
   std::getline(in, words);
@@ -372,9 +386,9 @@ std::string written(const Words& words, const Words& usual) {
 std::string name_of(const Measure& m) {
   const Quantity& q = quantities[m.quantity];
   Measure now = m, usual = m.quantity;
+  usual.over = m.over;
   const std::string words = written(words_of(now), words_of(usual));
-  const char* over[] = {"", "max ", "min "};
-  return over[m.over] + (m.over ? over_time(q) : q.name) +
+  return (m.over ? overs[m.over] + (' ' + over_time(q)) : q.name) +
          (words.empty() ? "" : ' ' + words);
 }
 

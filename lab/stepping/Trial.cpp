@@ -18,13 +18,88 @@ Answer answer(const Model& m, const Scene& scene, const Measure& what) {
       what);
 }
 
-double Observer::better(const Measure& what, double a, double b) {
-  return what.over == Measure::largest ? std::max(a, b) : std::min(a, b);
+void TimeSeries::add(const Measure& what, double t, double x) {
+  const auto [t0, x0] = last_[1];
+  const bool start = n_++ == 0;
+  best_ = start ? x : std::max(best_, x);
+  worst_ = start ? x : std::min(worst_, x);
+  if (!start && what.over == Measure::mean && t > what.from) {
+    const double from = std::max(t0, what.from),
+                 there = std::lerp(x0, x, (from - t0) / (t - t0));
+    sum_ += (t - from) * (there + x) / 2;
+    span_ += t - from;
+  }
+  if (what.above || what.below) {
+    const double level = what.above ? *what.above : *what.below;
+    const auto is_past = [&](double a) {
+      return what.above ? a > level : a < level;
+    };
+    const double passed = start ? t : std::lerp(t0, t, (level - x0) / (x - x0));
+    if (is_past(x) && first_ < 0) first_ = passed;
+    if (!start && is_past(x0) && !is_past(x)) left_ = passed;
+  }
+  if (what.over == Measure::period && n_ > 2) {
+    // The parabola through the last three values, if that between is extreme.
+    const auto [ta, xa] = last_[0];
+    const double before = (x0 - xa) / (t0 - ta), after = (x - x0) / (t - t0);
+    if ((before > 0) != (after > 0)) {
+      const double share = before / (before - after);
+      extrema_.push_back({std::lerp((ta + t0) / 2, (t0 + t) / 2, share), x0});
+    }
+  }
+  last_[0] = last_[1];
+  last_[1] = {t, x};
 }
 
-Observer::Observer(const Model& m, const Scene& scene)
-    : best_(std::numeric_limits<double>::infinity()) {
-  if (m.measure.over == Measure::largest) best_ = -best_;
+Answer TimeSeries::answer(const Measure& what) const {
+  const auto [t, x] = last_[1];
+  const bool past =
+      what.above ? x > *what.above : what.below && x < *what.below;
+  switch (what.over) {
+    case Measure::at_end:  // a time that is infinite until it has come
+    case Measure::smallest:
+      return std::isfinite(worst_) ? Answer{worst_} : Answer{};
+    case Measure::largest:
+      return {best_};
+    case Measure::mean:
+      return {span_ > 0 ? sum_ / span_ : x};
+    case Measure::first:
+      return first_ < 0 ? Answer{} : Answer{first_};
+    case Measure::last:
+      return past ? Answer{} : Answer{left_};
+    case Measure::period:
+      break;
+  }
+  const double enough = (best_ - worst_) / 2;
+  double first = 0, last = 0;
+  int maxima = 0;
+  // The highest since the number last rose enough, and the lowest since then.
+  Sample high = {0, -std::numeric_limits<double>::infinity()},
+         low = {0, std::numeric_limits<double>::infinity()};
+  bool falls = true;  // the start is no maximum
+  for (const Sample& e : extrema_) {
+    if (falls) {
+      if (e.x < low.x) low = e;
+      if (e.x - low.x >= enough) falls = false, high = e;
+    } else {
+      if (e.x > high.x) high = e;
+      if (high.x - e.x >= enough) {
+        falls = true, low = e, last = high.t;
+        if (maxima++ == 0) first = last;
+      }
+    }
+  }
+  return maxima < 2 ? Answer{} : Answer{(last - first) / (maxima - 1)};
+}
+
+void TimeSeries::archive(Archive& a) {
+  a(n_)(last_[0])(last_[1])(best_)(worst_)(sum_)(span_)(first_)(left_);
+  a(extrema_);
+  a.require(n_ >= 0 && best_ == best_ && worst_ == worst_ &&
+            std::isfinite(sum_ + span_ + first_ + left_));
+}
+
+Observer::Observer(const Model& m, const Scene& scene) {
   if (m.measure.quantity == Measure::positions) return;
   check_question(m);
   look(m, scene);
@@ -35,23 +110,22 @@ void Observer::look(const Model& m, const Scene& scene) {
   if (!m.measure.over_time()) return;
   std::erase_if(recent_, [&](const Look& l) {
     if (l.step <= scene.settled_steps())
-      best_ = better(m.measure, best_, l.value);
+      settled_.add(m.measure, l.time, l.value);
     return l.step <= scene.settled_steps() || l.step > scene.steps();
   });
-  recent_.push_back({scene.steps(), now[0]});
+  recent_.push_back({scene.steps(), scene.time(), now[0]});
 }
 
 Answer Observer::answer(const Model& m, const Scene& scene) const {
   if (!m.measure.over_time()) return lab::answer(m, scene, m.measure);
-  double best = best_;
+  TimeSeries all = settled_;
   for (const Look& l : recent_)
-    if (l.step <= scene.steps()) best = better(m.measure, best, l.value);
-  return std::isfinite(best) ? Answer{best} : Answer{};
+    if (l.step <= scene.steps()) all.add(m.measure, l.time, l.value);
+  return all.answer(m.measure);
 }
 
 void Observer::archive(Archive& a) {
-  a(best_)(recent_);
-  a.require(best_ == best_);  // no NaN
+  a(settled_)(recent_);
   for (const Look& l : recent_) a.require(l.value == l.value);
 }
 
@@ -89,8 +163,10 @@ Trial try_out(const Model& m, const Shake& shake,
   if (ok) {
     result.answer = observer.answer(m, scene);
     if (result.answer.empty())
-      result.failure =
-          "nothing tears until t = " + CME212::short_text(m.t_end) + " s";
+      result.failure = (m.measure.quantity == Measure::tear_time
+                            ? "nothing tears"
+                            : name_of(m.measure) + " has no answer") +
+                       " until t = " + CME212::short_text(m.t_end) + " s";
     look(scene.cloth());
   }
   result.steps = scene.steps();

@@ -16,6 +16,32 @@ namespace lab {
  * Throws SceneError: pin-force where no pin holds a node */
 Answer answer(const Model& m, const Scene& scene, const Measure& what);
 
+/** A number over time, reduced to what a Measure asks of it. Between two times
+ * it is taken to be linear, and around a maximum a parabola. */
+class TimeSeries {
+ public:
+  /** Add the value @a x at time @a t [s], later than all before.
+   * Amortized O(1) */
+  void add(const Measure& what, double t, double x);
+  /** Empty if what is asked did not happen: the time of a level, or two maxima.
+   * A maximum counts if the number falls on both sides of it by half of the
+   * range that it has passed through: so ripples do not count.
+   * O(1); of a period O(extrema) */
+  Answer answer(const Measure& what) const;
+  void archive(Archive& a);
+
+ private:
+  struct Sample {
+    double t, x;
+  };
+  long long n_ = 0;
+  Sample last_[2] = {};           // before the last; the last
+  double best_ = 0, worst_ = 0;   // largest, smallest
+  double sum_ = 0, span_ = 0;     // integral, and its duration [s]
+  double first_ = -1, left_ = 0;  // when the level was first, last passed [s]
+  std::vector<Sample> extrema_;   // maxima and minima, of a period
+};
+
 /** Answers the question of a scene that runs: looks at each state, if the
  * answer depends on all of them. Steps that are taken back are forgotten. */
 class Observer {
@@ -25,19 +51,17 @@ class Observer {
   Observer(const Model& m, const Scene& scene);
   /** Call it after each step if m.measure.over_time().  As long as answer() */
   void look(const Model& m, const Scene& scene);
-  /** The answer so far; empty if nothing has torn, whose time is asked. */
+  /** The answer so far; empty if what it asks about did not happen. */
   Answer answer(const Model& m, const Scene& scene) const;
   void archive(Archive& a);
 
  private:
   struct Look {
     long long step;
-    double value;
+    double time, value;
   };
-  double best_;               // of the steps that can't be taken back any more
+  TimeSeries settled_;        // steps that can't be taken back any more
   std::vector<Look> recent_;  // the others
-
-  static double better(const Measure& what, double a, double b);
 };
 
 /** The result of a run. */
