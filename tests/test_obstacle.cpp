@@ -63,10 +63,6 @@ TEST(Contact, TakesAsMuchAlongTheSurfaceAsFrictionSays) {
   EXPECT_LT(norm(u + contact::kick(u, up, 2.5)), 1e-15);
   EXPECT_LT(norm(u + contact::kick(u, up, 1e9)), 1e-15);
 }
-TEST(Contact, LeavesWhatIsOnItsWayOut) {
-  for (double out : {0.0, 1e-300, 1.0})
-    EXPECT_EQ(contact::kick(Point(3, 4, out), Point(0, 0, 1), 10), Point());
-}
 // It slid along since it came in, by 3 and 4 fifths of its depth a unit of
 // friction: and goes back by what friction would have spared it.
 TEST(Contact, PutsBackWhatSlidTooFar) {
