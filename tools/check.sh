@@ -221,7 +221,7 @@ threads() {
     TSAN_OPTIONS=$suppress build/check/clang/test_viewer \
     --gtest_filter='*Thread*:*Simulation*' &&
     "${three[@]}" build/check/clang/test_sweep \
-      --gtest_filter='*hread*:*Parts*:*OnTheWay*:*MovesWhat*' &&
+      --gtest_filter='*hread*:*OnTheWay*:*MovesWhat*' &&
     "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'
 }
 programs() {
