@@ -4,7 +4,6 @@ import csv
 import datetime
 import io
 import statistics
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import grade
@@ -26,21 +25,11 @@ def made(whole: "Class", row: "Row") -> report.Report:
     kept = whole.known(row.content)
     results = {test: judge.Result(**{
         key: value for key, value in kept[test].items()
-        if key not in ("kit", "seed", "step")}) for test in whole.tests}
+        if key not in ("kit", "step")}) for test in whole.tests}
     row.step = kept.get(ranking.TASK, {}).get("step")
-    taken = submission.Submission({}, [*row.notes, *seeds(
-        {test: kept[test].get("seed", "") for test in whole.tests})], row.flags)
+    taken = submission.Submission({}, row.notes, row.flags)
     return report.combine(whole.course, submission.shown(row.student), taken,
                           results)
-
-
-def seeds(of: dict[str, str]) -> Iterator[str]:
-    """What a report says of the seeds, {test: seed}: of one task another."""
-    for seed in sorted(set(of.values())):
-        tests = [test for test in of if of[test] == seed]
-        for said in grade.named(seed):
-            yield said + (f": {' '.join(tests)}" if len(tests) < len(of)
-                          else "")
 
 
 def write(whole: "Class", rows: list) -> None:

@@ -1,15 +1,14 @@
 """Grade a submission:  make grade DIR=submission [HW=hw2]
 
     DIR=DIR [HW=TAG] [JSON=FILE] [RESULTS=FILE] [FEEDBACK=names]
-      [SEED=N] [SAFE=0] [JOBS=N] python3 course/kit/grade.py
+      [SAFE=0] [JOBS=N] python3 course/kit/grade.py
 
 DIR holds Graph.hpp and mass_spring.hpp or mass_spring.cpp. With HW, DIR is a
 clone, and graded is what its tag HW holds. The table goes to the standard
-output; FILEs get it as JSON and as Gradescope's results.json.
-FEEDBACK says what students see of the table and of results.json: all, the names
-of the tasks with their points, or none. SEED, a whole number, varies the cloths
-and the numbers of the tests. SAFE=0 runs the submission even where
-the kernel allows no jail.
+output; FILEs get it as JSON and as Gradescope's results.json. FEEDBACK says
+what students see of the table and of results.json: all, the names of the tasks
+with their points, or none. SAFE=0 runs the submission even where the kernel
+allows no jail.
 Exit status: 0 it was graded, whatever the points; 2 it can't be. The solution
 is graded first, once for each kit: if it does not get all points, nothing is.
 """
@@ -58,22 +57,6 @@ def number_of_jobs(text: str | None) -> int:
         return int(text)
     raise submission.BadInput(f"JOBS is '{submission.shown(text)}', expected "
                               "a number from 1 to 1000")
-
-
-def seed_of_tests(text: str | None) -> str:
-    """The same number in one form, or ""."""
-    if not text:
-        return ""
-    if (text.isascii() and text.isdecimal() and len(text) <= 20
-            and int(text) < 1 << 63):
-        return str(int(text))
-    raise submission.BadInput(f"SEED is '{submission.shown(text)}', expected "
-                              "a whole number below 2^63")
-
-
-def named(seed: str) -> list[str]:
-    """What a report says of the seed."""
-    return [f"tests with the numbers of SEED={seed}"] if seed else []
 
 
 def less_safe(kit: once.Kit, unsafe: bool) -> Iterator[str]:
@@ -136,7 +119,6 @@ def main() -> int:
                     f"{submission.shown(path)}: its folder can't be written "
                     f"({error.strerror})") from None
         jobs, seen = number_of_jobs(get("JOBS")), feedback()
-        seed = seed_of_tests(get("SEED"))
         signal.signal(signal.SIGALRM, too_long)
         signal.alarm(READING)
         taken = submission.take(folder, tag)
@@ -144,8 +126,8 @@ def main() -> int:
         course = tasks.load()
         tests_of(course)        # before anything is built for them
         unsafe = get("SAFE") == "0"
-        kit = once.Kit(unsafe, seed=seed)
-        taken.notes += [*less_safe(kit, unsafe), *named(seed)]
+        kit = once.Kit(unsafe)
+        taken.notes += less_safe(kit, unsafe)
         name = submission.shown(os.path.basename(os.path.realpath(folder)))
         graded = grade(course, kit, taken, name, jobs)
     except submission.BadInput as error:

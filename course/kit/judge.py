@@ -463,7 +463,7 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
         *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *build.ASKED.glob("*"),
         *map(markers.path_of, markers.SOURCES),
         *(once.ROOT / "CME212").rglob("*.hpp")], make,
-        (sorted(tests.items()), kit.seed))
+        (sorted(tests.items()),))
     kept = json.loads((folder / "answers.json").read_text("ascii"))
     kit.data = folder / "data"
     kit.secret, kit.answers = bytes.fromhex(kept["secret"]), kept["answers"]

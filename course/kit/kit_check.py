@@ -193,7 +193,7 @@ def programs(check: Check) -> None:
     own = {name: value for name, value in os.environ.items()
            if name not in ("EVERY", "FIRST")}
     for name in ("pages.py", "test_report.py", "test_grader.py",
-                 "test_programs.py", "test_seeds.py"):
+                 "test_programs.py"):
         started = time.monotonic()
         done = child.run([sys.executable, folder / name], 1500, text=True,
                          capture_output=True, env=own)

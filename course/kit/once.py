@@ -76,8 +76,7 @@ def this_system() -> str:
 class Kit:
     """The parts, built if they are not there; `jail` starts a command."""
 
-    def __init__(self, unsafe: bool = False, probe: bool = True,
-                 seed: str = ""):
+    def __init__(self, unsafe: bool = False, probe: bool = True):
         # CME212/ apart from the root, whose Graph.hpp is no submission's.
         os.umask(0o022)     # another user may run what is built here
         self.include = BUILT / "include"
@@ -101,7 +100,6 @@ class Kit:
         self.answers: Any = None
         self.data: Any = None       # a folder
         self.assembler: dict = {}   # of standard headers: build.Room
-        self.seed = seed    # of the tests' numbers; "": the public ones
         self.linked = sorted(linked.glob("*.o"))
         if unsafe:
             self.jail.append("--unsafe")
@@ -208,27 +206,17 @@ CORNERS = ("0 0 0", "1 0 0")
 
 def draw_cloth(folder: pathlib.Path, kit: Kit) -> None:
     """The kit's small cloth, each node but the corners moved a little, least
-    in z; with a seed in another order, too, in which a corner is the last node
-    again."""
+    in z."""
     shutil.copytree(TESTS / "data", folder)
-    nodes, quads = (folder / f"cloth.{name}" for name in ("nodes", "tets"))
+    nodes = folder / "cloth.nodes"
     lines = nodes.read_text("ascii").splitlines()
-    dice = random.Random(f"seed {kit.seed}" if kit.seed else kit.secret)
+    dice = random.Random(kit.secret)
     for at, line in enumerate(lines):
         if line not in CORNERS:
             x, y, z = map(float, line.split())
             lines[at] = (f"{x + dice.uniform(-0.02, 0.02):.6f} "
                          f"{y + dice.uniform(-0.02, 0.02):.6f} "
                          f"{z + dice.uniform(-0.004, 0.004):.6f}")
-    if kit.seed:
-        order = dice.sample(range(len(lines)), len(lines))
-        last = lines.index(dice.choice(CORNERS))
-        order.remove(last)
-        order.append(last)
-        lines = [lines[old] for old in order]
-        quads.write_text("".join(
-            " ".join(str(order.index(int(old))) for old in line.split()) + "\n"
-            for line in quads.read_text("ascii").splitlines()), "ascii")
     nodes.write_text("\n".join(lines) + "\n", "ascii")
 
 

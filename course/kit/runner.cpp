@@ -1,14 +1,13 @@
 /** @file runner.cpp
  * main() of a test program for the grader:  PROGRAM TASK IN OUT PAGE CRASHING
- * SEED QUESTIONS REPLIES  Runs the functions of TASK that are linked in, and
+ * QUESTIONS REPLIES  Runs the functions of TASK that are linked in, and
  * writes to the descriptor OUT how they ended. Then it runs those that ask for
  * numbers (asked.hpp), and writes what they answer; whether that is right is
  * known to the grader alone. What is asked is drawn from a seed that the grader
  * sends by IN once main() has begun. PAGE is memory shared with the grader; it
  * keeps what was done last, also when the program crashes or is ended. CRASHING
- * are aspects that no test is to look at: see probes() in check.hpp. With a
- * SEED the tests take other numbers. QUESTIONS and REPLIES lead to law.cpp, or
- * are -1.
+ * are aspects that no test is to look at: see probes() in check.hpp. QUESTIONS
+ * and REPLIES lead to law.cpp, or are -1.
  *
  * Compiled apart from the submission: its macros reach nothing here. */
 #include <sys/mman.h>
@@ -141,10 +140,9 @@ void answer(const std::string& what, double number, double tolerance) {
 }  // namespace kit
 
 int main(int count, char** arg) {
-  if (count != 9) return 2;
+  if (count != 8) return 2;
   const std::string id = arg[1];
   crashing = unsigned(std::atoi(arg[5]));
-  if (*arg[6]) kit::vary(std::strtoull(arg[6], nullptr, 10));
   out = std::atoi(arg[3]);
   void* const map = mmap(nullptr, page_size, PROT_READ | PROT_WRITE, MAP_SHARED,
                          std::atoi(arg[4]), 0);
@@ -153,7 +151,7 @@ int main(int count, char** arg) {
   if (write(out, "begun\n", 6) != 6) return 2;
   const int in = std::atoi(arg[2]);
   unsigned char word[kit::Draw::secret];
-  questions = std::atoi(arg[7]), replies = std::atoi(arg[8]);
+  questions = std::atoi(arg[6]), replies = std::atoi(arg[7]);
   if (read(in, word, sizeof word) != sizeof word) return 2;
   close(in);
 

@@ -165,7 +165,7 @@ def run_compiler(jail: list[str], command: list[str], folder: pathlib.Path,
 def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
              kit: once.Kit, data: pathlib.Path, crashing: int = 0,
              asks: bool = False) -> Outcome:
-    """Run the test functions of a task in a process of its own, with the seeds
+    """Run the test functions of a task in a process of its own, with the seed
     of a kit and the cloth in the folder `data`. One that `asks` gets no seed,
     but forces, of another process: law.cpp."""
     to_read, to_write = os.pipe()         # the seed, to the program
@@ -196,7 +196,7 @@ def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
             process = subprocess.Popen(
                 [*jail, "--cpu", str(limits.cpu), "--size", str(limits.size),
                  "--", str(program), task, *map(str, descriptors),
-                 str(crashing), kit.seed, *map(str, far or (-1, -1))],
+                 str(crashing), *map(str, far or (-1, -1))],
                 cwd="/", env={**clean_environment("/nowhere"),
                               "KIT_DATA": str(data)},
                 pass_fds=(*descriptors, *far),

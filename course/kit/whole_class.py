@@ -1,7 +1,7 @@
 """Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
 
     DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TIMES=FILE] [TASK=ID]
-      [FEEDBACK=names] [SEED=N] [SAFE=0] [JOBS=N]
+      [FEEDBACK=names] [SAFE=0] [JOBS=N]
       python3 course/kit/whole_class.py
 
 DIR holds a folder for each student, as grade.py takes one; dates.py says what
@@ -84,7 +84,6 @@ class Class:
         self.feedback = grade.feedback()
         self.jobs = grade.number_of_jobs(get("JOBS"))
         self.unsafe = get("SAFE") == "0"
-        self.seed = grade.seed_of_tests(get("SEED"))
         self.course = tasks.load()
         self.tests = grade.tests_of(self.course)
         task = get("TASK", "")
@@ -104,7 +103,7 @@ class Class:
 
     def prepare(self) -> None:
         """The solution, graded once: workers begin with what it answered."""
-        self.kit = once.Kit(self.unsafe, seed=self.seed)
+        self.kit = once.Kit(self.unsafe)
         self.lacks = list(grade.less_safe(self.kit, self.unsafe))
         judge.prepare(self.kit, self.tests, self.jobs)
         assert self.kit.data
@@ -175,7 +174,7 @@ class Class:
             answers = kept.pop("answers")
             if test == ranking.TASK and result.passed:
                 kept["step"] = ranking.measured(answers, self.kit.answers[test])
-            known[test] = kept | {"kit": self.version, "seed": self.seed}
+            known[test] = kept | {"kit": self.version}
         grade.write(self.place(content), json.dumps(known, indent=0,
                                                     sort_keys=True))
         return "", sum(resource.getrusage(

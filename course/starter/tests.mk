@@ -1,4 +1,4 @@
-# The tests: make test [SECTION=3.2 | TASK=3.2.Problem1Force] [SEED=7]
+# The tests: make test [SECTION=3.2 | TASK=3.2.Problem1Force]
 #
 # The tests of a section are compiled as one program, with assertions and
 # sanitizers: build/tests/3.2. One that counts what is done can't have

@@ -12,7 +12,6 @@ static Bodies four_bodies() {
   b.add(Point(0.25, 0.5, -1), 2, Point(-2, 3, 5));
   b.add(Point(0.75, 1, 1), 0.5, Point(0, 0, 0));
   b.add(Point(2, 1, 3), 1, Point(0.5, -8, 0.25));
-  b.move(0.1);
   b.v[0] = Point(1, 0, 0);
   return b;
 }
@@ -90,7 +89,7 @@ static void compare_two_dampings(const Bodies& b) {
   if constexpr (takes_real<F>) {
     Cloth g;
     fill(g, b);
-    const double c = varied(0.5, 0.1), other = varied(0.25, 0.1);
+    const double c = 0.5, other = 0.25;
     DID("two forces, DampingForce(", c, ") and then DampingForce(", other,
         "), the first one on a node of velocity (1, 0, 0)");
     F first{c}, second{other};
@@ -120,8 +119,7 @@ TASK("5.1.DampingForce", damping_slows) {
   const Bodies b = four_bodies();
   with<KIT_FORCE(DampingForce)>("DampingForce", [&]<typename F>() {
     check_is_force<F>("DampingForce");
-    for (double number : {varied(4, 1), varied(0.375, 0.3)})
-      compare_damping<F>(b, number);
+    for (double number : {4., 0.375}) compare_damping<F>(b, number);
     compare_two_dampings<F>(b);
     compare_damping_of_a_graph<F>(b);
   });

@@ -9,7 +9,6 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   b.add(Point(-1, 0.5, 8), 6, Point(0, 0, -5));
   b.join(0, 1, 100, 0.5);
   b.join(1, 2, 100, 0.5);
-  b.vary(0.2);
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {

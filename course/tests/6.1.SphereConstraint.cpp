@@ -16,12 +16,8 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
   for (const Point& d :
        {Point(0, 0, 1), Point(1. / 3, -2. / 3, 2. / 3), Point(0, -0.6, -0.8)})
     for (double radii : {0.5, 1.01, 0.9, 3., 0.125}) {
-      const Point direction = varied_direction(d, b.size);
-      const double how_far =
-          varied(radii, 0.4 * std::min(radii, std::abs(radii - 1)), b.size);
-      places[b.size] = {direction, how_far};
-      b.add(c + how_far * r * direction, 0.5,
-            varied(Point(1, -2, -4), 0.9, b.size));
+      places[b.size] = {d, radii};
+      b.add(c + radii * r * d, 0.5, Point(1, -2, -4));
     }
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
   Cloth g;

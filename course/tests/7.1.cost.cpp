@@ -8,12 +8,6 @@
  * counted: to see under sanitizers where it crashes. */
 #include "graph.hpp"
 
-#if defined(__clang__)
-#define KIT_NOT_COUNTED __attribute__((no_sanitize("coverage")))
-#else
-#define KIT_NOT_COUNTED __attribute__((no_sanitize_coverage))
-#endif
-
 namespace kit {
 static volatile bool counting = false;
 static volatile double counted = 0;

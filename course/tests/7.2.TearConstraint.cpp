@@ -22,11 +22,8 @@ static Bodies row(const char* inside) {
   for (; *inside; ++inside) {
     const double s = 0.001 * b.size;
     const Point center(0.5, 0.5, -0.5);
-    b.add(*inside == 'i'
-              ? center + Point(s, 0, 0) +
-                    varied(0.1, 0.03) * varied_direction(Point(0, 0, 1), b.size)
-              : center + (varied(0.151, 0.0005) + s) *
-                             varied_direction(Point(0, 1, 0), b.size),
+    b.add(*inside == 'i' ? center + Point(s, 0, 0) + 0.1 * Point(0, 0, 1)
+                         : center + (0.151 + s) * Point(0, 1, 0),
           1, Point(0, 0, s));
   }
   for (int i = 1; i < b.size; ++i) {
@@ -93,12 +90,8 @@ TASK("7.2.TearConstraint", tear_looks_at_the_radius) {
   Bodies b;
   for (double radius : {0.149, 0.151, 0.1, 0.2, 0.3, 0.05})
     for (const Point& d : {Point(0, 0, 1), Point(0, 0, -1), Point(0.6, 0, 0.8),
-                           Point(-0.6, -0.8, 0)}) {
-      const double how_far =
-          varied(radius, 0.4 * std::abs(radius - 0.15), b.size);
-      b.add(Point(0.5, 0.5, -0.5) + how_far * varied_direction(d, b.size), 1,
-            Point(0, 0, 0.001 * b.size));
-    }
+                           Point(-0.6, -0.8, 0)})
+      b.add(Point(0.5, 0.5, -0.5) + radius * d, 1, Point(0, 0, 0.001 * b.size));
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
   DID("24 nodes at 0.05 to 0.3 m from the center of the ball");
   tear_and_compare<Tear>(b);

@@ -30,21 +30,6 @@ struct Bodies {
     springs[num_springs++] = {a, b, K, L};
   }
 
-  /** With a seed: other places, within @a by [m], velocities that are not 0,
-   * and masses. Corners stay. */
-  void move(double by) {
-    for (int i = 0; i < size; ++i) {
-      if (!is_corner(x[i])) x[i] = varied(x[i], by, i);
-      v[i] *= varied(Point(1, 1, 1), 0.4, i);
-      m[i] = varied(m[i], 0.4 * m[i], i);
-    }
-  }
-  /** Also other L. */
-  void vary(double by) {
-    move(by);
-    for (int k = 0; k < num_springs; ++k)
-      springs[k].L = varied(springs[k].L, 0.1 * springs[k].L, k);
-  }
   /** The same bodies with other numbers: in the order of their ranks. */
   void reorder(const double* rank) {
     const Bodies old = *this;
@@ -58,12 +43,6 @@ struct Bodies {
       springs[k].a = number_of[old.springs[k].a];
       springs[k].b = number_of[old.springs[k].b];
     }
-  }
-  /** With a seed: any order. */
-  void shuffle() {
-    double rank[most];
-    for (int i = 0; i < most; ++i) rank[i] = varied(i, 1e3);
-    reorder(rank);
   }
   /** The number of the body at @a p, which has one. */
   int at(const Point& p) const {

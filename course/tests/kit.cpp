@@ -42,39 +42,6 @@ std::string join(std::initializer_list<Word> words) {
   return all;
 }
 
-// ---------------------------------------------------------------------- Seeds
-
-static std::optional<std::uint64_t> seed;
-
-void vary(std::uint64_t of) { seed = of; }
-
-// splitmix64's last three lines, once for each number that counts.
-double varied(double a, double by, int key) {
-  if (!seed) return a;
-  std::uint64_t x = *seed;
-  for (std::uint64_t number :
-       {std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(by),
-        std::uint64_t(key)}) {
-    x = (x ^ number) + 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    x ^= x >> 31;
-  }
-  return a + by * (double(x >> 11) / 4503599627370496. - 1);
-}
-Point varied(const Point& a, double by, int key) {
-  const double x = varied(a.x, by, 3 * key);
-  const double y = varied(a.y, by, 3 * key + 1);
-  return Point(x, y, varied(a.z, by, 3 * key + 2));
-}
-Point varied_direction(const Point& a, int key) {
-  if (!seed) return a;
-  Point p = varied(a, 1, key);
-  for (int tries = 1; !(norm(p) > 0.1); ++tries)
-    p = varied(a, 1, key + 1000 * tries);
-  return p / norm(p);
-}
-
 // --------------------------------------------------------------------- Checks
 
 bool near(double a, double b, double tolerance) {

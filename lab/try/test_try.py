@@ -264,7 +264,8 @@ def main():
                    int(os.environ.get("EVERY") or 1))
     toml = (ROOT / "lab/try/mistakes.toml").read_text(encoding="utf-8")
     cases = [(case["name"], mistake, case) for case in
-             [*of_the_course(), *tomllib.loads(toml)["mistake"]][sample]]
+             [*of_the_course(), *({"name": name, **one} for name, one
+                                  in tomllib.loads(toml).items())][sample]]
     cases += [("without constraint", without_constraint, None)]
     cases += [(f"own method {seed}", own_method, seed) for seed in (1, 2)]
     cases += [(row[0], declared, row) for row in DECLARED[sample]]
