@@ -92,6 +92,7 @@ int main(int argc, char** argv) try {
     std::cout << e.what() << "; running without a window\n";
   }
 
+  const auto spring = [](Edge e) { return e.value(); };
   // A corner does not move; nor does its kinetic energy count.
   const auto energy = [&] {
     return CME212::motion_energy(g, grav, is_corner).total();
@@ -106,15 +107,15 @@ int main(int argc, char** argv) try {
     const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
     if (!(energy() <= most)) {  // also if it is NaN
       failure = "diverged: at t = " + CME212::short_text(t) +
-                " s it gains energy from nothing; './cloth " + argv[1] + ' ' +
-                argv[2] + " --dt auto' finds a stable step";
+                " s it gains energy from nothing; dt is " +
+                CME212::short_text(dt) + " s, 2/omega of this cloth about " +
+                CME212::short_text(CME212::stable_step(g, spring)) + " s";
       std::cerr << failure << std::endl;
       if (viewer) show(), viewer->set_message({failure});
       return false;
     }
     if (t > next_line - dt / 2) {
-      const double elastic =
-          CME212::elastic_energy(g, [](Edge e) { return e.value(); });
+      const double elastic = CME212::elastic_energy(g, spring);
       std::cout << "t = " << t << " s, energy " << energy() + elastic << " J, "
                 << g.num_nodes() << " nodes" << std::endl;
       next_line += t_end / 10;

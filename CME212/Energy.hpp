@@ -2,6 +2,10 @@
 /** @file Energy.hpp
  * Energies of a cloth in any graph, whose nodes' values have mass [kg] and vel
  * [m/s], and the energy at which a run has diverged. */
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "CME212/AnyGraph.hpp"
 #include "CME212/Point.hpp"
 
@@ -37,6 +41,20 @@ double elastic_energy(const G& g, Spring spring) {
     sum += s.K * stretch * stretch / 2;
   }
   return sum;
+}
+
+/** A step [s] that is stable in any shape: at most 2/omega, as omega^2 is at
+ * most twice the sum of K at a node, over its mass.  O(N + edges)
+ * @param spring spring(Edge) has K [N/m] */
+template <typename G, typename Spring>
+double stable_step(const G& g, Spring spring) {
+  std::vector<double> sums(g.num_nodes());  // of K, by index
+  for (auto e : CME212::edges(g))
+    for (auto end : {e.node1(), e.node2()}) sums[end.index()] += spring(e).K;
+  double most = 0;
+  for (auto n : CME212::nodes(g))
+    most = std::max(most, 2 * sums[n.index()] / n.value().mass);
+  return 2 / std::sqrt(most);
 }
 
 /** The motion_energy() [J] above which a run of @a g from rest has diverged.

@@ -1,11 +1,11 @@
 """Make what a student starts from, or the same tree solved:
 
-    OUT=DIR [LEVEL=open] python3 course/kit/starter.py starter|solution
+    OUT=DIR [LEVEL=guided] python3 course/kit/starter.py starter|solution
 
 OUT must be new or empty; it appears whole or not at all. The same sources give
-the same bytes. At the level open, students design what a starter otherwise
-gives them: the graph's storage, the base classes of forces and constraints, and
-the classes that own several of them.
+the same bytes. At the level open, the usual one, students design what the level
+guided gives them: the graph's storage, the contracts of removal, the base
+classes of forces and constraints, and the classes that own several of them.
 """
 import json
 import os
@@ -163,7 +163,7 @@ def write(files: Files, path: pathlib.Path) -> None:
 def main(arguments: list[str]) -> None:
     if len(arguments) != 1 or arguments[0] not in ("starter", "solution"):
         sys.exit("usage: OUT=DIR starter.py starter|solution")
-    kind, level = arguments[0], os.environ.get("LEVEL") or "guided"
+    kind, level = arguments[0], os.environ.get("LEVEL") or "open"
     try:
         path = place(os.environ.get("OUT", ""))
         if level not in pages.LEVELS:
