@@ -169,6 +169,21 @@ TEST(Advise, LeavesOutWhatChangesNothing) {
   }
 }
 
+// A hanging strip comes back to its start after 4 L/c, c = sqrt(modulus/density):
+// there its center is as if there were no gravity.
+TEST(Advise, KeepsAPartWhoseEffectIsSmallAtTheEndAlone) {
+  Model m;
+  m.sheets = {read_sheet("v 0 0 -1 nodes 9 9")};
+  m.edges.diagonals = false, m.pins = {read_pin("z 0")};
+  m.material = {.density = 0.3, .modulus = 200};
+  m.t_end = 4 * std::sqrt(0.3 / 200), m.tolerance = 1.5e-3;
+  const Advice a = advise(m);
+  ASSERT_EQ(a.refusal, "");
+  EXPECT_EQ(a.model.gravity, m.gravity);
+  EXPECT_EQ(a.answer[0], 0.5);
+  EXPECT_NEAR(a.answer[2], -0.5, m.tolerance);
+}
+
 TEST(Advise, RefusesWhatNoGridCanGive) {
   AdviceRules rules;
   rules.most_nodes = 500;

@@ -445,6 +445,17 @@ TEST(Variation, DropsEachPartInTurnAndNothingElse) {
   EXPECT_EQ(parts.size(), expected.size());
 }
 
+TEST(Variation, KeepsTheGravityOfAnEnergy) {
+  Model m = with_sheet("nodes 5 5");
+  auto drops = [&m] {
+    return 1 == std::ranges::count(without_parts(m), "gravity",
+                                   &Variation::part);
+  };
+  EXPECT_TRUE(drops());
+  m.measure = Measure::energy;
+  EXPECT_FALSE(drops());
+}
+
 TEST(Variation, DropsNothingThatIsNotThere) {
   Model m = with_sheet("nodes 5 5");
   m.edges.diagonals = false;

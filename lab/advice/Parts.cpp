@@ -12,12 +12,24 @@ void PartStudy::study(std::size_t k) {
   const GridStudy::Run& run = grids_.runs()[k];
   const GridReport& grid = grids_.grids()[k];
   level_ = run.level, q_.advice.tried_on = grid.nodes;
-  try_each(run, grid.trial.answer);
-  combine(run, grid.trial.answer);
+  try_each(run, grid.trial);
+  combine(run, grid.trial);
   find_rest(run);
 }
 
-void PartStudy::try_each(const GridStudy::Run& run, const Answer& whole) {
+double PartStudy::change(const Trial& without, const Trial& whole) const {
+  double most = grids_.distance_of(without.answer, whole.answer);
+  const auto n = std::min(without.earlier.size(), whole.earlier.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    const Answer &a = without.earlier[k], &b = whole.earlier[k];
+    if (a.size() != b.size()) return infinite;  // one has not happened yet
+    const double then = grids_.distance_of(a, b);
+    if (then > grids_.tolerance()) most = std::max(most, then);
+  }
+  return most;
+}
+
+void PartStudy::try_each(const GridStudy::Run& run, const Trial& whole) {
   const StepCosts all(run.model);
   auto& parts = q_.advice.parts;
   parts.clear();
@@ -30,12 +42,12 @@ void PartStudy::try_each(const GridStudy::Run& run, const Answer& whole) {
       if (const Trial t =
               q_.pilots.run(v.model, "without " + v.part, run.work, {v.part});
           t.ok())
-        r.change = grids_.distance_of(t.answer, whole);
+        r.change = change(t, whole);
     parts.push_back(r);
   }
 }
 
-void PartStudy::combine(const GridStudy::Run& run, const Answer& whole) {
+void PartStudy::combine(const GridStudy::Run& run, const Trial& whole) {
   std::vector<PartReport> order = q_.advice.parts;
   // Parts that save work come before the others.
   std::ranges::stable_sort(order, {}, [](const PartReport& p) {
@@ -43,7 +55,7 @@ void PartStudy::combine(const GridStudy::Run& run, const Answer& whole) {
     return std::tuple(p.change > 0, !saves, p.change);
   });
   const double room = q_.rules.for_parts * grids_.tolerance();
-  reductions_ = {{{}, Effect(whole.size())}};
+  reductions_ = {{{}, Effect(whole.answer.size())}};
   for (const PartReport& part : order) {
     if (!(part.change <= room)) continue;
     std::vector<std::string> removed = reductions_.back().removed;
@@ -54,8 +66,8 @@ void PartStudy::combine(const GridStudy::Run& run, const Answer& whole) {
     const Trial t =
         q_.pilots.run(*without, "without " + part.part, run.work, removed);
     if (!t.ok()) continue;
-    const Effect effect(t.answer, whole);
-    if (!(grids_.size_of(effect) <= room)) continue;
+    const Effect effect(t.answer, whole.answer);
+    if (!(change(t, whole) <= room)) continue;
     // Parts that change nothing need no choice of their own.
     if (grids_.distance_of(effect.by, reductions_.back().effect.by) <=
         1e-3 * grids_.tolerance())

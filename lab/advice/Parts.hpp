@@ -38,14 +38,19 @@ class PartStudy {
   static bool dissipates(const Model& m);
 
  private:
+  /** How far the answers of two runs differ: at the end and, where it is by more
+   * than the tolerance, before. So no part goes whose effect is small at the end
+   * by accident. */
+  double change(const Trial& without, const Trial& whole) const;
+
   Question& q_;
   const GridStudy& grids_;
   std::optional<int> level_;
   std::vector<Reduction> reductions_ = {{}};
   double rest_time_;
 
-  void try_each(const GridStudy::Run& run, const Answer& whole);
-  void combine(const GridStudy::Run& run, const Answer& whole);
+  void try_each(const GridStudy::Run& run, const Trial& whole);
+  void combine(const GridStudy::Run& run, const Trial& whole);
   void find_rest(const GridStudy::Run& run);
 };
 

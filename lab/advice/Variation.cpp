@@ -57,7 +57,9 @@ std::vector<Variation> without_parts(const Model& m) {
   if (m.edges.diagonals)
     drop("edges: diagonals", [](Model& x) { x.edges.diagonals = false; });
   if (m.edges.bend) drop("edges: bend", [](Model& x) { x.edges.bend = false; });
-  if (m.gravity != 0) drop("gravity", [](Model& x) { x.gravity = 0; });
+  // Without gravity its energy would be another quantity.
+  if (m.gravity != 0 && m.measure.quantity != Measure::energy)
+    drop("gravity", [](Model& x) { x.gravity = 0; });
   if (m.damping > 0 && !m.material.drag)
     drop("damping", [](Model& x) { x.damping = 0; });
   if (m.material.drag && *m.material.drag > 0)
