@@ -169,8 +169,8 @@ TEST(Advise, LeavesOutWhatChangesNothing) {
   }
 }
 
-// A hanging strip comes back to its start after 4 L/c, c = sqrt(modulus/density):
-// there its center is as if there were no gravity.
+// A hanging strip comes back to its start after 4 L/c, c =
+// sqrt(modulus/density): there its center is as if there were no gravity.
 TEST(Advise, KeepsAPartWhoseEffectIsSmallAtTheEndAlone) {
   Model m;
   m.sheets = {read_sheet("v 0 0 -1 nodes 9 9")};

@@ -448,8 +448,8 @@ TEST(Variation, DropsEachPartInTurnAndNothingElse) {
 TEST(Variation, KeepsTheGravityOfAnEnergy) {
   Model m = with_sheet("nodes 5 5");
   auto drops = [&m] {
-    return 1 == std::ranges::count(without_parts(m), "gravity",
-                                   &Variation::part);
+    return 1 ==
+           std::ranges::count(without_parts(m), "gravity", &Variation::part);
   };
   EXPECT_TRUE(drops());
   m.measure = Measure::energy;

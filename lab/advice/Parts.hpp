@@ -38,9 +38,9 @@ class PartStudy {
   static bool dissipates(const Model& m);
 
  private:
-  /** How far the answers of two runs differ: at the end and, where it is by more
-   * than the tolerance, before. So no part goes whose effect is small at the end
-   * by accident. */
+  /** How far the answers of two runs differ: at the end and, where it is by
+   * more than the tolerance, before. So no part goes whose effect is small at
+   * the end by accident. */
   double change(const Trial& without, const Trial& whole) const;
 
   Question& q_;
