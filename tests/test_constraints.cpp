@@ -119,26 +119,6 @@ TEST(TearConstraint, KeepsANodeOnTheSurfaceAndCanTakeAll) {
   EXPECT_EQ(g.num_nodes(), 0u);
 }
 
-TEST(PinConstraint, HoldsTheCornersWhateverMoves) {
-  Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
-  PinConstraint pin(g);
-  for (Node n : g.nodes()) {
-    n.position() += Point(1, 2, 3);
-    n.value().vel = Point(1);
-  }
-  pin(g, 0);
-  int held = 0;
-  for (Node n : g.nodes())
-    if (is_corner(n.position())) {
-      ++held;
-      EXPECT_EQ(n.value().vel, Point());
-    } else {
-      EXPECT_EQ(n.value().vel, Point(1));
-    }
-  EXPECT_EQ(held, 2);
-}
-
 TEST(PinConstraint, HoldsTheRightNodesWhenIndicesHaveMoved) {
   Cloth g;
   build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::plain);
@@ -148,12 +128,18 @@ TEST(PinConstraint, HoldsTheRightNodesWhenIndicesHaveMoved) {
   g.remove_edge(g.edge(0));
   arrays(g).reindex();
   ASSERT_NE(second.index(), 20u);
-  for (Node n : g.nodes()) n.position() += Point(0, 0, -1);
+  for (Node n : g.nodes()) {
+    n.position() += Point(0, 0, -1);
+    n.value().vel = Point(1);
+  }
   pin(g, 0);
   EXPECT_EQ(first.position(), Point(0, 0, 0));
   EXPECT_EQ(second.position(), Point(1, 0, 0));
-  for (Node n : g.nodes())
-    EXPECT_EQ(n.position().z, n == first || n == second ? 0 : -1);
+  for (Node n : g.nodes()) {
+    const bool held = n == first || n == second;
+    EXPECT_EQ(n.position().z, held ? 0 : -1);
+    EXPECT_EQ(n.value().vel, held ? Point() : Point(1));
+  }
 }
 
 TEST(PinConstraint, GoesOnWithoutAPinnedNodeThatWasRemoved) {

@@ -14,10 +14,8 @@
 #include "CME212/Util.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
-#include "lab/methods/SymplecticEuler.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "tests/SweptForces.hpp"
 #include "tests/TestFolder.hpp"
@@ -108,24 +106,6 @@ TEST(Problem, ReferencesKnowTheWholeEnd) {
                         .end;
     EXPECT_LT(norm(r.end.center - end.center), 1e-10) << name;
     EXPECT_NEAR(r.end.energy, end.energy, 1e-8) << name;
-  }
-}
-
-// So what is measured is what the program does: a method that can spare
-// something spares it here, too.
-TEST(Problem, ItsCountersHideNothing) {
-  for (const CombinedConstraints& c :
-       {make_combined_constraints(PlaneConstraint()),
-        make_combined_constraints(TearConstraint())}) {
-    const CountingConstraint counting(c);
-    const bool nodewise = ConstraintPlan(c).nodewise();
-    EXPECT_EQ(ConstraintPlan(counting).nodewise(), nodewise);
-    Cloth g;
-    for (int i = 0; i < 3000; ++i) g.add_node(Point(0, 0, -1));
-    SymplecticEuler method;
-    for (int k = 0; k < 5; ++k) method(g, 0, 0.01, GravityForce(), counting);
-    EXPECT_EQ(counting.calls(), 5);
-    EXPECT_EQ(g.node(2999).position().z > -1, nodewise);
   }
 }
 
