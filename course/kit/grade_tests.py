@@ -1,7 +1,8 @@
 """Grade tests that a student wrote:  make grade-tests FILE=mine.cpp [JSON=FILE]
 
-FILE is like one of course/tests: it includes graph.hpp, cloth.hpp or step.hpp,
-and has a TASK("7.1.remove_node", name) { ... } for each test. A test counts if
+FILE is as course/own-tests.md says: it includes own.hpp, or graph.hpp,
+cloth.hpp or step.hpp, and has a TASK("7.1.remove_node", name) { ... } for each
+test. A test counts if
 each right submission of the kit passes it; one that may depart from a page's
 words (`allowed:` in course/wrong) has no say. What it finds are wrong
 submissions, those of course/wrong that lose the tasks which FILE names, and the
@@ -69,8 +70,9 @@ def read(path: str, course: tasks.Course) -> Tests:
     names = [name for _, name in found]
     if len(set(names)) < len(names):
         refuse("two tests have the same name")
-    needs = next((name for name in ("step", "cloth") if re.search(
+    needs = next((name for name in ("step", "cloth", "own") if re.search(
         rf'#\s{{0,9}}include\s{{0,9}}"{name}\.hpp"', text)), "graph")
+    needs = needs.replace("own", "cloth")
     # Each test is asked for by its name.
     text = TEST.sub(lambda test: f'TASK("{test[2]}", {test[2]})', text)
     text = INCLUDE.sub(

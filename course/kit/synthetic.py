@@ -11,7 +11,7 @@ import child
 import dates
 import kit_check
 
-DUE = "2026-03-08 01:30 America/Los_Angeles"    # clocks change 30 minutes later
+DUE = "2026-03-08 01:30 -0800"
 WRONG = "remove_node(it) is written anew and forgets the edges"
 STEP = "a step: half a kick, a drift, half a kick"  # right, with more forces
 TOUCH = "/tmp/kit-cheat"
@@ -41,11 +41,11 @@ KINDS = [
     ("wrong", 0, 0, "+0000"),
     ("right", 1, None, "-0800"),            # late by a second
     ("empty", -9000, -9000, "-0800"),
-    ("right", -9000, 82799, "+0545"),       # the last second of a day's delay
+    ("right", -9000, 86399, "+0545"),       # the last second of a day's delay
     ("starter", -86400, -86400, "-0800"),
     ("cheat", -60, None, "+1400"),
     ("right", -60, "", "-0800"),            # handed in nothing
-    ("half", -60, 82801, "-1200"),       # a day of 23 hours, and a second
+    ("half", -60, 86401, "-1200"),       # a day and a second
     ("broken", -60, -120, "-0800"),         # a tag from before its commit
     ("right", -7200, None, "+0530"),
     ("link", -60, -60, "-0800"),            # Graph.hpp is a symbolic link

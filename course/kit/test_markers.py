@@ -398,7 +398,7 @@ class Repository(unittest.TestCase):
 
     def test_a_starter_compiles_with_any_graph(self):
         for level, graph in (("open", ""), ("open", "pointers"),
-                             ("guided", "erase")):
+                             ("guided", "uids")):
             folder = self.folder / f"{level} {graph}"
             self.make("starter", folder, level)
             if graph:

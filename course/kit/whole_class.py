@@ -1,6 +1,6 @@
 """Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
 
-    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TIMES=FILE] [TASK=ID]
+    DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TIMES=FILE]
       [FEEDBACK=names] [SAFE=0] [JOBS=N]
       python3 course/kit/whole_class.py
 
@@ -8,8 +8,7 @@ DIR holds a folder for each student, as grade.py takes one; dates.py says what
 DUE and TIMES are. OUT gets class.csv, class.html, reports/STUDENT.txt (for the
 student, as FEEDBACK says) and .json (all). It keeps what each test said of each
 content in kept/: equal submissions are graded once, and a class that was ended
-goes on where it was. Tests that have changed since are made anew, with TASK
-those of this task alone.
+goes on where it was. With another kit all tests are made anew.
 Exit status: 0 it was graded; 2 it can't be, or some who could not have a reason
 that is no fault of theirs.
 """
@@ -86,13 +85,6 @@ class Class:
         self.unsafe = get("SAFE") == "0"
         self.course = tasks.load()
         self.tests = grade.tests_of(self.course)
-        task = get("TASK", "")
-        if task and task not in self.course.tasks:
-            raise submission.BadInput(
-                f"TASK is '{submission.shown(task)}', expected one of: "
-                + " ".join(self.course.tasks))
-        self.anew = (set(self.course.tasks[task].tests) if task
-                     else set(self.tests))
         self.kept = self.out / KEPT
         if self.out.is_dir() and any(self.out.iterdir()) and (
                 not self.kept.is_dir()):
@@ -152,7 +144,7 @@ class Class:
         except FileNotFoundError:
             return {}
         return {test: result for test, result in found.items()
-                if result["kit"] == self.version or test not in self.anew}
+                if result["kit"] == self.version}
 
     def grade(self, student: str, content: str) -> tuple[str, float]:
         """Grade what is left of a content. @return why that fails, or '', and

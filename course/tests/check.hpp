@@ -6,6 +6,7 @@
  *   CHECK_EQUAL(g.num_nodes(), 13);  "Expected g.num_nodes() == 13, got 14."
  *   CHECK_NEAR(x, 1.5, 1e-12);       for numbers and Points; NaN never passes
  *   CHECK(condition, "the loop ends");       "Expected: the loop ends."
+ *   CHECK(condition);                        "Expected: condition."
  *
  * A check that fails ends its test. The name of a test is unique in all files.
  * A test file includes graph.hpp or cloth.hpp, which bring this file: it comes
@@ -89,6 +90,14 @@ void check(bool holds, const std::string& what);
 [[noreturn]] void differ(const Word& what, const Word& expected,
                          double tolerance, const Word& got);
 
+inline void check_said(const char* condition, bool holds) {
+  check(holds, condition);
+}
+template <typename What>
+void check_said(const char*, bool holds, const What& what) {
+  check(holds, what);
+}
+
 // --------------------------------------------------------- Of all their types
 
 template <typename T>
@@ -149,7 +158,7 @@ void check_near(const A& a, const B& b, double tolerance, const Word& what) {
   }                                                           \
   void kit::name()
 #define DID(...) ::kit::did(::kit::join({__VA_ARGS__}))
-#define CHECK(condition, what) ::kit::check(static_cast<bool>(condition), what)
+#define CHECK(...) ::kit::check_said(#__VA_ARGS__, __VA_ARGS__)
 #define CHECK_EQUAL(actual, expected) \
   ::kit::check_equal(actual, expected, #actual)
 #define CHECK_NEAR(actual, expected, tolerance) \

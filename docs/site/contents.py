@@ -7,7 +7,7 @@ CONTENTS: list[tuple[str, list[str | tuple[str, str]]]] = [
                "docs/site/explode.md"]),
     ("The course", [f"course/{name}.md" for name in (
         "0", "3.1", "3.2", "4.1", "4.2", "5.1", "5.2", "6.1", "6.2", "7.1",
-        "7.2", "8", "write-up")]),
+        "7.2", "8", "own-tests", "write-up")]),
     ("The code", ["Graph.hpp", "mass_spring.hpp", "mass_spring.cpp",
                   "methods.hpp", "docs/graph.md", "docs/glossary.md"]),
     ("The laboratory", [
