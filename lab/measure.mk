@@ -190,7 +190,7 @@ pictures: test_screen $(B)/cloth
 
 RUNS ?= 200000
 $(B)/fuzz_mesh: tests/fuzz_mesh.cpp $(patsubst %,lab/scenes/%.cpp,MeshFile NetBinary NetFile \
-                Net Interrupt) lab/scenes/MeshFile.hpp lab/scenes/NetFile.hpp CME212/Mesh.hpp CME212/Util.hpp \
+                Interrupt) lab/scenes/MeshFile.hpp lab/scenes/NetFile.hpp CME212/Mesh.hpp CME212/Util.hpp \
                 CME212/Point.hpp
 	@mkdir -p $(B)
 	clang++ -std=c++20 -g -O1 -Wall -Wextra -I. -o $@ $(filter %.cpp,$^) \

@@ -18,8 +18,8 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
   Model m;
   m.sheets = {{.nodes = {8, 8}}};
   m.pins = {{0, {}, {}, {}, {}}};
-  m.t_end = 0.2;
-  Live live(m, read_changes(changes));
+  m.t_end = 0.2, m.at = changes;
+  Live live(m);
   while (live.step()) {
   }
   std::ostringstream nodes;

@@ -203,8 +203,8 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
             "cloth: --screenshot is a.jpg, expected a name that ends in "
             ".png\n");
   EXPECT_EQ(error("--record png"),
-            "cloth: --record is png, expected a name that ends in .mp4, .mkv, "
-            ".webm or .gif\n");
+            "cloth: --record is png, expected a name that ends in .mp4 "
+            "or .gif\n");
   EXPECT_EQ(error("--out o.tets"),
             "cloth: --out is o.tets, expected a file of points, such as "
             "FILE.nodes: the quads go into FILE.tets\n");

@@ -177,45 +177,6 @@ TEST(Compose, ANetListsItsSpringsMassesAndHeldNodes) {
   EXPECT_THROW(build_model(none, m, net), SceneError);
 }
 
-TEST(Compose, ANetIsChecked) {
-  const auto error = [](auto change) -> std::string {
-    Net net = two_triangles();
-    change(net);
-    try {
-      check(net);
-      return "";
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-  };
-  EXPECT_EQ(error([](Net&) {}), "");
-  EXPECT_EQ(error([](Net& n) {
-              n.springs = {{0, 1}, {2, 2}};
-            }),
-            "springs[1]: joins node 2 to itself");
-  EXPECT_EQ(error([](Net& n) {
-              n.springs = {{0, 4}};
-            }),
-            "springs[0]: there is no node 4");
-  EXPECT_EQ(error([](Net& n) {
-              n.springs = {{0, 1, 1, NAN}};
-            }),
-            "springs[0]: L is nan, expected 0 or more");
-  EXPECT_EQ(error([](Net& n) {
-              n.masses = {1, 1, 0, 1};
-            }),
-            "masses[2]: is not more than 0");
-  EXPECT_EQ(error([](Net& n) { n.velocities = {Point()}; }),
-            "velocities: has 1 values, expected one for each of 4 nodes");
-  EXPECT_EQ(error([](Net& n) { n.points[3].y = INFINITY; }),
-            "points[3]: is not finite");
-  EXPECT_EQ(error([](Net& n) { n.held = {9}; }), "held[0]: there is no node 9");
-  EXPECT_EQ(error([](Net& n) {
-              n.quads[1] = {0, 0, 1, 2};
-            }),
-            "quads[1]: node 0 comes twice");
-}
-
 TEST(Compose, EachKindOfSpringMayHaveItsOwnStiffness) {
   Model m = with_sheet("nodes 3 3");
   m.edges = read_edges("sides 40 diagonals bend 2");

@@ -62,7 +62,7 @@ void make(Cloth& g, Dice& dice) {
     case 1: {
       auto quads = grid_quads(side);
       std::shuffle(quads.begin(), quads.end(), std::mt19937(7));
-      build_ordered_cloth(g, grid_points(side), quads, MeshSprings::plain);
+      build_cloth(g, grid_points(side), quads, MeshSprings::plain);
       break;
     }
     default:

@@ -182,10 +182,7 @@ TEST(Video, HasTheFormatOfItsEnding) {
   if (!has_program("ffprobe")) GTEST_SKIP() << "no ffprobe";
   TestFolder folder;
   const std::map<std::string_view, std::string> formats = {
-      {".mp4", "h264\nmov,mp4,m4a,3gp,3g2,mj2\n"},
-      {".mkv", "h264\nmatroska,webm\n"},
-      {".webm", "vp9\nmatroska,webm\n"},
-      {".gif", "gif\ngif\n"}};
+      {".mp4", "h264\nmov,mp4,m4a,3gp,3g2,mj2\n"}, {".gif", "gif\ngif\n"}};
   for (std::string_view ending : film_endings) {
     const std::string file = folder / ("v" + std::string(ending));
     Video video(file, 64, 48, 25);

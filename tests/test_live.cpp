@@ -9,6 +9,7 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/OrderedCloth.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stepping/Checkpoint.hpp"
@@ -219,8 +220,9 @@ TEST(Live, DriftIsTheMethodsAlone) {
 }
 
 TEST(Live, RestartsAsItWasMade) {
-  const Model m = hung(5);
-  Live live(m, read_changes({"0.002 gravity 4", "0.003 method rk4"}));
+  Model m = hung(5);
+  m.at = {"0.002 gravity 4", "0.003 method rk4"};
+  Live live(m);
   const auto x = positions(live.scene().cloth());
   live.apply(request("cut", id(live, 0), id(live, 1)));
   live.apply(request("pin", id(live, 7)));
@@ -232,10 +234,32 @@ TEST(Live, RestartsAsItWasMade) {
   EXPECT_EQ(live.model().gravity, grav);
   EXPECT_FALSE(live.scene().is_pinned(id(live, 7)));
   run(live, 50);
-  Live other(m, read_changes({"0.002 gravity 4", "0.003 method rk4"}));
+  Live other(m);
   run(other, 50);
   EXPECT_EQ(positions(live.scene().cloth()), positions(other.scene().cloth()));
-  EXPECT_EQ(live.recording(), "2 gravity 4\n3 method rk4\n50 end\n");
+  EXPECT_EQ(live.recording(), "50 end\n");
+}
+
+// A rope with its nodes in any order lies in memory from end to end.
+TEST(Live, NamesNodesByTheirNumbersInTheNet) {
+  constexpr unsigned n = 3000;
+  const auto number = [](unsigned k) { return k * 1237 % n; };
+  Net net;
+  net.points.resize(n);
+  for (unsigned k = 0; k < n; ++k) net.points[number(k)].x = 0.01 * k;
+  for (unsigned k = 0; k + 1 < n; ++k)
+    net.springs.push_back({number(k + 1), number(k)});
+  Live live(loose(2), net);
+  const Cloth& g = live.scene().cloth();
+  EXPECT_TRUE(is_local(g));
+  for (unsigned i = 0; i < n; ++i)
+    ASSERT_EQ(g.node(i).position(), net.points[i]) << i;
+  EXPECT_NE(id(live, 5), 5u);
+  live.apply("pin 5");
+  EXPECT_TRUE(live.scene().is_pinned(id(live, 5)));
+  live.apply(request("cut", number(7), number(8)));
+  EXPECT_EQ(live.readings().torn_edges, 1u);
+  EXPECT_EQ(g.node(number(7)).degree(), 1u);
 }
 
 // ------------------------------------------------------------------------ Hand
@@ -549,8 +573,8 @@ TEST(Requests, AreRefusedAndChangeNothing) {
                   "-1 is not a positive multiple of the stability limit"),
         std::pair("grab 1 0 0",
                   "ends too early, expected three coordinates [m]"),
-        std::pair("cut 1", "ends too early, expected the id of a node"),
-        std::pair("pin -1", "'-1' is not the id of a node")}) {
+        std::pair("cut 1", "ends too early, expected the number of a node"),
+        std::pair("pin -1", "'-1' is not the number of a node")}) {
     EXPECT_EQ(Live::error_in(text), error);
     EXPECT_THROW(live.apply(text), std::invalid_argument) << text;
   }

@@ -202,6 +202,12 @@ TEST(ParseNet, TakesTheFilesOfOtherPrograms) {
   const char* const little = std::endian::native == std::endian::little
                                  ? "binary_little_endian"
                                  : "binary_big_endian";
+  const std::string
+      vtp = std::string("<VTKFile type=\"PolyData\" header_type=\"UInt64\"") +
+            " byte_order=\"LittleEndian\"><Piece><Points><DataArray "
+            "type=\"Float32\" format=\"binary\">",
+      points = "JAAAAAAAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AACAPwAAAAA=",
+      indices = "<DataArray type=\"Int32\" format=\"binary\" ";
   struct {
     const char* file;
     std::string text, shape;
@@ -230,12 +236,11 @@ TEST(ParseNet, TakesTheFilesOfOtherPrograms) {
        std::string("ply\nformat ") + little + " 1.0\n" + ply_head + ply,
        "3 1 1: 0-1-2"},
       {"a.vtp",
-       "<?xml version='1.0'?><VTKFile type=\"PolyData\">\n<PolyData><Piece>"
-       "<Points><DataArray type=\"Float32\" format=\"ascii\">0 0 0 1 0 0\n1 1 0"
-       "</DataArray></Points><Polys>"
-       "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">"
-       "0 1 2</DataArray><DataArray type=\"Int64\" Name=\"offsets\" "
-       "format=\"ascii\">3</DataArray></Polys></Piece></PolyData></VTKFile>",
+       vtp + points + "</DataArray></Points><Polys>" + indices +
+           "Name=\"connectivity\">DAAAAAAAAAAAAAAAAQAAAAIAAAA=</DataArray>" +
+           indices +
+           "Name=\"offsets\">BAAAAAAAAAADAAAA</DataArray></Polys></Piece></"
+           "VTKFile>",
        "3 1 0: 0-1-2"}};
   for (const auto& c : cases)
     EXPECT_EQ(shape(lab::parse_net(c.text, c.file)), c.shape) << c.text;
@@ -282,19 +287,39 @@ TEST(ParseNet, RefusesEachWrongLine) {
     std::string text, error;
   } const cases[] = {
       {"a.obj", v + "f 1 2 3 4 5\n", "a.obj:6: a face of 5 corners, expected "},
-      {"a.obj", v + "f 1 2 6\n", "a.obj:6: there is no node 5, expected "},
+      {"a.obj", v + "f 1 2 6\n", "a.obj:6: there is no node 6, expected "},
       {"a.obj", v + "f 1 2 0\n", "a.obj:6: there is no node 0, expected "},
-      {"a.obj", v + "f 1 2 2\n", "a.obj:6: node 1 comes twice, expected "},
+      {"a.obj", v + "f 1 2 2\n", "a.obj:6: node 2 comes twice, expected "},
+      {"a.obj", v + "f 1 2 -6\n", "a.obj:6: there is no node -6, expected "},
       {"a.obj", "v 0 0\n", "a.obj:1: 2 coordinates, expected 'v x y z'"},
       {"a.obj", "# no node\n", "a.obj: has no node, expected "},
       {"a.off", "OFF\n3 1 0\n0 0 0\n", "a.off: ends early, expected 'OFF'"},
+      {"a.off", "OFF\n1 0 0\n0 0 0\n1 1 1\n", "a.off:4: more lines than that"},
+      {"a.off", "OFF\n-1 0 0\n", "a.off:2: a number below 0, expected 'OFF'"},
+      {"a.stl", "solid a\nvertex 0 0 0\n", "a.stl: ends early, expected an "},
       {"a.stl", "nothing\n", "a.stl:1: 'nothing' begins the file, expected "},
       {"a.ply", "plot\n", "a.ply: has no header, expected "},
       {"a.ply",
        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
        "end_header\n1\n",
-       "a.ply: 'vertex' 1: the file ends early, expected "},
+       "a.ply:7: 'vertex' 1: the file ends early, expected "},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+       "end_header\n1\n2\n",
+       "a.ply:6: more data, expected "},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement "
+       "face 1\nproperty list uchar float vertex_index\nend_header\n1\n"
+       "3 0 0.5 2\n",
+       "a.ply:9: 'face' 0: there is no node 0.5, expected "},
+      {"a.ply", "ply\nformat binary\nend_header\n",
+       "a.ply:2: 'binary' is no format, expected "},
       {"a.vtp", "<VTKFile type=\"ImageData\">", "a.vtp: no arrays that can "},
+      {"a.vtp",
+       "<VTKFile type=\"PolyData\" header_type=\"UInt64\" "
+       "byte_order=\"LittleEndian\"><Points><DataArray type=\"Float32\" "
+       "format=\"binary\">CAAAAAAAAAAAAAAAAACAPw==</DataArray>",
+       "a.vtp: 2 coordinates, expected VTK PolyData"},
       {"a.net", "node 0 0\n", "a.net:1: 2 coordinates, expected 'node x y z'"},
       {"a.net", "node 0 0 0 fixed\n",
        "a.net:1: 'fixed' in the line, expected "},

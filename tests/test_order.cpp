@@ -1,4 +1,4 @@
-// OrderedCloth.hpp: which meshes get another order in memory, which one, and
+// OrderedCloth.hpp: which cloths get another order in memory, which one, and
 // that nobody can tell by the indices.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -50,8 +50,7 @@ Shape shuffled(unsigned side) {
   return s;
 }
 
-/** A cloth as build_ordered_cloth() says, in no other order than that of the
- * mesh. */
+/** The same cloth in no other order than that of the mesh. */
 void build_simply(Cloth& g, const Shape& s, MeshSprings::Kind mesh) {
   std::vector<Node> n;
   for (Point p : s.points)
@@ -61,6 +60,12 @@ void build_simply(Cloth& g, const Shape& s, MeshSprings::Kind mesh) {
       if (mesh == MeshSprings::diagonals || a + b != 3)
         g.add_edge(n[q[a]], n[q[b]],
                    {100, norm(s.points[q[a]] - s.points[q[b]])});
+}
+
+/** build_cloth(), and order_in_memory(). */
+void build_in_order(Cloth& g, const Shape& s, MeshSprings::Kind mesh) {
+  build_cloth(g, s.points, s.quads, mesh);
+  order_in_memory(g);
 }
 
 /** Whether the two look the same to whoever asks by index. */
@@ -94,34 +99,6 @@ double mean_distance(const Cloth& g) {
   return sum / g.num_edges();
 }
 
-// ------------------------------------------------------------------- is_local
-
-TEST(IsLocal, HoldsForEveryGridAndForAnythingSmall) {
-  for (unsigned side : {2u, 5u, 100u, 1200u})
-    EXPECT_TRUE(is_local(grid_quads(side))) << side;
-  EXPECT_TRUE(is_local({}));
-  EXPECT_TRUE(is_local(shuffled(30).quads));
-}
-
-TEST(IsLocal, DoesNotHoldForAShuffledGrid) {
-  EXPECT_FALSE(is_local(shuffled(100).quads));
-}
-
-// -------------------------------------------------------------- cuthill_mckee
-
-TEST(CuthillMcKee, KeepsTheQuadsOfAGridAsCloseAsItsFrontIsLong) {
-  for (unsigned side : {2u, 10u, 100u}) {
-    const Shape s = shuffled(side);
-    const MeshOrder order = cuthill_mckee(s.points.size(), s.quads);
-    const std::vector<Quad> quads = in_order(s.quads, order);
-    EXPECT_TRUE(side < 100 || is_local(quads));
-    for (const Quad& q : quads) {
-      auto [low, high] = std::minmax_element(q.begin(), q.end());
-      EXPECT_LE(*high - *low, 2 * side);
-    }
-  }
-}
-
 /** A mesh of any quads whatever, some of them alike, some points in none. */
 rc::Gen<Shape> meshes() {
   return rc::gen::exec([] {
@@ -145,27 +122,12 @@ rc::Gen<Shape> meshes() {
   });
 }
 
-TEST(CuthillMcKee, HasEveryPointAndEveryQuadOnce) {
-  EXPECT_TRUE(rc::check([] {
-    const Shape s = *meshes();
-    MeshOrder order = cuthill_mckee(s.points.size(), s.quads);
-    std::sort(order.points.begin(), order.points.end());
-    std::sort(order.quads.begin(), order.quads.end());
-    RC_ASSERT(order.points.size() == s.points.size());
-    RC_ASSERT(order.quads.size() == s.quads.size());
-    for (unsigned i = 0; i < s.points.size(); ++i)
-      RC_ASSERT(order.points[i] == i);
-    for (unsigned q = 0; q < s.quads.size(); ++q)
-      RC_ASSERT(order.quads[q] == q);
-  }));
-}
-
 // ------------------------------------------------- what becomes of it: a cloth
 
-TEST(BuildOrderedCloth, OrdersAShuffledMeshInMemory) {
+TEST(OrderInMemory, OrdersAShuffledMeshInMemory) {
   const Shape s = shuffled(100), rows = grid(100);
   Cloth g, simple, ordered;
-  build_ordered_cloth(g, s.points, s.quads, MeshSprings::diagonals);
+  build_in_order(g, s, MeshSprings::diagonals);
   build_simply(simple, s, MeshSprings::diagonals);
   build_simply(ordered, rows, MeshSprings::diagonals);
   expect_same(g, simple);
@@ -189,17 +151,30 @@ TEST(BuildOrderedCloth, OrdersAShuffledMeshInMemory) {
   EXPECT_GT(constant, 0.9 * g.num_nodes());
 }
 
-TEST(BuildOrderedCloth, LeavesAMeshThatIsInOrder) {
+TEST(IsLocal, HoldsForEveryGridAndForAnythingSmall) {
+  for (unsigned side : {2u, 5u, 100u, 1200u}) {
+    Cloth g;
+    build_simply(g, grid(side), MeshSprings::plain);
+    EXPECT_TRUE(is_local(g)) << side;
+  }
+  Cloth small, large;
+  build_simply(small, shuffled(30), MeshSprings::diagonals);
+  build_simply(large, shuffled(100), MeshSprings::diagonals);
+  EXPECT_TRUE(is_local(small));
+  EXPECT_FALSE(is_local(large));
+}
+
+TEST(OrderInMemory, LeavesAMeshThatIsInOrder) {
   Cloth g, simple;
   const Shape s = grid(100);
-  build_ordered_cloth(g, s.points, s.quads, MeshSprings::diagonals);
+  build_in_order(g, s, MeshSprings::diagonals);
   build_simply(simple, s, MeshSprings::diagonals);
   expect_same(g, simple);
   for (Node n : g.nodes()) EXPECT_EQ(n.id(), n.index());
   for (Edge e : g.edges()) EXPECT_EQ(e.id(), e.index());
 }
 
-TEST(BuildOrderedCloth, ShowsEveryMeshInItsOwnOrder) {
+TEST(OrderInMemory, ShowsEveryMeshInItsOwnOrder) {
   unsigned reordered = 0;
   EXPECT_TRUE(rc::check([&] {
     const Shape s = *meshes();
@@ -211,23 +186,21 @@ TEST(BuildOrderedCloth, ShowsEveryMeshInItsOwnOrder) {
       for (int k = 0; k < 50; ++k) old.push_back(g.add_node(Point(k)));
       for (int k = 0; k < 49; ++k) g.add_edge(old[k], old[k + 1]);
       for (int k = 0; k < 50; ++k) g.remove_node(old[7 * k % 50]);
-      build_ordered_cloth(g, s.points, s.quads, mesh);
+      build_in_order(g, s, mesh);
       build_simply(simple, s, mesh);
       expect_same(g, simple);
       for (Node n : old) RC_ASSERT(!g.has_node(n));
-      reordered += !is_local(s.quads);
+      reordered += !is_local(simple);
     }
   }));
   EXPECT_GT(reordered, 40u);
 }
 
-TEST(BuildOrderedCloth, MovesAShuffledMeshAsTheOrderedOne) {
+TEST(OrderInMemory, MovesAShuffledMeshAsTheOrderedOne) {
   const Shape s = shuffled(60), rows = grid(60);
-  ASSERT_FALSE(is_local(s.quads));
   Cloth g, expected;
-  build_ordered_cloth(g, s.points, s.quads, MeshSprings::diagonals);
-  build_ordered_cloth(expected, rows.points, rows.quads,
-                      MeshSprings::diagonals);
+  build_in_order(g, s, MeshSprings::diagonals);
+  build_in_order(expected, rows, MeshSprings::diagonals);
   auto force = make_combined_force(GravityForce(), MassSpringForce());
   Verlet method, expected_method;
   PinConstraint pin(g), expected_pin(expected);

@@ -432,11 +432,14 @@ TEST_F(SceneFile, IsWrittenAsItIsRead) {
       "plane = [\"friction 0.3\"]\nsphere = [\"radius 0.3\"]\n"
       "self-collision = \"thickness 0.01\"\ntear-strain = 0.5\n"
       "t-end = 0.3\ndt = \"0.002\"\nmeasure = \"energy\"\n"
-      "tear = [\"\"]\nview = \"from 0 0 0 to 1 2 3\"\n");
+      "tear = [\"\"]\nview = \"from 0 0 0 to 1 2 3\"\n"
+      "at = [\"0.1 unpin 0\", \"0.2 gravity 3\"]\ngravity = \"0 0 -2\"\n");
+  EXPECT_EQ(m.gravity, 2);
   const std::string text = to_scene_file(m);
   const Model n = load(text);
   EXPECT_EQ(to_scene_file(n), text);
   EXPECT_EQ(n.pins, m.pins);
+  EXPECT_EQ(n.at, m.at);
   EXPECT_EQ(n.material.modulus, 0.1);
   EXPECT_EQ(n.tear_strain, 0.5);
   EXPECT_EQ(n.step.dt, 0.002);
@@ -484,12 +487,8 @@ TEST_F(SceneFile, SaysWhereItIsWrong) {
   EXPECT_EQ(complaint(sheet), "");
   EXPECT_EQ(complaint(sheet + "colour = 3\n"), "2: unknown key colour");
   EXPECT_EQ(complaint(sheet + "config = \"x\"\n"), "2: unknown key config");
-  EXPECT_EQ(complaint(sheet + "t-end = 1\nt-end = 2\n"),
-            "3: t-end is set a second time, first on line 2");
-  EXPECT_EQ(complaint(sheet + "t-end = 1\n\n \"t-end\" = 2\n"),
-            "4: t-end is set a second time, first on line 2");
-  EXPECT_EQ(complaint("pin = [\n  \"x 0\",\n]\npin = \"x 1\"\n"),
-            "4: pin is set a second time, first on line 1");
+  EXPECT_EQ(complaint(sheet + "t-end = 1\n\nt-end = 2\n").substr(0, 28),
+            "4: \"t-end = 2\" is not TOML (");
   EXPECT_EQ(complaint(sheet + "t-end = \"long\"\n"),
             "2: --t-end is long, expected a time [s], 0 or more");
   EXPECT_EQ(complaint(sheet + "t-end = [1, 2]\n"),

@@ -25,7 +25,7 @@ lab/bench     : lab/fast
 lab/live      : lab/stepping
 lab/viewer    : lab/stepping
 lab/run       : lab/viewer lab/live
-lab/python    : lab/advice
+lab/python    : lab/advice lab/live
 lab/page      : lab/live
 '
 # Python, JavaScript, CSS and HTML reach another room by the name of its folder

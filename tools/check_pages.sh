@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit
 
 status=0
 for page in lab/README.md lab/stability/README.md lab/scenes/README.md \
-  docs/examples/README.md course/README.md course/teaching.md; do
+  data/README.md docs/examples/README.md course/README.md course/teaching.md; do
   echo "$page"
   tools/check_commands.sh "$page" || status=1
 done

@@ -104,7 +104,7 @@ cloth --paused --csv "$tmp/w.csv"; kill -TERM "$run"
 ends "SIGTERM ends a paused window" 143 "SIGTERM ended the run at t = 0 s of 5 s; kept: $tmp/w.csv (1 row)"
 
 # A run with a change, and again.
-cloth --t-end 0.005 --at '0.002 compare rk4 1'
+cloth --t-end 0.005 --at '0.002 gravity 3'
 ever titled "t = 0.005 s"; press r; ever titled "t = 0.005 s"; press q
 ends "a change is made again" 0 ": 5 steps to t = 0.005 s"
 

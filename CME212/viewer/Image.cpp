@@ -108,19 +108,11 @@ void Video::start_ffmpeg(double rate) {
   auto add = [&args](std::initializer_list<const char*> more) {
     args.insert(args.end(), more);
   };
-  const std::string ending = ending_of(path_);
-  if (ending == ".gif")
+  if (ending_of(path_) == ".gif")
     add({"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse", "-f", "gif"});
   else
-    add({"-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p"});
-  if (ending == ".webm")
-    add({"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-cpu-used", "4",
-         "-f", "webm"});
-  else if (ending == ".mkv")
-    add({"-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-f",
-         "matroska"});
-  else if (ending != ".gif")
-    add({"-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-movflags",
+    add({"-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p",
+         "-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-movflags",
          "+faststart", "-f", "mp4"});
   add({to.c_str(), nullptr});
 

@@ -43,8 +43,8 @@ struct Image {
 };
 
 /** The formats of films, by the ending of a name. */
-inline constexpr std::array<std::string_view, 4> film_endings = {
-    ".mp4", ".mkv", ".webm", ".gif"};
+inline constexpr std::array<std::string_view, 2> film_endings = {".mp4",
+                                                                 ".gif"};
 
 /** Write @a image to the file @a path as PNG.
  * Throws std::runtime_error "path: reason"; then @a path is as it was. */

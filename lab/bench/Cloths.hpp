@@ -20,7 +20,7 @@ namespace lab::bench {
 /** - grid: ids and springs row by row, as build_cloth() makes them
  * - mixed: the same, but ids and springs are in random order within windows of
  *   64: neighbors are as near in memory, but not at a constant distance
- * - shuffled: read in random order, and reordered by build_ordered_cloth()
+ * - shuffled: read in random order, and order_in_memory()
  * - torn: the grid, after a random half of its nodes was removed
  * - reindexed: torn, and then GraphArrays::reindex() */
 enum class Kind { grid, mixed, shuffled, torn, reindexed };
@@ -68,7 +68,8 @@ inline void build(Cloth& g, unsigned side, Kind kind) {
     }
     return;
   }
-  build_ordered_cloth(g, points, quads, MeshSprings::diagonals);
+  build_cloth(g, points, quads, MeshSprings::diagonals);
+  order_in_memory(g);
   if (kind != Kind::torn && kind != Kind::reindexed) return;
   std::vector<Node> nodes(g.node_begin(), g.node_end());
   std::shuffle(nodes.begin(), nodes.end(), std::mt19937(212));

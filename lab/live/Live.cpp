@@ -222,10 +222,11 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines) {
   return all;
 }
 
-Live::Live(Model m, std::vector<Change> changes)
+Live::Live(Model m) : Live(m, mesh_of(m)) {}
+Live::Live(Model m, Net mesh)
     : model_(std::move(m)),
-      mesh_(mesh_of(model_)),
-      changes_(std::move(changes)) {
+      mesh_(std::move(mesh)),
+      changes_(read_changes(model_.at)) {
   main_.emplace(std::make_unique<Scene>(recipe_of(model_, mesh_), model_.step,
                                         *model_.method),
                 *model_.method);
@@ -247,7 +248,7 @@ bool Live::step() {
     return c.time <= scene().time() + round_off * scene().dt();
   };
   for (; changes_left() > 0 && is_due(changes_[next_]); ++next_)
-    apply(changes_[next_].request);
+    make(changes_[next_].request);
   if (done()) return false;
   ++calls_;
   for (int k = 0; k < round_ && !done() && !interrupted(); ++k)

@@ -2,13 +2,14 @@
 /** @file Live.hpp
  * Live: a scene that is changed while it runs. A change is a request, one line
  * of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The page sends
- * such lines; `./cloth --at` and scene files have them with a time [s] before
- * each, "0.5 gravity 3". A recording, as in the page's links, has the number of
- * steps instead: it repeats all bits, and steps that --dt auto takes back are
- * made again at other times. Requests.cpp lists all requests.
+ * such lines; Model::at has them with a time [s] before each, "0.5 gravity 3".
+ * A recording, as in the page's links, has the number of steps instead: it
+ * repeats all bits, and steps that --dt auto takes back are made again at other
+ * times. Requests.cpp lists all requests.
  *
- * A node is named by its id, Node::id(), which stays the same when others are
- * removed. */
+ * A node is named by its number in the mesh, from 0, which stays the same when
+ * others are removed. */
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -41,7 +42,8 @@ std::string request(const char* name, const Values&... values) {
 }
 
 using CME212::Ray;
-/** The edges of @a g that a stroke across the screen crosses. A ray that moves
+/** The edges of @a g, by the ids of their ends, that a stroke across the screen
+ * crosses. A ray that moves
  * from each of @a stroke to the next one sweeps a surface; these edges meet it.
  * O(edges * rays) */
 std::vector<std::array<unsigned, 2>> crossed_edges(const Cloth& g,
@@ -109,10 +111,11 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines);
  * One thread at a time. */
 class Live {
  public:
-  /** At t = 0.
-   * @param changes made by the first step() from their times on
-   * Throws as Scene(model). */
-  explicit Live(Model m, std::vector<Change> changes = {});
+  /** At t = 0. The changes of Model::at are made by the first step() from
+   * their times on.  Throws as Scene(model), and as read_changes() */
+  explicit Live(Model m);
+  /** The same with recipe_of(@a m, @a mesh). */
+  Live(Model m, Net mesh);
 
   /** Back to t = 0, with the parameters of @a m and all changes to come.
    * @pre it was made from @a m */
@@ -172,8 +175,8 @@ class Live {
    */
   Readings readings(bool sharp = true);
 
-  /** All requests so far as lines of changes, then the line "N end" with
-   * calls().  O(its length) */
+  /** All requests so far, but Model::at, as lines of changes, then the line
+   * "N end" with calls().  O(its length) */
   std::string recording() const;
 
  private:
@@ -213,6 +216,16 @@ class Live {
     if (!main_->runs()) return;
     for (Side* side : sides())
       if (side->runs()) use(*side->scene);
+  }
+  void make(const std::string& request);
+  /** The id of the node of this number, and the other way round. */
+  unsigned id_of(unsigned number) const {
+    const auto& ids = scene().recipe().built->ids;
+    return number < ids.size() ? ids[number] : unsigned(-1);
+  }
+  unsigned number_of(unsigned id) const {
+    const auto& ids = scene().recipe().built->ids;
+    return unsigned(std::ranges::find(ids, id) - ids.begin());
   }
   void set_step(const MethodEntry& method, const TimeStep& step);
   void set_method(const MethodEntry& method);

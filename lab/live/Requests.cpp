@@ -31,7 +31,7 @@ using Ends = std::array<unsigned, 2>;
 
 // read(in, value): the next words as a value of a request.
 void read(Line& in, unsigned& node) {
-  node = in.number<unsigned>("the id of a node");
+  node = in.number<unsigned>("the number of a node");
 }
 void read(Line& in, Point& p) {
   for (int k = 0; k < 3; ++k) p[k] = in.number("three coordinates [m]");
@@ -150,7 +150,7 @@ Live::Table::Table() {
        [](Model& m) -> double& { return m.gravity; });
   // Pull a node towards a point; move that point; let the node go.
   on("grab", plain, [](Live& live, unsigned node, Point target) {
-    live.each_running([&](Scene& s) { s.grab(node, target); });
+    live.each_running([&](Scene& s) { s.grab(live.id_of(node), target); });
     live.main_->mark();
   });
   on("move", override, [](Live& live, Point target) {
@@ -164,26 +164,27 @@ Live::Table::Table() {
   });
   // Remove edges, each by its ends; or all that a stroke of rays crosses.
   on("cut", plain, [](Live& live, std::vector<Ends> edges) {
+    for (Ends& e : edges) e = {live.id_of(e[0]), live.id_of(e[1])};
     live.each_running([&](Scene& s) { s.cut(edges); });
   });
   on("stroke", expand, [](Live& live, std::vector<Ray> rays) {
     std::string cut = "cut";
     for (const auto& [i, j] : crossed_edges(live.scene().cloth(), rays))
-      cut += request_word(i) + request_word(j);
+      cut += request_word(live.number_of(i)) + request_word(live.number_of(j));
     if (cut != "cut") live.apply(cut);
   });
   // Hold a node where it is, at rest; let it go, whatever pin holds it; or
   // whichever of both changes something.
   on("pin", plain, [](Live& live, unsigned node) {
-    live.each_running([&](Scene& s) { s.pin(node); });
+    live.each_running([&](Scene& s) { s.pin(live.id_of(node)); });
   });
   on("unpin", plain, [](Live& live, unsigned node) {
-    live.each_running([&](Scene& s) { s.unpin(node); });
+    live.each_running([&](Scene& s) { s.unpin(live.id_of(node)); });
     live.main_->mark();
     live.tune();
   });
   on("toggle", expand, [](Live& live, unsigned node) {
-    const bool held = live.main_->scene->is_pinned(node);
+    const bool held = live.main_->scene->is_pinned(live.id_of(node));
     live.apply(request(held ? "unpin" : "pin", node));
   });
   // Run copies of the present state beside it, up to three, by other methods,
@@ -202,16 +203,21 @@ Live::Table::Table() {
   });
 }
 
-void Live::apply(const std::string& text) {
-  if (const auto error = error_in(text); !error.empty())
-    throw std::invalid_argument(error);
+void Live::make(const std::string& text) {
   Line in(text);
   const Table::Request& request = *Table::find(in);
   // A guard that looks now may find a failure that it would find later.
   if (request.kind != Table::expand)
     each_running([](Scene& scene) { scene.settle(); });
   request.run(in, this);
-  if (request.kind != Table::expand)
+}
+
+void Live::apply(const std::string& text) {
+  if (const auto error = error_in(text); !error.empty())
+    throw std::invalid_argument(error);
+  make(text);
+  Line in(text);
+  if (Table::find(in)->kind != Table::expand)
     recording_ += std::to_string(calls_) + ' ' + text + '\n';
 }
 

@@ -16,6 +16,7 @@
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/FastestCpu.hpp"
+#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/python/Arrays.hpp"
 #include "lab/scenes/Fields.hpp"
@@ -79,12 +80,36 @@ const MethodEntry& method_called(const std::string& name) {
   return *m.method;
 }
 
-/** Why a run failed. Values; the text is made of them at the end. */
+/** Why a run failed, or is not the motion of its scene. */
 struct Why {
-  Failure failure;
-  Explanation text;
-  std::optional<Cure> cure;
+  std::string kind;
+  long long step = 0;
+  double time = 0, dt = 0;
+  std::optional<long long> node;
+  std::string cause, text;
+  std::optional<std::pair<std::string, double>> cure;
 };
+
+/** Throws Interrupted. */
+std::optional<Why> why_failed(const Scene& s) {
+  Why w;
+  if (const auto& f = s.failure()) {
+    constexpr const char* kinds[] = {"start", "diverged", "refused"};
+    const Explanation e = s.explanation();
+    w.kind = kinds[int(f->kind)], w.cause = e.cause, w.text = e.text();
+    w.step = f->step, w.time = f->time, w.dt = f->dt;
+    if (f->place.index >= 0) w.node = f->place.index;
+  } else {  // as ./cloth ends: a chosen step has its own watch
+    const EnergyWatch& watch = *s.energy_watch();
+    if (s.control() || !watch.gains()) return std::nullopt;
+    w.kind = "energy", w.cause = watch.gain_text();
+    w.text = w.cause + "; " + s.remedy();
+    w.step = s.steps(), w.time = s.time(), w.dt = s.dt();
+  }
+  if (const auto& cure = s.diagnosis().cure)
+    w.cure = {std::string(cure->method.info.name), cure->dt};
+  return w;
+}
 
 /** The states of a run, one every so many seconds. */
 struct Result {
@@ -148,7 +173,13 @@ class Simulation {
       set_field(m, "dt", {dt});
     if (atol) m.step.tolerance = *atol;
     check_step(m);
-    Scene scene = start(m.step, *m.method);
+    std::optional<Live> live;
+    if (!m.at.empty()) live.emplace(m, mesh_);
+    const auto alone = live ? nullptr
+                            : std::make_unique<Scene>(recipe_of(model_, mesh_),
+                                                      m.step, *m.method);
+    Scene& scene = live ? live->scene() : *alone;
+    scene.watch_energy(m.t_end);
     Result r;
     r.add(scene);
     // Signals are looked for at least every 1e7 springs' forces.
@@ -158,17 +189,15 @@ class Simulation {
       const double next =
           between * (std::floor(r.t.back() / between + 1e-6) + 1);
       const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
-      scene.steps_at_once(int(std::clamp(std::min(left, at_once), 1.,
-                                         double(Scene::guard_interval))),
-                          m.t_end);
+      const int most = int(std::clamp(std::min(left, at_once), 1.,
+                                      double(Scene::guard_interval)));
+      live ? live->step() : scene.steps_at_once(most, m.t_end);
       r.take_back(scene.time());
       const bool due = scene.time() >= next - 1e-6 * scene.dt();
       if ((due || scene.done(m.t_end)) && scene.check()) r.add(scene);
     }
     r.steps = scene.steps(), r.evaluations = scene.evaluations();
-    if (scene.failure())
-      r.why =
-          Why{*scene.failure(), scene.explanation(), scene.diagnosis().cure};
+    r.why = why_failed(scene);
     return r;
   }
 
@@ -252,26 +281,12 @@ std::string step_text(const py::object& dt) {
 Advice advise_on(const Simulation& s, std::optional<double> tolerance,
                  const std::string& method) {
   Model m = s.model();
+  if (!m.at.empty()) throw SceneError("at", "cannot be combined with advice");
   AdviceRules rules;
   if (tolerance) set_field(m, "tolerance", {CME212::exact_text(*tolerance)});
   if ((rules.keeps_method = !method.empty())) set_field(m, "method", {method});
   return without_gil([&] { return advise(m, rules); });
 }
-
-/** What run() returns. */
-struct Run {
-  py::array t, x, v, energy;
-  long long work = 0, steps = 0;
-  std::optional<Why> why;
-
-  explicit Run(Result r) : work(r.evaluations), steps(r.steps), why(r.why) {
-    const auto states = py::ssize_t(r.t.size()), n = py::ssize_t(r.nodes);
-    t = as_array(std::move(r.t), {states});
-    energy = as_array(std::move(r.energy), {states});
-    x = as_array(std::move(r.x), {states, n, 3});
-    v = as_array(std::move(r.v), {states, n, 3});
-  }
-};
 
 // ------------------------------------------------------------------ The module
 
@@ -313,58 +328,49 @@ void define_values(py::module_& module) {
       });
 
   py::class_<Why>(module, "Failure", "How and why a run failed.")
-      .def_property_readonly(
-          "kind",
-          [](const Why& w) {
-            constexpr const char* names[] = {"start", "diverged", "refused"};
-            return names[int(w.failure.kind)];
-          },
-          "'start', 'diverged' or 'refused'.")
-      .def_property_readonly(
-          "step", [](const Why& w) { return w.failure.step; },
-          "The number of the step that failed, from 1.")
-      .def_property_readonly(
-          "time", [](const Why& w) { return w.failure.time; },
-          "The time of the last good state [s].")
-      .def_property_readonly(
-          "dt", [](const Why& w) { return w.failure.dt; },
-          "The step that failed [s].")
-      .def_property_readonly(
-          "node",
-          [](const Why& w) {
-            const long long i = w.failure.place.index;
-            return i < 0 ? std::nullopt : std::optional(i);
-          },
-          "The worst node of the bad state, or None.")
-      .def_property_readonly(
-          "cause", [](const Why& w) { return w.text.cause; },
-          "The cause, in words.")
-      .def_property_readonly(
-          "cure",
-          [](const Why& w) {
-            return w.cure
-                       ? std::optional(std::pair(
-                             std::string(w.cure->method.info.name), w.cure->dt))
-                       : std::nullopt;
-          },
-          "A method and a step [s] with which a trial did not fail, or None.")
-      .def("__str__",
-           [](const Why& w) { return without_dashes(w.text.text()); });
-
-  py::class_<Run>(module, "Result", "The states of a run: k of n nodes.")
-      .def_readonly("t", &Run::t, "Times [s], shape (k,).")
+      .def_readonly("kind", &Why::kind,
+                    "'start', 'diverged', 'refused'; or 'energy': the method "
+                    "has added energy, so this is not the scene's motion.")
+      .def_readonly("step", &Why::step,
+                    "The number of the step that failed, from 1; of the last "
+                    "one for 'energy'.")
+      .def_readonly("time", &Why::time, "The time of the last good state [s].")
+      .def_readonly("dt", &Why::dt, "The step that failed [s].")
+      .def_readonly("node", &Why::node,
+                    "The worst node of the bad state, or None.")
+      .def_readonly("cause", &Why::cause, "The cause, in words.")
       .def_readonly(
-          "x", &Run::x,
-          "Positions [m], shape (k, n, 3); nan: the node was removed.")
-      .def_readonly("v", &Run::v, "Velocities [m/s], shape (k, n, 3).")
-      .def_readonly("energy", &Run::energy,
-                    "Kinetic, elastic and gravitational energy [J], together, "
-                    "shape (k,).")
-      .def_readonly("work", &Run::work, "Force evaluations.")
-      .def_readonly("steps", &Run::steps, "Steps done.")
-      .def_readonly("why", &Run::why, "A Failure, or None.")
+          "cure", &Why::cure,
+          "A method and a step [s] with which a trial did not fail, or None.")
+      .def("__str__", [](const Why& w) { return without_dashes(w.text); });
+
+  // An array of a Result, in its memory.
+  const auto array = [](auto values, bool of_nodes) {
+    return [=](const py::object& self) {
+      const auto& r = self.cast<const Result&>();
+      std::vector<py::ssize_t> shape = {py::ssize_t(r.t.size())};
+      if (of_nodes) shape.insert(shape.end(), {py::ssize_t(r.nodes), 3});
+      return py::array_t<double>(
+          shape, reinterpret_cast<const double*>((r.*values).data()), self);
+    };
+  };
+  py::class_<Result>(module, "Result", "The states of a run: k of n nodes.")
+      .def_property_readonly("t", array(&Result::t, false),
+                             "Times [s], shape (k,).")
       .def_property_readonly(
-          "status", [](const Run& r) { return r.why ? 3 : 0; },
+          "x", array(&Result::x, true),
+          "Positions [m], shape (k, n, 3); nan: the node was removed.")
+      .def_property_readonly("v", array(&Result::v, true),
+                             "Velocities [m/s], shape (k, n, 3).")
+      .def_property_readonly(
+          "energy", array(&Result::energy, false),
+          "Kinetic, elastic and gravitational energy [J], together, shape "
+          "(k,).")
+      .def_readonly("work", &Result::evaluations, "Force evaluations.")
+      .def_readonly("steps", &Result::steps, "Steps done.")
+      .def_readonly("why", &Result::why, "A Failure, or None.")
+      .def_property_readonly(
+          "status", [](const Result& r) { return r.why ? 3 : 0; },
           "0: done; 3: the run failed, and why says how.");
 
   py::class_<Advice>(module, "Advice",
@@ -408,8 +414,8 @@ void define_simulations(py::module_& module) {
              std::optional<double> t_end, const py::object& dt,
              std::optional<double> every, std::optional<double> atol) {
             const std::string step = step_text(dt);
-            return Run(without_gil(
-                [&] { return s.run(method, t_end, step, every, atol); }));
+            return without_gil(
+                [&] { return s.run(method, t_end, step, every, atol); });
           },
           py::arg("method") = "", py::arg("t_end") = py::none(),
           py::arg("dt") = py::none(), py::kw_only(),
@@ -477,7 +483,10 @@ PYBIND11_MODULE(mass_spring, module) {
   module.def(
       "scene",
       [](const std::string& file) {
-        return without_gil([&] { return Simulation(load_model(file)); });
+        Simulation s =
+            without_gil([&] { return Simulation(load_model(file)); });
+        read_changes(s.model().at);
+        return s;
       },
       py::arg("file"), "The Scene in a scene file: see lab/scenes/README.md.");
   module.def(

@@ -17,7 +17,8 @@ $(B)/python/mass_spring%: $(B)/lab/python/module.o $(B)/liblab.a
 	@mkdir -p $(@D) && echo 'link $@'
 	@$(CXX) $(lab_flags) $(speed) -shared -o $@ $^ $(LDLIBS)
 $(B)/lab/python/module.o: unit_flags = -O1 \
-  $(if $(wildcard lab/python),-isystem $(call python_has,get_path("include")))
+  $(if $(wildcard lab/python),-isystem $(call python_has,get_path("include")) \
+    $(shell $(PYTHON) -m pybind11 --includes 2>/dev/null))
 
 python-deps:
 	@tools/deps.sh build lab python

@@ -39,7 +39,7 @@ def test_limit_and_failure():
     net = oscillator()
     assert net.limit("verlet") == pytest.approx(2 / 3)
     assert net.limit("implicit-euler") == np.inf
-    assert net.run("verlet", 50.0, 0.66).status == 0
+    assert net.run("verlet", 50.0, 0.3).status == 0
     r = net.run("verlet", 50.0, 0.68)
     assert r.status == 3 and r.why.kind == "diverged" and r.why.node == 1
     assert 0 < r.why.time < 50 and r.why.dt == 0.68
@@ -73,6 +73,22 @@ def test_scene_runs_as_the_program_does():
     assert r.status == 0 and r.x.shape == (2,) + s.x.shape
     assert r.t == pytest.approx([0, 0.2])
     assert r.x[0] == pytest.approx(s.x) and r.x[1].min() < s.x.min() - 1e-4
+
+
+def test_changes_of_a_scene_and_its_energy(tmp_path):
+    file = tmp_path / "s.toml"
+    text = "sheet = 'nodes 2 1'\npin = 'x 0'\nt-end = 1\nmethod = 'verlet'\n"
+    file.write_text(text + "at = ['0.5 unpin 0']\n")
+    falls = mass_spring.scene(str(file)).run(every=0.5)
+    assert falls.x[1, 0, 2] == 0 and falls.x[2, 0, 2] < -0.5
+    with pytest.raises(ValueError, match="at cannot be combined with advice"):
+        mass_spring.scene(str(file)).advise()
+    file.write_text(text + "at = ['0.5 unpinn 0']\n")
+    with pytest.raises(ValueError, match="did you mean unpin"):
+        mass_spring.scene(str(file))
+    r = oscillator().run("forward-euler", 10.0, 0.01)
+    assert (r.status, r.why.kind) == (3, "energy")
+    assert "has added" in r.why.cause and r.why.cure and r.x.shape[0] == 2
 
 
 def test_advice():

@@ -40,7 +40,7 @@ double extent(const Scene& scene) {
 
 }  // namespace
 
-void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
+void show_beyond(const Scene& scene, Screen& screen,
                  const std::function<bool(int)>& shown) {
   const int frames = frames_in(Film::failure_seconds);
   const double end = scene.beyond_failure(extent(scene) / 3)->time();
@@ -48,7 +48,7 @@ void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
       int(std::clamp((end - scene.time()) / scene.dt(), 1.0, double(frames)));
   auto now = scene.beyond_failure(0);
   for (int k = 0; k < steps; ++k, now = now->beyond_failure(0)) {
-    screen.show(*now, rival);
+    screen.show(*now);
     if (!shown(frames * (k + 1) / steps - frames * k / steps)) return;
   }
 }
@@ -98,16 +98,16 @@ void Film::draw() {
   if (!frame && !picture) return;
   run_.check();
   failed = scene_.failure().has_value();
-  screen_->show(scene_, run_.rival());
+  screen_->show(scene_);
   if (picture) save_picture();
   if (!frame) return;
   if (failed) {
     screen_->show_card({});  // the words of the failure need its place
-    show_beyond(scene_, run_.rival(), *screen_, [this](int frames) {
+    show_beyond(scene_, *screen_, [this](int frames) {
       screen_->add_to_film(frames);
       return !interrupted();
     });
-    screen_->show(scene_, run_.rival());
+    screen_->show(scene_);
   }
   // A failure stays: there is a reason to read.
   int times = failed ? frames_in(failure_seconds) : 0;
@@ -146,9 +146,9 @@ void Film::save_picture() {
   shot_ = true;
   screen_->show_card({});
   if (!scene_.failure()) return screen_->save_picture(o_.screenshot);
-  screen_->show(*scene_.beyond_failure(extent(scene_) / 10), run_.rival());
+  screen_->show(*scene_.beyond_failure(extent(scene_) / 10));
   screen_->save_picture(o_.screenshot);
-  screen_->show(scene_, run_.rival());
+  screen_->show(scene_);
 }
 
 /** Simulated time until the frame after the next one [s]. */

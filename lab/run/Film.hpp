@@ -20,7 +20,7 @@ class Scene;
  * stays for k frames of the film; false ends it.
  * @pre scene.failure(), and it was shown; @a shown may then change it
  * only if it returns false */
-void show_beyond(const Scene& scene, const Scene* rival, Screen& screen,
+void show_beyond(const Scene& scene, Screen& screen,
                  const std::function<bool(int)>& shown);
 
 /** What came of @a scene, in lines for Screen::show_card().

@@ -43,13 +43,8 @@ constexpr const char* head =
 Usage: cloth [OPTIONS] [NODES TETS | NET])";
 
 /** The groups of the help, in its order. */
-constexpr std::array groups = {"Scene",
-                               "Material",
-                               "Method and step",
-                               "Output",
-                               "Interrupted runs",
-                               "Changes while it runs",
-                               "Advice",
+constexpr std::array groups = {"Scene",  "Material",         "Method and step",
+                               "Output", "Interrupted runs", "Advice",
                                "Other"};
 
 /** @a text in lines of at most @a width characters, where words allow. */
@@ -161,7 +156,7 @@ void check(Options& o) {
                      "the scene of a checkpoint is fixed");
   if (!o.json.empty() && !o.asks_advice())
     throw SceneError("json", "needs --advise, --assess or --auto");
-  if (!read_changes(o.changes).empty())
+  if (!read_changes(o.model.at).empty())
     for (const auto& [option, given] :
          {std::pair("restart", !o.restart.empty()),
           std::pair("checkpoint", !o.checkpoint.empty()),
@@ -294,7 +289,7 @@ void add_run_options(CLI::App& app, Options& o) {
                  "time of the screenshot [s]; negative: the end");
   add_file(app, "--record", o.video,
            "draw a film of 30 frames per second without a window; the ending "
-           "of FILE sets the format: .mp4, .mkv, .webm or .gif");
+           "of FILE sets the format: .mp4 or .gif");
   app.add_option("--size", o.size,
                  "of --screenshot and --record: WIDTHxHEIGHT [pixels]");
   app.add_option("--slow-motion", o.slow_motion,
@@ -324,11 +319,6 @@ void add_run_options(CLI::App& app, Options& o) {
            "continue from a checkpoint, to the same bits as without the "
            "interruption; the scene may be omitted; --csv continues the file "
            "of that run");
-  app.option_defaults()->group("Changes while it runs");
-  app.add_option("--at", o.changes,
-                 "change the scene at a time [s], as '0.2 unpin 0', "
-                 "'1 stiffness 400' or '0.5 cut 40 41': see lab/README.md")
-      ->allow_extra_args(false);
   app.add_option("--threads", o.threads,
                  "threads for a large cloth, which change no result; 0: one "
                  "per processor")

@@ -33,7 +33,6 @@ struct Options {
   std::string json;             ///< file for the advice
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
-  std::vector<std::string> changes;  ///< see read_changes()
 
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || assess; }

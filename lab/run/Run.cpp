@@ -81,8 +81,6 @@ void Run::restart() {
   start();
 }
 
-const Scene* Run::rival() const { return live_ ? live_->rival() : nullptr; }
-
 bool Run::done() const { return interrupted() || scene_.done(o_.model.t_end); }
 bool Run::cut_short() const {
   return interrupted() && !scene_.done(o_.model.t_end);
@@ -429,7 +427,6 @@ void Run::tell_work() const {
  * @return false: the method has made more of it than is tolerated */
 bool Run::energy_is_kept() const {
   const EnergyWatch& watch = *scene_.energy_watch();
-  using CME212::two_digits;
   std::ostringstream out;
   out.precision(3);
   out << "energy off by " << watch.off() << " J";
@@ -438,12 +435,8 @@ bool Run::energy_is_kept() const {
   if (!o_.quiet && !watch.took()) std::cout << out.str() << '\n';
   const bool kept = scene_.control() || !watch.gains();
   if (!kept)
-    std::cerr << "cloth: an error of the method has added "
-              << two_digits(watch.gain()) << " J of energy, more than the "
-              << two_digits(watch.tolerance())
-              << " J that --dt auto tolerates: this is not the motion of the "
-                 "scene; "
-              << scene_.remedy() << '\n';
+    std::cerr << "cloth: " << watch.gain_text() << "; " << scene_.remedy()
+              << '\n';
   else if (watch.loses() && !o_.quiet)
     std::cerr << warning << out.str() << ", which is an error of the method; "
               << scene_.remedy() << '\n';

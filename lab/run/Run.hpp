@@ -51,8 +51,6 @@ class Run {
   void restart();
 
   const Scene& scene() const { return scene_; }
-  /** A second scene that a change has put beside it, or null. */
-  const Scene* rival() const;
 
   /** True at the end, if the run failed, or if a signal ends it. */
   bool done() const;

@@ -60,18 +60,18 @@ class Player {
     const bool failed = scene.failure().has_value();
     screen_.show_card(run_.done() && !failed ? outcome(scene, nodes_)
                                              : std::vector<std::string>());
-    screen_.show(scene, run_.rival());
+    screen_.show(scene);
     if (!failed || exploded_ || interrupted()) return;
     exploded_ = true;
     bool again = false;
-    show_beyond(scene, run_.rival(), screen_, [&](int frames) {
+    show_beyond(scene, screen_, [&](int frames) {
       for (; frames > 0 && !again && !screen_.closed(); --frames) {
         CME212::sleep(1 / Screen::frames_per_second);
         again = screen_.take_restart();
       }
       return !again && !screen_.closed();
     });
-    again ? restart() : screen_.show(scene, run_.rival());
+    again ? restart() : screen_.show(scene);
   }
   void keep_time() {
     if (speed_ <= 0) return;

@@ -210,8 +210,7 @@ int run(Options o) {
   std::optional<Accuracy> accuracy;
   if (o.bounds_error && o.restart.empty()) accuracy = measure_accuracy(o);
   std::unique_ptr<Live> live;
-  if (const auto changes = read_changes(o.changes); !changes.empty())
-    live = std::make_unique<Live>(m, changes);
+  if (!m.at.empty()) live = std::make_unique<Live>(m);
   const auto alone = live ? nullptr : std::make_unique<Scene>(m);
   Scene& scene = live ? live->scene() : *alone;
   std::unique_ptr<Screen> window;

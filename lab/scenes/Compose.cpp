@@ -295,10 +295,10 @@ void build_model(Cloth& g, const Model& m, const Net& mesh) {
                                 std::back_inserter(quads), is_triangle);
   g.reserve(unsigned(mesh.points.size()),
             unsigned(mesh.springs.size() + 3 * others.size() / 2));
-  build_ordered_cloth(
-      g, mesh.points, all_quads && !mesh.bare_faces ? mesh.quads : quads,
-      m.edges.diagonals ? MeshSprings::diagonals : MeshSprings::plain,
-      m.stiffness);
+  build_cloth(g, mesh.points,
+              all_quads && !mesh.bare_faces ? mesh.quads : quads,
+              m.edges.diagonals ? MeshSprings::diagonals : MeshSprings::plain,
+              m.stiffness);
   const auto add = [&](unsigned i, unsigned j) {
     g.add_edge(g.node(i), g.node(j),
                {m.stiffness, norm(mesh.points[i] - mesh.points[j])});
@@ -323,6 +323,7 @@ void build_model(Cloth& g, const Model& m, const Net& mesh) {
   const auto held = is_held(m, mesh);
   for (unsigned i = 0; i < mesh.velocities.size(); ++i)
     if (!held[i]) g.node(i).value().vel = mesh.velocities[i];
+  order_in_memory(g);
 }
 
 std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {

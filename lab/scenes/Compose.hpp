@@ -97,7 +97,7 @@ double shortest_side(const Model& m);
  * beside it: in a grid of squares K = Y, and Y/2 in the sides along its
  * boundary. The factors of the regions are applied last. Nodes have the
  * velocities of the mesh, but held nodes are at rest.
- * @pre g.size() == 0; check(mesh)
+ * @pre g.size() == 0
  * Throws SceneError: a node without mass, a spring without K, a region that
  * changes nothing
  * Complexity: O(points + quads log quads + springs) */
@@ -131,7 +131,8 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
 /** The recipe of @a m.  Throws InputError, SceneError; so do its functions. */
 Recipe recipe_of(const Model& m);
 /** The same from @a mesh: mesh_of(m), or any other net, for example one in
- * memory. Then @a m may have no sheets and no files.  @pre check(mesh) */
+ * memory. Then @a m may have no sheets and no files.
+ * @pre masses are above 0; springs and faces have different nodes, all there */
 Recipe recipe_of(const Model& m, Net mesh);
 
 }  // namespace lab

@@ -58,7 +58,9 @@ std::vector<Field> fields_of(Model& m) {
        "another material in a box: from X Y Z to X Y Z [m] mass-factor F "
        "stiffness-factor F, for the mass of nodes and K of edges in it"},
       {"gravity", number, scene, &m.gravity,
-       "acceleration of free fall [m/s^2]", "an acceleration [m/s^2]"},
+       "acceleration of free fall [m/s^2], along -z; or as a vector, '0 0 "
+       "-9.81'",
+       "an acceleration [m/s^2], or 0 0 and that along z"},
       {"pin", acts, scene, &m.pins,
        "hold the nodes that start at x X y Y z Z [m] (at least one of these), "
        "or move them: velocity X Y Z [m/s] turn X Y Z [rad/s] about X Y Z [m] "
@@ -77,6 +79,10 @@ std::vector<Field> fields_of(Model& m) {
        "nodes without a common edge stay apart: thickness D [m] friction F"},
       {"t-end", asked, scene, &m.t_end, "time at which the run ends [s]",
        "a time [s], 0 or more", not_negative},
+      {"at", asked, scene, &m.at,
+       "change the scene at a time [s], as '0.2 unpin 0', '1 stiffness 400' or "
+       "'0.5 cut 40 41': see lab/README.md",
+       "a time [s] and a change"},
       {"dt", Role::method, step, &m.step,
        "step [s]; the last steps may be shorter; auto: starts with 0.6 of the "
        "stability limit that holds in every configuration, and is adapted to "
@@ -131,8 +137,11 @@ void read(const Field& f, const std::string& text, T& a) {
   } else if constexpr (Optional<T>) {
     if (!text.empty()) read(f, text, a.emplace());
   } else if constexpr (std::is_same_v<T, double>) {
+    const bool is_vector =
+        f.name == std::string_view("gravity") && text.starts_with("0 0 ");
     char* end = nullptr;
-    a = std::strtod(text.c_str(), &end);
+    a = std::strtod(text.c_str() + (is_vector ? 4 : 0), &end);
+    if (is_vector) a = -a;
     if (f.percent && (*f.percent = *end == '%')) ++end;
     if (text.empty() || *end != '\0' || !std::isfinite(a) ||
         (f.range != Word::Range::any && a < 0) ||
@@ -140,7 +149,9 @@ void read(const Field& f, const std::string& text, T& a) {
       refuse(f.name, printable(text), f.expected);
   } else if constexpr (std::is_same_v<T, std::string>) {
     a = text;
-    if (a.empty()) throw SceneError(f.name, "is empty, expected a file name");
+    if (a.empty())
+      throw SceneError(f.name, std::string("is empty, expected ") +
+                                   (*f.expected ? f.expected : "a file name"));
     if (!is_utf8(a))
       refuse(f.name, printable(a), "a name in UTF-8, as scene files are");
   } else if constexpr (std::is_same_v<T, TimeStep>) {

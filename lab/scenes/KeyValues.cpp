@@ -107,17 +107,6 @@ class Reader {
     std::size_t from = 0;  // of its line
     for (auto k = line_; k > 1 && from < text_.size(); --k)
       from = std::min(text_.find('\n', from), text_.size() - 1) + 1;
-    if (what.find("cannot redefine") != std::string::npos) {
-      auto key = text_.substr(from, text_.find('=', from) - from);
-      constexpr auto around = " \t\"'";
-      key.remove_suffix(key.size() - (key.find_last_not_of(around) + 1));
-      key.remove_prefix(std::min(key.find_first_not_of(around), key.size()));
-      const auto before = toml::parse(text_.substr(0, from));
-      const auto first = before ? before.table().find(key) : before.end();
-      if (before && first != before.end())
-        fail(printable(key) + " is set a second time, first on line " +
-             std::to_string(first->first.source().begin.line));
-    }
     const std::string_view begin = "Error while parsing ";
     if (what.starts_with(begin)) what.erase(0, begin.size());
     const auto line = text_.substr(from, text_.find('\n', from) - from);

@@ -224,6 +224,7 @@ struct Model {
   TimeStep step;
   const MethodEntry* method = default_method();  ///< never null
   double t_end = 5;                              ///< [s], >= 0
+  std::vector<std::string> at;  ///< changes meanwhile: read_changes()
   // The question
   Measure measure = Measure::com;
   double tolerance = 0.01;  ///< in the unit of the measure

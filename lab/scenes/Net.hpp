@@ -50,10 +50,4 @@ struct Net {
   std::vector<std::string> notes = {};
 };
 
-/** The error in a spring of a net of @a num_points; "" if there is none. */
-std::string error_in(const Spring& s, std::size_t num_points);
-/** Throws std::invalid_argument "ARRAY[INDEX]: what is wrong" if a cloth can't
- * be built from @a net.  O(its size) */
-void check(const Net& net);
-
 }  // namespace lab

@@ -45,9 +45,7 @@ constexpr Kind kinds[] = {
     {{"int", "int32", "Int32"}, 4, as_double<std::int32_t>},
     {{"uint", "uint32", "UInt32"}, 4, as_double<std::uint32_t>},
     {{"float", "float32", "Float32"}, 4, as_double<float>},
-    {{"double", "float64", "Float64"}, 8, as_double<double>},
-    {{"-", "-", "Int64"}, 8, as_double<std::int64_t>},
-    {{"-", "-", "UInt64"}, 8, as_double<std::uint64_t>}};
+    {{"double", "float64", "Float64"}, 8, as_double<double>}};
 const Kind& kind_of(std::string_view name) {
   for (const Kind& k : kinds)
     if (std::ranges::count(k.names, name)) return k;
@@ -90,11 +88,12 @@ Net parse_stl(std::string_view text, const std::string& file) {
     if (w[0] == "vertex") corner(point(w, 1));
     if (w[0] == "endloop" && !nodes.empty()) fail("a facet of another number");
   };
-  each_line(text, file, use, [] {
-    return std::string(
-        "an STL file of triangles: 'solid', then 'vertex x y z' "
-        "three times a facet; or a binary one");
-  });
+  const std::string expected =
+      "an STL file of triangles: 'solid', then 'vertex x y z' three times a "
+      "facet; or a binary one";
+  each_line(text, file, use, [&] { return expected; });
+  if (!nodes.empty())
+    throw InputError(file, 0, "ends early, expected " + expected);
   return std::move(b.net);
 }
 
@@ -106,15 +105,24 @@ class Ply {
  public:
   Ply(std::string_view text, const std::string& file) : file_(file) {
     header(text);
+    const auto check = [&](const std::string& what, auto read) {
+      try {
+        read();
+      } catch (const std::runtime_error& error) {
+        const auto read_so_far = text.substr(0, text.size() - rest_.size());
+        throw InputError(
+            file_,
+            ascii_ ? 1 + std::size_t(std::ranges::count(read_so_far, '\n')) : 0,
+            what + error.what() + ", expected numbers as in the header, and " +
+                corners);
+      }
+    };
     for (const Element& e : elements_)
-      for (std::size_t k = 0; k < e.count; ++k) try {
-          row(e);
-        } catch (const std::runtime_error& error) {
-          throw InputError(
-              file_, 0,
-              quoted(e.name) + ' ' + std::to_string(k) + ": " + error.what() +
-                  ", expected numbers as in the header, and " + corners);
-        }
+      for (std::size_t k = 0; k < e.count; ++k)
+        check(quoted(e.name) + ' ' + std::to_string(k) + ": ", [&] { row(e); });
+    check("", [&] {
+      if (rest_.find_first_not_of(" \t\r\n") != rest_.npos) fail("more data");
+    });
   }
   Net net() && { return std::move(b_.net); }
 
@@ -148,6 +156,9 @@ class Ply {
           if (w[0] == "format" && w.size() > 1) {
             ascii_ = w[1] == "ascii";
             swap_ = (w[1] == "binary_big_endian") != big;
+            if (!ascii_ && w[1] != "binary_big_endian" &&
+                w[1] != "binary_little_endian")
+              fail(quoted(w[1]) + " is no format");
           } else if (w[0] == "element" && w.size() == 3) {
             elements_.push_back(
                 {w[1], std::size_t(std::max(0LL, whole(w[2]))), {}});
@@ -187,7 +198,7 @@ class Ply {
     for (const Property& p : e.properties) {
       if (p.count) {
         std::vector<long long> nodes;
-        for (double left = next(*p.count); left > 0; --left)
+        for (auto left = index_of(next(*p.count)); left > 0; --left)
           nodes.push_back(index_of(next(*p.kind)));
         if (e.name == "face" && p.name.starts_with("vertex_ind"))
           b_.face(nodes);
@@ -250,7 +261,7 @@ std::string_view attribute(std::string_view tag, const std::string& name) {
 std::map<std::string, std::vector<double>> vtk_arrays(std::string_view text) {
   std::map<std::string, std::vector<double>> arrays;
   std::string section;
-  std::size_t head = 4;  // bytes before the numbers
+  constexpr std::size_t head = 8;  // bytes before the numbers
   bool swap = false;
   for (auto at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
     const auto close = std::min(text.find('>', at), text.size() - 1);
@@ -258,28 +269,20 @@ std::map<std::string, std::vector<double>> vtk_arrays(std::string_view text) {
     const auto name = tag.substr(0, tag.find_first_of(" /\n"));
     if (name == "VTKFile") {
       if (attribute(tag, "type") != "PolyData" ||
+          attribute(tag, "header_type") != "UInt64" ||
           !attribute(tag, "compressor").empty())
         break;
       swap = (attribute(tag, "byte_order") == "BigEndian") != big;
-      if (attribute(tag, "header_type") == "UInt64") head = 8;
     }
     if (name != "DataArray" && !name.empty()) section = name;
     if (name != "DataArray" || tag.ends_with('/')) continue;
     auto& values = arrays[section + '/' + std::string(attribute(tag, "Name"))];
     const auto body = text.substr(close + 1, text.find('<', close) - close - 1);
-    const auto format = attribute(tag, "format");
-    if (format == "binary") {
-      const Kind& kind = kind_of(attribute(tag, "type"));
-      const std::string bytes = bytes_of(body);
-      for (auto k = head; k + kind.size <= bytes.size(); k += kind.size)
-        values.push_back(kind.read(bytes.data() + k, swap));
-    } else if (format == "ascii") {
-      mesh_detail::for_each_line(body, [&](auto& words, std::size_t) {
-        for (auto word : words) values.push_back(number(word));
-      });
-    } else {
-      fail("arrays in format " + quoted(format));
-    }
+    if (attribute(tag, "format") != "binary") continue;
+    const Kind& kind = kind_of(attribute(tag, "type"));
+    const std::string bytes = bytes_of(body);
+    for (auto k = head; k + kind.size <= bytes.size(); k += kind.size)
+      values.push_back(kind.read(bytes.data() + k, swap));
   }
   if (arrays.empty()) fail("no arrays that can be read");
   return arrays;
@@ -291,6 +294,7 @@ Net parse_vtp(std::string_view text, const std::string& file) try {
   auto arrays = vtk_arrays(text);
   const auto points = [](const std::vector<double>& a) {
     std::vector<Point> all;
+    if (a.size() % 3 != 0) fail(CME212::count_of(a.size(), "coordinate"));
     for (std::size_t k = 0; k + 2 < a.size(); k += 3)
       all.push_back(finite({a[k], a[k + 1], a[k + 2]}));
     return all;
@@ -317,6 +321,8 @@ Net parse_vtp(std::string_view text, const std::string& file) try {
       if (double(k) < ends[end]) continue;
       use(cell), cell.clear(), ++end;
     }
+    if (!cell.empty() || (!ends.empty() && ends.back() != double(nodes.size())))
+      fail(section + ": offsets do not end where connectivity does");
   };
   cells("Polys", [&](const auto& nodes) { b.face(nodes); });
   // The strain of a line, l/L - 1, has its rest length; lines come first.
@@ -332,14 +338,11 @@ Net parse_vtp(std::string_view text, const std::string& file) try {
   });
   net.bare_faces = !net.springs.empty();
   return std::move(net);
-} catch (const InputError&) {
-  throw;
 } catch (const std::runtime_error& e) {
   throw InputError(file, 0,
-                   e.what() +
-                       std::string(", expected VTK PolyData, arrays in "
-                                   "format ascii or binary, and ") +
-                       corners);
+                   e.what() + (", expected VTK PolyData as ./cloth --vtp "
+                               "writes it, and " +
+                               corners));
 }
 
 }  // namespace lab::net_parsing

@@ -94,13 +94,15 @@ Net parse_net_lines(std::string_view text, const std::string& file) {
 
 Net parse_obj(std::string_view text, const std::string& file) {
   Builder b;
+  b.first = 1;
   const auto use = [&](Words w) {
     // "7", "7/1", "7//2", "-1/1/1": the node is the first; from 1, or from the
     // last one backwards.
     const auto node = [&b](std::string_view word) {
+      const auto n = (long long)b.net.points.size();
       const long long i = whole(word.substr(0, word.find('/')));
-      if (i == 0) fail("there is no node 0");
-      return i > 0 ? i - 1 : (long long)b.net.points.size() + i;
+      if (i == 0 || i < -n) fail("there is no node " + std::to_string(i));
+      return i > 0 ? i - 1 : n + i;
     };
     std::vector<long long> nodes;
     if (w[0] == "v") {
@@ -128,7 +130,8 @@ Net parse_off(std::string_view text, const std::string& file) {
       if (w[0].ends_with("OFF")) w = w.subspan(1);
       if (w.empty()) return;
       if (w.size() < 2) fail("one number in the line");
-      for (int k : {0, 1}) left[k] = whole(w[k]);
+      for (int k : {0, 1})
+        if ((left[k] = whole(w[k])) < 0) fail("a number below 0");
     } else if (left[0] > 0) {
       b.net.points.push_back(point(w, 0)), --left[0];
     } else if (left[1] > 0) {
@@ -138,6 +141,8 @@ Net parse_off(std::string_view text, const std::string& file) {
       for (auto word : w.subspan(1, n)) nodes.push_back(whole(word));
       n == 2 ? b.spring(nodes[0], nodes[1]) : b.face(nodes);
       --left[1];
+    } else {
+      fail("more lines than that");
     }
   };
   const std::string expected =

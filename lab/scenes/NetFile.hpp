@@ -16,10 +16,10 @@ namespace lab {
  *  - .ply: ASCII or binary; x y z, vx vy vz of vertex, lists of face, vertex1
  *    and vertex2 of edge (springs)
  *  - .stl: ASCII or binary; its corners at the same place are one node
- *  - .vtp: as ./cloth --vtp writes, and others with arrays that are ascii or
- *    binary, neither compressed nor appended
- * By hand: Assimp has coordinates in single precision, renumbers the nodes and
- * has no lines for messages; each of these formats takes 30 lines.
+ *  - .vtp: as ./cloth --vtp writes
+ * By hand: Assimp 5.2.5 gives coordinates in single precision, numbers the
+ * nodes of .obj by their faces, names no line, takes a .ply whose face has a
+ * node that is not there, and reads no velocities; OpenMesh has no springs.
  * Throws InputError: a wrong line; faces of more than four corners; an index
  * without a node; an ending that is none of these */
 Net parse_net(std::string_view text, const std::string& file);

@@ -30,7 +30,8 @@ inline long long whole(std::string_view word) {
   return mesh_detail::parse_number<long long>(word, "a whole number");
 }
 inline long long index_of(double a) {
-  if (!(std::abs(a) < 1e15)) fail("there is no node " + CME212::short_text(a));
+  if (!(std::abs(a) < 1e15) || a != std::floor(a))
+    fail("there is no node " + CME212::short_text(a));
   return (long long)(a);
 }
 inline const Point& finite(const Point& p) {
@@ -48,10 +49,11 @@ inline Point point(Words words, std::size_t k) {
 class Builder {
  public:
   Net net;
+  int first = 0;  ///< the number of the first node in the file, for messages
 
   unsigned index(long long i) const {
     if (i < 0 || i >= (long long)net.points.size())
-      fail("there is no node " + std::to_string(i));
+      fail("there is no node " + std::to_string(i + first));
     return unsigned(i);
   }
   /** The face with these @a corners around it. */
@@ -60,16 +62,14 @@ class Builder {
     if (n != 3 && n != 4) fail("a face of " + CME212::count_of(n, "corner"));
     for (std::size_t k = 0; k < n; ++k)
       if (std::ranges::count(corners, corners[k]) > 1)
-        fail("node " + std::to_string(corners[k]) + " comes twice");
+        fail("node " + std::to_string(corners[k] + first) + " comes twice");
     const auto at = [&](std::size_t k) { return index(corners[k]); };
     net.quads.push_back(n == 3 ? face_around(at(0), at(1), at(2))
                                : face_around(at(0), at(1), at(2), at(3)));
   }
   void spring(long long i, long long j, double K = -1, double L = -1) {
-    const Spring s = {index(i), index(j), K, L};
-    if (const auto error = error_in(s, net.points.size()); !error.empty())
-      fail(error);
-    net.springs.push_back(s);
+    net.springs.push_back({index(i), index(j), K, L});
+    if (i == j) fail("joins node " + std::to_string(i + first) + " to itself");
   }
 };
 

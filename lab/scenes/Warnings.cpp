@@ -54,24 +54,6 @@ double opening(const Triangle& t) {
   return a / (2 * std::sqrt(std::max(0., 1 - cos_a * cos_a)));
 }
 
-/** The distance of @a p from the triangle @a t [m]; if @a t is degenerate, from
- * its sides. */
-double distance(const Point& p, const Triangle& t) {
-  double least = std::numeric_limits<double>::infinity();
-  bool inside = true;
-  const Point normal = cross(t[1] - t[0], t[2] - t[0]);
-  for (unsigned c : {0, 1, 2}) {
-    const Point a = t[c], along = t[(c + 1) % 3] - a;
-    const double l2 = normSq(along);
-    const double s =
-        l2 > 0 ? std::clamp<double>(dot(p - a, along) / l2, 0, 1) : 0;
-    least = std::min<double>(least, norm(p - a - s * along));
-    inside &= dot(cross(along, p - a), normal) > 0;
-  }
-  if (inside) least = std::abs(dot(p - t[0], normal)) / norm(normal);
-  return least;
-}
-
 class Finder {
  public:
   Finder(const Model& m, const Net& mesh, const Cloth& g, double dt)
@@ -191,29 +173,13 @@ class Finder {
       return norm(p - b.center) < b.radius * (1 - 1e-6);
     };
     for (const Point& p : mesh_.points) n += is_inside(p);
-    if (n == 0) return across(b, name, solid);
+    if (n == 0) return;
     add(std::to_string(n) + " of " + count_of(mesh_.points.size(), "node") +
         (n == 1 ? " starts" : " start") + " inside " + name + ": " +
         (solid
              ? "the ball moves " + it_or_them(n) +
                    " to its surface at t = 0; move the ball"
              : "the first step removes " + it_or_them(n) + "; move the ball"));
-  }
-
-  /** A ball that contains no node, but quads cut its inner half: the cloth is
-   * on both of its sides. */
-  void across(const Ball& b, const std::string& name, bool solid) {
-    std::size_t n = 0;
-    for (const Quad& q : mesh_.quads) {
-      double least = b.radius;
-      for (const Triangle& t : halves(mesh_, q))
-        least = std::min(least, distance(b.center, t));
-      n += least < b.radius / 2;
-    }
-    if (n == 0) return;
-    add(name + " starts in " + count_of(n, "quad") + ", between the nodes: " +
-        (solid ? "no node is pushed" : "no node is removed") +
-        "; move the ball, or use a larger radius or a finer grid");
   }
 
   void fits_through(const Ball& b, const std::string& name) {

@@ -16,10 +16,11 @@ double opening(const Net& mesh, const Quad& q);
 /** The faults of a scene: a sentence each, with numbers and a remedy.
  *  - what a reader changed in the mesh, mesh_faults(), a size as in mm; springs
  *    of length 0; nothing held
- *  - nodes below a plane, inside a solid or a tearing ball; a ball that cuts
- *    quads but contains no node; and what the first step does then
- *  - openings of the mesh through which a solid ball fits, now or when springs
- *    are stretched by up to a half; or which a self-collision does not close
+ *  - nodes below a plane, inside a solid or a tearing ball; and what the first
+ *    step does then
+ *  - openings of the mesh through which a solid ball fits, now or when
+ *    springs are stretched by up to a half; or which a self-collision does not
+ *    close
  *  - a ball that moves by more than half of its radius in a step
  *  - a method with error control if the motion is not smooth
  * @param mesh that of mesh_of(m)   @param g the cloth of @a m at t = 0

@@ -53,8 +53,8 @@ Words words_of(Box&);
 
 /** The member of a Model that a field sets. */
 using Member =
-    std::variant<double*, std::string*, TimeStep*, const MethodEntry**,
-                 Measure*, Edges*, std::optional<double>*,
+    std::variant<double*, std::string*, std::vector<std::string>*, TimeStep*,
+                 const MethodEntry**, Measure*, Edges*, std::optional<double>*,
                  std::optional<Distance>*, std::optional<Box>*,
                  std::optional<Wind>*, std::vector<Sheet>*,
                  std::vector<Region>*, std::vector<Pin>*, std::vector<Wall>*,

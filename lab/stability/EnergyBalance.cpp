@@ -134,6 +134,12 @@ double EnergyWatch::tolerance() const {
   return share * largest_ + sums_ * passed_ + fall_ + floor_ + round_off_;
 }
 
+std::string EnergyWatch::gain_text() const {
+  return "an error of the method has added " + CME212::two_digits(gain_) +
+         " J of energy, more than the " + CME212::two_digits(tolerance()) +
+         " J that --dt auto tolerates: this is not the motion of the scene";
+}
+
 void EnergyWatch::archive(Archive& a) {
   a(round_off_)(largest_)(fall_)(off_)(sum_)(least_)(gain_)(passed_)(looks_);
   a(took_).require(std::isfinite(round_off_ + largest_ + fall_ + off_ + sum_ +

@@ -146,6 +146,8 @@ class EnergyWatch {
   double tolerance() const;
   /** The method has added more energy than is tolerated. */
   bool gains() const { return gain_ > tolerance(); }
+  /** That in words. */
+  std::string gain_text() const;
   /** The method has lost more than that, and nothing else can have. */
   bool loses() const { return !took_ && -off_ > tolerance(); }
   /** True if contact or tearing may have taken energy. */

@@ -33,8 +33,6 @@ double strain_at(const Node& n) {
   return n.degree() > 0 ? strain / n.degree() : 0;
 }
 
-const CME212::Color rival_color(1.0f, 0.72f, 0.3f);
-
 class SDLScreen : public Screen {
  public:
   SDLScreen(Kind kind, std::array<int, 2> pixels)
@@ -50,49 +48,28 @@ class SDLScreen : public Screen {
 
   void show_strain(bool on) override { viewer_.set_strain_colors(on); }
 
-  void show(const Scene& scene, const Scene* rival) override {
+  void show(const Scene& scene) override {
     const Cloth& g = scene.cloth();
     show_failure(scene);
     const bool strain = colored_ = viewer_.strain_colors();
     if (strain) set_scale(g);
-    auto color_of = [&](CME212::Color plain) {
-      return [this, plain, strain](Node n) {
-        return strain ? CME212::Color::make_strain(
-                            float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
-                      : plain;
-      };
+    const auto color = [this, strain](Node n) {
+      return strain ? CME212::Color::make_strain(
+                          float(std::clamp(strain_at(n) / scale_, -1.0, 1.0)))
+                    : CME212::Color(1);
     };
-    viewer_.set_label(label(scene, rival));
-    Point beside;
-    if (rival) beside = norm(beside_) > 0 ? beside_ : place_beside(g);
-    const bool moves = norm(beside - beside_) > 0;
-    if (!shown_ || moving_ || moves) add_obstacles(scene, beside);
-    if (!shown_ || moves) set_view(scene, beside);
+    viewer_.set_label(label(scene));
+    if (!shown_ || moving_) add_obstacles(scene);
+    if (!shown_) set_view(scene);
     if (kind_ == Kind::film) follow(g);
-    const auto moved = [&](Node n) { return n.position() + beside; };
-    const bool same =
-        shown_ && version_ == arrays(g).version() &&
-        rival_shown_ == (rival != nullptr) &&
-        (!rival || rival_version_ == arrays(rival->cloth()).version());
-    if (!same) viewer_.clear(), nodes_.clear(), rival_nodes_.clear();
-    viewer_.add_nodes(g.node_begin(), g.node_end(), color_of(CME212::Color(1)),
-                      nodes_);
-    if (rival)
-      viewer_.add_nodes(rival->cloth().node_begin(), rival->cloth().node_end(),
-                        color_of(rival_color), moved, rival_nodes_);
-    beside_ = beside;
+    const bool same = shown_ && version_ == arrays(g).version();
+    if (!same) viewer_.clear(), nodes_.clear();
+    viewer_.add_nodes(g.node_begin(), g.node_end(), color, nodes_);
     if (same) return;
-    const auto join = [&](const Scene& s, std::map<Node, unsigned>& nodes) {
-      const Cloth& c = s.cloth();
-      const auto faces = faces_of(s);
-      viewer_.add_faces(faces.begin(), faces.end(), nodes);
-      viewer_.add_edges(c.edge_begin(), c.edge_end(), nodes);
-    };
-    join(scene, nodes_);
-    if (rival) join(*rival, rival_nodes_);
+    const auto faces = faces_of(scene);
+    viewer_.add_faces(faces.begin(), faces.end(), nodes_);
+    viewer_.add_edges(g.edge_begin(), g.edge_end(), nodes_);
     version_ = arrays(g).version();
-    rival_version_ = rival ? arrays(rival->cloth()).version() : 0;
-    rival_shown_ = rival;
     shown_ = true;
   }
 
@@ -144,20 +121,6 @@ class SDLScreen : public Screen {
   CME212::Clock clock_;
   long long steps_ = 0;  // when clock_ was started
   double rate_ = 0;      // [steps/s]
-
-  std::map<Node, unsigned> rival_nodes_;
-  std::size_t rival_version_ = 0;
-  bool rival_shown_ = false;
-  Point beside_;  // by which the rival is moved [m]
-
-  /** From a cloth to the one beside it, as seen at first: its width, and some
-   * more. */
-  static Point place_beside(const Cloth& g) {
-    const Point right = Point(-eye.y, eye.x, 0) / std::hypot(eye.x, eye.y);
-    CME212::BoundingBox widths;
-    for (Node n : g.nodes()) widths |= Point(dot(n.position(), right), 0, 0);
-    return 1.1 * widths.diagonal() * right;
-  }
 
   void show_failure(const Scene& scene) {
     const auto& failure = scene.failure();
@@ -224,18 +187,13 @@ class SDLScreen : public Screen {
     return 10 * unit;
   }
 
-  /** Time, size and whose cloth is in which color; the step rate only in a
-   * window, since pictures of the same state shall be the same. */
-  std::string label(const Scene& scene, const Scene* rival) {
+  /** Time and size; the step rate only in a window, since pictures of the same
+   * state shall be the same. */
+  std::string label(const Scene& scene) {
     char time[32];
     std::snprintf(time, sizeof time, "t = %.3f s", scene.time());
     std::string text =
         time + ("   " + std::to_string(scene.cloth().num_nodes())) + " nodes";
-    if (rival)
-      text.append("   white: ")
-          .append(scene.method().name)
-          .append(", orange: ")
-          .append(rival->method().name);
     if (kind_ != Kind::window) return text;
     if (scene.steps() < steps_ || clock_.seconds() > 0.5) {
       rate_ = double(std::max(0LL, scene.steps() - steps_)) / clock_.seconds();
@@ -246,9 +204,8 @@ class SDLScreen : public Screen {
   }
 
   /** Look at the room that the scene names; else at the cloth as it is now, at
-   * what it may fall on and, at the start, at the space below it; and at the
-   * same @a beside that. */
-  void set_view(const Scene& scene, const Point& beside) {
+   * what it may fall on and, at the start, at the space below it. */
+  void set_view(const Scene& scene) {
     CME212::BoundingBox room;
     for (const Point& p : scene.recipe().room) room |= p;
     if (room.empty()) {
@@ -261,10 +218,6 @@ class SDLScreen : public Screen {
       }
       if (scene.time() == 0 && !room.empty())
         room |= room.min() - Point(0, 0, room.diagonal() / 2);
-    }
-    if (!room.empty()) {
-      const Point low = room.min() + beside, high = room.max() + beside;
-      (room |= low) |= high;
     }
     room_ = room;
     const Point reach(room.diagonal() / 2, room.diagonal() / 2,
@@ -288,20 +241,16 @@ class SDLScreen : public Screen {
     viewer_.set_view(eye, room_);
   }
 
-  /** Show what the cloth falls on where it is now, and nothing else; what the
-   * rival falls on is @a beside it. */
-  void add_obstacles(const Scene& scene, const Point& beside) {
+  /** Show what the cloth falls on where it is now, and nothing else. */
+  void add_obstacles(const Scene& scene) {
     viewer_.clear_shapes();
     for (const Obstacle& o : scene.recipe().obstacles) {
       const Point at = o.at + o.motion.way(scene.time());
       moving_ = moving_ || o.motion.velocity != Point();
       if (o.kind == Obstacle::Kind::floor)
-        viewer_.add_plane(at.z, 1.5 + norm(beside) / 2,
-                          Point(0.5, 0.5, 0) + beside / 2);
+        viewer_.add_plane(at.z, 1.5, Point(0.5, 0.5, 0));
       else
         viewer_.add_sphere(at, o.radius);
-      if (o.kind != Obstacle::Kind::floor && norm(beside) > 0)
-        viewer_.add_sphere(at + beside, o.radius);
     }
   }
 };

@@ -41,10 +41,9 @@ class Screen {
    * In a window the user switches it as well. */
   virtual void show_strain(bool on) = 0;
 
-  /** Show the present state of @a scene, and of @a rival beside it, if there is
-   * one. If it failed, this is its last good state, with a mark where it
-   * failed, and the reason. */
-  virtual void show(const Scene& scene, const Scene* rival = nullptr) = 0;
+  /** Show the present state of @a scene. If it failed, this is its last good
+   * state, with a mark where it failed, and the reason. */
+  virtual void show(const Scene& scene) = 0;
 
   /** Write what was shown last to a file, in the format of its ending.
    * Throws std::runtime_error "FILE: why". */
