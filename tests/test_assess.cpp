@@ -73,7 +73,7 @@ TEST(Assess, TellsTheErrorOfTheGrid) {
       << in_words(a);
 }
 
-TEST(Tolerance, InPercentIsOfTheChangeOrOfTheAnswer) {
+TEST(Percent, IsOfTheChangeOrOfTheAnswer) {
   Model m = hanging("nodes 9 9");
   m.tolerance = 5, m.percent = true;
   for (const char* measure : {"com", "drape-height", "point z"}) {
@@ -103,7 +103,7 @@ TEST(Tolerance, InPercentIsOfTheChangeOrOfTheAnswer) {
             "tolerance with its unit");
 }
 
-TEST(Tolerance, InPercentIsReadAndWritten) {
+TEST(Percent, IsReadAndWritten) {
   Model m = hanging("nodes 9 9");
   m.tolerance = 0.7, m.percent = true;
   const std::string text = to_scene_file(m);

@@ -48,6 +48,13 @@ def test_limit_and_failure():
     assert np.isfinite(r.x).all() and "stability limit" in r.why.cause
 
 
+def test_a_smaller_tolerance_takes_more_forces():
+    coarse, fine = (oscillator().run("rkn64", 2.0, "auto", atol=atol)
+                    for atol in (1e-3, 1e-9))
+    assert coarse.work < fine.work
+    assert fine.x[-1, 1, 0] == pytest.approx(np.cos(6), abs=1e-7)
+
+
 def test_drag_and_velocity():
     net = mass_spring.Net([[0.0, 0, 0]], np.empty((0, 2), int), mass=2.0,
                           v=[[1.0, 0, 0]], drag=0.5, gravity=0.0)
