@@ -28,7 +28,7 @@ COPIED = [
     ("data/grid*.nodes data/grid*.tets", "data", "grid4.nodes grid4.tets"),
     ("data/README.md", "data", ""),
     ("docs/graph.md", "docs", ""),
-    ("course/*.md", "pages", "README.md teaching.md"),
+    ("course/*.md", "pages", "README.md elsewhere.md teaching.md"),
     ("course/pictures/*.png course/pictures/*.svg", "pages/pictures", ""),
     ("course/starter/Makefile course/starter/README.md", ".", ""),
     ("course/starter/tests.mk", "tests", ""),

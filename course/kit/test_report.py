@@ -1,11 +1,17 @@
 """Tests of the grader: what it makes of errors and crashes, and its reports."""
 
+import contextlib
+import io
 import json
+import pathlib
 import sys
+import tempfile
 import unittest
 import unittest.mock
+import zipfile
 
 import diagnosis
+import inbox
 import judge
 import mend
 import names
@@ -17,6 +23,63 @@ import tasks
 
 sys.path.append(str(once.ROOT / "course/autograder"))
 import classroom50      # noqa: E402: it stands apart from the kit
+
+
+class Inbox(unittest.TestCase):
+    """Zips of learning platforms, and their sheets."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def zipped(self, files):
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w") as out:
+            for name, content in files.items():
+                out.writestr(name, content)
+        return packed.getvalue()
+
+    def unpacked(self, files):
+        """{path in DIR: content}, or what is said of the zip."""
+        (self.folder / "all.zip").write_bytes(self.zipped(files))
+        out = self.folder / f"out{len(list(self.folder.iterdir()))}"
+        try:
+            with contextlib.redirect_stdout(io.StringIO()):
+                inbox.unpack(str(self.folder / "all.zip"), str(out))
+        except inbox.InboxError as error:
+            return str(error)
+        self.assertFalse((self.folder / "evil.hpp").exists())
+        return {p.relative_to(out).as_posix(): p.read_text()
+                for p in out.rglob("*") if p.is_file()}
+
+    def test_moodle_and_canvas_are_unpacked(self):
+        hw = self.zipped({"hw2/Graph.hpp": "g", "../../evil.hpp": "",
+                          "a.png": ""})
+        self.assertEqual(self.unpacked({
+            "Ann Lee_101_assignsubmission_file_/hw2.zip": hw,
+            "Bo_102_assignsubmission_file/Graph.hpp": "h"}),
+            {"Ann Lee_101/hw2/Graph.hpp": "g", "Bo_102/Graph.hpp": "h"})
+        one, two, three = (self.zipped({"Graph.hpp": c}) for c in "123")
+        self.assertEqual(self.unpacked({
+            "leeann_101_9001_hw2.zip": one,
+            "leeann_LATE_101_9003_hw2-2.zip": three,
+            "leeann_101_9002_hw2-1.zip": two}), {"leeann_101/Graph.hpp": "3"})
+        self.assertIn("named neither as by Moodle", self.unpacked({"x": ""}))
+
+    def test_points_go_into_the_sheet(self):
+        (self.folder / "class.csv").write_text(
+            "student,points\nAnn Lee_101,88\nleebo_102,7\n")
+        sheet = self.folder / "sheet.csv"
+        sheet.write_text("Identifier,Name,Grade\nParticipant 101,A,\n"
+                         "Participant 103,C,5\n")
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            inbox.marks(str(self.folder), str(sheet), "Grade")
+        self.assertEqual(said.getvalue(), "Identifier,Name,Grade\n"
+                         "Participant 101,A,88\nParticipant 103,C,5\n")
+        with self.assertRaisesRegex(inbox.InboxError, "no column 'Points'"):
+            inbox.marks(str(self.folder), str(sheet), "Points")
 
 
 class Say(unittest.TestCase):

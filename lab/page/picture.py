@@ -7,10 +7,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/browsers"))
 from browser import Browser  # noqa: E402
 
-run = ("#scene=forces&side=25&camera=-1.1_0.25_0.85&run=0_method_verlet~"
-       "0_step_0.5~0_compare_implicit-euler_8~38_end")
+run = ("#scene=forces&side=25&camera=-1.1_0.25_1.1&run=0_method_verlet~"
+       "0_drag_0.003~0_step_0.3~0_race_rk4_symplectic-euler_xpbd~13_end")
 with Browser(1200, 860) as browser:
     browser.open(f"file://{pathlib.Path(sys.argv[1]).resolve()}{run}")
-    browser.wait("page.calls === 38 && !page.isWaiting && !page.dirty", 300)
-    browser.value("new Promise(done => setTimeout(done, 500))")
+    browser.wait("page.calls === 13 && !page.isWaiting && !page.dirty", 300)
+    browser.wait("""doors.every(d => new Set(d.button.firstChild.getContext(
+      '2d').getImageData(0, 0, 144, 100).data).size > 20)""")
     browser.screenshot(sys.argv[2])

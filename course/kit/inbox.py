@@ -1,0 +1,104 @@
+"""Submissions from a learning platform, and points back to it:
+
+    inbox.py unpack ZIP DIR             the zip with all submissions of a task
+    inbox.py marks GRADES SHEET COLUMN  its list of marks, on standard output
+
+Moodle names a submission NAME_NUMBER_assignsubmission_file..., Canvas
+nameNUMBER_NUMBER_FILE-ATTEMPT.zip: DIR gets a folder NAME_NUMBER for each
+student, with the files of the last attempt; `make class DIR=DIR OUT=GRADES`
+grades it. SHEET is the CSV file that the platform gives; COLUMN of it gets the
+points of the student whose NUMBER stands in the row. Exit status: 0 done, 2 bad
+input, and then nothing was written."""
+import csv
+import io
+import pathlib
+import re
+import sys
+import zipfile
+
+LARGEST = 10_000_000    # bytes of a submission
+MOODLE = re.compile(r"(?P<name>[^/]+_\d+)_assignsubmission_[a-z]+[_/]*"
+                    r"(?P<file>.*)")
+CANVAS = re.compile(r"(?P<name>[^/_]+)(?P<late>_LATE)?_(?P<number>\d+)_\d+_"
+                    r"(?P<file>[^/]*?)(?:-(?P<attempt>\d+))?(?P<end>\.\w+)")
+TAKEN = (".hpp", ".h", ".cpp")
+Files = dict[str, bytes]
+
+
+class InboxError(Exception):
+    pass
+
+
+def files_in(name: str, content: bytes) -> Files:
+    """The sources in a file, which may be a zip."""
+    if not name.endswith(".zip"):
+        return {name: content} if name.endswith(TAKEN) else {}
+    with zipfile.ZipFile(io.BytesIO(content)) as packed:
+        members = [m for m in packed.infolist() if m.filename.endswith(TAKEN)]
+        if sum(m.file_size for m in members) > LARGEST:
+            raise InboxError(f"{name} unpacks to more than {LARGEST} bytes")
+        return {m.filename: packed.read(m) for m in members}
+
+
+def read(path: str) -> dict[str, Files]:
+    """{student: files}, those of a later attempt in place of earlier ones."""
+    found: dict[str, dict[tuple[str, int], Files]] = {}
+    with zipfile.ZipFile(path) as packed:
+        for member in packed.infolist():
+            if member.is_dir() or member.file_size > LARGEST:
+                continue
+            if it := MOODLE.fullmatch(member.filename):
+                student, file, attempt = it["name"], it["file"], 0
+            elif it := CANVAS.fullmatch(member.filename):
+                student = f"{it['name']}_{it['number']}"
+                file, attempt = it["file"] + it["end"], int(it["attempt"] or 0)
+            else:
+                raise InboxError(f"{path}: '{member.filename}' is named neither "
+                                 "as by Moodle nor as by Canvas")
+            found.setdefault(student, {})[file, attempt] = files_in(
+                file, packed.read(member))
+    return {student: {name: content for _, files in sorted(
+        all_of.items(), key=lambda one: one[0][1]) for name, content
+        in files.items()} for student, all_of in found.items()}
+
+
+def unpack(path: str, out: str) -> None:
+    students, folder = read(path), pathlib.Path(out)
+    folder.mkdir()
+    for student, files in students.items():
+        (folder / student).mkdir()
+        for name, content in files.items():
+            to = folder / student / name
+            if (folder / student).resolve() in to.resolve().parents:
+                to.parent.mkdir(parents=True, exist_ok=True)
+                to.write_bytes(content)
+    print(f"{len(students)} submissions in {out}")
+
+
+def marks(grades: str, sheet: str, column: str) -> None:
+    with open(pathlib.Path(grades) / "class.csv", newline="") as lines:
+        points = {row["student"].rsplit("_", 1)[-1]: row["points"]
+                  for row in csv.DictReader(lines)}
+    with open(sheet, newline="", encoding="utf-8-sig") as lines:
+        rows = list(csv.reader(lines))
+    if column not in rows[0]:
+        raise InboxError(f"{sheet}: no column '{column}', expected one of: "
+                         + ", ".join(rows[0]))
+    at = rows[0].index(column)
+    for row in rows[1:]:
+        for number in [n for cell in row[:4] for n in re.findall(r"\d+", cell)]:
+            if number in points:
+                row[at] = points[number]
+    csv.writer(sys.stdout, lineterminator="\n").writerows(rows)
+
+
+if __name__ == "__main__":
+    work = {("unpack", 2): unpack, ("marks", 3): marks}.get(
+        (sys.argv[1] if len(sys.argv) > 1 else "", len(sys.argv) - 2))
+    if not work:
+        sys.exit(__doc__)
+    try:
+        work(*sys.argv[2:])
+    except (InboxError, OSError, KeyError, zipfile.BadZipFile) as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
