@@ -6,9 +6,11 @@ $(foreach name,DIR DUE FEEDBACK FILE JSON LEVEL OUT RESULTS TIMES,\
   $(if $(filter command environment,$(firstword $(origin $(name)))),\
     $(eval override $(name) := $$(value $(name)))$(eval export $(name))))
 
-.PHONY: starter solution
+.PHONY: starter solution constants
 starter solution:
 	@python3 course/kit/starter.py $@
+constants:
+	@python3 course/kit/constants.py
 
 # ---- What make demo leaves without a display: no more than it needs is built.
 $(B)/demo: course/demo.cpp $(or $(viewer_lib),no_picture)

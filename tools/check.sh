@@ -115,6 +115,7 @@ stages() {
 # Markers and tasks of the teaching kit, what splits them; pages.
 kit_source() {
   python3 course/kit/markers.py && python3 course/kit/pages.py &&
+    python3 course/kit/constants.py --check &&
     python3 course/kit/test_markers.py
 }
 course_test() { in_folder . "build/check/$1" && "build/check/$1"; }

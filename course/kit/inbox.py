@@ -53,8 +53,8 @@ def read(path: str) -> dict[str, Files]:
                 student = f"{it['name']}_{it['number']}"
                 file, attempt = it["file"] + it["end"], int(it["attempt"] or 0)
             else:
-                raise InboxError(f"{path}: '{member.filename}' is named neither "
-                                 "as by Moodle nor as by Canvas")
+                raise InboxError(f"{path}: '{member.filename}' is named "
+                                 "neither as by Moodle nor as by Canvas")
             found.setdefault(student, {})[file, attempt] = files_in(
                 file, packed.read(member))
     return {student: {name: content for _, files in sorted(
@@ -93,12 +93,14 @@ def marks(grades: str, sheet: str, column: str) -> None:
 
 
 if __name__ == "__main__":
-    work = {("unpack", 2): unpack, ("marks", 3): marks}.get(
-        (sys.argv[1] if len(sys.argv) > 1 else "", len(sys.argv) - 2))
-    if not work:
-        sys.exit(__doc__)
+    words = sys.argv[1:]
     try:
-        work(*sys.argv[2:])
+        if words[:1] == ["unpack"] and len(words) == 3:
+            unpack(*words[1:])
+        elif words[:1] == ["marks"] and len(words) == 4:
+            marks(*words[1:])
+        else:
+            sys.exit(__doc__)
     except (InboxError, OSError, KeyError, zipfile.BadZipFile) as error:
         print(error, file=sys.stderr)
         sys.exit(2)

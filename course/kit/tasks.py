@@ -92,7 +92,7 @@ REQUIRED: dict[str, dict[str, type]] = {
     "section": {"title": str, "needs": str},
     "task": {"title": str, "points": int, "says": str, "hint": str}}
 OPTIONAL: dict[str, dict[str, type]] = {
-    "": {}, "section": {"page": str, "dropped": bool},
+    "": {"numbers": dict}, "section": {"page": str, "dropped": bool},
     "task": {"tests": list, "hints": list, "extra": bool, "dropped": bool}}
 TYPES = {str: "a text", int: "a whole number", bool: "true or false",
          list: "a list", dict: "a table"}

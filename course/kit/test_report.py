@@ -33,7 +33,8 @@ class Inbox(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def zipped(self, files):
+    @staticmethod
+    def zipped(files):
         packed = io.BytesIO()
         with zipfile.ZipFile(packed, "w") as out:
             for name, content in files.items():

@@ -19,8 +19,8 @@ CONTENTS: list[tuple[str, list[str | tuple[str, str]]]] = [
         "docs/examples/README.md", "docs/python.md"]),
     ("To teach and to contribute", [
         "course/README.md", "course/elsewhere.md", "course/teaching.md",
-        "course/rubric.md", "data/README.md", "docs/CONTRIBUTING.md", "docs/site/README.md",
-        "tools/README.md", "docs/CHANGELOG.md"]),
+        "course/rubric.md", "data/README.md", "docs/CONTRIBUTING.md",
+        "docs/site/README.md", "tools/README.md", "docs/CHANGELOG.md"]),
 ]
 # Markdown that lies elsewhere once it is used, or is of this site alone.
 LEFT_OUT = ["course/starter/README.md"]
