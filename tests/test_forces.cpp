@@ -96,20 +96,6 @@ TEST_F(ShakenCloth, CombinedForcesOwnTheirTemporaries) {
   EXPECT_EQ(copy(g.node(0), 2), Point(3));
 }
 
-/** A student's force, as the assignment writes it, with a state. */
-struct Counting {
-  int calls = 0;
-  Point operator()(Node, double) {
-    ++calls;
-    return Point(calls);
-  }
-};
-TEST_F(ShakenCloth, FunctorsNeedNotBeConst) {
-  auto force = make_combined_force(Counting());
-  EXPECT_EQ(force(g.node(0), 0), Point(1));
-  EXPECT_EQ(force(g.node(0), 0), Point(2));
-}
-
 // ------------------------------------------ children with a call of their own
 
 /** Force k is k t in each coordinate: a sum says which of them were called. */

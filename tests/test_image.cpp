@@ -91,24 +91,6 @@ TEST(GLCamera, FitTouchesTheMarginForEveryDirectionAndShape) {
               0, 1e-9);
 }
 
-TEST(GLCamera, MatricesAgreeWithProject) {
-  GLCamera c;
-  c.look_from(Point(1, 2, 3));
-  c.pan(0.1, -0.2);
-  Point p(0.3, 0.9, -0.4);
-  auto times = [](const GLCamera::Matrix& m, std::array<double, 4> v) {
-    std::array<double, 4> r{};
-    for (int i = 0; i < 16; ++i) r[i % 4] += m[i] * v[i / 4];
-    return r;
-  };
-  auto clip = times(c.projection(1.5), times(c.view(), {p.x, p.y, p.z, 1}));
-  Point q = project(c, p, 1.5);
-  EXPECT_NEAR(clip[0] / clip[3], q.x, 1e-5);
-  EXPECT_NEAR(clip[1] / clip[3], q.y, 1e-5);
-  EXPECT_NEAR(clip[3], q.z, 1e-5);
-  EXPECT_LT(std::abs(clip[2] / clip[3]), 1);  // between near and far
-}
-
 TEST(GLCamera, Moves) {
   GLCamera c;
   const GLCamera old = c;
