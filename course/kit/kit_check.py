@@ -209,6 +209,8 @@ def main() -> bool:
     only = os.environ.get("ONLY", "")
     judge.LIMITS.cpu, judge.LIMITS.wall = LONGEST, 10
     try:
+        if faults := mistakes.unfounded():
+            raise mistakes.MistakeError("\n".join(faults))
         check = Check(Cases())
     except (markers.MarkerError, tasks.TasksError, once.KitError,
             mistakes.MistakeError) as error:

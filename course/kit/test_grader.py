@@ -13,7 +13,6 @@ import unittest
 import build
 import child
 import once
-import starter
 import submission
 
 PROBE = r"""
@@ -123,15 +122,6 @@ class Take(Folder):
             "more/own.h": b"more/own.h"})
         self.assertEqual(taken.notes, [])
 
-    def test_flags_nothing_of_a_solution(self):
-        files = starter.tree("solution")
-        for name, (content, _) in files.items():
-            path = self.put(name)
-            path.write_bytes(content)
-        taken = submission.take(str(self.folder))
-        self.assertIn("mass_spring.hpp", taken.files)
-        self.assertEqual((taken.flags, taken.notes), ([], []))
-
     def test_finds_the_folder_of_the_homework(self):
         self.put("hw1/Graph.hpp", "1")
         self.refused_several()
@@ -154,42 +144,6 @@ class Take(Folder):
         self.refused("Not a directory")
         self.folder.unlink()
         self.folder.mkdir()
-
-    def test_follows_no_link_and_opens_no_pipe(self):
-        self.put("Graph.hpp")
-        (self.folder / "shadow.hpp").symlink_to("/etc/passwd")
-        (self.folder / "all").symlink_to("/etc")
-        os.mkfifo(self.folder / "pipe.hpp")
-        self.put("large.hpp", "x" * (submission.LARGEST + 1))
-        self.put("\n$(x).hpp")
-        taken = submission.take(str(self.folder))
-        self.assertEqual(list(taken.files), ["Graph.hpp"])
-        self.assertEqual(sorted(taken.notes), [
-            "\\x0a$(x).hpp has an unusual name: left out",
-            "large.hpp is larger than 1 MB: left out",
-            "pipe.hpp is not a regular file: left out",
-            "shadow.hpp is a symbolic link: left out"])
-        (self.folder / "Graph.hpp").unlink()
-        (self.folder / "Graph.hpp").symlink_to("shadow.hpp")
-        self.refused("Graph.hpp is a symbolic link")
-
-    def test_takes_a_tag_and_no_setting_of_the_clone(self):
-        self.put("Graph.hpp", "tagged")
-        (self.folder / "link.hpp").symlink_to("/etc/passwd")
-        self.commit()
-        self.put("Graph.hpp", "later")
-        bad = self.top / "bad"
-        for name in ("core.fsmonitor", "core.sshCommand", "core.pager",
-                     "filter.x.smudge", "core.alternateRefsCommand"):
-            self.git("config", name, f"touch {bad}")
-        taken = submission.take(str(self.folder), "hw2")
-        self.assertEqual(taken.files, {"Graph.hpp": b"tagged"})
-        self.assertEqual(taken.notes, ["link.hpp is a symbolic link: left out"])
-        self.refused("has no tag hw3; tags: hw2", "hw3")
-        self.refused("is not the name of a tag", "--upload-pack=x")
-        self.folder = self.put("inside/Graph.hpp").parent
-        self.refused("git says: fatal: not a git repository", "hw2")
-        self.assertFalse(bad.exists())
 
     def git(self, *words, **options):
         return child.run(["git", "-C", self.folder, "-c", "user.name=a", "-c",

@@ -190,9 +190,6 @@ class Faults(unittest.TestCase):
         free = tasks.parse(TASKS.replace("points = 4", "points = 0"))
         markers.check({"S.hpp": text}, free)  # nothing is asked
 
-    def test_all_faults_at_once(self):
-        text = "// STUB x\n" + SOURCE + "// BEGIN SOLUTION\n"
-        self.assertEqual(len(self.faults(text)), 2)
 
 
 class Tasks(unittest.TestCase):
@@ -312,15 +309,6 @@ class Repository(unittest.TestCase):
         return {str(p.relative_to(folder)): (p.read_bytes(), p.stat().st_mode)
                 for p in folder.rglob("*") if p.is_file()}
 
-    def test_same_call_same_bytes(self):
-        for kind in ("starter", "solution"):
-            for name in ("a b", "c/d"):
-                self.make(kind, self.folder / kind / name)
-            first = self.content(self.folder / kind / "a b")
-            self.assertEqual(first, self.content(self.folder / kind / "c/d"))
-            self.assertEqual(sorted(os.listdir(self.folder / kind)),
-                             ["a b", "c"])
-
     def test_a_renamed_homework_is_renamed_everywhere(self):
         old = tasks.load()
         new = dataclasses.replace(old, title="new title", tag="new-tag")
@@ -354,10 +342,11 @@ class Repository(unittest.TestCase):
         self.assertIsNone(markers.LOOKS_LIKE_ONE.search(sources.decode()))
 
     def test_the_grader_reads_a_starter(self):
-        starter.write(starter.tree("starter"), self.folder / "s")
-        taken = submission.take(self.folder / "s")
-        self.assertEqual(set(taken.files), set(markers.SOURCES))
-        self.assertEqual(taken.flags, [])
+        for kind in ("starter", "solution"):
+            starter.write(starter.tree(kind), self.folder / kind)
+            taken = submission.take(self.folder / kind)
+            self.assertEqual(set(taken.files), set(markers.SOURCES))
+            self.assertEqual(taken.flags, [])
 
     def test_make_hint_opens_one_more_each_time(self):
         starter.write(starter.tree("starter"), self.folder / "s")
@@ -398,7 +387,7 @@ class Repository(unittest.TestCase):
 
     def test_a_starter_compiles_with_any_graph(self):
         for level, graph in (("open", ""), ("open", "pointers"),
-                             ("guided", "uids")):
+                             ("guided", "pointers")):
             folder = self.folder / f"{level} {graph}"
             self.make("starter", folder, level)
             if graph:
@@ -462,12 +451,6 @@ class Repository(unittest.TestCase):
             self.assertIn(words, said)
             self.assertEqual(said.count("\n"), 1, said)
             self.assertEqual(self.content(self.folder), before)
-
-    def test_a_write_that_fails_leaves_nothing(self):
-        with self.assertRaises(OSError):
-            starter.write({"a": (b"", False), "a/b": (b"", False)},
-                          self.folder / "new")
-        self.assertEqual(os.listdir(self.folder), [])
 
     def test_the_assignment(self):
         """Each test of a task is there, and there are 100 points."""
