@@ -95,7 +95,9 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
   const double left = std::exp(-lost / twice_mean);
   s.scale =
       std::max({left * s.scale, std::min(s.scale, limits_.rest), e.relative});
-  s.fall = limits_.early ? left * s.fall + more_fall : 0;
+  s.fall = limits_.early
+               ? std::max(left * s.fall + more_fall, 2 * e.fall_power * s.dt)
+               : 0;
   // In each step contact lifts a resting cloth back to the surface.
   if (flow.loose) s.fall = std::max(s.fall, 4 * limits_.floor);
   s.gain *= left;

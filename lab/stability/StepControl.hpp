@@ -24,8 +24,8 @@ namespace lab {
  * drag a gain decays by e^{-gamma t}, as all motion does. So with drag gain and
  * scale decay, and the scale is the largest remaining kinetic energy, because
  * even a cloth at rest has elastic energy. A loose cloth may in addition gain
- * the work of gravity in two steps: methods of order 1 have velocities that are
- * half a step early.
+ * the work of gravity in two steps, for as long as it falls: methods of order 1
+ * have velocities that are half a step early.
  *
  * With a symplectic method the energy of an oscillation swings in a round by a
  * share of O((dt omega)^2). So the least b of a round is compared with that of
