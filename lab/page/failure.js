@@ -56,6 +56,7 @@ class FailurePicture extends Picture {
   }
   fail({broken, readings}) {
     this.failed = true, this.broken = broken, this.setPlaying(false);
+    this.find('.hint')?.remove();
     for (const plot of Object.values(plots))
       plot.good = readings ? readings.main.time : Infinity;
     this.showFailure({...this.sides[0].failure,

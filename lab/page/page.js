@@ -362,10 +362,10 @@ const replies = {
     page.show(data.sides.map(({mesh, ...side}, k) => {
       const run = rivals.length ? [{...main, error}, ...rivals][k] : null;
       return {...page.sides[k], ...side, ...mesh, isNew: !!mesh,
-        name: run?.method, words: run && `dt = ${inMs(run.dt)}, ${
+        name: run?.method, words: run && `dt ${inMs(run.dt)}, ${
           side.failure?.diverged ? 'diverged' : side.failure ? 'refused'
-            : `error ${shortNumber(1e3 * run.error, 2)} mm`}; ${
-          evaluations(run)}`};
+            : `error ${shortNumber(1e3 * run.error, 2)} mm`}, work ${
+          shortNumber(run.work)}`};
     }));
     if (!data.broken) followRun(data);
     if (!data.failed && data.readings?.missed && !page.find('.says').innerText)
