@@ -59,10 +59,12 @@ class OutputFile {
       make_part();
       if (exists) chmod(part_.c_str(), old.st_mode & 07777);
     }
+    const int reader = S_ISFIFO(old.st_mode) ? await_reader() : -1;
     errno = 0;
     out_.open(part_, std::ios::binary);
+    const int error = errno;
+    if (reader >= 0) close(reader);
     if (!out_) {
-      const int error = errno;
       remove_part();
       fail(std::strerror(error));
     }
@@ -128,6 +130,17 @@ class OutputFile {
           used.st_ino == old.st_ino)
         fail(own == STDOUT_FILENO ? "the standard output goes there"
                                   : "the standard error goes there");
+    }
+  }
+
+  /** Wait until a program reads the pipe; a signal that is handled ends that.
+   * @return the open pipe */
+  int await_reader() const {
+    for (;;) {
+      const int pipe = open(part_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+      if (pipe >= 0) return pipe;
+      if (errno != ENXIO) fail(std::strerror(errno));
+      if (usleep(20'000) != 0) fail("no program reads this pipe");
     }
   }
 

@@ -93,13 +93,13 @@ Accuracy accuracy(Model m, double asked) {
   return find_accuracy(m, asked, [](const std::string&, double) {});
 }
 
-TEST(Accuracy, OfASmoothMotionIsThatOfTheFirstTolerance) {
+TEST(Accuracy, OfASmoothMotionIsKeptByTheFirstToleranceOrALarger) {
   Model m = sheet(5, 1);
   m.pins = {Pin{{}, 0, {}, {}, {}}};
   for (double asked : {1e-3, 1e-6, 1e-9}) {
     const Accuracy a = accuracy(m, asked);
     EXPECT_TRUE(a.kept()) << a.text();
-    EXPECT_EQ(a.step.tolerance, asked / 4);
+    EXPECT_GE(a.step.tolerance, asked / 4);
     EXPECT_LE(a.rms, asked);
     EXPECT_LE(a.rms, a.largest);
     EXPECT_LE(error_of(m, a), 1.2 * a.rms) << asked;
@@ -188,16 +188,29 @@ TEST(EnergyWatch, JudgesTheSameWhateverElseIsNamed) {
     EXPECT_TRUE(gains.gains()) << part;
     EXPECT_NEAR(gains.gain(), 5.2, 0.1) << part;
     EXPECT_TRUE(gains.loses()) << part;
-    EXPECT_FALSE(gains.took());
+    EXPECT_EQ(gains.taken(), 0);
     const EnergyWatch good = watched(m, "verlet", 0.001);
     EXPECT_FALSE(good.gains() || good.loses()) << part;
   }
   Model m = sheet(9, 1);  // it falls onto a floor, which takes its energy
   m.planes = {{.at = Point(0, 0, -0.3), .motion = {}}};
   const EnergyWatch falls = watched(m, "verlet", 0.001);
-  EXPECT_TRUE(falls.took());
-  EXPECT_LT(falls.off(), -2);
+  EXPECT_GT(falls.taken(), 2);
+  EXPECT_LT(std::abs(falls.off()), 0.05);
   EXPECT_FALSE(falls.gains() || falls.loses());
+}
+
+// What a method loses is its own before and after something tears; what is lost
+// meanwhile is not.
+TEST(EnergyWatch, JudgesLossesBesideContactAndTearing) {
+  Model m = hanging(9, 2);
+  m.tears = {Ball{Point(0.5, 0.5, -0.2), 0.05}};
+  const EnergyWatch loss = watched(m, "implicit-euler", 0.02);
+  EXPECT_GT(loss.taken(), 0);
+  EXPECT_TRUE(loss.loses());
+  const EnergyWatch good = watched(m, "verlet", 0.001);
+  EXPECT_GT(good.taken(), 0);
+  EXPECT_FALSE(good.gains() || good.loses());
 }
 
 TEST(EnergyWatch, HasNoShareWhereNothingIsStretched) {

@@ -217,9 +217,9 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedAndCutAnywhere) {
                                 ": nothing in the file, expected a "
                                 "checkpoint");
   EXPECT_EQ(error_with("0 0 0\n"), file + ": is not a checkpoint");
-  std::string newer = good;
-  newer.replace(good.find(" 8\n"), 3, " 9\n");
-  EXPECT_EQ(error_with(newer).find(file + ": is a \"mass_spring checkpoint 9"),
+  std::string older = good;
+  older.replace(good.find(" 9\n"), 3, " 8\n");
+  EXPECT_EQ(error_with(older).find(file + ": is a \"mass_spring checkpoint 8"),
             0u);
   EXPECT_EQ(error_with(good.substr(0, good.size() - 3)),
             file + ": ends too early: it has " +
@@ -300,7 +300,7 @@ TEST(Checkpoint, ThatIsForgedIsRefusedOrGoesOn) {
           ASSERT_GT(scene.dt(), 0);
         }
       }
-  EXPECT_GT(refused, 10 * count);
+  EXPECT_GT(refused, 5 * count);
   EXPECT_GT(went_on, 10 * count);
   RecordProperty("refused", refused), RecordProperty("went_on", went_on);
 }

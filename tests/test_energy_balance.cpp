@@ -58,6 +58,24 @@ TEST(Work, OfAMovingPinIsTheEnergyOfTheCloth) {
     }
 }
 
+// With a method of high order and drag, what is left are errors of the sums of
+// work and drag: of order 3, across the stop of a pin.
+TEST(Work, AndDragAreSummedToOrder3) {
+  Model m = pulled_sheet(9, "pefrl", 5e-4);
+  m.gravity = 0, m.damping = 1 / 81.;
+  m.pins[1].motion = {Point(1, 0, 0), 0.1};
+  double largest[2] = {0, 0};
+  for (double& most : largest) {
+    Scene s(m);
+    s.follow_drag();
+    s.run_to(0.2,
+             [&] { most = std::max(most, std::abs(s.drift(s.energy()))); });
+    m.step.dt /= 2;
+  }
+  EXPECT_LT(largest[0], 1e-6);
+  EXPECT_LT(largest[1], largest[0] / 6);
+}
+
 // Nodes inside an obstacle at t = 0 are moved out: that is its work, the same
 // for every step, and no divergence.
 TEST(Work, OfAnObstacleOnNodesThatStartInIt) {

@@ -4,10 +4,12 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <sstream>
 
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Scene.hpp"
@@ -273,13 +275,13 @@ TEST(Export, WritesFramesWithTheirTimes) {
   Export frames({{FrameFormat::vtp, folder / "vtp"},
                  {FrameFormat::ply, folder / "ply"},
                  {FrameFormat::ply, ""}},
-                30);
+                30, scene);
   auto look = [&] {
     if (frames.due(scene) || scene.done(0.2)) frames.add(scene, m);
   };
   look();
   EXPECT_TRUE(scene.run_to(0.2, look));
-  EXPECT_EQ(frames.finish(scene),
+  EXPECT_EQ(frames.finish(),
             (std::vector<std::string>{"7 frames .vtp in " + folder / "vtp",
                                       "7 frames .ply in " + folder / "ply"}));
   std::vector<double> times;
@@ -298,18 +300,43 @@ TEST(Export, WritesFramesWithTheirTimes) {
     EXPECT_NEAR(times[k], expected[k], 1e-12);
 }
 
+// A run that takes steps back: its notes are those of the states that stay,
+// in their order, and the last one is read at the end.
+TEST(Settled, ReadsTheStatesThatStay) {
+  Model m = small_model();
+  m.method = &table::verlet, m.step.rule = StepRule::safe;
+  m.sheets = {{.nodes = {20, 20}}}, m.gravity = 100, m.damping = 0;
+  m.pins = {Pin{0, 0, {}, {}, {}}, Pin{1, 0, {}, {}, {}}};
+  Scene scene(m);
+  std::vector<double> times;
+  Settled<double> notes(scene.stepper(), [&](double t) { times.push_back(t); });
+  EXPECT_TRUE(notes.empty());
+  notes.add(scene.time());
+  while (!scene.done(5)) {
+    scene.step(5);
+    if (!notes.has_present()) notes.add(scene.time());
+  }
+  EXPECT_GT(scene.control()->report().taken_back, 0);
+  EXPECT_LT(times.size(), std::size_t(scene.steps()));
+  EXPECT_EQ(*notes.back(), 5);
+  notes.finish();
+  EXPECT_EQ(notes.back(), nullptr);
+  EXPECT_EQ(times.size(), std::size_t(scene.steps()) + 1);
+  EXPECT_TRUE(std::ranges::is_sorted(times, std::less_equal()));
+}
+
 TEST(Export, BeginsAnewWithTheRun) {
   const CME212::TestFolder folder;
   const Model m = small_model();
   Scene scene(m);
-  Export frames({{FrameFormat::ply, folder / "ply"}}, 30);
+  Export frames({{FrameFormat::ply, folder / "ply"}}, 30, scene);
   frames.add(scene, m);
   for (int k = 0; k < 3; ++k) scene.step(), frames.add(scene, m);
-  EXPECT_EQ(frames.finish(scene)[0].substr(0, 2), "4 ");
+  EXPECT_EQ(frames.finish()[0].substr(0, 2), "4 ");
   scene.restart();
   frames.restart();
   frames.add(scene, m);
-  EXPECT_EQ(frames.finish(scene)[0].substr(0, 2), "1 ");
+  EXPECT_EQ(frames.finish()[0].substr(0, 2), "1 ");
   EXPECT_FALSE(std::filesystem::exists(folder / "ply/frame_000001.ply"));
 }
 
@@ -335,12 +362,12 @@ TEST(Export, DoesNotMixItsFramesWithThoseOfAnotherRun) {
   const Model m = small_model();
   Scene scene(m);
   const std::string name = folder / "ply";
-  Export one({{FrameFormat::ply, name}}, 30);
-  Export other({{FrameFormat::ply, name}}, 30);  // empty still
+  Export one({{FrameFormat::ply, name}}, 30, scene);
+  Export other({{FrameFormat::ply, name}}, 30, scene);  // empty still
   one.add(scene, m);
-  one.settle(scene);
+  one.finish();
   other.add(scene, m);
-  EXPECT_EQ(error_of([&] { other.settle(scene); }),
+  EXPECT_EQ(error_of([&] { other.finish(); }),
             name + "/frame_000000.ply: another run writes frames there");
 }
 

@@ -241,7 +241,7 @@ TEST(WithoutLimit, ImplicitMidpointBlowsUpOnBucklingCloth) {
   const std::string why =
       failure_of(entry_of<ImplicitMidpoint>(), 15, 1 / 30., 100);
   EXPECT_EQ(why.find("diverged: "), 0u) << why;
-  EXPECT_NE(why.find("implicit-midpoint fails with: buckling cloth"),
+  EXPECT_NE(why.find("implicit-midpoint neither resolves nor damps them"),
             std::string::npos)
       << why;
   EXPECT_NE(why.find("8.6 times verlet's stability limit"), std::string::npos)
@@ -260,7 +260,7 @@ TEST(WithoutLimit, XpbdInjectsEnergyWithOneRound) {
   const std::string why =
       failure_of(rounds(std::integral_constant<int, 1>()), 40, 1 / 60., 100);
   EXPECT_EQ(why.find("diverged: "), 0u) << why;
-  EXPECT_NE(why.find("one round is no solution"), std::string::npos) << why;
+  EXPECT_NE(why.find("do not solve the equations of a step"), std::string::npos) << why;
   EXPECT_EQ(
       failure_of(rounds(std::integral_constant<int, 20>()), 40, 1 / 60., 100),
       "");

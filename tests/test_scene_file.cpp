@@ -590,6 +590,14 @@ TEST(Assignment, IsWhatRunsIfNoPartIsNamed) {
   EXPECT_EQ(run.damping, 0.1);
   EXPECT_EQ(run.step.dt, 0.002);
 }
+// A scene file contains only the parts that it names.
+TEST(Assignment, IsNoPartOfAFile) {
+  const CME212::TestFolder folder;
+  std::ofstream(folder / "a.toml")
+      << "nodes = \"a.nodes\"\ntets = \"a.tets\"\nstiffness = 50\npin = []\n";
+  const Model m = load_model(folder / "a.toml");
+  EXPECT_TRUE(m.pins.empty() && m.planes.empty() && m.tears.empty());
+}
 TEST(Assignment, IsNotWhatRunsIfAPartIsNamed) {
   using Change = void (*)(Model&);
   for (Change name :

@@ -66,15 +66,13 @@ class Plane final : public NodewiseConstraint {
   explicit Plane(const PlaneConstraint& c)
       : NodewiseConstraint(
             {.nodewise = true, .zone = Zone::behind({0, 0, c.z}, {0, 0, 1})}),
-        plane_(c) {
-    exchange_.took = true;
-  }
+        plane_(c) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     const double z = plane_.z;
     for_each_violating(
         g, first, last, [z](const Point& p) { return p.z < z; },
-        [this](Node n) { plane_.project(n); });
+        [this](Node n) { plane_.project(n), note_touch(); });
   }
 
  private:
@@ -87,15 +85,13 @@ class Sphere final : public NodewiseConstraint {
       : NodewiseConstraint({.nodewise = true,
                             .zone = Zone::inside(c.ball),
                             .obstacle = c.ball}),
-        sphere_(c.ball) {
-    exchange_.took = true;
-  }
+        sphere_(c.ball) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     for_each_violating(
         g, first, last,
         [this](const Point& p) { return sphere_.ball.holds(p); },
-        [this](Node n) { sphere_.project(n); });
+        [this](Node n) { sphere_.project(n), note_touch(); });
   }
 
  private:
@@ -113,7 +109,7 @@ class Tear final : public SweptConstraint {
         [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
           exchange_.moment += n.value().mass * n.position().z;
-          exchange_.took = true;
+          exchange_.touched = true;
           g.remove_node(n);
         });
   }
@@ -125,10 +121,9 @@ class Tear final : public SweptConstraint {
 /** A constraint of an unknown class: it is called. */
 class Called final : public SweptConstraint {
  public:
-  explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {
-    exchange_.took = true;
-  }
+  explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
+    exchange_.touched = true;  // as far as is known
     const auto version = arrays(g).version();
     const double before = moment_of(g);
     (*c_)(g, t);

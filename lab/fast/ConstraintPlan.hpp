@@ -43,11 +43,11 @@ using PlaceVisitor = std::function<void(Node, const Place&)>;
 /** Energy that a constraint added to a cloth and removed from it, summed over
  * all calls since the constraint was made. */
 struct Exchange {
-  double work = 0;    ///< by moving obstacles: impulse times velocity [J]
-  double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
-  bool took = false;  ///< contact or tearing may have taken energy
+  double work = 0;       ///< by moving obstacles: impulse times velocity [J]
+  double moment = 0;     ///< sum of m z of the nodes that were removed [kg m]
+  bool touched = false;  ///< it took energy since exchange() was last called
   Exchange& operator+=(const Exchange& b) {
-    work += b.work, moment += b.moment, took |= b.took;
+    work += b.work, moment += b.moment, touched |= b.touched;
     return *this;
   }
 };
@@ -93,8 +93,12 @@ class SweptConstraint : public ZeroConstraint {
 
   const Traits& traits() const { return traits_; }
   /** What its calls since it was made have exchanged, without the work on held
-   * nodes, which EnergyBalance adds up. */
-  const Exchange& exchange() const { return exchange_; }
+   * nodes, which EnergyBalance adds up.  @post !touched, until a call does */
+  Exchange exchange() const {
+    const Exchange all = exchange_;
+    exchange_.touched = false;
+    return all;
+  }
   void archive(Archive& a) const;
 
   /** Project the nodes of @a g with ids in [first, last) that are in use. The
@@ -111,6 +115,10 @@ class SweptConstraint : public ZeroConstraint {
 
  protected:
   mutable Exchange exchange_;
+  /** Several threads may say so. */
+  void note_touch() const {
+    __atomic_store_n(&exchange_.touched, true, __ATOMIC_RELAXED);
+  }
 
  private:
   Traits traits_;

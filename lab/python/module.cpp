@@ -23,6 +23,7 @@
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "lab/stepping/Settled.hpp"
 
 namespace lab {
 namespace {
@@ -111,6 +112,24 @@ std::optional<Why> why_failed(const Scene& s) {
   return w;
 }
 
+/** A state of a run. The rows are the nodes of its start; a node that was
+ * removed has no position: NaN. */
+struct State {
+  double t, energy;
+  std::vector<Point> x, v;
+
+  explicit State(const Scene& scene)
+      : t(scene.time()), energy(scene.energy().total()) {
+    const auto a = arrays(scene.cloth());
+    const Point none(std::numeric_limits<double>::quiet_NaN());
+    for (unsigned id : scene.recipe().built->ids) {
+      const bool there = a.node_in_use(id);
+      x.push_back(there ? a.positions()[id] : none);
+      v.push_back(there ? a.node_values()[id].vel : none);
+    }
+  }
+};
+
 /** The states of a run, one every so many seconds. */
 struct Result {
   std::size_t nodes = 0;
@@ -119,27 +138,11 @@ struct Result {
   long long steps = 0, evaluations = 0;
   std::optional<Why> why;
 
-  /** Record the state of @a scene. The rows are the nodes of its start; a node
-   * that was removed has no position: NaN. */
-  void add(const Scene& scene) {
-    const auto a = arrays(scene.cloth());
-    const auto& ids = scene.recipe().built->ids;
-    nodes = ids.size();
-    t.push_back(scene.time());
-    energy.push_back(scene.energy().total());
-    const Point none(std::numeric_limits<double>::quiet_NaN());
-    for (unsigned id : ids) {
-      const bool there = a.node_in_use(id);
-      x.push_back(there ? a.positions()[id] : none);
-      v.push_back(there ? a.node_values()[id].vel : none);
-    }
-  }
-  /** Forget the states that the scene has taken back. */
-  void take_back(double now) {
-    while (t.size() > 1 && t.back() > now) {
-      t.pop_back(), energy.pop_back();
-      x.resize(t.size() * nodes), v.resize(t.size() * nodes);
-    }
+  void add(const State& s) {
+    nodes = s.x.size();
+    t.push_back(s.t), energy.push_back(s.energy);
+    x.insert(x.end(), s.x.begin(), s.x.end());
+    v.insert(v.end(), s.v.begin(), s.v.end());
   }
 };
 
@@ -181,21 +184,24 @@ class Simulation {
     Scene& scene = live ? live->scene() : *alone;
     scene.watch_energy(m.t_end);
     Result r;
-    r.add(scene);
+    Settled<State> states(scene.stepper(), [&r](const State& s) { r.add(s); });
+    states.add(State(scene));
     // Signals are looked for at least every 1e7 springs' forces.
     const double at_once = 1e7 / (double(scene.cloth().num_edges()) + 1);
     while (!scene.done(m.t_end)) {
       end_if_interrupted();
-      const double next =
-          between * (std::floor(r.t.back() / between + 1e-6) + 1);
+      const double last = states.back() ? states.back()->t : r.t.back();
+      const double next = between * (std::floor(last / between + 1e-6) + 1);
       const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
       const int most = int(std::clamp(std::min(left, at_once), 1.,
                                       double(Scene::guard_interval)));
       live ? live->step() : scene.steps_at_once(most, m.t_end);
-      r.take_back(scene.time());
       const bool due = scene.time() >= next - 1e-6 * scene.dt();
-      if ((due || scene.done(m.t_end)) && scene.check()) r.add(scene);
+      if ((due || scene.done(m.t_end)) && scene.check() &&
+          !states.has_present())
+        states.add(State(scene));
     }
+    states.finish();
     r.steps = scene.steps(), r.evaluations = scene.evaluations();
     r.why = why_failed(scene);
     return r;

@@ -313,7 +313,12 @@ std::string FrameFolder::wrote() const {
 
 // --------------------------------------------------------------------- Export
 
-Export::Export(const std::vector<Folder>& folders, double rate) : rate_(rate) {
+Export::Export(const std::vector<Folder>& folders, double rate,
+               const Scene& scene)
+    : rate_(rate), frames_(scene.stepper(), [this](const Frame& f) {
+        for (auto& folder : folders_) folder->add(f);
+        written_ = f.time;
+      }) {
   for (const Folder& f : folders)
     if (!f.name.empty())
       folders_.push_back(std::make_unique<FrameFolder>(f.name, f.format));
@@ -324,37 +329,24 @@ bool Export::due(const Scene& scene) const {
   // The frame of number k is due at k/rate.
   auto number = [this](double t) { return std::floor(t * rate_ + 1e-9); };
   const double half = scene.dt() / 2;
-  return frames_.last() < 0 ||
-         number(scene.time() + half) > number(last_.time + half);
+  const double last = frames_.back() ? frames_.back()->time : written_;
+  return frames_.empty() || number(scene.time() + half) > number(last + half);
 }
 
 void Export::add(const Scene& scene, const Model& m) {
-  if (empty() || frames_.last() == scene.steps()) return;
-  Frame f = frame_of(scene, m, frames_.last() < 0 ? nullptr : &last_);
-  last_.time = f.time, last_.places = f.places;
-  frames_.add(scene.steps(), std::move(f));
-}
-
-void Export::settle(const Scene& scene) {
-  write(scene.steps(), scene.settled_steps());
-}
-
-void Export::write(long long now, long long settled) {
-  frames_.settle(now, settled, [this](const Frame& f) {
-    for (auto& folder : folders_) folder->add(f);
-    written_ = f.time;
-  });
-  const Frame* waits = frames_.back();
-  last_.time = waits ? waits->time : written_;
+  if (empty() || frames_.has_present()) return;
+  Frame f = frame_of(scene, m, frames_.empty() ? nullptr : &last_);
+  last_.places = f.places;
+  frames_.add(std::move(f));
 }
 
 void Export::restart() {
   for (auto& folder : folders_) folder->clear();
-  frames_ = {};
+  frames_.clear();
 }
 
-std::vector<std::string> Export::finish(const Scene& scene) {
-  write(scene.steps(), scene.steps());
+std::vector<std::string> Export::finish() {
+  frames_.finish();
   std::vector<std::string> all;
   for (const auto& folder : folders_) {
     folder->finish();

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lab/run/Pending.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/stepping/Settled.hpp"
 
 namespace lab {
 
@@ -85,35 +85,31 @@ class Export {
     FrameFormat format;
     std::string name;  ///< empty: none
   };
-  /** @param rate frames a second of simulated time [1/s], > 0
+  /** The frames of @a scene are written by its steps, once they are settled.
+   * @param rate frames a second of simulated time [1/s], > 0
    * Throws std::runtime_error "FOLDER: why". */
-  Export(const std::vector<Folder>& folders, double rate);
+  Export(const std::vector<Folder>& folders, double rate, const Scene& scene);
 
   bool empty() const { return folders_.empty(); }
   /** True if the next frame is due at the time of @a scene: half a step early
    * is as good as half a step late. */
   bool due(const Scene& scene) const;
-  /** Add the present state of @a scene, unless it is there already. It is
-   * written once its step is settled.
-   * @pre settle(); the state is good, and @a scene was made from @a m */
+  /** Add the present state of @a scene, unless it is there already.
+   * @pre the state is good, and @a scene was made from @a m */
   void add(const Scene& scene, const Model& m);
-  /** Write the frames of settled steps; forget those of steps that the run will
-   * make again.  Throws std::runtime_error "FILE: why". */
-  void settle(const Scene& scene);
   /** Remove all frames: the run begins anew. */
   void restart();
-  /** Write all frames of a run that is at its end at @a scene, and complete the
-   * folders.  @return what is in them, a sentence each */
-  std::vector<std::string> finish(const Scene& scene);
+  /** Write all frames of a run that is at its end, and complete the folders.
+   * @return what is in them, a sentence each
+   * Throws std::runtime_error "FILE: why". */
+  std::vector<std::string> finish();
 
  private:
   double rate_;
   std::vector<std::unique_ptr<FrameFolder>> folders_;
-  Pending<Frame> frames_;
-  Frame last_;  // the last one, waiting or written: its time and its places
+  Settled<Frame> frames_;
+  Frame last_;          // its places, waiting or written
   double written_ = 0;  // time of the last one in the folders [s]
-
-  void write(long long now, long long settled);
 };
 
 }  // namespace lab

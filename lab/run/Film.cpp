@@ -53,13 +53,16 @@ void show_beyond(const Scene& scene, Screen& screen,
   }
 }
 
-std::vector<std::string> outcome(const Scene& scene, unsigned nodes) {
+std::vector<std::string> outcome(const Run& run, unsigned nodes) {
+  const Scene& scene = run.scene();
   const unsigned left = scene.cloth().num_nodes();
   std::vector<std::string> lines{"t = " + short_text(scene.time()) + " s",
                                  std::to_string(scene.steps()) + " steps"};
   if (left < nodes)
     lines.push_back(std::to_string(nodes - left) + " of " +
                     std::to_string(nodes) + " nodes removed");
+  for (const std::string& text : run.warned())
+    lines.push_back("warning: " + text);
   return lines;
 }
 
@@ -130,7 +133,7 @@ void Film::finish() {
   };
   if (!o_.video.empty()) {
     if (!scene_.failure()) {
-      screen_->show_card(outcome(scene_, first_nodes_));
+      screen_->show_card(outcome(run_, first_nodes_));
       screen_->add_to_film(
           std::clamp(frames_ / 8, 1, frames_in(title_seconds)));
       screen_->show_card({});

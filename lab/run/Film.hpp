@@ -23,9 +23,9 @@ class Scene;
 void show_beyond(const Scene& scene, Screen& screen,
                  const std::function<bool(int)>& shown);
 
-/** What came of @a scene, in lines for Screen::show_card().
+/** What came of @a run, with its warnings, in lines for Screen::show_card().
  * @param nodes How many it had at first */
-std::vector<std::string> outcome(const Scene& scene, unsigned nodes);
+std::vector<std::string> outcome(const Run& run, unsigned nodes);
 
 /** The picture and the film of one run.
  *

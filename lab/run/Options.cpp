@@ -452,6 +452,7 @@ int parse(int argc, char** argv, Options& o) {
     if (app.count("--" + key) > 0)
       set_field(m, key, app.get_option("--" + key)->results());
   o.model = checked(m);
+  if (file.empty() && o.restart.empty()) o.model = or_assignment(o.model);
   o.keeps_method = app.count("--method") > 0;
   o.keeps_step = app.count("--dt") > 0 && o.model.step.fixed();
   o.model.step.tolerance = kept_tolerance;

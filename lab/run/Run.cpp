@@ -21,11 +21,6 @@
 #include "lab/stepping/Trial.hpp"
 
 namespace lab {
-namespace {
-
-constexpr const char* warning = "cloth: warning: ";
-
-}  // namespace
 
 MeshOutput::MeshOutput(const std::string& file)
     : nodes_(file), is_net_(CME212::ending_of(file) == ".net") {
@@ -51,7 +46,9 @@ Run::Run(Scene& scene, const Options& o, Live* live)
       progress_(o.quiet),
       observer_(o.model, scene),
       frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
-              o.frame_rate) {
+              o.frame_rate, scene),
+      rows_(scene.stepper(),
+            [this](const std::string& row) { write_csv(row), ++written_; }) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.follow_drag();
   scene_.watch_energy(o.model.t_end);
@@ -68,7 +65,7 @@ void Run::start() {
   progress_ = Progress(o_.quiet);
   observer_ = Observer(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
-  rows_ = {}, written_ = 0;
+  rows_.clear(), written_ = 0;
   frames_.restart();
   frames_.add(scene_, o_.model);
   if (!o_.csv.empty()) begin_csv();
@@ -113,10 +110,8 @@ void Run::to_end(const std::function<void()>& after) {
   check();
 }
 
-/** After a step, or after the run went back to an earlier one. */
+/** After each step. */
 void Run::look() {
-  write_rows(scene_.settled_steps());
-  frames_.settle(scene_);
   if (o_.model.measure.over_time()) observer_.look(o_.model, scene_);
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
@@ -124,7 +119,8 @@ void Run::look() {
   tell_failure();
   if (scene_.steps() % o_.every == 0 || at_end) add_row();
   if (at_end || frames_.due(scene_)) add_frame();
-  if (!warned_ && scene_.watched().count() > 0) warn_of_missed();
+  if (!missed_ && scene_.watched().count() > 0)
+    missed_ = true, warn(scene_.missed_text());
   if (!told_ && progress_.due()) show_progress();
   if (!o_.checkpoint.empty() && seconds_ >= next_checkpoint_ && scene_.check())
     save();
@@ -140,7 +136,7 @@ void Run::show_progress() {
                  t / t_end);
 }
 
-void Run::announce() const {
+void Run::announce() {
   if (o_.quiet) return;
   using CME212::percent;
   for (const std::string& line :
@@ -182,16 +178,15 @@ void Run::announce() const {
   const auto& built = scene_.recipe().built;
   if (built && first_step_ == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
-      std::cerr << warning << w << '\n';
+      warn(w);
   if (const double work = scene_.flow().work; first_step_ == 0 && work != 0)
-    std::cerr << warning << "at t = 0 the obstacles give "
-              << CME212::short_text(work)
-              << " J to the cloth, which counts as their work\n";
+    warn("at t = 0 the obstacles give " + CME212::short_text(work) +
+         " J to the cloth, which counts as their work");
   if (scene_.method().multirate && limit <= scene_.safe_limit(table::verlet))
-    std::cerr
-        << warning << method
-        << " finds no stiff springs here: use --method verlet, which does "
-           "the same\n";
+    warn(std::string(method) +
+         " finds no stiff springs here: use --method verlet, which does the "
+         "same");
+  warn_of_length();
   if (dt <= limit || sharp) return;
   out.str("");
   if (limit > 0)
@@ -199,7 +194,28 @@ void Run::announce() const {
         << safe_share * limit << " or --dt auto";
   else
     out << "expect divergence; use --method verlet --dt auto";
-  std::cerr << warning << out.str() << '\n';
+  warn(out.str());
+}
+
+void Run::warn(const std::string& text) {
+  if (o_.quiet) return;
+  std::cerr << "cloth: warning: " << text << '\n';
+  warnings_.push_back(text);
+}
+
+/** Warn of a run of hours, by its steps and what they cost. */
+void Run::warn_of_length() {
+  using CME212::two_digits;
+  const double steps = (o_.model.t_end - scene_.time()) / scene_.dt();
+  const Cloth& g = scene_.cloth();
+  const double seconds = steps * evaluations_of(scene_.method()) *
+                         (g.num_nodes() + g.num_edges()) / Scene::trial_work;
+  constexpr double hour = 3600, year = 365.25 * 24 * hour;  // [s]
+  if (seconds > hour)
+    warn(two_digits(steps) + " steps of this dt take about " +
+         (seconds > year ? two_digits(seconds / year) + " years"
+                         : two_digits(seconds / hour) + " hours") +
+         ": shorten --t-end, or soften the springs");
 }
 
 int Run::finish() {
@@ -217,7 +233,7 @@ int Run::finish() {
       save();
       wrote("checkpoint " + o_.checkpoint);
     });
-  write_rows(scene_.steps());
+  rows_.finish();
   if (csv_)
     write([this] {
       csv_->commit();
@@ -231,7 +247,7 @@ int Run::finish() {
     });
   write([this] {
     add_frame();  // of a run that is cut short
-    for (const std::string& what : frames_.finish(scene_)) {
+    for (const std::string& what : frames_.finish()) {
       if (!o_.quiet) std::cout << what << '\n';
       wrote(what);
     }
@@ -242,8 +258,8 @@ int Run::finish() {
     print_summary();
     tell_work();
     if (live_ && live_->changes_left() > 0)
-      std::cerr << warning << CME212::count_of(live_->changes_left(), "change")
-                << " would come after the end\n";
+      warn(CME212::count_of(live_->changes_left(), "change") +
+           " would come after the end");
   }
   if (scene_.control()) tell_steps(*scene_.control());
   if (scene_.failure() || !energy_is_kept()) return 3;
@@ -278,7 +294,7 @@ void Run::archive(Archive& a) {
                                     ", but the run until "
                                     "the checkpoint was asked for " +
                                     asked);
-  a(written_)(warned_).require(written_ >= 0);
+  a(written_)(missed_).require(written_ >= 0);
   rows_.archive(a);
 }
 
@@ -318,7 +334,7 @@ void Run::load() {
   first_step_ = scene_.steps();
   next_checkpoint_ = o_.every_seconds;
   frames_.add(scene_, o_.model);
-  if (o_.csv.empty()) return void(rows_ = {});
+  if (o_.csv.empty()) return rows_.clear();
   if (std::filesystem::is_regular_file(o_.csv))
     go_on_with_csv(length, sum);
   else
@@ -345,12 +361,11 @@ void Run::go_on_with_csv(std::uint64_t length, std::uint64_t sum) {
 void Run::add_frame() {
   if (frames_.empty()) return;
   check();
-  frames_.settle(scene_);
   frames_.add(scene_, o_.model);
 }
 
 void Run::add_row() {
-  if (!csv_ || scene_.steps() == rows_.last()) return;
+  if (!csv_ || rows_.has_present()) return;
   const Cloth& g = scene_.cloth();
   const Energies e = energies(g, o_.model.gravity);
   const Point c = center_of_mass(g);
@@ -366,15 +381,7 @@ void Run::add_row() {
   if (!columns_of(o_.model.measure).empty())
     for (double a : lab::answer(o_.model, scene_, o_.model.measure))
       row += ',' + CME212::to_text(a);
-  rows_.add(scene_.steps(), row + '\n');
-}
-
-/** Write the rows of the first @a settled steps. */
-void Run::write_rows(long long settled) {
-  rows_.settle(scene_.steps(), settled, [this](const std::string& row) {
-    write_csv(row);
-    ++written_;
-  });
+  rows_.add(row + '\n');
 }
 
 void Run::tell_failure() {
@@ -382,12 +389,6 @@ void Run::tell_failure() {
   told_ = true;
   progress_.end();
   std::cerr << "cloth: " << scene_.explanation().text() << '\n';
-}
-
-void Run::warn_of_missed() {
-  warned_ = true;
-  if (o_.quiet) return;
-  std::cerr << warning << scene_.missed_text() << '\n';
 }
 
 void Run::tell_interrupt() const {
@@ -425,34 +426,43 @@ void Run::tell_work() const {
 
 /** Say how far the energy is off.
  * @return false: the method has made more of it than is tolerated */
-bool Run::energy_is_kept() const {
+bool Run::energy_is_kept() {
   const EnergyWatch& watch = *scene_.energy_watch();
   std::ostringstream out;
   out.precision(3);
   out << "energy off by " << watch.off() << " J";
   if (const double share = watch.share(); share != 0)
     out << " (" << CME212::percent(share) << " of the largest internal energy)";
-  if (!o_.quiet && !watch.took()) std::cout << out.str() << '\n';
+  if (!o_.quiet) {
+    std::cout << out.str();
+    if (watch.taken() > 0)
+      std::cout << "; contact and tearing took "
+                << CME212::two_digits(watch.taken()) << " J";
+    std::cout << '\n';
+  }
   const bool kept = scene_.control() || !watch.gains();
+  std::string cause;
+  try {
+    if (!kept) cause = scene_.diagnosis().cause_text() + "; ";
+  } catch (const Interrupted&) {  // remedy() says so
+  }
   if (!kept)
-    std::cerr << "cloth: " << watch.gain_text() << "; " << scene_.remedy()
-              << '\n';
-  else if (watch.loses() && !o_.quiet)
-    std::cerr << warning << out.str() << ", which is an error of the method; "
+    std::cerr << "cloth: " << watch.gain_text() << "; " << cause
               << scene_.remedy() << '\n';
+  else if (watch.loses() && !o_.quiet)
+    warn(out.str() + ", which is an error of the method; " + scene_.remedy());
   return kept;
 }
 
 /** What steps were chosen, and what they did to the energy. */
-void Run::tell_steps(const StepControl& c) const {
+void Run::tell_steps(const StepControl& c) {
   if (o_.quiet) return;
   const auto& r = c.report();
   const double gain = c.state().gain, most = c.tolerance();
   std::ostringstream out;
   out.precision(3);
   out << "energy gain " << gain << " J, at most " << most << " J tolerated";
-  if (gain > most)
-    std::cerr << warning << out.str() << "; " << scene_.remedy() << '\n';
+  if (gain > most) warn(out.str() + "; " + scene_.remedy());
   std::cout << "dt from " << r.shortest << " to " << r.longest
             << " s: shortened " << r.shortened << " times, lengthened "
             << r.lengthened << " times, " << r.taken_back

@@ -11,8 +11,8 @@
 #include "lab/fast/Archive.hpp"
 #include "lab/run/Export.hpp"
 #include "lab/run/Options.hpp"
-#include "lab/run/Pending.hpp"
 #include "lab/run/Progress.hpp"
+#include "lab/stepping/Settled.hpp"
 #include "lab/stepping/Trial.hpp"
 
 namespace lab {
@@ -69,8 +69,11 @@ class Run {
   /** Step until done(). Call @a after(), if there is one, after each step. */
   void to_end(const std::function<void()>& after = {});
 
-  /** Print what acts, how long the step is, and how long it may be. */
-  void announce() const;
+  /** Print what acts, how long the step is, and how long it may be; warn of
+   * what will go wrong, and of a run of hours. */
+  void announce();
+  /** The warnings so far, without what is in --quiet runs. */
+  const std::vector<std::string>& warned() const { return warnings_; }
 
   /** A file was written by others: @a what in words, as "film x.mp4". */
   void wrote(const std::string& what);
@@ -91,7 +94,7 @@ class Run {
   std::optional<CME212::OutputFile> csv_;
   std::optional<MeshOutput> out_;
   Export frames_;
-  Pending<std::string> rows_;
+  Settled<std::string> rows_;
   long long written_ = 0;       // rows
   std::uint64_t csv_sum_ = 0;   // checksum of what csv_ has
   long long first_step_ = 0;    // where a checkpoint was
@@ -99,18 +102,17 @@ class Run {
   double next_checkpoint_ = 0;  // [s] of progress_
   std::string kept_;            // in words
   double seconds_ = 0;          // until the last step
-  bool warned_ = false, told_ = false;
+  bool missed_ = false, told_ = false;
+  std::vector<std::string> warnings_;
 
   int steps_to_write() const;
   void start();
   void look();
   void add_row();
-  void write_rows(long long settled);
   void show_progress();
   void tell_failure();
   void tell_interrupt() const;
   void print_summary() const;
-  void warn_of_missed();
   void add_frame();
   void begin_csv();
   void write_csv(const std::string& text);
@@ -118,9 +120,11 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
-  void tell_steps(const StepControl& c) const;
+  void tell_steps(const StepControl& c);
   void tell_work() const;
-  bool energy_is_kept() const;
+  void warn(const std::string& text);
+  void warn_of_length();
+  bool energy_is_kept();
 };
 
 }  // namespace lab

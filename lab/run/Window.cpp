@@ -58,7 +58,7 @@ class Player {
     run_.check();
     const Scene& scene = run_.scene();
     const bool failed = scene.failure().has_value();
-    screen_.show_card(run_.done() && !failed ? outcome(scene, nodes_)
+    screen_.show_card(run_.done() && !failed ? outcome(run_, nodes_)
                                              : std::vector<std::string>());
     screen_.show(scene);
     if (!failed || exploded_ || interrupted()) return;

@@ -317,6 +317,6 @@ int main(int argc, char** argv) {
     return 2;
   } catch (const std::exception& e) {
     std::cerr << "cloth: " << e.what() << '\n';
-    return 2;
+    return interrupted() ? 128 + interrupted() : 2;
   }
 }

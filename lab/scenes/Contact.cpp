@@ -34,7 +34,7 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 void Touchable::touch(Node n, double depth, const Point& out,
                       const Point& velocity) const {
   const double work = contact::touch(n, depth, out, velocity, friction_);
-  __atomic_store_n(&exchange_.took, true, __ATOMIC_RELAXED);
+  note_touch();
   if (!traits().nodewise)
     exchange_.work += work;  // else several threads may be here
 }
@@ -93,7 +93,7 @@ void StrainConstraint::operator()(Cloth& g, double /*t*/) const {
     const double longest = most_ * arrays(g).edge_values()[e].L;
     // A slot that is not in use has the length 0.
     if (normSq(x[j] - x[i]) > longest * longest)
-      g.remove_edge(arrays(g).edge_with_id(e)), exchange_.took = true;
+      g.remove_edge(arrays(g).edge_with_id(e)), exchange_.touched = true;
   }
 }
 

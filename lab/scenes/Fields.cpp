@@ -249,7 +249,7 @@ Model checked(Model m) {
     throw SceneError("net", "cannot be combined with NODES and TETS");
   if (m.wind && m.material.drag.value_or(m.damping) == 0)
     throw SceneError("wind", "acts by drag: expected --drag or --damping, too");
-  return or_assignment(m);
+  return m;
 }
 
 // ---------------------------------------------------------- What a Model names

@@ -51,8 +51,8 @@ std::vector<Field> fields_of(Model& m);
 bool set_field(Model& m, std::string_view name,
                const std::vector<std::string>& values);
 
-/** The scene that is run for @a m: if @a m names no part, it gets those of
- * assignment_scene(); a default step longer than t-end becomes t-end.
+/** The scene that is run for @a m: a default step longer than t-end becomes
+ * t-end; a file that is no `.nodes` is a net.
  * Throws SceneError: fields that contradict each other */
 Model checked(Model m);
 /** The part of it that is about the step and t-end.  Throws SceneError */

@@ -250,7 +250,7 @@ struct Model {
 Model assignment_scene();
 
 /** @a m; or, if it names no part and no net, @a m with the parts of
- * assignment_scene(). */
+ * assignment_scene(): what the command line gets without a scene file. */
 Model or_assignment(Model m);
 
 }  // namespace lab

@@ -105,7 +105,7 @@ bool SelfCollision::project_pairs(Cloth& g) const {
     if (normSq(x[i] - x[j]) < thickness_ * thickness_ &&
         arrays(g).node_in_use(i) && arrays(g).node_in_use(j)) {
       push_apart(g, i, j);
-      pushed = exchange_.took = true;
+      pushed = exchange_.touched = true;
     }
   if (++rounds_ >= max_rounds && pushed)
     throw StepError("self-collision: nodes are closer than the thickness, " +

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "CME212/Util.hpp"
+#include "lab/methods/FastMassSpring.hpp"
+#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/methods/Xpbd.hpp"
 
 namespace lab {
 
@@ -84,13 +87,41 @@ std::string Cure::options(const MethodEntry& before) const {
              : "--method " + std::string(method.info.name) + ' ' + step;
 }
 
+bool is_flat(const Cloth& g) {
+  const auto nodes = g.nodes();
+  if (g.num_nodes() == 0) return false;
+  const Point a = g.node(0).position();
+  Point side, normal;  // the farthest from a; the farthest from that line
+  for (Node n : nodes)
+    if (const Point d = n.position() - a; normSq(d) > normSq(side)) side = d;
+  for (Node n : nodes)
+    if (const Point c = cross(side, n.position() - a);
+        normSq(c) > normSq(normal))
+      normal = c;
+  const double most = 1e-9 * norm(side) * norm(normal);
+  return std::ranges::all_of(nodes, [&](Node n) {
+    return std::abs(dot(normal, n.position() - a)) <= most;
+  });
+}
+
 namespace {
+
+/** Why a method without a stability limit fails. */
+Cause cause_without_limit(const FailedRun& run) {
+  const auto is = [&](const MethodInfo& m) {
+    return run.method.info.name == m.name;
+  };
+  if (is(ImplicitEuler::info)) return run.flat ? Cause::flat : Cause::linear;
+  if (is(Xpbd::info) || is(FastMassSpring::info)) return Cause::rounds;
+  if (is(ImplicitMidpoint::info) && run.dt > run.verlet) return Cause::waves;
+  return Cause::error;
+}
 
 Cause cause_of(const FailedRun& run) {
   const MethodInfo& info = run.method.info;
   if (!std::isfinite(run.time)) return Cause::start;
   if (run.solver) return Cause::solver;
-  if (info.limit == no_limit || info.adaptive) return Cause::method;
+  if (info.limit == no_limit || info.adaptive) return cause_without_limit(run);
   if (run.safe == 0) return Cause::no_step;
   if (run.dt > 0.97 * run.safe && run.safe < 0.97 * run.safe_without_drag)
     return Cause::drag;
@@ -143,8 +174,30 @@ std::string Diagnosis::cause_text() const {
       else
         out << "there is no stability limit";
       break;
-    case Cause::method:
-      out << info.name << " fails with: " << info.fails_when;
+    case Cause::flat:
+      out << "the cloth is flat: across it springs have no stiffness yet, so "
+          << "the one linear solve of a step of " << info.name
+          << " sees none, and nodes that leave the plane go too far";
+      in_verlets();
+      break;
+    case Cause::linear:
+      out << "the one linear solve of a step of " << info.name
+          << " takes the stiffness at its start, and springs turn or stretch "
+          << "too far in a step";
+      in_verlets();
+      break;
+    case Cause::rounds:
+      out << "the rounds of " << info.name
+          << " over the springs do not solve the equations of a step";
+      in_verlets();
+      break;
+    case Cause::waves:
+      out << "fast waves grow, as in a cloth that buckles: a step of "
+          << info.name << " neither resolves nor damps them";
+      in_verlets();
+      break;
+    case Cause::error:
+      out << "the error of a step of " << info.name << " is too large";
       in_verlets();
       break;
     case Cause::solver:
@@ -206,6 +259,8 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
   };
   switch (cause) {
     case Cause::step:
+      if (run.method.info.multirate && run.safe <= run.verlet)
+        by_verlet(safe_share);  // nothing is stiff: it is Verlet
       shorter(safe_share * run.safe);
       by_verlet(safe_share);
       shorter(safe_share / 4 * run.safe);
@@ -223,7 +278,13 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
       shorter(run.dt / 16);
       shorter(run.dt / 64);
       break;
-    case Cause::method:
+    case Cause::flat:
+    case Cause::linear:
+    case Cause::rounds:
+    case Cause::waves:
+    case Cause::error:
+      // An implicit step costs 40 to 200 of Verlet's.
+      if (run.dt < 100 * run.verlet) by_verlet(safe_share);
       // Order 1 fails by its error, which falls with the step; order 2 by fast
       // waves that it does not damp.
       if (run.method.info.order > 1 && run.dt > run.verlet)

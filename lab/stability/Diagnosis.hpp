@@ -58,7 +58,11 @@ enum class Cause {
   drag,       ///< dt is too long for drag that is treated as a force
   no_step,    ///< the method has no stable step
   nonlinear,  ///< dt is below the limit, but motion is large
-  method,     ///< a method without a limit fails in another way
+  flat,       ///< one linear solve sees no stiffness across a flat cloth
+  linear,     ///< one linear solve for nodes that move far in a step
+  rounds,     ///< too few rounds to solve the equations of a step
+  waves,      ///< fast waves are not resolved, and nothing damps them
+  error,      ///< a method without a limit fails in another way
   solver,     ///< the method or a constraint could not make the step
   start,      ///< the initial state is at fault
 };
@@ -74,7 +78,11 @@ struct FailedRun {
   double safe = 0;      ///< the limit in every configuration [s]
   double safe_without_drag = 0;  ///< [s]
   double verlet = 0;             ///< Verlet's safe limit [s]
+  bool flat = false;             ///< the last good state is: is_flat()
 };
+
+/** Do all nodes lie in a plane, to 1e-9 of the size of the cloth?  O(N) */
+bool is_flat(const Cloth& g);
 
 /** Another way to compute the same scene. */
 struct Cure {

@@ -48,16 +48,22 @@ void EnergyBalance::follow(const Cloth& g, double t,
   const Exchange now = constraint.exchange();
   flow_.work += now.work - seen_.work;
   flow_.removed += gravity_ * (now.moment - seen_.moment);
-  flow_.took |= now.took;
+  flow_.touched |= now.touched;
   seen_ = now;
+  const double step = t - time_;
+  const bool same = std::abs(step - step_) < 1e-9 * step;
+  time_ = t, step_ = step;
   for (Held& h : held_) {
     if (!g.has_node(h.node)) continue;
     const Point x = h.node.position(), v = h.node.value().vel;
+    const bool follows = std::exchange(h.follows, false) && same;
     if (x == h.place && v == h.velocity) continue;
-    const Point f = force_(h.node, t);
+    const Point f = force_(h.node, t), change = f - h.force;
+    Point mean = 0.5 * (f + h.force);
+    if (follows) mean -= (change - h.change) / 12;
     flow_.work += 0.5 * h.node.value().mass * (normSq(v) - normSq(h.velocity)) -
-                  0.5 * dot(f + h.force, x - h.place);
-    h = {h.node, x, v, f};
+                  dot(mean, x - h.place);
+    h = {h.node, x, v, f, change, true};
   }
   if (pull_ && g.has_node(pulled_.node)) {
     const Point before = pulled_.place, f = pulled_.force;
@@ -78,6 +84,7 @@ void EnergyBalance::resume(const Cloth& g, double t,
                            const EnergyFlow& flow) {
   flow_ = flow;
   seen_ = constraint.exchange();
+  time_ = t, step_ = 0;
   for (Held& h : held_)
     if (g.has_node(h.node))
       h = {h.node, h.node.position(), h.node.value().vel, force_(h.node, t)};
@@ -102,36 +109,35 @@ void EnergyBalance::find_carrier(const Cloth& g, double t,
 EnergyWatch::EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
                          double gamma, double floor, double round_off)
     : dt_(dt),
-      start_(balance(e, flow)),
-      sums_(0.02 + gamma * dt * gamma * dt / 4),
+      sums_(0.005 + gamma * dt * gamma * dt / 4),
       floor_(floor),
       round_off_(round_off),
-      largest_(e.internal()),
-      fall_(2 * e.fall_power * dt) {}
+      seen_(e, flow, dt),
+      start_(seen_.last) {}
 
 void EnergyWatch::look(const Energies& e, const EnergyFlow& flow) {
-  off_ = balance(e, flow) - start_;
-  took_ = flow.took;
-  largest_ = std::max(largest_, e.internal());
-  fall_ = std::max(fall_, 2 * e.fall_power * dt_);
+  const double b = balance(e, flow);
+  if (flow.touched) taken_ += std::max(0., seen_.last - b);
+  seen_.measure(e, dt_);
+  seen_.add(b);
   passed_ = std::max(passed_, std::abs(flow.work) + std::abs(flow.drag));
   round_off_ = std::max(round_off_, e.round_off());
-  sum_ += off_;
-  gain_ = std::max(gain_, off_ - least_);
-  if (++looks_ % round != 0) return;
-  least_ = std::min(least_, sum_ / round);
-  sum_ = 0;
+  ++looks_;
 }
 
 double EnergyWatch::share() const {
-  const bool counts =
-      largest_ > passed_ && std::abs(off_) > fall_ + floor_ + round_off_;
-  return counts ? off_ / largest_ : 0;
+  const bool counts = seen_.scale > passed_ &&
+                      std::abs(off()) > seen_.fall + floor_ + round_off_;
+  return counts ? off() / seen_.scale : 0;
+}
+
+double EnergyWatch::loss_tolerance() const {
+  return energy_tolerance * seen_.scale + sums_ * passed_ + seen_.fall +
+         floor_ + round_off_;
 }
 
 double EnergyWatch::tolerance() const {
-  const double share = energy_tolerance + 1. / std::max(looks_, 1);
-  return share * largest_ + sums_ * passed_ + fall_ + floor_ + round_off_;
+  return loss_tolerance() + seen_.scale / std::max(looks_, 1) + 0.015 * passed_;
 }
 
 std::string EnergyWatch::gain_text() const {
@@ -141,10 +147,9 @@ std::string EnergyWatch::gain_text() const {
 }
 
 void EnergyWatch::archive(Archive& a) {
-  a(round_off_)(largest_)(fall_)(off_)(sum_)(least_)(gain_)(passed_)(looks_);
-  a(took_).require(std::isfinite(round_off_ + largest_ + fall_ + off_ + sum_ +
-                                 least_ + gain_ + passed_) &&
-                   looks_ >= 0);
+  a(seen_)(start_)(round_off_)(taken_)(passed_)(looks_);
+  a.require(std::isfinite(start_ + round_off_ + taken_ + passed_) &&
+            looks_ >= 0);
 }
 
 }  // namespace lab

@@ -1,6 +1,7 @@
 #pragma once
 /** @file EnergyBalance.hpp
  * The energy of a cloth, and what entered and left it. */
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -32,11 +33,11 @@ struct EnergyFlow {
   Point carried = Point();  ///< mean velocity of the held nodes [m/s]
   /** No node is held. */
   bool loose = false;
-  /** Contact or tearing may have taken energy, how much is not measured. */
-  bool took = false;
+  /** Contact or tearing took energy since EnergyBalance::looked(). */
+  bool touched = false;
 
   void archive(Archive& a) {
-    a(work)(removed)(drag)(carried)(loose)(took);
+    a(work)(removed)(drag)(carried)(loose)(touched);
     a.require(std::isfinite(work + removed + drag + norm(carried)));
   }
 };
@@ -61,7 +62,9 @@ inline double balance(const Energies& e, const EnergyFlow& flow) {
  *   b = energies().total() - work + removed + drag:
  * any rise is the method's error. Work of a moving obstacle: the impulse on a
  * node times the obstacle's velocity. Work of a moving pin: the gain of the
- * node's kinetic energy - F . dx, F the mean force before and after a step. */
+ * node's kinetic energy - F . dx, F the mean force in a step, to order 3: by
+ * the forces at its ends and, if the last step was as long, at its start
+ * (Adams and Moulton; Hairer, Norsett, Wanner, Solving ODEs I, III.1). */
 class EnergyBalance {
  public:
   /** @param g at the start, time @a t   @param gravity [m/s^2]
@@ -78,6 +81,8 @@ class EnergyBalance {
   void watch(Node n, const ZeroForce* pull, double t);
   /** Add the energy that linear drag took [J]. */
   void add_drag(double loss) { flow_.drag += loss; }
+  /** The present state was judged. */
+  void looked() { flow_.touched = false; }
   const EnergyFlow& flow() const { return flow_; }
 
   /** Continue from the state of @a g at time @a t and its @a flow. */
@@ -87,40 +92,80 @@ class EnergyBalance {
   /** Save or load all that follow() changes. */
   void archive(Archive& a) {
     for (Held& h : held_) {
-      a(h.place)(h.velocity)(h.force);
-      a.require(
-          std::isfinite(norm(h.place) + norm(h.velocity) + norm(h.force)));
+      a(h.place)(h.velocity)(h.force)(h.change)(h.follows);
+      a.require(std::isfinite(norm(h.place) + norm(h.velocity) + norm(h.force) +
+                              norm(h.change)));
     }
-    a(seen_.work)(seen_.moment)(seen_.took)(flow_);
-    a.require(std::isfinite(seen_.work + seen_.moment));
+    a(seen_.work)(seen_.moment)(flow_)(time_)(step_);
+    a.require(std::isfinite(seen_.work + seen_.moment + time_ + step_));
   }
 
  private:
   struct Held {
     Node node;
     Point place, velocity, force;  // after the last step [m, m/s, N]
+    Point change = Point();        // of force in that step [N]
+    bool follows = false;          // it moved in that step
   };
   CombinedForces force_;
   double gravity_;
   std::vector<Held> held_;
   Held pulled_;  // force: that of pull_ alone
   const ZeroForce* pull_ = nullptr;
-  Exchange seen_;  // constraint.exchange() after the last step
+  Exchange seen_;               // constraint.exchange() after the last step
+  double time_ = 0, step_ = 0;  // then, and its length [s]
   EnergyFlow flow_;
 
   void find_carrier(const Cloth& g, double t, const ConstraintPlan& constraint);
 };
 
-/** Follows the balance of a run: its error is the method's. A gain never has
- * another cause; a loss may be that of contact and tearing: EnergyFlow::took.
+/** What was seen of the balance b of a run [J].
  *
  * With a symplectic method the energy of an oscillation swings by a share of
- * O((dt omega)^2). So gains are measured, as in StepControl, from the least of
- * the initial balance and of the means of all rounds of 8 looks. */
+ * O((dt omega)^2). So gains are measured from the least of the initial b and of
+ * the means of all rounds of 8 looks. */
+struct Swings {
+  static constexpr int round = 8;  ///< looks
+
+  double scale = 0;            ///< largest internal energy
+  double fall = 0;             ///< gravity's work in two steps, if loose
+  double last = 0, least = 0;  ///< b: now, and its least mean over a round
+  double sum = 0;              ///< of b over this round
+  double gain = 0;             ///< largest b - least
+  int looks = 0;               ///< in this round
+
+  Swings() = default;
+  /** @param dt the step [s] */
+  Swings(const Energies& e, const EnergyFlow& flow, double dt)
+      : scale(e.internal()), fall(2 * e.fall_power * dt) {
+    last = least = balance(e, flow);
+  }
+  /** Compare with the largest energies so far. */
+  void measure(const Energies& e, double dt) {
+    scale = std::max(scale, e.internal());
+    fall = std::max(fall, 2 * e.fall_power * dt);
+  }
+  /** Take @a b into account.  @return true at the end of a round */
+  bool add(double b) {
+    last = b, sum += b;
+    gain = std::max(gain, last - least);
+    if (++looks < round) return false;
+    least = std::min(least, sum / round);
+    looks = 0, sum = 0;
+    return true;
+  }
+  void archive(Archive& a) {
+    a(scale)(fall)(last)(least)(sum)(gain)(looks);
+    a.require(std::isfinite(scale + fall + last + least + sum + gain) &&
+              0 <= looks && looks < round);
+  }
+};
+
+/** Follows the balance of a run: its error is the method's. A gain never has
+ * another cause; a loss may be that of contact and tearing. What is lost
+ * between two looks counts as theirs if anything touched or tore meanwhile. */
 class EnergyWatch {
  public:
-  static constexpr int round = 8;  ///< calls of look()
-
   /** @param e, flow at the start   @param dt the step [s]
    * @param gamma largest of drag [1/s]
    * @param floor, round_off of the DivergenceGuard [J] */
@@ -130,38 +175,40 @@ class EnergyWatch {
   /** Take the state after some steps into account. */
   void look(const Energies& e, const EnergyFlow& flow);
 
-  /** The error of the energy now [J]; positive if gained. */
-  double off() const { return off_; }
+  /** The error of the energy now [J], without taken(); positive if gained. */
+  double off() const { return seen_.last - start_ + taken_; }
+  /** What contact and tearing took [J], and errors meanwhile. */
+  double taken() const { return taken_; }
   /** off() as a share of the largest internal energy; 0 if that is negligible,
    * as in a free fall, or beside work and drag. */
   double share() const;
   /** The largest gain so far [J]. */
-  double gain() const { return gain_; }
-  /** The gain or loss that StepControl would tolerate [J]; and, as work and
-   * drag are sums over steps by the trapezoidal rule, 2 % of them and (gamma
-   * dt)^2/4: in a steady fall that rule errs by (gamma dt)^2/6. And, as
-   * velocities may be one step ahead of positions, one of n of the largest
-   * internal energy after n looks: n steps after the start from rest, the
-   * kinetic energy of symplectic Euler is by that share too large. */
+  double gain() const { return seen_.gain; }
+  /** The loss that is tolerated [J]: the share of the largest internal energy
+   * that StepControl tolerates as a gain; and, as work and drag are sums over
+   * steps, 0.5 % of them and (gamma dt)^2/4: in a steady fall the trapezoidal
+   * rule errs by (gamma dt)^2/6. */
+  double loss_tolerance() const;
+  /** The same for a gain, with 2 % of work and drag; and, as velocities may be
+   * one step ahead of positions, with one of n of the largest internal energy
+   * after n looks: n steps after the start from rest, the kinetic energy of
+   * symplectic Euler is by that share too large. */
   double tolerance() const;
   /** The method has added more energy than is tolerated. */
-  bool gains() const { return gain_ > tolerance(); }
+  bool gains() const { return gain() > tolerance(); }
   /** That in words. */
   std::string gain_text() const;
-  /** The method has lost more than that, and nothing else can have. */
-  bool loses() const { return !took_ && -off_ > tolerance(); }
-  /** True if contact or tearing may have taken energy. */
-  bool took() const { return took_; }
+  /** The method has lost more than is tolerated. */
+  bool loses() const { return -off() > loss_tolerance(); }
 
   void archive(Archive& a);
 
  private:
-  double dt_, start_, sums_, floor_, round_off_;  // sums_: their error [1]
-  double largest_, fall_ = 0;  // internal energy; see StepControl::State [J]
-  double off_ = 0, sum_ = 0;   // sum_: off_ over this round
-  double least_ = 0, gain_ = 0, passed_ = 0;
+  double dt_, sums_, floor_, round_off_;  // sums_: their error [1]
+  Swings seen_;
+  double start_;                   // the first b [J]
+  double taken_ = 0, passed_ = 0;  // passed_: the most work and drag [J]
   int looks_ = 0;
-  bool took_ = false;
 };
 
 }  // namespace lab

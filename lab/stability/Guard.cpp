@@ -13,8 +13,7 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
                                  const EnergyFlow& flow)
     : gravity_(gravity), dt_(dt) {
   const Energies e = energies(g, gravity, flow);
-  start_ = e.kinetic + e.elastic - flow.work;
-  height_ = e.gravitational + flow.removed;
+  start_ = balance(e, flow) - flow.drag;
   available_ = e.internal();
   const double fall = gravity * dt;  // [m/s]
   constexpr double strain = 1e-6;
@@ -27,10 +26,9 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
 bool DivergenceGuard::accept(const Cloth& g, const Energies& e,
                              const EnergyFlow& flow) {
   if (!std::isfinite(e.total())) return false;
-  const double released = height_ - e.gravitational - flow.removed;
-  const double carried = e.kinetic - e.relative;
-  const double available =
-      std::max(available_, start_ + released + flow.work - carried);
+  // The internal energy without the method's errors and without drag
+  const double exact = e.internal() - (balance(e, flow) - flow.drag - start_);
+  const double available = std::max(available_, exact);
   const double floor = floor_ + e.fall_power * dt_;
   if (!(e.internal() <= margin * (available + floor))) return false;
   available_ = available;

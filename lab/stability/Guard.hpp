@@ -78,10 +78,9 @@ class DivergenceGuard {
   }
 
  private:
-  double gravity_, height_ = 0;  // height_: at the start, with removed [J]
-  double dt_;                    // [s]
-  double start_ = 0, floor_ = 0, round_off_ = 0;  // start_: without work [J]
-  double available_ = 0;                          // the most so far [J]
+  double gravity_, dt_;  // [m/s^2, s]
+  double start_ = 0;     // the balance at the start, without drag [J]
+  double floor_ = 0, round_off_ = 0, available_ = 0;  // the most so far [J]
   NodeStates kept_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lab {
 
@@ -17,27 +18,25 @@ constexpr double at_rest = 1e-6;  // of the largest energy of motion: none
 StepControl::StepControl(double dt, const Energies& start, const Limits& limits,
                          const EnergyFlow& flow)
     : first_(dt), shortest_(dt / 64), limits_(limits), report_{dt, dt} {
-  now_.dt = dt, now_.ceiling = none;
-  now_.scale = start.internal();
-  now_.fall = 2 * start.fall_power * dt;
-  now_.last = now_.least = now_.base = now_.mark = balance(start, flow);
-  now_.low = none;
+  static_cast<Swings&>(now_) = Swings(start, flow, dt);
+  now_.dt = dt, now_.ceiling = now_.low = none;
+  now_.base = now_.mark = now_.last;
   now_.drag = now_.lost = flow.drag, now_.kinetic = start.kinetic;
   now_.fall_power = start.fall_power;
 }
 
 void StepControl::State::archive(Archive& a) {
-  for (double* x :
-       {&dt, &ceiling, &scale, &fall, &last, &least, &base, &low, &mark, &sum,
-        &gain, &time, &kinetic_time, &drag, &lost, &kinetic, &fall_power})
+  Swings::archive(a);
+  for (double* x : {&dt, &ceiling, &base, &low, &mark, &time, &kinetic_time,
+                    &drag, &lost, &kinetic, &fall_power})
     // Bounds that are not set yet are infinite.
     a(*x).require(std::isfinite(*x) ||
                   (*x == none && (x == &ceiling || x == &low)));
-  a(looks)(rounds)(calm)(since)(raises);
+  a(rounds)(calm)(since)(raises);
   constexpr int most = 1 << 30;  // so that none overflows
-  a.require(dt > 0 && 0 <= looks && looks < round && 0 <= rounds &&
-            rounds < most && 0 <= calm && calm < most && 0 <= since &&
-            since < most && 0 <= raises && raises < most);
+  a.require(dt > 0 && 0 <= rounds && rounds < most && 0 <= calm &&
+            calm < most && 0 <= since && since < most && 0 <= raises &&
+            raises < most);
 }
 
 void StepControl::archive(Archive& a) {
@@ -54,8 +53,8 @@ StepControl::Verdict StepControl::look(const Energies& e,
                                        const EnergyFlow& flow, double h,
                                        double part) {
   State s = now_;
-  s.last = balance(e, flow);
-  s.low = std::min(s.low, s.last), s.sum += s.last;
+  const double b = balance(e, flow);
+  s.low = std::min(s.low, b);
   forget(s, e, flow);
   s.time += h, s.kinetic_time += e.kinetic * h;
   const double most = tolerance(s, s.looks + 1);
@@ -65,17 +64,14 @@ StepControl::Verdict StepControl::look(const Energies& e,
   const bool creeps =
       s.low - s.least > s.fall + (0.3 + 0.4 * part) * (most - s.fall) &&
       s.low - s.mark > least_noise;
-  const bool beyond =
-      s.last - s.least > seen * most && s.last - s.mark > least_noise;
-  const bool good = std::isfinite(s.last) && !bursts && !creeps && !beyond;
+  const bool beyond = b - s.least > seen * most && b - s.mark > least_noise;
+  const bool good = std::isfinite(b) && !bursts && !creeps && !beyond;
   if (!good && can_shorten()) return Verdict::take_back;
-  if (!std::isfinite(s.last)) return Verdict::go_on;  // the guard ends it
-  s.gain = std::max(s.gain, s.last - s.least);
+  if (!std::isfinite(b)) return Verdict::go_on;  // the guard ends it
+  const bool ends = s.add(b);
   now_ = s;
-  if (++now_.looks < round) return Verdict::go_on;
-  now_.least = std::min(s.least, s.sum / round);
-  now_.base = now_.low;
-  start_round();
+  if (!ends) return Verdict::go_on;
+  now_.base = std::exchange(now_.low, none);
   ++now_.rounds, ++now_.calm, ++now_.since;
   return Verdict::keep;
 }
@@ -86,8 +82,7 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
   const double more_fall = std::abs(e.fall_power - s.fall_power) * s.dt;
   s.lost = flow.drag, s.kinetic = e.kinetic, s.fall_power = e.fall_power;
   if (!(lost > 0 && twice_mean > 0)) {
-    s.scale = std::max(s.scale, e.internal());
-    s.fall = std::max(s.fall, 2 * e.fall_power * s.dt);
+    s.measure(e, s.dt);
     return;
   }
   limits_.rest = std::max(limits_.rest, at_rest * e.internal());
@@ -115,7 +110,7 @@ void StepControl::take_back(const State& then, long long steps) {
   const double failed = now_.dt;
   const bool again = failures_ > 0 && now_.since == 0 && now_.raises == 0;
   now_ = then;
-  start_round();
+  now_.looks = 0, now_.sum = 0, now_.low = none;
   change(std::max(shortest_, shorter * failed), then.drag);
   now_.ceiling = 0.95 * failed;
   now_.raises = now_.since = 0;
@@ -148,10 +143,6 @@ bool StepControl::lengthen(const EnergyFlow& flow) {
   change(next, flow.drag);
   ++report_.lengthened;
   return true;
-}
-
-void StepControl::start_round() {
-  now_.looks = 0, now_.low = none, now_.sum = 0;
 }
 
 void StepControl::change(double dt, double drag) {

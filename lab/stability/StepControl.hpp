@@ -27,29 +27,21 @@ namespace lab {
  * the work of gravity in two steps, for as long as it falls: methods of order 1
  * have velocities that are half a step early.
  *
- * With a symplectic method the energy of an oscillation swings in a round by a
- * share of O((dt omega)^2). So the least b of a round is compared with that of
- * the round before. Losses of energy are accepted. The step changes rarely,
+ * As b swings in a round, its least is compared with that of the round before.
+ * Losses of energy are accepted. The step changes rarely,
  * since symplectic methods conserve energy well only while it is constant. */
 class StepControl {
  public:
   static constexpr int look_interval = 16;  ///< steps between two looks
-  static constexpr int round = 8;           ///< looks
-
   /** The measurements of the control: energies in J, times in s. */
-  struct State {
+  struct State : Swings {        // scale and gain decay with drag
     double dt = 0, ceiling = 0;  ///< the step, and its upper bound for now
-    double scale = 0;            ///< the tolerance is a share of it
-    double fall = 0;             ///< gravity's work in two steps, if loose
-    double last = 0, least = 0;  ///< b: now, and its least mean over a round
     double base = 0, low = 0;    ///< b: least in the last round, in this
-    double mark = 0, sum = 0;    ///< b: when dt changed; sum over this round
-    double gain = 0;             ///< largest b - least; decays with drag
+    double mark = 0;             ///< b: when dt changed
     double time = 0, kinetic_time = 0;  ///< since dt changed; integral of the
                                         ///< kinetic energy [J s]
     double drag = 0;                    ///< flow.drag when dt changed
     double lost = 0, kinetic = 0, fall_power = 0;  ///< at the last look
-    int looks = 0;                                 ///< in this round
     int rounds = 0, calm = 0;   ///< of the run; since dt changed
     int since = 0, raises = 0;  ///< rounds since a failure or a raise of the
                                 ///< ceiling; raises since a failure
@@ -108,7 +100,6 @@ class StepControl {
 
   void forget(State& s, const Energies& e, const EnergyFlow& flow);
   double tolerance(const State& s, int looks) const;
-  void start_round();
   void change(double dt, double drag);
 };
 

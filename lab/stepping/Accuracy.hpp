@@ -36,6 +36,7 @@ struct Accuracy {
  * the first. If it exceeds @a asked, both runs are repeated with a smaller
  * tolerance, down to about 1000 times round-off. If that is not enough either,
  * the motion is chaotic, and positions are predictable only up to the horizon.
+ * If it is far below @a asked, a larger tolerance is tried once.
  *
  * A method with fixed steps begins with safe_share of its limit; its steps are
  * shortened as tolerances are, to a thousandth at most.

@@ -14,6 +14,12 @@
 
 namespace lab {
 
+/** About how many force evaluations a step of a method costs; an implicit one,
+ * with its linear systems, a hundred. */
+inline double evaluations_of(const MethodInfo& m) {
+  return m.sweeps * (m.limit == no_limit ? 100 : 1);
+}
+
 /** A scene, ready to run. */
 class Scene {
  public:

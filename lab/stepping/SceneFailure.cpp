@@ -26,19 +26,17 @@ FailedRun failed_run(const Scene& s) {
   run.safe = s.safe_limit();
   run.safe_without_drag = stepper.limits().safe_without_drag(method);
   run.verlet = s.safe_limit(table::verlet);
+  run.flat = is_flat(s.cloth());
   return run;
 }
 
 /** Run with @a cure and with half of its step; the energies of both runs must
  * agree at all times, because a run that does not fail may still be wrong. */
 Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
-  // An implicit step costs about a hundred force evaluations.
-  const MethodInfo& info = cure.method.info;
   const auto energy = [](const Energies& e, EnergyFlow flow) {
     flow.drag = 0;  // a sum over steps
     return balance(e, flow);
   };
-  const double evaluations = info.sweeps * (info.limit == no_limit ? 100 : 1);
   try {
     const auto trial = failed.anew(cure);
     trial->watch_energy(t_end);
@@ -49,7 +47,8 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
     double left = Scene::trial_work;
     while (!trial->done(t_end) && left > 0 && trial->step(t_end)) {
       const Cloth& g = trial->cloth();
-      left -= evaluations * (g.num_nodes() + g.num_edges());
+      left -=
+          evaluations_of(cure.method.info) * (g.num_nodes() + g.num_edges());
       end_if_interrupted();
       if (trial->steps() % every != 0) continue;
       const Energies e = trial->energy();
@@ -62,7 +61,7 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
     passed = passed && !watch.gains() && !watch.loses();
     const auto finer = failed.anew({cure.method, cure.dt / 2});
     const double apart =
-        energy_tolerance * largest + failed.stepper().round_off();
+        energy_tolerance / 2 * largest + failed.stepper().round_off();
     for (const auto& [time, b] : samples)
       passed = passed && finer->run_to(time, end_if_interrupted) &&
                std::abs(energy(finer->energy(), finer->flow()) - b) <= apart;

@@ -175,11 +175,18 @@ static bool works(const System& s, const StepClock& c) {
 
 bool Stepper::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
+  const bool good = some_steps(most);
+  for (SettledReader* r : readers_) r->settle(steps(), settled_steps());
+  return good;
+}
+
+/** The steps until the next check, at most @a most, and the check. */
+bool Stepper::some_steps(int most) {
   if (control_ && control_->lengthen(flow())) clock_.set_dt(control_->dt());
   most = steps_to_check(most);
   const bool moves = works(system_, clock_);
   if (!advance(most)) return not_good(clock_.steps + most);
-  const bool now = arrays(system_.cloth).version() != version_ || done(t_end);
+  const bool now = arrays(system_.cloth).version() != version_ || done(t_end_);
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
@@ -190,7 +197,7 @@ bool Stepper::steps_at_once(int most, double t_end) {
   const Energies e = energy();
   if (judged && !judge(e)) return take_back();
   if (guarded && !guard(e)) return false;
-  if (watched) watch_->look(e, flow());
+  if (watched) watch_->look(e, flow()), balance_->looked();
   return true;
 }
 
@@ -231,6 +238,7 @@ bool Stepper::advance(int most) {
   }
   clock_.steps += count;
   if (last || h != dt) clock_.set_time(then);
+  jumped_ = last;
   balance_->follow(system_.cloth, time(), constraint_);
   return true;
 }
@@ -249,8 +257,14 @@ void Stepper::sample_drag(bool now) {
   if (!now && clock_.steps % drag_interval() != 0 &&
       clock_.steps % StepControl::look_interval != 0)
     return;
-  balance_->add_drag(drag_loss() - flow().drag);
-  drag_power_ = drag_.power(system_.cloth, system_.wind), sampled_ = time();
+  const double power = drag_.power(system_.cloth, system_.wind);
+  const double h = time() - sampled_, change = power - drag_power_;
+  double loss = 0.5 * (drag_power_ + power) * h;
+  if (follows_drag_ && !control_ && std::abs(h - drag_step_) < 1e-9 * h)
+    loss -= (change - drag_change_) * h / 12;  // as in EnergyBalance
+  balance_->add_drag(loss);
+  drag_power_ = power, sampled_ = time();
+  drag_change_ = change, drag_step_ = jumped_ ? 0 : h;
 }
 
 double Stepper::drag_loss() const {
@@ -359,6 +373,7 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   balance_->resume(system_.cloth, time(), constraint_, flow);
   method_->restart();
   sampled_ = time(), drag_power_ = drag_.power(system_.cloth, system_.wind);
+  drag_step_ = 0;
   keep_checked();
 }
 
@@ -397,13 +412,14 @@ void Stepper::archive(Archive& a) {
   if (a.loads()) version_ = arrays(system_.cloth).version();
   long long evaluated = evaluations();
   Work worked = work();
-  a(evaluated)(worked)(sampled_)(drag_power_);
+  a(evaluated)(worked)(sampled_)(drag_power_)(drag_change_)(drag_step_);
   if (a.loads())
     evaluations_ = evaluated - force_->evaluations(), work_ = worked;
   a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
             std::min({worked.inner, worked.newton, worked.products,
                       worked.factors}) >= 0 &&
-            sampled_ <= time() && std::isfinite(sampled_ + drag_power_));
+            sampled_ <= time() &&
+            std::isfinite(sampled_ + drag_power_ + drag_change_ + drag_step_));
   if (watch_) a(*watch_);
   if (!control_) return;
   control_->archive(a);

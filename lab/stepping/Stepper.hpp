@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lab/stability/Diagnosis.hpp"
 #include "lab/stability/Guard.hpp"
@@ -46,6 +47,17 @@ struct System {
   std::optional<HandForce> hand;
   std::optional<WatchedConstraint> watched;  ///< nullopt only until it is built
   bool overlaps = false;                     ///< nodes start inside an obstacle
+};
+
+/** Reads what is settled: see Settled. */
+class SettledReader {
+ public:
+  /** The steps of a run beyond @a now will come again; the first @a settled
+   * ones can't be taken back any more. */
+  virtual void settle(long long now, long long settled) = 0;
+
+ protected:
+  ~SettledReader() = default;
 };
 
 /** Moves a System by a method, with a clock.
@@ -107,6 +119,11 @@ class Stepper {
   /** Steps that can't be taken back any more. */
   long long settled_steps() const {
     return control_ ? before_.clock.steps : checked_.steps;
+  }
+  /** Tell @a reader after each step, or no more. */
+  void tell(SettledReader* reader) const { readers_.push_back(reader); }
+  void tell_no_more(SettledReader* reader) const {
+    std::erase(readers_, reader);
   }
   /** nullopt if the step is fixed. */
   const std::optional<StepControl>& control() const { return control_; }
@@ -225,12 +242,16 @@ class Stepper {
   Drag drag_;                 // none if its loss is not followed
   double largest_gamma_ = 0;  // of drag_ [1/s]
   double sampled_ = 0, drag_power_ = 0;  // time of last sample [s]; then [W]
+  // Of the power in the step before it [W]; its length [s], 0: not smooth.
+  double drag_change_ = 0, drag_step_ = 0;
+  bool jumped_ = false;  // a velocity jumps at the end of the last step
   std::optional<EnergyWatch> watch_;
   int watch_interval_ = 1;
   long long evaluations_ = 0;  // besides those of force_
   Work work_;                  // of earlier methods
   double start_energy_ = 0;    // [J]
   std::string error_;          // of the method
+  mutable std::vector<SettledReader*> readers_;
 
   double remove_overlaps();
   void start(const EnergyFlow& flow);
@@ -242,6 +263,7 @@ class Stepper {
   int steps_to_check(int most) const;
   int drag_interval() const;
   void sample_drag(bool now);
+  bool some_steps(int most);
   bool judge(const Energies& e);
   void keep(Snapshot& s) const;
   void keep_both();
