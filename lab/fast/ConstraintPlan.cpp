@@ -53,8 +53,8 @@ void HoldingConstraint::project(Cloth& g, double t, unsigned first,
 }
 
 void SweptConstraint::archive(Archive& a) const {
-  a(exchange_.work)(exchange_.moment);
-  a.require(std::isfinite(exchange_.work + exchange_.moment));
+  a(exchange_.work)(exchange_.moment)(exchange_.torn);
+  a.require(std::isfinite(exchange_.work + exchange_.moment + exchange_.torn));
 }
 
 namespace {
@@ -109,7 +109,9 @@ class Tear final : public SweptConstraint {
         [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
           exchange_.moment += n.value().mass * n.position().z;
-          exchange_.touched = true;
+          exchange_.torn += 0.5 * n.value().mass * normSq(n.value().vel);
+          for (Edge e : n.edges())
+            exchange_.torn += spring_energy(e.length(), e.value());
           g.remove_node(n);
         });
   }

@@ -45,9 +45,10 @@ using PlaceVisitor = std::function<void(Node, const Place&)>;
 struct Exchange {
   double work = 0;       ///< by moving obstacles: impulse times velocity [J]
   double moment = 0;     ///< sum of m z of the nodes that were removed [kg m]
-  bool touched = false;  ///< it took energy since exchange() was last called
+  double torn = 0;       ///< kinetic and elastic energy of what was removed [J]
+  bool touched = false;  ///< contact took some since exchange() was called
   Exchange& operator+=(const Exchange& b) {
-    work += b.work, moment += b.moment, touched |= b.touched;
+    work += b.work, moment += b.moment, torn += b.torn, touched |= b.touched;
     return *this;
   }
 };

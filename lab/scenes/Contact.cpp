@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
@@ -92,8 +93,10 @@ void StrainConstraint::operator()(Cloth& g, double /*t*/) const {
     const auto [i, j] = arrays(g).edge_ends()[e];
     const double longest = most_ * arrays(g).edge_values()[e].L;
     // A slot that is not in use has the length 0.
-    if (normSq(x[j] - x[i]) > longest * longest)
-      g.remove_edge(arrays(g).edge_with_id(e)), exchange_.touched = true;
+    if (!(normSq(x[j] - x[i]) > longest * longest)) continue;
+    exchange_.torn +=
+        spring_energy(norm(x[j] - x[i]), arrays(g).edge_values()[e]);
+    g.remove_edge(arrays(g).edge_with_id(e));
   }
 }
 

@@ -48,6 +48,7 @@ void EnergyBalance::follow(const Cloth& g, double t,
   const Exchange now = constraint.exchange();
   flow_.work += now.work - seen_.work;
   flow_.removed += gravity_ * (now.moment - seen_.moment);
+  flow_.torn += now.torn - seen_.torn;
   flow_.touched |= now.touched;
   seen_ = now;
   const double step = t - time_;
@@ -116,7 +117,8 @@ EnergyWatch::EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
       start_(seen_.last) {}
 
 void EnergyWatch::look(const Energies& e, const EnergyFlow& flow) {
-  const double b = balance(e, flow);
+  const double b = balance(e, flow) + flow.torn;
+  torn_ = flow.torn;
   if (flow.touched) taken_ += std::max(0., seen_.last - b);
   seen_.measure(e, dt_);
   seen_.add(b);
@@ -133,11 +135,12 @@ double EnergyWatch::share() const {
 
 double EnergyWatch::loss_tolerance() const {
   return energy_tolerance * seen_.scale + sums_ * passed_ + seen_.fall +
-         floor_ + round_off_;
+         round_off_;
 }
 
 double EnergyWatch::tolerance() const {
-  return loss_tolerance() + seen_.scale / std::max(looks_, 1) + 0.015 * passed_;
+  return loss_tolerance() + seen_.scale / std::max(looks_, 1) +
+         0.015 * passed_ + floor_;
 }
 
 std::string EnergyWatch::gain_text() const {
@@ -147,8 +150,8 @@ std::string EnergyWatch::gain_text() const {
 }
 
 void EnergyWatch::archive(Archive& a) {
-  a(seen_)(start_)(round_off_)(taken_)(passed_)(looks_);
-  a.require(std::isfinite(start_ + round_off_ + taken_ + passed_) &&
+  a(seen_)(start_)(round_off_)(taken_)(torn_)(passed_)(looks_);
+  a.require(std::isfinite(start_ + round_off_ + taken_ + torn_ + passed_) &&
             looks_ >= 0);
 }
 

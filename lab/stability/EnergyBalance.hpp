@@ -29,16 +29,17 @@ struct Energies {
 struct EnergyFlow {
   double work = 0;          ///< done by moving pins and obstacles
   double removed = 0;       ///< gravitational energy of removed nodes
+  double torn = 0;          ///< other energy of what was removed
   double drag = 0;          ///< taken by linear drag, if add_drag() is used
   Point carried = Point();  ///< mean velocity of the held nodes [m/s]
   /** No node is held. */
   bool loose = false;
-  /** Contact or tearing took energy since EnergyBalance::looked(). */
+  /** Contact took energy since EnergyBalance::looked(). */
   bool touched = false;
 
   void archive(Archive& a) {
-    a(work)(removed)(drag)(carried)(loose)(touched);
-    a.require(std::isfinite(work + removed + drag + norm(carried)));
+    a(work)(removed)(torn)(drag)(carried)(loose)(touched);
+    a.require(std::isfinite(work + removed + torn + drag + norm(carried)));
   }
 };
 
@@ -96,8 +97,9 @@ class EnergyBalance {
       a.require(std::isfinite(norm(h.place) + norm(h.velocity) + norm(h.force) +
                               norm(h.change)));
     }
-    a(seen_.work)(seen_.moment)(flow_)(time_)(step_);
-    a.require(std::isfinite(seen_.work + seen_.moment + time_ + step_));
+    a(seen_.work)(seen_.moment)(seen_.torn)(flow_)(time_)(step_);
+    a.require(
+        std::isfinite(seen_.work + seen_.moment + seen_.torn + time_ + step_));
   }
 
  private:
@@ -161,9 +163,9 @@ struct Swings {
   }
 };
 
-/** Follows the balance of a run: its error is the method's. A gain never has
- * another cause; a loss may be that of contact and tearing. What is lost
- * between two looks counts as theirs if anything touched or tore meanwhile. */
+/** Follows the balance of a run, plus what was torn: its error is the method's.
+ * A gain never has another cause; a loss may be that of contact. What is lost
+ * between two looks counts as its if anything touched meanwhile. */
 class EnergyWatch {
  public:
   /** @param e, flow at the start   @param dt the step [s]
@@ -177,8 +179,8 @@ class EnergyWatch {
 
   /** The error of the energy now [J], without taken(); positive if gained. */
   double off() const { return seen_.last - start_ + taken_; }
-  /** What contact and tearing took [J], and errors meanwhile. */
-  double taken() const { return taken_; }
+  /** What contact and tearing took [J], and errors during contact. */
+  double taken() const { return taken_ + torn_; }
   /** off() as a share of the largest internal energy; 0 if that is negligible,
    * as in a free fall, or beside work and drag. */
   double share() const;
@@ -206,8 +208,9 @@ class EnergyWatch {
  private:
   double dt_, sums_, floor_, round_off_;  // sums_: their error [1]
   Swings seen_;
-  double start_;                   // the first b [J]
-  double taken_ = 0, passed_ = 0;  // passed_: the most work and drag [J]
+  double start_;  // the first b [J]
+  double taken_ = 0, torn_ = 0,
+         passed_ = 0;  // passed_: the most work and drag [J]
   int looks_ = 0;
 };
 
