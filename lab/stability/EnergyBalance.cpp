@@ -144,7 +144,7 @@ double EnergyWatch::tolerance() const {
 }
 
 std::string EnergyWatch::gain_text() const {
-  return "an error of the method has added " + CME212::two_digits(gain_) +
+  return "an error of the method has added " + CME212::two_digits(gain()) +
          " J of energy, more than the " + CME212::two_digits(tolerance()) +
          " J that --dt auto tolerates: this is not the motion of the scene";
 }
