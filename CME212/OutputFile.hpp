@@ -64,10 +64,7 @@ class OutputFile {
     out_.open(part_, std::ios::binary);
     const int error = errno;
     if (reader >= 0) close(reader);
-    if (!out_) {
-      remove_part();
-      fail(std::strerror(error));
-    }
+    if (!out_) remove_part(), fail(std::strerror(error));
   }
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -133,15 +130,12 @@ class OutputFile {
     }
   }
 
-  /** Wait until a program reads the pipe; a signal that is handled ends that.
-   * @return the open pipe */
+  /** Open the pipe as soon as a program reads it; a signal ends the wait. */
   int await_reader() const {
-    for (;;) {
-      const int pipe = open(part_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-      if (pipe >= 0) return pipe;
-      if (errno != ENXIO) fail(std::strerror(errno));
-      if (usleep(20'000) != 0) fail("no program reads this pipe");
-    }
+    int pipe = -1;
+    while ((pipe = open(part_.c_str(), O_WRONLY | O_NONBLOCK)) < 0)
+      if (errno != ENXIO || usleep(20'000)) fail("no program reads it");
+    return pipe;
   }
 
   /** Make the part, of a name that no other writer has. */

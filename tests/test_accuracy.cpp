@@ -200,8 +200,7 @@ TEST(EnergyWatch, JudgesTheSameWhateverElseIsNamed) {
   EXPECT_FALSE(falls.gains() || falls.loses());
 }
 
-// What a method loses is its own before and after something tears; what is lost
-// meanwhile is not.
+// A method's loss is its own where something tears: what is torn is known.
 TEST(EnergyWatch, JudgesLossesBesideContactAndTearing) {
   Model m = hanging(9, 2);
   m.tears = {Ball{Point(0.5, 0.5, -0.2), 0.05}};

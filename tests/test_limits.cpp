@@ -260,7 +260,8 @@ TEST(WithoutLimit, XpbdInjectsEnergyWithOneRound) {
   const std::string why =
       failure_of(rounds(std::integral_constant<int, 1>()), 40, 1 / 60., 100);
   EXPECT_EQ(why.find("diverged: "), 0u) << why;
-  EXPECT_NE(why.find("do not solve the equations of a step"), std::string::npos) << why;
+  EXPECT_NE(why.find("do not solve the equations of a step"), std::string::npos)
+      << why;
   EXPECT_EQ(
       failure_of(rounds(std::integral_constant<int, 20>()), 40, 1 / 60., 100),
       "");

@@ -22,7 +22,6 @@
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/SceneFile.hpp"
-#include "lab/stepping/Scene.hpp"
 #include "lab/stepping/Settled.hpp"
 
 namespace lab {
@@ -197,8 +196,7 @@ class Simulation {
                                       double(Scene::guard_interval)));
       live ? live->step() : scene.steps_at_once(most, m.t_end);
       const bool due = scene.time() >= next - 1e-6 * scene.dt();
-      if ((due || scene.done(m.t_end)) && scene.check() &&
-          !states.has_present())
+      if ((due || scene.done(m.t_end)) && scene.check())
         states.add(State(scene));
     }
     states.finish();

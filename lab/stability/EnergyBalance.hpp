@@ -121,7 +121,7 @@ class EnergyBalance {
   void find_carrier(const Cloth& g, double t, const ConstraintPlan& constraint);
 };
 
-/** What was seen of the balance b of a run [J].
+/** The balance b of a run until now [J].
  *
  * With a symplectic method the energy of an oscillation swings by a share of
  * O((dt omega)^2). So gains are measured from the least of the initial b and of

@@ -30,8 +30,9 @@ class Settled final : public SettledReader {
 
   /** Is there a note on the present state? */
   bool has_present() const { return last() == stepper_.steps(); }
-  /** Note @a what about the present state.  @pre !has_present() */
+  /** Note @a what about the present state, unless there is a note. */
   void add(T what) {
+    if (has_present()) return;
     settle(stepper_.steps(), read_steps_);  // check() may have gone back
     waiting_.push_back({stepper_.steps(), std::move(what)});
   }

@@ -242,7 +242,7 @@ class Stepper {
   Drag drag_;                 // none if its loss is not followed
   double largest_gamma_ = 0;  // of drag_ [1/s]
   double sampled_ = 0, drag_power_ = 0;  // time of last sample [s]; then [W]
-  // Of the power in the step before it [W]; its length [s], 0: not smooth.
+  // How the power changed in that step [W]; its length [s], 0: it jumped.
   double drag_change_ = 0, drag_step_ = 0;
   bool jumped_ = false;  // a velocity jumps at the end of the last step
   std::optional<EnergyWatch> watch_;
