@@ -175,7 +175,7 @@ TEST(Advise, KeepsAPartWhoseEffectIsSmallAtTheEndAlone) {
   Model m;
   m.sheets = {read_sheet("v 0 0 -1 nodes 9 9")};
   m.edges.diagonals = false, m.pins = {read_pin("z 0")};
-  m.material = {.density = 0.3, .modulus = 200};
+  m.material.density = 0.3, m.material.modulus = 200;
   m.t_end = 4 * std::sqrt(0.3 / 200), m.tolerance = 1.5e-3;
   const Advice a = advise(m);
   ASSERT_EQ(a.refusal, "");
