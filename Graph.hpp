@@ -24,8 +24,7 @@
 #include "CME212/Util.hpp"
 
 /** An undirected graph in space: no loops, no parallel edges.
- * @tparam V Type of the nodes' values: default constructible, copyable
- * @tparam E Type of the edges' values: likewise
+ * @tparam V, E Types of the nodes' and the edges' values: std::semiregular
  *
  * Nodes have the indices 0, ..., num_nodes() - 1, edges 0, ...,
  * num_edges() - 1. A removal changes indices, but not what a handle refers to:
@@ -47,8 +46,7 @@
  * can't be assigned to: handles of its old content would refer to the new one.
  * No handle may be used after its graph is destroyed.
  * Threads: as std::vector. Reads may run at the same time, a write runs alone;
- * but positions and values of different elements may be written at the same
- * time. */
+ * but positions and values of different elements may be written at once. */
 template <typename V = graph_detail::NoValue,
           typename E = graph_detail::NoValue>
 class Graph {
@@ -83,7 +81,10 @@ class Graph {
   using incident_iterator = IncidentIterator;
 
   /** An empty graph. */
-  Graph() = default;
+  Graph() {
+    static_assert(std::semiregular<V> && std::semiregular<E>,
+                  "values of a Graph are copyable and made from nothing");
+  }
   Graph(const Graph&) = default;
   Graph& operator=(const Graph&) = delete;
 

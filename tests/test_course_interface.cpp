@@ -286,6 +286,22 @@ CME212::TestFolder::Result compile(const std::string& year,
                     folder / "program.cpp");
 }
 
+TEST(Layouts, AValueThatCantBeCopiedIsRefusedInASentence) {
+  CME212::TestFolder folder;
+  for (const char* value :
+       {"std::unique_ptr<int>", "std::reference_wrapper<int>"}) {
+    std::ofstream(folder / "a.cpp")
+        << "#include \"Graph.hpp\"\n#include <memory>"
+           "\nGraph<"
+        << value << ", int> g;\n";
+    const auto result =
+        folder.run("c++ -std=c++20 -fsyntax-only -I. " + folder / "a.cpp");
+    EXPECT_NE(result.err.find("values of a Graph are copyable"),
+              std::string::npos)
+        << result.err;
+  }
+}
+
 TEST(Layouts, ProgramsOfBothCompile) {
   for (const std::string viewer : {"SDLViewer", "SFML_Viewer"}) {
     const auto result = compile("CME212", viewer, "");
