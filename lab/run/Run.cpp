@@ -434,10 +434,14 @@ bool Run::energy_is_kept() {
   if (const double share = watch.share(); share != 0)
     out << " (" << CME212::percent(share) << " of the largest internal energy)";
   if (!o_.quiet) {
-    std::cout << out.str();
-    if (watch.taken() > 0)
-      std::cout << "; contact and tearing took "
-                << CME212::two_digits(watch.taken()) << " J";
+    if (watch.taken() > watch.torn())
+      std::cout << "contact and errors of the method changed the energy by "
+                << CME212::two_digits(watch.change()) << " J";
+    else
+      std::cout << out.str();
+    if (watch.torn() > 0)
+      std::cout << "; tearing took " << CME212::two_digits(watch.torn())
+                << " J";
     std::cout << '\n';
   }
   const bool kept = scene_.control() || !watch.gains();

@@ -177,10 +177,15 @@ class EnergyWatch {
   /** Take the state after some steps into account. */
   void look(const Energies& e, const EnergyFlow& flow);
 
-  /** The error of the energy now [J], without taken(); positive if gained. */
-  double off() const { return seen_.last - start_ + taken_; }
+  /** The change of b [J]: by errors of the method, and by contact. */
+  double change() const { return seen_.last - start_; }
+  /** The error of the energy now [J], positive if gained. Without the falls of
+   * b during contact: then it is an upper bound. */
+  double off() const { return change() + taken_; }
   /** What contact and tearing took [J], and errors during contact. */
   double taken() const { return taken_ + torn_; }
+  /** What tearing took [J]. */
+  double torn() const { return torn_; }
   /** off() as a share of the largest internal energy; 0 if that is negligible,
    * as in a free fall, or beside work and drag. */
   double share() const;
