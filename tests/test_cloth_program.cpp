@@ -386,8 +386,10 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
       "mean verlet?\n");
   EXPECT_EQ(complaint(grid0 + "--measure conm"),
             "cloth: --measure is conm, expected one of com, energy, positions, "
-            "max-stretch, drape-height, pin-force, tear-time, point, or one "
-            "after max or min: did you mean com?\n");
+            "max-stretch, drape-height, kinetic-energy, elastic-energy, "
+            "pin-force, contact-force, torn-edges, torn-nodes, tear-time, "
+            "point, distance, stretch-at, or one after max, min, mean, first, "
+            "last or period: did you mean com?\n");
 }
 
 // A remedy is one that was tried.

@@ -65,7 +65,7 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 --method verlet --dt 0.002 "),
             at_end(sheet + "--method verlet --dt 0.002 "));
   EXPECT_NE(run(sheet + "--tolerance 1e-3 --method rkn64")
-                .out.find("below 0.00025 m per"),
+                .out.find("positions to 0.001 m: kept; measured error"),
             std::string::npos);
   const Result refused =
       run(sheet + "--density 0.3 --damping 0.01 --tolerance 1e-3");
