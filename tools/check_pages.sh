@@ -17,7 +17,8 @@ trap 'rm -rf "$starter"' EXIT
 in_copy() {  # starter|solution PAGE, whose program begins with its name
   local name
   name=$(sed -n 's|^// \([a-z]*\.cpp\).*|\1|p' "course/$2.md")
-  [ -d "$starter/$1" ] || make -s "$1" OUT="$starter/$1" || return
+  [ -d "$starter/$1" ] || make -s "$1" LEVEL=guided OUT="$starter/$1" ||
+    return
   cd "$starter/$1" && cp "$OLDPWD/tools/check_commands.sh" tools &&
     sed -n '/^```cpp$/,/^```$/p' "pages/$2.md" | grep -v '^```' >"$name" &&
     env -u CXXFLAGS tools/check_commands.sh "pages/$2.md"  # -g1 hides variables
