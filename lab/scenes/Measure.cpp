@@ -235,6 +235,12 @@ double torn_nodes(const Cloth& g) {
   return double(arrays(g).node_slots() - g.num_nodes());
 }
 
+/** The one number that @a of finds of the cloth alone. */
+template <double (*of)(const Cloth&)>
+Answer of_cloth(const Measured& now, const Measure&) {
+  return {of(now.cloth)};
+}
+
 Answer tear_time(const Measured& now, const Measure&) {
   const bool torn = torn_nodes(now.cloth) + torn_edges(now.cloth) > 0;
   return {torn ? now.time : std::numeric_limits<double>::infinity()};
@@ -262,24 +268,12 @@ const std::array<Quantity, 15> quantities = {{
     {"positions", "m", positions},
     {"max-stretch", "", stretch},
     {"drape-height", "m", lowest_height},
-    {"kinetic-energy", "J",
-     [](const Measured& now, const Measure&) {
-       return Answer{kinetic_energy(now.cloth)};
-     }},
-    {"elastic-energy", "J",
-     [](const Measured& now, const Measure&) {
-       return Answer{elastic_energy(now.cloth)};
-     }},
+    {"kinetic-energy", "J", of_cloth<kinetic_energy>},
+    {"elastic-energy", "J", of_cloth<elastic_energy>},
     {"pin-force", "N", pin_force},
     {"contact-force", "N", contact_force},
-    {"torn-edges", "",
-     [](const Measured& now, const Measure&) {
-       return Answer{torn_edges(now.cloth)};
-     }},
-    {"torn-nodes", "",
-     [](const Measured& now, const Measure&) {
-       return Answer{torn_nodes(now.cloth)};
-     }},
+    {"torn-edges", "", of_cloth<torn_edges>},
+    {"torn-nodes", "", of_cloth<torn_nodes>},
     {"tear-time", "s", tear_time},
     {"point", "m",
      [](const Measured& now, const Measure& what) {

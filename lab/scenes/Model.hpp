@@ -142,8 +142,7 @@ struct Distance {
   double friction = 0;
 };
 
-/** A place on a sheet: how far along both sides, 0 to 1; number of the sheet.
- */
+/** A place on a sheet: its share of both sides, 0 to 1; the sheet's number. */
 struct SheetPlace {
   double u = 0.5, v = 0.5, sheet = 1;
   bool operator==(const SheetPlace&) const = default;
