@@ -190,6 +190,7 @@ class Picture {
     if (!this.dirty || !this.sides.length) return;
     this.dirty = false;
     this.view.draw(this.sidesAt(now), this.theme, this.hand.grabbed);
+    this.drawn?.();
     if (moving && now - this.numbersAt < 250) return;
     this.numbersAt = now, this.showNumbers?.();
   }

@@ -6,8 +6,10 @@ class Plot {
     this.canvas = canvas, this.title = title;
     this.clear();
   }
-  // good: from this time on [s] the run is known to have failed.
-  clear() { this.times = [], this.rows = [], this.good = Infinity; }
+  // good: from this time on [s] the run is known to have failed; at: marked
+  clear() {
+    this.times = [], this.rows = [], this.good = Infinity, this.at = undefined;
+  }
   // Continue from the last good state.
   goOn() {
     while (this.times.length && this.times.at(-1) > this.good)
@@ -69,6 +71,7 @@ class Plot {
     g.textAlign = 'right', g.textBaseline = 'top';
     g.fillText(shortNumber(end) + ' s', right, bottom + 4);
     g.textAlign = 'left', g.fillText('0', left, bottom + 4);
+    if (this.at !== undefined) g.fillRect(x(this.at), top, 1, bottom - top);
     g.lineWidth = 1.8, g.lineJoin = 'round';
     curves.forEach(([, color], k) => {
       g.strokeStyle = color, g.setLineDash(dashes[k][1]), g.beginPath();

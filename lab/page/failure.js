@@ -4,6 +4,8 @@
 
 const playback = 3000;  // [ms], of the motion beyond a failure, and
 const pause = 800;      // [ms] until it is shown again
+const strains = ['strain 2 %', '45 %'];
+const ways = ['moves one way', 'the other way'];
 const inMs = seconds => `${shortNumber(1e3 * seconds)} ms`;
 // The words of ./cloth, whose options are sliders here.
 const inPage = words => words.replace(/^diverged: /, '')
@@ -27,7 +29,9 @@ class FailurePicture extends Picture {
     this.find('.cure').onclick = () => this.applyCure();
     addEventListener('keydown', e => { if (e.key === 'Escape') close(); });
   }
-  get isMoving() { return this.isRunning || !!this.beyond?.moves; }
+  get isMoving() {
+    return this.isRunning || !!this.beyond?.moves && !this.timeline.past;
+  }
   // After a failure: show it again.
   play() {
     if (this.failed && !this.beyond) return this.restart();
@@ -36,14 +40,22 @@ class FailurePicture extends Picture {
   }
   setPlaying(on) {
     super.setPlaying(on);
-    if (this.beyond) setText(this.find('.play'), 'Replay');
+    if (this.beyond && !this.timeline.past)
+      setText(this.find('.play'), 'Replay');
+  }
+  // Show the strain of a state before the failure, or the failure again.
+  lookBack(isBack) {
+    if (!this.beyond) return;
+    this.beyond.drawn = undefined, this.say('.busy', '');
+    setText(this.find('.play'), isBack ? 'Play' : 'Replay');
+    this.setLegend(...isBack ? strains : ways);
   }
 
   forget() {
     this.failed = this.broken = false, this.why = '', this.cure = null;
     this.say('.busy', ''), this.say('.says', '');
     this.beyond = null, clearTimeout(this.lookingBeyond);
-    this.setLegend('strain 2 %', '45 %');
+    this.setLegend(...strains);
     if (this.camera) Object.assign(this.view.camera, this.camera);
     this.camera = null;
     this.showFailure(null), this.setPlaying(this.playing);
@@ -109,7 +121,7 @@ class FailurePicture extends Picture {
     frames.splice(1, Math.max(0, Math.min(first - 2, frames.length - 2)));
     this.beyond = {frames, moves: !isStill(), isNew: true};
     this.setPlaying(false), this.fitCamera(), this.changed();
-    this.setLegend('moves one way', 'the other way');
+    this.setLegend(...ways);
   }
   // Look obliquely at the last good state: at what moves then, and around it.
   fitCamera() {
@@ -140,7 +152,7 @@ class FailurePicture extends Picture {
   // last good state. If nothing is to move by itself, its middle.
   sidesAt(now) {
     const {beyond, sides} = this;
-    if (!beyond) return sides;
+    if (!beyond || this.timeline.past) return sides;
     beyond.from ??= now;
     let passed = beyond.moves ? now - beyond.from : playback / 2;
     if (passed > playback + pause) {

@@ -25,6 +25,7 @@ class Laboratory extends FailurePicture {
         describe();
     });
     addEventListener('hashchange', () => openAddress());
+    this.timeline = new Timeline(this), this.camcorder = new Camcorder();
     this.use('grab');
     // In a frame of another page: index.html?controls=none#scene=drape
     if (new URLSearchParams(location.search).get('controls') === 'none')
@@ -39,13 +40,15 @@ class Laboratory extends FailurePicture {
   }
   // A request of lab/live/Requests.cpp.
   ask(...words) {
+    this.timeline.goOn();
     this.worker.postMessage(['ask', words.join(' ')]);
     ++this.asked, this.wanted = true;
   }
+  // lines: null repeats the present run
   start(lines = startLines(), end = 0) {
     for (const plot of Object.values(plots)) plot.clear();
-    this.forget(), this.tasks.cancel();
-    this.hand.release();
+    this.timeline.clear(), this.forget(), this.tasks.cancel();
+    if (lines) this.hand.release();
     const {scene, side} = this.settings;
     this.worker.postMessage(['start', {side, lines, end,
       scene: this.about.scenes.findIndex(a => a.name === scene)}]);
@@ -58,7 +61,13 @@ class Laboratory extends FailurePicture {
       : this.isRunning ? Math.max(passed * this.speed, 1e-9) : 0]);
     this.isWaiting = true;
   }
-  showNumbers() { showNumbers(), showLimits(); }
+  play() {
+    if (!this.timeline.past) return super.play();
+    this.timeline.goOn(), this.setPlaying(true);
+  }
+  step() { this.timeline.goOn(), super.step(); }
+  drawn() { this.camcorder.drawn(); }
+  showNumbers() { showNumbers(), showLimits(), this.timeline.tell(); }
   // Look at the room that the scene names; else at the cloth, and below it.
   frameScene() {
     if (this.framed || !this.sides.length) return;
@@ -357,16 +366,20 @@ const replies = {
     if (data.failed && data.asked !== page.asked) page.wanted = true;
     if (page.beyond) page.beyond.drawn = undefined;
     else page.say('.busy', '');
-    page.readings = data.readings;
     const {main, rivals = [], error} = data.readings ?? {};
-    page.show(data.sides.map(({mesh, ...side}, k) => {
+    const {timeline} = page, before = timeline.last?.sides ?? [];
+    const sides = data.sides.map(({mesh, ...side}, k) => {
       const run = rivals.length ? [{...main, error}, ...rivals][k] : null;
-      return {...page.sides[k], ...side, ...mesh, isNew: !!mesh,
+      return {...before[k], ...side, ...mesh, isNew: !!mesh,
         name: run?.method, words: run && `dt ${inMs(run.dt)}, ${
           side.failure?.diverged ? 'diverged' : side.failure ? 'refused'
             : `error ${shortNumber(1e3 * run.error, 2)} mm`}, work ${
           shortNumber(run.work)}`};
-    }));
+    });
+    if (data.readings)
+      timeline.add({sides, readings: data.readings, calls: data.calls});
+    if (timeline.past) return;
+    page.readings = data.readings, page.show(sides);
     if (!data.broken) followRun(data);
     if (!data.failed && data.readings?.missed && !page.find('.says').innerText)
       page.say('.says', `Warning: ${inPage(data.readings.missed)}.`);

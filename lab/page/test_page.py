@@ -559,6 +559,86 @@ def methods_race_at_equal_work(b):
     b.wait("page.sides.length === 1")
 
 
+def look_back(b, at):
+    b.value(f"$('time').value = {at},"
+            " $('time').dispatchEvent(new Event('input'))")
+    b.wait("!page.isWaiting && !page.wanted")
+
+
+@test
+def an_earlier_state_is_shown_and_the_run_goes_on_from_it(b):
+    opened(b)
+    b.wait("page.readings.main.time > 0.3 && page.timeline.states.length > 7")
+    good = fail_by_stiffness(b)
+    b.wait("page.beyond && page.why", 120)
+    last = b.value("page.timeline.states.length") - 1
+    kept = ("(s => [s.calls, [...s.sides[0].points]])"
+            "(page.timeline.states[4])")
+    before = b.value(kept)
+    look_back(b, 4)
+    assert b.value("[...page.sides[0].points]") == before[1]
+    time = time_of(b)
+    assert 0 < time < good
+    assert b.value("$('time').ariaValueText") == f"{time:.2f} s"
+    assert b.value("page.find('.play').innerText") == "Play"
+    look_back(b, last)  # the failure again
+    assert b.value("page.find('.play').innerText") == "Replay"
+    assert time_of(b) == good
+    # From there, with what was asked until then: the same bits, no failure.
+    look_back(b, 4)
+    b.click(".step")
+    b.wait(f"page.calls === {before[0]} + 1 && !page.failed")
+    assert b.value(kept) == before
+    b.wait("page.settings.stiffness === 100")
+    b.click(".play")
+    b.wait(f"page.readings.main.time > {good}", 120)
+    assert not b.value("page.failed")
+    # A change is made in the state that is shown.
+    pause(b)
+    look_back(b, 2)
+    time = time_of(b)
+    b.value("change('gravity', 3)")
+    b.wait("page.readings.parameters.gravity === 3")
+    assert time_of(b) == time
+    # However long it runs, few are kept, of all the run.
+    b.value("page.timeline.clear(), Array.from({length: 5000}, (_, k) =>"
+            " page.timeline.add({...page.timeline.last, sides: page.sides,"
+            " readings: page.readings, calls: k}))")
+    calls = b.value("page.timeline.states.map(s => s.calls)")
+    assert 300 <= len(calls) <= 600 and calls[0] == 0 and calls[-1] == 4999
+    gaps = {q - p for p, q in zip(calls, calls[1:-1])}
+    assert gaps == {16}, gaps
+
+
+@test
+def pictures_and_films_are_saved(b):
+    opened(b)
+    b.value("window.saved = {}, save = (blob, ending) => blob.arrayBuffer()"
+            ".then(a => saved[ending] = new Uint8Array(a))")
+    b.click("#picture")
+    b.wait("saved.png")
+    (build / "page-saved.png").write_bytes(b.bytes_of("saved.png"))
+    if not b.value("!!self.MediaRecorder"):
+        b.click("#film")
+        assert "cannot record" in b.value("page.find('.says').innerText")
+        return
+    start = b.value("page.frames")
+    b.click("#film")
+    b.wait(f"page.frames > {start} + 20")
+    b.click("#film")
+    b.wait("saved.mp4 || saved.webm")
+    film = build / "page-saved.film"
+    film.write_bytes(b.bytes_of("saved.mp4 ?? saved.webm"))
+    told = subprocess.run(
+        ["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+         "stream=width,height,nb_read_frames", "-of", "csv=p=0", film],
+        check=True, capture_output=True, text=True).stdout
+    width, height, count = map(int, told.split(","))
+    assert (width, height) == (940, b.value("page.canvas.clientHeight & ~1")
+                               + 30) and count > 5, told
+    assert b.value("$('film').innerText") == "Film"
+
+
 @test
 def it_describes_itself(b):
     opened(b)

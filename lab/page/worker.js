@@ -138,7 +138,11 @@ const handlers = {
     about = JSON.parse(text(call('about')));
     postMessage({kind: 'about', about});
   },
+  // Without lines: those of the present run.
   async start(what, mine) {
+    what.lines ??= text(call('recording')).split('\n').map(
+      line => /^(\d+) (.*)/.exec(line)?.slice(1)).filter(
+      line => line && line[1] !== 'end' && line[0] <= what.end);
     if (broken) await instantiate();
     postMessage({kind: 'history', ...await repeat(what, mine), run});
     setting();
