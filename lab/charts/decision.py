@@ -2,6 +2,7 @@
 method, and what it costs. Counted work decides, so no noise does."""
 from __future__ import annotations
 
+import itertools
 import re
 import textwrap
 from collections import Counter
@@ -17,7 +18,7 @@ KINDS = (("linear", ("chain", "curtain")),
          ("contact", ("drape", "slide", "tear")))
 WANTED = [10.0 ** -k for k in range(2, 10)]  # [m]
 ROUGH = 1e-3  # the smallest of the errors that a title calls rough [m]
-LEFT, CELL, ROW = 156, 80, 62  # [pixels]
+LEFT, CELL, ROW = 164, 79, 58  # [pixels]
 SHORT = {"symplectic-euler": "symp. euler",
          "mollified-impulse": "impulse",
          "implicit-euler": "impl. euler",
@@ -44,7 +45,7 @@ def work(run: Run) -> float:
 
 def decision(csv: pathlib.Path, out: pathlib.Path) -> None:
     """A row for a scene, a column for an error; neighbors with one answer
-    share a cell."""
+    share a cell, whose color is that of the method."""
     table, look = Table(csv), styles()
     known = {row["scene"]: runs(table.where(scene=row["scene"]))
              for row in table.rows}
@@ -56,10 +57,10 @@ def decision(csv: pathlib.Path, out: pathlib.Path) -> None:
     picture = Picture(out, LEFT + CELL * len(WANTED) + 4, height,
                       message(answers), "", "")
     for line, words in enumerate((
-            "A cell: the method that keeps this error with the least work, as "
-            "do all of its finer runs; that work; and its time.",
-            "=: another method within 10 % of that work. Work: force "
-            "evaluations, and solves by their instructions.")):
+            "A color: the method that keeps this error with the least work, as "
+            "do all of its finer runs; in it, that work and its time.",
+            "A band below: another method within 10 % of that work. Work: "
+            "force evaluations, and solves by their instructions.")):
         picture.text(20, height - 42 - 15 * line, words, 11)
     y = height - 92
     picture.text(LEFT - 10, y + 8, "wanted error [m]:", 12, DARK, "right")
@@ -99,46 +100,46 @@ def message(answers: dict[str, list[Any]]) -> str:
     """What to take, for three questions: the method that answers most."""
     words = []
     for what, contact, fits in (
-            ("Rough, to 1 mm", False, lambda e: e > 0.99 * ROUGH),
-            ("Finer", False, lambda e: e < 0.99 * ROUGH),
-            ("With contact", True, lambda e: True)):
+            ("to 1 mm", False, lambda e: e > 0.99 * ROUGH),
+            ("finer", False, lambda e: e < 0.99 * ROUGH),
+            ("with contact", True, lambda e: True)):
         chosen = [run.method for kind, scenes in KINDS
                   if (kind == "contact") == contact for scene in scenes
                   for wanted, run in zip(WANTED, answers.get(scene, []))
                   if run and fits(wanted)]
         if chosen:
-            words.append(f"{what}: {Counter(chosen).most_common(1)[0][0]}.")
-    return " ".join(words)
+            words.append(f"{what} {Counter(chosen).most_common(1)[0][0]}")
+    return "Least work: " + ", ".join(words)
 
 
 def cells(picture: Picture, y: float, some: list[Run],
           answers: list[Any], look: dict[str, tuple[str, str]]) -> None:
-    """A row of the table."""
-    ties = [tied(wanted, some, work) if run else None
+    """A row of the table: the name of a method where its color begins."""
+    keys = [(run, tied(wanted, some, work) if run else [])
             for wanted, run in zip(WANTED, answers)]
-    first = 0
-    while first < len(WANTED):
-        end = first
-        while end < len(WANTED) and (answers[end], ties[end]) == (
-                answers[first], ties[first]):
-            end += 1
-        x0, x1 = LEFT + CELL * first, LEFT + CELL * end
-        run, others, first = answers[first], ties[first], end
-        if not run:
-            picture.text((x0 + x1) / 2, y + ROW / 2,
-                         "below the reference's error"
-                         if x1 - x0 > 2 * CELL else "unknown", 11, GRAY,
-                         "center")
-            continue
-        picture.box(x0 + 1, y + 2, x1 - 1, y + ROW - 2,
-                    lighter(look[run.method][0]))
-        lines = [SHORT.get(run.method, run.method), f"{run.work:,.0f}",
-                 times(run)]
-        if others:
-            lines.insert(1, "=" + (SHORT.get(others[0], others[0])
-                                    if len(others) == 1 or end - first > 1
-                                    else f"{len(others)} others"))
-        top = y + ROW / 2 + 6.5 * (len(lines) - 1)
-        for line, words in enumerate(lines):
-            picture.text((x0 + x1) / 2, top - 13.5 * line, words, 11,
-                         "#111111", "center", bold=line == 0)
+    left = LEFT
+    for run, group in itertools.groupby(answers, lambda r: r and r.method):
+        right = left + CELL * len(list(group))
+        if run:
+            picture.box(left + 0.5, y + 2, right - 0.5, y + ROW - 2,
+                        lighter(look[run][0]))
+        picture.text((left + right) / 2, y + ROW - (15 if run else ROW / 2),
+                     SHORT.get(run, run) if run else "unknown"
+                     if right - left <= 2 * CELL else
+                     "below the reference's error", 11,
+                     "#111111" if run else GRAY, "center", bold=bool(run))
+        left = right
+    left = LEFT
+    for (run, others), group in itertools.groupby(keys):
+        right = left + CELL * len(list(group))
+        if run:
+            picture.box(left - 0.5, y + 2, left + 0.5, y + ROW - 22, "white")
+            for k, other in enumerate(others):
+                share = (right - left - 1) / len(others)
+                picture.box(left + 0.5 + k * share, y + 2,
+                            left + 0.5 + (k + 1) * share, y + 8,
+                            lighter(look[other][0], 0.3))
+            for line, words in enumerate((f"{run.work:,.0f}", times(run))):
+                picture.text((left + right) / 2, y + ROW - 29 - 13 * line,
+                             words, 11, "#111111", "center")
+        left = right

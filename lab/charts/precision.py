@@ -69,7 +69,7 @@ def message(segments: list[Segment]) -> str:
     most = max(decades_of, key=lambda m: decades_of[m])
     if most == first:
         return f"{first} is the fastest at most errors"
-    return (f"Fastest: {first} above {digits(bound)} m, below it "
+    return (f"Least time: {first} above {digits(bound)} m, below it "
             f"{'mostly ' if len(decades_of) > 1 else ''}{most}")
 
 
