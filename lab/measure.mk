@@ -114,11 +114,11 @@ method-costs: bench_methods
 
 # ---- Advice: lab/advice/README.md, on ADVISED random scenes from seed FIRST.
 
-ADVISED ?= 75
-FIRST   ?= 301
+ADVISED ?= 24
+FIRST   ?= 701
 adviser-suite: $(B)/cloth
 	lab/advice/suite.py --cloth $< --out $(B)/adviser.csv --first $(FIRST) \
-	  --scenes $(ADVISED) $(if $(JOBS),--jobs $(JOBS))
+	  --scenes $(ADVISED) --by-hand $(if $(JOBS),--jobs $(JOBS))
 	@sed -i "1i # $(measured_on)" $(B)/adviser.csv
 	@mv $(B)/adviser.csv lab/advice/results
 	@$(draw) adviser

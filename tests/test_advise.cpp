@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lab/advice/Advise.hpp"
-#include "lab/advice/Refusals.hpp"
+#include "lab/advice/Grids.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Words.hpp"
@@ -98,6 +98,28 @@ TEST(Refinement, DoesNotBelieveEveryOrder) {
     if (order > 0.5) {
       EXPECT_LE(std::abs(r.limit()[0] - 1), r.uncertainty() + 1e-12) << order;
     }
+  }
+}
+
+// A node that is held carries a load at a point. The compliance of a membrane
+// there grows with the logarithm of the cells (Boussinesq and Kelvin), so a
+// force that is limited by it goes slower than by any power of h.
+TEST(Refinement, KnowsThatASlowConvergenceMayGoOn) {
+  for (double order : {0.15, 0.2, 0.3, 0.4}) {
+    const Refinement r = by_order(order, {0, 0, 0, 0, 0, 0, 0});
+    EXPECT_GT(r.limit()[0] - 1, 0.1) << order;
+    EXPECT_LE(r.limit()[0] - 1, r.uncertainty()) << order;
+  }
+  for (double compliance : {0.03, 0.1, 0.3}) {
+    auto force = [&](double cells) {
+      return 1 / (1 + compliance * std::log(cells));
+    };
+    const Refinement r = of_answers({force(2), force(3), force(4), force(6),
+                                     force(8), force(12), force(16)});
+    EXPECT_FALSE(r.asymptotic());
+    for (double cells : {100, 1000})
+      EXPECT_LE(std::abs(r.limit()[0] - force(cells)), r.uncertainty())
+          << compliance;
   }
 }
 
@@ -305,13 +327,16 @@ TEST(Advise, NoMethodAloneIsCheaper) {
 }
 
 TEST(Advise, RefinesARope) {
-  Model m = hanging(1e-3);
+  Model m = hanging(1e-2);
   m.sheets = {read_sheet("u 1 0 0 nodes 13 1")};
   m.material = {};
   m.pins = {read_pin("x 0"), read_pin("x 1")};
   const Advice a = advise(m);
   ASSERT_EQ(a.refusal, "");
   EXPECT_EQ(a.grids[0].nodes, 3u);  // two springs
+  // Waves in it go at K/N cells: a fine one falls freely, except near its pins.
+  EXPECT_NEAR(a.grids.limit()[2], -grav * m.t_end * m.t_end / 2,
+              a.grids.uncertainty());
   EXPECT_EQ(a.model.sheets[0].nodes[1], 1u);
 }
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "lab/advice/Advise.hpp"
-#include "lab/advice/Refusals.hpp"
+#include "lab/advice/Grids.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Compose.hpp"

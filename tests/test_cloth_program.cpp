@@ -387,9 +387,9 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
   EXPECT_EQ(complaint(grid0 + "--measure conm"),
             "cloth: --measure is conm, expected one of com, energy, positions, "
             "max-stretch, drape-height, kinetic-energy, elastic-energy, "
-            "pin-force, contact-force, torn-edges, torn-nodes, tear-time, "
-            "point, distance, stretch-at, or one after max, min, mean, first, "
-            "last or period: did you mean com?\n");
+            "lost-energy, pin-force, contact-force, torn-edges, torn-nodes, "
+            "tear-time, point, distance, stretch-at, or one after max, min, "
+            "mean, first, last or period: did you mean com?\n");
 }
 
 // A remedy is one that was tried.

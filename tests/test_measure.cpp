@@ -160,6 +160,25 @@ Model pulled(double limit, double dt) {
   return m;
 }
 
+TEST(Measure, WhatIsLostIsWhatDragContactAndTearingTook) {
+  // 1 kg at 2 m/s, whose drag of 0.5 kg/s leaves exp(-2 c t/m) of its energy.
+  Model m = scene_of("nodes 5 5 velocity 2 0 0", 1, 0.002);
+  m.gravity = 0, m.damping = 0.5 / 25;
+  EXPECT_NEAR(answer_of(m, "lost-energy"), 2 * (1 - std::exp(-1.)), 1e-3);
+  // It falls flat on a floor, and stays there.
+  m = scene_of("nodes 5 5", 1, 0.002);
+  EXPECT_NEAR(answer_of(m, "lost-energy"), 0, 1e-2);
+  m.planes = {read_plane("at 0 0 -0.1")};
+  EXPECT_NEAR(answer_of(m, "lost-energy"), grav * 0.1, 1e-2);
+  EXPECT_NEAR(answer_of(m, "first lost-energy above 0.5"),
+              std::sqrt(2 * 0.1 / grav), 0.004);
+  // A pin's work is not lost; torn springs take theirs.
+  m = pulled(0.2, 0.001);
+  EXPECT_NEAR(answer_of(m, "lost-energy"), 2 * 100 * 0.2 * 0.2 / 2, 0.05);
+  m.tear_strain = 0.6;
+  EXPECT_NEAR(answer_of(m, "lost-energy"), 0, 0.05);
+}
+
 TEST(Measure, TearTimeIsThatOfTheStrainLimit) {
   for (double dt : {0.01, 0.0013})
     for (double limit : {0.1, 0.2003}) {

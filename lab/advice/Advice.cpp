@@ -18,10 +18,9 @@ std::string with_unit(double x, const Measure& measure) {
          unit_of(measure);
 }
 
-std::string asked(double tolerance, const std::string& share,
-                  const Measure& measure) {
-  return "(asked: " + (share.empty() ? "" : share + ", ") +
-         with_unit(tolerance, measure) + ')';
+std::string asked(const Advice& a) {
+  return "(asked: " + (a.share.empty() ? "" : a.share + ", ") +
+         with_unit(a.tolerance, a.measure) + ')';
 }
 
 namespace {
@@ -36,6 +35,17 @@ std::string for_shell(const std::string& words) {
   for (char c : words)
     text += c == '\'' ? std::string("'\\''") : std::string{c};
   return text + '\'';
+}
+
+std::size_t nodes_of(const AdvisedRun& run) {
+  return mesh_of(run.model).points.size();
+}
+
+/** @a words in a list. */
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string all;
+  for (const std::string& w : words) all += (all.empty() ? "" : between) + w;
+  return all;
 }
 
 using Row = std::vector<std::string>;
@@ -70,15 +80,15 @@ std::string number(double x) {
 
 /** The parts of @a m that are active by default. */
 std::string by_default(const Model& m) {
-  std::string all;
+  std::vector<std::string> all;
   auto add = [&](bool acts, const std::string& what) {
-    if (acts) all += (all.empty() ? "" : ", ") + what;
+    if (acts) all.push_back(what);
   };
   add(m.gravity == grav, "gravity " + CME212::short_text(grav) + " m/s^2");
   add(m.edges.diagonals, "springs along diagonals");
   add(!m.material.density, "a total mass of 1 kg");
   add(!m.material.modulus, "the same K in each spring");
-  return all;
+  return joined(all, ", ");
 }
 
 /** The numbers of @a answer, or nothing if they are many. */
@@ -108,11 +118,11 @@ std::string extrapolated(const Advice& a) {
 /** The advised scene, its command and its error. */
 std::string recommendation(const Advice& a) {
   using CME212::short_text;
-  std::string removed;
+  std::vector<std::string> removed;
   for (const PartReport& p : a.parts)
-    if (!p.needed) removed += (removed.empty() ? "" : "; ") + p.part;
+    if (!p.needed) removed.push_back(p.part);
   std::string text =
-      "advice: " + std::to_string(mesh_of(a.model).points.size()) + " nodes, " +
+      "advice: " + std::to_string(nodes_of(a)) + " nodes, " +
       std::string(a.model.method->info.name) + ", dt " +
       short_text(a.model.step.dt) + " s: error of " + name_of(a.measure) + ' ' +
       with_unit(a.error, a.measure) + " +- " +
@@ -124,7 +134,8 @@ std::string recommendation(const Advice& a) {
     text += "  " + name_of(a.measure) +
             " by this run:" + numbers(a.answer, a.measure) + '\n';
   text += extrapolated(a);
-  if (!removed.empty()) text += "  not needed for that: " + removed + '\n';
+  if (!removed.empty())
+    text += "  not needed for that: " + joined(removed, "; ") + '\n';
   if (a.model.t_end < a.t_end)
     text += "  it ends at " + number(a.model.t_end) + " s instead of " +
             number(a.t_end) + " s: after that " + name_of(a.measure) +
@@ -171,17 +182,18 @@ std::string assessment(const Advice& a) {
     text += "  " + a.refusal + '\n';
   const Model& m = own.model;
   return text + extrapolated(a) +
-         in_columns({{"part of this run", "error", ""},
-                     {"grid of " + std::to_string(own.nodes) + " nodes",
-                      size(own.grid), ""},
-                     {"step of " + CME212::short_text(m.step.dt) + " s by " +
-                          std::string(m.method->info.name),
-                      size(own.step),
-                      own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
-                                              " of the largest stable step"
-                                        : ""},
-                     {"both", size(a.from_files ? no_limit : own.total),
-                      "+- " + size(a.from_files ? no_limit : u)}});
+         in_columns(
+             {{"part of this run", "error", ""},
+              {"grid of " + std::to_string(mesh_of(m).points.size()) + " nodes",
+               size(own.grid), ""},
+              {"step of " + CME212::short_text(m.step.dt) + " s by " +
+                   std::string(m.method->info.name),
+               size(own.step),
+               own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
+                                       " of the largest stable step"
+                                 : ""},
+              {"both", size(a.from_files ? no_limit : own.total),
+               "+- " + size(a.from_files ? no_limit : u)}});
 }
 
 /** Words of a part that is all default, as nobody would type ''. */
@@ -228,13 +240,12 @@ std::string in_words(const Advice& a) {
   if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
   for (const std::string& note : {a.buckles, a.oblong})
     if (!note.empty()) text += "  note: " + note + '\n';
-  if (!a.left_out.empty() && a.refusal.empty()) {
-    text += "  not run for lack of budget: ";
-    for (const std::string& what : a.left_out)
-      text += (&what == &a.left_out[0] ? "" : ", ") + what;
-    text += "; --advise-work " + CME212::two_digits(4 * a.budget) +
+  if (!a.impossible.empty())
+    text += "  could not be run: " + joined(a.impossible, "; ") + '\n';
+  if (!a.left_out.empty() && a.refusal.empty())
+    text += "  not run for lack of budget: " + joined(a.left_out, ", ") +
+            "; --advise-work " + CME212::two_digits(4 * a.budget) +
             " would allow more\n";
-  }
   std::vector<Row> rows = {
       {"part, on " + std::to_string(a.tried_on) + " nodes",
        "change of " + name_of(a.measure) + " without it" + unit,
@@ -261,8 +272,7 @@ std::string in_words(const Advice& a) {
         g.trial.seconds, "");
   }
   if (a.refusal.empty())
-    row(a.from_files ? number(a.model.step.dt)
-                     : std::to_string(mesh_of(a.model).points.size()),
+    row(a.from_files ? number(a.model.step.dt) : std::to_string(nodes_of(a)),
         number(a.error), a.evaluations, a.seconds, "advised");
   if (!a.grids.empty()) text += in_columns(rows);
   rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
@@ -270,9 +280,10 @@ std::string in_words(const Advice& a) {
   const std::size_t most = 12;  // the last ones
   for (std::size_t k = a.choices.size() - std::min(a.choices.size(), most);
        k < a.choices.size(); ++k) {
-    const ChoiceReport& c = a.choices[k];
-    rows.push_back({std::to_string(c.nodes), c.method, number(c.dt),
-                    number(c.error), CME212::two_digits(c.work)});
+    const AdvisedRun& c = a.choices[k];
+    rows.push_back(
+        {std::to_string(nodes_of(c)), std::string(c.model.method->info.name),
+         number(c.model.step.dt), number(c.error), CME212::two_digits(c.work)});
   }
   if (!a.choices.empty()) text += in_columns(rows);
   if (a.perturbed > 0)
@@ -311,8 +322,8 @@ std::string as_json(const Advice& a) {
         "own_step_error", a.own->step, "own_dt_s", a.own->model.step.dt,
         "own_dt_over_stable", a.own->of_stable);
   if (a.refusal.empty())
-    add("options", as_options(a.model), "nodes", mesh_of(a.model).points.size(),
-        "method", a.model.method->info.name, "dt_s", a.model.step.dt, "t_end_s",
+    add("options", as_options(a.model), "nodes", nodes_of(a), "method",
+        a.model.method->info.name, "dt_s", a.model.step.dt, "t_end_s",
         a.model.t_end, "error", a.error, "uncertainty", a.uncertainty, "answer",
         list(a.answer), "work_spring_evaluations", a.work);
   add("spent_spring_evaluations", a.spent_work);

@@ -20,19 +20,9 @@ struct PartReport {
   bool needed = true;
 };
 
-/** A choice that was run. */
-struct ChoiceReport {
-  std::size_t nodes = 0;
-  std::string method;
-  double dt = 0;     ///< [s]
-  double error = 0;  ///< of the answer; infinite: the run failed
-  double work = 0;   ///< spring evaluations
-};
-
 /** The error of the scene's own run, in the unit of the measure, and its
  * parts: infinite if not known. */
 struct Assessment {
-  std::size_t nodes = 0;
   double total = 0;
   double grid = 0, step = 0;
   double of_stable = 0;  ///< its step / the largest stable one; 0: no limit
@@ -63,15 +53,16 @@ struct Advice : AdvisedRun {
   bool from_files = false;        ///< then grids are steps on that mesh
   Refinement grids;
   std::vector<PartReport> parts;
-  std::size_t tried_on = 0;  ///< nodes of the grid of parts and steps
-  std::vector<ChoiceReport> choices;
-  double scatter = 0;   ///< of the answers of perturbed runs
-  int perturbed = 0;    ///< how many perturbed runs were made
+  std::size_t tried_on = 0;         ///< nodes of the grid of parts and steps
+  std::vector<AdvisedRun> choices;  ///< that were run
+  double scatter = 0;               ///< of the answers of perturbed runs
+  int perturbed = 0;                ///< how many perturbed runs were made
   std::string refusal;  ///< why no advice is given; empty: advice is given
   std::string trivial;  ///< why nothing has to be computed; or empty
   std::string buckles;  ///< a motion in a plane that would leave it; or empty
   std::string oblong;   ///< what square cells would change; or empty
-  std::vector<std::string> left_out;  ///< runs that the budget did not allow
+  std::vector<std::string> left_out;    ///< runs that the budget did not allow
+  std::vector<std::string> impossible;  ///< why runs could not be made
   double t_end = 0;  ///< [s] of the question; model may end earlier, at rest
   double evaluations = 0;  ///< force evaluations of the advised run
   double of_stable = 0;    ///< its step / the largest stable one; 0: no limit
@@ -82,13 +73,8 @@ struct Advice : AdvisedRun {
 /** @a x to two digits with the unit of @a measure, if it has one. */
 std::string with_unit(double x, const Measure& measure);
 
-/** The tolerance in words: "(asked: 0.01 m)".
- * @param share what it is a share of, in words; or empty */
-std::string asked(double tolerance, const std::string& share,
-                  const Measure& measure);
-inline std::string asked(const Advice& a) {
-  return asked(a.tolerance, a.share, a.measure);
-}
+/** The tolerance in words: "(asked: 0.01 m)". */
+std::string asked(const Advice& a);
 
 /** The options with which ./cloth runs @a m. */
 std::string as_options(const Model& m);

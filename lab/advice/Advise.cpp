@@ -1,6 +1,7 @@
 #include "lab/advice/Advise.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "CME212/Util.hpp"
 #include "lab/advice/Choice.hpp"
@@ -10,95 +11,100 @@ namespace lab {
 
 namespace {
 
-/** The advice, without a run that is advised. */
-Advice finish(Question& q, const GridStudy& grids, const CME212::Clock& clock) {
-  Advice& a = q.advice;
-  a.trivial = grids.trivial();
-  a.left_out = q.pilots.left_out();
-  a.spent_work = q.pilots.spent(), a.budget = q.pilots.budget();
-  a.spent = clock.seconds();
-  return a;
-}
+/** A question and its studies, in the order in which they are made. */
+struct Search {
+  Question q;
+  GridStudy grids{q};
+  PartStudy parts{q, grids};
+  ChoiceSearch choice{q, grids, parts};
+  CME212::Clock clock = {};
+  std::string chaos = {};  // why the motion has no answer; or empty
 
-/** Advise @a c. */
-void take(Advice& a, const Choice& c) {
-  static_cast<AdvisedRun&>(a) = c;
-  const StepCosts costs(c.model);
-  a.evaluations = costs.evaluations(c.work);
-  if (const double limit = costs.limit(c.model.method->info); limit != no_limit)
-    a.of_stable = c.model.step.dt / limit;
-  auto removed = c.parts.removed;  // two equal parts are counted one by one
-  for (PartReport& p : a.parts) {
-    const auto it = std::ranges::find(removed, p.part);
-    p.needed =
-        it == removed.end() && !goes_with_another(p.part, c.parts.removed);
-    if (it != removed.end()) removed.erase(it);
+  /** @param runs of the scene that the budget allows, if it is not given */
+  Search(const Model& m, const AdviceRules& rules, double runs)
+      : q(m, rules, runs) {}
+
+  bool is_chaotic(double scatter = 0) {
+    chaos = grids.find_chaos(scatter);
+    return !chaos.empty();
   }
-}
 
-/** The coarsest grid whose error is at most twice the tolerance, or the finest
- * one: parts are tried on it. */
-std::size_t base_of(const GridStudy& grids) {
-  std::size_t k = 0;
-  while (k + 1 < grids.grids().size() &&
-         !(grids.grids()[k].error <= 2 * grids.tolerance()))
-    ++k;
-  return k;
-}
+  /** Step 2 of README.md: on the coarsest grid with an error of at most twice
+   * the tolerance, or else the finest one. */
+  void study_parts() {
+    std::size_t k = 0;
+    while (k + 1 < grids.grids().size() &&
+           !(grids.grids()[k].error <= 2 * grids.tolerance()))
+      ++k;
+    // With a mesh from files each run is long.
+    const bool first = q.from_files() && !parts.level();
+    if (parts.level() == grids.grids()[k].level || (first && is_chaotic()))
+      return;
+    parts.study(k);
+  }
 
-/** Steps 1 to 4 of README.md.
- * @param calm is set to false if the motion is chaotic
- * @return why no more grids were run; empty: none was needed */
-std::string search(const Question& q, GridStudy& grids, PartStudy& parts,
-                   ChoiceSearch& choice, bool& calm) {
-  const bool kept = q.rules.keeps_method || q.rules.keeps_step;
-  for (;;) {
-    if (const std::string why = grids.add(); !why.empty()) return why;
-    if (!grids.knows_limit()) {
-      if (choice.found()) return "";  // it stays
-      if (grids.grids().size() < grids.kind().fewest + 2) continue;
-      const std::string chaos = grids.find_chaos(0);
-      calm = chaos.empty();
-      if (!calm) return chaos;
-      if (const std::string why = grids.hopeless(); !why.empty()) return why;
-      continue;
-    }
-    const std::size_t base = base_of(grids);
-    if (parts.level() != grids.runs()[base].level) {
-      if (grids.kind().chaos_first && !parts.level()) {
-        const std::string chaos = grids.find_chaos(0);
-        calm = chaos.empty();
-        if (!calm) return chaos;
+  /** Steps 1 to 4.
+   * @return why no more grids were run; empty: none was needed */
+  std::string run() {
+    const bool kept = q.rules.keeps_method || q.rules.keeps_step;
+    for (;;) {
+      if (const std::string why = grids.add(); !why.empty()) return why;
+      if (grids.knows_limit()) {
+        study_parts();
+        if (!chaos.empty()) return chaos;
+        choice.search();
+        const bool found = choice.found().has_value();
+        if (!grids.may_go_on(found) || (!found && kept && grids.is_certain()))
+          return "";
+      } else if (choice.found()) {
+        return "";  // it stays
+      } else if (grids.are_enough(2)) {
+        if (is_chaotic()) return chaos;
+        if (const std::string why = grids.hopeless(); !why.empty()) return why;
       }
-      parts.study(base);
     }
-    choice.search();
-    const bool found = choice.found().has_value();
-    if (!grids.may_go_on(found) || (!found && kept && grids.is_certain()))
-      return "";
   }
-}
+
+  /** The advice: to run @a found; or its @a refusal, if there is one. */
+  Advice finish(const std::string& refusal,
+                const std::optional<Choice>& found = {}) {
+    Advice& a = q.advice;
+    a.refusal = refusal;
+    a.trivial = grids.trivial();
+    a.left_out = q.pilots.left_out(), a.impossible = q.pilots.impossible();
+    a.spent_work = q.pilots.spent(), a.budget = q.pilots.budget();
+    a.spent = clock.seconds();
+    if (!refusal.empty() || !found) return std::move(a);
+    static_cast<AdvisedRun&>(a) = *found;
+    const StepCosts costs(a.model);
+    a.evaluations = costs.evaluations(a.work);
+    a.of_stable = costs.of_stable(a.model);
+    auto removed = found->parts.removed;  // of two equal parts each is counted
+    for (PartReport& p : a.parts) {
+      const auto it = std::ranges::find(removed, p.part);
+      p.needed = it == removed.end() &&
+                 !goes_with_another(p.part, found->parts.removed);
+      if (it != removed.end()) removed.erase(it);
+    }
+    return std::move(a);
+  }
+};
 
 }  // namespace
 
 Advice advise(const Model& m, const AdviceRules& rules) {
-  const CME212::Clock clock;
-  Question q(m, rules);
-  const auto grids = study_grids(q);
-  if (!grids->trivial().empty()) {  // on any grid, before a run
-    Advice a = finish(q, *grids, clock);
+  Search s(m, rules, 1);
+  if (!s.grids.trivial().empty()) {  // on any grid, before a run
+    Advice a = s.finish("");
     a.answer = answer(m, Scene(m), m.measure);
-    a.model = m, a.error = 0, a.work = q.own_work;
+    a.model = m, a.error = 0, a.work = s.q.own_work;
     return a;
   }
-  PartStudy parts(q, *grids);
-  ChoiceSearch choice(q, *grids, parts);
-  bool calm = true;
-  std::string refusal = search(q, *grids, parts, choice, calm);
-  calm = calm && grids->tolerance() > 0;
-  std::optional<Choice> found = choice.found();
-  if (!found && calm && !q.pilots.left_out().empty())
-    if (const auto foreseen = grids->foresee()) found = Choice{*foreseen};
+  std::string refusal = s.run();
+  if (!s.chaos.empty() || s.grids.tolerance() == 0) return s.finish(refusal);
+  std::optional<Choice> found = s.choice.found();
+  if (!found && !s.q.pilots.left_out().empty())
+    if (const auto foreseen = s.grids.foresee()) found = Choice{*foreseen};
   if (!found && refusal.empty())
     refusal =
         rules.keeps_method || rules.keeps_step
@@ -106,80 +112,59 @@ Advice advise(const Model& m, const AdviceRules& rules) {
                   " that was tried meets the tolerance"
             : "no method meets the tolerance with the steps that were tried: "
               "the smallest was 1/8 of the largest stable one";
-  bool advised = found && calm;
-  // Chaos may be why nothing was found.
-  if (calm && !grids->runs().empty() && !grids->kind().chaos_first)
-    if (const std::string chaos = grids->find_chaos(found ? found->scatter : 0);
-        !chaos.empty())
-      refusal = chaos, advised = false;
-  if (advised) refusal.clear(), grids->try_squares();
-  Advice a = finish(q, *grids, clock);
-  a.refusal = refusal;
-  if (advised) take(a, *found);
-  return a;
+  // Step 5. Chaos may be why nothing was found.
+  if (!s.grids.grids().empty() && !s.q.from_files() &&
+      s.is_chaotic(found ? found->scatter : 0))
+    return s.finish(s.chaos);
+  if (!found) return s.finish(refusal);
+  s.grids.try_squares();  // step 6
+  return s.finish("", found);
 }
 
 Advice assess(const Model& m, const AdviceRules& rules) {
-  const CME212::Clock clock;
-  Question q(m, rules);
-  q.pilots.allow(8 * q.own_work);
-  q.rules.keeps_method = true, q.rules.keeps_step = false;
-  const auto study = study_grids(q);
-  GridStudy& grids = *study;
-  PartStudy parts(q, grids);
-  ChoiceSearch choice(q, grids, parts);
+  AdviceRules own_method = rules;
+  own_method.keeps_method = true, own_method.keeps_step = false;
+  Search s(m, own_method, 8);
+  GridStudy& grids = s.grids;
   std::string refusal;
   while ((refusal = grids.add()).empty()) {
-    const std::size_t n = grids.grids().size(), fewest = grids.kind().fewest;
-    if (n >= fewest && grids.is_certain()) break;
-    if (n >= fewest + 2 && !(refusal = grids.hopeless()).empty()) break;
+    if (grids.are_enough() && grids.is_certain()) break;
+    if (grids.are_enough(2) && !(refusal = grids.hopeless()).empty()) break;
   }
   Assessment own{.model = m};
-  own.nodes = nodes_of(m);
   own.model.step = {.dt = step_of(m)};
   const StepCosts costs(own.model);
-  const MethodInfo& info = m.method->info;
-  if (const double limit = costs.limit(info); limit != no_limit)
-    own.of_stable = own.model.step.dt / limit;
-  Model half = own.model;
-  half.step.dt /= 2;
+  own.of_stable = costs.of_stable(own.model);
   const double work = costs.of_run(own.model);
   if (grids.grids().size() < 3 || grids.tolerance() == 0 ||
-      !q.pilots.affords(3 * work, "the scene's own run")) {
-    Advice a = finish(q, grids, clock);
-    a.refusal = refusal.empty() ? grids.over_budget(3 * work) : refusal;
-    return a;
-  }
-  const Trial run = q.pilots.run(own.model, "its own run", work);
-  const Trial finer = q.pilots.run(half, "half the step", 2 * work);
+      !s.q.pilots.affords(3 * work, "the scene's own run"))
+    return s.finish(refusal.empty() ? grids.over_budget(3 * work) : refusal);
+  Model half = own.model;
+  half.step.dt /= 2;
+  const Trial run = s.q.pilots.run(own.model, "its own run", work);
+  const Trial finer = s.q.pilots.run(half, "half the step", 2 * work);
   own.total = grids.error_of(run);
   own.grid = own.step = infinite;
-  const bool one_grid = m.sheets.empty();  // whose error is not known
   if (run.ok() && finer.ok()) {
     // By Richardson's extrapolation; contact and tearing have order 1.
-    const double p = m.has_contact() ? 1 : info.order,
+    const double p = m.has_contact() ? 1 : m.method->info.order,
                  share = 1 - std::pow(0.5, p);
     const Effect change(run.answer, finer.answer);
     own.step = grids.size_of(change) / share;
-    if (!one_grid)
+    if (!s.q.from_files())
       own.grid = grids.size_of(
           Effect(run.answer, grids.grids().limit()).add(-1 / share, change.by));
   }
-  if (one_grid || !run.ok() || grids.accepts(own.grid)) choice.search_steps();
-  Advice a = finish(q, grids, clock);
-  a.own = own;
-  if (choice.found())
-    take(a, *choice.found());
-  else
-    a.refusal = grids.too_uncertain()
-                    ? grids.so_far() + "; --advise-work " +
-                          CME212::two_digits(8 * q.pilots.budget()) +
-                          " would continue"
-                    : "no step that was tried meets the tolerance on this "
-                      "grid by " +
-                          std::string(info.name) +
-                          ": --advise finds a grid and a method";
-  return a;
+  s.q.advice.own = own;
+  if (s.q.from_files() || !run.ok() || grids.accepts(own.grid))
+    s.choice.search_steps();
+  if (s.choice.found()) return s.finish("", s.choice.found());
+  return s.finish(
+      grids.too_uncertain()
+          ? grids.so_far() + grids.way_out(work)
+          : "no step that was tried meets the tolerance on this grid by " +
+                std::string(m.method->info.name) +
+                ": --advise finds a grid and a method");
 }
 
 }  // namespace lab

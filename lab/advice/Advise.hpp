@@ -8,17 +8,8 @@
 
 namespace lab {
 
-/** Safety margins of the estimates, and bounds of the pilots. */
+/** What may be advised, and bounds of the pilots. */
 struct AdviceRules {
-  double for_parts = 0.7;  ///< share of the tolerance for parts left out
-  /** Limit of a grid that is run or advised; 0: 40,000, or one per 1e4 of a
-   * larger budget, as a run takes so many spring evaluations per node, up to
-   * 1e6. */
-  double most_nodes = 0;
-  /** Once a choice is found, a finer grid is run to find a cheaper one if that
-   * takes at most so many spring evaluations, or 0.3 of the scene's own run. */
-  double patience = 2e6;
-  double stiff = 2e6;  ///< work on 8 cells from which pilots are implicit
   /** The work of all pilots, in spring evaluations, so that advice is the same
    * on every machine; 0: the larger of Pilots::usual and one run of the scene;
    * eight runs, if its own grid is run: of a mesh from files, and by assess().
@@ -28,16 +19,17 @@ struct AdviceRules {
   bool keeps_method = false, keeps_step = false;
   /** Called often, with the current run and the results so far. */
   Pilots::Tell tell = [](const std::string&, double) {};
-  /** Finer grids are run until the limit of the grids is known to this share of
-   * the tolerance, if they are cheap. */
-  double most_uncertainty = 0.25;
+  /** Limit of a grid that is run or advised; 0: 40,000, or one per 1e4 of a
+   * larger budget, as a run takes so many spring evaluations per node, up to
+   * 1e6. */
+  double most_nodes = 0;
+  /** Once a choice is found, a finer grid is run to find a cheaper one if that
+   * takes at most so many spring evaluations, or 0.3 of the scene's own run. */
+  double patience = 2e6;
   /** Share of the uncertainty that is added to the error of a choice that was
    * run. All of it would take one or two more grids, and few scenes need that:
    * suite.py. */
   double counted_share = 0.45;
-  /** Nothing is advised if the limit of the grids is uncertain by more than
-   * this share of the tolerance. */
-  double most_uncertain = 0.6;
 };
 
 /** Find the cheapest model that answers the question of @a m. Runs @a m many

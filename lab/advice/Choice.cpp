@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <tuple>
-#include <utility>
 
 #include "lab/methods/Methods.hpp"
 #include "lab/stepping/Trial.hpp"
 
 namespace lab {
-
-// Where the work varies, it is at least this share of the prediction.
-constexpr double least_of_prediction = 0.4;
 
 std::vector<Choice> ChoiceSearch::choices(
     const std::vector<GridStudy::Grid>& grids) const {
@@ -22,6 +16,7 @@ std::vector<Choice> ChoiceSearch::choices(
     if (m.info.limit > 0 || m.info.adaptive) tried.push_back(&m);
   if (q_.rules.keeps_method) tried = {q_.scene.method};
   std::vector<Choice> all;
+  int kind = 0;
   for (const GridStudy::Grid& grid : grids)
     for (const Reduction& parts : parts_.reductions()) {
       std::optional<Model> m =
@@ -31,7 +26,8 @@ std::vector<Choice> ChoiceSearch::choices(
       std::set ends = {q_.scene.t_end};
       if (PartStudy::dissipates(*m)) ends.insert(parts_.rest_time());
       const StepCosts costs(*m);
-      for (const double t_end : ends)
+      for (const double t_end : ends) {
+        ++kind;
         for (const MethodEntry* method : tried) {
           m->method = method, m->t_end = t_end;
           const MethodInfo& info = method->info;
@@ -49,11 +45,13 @@ std::vector<Choice> ChoiceSearch::choices(
             all.push_back({{.model = *m, .work = costs.of_run(*m)},
                            parts,
                            grid,
-                           bounded ? m->step.dt / limit : dt});
+                           bounded ? m->step.dt / limit : dt,
+                           kind});
             dt /= bounded ? std::sqrt(2) : 2;
             if (q_.rules.keeps_step) break;
           }
         }
+      }
     }
   std::ranges::stable_sort(all, {}, [](const Choice& c) {
     return std::tuple(c.work, -double(c.parts.removed.size()),
@@ -93,13 +91,16 @@ bool ChoiceSearch::holds(Choice& c, double most) {
   const Trial t = run(c, c.model, c.work, "");
   learn(c, t, 1);
   // Of Newton's iterations and of inner steps the number is known only now.
-  if (t.ok() && work_varies(c.model.method->info)) c.work = t.work;
+  if (t.ok() && work_varies(c.model.method->info)) {
+    real_work_[c.model.method] = t.work / c.work;
+    c.work = t.work;
+  } else {
+    real_work_.try_emplace(c.model.method, 1);
+  }
   c.error = grids_.error_of(t);
   c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
   c.uncertainty = grids_.grids().uncertainty();
-  q_.advice.choices.push_back({nodes_of(c.model),
-                               std::string(c.model.method->info.name),
-                               c.model.step.dt, c.error, c.work});
+  q_.advice.choices.push_back(c);
   if (!grids_.accepts(c.error) || !(c.work < most)) return false;
   Model smaller = c.model;
   smaller.step.dt /= 2;
@@ -159,34 +160,41 @@ double ChoiceSearch::perturb(const Choice& c) {
   return most;
 }
 
+bool ChoiceSearch::may_be_cheaper(const Choice& c, double most) const {
+  constexpr double surely = 0.4,  // of another run, of what the last one took
+      little = 0.02;              // of what all pilots took
+  if (!work_varies(c.model.method->info)) return c.work < most;
+  const auto known = real_work_.find(c.model.method);
+  return known != real_work_.end()
+             ? surely * std::min(1., known->second) * c.work < most
+             : surely * c.work < most || c.work < little * q_.pilots.spent();
+}
+
 void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
                            std::optional<Choice>& best) {
-  // Grids, parts and, if it is to blame, the method for which smaller steps are
-  // no remedy; and the last error of each method with them.
-  using Key =
-      std::tuple<Sides, std::vector<std::string>, double, const MethodEntry*>;
-  std::set<Key> fail;
-  std::map<Key, double> errors;
+  // Grids and parts for which smaller steps are no remedy, and the method if it
+  // is to blame; and the last error of each method with them.
+  std::set<std::pair<int, const MethodEntry*>> fail;
+  std::map<std::pair<int, const MethodEntry*>, double> errors;
   for (Choice& c : choices(grids)) {
     const MethodEntry* method = c.model.method;
-    if (best && !(c.work * least_of_prediction < best->work)) break;
-    if (best && !(c.work < best->work) && !work_varies(method->info)) continue;
-    const Key any{c.grid.sides, c.parts.removed, c.model.t_end, nullptr},
-        own{c.grid.sides, c.parts.removed, c.model.t_end, method};
-    if (fail.contains(any) || fail.contains(own) || !may_hold(c)) continue;
-    if (!q_.pilots.affords(c.work, "more expensive choices", 0.33)) break;
     const double most = best ? best->work : infinite;
+    if (!may_be_cheaper(c, most) || fail.contains({c.kind, nullptr}) ||
+        fail.contains({c.kind, method}) || !may_hold(c))
+      continue;
+    if (!q_.pilots.affords(c.work, "more expensive choices", 0.33)) break;
     if (holds(c, most)) {
       best = c;
       continue;
     }
-    double& before = errors.try_emplace(own, infinite).first->second;
+    double& before =
+        errors.try_emplace({c.kind, method}, infinite).first->second;
     // From files all error is by the step; implicit steps begin very long.
     const bool bounded = std::isnormal(method->info.limit);
     const bool by_accident = c.half_step && grids_.accepts(*c.half_step);
     if (!c.grid.sides.empty() &&
         (by_accident || (bounded && c.error > 0.9 * before)))
-      fail.insert(bounded ? any : own);
+      fail.insert({c.kind, bounded ? nullptr : method});
     before = c.error;
   }
 }
@@ -203,7 +211,7 @@ void ChoiceSearch::search() {
   std::optional<Choice> best;
   for (const GridStudy::Grid& start : grids_.starts())
     if (!best || std::ranges::any_of(choices({start}), [&](const Choice& c) {
-          return c.work < best->work && may_hold(c);
+          return may_be_cheaper(c, best->work) && may_hold(c);
         }))
       try_all(grids_.frontier(start), best);
   if (best) found_ = best;
@@ -211,7 +219,7 @@ void ChoiceSearch::search() {
 
 void ChoiceSearch::search_steps() {
   const GridStudy::Grid own{Sides(q_.scene.sheets.size(), {1, 1}),
-                            Effect(grids_.grids().limit().size())};
+                            Effect(grids_.grids().limit().size()), 0};
   for (Choice& c : choices({own}))
     if (q_.pilots.affords(c.work, "smaller steps", 0.33) &&
         holds(c, infinite)) {

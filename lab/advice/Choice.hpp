@@ -2,8 +2,11 @@
 /** @file Choice.hpp
  * ChoiceSearch: the cheapest grid, parts, method and step that meet the
  * tolerance. */
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lab/advice/Parts.hpp"
@@ -12,8 +15,9 @@ namespace lab {
 
 struct Choice : AdvisedRun {
   Reduction parts = {};
-  GridStudy::Grid grid = {};  // without sides: of a mesh from files
+  GridStudy::Grid grid = {};
   double step = 1;  // over the largest stable one; if there is none, [s]
+  int kind = 0;     // equal for choices of the same grid, parts and end
   double scatter = 0;
   Answer half = {};  // by half the step
 };
@@ -48,6 +52,9 @@ class ChoiceSearch {
   PartStudy& parts_;
   std::optional<Choice> found_;
   std::vector<StepError> step_errors_;
+  /** Where the work depends on the motion: that of the last run over what was
+   * predicted. */
+  std::map<const MethodEntry*, double> real_work_;
 
   /** All parts, methods and steps on these grids, the cheapest first by
    * prediction. */
@@ -55,6 +62,9 @@ class ChoiceSearch {
   /** False if a step that is not longer than that of @a c was too long for an
    * error as that by the pilot. */
   bool may_hold(const Choice& c) const;
+  /** Whether @a c may take less work than @a most. A method of varying work is
+   * tried once to know that, if this is cheap beside all pilots so far. */
+  bool may_be_cheaper(const Choice& c, double most) const;
   /** Replace @a best by the cheapest choice that holds, if one is cheaper. */
   void try_all(const std::vector<GridStudy::Grid>& grids,
                std::optional<Choice>& best);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
-#include "lab/advice/Refusals.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stepping/Trial.hpp"
@@ -14,19 +13,10 @@ namespace lab {
 
 std::size_t nodes_of(const Model& m) { return mesh_of(m).points.size(); }
 
-std::vector<Answer> all_answers(const Model& m, const Cloth& g) {
-  std::vector<Answer> all;
-  for (int k = 0; k < Measure::pin_force; ++k) {
-    const Measure what = Measure::Quantity(k);
-    all.push_back(can_answer(m, what) ? answer(m, g, what) : Answer());
-  }
-  return all;
-}
-
-Question::Question(const Model& m, const AdviceRules& rules)
+Question::Question(const Model& m, const AdviceRules& rules, double runs)
     : scene(m), rules(rules), pilots(rules.budget, rules.tell) {
   check_question(m);
-  if (m.measure.counts() && !m.sheets.empty())
+  if (m.measure.counts() && !from_files())
     throw SceneError("measure", "is " + name_of(m.measure) +
                                     ", a number that depends on the grid: "
                                     "expected another measure, or a mesh from "
@@ -35,24 +25,30 @@ Question::Question(const Model& m, const AdviceRules& rules)
     throw SceneError("t-end", "is 0, expected a time to simulate");
   own_work = work_of_run(m);
   if (!std::isfinite(own_work)) own_work = 0;
-  pilots.allow(own_work);
+  pilots.allow(runs * own_work);
   advice.measure = m.measure, advice.tolerance = m.tolerance;
   advice.grids = Refinement(m.measure);
-  advice.t_end = m.t_end, advice.from_files = m.sheets.empty();
+  advice.t_end = m.t_end, advice.from_files = from_files();
 }
 
-GridStudy::GridStudy(Question& q, const Kind& kind)
-    : q_(q),
-      most_nodes_(
-          q.rules.most_nodes > 0
-              ? q.rules.most_nodes
-              : std::min(1e6,
-                         std::max(Pilots::usual, q.pilots.budget()) / 1e4)),
-      kind_(kind) {}
-
-double GridStudy::power(int level) {
-  const int two = int(std::floor(level / 2.));
-  return std::pow(2, two) * (level - 2 * two == 1 ? 1.5 : 1);
+GridStudy::GridStudy(Question& q) : q_(q), most_nodes_(q.rules.most_nodes) {
+  if (q.from_files()) {
+    most_nodes_ = infinite;
+    q.pilots.allow(8 * q.own_work);
+    choose_pilots();
+    pilot_.step = {.dt = step_of(pilot(q.scene, 1))};
+    return;
+  }
+  if (!(most_nodes_ > 0))
+    most_nodes_ =
+        std::min(1e6, std::max(Pilots::usual, q.pilots.budget()) / 1e4);
+  for (const Sheet& s : q.scene.sheets)
+    for (unsigned n : s.nodes)
+      if (n > 1) shortest_ = std::min(shortest_, n - 1.);
+  make_levels(2);
+  // Maybe a pin lies between the nodes of these grids.
+  if (!costs_of(on_level(some_level()))) make_levels(shortest_);
+  choose_pilots();
 }
 
 Model GridStudy::pilot(Model m, double factor) const {
@@ -62,78 +58,72 @@ Model GridStudy::pilot(Model m, double factor) const {
   return m;
 }
 
-bool GridStudy::choose_pilots(int some) {
+void GridStudy::choose_pilots() {
+  constexpr double too_much = 2e6;  // spring evaluations on 8 cells
   pilot_ = {&table::verlet, {.rule = StepRule::safe}};
-  try {
-    const Model on = on_level(some);
-    const StepCosts costs(on);
-    double least = costs.of_run(pilot(on, factor(some)));
-    if (!(least > q_.rules.stiff)) return true;
-    least /= 2;
-    for (const MethodEntry* method :
-         {&table::mollified_impulse, &table::tr_bdf2}) {
-      const auto before = pilot_;
-      pilot_.method = method;
-      if (method->info.limit == no_limit)
-        pilot_.step = {.dt = q_.scene.t_end / 50 * factor(some)};
-      if (const double work = costs.of_run(pilot(on, factor(some)));
-          work < least)
-        least = work;
-      else
-        pilot_ = before;
-    }
-    return true;
-  } catch (const SceneError&) {
-    return false;
+  const int level = some_level();
+  const Model on = on_level(level);
+  const auto costs = costs_of(on);
+  if (!costs) return;
+  double least = costs->of_run(pilot(on, factor(level)));
+  if (!(least > too_much)) return;
+  least /= 2;
+  for (const MethodEntry* method :
+       {&table::mollified_impulse, &table::tr_bdf2}) {
+    const auto before = pilot_;
+    pilot_.method = method;
+    if (method->info.limit == no_limit)
+      pilot_.step = {.dt = q_.scene.t_end / 50 * factor(level)};
+    if (const double work = costs->of_run(pilot(on, factor(level)));
+        work < least)
+      least = work;
+    else
+      pilot_ = before;
   }
 }
 
 std::string GridStudy::add() {
+  GridReport run;
   for (;; ++level_) {
-    Run run{level_, on_level(level_), 0, {}, Track(q_.scene.t_end, 1)};
-    const std::size_t nodes = nodes_of(run.model);
-    const std::string on = kind_.on + std::to_string(nodes) + " nodes";
-    if (double(nodes) > most_nodes_)
+    run = {.level = level_, .model = on_level(level_)};
+    run.nodes = nodes_of(run.model);
+    const std::string on = (q_.from_files() ? "the mesh of " : "a grid of ") +
+                           std::to_string(run.nodes) + " nodes";
+    if (double(run.nodes) > most_nodes_)
       return on + " would be too large" +
              (grids().empty() ? "" : ": " + so_far());
-    const Model& m = run.model = pilot(run.model, factor(level_));
-    GridReport report;
-    try {
-      report.factor = factor_of(m), report.nodes = nodes;
-      if (!grids().empty() && !(report.factor > grids().back().factor))
-        continue;
-      const StepCosts costs(m);
-      run.work = costs.of_run(m);
-      report.evaluations = costs.evaluations(run.work);
-      q_.pilots.allow(kind_.runs * run.work);
-      if (!q_.pilots.affords(run.work, kind_.finer_grid,
-                             grids().size() < kind_.fewest ? 1 : 0.7))
-        return over_budget(run.work);
-      run.track = Track(q_.scene.t_end, nodes);
-      auto look = [&](const Cloth& g) {
-        run.all = all_answers(m, g);
-        find_plane(g);
-      };
-      report.trial =
-          q_.pilots.run(m, on, run.work, {}, {}, look,
-                        [&](Scene& scene) { run.track.look(scene); });
-      invalid_ = 0;
-    } catch (const SceneError& e) {
-      // Between the cells of the scene a pin may hold no node.
-      if (++invalid_ > 3 && factor(level_) > 1)
-        return "on " + on + ": " + e.what();
+    run.factor = factor(level_);
+    if (!grids().empty() && !(run.factor > grids().back().factor)) continue;
+    run.model = pilot(run.model, run.factor);
+    std::string why;
+    const auto costs = costs_of(run.model, &why);
+    if (!costs) {
+      if (++invalid_ > 3 && run.factor > 1) return "on " + on + ": " + why;
       continue;
     }
-    if (report.trial.ok()) {
-      q_.advice.grids.add(report);
-      runs_.push_back(std::move(run));
-      ++level_;
-      break;
-    }
-    if (factor(level_) >= 1) return "on " + on + ": " + report.trial.failure;
-    q_.advice.grids.clear(),
-        runs_.clear();  // it is too coarse to carry the load
+    invalid_ = 0;
+    run.work = costs->of_run(run.model);
+    run.evaluations = costs->evaluations(run.work);
+    if (q_.from_files()) q_.pilots.allow(8 * run.work);
+    if (!q_.pilots.affords(run.work,
+                           q_.from_files() ? "smaller steps" : "a finer grid",
+                           are_enough() ? 0.7 : 1))
+      return over_budget(run.work);
+    run.track.emplace(q_.scene.t_end, run.nodes);
+    auto look = [&](const Cloth& g) {
+      run.all = all_answers(run.model, g);
+      find_plane(g);
+    };
+    run.trial = q_.pilots.run(run.model, on, run.work, {}, {}, look,
+                              [&](Scene& scene) { run.track->look(scene); });
+    if (run.trial.ok()) break;
+    if (run.factor >= 1) return "on " + on + ": " + run.trial.failure;
+    q_.advice.grids.clear();  // it is too coarse to carry the load
   }
+  ++level_;
+  if (q_.from_files() && !grids().empty())
+    run.factor = grids()[0].trial.dt / run.trial.dt;
+  q_.advice.grids.add(std::move(run));
   if (grids().size() < 3) return "";
   if (!know_tolerance())
     return q_.advice.share +
@@ -144,43 +134,79 @@ std::string GridStudy::add() {
 
 std::string GridStudy::hopeless() const {
   // By order 2 at best, the uncertainty falls with the square of the cells.
-  const double work = runs_.back().work,
+  const double work = grids().back().work,
                finer = std::pow(std::max(1., 0.7 * q_.pilots.left() / work),
-                                1 / kind_.power),
-               needed = std::sqrt(grids().uncertainty() / tolerance() /
-                                  q_.rules.most_uncertain);
-  return finer >= needed ? ""
-                         : over_budget(work * std::pow(needed, kind_.power));
+                                1 / power_of_work()),
+               needed = std::sqrt(grids().uncertainty() /
+                                  (most_uncertain * tolerance()));
+  return finer >= needed
+             ? ""
+             : over_budget(work * std::pow(needed, power_of_work()));
+}
+
+bool GridStudy::may_go_on(bool found) const {
+  if (q_.from_files()) return !found && !is_certain();
+  if (!found) return true;
+  const double next = 3 * grids().back().work;
+  return !is_certain() && double(nodes_of(on_level(level_))) <= most_nodes_ &&
+         next <= std::max(q_.rules.patience, 0.3 * q_.own_work) &&
+         next <= 0.5 * q_.pilots.left();
+}
+
+std::string GridStudy::finest() const {
+  return q_.from_files()
+             ? "by the smallest step"
+             : "on " + std::to_string(grids().back().nodes) + " nodes";
 }
 
 std::string GridStudy::so_far() const {
-  if (grids().size() < kind_.fewest)
-    return CME212::count_of(grids().size(), kind_.grid) +
+  if (!are_enough())
+    return CME212::count_of(grids().size(), q_.from_files() ? "step" : "grid") +
            (grids().size() == 1 ? " is" : " are") +
            " not enough to estimate an error";
   const Measure& what = q_.scene.measure;
-  const std::string limit = with_unit(grids().uncertainty(), what),
-                    asked =
-                        ' ' + lab::asked(tolerance(), q_.advice.share, what);
+  const std::string limit =
+      with_unit(grids().uncertainty(), what) + ' ' + asked(q_.advice);
   if (too_uncertain())
-    return "uncertainty is the reason: the limit of " + name_of(what) + ' ' +
-           kind_.finer + " is known only to +- " + limit + asked;
+    return "uncertainty is the reason: the limit of " + name_of(what) +
+           (q_.from_files() ? " by smaller steps" : " on finer grids") +
+           " is known only to +- " + limit;
   return "the error of " + name_of(what) + ' ' + finest() + " is " +
-         with_unit(grids().back().error, what) + " +- " + limit + asked;
+         with_unit(grids().back().error, what) + " +- " + limit;
 }
 
 std::string GridStudy::over_budget(double work) const {
-  const double more =
-      std::max(2 * q_.pilots.budget(), q_.pilots.spent() + 3 * work);
   return "the budget ended" +
          (grids().empty() ? std::string(" before the first grid")
                           : ": " + so_far()) +
-         "; --advise-work " + CME212::two_digits(more) + " would continue" +
+         way_out(work) +
          (grids().size() < 3 ? "" : converging_slowly(q_.scene));
 }
 
+std::string GridStudy::way_out(double work) const {
+  auto budget = [&](double work) {  // that of a run, and of all others
+    return "; --advise-work " +
+           CME212::two_digits(
+               std::max(2 * q_.pilots.budget(), q_.pilots.spent() + 4 * work));
+  };
+  if (!are_enough()) return budget(work) + " would continue";
+  const GridReport& last = grids().back();
+  const double u = grids().uncertainty(),
+               reached = std::max(u / most_uncertain,
+                                  grids()[grids().size() - 3].error +
+                                      q_.rules.counted_share * u),
+               finer = std::pow(std::max(1.5, reached / tolerance()),
+                                1 / grids().order());
+  return "; --tolerance " + CME212::two_digits(1.1 * reached) +
+         " can be reached" +
+         (!q_.from_files() && double(last.nodes) * finer * finer > 1e6
+              ? "; for this one no grid of up to 1e6 nodes is enough"
+              : budget(last.work * std::pow(finer, power_of_work())) +
+                    " should reach this one");
+}
+
 Answer GridStudy::answer_at_start() const {
-  const Model& m = runs_.back().model;
+  const Model& m = grids().back().model;
   const Scene start(m);
   return Observer(m, start).answer(m, start);
 }
@@ -203,10 +229,12 @@ bool GridStudy::know_tolerance() {
 
 std::string GridStudy::trivial() const {
   const Measure& what = q_.scene.measure;
-  if (what.quantity == Measure::energy && q_.scene.conserves_energy())
+  if ((what.quantity == Measure::energy ||
+       what.quantity == Measure::lost_energy) &&
+      q_.scene.conserves_energy())
     return "nothing changes the energy of this scene: any grid and any step "
            "keeps its initial value";
-  if (runs_.empty() || grids().limit().empty()) return "";
+  if (grids().empty() || grids().limit().empty()) return "";
   const Answer at_start = answer_at_start();
   if (at_start.empty()) return "";
   const double change = distance_of(at_start, grids().limit());
@@ -216,50 +244,29 @@ std::string GridStudy::trivial() const {
          "is an answer";
 }
 
-std::optional<GridStudy::Grid> GridStudy::that_meets(const Sides& s,
-                                                     double most_work,
-                                                     double& work) {
-  try {
-    double finest = 1e-9;
-    for (const auto& sheet : s) finest = std::max({finest, sheet[0], sheet[1]});
-    const Model m = pilot(on_grid(s), finest);
-    work = work_of_run(m);
-    if (!(work < most_work) || !q_.pilots.affords(work, "coarser grids", 0.3))
-      return {};
-    const Trial t =
-        q_.pilots.run(m, std::to_string(nodes_of(m)) + " nodes", work);
-    if (!accepts(error_of(t))) return {};
-    return Grid{s, Effect(t.answer, grids().limit())};
-  } catch (const SceneError&) {  // its nodes miss a pin
-    return {};
-  }
-}
-
 std::optional<AdvisedRun> GridStudy::foresee() const {
   if (!knows_limit()) return {};
   // Pilots tell nothing of another method or of a step that was asked for.
   if (q_.rules.keeps_step ||
       (q_.rules.keeps_method && q_.scene.method != pilot_.method))
     return {};
-  for (int level = runs_[0].level; level < level_ + 12; ++level) {
-    AdvisedRun r{.model = on_level(level)};
+  for (int level = grids()[0].level; level < level_ + 12; ++level) {
+    AdvisedRun r{.model = pilot(on_level(level), factor(level))};
     if (double(nodes_of(r.model)) > most_nodes_) return {};
-    try {
-      r.model = pilot(r.model, factor(level));
-      r.model.step = {.dt = step_of(r.model)};
-    } catch (const SceneError&) {
-      continue;  // a pin holds no node
-    }
-    r.error = size_of(grids().error(factor_of(r.model)));
+    if (!costs_of(r.model)) continue;
+    r.model.step = {.dt = step_of(r.model)};
+    r.error = size_of(grids().error(q_.from_files()
+                                        ? grids()[0].trial.dt / r.model.step.dt
+                                        : factor(level)));
     r.uncertainty = grids().uncertainty() + scatter_share * q_.advice.scatter;
     if (!(r.error + r.uncertainty <= tolerance())) continue;
     r.work = work_of_run(r.model);
     // A step on a mesh from files was run, maybe with half of it.
-    for (std::size_t k = 0; k < runs_.size() && r.model.sheets.empty(); ++k) {
+    for (std::size_t k = 0; k < grids().size() && q_.from_files(); ++k) {
       const Trial& t = grids()[k].trial;
-      if (runs_[k].level == level)
+      if (grids()[k].level == level)
         r.answer = t.answer, r.seconds = t.seconds, r.checked = true;
-      if (runs_[k].level == level + 2 && r.checked)
+      if (grids()[k].level == level + 2 && r.checked)
         r.half_step = grids()[k].error;
     }
     return r;

@@ -1,17 +1,17 @@
 #pragma once
 /** @file Grids.hpp
  * GridStudy: the answer of a scene on ever finer grids; its limit, and how
- * uncertain that is; and whether the motion is chaotic. SheetGrids refines the
- * sheets, MeshSteps the steps on a mesh from files. */
+ * uncertain that is; whether the motion is chaotic; and which grids meet the
+ * tolerance. A mesh from files is never refined: its "grids" are runs by
+ * smaller steps, and its own error is unknown. */
+#include <algorithm>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lab/advice/Advise.hpp"
 #include "lab/advice/Variation.hpp"
-#include "lab/stepping/Separation.hpp"
 
 namespace lab {
 
@@ -22,8 +22,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double scatter_share = 1.5;
 
 std::size_t nodes_of(const Model& m);
-/** Every quantity of a cloth of @a m; empty where it has none. */
-std::vector<Answer> all_answers(const Model& m, const Cloth& g);
 
 /** The scene, and all that its studies share. */
 struct Question {
@@ -33,36 +31,23 @@ struct Question {
   Pilots pilots;
   Advice advice;  ///< each study writes its own part
 
-  /** Throws SceneError if @a m can't answer its question. */
-  Question(const Model& m, const AdviceRules& rules);
+  /** @param runs of the scene that the budget allows, if it is not given
+   * Throws SceneError if @a m can't answer its question. */
+  Question(const Model& m, const AdviceRules& rules, double runs);
+  bool from_files() const { return scene.sheets.empty(); }
 };
 
 class GridStudy {
  public:
-  /** All results of a run on a grid. */
-  struct Run {
-    int level;
-    Model model;
-    double work = 0;
-    std::vector<Answer> all = {};  // for every Measure
-    Track track;
-  };
   /** A grid that may be chosen. */
   struct Grid {
-    Sides sides;
-    Effect off;  // the error by its pilot
+    Sides sides;  // none: of a mesh from files
+    Effect off;   // the error by its pilot
+    double work;  // of that
     int level = 0;
   };
-  /** The differences between sheets and a mesh from files. */
-  struct Kind {
-    std::size_t fewest;  ///< grids that tell an error
-    double power;        ///< work increases so with the factor
-    double runs;         ///< the budget is at least so many pilots
-    bool chaos_first;    ///< before parts are tried: each run is long
-    const char *grid, *finer_grid, *finer, *on;  ///< words
-  };
 
-  virtual ~GridStudy() = default;
+  explicit GridStudy(Question& q);
 
   /** Run the next grid. Grids that miss a pin are skipped, those that are too
    * coarse to carry the load are forgotten.
@@ -71,10 +56,7 @@ class GridStudy {
 
   // After a run, of the limit of the grids:
 
-  const Kind& kind() const { return kind_; }
   const Refinement& grids() const { return q_.advice.grids; }
-  /** The runs on these grids, the coarsest first. */
-  const std::vector<Run>& runs() const { return runs_; }
   /** In the unit of the measure; 0 if it is a share of 0. */
   double tolerance() const { return q_.advice.tolerance; }
   double size_of(const Effect& e) const { return e.size(q_.scene.measure); }
@@ -91,21 +73,24 @@ class GridStudy {
   bool accepts(double error) const {
     return accepts(error, grids().uncertainty());
   }
+  /** A finer grid is not needed to know the limit. */
   bool is_certain() const {
-    return grids().uncertainty() <= q_.rules.most_uncertainty * tolerance();
+    return grids().uncertainty() <= 0.25 * tolerance();
   }
+  /** Nothing can be advised. */
   bool too_uncertain() const {
-    return grids().uncertainty() > q_.rules.most_uncertain * tolerance();
+    return grids().uncertainty() > most_uncertain * tolerance();
   }
-  /** True if enough grids were run to know the limit well enough. */
-  bool knows_limit() const {
-    return grids().size() >= kind_.fewest && !too_uncertain();
+  /** Enough grids tell an error; two more, whether there is any hope. */
+  bool are_enough(std::size_t more = 0) const {
+    return grids().size() >= fewest() + more;
   }
+  bool knows_limit() const { return are_enough() && !too_uncertain(); }
   /** Not empty, with the reason, if the budget is too small to know it. */
   std::string hopeless() const;
   /** False if a finer grid can't lead to a choice, or, if one was @a found, to
    * a cheaper one. */
-  virtual bool may_go_on(bool found) const = 0;
+  bool may_go_on(bool found) const;
   /** The budget ended: all parts, by the pilots' method, on the coarsest grid
    * that is predicted to meet the tolerance; on a mesh from files by the
    * largest step that does. */
@@ -116,32 +101,21 @@ class GridStudy {
   // Texts for progress and refusals.
   std::string so_far() const;
   std::string over_budget(double work) const;
+  /** The tolerance that can be reached, and the budget that the one asked for
+   * needs if the observed order goes on; or a run of @a work. */
+  std::string way_out(double work) const;
 
-  // Grids that may be chosen:
+  // Levels.cpp: grids that may be chosen
 
-  /** 1, 1.5, 2, 3, 4, 6 ..., and down from 1: steps over those of
-   * the first level; sheets take cells from it. */
-  static double power(int level);
-  /** The cells of a level, over those of the scene. */
-  virtual Sides sides_of(int /*level*/) const { return {}; }
-  virtual double factor(int level) const { return power(level); }
   Model on_grid(const Sides& s) const { return refined(q_.scene, s); }
-  Model on_level(int level) const { return on_grid(sides_of(level)); }
-  /** @a m as pilots run it: by Verlet; or, where its limit makes a grid of few
-   * cells cost more than rules.stiff, by a multirate or an implicit method if
-   * that takes less than half of the work. Steps shrink with the cells. */
-  Model pilot(Model m, double factor) const;
-  /** Cells along a side of @a m over those of the scene, in the mean; of a mesh
-   * from files, the first step over that of @a m. */
-  virtual double factor_of(const Model& m) const = 0;
   /** The levels that meet the tolerance by pilots, and on twice the cells. */
-  virtual std::vector<Grid> starts() const = 0;
+  std::vector<Grid> starts() const;
   /** Grids that meet the tolerance by pilots and cost at most as much as that
    * of @a start, itself one of them: of fewer cells along one side.
    * Cost: about a run for each level and side */
-  virtual std::vector<Grid> frontier(const Grid& start) = 0;
+  std::vector<Grid> frontier(const Grid& start);
 
-  // Chaos.cpp
+  // Refusals.cpp: chaos, and notes
 
   /** The perturbation of a start: within the plane in which the cloth moves, if
    * there is one. */
@@ -151,45 +125,77 @@ class GridStudy {
    * time, the positions.
    * @return the reason if this or @a scatter, that of the advised run, exceeds
    *         half of the tolerance: then the motion is chaotic; else empty */
-  std::string find_chaos(double scatter);
+  std::string find_chaos(double scatter = 0);
   /** Tell what square cells would change on the finest grid. */
   void try_squares();
 
- protected:
-  GridStudy(Question& q, const Kind& kind);
-  /** @param some level of a grid of some 8 cells along the shortest side, or of
-   *        the only mesh
-   * @return false if a pin misses that grid */
-  bool choose_pilots(int some);
+ private:
+  static constexpr double most_uncertain = 0.6;  // share of the tolerance
 
   Question& q_;
   double most_nodes_;
-  int level_ = 0;  // of the next grid
+  double shortest_ = infinite;  // cells along the shortest side of the scene
+  std::vector<Sides> levels_;   // the coarsest first; none: a mesh from files
+  int level_ = 0;               // of the next grid
   struct {
     const MethodEntry* method;
     TimeStep step;  // on level 0
   } pilot_;
-  /** This grid with the error by its pilot, if that meets the tolerance and
-   * takes less than @a most_work.  @param work is set if the grid is valid */
-  std::optional<Grid> that_meets(const Sides& s, double most_work,
-                                 double& work);
-  /** Where the last error is, in words. */
-  virtual std::string finest() const = 0;
-
- private:
-  Kind kind_;
   int invalid_ = 0;  // grids without a scene, one after another
-  std::vector<Run> runs_;
   Shake shake_ = {1e-6};
 
+  std::size_t fewest() const { return q_.from_files() ? 3 : 5; }
+  /** The work increases so with the factor of a grid. */
+  double power_of_work() const { return q_.from_files() ? 1 : 3; }
+
+  /** Of about 8 cells along the shortest side, or of the only mesh. */
+  int some_level() const {
+    return std::max(0, std::min(3, int(levels_.size()) - 1));
+  }
+  void choose_pilots();
+  /** @a m as pilots run it: by Verlet; or, where its limit makes a grid of few
+   * cells cost too much, by a multirate or an implicit method if that takes
+   * less than half of the work. Steps shrink with the cells. */
+  Model pilot(Model m, double factor) const;
+  std::string finest() const;
   bool know_tolerance();
   Answer answer_at_start() const;
+
+  void make_levels(double cells);
+  /** The cells of a level over those of the scene. */
+  Sides sides_of(int level) const;
+  Model on_level(int level) const { return on_grid(sides_of(level)); }
+  /** Cells along a side of @a m over those of the scene, in the mean. */
+  double more_cells(const Model& m) const;
+  /** That of a level; of a mesh from files, the first step over its step. */
+  double factor(int level) const;
+  int lowest(unsigned side) const;
+  std::optional<Grid> that_meets(const Sides& s, double most_work);
+  void thin(Grid grid, std::vector<Grid>& all);
+
   void find_plane(const Cloth& g);
-  void find_buckling(const Run& run, const Answer& plane);
-  std::string same_until(const Separation& apart) const;
+  void find_buckling(const GridReport& run);
 };
 
-/** The study of a scene: of its sheets or its mesh. */
-std::unique_ptr<GridStudy> study_grids(Question& q);
+// Refusals.cpp: their causes, and what can be answered instead
+
+/** Why the answer of @a m has no limit on finer grids, and what to ask instead;
+ * empty if no reason is known.  Throws InputError, SceneError */
+std::string diverging(const Model& m);
+
+/** Why the answers of @a m converge slowly, and which pins would be better: the
+ * end of a sentence, or empty.  Throws InputError, SceneError */
+std::string converging_slowly(const Model& m);
+
+/** Every quantity of a cloth of @a m; empty where it has none. */
+std::vector<Answer> all_answers(const Model& m, const Cloth& g);
+
+/** Questions that can be answered at the end of @a m although its motion is
+ * chaotic: the measures that are known to a tenth of the size of the cloth or
+ * better, or what to change if there are none.
+ * @param answers,shaken by Measure, of a run and of one from a perturbed start;
+ *        an empty one: unknown */
+std::string offers(const Model& m, const std::vector<Answer>& answers,
+                   const std::vector<Answer>& shaken);
 
 }  // namespace lab

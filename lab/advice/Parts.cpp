@@ -9,11 +9,10 @@
 namespace lab {
 
 void PartStudy::study(std::size_t k) {
-  const GridStudy::Run& run = grids_.runs()[k];
-  const GridReport& grid = grids_.grids()[k];
-  level_ = run.level, q_.advice.tried_on = grid.nodes;
-  try_each(run, grid.trial);
-  combine(run, grid.trial);
+  const GridReport& run = grids_.grids()[k];
+  level_ = run.level, q_.advice.tried_on = run.nodes;
+  try_each(run);
+  combine(run);
   find_rest(run);
 }
 
@@ -29,7 +28,7 @@ double PartStudy::change(const Trial& without, const Trial& whole) const {
   return most;
 }
 
-void PartStudy::try_each(const GridStudy::Run& run, const Trial& whole) {
+void PartStudy::try_each(const GridReport& run) {
   const StepCosts all(run.model);
   auto& parts = q_.advice.parts;
   parts.clear();
@@ -42,20 +41,20 @@ void PartStudy::try_each(const GridStudy::Run& run, const Trial& whole) {
       if (const Trial t =
               q_.pilots.run(v.model, "without " + v.part, run.work, {v.part});
           t.ok())
-        r.change = change(t, whole);
+        r.change = change(t, run.trial);
     parts.push_back(r);
   }
 }
 
-void PartStudy::combine(const GridStudy::Run& run, const Trial& whole) {
+void PartStudy::combine(const GridReport& run) {
   std::vector<PartReport> order = q_.advice.parts;
   // Parts that save work come before the others.
   std::ranges::stable_sort(order, {}, [](const PartReport& p) {
     const bool saves = p.springs > 0 || p.step > 1.2;
     return std::tuple(p.change > 0, !saves, p.change);
   });
-  const double room = q_.rules.for_parts * grids_.tolerance();
-  reductions_ = {{{}, Effect(whole.answer.size())}};
+  const double room = 0.7 * grids_.tolerance();
+  reductions_ = {{{}, Effect(run.trial.answer.size())}};
   for (const PartReport& part : order) {
     if (!(part.change <= room)) continue;
     std::vector<std::string> removed = reductions_.back().removed;
@@ -66,8 +65,8 @@ void PartStudy::combine(const GridStudy::Run& run, const Trial& whole) {
     const Trial t =
         q_.pilots.run(*without, "without " + part.part, run.work, removed);
     if (!t.ok()) continue;
-    const Effect effect(t.answer, whole.answer);
-    if (!(change(t, whole) <= room)) continue;
+    const Effect effect(t.answer, run.trial.answer);
+    if (!(change(t, run.trial) <= room)) continue;
     // Parts that change nothing need no choice of their own.
     if (grids_.distance_of(effect.by, reductions_.back().effect.by) <=
         1e-3 * grids_.tolerance())
@@ -83,7 +82,7 @@ bool PartStudy::dissipates(const Model& m) {
          std::ranges::any_of(m.spheres, rubs);
 }
 
-void PartStudy::find_rest(const GridStudy::Run& run) {
+void PartStudy::find_rest(const GridReport& run) {
   constexpr int looks = 64;  // samples of the answer at equal intervals
   const Model& m = run.model;
   rest_time_ = m.t_end;

@@ -49,9 +49,9 @@ class PartStudy {
   std::vector<Reduction> reductions_ = {{}};
   double rest_time_;
 
-  void try_each(const GridStudy::Run& run, const Trial& whole);
-  void combine(const GridStudy::Run& run, const Trial& whole);
-  void find_rest(const GridStudy::Run& run);
+  void try_each(const GridReport& run);
+  void combine(const GridReport& run);
+  void find_rest(const GridReport& run);
 };
 
 }  // namespace lab

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
 #include "lab/advice/Variation.hpp"
@@ -31,45 +30,53 @@ StepCosts::StepCosts(const Model& m) {
   if (!split.empty()) inner_ = split.inner_step();
 }
 
-double StepCosts::of_step(const MethodEntry& method, double dt,
-                          double finer) const {
-  const MethodInfo& info = method.info;
-  const double springs = springs_ * finer * finer;
-  if (info.multirate) {
-    if (stiff_ == 0) return springs;
-    const double stiff = stiff_ * finer * finer;
-    return springs + cost_of_filter(stiff) +
-           std::ceil(dt * finer / inner_) * cost_of_inner_step(stiff);
-  }
-  return springs * work_of_step(info, dt * finer / verlet_, side_ * finer);
-}
-
 double StepCosts::limit(const MethodInfo& method) const {
   return method.multirate               ? multirate_
          : !std::isnormal(method.limit) ? no_limit  // 0: no step is stable
                                         : verlet_ * method.limit / 2;
 }
 
-double StepCosts::step(const Model& m) const {
-  if (m.step.fixed()) return m.step.dt;
-  const double own = limit(m.method->info);
-  return (m.step.rule == StepRule::safe ? safe_share : sharp_share) *
-         (own == no_limit ? verlet_ : own);
+double StepCosts::of_stable(const Model& m) const {
+  const double largest = limit(m.method->info);
+  return largest == no_limit ? 0 : m.step.dt / largest;
 }
 
 double StepCosts::of_run(const Model& m) const {
-  const double dt = step(m);
-  return std::isfinite(dt) && dt > 0
-             ? of_step(*m.method, dt) * std::ceil(m.t_end / dt)
-             : no_limit;
+  const MethodInfo& info = m.method->info;
+  const double own = limit(info),
+               share = m.step.rule == StepRule::safe ? safe_share : sharp_share,
+               dt = m.step.fixed() ? m.step.dt
+                                   : share * (own == no_limit ? verlet_ : own);
+  if (!(std::isfinite(dt) && dt > 0)) return no_limit;
+  double a_step = springs_;
+  if (!info.multirate)
+    a_step *= work_of_step(info, dt / verlet_, side_);
+  else if (stiff_ > 0)
+    a_step += cost_of_filter(stiff_) +
+              std::ceil(dt / inner_) * cost_of_inner_step(stiff_);
+  return a_step * std::ceil(m.t_end / dt);
 }
 
 double work_of_run(const Model& m) { return StepCosts(m).of_run(m); }
 
+std::optional<StepCosts> costs_of(const Model& m, std::string* why) {
+  try {
+    return StepCosts(m);
+  } catch (const SceneError& e) {
+    if (why) *why = e.what();
+    return {};
+  }
+}
+
+namespace {
+void add_once(std::vector<std::string>& all, const std::string& text) {
+  if (std::ranges::find(all, text) == all.end()) all.push_back(text);
+}
+}  // namespace
+
 bool Pilots::affords(double work, const std::string& what, double share) {
   const bool fits = work <= share * left();
-  if (!fits && std::ranges::find(left_out_, what) == left_out_.end())
-    left_out_.push_back(what);
+  if (!fits) add_once(left_out_, what);
   return fits;
 }
 
@@ -77,23 +84,25 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
                   const std::vector<std::string>& removed, const Shake& shake,
                   const std::function<void(const Cloth&)>& look,
                   const std::function<void(Scene&)>& after) {
-  Key key{{},
-          {},
-          m.method,
-          {m.step.rule, m.step.dt, m.step.gain, m.step.tolerance},
-          m.t_end};
-  for (const Sheet& s : m.sheets) key.grid.push_back(s.nodes);
+  const auto& [dt, rule, gain, tolerance] = m.step;
+  Key key{{}, {}, m.method, rule, dt, gain, tolerance, m.t_end};
+  for (const Sheet& s : m.sheets) get<0>(key).push_back(s.nodes);
   for (const std::string& part : removed)
-    if (!goes_with_another(part, removed)) key.removed.push_back(part);
-  std::ranges::sort(key.removed);
+    if (!goes_with_another(part, removed)) get<1>(key).push_back(part);
+  std::ranges::sort(get<1>(key));
   const bool keeps = shake.size == 0 && (look || !after);
-  const auto known = std::ranges::find(done_, key, &Done::first);
+  const auto known =
+      std::ranges::find(done_, key, &std::pair<Key, Trial>::first);
   if (keeps && !look && known != done_.end()) return known->second;
   const double before = spent_;
   spent_ += work;
   const std::string text = known_.empty() ? doing : doing + "; " + known_;
   int steps = 0;
   Trial t;
+  auto is_impossible = [&](const std::exception& e) {
+    t.failure = e.what();
+    add_once(impossible_, t.failure);
+  };
   try {
     t = try_out(
         m, shake, look ? look : [](const Cloth&) {},
@@ -104,11 +113,9 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
                                           budget_));
         });
   } catch (const SceneError& e) {
-    t.failure = e.what();
-  } catch (const StepError& e) {
-    t.failure = e.what();
-  } catch (const std::invalid_argument& e) {  // the method, for these forces
-    t.failure = e.what();
+    is_impossible(e);
+  } catch (const std::invalid_argument& e) {
+    is_impossible(e);
   }
   if (keeps) done_.emplace_back(key, t);
   return t;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -27,12 +28,10 @@ class StepCosts {
   double verlet() const { return verlet_; }
   /** The largest stable step [s] of a method; no_limit if it has none. */
   double limit(const MethodInfo& method) const;
-  /** Work of a step of @a dt [s] by @a method, on a grid of @a finer times the
-   * cells along each side. */
-  double of_step(const MethodEntry& method, double dt, double finer = 1) const;
-  /** The step [s] of @a m on this grid, and the work of a whole run; no_limit
-   * if no step is given and none is stable. */
-  double step(const Model& m) const;
+  /** The step of @a m over the largest stable one; 0 if there is none. */
+  double of_stable(const Model& m) const;
+  /** The work of a run of @a m on this grid, predicted without running it;
+   * no_limit if no step is given and none is stable. */
   double of_run(const Model& m) const;
   /** Force evaluations that take @a work. */
   double evaluations(double work) const {
@@ -44,9 +43,13 @@ class StepCosts {
   double stiff_ = 0, inner_ = no_limit;  // stiff springs; inner step [s]
 };
 
-/** The spring evaluations of a run of @a m, predicted without running it.
- * Throws as StepCosts */
+/** StepCosts::of_run() of @a m.  Throws as StepCosts */
 double work_of_run(const Model& m);
+
+/** The costs of @a m; nothing if it is no scene: some pins lie between the
+ * nodes of its grid, or nodes are nearer than the thickness of self-collision.
+ * @param why is then set to the reason, unless it is null */
+std::optional<StepCosts> costs_of(const Model& m, std::string* why = nullptr);
 
 /** Makes trial runs of one scene within a budget, and adds up their work. */
 class Pilots {
@@ -73,12 +76,14 @@ class Pilots {
   bool affords(double work, const std::string& what, double share = 1);
   /** Each thing once. */
   const std::vector<std::string>& left_out() const { return left_out_; }
+  /** Why runs could not be made, each reason once. */
+  const std::vector<std::string>& impossible() const { return impossible_; }
   /** Results so far: reported with each run. */
   void knows(const std::string& so_far) { known_ = so_far; }
 
-  /** Run @a m, or return its earlier result. A scene that is not valid, a
-   * method that can't use its forces and a step that can't be made count as
-   * failed, like a run that diverges.
+  /** Run @a m, or return its earlier result. If without a part the question has
+   * no answer, or the method can't use the forces, the run has failed, and
+   * impossible() says why.
    * @param doing description for progress   @param work added to spent()
    * @param removed parts that @a m lacks
    * @param look, after as for try_out(): with them earlier results are not
@@ -91,22 +96,18 @@ class Pilots {
             const std::function<void(Scene&)>& after = nullptr);
 
  private:
-  /** Two runs of a scene differ in this, or in nothing. */
-  struct Key {
-    std::vector<std::array<unsigned, 2>> grid;  // nodes of each sheet
-    std::vector<std::string> removed;           // sorted
-    const MethodEntry* method;
-    std::tuple<StepRule, double, double, double> step;  // all of a TimeStep
-    double t_end;
-    bool operator==(const Key&) const = default;
-  };
-  using Done = std::pair<Key, Trial>;
+  /** Two runs of a scene differ in this, or in nothing: the nodes of each
+   * sheet, the removed parts, sorted, the method, all of its step, and t_end.
+   */
+  using Key =
+      std::tuple<std::vector<std::array<unsigned, 2>>, std::vector<std::string>,
+                 const MethodEntry*, StepRule, double, double, double, double>;
 
   bool fixed_;
   double budget_, spent_ = 0;
-  std::vector<std::string> left_out_;
+  std::vector<std::string> left_out_, impossible_;
   std::string known_;
-  std::vector<Done> done_;
+  std::vector<std::pair<Key, Trial>> done_;
   Tell tell_;
 };
 

@@ -3,9 +3,11 @@
  * Refinement: estimates the error of each of several grids of one scene. */
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "lab/stepping/Separation.hpp"
 #include "lab/stepping/Trial.hpp"
 
 namespace lab {
@@ -26,14 +28,19 @@ struct Effect {
   }
 };
 
-/** A run on a grid. */
+/** A run on a grid, with all parts. */
 struct GridReport {
+  int level = 0;  ///< of its grid
+  Model model = {};
   double factor = 1;  ///< cells along each side / those of the scene
   std::size_t nodes = 0;
   /** The estimated error of the answer; infinite: unknown. */
   double error = std::numeric_limits<double>::infinity();
-  Trial trial;             ///< with all parts
+  Trial trial = {};
+  double work = 0;         ///< predicted, in spring evaluations
   double evaluations = 0;  ///< of the forces; solves are counted by their cost
+  std::vector<Answer> all = {};  ///< by Measure; empty where it has none
+  std::optional<Track> track = {};
 };
 
 /** Runs of a scene on grids of ever more cells, with steps that shrink with the
@@ -51,7 +58,7 @@ class Refinement {
 
   /** Add a run and update all errors: from three grids on they are known.
    * @pre next.factor > back().factor */
-  void add(const GridReport& next);
+  void add(GridReport next);
   void clear() { grids_.clear(); }
   std::size_t size() const { return grids_.size(); }
   bool empty() const { return grids_.empty(); }
@@ -73,8 +80,9 @@ class Refinement {
   /** The uncertainty of limit() at a confidence of 95 %: a fifth of the error
    * of the finest grid, the standard deviation of the fit, and the change of
    * the limit if the finest or the coarsest grid of the fit is left out; the
-   * first two 1.5 times if the order is not believed. Of three grids, which
-   * have no deviation, three times the error. */
+   * first two 1.5 times if the order is not believed; and then, if a fit of
+   * a lower order has half the deviation, how far its limit is. Of three grids,
+   * which have no deviation, three times the error. */
   double uncertainty() const { return uncertainty_; }
   /** The change of the limit in it. */
   double change_of_limit() const { return moves_; }
@@ -84,7 +92,8 @@ class Refinement {
 
  private:
   struct Fit {
-    Answer limit, slope;  // slope: the error at the smallest h
+    Answer limit, slower;  // slower: by a low order that fits better
+    Answer slope;          // the error at the smallest h
     double order = 1, deviation = 0;
     bool believed = false;
   };

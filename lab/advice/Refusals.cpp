@@ -1,10 +1,9 @@
-#include "lab/advice/Refusals.hpp"
-
 #include <algorithm>
+#include <cmath>
 
 #include "CME212/BoundingBox.hpp"
 #include "CME212/Util.hpp"
-#include "lab/advice/Advice.hpp"
+#include "lab/advice/Grids.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/scenes/Compose.hpp"
 
@@ -32,6 +31,15 @@ std::string diverging(const Model& m) {
          "drape-height";
 }
 
+std::vector<Answer> all_answers(const Model& m, const Cloth& g) {
+  std::vector<Answer> all;
+  for (int k = 0; k < Measure::lost_energy; ++k) {
+    const Measure what = Measure::Quantity(k);
+    all.push_back(can_answer(m, what) ? answer(m, g, what) : Answer());
+  }
+  return all;
+}
+
 std::string offers(const Model& m, const std::vector<Answer>& answers,
                    const std::vector<Answer>& shaken) {
   Cloth g;
@@ -57,6 +65,102 @@ std::string offers(const Model& m, const std::vector<Answer>& answers,
              ? "no other measure is more predictable: ask at an earlier --t-end"
              : "what can be answered: " + all +
                    "; or the same at an earlier --t-end";
+}
+
+/** Let shake_ move no node along an axis along which none has moved until the
+ * end, @a g: a motion that is symmetric stays so. */
+void GridStudy::find_plane(const Cloth& g) {
+  for (unsigned k = 0; k < 3; ++k)
+    shake_.along[k] = std::ranges::any_of(g.nodes(), [&, k](Node n) {
+      return n.position()[k] != g.node(0).position()[k] ||
+             n.value().vel[k] != 0;
+    });
+}
+
+std::string GridStudy::find_chaos(double scatter) {
+  std::size_t k = grids().size() - 1;
+  while (k > 0 && grids()[k].factor > 0.55 * grids().back().factor) --k;
+  const GridReport& run = grids()[k];
+  const Measure& what = q_.scene.measure;
+  std::vector<Answer> shaken;
+  Track track = run.track->beside();
+  if (q_.pilots.affords(run.work, "perturbed starts")) {
+    const Trial t = q_.pilots.run(
+        run.model, "a perturbed start", run.work, {}, shake_,
+        [&](const Cloth& g) { shaken = all_answers(run.model, g); },
+        [&](Scene& scene) { track.look(scene); });
+    if (!t.ok()) return t.failure;
+    ++q_.advice.perturbed;
+    scatter = std::max(scatter, distance_of(run.trial.answer, t.answer));
+  }
+  q_.advice.scatter = scatter;
+  if (scatter <= tolerance() / 2) {
+    find_buckling(run);
+    return "";
+  }
+  std::string text =
+      // Less than ten times the shake is not chaos, but the shake itself.
+      (scatter > 10 * shake_.size ? "the motion is chaotic: "
+                                  : "the tolerance is too small: ") +
+      ("runs that should agree, with the start moved by 1e-6 m or with a "
+       "slightly shorter step, differ by " +
+       with_unit(scatter, what)) +
+      ", so no grid and no step can meet the tolerance; " +
+      offers(run.model, run.all, shaken);
+  // A measure in meters changes at most by as much as positions do.
+  const double until = Separation(*run.track, track).horizon(tolerance() / 2);
+  if (unit_of(what) == std::string("m") && until > 0 && until < q_.scene.t_end)
+    text += ", of up to " + CME212::short_text(until) + " s";
+  return text;
+}
+
+/** Tell if a cloth that moves in a plane in @a run would buckle. */
+void GridStudy::find_buckling(const GridReport& run) {
+  const auto along = std::ranges::find(shake_.along, false);
+  if (along == shake_.along.end() ||
+      !q_.pilots.affords(run.work, "a start moved out of its plane", 0.3))
+    return;
+  const Trial t =
+      q_.pilots.run(run.model, "out of its plane", run.work, {}, {shake_.size});
+  const double off =
+      t.ok() ? distance_of(t.answer, run.trial.answer) : infinite;
+  if (off > tolerance() / 2)
+    q_.advice.buckles = std::string("no node ever leaves its plane along ") +
+                        "xyz"[along - shake_.along.begin()] +
+                        ", but the cloth buckles: " +
+                        (t.ok() ? name_of(q_.scene.measure) + " changes by " +
+                                      with_unit(off, q_.scene.measure)
+                                : t.failure) +
+                        " if its start is moved out of that plane by 1e-6 m";
+}
+
+void GridStudy::try_squares() {
+  const GridReport& finest = grids().back();
+  const double f = factor(finest.level);
+  Sides s = sides_of(finest.level);
+  double longest = 1;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const Sheet& sheet = q_.scene.sheets[k];
+    const double ratio = norm(sheet.u) / (sheet.nodes[0] - 1.) /
+                         (norm(sheet.v) / (sheet.nodes[1] - 1.));
+    s[k] = {f * std::sqrt(ratio), f / std::sqrt(ratio)};
+    for (unsigned along : {0, 1})  // a grid has at least 2 cells
+      if ((sheet.nodes[along] - 1) * s[k][along] < 1.5) return;
+    longest = std::max({longest, ratio, 1 / ratio});
+  }
+  if (!(longest > 1.2) ||
+      !q_.pilots.affords(longest * finest.work, "square cells", 0.5))
+    return;
+  const Model m = pilot(on_grid(s), f * std::sqrt(longest));
+  const auto costs = costs_of(m);
+  if (!costs) return;
+  const Trial t = q_.pilots.run(m, "on square cells", costs->of_run(m));
+  const double off = t.ok() ? distance_of(t.answer, finest.trial.answer) : 0;
+  if (off > tolerance() / 2)
+    q_.advice.oblong =
+        "springs along oblong cells are another material: on square cells " +
+        name_of(q_.scene.measure) + " changes by " +
+        with_unit(off, q_.scene.measure);
 }
 
 }  // namespace lab

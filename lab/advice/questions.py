@@ -1,19 +1,21 @@
 """Random scenes, each with a question: what suite.py asks --advise.
 
-draw(seed) is the same on every machine. The seeds take the 15 kinds in turn;
-units as in ./cloth --help."""
+draw(seed) is the same on every machine. The seeds take the kinds in turn;
+seed -k is line k of by_hand.txt. Units as in ./cloth --help."""
 import math
+import pathlib
 import random
+import re
+import shlex
 from collections.abc import Sequence
 from typing import TypeVar
 
 KINDS = ("three-pins", "banner", "late-ball", "strip", "two-materials",
          "damped", "undamped", "incline", "two-sheets", "thrown", "taut",
-         "tearing", "landing", "L-mesh", "ring-mesh")
+         "tearing", "landing", "damped", "incline")
 
 T = TypeVar("T")
 Vector = tuple[float, float, float]
-Mesh = tuple[list[Vector], list[tuple[int, ...]]]   # points, quads
 Cells = Sequence[Sequence[int]]     # of each sheet, along u and v
 
 
@@ -31,20 +33,18 @@ class Dice(random.Random):
 
 
 class Scene:
-    """A scene; cells: of each sheet along u and v, as the question has them.
-
-    A cloth from files has no sheets, but a mesh."""
+    """A scene; cells: of each sheet along u and v, as the question has them."""
 
     def __init__(self, kind: str):
         self.kind = kind
         self.sheets: list[str] = []
         self.sides: list[tuple[float, float]] = []
         self.cells: list[tuple[int, int]] = []
-        self.mesh: Mesh | None = None
         self.args: list[str] = []
         self.t_end: float = 0
         self.measure = "com"
         self.share: float = 0  # tolerance in shares of the answer's scale
+        self.tolerance = ""    # or as it is
 
     def sheet(self, dice: Dice, u: Vector, v: Vector, at: Vector = (0, 0, 0),
               velocity: Vector | None = None) -> None:
@@ -70,53 +70,38 @@ class Scene:
 
     def grid(self, cells: Cells | None = None) -> list[str]:
         """Arguments that name the cloth, on other grids if given."""
-        if self.mesh:
-            return ["mesh.nodes", "mesh.tets"]
         return [arg for words, (n, m) in zip(self.sheets, cells or self.cells)
                 for arg in ("--sheet", f"{words} nodes {n + 1} {m + 1}")]
 
-    def files(self) -> dict[str, str]:
-        """The mesh, as files: name, text."""
-        if not self.mesh:
-            return {}
-        points, quads = self.mesh
-        return {"mesh.nodes": "".join("%.8g %.8g %.8g\n" % p for p in points),
-                "mesh.tets": "".join("%d %d %d %d\n" % q for q in quads)}
+
+def by_hand(line: str) -> Scene:
+    """Sheets, each of sides u and v, then other options."""
+    s, words = Scene("by-hand"), iter(shlex.split(line))
+    for option, value in zip(words, words):
+        if option == "--sheet":
+            sheet, _, nodes = value.partition(" nodes ")
+            u, v = (math.hypot(*map(float, side.split()))
+                    for side in re.findall(r"\b[uv] (\S+ \S+ \S+)", sheet))
+            n, m = map(int, nodes.split())
+            s.sheets.append(sheet)
+            s.sides.append((u, v))
+            s.cells.append((n - 1, m - 1))
+        elif option == "--measure":
+            s.measure = value
+        elif option == "--tolerance":
+            s.tolerance = value
+        else:
+            s.args += [option, value]
+    s.t_end = float(s.args[s.args.index("--t-end") + 1])
+    return s
 
 
-def l_mesh(n: int, side: float) -> Mesh:
-    """A square of n by n cells without one quarter, in the plane y = 0."""
-    keep = [(i, j) for i in range(n + 1) for j in range(n + 1)
-            if 2 * i <= n or 2 * j <= n]
-    index = {place: k for k, place in enumerate(keep)}
-    points: list[Vector] = [
-        (side * i / n, 0, -side * j / n) for i, j in keep]
-    quads = [tuple(index[p] for p in corners)
-             for i in range(n) for j in range(n)
-             for corners in [((i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1))]
-             if all(p in index for p in corners)]
-    return points, quads
-
-
-def ring_mesh(across: int, around: int, inner: float, outer: float) -> Mesh:
-    """A ring about the origin in z = 0; two of its spokes lie on y = 0."""
-    points: list[Vector] = []
-    quads: list[tuple[int, ...]] = []
-    for k in range(around):
-        angle = 2 * math.pi * k / around
-        for j in range(across + 1):
-            r = inner + (outer - inner) * j / across
-            points.append((r * math.cos(angle),
-                           0 if 2 * k % around == 0 else r * math.sin(angle),
-                           0))
-    row = across + 1
-    for k in range(around):
-        a, b = k * row, (k + 1) % around * row
-        quads += [(a + j, b + j, a + j + 1, b + j + 1) for j in range(across)]
-    return points, quads
+BY_HAND = (pathlib.Path(__file__).parent / "by_hand.txt").read_text()
 
 
 def draw(seed: int) -> Scene:
+    if seed < 0:
+        return by_hand(BY_HAND.splitlines()[-seed - 1])
     d = Dice(f"question {seed}")
     s = Scene(KINDS[seed % len(KINDS)])
     w, h = d.between(0.5, 1.6), d.between(0.4, 1.4)
@@ -125,7 +110,8 @@ def draw(seed: int) -> Scene:
     s.t_end = d.between(0.15, 0.8)
     flat = ((w, 0, 0), (0, h, 0))
     hanging = ((w, 0, 0), (0, 0, -h))
-    measures = ["com", "com", "positions", "max-stretch", "drape-height"]
+    measures = ["com", "com", "point u 1 v 1", "max-stretch",
+                "drape-height"]
     lossy = False  # energy is lost or gained without drag, too
 
     if s.kind == "three-pins":
@@ -221,16 +207,6 @@ def draw(seed: int) -> Scene:
         s.add("plane", "at 0 0", -d.between(0.05, 0.5), "friction",
               d.between(0, 0.5))
         lossy = True
-    elif s.kind == "L-mesh":
-        s.mesh = l_mesh(2 * round(d.log(5, 25)), w)
-        s.add("pin", "z", 0)
-        s.add("pin", "x", 0, "z", -w)
-    else:
-        inner, outer = d.between(0.15, 0.4), d.between(0.5, 1)
-        across = round(d.log(4, 16))
-        s.mesh = ring_mesh(across, 2 * round(across * d.between(2, 4)), inner,
-                           outer)
-        s.add("pin", "y", 0)
 
     s.args += ["--density", f"{density:g}", "--modulus", f"{modulus:g}"]
     if drag:

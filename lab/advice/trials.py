@@ -18,6 +18,7 @@ LONGEST = 300            # limit of a child process [s]
 TRUTH_WORK = (2e8, 8e8)  # spring evaluations of the finest run of the truth
 SEARCH_WORK = 3e7        # and of the longest run of the search
 FACTOR = 10
+FINER = (math.sqrt(2), 2)  # cells along a side, of a check
 LADDER = (2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128)  # cells
 # Steps in units of Verlet's limit. The first two tell whether a grid will do;
 # the implicit ones are tried where Verlet meets the tolerance.
@@ -43,13 +44,8 @@ def numbers(text: str) -> list[float]:
     return [float(x) for x in re.findall(NUMBER, text)]
 
 
-def distance(a: Sequence[float], b: Sequence[float], points: int) -> float:
-    """Root mean square over points of |a - b|; one point for other measures."""
-    return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / points)
-
-
-def line(h: list[float], answers: list[list[float]], order: float,
-         points: int) -> tuple[list[float], float, float]:
+def line(h: list[float], answers: list[list[float]],
+         order: float) -> tuple[list[float], float, float]:
     """The least-squares fit answer = limit + slope h^order: the limit, twice
     its standard error, and the standard deviation of the answers."""
     t = [x ** order for x in h]
@@ -63,32 +59,35 @@ def line(h: list[float], answers: list[list[float]], order: float,
         limit.append(middle - slope * mean)
         squares += sum((v - limit[-1] - slope * x) ** 2
                        for x, v in zip(t, values))
-    scatter = math.sqrt(squares / points / (n - 2))
+    scatter = math.sqrt(squares / (n - 2))
     return limit, 2 * scatter * math.sqrt(1 / n + mean ** 2 / spread), scatter
 
 
-def extrapolate(h: list[float], answers: list[list[float]],
-                points: int) -> tuple[list[float], float]:
+def extrapolate(h: list[float],
+                answers: list[list[float]]) -> tuple[list[float], float]:
     """The limit of answers on four or more grids of widths h, the widest
     first, and how far it may be off: by its standard error, and by the limits
     that other orders give which fit nearly as well, of all grids and without
     the coarsest (the form of Eca and Hoekstra, 2014). Order 1/2, of a cloth
     held at a point, only if it fits clearly better than 1 and 2."""
     fits: list[tuple[float, list[float], float, float]] = [
-        (order, *line(h, answers, order, points)) for order in (1, 2)]
-    rough = line(h, answers, 0.5, points)
+        (order, *line(h, answers, order)) for order in (1, 2)]
+    rough = line(h, answers, 0.5)
     if rough[2] < 0.5 * min(f[3] for f in fits):
         fits.append((0.5, *rough))
     _, limit, error, scatter = min(fits, key=lambda f: f[3])
     others = [other for order, whole, _, s in fits if s <= 2 * scatter
-              for other in (whole, line(h[1:], answers[1:], order, points)[0])]
-    return limit, error + max(distance(limit, o, points) for o in others)
+              for other in (whole, line(h[1:], answers[1:], order)[0])]
+    return limit, error + max(math.dist(limit, o) for o in others)
 
 
-def finer(cells: Cells, factor: float) -> Cells:
-    """The grids of all sheets with so many times the cells, rounded up."""
-    return tuple(tuple(math.ceil(factor * n - 1e-9) for n in sheet)
-                 for sheet in cells)
+def finer(cells: Cells, factor: float) -> Cells | None:
+    """Some so many times the cells, of the same shape: cells of another one
+    are another material. None if there are no such grids near."""
+    common = math.gcd(*(n for sheet in cells for n in sheet))
+    times = round(factor * common)
+    return None if times == common else tuple(
+        tuple(n // common * times for n in sheet) for sheet in cells)
 
 
 def springs(cells: Cells) -> int:
@@ -101,11 +100,8 @@ class Scene(questions.Scene):
 
     def __init__(self, seed: int, folder: str, cloth: pathlib.Path):
         self.__dict__ = questions.draw(seed).__dict__
-        self.folder, self.points = pathlib.Path(folder), 1
+        self.folder = pathlib.Path(folder)
         self.memo: dict[tuple, Trial | None] = {}
-        self.announced: list[float] | None = None   # what advice promises
-        for name, text in self.files().items():
-            (self.folder / name).write_text(text)
         (self.folder / "cloth").symlink_to(cloth.resolve())
 
     def child(self, command: str | list[str]) -> tuple[int, str, str]:
@@ -120,20 +116,17 @@ class Scene(questions.Scene):
             return 124, "", f"more than {LONGEST} s"
         return done.returncode, done.stdout, done.stderr
 
-    def run(self, words: list[str], method: str, dt: str,
-            cells: Cells) -> Trial | None:
-        """The trial of a scene on sheets of such cells."""
+    def run(self, words: list[str], method: str, dt: str) -> Trial | None:
         key = tuple(words), method, dt
         if key not in self.memo:
-            self.memo[key] = self.fresh_run(*key, cells)
+            self.memo[key] = self.fresh_run(*key)
         return self.memo[key]
 
-    def fresh_run(self, words: Sequence[str], method: str, dt: str,
-                  cells: Cells) -> Trial | None:
-        out = ["--out", "end.nodes"] if self.measure == "positions" else []
+    def fresh_run(self, words: Sequence[str], method: str,
+                  dt: str) -> Trial | None:
         status, text, _ = self.child(
             ["./cloth", *words, "--measure", self.measure, "--headless",
-             "--threads", "1", "--method", method, "--dt", dt, *out])
+             "--threads", "1", "--method", method, "--dt", dt])
         if status:
             return None
         nodes, edges = map(int, found(r"^(\d+) nodes, (\d+) edges$",
@@ -145,45 +138,27 @@ class Scene(questions.Scene):
                 found("^work: .*", text)[0]))
         limit = re.search(NUMBER + " s, verlet|of verlet " + r"\(" + NUMBER,
                           text)
-        answer = (self.positions(cells) if out else numbers(
-            found(rf"^{self.measure}: (.*?) at t", text)[1]))
+        answer = numbers(
+            found(rf"^{re.escape(self.measure)}: (.*?)(?: at t|$)", text)[1])
         return (answer, edges * evaluations,
                 float(limit[1] or limit[2]) if limit else None,
                 float(found(NUMBER + " kinetic", text)[1]))
 
-    def positions(self, cells: Cells) -> list[float]:
-        """Positions of 9 x 9 points on each sheet; of all nodes of a mesh."""
-        lines = (self.folder / "end.nodes").read_text().splitlines()
-        nodes = [tuple(map(float, x.split()[:3])) for x in lines]
-        points: list[Sequence[float]] = []
-        first = 0
-        for n, m in cells:
-            def at(i, j):
-                return nodes[first + i * (m + 1) + j]
-            for k in range(81):
-                a, b = k // 9 / 8 * n, k % 9 / 8 * m
-                i, j = min(int(a), n - 1), min(int(b), m - 1)
-                a, b = a - i, b - j
-                points.append([(1 - a) * ((1 - b) * p + b * q)
-                               + a * ((1 - b) * r + b * s)
-                               for p, q, r, s in zip(at(i, j), at(i, j + 1),
-                                                     at(i + 1, j),
-                                                     at(i + 1, j + 1))])
-            first += (n + 1) * (m + 1)
-        points = points or [*nodes]
-        self.points = len(points)
-        return [x for point in points for x in point]
-
     def at(self, cells: Cells, method: str, steps: int) -> Trial | None:
         """The trial on a grid, in so many equal steps."""
         return self.run(self.grid(cells) + self.args, method,
-                        repr(self.t_end / steps), cells)
+                        repr(self.t_end / steps))
 
     def start(self, cells: Cells) -> Trial | None:
         """The trial of no time: its answer at the start, and the limit."""
         args = list(self.args)
         args[args.index("--t-end") + 1] = "1e-7"
-        return self.run(self.grid(cells) + args, "verlet", "auto", cells)
+        measure = self.measure
+        if self.tolerance:  # what is asked may not happen at once
+            self.measure = "com"
+        trial = self.run(self.grid(cells) + args, "verlet", "auto")
+        self.measure = measure
+        return trial
 
     def steps(self, cells: Cells, share: float) -> int | None:
         """Steps of at most that share of Verlet's limit; None if no scene."""
@@ -195,7 +170,7 @@ class Scene(questions.Scene):
         return max(1, math.ceil(self.t_end / (share * limit) - 1e-9))
 
     def error(self, trial: Trial | None, right: Sequence[float]) -> float:
-        return distance(trial[0], right, self.points) if trial else math.inf
+        return math.dist(trial[0], right) if trial else math.inf
 
     def scaled(self, along: float) -> Cells:
         """The scene's own grids with so many cells along the longest side."""
@@ -208,34 +183,27 @@ class Scene(questions.Scene):
         work if that may give a third of the tolerance."""
         for work in TRUTH_WORK:
             found = self.limit(work)
-            if not found or self.mesh or not (
+            if not found or not (
                     tolerance / 3 < found[1] < 2 * tolerance):
                 break
         return found
 
     def limit(self, work: float) -> tuple[list[float], float] | None:
-        """The limit of grids by pefrl at half of Verlet's limit. A mesh has
-        one grid: the limit of its steps."""
-        coarse: Cells = () if self.mesh else self.scaled(8)
+        """The limit of grids by pefrl at half of Verlet's limit."""
+        coarse = self.scaled(8)
         steps = self.steps(coarse, 0.5)
         if not steps:
             return None
-        if self.mesh:
-            runs: list[tuple[Cells, int]] = [
-                ((), math.ceil(steps * f)) for f in (0.75, 1, 1.5, 2)]
-            widths = [1 / n for _, n in runs]
-        else:
-            # Work increases with the third power of cells along a side.
-            most = min(200, 8 * (work / (4 * steps * springs(coarse)))
-                       ** (1 / 3))
-            grids = list(dict.fromkeys(self.scaled(most / 2 ** (k / 4))
-                                       for k in range(6, -1, -1)))
-            runs = [(g, self.steps(g, 0.5) or 1) for g in grids]
-            widths = [sum(n * m for n, m in g) ** -0.5 for g in grids]
+        # Work increases with the third power of cells along a side.
+        most = min(200, 8 * (work / (4 * steps * springs(coarse))) ** (1 / 3))
+        grids = list(dict.fromkeys(self.scaled(most / 2 ** (k / 4))
+                                   for k in range(6, -1, -1)))
+        runs = [(g, self.steps(g, 0.5) or 1) for g in grids]
+        widths = [sum(n * m for n, m in g) ** -0.5 for g in grids]
         trials = [t for g, n in runs if (t := self.at(g, "pefrl", n))]
         if len(trials) < max(4, len(runs)):
             return None
-        right, doubt = extrapolate(widths, [t[0] for t in trials], self.points)
+        right, doubt = extrapolate(widths, [t[0] for t in trials])
         grid, n = runs[-3]
         again = self.at(grid, "pefrl", 2 * n)
         return right, doubt + self.error(again, trials[-3][0])
@@ -244,9 +212,8 @@ class Scene(questions.Scene):
                right: Sequence[float], tolerance: float) -> bool:
         """Does it hold with half the step, and on the next two grids?"""
         others: list[tuple[Cells, int]] = [(cells, 2 * steps)]
-        if cells:
-            others += [(finer(cells, f), math.ceil(f * steps))
-                       for f in (math.sqrt(2), 2)]
+        others += [(grids, math.ceil(f * steps)) for f in FINER
+                   if (grids := finer(cells, f))]
         return all(self.error(self.at(g, method, n), right) <= tolerance
                    for g, n in others)
 
@@ -285,8 +252,6 @@ class Scene(questions.Scene):
     def choices(self) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
         """(predicted work by Verlet, cells), the cheapest first: both sides
         of a sheet are refined on their own, a second sheet as the first."""
-        if self.mesh:
-            return [(0, ())]
         (u, v), *_ = self.sides
         coarse = self.scaled(8)
         steps = self.steps(coarse, 1)

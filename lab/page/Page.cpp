@@ -183,8 +183,8 @@ const char* page_readings(int sharp) {
               r.grabbed, "missed", state().live->scene().missed_text(),
               "rivals", list(r.rivals, rival), "error", r.error);
   const Model& m = state().live->model();
-  if (const Measure& what = m.measure;
-      what.quantity < Measure::pin_force && what.quantity != Measure::positions)
+  if (const Measure& what = m.measure; what.quantity < Measure::lost_energy &&
+                                       what.quantity != Measure::positions)
     all +=
         ',' + members("measure", name_of(what), "unit", unit_of(what), "answer",
                       list(answer(m, state().live->scene().cloth(), what)));

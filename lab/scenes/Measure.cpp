@@ -254,7 +254,7 @@ Point position_of(const Measured& now, const SheetPlace& p) {
 
 }  // namespace
 
-const std::array<Quantity, 15> quantities = {{
+const std::array<Quantity, 16> quantities = {{
     {"com", "m",
      [](const Measured& now, const Measure& what) {
        return components(center_of_mass(now.cloth), what);
@@ -270,6 +270,8 @@ const std::array<Quantity, 15> quantities = {{
     {"drape-height", "m", lowest_height},
     {"kinetic-energy", "J", of_cloth<kinetic_energy>},
     {"elastic-energy", "J", of_cloth<elastic_energy>},
+    {"lost-energy", "J",
+     [](const Measured& now, const Measure&) { return Answer{now.lost}; }},
     {"pin-force", "N", pin_force},
     {"contact-force", "N", contact_force},
     {"torn-edges", "", of_cloth<torn_edges>},
@@ -305,7 +307,7 @@ const char* unit_of(const Measure& m) {
 }
 
 Answer answer(const Model& m, const Cloth& g, const Measure& what) {
-  assert(what.quantity < Measure::pin_force);
+  assert(what.quantity < Measure::lost_energy);
   return quantities[what.quantity].read({m, g}, what);
 }
 

@@ -18,13 +18,14 @@ using Answer = std::vector<double>;
 double distance(const Answer& a, const Answer& b, const Measure& measure);
 
 /** The state that a quantity is read of: the cloth of a model at a time. The
- * last two are null, and the time 0, if there is no run. */
+ * last three are null or 0, and the time is 0, if there is no run. */
 struct Measured {
   const Model& model;
   const Cloth& cloth;
   double time = 0;  ///< [s]
   const std::vector<HeldNodes>* held = nullptr;
   const CombinedForces* force = nullptr;
+  double lost = 0;  ///< energy lost until then [J]
 };
 
 /** A row of the table of quantities, which measures, CSV files and messages
@@ -32,11 +33,11 @@ struct Measured {
 struct Quantity {
   const char* name;  ///< without its words
   const char* unit;  ///< "" of a pure number
-  /** Its value in the present state; all before pin-force need no run. */
+  /** Its value in the present state; all before lost-energy need no run. */
   Answer (*read)(const Measured& now, const Measure& what);
 };
 /** In the order of Measure::Quantity. */
-extern const std::array<Quantity, 15> quantities;
+extern const std::array<Quantity, 16> quantities;
 
 /** As --measure takes it: "com", "max com z", "point u 0.5 v 1",
  * "first com z below -1". */
@@ -46,8 +47,8 @@ const char* unit_of(const Measure& m);
  * tables have, nor of what is no list of a few numbers at each time. */
 std::string columns_of(const Measure& m);
 
-/** The value of @a what, a quantity in front of pin-force, in the present state
- * of @a g, the cloth of @a m.
+/** The value of @a what, a quantity in front of lost-energy, in the present
+ * state of @a g, the cloth of @a m.
  * - positions: of 9 x 9 places on each sheet, the same on all grids; of all
  *   nodes of a mesh from files [m]
  * - drape-height: quadratic between the nodes of a sheet, so that grids with

@@ -159,6 +159,7 @@ struct Measure {
     drape_height,
     kinetic_energy,
     elastic_energy,
+    lost_energy,
     pin_force,
     contact_force,
     torn_edges,

@@ -74,6 +74,7 @@ class Scene {
   const EnergyFlow& flow() const { return stepper_.flow(); }
   void follow_drag() { stepper_.follow_drag(); }
   double drift(const Energies& now) const { return stepper_.drift(now); }
+  double lost() const { return stepper_.lost(); }
   void watch_energy(double t_end) { stepper_.watch_energy(t_end); }
   const std::optional<EnergyWatch>& energy_watch() const {
     return stepper_.energy_watch();

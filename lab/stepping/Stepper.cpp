@@ -277,6 +277,11 @@ double Stepper::drift(const Energies& now) const {
   return now.total() - start_energy_ - f.work + f.removed + drag_loss();
 }
 
+double Stepper::lost() const {
+  const EnergyFlow& f = flow();
+  return start_energy_ + f.work - f.removed - energy().total();
+}
+
 // -------------------------------------------------------------------- Checks
 
 /** StepControl's verdict on the present state, of energy @a e.

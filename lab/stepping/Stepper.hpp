@@ -144,6 +144,9 @@ class Stepper {
    * friction lower it.  @pre follow_drag(), or the step is chosen
    * @param now energy() */
   double drift(const Energies& now) const;
+  /** The energy that drag, contact, tearing and errors of the method took since
+   * the start [J].  As long as energy() */
+  double lost() const;
   /** From now on energy_watch() follows the error of the energy.
    * @pre no step is done
    * @param t_end end of the run [s]: it looks 64 times until then, but at least

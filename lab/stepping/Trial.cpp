@@ -14,7 +14,8 @@ Answer answer(const Model& m, const Scene& scene, const Measure& what) {
   const auto& built = scene.recipe().built;
   return quantities[what.quantity].read(
       {m, scene.cloth(), scene.time(), &scene.held(),
-       built && built->force ? &*built->force : nullptr},
+       built && built->force ? &*built->force : nullptr,
+       what.quantity == Measure::lost_energy ? scene.lost() : 0},
       what);
 }
 
