@@ -23,8 +23,7 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
   while (live.step()) {
   }
   std::ostringstream nodes;
-  write_nodes(nodes,
-              mesh_left(live.scene().cloth(), *live.scene().recipe().built));
+  write_nodes(nodes, mesh_left(live.scene().cloth(), live.scene().mesh()));
   std::string list;
   for (const std::string& change : changes)
     list += (list.empty() ? "'" : ", '") + change + "'";

@@ -146,9 +146,8 @@ TEST(Compose, ANetListsItsSpringsMassesAndHeldNodes) {
   net.held = {0};
   Model m;
   m.stiffness = 7;
-  const Recipe r = recipe_of(m, net);
   Cloth g;
-  r.build(g);
+  build_model(g, m, net);
   ASSERT_EQ(g.num_edges(), 2u);
   EXPECT_NEAR(spring(g, 0, 1).K, 40, 1e-13);
   EXPECT_NEAR(spring(g, 0, 1).L, 0.8, 1e-15);  // (10 * 0.5 + 30 * 0.9)/40
@@ -157,9 +156,10 @@ TEST(Compose, ANetListsItsSpringsMassesAndHeldNodes) {
   EXPECT_EQ(total_mass(g), 6);
   EXPECT_EQ(g.node(0).value().vel, Point());
   EXPECT_EQ(g.node(2).value().vel, Point(1, 0, 0));
-  r.constraint(g)(g, 0);
-  ASSERT_EQ(r.held(g).size(), 1u);
-  EXPECT_EQ(r.held(g)[0].nodes[0].id, g.node(0).id());
+  constraint_of(m, net, g)(g, 0);
+  const auto held = held_of(m, net, g);
+  ASSERT_EQ(held.size(), 1u);
+  EXPECT_EQ(held[0].nodes[0].id, g.node(0).id());
   // One in the place of a face's spring replaces it.
   Net faces = two_triangles();
   faces.springs = {{2, 1, 3, 0}};

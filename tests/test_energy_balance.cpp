@@ -12,6 +12,7 @@
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "tests/NetOf.hpp"
 
 using namespace lab;
 
@@ -35,7 +36,7 @@ Model pulled_sheet(unsigned side, const char* method, double dt) {
 }
 /** Energy that did not come from its start nor from what moves it [J]. */
 double gain(const Scene& s) {
-  return energies(s.cloth(), s.recipe().gravity).total() - s.flow().work +
+  return energies(s.cloth(), s.model().gravity).total() - s.flow().work +
          s.flow().removed;
 }
 
@@ -353,14 +354,11 @@ TEST(End, OfAFreeFallIsExact) {
 
 // The order that a method declares, through last steps that are shorter.
 TEST(End, KeepsTheOrderThroughShorterSteps) {
-  Problem p = chain_problem("", "", 1);
-  Recipe recipe;
-  recipe.gravity = 0;
-  recipe.build = p.build;
-  recipe.force = [](const Cloth&) {
-    return make_combined_force(MassSpringForce());
-  };
-  recipe.constraint = p.constraint;
+  const Problem p = chain_problem("", "", 1);
+  const Start start(p);
+  const Net chain = net_of(start.cloth, start.constraint);
+  Model m;
+  m.gravity = 0;
   for (const MethodEntry& method : methods) {
     if (method.info.order > 4 || method.info.adaptive) continue;
     if (method.info.limit == 0 || method.info.name == "xpbd") continue;
@@ -370,7 +368,7 @@ TEST(End, KeepsTheOrderThroughShorterSteps) {
     for (double rest : {0.3, 0.9}) {
       double error[2];
       for (int k : {0, 1}) {
-        Scene s(recipe, {.dt = 1 / ((1 + k) * n + rest)}, method);
+        Scene s(m, chain, {.dt = 1 / ((1 + k) * n + rest)}, method);
         ASSERT_TRUE(s.run_to(1));
         const auto right = p.exact(1);
         error[k] = 0;

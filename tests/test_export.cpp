@@ -138,7 +138,7 @@ TEST(Frame, HasTheStateOfTheScene) {
   Scene scene(m);
   Node n = scene.cloth().node(4);  // at (2/3, 0.5, 0)
   n.position().z = 0.5;
-  const Frame f = frame_of(scene, m, nullptr);
+  const Frame f = frame_of(scene, nullptr);
   ASSERT_EQ(f.places.size(), 12u);
   EXPECT_EQ(f.places[4], n.position());
   EXPECT_EQ(f.quads, grid_quads(4, 3));
@@ -168,12 +168,12 @@ TEST(Frame, OfATornClothHasWhatIsLeftOfItAndAllPlaces) {
   Scene scene(m);
   Cloth& g = scene.cloth();
   g.node(0).position().z = 0.25;
-  const Frame before = frame_of(scene, m, nullptr);
+  const Frame before = frame_of(scene, nullptr);
   EXPECT_EQ(before.places[0], Point(0, 0, 0.25));
   const Node last = g.node(11);
   g.remove_node(g.node(0));
   EXPECT_EQ(g.remove_edge(last, g.node(8)), 1u);
-  const Frame f = frame_of(scene, m, &before);
+  const Frame f = frame_of(scene, &before);
   EXPECT_EQ(f.there[0], 0);
   EXPECT_EQ(f.there[11], 1);
   EXPECT_EQ(f.places, before.places);
@@ -187,10 +187,10 @@ TEST(Frame, OfATornClothHasWhatIsLeftOfItAndAllPlaces) {
 TEST(Vtp, SaysAllThatIsLeft) {
   const Model m = small_model();
   Scene scene(m);
-  const Frame before = frame_of(scene, m, nullptr);
+  const Frame before = frame_of(scene, nullptr);
   scene.cloth().node(4).position().z = 0.5;
   scene.cloth().remove_node(scene.cloth().node(0));
-  Frame f = frame_of(scene, m, &before);
+  Frame f = frame_of(scene, &before);
   f.time = 0.1;
   auto a = arrays_of(to_file(f, FrameFormat::vtp));
   EXPECT_EQ(a["FieldData/TimeValue"], std::vector<double>{0.1});
@@ -241,10 +241,10 @@ TEST(Vtp, SaysAllThatIsLeft) {
 TEST(Ply, KeepsTheOrderOfItsPoints) {
   const Model m = small_model();
   Scene scene(m);
-  const Frame before = frame_of(scene, m, nullptr);
+  const Frame before = frame_of(scene, nullptr);
   scene.cloth().node(4).position() = Point(0.1, 0.25, 0.5);
   scene.cloth().remove_node(scene.cloth().node(0));
-  const Frame f = frame_of(scene, m, &before);
+  const Frame f = frame_of(scene, &before);
   EXPECT_EQ(f.places[0], Point());  // gone; where it was last
   const std::string ply = to_file(f, FrameFormat::ply);
   EXPECT_NE(ply.find("element vertex 12\n"), std::string::npos);
@@ -277,7 +277,7 @@ TEST(Export, WritesFramesWithTheirTimes) {
                  {FrameFormat::ply, ""}},
                 30, scene);
   auto look = [&] {
-    if (frames.due(scene) || scene.done(0.2)) frames.add(scene, m);
+    if (frames.due(scene) || scene.done(0.2)) frames.add(scene);
   };
   look();
   EXPECT_TRUE(scene.run_to(0.2, look));
@@ -330,12 +330,12 @@ TEST(Export, BeginsAnewWithTheRun) {
   const Model m = small_model();
   Scene scene(m);
   Export frames({{FrameFormat::ply, folder / "ply"}}, 30, scene);
-  frames.add(scene, m);
-  for (int k = 0; k < 3; ++k) scene.step(), frames.add(scene, m);
+  frames.add(scene);
+  for (int k = 0; k < 3; ++k) scene.step(), frames.add(scene);
   EXPECT_EQ(frames.finish()[0].substr(0, 2), "4 ");
   scene.restart();
   frames.restart();
-  frames.add(scene, m);
+  frames.add(scene);
   EXPECT_EQ(frames.finish()[0].substr(0, 2), "1 ");
   EXPECT_FALSE(std::filesystem::exists(folder / "ply/frame_000001.ply"));
 }
@@ -364,9 +364,9 @@ TEST(Export, DoesNotMixItsFramesWithThoseOfAnotherRun) {
   const std::string name = folder / "ply";
   Export one({{FrameFormat::ply, name}}, 30, scene);
   Export other({{FrameFormat::ply, name}}, 30, scene);  // empty still
-  one.add(scene, m);
+  one.add(scene);
   one.finish();
-  other.add(scene, m);
+  other.add(scene);
   EXPECT_EQ(error_of([&] { other.finish(); }),
             name + "/frame_000000.ply: another run writes frames there");
 }
@@ -381,7 +381,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   Cloth& g = scene.cloth();
   ASSERT_TRUE(scene.run_to(0.1));
   g.remove_node(g.node(0));
-  const Net left = mesh_left(g, *scene.recipe().built);
+  const Net left = mesh_left(g, scene.mesh());
   std::ofstream nodes(folder / "end.nodes"), tets(folder / "end.tets");
   write_nodes(nodes, left), write_quads(tets, left);
   nodes.close(), tets.close();
@@ -393,7 +393,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   ASSERT_EQ(again.quads.size(), 5u);
   // In the order of the mesh, whatever indices the nodes have now.
   for (unsigned i = 0; i < 11; ++i) {
-    const Node n = arrays(g).node_with_id(scene.recipe().built->ids[i + 1]);
+    const Node n = arrays(g).node_with_id(scene.mesh().ids[i + 1]);
     EXPECT_EQ(again.points[i], n.position());
     EXPECT_EQ(again.velocities[i], n.value().vel);
   }
@@ -404,7 +404,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   EXPECT_EQ(cloth.cloth().num_nodes(), g.num_nodes());
   // But for the diagonal of the quad that is gone.
   EXPECT_EQ(cloth.cloth().num_edges(), g.num_edges() - 1);
-  const Net same = mesh_left(cloth.cloth(), *cloth.recipe().built);
+  const Net same = mesh_left(cloth.cloth(), cloth.mesh());
   EXPECT_EQ(same.points, left.points);
   EXPECT_EQ(same.velocities, left.velocities);
   EXPECT_EQ(same.quads, left.quads);

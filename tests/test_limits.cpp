@@ -21,6 +21,7 @@
 #include "lab/stability/Spectrum.hpp"
 #include "lab/stability/StepLimit.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "tests/NetOf.hpp"
 
 using namespace lab;
 
@@ -222,14 +223,9 @@ TEST(WithoutLimit, BoundedAtAHundredTimesTheLimitOnLinearProblems) {
 /** Run a square cloth without drag for 3 s.  @return why that failed */
 std::string failure_of(const MethodEntry& method, unsigned side, double dt,
                        double K) {
-  const Problem p = grid_problem("", "", 3, side, K);
-  Recipe recipe;
-  recipe.build = p.build;
-  recipe.force = [](const Cloth&) {
-    return make_combined_force(GravityForce(), MassSpringForce());
-  };
-  recipe.constraint = p.constraint;
-  Scene scene(recipe, {.dt = dt}, method);
+  const Start start(grid_problem("", "", 3, side, K));
+  Scene scene(Model(), net_of(start.cloth, start.constraint), {.dt = dt},
+              method);
   while (scene.time() < 3 && scene.step()) {
   }
   scene.check();

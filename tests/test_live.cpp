@@ -48,9 +48,7 @@ Point velocity(const Cloth& g) {  // of the center of mass
   return p / total_mass(g);
 }
 /** The id of the node of index @a i at the start. */
-unsigned id(const Live& live, unsigned i) {
-  return live.scene().recipe().built->ids[i];
-}
+unsigned id(const Live& live, unsigned i) { return live.scene().mesh().ids[i]; }
 
 // ------------------------------------------------------------------ Parameters
 

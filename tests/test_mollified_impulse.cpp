@@ -20,6 +20,7 @@
 #include "lab/stepping/Trial.hpp"
 #include "tests/Allocations.hpp"
 #include "tests/Momentum.hpp"
+#include "tests/NetOf.hpp"
 
 using namespace lab;
 
@@ -82,22 +83,12 @@ TEST(StiffSplit, TakesNoneWhereSpringsAreAlikeOrMostAreStiff) {
   EXPECT_TRUE(split_springs(s.cloth, 1, s.constraint).empty());
 }
 
-/** The scene of @a p: weight and springs. */
-Recipe recipe_of(const Problem& p) {
-  Recipe recipe;
-  recipe.gravity = p.gravity;
-  recipe.build = p.build;
-  recipe.force = [](const Cloth&) {
-    return make_combined_force(GravityForce(), MassSpringForce());
-  };
-  recipe.constraint = p.constraint;
-  return recipe;
-}
-
 TEST(MollifiedImpulse, GetsTheStepOfTheSoftSprings) {
   const Problem stiff = stiff_edge(9, 1), soft = grid_problem("", "", 1, 9);
   const auto step_of = [](const Problem& p, const char* method) {
-    Scene scene(recipe_of(p), {.rule = StepRule::safe}, *find_method(method));
+    const Start start(p);
+    Scene scene(Model(), net_of(start.cloth, start.constraint),
+                {.rule = StepRule::safe}, *find_method(method));
     EXPECT_TRUE(scene.run_to(0.5)) << text_of(scene.failure());
     return scene.dt();
   };

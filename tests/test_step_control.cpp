@@ -16,6 +16,7 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/StepLimit.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "tests/NetOf.hpp"
 
 using namespace lab;
 
@@ -50,7 +51,7 @@ Watched watch(Scene& s, double t_end, int every = 8) {
     double moving = 0, weight = 0;
     for (Node n : s.cloth().nodes()) {
       moving += 0.5 * n.value().mass * normSq(n.value().vel);
-      weight += n.value().mass * s.recipe().gravity * n.position().z;
+      weight += n.value().mass * s.model().gravity * n.position().z;
     }
     for (Edge e : s.cloth().edges())
       moving += 0.5 * e.value().K * std::pow(e.length() - e.value().L, 2);
@@ -83,7 +84,8 @@ Watched watch(Scene& s, double t_end, int every = 8) {
  * 20 m/s, gravity up to 100 m/s^2 and drag up to 1 1/s; some hold nodes, some
  * tear. */
 struct RandomScene {
-  Recipe recipe;
+  Model model;
+  Net net;
   const MethodEntry* method;
   double gamma = 0;
 
@@ -99,55 +101,35 @@ struct RandomScene {
     const double speed = one_in(3) ? 0 : std::pow(20, uniform());
     const double stiffness = std::pow(10, 1 + 2 * uniform());
     gamma = one_in(2) ? uniform() : 0;
-    recipe.gravity = one_in(3) ? 0 : one_in(3) ? 100 * uniform() : grav;
+    model.gravity = one_in(3) ? 0 : one_in(3) ? 100 * uniform() : grav;
     const std::array names = {"verlet", "verlet", "symplectic-euler", "pefrl",
                               "rk4"};
     method = find_method(names[random() % names.size()]);
-    const unsigned inner = random();
-    recipe.build = [=](Cloth& g) {
-      std::mt19937 r(inner);
-      auto u = [&r] { return double(r()) / double(r.max()); };
-      build_cloth(g, grid_points(rows, columns), grid_quads(rows, columns),
-                  mesh);
-      for (Edge e : g.edges())
-        e.value().K = stiffness * std::pow(10, decades * u());
-      for (Node n : g.nodes()) {
-        n.value().mass *= std::pow(masses, u());
-        n.value().vel = speed * Point(2 * u() - 1, 2 * u() - 1, 2 * u() - 1);
-      }
-    };
-    const double c = gamma;
-    const double gravity = recipe.gravity;
-    recipe.force = [c, gravity](const Cloth& g) {
-      std::vector<double> drag(arrays(g).node_slots());
-      for (Node n : g.nodes()) drag[n.id()] = c * n.value().mass;
-      CombinedForces::List all = {std::make_shared<GravityForce>(gravity),
-                                  std::make_shared<MassSpringForce>()};
-      if (c > 0) all.push_back(std::make_shared<NodeDrag>(drag));
-      return CombinedForces(std::move(all));
-    };
-    const bool pinned = !one_in(4), tears = one_in(4);
-    const Ball ball{{0.5, 0.5, -0.3}, 0.2};
-    recipe.constraint = [=](const Cloth& g) {
-      CombinedConstraints::List all;
-      if (tears) all.push_back(std::make_shared<TearConstraint>(ball));
-      if (pinned) {
-        const std::array held = {g.node(0), g.node(columns - 1)};
-        all.push_back(std::make_shared<PinConstraint>(held));
-      }
-      return CombinedConstraints(std::move(all));
-    };
+    std::mt19937 r(random());
+    auto u = [&r] { return double(r()) / double(r.max()); };
+    Cloth g;
+    build_cloth(g, grid_points(rows, columns), grid_quads(rows, columns), mesh);
+    for (Edge e : g.edges())
+      e.value().K = stiffness * std::pow(10, decades * u());
+    for (Node n : g.nodes()) {
+      n.value().mass *= std::pow(masses, u());
+      n.value().vel = speed * Point(2 * u() - 1, 2 * u() - 1, 2 * u() - 1);
+    }
+    net = net_of(g);
+    model.damping = gamma / g.num_nodes();
+    if (!one_in(4)) net.held = {0, columns - 1};
+    if (one_in(4)) model.tears = {{{0.5, 0.5, -0.3}, 0.2}};
   }
 };
 
 Watched run_fixed(unsigned seed, double dt, double seconds) {
   const RandomScene r(seed);
-  Scene s(r.recipe, {.dt = dt}, *r.method);
+  Scene s(r.model, r.net, {.dt = dt}, *r.method);
   return watch(s, seconds);
 }
 Watched run_chosen(unsigned seed, double seconds) {
   const RandomScene r(seed);
-  Scene s(r.recipe, {.rule = StepRule::safe}, *r.method);
+  Scene s(r.model, r.net, {.rule = StepRule::safe}, *r.method);
   return watch(s, seconds);
 }
 
@@ -157,7 +139,7 @@ TEST(SteeredStep, IsShortenedWhereAShareOfTheLimitGainsEnergy) {
   for (unsigned seed : {0u, 36u, 118u}) {
     const RandomScene r(seed);
     const double first =
-        Scene(r.recipe, {.rule = StepRule::safe}, *r.method).dt();
+        Scene(r.model, r.net, {.rule = StepRule::safe}, *r.method).dt();
     EXPECT_EQ(r.gamma, 0);
     EXPECT_FALSE(run_fixed(seed, first, 60).within()) << seed;
     const Watched w = run_chosen(seed, 60);
@@ -183,20 +165,15 @@ TEST(SteeredStep, IsNearTheLongestOneWithDrag) {
 
 /** A loose sheet whose nodes move at random, up to 5 m/s each way, and all of
  * it at @a speed upwards [m/s]; nothing acts on it. */
-Recipe thrown_sheet(double speed) {
-  Recipe r;
-  r.gravity = 0;
-  r.build = [speed](Cloth& g) {
-    std::mt19937 random(1);
-    auto u = [&] {
-      return 10 * (double(random()) / double(random.max()) - 0.5);
-    };
-    build_cloth(g, grid_points(9, 9), grid_quads(9, 9), MeshSprings::diagonals);
-    for (Node n : g.nodes()) n.value().vel = Point(u(), u(), u() + speed);
-  };
-  r.force = [](const Cloth&) { return make_combined_force(MassSpringForce()); };
-  r.constraint = [](const Cloth&) { return CombinedConstraints({}); };
-  return r;
+Scene thrown_sheet(double speed, const TimeStep& step) {
+  std::mt19937 random(1);
+  auto u = [&] { return 10 * (double(random()) / double(random.max()) - 0.5); };
+  Model m;
+  m.gravity = 0;
+  Net sheet = {grid_points(9, 9), grid_quads(9, 9)};
+  for ([[maybe_unused]] const Point& p : sheet.points)
+    sheet.velocities.push_back(Point(u(), u(), u() + speed));
+  return Scene(m, sheet, step, table::verlet);
 }
 
 /** Elastic energy, and kinetic of the motion about the center of mass [J]. */
@@ -217,13 +194,12 @@ double internal_energy(const Cloth& g) {
 // However fast the cloth as a whole flies: its energy hides no gain.
 TEST(SteeredStep, IsTheSameForAClothThatFlies) {
   for (double speed : {0.0, 100.0, 1000.0}) {
-    Scene s(thrown_sheet(speed), {.rule = StepRule::sharp}, table::verlet);
+    Scene s = thrown_sheet(speed, {.rule = StepRule::sharp});
     const double before = internal_energy(s.cloth());
     EXPECT_TRUE(s.run_to(30)) << text_of(s.failure());
     const double after = internal_energy(s.cloth());
     EXPECT_LT(after, 1.25 * before) << speed;
-    Scene longer(thrown_sheet(speed), {.dt = 1.1 * s.safe_limit()},
-                 table::verlet);
+    Scene longer = thrown_sheet(speed, {.dt = 1.1 * s.safe_limit()});
     EXPECT_FALSE(longer.run_to(30)) << speed;
     EXPECT_LT(internal_energy(longer.cloth()), 5 * before) << speed;
   }
@@ -233,7 +209,7 @@ TEST(SteeredStep, IsTheSameForAClothThatFlies) {
 // steps are taken back.
 TEST(SteeredStep, IsTheSameWhoeverLooks) {
   const RandomScene r(4);
-  Scene s(r.recipe, {.rule = StepRule::safe}, *r.method);
+  Scene s(r.model, r.net, {.rule = StepRule::safe}, *r.method);
   std::vector<Point> ends[2];
   for (auto& end : ends) {
     s.restart();
@@ -418,7 +394,7 @@ TEST(SteeredStep, KeepsItsToleranceInRandomScenes) {
   std::vector<double> ratios;
   for (int seed = first; seed < first + scenes; ++seed) {
     const RandomScene r{unsigned(seed)};
-    Scene s(r.recipe,
+    Scene s(r.model, r.net,
             {.rule = seed % 4 == 3 ? StepRule::sharp : StepRule::safe},
             *r.method);
     const double start = s.dt();
@@ -437,7 +413,7 @@ TEST(SteeredStep, KeepsItsToleranceInRandomScenes) {
       double low = start / 16, high = 4 * start;
       for (int k = 0; k < 12; ++k) {
         const double dt = std::sqrt(low * high);
-        Scene fixed(r.recipe, {.dt = dt}, *r.method);
+        Scene fixed(r.model, r.net, {.dt = dt}, *r.method);
         (watch(fixed, seconds).within() ? low : high) = dt;
       }
       ratio = double(w.steps) / (seconds / low);

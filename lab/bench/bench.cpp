@@ -150,7 +150,7 @@ std::vector<Figure> figures() {
   add({"step: scene of the assignment", "step: SymplecticEuler",
        [](unsigned n) -> Make {
          auto scene = std::make_shared<Scene>(
-             recipe_of(assignment_scene(), {grid_points(n), grid_quads(n)}),
+             assignment_scene(), Net{grid_points(n), grid_quads(n)},
              TimeStep{.dt = dt}, *default_method());
          return [scene] { scene->steps_at_once(Scene::guard_interval); };
        },

@@ -127,8 +127,7 @@ void Live::set_method(const MethodEntry& method) {
 
 /** Use the forces of the model as it is now. */
 void Live::change_forces() {
-  const Recipe recipe = recipe_of(model_, mesh_);
-  for (Side* side : sides()) side->scene->change_forces(recipe), side->mark();
+  for (Side* side : sides()) side->scene->change_forces(model_), side->mark();
   tune();
 }
 
@@ -201,7 +200,7 @@ RunReadings Live::Side::readings(bool sharp) {
   r.safe_limit = safe_limit, r.sharp_limit = sharp_limit;
   r.steps = scene->steps(), r.time = scene->time();
   count(), r.work = work;
-  r.energy = energies(scene->cloth(), scene->recipe().gravity, scene->flow());
+  r.energy = energies(scene->cloth(), scene->model().gravity, scene->flow());
   r.drift = scene->drift(r.energy);
   r.failure = scene->failure();
   return r;
@@ -224,11 +223,8 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines) {
 
 Live::Live(Model m) : Live(m, mesh_of(m)) {}
 Live::Live(Model m, Net mesh)
-    : model_(std::move(m)),
-      mesh_(std::move(mesh)),
-      changes_(read_changes(model_.at)) {
-  main_.emplace(std::make_unique<Scene>(recipe_of(model_, mesh_), model_.step,
-                                        *model_.method),
+    : model_(std::move(m)), changes_(read_changes(model_.at)) {
+  main_.emplace(std::make_unique<Scene>(model_, std::move(mesh)),
                 *model_.method);
   start_nodes_ = scene().cloth().num_nodes();
   start_edges_ = scene().cloth().num_edges();

@@ -114,7 +114,7 @@ class Live {
   /** At t = 0. The changes of Model::at are made by the first step() from
    * their times on.  Throws as Scene(model), and as read_changes() */
   explicit Live(Model m);
-  /** The same with recipe_of(@a m, @a mesh). */
+  /** The same from @a mesh, as of a Scene. */
   Live(Model m, Net mesh);
 
   /** Back to t = 0, with the parameters of @a m and all changes to come.
@@ -198,7 +198,6 @@ class Live {
   };
 
   Model model_;
-  Net mesh_;
   std::optional<Side> main_, reference_;
   std::vector<Side> rivals_;
   int round_ = 1;  // steps of the main scene in one
@@ -220,11 +219,11 @@ class Live {
   void make(const std::string& request);
   /** The id of the node of this number, and the other way round. */
   unsigned id_of(unsigned number) const {
-    const auto& ids = scene().recipe().built->ids;
+    const auto& ids = scene().mesh().ids;
     return number < ids.size() ? ids[number] : unsigned(-1);
   }
   unsigned number_of(unsigned id) const {
-    const auto& ids = scene().recipe().built->ids;
+    const auto& ids = scene().mesh().ids;
     return unsigned(std::ranges::find(ids, id) - ids.begin());
   }
   void set_step(const MethodEntry& method, const TimeStep& step);

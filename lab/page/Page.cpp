@@ -100,7 +100,7 @@ void page_load(unsigned scene, unsigned side) {
   for (Drawn& d : s.drawn) d.go_back(), ++d.changes;
 }
 const char* page_setting() {
-  const Recipe& recipe = state().live->scene().recipe();
+  const Model& m = state().live->scene().model();
   const auto point = [](const Point& p) {
     return list(std::array{p.x, p.y, p.z}, [](double a) { return a; });
   };
@@ -110,8 +110,10 @@ const char* page_setting() {
                                                               : "tears";
     return object("kind", kind, "radius", o.radius, "at", point(o.at));
   };
-  return say(object("obstacles", list(recipe.obstacles, obstacle), "room",
-                    list(recipe.room, point)));
+  std::vector<Point> room;
+  if (m.view) room = {m.view->from, m.view->to};
+  return say(object("obstacles", list(obstacles_of(m), obstacle), "room",
+                    list(room, point)));
 }
 char* page_room(unsigned size) {
   state().room.resize(size);
@@ -220,12 +222,9 @@ const unsigned* page_mesh(unsigned side) {
   const Cloth& g = scene.cloth();
   std::vector<std::array<unsigned, 2>> ends;
   for (Edge e : g.edges()) ends.push_back({e.node1().id(), e.node2().id()});
-  std::vector<Quad> faces;
-  if (const auto& built = scene.recipe().built) {
-    faces = quads_left(g, *built);
-    for (Quad& q : faces)
-      for (unsigned& corner : q) corner = built->ids[corner];
-  }
+  std::vector<Quad> faces = quads_left(g, scene.mesh());
+  for (Quad& q : faces)
+    for (unsigned& corner : q) corner = scene.mesh().ids[corner];
   std::vector<unsigned> pins;
   for (const HeldNodes& held : scene.held())
     for (const auto& h : held.nodes)

@@ -121,7 +121,7 @@ struct State {
       : t(scene.time()), energy(scene.energy().total()) {
     const auto a = arrays(scene.cloth());
     const Point none(std::numeric_limits<double>::quiet_NaN());
-    for (unsigned id : scene.recipe().built->ids) {
+    for (unsigned id : scene.mesh().ids) {
       const bool there = a.node_in_use(id);
       x.push_back(there ? a.positions()[id] : none);
       v.push_back(there ? a.node_values()[id].vel : none);
@@ -177,9 +177,9 @@ class Simulation {
     check_step(m);
     std::optional<Live> live;
     if (!m.at.empty()) live.emplace(m, mesh_);
-    const auto alone = live ? nullptr
-                            : std::make_unique<Scene>(recipe_of(model_, mesh_),
-                                                      m.step, *m.method);
+    const auto alone =
+        live ? nullptr
+             : std::make_unique<Scene>(model_, mesh_, m.step, *m.method);
     Scene& scene = live ? live->scene() : *alone;
     scene.watch_energy(m.t_end);
     Result r;
@@ -209,14 +209,13 @@ class Simulation {
   std::vector<Point> force(std::span<const Point> x, std::span<const Point> v,
                            double t) {
     if (!at_hand_)
-      at_hand_ = std::make_shared<Scene>(recipe_of(model_, mesh_), TimeStep(),
-                                         *model_.method);
+      at_hand_ =
+          std::make_shared<Scene>(model_, mesh_, TimeStep(), *model_.method);
     Cloth& g = at_hand_->cloth();
     std::vector<Point> f(x.size());
     for (Node n : g.nodes())
       n.position() = x[n.index()], n.value().vel = v[n.index()];
-    for (Node n : g.nodes())
-      f[n.index()] = (*at_hand_->recipe().built->force)(n, t);
+    for (Node n : g.nodes()) f[n.index()] = at_hand_->force()(n, t);
     return f;
   }
 
@@ -226,7 +225,7 @@ class Simulation {
   std::shared_ptr<Scene> at_hand_;  // of force()
 
   Scene start(const TimeStep& step, const MethodEntry& method) const {
-    return Scene(recipe_of(model_, mesh_), step, method);
+    return Scene(model_, mesh_, step, method);
   }
 };
 

@@ -24,16 +24,15 @@ using CME212::exact_text;
 
 // ---------------------------------------------------------------------- Frame
 
-Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
+Frame frame_of(const Scene& scene, const Frame* before) {
   const Cloth& g = scene.cloth();
-  const BuiltMesh& built = *scene.recipe().built;
+  const BuiltMesh& built = scene.mesh();
   const std::size_t n = built.mesh.points.size();
-  const CombinedForces& force = built.force.value();
   Frame f;
   f.time = scene.time();
   f.there.resize(n), f.velocities.resize(n), f.forces.resize(n);
   f.masses.resize(n), f.strains.resize(n);
-  f.pinned = is_held(m, built.mesh);
+  f.pinned = is_held(scene.model(), built.mesh);
   f.places = before ? before->places : built.mesh.points;
   std::vector<unsigned> point_of(arrays(g).node_slots());
   for (unsigned i = 0; i < n; ++i) {
@@ -43,7 +42,7 @@ Frame frame_of(const Scene& scene, const Model& m, const Frame* before) {
     f.there[i] = 1;
     f.places[i] = node.position();
     f.velocities[i] = node.value().vel;
-    f.forces[i] = force(node, f.time);
+    f.forces[i] = scene.force()(node, f.time);
     f.masses[i] = node.value().mass;
   }
   std::vector<unsigned> degree(n);
@@ -333,9 +332,9 @@ bool Export::due(const Scene& scene) const {
   return frames_.empty() || number(scene.time() + half) > number(last + half);
 }
 
-void Export::add(const Scene& scene, const Model& m) {
+void Export::add(const Scene& scene) {
   if (empty() || frames_.has_present()) return;
-  Frame f = frame_of(scene, m, frames_.empty() ? nullptr : &last_);
+  Frame f = frame_of(scene, frames_.empty() ? nullptr : &last_);
   last_.places = f.places;
   frames_.add(std::move(f));
 }

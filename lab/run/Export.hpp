@@ -42,10 +42,10 @@ enum class FrameFormat { vtp, ply };
 /** The text of the file of one frame.  O(points + springs) */
 std::string to_file(const Frame& frame, FrameFormat format);
 
-/** The state of @a scene, which a recipe_of() @a m made.
+/** The state of @a scene.
  * @param before the frame before it, for the positions of nodes removed since;
  *        null: the first one  O(points + springs) */
-Frame frame_of(const Scene& scene, const Model& m, const Frame* before);
+Frame frame_of(const Scene& scene, const Frame* before);
 
 /** A folder of files frame_000000.vtp, ... Each is written whole or not at all.
  */
@@ -95,8 +95,8 @@ class Export {
    * is as good as half a step late. */
   bool due(const Scene& scene) const;
   /** Add the present state of @a scene, unless it is there already.
-   * @pre the state is good, and @a scene was made from @a m */
-  void add(const Scene& scene, const Model& m);
+   * @pre the state is good */
+  void add(const Scene& scene);
   /** Remove all frames: the run begins anew. */
   void restart();
   /** Write all frames of a run that is at its end, and complete the folders.

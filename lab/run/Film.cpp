@@ -79,7 +79,7 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
       nodes_(scene.cloth().num_nodes()),
       edges_(scene.cloth().num_edges()),
       first_nodes_(nodes_),
-      touched_(scene.recipe().obstacles.size()) {
+      touched_(obstacles_of(scene.model()).size()) {
   screen_->show_strain(o.strain);
   if (o.video.empty()) return;
   constexpr double day = 86400;  // [s]
@@ -165,7 +165,7 @@ bool Film::event() {
   const Cloth& g = scene_.cloth();
   bool is_new = g.num_nodes() < nodes_ || g.num_edges() < edges_;
   nodes_ = g.num_nodes(), edges_ = g.num_edges();
-  const auto& obstacles = scene_.recipe().obstacles;
+  const auto obstacles = obstacles_of(scene_.model());
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (touched_[k] || !is_near(obstacles[k], g, scene_.time())) continue;
     is_new = true, touched_[k] = 1;
@@ -175,7 +175,7 @@ bool Film::event() {
 
 std::vector<std::string> Film::title() const {
   const Cloth& g = scene_.cloth();
-  std::vector<std::string> lines{scene_.recipe().name,
+  std::vector<std::string> lines{scene_.model().name,
                                  std::to_string(g.num_nodes()) + " nodes, " +
                                      std::to_string(g.num_edges()) + " springs",
                                  std::string(scene_.method().name) + ", dt = " +

@@ -29,7 +29,7 @@ MeshOutput::MeshOutput(const std::string& file)
 }
 
 void MeshOutput::write(const Scene& scene) {
-  const BuiltMesh& built = *scene.recipe().built;
+  const BuiltMesh& built = scene.mesh();
   if (is_net_)
     write_net(nodes_.stream(), net_left(scene.cloth(), built, scene.held()));
   const Net left = is_net_ ? Net() : mesh_left(scene.cloth(), built);
@@ -67,7 +67,7 @@ void Run::start() {
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
   rows_.clear(), written_ = 0;
   frames_.restart();
-  frames_.add(scene_, o_.model);
+  frames_.add(scene_);
   if (!o_.csv.empty()) begin_csv();
   add_row();
 }
@@ -140,7 +140,7 @@ void Run::announce() {
   if (o_.quiet) return;
   using CME212::percent;
   for (const std::string& line :
-       what_acts(o_.model, scene_.cloth(), scene_.recipe().built->mesh))
+       what_acts(o_.model, scene_.cloth(), scene_.mesh().mesh))
     std::cout << line << '\n';
   const std::string_view method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
@@ -175,9 +175,9 @@ void Run::announce() {
   if (first_step_ > 0)
     std::cout << o_.restart << ": continues at t = " << scene_.time() << " s\n";
   std::cout << out.str() << std::endl;  // at once, also into a pipe
-  const auto& built = scene_.recipe().built;
-  if (built && first_step_ == 0)  // they are about the cloth as it was made
-    for (const auto& w : warnings(o_.model, built->mesh, scene_.cloth(), dt))
+  if (first_step_ == 0)  // they are about the cloth as it was made
+    for (const auto& w :
+         warnings(o_.model, scene_.mesh().mesh, scene_.cloth(), dt))
       warn(w);
   if (const double work = scene_.flow().work; first_step_ == 0 && work != 0)
     warn("at t = 0 the obstacles give " + CME212::short_text(work) +
@@ -333,7 +333,7 @@ void Run::load() {
                                   " s, expected at least that");
   first_step_ = scene_.steps();
   next_checkpoint_ = o_.every_seconds;
-  frames_.add(scene_, o_.model);
+  frames_.add(scene_);
   if (o_.csv.empty()) return rows_.clear();
   if (std::filesystem::is_regular_file(o_.csv))
     go_on_with_csv(length, sum);
@@ -361,7 +361,7 @@ void Run::go_on_with_csv(std::uint64_t length, std::uint64_t sum) {
 void Run::add_frame() {
   if (frames_.empty()) return;
   check();
-  frames_.add(scene_, o_.model);
+  frames_.add(scene_);
 }
 
 void Run::add_row() {
@@ -402,7 +402,7 @@ void Run::tell_interrupt() const {
 
 void Run::print_summary() const {
   const Energies e = energies(scene_.cloth(), o_.model.gravity);
-  std::cout << scene_.recipe().name << ": " << scene_.steps()
+  std::cout << scene_.model().name << ": " << scene_.steps()
             << " steps to t = " << scene_.time() << " s in " << seconds_
             << " s; energy " << e.total() << " J = " << e.kinetic
             << " kinetic + " << e.elastic << " elastic + " << e.gravitational

@@ -453,43 +453,16 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
       SelfCollision(thickness, friction, CombinedConstraints(std::move(all))));
 }
 
-Recipe recipe_of(const Model& m) { return recipe_of(m, mesh_of(m)); }
-
-Recipe recipe_of(const Model& m, Net mesh) {
-  auto built = std::make_shared<BuiltMesh>(BuiltMesh{std::move(mesh), {}, {}});
-  Recipe r;
-  r.name = m.name;
-  r.gravity = m.gravity;
-  if (m.wind) r.wind = m.wind->velocity;
-  r.build = [m, built](Cloth& g) {
-    build_model(g, m, built->mesh);
-    built->ids.clear();
-    for (Node n : g.nodes()) built->ids.push_back(n.id());
-  };
-  r.built = built;
-  r.force = [m, built](const Cloth& g) {
-    built->force = force_of(m, built->mesh, g);
-    return *built->force;
-  };
-  r.constraint = [m, built](const Cloth& g) {
-    return constraint_of(m, built->mesh, g);
-  };
-  r.held = [m, built](const Cloth& g) { return held_of(m, built->mesh, g); };
-  r.holding = [m](const Cloth& g, const std::vector<HeldNodes>& held) {
-    return constraint_of(m, g, held);
-  };
-  r.inside = [m](const Point& p) { return m.starts_inside(p); };
-  using Kind = Obstacle::Kind;
+std::vector<Obstacle> obstacles_of(const Model& m) {
+  using enum Obstacle::Kind;
+  std::vector<Obstacle> all;
   for (const Wall& w : m.planes)
-    // An inclined plane would hide what lies on it.
-    if (w.out() == Point(0, 0, 1))
-      r.obstacles.push_back({Kind::floor, w.at, 0, w.motion});
+    if (w.out() == Point(0, 0, 1)) all.push_back({floor, w.at, 0, w.motion});
   for (const Solid& s : m.spheres)
-    r.obstacles.push_back({Kind::ball, s.ball.center, s.ball.radius, s.motion});
+    all.push_back({ball, s.ball.center, s.ball.radius, s.motion});
   for (const Ball& b : m.tears)
-    r.obstacles.push_back({Kind::tearing_ball, b.center, b.radius});
-  if (m.view) r.room = {m.view->from, m.view->to};
-  return r;
+    all.push_back({tearing_ball, b.center, b.radius});
+  return all;
 }
 
 }  // namespace lab

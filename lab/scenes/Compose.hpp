@@ -1,10 +1,6 @@
 #pragma once
 /** @file Compose.hpp
  * Builds the cloth, the forces and the constraints that a Model describes. */
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "lab/scenes/MeshFile.hpp"
@@ -20,12 +16,11 @@ struct Obstacle {
   Motion motion = {};
 };
 
-/** The mesh that a cloth was built from, the ids of the nodes of its points,
- * and the forces on the cloth. */
+/** The mesh that a cloth was built from, and the ids of the nodes of its
+ * points. */
 struct BuiltMesh {
   Net mesh;
   std::vector<unsigned> ids;
-  std::optional<CombinedForces> force;
 };
 
 /** The quads of the mesh whose four nodes and four sides @a g still has, in
@@ -51,29 +46,6 @@ struct HeldNodes {
  * nodes of @a held: a cloth built from it is @a g.  O(points + springs) */
 Net net_left(const Cloth& g, const BuiltMesh& built,
              const std::vector<HeldNodes>& held);
-
-/** How a scene is built, at its start and at each restart. */
-struct Recipe {
-  std::string name;
-  double gravity = grav;  ///< of the force [m/s^2]
-  Point wind = Point();   ///< velocity of the air that drags [m/s]
-  /** Builds the cloth in an empty one. */
-  std::function<void(Cloth&)> build;
-  /** The mesh and forces of the last build() and force(); null: no mesh. */
-  std::shared_ptr<const BuiltMesh> built;
-  std::function<CombinedForces(const Cloth&)> force;
-  std::function<CombinedConstraints(const Cloth&)> constraint;
-  /** held: the nodes that pins hold at the start. holding: constraint() with
-   * other nodes held. Null if the pins can't be changed. */
-  std::function<std::vector<HeldNodes>(const Cloth&)> held;
-  std::function<CombinedConstraints(const Cloth&,
-                                    const std::vector<HeldNodes>&)>
-      holding;
-  /** Model::starts_inside(). Null: no obstacle holds any point. */
-  std::function<bool(const Point&)> inside;
-  std::vector<Obstacle> obstacles;
-  std::vector<Point> room;  ///< corners of the box to show; empty: the cloth
-};
 
 /** The mesh of @a m: from its files, or of its sheets in their order. On a
  * sheet the index of the points grows along v first, as in grid_points().
@@ -128,11 +100,8 @@ std::vector<HeldNodes> held_of(const Model& m, const Net& net, const Cloth& g);
 CombinedConstraints constraint_of(const Model& m, const Cloth& g,
                                   const std::vector<HeldNodes>& held);
 
-/** The recipe of @a m.  Throws InputError, SceneError; so do its functions. */
-Recipe recipe_of(const Model& m);
-/** The same from @a mesh: mesh_of(m), or any other net, for example one in
- * memory. Then @a m may have no sheets and no files.
- * @pre masses are above 0; springs and faces have different nodes, all there */
-Recipe recipe_of(const Model& m, Net mesh);
+/** What of @a m is drawn: balls, and floors that are level. An inclined plane
+ * would hide what lies on it. */
+std::vector<Obstacle> obstacles_of(const Model& m);
 
 }  // namespace lab

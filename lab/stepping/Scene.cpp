@@ -10,13 +10,17 @@
 
 namespace lab {
 
-Scene::Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method)
-    : recipe_(std::move(recipe)), stepper_(build(), step, method) {}
-Scene::Scene(const Model& m) : Scene(recipe_of(m), m.step, *m.method) {}
+Scene::Scene(const Model& m) : Scene(m, mesh_of(m)) {}
+Scene::Scene(const Model& m, Net mesh)
+    : Scene(m, std::move(mesh), m.step, *m.method) {}
+Scene::Scene(const Model& m, Net mesh, const TimeStep& step,
+             const MethodEntry& method)
+    : model_(m), mesh_{std::move(mesh), {}}, stepper_(build(), step, method) {}
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
-    : recipe_(other.recipe_),
+    : model_(other.model_),
+      mesh_(other.mesh_),
       system_(other.system_),
       held_(other.held_),
       changed_(true),
@@ -28,22 +32,28 @@ Scene::Scene(const Scene& other, const TimeStep& step,
 System& Scene::build() {
   Cloth& g = system_.cloth;
   g.clear();
-  recipe_.build(g);
-  system_.acting = recipe_.force(g), system_.gravity = recipe_.gravity;
-  system_.wind = recipe_.wind;
+  build_model(g, model_, mesh_.mesh);
+  mesh_.ids.clear();
+  for (Node n : g.nodes()) mesh_.ids.push_back(n.id());
+  take_forces(force_of(model_, mesh_.mesh, g));
   system_.hand.reset();
-  held_ = recipe_.held ? recipe_.held(g) : std::vector<HeldNodes>();
-  system_.watched.emplace(recipe_.constraint(g));
+  held_ = held_of(model_, mesh_.mesh, g);
+  system_.watched.emplace(constraint_of(model_, mesh_.mesh, g));
   system_.overlaps = false;
-  if (recipe_.inside)
-    for (Node n : g.nodes()) system_.overlaps |= recipe_.inside(n.position());
+  for (Node n : g.nodes())
+    system_.overlaps |= model_.starts_inside(n.position());
   return system_;
+}
+
+void Scene::take_forces(CombinedForces acting) {
+  system_.acting = std::move(acting), system_.gravity = model_.gravity;
+  system_.wind = model_.wind ? model_.wind->velocity : Point();
 }
 
 /** Make the constraint anew, with the pins held_. */
 System& Scene::hold() {
   system_.overlaps = false;
-  system_.watched.emplace(recipe_.holding(system_.cloth, held_));
+  system_.watched.emplace(constraint_of(model_, system_.cloth, held_));
   return system_;
 }
 
@@ -66,14 +76,13 @@ void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
   changed_ = true, diagnosis_.reset();
 }
 
-void Scene::change_forces(const Recipe& recipe) {
+void Scene::change_forces(const Model& m) {
   Cloth fresh;  // has the ids that this cloth had when it was built
-  recipe.build(fresh);
-  CombinedForces acting = recipe.force(fresh);
+  build_model(fresh, m, mesh_.mesh);
+  CombinedForces acting = force_of(m, mesh_.mesh, fresh);
   edit([&] {
-    recipe_ = recipe, system_.gravity = recipe.gravity;
-    system_.wind = recipe.wind;
-    system_.acting = std::move(acting);
+    model_ = m;
+    take_forces(std::move(acting));
     for (Edge e : cloth().edges())
       e.value().K = arrays(fresh).edge_values()[e.id()].K;
     stepper_.forget_limits();
@@ -192,8 +201,9 @@ std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
   const TimeStep step = {
       .dt = cure.dt,
       .tolerance = cure.method.info.adaptive ? stepper_.step_tolerance() : 0};
-  return changed_ ? std::make_unique<Scene>(*this, step, cure.method)
-                  : std::make_unique<Scene>(recipe_, step, cure.method);
+  return changed_
+             ? std::make_unique<Scene>(*this, step, cure.method)
+             : std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
 }
 
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {

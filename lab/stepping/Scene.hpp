@@ -1,7 +1,7 @@
 #pragma once
 /** @file Scene.hpp
- * Scene: a cloth that a Recipe makes, a Stepper that moves it, and the changes
- * that may be made between two steps. */
+ * Scene: the cloth of a Model, a Stepper that moves it, and the changes that
+ * may be made between two steps. */
 #include <array>
 #include <memory>
 #include <optional>
@@ -23,24 +23,33 @@ inline double evaluations_of(const MethodInfo& m) {
 /** A scene, ready to run. */
 class Scene {
  public:
-  /** At t = 0, as the recipe builds it. If nodes lie inside obstacles, all
-   * constraints act once: their work is in flow().
-   * @pre step.dt > 0
+  /** The scene of @a m at t = 0. If nodes lie inside obstacles, all constraints
+   * act once: their work is in flow().
+   * @pre m.step.dt > 0
    * Throws std::invalid_argument if the step is to be chosen and nothing
-   * bounds it; and what the recipe throws. */
-  Scene(Recipe recipe, const TimeStep& step, const MethodEntry& method);
-  /** The scene of @a m.  Throws InputError, SceneError, and as above. */
+   * bounds it; InputError, SceneError. */
   explicit Scene(const Model& m);
+  /** The same from @a mesh: mesh_of(m), or any other net, for example one in
+   * memory. Then @a m may have no sheets and no files.
+   * @pre masses are above 0; springs and faces have different nodes, all there
+   */
+  Scene(const Model& m, Net mesh);
+  /** The same by another step and method than those of @a m. */
+  Scene(const Model& m, Net mesh, const TimeStep& step,
+        const MethodEntry& method);
   /** A copy of the present state of @a other, its pins and its hand, to
    * continue with another method and step: at its time, but with no step done,
-   * no force evaluated and nothing in flow().
-   * @pre other.recipe().holding, step.fixed() */
+   * no force evaluated and nothing in flow().  @pre step.fixed() */
   Scene(const Scene& other, const TimeStep& step, const MethodEntry& method);
 
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
   void restart();
 
-  const Recipe& recipe() const { return recipe_; }
+  /** Its model, with the changes of forces. */
+  const Model& model() const { return model_; }
+  const BuiltMesh& mesh() const { return mesh_; }
+  /** The forces of the model, without the hand. */
+  const CombinedForces& force() const { return system_.acting; }
   /** The cloth; between two steps it may be changed in any way. */
   Cloth& cloth() { return system_.cloth; }
   const Cloth& cloth() const { return system_.cloth; }
@@ -95,13 +104,11 @@ class Scene {
   /** Another method and step.  Throws as the constructor; then nothing has
    * changed. */
   void change_method(const MethodEntry& method, const TimeStep& step);
-  /** Take the forces, K and gravity of @a recipe, which builds the same cloth.
-   * Rest lengths, masses and constraints stay.
-   * Invalidates: references into recipe().  O(building the cloth) */
-  void change_forces(const Recipe& recipe);
+  /** Take the forces, K and gravity of @a m, which has the same cloth. Rest
+   * lengths, masses and constraints stay.  O(building the cloth) */
+  void change_forces(const Model& m);
   /** Hold a node where it is, at rest; or release it from every pin.
-   * @return false if it was already held or free, or was removed
-   * @pre recipe().holding */
+   * @return false if it was already held or free, or was removed */
   bool pin(unsigned node);
   bool unpin(unsigned node);
   /** O(log of its nodes) for each pin of the model. */
@@ -126,7 +133,7 @@ class Scene {
    * methods and steps, each to t_end() or for trial_work. Trials that do not
    * fail are repeated with half the step.
    * @pre failure(), or energy_watch() has found that the run is wrong
-   * Throws what the recipe throws; Interrupted. */
+   * Throws Interrupted. */
   const Diagnosis& diagnosis() const;
   /** Failure and diagnosis in words; only the failure if a signal interrupts
    * the diagnosis.
@@ -141,12 +148,13 @@ class Scene {
   std::unique_ptr<Scene> anew(const Cure& cure) const;
   /** For pictures: a copy of the failed run, continued without the guard until
    * a node is @a distance [m] away from its last good position, or for 1000
-   * steps.  @pre failure(), recipe().holding
+   * steps.  @pre failure()
    * @return a scene in that state, finite, with the same failure() */
   std::unique_ptr<Scene> beyond_failure(double distance) const;
 
  private:
-  Recipe recipe_;
+  Model model_;
+  BuiltMesh mesh_;
   System system_;
   std::vector<HeldNodes> held_;
   bool changed_ = false;                        // since the start
@@ -154,6 +162,7 @@ class Scene {
   Stepper stepper_;
 
   System& build();
+  void take_forces(CombinedForces acting);
   System& hold();
   template <typename Change>
   void edit(Change change);

@@ -11,10 +11,8 @@
 namespace lab {
 
 Answer answer(const Model& m, const Scene& scene, const Measure& what) {
-  const auto& built = scene.recipe().built;
   return quantities[what.quantity].read(
-      {m, scene.cloth(), scene.time(), &scene.held(),
-       built && built->force ? &*built->force : nullptr,
+      {m, scene.cloth(), scene.time(), &scene.held(), &scene.force(),
        what.quantity == Measure::lost_energy ? scene.lost() : 0},
       what);
 }
@@ -141,7 +139,7 @@ Trial try_out(const Model& m, const Shake& shake,
   const CME212::Clock clock;
   Trial result;
   result.dt = step_of(m);
-  Scene scene(recipe_of(m), {.dt = result.dt}, *m.method);
+  Scene scene(m, mesh_of(m), {.dt = result.dt}, *m.method);
   std::mt19937 random(shake.seed);
   std::uniform_real_distribution<double> off(-shake.size, shake.size);
   if (shake.size > 0) {

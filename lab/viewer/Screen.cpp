@@ -167,13 +167,11 @@ class SDLScreen : public Screen {
   /** The nodes of the quads that are left. */
   static std::vector<std::array<Node, 4>> faces_of(const Scene& scene) {
     std::vector<std::array<Node, 4>> faces;
-    const auto& built = scene.recipe().built;
-    if (!built) return faces;
     const Cloth& g = scene.cloth();
     auto node = [&](unsigned i) {
-      return arrays(g).node_with_id(built->ids[i]);
+      return arrays(g).node_with_id(scene.mesh().ids[i]);
     };
-    for (const Quad& q : quads_left(g, *built))
+    for (const Quad& q : quads_left(g, scene.mesh()))
       faces.push_back({node(q[0]), node(q[1]), node(q[2]), node(q[3])});
     return faces;
   }
@@ -207,10 +205,13 @@ class SDLScreen : public Screen {
    * what it may fall on and, at the start, at the space below it. */
   void set_view(const Scene& scene) {
     CME212::BoundingBox room;
-    for (const Point& p : scene.recipe().room) room |= p;
+    if (const auto& view = scene.model().view) {
+      room |= view->from;
+      room |= view->to;
+    }
     if (room.empty()) {
       for (Node n : scene.cloth().nodes()) room |= n.position();
-      for (const Obstacle& o : scene.recipe().obstacles) {
+      for (const Obstacle& o : obstacles_of(scene.model())) {
         if (o.kind == Obstacle::Kind::floor) continue;
         const Point reach(o.radius, o.radius, o.radius);
         room |= o.at - reach;
@@ -244,7 +245,7 @@ class SDLScreen : public Screen {
   /** Show what the cloth falls on where it is now, and nothing else. */
   void add_obstacles(const Scene& scene) {
     viewer_.clear_shapes();
-    for (const Obstacle& o : scene.recipe().obstacles) {
+    for (const Obstacle& o : obstacles_of(scene.model())) {
       const Point at = o.at + o.motion.way(scene.time());
       moving_ = moving_ || o.motion.velocity != Point();
       if (o.kind == Obstacle::Kind::floor)
