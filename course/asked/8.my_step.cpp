@@ -1,9 +1,9 @@
 /** @file 8.my_step.cpp
- * Steps of two nets in turn, whose springs only law.cpp knows: where they end.
- * The solution answers with a finer run, and with half the error of symplectic
- * Euler as tolerance: course/kit/ranking.py ranks a class by the distance from
- * these answers. */
-#include "asked.hpp"
+ * Steps that the grader asks for beside tests/8.my_step.cpp: of two nets in
+ * turn, whose springs only law.cpp knows: where they end. The solution answers
+ * with a finer run, and with half the error of symplectic Euler as tolerance:
+ * ranking.py ranks a class by the distance from these answers. */
+#include "law.hpp"
 
 namespace kit {
 struct FarNet : Net {
@@ -31,9 +31,12 @@ static void answer_exactly(const char* what, const Trial& trial) {
 }
 }  // namespace kit
 
-ASKED("8.my_step", my_step_asked) {
+TASK("?8.my_step", far_nets) {
   if constexpr (answers_all) {
-    const Trial first(drawn), second(drawn);
+    const auto number = [](double least, double most) {
+      return drawn(0, least, most);
+    };
+    const Trial first(number), second(number);
     answer_exactly("first", first);
     answer_exactly("second", second);
   } else {

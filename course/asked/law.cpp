@@ -1,25 +1,29 @@
 /** @file law.cpp
- * The nets of 8.my_step, for asked/8.my_step.cpp, in a process that no
- * submission shares: it alone knows the springs, and counts the forces that it
- * is asked for. From stdin it reads the grader's secret, then each Question;
- * replies go to stdout. Forces beyond Net::forces on each node are zero. At the
- * end it writes to stderr how many it was asked for, on each node of net 0. */
+ * The nets of 8.my_step.cpp, in a process that no submission shares: it alone
+ * knows the springs, and counts the forces that it is asked for. From stdin it
+ * reads the grader's secret, then each Question; replies go to stdout. Forces
+ * beyond Net::forces on each node are zero. At the end it writes to stderr how
+ * many it was asked for, on each node of net 0. */
 #include <unistd.h>
 
+#include "../tests/model.hpp"
 #include "../tests/trial.hpp"
-#include "asked.hpp"
+#include "law.hpp"
 
 namespace kit {
 void checked() {}
 void fail(std::string, std::string) { std::abort(); }
 bool probes(unsigned) { return false; }
+double drawn(double usual, double, double) { return usual; }
+void answer(const std::string&, double, double) {}
+void tell(View&, unsigned) {}
 }  // namespace kit
 
 int main() {
   using kit::Net, kit::Question;
   unsigned char word[kit::Draw::secret];
   if (read(0, word, sizeof word) != sizeof word) return 2;
-  kit::Draw draw(word, "8.my_step");
+  kit::Draw draw(word, "far_nets");
   const kit::Trial nets[] = {kit::Trial(std::ref(draw)),
                              kit::Trial(std::ref(draw))};
   long asked[3] = {};  // the third run is of net 0, too

@@ -1,6 +1,6 @@
 /** @file tell.cpp
  * The content of a graph, as answers. Compiled once, without a submission. */
-#include "asked.hpp"
+#include "../tests/model.hpp"
 
 namespace kit {
 namespace {

@@ -3,10 +3,10 @@
 [numbers] of tasks.toml has the acceleration of free fall [m/s^2], the height of
 the floor [m], and the ball's radius [m] and center [m]. This writes them, and
 what follows from them, wherever they stand: in the solution (and so in the
-starter), in pages, tests, questions, mistakes, figures and scenes. --check
-names the places that have other numbers. Exit status: 0, or 1 with FILE:LINE.
-What is measured on the pages is not computed anew: test_mistakes.py and
-make check-full name what no longer holds."""
+starter), in pages, tests, mistakes, figures and scenes. --check names the
+places that have other numbers. Exit status: 0, or 1 with FILE:LINE. What
+is measured on the pages is not computed anew: test_mistakes.py and make
+check-full name what no longer holds."""
 import math
 import pathlib
 import re
@@ -89,14 +89,6 @@ course/tests/cloth_calls.hpp
   ({radius}, center)
 course/tests/trial.hpp
   -{gravity} * start
-course/asked/5.1.GravityForce.cpp
-  "GravityForce", g, {gravity})
-course/asked/6.1.SphereConstraint.cpp
-  Point({center}) + drawn_point(i % 2 ? {half} : {past})
-course/asked/6.2.make_combined_constraints.cpp
-  Point({center}) + drawn_point({half})
-course/asked/7.2.TearConstraint.cpp
-  Point({center}) + drawn_point({about})
 course/wrong/forms/mass_spring.hpp
   gravity = {gravity};
   position().z >= {floor})
@@ -137,9 +129,8 @@ def values(numbers: dict) -> dict[str, str]:
         "beside": y + 0.01, "over": c + r - 0.0001, "leaves": c + 2 * r / 3,
         "below": z - 0.125, "above": z + 0.0001, "under": z - 0.0001,
         "outside": r + 0.001, "inside": r - 0.001, "sunk": z - 0.02,
-        "deep": r - 0.01, "touches": r + 0.01, "half": r / 2 + 0.005,
-        "past": r + 0.05, "about": r + 0.01, "part": r / 1.5,
-        "twice": 2 * r, "third": r / 3}.items()} | {
+        "deep": r - 0.01, "touches": r + 0.01, "past": r + 0.05,
+        "part": r / 1.5, "twice": 2 * r, "third": r / 3}.items()} | {
         "fall": f"{math.sqrt(-2 * z / g):.3f}", "energy": f"{z * g:.3f}"}
 
 

@@ -6,7 +6,7 @@ Cloth tests run on the kit's own graph first, so that a broken graph costs its
 own tasks, and then, if they fail, on the submission's: either may pass.
 
 A test shares its process with the submission, so what it says is not enough:
-a task also passes only if its answers (course/asked) are those of the solution,
+a task also passes only if its answers (check.hpp) are those of the solution,
 which has been graded here before, in processes of its own.
 """
 
@@ -16,7 +16,6 @@ import itertools
 import json
 import os
 import pathlib
-import re
 import secrets
 import shutil
 import signal
@@ -86,11 +85,9 @@ def result_of(test: str, outcome: sandbox.Outcome, names: Container[str],
     if verdict[:1] == ["passed"] and len(verdict) == 3 and outcome.code == 0:
         if verdict[1] == "0":
             return Result("missing", "no such test is in the kit")
-        if name := wrong(outcome.answers, expected or {}):
+        if fault := wrong(outcome.answers, expected or {}):
             return Result(
-                "failed", "", f"{name} as the solution computes it, from "
-                "numbers drawn at random", "something else, after the public "
-                "tests had passed", input_of(test),
+                "failed", "", *fault, diagnosis.short(did), name,
                 doubtful="passed the tests of {task}, but can't compute what "
                 "they ask for")
         if verdict[2] != "0":
@@ -99,9 +96,11 @@ def result_of(test: str, outcome: sandbox.Outcome, names: Container[str],
                   did=diagnosis.short(did), name=name)
 
 
-def wrong(answers: sandbox.Answers, expected: sandbox.Answers) -> str:
-    """The name of an answer that is needed and not there, or wrong; or "".
-    asked.hpp says what the last sign of a name means."""
+def wrong(answers: sandbox.Answers,
+          expected: sandbox.Answers) -> tuple[str, str] | None:
+    """What is expected and what came, of an answer that is needed and not
+    there, or wrong; or None. check.hpp says what the last sign of a name
+    means."""
     some_of, found = set(), set()
     for name, (tolerance, numbers) in expected.items():
         if name[-1] == "?":
@@ -110,18 +109,14 @@ def wrong(answers: sandbox.Answers, expected: sandbox.Answers) -> str:
         if name not in answers and name[-1] in "?~":
             continue
         found.add(name.split()[0])
-        if len(given) != len(numbers) or not all(
-                abs(a - b) <= tolerance * max(1, abs(b))    # false of NaN
-                for a, b in zip(given, numbers)):
-            return name.rstrip("?~")
-    return min(some_of - found, default="")
-
-
-def input_of(test: str) -> str:
-    """What a task is asked with, from the first words of its file."""
-    text = (build.ASKED / f"{test}.cpp").read_text("utf-8")
-    found = re.search(r"@file .*\n \* ([^.:]*)", text)
-    return " ".join(found[1].replace("\n *", " ").split()) if found else ""
+        what = f"the solution's {len(numbers)} numbers of: {name.rstrip('?~')}"
+        if len(given) != len(numbers):
+            return what, str(len(given))
+        for at, (a, b) in enumerate(zip(given, numbers), 1):
+            if not abs(a - b) <= tolerance * max(1, abs(b)):    # NaN, too
+                return f"{what}, {b:.12g} as number {at}", f"{a:.12g}"
+    return next(((f"answers of: {name}", "none")
+                 for name in sorted(some_of - found)), None)
 
 
 def refused(unit: build.Unit) -> Result:

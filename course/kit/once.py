@@ -90,7 +90,7 @@ class Kit:
         self.jail = self.only_jail()
         tests = sorted(TESTS.glob("*.hpp"))
         linked = self.locked_part(
-            "linked", [*LINKED, LAW, KIT.parent / "asked/asked.hpp", *tests,
+            "linked", [*LINKED, LAW, KIT.parent / "asked/law.hpp", *tests,
                        *course], self.make_linked)
         self.law = linked / "law"
         self.preludes = self.locked_part(

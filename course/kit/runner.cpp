@@ -1,13 +1,14 @@
 /** @file runner.cpp
  * main() of a test program for the grader:  PROGRAM TASK IN OUT PAGE CRASHING
- * QUESTIONS REPLIES  Runs the functions of TASK that are linked in, and
- * writes to the descriptor OUT how they ended. Then it runs those that ask for
- * numbers (asked.hpp), and writes what they answer; whether that is right is
- * known to the grader alone. What is asked is drawn from a seed that the grader
- * sends by IN once main() has begun. PAGE is memory shared with the grader; it
- * keeps what was done last, also when the program crashes or is ended. CRASHING
- * are aspects that no test is to look at: see probes() in check.hpp. QUESTIONS
- * and REPLIES lead to law.cpp, or are -1.
+ * QUESTIONS REPLIES  Runs the functions of TASK that are linked in, then those
+ * again that draw numbers, from a seed that the grader sends by IN once main()
+ * has begun. It writes to the descriptor OUT how they ended, and what they
+ * answer: the submission, with which a test shares its process, could change
+ * its verdict, but who can't compute the answers can't forge them. Whether they
+ * are right is known to the grader alone, who has those of the solution. PAGE
+ * is memory shared with the grader; it keeps what was done last, also when the
+ * program crashes or is ended. CRASHING are aspects that no test is to look at:
+ * see probes() in check.hpp. QUESTIONS and REPLIES lead to law.cpp, or are -1.
  *
  * Compiled apart from the submission: its macros reach nothing here. */
 #include <sys/mman.h>
@@ -23,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../asked/asked.hpp"
+#include "../asked/law.hpp"
 
 namespace {
 
@@ -42,7 +43,8 @@ constexpr std::size_t longest = 2000;  // characters of a text
 
 char* page = nullptr;  // "name aspect\0did\0"
 int out = -1, questions = -1, replies = -1;
-kit::Draw* draw = nullptr;
+kit::Draw* draw = nullptr;  // in the second run
+bool draws = false;         // the present test has drawn a number
 std::map<std::string, std::string> answers;  // "tolerance\tnumber number ..."
 unsigned long checks = 0;
 unsigned crashing = 0;  // aspects that probes() has nobody look at
@@ -83,23 +85,16 @@ void failed(const std::string& expected, const std::string& got) {
   send("failed\t" + plain(expected) + '\t' + plain(got));
 }
 
-/** Run all functions of this id, or end the program.  @return their number */
-std::size_t run_all(const std::string& id) {
-  // By name, whatever the order in which files were linked.
-  std::vector<Test> mine;
-  for (const Test& one : tests())
-    if (id == one.id) mine.push_back(one);
-  for (const Test& one : mine) {
-    keep(0, test = one.name);
-    keep(1, "");
-    try {
-      one.run();
-    } catch (const kit::Failure&) {  // no other: its trace says where it was
-      failed("no exception", "one of the tests' own");  // if it is a forged one
-    }
-    if (has_failed) _exit(1);
+/** Run a function, or end the program. */
+void run(const Test& one) {
+  keep(0, test = one.name);
+  keep(1, "");
+  try {
+    one.run();
+  } catch (const kit::Failure&) {  // no other: its trace says where it was
+    failed("no exception", "one of the tests' own");  // if it is a forged one
   }
-  return mine.size();
+  if (has_failed) _exit(1);
 }
 
 }  // namespace
@@ -108,7 +103,10 @@ namespace kit {
 Registered::Registered(const char* id, const char* name, void (*run)()) {
   tests().push_back({id, name, run});
 }
-void did(std::string text) { keep(1, plain(text)); }
+void did(std::string text) {
+  if (draw) text += "; numbers are drawn anew, as the public ones had passed";
+  keep(1, plain(text));
+}
 void checked() { ++checks; }
 bool probes(unsigned aspect) {
   if (aspect & crashing) return false;
@@ -120,7 +118,10 @@ void fail(std::string expected, std::string got) {
   throw Failure{"", expected, got};
 }
 
-double drawn(double least, double most) { return (*draw)(least, most); }
+double drawn(double usual, double least, double most) {
+  draws = true;
+  return draw ? (*draw)(least, most) : usual;
+}
 Point told(const Question& question) {
   Point reply;
   if (write(questions, &question, sizeof question) != sizeof question ||
@@ -155,10 +156,24 @@ int main(int count, char** arg) {
   if (read(in, word, sizeof word) != sizeof word) return 2;
   close(in);
 
-  const std::size_t ran = run_all(id);
-  kit::Draw of_task(word, id);
-  draw = &of_task;
-  run_all('?' + id);
+  // By name, whatever the order in which files were linked. A "?" begins the
+  // id of what is run with drawn numbers alone.
+  std::size_t ran = 0;
+  std::vector<Test> again;
+  for (const Test& one : tests()) {
+    if (one.id == '?' + id) again.push_back(one);
+    if (one.id != id) continue;
+    ++ran;
+    draws = false;
+    const auto before = answers;
+    run(one);
+    if (draws) again.push_back(one), answers = before;
+  }
+  for (const Test& one : again) {
+    kit::Draw of_test(word, one.name);
+    draw = &of_test;
+    run(one);
+  }
   for (const auto& [what, numbers] : answers)
     send("answer\t" + plain(what) + '\t' + numbers);
   send("passed\t" + std::to_string(ran) + '\t' + std::to_string(checks));

@@ -176,18 +176,22 @@ Graph.hpp:9:1: error: 'z' was not declared
             answers: sandbox.Answers = {
                 "x": (9e9, [1, 1e6]), "nodes in a loop?": (0, [4])}
             return judge.wrong({**answers, **change}, expected)
-        self.assertEqual(right(), "")
-        self.assertEqual(right(x=(0, [1 + 1e-10, 1e6 + 1e-4]), more=(0, [1])),
-                         "")
+        self.assertIsNone(right())
+        self.assertIsNone(right(x=(0, [1 + 1e-10, 1e6 + 1e-4]), more=(0, [1])))
         changes: tuple[dict, ...] = (
             {"x": (9, [1.1, 1e6])}, {"x": (9, [1])}, {"x": (9, [])},
             {"x": (9, [float("nan"), 1e6])}, {"K~": (0, [1])},
             {"nodes by index?": (0, [4])}, {"nodes in a loop?": (0, [5])})
         for wrong in changes:
-            self.assertEqual(right(**wrong), [*wrong][0].rstrip("?~"))
-        self.assertEqual(judge.wrong({"x": (0, [1, 1e6])}, expected), "nodes")
+            said = right(**wrong)
+            assert said
+            self.assertIn(f"of: {[*wrong][0].rstrip('?~')}", said[0])
+        self.assertEqual(right(x=(9, [1.25, 1e6])), (
+            "the solution's 2 numbers of: x, 1 as number 1", "1.25"))
+        self.assertEqual(judge.wrong({"x": (0, [1, 1e6])}, expected),
+                         ("answers of: nodes", "none"))
         self.assertEqual(judge.wrong({"nodes by index?": (0, [3])}, expected),
-                         "x")
+                         ("the solution's 2 numbers of: x", "0"))
 
     def test_names_of_a_submission(self):
         found = names.defines({"mass_spring.cpp": b"""

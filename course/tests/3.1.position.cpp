@@ -25,23 +25,25 @@ static void check_move(S& s, int v) {
       return all;
     };
     const auto before = others();
-    DID("n.position() = (0, 5, 1)");
-    n.position() = Point(0, 5, 1);
-    check_equal(position_of(n), Point(0, 5, 1), "n.position()");
-    DID("n.position() = (0, 5, 1), with an older copy of n");
-    check_equal(position_of(copy), Point(0, 5, 1), "copy.position()");
-    DID("n.position() = (0, 5, 1)");
-    check_equal(position_of(s.g.node(index)), Point(0, 5, 1),
+    const Point p = drawn_near(Point(0, 5, 1)), more = Point(1, 0, 1);
+    DID("n.position() = ", p);
+    n.position() = p;
+    check_equal(position_of(n), p, "n.position()");
+    DID("n.position() = ", p, ", with an older copy of n");
+    check_equal(answer("copy", position_of(copy)), p, "copy.position()");
+    DID("n.position() = ", p);
+    check_equal(position_of(s.g.node(index)), p,
                 "g.node(n.index()).position()");
-    DID("n.position() += (1, 0, 1)");
-    n.position() += Point(1, 0, 1);
-    check_equal(position_of(s.g.node(index)), Point(1, 5, 2),
+    DID("n.position() += ", more);
+    n.position() += more;
+    check_equal(answer("place", position_of(s.g.node(index))), p + more,
                 "g.node(n.index()).position()");
     CHECK_EQUAL(n.index(), index);
     if constexpr (requires { n.position().x += 1; }) {
       DID("n.position().x += 1");
       n.position().x += 1;
-      check_equal(position_of(copy), Point(2, 5, 2), "copy.position()");
+      check_equal(position_of(copy), p + more + Point(1, 0, 0),
+                  "copy.position()");
     }
     DID("n.position() = p");
     CHECK(before == others(), "the positions of all other nodes stay");

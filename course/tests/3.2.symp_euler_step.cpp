@@ -11,6 +11,7 @@ static Bodies three_bodies() {
   b.add(Point(0.3, 0.1, 0.2), 2.0, Point(1, -2, 0.5));
   b.add(Point(0.7, 0.4, -0.1), 0.5, Point(-3, 0, 1));
   b.add(Point(0.2, 0.9, 0.6), 4.0, Point(0, 2, -1));
+  b.vary();
   return b;
 }
 
@@ -26,6 +27,8 @@ static void step_and_compare(Cloth& g, Bodies& b, double t, double dt) {
   };
   TestForce force(law);
   const double returned = free_step(g, t, dt, force);
+  answer("time", returned);
+  answer_nodes(g, n);
 
   for (int i = 0; i < n; ++i) b.x[i] += dt * b.v[i];
   for (int i = 0; i < n; ++i)
@@ -50,7 +53,7 @@ TASK("3.2.symp_euler_step", step_moves_then_kicks) {
   Cloth g;
   Bodies b = three_bodies();
   fill(g, b);
-  const double t = 0.5, dt = 0.125;
+  const double t = drawn(0.5, 0, 1), dt = drawn(0.125, 0.01, 0.2);
   DID("three nodes of masses ", b.m[0], ", ", b.m[1], " and ", b.m[2],
       ", one step of dt = ", dt, " from t = ", t,
       " with a force that depends on t and on the next node's position");
@@ -62,7 +65,7 @@ TASK("3.2.symp_euler_step", step_after_step) {
   Bodies b = three_bodies();
   fill(g, b);
   double t = 0;
-  const double dt = 0.25;
+  const double dt = drawn(0.25, 0.01, 0.2);
   for (int step = 1; step <= 5; ++step, t += dt) {
     DID("three nodes of masses ", b.m[0], ", ", b.m[1], " and ", b.m[2],
         ", step ", step, " of dt = ", dt);

@@ -36,6 +36,7 @@ static bool usable(S& s, Handle h) {
 /** Set all values by one kind of handle, read them by all kinds. */
 template <typename S>
 static void check_values_set_by(Handle set, const Model& shape) {
+  const double more = drawn(1, 0, 2);
   S s(shape);
   if (!usable(s, set)) return;
   using Edge = decltype(handle(s, Ends(0, 1), set));
@@ -48,18 +49,22 @@ static void check_values_set_by(Handle set, const Model& shape) {
   need<reads>("value() of a const Edge");
   if constexpr (there && reads) {
     DID(description(shape), "; set the value of each edge by ", name(set));
-    for (Ends e : s.m.edges) handle(s, e, set).value() = 1 + e.value();
+    for (Ends e : s.m.edges) handle(s, e, set).value() = more + e.value();
     for (Handle get : {added, added_again, first_end, second_end, indexed}) {
       if (!usable(s, get)) continue;
       for (Ends e : s.m.edges) {
         const auto edge = handle(s, e, get);
-        check_equal(static_cast<double>(edge.value()), 1 + e.value(),
+        const double value = static_cast<double>(edge.value());
+        answer(words("values of ", description(shape), ", set by ", name(set),
+                     ", read by ", name(get), "?"),
+               value);
+        check_equal(value, more + e.value(),
                     words("the value of ", name(e), " by ", name(get)));
       }
     }
     if (!(s.works & edge_loop)) return;
     for (auto it = s.g.edge_begin(), end = s.g.edge_end(); !same(it, end); ++it)
-      CHECK_EQUAL((*it).value(), 1 + ends_of(*it).value());
+      CHECK_EQUAL((*it).value(), more + ends_of(*it).value());
   }
 }
 }  // namespace kit

@@ -12,6 +12,7 @@ static Bodies three_springs() {
   b.join(0, b.add(Point(1.25, 0.5, 0.5)), 100, 0.5);
   b.join(b.add(Point(0.25, 1.5, -0.5)), 0, 100, 1.5);
   b.join(0, b.add(Point(-0.5, 0, 1)), 100, 0.75);
+  b.vary(0.05);
   return b;
 }
 
@@ -33,8 +34,7 @@ static Point change_of_force(const Bodies& b, int i, int s, double K,
 /** The change is that of a cloth with this spring alone. (Whether it is the
  * right one for a single spring, another task asks.) */
 template <typename P>
-static void check_change(int s, double K, double L) {
-  const Bodies all = three_springs();
+static void check_change(const Bodies& all, int s, double K, double L) {
   Bodies alone = all;
   alone.springs[0] = all.springs[s];
   alone.num_springs = 1;
@@ -48,19 +48,36 @@ static void check_change(int s, double K, double L) {
   }
 }
 
+/** How the change grows with L, and its direction: for any law of a spring. */
+template <typename P>
+static void answer_changes(const Bodies& all, int s) {
+  const int end = all.springs[s].a;
+  const double L = all.springs[s].L;
+  const Point some =
+      change_of_force<P>(all, end, s, 100, L + drawn(0.75, 0.5, 1));
+  const Point large =
+      change_of_force<P>(all, end, s, 100, L + drawn(2, 1.5, 3));
+  answer("growth", norm(large) / norm(some));
+  const Point along = 1 / norm(large) * large;
+  answer("direction",
+         Point(std::abs(along.x), std::abs(along.y), std::abs(along.z)));
+}
+
 }  // namespace kit
 
 TASK("4.2.Problem1Force", problem1_own_springs) {
   CHECK(has_L && has_K, "an edge's value to hold the spring's K and L");
   with<KIT_FORCE(Problem1Force)>("Problem1Force", []<typename P>() {
     const double K = 40, L = 2;
+    const Bodies all = three_springs();
     for (int s : {0, 1, 2}) {
       DID("a node with three springs; L of spring ", s, " set to ", L,
           " m by its edge's value()");
-      check_change<P>(s, 100, L);
+      check_change<P>(all, s, 100, L);
       DID("a node with three springs; K of spring ", s, " set to ", K,
           " N/m by its edge's value()");
-      check_change<P>(s, K, three_springs().springs[s].L);
+      check_change<P>(all, s, K, all.springs[s].L);
+      answer_changes<P>(all, s);
     }
   });
 }

@@ -6,6 +6,7 @@ TASK("6.1.PlaneConstraint", plane_is_solid) {
   Bodies b;
   for (double z : {-0.5, -0.875, 0., -0.7499, -0.7501, -3., 2., -0.75, -0.875})
     b.add(Point(0.25 * b.size, 0.5, z), 0.5, Point(1, -2, z < -2 ? 4 : -4));
+  b.vary();
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.5);
   Cloth g;
   fill(g, b);
@@ -14,6 +15,7 @@ TASK("6.1.PlaneConstraint", plane_is_solid) {
     auto plane = made_plane<C>();
     constrain(plane, g);
   });
+  answer_nodes(g, b.size);
   for (int i = 0; i < b.size; ++i) {
     const bool below = b.x[i].z < -0.75;
     DID("a node at ", b.x[i], " with velocity ", b.v[i]);

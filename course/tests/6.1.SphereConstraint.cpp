@@ -15,9 +15,10 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
   Place places[Bodies::most];
   for (const Point& d :
        {Point(0, 0, 1), Point(1. / 3, -2. / 3, 2. / 3), Point(0, -0.6, -0.8)})
-    for (double radii : {0.5, 1.01, 0.9, 3., 0.125}) {
+    for (double usual : {0.5, 1.01, 0.9, 3., 0.125}) {
+      const double radii = drawn(usual, 0.1, 2);
       places[b.size] = {d, radii};
-      b.add(c + radii * r * d, 0.5, Point(1, -2, -4));
+      b.add(c + radii * r * d, 0.5, drawn_near(Point(1, -2, -4)));
     }
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
   Cloth g;
@@ -27,6 +28,7 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
     auto sphere = made_sphere<C>();
     constrain(sphere, g);
   });
+  answer_nodes(g, b.size);
   for (int i = 0; i < b.size; ++i) {
     DID("a node at ", places[i].how_far, " radii from the center, in the ",
         "direction ", places[i].direction, ", with velocity ", b.v[i]);

@@ -56,10 +56,7 @@ static C part() {
 
 /** Apply @a all, and compare with the first @a how_many parts. */
 template <typename All>
-static void compare_combined(All all, int how_many) {
-  Bodies b;
-  b.add(Point(0.5, 0.25, -1), 1, Point(1, 2, 3));
-  b.add(Point(4, 0.5, 2), 1, Point(1, 2, 3));
+static void compare_combined(All all, const Bodies& b, int how_many) {
   const double t = 2;
   Cloth g;
   fill(g, b);
@@ -67,6 +64,7 @@ static void compare_combined(All all, int how_many) {
   [[maybe_unused]] volatile double other_numbers[256] = {};
   apply(all, g, t, how_many);
   for (int i = 0; i < b.size; ++i) {
+    answer("all of the test's?", place(g, i));
     Point expected = b.x[i];
     for (int which = 1; which <= how_many; ++which)
       for (int k = 0; k < 3; ++k) expected[k] = changed(which, expected[k], t);
@@ -76,35 +74,32 @@ static void compare_combined(All all, int how_many) {
 }
 
 template <typename C>
-static void combine_constraints() {
+static void combine_constraints(const Bodies& b) {
   {
     DID("x -> 2x + t, then x -> 3x - 5t, both temporaries");
     auto all = constraints_of(part<C, 1>(), part<C, 2>());
-    compare_combined(all, 2);
+    compare_combined(all, b, 2);
   }
   {
     DID("x -> 2x + t, then x -> 3x - 5t, both variables");
     auto c1 = part<C, 1>();
     auto c2 = part<C, 2>();
     auto all = constraints_of(c1, c2);
-    compare_combined(all, 2);
+    compare_combined(all, b, 2);
   }
   {
     DID("x -> 2x + t, then x -> 3x - 5t, then x -> 7x + 11t, all temporaries; "
         "others were combined after them");
     auto all = constraints_of(part<C, 1>(), part<C, 2>(), part<C, 3>());
     auto others = constraints_of(part<C, 3>(), part<C, 1>());
-    compare_combined(all, 3);
+    compare_combined(all, b, 3);
   }
 }
 
 /** If the submission's constraints have a base class that is not known here,
  * they are combined themselves. Their order matters at the plane's height. */
 template <typename Plane, typename Sphere>
-static void combine_own() {
-  Bodies b;
-  b.add(Point(0.5, 0.5, -0.4), 1, Point(1, 2, 3));
-  b.add(Point(0.5, 0.25, -2), 1, Point(1, 2, 3));
+static void combine_own(const Bodies& b) {
   for (int how_many : {2, 3}) {
     DID(how_many, " constraints, all temporaries: planes and a sphere");
     Cloth one, other;
@@ -123,7 +118,7 @@ static void combine_own() {
       apply(all, other, 0, 3);
     }
     for (int i = 0; i < b.size; ++i) {
-      const Point position = place(other, i);
+      const Point position = answer("all of its own?", place(other, i));
       CHECK_NEAR(position, place(one, i), 1e-12);
       CHECK(norm(place(one, i) - b.x[i]) > 0, "the parts to do anything");
     }
@@ -132,10 +127,17 @@ static void combine_own() {
 
 template <typename Plane, typename Sphere>
 static void combine_constraints_like() {
-  if constexpr (base_is_unknown<Plane, FreeConstraint>() && Complete<Sphere>)
-    combine_own<Plane, Sphere>();
-  else
-    combine_constraints<TestConstraint>();
+  Bodies b, inside;
+  b.add(Point(0.5, 0.25, -1), 1, Point(1, 2, 3));
+  b.add(Point(4, 0.5, 2), 1, Point(1, 2, 3));
+  inside.add(Point(0.5, 0.5, -0.4), 1, Point(1, 2, 3));
+  inside.add(Point(0.5, 0.25, -2), 1, Point(1, 2, 3));
+  b.vary();
+  inside.vary(0.03);
+  constexpr bool own =
+      base_is_unknown<Plane, FreeConstraint>() && Complete<Sphere>;
+  if constexpr (own || answers_all) combine_own<Plane, Sphere>(inside);
+  if constexpr (!own) combine_constraints<TestConstraint>(b);
 }
 
 }  // namespace kit

@@ -215,6 +215,40 @@ static void check_costs(bool squares) {
 }
 }  // namespace kit
 
+namespace kit {
+/** That these calls remove anything: nodes without edges, and edges that share
+ * no node, the last one first. No list that a wrong removal leaves behind is
+ * read here, as that is of other tasks. */
+template <typename G>
+static void answer_what_goes(G& nodes_go, G& edges_go) {
+  const std::size_t pairs = 100, go = std::size_t(drawn(50, 20, 80));
+  for (std::size_t i = 0; i < 2 * pairs; ++i) {
+    add_node(nodes_go, place(int(i)), int(i));
+    add_node(edges_go, place(int(i)), int(i));
+  }
+  for (std::size_t i = 0; i < pairs; ++i)
+    add_edge(edges_go, node_at(edges_go, 2 * i), node_at(edges_go, 2 * i + 1));
+  const double edges = double(edges_go.num_edges());
+  for (std::size_t i = 1; i <= go; ++i) {
+    auto n = node_at(nodes_go, 2 * pairs - i);
+    take_out_node(nodes_go, n);
+    auto a = node_at(edges_go, 2 * (pairs - i));
+    auto at = a.edge_begin(), end = a.edge_end();
+    if (same(at, end)) continue;  // an earlier removal took it, too
+    auto e = *at;
+    take_out_edge(edges_go, e);
+  }
+  answer("nodes", double(nodes_go.num_nodes()));
+  // How many there are is of other tasks.
+  answer("edges gone", edges - double(edges_go.num_edges()));
+}
+}  // namespace kit
+
+TASK("7.1.cost", what_is_counted_removes) {
+  TestGraph nodes_go, edges_go;
+  answer_what_goes(nodes_go, edges_go);
+}
+
 TASK("7.1.cost", cost_does_not_grow_with_the_graph) {
 #ifndef KIT_UNCOUNTED
   check_that_it_counts();

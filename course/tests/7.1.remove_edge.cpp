@@ -88,7 +88,8 @@ TASK("7.1.remove_edge", all_edges_are_removed) {
 
 TASK("7.1.remove_edge", edges_come_and_go) {
   TestSubject s(ring(8));
-  Dice dice{7};
+  s.tells = true;
+  Dice dice = drawn_dice(7);
   for (int step = 0; step < 200; ++step) {
     const auto after = words("step ", step, " of a random history: ");
     if (s.m.edges.empty() || dice(2) == 0) {

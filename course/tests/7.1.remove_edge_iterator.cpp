@@ -40,6 +40,8 @@ static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
 }
 }  // namespace kit
 
+static bool chosen[64];  // by the ends: 8 a + b
+
 TASK("7.1.remove_edge_iterator", the_loop_leaves_no_edge) {
   const auto loop = [](const Model& shape, const char* which,
                        bool (*wanted)(Ends)) {
@@ -62,4 +64,11 @@ TASK("7.1.remove_edge_iterator", the_loop_leaves_no_edge) {
     loop(shape, "none", [](Ends) { return false; });
     loop(shape, "all", [](Ends) { return true; });
   }
+  Dice dice = drawn_dice(71);
+  for (bool& one : chosen) one = dice(2) == 0;
+  TestSubject s(wheel(8));
+  s.tells = true;
+  DID("a wheel of 8 nodes; a loop that removes some, by dice");
+  remove_edges_in_a_loop(
+      s, [](Ends e) { return e.a >= 0 && chosen[8 * e.a + e.b]; });
 }

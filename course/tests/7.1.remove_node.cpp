@@ -34,7 +34,8 @@ TASK("7.1.remove_node", the_edges_go_with_the_node) {
 
 TASK("7.1.remove_node", a_grid_is_emptied_and_built_again) {
   TestSubject s(grid(4));
-  Dice dice{71};
+  s.tells = true;
+  Dice dice = drawn_dice(71);
   int count = 0;
   while (!s.m.nodes.empty()) {
     int v = s.m.nodes[dice(s.m.nodes.size())];

@@ -50,9 +50,12 @@ static void tear_and_compare(const Bodies& b) {
   } else {
     fail("a class TearConstraint", "none");
   }
+  answer("nodes", double(g.num_nodes()));
+  answer("edges", double(g.num_edges()));
   int left = 0;
   for (int i = 0; i < b.size; ++i) {
     const int k = index_of(g, b, i);
+    answer("left", k >= 0);
     left += !in_ball(b.x[i]);
     if (in_ball(b.x[i])) {
       CHECK(k < 0, words("the node at ", b.x[i], ", inside, to be removed"));
@@ -92,6 +95,7 @@ TASK("7.2.TearConstraint", tear_looks_at_the_radius) {
     for (const Point& d : {Point(0, 0, 1), Point(0, 0, -1), Point(0.6, 0, 0.8),
                            Point(-0.6, -0.8, 0)})
       b.add(Point(0.5, 0.5, -0.5) + radius * d, 1, Point(0, 0, 0.001 * b.size));
+  b.vary(0.05);
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
   DID("24 nodes at 0.05 to 0.3 m from the center of the ball");
   tear_and_compare<Tear>(b);

@@ -43,6 +43,27 @@ void checked();
  * not any more.  @return false if an earlier run crashed there: look away */
 bool probes(unsigned aspect);
 
+// A grader runs each test that draws numbers once more, with other numbers, and
+// compares what the submission answers then with what the solution does. So an
+// answer is given before what is expected is there, and depends on nothing that
+// the assignment leaves open. Its name ends with '?' if it depends on what
+// another task asks for: of those with the same first word at least one is to
+// be given, and none wrong; with '~' if it may be missing.
+
+/** @a usual, or in the grader's second run a number in [least, most). How many
+ * a test draws before an answer depends on no submission. */
+double drawn(double usual, double least, double most);
+/** The next of the numbers called @a what, right if within @a tolerance. */
+void answer(const std::string& what, double number, double tolerance = 1e-9);
+Point answer(const std::string& what, const Point& p, double tolerance = 1e-9);
+
+/** Does the solution answer, for all forms of a submission? */
+#ifdef KIT_SOLUTION
+inline constexpr bool answers_all = true;
+#else
+inline constexpr bool answers_all = false;
+#endif
+
 /** A grader that wants the compiler's own words for what does not compile
  * defines KIT_MUST_COMPILE: then no test looks whether it does. */
 #ifdef KIT_MUST_COMPILE
@@ -73,6 +94,9 @@ struct Word {
   ~Word();
 };
 std::string join(std::initializer_list<Word> words);
+
+/** A point up to @a far from @a p along each axis; @a p where none is drawn. */
+Point drawn_near(const Point& p, double far = 1);
 
 bool near(double a, double b, double tolerance);
 bool near(const Point& a, const Point& b, double tolerance);

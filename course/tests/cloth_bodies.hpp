@@ -84,5 +84,13 @@ void fill(G& g, const Bodies& bodies) {
   set_springs(g, bodies);
 }
 
+/** Answer where the nodes are, and how fast. */
+inline void answer_nodes(Cloth& g, int n) {
+  for (int i = 0; i < n; ++i) {
+    answer("position", place(g, i));
+    answer("velocity", velocity(g, i));
+  }
+}
+
 }  // namespace kit
 #endif

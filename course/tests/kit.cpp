@@ -44,6 +44,16 @@ std::string join(std::initializer_list<Word> words) {
 
 // --------------------------------------------------------------------- Checks
 
+Point drawn_near(const Point& p, double far) {
+  Point near;
+  for (int k : {0, 1, 2}) near[k] = drawn(p[k], p[k] - far, p[k] + far);
+  return near;
+}
+Point answer(const std::string& what, const Point& p, double tolerance) {
+  for (double a : {p.x, p.y, p.z}) answer(what, a, tolerance);
+  return p;
+}
+
 bool near(double a, double b, double tolerance) {
   return std::abs(a - b) <= tolerance;  // false of NaN
 }
@@ -155,6 +165,9 @@ std::string description(const Model& m) {
                count(m.edges.size(), "edge"));
 }
 
+Dice drawn_dice(std::uint32_t usual) {
+  return {std::uint32_t(drawn(usual, 0, 4294967296.))};
+}
 int Dice::operator()(std::size_t n) {
   state = state * 1664525u + 1013904223u;
   return int((state >> 8) % n);
@@ -393,6 +406,7 @@ void Beside::hold(unsigned aspects) {
   checked();
   const Fault fault = look_at_all(*view_, m, aspects);
   if (!fault.expected.empty()) fail(fault.expected, fault.got);
+  if (tells) tell(*view_, aspects);
 }
 std::optional<std::size_t> Beside::find(int v) {
   const auto there = view_->num_nodes();

@@ -62,6 +62,8 @@ struct Dice {
   /** In [0, n). */
   int operator()(std::size_t n);
 };
+/** Of this seed, or in the grader's second run of another. */
+Dice drawn_dice(std::uint32_t usual);
 
 /** An edge as a loop or edge(i) gives it. */
 struct Seen {
@@ -110,6 +112,9 @@ enum Aspect : unsigned {
   dead_edges = 4096  // what a handle of a removed edge does
 };
 
+/** Answer what @a g holds, in these ways: a runner defines it. */
+void tell(View& g, unsigned aspects);
+
 /** A graph under test and what it should hold.
  *
  * A test of a later section starts from what works in this graph: an aspect
@@ -118,6 +123,7 @@ enum Aspect : unsigned {
 struct Beside {
   Model m;
   unsigned works = 0;
+  bool tells = false;  ///< hold() answers what the graph holds, too
 
   explicit Beside(const Model& shape);
   Beside(const Beside&) = delete;
