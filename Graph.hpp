@@ -50,6 +50,8 @@
 template <typename V = graph_detail::NoValue,
           typename E = graph_detail::NoValue>
 class Graph {
+  static_assert(!std::is_const_v<V> && !std::is_const_v<E>,
+                "values of a Graph can change: their types are not const");
   template <typename T>
   using Array = graph_detail::Array<T>;
   template <typename Proxy, bool of_one_node>

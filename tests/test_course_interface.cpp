@@ -286,18 +286,21 @@ CME212::TestFolder::Result compile(const std::string& year,
                     folder / "program.cpp");
 }
 
-TEST(Layouts, AValueThatCantBeCopiedIsRefusedInASentence) {
+TEST(Layouts, AValueThatNoGraphCanKeepIsRefusedInASentence) {
   CME212::TestFolder folder;
-  for (const char* value :
-       {"std::unique_ptr<int>", "std::reference_wrapper<int>"}) {
+  const char *copyable = "values of a Graph are copyable",
+             *changes = "values of a Graph can change";
+  for (auto [value, why] : {std::pair("std::unique_ptr<int>", copyable),
+                            {"std::reference_wrapper<int>", copyable},
+                            {"const int", changes}}) {
     std::ofstream(folder / "a.cpp")
         << "#include \"Graph.hpp\"\n#include <memory>"
            "\nGraph<"
         << value << ", int> g;\n";
     const auto result =
         folder.run("c++ -std=c++20 -fsyntax-only -I. " + folder / "a.cpp");
-    EXPECT_NE(result.err.find("values of a Graph are copyable"),
-              std::string::npos)
+    EXPECT_LT(result.err.find(why),
+              result.err.find('\n', result.err.find("error: ")))
         << result.err;
   }
 }

@@ -134,6 +134,23 @@ static Start start_of_program() { fail("build_cloth() or main()", "neither"); }
 #endif
 
 #if __has_include("mass_spring.hpp")
+/** K is what build_cloth() is given, if it takes one. */
+template <typename G>
+static void check_given_K(const std::vector<Point>& points,
+                          const std::vector<Quad>& quads) {
+  if constexpr (requires(G g) {
+                  ::build_cloth(g, points, quads, MeshSprings::plain, 60.);
+                  *K_in((*g.edge_begin()).value());
+                }) {
+    DID("build_cloth() of 16 points and 7 quads, with K = 60");
+    G g;
+    ::build_cloth(g, points, quads, MeshSprings::plain, 60.);
+    for (auto it = g.edge_begin(); it != g.edge_end(); ++it) {
+      const double K = *K_in((*it).value());
+      CHECK_NEAR(K, 60., 0);
+    }
+  }
+}
 template <typename G>
 static Start start_of_cloth(G& g) {
   const std::vector<Point> points = cloth_points();
@@ -143,6 +160,7 @@ static Start start_of_cloth(G& g) {
                     ::build_cloth(g, points, quads, MeshSprings::diagonals)
                     } -> Present;
                 }) {
+    check_given_K<G>(points, quads);
     DID("build_cloth() of 16 points and 7 quads, with diagonals");
     ::build_cloth(g, points, quads, MeshSprings::diagonals);
     return start_of(g);

@@ -9,7 +9,7 @@ namespace kit {
 static Bodies four_bodies() {
   Bodies b;
   b.add(Point(0.5, 0.5, 0), 0.125, Point(1, 0, 0));
-  b.add(Point(0.25, 0.5, -1), 2, Point(-2, 3, 5));
+  b.add(Point(1, 0, 0), 2, Point(-2, 3, 5));  // no exception for corners
   b.add(Point(0.75, 1, 1), 0.5, Point(0, 0, 0));
   b.add(Point(2, 1, 3), 1, Point(0.5, -8, 0.25));
   return b;

@@ -14,6 +14,17 @@ TASK("6.1.PlaneConstraint", plane_is_solid) {
     check_is_constraint<C>("PlaneConstraint");
     auto plane = made_plane<C>();
     constrain(plane, g);
+    if constexpr (requires { C(2).z; }) {  // as in the guided starter
+      DID("PlaneConstraint(2) and a node at z = 1");
+      Bodies low;
+      low.add(Point(0, 0, 1));
+      Cloth other;
+      fill(other, low);
+      C higher(2);
+      constrain(higher, other);
+      const Point position = place(other, 0);
+      CHECK_NEAR(position, Point(0, 0, 2), 1e-12);
+    }
   });
   answer_nodes(g, b.size);
   for (int i = 0; i < b.size; ++i) {

@@ -27,6 +27,12 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
     check_is_constraint<C>("SphereConstraint");
     auto sphere = made_sphere<C>();
     constrain(sphere, g);
+    with_ball<C>([](auto& ball, Cloth& other) {
+      constrain(ball, other);
+      const Point outside = place(other, 0), inside = place(other, 1);
+      CHECK_NEAR(outside, Point(0.5, 0.5, -0.5), 0);
+      CHECK_NEAR(inside, Point(3, 2, 2), 1e-12);
+    });
   });
   answer_nodes(g, b.size);
   for (int i = 0; i < b.size; ++i) {

@@ -89,6 +89,13 @@ TASK("7.2.TearConstraint", tear_removes_what_is_inside) {
   }
 }
 
+TASK("7.2.TearConstraint", tear_takes_a_ball) {
+  with_ball<Tear>([](auto& ball, Cloth& g) {
+    constrain(ball, g);
+    CHECK_EQUAL(g.num_nodes(), 1);
+  });
+}
+
 TASK("7.2.TearConstraint", tear_looks_at_the_radius) {
   Bodies b;
   for (double radius : {0.149, 0.151, 0.1, 0.2, 0.3, 0.05})

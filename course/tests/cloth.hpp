@@ -93,6 +93,7 @@ struct PlaneConstraint;
 struct SphereConstraint;
 struct TearConstraint;
 struct CombinedConstraints;
+struct Ball;
 struct Missing {};
 inline constexpr Missing K, L, C, c;
 template <typename... T>

@@ -154,6 +154,23 @@ C made_sphere() {
     return C(0.15, center);
 }
 
+/** If @a C is made from a Ball, as in the guided starter: test(c, g), with c at
+ * (2, 2, 2) of radius 1, and two nodes, the second inside it. */
+template <typename C, typename Test, typename Ball = ::Ball>
+void with_ball(Test test) {
+  if constexpr (requires { C(Ball{Point(2, 2, 2), 1.}); }) {
+    did("a ball at (2, 2, 2) of radius 1, and nodes at (0.5, 0.5, -0.5) and "
+        "(2.5, 2, 2)");
+    Bodies b;
+    b.add(Point(0.5, 0.5, -0.5));
+    b.add(Point(2.5, 2, 2));
+    Cloth g;
+    fill(g, b);
+    C c(Ball{Point(2, 2, 2), 1.});
+    test(c, g);
+  }
+}
+
 /** Is there a step without a constraint? A program of section 6 may have the
  * other one alone. */
 template <typename G>
