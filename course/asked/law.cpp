@@ -6,7 +6,6 @@
  * many it was asked for, on each node of net 0. */
 #include <unistd.h>
 
-#include "../tests/model.hpp"
 #include "../tests/trial.hpp"
 #include "law.hpp"
 
@@ -16,7 +15,6 @@ void fail(std::string, std::string) { std::abort(); }
 bool probes(unsigned) { return false; }
 double drawn(double usual, double, double) { return usual; }
 void answer(const std::string&, double, double) {}
-void tell(View&, unsigned) {}
 }  // namespace kit
 
 int main() {

@@ -42,8 +42,7 @@ LINK: dict[str, list[str]] = {
     "counted": [],
 }
 # What each test program is linked with, of the kit's own.
-LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp",
-          ROOT / "course/asked/tell.cpp"]
+LINKED = [KIT / "runner.cpp", TESTS / "kit.cpp"]
 LAW = ROOT / "course/asked/law.cpp"
 PATIENCE = 600      # seconds for a step of the kit's own
 UNUSED = 3600       # seconds after which a part that is not used is removed

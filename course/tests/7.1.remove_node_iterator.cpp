@@ -9,9 +9,16 @@ template <typename S>
 static void remove_nodes_in_a_loop(S& s, bool (*wanted)(int)) {
   const unsigned worked = s.works;
   S one_by_one(s.m);
-  for (int v : s.m.nodes)
-    if (wanted(v) && s.works == worked)
+  std::size_t left = s.m.nodes.size();
+  for (std::size_t i = 0; i < left && s.works == worked;) {  // as the loop goes
+    const int v = name_of(node_at(one_by_one.g, i));
+    if (!wanted(v)) {
+      ++i;
+    } else {
       s.works &= one_by_one.try_to_remove_node(v);
+      --left;
+    }
+  }
   if (s.works != worked && !s.m.edges.empty()) return;
   const std::size_t size = s.m.nodes.size(), limit = size * size + size + 1;
   std::vector<bool> met(size);

@@ -93,6 +93,8 @@ TASK("7.2.TearConstraint", tear_takes_a_ball) {
   with_ball<Tear>([](auto& ball, Cloth& g) {
     constrain(ball, g);
     CHECK_EQUAL(g.num_nodes(), 1);
+    const Point position = place(g, 0);
+    CHECK_NEAR(position, Point(0.5, 0.5, -0.5), 0);
   });
 }
 

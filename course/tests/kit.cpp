@@ -224,6 +224,35 @@ Fault missing(const std::string& member) {
   return {member + " to compile", "an error"};
 }
 
+using Number = View::Number;
+/** Numbers that a look has read of the graph: for an answer. */
+std::vector<Number> noted;
+void note(Number v, double w) { noted.push_back(v * 10000 + std::llround(w)); }
+void note(const Seen& e, bool value) {
+  note(e.ends.a * 10000ll + e.ends.b, value ? 2 * e.value.value_or(0) : 0);
+}
+/** A number that stands for all of them, whatever their order. */
+double digest() {
+  std::sort(noted.begin(), noted.end());
+  std::uint64_t hash = noted.size();
+  for (Number x : noted) {
+    hash = (hash ^ std::uint64_t(x)) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 29;
+  }
+  return double(hash >> 20);
+}
+/** The name of its answer. */
+const char* title(Aspect what) {
+  const char* names[] = {
+      "nodes by index?",         "nodes with values?",
+      "nodes in a loop?",        "edges in number?",
+      "edges by index?",         "edges with values?",
+      "edges in a loop?",        "edges at nodes?",
+      "edges from nodes?",       "edges with values at nodes?",
+      "edges counted at nodes?", "edges by has_edge?"};
+  return names[std::countr_zero(unsigned(what))];
+}
+
 Fault look_at_indices(View& g, const Model& m) {
   std::vector<int> seen;
   for (std::size_t i = 0; i < m.nodes.size(); ++i) {
@@ -235,6 +264,7 @@ Fault look_at_indices(View& g, const Model& m) {
                     "not removed"),
               text(at)};
     seen.push_back(node_named(at));
+    note(seen.back(), 0);
   }
   return not_once(seen, m.nodes, "node(i), of all i,");
 }
@@ -244,6 +274,7 @@ Fault look_at_node_values(View& g, const Model& m) {
     const int v = node_named(g.position(i));
     const auto value = g.node_value(i);
     if (!value) return missing("value() of a node");
+    note(v, *value);
     if (*value != value_of_node(v))
       return unequal(words("the value of ", name(v)), value_of_node(v), *value);
   }
@@ -260,6 +291,7 @@ Fault look_at_edge_indices(View& g, const Model& m, bool values) {
       return unequal(words("edge(", i, ").value(), of ", name(e->ends), ","),
                      e->ends.value(), *e->value);
     seen.push_back(*e);
+    note(*e, values);
   }
   return not_once(ends(seen), m.edges, "edge(i), of all i,");
 }
@@ -270,6 +302,7 @@ Fault look_at_edges_at(View& g, const Model& m, std::size_t i, Aspect what) {
   if (what == degrees) {
     const auto degree = g.degree(i);
     if (!degree) return missing("degree() of a node");
+    note(v, double(*degree));
     if (*degree != View::Number(expected.size()))
       return unequal(words("degree() of ", name(v)), expected.size(), *degree);
     return {};
@@ -280,6 +313,11 @@ Fault look_at_edges_at(View& g, const Model& m, std::size_t i, Aspect what) {
   Fault fault =
       after_walk(g.edges_at(i, expected.size(), seen), range, expected.size());
   if (!fault.expected.empty()) return fault;
+  for (const Seen& e : seen)
+    if (what == seen_from)
+      note(v, e.first);
+    else
+      note(e, what == incident_values);
   if (what == incident_loop) return not_once(ends(seen), expected, range);
   for (const Seen& e : seen) {
     if (what == seen_from && e.first != v)
@@ -300,10 +338,11 @@ Fault look_at_adjacency(View& g, const Model& m) {
     for (std::size_t j = 0; j < m.nodes.size(); ++j) {
       if (i == j) continue;  // left open
       const int v = node_named(g.position(i)), w = node_named(g.position(j));
-      const bool expected = m.has(Ends(v, w));
-      if (g.has_edge(i, j) != expected)
+      const bool expected = m.has(Ends(v, w)), there = g.has_edge(i, j);
+      if (there) note(v, w);
+      if (there != expected)
         return unequal(words("has_edge(", name(v), ", ", name(w), ")"),
-                       expected, !expected);
+                       expected, there);
     }
   return {};
 }
@@ -318,6 +357,7 @@ Fault look(View& g, const Model& m, Aspect what) {
       g.num_edges() != View::Number(edges))
     return unequal("num_edges()", edges, g.num_edges());
   Fault fault;
+  if (what == edge_count) note(g.num_edges(), 0);
   switch (what) {
     case by_index:
       return look_at_indices(g, m);
@@ -327,6 +367,7 @@ Fault look(View& g, const Model& m, Aspect what) {
       const std::string range = "a loop from node_begin() to node_end()";
       std::vector<int> seen;
       fault = after_walk(g.nodes(size, seen), range, size);
+      for (int v : seen) note(v, 0);
       return fault.expected.empty() ? not_once(seen, m.nodes, range) : fault;
     }
     case edge_indices:
@@ -337,6 +378,7 @@ Fault look(View& g, const Model& m, Aspect what) {
       const std::string range = "a loop from edge_begin() to edge_end()";
       std::vector<Seen> seen;
       fault = after_walk(g.edges(edges, seen), range, edges);
+      for (const Seen& e : seen) note(e, false);
       return fault.expected.empty() ? not_once(ends(seen), m.edges, range)
                                     : fault;
     }
@@ -352,13 +394,6 @@ Fault look(View& g, const Model& m, Aspect what) {
     default:
       return fault;
   }
-}
-
-Fault look_at_all(View& g, const Model& m, unsigned aspects) {
-  Fault fault;
-  for (unsigned a = 1; a < all_aspects && fault.expected.empty(); a *= 2)
-    if (aspects & a) fault = look(g, m, Aspect(a));
-  return fault;
 }
 
 sigjmp_buf before_look;
@@ -404,9 +439,13 @@ unsigned Beside::still_works() {
 void Beside::hold() { hold(works | by_index); }
 void Beside::hold(unsigned aspects) {
   checked();
-  const Fault fault = look_at_all(*view_, m, aspects);
-  if (!fault.expected.empty()) fail(fault.expected, fault.got);
-  if (tells) tell(*view_, aspects);
+  for (unsigned a = 1; a < all_aspects; a *= 2) {
+    if (!(aspects & a)) continue;
+    noted.clear();
+    const Fault fault = look(*view_, m, Aspect(a));
+    if (!fault.expected.empty()) fail(fault.expected, fault.got);
+    if (tells) answer(title(Aspect(a)), digest());
+  }
 }
 std::optional<std::size_t> Beside::find(int v) {
   const auto there = view_->num_nodes();

@@ -22,7 +22,6 @@
 #include <regex>
 
 #include "check.hpp"
-#include "model.hpp"
 
 namespace kit {
 namespace {
@@ -193,7 +192,6 @@ void fail(std::string expected, std::string got) {
 void checked() { ++checks; }
 double drawn(double usual, double, double) { return usual; }
 void answer(const std::string&, double, double) {}
-void tell(View&, unsigned) {}
 bool probes(unsigned aspect) {
   if (aspect & crashing) return false;
   last().aspect = aspect;

@@ -112,9 +112,6 @@ enum Aspect : unsigned {
   dead_edges = 4096  // what a handle of a removed edge does
 };
 
-/** Answer what @a g holds, in these ways: a runner defines it. */
-void tell(View& g, unsigned aspects);
-
 /** A graph under test and what it should hold.
  *
  * A test of a later section starts from what works in this graph: an aspect
