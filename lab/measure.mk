@@ -53,14 +53,14 @@ try:
 	  "within a minute" >&2
 	@tools/deps.sh grade draw && python3 lab/try/try.py
 
-# ./cloth with a step of one's own: lab/try/film.py gives what TRY_ names.
+# ./cloth with a method "yours": lab/try/film.py gives what TRY_ names, and builds
+# another one in the jail by the words that this writes.
 .PHONY: try_film
 try_film: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
-	@$(CXX) $(lab_flags) $(speed) -w \
-	  -DTRY_FILE="\"$$TRY_FILE\"" -DTRY_STEP=$$TRY_STEP \
-	  -DTRY_ORDER=$$TRY_ORDER -DTRY_SWEEPS=$$TRY_SWEEPS \
-	  -DTRY_LIMIT=$$TRY_LIMIT -o $$TRY_OUT lab/try/film.cpp \
-	  $(filter-out %/libviewer.a,$^) $(draw_libs) $(LDLIBS)
+	@$(CXX) $(lab_flags) $(speed) -w $$TRY_DEFINES -o $$TRY_OUT \
+	  lab/try/film.cpp $(filter-out %/libviewer.a,$^) $(draw_libs) $(LDLIBS)
+	@echo $(lab_flags) $(speed) $(filter-out %/libviewer.a,$^) $(draw_libs) \
+	  $(LDLIBS)
 
 # ---- Charts: lab/charts/README.md
 

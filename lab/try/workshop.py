@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "course/kit"))
@@ -162,23 +163,27 @@ class Workshop:
         """Are Graph.hpp and mass_spring.hpp those of the course?"""
         return not {"Graph.hpp", "mass_spring.hpp"} & self.taken.files.keys()
 
-    def compile(self, kind: str = "fast") -> pathlib.Path:
-        """The probe; BadInput names the first error of the file."""
+    def compile(self, kind: str = "fast",
+                source: pathlib.Path = ROOT / "lab/try/probe.cpp",
+                words: Sequence = ()) -> pathlib.Path:
+        """The probe, or what `source` and `words` for the compiler make;
+        BadInput names the first error of the file."""
         if kind in self.programs:
             return self.programs[kind]
         program = self.sources.built / kind
-        command = [once.CXX, *COMMON, *FLAGS[kind],
+        probe = kind in FLAGS
+        command = [once.CXX, *([*COMMON, *FLAGS[kind]] if probe else []),
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
                    "-iquote", self.sources.source,
                    f"-ffile-prefix-map={self.sources.source}="
                    + str(self.path.parent),
                    *(["-include", self.prelude / f"{kind}.hpp"]
-                     if self.of_the_course() else []),
+                     if probe and self.of_the_course() else []),
                    f'-DTRY_FILE="{self.sources.source}/{self.path.name}"',
                    f'-DTRY_UNDEFINED="{self.sources.undefined}"',
                    f"-DTRY_STEP={self.step}",
                    f"-DTRY_ARGUMENTS={self.arguments}",
-                   ROOT / "lab/try/probe.cpp", "-o", program]
+                   source, *words, "-o", program]
         unit = self.sources.compiled(command, COMPILING)
         if unit.refused:
             raise BadInput(f"{self.path}:1: {unit.refused}")
