@@ -313,7 +313,7 @@ TEST(Stencil, FindsTheConstantOffsetsOfAGrid) {
          {MeshSprings::plain, MeshSprings::diagonals}) {
       Cloth g;
       build_cloth(g, grid_points(side), grid_quads(side), mesh);
-      const Stencil<8> s(g);
+      const Stencil<8> s(g, [](unsigned, unsigned) { return false; });
       const unsigned degree = mesh == MeshSprings::plain ? 4 : 8;
       EXPECT_GE(s.num_rows(), degree * (side - 2) * side / 8);
       EXPECT_LE(s.num_rows(), degree * (side * side / 8 + 2 * side));

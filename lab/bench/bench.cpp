@@ -19,8 +19,8 @@
 
 #include "lab/bench/Cloths.hpp"
 #include "lab/charts/Report.hpp"
-#include "lab/fast/FastestCpu.hpp"
 #include "lab/fast/FlatFlow.hpp"
+#include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/methods/Splitting.hpp"
@@ -338,7 +338,7 @@ void add_triad(const char* name, std::size_t bytes, int threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  lanes::cpu = fastest_cpu();
+  lanes::cpu = lanes::fastest_cpu();
   benchmark::Initialize(&argc, argv);
   std::ostringstream head;
   report::write_head(head, "bench");

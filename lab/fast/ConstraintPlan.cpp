@@ -61,41 +61,31 @@ namespace {
 
 // The course's constraints as swept ones.
 
-class Plane final : public NodewiseConstraint {
- public:
-  explicit Plane(const PlaneConstraint& c)
-      : NodewiseConstraint(
-            {.nodewise = true, .zone = Zone::behind({0, 0, c.z}, {0, 0, 1})}),
-        plane_(c) {}
-  void project(Cloth& g, double /*t*/, unsigned first,
-               unsigned last) const override {
-    const double z = plane_.z;
-    for_each_violating(
-        g, first, last, [z](const Point& p) { return p.z < z; },
-        [this](Node n) { plane_.project(n), note_touch(); });
-  }
+Traits traits_of(const PlaneConstraint& c) {
+  return {.nodewise = true, .zone = Zone::behind({0, 0, c.z}, {0, 0, 1})};
+}
+Traits traits_of(const SphereConstraint& c) {
+  return {.nodewise = true, .zone = Zone::inside(c.ball), .obstacle = c.ball};
+}
+bool violates(const PlaneConstraint& c, const Point& p) { return p.z < c.z; }
+bool violates(const SphereConstraint& c, const Point& p) {
+  return c.ball.holds(p);
+}
 
- private:
-  PlaneConstraint plane_;
-};
-
-class Sphere final : public NodewiseConstraint {
+/** One of these. */
+template <typename C>
+class Projecting final : public NodewiseConstraint {
  public:
-  explicit Sphere(const SphereConstraint& c)
-      : NodewiseConstraint({.nodewise = true,
-                            .zone = Zone::inside(c.ball),
-                            .obstacle = c.ball}),
-        sphere_(c.ball) {}
+  explicit Projecting(const C& c) : NodewiseConstraint(traits_of(c)), c_(c) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
     for_each_violating(
-        g, first, last,
-        [this](const Point& p) { return sphere_.ball.holds(p); },
-        [this](Node n) { sphere_.project(n), note_touch(); });
+        g, first, last, [this](const Point& p) { return violates(c_, p); },
+        [this](Node n) { c_.project(n), note_touch(); });
   }
 
  private:
-  SphereConstraint sphere_;
+  C c_;
 };
 
 class Tear final : public SweptConstraint {
@@ -141,10 +131,6 @@ class Called final : public SweptConstraint {
 
 }  // namespace
 
-ConstraintPlan::ConstraintPlan(const ZeroConstraint& c) {
-  add(std::shared_ptr<const ZeroConstraint>(std::shared_ptr<void>(), &c));
-}
-
 void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
   const ZeroConstraint& c = *constraint;
   std::shared_ptr<const SweptConstraint> made;
@@ -153,9 +139,9 @@ void ConstraintPlan::add(std::shared_ptr<const ZeroConstraint> constraint) {
   } else if (auto pins = exactly<PinConstraint, FunctionConstraint>(c)) {
     made = std::make_shared<PinnedNodes>(pins->pins);
   } else if (auto floor = exactly<PlaneConstraint, FunctionConstraint>(c)) {
-    made = std::make_shared<Plane>(*floor);
+    made = std::make_shared<Projecting<PlaneConstraint>>(*floor);
   } else if (auto ball = exactly<SphereConstraint, FunctionConstraint>(c)) {
-    made = std::make_shared<Sphere>(*ball);
+    made = std::make_shared<Projecting<SphereConstraint>>(*ball);
   } else if (auto tear = exactly<TearConstraint, FunctionConstraint>(c)) {
     made = std::make_shared<Tear>(*tear);
   } else if (auto swept =

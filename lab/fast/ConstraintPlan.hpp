@@ -205,19 +205,9 @@ class ConstraintPlan {
   ConstraintPlan() = default;
   /** O(terms + pins log pins). Implicit, so that a constraint can be handed to
    * a method. */
-  ConstraintPlan(const ZeroConstraint& c);  // NOLINT
-  /** The same for a temporary, which is kept. */
-  template <std::derived_from<ZeroConstraint> C>
-  requires(!std::is_reference_v<C> && !std::is_const_v<C>)  //
-      ConstraintPlan(C&& c) {
-    add(shared_as<ZeroConstraint, FunctionConstraint>(std::move(c)));
-  }
-  /** A constraint with a call that does not override that of ZeroConstraint. */
-  template <typename C>
-  requires(std::derived_from<std::remove_const_t<C>, ZeroConstraint> &&
-           !Overrides<std::remove_const_t<C>, ZeroConstraint>)  //
-      ConstraintPlan(C& c) {
-    add(std::make_shared<FunctionConstraint<Pointer<C>>>(Pointer<C>{&c}));
+  template <IsA<ZeroConstraint> C>
+  ConstraintPlan(C&& c) {  // NOLINT
+    add(term_of<ZeroConstraint, FunctionConstraint>(std::forward<C>(c)));
   }
 
   /** Apply it to @a g at time @a t [s]; then restore_order(), if nodes

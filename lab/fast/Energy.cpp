@@ -8,28 +8,29 @@ namespace lab {
 
 namespace {
 
-/** Add @a f(id) over all nodes in use, in the order of memory. */
+/** The sum of @a f(position, value) over all nodes, in the order of memory. */
 template <typename F>
-double sum_over_nodes(const Cloth& g, F f) {
-  double sum = 0;
+auto sum_over_nodes(const Cloth& g, F f) {
+  const auto x = arrays(g).positions();
+  const auto node = arrays(g).node_values();
+  decltype(f(x[0], node[0])) sum{};
   for (unsigned i = 0; i < arrays(g).node_slots(); ++i)
-    if (arrays(g).node_in_use(i)) sum += f(i);
+    if (arrays(g).node_in_use(i)) sum += f(x[i], node[i]);
   return sum;
 }
 
 }  // namespace
 
 double kinetic_energy(const Cloth& g) {
-  auto node = arrays(g).node_values();
-  return sum_over_nodes(
-      g, [=](unsigned i) { return 0.5 * node[i].mass * normSq(node[i].vel); });
+  return sum_over_nodes(g, [](const Point&, const NodeData& n) {
+    return 0.5 * n.mass * normSq(n.vel);
+  });
 }
 
 double gravitational_energy(const Cloth& g, double gravity) {
-  auto x = arrays(g).positions();
-  auto node = arrays(g).node_values();
-  return sum_over_nodes(
-      g, [=](unsigned i) { return node[i].mass * gravity * x[i].z; });
+  return sum_over_nodes(g, [gravity](const Point& x, const NodeData& n) {
+    return n.mass * gravity * x.z;
+  });
 }
 
 double elastic_energy(const Cloth& g) {
@@ -45,21 +46,16 @@ double elastic_energy(const Cloth& g) {
 }
 
 double total_mass(const Cloth& g) {
-  auto node = arrays(g).node_values();
-  return sum_over_nodes(g, [=](unsigned i) { return node[i].mass; });
+  return sum_over_nodes(g,
+                        [](const Point&, const NodeData& n) { return n.mass; });
 }
 
 Point center_of_mass(const Cloth& g) {
-  auto x = arrays(g).positions();
-  auto node = arrays(g).node_values();
-  auto moment = [&](double Point::*along) {
-    return sum_over_nodes(
-        g, [=](unsigned i) { return double(node[i].mass) * x[i].*along; });
-  };
   const double mass = total_mass(g);
   if (!(mass > 0)) return Point();
-  return Point(moment(&Point::x) / mass, moment(&Point::y) / mass,
-               moment(&Point::z) / mass);
+  return sum_over_nodes(
+             g, [](const Point& x, const NodeData& n) { return n.mass * x; }) /
+         mass;
 }
 
 double max_speed(const Cloth& g) {

@@ -1,5 +1,3 @@
-#include "lab/fast/FastestCpu.hpp"
-
 #include <time.h>
 
 #include <algorithm>
@@ -9,7 +7,7 @@
 #include "CME212/Mesh.hpp"
 #include "lab/fast/FlatFlow.hpp"
 
-namespace lab {
+namespace lab::lanes {
 
 namespace {
 
@@ -22,16 +20,16 @@ double processor_time() {
 
 }  // namespace
 
-lanes::Cpu clearly_fastest(std::span<const double> times) {
+Cpu clearly_fastest(std::span<const double> times) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < times.size(); ++k)
     if (times[k] < 0.9 * times[best]) best = k;
-  return lanes::Cpu(best);
+  return Cpu(best);
 }
 
-lanes::Cpu fastest_cpu() {
-  const auto count = std::size_t(lanes::best_cpu()) + 1;
-  if (count == 1) return lanes::best_cpu();
+Cpu fastest_cpu() {
+  const auto count = std::size_t(best_cpu()) + 1;
+  if (count == 1) return best_cpu();
   constexpr unsigned side = 24;
   Cloth g;
   build_cloth(g, grid_points(side), grid_quads(side), MeshSprings::diagonals);
@@ -43,19 +41,19 @@ lanes::Cpu fastest_cpu() {
   // a turn has several. After the first round, only kinds that may win.
   std::array<double, 3> best;
   best.fill(std::numeric_limits<double>::max());
-  const lanes::Cpu before = lanes::cpu;
+  const Cpu before = cpu;
   for (int round = 0; round < 4; ++round)
     for (std::size_t k = 0; k < count; ++k) {
       if (round > 0 && best[k] > 1.5 * std::ranges::min(best)) continue;
-      lanes::cpu = lanes::Cpu(k);
+      cpu = Cpu(k);
       for (int step = 0; step < 12; ++step) {
         const double start = processor_time();
         flow.run({.t = 0, .drift = 0, .kick = 0});  // changes no number
         best[k] = std::min(best[k], processor_time() - start);
       }
     }
-  lanes::cpu = before;
+  cpu = before;
   return clearly_fastest({best.data(), count});
 }
 
-}  // namespace lab
+}  // namespace lab::lanes

@@ -74,10 +74,7 @@ const FlatFlow::Drift& FlatFlow::drift_by(double time) {
   if (num_drifts_ == drifts_.size()) drifts_.emplace_back();
   Drift& made = drifts_[num_drifts_++];
   made.time = time, made.of_run.clear();
-  for (const DragRun& run : drag_) {
-    const DragFlow flow(run.gamma, time);
-    made.of_run.push_back({flow.way, flow.decay});
-  }
+  for (const DragRun& run : drag_) made.of_run.emplace_back(run.gamma, time);
   return made;
 }
 

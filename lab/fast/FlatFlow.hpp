@@ -104,10 +104,7 @@ class FlatFlow {
   /** The factors of a drift over @a time, for each DragRun. */
   struct Drift {
     double time;
-    struct Factors {
-      double way, decay;
-    };
-    std::vector<Factors> of_run;
+    std::vector<DragFlow> of_run;
   };
   /** A held node, and its place or velocity. */
   struct Held {

@@ -76,53 +76,37 @@ struct KickTiles {
       const unsigned end = left < tile ? left : tile;
       double* const xs = nodes[FlatCloth::X] + begin;
       for (std::size_t r = 0; r < num_rings; ++r) {
-        row[r] = Row(task.rings[r], xs, begin);
-        if (!row[r].wide)
-          Near::template apply<V>(nodes[FlatCloth::X], s, task.rings[r], begin,
-                                  end);
+        const RowRing& ring = task.rings[r];
+        row[r] = {xs + ring.offset,    ring.K + begin, ring.L + begin,
+                  ring.kept + ring.at, ring.far(),     ring.offset >= tile};
+        if (!row[r].wide) fill<V>(task.cloth, ring, begin, end);
       }
       for (unsigned k = 0; k < end; k += w) {
         const unsigned i = begin + k;
-        const double* at = xs + k;
-        const Points<V> x = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
+        const auto x = load_columns<V>(xs + k, s);
         Points<V> f;
         for (std::size_t r = 0; r < num_rings; ++r) {
           const Row& to = row[r];
-          double* const near = to.near + k;
-          const double* const far = to.far + k;
           Points<V> g;
           if (to.wide) {
-            g = Near::template pull<V>(x, to.x + k, s, to.K + k, to.L + k);
-            store(near, g.x), store(near + next, g.y);
-            store(near + 2 * next, g.z);
+            const auto y = load_columns<V>(to.x + k, s);
+            g = force(x, y, to.K + k, to.L + k);
+            store_columns(to.near + k, next, g);
           } else {
-            g = {load<V>(near), load<V>(near + next), load<V>(near + 2 * next)};
+            g = load_columns<V>(to.near + k, next);
           }
-          f.x += g.x - load<V>(far);
-          f.y += g.y - load<V>(far + next);
-          f.z += g.z - load<V>(far + 2 * next);
+          f += g - load_columns<V>(to.far + k, next);
         }
         if (rest && i / width < rest->num_blocks())
           add_rest<V>(task.cloth, *rest, i, x, f);
-        if (task.others) {
-          const Points<V> other = load_points<V>(task.others + (i - first));
-          f.x += other.x, f.y += other.y, f.z += other.z;
-        }
-        double* v = nodes[FlatCloth::VX] + i;
-        V vx = load<V>(v), vy = load<V>(v + s), vz = load<V>(v + 2 * s);
-        if (task.drag) {
-          const V c = load<V>(nodes[FlatCloth::DragC] + i);
-          f.x -= c * vx, f.y -= c * vy, f.z -= c * vz;
-        }
-        const V per_mass = load<V>(nodes[FlatCloth::PerMass] + i);
-        f.x *= per_mass, f.y *= per_mass;
-        f.z = f.z * per_mass - gravity;
-        if (task.kept) {
-          double* a = task.kept + i;
-          store(a, f.x), store(a + s, f.y), store(a + 2 * s, f.z);
-        }
-        store(v, vx + h * f.x), store(v + s, vy + h * f.y);
-        store(v + 2 * s, vz + h * f.z);
+        if (task.others) f += load_points<V>(task.others + (i - first));
+        double* const to_v = nodes[FlatCloth::VX] + i;
+        const auto v = load_columns<V>(to_v, s);
+        if (task.drag) f = f - load<V>(nodes[FlatCloth::DragC] + i) * v;
+        Points<V> a = load<V>(nodes[FlatCloth::PerMass] + i) * f;
+        a.z -= gravity;
+        if (task.kept) store_columns(task.kept + i, s, a);
+        store_columns(to_v, s, v + h * a);
       }
       for (std::size_t r = 0; r < num_rings; ++r) finish(task.rings[r]);
     }
@@ -134,52 +118,36 @@ struct KickTiles {
     double* near;             ///< the forces of its springs, x
     const double* far;        ///< those of the springs that end at the tile
     bool wide;                ///< far ends in later tiles
-    Row() {}
-    Row(const RowRing& ring, const double* xs, unsigned begin)
-        : x(xs + ring.offset),
-          K(ring.K + begin),
-          L(ring.L + begin),
-          near(ring.kept + ring.at),
-          far(ring.far()),
-          wide(ring.offset >= FlatCloth::tile) {}
   };
 
+  /** The forces of springs from nodes at @a x to nodes at @a y. */
+  template <typename V>
+  [[gnu::always_inline]] static inline Points<V> force(const Points<V>& x,
+                                                       const Points<V>& y,
+                                                       const double* K,
+                                                       const double* L) {
+    const Points<V> u = y - x;
+    return spring_pull<V>(u.x * u.x + u.y * u.y + u.z * u.z, lanes::load<V>(K),
+                          lanes::load<V>(L)) *
+           u;
+  }
+
   /** The springs of the first @a end nodes of a tile alone: into its ring. */
-  struct Near {
-    template <typename V>
-    [[gnu::always_inline]] static inline Points<V> pull(const Points<V>& x,
-                                                        const double* far,
-                                                        std::size_t s,
-                                                        const double* K,
-                                                        const double* L) {
-      using namespace lanes;
-      const V ux = load<V>(far) - x.x, uy = load<V>(far + s) - x.y,
-              uz = load<V>(far + 2 * s) - x.z;
-      const V p =
-          spring_pull<V>(ux * ux + uy * uy + uz * uz, load<V>(K), load<V>(L));
-      return {p * ux, p * uy, p * uz};
+  template <typename V>
+  [[gnu::always_inline]] static inline void fill(const FlatCloth& cloth,
+                                                 const RowRing& ring,
+                                                 unsigned begin, unsigned end) {
+    using namespace lanes;
+    const std::size_t s = cloth.nodes().stride();
+    for (unsigned i = begin; i < begin + end; i += count_of<V>) {
+      const double* at = cloth.nodes()[FlatCloth::X] + i;
+      store_columns(
+          ring.kept + ring.at + (i - begin), ring.stride,
+          force(load_columns<V>(at, s), load_columns<V>(at + ring.offset, s),
+                ring.K + i, ring.L + i));
     }
-    template <typename V>
-    [[gnu::always_inline]] static inline void apply(const double* x,
-                                                    std::size_t s,
-                                                    const RowRing& ring,
-                                                    unsigned begin,
-                                                    unsigned end) {
-      using namespace lanes;
-      const std::size_t next = ring.stride;
-      for (unsigned k = 0; k < end; k += count_of<V>) {
-        const double* at = x + begin + k;
-        const Points<V> here = {load<V>(at), load<V>(at + s),
-                                load<V>(at + 2 * s)};
-        const Points<V> g = pull<V>(here, at + ring.offset, s,
-                                    ring.K + begin + k, ring.L + begin + k);
-        double* kept = ring.kept + ring.at + k;
-        store(kept, g.x), store(kept + next, g.y);
-        store(kept + 2 * next, g.z);
-      }
-      if (ring.at == 0) repeat_first_tile(ring);
-    }
-  };
+    if (ring.at == 0) repeat_first_tile(ring);
+  }
 
   [[gnu::always_inline]] static inline void repeat_first_tile(
       const RowRing& ring) {
@@ -206,19 +174,14 @@ struct KickTiles {
     for (std::size_t row = rest.row_begin(block); row < end; ++row) {
       Points<V> y;
       if (const int offset = rest.offset(row)) {
-        const double* at = all + i + offset;
-        y = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
+        y = load_columns<V>(all + i + offset, s);
       } else {
         const unsigned* id = rest.neighbors(row) + k;
         y = {gather<V>(all, id), gather<V>(all + s, id),
              gather<V>(all + 2 * s, id)};
       }
       const std::size_t number = cloth.rest_first() + row * width + k;
-      const V ux = y.x - x.x, uy = y.y - x.y, uz = y.z - x.z;
-      const V p = spring_pull<V>(ux * ux + uy * uy + uz * uz,
-                                 load<V>(cloth.K() + number),
-                                 load<V>(cloth.L() + number));
-      f.x += p * ux, f.y += p * uy, f.z += p * uz;
+      f += force(x, y, cloth.K() + number, cloth.L() + number);
     }
   }
 };
@@ -230,9 +193,7 @@ struct NearTiles {
                                                   RowRing* ring, unsigned first,
                                                   unsigned last) {
     for (unsigned i = first; i < last; i += FlatCloth::tile) {
-      KickTiles::Near::template apply<V>(cloth->nodes()[FlatCloth::X],
-                                         cloth->nodes().stride(), *ring, i,
-                                         FlatCloth::tile);
+      KickTiles::fill<V>(*cloth, *ring, i, FlatCloth::tile);
       ring->advance();
     }
   }
@@ -248,23 +209,19 @@ struct DriftNodes {
     using namespace lanes;
     Columns& nodes = cloth->nodes();
     constexpr unsigned w = count_of<V>;
+    const unsigned whole = last - (last - first) % w;
     for (int c = 0; c < 3; ++c) {
       double *x = nodes[FlatCloth::X + c], *v = nodes[FlatCloth::VX + c];
       const double* a = nodes[FlatCloth::AX + c];
-      unsigned i = first;
-      for (; i + w <= last; i += w) {
+      for (unsigned i = first; i < whole; i += w) {
         V velocity = load<V>(v + i);
         if (kick != 0) velocity += kick * load<V>(a + i);
         store(x + i, load<V>(x + i) + way * velocity);
         if (decay != 1) velocity *= decay;
         if (decay != 1 || kick != 0) store(v + i, velocity);
       }
-      for (; i < last; ++i) {
-        if (kick != 0) v[i] += kick * a[i];
-        x[i] += way * v[i];
-        if (decay != 1) v[i] *= decay;
-      }
     }
+    if constexpr (w > 1) apply<Lanes<1>>(cloth, whole, last, kick, way, decay);
   }
 };
 
@@ -311,25 +268,18 @@ struct ReadNodes {
     using namespace lanes;
     constexpr unsigned w = count_of<V>;
     const std::size_t s = to->stride();
-    unsigned i = first;
-    for (; i + w <= last; i += w) {
-      double *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
-      const Points<V> p = load_points<V>(x + i);
-      store(at, p.x), store(at + s, p.y), store(at + 2 * s, p.z);
+    const unsigned whole = last - (last - first) % w;
+    for (unsigned i = first; i < whole; i += w) {
+      store_columns((*to)[FlatCloth::X] + i, s, load_points<V>(x + i));
       const double* row = &node[i].vel.x;
       const Pairs<V> a = load_pairs<V>(row), b = load_pairs<V>(row + 2 * w);
       const Pairs<V> xz = unzip(a.first, b.first);
       const Pairs<V> ym = unzip(a.second, b.second);
-      store(v, xz.first), store(v + s, ym.first), store(v + 2 * s, xz.second);
+      store_columns((*to)[FlatCloth::VX] + i, s,
+                    Points<V>{xz.first, ym.first, xz.second});
       store((*to)[FlatCloth::PerMass] + i, 1 / ym.second);
     }
-    for (; i < last; ++i) {
-      double *at = (*to)[FlatCloth::X] + i, *v = (*to)[FlatCloth::VX] + i;
-      at[0] = x[i].x, at[s] = x[i].y, at[2 * s] = x[i].z;
-      const Point& u = node[i].vel;
-      v[0] = u.x, v[s] = u.y, v[2 * s] = u.z;
-      (*to)[FlatCloth::PerMass][i] = 1 / node[i].mass;
-    }
+    if constexpr (w > 1) apply<Lanes<1>>(to, x, node, whole, last);
   }
 };
 
@@ -343,29 +293,23 @@ struct WriteNodes {
     using namespace lanes;
     constexpr unsigned w = count_of<V>;
     const std::size_t s = from->stride();
-    unsigned i = first;
-    for (; i + w <= last; i += w) {
-      const double *at = (*from)[FlatCloth::X] + i,
-                   *v = (*from)[FlatCloth::VX] + i;
-      const Points<V> p = {load<V>(at), load<V>(at + s), load<V>(at + 2 * s)};
+    const unsigned whole = last - (last - first) % w;
+    for (unsigned i = first; i < whole; i += w) {
+      const auto p = load_columns<V>((*from)[FlatCloth::X] + i, s);
+      const auto v = load_columns<V>((*from)[FlatCloth::VX] + i, s);
       double *to = &x[i].x, *row = &node[i].vel.x;
       store(to, merged<0>(p)), store(to + w, merged<1>(p));
       store(to + 2 * w, merged<2>(p));
       const V a = load_pairs<V>(row).second,
               b = load_pairs<V>(row + 2 * w).second;
-      const Pairs<V> xz = zip(load<V>(v), load<V>(v + 2 * s));
-      const Pairs<V> ym = zip(load<V>(v + s), unzip(a, b).second);
+      const Pairs<V> xz = zip(v.x, v.z);
+      const Pairs<V> ym = zip(v.y, unzip(a, b).second);
       const Pairs<V> low = zip(xz.first, ym.first);
       const Pairs<V> high = zip(xz.second, ym.second);
       store(row, low.first), store(row + w, low.second);
       store(row + 2 * w, high.first), store(row + 3 * w, high.second);
     }
-    for (; i < last; ++i) {
-      const double *at = (*from)[FlatCloth::X] + i,
-                   *v = (*from)[FlatCloth::VX] + i;
-      x[i] = Point(at[0], at[s], at[2 * s]);
-      node[i].vel = Point(v[0], v[s], v[2 * s]);
-    }
+    if constexpr (w > 1) apply<Lanes<1>>(from, x, node, whole, last);
   }
 };
 

@@ -31,10 +31,6 @@ void add_spring_stiffness(const Cloth& g, const StiffnessVisitor& use) {
 
 }  // namespace
 
-ForcePlan::ForcePlan(const ZeroForce& force) {
-  add(std::shared_ptr<const ZeroForce>(std::shared_ptr<void>(), &force));
-}
-
 void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   const ZeroForce& f = *force;
   if (auto sum = exactly<CombinedForces, FunctionForce>(f)) {

@@ -80,19 +80,9 @@ requires(std::derived_from<Fs, SweptForce> || ...)  //
 class ForcePlan {
  public:
   /** O(terms). Implicit, so that a force can be handed to a method. */
-  ForcePlan(const ZeroForce& force);  // NOLINT
-  /** The same for a temporary, which is kept. */
-  template <std::derived_from<ZeroForce> F>
-  requires(!std::is_reference_v<F> && !std::is_const_v<F>)  //
-      ForcePlan(F&& force) {
-    add(shared_as<ZeroForce, FunctionForce>(std::move(force)));
-  }
-  /** A force with a call that does not override that of ZeroForce. */
-  template <typename F>
-  requires(std::derived_from<std::remove_const_t<F>, ZeroForce> &&
-           !Overrides<std::remove_const_t<F>, ZeroForce>)  //
-      ForcePlan(F& force) {
-    add(std::make_shared<FunctionForce<Pointer<F>>>(Pointer<F>{&force}));
+  template <IsA<ZeroForce> F>
+  ForcePlan(F&& force) {  // NOLINT
+    add(term_of<ZeroForce, FunctionForce>(std::forward<F>(force)));
   }
 
   /** Add its swept forces and calls to @a f, as SweptForce::add_to(); and tell

@@ -2,7 +2,7 @@
 /** @file Lanes.hpp
  * Lanes: a SIMD register of numbers. A kernel is written once and compiled for
  * three kinds of x86-64 processor; the program runs the version that is fastest
- * on its processor (FastestCpu.hpp). On any other processor a kernel is plain
+ * on its processor: fastest_cpu(). On any other processor a kernel is plain
  * code.
  *
  * A kernel is a struct with
@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "CME212/Point.hpp"
@@ -66,6 +67,18 @@ inline const char* name_of(Cpu cpu) {
 }
 /** The kind that kernels use; a program sets it to fastest_cpu(). */
 inline Cpu cpu = best_cpu();
+
+/** Choose by the @a times of the kinds, from the shortest registers on.
+ * @return the first kind, or the last later one that takes less than 0.9 of
+ *         the time of the choice before: noise does not decide. */
+Cpu clearly_fastest(std::span<const double> times);
+/** Time steps of a small cloth with each kind of kernel in turn, by the
+ * processor time of this thread, and
+ * @return the clearly_fastest() kind. The longest registers are not always
+ * the fastest: a root and a division of 512 bits may take longer than two of
+ * 256 bits. All kinds give the same bits, so the choice changes no result.
+ * @post cpu is as before.   About 1 ms where there is a choice, else 0 */
+Cpu fastest_cpu();
 
 template <typename Kernel, typename... Args>
 void on_plain(const Args&... args) {
@@ -145,7 +158,34 @@ template <typename V>
 template <typename V>
 struct Points {
   V x = {}, y = {}, z = {};
+  [[gnu::always_inline]] Points& operator+=(const Points& b) {
+    return x += b.x, y += b.y, z += b.z, *this;
+  }
+  [[gnu::always_inline]] friend Points operator+(const Points& a,
+                                                 const Points& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  [[gnu::always_inline]] friend Points operator-(const Points& a,
+                                                 const Points& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  [[gnu::always_inline]] friend Points operator*(const V& s, const Points& a) {
+    return {s * a.x, s * a.y, s * a.z};
+  }
 };
+
+/** Coordinates in three arrays, of which the first is at @a x and each other
+ * one @a stride numbers behind the one before. */
+template <typename V>
+[[gnu::always_inline]] inline Points<V> load_columns(const double* x,
+                                                     std::size_t stride) {
+  return {load<V>(x), load<V>(x + stride), load<V>(x + 2 * stride)};
+}
+template <typename V>
+[[gnu::always_inline]] inline void store_columns(double* x, std::size_t stride,
+                                                 const Points<V>& p) {
+  store(x, p.x), store(x + stride, p.y), store(x + 2 * stride, p.z);
+}
 
 /** Coordinate c of the points that a, b, c hold one after the other. */
 template <int coordinate, typename V>
@@ -201,7 +241,7 @@ template <typename V>
 [[gnu::always_inline]] inline Pairs<V> zip(const V& a, const V& b) {
   constexpr int w = count_of<V>;
   return {shuffle(a, b, [](int k) { return k / 2 + k % 2 * w; }),
-          shuffle(a, b, [](int k) { return (w + k) / 2 + k % 2 * w; })};
+          shuffle(a, b, [](int k) { return (w + k) / 2 + (w + k) % 2 * w; })};
 }
 template <typename V>
 [[gnu::always_inline]] inline Pairs<V> load_pairs(const double* from) {

@@ -4,6 +4,7 @@
  * make_combined_force() has copied it. */
 #include <concepts>
 #include <memory>
+#include <type_traits>
 #include <typeinfo>
 #include <utility>
 
@@ -35,6 +36,23 @@ struct Pointer {
     return (*p)(x, t);
   }
 };
+
+/** A reference to a T, or a temporary one, is or derives from Base. */
+template <typename T, typename Base>
+concept IsA = std::derived_from<std::remove_cvref_t<T>, Base>;
+
+/** @a x as a Base. A temporary is kept; anything else must outlive the result.
+ * If its own call hides that of Base, it is in an Adapter. */
+template <typename Base, template <typename> class Adapter, IsA<Base> T>
+std::shared_ptr<const Base> term_of(T&& x) {
+  using Call = Pointer<std::remove_reference_t<T>>;
+  if constexpr (!std::is_reference_v<T> && !std::is_const_v<T>)
+    return shared_as<Base, Adapter>(std::move(x));
+  else if constexpr (Overrides<std::remove_cvref_t<T>, Base>)
+    return {std::shared_ptr<void>(), &x};
+  else
+    return std::make_shared<Adapter<Call>>(Call{&x});
+}
 
 /** @a x, if it is a T but none of T's children, which may have another call; or
  * the T in an Adapter; else null. */

@@ -42,10 +42,6 @@ class Stencil {
     row_begin_.push_back(num_rows());
   }
 
-  template <typename G>
-  explicit Stencil(const G& g)
-      : Stencil(g, [](size_type, size_type) { return false; }) {}
-
   /** Block b has the nodes with ids b W, ..., b W + W - 1; the last block may
    * have fewer. */
   size_type num_blocks() const { return (slots_ + W - 1) / W; }

@@ -15,7 +15,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
-#include "lab/fast/FastestCpu.hpp"
+#include "lab/fast/Lanes.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/python/Arrays.hpp"
@@ -479,7 +479,7 @@ void define_simulations(py::module_& module) {
 PYBIND11_MODULE(mass_spring, module) {
   using namespace lab;
   module.doc() = "Mass-spring cloth: nets, scenes, methods, advice.";
-  lanes::cpu = fastest_cpu();
+  lanes::cpu = lanes::fastest_cpu();
   translate_errors();
   define_values(module);
   define_simulations(module);

@@ -17,7 +17,7 @@
 
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
-#include "lab/fast/FastestCpu.hpp"
+#include "lab/fast/Lanes.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
@@ -431,7 +431,7 @@ int parse(int argc, char** argv, Options& o) {
       "--version",
       [] {
         return std::string("cloth ") + version + ", kernels " +
-               lanes::name_of(fastest_cpu());
+               lanes::name_of(lanes::fastest_cpu());
       },
       "print the version and the fastest kernels here and exit");
   app.set_help_flag("-h,--help", "print this help and exit");

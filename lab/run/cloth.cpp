@@ -28,7 +28,7 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
-#include "lab/fast/FastestCpu.hpp"
+#include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/live/Live.hpp"
 #include "lab/methods/Method.hpp"
@@ -196,7 +196,7 @@ void check_outputs(const Options& o) {
 int run(Options o) {
   catch_interrupts();
   check_outputs(o);
-  lanes::cpu = fastest_cpu();
+  lanes::cpu = lanes::fastest_cpu();
   Sweep::set_threads(o.threads);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
