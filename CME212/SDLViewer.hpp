@@ -13,7 +13,6 @@
 #include "CME212/Color.hpp"
 #include "CME212/Point.hpp"
 #include "CME212/viewer/Image.hpp"
-#include "CME212/viewer/Look.hpp"
 #include "CME212/viewer/NoDisplay.hpp"
 #include "CME212/viewer/SceneBuilder.hpp"
 #ifndef MASS_SPRING_VIEWER
@@ -119,15 +118,13 @@ class SDLViewer : public SceneBuilder {
 
   /** Pause or resume, as the space key does. */
   void set_paused(bool on);
-  /** Wait while paused.
+  /** Wait while paused. Calls @a show() on this thread before it waits, and
+   * when strain_colors() changes: so a paused window shows the latest scene.
    * @return true if the program may make one step: not paused, or the user
    *         pressed n; false, without waiting, if closed() or the user asked to
    *         restart.
    * If a program never calls it, the help does not name the pause. */
-  bool wait_while_paused();
-  /** As above. Calls @a show() on this thread before it waits, and when
-   * strain_colors() changes: so a paused window shows the latest scene. */
-  bool wait_while_paused(const std::function<void()>& show);
+  bool wait_while_paused(const std::function<void()>& show = [] {});
   /** True if the user asked to restart since the last call. */
   bool take_restart();
 

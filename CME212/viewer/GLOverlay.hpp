@@ -17,7 +17,7 @@
 #include "CME212/viewer/GLShaders.hpp"
 #include "CME212/viewer/GLTools.hpp"
 #include "CME212/viewer/Layer.hpp"
-#include "CME212/viewer/Look.hpp"
+#include "CME212/viewer/SceneBuilder.hpp"
 
 namespace CME212 {
 
@@ -41,12 +41,6 @@ class GLOverlay {
   GLOverlay() {
     glGenTextures(1, &texture_);
     glGenVertexArrays(1, &array_);
-  }
-  GLOverlay(const GLOverlay&) = delete;
-  GLOverlay& operator=(const GLOverlay&) = delete;
-  ~GLOverlay() {
-    glDeleteVertexArrays(1, &array_);
-    glDeleteTextures(1, &texture_);
   }
 
   /** Draw @a text over a picture of @a width x @a height pixels.
@@ -81,7 +75,7 @@ class GLOverlay {
       veil{Color(0.03f, 0.04f, 0.05f), 0.75};
   static constexpr double large = 20, medium = 16, small = 15;  // of letters
 
-  GLProgram program_{gl_detail::backdrop_vertex, gl_detail::overlay_fragment};
+  GLProgram program_{{shaders::backdrop_vertex}, {shaders::overlay_fragment}};
   GLuint texture_ = 0, array_ = 0;  // OpenGL draws nothing without an array
   Layer layer_;
   OverlayText text_;  // in layer_
@@ -133,16 +127,15 @@ class GLOverlay {
     if (from == to) {
       pieces.clear();
       constexpr int sides = 32;
-      const auto x = [&](int k) {
-        return from[0] +
-               17 * unit_ * std::cos(2 * std::numbers::pi * k / sides);
+      const auto at = [&](int k) {
+        const double turn = 2 * std::numbers::pi * k / sides;
+        return std::array{from[0] + 17 * unit_ * std::cos(turn),
+                          from[1] + 17 * unit_ * std::sin(turn)};
       };
-      const auto y = [&](int k) {
-        return from[1] +
-               17 * unit_ * std::sin(2 * std::numbers::pi * k / sides);
-      };
-      for (int k = 0; k < sides; ++k)
-        pieces.push_back({x(k), y(k), x(k + 1), y(k + 1)});
+      for (int k = 0; k < sides; ++k) {
+        const auto a = at(k), b = at(k + 1);
+        pieces.push_back({a[0], a[1], b[0], b[1]});
+      }
     }
     layer_.strokes(pieces, 3.25 * unit_, {Color(), 1});
     layer_.strokes(pieces, 1.75 * unit_, {Color::make_mark(), 1});

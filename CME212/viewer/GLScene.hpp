@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "CME212/BoundingBox.hpp"
@@ -18,7 +17,6 @@
 #include "CME212/viewer/GLShaders.hpp"
 #include "CME212/viewer/GLShadow.hpp"
 #include "CME212/viewer/GLTools.hpp"
-#include "CME212/viewer/Look.hpp"
 #include "CME212/viewer/SceneBuilder.hpp"
 
 namespace CME212 {
@@ -143,10 +141,7 @@ class GLScene {
       const double apart = 5 * node_size_ * pixels / camera.distance() / scale;
       if (faces) edge_program_.set("ink", float(std::min(apart / 40, 0.4)));
       glEnable(GL_BLEND);
-      if (!faces || apart > 8)
-        nodes_.draw(GL_LINES, 0, num_lines_);
-      else
-        nodes_.draw(GL_LINES, 0, num_loose_);
+      nodes_.draw(GL_LINES, 0, !faces || apart > 8 ? num_lines_ : num_loose_);
       glDisable(GL_BLEND);
     }
     glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
@@ -180,26 +175,17 @@ class GLScene {
     }
   };
 
-  /** With the lamp, or the backdrop, in front of the text of a shader. */
-  static std::string under_light(const char* shader) {
-    return std::string(gl_detail::light_source) + shader;
-  }
-  static std::string on_backdrop(const char* shader) {
-    return std::string(gl_detail::backdrop) + shader;
-  }
-
-  GLProgram node_program_{gl_detail::cloth_vertex, gl_detail::node_fragment};
-  GLProgram edge_program_{gl_detail::cloth_vertex, gl_detail::edge_fragment};
-  GLProgram face_program_{under_light(gl_detail::face_vertex).c_str(),
-                          gl_detail::face_fragment};
-  GLProgram sphere_program_{under_light(gl_detail::sphere_vertex).c_str(),
-                            gl_detail::sphere_fragment};
-  GLProgram backdrop_program_{
-      gl_detail::backdrop_vertex,
-      on_backdrop(gl_detail::backdrop_fragment).c_str()};
+  GLProgram node_program_{{shaders::cloth_vertex}, {shaders::node_fragment}};
+  GLProgram edge_program_{{shaders::cloth_vertex}, {shaders::edge_fragment}};
+  GLProgram face_program_{{shaders::light_source, shaders::face_vertex},
+                          {shaders::face_fragment}};
+  GLProgram sphere_program_{{shaders::light_source, shaders::sphere_vertex},
+                            {shaders::sphere_fragment}};
+  GLProgram backdrop_program_{{shaders::backdrop_vertex},
+                              {shaders::backdrop, shaders::backdrop_fragment}};
   GLProgram plane_program_{
-      gl_detail::plane_vertex,
-      on_backdrop(under_light(gl_detail::plane_fragment).c_str()).c_str()};
+      {shaders::plane_vertex},
+      {shaders::backdrop, shaders::light_source, shaders::plane_fragment}};
   GLShadow shadow_;
   GLMesh nodes_, sphere_, plane_;
   GLsizei num_nodes_ = 0;

@@ -4,7 +4,7 @@
 
 namespace CME212 {
 
-namespace gl_detail {
+namespace shaders {
 
 /** Faces, lit from both sides; a little light comes through from behind. Light
  * is computed at nodes, of which there are fewer than pixels. */
@@ -153,6 +153,6 @@ constexpr const char* overlay_fragment = R"(
                        0);
   })";
 
-}  // namespace gl_detail
+}  // namespace shaders
 
 }  // namespace CME212

@@ -10,7 +10,7 @@
 
 namespace CME212 {
 
-namespace gl_detail {
+namespace shaders {
 
 /** For shaders, in front of their own text. */
 constexpr const char* light_source = R"(
@@ -44,7 +44,7 @@ constexpr const char* caster_vertex = R"(
   void main() { gl_Position = to_map * vec4(center + radius * at, 1); })";
 constexpr const char* caster_fragment = "void main() {}";
 
-}  // namespace gl_detail
+}  // namespace shaders
 
 /** Depths as the lamp sees them. Fixed in the world for as long as the camera
  * looks at the same box: so shadows don't flicker. */
@@ -81,12 +81,6 @@ class GLShadow {
     glDrawBuffer(GL_NONE);
     glReadBuffer(GL_NONE);
     glBindFramebuffer(GL_FRAMEBUFFER, GLuint(before));
-  }
-  GLShadow(const GLShadow&) = delete;
-  GLShadow& operator=(const GLShadow&) = delete;
-  ~GLShadow() {
-    glDeleteTextures(1, &map_);
-    glDeleteFramebuffers(1, &frame_);
   }
 
   /** Make the map of what @a cast(const GLProgram&) draws, which sets "center"
@@ -127,7 +121,7 @@ class GLShadow {
   static constexpr int size = 512;  // of the map [texels]
   GLuint frame_ = 0, map_ = 0;
   GLCamera::Matrix to_map_{};
-  GLProgram caster_{gl_detail::caster_vertex, gl_detail::caster_fragment};
+  GLProgram caster_{{shaders::caster_vertex}, {shaders::caster_fragment}};
 };
 
 }  // namespace CME212

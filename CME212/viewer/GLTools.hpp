@@ -3,13 +3,14 @@
  * OpenGL objects as C++ classes: GLProgram, a pair of shaders; GLMesh, vertices
  * and indices in graphics memory; GLFrame, a picture there.
  *
- * Make, use and destroy each with the same OpenGL context current, so on one
- * thread. */
+ * Make and use each with the same OpenGL context current, so on one thread. It
+ * owns what they make, and frees it when it is destroyed. */
 #define GL_GLEXT_PROTOTYPES
 #include <SDL_opengl.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,8 +25,10 @@ namespace CME212 {
 /** A linked pair of shaders. */
 class GLProgram {
  public:
-  /** Throws std::runtime_error with the compiler's message. */
-  GLProgram(const char* vertex, const char* fragment) {
+  using Texts = std::initializer_list<const char*>;
+  /** @param vertex,fragment The text of each, in parts
+   * Throws std::runtime_error with the compiler's message. */
+  GLProgram(Texts vertex, Texts fragment) {
     attach(GL_VERTEX_SHADER, vertex);
     attach(GL_FRAGMENT_SHADER, fragment);
     glLinkProgram(id_);
@@ -33,9 +36,6 @@ class GLProgram {
     glGetProgramiv(id_, GL_LINK_STATUS, &ok);
     if (!ok) throw std::runtime_error("OpenGL: a program does not link");
   }
-  GLProgram(const GLProgram&) = delete;
-  GLProgram& operator=(const GLProgram&) = delete;
-  ~GLProgram() { glDeleteProgram(id_); }
 
   void use() const { glUseProgram(id_); }
   // These set variables of the program in use; unknown names are ignored.
@@ -57,10 +57,11 @@ class GLProgram {
   GLuint id_ = glCreateProgram();
 
   GLint at(const char* name) const { return glGetUniformLocation(id_, name); }
-  void attach(GLenum kind, const char* source) const {
-    const char* sources[] = {"#version 330 core\n", source};
+  void attach(GLenum kind, Texts texts) const {
+    std::vector<const char*> all{"#version 330 core\n"};
+    all.insert(all.end(), texts);
     GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 2, sources, nullptr);
+    glShaderSource(shader, GLsizei(all.size()), all.data(), nullptr);
     glCompileShader(shader);
     GLint ok = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
@@ -80,12 +81,6 @@ class GLMesh {
     glGenBuffers(2, buffers_);
     bind();
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
-  }
-  GLMesh(const GLMesh&) = delete;
-  GLMesh& operator=(const GLMesh&) = delete;
-  ~GLMesh() {
-    glDeleteBuffers(2, buffers_);
-    glDeleteVertexArrays(1, &array_);
   }
 
   void bind() const {
@@ -146,13 +141,6 @@ class GLFrame {
       if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw std::runtime_error("OpenGL: no frame buffer of this size");
     }
-  }
-  GLFrame(const GLFrame&) = delete;
-  GLFrame& operator=(const GLFrame&) = delete;
-  ~GLFrame() {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glDeleteFramebuffers(2, frames_);
-    glDeleteRenderbuffers(3, stores_);
   }
 
   /** Draw into this from now on, until read(). */

@@ -29,16 +29,10 @@ namespace {
 }
 std::string reason(int error) { return std::system_category().message(error); }
 
-// On macOS it is an option of the socket.
 #ifdef MSG_NOSIGNAL
 constexpr int no_signal = MSG_NOSIGNAL;
-void ignore_signal(int /*socket*/) {}
 #else
 constexpr int no_signal = 0;
-void ignore_signal(int socket) {
-  const int on = 1;
-  setsockopt(socket, SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
-}
 #endif
 
 }  // namespace
@@ -80,17 +74,17 @@ Video::~Video() {
 }
 
 void Video::add(const Image& image) {
-  assert(!finished_ && image.width == width_ && image.height == height_);
+  assert(file_ && image.width == width_ && image.height == height_);
   send_all(image.rgb);
   ++frames_;
 }
 
 void Video::finish() {
-  if (finished_) return;
+  if (!file_) return;
   if (frames_ == 0) fail(path_, "a film of no pictures");
   wait_for_ffmpeg();
   file_->commit();
-  finished_ = true;
+  file_.reset();
 }
 
 /** Throws std::runtime_error if there is none. */
@@ -140,7 +134,10 @@ void Video::start_ffmpeg(double rate) {
   posix_spawnattr_destroy(&own_group);
   close(ends[1]), close(said[1]);
   input_ = ends[0], said_ = said[0];
-  ignore_signal(input_);
+#ifdef SO_NOSIGPIPE  // on macOS it is an option of the socket
+  const int on = 1;
+  setsockopt(input_, SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
+#endif
   if (error == 0) return;
   close_input(), close(said_);  // as there is no destructor of this
   fail(path_, error == ENOENT ? "no film without ffmpeg, which `make deps` "

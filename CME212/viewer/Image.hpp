@@ -86,9 +86,8 @@ class Video {
  private:
   std::string path_;
   int width_, height_;
-  std::unique_ptr<OutputFile> file_;
+  std::unique_ptr<OutputFile> file_;  // null: finished
   int frames_ = 0;
-  bool finished_ = false;
   int child_ = -1;  // ffmpeg, while it runs
   int input_ = -1;  // our end of its input
   int said_ = -1;   // our end of its standard error

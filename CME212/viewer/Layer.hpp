@@ -10,9 +10,113 @@
 #include <vector>
 
 #include "CME212/Color.hpp"
-#include "CME212/viewer/Letters.hpp"
 
 namespace CME212 {
+
+/** An alphabet of strokes: text needs no font file and has the same pixels
+ * everywhere. */
+namespace letters {
+
+/** The strokes of a letter, of ' ' to '~'. A point is two hexadecimal digits,
+ * x and y, where y is 3 on the base line, a at the top of an x, d at that of a
+ * capital. A stroke starts at its first point and ends at its last one; the
+ * points between pull it (a quadratic B-spline), and a corner is two equal
+ * points. */
+inline constexpr std::array<const char*, 95> strokes = {
+    "", "0d07 0304", "0d0a 2d2a", "133d 436d 0666 1a7a",
+    "6b6c0c0868640405 3e32", "7d13 0b09393d0d0b 555383875755",
+    "731a1d5d5a08035378", "0d0a", "2e0b0421", "0e2b2401", "2d27 0c48 4c08",
+    "3a34 0767", "1401", "0747", "0304", "024d",
+    // 0 to 9
+    "0803535d0d08", "0b3d3d33 1353", "0b0d5d59030353", "0b0d5d5828 2858530305",
+    "434d4d060656", "5d0d0d08085a530305", "5b5d0d0353590906", "0d5d5d13",
+    "0b0d5d58080b 050858530305", "0503535d0d07575a",
+    // : to @
+    "0304 090a", "1401 191a", "6a070764", "0969 0565", "0a676704",
+    "0b0d5d592826 2324", "6765353a6a67 6a64949d0d026273",
+    // A to Z
+    "034d4d83 1676", "030d 0d3d5d583808 083868633303", "7b7d0d037375",
+    "030d 0d3d7d733303", "5d0d0d030353 0848", "5d0d0d03 0848",
+    "7b7d0d037378787848", "030d 737d 0878", "030d", "4d46430305",
+    "030d 6d07 2963", "0d030353", "030d0d46468d8d83", "030d0d73737d",
+    "0803737d0d08", "030d 0d3d6d673707", "0803737d0d08 4672",
+    "030d 0d3d6d673707 3763", "6b6d0d0868630305", "0d6d 3d33", "0d070373777d",
+    "0d43438d", "0d23235d5d8383ad", "037d 0d73", "0d48488d 4843",
+    "0d6d6d030363",
+    // [ to `
+    "2e0e0e010121", "0d42", "0e2e2e212101", "0a3d3d6a", "0161", "0d2b",
+    // a to z
+    "090a5a5753 572707035355", "0d03 0703535a0a07", "595a0a035354",
+    "5d53 0703535a0a07", "0757575a0a035354", "4d1d1a13 0a3a",
+    "0703535a0a07 5a52500001", "0d03 060a5a5753", "0a03 0c0d", "2a222000 2c2d",
+    "0d03 5a05 2753", "0d050323", "0a03 060a4a4743 464a8a8783",
+    "0a03 060a5a5753", "0703535a0a07", "0a00 0703535a0a07", "5a50 0703535a0a07",
+    "0a03 060a3a", "595a0a0756530304", "1d151333 0a3a", "0a06035357 5a53",
+    "0a33336a", "0a23234a4a63638a", "035a 0a53", "0a33 6a20", "0a5a5a030353",
+    // { to ~
+    "3e1e180707161131", "0e01", "0e2e283737262101", "06284668"};
+
+/** Space at each side of a letter. */
+inline constexpr double bearing = 1.7;
+
+/** A straight piece of a stroke, and its end. */
+struct Piece {
+  double x0, y0, x1, y1;
+};
+
+/** The strokes of @a c; any other sign than those above is a question mark. */
+inline std::string_view strokes_of(char c) {
+  return strokes[c >= ' ' && c <= '~' ? std::size_t(c - ' ') : '?' - ' '];
+}
+inline int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
+
+/** From one letter to the next, in units of which ten are a capital's height.
+ */
+inline double advance(char c) {
+  int right = 1, at = 0;
+  for (char d : strokes_of(c))
+    if (d == ' ')
+      at = 0;
+    else if (at++ % 2 == 0)
+      right = std::max(right, digit(d));
+  return right + 2 * bearing;
+}
+
+/** The pieces of @a c, y upwards from the base line, in those units. */
+inline std::vector<Piece> pieces(char c) {
+  std::vector<Piece> all;
+  std::string_view left = strokes_of(c);
+  while (!left.empty()) {
+    const auto stroke = left.substr(0, left.find(' '));
+    left.remove_prefix(std::min(stroke.size() + 1, left.size()));
+    const auto n = stroke.size() / 2;
+    using P = std::array<double, 2>;
+    const auto point = [&](std::size_t k) {
+      return P{digit(stroke[2 * k]) + bearing, digit(stroke[2 * k + 1]) - 3.0};
+    };
+    P from = point(0);
+    const auto line = [&](const P& to) {
+      all.push_back({from[0], from[1], to[0], to[1]}), from = to;
+    };
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+      const P a = from, b = point(k), next = point(k + 1);
+      const P c =
+          k + 2 < n ? P{(b[0] + next[0]) / 2, (b[1] + next[1]) / 2} : next;
+      const double turn = std::abs((b[0] - a[0]) * (c[1] - b[1]) -
+                                   (b[1] - a[1]) * (c[0] - b[0]));
+      const int parts = turn > 0 ? 6 : 1;
+      for (int i = 1; i <= parts; ++i) {
+        const double t = double(i) / parts, s = 1 - t;
+        line({s * s * a[0] + 2 * s * t * b[0] + t * t * c[0],
+              s * s * a[1] + 2 * s * t * b[1] + t * t * c[1]});
+      }
+    }
+    if (n == 2) line(point(1));
+  }
+  return all;
+}
+
+}  // namespace letters
 
 /** A picture to be laid over another one. Lengths in pixels, y downwards. */
 class Layer {

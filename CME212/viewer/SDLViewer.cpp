@@ -87,7 +87,6 @@ class SDLViewer::Display {
     std::optional<GLFrame> frame;
     explicit Canvas(const Options& o)
         : window(o.title, o.width, o.height, o.offscreen) {}
-    ~Canvas() { window.make_current(); }
   };
 
   SceneBuilder& builder_;
@@ -339,9 +338,6 @@ bool SDLViewer::closed() const { return display_->closed; }
 void SDLViewer::close() { display_->close(); }
 void SDLViewer::set_paused(bool on) { display_->set_paused(on); }
 
-bool SDLViewer::wait_while_paused() {
-  return wait_while_paused([] {});
-}
 bool SDLViewer::wait_while_paused(const std::function<void()>& show) {
   Display& d = *display_;
   std::unique_lock lock(d.mutex);

@@ -21,18 +21,22 @@
 
 namespace CME212 {
 
-/** Color and position of a node, unless a program passes functors for them. */
-struct DefaultColor {
-  template <typename Node>
-  Color operator()(const Node&) const {
-    return Color(1);
-  }
+/** Which parts of a cloth are drawn. */
+struct Look {
+  bool faces = true, wires = true;
+  bool nodes = false;  ///< also those in a face; all others always are
 };
-struct DefaultPosition {
-  template <typename Node>
-  Point operator()(const Node& n) const {
-    return n.position();
-  }
+
+/** A line [m] drawn on top of everything else; a ring if both ends coincide. */
+struct Mark {
+  Point from, to;
+};
+
+/** The scale of strain, which colors by Color::make_strain. */
+struct StrainScale {
+  double limit = 1;  ///< [%]; its ends are +limit (taut) and -limit (slack)
+  bool above = false, below = false;  ///< some values are beyond that end
+  bool operator==(const StrainScale&) const = default;
 };
 
 /** A scene to draw. */
@@ -127,11 +131,13 @@ class SceneBuilder {
   }
   template <typename It, typename ColorFn, typename Map>
   void add_nodes(It first, It last, ColorFn color, Map& node_map) {
-    add_nodes(first, last, color, DefaultPosition(), node_map);
+    const auto position = [](const auto& n) { return n.position(); };
+    add_nodes(first, last, color, position, node_map);
   }
   template <typename It, typename Map>
   void add_nodes(It first, It last, Map& node_map) {
-    add_nodes(first, last, DefaultColor(), DefaultPosition(), node_map);
+    add_nodes(
+        first, last, [](const auto&) { return Color(1); }, node_map);
   }
 
   /** Add the edges in [first, last) that have both ends in @a node_map; skip

@@ -30,10 +30,6 @@ class SDLViewer : public NoViewer {
   static bool has_display() { return false; }
   bool in_window() const { return true; }  // it may be closed, as a window
 
-  template <typename G>
-  std::map<typename G::node_type, unsigned> empty_node_map(const G&) const {
-    return {};
-  }
   /** Colors, positions and a map of nodes may follow. */
   template <typename It, typename... More>
   void add_nodes(It first, It last, More&&...) {
@@ -60,6 +56,8 @@ class SDLViewer : public NoViewer {
     kit::film_nodes(nodes.begin(), nodes.end());
   }
 
+  template <typename... T>
+  void add_faces(const T&...) {}
   template <typename T>
   void set_label(const T& label) {
     if constexpr (std::is_arithmetic_v<T>) {
