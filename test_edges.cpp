@@ -29,7 +29,7 @@
 
 namespace {
 
-using CME212::edge_at, CME212::same;
+using CME212::edge_at, CME212::find_node, CME212::same;
 
 using GraphType = Graph<int, double>;
 using NodeType = GraphType::node_type;
@@ -58,13 +58,6 @@ void erase_node(Model& model, int v) {
   for (const auto& edge : edges_at(model, v)) model.erase(edge.first);
 }
 
-/** A new handle of the node of value @a v. */
-NodeType find_node(GraphType& g, int v) {
-  for (size_type i = 0; i < g.num_nodes(); ++i)
-    if (g.node(i).value() == v) return g.node(i);
-  throw std::runtime_error("node(i) reaches every node: not the one of value " +
-                           std::to_string(v));
-}
 /** A new handle of the edge between the nodes of values @a a and @a b. */
 EdgeType find_edge(GraphType& g, int a, int b) {
   for (size_type i = 0; i < g.num_edges(); ++i)

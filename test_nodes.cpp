@@ -15,7 +15,6 @@
  * --gtest_filter=Homework0.AddNode. Edges: test_edges.cpp. */
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <string>
 
 #include "CME212/GraphTests.hpp"
@@ -23,7 +22,7 @@
 
 namespace {
 
-using CME212::same;
+using CME212::find_node, CME212::same;
 
 using GraphType = Graph<int, double>;
 using NodeType = GraphType::node_type;
@@ -43,14 +42,6 @@ Model add_nodes(GraphType& g, int n) {
     model[v] = place(v);
   }
   return model;
-}
-
-/** A new handle of the node of value @a v. */
-NodeType find_node(GraphType& g, int v) {
-  for (size_type i = 0; i < g.num_nodes(); ++i)
-    if (g.node(i).value() == v) return g.node(i);
-  throw std::runtime_error("node(i) reaches every node: not the one of value " +
-                           std::to_string(v));
 }
 
 /** Check what is true of every graph of these nodes. */

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -94,6 +95,15 @@ bool same(It a, It b) {
     return static_cast<bool>(a == b);
   else
     return !static_cast<bool>(a != b);
+}
+
+/** A new handle of the node of value @a v. */
+template <typename G>
+auto find_node(G& g, int v) {
+  for (typename G::size_type i = 0; i < g.num_nodes(); ++i)
+    if (g.node(i).value() == v) return g.node(i);
+  throw std::runtime_error("node(i) reaches every node: not the one of value " +
+                           std::to_string(v));
 }
 
 /** The edge of index @a i, also if the graph has no edge(i). */

@@ -24,7 +24,6 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <type_traits>
 #include <vector>
 
 #include "CME212/Point.hpp"
@@ -77,18 +76,15 @@ std::size_t for_each_line(std::string_view text, Use use) {
 }
 
 /** std::from_chars() of a real by the C library: the same values and errors. */
-template <typename T>
-std::from_chars_result real_of_c(const char* first, const char* last,
-                                 T& value) {
+inline std::from_chars_result real_of_c(const char* first, const char* last,
+                                        double& value) {
   static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
   // No hexadecimals, which strtod_l() reads, too; nor blanks and '+' in front.
   auto starts_hex = [](char c) { return c == 'x' || c == 'X'; };
   const std::string text(first, std::find_if(first, last, starts_hex));
   char* end = nullptr;
   errno = 0;
-  const T a = sizeof(T) == sizeof(float)
-                  ? T(strtof_l(text.c_str(), &end, locale))
-                  : T(strtod_l(text.c_str(), &end, locale));
+  const double a = strtod_l(text.c_str(), &end, locale);
   if (end == text.c_str() || text[0] == '+' || std::isspace(text[0] & 0xff))
     return {first, std::errc::invalid_argument};
   const char* const behind = first + (end - text.c_str());
@@ -98,15 +94,12 @@ std::from_chars_result real_of_c(const char* first, const char* last,
   return {behind, std::errc()};
 }
 
-#ifdef __cpp_lib_to_chars  // of reals, too: not in libc++ of Macs and of wasm
-inline constexpr bool library_reads_reals = true;
-#else
-inline constexpr bool library_reads_reals = false;
-#endif
+/** std::from_chars(), where the library has it: libc++ before 20 reads no
+ * reals. */
 template <typename T>
 std::from_chars_result from_chars(const char* first, const char* last,
                                   T& value) {
-  if constexpr (std::is_integral_v<T> || library_reads_reals)
+  if constexpr (requires { std::from_chars(first, last, value); })
     return std::from_chars(first, last, value);
   else
     return real_of_c(first, last, value);
