@@ -59,15 +59,16 @@ class SDLViewer::Display {
     change([this, on] { paused = on, steps = 0; });
   }
 
+  const Options options;
+
   Display(SceneBuilder& builder, const Options& o)
-      : builder_(builder), options_(o), canvas_(std::in_place, o) {}
+      : options(o), builder_(builder), canvas_(std::in_place, o) {}
   ~Display() {
-    if (thread_.joinable()) thread_.join();
+    if (launched()) thread_.join();
   }
 
   /** True if a thread of the viewer has the window. */
   bool launched() const { return thread_.joinable(); }
-  const Options& options() const { return options_; }
   void launch();
   /** Show the window and handle its events until it is closed. */
   void serve();
@@ -90,7 +91,6 @@ class SDLViewer::Display {
   };
 
   SceneBuilder& builder_;
-  const Options options_;
   std::thread thread_;  // of launch()
   // For the main thread only, or for that of launch():
   std::optional<Canvas> canvas_;
@@ -116,7 +116,7 @@ void SDLViewer::Display::launch() {
   auto made = promise.get_future();
   thread_ = std::thread([this, promise = std::move(promise)]() mutable {
     try {
-      canvas_.emplace(options_);
+      canvas_.emplace(options);
     } catch (...) {
       return promise.set_exception(std::current_exception());
     }
@@ -130,8 +130,8 @@ void SDLViewer::Display::launch() {
 Image SDLViewer::Display::snapshot() {
   canvas_->window.make_current();
   auto& frame = canvas_->frame;
-  const auto [width, height] = options_.width > 0
-                                   ? std::array{options_.width, options_.height}
+  const auto [width, height] = options.width > 0
+                                   ? std::array{options.width, options.height}
                                    : SDLWindow::usual_size;
   if (!frame) frame.emplace(width, height);
   frame->bind();
@@ -186,7 +186,7 @@ void SDLViewer::Display::draw(int width, int height, double scale,
       shown.marks.push_back({camera.pixel(m.from, width, height),
                              camera.pixel(m.to, width, height)});
     if (in_window) {
-      std::string title = options_.title;
+      std::string title = options.title;
       for (const auto& part :
            {shown.label, std::string(paused ? "paused" : "")})
         if (!part.empty()) title += "   " + part;
@@ -204,8 +204,8 @@ std::vector<std::string> SDLViewer::Display::keys() const {
   if (!help) return {};
   std::string control;
   if (pauses) control += "space pause   n step   ";
-  if (options_.restarts) control += "r restart   ";
-  if (options_.colors) control += "s strain   ";
+  if (options.restarts) control += "r restart   ";
+  if (options.colors) control += "s strain   ";
   std::string parts = "c center   ";
   if (canvas_->scene.has_faces()) parts += "f faces   w wires   d nodes   ";
   return {control + parts + "q quit",
@@ -262,10 +262,10 @@ void SDLViewer::Display::press(SDL_Keycode key) {
     case SDLK_n:
       return change([&] { paused = true, ++steps; });
     case SDLK_r:
-      if (!options_.restarts) return;
+      if (!options.restarts) return;
       return change([&] { restart = true, steps = 0; });
     case SDLK_s:
-      if (!options_.colors) return;
+      if (!options.colors) return;
       return change([&] { strain_colors = !strain_colors; });
     case SDLK_f:
       return change([&] { look.faces = !look.faces; });
@@ -371,13 +371,13 @@ void SDLViewer::set_strain_colors(bool on) {
 
 void SDLViewer::event_loop() {
   assert(!display_->launched() && "launch() has a thread that does this");
-  if (in_window() || display_->options().picture.empty()) display_->serve();
+  if (in_window() || display_->options.picture.empty()) display_->serve();
 }
 
-bool SDLViewer::in_window() const { return !display_->options().offscreen; }
+bool SDLViewer::in_window() const { return !display_->options.offscreen; }
 
 void SDLViewer::write_picture() {
-  const std::string& file = display_->options().picture;
+  const std::string& file = display_->options.picture;
   if (in_window() || file.empty()) return;
   std::filesystem::create_directories(
       std::filesystem::absolute(file).parent_path());

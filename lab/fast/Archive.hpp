@@ -43,6 +43,8 @@ class Archive {
 
   bool loads() const { return loads_; }
   const std::string& bytes() const { return bytes_; }
+  /** True if all has been loaded. */
+  bool at_end() const { return at_ == bytes_.size(); }
 
   /** Save @a x, or load it. Of a list its length, too; of a span the length
    * must be the same.
