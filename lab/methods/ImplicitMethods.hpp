@@ -8,12 +8,40 @@
 
 namespace lab {
 
+/** The base of all methods here. For those that solve the nonlinear equations
+ * of motion by Newton's method, the force without drag must be minus the
+ * gradient of its energy().
+ *
+ * A step in which the cloth folds many times may need more than max_iterations:
+ * a sheet of 50 x 50 nodes with random velocities of 1 m/s fails in steps of
+ * 0.2 s (170 times verlet's limit); one of K = 10000 N/m fails in steps of
+ * 0.02 s by the midpoint rule. Shorter steps succeed. */
+class ImplicitMethod : public Method {
+ public:
+  /** @param tolerance > 0; of ImplicitEuler that of the linear system, see
+   *        ImplicitStage::solve_linearized(); of the others [m/s^2], of each
+   *        stage: the residual acts like an acceleration of that size, see
+   *        ImplicitStage::solve_newton()
+   * @param max_iterations of Newton's method in a stage; then StepError
+   * @param share the residual of a stage, as a share of the local error, of a
+   *        method that estimates that */
+  explicit ImplicitMethod(double tolerance, int max_iterations = 100,
+                          double share = 0)
+      : stage_(tolerance, max_iterations, share) {}
+
+  Work work() const override { return stage_.work(); }
+  void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
+
+ protected:
+  implicit_detail::ImplicitStage stage_;
+};
+
 /** Linearly implicit Euler: v += dt F(x + dt v)/m with F linearized at x, then
  * x += dt v. One linear system a step, by conjugate gradients.
  * Source: D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH
  * 1998, doi:10.1145/280814.280821; here compressed springs have no stiffness
  * in the perpendicular directions. */
-class ImplicitEuler : public Method {
+class ImplicitEuler : public ImplicitMethod {
  public:
   // In addition to the force evaluation: about dt omega products with the
   // matrix, each as expensive as one.
@@ -26,55 +54,18 @@ class ImplicitEuler : public Method {
       "stiff cloth that comes to rest, at any dt",
       "accurate motion: it damps as a drag of dt omega^2 would"};
 
-  /** @param tolerance > 0, of the linear system: see
-   *        ImplicitStep::solve_linearized() */
-  explicit ImplicitEuler(double tolerance = 1e-8) : stage_(tolerance, 0) {}
-
-  Work work() const override { return stage_.work(); }
-  void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
+  using ImplicitMethod::ImplicitMethod;
+  ImplicitEuler() : ImplicitMethod(1e-8) {}
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
-
- private:
-  implicit_detail::ImplicitStage stage_;
-};
-
-/** The base of the methods that solve the nonlinear equations of motion by
- * Newton's method. The force without drag must be minus the gradient of its
- * energy().
- *
- * A step in which the cloth folds many times may need more than max_iterations:
- * a sheet of 50 x 50 nodes with random velocities of 1 m/s fails in steps of
- * 0.2 s (170 times verlet's limit); one of K = 10000 N/m fails in steps of
- * 0.02 s by the midpoint rule. Shorter steps succeed. */
-class NewtonMethod : public Method {
- public:
-  /** @param tolerance [m/s^2] > 0, of each stage: the residual acts like an
-   *        acceleration of that size, see ImplicitStep::solve_newton()
-   * @param max_iterations of Newton's method in a stage; then StepError */
-  explicit NewtonMethod(double tolerance = 1e-9, int max_iterations = 100)
-      : stage_(tolerance, max_iterations) {}
-
-  Work work() const override { return stage_.work(); }
-  void use(implicit_detail::LinearSolver solver) { stage_.use(solver); }
-
- protected:
-  /** For a method that estimates its local error.
-   * @param share the residual of a stage, as a share of that error */
-  struct Share {
-    double share;
-  };
-  explicit NewtonMethod(Share s) : stage_(1e-9, 100, s.share) {}
-
-  implicit_detail::ImplicitStage stage_;
 };
 
 /** v1 = v0 + dt F(x, v)/m, x1 = x0 + dt v, at x = (x0 + x1)/2 and v = (v0 +
  * v1)/2. Symmetric and symplectic; conserves linear and angular momentum.
  * Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration,
  * II.1.3. */
-class ImplicitMidpoint : public NewtonMethod {
+class ImplicitMidpoint : public ImplicitMethod {
  public:
   // Force evaluations if the force is linear. Otherwise one more for each
   // further Newton iteration: 4 to 6 in all on a cloth, more when it buckles.
@@ -89,7 +80,8 @@ class ImplicitMidpoint : public NewtonMethod {
       "stiff springs that oscillate without loss, as in a chain",
       "buckling cloth at large dt: nothing damps the fast waves"};
 
-  using NewtonMethod::NewtonMethod;
+  using ImplicitMethod::ImplicitMethod;
+  ImplicitMidpoint() : ImplicitMethod(1e-9) {}
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
@@ -100,7 +92,7 @@ class ImplicitMidpoint : public NewtonMethod {
  * fast for dt are damped at once.
  * Source: R. E. Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992,
  * doi:10.1109/T-ED.1985.22232. */
-class TrBdf2 : public NewtonMethod {
+class TrBdf2 : public ImplicitMethod {
  public:
   // Force evaluations if the force is linear: one at the start and two a stage.
   // On a cloth 6. In addition, each stage takes products with the matrix as in
@@ -114,10 +106,10 @@ class TrBdf2 : public NewtonMethod {
       "stiff cloth that moves on large scales, at large dt",
       "energy that must not be lost; steps near verlet's limit"};
 
-  using NewtonMethod::NewtonMethod;
+  using ImplicitMethod::ImplicitMethod;
   /** Stages are solved to a tenth of the local error. That raises the error of
    * a run by at most 1 %; 1e-9 m/s^2 would take 2 to 4 times the products. */
-  TrBdf2() : NewtonMethod(Share{0.1}) {}
+  TrBdf2() : ImplicitMethod(1e-9, 100, 0.1) {}
 
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;

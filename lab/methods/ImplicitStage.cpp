@@ -71,45 +71,43 @@ void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
   constraint.each_held(g, [&fixed](Node n) { fixed[n.id()] = true; });
 }
 
-void Goal::fail(const char* what, int iterations, double residual,
-                const char* unit) const {
+void ImplicitStage::fail(const char* what, int iterations, double residual,
+                         double enough, const char* unit) const {
   using CME212::short_text;
-  throw StepError(std::string(method) + ": " + what + " is at a residual of " +
+  throw StepError(std::string(method_) + ": " + what + " is at a residual of " +
                   short_text(residual) + unit + " after " +
                   std::to_string(iterations) + " iterations, expected " +
-                  short_text(tolerance) + unit + "; dt = " + short_text(dt) +
+                  short_text(enough) + unit + "; dt = " + short_text(dt_) +
                   " s");
 }
 
-ImplicitStep& ImplicitStage::begin(std::string_view method, double t, double dt,
-                                   Cloth& g, const ForcePlan& force,
-                                   const ConstraintPlan& constraint) {
-  ImplicitStep& s = step_;
-  s.goal_.method = method, s.goal_.dt = dt, s.end_ = t + dt;
-  s.g_ = &g, s.force_ = &force, s.constraint_ = &constraint;
-  s.tight_ = false;
-  find_fixed(g, constraint, s.fixed_);
+ImplicitStage& ImplicitStage::begin(std::string_view method, double t,
+                                    double dt, Cloth& g, const ForcePlan& force,
+                                    const ConstraintPlan& constraint) {
+  method_ = method, dt_ = dt, end_ = t + dt;
+  g_ = &g, force_ = &force, constraint_ = &constraint;
+  tight_ = false;
+  find_fixed(g, constraint, fixed_);
   constraint.place_held_at_rest(g, t);
   const unsigned n = arrays(g).node_slots();
-  s.p.assign(arrays(g).positions().begin(), arrays(g).positions().end());
-  s.q.resize(n);
-  for (unsigned i = 0; i < n; ++i) s.q[i] = arrays(g).node_values()[i].vel;
-  s.guess = s.w = s.q;
-  for (auto* a :
-       {&s.residual_, &s.step_, &s.rest_, &s.z_, &s.direction_, &s.product_})
+  p.assign(arrays(g).positions().begin(), arrays(g).positions().end());
+  q.resize(n);
+  for (unsigned i = 0; i < n; ++i) q[i] = arrays(g).node_values()[i].vel;
+  guess = w = q;
+  for (auto* a : {&residual_, &step_, &rest_, &z_, &direction_, &product_})
     a->resize(n);
-  s.diagonal_blocks_.resize(n);
-  return s;
+  diagonal_blocks_.resize(n);
+  return *this;
 }
 
-void ImplicitStep::hold(double t) {
+void ImplicitStage::hold(double t) {
   constraint_->each_place(*g_, t, [&](Node n, const Place& place) {
     n.position() = p[n.id()] = place.at;
     q[n.id()] = w[n.id()] = guess[n.id()] = Point();
   });
 }
 
-void ImplicitStep::solve_linearized(double t, double s) {
+void ImplicitStage::solve_linearized(double t, double s) {
   hold(t);
   find_w(s, w);
   find_residual(t, s);
@@ -118,12 +116,12 @@ void ImplicitStep::solve_linearized(double t, double s) {
   multiply(direction_, product_, true);
   for (unsigned i = 0; i < w.size(); ++i) residual_[i] -= product_[i];
   w = q;
-  solve(goal_.tolerance, true);
+  solve(tolerance_, true);
   advance(1);
   move(s);
 }
 
-void ImplicitStep::solve_newton(double t, double s, const LocalError& error) {
+void ImplicitStage::solve_newton(double t, double s, const LocalError& error) {
   hold(t);
   Objective here = choose_start(s);
   double first = 0, before = 0;
@@ -136,8 +134,8 @@ void ImplicitStep::solve_newton(double t, double s, const LocalError& error) {
     const double left = rms(*g_, z_) / s;
     const double goal = allowed(s, error);
     if (left <= goal || left <= round_off(s)) return balance(s);
-    if (iteration == goal_.max_iterations || !std::isfinite(left))
-      goal_.fail("Newton's method", iteration, left, " m/s^2");
+    if (iteration == max_iterations_ || !std::isfinite(left))
+      fail("Newton's method", iteration, left, tolerance_, " m/s^2");
     // The faster Newton converges, the more accurate is the linear solve, but
     // not more than needed: forcing terms of S. Eisenstat, H. Walker, SIAM J.
     // Sci. Comput. 17 (1996) 16, choice 2.
@@ -157,13 +155,13 @@ void ImplicitStep::solve_newton(double t, double s, const LocalError& error) {
     if (clamp || !solve(enough, false)) solve(enough, true);
     const bool found = search(t, s, here, left < 0.01 * first);
     if (!found && clamp)
-      goal_.fail("Newton's line search", iteration, left, " m/s^2");
+      fail("Newton's line search", iteration, left, tolerance_, " m/s^2");
     clamp = !found;  // A was nearly singular, so step_ was far too long
   }
 }
 
 /** RMS(D^-1 M from)/s [m/s^2], for @a from in [m/s]. */
-double ImplicitStep::filtered(double s, const std::vector<Point>& from) {
+double ImplicitStage::filtered(double s, const std::vector<Point>& from) {
   auto node = arrays(*g_).node_values();
   for (unsigned i = 0; i < from.size(); ++i)
     rest_[i] = fixed_[i] ? Point() : node[i].mass * from[i];
@@ -172,8 +170,8 @@ double ImplicitStep::filtered(double s, const std::vector<Point>& from) {
 }
 
 /** The residual [m/s^2] to stop at, see solve_newton(). */
-double ImplicitStep::allowed(double s, const LocalError& error) {
-  if (error.scale == 0 || share_ == 0) return goal_.tolerance;
+double ImplicitStage::allowed(double s, const LocalError& error) {
+  if (error.scale == 0 || share_ == 0) return tolerance_;
   for (unsigned i = 0; i < w.size(); ++i) direction_[i] = w[i] - guess[i];
   double d = filtered(s, direction_);
   if (error.first) {
@@ -181,12 +179,12 @@ double ImplicitStep::allowed(double s, const LocalError& error) {
     const double whole = filtered(s, direction_);
     if (d < whole) d *= d / whole;
   }
-  return std::max(goal_.tolerance, share_ * error.scale * d);
+  return std::max(tolerance_, share_ * error.scale * d);
 }
 
 /** Without fixed nodes: shift w so that the sum of the residual is 0. That does
  * not change any spring. */
-void ImplicitStep::balance(double s) {
+void ImplicitStage::balance(double s) {
   Point sum;
   double mass = 0;
   const Drag& c = force_->drag();
@@ -204,27 +202,27 @@ void ImplicitStep::balance(double s) {
 }
 
 /** The w @a now of the present positions x = p + s w. */
-void ImplicitStep::find_w(double s, std::vector<Point>& now) const {
+void ImplicitStage::find_w(double s, std::vector<Point>& now) const {
   auto x = arrays(*g_).positions();
   for (unsigned i = 0; i < w.size(); ++i) now[i] = (x[i] - p[i]) / s;
 }
-void ImplicitStep::move(double s) {
+void ImplicitStage::move(double s) {
   auto x = arrays(*g_).positions();
   for (unsigned i = 0; i < w.size(); ++i)
     if (!fixed_[i]) x[i] = p[i] + s * w[i];
 }
 /** w += a times the solution of the linear system. */
-void ImplicitStep::advance(double a) {
+void ImplicitStage::advance(double a) {
   for (unsigned i = 0; i < w.size(); ++i) w[i] += a * step_[i];
 }
 
-std::vector<Point>& ImplicitStep::residual(double t, double s) {
+std::vector<Point>& ImplicitStage::residual(double t, double s) {
   hold(t);
   move(s);
   find_residual(t, s);
   return residual_;
 }
-void ImplicitStep::find_residual(double t, double s) {
+void ImplicitStage::find_residual(double t, double s) {
   flow_.accelerate(*g_, t, *force_, true);
   const Drag& c = force_->drag();
   auto node = arrays(*g_).node_values();
@@ -236,7 +234,7 @@ void ImplicitStep::find_residual(double t, double s) {
 }
 
 /** The springs' blocks of A, and the inverses of its diagonal ones. */
-void ImplicitStep::assemble(double s) {
+void ImplicitStage::assemble(double s) {
   const Drag& c = force_->drag();
   auto node = arrays(*g_).node_values();
   diagonal_.resize(w.size());
@@ -249,7 +247,7 @@ void ImplicitStep::assemble(double s) {
   factored_ = false;
   const double ss = s * s;
   add_stiffness(
-      goal_.method, *force_, *g_,
+      method_, *force_, *g_,
       [this, ss](unsigned i, unsigned j, const Stiffness& B) {
         const Stiffness b = {B.direction, ss * B.along, ss * B.across};
         blocks_.push_back({i, j, b});
@@ -267,8 +265,8 @@ void ImplicitStep::assemble(double s) {
 
 /** @a to = A @a from, without negative stiffness if @a clamp.  @pre @a from
  * is 0 at fixed nodes */
-void ImplicitStep::multiply(const std::vector<Point>& from,
-                            std::vector<Point>& to, bool clamp) const {
+void ImplicitStage::multiply(const std::vector<Point>& from,
+                             std::vector<Point>& to, bool clamp) const {
   for (unsigned i = 0; i < from.size(); ++i) to[i] = diagonal_[i] * from[i];
   for (const Block& b : blocks_) {
     const Stiffness B = clamp ? clamped(b.B) : b.B;
@@ -280,14 +278,14 @@ void ImplicitStep::multiply(const std::vector<Point>& from,
     if (fixed_[i]) to[i] = Point();
 }
 /** @a to = D^-1 @a from. */
-void ImplicitStep::precondition(const std::vector<Point>& from,
-                                std::vector<Point>& to) const {
+void ImplicitStage::precondition(const std::vector<Point>& from,
+                                 std::vector<Point>& to) const {
   for (unsigned i = 0; i < from.size(); ++i)
     to[i] = point(times(diagonal_blocks_[i], four(from[i])));
 }
 /** The round-off in D^-1 r/s [m/s^2], RMS over the nodes: that of w through the
  * inertia, that of x through the springs' part of D. */
-double ImplicitStep::round_off(double s) const {
+double ImplicitStage::round_off(double s) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   auto x = arrays(*g_).positions();
   double sum = 0;
@@ -304,7 +302,7 @@ double ImplicitStep::round_off(double s) const {
  * Counted, with measured weights: a product of two blocks takes 0.7 times as
  * long as a spring in a product with A, a block in each of two solves 2 times.
  */
-double ImplicitStep::factor_work() {
+double ImplicitStage::factor_work() {
   constexpr std::size_t most = 10'000'000;  // blocks, of 100 bytes
   pairs_.clear();
   for (const Block& b : blocks_)
@@ -319,7 +317,7 @@ double ImplicitStep::factor_work() {
  * twice the width of a sheet in nodes. If that is far more than the work of a
  * factor, the factor is made at once; else after as much work as its own, so
  * that both together take at most twice the lesser. */
-double ImplicitStep::patience(double relative) {
+double ImplicitStage::patience(double relative) {
   if (factored_ || solver_ == LinearSolver::gradients) return HUGE_VAL;
   if (tight_ || solver_ == LinearSolver::cholesky) return 0;
   const double expected =
@@ -330,7 +328,7 @@ double ImplicitStep::patience(double relative) {
 
 /** Factor A, without negative stiffness.
  * @return false if it can't be factored */
-bool ImplicitStep::factor() {
+bool ImplicitStage::factor() {
   if (factor_work() == HUGE_VAL) return false;
   factor_.clear();
   Matrix3 full;
@@ -352,24 +350,22 @@ bool ImplicitStep::factor() {
   return factor_.factorize();
 }
 
-ImplicitStep::Factor ImplicitStep::factorize(double s) {
+void ImplicitStage::factorize(double s) {
   assemble(s);
   if (!factor())
-    throw StepError(std::string(goal_.method) + ": no factor of " +
-                    std::to_string(blocks_.size()) + " stiff springs; dt = " +
-                    CME212::short_text(goal_.dt) + " s");
-  return Factor(*this);
+    throw StepError(std::string(method_) + ": no factor of " +
+                    std::to_string(blocks_.size()) +
+                    " stiff springs; dt = " + CME212::short_text(dt_) + " s");
 }
-
-void ImplicitStep::Factor::solve(std::vector<Point>& b) const {
+void ImplicitStage::solve_factored(std::vector<Point>& b) {
   for (unsigned i = 0; i < b.size(); ++i)
-    if (of_.fixed_[i]) b[i] = Point();
-  of_.factor_.solve(b);
+    if (fixed_[i]) b[i] = Point();
+  factor_.solve(b);
 }
 
 /** @a to = the inverse of the preconditioner times @a from. */
-void ImplicitStep::apply(const std::vector<Point>& from,
-                         std::vector<Point>& to) {
+void ImplicitStage::apply(const std::vector<Point>& from,
+                          std::vector<Point>& to) {
   if (!factored_) return precondition(from, to);
   to = from;
   factor_.solve(to);
@@ -382,7 +378,7 @@ void ImplicitStep::apply(const std::vector<Point>& from,
  * is still a descent direction.
  * @return false if there is no iterate; never with @a clamp  Throws StepError.
  */
-bool ImplicitStep::solve(double relative, bool clamp) {
+bool ImplicitStage::solve(double relative, bool clamp) {
   double tries = patience(relative);
   std::fill(step_.begin(), step_.end(), Point());
   rest_ = residual_;
@@ -392,12 +388,9 @@ bool ImplicitStep::solve(double relative, bool clamp) {
   const double start = size, enough = relative * relative * start;
   const int most = 1000 + 3 * int(w.size());
   for (int k = 0; !(size <= enough); ++k) {
-    if (k == most || !std::isfinite(size)) {
-      Goal linear = goal_;
-      linear.tolerance = relative;
-      linear.fail("the conjugate gradient method", k, std::sqrt(size / start),
-                  " (relative)");
-    }
+    if (k == most || !std::isfinite(size))
+      fail("the conjugate gradient method", k, std::sqrt(size / start),
+           relative, " (relative)");
     if (k >= tries && tries > 0 && !tight_)
       tries = std::max(tries, factor_work());
     if (k >= tries) {
@@ -423,7 +416,7 @@ bool ImplicitStep::solve(double relative, bool clamp) {
   return true;
 }
 
-ImplicitStep::Objective ImplicitStep::objective(double s) const {
+ImplicitStage::Objective ImplicitStage::objective(double s) const {
   auto node = arrays(*g_).node_values();
   const Drag& c = force_->drag();
   double sum = 0;
@@ -435,7 +428,7 @@ ImplicitStep::Objective ImplicitStep::objective(double s) const {
 
 /** Keep w, or take that of the present positions, whichever has the lower
  * objective.  @return that objective */
-ImplicitStep::Objective ImplicitStep::choose_start(double s) {
+ImplicitStage::Objective ImplicitStage::choose_start(double s) {
   find_w(s, rest_);
   std::swap(w, rest_);
   const Objective now = objective(s);
@@ -454,7 +447,7 @@ ImplicitStep::Objective ImplicitStep::choose_start(double s) {
  * or less.
  * @return false if the objective does not fall; then w is as before, to
  * round-off */
-bool ImplicitStep::search(double t, double s, Objective& here, bool close) {
+bool ImplicitStage::search(double t, double s, Objective& here, bool close) {
   const double predicted = dot_product(residual_, step_);
   advance(1);
   if (predicted <= 1e-12 * (here.inertia + std::abs(here.energy))) return true;
@@ -477,7 +470,7 @@ bool ImplicitStep::search(double t, double s, Objective& here, bool close) {
   return false;
 }
 
-double ImplicitStep::finish() {
+double ImplicitStage::finish() {
   const auto node = arrays(*g_).node_values();
   for (unsigned i = 0; i < w.size(); ++i) node[i].vel = w[i];
   return implicit_detail::finish(*g_, end_, *constraint_);

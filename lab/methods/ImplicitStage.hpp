@@ -1,7 +1,7 @@
 #pragma once
 /** @file ImplicitStage.hpp
- * ImplicitStage and ImplicitStep: the equation of one stage of an implicit
- * method, solved by Newton's method and conjugate gradients. */
+ * ImplicitStage: the equation of one stage of an implicit method, solved by
+ * Newton's method and conjugate gradients. */
 #include <string_view>
 #include <vector>
 
@@ -23,24 +23,14 @@ void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);
 
 /** The preconditioner of the conjugate gradient method: the diagonal blocks of
- * A, its Cholesky factor, or (automatic) what is less work: see ImplicitStep.
+ * A, its Cholesky factor, or (automatic) what is less work: see ImplicitStage.
  */
 enum class LinearSolver { automatic, gradients, cholesky };
 
-/** How a stage estimates its error: see ImplicitStep::solve_newton(). */
+/** How a stage estimates its error: see ImplicitStage::solve_newton(). */
 struct LocalError {
   double scale = 0;    ///< the error over the deviation from guess
   bool first = false;  ///< true if guess is of order 0, else 1
-};
-
-/** The accuracy that a solver must reach, and the text of its errors. */
-struct Goal {
-  double tolerance;  ///< of the iteration that failed
-  int max_iterations;
-  std::string_view method = {};
-  double dt = 0;  ///< of the whole step [s]
-  [[noreturn]] void fail(const char* what, int iterations, double residual,
-                         const char* unit) const;
 };
 
 /** The equation of all implicit steps here: find w [m/s] with
@@ -60,9 +50,25 @@ struct Goal {
  * the factor. The residual is not affected.
  *
  * Fixed nodes have q = w = 0, and p = x: held ones are at their places at the
- * time of the stage. ImplicitStage::begin() makes one for each step. */
-class ImplicitStep {
+ * time of the stage. One serves all steps of a method, so that it keeps its
+ * memory. */
+class ImplicitStage {
  public:
+  /** @param tolerance > 0   @param max_iterations   see the solvers
+   * @param share Newton's method may leave this share of the local error */
+  ImplicitStage(double tolerance, int max_iterations, double share = 0)
+      : tolerance_(tolerance), max_iterations_(max_iterations), share_(share) {}
+  void use(LinearSolver solver) { solver_ = solver; }
+  const Work& work() const { return work_; }
+
+  /** Begin a step of @a g from @a t by @a dt [s]: find the fixed nodes, put
+   * held ones to their places, set p = x, q = w = guess = v. The arguments must
+   * stay until the next begin().  @param method its name, for errors
+   * @return this */
+  ImplicitStage& begin(std::string_view method, double t, double dt, Cloth& g,
+                       const ForcePlan& force,
+                       const ConstraintPlan& constraint);
+
   std::vector<Point> p, q, w;  ///< by node id; at first x, v, v
   /** w extrapolated from past accelerations; by node id. */
   std::vector<Point> guess;
@@ -105,23 +111,14 @@ class ImplicitStep {
    * @return the time at its end */
   double finish();
 
-  /** Solves A z = b. */
-  class Factor {
-   public:
-    /** Replace @a b by z, by node id, with z = 0 at fixed nodes. */
-    void solve(std::vector<Point>& b) const;
-
-   private:
-    friend ImplicitStep;
-    explicit Factor(ImplicitStep& of) : of_(of) {}
-    ImplicitStep& of_;
-  };
-  /** Factor A at the present positions, without negative stiffness. Valid until
-   * the next call.  Throws StepError. */
-  Factor factorize(double s);
+  /** Factor A at the present positions, without negative stiffness.
+   * Throws StepError. */
+  void factorize(double s);
+  /** Replace @a b, by node id, by the solution z of A z = b, with z = 0 at
+   * fixed nodes.  @pre factorize() in this step */
+  void solve_factored(std::vector<Point>& b);
 
  private:
-  friend class ImplicitStage;
   struct Block {  // of s^2 H, between nodes i and j
     unsigned i, j;
     Stiffness B;
@@ -138,8 +135,11 @@ class ImplicitStep {
   bool factored_ = false;  // whether factor_ is the factor of this A
   bool tight_ = false;     // whether an earlier A of this step was factored
   double contrast_ = 0;    // of D and M: about 1 + (s omega)^2
-  Goal goal_;
+  double tolerance_;
+  int max_iterations_;
   double share_;
+  std::string_view method_;
+  double dt_ = 0;  // of the whole step [s]
   Work work_;
   double end_ = 0;  // [s]
   Cloth* g_ = nullptr;
@@ -151,7 +151,8 @@ class ImplicitStep {
     double value() const { return inertia + energy; }
   };
 
-  ImplicitStep(const Goal& goal, double share) : goal_(goal), share_(share) {}
+  [[noreturn]] void fail(const char* what, int iterations, double residual,
+                         double enough, const char* unit) const;
   void hold(double t);
   void find_w(double s, std::vector<Point>& now) const;
   void advance(double a);
@@ -173,26 +174,6 @@ class ImplicitStep {
   Objective objective(double s) const;
   Objective choose_start(double s);
   bool search(double t, double s, Objective& here, bool close);
-};
-
-/** Settings, work and memory, shared by the steps of an implicit method. */
-class ImplicitStage {
- public:
-  /** @param tolerance > 0   @param max_iterations   see the solvers
-   * @param share Newton's method may leave this share of the local error */
-  ImplicitStage(double tolerance, int max_iterations, double share = 0)
-      : step_({tolerance, max_iterations}, share) {}
-  /** Begin a step of @a g from @a t by @a dt [s]: find the fixed nodes, put
-   * held ones to their places, set p = x, q = w = guess = v. Valid until the
-   * next begin(), while the arguments are.  @param method its name, for errors
-   */
-  ImplicitStep& begin(std::string_view method, double t, double dt, Cloth& g,
-                      const ForcePlan& force, const ConstraintPlan& constraint);
-  const Work& work() const { return step_.work_; }
-  void use(LinearSolver solver) { step_.solver_ = solver; }
-
- private:
-  ImplicitStep step_;
 };
 
 /** End a step: apply the constraint, set held velocities.  @return @a end */

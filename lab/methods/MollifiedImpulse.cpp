@@ -136,11 +136,10 @@ void MollifiedImpulse::find_soft(double t, double dt) {
   const auto x = arrays(stiff_).positions();
   for (unsigned k = 0; k < x.size(); ++k) x[k] = flat.position(split_.nodes[k]);
   at_.assign(x.begin(), x.end());
-  const auto factor =
-      stage_.begin(info.name, t, dt, stiff_, springs_, held_).factorize(dt / 2);
+  stage_.begin(info.name, t, dt, stiff_, springs_, held_).factorize(dt / 2);
   find_stiff();
   for (Point& f : f_) f *= ss;
-  factor.solve(f_);
+  stage_.solve_factored(f_);
   for (unsigned k = 0; k < x.size(); ++k) {
     x[k] += f_[k];
     flat.set_position(split_.nodes[k], x[k]);
@@ -151,7 +150,7 @@ void MollifiedImpulse::find_soft(double t, double dt) {
     f_[k] = double(arrays(stiff_).node_values()[k].mass) *
                 flat.acceleration(split_.nodes[k]) -
             f_[k];
-  factor.solve(f_);
+  stage_.solve_factored(f_);
   for (unsigned k = 0; k < x.size(); ++k) {
     flat.set_position(split_.nodes[k], at_[k]);
     flat.set_acceleration(split_.nodes[k], f_[k]);
