@@ -1,7 +1,7 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite cells charts figures fuzz grids \
+.PHONY: adviser-suite charts figures fuzz grids \
         long-runs method-costs orders peers-chart peers-deps pictures \
         rounds-chart speed stability stability-soak try
 
@@ -72,24 +72,16 @@ long-runs: cloth
 	  > $(B)/long_runs.csv
 	@mv $(B)/long_runs.csv lab/charts/results/long_runs.csv
 
-# A sweep is a list of runs, costly ones first, each with a file of its own, so
-# it goes on where it was interrupted. `make cells` runs what $(SWEEP)/list
-# names, and no more.
+# Cells of an earlier program are measured anew.
 EFFORT = $(if $(QUICK),quick,full)
 SWEEP  = $(B)/stability/$(EFFORT)
-effort = $(filter-out --full,--$(EFFORT))
+maps_in = $(if $(QUICK),$(B)/charts,lab/charts/results)
 stability: stability_map
-	@mkdir -p $(SWEEP)
-	@$(B)/stability_map --list $(effort) | sort -srgk2,2 > $(SWEEP)/list
-	@$(sub) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) \
-	  cells EFFORT=$(EFFORT) SWEEP=$(SWEEP)
-	@BUILD='$(B)' lab/charts/stability.sh $(EFFORT) $(SWEEP)
-ifneq ($(filter cells,$(MAKECMDGOALS)),)
-cells: $(patsubst %,$(SWEEP)/%.csv,$(shell cut -d' ' -f1 $(SWEEP)/list))
-$(SWEEP)/%.csv: $(B)/stability_map
-	@$< --cell $* $(effort) --out $@
-	@echo "$$(ls $(SWEEP)/*.csv | wc -l)/$$(wc -l <$(SWEEP)/list) cells"
-endif
+	@mkdir -p $(SWEEP) $(maps_in)
+	@find $(SWEEP) -name '*.csv' ! -newer $(B)/stability_map -delete
+	@$(B)/stability_map $(SWEEP) --effort $(EFFORT)
+	@cp $(SWEEP)/stability_*.csv $(maps_in)
+	@$(draw) stability_limits stability_growth --folder $(maps_in)
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
 # SCENES random scenes, the methods in turn; and 1,000 by --dt auto.

@@ -7,41 +7,31 @@ cd "$(dirname "$0")/.."
 . tools/cases.sh
 build=${BUILD:-build}
 make -s stability_map B="$build"
-stability_map() { "$build/stability_map" "$@"; }
-maps=$(stability_map --map none 2>&1 | sed -n 's/.*there are: //p' || true)
+sweep() { "$build/stability_map" "$tmp/$1" --effort tiny; }
 
-join() {  # all maps of the cells in DIR
-  # shellcheck disable=SC2086  # a list of words
-  BUILD=$build lab/charts/stability.sh tiny "$1" $maps
-}
-cells() {  # JOBS DIR, which has the list of cells
-  make --no-print-directory "-j$1" cells B="$build" EFFORT=tiny SWEEP="$2"
-}
-
-mkdir "$tmp/whole" "$tmp/half"
-stability_map --tiny --list | tee "$tmp/whole/list" >"$tmp/half/list"
-mapfile -t all < <(cut -d' ' -f1 "$tmp/whole/list")
-attempt cells 1 "$tmp/whole"; says "${#all[@]}/${#all[@]} cells"
-attempt join "$tmp/whole"; expect 0
-for map in $maps; do says "# map $map: "; done
-ok "one job"
-whole=$out
+attempt sweep whole; expect 0
+cells=$(find "$tmp/whole" -name '*-*.csv' | wc -l)
+same rows "$(cat "$tmp"/whole/stability_*.csv | grep -vc '^#')" $((2 + 6 + 24))
+ok "all cells"
 
 # Half of the cells are there, and a part of a file.
-half=("${all[@]:0:${#all[@]}/2}") last=${all[-1]}
-for cell in "${half[@]}"; do cp "$tmp/whole/$cell.csv" "$tmp/half"; done
-echo "method" >"$tmp/half/$last.csv.1-1.part"
+mkdir "$tmp/half"
+find "$tmp/whole" -name '*-*.csv' | head -n $((cells / 2)) |
+  xargs cp -t "$tmp/half"
+echo method >"$tmp/half/limits-5-plain-rk4.csv.1-1.part"
 touch "$tmp/interrupted"
-cells 2 "$tmp/half" >"$tmp/said"
-attempt join "$tmp/half"; same "what is joined" "$out" "$whole"
+attempt sweep half; expect 0
+for map in limits growth; do
+  same "map $map" "$(cat "$tmp/half/stability_$map.csv")" \
+    "$(cat "$tmp/whole/stability_$map.csv")"
+done
 same "cells run anew" \
-  "$(find "$tmp/half" -name '*.csv' -newer "$tmp/interrupted" | wc -l)" \
-  $((${#all[@]} - ${#half[@]}))
-ok "interrupted, and continued by two jobs"
+  "$(find "$tmp/half" -name '*-*.csv' -newer "$tmp/interrupted" | wc -l)" \
+  $((cells - cells / 2))
+ok "interrupted, and continued"
 
-attempt stability_map --cell limits-6-plain; expect 2
-says "there is no 'limits-6-plain'; --list prints all"; ok "no such cell"
-echo 'method,growth' >"$tmp/half/$last.csv"
-attempt join "$tmp/half"; expect 2
-says "$last.csv:1: is no whole cell, expected '"; ok "a bad cell"
+echo mine >"$tmp/file"
+attempt sweep file; expect 2; says "stability_map: "; ok "no folder"
+attempt "$build/stability_map" "$tmp/new" --effort huge; expect 2
+says "--effort: "; ok "no such effort"
 all_passed

@@ -1,21 +1,25 @@
 /** @file stability_map.cpp
  * Maps of the stability of methods: measured and predicted limits. A map
- * consists of independent runs, its cells, each with a file of its own. They
- * can be run in any order; joined they give the same bytes.
+ * consists of independent runs, its cells, each with a file of its own. A cell
+ * whose file is there is not run again: so a map that was interrupted goes on
+ * where it stopped, to the same bytes.
  *
- *   build/stability_map --list                # all cells: name, cost, content
- *   build/stability_map --cell NAME --out DIR/NAME.csv
- *   build/stability_map --map limits          # the head of a map
+ *   build/stability_map FOLDER --effort quick   # FOLDER/stability_MAP.csv
  *
- * `make stability` runs and joins all.
- * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
- * input that can't be used, or an output that can't be written. */
+ * `make stability` runs it and draws. The columns: lab/charts/README.md. Exit
+ * status: 0 done; 2 an option that can't be used, or an output that can't be
+ * written. */
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <iostream>
-#include <optional>
+#include <map>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +29,7 @@
 #include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/run/Progress.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "lab/stability/StepLimit.hpp"
 
@@ -36,19 +41,12 @@ using report::cell;
 namespace {
 
 /** The amount of work: for the charts, for a first look, for a test. */
-enum class Effort { full, quick, tiny };
-
-/** One of three values, by effort. */
-template <typename T>
-T by(Effort e, T full, T quick, T tiny) {
-  return e == Effort::full ? full : e == Effort::quick ? quick : tiny;
-}
+enum Effort { full, quick, tiny };
 
 /** A part of a map, with runs of its own. Its name begins with the map's. */
 struct Cell {
   std::string name;
-  double cost;       // estimated seconds on a core of 2.4 GHz
-  std::string what;  // its parameters, for people
+  double cost;  // estimated seconds on a core of 2.4 GHz
   std::function<void(std::ostream&)> run;  // writes its rows
 };
 
@@ -85,10 +83,9 @@ std::pair<double, double> frequencies(const Problem& p) {
 /** Limit against the number of nodes. A large cloth can't be run for seconds,
  * but a stretched sheet shows its limit within a few hundred steps. */
 void add_limits(std::vector<Cell>& cells, Effort effort) {
-  using Sides = std::vector<unsigned>;
-  const auto sides = by<Sides>(effort, {5, 10, 25, 50, 100, 200, 500, 1000},
-                               {5, 10, 25, 50, 100}, {5});
-  for (unsigned side : sides)
+  const std::vector<unsigned> sides[] = {
+      {5, 10, 25, 50, 100, 200, 500, 1000}, {5, 10, 25, 50, 100}, {5}};
+  for (unsigned side : sides[effort])
     for (MeshSprings::Kind mesh : {MeshSprings::plain, MeshSprings::diagonals})
       for (const char* name : {"symplectic-euler", "verlet", "rk4"}) {
         const int steps = side >= 500 ? 150 : 300;
@@ -107,8 +104,6 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
                              name_of(mesh) + '-' + name,
                          1e-7 * side * side * steps * (m.info.sweeps + 0.5) *
                              (mesh == MeshSprings::plain ? 0.6 : 1),
-                         "stretch=1.5 gamma=1 precision=0.01 steps=" +
-                             std::to_string(steps),
                          run});
       }
 }
@@ -117,8 +112,9 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
  * at one stretch. */
 void add_growth(std::vector<Cell>& cells, Effort effort) {
   constexpr unsigned side = 15;
-  const int columns = by(effort, 40, 16, 2), rows = by(effort, 60, 24, 3);
-  const int steps = by(effort, 600, 200, 20);
+  const int columns = std::array{40, 16, 2}[effort];
+  const int rows = std::array{60, 24, 3}[effort];
+  const int steps = std::array{600, 200, 20}[effort];
   constexpr double low = 0.9, high = 2.5;  // stretch
   constexpr double least = 0.5, most = 2;  // dt/safe
   for (const char* name : explicit_methods)
@@ -141,96 +137,84 @@ void add_growth(std::vector<Cell>& cells, Effort effort) {
       };
       cells.push_back(
           {std::string("growth-") + name + '-' + short_text(stretch),
-           4e-6 * (m.info.sweeps + 1) * rows * steps,
-           "side=15 steps=" + std::to_string(steps) +
-               " rows=" + std::to_string(rows),
-           run});
+           4e-6 * (m.info.sweeps + 1) * rows * steps, run});
     }
 }
 
-/** All cells, in the order in which they are joined. */
-std::vector<Cell> make_cells(Effort effort) {
-  std::vector<Cell> cells;
-  add_limits(cells, effort);
-  add_growth(cells, effort);
-  return cells;
-}
+// ----------------------------------------------------------------- Running
 
-// -------------------------------------------------------------------- Options
-
-struct Options {
-  bool list = false, quick = false, tiny = false;
-  std::string cell, map, out;
-};
-
-/** The one of @a all called @a name; throws std::runtime_error if none is. */
-template <typename All>
-const auto& find(const All& all, const std::string& name, const char* what,
-                 const std::string& see) {
-  for (const auto& a : all)
-    if (a.name == name) return a;
-  throw std::runtime_error(std::string(what) + ": there is no '" + name +
-                           "'; " + see);
-}
-
-void run(const Options& o) {
-  const auto cells = make_cells(o.quick  ? Effort::quick
-                                : o.tiny ? Effort::tiny
-                                         : Effort::full);
-  auto map_of = [](const std::string& name) {
-    return find(maps, name, "--map", "there are: limits growth");
+/** Run @a cells on all processors, costly ones first. Those whose file is in
+ * @a folder are left out. */
+void run(std::vector<Cell> cells, const std::filesystem::path& folder) {
+  std::ranges::stable_sort(cells, std::greater(), &Cell::cost);
+  Progress progress;
+  std::mutex one_at_a_time;
+  Sweep::FirstError error;
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    try {
+      for (std::size_t k; (k = next++) < cells.size();) {
+        const std::string file = folder / (cells[k].name + ".csv");
+        if (std::filesystem::exists(file)) continue;
+        CME212::OutputFile out(file);
+        cells[k].run(out.stream());
+        out.commit();
+        const std::lock_guard lock(one_at_a_time);
+        if (progress.due())
+          progress.show(cells[k].name, double(k) / double(cells.size()));
+      }
+    } catch (const std::exception&) {
+      error.keep();
+      next = cells.size();
+    }
   };
-  std::optional<CME212::OutputFile> file;
-  if (!o.out.empty()) file.emplace(o.out);  // fail before the run, not after
-  std::ostream& out = file ? file->stream() : std::cout;
-  if (o.list) {
-    for (const Cell& c : cells)
-      out << c.name << ' ' << short_text(c.cost) << ' ' << c.what << '\n';
-  } else if (!o.cell.empty()) {
-    const Cell& chosen = find(cells, o.cell, "--cell", "--list prints all");
-    out << map_of(o.cell.substr(0, o.cell.find('-'))).columns << '\n';
-    chosen.run(out);
-  } else {
-    const Map map = map_of(o.map);
-    report::write_head(out, "stability; columns: lab/charts/README.md");
-    out << "# map " << map.name << ": " << map.about << '\n'
-        << map.columns << '\n';
-  }
-  if (file) file->commit();
+  std::vector<std::jthread> threads;
+  for (int k = 0; k < Sweep::processors(); ++k) threads.emplace_back(work);
+  threads.clear();  // joins them
+  progress.end();
+  error.rethrow();
 }
 
-/** Read the command line.  @return the exit status to end with, or -1 */
-int parse(int argc, char** argv, Options& o) {
-  CLI::App app("Measures where methods are stable; writes CSV.",
-               "stability_map");
-  auto* what = app.add_option_group("what", "one of");
-  what->add_flag("--list", o.list,
-                 "print the cells: name, cost [s], parameters");
-  what->add_option("--cell", o.cell, "run this cell")->type_name("NAME");
-  what->add_option("--map", o.map, "print the head of this map")
-      ->type_name("NAME");
-  what->require_option(1);
-  app.add_option("--out", o.out, "file to write; the terminal if none")
-      ->type_name("FILE");
-  auto* quick = app.add_flag("--quick", o.quick, "fewer and smaller cells");
-  app.add_flag("--tiny", o.tiny, "next to none, for a test")->excludes(quick);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+/** Write the files of the maps from those of @a cells. */
+void join(const std::vector<Cell>& cells, const std::filesystem::path& folder) {
+  for (const Map& map : maps) {
+    const std::string name = map.name;
+    CME212::OutputFile file(folder / ("stability_" + name + ".csv"));
+    report::write_head(file.stream(),
+                       "stability; columns: lab/charts/README.md");
+    file.stream() << "# map " << name << ": " << map.about << '\n'
+                  << map.columns << '\n';
+    for (const Cell& cell : cells)
+      if (cell.name.starts_with(name + '-'))
+        file.stream() << std::ifstream(folder / (cell.name + ".csv")).rdbuf();
+    file.commit();
   }
-  return -1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Sweep::set_threads(1);  // runs stand beside runs
-  Options o;
+  CLI::App app("Measures where methods are stable; writes CSV.",
+               "stability_map");
+  std::string folder;
+  Effort effort = full;
+  app.add_option("FOLDER", folder, "for the maps, and a file for each cell")
+      ->required();
+  app.add_option("--effort", effort, "fewer and smaller cells than in full")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Effort>{
+          {"full", full}, {"quick", quick}, {"tiny", tiny}}));
   try {
-    if (int status = parse(argc, argv, o); status >= 0) return status;
-    run(o);
+    app.parse(argc, argv);
+    std::filesystem::create_directories(folder);
+    std::vector<Cell> cells;
+    add_limits(cells, effort);
+    add_growth(cells, effort);
+    run(cells, folder);
+    join(cells, folder);
     return 0;
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
   } catch (const std::exception& e) {
     std::cerr << "stability_map: " << e.what() << '\n';
   }
