@@ -157,4 +157,11 @@ class OutputFile {
   }
 };
 
+/** Write a file whole or not at all.  Throws as OutputFile */
+inline void write_file(const std::string& file, const std::string& text) {
+  OutputFile out(file);
+  out.stream() << text;
+  out.commit();
+}
+
 }  // namespace CME212

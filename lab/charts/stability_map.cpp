@@ -160,8 +160,7 @@ void run(std::vector<Cell> cells, const std::filesystem::path& folder) {
         cells[k].run(out.stream());
         out.commit();
         const std::lock_guard lock(one_at_a_time);
-        if (progress.due())
-          progress.show(cells[k].name, double(k) / double(cells.size()));
+        progress.tell(cells[k].name, double(k) / double(cells.size()));
       }
     } catch (const std::exception&) {
       error.keep();

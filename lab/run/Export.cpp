@@ -20,7 +20,7 @@
 
 namespace lab {
 
-using CME212::exact_text;
+using CME212::exact_text, CME212::write_file;
 
 // ---------------------------------------------------------------------- Frame
 
@@ -238,12 +238,6 @@ constexpr const char* ending_of(FrameFormat format) {
   return format == FrameFormat::vtp ? ".vtp" : ".ply";
 }
 
-void write_file(const std::string& name, const std::string& text) {
-  CME212::OutputFile file(name);
-  file.stream() << text;
-  file.commit();
-}
-
 }  // namespace
 
 std::string to_file(const Frame& frame, FrameFormat format) {
@@ -293,8 +287,10 @@ void FrameFolder::add(const Frame& frame) {
   times_.push_back(frame.time);
 }
 
-void FrameFolder::finish() const {
-  if (format_ != FrameFormat::vtp) return;
+std::string FrameFolder::finish() const {
+  const std::string wrote = CME212::count_of(times_.size(), "frame") + ' ' +
+                            ending_of(format_) + " in " + folder_;
+  if (format_ != FrameFormat::vtp) return wrote;
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
       "<Collection>\n";
@@ -303,11 +299,7 @@ void FrameFolder::finish() const {
             std::filesystem::path(name(k)).filename().string() + "\"/>\n";
   write_file((std::filesystem::path(folder_) / "frames.pvd").string(),
              text + "</Collection>\n</VTKFile>\n");
-}
-
-std::string FrameFolder::wrote() const {
-  return CME212::count_of(times_.size(), "frame") + ' ' + ending_of(format_) +
-         " in " + folder_;
+  return wrote;
 }
 
 // --------------------------------------------------------------------- Export
@@ -315,12 +307,11 @@ std::string FrameFolder::wrote() const {
 Export::Export(const std::vector<Folder>& folders, double rate,
                const Scene& scene)
     : rate_(rate), frames_(scene.stepper(), [this](const Frame& f) {
-        for (auto& folder : folders_) folder->add(f);
+        for (FrameFolder& folder : folders_) folder.add(f);
         written_ = f.time;
       }) {
   for (const Folder& f : folders)
-    if (!f.name.empty())
-      folders_.push_back(std::make_unique<FrameFolder>(f.name, f.format));
+    if (!f.name.empty()) folders_.emplace_back(f.name, f.format);
 }
 
 bool Export::due(const Scene& scene) const {
@@ -340,17 +331,14 @@ void Export::add(const Scene& scene) {
 }
 
 void Export::restart() {
-  for (auto& folder : folders_) folder->clear();
+  for (FrameFolder& folder : folders_) folder.clear();
   frames_.clear();
 }
 
 std::vector<std::string> Export::finish() {
   frames_.finish();
   std::vector<std::string> all;
-  for (const auto& folder : folders_) {
-    folder->finish();
-    all.push_back(folder->wrote());
-  }
+  for (const FrameFolder& folder : folders_) all.push_back(folder.finish());
   return all;
 }
 

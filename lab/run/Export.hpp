@@ -1,7 +1,7 @@
 #pragma once
 /** @file Export.hpp
  * Series of files for other programs: the states of a cloth, frame by frame. */
-#include <memory>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -64,10 +64,9 @@ class FrameFolder {
   void add(const Frame& frame);
   /** Remove all frames: the run begins anew. */
   void clear();
-  /** Write the list of times, for vtp.  Throws std::runtime_error. */
-  void finish() const;
-  /** Frames and folder, as a sentence. */
-  std::string wrote() const;
+  /** Write the list of times, for vtp.
+   * @return frames and folder, as a sentence  Throws std::runtime_error. */
+  std::string finish() const;
 
  private:
   std::string folder_;
@@ -106,7 +105,7 @@ class Export {
 
  private:
   double rate_;
-  std::vector<std::unique_ptr<FrameFolder>> folders_;
+  std::deque<FrameFolder> folders_;
   Settled<Frame> frames_;
   Frame last_;          // its places, waiting or written
   double written_ = 0;  // time of the last one in the folders [s]

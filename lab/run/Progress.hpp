@@ -9,9 +9,7 @@ namespace lab {
 
 /** Shows a bar on a terminal, and lines elsewhere.
  *
- *     while (work) {
- *       if (progress.due()) progress.show("t = 3 of 5 s", 0.6);
- *     }
+ *     while (work) progress.tell("t = 3 of 5 s", 0.6);
  *     progress.end(); */
 class Progress {
  public:
@@ -25,6 +23,10 @@ class Progress {
    * was shown last is not shown again.
    * @param done share of the work that is done, from 0 to 1 */
   void show(const std::string& text, double done);
+  /** show() if due(). */
+  void tell(const std::string& text, double done) {
+    if (due()) show(text, done);
+  }
   /** Clear the bar. */
   void end() const;
   /** Time since the start [s]. */

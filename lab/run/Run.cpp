@@ -22,23 +22,6 @@
 
 namespace lab {
 
-MeshOutput::MeshOutput(const std::string& file)
-    : nodes_(file), is_net_(CME212::ending_of(file) == ".net") {
-  const std::string quads = quads_beside(file);
-  if (!quads.empty()) quads_.emplace(quads);
-}
-
-void MeshOutput::write(const Scene& scene) {
-  const BuiltMesh& built = scene.mesh();
-  if (is_net_)
-    write_net(nodes_.stream(), net_left(scene.cloth(), built, scene.held()));
-  const Net left = is_net_ ? Net() : mesh_left(scene.cloth(), built);
-  write_nodes(nodes_.stream(), left);
-  if (quads_) write_quads(quads_->stream(), left);
-  nodes_.commit();
-  if (quads_) quads_->commit();
-}
-
 Run::Run(Scene& scene, const Options& o, Live* live)
     : scene_(scene),
       o_(o),
@@ -53,6 +36,8 @@ Run::Run(Scene& scene, const Options& o, Live* live)
     scene_.follow_drag();
   scene_.watch_energy(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
+  if (const auto quads = quads_beside(o.out); !quads.empty())
+    quads_.emplace(quads);
   if (!o.checkpoint.empty())
     archive_scene(scene_as_made_, o.model, scene.cloth());
   if (o.restart.empty())
@@ -242,7 +227,7 @@ int Run::finish() {
     });
   if (out_)
     write([this] {
-      out_->write(scene_);
+      write_mesh();
       wrote(o_.out);
     });
   write([this] {
@@ -362,6 +347,21 @@ void Run::add_frame() {
   if (frames_.empty()) return;
   check();
   frames_.add(scene_);
+}
+
+/** Write the nodes of the mesh that are left and, beside them, its quads, so
+ * that they can be read again; or net_left() into FILE.net. */
+void Run::write_mesh() {
+  const BuiltMesh& built = scene_.mesh();
+  if (CME212::ending_of(o_.out) == ".net") {
+    write_net(out_->stream(), net_left(scene_.cloth(), built, scene_.held()));
+  } else {
+    const Net left = mesh_left(scene_.cloth(), built);
+    write_nodes(out_->stream(), left);
+    if (quads_) write_quads(quads_->stream(), left);
+  }
+  out_->commit();
+  if (quads_) quads_->commit();
 }
 
 void Run::add_row() {

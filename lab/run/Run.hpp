@@ -21,21 +21,6 @@ class Live;
 class Scene;
 class StepControl;
 
-/** What --out writes: the nodes of the mesh that are left and, beside them, its
- * quads, so that they can be read again; or FILE.net, net_left(). */
-class MeshOutput {
- public:
-  /** Open the files.  Throws std::runtime_error "FILE: why" */
-  explicit MeshOutput(const std::string& file);
-  /** Once.  Throws as the constructor */
-  void write(const Scene& scene);
-
- private:
-  CME212::OutputFile nodes_;
-  bool is_net_;
-  std::optional<CME212::OutputFile> quads_;
-};
-
 /** One run of a scene, with the files that it writes. */
 class Run {
  public:
@@ -92,7 +77,7 @@ class Run {
   Progress progress_;
   Observer observer_;
   std::optional<CME212::OutputFile> csv_;
-  std::optional<MeshOutput> out_;
+  std::optional<CME212::OutputFile> out_, quads_;  // the mesh; its quads
   Export frames_;
   Settled<std::string> rows_;
   long long written_ = 0;       // rows
@@ -114,6 +99,7 @@ class Run {
   void tell_interrupt() const;
   void print_summary() const;
   void add_frame();
+  void write_mesh();
   void begin_csv();
   void write_csv(const std::string& text);
   void archive(Archive& a);

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -74,13 +75,6 @@ int run_headless(Scene& scene, Run& run, const Options& o) {
   return run.finish();
 }
 
-void write_text(const std::string& text, const std::string& file) {
-  if (file.empty()) return;
-  CME212::OutputFile out(file);
-  out.stream() << text;
-  out.commit();
-}
-
 /** Take the advice on the scene of @a o: print it, write it, or put it into
  * o.model.  @return the exit status to end with, or -1 */
 int take_advice(Options& o) {
@@ -88,9 +82,7 @@ int take_advice(Options& o) {
   AdviceRules rules;
   rules.budget = o.advise_work;
   rules.keeps_method = o.keeps_method, rules.keeps_step = o.keeps_step;
-  rules.tell = [&](const std::string& doing, double done) {
-    if (progress.due()) progress.show(doing, done);
-  };
+  rules.tell = std::bind_front(&Progress::tell, &progress);
   // The budget counts on one thread; a team that other programs keep waiting
   // takes many times as long.
   Sweep::set_threads(std::max(1, o.threads));
@@ -99,13 +91,14 @@ int take_advice(Options& o) {
   Sweep::set_threads(o.threads);
   progress.end();
   if (!o.quiet) std::cout << in_words(advice);
-  if (!o.json.empty()) write_text(as_json(advice), o.json);
+  if (!o.json.empty()) CME212::write_file(o.json, as_json(advice));
   if (advice.own && !o.automatic) return 0;
   if (!advice.refusal.empty()) {
     if (o.quiet) std::cerr << "cloth: no advice: " << advice.refusal << '\n';
     return 2;
   }
-  write_text(to_scene_file(advice.model), o.advised);
+  if (!o.advised.empty())
+    CME212::write_file(o.advised, to_scene_file(advice.model));
   o.model = advice.model;
   return o.automatic ? -1 : 0;
 }
@@ -115,9 +108,7 @@ int take_advice(Options& o) {
 Accuracy measure_accuracy(Options& o) {
   Progress progress(o.quiet);
   const Accuracy found = find_accuracy(
-      o.model, o.model.tolerance, [&](const std::string& doing, double done) {
-        if (progress.due()) progress.show(doing, done);
-      });
+      o.model, o.model.tolerance, std::bind_front(&Progress::tell, &progress));
   progress.end();
   o.model.step = found.step;
   return found;
@@ -200,10 +191,8 @@ int run(Options o) {
   Sweep::set_threads(o.threads);
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
-  if (!o.asks_advice() && !o.advised.empty()) {
-    write_text(to_scene_file(o.model), o.advised);
-    return 0;
-  }
+  if (!o.asks_advice() && !o.advised.empty())
+    return CME212::write_file(o.advised, to_scene_file(o.model)), 0;
   const Model& m = o.model;
   const bool shows = !o.headless && !o.pictures();
   const bool in_window = shows && (o.window || Screen::has_display());
