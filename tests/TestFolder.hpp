@@ -6,14 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 
 #include "tests/Child.hpp"
+#include "tests/Says.hpp"
 
 namespace CME212 {
 
@@ -98,16 +97,6 @@ inline std::string output_of(const std::string& command) {
 }
 inline bool has_program(const std::string& name) {
   return !output_of("command -v " + name).empty();
-}
-
-/** The message of the std::runtime_error that @a f throws. */
-inline std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const std::runtime_error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 }  // namespace CME212

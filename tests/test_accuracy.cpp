@@ -11,6 +11,7 @@
 #include "lab/stepping/Accuracy.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "lab/stepping/Separation.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -125,9 +126,7 @@ TEST(Accuracy, OfAChaoticMotionHasAHorizon) {
   EXPECT_GT(a.horizon, 0.3);
   EXPECT_LT(a.horizon, 2.9);
   EXPECT_LE(error_of(m, a), 10 * a.rms);  // chaos: no two are alike
-  EXPECT_NE(a.text().find("positions to 1e-06 m: predictable to "),
-            std::string::npos)
-      << a.text();
+  EXPECT_TRUE(has(a.text(), "positions to 1e-06 m: predictable to "));
   m.t_end = a.horizon;
   EXPECT_LE(error_of(m, a), 2e-6);
 }
@@ -145,7 +144,7 @@ TEST(Accuracy, IsNotMadeUpWhereARunFails) {
   m.step.tolerance = 1e-30;
   const Accuracy a = find_accuracy(m, 4e-30, [](const std::string&, double) {});
   EXPECT_FALSE(a.kept());
-  EXPECT_NE(a.text().find("not measured: "), std::string::npos) << a.text();
+  EXPECT_TRUE(has(a.text(), "not measured: "));
 }
 
 // ---------------------------------------------------------------- Energy

@@ -11,6 +11,7 @@
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -210,12 +211,10 @@ TEST(Advise, RefusesWhatNoGridCanGive) {
   AdviceRules rules;
   rules.most_nodes = 500;
   const Advice a = advise(hanging(1e-6), rules);
-  EXPECT_NE(a.refusal.find("would be too large"), std::string::npos)
-      << a.refusal;
-  EXPECT_NE(in_words(a).find("no advice: "), std::string::npos);
+  EXPECT_TRUE(has(a.refusal, "would be too large"));
+  EXPECT_TRUE(has(in_words(a), "no advice: "));
   rules.most_nodes = 8;  // the first grid has 9
-  EXPECT_NE(advise(hanging(1), rules).refusal.find("a grid of 9 nodes"),
-            std::string::npos);
+  EXPECT_TRUE(has(advise(hanging(1), rules).refusal, "a grid of 9 nodes"));
 }
 
 // A cloth pushed together buckles: which way is decided by round-off.
@@ -227,8 +226,8 @@ TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
   m.t_end = 1.5;
   m.tolerance = 1e-3;
   const Advice a = advise(m);
-  EXPECT_NE(a.refusal.find("chaotic"), std::string::npos) << a.refusal;
-  EXPECT_NE(a.refusal.find("earlier --t-end"), std::string::npos) << a.refusal;
+  EXPECT_TRUE(has(a.refusal, "chaotic"));
+  EXPECT_TRUE(has(a.refusal, "earlier --t-end"));
 }
 
 // Coarser grids have no node where a pin is, finer ones nodes that are too
@@ -347,7 +346,7 @@ TEST(Advise, AConservedEnergyNeedsNoRun) {
   EXPECT_EQ(a.refusal, "");
   EXPECT_EQ(a.spent_work, 0);
   EXPECT_NEAR(a.answer[0], -grav / 2, 1e-9);  // of 1 kg, 0.5 m below its pins
-  EXPECT_EQ(in_words(a).find("advice: no run is needed"), 0u) << in_words(a);
+  EXPECT_TRUE(begins(in_words(a), "advice: no run is needed"));
 }
 
 // A sheet that falls freely needs no cells, whatever the other one needs.
@@ -411,11 +410,9 @@ TEST(Advise, AMeshFromFilesTakesAFewRuns) {
     EXPECT_LE(a.error + a.uncertainty, m.tolerance);
     const std::string text = in_words(a),
                       first = text.substr(0, text.find('\n'));
-    EXPECT_EQ(first.find("advice: 625 nodes, "), 0u) << text;
-    EXPECT_NE(first.find("the mesh's own error is not known"),
-              std::string::npos)
-        << text;
-    EXPECT_NE(text.find("--nodes data/grid1.nodes --tets"), std::string::npos);
+    EXPECT_TRUE(begins(first, "advice: 625 nodes, ")) << text;
+    EXPECT_TRUE(has(first, "the mesh's own error is not known")) << text;
+    EXPECT_TRUE(has(text, "--nodes data/grid1.nodes --tets"));
     Model fine = a.model;
     fine.step.dt /= 8;
     EXPECT_LE(
@@ -423,8 +420,7 @@ TEST(Advise, AMeshFromFilesTakesAFewRuns) {
         a.error + a.uncertainty);
   }
   rules.budget = 2 * work_of_run(m);  // one run tells no error
-  EXPECT_NE(advise(m, rules).refusal.find("1 step is not enough"),
-            std::string::npos);
+  EXPECT_TRUE(has(advise(m, rules).refusal, "1 step is not enough"));
 }
 
 // Pushed together in its plane, a cloth without gravity stays there, although
@@ -498,7 +494,7 @@ TEST(Budget, IsKeptAndSaysWhatItLeftOut) {
     EXPECT_GT(told, 0);
     EXPECT_FALSE(a.left_out.empty()) << budget;
     if (budget == 1e4) {
-      EXPECT_NE(a.refusal.find("the budget ended"), std::string::npos);
+      EXPECT_TRUE(has(a.refusal, "the budget ended"));
     }
     // The same again: no clock has a say.
     rules.tell = [](const std::string&, double) {};
@@ -550,7 +546,7 @@ TEST(Budget, EndsWithTheBestThatIsKnown) {
     const Advice a = advise(hanging(tolerance), rules);
     if (a.checked || !a.refusal.empty()) continue;
     ++foreseen;
-    EXPECT_NE(in_words(a).find("not run: "), std::string::npos);
+    EXPECT_TRUE(has(in_words(a), "not run: "));
     EXPECT_GT(a.uncertainty, 0);
     EXPECT_LE(distance(try_out(a.model).answer, right, a.measure),
               a.error + a.uncertainty);
@@ -579,13 +575,12 @@ TEST(InWords, SaysWhereTheErrorMayExceedTheTolerance) {
 TEST(Refusals, TellWhyGridsConvergeSlowly) {
   Model m = hanging(1e-5);
   m.pins = {read_pin("x 0 z 0"), read_pin("x 1 z 0")};
-  EXPECT_NE(converging_slowly(m).find("--pin \"x 0\""), std::string::npos);
+  EXPECT_TRUE(has(converging_slowly(m), "--pin \"x 0\""));
   AdviceRules rules;
   rules.budget = 5e6;
   const Advice a = advise(m, rules);
   ASSERT_GE(a.grids.size(), 3u);
-  EXPECT_NE(a.refusal.find(converging_slowly(m)), std::string::npos)
-      << a.refusal;
+  EXPECT_TRUE(has(a.refusal, converging_slowly(m)));
   m.pins = {read_pin("z 0")};
   EXPECT_EQ(converging_slowly(m), "");
 }
@@ -600,11 +595,9 @@ TEST(Refusals, OfferWhatOneWouldAsk) {
   Model asked = m;
   asked.measure = Measure::energy;
   const std::string some = offers(asked, still, shaken);
-  EXPECT_NE(some.find("--measure drape-height to 0.04 m"), std::string::npos)
-      << some;
-  EXPECT_EQ(some.find("com"), std::string::npos);
-  EXPECT_NE(offers(asked, still, {}).find("earlier --t-end"),
-            std::string::npos);
+  EXPECT_TRUE(has(some, "--measure drape-height to 0.04 m"));
+  EXPECT_FALSE(has(some, "com"));
+  EXPECT_TRUE(has(offers(asked, still, {}), "earlier --t-end"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -43,10 +44,8 @@ TEST(Assess, TellsTheErrorOfTheStep) {
     EXPECT_LT(a.own->grid, a.grids.uncertainty() + 1e-6);
     EXPECT_NEAR(a.own->of_stable, dt / Scene(m).safe_limit(*m.method), 1e-12);
     const std::string text = in_words(a);
-    EXPECT_NE(text.find(dt > 0.0008 ? ": this run does not meet it\n"
-                                    : ": this run meets it\n"),
-              std::string::npos)
-        << text;
+    EXPECT_TRUE(has(text, dt > 0.0008 ? ": this run does not meet it\n"
+                                      : ": this run meets it\n"));
     // The largest step that it tries below 0.8 ms, and no larger one.
     ASSERT_EQ(a.refusal, "") << text;
     EXPECT_LE(a.model.step.dt, 0.0008);
@@ -68,9 +67,8 @@ TEST(Assess, TellsTheErrorOfTheGrid) {
   EXPECT_LT(a.own->step, 1e-6);
   EXPECT_GT(a.own->grid, 1.5e-4);
   // No step mends a grid.
-  EXPECT_NE(a.refusal.find("--advise finds a grid"), std::string::npos);
-  EXPECT_NE(in_words(a).find("does not meet it\n  no step"), std::string::npos)
-      << in_words(a);
+  EXPECT_TRUE(has(a.refusal, "--advise finds a grid"));
+  EXPECT_TRUE(has(in_words(a), "does not meet it\n  no step"));
 }
 
 TEST(Percent, IsOfTheChangeOrOfTheAnswer) {
@@ -107,7 +105,7 @@ TEST(Percent, IsReadAndWritten) {
   Model m = hanging("nodes 9 9");
   m.tolerance = 0.7, m.percent = true;
   const std::string text = to_scene_file(m);
-  EXPECT_NE(text.find("tolerance = \"0.7%\""), std::string::npos) << text;
+  EXPECT_TRUE(has(text, "tolerance = \"0.7%\""));
   const Model again = read_model("s", "s", text);
   EXPECT_TRUE(again.percent);
   EXPECT_EQ(again.tolerance, 0.7);
@@ -117,26 +115,24 @@ TEST(Json, HasTheAdvice) {
   Model m = hanging("nodes 9 9");
   m.measure = Measure::drape_height, m.tolerance = 0.002;
   const std::string text = as_json(advise(m));
-  EXPECT_EQ(text.find("{\"measure\":\"drape-height\",\"unit\":\"m\","
-                      "\"tolerance\":0.002,"),
-            0u)
-      << text;
+  EXPECT_TRUE(begins(text,
+                     "{\"measure\":\"drape-height\",\"unit\":\"m\","
+                     "\"tolerance\":0.002,"));
   for (const char* name :
        {"limit", "limit_uncertainty", "limit_change", "observed_order",
         "options", "nodes", "method", "dt_s", "t_end_s", "error", "uncertainty",
         "answer", "work_spring_evaluations", "spent_spring_evaluations"})
-    EXPECT_NE(text.find(",\"" + std::string(name) + "\":"), std::string::npos)
-        << name;
-  EXPECT_EQ(text.find("own_"), std::string::npos);
-  EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_EQ(text.find("inf"), std::string::npos);
-  EXPECT_NE(as_json(assess(m)).find("\"own_step_error\":"), std::string::npos);
+    EXPECT_TRUE(has(text, ",\"" + std::string(name) + "\":")) << name;
+  EXPECT_FALSE(has(text, "own_"));
+  EXPECT_FALSE(has(text, "nan"));
+  EXPECT_FALSE(has(text, "inf"));
+  EXPECT_TRUE(has(as_json(assess(m)), "\"own_step_error\":"));
   m.tolerance = 1e-9;
   AdviceRules little;
   little.budget = 1e5;
   const std::string refused = as_json(advise(m, little));
-  EXPECT_NE(refused.find("\"refusal\":\"the budget ended"), std::string::npos);
-  EXPECT_EQ(refused.find("options"), std::string::npos);
+  EXPECT_TRUE(has(refused, "\"refusal\":\"the budget ended"));
+  EXPECT_FALSE(has(refused, "options"));
 }
 
 }  // namespace

@@ -73,9 +73,9 @@ class AdviceOfKind : public ClothProgram {
     std::istringstream text(in_words(a));
     std::string first, second;
     std::getline(text, first), std::getline(text, second);
-    EXPECT_EQ(first.find("advice: "), 0u) << first;
-    EXPECT_NE(first.find(name_of(m.measure)), std::string::npos) << first;
-    EXPECT_EQ(second.find("  ./cloth "), 0u) << second;
+    EXPECT_TRUE(begins(first, "advice: "));
+    EXPECT_TRUE(has(first, name_of(m.measure)));
+    EXPECT_TRUE(begins(second, "  ./cloth "));
     const Result r =
         run(second.substr(10) + " --headless --csv " + path("run.csv"));
     EXPECT_EQ(r.status, 0) << second << '\n' << r.err;
@@ -103,8 +103,7 @@ TEST_F(AdviceOfKind, StretchAtAPointPinIsRefused) {
   m.measure = Measure::max_stretch;
   const Advice a = advise(m, rules);
   EXPECT_EQ(a.refusal, diverging(m));
-  EXPECT_NE(in_words(a).find("no advice: the stretch at a pin"),
-            std::string::npos);
+  EXPECT_TRUE(has(in_words(a), "no advice: the stretch at a pin"));
   EXPECT_LE(a.grids.size(), 5u);
   m.measure = Measure::com;
   EXPECT_EQ(diverging(m), "");
@@ -162,7 +161,7 @@ TEST_F(AdviceOfKind, DragToRest) {
   m.material.drag = 20;
   const Advice a = holds(m);
   EXPECT_LT(a.model.t_end, 2);
-  EXPECT_NE(in_words(a).find("  it ends at "), std::string::npos);
+  EXPECT_TRUE(has(in_words(a), "  it ends at "));
   m.material.drag.reset();  // it swings for ever
   m.t_end = 0.2;
   EXPECT_EQ(holds(m).model.t_end, 0.2);

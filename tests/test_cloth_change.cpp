@@ -31,8 +31,7 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
                  path("end.nodes") + " --config " +
                  file("s.toml", "at = [" + list + "]\n"));
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find("64 nodes and 208 edges left"), std::string::npos)
-      << r.out;
+  EXPECT_TRUE(has(r.out, "64 nodes and 208 edges left"));
   EXPECT_EQ(contents(path("end.nodes")), nodes.str());
   EXPECT_EQ(rows(dir / "e.csv").back()[9], 208);
   r = run(net + "--t-end 0.002 --at '0.001 gravity 3' --at '0.0021 pin 5'");

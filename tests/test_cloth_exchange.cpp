@@ -16,9 +16,7 @@ TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
           path("vtp") + " --ply " + path("ply"));
   EXPECT_EQ(r.status, 0) << r.err;
   for (const std::string kind : {"vtp", "ply"})
-    EXPECT_NE(r.out.find("16 frames ." + kind + " in " + path(kind) + '\n'),
-              std::string::npos)
-        << r.out;
+    EXPECT_TRUE(has(r.out, "16 frames ." + kind + " in " + path(kind) + '\n'));
   // Each frame is the state of a row of the table, of that time.
   std::istringstream pvd(contents(dir / "vtp/frames.pvd"));
   const auto table = rows(dir / "e.csv");
@@ -34,16 +32,15 @@ TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
     const auto name = line.find("file=\"") + 6;
     const std::string file =
         contents(dir / "vtp" / line.substr(name, line.find('"', name) - name));
-    EXPECT_NE(file.find("NumberOfPoints=\"" + std::to_string(int((*row)[8])) +
-                        "\" NumberOfVerts=\"0\" NumberOfLines=\"" +
-                        std::to_string(int((*row)[9])) + '"'),
-              std::string::npos);
+    EXPECT_TRUE(has(file, "NumberOfPoints=\"" + std::to_string(int((*row)[8])) +
+                              "\" NumberOfVerts=\"0\" NumberOfLines=\"" +
+                              std::to_string(int((*row)[9])) + '"'));
     ++frames;
   }
   EXPECT_EQ(frames, 16);
   EXPECT_LT(table.back()[8], 81);  // it tore
-  EXPECT_NE(contents(dir / "ply/frame_000015.ply").find("element vertex 81\n"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has(contents(dir / "ply/frame_000015.ply"), "element vertex 81\n"));
 }
 
 // A torn cloth, as a net, goes on as it was; frames are read, too.
@@ -57,15 +54,15 @@ TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
   Result r = run(path("end.net") + end + path("same.net"));
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.err, "");
-  EXPECT_NE(r.out.find(" nodes, " + edges), std::string::npos) << r.out;
-  EXPECT_NE(r.out.find("held by the net: 9 nodes"), std::string::npos) << r.out;
+  EXPECT_TRUE(has(r.out, " nodes, " + edges));
+  EXPECT_TRUE(has(r.out, "held by the net: 9 nodes"));
   EXPECT_EQ(contents(path("same.net")), contents(path("end.net")));
   r = run("--net " + path("vtp/frame_000015.vtp") + end + path("vtp.net"));
   EXPECT_EQ(r.err, "");
-  EXPECT_NE(r.out.find(" nodes, " + edges), std::string::npos) << r.out;
+  EXPECT_TRUE(has(r.out, " nodes, " + edges));
   r = run(path("ply/frame_000000.ply") + end + path("ply.net"));
   EXPECT_EQ(r.err, "");
-  EXPECT_NE(r.out.find("81 nodes, 272 edges"), std::string::npos) << r.out;
+  EXPECT_TRUE(has(r.out, "81 nodes, 272 edges"));
   r = run(path("end.net") + " --out " + path("end.nodes"));
   EXPECT_EQ(r.status, 2);
   EXPECT_EQ(r.err, "cloth: --out is " + path("end.nodes") +
@@ -98,8 +95,8 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
   for (const auto& c : cases) {
     const Result r = run(c.options + short_run);
     EXPECT_EQ(r.status, 0) << c.options << r.err;
-    EXPECT_NE(r.out.find(c.out), std::string::npos) << c.options << r.out;
-    EXPECT_NE(r.err.find(c.err), std::string::npos) << c.options << r.err;
+    EXPECT_TRUE(has(r.out, c.out)) << c.options;
+    EXPECT_TRUE(has(r.err, c.err)) << c.options;
     EXPECT_EQ(r.err.empty(), !*c.err) << c.options << r.err;
   }
 }
@@ -137,18 +134,15 @@ TEST_F(ClothProgram, SaysWhereASceneIsWrongAlsoWhenItIsFoundOutLate) {
                        "18 at 0.25 0 0\n");
   EXPECT_EQ(run(run_it + "--pin 'x 0'").status, 0);
   file("s.toml", "sheet = \"nodes 9 9\"\nself-collision = \"thickness 0.3\"\n");
-  EXPECT_EQ(run(run_it).err.find(scene + ":2: --self-collision has"), 0u);
+  EXPECT_TRUE(begins(run(run_it).err, scene + ":2: --self-collision has"));
   file("s.toml", "sheet = \"nodes 9 9\"\ndt = 0.1\n");
   EXPECT_EQ(run("--config " + scene + " --t-end 0.05").err,
             scene + ":2: --dt is 0.1, expected at most --t-end\n");
   file("s.toml", "sheet = \"nodes 9 9\"\ndt = \"auto\"\nstiffness = 0\n");
-  EXPECT_EQ(run(run_it).err.find(scene +
-                                 ":2: symplectic-euler has no stability limit"),
-            0u)
-      << run(run_it).err;
-  EXPECT_EQ(
-      run(run_it + "--dt auto").err.find("cloth: symplectic-euler has no "),
-      0u);
+  EXPECT_TRUE(begins(run(run_it).err,
+                     scene + ":2: symplectic-euler has no stability limit"));
+  EXPECT_TRUE(
+      begins(run(run_it + "--dt auto").err, "cloth: symplectic-euler has no "));
 }
 
 TEST_F(ClothProgram, SeeksTheFilesOfASceneBesideIt) {
@@ -172,7 +166,8 @@ TEST_F(ClothProgram, SeeksTheFilesOfASceneBesideIt) {
                 ": can't be opened (No such file or directory), expected a "
                 "file of quads\n");
   file("sub/a.tets", "0 1 2 4\n");
-  EXPECT_EQ(run("--config " + scene).err.find(path("sub/a.tets") + ":1: "), 0u);
+  EXPECT_TRUE(
+      begins(run("--config " + scene).err, path("sub/a.tets") + ":1: "));
 }
 
 // Whatever the name of a folder holds, a dump says it.
@@ -251,24 +246,22 @@ TEST_F(ClothProgram, SaysWhatActsAndWhatItCosts) {
       "--sheet 'nodes 5 5' --pin 'x 0' --plane 'at 0 0 -1' --damping 0.1 "
       "--region 'from 0 0 0 to 0.3 1 0 stiffness-factor 4' --headless --t-end "
       "0.01 ";
-  EXPECT_NE(run(scene).out.find(
-                "a step of symplectic-euler, order 1: 1 force evaluation\n"
-                "  cloth of 5 x 5 nodes, 1 kg: 20 nodes moved\n"
-                "  springs, K 100 to 400 N/m: 72 springs\n"
-                "  gravity 9.81 m/s^2: 25 nodes\n"
-                "  drag 0.1 kg/s a node: 25 nodes\n"
-                "  plane at 0 0 -1: 25 nodes\n"
-                "  pin x 0: 5 nodes\n"),
-            std::string::npos)
-      << run(scene).out;
+  EXPECT_TRUE(has(run(scene).out,
+                  "a step of symplectic-euler, order 1: 1 force evaluation\n"
+                  "  cloth of 5 x 5 nodes, 1 kg: 20 nodes moved\n"
+                  "  springs, K 100 to 400 N/m: 72 springs\n"
+                  "  gravity 9.81 m/s^2: 25 nodes\n"
+                  "  drag 0.1 kg/s a node: 25 nodes\n"
+                  "  plane at 0 0 -1: 25 nodes\n"
+                  "  pin x 0: 5 nodes\n"));
   const std::string rk4 = run(scene + "--method rk4").out;
-  EXPECT_NE(rk4.find(": 4 force evaluations\n"), std::string::npos) << rk4;
-  EXPECT_NE(rk4.find(": 4 times 72 springs\n"), std::string::npos);
-  EXPECT_NE(rk4.find("plane at 0 0 -1: 25 nodes\n"), std::string::npos);
+  EXPECT_TRUE(has(rk4, ": 4 force evaluations\n"));
+  EXPECT_TRUE(has(rk4, ": 4 times 72 springs\n"));
+  EXPECT_TRUE(has(rk4, "plane at 0 0 -1: 25 nodes\n"));
   const std::string bare =
       run("--sheet 'nodes 5 5' --gravity 0 --headless --t-end 0.01").out;
   for (const char* part : {"gravity", "drag", "plane", "pin", "tear"})
-    EXPECT_EQ(bare.find("  " + std::string(part)), std::string::npos) << bare;
+    EXPECT_FALSE(has(bare, "  " + std::string(part)));
   EXPECT_EQ(run(scene + "--quiet").out, "");
 }
 
@@ -278,10 +271,9 @@ TEST_F(ClothProgram, RefusesAClothThatNeedsMoreMemoryThanThereIs) {
       folder.run("ulimit -v 4000000; " + CME212::program("cloth", "build/") +
                  " --sheet 'nodes 10000 10000' --headless");
   EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err.find("cloth: --sheet gives 1e+08 nodes and 3.9994e+08 "
-                       "springs, which need at least 37 GB of memory; "),
-            0u)
-      << r.err;
+  EXPECT_TRUE(begins(r.err,
+                     "cloth: --sheet gives 1e+08 nodes and 3.9994e+08 "
+                     "springs, which need at least 37 GB of memory; "));
 }
 
 }  // namespace

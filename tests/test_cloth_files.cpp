@@ -22,9 +22,7 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
     Result r = run(small + a + ' ' + b);
     EXPECT_EQ(r.status, 2) << a << b;
     EXPECT_EQ(r.out, "") << a << b;
-    EXPECT_NE(r.err.find(" also writes, expected another file\n"),
-              std::string::npos)
-        << r.err;
+    EXPECT_TRUE(has(r.err, " also writes, expected another file\n"));
     EXPECT_TRUE(fs::is_empty(dir / "d")) << a << b;
   };
   clash("--csv " + one, "--out " + one);
@@ -45,8 +43,7 @@ TEST_F(ClothProgram, SaysWhichLineNamesAnOutputThatCantBe) {
              "sheet = 'nodes 4 4'\n" + std::string(option) + " = 'no/x'\n");
     Result r = run("--headless --config " + scene);
     EXPECT_EQ(r.status, 2) << option;
-    EXPECT_EQ(r.err.find(scene + ":2: " + path("no/x") + ": can't be "), 0u)
-        << r.err;
+    EXPECT_TRUE(begins(r.err, scene + ":2: " + path("no/x") + ": can't be "));
   }
 }
 
@@ -109,8 +106,8 @@ TEST_F(ClothProgram, SaysWhenTheStandardOutputIsFull) {
     Result r = folder.run("sh -c \"" + cloth + ' ' + options +
                           " >/dev/full; echo status \\$?\"");
     EXPECT_EQ(r.out, "status 2\n") << options;
-    EXPECT_EQ(r.err.find("cloth: the standard output can't be written ("), 0u)
-        << options << r.err;
+    EXPECT_TRUE(begins(r.err, "cloth: the standard output can't be written ("))
+        << options;
   }
   EXPECT_EQ(folder
                 .run("sh -c \"" + cloth + ' ' + small +
@@ -192,24 +189,19 @@ TEST_F(ClothProgram, KeepsWhatItHasWhenASignalEndsIt) {
       EXPECT_EQ(
           lab::parse_nodes(contents(dir / "end.nodes"), "end").points.size(),
           144u);
-      EXPECT_NE(
-          r.err.find(std::string("cloth: ") + name + " ended the run at t = "),
-          r.err.npos)
-          << r.err;
-      EXPECT_NE(r.err.find(" s of 100000 s; kept: checkpoint " + path("c") +
-                           ", " + path("e.csv") + " (" +
-                           CME212::count_of(table.size(), "row") + "), " +
-                           path("end.nodes") + '\n'),
-                std::string::npos)
-          << r.err;
+      EXPECT_TRUE(
+          has(r.err, std::string("cloth: ") + name + " ended the run at t = "));
+      EXPECT_TRUE(has(r.err, " s of 100000 s; kept: checkpoint " + path("c") +
+                                 ", " + path("e.csv") + " (" +
+                                 CME212::count_of(table.size(), "row") + "), " +
+                                 path("end.nodes") + '\n'));
       EXPECT_EQ(r.out.find(" steps to t = ") == std::string::npos, *quiet != 0);
-      EXPECT_EQ(r.out.find("com:"), std::string::npos);  // no answer
+      EXPECT_FALSE(has(r.out, "com:"));  // no answer
       EXPECT_EQ(files(), (std::vector<std::string>{"c", "e.csv", "end.nodes",
                                                    "end.tets"}));
     }
-  EXPECT_NE(interrupt(long_run, {SIGTERM})
-                .err.find("kept: nothing, as no output was requested\n"),
-            std::string::npos);
+  EXPECT_TRUE(has(interrupt(long_run, {SIGTERM}).err,
+                  "kept: nothing, as no output was requested\n"));
 }
 
 // It waits: what it writes goes into a pipe that is full, and nobody reads.
@@ -238,7 +230,7 @@ TEST_F(ClothProgram, LeavesIgnoredSignalsIgnored) {
       long_run + "--checkpoint " + path("c"), {SIGHUP, SIGTERM},
       [this] { return fs::exists(dir / "c"); }, "trap '' HUP; ");
   EXPECT_EQ(r.status, 128 + SIGTERM);
-  EXPECT_EQ(r.err.find("SIGHUP"), r.err.npos) << r.err;
+  EXPECT_FALSE(has(r.err, "SIGHUP"));
 }
 
 TEST_F(ClothProgram, ReadsAPipe) {

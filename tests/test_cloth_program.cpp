@@ -32,14 +32,10 @@ TEST_F(ClothProgram, Takes5000StepsFor5Seconds) {
     Result r = run(grid0 + "--headless --dt " + dt);
     EXPECT_EQ(r.status, 0);
     std::string steps = std::to_string(std::lround(5 / std::stod(dt)));
-    EXPECT_NE(r.out.find("tear: " + steps + " steps to t = 5 s in "),
-              std::string::npos)
-        << r.out;
+    EXPECT_TRUE(has(r.out, "tear: " + steps + " steps to t = 5 s in "));
   }
-  EXPECT_NE(run(grid0 + "--headless --t-end 0.0015").out.find(": 2 steps"),
-            std::string::npos);
-  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find(": 0 steps"),
-            std::string::npos);
+  EXPECT_TRUE(has(run(grid0 + "--headless --t-end 0.0015").out, ": 2 steps"));
+  EXPECT_TRUE(has(run(grid0 + "--headless --t-end 0").out, ": 0 steps"));
   EXPECT_TRUE(run("--version").out.starts_with("cloth 2.0.0, kernels "));
 }
 
@@ -49,11 +45,10 @@ TEST_F(ClothProgram, WritesEnergiesThatAddUp) {
           "--headless --quiet --every 7 --t-end 1 --csv " + path("e.csv"));
   EXPECT_EQ(r.status, 0);
   EXPECT_EQ(r.out + r.err, "");
-  EXPECT_EQ(contents(dir / "e.csv")
-                .find("t,kinetic,elastic,gravitational,"
-                      "total,com_x,com_y,com_z,nodes,"
-                      "edges,work,drag,balance,evaluations\n"),
-            0u);
+  EXPECT_TRUE(begins(contents(dir / "e.csv"),
+                     "t,kinetic,elastic,gravitational,"
+                     "total,com_x,com_y,com_z,nodes,"
+                     "edges,work,drag,balance,evaluations\n"));
   auto table = rows(dir / "e.csv");
   ASSERT_EQ(table.size(), 144u);  // steps 0, 7, ..., 994 and the last
   for (const auto& row : table) {
@@ -97,12 +92,10 @@ TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
   Result r = run(grid3 + "--headless --every 1 --csv " + path("e.csv") +
                  " --out " + path("end.nodes"));
   EXPECT_EQ(r.status, 3);
-  EXPECT_NE(r.err.find("; step 14 with dt = 0.001 s, method "
-                       "symplectic-euler: node "),
-            std::string::npos)
-      << r.err;
-  EXPECT_NE(r.err.find("the last good state is that of t = 0.013 s\n"),
-            std::string::npos);
+  EXPECT_TRUE(has(r.err,
+                  "; step 14 with dt = 0.001 s, method "
+                  "symplectic-euler: node "));
+  EXPECT_TRUE(has(r.err, "the last good state is that of t = 0.013 s\n"));
   EXPECT_GT(number(r.err, " moves at ", " m/s, its spring to node "), 5);
   const double rest = number(r.err, " times its rest length of ", " m; the");
   EXPECT_TRUE(rest == 0.0101 || rest == 0.0143) << rest;  // (sqrt(2))/99
@@ -135,22 +128,19 @@ TEST_F(ClothProgram, SaysHowLongTheStepIsAndMayBe) {
   const double limit = number(text, of, " s, symplectic-euler)\n");
   EXPECT_NEAR(limit, 0.0123, 0.0001);
   EXPECT_NEAR(number(text, "dt = 0.001 s: ", of), 0.1 / limit, 0.1);
-  EXPECT_NE(out("--dt 0.01").find("dt = 0.01 s: 81 % of"), std::string::npos);
+  EXPECT_TRUE(has(out("--dt 0.01"), "dt = 0.01 s: 81 % of"));
   EXPECT_NEAR(number(out("--method rk4"), of, " s, rk4)\n"),
               limit * std::sqrt(2), 0.0002);
   text = out("--method tr-bdf2 --dt 0.05");
   EXPECT_NEAR(number(text, "tr-bdf2 has no stability limit; this is ",
                      " % of the stability limit of verlet ("),
               5 / limit, 3);
-  EXPECT_NE(out("--method forward-euler").find("no step is stable with"),
-            std::string::npos);
-  EXPECT_NE(
-      out("--stiffness 0").find(": symplectic-euler has no stability limit\n"),
-      std::string::npos);
-  EXPECT_NE(out("--dt auto:sharp")
-                .find(" s at first; auto:sharp takes 90 % of the stability "
-                      "limit in the present configuration, at most 0.0123 s"),
-            std::string::npos);
+  EXPECT_TRUE(has(out("--method forward-euler"), "no step is stable with"));
+  EXPECT_TRUE(
+      has(out("--stiffness 0"), ": symplectic-euler has no stability limit\n"));
+  EXPECT_TRUE(has(out("--dt auto:sharp"),
+                  " s at first; auto:sharp takes 90 % of the stability "
+                  "limit in the present configuration, at most 0.0123 s"));
   // Drag as a force lowers the limit; treated exactly it does not.
   const std::string drag = "--damping 4 --dt 0.005 ";  // c/m = 100/s
   EXPECT_LT(number(out(drag), of, " s, symplectic-euler)\n"), 0.95 * limit);
@@ -161,7 +151,8 @@ TEST_F(ClothProgram, SaysHowLongTheStepIsAndMayBe) {
 TEST_F(ClothProgram, WarnsAboveTheLimitAndGoesOn) {
   Result r = run(grid0 + "--headless --dt 0.0125 --t-end 0.1");
   EXPECT_EQ(r.status, 0);
-  EXPECT_EQ(r.err.find("cloth: warning: dt exceeds the stability limit: "), 0u);
+  EXPECT_TRUE(
+      begins(r.err, "cloth: warning: dt exceeds the stability limit: "));
   EXPECT_LT(number(r.err, ": expect divergence; use --dt ", " or --dt auto\n"),
             0.0123);
   EXPECT_EQ(run(grid0 + "--headless --dt 0.012 --t-end 0.1").err, "");
@@ -238,7 +229,7 @@ TEST_F(ClothProgram, RefusesBadInputWithFileAndLineAndWritesNothing) {
     EXPECT_EQ(r.status, 2) << message;
     EXPECT_EQ(r.out, "");
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-    EXPECT_EQ(r.err.find(message), 0u) << r.err;
+    EXPECT_TRUE(begins(r.err, message));
     EXPECT_FALSE(fs::exists(dir / "c") || fs::exists(dir / "o") ||
                  fs::exists(dir / "c.part") || fs::exists(dir / "o.part"));
   };
@@ -278,16 +269,15 @@ TEST_F(ClothProgram, RunsEveryMethodAndListsIt) {
   std::istringstream in(list.out);
   for (std::string line; std::getline(in, line);)
     EXPECT_LE(line.size(), 80u) << line;
-  EXPECT_NE(list.out.find("60 frames a second, take verlet"),
-            std::string::npos);
+  EXPECT_TRUE(has(list.out, "60 frames a second, take verlet"));
   for (const MethodEntry& m : methods) {
-    EXPECT_NE(list.out.find(m.info.name), std::string::npos);
+    EXPECT_TRUE(has(list.out, m.info.name));
     std::string method = std::string(" --method ").append(m.info.name);
     for (const char* name : {"problem1", "tear"}) {
       Result r = run(stage(name) + grid0 +
                      "--headless --t-end 0.1 --damping 0.04" + method);
       EXPECT_EQ(r.status, 0) << method << r.err;
-      EXPECT_NE(r.out.find(": 100 steps"), std::string::npos) << method;
+      EXPECT_TRUE(has(r.out, ": 100 steps")) << method;
     }
   }
 }
@@ -298,9 +288,7 @@ TEST_F(ClothProgram, EndsWith3WhenAStepCantBeMade) {
       run("data/grid1.nodes data/grid1.tets --headless --method "
           "implicit-midpoint --dt 0.5 --stiffness 1e5");
   EXPECT_EQ(r.status, 3) << r.out << r.err;
-  EXPECT_NE(r.err.find("; step 1 with dt = 0.5 s, method implicit-midpoint"),
-            std::string::npos)
-      << r.err;
+  EXPECT_TRUE(has(r.err, "; step 1 with dt = 0.5 s, method implicit-midpoint"));
 }
 
 TEST_F(ClothProgram, RefusesOutputsThatCantBeBeforeItRuns) {
@@ -332,7 +320,7 @@ TEST_F(ClothProgram, ExplainsItsOptionsWithUnitsAndDefaults) {
   for (const char* text :
        {"--dt FLOAT|auto[:sharp][:G]=0.001", "step [s]", "--t-end FLOAT=5",
         "--gravity FLOAT=9.81", "[N/m]", "[kg/s]"})
-    EXPECT_NE(r.out.find(text), std::string::npos) << text;
+    EXPECT_TRUE(has(r.out, text)) << text;
   // In groups, each option once, in lines that fit a terminal.
   std::size_t at = 0;
   for (const char* group :
@@ -400,7 +388,7 @@ TEST_F(ClothProgram, TellsARemedyThatWorksWhereTheEnergyIsWrong) {
   for (const char* more : {"--plane 'at 0 0 -50' ", "--damping 1e-7 "}) {
     const Result r = run(net + more + "--method implicit-euler --dt 0.05");
     EXPECT_EQ(r.status, 3) << r.err;
-    EXPECT_NE(r.err.find("an error of the method has added 5.2 J"), r.err.npos);
+    EXPECT_TRUE(has(r.err, "an error of the method has added 5.2 J"));
     const std::size_t end = r.err.find(" works: a trial");
     ASSERT_NE(end, r.err.npos) << r.err;
     const std::size_t begin = r.err.rfind("; ", end) + 2;
@@ -422,10 +410,10 @@ TEST_F(ClothProgram, SaysIfMollifiedImpulseFindsNoStiffSprings) {
   const std::string net =
       "--sheet 'nodes 9 9' --t-end 0.01 --method mollified-impulse --headless ";
   const std::string words = "finds no stiff springs here";
-  EXPECT_NE(run(net).err.find(words), std::string::npos);
-  EXPECT_EQ(run(net + "--region 'from 0 0 0 to 0.01 1 0 stiffness-factor 1e4'")
-                .err.find(words),
-            std::string::npos);
+  EXPECT_TRUE(has(run(net).err, words));
+  EXPECT_FALSE(has(
+      run(net + "--region 'from 0 0 0 to 0.01 1 0 stiffness-factor 1e4'").err,
+      words));
 }
 
 }  // namespace

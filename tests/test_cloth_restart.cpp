@@ -83,9 +83,9 @@ TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
   Result cut = interrupt(run_of + "--t-end 1e5" + files_of, {SIGTERM},
                          [this] { return fs::exists(dir / "c"); });
   EXPECT_EQ(cut.status, 143) << cut.err;
-  EXPECT_NE(cut.err.find("checkpoint " + path("c")), std::string::npos);
+  EXPECT_TRUE(has(cut.err, "checkpoint " + path("c")));
   const std::string ended = "SIGTERM ended the run at t = ";
-  ASSERT_NE(cut.err.find(ended), cut.err.npos) << cut.err;
+  ASSERT_TRUE(has(cut.err, ended));
   const double t =
       std::stod(cut.err.substr(cut.err.find(ended) + ended.size()));
   const std::string end = " --t-end " + std::to_string(t + 0.1);
@@ -94,7 +94,7 @@ TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
   Result whole = run(run_of + end + " --csv " + path("a.csv") + " --out " +
                      path("a.nodes"));
   EXPECT_EQ(on.status, 0) << on.err;
-  EXPECT_NE(on.out.find(path("c") + ": continues at t = "), std::string::npos);
+  EXPECT_TRUE(has(on.out, path("c") + ": continues at t = "));
   EXPECT_EQ(result(on.out), result(whole.out));
   EXPECT_EQ(contents(dir / "b.csv"), contents(dir / "a.csv"));
   // A new CSV file has the rows from there on; another one is left alone.
@@ -108,12 +108,10 @@ TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {
   Result refused =
       run("--headless --restart " + path("c") + end + " --csv " + other);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_EQ(
-      refused.err.find(
-          "cloth: " + other +
-          ": its first rows are not those of the run until the checkpoint "),
-      0u)
-      << refused.err;
+  EXPECT_TRUE(begins(
+      refused.err,
+      "cloth: " + other +
+          ": its first rows are not those of the run until the checkpoint "));
   EXPECT_EQ(contents(other), "mine\n");
 }
 
@@ -144,9 +142,8 @@ TEST_F(ClothProgram, RefusesCheckpointsThatCantBe) {
   EXPECT_EQ(error(scene + "--checkpoint " + c + " --csv " + c),
             "cloth: --checkpoint is " + c +
                 ", which --csv also writes, expected another file\n");
-  EXPECT_EQ(error("--auto --restart " + c)
-                .find("cloth: --restart cannot be combined"),
-            0u);
+  EXPECT_TRUE(begins(error("--auto --restart " + c),
+                     "cloth: --restart cannot be combined"));
   EXPECT_EQ(error(scene + "--every-seconds -1"),
             "cloth: --every-seconds is -1, expected 0 or more\n");
   // A mesh that has changed since.

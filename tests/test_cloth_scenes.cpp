@@ -27,9 +27,9 @@ TEST_F(ClothProgram, RunsEveryShippedScene) {
         run("--config " + scene + mesh_for(name) + " --headless --t-end 0.02");
     EXPECT_EQ(r.status, 0) << scene << r.err;
     EXPECT_EQ(r.err, "") << scene;
-    EXPECT_NE(r.out.find("\n" + name + ": "), std::string::npos) << r.out;
+    EXPECT_TRUE(has(r.out, "\n" + name + ": "));
     if (is_stage(name))
-      EXPECT_NE(r.out.find("dt = 0.001 s: "), std::string::npos) << r.out;
+      EXPECT_TRUE(has(r.out, "dt = 0.001 s: "));
     else
       EXPECT_TRUE(r.out.find(": 60 % of the stability limit (") !=
                       std::string::npos ||
@@ -45,9 +45,8 @@ TEST_F(ClothProgram, EveryShippedFailureFails) {
     const Result r = run("--headless --config " + entry.path().string());
     const bool tunnels = entry.path().stem() == "tunnel";
     EXPECT_EQ(r.status, tunnels ? 0 : 3) << entry.path();
-    EXPECT_NE(r.err.find(tunnels ? "would have tunnelled" : "diverged: "),
-              r.err.npos)
-        << entry.path() << r.err;
+    EXPECT_TRUE(has(r.err, tunnels ? "would have tunnelled" : "diverged: "))
+        << entry.path();
   }
 }
 
@@ -55,14 +54,13 @@ TEST_F(ClothProgram, MakesASceneOfWhatIsNamedAndNothingElse) {
   // Without a pin it falls, and nothing is below.
   Result r =
       run("--sheet 'nodes 9 9' --headless --t-end 1 --csv " + path("e.csv"));
-  EXPECT_EQ(r.out.find("81 nodes, 272 edges\n"), 0u) << r.out;
-  EXPECT_NE(r.out.find("scene: 1000 steps"), std::string::npos);
+  EXPECT_TRUE(begins(r.out, "81 nodes, 272 edges\n"));
+  EXPECT_TRUE(has(r.out, "scene: 1000 steps"));
   EXPECT_NEAR(rows(dir / "e.csv").back()[7], -9.81 / 2, 0.01);
   // The same files in a stage of the assignment, and as a scene.
-  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("\ntear: "),
-            std::string::npos);
-  EXPECT_NE(run(grid0 + "--headless --t-end 0 --density 1").out.find("scene: "),
-            std::string::npos);
+  EXPECT_TRUE(has(run(grid0 + "--headless --t-end 0").out, "\ntear: "));
+  EXPECT_TRUE(
+      has(run(grid0 + "--headless --t-end 0 --density 1").out, "scene: "));
 }
 
 TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
@@ -81,17 +79,17 @@ TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
   for (const char* line : {"sheet = [\"nodes 5 5\"]", "pin = [\"x 0\"]",
                            "modulus = 100", "drag = 1", "t-end = 0.1"})
     EXPECT_TRUE(has(text, line)) << line << text;
-  EXPECT_EQ(text.find("stiffness ="), std::string::npos);
+  EXPECT_FALSE(has(text, "stiffness ="));
   text = dump("--pin 'y 0' --pin 'y 1' --stiffness 7 --damping 0.5 --t-end 2");
   for (const char* line :
        {"sheet = [\"nodes 5 5\"]", "pin = [\"y 0\", \"y 1\"]", "stiffness = 7",
         "damping = 0.5", "t-end = 2"})
     EXPECT_TRUE(has(text, line)) << line << text;
-  EXPECT_EQ(text.find("modulus ="), std::string::npos);
-  EXPECT_EQ(text.find("drag ="), std::string::npos);
-  EXPECT_NE(run("--config " + scene + " --headless --t-end 0.2 --dt 0.01")
-                .out.find("scene: 20 steps"),
-            std::string::npos);
+  EXPECT_FALSE(has(text, "modulus ="));
+  EXPECT_FALSE(has(text, "drag ="));
+  EXPECT_TRUE(
+      has(run("--config " + scene + " --headless --t-end 0.2 --dt 0.01").out,
+          "scene: 20 steps"));
 }
 
 TEST_F(ClothProgram, ADumpedSceneIsThatScene) {
@@ -123,7 +121,7 @@ TEST_F(ClothProgram, SaysWhereASceneFileIsWrong) {
     EXPECT_EQ(r.out, "");
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
     EXPECT_FALSE(fs::exists(dir / "o"));
-    EXPECT_EQ(r.err.find(name + ":3: "), 0u) << r.err;
+    EXPECT_TRUE(begins(r.err, name + ":3: "));
     return r.err.substr(std::min(r.err.size(), name.size() + 4));
   };
   EXPECT_EQ(complaint("colour = 3"), "unknown key colour\n");
@@ -132,7 +130,7 @@ TEST_F(ClothProgram, SaysWhereASceneFileIsWrong) {
   const std::string none = path("none.toml");
   Result r = run("--config " + none);
   EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err.find(none + ": can't be opened"), 0u) << r.err;
+  EXPECT_TRUE(begins(r.err, none + ": can't be opened"));
 }
 
 TEST_F(ClothProgram, RefusesScenesThatCantBe) {
@@ -155,20 +153,17 @@ TEST_F(ClothProgram, RefusesScenesThatCantBe) {
 
 TEST_F(ClothProgram, AnswersWhatASceneIsAsked) {
   const std::string sheet = "--sheet 'nodes 3 3' --headless --t-end 0 ";
-  EXPECT_NE(run(sheet).out.find("\ncom: 0.5 0.5 0 m at t = 0 s\n"),
-            std::string::npos);
-  EXPECT_NE(run(sheet + "--measure max-stretch")
-                .out.find("max-stretch: 0 at t = 0 s\n"),
-            std::string::npos);
+  EXPECT_TRUE(has(run(sheet).out, "\ncom: 0.5 0.5 0 m at t = 0 s\n"));
+  EXPECT_TRUE(has(run(sheet + "--measure max-stretch").out,
+                  "max-stretch: 0 at t = 0 s\n"));
   EXPECT_EQ(run(sheet + "--quiet").out, "");
   const std::string hanging = "--config data/scenes/hanging-sheet.toml ";
   for (const std::string dt : {"auto", "0.0013", "0.0021"})
-    EXPECT_NE(run(hanging + "--headless --method verlet --dt " + dt)
-                  .out.find(" m at t = 0.25 s\n"),
-              std::string::npos)
+    EXPECT_TRUE(has(run(hanging + "--headless --method verlet --dt " + dt).out,
+                    " m at t = 0.25 s\n"))
         << dt;
-  EXPECT_NE(run(grid0 + "--headless --t-end 0").out.find("\ncom: 0.5 0.5 0 m"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has(run(grid0 + "--headless --t-end 0").out, "\ncom: 0.5 0.5 0 m"));
 }
 
 TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
@@ -177,35 +172,36 @@ TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {
       "--t-end 0.1 --tolerance 0.01 --headless ";
   Result r = run(scene + "--advise --write-config " + path("a.toml"));
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_EQ(r.out.find("advice: "), 0u);  // the answer first
-  EXPECT_NE(r.out.find(" dropped\n"), std::string::npos);
+  EXPECT_TRUE(begins(r.out, "advice: "));  // the answer first
+  EXPECT_TRUE(has(r.out, " dropped\n"));
   // Its command runs as it stands: without a warning, a window or a film.
   const auto line = r.out.find("./cloth ") + 8;
   const Result pasted = run(r.out.substr(line, r.out.find('\n', line) - line));
   EXPECT_EQ(pasted.status, 0);
   EXPECT_EQ(pasted.err, "");
-  EXPECT_EQ(pasted.out.find("no display"), std::string::npos) << pasted.out;
+  EXPECT_FALSE(has(pasted.out, "no display"));
   const std::string advised = contents(dir / "a.toml");
-  EXPECT_NE(advised.find("pin = [\"z 0\"]"), std::string::npos);
-  EXPECT_EQ(advised.find("plane = "), std::string::npos);
+  EXPECT_TRUE(has(advised, "pin = [\"z 0\"]"));
+  EXPECT_FALSE(has(advised, "plane = "));
   EXPECT_EQ(run("--headless --config " + path("a.toml")).status, 0);
   r = run(scene + "--auto");
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find("scene: "), std::string::npos);
+  EXPECT_TRUE(has(r.out, "scene: "));
   r = run(grid0 + "--advise");
   EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.out.find("no advice: "), 0u);
-  EXPECT_EQ(run(grid0 + "--advise --quiet").err.find("cloth: no advice: "), 0u);
+  EXPECT_TRUE(begins(r.out, "no advice: "));
+  EXPECT_TRUE(
+      begins(run(grid0 + "--advise --quiet").err, "cloth: no advice: "));
   EXPECT_EQ(run(scene + "--advise --advise-work -1").status, 2);
   // A budget that allows nothing: said at once.
   r = run(scene + "--advise --advise-work 1");
-  EXPECT_EQ(r.out.find("no advice: the budget ended before the first grid"), 0u)
-      << r.out;
+  EXPECT_TRUE(
+      begins(r.out, "no advice: the budget ended before the first grid"));
   r = run(scene + "--advise --advise-work 300");
-  EXPECT_NE(r.out.find("of a budget of 3e+02"), std::string::npos) << r.out;
+  EXPECT_TRUE(has(r.out, "of a budget of 3e+02"));
   r = run(scene + "--tear-strain 1 --measure positions --advise");
   EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("--measure is positions"), std::string::npos);
+  EXPECT_TRUE(has(r.err, "--measure is positions"));
 }
 
 TEST_F(ClothProgram, AdviceKeepsTheMethodAndStepOfTheCommand) {
@@ -214,13 +210,11 @@ TEST_F(ClothProgram, AdviceKeepsTheMethodAndStepOfTheCommand) {
       "--advise ";
   Result r = run(scene + "--method pefrl");
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find(" --method pefrl "), std::string::npos) << r.out;
+  EXPECT_TRUE(has(r.out, " --method pefrl "));
   r = run(scene + "--dt 0.002");
-  EXPECT_NE(r.out.find(" --dt 0.002 "), std::string::npos) << r.out;
+  EXPECT_TRUE(has(r.out, " --dt 0.002 "));
   r = run(scene + "--method symplectic-euler --dt 0.002");
-  EXPECT_NE(r.out.find("nodes, symplectic-euler, dt 0.002 s"),
-            std::string::npos)
-      << r.out;
+  EXPECT_TRUE(has(r.out, "nodes, symplectic-euler, dt 0.002 s"));
 }
 
 // A default written in words: nobody would type ''.
@@ -228,8 +222,8 @@ TEST_F(ClothProgram, AdvisedCommandNamesItsSheet) {
   lab::Model m;
   m.sheets.resize(1), m.planes.resize(1), m.spheres.resize(1);
   const std::string options = lab::as_options(m);
-  EXPECT_EQ(options.find("''"), std::string::npos) << options;
-  EXPECT_NE(options.find("--sheet 'nodes 20 20'"), std::string::npos);
+  EXPECT_FALSE(has(options, "''"));
+  EXPECT_TRUE(has(options, "--sheet 'nodes 20 20'"));
 }
 
 TEST_F(ClothProgram, WriteConfigAloneAsksNothing) {

@@ -54,19 +54,17 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   };
   const Result r = run(sheet + "--tolerance 1e-6");
   EXPECT_EQ(r.err, "");
-  EXPECT_NE(r.out.find("rkn64 chooses its inner steps by their error, below "
-                       "2.5e-07 m per inner step, for 1e-06 m at the end"),
-            std::string::npos)
-      << r.out;
+  EXPECT_TRUE(has(r.out,
+                  "rkn64 chooses its inner steps by their error, below "
+                  "2.5e-07 m per inner step, for 1e-06 m at the end"));
   EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 "),
             at_end(sheet + "--method rkn64 --dt 0.03333333333333333 "
                            "--tolerance 1e-6 "));
   // One that has no error control is taken as it is.
   EXPECT_EQ(at_end(sheet + "--tolerance 1e-6 --method verlet --dt 0.002 "),
             at_end(sheet + "--method verlet --dt 0.002 "));
-  EXPECT_NE(run(sheet + "--tolerance 1e-3 --method rkn64")
-                .out.find("positions to 0.001 m: kept; measured error"),
-            std::string::npos);
+  EXPECT_TRUE(has(run(sheet + "--tolerance 1e-3 --method rkn64").out,
+                  "positions to 0.001 m: kept; measured error"));
   const Result refused =
       run(sheet + "--density 0.3 --damping 0.01 --tolerance 1e-3");
   EXPECT_EQ(refused.status, 2);
@@ -86,7 +84,7 @@ TEST_F(Tolerance, OneThatNoStepMeetsIsDiagnosedAsSuch) {
   ASSERT_NE(end, std::string::npos) << r.err;
   const std::size_t begin = r.err.rfind("; ", end) + 2;
   const std::string cure = r.err.substr(begin, end - begin);
-  EXPECT_EQ(cure.find("--method verlet --dt "), 0u) << r.err;
+  EXPECT_TRUE(begins(cure, "--method verlet --dt ")) << r.err;
   EXPECT_EQ(run(sheet + cure).status, 0) << cure;
 }
 
@@ -109,7 +107,7 @@ TEST_F(Tolerance, NeedsNoStepForAShortRun) {
   for (const char* more : {"", "--tolerance 1e-6", "--method verlet"}) {
     const Result r = run(sheet + more);
     EXPECT_EQ(r.status, 0) << r.err;
-    EXPECT_NE(r.out.find("at t = 0.0001 s"), std::string::npos) << r.out;
+    EXPECT_TRUE(has(r.out, "at t = 0.0001 s"));
   }
   EXPECT_EQ(run(sheet + "--dt 0.002").status, 2);
 }
@@ -130,8 +128,8 @@ TEST_F(Tolerance, OfContactIsKeptByVerlet) {
       "--sheet 'nodes 11 11' --pin 'x 0' --plane 'at 0 0 -0.2 friction 0.4' "
       "--t-end 0.5 --tolerance 1e-3 --headless");
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.out.find("a step of verlet"), r.out.npos) << r.out;
-  EXPECT_NE(r.out.find("positions to 0.001 m: kept; "), r.out.npos) << r.out;
+  EXPECT_TRUE(has(r.out, "a step of verlet"));
+  EXPECT_TRUE(has(r.out, "positions to 0.001 m: kept; "));
 }
 
 TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
@@ -140,11 +138,9 @@ TEST_F(Tolerance, WarnsWhereMotionIsNotSmooth) {
       "--method rkn64 ";
   for (const char* part : {"--plane 'at 0 0 -1'", "--tear-strain 3",
                            "--sphere 'at 0.5 0.5 -3 radius 0.5'"})
-    EXPECT_NE(
-        run(sheet + part)
-            .err.find(
-                "does not control the error where nodes touch or edges break"),
-        std::string::npos)
+    EXPECT_TRUE(
+        has(run(sheet + part).err,
+            "does not control the error where nodes touch or edges break"))
         << part;
   EXPECT_EQ(
       run("--sheet 'nodes 6 6' --t-end 0.1 --headless --tolerance 1e-3 "

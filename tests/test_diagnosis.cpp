@@ -16,6 +16,7 @@
 #include "lab/run/Options.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -161,7 +162,7 @@ TEST_P(AFailedRun, IsCuredByItsOwnAdvice) {
   ASSERT_FALSE(scene.run_to(m.t_end)) << "does not fail";
   const Diagnosis& d = scene.diagnosis();
   EXPECT_EQ(d.cause, f.cause) << scene.explanation().text();
-  EXPECT_EQ(d.cause_text().find("dt is 0 "), std::string::npos);
+  EXPECT_FALSE(has(d.cause_text(), "dt is 0 "));
   const std::string remedy = d.remedy_text();
   const auto works = remedy.find(
       " works: a trial to t = " + CME212::short_text(f.t_end) + " s passed");
@@ -251,9 +252,9 @@ TEST(Diagnosis, ClaimsNothingIfAllTrialsFail) {
   EXPECT_GE(trials, 5);
   EXPECT_LE(trials, 10);
   const std::string text = d.remedy_text();
-  EXPECT_EQ(text.find("no remedy was found: trials of --dt 0.0035, --dt "), 0u)
-      << text;
-  EXPECT_NE(text.find("--method tr-bdf2 --dt 0.007"), std::string::npos);
+  EXPECT_TRUE(
+      begins(text, "no remedy was found: trials of --dt 0.0035, --dt "));
+  EXPECT_TRUE(has(text, "--method tr-bdf2 --dt 0.007"));
 }
 
 TEST(Diagnosis, TellsDragFromWaves) {
@@ -291,9 +292,8 @@ TEST(Diagnosis, OfTwoHeldNodesThatMeetKnowsNoCure) {
   EXPECT_EQ(scene.diagnosis().cause, Cause::solver);
   const Explanation why = scene.explanation();
   EXPECT_FALSE(scene.diagnosis().cure) << why.text();
-  EXPECT_NE(why.cause.find("are held closer than the thickness"),
-            std::string::npos);
-  EXPECT_EQ(why.remedy.find("no remedy was found: trials of "), 0u)
+  EXPECT_TRUE(has(why.cause, "are held closer than the thickness"));
+  EXPECT_TRUE(begins(why.remedy, "no remedy was found: trials of "))
       << why.text();
 }
 

@@ -114,7 +114,7 @@ TEST_F(Driver, RefusesAStepBeyondTheEndAndOneTooShort) {
   for (const char* times : {"0.01 0.004", "1e-20", "6"}) {
     Result r = run(grid(0) + times);
     EXPECT_EQ(r.status, 2) << times;
-    EXPECT_NE(r.err.find("expected at most T_END"), std::string::npos) << r.err;
+    EXPECT_TRUE(has(r.err, "expected at most T_END"));
   }
   EXPECT_EQ(run(grid(0) + "0.25 0.25").status, 0);  // one step
 }
@@ -168,13 +168,11 @@ TEST_F(Driver, SaysHowItIsUsed) {
   for (const char* number : {"0", "-1", "nan", "inf", "x", "0.001x", "''"}) {
     Result r = run(grid(0) + number);
     EXPECT_EQ(r.status, 2) << number;
-    EXPECT_EQ(r.err.find("DT is '"), 0u) << r.err;
-    EXPECT_NE(r.err.find("', expected a time [s], more than 0\n"),
-              std::string::npos)
-        << r.err;
+    EXPECT_TRUE(begins(r.err, "DT is '"));
+    EXPECT_TRUE(has(r.err, "', expected a time [s], more than 0\n"));
     r = run(grid(0) + "0.001 " + number);
     EXPECT_EQ(r.status, 2) << number;
-    EXPECT_EQ(r.err.find("T_END is '"), 0u) << r.err;
+    EXPECT_TRUE(begins(r.err, "T_END is '"));
   }
 }
 
@@ -186,8 +184,8 @@ TEST_F(Driver, RefusesBadInputWithFileAndLine) {
       EXPECT_EQ(r.status, 2) << message;
       EXPECT_EQ(r.out, "");
       EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-      EXPECT_EQ(r.err.find(message), 0u) << r.err;
-      EXPECT_NE(r.err.find(", expected "), std::string::npos) << r.err;
+      EXPECT_TRUE(begins(r.err, message));
+      EXPECT_TRUE(has(r.err, ", expected "));
     }
   };
   const std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");

@@ -13,6 +13,7 @@
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "tests/NetOf.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -268,7 +269,7 @@ TEST(Guard, StopsXpbdThatGainsEnergy) {
     m.gravity = grav;
     m.pins = {{0, 0, {}, {}, {}}, {1, 0, {}, {}, {}}};
     m.stiffness = K;
-    EXPECT_EQ(failure_of(m).find("diverged in step "), 0u) << K;
+    EXPECT_TRUE(begins(failure_of(m), "diverged in step ")) << K;
   }
 }
 
@@ -302,7 +303,7 @@ TEST(Guard, StopsWhatHasAnEnergyThatIsNotFinite) {
   EXPECT_NE(failure_of(m), "");
   m.t_end = 0;
   m.sheets[0].at = Point(0, 0, 1e10);
-  EXPECT_EQ(failure_of(m).find("the energy at the start is not finite"), 0u);
+  EXPECT_TRUE(begins(failure_of(m), "the energy at the start is not finite"));
 }
 
 // ------------------------------------------------------------------------ End

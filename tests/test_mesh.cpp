@@ -20,21 +20,11 @@
 
 namespace {
 
-/** what() of the InputError that @a read throws, or "" */
-template <typename F>
-std::string error_of(F read) {
-  try {
-    read();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
 std::string point_error(std::string_view text) {
-  return error_of([&] { parse_points(text, "f.nodes"); });
+  return error_of<InputError>([&] { parse_points(text, "f.nodes"); });
 }
 std::string quad_error(std::string_view text, std::size_t num_points = 9) {
-  return error_of([&] { parse_quads(text, "f.tets", num_points); });
+  return error_of<InputError>([&] { parse_quads(text, "f.tets", num_points); });
 }
 
 const std::string three = ", expected three finite coordinates 'x y z' [m]";
@@ -113,7 +103,7 @@ TEST(ParseNodes, TakesVelocitiesInAllLinesOrInNone) {
 }
 TEST(ParseNodes, RefusesEachWrongLineWithItsNumber) {
   auto error = [](std::string_view text) {
-    return error_of([&] { lab::parse_nodes(text, "f.nodes"); });
+    return error_of<InputError>([&] { lab::parse_nodes(text, "f.nodes"); });
   };
   const std::string either = three + ", and three of a velocity [m/s] or none";
   const std::string six =
@@ -333,7 +323,7 @@ TEST(ParseNet, RefusesEachWrongLine) {
       {"a.net", node + "rope 0 1\n", "a.net:3: 'rope' begins the line, "},
       {"a.xyz", "", "a.xyz: expected a name that ends in one of .net, .obj"}};
   for (const auto& c : cases)
-    EXPECT_EQ(error_of([&] {
+    EXPECT_EQ(error_of<InputError>([&] {
                 lab::parse_net(c.text, c.file);
               }).substr(0, c.error.size()),
               c.error);
@@ -398,10 +388,10 @@ TEST(MeshFaults, AreNamedWithTheirNumber) {
 }
 
 TEST(Load, SaysWhyAFileCantBeRead) {
-  EXPECT_EQ(error_of([] { load_points("/no/such.nodes"); }),
+  EXPECT_EQ(error_of<InputError>([] { load_points("/no/such.nodes"); }),
             "/no/such.nodes: can't be opened (No such file or directory), "
             "expected a file of points");
-  EXPECT_EQ(error_of([] { load_quads("/", 4); }),
+  EXPECT_EQ(error_of<InputError>([] { load_quads("/", 4); }),
             "/: a directory, expected a file of quads");
 }
 

@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using CME212::contents;
-using CME212::error_of;
 using CME212::OutputFile;
 
 class Output : public ::testing::Test {
@@ -119,7 +118,7 @@ TEST_F(Output, ReplacesWhatALinkPointsTo) {
   EXPECT_EQ(contents(folder / "d/none"), "made");
   for (const char* link : {"one", "two", "to_none"})
     EXPECT_TRUE(fs::is_symlink(folder / link)) << link;
-  EXPECT_NE(error(folder / "round"), "no error");
+  EXPECT_NE(error(folder / "round"), "");
   EXPECT_EQ(CME212::output_target(folder / "two"),
             CME212::output_target(folder / "./d/../one"));
   EXPECT_EQ(CME212::output_target(folder / "to_none"),

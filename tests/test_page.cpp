@@ -12,6 +12,7 @@
 #include "lab/page/Page.hpp"
 #include "lab/page/PageScenes.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -59,7 +60,7 @@ TEST(PageCalls, ReadTheMeasureOfTheScene) {
     lowest = std::min(lowest, double(page_positions(0)[3 * i + 2]));
   const std::string all = page_readings(0),
                     key = R"("measure":"drape-height","unit":"m","answer":[)";
-  ASSERT_NE(all.find(key), std::string::npos) << all;
+  ASSERT_TRUE(has(all, key));
   EXPECT_NEAR(std::stod(all.substr(all.find(key) + key.size())), lowest,
               0.01 * std::abs(lowest));
 }
@@ -135,7 +136,7 @@ TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
   int failed = 0;
   for (int k = 0; k < 300 && !failed; ++k) page_step(), failed = page_check();
   ASSERT_EQ(failed, 1);
-  EXPECT_NE(std::string(page_failure(0)).find("diverged"), std::string::npos);
+  EXPECT_TRUE(has(page_failure(0), "diverged"));
   EXPECT_GE(page_failed_node(0), 0);
   // The steps after it move the cloth further and further.
   EXPECT_LT(beyond(), 1e-6);
@@ -155,10 +156,8 @@ TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {
   EXPECT_NEAR(reading("dt") / reading("unit"), 2, 1e-9);
   page_beyond(0, 3);
   const std::string why = page_explain();
-  EXPECT_NE(why.find("works"), std::string::npos) << why;
-  EXPECT_NE(why.find("\"cure\":{\"method\":\"verlet\",\"share\":0."),
-            std::string::npos)
-      << why;
+  EXPECT_TRUE(has(why, "works"));
+  EXPECT_TRUE(has(why, "\"cure\":{\"method\":\"verlet\",\"share\":0."));
   // A change continues from the last good state.
   page_request("step 0.5");
   EXPECT_STREQ(page_failure(0), "null");

@@ -45,12 +45,8 @@ struct Example {
 /** The error that the words cause. */
 std::string complaint(const std::string& text) {
   Example e;
-  try {
-    read_words(text, [&e] { return e.words(); });
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of<SceneError>(
+      [&] { read_words(text, [&e] { return e.words(); }); });
 }
 
 TEST(Words, SetTheMembersThatTheyName) {
@@ -164,7 +160,7 @@ TEST(Parts, KnowTheOtherNamesOfAMethod) {
        {std::pair("newmark", "implicit-midpoint"),
         std::pair("trapezoidal", "implicit-midpoint"), std::pair("pbd", "xpbd"),
         std::pair("leapfrogg", "leapfrog")})
-    EXPECT_EQ(CME212::error_of([&, name = name] { read_method(name); }),
+    EXPECT_EQ(error_of([&, name = name] { read_method(name); }),
               std::string("--method is ") + name +
                   ", expected a name of --list-methods: did you mean " + meant +
                   "?");
@@ -214,12 +210,8 @@ TEST(Parts, HaveOneTextEach) {
 
 TEST(Parts, RefuseWhatMakesNoSense) {
   const auto wrong = [](auto read, const char* text) {
-    try {
-      read(text);
-    } catch (const SceneError& e) {
-      return std::string(e.what()).substr(std::string(e.what()).find(" has"));
-    }
-    return std::string();
+    const std::string error = error_of<SceneError>([&] { read(text); });
+    return error.substr(error.find(" has"));
   };
   EXPECT_EQ(wrong(read_sheet, "nodes 5 2.5"),
             " has nodes 2.5, expected 1 to 10000");
@@ -400,7 +392,7 @@ class SceneFile : public ::testing::Test {
       load(text);
     } catch (const SceneFileError& e) {
       const std::string what = e.what();
-      EXPECT_EQ(what.rfind(name + ':', 0), 0u) << what;
+      EXPECT_TRUE(begins(what, name + ':'));
       return what.substr(name.size() + 1);
     }
     return "";
@@ -446,8 +438,8 @@ TEST_F(SceneFile, IsWrittenAsItIsRead) {
   EXPECT_EQ(n.measure, Measure::energy);
   EXPECT_EQ(n.tears.size(), 1u);
   EXPECT_EQ(n.planes, m.planes);
-  EXPECT_NE(text.find("[N/m]"), std::string::npos);
-  EXPECT_EQ(text.find("stiffness ="), std::string::npos);  // modulus instead
+  EXPECT_TRUE(has(text, "[N/m]"));
+  EXPECT_FALSE(has(text, "stiffness ="));  // modulus instead
 }
 
 RC_GTEST_FIXTURE_PROP(SceneFile, IsReadBackWhateverItsNamesHold, ()) {

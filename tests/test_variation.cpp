@@ -264,7 +264,7 @@ TEST(TryOut, SaysWhyItFailed) {
   m.step.dt = 0.02, m.t_end = 2;
   const Trial t = try_out(m);
   EXPECT_FALSE(t.ok());
-  EXPECT_EQ(t.failure.find("diverged in step"), 0u) << t.failure;
+  EXPECT_TRUE(begins(t.failure, "diverged in step"));
   EXPECT_TRUE(t.answer.empty());
 }
 
@@ -483,14 +483,12 @@ std::vector<std::string> scene_names(bool open = false) {
 TEST(ThePageOfScenes, NamesEveryKeyAndScene) {
   const std::string page = CME212::contents("lab/scenes/README.md");
   for (const std::string& name : scene_keys())
-    EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
+    EXPECT_TRUE(has(page, "| `" + name + "` |")) << name;
   EXPECT_EQ(scene_names(true).size(), 5u);
   for (const std::string& name : scene_names(true))
-    EXPECT_NE(page.find("](../../data/scenes/" + name + ".toml)"),
-              std::string::npos)
-        << name;
+    EXPECT_TRUE(has(page, "](../../data/scenes/" + name + ".toml)")) << name;
   for (const std::string& name : scene_names()) {
-    EXPECT_NE(page.find("\n### `" + name + "`\n"), std::string::npos) << name;
+    EXPECT_TRUE(has(page, "\n### `" + name + "`\n")) << name;
     EXPECT_TRUE(
         std::filesystem::exists("docs/pictures/scene-" + name + ".png"));
   }

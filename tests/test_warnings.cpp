@@ -152,8 +152,7 @@ TEST(Warnings, AFloorAboveTheCloth) {
   m.planes = {read_plane("at 0 0 0")};
   EXPECT_EQ(warning_of(m), "");
   m.planes = {read_plane("at 0 0 0 normal 0 0 -1")};  // a ceiling
-  EXPECT_NE(warning_of(m).find("20 of 25 nodes start below"),
-            std::string::npos);
+  EXPECT_TRUE(has(warning_of(m), "20 of 25 nodes start below"));
   m.planes = {read_plane("at 0 0 1 normal 0 0 -1")};
   EXPECT_EQ(warning_of(m), "");
 }
@@ -183,11 +182,8 @@ TEST(Warnings, ABallThatFitsThroughTheMesh) {
             "of 16 of 16 quads: their middle is up to 0.176777 m from the "
             "nearest node, and the ball only touches nodes; use a radius above "
             "0.265165 m, or a finer grid");
-  EXPECT_NE(
-      warning_of(below(0.18))
-          .find("of 16 of 16 quads where springs are stretched by 1.8 %: "),
-      std::string::npos)
-      << warning_of(below(0.18));
+  EXPECT_TRUE(has(warning_of(below(0.18)),
+                  "of 16 of 16 quads where springs are stretched by 1.8 %: "));
   EXPECT_NE(warning_of(below(0.26)), "");
   EXPECT_EQ(warning_of(below(0.2652)), "");  // the cure of the first
 }
@@ -220,7 +216,7 @@ TEST(Warnings, ASelfCollisionThatDoesNotCloseTheMesh) {
   // One of two sheets is finer.
   m.sheets.push_back(read_sheet("at 0 0 1 nodes 9 9"));
   m.self_collision = read_self_collision("thickness 0.1");
-  EXPECT_NE(warning_of(m).find("16 of 80 quads"), std::string::npos);
+  EXPECT_TRUE(has(warning_of(m), "16 of 80 quads"));
 }
 
 TEST(Warnings, ABallThatIsTooFastForTheStep) {
@@ -239,11 +235,9 @@ TEST(Warnings, AreShownByARunOnceAndNotIfItIsToBeQuiet) {
   auto r = folder.run(command);
   EXPECT_EQ(r.status, 0);
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 3) << r.err;
-  EXPECT_EQ(r.err.find("cloth: warning: 600 of 625 nodes lie in no quad"), 0u);
-  EXPECT_NE(r.err.find("\ncloth: warning: 625 of 625 nodes start below"),
-            std::string::npos);
-  EXPECT_NE(r.err.find("\ncloth: warning: at t = 0 the obstacles give"),
-            std::string::npos);
+  EXPECT_TRUE(begins(r.err, "cloth: warning: 600 of 625 nodes lie in no quad"));
+  EXPECT_TRUE(has(r.err, "\ncloth: warning: 625 of 625 nodes start below"));
+  EXPECT_TRUE(has(r.err, "\ncloth: warning: at t = 0 the obstacles give"));
   EXPECT_EQ(folder.run(command + "--quiet").err, "");
 }
 

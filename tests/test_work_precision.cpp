@@ -96,7 +96,7 @@ TEST(Problem, ReferencesKnowTheWholeEnd) {
   for (const char* name : {"chain", "curtain"}) {
     Problem p = problem(name);
     const Reference r = reference(p, 2);
-    EXPECT_EQ(r.made.find("exact, srkn11b "), 0u) << r.made;
+    EXPECT_TRUE(begins(r.made, "exact, srkn11b "));
     Srkn11b method;
     Start s(p);
     const End end = run(p, method,
@@ -138,7 +138,7 @@ TEST(Problem, SaysWhyARunFailed) {
   Verlet verlet;
   Outcome out = run(p, verlet, 100);  // dt is 4 times the limit
   EXPECT_EQ(out.status, Outcome::Status::diverged);
-  EXPECT_EQ(out.reason.find("energy out of bounds at t = "), 0u);
+  EXPECT_TRUE(begins(out.reason, "energy out of bounds at t = "));
   EXPECT_LT(out.steps, 100);
 }
 
@@ -191,7 +191,7 @@ TEST_F(WorkPrecision, WritesATableThatIsWholeAndTrue) {
   std::string text = contents(csv());
   for (const char* line : {"# machine: ", "# compiler: ", "# commit: ",
                            "# reference chain: exact, srkn11b "})
-    EXPECT_NE(text.find(line), std::string::npos) << line;
+    EXPECT_TRUE(has(text, line)) << line;
   std::set<std::string> seen;
   for (Row& row : rows()) {
     const bool ok = row["status"] == "ok";
@@ -327,13 +327,13 @@ TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
 TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   auto refused = [this](const std::string& arguments, const char* message) {
     EXPECT_EQ(run_program(arguments + " --out " + csv()), 2) << arguments;
-    EXPECT_NE(err().find(message), std::string::npos) << err();
+    EXPECT_TRUE(has(err(), message));
     EXPECT_FALSE(fs::exists(csv()) || fs::exists(csv() + ".part"));
   };
   refused("--scenes nowhere", "--scenes: nowhere not in {chain,curtain,grid0");
   refused("--methods verlet,magic", "--methods: magic not in {");
   refused("--repeats 0", "--repeats: Value 0 not in range");
-  EXPECT_NE(err().find("1000"), std::string::npos) << err();  // the bound
+  EXPECT_TRUE(has(err(), "1000"));  // the bound
   refused("--energy --grid-refinement", "--grid-refinement");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }

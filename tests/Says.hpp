@@ -1,0 +1,35 @@
+#pragma once
+/** @file Says.hpp
+ * What a text says, for EXPECT_TRUE and EXPECT_FALSE, which then print it; and
+ * what an error says. */
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+/** @a text has @a part in it. */
+inline testing::AssertionResult has(std::string_view text,
+                                    std::string_view part) {
+  return testing::AssertionResult(text.find(part) != text.npos)
+         << "'" << part << "' in:\n"
+         << text;
+}
+/** @a text begins with @a part. */
+inline testing::AssertionResult begins(std::string_view text,
+                                       std::string_view part) {
+  return testing::AssertionResult(text.starts_with(part))
+         << "'" << part << "' first in:\n"
+         << text;
+}
+
+/** The message of the Error that @a f throws; "" if it throws none. */
+template <typename Error = std::runtime_error>
+std::string error_of(const auto& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
