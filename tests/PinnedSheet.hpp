@@ -20,12 +20,7 @@ struct PinnedSheet {
         pin((build_cloth(g, grid_points(side), grid_quads(side),
                          MeshSprings::diagonals, K),
              g)) {}
-  void stir() {
-    CME212::default_generator.seed(3);
-    using CME212::random;
-    for (Node n : g.nodes())
-      n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
-  }
+  void stir() { ::stir(g); }
   template <typename M>
   void run(M& method, double h, int steps) {
     for (int n = 0; n < steps; ++n) method(g, n * h, h, force, pin);

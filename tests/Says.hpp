@@ -4,6 +4,7 @@
  * what an error says. */
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -32,4 +33,11 @@ std::string error_of(const auto& f) {
     return e.what();
   }
   return {};
+}
+
+/** @a name as that of a test, which has no '-'. */
+inline std::string test_name(std::string_view name) {
+  std::string text(name);
+  std::ranges::replace(text, '-', '_');
+  return text;
 }

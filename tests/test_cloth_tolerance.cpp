@@ -21,9 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Problems, Smooth,
                          ::testing::Values("chain", "curtain", "grid0", "grid1",
                                            "grid1-short", "stiff"),
                          [](const auto& info) {
-                           std::string name = info.param;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
+                           return test_name(info.param);
                          });
 
 TEST_P(Smooth, EndsWithinTheTolerance) {

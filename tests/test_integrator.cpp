@@ -1,11 +1,8 @@
-// symp_euler_step() and the method symplectic-euler: against exact solutions of
-// the difference equations. Against each other: test_stages.
+// symp_euler_step() against exact solutions of the difference equations. The
+// method symplectic-euler is held to it by test_plain_methods and test_stages.
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "lab/fast/Energy.hpp"
-#include "lab/methods/SymplecticEuler.hpp"
 #include "mass_spring.hpp"
 #include "tests/Momentum.hpp"
 
@@ -13,57 +10,14 @@ using namespace lab;
 
 namespace {
 
-/** A step as a function: each test runs with both forms. */
-using Step4 = std::function<double(Cloth&, double, double, const ZeroForce&)>;
-using Step5 = std::function<double(Cloth&, double, double, const ZeroForce&,
-                                   const ZeroConstraint&)>;
-
-struct Form {
-  const char* name;
-  Step4 step4;
-  Step5 step5;
-};
-class SymplecticEulerStep : public ::testing::TestWithParam<Form> {
- protected:
-  Cloth g;
-  double step(double t, double dt, const ZeroForce& f) {
-    return GetParam().step4(g, t, dt, f);
-  }
-  double step(double t, double dt, const ZeroForce& f,
-              const ZeroConstraint& c) {
-    return GetParam().step5(g, t, dt, f, c);
-  }
-};
-INSTANTIATE_TEST_SUITE_P(
-    Forms, SymplecticEulerStep,
-    ::testing::Values(
-        Form{"PerNode",
-             [](Cloth& g, double t, double dt, const ZeroForce& f) {
-               return symp_euler_step(g, t, dt, f);
-             },
-             [](Cloth& g, double t, double dt, const ZeroForce& f,
-                const ZeroConstraint& c) {
-               return symp_euler_step(g, t, dt, f, c);
-             }},
-        Form{"Sweep",
-             [e = SymplecticEuler()](Cloth& g, double t, double dt,
-                                     const ZeroForce& f) mutable {
-               return e(g, t, dt, f);
-             },
-             [e = SymplecticEuler()](Cloth& g, double t, double dt,
-                                     const ZeroForce& f,
-                                     const ZeroConstraint& c) mutable {
-               return e(g, t, dt, f, c);
-             }}),
-    [](const auto& form) { return form.param.name; });
-
 // From rest: v_k = -g h k and z_n = z_0 - g h^2 n (n - 1)/2, exactly.
-TEST_P(SymplecticEulerStep, FallsAlongTheDiscreteParabola) {
+TEST(SympEulerStep, FallsAlongTheDiscreteParabola) {
+  Cloth g;
   Node a = g.add_node(Point(2, 3, 5), {Point(1, 0, 0), 4});
   const double h = 0.01;
   double t = 0;
   for (int n = 1; n <= 100; ++n) {
-    t = step(t, h, GravityForce());
+    t = symp_euler_step(g, t, h, GravityForce());
     EXPECT_NEAR(a.position().z, 5 - 9.81 * h * h * n * (n - 1) / 2, 1e-13);
     EXPECT_NEAR(a.position().x, 2 + h * n, 1e-13);
     EXPECT_NEAR(a.value().vel.z, -9.81 * h * n, 1e-13);
@@ -73,7 +27,8 @@ TEST_P(SymplecticEulerStep, FallsAlongTheDiscreteParabola) {
 
 // One mass on a spring: y_n+1 - 2 y_n + y_n-1 = -(h w)^2 y_n with y_0 = y_1,
 // so y_n = y_0 cos((n - 1/2) q)/cos(q/2), cos q = 1 - (h w)^2/2.
-TEST_P(SymplecticEulerStep, SwingsByTheExactRecurrence) {
+TEST(SympEulerStep, SwingsByTheExactRecurrence) {
+  Cloth g;
   Node wall = g.add_node(Point(0, 0, 0)), a = g.add_node(Point(1.1, 0, 0));
   a.value().mass = 0.5;
   g.add_edge(wall, a, {50, 1});
@@ -82,7 +37,7 @@ TEST_P(SymplecticEulerStep, SwingsByTheExactRecurrence) {
   const double q = std::acos(1 - hw * hw / 2);
   double t = 0;
   for (int n = 1; n <= 1000; ++n) {
-    t = step(t, h, MassSpringForce(), pin);
+    t = symp_euler_step(g, t, h, MassSpringForce(), pin);
     EXPECT_NEAR(a.position().x - 1,
                 0.1 * std::cos((n - 0.5) * q) / std::cos(q / 2), 1e-12);
     EXPECT_EQ(a.position().y, 0);
@@ -90,28 +45,28 @@ TEST_P(SymplecticEulerStep, SwingsByTheExactRecurrence) {
 }
 
 // Drag as a force: v_n = v_0 (1 - h c/m)^n.
-TEST_P(SymplecticEulerStep, SlowsDownByTheExactRecurrence) {
+TEST(SympEulerStep, SlowsDownByTheExactRecurrence) {
+  Cloth g;
   Node a = g.add_node(Point(2, 0, 0), {Point(1, 0, 0), 2});
-  for (int n = 0; n < 50; ++n) step(0, 0.1, DampingForce(0.6));
+  for (int n = 0; n < 50; ++n) symp_euler_step(g, 0, 0.1, DampingForce(0.6));
   EXPECT_NEAR(a.value().vel.x, std::pow(1 - 0.1 * 0.6 / 2, 50), 1e-14);
 }
 
-TEST_P(SymplecticEulerStep, ConservesMomentumAndAngularMomentum) {
-  CME212::default_generator.seed(3);
+TEST(SympEulerStep, ConservesMomentumAndAngularMomentum) {
+  Cloth g;
   build_cloth(g, grid_points(6), grid_quads(6), MeshSprings::diagonals);
-  using CME212::random;
-  for (Node n : g.nodes())
-    n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
+  stir(g);
   const Point linear = momentum(g), angular = angular_momentum(g);
   for (int n = 0; n < 1000; ++n)
-    step(0, 0.002, MassSpringForce(), ZeroConstraint());
+    symp_euler_step(g, 0, 0.002, MassSpringForce(), ZeroConstraint());
   EXPECT_LT(norm(momentum(g) - linear), 1e-13);
   EXPECT_LT(norm(angular_momentum(g) - angular), 1e-13);
   EXPECT_GT(elastic_energy(g), 0.01);  // it did move
 }
 
 // A constraint sees the new positions, and the force what it left of them.
-TEST_P(SymplecticEulerStep, ConstrainsAfterPositionsAndBeforeForces) {
+TEST(SympEulerStep, ConstrainsAfterPositionsAndBeforeForces) {
+  Cloth g;
   struct Watch : ZeroConstraint {
     void operator()(Cloth& g, double t) const override {
       EXPECT_EQ(t, 7);
@@ -128,7 +83,7 @@ TEST_P(SymplecticEulerStep, ConstrainsAfterPositionsAndBeforeForces) {
     }
   };
   Node a = g.add_node(Point(0, 0, 0), {Point(2), 8});
-  EXPECT_EQ(step(7, 0.5, See(), Watch()), 7.5);
+  EXPECT_EQ(symp_euler_step(g, 7, 0.5, See(), Watch()), 7.5);
   EXPECT_EQ(a.value().vel, Point(2, 2, 2.25));
 }
 

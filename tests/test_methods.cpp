@@ -25,9 +25,7 @@ using std::numbers::pi;
 struct Names {
   template <typename M>
   static std::string GetName(int) {
-    std::string name(M::info.name);
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
+    return test_name(M::info.name);
   }
 };
 
@@ -50,9 +48,7 @@ TEST(Methods, HaveOnlyWeakGapsBelowTheirLimits) {
 class EveryMethod : public ::testing::TestWithParam<MethodEntry> {};
 INSTANTIATE_TEST_SUITE_P(Table, EveryMethod, ::testing::ValuesIn(methods),
                          [](const auto& m) {
-                           std::string name(m.param.info.name);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
+                           return test_name(m.param.info.name);
                          });
 
 TEST_P(EveryMethod, MovesNothingThatIsHeld) {
@@ -193,11 +189,8 @@ TYPED_TEST_SUITE(Symmetric, SymmetricOnes, Names);
 
 /** A grid in motion, without pins. */
 void shake(Cloth& g) {
-  CME212::default_generator.seed(4);
   build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
-  using CME212::random;
-  for (Node n : g.nodes())
-    n.value().vel = Point(random(-1, 1), random(-1, 1), random(-1, 1));
+  stir(g, 4);
 }
 
 TYPED_TEST(Symmetric, CanBeTakenBack) {

@@ -18,6 +18,7 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/stability/Spectrum.hpp"
 #include "tests/MovingEnds.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -222,10 +223,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(::testing::ValuesIn(names_of_methods()),
                        ::testing::ValuesIn(names_of_courses())),
     [](const auto& info) {
-      std::string name =
-          std::get<0>(info.param) + "_on_" + std::get<1>(info.param);
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name;
+      return test_name(std::get<0>(info.param) + "_on_" +
+                       std::get<1>(info.param));
     });
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "lab/stability/Spectrum.hpp"
 #include "methods.hpp"
 #include "tests/MovingEnds.hpp"
+#include "tests/Says.hpp"
 
 using namespace lab;
 
@@ -136,9 +137,7 @@ const std::vector<Scene>& scenes() {
 class PlainMethod : public ::testing::TestWithParam<Twin> {};
 INSTANTIATE_TEST_SUITE_P(Table, PlainMethod, ::testing::ValuesIn(twins),
                          [](const auto& twin) {
-                           std::string name = twin.param.name;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
+                           return test_name(twin.param.name);
                          });
 
 /** The largest distance [m] of two states of the same nodes; of velocities

@@ -558,9 +558,7 @@ TEST_P(Need, IsWhatTheSceneNamesAndNothingMore) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Need, ::testing::ValuesIn(scene_names()),
                          [](const auto& scene) {
-                           std::string name = scene.param;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
+                           return test_name(scene.param);
                          });
 
 }  // namespace
