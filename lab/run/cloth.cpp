@@ -143,7 +143,28 @@ void check_outputs(const Options& o) {
                                  {"out", "net"},
                                  {"write-config", "config"},
                                  {"checkpoint", "restart"}};
-  auto add = [&](const char* option, const std::string& file) {
+  for (const auto& [option, file] :
+       {std::pair("vtp", o.vtp), std::pair("ply", o.ply),
+        std::pair("csv", o.csv), std::pair("out", o.out),
+        std::pair("out", quads_beside(o.out)),
+        std::pair("screenshot", o.screenshot), std::pair("record", o.video),
+        std::pair("write-config", o.advised), std::pair("json", o.json),
+        std::pair("checkpoint", o.checkpoint)}) {
+    if (file.empty()) continue;
+    const std::string name = option;
+    const bool is_folder = name == "vtp" || name == "ply";
+    // Opening a pipe waits for its reader; and many may write to a device.
+    if (!is_folder && std::filesystem::is_other(file)) continue;
+    try {
+      if (is_folder)
+        FrameFolder try_it(file, FrameFormat::vtp);
+      else
+        CME212::OutputFile try_it(file);
+    } catch (const std::runtime_error& e) {
+      const std::string place = o.origins.of("--" + name, "");
+      if (place.empty()) throw;
+      throw SceneFileError(place + e.what());
+    }
     const std::string target = CME212::output_target(file);
     const auto input = input_of.find(target);
     if (input != input_of.end() && !follow.contains({option, input->second}))
@@ -153,33 +174,6 @@ void check_outputs(const Options& o) {
     if (!is_new)
       throw SceneError(option, "is " + file + ", which --" + other->second +
                                    " also writes, expected another file");
-  };
-  auto with_place = [&o](const char* option, auto try_it) {
-    try {
-      try_it();
-    } catch (const std::runtime_error& e) {
-      const std::string place = o.origins.of(std::string("--") + option, "");
-      if (place.empty()) throw;
-      throw SceneFileError(place + e.what());
-    }
-  };
-  for (const auto& [option, folder] :
-       {std::pair("vtp", o.vtp), std::pair("ply", o.ply)}) {
-    if (folder.empty()) continue;
-    with_place(option,
-               [&in = folder] { FrameFolder try_it(in, FrameFormat::vtp); });
-    add(option, folder);
-  }
-  for (const auto& [option, file] :
-       {std::pair("csv", o.csv), std::pair("out", o.out),
-        std::pair("out", quads_beside(o.out)),
-        std::pair("screenshot", o.screenshot), std::pair("record", o.video),
-        std::pair("write-config", o.advised), std::pair("json", o.json),
-        std::pair("checkpoint", o.checkpoint)}) {
-    // Opening a pipe waits for its reader; and many may write to a device.
-    if (file.empty() || std::filesystem::is_other(file)) continue;
-    with_place(option, [&to = file] { CME212::OutputFile try_it(to); });
-    add(option, file);
   }
 }
 
