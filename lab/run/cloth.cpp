@@ -62,19 +62,6 @@ void print_answer(const Run& run, const Scene& scene, const Model& m) {
             << scene.time() << " s\n";
 }
 
-/** Run without a window; draw if pictures are wanted.  @return exit status */
-int run_headless(Scene& scene, Run& run, const Options& o) {
-  if (o.pictures()) {
-    Film film(scene, run, o);
-    film.draw();
-    run.to_end([&] { film.draw(); });
-    film.finish();
-  } else {
-    run.to_end();
-  }
-  return run.finish();
-}
-
 /** Take the advice on the scene of @a o: print it, write it, or put it into
  * o.model.  @return the exit status to end with, or -1 */
 int take_advice(Options& o) {
@@ -192,39 +179,40 @@ int run(Options o) {
   const bool in_window = shows && (o.window || Screen::has_display());
   std::optional<Accuracy> accuracy;
   if (o.bounds_error && o.restart.empty()) accuracy = measure_accuracy(o);
-  std::unique_ptr<Live> live;
-  if (!m.at.empty()) live = std::make_unique<Live>(m);
-  const auto alone = live ? nullptr : std::make_unique<Scene>(m);
-  Scene& scene = live ? live->scene() : *alone;
+  std::optional<Live> live;
+  std::optional<Scene> alone;
+  Scene& scene = m.at.empty() ? alone.emplace(m) : live.emplace(m).scene();
   std::unique_ptr<Screen> window;
-  if (shows) {
-    if (in_window) {
-      window = Screen::open(Screen::Kind::window);
-    } else if (Screen::can_draw()) {
-      std::filesystem::create_directories("demo");
-      o.screenshot = "demo/" + m.name + ".png";
-      o.video = "demo/" + m.name + ".mp4";
-      if (!o.quiet)
-        std::cout << "no display: running without a window; a picture and a "
-                     "film go to the folder demo\n";
-      check_outputs(o);
-    }
+  if (in_window) {
+    window = Screen::open(Screen::Kind::window);
+  } else if (shows && Screen::can_draw()) {
+    std::filesystem::create_directories("demo");
+    o.screenshot = "demo/" + m.name + ".png";
+    o.video = "demo/" + m.name + ".mp4";
+    if (!o.quiet)
+      std::cout << "no display: running without a window; a picture and a film "
+                   "go to the folder demo\n";
+    check_outputs(o);
   }
-  Run run(scene, o, live.get());
+  Run run(scene, o, live ? &*live : nullptr);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";
   run.announce();
-  int status = 0;
   if (window) {
     window->show_strain(o.strain);
     window->set_paused(o.paused);
     show_in_window(run, *window, o.speed);
     run.check();
-    status = run.finish();
+  } else if (o.pictures()) {
+    Film film(scene, run, o);
+    film.draw();
+    run.to_end([&] { film.draw(); });
+    film.finish();
   } else {
-    status = run_headless(scene, run, o);
+    run.to_end();
   }
+  int status = run.finish();
   if (scene.done(m.t_end) && status == 0 && !o.quiet)
     print_answer(run, scene, m);
   if (accuracy) status = tell_accuracy(*accuracy, status, o.quiet);
