@@ -1,7 +1,7 @@
 #pragma once
 /** @file Says.hpp
- * What a text says, for EXPECT_TRUE and EXPECT_FALSE, which then print it; and
- * what an error says. */
+ * Do texts say something? EXPECT_TRUE and EXPECT_FALSE print them if not. And
+ * the text of an error. */
 #include <gtest/gtest.h>
 
 #include <algorithm>

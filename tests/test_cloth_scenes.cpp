@@ -72,19 +72,19 @@ TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
     EXPECT_EQ(r.status, 0) << r.err;
     return "\n" + r.out;
   };
-  auto has = [](const std::string& text, const std::string& line) {
+  auto has_line = [](const std::string& text, const std::string& line) {
     return text.find("\n" + line + "\n") != std::string::npos;
   };
   std::string text = dump("");
   for (const char* line : {"sheet = [\"nodes 5 5\"]", "pin = [\"x 0\"]",
                            "modulus = 100", "drag = 1", "t-end = 0.1"})
-    EXPECT_TRUE(has(text, line)) << line << text;
+    EXPECT_TRUE(has_line(text, line)) << line << text;
   EXPECT_FALSE(has(text, "stiffness ="));
   text = dump("--pin 'y 0' --pin 'y 1' --stiffness 7 --damping 0.5 --t-end 2");
   for (const char* line :
        {"sheet = [\"nodes 5 5\"]", "pin = [\"y 0\", \"y 1\"]", "stiffness = 7",
         "damping = 0.5", "t-end = 2"})
-    EXPECT_TRUE(has(text, line)) << line << text;
+    EXPECT_TRUE(has_line(text, line)) << line << text;
   EXPECT_FALSE(has(text, "modulus ="));
   EXPECT_FALSE(has(text, "drag ="));
   EXPECT_TRUE(

@@ -240,9 +240,10 @@ TEST(WithoutLimit, ImplicitMidpointBlowsUpOnBucklingCloth) {
   EXPECT_TRUE(begins(why, "diverged: "));
   EXPECT_TRUE(has(why, "implicit-midpoint neither resolves nor damps them"));
   EXPECT_TRUE(has(why, "8.6 times verlet's stability limit"));
-  EXPECT_TRUE(has(why, "; --method verlet --dt 0.00232 works: a trial to t "
-                       "= "));  // tr-bdf2 does not fail, but its damping takes
-                                // energy
+  EXPECT_TRUE(has(why,
+                  "; --method verlet --dt 0.00232 works: a trial to t "
+                  "= "));  // tr-bdf2 does not fail, but its damping takes
+                           // energy
   EXPECT_EQ(failure_of(table::tr_bdf2, 15, 1 / 30., 100), "");
 }
 

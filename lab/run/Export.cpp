@@ -85,9 +85,6 @@ void append(std::string& bytes, T a) {
   std::memcpy(raw, &a, sizeof a);
   bytes.append(raw, sizeof raw);
 }
-void append3(std::string& bytes, const Point& p) {
-  for (double a : {p.x, p.y, p.z}) append(bytes, float(a));
-}
 constexpr bool little = std::endian::native == std::endian::little;
 
 /** Builds a VTP file. */
@@ -126,10 +123,10 @@ class Vtp {
     of_points<float>("mass", f_.masses);
     of_points<float>("strain", f_.strains);
     of_points<std::uint8_t>("pinned", f_.pinned);
-    array<std::uint32_t>("node", 1, left_);
+    array("node", left_);
     close("PointData");
     open("CellData Scalars=\"strain\"");
-    array<float>("strain", 1, cell_strains());
+    array("strain", cell_strains());
     close("CellData");
     cells("Lines", f_.springs, std::array<unsigned, 2>{0, 1});
     cells("Polys", f_.quads, CME212::around_quad);
@@ -154,36 +151,36 @@ class Vtp {
                                                                  : "UInt32";
 
   template <typename T>
-  void array(const char* name, int components, const auto& values) {
+  void array(const char* name, const std::vector<T>& values,
+             int components = 1) {
     std::string bytes;
-    for (const auto& a : values) append(bytes, T(a));
-    std::string size;
-    append(size, std::uint64_t(bytes.size()));
+    append(bytes, std::uint64_t(values.size() * sizeof(T)));
+    for (T a : values) append(bytes, a);
     text_ += std::string("<DataArray type=\"") + type_name<T> + "\" Name=\"" +
              name + "\" NumberOfComponents=\"" + std::to_string(components) +
-             "\" format=\"binary\">" + base64(size + bytes) + "</DataArray>\n";
+             "\" format=\"binary\">" + base64(bytes) + "</DataArray>\n";
   }
   /** Add the values of @a all at the points that are left. */
   template <typename T, typename V>
   void of_points(const char* name, const std::vector<V>& all) {
-    if constexpr (std::is_same_v<V, Point>) {
-      std::vector<double> values;
-      for (unsigned i : left_)
-        values.insert(values.end(), {all[i].x, all[i].y, all[i].z});
-      array<T>(name, 3, values);
-    } else {
-      std::vector<V> values;
-      for (unsigned i : left_) values.push_back(all[i]);
-      array<T>(name, 1, values);
-    }
+    constexpr bool is_vector = std::is_same_v<V, Point>;
+    std::vector<T> values;
+    for (unsigned i : left_)
+      if constexpr (is_vector)
+        for (double c : all[i]) values.push_back(T(c));
+      else
+        values.push_back(T(all[i]));
+    array(name, values, is_vector ? 3 : 1);
   }
   /** The strains of the springs, then of the quads: the mean of their sides. */
-  std::vector<double> cell_strains() const {
-    std::vector<double> all = f_.spring_strains;
+  std::vector<float> cell_strains() const {
+    std::vector<float> all;
     std::vector<std::pair<std::array<unsigned, 2>, double>> by_ends;
     for (std::size_t s = 0; s < f_.springs.size(); ++s) {
       auto [a, b] = f_.springs[s];
-      by_ends.push_back({{std::min(a, b), std::max(a, b)}, all[s]});
+      const double strain = f_.spring_strains[s];
+      by_ends.push_back({{std::min(a, b), std::max(a, b)}, strain});
+      all.push_back(float(strain));
     }
     std::ranges::sort(by_ends);
     for (const Quad& q : f_.quads) {
@@ -194,21 +191,21 @@ class Vtp {
                  return s.first;
                })->second;
       }
-      all.push_back(sum / 4);
+      all.push_back(float(sum / 4));
     }
     return all;
   }
   template <typename Cell, std::size_t N>
   void cells(const char* tag, const std::vector<Cell>& all,
              const std::array<unsigned, N>& order) {
-    std::vector<unsigned> corners, ends;
+    std::vector<std::int32_t> corners, ends;
     for (const Cell& cell : all) {
-      for (unsigned k : order) corners.push_back(new_index_[cell[k]]);
-      ends.push_back(unsigned(corners.size()));
+      for (unsigned k : order) corners.push_back(int(new_index_[cell[k]]));
+      ends.push_back(int(corners.size()));
     }
     open(tag);
-    array<std::int32_t>("connectivity", 1, corners);
-    array<std::int32_t>("offsets", 1, ends);
+    array("connectivity", corners);
+    array("offsets", ends);
     close(tag);
   }
 };
@@ -223,8 +220,8 @@ std::string to_ply(const Frame& f) {
   text += "element face " + std::to_string(f.quads.size()) +
           "\nproperty list uchar int vertex_indices\nend_header\n";
   for (std::size_t i = 0; i < f.places.size(); ++i) {
-    append3(text, f.places[i]);
-    append3(text, f.velocities[i]);
+    for (const Point& p : {f.places[i], f.velocities[i]})
+      for (double c : p) append(text, float(c));
     append(text, float(f.strains[i]));
   }
   for (const Quad& q : f.quads) {
