@@ -230,7 +230,9 @@ class Judge:
             left = [test for test in tests
                     if test not in results or not results[test].passed]
             # A file without main() gets no score.
-            if room in self.rooms["program"] and way.needs != "step":
+            with_ours = (room in self.rooms["program"]
+                         and way.needs != "step")
+            if with_ours:
                 left = [test for test in left if results[test].mended
                         or results[test].status != "not compiled"]
             for test, result in self.judged(room, way, left).items():
@@ -238,7 +240,8 @@ class Judge:
                 # A message about the kit's graph does not help if the task
                 # also fails with the student's own graph.
                 better = (RANK.index(result.status) - RANK.index(best.status)
-                          or result.status in ("not compiled", "crashed"))
+                          or not with_ours and result.status in
+                          ("not compiled", "crashed"))
                 if better > 0:
                     results[test] = result
         return results

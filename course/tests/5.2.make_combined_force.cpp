@@ -15,14 +15,14 @@ struct Parts {
     return TestForce(law);
   }
   static TestForce second() {
-    static constexpr auto law = [](ClothNode n, double) {
-      return n.position() + Point(8, 16, 32);
+    static constexpr auto law = [](ClothNode n, double t) {
+      return n.position() + Point(8, 16 - 3 * t, 32);
     };
     return TestForce(law);
   }
   static TestForce third() {
-    static constexpr auto law = [](ClothNode n, double) {
-      return velocity(n) + Point(64, -128, 256);
+    static constexpr auto law = [](ClothNode n, double t) {
+      return velocity(n) + Point(64 + 5 * t, -128, 256);
     };
     return TestForce(law);
   }
