@@ -50,8 +50,9 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
 
 using Row = std::vector<std::string>;
 /** Rows of cells, the titles first, in columns as wide as their cells; all but
- * the first are right-aligned. */
+ * the first are right-aligned. Nothing if there are but titles. */
 std::string in_columns(const std::vector<Row>& rows) {
+  if (rows.size() == 1) return "";
   std::string text = "\n";
   for (const Row& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) {
@@ -257,24 +258,21 @@ std::string in_words(const Advice& a) {
                     !a.refusal.empty() ? ""
                     : p.needed         ? "kept"
                                        : "dropped"});
-  if (!a.parts.empty()) text += in_columns(rows);
+  text += in_columns(rows);
   rows = {{a.from_files ? "step [s]" : "grid of nodes",
            "estimated error" + unit, "force evaluations", "time [s]", ""}};
-  auto row = [&](const std::string& name, const std::string& error, double work,
-                 double seconds, const char* what) {
-    rows.push_back({name, error, count(work),
-                    seconds > 0 ? number(seconds) : "not run", what});
-  };
   for (std::size_t k = 0; k < a.grids.size(); ++k) {
     const GridReport& g = a.grids[k];
-    row(a.from_files ? number(g.trial.dt) : std::to_string(g.nodes),
-        a.grids.size() < 3 ? "unknown" : number(g.error), g.evaluations,
-        g.trial.seconds, "");
+    rows.push_back({a.from_files ? number(g.trial.dt) : std::to_string(g.nodes),
+                    a.grids.size() < 3 ? "unknown" : number(g.error),
+                    count(g.evaluations), number(g.trial.seconds), ""});
   }
   if (a.refusal.empty())
-    row(a.from_files ? number(a.model.step.dt) : std::to_string(nodes_of(a)),
-        number(a.error), a.evaluations, a.seconds, "advised");
-  if (!a.grids.empty()) text += in_columns(rows);
+    rows.push_back(
+        {a.from_files ? number(a.model.step.dt) : std::to_string(nodes_of(a)),
+         number(a.error), count(a.evaluations),
+         a.seconds > 0 ? number(a.seconds) : "not run", "advised"});
+  text += in_columns(rows);
   rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
            "spring evaluations"}};
   const std::size_t most = 12;  // the last ones
@@ -285,7 +283,7 @@ std::string in_words(const Advice& a) {
         {std::to_string(nodes_of(c)), std::string(c.model.method->info.name),
          number(c.model.step.dt), number(c.error), CME212::two_digits(c.work)});
   }
-  if (!a.choices.empty()) text += in_columns(rows);
+  text += in_columns(rows);
   if (a.perturbed > 0)
     text += "\n" + std::to_string(a.perturbed) +
             (a.perturbed > 1 ? " runs" : " run") +

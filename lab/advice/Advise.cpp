@@ -79,11 +79,11 @@ struct Search {
     const StepCosts costs(a.model);
     a.evaluations = costs.evaluations(a.work);
     a.of_stable = costs.of_stable(a.model);
-    auto removed = found->parts.removed;  // of two equal parts each is counted
+    auto removed = found->removed;  // of two equal parts each is counted
     for (PartReport& p : a.parts) {
       const auto it = std::ranges::find(removed, p.part);
-      p.needed = it == removed.end() &&
-                 !goes_with_another(p.part, found->parts.removed);
+      p.needed =
+          it == removed.end() && !goes_with_another(p.part, found->removed);
       if (it != removed.end()) removed.erase(it);
     }
     return std::move(a);

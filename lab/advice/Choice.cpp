@@ -18,9 +18,8 @@ std::vector<Choice> ChoiceSearch::choices(
   std::vector<Choice> all;
   int kind = 0;
   for (const GridStudy::Grid& grid : grids)
-    for (const Reduction& parts : parts_.reductions()) {
-      std::optional<Model> m =
-          without_all(grids_.on_grid(grid.sides), parts.removed);
+    for (const auto& removed : parts_.reductions()) {
+      std::optional<Model> m = without_all(grids_.on_grid(grid.sides), removed);
       if (!m) continue;
       // Long implicit steps may need all of the time to come to rest.
       std::set ends = {q_.scene.t_end};
@@ -43,7 +42,7 @@ std::vector<Choice> ChoiceSearch::choices(
             if (q_.rules.keeps_step) m->step = q_.scene.step;
             m->step.dt = step_of(*m);
             all.push_back({{.model = *m, .work = costs.of_run(*m)},
-                           parts,
+                           removed,
                            grid,
                            bounded ? m->step.dt / limit : dt,
                            kind});
@@ -54,7 +53,7 @@ std::vector<Choice> ChoiceSearch::choices(
       }
     }
   std::ranges::stable_sort(all, {}, [](const Choice& c) {
-    return std::tuple(c.work, -double(c.parts.removed.size()),
+    return std::tuple(c.work, -double(c.removed.size()),
                       -c.model.method->info.order);
   });
   return all;
@@ -66,14 +65,14 @@ bool ChoiceSearch::may_hold(const Choice& c) const {
     if (!e.error) return c.step > 0.99 * e.step;
     const double error = grids_.size_of(Effect(c.grid.off).add(1, e.error->by));
     return c.model.step.dt > 0.99 * e.dt &&
-           (e.removed == c.parts.removed ? !grids_.accepts(0.8 * error)
-                                         : error > 2 * grids_.tolerance());
+           (e.removed == c.removed ? !grids_.accepts(0.8 * error)
+                                   : error > 2 * grids_.tolerance());
   });
 }
 
 void ChoiceSearch::learn(const Choice& c, const Trial& t, double share) {
-  StepError e{c.model.method, c.parts.removed,         c.model.t_end,
-              share * c.step, share * c.model.step.dt, {}};
+  StepError e{c.model.method,          c.removed, c.model.t_end, share * c.step,
+              share * c.model.step.dt, {}};
   if (t.ok())
     e.error = Effect(t.answer, grids_.grids().limit()).add(-1, c.grid.off.by);
   step_errors_.push_back(e);
@@ -84,7 +83,7 @@ Trial ChoiceSearch::run(const Choice& c, const Model& m, double work,
   return q_.pilots.run(m,
                        std::to_string(nodes_of(m)) + " nodes by " +
                            std::string(m.method->info.name) + by,
-                       work, c.parts.removed, shake);
+                       work, c.removed, shake);
 }
 
 bool ChoiceSearch::holds(Choice& c, double most) {
@@ -126,7 +125,7 @@ bool ChoiceSearch::holds_on_finer_grids(Choice& c) {
     Sides sides = c.grid.sides;
     for (auto& sheet : sides)
       for (double& side : sheet) side *= more;
-    Model finer = *without_all(grids_.on_grid(sides), c.parts.removed);
+    Model finer = *without_all(grids_.on_grid(sides), c.removed);
     finer.method = c.model.method, finer.t_end = c.model.t_end;
     finer.step = {.dt = c.model.step.dt / more};
     const double error = grids_.error_of(run(c, finer, work, by));

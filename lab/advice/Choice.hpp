@@ -14,7 +14,7 @@
 namespace lab {
 
 struct Choice : AdvisedRun {
-  Reduction parts = {};
+  std::vector<std::string> removed = {};  // parts
   GridStudy::Grid grid = {};
   double step = 1;  // over the largest stable one; if there is none, [s]
   int kind = 0;     // equal for choices of the same grid, parts and end

@@ -109,13 +109,11 @@ std::string GridStudy::add() {
                            q_.from_files() ? "smaller steps" : "a finer grid",
                            are_enough() ? 0.7 : 1))
       return over_budget(run.work);
-    run.track.emplace(q_.scene.t_end, run.nodes);
     auto look = [&](const Cloth& g) {
       run.all = all_answers(run.model, g);
       find_plane(g);
     };
-    run.trial = q_.pilots.run(run.model, on, run.work, {}, {}, look,
-                              [&](Scene& scene) { run.track->look(scene); });
+    run.trial = q_.pilots.run(run.model, on, run.work, {}, {}, look);
     if (run.trial.ok()) break;
     if (run.factor >= 1) return "on " + on + ": " + run.trial.failure;
     q_.advice.grids.clear();  // it is too coarse to carry the load
@@ -153,12 +151,6 @@ bool GridStudy::may_go_on(bool found) const {
          next <= 0.5 * q_.pilots.left();
 }
 
-std::string GridStudy::finest() const {
-  return q_.from_files()
-             ? "by the smallest step"
-             : "on " + std::to_string(grids().back().nodes) + " nodes";
-}
-
 std::string GridStudy::so_far() const {
   if (!are_enough())
     return CME212::count_of(grids().size(), q_.from_files() ? "step" : "grid") +
@@ -171,7 +163,10 @@ std::string GridStudy::so_far() const {
     return "uncertainty is the reason: the limit of " + name_of(what) +
            (q_.from_files() ? " by smaller steps" : " on finer grids") +
            " is known only to +- " + limit;
-  return "the error of " + name_of(what) + ' ' + finest() + " is " +
+  return "the error of " + name_of(what) +
+         (q_.from_files()
+              ? " by the smallest step is "
+              : " on " + std::to_string(grids().back().nodes) + " nodes is ") +
          with_unit(grids().back().error, what) + " +- " + limit;
 }
 
@@ -189,7 +184,10 @@ std::string GridStudy::way_out(double work) const {
            CME212::two_digits(
                std::max(2 * q_.pilots.budget(), q_.pilots.spent() + 4 * work));
   };
-  if (!are_enough()) return budget(work) + " would continue";
+  const double missing = double(fewest()) - double(grids().size());
+  if (missing > 0)  // each takes 1.4 times the cells
+    return budget(work * std::pow(1.4, power_of_work() * (missing - 1))) +
+           " would continue";
   const GridReport& last = grids().back();
   const double u = grids().uncertainty(),
                reached = std::max(u / most_uncertain,

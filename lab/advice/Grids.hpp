@@ -111,8 +111,7 @@ class GridStudy {
   /** The levels that meet the tolerance by pilots, and on twice the cells. */
   std::vector<Grid> starts() const;
   /** Grids that meet the tolerance by pilots and cost at most as much as that
-   * of @a start, itself one of them: of fewer cells along one side.
-   * Cost: about a run for each level and side */
+   * of @a start, itself one of them: of fewer cells along one side. */
   std::vector<Grid> frontier(const Grid& start);
 
   // Refusals.cpp: chaos, and notes
@@ -121,8 +120,7 @@ class GridStudy {
    * there is one. */
   const Shake& shake() const { return shake_; }
   /** Repeat a run from a start moved by shake(), on a grid of half the
-   * cells of the finest, and compare the answers for every Measure and, over
-   * time, the positions.
+   * cells of the finest, and compare the answers for every Measure.
    * @return the reason if this or @a scatter, that of the advised run, exceeds
    *         half of the tolerance: then the motion is chaotic; else empty */
   std::string find_chaos(double scatter = 0);
@@ -149,15 +147,12 @@ class GridStudy {
   double power_of_work() const { return q_.from_files() ? 1 : 3; }
 
   /** Of about 8 cells along the shortest side, or of the only mesh. */
-  int some_level() const {
-    return std::max(0, std::min(3, int(levels_.size()) - 1));
-  }
+  int some_level() const { return std::clamp(int(levels_.size()) - 1, 0, 3); }
   void choose_pilots();
   /** @a m as pilots run it: by Verlet; or, where its limit makes a grid of few
    * cells cost too much, by a multirate or an implicit method if that takes
    * less than half of the work. Steps shrink with the cells. */
   Model pilot(Model m, double factor) const;
-  std::string finest() const;
   bool know_tolerance();
   Answer answer_at_start() const;
 
@@ -165,9 +160,8 @@ class GridStudy {
   /** The cells of a level over those of the scene. */
   Sides sides_of(int level) const;
   Model on_level(int level) const { return on_grid(sides_of(level)); }
-  /** Cells along a side of @a m over those of the scene, in the mean. */
-  double more_cells(const Model& m) const;
-  /** That of a level; of a mesh from files, the first step over its step. */
+  /** Cells along a side over those of the scene, in the mean; of a mesh from
+   * files, the first step over that of the level. */
   double factor(int level) const;
   int lowest(unsigned side) const;
   std::optional<Grid> that_meets(const Sides& s, double most_work);

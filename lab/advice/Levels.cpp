@@ -23,32 +23,30 @@ void GridStudy::make_levels(double cells) {
   levels_.clear();
   int level = 0;
   while (cells * power(level - 1) > 1.6) --level;
-  std::vector<double> before(q_.scene.sheets.size(),
-                             1);  // along the short side
+  std::vector<double> before(q_.scene.sheets.size(), 1);  // along short sides
   for (std::size_t nodes = 0; double(nodes) <= 4 * most_nodes_; ++level) {
     Sides sides;
     std::vector<double> now = before;
     bool keeps = true;
     for (std::size_t k = 0; k < before.size(); ++k) {
-      const std::array<double, 2> n = {q_.scene.sheets[k].nodes[0] - 1.,
-                                       q_.scene.sheets[k].nodes[1] - 1.};
-      const bool rope = n[0] == 0 || n[1] == 0;
-      const unsigned small = rope ? n[0] == 0 : n[1] < n[0];
-      const double wanted = n[small] / shortest_ * cells * power(level);
+      const auto& nodes_of_sides = q_.scene.sheets[k].nodes;
+      const auto [u, v] = nodes_of_sides;
+      const unsigned small = u == 1 || (v > 1 && v < u);
+      const double n = nodes_of_sides[small] - 1.,
+                   ratio = (nodes_of_sides[1 - small] - 1.) / n,  // 0: a rope
+          wanted = n / shortest_ * cells * power(level);
       double best = infinite;
       std::array<double, 2> side = {1, 1};
       for (double a = std::max(before[k] + 1, std::ceil(wanted / near));
            a <= near * wanted; ++a) {
-        const double b = std::round(n[1 - small] * a / n[small]),
-                     oblong =
-                         rope ? 0
-                              : std::abs(b * n[small] / (n[1 - small] * a) - 1),
+        const double b = std::round(ratio * a),
+                     oblong = ratio > 0 ? std::abs(b / (ratio * a) - 1) : 0,
                      cost = oblong + odd * (std::fmod(a, 2) + std::fmod(b, 2) +
                                             std::abs(std::log(a / wanted)));
         if (cost >= best) continue;
         best = cost, now[k] = a;
-        side[small] = a / n[small];
-        if (!rope) side[1 - small] = b / n[1 - small];
+        side[small] = a / n;
+        if (ratio > 0) side[1 - small] = b / (ratio * n);
       }
       // With 3 cells along both sides, only odd numbers are near.
       keeps = keeps && now[k] > before[k] && (now[k] != 3 || best < 2 * odd);
@@ -70,20 +68,17 @@ Sides GridStudy::sides_of(int level) const {
 }
 
 double GridStudy::factor(int level) const {
-  return q_.from_files() ? power(level) : more_cells(on_level(level));
-}
-
-double GridStudy::more_cells(const Model& m) const {
+  if (q_.from_files()) return power(level);
   auto cells = [](const Model& m) {
     double all = 0;
     for (const Sheet& s : m.sheets)
       all += std::max(1., s.nodes[0] - 1.) * std::max(1., s.nodes[1] - 1.);
     return all;
   };
-  const bool ropes = std::ranges::all_of(m.sheets, [](const Sheet& s) {
+  const bool ropes = std::ranges::all_of(q_.scene.sheets, [](const Sheet& s) {
     return s.nodes[0] == 1 || s.nodes[1] == 1;
   });
-  return std::pow(cells(m) / cells(q_.scene), ropes ? 1 : 0.5);
+  return std::pow(cells(on_level(level)) / cells(q_.scene), ropes ? 1 : 0.5);
 }
 
 std::vector<GridStudy::Grid> GridStudy::starts() const {

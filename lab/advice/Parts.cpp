@@ -18,9 +18,9 @@ void PartStudy::study(std::size_t k) {
 
 double PartStudy::change(const Trial& without, const Trial& whole) const {
   double most = grids_.distance_of(without.answer, whole.answer);
-  const auto n = std::min(without.earlier.size(), whole.earlier.size());
-  for (std::size_t k = 0; k < n; ++k) {
-    const Answer &a = without.earlier[k], &b = whole.earlier[k];
+  for (const std::size_t k : {51, 57}) {  // at 80 and 90 % of the time
+    if (std::min(without.earlier.size(), whole.earlier.size()) < k) continue;
+    const Answer &a = without.earlier[k - 1], &b = whole.earlier[k - 1];
     if (a.size() != b.size()) return infinite;  // one has not happened yet
     const double then = grids_.distance_of(a, b);
     if (then > grids_.tolerance()) most = std::max(most, then);
@@ -54,24 +54,23 @@ void PartStudy::combine(const GridReport& run) {
     return std::tuple(p.change > 0, !saves, p.change);
   });
   const double room = 0.7 * grids_.tolerance();
-  reductions_ = {{{}, Effect(run.trial.answer.size())}};
+  reductions_ = {{}};
+  Answer before = run.trial.answer;  // with the last reduction
   for (const PartReport& part : order) {
     if (!(part.change <= room)) continue;
-    std::vector<std::string> removed = reductions_.back().removed;
+    std::vector<std::string> removed = reductions_.back();
     removed.push_back(part.part);
     const std::optional<Model> without = without_all(run.model, removed);
     if (!without || !q_.pilots.affords(run.work, "combinations of parts", 0.2))
       continue;
     const Trial t =
         q_.pilots.run(*without, "without " + part.part, run.work, removed);
-    if (!t.ok()) continue;
-    const Effect effect(t.answer, run.trial.answer);
-    if (!(change(t, run.trial) <= room)) continue;
+    if (!t.ok() || !(change(t, run.trial) <= room)) continue;
     // Parts that change nothing need no choice of their own.
-    if (grids_.distance_of(effect.by, reductions_.back().effect.by) <=
-        1e-3 * grids_.tolerance())
+    if (grids_.distance_of(t.answer, before) <= 1e-3 * grids_.tolerance())
       reductions_.pop_back();
-    reductions_.push_back({removed, effect});
+    reductions_.push_back(removed);
+    before = t.answer;
   }
 }
 
@@ -83,27 +82,16 @@ bool PartStudy::dissipates(const Model& m) {
 }
 
 void PartStudy::find_rest(const GridReport& run) {
-  constexpr int looks = 64;  // samples of the answer at equal intervals
-  const Model& m = run.model;
-  rest_time_ = m.t_end;
-  if (!dissipates(m) || !q_.pilots.affords(run.work, "an earlier end", 0.1))
-    return;
-  std::vector<std::pair<double, Answer>> looked;
-  std::optional<Observer> observer;
-  const Trial t = q_.pilots.run(
-      m, "when it comes to rest", run.work, {}, {}, nullptr, [&](Scene& scene) {
-        if (!observer) observer.emplace(m, scene);
-        if (m.measure.over_time()) observer->look(m, scene);
-        if (scene.time() >= double(looked.size()) * m.t_end / looks)
-          looked.emplace_back(scene.time(), observer->answer(m, scene));
-      });
-  for (; t.ok() && !looked.empty(); looked.pop_back()) {
-    const auto& [time, then] = looked.back();
-    if (then.empty() ||
-        !(grids_.distance_of(then, t.answer) <= grids_.tolerance() / 10))
-      break;
-    if (time <= 0.9 * m.t_end) rest_time_ = time;
-  }
+  rest_time_ = q_.scene.t_end;
+  if (!dissipates(run.model)) return;
+  const auto& then = run.trial.earlier;
+  for (std::size_t k = then.size();
+       k > 0 && !then[k - 1].empty() &&
+       grids_.distance_of(then[k - 1], run.trial.answer) <=
+           grids_.tolerance() / 10;
+       --k)
+    if (const double share = double(k) / Trial::looks; share <= 0.9)
+      rest_time_ = share * q_.scene.t_end;
 }
 
 }  // namespace lab

@@ -10,12 +10,6 @@
 
 namespace lab {
 
-/** Parts left out together. */
-struct Reduction {
-  std::vector<std::string> removed;
-  Effect effect;
-};
-
 class PartStudy {
  public:
   /** As long as no part was tried, all are kept. */
@@ -29,8 +23,10 @@ class PartStudy {
 
   /** The level of that grid. */
   std::optional<int> level() const { return level_; }
-  /** Of more parts each time. */
-  const std::vector<Reduction>& reductions() const { return reductions_; }
+  /** Parts that are left out together, more each time: first none. */
+  const std::vector<std::vector<std::string>>& reductions() const {
+    return reductions_;
+  }
   /** The time [s] after which the answer stays within a tenth of the tolerance;
    * t-end if it does not. */
   double rest_time() const { return rest_time_; }
@@ -46,7 +42,7 @@ class PartStudy {
   Question& q_;
   const GridStudy& grids_;
   std::optional<int> level_;
-  std::vector<Reduction> reductions_ = {{}};
+  std::vector<std::vector<std::string>> reductions_ = {{}};
   double rest_time_;
 
   void try_each(const GridReport& run);

@@ -82,15 +82,14 @@ bool Pilots::affords(double work, const std::string& what, double share) {
 
 Trial Pilots::run(const Model& m, const std::string& doing, double work,
                   const std::vector<std::string>& removed, const Shake& shake,
-                  const std::function<void(const Cloth&)>& look,
-                  const std::function<void(Scene&)>& after) {
+                  const std::function<void(const Cloth&)>& look) {
   const auto& [dt, rule, gain, tolerance] = m.step;
   Key key{{}, {}, m.method, rule, dt, gain, tolerance, m.t_end};
   for (const Sheet& s : m.sheets) get<0>(key).push_back(s.nodes);
   for (const std::string& part : removed)
     if (!goes_with_another(part, removed)) get<1>(key).push_back(part);
   std::ranges::sort(get<1>(key));
-  const bool keeps = shake.size == 0 && (look || !after);
+  const bool keeps = shake.size == 0;
   const auto known =
       std::ranges::find(done_, key, &std::pair<Key, Trial>::first);
   if (keeps && !look && known != done_.end()) return known->second;
@@ -107,7 +106,6 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
     t = try_out(
         m, shake, look ? look : [](const Cloth&) {},
         [&](Scene& scene) {
-          if (after) after(scene);
           if (steps++ % 16 == 0)
             tell_(text, std::min(1.0, (before + work * scene.time() / m.t_end) /
                                           budget_));

@@ -86,14 +86,12 @@ class Pilots {
    * impossible() says why.
    * @param doing description for progress   @param work added to spent()
    * @param removed parts that @a m lacks
-   * @param look, after as for try_out(): with them earlier results are not
-   *        used; with a look, later runs use this one
+   * @param look as for try_out(): then earlier results are not used
    * Throws Interrupted, and all other exceptions of try_out() */
   Trial run(const Model& m, const std::string& doing, double work,
             const std::vector<std::string>& removed = {},
             const Shake& shake = {},
-            const std::function<void(const Cloth&)>& look = nullptr,
-            const std::function<void(Scene&)>& after = nullptr);
+            const std::function<void(const Cloth&)>& look = nullptr);
 
  private:
   /** Two runs of a scene differ in this, or in nothing: the nodes of each

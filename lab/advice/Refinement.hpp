@@ -3,11 +3,9 @@
  * Refinement: estimates the error of each of several grids of one scene. */
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "lab/stepping/Separation.hpp"
 #include "lab/stepping/Trial.hpp"
 
 namespace lab {
@@ -40,18 +38,12 @@ struct GridReport {
   double work = 0;         ///< predicted, in spring evaluations
   double evaluations = 0;  ///< of the forces; solves are counted by their cost
   std::vector<Answer> all = {};  ///< by Measure; empty where it has none
-  std::optional<Track> track = {};
 };
 
 /** Runs of a scene on grids of ever more cells, with steps that shrink with the
- * cells. From three grids on, a least-squares fit to the finest of them, of
- * weights that grow with the cells,
- *   a_k = a + c h_k^p,   h_k = 1 / factor,
- * gives the limit a, the error c h_k^p of each grid and the observed order p.
- * Outside of [0.5, 2.1] the order is not believed: then the better one of the
- * fits of order 1 and 2 is taken. Source: L. Eca, M. Hoekstra, A procedure for
- * the estimation of the numerical uncertainty of CFD calculations based on grid
- * refinement studies, J. Comput. Phys. 262, 2014. */
+ * cells. From three grids on, the least-squares fit to the finest of them that
+ * README.md describes gives their limit a, the error c h^p of each grid, h =
+ * 1 / factor, and the observed order p. */
 class Refinement {
  public:
   explicit Refinement(Measure measure = Measure::com) : measure_(measure) {}
@@ -77,12 +69,8 @@ class Refinement {
   Effect error(double factor) const;
   /** The limit of the answers. */
   const Answer& limit() const { return fit_.limit; }
-  /** The uncertainty of limit() at a confidence of 95 %: a fifth of the error
-   * of the finest grid, the standard deviation of the fit, and the change of
-   * the limit if the finest or the coarsest grid of the fit is left out; the
-   * first two 1.5 times if the order is not believed; and then, if a fit of
-   * a lower order has half the deviation, how far its limit is. Of three grids,
-   * which have no deviation, three times the error. */
+  /** The uncertainty of limit() at a confidence of 95 %: u of README.md; of
+   * three grids, which have no deviation, three times the error. */
   double uncertainty() const { return uncertainty_; }
   /** The change of the limit in it. */
   double change_of_limit() const { return moves_; }
@@ -92,7 +80,7 @@ class Refinement {
 
  private:
   struct Fit {
-    Answer limit, slower;  // slower: by a low order that fits better
+    Answer limit, faster;  // faster: by order 1, if the order is lower
     Answer slope;          // the error at the smallest h
     double order = 1, deviation = 0;
     bool believed = false;
@@ -104,8 +92,9 @@ class Refinement {
 
   /** O(grids * numbers) for each order */
   Fit fit_of_order(std::span<const GridReport> grids, double order) const;
-  Fit best_fit(std::span<const GridReport> grids) const;
-  double change(std::size_t k) const;  // of the answer from grid k-1 to k
+  /** @param may_be_slow of an order that is too low to be believed, if that
+   * fits much better than 1 and 2 */
+  Fit best_fit(std::span<const GridReport> grids, bool may_be_slow) const;
 };
 
 }  // namespace lab

@@ -10,9 +10,9 @@ import shlex
 from collections.abc import Sequence
 from typing import TypeVar
 
-KINDS = ("three-pins", "banner", "late-ball", "strip", "two-materials",
-         "damped", "undamped", "incline", "two-sheets", "thrown", "taut",
-         "tearing", "landing", "damped", "incline")
+KINDS = ("three-pins", "banner", "late-ball", "pulled", "two-materials",
+         "damped", "undamped", "incline", "two-sheets", "thrown", "tearing",
+         "landing")
 
 T = TypeVar("T")
 Vector = tuple[float, float, float]
@@ -134,14 +134,14 @@ def draw(seed: int) -> Scene:
         s.add("sphere", "at", w * d.between(0.4, 0.6), h * d.between(0.4, 0.6),
               -gap - radius - 0.05, "radius", radius, "velocity 0 0", speed)
         lossy = True
-    elif s.kind == "strip":
-        h = float(f"{w * d.between(0.1, 0.35):.2g}")
+    elif s.kind == "pulled":
+        h = d.one(h, float(f"{w * d.between(0.1, 0.35):.2g}"))
         s.sheet(d, (w, 0, 0), (0, h, 0))
         s.add("pin", "x", 0)
-        until = s.t_end * d.between(0.3, 0.7)
-        speed = w * d.between(0.05, 0.3) / until
-        s.add("pin", "x", w, "velocity", speed, 0,
-              d.one(0, speed), "until", until)
+        until = s.t_end * d.between(0.3, 1)
+        speed = w * d.between(0.05, 0.4) / until
+        s.add("pin", "x", w, "velocity", speed, 0, d.one(0, speed), "until",
+              until)
         lossy = True
     elif s.kind == "two-materials":
         s.sheet(d, *d.one(flat, hanging), velocity=(0, d.between(0, 1), 0.1))
@@ -182,13 +182,6 @@ def draw(seed: int) -> Scene:
             s.add("plane", "at", w + 0.1, "0 0 normal -1 0", d.between(0, 1),
                   "friction", d.between(0, 0.5))
             lossy = True
-    elif s.kind == "taut":
-        s.sheet(d, *flat)
-        s.add("pin", "x", 0)
-        until = s.t_end * d.between(0.5, 1)
-        s.add("pin", "x", w, "velocity", w * d.between(0.1, 0.4) / until,
-              "0 0 until", until)
-        lossy = True
     elif s.kind == "tearing":
         s.sheet(d, *flat)
         s.add("pin", "x", 0)

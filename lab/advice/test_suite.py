@@ -36,7 +36,7 @@ class Limits(unittest.TestCase):
 def row(**changes):
     """A scene that is answered as well as can be."""
     return {k: str(v) for k, v in (dict.fromkeys(suite.COLUMNS, "") | dict(
-        kind="taut", tolerance=1, outcome="advised", predicted=0.5,
+        kind="pulled", tolerance=1, outcome="advised", predicted=0.5,
         uncertainty=0.1, real=0.45, half=0.4, next=0.4, twice=0.2,
         truth_error=0, work=100, best_work=100, best_error=0.9, own_work=1e9,
         advice_work=5e8)
@@ -57,7 +57,7 @@ class Figures(unittest.TestCase):
             "met": row(real=1.01), "robust": row(twice=1.01),
             "unbeaten": row(over_alone=1.6),
             "cheap": row(work=151), "fair": row(work=301),
-            "doubt": row(uncertainty=2.5), "within": row(real=0.7),
+            "within": row(real=0.7),
             "advised": row(outcome="refused"),
             "contradicted": row(outcome="refused", best_error=0.5),
             "price": row(advice_work=1.1e9)}
@@ -78,7 +78,7 @@ class Made(trials.Scene):
     1/100 of the last by pefrl; limit 1/max(n, m)."""
 
     def __init__(self):
-        super(trials.Scene, self).__init__("taut")
+        super(trials.Scene, self).__init__("pulled")
         self.sides, self.cells = [(1, 1)], [(9, 9)]
         self.t_end = 8
 

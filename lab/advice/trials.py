@@ -15,7 +15,7 @@ import questions
 from questions import Cells
 
 LONGEST = 300            # limit of a child process [s]
-TRUTH_WORK = (2e8, 8e8)  # spring evaluations of the finest run of the truth
+TRUTH_WORK = 4e8         # spring evaluations of the finest run of the truth
 SEARCH_WORK = 3e7        # and of the longest run of the search
 FACTOR = 10
 FINER = (math.sqrt(2), 2)  # cells along a side, of a check
@@ -178,24 +178,16 @@ class Scene(questions.Scene):
         return tuple(tuple(max(2, round(n * along / longest))
                            for n in sheet) for sheet in self.cells)
 
-    def truth(self, tolerance: float) -> tuple[list[float], float] | None:
-        """(the right answer, how far it may be off), None if unknown; with more
-        work if that may give a third of the tolerance."""
-        for work in TRUTH_WORK:
-            found = self.limit(work)
-            if not found or not (
-                    tolerance / 3 < found[1] < 2 * tolerance):
-                break
-        return found
-
-    def limit(self, work: float) -> tuple[list[float], float] | None:
-        """The limit of grids by pefrl at half of Verlet's limit."""
+    def truth(self) -> tuple[list[float], float] | None:
+        """(the right answer, how far it may be off), None if unknown: the limit
+        of grids by pefrl at half of Verlet's limit."""
         coarse = self.scaled(8)
         steps = self.steps(coarse, 0.5)
         if not steps:
             return None
         # Work increases with the third power of cells along a side.
-        most = min(200, 8 * (work / (4 * steps * springs(coarse))) ** (1 / 3))
+        most = min(200, 8 * (TRUTH_WORK / (4 * steps * springs(coarse))) **
+                   (1 / 3))
         grids = list(dict.fromkeys(self.scaled(most / 2 ** (k / 4))
                                    for k in range(6, -1, -1)))
         runs = [(g, self.steps(g, 0.5) or 1) for g in grids]

@@ -157,9 +157,11 @@ Trial try_out(const Model& m, const Shake& shake,
     end_if_interrupted();
     after(scene);
     if (m.measure.over_time()) observer.look(m, scene);
-    if (result.earlier.size() < 2 &&
-        scene.time() >= (0.8 + 0.1 * double(result.earlier.size())) * m.t_end)
-      result.earlier.push_back(observer.answer(m, scene));
+    const auto due =
+        std::min(std::size_t(scene.time() / m.t_end * Trial::looks),
+                 std::size_t(Trial::looks - 1));
+    if (result.earlier.size() < due)
+      result.earlier.resize(due, observer.answer(m, scene));
   });
   result.failure = text_of(scene.failure());
   if (ok) {

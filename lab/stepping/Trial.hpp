@@ -66,13 +66,15 @@ class Observer {
 
 /** The result of a run. */
 struct Trial {
-  Answer answer;                ///< empty if the run failed
-  std::vector<Answer> earlier;  ///< at 80 and 90 % of the time
-  std::string failure;          ///< why it failed; else empty
-  double work = 0;     ///< springs times force evaluations and products with
-                       ///< a matrix; a factor of it: 10 per node of a side
-  double seconds = 0;  ///< duration on this machine
-  double dt = 0;       ///< the first step [s]
+  Answer answer;  ///< empty if the run failed
+  /** Its value at 1/64, 2/64 ... 63/64 of the time; empty if it had none. */
+  std::vector<Answer> earlier;
+  static constexpr int looks = 64;
+  std::string failure;  ///< why it failed; else empty
+  double work = 0;      ///< springs times force evaluations and products with
+                        ///< a matrix; a factor of it: 10 per node of a side
+  double seconds = 0;   ///< duration on this machine
+  double dt = 0;        ///< the first step [s]
   long long steps = 0;
   bool ok() const { return failure.empty(); }
 };
