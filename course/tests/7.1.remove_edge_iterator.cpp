@@ -22,7 +22,8 @@ static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
     for (std::size_t steps = 0; !same(it, g.edge_end()); ++steps) {
       CHECK(steps < limit, "the loop ends");
       const Ends e = ends_of(*it);
-      CHECK(!met.has(e), words("the loop reaches ", name(e), " once"));
+      CHECK(!met.has(e) || !(worked & edge_loop),
+            words("the loop reaches ", name(e), " once"));
       met.add(e);
       if (!wanted(e)) {
         ++it;
@@ -40,7 +41,7 @@ static void remove_edges_in_a_loop(S& s, bool (*wanted)(Ends)) {
 }
 }  // namespace kit
 
-static bool chosen[64];  // by the ends: 8 a + b
+static bool chosen_edges[64];  // by the ends: 8 a + b
 
 TASK("7.1.remove_edge_iterator", the_loop_leaves_no_edge) {
   const auto loop = [](const Model& shape, const char* which,
@@ -64,11 +65,14 @@ TASK("7.1.remove_edge_iterator", the_loop_leaves_no_edge) {
     loop(shape, "none", [](Ends) { return false; });
     loop(shape, "all", [](Ends) { return true; });
   }
+}
+
+TASK("7.1.remove_edge_iterator", no_chosen_edge_is_left) {
   Dice dice = drawn_dice(71);
-  for (bool& one : chosen) one = dice(2) == 0;
+  for (bool& one : chosen_edges) one = dice(2) == 0;
   TestSubject s(wheel(8));
   s.tells = true;
   DID("a wheel of 8 nodes; a loop that removes some, by dice");
   remove_edges_in_a_loop(
-      s, [](Ends e) { return e.a >= 0 && chosen[8 * e.a + e.b]; });
+      s, [](Ends e) { return e.a >= 0 && chosen_edges[8 * e.a + e.b]; });
 }

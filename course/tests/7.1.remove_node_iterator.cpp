@@ -49,7 +49,7 @@ static void remove_nodes_in_a_loop(S& s, bool (*wanted)(int)) {
 }
 }  // namespace kit
 
-static bool chosen[20];
+static bool chosen_nodes[20];
 
 TASK("7.1.remove_node_iterator", the_loop_leaves_no_node) {
   const auto loop = [](const Model& shape, const char* which,
@@ -70,11 +70,14 @@ TASK("7.1.remove_node_iterator", the_loop_leaves_no_node) {
     loop(shape, "none", [](int) { return false; });
     loop(shape, "all", [](int) { return true; });
   }
+}
+
+TASK("7.1.remove_node_iterator", no_chosen_node_is_left) {
   Dice dice = drawn_dice(71);
-  for (bool& one : chosen) one = dice(2) == 0;
+  for (bool& one : chosen_nodes) one = dice(2) == 0;
   TestSubject s(nodes(20));
   s.works &= by_index | node_values | node_loop;
   s.tells = true;
   DID("20 nodes; a loop that removes some, by dice");
-  remove_nodes_in_a_loop(s, [](int v) { return v >= 0 && chosen[v]; });
+  remove_nodes_in_a_loop(s, [](int v) { return v >= 0 && chosen_nodes[v]; });
 }
