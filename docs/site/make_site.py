@@ -8,8 +8,11 @@ and the figures (the folder FIGURES). Needs pandoc and ffmpeg: make page-deps.
 
 Exit status: 0 done, 1 a page names what is not there (FILE:LINE says it), 2 a
 tool is missing."""
+import base64
 import concurrent.futures
+import gzip
 import html
+import json
 import os
 import pathlib
 import posixpath
@@ -281,6 +284,23 @@ def link_home(file: pathlib.Path) -> None:
     file.write_text(text)
 
 
+def index(pages: Pages) -> str:
+    """A script with the sections of all pages, packed, in which site.js
+    searches: their file, title and words."""
+    sections = []
+    for source, page in pages.items():
+        parts = re.split(r'<h[1-3] id="([^"]*)">(.*?)</h[1-3]>', page.body,
+                         flags=re.S)
+        for anchor, head, body in zip(parts[1::3], parts[2::3], parts[3::3]):
+            title = dict.fromkeys([page.title, words_of(head)])
+            words = re.findall(r"[a-z_0-9]{3,}", words_of(re.sub(
+                r"<(math|img).*?(</math>|>)", "", body, flags=re.S)).lower())
+            sections.append([f"{file_of(source)}#{anchor}", " - ".join(title),
+                             " ".join(sorted(set(words)))])
+    packed = gzip.compress(json.dumps(sections).encode(), 9, mtime=0)
+    return f"self.sections = '{base64.b64encode(packed).decode()}';\n"
+
+
 def faults_of(pages: Pages) -> list[str]:
     faults = [words for page in pages.values() for words in page.faults]
     faults += [page.at(url, f"{path} has no section #{anchor}")
@@ -318,6 +338,7 @@ def main(out_name: str, app: str, figures_name: str) -> None:
                                   + (ROOM / "site.css").read_text())
     for name in ("site.js", "explode.js", "embed.html"):
         shutil.copy(ROOM / name, out)
+    (out / "sections.js").write_text(index(pages))
     (out / ".nojekyll").touch()
     sizes = [file.stat().st_size for file in out.rglob("*") if file.is_file()]
     print(f"{out}/index.html: {len(sizes)} files, {sum(sizes)} bytes")

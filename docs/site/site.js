@@ -1,6 +1,11 @@
 'use strict';
 // A page of the site: its charts, its live figures, its list of contents.
 
+const site = new URL('.', document.currentScript.src);
+const unpacked = base64 => new Response(new Blob([Uint8Array.from(
+  atob(base64), c => c.charCodeAt(0))]).stream().pipeThrough(
+  new DecompressionStream('gzip')));
+
 // Beside the text the list is open; above it, on a small screen, closed.
 const contents = document.getElementById('contents');
 const narrow = matchMedia('(max-width: 900px)');
@@ -9,16 +14,69 @@ narrow.addEventListener('change', fold), fold();
 contents.querySelector('[aria-current]')?.scrollIntoView({block: 'nearest'});
 
 for (const image of document.querySelectorAll('[data-gz]')) {
-  const bytes = Uint8Array.from(atob(image.dataset.gz), c => c.charCodeAt(0));
-  const chart = new Response(new Blob([bytes]).stream().pipeThrough(
-    new DecompressionStream('gzip')));
-  chart.arrayBuffer().then(text => {
+  unpacked(image.dataset.gz).arrayBuffer().then(text => {
     image.src = URL.createObjectURL(new Blob([text], {type: 'image/svg+xml'}));
   });
 }
 
-// Keys scroll elements that are wider than the page.
+// Search: the sections with words that begin with all of those asked for.
+document.querySelector('.home').insertAdjacentHTML('afterend', `<search>
+  <input type="search" aria-label="Search, key /" placeholder="Search (/)">
+  <p role="status"></p><ul></ul></search>`);
+const input = document.querySelector('search input');
+const [told, found] = [input.nextElementSibling, input.parentElement.lastChild];
+let sections;
+function look() {
+  const words = input.value.toLowerCase().match(/[a-z_0-9]{2,}/g) ?? [];
+  const worth = ([, title, text]) => words.reduce((sum, word) => sum + (
+    ` ${title.toLowerCase()}`.includes(` ${word}`) ? 9 : ` ${text} `.includes(
+      ` ${word} `) ? 2 : ` ${text}`.includes(` ${word}`) ? 1 : -1e3), 0);
+  const all = words.length && sections ? sections.map(s => [worth(s), s])
+    .filter(([a]) => a > 0).sort(([a], [b]) => b - a) : [];
+  told.textContent = !words.length || !sections ? ''
+    : `${all.length || 'No'} section${all.length === 1 ? '' : 's'}`;
+  found.replaceChildren(...all.slice(0, 12).map(([, [file, title]]) => {
+    const line = document.createElement('li');
+    const link = line.appendChild(document.createElement('a'));
+    link.href = new URL(file, site), link.textContent = title;
+    return line;
+  }));
+}
+input.oninput = look;
+input.addEventListener('focus', () => {
+  const script = document.createElement('script');
+  script.src = new URL('sections.js', site);
+  script.onload = async () => {
+    sections = await unpacked(self.sections).json(), look();
+  };
+  document.head.append(script);
+}, {once: true});
+addEventListener('keydown', e => {
+  const links = [input, ...found.querySelectorAll('a')];
+  const at = links.indexOf(document.activeElement);
+  const step = {ArrowDown: 1, ArrowUp: -1}[e.key];
+  if (at >= 0 && step) links[at + step]?.focus();
+  else if (e.key === '/' && !e.target.matches('input, select')) input.focus();
+  else if (at === 0 && e.key === 'Enter') links[1]?.click();
+  else if (at >= 0 && e.key === 'Escape')
+    input.value = '', look(), input.focus();
+  else return;
+  e.preventDefault();
+});
+
+// On a phone a table of sentences is a list: a cell below another, each with the
+// name of its column. Keys scroll elements that are wider than the page.
+for (const {tHead, tBodies} of document.querySelectorAll('.wide table'))
+  for (const {cells} of tBodies[0].rows)
+    [...cells].slice(1).forEach((cell, k) => {
+      cell.dataset.of = tHead?.rows[0].cells[k + 1]?.innerText ?? '';
+    });
 const scroll = () => {
+  for (const wide of document.querySelectorAll('.wide')) {
+    wide.classList.remove('list');
+    wide.classList.toggle('list', innerWidth <= 480 && [
+      ...wide.querySelectorAll('tr')].some(row => row.offsetHeight > 170));
+  }
   for (const e of document.querySelectorAll('.wide, pre, main p, main li'))
     if (e.scrollWidth > e.clientWidth) e.tabIndex = 0;
     else e.removeAttribute('tabindex');

@@ -110,6 +110,10 @@ def pages_fit_and_say_nothing():
                   'inside')).map(e => e.outerHTML.slice(0, 80))""")
             expect(not hidden, f"{file}: scrolls without keys, or hides the "
                    f"sign of a list: {hidden}")
+            high = browser.value("""[...document.querySelectorAll(
+              '.wide:not(.list) tr')].filter(r => r.offsetHeight > 240).map(
+              r => r.innerText)""")
+            expect(not high, f"{file}: high rows: {high}")
             browser.resize(320, 740)
             wide = browser.value("document.documentElement.scrollWidth")
             expect(wide <= 320, f"{file}: {wide} pixels wide at 320")
@@ -122,6 +126,32 @@ def pages_fit_and_say_nothing():
             expect(not browser.faults, f"{file}: {browser.faults}")
             browser.faults.clear()
         expect(not browser.asked, f"asked for {browser.asked}")
+
+
+def search_finds_sections():
+    """By keys, and on a phone, of a page in a folder."""
+    with Recorder(1280, 800) as browser:
+        for phone in (False, True):
+            if phone:
+                browser.resize(360, 740, touch=True)
+            browser.open((SITE / "lab/charts/index.html").as_uri())
+            browser.key("/", text="/")
+            browser.wait("sections")
+            for words, expected in (("no such wordz", "No sections"),
+                                    ("cuthill mcke", "1 section")):
+                browser.value(f"input.value = '{words}', look()")
+                said = browser.value("told.textContent")
+                expect(said == expected, f"{words}: {said}")
+            browser.value("input.value = 'checkpoint signal', look()")
+            width = browser.value("document.documentElement.scrollWidth")
+            expect(width <= (360 if phone else 1280), f"{width} pixels wide")
+            browser.key("ArrowDown")
+            said = browser.value("document.activeElement.textContent")
+            expect(said.startswith("The laboratory - Output files"), said)
+            browser.key("ArrowUp"), browser.key("Enter")
+            browser.wait("location.href.endsWith('lab/index.html#output-files-"
+                         "signals-and-checkpoints')")
+        expect(not browser.faults, str(browser.faults))
 
 
 def figures_move():
@@ -220,7 +250,8 @@ def other_engines_run_a_figure():
 
 
 TESTS = (size_is_small, nothing_comes_from_elsewhere, links_resolve,
-         broken_links_are_reported, pages_fit_and_say_nothing, figures_move,
+         broken_links_are_reported, pages_fit_and_say_nothing,
+         search_finds_sections, figures_move,
          a_mistake_that_fails_at_once_is_seen, beyond_the_limit_it_explodes,
          figures_can_be_framed, other_engines_run_a_figure)
 bad = 0
