@@ -209,10 +209,11 @@ TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
 // sheet comes to the floor at 0.09 s, and stays slow for 0.08 s.
 TEST_F(ClothProgram, FilmsMoveAndShowContactSlower) {
   if (!CME212::has_program("ffprobe")) GTEST_SKIP() << "no ffprobe";
-  auto frames = [this](const std::string& options) {
-    const Result r =
-        run("--sheet 'nodes 5 5' --plane 'at 0 0 -0.05' --t-end 0.2 --record " +
-            path("film.mp4") + options);
+  auto frames = [this](const std::string& options,
+                       const std::string& scene =
+                           "--sheet 'nodes 5 5' --plane 'at 0 0 -0.05' "
+                           "--t-end 0.2") {
+    const Result r = run(scene + " --record " + path("film.mp4") + options);
     EXPECT_EQ(r.status, options.find("--pin") < options.size() ? 3 : 0)
         << r.err;
     return std::stoi(
@@ -222,6 +223,8 @@ TEST_F(ClothProgram, FilmsMoveAndShowContactSlower) {
   };
   EXPECT_EQ(frames(""), 7 + 1);
   EXPECT_NEAR(frames(" --slow-motion 4"), 7 + 1 + 3 * 30 * 0.08, 2);
+  // A warning can be read.
+  EXPECT_EQ(frames("", "--config data/scenes/failures/tunnel.toml"), 4 + 60);
   // Two seconds of the explosion, and two of the reason.
   EXPECT_GE(frames(" --pin 'x 0 y 0' --dt 0.04"), 60 + 60);
   // One that fails so fast that only the check before a picture finds it.

@@ -135,7 +135,9 @@ void Film::finish() {
     if (!scene_.failure()) {
       screen_->show_card(outcome(run_, first_nodes_));
       screen_->add_to_film(
-          std::clamp(frames_ / 8, 1, frames_in(title_seconds)));
+          run_.warned().empty()
+              ? std::clamp(frames_ / 8, 1, frames_in(title_seconds))
+              : frames_in(failure_seconds));
       screen_->show_card({});
     }
     screen_->end_film();

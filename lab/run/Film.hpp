@@ -34,8 +34,9 @@ std::vector<std::string> outcome(const Run& run, unsigned nodes);
  * are more frames, by that factor, while nodes first touch a ball or the floor,
  * and while the cloth tears. The first frames have a card with the title,
  * unless the run continues from a checkpoint; the end has one with the result,
- * for at most a ninth of the film. The film of a failed run ends with the
- * motion beyond the failure and with the reason. The picture of a failure shows
+ * for at most a ninth of the film or, if there is a warning to be read, for
+ * failure_seconds. The film of a failed run ends with the motion beyond the
+ * failure and with the reason. The picture of a failure shows
  * the cloth some steps later, when a node has moved by a tenth of the cloth's
  * extent. */
 class Film {

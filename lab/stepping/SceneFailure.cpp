@@ -32,7 +32,8 @@ FailedRun failed_run(const Scene& s) {
 
 /** Run with @a cure and with half of its step; the energies of both runs must
  * agree at all times, because a run that does not fail may still be wrong. */
-Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
+Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
+                double left) {
   const auto energy = [](const Energies& e, EnergyFlow flow) {
     flow.drag = 0;  // a sum over steps
     return balance(e, flow);
@@ -44,7 +45,6 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end) {
         1 + (long long)((t_end - trial->time()) / cure.dt / 64);
     std::vector<std::pair<double, double>> samples;  // time [s], balance [J]
     double largest = 0;                              // internal [J]
-    double left = Scene::trial_work;
     while (!trial->done(t_end) && left > 0 && trial->step(t_end)) {
       const Cloth& g = trial->cloth();
       left -=
@@ -77,9 +77,11 @@ const Diagnosis& Scene::diagnosis() const {
   if (diagnosis_) return *diagnosis_;
   const FailedRun run = failed_run(*this);
   const double t_end = stepper_.t_end();
-  const double end = std::isfinite(t_end) ? t_end : 2 * run.time;
-  return diagnosis_.emplace(diagnose(
-      run, [&](const Cure& cure) { return attempt(*this, cure, end); }));
+  const bool ends = std::isfinite(t_end);  // else somebody waits for the cure
+  const double end = ends ? t_end : std::max(5., 2 * run.time);
+  return diagnosis_.emplace(diagnose(run, [&](const Cure& cure) {
+    return attempt(*this, cure, end, ends ? trial_work : trial_work / 16);
+  }));
 }
 
 }  // namespace lab
