@@ -1,9 +1,9 @@
 """The numbers of a year's assignment: constants.py [--check]     make constants
 
-[numbers] of tasks.toml has the acceleration of free fall [m/s^2], the height of
-the floor [m], and the ball's radius [m] and center [m]. This writes them, and
-what follows from them, wherever they stand: in the solution (and so in the
-starter), in pages, tests, mistakes, figures and scenes. --check names the
+[numbers] of tasks.toml has the acceleration of free fall [m/s^2], K [N/m], the
+height of the floor [m], and the ball's radius [m] and center [m]. This writes
+them, and what follows from them, wherever they stand: in the solution (and so
+in the starter), in pages, tests, mistakes, figures and scenes. --check names the
 places that have other numbers. Exit status: 0, or 1 with FILE:LINE. What
 is measured on the pages is not computed anew: test_mistakes.py and make
 check-full name what no longer holds."""
@@ -19,10 +19,13 @@ import tasks
 PLACES = """
 mass_spring.hpp
   grav = {gravity};
+  double K = {K};
+  double K = {K})
   double height = {floor})
   center = Point({center});
   double radius = {radius};
 mass_spring.cpp
+  Problem1Force({K}, L)
   add_sphere(Point({center}), {radius})
   add_plane({floor})
 course/tasks.toml
@@ -30,6 +33,13 @@ course/tasks.toml
   center ({center}) m and radius {radius} m
 course/3.2.md
   $g$ = {gravity} m/s
+  $K$ = {K} N/m
+  Problem1Force({K}, 1)
+  grav / {K} * (1 - std::cos({root} * t))
+course/tests/bodies.hpp
+  given_K = {K};
+course/4.2.md
+  | {K} N/m |
 course/5.1.md
   $g$ = {gravity} m/s
 course/6.1.md
@@ -120,12 +130,14 @@ NUMBER = r"-?\d+(?:\.\d*)?"
 
 
 def values(numbers: dict) -> dict[str, str]:
-    g, z, r = (float(numbers[k]) for k in ("gravity", "floor", "radius"))
+    g, k, z, r = (float(numbers[name])
+                  for name in ("gravity", "K", "floor", "radius"))
     x, y, c = numbers["center"]
     three = {name: ", ".join(f"{a:g}" for a in all_of) for name, all_of in {
         "center": (x, y, c), "higher": (x, y, c + 0.05)}.items()}
     return three | {name: f"{round(a, 4):g}" for name, a in {
-        "gravity": g, "floor": z, "radius": r, "depth": -z, "x": x,
+        "gravity": g, "K": k, "root": math.sqrt(k),
+        "floor": z, "radius": r, "depth": -z, "x": x,
         "beside": y + 0.01, "over": c + r - 0.0001, "leaves": c + 2 * r / 3,
         "below": z - 0.125, "above": z + 0.0001, "under": z - 0.0001,
         "outside": r + 0.001, "inside": r - 0.001, "sunk": z - 0.02,

@@ -15,7 +15,7 @@ static void set(const T&, double) {}
 
 static double rest_length() { return 0.5; }  // [m]
 /** K [N/m] in each way to make the force: some leave no choice. */
-static double K_of_way(int way) { return way == 2 || way == 4 ? 100 : 80; }
+static double K_of_way(int way) { return way == 2 || way == 4 ? given_K : 80; }
 /** The force made by this way such that all springs have the same K and L; or
  * nullptr if it is made otherwise. */
 template <typename P>

@@ -9,9 +9,9 @@ namespace kit {
 static Bodies three_springs() {
   Bodies b;
   b.add(Point(0.25, 0.5, 0.125), 0.5);
-  b.join(0, b.add(Point(1.25, 0.5, 0.5)), 100, 0.5);
-  b.join(b.add(Point(0.25, 1.5, -0.5)), 0, 100, 1.5);
-  b.join(0, b.add(Point(-0.5, 0, 1)), 100, 0.75);
+  b.join(0, b.add(Point(1.25, 0.5, 0.5)), given_K, 0.5);
+  b.join(b.add(Point(0.25, 1.5, -0.5)), 0, given_K, 1.5);
+  b.join(0, b.add(Point(-0.5, 0, 1)), given_K, 0.75);
   b.vary(0.05);
   return b;
 }
@@ -22,7 +22,7 @@ static Point change_of_force(const Bodies& b, int i, int s, double K,
                              double L) {
   Cloth g;
   fill(g, b);
-  const Owned<P> force(made_force<P>("Problem1Force", g, 100., 0.5));
+  const Owned<P> force(made_force<P>("Problem1Force", g, given_K, 0.5));
   const Point before = force_on(*force, g, i);
   Bodies changed = b;
   changed.springs[s].K = K;
@@ -54,9 +54,9 @@ static void answer_changes(const Bodies& all, int s) {
   const int end = all.springs[s].a;
   const double L = all.springs[s].L;
   const Point some =
-      change_of_force<P>(all, end, s, 100, L + drawn(0.75, 0.5, 1));
+      change_of_force<P>(all, end, s, given_K, L + drawn(0.75, 0.5, 1));
   const Point large =
-      change_of_force<P>(all, end, s, 100, L + drawn(2, 1.5, 3));
+      change_of_force<P>(all, end, s, given_K, L + drawn(2, 1.5, 3));
   answer("growth", norm(large) / norm(some));
   const Point along = 1 / norm(large) * large;
   answer("direction",
@@ -73,7 +73,7 @@ TASK("4.2.Problem1Force", problem1_own_springs) {
     for (int s : {0, 1, 2}) {
       DID("a node with three springs; L of spring ", s, " set to ", L,
           " m by its edge's value()");
-      check_change<P>(all, s, 100, L);
+      check_change<P>(all, s, given_K, L);
       DID("a node with three springs; K of spring ", s, " set to ", K,
           " N/m by its edge's value()");
       check_change<P>(all, s, K, all.springs[s].L);

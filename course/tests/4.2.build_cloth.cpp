@@ -97,8 +97,8 @@ static void compare_start(const Start& start) {
     CHECK(s.has_L, "an edge's value to hold the spring's L");
     const double L = s.L;
     CHECK_NEAR(L, norm(s.a - s.b), 1e-9);
-    const double K = s.has_K ? s.K : 100;
-    CHECK_NEAR(K, 100, 0);
+    const double K = s.has_K ? s.K : given_K;
+    CHECK_NEAR(K, given_K, 0);
   }
   if (!edges.empty()) {
     const Point a = points[std::size_t(edges.begin()->first)],

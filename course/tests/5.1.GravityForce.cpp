@@ -7,8 +7,8 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   b.add(Point(0.5, 0.25, 0.5), 1);
   b.add(Point(1, 0, 0), 0.125, Point(3, 2, 1));  // no exception for corners
   b.add(Point(-1, 0.5, 8), 6, Point(0, 0, -5));
-  b.join(0, 1, 100, 0.5);
-  b.join(1, 2, 100, 0.5);
+  b.join(0, 1, given_K, 0.5);
+  b.join(1, 2, given_K, 0.5);
   b.vary();
   Cloth g;
   fill(g, b);

@@ -10,7 +10,7 @@ static void compare_springs(const Bodies& b, double K) {
   fill(g, b);
   with<KIT_FORCE(MassSpringForce)>("MassSpringForce", [&]<typename F>() {
     check_is_force<F>("MassSpringForce");
-    const Owned<F> springs(made_force<F>("MassSpringForce", g, 100.));
+    const Owned<F> springs(made_force<F>("MassSpringForce", g, given_K));
     for (int i = 0; i < b.size; ++i) {
       const Point force = force_on(*springs, g, i);
       answer(K > 0 ? "force" : "force of each K~", 1 / (K > 0 ? K : 1) * force);
@@ -38,9 +38,9 @@ TASK("5.1.MassSpringForce", springs_without_length) {
   DID("a spring of length 0 and one of length 1");
   Bodies b;
   for (double x : {0.5, 0.5, 1.5}) b.add(Point(x, 0.25, 0.125));
-  b.join(0, 1, 100, 0.5);
-  b.join(0, 2, 100, 0.5);
-  compare_springs(b, 100);
+  b.join(0, 1, given_K, 0.5);
+  b.join(0, 2, given_K, 0.5);
+  compare_springs(b, given_K);
 }
 
 TASK("5.1.MassSpringForce", springs_several) {
@@ -55,11 +55,11 @@ TASK("5.1.MassSpringForce", springs_several) {
     b.add(Point(0.5, 0.5, -2), 0.25);
     b.add(Point(7, 7, 7), 3);
     b.join(0, 1, 50, 0.5);
-    b.join(2, 0, 100, 0.25);
+    b.join(2, 0, given_K, 0.25);
     b.join(0, 3, 150, 2.5);
     b.join(3, 1, 20, 1);
     b.vary();
-    for (Spring& s : b.springs) s.K = own ? drawn(s.K, 20, 200) : 100;
-    compare_springs(b, own ? 0 : 100);
+    for (Spring& s : b.springs) s.K = own ? drawn(s.K, 20, 200) : given_K;
+    compare_springs(b, own ? 0 : given_K);
   }
 }

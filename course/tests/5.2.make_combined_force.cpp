@@ -41,7 +41,7 @@ static Bodies two_bodies() {
   Bodies b;
   b.add(Point(0.5, 0.25, 0), 0.25, Point(1, 2, 3));
   b.add(Point(0.25, 1.5, 1), 2, Point(-3, 0, 4));
-  b.join(0, 1, 100, 0.25);
+  b.join(0, 1, given_K, 0.25);
   b.vary();
   return b;
 }

@@ -39,9 +39,9 @@ TASK("5.2.skip_corners", step_skips_corners) {
   b.add(Point(1, 1, 0), 2);
   b.add(Point(0.5, 0, 0), 1);
   b.add(Point(0.04, 0, 0), 1);  // a neighbor of the corner
-  b.join(0, 1, 100, 1);
-  b.join(2, 3, 100, 1);
-  b.join(1, 4, 100, 0.5);
+  b.join(0, 1, given_K, 1);
+  b.join(2, 3, given_K, 1);
+  b.join(1, 4, given_K, 0.5);
   Cloth g;
   fill(g, b);
   const auto law = [&f](ClothNode, double) { return f; };

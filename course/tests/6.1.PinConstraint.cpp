@@ -16,9 +16,9 @@ static Bodies cloth_with_corners() {
   b.add(Point(0.5, 0, 0));
   b.add(Point(0.04, 0, 0));  // neighbors of the corners
   b.add(Point(1, 0.04, 0));
-  b.join(0, 1, 100, 0.5);
-  b.join(3, 2, 100, 1);
-  b.join(0, 4, 100, 1);
+  b.join(0, 1, given_K, 0.5);
+  b.join(3, 2, given_K, 1);
+  b.join(0, 4, given_K, 1);
   return b;
 }
 

@@ -20,7 +20,7 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
       places[b.size] = {d, radii};
       b.add(c + radii * r * d, 0.5, drawn_near(Point(1, -2, -4)));
     }
-  for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
+  for (int i = 1; i < b.size; ++i) b.join(i - 1, i, given_K, 0.1);
   Cloth g;
   fill(g, b);
   with<KIT_CONSTRAINT(SphereConstraint)>("SphereConstraint", [&]<typename C>() {

@@ -27,8 +27,8 @@ static Bodies row(const char* inside) {
           1, Point(0, 0, s));
   }
   for (int i = 1; i < b.size; ++i) {
-    b.join(i - 1, i, 100, 0.5);
-    if (i > 1) b.join(i - 2, i, 100, 0.5);
+    b.join(i - 1, i, given_K, 0.5);
+    if (i > 1) b.join(i - 2, i, given_K, 0.5);
   }
   return b;
 }
@@ -105,7 +105,7 @@ TASK("7.2.TearConstraint", tear_looks_at_the_radius) {
                            Point(-0.6, -0.8, 0)})
       b.add(Point(0.5, 0.5, -0.5) + radius * d, 1, Point(0, 0, 0.001 * b.size));
   b.vary(0.05);
-  for (int i = 1; i < b.size; ++i) b.join(i - 1, i, 100, 0.1);
+  for (int i = 1; i < b.size; ++i) b.join(i - 1, i, given_K, 0.1);
   DID("24 nodes at 0.05 to 0.3 m from the center of the ball");
   tear_and_compare<Tear>(b);
 }

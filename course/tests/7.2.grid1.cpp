@@ -71,7 +71,7 @@ struct Sheet {
  private:
   void join(int a, int b) {
     springs.push_back(
-        {a, b, 100., norm(x[std::size_t(a)] - x[std::size_t(b)])});
+        {a, b, given_K, norm(x[std::size_t(a)] - x[std::size_t(b)])});
   }
 };
 
@@ -106,7 +106,7 @@ static bool run(Cloth& g, const Sheet& s, const After& after) {
     if constexpr (is_made<Problem1, double, double>()) {
       const double L = s.springs[0].L;  // of all in the first stage
       const Owned<Problem1> f(
-          made_force<Problem1>("Problem1Force", g, 100., L));
+          made_force<Problem1>("Problem1Force", g, given_K, L));
       const auto law = [&](ClothNode n, double t) {
         return force_on(*f, n, t);
       };
@@ -117,7 +117,7 @@ static bool run(Cloth& g, const Sheet& s, const After& after) {
                        is_made<Springs, double>()) {
     const Owned<Gravity> gravity(made_force<Gravity>("GravityForce", g, 9.81));
     const Owned<Springs> springs(
-        made_force<Springs>("MassSpringForce", g, 100.));
+        made_force<Springs>("MassSpringForce", g, given_K));
     if constexpr (requires {
                     { ::make_combined_force(*gravity, *springs) } -> Present;
                   }) {

@@ -94,7 +94,7 @@ struct Watch {
       return i;
     };
     for (const Film::Spring& s : f.edges) {
-      const Joint j = {at(s.a), at(s.b), s.has_K ? s.K : 100,
+      const Joint j = {at(s.a), at(s.b), s.has_K ? s.K : given_K,
                        stage.alike ? norm(f.edges[0].a - f.edges[0].b)
                        : s.has_L   ? s.L
                                    : norm(s.a - s.b)};
@@ -166,8 +166,8 @@ static Watch watch(Main main_of, const Stage& stage) {
     const unsigned springs = unsigned(f.edges.size());
     CHECK_EQUAL(springs, stage.springs);
     for (const Film::Spring& s : f.edges) {
-      const double K = s.has_K && !stage.alike ? s.K : 100;
-      CHECK_NEAR(K, 100., 1e-9);
+      const double K = s.has_K && !stage.alike ? s.K : given_K;
+      CHECK_NEAR(K, given_K, 1e-9);
     }
   }
   if (stage.tears) {

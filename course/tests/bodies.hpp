@@ -6,6 +6,9 @@
 
 namespace kit {
 
+/** The assignment's K [N/m]. */
+inline constexpr double given_K = 100;
+
 struct Spring {
   int a, b;
   double K, L;  ///< [N/m], [m]

@@ -26,7 +26,7 @@ inline auto& mass(ClothNode n) {
   return *mass_in(value);
 }
 
-/** Has each edge an L, and a K? A K that it has not is 100 N/m. */
+/** Has each edge an L, and a K? A K that it has not is given_K. */
 template <typename E>
 constexpr bool edge_has_L() {
   if constexpr (requires(E e) { e.value(); })
@@ -44,7 +44,9 @@ constexpr bool edge_has_K() {
 inline constexpr bool has_L = edge_has_L<ClothEdge>();
 inline constexpr bool has_K = edge_has_K<ClothEdge>();
 /** @a wanted if edges have a K of their own, else the assignment's. */
-inline double spring_constant(double wanted) { return has_K ? wanted : 100; }
+inline double spring_constant(double wanted) {
+  return has_K ? wanted : given_K;
+}
 
 /** The edge between two nodes, new or old. */
 template <typename G, typename N>
