@@ -19,8 +19,7 @@ GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
          "course/kit/*.py", "course/kit/*.cpp", "course/tests/**/*",
          "course/asked/*", "course/years/**/*"]
 LEFT_OUT = {"kit_check.py", "mistakes.py", "grade_tests.py", "starter.py",
-            "autograder.py", "synthetic.py", "inbox.py",
-            "constants.py"}    # and tests
+            "autograder.py", "synthetic.py", "constants.py"}    # and tests
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]
 
 

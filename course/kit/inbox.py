@@ -64,7 +64,7 @@ def read(path: str) -> dict[str, Files]:
 
 def unpack(path: str, out: str) -> None:
     students, folder = read(path), pathlib.Path(out)
-    folder.mkdir()
+    folder.mkdir(parents=True)
     for student, files in students.items():
         (folder / student).mkdir()
         for name, content in files.items():

@@ -64,8 +64,8 @@ addEventListener('keydown', e => {
   e.preventDefault();
 });
 
-// On a phone a table of sentences is a list: a cell below another, each with the
-// name of its column. Keys scroll elements that are wider than the page.
+// On a phone a table of sentences is a list of cells, each with the name of its
+// column. Keys scroll elements that are wider than the page.
 for (const {tHead, tBodies} of document.querySelectorAll('.wide table'))
   for (const {cells} of tBodies[0].rows)
     [...cells].slice(1).forEach((cell, k) => {

@@ -22,7 +22,7 @@ page_flags = $(page_target) -std=c++20 -O2 -DNDEBUG -Wall -Wextra \
   -msimd128 -I. $(call system,eigen3) -fno-math-errno -ffp-contract=off
 page_names = $(sort $(shell grep -oE '\bpage_[a-z_]+' lab/page/Page.hpp))
 
-.PHONY: page page-deps page-frames page-picture page-serve
+.PHONY: page page-deps page-picture page-serve
 page: $(page)/index.html $(page)/loop.webp
 	@echo "$(page)/index.html: $$(du -bc $(page)/* | tail -n 1 | cut -f 1) bytes"
 
@@ -59,9 +59,6 @@ $(page)/loop.webp: docs/pictures/tear.gif
 page-picture: page
 	@/usr/bin/python3 lab/page/picture.py $(page)/index.html docs/pictures/page.png
 	@tools/shrink_pictures.sh docs/pictures/page.png
-
-page-frames: page
-	@/usr/bin/python3 lab/page/test_page.py $(B) --frames
 
 page-deps:
 	@tools/deps.sh page

@@ -2,13 +2,11 @@
 """What the web page does, in a headless Chromium, and in Firefox and WebKit,
 where they are installed: test_page.py BUILD [TEST]..., where
 BUILD/page/index.html and BUILD/page_positions are. It is opened as a file. The
-pictures that Chromium writes, BUILD/page-*.png, are to be looked at.
-test_page.py BUILD --frames measures frames a second: make page-frames."""
+pictures that Chromium writes, BUILD/page-*.png, are to be looked at."""
 import pathlib
 import struct
 import subprocess
 import sys
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/browsers"))
@@ -804,26 +802,7 @@ def without_webgl():
         b.screenshot(build / "page-fallback.png")
 
 
-def frames():
-    """Frames a second, drawn by the processor, once the page has found out how
-    sharp it can draw; on a machine that does nothing else."""
-    for width, height in ((1280, 800), (360, 640)):
-        for side in (25, 50):
-            with Browser(width, height) as b:
-                opened(b, f"#side={side}")
-                time.sleep(4)
-                count, start = b.value("page.frames"), time.monotonic()
-                time.sleep(6)
-                count = b.value("page.frames") - count
-                rate = count / (time.monotonic() - start)
-                print(f"{width} x {height}, {side} x {side} nodes: {rate:.1f} "
-                      "frames a second at a sharpness of "
-                      f"{b.value('page.view.pace.sharpness')}", flush=True)
-
-
 def main():
-    if sys.argv[2:] == ["--frames"]:
-        return frames()
     size = sum(f.stat().st_size for f in (build / "page").iterdir())
     assert size <= 1_000_000, f"{size} bytes"
     print(f"  {size} bytes")

@@ -131,7 +131,7 @@ class Scene {
 
   /** The cause and a cure, found in the first call: the scene is run with other
    * methods and steps, each to t_end() or for trial_work; without a t_end() to
-   * 5 s or longer, or for a sixteenth of trial_work. Trials that do not fail are
+   * 5 s or longer, or for a sixteenth of that. Trials that do not fail are
    * repeated with half the step.
    * @pre failure(), or energy_watch() has found that the run is wrong
    * Throws Interrupted. */
