@@ -3,8 +3,8 @@
 [numbers] of tasks.toml has the acceleration of free fall [m/s^2], K [N/m], the
 height of the floor [m], and the ball's radius [m] and center [m]. This writes
 them, and what follows from them, wherever they stand: in the solution (and so
-in the starter), in pages, tests, mistakes, figures and scenes. --check names the
-places that have other numbers. Exit status: 0, or 1 with FILE:LINE. What
+in the starter), in pages, tests, mistakes, figures and scenes. --check names
+the places that have other numbers. Exit status: 0, or 1 with FILE:LINE. What
 is measured on the pages is not computed anew: test_mistakes.py and make
 check-full name what no longer holds."""
 import math

@@ -23,7 +23,7 @@ def write(source: pathlib.Path, target: pathlib.Path) -> None:
     middle = ["-ss", "1.4"] if source.suffix == ".gif" else []
     subprocess.run(
         ["ffmpeg", "-v", "error", "-y", *middle, "-i", source, "-frames:v",
-         "1", "-vf", "scale='min(640,iw)':-1", "-quality", "45", target],
+         "1", "-vf", "scale='min(640,iw)':-1", "-quality", "40", target],
         check=True, timeout=300, stdin=subprocess.DEVNULL)
 
 

@@ -293,7 +293,7 @@ def index(pages: Pages) -> str:
                          flags=re.S)
         for anchor, head, body in zip(parts[1::3], parts[2::3], parts[3::3]):
             title = dict.fromkeys([page.title, words_of(head)])
-            words = re.findall(r"[a-z_0-9]{3,}", words_of(re.sub(
+            words = re.findall(r"[a-z_]\w{2,19}", words_of(re.sub(
                 r"<(math|img).*?(</math>|>)", "", body, flags=re.S)).lower())
             sections.append([f"{file_of(source)}#{anchor}", " - ".join(title),
                              " ".join(sorted(set(words)))])

@@ -56,13 +56,14 @@ void show_beyond(const Scene& scene, Screen& screen,
 std::vector<std::string> outcome(const Run& run, unsigned nodes) {
   const Scene& scene = run.scene();
   const unsigned left = scene.cloth().num_nodes();
-  std::vector<std::string> lines{"t = " + short_text(scene.time()) + " s",
-                                 std::to_string(scene.steps()) + " steps"};
+  std::vector<std::string> lines;
+  for (const std::string& text : run.warned())
+    lines.push_back("warning: " + text);
+  lines.push_back("t = " + short_text(scene.time()) + " s");
+  lines.push_back(std::to_string(scene.steps()) + " steps");
   if (left < nodes)
     lines.push_back(std::to_string(nodes - left) + " of " +
                     std::to_string(nodes) + " nodes removed");
-  for (const std::string& text : run.warned())
-    lines.push_back("warning: " + text);
   return lines;
 }
 
