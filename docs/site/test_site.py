@@ -134,7 +134,7 @@ def search_finds_sections():
         for phone in (False, True):
             if phone:
                 browser.resize(360, 740, touch=True)
-            browser.open((SITE / "lab/charts/index.html").as_uri())
+            browser.open((SITE / "docs/site/explode.html").as_uri())
             browser.key("/", text="/")
             browser.wait("sections")
             for words, expected in (("no such wordz", "No sections"),
