@@ -138,8 +138,8 @@ class Scene(questions.Scene):
                 found("^work: .*", text)[0]))
         limit = re.search(NUMBER + " s, verlet|of verlet " + r"\(" + NUMBER,
                           text)
-        answer = numbers(
-            found(rf"^{re.escape(self.measure)}: (.*?)(?: at t|$)", text)[1])
+        said = rf"^{re.escape(self.measure)}: (.*?)(?: (?:at|until) t|$)"
+        answer = numbers(found(said, text)[1])
         return (answer, edges * evaluations,
                 float(limit[1] or limit[2]) if limit else None,
                 float(found(NUMBER + " kinetic", text)[1]))
