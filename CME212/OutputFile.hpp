@@ -11,6 +11,8 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/select.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -132,9 +134,16 @@ class OutputFile {
 
   /** Open the pipe as soon as a program reads it; a signal ends the wait. */
   int await_reader() const {
-    int pipe = -1;
-    while ((pipe = open(part_.c_str(), O_WRONLY | O_NONBLOCK)) < 0)
-      if (errno != ENXIO || usleep(20'000)) fail("no program reads it");
+    constexpr timespec time = {0, 20'000'000};
+    sigset_t all, before;
+    sigfillset(&all);  // blocked but in pselect(): none comes unseen
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    int pipe = -1, wait = 0;
+    while ((pipe = open(part_.c_str(), O_WRONLY | O_NONBLOCK)) < 0 &&
+           errno == ENXIO && wait == 0)
+      wait = pselect(0, nullptr, nullptr, nullptr, &time, &before);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (pipe < 0) fail("no program reads it");
     return pipe;
   }
 

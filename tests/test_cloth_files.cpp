@@ -225,6 +225,16 @@ TEST_F(ClothProgram, EndsAtOnceByTheSecondSignal) {
   }
 }
 
+TEST_F(ClothProgram, EndsByTheFirstSignalWhileNobodyReadsItsPipe) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  CME212::Child child = start(long_run + "--csv " + path("pipe"), "");
+  child.until([&] { return catches(child, SIGTERM) && waits(child); });
+  child.signal(SIGTERM);
+  const Result r = result_of(child.wait());
+  EXPECT_EQ(r.status, 128 + SIGTERM);
+  EXPECT_NE(r.err.find("(no program reads it)\n"), r.err.npos) << r.err;
+}
+
 TEST_F(ClothProgram, LeavesIgnoredSignalsIgnored) {
   Result r = interrupt(
       long_run + "--checkpoint " + path("c"), {SIGHUP, SIGTERM},
