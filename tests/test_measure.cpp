@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
@@ -296,7 +297,7 @@ TEST(Measure, SeesNoStepThatIsTakenBack) {
   Scene scene(m);
   struct Asked {
     Model m;
-    Observer observer;
+    std::unique_ptr<Observer> observer;
     std::map<long long, double> seen;  // by step
     double most_ever;                  // also of steps that are taken back
   };
@@ -307,11 +308,12 @@ TEST(Measure, SeesNoStepThatIsTakenBack) {
         "max point u 0.25 z"}) {
     m.measure = read_measure(text);
     const double start = answer(m, scene, m.measure)[0];
-    all.push_back({m, Observer(m, scene), {{0, start}}, start});
+    all.push_back(
+        {m, std::make_unique<Observer>(m, scene), {{0, start}}, start});
   }
   scene.run_to(m.t_end, [&] {
     for (Asked& a : all) {
-      a.observer.look(a.m, scene);
+      a.observer->look(a.m, scene);
       a.seen.erase(a.seen.upper_bound(scene.steps()), a.seen.end());
       const double now = answer(a.m, scene, a.m.measure)[0];
       a.seen[scene.steps()] = now;
@@ -323,7 +325,7 @@ TEST(Measure, SeesNoStepThatIsTakenBack) {
   for (const Asked& a : all) {
     const auto most = std::ranges::max_element(
         a.seen, {}, [](const auto& at) { return at.second; });
-    EXPECT_EQ(a.observer.answer(a.m, scene), Answer{most->second});
+    EXPECT_EQ(a.observer->answer(a.m, scene), Answer{most->second});
     differ += a.most_ever > most->second;
   }
   EXPECT_GT(differ, 0);

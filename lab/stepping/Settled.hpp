@@ -40,6 +40,11 @@ class Settled final : public SettledReader {
   const T* back() const {
     return waiting_.empty() ? nullptr : &waiting_.back().what;
   }
+  /** Call @a use with the notes that wait, in their order. */
+  void each_waiting(const Read& use) const {
+    for (const Note& n : waiting_)
+      if (n.step <= stepper_.steps()) use(n.what);  // others went back
+  }
   /** There is no note, read or waiting. */
   bool empty() const { return last() < 0; }
   /** The run is over: read the notes that wait. */

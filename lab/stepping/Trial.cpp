@@ -98,34 +98,29 @@ void TimeSeries::archive(Archive& a) {
             std::isfinite(sum_ + span_ + first_ + left_));
 }
 
-Observer::Observer(const Model& m, const Scene& scene) {
-  if (m.measure.quantity == Measure::positions) return;
+Observer::Observer(const Model& m, const Scene& scene)
+    : looks_(scene.stepper(),
+             [this](const Look& l) { settled_.add(what_, l.time, l.value); }) {
+  restart(m, scene);
+}
+
+void Observer::restart(const Model& m, const Scene& scene) {
+  what_ = m.measure, settled_ = {}, looks_.clear();
+  if (what_.quantity == Measure::positions) return;
   check_question(m);
   look(m, scene);
 }
 
 void Observer::look(const Model& m, const Scene& scene) {
-  const Answer now = lab::answer(m, scene, m.measure);
-  if (!m.measure.over_time()) return;
-  std::erase_if(recent_, [&](const Look& l) {
-    if (l.step <= scene.settled_steps())
-      settled_.add(m.measure, l.time, l.value);
-    return l.step <= scene.settled_steps() || l.step > scene.steps();
-  });
-  recent_.push_back({scene.steps(), scene.time(), now[0]});
+  const Answer now = lab::answer(m, scene, what_);
+  if (what_.over_time()) looks_.add({scene.time(), now[0]});
 }
 
 Answer Observer::answer(const Model& m, const Scene& scene) const {
-  if (!m.measure.over_time()) return lab::answer(m, scene, m.measure);
+  if (!what_.over_time()) return lab::answer(m, scene, what_);
   TimeSeries all = settled_;
-  for (const Look& l : recent_)
-    if (l.step <= scene.steps()) all.add(m.measure, l.time, l.value);
-  return all.answer(m.measure);
-}
-
-void Observer::archive(Archive& a) {
-  a(settled_)(recent_);
-  for (const Look& l : recent_) a.require(l.value == l.value);
+  looks_.each_waiting([&](const Look& l) { all.add(what_, l.time, l.value); });
+  return all.answer(what_);
 }
 
 double step_of(const Model& m) {

@@ -8,6 +8,7 @@
 
 #include "lab/scenes/Measure.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "lab/stepping/Settled.hpp"
 
 namespace lab {
 
@@ -46,22 +47,25 @@ class TimeSeries {
  * answer depends on all of them. Steps that are taken back are forgotten. */
 class Observer {
  public:
-  /** Looks at the present state of @a scene, a scene of @a m.  Throws as
-   * answer() */
+  /** Looks at the present state of @a scene, a scene of @a m, which must live
+   * longer.  Throws as answer() */
   Observer(const Model& m, const Scene& scene);
+  /** Begin anew, as the run does.  Throws as answer() */
+  void restart(const Model& m, const Scene& scene);
   /** Call it after each step if m.measure.over_time().  As long as answer() */
   void look(const Model& m, const Scene& scene);
   /** The answer so far; empty if what it asks about did not happen. */
   Answer answer(const Model& m, const Scene& scene) const;
-  void archive(Archive& a);
+  void archive(Archive& a) { a(settled_)(looks_); }
 
  private:
   struct Look {
-    long long step;
-    double time, value;
+    double time = 0, value = 0;
+    void archive(Archive& a) { a(time)(value).require(value == value); }
   };
-  TimeSeries settled_;        // steps that can't be taken back any more
-  std::vector<Look> recent_;  // the others
+  Measure what_;
+  TimeSeries settled_;  // steps that can't be taken back any more
+  Settled<Look> looks_;
 };
 
 /** The result of a run. */
