@@ -225,6 +225,7 @@ void control_error(Options& o, const std::function<bool(const char*)>& given) {
   const bool free = !given("method") && !given("dt");
   // Where nodes touch, a method of high order costs more for the same error.
   if (free) m.method = m.has_contact() ? &table::verlet : &table::rkn64;
+  o.chooses_method = free;
   o.bounds_error = free || m.method->info.adaptive;
   if (!m.method->info.adaptive) return;
   // Steps end where rows and frames are looked at, not where errors do.

@@ -22,8 +22,9 @@ struct Options {
   bool headless = false, window = false, paused = false, strain = false;
   bool quiet = false;
   bool advise = false, automatic = false, assess = false;
-  double advise_work = 0;     ///< spring evaluations; 0: AdviceRules::budget
-  bool bounds_error = false;  ///< of the positions, by model.tolerance
+  double advise_work = 0;       ///< spring evaluations; 0: AdviceRules::budget
+  bool bounds_error = false;    ///< of the positions, by model.tolerance
+  bool chooses_method = false;  ///< for that; else it is given
   bool keeps_method = false, keeps_step = false;  ///< advice keeps this option
   std::string screenshot, video, csv, out, size;
   std::array<int, 2> pixels{};  ///< what size says; 0: Screen's own size

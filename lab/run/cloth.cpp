@@ -32,7 +32,7 @@
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/live/Live.hpp"
-#include "lab/methods/Method.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Progress.hpp"
@@ -91,11 +91,22 @@ int take_advice(Options& o) {
 }
 
 /** Measure the error of the run of @a o, and set the inner steps of o.model
- * that keep its tolerance.  Throws as find_accuracy() */
+ * that keep its tolerance; if the method is free and can't use the drag,
+ * Verlet's.  Throws as find_accuracy() */
 Accuracy measure_accuracy(Options& o) {
   Progress progress(o.quiet);
-  const Accuracy found = find_accuracy(
-      o.model, o.model.tolerance, std::bind_front(&Progress::tell, &progress));
+  const auto find = [&] {
+    return find_accuracy(o.model, o.model.tolerance,
+                         std::bind_front(&Progress::tell, &progress));
+  };
+  Accuracy found;
+  try {
+    found = find();
+  } catch (const std::invalid_argument&) {
+    if (!o.chooses_method) throw;
+    o.model.method = &table::verlet, o.model.step = {};
+    found = find();
+  }
   progress.end();
   o.model.step = found.step;
   return found;

@@ -18,8 +18,10 @@ struct Accuracy {
   /** The largest error at any time [m]: RMS over the nodes, and of one node;
    * infinite if the runs remove different nodes. */
   double rms = 0, largest = 0;
-  bool contact = false;  ///< errors are those of contact, maybe not of chaos
-  std::string unknown;   ///< why no error could be measured; else empty
+  /** Two runs with the same steps that begin a thousandth of asked apart
+   * separate exponentially: no step helps for long. */
+  bool chaotic = false;
+  std::string unknown;  ///< why no error could be measured; else empty
 
   bool kept() const { return unknown.empty() && horizon >= t_end; }
   /** The verdict in one sentence. */
@@ -35,7 +37,7 @@ struct Accuracy {
  * of dt. The distance of the two runs, times a known factor, is the error of
  * the first. If it exceeds @a asked, both runs are repeated with a smaller
  * tolerance, down to about 1000 times round-off. If that is not enough either,
- * the motion is chaotic, and positions are predictable only up to the horizon.
+ * two more runs show whether the motion is chaotic.
  * If it is far below @a asked, a larger tolerance is tried once.
  *
  * A method with fixed steps begins with safe_share of its limit; its steps are

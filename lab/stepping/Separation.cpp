@@ -71,6 +71,15 @@ double Separation::horizon(double tolerance) const {
   return last;
 }
 
+double Separation::growth() const {
+  double most = 0;
+  for (std::size_t k = 1; k < all_.size(); k += 2)
+    if (const double before = all_[k / 2].rms;
+        before > 0 && std::isfinite(all_[k].rms))
+      most = std::max(most, all_[k].rms / before);
+  return most;
+}
+
 Separation::At Separation::most() const {
   At most = {};
   for (const At& at : all_) {

@@ -54,6 +54,8 @@ class Separation {
   const std::vector<At>& all() const { return all_; }
   /** How long rms stays within @a tolerance [s]; 0: never. */
   double horizon(double tolerance) const;
+  /** The largest factor by which rms grows while the time doubles. */
+  double growth() const;
   /** The largest rms and the largest distance at any time [m]. */
   At most() const;
 
