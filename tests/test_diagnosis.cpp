@@ -223,7 +223,68 @@ TEST(Diagnosis, NamesTheFirstCureThatOutlivesTheFailure) {
             "small oscillations only");
   EXPECT_EQ(d.remedy_text(),
             "--dt 0.00175 works: a trial to t = 5 s passed, and half of that "
-            "step gives the same energy");
+            "step gives the same energy and positions");
+}
+
+// Half of the step has the same energy, but puts the nodes elsewhere.
+TEST(Diagnosis, ShortensACureUntilPositionsAgree) {
+  for (double right : {0.00015, 0.0009, 0.004}) {
+    const Diagnosis d = diagnose(within_the_limit(), [&](const Cure& cure) {
+      return Attempt{true, 5, cure.dt <= right ? 0.002 : cure.dt * 100};
+    });
+    ASSERT_TRUE(d.cure);
+    EXPECT_EQ(d.cure->dt, right < 0.0002  ? 0.000218
+                          : right < 0.001 ? 0.000875
+                                          : 0.0035);
+    const bool same = right > 0.0002;
+    EXPECT_EQ(d.trial.apart <= Attempt::same_place, same);
+    EXPECT_EQ(d.remedy_text().ends_with("same energy and positions"), same)
+        << d.remedy_text();
+    EXPECT_EQ(
+        d.remedy_text().ends_with("same energy, but positions that differ "
+                                  "by up to 2.2 % of the size of the "
+                                  "cloth"),
+        !same)
+        << d.remedy_text();
+  }
+}
+
+// Zero rest lengths make the forces linear: then one linear solve is exact,
+// whatever the step. Else springs that turn are the only cause.
+TEST(Diagnosis, NamesTheOneLinearSolveWhereThatIsTheOnlyCause) {
+  for (int length : {0, 1}) {
+    Model m = parsed(
+        "--sheet 'nodes 8 8 velocity 3 1 10' --pin 'x 0 y 0' --method "
+        "implicit-euler --dt 0.2 --t-end 2 --rest-length " +
+        std::to_string(length));
+    Scene scene(m);
+    scene.watch_energy(m.t_end);
+    ASSERT_TRUE(scene.run_to(m.t_end));
+    EXPECT_EQ(scene.energy_watch()->gains(), length == 1);
+    if (length == 0) continue;
+    EXPECT_FALSE(is_flat(scene.cloth()));
+    EXPECT_EQ(scene.diagnosis().cause, Cause::linear);
+  }
+}
+
+// TR-BDF2 solves its equations, and damps fast waves: what is left is the error
+// of its steps, of order 2.
+TEST(Diagnosis, NamesTheErrorOfAStepWhereThatIsTheOnlyCause) {
+  double off[3];
+  for (int k : {0, 1, 2}) {
+    Model m = parsed(
+        "--sheet 'nodes 8 8 velocity 0 0 4' --pin 'x 0 y 0' --rest-length 0 "
+        "--method tr-bdf2 --t-end 2");
+    m.step.dt = 0.008 / (1 << k);
+    Scene scene(m);
+    scene.watch_energy(m.t_end);
+    ASSERT_TRUE(scene.run_to(m.t_end));
+    off[k] = scene.energy_watch()->off();
+    if (k > 0) continue;
+    EXPECT_TRUE(scene.energy_watch()->is_off());
+    EXPECT_EQ(scene.diagnosis().cause, Cause::error);
+  }
+  EXPECT_LT(off[1], 4 * off[2]);  // both are losses
 }
 
 TEST(Diagnosis, SaysThatATrialWasTooShort) {

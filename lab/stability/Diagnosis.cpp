@@ -215,10 +215,15 @@ std::string Diagnosis::remedy_text() const {
   out.precision(3);
   if (cure) {
     out << cure->options(run.method);
-    if (trial.time >= run.time)
+    if (trial.time >= run.time) {
       out << " works: a trial to t = " << trial.time
           << " s passed, and half of that step gives the same energy";
-    else
+      if (trial.apart > Attempt::same_place)
+        out << ", but positions that differ by up to "
+            << CME212::percent(trial.apart) << " of the size of the cloth";
+      else
+        out << " and positions";
+    } else
       out << " may work: a trial was stopped at t = " << trial.time
           << " s, before it could fail";
   } else if (failed.empty()) {
@@ -259,7 +264,8 @@ std::vector<Cure> candidates(Cause cause, const FailedRun& run) {
   };
   switch (cause) {
     case Cause::step:
-      if (run.method.info.multirate && run.safe <= run.verlet)
+      if (run.safe < 0.01 * run.verlet ||  // that would take too long
+          (run.method.info.multirate && run.safe <= run.verlet))
         by_verlet(safe_share);  // nothing is stiff: it is Verlet
       shorter(safe_share * run.safe);
       by_verlet(safe_share);
@@ -334,6 +340,15 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
     else if (!d.cure || trial.time > d.trial.time)
       d.cure = cure, d.trial = trial;
     if (d.cure && d.trial.time >= run.time) break;
+  }
+  if (!d.cure || d.trial.time < run.time) return d;
+  const Cure first = *d.cure;
+  for (int shorter : {4, 16}) {
+    if (d.trial.apart <= Attempt::same_place) break;
+    const Cure cure = {first.method, in_three_digits(first.dt / shorter)};
+    const Attempt trial = try_out(cure);
+    if (trial.passed && trial.time >= run.time && trial.apart < d.trial.apart)
+      d.cure = cure, d.trial = trial;
   }
   return d;
 }

@@ -96,6 +96,10 @@ struct Cure {
 struct Attempt {
   bool passed;  ///< it did not fail, and half the step has the same energy
   double time;  ///< at its end [s]
+  /** Then, of a node from that with half the step, at most, by the size of the
+   * cloth. */
+  double apart = 0;
+  static constexpr double same_place = 0.003;  ///< apart, of equal positions
 };
 using TryOut = std::function<Attempt(const Cure&)>;
 
@@ -113,7 +117,9 @@ struct Diagnosis {
 
 /** Find out why @a run failed, and a cure. Tries shorter steps and other
  * methods, the most promising first, until a trial passes the time of the
- * failure or 10 trials have failed. Every cure that it returns has passed. */
+ * failure or 10 trials have failed. If half of that step gives other positions,
+ * a quarter and a sixteenth of it are tried, too. Every cure that it returns
+ * has passed. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 
 /** A message about a failure: its sentences in their order. */
