@@ -226,6 +226,7 @@ Live::Live(Model m, Net mesh)
     : model_(std::move(m)), changes_(read_changes(model_.at)) {
   main_.emplace(std::make_unique<Scene>(model_, std::move(mesh)),
                 *model_.method);
+  main_->scene->watch_energy(model_.t_end);
   start_nodes_ = scene().cloth().num_nodes();
   start_edges_ = scene().cloth().num_edges();
 }

@@ -23,6 +23,14 @@ namespace {
 
 using json::Json, json::list, json::members, json::object;
 
+/** The warning of ./cloth about the run of @a s; "" if there is none. */
+std::string warning_text(const Scene& s) {
+  const auto& watch = s.energy_watch();
+  const std::string missed = s.missed_text();
+  return missed.empty() && !s.control() && watch->gains() ? watch->gain_text()
+                                                          : missed;
+}
+
 Json json_of(const RunReadings& r) {
   return object("method", r.method, "dt", r.dt, "unit", r.dt_unit, "safe",
                 r.safe_limit, "sharp", r.sharp_limit, "steps", r.steps, "time",
@@ -182,7 +190,7 @@ const char* page_readings(int sharp) {
               list(Live::parameters(state().live->model()), parameter, "{}"),
               "main", json_of(r), "nodes", r.nodes, "edges", r.edges,
               "tornNodes", r.torn_nodes, "tornEdges", r.torn_edges, "grabbed",
-              r.grabbed, "missed", state().live->scene().missed_text(),
+              r.grabbed, "warning", warning_text(state().live->scene()),
               "rivals", list(r.rivals, rival), "error", r.error);
   const Model& m = state().live->model();
   if (const Measure& what = m.measure; what.quantity < Measure::lost_energy &&

@@ -381,8 +381,8 @@ const replies = {
     if (timeline.past) return;
     page.readings = data.readings, page.show(sides);
     if (!data.broken) followRun(data);
-    if (!data.failed && data.readings?.missed && !page.find('.says').innerText)
-      page.say('.says', `Warning: ${inPage(data.readings.missed)}.`);
+    if (!data.failed && data.readings?.warning && !page.find('.says').innerText)
+      page.say('.says', `Warning: ${inPage(data.readings.warning)}.`);
     page.frameScene(), remember();
     if (data.failed && !page.failed && !page.wanted) page.fail(data);
     if (data.readings && data.asked === page.asked)

@@ -134,6 +134,7 @@ void Film::finish() {
   };
   if (!o_.video.empty()) {
     if (!scene_.failure()) {
+      run_.judge();
       screen_->show_card(outcome(run_, first_nodes_));
       screen_->add_to_film(
           run_.warned().empty()

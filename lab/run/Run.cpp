@@ -48,9 +48,9 @@ Run::Run(Scene& scene, const Options& o, Live* live)
 
 void Run::start() {
   progress_ = Progress(o_.quiet);
-  observer_ = Observer(o_.model, scene_);
+  observer_.restart(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
-  rows_.clear(), written_ = 0;
+  rows_.clear(), written_ = 0, kept_energy_.reset();
   frames_.restart();
   frames_.add(scene_);
   if (!o_.csv.empty()) begin_csv();
@@ -172,13 +172,15 @@ void Run::announce() {
          " finds no stiff springs here: use --method verlet, which does the "
          "same");
   warn_of_length();
-  if (dt <= limit || sharp) return;
+  if (sharp || dt <= limit || dt <= scene_.stepper().sharp_limit(40)) return;
   out.str("");
-  if (limit > 0)
-    out << "dt exceeds the stability limit: expect divergence; use --dt "
-        << safe_share * limit << " or --dt auto";
+  if (limit > 0.01 * scene_.safe_limit(table::verlet))
+    out << "dt exceeds the stability limit: the fastest waves in the springs "
+        << "grow in every step; use --dt " << safe_share * limit
+        << " or --dt auto";
   else
-    out << "expect divergence; use --method verlet --dt auto";
+    out << "waves in the springs grow in every step of " << method
+        << "; use --method verlet --dt auto";
   warn(out.str());
 }
 
@@ -242,12 +244,13 @@ int Run::finish() {
   if (!o_.quiet) {
     print_summary();
     tell_work();
+    if (scene_.control()) tell_steps(*scene_.control());
+    if (!scene_.failure()) tell_energy();
     if (live_ && live_->changes_left() > 0)
       warn(CME212::count_of(live_->changes_left(), "change") +
            " would come after the end");
   }
-  if (scene_.control()) tell_steps(*scene_.control());
-  if (scene_.failure() || !energy_is_kept()) return 3;
+  if (scene_.failure() || !judge()) return 3;
   return cut_short() ? 128 + interrupted() : 0;
 }
 
@@ -424,53 +427,71 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** Say how far the energy is off.
- * @return false: the method has made more of it than is tolerated */
-bool Run::energy_is_kept() {
-  const EnergyWatch& watch = *scene_.energy_watch();
+/** How far the energy is off. */
+static std::string off_text(const EnergyWatch& watch) {
   std::ostringstream out;
   out.precision(3);
   out << "energy off by " << watch.off() << " J";
   if (const double share = watch.share(); share != 0)
     out << " (" << CME212::percent(share) << " of the largest internal energy)";
-  if (!o_.quiet) {
-    if (watch.taken() > watch.torn())
-      std::cout << "contact and errors of the method changed the energy by "
-                << CME212::two_digits(watch.change()) << " J";
-    else
-      std::cout << out.str();
-    if (watch.torn() > 0)
-      std::cout << "; tearing took " << CME212::two_digits(watch.torn())
-                << " J";
-    std::cout << '\n';
+  return out.str();
+}
+
+void Run::tell_energy() const {
+  const EnergyWatch& watch = *scene_.energy_watch();
+  if (watch.taken() > watch.torn())
+    std::cout << "contact and errors of the method changed the energy by "
+              << CME212::two_digits(watch.change()) << " J";
+  else
+    std::cout << off_text(watch);
+  if (watch.torn() > 0)
+    std::cout << "; tearing took " << CME212::two_digits(watch.torn()) << " J";
+  if (!o_.bounds_error)
+    std::cout << "; positions were not checked: half of dt shows their error";
+  std::cout << '\n';
+}
+
+/** The gain of energy by steps that were chosen, and what is tolerated. */
+static std::string gain_text(const StepControl& c) {
+  std::ostringstream out;
+  out.precision(3);
+  out << "energy gain " << c.state().gain << " J, at most " << c.tolerance()
+      << " J tolerated";
+  return out.str();
+}
+
+bool Run::judge() {
+  if (kept_energy_) return *kept_energy_;
+  const EnergyWatch& watch = *scene_.energy_watch();
+  const auto& control = scene_.control();
+  kept_energy_ = control || !watch.gains();
+  if (!*kept_energy_) {
+    std::string cause;
+    try {
+      cause = scene_.diagnosis().cause_text() + "; ";
+    } catch (const Interrupted&) {  // remedy() says so
+    }
+    const std::string text = watch.gain_text() + "; " + cause + scene_.remedy();
+    std::cerr << "cloth: " << text << '\n';
+    warnings_.push_back(text);
+  } else if (!o_.quiet && watch.is_off()) {
+    warn(off_text(watch) + ", which is an error of the method; " +
+         scene_.remedy());
   }
-  const bool kept = scene_.control() || !watch.gains();
-  std::string cause;
-  try {
-    if (!kept) cause = scene_.diagnosis().cause_text() + "; ";
-  } catch (const Interrupted&) {  // remedy() says so
-  }
-  if (!kept)
-    std::cerr << "cloth: " << watch.gain_text() << "; " << cause
-              << scene_.remedy() << '\n';
-  else if (watch.loses() && !o_.quiet)
-    warn(out.str() + ", which is an error of the method; " + scene_.remedy());
-  return kept;
+  if (!o_.quiet && control && control->state().gain > control->tolerance())
+    warn(gain_text(*control) + "; " + scene_.remedy());
+  return *kept_energy_;
 }
 
 /** What steps were chosen, and what they did to the energy. */
-void Run::tell_steps(const StepControl& c) {
-  if (o_.quiet) return;
+void Run::tell_steps(const StepControl& c) const {
   const auto& r = c.report();
-  const double gain = c.state().gain, most = c.tolerance();
   std::ostringstream out;
   out.precision(3);
-  out << "energy gain " << gain << " J, at most " << most << " J tolerated";
-  if (gain > most) warn(out.str() + "; " + scene_.remedy());
-  std::cout << "dt from " << r.shortest << " to " << r.longest
-            << " s: shortened " << r.shortened << " times, lengthened "
-            << r.lengthened << " times, " << r.taken_back
-            << " steps taken back; " << out.str() << '\n';
+  out << "dt from " << r.shortest << " to " << r.longest << " s: shortened "
+      << r.shortened << " times, lengthened " << r.lengthened << " times, "
+      << r.taken_back << " steps taken back; ";
+  std::cout << out.str() << gain_text(c) << '\n';
 }
 
 }  // namespace lab

@@ -57,6 +57,9 @@ class Run {
   /** Print what acts, how long the step is, and how long it may be; warn of
    * what will go wrong, and of a run of hours. */
   void announce();
+  /** Once the run is done(): judge its energy, and warn of what is wrong.
+   * @return false: the method has made more of it than is tolerated */
+  bool judge();
   /** The warnings so far, without what is in --quiet runs. */
   const std::vector<std::string>& warned() const { return warnings_; }
 
@@ -88,6 +91,7 @@ class Run {
   std::string kept_;            // in words
   double seconds_ = 0;          // until the last step
   bool missed_ = false, told_ = false;
+  std::optional<bool> kept_energy_;  // judge()
   std::vector<std::string> warnings_;
 
   int steps_to_write() const;
@@ -106,11 +110,11 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
-  void tell_steps(const StepControl& c);
+  void tell_energy() const;
+  void tell_steps(const StepControl& c) const;
   void tell_work() const;
   void warn(const std::string& text);
   void warn_of_length();
-  bool energy_is_kept();
 };
 
 }  // namespace lab

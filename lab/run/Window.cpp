@@ -58,8 +58,12 @@ class Player {
     run_.check();
     const Scene& scene = run_.scene();
     const bool failed = scene.failure().has_value();
-    screen_.show_card(run_.done() && !failed ? outcome(run_, nodes_)
-                                             : std::vector<std::string>());
+    screen_.show_card({});
+    if (run_.done() && !failed) {
+      screen_.show(scene);  // judging may take seconds
+      run_.judge();
+      screen_.show_card(outcome(run_, nodes_));
+    }
     screen_.show(scene);
     if (!failed || exploded_ || interrupted()) return;
     exploded_ = true;
