@@ -137,6 +137,7 @@ TEST(Work, OfAWallThatHitsASheetIsTwiceItsEnergy) {
   Scene s(m);
   ASSERT_TRUE(s.run_to(0.1));
   EXPECT_NEAR(s.flow().work, 100, 1e-9);
+  EXPECT_NEAR(s.flow().contact, 50, 1e-9);
   EXPECT_NEAR(kinetic_energy(s.cloth()), 50, 1e-9);
   EXPECT_NEAR(center_of_mass(s.cloth()).z, 1, 1e-12);
 }

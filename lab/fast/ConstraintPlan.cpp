@@ -53,11 +53,17 @@ void HoldingConstraint::project(Cloth& g, double t, unsigned first,
 }
 
 void SweptConstraint::archive(Archive& a) const {
-  a(exchange_.work)(exchange_.moment)(exchange_.torn);
-  a.require(std::isfinite(exchange_.work + exchange_.moment + exchange_.torn));
+  auto& [work, moment, torn, taken] = exchange_;
+  a(work)(moment)(torn)(taken);
+  a.require(std::isfinite(work + moment + torn + taken));
 }
 
 namespace {
+
+/** The kinetic energy of @a n [J]. */
+double energy_of(Node n) {
+  return 0.5 * n.value().mass * normSq(n.value().vel);
+}
 
 // The course's constraints as swept ones.
 
@@ -79,9 +85,15 @@ class Projecting final : public NodewiseConstraint {
   explicit Projecting(const C& c) : NodewiseConstraint(traits_of(c)), c_(c) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
+    double taken = 0;
     for_each_violating(
         g, first, last, [this](const Point& p) { return violates(c_, p); },
-        [this](Node n) { c_.project(n), note_touch(); });
+        [&](Node n) {
+          taken += energy_of(n);
+          c_.project(n);
+          taken -= energy_of(n);
+        });
+    note_taken(taken);
   }
 
  private:
@@ -99,7 +111,7 @@ class Tear final : public SweptConstraint {
         [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
           exchange_.moment += n.value().mass * n.position().z;
-          exchange_.torn += 0.5 * n.value().mass * normSq(n.value().vel);
+          exchange_.torn += energy_of(n);
           for (Edge e : n.edges())
             exchange_.torn += spring_energy(e.length(), e.value());
           g.remove_node(n);
@@ -115,10 +127,10 @@ class Called final : public SweptConstraint {
  public:
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
-    exchange_.touched = true;  // as far as is known
     const auto version = arrays(g).version();
-    const double before = moment_of(g);
+    const double before = moment_of(g), kinetic = kinetic_energy(g);
     (*c_)(g, t);
+    note_taken(kinetic - kinetic_energy(g));
     if (arrays(g).version() != version)
       exchange_.moment += before - moment_of(g);
   }

@@ -43,12 +43,14 @@ using PlaceVisitor = std::function<void(Node, const Place&)>;
 /** Energy that a constraint added to a cloth and removed from it, summed over
  * all calls since the constraint was made. */
 struct Exchange {
-  double work = 0;       ///< by moving obstacles: impulse times velocity [J]
-  double moment = 0;     ///< sum of m z of the nodes that were removed [kg m]
-  double torn = 0;       ///< kinetic and elastic energy of what was removed [J]
-  bool touched = false;  ///< contact took some since exchange() was called
+  double work = 0;    ///< by moving obstacles: impulse times velocity [J]
+  double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
+  double torn = 0;    ///< kinetic and elastic energy of what was removed [J]
+  /** Kinetic energy, relative to the obstacle, that contact and friction took
+   * [J]. With that which each step gives to a node at rest on an obstacle. */
+  double taken = 0;
   Exchange& operator+=(const Exchange& b) {
-    work += b.work, moment += b.moment, torn += b.torn, touched |= b.touched;
+    work += b.work, moment += b.moment, torn += b.torn, taken += b.taken;
     return *this;
   }
 };
@@ -94,12 +96,8 @@ class SweptConstraint : public ZeroConstraint {
 
   const Traits& traits() const { return traits_; }
   /** What its calls since it was made have exchanged, without the work on held
-   * nodes, which EnergyBalance adds up.  @post !touched, until a call does */
-  Exchange exchange() const {
-    const Exchange all = exchange_;
-    exchange_.touched = false;
-    return all;
-  }
+   * nodes, which EnergyBalance adds up. */
+  const Exchange& exchange() const { return exchange_; }
   void archive(Archive& a) const;
 
   /** Project the nodes of @a g with ids in [first, last) that are in use. The
@@ -116,9 +114,13 @@ class SweptConstraint : public ZeroConstraint {
 
  protected:
   mutable Exchange exchange_;
-  /** Several threads may say so. */
-  void note_touch() const {
-    __atomic_store_n(&exchange_.touched, true, __ATOMIC_RELAXED);
+  /** Contact took @a energy [J]. Several threads may say so at once. */
+  void note_taken(double energy) const {
+    if (!(energy > 0)) return;
+    double before = exchange_.taken, after = before + energy;
+    while (!__atomic_compare_exchange(&exchange_.taken, &before, &after, true,
+                                      __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+      after = before + energy;
   }
 
  private:
@@ -236,7 +238,7 @@ class ConstraintPlan {
   /** The size [m] of the smallest obstacle; infinity if there is none. */
   double thinnest() const;
   /** True only if nothing in it moves from time @a t [s] on, so that it does no
-   * work: exchange() changes only in calls that remove nodes. */
+   * work: that changes only in calls that remove nodes. */
   bool is_at_rest(double t) const;
   Exchange exchange() const;
   void archive(Archive& a) const;

@@ -27,6 +27,8 @@ struct MethodInfo {
   const char* fails_when;
   bool adaptive = false;   ///< makes inner steps, so dt may be of any length
   bool multirate = false;  ///< limit is that of soft_stiffness()
+  /** Explicit of order 1: its velocities are a step ahead of positions. */
+  bool ahead() const { return order == 1 && std::isfinite(limit); }
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 

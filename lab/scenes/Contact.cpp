@@ -32,12 +32,13 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 
 // ------------------------------------------------------------------ Touchable
 
-void Touchable::touch(Node n, double depth, const Point& out,
-                      const Point& velocity) const {
+double Touchable::touch(Node n, double depth, const Point& out,
+                        const Point& velocity) const {
+  const double before = normSq(n.value().vel - velocity);
   const double work = contact::touch(n, depth, out, velocity, friction_);
-  note_touch();
   if (!traits().nodewise)
     exchange_.work += work;  // else several threads may be here
+  return 0.5 * n.value().mass * (before - normSq(n.value().vel - velocity));
 }
 
 // ----------------------------------------------------------------------- Wall
@@ -55,9 +56,13 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
   const Motion& motion = traits().motion;
   const Point at = at_ + motion.way(t), velocity = motion.velocity_at(t);
   auto height = [&](const Point& p) { return dot(p - at, normal_); };
+  double taken = 0;
   for_each_violating(
       g, first, last, [&](const Point& p) { return height(p) < 0; },
-      [&](Node n) { touch(n, -height(n.position()), normal_, velocity); });
+      [&](Node n) {
+        taken += touch(n, -height(n.position()), normal_, velocity);
+      });
+  note_taken(taken);
 }
 
 // ----------------------------------------------------------------------- Ball
@@ -74,6 +79,7 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
   const Motion& motion = traits().motion;
   const Ball ball = {ball_.center + motion.way(t), ball_.radius};
   const Point velocity = motion.velocity_at(t);
+  double taken = 0;
   for_each_violating(
       g, first, last, [&](const Point& p) { return ball.holds(p); },
       [&](Node n) {
@@ -81,8 +87,9 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
         const double distance = norm(from_center);
         const Point out =
             distance > 0 ? from_center / distance : Point(0, 0, 1);
-        touch(n, ball.radius - distance, out, velocity);
+        taken += touch(n, ball.radius - distance, out, velocity);
       });
+  note_taken(taken);
 }
 
 // --------------------------------------------------------------------- Strain

@@ -55,9 +55,10 @@ class Touchable : public NodewiseConstraint {
         friction_(friction) {
     assert(friction >= 0);
   }
-  /** contact::touch(), and count the work. */
-  void touch(Node n, double depth, const Point& out,
-             const Point& velocity) const;
+  /** contact::touch(), and count the work.
+   * @return the kinetic energy that it took, relative to the obstacle [J] */
+  double touch(Node n, double depth, const Point& out,
+               const Point& velocity) const;
 
  private:
   double friction_;

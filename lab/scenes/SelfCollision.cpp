@@ -105,7 +105,7 @@ bool SelfCollision::project_pairs(Cloth& g) const {
     if (normSq(x[i] - x[j]) < thickness_ * thickness_ &&
         arrays(g).node_in_use(i) && arrays(g).node_in_use(j)) {
       push_apart(g, i, j);
-      pushed = exchange_.touched = true;
+      pushed = true;
     }
   if (++rounds_ >= max_rounds && pushed)
     throw StepError("self-collision: nodes are closer than the thickness, " +
@@ -130,7 +130,9 @@ void SelfCollision::push_apart(Cloth& g, unsigned i, unsigned j) const {
   const double distance = norm(apart);
   const Point out = distance > 0 ? apart / distance : Point(0, 0, 1);
   const Point way = ((1 + margin) * thickness_ - distance) * out;
-  const Point kick = contact::kick(node[i].vel - node[j].vel, out, friction_);
+  const Point u = node[i].vel - node[j].vel;
+  const Point kick = contact::kick(u, out, friction_);
+  note_taken((normSq(u) - normSq(u + kick)) / (2 * (wi + wj)));
   const double part_i = wi / (wi + wj), part_j = wj / (wi + wj);
   x[i] += part_i * way;
   x[j] -= part_j * way;

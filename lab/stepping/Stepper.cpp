@@ -92,6 +92,7 @@ void Stepper::change_method(const MethodEntry& method, const TimeStep& step) {
     entry_ = method, step_ = step;
     clock_.set_dt(dt);
     make_method();
+    if (watch_) watch_->change_step(dt, method.info.ahead());
   });
 }
 
@@ -127,7 +128,7 @@ void Stepper::start_control() {
                           .floor = guard_->floor(),
                           .rest = guard_->round_off() + 1e-10 * now.internal(),
                           .longest = longest,
-                          .early = entry_.info.order == 1},
+                          .early = entry_.info.ahead()},
       flow());
   looked_ = time();
   keep_both();
@@ -153,7 +154,7 @@ void Stepper::watch_energy(double t_end) {
 void Stepper::start_watch() {
   watch_.emplace(energy(), flow(), clock_.dt,
                  largest_gamma(system_.cloth, force_->drag()), guard_->floor(),
-                 guard_->round_off());
+                 guard_->round_off(), entry_.info.ahead());
 }
 
 bool Stepper::run_to(double t_end, const std::function<void()>& after) {
@@ -197,7 +198,7 @@ bool Stepper::some_steps(int most) {
   const Energies e = energy();
   if (judged && !judge(e)) return take_back();
   if (guarded && !guard(e)) return false;
-  if (watched) watch_->look(e, flow()), balance_->looked();
+  if (watched) watch_->look(e, flow());
   return true;
 }
 
