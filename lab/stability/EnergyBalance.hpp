@@ -222,8 +222,9 @@ class EnergyWatch {
     return ahead_ ? seen_.fall
                   : std::min(seen_.fall, energy_tolerance / 2 * kinetic_);
   }
-  /** In each step contact lifts a resting cloth back [J]. */
-  double lift() const { return contact_ > 0 ? floor_ : 0; }
+  /** A cloth at rest on an obstacle, which each step lifts back, has less than
+   * this kinetic energy [J]: M (g dt)^2/8, or M (g dt)^2/2 where ahead. */
+  double lift() const { return contact_ > 0 ? floor_ / (ahead_ ? 1 : 4) : 0; }
   double slack() const;
 };
 
