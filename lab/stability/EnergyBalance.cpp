@@ -140,23 +140,22 @@ double EnergyWatch::share() const {
   return counts ? off() / seen_.scale : 0;
 }
 
-/** Tolerated in addition [J]: round-off; (gamma dt)^2/4 of drag and
+/** Tolerated in addition [J]: round-off; 2 % and (gamma dt)^2/4 of drag and
  * work, as in a steady fall the trapezoidal rule errs by (gamma dt)^2/6. Where
  * velocities are one step ahead of positions, fall() and, after n looks, one of
  * n of the largest internal energy: n steps after the start from rest, the
  * kinetic energy is by that share too large. */
 double EnergyWatch::slack() const {
   const double early = ahead_ ? fall() + seen_.scale / std::max(looks_, 1) : 0;
-  return round_off_ + sums_ * passed_ + early;
+  return round_off_ + (0.02 + sums_) * passed_ + early;
 }
 
 double EnergyWatch::tolerance() const {
-  return energy_tolerance * seen_.scale + 0.02 * passed_ + slack() + lift();
+  return energy_tolerance * seen_.scale + slack() + lift();
 }
 
 bool EnergyWatch::is_off() const {
-  const double most =
-      energy_tolerance / 2 * seen_.scale + 0.005 * passed_ + slack();
+  const double most = energy_tolerance / 2 * seen_.scale + slack();
   return off() > most + lift() || -off() > most + fall();
 }
 

@@ -193,14 +193,14 @@ class EnergyWatch {
   /** The largest gain so far [J]. */
   double gain() const { return seen_.gain; }
   /** The gain that is tolerated [J]: the share of the largest internal energy
-   * that StepControl tolerates, 2 % of work and drag, slack(), lift(). */
+   * that StepControl tolerates, slack(), lift(). */
   double tolerance() const;
   /** The method has added more energy than is tolerated. */
   bool gains() const { return gain() > tolerance(); }
   /** That in words. */
   std::string gain_text() const;
-  /** The energy is off by more than half of that share, 0.5 % of work and drag,
-   * slack(); of a gain, lift(); of a loss, fall(): positions may be ahead. */
+  /** The energy is off by more than half of that share, slack(); of a gain,
+   * lift(); of a loss, fall(): positions may be ahead. */
   bool is_off() const;
 
   void archive(Archive& a);
