@@ -218,7 +218,9 @@ std::string Diagnosis::remedy_text() const {
     if (trial.time >= run.time) {
       out << " works: a trial to t = " << trial.time
           << " s passed, and half of that step gives the same energy";
-      if (trial.apart > Attempt::same_place)
+      if (trial.apart == no_limit)
+        out << ", but other nodes are removed";
+      else if (trial.apart > Attempt::same_place)
         out << ", but positions that differ by up to "
             << CME212::percent(trial.apart) << " of the size of the cloth";
       else

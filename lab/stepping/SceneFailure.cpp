@@ -43,7 +43,7 @@ double distance(const Cloth& a, const Cloth& b) {
   }
   for (Edge e : a.edges()) length += e.length();
   const double side = length / a.num_edges() * std::sqrt(a.num_nodes());
-  return most > 0 ? most / side : 0;
+  return side > 0 ? most / side : most;
 }
 
 /** Run with @a cure and with half of its step; the energies of both runs must
