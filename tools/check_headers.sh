@@ -17,9 +17,8 @@ fi
 # compiled with it and without it.
 drawing='^CME212/viewer/(GL|SDL(Window|Settings))'
 packages="sdl2 libpng gl"
-# Headers of the module for Python, and the flags of its headers.
+# Headers of the module for Python.
 python='^lab/python/'
-python_flags=$(make -s --no-print-directory python-flags)
 
 compile() {  # COMPILER HEADER; one report, even when others write too
   local flags="" out ways=plain way
@@ -27,7 +26,7 @@ compile() {  # COMPILER HEADER; one report, even when others write too
   elif grep -q 'MASS_SPRING_VIEWER' "$2"; then ways="plain draw"
   fi
   if [[ $2 =~ $python ]]; then
-    flags=" $python_flags"
+    flags=" $(make -s --no-print-directory python-flags)"
     # shellcheck disable=SC2086  # a list of words
     echo '#include <pybind11/numpy.h>' |
       $1 -std=c++20 -fsyntax-only $flags -x c++ - 2>/dev/null ||
@@ -53,7 +52,7 @@ compile() {  # COMPILER HEADER; one report, even when others write too
 eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
 CPPFLAGS="${CPPFLAGS:-} $eigen"
 
-export drawing packages python python_flags CPPFLAGS
+export drawing packages python CPPFLAGS
 export -f compile
 for cxx in ${CXX:-g++ clang++}; do
   command -v "$cxx" >/dev/null || { echo "$cxx is missing: make deps"; exit 1; }

@@ -117,10 +117,11 @@ class SweptConstraint : public ZeroConstraint {
   /** Contact took @a energy [J]. Several threads may say so at once. */
   void note_taken(double energy) const {
     if (!(energy > 0)) return;
-    double before = exchange_.taken, after = before + energy;
+    double before = 0, after = 0;
+    __atomic_load(&exchange_.taken, &before, __ATOMIC_RELAXED);
+    do after = before + energy;
     while (!__atomic_compare_exchange(&exchange_.taken, &before, &after, true,
-                                      __ATOMIC_RELAXED, __ATOMIC_RELAXED))
-      after = before + energy;
+                                      __ATOMIC_RELAXED, __ATOMIC_RELAXED));
   }
 
  private:

@@ -39,7 +39,7 @@ def test_limit_and_failure():
     net = oscillator()
     assert net.limit("verlet") == pytest.approx(2 / 3)
     assert net.limit("implicit-euler") == np.inf
-    assert net.run("verlet", 50.0, 0.3).status == 0
+    assert net.run("verlet", 50.0, 0.1).status == 0
     r = net.run("verlet", 50.0, 0.68)
     assert r.status == 3 and r.why.kind == "diverged" and r.why.node == 1
     assert 0 < r.why.time < 50 and r.why.dt == 0.68

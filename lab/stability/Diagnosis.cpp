@@ -349,8 +349,11 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
     if (d.trial.apart <= Attempt::same_place) break;
     const Cure cure = {first.method, in_three_digits(first.dt / shorter)};
     const Attempt trial = try_out(cure);
-    if (trial.passed && trial.time >= run.time && trial.apart < d.trial.apart)
-      d.cure = cure, d.trial = trial;
+    // In chaotic motion a shorter step does not help.
+    if (!trial.passed || trial.time < run.time ||
+        trial.apart > d.trial.apart / 2)
+      break;
+    d.cure = cure, d.trial = trial;
   }
   return d;
 }

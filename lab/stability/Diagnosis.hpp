@@ -99,7 +99,7 @@ struct Attempt {
   /** Then, of a node from that with half the step, at most, by the size of the
    * cloth. */
   double apart = 0;
-  static constexpr double same_place = 0.003;  ///< apart, of equal positions
+  static constexpr double same_place = 0.01;  ///< apart, of equal positions
 };
 using TryOut = std::function<Attempt(const Cure&)>;
 
@@ -118,7 +118,8 @@ struct Diagnosis {
 /** Find out why @a run failed, and a cure. Tries shorter steps and other
  * methods, the most promising first, until a trial passes the time of the
  * failure or 10 trials have failed. If half of that step gives other positions,
- * a quarter and a sixteenth of it are tried, too. Every cure that it returns
+ * a quarter and a sixteenth of it are tried, too, and taken if they at least
+ * halve that difference. Every cure that it returns
  * has passed. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 

@@ -175,6 +175,8 @@ class EnergyWatch {
 
   /** From now on the step is @a dt; another method may be @a ahead, too. */
   void change_step(double dt, bool ahead) { dt_ = dt, ahead_ |= ahead; }
+  /** Forces or nodes have changed, as at a start: see slack(). */
+  void change_system() { looks_ = 0; }
   /** Take the state after some steps into account. */
   void look(const Energies& e, const EnergyFlow& flow);
 

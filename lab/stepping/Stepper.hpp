@@ -194,6 +194,7 @@ class Stepper {
     change();
     EnergyFlow flow = this->flow();
     flow.work += energy().total() - before;
+    if (watch_) watch_->change_system();
     start(flow);
   }
   /** Another method and step.  Throws as the constructor; then nothing has
