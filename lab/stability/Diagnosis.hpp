@@ -119,8 +119,7 @@ struct Diagnosis {
  * methods, the most promising first, until a trial passes the time of the
  * failure or 10 trials have failed. If half of that step gives other positions,
  * a quarter and a sixteenth of it are tried, too, and taken if they at least
- * halve that difference. Every cure that it returns
- * has passed. */
+ * halve that difference. Every cure that it returns has passed. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 
 /** A message about a failure: its sentences in their order. */

@@ -1,7 +1,7 @@
 /** @file film.cpp
  * The method "yours" of a ./cloth: film.py links this file with cloth.cpp,
  * twice. In the jail it is a stranger's step, which writes where the nodes are
- * after each step to the descriptor TRY_STATES:
+ * after each step to the descriptor TRY_PIPE:
  *   -DTRY_FILE='"mine.hpp"' -DTRY_UNDEFINED='"x.hpp"' -DTRY_STEP=my_step
  * Outside of it, without TRY_FILE, it puts the nodes where the file TRY_STATES
  * says. Both get -DTRY_ORDER=2 -DTRY_SWEEPS=1 -DTRY_LIMIT=2.0 of make try. */
@@ -29,8 +29,7 @@ using State = std::array<double, 6>;  // of a node: x, v
 /** Write the state in which the constraint is called for time @a at; or, for
  * time -1, that at the end of a step. */
 void write(const Cloth& g, double at) {
-  static std::FILE* const out =
-      fdopen(std::atoi(std::getenv("TRY_STATES")), "w");
+  static std::FILE* const out = fdopen(std::atoi(std::getenv("TRY_PIPE")), "w");
   std::fwrite(&at, sizeof at, 1, out);
   for (Node n : g.nodes()) {
     const Point x = n.position(), v = n.value().vel;

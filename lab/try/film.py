@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 
 import judge
-from workshop import ROOT, BadInput, Workshop, build, choose, sandbox
+from workshop import ROOT, BadInput, Workshop, choose, sandbox
 
 OMEGA = math.sqrt(12 * 100 * 625)   # of grid1, at most [1/s]
 SECONDS = 2                         # of the scene
@@ -60,32 +60,15 @@ def programs(shop: Workshop, verdict: judge.Verdict) -> tuple[
 def states(shop: Workshop, program: pathlib.Path, scene: pathlib.Path,
            file: pathlib.Path) -> None:
     """Run the step in the jail; the file gets where the nodes are."""
-    from_read, from_write = os.pipe()
-    written = sandbox.Output(LIMITS.output)
     with open(file, "wb") as out:
-        process = subprocess.Popen(
-            [*shop.jail, "--cpu", str(LIMITS.cpu),
-             *build.flags("--read", [  # type: ignore[attr-defined]
-                 shop.folder, ROOT / "data", "/usr", "/lib", "/lib64",
-                 "/etc/ld.so.cache", "/proc/self"]),
-             "--", program, "--config", scene, "--headless"], cwd="/",
-            env={**sandbox.clean_environment("/nowhere"),
-                 "TRY_STATES": str(from_write)}, pass_fds=[from_write],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE, start_new_session=True)
-        os.close(from_write)
-        assert process.stderr
-        try:
-            with process.stderr as pipe:
-                stopped, _ = sandbox.watch(process, LIMITS, {
-                    pipe.fileno(): written.add, from_read:
-                    lambda data: bool(out.write(data)) and out.tell() <= MOST})
-        finally:
-            os.close(from_read)
-    if stopped or process.returncode not in (0, 3):     # 3: it diverges
+        ended = shop.jailed(
+            lambda _: [program, "--config", scene, "--headless"], LIMITS,
+            lambda data: bool(out.write(data)) and out.tell() <= MOST,
+            [ROOT / "data", "/usr"])
+    if ended.stopped or ended.code not in (0, 3):     # 3: it diverges
         raise BadInput(f"{shop.where}: no film: its scene ends by "
-                       + (f"too much {stopped}" if stopped else
-                          f"status {process.returncode}"))
+                       + (f"too much {ended.stopped}" if ended.stopped else
+                          f"status {ended.code}"))
 
 
 def record(verdict: judge.Verdict, path: pathlib.Path, out: str) -> int:

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "course/kit"))
@@ -211,27 +211,9 @@ class Workshop:
         program = self.programs[kind]
         seconds = SECONDS.get(part, 8) * (1 if kind == "fast" else 8)
         limits = sandbox.Limits(cpu=seconds, wall=4 * seconds)
-        from_read, from_write = os.pipe()
-        written = sandbox.Output(limits.output)
         spoken = sandbox.Output(limits.output, limits.output)
-        command = [*self.jail, "--cpu", str(limits.cpu)]
-        for path in (self.folder, "/usr/lib", "/lib", "/lib64",
-                     "/etc/ld.so.cache", "/proc/self"):
-            command += ["--read", str(path)]
-        process = subprocess.Popen(
-            [*command, "--", str(program), part, str(from_write),
-             *map(str, more)], cwd="/",
-            env=sandbox.clean_environment("/nowhere"), pass_fds=[from_write],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE, start_new_session=True)
-        os.close(from_write)
-        assert process.stderr
-        try:
-            with process.stderr as pipe:
-                stopped, _ = sandbox.watch(process, limits, {
-                    pipe.fileno(): written.add, from_read: spoken.add})
-        finally:
-            os.close(from_read)
+        outcome = self.jailed(lambda pipe: [program, part, pipe, *more],
+                              limits, spoken.add)
         found: Lines = []
         for line in spoken.first.decode("ascii", "replace").splitlines():
             name, *numbers = line.split(" ")
@@ -239,8 +221,36 @@ class Workshop:
                 found.append((name, [float(x) for x in numbers]))
             except ValueError:      # a line that was cut
                 pass
-        return found, sandbox.Outcome(stopped, process.returncode,
-                                      written.text(), bool(found))
+        outcome.begun = bool(found)
+        return found, outcome
+
+    def jailed(self, command: Callable[[int], Sequence[object]],
+               limits: sandbox.Limits, take: Callable[[bytes], bool],
+               reads: Sequence[object] = ()) -> sandbox.Outcome:
+        """Run command(its end of a pipe) in the jail, with reads beside the
+        folder and the system's libraries. take gets what comes by the pipe,
+        whose end is in TRY_PIPE, too, and says if more may come."""
+        from_read, from_write = os.pipe()
+        written = sandbox.Output(limits.output)
+        process = subprocess.Popen(
+            [*self.jail, "--cpu", str(limits.cpu),
+             *build.flags("--read", [  # type: ignore[attr-defined]
+                 self.folder, "/usr/lib", "/lib", "/lib64", "/etc/ld.so.cache",
+                 "/proc/self", *reads]),
+             "--", *map(str, command(from_write))], cwd="/",
+            env={**sandbox.clean_environment("/nowhere"),
+                 "TRY_PIPE": str(from_write)}, pass_fds=[from_write],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, start_new_session=True)
+        os.close(from_write)
+        assert process.stderr
+        try:
+            with process.stderr as pipe:
+                stopped, _ = sandbox.watch(process, limits, {
+                    pipe.fileno(): written.add, from_read: take})
+        finally:
+            os.close(from_read)
+        return sandbox.Outcome(stopped, process.returncode, written.text())
 
     def close(self) -> None:
         shutil.rmtree(self.folder, ignore_errors=True)
