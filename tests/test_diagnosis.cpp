@@ -287,6 +287,20 @@ TEST(Diagnosis, NamesTheErrorOfAStepWhereThatIsTheOnlyCause) {
   EXPECT_LT(off[1], 4 * off[2]);  // both are losses
 }
 
+// Springs of a thrown sheet stay at rest: no wave in them gained that energy.
+TEST(Diagnosis, NamesNoWavesWhereSpringsHaveNoEnergy) {
+  Model m = parsed(
+      "--sheet 'nodes 3 3 velocity 1.4 -0.68 2.1' --density 0.13 --drag 0.1 "
+      "--method implicit-midpoint --dt 0.1 --t-end 0.2");
+  for (bool stretched : {false, true}) {
+    if (stretched) m.rest_length = 0.5;
+    Scene scene(m);
+    scene.watch_energy(m.t_end);
+    ASSERT_TRUE(scene.run_to(m.t_end));
+    EXPECT_EQ(scene.diagnosis().cause, stretched ? Cause::waves : Cause::error);
+  }
+}
+
 TEST(Diagnosis, SaysThatATrialWasTooShort) {
   int trials = 0;
   const Diagnosis d = diagnose(within_the_limit(), [&](const Cure&) {

@@ -170,7 +170,9 @@ class Scene(questions.Scene):
         return max(1, math.ceil(self.t_end / (share * limit) - 1e-9))
 
     def error(self, trial: Trial | None, right: Sequence[float]) -> float:
-        return math.dist(trial[0], right) if trial else math.inf
+        # An event need not happen on each grid: then there is no time.
+        known = trial and len(trial[0]) == len(right)
+        return math.dist(trial[0], right) if known else math.inf
 
     def scaled(self, along: float) -> Cells:
         """The scene's own grids with so many cells along the longest side."""

@@ -111,6 +111,7 @@ Cause cause_without_limit(const FailedRun& run) {
   const auto is = [&](const MethodInfo& m) {
     return run.method.info.name == m.name;
   };
+  if (run.rigid) return Cause::error;
   if (is(ImplicitEuler::info)) return run.flat ? Cause::flat : Cause::linear;
   if (is(Xpbd::info) || is(FastMassSpring::info)) return Cause::rounds;
   if (is(ImplicitMidpoint::info) && run.dt > run.verlet) return Cause::waves;

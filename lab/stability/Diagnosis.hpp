@@ -79,6 +79,7 @@ struct FailedRun {
   double safe_without_drag = 0;  ///< [s]
   double verlet = 0;             ///< Verlet's safe limit [s]
   bool flat = false;             ///< the last good state is: is_flat()
+  bool rigid = false;            ///< EnergyWatch::gains_beside_springs()
 };
 
 /** Do all nodes lie in a plane, to 1e-9 of the size of the cloth?  O(N) */

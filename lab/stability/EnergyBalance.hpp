@@ -199,7 +199,10 @@ class EnergyWatch {
   double tolerance() const;
   /** The method has added more energy than is tolerated. */
   bool gains() const { return gain() > tolerance(); }
-  /** That in words. */
+  /** The gain is more than springs and their waves ever had: it is in the
+   * motion of the whole. */
+  bool gains_beside_springs() const { return gain() > seen_.scale; }
+  /** gains() in words. */
   std::string gain_text() const;
   /** The energy is off by more than half of that share, slack(); of a gain,
    * lift(); of a loss, fall(): positions may be ahead. */

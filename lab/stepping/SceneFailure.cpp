@@ -28,6 +28,8 @@ FailedRun failed_run(const Scene& s) {
   run.safe_without_drag = stepper.limits().safe_without_drag(method);
   run.verlet = s.safe_limit(table::verlet);
   run.flat = is_flat(s.cloth());
+  run.rigid =
+      !failure && s.energy_watch() && s.energy_watch()->gains_beside_springs();
   return run;
 }
 

@@ -191,7 +191,10 @@ bool Stepper::some_steps(int most) {
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
-  const bool watched = watch_ && (now || clock_.steps % watch_interval_ == 0);
+  // The second step tells more exactly what drag took in the first.
+  const bool watched =
+      watch_ &&
+      (now || (clock_.steps > 1 && clock_.steps % watch_interval_ == 0));
   if (!drag_.none())
     sample_drag(now || watched || moves || (guarded && !control_));
   if (!judged && !guarded && !watched) return true;
@@ -261,8 +264,11 @@ void Stepper::sample_drag(bool now) {
   const double power = drag_.power(system_.cloth, system_.wind);
   const double h = time() - sampled_, change = power - drag_power_;
   double loss = 0.5 * (drag_power_ + power) * h;
-  if (follows_drag_ && !control_ && std::abs(h - drag_step_) < 1e-9 * h)
-    loss -= (change - drag_change_) * h / 12;  // as in EnergyBalance
+  const bool follows = !control_ && std::abs(h - drag_step_) < 1e-9 * h;
+  // As in EnergyBalance; by the same parabola for the first of equal steps,
+  // unless it began with a jump of held nodes, whose work has that error, too.
+  if (follows) loss -= drag_owed_ * (change - drag_change_) * h / 12;
+  drag_owed_ = follows || works(system_, clock_) ? 1 : 2;
   balance_->add_drag(loss);
   drag_power_ = power, sampled_ = time();
   drag_change_ = change, drag_step_ = jumped_ ? 0 : h;
@@ -418,13 +424,14 @@ void Stepper::archive(Archive& a) {
   if (a.loads()) version_ = arrays(system_.cloth).version();
   long long evaluated = evaluations();
   Work worked = work();
-  a(evaluated)(worked)(sampled_)(drag_power_)(drag_change_)(drag_step_);
+  a(evaluated)(worked)(
+      sampled_)(drag_power_)(drag_change_)(drag_step_)(drag_owed_);
   if (a.loads())
     evaluations_ = evaluated - force_->evaluations(), work_ = worked;
   a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
             std::min({worked.inner, worked.newton, worked.products,
                       worked.factors}) >= 0 &&
-            sampled_ <= time() &&
+            sampled_ <= time() && (drag_owed_ == 1 || drag_owed_ == 2) &&
             std::isfinite(sampled_ + drag_power_ + drag_change_ + drag_step_));
   if (watch_) a(*watch_);
   if (!control_) return;

@@ -248,6 +248,7 @@ class Stepper {
   double sampled_ = 0, drag_power_ = 0;  // time of last sample [s]; then [W]
   // How the power changed in that step [W]; its length [s], 0: it jumped.
   double drag_change_ = 0, drag_step_ = 0;
+  int drag_owed_ = 2;    // steps that the next correction is for
   bool jumped_ = false;  // a velocity jumps at the end of the last step
   std::optional<EnergyWatch> watch_;
   int watch_interval_ = 1;

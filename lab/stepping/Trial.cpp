@@ -145,6 +145,7 @@ Trial try_out(const Model& m, const Shake& shake,
     // The guard starts anew: it would take these strains for a divergence.
     scene.change_method(*m.method, {.dt = result.dt});
   }
+  scene.watch_energy(m.t_end);
   Observer observer(m, scene);
   const double springs = double(scene.cloth().num_edges()),
                factor = 10 * std::sqrt(double(scene.cloth().num_nodes()));
@@ -159,7 +160,9 @@ Trial try_out(const Model& m, const Shake& shake,
       result.earlier.resize(due, observer.answer(m, scene));
   });
   result.failure = text_of(scene.failure());
-  if (ok) {
+  if (const auto& watch = *scene.stepper().energy_watch(); ok && watch.gains())
+    result.failure = watch.gain_text();
+  else if (ok) {
     result.answer = observer.answer(m, scene);
     if (result.answer.empty())
       result.failure = (m.measure.quantity == Measure::tear_time

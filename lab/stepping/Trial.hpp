@@ -95,7 +95,8 @@ struct Shake {
   std::array<bool, 3> along = {true, true, true};  ///< x, y, z
 };
 
-/** Run @a m to its end, with steps of step_of(m).
+/** Run @a m to its end, with steps of step_of(m). A run that ./cloth would end
+ * with status 3, as errors have added energy, has failed.
  * @param look called with the cloth at the end, unless the run failed
  * @param after called with the scene after each step; it may change the cloth
  * Throws InputError, SceneError; std::invalid_argument as Scene does;
