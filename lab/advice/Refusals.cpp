@@ -115,7 +115,8 @@ std::string GridStudy::find_chaos(double scatter) {
       ("runs that should agree, with the start moved by 1e-6 m or with a "
        "slightly shorter step, differ by " +
        with_unit(scatter, what)) +
-      ", so no grid and no step can meet the tolerance; " +
+      ", more than half of the tolerance, so no grid and no step is sure to "
+      "meet it; " +
       offers(run.model, run.all, shaken);
   if (until > 0) text += ", of up to " + CME212::short_text(until) + " s";
   return text;
