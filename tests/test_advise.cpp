@@ -53,8 +53,8 @@ GridReport grid(double factor, Answer answer) {
 }
 
 /** Grids of 1, 1.5, 2, 3, 4, 6 ... times the cells, with these answers. */
-Refinement of_answers(const std::vector<double>& answers) {
-  Refinement r(Measure::energy);
+Refinement of_answers(const std::vector<double>& answers, bool slow = false) {
+  Refinement r(Measure::energy, slow);
   for (std::size_t k = 0; k < answers.size(); ++k)
     r.add(grid((k % 2 ? 1.5 : 1) * std::pow(2, k / 2), {answers[k]}));
   return r;
@@ -122,6 +122,28 @@ TEST(Refinement, KnowsThatASlowConvergenceMayGoOn) {
     for (double cells : {100, 1000})
       EXPECT_LE(std::abs(r.limit()[0] - force(cells)), r.uncertainty())
           << compliance;
+  }
+}
+
+// Coarse grids go by order 2, as bending and masses at the rim do; in the end a
+// pin of one node gives way by order 1/2.
+TEST(Refinement, IsNotDeceivedWhereAPinHoldsOneNode) {
+  for (double other : {-4., -1., 1., 4.}) {
+    std::vector<double> answers;
+    for (double cells : {2, 3, 4, 6, 8, 12, 16, 24, 32, 48}) {
+      answers.push_back(1 + std::pow(cells, -0.5) +
+                        other * std::pow(cells, -2));
+      if (answers.size() < 5) continue;
+      const Refinement r = of_answers(answers, true);
+      EXPECT_LE(std::abs(r.limit()[0] - 1), r.uncertainty()) << other;
+      if (cells > 20)
+        EXPECT_LE(r.uncertainty(), 2 * std::abs(answers.back() - 1)) << other;
+      EXPECT_FALSE(r.asymptotic());
+      if (cells == 8 && other < -2) {
+        const Refinement any = of_answers(answers);
+        EXPECT_GT(std::abs(any.limit()[0] - 1), any.uncertainty());
+      }
+    }
   }
 }
 

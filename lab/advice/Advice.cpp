@@ -109,11 +109,15 @@ std::string extrapolated(const Advice& a) {
          (a.from_files ? " by ever smaller steps:" : " on ever finer grids:") +
          numbers(a.grids.limit(), a.measure) + " +- " +
          with_unit(a.grids.uncertainty(), a.measure) + " (95 %), " +
-         (a.grids.asymptotic()
-              ? "observed order " + CME212::two_digits(a.grids.order()) + ": "
-              : "no order observed: ") +
-         (a.from_files ? "the steps are " : "the grids are ") +
-         (a.grids.asymptotic() ? "" : "not ") + "in the asymptotic range\n";
+         (a.grids.slow()
+              ? "by order 1/2, as a pin holds one node\n"
+              : (a.grids.asymptotic()
+                     ? "observed order " + CME212::two_digits(a.grids.order()) +
+                           ": "
+                     : "no order observed: ") +
+                    (a.from_files ? "the steps are " : "the grids are ") +
+                    (a.grids.asymptotic() ? "" : "not ") +
+                    "in the asymptotic range\n");
 }
 
 /** The advised scene, its command and its error. */

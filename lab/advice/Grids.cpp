@@ -27,7 +27,7 @@ Question::Question(const Model& m, const AdviceRules& rules, double runs)
   if (!std::isfinite(own_work)) own_work = 0;
   pilots.allow(runs * own_work);
   advice.measure = m.measure, advice.tolerance = m.tolerance;
-  advice.grids = Refinement(m.measure);
+  advice.grids = Refinement(m.measure, !converging_slowly(m).empty());
   advice.t_end = m.t_end, advice.from_files = from_files();
 }
 

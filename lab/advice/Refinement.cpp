@@ -29,19 +29,23 @@ void Refinement::add(GridReport next) {
   if (size() == 1) fit_.limit = back().trial.answer;
   if (size() < 3) return;
   std::size_t from = size() - std::min(size(), fewest);
-  while (from > 0 && back().factor <= widest * grids_[from - 1].factor) --from;
-  const auto used = std::span<const GridReport>(grids_).subspan(from);
+  while (!slow_ && from > 0 &&
+         back().factor <= widest * grids_[from - 1].factor)
+    --from;
+  const std::span<const GridReport> all = grids_, used = all.subspan(from);
   fit_ = best_fit(used, true);
   for (GridReport& g : grids_) g.error = error(g.factor).size(measure_);
   moves_ = 0;
-  if (used.size() > 3)
-    for (const auto& others :
-         {used.first(used.size() - 1), used.last(used.size() - 1)}) {
-      const Fit fit = fit_.order < believed_from
-                          ? fit_of_order(others, fit_.order)
-                          : best_fit(others, false);
-      moves_ = std::max(moves_, distance(fit.limit, fit_.limit, measure_));
-    }
+  const auto compare = [this](std::span<const GridReport> others) {
+    const Fit fit = fit_.order < believed_from
+                        ? fit_of_order(others, fit_.order)
+                        : best_fit(others, false);
+    moves_ = std::max(moves_, distance(fit.limit, fit_.limit, measure_));
+  };
+  if (slow_ && from > 0)
+    compare(all.subspan(from - 1, fewest));  // the fit before this grid
+  else if (used.size() > 3)
+    compare(used.first(used.size() - 1)), compare(used.last(used.size() - 1));
   const double error =
       distance(fit_.slope, Answer(fit_.slope.size()), measure_);
   uncertainty_ =
@@ -82,11 +86,16 @@ Refinement::Fit Refinement::fit_of_order(std::span<const GridReport> grids,
 
 Refinement::Fit Refinement::best_fit(std::span<const GridReport> grids,
                                      bool may_be_slow) const {
+  const Fit one = fit_of_order(grids, 1), two = fit_of_order(grids, 2);
+  if (slow_) {
+    Fit half = fit_of_order(grids, 0.5);
+    half.faster = one.limit;
+    return half;
+  }
   Fit best = fit_of_order(grids, lowest);
   for (double p = lowest + apart; p < highest + apart / 2; p += apart)
     if (Fit f = fit_of_order(grids, p); f.deviation < best.deviation) best = f;
   best.believed = best.order >= believed_from && best.order <= believed_to;
-  const Fit one = fit_of_order(grids, 1), two = fit_of_order(grids, 2);
   const Fit& usual = one.deviation <= two.deviation ? one : two;
   if (best.order < 1) best.faster = one.limit;
   const bool slow = may_be_slow && best.order < believed_from &&

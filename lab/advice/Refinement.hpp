@@ -46,7 +46,10 @@ struct GridReport {
  * 1 / factor, and the observed order p. */
 class Refinement {
  public:
-  explicit Refinement(Measure measure = Measure::com) : measure_(measure) {}
+  /** @param slow a pin holds one node: the order is taken to be 1/2, by the
+   * four finest grids, as coarser ones can show any other */
+  explicit Refinement(Measure measure = Measure::com, bool slow = false)
+      : measure_(measure), slow_(slow) {}
 
   /** Add a run and update all errors: from three grids on they are known.
    * @pre next.factor > back().factor */
@@ -63,6 +66,8 @@ class Refinement {
   /** True if the observed order is believed: the grids are in the asymptotic
    * range, where the error goes by a power of the mesh width. */
   bool asymptotic() const { return fit_.believed; }
+  /** The order was not observed, but taken to be 1/2. */
+  bool slow() const { return slow_; }
   /** The standard deviation of the answers from the fit. */
   double deviation() const { return fit_.deviation; }
   /** The error of the grid of @a factor, measured or predicted. */
@@ -86,6 +91,7 @@ class Refinement {
     bool believed = false;
   };
   Measure measure_;
+  bool slow_;
   std::vector<GridReport> grids_;  // the coarsest first
   Fit fit_;
   double uncertainty_ = 0, moves_ = 0;
