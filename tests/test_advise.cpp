@@ -401,6 +401,8 @@ TEST(Advise, CoarsensEachSheetOnItsOwn) {
   EXPECT_EQ(a.model.sheets[1].nodes, (Nodes{3, 3}));
   EXPECT_EQ(a.model.sheets[0].nodes[0], 3u);
   EXPECT_GT(a.model.sheets[0].nodes[1], 5u);
+  m.sheets[0].nodes = {61, 61}, m.sheets[1].nodes = {4, 4};
+  EXPECT_LT(advise(m).grids[0].nodes, 200u);
 }
 
 // Pilots by Verlet tell nothing of a method or a step that was asked for.

@@ -206,6 +206,18 @@ TEST_F(AdviceOfKind, MeshFromFiles) {
   holds(m);
 }
 
+// The budget does not allow a finer grid: u stays at 0.7 of the tolerance, and
+// the error of a grid that was run leaves room for it.
+TEST_F(AdviceOfKind, LimitKnownToTheToleranceOnly) {
+  const Result r = run(
+      "--sheet 'u 0.68 0 0 v 0 1.1 0 nodes 6 5' --pin 'x 0' --pin 'x 0.68' "
+      "--sphere 'at 0.3196 0.484 -0.4076 radius 0.12 velocity 0 0 1.2' "
+      "--density 0.49 --modulus 92 --drag 1.08 --t-end 0.33 --measure energy "
+      "--tolerance 0.0022 --advise");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(begins(r.out, "advice: ")) << r.out;
+}
+
 // Chaos: what is offered instead has a tolerance that tells something.
 TEST_F(AdviceOfKind, NoOfferIsAsLargeAsTheCloth) {
   Model m = lying(3, 1e-3);

@@ -46,6 +46,16 @@ struct Search {
   /** Steps 1 to 4.
    * @return why no more grids were run; empty: none was needed */
   std::string run() {
+    const std::string why = run_grids();
+    // It can't be known better: maybe the error leaves room for it.
+    if (!choice.found() && chaos.empty() && !grids.knows_limit() &&
+        grids.knows_limit(1) && !q.from_files()) {
+      study_parts();
+      choice.search();
+    }
+    return why;
+  }
+  std::string run_grids() {
     const bool kept = q.rules.keeps_method || q.rules.keeps_step;
     for (;;) {
       if (const std::string why = grids.add(); !why.empty()) return why;

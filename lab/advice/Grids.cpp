@@ -45,9 +45,9 @@ GridStudy::GridStudy(Question& q) : q_(q), most_nodes_(q.rules.most_nodes) {
   for (const Sheet& s : q.scene.sheets)
     for (unsigned n : s.nodes)
       if (n > 1) shortest_ = std::min(shortest_, n - 1.);
-  make_levels(2);
+  make_levels(2, 3);
   // Maybe a pin lies between the nodes of these grids.
-  if (!costs_of(on_level(some_level()))) make_levels(shortest_);
+  if (!costs_of(on_level(some_level()))) make_levels(shortest_, infinite);
   choose_pilots();
 }
 
@@ -135,8 +135,7 @@ std::string GridStudy::hopeless() const {
   const double work = grids().back().work,
                finer = std::pow(std::max(1., 0.7 * q_.pilots.left() / work),
                                 1 / power_of_work()),
-               needed = std::sqrt(grids().uncertainty() /
-                                  (most_uncertain * tolerance()));
+               needed = std::sqrt(grids().uncertainty() / tolerance());
   return finer >= needed
              ? ""
              : over_budget(work * std::pow(needed, power_of_work()));

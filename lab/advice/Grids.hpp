@@ -78,14 +78,16 @@ class GridStudy {
     return grids().uncertainty() <= 0.25 * tolerance();
   }
   /** Nothing can be advised. */
-  bool too_uncertain() const {
-    return grids().uncertainty() > most_uncertain * tolerance();
+  bool too_uncertain(double most = most_uncertain) const {
+    return grids().uncertainty() > most * tolerance();
   }
   /** Enough grids tell an error; two more, whether there is any hope. */
   bool are_enough(std::size_t more = 0) const {
     return grids().size() >= fewest() + more;
   }
-  bool knows_limit() const { return are_enough() && !too_uncertain(); }
+  bool knows_limit(double most = most_uncertain) const {
+    return are_enough() && !too_uncertain(most);
+  }
   /** Not empty, with the reason, if the budget is too small to know it. */
   std::string hopeless() const;
   /** False if a finer grid can't lead to a choice, or, if one was @a found, to
@@ -156,7 +158,7 @@ class GridStudy {
   bool know_tolerance();
   Answer answer_at_start() const;
 
-  void make_levels(double cells);
+  void make_levels(double cells, double most_ratio);
   /** The cells of a level over those of the scene. */
   Sides sides_of(int level) const;
   Model on_level(int level) const { return on_grid(sides_of(level)); }

@@ -17,8 +17,9 @@ double power(int level) {
  * the shortest side, whose cells keep the shape that they have in the scene:
  * springs along oblong cells are another material. So another number of cells
  * near that may be taken. Even numbers are preferred: the answers of odd and
- * even ones may lie on different sides of the limit. */
-void GridStudy::make_levels(double cells) {
+ * even ones may lie on different sides of the limit. Along the short side of no
+ * sheet are more than @a most_ratio times the cells of another. */
+void GridStudy::make_levels(double cells, double most_ratio) {
   constexpr double near = 1.25, odd = 0.02;
   levels_.clear();
   int level = 0;
@@ -34,7 +35,7 @@ void GridStudy::make_levels(double cells) {
       const unsigned small = u == 1 || (v > 1 && v < u);
       const double n = nodes_of_sides[small] - 1.,
                    ratio = (nodes_of_sides[1 - small] - 1.) / n,  // 0: a rope
-          wanted = n / shortest_ * cells * power(level);
+          wanted = std::min(n / shortest_, most_ratio) * cells * power(level);
       double best = infinite;
       std::array<double, 2> side = {1, 1};
       for (double a = std::max(before[k] + 1, std::ceil(wanted / near));
