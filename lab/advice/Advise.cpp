@@ -61,7 +61,7 @@ struct Search {
       if (const std::string why = grids.add(); !why.empty()) return why;
       if (grids.knows_limit()) {
         study_parts();
-        if (!chaos.empty()) return chaos;
+        if (q.from_files() ? !chaos.empty() : is_chaotic()) return chaos;
         choice.search();
         const bool found = choice.found().has_value();
         if (!grids.may_go_on(found) || (!found && kept && grids.is_certain()))
@@ -122,7 +122,7 @@ Advice advise(const Model& m, const AdviceRules& rules) {
                   " that was tried meets the tolerance"
             : "no method meets the tolerance with the steps that were tried: "
               "the smallest was 1/8 of the largest stable one";
-  // Step 5. Chaos may be why nothing was found.
+  // Step 5, once more: the advised run, too, may be chaotic.
   if (!s.grids.grids().empty() && !s.q.from_files() &&
       s.is_chaotic(found ? found->scatter : 0))
     return s.finish(s.chaos);

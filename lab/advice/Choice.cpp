@@ -171,8 +171,8 @@ bool ChoiceSearch::may_be_cheaper(const Choice& c, double most) const {
 
 void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
                            std::optional<Choice>& best) {
-  // Grids and parts for which smaller steps are no remedy, and the method if it
-  // is to blame; and the last error of each method with them.
+  // Grids and parts for which smaller steps are no remedy, and the method if
+  // others may be; and the last error of each method with them.
   std::set<std::pair<int, const MethodEntry*>> fail;
   std::map<std::pair<int, const MethodEntry*>, double> errors;
   for (Choice& c : choices(grids)) {
@@ -193,7 +193,7 @@ void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
     const bool by_accident = c.half_step && grids_.accepts(*c.half_step);
     if (!c.grid.sides.empty() &&
         (by_accident || (bounded && c.error > 0.9 * before)))
-      fail.insert({c.kind, bounded ? nullptr : method});
+      fail.insert({c.kind, by_accident ? method : nullptr});
     before = c.error;
   }
 }
