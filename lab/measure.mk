@@ -106,8 +106,8 @@ method-costs: bench_methods
 
 # ---- Advice: lab/advice/README.md, on ADVISED random scenes from seed FIRST.
 
-ADVISED ?= 24
-FIRST   ?= 701
+ADVISED ?= 60
+FIRST   ?= 901
 adviser-suite: $(B)/cloth
 	lab/advice/suite.py --cloth $< --out $(B)/adviser.csv --first $(FIRST) \
 	  --scenes $(ADVISED) --by-hand $(if $(JOBS),--jobs $(JOBS))

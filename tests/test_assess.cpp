@@ -119,9 +119,9 @@ TEST(Json, HasTheAdvice) {
                      "{\"measure\":\"drape-height\",\"unit\":\"m\","
                      "\"tolerance\":0.002,"));
   for (const char* name :
-       {"limit", "limit_uncertainty", "limit_change", "observed_order",
-        "options", "nodes", "method", "dt_s", "t_end_s", "error", "uncertainty",
-        "answer", "work_spring_evaluations", "spent_spring_evaluations"})
+       {"limit", "limit_uncertainty", "observed_order", "options", "nodes",
+        "method", "dt_s", "t_end_s", "error", "uncertainty", "answer",
+        "work_spring_evaluations", "spent_spring_evaluations"})
     EXPECT_TRUE(has(text, ",\"" + std::string(name) + "\":")) << name;
   EXPECT_FALSE(has(text, "own_"));
   EXPECT_FALSE(has(text, "nan"));

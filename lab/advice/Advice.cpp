@@ -186,19 +186,14 @@ std::string assessment(const Advice& a) {
   else
     text += "  " + a.refusal + '\n';
   const Model& m = own.model;
-  return text + extrapolated(a) +
-         in_columns(
-             {{"part of this run", "error", ""},
-              {"grid of " + std::to_string(mesh_of(m).points.size()) + " nodes",
-               size(own.grid), ""},
-              {"step of " + CME212::short_text(m.step.dt) + " s by " +
-                   std::string(m.method->info.name),
-               size(own.step),
-               own.of_stable > 0 ? CME212::two_digits(own.of_stable) +
-                                       " of the largest stable step"
-                                 : ""},
-              {"both", size(a.from_files ? no_limit : own.total),
-               "+- " + size(a.from_files ? no_limit : u)}});
+  return text + extrapolated(a) + "  of that error: by a grid of " +
+         std::to_string(mesh_of(m).points.size()) + " nodes " + size(own.grid) +
+         ", by a step of " + CME212::short_text(m.step.dt) + " s (" +
+         std::string(m.method->info.name) +
+         (own.of_stable > 0 ? ", " + CME212::two_digits(own.of_stable) +
+                                  " of the largest stable step"
+                            : "") +
+         ") " + size(own.step) + '\n';
 }
 
 /** Words of a part that is all default, as nobody would type ''. */
@@ -317,8 +312,8 @@ std::string as_json(const Advice& a) {
   };
   if (a.grids.size() > 2)
     add("limit", list(a.grids.limit()), "limit_uncertainty",
-        a.grids.uncertainty(), "limit_change", a.grids.change_of_limit(),
-        "observed_order", a.grids.asymptotic() ? a.grids.order() : no_limit);
+        a.grids.uncertainty(), "observed_order",
+        a.grids.asymptotic() ? a.grids.order() : no_limit);
   if (a.own)
     add("own_error", a.own->total, "own_grid_error", a.own->grid,
         "own_step_error", a.own->step, "own_dt_s", a.own->model.step.dt,

@@ -35,12 +35,12 @@ void Refinement::add(GridReport next) {
   const std::span<const GridReport> all = grids_, used = all.subspan(from);
   fit_ = best_fit(used, true);
   for (GridReport& g : grids_) g.error = error(g.factor).size(measure_);
-  moves_ = 0;
-  const auto compare = [this](std::span<const GridReport> others) {
+  double moves = 0;
+  const auto compare = [&, this](std::span<const GridReport> others) {
     const Fit fit = fit_.order < believed_from
                         ? fit_of_order(others, fit_.order)
                         : best_fit(others, false);
-    moves_ = std::max(moves_, distance(fit.limit, fit_.limit, measure_));
+    moves = std::max(moves, distance(fit.limit, fit_.limit, measure_));
   };
   if (slow_ && from > 0)
     compare(all.subspan(from - 1, fewest));  // the fit before this grid
@@ -50,7 +50,7 @@ void Refinement::add(GridReport next) {
       distance(fit_.slope, Answer(fit_.slope.size()), measure_);
   uncertainty_ =
       (fit_.believed ? 1 : not_believed) * (of_error * error + fit_.deviation) +
-      moves_ + distance(fit_.faster, fit_.limit, measure_);
+      moves + distance(fit_.faster, fit_.limit, measure_);
   if (used.size() == 3) uncertainty_ = of_three_grids * error;
 }
 

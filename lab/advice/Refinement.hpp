@@ -77,8 +77,6 @@ class Refinement {
   /** The uncertainty of limit() at a confidence of 95 %: u of README.md; of
    * three grids, which have no deviation, three times the error. */
   double uncertainty() const { return uncertainty_; }
-  /** The change of the limit in it. */
-  double change_of_limit() const { return moves_; }
   /** False if the answers drift apart by more than @a negligible: refinements
    * change them by more each time. */
   bool converges(double negligible) const;
@@ -94,7 +92,7 @@ class Refinement {
   bool slow_;
   std::vector<GridReport> grids_;  // the coarsest first
   Fit fit_;
-  double uncertainty_ = 0, moves_ = 0;
+  double uncertainty_ = 0;
 
   /** O(grids * numbers) for each order */
   Fit fit_of_order(std::span<const GridReport> grids, double order) const;
