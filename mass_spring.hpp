@@ -41,9 +41,9 @@ inline constexpr bool is_corner(const Point& p) {
 }
 
 /** Make the cloth: N nodes of mass 1/N at rest, springs at their rest length.
- * @param g an empty graph   @param K spring constant [N/m]
- * @pre the indices in @a quads are below points.size()
- * @post node(i) is at points[i]; the edges have the order of MeshSprings
+ * @param K spring constant [N/m]
+ * @pre @a g is empty; the indices in @a quads are below points.size()
+ * @post node(i) is at points[i]
  * Complexity: O(points + quads), unless a point is in very many quads */
 inline void build_cloth(Cloth& g, std::span<const Point> points,
                         std::span<const Quad> quads, MeshSprings::Kind kind,

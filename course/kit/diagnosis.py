@@ -1,5 +1,6 @@
 """What a compiler, a sanitizer or a crash says, in a line or two."""
 
+import functools
 import pathlib
 import re
 import signal
@@ -8,6 +9,7 @@ from dataclasses import dataclass
 
 import once
 import sandbox
+import submission
 
 PLACE = re.compile(r"(?P<file>[^\s:][^:\n]*):(?P<line>\d+)(?::\d+)?: +"
                    r"(?P<text>.*)")
@@ -19,6 +21,7 @@ UNCLOSED = re.compile(r"error: expected '\}' at end of input\n"
                       r"(?:(?:In file included| +) +from .*\n){0,20}"
                       r"(?P<file>[^\s:]+):(?P<line>\d+):\d+: note: to match")
 CONSTRUCTOR = re.compile(r"\b(\w+)<[^<>()]*>\(")
+WORD = re.compile(r"[A-Za-z]{3,}")
 LONGEST = 300
 
 
@@ -27,6 +30,20 @@ def short(text: str) -> str:
     text = " ".join(ADDRESS.sub("0x...", text).split())
     text = text.encode("ascii", "replace").decode()
     return text if len(text) <= LONGEST else text[:LONGEST - 4] + " ..."
+
+
+@functools.cache
+def vocabulary() -> set[str]:
+    """The words of the tests, without comments: what a test can say."""
+    return {word for path in (*once.TESTS.glob("*.?pp"),
+                              once.KIT / "runner.cpp")
+            for word in WORD.findall(submission.without_comments(
+                path.read_text("utf-8")))}
+
+
+def foreign(*texts: str) -> bool:
+    """Has a text that came from a submission's process other words?"""
+    return not vocabulary().issuperset(WORD.findall(" ".join(texts)))
 
 
 @dataclass

@@ -104,6 +104,7 @@ def run(kit: once.Kit, case: kit_check.Case,
         tests: Tests) -> judge.Results | None:
     """{test: Result}, or None if the case does not compile by itself."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-grade-"))
+    diagnosis.vocabulary().update(diagnosis.WORD.findall(tests.text))
     try:
         folder.chmod(0o755)
         files = {name: text.encode() for name, text in case.files.items()}

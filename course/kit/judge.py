@@ -76,6 +76,13 @@ def result_of(test: str, outcome: sandbox.Outcome, names: Container[str],
     expected: {name: (tolerance, numbers)}, or None if nobody knows that."""
     did, name = outcome.did, outcome.name
     verdict = outcome.verdict
+    # The submission shares the process that says this: no words of its own.
+    if diagnosis.foreign(did, name):
+        did = name = ""
+    if diagnosis.foreign(*verdict):
+        return Result("failed", "", "words of the kit's test", "others",
+                      diagnosis.short(did), name,
+                      doubtful="makes a test of {task} say what it can't")
     if verdict[:1] == ["failed"] and len(verdict) == 3:
         return Result("failed", "", diagnosis.short(verdict[1]),
                       diagnosis.short(verdict[2]), diagnosis.short(did), name)

@@ -3,7 +3,8 @@
 The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
 an earlier one; each mistake of course/wrong (mistakes.py) loses what it says
-and nothing else. ONLY takes the cases whose names hold WORD; EVERY takes one in
+and nothing else; what pages and contracts promise is broken by one of them
+(promises.py). ONLY takes the cases whose names hold WORD; EVERY takes one in
 N of the regions and mistakes, beginning with number FIRST, by default 0: all
 FIRST < N together take each of them once.
 """
@@ -24,6 +25,7 @@ import judge
 import markers
 import mistakes
 import once
+import promises
 import report
 import submission
 import tasks
@@ -209,7 +211,7 @@ def main() -> bool:
     only = os.environ.get("ONLY", "")
     judge.LIMITS.cpu, judge.LIMITS.wall = LONGEST, 10
     try:
-        if faults := mistakes.unfounded():
+        if faults := promises.faults():
             raise mistakes.MistakeError("\n".join(faults))
         check = Check(Cases())
     except (markers.MarkerError, tasks.TasksError, once.KitError,

@@ -16,8 +16,9 @@ NAME = [old, new, old, new ...], where each old text occurs once; or a table:
     picture   the name of its picture (course/pictures, the figures of the
               pages), on top of the picture `onto`
     shows     the words below that figure
-    open      of an entry called "allowed: ...": the words of a page that leave
-              it open; kit-check looks for them
+    breaks    the words of pages and contracts that it breaks, one string or
+              more: promises.py
+    open      those that leave it open, of an entry that loses nothing
 
 [default] holds values for all entries of a file.
 """
@@ -52,7 +53,14 @@ class Mistake:
     picture: str = ""
     onto: str = ""
     shows: str = ""
-    open: str = ""
+    breaks: tuple = ()
+    open: tuple = ()
+
+    def __post_init__(self):
+        for key in ("breaks", "open"):      # one string may stand for a list
+            value = getattr(self, key)
+            if isinstance(value, str):
+                object.__setattr__(self, key, (value,))
 
     @property
     def where(self) -> str:
@@ -88,16 +96,6 @@ def read(table: str) -> list[Mistake]:
                 raise MistakeError(f"course/wrong/{table}.toml: {name}: "
                                    f"{str(error).partition(' ')[2]}") from None
     return found
-
-
-def unfounded() -> list[str]:
-    """Faults of entries that allow what no page leaves open."""
-    pages = " ".join(" ".join(path.read_text("utf-8") for path in
-                              FOLDER.parent.glob("*.md")).split())
-    return [f"{one.where}: no page says '{one.open}', which allows it"
-            for table in tables() for one in read(table)
-            if one.name.startswith("allowed: ")
-            and (not one.open or one.open not in pages)]
 
 
 def tables() -> list[str]:

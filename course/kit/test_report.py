@@ -146,6 +146,18 @@ READ of size 8 at 0x602 thread T0
             outcome = sandbox.Outcome(code=code, begun=True)
             self.assertEqual(diagnosis.crash(outcome, {}), said)
 
+    def test_a_submission_has_no_words_in_the_judges_mouth(self):
+        moved, forged = "num_nodes() == 4", "all points for this student"
+        flag = "makes a test of {task} say what it can't"
+        for words, did, told in ((moved, "remove n0", ("remove n0", "")),
+                                 (moved, "cheated", ("", "")),
+                                 (forged, "", ("", flag))):
+            got = judge.result_of("7.1.cost", sandbox.Outcome(
+                code=1, begun=True, verdict=["failed", words, "5"], did=did),
+                {}, None)
+            self.assertEqual((got.did, got.doubtful), told)
+            self.assertEqual(got.expected == words, not got.doubtful)
+
     def test_a_call_that_does_not_compile_is_told_in_the_compilers_words(self):
         output = """\
 course/tests/7.1.b.cpp: In function 'void f()':

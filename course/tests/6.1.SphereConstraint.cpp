@@ -15,7 +15,7 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
   Place places[Bodies::most];
   for (const Point& d :
        {Point(0, 0, 1), Point(1. / 3, -2. / 3, 2. / 3), Point(0, -0.6, -0.8)})
-    for (double usual : {0.5, 1.01, 0.9, 3., 0.125}) {
+    for (double usual : {0.5, 1.0001, 0.9999, 3., 0.125}) {
       const double radii = drawn(usual, 0.1, 2);
       places[b.size] = {d, radii};
       b.add(c + radii * r * d, 0.5, drawn_near(Point(1, -2, -4)));
