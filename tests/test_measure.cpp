@@ -10,6 +10,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Run.hpp"
+#include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
@@ -221,6 +222,15 @@ TEST(Measure, PointOfAFreeFallIsWhereItFell) {
   EXPECT_THROW(answer_of(m, "point sheet 3"), SceneError);
   m.tear_strain = 1;
   EXPECT_THROW(answer_of(m, "point"), SceneError);
+}
+
+TEST(Measure, HelpNamesAllQuantities) {
+  Model m;
+  const auto fields = fields_of(m);
+  const auto field =
+      std::ranges::find(fields, std::string_view("measure"), &Field::name);
+  for (const Quantity& q : quantities)
+    EXPECT_TRUE(has(field->help, q.name)) << q.name;
 }
 
 TEST(Measure, WordsAreReadAndWritten) {

@@ -92,10 +92,13 @@ std::vector<Field> fields_of(Model& m) {
       {"method", Role::method, step, &m.method,
        "name of a method: see --list-methods"},
       {"measure", asked, advice, &m.measure,
-       "the quantity asked for at the end of the run, or [max|min] over time: "
-       "com [x|y|z], drape-height, point u U v V [sheet N] [x|y|z], positions "
-       "[m], energy [J], max-stretch, tear-time [s], pin-force [x X] [y Y] [z "
-       "Z] [N]; 'max stretch' is the largest over time"},
+       "the quantity asked for at the end of the run: com [x|y|z], "
+       "drape-height, point u U v V [sheet N] [x|y|z], distance, positions "
+       "[m], "
+       "energy, kinetic-energy, elastic-energy, lost-energy [J], max-stretch, "
+       "stretch-at, pin-force [x X] [y Y] [z Z], contact-force [N], tear-time "
+       "[s], torn-edges, torn-nodes; or over time: max, min, mean or period "
+       "NAME, first or last NAME above X: see lab/scenes/README.md"},
       {"tolerance",
        asked,
        advice,

@@ -84,7 +84,7 @@ std::string to_words(Part part) {
 /** The coordinates of @a p, three digits each. */
 std::string short_text(const Point& p);
 
-/** "[max|min] NAME [words]", NAME as in Measure.hpp.
+/** "[max|min|mean|first|last|period] NAME [words]", NAME as in Measure.hpp.
  * Throws SceneError: anything else; no such method. */
 Measure read_measure(const std::string& text);
 const MethodEntry* read_method(const std::string& text);
