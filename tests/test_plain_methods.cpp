@@ -124,7 +124,8 @@ const std::vector<Scene>& scenes() {
   static const std::vector<Scene> all = [] {
     std::vector<Scene> made;
     for (const Problem& p : make_problems())
-      if (p.name != "slide")  // is_near() waits for a ball
+      if (p.name != "slide" &&  // is_near() waits for a ball
+          p.name != "large")    // takes long
         made.emplace_back(p,
                           p.norm == Norm::functionals ? 0.26 : 0.9 * p.t_end);
     made.emplace_back(pulled_chain(0.3), 0.2);

@@ -80,6 +80,10 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   out.sweeps = s.force.evaluations();
   out.work = method.work();
   out.end = end_of(s);
+  if (out.ok() && !(std::abs(out.end.energy) < 1e6)) {  // no guard has seen it
+    out.status = Outcome::Status::diverged;
+    out.reason = "energy of 1e6 J or more at the end";
+  }
   return out;
 }
 
@@ -87,6 +91,7 @@ Reference reference(const Problem& p, double fineness) {
   Start start(p);
   const double omega = omega_safe(start.cloth, start.force, start.constraint);
   Reference r;
+  if (p.rests) fineness /= 8;  // the way there matters little
   auto by = [&](Method&& method, const MethodInfo& info, double finer) {
     const auto steps =
         static_cast<long long>(std::ceil(p.t_end * omega / info.limit * finer));
@@ -106,7 +111,7 @@ Reference reference(const Problem& p, double fineness) {
     r.end.positions = std::move(x);
     r.made = "exact";
     other = by(Srkn11b(), Srkn11b::info, fineness);
-  } else if (p.norm == Norm::functionals) {
+  } else if (p.norm == Norm::functionals && !p.rests) {
     r.end = by(Verlet(), Verlet::info, 16 * fineness);
     other = by(Pefrl(), Pefrl::info, 16 * fineness);
   } else {

@@ -51,6 +51,9 @@ struct Problem {
   double gamma = 0;       ///< drag [1/s]: c = gamma/N
   /** Held nodes move and do work. Runs are not guarded: energy may grow. */
   bool driven = false;
+  /** Without contact, at rest at the end. Its runs may take four times the
+   * effort of others. */
+  bool rests = false;
   /** Build the cloth at t = 0. */
   std::function<void(Cloth&)> build;
   std::function<CombinedConstraints(const Cloth&)> constraint;

@@ -89,11 +89,14 @@ struct Curtain {
 CombinedConstraints pinned(const Cloth& g) {
   return make_combined_constraints(PinConstraint(g));
 }
-CombinedConstraints held_at_a_side(const Cloth& g) {
+PinConstraint side_of(const Cloth& g) {
   std::vector<Node> side;
   for (unsigned i = 0; i < g.num_nodes(); ++i)
     if (g.node(i).position().y == 0) side.push_back(g.node(i));
-  return make_combined_constraints(PinConstraint(side));
+  return PinConstraint(side);
+}
+CombinedConstraints held_at_a_side(const Cloth& g) {
+  return make_combined_constraints(side_of(g));
 }
 CombinedConstraints torn_by_a_ball(const Cloth& g) {
   return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
@@ -213,6 +216,19 @@ std::vector<Problem> make_problems() {
                              0.25, 25, 1e4));
   all.push_back(mixed_problem());
   all.push_back(graded_problem());
+  all.push_back(grid_problem(
+      "settles", "25 x 25 cloth, K = 1e5 N/m, drag of 4/s, at rest after 5 s",
+      5, 25, 1e5));
+  all.back().gamma = 4;
+  all.back().norm = Norm::functionals;
+  all.back().rests = true;
+  all.push_back(grid_problem(
+      "large", "100 x 100 cloth, a side of which is lifted, to 0.1 s", 0.1,
+      100));
+  all.back().driven = true;
+  all.back().constraint = [](const Cloth& g) {
+    return make_combined_constraints(PinnedNodes(side_of(g), {Point(0, 0, 1)}));
+  };
   all.push_back(grid_problem(
       "drape", "25 x 25 cloth falling on a ball, to 0.4 s", 0.4, 25));
   all.back().constraint = on_a_ball;

@@ -81,8 +81,9 @@ struct Case {
  * the machine, but its steps do not. */
 std::vector<Case> ladder(const Problem& p, const Reference& r,
                          const MethodEntry& method, double omega,
-                         std::size_t springs, const Effort& effort) {
+                         std::size_t springs, Effort effort) {
   std::vector<Case> cases;
+  if (p.rests) effort.springs *= 4, effort.seconds *= 4;
   const MethodInfo& info = method.info;
   auto go_on = [&](double finer) {
     Case& c = cases.back();
