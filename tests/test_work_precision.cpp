@@ -140,6 +140,10 @@ TEST(Problem, SaysWhyARunFailed) {
   EXPECT_EQ(out.status, Outcome::Status::diverged);
   EXPECT_TRUE(begins(out.reason, "energy out of bounds at t = "));
   EXPECT_LT(out.steps, 100);
+  p.driven = true;  // no guard: the energy at the end says it
+  out = run(p, verlet, 100);
+  EXPECT_EQ(out.status, Outcome::Status::diverged);
+  EXPECT_EQ(out.steps, 100);
 }
 
 // ---------------------------------------------------------------- The program
