@@ -23,8 +23,8 @@ files() {
 mapfile -t sources < <(files '*.hpp' '*.cpp')
 mapfile -t programs < <(files ':(glob)*.cpp')
 mapfile -t scripts < <(files '*.py' '*.js' '*.css' '*.html')
-mapfile -t code < <(files '*.hpp' '*.cpp' '*.py' '*.sh' '*.gp' '*.mk' '*.toml' \
-  '*.js' '*.css' '*.html' '*.yml' Makefile course/starter/Makefile .ci/run)
+mapfile -t code < <(files ':!course/words/*' '*.hpp' '*.cpp' '*.py' '*.sh' '*.gp' \
+  '*.mk' '*.toml' '*.js' '*.css' '*.html' '*.yml' Makefile course/starter/Makefile .ci/run)
 mapfile -t texts < <(printf '%s\n' "${code[@]}"; files '*.md')
 [ ${#sources[@]} != 0 ] || { echo "no sources here"; exit 1; }
 

@@ -58,7 +58,8 @@ def table(whole: "Class", rows: list) -> str:
     ids = list(whole.course.tasks)
     ranked = ranking.COLUMNS if ranking.TASK in ids else ()
     ranks = ranking.ranks({row.student: row.step for row in rows if row.step})
-    lines.writerow([*COLUMNS, *ids, *ranked, "note"])
+    shown = (task.shown for task in whole.course.tasks.values())
+    lines.writerow([*COLUMNS, *shown, *ranked, "note"])
     same = {name: group for group in equal(rows) for name in group}
     zone = whole.due.tzinfo if whole.due else datetime.timezone.utc
     for row in rows:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import ranking
 import report
+import tasks
 import submission
 
 if TYPE_CHECKING:
@@ -63,10 +64,11 @@ def distribution(points: list[int], of: int) -> Iterator[str]:
     yield "</table>"
 
 
-def failures(graded: Iterable[report.Graded]) -> list[tuple[int, str]]:
+def failures(course: tasks.Course, graded: Iterable) -> list[tuple[int, str]]:
     """[(how often, what was said)] of tasks that failed."""
     said = collections.Counter(
-        report.outcome(one.result).split("\n")[0][:LONGEST] for one in graded)
+        report.outcome(course, one.result).split("\n")[0][:LONGEST]
+        for one in graded)
     return sorted(((number, words) for words, number in said.items()),
                   key=lambda pair: (-pair[0], pair[1]))
 
@@ -78,7 +80,7 @@ def listed(found: list[tuple[int, str]]) -> Iterator[str]:
     yield "</ul>"
 
 
-def of_task(graded: Sequence[report.Graded]) -> Iterator[str]:
+def of_task(course: tasks.Course, graded: Sequence) -> Iterator[str]:
     """One sentence of the specification."""
     task = graded[0].task
     failed = [one for one in graded if not one.passed]
@@ -89,7 +91,7 @@ def of_task(graded: Sequence[report.Graded]) -> Iterator[str]:
            f'<span class="dim">({worth})</span></p>')
     yield f'<p class="dim">{text(task.says)}</p>'
     if failed:
-        yield from listed(failures(failed)[:SHOWN])
+        yield from listed(failures(course, failed)[:SHOWN])
 
 
 def of_steps(steps: dict[str, tuple[float, int]]) -> Iterator[str]:
@@ -146,10 +148,10 @@ def page(whole: "Class", rows: list) -> str:
                   if not one.passed]
         if failed:
             lines.append("<h2>Most frequent failures</h2>")
-            lines += listed(failures(failed)[:3 * SHOWN])
+            lines += listed(failures(whole.course, failed)[:3 * SHOWN])
         lines.append("<h2>Sentences of the specification</h2>")
         for same in zip(*(one.graded for one in graded)):
-            lines += of_task(same)
+            lines += of_task(whole.course, same)
     if steps := {row.student: row.step for row in rows if row.step}:
         lines += of_steps(steps)
     if same_files := equal(rows):

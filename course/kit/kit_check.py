@@ -166,7 +166,8 @@ class Check:
         # The report on tasks that should not be lost.
         for g in graded:
             if not g.passed and any(g.task.id in fault for fault in faults):
-                faults += ["  " + line for line in report.failure(g)]
+                faults += ["  " + line for line in
+                           report.failure(self.cases.course, g)]
         faults += [f"{path} was written" for path in ESCAPED
                    if os.path.lexists(path)]
         return faults, time.monotonic() - started

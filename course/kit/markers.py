@@ -153,9 +153,10 @@ def stub(text: str, only: Container[str], course: tasks.Course | None = None,
             out += piece.solution
         elif piece.task not in left_open:
             task = course.tasks.get(piece.task) if course else None
-            page = (f": course page {task.section.id}"
+            page = (f": course page {task.section.number}"
                     if task and task.section.page else "")
-            out.append(f"{piece.indent}// YOUR CODE {piece.task}{page}\n")
+            shown = task.shown if task else piece.task
+            out.append(f"{piece.indent}// YOUR CODE {shown}{page}\n")
             if piece.is_open:
                 left_open.add(piece.task)
             else:

@@ -61,9 +61,9 @@ def of_section(id: str, course: tasks.Course, hints: bool) -> list[str]:
     together = "" if all(task.extra for task in own) else (
         f"Together {total} points. ")
     return [*lines, "", *textwrap.wrap(
-        f"{together}`make test SECTION={id}` shows which tests"
-        f" pass; `make hint TASK={own[0].id}` opens a hint, and each time the"
-        " next one. Commit your work, then hand it in:"
+        f"{together}`make test SECTION={own[0].section.number}` shows which"
+        f" tests pass; `make hint TASK={own[0].shown}` opens a hint, and each"
+        " time the next one. Commit your work, then hand it in:"
         f" `make submit HW={course.tag}`.", 80, break_on_hyphens=False)]
 
 
@@ -73,7 +73,7 @@ def of_course(course: tasks.Course) -> list[str]:
     for task in course.tasks.values():
         if task.points:
             shown = worth(task) if task.extra else task.points
-            rows.append(f"| {task.section.id} | {task.title} | {shown} |")
+            rows.append(f"| {task.section.number} | {task.title} | {shown} |")
     return rows + [f"| | together | {course.points} |"]
 
 
@@ -93,7 +93,7 @@ def filled(text: str, course: tasks.Course, hints: bool = False) -> str:
     """The text of a page with its places filled, and with the hints or not."""
     return PLACE.sub(lambda place: "\n".join(
         of_section(place[1], course, hints) if place[1]
-        else of_course(course)), text)
+        else of_course(course)), tasks.numbered(text, course.numbers))
 
 
 def faults(text: str, section: tasks.Section,

@@ -15,6 +15,7 @@ VERSION = 1     # of the JSON
 # How much of a report students see: FEEDBACK.
 FEEDBACK = ("all", "names", "none")
 RECEIVED = "Received. Points and tests are not shown."
+BY_HAND = "Look at this by hand"
 WHERE = {"graph": "Graph.hpp", "cloth": "mass_spring.hpp",
          "step": "mine.hpp"}
 
@@ -60,67 +61,69 @@ def combine(course: tasks.Course, name: str, taken: submission.Submission,
         failed = [result for result in mine if not result.passed]
         graded.append(Graded(task, (failed or mine)[0]))
         if doubtful := graded[-1].result.doubtful:
-            flag = (WHERE[task.needs], 1, doubtful.format(task=task.id))
+            flag = (WHERE[task.needs], 1, doubtful.format(task=task.shown))
             flags += [flag] * (flag not in flags)
     return Report(course, name, graded, taken.notes, flags)
 
 
-def outcome(result: judge.Result) -> str:
+OUTCOMES = {"missing": "Not tested: {}.", "stopped": "Stopped: {}.",
+            "not compiled": "Does not compile: {}", "crashed": "Crashed: {}."}
+
+
+def outcome(course: tasks.Course, result: judge.Result) -> str:
     """What was expected and what came: one or two lines."""
     if result.status == "failed":
         if result.got:
-            return f"Expected {result.expected}, got {result.got}."
-        return f"Expected: {result.expected}."
-    if result.status == "missing":
-        return f"Not tested: {result.text}."
-    if result.status == "not compiled":
-        return f"Does not compile: {result.text}"
-    if result.status == "stopped":
-        return f"Stopped: {result.text}."
-    return f"Crashed: {result.text}."
+            return course.say("Expected {}, got {}.", result.expected,
+                              result.got)
+        return course.say("Expected: {}.", result.expected)
+    return course.say(OUTCOMES[result.status], result.text)
 
 
-def failure(graded: Graded) -> list[str]:
+def failure(course: tasks.Course, graded: Graded) -> list[str]:
     """The text of a task that failed."""
     task, result = graded.task, graded.result
-    lines = [f"{heading(task)} {score(graded)}.",
-             f'Specification: "{task.says}"']
+    lines = [f"{heading(task)} {score(course, graded)}.",
+             course.say('Specification: "{}"', task.says)]
     if result.did:
-        lines.append(f"Did: {result.did.rstrip('.')}.")
-    lines += outcome(result).split("\n")
-    lines.append(f"Try: {task.hint}")
+        lines.append(course.say("Did: {}.", result.did.rstrip(".")))
+    lines += outcome(course, result).split("\n")
+    lines.append(course.say("Try: {}", task.hint))
     return lines
 
 
-def alike(graded: list[Graded]) -> list[tuple[Graded, list[Graded]]]:
+def alike(course: tasks.Course,
+          graded: list[Graded]) -> list[tuple[Graded, list[Graded]]]:
     """Those that failed, each with the others that never ran for the same
     reason: a text that is said once."""
     together: dict[str, list[Graded]] = {}
     for one in graded:
         if not one.passed:
-            reason = (outcome(one.result) if one.result.status in
+            reason = (outcome(course, one.result) if one.result.status in
                       ("missing", "not compiled") else one.task.id)
             together.setdefault(reason, []).append(one)
     return [(first, others) for first, *others in together.values()]
 
 
 def heading(task: tasks.Task) -> str:
-    return f"{task.section.id} {task.title}"
+    return f"{task.section.number} {task.title}"
 
 
-def score(graded: Graded) -> str:
+def score(course: tasks.Course, graded: Graded) -> str:
     if graded.task.points == 0:
-        return "passed" if graded.passed else "failed"
-    extra = " extra" if graded.task.extra else ""
-    return f"{graded.points}/{graded.task.points}{extra}"
+        return course.say("passed" if graded.passed else "failed")
+    form = "{} extra" if graded.task.extra else "{}"
+    return course.say(form, f"{graded.points}/{graded.task.points}")
 
 
 def as_text(report: Report, feedback: str = "all") -> str:
     """What students see: all, no more than the points of each task, or none."""
-    lines = [f"{report.course.title}: {report.name}", ""]
+    course = report.course
+    lines = [f"{course.title}: {report.name}", ""]
     if feedback == "none":
-        return "\n".join([*lines, RECEIVED, ""])
-    rows = [(g.task.section.id, g.task.title, score(g)) for g in report.graded]
+        return "\n".join([*lines, course.say(RECEIVED), ""])
+    rows = [(g.task.section.number, g.task.title, score(course, g))
+            for g in report.graded]
     wide = max((len(row[1]) for row in rows), default=5)
     far = max((len(row[2]) for row in rows), default=6)
     before = None
@@ -129,23 +132,23 @@ def as_text(report: Report, feedback: str = "all") -> str:
         before = section
         lines.append(f"{shown:<4} {title:<{wide}}  {points:>{far}}")
     total = f"{report.points}/{report.of}"
-    lines.append(f"{'':<4} {'all':<{wide}}  {total:>{far}}")
+    lines.append(f"{'':<4} {course.say('all'):<{wide}}  {total:>{far}}")
     if feedback == "names":
         return "\n".join([*lines, ""])
-    for graded, others in alike(report.graded):
+    for graded, others in alike(course, report.graded):
         lines.append("")
         if others:
-            lines += outcome(graded.result).split("\n")
-            lines += [f"  {heading(g.task)} {score(g)}"
+            lines += outcome(course, graded.result).split("\n")
+            lines += [f"  {heading(g.task)} {score(course, g)}"
                       for g in (graded, *others)]
         else:
-            first, *rest = failure(graded)
+            first, *rest = failure(course, graded)
             lines += [first, *("  " + line for line in rest)]
     if report.notes:
-        lines += ["", *(f"Note: {note}." for note in report.notes)]
+        lines += ["", *(course.say("Note: {}.", note) for note in report.notes)]
     if report.flags:
-        lines += ["", "Look at this by hand:"]
-        lines += [f"  {file}:{line}: {what}"
+        lines += ["", course.say(BY_HAND) + ":"]
+        lines += [f"  {file}:{line}: {course.translated(what)}"
                   for file, line, what in report.flags]
     return "\n".join(lines) + "\n"
 
@@ -155,13 +158,14 @@ def as_json(report: Report) -> str:
     found = []
     for graded in report.graded:
         task, result = graded.task, graded.result
-        one = {"id": task.id, "section": task.section.id, "title": task.title,
+        one = {"id": task.id, "section": task.section.number,
+               "title": task.title,
                "points": graded.points, "of": task.points,
                "extra": task.extra, "status": result.status}
         if not graded.passed:
             one.update(specification=task.says, did=result.did,
                        expected=result.expected, got=result.got,
-                       message=outcome(result), hint=task.hint,
+                       message=outcome(report.course, result), hint=task.hint,
                        test=result.name)
         found.append(one)
     return dump({"version": VERSION, "course": report.course.title,
@@ -179,30 +183,32 @@ def as_gradescope(report: Report, feedback: str = "all") -> str:
     """results.json of a Gradescope autograder. A task that does not count is
     shown as one of no points; its status says how it went, and the name of an
     extra one its points."""
-    tests, hidden = [], feedback == "none"
+    course, tests, hidden = report.course, [], feedback == "none"
     for graded in report.graded:
         silent = graded.passed or feedback == "names"
         extra = graded.task.extra
         tests.append({
-            "name": graded.task.title + f" ({score(graded)})" * extra,
-            "number": graded.task.id,
+            "name": graded.task.title + f" ({score(course, graded)})" * extra,
+            "number": graded.task.shown,
             "score": 0.0 if extra else float(graded.points),
             "max_score": float(graded.task.counted),
             "status": "passed" if graded.passed else "failed",
-            "output": "" if silent else "\n".join(failure(graded)),
+            "output": "" if silent else "\n".join(failure(course, graded)),
             "output_format": "text",
             "visibility": "hidden" if hidden else "visible"})
-    notes = "".join(f"Note: {note}.\n" for note in report.notes)
+    notes = "".join(course.say("Note: {}.", note) + "\n"
+                    for note in report.notes)
     # Flags are for the teacher: in a test that students do not see.
     if report.flags:
         tests.append({
-            "name": "Look at this by hand", "number": "flags", "score": 0.0,
+            "name": course.say(BY_HAND), "number": "flags", "score": 0.0,
             "max_score": 0.0, "status": "failed",
             "output": "\n".join(f"{file}:{line}: {what}"
                                 for file, line, what in report.flags),
             "output_format": "text", "visibility": "hidden"})
-    return gradescope(report.points, RECEIVED if hidden else
-                      f"{report.points} of {report.of} points\n{notes}", tests)
+    return gradescope(report.points, course.say(RECEIVED) if hidden else
+                      course.say("{} of {} points", report.points, report.of)
+                      + "\n" + notes, tests)
 
 
 def gradescope(points: int, output: str, tests: list[dict]) -> str:

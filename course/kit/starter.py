@@ -72,9 +72,13 @@ def tree(kind: str, level: str = "guided") -> Files:
     for path in sorted((root / TESTS).rglob("*")):
         name = path.relative_to(root / TESTS).as_posix()
         if path.is_file() and not is_unasked(name, course):
-            add(f"tests/{name}", path.read_bytes())
+            text = path.read_text(encoding="utf-8")
+            for task in course.tasks.values():
+                for before in ('TASK("', "@file "):
+                    text = text.replace(before + task.id, before + task.shown)
+            add(tasks.numbered(f"tests/{name}", course.numbers), text)
     add("tests/tasks.inc", table_of(course))
-    add("tests/hints", "".join(f"{task.id}\t{hint}\n" for task in
+    add("tests/hints", "".join(f"{task.shown}\t{hint}\n" for task in
                                course.tasks.values() for hint in task.hints))
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
     add(".github/workflows/tests.yml", (root / WORKFLOW).read_bytes())
@@ -83,6 +87,8 @@ def tree(kind: str, level: str = "guided") -> Files:
             del files[name]
         add("Graph.hpp", markers.starter(markers.open_graph(course), course))
     for name, (content, program) in files.items():
+        if name.endswith("Makefile"):
+            content = tasks.numbered(content.decode(), course.numbers).encode()
         if name.endswith((".md", ".sh", "Makefile")):
             text = pages.named(content.decode(), course)
             if name.endswith(".md"):
@@ -121,7 +127,7 @@ def table_of(course: tasks.Course) -> str:
              "has them."]
     for task in course.tasks.values():
         texts = [json.dumps(text) for text in (
-            task.id, task.title, task.says, task.hint)]
+            task.shown, task.title, task.says, task.hint)]
         lines.append(f"X({texts[0]}, {texts[1]}, {task.points},\n  "
                      f"{texts[2]},\n  {texts[3]})")
     return "\n".join(lines) + "\n"

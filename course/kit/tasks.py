@@ -45,6 +45,7 @@ class Section:
     #             "step": mine.hpp, too
     page: str | None  # a file in course/
     line: int
+    number: str  # what the course shows for id
 
 
 @dataclass(frozen=True)
@@ -72,6 +73,10 @@ class Task:
     def worth(self) -> str:
         return f"{self.points} point" + ("" if self.points == 1 else "s")
 
+    @property
+    def shown(self) -> str:
+        return self.section.number + self.id[len(self.section.id):]
+
 
 @dataclass(frozen=True)
 class Course:
@@ -80,10 +85,25 @@ class Course:
     sections: tuple  # in the order of the file; without those dropped
     tasks: dict  # id -> Task, in the order of the file; likewise
     dropped: frozenset  # ids of tasks that are not asked for
+    numbers: dict  # id of a section -> its number, where that is another
+    words: dict  # English sentence -> sentence of the language; {} is a part
 
     @property
     def points(self) -> int:
         return sum(task.counted for task in self.tasks.values())
+
+    def say(self, sentence: str, *parts: object) -> str:
+        """A sentence with its parts, in the language as far as it is known."""
+        return self.words.get(sentence, sentence).format(
+            *(self.translated(str(part)) for part in parts))
+
+    def translated(self, text: str) -> str:
+        """A text that was made of a sentence and its parts, by a test."""
+        for sentence in self.words if len(text) < 500 else ():
+            pattern = "(.+?)".join(map(re.escape, sentence.split("{}")))
+            if found := re.fullmatch(pattern, text):
+                return self.say(sentence, *found.groups())
+        return text
 
 
 # The keys of a table, by its kind: those that it must have, and others.
@@ -92,7 +112,8 @@ REQUIRED: dict[str, dict[str, type]] = {
     "section": {"title": str, "needs": str},
     "task": {"title": str, "points": int, "says": str, "hint": str}}
 OPTIONAL: dict[str, dict[str, type]] = {
-    "": {"numbers": dict}, "section": {"page": str, "dropped": bool},
+    "": {"numbers": dict, "language": str},
+    "section": {"page": str, "dropped": bool, "number": str},
     "task": {"tests": list, "hints": list, "extra": bool, "dropped": bool}}
 TYPES = {str: "a text", int: "a whole number", bool: "true or false",
          list: "a list", dict: "a table"}
@@ -126,6 +147,16 @@ def parse(text: str, name: str = FILE) -> Course:
             from None
     if wrong := [f"{name}:1: {fault}" for fault in wrong_keys("", data)]:
         raise TasksError(wrong)
+    words = in_language(data["language"]) if "language" in data else {}
+    numbers = {id: table["number"] for id, table in data["section"].items()
+               if type(table) is dict and type(table.get("number")) is str}
+    shown = [numbers.get(id, id) for id in data["section"]]
+    if twice := [number for number in shown if shown.count(number) > 1]:
+        raise TasksError([f"{name}:1: two sections have the number {twice[0]}"])
+
+    def say(text):
+        return numbered(words.get(text, text), numbers)
+
     lines = {header.groups(): number
              for number, line in enumerate(text.splitlines(), 1)
              if (header := HEADER.match(line))}
@@ -140,12 +171,13 @@ def parse(text: str, name: str = FILE) -> Course:
             if not found:
                 yield id, table, line
 
-    all_sections = {id: Section(id, table["title"], table["needs"],
-                                table.get("page"), line)
+    all_sections = {id: Section(id, say(table["title"]), table["needs"],
+                                table.get("page"), line,
+                                table.get("number", id))
                     for id, table, line in tables("section", wrong_section)}
-    tasks = {id: Task(id, table["title"], table["points"], table["says"],
-                      table["hint"],
-                      (*table.get("hints", []), table["hint"]),
+    tasks = {id: Task(id, say(table["title"]), table["points"],
+                      say(table["says"]), say(table["hint"]),
+                      (*map(say, [*table.get("hints", []), table["hint"]]),),
                       tuple(table.get("tests", [id])),
                       table.get("extra", False),
                       all_sections[id.rpartition(".")[0]], line)
@@ -157,14 +189,49 @@ def parse(text: str, name: str = FILE) -> Course:
                 if not data["section"][section.id].get("dropped")]
     dropped = {task.id for task in tasks.values() if task.section not in
                sections or data["task"][task.id].get("dropped")}
-    return Course(data["title"], data["tag"], tuple(sections),
+    return Course(say(data["title"]), data["tag"], tuple(sections),
                   {id: task for id, task in tasks.items() if id not in dropped},
-                  frozenset(dropped))
+                  frozenset(dropped), numbers, words)
+
+
+def numbered(text: str, numbers: dict[str, str]) -> str:
+    """With the numbers that the course shows; names of files keep their ids."""
+    if not numbers:
+        return text
+    every, dotted = ("|".join(re.escape(id) for id in numbers if sign in id)
+                     or "(?!)" for sign in ("", "."))
+    name = r"\.(?:md|png|svg)"
+    return re.sub(
+        rf"(?<![\w./-])(?:{every})(?=\.[A-Za-z_])(?!{name})"
+        rf"|(?:(?<=SECTION=)|(?<=^# )|(?<=tests/))(?:{every})(?![\d-]|\.\d)"
+        rf"|(?<![\w./$-])(?<!tasks )(?:{dotted})"
+        rf"(?![\w$-]|\.\d|{name}| (?:m|s|kg|N|J)\b)",
+        lambda found: numbers[found[0]], text, flags=re.MULTILINE)
+
+
+def in_language(language: str) -> dict[str, str]:
+    """What course/words/LANGUAGE.toml says in place of English sentences."""
+    name = f"course/words/{language}.toml"
+    try:
+        words = tomllib.loads((ROOT / name).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", error)
+        raise TasksError([f"{name}:1: {reason}"]) from None
+    if wrong := [f"{name}:1: expected one text for '{sentence}', with its {{}}"
+                 for sentence, said in words.items()
+                 if not sentence.replace("{}", "").strip()
+                 or type(said) is not str
+                 or sentence.count("{}") != said.count("{}")
+                 or re.search("[{}]", (sentence + said).replace("{}", ""))]:
+        raise TasksError(wrong)
+    return words
 
 
 def wrong_section(id: str, table: dict) -> Iterator[str]:
     if not SECTION_ID.fullmatch(id):
         yield f"'{id}' is no id of a section, expected one as 7.1"
+    if not SECTION_ID.fullmatch(number := table.get("number", "1")):
+        yield f"{id}: number '{number}' is not one as 7.1"
     if table["needs"] not in NEEDS:
         yield (f"{id}: needs '{table['needs']}', expected graph, cloth or "
                "step")

@@ -224,6 +224,10 @@ class Tasks(unittest.TestCase):
                 ('"cloth"', '"silk"', 7, "expected graph, cloth or step"),
                 ('"7.1.g_more"', '"../x"', 15, "names of files"),
                 ('[section."3.1"]', "[curse]", 1, "unknown key 'curse'"),
+                ('title = "First"', 'title = "First"\nnumber = "7.1"', 1,
+                 "two sections have the number 7.1"),
+                ('title = "First"', 'title = "First"\nnumber = "7-1"', 3,
+                 "number '7-1' is not one"),
                 ('tag = "hw9"\n', "", 1, "'tag' is missing")):
             with self.assertRaises(tasks.TasksError) as caught:
                 tasks.parse(TASKS.replace(old, new), "t.toml")
@@ -321,6 +325,20 @@ class Repository(unittest.TestCase):
             self.assertNotRegex(content, rf"\b{old.tag}\b".encode(), name)
         self.assertTrue(files["README.md"][0].startswith(b"# new title\n"))
         self.assertIn(b"HW     ?= new-tag\n", files["Makefile"][0])
+
+    def test_a_renumbered_course(self):
+        text = (tasks.ROOT / tasks.FILE).read_text(encoding="utf-8")
+        new = tasks.parse(text.replace('[section."7.1"]',
+                                       '[section."7.1"]\nnumber = "2"'))
+        with unittest.mock.patch("markers.load", lambda: (
+                markers.read_sources(), new)):
+            files = starter.tree("starter")
+        self.assertTrue(files["pages/7.1.md"][0].startswith(b"# 2 Removal"))
+        self.assertIn("tests/2.remove_node.cpp", files)
+        for name, (content, _) in files.items():
+            if name.startswith(("pages/", "tests/2.", "README", "Graph")):
+                self.assertNotRegex(content, rb"(?<![\d(.$/-])7\.1(?![\d-]|"
+                                    rb"\.md|\.png| m\b)", name)
 
     def test_a_starter_holds_what_it_should(self):
         files, solved = (starter.tree(kind) for kind in ("starter", "solution"))

@@ -4,6 +4,7 @@ import contextlib
 import io
 import json
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
@@ -296,6 +297,26 @@ class Reports(unittest.TestCase):
                       f'a < b && "c", got <&>.\n  Try: {self.lost.hint}\n',
                       text)
         self.assertIn("\nLook at this by hand:\n  Graph.hpp:3: writes", text)
+
+    def test_another_language_and_other_numbers(self):
+        text = (tasks.ROOT / tasks.FILE).read_text(encoding="utf-8")
+        made = self.report
+        made.course = course = tasks.parse('language = "de"\n' + text.replace(
+            '[section."3.1"]', '[section."3.1"]\nnumber = "2"'))
+        for one in made.graded:
+            one.task = course.tasks[one.task.id]
+        made.graded[4].result = judge.Result(
+            "failed", "", "the positions of all other nodes stay", "",
+            "a node of mass 2 kg without edges")
+        said = report.as_text(made)
+        self.assertIn("\n2 position() 0/4.\n  Vorgabe: ", said)
+        self.assertIn("\n  Versuch: ein Knoten der Masse 2 kg ohne Kanten.\n"
+                      "  Erwartet: alle anderen Knoten bleiben an ihrem Ort.\n"
+                      "  Tipp: Return a", said)
+        self.assertIn('"number": "2.position"', report.as_gradescope(made))
+        for english in "{}".join(course.words).split("{}"):
+            if len(english.strip(" .:")) > 3:
+                self.assertNotRegex(said, rf"\b{re.escape(english.strip())}")
 
     def test_what_is_doubtful_is_flagged_once(self):
         results = {test: judge.Result("passed") for task
